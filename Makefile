@@ -1,0 +1,50 @@
+# Everything is done inside .venv; `make help` lists what there is.
+# A stamp beside the environment tells what it was set up for, so a second run is instant;
+# a change of pyproject.toml sets it up again.
+
+PYTHON ?= python3
+VENV   ?= .venv
+PYTEST_ARGS ?=
+
+BIN := $(VENV)/bin
+SETUP := pyproject.toml tools/setup.sh tools/common.sh
+
+.DEFAULT_GOAL := help
+.PHONY: help demo test lint format wheel clean
+
+help: ## list what can be made
+	@echo "flowtex. Choose an interpreter with PYTHON=python3.12, tests with PYTEST_ARGS='-k trace'."
+	@sed -n 's/^\([a-z]*\):[^#]*## /  make \1\t/p' Makefile | expand -t 16
+
+demo: $(VENV)/.ready-demo ## set up if need be, and show flow on a surface
+	@sh tools/opengl.sh $(BIN)/python
+	@$(BIN)/flowtex demo
+
+test: $(VENV)/.ready-test ## set up if need be, then run every check and every test
+	@sh tools/opengl.sh $(BIN)/python
+	@sh tools/chromium.sh
+	@sh tools/check.sh $(BIN) $(PYTEST_ARGS)
+
+lint: $(VENV)/.ready-test ## style, format and types, without the tests
+	$(BIN)/ruff check
+	$(BIN)/ruff format --check
+	$(BIN)/mypy
+
+format: $(VENV)/.ready-test ## put the code in its format
+	$(BIN)/ruff check --select I --fix
+	$(BIN)/ruff format
+
+wheel: $(VENV)/.ready-test ## build dist/flowtex-*.whl and the source archive
+	$(BIN)/hatchling build
+
+clean: ## remove the environment and everything that was built
+	rm -rf $(VENV) dist build .mypy_cache .pytest_cache .ruff_cache
+
+$(VENV)/.ready-demo: $(SETUP)
+	@sh tools/setup.sh "$(PYTHON)" $(VENV) app
+	@touch $@
+
+# What the tests need includes what the demo needs.
+$(VENV)/.ready-test: $(SETUP)
+	@sh tools/setup.sh "$(PYTHON)" $(VENV) all,test,dev
+	@touch $@ $(VENV)/.ready-demo

@@ -1,0 +1,26 @@
+"""Faults of one call, gathered and told together.
+
+A checker appends each fault as one sentence that names the value that came, what was expected
+and the remedy; :func:`raise_faults` turns them into a single error, so that a user mends a call
+once and not once for every argument.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+__all__ = ["FieldError", "raise_faults"]
+
+
+class FieldError(ValueError):
+    """What was given cannot be drawn as a flow; the text says what, why and what to do."""
+
+
+def raise_faults(faults: Sequence[str], error: type[Exception] = FieldError) -> None:
+    """Raise ``error`` with every fault, or return when there is none."""
+    if not faults:
+        return
+    if len(faults) == 1:
+        raise error(faults[0])
+    listed = "\n".join(f"  {n}. {fault}" for n, fault in enumerate(faults, start=1))
+    raise error(f"{len(faults)} things are wrong:\n{listed}")

@@ -1,0 +1,201 @@
+"""The examples as fields, from nothing but NumPy, SciPy, and the shipped files."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flowtex.examples import _cylinder, _double_gyre, _vortex
+from flowtex.examples._airfoil import Joukowski
+from flowtex.examples._post import find_post
+from flowtex.field import FlowField
+
+__all__ = [
+    "NAMES",
+    "airfoil_field",
+    "cylinder_field",
+    "double_gyre_field",
+    "liquid_oxygen_post_field",
+    "vortex_field",
+]
+
+
+def cylinder_field() -> FlowField:
+    """One period of vortex shedding behind a circular cylinder, Reynolds number 100.
+
+    A solution of the two-dimensional Navier-Stokes equations in vorticity and streamfunction,
+    with Fourier modes around the cylinder and fourth-order differences outwards.
+
+    Returns
+    -------
+    FlowField
+        31 instants, the last one period after the first, on an O-grid of 65 circles (j, from
+        the wall outwards to a radius of 15) and 161 nodes around (i, anticlockwise from
+        straight downstream, so that the wake crosses the seam where the first and last column
+        coincide). Lengths in diameters, speeds in free-stream speeds, scalar ``vorticity``.
+
+    Raises
+    ------
+    FileNotFoundError
+        When the installation lacks the example's file.
+
+    Notes
+    -----
+    Velocities are rounded to 16 bits: by at most 3e-5 free-stream speeds.
+    """
+    points, velocity, times = _cylinder.arrays()
+    return FlowField.from_arrays(
+        points,
+        velocity,
+        times=times,
+        periodic="i",
+        scalars={"vorticity": _cylinder.vorticity(points, velocity)},
+        name="cylinder",
+        length_unit="diameters",
+        time_unit="diameters / free-stream speed",
+    )
+
+
+def vortex_field() -> FlowField:
+    """Vortices of decaying two-dimensional turbulence in a periodic box.
+
+    A solution of the Navier-Stokes equations by a dealiased pseudo-spectral method, in the form
+    of the vortex data set of Li and Shen: a time-varying Cartesian grid of 100 x 100 nodes over
+    31 time steps.
+
+    Returns
+    -------
+    FlowField
+        31 instants, 0.04 apart, on [0, 1] x [0, 1], periodic along both axes: the last row and
+        column repeat the first. The root-mean-square speed was 1 before the vortices formed;
+        a particle in a vortex travels a twentieth of the box from one instant to the next.
+        Scalar ``vorticity``. All units are arbitrary.
+
+    Raises
+    ------
+    FileNotFoundError
+        When the installation lacks the example's file.
+    """
+    points, velocity, vorticity, times = _vortex.arrays()
+    return FlowField.from_arrays(
+        points,
+        velocity,
+        times=times,
+        periodic="ij",
+        scalars={"vorticity": vorticity},
+        name="vortex",
+        length_unit="boxes",
+    )
+
+
+def double_gyre_field(
+    time_varying: bool = False,  # noqa: FBT001, FBT002 - the one choice, and clear by its name
+    shape: tuple[int, int] = (101, 201),
+) -> FlowField:
+    """Double gyre of Shadden, Lekien and Marsden, exact at the nodes.
+
+    Parameters
+    ----------
+    time_varying : bool, default: False
+        Whether the border between the gyres swings: 41 instants over one period of 10 units of
+        time, the last equal to the first. Otherwise the flow is steady (epsilon = 0).
+    shape : tuple of int, default: (101, 201)
+        Number of nodes (J, I) on [0, 2] x [0, 1].
+
+    Returns
+    -------
+    FlowField
+        With the scalar ``vorticity``; all units are arbitrary.
+    """
+    points = _double_gyre.nodes(shape)
+    times = np.linspace(0.0, _double_gyre.PERIOD, 41) if time_varying else np.zeros(1)
+    return _double_gyre_at(times, points, _double_gyre.EPSILON if time_varying else 0.0)
+
+
+def _double_gyre_at(
+    times: NDArray[np.float64], points: NDArray[np.float64], epsilon: float
+) -> FlowField:
+    return FlowField.from_arrays(
+        points,
+        [_double_gyre.double_gyre_velocity(points, t, epsilon=epsilon) for t in times],
+        times=times,
+        periodic="",
+        scalars={"vorticity": [_double_gyre.vorticity(points, t, epsilon) for t in times]},
+        name="double gyre",
+    )
+
+
+def airfoil_field(shape: tuple[int, int] = (65, 193), extent: float = 2.5) -> FlowField:
+    """Steady lifting flow around a cambered Joukowski airfoil, exact at the nodes.
+
+    Parameters
+    ----------
+    shape : tuple of int, default: (65, 193)
+        Number of nodes (J, I) of the O-grid: rings from the wall outwards, and nodes from the
+        trailing edge clockwise, the last of which coincides with the first.
+    extent : float, default: 2.5
+        Distance of the outermost ring from the airfoil's middle, in chords.
+
+    Returns
+    -------
+    FlowField
+        Lengths in chords, speeds in free-stream speeds; the stream comes 8 degrees from below.
+        The scalar ``pressure`` is the pressure coefficient, 1 where the flow stands still.
+
+    Notes
+    -----
+    The flow is inviscid: it slides along the wall, and leaves the cusped trailing edge smoothly
+    (the Kutta condition). Cells differ in area by more than a hundred thousand to one.
+    """
+    airfoil = Joukowski()
+    nodes = airfoil.grid(*shape, extent)
+    velocity = airfoil.velocity(nodes)
+    return FlowField.from_arrays(
+        airfoil.place(nodes),
+        velocity,
+        periodic="i",
+        scalars={"pressure": 1.0 - np.sum(velocity**2, axis=-1)},
+        name="airfoil",
+        length_unit="chords",
+        time_unit="chords / free-stream speed",
+    )
+
+
+def liquid_oxygen_post_field(folder: str | Path | None = None, plane: str = "k=20") -> FlowField:
+    """Flow around NASA's liquid-oxygen post, one plane of a curvilinear grid.
+
+    Parameters
+    ----------
+    folder : str or Path, optional
+        Folder with ``postxyz.bin`` and ``postq.bin``. By default PyVista downloads them from
+        its collection of data, once, into its own cache.
+    plane : str, default: "k=20"
+        Plane of the 38 x 76 x 38 nodes. On k-planes i runs outwards and j around the post, with
+        coinciding first and last nodes; k = 0 is a wall where nothing moves.
+
+    Returns
+    -------
+    FlowField
+        In the units of the file, with its scalars.
+
+    Raises
+    ------
+    FileNotFoundError
+        When the folder lacks one of the files, or they cannot be downloaded.
+    FieldError
+        When there is no such plane, or nothing moves on it.
+    """
+    return FlowField.from_file(find_post(folder), plane=plane)
+
+
+#: Names under which the examples are offered, each with the function that makes its field.
+NAMES: dict[str, Callable[[], FlowField]] = {
+    "cylinder": cylinder_field,
+    "vortex": vortex_field,
+    "double_gyre": double_gyre_field,
+    "airfoil": airfoil_field,
+    "liquid_oxygen_post": liquid_oxygen_post_field,
+}

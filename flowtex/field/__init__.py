@@ -1,0 +1,9 @@
+"""Surface and velocity: what is drawn, as arrays on a structured mesh."""
+
+from __future__ import annotations
+
+from flowtex.errors import FieldError
+from flowtex.field.field import FlowField
+from flowtex.field.surface import Surface
+
+__all__ = ["FieldError", "FlowField", "Surface"]

@@ -1,0 +1,85 @@
+"""Velocity from space into index space, through the metric of the surface.
+
+A velocity v is projected onto the tangents P_i and P_j by solving the 2 x 2 metric system
+
+    | P_i.P_i  P_i.P_j | | u_i |   | v.P_i |
+    | P_i.P_j  P_j.P_j | | u_j | = | v.P_j |
+
+for the contravariant components (u_i, u_j), in cells per unit of time (Forssell and Cohen 1995,
+section 3). What is normal to the surface is lost by it, and its share is returned.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flowtex.field.surface import Surface
+
+__all__ = ["IndexVelocity", "to_index_space"]
+
+Floats = NDArray[np.float64]
+
+#: Below this ratio of squared area to squared lengths a cell counts as collapsed.
+COLLAPSED = 1e-10
+
+
+@dataclass(frozen=True)
+class IndexVelocity:
+    """A velocity field in index space.
+
+    Attributes
+    ----------
+    components
+        (u_i, u_j) in cells per unit of time, (T, J, I, 2).
+    speed
+        Length of the velocity along the surface, in the mesh's units per unit of time,
+        (T, J, I).
+    lost
+        Share of the flow that points out of the surface: root mean square of the normal part
+        over that of the whole, between 0 and 1.
+    """
+
+    components: Floats
+    speed: Floats
+    lost: float
+
+
+def to_index_space(surface: Surface, velocity: Floats) -> IndexVelocity:
+    """Project a velocity onto a surface and express it in cells per unit of time.
+
+    Parameters
+    ----------
+    surface
+        The surface, (J, I) nodes.
+    velocity
+        Velocity in space, (T, J, I, 3); zero at nodes that are not valid.
+    """
+    p_i, p_j = surface.tangents
+    g_ii, g_jj, g_ij = (np.sum(a * b, axis=-1) for a, b in ((p_i, p_i), (p_j, p_j), (p_i, p_j)))
+    determinant = g_ii * g_jj - g_ij**2
+    along_i = np.einsum("tjic,jic->tji", velocity, p_i)
+    along_j = np.einsum("tjic,jic->tji", velocity, p_j)
+    typical = float(np.median((g_ii + g_jj)[surface.valid]))
+    tiny = COLLAPSED * typical
+    flat = (determinant <= COLLAPSED * g_ii * g_jj) | (g_ii <= tiny) | (g_jj <= tiny)
+    safe = np.where(flat, 1.0, determinant)
+    u_i = np.where(flat, _alone(along_i, g_ii, tiny), (g_jj * along_i - g_ij * along_j) / safe)
+    u_j = np.where(flat, _alone(along_j, g_jj, tiny), (g_ii * along_j - g_ij * along_i) / safe)
+    along = u_i[..., None] * p_i + u_j[..., None] * p_j
+    known = ~flat & surface.valid
+    total = float(np.sum(velocity[:, known] ** 2))
+    normal = float(np.sum((velocity - along)[:, known] ** 2))
+    return IndexVelocity(
+        components=np.stack([u_i, u_j], axis=-1),
+        speed=np.linalg.norm(along, axis=-1),
+        lost=float(np.sqrt(min(normal / total, 1.0))) if total > 0 else 0.0,
+    )
+
+
+def _alone(along: Floats, square: Floats, tiny: float) -> Floats:
+    """Component along one tangent where the other one has collapsed."""
+    kept = square > tiny
+    return np.asarray(np.where(kept, along / np.where(kept, square, 1.0), 0.0))

@@ -1,0 +1,121 @@
+"""Which axes of a structured surface close on themselves, and the line of nodes that closes them.
+
+Meshes close in three ways: the last line of nodes repeats the first (an O-grid in PLOT3D), the
+last line stops one cell short of the first (a sphere or ring without the repeated line), or the
+axis is global longitude on a flat map, where the first line comes back 360 degrees further on.
+Everything behind this module sees one way only: the last line is the first one again. A line is
+appended where it is missing.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Closure", "find_closure", "requested_closure"]
+
+Floats = NDArray[np.float64]
+
+#: Lines closer than this share of the extent of the mesh coincide.
+COINCIDE = 1e-6
+#: So do lines closer than this share of the cells beside them.
+NEARLY = 1e-2
+#: Fewer lines than this are never taken for a ring with a gap.
+FEWEST = 8
+
+
+@dataclass(frozen=True)
+class Closure:
+    """How one axis closes: whether it does, and the line to append, or ``None``."""
+
+    periodic: bool
+    line: Floats | None = None
+
+
+def find_closure(points: Floats) -> Closure:
+    """Decide from the geometry whether the first axis of (N, M, 3) nodes closes."""
+    extent = _extent(points)
+    if extent == 0.0 or len(points) < 3:
+        return Closure(periodic=False)
+    if _coincide(points, extent):
+        return Closure(periodic=True)
+    turn = _longitude(points)
+    if turn is not None:
+        return turn
+    if len(points) >= FEWEST and _one_cell_short(points):
+        return Closure(periodic=True, line=points[:1])
+    return Closure(periodic=False)
+
+
+def requested_closure(points: Floats, velocity: Floats) -> Closure:
+    """Close the first axis as the caller asks, appending a line where it is needed.
+
+    ``velocity`` is (T, N, M, 3): a flat map whose last line already carries the values of its
+    first one is closed as it is.
+    """
+    found = find_closure(points)
+    if found.periodic:
+        return found
+    fastest = float(np.nanmax(np.abs(velocity), initial=0.0))
+    repeats = np.allclose(
+        velocity[:, 0], velocity[:, -1], rtol=0, atol=1e-6 * fastest, equal_nan=True
+    )
+    if repeats and fastest > 0:
+        return Closure(periodic=True)
+    return Closure(periodic=True, line=2 * points[-1:] - points[-2:-1])
+
+
+def _extent(points: Floats) -> float:
+    flat = points.reshape(-1, 3)
+    flat = flat[np.isfinite(flat).all(axis=1)]
+    return float(np.linalg.norm(np.ptp(flat, axis=0))) if len(flat) else 0.0
+
+
+def _coincide(points: Floats, extent: float) -> bool:
+    """Whether the last line lies on the first one, and the lines between do not."""
+    middle = _worst(points[len(points) // 2] - points[0])
+    gap = np.linalg.norm(points[-1] - points[0], axis=-1)
+    steps = np.linalg.norm(np.diff(points, axis=0)[[0, -1]], axis=-1).max(axis=0)
+    # Coordinates far from the origin, or written with few digits, miss by more than COINCIDE.
+    with np.errstate(invalid="ignore"):
+        close = gap <= np.fmax(COINCIDE * extent, NEARLY * steps)
+    known = np.isfinite(gap)
+    return bool(known.any()) and bool(close[known].all()) and COINCIDE * extent < middle
+
+
+def _one_cell_short(points: Floats) -> bool:
+    """Whether the gap between the last line and the first is one cell among others."""
+    steps = np.linalg.norm(np.diff(points, axis=0), axis=-1)
+    gap = np.linalg.norm(points[-1] - points[0], axis=-1)
+    with np.errstate(invalid="ignore"):
+        near = gap <= 1.5 * np.maximum(steps[0], steps[-1])
+        around = np.nansum(steps, axis=0) >= 0.75 * len(steps) * gap
+    known = np.isfinite(gap)
+    open_somewhere = bool((gap[known] > 0).any())
+    return open_somewhere and bool((near & around)[known].all())
+
+
+def _longitude(points: Floats) -> Closure | None:
+    """Recognise global longitude in degrees along the first axis of a flat map."""
+    if not np.isfinite(points).all() or np.ptp(points[..., 2]) > 0:
+        return None
+    x, y = points[..., 0], points[..., 1]
+    same = np.ptp(x, axis=1).max() <= 1e-6 * 360
+    steps = np.diff(x[:, 0])
+    even = len(steps) > 3 and np.ptp(steps) <= 1e-3 * abs(steps[0]) and steps[0] != 0
+    if not (same and even and np.abs(y).max() <= 90.01 and np.ptp(y) > 0):
+        return None
+    span, step = abs(x[-1, 0] - x[0, 0]), abs(steps[0])
+    if abs(span - 360) <= 1e-3 * step:
+        return Closure(periodic=True)
+    if abs(span + step - 360) <= 1e-2 * step:
+        return Closure(periodic=True, line=2 * points[-1:] - points[-2:-1])
+    return None
+
+
+def _worst(difference: Floats) -> float:
+    lengths = np.linalg.norm(difference, axis=-1)
+    lengths = lengths[np.isfinite(lengths)]
+    return float(lengths.max()) if len(lengths) else float("inf")

@@ -1,0 +1,201 @@
+"""One plane of nodes out of a structured mesh, as arrays of (j, i) order.
+
+A structured mesh of I x J x K nodes keeps node (i, j, k) at place i + I (j + J k). Taking one
+value of an index away leaves the other two in their order, so that
+
+=============  =======  =======
+plane          i is     j is
+=============  =======  =======
+``k = n``      i        j
+``j = n``      i        k
+``i = n``      j        k
+=============  =======  =======
+
+Nothing is mirrored for the sake of a right-handed surface: index (i, j) of the plane is what a
+person counts in the mesh.
+
+Values of cells come to the nodes as the mean of the visible cells around each node, on both
+sides of the plane, so that nothing leaks out of blanked cells.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flowtex.errors import raise_faults
+
+__all__ = ["Plane", "choose_plane", "count_nodes", "nodes_to_keep", "plane_faults", "spread"]
+
+Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+_PLANE = re.compile(r"\s*([ijk])\s*=\s*([+-]?\d+)\s*", re.IGNORECASE)
+
+
+@dataclass(frozen=True)
+class Plane:
+    """A plane of constant i, j or k.
+
+    Attributes
+    ----------
+    dimensions
+        Number of nodes (I, J, K) of the mesh.
+    axis
+        Which index is constant: 0 for i, 1 for j, 2 for k.
+    index
+        Its value.
+    """
+
+    dimensions: tuple[int, int, int]
+    axis: int
+    index: int
+
+    def nodes(self, values: NDArray[Any]) -> NDArray[Any]:
+        """Take the plane out of nodal values, (N, ...) to (J, I, ...)."""
+        shaped = values.reshape(*self.dimensions[::-1], *values.shape[1:])
+        return np.asarray(np.take(shaped, self.index, axis=2 - self.axis))
+
+    def cells(self, values: NDArray[Any]) -> NDArray[Any]:
+        """Take the cells on both sides of the plane, (N, ...) to (1 or 2, J - 1, I - 1, ...)."""
+        counts = [max(n - 1, 1) for n in self.dimensions]
+        last = counts[self.axis] - 1
+        sides = sorted({max(self.index - 1, 0), min(self.index, last)})
+        shaped = values.reshape(*counts[::-1], *values.shape[1:])
+        return np.moveaxis(np.take(shaped, sides, axis=2 - self.axis), 2 - self.axis, 0)
+
+
+def count_nodes(dimensions: tuple[int, int, int]) -> str:
+    """Words for the size of a mesh."""
+    return " x ".join(map(str, dimensions)) + " nodes (I x J x K)"
+
+
+def plane_faults(dimensions: tuple[int, int, int], plane: Any) -> list[str]:
+    """Faults in a choice of plane.
+
+    Parameters
+    ----------
+    dimensions
+        Number of nodes (I, J, K) of the mesh.
+    plane
+        ``"k=20"`` and the like, or ``None`` for a mesh that is one plane itself.
+    """
+    size = count_nodes(dimensions)
+    if min(dimensions) < 1:
+        return ["the mesh is empty: check that the file or the filter that made it gave any nodes"]
+    if sum(n > 1 for n in dimensions) < 2:
+        return [
+            f"the mesh has {size}, a single row; a surface needs at least 2 nodes along two of "
+            "the axes"
+        ]
+    if plane is None:
+        return [_choose(dimensions)] if min(dimensions) > 1 else []
+    found = _PLANE.fullmatch(plane) if isinstance(plane, str) else None
+    if found is None:
+        return [
+            f'plane is {plane!r}; expected "i=N", "j=N" or "k=N" with a whole number N, as in '
+            f'plane="{_example(dimensions)}"'
+        ]
+    letter = found[1].lower()
+    axis, index = "ijk".index(letter), int(found[2])
+    count = dimensions[axis]
+    if not -count <= index < count:
+        return [
+            f"plane is {plane!r}; expected {letter} between {-count} and {count - 1}, as the mesh "
+            f"has {size}"
+        ]
+    if min(dimensions) == 1 and count > 1:
+        return [
+            f"plane is {plane!r}, which leaves a single row, as the mesh has {size}; it is one "
+            "surface already: leave plane out"
+        ]
+    return []
+
+
+def choose_plane(dimensions: tuple[int, int, int], plane: str | None) -> Plane:
+    """Return the plane that is meant.
+
+    Raises
+    ------
+    FieldError
+        When there is no such plane, or one has to be chosen and was not.
+    """
+    raise_faults(plane_faults(dimensions, plane))
+    found = _PLANE.fullmatch(plane or "")
+    if found is None:
+        return Plane(dimensions, dimensions.index(1), 0)
+    axis = "ijk".index(found[1].lower())
+    return Plane(dimensions, axis, int(found[2]) % dimensions[axis])
+
+
+def _example(dimensions: tuple[int, int, int]) -> str:
+    return f"k={dimensions[2] // 2}"
+
+
+def _choose(dimensions: tuple[int, int, int]) -> str:
+    ranges = ", ".join(f"{a}=0 to {n - 1}" for a, n in zip("ijk", dimensions, strict=True))
+    return (
+        f"the mesh has {count_nodes(dimensions)}, and a flow is drawn on one surface: choose a "
+        f'plane, as in plane="{_example(dimensions)}"; there are {ranges}, and -1 is the last one'
+    )
+
+
+def spread(values: Floats, visible: Bools, wrap: tuple[bool, bool]) -> Floats:
+    """Bring values of cells to the nodes.
+
+    Parameters
+    ----------
+    values
+        One or two layers of cells, (L, J - 1, I - 1) or (L, J - 1, I - 1, C).
+    visible
+        Which of them count, (L, J - 1, I - 1).
+    wrap
+        Whether the last line of nodes along (j, i) is the first one again, so that the cells
+        beyond it are known.
+
+    Returns
+    -------
+    numpy.ndarray
+        Mean of the visible cells around each node, (J, I) or (J, I, C); NaN where there are none.
+    """
+    seen = visible.reshape(*visible.shape, *[1] * (values.ndim - 3))
+    total = _around(np.where(seen, values, 0.0).sum(axis=0), wrap)
+    count = _around(seen.sum(axis=0).astype(np.float64), wrap)
+    return np.asarray(np.where(count > 0, total / np.maximum(count, 1.0), np.nan))
+
+
+def nodes_to_keep(visible: Bools, wrap: tuple[bool, bool]) -> Bools:
+    """Nodes that draw the visible cells and none of the hidden ones.
+
+    A cell is drawn when its four nodes are kept. Nodes between a visible and a hidden cell are
+    kept, unless that would draw a hidden cell: a wall one cell thick takes its nodes with it.
+
+    Parameters
+    ----------
+    visible
+        Cells of the plane, (J - 1, I - 1).
+    wrap
+        Whether the last line of nodes along (j, i) is the first one again.
+
+    Returns
+    -------
+    numpy.ndarray
+        The nodes, (J, I).
+    """
+    keep = _around(visible.astype(np.float64), wrap) > 0
+    drawn = keep[:-1, :-1] & keep[1:, :-1] & keep[:-1, 1:] & keep[1:, 1:]
+    return np.asarray(keep & (_around((drawn & ~visible).astype(np.float64), wrap) == 0))
+
+
+def _around(cells: Floats, wrap: tuple[bool, bool]) -> Floats:
+    """Sum of the four cells around each node, (J - 1, I - 1, ...) to (J, I, ...)."""
+    for axis in (0, 1):
+        width = [(1, 1) if a == axis else (0, 0) for a in range(cells.ndim)]
+        padded = np.pad(cells, width, mode="wrap" if wrap[axis] else "constant")
+        lines = np.swapaxes(padded, 0, axis)
+        cells = np.swapaxes(lines[:-1] + lines[1:], 0, axis)
+    return cells

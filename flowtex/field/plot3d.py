@@ -1,0 +1,178 @@
+"""PLOT3D: which of its many layouts a file has, where its solution is, and how VTK reads both.
+
+A PLOT3D file says nothing about itself: text or binary, byte order, Fortran's record marks, one
+grid or several, two or three dimensions, single or double precision, blanking or none. All of
+them change the length of the file, so the layout is the one whose length fits. This is worked
+out before VTK opens the file: told nothing, it takes any number in a broken header for a size.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import product
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from flowtex.errors import FieldError
+
+__all__ = ["GRID_SUFFIXES", "Layout", "find_grid", "find_layout", "find_solution", "read_plot3d"]
+
+#: VTK's number for the function that makes ``Velocity`` from density and momentum.
+VELOCITY = 200
+
+#: Suffixes under which PLOT3D grids are met.
+GRID_SUFFIXES = (".xyz", ".x", ".g", ".p3d", ".grd", ".bin", ".dat", ".fmt")
+_TEXT = frozenset(b"0123456789+-.eEdD \t\r\n,")
+
+
+@dataclass(frozen=True)
+class Layout:
+    """How a grid file is laid out; ``dimensions`` has 2 or 3 numbers for each grid."""
+
+    dimensions: tuple[tuple[int, ...], ...]
+    multiple: bool
+    blanked: bool
+    binary: bool = True
+    big_endian: bool = False
+    record_marks: bool = False
+    double: bool = False
+
+    @property
+    def length(self) -> int:
+        """Length of such a file: bytes when binary, else how many numbers it has."""
+        axes = len(self.dimensions[0])
+        word = 4 if self.binary else 1
+        real = word * (2 if self.double and self.binary else 1)
+        marks = 8 if self.record_marks else 0
+        header = word * axes * len(self.dimensions) + marks + (word + marks) * self.multiple
+        each = axes * real + word * self.blanked
+        return header + sum(math.prod(grid) * each + marks for grid in self.dimensions)
+
+
+def find_layout(path: Path) -> Layout | None:
+    """Find out how a grid file is laid out, or return ``None`` where it is no PLOT3D grid."""
+    with path.open("rb") as file:
+        head = file.read(256)
+    if not head:
+        return None
+    if set(head) <= _TEXT:
+        return _text_layout(path)
+    size = path.stat().st_size
+    for order, marks, several, axes in product(("<", ">"), (False, True), (False, True), (3, 2)):
+        dimensions = _binary_header(path, order, axes, marks=marks, several=several)
+        for double, blanked in product((False, True), (False, True)):
+            layout = Layout(
+                dimensions,
+                multiple=several,
+                blanked=blanked,
+                big_endian=order == ">",
+                record_marks=marks,
+                double=double,
+            )
+            if dimensions and layout.length == size:
+                return layout
+    return None
+
+
+def _binary_header(
+    path: Path, order: str, axes: int, *, marks: bool, several: bool
+) -> tuple[tuple[int, ...], ...]:
+    """Dimensions as a header of this form has them, or nothing where they make no sense."""
+    skip = 4 if marks else 0
+    with path.open("rb") as file:
+        count = 1
+        if several:
+            file.seek(skip)
+            count = int.from_bytes(file.read(4), "big" if order == ">" else "little")
+            file.seek(skip, 1)
+        file.seek(skip, 1)
+        if not 0 < count <= 100_000:
+            return ()
+        text = file.read(4 * axes * count)
+    numbers = np.frombuffer(text[: len(text) // 4 * 4], dtype=f"{order}i4")
+    return _grids(numbers.tolist(), count, axes)
+
+
+def _text_layout(path: Path) -> Layout | None:
+    words = path.read_bytes().replace(b",", b" ").split()
+    for several, axes in product((False, True), (3, 2)):
+        try:
+            count = int(words[0]) if several else 1
+            if not 0 < count <= 100_000:
+                continue
+            numbers = [int(word) for word in words[several : several + axes * count]]
+        except ValueError:
+            continue
+        dimensions = _grids(numbers, count, axes)
+        for blanked in (False, True):
+            layout = Layout(dimensions, multiple=several, blanked=blanked, binary=False)
+            if dimensions and layout.length == len(words):
+                return layout
+    return None
+
+
+def _grids(numbers: list[int], count: int, axes: int) -> tuple[tuple[int, ...], ...]:
+    if len(numbers) != axes * count or not all(0 < n < 2**31 for n in numbers):
+        return ()
+    return tuple(tuple(numbers[n * axes : n * axes + axes]) for n in range(count))
+
+
+def find_solution(grid: Path) -> Path:
+    """Find the solution beside a grid: ``xyz`` in its name gives ``q``, or its suffix does.
+
+    Raises
+    ------
+    FieldError
+        When there is none; the text says which names were looked for.
+    """
+    names = list(dict.fromkeys(_solution_names(grid)))
+    for name in names:
+        if (grid.parent / name).is_file():
+            return grid.parent / name
+    msg = (
+        f"{grid} is a PLOT3D grid, and no solution lies beside it (looked for "
+        f"{', '.join(names)}); the velocity is in the solution: put it there under such a name"
+    )
+    raise FieldError(msg)
+
+
+def find_grid(solution: Path) -> Path | None:
+    """Find the grid beside a solution, or ``None`` where this is no solution."""
+    if "q" not in solution.name.lower():
+        return None
+    beside = solution.parent.iterdir()
+    grids = sorted(p for p in beside if p.suffix.lower() in GRID_SUFFIXES and p != solution)
+    return next((p for p in grids if solution.name in _solution_names(p)), None)
+
+
+def _solution_names(grid: Path) -> Iterator[str]:
+    for old, new in (("xyz", "q"), ("XYZ", "Q")):
+        if old in grid.name:
+            before, after = grid.name.rsplit(old, 1)
+            yield before + new + after
+    yield grid.stem + (".Q" if grid.suffix.isupper() else ".q")
+
+
+def read_plot3d(grid: Path, layout: Layout, solution: Path) -> Any:
+    """Read a grid with its solution into a PyVista MultiBlock whose blocks have ``Velocity``."""
+    import pyvista as pv
+    from vtkmodules.vtkIOParallel import vtkMultiBlockPLOT3DReader
+
+    reader = vtkMultiBlockPLOT3DReader()
+    reader.AutoDetectFormatOff()
+    reader.SetBinaryFile(layout.binary)
+    reader.SetByteOrder(reader.FILE_BIG_ENDIAN if layout.big_endian else reader.FILE_LITTLE_ENDIAN)
+    reader.SetHasByteCount(layout.record_marks)
+    reader.SetMultiGrid(layout.multiple)
+    reader.SetIBlanking(layout.blanked)
+    reader.SetDoublePrecision(layout.double)
+    reader.SetTwoDimensionalGeometry(len(layout.dimensions[0]) == 2)
+    reader.SetXYZFileName(str(grid))
+    reader.SetQFileName(str(solution))
+    reader.AddFunction(VELOCITY)
+    reader.Update()
+    return pv.wrap(reader.GetOutput())

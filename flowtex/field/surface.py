@@ -1,0 +1,244 @@
+"""A structured surface in space: nodes, tangents, and positions between the nodes.
+
+The surface is a map from index space, (i, j) in cells, to space. Its tangents at the nodes are
+central differences, and :meth:`Surface.at` interpolates with Catmull-Rom cubics whose slopes at
+the nodes are those same tangents, so a displacement in index space and the displacement in space
+that it stands for agree to second order however much the cells are stretched. Both work on a
+copy of the nodes with one ghost line on each side: the periodic image where the axis closes on
+itself, a quadratic extrapolation where it ends.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+__all__ = ["Surface"]
+
+Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+
+class Surface:
+    """Nodes of a structured surface.
+
+    Parameters
+    ----------
+    points
+        Node positions, (J, I, 3), in the mesh's own units.
+    valid
+        Which nodes carry data, (J, I).
+    periodic
+        Whether the (j, i) axis closes on itself; its last line of nodes is then the first one
+        again, displaced by ``offset`` on a flat map.
+    """
+
+    def __init__(self, points: Floats, valid: Bools, periodic: tuple[bool, bool]) -> None:
+        self.valid = valid
+        self.periodic = periodic
+        self.points = _fill(points, _usable(points, valid))
+        #: What to add to a position when index j, or i, grows by one period, (2, 3).
+        self.offset = np.stack(
+            [
+                np.mean(self.points[-1] - self.points[0], axis=0) * periodic[0],
+                np.mean(self.points[:, -1] - self.points[:, 0], axis=0) * periodic[1],
+            ]
+        )
+        self._usable = _usable(points, valid)
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Number of nodes (J, I)."""
+        return self.valid.shape[0], self.valid.shape[1]
+
+    @cached_property
+    def center(self) -> Floats:
+        """Middle of the bounding box of the valid nodes, (3,)."""
+        return np.asarray((self._low + self._high) / 2)
+
+    @cached_property
+    def extent(self) -> float:
+        """Diagonal of the bounding box of the valid nodes."""
+        return float(np.linalg.norm(self._high - self._low))
+
+    @cached_property
+    def _low(self) -> Floats:
+        return np.asarray(self.points[self.valid].min(axis=0))
+
+    @cached_property
+    def _high(self) -> Floats:
+        return np.asarray(self.points[self.valid].max(axis=0))
+
+    @cached_property
+    def cells(self) -> Bools:
+        """Cells whose four nodes are valid, (J - 1, I - 1)."""
+        v = self.valid
+        return np.asarray(v[:-1, :-1] & v[1:, :-1] & v[:-1, 1:] & v[1:, 1:])
+
+    @cached_property
+    def padded(self) -> Floats:
+        """Nodes with one ghost line on each side, (J + 2, I + 2, 3)."""
+        good = self._usable
+        rows = _pad(self.points, good, self.offset[0], periodic=self.periodic[0])
+        good = np.pad(good, ((1, 1), (0, 0)), mode="edge")
+        columns = _pad(np.swapaxes(rows, 0, 1), good.T, self.offset[1], periodic=self.periodic[1])
+        return np.ascontiguousarray(np.swapaxes(columns, 0, 1))
+
+    @cached_property
+    def tangents(self) -> Floats:
+        """Derivatives of position by i and by j at the nodes, (2, J, I, 3), per cell."""
+        good = np.pad(self._usable, 1, constant_values=True)
+        p = self.padded
+        middle = p[1:-1, 1:-1]
+        along_i = _difference(p[1:-1, :-2], middle, p[1:-1, 2:], good[1:-1, :-2], good[1:-1, 2:])
+        along_j = _difference(p[:-2, 1:-1], middle, p[2:, 1:-1], good[:-2, 1:-1], good[2:, 1:-1])
+        return np.stack([along_i, along_j])
+
+    @cached_property
+    def cell_size(self) -> Floats:
+        """Smooth measure of the size of the cells around each node, (J, I).
+
+        The smaller extent counts most. Collapsed nodes, as at a pole, get a hundredth of the
+        typical size, so that a length measured in cells stays finite there.
+        """
+        inverse = np.zeros(self.shape)
+        typical = float(np.median(np.linalg.norm(self.tangents, axis=-1)[:, self.valid])) or 1.0
+        for tangent in self.tangents:
+            length = np.maximum(np.linalg.norm(tangent, axis=-1), 1e-9 * typical)
+            inverse += length**-2.0
+        return np.maximum(np.sqrt(2.0 / inverse), 1e-4 * typical)
+
+    @cached_property
+    def frame(self) -> Floats | None:
+        """Two orthonormal rows that span the surface where it is flat, (2, 3), else ``None``."""
+        offsets = self.points[self.valid] - self.center
+        _, _, basis = np.linalg.svd(offsets.T @ offsets)
+        if np.abs(offsets @ basis[2]).max() > 1e-6 * self.extent:
+            return None
+        normal = basis[2]
+        if np.abs(normal).max() > 1 - 1e-12:
+            # A plane of constant x, y or z keeps the mesh's own axes: pictures stay comparable.
+            return np.delete(np.eye(3), int(np.argmax(np.abs(normal))), axis=0)
+        return np.asarray(basis[:2])
+
+    def wrap(self, index: Floats) -> Floats:
+        """Fold positions in index space back into one period, (..., 2) as (i, j)."""
+        folded = index.copy()
+        for component, axis in ((0, 1), (1, 0)):
+            if self.periodic[axis]:
+                folded[..., component] = np.mod(index[..., component], self.shape[axis] - 1)
+        return folded
+
+    def at(self, index: Floats) -> Floats:
+        """Positions in space of positions in index space.
+
+        Parameters
+        ----------
+        index
+            (i, j) in cells, (..., 2). Beyond the border of an axis that does not close the
+            surface goes on straight.
+
+        Returns
+        -------
+        numpy.ndarray
+            Positions, (..., 3).
+        """
+        flat = index.reshape(-1, 2)
+        result = np.zeros((len(flat), 3))
+        i0, si, beyond_i, turns_i = _locate(flat[:, 0], self.shape[1], periodic=self.periodic[1])
+        j0, sj, beyond_j, turns_j = _locate(flat[:, 1], self.shape[0], periodic=self.periodic[0])
+        wi, wj = _cubic(si), _cubic(sj)
+        width = self.shape[1] + 2
+        nodes = self.padded.reshape(-1, 3)
+        for b in range(4):
+            row = np.zeros((len(flat), 3))
+            for a in range(4):
+                row += wi[a][:, None] * nodes[(j0 + b) * width + i0 + a]
+            result += wj[b][:, None] * row
+        if beyond_i.any() or beyond_j.any():
+            ni = np.clip(np.rint(flat[:, 0]), 0, self.shape[1] - 1).astype(np.intp)
+            nj = np.clip(np.rint(flat[:, 1]), 0, self.shape[0] - 1).astype(np.intp)
+            result += beyond_i[:, None] * self.tangents[0][nj, ni]
+            result += beyond_j[:, None] * self.tangents[1][nj, ni]
+        result += turns_i[:, None] * self.offset[1] + turns_j[:, None] * self.offset[0]
+        return result.reshape(*index.shape[:-1], 3)
+
+
+def _usable(points: Floats, valid: Bools) -> Bools:
+    """Nodes whose coordinates can be trusted: blanked ones often hold a fill value."""
+    finite = np.isfinite(points).all(axis=-1)
+    if not (valid & finite).any():
+        return np.asarray(finite)
+    inside = points[valid & finite]
+    low, high = inside.min(axis=0), inside.max(axis=0)
+    margin = (high - low).max()
+    with np.errstate(invalid="ignore"):
+        near = ((points > low - margin) & (points < high + margin)).all(axis=-1)
+    return np.asarray(finite & (valid | near))
+
+
+def _fill(points: Floats, usable: Bools) -> Floats:
+    """Replace coordinates that cannot be trusted by those of the nearest node that can."""
+    if usable.all():
+        return points
+    nearest = ndimage.distance_transform_edt(~usable, return_distances=False, return_indices=True)
+    return np.asarray(points[tuple(nearest)])
+
+
+def _pad(p: Floats, good: Bools, offset: Floats, *, periodic: bool) -> Floats:
+    """Add a ghost line before and after the first axis."""
+    if periodic:
+        return np.concatenate([p[-2:-1] - offset, p, p[1:2] + offset])
+    before, after = _beyond(p[:3], good[:3]), _beyond(p[:-4:-1], good[:-4:-1])
+    return np.concatenate([before[None], p, after[None]])
+
+
+def _beyond(p: Floats, good: Bools) -> Floats:
+    """Continue the first lines of nodes by one line before the first.
+
+    The continuation is quadratic, which keeps the slope at the border of second order, but
+    bends the slope by half at most: with cells that grow threefold, as where nodes are spaced
+    by a cosine, a parabola through three of them turns back on itself.
+    """
+    step = p[1] - p[0]
+    if len(p) < 3:
+        return np.asarray(p[0] - step)
+    bend = np.where(np.asarray(good[:3].all(axis=0))[:, None], 2 * p[1] - p[0] - p[2], 0.0)
+    length, most = (np.linalg.norm(v, axis=-1, keepdims=True) for v in (bend, step))
+    bend *= most / np.maximum(np.maximum(length, most), np.finfo(float).tiny)
+    return np.asarray(p[0] - step - bend)
+
+
+def _difference(
+    before: Floats, here: Floats, after: Floats, good_before: Bools, good_after: Bools
+) -> Floats:
+    """Central difference, one-sided beside a node whose coordinates cannot be trusted."""
+    backward = np.where(good_before[..., None], here - before, 0.0)
+    forward = np.where(good_after[..., None], after - here, 0.0)
+    count = np.maximum(good_before.astype(float) + good_after, 1.0)
+    return np.asarray((backward + forward) / count[..., None])
+
+
+def _locate(
+    x: Floats, count: int, *, periodic: bool
+) -> tuple[NDArray[np.intp], Floats, Floats, Floats]:
+    """Cell, fraction inside it, distance beyond the border and whole turns of an index."""
+    cells = count - 1
+    turns = np.floor(x / cells) if periodic else np.zeros_like(x)
+    inside = x - turns * cells if periodic else np.clip(x, 0, cells)
+    cell = np.minimum(inside.astype(np.intp), cells - 1)
+    return cell, inside - cell, np.zeros_like(x) if periodic else x - inside, turns
+
+
+def _cubic(t: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+    """Catmull-Rom weights of the four nodes around a fraction of a cell."""
+    t2, t3 = t * t, t * t * t
+    return (
+        0.5 * (-t3 + 2 * t2 - t),
+        0.5 * (3 * t3 - 5 * t2 + 2),
+        0.5 * (-3 * t3 + 4 * t2 + t),
+        0.5 * (t3 - t2),
+    )

@@ -1,0 +1,1 @@
+"""TextureSet and settings to pixels, by several hands that know nothing of one another."""

@@ -1,0 +1,89 @@
+"""Textures on the graphics card, through VTK's texture objects.
+
+Texture arrays and half precision are out of reach of ``vtkTexture``, so texture objects are made
+directly. They belong to one render window, take a texture unit while a frame is drawn, and are
+let go with the window at the latest.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from vtkmodules.util.vtkConstants import VTK_FLOAT
+from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLRenderWindow, vtkTextureObject
+
+__all__ = ["GPUTexture"]
+
+#: OpenGL's numbers for half precision with four channels and with one.
+RGBA16F, R16F = 0x881A, 0x822D
+
+
+class GPUTexture:
+    """One texture with its mip levels: an array of RGBA layers, or an image of one channel.
+
+    Parameters
+    ----------
+    texels
+        (layers, H, W, 4) or (H, W), single precision; kept in half precision.
+    levels
+        Mip levels beside the finest; all of them when left out.
+    repeat
+        Whether the texture goes around along (v, u).
+    """
+
+    def __init__(
+        self,
+        texels: NDArray[np.float32],
+        *,
+        levels: int | None = None,
+        repeat: tuple[bool, bool] = (False, False),
+    ) -> None:
+        self._texels: NDArray[np.float32] | None = np.ascontiguousarray(texels, np.float32)
+        self._levels = levels
+        self._repeat = repeat
+        self._object: vtkTextureObject | None = None
+
+    def bind(self, window: vtkOpenGLRenderWindow) -> int:
+        """Return the texture unit in which the texture lies, sending it first if need be."""
+        if self._object is None:
+            self._object = self._send(window)
+            self._texels = None
+        if self._object.GetTextureUnit() < 0:
+            self._object.Activate()
+        return int(self._object.GetTextureUnit())
+
+    def unbind(self) -> None:
+        """Give the texture unit back."""
+        if self._object is not None and self._object.GetTextureUnit() >= 0:
+            self._object.Deactivate()
+
+    def release(self, window: vtkOpenGLRenderWindow | None) -> None:
+        """Free the memory on the graphics card."""
+        if self._object is not None and window is not None:
+            self.unbind()
+            self._object.ReleaseGraphicsResources(window)
+        self._object = None
+
+    def _send(self, window: vtkOpenGLRenderWindow) -> vtkTextureObject:
+        texels = self._texels
+        if texels is None:
+            msg = "the texture was released and cannot be sent again"
+            raise RuntimeError(msg)
+        target = vtkTextureObject()
+        target.SetContext(window)
+        target.SetGenerateMipmap(True)
+        target.SetMinificationFilter(vtkTextureObject.LinearMipmapLinear)
+        target.SetMagnificationFilter(vtkTextureObject.Linear)
+        repeat, clamp = vtkTextureObject.Repeat, vtkTextureObject.ClampToEdge
+        target.SetWrapS(repeat if self._repeat[1] else clamp)
+        target.SetWrapT(repeat if self._repeat[0] else clamp)
+        if self._levels is not None:
+            target.SetMaxLevel(self._levels)
+        height, width = texels.shape[-3:-1] if texels.ndim == 4 else texels.shape
+        if texels.ndim == 4:
+            target.SetInternalFormat(RGBA16F)
+            target.Create2DArrayFromRaw(width, height, 4, VTK_FLOAT, len(texels), texels)
+        else:
+            target.SetInternalFormat(R16F)
+            target.Create2DFromRaw(width, height, 1, VTK_FLOAT, texels)
+        return target

@@ -1,0 +1,218 @@
+"""The one table of settings.
+
+Each row of :class:`Settings` holds a setting's name, type, default, range and the sentence that
+tells a person what it does. Command-line flags, shader uniforms, controls and the documentation
+are made from :data:`TABLE`, so a new setting is one row here.
+
+``affects`` says what a change costs: ``"uniform"`` a number on the graphics card, ``"shader"`` a
+shader build, ``"textures"`` new textures, ``"trace"`` new traces.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, fields
+from typing import Any, Literal
+
+__all__ = ["TABLE", "Affects", "Setting", "Settings", "SettingsError"]
+
+Affects = Literal["uniform", "shader", "textures", "trace"]
+
+
+class SettingsError(ValueError):
+    """A setting was given a value, or a name, that it does not have."""
+
+
+@dataclass(frozen=True)
+class Setting:
+    """One row of the table."""
+
+    name: str
+    kind: type
+    default: Any
+    affects: Affects
+    text: str
+    low: float | None = None
+    high: float | None = None
+    choices: tuple[str, ...] = ()
+
+    def check(self, value: Any) -> Any:
+        """Return the value in the setting's own type.
+
+        Raises
+        ------
+        SettingsError
+            When it does not fit; the text names the value, what was expected and the default.
+        """
+        if self.kind is bool:
+            fits = isinstance(value, bool) or type(value).__name__ == "bool"
+        elif self.kind is str:
+            fits = value in self.choices
+        else:
+            fits = _is_number(value) and (self.kind is float or float(value).is_integer())
+            fits = fits and (self.low is None or value >= self.low)
+            fits = fits and (self.high is None or value <= self.high)
+        if not fits:
+            msg = f"{self.name} is {value!r}; expected {self.expected} (default {self.default!r})"
+            raise SettingsError(msg)
+        return self.kind(value)
+
+    @property
+    def expected(self) -> str:
+        """What a value must be, in words."""
+        if self.kind is bool:
+            return "True or False"
+        if self.kind is str:
+            return " or ".join(map(repr, self.choices))
+        number = "a whole number" if self.kind is int else "a number"
+        return f"{number} from {self.low:g} to {self.high:g}"
+
+
+def _is_number(value: Any) -> bool:
+    try:
+        return not isinstance(value, (bool, str)) and float(value) == float(value)
+    except (TypeError, ValueError):
+        return False
+
+
+def _row(
+    default: Any,
+    affects: Affects,
+    text: str,
+    *,
+    span: tuple[float, float] | None = None,
+    choices: tuple[str, ...] = (),
+) -> Any:
+    low, high = span or (None, None)
+    row = {"affects": affects, "text": text, "low": low, "high": high, "choices": choices}
+    return field(default=default, metadata=row)
+
+
+Observer = Callable[[str, Any], None]
+
+
+@dataclass
+class Settings:
+    """How a flow texture is drawn; every attribute can be changed live.
+
+    Raises
+    ------
+    SettingsError
+        When a value is out of its range, or there is no setting of that name.
+    """
+
+    samples: int = _row(
+        25, "uniform", "Noise samples summed along each path (K of the paper).", span=(1, 200)
+    )
+    spacing: float = _row(
+        1.5, "uniform", "Distance between two samples, in grains of noise.", span=(0.1, 10)
+    )
+    kernel: str = _row(
+        "hann",
+        "uniform",
+        "Weight of the samples: smooth, even as in the paper, or falling behind the particle.",
+        choices=("hann", "box", "ramp"),
+    )
+    two_sided: bool = _row(
+        True, "uniform", "Follow steady flow forward as well as backward from each point."
+    )
+    lod: bool = _row(
+        True, "uniform", "Choose grain and step for each pixel from the view (level of detail)."
+    )
+    noise: str = _row(
+        "procedural",
+        "shader",
+        "Noise that is even in space at every zoom, or the paper's mipmapped noise texture.",
+        choices=("procedural", "texture"),
+    )
+    noise_correction: bool = _row(
+        True,
+        "textures",
+        "Spread the noise texture evenly over the surface, not over its cells (figure 6).",
+    )
+    resolution: int = _row(
+        1024,
+        "textures",
+        "Texels of the noise texture along the surface; the grain when lod is off.",
+        span=(16, 8192),
+    )
+    grain: float = _row(1.3, "uniform", "Size of a grain of noise, in pixels.", span=(0.25, 32))
+    contrast: float = _row(
+        1.0, "uniform", "Contrast of the texture, 0 for none.", span=(0, 4)
+    )
+    strength: float = _row(
+        0.8, "uniform", "How strongly the texture darkens and lightens the colour.", span=(0, 1)
+    )
+    seed: int = _row(0, "uniform", "Number of the noise pattern.", span=(0, 65535))
+    animate: bool = _row(False, "uniform", "Let the grains stream along the flow.")
+    rate: float = _row(
+        0.5, "uniform", "Turns of the animation in a second of its clock.", span=(0, 10)
+    )
+    parameter: str = _row(
+        "arclength",
+        "trace",
+        "What the lag along a steady path measures: length, or the field's own time.",
+        choices=("arclength", "time"),
+    )
+
+    def __post_init__(self) -> None:
+        """Start without observers."""
+        self._observers: list[Observer] = []
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        """Check a value, set it and tell the observers when it differs."""
+        if name.startswith("_"):
+            object.__setattr__(self, name, value)
+            return
+        checked = setting(name).check(value)
+        changed = name not in self.__dict__ or self.__dict__[name] != checked
+        object.__setattr__(self, name, checked)
+        if changed:
+            for tell in list(self.__dict__.get("_observers", ())):
+                tell(name, checked)
+
+    def update(self, **values: Any) -> None:
+        """Set several at once; nothing is set when one of them is wrong."""
+        checked = {name: setting(name).check(value) for name, value in values.items()}
+        for name, value in checked.items():
+            setattr(self, name, value)
+
+    def observe(self, tell: Observer) -> Callable[[], None]:
+        """Call ``tell(name, value)`` after each change; returns what ends it."""
+        self._observers.append(tell)
+        return lambda: self._observers.remove(tell) if tell in self._observers else None
+
+    def copy(self) -> Settings:
+        """Return the same values without the observers."""
+        return Settings(**dict(self))
+
+    def __iter__(self) -> Iterator[tuple[str, Any]]:
+        """Give (name, value) of every setting."""
+        return ((name, getattr(self, name)) for name in TABLE)
+
+
+def setting(name: str) -> Setting:
+    """Return a row of the table.
+
+    Raises
+    ------
+    SettingsError
+        When there is none of that name; the text lists the nearest names, or all.
+    """
+    if name in TABLE:
+        return TABLE[name]
+    import difflib
+
+    close = difflib.get_close_matches(name, TABLE, n=1)
+    hint = f"did you mean {close[0]!r}?" if close else f"there are: {', '.join(TABLE)}"
+    msg = f"there is no setting {name!r}; {hint}"
+    raise SettingsError(msg)
+
+
+_KINDS: dict[str, type] = {"int": int, "float": float, "bool": bool, "str": str}
+
+#: Every setting by name, in the order in which people meet them.
+TABLE: dict[str, Setting] = {
+    f.name: Setting(name=f.name, kind=_KINDS[str(f.type)], default=f.default, **f.metadata)
+    for f in fields(Settings)
+}

@@ -1,0 +1,138 @@
+"""The surface as a renderer draws it, and how its nodes lie in the textures.
+
+Positions are single precision, relative to the middle of the surface, and a flat surface is laid
+into its own plane, so that noise needs two dimensions there and three elsewhere.
+
+A node i lies at the middle of texel i + pad. Textures are padded to a multiple of their coarsest
+mip level's block, so every level averages whole blocks and stays in place; a periodic axis is
+continued by its own period on both sides, so that no level sees the seam.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from flowtex.field import FlowField
+
+__all__ = ["Geometry", "Padding"]
+
+Singles = NDArray[np.float32]
+
+#: Mip levels of a texture beside its finest one, at most.
+DEEPEST = 5
+
+
+@dataclass(frozen=True)
+class Padding:
+    """Where the nodes of one axis lie in a texture."""
+
+    nodes: int
+    before: int
+    size: int
+    periodic: bool
+
+    @classmethod
+    def of(cls, nodes: int, levels: int, *, periodic: bool) -> Padding:
+        """Pad to a multiple of the block of the coarsest level."""
+        block = 2**levels
+        before = block if periodic else 0
+        needed = nodes + 2 * before
+        return cls(nodes, before, -(-needed // block) * block, periodic)
+
+    @property
+    def picks(self) -> NDArray[np.intp]:
+        """Node that each texel holds, (size,)."""
+        at = np.arange(self.size) - self.before
+        if self.periodic:
+            return np.mod(at, self.nodes - 1)
+        return np.clip(at, 0, self.nodes - 1)
+
+    @property
+    def coordinates(self) -> NDArray[np.float64]:
+        """Texture coordinate of each node, (nodes,): the middle of its texel."""
+        return (np.arange(self.nodes) + self.before + 0.5) / self.size
+
+
+@dataclass(frozen=True, eq=False)
+class Geometry:
+    """A surface ready to be drawn.
+
+    Attributes
+    ----------
+    field
+        The field whose surface it is.
+    levels
+        Mip levels of the slice textures beside the finest.
+    rows, columns
+        How the j and i axes lie in the slice textures.
+    """
+
+    field: FlowField
+    levels: int
+    rows: Padding
+    columns: Padding
+
+    @classmethod
+    def of(cls, field: FlowField) -> Geometry:
+        """Lay out a field's surface."""
+        shortest = min(field.shape)
+        levels = int(np.clip(np.log2(max(shortest / 4, 1)), 0, DEEPEST))
+        rows, columns = (
+            Padding.of(n, levels, periodic=p)
+            for n, p in zip(field.shape, field.periodic, strict=True)
+        )
+        return cls(field, levels, rows, columns)
+
+    @property
+    def planar(self) -> bool:
+        """Whether the surface is flat."""
+        return self.field.surface.frame is not None
+
+    @property
+    def center(self) -> NDArray[np.float64]:
+        """What was taken from the mesh's coordinates, (3,)."""
+        return self.field.surface.center
+
+    @property
+    def extent(self) -> float:
+        """Diagonal of the bounding box."""
+        return self.field.surface.extent
+
+    @cached_property
+    def frame(self) -> NDArray[np.float64]:
+        """Rows that take a vector of the mesh to the frame of ``position``, (3, 3)."""
+        flat = self.field.surface.frame
+        return np.eye(3) if flat is None else np.vstack([flat, np.cross(flat[0], flat[1])])
+
+    @cached_property
+    def position(self) -> Singles:
+        """Nodes in the surface's own frame, (J, I, 3)."""
+        local = (self.field.surface.points - self.center) @ self.frame.T
+        return local.astype(np.float32)
+
+    @cached_property
+    def coordinate(self) -> Singles:
+        """Texture coordinates of the nodes in the slices, (J, I, 2) as (u, v)."""
+        u, v = np.meshgrid(self.columns.coordinates, self.rows.coordinates)
+        return np.stack([u, v], axis=-1).astype(np.float32)
+
+    def pad(self, data: NDArray[Any]) -> NDArray[Any]:
+        """Lay nodal data (J, I, ...) into texels (H, W, ...), blanked nodes filled."""
+        filled = data
+        if not self.field.valid.all():
+            filled = data[self._nearest]
+        return filled[np.ix_(self.rows.picks, self.columns.picks)]
+
+    @cached_property
+    def _nearest(self) -> tuple[Any, ...]:
+        return tuple(
+            ndimage.distance_transform_edt(
+                ~self.field.valid, return_distances=False, return_indices=True
+            )
+        )

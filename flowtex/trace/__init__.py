@@ -1,0 +1,8 @@
+"""FlowField to TraceSlices: where the particle now at a node was at earlier times."""
+
+from __future__ import annotations
+
+from flowtex.trace.slices import TraceSlices
+from flowtex.trace.trace import paths, trace
+
+__all__ = ["TraceSlices", "paths", "trace"]

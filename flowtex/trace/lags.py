@@ -1,0 +1,58 @@
+"""At which lags the paths are kept.
+
+A streak is a fixed number of pixels, so its length on the surface doubles with every level of
+detail. The lags therefore double too, from a quarter of a cell, where a path between two nodes
+is as good as straight, to a quarter of the whole surface.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flowtex.field import FlowField
+
+__all__ = ["choose_lags", "lag_unit"]
+
+Floats = NDArray[np.float64]
+
+#: First lag in cells, last lag as a share of the surface's extent, greatest number of lags.
+FIRST, LAST, MOST = 0.25, 0.25, 24
+
+
+def lag_unit(field: FlowField, parameter: str) -> Floats:
+    """One unit of lag at each node, (J, I).
+
+    By arc length it is the local cell size, so cells of very different sizes share the same
+    lags; by time it is one unit of the field's time.
+    """
+    if parameter == "arclength":
+        return field.surface.cell_size
+    return np.ones(field.shape)
+
+
+def choose_lags(field: FlowField, parameter: str, *, ratio: float = 2.0) -> Floats:
+    """Lags from a quarter of a cell to a quarter of the surface, (M,), in lag units.
+
+    Parameters
+    ----------
+    field
+        The flow.
+    parameter
+        ``"arclength"`` or ``"time"``.
+    ratio
+        Quotient of one lag and the one before.
+    """
+    size, extent = field.surface.cell_size[field.valid], field.surface.extent
+    if parameter == "arclength":
+        first, last = FIRST, LAST * extent / float(np.percentile(size, 5))
+    else:
+        speed = field.speed[:, field.valid]
+        moving = speed > 1e-6 * speed.max() if speed.any() else np.zeros_like(speed, dtype=bool)
+        if not moving.any():
+            return np.array([1.0])
+        crossing = np.broadcast_to(size, speed.shape)[moving] / speed[moving]
+        first = FIRST * float(np.percentile(crossing, 10))
+        last = LAST * extent / float(np.sqrt(np.mean(speed[moving] ** 2)))
+    count = int(np.ceil(np.log(max(last / first, ratio)) / np.log(ratio))) + 1
+    return np.asarray(first * ratio ** np.arange(min(count, MOST)))

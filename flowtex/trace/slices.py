@@ -1,0 +1,189 @@
+"""Trace slices: where the particle now at a node was, or will be, at other times.
+
+This is the intermediate form of the paper (section 3.1): the slice S(Td, Ts) holds, for every
+node (i, j), the position (a, b) from which a particle released at Ts reaches the node at Td. It
+is kept as the displacement (a - i, b - j), which is continuous across a seam and exact under
+interpolation at lag zero, for a handful of lags = Td - Ts.
+"""
+
+from __future__ import annotations
+
+import zipfile
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["TraceSlices"]
+
+Floats = NDArray[np.float64]
+
+#: Written into every file; a reader refuses what it does not know.
+FORMAT = "flowtex-slices-1"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class TraceSlices:
+    """Displacements in index space along the paths through the nodes.
+
+    Attributes
+    ----------
+    lags
+        Lags of the slices, (M,), positive and increasing, in multiples of ``unit``.
+    unit
+        One unit of lag at each node, (J, I): a length for paths by arc length, a time else.
+    displacement
+        Backward slices, (T, M, J, I, 2), components (a - i, b - j) in cells, one set for each
+        destination time. Beyond a path's reach they go on straight.
+    forward
+        Forward slices of a steady field, the same shape, or ``None``.
+    rate, forward_rate
+        Derivative of the displacement by lag at lag zero, (T, J, I, 2), in cells per ``unit``.
+    reach, forward_reach
+        Lag, in multiples of ``unit``, at which a path has left the domain, met a blanked cell
+        or stopped, (T, J, I); infinite where it goes on beyond the last slice.
+    nodes
+        Position of each entry in index space, (J, I, 2) as (i, j).
+    times
+        Destination times, (T,), in the field's own unit.
+    parameter
+        What a lag measures: ``"arclength"`` or ``"time"``.
+    """
+
+    lags: Floats
+    unit: Floats
+    displacement: NDArray[Any]
+    forward: NDArray[Any] | None
+    rate: NDArray[Any]
+    reach: NDArray[Any]
+    forward_reach: NDArray[Any] | None
+    nodes: Floats
+    times: Floats
+    parameter: str
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Number of entries (J, I)."""
+        return self.unit.shape[0], self.unit.shape[1]
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes that the arrays take."""
+        arrays = (getattr(self, name) for name in self.__dataclass_fields__)
+        return sum(a.nbytes for a in arrays if isinstance(a, np.ndarray))
+
+    def positions(self, lag: float, *, step: int = 0, forward: bool = False) -> Floats:
+        """Positions of the particles at a lag.
+
+        Between two slices the mean velocity since lag zero is interpolated linearly, which is
+        what the shader does. A path that has ended is held where it ended.
+
+        Parameters
+        ----------
+        lag
+            Lag in multiples of ``unit``, from 0 to the last of ``lags``.
+        step
+            Which destination time.
+        forward
+            Whether to follow the paths forward.
+
+        Returns
+        -------
+        numpy.ndarray
+            Positions in index space, (J, I, 2) as (a, b).
+
+        Raises
+        ------
+        ValueError
+            When the lag lies beyond the last slice, or there are no forward slices.
+        """
+        if not 0 <= lag <= self.lags[-1]:
+            msg = f"lag is {lag:g}; expected 0 to {self.lags[-1]:g}, the lag of the last slice"
+            raise ValueError(msg)
+        sign, data, reach = -1.0, self.displacement, self.reach
+        if forward:
+            if self.forward is None or self.forward_reach is None:
+                msg = "there are no forward slices: trace a steady field with two_sided=True"
+                raise ValueError(msg)
+            sign, data, reach = 1.0, self.forward, self.forward_reach
+        held = np.minimum(lag, reach[step].astype(float))
+        knots = np.concatenate([[0.0], self.lags])
+        m = np.clip(np.searchsorted(knots, held, side="right") - 1, 0, len(self.lags) - 1)
+        late = ((held - knots[m]) / (knots[m + 1] - knots[m]))[..., None]
+        mean = np.concatenate(
+            [-sign * self.rate[step][None], data[step] / self.lags[:, None, None, None]]
+        )
+        rows, columns = np.indices(self.shape)
+        before, after = mean[m, rows, columns], mean[m + 1, rows, columns]
+        return np.asarray(self.nodes + held[..., None] * (before * (1 - late) + after * late))
+
+    def downsample(self, factor: int) -> TraceSlices:
+        """Average blocks of ``factor`` x ``factor`` entries, as a mip level does.
+
+        The entries that are left stand at the middle of their blocks (see ``nodes``), and
+        displacements stay in the cells of the original grid. Lines that do not fill a block
+        are dropped.
+
+        Raises
+        ------
+        ValueError
+            When no block fits.
+        """
+        rows, columns = (n // factor for n in self.shape) if factor > 0 else (0, 0)
+        if min(rows, columns) < 1:
+            msg = f"factor is {factor}; expected 1 to {min(self.shape)}, the shorter side"
+            raise ValueError(msg)
+
+        def mean(a: NDArray[Any], first: int) -> NDArray[Any]:
+            inner = tuple(slice(None) for _ in range(first))
+            a = a[(*inner, slice(rows * factor), slice(columns * factor))]
+            blocks = (*a.shape[:first], rows, factor, columns, factor, *a.shape[first + 2 :])
+            return np.asarray(a.reshape(blocks).mean(axis=(first + 1, first + 3)))
+
+        return replace(
+            self,
+            unit=mean(self.unit, 0),
+            displacement=mean(self.displacement, 2),
+            forward=None if self.forward is None else mean(self.forward, 2),
+            rate=mean(self.rate, 1),
+            reach=mean(self.reach, 1),
+            forward_reach=None if self.forward_reach is None else mean(self.forward_reach, 1),
+            nodes=mean(self.nodes, 0),
+        )
+
+    def save(self, path: str | Path) -> None:
+        """Write the slices to a compressed ``.npz`` file."""
+        arrays = {n: getattr(self, n) for n in self.__dataclass_fields__}
+        kept = {n: a for n, a in arrays.items() if a is not None}
+        with Path(path).open("wb") as file:
+            np.savez_compressed(file, format=np.array(FORMAT), **kept)
+
+    @classmethod
+    def open(cls, path: str | Path) -> TraceSlices:
+        """Read slices that :meth:`save` wrote.
+
+        Raises
+        ------
+        ValueError
+            When the file is not one of these; nothing in it is ever executed.
+        """
+        expected = f"{path} does not hold trace slices; expected a file that TraceSlices.save wrote"
+        try:
+            with np.load(path, allow_pickle=False) as file:
+                arrays: dict[str, Any] = {name: file[name] for name in file.files}
+        except (zipfile.BadZipFile, ValueError, EOFError) as error:
+            raise ValueError(expected) from error
+        if str(arrays.pop("format", "")) != FORMAT:
+            raise ValueError(expected)
+        arrays["parameter"] = str(arrays["parameter"])
+        return cls(**{"forward": None, "forward_reach": None, **arrays})
+
+    def __repr__(self) -> str:
+        rows, columns = self.shape
+        sides = "backward" if self.forward is None else "backward and forward"
+        return (
+            f"TraceSlices({columns} x {rows} nodes (I x J), {len(self.times)} destination times, "
+            f"{len(self.lags)} lags by {self.parameter}, {sides}, {self.nbytes / 1e6:.1f} MB)"
+        )

@@ -1,0 +1,145 @@
+"""A flow on display: field, slices, settings and time; tells what a change makes necessary.
+
+:class:`FlowView` owns the arrays and knows no toolkit. Change goes down as a notice, data is
+pulled: a renderer asks for :attr:`FlowView.textures` when it draws and gets new ones only when
+traces or textures have changed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flowtex.field import FlowField
+from flowtex.settings import TABLE, Affects, Settings
+from flowtex.textures import TextureSet
+from flowtex.trace import TraceSlices, trace
+
+__all__ = ["FlowView"]
+
+Notice = Callable[[Affects], None]
+
+
+class FlowView:
+    """One flow and how it is looked at.
+
+    Parameters
+    ----------
+    field
+        The flow.
+    settings
+        How it is drawn; changes are followed.
+    slices
+        Traces of the field, when they are at hand.
+    """
+
+    def __init__(
+        self,
+        field: FlowField,
+        settings: Settings | None = None,
+        *,
+        slices: TraceSlices | None = None,
+    ) -> None:
+        self.field = field
+        self.settings = settings or Settings()
+        self._slices = slices
+        self._textures: TextureSet | None = None
+        self._notices: list[Notice] = []
+        self._time = float(field.times[-1])
+        self._end = self.settings.observe(self._changed)
+
+    @property
+    def slices(self) -> TraceSlices:
+        """Traces of the field, made when they are first asked for."""
+        if self._slices is None:
+            self._slices = trace(self.field, parameter=self.settings.parameter)
+        return self._slices
+
+    @property
+    def textures(self) -> TextureSet:
+        """What a renderer needs."""
+        if self._textures is None:
+            self._textures = TextureSet.build(self.field, self.slices, self.settings)
+        return self._textures
+
+    @property
+    def time(self) -> float:
+        """Time that is shown, in the field's own unit, within its first and last step."""
+        return self._time
+
+    @time.setter
+    def time(self, value: float) -> None:
+        first, last = float(self.field.times[0]), float(self.field.times[-1])
+        if not first <= value <= last:
+            msg = f"time is {value!r}; expected {first:g} to {last:g}, the times of the field"
+            raise ValueError(msg)
+        self._time = float(value)
+        self._tell("uniform")
+
+    @property
+    def moment(self) -> tuple[int, int, float]:
+        """The two time steps around the time that is shown, and how far it is between them."""
+        times = self.field.times
+        if len(times) == 1:
+            return 0, 0, 0.0
+        step = int(np.clip(np.searchsorted(times, self._time, side="right") - 1, 0, len(times) - 2))
+        return step, step + 1, float((self._time - times[step]) / (times[step + 1] - times[step]))
+
+    def scalar(self, name: str) -> NDArray[np.float64]:
+        """Nodal values at the time that is shown, (J, I); ``"speed"`` is always there.
+
+        Raises
+        ------
+        KeyError
+            When there is no such array; the text lists those that exist.
+        """
+        steps = self._steps_of(name)
+        before, after, late = self.moment
+        if len(steps) == 1:
+            return np.asarray(steps[0])
+        return np.asarray(steps[before] * (1 - late) + steps[after] * late)
+
+    def scalar_range(self, name: str) -> tuple[float, float]:
+        """Least and greatest value over the valid nodes and all times."""
+        inside = self._steps_of(name)[:, self.field.valid]
+        inside = inside[np.isfinite(inside)]
+        return (float(inside.min()), float(inside.max())) if inside.size else (0.0, 1.0)
+
+    def _steps_of(self, name: str) -> NDArray[np.float64]:
+        if name in self.field.scalars:
+            return self.field.scalars[name]
+        if name == "speed":
+            return self.field.speed
+        known = ", ".join(repr(n) for n in ("speed", *self.field.scalars))
+        msg = f"there is no scalar {name!r} on this field; there are {known}"
+        raise KeyError(msg)
+
+    def observe(self, notice: Notice) -> Callable[[], None]:
+        """Call ``notice(affects)`` after each change; returns what ends it."""
+        self._notices.append(notice)
+        return lambda: self._notices.remove(notice) if notice in self._notices else None
+
+    def close(self) -> None:
+        """Let go of the settings."""
+        self._end()
+        self._notices.clear()
+
+    def _changed(self, name: str, value: Any) -> None:
+        del value
+        affects = TABLE[name].affects
+        if name == "seed" and self.settings.noise == "texture":
+            affects = "textures"
+        if name == "resolution" and self.settings.noise != "texture":
+            affects = "uniform"
+        if affects == "trace":
+            self._slices = None
+        if affects != "uniform":
+            self._textures = None
+        self._tell(affects)
+
+    def _tell(self, affects: Affects) -> None:
+        for notice in list(self._notices):
+            notice(affects)

@@ -1,0 +1,5 @@
+  flowtexPositionVS = flowtexPosition;
+  flowtexCoordinateVS = flowtexCoordinate;
+#ifdef FLOWTEX_PAPER
+  flowtexNoiseVS = flowtexNoise;
+#endif

@@ -1,0 +1,156 @@
+"""What every test gets, whether it asks or not, and the fixtures that it may ask for.
+
+A test fails when VTK logged a line while it ran, and when NumPy divided by zero, overflowed or
+made a NaN. Python's warnings are errors through ``filterwarnings`` in pyproject.toml.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+
+from flowtex import doctor
+
+if TYPE_CHECKING:
+    import pyvista as pv
+    from playwright.sync_api import Browser, Page
+
+# Before anything opens a window, and for every process that a test starts.
+doctor.prefer_headless()
+
+CHROMIUMS = ("chromium", "chromium-browser", "google-chrome")
+
+
+class VtkLog:
+    """What VTK logs, from warnings upwards, as a file that it writes without a buffer.
+
+    VTK's own log sees every way in which it complains: macros, its logger, and errors that an
+    observer or another output window has swallowed. Watching the output window alone misses the
+    last two.
+    """
+
+    def __init__(self, path: Path) -> None:
+        from vtkmodules.vtkCommonCore import vtkLogger
+
+        self._path = path
+        # Opening the file is itself told on stderr, as information.
+        vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_WARNING)
+        vtkLogger.LogToFile(str(path), vtkLogger.TRUNCATE, vtkLogger.VERBOSITY_WARNING)
+        self._read = 0
+        self.take()
+
+    def take(self) -> str:
+        """Return what was logged since the last call."""
+        with self._path.open(encoding="utf-8", errors="replace") as file:
+            file.seek(self._read)
+            text = file.read()
+            self._read = file.tell()
+        return text
+
+
+@pytest.fixture(scope="session")
+def vtk_log(tmp_path_factory: pytest.TempPathFactory) -> VtkLog:
+    """VTK's log; ``take()`` returns, and so forgives, what came since it was last called."""
+    return VtkLog(tmp_path_factory.mktemp("vtk") / "log.txt")
+
+
+@pytest.fixture(autouse=True)
+def _vtk_is_silent(request: pytest.FixtureRequest, vtk_log: VtkLog) -> Iterator[None]:
+    """Fail the test on any line that VTK logs; ``vtk_log_allowed(reason)`` excuses it."""
+    vtk_log.take()
+    yield
+    logged = vtk_log.take()
+    if logged and request.node.get_closest_marker("vtk_log_allowed") is None:
+        pytest.fail(f"VTK logged:\n{logged}", pytrace=False)
+
+
+@pytest.fixture(autouse=True)
+def _numpy_raises() -> Iterator[None]:
+    """Make NumPy raise where it would go on with inf or NaN.
+
+    The state holds for the test's thread, so libraries called from it are judged as well; a
+    test whose library computes 0/0 by design wraps that call in ``np.errstate(...)``. Underflow
+    to zero is right where a kernel's tail is wanted, and stays silent.
+    """
+    with np.errstate(divide="raise", over="raise", invalid="raise"):
+        yield
+
+
+@pytest.fixture
+def rng() -> np.random.Generator:
+    """Return a source of random numbers that is the same in every run."""
+    return np.random.default_rng(20061205)
+
+
+@pytest.fixture(scope="session")
+def data_dir() -> Path:
+    """Return the folder of the large public files; skip where ``FLOWTEX_DATA`` names none."""
+    named = os.environ.get("FLOWTEX_DATA", "")
+    if not named:
+        pytest.skip("FLOWTEX_DATA is not set: it names the folder of the large public data files")
+    folder = Path(named)
+    if not folder.is_dir():
+        pytest.fail(f"FLOWTEX_DATA names {named!r}, which is no folder: correct or unset it")
+    return folder
+
+
+@pytest.fixture(scope="session")
+def opengl() -> doctor.OpenGLReport:
+    """Return what VTK draws with; skip where it cannot, as it would end the test process."""
+    found = doctor.probe()
+    if not found.usable:
+        pytest.skip(f"VTK cannot draw here: {found.failure}; {found.remedy}")
+    return found
+
+
+@pytest.fixture
+def plotter(opengl: doctor.OpenGLReport) -> Iterator[pv.Plotter]:
+    """Yield an off-screen plotter of 320 x 240 without multisampling, closed afterwards."""
+    import pyvista as pv
+
+    drawn = pv.Plotter(off_screen=True, window_size=[320, 240])
+    drawn.disable_anti_aliasing()
+    yield drawn
+    drawn.close()
+
+
+@pytest.fixture(scope="session")
+def chromium() -> Path:
+    """Return an installed Chromium, ``FLOWTEX_CHROMIUM`` first; skip where none starts."""
+    named = os.environ.get("FLOWTEX_CHROMIUM")
+    for name in (named,) if named else CHROMIUMS:
+        found = shutil.which(name)
+        # Ubuntu has a script by this name that only says which snap to install.
+        if (
+            found
+            and subprocess.run([found, "--version"], capture_output=True, check=False).returncode
+            == 0
+        ):
+            return Path(found)
+    pytest.skip("no Chromium: apt-get install chromium, or point FLOWTEX_CHROMIUM at one")
+
+
+@pytest.fixture(scope="session")
+def browser(chromium: Path) -> Iterator[Browser]:
+    """Yield a headless browser for all tests of the session."""
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as driver:
+        started = driver.chromium.launch(executable_path=chromium)
+        yield started
+        started.close()
+
+
+@pytest.fixture
+def page(browser: Browser) -> Iterator[Page]:
+    """Yield a page of its own context, so that no test sees another's state."""
+    context = browser.new_context()
+    yield context.new_page()
+    context.close()

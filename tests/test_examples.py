@@ -1,0 +1,325 @@
+"""The examples as a user meets them: meshes, series, fields, and the exact solutions."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from flowtex import FlowField, examples
+from flowtex.examples import _airfoil, _post
+
+if TYPE_CHECKING:
+    import pyvista as pv
+
+Real = NDArray[np.float64]
+SHIPPED = [name for name in examples.NAMES if name != "liquid_oxygen_post"]
+
+
+@pytest.fixture(scope="module")
+def fields() -> dict[str, FlowField]:
+    return {name: examples.NAMES[name]() for name in SHIPPED}
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_every_field_is_finite_named_and_moving(name: str, fields: dict[str, FlowField]) -> None:
+    field = fields[name]
+    assert field.name == name.replace("_", " ")
+    assert np.isfinite(field.velocity).all()
+    assert field.valid.all()
+    assert np.abs(field.velocity).max() > 0.1
+    assert field.scalars
+    for values in field.scalars.values():
+        assert np.isfinite(values).all()
+    assert not field.points[..., 2].any()
+
+
+@pytest.mark.parametrize(
+    ("name", "shape", "count", "periodic"),
+    [
+        ("cylinder", (65, 161), 31, (False, True)),
+        ("vortex", (100, 100), 31, (True, True)),
+        ("double_gyre", (101, 201), 1, (False, False)),
+        ("airfoil", (65, 193), 1, (False, True)),
+    ],
+)
+def test_every_field_has_the_stated_form(
+    name: str,
+    shape: tuple[int, int],
+    count: int,
+    periodic: tuple[bool, bool],
+    fields: dict[str, FlowField],
+) -> None:
+    field = fields[name]
+    assert field.shape == shape
+    assert field.velocity.shape == (count, *shape, 3)
+    assert field.periodic == periodic
+
+
+@pytest.mark.parametrize("name", ["cylinder", "airfoil"])
+def test_first_and_last_column_of_the_o_grids_coincide(
+    name: str, fields: dict[str, FlowField]
+) -> None:
+    field = fields[name]
+    np.testing.assert_array_equal(field.points[:, 0], field.points[:, -1])
+    np.testing.assert_array_equal(field.velocity[:, :, 0], field.velocity[:, :, -1])
+    # The flow crosses the seam: it has a part across the line from the wall outwards.
+    along = field.points[-1, 0] - field.points[0, 0]
+    across = np.cross(along / np.linalg.norm(along), field.velocity[:, :, 0])[..., 2]
+    assert np.abs(across).max() > 0.1
+
+
+@pytest.mark.parametrize(
+    ("single", "series", "count"),
+    [
+        (examples.cylinder, examples.cylinder_series, 31),
+        (examples.vortex, examples.vortex_series, 31),
+        (examples.double_gyre, examples.double_gyre_series, 41),
+    ],
+)
+def test_a_series_has_a_mesh_for_each_instant(
+    single: Callable[[], pv.StructuredGrid],
+    series: Callable[[], list[pv.StructuredGrid]],
+    count: int,
+) -> None:
+    meshes = series()
+    assert len(meshes) == count
+    times = [float(mesh.field_data["TimeValue"][0]) for mesh in meshes]
+    assert np.all(np.diff(times) > 0.0)
+    assert times[0] == 0.0
+    for mesh in meshes:
+        assert set(mesh.point_data) == {"velocity", "vorticity"}
+    shown = single()
+    # The double gyre is asked for at its first instant, which equals its last.
+    np.testing.assert_allclose(shown["velocity"], meshes[-1]["velocity"], atol=1e-12)
+    np.testing.assert_array_equal(shown.points, meshes[0].points)
+
+
+def test_a_mesh_carries_its_field_unchanged() -> None:
+    field = examples.airfoil_field()
+    mesh = examples.airfoil()
+    rows, columns = field.shape
+    assert mesh.dimensions == (columns, rows, 1)
+    np.testing.assert_allclose(
+        mesh.points.reshape(rows, columns, 3), field.points, rtol=1e-6, atol=1e-6
+    )
+    np.testing.assert_array_equal(mesh["velocity"].reshape(rows, columns, 3), field.velocity[0])
+    np.testing.assert_array_equal(
+        mesh["pressure"].reshape(rows, columns), field.scalars["pressure"][0]
+    )
+    assert "TimeValue" not in mesh.field_data
+
+
+def test_a_series_of_meshes_becomes_the_field_again() -> None:
+    field = examples.cylinder_field()
+    again = FlowField.from_pyvista(examples.cylinder_series(), vectors="velocity")
+    np.testing.assert_allclose(again.velocity, field.velocity, atol=1e-6)
+    np.testing.assert_allclose(again.times, field.times)
+    assert again.periodic == field.periodic
+
+
+def test_nodes_without_data_are_hidden_in_the_mesh() -> None:
+    points = np.stack(np.meshgrid(np.arange(5.0), np.arange(4.0)), axis=-1)
+    valid = np.ones((4, 5), dtype=bool)
+    valid[1, 3] = False
+    field = FlowField.from_arrays(points, np.ones_like(points), valid=valid)
+    mesh = examples.to_grid(field)
+    hidden = np.flatnonzero(mesh.point_data["vtkGhostType"])
+    np.testing.assert_array_equal(hidden, [1 * 5 + 3])
+
+
+def test_the_double_gyre_stays_in_its_box_at_any_time() -> None:
+    edge = np.linspace(0.0, 1.0, 51)
+    for time in (0.0, 1.3, 2.5, 7.5, 123.4):
+        for x in (0.0, 2.0):
+            sides = examples.double_gyre_velocity(np.stack([np.full(51, x), edge], -1), time)
+            np.testing.assert_allclose(sides[:, 0], 0.0, atol=1e-12)
+        for y in (0.0, 1.0):
+            floor = examples.double_gyre_velocity(np.stack([2.0 * edge, np.full(51, y)], -1), time)
+            np.testing.assert_allclose(floor[:, 1], 0.0, atol=1e-12)
+
+
+@pytest.mark.parametrize("time", [0.0, 2.5, 6.1])
+def test_the_double_gyre_is_the_published_one(time: float) -> None:
+    """By differences of its streamfunction, which keeps the volume by its form."""
+
+    def stream(x: Real, y: Real) -> Real:
+        a = 0.25 * np.sin(2.0 * np.pi / 10.0 * time)
+        return np.asarray(0.1 * np.sin(np.pi * (a * x**2 + (1 - 2 * a) * x)) * np.sin(np.pi * y))
+
+    x, y = np.meshgrid(np.linspace(0.1, 1.9, 19), np.linspace(0.1, 0.9, 9))
+    h = 1e-5
+    found = examples.double_gyre_velocity(np.stack([x, y], axis=-1), time)
+    np.testing.assert_allclose(
+        found[..., 0], -(stream(x, y + h) - stream(x, y - h)) / (2 * h), atol=1e-9
+    )
+    np.testing.assert_allclose(
+        found[..., 1], (stream(x + h, y) - stream(x - h, y)) / (2 * h), atol=1e-9
+    )
+
+
+def test_the_vorticity_of_the_double_gyre_is_that_of_its_velocity() -> None:
+    mesh = examples.double_gyre(2.5)
+    derived = mesh.compute_derivative("velocity", vorticity=True, gradient=False)["vorticity"]
+    inside = np.zeros((101, 201), dtype=bool)
+    inside[1:-1, 1:-1] = True
+    scale = np.abs(mesh["vorticity"]).max()
+    error = np.abs(derived[:, 2] - mesh["vorticity"]).reshape(101, 201)[inside].max()
+    assert error < 2e-3 * scale
+
+
+def test_the_steady_double_gyre_is_the_swinging_one_at_time_zero() -> None:
+    steady = examples.double_gyre_field(shape=(101, 201))
+    swinging = examples.double_gyre_field(time_varying=True)
+    np.testing.assert_allclose(steady.velocity[0], swinging.velocity[0], atol=1e-12)
+    np.testing.assert_allclose(swinging.velocity[-1], swinging.velocity[0], atol=1e-12)
+    assert np.abs(swinging.velocity[10] - swinging.velocity[0]).max() > 0.1
+    three = examples.double_gyre_velocity(swinging.points, 2.5)
+    np.testing.assert_array_equal(three, swinging.velocity[10])
+
+
+def test_points_of_a_wrong_shape_are_refused() -> None:
+    with pytest.raises(ValueError, match=r"points has shape \(7, 4\), expected"):
+        examples.double_gyre_velocity(np.zeros((7, 4)))
+
+
+@pytest.mark.parametrize("time", [float("nan"), float("inf")])
+def test_a_time_that_is_no_number_is_refused(time: float) -> None:
+    with pytest.raises(ValueError, match=r"time is (nan|inf), expected a finite number"):
+        examples.double_gyre(time)
+
+
+def test_the_flow_slides_along_the_airfoil_and_leaves_its_edge_smoothly() -> None:
+    field = examples.airfoil_field(shape=(65, 1025))
+    wall, velocity = field.points[0], field.velocity[0, 0]
+    tangent = wall[2:] - wall[:-2]
+    tangent /= np.linalg.norm(tangent, axis=-1, keepdims=True)
+    through = np.cross(tangent, velocity[1:-1])[:, 2]
+    # By differences of the wall's nodes; the last ones at the cusp see its whole turn.
+    assert np.abs(through[4:-4]).max() < 5e-3
+    # Lower and upper side leave with one velocity: the Kutta condition.
+    np.testing.assert_allclose(velocity[1], velocity[0], atol=5e-3)
+    np.testing.assert_allclose(velocity[-2], velocity[0], atol=5e-3)
+    assert 0.5 < np.linalg.norm(velocity[0]) < 1.0
+
+
+def test_pressure_lifts_the_airfoil_as_its_circulation_says() -> None:
+    """Kutta-Joukowski and d'Alembert: lift by circulation, across the stream, and no drag."""
+    field = examples.airfoil_field(shape=(9, 4001))
+    wall, pressure = field.points[0, :, :2], field.scalars["pressure"][0, 0]
+    steps = np.diff(wall, axis=0)
+    mean = (pressure[1:] + pressure[:-1]) / 2.0
+    # Nodes run clockwise, so (-dy, dx) points out of the body, and pressure pushes inwards.
+    force = -np.sum(mean[:, None] * np.stack([-steps[:, 1], steps[:, 0]], axis=-1), axis=0)
+    airfoil = _airfoil.Joukowski()
+    angle = np.radians(airfoil.incidence)
+    along, across = (
+        np.array([np.cos(angle), np.sin(angle)]),
+        np.array([-np.sin(angle), np.cos(angle)]),
+    )
+    assert force @ across == pytest.approx(airfoil.lift, rel=1e-3)
+    assert abs(force @ along) < 1e-3 * airfoil.lift
+    assert airfoil.lift > 1.0
+
+
+def test_the_airfoil_has_unit_chord_and_the_stream_far_away() -> None:
+    field = examples.airfoil_field(extent=200.0)
+    np.testing.assert_allclose(field.points[0, 0], [1.0, 0.0, 0.0], atol=1e-12)
+    assert np.ptp(field.points[0, :, 0]) == pytest.approx(1.0, abs=1e-3)
+    assert field.points[0, :, 0].min() == pytest.approx(0.0, abs=1e-3)
+    angle = np.radians(8.0)
+    stream = np.array([np.cos(angle), np.sin(angle), 0.0])
+    assert np.abs(field.velocity[0, -1] - stream).max() < 2e-3
+
+
+def test_cells_of_the_airfoil_differ_greatly_and_none_is_turned_over() -> None:
+    points = examples.airfoil_field().points[..., :2]
+    diagonal, other = points[1:, 1:] - points[:-1, :-1], points[1:, :-1] - points[:-1, 1:]
+    area = 0.5 * (diagonal[..., 0] * other[..., 1] - diagonal[..., 1] * other[..., 0])
+    assert (area > 0.0).all()
+    assert area.max() / area.min() > 1e5
+
+
+def test_the_post_is_read_from_its_files(data_dir: Path) -> None:
+    mesh = examples.liquid_oxygen_post(data_dir)
+    assert mesh.dimensions == (38, 76, 1)
+    assert np.ptp(mesh.points[:, 2]) == 0.0
+    field = examples.liquid_oxygen_post_field(data_dir)
+    assert field.shape == (76, 38)
+    assert field.periodic == (True, False)
+    assert np.abs(field.velocity).max() > 0.5
+    np.testing.assert_allclose(mesh["velocity"].reshape(76, 38, 3), field.velocity[0], atol=1e-7)
+    ring = field.points[:, 0, :2]
+    np.testing.assert_allclose(np.linalg.norm(ring, axis=-1), 0.5, atol=1e-4)
+
+
+def test_another_plane_of_the_post_can_be_chosen(data_dir: Path) -> None:
+    low = examples.liquid_oxygen_post_field(data_dir, plane="k=1")
+    high = examples.liquid_oxygen_post_field(data_dir, plane="k=30")
+    assert low.points[0, 0, 2] < high.points[0, 0, 2]
+    with pytest.raises(ValueError, match="k=99"):
+        examples.liquid_oxygen_post_field(data_dir, plane="k=99")
+
+
+def test_without_a_folder_pyvista_fetches_the_post(data_dir: Path, tmp_path: Path) -> None:
+    """PyVista's own machinery, told to take its collection from a local folder."""
+    collection = tmp_path / "Data"
+    collection.mkdir()
+    for name in (_post.GRID, _post.SOLUTION):
+        (collection / name).symlink_to(data_dir / name)
+    code = (
+        "from flowtex import examples; field = examples.liquid_oxygen_post_field(); "
+        "print(field.shape)"
+    )
+    environment = {
+        **os.environ,
+        "PYVISTA_DATA": str(collection),
+        "PYVISTA_USERDATA_PATH": str(tmp_path / "cache"),
+    }
+    (tmp_path / "cache").mkdir()
+    done = subprocess.run(
+        [sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=False
+    )
+    assert done.stdout.strip() == "(76, 38)", done.stderr
+
+
+def test_a_download_that_fails_tells_the_way_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    from pyvista.examples import downloads
+
+    def fail(name: str) -> str:
+        message = f"no route to {name}"
+        raise ConnectionError(message)
+
+    monkeypatch.setattr(downloads, "download_file", fail)
+    with pytest.raises(FileNotFoundError, match=r"no route to postxyz\.bin.*folder=\.\.\."):
+        examples.liquid_oxygen_post()
+
+
+def test_a_folder_without_the_post_is_named(tmp_path: Path) -> None:
+    (tmp_path / "postq.bin").touch()
+    with pytest.raises(FileNotFoundError, match=r"has no postxyz\.bin; give the folder"):
+        examples.liquid_oxygen_post(tmp_path)
+
+
+def test_fields_need_no_pyvista() -> None:
+    code = (
+        "import sys; from flowtex import examples; "
+        "[make() for name, make in examples.NAMES.items() if name != 'liquid_oxygen_post']; "
+        "print(sorted({'vtk', 'vtkmodules', 'pyvista', 'matplotlib'} & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+def test_everything_public_is_documented() -> None:
+    for name in examples.__all__:
+        thing = getattr(examples, name)
+        if callable(thing):
+            assert "Returns\n" in (thing.__doc__ or ""), name

@@ -1,0 +1,171 @@
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tarfile
+import zipfile
+from pathlib import Path
+
+import pytest
+
+import flowtex
+from flowtex import _assets
+
+ROOT = Path(__file__).resolve().parents[1]
+SHADERS = ROOT / "shaders"
+
+# Runs in a process that knows the installed copy alone: -P and the working folder keep the
+# checkout out, PYTHONPATH comes before what is installed as editable.
+TELL = """
+import json, sys
+import flowtex
+from flowtex import _assets
+json.dump({
+    "package": flowtex.__file__,
+    "folder": str(_assets.shader_folder()),
+    "texts": {name: _assets.shader_source(name) for name in _assets.shader_names()},
+}, sys.stdout)
+"""
+
+
+def _texts_of_checkout() -> dict[str, str]:
+    return {
+        path.relative_to(SHADERS).as_posix(): path.read_text(encoding="utf-8")
+        for path in SHADERS.rglob("*")
+        if path.is_file() and not path.name.startswith(".")
+    }
+
+
+def _run(*command: str, cwd: Path, **environment: str) -> str:
+    done = subprocess.run(
+        command,
+        cwd=cwd,
+        env={**os.environ, **environment},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, f"{command}\n{done.stdout}\n{done.stderr}"
+    return done.stdout
+
+
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Build the wheel, from the checkout, without the network."""
+    folder = tmp_path_factory.mktemp("wheel")
+    _run(sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", str(folder), cwd=ROOT)
+    (built,) = folder.glob("*.whl")
+    return built
+
+
+def test_the_checkout_has_shaders() -> None:
+    assert _texts_of_checkout(), f"{SHADERS} is empty: the other tests here would see nothing"
+
+
+def test_wheel_holds_every_shader_and_every_module(wheel: Path) -> None:
+    with zipfile.ZipFile(wheel) as archive:
+        held = {name: archive.read(name) for name in archive.namelist()}
+    for name, text in _texts_of_checkout().items():
+        assert held[f"flowtex/_shaders/{name}"].decode() == text
+    for path in (ROOT / "flowtex").rglob("*.py"):
+        assert path.relative_to(ROOT).as_posix() in held
+    assert "flowtex/py.typed" in held
+
+
+def test_wheel_is_named_after_the_one_version(wheel: Path) -> None:
+    assert wheel.name == f"flowtex-{flowtex.__version__}-py3-none-any.whl"
+
+
+def test_wheel_declares_command_and_plotter_component(wheel: Path) -> None:
+    with zipfile.ZipFile(wheel) as archive:
+        (name,) = [n for n in archive.namelist() if n.endswith("dist-info/entry_points.txt")]
+        declared = archive.read(name).decode()
+    assert "flowtex = flowtex.cli:main" in declared
+    # PyVista hands the value to import_module, so it must name a module and nothing in it.
+    assert "flowtex = flowtex.render.vtk.component\n" in f"{declared}\n"
+
+
+def test_installed_wheel_reads_its_own_shaders(wheel: Path, tmp_path: Path) -> None:
+    site, elsewhere = tmp_path / "site", tmp_path / "elsewhere"
+    (elsewhere / "shaders").mkdir(parents=True)  # a stray folder that must not be taken for ours
+    (elsewhere / "shaders" / "stray.glsl").write_text("stray", encoding="utf-8")
+    pip = (sys.executable, "-m", "pip", "install", "--quiet", "--disable-pip-version-check")
+    offline = ("--no-index", "--no-deps", "--no-compile", "--target", str(site))
+    _run(*pip, *offline, str(wheel), cwd=tmp_path)
+
+    told = json.loads(_run(sys.executable, "-P", "-c", TELL, cwd=elsewhere, PYTHONPATH=str(site)))
+
+    assert Path(told["package"]).is_relative_to(site)
+    assert Path(told["folder"]) == (site / "flowtex" / "_shaders").resolve()
+    assert told["texts"] == _texts_of_checkout()
+
+
+def test_editable_install_reads_the_checkout() -> None:
+    package = Path(flowtex.__file__).resolve().parent
+    if package.parent != ROOT:
+        pytest.skip(f"flowtex is installed in {package.parent}, not as editable")
+    assert _assets.shader_folder() == SHADERS
+    assert {n: _assets.shader_source(n) for n in _assets.shader_names()} == _texts_of_checkout()
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """Make a folder of two shaders, with a secret beside it."""
+    made = tmp_path / "shaders"
+    (made / "common").mkdir(parents=True)
+    (made / "common" / "noise.glsl").write_text("// µ noise\n", encoding="utf-8")
+    (made / "main.frag").write_text("void main() {}\n", encoding="utf-8")
+    (made / ".swap").write_text("", encoding="utf-8")
+    (tmp_path / "secret").write_text("secret", encoding="utf-8")
+    return made
+
+
+def test_names_are_sorted_and_hidden_files_left_out(folder: Path) -> None:
+    assert _assets.shader_names(folder) == ("common/noise.glsl", "main.frag")
+
+
+def test_source_is_read_as_utf8(folder: Path) -> None:
+    assert _assets.shader_source("common/noise.glsl", folder) == "// µ noise\n"
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["", ".", "../secret", "common/../../secret", "/etc/passwd", "..\\secret", "C:/secret", "link"],
+)
+def test_names_that_leave_the_folder_are_refused(name: str, folder: Path) -> None:
+    (folder / "link").symlink_to(folder.parent / "secret")
+    with pytest.raises(ValueError, match=r"^shader name .* leaves the shader folder: expected "):
+        _assets.shader_source(name, folder)
+
+
+def test_an_unknown_name_lists_the_known(folder: Path) -> None:
+    expected = r"^no shader is called 'noise\.glsl'; there are: common/noise\.glsl, main\.frag$"
+    with pytest.raises(FileNotFoundError, match=expected):
+        _assets.shader_source("noise.glsl", folder)
+
+
+def test_shaders_beside_an_installed_package_are_not_ours(tmp_path: Path) -> None:
+    package = tmp_path / "site-packages" / "flowtex"
+    package.mkdir(parents=True)
+    (package.parent / "shaders").mkdir()
+    with pytest.raises(
+        FileNotFoundError, match=r"^flowtex's shaders are missing: .*--no-deps flowtex$"
+    ):
+        _assets.shader_folder(package)
+
+
+def test_wheel_can_be_built_from_the_source_archive(tmp_path: Path) -> None:
+    _run(sys.executable, "-m", "hatchling", "build", "-t", "sdist", "-d", str(tmp_path), cwd=ROOT)
+    (archive,) = tmp_path.glob("*.tar.gz")
+    with tarfile.open(archive) as packed:
+        # The first releases of Python 3.11 have no filters, those from 3.12 on ask for one.
+        safe = {"filter": "data"} if hasattr(tarfile, "data_filter") else {}
+        packed.extractall(tmp_path, **safe)  # type: ignore[arg-type]
+    source = tmp_path / archive.name.removesuffix(".tar.gz")
+    _run(sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", str(tmp_path), cwd=source)
+    (built,) = tmp_path.glob("*.whl")
+    with zipfile.ZipFile(built) as held:
+        names = set(held.namelist())
+    assert {f"flowtex/_shaders/{name}" for name in _texts_of_checkout()} <= names

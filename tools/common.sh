@@ -1,0 +1,32 @@
+# Shared by the set-up scripts: what they say, and how they install system packages.
+# shellcheck shell=sh
+
+say() { printf '\033[1m==>\033[0m %s\n' "$*"; }
+fail() {
+    printf 'flowtex: %s\n' "$*" >&2
+    exit 1
+}
+
+# apt_command PACKAGE...: the command that a person would type.
+apt_command() {
+    sudo=
+    [ "$(id -u)" = 0 ] || sudo='sudo '
+    printf '%sapt-get update && %sapt-get install --no-install-recommends %s' "$sudo" "$sudo" "$*"
+}
+
+# can_install: whether packages can be installed here without asking anyone.
+can_install() { [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null 2>&1; }
+
+# apt_install PACKAGE...: install them; the log is shown only when that fails.
+apt_install() {
+    say "Installing $* with apt-get (once)"
+    log=$(mktemp)
+    if (apt-get update && DEBIAN_FRONTEND=noninteractive apt-get install -y \
+        --no-install-recommends "$@") >"$log" 2>&1; then
+        rm -f "$log"
+    else
+        tail -n 20 "$log" >&2
+        rm -f "$log"
+        return 1
+    fi
+}

@@ -1,0 +1,44 @@
+#!/bin/sh
+# opengl.sh PYTHON: see that VTK can draw, and install Mesa's OpenGL where that can be done.
+set -eu
+here=$(dirname "$0")
+. "$here/common.sh"
+
+python=$1
+
+# Without an OpenGL library VTK ends the process, so a second one is asked. It costs a second;
+# the stamp keeps the answer for as long as the environment and the kind of display are the same.
+if [ -n "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ]; then
+    packages='libgl1 libegl1 libgl1-mesa-dri' kind=display
+else
+    packages='libegl1 libgl1-mesa-dri' kind=headless
+fi
+stamp=$(dirname "$(dirname "$python")")/.opengl-$kind
+[ -e "$stamp" ] && exit 0
+
+# A fault of the code must not look like a missing library.
+"$python" -c 'import flowtex.doctor' || fail "flowtex itself cannot be imported"
+
+draws() {
+    "$python" -c 'from flowtex import doctor; doctor.require_opengl()' >/dev/null 2>&1
+}
+
+# Whoever asked for another window than EGL's is told what it lacks, and gets nothing else.
+case ${VTK_DEFAULT_OPENGL_WINDOW:-vtkEGLRenderWindow} in
+*EGL*) ;;
+*) can_install() { false; } ;;
+esac
+
+if ! draws && can_install; then
+    # shellcheck disable=SC2086 # a list of packages
+    apt_install $packages || fail "apt-get could not install $packages, which VTK needs to draw"
+fi
+if ! draws; then
+    "$python" -c 'import sys
+from flowtex import doctor
+try:
+    doctor.require_opengl()
+except doctor.OpenGLMissingError as error:
+    sys.exit(f"flowtex: {error}")' || exit 1
+fi
+touch "$stamp"

@@ -1,0 +1,42 @@
+#!/bin/sh
+# setup.sh PYTHON VENV EXTRAS: make the virtual environment and install flowtex into it, editable.
+set -eu
+here=$(dirname "$0")
+. "$here/common.sh"
+
+python=$1 venv=$2 extras=$3
+
+check_python() {
+    command -v "$python" >/dev/null 2>&1 || fail "there is no '$python' here. Install Python 3.11 or later:
+  $(apt_command python3 python3-venv)
+or name another interpreter: make PYTHON=/path/to/python3"
+    "$python" -c 'import sys; sys.exit(sys.version_info < (3, 11))' ||
+        fail "Python 3.11 or later is needed; '$python' is $("$python" -V 2>&1).
+Name a newer one: make PYTHON=python3.12"
+}
+
+# Debian keeps ensurepip, which makes an environment's pip, in a package of its own.
+check_venv() {
+    "$python" -c 'import ensurepip, venv' >/dev/null 2>&1 && return
+    package=$("$python" -c 'import sys; print("python%d.%d-venv" % sys.version_info[:2])')
+    can_install || fail "'$python' cannot make virtual environments. Install what it lacks:
+  $(apt_command "$package")"
+    apt_install "$package" || fail "apt-get could not install $package, which '$python' needs"
+    "$python" -c 'import ensurepip, venv' || fail "'$python' still cannot make virtual environments"
+}
+
+# An environment of another Python, or one that no longer starts, is made anew.
+is_usable() {
+    "$venv/bin/python" -m pip --version >/dev/null 2>&1 || return 1
+    wanted=$("$python" -c 'import sys; print(sys.version_info[:2])')
+    [ "$wanted" = "$("$venv/bin/python" -c 'import sys; print(sys.version_info[:2])')" ]
+}
+
+check_python
+if ! is_usable; then
+    check_venv
+    say "Making $venv with $("$python" -V 2>&1)"
+    "$python" -m venv --clear "$venv"
+fi
+say "Installing flowtex[$extras] into $venv (some minutes the first time)"
+"$venv/bin/python" -m pip install --quiet --disable-pip-version-check --editable ".[$extras]"
