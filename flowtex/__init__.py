@@ -16,7 +16,7 @@ from flowtex.trace import TraceSlices, trace
 
 if TYPE_CHECKING:
     from flowtex import examples
-    from flowtex.view import render, show
+    from flowtex.pictures import render, show
 
 __all__ = ["FlowField", "Settings", "TraceSlices", "examples", "render", "show", "trace"]
 __version__ = "0.1.0"
@@ -29,9 +29,9 @@ def __getattr__(name: str) -> Any:
 
         return importlib.import_module("flowtex.examples")
     if name in {"render", "show"}:
-        from flowtex import view
+        from flowtex import pictures
 
-        return getattr(view, name)
+        return getattr(pictures, name)
     msg = f"module 'flowtex' has no attribute {name!r}"
     raise AttributeError(msg)
 

@@ -136,7 +136,7 @@ class Settings:
         "Texels of the noise texture along the surface; the grain when lod is off.",
         span=(16, 8192),
     )
-    grain: float = _row(1.3, "uniform", "Size of a grain of noise, in pixels.", span=(0.25, 32))
+    grain: float = _row(1.5, "uniform", "Size of a grain of noise, in pixels.", span=(0.25, 32))
     contrast: float = _row(
         1.0, "uniform", "Contrast of the texture, 0 for none.", span=(0, 4)
     )

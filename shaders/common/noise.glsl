@@ -64,5 +64,6 @@ float flowtexNoise(vec3 position, float level, float turn)
   int n = int(octave);
   float fine = flowtexOctave(position, n, turn);
   float coarse = flowtexOctave(position, n + 1, turn);
-  return (fine * (1.0 - late) + coarse * late) * inversesqrt(1.0 - 2.0 * late * (1.0 - late));
+  float w = (1.0 - late) * (1.0 - late);
+  return (fine * w + coarse * (1.0 - w)) * inversesqrt(1.0 - 2.0 * w * (1.0 - w));
 }

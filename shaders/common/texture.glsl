@@ -68,9 +68,12 @@ float flowtexTexture(vec2 coordinate, float sliceLevel, float noiseLevel, float 
   return sum.x * inversesqrt(sum.y * u_correlation);
 }
 
-// Brightness by which a colour is multiplied.
-float flowtexShade(float value)
+// Colour with the texture laid over it: darker below the middle tone, lighter above, so that the
+// texture shows on dark colours too and the mean over many grains stays close to the colour.
+vec3 flowtexShade(vec3 colour, float value)
 {
-  float tone = 1.0 / (1.0 + exp(-1.7 * u_contrast * value));
-  return mix(1.0, mix(0.15, 1.15, tone), u_strength);
+  float tone = 2.0 / (1.0 + exp(-1.3 * u_contrast * value)) - 1.0;
+  float dark = u_strength * max(-tone, 0.0);
+  float light = u_strength * max(tone, 0.0);
+  return mix(mix(colour, colour * 0.12, dark), vec3(1.0), 0.62 * light);
 }

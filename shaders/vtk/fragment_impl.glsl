@@ -11,6 +11,5 @@
 #endif
   // VTK has set ambientColor and diffuseColor from the property or the scalars by now, and
   // lights them next.
-  float flowtexFactor = flowtexShade(flowtexValue);
-  ambientColor *= flowtexFactor;
-  diffuseColor *= flowtexFactor;
+  ambientColor = flowtexShade(ambientColor, flowtexValue);
+  diffuseColor = flowtexShade(diffuseColor, flowtexValue);

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from flowtex.renderers.vtk.layer import FlowLayer
-from flowtex.renderers.vtk.mesh import surface_mesh
+from flowtex.renderers.vtk.mapper import use_flow_mapper
+from flowtex.renderers.vtk.mesh import set_attributes, surface_mesh
 
-__all__ = ["FlowLayer", "surface_mesh"]
+__all__ = ["FlowLayer", "set_attributes", "surface_mesh", "use_flow_mapper"]

@@ -24,13 +24,17 @@ class FlowMapper(_BaseDataSetMapper, vtkPolyDataMapper):  # type: ignore[misc]
         self.SetInputData(dataset)
 
 
-def use_flow_mapper(actor: pv.Actor, mesh: pv.PolyData) -> FlowMapper:
-    """Give an actor a polygon mapper with the colours and scalars of its present one."""
-    old = actor.mapper
+def use_flow_mapper(actor: pv.Actor, mesh: pv.PolyData, scalars: str | None) -> FlowMapper:
+    """Give an actor a polygon mapper with the colours of its present one.
+
+    ``scalars`` names the point array to colour by; PyVista's mapper relies on the active array
+    of a mesh of its own instead.
+    """
     mapper = FlowMapper(mesh)
-    mapper.ShallowCopy(old)
+    mapper.ShallowCopy(actor.mapper)
     mapper.SetInputData(mesh)
-    if old.scalar_visibility and old.array_name:
-        mapper.SelectColorArray(old.array_name)
+    if scalars is not None:
+        mapper.SetScalarModeToUsePointFieldData()
+        mapper.SelectColorArray(scalars)
     actor.SetMapper(mapper)
     return mapper

@@ -1,0 +1,87 @@
+"""Cameras that show a flow well: straight on where it is flat, from above and aside where not."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from flowtex.field import FlowField
+
+__all__ = ["look"]
+
+#: Share of the window that is left empty around a flat surface.
+MARGIN = 0.04
+
+
+def look(
+    plotter: Any,
+    field: FlowField,
+    *,
+    zoom: float = 1.0,
+    focus: tuple[float, ...] | None = None,
+) -> None:
+    """Point a plotter's camera at a field.
+
+    Parameters
+    ----------
+    plotter
+        A PyVista plotter.
+    field
+        What to look at.
+    zoom
+        1 shows the whole surface, 8 an eighth of its width.
+    focus
+        Point of the mesh to look at, two or three coordinates; the middle by default.
+
+    Raises
+    ------
+    ValueError
+        When ``zoom`` is not positive, or ``focus`` is no point.
+    """
+    if not zoom > 0:
+        msg = f"zoom is {zoom!r}; expected a positive number, 1 for the whole surface"
+        raise ValueError(msg)
+    surface = field.surface
+    centre = surface.center.copy()
+    if focus is not None:
+        point = np.asarray(focus, dtype=float)
+        if point.shape not in ((2,), (3,)) or not np.isfinite(point).all():
+            msg = f"focus is {focus!r}; expected two or three coordinates in the mesh's units"
+            raise ValueError(msg)
+        centre[: len(point)] = point
+    if surface.frame is None:
+        _look_at_curved(plotter, field, centre, zoom)
+    else:
+        _look_at_flat(plotter, field, centre, zoom)
+    plotter.renderer.reset_camera_clipping_range()
+
+
+def _look_at_flat(plotter: Any, field: FlowField, centre: Any, zoom: float) -> None:
+    """Straight on, without perspective, the surface's own axes to the right and up."""
+    surface = field.surface
+    frame = surface.frame
+    right, up = frame if frame is not None else np.eye(3)[:2]
+    toward = np.cross(right, up)
+    local = (surface.points[surface.valid] - surface.center) @ np.stack([right, up]).T
+    width, height = np.ptp(local, axis=0)
+    window_width, window_height = plotter.window_size
+    aspect = window_width / max(window_height, 1)
+    camera = plotter.camera
+    camera.focal_point = tuple(centre)
+    camera.position = tuple(centre + toward * surface.extent)
+    camera.up = tuple(up)
+    camera.parallel_projection = True
+    camera.parallel_scale = 0.5 * max(height, width / aspect) / (1 - 2 * MARGIN) / zoom
+    plotter.camera_set = True
+
+
+def _look_at_curved(plotter: Any, field: FlowField, centre: Any, zoom: float) -> None:
+    plotter.view_isometric(render=False)
+    camera = plotter.camera
+    direction = np.asarray(camera.position) - np.asarray(camera.focal_point)
+    direction /= np.linalg.norm(direction)
+    distance = 0.5 * field.surface.extent / np.sin(np.radians(camera.view_angle / 2)) / zoom
+    camera.focal_point = tuple(centre)
+    camera.position = tuple(centre + direction * distance)
+    plotter.camera_set = True
