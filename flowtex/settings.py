@@ -102,10 +102,10 @@ class Settings:
     """
 
     samples: int = _row(
-        25, "uniform", "Noise samples summed along each path (K of the paper).", span=(1, 200)
+        41, "uniform", "Noise samples summed along each path (K of the paper).", span=(1, 200)
     )
     spacing: float = _row(
-        1.5, "uniform", "Distance between two samples, in grains of noise.", span=(0.1, 10)
+        0.8, "uniform", "Distance between two samples, in grains of noise.", span=(0.1, 10)
     )
     kernel: str = _row(
         "hann",

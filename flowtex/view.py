@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from flowtex.field import FlowField
 from flowtex.settings import TABLE, Affects, Settings
 from flowtex.textures import TextureSet
-from flowtex.trace import TraceSlices, trace
+from flowtex.trace import SliceStore, TraceSlices
 
 __all__ = ["FlowView"]
 
@@ -45,24 +45,26 @@ class FlowView:
     ) -> None:
         self.field = field
         self.settings = settings or Settings()
-        self._slices = slices
+        self._store: SliceStore | None = None
+        if slices is not None:
+            self._store = SliceStore(field, slices=slices)
         self._textures: TextureSet | None = None
         self._notices: list[Notice] = []
         self._time = float(field.times[-1])
         self._end = self.settings.observe(self._changed)
 
     @property
-    def slices(self) -> TraceSlices:
-        """Traces of the field, made when they are first asked for."""
-        if self._slices is None:
-            self._slices = trace(self.field, parameter=self.settings.parameter)
-        return self._slices
+    def store(self) -> SliceStore:
+        """Traces of the field, made step by step when they are first asked for."""
+        if self._store is None:
+            self._store = SliceStore(self.field, parameter=self.settings.parameter)
+        return self._store
 
     @property
     def textures(self) -> TextureSet:
         """What a renderer needs."""
         if self._textures is None:
-            self._textures = TextureSet.build(self.field, self.slices, self.settings)
+            self._textures = TextureSet.build(self.store, self.settings)
         return self._textures
 
     @property
@@ -135,7 +137,7 @@ class FlowView:
         if name == "resolution" and self.settings.noise != "texture":
             affects = "uniform"
         if affects == "trace":
-            self._slices = None
+            self._store = None
         if affects != "uniform":
             self._textures = None
         self._tell(affects)

@@ -97,6 +97,7 @@ def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[
         height, width = textures.paper.noise.shape
         values["u_noiseSize"] = (float(width), float(height))
         values["u_noiseScale"] = textures.paper.scale
+        values["u_noiseCorrected"] = textures.paper.corrected
     return values
 
 

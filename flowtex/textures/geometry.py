@@ -129,6 +129,24 @@ class Geometry:
             filled = data[self._nearest]
         return filled[np.ix_(self.rows.picks, self.columns.picks)]
 
+    def lay(self, data: Singles, texels: Singles) -> None:
+        """Write nodal data (J, I, C) into texels (H, W, C), laid out as by :meth:`pad`.
+
+        Blanked nodes of ``data`` are filled in place.
+        """
+        if not self.field.valid.all():
+            blank = ~self.field.valid
+            data[blank] = data[tuple(at[blank] for at in self._nearest)]
+        rows, columns = self.rows, self.columns
+        top, left = rows.before + rows.nodes, columns.before + columns.nodes
+        inner = texels[rows.before : top]
+        inner[:, columns.before : left] = data
+        inner[:, : columns.before] = data[:, columns.picks[: columns.before]]
+        inner[:, left:] = data[:, columns.picks[left:]]
+        # Beyond the nodes whole rows are repeated.
+        texels[: rows.before] = inner[rows.picks[: rows.before]]
+        texels[top:] = inner[rows.picks[top:]]
+
     @cached_property
     def _nearest(self) -> tuple[Any, ...]:
         return tuple(

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from flowtex.field import FlowField
-from flowtex.trace import TraceSlices
+from flowtex.trace import SliceStore
 
 __all__ = ["PaperTextures"]
 
@@ -34,14 +34,16 @@ class PaperTextures:
     noise
         Zero-mean noise of unit variance, (H, W).
     step
-        Lag in which the flow crosses a texel, in multiples of the unit of lag, one image for
-        each destination time, (T, H, W).
+        Lag in which the flow crosses a texel, in multiples of the unit of lag, and how many
+        texels a grain is long: one image for each destination time, (T, H, W, 2).
     coordinate
         Noise coordinates of the nodes, (J, I, 2): the middle of the texel on a node.
     scale
         Noise coordinates by cell, (2,), for i and j.
     repeat
         Whether the noise goes around along (v, u).
+    corrected
+        Whether the noise is even on the surface instead of even in the texture.
     """
 
     noise: Singles
@@ -49,12 +51,12 @@ class PaperTextures:
     coordinate: Singles
     scale: tuple[float, float]
     repeat: tuple[bool, bool]
+    corrected: bool
 
     @classmethod
     def build(
         cls,
-        field: FlowField,
-        slices: TraceSlices,
+        store: SliceStore,
         *,
         resolution: int,
         correction: bool,
@@ -64,7 +66,7 @@ class PaperTextures:
 
         Parameters
         ----------
-        field, slices
+        store
             The flow and its traces.
         resolution
             Texels along the longer side of the surface; the other side gets as many as its
@@ -74,22 +76,24 @@ class PaperTextures:
         seed
             Number of the noise pattern.
         """
+        field = store.field
         height, width = _size(field, resolution)
         index = _texel_positions(field, height, width)
-        rng = np.random.default_rng(seed)
+        size = _texel_size(field, index)
         if correction:
-            noise = _even_noise(field, index, seed)
+            noise = _even_noise(field, index, size, seed)
         else:
-            noise = rng.standard_normal((height, width))
+            noise = np.random.default_rng(seed).standard_normal((height, width))
+        steps = _steps(store, index)
         rows, columns = field.shape
-        scale = (1 / (columns - 1), 1 / (rows - 1))
         u, v = np.meshgrid(np.linspace(0, 1, columns), np.linspace(0, 1, rows))
         return cls(
             noise=((noise - noise.mean()) / (noise.std() or 1.0)).astype(np.float32),
-            step=_steps(field, slices, index, height, width),
+            step=np.minimum(steps, 6e4).astype(np.float32),
             coordinate=np.stack([u, v], axis=-1).astype(np.float32),
-            scale=scale,
+            scale=(1 / (columns - 1), 1 / (rows - 1)),
             repeat=field.periodic,
+            corrected=correction,
         )
 
 
@@ -117,20 +121,21 @@ def _sample(nodal: NDArray[np.generic], index: Floats) -> Floats:
     return np.asarray(ndimage.map_coordinates(nodal.astype(float), at, order=1, mode="nearest"))
 
 
-def _even_noise(field: FlowField, index: Floats, seed: int) -> Floats:
+def _texel_size(field: FlowField, index: Floats) -> Floats:
+    """Longer side of each texel on the surface, (H, W)."""
+    height, width = index.shape[:2]
+    rows, columns = field.shape
+    p_i, p_j = (np.linalg.norm(t, axis=-1) for t in field.surface.tangents)
+    sides = _sample(p_i, index) * (columns - 1) / width, _sample(p_j, index) * (rows - 1) / height
+    return np.maximum(np.maximum(*sides), field.surface.extent * 1e-7)
+
+
+def _even_noise(field: FlowField, index: Floats, size: Floats, seed: int) -> Floats:
     """Noise even in space, at each texel as coarse as the texel is large.
 
     A texel takes the random number of the cube of a lattice in space in which it lies. The
     lattice is that power of two of the finest which is nearest to the texel's longer side.
     """
-    height, width = index.shape[:2]
-    rows, columns = field.shape
-    p_i, p_j = field.surface.tangents
-    side = np.maximum(
-        np.linalg.norm(p_i, axis=-1) * (columns - 1) / width,
-        np.linalg.norm(p_j, axis=-1) * (rows - 1) / height,
-    )
-    size = np.maximum(_sample(side, index), field.surface.extent * 1e-7)
     octave = np.rint(np.log2(size)).astype(np.int64)
     position = field.surface.at(index) - field.surface.center
     cell = np.floor(position / (2.0**octave)[..., None]).astype(np.int64)
@@ -151,16 +156,29 @@ def _hash(cell: NDArray[np.int64], octave: NDArray[np.int64], seed: int) -> Floa
     return h.astype(np.float64) / 2.0**64
 
 
-def _steps(
-    field: FlowField, slices: TraceSlices, index: Floats, height: int, width: int
-) -> Singles:
-    """Lag in which the flow crosses one texel (equation 3), (T, H, W)."""
+def _steps(store: SliceStore, index: Floats) -> Floats:
+    """Lag in which the flow crosses one texel (equation 3), (H, W).
+
+    What is interpolated between the nodes is the number of texels crossed in a unit of lag; its
+    inverse would let one node at rest rule the cells around it.
+    """
+    field = store.field
+    height, width = index.shape[:2]
     rows, columns = field.shape
     texel = np.array([(columns - 1) / width, (rows - 1) / height])
-    result = np.empty((len(slices.times), height, width), np.float32)
-    for step, rate in enumerate(slices.rate):
-        texels = np.abs(rate / texel).max(axis=-1)
-        longest = float(slices.lags[-1])
-        nodal = 1 / np.maximum(texels, 1 / longest)
-        result[step] = _sample(nodal, index)
-    return result
+    crossed = (np.abs(field.index_velocity.components) / texel).max(axis=(0, -1))
+    if store.parameter == "arclength":
+        crossed = _by_length(crossed, field)
+    texels = _sample(crossed * store.unit, index)
+    return 1 / np.maximum(texels, 1 / float(store.lags[-1]))
+
+
+def _by_length(crossed: Floats, field: FlowField) -> Floats:
+    """Texels crossed in a unit of length; where nothing moves, what the nearest node has."""
+    speed = field.speed[0]
+    moving = field.valid & (speed > 1e-7 * speed.max())
+    if not moving.any():
+        return np.zeros_like(crossed)
+    found = crossed / np.where(moving, speed, 1.0)
+    nearest = ndimage.distance_transform_edt(~moving, return_distances=False, return_indices=True)
+    return np.asarray(found[tuple(nearest)])

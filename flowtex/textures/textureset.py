@@ -19,6 +19,8 @@ procedural noise; in index space, cells per unit of lag, for the paper's noise t
 
 from __future__ import annotations
 
+import os
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -26,11 +28,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from flowtex.field import FlowField
 from flowtex.settings import Settings
 from flowtex.textures.geometry import Geometry
+from flowtex.textures.moves import Moves
 from flowtex.textures.paper import PaperTextures
-from flowtex.trace import TraceSlices
+from flowtex.trace import SliceStore, TraceSlices
 
 __all__ = ["MOST_LAGS", "TextureSet"]
 
@@ -48,8 +50,8 @@ class TextureSet:
     ----------
     geometry
         The surface.
-    slices
-        The traces.
+    store
+        The traces, by destination time.
     space
         ``"physical"`` for slopes in space, ``"index"`` for slopes in index space.
     paper
@@ -57,12 +59,12 @@ class TextureSet:
     """
 
     geometry: Geometry
-    slices: TraceSlices
+    store: SliceStore
     space: str = "physical"
     paper: PaperTextures | None = None
 
     @classmethod
-    def build(cls, field: FlowField, slices: TraceSlices, settings: Settings) -> TextureSet:
+    def build(cls, store: SliceStore, settings: Settings) -> TextureSet:
         """Make the textures that the settings ask for.
 
         Raises
@@ -70,36 +72,36 @@ class TextureSet:
         ValueError
             When the slices do not belong to the field, or are more than a shader has room for.
         """
-        if slices.shape != field.shape:
+        field = store.field
+        if store.unit.shape != field.shape:
             msg = (
-                f"the slices have {slices.shape} nodes and the field {field.shape}; expected "
+                f"the slices have {store.unit.shape} nodes and the field {field.shape}; expected "
                 "slices traced in this field"
             )
             raise ValueError(msg)
-        if len(slices.lags) > MOST_LAGS:
-            msg = f"{len(slices.lags)} lags were traced; expected at most {MOST_LAGS}"
+        if not 2 <= len(store.lags) <= MOST_LAGS:
+            msg = f"{len(store.lags)} lags were traced; expected 2 to {MOST_LAGS} to draw with"
             raise ValueError(msg)
         geometry = Geometry.of(field)
         if settings.noise == "procedural":
-            return cls(geometry, slices)
+            return cls(geometry, store)
         paper = PaperTextures.build(
-            field,
-            slices,
+            store,
             resolution=settings.resolution,
             correction=settings.noise_correction,
             seed=settings.seed,
         )
-        return cls(geometry, slices, "index", paper)
+        return cls(geometry, store, "index", paper)
 
     @property
     def sides(self) -> int:
         """1 when paths lead backward only, 2 when forward too."""
-        return 1 if self.slices.forward is None else 2
+        return 2 if self.store.two_sided else 1
 
     @cached_property
     def pace(self) -> float:
-        """Nominal length of one unit of ``slices.unit``: 1 by arc length, a typical speed by time."""
-        if self.slices.parameter == "arclength":
+        """Nominal length of one unit of ``store.unit``: 1 by arc length, a typical speed by time."""
+        if self.store.parameter == "arclength":
             return 1.0
         speed = self.geometry.field.speed[:, self.geometry.field.valid]
         return float(np.sqrt(np.mean(speed**2))) or 1.0
@@ -107,64 +109,74 @@ class TextureSet:
     @cached_property
     def unit(self) -> float:
         """Length that the fourth channel of layer 0 is measured in."""
-        return float(np.median(self.slices.unit[self.geometry.field.valid])) * self.pace
+        return float(np.median(self.store.unit[self.geometry.field.valid])) * self.pace
 
     @property
     def lags(self) -> Singles:
         """Lags of the slices, (M,), in multiples of the unit at each node."""
-        return self.slices.lags.astype(np.float32)
+        return self.store.lags.astype(np.float32)
 
     @property
     def count(self) -> int:
         """Number of layers."""
-        return 1 + self.sides * len(self.slices.lags)
+        return 1 + self.sides * len(self.store.lags)
 
     def layers(self, step: int = 0) -> Singles:
         """Texels of the slice texture for one destination time, (layers, H, W, 4)."""
-        result = np.empty(
-            (self.count, self.geometry.rows.size, self.geometry.columns.size, 4), np.float32
-        )
-        pad = self.geometry.pad
-        for layer, (slope, extra) in enumerate(self._nodal(step)):
-            result[layer, ..., :3] = pad(slope)
-            result[layer, ..., 3] = pad(extra)
+        slices = self.store.at(step)
+        size = (self.geometry.rows.size, self.geometry.columns.size)
+        result = np.empty((self.count, *size, 4), np.float32)
+
+        def make(layer: int) -> None:
+            self.geometry.lay(self._nodal(slices, layer), result[layer])
+
+        with ThreadPoolExecutor(max_workers=min(os.cpu_count() or 1, 8)) as pool:
+            list(pool.map(make, range(self.count)))
         return result
 
-    def _nodal(self, step: int) -> Any:
-        """Give slope (J, I, 3) and fourth channel (J, I) of each layer."""
-        slices = self.slices
-        nothing = np.zeros(slices.shape)
-        yield self._tangent(step), slices.unit * self.pace / self.unit
-        sides = [(-1.0, slices.displacement, slices.reach)]
-        if slices.forward is not None and slices.forward_reach is not None:
-            sides.append((1.0, slices.forward, slices.forward_reach))
-        for sign, displacement, reach in sides:
-            for m, lag in enumerate(slices.lags):
-                slope = self._vector(displacement[step, m].astype(float)) * (sign / lag)
-                yield slope, self._usable_reach(reach[step], step) if m == 0 else nothing
+    def _nodal(self, slices: TraceSlices, layer: int) -> Singles:
+        """Give the four channels of one layer at the nodes, (J, I, 4)."""
+        result = np.zeros((*slices.shape, 4), np.float32)
+        if layer == 0:
+            result[..., :3] = self._tangent(slices)
+            result[..., 3] = slices.unit * self.pace / self.unit
+            return result
+        side, m = divmod(layer - 1, len(slices.lags))
+        sign, displacement, reach = -1.0, slices.displacement, slices.reach
+        if side and slices.forward is not None and slices.forward_reach is not None:
+            sign, displacement, reach = 1.0, slices.forward, slices.forward_reach
+        scale = sign / float(slices.lags[m])
+        if self.space == "index":
+            result[..., :2] = displacement[0, m] * np.float32(scale)
+        else:
+            by_length = scale / self._length[..., 0]
+            for channel, moved in enumerate(self._moves(displacement[0, m])):
+                np.multiply(moved, by_length, out=result[..., channel], casting="same_kind")
+        if m == 0:
+            result[..., 3] = _usable_reach(reach[0], slices)
+        return result
 
-    def _usable_reach(self, reach: NDArray[Any], step: int) -> NDArray[Any]:
-        """Reach to draw with: where nothing moves, the neighbours alone decide."""
-        still = ~np.abs(self.slices.rate[step]).any(axis=-1)
-        return np.where(still, np.inf, reach).clip(max=2 * float(self.slices.lags[-1]))
-
-    def _tangent(self, step: int) -> NDArray[Any]:
-        rate = self.slices.rate[step]
+    def _tangent(self, slices: TraceSlices) -> NDArray[Any]:
+        rate = slices.rate[0]
         if self.space == "index":
             return np.concatenate([rate, np.zeros_like(rate[..., :1])], axis=-1)
         p_i, p_j = self.geometry.field.surface.tangents
         along = rate[..., :1] * p_i + rate[..., 1:] * p_j
         return np.asarray(along @ self.geometry.frame.T) / self._length
 
-    def _vector(self, displacement: NDArray[Any]) -> NDArray[Any]:
-        """Displacement of every node as the three channels of a layer, by unit of lag."""
-        if self.space == "index":
-            return np.concatenate([displacement, np.zeros_like(displacement[..., :1])], axis=-1)
-        surface = self.geometry.field.surface
-        moved = surface.at(self.slices.nodes + displacement) - surface.points
-        return np.asarray(moved @ self.geometry.frame.T) / self._length
+    @cached_property
+    def _moves(self) -> Moves:
+        """Takes displacements to space; a flat surface has no third component."""
+        frame = self.geometry.frame
+        return Moves(self.geometry.field.surface, frame[:2] if self.geometry.planar else frame)
 
     @cached_property
     def _length(self) -> NDArray[np.float64]:
         """Nominal length of one unit of lag at each node, (J, I, 1)."""
-        return (self.slices.unit * self.pace)[..., None]
+        return (self.store.unit * self.pace)[..., None]
+
+
+def _usable_reach(reach: NDArray[Any], slices: TraceSlices) -> NDArray[Any]:
+    """Reach to draw with: where nothing moves, the neighbours alone decide."""
+    still = ~np.abs(slices.rate[0]).any(axis=-1)
+    return np.where(still, np.inf, reach).clip(max=2 * float(slices.lags[-1]))

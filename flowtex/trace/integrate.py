@@ -13,7 +13,7 @@ neighbour that has not then stays true up to the reach.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,15 +24,16 @@ __all__ = ["Paths", "integrate"]
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
+Bools = NDArray[np.bool_]
 
 #: Longest step in cells: a path cannot jump over a blanked cell unseen.
 LONGEST = 1.0
 #: A step may grow or shrink by these factors.
 SHRINK, GROW, SAFETY = 0.2, 4.0, 0.9
-#: A particle this slow, in cells over a whole unit of its own lag, stands still.
-STILL = 1e-5
 #: Bisections that find where inside a step a path ends.
-BISECTIONS = 12
+BISECTIONS = 20
+#: Share of a step by which rounding may miss a lag.
+ROUNDING = 1e-9
 
 
 @dataclass(frozen=True)
@@ -45,18 +46,40 @@ class Paths:
 
 @dataclass
 class _State:
-    """Particles still under way."""
+    """Particles still under way; the last axis is theirs."""
 
     which: Indices
+    unit: Floats
+    rest: Floats
     y: Floats
     lag: Floats
     step: Floats
     rate: Floats
     next: Indices
 
-    def keep(self, mask: NDArray[np.bool_]) -> None:
-        for name in ("which", "y", "lag", "step", "rate", "next"):
-            setattr(self, name, getattr(self, name)[mask])
+    def pick(self, mask: Bools) -> _State:
+        return _State(*(getattr(self, f.name)[..., mask] for f in fields(self)))
+
+
+@dataclass
+class _Step:
+    """Steps of some particles, from (y0, k0) at lag0 to (y1, k1); the last axis is theirs."""
+
+    y0: Floats
+    k0: Floats
+    y1: Floats
+    k1: Floats
+    lag0: Floats
+    h: Floats
+
+    def pick(self, mask: Bools | Indices) -> _Step:
+        return _Step(*(getattr(self, f.name)[..., mask] for f in fields(self)))
+
+    def at(self, s: Floats) -> Floats:
+        """Position at a fraction of each step, by the cubic through both ends and slopes."""
+        r = 1 - s
+        start = r * r * (self.y0 + s * (2 * self.y0 + self.h * self.k0))
+        return np.asarray(start + s * s * (self.y1 + r * (2 * self.y1 - self.h * self.k1)))
 
 
 def integrate(
@@ -88,184 +111,148 @@ def integrate(
     most_steps
         Rounds after which the paths that are left are ended where they are.
     """
-    count = len(start)
-    out = np.repeat(start[None], len(lags), axis=0)
-    reach = np.full(count, np.inf)
-    rate = sampler.rate(start, np.zeros(count), direction)
-    state = _State(
-        which=np.arange(count),
-        y=start.copy(),
-        lag=np.zeros(count),
-        step=np.minimum(lags[0] * unit, 0.25 / _speed(rate)),
-        rate=rate,
-        next=np.zeros(count, dtype=np.intp),
-    )
-    _end_still(state, reach, unit)
+    run = _Run(sampler, np.ascontiguousarray(start.T), lags, unit, direction, tolerance)
     for _ in range(most_steps):
-        if not len(state.which):
+        run.end_resting()
+        if not len(run.state.which):
             break
-        _advance(state, sampler, out, reach, lags, unit, direction, tolerance)
-    reach[state.which] = state.lag
-    _go_straight(state, state.y, state.rate, state.lag, out, lags, unit)
-    return Paths(out, reach / unit)
+        run.advance()
+    run.end_all()
+    return Paths(np.moveaxis(run.out, 1, 2), run.reach / unit)
 
 
-def _advance(
-    state: _State,
-    sampler: Sampler,
-    out: Floats,
-    reach: Floats,
-    lags: Floats,
-    unit: Floats,
-    direction: float,
-    tolerance: float,
-) -> None:
-    """One step of every particle: try it, keep it where its error is small enough."""
-    h = np.minimum(state.step, LONGEST / _speed(state.rate))
-    after, rate, error = _try(sampler, state, h, direction)
-    size = np.maximum(np.abs(error).max(axis=1) / tolerance, 1e-12)
-    accepted = size <= 1.0
-    state.step = h * np.clip(SAFETY * size ** (-1 / 3), SHRINK, GROW)
-    if not accepted.any():
-        return
-    done = np.flatnonzero(accepted)
-    before = (state.y[done], state.rate[done], state.lag[done])
-    late = state.lag[done] + h[done]
-    gone = ~sampler.alive(after[done])
-    end = late.copy()
-    if gone.any():
-        g = np.flatnonzero(gone)
-        end[g] = _border(sampler, [b[g] for b in before], after[done][g], rate[done][g], h[done][g])
-    _record(state, done, before, after[done], rate[done], h[done], end, out, lags, unit)
-    ended = done[gone]
-    if len(ended):
-        reach[state.which[ended]] = end[gone]
-        _leave(state, ended, before, after, rate, h, end[gone], gone, out, lags, unit)
-    state.y[done], state.rate[done], state.lag[done] = after[done], rate[done], late
-    finished = state.next >= len(lags)
-    finished[ended] = True
-    if finished.any():
-        state.keep(~finished)
-    _end_still(state, reach, unit, out, lags)
+class _Run:
+    """Everything about one call of :func:`integrate`."""
 
+    def __init__(
+        self,
+        sampler: Sampler,
+        start: Floats,
+        lags: Floats,
+        unit: Floats,
+        direction: float,
+        tolerance: float,
+    ) -> None:
+        count = start.shape[1]
+        self.sampler, self.direction, self.tolerance = sampler, direction, tolerance
+        self.lags = lags
+        #: The lags and one that is never reached, for particles that have them all.
+        self.wanted = np.append(lags, np.inf)
+        self.out = np.repeat(start[None], len(lags), axis=0)
+        self.reach = np.full(count, np.inf)
+        last = float(lags[-1])
+        self.state = _State(
+            which=np.arange(count),
+            unit=unit,
+            rest=sampler.rest(unit, last),
+            y=start,
+            lag=np.zeros(count),
+            step=last * unit,
+            rate=sampler.rate(start, np.zeros(count), direction),
+            next=np.zeros(count, dtype=np.intp),
+        )
 
-def _try(
-    sampler: Sampler, state: _State, h: Floats, direction: float
-) -> tuple[Floats, Floats, Floats]:
-    """One Bogacki-Shampine step: positions, rates there, and the estimated error."""
-    y, k1, lag, w = state.y, state.rate, state.lag, h[:, None]
-    k2 = sampler.rate(y + w * (0.5 * k1), lag + 0.5 * h, direction)
-    k3 = sampler.rate(y + w * (0.75 * k2), lag + 0.75 * h, direction)
-    after = y + w * (2 / 9 * k1 + 1 / 3 * k2 + 4 / 9 * k3)
-    k4 = sampler.rate(after, lag + h, direction)
-    error = w * (-5 / 72 * k1 + 1 / 12 * k2 + 1 / 9 * k3 - 1 / 8 * k4)
-    return after, k4, error
+    def end_resting(self) -> None:
+        """End the paths that do not move any more."""
+        resting = _speed(self.state.rate) < self.state.rest
+        if resting.any():
+            gone = self.state.pick(resting)
+            self._go_straight(gone, np.zeros_like(gone.y))
+            self.state = self.state.pick(~resting)
 
+    def end_all(self) -> None:
+        """End all paths where they are."""
+        self._go_straight(self.state, self.state.rate)
 
-def _hermite(
-    s: Floats, h: Floats, y0: Floats, k0: Floats, y1: Floats, k1: Floats
-) -> Floats:
-    """Position at the fraction s of a step of length h from (y0, k0) to (y1, k1)."""
-    s, h = s[:, None], h[:, None]
-    a = (1 + 2 * s) * (1 - s) ** 2
-    b = s * (1 - s) ** 2
-    c = s * s * (3 - 2 * s)
-    d = s * s * (s - 1)
-    return np.asarray(a * y0 + b * h * k0 + c * y1 + d * h * k1)
+    def advance(self) -> None:
+        """One step of every particle: try it, keep it where its error is small enough."""
+        state = self.state
+        left = self.lags[-1] * state.unit - state.lag
+        longest = LONGEST / np.maximum(_speed(state.rate), 1e-300)
+        h = np.minimum(np.minimum(state.step, longest), np.minimum(left, self.sampler.longest))
+        step, error = self._try(h)
+        size = np.maximum(error * (1 / self.tolerance), 1e-9)
+        state.step = h * np.clip(SAFETY / np.cbrt(size), SHRINK, GROW)
+        good = size <= 1.0
+        if good.all():
+            self._accept(state, step)
+            self.state = state
+        elif good.any():
+            moved = state.pick(good)
+            self._accept(moved, step.pick(good))
+            self.state = _join(moved, state.pick(~good))
+        if (finished := self.state.next >= len(self.lags)).any():
+            self.state = self.state.pick(~finished)
 
+    def _try(self, h: Floats) -> tuple[_Step, Floats]:
+        """One Bogacki-Shampine step, and its estimated error in cells, (N,)."""
+        y, k1, lag = self.state.y, self.state.rate, self.state.lag
+        k2 = self._rate(y + (0.5 * h) * k1, lag + 0.5 * h)
+        k3 = self._rate(y + (0.75 * h) * k2, lag + 0.75 * h)
+        after = y + h * (2 / 9 * k1 + 1 / 3 * k2 + 4 / 9 * k3)
+        k4 = self._rate(after, lag + h)
+        error = h * _speed(-5 / 72 * k1 + 1 / 12 * k2 + 1 / 9 * k3 - 1 / 8 * k4)
+        return _Step(y, k1, after, k4, lag, h), error
 
-def _record(
-    state: _State,
-    done: Indices,
-    before: tuple[Floats, Floats, Floats],
-    after: Floats,
-    rate: Floats,
-    h: Floats,
-    end: Floats,
-    out: Floats,
-    lags: Floats,
-    unit: Floats,
-) -> None:
-    """Write the positions at the lags that the accepted steps have passed."""
-    y0, k0, lag0 = before
-    which = state.which[done]
-    while True:
-        pointer = state.next[done]
-        wanted = lags[np.minimum(pointer, len(lags) - 1)] * unit[which]
-        due = (pointer < len(lags)) & (wanted <= end)
-        if not due.any():
-            return
-        d = np.flatnonzero(due)
-        s = (wanted[d] - lag0[d]) / h[d]
-        out[pointer[d], which[d]] = _hermite(s, h[d], y0[d], k0[d], after[d], rate[d])
-        state.next[done[d]] += 1
+    def _rate(self, position: Floats, lag: Floats) -> Floats:
+        return self.sampler.rate(position, lag, self.direction)
 
+    def _accept(self, state: _State, step: _Step) -> None:
+        """Move particles by their step; those that leave the domain are ended on the way."""
+        gone = ~self.sampler.alive(step.y1)
+        share = np.ones(len(gone))
+        if gone.any():
+            share[gone] = self._border(step.pick(gone))
+        self._record(state, step, share)
+        if gone.any():
+            out = step.pick(gone)
+            s = share[gone]
+            ended = state.pick(gone)
+            ended.y, ended.lag = out.at(s), out.lag0 + s * out.h
+            self._go_straight(ended, out.k0 + s * (out.k1 - out.k0))
+            state.next[gone] = len(self.lags)
+        state.y, state.rate, state.lag = step.y1, step.k1, step.lag0 + step.h
 
-def _border(
-    sampler: Sampler, before: list[Floats], after: Floats, rate: Floats, h: Floats
-) -> Floats:
-    """Lag at which a step that ends outside leaves the domain, by bisection."""
-    y0, k0, lag0 = before
-    low, high = np.zeros(len(h)), np.ones(len(h))
-    for _ in range(BISECTIONS):
-        middle = (low + high) / 2
-        inside = sampler.alive(_hermite(middle, h, y0, k0, after, rate))
-        low, high = np.where(inside, middle, low), np.where(inside, high, middle)
-    return np.asarray(lag0 + low * h)
+    def _record(self, state: _State, step: _Step, share: Floats) -> None:
+        """Write the positions at the lags that the first ``share`` of the steps has passed."""
+        while True:
+            s = (self.wanted[state.next] * state.unit - step.lag0) / step.h
+            due = s <= share + ROUNDING
+            if not due.any():
+                return
+            if due.all() and (state.next == state.next[0]).all():
+                self.out[state.next[0]][:, state.which] = step.at(s)
+                state.next += 1
+                continue
+            d = np.flatnonzero(due)
+            where = step.at(s) if len(d) == len(s) else step.pick(d).at(s[d])
+            self.out[state.next[d], :, state.which[d]] = where.T
+            state.next[d] += 1
 
+    def _border(self, step: _Step) -> Floats:
+        """Share of a step that ends outside which is still inside, by bisection."""
+        low, high = np.zeros(len(step.h)), np.ones(len(step.h))
+        for _ in range(BISECTIONS):
+            middle = (low + high) / 2
+            inside = self.sampler.alive(step.at(middle))
+            low, high = np.where(inside, middle, low), np.where(inside, high, middle)
+        return low
 
-def _leave(
-    state: _State,
-    ended: Indices,
-    before: tuple[Floats, Floats, Floats],
-    after: Floats,
-    rate: Floats,
-    h: Floats,
-    end: Floats,
-    gone: NDArray[np.bool_],
-    out: Floats,
-    lags: Floats,
-    unit: Floats,
-) -> None:
-    """Continue paths that have left straight on from where they left."""
-    y0, k0, lag0 = (b[gone] for b in before)
-    s = (end - lag0) / h[ended]
-    y = _hermite(s, h[ended], y0, k0, after[ended], rate[ended])
-    k = k0 + s[:, None] * (rate[ended] - k0)
-    part = _State(state.which[ended], y, end, h[ended], k, state.next[ended])
-    _go_straight(part, y, k, end, out, lags, unit)
-
-
-def _go_straight(
-    state: _State, y: Floats, rate: Floats, end: Floats, out: Floats, lags: Floats, unit: Floats
-) -> None:
-    """Fill the lags that are left with the straight continuation of each path."""
-    which = state.which
-    for m in range(len(lags)):
-        left = state.next <= m
-        w = which[left]
-        further = lags[m] * unit[w] - end[left]
-        out[m, w] = y[left] + further[:, None] * rate[left]
-
-
-def _end_still(
-    state: _State,
-    reach: Floats,
-    unit: Floats,
-    out: Floats | None = None,
-    lags: Floats | None = None,
-) -> None:
-    """End the paths that do not move any more."""
-    still = np.abs(state.rate).max(axis=1, initial=0.0) * unit[state.which] < STILL
-    if not still.any():
-        return
-    reach[state.which[still]] = state.lag[still]
-    if out is not None and lags is not None:
-        part = _State(*(getattr(state, n)[still] for n in _State.__dataclass_fields__))
-        _go_straight(part, part.y, np.zeros_like(part.y), part.lag, out, lags, unit)
-    state.keep(~still)
+    def _go_straight(self, state: _State, rate: Floats) -> None:
+        """End paths where they are, and fill the lags that are left straight ahead."""
+        self.reach[state.which] = state.lag
+        for m, lag in enumerate(self.lags):
+            left = state.next <= m
+            further = lag * state.unit[left] - state.lag[left]
+            self.out[m][:, state.which[left]] = state.y[:, left] + further * rate[:, left]
 
 
 def _speed(rate: Floats) -> Floats:
-    """Greatest component of a rate, never quite zero."""
-    return np.maximum(np.abs(rate).max(axis=1, initial=0.0), 1e-300)
+    """Greatest component of a rate, (N,)."""
+    size = np.abs(rate)
+    return np.asarray(np.maximum(size[0], size[1]))
+
+
+def _join(one: _State, two: _State) -> _State:
+    parts = ((getattr(one, f.name), getattr(two, f.name)) for f in fields(_State))
+    return _State(*(np.concatenate(p, axis=-1) for p in parts))

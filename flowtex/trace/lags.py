@@ -54,5 +54,9 @@ def choose_lags(field: FlowField, parameter: str, *, ratio: float = 2.0) -> Floa
         crossing = np.broadcast_to(size, speed.shape)[moving] / speed[moving]
         first = FIRST * float(np.percentile(crossing, 10))
         last = LAST * extent / float(np.sqrt(np.mean(speed[moving] ** 2)))
+        if not field.steady:
+            # Lags that reach other time steps are what long paths can be composed of.
+            step = float(np.mean(np.diff(field.times)))
+            first = step * ratio ** np.rint(np.log(first / step) / np.log(ratio))
     count = int(np.ceil(np.log(max(last / first, ratio)) / np.log(ratio))) + 1
     return np.asarray(first * ratio ** np.arange(min(count, MOST)))

@@ -15,65 +15,51 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from flowtex.field import FlowField
+from flowtex.trace.lattice import Corners, Lattice
 
 __all__ = ["LengthSampler", "Sampler", "TimeSampler"]
 
 Floats = NDArray[np.float64]
-Indices = NDArray[np.intp]
 
 #: A particle slower than this share of the greatest speed has stopped.
 STOPPED = 1e-7
+#: By arc length, a particle this slow, in cells over one unit of lag, is at a critical point.
+RESTING = 1e-3
 
 
 class Sampler(Protocol):
-    """What the integrator asks of a field."""
+    """What the integrator asks of a field. Positions and rates are (2, N), as (i, j)."""
+
+    #: Longest step in units of lag, so that no change in time is jumped over.
+    longest: float
 
     def rate(self, position: Floats, lag: Floats, direction: float) -> Floats:
-        """Rate of change of (i, j) by lag for particles (N, 2) that have come ``lag`` (N,)."""
+        """Rate of change of (i, j) by lag for particles that have come ``lag`` (N,)."""
         ...
 
     def alive(self, position: Floats) -> NDArray[np.bool_]:
-        """Whether particles (N, 2) are inside the domain, in a cell that is not blanked."""
+        """Whether particles are inside the domain, in a cell that is not blanked, (N,)."""
+        ...
+
+    def rest(self, unit: Floats, last: float) -> Floats:
+        """Rate (N,) below which a particle stands still, for lags up to ``last * unit``."""
         ...
 
 
-class _Grid:
-    """Bilinear look-ups in nodal arrays of a field, flattened to (J * I, components)."""
+class _Grid(Lattice):
+    """The nodes of a field, and which of its cells count."""
 
     def __init__(self, field: FlowField) -> None:
-        self._rows, self._columns = field.shape
-        self._periodic = field.periodic
-        self._cells = field.surface.cells.ravel()
-
-    def corners(self, position: Floats) -> tuple[Indices, Floats, Floats]:
-        """Lower corner of each particle's cell, and the fractions inside it."""
-        x = self._fold(position[:, 0], self._columns - 1, closed=self._periodic[1])
-        y = self._fold(position[:, 1], self._rows - 1, closed=self._periodic[0])
-        i = np.minimum(x.astype(np.intp), self._columns - 2)
-        j = np.minimum(y.astype(np.intp), self._rows - 2)
-        return j * self._columns + i, x - i, y - j
-
-    def bilinear(self, data: Floats, at: Indices, s: Floats, t: Floats) -> Floats:
-        """Interpolate (J * I, C) data at the corners found by :meth:`corners`, (N, C)."""
-        s, t = s[:, None], t[:, None]
-        low = data[at] * (1 - s) + data[at + 1] * s
-        above = at + self._columns
-        return np.asarray(low * (1 - t) + (data[above] * (1 - s) + data[above + 1] * s) * t)
+        super().__init__(field.shape, field.periodic)
+        cells = field.surface.cells
+        # One entry for each lower corner, so that Corners.at finds it.
+        self._open = None if cells.all() else np.pad(cells, ((0, 1), (0, 1))).ravel()
 
     def alive(self, position: Floats) -> NDArray[np.bool_]:
-        x, y = position[:, 0], position[:, 1]
-        inside = np.ones(len(x), dtype=bool)
-        if not self._periodic[1]:
-            inside &= (x >= 0) & (x <= self._columns - 1)
-        if not self._periodic[0]:
-            inside &= (y >= 0) & (y <= self._rows - 1)
-        at, _, _ = self.corners(position)
-        j, i = np.divmod(at, self._columns)
-        return np.asarray(inside & self._cells[j * (self._columns - 1) + i])
-
-    @staticmethod
-    def _fold(x: Floats, period: int, *, closed: bool) -> Floats:
-        return np.asarray(np.mod(x, period) if closed else np.clip(x, 0, period))
+        inside = self.inside(position)
+        if self._open is not None:
+            inside &= self._open[self.corners(position).at]
+        return inside
 
 
 class LengthSampler(_Grid):
@@ -83,56 +69,84 @@ class LengthSampler(_Grid):
     comes to rest there instead of jumping across.
     """
 
+    longest = np.inf
+
     def __init__(self, field: FlowField) -> None:
         super().__init__(field)
         flow = field.index_velocity
         speed = flow.speed[0]
         self._floor = max(STOPPED * float(speed.max()), np.finfo(float).tiny)
         data = np.concatenate([flow.components[0], speed[..., None]], axis=-1)
-        self._data = _spread(data, field).reshape(-1, 3)
+        self._i, self._j, self._speed = _spread(data, field)
 
     def rate(self, position: Floats, lag: Floats, direction: float) -> Floats:
         """Index-space direction for one unit of length."""
         del lag
-        v = self.bilinear(self._data, *self.corners(position))
-        speed = v[:, 2]
-        moving = speed > self._floor
-        scale = np.where(moving, direction / np.where(moving, speed, 1.0), 0.0)
-        return np.asarray(v[:, :2] * scale[:, None])
+        corners = self.corners(position)
+        speed = self.blend(self._speed, corners)
+        still = speed <= self._floor
+        speed[still] = np.inf
+        result = np.empty_like(position)
+        np.divide(self.blend(self._i, corners), speed, out=result[0])
+        np.divide(self.blend(self._j, corners), speed, out=result[1])
+        return np.negative(result, out=result) if direction < 0 else result
+
+    def rest(self, unit: Floats, last: float) -> Floats:
+        """Rate below which a particle has come to rest: those that move cover a cell a unit."""
+        del last
+        return RESTING / unit
 
 
 class TimeSampler(_Grid):
-    """A field by its own time, seen from the destination time ``destination``."""
+    """A field by its own time; lags count from the time of step number ``step``."""
 
-    def __init__(self, field: FlowField, destination: float) -> None:
+    def __init__(self, field: FlowField) -> None:
         super().__init__(field)
         self._times = field.times
-        self._destination = destination
-        steps = field.index_velocity.components
-        self._data = [_spread(step, field).reshape(-1, 2) for step in steps]
-        if len(self._data) > 1:
-            self._stacked = np.concatenate(self._data)
+        self._i, self._j = _spread(field.index_velocity.components, field)
+        self._destination = float(field.times[-1])
+        self.longest = np.inf if field.steady else float(np.diff(field.times).max())
+
+    def since(self, destination: float) -> TimeSampler:
+        """Return this sampler with lags counted from another destination time."""
+        other = object.__new__(TimeSampler)
+        other.__dict__.update(self.__dict__, _destination=destination)
+        return other
 
     def rate(self, position: Floats, lag: Floats, direction: float) -> Floats:
         """Index-space velocity at time destination + direction * lag."""
-        at, s, t = self.corners(position)
-        if len(self._data) == 1:
-            return direction * self.bilinear(self._data[0], at, s, t)
-        time = self._destination + direction * lag
-        step = np.clip(np.searchsorted(self._times, time) - 1, 0, len(self._times) - 2)
+        corners = self.corners(position)
+        if len(self._times) == 1:
+            result = np.stack([self.blend(self._i, corners), self.blend(self._j, corners)])
+        else:
+            result = self._at_time(corners, self._destination + direction * lag)
+        return np.negative(result, out=result) if direction < 0 else result
+
+    def rest(self, unit: Floats, last: float) -> Floats:
+        """Rate at which a particle gets nowhere; in a flow that varies none stays at rest."""
+        return np.full(len(unit), 0.0 if len(self._times) > 1 else 1e-5) / (unit * last)
+
+    def _at_time(self, corners: Corners, time: Floats) -> Floats:
+        step = np.searchsorted(self._times, time) - 1
+        np.clip(step, 0, len(self._times) - 2, out=step)
         width = self._times[step + 1] - self._times[step]
-        late = np.clip((time - self._times[step]) / width, 0, 1)[:, None]
-        nodes = len(self._data[0])
-        before = self.bilinear(self._stacked, at + step * nodes, s, t)
-        after = self.bilinear(self._stacked, at + (step + 1) * nodes, s, t)
-        return np.asarray(direction * (before * (1 - late) + after * late))
+        late = np.clip((time - self._times[step]) / width, 0, 1)
+        result = np.empty((2, len(time)))
+        base = step * self.size
+        for row, data in zip(result, (self._i, self._j), strict=True):
+            before = self.blend(data, corners, base)
+            row[:] = self.blend(data, corners, base + self.size)
+            row -= before
+            row *= late
+            row += before
+        return result
 
 
-def _spread(data: Floats, field: FlowField) -> Floats:
-    """Give blanked nodes the value of the nearest valid one."""
-    if field.valid.all():
-        return data
-    nearest = ndimage.distance_transform_edt(
-        ~field.valid, return_distances=False, return_indices=True
-    )
-    return np.asarray(data[tuple(nearest)])
+def _spread(data: Floats, field: FlowField) -> list[Floats]:
+    """Components of (..., J, I, C) data, each flat; blanked nodes get their neighbours' value."""
+    if not field.valid.all():
+        nearest = ndimage.distance_transform_edt(
+            ~field.valid, return_distances=False, return_indices=True
+        )
+        data = data[(..., *tuple(nearest), slice(None))]
+    return [np.ascontiguousarray(data[..., c]).ravel() for c in range(data.shape[-1])]

@@ -9,6 +9,7 @@ interpolation at lag zero, for a handful of lags = Td - Ts.
 from __future__ import annotations
 
 import zipfile
+import zlib
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -74,6 +75,19 @@ class TraceSlices:
         arrays = (getattr(self, name) for name in self.__dataclass_fields__)
         return sum(a.nbytes for a in arrays if isinstance(a, np.ndarray))
 
+    def at_step(self, step: int) -> TraceSlices:
+        """Return the slices of one destination time, with T = 1."""
+        one = slice(step, step + 1 or None)
+        return replace(
+            self,
+            displacement=self.displacement[one],
+            forward=None if self.forward is None else self.forward[one],
+            rate=self.rate[one],
+            reach=self.reach[one],
+            forward_reach=None if self.forward_reach is None else self.forward_reach[one],
+            times=self.times[one],
+        )
+
     def positions(self, lag: float, *, step: int = 0, forward: bool = False) -> Floats:
         """Positions of the particles at a lag.
 
@@ -113,7 +127,7 @@ class TraceSlices:
         m = np.clip(np.searchsorted(knots, held, side="right") - 1, 0, len(self.lags) - 1)
         late = ((held - knots[m]) / (knots[m + 1] - knots[m]))[..., None]
         mean = np.concatenate(
-            [-sign * self.rate[step][None], data[step] / self.lags[:, None, None, None]]
+            [sign * self.rate[step][None], data[step] / self.lags[:, None, None, None]]
         )
         rows, columns = np.indices(self.shape)
         before, after = mean[m, rows, columns], mean[m + 1, rows, columns]
@@ -173,9 +187,12 @@ class TraceSlices:
         try:
             with np.load(path, allow_pickle=False) as file:
                 arrays: dict[str, Any] = {name: file[name] for name in file.files}
-        except (zipfile.BadZipFile, ValueError, EOFError) as error:
+        except (zipfile.BadZipFile, zlib.error, ValueError, EOFError, TypeError) as error:
+            # TypeError: a plain .npy file holds one array, which is no context manager.
             raise ValueError(expected) from error
-        if str(arrays.pop("format", "")) != FORMAT:
+        needed = set(cls.__dataclass_fields__) - {"forward", "forward_reach"}
+        names = set(arrays) - {"forward", "forward_reach"}
+        if str(arrays.pop("format", "")) != FORMAT or names != needed | {"format"}:
             raise ValueError(expected)
         arrays["parameter"] = str(arrays["parameter"])
         return cls(**{"forward": None, "forward_reach": None, **arrays})

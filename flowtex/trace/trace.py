@@ -1,46 +1,27 @@
-"""FlowField to TraceSlices.
-
-Particles are followed in blocks small enough to stay in a processor's cache, several blocks at a
-time in threads: NumPy lets go of the interpreter inside its loops.
-"""
+"""FlowField to TraceSlices."""
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flowtex.field import FlowField
-from flowtex.progress import track
-from flowtex.trace.compose import compose as compose_slices
+from flowtex.trace.compose import landings
 from flowtex.trace.integrate import Paths, integrate
 from flowtex.trace.lags import choose_lags, lag_unit
 from flowtex.trace.sampler import LengthSampler, Sampler, TimeSampler
 from flowtex.trace.slices import TraceSlices
+from flowtex.trace.work import Work
 
 __all__ = ["paths", "trace"]
 
 Floats = NDArray[np.float64]
+Indices = NDArray[np.intp]
 
-#: Particles followed together.
-BLOCK = 8192
 #: Error allowed in one step, in cells.
 TOLERANCE = 1e-3
-#: Automatic lags of a steady field that are integrated; longer ones are composed.
-DIRECT = 6
-
-
-@dataclass(frozen=True)
-class _Job:
-    """One block of particles to follow towards one destination time."""
-
-    step: int
-    block: slice
-    direction: float
 
 
 def trace(
@@ -81,9 +62,10 @@ def trace(
     steps
         Destination times to trace, as indices into ``field.times``; all by default.
     compose
-        Whether the long lags of a steady field are put together from short ones (see
-        :mod:`flowtex.trace.compose`) instead of being integrated. By default they are when the
-        lags are chosen automatically.
+        Whether long lags are put together from short ones (see :mod:`flowtex.trace.compose`)
+        instead of being integrated. By default they are when the lags are chosen automatically.
+        In a field that varies this takes equal time steps, of which all are traced; otherwise
+        all lags are integrated.
     progress
         Whether to show a progress bar when the work takes longer than a second.
 
@@ -94,32 +76,37 @@ def trace(
     Raises
     ------
     ValueError
-        When the lags are not positive and increasing, or ``parameter`` is unknown.
+        When the lags are not positive and increasing, ``parameter`` is unknown, or the unit or
+        the tolerance is not positive.
+    IndexError
+        When there is no such time step.
     """
     parameter = _parameter(field, parameter)
     wanted = choose_lags(field, parameter) if lags is None else _checked_lags(lags)
     units = lag_unit(field, parameter) if unit is None else np.asarray(unit, dtype=float)
     units = np.array(np.broadcast_to(units, field.shape), dtype=float)
-    chosen = list(range(len(field.times))) if steps is None else [int(s) for s in steps]
-    samplers = _samplers(field, chosen, parameter)
+    if not (np.isfinite(units).all() and (units > 0).all()):
+        msg = f"unit has values from {units.min():g} to {units.max():g}; expected positive numbers"
+        raise ValueError(msg)
+    if not tolerance > 0:
+        msg = f"tolerance is {tolerance!r}; expected a positive number of cells, such as 1e-3"
+        raise ValueError(msg)
+    chosen = _chosen(field, steps)
     sides = (-1.0, 1.0) if field.steady and two_sided else (-1.0,)
-    composed = field.steady and (lags is None if compose is None else compose)
-    known = min(DIRECT, len(wanted)) if composed else len(wanted)
-    found = _follow(field, samplers, wanted, known, units, sides, tolerance, progress)
-    nodes, rate = _rates(field, samplers, units)
-    if known < len(wanted):
-        for side, (displacement, reach) in found.items():
-            compose_slices(field, wanted, units, side * rate[0], displacement[0], reach[0], known)
+    work = Work(field, _samplers(field, chosen, parameter), wanted, units, tolerance, progress)
+    composed = lags is None if compose is None else compose
+    landing = _landing(field, wanted, units, chosen) if composed else None
+    found = work.follow(sides, landing)
     both = len(sides) > 1
     return TraceSlices(
         lags=wanted,
         unit=units,
-        displacement=found[-1.0][0],
-        forward=found[1.0][0] if both else None,
-        rate=rate,
-        reach=found[-1.0][1],
-        forward_reach=found[1.0][1] if both else None,
-        nodes=nodes,
+        displacement=found[-1.0].displacement,
+        forward=found[1.0].displacement if both else None,
+        rate=work.rate,
+        reach=found[-1.0].reach,
+        forward_reach=found[1.0].reach if both else None,
+        nodes=work.nodes,
         times=field.times[chosen],
         parameter=parameter,
     )
@@ -149,10 +136,23 @@ def paths(
         Which destination time.
     parameter, forward, tolerance
         As for :func:`trace`.
+
+    Returns
+    -------
+    Paths
+        Positions (M, N, 2) in index space, and the lag at which each path ended, (N,), infinite
+        where it goes on beyond the last lag.
+
+    Raises
+    ------
+    ValueError
+        When the lags are not positive and increasing, or ``parameter`` is unknown.
+    IndexError
+        When there is no such time step.
     """
     parameter = _parameter(field, parameter)
     begin = np.array(start, dtype=float).reshape(-1, 2)
-    sampler = _samplers(field, [step], parameter)[0]
+    sampler = _samplers(field, _chosen(field, [step]), parameter)[0]
     return integrate(
         sampler,
         begin,
@@ -163,79 +163,27 @@ def paths(
     )
 
 
-def _follow(
-    field: FlowField,
-    samplers: list[Sampler],
-    lags: Floats,
-    known: int,
-    units: Floats,
-    sides: tuple[float, ...],
-    tolerance: float,
-    progress: bool,
-) -> dict[float, tuple[NDArray[np.float32], NDArray[np.float32]]]:
-    """Displacement (T, M, J, I, 2) and reach (T, J, I) for each direction."""
-    rows, columns = field.shape
-    at = np.flatnonzero(field.valid)
-    start = np.stack([at % columns, at // columns], axis=-1).astype(float)
-    unit = units.ravel()[at]
-    shape = (len(samplers), len(lags), rows * columns)
-    found = {
-        side: (np.zeros((*shape, 2), np.float32), np.zeros(shape[::2], np.float32))
-        for side in sides
-    }
-
-    def work(job: _Job) -> None:
-        block = at[job.block]
-        result = integrate(
-            samplers[job.step],
-            start[job.block],
-            lags[:known],
-            unit[job.block],
-            direction=job.direction,
-            tolerance=tolerance,
-        )
-        displacement, reach = found[job.direction]
-        displacement[job.step, :known, block] = np.swapaxes(result.positions - start[job.block], 0, 1)
-        reach[job.step, block] = result.reach
-
-    jobs = [
-        _Job(step, slice(first, first + BLOCK), side)
-        for step in range(len(samplers))
-        for side in sides
-        for first in range(0, len(at), BLOCK)
-    ]
-    _run(work, jobs, progress)
-    grid = (rows, columns)
-    return {
-        side: (d.reshape(*shape[:2], *grid, 2), r.reshape(shape[0], *grid))
-        for side, (d, r) in found.items()
-    }
+def _chosen(field: FlowField, steps: Sequence[int] | None) -> list[int]:
+    """Destination times as indices from 0."""
+    count = len(field.times)
+    for step in () if steps is None else steps:
+        if not -count <= step < count:
+            msg = f"time step {step} does not exist: expected 0 to {count - 1}"
+            raise IndexError(msg)
+    return list(range(count)) if steps is None else [int(step) % count for step in steps]
 
 
-def _rates(
-    field: FlowField, samplers: list[Sampler], units: Floats
-) -> tuple[Floats, Floats]:
-    """Nodes (J, I, 2) in index space, and the rates (T, J, I, 2) at which paths leave them."""
-    rows, columns = field.shape
-    nodes = np.stack(np.meshgrid(np.arange(columns), np.arange(rows)), axis=-1).astype(float)
-    flat, still = nodes.reshape(-1, 2), np.zeros(rows * columns)
-    rate = np.stack([sampler.rate(flat, still, 1.0) for sampler in samplers])
-    rate = rate.reshape(-1, rows, columns, 2) * units[..., None]
-    rate[:, ~field.valid] = 0.0
-    return nodes, rate
-
-
-def _run(work: Callable[[_Job], None], jobs: list[_Job], progress: bool) -> None:
-    """Do the jobs in threads, with a progress bar."""
-    with ThreadPoolExecutor(max_workers=min(os.cpu_count() or 1, 8)) as pool:
-        for _ in track(pool.map(work, jobs), len(jobs), "Tracing", show=progress):
-            pass
+def _landing(field: FlowField, lags: Floats, unit: Floats, steps: list[int]) -> Indices | None:
+    """Time steps that the lags span, where paths can be composed, else ``None``."""
+    whole = field.steady or steps == list(range(len(field.times)))
+    return landings(field, lags, unit) if whole else None
 
 
 def _samplers(field: FlowField, steps: list[int], parameter: str) -> list[Sampler]:
     if parameter == "arclength":
         return [LengthSampler(field)]
-    return [TimeSampler(field, float(field.times[step])) for step in steps]
+    sampler = TimeSampler(field)
+    return [sampler.since(float(field.times[step])) for step in steps]
 
 
 def _parameter(field: FlowField, parameter: str) -> str:

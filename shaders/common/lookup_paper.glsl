@@ -2,15 +2,23 @@
 //
 // The level is the one that mipmapping chooses for the noise at the fragment (section 4), and
 // the step is looked up at the same level, where its values count 2^level times (section 4.1).
-// Averaging four texels halves the deviation of independent noise, which is made up for, so that
-// the contrast does not change with the level.
+// Averaging n independent grains divides their deviation by sqrt(n), which is made up for, so
+// that the contrast does not change with the level. Corrected noise has grains as long as the
+// longer side of a texel, so that along the shorter side fewer of them make the average.
 
 vec2 flowtexHere; // noise coordinate of the fragment
+float flowtexMip; // level
+float flowtexGain;
 
-float flowtexLookup(vec3 displacement, float length_, float level)
+vec2 flowtexLookup(vec3 displacement, float length_, bool both)
 {
   vec2 at = flowtexHere + displacement.xy * u_noiseScale;
-  return textureLod(u_noiseImage, at, level).r * exp2(level);
+  return vec2(textureLod(u_noiseImage, at, flowtexMip).r * flowtexGain, 0.0);
+}
+
+float flowtexBlend(vec2 sums)
+{
+  return sums.x;
 }
 
 // Texture at a noise coordinate with its derivatives.
@@ -18,9 +26,13 @@ float flowtexFragment(vec2 coordinate, vec2 noise, vec2 dx, vec2 dy, float slice
 {
   vec2 sx = dx * u_noiseSize;
   vec2 sy = dy * u_noiseSize;
-  float texels = max(dot(sx, sx), dot(sy, sy));
-  float level = u_lod ? max(0.5 * log2(max(texels, 1e-20)), 0.0) : 0.0;
+  float determinant = sx.x * sy.y - sx.y * sy.x;
+  vec2 footprint = flowtexFootprint(dot(sx, sx), dot(sy, sy), determinant);
+  flowtexMip = u_lod ? max(log2(max(footprint.x, 1e-6)), 0.0) : 0.0;
+  float width = exp2(flowtexMip);
+  float across = u_noiseCorrected ? max(width * footprint.y / footprint.x, 1.0) : width;
+  flowtexGain = sqrt(width * across);
   flowtexHere = noise;
-  float step_ = textureLod(u_stepImage, noise, level).r * exp2(level) * u_spacing;
-  return flowtexTexture(coordinate, sliceLevel, level, step_);
+  float step_ = textureLod(u_stepImage, noise, flowtexMip).r * width;
+  return flowtexTexture(coordinate, sliceLevel, step_ * u_spacing);
 }

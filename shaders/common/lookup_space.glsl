@@ -1,21 +1,35 @@
 // The noise at a traced point: even in space, at the level of the fragment.
+//
+// The finer octave has lattice cells of half a grain to one grain, the coarser one of one to two.
 
 vec3 flowtexHere;    // position relative to u_noiseOrigin
 float flowtexPixel;  // length that a pixel covers
+int flowtexFiner;    // octave
+float flowtexLate;   // how far the level is from the finer octave to the coarser one
 
-float flowtexLookup(vec3 displacement, float length_, float level)
+vec2 flowtexLookup(vec3 displacement, float length_, bool both)
 {
   float turn = u_turn + u_wave * length_ / flowtexPixel;
-  return flowtexNoise(flowtexHere + displacement, level, turn);
+  vec3 at = flowtexHere + displacement;
+  float coarse = both ? flowtexOctave(at, flowtexFiner + 1, turn) : 0.0;
+  return vec2(flowtexOctave(at, flowtexFiner, turn), coarse);
+}
+
+// The finer octave fades early, before its grains are smaller than a pixel.
+float flowtexBlend(vec2 sums)
+{
+  float w = (1.0 - flowtexLate) * sqrt(1.0 - flowtexLate);
+  return (sums.x * w + sums.y * (1.0 - w)) * inversesqrt(1.0 - 2.0 * w * (1.0 - w));
 }
 
 // Texture at a position with the footprint given by its derivatives.
 float flowtexFragment(vec3 position, vec3 dx, vec3 dy, vec2 coordinate, float sliceLevel)
 {
-  float determinant = length(cross(dx, dy));
-  vec2 footprint = flowtexFootprint(dot(dx, dx), dot(dy, dy), determinant);
+  vec2 footprint = flowtexFootprint(dot(dx, dx), dot(dy, dy), length(cross(dx, dy)));
   flowtexPixel = u_lod ? footprint.x : u_texel;
   flowtexHere = position - u_noiseOrigin;
-  float level = max(log2(flowtexPixel * u_grain / u_noiseFinest), 0.0);
-  return flowtexTexture(coordinate, sliceLevel, level, u_spacing * flowtexPixel * u_grain);
+  float level = clamp(log2(flowtexPixel * u_grain / u_noiseFinest), 0.0, 29.99);
+  flowtexFiner = int(level);
+  flowtexLate = level - float(flowtexFiner);
+  return flowtexTexture(coordinate, sliceLevel, u_spacing * flowtexPixel * u_grain);
 }

@@ -10,12 +10,8 @@ uint flowtexHash(ivec3 cell, int octave)
 {
   uint h = uint(cell.x) * 0x8da6b343u + uint(cell.y) * 0xd8163841u + uint(cell.z) * 0xcb1ab31fu
     + uint(octave) * 0x9e3779b9u + uint(u_seed) * 0x85ebca6bu;
-  h ^= h >> 15;
-  h *= 0x2c1b3c6du;
-  h ^= h >> 13;
-  h *= 0x297a2d39u;
-  h ^= h >> 16;
-  return h;
+  h = (h ^ (h >> 15)) * 0x2c1b3c6du;
+  return (h ^ (h >> 13)) * 0x297a2d39u;
 }
 
 // Value of a lattice point: a triangle wave of its phase, so that it is uniform in -1 ... 1 at
@@ -54,16 +50,4 @@ float flowtexOctave(vec3 position, int octave, float turn)
   variance *= spread.z;
 #endif
   return value * inversesqrt(variance * (1.0 / 3.0));
-}
-
-// Noise at a level between two octaves: both, weighted so that the variance stays 1.
-float flowtexNoise(vec3 position, float level, float turn)
-{
-  float octave = floor(level);
-  float late = level - octave;
-  int n = int(octave);
-  float fine = flowtexOctave(position, n, turn);
-  float coarse = flowtexOctave(position, n + 1, turn);
-  float w = (1.0 - late) * (1.0 - late);
-  return (fine * w + coarse * (1.0 - w)) * inversesqrt(1.0 - 2.0 * w * (1.0 - w));
 }

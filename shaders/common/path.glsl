@@ -46,3 +46,10 @@ vec3 flowtexFollow(inout FlowtexPath path, float lag)
   float late = (lag - path.from) / (path.to - path.from);
   return lag * mix(path.before, path.after, late);
 }
+
+// Speed of the particle at that lag: length of the derivative of lag * slope(lag).
+float flowtexSpeed(FlowtexPath path, float lag)
+{
+  vec3 bend = (path.after - path.before) / (path.to - path.from);
+  return length(path.before + bend * (2.0 * lag - path.from));
+}

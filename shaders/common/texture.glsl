@@ -1,7 +1,11 @@
 // The sum of equation 2: noise along the path of a fragment, weighted by a kernel.
 //
-// Wrappers supply flowtexLookup(displacement, lag), which is the noise at the traced point, for
-// the procedural noise or for the paper's texture.
+// Wrappers supply
+//   vec2 flowtexLookup(vec3 displacement, float length_, bool both)
+// which is the noise at the traced point, in two octaves: the second, twice as coarse, is asked
+// for at every other point only, since its grains are twice as long. And
+//   float flowtexBlend(vec2 sums)
+// which mixes the two sums, each of unit variance, by the level of the fragment.
 
 // Footprint of a pixel: the longest and the shortest side of what it covers.
 vec2 flowtexFootprint(float aa, float bb, float determinant)
@@ -21,51 +25,72 @@ float flowtexWeight(float x)
   return 0.5 + 0.5 * cos(3.14159265 * x);
 }
 
-// Adds one side of the path. ``sum`` holds the weighted noise, the weights' squares and weights.
-void flowtexSide(inout vec3 sum, FlowtexPath path, float side, float step_, float reach,
-                 float scale, float level, int count)
+// Sums along a path: of the weighted noise and of the squared weights, for both octaves.
+struct FlowtexSums
+{
+  vec2 noise;
+  vec2 squares;
+};
+
+void flowtexAdd(inout FlowtexSums sums, vec3 displacement, float length_, float weight, bool both)
+{
+  vec2 mask = vec2(1.0, both ? 1.0 : 0.0);
+  sums.noise += weight * mask * flowtexLookup(displacement, length_, both);
+  sums.squares += weight * weight * mask;
+}
+
+// Adds one side of the path, ``count`` points ``spacing`` apart in nominal length.
+void flowtexSide(inout FlowtexSums sums, FlowtexPath path, float side, float spacing, float reach,
+                 float scale, int count)
 {
   float last = min(reach, u_lags[u_lagCount - 1]);
+  float lag = 0.0;
+  float step_ = spacing / (scale * max(length(path.before), 1e-6));
   for (int k = 1; k <= count; ++k)
   {
-    float lag = float(k) * step_;
+    lag += step_;
     float alive = clamp((last - lag) / step_ + 1.0, 0.0, 1.0);
     if (alive <= 0.0)
       break;
     vec3 displacement = flowtexFollow(path, lag) * (side * scale);
     float weight = alive * flowtexWeight(side * float(k) / float(count + 1));
-    sum += vec3(weight * flowtexLookup(displacement, side * lag * scale, level), weight * weight, weight);
+    flowtexAdd(sums, displacement, side * lag * scale, weight, (k & 1) == 0);
+#ifndef FLOWTEX_PAPER
+    // Points stay evenly spaced along the path where the particle is faster or slower there
+    // than it is here: equation 3 at every point of the path.
+    step_ = spacing / (scale * max(flowtexSpeed(path, lag), 1e-6));
+#endif
   }
 }
 
-// Texture of a fragment, of zero mean and about unit variance.
-float flowtexTexture(vec2 coordinate, float sliceLevel, float noiseLevel, float stepLength)
+// Texture of a fragment, of zero mean and about unit variance. ``spacing`` is that of the points
+// in nominal length, or in units of lag for the paper's textures.
+float flowtexTexture(vec2 coordinate, float sliceLevel, float spacing)
 {
   vec4 base = flowtexLayer(coordinate, 0, sliceLevel);
   vec4 back = flowtexLayer(coordinate, 1, sliceLevel);
-  float scale = base.w * u_unit;
+  FlowtexSums sums = FlowtexSums(vec2(0.0), vec2(0.0));
+  flowtexAdd(sums, vec3(0.0), 0.0, flowtexWeight(0.0), true);
   float speed = length(base.xyz);
-  float here = flowtexLookup(vec3(0.0), 0.0, noiseLevel);
-  if (speed < 1e-6)
-    return here;
-#ifdef FLOWTEX_PAPER
-  float step_ = stepLength;
-  scale = 1.0;
-#else
-  float step_ = stepLength / (scale * speed);
-#endif
-  int count = u_sides == 2 ? u_samples / 2 : u_samples - 1;
-  float weight = flowtexWeight(0.0);
-  vec3 sum = vec3(weight * here, weight * weight, weight);
-  flowtexSide(sum, flowtexStart(coordinate, sliceLevel, base.xyz, back.xyz, 0), -1.0, step_, back.w,
-              scale, noiseLevel, count);
-  if (u_sides == 2)
+  if (speed > 1e-6)
   {
-    vec4 ahead = flowtexLayer(coordinate, u_lagCount + 1, sliceLevel);
-    flowtexSide(sum, flowtexStart(coordinate, sliceLevel, base.xyz, ahead.xyz, u_lagCount), 1.0,
-                step_, ahead.w, scale, noiseLevel, count);
+#ifdef FLOWTEX_PAPER
+    float scale = 1.0;
+    spacing *= speed;
+#else
+    float scale = base.w * u_unit;
+#endif
+    int count = u_sides == 2 ? u_samples / 2 : u_samples - 1;
+    flowtexSide(sums, flowtexStart(coordinate, sliceLevel, base.xyz, back.xyz, 0), -1.0, spacing,
+                back.w, scale, count);
+    if (u_sides == 2)
+    {
+      vec4 ahead = flowtexLayer(coordinate, u_lagCount + 1, sliceLevel);
+      flowtexSide(sums, flowtexStart(coordinate, sliceLevel, base.xyz, ahead.xyz, u_lagCount), 1.0,
+                  spacing, ahead.w, scale, count);
+    }
   }
-  return sum.x * inversesqrt(sum.y * u_correlation);
+  return flowtexBlend(sums.noise * inversesqrt(max(sums.squares, 1e-12) * u_correlation));
 }
 
 // Colour with the texture laid over it: darker below the middle tone, lighter above, so that the

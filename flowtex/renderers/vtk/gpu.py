@@ -14,7 +14,7 @@ from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLRenderWindow, vtkTextureObje
 
 __all__ = ["GPUTexture"]
 
-#: OpenGL's numbers for half precision with four channels and with one.
+#: OpenGL's numbers for half precision, with four channels and with one.
 RGBA16F, R16F = 0x881A, 0x822D
 
 
@@ -79,11 +79,12 @@ class GPUTexture:
         target.SetWrapT(repeat if self._repeat[0] else clamp)
         if self._levels is not None:
             target.SetMaxLevel(self._levels)
-        height, width = texels.shape[-3:-1] if texels.ndim == 4 else texels.shape
         if texels.ndim == 4:
+            layers, height, width, _ = texels.shape
             target.SetInternalFormat(RGBA16F)
-            target.Create2DArrayFromRaw(width, height, 4, VTK_FLOAT, len(texels), texels)
+            target.Create2DArrayFromRaw(width, height, 4, VTK_FLOAT, layers, texels)
         else:
+            height, width = texels.shape
             target.SetInternalFormat(R16F)
             target.Create2DFromRaw(width, height, 1, VTK_FLOAT, texels)
         return target

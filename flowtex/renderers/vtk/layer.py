@@ -129,7 +129,7 @@ class FlowLayer:
             mapper.MapDataArrayToVertexAttribute(attribute, array, points, -1)
 
     def _write_text(self) -> None:
-        unsteady = len(self._textures.slices.times) > 1
+        unsteady = self._textures.store.steps > 1
         variant = variants(self._textures, unsteady=unsteady)
         if variant == self._variant:
             return
@@ -161,7 +161,7 @@ class FlowLayer:
 
     def _samplers(self) -> list[str]:
         names = ["u_slices"]
-        if len(self._textures.slices.times) > 1:
+        if self._textures.store.steps > 1:
             names.append("u_slicesNext")
         if self._textures.paper is not None:
             names += ["u_noiseImage", "u_stepImage"]
@@ -179,7 +179,7 @@ class FlowLayer:
             elif paper is not None and name == "u_noiseImage":
                 made = GPUTexture(paper.noise, repeat=paper.repeat)
             elif paper is not None:
-                made = GPUTexture(paper.step[self._steps[0]], repeat=paper.repeat)
+                made = GPUTexture(paper.step, repeat=paper.repeat)
             else:
                 raise KeyError(name)
             self._gpu[name] = made

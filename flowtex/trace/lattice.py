@@ -1,0 +1,113 @@
+"""Bilinear look-ups between the nodes of a structured surface.
+
+Every component is an array of its own: one gather of scalars costs a tenth of a gather of short
+rows, and look-ups are most of what tracing does.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Corners", "Lattice"]
+
+#: Of single or double precision, as it comes in.
+Reals = NDArray[Any]
+Indices = NDArray[np.intp]
+
+#: Cells that rounding may carry a path over a border that it follows.
+EDGE = 1e-6
+
+
+class Corners(NamedTuple):
+    """Where particles lie: lower corner of the cell, and the fractions along i and j, (N,)."""
+
+    at: Indices
+    s: Reals
+    t: Reals
+
+
+class Lattice:
+    """The nodes of a surface in index space.
+
+    Parameters
+    ----------
+    shape
+        Number of nodes (J, I).
+    periodic
+        Whether the (j, i) axis closes on itself.
+    """
+
+    def __init__(self, shape: tuple[int, int], periodic: tuple[bool, bool]) -> None:
+        self.rows, self.columns = shape
+        self.periodic = periodic
+
+    @property
+    def size(self) -> int:
+        """Number of nodes."""
+        return self.rows * self.columns
+
+    def corners(self, position: Reals) -> Corners:
+        """Cells of positions (2, N); those beyond a border are moved onto it."""
+        i, s = _cell(position[0], self.columns - 1, closed=self.periodic[1])
+        j, t = _cell(position[1], self.rows - 1, closed=self.periodic[0])
+        j *= self.columns
+        j += i
+        return Corners(j, s, t)
+
+    def blend(self, data: Reals, corners: Corners, base: Indices | int = 0) -> Reals:
+        """Interpolate nodal data.
+
+        Parameters
+        ----------
+        data
+            One or several sets of nodal values behind each other, (sets * J * I,).
+        corners
+            Where to interpolate, N particles.
+        base
+            Index at which the set of each particle begins.
+        """
+        at = corners.at + base if np.ndim(base) or base else corners.at
+        low = _between(data, at, corners.s)
+        high = _between(data, at + self.columns, corners.s)
+        high -= low
+        high *= corners.t
+        high += low
+        return high
+
+    def inside(self, position: Reals) -> NDArray[np.bool_]:
+        """Whether positions (2, N) are within the borders."""
+        result = np.ones(position.shape[1], dtype=bool)
+        for x, cells, closed in zip(
+            position, (self.columns - 1, self.rows - 1), self.periodic[::-1], strict=True
+        ):
+            if not closed:
+                result &= (x >= -EDGE) & (x <= cells + EDGE)
+        return result
+
+
+def _cell(x: Reals, cells: int, *, closed: bool) -> tuple[Indices, Reals]:
+    """Return the number of the cell along one axis, and the fraction inside it."""
+    if closed:
+        inside = x - cells * np.floor(x * x.dtype.type(1 / cells))
+        # Rounding can leave the result a hair outside.
+        np.maximum(inside, 0, out=inside)
+    else:
+        inside = np.clip(x, 0, cells)
+    number = inside.astype(np.intp)
+    np.minimum(number, cells - 1, out=number)
+    inside -= number.astype(x.dtype)
+    return number, inside
+
+
+def _between(data: Reals, at: Indices, s: Reals) -> Reals:
+    """Interpolate between each node and the next one along i."""
+    # The indices are in range by construction; "clip" only spares NumPy's own check.
+    low = data.take(at, mode="clip")
+    high = data.take(at + 1, mode="clip")
+    high -= low
+    high *= s
+    high += low
+    return high

@@ -1,0 +1,162 @@
+"""Paths that leave the domain, meet a mask or stop; fields that are hardly fields."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from flowtex import FlowField
+from flowtex.trace import paths, trace
+
+Floats = NDArray[np.float64]
+
+
+def plane(rows: int, columns: int) -> Floats:
+    return np.stack(np.meshgrid(np.arange(columns), np.arange(rows)), axis=-1).astype(float)
+
+
+def wind(rows: int, columns: int, velocity: tuple[float, float], **options: object) -> FlowField:
+    points = plane(rows, columns)
+    v = np.broadcast_to(np.array(velocity), points.shape)
+    return FlowField.from_arrays(points, v, periodic="", **options)  # type: ignore[arg-type]
+
+
+def test_reach_is_the_lag_to_the_border() -> None:
+    slices = trace(wind(11, 21, (1.0, 0.0)), lags=[1.0, 5.0, 25.0])
+    expected = np.broadcast_to(np.arange(21.0), (11, 21))
+    np.testing.assert_allclose(slices.reach[0], expected, atol=1e-4)
+    assert slices.forward_reach is not None
+    np.testing.assert_allclose(slices.forward_reach[0], expected[:, ::-1], atol=1e-4)
+
+
+def test_composed_reach_is_the_lag_to_the_border() -> None:
+    slices = trace(wind(11, 65, (0.8, 0.1)), lags=0.25 * 2.0 ** np.arange(9), compose=True)
+    i, j = plane(11, 65)[..., 0], plane(11, 65)[..., 1]
+    speed = np.hypot(0.8, 0.1)
+    expected = np.minimum(i / 0.8, j / 0.1) * speed
+    np.testing.assert_allclose(np.minimum(slices.reach[0], 64), np.minimum(expected, 64), atol=0.02)
+
+
+def test_a_path_that_has_left_goes_straight_on() -> None:
+    points = plane(21, 21) - 10
+    field = FlowField.from_arrays(points, points[..., ::-1] * [-1, 1], periodic="")
+    lags = np.array([2.0, 20.0, 40.0])
+    found = paths(field, [[19.0, 16.0]], lags, tolerance=1e-6)
+    assert 2 < found.reach[0] < 20
+    first, second = found.positions[1, 0], found.positions[2, 0]
+    # Beyond the reach the rate is constant, and of the length of a tangent.
+    assert np.hypot(*(second - first)) == pytest.approx(20, rel=0.02)
+    exit_point = second - (second - first) / 20 * (40 - found.reach[0])
+    assert min(exit_point.min(), 20 - exit_point.max()) == pytest.approx(0, abs=0.05)
+
+
+def test_positions_are_held_where_a_path_ended() -> None:
+    slices = trace(wind(11, 21, (1.0, 0.0)), lags=[1.0, 5.0, 25.0])
+    np.testing.assert_allclose(slices.positions(25.0)[..., 0], 0, atol=1e-3)
+    np.testing.assert_allclose(slices.positions(25.0, forward=True)[..., 0], 20, atol=1e-3)
+    np.testing.assert_allclose(slices.positions(3.0)[..., 0], np.maximum(np.arange(21) - 3, 0) + np.zeros((11, 1)), atol=1e-3)
+
+
+def test_a_path_ends_where_it_meets_a_mask() -> None:
+    valid = np.ones((11, 31), bool)
+    valid[3:8, 10:13] = False
+    slices = trace(wind(11, 31, (1.0, 0.0), valid=valid), lags=[1.0, 4.0, 40.0])
+    # The cells whose four nodes are valid end at column 13.
+    np.testing.assert_allclose(slices.reach[0, 5, 13:], np.arange(18.0), atol=1e-4)
+    np.testing.assert_allclose(slices.reach[0, 0], np.arange(31.0), atol=1e-4)
+    assert (slices.reach[0, ~valid] == 0).all()
+    assert np.isfinite(slices.displacement).all()
+
+
+def test_nan_blanks_as_a_mask_does() -> None:
+    valid = np.ones((9, 15), bool)
+    valid[4, 6] = False
+    points = plane(9, 15)
+    v = np.broadcast_to([1.0, 0.2], points.shape)
+    masked = trace(FlowField.from_arrays(points, v, valid=valid, periodic=""))
+    blank = trace(FlowField.from_arrays(points, np.where(valid[..., None], v, np.nan), periodic=""))
+    np.testing.assert_array_equal(masked.displacement, blank.displacement)
+    np.testing.assert_array_equal(masked.reach, blank.reach)
+
+
+def test_paths_along_a_border_do_not_leave() -> None:
+    slices = trace(wind(5, 21, (1.0, 0.0)), lags=[1.0, 8.0])
+    np.testing.assert_allclose(slices.reach[0, 0], slices.reach[0, 2])
+    np.testing.assert_allclose(slices.reach[0, -1], slices.reach[0, 2])
+
+
+@pytest.mark.parametrize("tilt", [1e-14, -1e-14])
+def test_rounding_does_not_push_a_path_over_the_border_it_follows(tilt: float) -> None:
+    slices = trace(wind(5, 21, (1.0, tilt)), lags=[1.0, 8.0])
+    np.testing.assert_allclose(slices.reach[0, 0], slices.reach[0, 2], atol=1e-4)
+    np.testing.assert_allclose(slices.reach[0, -1], slices.reach[0, 2], atol=1e-4)
+
+
+def test_a_path_into_a_critical_point_stops_there() -> None:
+    points = plane(21, 21) - 10.5
+    field = FlowField.from_arrays(points, -points, periodic="")
+    slices = trace(field, lags=2.0 ** np.arange(6))
+    assert slices.forward_reach is not None
+    distance = np.hypot(*np.moveaxis(points, -1, 0))
+    assert np.isfinite(slices.forward_reach[0, 5, 5])
+    assert slices.forward_reach[0, 5, 5] >= distance[5, 5] - 0.5
+    np.testing.assert_allclose(
+        slices.positions(32.0, forward=True), np.full((21, 21, 2), 10.5), atol=1.0
+    )
+
+
+@pytest.mark.filterwarnings("ignore:The velocity is zero")
+@pytest.mark.parametrize("parameter", ["arclength", "time"])
+@pytest.mark.parametrize("steps", [1, 3])
+def test_nothing_moves(parameter: str, steps: int) -> None:
+    points = plane(6, 7)
+    field = FlowField.from_arrays(
+        points, np.zeros((steps, 6, 7, 2)), times=np.arange(steps), periodic=""
+    )
+    slices = trace(field, parameter=parameter)
+    assert not slices.displacement.any()
+    assert not slices.rate.any()
+    if steps == 1:
+        assert not slices.reach.any()
+
+
+def test_a_single_cell() -> None:
+    slices = trace(wind(2, 2, (1.0, 0.5)))
+    assert np.isfinite(slices.displacement).all()
+    np.testing.assert_allclose(slices.reach[0, :, 0], 0, atol=1e-6)
+    np.testing.assert_allclose(slices.rate[0, 0, 0], [0.894, 0.447], atol=1e-3)
+
+
+def test_one_isolated_node_among_blanked_ones() -> None:
+    valid = np.zeros((6, 6), bool)
+    valid[:3, :3] = True
+    valid[5, 5] = True
+    slices = trace(wind(6, 6, (1.0, 0.0), valid=valid))
+    assert slices.reach[0, 5, 5] == pytest.approx(0, abs=1e-5)
+    assert np.isfinite(slices.displacement).all()
+
+
+@pytest.mark.parametrize("parameter", ["arclength", "time"])
+def test_a_collapsed_edge_gives_numbers(parameter: str) -> None:
+    angle = np.linspace(0, np.pi, 13)
+    r, a = np.meshgrid(np.linspace(0, 1, 9), angle, indexing="ij")
+    points = np.stack([r * np.cos(a), r * np.sin(a)], axis=-1)
+    field = FlowField.from_arrays(points, np.broadcast_to([1.0, 0.3], points.shape), periodic="")
+    slices = trace(field, parameter=parameter)
+    assert np.isfinite(slices.displacement).all()
+    assert not np.isnan(slices.reach).any()
+    # Away from the pole the path is the straight one, as long as it stays away.
+    moved = field.surface.at(slices.nodes + slices.displacement[0, 0]) - field.points
+    lag = slices.lags[0] * slices.unit
+    speed = 1.0 if parameter == "arclength" else np.hypot(1, 0.3)
+    expected = -np.array([1.0, 0.3]) / np.hypot(1, 0.3) * speed
+    np.testing.assert_allclose(moved[4:-1, 2:-2, :2], lag[4:-1, 2:-2, None] * expected, atol=5e-3)
+
+
+def test_cells_of_very_different_size_finish() -> None:
+    x = np.concatenate([np.linspace(0, 1e-3, 11), np.geomspace(2e-3, 10, 11)])
+    points = np.stack(np.meshgrid(x, np.linspace(0, 1, 5)), axis=-1)
+    field = FlowField.from_arrays(points, np.broadcast_to([1.0, 0.0], points.shape), periodic="")
+    slices = trace(field, parameter="time", lags=[0.01, 1.0, 20.0])
+    np.testing.assert_allclose(slices.reach[0, 2], x, rtol=0.15, atol=1e-5)
