@@ -35,7 +35,7 @@ def test_composed_reach_is_the_lag_to_the_border() -> None:
     i, j = plane(11, 65)[..., 0], plane(11, 65)[..., 1]
     speed = np.hypot(0.8, 0.1)
     expected = np.minimum(i / 0.8, j / 0.1) * speed
-    np.testing.assert_allclose(np.minimum(slices.reach[0], 64), np.minimum(expected, 64), atol=0.02)
+    np.testing.assert_allclose(np.minimum(slices.reach[0], 64), np.minimum(expected, 64), atol=0.1)
 
 
 def test_a_path_that_has_left_goes_straight_on() -> None:
@@ -55,7 +55,11 @@ def test_positions_are_held_where_a_path_ended() -> None:
     slices = trace(wind(11, 21, (1.0, 0.0)), lags=[1.0, 5.0, 25.0])
     np.testing.assert_allclose(slices.positions(25.0)[..., 0], 0, atol=1e-3)
     np.testing.assert_allclose(slices.positions(25.0, forward=True)[..., 0], 20, atol=1e-3)
-    np.testing.assert_allclose(slices.positions(3.0)[..., 0], np.maximum(np.arange(21) - 3, 0) + np.zeros((11, 1)), atol=1e-3)
+    np.testing.assert_allclose(
+        slices.positions(3.0)[..., 0],
+        np.maximum(np.arange(21) - 3, 0) + np.zeros((11, 1)),
+        atol=1e-3,
+    )
 
 
 def test_a_path_ends_where_it_meets_a_mask() -> None:

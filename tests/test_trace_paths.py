@@ -54,7 +54,9 @@ def ring(rows: int, columns: int, speed: Callable[[Floats], Floats]) -> FlowFiel
     return FlowField.from_arrays(points, tangent * speed(r)[..., None])
 
 
-def error_of(field: FlowField, matrix: Floats, start: Floats, lag: float, tolerance: float) -> float:
+def error_of(
+    field: FlowField, matrix: Floats, start: Floats, lag: float, tolerance: float
+) -> float:
     """Greatest distance, in cells, to the exact solution of v = A x."""
     spacing = np.array(MAPS["square"])[0, 0]
     found = paths(field, start, [lag], parameter="time", tolerance=tolerance).positions[0]
@@ -180,8 +182,12 @@ def test_flat_periodic_grid_goes_round() -> None:
         parameter="time",
         unit=1.0,
     )
-    np.testing.assert_allclose(slices.displacement[0, :, ..., 0].max(axis=(1, 2)), [-5, -30], rtol=1e-5)
-    np.testing.assert_allclose(slices.displacement[0, 1], np.broadcast_to([-30, -6], (9, 11, 2)), rtol=1e-5)
+    np.testing.assert_allclose(
+        slices.displacement[0, :, ..., 0].max(axis=(1, 2)), [-5, -30], rtol=1e-5
+    )
+    np.testing.assert_allclose(
+        slices.displacement[0, 1], np.broadcast_to([-30, -6], (9, 11, 2)), rtol=1e-5
+    )
     assert slices.forward is not None
     np.testing.assert_allclose(slices.forward, -slices.displacement, rtol=1e-5)
     assert np.isinf(slices.reach).all()

@@ -49,7 +49,7 @@ class ViewState:
 def variants(textures: TextureSet, *, unsteady: bool) -> frozenset[str]:
     """Names of the shader's variant for a texture set."""
     chosen = set()
-    if textures.space == "index":
+    if textures.space == "parameter":
         chosen.add("FLOWTEX_PAPER")
     if textures.geometry.planar:
         chosen.add("FLOWTEX_PLANAR")
@@ -96,7 +96,6 @@ def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[
     if textures.paper is not None:
         height, width = textures.paper.noise.shape
         values["u_noiseSize"] = (float(width), float(height))
-        values["u_noiseScale"] = textures.paper.scale
         values["u_noiseCorrected"] = textures.paper.corrected
     return values
 

@@ -1,11 +1,14 @@
 """The paper's own textures: noise on the surface's parameters, and the step size with it.
 
-The noise texture lies on (i, j) (section 3.2). Spread evenly over the texels it is stretched with
-the cells; *corrected*, every texel takes the value of an even noise in space at its own position,
-as coarse as the texel is large, so that the grain on the surface does not depend on the cells
-(figure 6). The step texture holds, for every texel of the noise, the lag in which the flow
-crosses it (equation 3). Level n of it counts 2^n times as much, because its texels are twice as
-wide at every level (section 4.1).
+The noise texture lies on the parameters of the surface (section 3.2). Laid evenly over the cells
+it is stretched with them. *Corrected* for the distribution of the cells (figure 6), a noise
+coordinate grows with the length of the grid lines instead of their number, and where the texels
+are longer than wide all the same, each takes the value of an even noise in space at its own
+position, as coarse as the texel is long.
+
+The step texture holds, for every texel of the noise, the lag in which the flow crosses it
+(equation 3). Level n of it counts 2^n times as much, because its texels are twice as wide at
+every level (section 4.1).
 """
 
 from __future__ import annotations
@@ -36,10 +39,8 @@ class PaperTextures:
     step
         Lag in which the flow crosses a texel, in multiples of the unit of lag, and how many
         texels a grain is long: one image for each destination time, (T, H, W, 2).
-    coordinate
-        Noise coordinates of the nodes, (J, I, 2): the middle of the texel on a node.
-    scale
-        Noise coordinates by cell, (2,), for i and j.
+    along_i, along_j
+        Noise coordinate of each line of nodes, (I,) and (J,), from 0 to 1.
     repeat
         Whether the noise goes around along (v, u).
     corrected
@@ -48,8 +49,8 @@ class PaperTextures:
 
     noise: Singles
     step: Singles
-    coordinate: Singles
-    scale: tuple[float, float]
+    along_i: Floats
+    along_j: Floats
     repeat: tuple[bool, bool]
     corrected: bool
 
@@ -78,23 +79,67 @@ class PaperTextures:
         """
         field = store.field
         height, width = _size(field, resolution)
-        index = _texel_positions(field, height, width)
-        size = _texel_size(field, index)
+        along_i, along_j = _coordinates(field, correction=correction)
+        index = _texel_positions(along_i, along_j, height, width)
+        texel = np.stack(
+            np.broadcast_arrays(
+                _slope(along_i, index[..., 0], width), _slope(along_j, index[..., 1], height)
+            ),
+            axis=-1,
+        )
         if correction:
-            noise = _even_noise(field, index, size, seed)
+            noise = _even_noise(field, index, texel, seed)
         else:
             noise = np.random.default_rng(seed).standard_normal((height, width))
-        steps = _steps(store, index)
-        rows, columns = field.shape
-        u, v = np.meshgrid(np.linspace(0, 1, columns), np.linspace(0, 1, rows))
         return cls(
             noise=((noise - noise.mean()) / (noise.std() or 1.0)).astype(np.float32),
-            step=np.minimum(steps, 6e4).astype(np.float32),
-            coordinate=np.stack([u, v], axis=-1).astype(np.float32),
-            scale=(1 / (columns - 1), 1 / (rows - 1)),
+            step=np.minimum(_steps(store, index, texel), 6e4).astype(np.float32),
+            along_i=along_i,
+            along_j=along_j,
             repeat=field.periodic,
             corrected=correction,
         )
+
+    @property
+    def coordinate(self) -> Singles:
+        """Noise coordinates of the nodes, (J, I, 2)."""
+        return np.stack(np.meshgrid(self.along_i, self.along_j), axis=-1).astype(np.float32)
+
+    def at(self, index: Floats) -> Floats:
+        """Noise coordinates of positions in index space, (..., 2), straight on beyond the ends."""
+        lines = ((self.along_i, self.repeat[1]), (self.along_j, self.repeat[0]))
+        parts = [
+            _extended(line, index[..., axis], periodic=periodic)
+            for axis, (line, periodic) in enumerate(lines)
+        ]
+        return np.stack(parts, axis=-1)
+
+    def by_cell(self) -> Floats:
+        """Derivatives of the noise coordinates by index at the nodes, (J, I, 2)."""
+        slopes = [np.gradient(line) for line in (self.along_i, self.along_j)]
+        return np.stack(np.meshgrid(*slopes), axis=-1)
+
+
+def _coordinates(field: FlowField, *, correction: bool) -> tuple[Floats, Floats]:
+    """Noise coordinate of each line of nodes along i and along j."""
+    p_i, p_j = (np.linalg.norm(t, axis=-1) for t in field.surface.tangents)
+    lines = []
+    for lengths in (p_i.mean(axis=0), p_j.mean(axis=1)):
+        steps = (lengths[1:] + lengths[:-1]) / 2 if correction else np.ones(len(lengths) - 1)
+        ends = np.concatenate([[0.0], np.cumsum(np.maximum(steps, 1e-9 * steps.max()))])
+        lines.append(ends / ends[-1])
+    return lines[0], lines[1]
+
+
+def _extended(line: Floats, x: Floats, *, periodic: bool) -> Floats:
+    """Interpolate a line at any index, going on by its period or straight."""
+    last = len(line) - 1
+    if periodic:
+        turns = np.floor(x / last)
+        return np.asarray(np.interp(x - turns * last, np.arange(last + 1), line) + turns)
+    inside = np.interp(x, np.arange(last + 1), line)
+    before = np.minimum(x, 0) * (line[1] - line[0])
+    return np.asarray(inside + before + np.maximum(x - last, 0) * (line[-1] - line[-2]))
 
 
 def _size(field: FlowField, resolution: int) -> tuple[int, int]:
@@ -107,12 +152,17 @@ def _size(field: FlowField, resolution: int) -> tuple[int, int]:
     return height, width
 
 
-def _texel_positions(field: FlowField, height: int, width: int) -> Floats:
+def _texel_positions(along_i: Floats, along_j: Floats, height: int, width: int) -> Floats:
     """Index-space position of the middle of each texel, (H, W, 2)."""
-    rows, columns = field.shape
-    i = (np.arange(width) + 0.5) / width * (columns - 1)
-    j = (np.arange(height) + 0.5) / height * (rows - 1)
+    i = np.interp((np.arange(width) + 0.5) / width, along_i, np.arange(len(along_i)))
+    j = np.interp((np.arange(height) + 0.5) / height, along_j, np.arange(len(along_j)))
     return np.stack(np.meshgrid(i, j), axis=-1)
+
+
+def _slope(line: Floats, x: Floats, texels: int) -> Floats:
+    """Cells by texel at positions along a line."""
+    cell = np.clip(x.astype(np.intp), 0, len(line) - 2)
+    return np.asarray(1 / (np.diff(line)[cell] * texels))
 
 
 def _sample(nodal: NDArray[np.generic], index: Floats) -> Floats:
@@ -121,22 +171,15 @@ def _sample(nodal: NDArray[np.generic], index: Floats) -> Floats:
     return np.asarray(ndimage.map_coordinates(nodal.astype(float), at, order=1, mode="nearest"))
 
 
-def _texel_size(field: FlowField, index: Floats) -> Floats:
-    """Longer side of each texel on the surface, (H, W)."""
-    height, width = index.shape[:2]
-    rows, columns = field.shape
-    p_i, p_j = (np.linalg.norm(t, axis=-1) for t in field.surface.tangents)
-    sides = _sample(p_i, index) * (columns - 1) / width, _sample(p_j, index) * (rows - 1) / height
-    return np.maximum(np.maximum(*sides), field.surface.extent * 1e-7)
-
-
-def _even_noise(field: FlowField, index: Floats, size: Floats, seed: int) -> Floats:
+def _even_noise(field: FlowField, index: Floats, texel: Floats, seed: int) -> Floats:
     """Noise even in space, at each texel as coarse as the texel is large.
 
     A texel takes the random number of the cube of a lattice in space in which it lies. The
     lattice is that power of two of the finest which is nearest to the texel's longer side.
     """
-    octave = np.rint(np.log2(size)).astype(np.int64)
+    p_i, p_j = (np.linalg.norm(t, axis=-1) for t in field.surface.tangents)
+    size = np.maximum(_sample(p_i, index) * texel[..., 0], _sample(p_j, index) * texel[..., 1])
+    octave = np.rint(np.log2(np.maximum(size, field.surface.extent * 1e-7))).astype(np.int64)
     position = field.surface.at(index) - field.surface.center
     cell = np.floor(position / (2.0**octave)[..., None]).astype(np.int64)
     return _hash(cell, octave, seed)
@@ -156,29 +199,27 @@ def _hash(cell: NDArray[np.int64], octave: NDArray[np.int64], seed: int) -> Floa
     return h.astype(np.float64) / 2.0**64
 
 
-def _steps(store: SliceStore, index: Floats) -> Floats:
+def _steps(store: SliceStore, index: Floats, texel: Floats) -> Floats:
     """Lag in which the flow crosses one texel (equation 3), (H, W).
 
-    What is interpolated between the nodes is the number of texels crossed in a unit of lag; its
+    What is interpolated between the nodes is the speed in index space; interpolating its
     inverse would let one node at rest rule the cells around it.
     """
     field = store.field
-    height, width = index.shape[:2]
-    rows, columns = field.shape
-    texel = np.array([(columns - 1) / width, (rows - 1) / height])
-    crossed = (np.abs(field.index_velocity.components) / texel).max(axis=(0, -1))
+    speed = np.abs(field.index_velocity.components).max(axis=0)
     if store.parameter == "arclength":
-        crossed = _by_length(crossed, field)
-    texels = _sample(crossed * store.unit, index)
-    return 1 / np.maximum(texels, 1 / float(store.lags[-1]))
+        speed = _by_length(speed, field)
+    speed = speed * store.unit[..., None]
+    crossed = np.stack([_sample(speed[..., axis], index) for axis in range(2)], axis=-1) / texel
+    return np.asarray(1 / np.maximum(crossed.max(axis=-1), 1 / float(store.lags[-1])))
 
 
-def _by_length(crossed: Floats, field: FlowField) -> Floats:
-    """Texels crossed in a unit of length; where nothing moves, what the nearest node has."""
+def _by_length(components: Floats, field: FlowField) -> Floats:
+    """Cells crossed in a unit of length; where nothing moves, what the nearest node has."""
     speed = field.speed[0]
     moving = field.valid & (speed > 1e-7 * speed.max())
     if not moving.any():
-        return np.zeros_like(crossed)
-    found = crossed / np.where(moving, speed, 1.0)
+        return np.zeros_like(components)
+    found = components / np.where(moving, speed, 1.0)[..., None]
     nearest = ndimage.distance_transform_edt(~moving, return_distances=False, return_indices=True)
     return np.asarray(found[tuple(nearest)])

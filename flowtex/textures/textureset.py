@@ -14,7 +14,7 @@ M + 1 ... 2 M         slopes of the forward slices, where there are any      M +
 ====================  =====================================================  =================
 
 Slopes are in space (the surface's own frame), lengths per unit of nominal length, for the
-procedural noise; in index space, cells per unit of lag, for the paper's noise texture.
+procedural noise; in noise coordinates per unit of lag for the paper's noise texture.
 """
 
 from __future__ import annotations
@@ -28,6 +28,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from flowtex.field.checks import three
 from flowtex.settings import Settings
 from flowtex.textures.geometry import Geometry
 from flowtex.textures.moves import Moves
@@ -53,9 +54,9 @@ class TextureSet:
     store
         The traces, by destination time.
     space
-        ``"physical"`` for slopes in space, ``"index"`` for slopes in index space.
+        ``"physical"`` for slopes in space, ``"parameter"`` for slopes in noise coordinates.
     paper
-        The noise texture and the step texture, for ``space="index"``.
+        The noise texture and the step texture, for ``space="parameter"``.
     """
 
     geometry: Geometry
@@ -91,7 +92,7 @@ class TextureSet:
             correction=settings.noise_correction,
             seed=settings.seed,
         )
-        return cls(geometry, store, "index", paper)
+        return cls(geometry, store, "parameter", paper)
 
     @property
     def sides(self) -> int:
@@ -146,8 +147,9 @@ class TextureSet:
         if side and slices.forward is not None and slices.forward_reach is not None:
             sign, displacement, reach = 1.0, slices.forward, slices.forward_reach
         scale = sign / float(slices.lags[m])
-        if self.space == "index":
-            result[..., :2] = displacement[0, m] * np.float32(scale)
+        if self.paper is not None:
+            moved = self.paper.at(slices.nodes + displacement[0, m]) - self.paper.coordinate
+            result[..., :2] = moved * scale
         else:
             by_length = scale / self._length[..., 0]
             for channel, moved in enumerate(self._moves(displacement[0, m])):
@@ -158,8 +160,8 @@ class TextureSet:
 
     def _tangent(self, slices: TraceSlices) -> NDArray[Any]:
         rate = slices.rate[0]
-        if self.space == "index":
-            return np.concatenate([rate, np.zeros_like(rate[..., :1])], axis=-1)
+        if self.paper is not None:
+            return three(rate * self.paper.by_cell())
         p_i, p_j = self.geometry.field.surface.tangents
         along = rate[..., :1] * p_i + rate[..., 1:] * p_j
         return np.asarray(along @ self.geometry.frame.T) / self._length

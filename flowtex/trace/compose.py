@@ -18,13 +18,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from functools import partial
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from flowtex.field import FlowField
-from flowtex.trace.lattice import Lattice
+from flowtex.trace.known import CLOSE, Known, Piece
 
 __all__ = ["compose", "landings"]
 
@@ -32,14 +32,14 @@ Floats = NDArray[np.float64]
 Singles = NDArray[np.float32]
 Indices = NDArray[np.intp]
 
-#: Error of a look-up that is allowed, as a share of the path's length, and in cells.
-SHARE, CELLS = 0.005, 0.01
 #: Pieces of a path, at most, before the rest is looked up in one whatever its error.
 MOST_PIECES = 64
 #: Paths looked up together.
 BLOCK = 16384
-#: Lags closer to a slice than this share are taken from it.
-CLOSE = np.float32(1e-4)
+#: Cells beyond a border where a path that follows it may be put by its look-ups.
+BESIDE = 1e-2
+#: Parts of a piece in which its end is looked for, and how often one is halved then.
+SEARCHED, BISECTIONS = 16, 6
 
 Some = slice | Indices
 #: Runs a function over blocks, perhaps in threads, and gives the results in order.
@@ -99,113 +99,16 @@ def compose(
     run
         Maps a function over blocks of paths.
     """
-    store = _Store(field, lags, unit, slices, reach, landing)
+    store = Known(field, lags, unit, slices, reach, landing)
     for m in range(known + 1, len(lags) + 1):
         store.judge(m - 1, always=m - 1 == known)
         _Doubling(store, m).run(run)
 
 
-class _Piece(NamedTuple):
-    """Continuations of n paths."""
-
-    moved: tuple[Singles, Singles]  #: displacement along i and j
-    gone: Singles  #: lag that they cover
-    reached: Singles | None  #: lag after which they end, beyond ``gone`` where they do not
-    steps: Indices | int  #: time steps that they go back
-
-
-class _Store:
-    """The slices found so far, looked up anywhere."""
-
-    def __init__(
-        self,
-        field: FlowField,
-        lags: Floats,
-        unit: Floats,
-        slices: Singles,
-        reach: Singles,
-        landing: Indices,
-    ) -> None:
-        self.lattice = Lattice(field.shape, field.periodic)
-        self.knots = np.concatenate([[0.0], lags]).astype(np.float32)
-        # What is stored at lag zero is the slope itself.
-        self._inverse = np.concatenate([[1.0], 1 / lags]).astype(np.float32)
-        self.landing = np.concatenate([[0], landing])
-        self.unit = unit.ravel().astype(np.float32)
-        self._even = bool(np.ptp(self.unit) <= CLOSE * self.unit[0])
-        self.unsteady = not field.steady
-        self.slices = slices.reshape(2, len(self.knots), -1)
-        self.reach = reach.reshape(-1)
-        i, j = np.meshgrid(np.arange(self.lattice.columns), np.arange(self.lattice.rows))
-        self.nodes = np.stack([i, j]).reshape(2, -1).astype(np.float32)
-        self._grids = slices
-        self._pace = np.abs(slices[:, 0]).max(axis=0)
-        self._trust = np.zeros(reach.shape, np.float32)
-        self._longest = self._capped = np.empty(0, np.float32)
-        self._endless = False
-
-    def judge(self, m: int, *, always: bool) -> None:
-        """Note where slice m is smooth enough to be looked up, and make ready to look up.
-
-        Where it is not, the longest slice that is, is used; ``always`` accepts it everywhere.
-        """
-        if always:
-            self._trust[:] = self.knots[m]
-        else:
-            grid = self._grids[:, m]
-            error = (_bend(grid, 2) + _bend(grid, 3)).max(axis=0)
-            good = error <= 8 * (SHARE * self.knots[m] * self._pace + CELLS)
-            good &= self._trust == self.knots[m - 1]
-            self._trust[good] = self.knots[m]
-        # A cell may use what is good at its four nodes.
-        trust = np.minimum(self._trust[:, :-1], self._trust[:, 1:])
-        trust = np.minimum(trust[:, :, :-1], trust[:, :, 1:])
-        self._longest = np.pad(trust, ((0, 0), (0, 1), (0, 1))).ravel()
-        # A path that is not known to end goes on for a cell: perhaps more, but this way those
-        # that start between it and one that does end are found to end where they should.
-        further = self.knots[m] + 1 / np.maximum(self._pace.ravel(), 1 / self.knots[m])
-        self._capped = np.minimum(self.reach, further)
-        self._endless = bool(np.isinf(self.reach).all())
-
-    def continued(self, position: Singles, left: Singles, step: Indices, most: Any) -> _Piece:
-        """Continue paths from positions (2, n) by up to ``left`` of lag."""
-        corners = self.lattice.corners(position)
-        base = step * self.lattice.size if self.unsteady else 0
-        unit = self.unit[:1] if self._even else self.lattice.blend(self.unit, corners)
-        longest = self._longest[corners.at + base] if most is None else most
-        lag = np.minimum(left / unit, longest)
-        same = bool(lag.min() == lag.max())
-        m, late = self._between(lag[:1] if same else lag)
-        if self.unsteady:
-            lag = self.knots[m] if not same else np.full_like(lag, self.knots[m[0]])
-        m = m[0] if same else m
-        stride = self.slices.shape[2]
-        moved = []
-        for data in self.slices.reshape(2, -1):
-            slope = self.lattice.blend(data, corners, base + m * stride) * self._inverse[m]
-            if late is not None:
-                before = self.lattice.blend(data, corners, base + (m - 1) * stride)
-                before *= self._inverse[m - 1]
-                slope = before + late * (slope - before)
-            moved.append(lag * slope)
-        reached = None
-        if not self._endless:
-            reached = self.lattice.blend(self._capped, corners, base) * unit
-        return _Piece((moved[0], moved[1]), lag * unit, reached, self.landing[m])
-
-    def _between(self, lag: Singles) -> tuple[Indices, Singles | None]:
-        """Slice at or after a lag, and where between it and the one before the lag lies."""
-        if self.unsteady:
-            return np.searchsorted(self.knots * (1 - CLOSE), lag, side="right") - 1, None
-        m = np.maximum(np.searchsorted(self.knots, lag * (1 - CLOSE)), 1)
-        late = (lag - self.knots[m - 1]) / (self.knots[m] - self.knots[m - 1])
-        return m, None if (late > 1 - 10 * CLOSE).all() else late
-
-
 class _Doubling:
     """Paths on their way from one slice to the next, (T * J * I,) of them."""
 
-    def __init__(self, store: _Store, m: int) -> None:
+    def __init__(self, store: Known, m: int) -> None:
         count, nodes = len(store.reach), store.lattice.size
         before, lag = store.knots[m - 1], store.knots[m]
         self._store, self._lag, self._before = store, lag, before
@@ -213,6 +116,7 @@ class _Doubling:
         self._moved[:] = store.slices[:, m - 1]
         self._whole = lag * store.unit
         self._left = np.tile((lag - before) * store.unit, count // nodes)
+        self._suspects: list[tuple[NDArray[Any], ...]] = []
         self._step = np.maximum(np.arange(count) // nodes - store.landing[m - 1], 0)
 
     def run(self, run: Map) -> None:
@@ -223,8 +127,10 @@ class _Doubling:
             longest = self._before if number >= MOST_PIECES else None
             more = np.concatenate(list(run(partial(self.follow, longest=longest), blocks)))
             if not len(more):
-                return
+                break
             blocks = [more[k : k + BLOCK] for k in range(0, len(more), BLOCK)]
+        if self._suspects:
+            self._find_ends()
 
     def follow(self, some: Some, longest: np.float32 | None) -> Indices:
         """Continue some paths by a piece, and return those that must go further."""
@@ -235,11 +141,7 @@ class _Doubling:
         position = store.nodes[:, node] + self._moved[:, some]
         piece = store.continued(position, left, self._step[some], longest)
         whole = self._whole[node]
-        if piece.reached is not None:
-            end = store.reach[some]
-            stops = np.isinf(end) & (piece.reached < piece.gone)
-            at = self._lag * (1 - (left - piece.reached) / whole)
-            store.reach[some] = np.where(stops, at, end)
+        self._suspect(some, position, piece)
         for row, part in zip(self._moved, piece.moved, strict=True):
             row[some] += part
         left -= piece.gone
@@ -249,10 +151,45 @@ class _Doubling:
         more = np.flatnonzero(left > CLOSE * whole)
         return more + some.start if isinstance(some, slice) else some[more]
 
+    def _suspect(self, some: Some, position: Singles, piece: Piece) -> None:
+        """Note the paths that seem to end within their piece."""
+        store = self._store
+        gone = ~store.lattice.alive(position + piece.moved, BESIDE)
+        rest = np.full(1, np.inf, np.float32)
+        if piece.reached is not None:
+            rest = piece.reached
+            gone |= rest < piece.gone
+        gone &= np.isinf(store.reach[some])
+        if gone.any():
+            g = np.flatnonzero(gone)
+            which = g + some.start if isinstance(some, slice) else some[g]
+            rest = np.broadcast_to(rest, gone.shape)[g]
+            self._suspects.append(
+                (which, position[:, g], piece.gone[g], rest, self._left[which], self._step[which])
+            )
 
-def _bend(grid: Singles, axis: int) -> Singles:
-    """Size of second differences along an axis of (2, T, J, I), as beside it at the border."""
-    if grid.shape[axis] < 3:
-        return np.zeros_like(grid)
-    bend = np.abs(np.diff(grid, 2, axis=axis))
-    return np.pad(bend, [(int(a == axis),) * 2 for a in range(grid.ndim)], mode="edge")
+    def _find_ends(self) -> None:
+        """Find where the suspects end: they leave the domain, or come to rest as all around."""
+        which, start, length, rest, left, step = (
+            np.concatenate(part, axis=-1) for part in zip(*self._suspects, strict=True)
+        )
+        # Pieces come in order, and only the first in which a path ends counts.
+        which, once = np.unique(which, return_index=True)
+        start, length, rest, left, step = (p[..., once] for p in (start, length, rest, left, step))
+        first = np.full(len(which), np.inf, np.float32)
+        for share in np.linspace(1, 0, SEARCHED, endpoint=False, dtype=np.float32):
+            first[self._outside(start, share * length, step)] = share
+        leaves = np.isfinite(first)
+        high = np.where(leaves, first, 0)
+        low = np.maximum(high - np.float32(1 / SEARCHED), 0)
+        for _ in range(BISECTIONS):
+            middle = (low + high) / 2
+            outside = self._outside(start, middle * length, step)
+            low, high = np.where(outside, low, middle), np.where(outside, middle, high)
+        further = np.where(leaves, low * length, np.where(rest < length, rest, np.inf))
+        whole = self._whole[which % self._store.lattice.size]
+        self._store.reach[which] = self._lag * (1 - (left - further) / whole)
+
+    def _outside(self, start: Singles, lag: Singles, step: Indices) -> NDArray[np.bool_]:
+        moved = self._store.displaced(start, lag, step)
+        return ~self._store.lattice.alive(start + moved, BESIDE)

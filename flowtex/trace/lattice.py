@@ -38,11 +38,17 @@ class Lattice:
         Number of nodes (J, I).
     periodic
         Whether the (j, i) axis closes on itself.
+    cells
+        Cells that are not blanked, (J - 1, I - 1).
     """
 
-    def __init__(self, shape: tuple[int, int], periodic: tuple[bool, bool]) -> None:
+    def __init__(
+        self, shape: tuple[int, int], periodic: tuple[bool, bool], cells: NDArray[np.bool_]
+    ) -> None:
         self.rows, self.columns = shape
         self.periodic = periodic
+        # One entry for each lower corner, so that Corners.at finds it.
+        self._open = None if cells.all() else np.pad(cells, ((0, 1), (0, 1))).ravel()
 
     @property
     def size(self) -> int:
@@ -77,14 +83,19 @@ class Lattice:
         high += low
         return high
 
-    def inside(self, position: Reals) -> NDArray[np.bool_]:
-        """Whether positions (2, N) are within the borders."""
+    def alive(self, position: Reals, edge: float = EDGE) -> NDArray[np.bool_]:
+        """Whether positions (2, N) are inside the domain, in a cell that is not blanked.
+
+        ``edge`` cells beyond a border still count as inside.
+        """
         result = np.ones(position.shape[1], dtype=bool)
         for x, cells, closed in zip(
             position, (self.columns - 1, self.rows - 1), self.periodic[::-1], strict=True
         ):
             if not closed:
-                result &= (x >= -EDGE) & (x <= cells + EDGE)
+                result &= (x >= -edge) & (x <= cells + edge)
+        if self._open is not None:
+            result &= self._open[self.corners(position).at]
         return result
 
 

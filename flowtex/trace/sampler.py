@@ -37,7 +37,7 @@ class Sampler(Protocol):
         """Rate of change of (i, j) by lag for particles that have come ``lag`` (N,)."""
         ...
 
-    def alive(self, position: Floats) -> NDArray[np.bool_]:
+    def alive(self, position: Floats, edge: float = ...) -> NDArray[np.bool_]:
         """Whether particles are inside the domain, in a cell that is not blanked, (N,)."""
         ...
 
@@ -46,23 +46,7 @@ class Sampler(Protocol):
         ...
 
 
-class _Grid(Lattice):
-    """The nodes of a field, and which of its cells count."""
-
-    def __init__(self, field: FlowField) -> None:
-        super().__init__(field.shape, field.periodic)
-        cells = field.surface.cells
-        # One entry for each lower corner, so that Corners.at finds it.
-        self._open = None if cells.all() else np.pad(cells, ((0, 1), (0, 1))).ravel()
-
-    def alive(self, position: Floats) -> NDArray[np.bool_]:
-        inside = self.inside(position)
-        if self._open is not None:
-            inside &= self._open[self.corners(position).at]
-        return inside
-
-
-class LengthSampler(_Grid):
+class LengthSampler(Lattice):
     """A steady field by arc length: the direction of the flow, at unit speed in space.
 
     Beside a critical point the speed that divides is that of the nodes around it, so a path
@@ -72,7 +56,7 @@ class LengthSampler(_Grid):
     longest = np.inf
 
     def __init__(self, field: FlowField) -> None:
-        super().__init__(field)
+        super().__init__(field.shape, field.periodic, field.surface.cells)
         flow = field.index_velocity
         speed = flow.speed[0]
         self._floor = max(STOPPED * float(speed.max()), np.finfo(float).tiny)
@@ -97,11 +81,11 @@ class LengthSampler(_Grid):
         return RESTING / unit
 
 
-class TimeSampler(_Grid):
+class TimeSampler(Lattice):
     """A field by its own time; lags count from the time of step number ``step``."""
 
     def __init__(self, field: FlowField) -> None:
-        super().__init__(field)
+        super().__init__(field.shape, field.periodic, field.surface.cells)
         self._times = field.times
         self._i, self._j = _spread(field.index_velocity.components, field)
         self._destination = float(field.times[-1])

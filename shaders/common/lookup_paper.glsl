@@ -4,7 +4,8 @@
 // the step is looked up at the same level, where its values count 2^level times (section 4.1).
 // Averaging n independent grains divides their deviation by sqrt(n), which is made up for, so
 // that the contrast does not change with the level. Corrected noise has grains as long as the
-// longer side of a texel, so that along the shorter side fewer of them make the average.
+// longer side of a texel, so that along the shorter side fewer of them make the average, and the
+// level can be finer than the longest side of the footprint asks for.
 
 vec2 flowtexHere; // noise coordinate of the fragment
 float flowtexMip; // level
@@ -12,7 +13,7 @@ float flowtexGain;
 
 vec2 flowtexLookup(vec3 displacement, float length_, bool both)
 {
-  vec2 at = flowtexHere + displacement.xy * u_noiseScale;
+  vec2 at = flowtexHere + displacement.xy;
   return vec2(textureLod(u_noiseImage, at, flowtexMip).r * flowtexGain, 0.0);
 }
 
@@ -28,7 +29,8 @@ float flowtexFragment(vec2 coordinate, vec2 noise, vec2 dx, vec2 dy, float slice
   vec2 sy = dy * u_noiseSize;
   float determinant = sx.x * sy.y - sx.y * sy.x;
   vec2 footprint = flowtexFootprint(dot(sx, sx), dot(sy, sy), determinant);
-  flowtexMip = u_lod ? max(log2(max(footprint.x, 1e-6)), 0.0) : 0.0;
+  float texels = u_noiseCorrected ? sqrt(footprint.x * footprint.y) : footprint.x;
+  flowtexMip = u_lod ? max(log2(max(texels, 1e-6)), 0.0) : 0.0;
   float width = exp2(flowtexMip);
   float across = u_noiseCorrected ? max(width * footprint.y / footprint.x, 1.0) : width;
   flowtexGain = sqrt(width * across);

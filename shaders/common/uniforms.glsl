@@ -32,6 +32,5 @@ uniform float u_texel;           // width of a grain when the level of detail is
 uniform highp sampler2D u_noiseImage;
 uniform highp sampler2D u_stepImage;
 uniform vec2 u_noiseSize;  // texels of the noise
-uniform vec2 u_noiseScale; // noise coordinates by cell
 uniform bool u_noiseCorrected; // noise even on the surface, not in the texture
 #endif

@@ -1,0 +1,146 @@
+"""Pictures of a scene: a quick one for motion, and the full one a tile at a time.
+
+The quick one is the full picture where that is fast enough. Otherwise, when only the camera
+moved over a flat surface, it is the last full picture moved to its new place, and else a draft of
+fewer pixels and samples.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flowtex.app.quality import Cost
+from flowtex.app.scene import Rect, Scene
+from flowtex.app.warp import Shot, coverage, warp
+
+__all__ = ["Painter"]
+
+Pixels = NDArray[np.uint8]
+
+#: A picture that was drawn serves a moved view while its pixels grow less, or shrink less, than
+#: this; beyond it a draft tells more.
+STRETCH, SHRINK = 4.0, 0.3
+#: Share of a view that has to be covered without a draft beneath.
+COVERED = 0.999
+
+
+class Painter:
+    """Draws a scene as well as the time allows.
+
+    Attributes
+    ----------
+    cost
+        What pictures cost here.
+    complete
+        Whether the last picture that was drawn is at full quality.
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        self.cost = Cost()
+        self.complete = False
+        self._scene = scene
+        self._shot: Shot | None = None
+        self._last: Pixels | None = None
+        self._state = 0
+
+    def forget(self) -> None:
+        """Draw anew: what was drawn does not show the present state any more."""
+        self._shot = None
+        self.complete = False
+        self._state += 1
+
+    @property
+    def _samples(self) -> int:
+        return self._scene.handle.settings.samples
+
+    def quick(self, budget: float) -> Pixels:
+        """Return a picture within about ``budget`` seconds, (h, w, 3) uint8."""
+        self._last = self._quick(budget)
+        return self._last
+
+    def _quick(self, budget: float) -> Pixels:
+        width, height = self._scene.size
+        quality = self.cost.choose(width * height, self._samples, budget)
+        view = self._scene.plane_view()
+        self.complete = quality.scale >= 1.0 and quality.samples == self._samples
+        if self.complete:
+            pixels = self._draw(width, height)
+            self._shot = None if view is None else Shot(pixels, view)
+            return pixels
+        if self._shot is not None and view is not None:
+            share, stretch = coverage(self._shot, view)
+            if SHRINK <= stretch <= STRETCH and share > 0.2:
+                under = None if share >= COVERED else self._draft(quality.scale, quality.samples)
+                return warp(self._shot, view, under)
+        return self._draft(quality.scale, quality.samples)
+
+    def full(self) -> Iterator[Pixels]:
+        """Draw the full picture over the quick one, a tile at a time.
+
+        Yields
+        ------
+        numpy.ndarray
+            The picture so far, (H, W, 3) uint8, after each tile. The array is the same one each
+            time. Between two tiles the scene may be left for good, and the drawing given up.
+        """
+        width, height = self._scene.size
+        view, state = self._scene.plane_view(), self._state
+        begun = self.quick(0.0) if self._last is None else self._last
+        canvas = self._enlarged(begun, width, height)
+        try:
+            for left, top, wide, high in self._tiles(width, height):
+                tile = self._draw(wide, high, (left, top, wide, high))
+                canvas[top : top + high, left : left + wide] = tile
+                yield canvas
+            self.complete = state == self._state
+        finally:
+            # Half of a full picture serves a moved view better than none.
+            if view is not None and state == self._state:
+                self._shot = Shot(canvas.copy(), view)
+
+    def _tiles(self, width: int, height: int) -> list[Rect]:
+        """Tiles of about the same size, from the middle outwards."""
+        side = self.cost.tile(self._samples)
+        across, down = math.ceil(width / side), math.ceil(height / side)
+        xs = [2 * round(width * n / across / 2) for n in range(across)] + [width]
+        ys = [2 * round(height * n / down / 2) for n in range(down)] + [height]
+        tiles = [
+            (xs[i], ys[j], xs[i + 1] - xs[i], ys[j + 1] - ys[j])
+            for j in range(down)
+            for i in range(across)
+        ]
+
+        def far(tile: Rect) -> float:
+            left, top, wide, high = tile
+            return math.hypot(left + wide / 2 - width / 2, top + high / 2 - height / 2)
+
+        return sorted(tiles, key=far)
+
+    def _draft(self, scale: float, samples: int) -> Pixels:
+        width, height = self._scene.size
+        settings = self._scene.handle.settings
+        chosen, settings.samples = settings.samples, samples
+        try:
+            return self._draw(max(round(width * scale), 16), max(round(height * scale), 16))
+        finally:
+            settings.samples = chosen
+
+    def _draw(self, width: int, height: int, part: Rect | None = None) -> Pixels:
+        started = time.perf_counter()
+        pixels = self._scene.draw(width, height, part)
+        self.cost.learn(time.perf_counter() - started, width * height, self._samples)
+        return pixels
+
+    @staticmethod
+    def _enlarged(pixels: Pixels, width: int, height: int) -> Pixels:
+        if pixels.shape[:2] == (height, width):
+            return pixels.copy()
+        from PIL import Image
+
+        smooth = Image.Resampling.BILINEAR
+        return np.array(Image.fromarray(pixels).resize((width, height), smooth))

@@ -1,0 +1,78 @@
+"""How well a picture can be drawn in the time that there is.
+
+A texture costs time for each pixel and each sample. :class:`Cost` learns that price from the
+pictures that were drawn, so a graphics card draws everything at its best at once, while a
+processor draws a coarse picture in motion and the full one, in tiles, at rest.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+__all__ = ["MOVING", "PLAYING", "TILE", "Cost", "Quality"]
+
+#: Seconds that a picture may take in motion, while playing, and for one tile at rest.
+MOVING, PLAYING, TILE = 0.05, 0.08, 0.1
+
+#: Samples of a draft, best first, and the least share of the view's width that each is for.
+DRAFTS = ((9, 0.5), (5, 0.0))
+#: A draft is never smaller than this share of the view's width.
+COARSEST = 0.2
+#: A tile is never smaller than this, in pixels along a side.
+SMALLEST_TILE = 64
+
+
+@dataclass(frozen=True)
+class Quality:
+    """Size of a picture, as a share of the view's width, and samples for each pixel."""
+
+    scale: float
+    samples: int
+
+
+class Cost:
+    """Price of a picture, learnt from those that were drawn."""
+
+    def __init__(self) -> None:
+        self._fixed = 0.004
+        self._price = 4e-8  # seconds for one sample of one pixel: a guess until the first picture
+
+    def learn(self, seconds: float, pixels: int, samples: int) -> None:
+        """Take account of a picture that took ``seconds``."""
+        price = max(seconds - self._fixed, 1e-5) / max(pixels * samples, 1)
+        # Slower is believed at once, faster by and by: a picture that is late is felt.
+        self._price += (price - self._price) * (0.7 if price > self._price else 0.3)
+
+    def seconds(self, pixels: float, samples: int) -> float:
+        """Time that a picture will take."""
+        return self._fixed + self._price * pixels * samples
+
+    def choose(self, pixels: int, samples: int, budget: float) -> Quality:
+        """Return the best quality that can be had within ``budget`` seconds.
+
+        Parameters
+        ----------
+        pixels
+            Pixels of the whole view.
+        samples
+            Samples at full quality.
+        budget
+            Seconds.
+        """
+        if self.seconds(pixels, samples) <= budget:
+            return Quality(1.0, samples)
+        scale, fewer = 1.0, samples
+        for draft, least in DRAFTS:
+            fewer = min(draft, samples)
+            room = max(budget - self._fixed, 1e-3) / (self._price * fewer)
+            scale = min(math.sqrt(room / max(pixels, 1)), 1.0)
+            if scale >= least:
+                break
+        return Quality(max(scale, COARSEST), fewer)
+
+    def tile(self, samples: int) -> int:
+        """Side of a square tile, in pixels, that takes no longer than a tile may."""
+        side = math.sqrt((TILE - self._fixed) / (self._price * samples))
+        # An even number keeps the 2 x 2 blocks in which derivatives are taken.
+        return max(int(side) // 2 * 2, SMALLEST_TILE)
