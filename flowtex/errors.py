@@ -23,4 +23,5 @@ def raise_faults(faults: Sequence[str], error: type[Exception] = FieldError) -> 
     if len(faults) == 1:
         raise error(faults[0])
     listed = "\n".join(f"  {n}. {fault}" for n, fault in enumerate(faults, start=1))
-    raise error(f"{len(faults)} things are wrong:\n{listed}")
+    msg = f"{len(faults)} things are wrong:\n{listed}"
+    raise error(msg)

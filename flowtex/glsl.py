@@ -11,7 +11,7 @@ from collections.abc import Iterable
 
 from flowtex._assets import shader_source
 
-__all__ = ["GLSLError", "VARIANTS", "compose"]
+__all__ = ["VARIANTS", "GLSLError", "compose"]
 
 _INCLUDE = re.compile(r"^[ \t]*//#include[ \t]+(\S+)[ \t]*$", re.MULTILINE)
 

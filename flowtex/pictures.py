@@ -72,8 +72,8 @@ def render(
             plotter.camera_position = camera_position
         else:
             look(plotter, field, zoom=zoom, focus=focus)
-        picture = plotter.screenshot(return_img=True)
-        handle.remove()
+        picture: Any = plotter.screenshot(return_img=True)
+        handle.remove(render=False)
     finally:
         plotter.close()
     return np.asarray(picture[..., :3], dtype=np.uint8)
@@ -105,7 +105,7 @@ def show(mesh: Any, *, size: tuple[int, int] = (1024, 768), **options: Any) -> N
 
         serve(as_field(mesh, **{k: options.pop(k, None) for k in FIELD_ARGUMENTS}), **options)
         return
-    plotter = pv.Plotter(window_size=list(size))
+    plotter: Any = pv.Plotter(window_size=list(size))
     plotter.disable_anti_aliasing()
     plotter.set_background("white")
     FlowtexComponent(plotter).add(mesh, **options)

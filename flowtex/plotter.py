@@ -130,8 +130,14 @@ class FlowHandle:
         """Whether the texture has been removed."""
         return self._plotter is None
 
-    def remove(self) -> None:
-        """Take the texture, its scalar bar and everything on the graphics card away."""
+    def remove(self, *, render: bool = True) -> None:
+        """Take the texture, its scalar bar and everything on the graphics card away.
+
+        Parameters
+        ----------
+        render
+            Whether to draw the plotter without it at once.
+        """
         if self._plotter is None:
             return
         plotter, self._plotter = self._plotter, None
@@ -142,6 +148,8 @@ class FlowHandle:
             plotter.remove_scalar_bar(self._bar, render=False)
         plotter.remove_actor(self.actor, render=False)
         self._forget(self)
+        if render:
+            plotter.render()
 
     def _changed(self, affects: Affects) -> None:
         if affects == "uniform":
@@ -181,7 +189,7 @@ class FlowtexComponent:
         self,
         mesh: Any,
         vectors: str | None = None,
-        scalars: str | bool | None = None,
+        scalars: str | bool | None = None,  # noqa: FBT001 False is "by nothing", as in PyVista
         cmap: str | Any | None = None,
         *,
         clim: tuple[float, float] | None = None,
@@ -244,7 +252,7 @@ class FlowtexComponent:
         chosen.update(**settings)
         field = as_field(mesh, vectors=vectors, plane=plane, times=times, periodic=periodic)
         view = FlowView(field, chosen)
-        name = self._scalar_name(view, scalars)
+        name = self._scalar_name(view, scalars=scalars)
         look_first = reset_camera or (reset_camera is None and not self._plotter.renderer.actors)
         flat = view.textures.geometry.planar
         add_mesh: dict[str, Any] = {
@@ -265,7 +273,7 @@ class FlowtexComponent:
         return handle
 
     @staticmethod
-    def _scalar_name(view: FlowView, scalars: str | bool | None) -> str | None:
+    def _scalar_name(view: FlowView, *, scalars: str | bool | None) -> str | None:
         if scalars is False:
             return None
         name = "speed" if scalars is None or scalars is True else scalars
@@ -280,10 +288,12 @@ class FlowtexComponent:
         """Count the handles that have not been removed."""
         return len(self._handles)
 
-    def clear(self) -> None:
+    def clear(self, *, render: bool = True) -> None:
         """Remove every flow texture."""
         for handle in tuple(self._handles):
-            handle.remove()
+            handle.remove(render=False)
+        if render:
+            self._plotter.render()
 
     def _forget(self, handle: FlowHandle) -> None:
         if handle in self._handles:
@@ -291,5 +301,4 @@ class FlowtexComponent:
 
     def __plotter_close__(self) -> None:
         """Free the graphics card when the plotter closes."""
-        self.clear()
-
+        self.clear(render=False)

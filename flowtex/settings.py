@@ -76,10 +76,10 @@ def _is_number(value: Any) -> bool:
 
 
 def _row(
+    *,
     default: Any,
     affects: Affects,
     text: str,
-    *,
     span: tuple[float, float] | None = None,
     choices: tuple[str, ...] = (),
 ) -> Any:
@@ -102,56 +102,78 @@ class Settings:
     """
 
     samples: int = _row(
-        41, "uniform", "Noise samples summed along each path (K of the paper).", span=(1, 200)
+        default=41,
+        affects="uniform",
+        text="Noise samples summed along each path (K of the paper).",
+        span=(1, 200),
     )
     spacing: float = _row(
-        0.8, "uniform", "Distance between two samples, in grains of noise.", span=(0.1, 10)
+        default=0.8,
+        affects="uniform",
+        text="Distance between two samples, in grains of noise.",
+        span=(0.1, 10),
     )
     kernel: str = _row(
-        "hann",
-        "uniform",
-        "Weight of the samples: smooth, even as in the paper, or falling behind the particle.",
+        default="hann",
+        affects="uniform",
+        text="Weight of the samples: smooth, even as in the paper, or falling behind the particle.",
         choices=("hann", "box", "ramp"),
     )
     two_sided: bool = _row(
-        True, "uniform", "Follow steady flow forward as well as backward from each point."
+        default=True,
+        affects="uniform",
+        text="Follow steady flow forward as well as backward from each point.",
     )
     lod: bool = _row(
-        True, "uniform", "Choose grain and step for each pixel from the view (level of detail)."
+        default=True,
+        affects="uniform",
+        text="Choose grain and step for each pixel from the view (level of detail).",
     )
     noise: str = _row(
-        "procedural",
-        "shader",
-        "Noise that is even in space at every zoom, or the paper's mipmapped noise texture.",
+        default="procedural",
+        affects="shader",
+        text="Noise that is even in space at every zoom, or the paper's mipmapped noise texture.",
         choices=("procedural", "texture"),
     )
     noise_correction: bool = _row(
-        True,
-        "textures",
-        "Spread the noise texture evenly over the surface, not over its cells (figure 6).",
+        default=True,
+        affects="textures",
+        text="Spread the noise texture evenly over the surface, not over its cells (figure 6).",
     )
     resolution: int = _row(
-        1024,
-        "textures",
-        "Texels of the noise texture along the surface; the grain when lod is off.",
+        default=1024,
+        affects="textures",
+        text="Texels of the noise texture along the surface; the grain when lod is off.",
         span=(16, 8192),
     )
-    grain: float = _row(1.5, "uniform", "Size of a grain of noise, in pixels.", span=(0.25, 32))
+    grain: float = _row(
+        default=1.5, affects="uniform", text="Size of a grain of noise, in pixels.", span=(0.25, 32)
+    )
     contrast: float = _row(
-        1.0, "uniform", "Contrast of the texture, 0 for none.", span=(0, 4)
+        default=1.0, affects="uniform", text="Contrast of the texture, 0 for none.", span=(0, 4)
     )
     strength: float = _row(
-        0.8, "uniform", "How strongly the texture darkens and lightens the colour.", span=(0, 1)
+        default=0.8,
+        affects="uniform",
+        text="How strongly the texture darkens and lightens the colour.",
+        span=(0, 1),
     )
-    seed: int = _row(0, "uniform", "Number of the noise pattern.", span=(0, 65535))
-    animate: bool = _row(False, "uniform", "Let the grains stream along the flow.")
+    seed: int = _row(
+        default=0, affects="uniform", text="Number of the noise pattern.", span=(0, 65535)
+    )
+    animate: bool = _row(
+        default=False, affects="uniform", text="Let the grains stream along the flow."
+    )
     rate: float = _row(
-        0.5, "uniform", "Turns of the animation in a second of its clock.", span=(0, 10)
+        default=0.5,
+        affects="uniform",
+        text="Turns of the animation in a second of its clock.",
+        span=(0, 10),
     )
     parameter: str = _row(
-        "arclength",
-        "trace",
-        "What the lag along a steady path measures: length, or the field's own time.",
+        default="arclength",
+        affects="trace",
+        text="What the lag along a steady path measures: length, or the field's own time.",
         choices=("arclength", "time"),
     )
 

@@ -30,15 +30,18 @@ LAYERS: tuple[tuple[str, ...], ...] = (
     ("textures",),
     ("glsl",),
     ("doctor",),
-    ("render",),
+    ("renderers",),
     ("view",),
     ("examples",),
-    ("",),
+    ("camera",),
+    ("plotter",),
     ("widget", "app", "export"),
+    ("pictures",),
+    ("",),
     ("cli",),
 )
-RENDERERS = ("render.cpu", "render.vtk", "render.webgl")
-FRONT_ENDS = ("widget", "app", "export", "cli")
+RENDERERS = ("renderers.cpu", "renderers.vtk", "renderers.webgl")
+FRONT_ENDS = ("camera", "plotter", "pictures", "widget", "app", "export", "cli")
 
 
 @dataclass(frozen=True)
@@ -53,10 +56,10 @@ class Room:
 ROOMS = (
     Room(
         ("vtk", "vtkmodules", "pyvista"),
-        on_load=("render.vtk",),
+        on_load=("renderers.vtk", "plotter", "pictures"),
         in_functions=("field", "doctor", "examples", *FRONT_ENDS),
     ),
-    Room(("matplotlib",), in_functions=("render", "view", "examples", *FRONT_ENDS)),
+    Room(("matplotlib",), in_functions=("renderers", "view", "examples", *FRONT_ENDS)),
     Room(
         (
             "trame",
@@ -91,7 +94,7 @@ class Import:
 
 
 def module_name(path: Path, package: Path) -> str:
-    """Return ``render.vtk.actor`` for ``flowtex/render/vtk/actor.py``, "" for the package."""
+    """Return ``renderers.vtk.actor`` for ``flowtex/renderers/vtk/actor.py``, "" for the package."""
     parts = path.relative_to(package).with_suffix("").parts
     return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
 
@@ -208,16 +211,20 @@ def test_something_was_read() -> None:
         ("field/a.py", "def f():\n    from flowtex import view", "imports flowtex.view, which"),
         ("field/a.py", "from flowtex import FlowField", "flowtex.field.a:1 imports flowtex, which"),
         ("app/a.py", "import flowtex.widget", "which is not below it"),
-        ("render/vtk/a.py", "import flowtex.render.cpu.b", "renderers do not know each other"),
+        (
+            "renderers/vtk/a.py",
+            "import flowtex.renderers.cpu.b",
+            "renderers do not know each other",
+        ),
         ("field/a.py", "import pyvista", "imports pyvista when it loads: import it inside"),
         ("field/a.py", "class A:\n    import pyvista", "imports pyvista when it loads"),
         ("field/a.py", "try:\n    import xarray\nexcept ImportError:\n    pass", "when it loads"),
         (
             "trace/a.py",
             "def f():\n    import vtkmodules.vtkCommonCore",
-            "which belongs in render.vtk",
+            "which belongs in renderers.vtk",
         ),
-        ("render/cpu/a.py", "import pyvista", "which belongs in render.vtk"),
+        ("renderers/cpu/a.py", "import pyvista", "which belongs in renderers.vtk"),
         ("cli.py", "def f():\n    from trame.app import get_server", "which belongs in app"),
         ("field/a.py", "from . import surface", "write the absolute name"),
         ("stray.py", "", "flowtex.stray has no place: give 'stray' one in LAYERS"),
@@ -237,7 +244,7 @@ def test_a_broken_rule_is_found(module: str, text: str, fault: str, tmp_path: Pa
     [
         ("field/a.py", "def f():\n    import pyvista"),
         ("field/a.py", "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    import pyvista"),
-        ("render/vtk/a.py", "import pyvista\nfrom flowtex import glsl"),
+        ("renderers/vtk/a.py", "import pyvista\nfrom flowtex import glsl"),
         ("cli.py", "import cyclopts\ndef f():\n    import flowtex.app"),
         ("__init__.py", "from flowtex.field import FlowField\nimport numpy"),
     ],
@@ -268,7 +275,7 @@ def test_importing_flowtex_loads_nothing_slow() -> None:
 
 def test_what_lies_below_vtk_never_loads_it() -> None:
     names = [module_name(path, PACKAGE) for path in PACKAGE.rglob("*.py")]
-    rooms = ("render.vtk", *FRONT_ENDS)
+    rooms = ("renderers.vtk", *FRONT_ENDS)
     below = [f"{ROOT_NAME}.{name}" for name in names if name and not is_in(name, rooms)]
     assert "flowtex.doctor" in below
     assert not loaded_by(*sorted(below)) & set(SLOW)

@@ -18,6 +18,8 @@ REST = tuple(name for name in TABLE if name not in PRIMARY)
 #: A range with more values than this is typed, not dragged.
 MOST_STOPS = 1000
 
+DATA = [("data_setting", "data-setting")]
+
 LABELS = {"lod": "Level of detail"}
 
 
@@ -36,7 +38,7 @@ def control(row: Setting, key: str) -> None:
     key
         Name of the state that holds its value.
     """
-    with html.Div(classes="flowtex-row", data_setting=row.name):
+    with html.Div(classes="flowtex-row", data_setting=row.name, __properties=DATA):
         _hint(row.text)
         _widget(row)(row, key)
 

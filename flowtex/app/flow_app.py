@@ -27,6 +27,8 @@ STEP_SECONDS, SHORTEST, LONGEST = 0.25, 5.0, 30.0
 STOPS = 8
 #: Seconds between two changes of the figures at the foot of the page.
 FIGURES_EVERY = 0.5
+#: A unit of time with more letters than this is left out beside the slider.
+LONGEST_UNIT = 8
 PLAIN_COLOUR = "none"
 
 _count = itertools.count(1)
@@ -42,7 +44,8 @@ class FlowApp:
     server
         A trame server; one of its own by default.
     **options
-        Arguments and settings of ``plotter.flowtex.add``.
+        Arguments and settings of ``plotter.flowtex.add``, and ``zoom`` and ``focus`` as for
+        :func:`flowtex.render`.
 
     Attributes
     ----------
@@ -255,8 +258,9 @@ class FlowApp:
         return f"zoom {zoom:.3g}" if zoom < 1000 else f"zoom {zoom:,.0f}"
 
     def _moment(self) -> str:
-        unit = f" {self.field.time_unit}" if self.field.time_unit else ""
-        return f"t = {self.scene.handle.time:.4g}{unit}"
+        unit = self.field.time_unit
+        shown = f" {unit}" if 0 < len(unit) <= LONGEST_UNIT else ""
+        return f"t = {self.scene.handle.time:.2f}{shown}"
 
     def _bar(self) -> dict[str, Any]:
         if not self.scene.colour:

@@ -19,6 +19,9 @@ THEMES = {
     "light": {"dark": False, "colors": {"primary": "#0f766e", "surface": "#ffffff"}},
 }
 
+#: Attributes that tell the page's state to whoever watches it, such as a test.
+DATA = [("data_picture", "data-picture"), ("data_sharp", "data-sharp")]
+
 Key = Callable[[str], str]
 
 
@@ -45,6 +48,7 @@ def build_page(server: Any, key: Key, area: str, reset: Callable[[], None], *, c
             classes=(f"'flowtex flowtex-' + {key('theme')}",),
             data_picture=(key("picture"),),
             data_sharp=(key("sharp"),),
+            __properties=DATA,
         ):
             with html.Div(classes="flowtex-view"):
                 rca.RemoteControlledArea(
@@ -71,9 +75,7 @@ def _title(key: Key) -> None:
 
 
 def _button(icon: Any, text: str, click: Any, **more: Any) -> None:
-    with v3.VBtn(
-        icon=True, variant="text", size="small", click=click, aria_label=text, **more
-    ):
+    with v3.VBtn(icon=True, variant="text", size="small", click=click, aria_label=text, **more):
         v3.VIcon(icon, size=20)
         v3.VTooltip(text=text, activator="parent", location="bottom", open_delay=400)
 
@@ -82,7 +84,8 @@ def _buttons(key: Key, reset: Callable[[], None]) -> None:
     theme, panel = key("theme"), key("panel")
     with html.Div(classes="flowtex-buttons flowtex-glass"):
         _button("mdi-fit-to-screen-outline", "Show the whole surface", reset)
-        _button("mdi-theme-light-dark", "Light or dark", f"{theme} = {theme} === 'dark' ? 'light' : 'dark'")
+        other = f"{theme} = {theme} === 'dark' ? 'light' : 'dark'"
+        _button("mdi-theme-light-dark", "Light or dark", other)
         _button("mdi-tune-variant", "Controls", f"{panel} = !{panel}")
 
 
@@ -118,7 +121,9 @@ def _bar(key: Key) -> None:
         html.Div(f"{{{{ {bar}.name }}}}", classes="flowtex-label")
         html.Div(
             classes="flowtex-ramp",
-            style=(f"{{ background: 'linear-gradient(to right, ' + {bar}.stops.join(',') + ')' }}",),
+            style=(
+                f"{{ background: 'linear-gradient(to right, ' + {bar}.stops.join(',') + ')' }}",
+            ),
         )
         with html.Div(classes="flowtex-line"):
             html.Span(f"{{{{ {bar}.low }}}}", classes="flowtex-value")

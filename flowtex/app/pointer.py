@@ -71,9 +71,7 @@ class Pointer:
         """Follow two fingers that move together."""
         x, y = (float(v) for v in (event.get("translation") or (0.0, 0.0))[:2])
         width, height = self._size(event)
-        self._navigator.pan(
-            -2 * (x - self._slide[0]) / width, -2 * (y - self._slide[1]) / height
-        )
+        self._navigator.pan(-2 * (x - self._slide[0]) / width, -2 * (y - self._slide[1]) / height)
         self._slide = (x, y)
         return True
 

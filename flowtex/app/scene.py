@@ -33,11 +33,20 @@ class Scene:
     ----------
     field
         The flow.
+    zoom, focus
+        How far in, and on what point of the mesh, the first look is.
     **options
         Arguments and settings of ``plotter.flowtex.add``.
     """
 
-    def __init__(self, field: FlowField, **options: Any) -> None:
+    def __init__(
+        self,
+        field: FlowField,
+        *,
+        zoom: float = 1.0,
+        focus: tuple[float, ...] | None = None,
+        **options: Any,
+    ) -> None:
         import pyvista as pv
 
         from flowtex.plotter import FlowtexComponent
@@ -58,8 +67,9 @@ class Scene:
         self._mesh = self._mapper.dataset
         self.navigator = Navigator(self.plotter.camera, flat=self.flat, hit=self._hit)
         self.colour_by(self.colour)
+        self._first = (zoom, focus)
         self.resize(640, 400)
-        self.home()
+        self.first_look()
 
     @property
     def flat(self) -> bool:
@@ -93,6 +103,14 @@ class Scene:
 
         look(self.plotter, self.field)
         self.navigator.settle()
+
+    def first_look(self) -> None:
+        """Look at what was asked for when the scene was made."""
+        from flowtex.camera import look
+
+        self.home()
+        zoom, focus = self._first
+        look(self.plotter, self.field, zoom=zoom, focus=focus)
 
     def set_background(self, theme: str) -> None:
         """Take the colour behind the surface from a theme."""

@@ -99,7 +99,9 @@ async def _serve(
     )
     main = asyncio.current_task()
     with suppress(NotImplementedError):  # on Windows
-        asyncio.get_running_loop().add_signal_handler(signal.SIGTERM, lambda: main and main.cancel())
+        asyncio.get_running_loop().add_signal_handler(
+            signal.SIGTERM, lambda: main and main.cancel()
+        )
     try:
         await serving
     except OSError as error:

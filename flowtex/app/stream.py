@@ -101,9 +101,11 @@ class FrameStream:
         shrink = min(1.0, (MOST_PIXELS / (width * height)) ** 0.5)
         new = (round(width * shrink), round(height * shrink))
         if new != self._scene.size:
-            at_home = not self._sized or abs(self._scene.navigator.zoom - 1) < 1e-9
+            at_home = abs(self._scene.navigator.zoom - 1) < 1e-9
             self._scene.resize(*new)
-            if at_home:
+            if not self._sized:
+                self._scene.first_look()
+            elif at_home:
                 self._scene.home()
             self.painter.forget()
         self._sized = True

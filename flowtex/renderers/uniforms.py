@@ -114,4 +114,4 @@ def _origin_cell(focus: NDArray[np.float64], finest: float) -> NDArray[np.int64]
     coarse = 2**SNAP
     limit = 2 ** (OCTAVES - SNAP) - 1
     cell = np.clip(np.rint(focus / finest / coarse), -limit, limit)
-    return np.asarray(cell, dtype=np.int64) * coarse
+    return np.asarray(cell * coarse, dtype=np.int64)

@@ -115,7 +115,7 @@ class PaperTextures:
         return np.stack(parts, axis=-1)
 
     def by_cell(self) -> Floats:
-        """Derivatives of the noise coordinates by index at the nodes, (J, I, 2)."""
+        """Return derivatives of the noise coordinates by index at the nodes, (J, I, 2)."""
         slopes = [np.gradient(line) for line in (self.along_i, self.along_j)]
         return np.stack(np.meshgrid(*slopes), axis=-1)
 

@@ -101,7 +101,7 @@ class TextureSet:
 
     @cached_property
     def pace(self) -> float:
-        """Nominal length of one unit of ``store.unit``: 1 by arc length, a typical speed by time."""
+        """Nominal length of a unit of ``store.unit``: 1 by arc length, a typical speed by time."""
         if self.store.parameter == "arclength":
             return 1.0
         speed = self.geometry.field.speed[:, self.geometry.field.valid]

@@ -92,13 +92,13 @@ class Known:
         base = step * self.lattice.size if self.unsteady else 0
         unit = self.unit[:1] if self._even else self.lattice.blend(self.unit, corners)
         longest = self._longest[corners.at + base] if most is None else most
-        lag = np.minimum(left / unit, longest)
+        lag: Any = np.minimum(left / unit, longest)
         if lag.min() == lag.max():
             # Even cells, smooth slices: one slice for all.
             lag = lag[:1]
         if self.unsteady:
             m = np.searchsorted(self.knots * (1 - CLOSE), lag, side="right") - 1
-            lag = self.knots[m].astype(lag.dtype)
+            lag = self.knots[m]
         else:
             m = np.maximum(np.searchsorted(self.knots, lag * (1 - CLOSE)), 1)
         moved = self._displaced(corners, base, m, lag)

@@ -8,7 +8,7 @@ to it there. The text is built again only for another variant.
 ::
 
     TextureSet, Settings, ViewState --> FlowLayer --text------------------> Actor
-                                            \\----uniforms, texture units-> vtkShaderProgram
+                                            +----uniforms, texture units-> vtkShaderProgram
 """
 
 from __future__ import annotations

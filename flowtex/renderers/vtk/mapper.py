@@ -16,7 +16,7 @@ from vtkmodules.vtkRenderingCore import vtkPolyDataMapper
 __all__ = ["FlowMapper", "use_flow_mapper"]
 
 
-class FlowMapper(_BaseDataSetMapper, vtkPolyDataMapper):  # type: ignore[misc]
+class FlowMapper(_BaseDataSetMapper, vtkPolyDataMapper):
     """PyVista's mapper properties on ``vtkPolyDataMapper``."""
 
     def __init__(self, dataset: pv.PolyData, theme: Any = None) -> None:

@@ -42,7 +42,7 @@ def set_attributes(mesh: pv.PolyData, textures: TextureSet) -> None:
 
 
 def _normals(surface: Surface) -> NDArray[np.float32]:
-    """Unit normals at the nodes; at a collapsed node, that of the nearest line that is not."""
+    """Return unit normals at the nodes; at a collapsed one, that of the line beside it."""
     normal = np.cross(*surface.tangents)
     length = np.linalg.norm(normal, axis=-1, keepdims=True)
     small = length[..., 0] <= 1e-9 * max(float(np.median(length)), 1e-300)

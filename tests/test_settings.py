@@ -1,0 +1,75 @@
+"""The table of settings: checked values, notices, and errors that say what to do."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from flowtex.settings import TABLE, Settings, SettingsError
+
+
+def test_every_row_is_complete_and_its_default_fits() -> None:
+    for row in TABLE.values():
+        assert row.check(row.default) == row.default
+        assert row.text.endswith(".") and len(row.text) < 110
+        if row.kind in (int, float):
+            assert row.low is not None and row.high is not None
+            assert row.low <= row.default <= row.high
+        if row.kind is str:
+            assert row.default in row.choices
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "message"),
+    [
+        ("samples", 0, r"^samples is 0; expected a whole number from 1 to 200 \(default 41\)$"),
+        ("samples", 2.5, r"^samples is 2.5; expected a whole number from 1 to 200 \(default 41\)$"),
+        ("lod", "yes", r"^lod is 'yes'; expected True or False \(default True\)$"),
+        ("contrast", float("nan"), r"^contrast is nan; expected a number from 0 to 4 \(default "),
+        ("contrast", True, r"^contrast is True; expected a number from 0 to 4 \(default "),
+        ("kernel", "gauss", r"^kernel is 'gauss'; expected 'hann' or 'box' or 'ramp' \(default"),
+        ("sampels", 3, r"^there is no setting 'sampels'; did you mean 'samples'\?$"),
+        ("xyzzy", 3, r"^there is no setting 'xyzzy'; there are: samples, spacing, "),
+    ],
+)
+def test_a_wrong_value_says_what_was_expected(name: str, value: Any, message: str) -> None:
+    settings = Settings()
+    with pytest.raises(SettingsError, match=message):
+        setattr(settings, name, value)
+    assert dict(settings) == dict(Settings())
+
+
+def test_numbers_of_numpy_are_taken() -> None:
+    settings = Settings(samples=np.int64(7), lod=np.bool_(False))  # type: ignore[arg-type]
+    assert (settings.samples, settings.lod) == (7, False)
+    assert type(settings.samples) is int
+    assert type(settings.lod) is bool
+
+
+def test_update_sets_all_or_nothing() -> None:
+    settings = Settings()
+    with pytest.raises(SettingsError):
+        settings.update(samples=9, contrast=-1)
+    assert settings.samples == TABLE["samples"].default
+
+
+def test_observers_hear_of_changes_only_and_can_leave() -> None:
+    settings, heard = Settings(), []
+    leave = settings.observe(lambda name, value: heard.append((name, value)))
+    settings.samples = 9
+    settings.samples = 9
+    leave()
+    leave()
+    settings.samples = 11
+    assert heard == [("samples", 9)]
+
+
+def test_a_copy_has_the_values_and_not_the_observers() -> None:
+    settings = Settings(samples=9)
+    heard: list[Any] = []
+    settings.observe(lambda name, value: heard.append(name))
+    copy = settings.copy()
+    copy.samples = 12
+    assert (copy.samples, settings.samples, heard) == (12, 9, [])
