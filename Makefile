@@ -10,7 +10,7 @@ BIN := $(VENV)/bin
 SETUP := pyproject.toml tools/setup.sh tools/common.sh
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint format wheel clean
+.PHONY: help demo test lint format docs gallery wheel clean
 
 help: ## list what can be made
 	@echo "flowtex. Choose an interpreter with PYTHON=python3.12, tests with PYTEST_ARGS='-k trace'."
@@ -33,6 +33,12 @@ lint: $(VENV)/.ready-test ## style, format and types, without the tests
 format: $(VENV)/.ready-test ## put the code in its format
 	$(BIN)/ruff check --select I --fix
 	$(BIN)/ruff format
+
+docs: $(VENV)/.ready-test ## write the table of settings into the guide
+	FLOWTEX_WRITE_DOCS=1 $(BIN)/python -m pytest -q tests/test_docs.py -k table
+
+gallery: $(VENV)/.ready-test ## draw the pictures of the README and the gallery
+	$(BIN)/python docs/make_pictures.py
 
 wheel: $(VENV)/.ready-test ## build dist/flowtex-*.whl and the source archive
 	$(BIN)/hatchling build

@@ -63,7 +63,7 @@ def render(
     field = as_field(mesh, **{k: options.pop(k, None) for k in FIELD_ARGUMENTS})
     plotter = pv.Plotter(off_screen=True, window_size=list(size), lighting="light kit")
     try:
-        plotter.disable_anti_aliasing()
+        plotter.enable_anti_aliasing("msaa", multi_samples=4)  # smooths the outline
         plotter.set_background(background)
         handle = FlowtexComponent(plotter).add(field, **{"show_scalar_bar": False, **options})
         if time is not None:

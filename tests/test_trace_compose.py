@@ -69,7 +69,7 @@ def test_stretched_cells_in_which_the_unit_of_lag_varies() -> None:
     points = np.stack(np.meshgrid(x, np.linspace(-2, 2, 41)), axis=-1)
     field = FlowField.from_arrays(points, np.broadcast_to([1.0, 0.02], points.shape), periodic="")
     composed, direct = both(field)
-    assert np.ptp(composed.unit) > composed.unit.min()
+    assert np.ptp(composed.unit) > 0.5 * composed.unit.min()
     assert share_of_length(composed, direct).max() < 0.01
     last = direct.lags[-1]
     one, two = (np.minimum(s.reach[0], last) for s in (composed, direct))
@@ -80,9 +80,8 @@ def test_stretched_cells_in_which_the_unit_of_lag_varies() -> None:
 def test_fields_that_vary_in_time(name: str) -> None:
     field = vortex_field() if name == "vortex" else double_gyre_field(True, shape=(41, 81))
     composed = trace(field)
-    last = len(field.times) - 1
-    for step in (last, 9):
-        direct = trace(field, lags=composed.lags, steps=[step], tolerance=1e-4)
+    for step in (len(field.times) - 1, 9):
+        direct = trace(field, lags=composed.lags, steps=[step])
         assert share_of_length(composed.at_step(step), direct).max() < 0.01
 
 

@@ -278,7 +278,7 @@ def test_turning_wind_over_a_rotation_is_followed_as_a_pathline() -> None:
     for lag, position in zip(lags, found, strict=True):
         home = start @ expm(-2.0 * turn).T - [2.0, 0.0]
         time = 2.0 - lag
-        exact = (home + [time, 0.0]) @ expm(time * turn).T
+        exact = (home + np.array([time, 0.0])) @ expm(time * turn).T
         np.testing.assert_allclose((position - 20) * 0.1, exact, atol=1e-4)
 
 
@@ -301,5 +301,7 @@ def test_reversed_flow_swaps_backward_and_forward() -> None:
     one = trace(field)
     two = trace(FlowField.from_arrays(field.points, -field.velocity[0], periodic=""))
     assert one.forward is not None
+    assert two.forward is not None
+    assert two.forward_reach is not None
     np.testing.assert_allclose(one.displacement, two.forward, atol=1e-5)
     np.testing.assert_allclose(one.reach, two.forward_reach)

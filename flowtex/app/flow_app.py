@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import itertools
+import logging
 import time
 from pathlib import Path
 from typing import Any
@@ -32,6 +33,7 @@ LONGEST_UNIT = 8
 PLAIN_COLOUR = "none"
 
 _count = itertools.count(1)
+_log = logging.getLogger(__name__)
 
 
 class FlowApp:
@@ -166,6 +168,8 @@ class FlowApp:
             asyncio.create_task(self.stream.run()),
             asyncio.create_task(self._play()),
         ]
+        for task in self._tasks:
+            task.add_done_callback(_tell_failure)
 
     def _on_settings(self, **_: Any) -> None:
         settings = self.scene.handle.settings
@@ -283,3 +287,9 @@ def _about(field: FlowField) -> str:
     if closed:
         words.append(f"periodic along {' and '.join(sorted(closed))}")
     return " · ".join(words)
+
+
+def _tell_failure(task: asyncio.Task[None]) -> None:
+    """Let an error in a task of ours be seen: nobody waits for these tasks."""
+    if not task.cancelled() and (error := task.exception()) is not None:
+        _log.error("the page has stopped drawing", exc_info=error)

@@ -92,12 +92,17 @@ class Painter:
         view, state = self._scene.plane_view(), self._state
         begun = self.quick(0.0) if self._last is None else self._last
         canvas = self._enlarged(begun, width, height)
+        spent = 0.0
         try:
             for left, top, wide, high in self._tiles(width, height):
-                tile = self._draw(wide, high, (left, top, wide, high))
+                started = time.perf_counter()
+                tile = self._scene.draw(wide, high, (left, top, wide, high))
                 canvas[top : top + high, left : left + wide] = tile
+                spent += time.perf_counter() - started
                 yield canvas
             self.complete = state == self._state
+            # All tiles together: one at the rim of the surface may be empty and cost nothing.
+            self.cost.learn(spent, width * height, self._samples)
         finally:
             # Half of a full picture serves a moved view better than none.
             if view is not None and state == self._state:
@@ -130,9 +135,9 @@ class Painter:
         finally:
             settings.samples = chosen
 
-    def _draw(self, width: int, height: int, part: Rect | None = None) -> Pixels:
+    def _draw(self, width: int, height: int) -> Pixels:
         started = time.perf_counter()
-        pixels = self._scene.draw(width, height, part)
+        pixels = self._scene.draw(width, height)
         self.cost.learn(time.perf_counter() - started, width * height, self._samples)
         return pixels
 

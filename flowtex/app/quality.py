@@ -13,7 +13,11 @@ from dataclasses import dataclass
 __all__ = ["MOVING", "PLAYING", "TILE", "Cost", "Quality"]
 
 #: Seconds that a picture may take in motion, while playing, and for one tile at rest.
-MOVING, PLAYING, TILE = 0.05, 0.08, 0.1
+MOVING, PLAYING, TILE = 0.06, 0.1, 0.1
+
+#: Seconds that a picture takes however small it is, and what a pixel costs beside its samples,
+#: in samples.
+FIXED, BASE = 0.006, 8
 
 #: Samples of a draft, best first, and the least share of the view's width that each is for.
 DRAFTS = ((9, 0.5), (5, 0.0))
@@ -35,18 +39,17 @@ class Cost:
     """Price of a picture, learnt from those that were drawn."""
 
     def __init__(self) -> None:
-        self._fixed = 0.004
         self._price = 4e-8  # seconds for one sample of one pixel: a guess until the first picture
 
     def learn(self, seconds: float, pixels: int, samples: int) -> None:
         """Take account of a picture that took ``seconds``."""
-        price = max(seconds - self._fixed, 1e-5) / max(pixels * samples, 1)
+        price = max(seconds - FIXED, 1e-5) / max(pixels * (samples + BASE), 1)
         # Slower is believed at once, faster by and by: a picture that is late is felt.
         self._price += (price - self._price) * (0.7 if price > self._price else 0.3)
 
     def seconds(self, pixels: float, samples: int) -> float:
         """Time that a picture will take."""
-        return self._fixed + self._price * pixels * samples
+        return FIXED + self._price * pixels * (samples + BASE)
 
     def choose(self, pixels: int, samples: int, budget: float) -> Quality:
         """Return the best quality that can be had within ``budget`` seconds.
@@ -65,7 +68,7 @@ class Cost:
         scale, fewer = 1.0, samples
         for draft, least in DRAFTS:
             fewer = min(draft, samples)
-            room = max(budget - self._fixed, 1e-3) / (self._price * fewer)
+            room = max(budget - FIXED, 1e-3) / (self._price * (fewer + BASE))
             scale = min(math.sqrt(room / max(pixels, 1)), 1.0)
             if scale >= least:
                 break
@@ -73,6 +76,6 @@ class Cost:
 
     def tile(self, samples: int) -> int:
         """Side of a square tile, in pixels, that takes no longer than a tile may."""
-        side = math.sqrt((TILE - self._fixed) / (self._price * samples))
+        side = math.sqrt((TILE - FIXED) / (self._price * (samples + BASE)))
         # An even number keeps the 2 x 2 blocks in which derivatives are taken.
         return max(int(side) // 2 * 2, SMALLEST_TILE)

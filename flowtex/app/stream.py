@@ -146,6 +146,8 @@ class FrameStream:
 
     async def run(self) -> None:
         """Draw for as long as the task lives."""
+        # The shader is built for the first picture: better now, while a browser starts.
+        self._scene.draw(16, 16)
         while True:
             await self._wake.wait()
             if not self._sized or self.streamer is None or not self.watched():

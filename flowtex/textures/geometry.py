@@ -143,6 +143,11 @@ class Geometry:
         inner[:, columns.before : left] = data
         inner[:, : columns.before] = data[:, columns.picks[: columns.before]]
         inner[:, left:] = data[:, columns.picks[left:]]
+        if columns.periodic:
+            # The closing line is traced apart from the first; every repeat must be the same.
+            inner[:, left - 1] = inner[:, columns.before]
+        if rows.periodic:
+            inner[-1] = inner[0]
         # Beyond the nodes whole rows are repeated.
         texels[: rows.before] = inner[rows.picks[: rows.before]]
         texels[top:] = inner[rows.picks[top:]]

@@ -92,7 +92,7 @@ class Known:
         base = step * self.lattice.size if self.unsteady else 0
         unit = self.unit[:1] if self._even else self.lattice.blend(self.unit, corners)
         longest = self._longest[corners.at + base] if most is None else most
-        lag: Any = np.minimum(left / unit, longest)
+        lag: NDArray[Any] = np.minimum(left / unit, longest)
         if lag.min() == lag.max():
             # Even cells, smooth slices: one slice for all.
             lag = lag[:1]
@@ -112,9 +112,9 @@ class Known:
         """Displacements (2, n) of paths from positions (2, n) at any lags up to the last slice."""
         corners = self.lattice.corners(position)
         base = step * self.lattice.size if self.unsteady else 0
-        lag = lag / (self.unit[:1] if self._even else self.lattice.blend(self.unit, corners))
-        m = np.clip(np.searchsorted(self.knots, lag), 1, len(self.knots) - 1)
-        return self._displaced(corners, base, m, lag)
+        units: Any = lag / (self.unit[:1] if self._even else self.lattice.blend(self.unit, corners))
+        m = np.clip(np.searchsorted(self.knots, units), 1, len(self.knots) - 1)
+        return self._displaced(corners, base, m, units)
 
     def _displaced(
         self, corners: Corners, base: Indices | int, m: Indices, lag: Singles

@@ -185,7 +185,8 @@ class TraceSlices:
         """
         expected = f"{path} does not hold trace slices; expected a file that TraceSlices.save wrote"
         try:
-            with np.load(path, allow_pickle=False) as file:
+            # Opened here, because NumPy leaves a file open that it cannot read.
+            with Path(path).open("rb") as data, np.load(data, allow_pickle=False) as file:
                 arrays: dict[str, Any] = {name: file[name] for name in file.files}
         except (zipfile.BadZipFile, zlib.error, ValueError, EOFError, TypeError) as error:
             # TypeError: a plain .npy file holds one array, which is no context manager.

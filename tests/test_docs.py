@@ -1,0 +1,56 @@
+"""Every Python block of the README and the docs runs, in order, page by page."""
+
+from __future__ import annotations
+
+import os
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from flowtex.settings import TABLE, Setting
+
+ROOT = Path(__file__).resolve().parents[1]
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+BEGIN, END = "<!-- settings: made from", "<!-- end of settings -->"
+
+
+def blocks(page: Path) -> list[str]:
+    """Python blocks of a page."""
+    return re.findall(r"^```python\n(.*?)^```$", page.read_text(), re.DOTALL | re.MULTILINE)
+
+
+@pytest.mark.parametrize("page", [p for p in PAGES if blocks(p)], ids=lambda p: p.stem)
+def test_the_blocks_of_a_page_run(
+    page: Path, opengl: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, Any] = {}
+    for number, block in enumerate(blocks(page), start=1):
+        exec(compile(block, f"{page.name}, block {number}", "exec"), names)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda p: p.stem)
+def test_every_link_inside_the_project_leads_somewhere(page: Path) -> None:
+    links = re.findall(r"\]\((?!https?://|#)([^)#]+)", page.read_text())
+    assert [link for link in links if not (page.parent / link).exists()] == []
+
+
+def row(setting: Setting) -> str:
+    """One row of the table in the guide."""
+    default = repr(setting.default).replace("'", '"')
+    return f"| `{setting.name}` | `{default}` | {setting.expected} | {setting.text} |"
+
+
+def test_the_table_of_settings_is_that_of_the_code() -> None:
+    page = ROOT / "docs" / "guide.md"
+    text = page.read_text()
+    head = "| name | default | values | what it does |\n| --- | --- | --- | --- |"
+    table = "\n".join([head, *map(row, TABLE.values())])
+    start = text.index("\n", text.index(BEGIN)) + 1
+    written = text[start : text.index(END)]
+    if os.environ.get("FLOWTEX_WRITE_DOCS"):
+        page.write_text(text[:start] + table + "\n" + text[text.index(END) :])
+        return
+    assert written.strip() == table, "run make docs, which writes the table anew"
