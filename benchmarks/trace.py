@@ -42,7 +42,7 @@ def convolution(field: FlowField) -> float:
 
 
 def composing(field: FlowField) -> tuple[float, float]:
-    """Times of a whole trace, and of what of it is composing."""
+    """Return the times of a whole trace, and of what of it is composing."""
     spent: list[float] = []
     original = paths_of_one_call.compose
 
@@ -65,7 +65,7 @@ def composing(field: FlowField) -> tuple[float, float]:
 
 
 def fields(columns: list[int]) -> dict[str, Callable[[], FlowField]]:
-    """The fields, by the name that the table gives them."""
+    """Return the fields, by the name that the table gives them."""
     made: dict[str, Callable[[], FlowField]] = {}
     for n in columns:
         made[f"double gyre {n}"] = partial(examples.double_gyre_field, shape=(n, n))
@@ -75,10 +75,16 @@ def fields(columns: list[int]) -> dict[str, Callable[[], FlowField]]:
     return made
 
 
+def say(line: str) -> None:
+    """Write a line at once."""
+    sys.stdout.write(line + "\n")
+    sys.stdout.flush()
+
+
 def main(columns: list[int]) -> None:
     """Print the table."""
     heads = ("metric", "integrate", "compose", "trace", "layers", "rlic", "trace / rlic", "MB")
-    print(f"{'':22}{'nodes':>12}" + "".join(f"{head:>13}" for head in heads))
+    say(f"{'':22}{'nodes':>12}" + "".join(f"{head:>13}" for head in heads))
     for name, make in fields(columns).items():
         field = make()
         started = time.perf_counter()
@@ -90,7 +96,7 @@ def main(columns: list[int]) -> None:
         size = trace(field).nbytes / 1e6
         rows, count = field.shape
         numbers = (metric, whole - composed, composed, whole, layers, taps, whole / taps, size)
-        print(f"{name:22}{count:>6} x{rows:>4}" + "".join(f"{n:13.3f}" for n in numbers))
+        say(f"{name:22}{count:>6} x{rows:>4}" + "".join(f"{n:13.3f}" for n in numbers))
 
 
 if __name__ == "__main__":

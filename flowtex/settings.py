@@ -108,7 +108,7 @@ class Settings:
         span=(1, 200),
     )
     spacing: float = _row(
-        default=0.8,
+        default=0.75,
         affects="uniform",
         text="Distance between two samples, in grains of noise.",
         span=(0.1, 10),
@@ -147,7 +147,7 @@ class Settings:
         span=(16, 8192),
     )
     grain: float = _row(
-        default=1.5, affects="uniform", text="Size of a grain of noise, in pixels.", span=(0.25, 32)
+        default=1.6, affects="uniform", text="Size of a grain of noise, in pixels.", span=(0.25, 32)
     )
     contrast: float = _row(
         default=1.0, affects="uniform", text="Contrast of the texture, 0 for none.", span=(0, 4)

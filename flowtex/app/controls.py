@@ -9,7 +9,7 @@ from trame.widgets import vuetify3 as v3
 
 from flowtex.settings import TABLE, Setting
 
-__all__ = ["PRIMARY", "REST", "control", "label"]
+__all__ = ["ARIA", "PRIMARY", "REST", "control", "label"]
 
 #: What everybody needs; the rest is unfolded.
 PRIMARY = ("lod", "noise", "samples", "contrast")
@@ -18,6 +18,8 @@ REST = tuple(name for name in TABLE if name not in PRIMARY)
 #: A range with more values than this is typed, not dragged.
 MOST_STOPS = 1000
 
+#: Attributes that trame's widgets do not know by themselves.
+ARIA = [("aria_label", "aria-label"), ("aria_expanded", "aria-expanded")]
 DATA = [("data_setting", "data-setting")]
 
 LABELS = {"lod": "Level of detail"}
@@ -68,6 +70,7 @@ def _switch(row: Setting, key: str) -> None:
     v3.VSwitch(
         v_model=(key,),
         aria_label=label(row.name),
+        __properties=ARIA,
         color="primary",
         density="compact",
         hide_details=True,
@@ -87,6 +90,7 @@ def _choice(row: Setting, key: str) -> None:
         color="primary",
         classes="flowtex-toggle",
         aria_label=label(row.name),
+        __properties=ARIA,
     ):
         for choice in row.choices:
             v3.VBtn(choice, value=choice, size="small")
@@ -106,6 +110,7 @@ def _slider(row: Setting, key: str) -> None:
             max=high,
             step=step,
             aria_label=label(row.name),
+            __properties=ARIA,
             color="primary",
             density="compact",
             hide_details=True,
@@ -123,6 +128,8 @@ def _number(row: Setting, key: str) -> None:
         min=row.low,
         max=row.high,
         aria_label=label(row.name),
+        __properties=[*ARIA, "value", "min", "max", "type"],
+        __events=["change"],
         classes="flowtex-number",
     )
 

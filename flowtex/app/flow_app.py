@@ -105,7 +105,7 @@ class FlowApp:
         self.state.trame__favicon = None
         self.set(
             theme="dark",
-            panel=True,
+            panel=None,
             more=False,
             playing=False,
             picture="waiting",

@@ -9,7 +9,7 @@ from trame.ui.vuetify3 import VAppLayout
 from trame.widgets import html, rca
 from trame.widgets import vuetify3 as v3
 
-from flowtex.app.controls import PRIMARY, REST, control
+from flowtex.app.controls import ARIA, PRIMARY, REST, control
 from flowtex.settings import TABLE
 
 __all__ = ["THEMES", "build_page"]
@@ -86,12 +86,17 @@ def _buttons(key: Key, reset: Callable[[], None]) -> None:
         _button("mdi-fit-to-screen-outline", "Show the whole surface", reset)
         other = f"{theme} = {theme} === 'dark' ? 'light' : 'dark'"
         _button("mdi-theme-light-dark", "Light or dark", other)
-        _button("mdi-tune-variant", "Controls", f"{panel} = !{panel}")
+        _button("mdi-tune-variant", "Controls", f"{panel} = !({_shown(panel)})")
+
+
+def _shown(panel: str) -> str:
+    """Whether the panel is shown: as chosen, or at first where there is room for it."""
+    return f"{panel} === null ? $vuetify.display.mdAndUp : {panel}"
 
 
 def _panel(key: Key) -> None:
     more = key("more")
-    with html.Div(classes="flowtex-panel flowtex-glass", v_show=(key("panel"),)):
+    with html.Div(classes="flowtex-panel flowtex-glass", v_show=(_shown(key("panel")),)):
         for name in PRIMARY:
             control(TABLE[name], key(f"set_{name}"))
         with html.Div(classes="flowtex-row"):
@@ -100,13 +105,17 @@ def _panel(key: Key) -> None:
                 v_model=(key("colour"),),
                 items=(key("colours"),),
                 aria_label="Colour by",
+                __properties=ARIA,
                 density="compact",
                 variant="plain",
                 hide_details=True,
                 classes="flowtex-select",
             )
         with html.Button(
-            classes="flowtex-more", click=f"{more} = !{more}", aria_expanded=(f"{more}",)
+            classes="flowtex-more",
+            click=f"{more} = !{more}",
+            aria_expanded=(f"{more}",),
+            __properties=ARIA,
         ):
             html.Span(f"{{{{ {more} ? 'Fewer settings' : 'More settings' }}}}")
             v3.VIcon(f"{{{{ {more} ? 'mdi-chevron-up' : 'mdi-chevron-down' }}}}", size=18)
@@ -139,6 +148,7 @@ def _player(key: Key, *, clock: bool) -> None:
             size="small",
             click=f"{playing} = !{playing}",
             aria_label=(f"{playing} ? 'Pause' : 'Play'",),
+            __properties=ARIA,
         ):
             v3.VIcon(f"{{{{ {playing} ? 'mdi-pause' : 'mdi-play' }}}}", size=24)
         if not clock:
@@ -150,6 +160,7 @@ def _player(key: Key, *, clock: bool) -> None:
             max=(key("last"),),
             step=(key("tick"),),
             aria_label="Time",
+            __properties=ARIA,
             color="primary",
             density="compact",
             hide_details=True,

@@ -14,7 +14,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from flowtex.app.quality import Cost
+from flowtex.app.quality import Cost, Quality
 from flowtex.app.scene import Rect, Scene
 from flowtex.app.warp import Shot, coverage, warp
 
@@ -25,8 +25,9 @@ Pixels = NDArray[np.uint8]
 #: A picture that was drawn serves a moved view while its pixels grow less, or shrink less, than
 #: this; beyond it a draft tells more.
 STRETCH, SHRINK = 4.0, 0.3
-#: Share of a view that has to be covered without a draft beneath.
-COVERED = 0.999
+#: A draft that lies beneath a moved picture shows this many times its width, so that it serves
+#: for some way.
+WIDER = 1.7
 
 
 class Painter:
@@ -45,12 +46,13 @@ class Painter:
         self.complete = False
         self._scene = scene
         self._shot: Shot | None = None
+        self._under: Shot | None = None
         self._last: Pixels | None = None
         self._state = 0
 
     def forget(self) -> None:
         """Draw anew: what was drawn does not show the present state any more."""
-        self._shot = None
+        self._shot = self._under = None
         self.complete = False
         self._state += 1
 
@@ -75,9 +77,22 @@ class Painter:
         if self._shot is not None and view is not None:
             share, stretch = coverage(self._shot, view)
             if SHRINK <= stretch <= STRETCH and share > 0.2:
-                under = None if share >= COVERED else self._draft(quality.scale, quality.samples)
-                return warp(self._shot, view, under)
-        return self._draft(quality.scale, quality.samples)
+                under = None if share >= 1.0 else self._beneath(view, quality)
+                return warp(self._shot, view, (width, height), under)
+        return self._draft(quality)
+
+    def _beneath(self, view: NDArray[np.float64], quality: Quality) -> Shot:
+        """Return a draft that covers the view and what lies around it."""
+        if self._under is not None:
+            share, stretch = coverage(self._under, view)
+            if share >= 1.0 and stretch < STRETCH / quality.scale:
+                return self._under
+        width, height = self._scene.size
+        around = (round(width * (1 - WIDER) / 2), round(height * (1 - WIDER) / 2))
+        part = (*around, width - 2 * around[0], height - 2 * around[1])
+        wider = np.diag([width / part[2], height / part[3], 1.0]) @ view
+        self._under = Shot(self._draft(quality, part), wider)
+        return self._under
 
     def full(self) -> Iterator[Pixels]:
         """Draw the full picture over the quick one, a tile at a time.
@@ -126,18 +141,20 @@ class Painter:
 
         return sorted(tiles, key=far)
 
-    def _draft(self, scale: float, samples: int) -> Pixels:
+    def _draft(self, quality: Quality, part: Rect | None = None) -> Pixels:
         width, height = self._scene.size
         settings = self._scene.handle.settings
-        chosen, settings.samples = settings.samples, samples
+        chosen, settings.samples = settings.samples, quality.samples
         try:
-            return self._draw(max(round(width * scale), 16), max(round(height * scale), 16))
+            return self._draw(
+                max(round(width * quality.scale), 16), max(round(height * quality.scale), 16), part
+            )
         finally:
             settings.samples = chosen
 
-    def _draw(self, width: int, height: int) -> Pixels:
+    def _draw(self, width: int, height: int, part: Rect | None = None) -> Pixels:
         started = time.perf_counter()
-        pixels = self._scene.draw(width, height)
+        pixels = self._scene.draw(width, height, part)
         self.cost.learn(time.perf_counter() - started, width * height, self._samples)
         return pixels
 

@@ -13,14 +13,14 @@ from dataclasses import dataclass
 __all__ = ["MOVING", "PLAYING", "TILE", "Cost", "Quality"]
 
 #: Seconds that a picture may take in motion, while playing, and for one tile at rest.
-MOVING, PLAYING, TILE = 0.06, 0.1, 0.1
+MOVING, PLAYING, TILE = 0.06, 0.14, 0.1
 
 #: Seconds that a picture takes however small it is, and what a pixel costs beside its samples,
 #: in samples.
 FIXED, BASE = 0.006, 8
 
-#: Samples of a draft, best first, and the least share of the view's width that each is for.
-DRAFTS = ((9, 0.5), (5, 0.0))
+#: Samples of a draft. Its pixels are larger, so its streaks are as long with fewer samples.
+DRAFT = 9
 #: A draft is never smaller than this share of the view's width.
 COARSEST = 0.2
 #: A tile is never smaller than this, in pixels along a side.
@@ -65,14 +65,10 @@ class Cost:
         """
         if self.seconds(pixels, samples) <= budget:
             return Quality(1.0, samples)
-        scale, fewer = 1.0, samples
-        for draft, least in DRAFTS:
-            fewer = min(draft, samples)
-            room = max(budget - FIXED, 1e-3) / (self._price * (fewer + BASE))
-            scale = min(math.sqrt(room / max(pixels, 1)), 1.0)
-            if scale >= least:
-                break
-        return Quality(max(scale, COARSEST), fewer)
+        fewer = min(DRAFT, samples)
+        room = max(budget - FIXED, 1e-3) / (self._price * (fewer + BASE))
+        scale = math.sqrt(room / max(pixels, 1))
+        return Quality(min(max(scale, COARSEST), 1.0), fewer)
 
     def tile(self, samples: int) -> int:
         """Side of a square tile, in pixels, that takes no longer than a tile may."""

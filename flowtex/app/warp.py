@@ -7,6 +7,7 @@ be moved to its new place exactly: a drag follows the hand however long a new pi
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,7 +51,7 @@ def coverage(shot: Shot, view: Matrix) -> tuple[float, float]:
     return float(inside.mean()), float(area**-0.5) if area > 0 else float("inf")
 
 
-def warp(shot: Shot, view: Matrix, under: Pixels | None = None) -> Pixels:
+def warp(shot: Shot, view: Matrix, size: tuple[int, int], under: Shot | None = None) -> Pixels:
     """Show a picture from another view.
 
     Parameters
@@ -59,26 +60,42 @@ def warp(shot: Shot, view: Matrix, under: Pixels | None = None) -> Pixels:
         What was drawn.
     view
         The new view, as in :class:`Shot`.
+    size
+        Width and height of the result, in pixels.
     under
-        What to show where the picture does not reach, (h, w, 3) of any size; its own edge
-        colours are repeated when left out.
+        What to show where the picture does not reach; black when left out.
 
     Returns
     -------
     numpy.ndarray
-        (H, W, 3) uint8.
+        (height, width, 3) uint8.
     """
     from PIL import Image
 
-    height, width = shot.pixels.shape[:2]
-    to_view = np.array([[2 / width, 0, -1], [0, -2 / height, 1], [0, 0, 1.0]])
-    back = np.linalg.inv(to_view) @ shot.view @ np.linalg.inv(view) @ to_view
-    data = tuple(float(v) for v in back[:2].ravel())
-    size, affine = (width, height), Image.Transform.AFFINE
-    picture = Image.fromarray(shot.pixels)
-    moved = picture.transform(size, affine, data, resample=Image.Resampling.BILINEAR)
+    moved = _move(shot, view, size)
     if under is None:
         return np.asarray(moved)
-    base = Image.fromarray(under).resize(size, Image.Resampling.BILINEAR)
-    mask = Image.new("L", size, 255).transform(size, affine, data)
-    return np.asarray(Image.composite(moved, base, mask))
+    height, width = shot.pixels.shape[:2]
+    inside = Image.new("L", (width, height), 255)
+    mask = inside.transform(size, Image.Transform.AFFINE, _back(shot, view, size))
+    return np.asarray(Image.composite(moved, _move(under, view, size), mask))
+
+
+def _move(shot: Shot, view: Matrix, size: tuple[int, int]) -> Any:
+    from PIL import Image
+
+    picture = Image.fromarray(shot.pixels)
+    smooth = Image.Resampling.BILINEAR
+    return picture.transform(size, Image.Transform.AFFINE, _back(shot, view, size), resample=smooth)
+
+
+def _back(shot: Shot, view: Matrix, size: tuple[int, int]) -> tuple[float, ...]:
+    """Map from pixels of the result to pixels of the picture, as Pillow wants it."""
+    height, width = shot.pixels.shape[:2]
+    back = np.linalg.inv(_from_pixels(width, height)) @ shot.view @ np.linalg.inv(view)
+    return tuple(float(v) for v in (back @ _from_pixels(*size))[:2].ravel())
+
+
+def _from_pixels(width: int, height: int) -> Matrix:
+    """Map from pixels, y down, to the view's (x, y) from -1 to 1."""
+    return np.array([[2 / width, 0, -1], [0, -2 / height, 1], [0, 0, 1.0]])

@@ -84,7 +84,6 @@ def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[
         "u_lod": settings.lod,
         "u_contrast": settings.contrast,
         "u_strength": settings.strength,
-        "u_correlation": correlation(settings.spacing),
         "u_seed": settings.seed,
         "u_turn": settings.rate * view.clock % 1.0 if settings.animate else 0.0,
         "u_wave": 1.0 / WAVE if settings.animate else 0.0,
@@ -98,15 +97,6 @@ def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[
         values["u_noiseSize"] = (float(width), float(height))
         values["u_noiseCorrected"] = textures.paper.corrected
     return values
-
-
-def correlation(spacing: float) -> float:
-    """Variance of a sum of samples ``spacing`` grains apart, over that of independent ones.
-
-    The noise's own correlation falls to nothing within two grains.
-    """
-    k = np.arange(1, max(int(2 / spacing), 0) + 1)
-    return float(1 + 2 * np.sum(np.clip(1 - k * spacing / 2, 0, 1) ** 2))
 
 
 def _origin_cell(focus: NDArray[np.float64], finest: float) -> NDArray[np.int64]:

@@ -1,6 +1,6 @@
 // The method: everything a fragment needs, in the order that GLSL asks for.
 
-vec2 flowtexLookup(vec3 displacement, float length_, bool both);
+vec2 flowtexLookup(vec3 displacement, float length_);
 float flowtexBlend(vec2 sums);
 //#include common/path.glsl
 //#include common/texture.glsl

@@ -11,7 +11,7 @@ vec2 flowtexHere; // noise coordinate of the fragment
 float flowtexMip; // level
 float flowtexGain;
 
-vec2 flowtexLookup(vec3 displacement, float length_, bool both)
+vec2 flowtexLookup(vec3 displacement, float length_)
 {
   vec2 at = flowtexHere + displacement.xy;
   return vec2(textureLod(u_noiseImage, at, flowtexMip).r * flowtexGain, 0.0);
@@ -19,7 +19,7 @@ vec2 flowtexLookup(vec3 displacement, float length_, bool both)
 
 float flowtexBlend(vec2 sums)
 {
-  return sums.x;
+  return sums.x * inversesqrt(flowtexShared(vec2(u_spacing)).x);
 }
 
 // Texture at a noise coordinate with its derivatives.

@@ -7,18 +7,18 @@ float flowtexPixel;  // length that a pixel covers
 int flowtexFiner;    // octave
 float flowtexLate;   // how far the level is from the finer octave to the coarser one
 
-vec2 flowtexLookup(vec3 displacement, float length_, bool both)
+vec2 flowtexLookup(vec3 displacement, float length_)
 {
   float turn = u_turn + u_wave * length_ / flowtexPixel;
   vec3 at = flowtexHere + displacement;
-  float coarse = both ? flowtexOctave(at, flowtexFiner + 1, turn) : 0.0;
-  return vec2(flowtexOctave(at, flowtexFiner, turn), coarse);
+  return vec2(flowtexOctave(at, flowtexFiner, turn), flowtexOctave(at, flowtexFiner + 1, turn));
 }
 
 // The finer octave fades early, before its grains are smaller than a pixel.
 float flowtexBlend(vec2 sums)
 {
   float w = (1.0 - flowtexLate) * sqrt(1.0 - flowtexLate);
+  sums *= inversesqrt(flowtexShared(u_spacing * exp2(flowtexLate) * vec2(1.0, 0.5)));
   return (sums.x * w + sums.y * (1.0 - w)) * inversesqrt(1.0 - 2.0 * w * (1.0 - w));
 }
 

@@ -1,11 +1,17 @@
 // The sum of equation 2: noise along the path of a fragment, weighted by a kernel.
 //
 // Wrappers supply
-//   vec2 flowtexLookup(vec3 displacement, float length_, bool both)
-// which is the noise at the traced point, in two octaves: the second, twice as coarse, is asked
-// for at every other point only, since its grains are twice as long. And
+//   vec2 flowtexLookup(vec3 displacement, float length_)
+// which is the noise at the traced point, in two octaves, and
 //   float flowtexBlend(vec2 sums)
-// which mixes the two sums, each of unit variance, by the level of the fragment.
+// which mixes the two sums by the level of the fragment and brings them to unit variance.
+
+// Variance of a sum of samples over that of independent ones, for samples that lie a number of
+// grains apart: neighbours share a grain when they are closer than one and a third.
+vec2 flowtexShared(vec2 apart)
+{
+  return max(vec2(1.0), 1.35 / apart);
+}
 
 // Footprint of a pixel: the longest and the shortest side of what it covers.
 vec2 flowtexFootprint(float aa, float bb, float determinant)
@@ -25,18 +31,17 @@ float flowtexWeight(float x)
   return 0.5 + 0.5 * cos(3.14159265 * x);
 }
 
-// Sums along a path: of the weighted noise and of the squared weights, for both octaves.
+// Sums along a path: of the weighted noise in both octaves, and of the squared weights.
 struct FlowtexSums
 {
   vec2 noise;
-  vec2 squares;
+  float squares;
 };
 
-void flowtexAdd(inout FlowtexSums sums, vec3 displacement, float length_, float weight, bool both)
+void flowtexAdd(inout FlowtexSums sums, vec3 displacement, float length_, float weight)
 {
-  vec2 mask = vec2(1.0, both ? 1.0 : 0.0);
-  sums.noise += weight * mask * flowtexLookup(displacement, length_, both);
-  sums.squares += weight * weight * mask;
+  sums.noise += weight * flowtexLookup(displacement, length_);
+  sums.squares += weight * weight;
 }
 
 // Adds one side of the path, ``count`` points ``spacing`` apart in nominal length.
@@ -54,7 +59,7 @@ void flowtexSide(inout FlowtexSums sums, FlowtexPath path, float side, float spa
       break;
     vec3 displacement = flowtexFollow(path, lag) * (side * scale);
     float weight = alive * flowtexWeight(side * float(k) / float(count + 1));
-    flowtexAdd(sums, displacement, side * lag * scale, weight, (k & 1) == 0);
+    flowtexAdd(sums, displacement, side * lag * scale, weight);
 #ifndef FLOWTEX_PAPER
     // Points stay evenly spaced along the path where the particle is faster or slower there
     // than it is here: equation 3 at every point of the path.
@@ -69,8 +74,8 @@ float flowtexTexture(vec2 coordinate, float sliceLevel, float spacing)
 {
   vec4 base = flowtexLayer(coordinate, 0, sliceLevel);
   vec4 back = flowtexLayer(coordinate, 1, sliceLevel);
-  FlowtexSums sums = FlowtexSums(vec2(0.0), vec2(0.0));
-  flowtexAdd(sums, vec3(0.0), 0.0, flowtexWeight(0.0), true);
+  FlowtexSums sums = FlowtexSums(vec2(0.0), 0.0);
+  flowtexAdd(sums, vec3(0.0), 0.0, max(flowtexWeight(0.0), 1e-3));
   float speed = length(base.xyz);
   if (speed > 1e-6)
   {
@@ -90,14 +95,14 @@ float flowtexTexture(vec2 coordinate, float sliceLevel, float spacing)
                   spacing, ahead.w, scale, count);
     }
   }
-  return flowtexBlend(sums.noise * inversesqrt(max(sums.squares, 1e-12) * u_correlation));
+  return flowtexBlend(sums.noise * inversesqrt(sums.squares));
 }
 
 // Colour with the texture laid over it: darker below the middle tone, lighter above, so that the
 // texture shows on dark colours too and the mean over many grains stays close to the colour.
 vec3 flowtexShade(vec3 colour, float value)
 {
-  float tone = 2.0 / (1.0 + exp(-1.3 * u_contrast * value)) - 1.0;
+  float tone = 2.0 / (1.0 + exp(-1.1 * u_contrast * value)) - 1.0;
   float dark = u_strength * max(-tone, 0.0);
   float light = u_strength * max(tone, 0.0);
   return mix(mix(colour, colour * 0.12, dark), vec3(1.0), 0.62 * light);

@@ -19,7 +19,6 @@ uniform int u_kernel;       // 0 Hann, 1 box, 2 ramp
 uniform bool u_lod;
 uniform float u_contrast;
 uniform float u_strength;
-uniform float u_correlation; // variance of the sum over that of independent samples
 uniform int u_seed;
 uniform float u_turn;       // clock of the animation, in turns
 uniform float u_wave;       // turns by pixel of path

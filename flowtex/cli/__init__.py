@@ -1,0 +1,7 @@
+"""The command line: ``flowtex demo | show | render | info | doctor``."""
+
+from __future__ import annotations
+
+from flowtex.cli.commands import main
+
+__all__ = ["main"]

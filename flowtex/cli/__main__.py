@@ -1,0 +1,9 @@
+"""``python -m flowtex.cli``, for where the script ``flowtex`` is not on the path."""
+
+from __future__ import annotations
+
+import sys
+
+from flowtex.cli.commands import main
+
+sys.exit(main())

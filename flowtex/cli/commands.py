@@ -1,0 +1,309 @@
+"""The commands.
+
+Each command imports what it needs when it runs, so that ``flowtex --help`` is instant. What goes
+wrong for a reason that the user can mend is told in one paragraph on stderr, and the program ends
+with code 2, or 1 where there is no OpenGL to draw with.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+from cyclopts import App, CycloptsError, Parameter
+
+from flowtex import examples
+from flowtex.cli.options import DrawOptions, FieldOptions, ServeOptions, SettingFlags, UsageError
+from flowtex.errors import FieldError
+from flowtex.examples import NAMES
+from flowtex.settings import SettingsError
+
+if TYPE_CHECKING:
+    from flowtex.field import FlowField
+
+__all__ = ["main"]
+
+#: How each example is first seen: zoom and point of the mesh.
+FIRST_LOOKS: dict[str, tuple[float, tuple[float, ...] | None]] = {
+    "cylinder": (3.2, (4.0, 0.0)),
+    "airfoil": (6.0, (0.5, 0.0)),
+}
+
+FILE = Annotated[Path, Parameter(help="A structured mesh: any file that PyVista reads, or PLOT3D.")]
+FLAT = Parameter(name="*")
+
+app = App(
+    name="flowtex",
+    help="Draw the flow on a surface as a texture that stays sharp at every zoom.",
+    version=lambda: __import__("flowtex").__version__,
+    help_epilogue="Try `flowtex demo`. Add --debug to see where an error came from.",
+)
+
+
+@app.command
+def demo(
+    *,
+    example: Annotated[str, Parameter(help=f"Which flow: {', '.join(NAMES)}.")] = "cylinder",
+    page: Annotated[ServeOptions | None, FLAT] = None,
+    settings: Annotated[SettingFlags | None, FLAT] = None,
+) -> int:
+    """Show an example on a page in the browser."""
+    if example not in NAMES:
+        msg = f"there is no example {example!r}; there are {', '.join(NAMES)}"
+        raise UsageError(msg)
+    chosen = _given(settings)
+    _need_opengl()
+    field = getattr(examples, f"{example}_field")()
+    zoom, focus = FIRST_LOOKS.get(example, (1.0, None))
+    return _serve(field, page, {**chosen, "zoom": zoom, "focus": focus})
+
+
+@app.command
+def show(
+    file: FILE,
+    /,
+    *,
+    which: Annotated[FieldOptions | None, FLAT] = None,
+    draw: Annotated[DrawOptions | None, FLAT] = None,
+    page: Annotated[ServeOptions | None, FLAT] = None,
+    settings: Annotated[SettingFlags | None, FLAT] = None,
+) -> int:
+    """Show a file: in a window, or where there is no display on a page."""
+    draw = draw or DrawOptions()
+    options = {**draw.look(), **_given(settings)}
+    size = draw.pixels()
+    _need_opengl()
+    field = _read(file, which)
+    _check_colours(field, options)
+    from flowtex import doctor
+
+    if page is not None or not doctor.has_display():
+        return _serve(field, page, options)
+    from flowtex import pictures
+
+    seen = {name: value for name, value in options.items() if name not in ("zoom", "focus")}
+    pictures.show(field, size=size, **seen)  # a window is moved by hand
+    return 0
+
+
+@app.command
+def render(
+    file: FILE,
+    /,
+    *,
+    output: Annotated[
+        Path,
+        Parameter(name=["--output", "-o"], help="Picture to write; its suffix is its format."),
+    ],
+    which: Annotated[FieldOptions | None, FLAT] = None,
+    draw: Annotated[DrawOptions | None, FLAT] = None,
+    settings: Annotated[SettingFlags | None, FLAT] = None,
+) -> int:
+    """Draw a file as a picture."""
+    started = time.perf_counter()
+    draw = draw or DrawOptions()
+    options, size = {**draw.look(), **_given(settings)}, draw.pixels()
+    _writable(output)
+    _need_opengl()
+    field = _read(file, which)
+    _check_colours(field, options)
+    from PIL import Image
+
+    from flowtex import pictures
+
+    picture = pictures.render(field, size=size, **options)
+    try:
+        Image.fromarray(picture).save(output)
+    except OSError as error:
+        msg = f"{output}: cannot be written ({error.strerror or error})"
+        raise UsageError(msg) from error
+    lost = f", {field.lost:.0%} of the flow leaves the surface" if field.lost > 0.01 else ""
+    _say(
+        f"[bold]{output}[/]  {field.name}, {_nodes(field)}{lost}  "
+        f"[dim]{size[0]} × {size[1]}, {time.perf_counter() - started:.1f} s[/]"
+    )
+    return 0
+
+
+@app.command
+def info(file: FILE, /, *, which: Annotated[FieldOptions | None, FLAT] = None) -> int:
+    """Tell what a file holds, and what would be drawn."""
+    from flowtex.cli.info import print_info
+
+    print_info(file, which.given() if which is not None else {})
+    return 0
+
+
+@app.command
+def doctor() -> int:
+    """Look at what flowtex runs on, and say what is missing."""
+    from flowtex import doctor as doctor_
+
+    return doctor_.main()
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run a command and return the exit code.
+
+    Parameters
+    ----------
+    arguments
+        Words of the command line; those of the process by default.
+
+    Returns
+    -------
+    int
+        0 when all went well, 2 when something was asked for that cannot be, 1 when there is no
+        OpenGL, and for ``doctor`` when something is missing.
+    """
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    debug = "--debug" in words
+    words = [word for word in words if word != "--debug"]
+    try:
+        result = app(words, exit_on_error=False, print_error=False, result_action="return_value")
+    except KeyboardInterrupt:
+        return 130
+    except Exception as error:
+        code = _code(error)
+        if debug or code is None:
+            raise
+        _complain(error)
+        return code
+    return result if isinstance(result, int) else 0
+
+
+def _code(error: Exception) -> int | None:
+    """Exit code for what the user can mend; ``None`` for a fault of the program."""
+    from flowtex.doctor import OpenGLMissingError
+
+    if isinstance(error, OpenGLMissingError):
+        return 1
+    if isinstance(error, (CycloptsError, FieldError, SettingsError, UsageError)):
+        return 2
+    # The page's own error is known only where the page is.
+    serving = sys.modules.get("flowtex.app")
+    if serving is not None and isinstance(error, serving.ServeError):
+        return 2
+    return None
+
+
+def _complain(error: Exception) -> None:
+    from rich.console import Console
+
+    text = str(error).strip() or type(error).__name__
+    console = Console(stderr=True, highlight=False)
+    console.print("[bold red]flowtex:[/] ", end="")
+    console.print(text, markup=False, soft_wrap=True)
+
+
+def _say(text: str) -> None:
+    from rich.console import Console
+
+    Console(highlight=False).print(text, soft_wrap=True)
+
+
+def _need_opengl() -> None:
+    from flowtex import doctor
+
+    doctor.prefer_headless()
+    doctor.require_opengl()
+
+
+def _read(file: Path, which: FieldOptions | None) -> FlowField:
+    from flowtex.field import FlowField
+
+    return FlowField.from_file(file, **(which.given() if which is not None else {}))
+
+
+def _given(settings: SettingFlags | None) -> dict[str, Any]:
+    """Settings as keyword arguments, checked."""
+    from flowtex.settings import Settings
+
+    values = {} if settings is None else dict(vars(settings))
+    Settings().update(**values)
+    return values
+
+
+def _serve(field: FlowField, page: ServeOptions | None, options: dict[str, Any]) -> int:
+    _need_app()
+    from flowtex.app import serve
+
+    page = page or ServeOptions()
+    serve(
+        field,
+        host=page.host,
+        port=page.port,
+        open_browser=page.browser,
+        announce=_announcer(field, page.host),
+        **options,
+    )
+    return 0
+
+
+def _announcer(field: FlowField, host: str) -> Callable[[str], None]:
+    def announce(address: str) -> None:
+        _say(f"[bold]flowtex[/]  {field.name or 'flow'}, {_nodes(field)}\n")
+        # A link that is wrapped or coloured in pieces cannot be clicked.
+        _say(f"  [cyan]{address}[/]\n")
+        if host not in ("127.0.0.1", "localhost", "::1"):
+            _say(
+                "  [yellow]Everybody who can reach this machine and has this address can use it.[/]"
+            )
+        _say("  [dim]Ctrl-C ends it.[/]")
+        sys.stdout.flush()
+
+    return announce
+
+
+def _need_app() -> None:
+    import importlib.util
+
+    wanted = ("trame", "trame_vuetify", "trame_rca")
+    missing = [name for name in wanted if importlib.util.find_spec(name) is None]
+    if missing:
+        msg = (
+            f"the page needs {', '.join(missing)}, not installed here. To mend it:\n"
+            '  python -m pip install "flowtex[app]"'
+        )
+        raise UsageError(msg)
+
+
+def _writable(output: Path) -> None:
+    """Refuse a picture that could not be written, before anything is drawn."""
+    from PIL import Image
+
+    Image.init()
+    known = {suffix for suffix, kind in Image.EXTENSION.items() if kind in Image.SAVE}
+    if output.suffix.lower() not in known:
+        what = f"{output.suffix!r} is no format" if output.suffix else "no suffix is no format"
+        msg = f"{output}: {what} that pictures are written in; use .png, .jpg, .webp or .tiff"
+        raise UsageError(msg)
+    if not output.parent.is_dir():
+        msg = f"{output}: there is no folder {str(output.parent)!r}; make it, or write elsewhere"
+        raise UsageError(msg)
+
+
+def _check_colours(field: FlowField, options: dict[str, Any]) -> None:
+    """Refuse a scalar or a colour map that there is not."""
+    known = dict.fromkeys(("speed", *field.scalars))
+    if options["scalars"] is not False and options["scalars"] not in known:
+        msg = f"--scalars is {options['scalars']!r}; there are {', '.join(known)} and none"
+        raise UsageError(msg)
+    if options["cmap"] is None:
+        return
+    import pyvista as pv
+
+    try:
+        pv.LookupTable(options["cmap"])
+    except (ValueError, KeyError, ImportError) as error:
+        msg = f"--cmap is {options['cmap']!r}; expected a colour map such as viridis or cividis"
+        raise UsageError(msg) from error
+
+
+def _nodes(field: FlowField) -> str:
+    rows, columns = field.shape
+    times = "" if field.steady else f", {len(field.times)} times"
+    return f"{columns} × {rows} nodes{times}"

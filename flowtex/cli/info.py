@@ -1,0 +1,123 @@
+"""``flowtex info``: what a file holds, and the flow that would be drawn from it."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from flowtex.field import FlowField
+    from flowtex.field.summary import ArraySummary, FileSummary
+
+__all__ = ["print_info"]
+
+
+def print_info(file: Path, options: dict[str, Any]) -> None:
+    """Print what a file holds; then the flow, or what is needed to make one.
+
+    Parameters
+    ----------
+    file
+        The file.
+    options
+        Arguments of ``FlowField.from_file``.
+
+    Raises
+    ------
+    FieldError
+        When the file cannot be read at all, or the options do not fit it.
+    """
+    from rich.console import Console
+    from rich.text import Text
+
+    from flowtex.field import FlowField
+    from flowtex.field.files import describe
+
+    summary = describe(file)
+    console = Console(highlight=False)
+    console.print(Text(str(file), "bold"), soft_wrap=True)
+    console.print(_file_table(summary))
+    if summary.arrays:
+        console.print(_array_table(summary))
+    if summary.problem and not options:
+        console.print(Text(f"To draw it: {summary.problem}", "yellow"))
+        return
+    console.print(_field_table(FlowField.from_file(file, **options)))
+
+
+def _pairs(title: str) -> Table:
+    from rich.table import Table
+
+    table = Table(title=title or None, title_justify="left", title_style="bold", box=None)
+    table.show_header = False
+    table.add_column(style="dim")
+    table.add_column()
+    return table
+
+
+def _file_table(summary: FileSummary) -> Table:
+    table = _pairs("")
+    nodes = " × ".join(str(n) for n in summary.dimensions or ())
+    table.add_row("grid", f"{summary.grid}{f', {nodes} nodes' if nodes else ''}")
+    if summary.blanked:
+        table.add_row("blanked", f"{summary.blanked:,} nodes")
+    if summary.blocks:
+        table.add_row("blocks", ", ".join(summary.blocks))
+    if summary.times:
+        ends = f"{summary.times[0]:g} to {summary.times[-1]:g}"
+        table.add_row("times", f"{len(summary.times)}, {ends}")
+    table.add_row("velocity", ", ".join(summary.candidates) or "none found")
+    return table
+
+
+def _array_table(summary: FileSummary) -> Table:
+    from rich.table import Table
+
+    table = Table(box=None, header_style="dim")
+    for title in ("array", "on", "numbers", "from", "to"):
+        table.add_column(title, justify="left" if title in ("array", "on") else "right")
+    for array in summary.arrays:
+        table.add_row(array.name, array.where, str(array.components), *_span(array))
+    return table
+
+
+def _span(array: ArraySummary) -> tuple[str, str]:
+    if not math.isfinite(array.low):
+        return "", ""
+    length = " (length)" if array.components > 1 else ""
+    return f"{array.low:.4g}", f"{array.high:.4g}{length}"
+
+
+def _field_table(field: FlowField) -> Table:
+    import numpy as np
+
+    rows, columns = field.shape
+    table = _pairs("What would be drawn")
+    table.add_row("nodes", f"{columns} × {rows} (i × j)")
+    steady = "one, steady"
+    ends = f"{field.times[0]:g} to {field.times[-1]:g} {field.time_unit}".rstrip()
+    table.add_row("times", steady if field.steady else f"{len(field.times)}, {ends}")
+    closed = [a for a, is_closed in zip("ji", field.periodic, strict=True) if is_closed]
+    table.add_row("periodic", " and ".join(sorted(closed)) or "no")
+    table.add_row("blanked", f"{int((~field.valid).sum()):,} nodes")
+    shape = "curved" if field.surface.frame is None else "flat"
+    table.add_row("surface", f"{shape}, {field.surface.extent:.4g} {field.length_unit}".rstrip())
+    sizes = field.surface.cell_size[field.valid]
+    sizes = sizes[np.isfinite(sizes) & (sizes > 0)]
+    if sizes.size:
+        table.add_row("cells", f"the longest is {sizes.max() / sizes.min():,.3g} × the shortest")
+    table.add_row("lost", f"{field.lost:.1%} of the flow points out of the surface")
+    table.add_row("memory", f"about {_megabytes(field):,.0f} MB of traces for one time")
+    return table
+
+
+def _megabytes(field: FlowField) -> float:
+    """Size of the slices of one time: half precision, two numbers, both sides where steady."""
+    from flowtex.trace.lags import choose_lags
+
+    lags = len(choose_lags(field, "arclength" if field.steady else "time"))
+    sides = 2 if field.steady else 1
+    return field.valid.size * lags * sides * 2 * 4 / 1e6

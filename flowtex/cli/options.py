@@ -1,0 +1,142 @@
+"""Options of the command line: those of the file, of the picture, of the page, and the settings.
+
+One flag for each setting is made from :data:`flowtex.settings.TABLE`; there is no list of them
+here.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, make_dataclass
+from dataclasses import field as data_field
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from cyclopts import Group, Parameter
+
+from flowtex.settings import TABLE, Setting
+
+__all__ = ["DrawOptions", "FieldOptions", "ServeOptions", "SettingFlags", "UsageError"]
+
+FLOW, PICTURE = Group("The flow", sort_key=1), Group("The picture", sort_key=2)
+PAGE, SETTINGS = Group("The page", sort_key=3), Group("Settings", sort_key=4)
+
+
+class UsageError(ValueError):
+    """Something was asked for in a way that cannot be; the text says how it can."""
+
+
+@dataclass(kw_only=True)
+class FieldOptions:
+    """What of a file makes the flow."""
+
+    plane: Annotated[
+        str | None, Parameter(group=FLOW, help="Surface of a 3D mesh, such as k=20.")
+    ] = None
+    vectors: Annotated[
+        str | None, Parameter(group=FLOW, help="Name of the velocity, where it is not clear.")
+    ] = None
+    time: Annotated[
+        float | None, Parameter(group=FLOW, help="One time of a series; all of them by default.")
+    ] = None
+    periodic: Annotated[
+        str | None,
+        Parameter(group=FLOW, help="Axes that close on themselves: i, j, ij or none."),
+    ] = None
+    block: Annotated[
+        str | None, Parameter(group=FLOW, help="Number or name of the block to draw.")
+    ] = None
+
+    def given(self) -> dict[str, Any]:
+        """Return what was given, as arguments of ``FlowField.from_file``."""
+        values = {name: value for name, value in asdict(self).items() if value is not None}
+        if values.get("periodic") == "none":
+            values["periodic"] = ""
+        if str(values.get("block", "")).isdecimal():
+            values["block"] = int(values["block"])
+        return values
+
+
+@dataclass(kw_only=True)
+class DrawOptions:
+    """How a picture is taken."""
+
+    scalars: Annotated[
+        str, Parameter(group=PICTURE, help="Array to colour by, or none for a plain texture.")
+    ] = "speed"
+    cmap: Annotated[
+        str | None, Parameter(group=PICTURE, help="Colour map, by matplotlib's name.")
+    ] = None
+    size: Annotated[str, Parameter(group=PICTURE, help="Width and height in pixels.")] = "1024x768"
+    zoom: Annotated[
+        float, Parameter(group=PICTURE, help="1 shows the whole surface, 8 an eighth of it.")
+    ] = 1.0
+    focus: Annotated[
+        str | None,
+        Parameter(
+            group=PICTURE,
+            allow_leading_hyphen=True,
+            help="Point of the mesh to look at, as x,y or x,y,z.",
+        ),
+    ] = None
+
+    def look(self) -> dict[str, Any]:
+        """Return colours and camera, as arguments of ``flowtex.render``."""
+        if not self.zoom > 0:
+            msg = f"--zoom is {self.zoom:g}; expected a positive number, 1 for the whole surface"
+            raise UsageError(msg)
+        return {
+            "scalars": False if self.scalars == "none" else self.scalars,
+            "cmap": self.cmap,
+            "zoom": self.zoom,
+            "focus": None if self.focus is None else _numbers("--focus", self.focus),
+        }
+
+    def pixels(self) -> tuple[int, int]:
+        """Return width and height."""
+        words = self.size.lower().replace("×", "x").split("x")
+        if len(words) != 2 or not all(w.isdecimal() and 1 <= int(w) <= 16384 for w in words):
+            msg = f"--size is {self.size!r}; expected width x height up to 16384, as in 1024x768"
+            raise UsageError(msg)
+        return int(words[0]), int(words[1])
+
+
+@dataclass(kw_only=True)
+class ServeOptions:
+    """Where the page is served."""
+
+    port: Annotated[int, Parameter(group=PAGE, help="Port; 0 takes a free one.")] = 0
+    host: Annotated[
+        str, Parameter(group=PAGE, help="Address to listen on: others may reach another one.")
+    ] = "127.0.0.1"
+    browser: Annotated[bool, Parameter(group=PAGE, help="Open the page in the browser.")] = True
+
+
+def _numbers(flag: str, text: str) -> tuple[float, ...]:
+    try:
+        values = tuple(float(word) for word in text.split(","))
+    except ValueError:
+        values = ()
+    if len(values) not in (2, 3):
+        msg = f"{flag} is {text!r}; expected two or three coordinates, as in {flag} 1.5,0"
+        raise UsageError(msg)
+    return values
+
+
+def _annotation(row: Setting) -> Any:
+    kind: Any = Literal[row.choices] if row.choices else row.kind
+    span = f" From {row.low:g} to {row.high:g}." if row.low is not None else ""
+    return Annotated[kind, Parameter(group=SETTINGS, help=row.text + span)]
+
+
+if TYPE_CHECKING:
+
+    @dataclass
+    class SettingFlags:
+        """One flag for each setting."""
+else:
+    SettingFlags = make_dataclass(
+        "SettingFlags",
+        [(row.name, _annotation(row), data_field(default=row.default)) for row in TABLE.values()],
+        kw_only=True,
+        # Annotations are looked up in the module that a class says it comes from.
+        namespace={"__module__": __name__, "__doc__": "One flag for each setting."},
+    )
