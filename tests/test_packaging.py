@@ -84,7 +84,7 @@ def test_wheel_declares_command_and_plotter_component(wheel: Path) -> None:
         declared = archive.read(name).decode()
     assert "flowtex = flowtex.cli:main" in declared
     # PyVista hands the value to import_module, so it must name a module and nothing in it.
-    assert "flowtex = flowtex.render.vtk.component\n" in f"{declared}\n"
+    assert "flowtex = flowtex.plotter\n" in f"{declared}\n"
 
 
 def test_installed_wheel_reads_its_own_shaders(wheel: Path, tmp_path: Path) -> None:
