@@ -53,6 +53,8 @@ class FlowApp:
     ----------
     server
         The trame server.
+    layout
+        The page, as trame's layout.
     scene
         What is drawn.
     stream
@@ -133,7 +135,7 @@ class FlowApp:
                 "styles": ["__flowtex/flowtex.css"],
             }
         )
-        build_page(
+        self.layout = build_page(
             self.server,
             self.key,
             self.stream.area_name,

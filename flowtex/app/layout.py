@@ -25,7 +25,7 @@ DATA = [("data_picture", "data-picture"), ("data_sharp", "data-sharp")]
 Key = Callable[[str], str]
 
 
-def build_page(server: Any, key: Key, area: str, reset: Callable[[], None], *, clock: bool) -> None:
+def build_page(server: Any, key: Key, area: str, reset: Callable[[], None], *, clock: bool) -> Any:
     """Build the page.
 
     Parameters
@@ -40,6 +40,11 @@ def build_page(server: Any, key: Key, area: str, reset: Callable[[], None], *, c
         Shows the whole surface again.
     clock
         Whether there are times to choose from.
+
+    Returns
+    -------
+    object
+        trame's layout; its ``html`` is the text of the page.
     """
     config = {"theme": {"defaultTheme": "dark", "themes": THEMES}}
     with VAppLayout(server, vuetify_config=config) as layout:
@@ -65,6 +70,7 @@ def build_page(server: Any, key: Key, area: str, reset: Callable[[], None], *, c
                 _player(key, clock=clock)
                 html.Div(f"{{{{ {key('figures')} }}}}", classes="flowtex-figures")
             _problem(key)
+    return layout
 
 
 def _title(key: Key) -> None:
@@ -74,8 +80,10 @@ def _title(key: Key) -> None:
         html.Div(f"{{{{ {key('about')} }}}}", classes="flowtex-about")
 
 
-def _button(icon: Any, text: str, click: Any, **more: Any) -> None:
-    with v3.VBtn(icon=True, variant="text", size="small", click=click, aria_label=text, **more):
+def _button(icon: str, text: str, click: Any) -> None:
+    with v3.VBtn(
+        icon=True, variant="text", size="small", click=click, aria_label=text, __properties=ARIA
+    ):
         v3.VIcon(icon, size=20)
         v3.VTooltip(text=text, activator="parent", location="bottom", open_delay=400)
 

@@ -87,6 +87,10 @@ class Scene:
         """Names of what the surface can be coloured by."""
         return tuple(dict.fromkeys(("speed", *self.field.scalars)))
 
+    @property
+    def _window(self) -> Any:
+        return self.plotter.render_window
+
     def close(self) -> None:
         """Free the graphics card."""
         self.handle.remove()
@@ -114,7 +118,7 @@ class Scene:
 
     def set_background(self, theme: str) -> None:
         """Take the colour behind the surface from a theme."""
-        self.plotter.set_background(BACKGROUNDS[theme])
+        self.plotter.renderer.set_background(BACKGROUNDS[theme])
 
     def colour_by(self, name: str) -> None:
         """Colour by a scalar, or plainly for an empty name."""
@@ -178,7 +182,7 @@ class Scene:
         kept = (camera.GetWindowCenter(), camera.GetParallelScale(), camera.GetViewAngle())
         if part is not None:
             self._aim(camera, part)
-        self.plotter.render_window.Render()
+        self._window.Render()
         camera.SetWindowCenter(*kept[0])
         camera.SetParallelScale(kept[1])
         camera.SetViewAngle(kept[2])
@@ -202,7 +206,7 @@ class Scene:
         from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
 
         values = vtkUnsignedCharArray()
-        self.plotter.render_window.GetPixelData(0, 0, width - 1, height - 1, 0, values, 0)
+        self._window.GetPixelData(0, 0, width - 1, height - 1, 0, values, 0)
         rows = np.asarray(vtk_to_numpy(values), dtype=np.uint8).reshape(height, width, 3)
         return np.ascontiguousarray(rows[::-1])
 

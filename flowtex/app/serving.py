@@ -59,18 +59,17 @@ def serve(
         When the port or the host cannot be listened on.
     """
     with _trame_kept_quiet(), suppress(KeyboardInterrupt):
-        asyncio.run(_serve(field, host, port, open_browser, announce or print, options))
+        opened = _open if open_browser and has_display() else None
+        asyncio.run(_serve(FlowApp(field, **options), host, port, announce or print, opened))
 
 
 async def _serve(
-    field: Any,
+    app: FlowApp,
     host: str,
     port: int,
-    open_browser: bool,
     announce: Callable[[str], None],
-    options: dict[str, Any],
+    opened: Callable[[str], None] | None,
 ) -> None:
-    app = FlowApp(field, **options)
     server, secret = app.server, new_secret()
     # Defaults of trame's own command line reach it without showing up in a list of processes.
     server.cli.set_defaults(authKey=secret, nowscompress=True)
@@ -82,8 +81,8 @@ async def _serve(
         shown = host if host not in ("0.0.0.0", "::") else os.uname().nodename
         address = f"http://{shown}:{server.port}/?secret={secret}"
         announce(address)
-        if open_browser and has_display():
-            _open(address)
+        if opened is not None:
+            opened(address)
 
     server.controller.on_server_bind.add(bound)
     server.controller.on_server_ready.add(ready)
@@ -118,9 +117,13 @@ async def _serve(
 
 
 def _open(address: str) -> None:
-    """Open a browser without waiting for it."""
-    loop = asyncio.get_running_loop()
-    loop.run_in_executor(None, lambda: suppress(webbrowser.Error) and webbrowser.open(address))
+    """Open a browser without waiting for it; where there is none, the address is printed."""
+
+    def in_thread() -> None:
+        with suppress(webbrowser.Error):
+            webbrowser.open(address)
+
+    asyncio.get_running_loop().run_in_executor(None, in_thread)
 
 
 @contextmanager

@@ -14,6 +14,9 @@ from numpy.typing import NDArray
 
 __all__ = ["Shot", "coverage", "warp"]
 
+#: A change of scale below this is taken for none.
+SHIFT = 1e-3
+
 Pixels = NDArray[np.uint8]
 Matrix = NDArray[np.float64]
 
@@ -61,32 +64,37 @@ def warp(shot: Shot, view: Matrix, size: tuple[int, int], under: Shot | None = N
     view
         The new view, as in :class:`Shot`.
     size
-        Width and height of the result, in pixels.
+        Width and height of the view, in pixels.
     under
         What to show where the picture does not reach; black when left out.
 
     Returns
     -------
     numpy.ndarray
-        (height, width, 3) uint8.
+        uint8, (height, width, 3) where the picture only shifts, half of that where its scale
+        changes: smooth interpolation takes time, and there is nothing finer to show.
     """
     from PIL import Image
 
-    moved = _move(shot, view, size)
+    half = (max(size[0] // 2, 1), max(size[1] // 2, 1))
+    shifts = abs(coverage(shot, view)[1] - 1) < SHIFT
+    goal = size if shifts else half
+    moved = _move(shot, view, goal, smooth=not shifts)
     if under is None:
         return np.asarray(moved)
+    beneath = _move(under, view, half, smooth=True).resize(goal, Image.Resampling.NEAREST)
     height, width = shot.pixels.shape[:2]
     inside = Image.new("L", (width, height), 255)
-    mask = inside.transform(size, Image.Transform.AFFINE, _back(shot, view, size))
-    return np.asarray(Image.composite(moved, _move(under, view, size), mask))
+    mask = inside.transform(goal, Image.Transform.AFFINE, _back(shot, view, goal))
+    return np.asarray(Image.composite(moved, beneath, mask))
 
 
-def _move(shot: Shot, view: Matrix, size: tuple[int, int]) -> Any:
+def _move(shot: Shot, view: Matrix, size: tuple[int, int], *, smooth: bool) -> Any:
     from PIL import Image
 
-    picture = Image.fromarray(shot.pixels)
-    smooth = Image.Resampling.BILINEAR
-    return picture.transform(size, Image.Transform.AFFINE, _back(shot, view, size), resample=smooth)
+    kind = Image.Resampling.BILINEAR if smooth else Image.Resampling.NEAREST
+    back = _back(shot, view, size)
+    return Image.fromarray(shot.pixels).transform(size, Image.Transform.AFFINE, back, resample=kind)
 
 
 def _back(shot: Shot, view: Matrix, size: tuple[int, int]) -> tuple[float, ...]:

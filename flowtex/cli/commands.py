@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import App, CycloptsError, Parameter
 
 from flowtex import examples
+from flowtex.cli.checks import check_colours, check_output
 from flowtex.cli.options import DrawOptions, FieldOptions, ServeOptions, SettingFlags, UsageError
 from flowtex.errors import FieldError
 from flowtex.examples import NAMES
@@ -77,7 +78,7 @@ def show(
     size = draw.pixels()
     _need_opengl()
     field = _read(file, which)
-    _check_colours(field, options)
+    check_colours(field, options)
     from flowtex import doctor
 
     if page is not None or not doctor.has_display():
@@ -106,10 +107,10 @@ def render(
     started = time.perf_counter()
     draw = draw or DrawOptions()
     options, size = {**draw.look(), **_given(settings)}, draw.pixels()
-    _writable(output)
+    check_output(output)
     _need_opengl()
     field = _read(file, which)
-    _check_colours(field, options)
+    check_colours(field, options)
     from PIL import Image
 
     from flowtex import pictures
@@ -219,7 +220,7 @@ def _read(file: Path, which: FieldOptions | None) -> FlowField:
 
 
 def _given(settings: SettingFlags | None) -> dict[str, Any]:
-    """Settings as keyword arguments, checked."""
+    """Return settings as keyword arguments, checked."""
     from flowtex.settings import Settings
 
     values = {} if settings is None else dict(vars(settings))
@@ -269,38 +270,6 @@ def _need_app() -> None:
             '  python -m pip install "flowtex[app]"'
         )
         raise UsageError(msg)
-
-
-def _writable(output: Path) -> None:
-    """Refuse a picture that could not be written, before anything is drawn."""
-    from PIL import Image
-
-    Image.init()
-    known = {suffix for suffix, kind in Image.EXTENSION.items() if kind in Image.SAVE}
-    if output.suffix.lower() not in known:
-        what = f"{output.suffix!r} is no format" if output.suffix else "no suffix is no format"
-        msg = f"{output}: {what} that pictures are written in; use .png, .jpg, .webp or .tiff"
-        raise UsageError(msg)
-    if not output.parent.is_dir():
-        msg = f"{output}: there is no folder {str(output.parent)!r}; make it, or write elsewhere"
-        raise UsageError(msg)
-
-
-def _check_colours(field: FlowField, options: dict[str, Any]) -> None:
-    """Refuse a scalar or a colour map that there is not."""
-    known = dict.fromkeys(("speed", *field.scalars))
-    if options["scalars"] is not False and options["scalars"] not in known:
-        msg = f"--scalars is {options['scalars']!r}; there are {', '.join(known)} and none"
-        raise UsageError(msg)
-    if options["cmap"] is None:
-        return
-    import pyvista as pv
-
-    try:
-        pv.LookupTable(options["cmap"])
-    except (ValueError, KeyError, ImportError) as error:
-        msg = f"--cmap is {options['cmap']!r}; expected a colour map such as viridis or cividis"
-        raise UsageError(msg) from error
 
 
 def _nodes(field: FlowField) -> str:

@@ -2,16 +2,16 @@
 //
 // The finer octave has lattice cells of half a grain to one grain, the coarser one of one to two.
 
-vec3 flowtexHere;    // position relative to u_noiseOrigin
-float flowtexPixel;  // length that a pixel covers
-int flowtexFiner;    // octave
-float flowtexLate;   // how far the level is from the finer octave to the coarser one
+FlowtexLattice flowtexFine;
+FlowtexLattice flowtexCoarse;
+float flowtexPixel; // length that a pixel covers
+float flowtexLate;  // how far the level is from the finer octave to the coarser one
 
 vec2 flowtexLookup(vec3 displacement, float length_)
 {
   float turn = u_turn + u_wave * length_ / flowtexPixel;
-  vec3 at = flowtexHere + displacement;
-  return vec2(flowtexOctave(at, flowtexFiner, turn), flowtexOctave(at, flowtexFiner + 1, turn));
+  return vec2(flowtexOctave(flowtexFine, displacement, turn),
+              flowtexOctave(flowtexCoarse, displacement, turn));
 }
 
 // The finer octave fades early, before its grains are smaller than a pixel.
@@ -27,9 +27,10 @@ float flowtexFragment(vec3 position, vec3 dx, vec3 dy, vec2 coordinate, float sl
 {
   vec2 footprint = flowtexFootprint(dot(dx, dx), dot(dy, dy), length(cross(dx, dy)));
   flowtexPixel = u_lod ? footprint.x : u_texel;
-  flowtexHere = position - u_noiseOrigin;
   float level = clamp(log2(flowtexPixel * u_grain / u_noiseFinest), 0.0, 29.99);
-  flowtexFiner = int(level);
-  flowtexLate = level - float(flowtexFiner);
+  int octave = int(level);
+  flowtexLate = level - float(octave);
+  flowtexFine = flowtexLattice(position - u_noiseOrigin, octave);
+  flowtexCoarse = flowtexLattice(position - u_noiseOrigin, octave + 1);
   return flowtexTexture(coordinate, sliceLevel, u_spacing * flowtexPixel * u_grain);
 }

@@ -1,0 +1,45 @@
+"""What is refused before anything is drawn, with the way to mend it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from flowtex.cli.options import UsageError
+
+if TYPE_CHECKING:
+    from flowtex.field import FlowField
+
+__all__ = ["check_colours", "check_output"]
+
+
+def check_output(output: Path) -> None:
+    """Refuse a picture that could not be written, before anything is drawn."""
+    from PIL import Image
+
+    Image.init()
+    known = {suffix for suffix, kind in Image.EXTENSION.items() if kind in Image.SAVE}
+    if output.suffix.lower() not in known:
+        what = f"{output.suffix!r} is no format" if output.suffix else "no suffix is no format"
+        msg = f"{output}: {what} that pictures are written in; use .png, .jpg, .webp or .tiff"
+        raise UsageError(msg)
+    if not output.parent.is_dir():
+        msg = f"{output}: there is no folder {str(output.parent)!r}; make it, or write elsewhere"
+        raise UsageError(msg)
+
+
+def check_colours(field: FlowField, options: dict[str, Any]) -> None:
+    """Refuse a scalar or a colour map that there is not."""
+    known = dict.fromkeys(("speed", *field.scalars))
+    if options["scalars"] is not False and options["scalars"] not in known:
+        msg = f"--scalars is {options['scalars']!r}; there are {', '.join(known)} and none"
+        raise UsageError(msg)
+    if options["cmap"] is None:
+        return
+    import pyvista as pv
+
+    try:
+        pv.LookupTable(options["cmap"])
+    except (ValueError, KeyError, ImportError) as error:
+        msg = f"--cmap is {options['cmap']!r}; expected a colour map such as viridis or cividis"
+        raise UsageError(msg) from error

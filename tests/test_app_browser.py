@@ -1,0 +1,325 @@
+from __future__ import annotations
+
+import http.client
+import io
+import os
+import re
+import signal
+import socket
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import closing
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+from urllib.parse import urlsplit
+
+import numpy as np
+import pytest
+from PIL import Image
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page
+
+pytest.importorskip("trame_rca")
+
+pytestmark = [pytest.mark.browser, pytest.mark.usefixtures("opengl")]
+
+#: A small view: a processor that draws needs seconds for a whole screen of texture.
+SIZE = {"width": 480, "height": 400}
+#: Part of the view that nothing lies on, as left, top, right, bottom.
+BARE = (20, 120, 460, 300)
+PATIENCE = 20_000
+
+
+@dataclass
+class Demo:
+    """A demo that runs, and where it is."""
+
+    process: subprocess.Popen[str]
+    address: str
+
+    @property
+    def place(self) -> tuple[str, int]:
+        parts = urlsplit(self.address)
+        return str(parts.hostname), int(parts.port or 0)
+
+    @property
+    def bare(self) -> str:
+        return self.address.split("?")[0]
+
+
+def start_demo(*words: str) -> Demo:
+    command = [sys.executable, "-m", "flowtex.cli", "demo", "--no-browser", "--port", "0", *words]
+    process = subprocess.Popen(
+        command,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        env={**os.environ, "COLUMNS": "60"},
+    )
+    assert process.stdout is not None
+    said = ""
+    for line in process.stdout:
+        said += line
+        found = re.search(r"http://\S+", line)
+        if found:
+            return Demo(process, found.group())
+    pytest.fail(f"the demo ended without an address:\n{said}")
+
+
+@pytest.fixture(scope="module")
+def demo(opengl: object) -> Iterator[Demo]:
+    started = start_demo("--example", "double_gyre", "--samples", "15")
+    yield started
+    started.process.send_signal(signal.SIGINT)
+    started.process.communicate(timeout=20)
+
+
+@pytest.fixture(scope="module")
+def opened(browser: Browser, demo: Demo) -> Iterator[Page]:
+    """The page of the demo, with what it complained of and asked for in ``page.heard``."""
+    context = browser.new_context(viewport=SIZE)  # type: ignore[arg-type]
+    page = context.new_page()
+    heard: dict[str, list[str]] = {"errors": [], "asked": []}
+    page.on("console", lambda m: heard["errors"].append(m.text) if m.type == "error" else None)
+    page.on("pageerror", lambda error: heard["errors"].append(str(error)))
+    page.on("request", lambda request: heard["asked"].append(request.url))
+    page.heard = heard  # type: ignore[attr-defined]
+    page.goto(demo.address)
+    settled(page, 0)
+    yield page
+    context.close()
+
+
+def count(page: Page) -> int:
+    return int(page.get_attribute("[data-sharp]", "data-sharp") or 0)
+
+
+def settled(page: Page, before: int) -> Any:
+    """Wait for the next full picture, and return its bare part as (h, w) greys."""
+    page.wait_for_function(
+        "n => Number(document.querySelector('[data-sharp]')?.dataset.sharp) > n"
+        " && document.querySelector('[data-picture=sharp]')"
+        " && document.querySelector('.flowtex-view img').complete",
+        arg=before,
+        timeout=PATIENCE,
+    )
+    last = shot(page)
+    for _ in range(50):  # the picture itself is decoded a moment later
+        page.wait_for_timeout(60)
+        now = shot(page)
+        if np.array_equal(last, now):
+            return now
+        last = now
+    pytest.fail("the picture at rest keeps changing")
+
+
+def shot(page: Page) -> Any:
+    with Image.open(io.BytesIO(page.screenshot())) as picture:
+        return np.asarray(picture.convert("L").crop(BARE), dtype=float)
+
+
+def fineness(pixels: Any) -> float:
+    """Strength of what changes from one pixel to the next, across the flow."""
+    return float(np.abs(np.diff(pixels, axis=0)).mean())
+
+
+def difference(one: Any, other: Any) -> float:
+    return float(np.abs(one - other).mean())
+
+
+def home(page: Page) -> Any:
+    before = count(page)
+    page.get_by_label("Show the whole surface").click()
+    return settled(page, before)
+
+
+def zoom(page: Page, notches: int) -> Any:
+    before = count(page)
+    page.mouse.move(150, 220)
+    for _ in range(abs(notches)):
+        page.mouse.wheel(0, -100 if notches > 0 else 100)
+    return settled(page, before)
+
+
+def test_the_flow_appears(opened: Page) -> None:
+    assert fineness(shot(opened)) > 8
+    text = opened.inner_text(".flowtex").lower()
+    assert "double gyre" in text and "201 × 101 nodes" in text and "speed" in text
+
+
+def test_a_zoom_changes_the_picture_and_keeps_it_sharp(opened: Page) -> None:
+    whole = home(opened)
+    closer = zoom(opened, 12)
+    assert difference(whole, closer) > 8
+    assert fineness(closer) > 0.6 * fineness(whole)
+    assert "zoom 14.6" in opened.inner_text(".flowtex-figures")
+
+
+def test_without_level_of_detail_it_blurs(opened: Page) -> None:
+    home(opened)
+    sharp = zoom(opened, 20)
+    switch = opened.get_by_label("Level of detail")
+    if not switch.is_visible():
+        opened.get_by_label("Controls").click()
+    before = count(opened)
+    switch.click()
+    opened.get_by_label("Controls").click()
+    opened.wait_for_selector(".flowtex-panel", state="hidden")
+    blurred = settled(opened, before)
+    assert fineness(blurred) < 0.6 * fineness(sharp)
+    before = count(opened)
+    opened.get_by_label("Controls").click()
+    switch.click()
+    opened.get_by_label("Controls").click()
+    opened.wait_for_selector(".flowtex-panel", state="hidden")
+    assert fineness(settled(opened, before)) > 0.8 * fineness(sharp)
+
+
+def test_a_drag_carries_the_surface_along(opened: Page) -> None:
+    home(opened)
+    still = zoom(opened, 6)
+    before = count(opened)
+    opened.mouse.move(240, 200)
+    opened.mouse.down()
+    opened.mouse.move(300, 230, steps=8)
+    opened.mouse.up()
+    moved = settled(opened, before)
+    assert difference(moved[30:, 60:], still[:-30, :-60]) < 0.25 * difference(moved, still)
+
+
+def test_play_changes_one_picture_after_the_other(opened: Page) -> None:
+    home(opened)
+    # Each new picture of the stream gets an address of its own.
+    opened.evaluate(
+        """() => {
+          window.pictures = 0;
+          const image = document.querySelector('.flowtex-view img');
+          new MutationObserver(() => { window.pictures += 1 })
+            .observe(image, { attributeFilter: ['src'] });
+        }"""
+    )
+    before, still = count(opened), shot(opened)
+    opened.get_by_label("Play").click()
+    opened.wait_for_function("() => window.pictures > 4", timeout=PATIENCE)
+    one = shot(opened)
+    seen = opened.evaluate("() => window.pictures")
+    opened.wait_for_function("n => window.pictures > n + 3", arg=seen, timeout=PATIENCE)
+    other = shot(opened)
+    assert difference(one, still) > 2 and difference(one, other) > 2
+    opened.get_by_label("Pause").click()
+    settled(opened, before)
+    quiet = opened.evaluate("() => window.pictures")
+    opened.wait_for_timeout(500)
+    assert opened.evaluate("() => window.pictures") == quiet
+
+
+def test_the_theme_can_be_light(opened: Page) -> None:
+    before = count(opened)
+    opened.get_by_label("Light or dark").click()
+    settled(opened, before)
+    assert opened.locator(".flowtex-light").count() == 1
+    with Image.open(io.BytesIO(opened.screenshot())) as picture:
+        assert min(picture.convert("RGB").getpixel((4, 200))) > 200  # type: ignore[arg-type]
+
+
+def test_nothing_is_complained_of_and_nothing_comes_from_outside(opened: Page, demo: Demo) -> None:
+    heard = opened.heard  # type: ignore[attr-defined]
+    # trame's client first asks for a launcher, which there is none of.
+    errors = [text for text in heard["errors"] if "405" not in text]
+    assert not errors
+    own = ("data:", "blob:", demo.bare)
+    assert len(heard["asked"]) > 5
+    assert not [url for url in heard["asked"] if not url.startswith(own)]
+
+
+def test_a_page_loaded_again_still_opens(opened: Page) -> None:
+    assert "secret" not in opened.url
+    opened.reload()
+    opened.wait_for_selector("[data-sharp]", timeout=PATIENCE)
+    settled(opened, 0)
+
+
+def test_a_page_without_a_secret_says_so(page: Page, demo: Demo) -> None:
+    tried: list[object] = []
+    page.on("websocket", lambda link: tried.append(link))
+    for path in ("", "index.html"):
+        page.goto(demo.bare + path)
+        page.get_by_text("the secret included").wait_for()
+    assert not tried
+
+
+@pytest.mark.parametrize("secret", ["?secret=wslink-secret", "?secret=wrong"])
+def test_without_the_right_secret_there_is_no_picture(
+    page: Page, opened: Page, demo: Demo, secret: str
+) -> None:
+    received: list[bytes] = []
+
+    def listen(socket_: Any) -> None:
+        socket_.on("framereceived", lambda frame: received.append(bytes(frame)))
+
+    page.on("websocket", listen)
+    page.goto(demo.bare + secret)
+    for _ in range(100):
+        if any(b"Authentication failed" in frame for frame in received):
+            break
+        page.wait_for_timeout(50)
+    else:
+        pytest.fail("the connection was not refused")
+    # Somebody who is let in asks for pictures meanwhile: none of them comes here.
+    before = count(opened)
+    opened.get_by_label("Show the whole surface").click()
+    settled(opened, before)
+    assert sum(len(frame) for frame in received) < 2000
+    assert page.locator(".flowtex").count() == 0
+
+
+def test_other_sites_are_refused_and_the_page_may_load_nothing_of_theirs(demo: Demo) -> None:
+    def ask(path: str, origin: str) -> tuple[int, dict[str, str]]:
+        with closing(http.client.HTTPConnection(*demo.place, timeout=10)) as link:
+            link.request("GET", path, headers={"Origin": origin})
+            answer = link.getresponse()
+            answer.read()
+            return answer.status, dict(answer.getheaders())
+
+    assert ask("/ws", "http://evil.example")[0] == 403
+    assert ask("/index.html?secret=x", "http://evil.example")[0] == 403
+    status, headers = ask("/index.html?secret=x", demo.bare.rstrip("/"))
+    assert status == 200
+    assert "default-src 'self'" in headers["Content-Security-Policy"]
+    assert headers["Referrer-Policy"] == "no-referrer"
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals")
+@pytest.mark.skipif(not Path("/proc").is_dir(), reason="reads /proc")
+def test_the_secret_is_new_each_time_and_not_in_the_list_of_processes(demo: Demo) -> None:
+    secret = demo.address.split("secret=")[1]
+    assert len(secret) >= 24 and secret != "wslink-secret"
+    assert secret not in Path(f"/proc/{demo.process.pid}/cmdline").read_text(encoding="utf-8")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals")
+def test_ctrl_c_ends_it_at_once_with_a_page_open(page: Page, opengl: object) -> None:
+    demo = start_demo("--example", "double_gyre", "--samples", "3")
+    page.set_viewport_size({"width": 200, "height": 160})
+    page.goto(demo.address)
+    page.wait_for_selector("[data-picture=sharp]", timeout=PATIENCE)
+    demo.process.send_signal(signal.SIGINT)
+    rest, _ = demo.process.communicate(timeout=8)
+    assert demo.process.returncode == 0
+    assert "Traceback" not in rest and rest.count("\n") <= 4
+    with socket.socket() as link:
+        assert link.connect_ex(demo.place) != 0
+
+
+def test_a_port_in_use_is_told() -> None:
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        port = taken.getsockname()[1]
+        command = [sys.executable, "-m", "flowtex.cli", "demo", "--no-browser", "--port", str(port)]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 2
+    assert f"cannot listen on 127.0.0.1:{port}" in done.stderr and "Traceback" not in done.stderr
