@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import sys
 from typing import Any
 
 import numpy as np
@@ -11,7 +9,7 @@ import pyvista as pv
 from numpy.typing import NDArray
 
 from flowtex.camera import look
-from flowtex.doctor import prefer_headless, require_opengl
+from flowtex.doctor import has_display, prefer_headless, require_opengl
 from flowtex.plotter import FIELD_ARGUMENTS, FlowtexComponent, as_field
 
 __all__ = ["render", "show"]
@@ -79,7 +77,14 @@ def render(
     return np.asarray(picture[..., :3], dtype=np.uint8)
 
 
-def show(mesh: Any, *, size: tuple[int, int] = (1024, 768), **options: Any) -> None:
+def show(
+    mesh: Any,
+    *,
+    size: tuple[int, int] = (1024, 768),
+    zoom: float = 1.0,
+    focus: tuple[float, ...] | None = None,
+    **options: Any,
+) -> None:
     """Show a flow: in a window, or where there is no display on a page in the browser.
 
     Parameters
@@ -88,6 +93,8 @@ def show(mesh: Any, *, size: tuple[int, int] = (1024, 768), **options: Any) -> N
         What ``plotter.flowtex.add`` takes.
     size
         Width and height of the window in pixels.
+    zoom, focus
+        How far in, and on what point of the mesh, the window begins.
     **options
         Further arguments and settings of ``plotter.flowtex.add``.
 
@@ -100,19 +107,15 @@ def show(mesh: Any, *, size: tuple[int, int] = (1024, 768), **options: Any) -> N
     """
     prefer_headless()
     require_opengl()
-    if not _has_display():
+    field = as_field(mesh, **{k: options.pop(k, None) for k in FIELD_ARGUMENTS})
+    if not has_display():
         from flowtex.app import serve
 
-        serve(as_field(mesh, **{k: options.pop(k, None) for k in FIELD_ARGUMENTS}), **options)
+        serve(field, zoom=zoom, focus=focus, **options)
         return
     plotter: Any = pv.Plotter(window_size=list(size))
     plotter.disable_anti_aliasing()
     plotter.set_background("white")
-    FlowtexComponent(plotter).add(mesh, **options)
+    FlowtexComponent(plotter).add(field, **options)
+    look(plotter, field, zoom=zoom, focus=focus)
     plotter.show()
-
-
-def _has_display() -> bool:
-    if sys.platform in ("win32", "darwin"):
-        return True
-    return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))

@@ -26,6 +26,23 @@ __all__ = ["FlowHandle", "FlowtexComponent", "as_field"]
 #: Colours when there are none to ask for: a neutral grey that can go darker and lighter.
 PLAIN, CMAP = "#a0a0a0", "viridis"
 
+#: A scalar bar that keeps out of the picture's way.
+BAR: dict[str, Any] = {
+    "fmt": "%.3g",
+    "n_labels": 3,
+    "vertical": True,  # labels of a level bar would hang over its ends
+    "width": 0.08,
+    "height": 0.36,
+    "position_x": 0.02,
+    "position_y": 0.04,
+    "fill": True,
+    "background_color": "white",
+    "color": "black",
+    "title_font_size": 16,
+    "label_font_size": 14,
+    "unconstrained_font_size": True,
+}
+
 #: Arguments of ``add`` that go to the making of the field.
 FIELD_ARGUMENTS = ("vectors", "plane", "times", "periodic")
 
@@ -89,6 +106,7 @@ class FlowHandle:
             plotter.add_scalar_bar(mapper=mapper, **{"title": scalars, **bar})
         self._layer = FlowLayer(self.actor, plotter.renderer, view.textures, view.settings)
         self._layer.set_moment(*view.moment)
+        self._shown = view.time
         self._end = view.observe(self._changed)
 
     @property
@@ -162,8 +180,9 @@ class FlowHandle:
 
     def _show_moment(self) -> None:
         """Follow the time: textures at the steps around it, and the colours."""
-        if self.field.steady:
+        if self.field.steady or self._shown == self._view.time:
             return
+        self._shown = self._view.time
         self._layer.set_moment(*self._view.moment)
         if self._scalars is not None:
             self._mesh.point_data[self._scalars] = self._view.scalar(self._scalars).ravel()
@@ -259,7 +278,7 @@ class FlowtexComponent:
             "opacity": opacity,
             "lighting": (not flat) if lighting is None else lighting,
             "reset_camera": False,
-            "bar": {"fmt": "%.3g", **(scalar_bar_args or {})} if show_scalar_bar else None,
+            "bar": {**BAR, **(scalar_bar_args or {})} if show_scalar_bar else None,
         }
         if name is None:
             add_mesh["color"] = color

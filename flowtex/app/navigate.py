@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 __all__ = ["DEEPEST", "Navigator"]
 
-#: Farthest in and out, relative to the whole surface.
-DEEPEST, FARTHEST = 1e6, 0.25
+#: Farthest in and out, relative to the whole surface: single precision ends beyond.
+DEEPEST, FARTHEST = 2e4, 0.25
 #: Zoom by one notch of the wheel.
 NOTCH = 1.25
 

@@ -85,8 +85,7 @@ def show(
         return _serve(field, page, options)
     from flowtex import pictures
 
-    seen = {name: value for name, value in options.items() if name not in ("zoom", "focus")}
-    pictures.show(field, size=size, **seen)  # a window is moved by hand
+    pictures.show(field, size=size, **options)
     return 0
 
 
