@@ -65,8 +65,7 @@ def _look_at_flat(plotter: Any, field: FlowField, centre: Any, zoom: float) -> N
     toward = np.cross(right, up)
     local = (surface.points[surface.valid] - surface.center) @ np.stack([right, up]).T
     width, height = np.ptp(local, axis=0)
-    window_width, window_height = plotter.window_size
-    aspect = window_width / max(window_height, 1)
+    aspect = _aspect(plotter)
     camera = plotter.camera
     camera.focal_point = tuple(centre)
     camera.position = tuple(centre + toward * surface.extent)
@@ -74,6 +73,13 @@ def _look_at_flat(plotter: Any, field: FlowField, centre: Any, zoom: float) -> N
     camera.parallel_projection = True
     camera.parallel_scale = 0.5 * max(height, width / aspect) / (1 - 2 * MARGIN) / zoom
     plotter.camera_set = True
+
+
+def _aspect(plotter: Any) -> float:
+    """Width over height of the part of the window that the present subplot fills."""
+    width, height = plotter.window_size
+    left, bottom, right, top = plotter.renderer.GetViewport()
+    return float(width * (right - left)) / max(float(height * (top - bottom)), 1.0)
 
 
 def _look_at_curved(plotter: Any, field: FlowField, centre: Any, zoom: float) -> None:

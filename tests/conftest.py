@@ -6,12 +6,13 @@ made a NaN. Python's warnings are errors through ``filterwarnings`` in pyproject
 
 from __future__ import annotations
 
+import ctypes
 import os
 import shutil
 import subprocess
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
@@ -112,13 +113,27 @@ def opengl() -> doctor.OpenGLReport:
 
 @pytest.fixture
 def plotter(opengl: doctor.OpenGLReport) -> Iterator[pv.Plotter]:
-    """Yield an off-screen plotter of 320 x 240 without multisampling, closed afterwards."""
+    """Off-screen plotter, closed afterwards; an error that OpenGL noted fails the test."""
     import pyvista as pv
 
-    drawn = pv.Plotter(off_screen=True, window_size=[320, 240])
-    drawn.disable_anti_aliasing()
-    yield drawn
-    drawn.close()
+    shown: Any = pv.Plotter(off_screen=True, window_size=[320, 240])
+    shown.disable_anti_aliasing()
+    yield shown
+    errors = _opengl_errors(shown)
+    shown.close()
+    assert errors == [], f"OpenGL noted errors: {errors}"
+
+
+def _opengl_errors(plotter: Any) -> list[str]:
+    """Error numbers that OpenGL holds for a plotter's window; VTK checks in debug builds only."""
+    window = plotter.render_window
+    if window is None or "EGL" not in type(window).__name__:
+        return []
+    egl = ctypes.CDLL("libEGL.so.1")
+    egl.eglGetProcAddress.restype = ctypes.c_void_p
+    window.MakeCurrent()
+    ask = ctypes.CFUNCTYPE(ctypes.c_uint)(egl.eglGetProcAddress(b"glGetError"))
+    return [hex(error) for error in iter(ask, 0)]
 
 
 @pytest.fixture(scope="session")

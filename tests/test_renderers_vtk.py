@@ -235,6 +235,34 @@ def test_scalars_keep_their_colours_and_their_bar(plotter: Any) -> None:
     assert np.abs(plain[inner].astype(float) - expected[inner]).mean() < 2.0
 
 
+@pytest.mark.parametrize("noise", ["procedural", "texture"])
+def test_edges_do_not_take_the_texture_away(plotter: Any, noise: str) -> None:
+    handle = plotter.flowtex.add(gyre_field(9, 5), scalars=False, noise=noise)
+    plain = plotter.screenshot(return_img=True).astype(float)
+    handle.actor.prop.show_edges = True
+    handle.actor.prop.edge_color = "red"
+    plotter.render()
+    edged = plotter.screenshot(return_img=True).astype(float)
+    red = edged[..., 0] - edged[..., 1] > 20
+    assert 0.005 < red.mean() < 0.3
+    same = (np.abs(edged - plain).max(axis=-1) < 2)[~red]
+    assert same.mean() > 0.85
+
+
+def test_each_subplot_shows_its_whole_surface(opengl: Any) -> None:
+    plotter: Any = pv.Plotter(off_screen=True, shape=(1, 3), window_size=[600, 200], border=False)
+    for column in range(3):
+        plotter.subplot(0, column)
+        plotter.flowtex.add(gyre_field(), scalars=False)
+    picture = plotter.screenshot(return_img=True)
+    plotter.close()
+    for column in range(3):
+        part = picture[:, 200 * column : 200 * (column + 1)]
+        assert (part[:, :4] == 255).all()
+        assert (part[:, -4:] == 255).all()
+        assert part[90:110, 20:180].std() > 20
+
+
 def test_several_on_one_plotter_and_removal_leaves_nothing(plotter: Any) -> None:
     empty = plotter.screenshot(return_img=True)
     left = plotter.flowtex.add(gyre_field())

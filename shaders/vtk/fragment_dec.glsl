@@ -1,7 +1,7 @@
-in vec3 flowtexPositionVS;
-in vec2 flowtexCoordinateVS;
+in vec3 flowtexPositionVSOutput;
+in vec2 flowtexCoordinateVSOutput;
 #ifdef FLOWTEX_PAPER
-in vec2 flowtexNoiseVS;
+in vec2 flowtexNoiseVSOutput;
 #endif
 //#include common/uniforms.glsl
 //#include common/flowtex.glsl

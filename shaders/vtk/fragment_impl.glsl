@@ -1,13 +1,13 @@
   // Derivatives first: they are not defined behind a branch.
-  vec2 flowtexSliceDx = dFdx(flowtexCoordinateVS);
-  vec2 flowtexSliceDy = dFdy(flowtexCoordinateVS);
+  vec2 flowtexSliceDx = dFdx(flowtexCoordinateVSOutput);
+  vec2 flowtexSliceDy = dFdy(flowtexCoordinateVSOutput);
   float flowtexLevel = flowtexSliceLevel(flowtexSliceDx, flowtexSliceDy);
 #ifdef FLOWTEX_PAPER
-  float flowtexValue = flowtexFragment(flowtexCoordinateVS, flowtexNoiseVS, dFdx(flowtexNoiseVS),
-                                       dFdy(flowtexNoiseVS), flowtexLevel);
+  float flowtexValue = flowtexFragment(flowtexCoordinateVSOutput, flowtexNoiseVSOutput, dFdx(flowtexNoiseVSOutput),
+                                       dFdy(flowtexNoiseVSOutput), flowtexLevel);
 #else
-  float flowtexValue = flowtexFragment(flowtexPositionVS, dFdx(flowtexPositionVS),
-                                       dFdy(flowtexPositionVS), flowtexCoordinateVS, flowtexLevel);
+  float flowtexValue = flowtexFragment(flowtexPositionVSOutput, dFdx(flowtexPositionVSOutput),
+                                       dFdy(flowtexPositionVSOutput), flowtexCoordinateVSOutput, flowtexLevel);
 #endif
   // VTK has set ambientColor and diffuseColor from the property or the scalars by now, and
   // lights them next.

@@ -1,8 +1,8 @@
 in vec3 flowtexPosition;
 in vec2 flowtexCoordinate;
-out vec3 flowtexPositionVS;
-out vec2 flowtexCoordinateVS;
+out vec3 flowtexPositionVSOutput;
+out vec2 flowtexCoordinateVSOutput;
 #ifdef FLOWTEX_PAPER
 in vec2 flowtexNoise;
-out vec2 flowtexNoiseVS;
+out vec2 flowtexNoiseVSOutput;
 #endif

@@ -1,5 +1,5 @@
-  flowtexPositionVS = flowtexPosition;
-  flowtexCoordinateVS = flowtexCoordinate;
+  flowtexPositionVSOutput = flowtexPosition;
+  flowtexCoordinateVSOutput = flowtexCoordinate;
 #ifdef FLOWTEX_PAPER
-  flowtexNoiseVS = flowtexNoise;
+  flowtexNoiseVSOutput = flowtexNoise;
 #endif

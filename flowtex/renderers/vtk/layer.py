@@ -37,6 +37,8 @@ OWNER = "flowtex"
 REPLACEMENTS = (
     ("vertex", "//VTK::PositionVC::Dec", "vtk/vertex_dec.glsl"),
     ("vertex", "//VTK::PositionVC::Impl", "vtk/vertex_impl.glsl"),
+    ("geometry", "//VTK::PositionVC::Dec", "vtk/geometry_dec.glsl"),
+    ("geometry", "//VTK::PositionVC::Impl", "vtk/geometry_impl.glsl"),
     ("fragment", "//VTK::PositionVC::Dec", "vtk/fragment_dec.glsl"),
     ("fragment", "//VTK::Light::Impl", "vtk/fragment_impl.glsl"),
 )

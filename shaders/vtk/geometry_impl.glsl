@@ -1,0 +1,5 @@
+    flowtexPositionGSOutput = flowtexPositionVSOutput[i];
+    flowtexCoordinateGSOutput = flowtexCoordinateVSOutput[i];
+#ifdef FLOWTEX_PAPER
+    flowtexNoiseGSOutput = flowtexNoiseVSOutput[i];
+#endif
