@@ -27,6 +27,8 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Literal
 
+from flowtex.extras import install_extra
+
 __all__ = [
     "Check",
     "OpenGLMissingError",
@@ -128,7 +130,9 @@ def ask(command: Sequence[str], timeout: float = PROBE_SECONDS) -> OpenGLReport:
         found = OpenGLReport(**json.loads(lines[-1]))
         return found if found.usable else _unusable(found.failure)
     said = re.sub(r"\x1b\[[0-9;]*m", "", done.stderr).strip().splitlines()
-    told = f"; it said: {said[-1].rstrip('.')}" if said else ""
+    # What a process says before it crashes is VTK's advice about another library than the one
+    # that is missing.
+    told = f"; it said: {said[-1].rstrip('.')}" if said and done.returncode >= 0 else ""
     return _unusable(_ending(done.returncode) + told)
 
 
@@ -229,10 +233,10 @@ def _packages() -> list[Check]:
         try:
             checks.append(Check(name, "ok", importlib.metadata.version(name)))
         except importlib.metadata.PackageNotFoundError:
-            wanted = f'"flowtex[{extra}]"' if extra else name
+            mend = install_extra(extra) if extra else f"python -m pip install {name}"
             status: Literal["warn", "fail"] = "warn" if extra else "fail"
             use = f"not installed; only the extra {extra!r} needs it" if extra else "not installed"
-            checks.append(Check(name, status, use, f"python -m pip install {wanted}"))
+            checks.append(Check(name, status, use, mend))
     return checks
 
 

@@ -10,6 +10,7 @@ import ctypes
 import os
 import shutil
 import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -157,6 +158,9 @@ def browser(chromium: Path) -> Iterator[Browser]:
     """Yield a headless browser for all tests of the session."""
     from playwright.sync_api import sync_playwright
 
+    asked = [sys.executable, "-m", "playwright", "--version"]
+    if subprocess.run(asked, capture_output=True, check=False).returncode != 0:
+        pytest.skip("Playwright does not start: apt-get install libatomic1")
     with sync_playwright() as driver:
         started = driver.chromium.launch(executable_path=chromium)
         yield started

@@ -186,7 +186,7 @@ def test_a_missing_extra_is_told_with_its_command(
 ) -> None:
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
     code, _, err = run("demo")
-    assert code == 2 and 'pip install "flowtex[app]"' in err and "trame_rca" in err
+    assert code == 2 and 'pip install -e ".[app]"' in err and "trame_rca" in err
 
 
 def test_debug_shows_where_an_error_came_from() -> None:

@@ -71,7 +71,7 @@ def test_vtk_without_its_library_really_crashes(monkeypatch: pytest.MonkeyPatch)
     found = doctor.ask(doctor.PROBE_COMMAND)
     assert not found.usable
     assert f"ended by {signal.SIGSEGV.name}" in found.failure
-    assert "libOSMesa not found" in found.failure
+    assert "it said" not in found.failure  # VTK's advice names another library
     assert "\x1b" not in found.failure
     assert "libosmesa6" in found.remedy
     assert found.remedy.endswith("or unset VTK_DEFAULT_OPENGL_WINDOW")
@@ -184,7 +184,7 @@ def test_a_missing_extra_warns_and_a_missing_requirement_fails(
     assert checks["numpy"].status == "fail"
     assert checks["numpy"].remedy == "python -m pip install numpy"
     assert checks["trame"].status == "warn"
-    assert checks["trame"].remedy == 'python -m pip install "flowtex[app]"'
+    assert checks["trame"].remedy == 'python -m pip install -e ".[app]"'
 
 
 def test_the_report_shows_every_check_and_the_remedies_that_matter(

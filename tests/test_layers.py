@@ -23,7 +23,7 @@ ROOT_NAME = "flowtex"
 # From the bottom to the top: a module imports from lines above its own here, and never from
 # one on the same line. The empty name is the package itself.
 LAYERS: tuple[tuple[str, ...], ...] = (
-    ("errors", "progress", "_assets"),
+    ("errors", "extras", "progress", "_assets"),
     ("settings",),
     ("field",),
     ("trace",),

@@ -1,18 +1,30 @@
 #!/bin/sh
-# chromium.sh: see that there is a Chromium for the browser tests; without one they skip.
+# chromium.sh PYTHON: see that the browser tests can run; where they cannot they skip.
 set -eu
 here=$(dirname "$0")
 . "$here/common.sh"
 
-[ -z "${FLOWTEX_CHROMIUM:-}" ] || exit 0
-for name in chromium chromium-browser google-chrome; do
-    ! command -v "$name" >/dev/null 2>&1 || exit 0
-done
+python=$1
+
+has_chromium() {
+    [ -z "${FLOWTEX_CHROMIUM:-}" ] || return 0
+    for name in chromium chromium-browser google-chrome; do
+        ! command -v "$name" >/dev/null 2>&1 || return 0
+    done
+    return 1
+}
+
+needed=
+has_chromium || needed=chromium
+# Playwright brings a Node.js of its own, which wants this library.
+"$python" -m playwright --version >/dev/null 2>&1 || needed="$needed libatomic1"
+[ -n "$needed" ] || exit 0
 
 # Ubuntu's package is a link to a snap, which does not start in a container.
+# shellcheck disable=SC2086 # a list of packages
 if can_install && grep -qs '^ID=debian' /etc/os-release; then
-    apt_install chromium && exit 0
+    apt_install $needed && exit 0
 fi
-say "There is no Chromium: the browser tests will be skipped. To have them, install it
-      ($(apt_command chromium)),
-    or point FLOWTEX_CHROMIUM at another one."
+say "The browser tests will be skipped. To have them, install what they need
+      ($(apt_command $needed)),
+    or point FLOWTEX_CHROMIUM at a Chromium of your own."

@@ -20,6 +20,7 @@ from flowtex.cli.checks import check_colours, check_output
 from flowtex.cli.options import DrawOptions, FieldOptions, ServeOptions, SettingFlags, UsageError
 from flowtex.errors import FieldError
 from flowtex.examples import NAMES
+from flowtex.extras import install_extra
 from flowtex.settings import SettingsError
 
 if TYPE_CHECKING:
@@ -266,7 +267,7 @@ def _need_app() -> None:
     if missing:
         msg = (
             f"the page needs {', '.join(missing)}, not installed here. To mend it:\n"
-            '  python -m pip install "flowtex[app]"'
+            f"  {install_extra('app')}"
         )
         raise UsageError(msg)
 
