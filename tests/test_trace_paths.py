@@ -13,7 +13,7 @@ from scipy.linalg import expm
 from flowtex import FlowField
 from flowtex.examples import double_gyre_field, double_gyre_velocity
 from flowtex.trace import paths, trace
-from flowtex.trace.integrate import _Step
+from flowtex.trace.particles import Step
 
 Floats = NDArray[np.float64]
 
@@ -101,7 +101,7 @@ def test_positions_inside_a_step_are_of_third_order() -> None:
         turn = np.array(FLOWS["rotation"])
         y0 = np.array([[1.0], [0.0]])
         y1 = expm(h * turn) @ y0
-        step = _Step(y0, turn @ y0, y1, turn @ y1, np.zeros(1), np.array([h]))
+        step = Step(y0, turn @ y0, y1, turn @ y1, np.zeros(1), np.array([h]))
         exact = [expm(s * h * turn) @ y0 for s in np.linspace(0, 1, 9)]
         found = [step.at(np.array([s])) for s in np.linspace(0, 1, 9)]
         return float(np.abs(np.array(found) - exact).max())

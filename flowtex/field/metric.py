@@ -7,6 +7,10 @@ A velocity v is projected onto the tangents P_i and P_j by solving the 2 x 2 met
 
 for the contravariant components (u_i, u_j), in cells per unit of time (Forssell and Cohen 1995,
 section 3). What is normal to the surface is lost by it, and its share is returned.
+
+At a pole all nodes of the line are one point and have one velocity, the mean of theirs. Each
+keeps the component along its own line, of which the whole can be had again
+(:meth:`flowtex.field.poles.Pole.vector`), and the full speed.
 """
 
 from __future__ import annotations
@@ -16,6 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from flowtex.field.poles import Pole
 from flowtex.field.surface import Surface
 
 __all__ = ["IndexVelocity", "to_index_space"]
@@ -69,14 +74,27 @@ def to_index_space(surface: Surface, velocity: Floats) -> IndexVelocity:
     u_i = np.where(flat, _alone(along_i, g_ii, tiny), (g_jj * along_i - g_ij * along_j) / safe)
     u_j = np.where(flat, _alone(along_j, g_jj, tiny), (g_ii * along_j - g_ij * along_i) / safe)
     along = u_i[..., None] * p_i + u_j[..., None] * p_j
+    u = np.stack([u_i, u_j], axis=-1)
+    speed = np.linalg.norm(along, axis=-1)
+    for pole in surface.poles or ():
+        _at_pole(pole, velocity, u, speed)
     known = ~flat & surface.valid
     total = float(np.sum(velocity[:, known] ** 2))
     normal = float(np.sum((velocity - along)[:, known] ** 2))
     return IndexVelocity(
-        components=np.stack([u_i, u_j], axis=-1),
-        speed=np.linalg.norm(along, axis=-1),
+        components=u,
+        speed=speed,
         lost=float(np.sqrt(min(normal / total, 1.0))) if total > 0 else 0.0,
     )
+
+
+def _at_pole(pole: Pole, velocity: Floats, u: Floats, speed: Floats) -> None:
+    """Write the velocity of a pole to its nodes."""
+    v, u, speed = (pole.lines(a, 1) for a in (velocity, u, speed))
+    mean = v[:, pole.line, :-1].mean(axis=1) @ pole.plane.T
+    u[:, pole.line, :, 1 - pole.component] = 0.0
+    u[:, pole.line, :, pole.component] = pole.along(mean @ pole.plane)
+    speed[:, pole.line] = np.linalg.norm(mean, axis=-1)[:, None]
 
 
 def _alone(along: Floats, square: Floats, tiny: float) -> Floats:

@@ -5,7 +5,7 @@ central differences, and :meth:`Surface.at` interpolates with Catmull-Rom cubics
 the nodes are those same tangents, so a displacement in index space and the displacement in space
 that it stands for agree to second order however much the cells are stretched. Both work on a
 copy of the nodes with one ghost line on each side: the periodic image where the axis closes on
-itself, a quadratic extrapolation where it ends.
+itself, the far side of a pole, a quadratic extrapolation where the axis ends.
 """
 
 from __future__ import annotations
@@ -16,10 +16,15 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from flowtex.field.poles import Pole, Poles, find_poles
+
 __all__ = ["Surface"]
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
+
+#: Lines from a pole over which the size of the cells comes to be their length alone.
+BESIDE_POLE = 8
 
 
 class Surface:
@@ -48,6 +53,11 @@ class Surface:
             ]
         )
         self._usable = _usable(points, valid)
+
+    @cached_property
+    def poles(self) -> Poles | None:
+        """The lines that have collapsed to a point with the surface closed around it, if any."""
+        return find_poles(self.points, self._usable, self.valid, self.periodic)
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -85,7 +95,12 @@ class Surface:
         rows = _pad(self.points, good, self.offset[0], periodic=self.periodic[0])
         good = np.pad(good, ((1, 1), (0, 0)), mode="edge")
         columns = _pad(np.swapaxes(rows, 0, 1), good.T, self.offset[1], periodic=self.periodic[1])
-        return np.ascontiguousarray(np.swapaxes(columns, 0, 1))
+        padded = np.ascontiguousarray(np.swapaxes(columns, 0, 1))
+        for pole in self.poles or ():
+            lines = pole.lines(padded)
+            ghost, ring = (0, 2) if pole.inward > 0 else (-1, -3)
+            lines[ghost] = _over(lines[ring], pole)
+        return padded
 
     @cached_property
     def tangents(self) -> Floats:
@@ -101,14 +116,23 @@ class Surface:
     def cell_size(self) -> Floats:
         """Smooth measure of the size of the cells around each node, (J, I).
 
-        The smaller extent counts most. Collapsed nodes, as at a pole, get a hundredth of the
-        typical size, so that a length measured in cells stays finite there.
+        The smaller extent counts most. Towards a pole, where cells have no width, it is their
+        length that counts in the end. Other collapsed nodes get a hundredth of the typical
+        size, so that a length measured in cells stays finite there.
         """
         inverse = np.zeros(self.shape)
-        typical = float(np.median(np.linalg.norm(self.tangents, axis=-1)[:, self.valid])) or 1.0
-        for tangent in self.tangents:
-            length = np.maximum(np.linalg.norm(tangent, axis=-1), 1e-9 * typical)
-            inverse += length**-2.0
+        lengths = np.linalg.norm(self.tangents, axis=-1)
+        typical = float(np.median(lengths[:, self.valid])) or 1.0
+        for pole in self.poles or ():
+            near = np.maximum(
+                1 - np.abs(np.arange(self.shape[1 - pole.component]) - pole.line) / BESIDE_POLE, 0
+            )
+            share = near[:, None] if pole.component else near
+            lengths[1 - pole.component] = np.hypot(
+                lengths[1 - pole.component], share * lengths[pole.component]
+            )
+        for length in lengths:
+            inverse += np.maximum(length, 1e-9 * typical) ** -2.0
         return np.maximum(np.sqrt(2.0 / inverse), 1e-4 * typical)
 
     @cached_property
@@ -138,8 +162,8 @@ class Surface:
         Parameters
         ----------
         index
-            (i, j) in cells, (..., 2). Beyond the border of an axis that does not close the
-            surface goes on straight.
+            (i, j) in cells, (..., 2). Beyond a pole the surface goes on on its far side, and
+            straight on beyond the border of another axis that does not close.
 
         Returns
         -------
@@ -147,6 +171,8 @@ class Surface:
             Positions, (..., 3).
         """
         flat = index.reshape(-1, 2)
+        if self.poles is not None:
+            flat = self.poles.fold(flat.T).T
         result = np.zeros((len(flat), 3))
         i0, si, beyond_i, turns_i = _locate(flat[:, 0], self.shape[1], periodic=self.periodic[1])
         j0, sj, beyond_j, turns_j = _locate(flat[:, 1], self.shape[0], periodic=self.periodic[0])
@@ -194,6 +220,16 @@ def _pad(p: Floats, good: Bools, offset: Floats, *, periodic: bool) -> Floats:
         return np.concatenate([p[-2:-1] - offset, p, p[1:2] + offset])
     before, after = _beyond(p[:3], good[:3]), _beyond(p[:-4:-1], good[:-4:-1])
     return np.concatenate([before[None], p, after[None]])
+
+
+def _over(ring: Floats, pole: Pole) -> Floats:
+    """Line beyond a pole, (n + 3, 3), from the first one before it; both with ghost nodes."""
+    at = pole.opposite(np.arange(pole.cells, dtype=float))
+    k, s = np.divmod(at, 1.0)
+    first = k.astype(np.intp)
+    nodes = ring[1:-2]
+    line = sum(w[:, None] * nodes[(first + a - 1) % pole.cells] for a, w in enumerate(_cubic(s)))
+    return np.asarray(line)[np.arange(-1, pole.cells + 2) % pole.cells]
 
 
 def _beyond(p: Floats, good: Bools) -> Floats:

@@ -12,6 +12,9 @@ left is of the order of the error that bilinear velocity has itself.
 
 A flow that varies is composed only when its lags are whole numbers of its equal time steps, from
 one step up: then each piece begins at a time for which there are slices.
+
+Right beside a pole nothing can be looked up between nodes, whose paths pass it on either side.
+There, and only there, paths are integrated.
 """
 
 from __future__ import annotations
@@ -44,6 +47,11 @@ SEARCHED, BISECTIONS = 16, 6
 Some = slice | Indices
 #: Runs a function over blocks, perhaps in threads, and gives the results in order.
 Map = Callable[[Callable[[Any], Any], Iterable[Any]], Iterable[Any]]
+#: Whether positions (2, n) are where paths are to be followed, (n,).
+Within = Callable[[Floats], NDArray[np.bool_]]
+#: Follows paths from positions (2, n), by lags (n,), from time steps (n,), as long as they are
+#: there: displacements (2, n), lags covered, and lags at which they end, infinite if they do not.
+Integrate = Callable[[Singles, Singles, Indices, Within | None], tuple[Singles, Singles, Singles]]
 
 
 def landings(field: FlowField, lags: Floats, unit: Floats) -> Indices | None:
@@ -76,6 +84,8 @@ def compose(
     known: int,
     landing: Indices,
     run: Map = map,
+    polar: NDArray[np.bool_] | None = None,
+    integrate: Integrate | None = None,
 ) -> None:
     """Fill the long slices of one direction in place.
 
@@ -98,17 +108,24 @@ def compose(
         What :func:`landings` gives.
     run
         Maps a function over blocks of paths.
+    polar
+        Which paths have come right beside a pole within what is known, (T, J, I); more of them
+        are marked.
+    integrate
+        Follows paths right beside a pole.
     """
-    store = Known(field, lags, unit, slices, reach, landing)
+    polar = np.zeros(reach.shape, bool) if polar is None else polar
+    store = Known(field, lags, unit, slices, reach, landing, polar)
+    beside = None if field.surface.poles is None else integrate
     for m in range(known + 1, len(lags) + 1):
         store.judge(m - 1, always=m - 1 == known)
-        _Doubling(store, m).run(run)
+        _Doubling(store, m, beside).run(run)
 
 
 class _Doubling:
     """Paths on their way from one slice to the next, (T * J * I,) of them."""
 
-    def __init__(self, store: Known, m: int) -> None:
+    def __init__(self, store: Known, m: int, integrate: Integrate | None) -> None:
         count, nodes = len(store.reach), store.lattice.size
         before, lag = store.knots[m - 1], store.knots[m]
         self._store, self._lag, self._before = store, lag, before
@@ -116,6 +133,8 @@ class _Doubling:
         self._moved[:] = store.slices[:, m - 1]
         self._whole = lag * store.unit
         self._left = np.tile((lag - before) * store.unit, count // nodes)
+        self._integrate = integrate
+        self._stuck: list[Indices] = []
         self._suspects: list[tuple[NDArray[Any], ...]] = []
         self._step = np.maximum(np.arange(count) // nodes - store.landing[m - 1], 0)
 
@@ -126,19 +145,26 @@ class _Doubling:
         for number in range(2 * MOST_PIECES):
             longest = self._before if number >= MOST_PIECES else None
             more = np.concatenate(list(run(partial(self.follow, longest=longest), blocks)))
+            if not len(more) and self._stuck:
+                # All at once: they are few, and each call has its price.
+                stuck, self._stuck = np.concatenate(self._stuck), []
+                work = partial(self._pass, final=number >= MOST_PIECES)
+                more = np.concatenate(list(run(work, _parts(stuck))))
             if not len(more):
                 break
-            blocks = [more[k : k + BLOCK] for k in range(0, len(more), BLOCK)]
+            blocks = _parts(more)
         if self._suspects:
             self._find_ends()
 
     def follow(self, some: Some, longest: np.float32 | None) -> Indices:
         """Continue some paths by a piece, and return those that must go further."""
-        store, left = self._store, self._left[some]
-        node: Some = some
-        if store.unsteady:
-            node = np.arange(len(self._left))[some] % store.lattice.size
-        position = store.nodes[:, node] + self._moved[:, some]
+        store = self._store
+        if self._integrate is not None:
+            some = self._without_stuck(some)
+        left = self._left[some]
+        if not len(left):
+            return np.empty(0, np.intp)
+        node, position = self._where(some)
         piece = store.continued(position, left, self._step[some], longest)
         whole = self._whole[node]
         self._suspect(some, position, piece)
@@ -148,8 +174,38 @@ class _Doubling:
         self._left[some] = left
         if store.unsteady:
             self._step[some] = np.maximum(self._step[some] - piece.steps, 0)
-        more = np.flatnonzero(left > CLOSE * whole)
-        return more + some.start if isinstance(some, slice) else some[more]
+        return _numbers(some, np.flatnonzero(left > CLOSE * whole))
+
+    def _where(self, some: Some) -> tuple[Some, Singles]:
+        """Nodes at which some paths begin, and where they have come, (2, n)."""
+        node = some
+        if self._store.unsteady:
+            node = np.arange(len(self._left))[some] % self._store.lattice.size
+        return node, self._store.nodes[:, node] + self._moved[:, some]
+
+    def _without_stuck(self, some: Some) -> Some:
+        """Put aside the paths that have come right beside a pole."""
+        stuck = self._store.stuck(self._where(some)[1], self._step[some])
+        if not stuck.any():
+            return some
+        self._stuck.append(_numbers(some, np.flatnonzero(stuck)))
+        return _numbers(some, np.flatnonzero(~stuck))
+
+    def _pass(self, which: Indices, *, final: bool) -> Indices:
+        """Integrate paths by a pole, or to their end, and return those that must go further."""
+        store, left, step = self._store, self._left[which], self._step[which]
+        if self._integrate is None:
+            return which
+        node, position = self._where(which)
+        within = None if store.unsteady or final else store.stuck
+        moved, gone, ends = self._integrate(position, left, step, within)
+        self._moved[:, which] += moved
+        self._left[which] = left - gone
+        store.polar.reshape(-1)[which] = True
+        new = np.isinf(store.reach[which]) & np.isfinite(ends)
+        whole = self._whole[node]
+        store.reach[which[new]] = self._lag * (1 - (left - ends)[new] / whole[new])
+        return _numbers(which, np.flatnonzero(self._left[which] > CLOSE * whole))
 
     def _suspect(self, some: Some, position: Singles, piece: Piece) -> None:
         """Note the paths that seem to end within their piece."""
@@ -162,7 +218,7 @@ class _Doubling:
         gone &= np.isinf(store.reach[some])
         if gone.any():
             g = np.flatnonzero(gone)
-            which = g + some.start if isinstance(some, slice) else some[g]
+            which = _numbers(some, g)
             rest = np.broadcast_to(rest, gone.shape)[g]
             self._suspects.append(
                 (which, position[:, g], piece.gone[g], rest, self._left[which], self._step[which])
@@ -193,3 +249,14 @@ class _Doubling:
     def _outside(self, start: Singles, lag: Singles, step: Indices) -> NDArray[np.bool_]:
         moved = self._store.displaced(start, lag, step)
         return ~self._store.lattice.alive(start + moved, BESIDE)
+
+
+def _numbers(some: Some, which: Indices) -> Indices:
+    """Numbers of paths of which numbers among some are given."""
+    if isinstance(some, slice):
+        return np.asarray(which + some.start)
+    return some[which]
+
+
+def _parts(which: Indices) -> list[Some]:
+    return [which[k : k + BLOCK] for k in range(0, len(which), BLOCK)]

@@ -9,15 +9,20 @@ ends, of the order of the scheme, so the lags do not shorten the steps.
 A path that leaves the domain, enters a blanked cell or stops is ended there. Its reach is kept,
 and beyond it the path goes on straight: interpolation between a path that has ended and its
 neighbour that has not then stays true up to the reach.
+
+Next to a pole a particle is followed in the plane there (see :mod:`flowtex.trace.charts`): it
+changes to another chart between two steps, and what is kept are positions in index space.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from flowtex.trace.particles import Particles, Step, join
 from flowtex.trace.sampler import Sampler
 
 __all__ = ["Paths", "integrate"]
@@ -25,6 +30,7 @@ __all__ = ["Paths", "integrate"]
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
 Bools = NDArray[np.bool_]
+Numbers = NDArray[np.int8]
 
 #: Longest step in cells: a path cannot jump over a blanked cell unseen.
 LONGEST = 1.0
@@ -38,48 +44,25 @@ ROUNDING = 1e-9
 
 @dataclass(frozen=True)
 class Paths:
-    """Positions (M, N, 2) at the wanted lags, and the lag (N,) at which each path ended."""
+    """Positions at the wanted lags, and how the paths went.
+
+    Attributes
+    ----------
+    positions
+        Positions in index space, (M, N, 2) as (i, j).
+    reach
+        Lag at which each path ended, (N,), infinite where it goes on.
+    polar
+        Which paths came right beside a pole, (N,).
+    left
+        Which paths were left on the way, (N,): ``reach`` is the lag at which they were, and all
+        positions that were still wanted are the one where they were.
+    """
 
     positions: Floats
     reach: Floats
-
-
-@dataclass
-class _State:
-    """Particles still under way; the last axis is theirs."""
-
-    which: Indices
-    unit: Floats
-    rest: Floats
-    y: Floats
-    lag: Floats
-    step: Floats
-    rate: Floats
-    next: Indices
-
-    def pick(self, mask: Bools) -> _State:
-        return _State(*(getattr(self, f.name)[..., mask] for f in fields(self)))
-
-
-@dataclass
-class _Step:
-    """Steps of some particles, from (y0, k0) at lag0 to (y1, k1); the last axis is theirs."""
-
-    y0: Floats
-    k0: Floats
-    y1: Floats
-    k1: Floats
-    lag0: Floats
-    h: Floats
-
-    def pick(self, mask: Bools | Indices) -> _Step:
-        return _Step(*(getattr(self, f.name)[..., mask] for f in fields(self)))
-
-    def at(self, s: Floats) -> Floats:
-        """Position at a fraction of each step, by the cubic through both ends and slopes."""
-        r = 1 - s
-        start = r * r * (self.y0 + s * (2 * self.y0 + self.h * self.k0))
-        return np.asarray(start + s * s * (self.y1 + r * (2 * self.y1 - self.h * self.k1)))
+    polar: Bools
+    left: Bools
 
 
 def integrate(
@@ -91,6 +74,7 @@ def integrate(
     direction: float,
     tolerance: float,
     most_steps: int = 20_000,
+    within: Callable[[Floats], Bools] | None = None,
 ) -> Paths:
     """Follow particles and return where they are at the wanted lags.
 
@@ -110,15 +94,18 @@ def integrate(
         Error allowed in one step, in cells.
     most_steps
         Rounds after which the paths that are left are ended where they are.
+    within
+        Says of positions (2, N) in index space whether they are where paths are to be followed;
+        a path is left when it comes elsewhere.
     """
-    run = _Run(sampler, np.ascontiguousarray(start.T), lags, unit, direction, tolerance)
+    run = _Run(sampler, np.ascontiguousarray(start.T), lags, unit, direction, tolerance, within)
     for _ in range(most_steps):
         run.end_resting()
         if not len(run.state.which):
             break
         run.advance()
     run.end_all()
-    return Paths(np.moveaxis(run.out, 1, 2), run.reach / unit)
+    return Paths(np.moveaxis(run.out, 1, 2), run.reach / unit, run.polar, run.left)
 
 
 class _Run:
@@ -132,24 +119,34 @@ class _Run:
         unit: Floats,
         direction: float,
         tolerance: float,
+        within: Callable[[Floats], Bools] | None = None,
     ) -> None:
         count = start.shape[1]
         self.sampler, self.direction, self.tolerance = sampler, direction, tolerance
+        self.charts, self.within = sampler.charts, within
         self.lags = lags
         #: The lags and one that is never reached, for particles that have them all.
         self.wanted = np.append(lags, np.inf)
         self.out = np.repeat(start[None], len(lags), axis=0)
         self.reach = np.full(count, np.inf)
+        self.polar, self.left = np.zeros((2, count), dtype=bool)
         last = float(lags[-1])
-        self.state = _State(
+        chart, y = None, start
+        if self.charts is not None:
+            chart = self.charts.choose(start)
+            y = self.charts.enter(start, chart)
+            self.polar |= self.charts.close(start)
+        self.state = Particles(
             which=np.arange(count),
             unit=unit,
             rest=sampler.rest(unit, last),
-            y=start,
+            y=y,
             lag=np.zeros(count),
             step=last * unit,
-            rate=sampler.rate(start, np.zeros(count), direction),
+            rate=sampler.rate(y, np.zeros(count), direction, chart),
             next=np.zeros(count, dtype=np.intp),
+            chart=chart,
+            index=None if chart is None else start,
         )
 
     def end_resting(self) -> None:
@@ -180,26 +177,34 @@ class _Run:
         elif good.any():
             moved = state.pick(good)
             self._accept(moved, step.pick(good))
-            self.state = _join(moved, state.pick(~good))
+            self.state = join(moved, state.pick(~good))
         if (finished := self.state.next >= len(self.lags)).any():
             self.state = self.state.pick(~finished)
 
-    def _try(self, h: Floats) -> tuple[_Step, Floats]:
+    def _try(self, h: Floats) -> tuple[Step, Floats]:
         """One Bogacki-Shampine step, and its estimated error in cells, (N,)."""
-        y, k1, lag = self.state.y, self.state.rate, self.state.lag
+        state = self.state
+        y, k1, lag = state.y, state.rate, state.lag
         k2 = self._rate(y + (0.5 * h) * k1, lag + 0.5 * h)
         k3 = self._rate(y + (0.75 * h) * k2, lag + 0.75 * h)
         after = y + h * (2 / 9 * k1 + 1 / 3 * k2 + 4 / 9 * k3)
         k4 = self._rate(after, lag + h)
         error = h * _speed(-5 / 72 * k1 + 1 / 12 * k2 + 1 / 9 * k3 - 1 / 8 * k4)
-        return _Step(y, k1, after, k4, lag, h), error
+        return Step(y, k1, after, k4, lag, h, state.chart, state.index), error
 
     def _rate(self, position: Floats, lag: Floats) -> Floats:
-        return self.sampler.rate(position, lag, self.direction)
+        return self.sampler.rate(position, lag, self.direction, self.state.chart)
 
-    def _accept(self, state: _State, step: _Step) -> None:
+    def _index(self, position: Floats, along: Step | Particles) -> Floats:
+        """Positions in index space of positions on the charts of a step or state."""
+        if self.charts is None or along.chart is None:
+            return position
+        return self.charts.index(position, along.chart, along.index)
+
+    def _accept(self, state: Particles, step: Step) -> None:
         """Move particles by their step; those that leave the domain are ended on the way."""
-        gone = ~self.sampler.alive(step.y1)
+        index = self._index(step.y1, step)
+        gone = ~self.sampler.alive(index)
         share = np.ones(len(gone))
         if gone.any():
             share[gone] = self._border(step.pick(gone))
@@ -212,8 +217,38 @@ class _Run:
             self._go_straight(ended, out.k0 + s * (out.k1 - out.k0))
             state.next[gone] = len(self.lags)
         state.y, state.rate, state.lag = step.y1, step.k1, step.lag0 + step.h
+        if self.within is not None:
+            self._leave(state, index, gone)
+        if state.chart is not None:
+            state.index = index
+            self._change_chart(state)
 
-    def _record(self, state: _State, step: _Step, share: Floats) -> None:
+    def _leave(self, state: Particles, index: Floats, gone: Bools) -> None:
+        """Follow the paths no further that have come where they are to be left."""
+        if self.within is None:
+            return
+        left = ~(self.within(index) | gone) & (state.next < len(self.lags))
+        which = state.which[left]
+        self.left[which], self.reach[which] = True, state.lag[left]
+        for m in range(len(self.lags)):
+            due = left & (state.next <= m)
+            self.out[m][:, state.which[due]] = index[:, due]
+        state.next[left] = len(self.lags)
+
+    def _change_chart(self, state: Particles) -> None:
+        """Go on in the plane of a pole that has come close, or in index space again."""
+        if self.charts is None or state.chart is None or state.index is None:
+            return
+        self.polar[state.which[self.charts.close(state.index)]] = True
+        chart = self.charts.choose(state.index, state.chart)
+        new = np.flatnonzero(chart != state.chart)
+        if len(new):
+            state.chart = chart
+            there = chart[new]
+            state.y[:, new] = y = self.charts.enter(state.index[:, new], there)
+            state.rate[:, new] = self.sampler.rate(y, state.lag[new], self.direction, there)
+
+    def _record(self, state: Particles, step: Step, share: Floats) -> None:
         """Write the positions at the lags that the first ``share`` of the steps has passed."""
         while True:
             s = (self.wanted[state.next] * state.unit - step.lag0) / step.h
@@ -221,38 +256,36 @@ class _Run:
             if not due.any():
                 return
             if due.all() and (state.next == state.next[0]).all():
-                self.out[state.next[0]][:, state.which] = step.at(s)
+                self.out[state.next[0]][:, state.which] = self._index(step.at(s), step)
                 state.next += 1
                 continue
             d = np.flatnonzero(due)
-            where = step.at(s) if len(d) == len(s) else step.pick(d).at(s[d])
+            some = step if len(d) == len(s) else step.pick(d)
+            where = self._index(some.at(s[d]), some)
             self.out[state.next[d], :, state.which[d]] = where.T
             state.next[d] += 1
 
-    def _border(self, step: _Step) -> Floats:
+    def _border(self, step: Step) -> Floats:
         """Share of a step that ends outside which is still inside, by bisection."""
         low, high = np.zeros(len(step.h)), np.ones(len(step.h))
         for _ in range(BISECTIONS):
             middle = (low + high) / 2
-            inside = self.sampler.alive(step.at(middle))
+            inside = self.sampler.alive(self._index(step.at(middle), step))
             low, high = np.where(inside, middle, low), np.where(inside, high, middle)
         return low
 
-    def _go_straight(self, state: _State, rate: Floats) -> None:
+    def _go_straight(self, state: Particles, rate: Floats) -> None:
         """End paths where they are, and fill the lags that are left straight ahead."""
         self.reach[state.which] = state.lag
         for m, lag in enumerate(self.lags):
             left = state.next <= m
-            further = lag * state.unit[left] - state.lag[left]
-            self.out[m][:, state.which[left]] = state.y[:, left] + further * rate[:, left]
+            if left.any():
+                further = lag * state.unit[left] - state.lag[left]
+                ahead = state.y[:, left] + further * rate[:, left]
+                self.out[m][:, state.which[left]] = self._index(ahead, state.pick(left))
 
 
 def _speed(rate: Floats) -> Floats:
     """Greatest component of a rate, (N,)."""
     size = np.abs(rate)
     return np.asarray(np.maximum(size[0], size[1]))
-
-
-def _join(one: _State, two: _State) -> _State:
-    parts = ((getattr(one, f.name), getattr(two, f.name)) for f in fields(_State))
-    return _State(*(np.concatenate(p, axis=-1) for p in parts))

@@ -11,6 +11,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from flowtex.field import FlowField
+from flowtex.field.poles import Poles
+
 __all__ = ["Corners", "Lattice"]
 
 #: Of single or double precision, as it comes in.
@@ -40,15 +43,28 @@ class Lattice:
         Whether the (j, i) axis closes on itself.
     cells
         Cells that are not blanked, (J - 1, I - 1).
+    poles
+        Poles beyond which the lattice goes on, where there are any.
     """
 
     def __init__(
-        self, shape: tuple[int, int], periodic: tuple[bool, bool], cells: NDArray[np.bool_]
+        self,
+        shape: tuple[int, int],
+        periodic: tuple[bool, bool],
+        cells: NDArray[np.bool_],
+        poles: Poles | None = None,
     ) -> None:
         self.rows, self.columns = shape
         self.periodic = periodic
+        self.poles = poles
         # One entry for each lower corner, so that Corners.at finds it.
         self._open = None if cells.all() else np.pad(cells, ((0, 1), (0, 1))).ravel()
+
+    @classmethod
+    def of(cls, field: FlowField) -> Lattice:
+        """Make the lattice of a field's nodes."""
+        surface = field.surface
+        return Lattice(field.shape, field.periodic, surface.cells, surface.poles)
 
     @property
     def size(self) -> int:
@@ -57,6 +73,8 @@ class Lattice:
 
     def corners(self, position: Reals) -> Corners:
         """Cells of positions (2, N); those beyond a border are moved onto it."""
+        if self.poles is not None:
+            position = self.poles.fold(position)
         i, s = _cell(position[0], self.columns - 1, closed=self.periodic[1])
         j, t = _cell(position[1], self.rows - 1, closed=self.periodic[0])
         j *= self.columns
@@ -89,6 +107,8 @@ class Lattice:
         ``edge`` cells beyond a border still count as inside.
         """
         result = np.ones(position.shape[1], dtype=bool)
+        if self.poles is not None:
+            position = self.poles.fold(position)
         for x, cells, closed in zip(
             position, (self.columns - 1, self.rows - 1), self.periodic[::-1], strict=True
         ):

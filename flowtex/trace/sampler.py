@@ -3,18 +3,20 @@
 A sampler gives the rate of change of a particle's position in index space, (di, dj) per unit of
 lag, anywhere: bilinear in space, linear in time, constant beyond the border of the domain and
 before the first time step. Blanked nodes take the velocity of the nearest valid one, so a path
-that grazes a blanked region bends as its neighbours do until it is ended there.
+that grazes a blanked region bends as its neighbours do until it is ended there. Next to a pole it
+gives the same in the plane there (see :mod:`flowtex.trace.charts`).
 """
 
 from __future__ import annotations
 
-from typing import Protocol
+from abc import ABC, abstractmethod
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
 from flowtex.field import FlowField
+from flowtex.trace.charts import Charts, Patch, cap
 from flowtex.trace.lattice import Corners, Lattice
 
 __all__ = ["LengthSampler", "Sampler", "TimeSampler"]
@@ -27,26 +29,66 @@ STOPPED = 1e-7
 RESTING = 1e-3
 
 
-class Sampler(Protocol):
-    """What the integrator asks of a field. Positions and rates are (2, N), as (i, j)."""
+class Sampler(ABC):
+    """What the integrator asks of a field.
+
+    Positions and rates are (2, N): as (i, j), or on the charts (N,) that are given with them.
+
+    Parameters
+    ----------
+    field
+        The flow.
+    data
+        Components along i and j, and anything else that is interpolated, (T, J, I, C).
+    """
 
     #: Longest step in units of lag, so that no change in time is jumped over.
     longest: float
 
-    def rate(self, position: Floats, lag: Floats, direction: float) -> Floats:
-        """Rate of change of (i, j) by lag for particles that have come ``lag`` (N,)."""
-        ...
+    def __init__(self, field: FlowField, data: Floats) -> None:
+        lattice, parts = Lattice.of(field), _spread(data, field)
+        self._poles = poles = field.surface.poles
+        #: The charts of a surface that has poles.
+        self.charts = None if poles is None else Charts(poles)
+        #: Whether particles are inside the domain, in a cell that is not blanked.
+        self.alive = lattice.alive
+        self._patches = [Patch(lattice, parts)]
+        if poles is not None and self.charts is not None:
+            self._patches += [cap(pole, lattice, parts, self.charts.near) for pole in poles]
 
-    def alive(self, position: Floats, edge: float = ...) -> NDArray[np.bool_]:
-        """Whether particles are inside the domain, in a cell that is not blanked, (N,)."""
-        ...
+    def rate(
+        self,
+        position: Floats,
+        lag: Floats,
+        direction: float,
+        chart: NDArray[np.int8] | None = None,
+    ) -> Floats:
+        """Rate of change of positions by lag for particles that have come ``lag`` (N,)."""
+        if chart is None or not chart.any():
+            result = self._rate(self._patches[0], position, lag, direction)
+        else:
+            result = np.empty_like(position)
+            for number, patch in enumerate(self._patches):
+                some = np.flatnonzero(chart == number)
+                if len(some):
+                    found = self._rate(patch, position[:, some], lag[some], direction)
+                    result[:, some] = found
+        if self._poles is not None and chart is not None:
+            # Beyond a pole index space runs the other way.
+            turned = (chart == 0) & self._poles.mirrored(position)
+            result[self._poles.component, turned] *= -1
+        return np.negative(result, out=result) if direction < 0 else result
 
+    @abstractmethod
     def rest(self, unit: Floats, last: float) -> Floats:
         """Rate (N,) below which a particle stands still, for lags up to ``last * unit``."""
-        ...
+
+    @abstractmethod
+    def _rate(self, patch: Patch, position: Floats, lag: Floats, direction: float) -> Floats:
+        """Rate on one chart, forward."""
 
 
-class LengthSampler(Lattice):
+class LengthSampler(Sampler):
     """A steady field by arc length: the direction of the flow, at unit speed in space.
 
     Beside a critical point the speed that divides is that of the nodes around it, so a path
@@ -56,24 +98,22 @@ class LengthSampler(Lattice):
     longest = np.inf
 
     def __init__(self, field: FlowField) -> None:
-        super().__init__(field.shape, field.periodic, field.surface.cells)
         flow = field.index_velocity
-        speed = flow.speed[0]
+        speed = flow.speed[..., None]
+        super().__init__(field, np.concatenate([flow.components, speed], axis=-1))
         self._floor = max(STOPPED * float(speed.max()), np.finfo(float).tiny)
-        data = np.concatenate([flow.components[0], speed[..., None]], axis=-1)
-        self._i, self._j, self._speed = _spread(data, field)
 
-    def rate(self, position: Floats, lag: Floats, direction: float) -> Floats:
-        """Index-space direction for one unit of length."""
-        del lag
-        corners = self.corners(position)
-        speed = self.blend(self._speed, corners)
+    def _rate(self, patch: Patch, position: Floats, lag: Floats, direction: float) -> Floats:
+        """Direction for one unit of length."""
+        del lag, direction
+        corners = patch.corners(position)
+        speed = patch.blend(2, corners)
         still = speed <= self._floor
         speed[still] = np.inf
         result = np.empty_like(position)
-        np.divide(self.blend(self._i, corners), speed, out=result[0])
-        np.divide(self.blend(self._j, corners), speed, out=result[1])
-        return np.negative(result, out=result) if direction < 0 else result
+        np.divide(patch.blend(0, corners), speed, out=result[0])
+        np.divide(patch.blend(1, corners), speed, out=result[1])
+        return result
 
     def rest(self, unit: Floats, last: float) -> Floats:
         """Rate below which a particle has come to rest: those that move cover a cell a unit."""
@@ -81,13 +121,12 @@ class LengthSampler(Lattice):
         return RESTING / unit
 
 
-class TimeSampler(Lattice):
+class TimeSampler(Sampler):
     """A field by its own time; lags count from the time of step number ``step``."""
 
     def __init__(self, field: FlowField) -> None:
-        super().__init__(field.shape, field.periodic, field.surface.cells)
+        super().__init__(field, field.index_velocity.components)
         self._times = field.times
-        self._i, self._j = _spread(field.index_velocity.components, field)
         self._destination = float(field.times[-1])
         self.longest = np.inf if field.steady else float(np.diff(field.times).max())
 
@@ -97,29 +136,26 @@ class TimeSampler(Lattice):
         other.__dict__.update(self.__dict__, _destination=destination)
         return other
 
-    def rate(self, position: Floats, lag: Floats, direction: float) -> Floats:
-        """Index-space velocity at time destination + direction * lag."""
-        corners = self.corners(position)
+    def _rate(self, patch: Patch, position: Floats, lag: Floats, direction: float) -> Floats:
+        """Velocity at time destination + direction * lag."""
+        corners = patch.corners(position)
         if len(self._times) == 1:
-            result = np.stack([self.blend(self._i, corners), self.blend(self._j, corners)])
-        else:
-            result = self._at_time(corners, self._destination + direction * lag)
-        return np.negative(result, out=result) if direction < 0 else result
+            return np.stack([patch.blend(0, corners), patch.blend(1, corners)])
+        return self._at_time(patch, corners, self._destination + direction * lag)
 
     def rest(self, unit: Floats, last: float) -> Floats:
         """Rate at which a particle gets nowhere; in a flow that varies none stays at rest."""
         return np.full(len(unit), 0.0 if len(self._times) > 1 else 1e-5) / (unit * last)
 
-    def _at_time(self, corners: Corners, time: Floats) -> Floats:
+    def _at_time(self, patch: Patch, corners: Corners, time: Floats) -> Floats:
         step = np.searchsorted(self._times, time) - 1
         np.clip(step, 0, len(self._times) - 2, out=step)
         width = self._times[step + 1] - self._times[step]
         late = np.clip((time - self._times[step]) / width, 0, 1)
         result = np.empty((2, len(time)))
-        base = step * self.size
-        for row, data in zip(result, (self._i, self._j), strict=True):
-            before = self.blend(data, corners, base)
-            row[:] = self.blend(data, corners, base + self.size)
+        for component, row in enumerate(result):
+            before = patch.blend(component, corners, step)
+            row[:] = patch.blend(component, corners, step + 1)
             row -= before
             row *= late
             row += before

@@ -8,6 +8,7 @@ which is quicker.
 from __future__ import annotations
 
 import threading
+import weakref
 from collections import OrderedDict
 
 import numpy as np
@@ -19,7 +20,7 @@ from flowtex.trace.lags import choose_lags, lag_unit
 from flowtex.trace.slices import TraceSlices
 from flowtex.trace.trace import trace
 
-__all__ = ["SliceStore"]
+__all__ = ["SliceStore", "shared_store"]
 
 #: Bytes of slices that are kept, besides the ones in use.
 KEEP = 512_000_000
@@ -83,3 +84,24 @@ class SliceStore:
             self._whole = trace(self.field, lags=self.lags, unit=self.unit, compose=True)
             return self._whole.at_step(step)
         return trace(self.field, lags=self.lags, unit=self.unit, steps=[step])
+
+
+_shared: weakref.WeakValueDictionary[tuple[int, str], SliceStore] = weakref.WeakValueDictionary()
+
+
+def shared_store(field: FlowField, parameter: str) -> SliceStore:
+    """Return the store of a field, one for all that show the field at the same time.
+
+    Parameters
+    ----------
+    field
+        The flow.
+    parameter
+        What a lag measures, as for :func:`flowtex.trace`.
+    """
+    # A store keeps its field alive, so the number of the field is its own while the store lives.
+    key = (id(field), parameter)
+    store = _shared.get(key)
+    if store is None:
+        store = _shared[key] = SliceStore(field, parameter=parameter)
+    return store

@@ -10,7 +10,7 @@ import os
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,13 +18,14 @@ from scipy import ndimage
 
 from flowtex.field import FlowField
 from flowtex.progress import track
-from flowtex.trace.compose import compose
+from flowtex.trace.compose import Within, compose
 from flowtex.trace.integrate import integrate
 from flowtex.trace.sampler import Sampler
 
 __all__ = ["Found", "Work"]
 
 Floats = NDArray[np.float64]
+Singles = NDArray[np.float32]
 Indices = NDArray[np.intp]
 
 #: Particles followed together.
@@ -35,10 +36,11 @@ DIRECT = 1.0
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """Slices of one direction, (2, M + 1, T, J, I), and reach (T, J, I)."""
+    """Slices of one direction, (2, M + 1, T, J, I), reach, and what came near a pole (T, J, I)."""
 
     slices: NDArray[np.float32]
     reach: NDArray[np.float32]
+    polar: NDArray[np.bool_]
 
     @property
     def displacement(self) -> NDArray[np.float32]:
@@ -79,7 +81,9 @@ class Work:
         shape = (len(self.samplers), self.field.valid.size)
         found = {
             side: Found(
-                np.empty((2, len(self.lags) + 1, *shape), np.float32), np.zeros(shape, np.float32)
+                np.empty((2, len(self.lags) + 1, *shape), np.float32),
+                np.zeros(shape, np.float32),
+                np.zeros(shape, bool),
             )
             for side in sides
         }
@@ -97,6 +101,8 @@ class Work:
                         known,
                         landing,
                         pool.map,
+                        grid.polar,
+                        partial(self._piece, side),
                     )
                 found[side] = grid
         return found
@@ -131,6 +137,7 @@ class Work:
                 nodes = slice(at[block][0], at[block][-1] + 1)
             found[side].slices[:, 1 : known + 1, step, nodes] = moved
             found[side].reach[step, nodes] = result.reach
+            found[side].polar[step, nodes] = result.polar
 
         jobs = [
             (step, side, slice(first, first + BLOCK))
@@ -140,6 +147,28 @@ class Work:
         ]
         for _ in track(pool.map(work, jobs), len(jobs), "Tracing", show=self.progress):
             pass
+
+    def _piece(
+        self, side: float, position: Singles, lag: Singles, step: Indices, within: Within | None
+    ) -> tuple[Singles, Singles, Singles]:
+        """Follow some paths, as :data:`flowtex.trace.compose.Integrate` says."""
+        moved, gone, ends = np.empty_like(position), lag.copy(), np.empty_like(lag)
+        for number in np.unique(step) if len(self.samplers) > 1 else [0]:
+            some = step == number if len(self.samplers) > 1 else slice(None)
+            start, unit = position[:, some].T.astype(float), lag[some].astype(float)
+            found = integrate(
+                self.samplers[number],
+                start,
+                np.ones(1),
+                unit,
+                direction=side,
+                tolerance=self.tolerance,
+                within=within,
+            )
+            moved[:, some] = (found.positions[0] - start).T
+            gone[some] = np.where(found.left, found.reach, 1.0) * unit
+            ends[some] = np.where(found.left, np.inf, found.reach) * unit
+        return moved, gone, ends
 
     def _as_grids(self, paths: Found, side: float) -> Found:
         """Lay out by nodes, with the slope at lag zero; blanked nodes move as the nearest do."""
@@ -152,4 +181,4 @@ class Work:
             )
             blank = ~self.field.valid
             slices[..., blank] = slices[..., rows[blank], columns[blank]]
-        return Found(slices, paths.reach.reshape(-1, *grid))
+        return Found(slices, paths.reach.reshape(-1, *grid), paths.polar.reshape(-1, *grid))

@@ -1,0 +1,274 @@
+"""Poles: lines of nodes that lie at one point, with the surface closed around them.
+
+The first or the last line of an axis is a pole where all its nodes coincide, the other axis
+closes on itself, and the next line goes once around the point: the ends of a sphere, the middle
+of a disc. Index space goes on beyond it, on the far side:
+
+    (i, -j) is the point (i + n / 2, j)                       for n even cells around j = 0,
+
+so a path that goes over the pole has a continuous position in index space. Where the lines that
+lead to the pole are not evenly spread, the one that leads away straight ahead takes the place
+of i + n / 2.
+
+Next to a pole index space is of no use to calculate in: the cells around it have no width, and
+velocities along them no bound. There positions are better given in a plane that touches the
+surface at the pole: :meth:`Pole.place` and :meth:`Pole.index` go there and back.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Pole", "Poles", "find_poles"]
+
+Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+#: Of single or double precision, as it comes in.
+Reals = NDArray[Any]
+
+#: Nodes closer than this share of the distance to the next line lie at one point.
+TOGETHER = 1e-3
+#: Lines that lie this close to where even ones would, in cells, are even.
+EVEN = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class Pole:
+    """One pole.
+
+    Attributes
+    ----------
+    component
+        Component of a position (i, j) that counts from the pole: 0 or 1.
+    line
+        Its value at the pole.
+    inward
+        1 where it grows away from the pole, -1 where it falls.
+    plane
+        Two orthonormal rows that span the plane at the pole, (2, 3). Lines around the pole turn
+        from the first to the second.
+    rays
+        How far a cell along each line that leads to the pole goes in that plane, (n + 1, 2), in
+        the mesh's units; the last is the first again.
+    """
+
+    component: int
+    line: int
+    inward: int
+    plane: Floats
+    rays: Floats
+
+    @property
+    def cells(self) -> int:
+        """Number of cells around the pole."""
+        return len(self.rays) - 1
+
+    @cached_property
+    def size(self) -> float:
+        """Length of one cell towards the pole, the unit of positions in the plane."""
+        return float(np.linalg.norm(self.rays, axis=-1).mean())
+
+    @cached_property
+    def _angles(self) -> Floats:
+        angles = np.unwrap(np.arctan2(self.rays[:, 1], self.rays[:, 0]))
+        angles[-1] = angles[0] + 2 * np.pi
+        return angles
+
+    @cached_property
+    def _lengths(self) -> Floats:
+        return np.asarray(np.linalg.norm(self.rays, axis=-1) / self.size)
+
+    @cached_property
+    def _even(self) -> bool:
+        step = 2 * np.pi / self.cells
+        return bool(np.abs(self._angles - self._angles[0] - step * self._lines).max() < EVEN * step)
+
+    @cached_property
+    def _lines(self) -> Floats:
+        return np.arange(self.cells + 1.0)
+
+    def lines(self, nodal: NDArray[Any], axis: int = 0) -> NDArray[Any]:
+        """Nodal data, (..., J, I, ...) from ``axis`` on, as (..., lines, n + 1, ...): a view."""
+        return nodal if self.component else np.swapaxes(nodal, axis, axis + 1)
+
+    def depth(self, position: Reals) -> Reals:
+        """Cells between the pole and positions (2, N) that are not beyond it, (N,)."""
+        return np.asarray((position[self.component] - self.line) * self.inward)
+
+    def opposite(self, around: Reals) -> Reals:
+        """Index, up to one turn further, of the line straight ahead beyond the pole."""
+        if self._even:
+            return np.asarray(around + around.dtype.type(self.cells / 2))
+        turns = np.floor(around / self.cells)
+        ahead = np.interp(around - turns * self.cells, self._lines, self._angles) + np.pi
+        past = ahead > self._angles[-1]
+        found = np.interp(ahead - 2 * np.pi * past, self._angles, self._lines)
+        return np.asarray(found + (turns + past) * self.cells, dtype=around.dtype)
+
+    def place(self, position: Floats) -> Floats:
+        """Positions in the plane, (2, N) in cells, of positions (2, N) not beyond the pole."""
+        around = position[1 - self.component]
+        around = around - self.cells * np.floor(around / self.cells)
+        angle = np.interp(around, self._lines, self._angles)
+        length = self.depth(position) * np.interp(around, self._lines, self._lengths)
+        return np.stack([length * np.cos(angle), length * np.sin(angle)])
+
+    def index(self, place: Floats) -> Floats:
+        """Positions (2, N) of positions in the plane, the inverse of :meth:`place`."""
+        angle = np.arctan2(place[1], place[0])
+        angle += 2 * np.pi * np.ceil((self._angles[0] - angle) / (2 * np.pi))
+        around = np.interp(angle, self._angles, self._lines)
+        depth = np.hypot(place[0], place[1]) / np.interp(around, self._lines, self._lengths)
+        result = np.empty_like(place)
+        result[1 - self.component] = around
+        result[self.component] = self.line + self.inward * depth
+        return result
+
+    def nearest(self, position: Floats, near: Floats) -> Floats:
+        """Write positions (2, N), on either side of the pole, as close to others as can be.
+
+        What lies a quarter of a turn and more to the side is written as beyond the pole, or back.
+        """
+        a, c = 1 - self.component, self.component
+        beyond = self.depth(near) < 0
+        depth = self.depth(position) * self.inward
+        here, there = position[a], self.opposite(position[a])
+        here, there = (x + self.cells * np.rint((near[a] - x) / self.cells) for x in (here, there))
+        closer = np.abs(there - near[a]) - np.abs(here - near[a])
+        over = np.where(np.abs(closer) > EVEN, closer < 0, beyond)
+        result = np.empty_like(position)
+        # At the pole itself all lines meet.
+        result[a] = np.where(depth == 0, near[a], np.where(over, there, here))
+        result[c] = self.line + np.where(over, -depth, depth)
+        return result
+
+    def along(self, vectors: Floats) -> Floats:
+        """Components (..., n + 1) of vectors (..., 3) along each line at the pole, per cell."""
+        flat = vectors @ self.plane.T
+        square = np.sum(self.rays**2, axis=-1)
+        return np.asarray(flat @ self.rays.T / square * self.inward)
+
+    def vector(self, along: Floats) -> Floats:
+        """Vectors (..., 2) in the plane, of which :meth:`along` gives components (..., n + 1)."""
+        rays, parts = self.rays[:-1], along[..., :-1] * self.inward
+        square = np.sum(rays**2, axis=-1, keepdims=True)
+        return np.asarray(parts @ rays @ np.linalg.inv((rays / square).T @ rays))
+
+
+@dataclass(frozen=True, eq=False)
+class Poles:
+    """The poles of a surface, one or two, at the ends of one axis."""
+
+    first: Pole | None
+    last: Pole | None
+    lines: int
+
+    def __iter__(self) -> Iterator[Pole]:
+        return (pole for pole in (self.first, self.last) if pole is not None)
+
+    @property
+    def component(self) -> int:
+        """Component of a position (i, j) that leads from pole to pole."""
+        return next(iter(self)).component
+
+    def fold(self, position: Reals) -> Reals:
+        """Positions (2, N) with those beyond a pole given as the points that they are."""
+        end = self.lines - 1
+        low, high = self.first is not None, self.last is not None
+        outside = self._outside(position)
+        if not outside.any():
+            return position
+        result = np.array(position)
+        c, a = self.component, 1 - self.component
+        x, y = result[c][outside], result[a][outside]
+        if low and high:
+            # Twice over the poles is once around.
+            x -= (2 * end * np.rint((x - end / 2) / (2 * end))).astype(x.dtype)
+        for pole in self:
+            past = (x - pole.line) * pole.inward < 0
+            x[past] = 2 * pole.line - x[past]
+            y[past] = pole.opposite(y[past])
+        result[c][outside], result[a][outside] = x, y
+        return result
+
+    def mirrored(self, position: Reals) -> Bools:
+        """Where (2, N) index space is that of the far side, and runs towards a pole, not away."""
+        outside = self._outside(position)
+        if outside.any() and self.first is not None and self.last is not None:
+            outside &= np.floor(position[self.component] / (self.lines - 1)) % 2 != 0
+        return outside
+
+    def _outside(self, position: Reals) -> Bools:
+        across = position[self.component]
+        outside = np.zeros(across.shape, bool)
+        if self.first is not None:
+            outside |= across < 0
+        if self.last is not None:
+            outside |= across > self.lines - 1
+        return outside
+
+
+def find_poles(
+    points: Floats, usable: Bools, valid: Bools, periodic: tuple[bool, bool]
+) -> Poles | None:
+    """Find the poles of a surface.
+
+    Parameters
+    ----------
+    points
+        Nodes, (J, I, 3).
+    usable
+        Nodes whose coordinates can be trusted, (J, I).
+    valid
+        Nodes that carry data, (J, I); a blanked pole is a hole.
+    periodic
+        Whether the (j, i) axis closes on itself.
+    """
+    if periodic[0] == periodic[1]:
+        return None
+    axis = 0 if periodic[1] else 1
+    p, known, data = (np.swapaxes(a, 0, axis) for a in (points, usable, valid))
+    if len(p) < 3:
+        return None
+    ends = [
+        _pole(p[at], p[beside], 1 - axis, len(p) - 1 if at else 0)
+        if data[at].all() and known[at].all() and known[beside].all()
+        else None
+        for at, beside in ((0, 1), (-1, -2))
+    ]
+    if ends == [None, None]:
+        return None
+    return Poles(ends[0], ends[1], len(p))
+
+
+def _pole(line: Floats, ring: Floats, component: int, at: int) -> Pole | None:
+    """Judge one line, (n + 1, 3), by itself and the next."""
+    middle = line[:-1].mean(axis=0)
+    spokes = ring - middle
+    lengths = np.linalg.norm(spokes, axis=-1)
+    if len(line) < 4 or np.linalg.norm(line - middle, axis=-1).max() > TOGETHER * lengths.min():
+        return None
+    if np.linalg.norm(spokes[-1] - spokes[0]) > TOGETHER * lengths.min():
+        return None  # longitude on a flat map
+    spokes[-1] = spokes[0]
+    normal = np.cross(spokes[:-1], spokes[1:]).sum(axis=0)
+    area = np.linalg.norm(normal)
+    if area <= TOGETHER * lengths.min() ** 2:
+        return None
+    normal /= area
+    right = spokes[0] - (spokes[0] @ normal) * normal
+    if np.linalg.norm(right) <= TOGETHER * lengths[0]:
+        return None
+    right /= np.linalg.norm(right)
+    plane = np.stack([right, np.cross(normal, right)])
+    rays = spokes @ plane.T
+    turned = np.diff(np.unwrap(np.arctan2(rays[:, 1], rays[:, 0])))
+    if not ((turned > 0).all() and abs(turned.sum() - 2 * np.pi) < 1):
+        return None
+    return Pole(component, at, -1 if at else 1, plane, rays)

@@ -1,0 +1,162 @@
+"""Coordinates in which paths are followed: index space, and next to a pole the plane there.
+
+Cells around a pole have no width, and in index space the velocity there has no bound. In the
+plane that touches the surface at the pole both are ordinary, so a path that comes within a few
+cells of a pole is followed in that plane, across the pole if need be. What is kept of it are
+positions in index space again.
+
+Chart 0 is index space; the others are the planes of the poles, in cells towards the pole.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flowtex.field.poles import Pole, Poles
+from flowtex.trace.lattice import Corners, Lattice
+
+__all__ = ["Charts", "Patch", "cap"]
+
+Floats = NDArray[np.float64]
+Numbers = NDArray[np.int8]
+
+#: Cells from a pole within which a path is followed in the plane: so many at least, and up to
+#: where cells are this share as wide as long.
+NEAR, WIDE = 6, 0.5
+#: Cells from a pole within which nothing is looked up between nodes.
+CLOSE = 4
+#: How many more it takes to leave it again, and how many more hold data.
+LEAVE, SPARE = 1, 3
+
+
+class Patch(NamedTuple):
+    """Nodal data on one chart, each array flat, of sets behind each other."""
+
+    lattice: Lattice
+    data: list[Floats]
+    pole: Pole | None = None
+    #: First line of the lattice that counts from the pole.
+    offset: int = 0
+
+    def corners(self, position: Floats) -> Corners:
+        """Cells of positions (2, N) of the chart."""
+        if self.pole is not None:
+            position = self.pole.index(position)
+            position[self.pole.component] -= self.offset
+        return self.lattice.corners(position)
+
+    def blend(self, number: int, corners: Corners, step: NDArray[np.intp] | int = 0) -> Floats:
+        """Interpolate one of the arrays, in the set of the number ``step``."""
+        return self.lattice.blend(self.data[number], corners, step * self.lattice.size)
+
+
+class Charts:
+    """The charts of a surface with poles.
+
+    Parameters
+    ----------
+    poles
+        The poles.
+    """
+
+    def __init__(self, poles: Poles) -> None:
+        self._poles = poles
+        cells = next(iter(poles)).cells
+        #: Cells from a pole within which its plane is used.
+        self.near = min(max(NEAR, int(WIDE * cells / (2 * np.pi))), max((poles.lines - 1) // 3, 1))
+
+    def choose(self, index: Floats, chart: Numbers | None = None) -> Numbers:
+        """Charts (N,) for positions (2, N) in index space; those of before stay a little longer."""
+        index = self._poles.fold(index)
+        result = np.zeros(index.shape[1], np.int8)
+        for number, pole in enumerate(self._poles, 1):
+            stay = 0 if chart is None else LEAVE * (chart == number)
+            result[pole.depth(index) < self.near + stay] = number
+        return result
+
+    def close(self, index: Floats) -> NDArray[np.bool_]:
+        """Whether positions (2, N) in index space are right beside a pole, (N,)."""
+        index = self._poles.fold(index)
+        close = [pole.depth(index) < min(CLOSE, self.near) for pole in self._poles]
+        return np.asarray(np.any(close, axis=0))
+
+    def enter(self, index: Floats, chart: Numbers) -> Floats:
+        """Coordinates (2, N) on charts (N,) of positions (2, N) in index space."""
+        result = np.array(index)
+        for number, pole in enumerate(self._poles, 1):
+            some = chart == number
+            if some.any():
+                result[:, some] = pole.place(self._poles.fold(index[:, some]))
+        return result
+
+    def index(self, position: Floats, chart: Numbers, near: Floats | None = None) -> Floats:
+        """Positions (2, N) in index space of coordinates (2, N) on charts (N,).
+
+        Where positions ``near`` (2, N) are given, those on the planes are written as close to
+        them as can be, beyond the pole if need be.
+        """
+        result = np.array(position)
+        for number, pole in enumerate(self._poles, 1):
+            some = chart == number
+            if some.any():
+                found = pole.index(position[:, some])
+                if near is not None:
+                    # A path as long as from pole to pole is written anew.
+                    beside = near[:, some]
+                    far = np.abs(pole.depth(beside)) >= self._poles.lines - 1
+                    beside = np.where(far, self._poles.fold(beside), beside)
+                    found = pole.nearest(found, beside)
+                result[:, some] = found
+        return result
+
+
+def cap(pole: Pole, lattice: Lattice, data: list[Floats], near: int) -> Patch:
+    """Lay out the data around a pole on its plane.
+
+    Parameters
+    ----------
+    pole
+        The pole.
+    lattice
+        The nodes of the whole surface.
+    data
+        Components along i and j, in cells, and anything else, each (sets * J * I,).
+    near
+        Cells from the pole within which the plane is used.
+    """
+    grid = (-1, lattice.rows, lattice.columns)
+    lines = (lattice.rows if pole.component else lattice.columns) - 1
+    depth = min(near + LEAVE + SPARE, lines)
+    first = pole.line if pole.inward > 0 else pole.line - depth
+    # From here on with the lines around the pole as the second axis.
+    strips = [pole.lines(a.reshape(grid), 1)[:, first : first + depth + 1] for a in data]
+    strips[:2] = _to_plane(pole, strips[1 - pole.component], strips[pole.component])
+    strips = [pole.lines(a, 1) for a in strips]
+    rows, columns = strips[0].shape[1:]
+    cells = np.ones((rows - 1, columns - 1), bool)
+    return Patch(
+        Lattice((rows, columns), lattice.periodic, cells),
+        [np.ascontiguousarray(a).ravel() for a in strips],
+        pole,
+        first,
+    )
+
+
+def _to_plane(pole: Pole, around: Floats, across: Floats) -> list[Floats]:
+    """Velocities in the plane, two of (T, lines, n + 1), from those along the lines."""
+    rays = pole.rays / pole.size
+    turn = (np.roll(rays[:-1], -1, axis=0) - np.roll(rays[:-1], 1, axis=0)) / 2
+    turn = np.concatenate([turn, turn[:1]])
+    at = 0 if pole.inward > 0 else -1
+    depth = np.arange(around.shape[1], dtype=float)[:, None]
+    depth = depth if pole.inward > 0 else depth[::-1]
+    still = pole.vector(across[:, at]) / pole.size
+    found = []
+    for c in range(2):
+        v = pole.inward * across * rays[:, c] + around * depth * turn[:, c]
+        v[:, at] = still[:, c, None]
+        found.append(v)
+    return found

@@ -1,0 +1,281 @@
+"""Paths over the poles: of a rotation about any axis, of a uniform flow on a disc, of a wind."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from measures import streaks
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+import flowtex
+from flowtex import FlowField, TraceSlices
+from flowtex.settings import Settings
+from flowtex.textures import TextureSet
+from flowtex.trace import SliceStore, paths, trace
+
+Floats = NDArray[np.float64]
+
+X, Z, TILTED = (1.0, 0.0, 0.0), (0.0, 0.0, 1.0), (0.6, 0.0, 0.8)
+
+
+def frames(rows: int, columns: int) -> tuple[Floats, Floats, Floats]:
+    """Nodes of a unit sphere, a meridian short of closing, and what points east and north."""
+    longitude, latitude = np.meshgrid(
+        np.arange(columns) * 2 * np.pi / columns, np.linspace(1, -1, rows) * np.pi / 2
+    )
+    c, s, cc, ss = (f(a) for a in (longitude, latitude) for f in (np.cos, np.sin))
+    up = np.stack([cc * c, cc * s, ss], axis=-1)
+    return up, np.stack([-s, c, 0 * c], axis=-1), np.stack([-ss * c, -ss * s, cc], axis=-1)
+
+
+def rotation(
+    axis: tuple[float, ...], rows: int = 37, columns: int = 72, *, turned: bool = False
+) -> FlowField:
+    """Solid rotation of a sphere by one radian in a unit of time."""
+    points = frames(rows, columns)[0]
+    if turned:
+        points = np.swapaxes(points, 0, 1)
+    return FlowField.from_arrays(points, np.cross(axis, points))
+
+
+def exact(field: FlowField, axis: tuple[float, ...], lag: float, *, forward: bool) -> Floats:
+    angle = lag if forward else -lag
+    turned = Rotation.from_rotvec(angle * np.array(axis)).apply(field.points.reshape(-1, 3))
+    return np.asarray(turned.reshape(field.points.shape))
+
+
+def places(field: FlowField, slices: TraceSlices, m: int, *, forward: bool = False) -> Floats:
+    moved = slices.forward if forward else slices.displacement
+    assert moved is not None
+    return field.surface.at(slices.nodes + moved[0, m])
+
+
+# --- against the exact rotation -------------------------------------------------------------
+
+
+@pytest.mark.parametrize("compose", [False, True])
+@pytest.mark.parametrize(("columns", "turned"), [(72, False), (72, True), (71, False)])
+def test_a_rotation_goes_round_in_circles_over_the_poles(
+    columns: int, turned: bool, compose: bool
+) -> None:
+    field = rotation(X, columns=columns, turned=turned)
+    row = np.pi / 36
+    lags = row * 0.25 * 2.0 ** np.arange(7)
+    slices = trace(field, lags=lags, parameter="time", compose=compose)
+    assert slices.forward_reach is not None
+    # All paths go on but those of the nodes on the axis, on the equator.
+    ended = np.isfinite(slices.reach[0]) | np.isfinite(slices.forward_reach[0])
+    assert ended.sum() <= 4
+    assert np.abs(field.points[ended] @ X).min(initial=1) > 0.99
+    for m, lag in enumerate(lags):
+        for forward in (False, True):
+            there = exact(field, X, lag, forward=forward)
+            away = np.linalg.norm(places(field, slices, m, forward=forward) - there, axis=-1) / row
+            assert np.quantile(away, 0.99) < 0.01 + 0.004 * lag / row
+            assert away.max() < 0.02 + 0.01 * lag / row
+
+
+def test_by_arc_length_the_same_circles_are_followed() -> None:
+    field = rotation(X)
+    start = np.array([[9.0, 0.0], [30.3, 1.7], [7.5, 4.2], [40.1, 9.9]])
+    lags = np.linspace(0.02, 1.2, 30)
+    found = paths(field, start, lags, tolerance=1e-4)
+    assert found.polar.tolist() == [True, True, False, False]
+    assert np.isinf(found.reach).all()
+    begin = field.surface.at(start)
+    angle = -lags[:, None] / np.hypot(begin[:, 1], begin[:, 2])
+    for n in range(4):
+        turned = Rotation.from_rotvec(angle[:, n, None] * np.array(X)).apply(begin[n])
+        away = np.linalg.norm(field.surface.at(found.positions[:, n]) - turned, axis=-1)
+        assert away.max() < 0.03 * np.pi / 36
+
+
+@pytest.mark.parametrize("parameter", ["time", "arclength"])
+def test_a_rotation_about_the_poles_keeps_to_its_latitudes(parameter: str) -> None:
+    field = rotation(Z)
+    slices = trace(field, parameter=parameter)
+    moved = slices.displacement[0][:, 1:-1]
+    np.testing.assert_allclose(moved[..., 1], 0, atol=1e-2)
+    # The poles stand still, and their rows go by more cells the closer they are.
+    assert not slices.displacement[0][:, [0, -1]].any()
+    if parameter == "time":
+        turned = np.broadcast_to(-slices.lags[:, None, None] * 36 / np.pi, moved.shape[:3])
+        np.testing.assert_allclose(moved[..., 0], turned, rtol=3e-3)
+
+
+def test_a_rotation_that_varies_is_composed_over_the_poles() -> None:
+    points = frames(37, 72)[0]
+    times = np.linspace(0, 1, 17)
+    pace = 1 + 0.5 * times
+    field = FlowField.from_arrays(
+        points, np.cross(X, points) * pace[:, None, None, None], times=times
+    )
+    slices = trace(field, lags=times[1] * 2.0 ** np.arange(-1, 4), compose=True)
+    row = np.pi / 36
+    for step, m in ((16, 4), (9, 3)):
+        lag = slices.lags[m]
+        angle = lag + 0.25 * (times[step] ** 2 - (times[step] - lag) ** 2)
+        there = exact(field, X, angle, forward=False)
+        moved = slices.displacement[step, m]
+        away = np.linalg.norm(field.surface.at(slices.nodes + moved) - there, axis=-1) / row
+        assert np.quantile(away, 0.99) < 0.06
+        assert away.max() < 0.1
+
+
+# --- other ways over a pole -----------------------------------------------------------------
+
+
+@pytest.mark.parametrize("reverse", [False, True])
+def test_a_uniform_flow_crosses_a_disc_and_ends_at_its_rim(reverse: bool) -> None:
+    angle = np.linspace(0, 2 * np.pi, 49)[:-1]
+    r, a = np.meshgrid(np.linspace(0, 1, 17), angle, indexing="ij")
+    points = np.stack([r * np.cos(a), r * np.sin(a)], axis=-1)
+    points = points[::-1] if reverse else points
+    wind = np.array([0.8, 0.6])
+    field = FlowField.from_arrays(points, np.broadcast_to(wind, points.shape))
+    slices = trace(field, lags=0.05 * 2.0 ** np.arange(6), unit=1.0)
+    p = field.points[..., :2]
+    along, across = p @ wind, p @ [-0.6, 0.8]
+    chord = np.sqrt(np.maximum(1 - across**2, 0))
+    whole = np.abs(across) < 0.97
+    for found, expected in (
+        (slices.reach[0], chord + along),
+        (slices.forward_reach, chord - along),
+    ):
+        assert found is not None
+        reach = np.minimum(found.reshape(field.shape), 1.6)
+        np.testing.assert_allclose(reach[whole], np.minimum(expected, 1.6)[whole], atol=0.03)
+    for m in (2, 4):
+        inside = slices.reach[0] > slices.lags[m]
+        there = p - slices.lags[m] * wind
+        np.testing.assert_allclose(
+            places(field, slices, m)[inside][:, :2], there[inside], atol=1e-2
+        )
+
+
+def test_a_path_straight_over_a_pole_has_a_continuous_index() -> None:
+    field = rotation(X)
+    lags = np.linspace(0.01, 0.5, 60)
+    for i in (18.0, 54.0):
+        found = paths(field, [[i, 3.0]], lags, parameter="time", forward=bool(i < 36))
+        np.testing.assert_allclose(found.positions[:, 0, 0], i, atol=1e-6)
+        expected = 3 - lags * 36 / np.pi
+        np.testing.assert_allclose(found.positions[:, 0, 1], expected, atol=1e-2)
+
+
+def test_paths_that_begin_beyond_a_pole_are_those_of_the_other_side() -> None:
+    field = rotation(TILTED)
+    start = np.array([[5.3, 2.4], [17.0, 9.5], [66.0, 14.0]])
+    over = start * [1, -1] + [36, 0]
+    lags = [0.05, 0.2, 0.6]
+    here, there = (
+        field.surface.at(paths(field, s, lags, parameter="time", tolerance=1e-5).positions)
+        for s in (start, over)
+    )
+    np.testing.assert_allclose(here, there, atol=1e-3)
+
+
+def test_a_wedge_that_is_not_closed_ends_its_paths() -> None:
+    r, a = np.meshgrid(np.linspace(0, 1, 17), np.linspace(0, np.pi, 25), indexing="ij")
+    points = np.stack([r * np.cos(a), r * np.sin(a)], axis=-1)
+    field = FlowField.from_arrays(points, np.broadcast_to([0.0, 1.0], points.shape), periodic="")
+    assert field.surface.poles is None
+    slices = trace(field, lags=[0.1, 0.4, 1.6], unit=1.0, compose=False)
+    assert np.isfinite(slices.reach).all()
+
+
+# --- textures -------------------------------------------------------------------------------
+
+
+def test_all_nodes_of_a_pole_hold_the_same_slopes() -> None:
+    field = rotation(TILTED)
+    textures = TextureSet.build(SliceStore(field), Settings())
+    rows, columns = textures.geometry.rows, textures.geometry.columns
+    layers = textures.layers()
+    for row, up in ((rows.before, 1.0), (rows.before + rows.nodes - 1, -1.0)):
+        line = layers[:, row, columns.before : columns.before + columns.nodes]
+        np.testing.assert_allclose(line, np.broadcast_to(line[:, :1], line.shape), atol=2e-3)
+        direction = np.cross(TILTED, [0, 0, up])
+        np.testing.assert_allclose(
+            line[0, 0, :3],
+            textures.geometry.frame @ direction / np.linalg.norm(direction),
+            atol=1e-6,
+        )
+
+
+def test_slopes_change_as_little_over_the_pole_as_elsewhere() -> None:
+    field = rotation(X, 61, 120)
+    textures = TextureSet.build(SliceStore(field), Settings())
+    rows, columns = textures.geometry.rows, textures.geometry.columns
+    for layer in textures.layers()[:, rows.before :, columns.before :]:
+        over = np.concatenate([layer[8:0:-1, 60:120], layer[:9, :60]])[..., :3]
+        steps = np.linalg.norm(np.diff(over, axis=0), axis=-1)
+        assert steps[6:10].max() < 2 * steps.max(where=np.arange(16)[:, None] < 6, initial=0) + 1e-2
+
+
+def test_the_first_meridian_is_also_the_last() -> None:
+    field = rotation(TILTED)
+    slices = trace(field)
+    for moved in (slices.displacement, slices.forward):
+        assert moved is not None
+        there = field.surface.at(slices.nodes + moved[0])
+        gap = np.linalg.norm(there[:, :, 0] - there[:, :, -1], axis=-1)
+        step = np.linalg.norm(there[:, :, 1] - there[:, :, 0], axis=-1)
+        assert gap.max() < 0.02 * np.median(step)
+
+
+# --- pictures -------------------------------------------------------------------------------
+
+
+def over_the_pole(field: FlowField, zoom: float, up: float = 1.0) -> NDArray[Any]:
+    """Picture of a pole from straight above, y upwards."""
+    camera = [(0.0, 0.0, up * (1 + 2.2 / zoom)), (0.0, 0.0, up), (0.0, 1.0, 0.0)]
+    return flowtex.render(
+        field, size=(140, 140), camera_position=camera, scalars=False, lighting=False
+    )
+
+
+@pytest.mark.parametrize(("zoom", "up"), [(4, 1.0), (16, -1.0), (64, 1.0)])
+def test_streaks_go_straight_through_the_pole(opengl: Any, zoom: float, up: float) -> None:
+    picture = over_the_pole(rotation(X, 61, 120), zoom, up)
+    mask = np.zeros(picture.shape[:2], bool)
+    mask[12:-12, 12:-12] = True
+    ones = np.ones(mask.shape)
+    for part in (mask, mask & (np.hypot(*(np.indices(mask.shape) - 69.5)) < 30)):
+        found = streaks(picture, 0 * ones, ones, part)
+        assert found["angle"] < 3.0
+        assert found["coherence"] > 0.85
+
+
+def test_the_picture_does_not_depend_on_where_the_pole_is(opengl: Any) -> None:
+    """The same flow with the poles of the mesh here or a quarter of the way round."""
+    points = frames(61, 120)[0]
+    pictures = []
+    for nodes in (points, points[..., [2, 0, 1]]):
+        velocity = np.cross([0.3, 0.1, 0.2], nodes) + 0.8 * nodes[..., [2, 0, 1]] * nodes
+        field = FlowField.from_arrays(nodes, velocity)
+        pictures.append(over_the_pole(field, 4.0).mean(axis=-1).ravel())
+    assert np.corrcoef(*pictures)[0, 1] > 0.93
+
+
+def test_wind_over_a_pole(data_dir: Path, opengl: Any) -> None:
+    netcdf = pytest.importorskip("netCDF4")
+    with netcdf.Dataset(data_dir / "eraint_uvz.nc") as data:
+        data.set_auto_mask(False)
+        u, v = (data[name][0, 1][::4, ::4].astype(float) for name in "uv")
+    points, east, northward = frames(*u.shape)
+    field = FlowField.from_arrays(points, u[..., None] * east + v[..., None] * northward)
+    slices = trace(field)
+    assert (slices.reach[0, 0] > slices.lags[-2]).all()
+    picture = over_the_pole(field, 64)
+    wind = field.velocity[0, 0, :-1].mean(axis=0)
+    mask = np.zeros(picture.shape[:2], bool)
+    mask[30:-30, 30:-30] = True
+    ones = np.ones(mask.shape)
+    found = streaks(picture, wind[0] * ones, wind[1] * ones, mask)
+    assert found["angle"] < 10
+    assert found["coherence"] > 0.85
