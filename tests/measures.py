@@ -1,4 +1,9 @@
-"""What a picture shows of a flow: the angle of its streaks, and their coherence."""
+"""What a picture shows of a flow, measured from its pixels alone.
+
+Pictures are (H, W) or (H, W, 3), row 0 at the top. The flow at each pixel is ``u`` to the right
+and ``v`` up; only its direction counts. ``mask`` (H, W) says which pixels to judge: not the
+background, not a border of a dozen pixels, and not where the flow nearly stands.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +14,12 @@ from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter, map_coordinates, sobel
 
 Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+#: Standard deviation in pixels of the window in which streaks are told from noise.
+WINDOW = 4.0
+#: Pixels over which the picture's own shades are taken out before grains are measured.
+SHADES = 20.0
 
 
 def grey(image: NDArray[Any]) -> Floats:
@@ -17,14 +28,14 @@ def grey(image: NDArray[Any]) -> Floats:
     return np.asarray(image[..., :3].mean(axis=-1) if image.ndim == 3 else image)
 
 
-def streaks(image: NDArray[Any], u: Floats, v: Floats, mask: NDArray[np.bool_]) -> dict[str, float]:
-    """Mean angle in degrees between streaks and flow (v is up), and coherence from 0 to 1.
+def streaks(image: NDArray[Any], u: Floats, v: Floats, mask: Bools) -> dict[str, float]:
+    """Mean angle in degrees between streaks and flow, and coherence from 0 to 1.
 
     Both come from the structure tensor, averaged over a Gaussian of four pixels.
     """
     smooth = gaussian_filter(grey(image), 0.7)
     right, down = sobel(smooth, axis=1), sobel(smooth, axis=0)
-    xx, yy, xy = (gaussian_filter(a, 4.0) for a in (right * right, down * down, right * down))
+    xx, yy, xy = (gaussian_filter(a, WINDOW) for a in (right * right, down * down, right * down))
     along = 0.5 * np.arctan2(2 * xy, xx - yy) + np.pi / 2
     off = np.abs((along - np.arctan2(-v, u) + np.pi / 2) % np.pi - np.pi / 2)
     coherence = np.hypot(xx - yy, 2 * xy) / np.maximum(xx + yy, 1e-12)
@@ -34,19 +45,73 @@ def streaks(image: NDArray[Any], u: Floats, v: Floats, mask: NDArray[np.bool_]) 
     }
 
 
-def fineness(image: NDArray[Any], mask: NDArray[np.bool_]) -> float:
+def grain(image: NDArray[Any], u: Floats, v: Floats, mask: Bools) -> dict[str, float]:
+    """Distance in pixels, along the flow and across it, at which grey values agree by half."""
+    g = grey(image)
+    g = g - gaussian_filter(g, SHADES)
+    rows, columns = np.nonzero(mask)
+    pick = np.random.default_rng(0).integers(0, len(rows), 20_000)
+    rows, columns = rows[pick], columns[pick]
+    speed = np.maximum(np.hypot(u, v), 1e-12)
+    right, down = (u / speed)[rows, columns], (-v / speed)[rows, columns]
+    return {
+        "along": _half(g, rows, columns, right, down),
+        "across": _half(g, rows, columns, -down, right),
+    }
+
+
+def _half(g: Floats, rows: Any, columns: Any, right: Floats, down: Floats) -> float:
+    here = g[rows, columns]
+    before = 1.0
+    for distance in range(1, 61):
+        at = [rows + distance * down, columns + distance * right]
+        there = map_coordinates(g, at, order=1, mode="nearest")
+        now = float((here * there).mean() / (here * here).mean())
+        if now < 0.5:
+            return distance - (0.5 - now) / (before - now)
+        before = now
+    return 60.0
+
+
+def fineness(image: NDArray[Any], mask: Bools) -> float:
     """Mean change from pixel to pixel over the deviation: how fine the grain is."""
     g = grey(image)
     step = np.hypot(np.diff(g, axis=0)[:, :-1], np.diff(g, axis=1)[:-1])
     return float(step[mask[:-1, :-1]].mean() / g[mask].std())
 
 
+def aliasing(image: NDArray[Any], reference: NDArray[Any], mask: Bools) -> float:
+    """Root mean square of the error over the deviation of the reference.
+
+    The reference is the same view, drawn several times as large and averaged.
+    """
+    a, b = grey(image)[mask], grey(reference)[mask]
+    return float(np.sqrt(np.mean((a - b) ** 2)) / b.std())
+
+
+def averaged(image: NDArray[Any], times: int) -> Floats:
+    """Mean of blocks of ``times`` by ``times`` pixels."""
+    g = grey(image)
+    rows, columns = (n // times for n in g.shape)
+    blocks = g[: rows * times, : columns * times].reshape(rows, times, columns, times)
+    return np.asarray(blocks.mean(axis=(1, 3)))
+
+
 def carried(
-    first: NDArray[Any], second: NDArray[Any], dx: Floats, dy: Floats, margin: int
+    first: NDArray[Any],
+    second: NDArray[Any],
+    dx: Floats,
+    dy: Floats,
+    margin: int | Bools,
 ) -> float:
-    """Correlation of a picture, moved by (dx, dy) pixels right and down, with the next one."""
+    """Correlation of a picture, moved by (dx, dy) pixels right and down, with the next one.
+
+    ``margin`` is a number of pixels to leave out along the border, or a mask.
+    """
     a, b = grey(first), grey(second)
     rows, columns = np.indices(a.shape)
     moved = map_coordinates(a, [rows - dy, columns - dx], order=1, mode="nearest")
-    inside = (slice(margin, -margin), slice(margin, -margin))
+    inside: Any = margin
+    if isinstance(margin, int):
+        inside = (slice(margin, -margin), slice(margin, -margin))
     return float(np.corrcoef(moved[inside].ravel(), b[inside].ravel())[0, 1])

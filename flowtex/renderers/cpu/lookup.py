@@ -1,0 +1,119 @@
+"""``textureLod``: textures in half precision with their mip levels, filtered linearly."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Mips"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.intp]
+Singles = NDArray[np.float32]
+
+
+class Mips:
+    """A texture array, or an image as an array of one layer, with its mip levels.
+
+    A coarser level is the finer one, filtered linearly down to half its size: the mean of blocks
+    of two by two texels where sizes are even. Every level is rounded to half precision, as a
+    graphics card keeps it.
+
+    Parameters
+    ----------
+    texels
+        (layers, H, W, C), single precision.
+    levels
+        Mip levels beside the finest; all of them when left out.
+    repeat
+        Whether the texture goes around along (v, u); it is clamped at its edges otherwise.
+    """
+
+    def __init__(
+        self,
+        texels: Singles,
+        *,
+        levels: int | None = None,
+        repeat: tuple[bool, bool] = (False, False),
+    ) -> None:
+        layers, height, width, channels = texels.shape
+        last = max(height, width).bit_length() - 1 if levels is None else levels
+        chain = [_half(texels)]
+        for _ in range(last):
+            chain.append(_half(_reduced(chain[-1])))
+        sizes = np.array([level.shape[1:3] for level in chain])
+        self._texels = np.concatenate([level.reshape(-1, channels) for level in chain])
+        self._heights, self._widths = sizes.T
+        self._starts = np.concatenate([[0], np.cumsum(layers * sizes.prod(axis=1))])
+        self._repeat = repeat
+
+    @property
+    def levels(self) -> int:
+        """Mip levels beside the finest."""
+        return len(self._heights) - 1
+
+    def at(self, coordinate: Floats, level: Floats, layer: int | Ints = 0) -> Floats:
+        """Look texels up.
+
+        Parameters
+        ----------
+        coordinate
+            (u, v), (N, 2): 0 to 1 across the texture.
+        level
+            Mip level, (N,), linear between whole ones; clamped to those that there are.
+        layer
+            Layer of the array, one or (N,).
+
+        Returns
+        -------
+        numpy.ndarray
+            Channels, (N, C).
+        """
+        clamped = np.clip(level, 0, self.levels)
+        base = clamped.astype(np.intp)
+        late = clamped - base
+        layers = np.broadcast_to(layer, base.shape)
+        result = self._bilinear(coordinate, base, layers)
+        between = np.flatnonzero(late > 0)
+        if len(between):
+            next_ = self._bilinear(coordinate[between], base[between] + 1, layers[between])
+            result[between] += late[between, None] * (next_ - result[between])
+        return result
+
+    def _bilinear(self, coordinate: Floats, level: Ints, layer: Ints) -> Floats:
+        height, width = self._heights[level], self._widths[level]
+        left, right, u = _neighbours(coordinate[:, 0], width, repeat=self._repeat[1])
+        low, high, v = _neighbours(coordinate[:, 1], height, repeat=self._repeat[0])
+        first = self._starts[level] + layer * (height * width)
+        low, high = first + low * width, first + high * width
+        texels = self._texels
+        a = texels[low + left] * (1 - u) + texels[low + right] * u
+        b = texels[high + left] * (1 - u) + texels[high + right] * u
+        return np.asarray(a * (1 - v) + b * v)
+
+
+def _neighbours(coordinate: Floats, count: Ints, *, repeat: bool) -> tuple[Ints, Ints, Floats]:
+    """Texels on both sides of a coordinate, and how far it is from one to the other, (N, 1)."""
+    x = coordinate * count - 0.5
+    base = np.floor(x)
+    before = base.astype(np.intp)
+    pair = (before, before + 1)
+    a, b = (np.mod(at, count) if repeat else np.clip(at, 0, count - 1) for at in pair)
+    return a, b, (x - base)[:, None]
+
+
+def _half(texels: Singles) -> Singles:
+    return texels.astype(np.float16).astype(np.float32)
+
+
+def _reduced(texels: Singles) -> Singles:
+    """Halve both axes, rounded down, by linear filtering: means of two where that is exact."""
+    for axis in (1, 2):
+        count = texels.shape[axis]
+        if count > 1:
+            x = (np.arange(count // 2) + 0.5) * (count / (count // 2)) - 0.5
+            base = np.floor(x).astype(np.intp)
+            late = (x - base).astype(np.float32).reshape([-1 if a == axis else 1 for a in range(4)])
+            before, after = (texels.take(base + k, axis=axis) for k in range(2))
+            texels = before * (1 - late) + after * late
+    return texels

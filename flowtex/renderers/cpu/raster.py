@@ -1,0 +1,198 @@
+"""Which triangle each pixel shows, and how its corners mix there.
+
+Triangles are drawn in homogeneous coordinates of two dimensions (Olano and Greer 1997, *Triangle
+scan conversion using 2D homogeneous coordinates*). The columns (x, y, w) of the corners make a
+matrix M; b = M^-1 (px, py, 1) has the three weights over w of a pixel, so a pixel is inside where
+none is negative, 1 / w is their sum, and corners mix by b over that sum. Nothing has to be
+clipped, and the derivatives by the pixel follow from the same rows.
+
+A pixel that lies on an edge but for rounding is inside of the triangles on both sides, so that
+none is lost between them, and it is given to one: the nearer, or else the first.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Coverage", "rasterise"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.intp]
+Bools = NDArray[np.bool_]
+
+#: Pixels, or rows of pixels, that are looked at together.
+CHUNK = 1 << 20
+#: Pixels by which the rows and columns of a triangle may be off from rounding.
+ROUNDING = 1e-6
+#: Rounding of a term of the numbers that decide on which side of an edge a pixel is.
+EPSILON = 8 * float(np.finfo(float).eps)
+
+
+@dataclass(frozen=True, eq=False)
+class Coverage:
+    """The pixels that show a triangle, N of them, from the top row down.
+
+    Attributes
+    ----------
+    pixel
+        Number of the pixel, (N,): row times width plus column.
+    corners
+        Numbers of the three points of its triangle, (N, 3).
+    weights
+        Share of each corner at the middle of the pixel, in perspective, (N, 3).
+    dx, dy
+        Derivatives of the shares for a pixel to the right and a pixel down, (N, 3).
+    """
+
+    pixel: Ints
+    corners: Ints
+    weights: Floats
+    dx: Floats
+    dy: Floats
+
+    def mix(self, data: NDArray[np.floating]) -> tuple[Floats, Floats, Floats]:
+        """Values at the pixels of data at the points, (P, C), and both derivatives, (N, C)."""
+        at = data.astype(float)[self.corners]
+        value, dx, dy = (
+            np.einsum("nk,nkc->nc", share, at) for share in (self.weights, self.dx, self.dy)
+        )
+        return value, dx, dy
+
+
+def rasterise(clip: Floats, triangles: Ints, size: tuple[int, int]) -> Coverage:
+    """Find the triangle in front at every pixel.
+
+    Parameters
+    ----------
+    clip
+        Points in clip space, (P, 4), as :meth:`Camera.matrix` gives them.
+    triangles
+        Points of each triangle, (M, 3). Both sides are drawn; those without area are not.
+    size
+        Width and height of the picture in pixels.
+    """
+    width, height = size
+    x = (clip[:, 0] + clip[:, 3]) * (0.5 * width)
+    y = (clip[:, 3] - clip[:, 1]) * (0.5 * height)
+    flat = np.stack([x, y, clip[:, 3]], axis=-1)
+    triangles, edges, area, rows = _prepare(flat, triangles, size)
+    slack = _slack(flat, triangles, size)
+    depths = clip[:, 2][triangles] / area[:, None]
+    nearest = np.full(width * height, np.inf)
+    owner = np.full(width * height, -1, dtype=np.intp)
+    for triangle, row, column in _candidates(edges, rows, width):
+        shares = _at_pixels(edges[triangle], row, column)
+        inside = (shares >= -slack[triangle]).all(axis=-1)
+        triangle, shares = triangle[inside], shares[inside]
+        pixel = row[inside] * width + column[inside]
+        depth = np.einsum("nk,nk->n", shares, depths[triangle])
+        closer = depth < nearest[pixel]
+        pixel, depth, triangle = pixel[closer], depth[closer], triangle[closer]
+        np.minimum.at(nearest, pixel, depth)
+        first = np.flatnonzero(depth == nearest[pixel])[::-1]
+        owner[pixel[first]] = triangle[first]
+    pixel = np.flatnonzero(owner >= 0)
+    return _coverage(pixel, triangles[owner[pixel]], edges[owner[pixel]], width)
+
+
+def _prepare(
+    flat: Floats, triangles: Ints, size: tuple[int, int]
+) -> tuple[Ints, Floats, Floats, Ints]:
+    """Triangles that may be seen, their edges, determinants and first and last rows.
+
+    The edges are the rows of M^-1 times the determinant's absolute value, (M, 3, 3).
+    """
+    rows, seen = _rows(flat, triangles, size)
+    triangles, rows = triangles[seen], rows[seen]
+    a, b, c = (flat[triangles[:, k]] for k in range(3))
+    edges = np.stack([np.cross(b, c), np.cross(c, a), np.cross(a, b)], axis=1)
+    determinant = np.einsum("nk,nk->n", edges[:, 0], a)
+    solid = np.abs(determinant) > _slack(flat, triangles, size).max(axis=-1)
+    determinant = determinant[solid]
+    edges = edges[solid] * np.sign(determinant)[:, None, None]
+    return triangles[solid], edges, np.abs(determinant), rows[solid]
+
+
+def _slack(flat: Floats, triangles: Ints, size: tuple[int, int]) -> Floats:
+    """Bound the rounding of the edges' values at pixels, (M, 3)."""
+    most = np.abs(flat).max(axis=-1)[triangles]
+    return np.asarray(np.roll(most, -1, -1) * np.roll(most, 1, -1) * (sum(size) * EPSILON))
+
+
+def _rows(flat: Floats, triangles: Ints, size: tuple[int, int]) -> tuple[Ints, Bools]:
+    """First and last row of pixels of each triangle, (M, 2), and whether it has any, (M,)."""
+    w = flat[:, 2]
+    ahead = w > 0
+    # A point behind the camera has no place in the picture; its triangle may be anywhere.
+    at = np.divide(flat[:, :2], w[:, None], out=np.zeros((len(w), 2)), where=ahead[:, None])
+    low, high = (np.where(ahead[:, None], at, far)[triangles] for far in (-np.inf, np.inf))
+    low, high = low.min(axis=1), high.max(axis=1)
+    first = np.ceil(np.clip(low - (0.5 + ROUNDING), 0, size))
+    last = np.floor(np.clip(high - (0.5 - ROUNDING), -1, np.subtract(size, 1)))
+    seen = (first <= last).all(axis=-1) & ahead[triangles].any(axis=-1)
+    return np.stack([first[:, 1], last[:, 1]], axis=-1).astype(np.intp), seen
+
+
+def _candidates(edges: Floats, rows: Ints, width: int) -> Iterator[tuple[Ints, Ints, Ints]]:
+    """Triangles with the rows and columns of pixels that may lie in them, some at a time."""
+    for some in _chunks(rows[:, 1] - rows[:, 0] + 1):
+        triangle, row = _spread(some.start, rows[some, 0], rows[some, 1])
+        first, last = _columns(edges[triangle], row, width)
+        for part in _chunks(np.maximum(last - first + 1, 0)):
+            span, column = _spread(part.start, first[part], last[part])
+            yield triangle[span], row[span], column
+
+
+def _chunks(counts: Ints) -> Iterator[slice]:
+    """Cut a list of counts into stretches that sum to about a chunk."""
+    ends = np.cumsum(counts)
+    start = 0
+    while start < len(counts):
+        done = ends[start - 1] if start else 0
+        stop = max(int(np.searchsorted(ends, done + CHUNK, side="right")), start + 1)
+        yield slice(start, stop)
+        start = stop
+
+
+def _spread(start: int, first: Ints, last: Ints) -> tuple[Ints, Ints]:
+    """Count from first to last for each of a list; return which one, and the count."""
+    counts = np.maximum(last - first + 1, 0)
+    which = np.repeat(np.arange(len(counts)), counts)
+    within = np.arange(len(which)) - np.repeat(np.cumsum(counts) - counts, counts)
+    return which + start, first[which] + within
+
+
+def _columns(edges: Floats, row: Ints, width: int) -> tuple[Ints, Ints]:
+    """First and last column in each row that no edge rules out, and one more on both sides."""
+    slope = edges[..., 0]
+    level = edges[..., 1] * (row + 0.5)[:, None] + edges[..., 2]
+    with np.errstate(over="ignore"):
+        zero = np.divide(-level, slope, out=np.zeros_like(level), where=slope != 0)
+    low = np.where(slope > 0, zero, -1.0).max(axis=-1)
+    high = np.where(slope < 0, zero, width + 1.0).min(axis=-1)
+    first = np.floor(np.clip(low - 0.5, 0, width))
+    last = np.ceil(np.clip(high - 0.5, -1, width - 1))
+    return first.astype(np.intp), last.astype(np.intp)
+
+
+def _at_pixels(edges: Floats, row: Ints, column: Ints) -> Floats:
+    """Values of the edges at the middle of pixels, (N, 3)."""
+    x, y = (column + 0.5)[:, None], (row + 0.5)[:, None]
+    return np.asarray(edges[..., 0] * x + edges[..., 1] * y + edges[..., 2])
+
+
+def _coverage(pixel: Ints, corners: Ints, edges: Floats, width: int) -> Coverage:
+    """Shares of the corners with their derivatives."""
+    row, column = np.divmod(pixel, width)
+    shares = _at_pixels(edges, row, column)
+    total = shares.sum(axis=-1, keepdims=True)
+    weights = shares / total
+    dx, dy = (
+        (edges[..., k] - weights * edges[..., k].sum(axis=-1, keepdims=True)) / total
+        for k in range(2)
+    )
+    return Coverage(pixel, corners, weights, dx, dy)
