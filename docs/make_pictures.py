@@ -2,34 +2,40 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pyvista as pv
 from numpy.typing import NDArray
 from PIL import Image
 
 import flowtex
+from flowtex.camera import look
 
 FOLDER = Path(__file__).parent / "pictures"
 Picture = NDArray[np.uint8]
+DARK = "#10131a"
+#: Frames of a moving picture, and how long each is shown, in milliseconds.
+FRAMES, SHOWN = 40, 50
 
 
 def wake() -> Picture:
     """Draw vortex shedding behind a cylinder, the README's picture."""
     return flowtex.render(
-        flowtex.examples.cylinder_field(), size=(1200, 420), zoom=3.6, focus=(4.2, 0.0)
+        flowtex.examples.cylinder_field(), size=(1200, 420), zoom=4.4, focus=(4.0, 0.0)
     )
 
 
 def zooms() -> Picture:
-    """Draw the nose of an airfoil from afar and from near."""
+    """Draw the nose of an airfoil from afar and from near, and nearer than a cell is long."""
     field = flowtex.examples.airfoil_field()
     nose = field.points[np.unravel_index(np.argmax(field.speed[0]), field.shape)][:2]
     middle = tuple(field.surface.center[:2])
-    views = [(1.0, middle), (8.0, nose), (64.0, nose)]
-    return _row([flowtex.render(field, size=(400, 400), zoom=z, focus=tuple(p)) for z, p in views])
+    views = [(1.0, middle), (16.0, nose), (256.0, nose), (4096.0, nose)]
+    return _row([flowtex.render(field, size=(300, 400), zoom=z, focus=tuple(p)) for z, p in views])
 
 
 def vortices() -> Picture:
@@ -41,35 +47,127 @@ def vortices() -> Picture:
     )
 
 
-def level_of_detail() -> Picture:
-    """Draw the airfoil with level of detail, and without it."""
-    field = flowtex.examples.airfoil_field()
-    common: dict[str, Any] = {"size": (600, 480), "zoom": 0.8, "scalars": False}
-    with_it = flowtex.render(field, **common)
-    without = flowtex.render(field, **common, lod=False, resolution=4096)
-    return _row([with_it, without])
-
-
-def correction() -> Picture:
-    """Draw the paper's noise texture with the correction of its distribution, and without."""
-    field = flowtex.examples.airfoil_field()
-    common: dict[str, Any] = {"size": (600, 480), "zoom": 5, "scalars": False, "noise": "texture"}
+def torus() -> Picture:
+    """Draw a flow on a torus, from outside and along its inner side."""
+    turn, around = np.meshgrid(np.linspace(0, 2 * np.pi, 161), np.linspace(0, 2 * np.pi, 81))
+    out = np.stack([np.cos(turn), np.sin(turn), 0 * turn], axis=-1)
+    up = np.array([0.0, 0.0, 1.0])
+    ring = 1 + 0.42 * np.cos(around)[..., None]
+    points = ring * out + 0.42 * np.sin(around)[..., None] * up
+    along = np.stack([-np.sin(turn), np.cos(turn), 0 * turn], axis=-1)
+    across = -np.sin(around)[..., None] * out + np.cos(around)[..., None] * up
+    flow = (1 + 0.5 * np.sin(3 * around + turn))[..., None] * along
+    flow += (0.6 * np.cos(2 * turn))[..., None] * across
+    field = flowtex.FlowField.from_arrays(points, flow)
+    near = [(1.9, 0.0, 0.75), (0.9, 0.0, 0.3), (0.0, 0.0, 1.0)]
     return _row(
-        [flowtex.render(field, **common, noise_correction=corrected) for corrected in (True, False)]
+        [
+            flowtex.render(field, size=(640, 460), background=DARK),
+            flowtex.render(field, size=(550, 460), camera_position=near),
+        ]
     )
 
 
 def sphere() -> Picture:
-    """Draw a wind on a sphere, whose seam and poles do not show."""
-    longitude, latitude = np.meshgrid(np.linspace(0, 360, 181), np.linspace(-89, 89, 90))
+    """Draw a wind on a sphere across the seam and, from above, across a pole."""
+    longitude, latitude = np.meshgrid(np.linspace(0, 360, 181), np.linspace(-90, 90, 91))
     a, b = np.radians(longitude), np.radians(latitude)
     east = np.stack([-np.sin(a), np.cos(a), 0 * a], axis=-1)
     north = np.stack([-np.sin(b) * np.cos(a), -np.sin(b) * np.sin(a), np.cos(b)], axis=-1)
     points = np.stack([np.cos(b) * np.cos(a), np.cos(b) * np.sin(a), np.sin(b)], axis=-1)
-    u = np.cos(b) + 0.8 * np.sin(3 * b) * np.cos(2 * a)
+    u = 0.8 * np.cos(b) + 0.8 * np.sin(3 * b) * np.cos(2 * a) * np.cos(b)
     v = 0.7 * np.cos(b) * np.sin(4 * a + 2 * b)
-    field = flowtex.FlowField.from_arrays(points, u[..., None] * east + v[..., None] * north)
-    return flowtex.render(field, size=(600, 600), zoom=1.5, cmap="turbo", background="#10131a")
+    # A wind across the pole: a turn of the whole sphere about an axis in its equator.
+    turn = np.cross([0.0, 0.9, 0.0], points)
+    wind = u[..., None] * east + v[..., None] * north + turn
+    field = flowtex.FlowField.from_arrays(points, wind)
+    above = [(0.35, 0.2, 3.6), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0)]
+    common: dict[str, Any] = {"size": (596, 560), "cmap": "turbo", "background": DARK}
+    return _row(
+        [
+            flowtex.render(field, **common),
+            flowtex.render(field, **common, camera_position=above),
+        ]
+    )
+
+
+def level_of_detail() -> Picture:
+    """Draw the airfoil with level of detail, and without it."""
+    return flowtex.render(
+        flowtex.examples.airfoil_field(),
+        size=(1200, 480),
+        zoom=0.8,
+        scalars=False,
+        resolution=4096,
+        beside={"lod": False},
+    )
+
+
+def grain() -> Picture:
+    """Draw the double gyre with grain fixed on the screen, and fixed on the surface."""
+    return flowtex.render(
+        flowtex.examples.double_gyre_field(),
+        size=(1200, 480),
+        zoom=5,
+        focus=(0.62, 0.4),
+        resolution=512,
+        beside={"fixed_grain": True},
+    )
+
+
+def levels() -> Picture:
+    """Draw a plane seen at a grazing angle, and which level of detail each pixel has."""
+    return flowtex.render(
+        flowtex.examples.double_gyre_field(),
+        size=(1200, 330),
+        camera_position=[(1.0, -0.16, 0.14), (1.0, 0.22, 0.0), (0.0, 0.0, 1.0)],
+        beside={"show_level": True},
+    )
+
+
+def correction() -> Picture:
+    """Draw the paper's noise texture with the correction of its distribution, and without."""
+    s, t = np.meshgrid(np.linspace(0, 1, 81), np.linspace(0, 1, 61))
+    x, y = 2 * s**2.5, t**2
+    flow = [np.sin(np.pi * x) * np.cos(np.pi * y), -np.cos(np.pi * x) * np.sin(np.pi * y)]
+    return flowtex.render(
+        flowtex.FlowField.from_arrays(np.stack([x, y], -1), np.stack(flow, -1)),
+        size=(1200, 340),
+        scalars=False,
+        noise="texture",
+        beside={"noise_correction": False},
+    )
+
+
+def kernels() -> Picture:
+    """Draw the three kernels; the ramp shows the direction in a still."""
+    field = flowtex.examples.double_gyre_field()
+    common: dict[str, Any] = {"size": (395, 395), "zoom": 2.2, "focus": (0.5, 0.5)}
+    kinds: list[dict[str, Any]] = [
+        {"kernel": "hann"},
+        {"kernel": "box"},
+        {"kernel": "ramp", "grain": 4.0, "contrast": 1.4},
+    ]
+    return _row([flowtex.render(field, **common, **kind) for kind in kinds])
+
+
+def patterns() -> Picture:
+    """Draw what the flow makes of spots, of a checkerboard and of a picture with dye."""
+    field = flowtex.examples.double_gyre_field()
+    common: dict[str, Any] = {"size": (395, 215)}
+    plain: dict[str, Any] = {"scalars": False, "color": "#f4f4f4"}
+    rows, columns = np.mgrid[0:200, 0:400]
+    dye = np.zeros((200, 400, 4))
+    for centre, colour in ((60, (0.85, 0.1, 0.2)), (200, (0.1, 0.45, 0.9)), (330, (1.0, 0.7, 0.1))):
+        inside = np.hypot(rows - 100, columns - centre) < 34
+        dye[inside] = (*colour, 1.0)
+    return _row(
+        [
+            flowtex.render(field, **common, noise="spots", resolution=256),
+            flowtex.render(field, **common, noise="checkerboard", samples=25),
+            flowtex.render(field, **common, image=dye, kernel="ramp", samples=120, **plain),
+        ]
+    )
 
 
 def gyre() -> Picture:
@@ -79,9 +177,28 @@ def gyre() -> Picture:
     )
 
 
-PICTURES: dict[str, Callable[[], Picture]] = {
-    f.__name__: f for f in (wake, zooms, vortices, level_of_detail, correction, sphere, gyre)
-}
+def streaming() -> list[Picture]:
+    """Draw one period of the streaming of a steady flow, which closes into a loop."""
+    plotter: Any = pv.Plotter(off_screen=True, window_size=[480, 260])
+    plotter.set_background("white")
+    field = flowtex.examples.airfoil_field()
+    handle = plotter.flowtex.add(
+        field, motion="speed", speed=26.0, period=2.0, show_scalar_bar=False
+    )
+    look(plotter, field, zoom=9.0, focus=(0.5, 0.0))
+    frames = []
+    for frame in range(FRAMES):
+        handle.clock = 2.0 * frame / FRAMES
+        frames.append(np.asarray(plotter.screenshot(return_img=True)))
+    plotter.close()
+    return frames
+
+
+STILLS = (
+    *(wake, zooms, vortices, sphere, torus, level_of_detail, grain, levels, correction),
+    *(kernels, patterns, gyre),
+)
+PICTURES: dict[str, Callable[[], Picture]] = {f.__name__: f for f in STILLS}
 
 
 def _row(pictures: list[Picture], gap: int = 8) -> Picture:
@@ -92,12 +209,25 @@ def _row(pictures: list[Picture], gap: int = 8) -> Picture:
 
 
 def main() -> None:
-    """Draw every picture into ``docs/pictures``."""
+    """Draw every picture, or those that are named, into ``docs/pictures``."""
     from rich.progress import track
 
     FOLDER.mkdir(exist_ok=True)
-    for name in track(PICTURES, "Drawing the gallery"):
-        Image.fromarray(PICTURES[name]()).save(FOLDER / f"{name}.jpg", quality=84, optimize=True)
+    wanted = sys.argv[1:] or [*PICTURES, "streaming"]
+    for name in track(wanted, "Drawing the gallery"):
+        if name == "streaming":
+            first, *others = (Image.fromarray(frame) for frame in streaming())
+            first.save(
+                FOLDER / "streaming.webp",
+                save_all=True,
+                append_images=others,
+                duration=SHOWN,
+                loop=0,
+                quality=55,
+                method=6,
+            )
+            continue
+        Image.fromarray(PICTURES[name]()).save(FOLDER / f"{name}.jpg", quality=82, optimize=True)
 
 
 if __name__ == "__main__":

@@ -12,6 +12,8 @@ __all__ = ["look"]
 
 #: Share of the window that is left empty around a flat surface.
 MARGIN = 0.04
+#: View angle from above and aside at zoom 1, in degrees.
+VIEW_ANGLE = 30.0
 
 
 def look(
@@ -51,7 +53,7 @@ def look(
             raise ValueError(msg)
         centre[: len(point)] = point
     if surface.frame is None:
-        _look_at_curved(plotter, field, centre, zoom)
+        _look_at_curved(plotter, field, centre, zoom, come_closer=focus is not None)
     else:
         _look_at_flat(plotter, field, centre, zoom)
     plotter.renderer.reset_camera_clipping_range()
@@ -82,12 +84,29 @@ def _aspect(plotter: Any) -> float:
     return float(width * (right - left)) / max(float(height * (top - bottom)), 1.0)
 
 
-def _look_at_curved(plotter: Any, field: FlowField, centre: Any, zoom: float) -> None:
+def _look_at_curved(
+    plotter: Any, field: FlowField, centre: Any, zoom: float, *, come_closer: bool
+) -> None:
+    """From above and aside, so far away that the whole surface just fits.
+
+    With a point on the surface to look at, the camera comes closer to it; the middle of a sphere
+    is not on it, so without one the view grows narrower instead.
+    """
     plotter.view_isometric(render=False)
     camera = plotter.camera
-    direction = np.asarray(camera.position) - np.asarray(camera.focal_point)
-    direction /= np.linalg.norm(direction)
-    distance = 0.5 * field.surface.extent / np.sin(np.radians(camera.view_angle / 2)) / zoom
+    toward = np.asarray(camera.position) - np.asarray(camera.focal_point)
+    toward /= np.linalg.norm(toward)
+    right = np.cross(camera.up, toward)
+    right /= np.linalg.norm(right)
+    up = np.cross(toward, right)
+    camera.view_angle = VIEW_ANGLE
+    half = np.tan(np.radians(VIEW_ANGLE / 2))
+    surface = field.surface
+    x, y, z = np.stack([right, up, toward]) @ (surface.points[surface.valid] - surface.center).T
+    wide, high = np.abs(x) / _aspect(plotter), np.abs(y)
+    distance = float(np.max(z + np.maximum(wide, high) / half / (1 - 2 * MARGIN)))
     camera.focal_point = tuple(centre)
-    camera.position = tuple(centre + direction * distance)
+    camera.position = tuple(centre + toward * (distance / zoom if come_closer else distance))
+    if not come_closer:
+        camera.view_angle = 2 * np.degrees(np.arctan(half / zoom))
     plotter.camera_set = True

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -10,9 +11,13 @@ from numpy.typing import NDArray
 
 from flowtex.camera import look
 from flowtex.doctor import has_display, prefer_headless, require_opengl
+from flowtex.field import FlowField
+from flowtex.handle import FlowHandle
 from flowtex.plotter import FIELD_ARGUMENTS, FlowtexComponent, as_field
 
 __all__ = ["render", "show"]
+
+Changes = Mapping[str, Any]
 
 
 def render(
@@ -24,6 +29,7 @@ def render(
     time: float | None = None,
     background: Any = "white",
     camera_position: Any | None = None,
+    beside: Changes | None = None,
     **options: Any,
 ) -> NDArray[np.uint8]:
     """Draw a flow without a window.
@@ -42,8 +48,11 @@ def render(
         Colour behind the surface.
     camera_position
         Another view, as PyVista takes it.
+    beside
+        What is different in a second view, which is drawn to the right of the first one, such
+        as ``{"lod": False}``. Each view then has half the width.
     **options
-        Further arguments and settings of ``plotter.flowtex.add``.
+        Further arguments and settings of ``plotter.flowtex.add``, such as ``image``.
 
     Returns
     -------
@@ -59,19 +68,22 @@ def render(
     """
     require_opengl()
     field = as_field(mesh, **{k: options.pop(k, None) for k in FIELD_ARGUMENTS})
-    plotter = pv.Plotter(off_screen=True, window_size=list(size), lighting="light kit")
+    plotter = _plotter(size, beside, off_screen=True, lighting="light kit")
     try:
         plotter.enable_anti_aliasing("msaa", multi_samples=4)  # smooths the outline
         plotter.set_background(background)
-        handle = FlowtexComponent(plotter).add(field, **{"show_scalar_bar": False, **options})
-        if time is not None:
-            handle.time = time
+        handles = _put(plotter, field, {"show_scalar_bar": False, **options}, beside)
+        for handle in handles:
+            if time is not None:
+                handle.time = time
         if camera_position is not None:
+            plotter.camera.parallel_projection = False
             plotter.camera_position = camera_position
         else:
             look(plotter, field, zoom=zoom, focus=focus)
         picture: Any = plotter.screenshot(return_img=True)
-        handle.remove(render=False)
+        for handle in handles:
+            handle.remove(render=False)
     finally:
         plotter.close()
     return np.asarray(picture[..., :3], dtype=np.uint8)
@@ -83,6 +95,7 @@ def show(
     size: tuple[int, int] = (1024, 768),
     zoom: float = 1.0,
     focus: tuple[float, ...] | None = None,
+    beside: Changes | None = None,
     **options: Any,
 ) -> None:
     """Show a flow: in a window, or where there is no display on a page in the browser.
@@ -95,8 +108,11 @@ def show(
         Width and height of the window in pixels.
     zoom, focus
         How far in, and on what point of the mesh, the window begins.
+    beside
+        What is different in a second view to the right of the first one, such as
+        ``{"lod": False}``; both views move together. It needs a window.
     **options
-        Further arguments and settings of ``plotter.flowtex.add``.
+        Further arguments and settings of ``plotter.flowtex.add``, such as ``image``.
 
     Raises
     ------
@@ -104,18 +120,52 @@ def show(
         When the mesh or a setting does not fit.
     OpenGLMissingError
         When nothing can draw; the text names the command that installs what is missing.
+    ValueError
+        When two views are asked for and there is no display.
     """
     prefer_headless()
     require_opengl()
     field = as_field(mesh, **{k: options.pop(k, None) for k in FIELD_ARGUMENTS})
     if not has_display():
+        if beside is not None:
+            msg = "two views need a window and there is no display; flowtex.render draws both"
+            raise ValueError(msg)
         from flowtex.app import serve
 
         serve(field, zoom=zoom, focus=focus, **options)
         return
-    plotter: Any = pv.Plotter(window_size=list(size))
+    plotter = _plotter(size, beside)
     plotter.disable_anti_aliasing()
     plotter.set_background("white")
-    FlowtexComponent(plotter).add(field, **options)
+    _put(plotter, field, options, beside)
     look(plotter, field, zoom=zoom, focus=focus)
     plotter.show()
+
+
+def _plotter(size: tuple[int, int], beside: Changes | None, **options: Any) -> Any:
+    shape = (1, 1) if beside is None else (1, 2)
+    return pv.Plotter(window_size=list(size), shape=shape, border=False, **options)
+
+
+def _put(
+    plotter: Any, field: FlowField, options: Changes, beside: Changes | None
+) -> list[FlowHandle]:
+    """Add the flow to one view, or to two that share a camera and say how they differ."""
+    component = FlowtexComponent(plotter)
+    if beside is None:
+        return [component.add(field, **options)]
+    handles = []
+    for column, chosen in enumerate((options, {**options, **beside})):
+        plotter.subplot(0, column)
+        handles.append(component.add(field, **chosen))
+        label = plotter.add_text(_difference(handles[-1], beside), font_size=9, color="black")
+        label.prop.background_color, label.prop.background_opacity = "white", 0.8
+    plotter.link_views()
+    plotter.subplot(0, 0)
+    return handles
+
+
+def _difference(handle: FlowHandle, beside: Changes) -> str:
+    """Tell the settings by which one of two views differs from the other."""
+    settings = dict(handle.settings)
+    return ", ".join(f"{name} = {settings[name]}" for name in beside if name in settings)

@@ -1,30 +1,31 @@
-"""Flow textures in PyVista: ``plotter.flowtex.add(mesh)``, and the handle that it returns.
+"""Flow textures in PyVista: ``plotter.flowtex.add(mesh)``.
 
 PyVista finds :class:`FlowtexComponent` through its entry point and makes one for each plotter
-that asks for ``plotter.flowtex``. The component keeps the handles; a handle joins a
-:class:`~flowtex.view.FlowView` (arrays, settings, time) to a
-:class:`~flowtex.renderers.vtk.FlowLayer` (the graphics card) and carries changes from one to the
-other.
+that asks for ``plotter.flowtex``. The component keeps a
+:class:`~flowtex.handle.FlowHandle` for each texture.
 """
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
 import pyvista as pv
 
 from flowtex.camera import look
 from flowtex.field import FlowField
-from flowtex.renderers.vtk import FlowLayer, set_attributes, surface_mesh, use_flow_mapper
-from flowtex.settings import Affects, Settings
+from flowtex.handle import FlowHandle
+from flowtex.image_files import load_image
+from flowtex.settings import Settings, SettingsError
 from flowtex.view import FlowView
 
 __all__ = ["FlowHandle", "FlowtexComponent", "as_field"]
 
 #: Colours when there are none to ask for: a neutral grey that can go darker and lighter.
 PLAIN, CMAP = "#a0a0a0", "viridis"
+
+#: A lit surface: dark sides stay bright enough to read the texture there.
+LIT: dict[str, Any] = {"ambient": 0.3, "diffuse": 0.8}
 
 #: A scalar bar that keeps out of the picture's way.
 BAR: dict[str, Any] = {
@@ -46,8 +47,6 @@ BAR: dict[str, Any] = {
 #: Arguments of ``add`` that go to the making of the field.
 FIELD_ARGUMENTS = ("vectors", "plane", "times", "periodic")
 
-_count = itertools.count(1)
-
 
 def as_field(mesh: Any, **options: Any) -> FlowField:
     """Return a field from a field, or from a mesh with :meth:`FlowField.from_pyvista`.
@@ -68,132 +67,13 @@ def as_field(mesh: Any, **options: Any) -> FlowField:
     return mesh
 
 
-class FlowHandle:
-    """One flow texture on a plotter; change it through :attr:`settings` and :attr:`time`.
-
-    Attributes
-    ----------
-    field
-        The flow.
-    settings
-        Every setting, live: ``handle.settings.lod = False``.
-    actor
-        PyVista's actor, for opacity, lighting, position and the like.
-    """
-
-    def __init__(
-        self,
-        plotter: Any,
-        view: FlowView,
-        scalars: str | None,
-        add_mesh: dict[str, Any],
-        forget: Callable[[FlowHandle], None],
-    ) -> None:
-        self._plotter = plotter
-        self._forget = forget
-        self._view = view
-        self._scalars = scalars
-        self._mesh = surface_mesh(view.textures)
-        bar = add_mesh.pop("bar")
-        if scalars is not None:
-            self._mesh.point_data[scalars] = view.scalar(scalars).ravel()
-        self.actor = plotter.add_mesh(
-            self._mesh, name=f"flowtex {next(_count)}", show_scalar_bar=False, **add_mesh
-        )
-        mapper = use_flow_mapper(self.actor, self._mesh, scalars)
-        self._bar = bar.get("title", scalars) if bar is not None and scalars else None
-        if self._bar is not None:
-            plotter.add_scalar_bar(mapper=mapper, **{"title": scalars, **bar})
-        self._layer = FlowLayer(self.actor, plotter.renderer, view.textures, view.settings)
-        self._layer.set_moment(*view.moment)
-        self._shown = view.time
-        self._end = view.observe(self._changed)
-
-    @property
-    def field(self) -> FlowField:
-        """The flow."""
-        return self._view.field
-
-    @property
-    def settings(self) -> Settings:
-        """Every setting, live."""
-        return self._view.settings
-
-    @property
-    def view(self) -> FlowView:
-        """The arrays behind the picture."""
-        return self._view
-
-    @property
-    def time(self) -> float:
-        """Time that is shown, in the field's own unit."""
-        return self._view.time
-
-    @time.setter
-    def time(self, value: float) -> None:
-        self._view.time = value
-
-    @property
-    def clock(self) -> float:
-        """Clock of the animation in seconds; set it to draw the frame of any moment."""
-        return self._layer.view.clock
-
-    @clock.setter
-    def clock(self, value: float) -> None:
-        self._layer.view.clock = float(value)
-        self._draw()
-
-    @property
-    def closed(self) -> bool:
-        """Whether the texture has been removed."""
-        return self._plotter is None
-
-    def remove(self, *, render: bool = True) -> None:
-        """Take the texture, its scalar bar and everything on the graphics card away.
-
-        Parameters
-        ----------
-        render
-            Whether to draw the plotter without it at once.
-        """
-        if self._plotter is None:
-            return
-        plotter, self._plotter = self._plotter, None
-        self._end()
-        self._view.close()
-        self._layer.close()
-        if self._bar is not None and self._bar in plotter.scalar_bars:
-            plotter.remove_scalar_bar(self._bar, render=False)
-        plotter.remove_actor(self.actor, render=False)
-        self._forget(self)
-        if render:
-            plotter.render()
-
-    def _changed(self, affects: Affects) -> None:
-        if affects == "uniform":
-            self._show_moment()
-        else:
-            textures = self._view.textures
-            set_attributes(self._mesh, textures)
-            self._layer.set_textures(textures)
-        self._draw()
-
-    def _show_moment(self) -> None:
-        """Follow the time: textures at the steps around it, and the colours."""
-        if self.field.steady or self._shown == self._view.time:
-            return
-        self._shown = self._view.time
-        self._layer.set_moment(*self._view.moment)
-        if self._scalars is not None:
-            self._mesh.point_data[self._scalars] = self._view.scalar(self._scalars).ravel()
-
-    def _draw(self) -> None:
-        if self._plotter is not None:
-            self._plotter.render()
-
-    def __repr__(self) -> str:
-        state = "removed" if self.closed else f"time {self.time:g}"
-        return f"FlowHandle({self.field!r}, {state})"
+def _with_image(settings: dict[str, Any]) -> dict[str, Any]:
+    """Return settings for an image: its colours alone, unless it is asked to be mixed."""
+    noise = settings.get("noise", "image")
+    if noise != "image":
+        msg = f"noise is {noise!r} and an image is given; leave out one of them"
+        raise SettingsError(msg)
+    return {"strength": 1.0, **settings, "noise": "image"}
 
 
 @pv.register_plotter_component("flowtex")
@@ -215,10 +95,11 @@ class FlowtexComponent:
         plane: str | None = None,
         times: Any | None = None,
         periodic: str | None = None,
+        image: Any | None = None,
         color: Any = PLAIN,
         opacity: float = 1.0,
         lighting: bool | None = None,
-        show_scalar_bar: bool = True,
+        show_scalar_bar: bool | None = None,
         scalar_bar_args: dict[str, Any] | None = None,
         reset_camera: bool | None = None,
         **settings: Any,
@@ -242,6 +123,12 @@ class FlowtexComponent:
             Plane of a 3D mesh, such as ``"k=20"``.
         times, periodic
             As for :meth:`FlowField.from_pyvista`.
+        image
+            A picture that the flow smears, in its own colours: an array (H, W), (H, W, 3) or
+            (H, W, 4), uint8 or floats from 0 to 1, or the path of a PNG or a JPEG. It is laid
+            over the surface once, its left at the first i and its top, row 0, at the last j;
+            ``tiles`` repeats it. Where it is transparent the surface's colour shows. It sets
+            ``noise="image"``, and ``strength=1`` unless that is given.
         color
             Colour of a plain texture.
         opacity
@@ -249,7 +136,7 @@ class FlowtexComponent:
         lighting
             Whether the surface is lit; by default a curved one is and a flat one is not.
         show_scalar_bar, scalar_bar_args
-            As for ``plotter.add_mesh``.
+            As for ``plotter.add_mesh``; by default there is a bar unless an image covers it.
         reset_camera
             Whether to move the camera so that everything is seen; by default when this is
             the first mesh.
@@ -266,19 +153,25 @@ class FlowtexComponent:
             When the mesh does not make a field.
         SettingsError
             When a setting is unknown or out of range.
+        ImageError
+            When the image cannot be read or used; a kind of SettingsError.
         """
         chosen = Settings()
-        chosen.update(**settings)
+        chosen.update(**(settings if image is None else _with_image(settings)))
+        picture = load_image(image)
         field = as_field(mesh, vectors=vectors, plane=plane, times=times, periodic=periodic)
-        view = FlowView(field, chosen)
+        view = FlowView(field, chosen, image=picture)
         name = self._scalar_name(view, scalars=scalars)
         look_first = reset_camera or (reset_camera is None and not self._plotter.renderer.actors)
         flat = view.textures.geometry.planar
+        with_bar = image is None if show_scalar_bar is None else show_scalar_bar
+        lit = (not flat) if lighting is None else lighting
         add_mesh: dict[str, Any] = {
             "opacity": opacity,
-            "lighting": (not flat) if lighting is None else lighting,
+            "lighting": lit,
+            **(LIT if lit else {}),
             "reset_camera": False,
-            "bar": {**BAR, **(scalar_bar_args or {})} if show_scalar_bar else None,
+            "bar": {**BAR, **(scalar_bar_args or {})} if with_bar else None,
         }
         if name is None:
             add_mesh["color"] = color

@@ -102,13 +102,13 @@ class Settings:
     """
 
     samples: int = _row(
-        default=41,
+        default=49,
         affects="uniform",
         text="Noise samples summed along each path (K of the paper).",
         span=(1, 200),
     )
     spacing: float = _row(
-        default=0.75,
+        default=0.7,
         affects="uniform",
         text="Distance between two samples, in grains of noise.",
         span=(0.1, 10),
@@ -132,8 +132,14 @@ class Settings:
     noise: str = _row(
         default="procedural",
         affects="shader",
-        text="Noise that is even in space at every zoom, or the paper's mipmapped noise texture.",
-        choices=("procedural", "texture"),
+        text="Noise even in space, the paper's texture, or spots, squares or an image in it.",
+        choices=("procedural", "texture", "spots", "checkerboard", "image"),
+    )
+    tiles: int = _row(
+        default=1,
+        affects="uniform",
+        text="Repeats of an image along each side; makes a checkerboard's squares smaller.",
+        span=(1, 64),
     )
     noise_correction: bool = _row(
         default=True,
@@ -143,11 +149,16 @@ class Settings:
     resolution: int = _row(
         default=1024,
         affects="textures",
-        text="Texels of the noise texture along the surface; the grain when lod is off.",
+        text="Texels of the noise texture along the surface; the grain where it is fixed on it.",
         span=(16, 8192),
     )
     grain: float = _row(
-        default=1.6, affects="uniform", text="Size of a grain of noise, in pixels.", span=(0.25, 32)
+        default=1.5, affects="uniform", text="Size of a grain of noise, in pixels.", span=(0.25, 32)
+    )
+    fixed_grain: bool = _row(
+        default=False,
+        affects="uniform",
+        text="Fix the size of a grain on the surface, so that it grows as the view comes closer.",
     )
     contrast: float = _row(
         default=1.0, affects="uniform", text="Contrast of the texture, 0 for none.", span=(0, 4)
@@ -161,14 +172,34 @@ class Settings:
     seed: int = _row(
         default=0, affects="uniform", text="Number of the noise pattern.", span=(0, 65535)
     )
-    animate: bool = _row(
-        default=False, affects="uniform", text="Let the grains stream along the flow."
-    )
-    rate: float = _row(
-        default=0.5,
+    motion: str = _row(
+        default="off",
         affects="uniform",
-        text="Turns of the animation in a second of its clock.",
-        span=(0, 10),
+        text="Let a steady flow stream: everywhere at one speed, or faster where the flow is.",
+        choices=("off", "uniform", "speed"),
+    )
+    speed: float = _row(
+        default=40.0,
+        affects="uniform",
+        text="How far the streaming goes in a second; with motion='speed', at the typical speed.",
+        span=(0, 1e12),
+    )
+    speed_in: str = _row(
+        default="pixels",
+        affects="uniform",
+        text="What speed counts: pixels, the same at every zoom, or the mesh's units.",
+        choices=("pixels", "units"),
+    )
+    period: float = _row(
+        default=4.0,
+        affects="uniform",
+        text="Seconds after which the streaming begins again, without a seam.",
+        span=(0.1, 600),
+    )
+    show_level: bool = _row(
+        default=False,
+        affects="uniform",
+        text="Colour by the level of detail: one hue for each doubling of the grain.",
     )
     parameter: str = _row(
         default="arclength",

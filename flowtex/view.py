@@ -14,13 +14,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flowtex.field import FlowField
-from flowtex.settings import TABLE, Affects, Settings
-from flowtex.textures import TextureSet
-from flowtex.trace import SliceStore, TraceSlices
+from flowtex.settings import TABLE, Affects, Settings, SettingsError
+from flowtex.textures import TextureSet, as_picture
+from flowtex.trace import SliceStore, TraceSlices, shared_store
 
 __all__ = ["FlowView"]
 
 Notice = Callable[[Affects], None]
+
+#: Settings that lie in the textures of some kinds of noise, and elsewhere only in uniforms.
+BAKED = {
+    "seed": ("texture", "spots"),
+    "tiles": ("checkerboard",),
+    "resolution": ("texture", "spots", "checkerboard", "image"),
+}
+
+NO_IMAGE = (
+    "noise is 'image' and there is no image; give one as image=, or later with set_image(image)"
+)
 
 
 class FlowView:
@@ -34,6 +45,13 @@ class FlowView:
         How it is drawn; changes are followed.
     slices
         Traces of the field, when they are at hand.
+    image
+        Image for ``noise="image"``, as :func:`~flowtex.textures.images.as_picture` takes it.
+
+    Raises
+    ------
+    SettingsError
+        When an image is asked for and there is none, or the image cannot be used.
     """
 
     def __init__(
@@ -42,9 +60,14 @@ class FlowView:
         settings: Settings | None = None,
         *,
         slices: TraceSlices | None = None,
+        image: Any | None = None,
     ) -> None:
         self.field = field
         self.settings = settings or Settings()
+        self._noise = self.settings.noise
+        self._image = None if image is None else as_picture(image)
+        if self._noise == "image" and self._image is None:
+            raise SettingsError(NO_IMAGE)
         self._store: SliceStore | None = None
         if slices is not None:
             self._store = SliceStore(field, slices=slices)
@@ -55,17 +78,43 @@ class FlowView:
 
     @property
     def store(self) -> SliceStore:
-        """Traces of the field, made step by step when they are first asked for."""
+        """Traces of the field, made step by step when asked for, shared by all its views."""
         if self._store is None:
-            self._store = SliceStore(self.field, parameter=self.settings.parameter)
+            self._store = shared_store(self.field, self.settings.parameter)
         return self._store
 
     @property
     def textures(self) -> TextureSet:
         """What a renderer needs."""
         if self._textures is None:
-            self._textures = TextureSet.build(self.store, self.settings)
+            self._textures = TextureSet.build(self.store, self.settings, self._image)
         return self._textures
+
+    @property
+    def image(self) -> NDArray[np.float32] | None:
+        """Texels of the image, (H, W, 4): colours times opacity, row 0 at the bottom."""
+        return self._image
+
+    def set_image(self, image: Any) -> None:
+        """Lay an image on the surface in place of the noise; sets ``noise`` to ``"image"``.
+
+        Parameters
+        ----------
+        image
+            As :func:`~flowtex.textures.images.as_picture` takes it.
+
+        Raises
+        ------
+        ImageError
+            When it cannot be used; nothing is changed then.
+        """
+        self._image = as_picture(image)
+        if self.settings.noise != "image":
+            self.settings.noise = "image"
+            return
+        if self._textures is not None:
+            self._textures = self._textures.with_image(self._image)
+        self._tell("textures")
 
     @property
     def time(self) -> float:
@@ -130,12 +179,17 @@ class FlowView:
         self._notices.clear()
 
     def _changed(self, name: str, value: Any) -> None:
-        del value
+        if name == "noise":
+            if value == self._noise:
+                return
+            if value == "image" and self._image is None:
+                # A setting is told of when it is set; what cannot be drawn is set back.
+                self.settings.noise = self._noise
+                raise SettingsError(NO_IMAGE)
+            self._noise = value
         affects = TABLE[name].affects
-        if name == "seed" and self.settings.noise == "texture":
-            affects = "textures"
-        if name == "resolution" and self.settings.noise != "texture":
-            affects = "uniform"
+        if name in BAKED:
+            affects = "textures" if self.settings.noise in BAKED[name] else "uniform"
         if affects == "trace":
             self._store = None
         if affects != "uniform":

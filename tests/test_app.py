@@ -262,9 +262,9 @@ def test_playing_a_steady_flow_moves_its_clock(flat: FlowApp) -> None:
     flat._on_settings()
     still = picture(flat)
     flat._advance(0.5)
-    assert flat.scene.handle.clock == 0.5 and flat.scene.handle.settings.animate
+    assert flat.scene.handle.clock == 0.5 and flat.scene.handle.settings.motion == "speed"
     assert difference(picture(flat), still) > 2
-    flat.set(playing=False, set_animate=False)
+    flat.set(playing=False, set_motion="off")
     flat._on_playing()
     flat._on_settings()
 

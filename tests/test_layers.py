@@ -33,7 +33,8 @@ LAYERS: tuple[tuple[str, ...], ...] = (
     ("renderers",),
     ("view",),
     ("examples",),
-    ("camera",),
+    ("camera", "image_files"),
+    ("handle",),
     ("plotter",),
     ("widget", "app", "export"),
     ("pictures",),
@@ -41,7 +42,7 @@ LAYERS: tuple[tuple[str, ...], ...] = (
     ("cli",),
 )
 RENDERERS = ("renderers.cpu", "renderers.vtk", "renderers.webgl")
-FRONT_ENDS = ("camera", "plotter", "pictures", "widget", "app", "export", "cli")
+FRONT_ENDS = ("camera", "handle", "plotter", "pictures", "widget", "app", "export", "cli")
 
 
 @dataclass(frozen=True)

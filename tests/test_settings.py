@@ -24,8 +24,8 @@ def test_every_row_is_complete_and_its_default_fits() -> None:
 @pytest.mark.parametrize(
     ("name", "value", "message"),
     [
-        ("samples", 0, r"^samples is 0; expected a whole number from 1 to 200 \(default 41\)$"),
-        ("samples", 2.5, r"^samples is 2.5; expected a whole number from 1 to 200 \(default 41\)$"),
+        ("samples", 0, r"^samples is 0; expected a whole number from 1 to 200 \(default 49\)$"),
+        ("samples", 2.5, r"^samples is 2.5; expected a whole number from 1 to 200 \(default 49\)$"),
         ("lod", "yes", r"^lod is 'yes'; expected True or False \(default True\)$"),
         ("contrast", float("nan"), r"^contrast is nan; expected a number from 0 to 4 \(default "),
         ("contrast", True, r"^contrast is True; expected a number from 0 to 4 \(default "),

@@ -79,7 +79,7 @@ def test_slope_times_lag_is_the_way_in_space() -> None:
         np.testing.assert_allclose(found[:, :-1], expected[:, :-1], atol=2e-6)
 
 
-def test_fourth_channel_holds_unit_and_reach() -> None:
+def test_fourth_channel_holds_unit_reach_and_speed() -> None:
     field = stretched()
     made = textures(field)
     slices = made.store.at(0)
@@ -93,7 +93,10 @@ def test_fourth_channel_holds_unit_and_reach() -> None:
     np.testing.assert_allclose(
         nodal(made, layers[count + 1])[..., 3], np.minimum(slices.forward_reach[0], last)
     )
-    assert not layers[2 : count + 1, ..., 3].any()
+    np.testing.assert_allclose(
+        nodal(made, layers[2])[..., 3] * made.typical_speed, field.speed[0], rtol=1e-5
+    )
+    assert not layers[3 : count + 1, ..., 3].any()
     assert np.isfinite(layers).all()
 
 

@@ -50,7 +50,7 @@ def _widget(row: Setting) -> Callable[[Setting, str], None]:
         return _switch
     if row.choices:
         return _choice
-    if row.kind is int and (row.high or 0) - (row.low or 0) > MOST_STOPS:
+    if (row.high or 0) - (row.low or 0) > MOST_STOPS:
         return _number
     return _slider
 
@@ -121,10 +121,11 @@ def _slider(row: Setting, key: str) -> None:
 
 def _number(row: Setting, key: str) -> None:
     _name(row)
+    typed = "Number($event.target.value)"
     html.Input(
         type="number",
         value=(key,),
-        change=f"{key} = Math.round(Number($event.target.value))",
+        change=f"{key} = {f'Math.round({typed})' if row.kind is int else typed}",
         min=row.low,
         max=row.high,
         aria_label=label(row.name),

@@ -212,8 +212,8 @@ class FlowApp:
 
     def _on_playing(self, **_: Any) -> None:
         self.stream.playing = bool(self.get("playing"))
-        if self.stream.playing and self.field.steady:
-            self.set(set_animate=True)
+        if self.stream.playing and self.field.steady and self.get("set_motion") == "off":
+            self.set(set_motion="speed")
         self.stream.moved()
 
     async def _play(self) -> None:

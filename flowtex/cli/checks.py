@@ -10,7 +10,7 @@ from flowtex.cli.options import UsageError
 if TYPE_CHECKING:
     from flowtex.field import FlowField
 
-__all__ = ["check_colours", "check_output"]
+__all__ = ["check_colours", "check_image", "check_output"]
 
 
 def check_output(output: Path) -> None:
@@ -26,6 +26,21 @@ def check_output(output: Path) -> None:
     if not output.parent.is_dir():
         msg = f"{output}: there is no folder {str(output.parent)!r}; make it, or write elsewhere"
         raise UsageError(msg)
+
+
+def check_image(options: dict[str, Any]) -> None:
+    """Refuse a picture that cannot be read, or one too few; put its pixels in the path's place."""
+    if options["image"] is None:
+        if options.get("noise") == "image":
+            msg = "--noise is image and there is no picture; name one with --image FILE"
+            raise UsageError(msg)
+        return
+    if options.get("noise", "image") != "image":
+        msg = f"--noise is {options['noise']} and --image is given; leave out one of them"
+        raise UsageError(msg)
+    from flowtex.image_files import load_image
+
+    options["image"] = load_image(options["image"])
 
 
 def check_colours(field: FlowField, options: dict[str, Any]) -> None:

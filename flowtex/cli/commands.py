@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import App, CycloptsError, Parameter
 
 from flowtex import examples
-from flowtex.cli.checks import check_colours, check_output
+from flowtex.cli.checks import check_colours, check_image, check_output
 from flowtex.cli.options import DrawOptions, FieldOptions, ServeOptions, SettingFlags, UsageError
 from flowtex.errors import FieldError
 from flowtex.examples import NAMES
@@ -77,6 +77,7 @@ def show(
     draw = draw or DrawOptions()
     options = {**draw.look(), **_given(settings)}
     size = draw.pixels()
+    check_image(options)
     _need_opengl()
     field = _read(file, which)
     check_colours(field, options)
@@ -108,6 +109,7 @@ def render(
     draw = draw or DrawOptions()
     options, size = {**draw.look(), **_given(settings)}, draw.pixels()
     check_output(output)
+    check_image(options)
     _need_opengl()
     field = _read(file, which)
     check_colours(field, options)
@@ -220,10 +222,11 @@ def _read(file: Path, which: FieldOptions | None) -> FlowField:
 
 
 def _given(settings: SettingFlags | None) -> dict[str, Any]:
-    """Return settings as keyword arguments, checked."""
+    """Return the settings that were given as keyword arguments, checked."""
     from flowtex.settings import Settings
 
-    values = {} if settings is None else dict(vars(settings))
+    flags = {} if settings is None else vars(settings)
+    values = {name: value for name, value in flags.items() if value is not None}
     Settings().update(**values)
     return values
 

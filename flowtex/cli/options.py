@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import asdict, dataclass, make_dataclass
 from dataclasses import field as data_field
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Group, Parameter
@@ -77,9 +78,16 @@ class DrawOptions:
             help="Point of the mesh to look at, as x,y or x,y,z.",
         ),
     ] = None
+    image: Annotated[
+        Path | None,
+        Parameter(
+            group=PICTURE,
+            help="Picture that the flow smears, in place of the noise: a PNG, a JPEG or the like.",
+        ),
+    ] = None
 
     def look(self) -> dict[str, Any]:
-        """Return colours and camera, as arguments of ``flowtex.render``."""
+        """Return colours, camera and image, as arguments of ``flowtex.render``."""
         if not self.zoom > 0:
             msg = f"--zoom is {self.zoom:g}; expected a positive number, 1 for the whole surface"
             raise UsageError(msg)
@@ -88,6 +96,7 @@ class DrawOptions:
             "cmap": self.cmap,
             "zoom": self.zoom,
             "focus": None if self.focus is None else _numbers("--focus", self.focus),
+            "image": self.image,
         }
 
     def pixels(self) -> tuple[int, int]:
@@ -122,9 +131,11 @@ def _numbers(flag: str, text: str) -> tuple[float, ...]:
 
 
 def _annotation(row: Setting) -> Any:
+    """Type of a flag that is None where it was not given, and tells the setting's default."""
     kind: Any = Literal[row.choices] if row.choices else row.kind
     span = f" From {row.low:g} to {row.high:g}." if row.low is not None else ""
-    return Annotated[kind, Parameter(group=SETTINGS, help=row.text + span)]
+    default = f" [default: {row.default}]"
+    return Annotated[kind | None, Parameter(group=SETTINGS, help=row.text + span + default)]
 
 
 if TYPE_CHECKING:
@@ -135,7 +146,7 @@ if TYPE_CHECKING:
 else:
     SettingFlags = make_dataclass(
         "SettingFlags",
-        [(row.name, _annotation(row), data_field(default=row.default)) for row in TABLE.values()],
+        [(row.name, _annotation(row), data_field(default=None)) for row in TABLE.values()],
         kw_only=True,
         # Annotations are looked up in the module that a class says it comes from.
         namespace={"__module__": __name__, "__doc__": "One flag for each setting."},

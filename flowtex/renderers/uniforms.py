@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flowtex.settings import Settings
-from flowtex.textures import TextureSet
+from flowtex.textures import PaperTextures, TextureSet
 
 __all__ = ["ViewState", "finest_cell", "uniforms", "variants"]
 
@@ -21,8 +21,10 @@ __all__ = ["ViewState", "finest_cell", "uniforms", "variants"]
 OCTAVES = 30
 #: The origin of the noise keeps this many octaves clear, so that single precision holds it.
 SNAP = 9
-#: Length of one turn of a streaming grain, in pixels.
-WAVE = 30.0
+#: What the flow goes while a grain in motion takes one turn, in pixels; up to twice as much.
+WAVE = 96.0
+#: Coarse part of the clock, in base periods, that times a power of two stays exact.
+COARSE = 2.0**-12
 
 KERNELS = ("hann", "box", "ramp")
 
@@ -35,14 +37,21 @@ class ViewState:
     ----------
     focus
         Point of the mesh that the view looks at, (3,), in the mesh's own coordinates.
+    eye
+        The eye in the mesh's own coordinates and 1, or the way to it and 0 where all rays are
+        parallel, (4,).
     between
         How far the time has come from one destination time of the slices to the next, 0 to 1.
+    time
+        Time that is shown of a field that varies, in its own unit.
     clock
-        Clock of the animation, in seconds.
+        Clock of the streaming of a steady flow, in seconds.
     """
 
     focus: NDArray[np.float64] = field(default_factory=lambda: np.zeros(3))
+    eye: NDArray[np.float64] = field(default_factory=lambda: np.array([0.0, 0.0, 1.0, 0.0]))
     between: float = 0.0
+    time: float = 0.0
     clock: float = 0.0
 
 
@@ -51,6 +60,8 @@ def variants(textures: TextureSet, *, unsteady: bool) -> frozenset[str]:
     chosen = set()
     if textures.space == "parameter":
         chosen.add("FLOWTEX_PAPER")
+    if textures.paper is not None and textures.paper.picture:
+        chosen.add("FLOWTEX_PICTURE")
     if textures.geometry.planar:
         chosen.add("FLOWTEX_PLANAR")
     if unsteady:
@@ -67,9 +78,12 @@ def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[
     """Values by name: bool, int, float, tuples of float, or lists for arrays."""
     geometry = textures.geometry
     finest = finest_cell(geometry.extent)
-    cell = _origin_cell(geometry.frame @ (view.focus - geometry.center), finest)
+    even = _origin_cell(geometry.frame @ (view.focus - geometry.center), finest)
     sides = textures.sides if settings.two_sided else 1
+    motion = _motion(textures, settings, view)
+    eye = geometry.frame @ (view.eye[:3] - view.eye[3] * geometry.center)
     values: dict[str, Any] = {
+        "u_eye": (*(float(c) for c in eye), float(view.eye[3])),
         "u_between": float(view.between),
         "u_slicesSize": (float(geometry.columns.size), float(geometry.rows.size)),
         "u_deepest": float(geometry.levels),
@@ -77,7 +91,7 @@ def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[
         "u_lagCount": len(textures.lags),
         "u_sides": sides,
         "u_unit": textures.unit,
-        "u_samples": settings.samples,
+        "u_samples": 2 * settings.samples - 1 if motion["u_moving"] else settings.samples,
         "u_spacing": settings.spacing,
         "u_grain": settings.grain,
         "u_kernel": KERNELS.index(settings.kernel),
@@ -85,18 +99,72 @@ def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[
         "u_contrast": settings.contrast,
         "u_strength": settings.strength,
         "u_seed": settings.seed,
-        "u_turn": settings.rate * view.clock % 1.0 if settings.animate else 0.0,
-        "u_wave": 1.0 / WAVE if settings.animate else 0.0,
-        "u_noiseOrigin": tuple(float(c * finest) for c in cell),
-        "u_noiseOriginCell": tuple(float(c) for c in cell),
+        "u_showLevel": settings.show_level,
+        "u_fixed": settings.fixed_grain,
+        **motion,
+        **_noise_origin(even, finest),
         "u_noiseFinest": finest,
         "u_texel": geometry.extent / settings.resolution,
     }
     if textures.paper is not None:
-        height, width = textures.paper.noise.shape
-        values["u_noiseSize"] = (float(width), float(height))
-        values["u_noiseCorrected"] = textures.paper.corrected
+        values |= _paper(textures.paper, settings)
     return values
+
+
+def _motion(textures: TextureSet, settings: Settings, view: ViewState) -> dict[str, Any]:
+    """How the grains change: with the time of a field that varies, by the clock of a steady one.
+
+    Grains that change shorten the streaks. Twice as many samples make up for it, and let the eye
+    follow a streak before it has changed.
+    """
+    store = textures.store
+    if store.steps > 1:
+        # The time in which the flow crosses the surface.
+        period = textures.geometry.extent / textures.pace
+        turns, travel = (view.time - float(store.field.times[0])) / period, textures.geometry.extent
+        pixels, by_speed, moving = False, True, True
+    else:
+        turns, travel = view.clock / settings.period % 1.0, settings.speed * settings.period
+        pixels, by_speed = settings.speed_in == "pixels", settings.motion == "speed"
+        moving = settings.motion != "off"
+    coarse = float(np.floor(turns / COARSE) * COARSE)
+    return {
+        "u_moving": moving and textures.space == "physical",
+        "u_clock": (coarse, turns - coarse),
+        "u_travel": float(travel),
+        "u_travelInPixels": pixels,
+        "u_travelBySpeed": by_speed,
+        "u_wave": WAVE,
+    }
+
+
+def _noise_origin(even: NDArray[np.int64], finest: float) -> dict[str, Any]:
+    """Give the noise's origin in space and in the finest cells of both families of lattices."""
+    odd = even / np.sqrt(2.0)
+    whole = np.floor(odd / 2**SNAP) * 2**SNAP
+    return {
+        "u_noiseOrigin": tuple(float(c * finest) for c in even),
+        "u_noiseOriginEven": tuple(float(c) for c in even),
+        "u_noiseOriginOdd": tuple(float(c) for c in whole),
+        "u_noiseRestOdd": tuple(float(c) for c in odd - whole),
+    }
+
+
+def _paper(paper: PaperTextures, settings: Settings) -> dict[str, Any]:
+    """Sizes of the noise texture, or of the picture that lies in its place."""
+    height, width = paper.step.shape
+    rows, columns = paper.noise.shape[:2]
+    tiles = settings.tiles if settings.noise == "image" else 1
+    return {
+        "u_noiseSize": (float(width), float(height)),
+        "u_noiseGrain": paper.grain,
+        "u_noiseDeviation": paper.deviations,
+        "u_noiseCorrected": paper.corrected,
+        "u_pictureSize": (float(columns * tiles), float(rows * tiles)),
+        "u_pictureRound": (float(paper.repeat[1]), float(paper.repeat[0])),
+        "u_pictureGrey": paper.noise.ndim == 2,
+        "u_tiles": float(tiles),
+    }
 
 
 def _origin_cell(focus: NDArray[np.float64], finest: float) -> NDArray[np.int64]:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from flowtex.textures.ahead import Ahead
 from flowtex.textures.geometry import Geometry
+from flowtex.textures.images import ImageError, as_picture
 from flowtex.textures.paper import PaperTextures
 from flowtex.textures.textureset import TextureSet
 
-__all__ = ["Geometry", "PaperTextures", "TextureSet"]
+__all__ = ["Ahead", "Geometry", "ImageError", "PaperTextures", "TextureSet", "as_picture"]

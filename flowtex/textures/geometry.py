@@ -117,6 +117,25 @@ class Geometry:
         return local.astype(np.float32)
 
     @cached_property
+    def normal(self) -> Singles:
+        """Unit normals at the nodes, (J, I, 3), in the mesh's own axes.
+
+        A node whose cells have collapsed takes that of the line beside it.
+        """
+        normal = np.cross(*self.field.surface.tangents)
+        length = np.linalg.norm(normal, axis=-1, keepdims=True)
+        small = length[..., 0] <= 1e-9 * max(float(np.median(length)), 1e-300)
+        if small.any() and not small.all():
+            for row, beside in ((0, 1), (-1, -2)):
+                normal[row][small[row]] = normal[beside][small[row]].mean(axis=0)
+            for column, beside in ((0, 1), (-1, -2)):
+                bad = small[:, column]
+                normal[bad, column] = normal[bad, beside]
+            length = np.linalg.norm(normal, axis=-1, keepdims=True)
+        safe = np.where(length > 0, length, 1.0)
+        return np.where(length > 0, normal / safe, [0.0, 0.0, 1.0]).astype(np.float32)
+
+    @cached_property
     def coordinate(self) -> Singles:
         """Texture coordinates of the nodes in the slices, (J, I, 2) as (u, v)."""
         u, v = np.meshgrid(self.columns.coordinates, self.rows.coordinates)

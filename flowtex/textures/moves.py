@@ -77,6 +77,8 @@ class Moves:
         """Positions in the frame, (C, N)."""
         rows, columns = self._surface.shape
         closed_j, closed_i = self._surface.periodic
+        if self._surface.poles is not None:
+            i, j = self._surface.poles.fold(np.stack([i, j]))
         i0, si, beyond_i, turns_i = _locate(i, columns, periodic=closed_i)
         j0, sj, beyond_j, turns_j = _locate(j, rows, periodic=closed_j)
         wi, wj = _cubic(si), _cubic(sj)

@@ -1,10 +1,10 @@
 """The paper's own textures: noise on the surface's parameters, and the step size with it.
 
-The noise texture lies on the parameters of the surface (section 3.2). Laid evenly over the cells
-it is stretched with them. *Corrected* for the distribution of the cells (figure 6), a noise
-coordinate grows with the length of the grid lines instead of their number, and where the texels
-are longer than wide all the same, each takes the value of an even noise in space at its own
-position, as coarse as the texel is long.
+The noise texture lies on the parameters of the surface (section 3.2), and any picture can take
+its place. Laid evenly over the cells it is stretched with them. *Corrected* for the distribution
+of the cells (figure 6), a noise coordinate grows with the length of the grid lines instead of
+their number, and where the texels are longer than wide all the same, each takes the value of a
+pattern in space at its own position (:mod:`flowtex.textures.patterns`).
 
 The step texture holds, for every texel of the noise, the lag in which the flow crosses it
 (equation 3). Level n of it counts 2^n times as much, because its texels are twice as wide at
@@ -13,13 +13,17 @@ every level (section 4.1).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
 from flowtex.field import FlowField
+from flowtex.textures.contrast import HALF_LEVELS, deviations
+from flowtex.textures.patterns import SPOT_GRAIN, Texels, checkerboard, even_noise, sample, spots
 from flowtex.trace import SliceStore
 
 __all__ = ["PaperTextures"]
@@ -30,21 +34,26 @@ Singles = NDArray[np.float32]
 
 @dataclass(frozen=True, eq=False)
 class PaperTextures:
-    """Noise and step size over the parameters of the surface.
+    """Noise, or a picture in its place, and step size over the parameters of the surface.
 
     Attributes
     ----------
     noise
-        Zero-mean noise of unit variance, (H, W).
+        Zero-mean noise of unit variance, (H, W); or a picture, grey (H, W) or coloured
+        (H, W, 4) as :func:`flowtex.textures.images.as_picture` returns it. Row 0 is at j = 0.
     step
-        Lag in which the flow crosses a texel, in multiples of the unit of lag, and how many
-        texels a grain is long: one image for each destination time, (T, H, W, 2).
+        Lag in which the flow crosses a texel, in multiples of the unit of lag, (H, W). Noise has
+        the same texels; a picture has its own.
     along_i, along_j
         Noise coordinate of each line of nodes, (I,) and (J,), from 0 to 1.
     repeat
         Whether the noise goes around along (v, u).
     corrected
         Whether the noise is even on the surface instead of even in the texture.
+    grain
+        Width of a grain of the noise, in texels.
+    picture
+        Whether ``noise`` is a picture, which is averaged along the flow, and no noise.
     """
 
     noise: Singles
@@ -53,6 +62,8 @@ class PaperTextures:
     along_j: Floats
     repeat: tuple[bool, bool]
     corrected: bool
+    grain: float = 1.0
+    picture: bool = False
 
     @classmethod
     def build(
@@ -62,6 +73,9 @@ class PaperTextures:
         resolution: int,
         correction: bool,
         seed: int = 0,
+        pattern: str = "texture",
+        tiles: int = 1,
+        image: Singles | None = None,
     ) -> PaperTextures:
         """Make both textures for a field.
 
@@ -76,29 +90,48 @@ class PaperTextures:
             Whether the noise is even on the surface instead of even in the texture.
         seed
             Number of the noise pattern.
+        pattern
+            ``"texture"`` for the paper's noise, ``"spots"`` for that of Spot Noise,
+            ``"checkerboard"`` or ``"image"`` for a picture.
+        tiles
+            How much smaller the squares of a checkerboard are.
+        image
+            The picture for ``"image"``, (H, W, 4).
+
+        Raises
+        ------
+        ValueError
+            When the pattern is an image and there is none, or there is no such pattern.
         """
         field = store.field
         height, width = _size(field, resolution)
         along_i, along_j = _coordinates(field, correction=correction)
         index = _texel_positions(along_i, along_j, height, width)
-        texel = np.stack(
-            np.broadcast_arrays(
-                _slope(along_i, index[..., 0], width), _slope(along_j, index[..., 1], height)
-            ),
-            axis=-1,
+        size = np.broadcast_arrays(
+            _slope(along_i, index[..., 0], width), _slope(along_j, index[..., 1], height)
         )
-        if correction:
-            noise = _even_noise(field, index, texel, seed)
+        texels = Texels(field, index, np.stack(size, axis=-1), correction)
+        if pattern == "image" and image is not None:
+            laid: dict[str, Any] = {"noise": image, "picture": True}
         else:
-            noise = np.random.default_rng(seed).standard_normal((height, width))
+            laid = _laid(texels, pattern, seed=seed, tiles=tiles)
         return cls(
-            noise=((noise - noise.mean()) / (noise.std() or 1.0)).astype(np.float32),
-            step=np.minimum(_steps(store, index, texel), 6e4).astype(np.float32),
+            step=np.minimum(_steps(store, index, texels.size), 6e4).astype(np.float32),
             along_i=along_i,
             along_j=along_j,
             repeat=field.periodic,
             corrected=correction,
+            **laid,
         )
+
+    def with_image(self, image: Singles) -> PaperTextures:
+        """Return the same with a picture (H, W, 4) in place of what was there."""
+        return replace(self, noise=image, grain=1.0, picture=True)
+
+    @cached_property
+    def deviations(self) -> list[float]:
+        """Deviation of the noise at each mip level and half-way to the next."""
+        return [1.0] * HALF_LEVELS if self.picture else deviations(self.noise)
 
     @property
     def coordinate(self) -> Singles:
@@ -165,38 +198,25 @@ def _slope(line: Floats, x: Floats, texels: int) -> Floats:
     return np.asarray(1 / (np.diff(line)[cell] * texels))
 
 
-def _sample(nodal: NDArray[np.generic], index: Floats) -> Floats:
-    """Nodal values (J, I) at positions in index space."""
-    at = [index[..., 1], index[..., 0]]
-    return np.asarray(ndimage.map_coordinates(nodal.astype(float), at, order=1, mode="nearest"))
+def _laid(texels: Texels, pattern: str, *, seed: int, tiles: int) -> dict[str, Any]:
+    """Attributes of the noise, or of the picture, of a name."""
+    if pattern == "checkerboard":
+        return {"noise": checkerboard(texels, tiles).astype(np.float32), "picture": True}
+    if pattern == "spots":
+        return {"noise": _unit(spots(texels, seed)), "grain": SPOT_GRAIN}
+    if pattern != "texture":
+        msg = (
+            f"pattern is {pattern!r}; expected 'texture', 'spots' or 'checkerboard', or 'image' "
+            "with an image"
+        )
+        raise ValueError(msg)
+    if texels.corrected:
+        return {"noise": _unit(even_noise(texels, seed))}
+    return {"noise": _unit(np.random.default_rng(seed).standard_normal(texels.shape))}
 
 
-def _even_noise(field: FlowField, index: Floats, texel: Floats, seed: int) -> Floats:
-    """Noise even in space, at each texel as coarse as the texel is large.
-
-    A texel takes the random number of the cube of a lattice in space in which it lies. The
-    lattice is that power of two of the finest which is nearest to the texel's longer side.
-    """
-    p_i, p_j = (np.linalg.norm(t, axis=-1) for t in field.surface.tangents)
-    size = np.maximum(_sample(p_i, index) * texel[..., 0], _sample(p_j, index) * texel[..., 1])
-    octave = np.rint(np.log2(np.maximum(size, field.surface.extent * 1e-7))).astype(np.int64)
-    position = field.surface.at(index) - field.surface.center
-    cell = np.floor(position / (2.0**octave)[..., None]).astype(np.int64)
-    return _hash(cell, octave, seed)
-
-
-def _hash(cell: NDArray[np.int64], octave: NDArray[np.int64], seed: int) -> Floats:
-    """Uniform random number of a lattice cell (..., 3)."""
-    primes = np.array([0x9E3779B1, 0x85EBCA77, 0xC2B2AE3D], dtype=np.uint64)
-    h = np.zeros(octave.shape, np.uint64)
-    for axis in range(3):
-        h ^= cell[..., axis].astype(np.uint64) * primes[axis]
-    h ^= octave.astype(np.uint64) * np.uint64(0x27D4EB2F165667C5) + np.uint64(seed)
-    for shift, factor in ((33, 0xFF51AFD7ED558CCD), (33, 0xC4CEB9FE1A85EC53)):
-        h ^= h >> np.uint64(shift)
-        h *= np.uint64(factor)
-    h ^= h >> np.uint64(33)
-    return h.astype(np.float64) / 2.0**64
+def _unit(noise: Floats) -> Singles:
+    return np.asarray((noise - noise.mean()) / (noise.std() or 1.0), np.float32)
 
 
 def _steps(store: SliceStore, index: Floats, texel: Floats) -> Floats:
@@ -210,7 +230,7 @@ def _steps(store: SliceStore, index: Floats, texel: Floats) -> Floats:
     if store.parameter == "arclength":
         speed = _by_length(speed, field)
     speed = speed * store.unit[..., None]
-    crossed = np.stack([_sample(speed[..., axis], index) for axis in range(2)], axis=-1) / texel
+    crossed = np.stack([sample(speed[..., axis], index) for axis in range(2)], axis=-1) / texel
     return np.asarray(1 / np.maximum(crossed.max(axis=-1), 1 / float(store.lags[-1])))
 
 

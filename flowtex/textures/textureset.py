@@ -9,7 +9,7 @@ of second order. Both sides share one sign: D(s) = s * slope(s), with s negative
 layer                 first three channels                                   fourth channel
 ====================  =====================================================  =================
 0                     slope at lag zero                                      unit of lag
-1 ... M               slopes of the backward slices                          layer 1: reach
+1 ... M               slopes of the backward slices                          1: reach; 2: speed
 M + 1 ... 2 M         slopes of the forward slices, where there are any      M + 1: reach
 ====================  =====================================================  =================
 
@@ -21,7 +21,7 @@ from __future__ import annotations
 
 import os
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -65,13 +65,26 @@ class TextureSet:
     paper: PaperTextures | None = None
 
     @classmethod
-    def build(cls, store: SliceStore, settings: Settings) -> TextureSet:
+    def build(
+        cls, store: SliceStore, settings: Settings, image: Singles | None = None
+    ) -> TextureSet:
         """Make the textures that the settings ask for.
+
+        Parameters
+        ----------
+        store
+            The traces.
+        settings
+            Which noise, how fine, and how it is spread.
+        image
+            The picture for ``noise="image"``, (H, W, 4), from
+            :func:`~flowtex.textures.images.as_picture`.
 
         Raises
         ------
         ValueError
-            When the slices do not belong to the field, or are more than a shader has room for.
+            When the slices do not belong to the field, or are more than a shader has room for;
+            or an image is asked for and there is none.
         """
         field = store.field
         if store.unit.shape != field.shape:
@@ -91,8 +104,29 @@ class TextureSet:
             resolution=settings.resolution,
             correction=settings.noise_correction,
             seed=settings.seed,
+            pattern=settings.noise,
+            tiles=settings.tiles,
+            image=image,
         )
         return cls(geometry, store, "parameter", paper)
+
+    def with_image(self, image: Singles) -> TextureSet:
+        """Return the same with another picture in place of the noise texture.
+
+        Raises
+        ------
+        ValueError
+            When there is no noise texture.
+        """
+        if self.paper is None:
+            msg = "there is no noise texture, which an image could replace; expected noise='image'"
+            raise ValueError(msg)
+        return replace(self, paper=self.paper.with_image(image))
+
+    def same_paths(self, other: TextureSet) -> bool:
+        """Tell whether nothing but the picture in place of the noise differs."""
+        steps = [made.paper.step if made.paper is not None else None for made in (self, other)]
+        return self.geometry is other.geometry and steps[0] is steps[1] is not None
 
     @property
     def sides(self) -> int:
@@ -102,8 +136,11 @@ class TextureSet:
     @cached_property
     def pace(self) -> float:
         """Nominal length of a unit of ``store.unit``: 1 by arc length, a typical speed by time."""
-        if self.store.parameter == "arclength":
-            return 1.0
+        return 1.0 if self.store.parameter == "arclength" else self.typical_speed
+
+    @cached_property
+    def typical_speed(self) -> float:
+        """Root mean square of the speed in the field's own units; 1 in a flow at rest."""
         speed = self.geometry.field.speed[:, self.geometry.field.valid]
         return float(np.sqrt(np.mean(speed**2))) or 1.0
 
@@ -156,14 +193,27 @@ class TextureSet:
                 np.multiply(moved, by_length, out=result[..., channel], casting="same_kind")
         if m == 0:
             result[..., 3] = _usable_reach(reach[0], slices)
+        if layer == 2:
+            result[..., 3] = self._speed(slices)
         return result
+
+    def _speed(self, slices: TraceSlices) -> NDArray[Any]:
+        """Speed of the flow at the nodes in multiples of its typical speed, (J, I)."""
+        field = self.geometry.field
+        step = int(np.argmin(np.abs(field.times - slices.times[0])))
+        return np.asarray(field.speed[step] / self.typical_speed)
 
     def _tangent(self, slices: TraceSlices) -> NDArray[Any]:
         rate = slices.rate[0]
         if self.paper is not None:
             return three(rate * self.paper.by_cell())
-        p_i, p_j = self.geometry.field.surface.tangents
+        surface = self.geometry.field.surface
+        p_i, p_j = surface.tangents
         along = rate[..., :1] * p_i + rate[..., 1:] * p_j
+        for pole in surface.poles or ():
+            # One point has one slope, of which its nodes hold a component each.
+            across = pole.lines(rate)[pole.line, :, pole.component]
+            pole.lines(along)[pole.line] = pole.vector(across) @ pole.plane
         return np.asarray(along @ self.geometry.frame.T) / self._length
 
     @cached_property

@@ -1,13 +1,20 @@
 // The method: everything a fragment needs, in the order that GLSL asks for.
 
 vec2 flowtexLookup(vec3 displacement, float length_);
-float flowtexBlend(vec2 sums);
+float flowtexBlend(vec2 sums, float near);
+void flowtexMove(float slope, float speed);
+#ifdef FLOWTEX_PICTURE
+void flowtexGather(vec3 displacement, float weight);
+#endif
 //#include common/path.glsl
 //#include common/texture.glsl
+//#include common/derivatives.glsl
 //#include common/levels.glsl
+//#include common/shade.glsl
 #ifdef FLOWTEX_PAPER
 //#include common/lookup_paper.glsl
 #else
 //#include common/noise.glsl
 //#include common/lookup_space.glsl
 #endif
+//#include common/fragment.glsl

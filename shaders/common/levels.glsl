@@ -1,3 +1,16 @@
+#ifndef FLOWTEX_PLANAR
+// A derivative of position on the screen as it is on the smooth surface, not on its flat facets,
+// whose slants would show as steps of the level where the surface is seen at a grazing angle.
+// What is added lies along the ray to the eye, so it does not move on the screen.
+vec3 flowtexOnSurface(vec3 derivative, vec3 position, vec3 normal)
+{
+  vec3 ray = normalize(u_eye.xyz - u_eye.w * position);
+  float facing = dot(normalize(normal), ray);
+  facing = (facing < 0.0 ? -1.0 : 1.0) * max(abs(facing), 0.05);
+  return derivative - ray * (dot(normalize(normal), derivative) / facing);
+}
+#endif
+
 // Level of the slice texture for a footprint in its texels.
 //
 // The shorter side of the footprint decides: the paths are smooth in space, so a level too fine
@@ -12,4 +25,11 @@ float flowtexSliceLevel(vec2 dx, vec2 dy)
   float determinant = sx.x * sy.y - sx.y * sy.x;
   vec2 footprint = flowtexFootprint(dot(sx, sx), dot(sy, sy), determinant);
   return clamp(log2(max(footprint.y, 1e-6)), 0.0, u_deepest);
+}
+
+// A colour for a level of detail, for teaching: one hue for each doubling, six in a round.
+vec3 flowtexLevelColour(float level)
+{
+  vec3 hue = 0.5 + 0.5 * cos(6.2831853 * (level / 6.0 + vec3(0.0, -0.333, 0.333)));
+  return mix(vec3(0.35), vec3(1.0), hue);
 }

@@ -1,36 +1,58 @@
 // The noise at a traced point: even in space, at the level of the fragment.
-//
-// The finer octave has lattice cells of half a grain to one grain, the coarser one of one to two.
 
 FlowtexLattice flowtexFine;
 FlowtexLattice flowtexCoarse;
-float flowtexPixel; // length that a pixel covers
-float flowtexLate;  // how far the level is from the finer octave to the coarser one
+float flowtexPixel;      // length that a pixel covers
+float flowtexLate;       // how far the level is from the finer octave to the coarser one
+float flowtexNoiseLevel; // octaves of a factor 2 above the grain that is fixed on the surface
 
 vec2 flowtexLookup(vec3 displacement, float length_)
 {
-  float turn = u_turn + u_wave * length_ / flowtexPixel;
-  return vec2(flowtexOctave(flowtexFine, displacement, turn),
-              flowtexOctave(flowtexCoarse, displacement, turn));
+  vec2 turns = flowtexMotion.clock + flowtexMotion.turns * length_;
+  return vec2(flowtexOctave(flowtexFine, displacement, turns),
+              flowtexOctave(flowtexCoarse, displacement, turns));
 }
 
-// The finer octave fades early, before its grains are smaller than a pixel.
-float flowtexBlend(vec2 sums)
+// The variance of the mixture is known: that of both sums, which are independent.
+float flowtexBlend(vec2 sums, float near)
 {
-  float w = (1.0 - flowtexLate) * sqrt(1.0 - flowtexLate);
-  sums *= inversesqrt(flowtexShared(u_spacing * exp2(flowtexLate) * vec2(1.0, 0.5)));
-  return (sums.x * w + sums.y * (1.0 - w)) * inversesqrt(1.0 - 2.0 * w * (1.0 - w));
+  vec2 w = vec2(1.0 - flowtexLate, flowtexLate);
+  float apart = u_spacing * exp2(0.5 * flowtexLate);
+  vec2 shared = vec2(flowtexShared(apart, near), flowtexShared(apart * 0.70710678, near));
+  return dot(sums, w) * inversesqrt(dot(w * w, shared));
+}
+
+// Rates of the motion at a fragment. The value of a grain comes back after one turn, so a turn
+// must take as long as the flow needs for a stretch that shows well, u_wave pixels and a little
+// more. Turns take the base period divided by a power of two, so all are whole after the base
+// period, and two neighbours are blended. Where the flow is too slow for one turn it stands.
+void flowtexMove(float slope, float speed)
+{
+  flowtexMotion = FlowtexMotion(vec2(0.0), vec2(0.0), vec2(1.0), 0.0);
+  if (!u_moving)
+    return;
+  float travel = u_travel * (u_travelInPixels ? flowtexPixel : 1.0) * (u_travelBySpeed ? speed : 1.0);
+  float rate = log2(max(travel / (u_wave * flowtexPixel), 0.25));
+  vec2 rates = floor(rate) + vec2(0.0, 1.0);
+  vec2 turns = exp2(rates) * step(vec2(0.0), rates);
+  flowtexMotion.clock = fract(turns * u_clock.x) + turns * u_clock.y;
+  flowtexMotion.turns = turns * slope / max(travel, 1e-30);
+  // A rate keeps its phases, whether it is the slower one or the faster one.
+  flowtexMotion.phases = mod(rates.x, 2.0) < 0.5 ? vec2(1.0, 64.0) : vec2(64.0, 1.0);
+  flowtexMotion.late = rate - rates.x;
 }
 
 // Texture at a position with the footprint given by its derivatives.
 float flowtexFragment(vec3 position, vec3 dx, vec3 dy, vec2 coordinate, float sliceLevel)
 {
   vec2 footprint = flowtexFootprint(dot(dx, dx), dot(dy, dy), length(cross(dx, dy)));
-  flowtexPixel = u_lod ? footprint.x : u_texel;
-  float level = clamp(log2(flowtexPixel * u_grain / u_noiseFinest), 0.0, 29.99);
+  flowtexPixel = u_lod ? footprint.x : u_texel / u_grain;
+  float grain = u_fixed ? max(flowtexPixel * u_grain, u_texel) : flowtexPixel * u_grain;
+  flowtexNoiseLevel = log2(grain / u_texel);
+  float level = clamp(2.0 * log2(grain / u_noiseFinest), 0.0, 58.99);
   int octave = int(level);
   flowtexLate = level - float(octave);
   flowtexFine = flowtexLattice(position - u_noiseOrigin, octave);
   flowtexCoarse = flowtexLattice(position - u_noiseOrigin, octave + 1);
-  return flowtexTexture(coordinate, sliceLevel, u_spacing * flowtexPixel * u_grain);
+  return flowtexTexture(coordinate, sliceLevel, u_spacing * grain);
 }

@@ -1,10 +1,13 @@
 // Noise that is even in space and has no end.
 //
 // Every lattice point of every octave has a random phase, hashed from its integer coordinates.
-// Octave 0 is the finest, with cells of u_noiseFinest; octave n has cells 2^n times as wide.
-// Positions are given relative to u_noiseOrigin, a lattice point near the view. Its integer
-// coordinates, in cells of octave 0, enter the hash, so the digits that float has are spent near
-// the view and the pattern does not depend on where the view is.
+// Octave n has cells sqrt(2)^n times as wide as u_noiseFinest: even octaves belong to one family
+// of lattices, each nested in the next, odd ones to another that is wider by sqrt(2). Two
+// neighbours are so close that their mixture has the grain of either.
+//
+// Positions are given relative to u_noiseOrigin, a point near the view. Its coordinates in the
+// finest cells of both families, whole numbers and what is left, enter the hash, so the digits
+// that float has are spent near the view and the pattern does not depend on where the view is.
 
 const uvec3 flowtexPrimes = uvec3(0x8da6b343u, 0xd8163841u, 0xcb1ab31fu);
 
@@ -18,40 +21,58 @@ struct FlowtexLattice
 
 FlowtexLattice flowtexLattice(vec3 position, int octave)
 {
-  ivec3 finest = ivec3(u_noiseOriginCell);
-  ivec3 origin = finest >> octave;
-  float inverse = exp2(-float(octave)) / u_noiseFinest;
-  vec3 rest = vec3(finest - (origin << octave)) * exp2(-float(octave));
+  bool odd = (octave & 1) == 1;
+  int doublings = octave >> 1;
+  float shrink = exp2(-float(doublings));
+  float inverse = shrink / u_noiseFinest * (odd ? 0.70710678 : 1.0);
+  ivec3 finest = ivec3(odd ? u_noiseOriginOdd : u_noiseOriginEven);
+  ivec3 origin = finest >> doublings;
+  vec3 rest = (vec3(finest - (origin << doublings)) + (odd ? u_noiseRestOdd : vec3(0.0))) * shrink;
   uvec3 key = uvec3(origin) * flowtexPrimes;
   key.x += uint(octave) * 0x9e3779b9u + uint(u_seed) * 0x85ebca6bu;
   return FlowtexLattice(position * inverse + rest, inverse, key);
 }
 
-// Values of four lattice points from their keys: a triangle wave of a random phase, so that they
-// are uniform in -1 ... 1 at every moment and come back after one turn.
-vec4 flowtexGrains(uvec4 h, float turn)
+// Motion of the grains at a fragment: two rates, and how far it is from one to the other.
+struct FlowtexMotion
+{
+  vec2 clock;  // the moment in turns
+  vec2 turns;  // turns by length of path
+  vec2 phases; // which phases of a grain belong to the rates
+  float late;
+};
+
+FlowtexMotion flowtexMotion;
+
+// Values of four lattice points from their keys, uniform in -1 ... 1 at every moment. In motion
+// each is a mixture of two triangle waves with phases of their own.
+vec4 flowtexGrains(uvec4 h, vec2 turns)
 {
   h = (h ^ (h >> 15)) * 0x2c1b3c6du;
   h = (h ^ (h >> 13)) * 0x297a2d39u;
   vec4 phase = vec4(h >> 8) * (1.0 / 16777216.0);
-  return abs(fract(phase + turn) * 4.0 - 2.0) - 1.0;
+  if (!u_moving)
+    return phase * 2.0 - 1.0;
+  vec4 slow = abs(fract(phase * flowtexMotion.phases.x + turns.x) * 4.0 - 2.0) - 1.0;
+  vec4 fast = abs(fract(phase * flowtexMotion.phases.y + turns.y) * 4.0 - 2.0) - 1.0;
+  float late = flowtexMotion.late;
+  return mix(slow, fast, late) * inversesqrt(1.0 - 2.0 * late * (1.0 - late));
 }
 
 // One octave at a displacement, with the variance of 1 everywhere between the lattice points.
-float flowtexOctave(FlowtexLattice lattice, vec3 displacement, float turn)
+float flowtexOctave(FlowtexLattice lattice, vec3 displacement, vec2 turns)
 {
   vec3 q = lattice.here + displacement * lattice.inverse;
   vec3 base = floor(q);
-  vec3 t = q - base;
-  vec3 w = t * t * (3.0 - 2.0 * t);
-  vec3 spread = w * w + (1.0 - w) * (1.0 - w);
+  vec3 w = q - base;
+  vec3 spread = 1.0 - 2.0 * w * (1.0 - w);
   uvec3 k = lattice.key + uvec3(ivec3(base)) * flowtexPrimes;
   uvec4 corners = uvec4(0u, flowtexPrimes.x, flowtexPrimes.y, flowtexPrimes.x + flowtexPrimes.y)
     + (k.x + k.y + k.z);
-  vec4 grains = flowtexGrains(corners, turn);
+  vec4 grains = flowtexGrains(corners, turns);
   float variance = spread.x * spread.y;
 #ifndef FLOWTEX_PLANAR
-  grains = mix(grains, flowtexGrains(corners + flowtexPrimes.z, turn), w.z);
+  grains = mix(grains, flowtexGrains(corners + flowtexPrimes.z, turns), w.z);
   variance *= spread.z;
 #endif
   vec2 rows = mix(grains.xz, grains.yw, w.x);

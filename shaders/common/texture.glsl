@@ -3,14 +3,24 @@
 // Wrappers supply
 //   vec2 flowtexLookup(vec3 displacement, float length_)
 // which is the noise at the traced point, in two octaves, and
-//   float flowtexBlend(vec2 sums)
+//   float flowtexBlend(vec2 sums, float near)
 // which mixes the two sums by the level of the fragment and brings them to unit variance.
 
 // Variance of a sum of samples over that of independent ones, for samples that lie a number of
-// grains apart: neighbours share a grain when they are closer than one and a third.
-vec2 flowtexShared(vec2 apart)
+// grains apart: neighbours share a grain when they are close. ``near`` is the correlation of the
+// weights with those of the next sample; m samples on it is about near^(m * m). That of the noise
+// itself, over all directions, is a bell.
+float flowtexShared(float apart, float near)
 {
-  return max(vec2(1.0), 1.35 / apart);
+  float total = 1.0;
+  for (int m = 1; m <= 24; ++m)
+  {
+    float d = float(m * m) * apart * apart;
+    if (d > 3.0)
+      break;
+    total += 2.0 * pow(near, float(m * m)) * exp(-d * (1.19 + 0.06 * d));
+  }
+  return total;
 }
 
 // Footprint of a pixel: the longest and the shortest side of what it covers.
@@ -31,17 +41,24 @@ float flowtexWeight(float x)
   return 0.5 + 0.5 * cos(3.14159265 * x);
 }
 
-// Sums along a path: of the weighted noise in both octaves, and of the squared weights.
+// Sums along a path: of the weighted noise in both octaves, of the squared weights, and of the
+// products of neighbouring weights.
 struct FlowtexSums
 {
   vec2 noise;
   float squares;
+  float neighbours;
 };
 
-void flowtexAdd(inout FlowtexSums sums, vec3 displacement, float length_, float weight)
+void flowtexAdd(inout FlowtexSums sums, vec3 displacement, float length_, float weight, float before)
 {
+#ifdef FLOWTEX_PICTURE
+  flowtexGather(displacement, weight);
+#else
   sums.noise += weight * flowtexLookup(displacement, length_);
+#endif
   sums.squares += weight * weight;
+  sums.neighbours += weight * before;
 }
 
 // Adds one side of the path, ``count`` points ``spacing`` apart in nominal length.
@@ -51,6 +68,7 @@ void flowtexSide(inout FlowtexSums sums, FlowtexPath path, float side, float spa
   float last = min(reach, u_lags[u_lagCount - 1]);
   float lag = 0.0;
   float step_ = spacing / (scale * max(length(path.before), 1e-6));
+  float before = flowtexWeight(0.0);
   for (int k = 1; k <= count; ++k)
   {
     lag += step_;
@@ -59,7 +77,8 @@ void flowtexSide(inout FlowtexSums sums, FlowtexPath path, float side, float spa
       break;
     vec3 displacement = flowtexFollow(path, lag) * (side * scale);
     float weight = alive * flowtexWeight(side * float(k) / float(count + 1));
-    flowtexAdd(sums, displacement, side * lag * scale, weight);
+    flowtexAdd(sums, displacement, side * lag * scale, weight, before);
+    before = weight;
 #ifndef FLOWTEX_PAPER
     // Points stay evenly spaced along the path where the particle is faster or slower there
     // than it is here: equation 3 at every point of the path.
@@ -74,9 +93,10 @@ float flowtexTexture(vec2 coordinate, float sliceLevel, float spacing)
 {
   vec4 base = flowtexLayer(coordinate, 0, sliceLevel);
   vec4 back = flowtexLayer(coordinate, 1, sliceLevel);
-  FlowtexSums sums = FlowtexSums(vec2(0.0), 0.0);
-  flowtexAdd(sums, vec3(0.0), 0.0, max(flowtexWeight(0.0), 1e-3));
+  FlowtexSums sums = FlowtexSums(vec2(0.0), 0.0, 0.0);
   float speed = length(base.xyz);
+  flowtexMove(speed, u_moving ? flowtexLayer(coordinate, 2, sliceLevel).w : 1.0);
+  flowtexAdd(sums, vec3(0.0), 0.0, max(flowtexWeight(0.0), 1e-3), 0.0);
   if (speed > 1e-6)
   {
 #ifdef FLOWTEX_PAPER
@@ -95,15 +115,5 @@ float flowtexTexture(vec2 coordinate, float sliceLevel, float spacing)
                   spacing, ahead.w, scale, count);
     }
   }
-  return flowtexBlend(sums.noise * inversesqrt(sums.squares));
-}
-
-// Colour with the texture laid over it: darker below the middle tone, lighter above, so that the
-// texture shows on dark colours too and the mean over many grains stays close to the colour.
-vec3 flowtexShade(vec3 colour, float value)
-{
-  float tone = 2.0 / (1.0 + exp(-1.1 * u_contrast * value)) - 1.0;
-  float dark = u_strength * max(-tone, 0.0);
-  float light = u_strength * max(tone, 0.0);
-  return mix(mix(colour, colour * 0.12, dark), vec3(1.0), 0.62 * light);
+  return flowtexBlend(sums.noise * inversesqrt(sums.squares), sums.neighbours / sums.squares);
 }

@@ -1,4 +1,4 @@
-// What a renderer sets. The names are those of flowtex/render/uniforms.py.
+// What a renderer sets. The names are those of flowtex/renderers/uniforms.py.
 
 uniform highp sampler2DArray u_slices;
 #ifdef FLOWTEX_UNSTEADY
@@ -20,16 +20,36 @@ uniform bool u_lod;
 uniform float u_contrast;
 uniform float u_strength;
 uniform int u_seed;
-uniform float u_turn;       // clock of the animation, in turns
-uniform float u_wave;       // turns by pixel of path
+uniform bool u_showLevel;   // colour by the level of detail
+uniform bool u_fixed;       // grains no smaller on the surface than u_texel
 
-uniform vec3 u_noiseOrigin;      // lattice point near the view, in the surface's frame
-uniform vec3 u_noiseOriginCell;  // the same in cells of octave 0, whole numbers
+uniform bool u_moving;         // whether grains change with the clock
+uniform vec2 u_clock;          // clock in base periods: a coarse part and the rest
+uniform float u_travel;        // what the flow goes in a base period: a length, or pixels,
+uniform bool u_travelInPixels;
+uniform bool u_travelBySpeed;  // where its speed is the typical one, or everywhere
+uniform float u_wave;          // pixels that it goes in one turn, at least
+
+#ifndef FLOWTEX_PLANAR
+uniform vec4 u_eye;              // the eye in the surface's frame, or with w = 0 the way to it
+#endif
+uniform vec3 u_noiseOrigin;      // point near the view, in the surface's frame
+uniform vec3 u_noiseOriginEven;  // the same in cells of octave 0, whole numbers
+uniform vec3 u_noiseOriginOdd;   // and in cells of octave 1: whole numbers,
+uniform vec3 u_noiseRestOdd;     // and the rest
 uniform float u_noiseFinest;     // width of a cell of octave 0
-uniform float u_texel;           // width of a grain when the level of detail is off
+uniform float u_texel;           // width of a grain that is fixed on the surface
 #ifdef FLOWTEX_PAPER
-uniform highp sampler2D u_noiseImage;
-uniform highp sampler2D u_stepImage;
-uniform vec2 u_noiseSize;  // texels of the noise
+uniform highp sampler2DArray u_noiseImage; // one layer each
+uniform highp sampler2DArray u_stepImage;
+uniform vec2 u_noiseSize;  // texels of the noise, and of the step texture
+uniform float u_noiseGrain; // width of a grain, in texels
+uniform float u_noiseDeviation[32]; // of the noise at each level and half-way to the next
 uniform bool u_noiseCorrected; // noise even on the surface, not in the texture
+#endif
+#ifdef FLOWTEX_PICTURE
+uniform vec2 u_pictureSize;  // texels of the picture over the surface, with its repeats
+uniform vec2 u_pictureRound; // 1 along an axis that closes on itself
+uniform bool u_pictureGrey;  // one channel, opaque; or four, colours times opacity
+uniform float u_tiles;       // how often the picture is repeated
 #endif

@@ -1,15 +1,19 @@
-  // Derivatives first: they are not defined behind a branch.
-  vec2 flowtexSliceDx = dFdx(flowtexCoordinateVSOutput);
-  vec2 flowtexSliceDy = dFdy(flowtexCoordinateVSOutput);
-  float flowtexLevel = flowtexSliceLevel(flowtexSliceDx, flowtexSliceDy);
-#ifdef FLOWTEX_PAPER
-  float flowtexValue = flowtexFragment(flowtexCoordinateVSOutput, flowtexNoiseVSOutput, dFdx(flowtexNoiseVSOutput),
-                                       dFdy(flowtexNoiseVSOutput), flowtexLevel);
+#if defined(FLOWTEX_PAPER)
+  float flowtexTextured = flowtexValue(flowtexCoordinateVSOutput, flowtexNoiseVSOutput);
+#elif defined(FLOWTEX_PLANAR)
+  float flowtexTextured = flowtexValue(flowtexCoordinateVSOutput, flowtexPositionVSOutput, vec3(0.0, 0.0, 1.0));
 #else
-  float flowtexValue = flowtexFragment(flowtexPositionVSOutput, dFdx(flowtexPositionVSOutput),
-                                       dFdy(flowtexPositionVSOutput), flowtexCoordinateVSOutput, flowtexLevel);
+  float flowtexTextured = flowtexValue(flowtexCoordinateVSOutput, flowtexPositionVSOutput, flowtexNormalVSOutput);
 #endif
-  // VTK has set ambientColor and diffuseColor from the property or the scalars by now, and
-  // lights them next.
-  ambientColor = flowtexShade(ambientColor, flowtexValue);
-  diffuseColor = flowtexShade(diffuseColor, flowtexValue);
+  // VTK has set ambientColor and diffuseColor from the property or the scalars by now, each times
+  // its share of the light, and lights them next.
+  vec3 flowtexColour = (ambientColor + diffuseColor) / max(ambientIntensity + diffuseIntensity, 1e-6);
+  if (u_showLevel)
+    flowtexColour = flowtexLevelColour(flowtexNoiseLevel);
+#ifdef FLOWTEX_PICTURE
+  flowtexColour = flowtexPaint(flowtexColour);
+#else
+  flowtexColour = flowtexShade(flowtexColour, flowtexTextured);
+#endif
+  ambientColor = ambientIntensity * flowtexColour;
+  diffuseColor = diffuseIntensity * flowtexColour;

@@ -4,6 +4,10 @@ in vec3 flowtexPositionVSOutput[];
 in vec2 flowtexCoordinateVSOutput[];
 out vec3 flowtexPositionGSOutput;
 out vec2 flowtexCoordinateGSOutput;
+#ifndef FLOWTEX_PLANAR
+in vec3 flowtexNormalVSOutput[];
+out vec3 flowtexNormalGSOutput;
+#endif
 #ifdef FLOWTEX_PAPER
 in vec2 flowtexNoiseVSOutput[];
 out vec2 flowtexNoiseGSOutput;

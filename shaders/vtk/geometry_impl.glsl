@@ -1,5 +1,8 @@
     flowtexPositionGSOutput = flowtexPositionVSOutput[i];
     flowtexCoordinateGSOutput = flowtexCoordinateVSOutput[i];
+#ifndef FLOWTEX_PLANAR
+    flowtexNormalGSOutput = flowtexNormalVSOutput[i];
+#endif
 #ifdef FLOWTEX_PAPER
     flowtexNoiseGSOutput = flowtexNoiseVSOutput[i];
 #endif

@@ -1,5 +1,8 @@
   flowtexPositionVSOutput = flowtexPosition;
   flowtexCoordinateVSOutput = flowtexCoordinate;
+#ifndef FLOWTEX_PLANAR
+  flowtexNormalVSOutput = flowtexNormal;
+#endif
 #ifdef FLOWTEX_PAPER
   flowtexNoiseVSOutput = flowtexNoise;
 #endif

@@ -19,12 +19,15 @@ RGBA16F, R16F = 0x881A, 0x822D
 
 
 class GPUTexture:
-    """One texture with its mip levels: an array of RGBA layers, or an image of one channel.
+    """One texture array with its mip levels; an image is an array of one layer.
+
+    Of VTK's textures made from memory the arrays alone get mip levels.
 
     Parameters
     ----------
     texels
-        (layers, H, W, 4) or (H, W), single precision; kept in half precision.
+        (layers, H, W, channels) with one channel or four, single precision; kept in half
+        precision.
     levels
         Mip levels beside the finest; all of them when left out.
     repeat
@@ -77,14 +80,10 @@ class GPUTexture:
         repeat, clamp = vtkTextureObject.Repeat, vtkTextureObject.ClampToEdge
         target.SetWrapS(repeat if self._repeat[1] else clamp)
         target.SetWrapT(repeat if self._repeat[0] else clamp)
-        if self._levels is not None:
-            target.SetMaxLevel(self._levels)
-        if texels.ndim == 4:
-            layers, height, width, _ = texels.shape
-            target.SetInternalFormat(RGBA16F)
-            target.Create2DArrayFromRaw(width, height, 4, VTK_FLOAT, layers, texels)
-        else:
-            height, width = texels.shape
-            target.SetInternalFormat(R16F)
-            target.Create2DFromRaw(width, height, 1, VTK_FLOAT, texels)
+        layers, height, width, channels = texels.shape
+        whole = max(height, width).bit_length() - 1
+        # Left as it is, VTK's greatest level is 0, and no other level is made.
+        target.SetMaxLevel(whole if self._levels is None else self._levels)
+        target.SetInternalFormat(R16F if channels == 1 else RGBA16F)
+        target.Create2DArrayFromRaw(width, height, channels, VTK_FLOAT, layers, texels)
         return target

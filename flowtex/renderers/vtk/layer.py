@@ -24,9 +24,9 @@ from vtkmodules.vtkCommonDataModel import vtkDataObject
 from flowtex.glsl import compose
 from flowtex.renderers.uniforms import ViewState, uniforms, variants
 from flowtex.renderers.vtk.gpu import GPUTexture
-from flowtex.renderers.vtk.mesh import COORDINATE, NOISE, POSITION
+from flowtex.renderers.vtk.mesh import COORDINATE, NOISE, NORMAL, POSITION
 from flowtex.settings import Settings
-from flowtex.textures import TextureSet
+from flowtex.textures import Ahead, TextureSet
 
 __all__ = ["FlowLayer"]
 
@@ -66,7 +66,9 @@ class FlowLayer:
         self._renderer = weakref.ref(renderer)
         self._textures = textures
         self._settings = settings
+        self._ahead = Ahead(textures)
         self._steps = (0, 0)
+        self._drawn = False
         self._variant: frozenset[str] | None = None
         self._gpu: dict[str, GPUTexture] = {}
         self._retired: list[GPUTexture] = []
@@ -82,13 +84,21 @@ class FlowLayer:
 
     def set_textures(self, textures: TextureSet) -> None:
         """Draw another texture set of the same surface from now on."""
+        same = textures.same_paths(self._textures)
         self._textures = textures
-        self._retire(*self._gpu)
+        self._ahead.close()
+        self._ahead = Ahead(textures)
+        self._retire(*(["u_noiseImage"] if same else self._gpu))
         self._map_attributes()
         self._write_text()
 
     def set_moment(self, before: int, after: int, between: float) -> None:
-        """Show the time between two destination times of the slices."""
+        """Show the time between two destination times of the slices.
+
+        Once something has been drawn, the slices that come next in the direction in which the
+        time has moved are made ready.
+        """
+        was = self.view.time
         if (before, after) != self._steps:
             old = dict(zip(self._steps, ("u_slices", "u_slicesNext"), strict=True))
             kept = {old[s]: self._gpu.pop(old[s], None) for s in (before, after) if s in old}
@@ -98,15 +108,19 @@ class FlowLayer:
                 if texture is not None:
                     self._gpu[name] = texture
             self._steps = (before, after)
-        self.view.between = between
+        first, last = self._textures.store.field.times[[before, after]]
+        self.view.between, self.view.time = between, float(first + between * (last - first))
+        if self._drawn and self.view.time != was:
+            self._ahead.prepare(after + 1 if self.view.time > was else before - 1)
 
     def close(self) -> None:
         """Take everything out of the actor again and free the graphics card's memory."""
         for subject, tag in self._observed:
             subject.RemoveObserver(tag)
         self._observed = []
+        self._ahead.close()
         self._actor.clear_shader_replacements(_feature_name=OWNER)
-        for attribute in ("flowtexPosition", "flowtexCoordinate", "flowtexNoise"):
+        for attribute in ("flowtexPosition", "flowtexCoordinate", "flowtexNormal", "flowtexNoise"):
             self._actor.mapper.RemoveVertexAttributeMapping(attribute)
         self._retire(*self._gpu)
         self._free(self._window())
@@ -125,6 +139,8 @@ class FlowLayer:
     def _map_attributes(self) -> None:
         mapper, points = self._actor.mapper, vtkDataObject.FIELD_ASSOCIATION_POINTS
         names = [("flowtexPosition", POSITION), ("flowtexCoordinate", COORDINATE)]
+        if not self._textures.geometry.planar:
+            names.append(("flowtexNormal", NORMAL))
         if self._textures.paper is not None:
             names.append(("flowtexNoise", NOISE))
         for attribute, array in names:
@@ -147,7 +163,7 @@ class FlowLayer:
         if program is None or window is None:
             return
         self._free(window)
-        self.view.focus = self._focus()
+        self._look()
         values = uniforms(self._textures, self._settings, self.view)
         for name, value in values.items():
             if program.IsUniformUsed(name) or isinstance(value, list):
@@ -158,6 +174,7 @@ class FlowLayer:
 
     def _after_draw(self, data: Any) -> None:
         del data
+        self._drawn = True
         for texture in self._gpu.values():
             texture.unbind()
 
@@ -175,23 +192,35 @@ class FlowLayer:
             levels = self._textures.geometry.levels
             paper = self._textures.paper
             if name == "u_slices":
-                made = GPUTexture(self._textures.layers(self._steps[0]), levels=levels)
+                made = GPUTexture(self._ahead.take(self._steps[0]), levels=levels)
             elif name == "u_slicesNext":
-                made = GPUTexture(self._textures.layers(self._steps[1]), levels=levels)
+                made = GPUTexture(self._ahead.take(self._steps[1]), levels=levels)
             elif paper is not None and name == "u_noiseImage":
-                made = GPUTexture(paper.noise, repeat=paper.repeat)
+                rows, columns = paper.noise.shape[:2]
+                repeat = (True, True) if paper.picture else paper.repeat
+                made = GPUTexture(paper.noise.reshape(1, rows, columns, -1), repeat=repeat)
             elif paper is not None:
-                made = GPUTexture(paper.step, repeat=paper.repeat)
+                made = GPUTexture(paper.step[None, :, :, None], repeat=paper.repeat)
             else:
                 raise KeyError(name)
             self._gpu[name] = made
         return self._gpu[name]
 
-    def _focus(self) -> np.ndarray[Any, np.dtype[np.float64]]:
+    def _look(self) -> None:
+        """Take what the camera looks at, and from where, into the mesh's own coordinates."""
         renderer = self._renderer()
         if renderer is None:
-            return np.asarray(self._textures.geometry.center)
-        return np.asarray(renderer.GetActiveCamera().GetFocalPoint(), dtype=float)
+            return
+        camera = renderer.GetActiveCamera()
+        parallel = bool(camera.GetParallelProjection())
+        eye = (
+            np.multiply(camera.GetDirectionOfProjection(), -1) if parallel else camera.GetPosition()
+        )
+        matrix = self._actor.GetMatrix()
+        placed = np.array([[matrix.GetElement(r, c) for c in range(4)] for r in range(4)])
+        points = [(*camera.GetFocalPoint(), 1.0), (*eye, float(not parallel))]
+        focus, self.view.eye = np.linalg.solve(placed, np.transpose(points)).T
+        self.view.focus = focus[:3]
 
     def _window(self) -> Any:
         renderer = self._renderer()
@@ -217,5 +246,7 @@ def _write(program: Any, name: str, value: Any) -> None:
         program.SetUniform1fv(name, len(value), value)
     elif len(value) == 2:
         program.SetUniform2f(name, value)
+    elif len(value) == 4:
+        program.SetUniform4f(name, value)
     else:
         program.SetUniform3f(name, value)

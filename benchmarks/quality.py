@@ -1,0 +1,252 @@
+"""What the picture shows, in figures: ``python benchmarks/quality.py [SECTION ...]``.
+
+Sections are ``zoom`` (streaks and grain from the whole surface to a thousandth of it, beside
+rlic on the image's own grid), ``aliasing`` (against 16 samples a pixel), ``camera`` (texture that
+sticks to the surface, beside VTK's Surface LIC), ``motion`` and ``vortices`` (frames carried by
+the flow), and ``seam`` (joined lines of nodes; needs ``FLOWTEX_DATA``). All with the settings'
+defaults. ``--json FILE`` keeps the figures.
+
+``--judge FILE`` takes another judge of streaks, grain, aliasing and motion instead of
+``tests/measures.py``: a module with the functions alignment, grain, aliasing and carried.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from importlib.util import module_from_spec, spec_from_file_location
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+from scenes import Stage, gyre_field, gyre_view, vortex_view
+from seams import across_lines, seams
+
+import flowtex
+from flowtex.doctor import require_opengl
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
+import measures
+
+Figures = dict[str, dict[str, float]]
+
+SIZE = (1024, 768)
+ZOOMS = (1, 1.41, 2, 4, 8, 16, 45, 64, 256, 512, 1024)
+#: What measures the pictures; ``--judge`` puts another in its place.
+JUDGE = SimpleNamespace(
+    streaks=measures.streaks,
+    grain=measures.grain,
+    aliasing=measures.aliasing,
+    carried=measures.carried,
+)
+#: Seconds from one frame of an animation to the next.
+FRAME = 1 / 30
+
+
+def zoom() -> Figures:
+    """Streaks and grain over a thousandfold zoom; rlic with two passes at some of the views."""
+    import rlic
+
+    field, found = gyre_field(), {}
+    for z in ZOOMS:
+        view = gyre_view(field, z, SIZE)
+        picture = flowtex.render(field, scalars=False, **view.options)
+        found[f"flowtex, zoom {z:g}"] = _all(picture, view)
+        if z in (1, 4, 64, 1024):
+            noise = np.random.default_rng(0).random(view.u.shape)
+            passes = rlic.convolve(noise, view.u, -view.v, kernel=np.ones(25), iterations=2)
+            found[f"rlic 2 x 25, zoom {z:g}"] = _all(255 * passes, view)
+    return found
+
+
+def _all(picture: Any, view: Any) -> dict[str, float]:
+    figures = JUDGE.streaks(picture, view.u, view.v, view.mask)
+    return {
+        **figures,
+        **JUDGE.grain(picture, view.u, view.v, view.mask),
+        "deviation": float(np.asarray(picture, float).mean(axis=-1)[view.mask].std())
+        if np.ndim(picture) == 3
+        else float(picture[view.mask].std()),
+    }
+
+
+def aliased() -> Figures:
+    """Error against 16 samples a pixel, 16 and 64 times out from where a grain is one pixel."""
+    field, size, found = gyre_field(), (640, 480), {}
+    for out, z in ((16, 1.0), (64, 0.25)):
+        view = gyre_view(field, z, size)
+        extent = field.surface.extent / view.pixel * z
+        for lod in (True, False):
+            options = {**view.options, "lod": lod, "resolution": int(extent * 16 / 1.5)}
+            grains = flowtex.Settings().grain
+            picture = flowtex.render(field, scalars=False, **options)
+            options["size"] = (4 * size[0], 4 * size[1])
+            large = flowtex.render(field, scalars=False, grain=4 * grains, **options)
+            error = JUDGE.aliasing(picture, measures.averaged(large, 4), view.mask)
+            found[f"zoomed out {out} times, lod={lod}"] = {"error": error}
+    return found
+
+
+def camera() -> Figures:
+    """Texture carried by the camera's motion; Surface LIC at the same views."""
+    field = gyre_field()
+    found: Figures = {}
+    for who, settings in (("flowtex", {}), ("VTK Surface LIC", {"surface_lic": True})):
+        stage = Stage(field, SIZE, **settings)
+        for z in (1.5, 8.0, 64.0):
+            view = gyre_view(field, z, SIZE)
+            here = {"zoom": z, "focus": view.options["focus"]}
+            mask = _away_from_border(view.mask, 40)
+            first = stage.picture(**here)
+            found[f"{who}, zoom {z:g}"] = {
+                name: JUDGE.carried(first, stage.picture(**{**here, **there}), dx, dy, mask)
+                for name, (dx, dy, there) in _moves(view).items()
+            }
+        stage.close()
+    return found
+
+
+def _away_from_border(mask: Any, pixels: int) -> Any:
+    inner = np.zeros_like(mask)
+    inner[pixels:-pixels, pixels:-pixels] = mask[pixels:-pixels, pixels:-pixels]
+    return inner
+
+
+def streaming() -> Figures:
+    """Follow the streaming of a steady flow, thirty frames a second."""
+    found: Figures = {}
+    field = gyre_field()
+    for motion in ("uniform", "speed"):
+        stage = Stage(field, SIZE, motion=motion)
+        pixels = stage.handle.settings.speed * FRAME
+        for z in (1.0, 8.0):
+            view = gyre_view(field, z, SIZE)
+            speed = np.hypot(view.u, view.v)
+            typical = np.sqrt(np.mean(field.speed**2)) if motion == "speed" else speed
+            dx, dy = pixels * view.u / typical, -pixels * view.v / typical
+            here = {"zoom": z, "focus": view.options["focus"]}
+            found[f"{motion}, zoom {z:g}"] = _frames(
+                stage, here, dx, dy, view, "clock", (1.3, FRAME)
+            )
+        stage.close()
+    return found
+
+
+def vortices() -> Figures:
+    """Follow the vortices, which vary in time, at thirty frames for each step of the data."""
+    field = flowtex.examples.vortex_field()
+    size = (768, 768)
+    found: Figures = {}
+    stage = Stage(field, size)
+    step = float(field.times[11] - field.times[10])
+    frame, moment = step * FRAME, float(field.times[10]) + 0.4 * step
+    for z in (1.0, 6.0):
+        view = vortex_view(field, z, size, step=10, late=0.4)
+        dx, dy = view.u * frame / view.pixel, -view.v * frame / view.pixel
+        found[f"vortices, zoom {z:g}"] = _frames(
+            stage, view.options, dx, dy, view, "time", (moment, frame)
+        )
+    stage.close()
+    return found
+
+
+def seam() -> Figures:
+    """Change across a joined line of nodes over that across the lines beside it."""
+    found: Figures = {}
+    for name, (field, looks) in seams().items():
+        for look_name, options in looks.items():
+            picture = flowtex.render(field, size=SIZE, scalars=False, lighting=False, **options)
+            found[f"{name}, {look_name}"] = across_lines(field, picture, options, SIZE)
+    return found
+
+
+def _frames(
+    stage: Any, here: Any, dx: Any, dy: Any, view: Any, name: str, moment: tuple[float, float]
+) -> dict[str, float]:
+    first = stage.picture(**here, **{name: moment[0]})
+    second = stage.picture(**here, **{name: moment[0] + moment[1]})
+    still = np.zeros_like(dx)
+    return {
+        "carried": JUDGE.carried(first, second, dx, dy, view.mask),
+        "not carried": JUDGE.carried(first, second, still, still, view.mask),
+        **_all(second, view),
+        "pixels a frame": float(np.hypot(dx, dy)[view.mask].mean()),
+    }
+
+
+def _moves(view: Any) -> dict[str, tuple[Any, Any, dict[str, Any]]]:
+    """Displacement of each pixel since the frame before, and the view after, by kind of motion."""
+    rows, columns = np.indices(view.x.shape)
+    right, down = columns + 0.5 - SIZE[0] / 2, rows + 0.5 - SIZE[1] / 2
+    turn, z, focus = np.radians(1.0), view.options["zoom"], view.options["focus"]
+    still = np.zeros(view.x.shape)
+    return {
+        "pan 3 px": (still + 3.0, still, {"focus": (focus[0] - 3 * view.pixel, focus[1])}),
+        "zoom 1 %": (right * (1 - 1 / 1.01), down * (1 - 1 / 1.01), {"zoom": z * 1.01}),
+        "turn 1 deg": (
+            right - (np.cos(turn) * right + np.sin(turn) * down),
+            down - (-np.sin(turn) * right + np.cos(turn) * down),
+            {"roll": -1.0},
+        ),
+    }
+
+
+SECTIONS = {
+    "zoom": zoom,
+    "aliasing": aliased,
+    "camera": camera,
+    "motion": streaming,
+    "vortices": vortices,
+    "seam": seam,
+}
+
+
+def use_judge(path: Path) -> None:
+    """Measure with the functions of a module from now on."""
+    spec = spec_from_file_location(path.stem, path)
+    if spec is None or spec.loader is None:
+        msg = f"{path} is no Python module"
+        raise SystemExit(msg)
+    judge = module_from_spec(spec)
+    spec.loader.exec_module(judge)
+
+    def streaks(*given: Any) -> dict[str, float]:
+        found = judge.alignment(*given)
+        return {"angle": found["mean_deg"], "coherence": found["coherence"]}
+
+    def grain(*given: Any) -> dict[str, float]:
+        found = judge.grain(*given)
+        return {"along": found["along_px"], "across": found["across_px"]}
+
+    JUDGE.streaks, JUDGE.grain = streaks, grain
+    JUDGE.aliasing, JUDGE.carried = judge.aliasing, judge.carried
+
+
+def main() -> None:
+    """Measure the sections that were asked for and print a table of each."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("sections", nargs="*", choices=[*SECTIONS, []], default=[])
+    parser.add_argument("--json", type=Path, help="file to keep the figures in")
+    parser.add_argument("--judge", type=Path, help="module that measures instead of our own")
+    arguments = parser.parse_args()
+    if arguments.judge:
+        use_judge(arguments.judge)
+    console, kept = Console(), {}
+    console.print(f"[bold]{require_opengl().renderer}[/]")
+    for name in arguments.sections or SECTIONS:
+        kept[name] = SECTIONS[name]()
+        columns = list(dict.fromkeys(c for row in kept[name].values() for c in row))
+        table = Table(name, *columns)
+        for label, row in kept[name].items():
+            table.add_row(label, *(f"{row[c]:.3f}" if c in row else "" for c in columns))
+        console.print(table)
+    if arguments.json:
+        arguments.json.write_text(json.dumps(kept, indent=1))
+
+
+if __name__ == "__main__":
+    main()

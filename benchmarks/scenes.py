@@ -1,0 +1,152 @@
+"""Scenes whose flow is known at every pixel, for the benchmarks of the picture."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+import pyvista as pv
+from numpy.typing import NDArray
+from scipy.ndimage import map_coordinates
+
+import flowtex
+from flowtex.camera import look
+
+__all__ = ["FOCUS", "Stage", "View", "gyre", "gyre_field", "gyre_view", "vortex_view"]
+
+Floats = NDArray[np.float64]
+
+#: A point of the double gyre where nothing special happens.
+FOCUS = (0.63, 0.37)
+#: Speed below which the direction of the flow counts as unknown, and the border in pixels.
+SLOW, BORDER = 0.02, 14
+#: How far the sheared grid bulges, and how much denser its rows are at one end.
+BULGE, CROWDED = 0.12, 1.3
+
+
+def gyre(x: Floats, y: Floats) -> tuple[Floats, Floats]:
+    """Velocity of the steady double gyre over (0, 2) x (0, 1)."""
+    a = 0.1 * np.pi
+    return (
+        -a * np.sin(np.pi * x) * np.cos(np.pi * y),
+        a * np.cos(np.pi * x) * np.sin(np.pi * y),
+    )
+
+
+def gyre_field(columns: int = 120, rows: int = 60) -> flowtex.FlowField:
+    """Sample the double gyre on a sheared, stretched curvilinear grid."""
+    s, t = np.meshgrid(np.linspace(0, 1, columns), np.linspace(0, 1, rows))
+    x = 2 * (s + 0.06 * np.sin(2 * np.pi * s)) + BULGE * np.sin(np.pi * t)
+    y = t**CROWDED
+    return flowtex.FlowField.from_arrays(np.stack([x, y], -1), np.stack(gyre(x, y), -1))
+
+
+class View(NamedTuple):
+    """A straight view: coordinates and velocity at the middle of each pixel, and what to judge."""
+
+    x: Floats
+    y: Floats
+    u: Floats
+    v: Floats
+    pixel: float
+    mask: NDArray[np.bool_]
+    options: dict[str, Any]
+
+
+def gyre_view(field: flowtex.FlowField, zoom: float, size: tuple[int, int]) -> View:
+    """View the field at a zoom as ``flowtex.render`` does; ``options`` are its arguments."""
+    width, height = size
+    extent = np.ptp(field.points[field.valid][:, :2], axis=0)
+    pixel = max(extent[1], extent[0] * height / width) / 0.92 / zoom / height
+    focus = FOCUS if zoom > 1 else tuple(float(c) for c in field.surface.center[:2])
+    x, y = np.meshgrid(
+        focus[0] + (np.arange(width) + 0.5 - width / 2) * pixel,
+        focus[1] - (np.arange(height) + 0.5 - height / 2) * pixel,
+    )
+    u, v = gyre(x, y)
+    return View(
+        x, y, u, v, pixel, _judged(x, y, u, v, pixel), {"size": size, "zoom": zoom, "focus": focus}
+    )
+
+
+def _judged(x: Floats, y: Floats, u: Floats, v: Floats, pixel: float) -> NDArray[np.bool_]:
+    mask = np.zeros(x.shape, dtype=bool)
+    mask[BORDER:-BORDER, BORDER:-BORDER] = True
+    edge, far = BULGE * np.sin(np.pi * np.clip(y, 0, 1) ** (1 / CROWDED)), BORDER * pixel
+    mask &= (x > edge + far) & (x < 2 + edge - far) & (y > far) & (y < 1 - far)
+    return np.asarray(mask & (np.hypot(u, v) > SLOW))
+
+
+def vortex_view(
+    field: flowtex.FlowField, zoom: float, size: tuple[int, int], *, step: int, late: float
+) -> View:
+    """View a rectilinear field that varies in time, between a step and the next."""
+    points = field.surface.points
+    pixel = np.ptp(points[..., 1]) / 0.92 / zoom / size[1]
+    rows, columns = np.indices(size[::-1])
+    x = field.surface.center[0] + (columns + 0.5 - size[0] / 2) * pixel
+    y = field.surface.center[1] - (rows + 0.5 - size[1] / 2) * pixel
+    across, along = field.shape
+    j = (y - points[0, 0, 1]) / np.ptp(points[..., 1]) * (across - 1)
+    i = (x - points[0, 0, 0]) / np.ptp(points[..., 0]) * (along - 1)
+    velocity = (1 - late) * field.velocity[step] + late * field.velocity[step + 1]
+    u, v = (map_coordinates(velocity[..., c], [j, i], order=1, mode="nearest") for c in (0, 1))
+    speed = np.hypot(u, v)
+    mask = (j > 2) & (j < across - 3) & (i > 2) & (i < along - 3) & (speed > 0.1 * speed.max())
+    mask[:BORDER], mask[-BORDER:], mask[:, :BORDER], mask[:, -BORDER:] = False, False, False, False
+    return View(x, y, u, v, pixel, mask, {"zoom": zoom})
+
+
+class Stage:
+    """An off-screen plotter on which a field is drawn, by flowtex or by VTK's Surface LIC."""
+
+    def __init__(self, field: flowtex.FlowField, size: tuple[int, int], **settings: Any) -> None:
+        self.field = field
+        self.plotter: Any = pv.Plotter(off_screen=True, window_size=list(size))
+        self.plotter.disable_anti_aliasing()
+        self.plotter.set_background("white")
+        lic = settings.pop("surface_lic", False)
+        self.handle = None
+        if lic:
+            self.plotter.add_actor(_surface_lic(field))
+        else:
+            self.handle = self.plotter.flowtex.add(field, scalars=False, **settings)
+
+    def picture(
+        self, zoom: float = 1.0, focus: Any = None, roll: float = 0.0, **state: float
+    ) -> NDArray[Any]:
+        """Draw one frame; ``state`` sets the handle's ``time`` or ``clock``."""
+        for name, value in state.items():
+            setattr(self.handle, name, value)
+        look(self.plotter, self.field, zoom=zoom, focus=focus)
+        self.plotter.camera.roll += roll
+        self.plotter.render()
+        return np.asarray(self.plotter.screenshot(return_img=True))
+
+    def close(self) -> None:
+        """Free the window."""
+        self.plotter.close()
+
+
+def _surface_lic(field: flowtex.FlowField) -> Any:
+    """VTK's Surface LIC at its enhanced setting; without lighting it draws noise."""
+    from vtkmodules.vtkRenderingCore import vtkActor
+    from vtkmodules.vtkRenderingLICOpenGL2 import vtkSurfaceLICInterface, vtkSurfaceLICMapper
+
+    rows, columns = field.shape
+    grid = pv.StructuredGrid()
+    grid.points, grid.dimensions = field.points.reshape(-1, 3), (columns, rows, 1)
+    grid["velocity"] = field.velocity[0].reshape(-1, 3)
+    surface: Any = grid.extract_surface(algorithm="dataset_surface")
+    surface.set_active_vectors("velocity")
+    mapper = vtkSurfaceLICMapper()
+    mapper.SetInputData(surface)
+    mapper.SetInputArrayToProcess(0, 0, 0, 0, "velocity")
+    mapper.ScalarVisibilityOff()
+    lic: vtkSurfaceLICInterface = mapper.GetLICInterface()
+    lic.SetNumberOfSteps(40)
+    lic.SetStepSize(0.25)
+    lic.SetEnhancedLIC(1)
+    actor = vtkActor()
+    actor.SetMapper(mapper)
+    return actor

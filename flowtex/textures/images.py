@@ -1,0 +1,104 @@
+"""A user's image as texels that a shader can average: colour times opacity, and opacity.
+
+Averaging colours that were multiplied by their opacity is what keeps a transparent pixel's own
+colour out of its neighbours, so dye has clean edges at every level of detail.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flowtex.settings import SettingsError
+
+__all__ = ["LARGEST", "ImageError", "as_picture"]
+
+Singles = NDArray[np.float32]
+
+#: Texels along a side, at most; a larger image is averaged down to it.
+LARGEST = 4096
+#: Rounding by which a float may lie outside 0 to 1.
+SLACK = 1e-3
+
+SHAPES = "(H, W) for grey, (H, W, 3) for colours, or (H, W, 4) with opacity"
+
+
+class ImageError(SettingsError):
+    """An image cannot take the place of the noise; the text says what was expected."""
+
+
+def as_picture(image: Any) -> Singles:
+    """Check an image and return its texels.
+
+    Parameters
+    ----------
+    image
+        Grey (H, W), colours (H, W, 3) or colours and opacity (H, W, 4). Whole numbers without
+        sign from 0 to their greatest, floats from 0 to 1, or booleans. Row 0 is the top.
+
+    Returns
+    -------
+    numpy.ndarray
+        (h, w, 4) single precision: red, green and blue times opacity, and opacity, from 0 to 1.
+        Row 0 is the bottom, as j grows upward. Not more than :data:`LARGEST` on a side.
+
+    Raises
+    ------
+    ImageError
+        When it is no such array, is empty, or holds NaN or values out of range.
+    """
+    array = np.asarray(image)
+    if array.ndim not in (2, 3) or (array.ndim == 3 and array.shape[-1] not in (3, 4)):
+        msg = f"the image has shape {array.shape}; expected {SHAPES}"
+        raise ImageError(msg)
+    if array.size == 0:
+        msg = f"the image is empty, of shape {array.shape}; expected at least one pixel"
+        raise ImageError(msg)
+    values = _fractions(array).reshape(*array.shape[:2], -1)
+    channels = values.shape[-1]
+    picture = np.ones((*values.shape[:2], 4), np.float32)
+    picture[..., :3] = values[..., :3] if channels > 1 else values
+    if channels == 4:
+        picture[..., 3] = values[..., 3]
+        picture[..., :3] *= picture[..., 3:]
+    return np.ascontiguousarray(_shrunk(picture)[::-1])
+
+
+def _fractions(array: NDArray[Any]) -> Singles:
+    """Values from 0 to 1."""
+    if array.dtype.kind == "b":
+        return array.astype(np.float32)
+    if array.dtype.kind == "u":
+        return array.astype(np.float32) / np.float32(np.iinfo(array.dtype).max)
+    if array.dtype.kind != "f":
+        msg = f"the image holds {array.dtype}; expected uint8, or floats from 0 to 1"
+        raise ImageError(msg)
+    bad = int((~np.isfinite(array)).sum())
+    if bad:
+        msg = f"the image has {bad} values that are NaN or infinite; replace them, as by 0"
+        raise ImageError(msg)
+    low, high = float(array.min()), float(array.max())
+    if low < -SLACK or high > 1 + SLACK:
+        msg = (
+            f"the image's floats go from {low:g} to {high:g}; expected 0 to 1: divide by the "
+            "greatest, or give uint8"
+        )
+        raise ImageError(msg)
+    return np.asarray(np.clip(array, 0, 1), np.float32)
+
+
+def _shrunk(values: Singles) -> Singles:
+    """Average blocks of texels where there are too many."""
+    block = -(-max(values.shape[:2]) // LARGEST)
+    if block == 1:
+        return values
+    for axis in (0, 1):
+        starts = np.arange(0, values.shape[axis], block)
+        counts = np.diff(np.append(starts, values.shape[axis])).astype(np.float32)
+        shape = [1, 1, 1]
+        shape[axis] = -1
+        sums = np.add.reduceat(values, starts, axis=axis)
+        values = np.asarray(sums / counts.reshape(shape), np.float32)
+    return values
