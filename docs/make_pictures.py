@@ -81,7 +81,7 @@ def sphere() -> Picture:
     turn = np.cross([0.0, 0.9, 0.0], points)
     wind = u[..., None] * east + v[..., None] * north + turn
     field = flowtex.FlowField.from_arrays(points, wind)
-    above = [(0.35, 0.2, 3.6), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0)]
+    above = [(0.4, 0.25, 4.2), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0)]
     common: dict[str, Any] = {"size": (596, 560), "cmap": "turbo", "background": DARK}
     return _row(
         [
@@ -170,6 +170,19 @@ def patterns() -> Picture:
     )
 
 
+def half_turns() -> Picture:
+    """Draw a field without a sign around singularities of half a turn, as such and as vectors."""
+    y, x = np.mgrid[-1:1:81j, -2:2:161j]
+    angle = np.zeros(x.shape)
+    for a, b, turn in ((-1.1, 0.1, 0.5), (0.2, -0.3, -0.5), (1.2, 0.3, 0.5)):
+        angle += turn * np.arctan2(y - b, x - a)
+    points = np.stack([x, y], -1)
+    axes = np.stack([np.cos(angle), np.sin(angle)], -1)
+    common: dict[str, Any] = {"size": (596, 320), "color": "#b0a080", "scalars": False}
+    fields = [flowtex.FlowField.from_arrays(points, axes, sign_free=free) for free in (True, False)]
+    return _row([flowtex.render(field, **common) for field in fields])
+
+
 def gyre() -> Picture:
     """Draw the double gyre in grey, for print."""
     return flowtex.render(
@@ -196,7 +209,7 @@ def streaming() -> list[Picture]:
 
 STILLS = (
     *(wake, zooms, vortices, sphere, torus, level_of_detail, grain, levels, correction),
-    *(kernels, patterns, gyre),
+    *(kernels, patterns, half_turns, gyre),
 )
 PICTURES: dict[str, Callable[[], Picture]] = {f.__name__: f for f in STILLS}
 

@@ -12,6 +12,8 @@ __all__ = ["look"]
 
 #: Share of the window that is left empty around a flat surface.
 MARGIN = 0.04
+#: How many times closer the camera comes; nearer, what is close would be cut off with what is far.
+CLOSEST = 16.0
 #: View angle from above and aside at zoom 1, in degrees.
 VIEW_ANGLE = 30.0
 
@@ -89,8 +91,8 @@ def _look_at_curved(
 ) -> None:
     """From above and aside, so far away that the whole surface just fits.
 
-    With a point on the surface to look at, the camera comes closer to it; the middle of a sphere
-    is not on it, so without one the view grows narrower instead.
+    With a point on the surface to look at, the camera comes closer to it, and then the view grows
+    narrower. The middle of a sphere is not on it, so without a point the view only grows narrower.
     """
     plotter.view_isometric(render=False)
     camera = plotter.camera
@@ -106,7 +108,7 @@ def _look_at_curved(
     wide, high = np.abs(x) / _aspect(plotter), np.abs(y)
     distance = float(np.max(z + np.maximum(wide, high) / half / (1 - 2 * MARGIN)))
     camera.focal_point = tuple(centre)
-    camera.position = tuple(centre + toward * (distance / zoom if come_closer else distance))
-    if not come_closer:
-        camera.view_angle = 2 * np.degrees(np.arctan(half / zoom))
+    closer = min(zoom, CLOSEST) if come_closer else 1.0
+    camera.position = tuple(centre + toward * (distance / closer))
+    camera.view_angle = 2 * np.degrees(np.arctan(half * closer / zoom))
     plotter.camera_set = True

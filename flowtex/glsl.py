@@ -16,7 +16,13 @@ __all__ = ["VARIANTS", "GLSLError", "compose"]
 _INCLUDE = re.compile(r"^[ \t]*//#include[ \t]+(\S+)[ \t]*$", re.MULTILINE)
 
 #: Names that the files ask for with ``#ifdef``.
-VARIANTS = ("FLOWTEX_PAPER", "FLOWTEX_PICTURE", "FLOWTEX_PLANAR", "FLOWTEX_UNSTEADY")
+VARIANTS = (
+    "FLOWTEX_PAPER",
+    "FLOWTEX_PICTURE",
+    "FLOWTEX_PLANAR",
+    "FLOWTEX_SIGNFREE",
+    "FLOWTEX_UNSTEADY",
+)
 
 
 class GLSLError(ValueError):

@@ -27,6 +27,7 @@ def render(
     zoom: float = 1.0,
     focus: tuple[float, ...] | None = None,
     time: float | None = None,
+    clock: float = 0.0,
     background: Any = "white",
     camera_position: Any | None = None,
     beside: Changes | None = None,
@@ -44,6 +45,8 @@ def render(
         How far in, and on what point of the mesh; the whole surface by default.
     time
         Time to show of a field that varies in time; its last step by default.
+    clock
+        Moment of the streaming of a steady flow, in seconds (see the setting ``motion``).
     background
         Colour behind the surface.
     camera_position
@@ -76,6 +79,7 @@ def render(
         for handle in handles:
             if time is not None:
                 handle.time = time
+            handle.clock = clock
         if camera_position is not None:
             plotter.camera.parallel_projection = False
             plotter.camera_position = camera_position

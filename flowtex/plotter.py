@@ -45,7 +45,7 @@ BAR: dict[str, Any] = {
 }
 
 #: Arguments of ``add`` that go to the making of the field.
-FIELD_ARGUMENTS = ("vectors", "plane", "times", "periodic")
+FIELD_ARGUMENTS = ("vectors", "plane", "times", "periodic", "sign_free")
 
 
 def as_field(mesh: Any, **options: Any) -> FlowField:
@@ -95,6 +95,7 @@ class FlowtexComponent:
         plane: str | None = None,
         times: Any | None = None,
         periodic: str | None = None,
+        sign_free: bool | None = None,
         image: Any | None = None,
         color: Any = PLAIN,
         opacity: float = 1.0,
@@ -121,7 +122,7 @@ class FlowtexComponent:
             times.
         plane
             Plane of a 3D mesh, such as ``"k=20"``.
-        times, periodic
+        times, periodic, sign_free
             As for :meth:`FlowField.from_pyvista`.
         image
             A picture that the flow smears, in its own colours: an array (H, W), (H, W, 3) or
@@ -159,7 +160,14 @@ class FlowtexComponent:
         chosen = Settings()
         chosen.update(**(settings if image is None else _with_image(settings)))
         picture = load_image(image)
-        field = as_field(mesh, vectors=vectors, plane=plane, times=times, periodic=periodic)
+        field = as_field(
+            mesh,
+            vectors=vectors,
+            plane=plane,
+            times=times,
+            periodic=periodic,
+            sign_free=sign_free,
+        )
         view = FlowView(field, chosen, image=picture)
         name = self._scalar_name(view, scalars=scalars)
         look_first = reset_camera or (reset_camera is None and not self._plotter.renderer.actors)

@@ -226,3 +226,33 @@ def test_the_console_script_runs_without_loading_vtk() -> None:
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
+
+
+def test_two_views_and_a_moment(run: Run, gyre: Path, tmp_path: Path, opengl: object) -> None:
+    words = [gyre, "--size", "200x80", "--motion", "speed", "--beside", "lod=false"]
+    words += ["--beside", "resolution=512"]
+    for name, clock in (("a", 0.0), ("b", 1.0)):
+        code, _, said = run("render", *words, "--clock", clock, "-o", tmp_path / f"{name}.png")
+        assert code == 0, said
+    first, second = (grey(tmp_path / f"{name}.png") for name in "ab")
+    assert first.shape == (80, 200)
+    assert np.abs(first - second).mean() > 2
+    below = slice(30, 60)
+    assert np.abs(first[below, 10:90] - first[below, 110:190]).mean() > 2
+
+
+@pytest.mark.parametrize(
+    ("word", "text"),
+    [
+        ("lod", "expected name=value, as in --beside lod=false"),
+        ("lod=maybe", "lod is 'maybe'; expected True or False"),
+        ("smaples=3", "did you mean 'samples'?"),
+        ("samples=x", "samples is 'x'; expected a whole number"),
+    ],
+)
+def test_a_wrong_second_view_says_so(
+    run: Run, gyre: Path, tmp_path: Path, word: str, text: str
+) -> None:
+    code, _, said = run("render", gyre, "-o", tmp_path / "a.png", "--beside", word)
+    assert code != 0
+    assert text in said

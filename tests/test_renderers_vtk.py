@@ -80,6 +80,55 @@ def test_the_grain_keeps_its_size_in_pixels_through_a_thousandfold_zoom(opengl: 
     assert max(sizes) / min(sizes) < 1.15
 
 
+def test_a_thousandth_of_a_cell_is_as_sharp_as_the_whole(opengl: Any) -> None:
+    field, focus = gyre_field(), (0.63, 0.37)
+    found = {}
+    for zoom in (50, 1e5):
+        picture = flowtex.render(field, size=SIZE, zoom=zoom, focus=focus, scalars=False)
+        x, y = pixels(field, zoom, focus)
+        found[zoom] = streaks(picture, *gyre(x, y), inside(x, y))
+        assert found[zoom]["coherence"] > 0.95
+        assert found[zoom]["angle"] < 2.2
+
+
+def test_the_way_to_a_view_does_not_show_in_it(plotter: Any) -> None:
+    field = gyre_field()
+    plotter.flowtex.add(field, scalars=False)
+    pictures = []
+    for focus in ((0.63, 0.37), (0.63 + 3e-4, 0.37), (1.7, 0.8), (0.63, 0.37)):
+        look(plotter, field, zoom=2e4, focus=focus)
+        plotter.render()
+        pictures.append(plotter.screenshot(return_img=True).astype(float))
+    assert np.sqrt(np.mean((pictures[0] - pictures[3]) ** 2)) < 2
+    assert np.abs(pictures[0] - pictures[2]).mean() > 10
+
+
+def test_white_stays_white_without_strength(opengl: Any) -> None:
+    options: dict[str, Any] = {"scalars": False, "color": "white", "background": "black"}
+    picture = flowtex.render(gyre_field(), size=(100, 60), strength=0.0, **options)
+    assert picture[30, 50].tolist() == [255, 255, 255]
+
+
+def test_two_views_beside_each_other_share_the_camera(opengl: Any) -> None:
+    field = gyre_field()
+    options: dict[str, Any] = {"scalars": False, "zoom": 8, "focus": (0.63, 0.37)}
+    both = flowtex.render(field, size=(600, 300), beside={"seed": 4}, **options)
+    one = flowtex.render(field, size=(300, 300), **options)
+    other = flowtex.render(field, size=(300, 300), seed=4, **options)
+    below = slice(40, None)  # the label lies above
+    assert np.abs(both[below, :300].astype(float) - one[below]).mean() < 1
+    assert np.abs(both[below, 300:].astype(float) - other[below]).mean() < 1
+    assert np.abs(one[below].astype(float) - other[below]).mean() > 10
+
+
+def test_the_level_of_detail_can_be_seen(opengl: Any) -> None:
+    options: dict[str, Any] = {"size": (100, 60), "scalars": False, "show_level": True}
+    near, far = (
+        flowtex.render(gyre_field(), zoom=zoom, **options).mean(axis=(0, 1)) for zoom in (4, 16)
+    )
+    assert np.abs(near - far).max() > 20
+
+
 def test_without_level_of_detail_the_grain_is_fixed_on_the_surface(opengl: Any) -> None:
     field, focus = gyre_field(), (0.63, 0.37)
     options: dict[str, Any] = {"size": SIZE, "focus": focus, "scalars": False}

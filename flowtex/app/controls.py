@@ -15,6 +15,8 @@ __all__ = ["ARIA", "PRIMARY", "REST", "control", "label"]
 PRIMARY = ("lod", "noise", "samples", "contrast")
 REST = tuple(name for name in TABLE if name not in PRIMARY)
 
+#: More choices than this are a menu.
+MOST_BUTTONS = 3
 #: A range with more values than this is typed, not dragged.
 MOST_STOPS = 1000
 
@@ -49,7 +51,7 @@ def _widget(row: Setting) -> Callable[[Setting, str], None]:
     if row.kind is bool:
         return _switch
     if row.choices:
-        return _choice
+        return _choice if len(row.choices) <= MOST_BUTTONS else _menu
     if (row.high or 0) - (row.low or 0) > MOST_STOPS:
         return _number
     return _slider
@@ -94,6 +96,20 @@ def _choice(row: Setting, key: str) -> None:
     ):
         for choice in row.choices:
             v3.VBtn(choice, value=choice, size="small")
+
+
+def _menu(row: Setting, key: str) -> None:
+    _name(row)
+    v3.VSelect(
+        v_model=(key,),
+        items=(f"{key}_choices", list(row.choices)),
+        aria_label=label(row.name),
+        __properties=ARIA,
+        density="compact",
+        variant="plain",
+        hide_details=True,
+        classes="flowtex-select",
+    )
 
 
 def _slider(row: Setting, key: str) -> None:

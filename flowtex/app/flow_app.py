@@ -125,6 +125,7 @@ class FlowApp:
             time=self.scene.handle.time,
             moment=self._moment(),
             **{f"set_{name}": value for name, value in settings},
+            set_noise_choices=self._noises(),
         )
         self.scene.set_background("dark")
 
@@ -151,6 +152,11 @@ class FlowApp:
         change(self.key("time"))(self._on_time)
         change(self.key("playing"))(self._on_playing)
         self.server.controller.on_server_ready.add(self._on_ready)
+
+    def _noises(self) -> list[str]:
+        """Kinds of noise to choose from; an image only where one was given."""
+        there = self.scene.handle.view.image is not None
+        return [kind for kind in TABLE["noise"].choices if there or kind != "image"]
 
     def reset_camera(self) -> None:
         """Show the whole surface again."""

@@ -17,7 +17,9 @@ from numpy.typing import NDArray
 __all__ = ["DEEPEST", "Navigator"]
 
 #: Farthest in and out, relative to the whole surface: single precision ends beyond.
-DEEPEST, FARTHEST = 2e4, 0.25
+DEEPEST, FARTHEST = 1e6, 0.25
+#: View angle in perspective, in degrees, and how many times closer the camera comes.
+ANGLE, CLOSEST = 30.0, 16.0
 #: Zoom by one notch of the wheel.
 NOTCH = 1.25
 
@@ -43,7 +45,7 @@ class Navigator:
         self.flat = flat
         self.aspect = 1.0
         self._hit = hit
-        self._home = self.height
+        self.settle()
         self._drag: tuple[str, float, float] | None = None
 
     @property
@@ -80,6 +82,7 @@ class Navigator:
     def settle(self) -> None:
         """Take the present view for the one that shows the whole surface."""
         self._home = self.height
+        self._nearest = float(self.camera.GetDistance()) / CLOSEST
 
     def press(self, x: float, y: float, *, other: bool = False) -> None:
         """Begin a drag; the ``other`` one turns a flat surface and pans a curved one."""
@@ -129,7 +132,14 @@ class Navigator:
         if self.camera.GetParallelProjection():
             self.camera.SetParallelScale(self.camera.GetParallelScale() / factor)
         else:
-            self.camera.SetPosition(*(self._focus - ahead * self.camera.GetDistance() / factor))
+            self._come_to(self.height / factor, ahead)
+
+    def _come_to(self, height: float, ahead: Vector) -> None:
+        """See half a height at the focal point: come closer, and from near look more narrowly."""
+        half = math.tan(math.radians(ANGLE / 2))
+        distance = max(height / half, self._nearest)
+        self.camera.SetPosition(*(self._focus - ahead * distance))
+        self.camera.SetViewAngle(2 * math.degrees(math.atan(height / distance)))
 
     def _focus_at(self, x: float, y: float) -> None:
         """Bring the focal point to the depth of the surface under the pointer.

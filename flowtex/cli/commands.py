@@ -17,7 +17,15 @@ from cyclopts import App, CycloptsError, Parameter
 
 from flowtex import examples
 from flowtex.cli.checks import check_colours, check_image, check_output
-from flowtex.cli.options import DrawOptions, FieldOptions, ServeOptions, SettingFlags, UsageError
+from flowtex.cli.options import (
+    PICTURE,
+    DrawOptions,
+    FieldOptions,
+    ServeOptions,
+    SettingFlags,
+    UsageError,
+    settings_in,
+)
 from flowtex.errors import FieldError
 from flowtex.examples import NAMES
 from flowtex.extras import install_extra
@@ -100,6 +108,17 @@ def render(
         Path,
         Parameter(name=["--output", "-o"], help="Picture to write; its suffix is its format."),
     ],
+    clock: Annotated[
+        float, Parameter(group=PICTURE, help="Moment of the streaming (--motion), in seconds.")
+    ] = 0.0,
+    beside: Annotated[
+        tuple[str, ...],
+        Parameter(
+            group=PICTURE,
+            negative="",
+            help="What differs in a second view beside the first, such as lod=false.",
+        ),
+    ] = (),
     which: Annotated[FieldOptions | None, FLAT] = None,
     draw: Annotated[DrawOptions | None, FLAT] = None,
     settings: Annotated[SettingFlags | None, FLAT] = None,
@@ -107,7 +126,8 @@ def render(
     """Draw a file as a picture."""
     started = time.perf_counter()
     draw = draw or DrawOptions()
-    options, size = {**draw.look(), **_given(settings)}, draw.pixels()
+    options, size = {**draw.look(), **_given(settings), "clock": clock}, draw.pixels()
+    options["beside"] = settings_in(beside)
     check_output(output)
     check_image(options)
     _need_opengl()

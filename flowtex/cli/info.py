@@ -103,6 +103,8 @@ def _field_table(field: FlowField) -> Table:
     closed = [a for a, is_closed in zip("ji", field.periodic, strict=True) if is_closed]
     table.add_row("periodic", " and ".join(sorted(closed)) or "no")
     table.add_row("blanked", f"{int((~field.valid).sum()):,} nodes")
+    if field.sign_free:
+        table.add_row("signs", "none: v and -v mean the same")
     shape = "curved" if field.surface.frame is None else "flat"
     table.add_row("surface", f"{shape}, {field.surface.extent:.4g} {field.length_unit}".rstrip())
     sizes = field.surface.cell_size[field.valid]

@@ -13,9 +13,17 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Group, Parameter
 
-from flowtex.settings import TABLE, Setting
+from flowtex.settings import TABLE, Setting, setting
 
-__all__ = ["DrawOptions", "FieldOptions", "ServeOptions", "SettingFlags", "UsageError"]
+__all__ = [
+    "PICTURE",
+    "DrawOptions",
+    "FieldOptions",
+    "ServeOptions",
+    "SettingFlags",
+    "UsageError",
+    "settings_in",
+]
 
 FLOW, PICTURE = Group("The flow", sort_key=1), Group("The picture", sort_key=2)
 PAGE, SETTINGS = Group("The page", sort_key=3), Group("Settings", sort_key=4)
@@ -44,6 +52,11 @@ class FieldOptions:
     ] = None
     block: Annotated[
         str | None, Parameter(group=FLOW, help="Number or name of the block to draw.")
+    ] = None
+
+    sign_free: Annotated[
+        bool | None,
+        Parameter(group=FLOW, negative="", help="Vectors have no sign: v and -v mean the same."),
     ] = None
 
     def given(self) -> dict[str, Any]:
@@ -128,6 +141,39 @@ def _numbers(flag: str, text: str) -> tuple[float, ...]:
         msg = f"{flag} is {text!r}; expected two or three coordinates, as in {flag} 1.5,0"
         raise UsageError(msg)
     return values
+
+
+def settings_in(words: tuple[str, ...]) -> dict[str, Any] | None:
+    """Read words such as ``lod=false`` as settings; ``None`` where there are none.
+
+    Raises
+    ------
+    UsageError
+        When a word is not of that form.
+    SettingsError
+        When there is no such setting, or the value is not one of its.
+    """
+    found: dict[str, Any] = {}
+    for word in words:
+        name, equals, text = word.partition("=")
+        if not equals:
+            msg = f"--beside {word!r} is no setting; expected name=value, as in --beside lod=false"
+            raise UsageError(msg)
+        row = setting(name.strip().replace("-", "_"))
+        found[row.name] = row.check(_value(row, text.strip()))
+    return found or None
+
+
+def _value(row: Setting, text: str) -> Any:
+    """Take a value from its text; what cannot be read is left for the row to refuse."""
+    if row.kind is bool:
+        return {"true": True, "yes": True, "false": False, "no": False}.get(text.lower(), text)
+    if row.kind is str:
+        return text
+    try:
+        return float(text)
+    except ValueError:
+        return text
 
 
 def _annotation(row: Setting) -> Any:

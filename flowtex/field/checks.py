@@ -14,7 +14,17 @@ from numpy.typing import ArrayLike, NDArray
 
 from flowtex.errors import FieldError
 
-__all__ = ["every", "join_ends", "numbers", "repeat_first", "shapes", "steps", "three", "usable"]
+__all__ = [
+    "every",
+    "join_ends",
+    "numbers",
+    "repeat_first",
+    "shapes",
+    "signs",
+    "steps",
+    "three",
+    "usable",
+]
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -80,6 +90,16 @@ def shapes(
             f'periodic is {periodic!r}; expected "", "i", "j" or "ij", or None to find out'
         )
     return faults
+
+
+def signs(v: Floats, *, sign_free: bool) -> list[str]:
+    """Faults in a velocity that is said to have no sign."""
+    if not sign_free or v.ndim != 4 or len(v) == 1:
+        return []
+    return [
+        f"sign_free is True and velocity has {len(v)} time steps; a field without a sign has no "
+        "paths in time: give one step, as in velocity[-1], or make a field of each"
+    ]
 
 
 def _velocity_faults(v: Floats, grid: tuple[int, ...]) -> list[str]:

@@ -20,6 +20,7 @@ from flowtex.errors import raise_faults
 from flowtex.field import checks
 from flowtex.field.metric import IndexVelocity, to_index_space
 from flowtex.field.periodic import Closure, find_closure, requested_closure
+from flowtex.field.signs import oriented, with_equal_ends
 from flowtex.field.surface import Surface
 
 if TYPE_CHECKING:
@@ -59,6 +60,8 @@ class FlowField:
     placed
         Nodes whose own position is known, (J, I); the others, blanked ones, have the position
         of the nearest node. ``None`` stands for all.
+    sign_free
+        Whether v and -v mean the same, as in a field of polarisation or principal directions.
     """
 
     points: Floats
@@ -71,6 +74,7 @@ class FlowField:
     length_unit: str = ""
     time_unit: str = ""
     placed: Bools | None = None
+    sign_free: bool = False
 
     @classmethod
     def from_arrays(
@@ -85,6 +89,7 @@ class FlowField:
         name: str = "",
         length_unit: str = "",
         time_unit: str = "",
+        sign_free: bool = False,
     ) -> FlowField:
         """Make a field from arrays.
 
@@ -108,6 +113,10 @@ class FlowField:
             Further nodal arrays, name to (J, I) or (T, J, I), to colour by.
         name, length_unit, time_unit
             Words for captions.
+        sign_free
+            Whether v and -v mean the same. Such a field is steady; it is drawn to both sides,
+            with no kernel and no motion that tells forward from backward. Vectors are turned
+            over where that makes neighbours agree.
 
         Returns
         -------
@@ -129,9 +138,11 @@ class FlowField:
         """
         p, masked_points = checks.numbers(points)
         v, masked_velocity = checks.numbers(velocity)
-        raise_faults(checks.shapes(p, v, times, valid, periodic, scalars))
+        faults = checks.shapes(p, v, times, valid, periodic, scalars)
+        raise_faults(faults + checks.signs(v, sign_free=sign_free))
         v = v[None] if v.ndim == 3 else v
         p, v = checks.three(p), checks.three(v)
+        v = with_equal_ends(v) if sign_free else v
         t = np.arange(len(v), dtype=float) if times is None else np.array(times, dtype=float)
         ok = np.isfinite(p).all(axis=-1) & ~masked_points
         ok &= np.isfinite(v).all(axis=(0, -1)) & ~masked_velocity
@@ -141,6 +152,9 @@ class FlowField:
         data = {key: checks.steps(value) for key, value in (scalars or {}).items()}
         p, v, ok, data, closed = _close(p, v, ok, data, periodic)
         surface = Surface(p, ok, closed)
+        if sign_free:
+            v = oriented(np.where(ok[..., None], v[0], 0.0), ok, closed)
+            v = with_equal_ends(v[None], closed, surface.poles)
         made = cls(
             points=surface.points,
             velocity=np.where(ok[..., None], v, 0.0),
@@ -152,6 +166,7 @@ class FlowField:
             length_unit=length_unit,
             time_unit=time_unit,
             placed=surface._usable,
+            sign_free=sign_free,
         )
         if not made.velocity.any():
             warnings.warn(
@@ -255,7 +270,8 @@ class FlowField:
         closed = "".join(a for a, p in zip("ji", self.periodic, strict=True) if p)[::-1]
         return (
             f"FlowField({self.name or 'unnamed'}: {columns} x {rows} nodes (I x J), {steps}"
-            f"{f', periodic {closed}' if closed else ''}, {int((~self.valid).sum())} blanked)"
+            f"{f', periodic {closed}' if closed else ''}{', sign-free' if self.sign_free else ''}, "
+            f"{int((~self.valid).sum())} blanked)"
         )
 
 

@@ -40,6 +40,7 @@ def from_file(
     periodic: str | None = None,
     time: float | None = None,
     block: int | str | None = None,
+    sign_free: bool = False,
 ) -> FlowField:
     """Make a field from a file.
 
@@ -61,6 +62,8 @@ def from_file(
     block
         Number or name of the block to draw, where the file has several grids. Numbers count the
         structured grids from 0.
+    sign_free
+        Whether v and -v mean the same, see :meth:`FlowField.from_arrays`.
 
     Returns
     -------
@@ -86,6 +89,7 @@ def from_file(
             plane=plane,
             periodic=periodic,
             name=file.stem,
+            sign_free=sign_free,
         )
 
 

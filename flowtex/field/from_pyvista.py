@@ -28,6 +28,7 @@ from flowtex.field.planes import (
     plane_faults,
     spread,
 )
+from flowtex.field.signs import axes, products
 
 __all__ = ["from_pyvista"]
 
@@ -60,6 +61,7 @@ def from_pyvista(
     times: ArrayLike | None = None,
     periodic: str | None = None,
     name: str = "",
+    sign_free: bool = False,
 ) -> FlowField:
     """Make a field from a structured PyVista mesh, or from a series of them.
 
@@ -84,6 +86,8 @@ def from_pyvista(
         Axes of the surface that close on themselves, see :meth:`FlowField.from_arrays`.
     name
         A word for captions.
+    sign_free
+        Whether v and -v mean the same, see :meth:`FlowField.from_arrays`.
 
     Returns
     -------
@@ -110,7 +114,7 @@ def from_pyvista(
         if chosen is None:
             chosen = _choose(step.grid, plane, vectors)
         _check_step(step, *chosen)
-        sheets.append(_sheet(step.grid, *chosen, periodic))
+        sheets.append(_sheet(step.grid, *chosen, periodic, sign_free=sign_free))
         found.append(step.time)
         _check_nodes(sheets[0], sheets[-1], step.label)
     known = [t for t in found if t is not None]
@@ -128,6 +132,7 @@ def from_pyvista(
         periodic=periodic,
         scalars=_stacked(sheets),
         name=name,
+        sign_free=sign_free,
     )
 
 
@@ -178,7 +183,9 @@ def _check_nodes(first: _Sheet, sheet: _Sheet, label: str) -> None:
     sheet.points = first.points
 
 
-def _sheet(grid: Any, plane: Plane, vectors: MeshArray, periodic: str | None) -> _Sheet:
+def _sheet(
+    grid: Any, plane: Plane, vectors: MeshArray, periodic: str | None, *, sign_free: bool
+) -> _Sheet:
     """Take one plane out of one grid."""
     points = _positions(grid, plane)
     hidden = mesh_arrays.hidden_nodes(grid)
@@ -191,7 +198,10 @@ def _sheet(grid: Any, plane: Plane, vectors: MeshArray, periodic: str | None) ->
         layers = plane.cells(values).astype(np.float64)
         known = np.asarray(np.isfinite(layers).all(axis=-1))
         visible = known if visible is None else known & visible
-        velocity = spread(layers, visible, wrap)
+        if sign_free:
+            velocity = axes(spread(products(layers), visible, wrap))
+        else:
+            velocity = spread(layers, visible, wrap)
     else:
         velocity = plane.nodes(values).astype(np.float64)
     cells = None if visible is None else np.asarray(visible.any(axis=0))

@@ -17,13 +17,15 @@ from scipy.sparse.csgraph import dijkstra
 
 from flowtex.field.poles import Poles
 
-__all__ = ["corner_signs", "mean_directions", "oriented", "with_equal_ends"]
+__all__ = ["axes", "corner_signs", "oriented", "products", "with_equal_ends"]
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
 #: How much dearer a step to a node at right angles is than to one that agrees.
 RELUCTANCE = 10.0
+#: A vector shorter than this share of the longest is none.
+STILL = 1e-7
 
 
 def oriented(velocity: Floats, valid: Bools, periodic: tuple[bool, bool]) -> Floats:
@@ -41,15 +43,19 @@ def oriented(velocity: Floats, valid: Bools, periodic: tuple[bool, bool]) -> Flo
     periodic
         Whether the last line along (j, i) is the first one again.
     """
+    flat = velocity.reshape(-1, 3)
+    length = np.linalg.norm(flat, axis=-1, keepdims=True)
+    # What does not move passes no direction on.
+    valid = valid & (length > STILL * length.max()).reshape(valid.shape)
     number = np.arange(valid.size).reshape(valid.shape)
     pairs = [_along(number, valid, axis) for axis in (0, 1)]
     for axis, closed in enumerate(periodic):
         if closed:
             lines = np.swapaxes(number, 0, axis)
-            pairs.append(np.stack([lines[0], lines[-1]]))
+            there = np.swapaxes(valid, 0, axis)[0]
+            pairs.append(np.stack([lines[0][there], lines[-1][there]]))
     one, two = np.concatenate(pairs, axis=1)
-    flat = velocity.reshape(-1, 3)
-    unit = flat / np.maximum(np.linalg.norm(flat, axis=-1, keepdims=True), np.finfo(float).tiny)
+    unit = flat / np.where(length > 0, length, 1.0)
     agree = np.sum(unit[one] * unit[two], axis=-1)
     cost = 1 + RELUCTANCE * (1 - np.abs(agree))
     graph = sparse.csr_array((cost, (one, two)), shape=(valid.size, valid.size))
@@ -58,7 +64,6 @@ def oriented(velocity: Floats, valid: Bools, periodic: tuple[bool, bool]) -> Flo
     # Every node takes over what its parent has gathered, twice as far up each time.
     while (parent != parent[parent]).any():
         sign, parent = sign * sign[parent], parent[parent]
-    sign = sign * sign[parent]
     return np.asarray((flat * sign[:, None]).reshape(velocity.shape))
 
 
@@ -74,12 +79,10 @@ def with_equal_ends(
     for axis in (1, 2):
         if periodic is None or periodic[axis - 1]:
             lines = np.swapaxes(result, 1, axis)
-            with np.errstate(invalid="ignore"):
-                against = np.sum(lines[:, 0] * lines[:, -1], axis=-1) < 0
-            lines[:, -1][against] *= -1
+            lines[:, -1] *= _sign(lines[:, 0] * lines[:, -1])
     for pole in poles or ():
         line = pole.lines(result, 1)[:, pole.line]
-        line[np.sum(line * line[:, :1], axis=-1) < 0] *= -1
+        line *= _sign(line * line[:, :1])
     return result
 
 
@@ -106,25 +109,31 @@ def corner_signs(vectors: NDArray[Any]) -> NDArray[np.int8] | None:
     return signs if (signs < 0).any() else None
 
 
-def mean_directions(vectors: Floats) -> Floats:
-    """Products of each vector with itself, whose mean has a meaning, (..., 3) to (..., 9).
+def products(vectors: Floats) -> Floats:
+    """Products of vectors with themselves, over their length, (..., C) to (..., C * C).
 
-    Their sum has the mean direction as its longest axis: see :func:`axes`.
+    Their mean has a meaning where that of the vectors has none; :func:`axes` brings it back.
     """
     length = np.linalg.norm(vectors, axis=-1)[..., None, None]
     product = vectors[..., :, None] * vectors[..., None, :]
-    with np.errstate(invalid="ignore"):
-        product = np.divide(product, length, out=np.zeros_like(product), where=length != 0)
-    return np.asarray(product.reshape(*vectors.shape[:-1], 9))
+    product = np.divide(product, length, out=np.zeros_like(product), where=length != 0)
+    return np.asarray(product.reshape(*vectors.shape[:-1], -1))
 
 
-def axes(products: Floats) -> Floats:
-    """Longest axes of means of products, (..., 9) to (..., 3), as long as the vectors were."""
-    known = np.isfinite(products).all(axis=-1)
-    safe = np.where(known[..., None], products, 0.0).reshape(*products.shape[:-1], 3, 3)
+def axes(means: Floats) -> Floats:
+    """Longest axes of means of products, (..., C * C) to (..., C), as long as the vectors were."""
+    known = np.asarray(np.isfinite(means).all(axis=-1))
+    size = round(means.shape[-1] ** 0.5)
+    safe = np.where(known[..., None], means, 0.0).reshape(*means.shape[:-1], size, size)
     lengths, directions = np.linalg.eigh(safe)
     found = directions[..., -1] * lengths[..., -1:]
     return np.where(known[..., None], found, np.nan)
+
+
+def _sign(products: Floats) -> Floats:
+    """Signs of the sums along the last axis, which is kept."""
+    with np.errstate(invalid="ignore"):
+        return np.where(np.sum(products, axis=-1, keepdims=True) < 0, -1.0, 1.0)
 
 
 def _along(number: NDArray[np.intp], valid: Bools, axis: int) -> NDArray[np.intp]:

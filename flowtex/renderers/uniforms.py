@@ -37,6 +37,8 @@ class ViewState:
     ----------
     focus
         Point of the mesh that the view looks at, (3,), in the mesh's own coordinates.
+    anchor
+        Point of the surface's frame that positions are given relative to, (3,).
     eye
         The eye in the mesh's own coordinates and 1, or the way to it and 0 where all rays are
         parallel, (4,).
@@ -49,6 +51,7 @@ class ViewState:
     """
 
     focus: NDArray[np.float64] = field(default_factory=lambda: np.zeros(3))
+    anchor: NDArray[np.float64] = field(default_factory=lambda: np.zeros(3))
     eye: NDArray[np.float64] = field(default_factory=lambda: np.array([0.0, 0.0, 1.0, 0.0]))
     between: float = 0.0
     time: float = 0.0
@@ -64,6 +67,8 @@ def variants(textures: TextureSet, *, unsteady: bool) -> frozenset[str]:
         chosen.add("FLOWTEX_PICTURE")
     if textures.geometry.planar:
         chosen.add("FLOWTEX_PLANAR")
+    if textures.geometry.field.sign_free:
+        chosen.add("FLOWTEX_SIGNFREE")
     if unsteady:
         chosen.add("FLOWTEX_UNSTEADY")
     return frozenset(chosen)
@@ -78,10 +83,14 @@ def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[
     """Values by name: bool, int, float, tuples of float, or lists for arrays."""
     geometry = textures.geometry
     finest = finest_cell(geometry.extent)
-    even = _origin_cell(geometry.frame @ (view.focus - geometry.center), finest)
-    sides = textures.sides if settings.two_sided else 1
+    even = _origin_cell(geometry.local(view.focus), finest)
+    # Without a sign there is no forward: both sides, and no kernel that falls towards one.
+    sign_free = geometry.field.sign_free
+    sides = textures.sides if settings.two_sided or sign_free else 1
+    kernel = "hann" if sign_free and settings.kernel == "ramp" else settings.kernel
     motion = _motion(textures, settings, view)
     eye = geometry.frame @ (view.eye[:3] - view.eye[3] * geometry.center)
+    eye -= view.eye[3] * view.anchor
     values: dict[str, Any] = {
         "u_eye": (*(float(c) for c in eye), float(view.eye[3])),
         "u_between": float(view.between),
@@ -94,7 +103,7 @@ def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[
         "u_samples": 2 * settings.samples - 1 if motion["u_moving"] else settings.samples,
         "u_spacing": settings.spacing,
         "u_grain": settings.grain,
-        "u_kernel": KERNELS.index(settings.kernel),
+        "u_kernel": KERNELS.index(kernel),
         "u_lod": settings.lod,
         "u_contrast": settings.contrast,
         "u_strength": settings.strength,
@@ -102,7 +111,7 @@ def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[
         "u_showLevel": settings.show_level,
         "u_fixed": settings.fixed_grain,
         **motion,
-        **_noise_origin(even, finest),
+        **_noise_origin(even, finest, view.anchor),
         "u_noiseFinest": finest,
         "u_texel": geometry.extent / settings.resolution,
     }
@@ -126,7 +135,7 @@ def _motion(textures: TextureSet, settings: Settings, view: ViewState) -> dict[s
     else:
         turns, travel = view.clock / settings.period % 1.0, settings.speed * settings.period
         pixels, by_speed = settings.speed_in == "pixels", settings.motion == "speed"
-        moving = settings.motion != "off"
+        moving = settings.motion != "off" and not store.field.sign_free
     coarse = float(np.floor(turns / COARSE) * COARSE)
     return {
         "u_moving": moving and textures.space == "physical",
@@ -138,12 +147,14 @@ def _motion(textures: TextureSet, settings: Settings, view: ViewState) -> dict[s
     }
 
 
-def _noise_origin(even: NDArray[np.int64], finest: float) -> dict[str, Any]:
+def _noise_origin(
+    even: NDArray[np.int64], finest: float, anchor: NDArray[np.float64]
+) -> dict[str, Any]:
     """Give the noise's origin in space and in the finest cells of both families of lattices."""
     odd = even / np.sqrt(2.0)
     whole = np.floor(odd / 2**SNAP) * 2**SNAP
     return {
-        "u_noiseOrigin": tuple(float(c * finest) for c in even),
+        "u_noiseOrigin": tuple(float(c) for c in even * finest - anchor),
         "u_noiseOriginEven": tuple(float(c) for c in even),
         "u_noiseOriginOdd": tuple(float(c) for c in whole),
         "u_noiseRestOdd": tuple(float(c) for c in odd - whole),

@@ -113,8 +113,19 @@ class Geometry:
     @cached_property
     def position(self) -> Singles:
         """Nodes in the surface's own frame, (J, I, 3)."""
+        return self.position_from(np.zeros(3))
+
+    def position_from(self, anchor: NDArray[np.float64]) -> Singles:
+        """Nodes in the surface's own frame relative to a point of it (3,), (J, I, 3).
+
+        Close to the anchor single precision tells points apart that it would not from the middle.
+        """
         local = (self.field.surface.points - self.center) @ self.frame.T
-        return local.astype(np.float32)
+        return np.asarray(local - anchor, dtype=np.float32)
+
+    def local(self, point: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Take a point from the mesh's own coordinates to the surface's frame, (3,)."""
+        return np.asarray(self.frame @ (point - self.center))
 
     @cached_property
     def normal(self) -> Singles:

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flowtex.field.poles import Pole, Poles
+from flowtex.field.signs import corner_signs
 from flowtex.trace.lattice import Corners, Lattice
 
 __all__ = ["Charts", "Patch", "cap"]
@@ -40,6 +41,8 @@ class Patch(NamedTuple):
     pole: Pole | None = None
     #: First line of the lattice that counts from the pole.
     offset: int = 0
+    #: Signs of the corners of each cell, (4, J * I), where the first two arrays have no sign.
+    signs: NDArray[np.int8] | None = None
 
     def corners(self, position: Floats) -> Corners:
         """Cells of positions (2, N) of the chart."""
@@ -50,7 +53,24 @@ class Patch(NamedTuple):
 
     def blend(self, number: int, corners: Corners, step: NDArray[np.intp] | int = 0) -> Floats:
         """Interpolate one of the arrays, in the set of the number ``step``."""
-        return self.lattice.blend(self.data[number], corners, step * self.lattice.size)
+        result = self.lattice.blend(self.data[number], corners, step * self.lattice.size)
+        if self.signs is not None and number < 2:
+            cut = np.flatnonzero((self.signs[:, corners.at] < 0).any(axis=0))
+            some = Corners(*(part[cut] for part in corners))
+            result[cut] = self._aligned(self.data[number], some)
+        return np.asarray(result)
+
+    def _aligned(self, data: Floats, corners: Corners) -> Floats:
+        """Interpolate in cells whose corners are brought into line, as the nearest one points."""
+        at, s, t = corners
+        weights = ((1 - s) * (1 - t), s * (1 - t), (1 - s) * t, s * t)
+        result = np.zeros(len(at))
+        if self.signs is not None:
+            width = self.lattice.columns
+            for sign, weight, on in zip(self.signs, weights, (0, 1, width, width + 1), strict=True):
+                result += sign[at] * weight * data[at + on]
+            result *= self.signs[(s >= 0.5) + 2 * (t >= 0.5), at]
+        return result
 
 
 class Charts:
@@ -113,7 +133,9 @@ class Charts:
         return result
 
 
-def cap(pole: Pole, lattice: Lattice, data: list[Floats], near: int) -> Patch:
+def cap(
+    pole: Pole, lattice: Lattice, data: list[Floats], near: int, *, sign_free: bool = False
+) -> Patch:
     """Lay out the data around a pole on its plane.
 
     Parameters
@@ -126,6 +148,8 @@ def cap(pole: Pole, lattice: Lattice, data: list[Floats], near: int) -> Patch:
         Components along i and j, in cells, and anything else, each (sets * J * I,).
     near
         Cells from the pole within which the plane is used.
+    sign_free
+        Whether velocities have no sign.
     """
     grid = (-1, lattice.rows, lattice.columns)
     lines = (lattice.rows if pole.component else lattice.columns) - 1
@@ -136,12 +160,14 @@ def cap(pole: Pole, lattice: Lattice, data: list[Floats], near: int) -> Patch:
     strips[:2] = _to_plane(pole, strips[1 - pole.component], strips[pole.component])
     strips = [pole.lines(a, 1) for a in strips]
     rows, columns = strips[0].shape[1:]
+    signs = corner_signs(np.stack([a[0] for a in strips[:2]], axis=-1)) if sign_free else None
     cells = np.ones((rows - 1, columns - 1), bool)
     return Patch(
         Lattice((rows, columns), lattice.periodic, cells),
         [np.ascontiguousarray(a).ravel() for a in strips],
         pole,
         first,
+        None if signs is None else signs.reshape(4, -1),
     )
 
 

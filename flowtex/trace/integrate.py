@@ -185,15 +185,15 @@ class _Run:
         """One Bogacki-Shampine step, and its estimated error in cells, (N,)."""
         state = self.state
         y, k1, lag = state.y, state.rate, state.lag
-        k2 = self._rate(y + (0.5 * h) * k1, lag + 0.5 * h)
-        k3 = self._rate(y + (0.75 * h) * k2, lag + 0.75 * h)
+        k2 = self._rate(y + (0.5 * h) * k1, lag + 0.5 * h, k1)
+        k3 = self._rate(y + (0.75 * h) * k2, lag + 0.75 * h, k2)
         after = y + h * (2 / 9 * k1 + 1 / 3 * k2 + 4 / 9 * k3)
-        k4 = self._rate(after, lag + h)
+        k4 = self._rate(after, lag + h, k3)
         error = h * _speed(-5 / 72 * k1 + 1 / 12 * k2 + 1 / 9 * k3 - 1 / 8 * k4)
         return Step(y, k1, after, k4, lag, h, state.chart, state.index), error
 
-    def _rate(self, position: Floats, lag: Floats) -> Floats:
-        return self.sampler.rate(position, lag, self.direction, self.state.chart)
+    def _rate(self, position: Floats, lag: Floats, ahead: Floats) -> Floats:
+        return self.sampler.rate(position, lag, self.direction, self.state.chart, ahead)
 
     def _index(self, position: Floats, along: Step | Particles) -> Floats:
         """Positions in index space of positions on the charts of a step or state."""
@@ -220,8 +220,8 @@ class _Run:
         if self.within is not None:
             self._leave(state, index, gone)
         if state.chart is not None:
-            state.index = index
-            self._change_chart(state)
+            before, state.index = state.index, index
+            self._change_chart(state, before)
 
     def _leave(self, state: Particles, index: Floats, gone: Bools) -> None:
         """Follow the paths no further that have come where they are to be left."""
@@ -235,9 +235,9 @@ class _Run:
             self.out[m][:, state.which[due]] = index[:, due]
         state.next[left] = len(self.lags)
 
-    def _change_chart(self, state: Particles) -> None:
+    def _change_chart(self, state: Particles, before: Floats | None) -> None:
         """Go on in the plane of a pole that has come close, or in index space again."""
-        if self.charts is None or state.chart is None or state.index is None:
+        if self.charts is None or state.chart is None or state.index is None or before is None:
             return
         self.polar[state.which[self.charts.close(state.index)]] = True
         chart = self.charts.choose(state.index, state.chart)
@@ -246,7 +246,8 @@ class _Run:
             state.chart = chart
             there = chart[new]
             state.y[:, new] = y = self.charts.enter(state.index[:, new], there)
-            state.rate[:, new] = self.sampler.rate(y, state.lag[new], self.direction, there)
+            ahead = y - self.charts.enter(before[:, new], there)
+            state.rate[:, new] = self.sampler.rate(y, state.lag[new], self.direction, there, ahead)
 
     def _record(self, state: Particles, step: Step, share: Floats) -> None:
         """Write the positions at the lags that the first ``share`` of the steps has passed."""

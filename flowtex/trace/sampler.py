@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from flowtex.field import FlowField
+from flowtex.field.signs import corner_signs
 from flowtex.trace.charts import Charts, Patch, cap
 from flowtex.trace.lattice import Corners, Lattice
 
@@ -25,6 +26,8 @@ Floats = NDArray[np.float64]
 
 #: A particle slower than this share of the greatest speed has stopped.
 STOPPED = 1e-7
+#: Pairs of tangents whose products make the metric.
+METRIC = ((0, 0), (0, 1), (1, 1))
 #: By arc length, a particle this slow, in cells over one unit of lag, is at a critical point.
 RESTING = 1e-3
 
@@ -52,9 +55,21 @@ class Sampler(ABC):
         self.charts = None if poles is None else Charts(poles)
         #: Whether particles are inside the domain, in a cell that is not blanked.
         self.alive = lattice.alive
-        self._patches = [Patch(lattice, parts)]
+        #: Whether the field is one without a sign.
+        self.sign_free = field.sign_free
+        signs = None
+        if self.sign_free:
+            signs = corner_signs(_spread_grid(field.velocity[0], field))
+            p = field.surface.tangents
+            self._metric = [np.sum(p[a] * p[b], axis=-1).ravel() for a, b in METRIC]
+        self._patches = [
+            Patch(lattice, parts, signs=None if signs is None else signs.reshape(4, -1))
+        ]
         if poles is not None and self.charts is not None:
-            self._patches += [cap(pole, lattice, parts, self.charts.near) for pole in poles]
+            near = self.charts.near
+            self._patches += [
+                cap(pole, lattice, parts, near, sign_free=self.sign_free) for pole in poles
+            ]
 
     def rate(
         self,
@@ -62,8 +77,13 @@ class Sampler(ABC):
         lag: Floats,
         direction: float,
         chart: NDArray[np.int8] | None = None,
+        ahead: Floats | None = None,
     ) -> Floats:
-        """Rate of change of positions by lag for particles that have come ``lag`` (N,)."""
+        """Rate of change of positions by lag for particles that have come ``lag`` (N,).
+
+        In a field without a sign, that of the two which leads ``ahead`` (2, N), where it is
+        given, whatever the direction.
+        """
         if chart is None or not chart.any():
             result = self._rate(self._patches[0], position, lag, direction)
         else:
@@ -77,7 +97,24 @@ class Sampler(ABC):
             # Beyond a pole index space runs the other way.
             turned = (chart == 0) & self._poles.mirrored(position)
             result[self._poles.component, turned] *= -1
+        if self.sign_free and ahead is not None:
+            result *= self._agreement(position, result, ahead, chart)
+            return result
         return np.negative(result, out=result) if direction < 0 else result
+
+    def _agreement(
+        self, position: Floats, one: Floats, two: Floats, chart: NDArray[np.int8] | None
+    ) -> Floats:
+        """Sign of the angle between rates (2, N) in space, -1 where it is more than 90 degrees."""
+        along = one[0] * two[0] + one[1] * two[1]
+        flat = slice(None) if chart is None else np.flatnonzero(chart == 0)
+        here, (a, b), (c, d) = position[:, flat], one[:, flat], two[:, flat]
+        at = self._patches[0].corners(here).at
+        ii, ij, jj = (part[at] for part in self._metric)
+        if self._poles is not None:
+            ij = np.where(self._poles.mirrored(here), -ij, ij)
+        along[flat] = ii * a * c + ij * (a * d + b * c) + jj * b * d
+        return np.where(along < 0, -1.0, 1.0)
 
     @abstractmethod
     def rest(self, unit: Floats, last: float) -> Floats:
@@ -162,11 +199,17 @@ class TimeSampler(Sampler):
         return result
 
 
+def _spread_grid(data: Floats, field: FlowField) -> Floats:
+    """Give blanked nodes of data (..., J, I, C) their neighbours' value."""
+    if field.valid.all():
+        return data
+    nearest = ndimage.distance_transform_edt(
+        ~field.valid, return_distances=False, return_indices=True
+    )
+    return np.asarray(data[(..., *tuple(nearest), slice(None))])
+
+
 def _spread(data: Floats, field: FlowField) -> list[Floats]:
     """Components of (..., J, I, C) data, each flat; blanked nodes get their neighbours' value."""
-    if not field.valid.all():
-        nearest = ndimage.distance_transform_edt(
-            ~field.valid, return_distances=False, return_indices=True
-        )
-        data = data[(..., *tuple(nearest), slice(None))]
+    data = _spread_grid(data, field)
     return [np.ascontiguousarray(data[..., c]).ravel() for c in range(data.shape[-1])]

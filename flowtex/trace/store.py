@@ -37,11 +37,19 @@ class SliceStore:
         What a lag measures, as for :func:`flowtex.trace`.
     slices
         Slices of all steps that were traced already; nothing is traced then.
+
+    Raises
+    ------
+    ValueError
+        When slices of a field without a sign lead to one side only.
     """
 
     def __init__(
         self, field: FlowField, *, parameter: str = "arclength", slices: TraceSlices | None = None
     ) -> None:
+        if field.sign_free and slices is not None and slices.forward is None:
+            msg = "the slices lead backward only; expected both sides of a field without a sign"
+            raise ValueError(msg)
         self.field = field
         self._whole = slices
         self._kept: OrderedDict[int, TraceSlices] = OrderedDict()

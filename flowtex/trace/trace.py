@@ -56,7 +56,7 @@ def trace(
     parameter
         ``"arclength"`` or ``"time"``; a time-varying field is always followed by time.
     two_sided
-        Whether a steady field is followed forward too.
+        Whether a steady field is followed forward too. One without a sign always is.
     tolerance
         Error allowed in one step of the integration, in cells.
     steps
@@ -65,7 +65,7 @@ def trace(
         Whether long lags are put together from short ones (see :mod:`flowtex.trace.compose`)
         instead of being integrated. By default they are when the lags are chosen automatically.
         In a field that varies this takes equal time steps, of which all are traced; otherwise
-        all lags are integrated.
+        all lags are integrated, as they are in a field without a sign.
     progress
         Whether to show a progress bar when the work takes longer than a second.
 
@@ -77,11 +77,13 @@ def trace(
     ------
     ValueError
         When the lags are not positive and increasing, ``parameter`` is unknown, or the unit or
-        the tolerance is not positive.
+        the tolerance is not positive; or a field without a sign is to be followed to one side,
+        or composed.
     IndexError
         When there is no such time step.
     """
     parameter = _parameter(field, parameter)
+    _check_signs(field, two_sided=two_sided, compose=compose)
     wanted = choose_lags(field, parameter) if lags is None else _checked_lags(lags)
     units = lag_unit(field, parameter) if unit is None else np.asarray(unit, dtype=float)
     units = np.array(np.broadcast_to(units, field.shape), dtype=float)
@@ -94,7 +96,7 @@ def trace(
     chosen = _chosen(field, steps)
     sides = (-1.0, 1.0) if field.steady and two_sided else (-1.0,)
     work = Work(field, _samplers(field, chosen, parameter), wanted, units, tolerance, progress)
-    composed = lags is None if compose is None else compose
+    composed = lags is None and not field.sign_free if compose is None else compose
     landing = _landing(field, wanted, units, chosen) if composed else None
     found = work.follow(sides, landing)
     both = len(sides) > 1
@@ -161,6 +163,19 @@ def paths(
         direction=1.0 if forward else -1.0,
         tolerance=tolerance,
     )
+
+
+def _check_signs(field: FlowField, *, two_sided: bool, compose: bool | None) -> None:
+    """Refuse what has no meaning in a field without a sign."""
+    if field.sign_free and not two_sided:
+        msg = "two_sided is False; expected True: a field without a sign has two sides alike"
+        raise ValueError(msg)
+    if field.sign_free and compose:
+        msg = (
+            "compose is True; expected False or None: between nodes that point either way paths "
+            "of a field without a sign cannot be looked up"
+        )
+        raise ValueError(msg)
 
 
 def _chosen(field: FlowField, steps: Sequence[int] | None) -> list[int]:

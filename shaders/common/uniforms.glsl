@@ -31,9 +31,9 @@ uniform bool u_travelBySpeed;  // where its speed is the typical one, or everywh
 uniform float u_wave;          // pixels that it goes in one turn, at least
 
 #ifndef FLOWTEX_PLANAR
-uniform vec4 u_eye;              // the eye in the surface's frame, or with w = 0 the way to it
+uniform vec4 u_eye;              // the eye, as positions are given, or with w = 0 the way to it
 #endif
-uniform vec3 u_noiseOrigin;      // point near the view, in the surface's frame
+uniform vec3 u_noiseOrigin;      // point near the view, as positions are given
 uniform vec3 u_noiseOriginEven;  // the same in cells of octave 0, whole numbers
 uniform vec3 u_noiseOriginOdd;   // and in cells of octave 1: whole numbers,
 uniform vec3 u_noiseRestOdd;     // and the rest

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from flowtex.renderers.cpu.lookup import Mips
 
-__all__ = ["Path", "Slices"]
+__all__ = ["Path", "SignFreeSlices", "Slices"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -29,6 +29,40 @@ class Slices:
         if self.after is None:
             return value
         return value + self.between * (self.after.at(coordinate, level, layer) - value)
+
+
+@dataclass(frozen=True, eq=False)
+class SignFreeSlices(Slices):
+    """The slice texture of a field in which v and -v mean the same, at its finest level.
+
+    Texels around a fragment that point against the others are turned over: their two sides
+    change places, and their slopes the sign.
+    """
+
+    size: tuple[float, float] = (1.0, 1.0)
+    lags: int = 0
+
+    def layer(self, coordinate: Floats, layer: int | Ints, level: Floats) -> Floats:
+        """Channels of one layer, (N, 4), at texture coordinates (N, 2)."""
+        del level
+        at = coordinate * np.array(self.size) - 0.5
+        base = np.floor(at)
+        s, t = (at - base).T
+        weights = ((1 - s) * (1 - t), s * (1 - t), (1 - s) * t, s * t)
+        # The side that a texel which is turned over is taken from instead.
+        other = np.asarray(layer) + np.where(np.asarray(layer) > self.lags, -1, 1) * self.lags
+        other = np.where(np.asarray(layer) == 0, 0, other)
+        together, result = np.zeros((len(s), 3)), np.zeros((len(s), 4))
+        for weight, right in zip(weights, ((0, 0), (1, 0), (0, 1), (1, 1)), strict=True):
+            place, finest = (base + right + 0.5) / self.size, np.zeros(len(s))
+            tangent = self.before.at(place, finest, 0)[:, :3]
+            turned = np.einsum("nc,nc->n", together, tangent) < 0
+            sign = np.where(turned, -1.0, 1.0)[:, None]
+            together += sign * tangent
+            found = self.before.at(place, finest, np.where(turned, other, layer))
+            found[:, :3] *= sign
+            result += weight[:, None] * found
+        return result
 
 
 class Path:

@@ -15,7 +15,7 @@ from flowtex.renderers.cpu.levels import slice_level
 from flowtex.renderers.cpu.lookup import Mips
 from flowtex.renderers.cpu.lookup_paper import PaperImages, PaperNoise, PaperPicture
 from flowtex.renderers.cpu.lookup_space import SpaceNoise
-from flowtex.renderers.cpu.path import Slices
+from flowtex.renderers.cpu.path import SignFreeSlices, Slices
 from flowtex.renderers.cpu.picture import Picture
 from flowtex.renderers.cpu.raster import Coverage, rasterise
 from flowtex.renderers.cpu.texture import Lookup, LookupMaker, Summing
@@ -118,6 +118,8 @@ def _cover(textures: TextureSet, camera: Camera) -> Coverage:
 def _slices(textures: TextureSet, steps: tuple[int, int], values: Mapping[str, Any]) -> Slices:
     levels = textures.geometry.levels
     before = Mips(textures.layers(steps[0]), levels=levels)
+    if textures.geometry.field.sign_free:
+        return SignFreeSlices(before, size=values["u_slicesSize"], lags=values["u_lagCount"])
     if steps[0] == steps[1]:
         return Slices(before)
     return Slices(before, Mips(textures.layers(steps[1]), levels=levels), values["u_between"])

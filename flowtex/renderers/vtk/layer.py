@@ -24,7 +24,7 @@ from vtkmodules.vtkCommonDataModel import vtkDataObject
 from flowtex.glsl import compose
 from flowtex.renderers.uniforms import ViewState, uniforms, variants
 from flowtex.renderers.vtk.gpu import GPUTexture
-from flowtex.renderers.vtk.mesh import COORDINATE, NOISE, NORMAL, POSITION
+from flowtex.renderers.vtk.mesh import COORDINATE, NOISE, NORMAL, POSITION, set_position
 from flowtex.settings import Settings
 from flowtex.textures import Ahead, TextureSet
 
@@ -32,6 +32,9 @@ __all__ = ["FlowLayer"]
 
 #: Under this name PyVista keeps who put a replacement in.
 OWNER = "flowtex"
+
+#: Heights of the window within which positions may be counted from another point than its middle.
+NEAR = 8.0
 
 #: Shader, the mark of VTK's that our text goes before, and our file.
 REPLACEMENTS = (
@@ -79,6 +82,7 @@ class FlowLayer:
         update.CallDataType = VTK_OBJECT
         self._observed = [
             (actor.mapper, actor.mapper.AddObserver("UpdateShaderEvent", update)),
+            (renderer, renderer.AddObserver("StartEvent", self._observer("_before_frame"))),
             (renderer, renderer.AddObserver("EndEvent", self._observer("_after_draw"))),
         ]
 
@@ -88,6 +92,7 @@ class FlowLayer:
         self._textures = textures
         self._ahead.close()
         self._ahead = Ahead(textures)
+        self.view.anchor = np.zeros(3)  # that of the mesh's new attributes
         self._retire(*(["u_noiseImage"] if same else self._gpu))
         self._map_attributes()
         self._write_text()
@@ -163,7 +168,6 @@ class FlowLayer:
         if program is None or window is None:
             return
         self._free(window)
-        self._look()
         values = uniforms(self._textures, self._settings, self.view)
         for name, value in values.items():
             if program.IsUniformUsed(name) or isinstance(value, list):
@@ -206,8 +210,9 @@ class FlowLayer:
             self._gpu[name] = made
         return self._gpu[name]
 
-    def _look(self) -> None:
-        """Take what the camera looks at, and from where, into the mesh's own coordinates."""
+    def _before_frame(self, data: Any) -> None:
+        """Take the camera into the mesh's own coordinates, and the anchor to where it looks."""
+        del data
         renderer = self._renderer()
         if renderer is None:
             return
@@ -221,6 +226,18 @@ class FlowLayer:
         points = [(*camera.GetFocalPoint(), 1.0), (*eye, float(not parallel))]
         focus, self.view.eye = np.linalg.solve(placed, np.transpose(points)).T
         self.view.focus = focus[:3]
+        scale = float(np.cbrt(abs(np.linalg.det(placed[:3, :3]))))
+        self._move_anchor(_window_height(camera) / scale)
+
+    def _move_anchor(self, seen: float) -> None:
+        """Count positions from near the focus once their digits do not do from elsewhere."""
+        geometry = self._textures.geometry
+        there = geometry.local(self.view.focus)
+        if np.abs(there - self.view.anchor).max() <= NEAR * seen:
+            return
+        near_middle = np.abs(there).max() <= NEAR * seen
+        self.view.anchor = np.zeros(3) if near_middle else there
+        set_position(self._actor.mapper.dataset, geometry.position_from(self.view.anchor))
 
     def _window(self) -> Any:
         renderer = self._renderer()
@@ -234,6 +251,13 @@ class FlowLayer:
         for texture in self._retired:
             texture.release(window)
         self._retired.clear()
+
+
+def _window_height(camera: Any) -> float:
+    """Height of what the camera sees at its focal point."""
+    if camera.GetParallelProjection():
+        return float(2 * camera.GetParallelScale())
+    return float(2 * camera.GetDistance() * np.tan(np.radians(camera.GetViewAngle() / 2)))
 
 
 def _write(program: Any, name: str, value: Any) -> None:

@@ -4,10 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 import pyvista as pv
+from numpy.typing import NDArray
 
 from flowtex.textures import TextureSet
 
-__all__ = ["COORDINATE", "NOISE", "NORMAL", "POSITION", "set_attributes", "surface_mesh"]
+__all__ = [
+    "COORDINATE",
+    "NOISE",
+    "NORMAL",
+    "POSITION",
+    "set_attributes",
+    "set_position",
+    "surface_mesh",
+]
 
 #: Names of the point arrays that become vertex attributes.
 POSITION, COORDINATE, NOISE = "flowtex position", "flowtex coordinate", "flowtex noise"
@@ -31,10 +40,15 @@ def surface_mesh(textures: TextureSet) -> pv.PolyData:
     return mesh
 
 
+def set_position(mesh: pv.PolyData, position: NDArray[np.float32]) -> None:
+    """Write the nodes' positions in the surface's frame, (J, I, 3), relative to any anchor."""
+    mesh.point_data[POSITION] = position.reshape(-1, 3)
+
+
 def set_attributes(mesh: pv.PolyData, textures: TextureSet) -> None:
     """Write the vertex attributes of a texture set to its mesh."""
     geometry = textures.geometry
-    mesh.point_data[POSITION] = geometry.position.reshape(-1, 3)
+    set_position(mesh, geometry.position)
     mesh.point_data[COORDINATE] = geometry.coordinate.reshape(-1, 2)
     if textures.paper is not None:
         mesh.point_data[NOISE] = textures.paper.coordinate.reshape(-1, 2)
