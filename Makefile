@@ -29,6 +29,7 @@ lint: $(VENV)/.ready-test ## style, format and types, without the tests
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
+	sh tools/javascript.sh $(BIN)
 
 format: $(VENV)/.ready-test ## put the code in its format
 	$(BIN)/ruff check --select I --fix

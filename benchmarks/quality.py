@@ -2,9 +2,9 @@
 
 Sections are ``zoom`` (streaks and grain from the whole surface to a thousandth of it, beside
 rlic on the image's own grid), ``aliasing`` (against 16 samples a pixel), ``camera`` (texture that
-sticks to the surface, beside VTK's Surface LIC), ``motion`` and ``vortices`` (frames carried by
-the flow), and ``seam`` (joined lines of nodes; needs ``FLOWTEX_DATA``). All with the settings'
-defaults. ``--json FILE`` keeps the figures.
+sticks to the surface, beside VTK's Surface LIC), ``popping`` (a slow zoom), ``motion`` and
+``vortices`` (frames carried by the flow), and ``seam`` (joined lines of nodes; needs
+``FLOWTEX_DATA``). All with the settings' defaults. ``--json FILE`` keeps the figures.
 
 ``--judge FILE`` takes another judge of streaks, grain, aliasing and motion instead of
 ``tests/measures.py``: a module with the functions alignment, grain, aliasing and carried.
@@ -110,6 +110,26 @@ def camera() -> Figures:
     return found
 
 
+def popping() -> Figures:
+    """Correlation from frame to frame of a zoom by 2 % a frame, over more than an octave."""
+    field, size = gyre_field(), (400, 300)
+    stage = Stage(field, size)
+    rows, columns = np.indices(size[::-1])
+    right, down = columns + 0.5 - size[0] / 2, rows + 0.5 - size[1] / 2
+    scores, before = [], None
+    for frame in range(40):
+        view = gyre_view(field, 4 * 1.02**frame, size)
+        here = {"zoom": view.options["zoom"], "focus": view.options["focus"]}
+        picture = stage.picture(**here)
+        if before is not None:
+            mask = _away_from_border(view.mask, 20)
+            moved = 1 - 1 / 1.02
+            scores.append(JUDGE.carried(before, picture, right * moved, down * moved, mask))
+        before = picture
+    stage.close()
+    return {"zoom 4 to 8.7": {"least": min(scores), "mean": float(np.mean(scores))}}
+
+
 def _away_from_border(mask: Any, pixels: int) -> Any:
     inner = np.zeros_like(mask)
     inner[pixels:-pixels, pixels:-pixels] = mask[pixels:-pixels, pixels:-pixels]
@@ -199,6 +219,7 @@ SECTIONS = {
     "zoom": zoom,
     "aliasing": aliased,
     "camera": camera,
+    "popping": popping,
     "motion": streaming,
     "vortices": vortices,
     "seam": seam,

@@ -20,5 +20,7 @@ check() {
 check style ruff check
 check format ruff format --check
 check types mypy
+say "javascript.sh"
+sh "$here/javascript.sh" "$bin" || failed="$failed, javascript"
 check tests pytest "$@"
 [ -z "$failed" ] || fail "not in order: ${failed#, }"
