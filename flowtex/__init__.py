@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from flowtex._version import __version__ as __version__
 from flowtex.field import FlowField
 from flowtex.settings import Settings
 from flowtex.trace import TraceSlices, trace
@@ -17,9 +18,9 @@ from flowtex.trace import TraceSlices, trace
 if TYPE_CHECKING:
     from flowtex import examples
     from flowtex.pictures import render, show
+    from flowtex.widget import FlowWidget as FlowWidget
 
 __all__ = ["FlowField", "Settings", "TraceSlices", "examples", "render", "show", "trace"]
-__version__ = "0.1.0"
 
 
 def __getattr__(name: str) -> Any:
@@ -32,9 +33,13 @@ def __getattr__(name: str) -> Any:
         from flowtex import pictures
 
         return getattr(pictures, name)
+    if name == "FlowWidget":
+        from flowtex import widget
+
+        return widget.FlowWidget
     msg = f"module 'flowtex' has no attribute {name!r}"
     raise AttributeError(msg)
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+    return sorted({*globals(), *__all__, "FlowWidget"})

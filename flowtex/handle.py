@@ -79,6 +79,11 @@ class FlowHandle:
         return self._view
 
     @property
+    def scalars(self) -> str | None:
+        """Name of what the texture is coloured by; ``None`` for a plain one."""
+        return self._scalars
+
+    @property
     def time(self) -> float:
         """Time that is shown, in the field's own unit."""
         return self._view.time

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyvista as pv
@@ -15,7 +16,13 @@ from flowtex.field import FlowField
 from flowtex.handle import FlowHandle
 from flowtex.plotter import FIELD_ARGUMENTS, FlowtexComponent, as_field
 
-__all__ = ["render", "show"]
+if TYPE_CHECKING:
+    from flowtex.widget import FlowWidget
+
+__all__ = ["in_notebook", "render", "show"]
+
+#: Width and height of a window.
+WINDOW = (1024, 768)
 
 Changes = Mapping[str, Any]
 
@@ -96,20 +103,24 @@ def render(
 def show(
     mesh: Any,
     *,
-    size: tuple[int, int] = (1024, 768),
+    size: tuple[int, int] | None = None,
     zoom: float = 1.0,
     focus: tuple[float, ...] | None = None,
     beside: Changes | None = None,
     **options: Any,
-) -> None:
-    """Show a flow: in a window, or where there is no display on a page in the browser.
+) -> FlowWidget | None:
+    """Show a flow: in a notebook as a widget, else in a window or on a page in the browser.
+
+    A notebook's kernel draws nothing, the browser does. Elsewhere a window is opened, and where
+    there is no display a page is served.
 
     Parameters
     ----------
     mesh
         What ``plotter.flowtex.add`` takes.
     size
-        Width and height of the window in pixels.
+        Width and height of the window in pixels; 1024 x 768, and in a notebook as wide as the
+        cell.
     zoom, focus
         How far in, and on what point of the mesh, the window begins.
     beside
@@ -118,15 +129,25 @@ def show(
     **options
         Further arguments and settings of ``plotter.flowtex.add``, such as ``image``.
 
+    Returns
+    -------
+    FlowWidget or None
+        In a notebook the widget, which is displayed already; else nothing.
+
     Raises
     ------
     FieldError, SettingsError
         When the mesh or a setting does not fit.
     OpenGLMissingError
         When nothing can draw; the text names the command that installs what is missing.
+    ModuleNotFoundError
+        When a notebook lacks what widgets need; the text names the command that installs it.
     ValueError
-        When two views are asked for and there is no display.
+        When two views are asked for and there is no window.
     """
+    if in_notebook():
+        return _show_widget(mesh, size=size, zoom=zoom, focus=focus, beside=beside, **options)
+    size = size or WINDOW
     prefer_headless()
     require_opengl()
     field = as_field(mesh, **{k: options.pop(k, None) for k in FIELD_ARGUMENTS})
@@ -137,13 +158,34 @@ def show(
         from flowtex.app import serve
 
         serve(field, zoom=zoom, focus=focus, **options)
-        return
+        return None
     plotter = _plotter(size, beside)
     plotter.disable_anti_aliasing()
     plotter.set_background("white")
     _put(plotter, field, options, beside)
     look(plotter, field, zoom=zoom, focus=focus)
     plotter.show()
+    return None
+
+
+def in_notebook() -> bool:
+    """Tell whether a notebook's kernel runs this; IPython is not loaded to find out."""
+    ipython = sys.modules.get("IPython")
+    shell = ipython.get_ipython() if ipython is not None else None
+    return getattr(shell, "kernel", None) is not None
+
+
+def _show_widget(
+    mesh: Any, *, size: tuple[int, int] | None, beside: Changes | None, **options: Any
+) -> FlowWidget:
+    if beside is not None:
+        msg = "two views need a window; flowtex.render draws both as one picture"
+        raise ValueError(msg)
+    from flowtex.widget import FlowWidget
+
+    if size is not None:
+        options["size"] = size
+    return FlowWidget(mesh, **options).show()
 
 
 def _plotter(size: tuple[int, int], beside: Changes | None, **options: Any) -> Any:

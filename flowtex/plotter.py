@@ -19,7 +19,7 @@ from flowtex.image_files import load_image
 from flowtex.settings import Settings, SettingsError
 from flowtex.view import FlowView
 
-__all__ = ["FlowHandle", "FlowtexComponent", "as_field"]
+__all__ = ["FlowHandle", "FlowtexComponent", "as_field", "with_image"]
 
 #: Colours when there are none to ask for: a neutral grey that can go darker and lighter.
 PLAIN, CMAP = "#a0a0a0", "viridis"
@@ -67,7 +67,7 @@ def as_field(mesh: Any, **options: Any) -> FlowField:
     return mesh
 
 
-def _with_image(settings: dict[str, Any]) -> dict[str, Any]:
+def with_image(settings: dict[str, Any]) -> dict[str, Any]:
     """Return settings for an image: its colours alone, unless it is asked to be mixed."""
     noise = settings.get("noise", "image")
     if noise != "image":
@@ -158,7 +158,7 @@ class FlowtexComponent:
             When the image cannot be read or used; a kind of SettingsError.
         """
         chosen = Settings()
-        chosen.update(**(settings if image is None else _with_image(settings)))
+        chosen.update(**(settings if image is None else with_image(settings)))
         picture = load_image(image)
         field = as_field(
             mesh,

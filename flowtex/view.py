@@ -18,7 +18,7 @@ from flowtex.settings import TABLE, Affects, Settings, SettingsError
 from flowtex.textures import TextureSet, as_picture
 from flowtex.trace import SliceStore, TraceSlices, shared_store
 
-__all__ = ["FlowView"]
+__all__ = ["NO_IMAGE", "FlowView"]
 
 Notice = Callable[[Affects], None]
 

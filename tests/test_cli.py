@@ -4,6 +4,7 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -256,3 +257,31 @@ def test_a_wrong_second_view_says_so(
     code, _, said = run("render", gyre, "-o", tmp_path / "a.png", "--beside", word)
     assert code != 0
     assert text in said
+
+
+def test_export_writes_a_page_and_tells_its_size(run: Run, gyre: Path, tmp_path: Path) -> None:
+    page = tmp_path / "page.html"
+    code, out, err = run("export", gyre, "-o", page, "--samples", 9, "--title", "two gyres")
+    assert (code, err) == (0, "")
+    assert "about 1." in out or "about 0." in out
+    assert f"{page.stat().st_size / 1e6:.2f} MB" in out
+    assert "<title>two gyres</title>" in page.read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("-o", "page.png"), "page.png: expected a name that ends in .html"),
+        (("-o", "nowhere/page.html"), "there is no folder 'nowhere'"),
+        (("-o", "page.html", "--steps", "0"), "--steps is 0; expected 1 to 1"),
+        (("-o", "page.html", "--scalars", "heat"), "--scalars is 'heat'; there are"),
+    ],
+)
+def test_export_refuses_what_it_cannot_do(
+    run: Run, gyre: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, words: Any, said: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    code, _, err = run("export", gyre, *words)
+    assert code == 2
+    assert said in err
+    assert list(tmp_path.iterdir()) == []

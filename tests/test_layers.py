@@ -23,11 +23,11 @@ ROOT_NAME = "flowtex"
 # From the bottom to the top: a module imports from lines above its own here, and never from
 # one on the same line. The empty name is the package itself.
 LAYERS: tuple[tuple[str, ...], ...] = (
-    ("errors", "extras", "progress", "_assets"),
+    ("errors", "extras", "progress", "_assets", "_version"),
     ("settings",),
     ("field",),
     ("trace",),
-    ("textures",),
+    ("textures", "first_look"),
     ("glsl",),
     ("doctor",),
     ("renderers",),
@@ -36,13 +36,28 @@ LAYERS: tuple[tuple[str, ...], ...] = (
     ("camera", "image_files"),
     ("handle",),
     ("plotter",),
-    ("widget", "app", "export"),
-    ("pictures",),
+    ("staging",),
+    ("preview",),
+    ("export",),
+    ("widget", "app"),
+    ("pictures", "jupyter"),
     ("",),
     ("cli",),
 )
 RENDERERS = ("renderers.cpu", "renderers.vtk", "renderers.webgl")
-FRONT_ENDS = ("camera", "handle", "plotter", "pictures", "widget", "app", "export", "cli")
+FRONT_ENDS = (
+    "camera",
+    "handle",
+    "plotter",
+    "staging",
+    "preview",
+    "pictures",
+    "jupyter",
+    "widget",
+    "app",
+    "export",
+    "cli",
+)
 
 
 @dataclass(frozen=True)

@@ -38,6 +38,13 @@ def _texts_of_checkout() -> dict[str, str]:
     }
 
 
+def _client_of_checkout() -> list[Path]:
+    folder = ROOT / "flowtex" / "renderers" / "webgl"
+    found = [path for path in folder.iterdir() if path.suffix in (".js", ".css", ".html")]
+    assert {"client.js", "page.js", "page.css", "page.html"} <= {path.name for path in found}
+    return found
+
+
 def _run(*command: str, cwd: Path, **environment: str) -> str:
     done = subprocess.run(
         command,
@@ -72,6 +79,8 @@ def test_wheel_holds_every_shader_and_every_module(wheel: Path) -> None:
     for path in (ROOT / "flowtex").rglob("*.py"):
         assert path.relative_to(ROOT).as_posix() in held
     assert "flowtex/py.typed" in held
+    for path in _client_of_checkout():
+        assert held[path.relative_to(ROOT).as_posix()] == path.read_bytes()
 
 
 def test_wheel_is_named_after_the_one_version(wheel: Path) -> None:
@@ -85,6 +94,8 @@ def test_wheel_declares_command_and_plotter_component(wheel: Path) -> None:
     assert "flowtex = flowtex.cli:main" in declared
     # PyVista hands the value to import_module, so it must name a module and nothing in it.
     assert "flowtex = flowtex.plotter\n" in f"{declared}\n"
+    # Here PyVista loads the value itself, so it must name a function.
+    assert "flowtex = flowtex.jupyter:show_plotter" in declared
 
 
 def test_installed_wheel_reads_its_own_shaders(wheel: Path, tmp_path: Path) -> None:
@@ -169,3 +180,4 @@ def test_wheel_can_be_built_from_the_source_archive(tmp_path: Path) -> None:
     with zipfile.ZipFile(built) as held:
         names = set(held.namelist())
     assert {f"flowtex/_shaders/{name}" for name in _texts_of_checkout()} <= names
+    assert {path.relative_to(ROOT).as_posix() for path in _client_of_checkout()} <= names

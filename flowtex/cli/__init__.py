@@ -1,4 +1,4 @@
-"""The command line: ``flowtex demo | show | render | info | doctor``."""
+"""The command line: ``flowtex demo | show | render | export | info | doctor``."""
 
 from __future__ import annotations
 

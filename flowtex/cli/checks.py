@@ -6,11 +6,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from flowtex.cli.options import UsageError
+from flowtex.extras import install_extra
 
 if TYPE_CHECKING:
     from flowtex.field import FlowField
 
-__all__ = ["check_colours", "check_image", "check_output"]
+__all__ = ["check_colours", "check_image", "check_output", "check_page", "need_app", "need_opengl"]
 
 
 def check_output(output: Path) -> None:
@@ -23,6 +24,18 @@ def check_output(output: Path) -> None:
         what = f"{output.suffix!r} is no format" if output.suffix else "no suffix is no format"
         msg = f"{output}: {what} that pictures are written in; use .png, .jpg, .webp or .tiff"
         raise UsageError(msg)
+    _check_folder(output)
+
+
+def check_page(output: Path) -> None:
+    """Refuse a page that could not be written, before anything is traced."""
+    if output.suffix.lower() not in (".html", ".htm"):
+        msg = f"{output}: expected a name that ends in .html, as a page has"
+        raise UsageError(msg)
+    _check_folder(output)
+
+
+def _check_folder(output: Path) -> None:
     if not output.parent.is_dir():
         msg = f"{output}: there is no folder {str(output.parent)!r}; make it, or write elsewhere"
         raise UsageError(msg)
@@ -58,3 +71,25 @@ def check_colours(field: FlowField, options: dict[str, Any]) -> None:
     except (ValueError, KeyError, ImportError) as error:
         msg = f"--cmap is {options['cmap']!r}; expected a colour map such as viridis or cividis"
         raise UsageError(msg) from error
+
+
+def need_opengl() -> None:
+    """Refuse to go on where nothing can draw."""
+    from flowtex import doctor
+
+    doctor.prefer_headless()
+    doctor.require_opengl()
+
+
+def need_app() -> None:
+    """Refuse to serve a page where what it needs is not installed."""
+    import importlib.util
+
+    wanted = ("trame", "trame_vuetify", "trame_rca")
+    missing = [name for name in wanted if importlib.util.find_spec(name) is None]
+    if missing:
+        msg = (
+            f"the page needs {', '.join(missing)}, not installed here. To mend it:\n"
+            f"  {install_extra('app')}"
+        )
+        raise UsageError(msg)

@@ -9,26 +9,34 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import App, CycloptsError, Parameter
 
 from flowtex import examples
-from flowtex.cli.checks import check_colours, check_image, check_output
+from flowtex.cli.checks import (
+    check_colours,
+    check_image,
+    check_output,
+    check_page,
+    need_app,
+    need_opengl,
+)
 from flowtex.cli.options import (
     PICTURE,
     DrawOptions,
     FieldOptions,
+    LookOptions,
     ServeOptions,
     SettingFlags,
     UsageError,
     settings_in,
 )
+from flowtex.cli.talk import announcer, complain, nodes, say
 from flowtex.errors import FieldError
 from flowtex.examples import NAMES
-from flowtex.extras import install_extra
 from flowtex.settings import SettingsError
 
 if TYPE_CHECKING:
@@ -65,7 +73,7 @@ def demo(
         msg = f"there is no example {example!r}; there are {', '.join(NAMES)}"
         raise UsageError(msg)
     chosen = _given(settings)
-    _need_opengl()
+    need_opengl()
     field = getattr(examples, f"{example}_field")()
     zoom, focus = FIRST_LOOKS.get(example, (1.0, None))
     return _serve(field, page, {**chosen, "zoom": zoom, "focus": focus})
@@ -86,7 +94,7 @@ def show(
     options = {**draw.look(), **_given(settings)}
     size = draw.pixels()
     check_image(options)
-    _need_opengl()
+    need_opengl()
     field = _read(file, which)
     check_colours(field, options)
     from flowtex import doctor
@@ -130,7 +138,7 @@ def render(
     options["beside"] = settings_in(beside)
     check_output(output)
     check_image(options)
-    _need_opengl()
+    need_opengl()
     field = _read(file, which)
     check_colours(field, options)
     from PIL import Image
@@ -144,9 +152,56 @@ def render(
         msg = f"{output}: cannot be written ({error.strerror or error})"
         raise UsageError(msg) from error
     lost = f", {field.lost:.0%} of the flow leaves the surface" if field.lost > 0.01 else ""
-    _say(
-        f"[bold]{output}[/]  {field.name}, {_nodes(field)}{lost}  "
+    say(
+        f"[bold]{output}[/]  {field.name}, {nodes(field)}{lost}  "
         f"[dim]{size[0]} × {size[1]}, {time.perf_counter() - started:.1f} s[/]"
+    )
+    return 0
+
+
+@app.command
+def export(
+    file: FILE,
+    /,
+    *,
+    output: Annotated[
+        Path, Parameter(name=["--output", "-o"], help="Page to write, such as page.html.")
+    ],
+    steps: Annotated[
+        int | None,
+        Parameter(group=PICTURE, help="Time steps that the page has; all of them by default."),
+    ] = None,
+    title: Annotated[
+        str | None, Parameter(group=PICTURE, help="Title of the page; the file's name by default.")
+    ] = None,
+    which: Annotated[FieldOptions | None, FLAT] = None,
+    draw: Annotated[LookOptions | None, FLAT] = None,
+    settings: Annotated[SettingFlags | None, FLAT] = None,
+) -> int:
+    """Write a file as one page that draws in any browser, without a server or a network."""
+    started = time.perf_counter()
+    options = {**(draw or LookOptions()).look(), **_given(settings)}
+    check_page(output)
+    check_image(options)
+    field = _read(file, which)
+    check_colours(field, options)
+    if steps is not None and steps < 1:
+        msg = f"--steps is {steps}; expected 1 to {len(field.times)}, the steps of the file"
+        raise UsageError(msg)
+    from flowtex import export as export_
+
+    def announce(size: int, count: int) -> None:
+        some = "" if count == len(field.times) else f", {count} of them"
+        say(f"{field.name}, {nodes(field)}{some}: about {size / 1e6:.1f} MB")
+
+    try:
+        page = export_.export(field, output, steps=steps, title=title, announce=announce, **options)
+    except OSError as error:
+        msg = f"{output}: cannot be written ({error.strerror or error})"
+        raise UsageError(msg) from error
+    say(
+        f"[bold]{output}[/]  [dim]{page.nbytes / 1e6:.2f} MB, "
+        f"{time.perf_counter() - started:.1f} s[/]"
     )
     return 0
 
@@ -193,7 +248,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         code = _code(error)
         if debug or code is None:
             raise
-        _complain(error)
+        complain(error)
         return code
     return result if isinstance(result, int) else 0
 
@@ -213,28 +268,6 @@ def _code(error: Exception) -> int | None:
     return None
 
 
-def _complain(error: Exception) -> None:
-    from rich.console import Console
-
-    text = str(error).strip() or type(error).__name__
-    console = Console(stderr=True, highlight=False)
-    console.print("[bold red]flowtex:[/] ", end="")
-    console.print(text, markup=False, soft_wrap=True)
-
-
-def _say(text: str) -> None:
-    from rich.console import Console
-
-    Console(highlight=False).print(text, soft_wrap=True)
-
-
-def _need_opengl() -> None:
-    from flowtex import doctor
-
-    doctor.prefer_headless()
-    doctor.require_opengl()
-
-
 def _read(file: Path, which: FieldOptions | None) -> FlowField:
     from flowtex.field import FlowField
 
@@ -252,7 +285,7 @@ def _given(settings: SettingFlags | None) -> dict[str, Any]:
 
 
 def _serve(field: FlowField, page: ServeOptions | None, options: dict[str, Any]) -> int:
-    _need_app()
+    need_app()
     from flowtex.app import serve
 
     page = page or ServeOptions()
@@ -261,41 +294,7 @@ def _serve(field: FlowField, page: ServeOptions | None, options: dict[str, Any])
         host=page.host,
         port=page.port,
         open_browser=page.browser,
-        announce=_announcer(field, page.host),
+        announce=announcer(field, page.host),
         **options,
     )
     return 0
-
-
-def _announcer(field: FlowField, host: str) -> Callable[[str], None]:
-    def announce(address: str) -> None:
-        _say(f"[bold]flowtex[/]  {field.name or 'flow'}, {_nodes(field)}\n")
-        # A link that is wrapped or coloured in pieces cannot be clicked.
-        _say(f"  [cyan]{address}[/]\n")
-        if host not in ("127.0.0.1", "localhost", "::1"):
-            _say(
-                "  [yellow]Everybody who can reach this machine and has this address can use it.[/]"
-            )
-        _say("  [dim]Ctrl-C ends it.[/]")
-        sys.stdout.flush()
-
-    return announce
-
-
-def _need_app() -> None:
-    import importlib.util
-
-    wanted = ("trame", "trame_vuetify", "trame_rca")
-    missing = [name for name in wanted if importlib.util.find_spec(name) is None]
-    if missing:
-        msg = (
-            f"the page needs {', '.join(missing)}, not installed here. To mend it:\n"
-            f"  {install_extra('app')}"
-        )
-        raise UsageError(msg)
-
-
-def _nodes(field: FlowField) -> str:
-    rows, columns = field.shape
-    times = "" if field.steady else f", {len(field.times)} times"
-    return f"{columns} × {rows} nodes{times}"

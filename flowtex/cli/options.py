@@ -19,6 +19,7 @@ __all__ = [
     "PICTURE",
     "DrawOptions",
     "FieldOptions",
+    "LookOptions",
     "ServeOptions",
     "SettingFlags",
     "UsageError",
@@ -70,8 +71,8 @@ class FieldOptions:
 
 
 @dataclass(kw_only=True)
-class DrawOptions:
-    """How a picture is taken."""
+class LookOptions:
+    """Colours, and what of the flow is seen."""
 
     scalars: Annotated[
         str, Parameter(group=PICTURE, help="Array to colour by, or none for a plain texture.")
@@ -79,7 +80,6 @@ class DrawOptions:
     cmap: Annotated[
         str | None, Parameter(group=PICTURE, help="Colour map, by matplotlib's name.")
     ] = None
-    size: Annotated[str, Parameter(group=PICTURE, help="Width and height in pixels.")] = "1024x768"
     zoom: Annotated[
         float, Parameter(group=PICTURE, help="1 shows the whole surface, 8 an eighth of it.")
     ] = 1.0
@@ -111,6 +111,13 @@ class DrawOptions:
             "focus": None if self.focus is None else _numbers("--focus", self.focus),
             "image": self.image,
         }
+
+
+@dataclass(kw_only=True)
+class DrawOptions(LookOptions):
+    """How a picture is taken."""
+
+    size: Annotated[str, Parameter(group=PICTURE, help="Width and height in pixels.")] = "1024x768"
 
     def pixels(self) -> tuple[int, int]:
         """Return width and height."""

@@ -37,6 +37,9 @@ class SliceStore:
         What a lag measures, as for :func:`flowtex.trace`.
     slices
         Slices of all steps that were traced already; nothing is traced then.
+    compose
+        Whether all steps may be composed together, which is quicker than step by step, but
+        slower for one or two of them.
 
     Raises
     ------
@@ -45,13 +48,19 @@ class SliceStore:
     """
 
     def __init__(
-        self, field: FlowField, *, parameter: str = "arclength", slices: TraceSlices | None = None
+        self,
+        field: FlowField,
+        *,
+        parameter: str = "arclength",
+        slices: TraceSlices | None = None,
+        compose: bool = True,
     ) -> None:
         if field.sign_free and slices is not None and slices.forward is None:
             msg = "the slices lead backward only; expected both sides of a field without a sign"
             raise ValueError(msg)
         self.field = field
         self._whole = slices
+        self._compose = compose
         self._kept: OrderedDict[int, TraceSlices] = OrderedDict()
         self._lock = threading.Lock()
         if slices is None:
@@ -87,7 +96,7 @@ class SliceStore:
         if self.field.steady:
             return trace(self.field, parameter=self.parameter)
         size = self.steps * len(self.lags) * self.unit.size * 2 * np.float32().nbytes
-        if size < KEEP and landings(self.field, self.lags, self.unit) is not None:
+        if self._compose and size < KEEP and landings(self.field, self.lags, self.unit) is not None:
             # Composed, all steps together take about as long as four that are integrated.
             self._whole = trace(self.field, lags=self.lags, unit=self.unit, compose=True)
             return self._whole.at_step(step)

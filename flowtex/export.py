@@ -1,0 +1,248 @@
+"""A flow as one HTML file that draws without a server and without a network.
+
+The client, its style, the header and all arrays lie in the file. Arrays are gzipped with the
+bytes of equal significance side by side, which is where slopes resemble one another, and written
+in base64. A Content-Security-Policy lets nothing run but the two texts whose digests it names,
+and lets nothing be fetched.
+"""
+
+from __future__ import annotations
+
+import base64
+import gzip
+import hashlib
+import html
+import json
+import os
+import string
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flowtex import preview
+from flowtex._version import __version__
+from flowtex.progress import track
+from flowtex.renderers.webgl import Scene, asset
+from flowtex.staging import Stage
+
+__all__ = ["Page", "estimate", "export", "page_text", "write_page"]
+
+#: Size of an average part after packing, over that before, base64 included.
+PACKED = 0.62
+#: Bytes of the client, its shaders and the header, about.
+AROUND = 200_000
+#: Line of page.js that has no place in a page, where client.js stands before it.
+IMPORT = 'import { mountPage } from "./client.js";\n'
+#: Size of the preview picture.
+PREVIEW = (480, 300)
+
+
+@dataclass(frozen=True)
+class Page:
+    """What was written.
+
+    Attributes
+    ----------
+    path
+        The file.
+    nbytes
+        Its size.
+    estimated
+        The size that was estimated beforehand.
+    steps
+        Number of time steps in it.
+    """
+
+    path: Path
+    nbytes: int
+    estimated: int
+    steps: int
+
+
+def export(
+    mesh: Any,
+    path: str | Path,
+    *,
+    steps: int | None = None,
+    title: str | None = None,
+    zoom: float = 1.0,
+    focus: tuple[float, ...] | None = None,
+    announce: Callable[[int, int], None] | None = None,
+    **options: Any,
+) -> Page:
+    """Write a flow as one HTML file that needs no server and no network.
+
+    Parameters
+    ----------
+    mesh
+        What ``plotter.flowtex.add`` takes.
+    path
+        File to write; one that is there already is replaced, once the new one is whole.
+    steps
+        Number of time steps to keep, evenly chosen with the first and the last among them; all
+        of them by default. One step alone is drawn as a steady flow.
+    title
+        Title of the page; the name of the field by default.
+    zoom, focus
+        How far in, and on what point of the mesh, the page begins.
+    announce
+        Called with the estimated size in bytes and the number of steps before the work begins.
+    **options
+        Further arguments and settings of ``plotter.flowtex.add``.
+
+    Returns
+    -------
+    Page
+
+    Raises
+    ------
+    FieldError, SettingsError
+        When the mesh or a setting does not fit.
+    ValueError
+        When ``steps`` is not positive.
+    OSError
+        When the file cannot be written; what was there before is left as it was.
+    """
+    stage = Stage(mesh, steps=steps, **options)
+    try:
+        camera = stage.first_look(zoom=zoom, focus=focus)
+        return write_page(stage, path, camera=camera, title=title, announce=announce)
+    finally:
+        stage.view.close()
+
+
+def write_page(
+    stage: Stage,
+    path: str | Path,
+    *,
+    camera: dict[str, Any] | None = None,
+    time: float | None = None,
+    clock: float = 0.0,
+    title: str | None = None,
+    picture: bytes | None = None,
+    announce: Callable[[int, int], None] | None = None,
+) -> Page:
+    """Write a stage as a page; :func:`export` has the parameters."""
+    path = Path(path)
+    scene = stage.scene()
+    estimated = estimate(scene)
+    if announce is not None:
+        announce(estimated, scene.steps)
+    pieces = _pieces(stage, scene, camera, time, clock, title, picture)
+    return Page(path, _write(path, pieces), estimated, scene.steps)
+
+
+def page_text(
+    stage: Stage,
+    *,
+    camera: dict[str, Any] | None = None,
+    time: float | None = None,
+    clock: float = 0.0,
+    title: str | None = None,
+    picture: bytes | None = None,
+) -> str:
+    """Return a stage as the text of a page; :func:`export` has the parameters."""
+    return "".join(_pieces(stage, stage.scene(), camera, time, clock, title, picture))
+
+
+def estimate(scene: Scene) -> int:
+    """Bytes that a page is going to have, about."""
+    arrays = sum(part.nbytes for part in scene.surface().values())
+    return AROUND + int(PACKED * (arrays + scene.steps * scene.nbytes_of_step))
+
+
+def _pieces(
+    stage: Stage,
+    scene: Scene,
+    camera: dict[str, Any] | None,
+    time: float | None,
+    clock: float,
+    title: str | None,
+    picture: bytes | None,
+) -> Iterator[str]:
+    """Give the text of a page piece by piece; each array is packed when it is reached."""
+    header = scene.header(stage.view.settings, camera=camera, time=time, clock=clock)
+    if picture is None:
+        picture = preview.preview_png(stage, PREVIEW, camera=header["camera"], time=time, coarser=1)
+    before, after = asset("page.html").read_text("utf-8").split("$parts\n")
+    values = _values(header, title or header["name"], picture)
+    yield string.Template(before).substitute(values)
+    for name, array in _all_parts(scene):
+        yield _element(name, array)
+    yield string.Template(after).substitute(values)
+
+
+def _values(header: dict[str, Any], title: str, picture: bytes) -> dict[str, str]:
+    """Return what the page's template asks for."""
+    background = "#" + "".join(f"{round(255 * c):02x}" for c in header["background"])
+    page = asset("page.js").read_text("utf-8").replace(IMPORT, "")
+    client = asset("client.js").read_text("utf-8") + "\n" + page
+    script = "\n" + client.replace("</script", r"<\/script").replace("<!--", r"<\!--")
+    look = string.Template(asset("page.css").read_text("utf-8")).substitute(background=background)
+    return {
+        "policy": _policy(script),
+        "version": __version__,
+        "title": html.escape(title),
+        "style": look,
+        "preview": "data:image/png;base64," + base64.b64encode(picture).decode(),
+        "header": _json(header),
+        "script": script,
+    }
+
+
+def _policy(script: str) -> str:
+    """Allow the one script by its digest, styles of the page's own, and nothing from outside."""
+    digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
+    return (
+        f"default-src 'none'; script-src 'sha256-{digest}'; style-src 'unsafe-inline'; "
+        "img-src data: blob:; base-uri 'none'; form-action 'none'"
+    )
+
+
+def _json(value: Any) -> str:
+    """Return JSON in which nothing can end a script element."""
+    text = json.dumps(value, allow_nan=False, separators=(",", ":"))
+    return text.replace("<", r"\u003c").replace(">", r"\u003e").replace("&", r"\u0026")
+
+
+def _element(name: str, array: NDArray[Any]) -> str:
+    """Return a part as an element of the page."""
+    numbers = np.ascontiguousarray(array)
+    # As many bytes as the array has, those of one significance side by side.
+    planes = numbers.reshape(-1).view(np.uint8).reshape(-1, numbers.itemsize).T
+    packed = base64.b64encode(gzip.compress(planes.tobytes(), 9, mtime=0)).decode()
+    shape = " ".join(map(str, array.shape))
+    return (
+        f'<script type="text/plain" data-part="{html.escape(name)}" data-dtype="{array.dtype}" '
+        f'data-shape="{shape}" data-bytes="{array.itemsize}">{packed}</script>\n'
+    )
+
+
+def _all_parts(scene: Scene) -> Iterator[tuple[str, NDArray[Any]]]:
+    yield from scene.surface().items()
+    for step in track(range(scene.steps), scene.steps, "Packing time steps"):
+        yield from scene.step(step).items()
+
+
+def _write(path: Path, text: Iterator[str]) -> int:
+    """Write a file that is there whole or not at all; return its size."""
+    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".part")
+    try:
+        with os.fdopen(handle, "w", encoding="utf-8", newline="\n") as file:
+            file.writelines(text)
+        # A temporary file is for its owner alone; the page gets the rights of any new file.
+        mask = os.umask(0)
+        os.umask(mask)
+        Path(name).chmod(0o666 & ~mask)
+        Path(name).replace(path)
+    except BaseException:
+        with suppress(OSError):
+            Path(name).unlink()
+        raise
+    return path.stat().st_size

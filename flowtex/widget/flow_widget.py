@@ -1,0 +1,295 @@
+"""The widget itself: traits that the browser and Python share, and messages between them."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import traitlets
+
+from flowtex.export import PREVIEW, page_text, write_page
+from flowtex.field import FlowField
+from flowtex.image_files import load_image
+from flowtex.plotter import PLAIN
+from flowtex.renderers.webgl import asset
+from flowtex.settings import TABLE, Affects, Settings, SettingsError
+from flowtex.staging import Stage
+from flowtex.view import NO_IMAGE, FlowView
+from flowtex.widget.displaying import Displayed
+from flowtex.widget.feed import Feed
+from flowtex.widget.panel import make_panel
+from flowtex.widget.traits import CameraTrait, SettingTraits, SizeTrait
+
+__all__ = ["FlowWidget"]
+
+#: Share of the field's duration by which a time may lie outside it, for rounding's sake.
+SLACK = 1e-9
+
+
+class FlowWidget(SettingTraits, Displayed):
+    """A flow in a notebook, drawn by the browser.
+
+    Every setting of :class:`~flowtex.Settings` is a trait of the same name, shared with the
+    browser: ``widget.samples = 25``.
+
+    Attributes
+    ----------
+    camera
+        Where it is seen from: ``position``, ``focal_point``, ``up`` (three numbers each, in the
+        mesh's own coordinates), ``parallel``, ``parallel_scale`` and ``view_angle`` (degrees).
+        A dict with some of them changes those.
+    time
+        Time that is shown of a field that varies, in the field's own unit.
+    clock
+        Clock of the streaming of a steady flow, in seconds.
+    playing
+        Whether time, or the clock, goes on.
+    point
+        What was clicked last: ``position``, ``index`` and ``values``; ``None`` before.
+    size
+        Width and height in pixels of the page; a width of 0 fills the cell.
+    bar
+        Whether the bar of controls is shown on the picture.
+    """
+
+    _esm = asset("client.js")
+
+    _header = traitlets.Dict().tag(sync=True)
+    camera = CameraTrait().tag(sync=True, echo_update=False)
+    time = traitlets.Float(0.0).tag(sync=True, echo_update=False)
+    clock = traitlets.Float(0.0).tag(sync=True, echo_update=False)
+    playing = traitlets.Bool(default_value=False).tag(sync=True)
+    point = traitlets.Dict(allow_none=True, default_value=None).tag(sync=True, echo_update=False)
+    size = SizeTrait().tag(sync=True)
+    bar = traitlets.Bool(default_value=True).tag(sync=True)
+
+    def __init__(
+        self,
+        mesh: Any,
+        vectors: str | None = None,
+        scalars: str | bool | None = None,  # noqa: FBT001 False is "by nothing", as in PyVista
+        cmap: Any | None = None,
+        *,
+        clim: tuple[float, float] | None = None,
+        plane: str | None = None,
+        times: Any | None = None,
+        periodic: str | None = None,
+        sign_free: bool | None = None,
+        image: Any | None = None,
+        color: Any = PLAIN,
+        lighting: bool | None = None,
+        background: Any = "white",
+        size: tuple[int, int] = (0, 400),
+        zoom: float = 1.0,
+        focus: tuple[float, ...] | None = None,
+        camera: dict[str, Any] | None = None,
+        bar: bool = True,
+        **settings: Any,
+    ) -> None:
+        """Make a widget from a mesh or a field.
+
+        Parameters
+        ----------
+        mesh, vectors, scalars, cmap, clim, plane, times, periodic, sign_free, image
+            As for ``plotter.flowtex.add``.
+        color, lighting
+            As for ``plotter.flowtex.add``.
+        background
+            Colour behind the surface.
+        size
+            Width and height in pixels of the page; a width of 0 fills the cell.
+        zoom, focus
+            How far in, and on what point of the mesh, the view begins.
+        camera
+            Another view to begin with, as :attr:`camera` has it.
+        bar
+            Whether the bar of controls is shown on the picture.
+        **settings
+            Any setting of :class:`~flowtex.Settings`.
+
+        Raises
+        ------
+        FieldError, SettingsError
+            When the mesh or a setting does not fit.
+        """
+        stage = Stage(
+            mesh,
+            vectors=vectors,
+            scalars=scalars,
+            cmap=cmap,
+            clim=clim,
+            plane=plane,
+            times=times,
+            periodic=periodic,
+            sign_free=sign_free,
+            image=image,
+            color=color,
+            lighting=lighting,
+            background=background,
+            **settings,
+        )
+        self._stage = stage
+        self._state_lock = threading.RLock()
+        self._frame: bytes | None = None
+        self._ends: list[Callable[[], None]] = []
+        self._feed = Feed(
+            stage,
+            moment=lambda: stage.view.time,
+            announce=self._announce,
+            send=lambda content, buffers: self.send(content, buffers),
+        )
+        look = stage.first_look(PREVIEW[0] / PREVIEW[1], zoom=zoom, focus=focus)
+        super().__init__(
+            _header=self._feed.header,
+            camera={**look, **(camera or {})},
+            time=stage.view.time,
+            size=size,
+            bar=bar,
+            **dict(stage.view.settings),
+        )
+        self._connect()
+        self._feed.start(PREVIEW, dict(self.camera))
+
+    def _connect(self) -> None:
+        self.on_msg(self._hear)
+        self.observe(self._to_settings, list(TABLE))
+        self.observe(self._to_time, "time")
+        self._ends = [
+            self.settings.observe(lambda name, value: self._set(name, value)),
+            self._stage.view.observe(self._view_changed),
+        ]
+
+    @property
+    def field(self) -> FlowField:
+        """The flow."""
+        return self._stage.field
+
+    @property
+    def settings(self) -> Settings:
+        """Every setting; the traits of the same names follow it."""
+        return self._stage.view.settings
+
+    @property
+    def view(self) -> FlowView:
+        """The arrays behind the picture."""
+        return self._stage.view
+
+    def set_image(self, image: Any) -> None:
+        """Advect another image, and set ``noise`` to ``"image"``.
+
+        Parameters
+        ----------
+        image
+            As for ``plotter.flowtex.add``.
+
+        Raises
+        ------
+        ImageError
+            When it cannot be used; nothing is changed then.
+        """
+        self._stage.view.set_image(load_image(image))
+
+    def controls(self) -> Any:
+        """Return a panel of ipywidgets with a control for each setting."""
+        panel, close = make_panel(self)
+        self._ends.append(close)
+        return panel
+
+    def to_html(self, path: str | Path | None = None, *, title: str | None = None) -> str | None:
+        """Write what is shown as a page that needs no server; :func:`flowtex.export.export`.
+
+        Parameters
+        ----------
+        path
+            File to write; without one the page is returned as text.
+        title
+            Title of the page; the name of the field by default.
+        """
+        now: dict[str, Any] = {"camera": dict(self.camera), "time": self.time, "clock": self.clock}
+        picture = self._picture(patience=0.0)
+        if path is None:
+            return page_text(self._stage, title=title, picture=picture, **now)
+        write_page(self._stage, path, title=title, picture=picture, **now)
+        return None
+
+    def close(self) -> None:
+        """Take the widget out of the page and let go of everything."""
+        for end in self._ends:
+            end()
+        self._ends = []
+        self._feed.close()
+        self._stage.view.close()
+        super().close()
+
+    @traitlets.validate("noise")
+    def _check_noise(self, proposal: Any) -> Any:
+        stage = getattr(self, "_stage", None)
+        if proposal["value"] == "image" and stage is not None and stage.view.image is None:
+            raise SettingsError(NO_IMAGE)
+        return proposal["value"]
+
+    @traitlets.validate("time")
+    def _check_time(self, proposal: Any) -> float:
+        times, value = self.field.times, float(proposal["value"])
+        first, last = float(times[0]), float(times[-1])
+        slack = SLACK * (last - first)
+        if not first - slack <= value <= last + slack:
+            msg = f"time is {value!r}; expected {first:g} to {last:g}, the times of the field"
+            raise traitlets.TraitError(msg)
+        return min(max(value, first), last)
+
+    def set_state(self, sync_data: dict[str, Any]) -> None:
+        """Take what the browser has set; what does not fit is set back there."""
+        for name, value in sync_data.items():
+            with self._state_lock:
+                try:
+                    super().set_state({name: value})
+                except (traitlets.TraitError, ValueError):  # SettingsError is a ValueError
+                    self.send_state(name)
+
+    def _announce(self, header: dict[str, Any]) -> None:
+        # Not while the browser's values are being taken in, which would hold it back until
+        # after the arrays that belong to it.
+        with self._state_lock:
+            self._header = header
+
+    def _hear(self, _: Any, content: Any, buffers: list[Any]) -> None:
+        """Answer the client."""
+        kind = content.get("kind") if isinstance(content, dict) else None
+        if kind == "ready":
+            self._feed.ready()
+        elif kind == "need":
+            step = content.get("step")
+            if isinstance(step, int):
+                self._feed.need(step)
+        elif kind == "frame" and buffers:
+            self._frame = bytes(buffers[0])
+
+    def _picture(self, patience: float) -> bytes | None:
+        """Return the browser's own first frame, or the small picture that stands in for it."""
+        if self._frame is None:
+            self._feed.pictured.wait(patience)
+        return self._frame or self._feed.picture
+
+    def _to_settings(self, change: Any) -> None:
+        setattr(self.settings, change["name"], change["new"])
+
+    def _to_time(self, change: Any) -> None:
+        if change["new"] != self._stage.view.time:
+            self._stage.view.time = change["new"]
+
+    def _set(self, name: str, value: Any) -> None:
+        if getattr(self, name) != value:
+            setattr(self, name, value)
+
+    def _view_changed(self, affects: Affects) -> None:
+        if affects == "uniform":
+            self._set("time", self._stage.view.time)
+        else:
+            self._feed.restart(traces=affects == "trace")
+
+    def __repr__(self) -> str:
+        state = "closed" if self.comm is None else f"time {self.time:g}"
+        return f"FlowWidget({self.field!r}, {state})"

@@ -1,0 +1,79 @@
+"""A panel of ipywidgets made from the table of settings, joined to a widget's traits."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import ipywidgets
+
+from flowtex.settings import TABLE, Setting, SettingsError
+
+__all__ = ["make_panel"]
+
+#: A range with more values than this is typed, not dragged.
+MOST_STOPS = 1000
+
+
+def make_panel(widget: Any) -> tuple[Any, Callable[[], None]]:
+    """Return a panel with a control for each setting, and what unties and closes it.
+
+    Parameters
+    ----------
+    widget
+        Has a trait for each setting; both follow each other.
+    """
+    ends: list[Callable[[], None]] = []
+    controls = [_control(row, getattr(widget, row.name)) for row in TABLE.values()]
+    for row, control in zip(TABLE.values(), controls, strict=True):
+        ends.append(_join(widget, row.name, control))
+    panel = ipywidgets.VBox(controls)
+
+    def close() -> None:
+        for end in ends:
+            end()
+        for child in controls:
+            child.close()
+        panel.close()
+
+    return panel, close
+
+
+def _control(row: Setting, value: Any) -> Any:
+    words: dict[str, Any] = {
+        "value": value,
+        "description": row.name.replace("_", " "),
+        "tooltip": row.text,
+        "style": {"description_width": "9em"},
+    }
+    if row.kind is bool:
+        return ipywidgets.Checkbox(**words)
+    if row.choices:
+        return ipywidgets.Dropdown(options=row.choices, **words)
+    span = {"min": row.low, "max": row.high}
+    if (row.high or 0) - (row.low or 0) > MOST_STOPS:
+        kind = ipywidgets.BoundedIntText if row.kind is int else ipywidgets.BoundedFloatText
+        return kind(**words, **span)
+    if row.kind is int:
+        return ipywidgets.IntSlider(continuous_update=True, **words, **span)
+    return ipywidgets.FloatSlider(step=0.05, readout_format=".2f", **words, **span)
+
+
+def _join(widget: Any, name: str, control: Any) -> Callable[[], None]:
+    def to_widget(change: Any) -> None:
+        try:
+            setattr(widget, name, change["new"])
+        except SettingsError:
+            control.value = getattr(widget, name)
+
+    def to_control(change: Any) -> None:
+        control.value = change["new"]
+
+    control.observe(to_widget, "value")
+    widget.observe(to_control, name)
+
+    def end() -> None:
+        control.unobserve(to_widget, "value")
+        widget.unobserve(to_control, name)
+
+    return end

@@ -1,0 +1,63 @@
+in vec3 flowtexPositionOut;
+in vec2 flowtexCoordinateOut;
+#ifndef FLOWTEX_PLANAR
+in vec3 flowtexNormalOut;
+#endif
+#ifdef FLOWTEX_PAPER
+in vec2 flowtexNoiseOut;
+#endif
+in float flowtexScalarOut;
+
+//#include common/uniforms.glsl
+//#include common/flowtex.glsl
+
+uniform sampler2D u_cmap;  // 256 colours
+uniform bool u_mapped;     // colour by the scalar, or one colour for all
+uniform vec3 u_colour;
+uniform bool u_lit;
+uniform vec3 u_toEye;      // way to the light, which is the camera's own
+
+// Ambient and diffuse light: dark sides stay bright enough to read the texture there.
+const vec2 flowtexLight = vec2(0.3, 0.8);
+// Where there is no value: nodes without one are given one far below all others.
+const vec3 flowtexNothing = vec3(0.663);
+
+out vec4 flowtexOut;
+
+// Scalars are interpolated first and mapped then, each entry of the map over an equal share.
+vec3 flowtexMapped(float share)
+{
+  if (share < -1e3)
+    return flowtexNothing;
+  int entry = int(clamp(share * 256.0, 0.0, 255.0));
+  return texelFetch(u_cmap, ivec2(entry, 0), 0).rgb;
+}
+
+void main()
+{
+#if defined(FLOWTEX_PAPER)
+  float textured = flowtexValue(flowtexCoordinateOut, flowtexNoiseOut);
+#elif defined(FLOWTEX_PLANAR)
+  float textured = flowtexValue(flowtexCoordinateOut, flowtexPositionOut, vec3(0.0, 0.0, 1.0));
+#else
+  float textured = flowtexValue(flowtexCoordinateOut, flowtexPositionOut, flowtexNormalOut);
+#endif
+  vec3 colour = u_mapped ? flowtexMapped(flowtexScalarOut) : u_colour;
+  if (u_showLevel)
+    colour = flowtexLevelColour(flowtexNoiseLevel);
+#ifdef FLOWTEX_PICTURE
+  colour = flowtexPaint(colour);
+#else
+  colour = flowtexShade(colour, textured);
+#endif
+  if (u_lit)
+  {
+#ifdef FLOWTEX_PLANAR
+    float facing = abs(u_toEye.z);
+#else
+    float facing = abs(dot(normalize(flowtexNormalOut), u_toEye));
+#endif
+    colour *= min(flowtexLight.x + flowtexLight.y * facing, 1.0);
+  }
+  flowtexOut = vec4(colour, 1.0);
+}

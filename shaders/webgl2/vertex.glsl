@@ -1,0 +1,44 @@
+// A node of the surface: its place in the picture, and what a fragment needs of it.
+
+in vec3 flowtexPosition; // in the surface's own frame, from u_anchor of the client
+in vec2 flowtexCoordinate;
+#ifndef FLOWTEX_PLANAR
+in vec3 flowtexNormal;
+#endif
+#ifdef FLOWTEX_PAPER
+in vec2 flowtexNoise;
+#endif
+in vec2 flowtexScalar; // share of the colour map's range, at both times of the slices
+
+uniform mat4 u_matrix; // from the surface's frame to the picture
+#ifdef FLOWTEX_UNSTEADY
+uniform float u_between;
+#endif
+
+out vec3 flowtexPositionOut;
+out vec2 flowtexCoordinateOut;
+#ifndef FLOWTEX_PLANAR
+out vec3 flowtexNormalOut;
+#endif
+#ifdef FLOWTEX_PAPER
+out vec2 flowtexNoiseOut;
+#endif
+out float flowtexScalarOut;
+
+void main()
+{
+  flowtexPositionOut = flowtexPosition;
+  flowtexCoordinateOut = flowtexCoordinate;
+#ifndef FLOWTEX_PLANAR
+  flowtexNormalOut = flowtexNormal;
+#endif
+#ifdef FLOWTEX_PAPER
+  flowtexNoiseOut = flowtexNoise;
+#endif
+#ifdef FLOWTEX_UNSTEADY
+  flowtexScalarOut = mix(flowtexScalar.x, flowtexScalar.y, u_between);
+#else
+  flowtexScalarOut = flowtexScalar.x;
+#endif
+  gl_Position = u_matrix * vec4(flowtexPosition, 1.0);
+}

@@ -1,0 +1,212 @@
+"""The widget in a real JupyterLab, driven by Chromium."""
+
+from __future__ import annotations
+
+import io
+import json
+import re
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from PIL import Image
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+pytest.importorskip("jupyterlab")
+pytest.importorskip("anywidget")
+
+pytestmark = [pytest.mark.slow, pytest.mark.browser]
+
+TOKEN = "test"
+SHARP = '.flowtex[data-sharp="true"]'
+OPTIONS = (
+    "--no-browser",
+    "--allow-root",
+    "--ip=127.0.0.1",
+    "--port=0",
+    "--ServerApp.log_level=INFO",
+)
+QUIET = {"fetchNews": "false", "checkForUpdates": False, "doNotDisturbMode": True}
+SHOW = """import flowtex
+w = flowtex.show(flowtex.examples.double_gyre(), samples=9, size=(300, 200), bar=False)
+w"""
+PLOTTER = """import flowtex, pyvista as pv
+pl = pv.Plotter(window_size=(300, 200))
+pl.flowtex.add(flowtex.examples.double_gyre(), samples=9)
+pl.add_mesh(pv.Sphere(0.1), name="ball")
+pl.camera.parallel_scale = 0.25
+w = pl.show(jupyter_backend="flowtex", return_viewer=True)
+w"""
+THREADS = "[t.name for t in __import__('threading').enumerate() if 'flowtex' in t.name]"
+READY = """async () => {
+  await jupyterapp.restored;
+  const context = jupyterapp.shell.currentWidget.sessionContext;
+  await context.ready;
+  await context.session.kernel.info;
+}"""
+RUN = """(code) => {
+  const notebook = jupyterapp.shell.currentWidget.content;
+  jupyterapp.commands.execute("notebook:insert-cell-below").then(() => {
+    notebook.activeCell.model.sharedModel.setSource(code);
+    jupyterapp.commands.execute("notebook:run-cell");
+  });
+}"""
+
+
+class Lab:
+    """One notebook in a JupyterLab."""
+
+    def __init__(self, page: Page, address: str, name: str = "test.ipynb") -> None:
+        self.page = page
+        self._count = 0
+        page.goto(f"{address}/doc/tree/{name}?token={TOKEN}")
+        page.wait_for_function("() => window.jupyterapp?.shell?.currentWidget?.sessionContext")
+        page.evaluate(READY)
+
+    def run(self, code: str) -> None:
+        """Run a cell; what it prints is waited for by :meth:`said`."""
+        self.page.evaluate(RUN, code)
+
+    def said(self, code: str) -> str:
+        """Run a cell and return what it prints of an expression."""
+        self._count += 1
+        self.run(f"print('<<{self._count}:', {code}, ':{self._count}>>', flush=True)")
+        found = self.page.locator(".jp-OutputArea-output pre", has_text=f":{self._count}>>").first
+        found.wait_for()
+        return found.inner_text().split(":", 1)[1].rsplit(":", 1)[0].strip()
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """Yield the address of a JupyterLab with an empty notebook."""
+    folder = tmp_path_factory.mktemp("lab")
+    for name in ("test.ipynb", "pyvista.ipynb"):
+        (folder / name).write_text(json.dumps(_empty_notebook()))
+    settings = folder / "settings" / "@jupyterlab" / "apputils-extension"
+    settings.mkdir(parents=True)
+    (settings / "notification.jupyterlab-settings").write_text(json.dumps(QUIET))
+    own = (
+        f"--IdentityProvider.token={TOKEN}",
+        f"--ServerApp.root_dir={folder}",
+        "--LabApp.expose_app_in_browser=True",
+        f"--LabApp.user_settings_dir={folder / 'settings'}",
+    )
+    log = folder / "log.txt"
+    with log.open("w") as file:
+        process = subprocess.Popen(
+            [sys.executable, "-m", "jupyterlab", *OPTIONS, *own], stdout=file, stderr=file
+        )
+    try:
+        yield _address(process, log)
+    finally:
+        process.terminate()
+        process.wait(20)
+
+
+def _empty_notebook() -> dict[str, Any]:
+    kernel = {"name": "python3", "display_name": "Python 3", "language": "python"}
+    return {"cells": [], "metadata": {"kernelspec": kernel}, "nbformat": 4, "nbformat_minor": 5}
+
+
+def _address(process: subprocess.Popen[bytes], log: Path) -> str:
+    for _ in range(600):
+        found = re.search(r"http://127\.0\.0\.1:\d+(?=/lab\?token=)", log.read_text())
+        if found:
+            return found.group()
+        if process.poll() is not None:
+            break
+        time.sleep(0.1)
+    pytest.fail(f"JupyterLab did not start:\n{log.read_text()}")
+
+
+def picture(page: Page) -> NDArray[np.uint8]:
+    """Return what the canvas shows."""
+    shot = page.locator(".flowtex canvas").first.screenshot()
+    with Image.open(io.BytesIO(shot)) as opened:
+        return np.asarray(opened.convert("RGB"))
+
+
+def variation(pixels: NDArray[np.uint8]) -> float:
+    """Mean difference of neighbours: the texture, and hardly the colours."""
+    return float(np.abs(np.diff(pixels.astype(float).mean(axis=-1), axis=0)).mean())
+
+
+def sharp(page: Page) -> None:
+    """Wait for the picture; the client begins a new one in the frame after a change."""
+    page.wait_for_timeout(400)
+    page.locator(SHARP).wait_for()
+
+
+def test_a_cell_shows_a_flow_that_both_sides_can_change(page: Page, server: str) -> None:
+    page.set_default_timeout(60_000)
+    page.set_viewport_size({"width": 900, "height": 1200})
+    lab = Lab(page, server)
+    lab.run(SHOW)
+    sharp(page)
+    assert page.locator(".flowtex").count() == 1  # and not once more as the value of the cell
+    before = variation(picture(page))
+    assert before > 5
+
+    # Python to the browser.
+    assert lab.said("setattr(w, 'contrast', 0.0)") == "None"
+    sharp(page)
+    assert variation(picture(page)) < 0.4 * before
+
+    # The browser to Python.
+    was = json.loads(lab.said("__import__('json').dumps(w.camera)"))
+    canvas = page.locator(".flowtex canvas").first
+    canvas.scroll_into_view_if_needed()
+    box = canvas.bounding_box()
+    assert box is not None
+    x, y = box["x"] + 150, box["y"] + 100
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + 60, y, steps=5)
+    page.wait_for_timeout(300)  # at rest when it is let go of
+    page.mouse.up()
+    page.wait_for_timeout(500)
+    now = json.loads(lab.said("__import__('json').dumps(w.camera)"))
+    moved = now["focal_point"][0] - was["focal_point"][0]
+    # Sixty of the two hundred pixels that are twice the parallel scale.
+    assert moved == pytest.approx(-60 / 200 * 2 * was["parallel_scale"], rel=0.05)
+    assert now["parallel_scale"] == pytest.approx(was["parallel_scale"])
+
+    # The frame that the browser sent back is the picture of a saved notebook.
+    assert lab.said("w._frame[:4]") == r"b'\x89PNG'"
+
+    # New textures are made in the kernel and sent.
+    assert lab.said("w.set_trait('contrast', 1.0), w.set_trait('noise', 'checkerboard')")
+    sharp(page)
+    page.wait_for_function("() => document.querySelector('.flowtex').dataset.sharp === 'true'")
+
+    assert lab.said("w.close()") == "None"
+    page.wait_for_function("() => !document.querySelector('.flowtex')")
+    # What was being made when it was closed is made to its end.
+    for _ in range(50):
+        threads = lab.said(THREADS)
+        if threads == "[]":
+            break
+    assert threads == "[]"
+
+
+def test_pyvista_shows_a_plotter_when_it_is_asked_to(page: Page, server: str) -> None:
+    page.set_default_timeout(60_000)
+    page.set_viewport_size({"width": 900, "height": 1200})
+    lab = Lab(page, server, "pyvista.ipynb")
+    lab.run(PLOTTER)
+    sharp(page)
+    assert variation(picture(page)) > 3
+    # The widget fills the plotter's window, and looks from the plotter's camera.
+    box = page.locator(".flowtex").first.bounding_box()
+    assert box is not None
+    assert (box["width"], box["height"]) == (300, 200)
+    assert lab.said("w.camera['parallel_scale']") == "0.25"
+    page.get_by_text("leaves out: 'ball'").first.wait_for()

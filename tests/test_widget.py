@@ -1,0 +1,327 @@
+from __future__ import annotations
+
+import base64
+import io
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import flowtex
+from flowtex import examples
+from flowtex.examples._double_gyre import nodes as nodes_of
+from flowtex.settings import TABLE, SettingsError
+from flowtex.widget import feed
+
+pytest.importorskip("anywidget")
+
+import traitlets
+
+from flowtex.widget import FlowWidget
+
+#: Pixels by pixels of noise: a picture to lay on the surface.
+SQUARES = np.indices((8, 8)).sum(axis=0) % 2 * 255
+
+
+def gyre(times: int = 1, nodes: int = 30) -> flowtex.FlowField:
+    at = nodes_of((nodes, nodes))
+    series = [examples.double_gyre_velocity(at, float(t)) for t in range(times)]
+    return flowtex.FlowField.from_arrays(at, np.stack(series), name="gyre")
+
+
+class Heard:
+    """What a client would have received: messages, and arrays by name."""
+
+    def __init__(self, widget: FlowWidget, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.widget = widget
+        self.messages: list[dict[str, Any]] = []
+        self.arrays: dict[str, np.ndarray[Any, Any]] = {}
+        self.headers: list[int] = [widget._header["generation"]]
+        self._came = threading.Condition()
+        monkeypatch.setattr(type(widget), "send", self._send, raising=False)
+        widget.observe(lambda change: self.headers.append(change["new"]["generation"]), "_header")
+
+    def _send(self, content: dict[str, Any], buffers: Any = None) -> None:
+        with self._came:
+            self.messages.append({**content, "header": self.widget._header["generation"]})
+            if content["kind"] == "parts":
+                described = zip(content["names"], content["dtypes"], content["shapes"], strict=True)
+                for (name, kind, shape), data in zip(described, buffers, strict=True):
+                    self.arrays[name] = np.frombuffer(data, kind).reshape(shape)
+            self._came.notify_all()
+
+    def say(self, **message: Any) -> None:
+        self.widget._handle_custom_msg(message, [])
+
+    def wait(self, ready: Callable[[], bool]) -> None:
+        with self._came:
+            assert self._came.wait_for(ready, timeout=20), self.messages
+
+
+@pytest.fixture
+def make() -> Iterator[Callable[..., FlowWidget]]:
+    made: list[FlowWidget] = []
+
+    def call(field: Any = None, **options: Any) -> FlowWidget:
+        made.append(FlowWidget(gyre() if field is None else field, **{"samples": 9, **options}))
+        return made[-1]
+
+    yield call
+    for widget in made:
+        widget.close()
+
+
+Make = Callable[..., FlowWidget]
+
+
+def test_every_setting_is_a_trait_of_both_sides(make: Make) -> None:
+    widget = make(contrast=0.5)
+    synced = set(widget.traits(sync=True))
+    assert set(TABLE) <= synced
+    assert {"camera", "time", "clock", "playing", "point", "size", "bar"} <= synced
+    assert {name: getattr(widget, name) for name in TABLE} == dict(widget.settings)
+    assert (widget.contrast, widget.samples) == (0.5, 9)
+    widget.samples = 21
+    assert widget.settings.samples == 21
+    widget.settings.spacing = 2.0
+    assert widget.spacing == 2.0
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "said"),
+    [
+        ("samples", 999, r"^samples is 999; expected a whole number from 1 to 200"),
+        ("kernel", "gauss", r"^kernel is 'gauss'; expected 'hann' or 'box' or 'ramp'"),
+        ("noise", "image", r"^noise is 'image' and there is no image"),
+        ("time", 5.0, r"^time is 5.0; expected 0 to 2"),
+        ("camera", {"zoom": 2}, r"^camera is {'zoom': 2}; expected a dict with some of"),
+        ("camera", {"position": [1, 2]}, r"^camera is .*; expected points of three numbers"),
+        ("camera", {"parallel_scale": -1.0}, r"^camera is .*; expected a positive scale"),
+        ("size", (3,), r"^size is \(3,\); expected \(width, height\) in pixels"),
+    ],
+)
+def test_what_does_not_fit_is_refused_on_both_sides(
+    make: Make, monkeypatch: pytest.MonkeyPatch, name: str, value: Any, said: str
+) -> None:
+    widget = make(gyre(3))
+    was = getattr(widget, name)
+    with pytest.raises((SettingsError, traitlets.TraitError), match=said):
+        setattr(widget, name, value)
+    assert getattr(widget, name) == was
+
+    told: list[Any] = []
+    monkeypatch.setattr(type(widget), "send_state", lambda self, key=None: told.append(key))
+    widget.set_state({name: value, "strength": 0.25})  # as from the browser
+    assert getattr(widget, name) == was
+    assert set(told) == {name}  # set back there
+    assert widget.settings.strength == 0.25  # and what fits is taken
+
+
+def test_a_camera_is_changed_by_parts(make: Make) -> None:
+    widget = make()
+    was = dict(widget.camera)
+    widget.camera = {"parallel_scale": 0.25}
+    assert widget.camera == {**was, "parallel_scale": 0.25}
+    assert make(zoom=4).camera["parallel_scale"] == pytest.approx(was["parallel_scale"] / 4)
+
+
+def test_time_goes_both_ways(make: Make) -> None:
+    widget = make(gyre(3))
+    assert widget.time == widget.view.time == 2.0
+    widget.time = 0.5
+    assert widget.view.moment == (0, 1, 0.5)
+    widget.view.time = 1.5
+    assert widget.time == 1.5
+
+
+def test_a_client_that_is_ready_gets_what_it_needs(
+    make: Make, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    widget = make(gyre(4, nodes=12))
+    widget.time = 1.5
+    heard = Heard(widget, monkeypatch)
+    heard.say(kind="ready")
+    heard.wait(lambda: "slices/2" in heard.arrays)
+    assert sorted(n for n in heard.arrays if n.startswith("slices")) == ["slices/1", "slices/2"]
+    assert {"position", "cmap", "scalars/1", "extra/1"} <= set(heard.arrays)
+    np.testing.assert_array_equal(heard.arrays["slices/1"], widget._feed.scene.step(1)["slices/1"])
+    np.testing.assert_array_equal(
+        heard.arrays["position"], widget._feed.scene.surface()["position"]
+    )
+    heard.say(kind="need", step=3)
+    heard.wait(lambda: "slices/3" in heard.arrays)
+    heard.say(kind="need", step=7)
+    heard.say(kind="need", step="x")
+    heard.say(kind="what")
+    assert "slices/0" not in heard.arrays
+
+
+def test_a_large_field_comes_coarse_first(make: Make, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(feed, "LARGE", 2000)
+    monkeypatch.setattr(feed, "COARSE_STEADY", 400)
+    widget = make(gyre(nodes=60))
+    assert widget._header["geometry"]["shape"] == [20, 20]
+    heard = Heard(widget, monkeypatch)
+    heard.say(kind="ready")
+    heard.wait(lambda: heard.arrays.get("position", np.zeros(1)).shape == (60, 60, 3))
+    heard.wait(lambda: heard.messages[-1]["names"][-1] == "slices/0")
+    assert widget._header["geometry"]["shape"] == [60, 60]
+    # Each array comes under the header that it belongs to.
+    assert all(message["generation"] == message["header"] for message in heard.messages)
+    assert [m["generation"] for m in heard.messages] == sorted(
+        m["generation"] for m in heard.messages
+    )
+
+
+def test_a_setting_sends_what_it_changes_and_no_more(
+    make: Make, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    widget = make(noise="texture", resolution=32)
+    heard = Heard(widget, monkeypatch)
+    heard.say(kind="ready")
+    heard.wait(lambda: "noise" in heard.arrays)
+    assert widget._feed.settled.wait(20)
+    heard.messages.clear()
+    widget.contrast = 2.0
+    widget.samples = 30
+    time.sleep(0.1)
+    assert heard.messages == []
+    was = heard.arrays["noise"]
+    widget.seed = 5
+    heard.wait(lambda: not np.array_equal(was, heard.arrays["noise"]))
+    assert "position" not in {name for m in heard.messages for name in m["names"]}
+    widget.noise = "procedural"
+    heard.wait(lambda: heard.messages[-1]["header"] == 2)
+    assert "FLOWTEX_PAPER" not in widget._header["variant"]
+
+
+def test_an_image_can_come_later(make: Make, monkeypatch: pytest.MonkeyPatch) -> None:
+    widget = make()
+    widget.set_image(SQUARES.astype(np.uint8))
+    assert widget.noise == "image"
+    assert widget._feed.settled.wait(20)
+    assert widget._header["paper"]["picture"]
+
+
+def test_an_error_while_tracing_is_told(
+    make: Make, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    widget = make()
+    heard = Heard(widget, monkeypatch)
+
+    def fail() -> None:
+        msg = "out of memory"
+        raise MemoryError(msg)
+
+    monkeypatch.setattr(widget._stage, "scene", fail)
+    widget.noise = "spots"
+    heard.wait(lambda: any(m["kind"] == "error" for m in heard.messages))
+    assert heard.messages[-1]["text"] == "MemoryError: out of memory"
+    assert "out of memory" in capsys.readouterr().err
+
+
+def test_a_panel_has_every_setting_and_follows(make: Make) -> None:
+    widget = make()
+    panel = widget.controls()
+    controls = dict(zip(TABLE, panel.children, strict=True))
+    controls["samples"].value = 33
+    assert widget.settings.samples == 33
+    widget.settings.lod = False
+    assert controls["lod"].value is False
+    controls["noise"].value = "image"  # there is none
+    assert controls["noise"].value == widget.noise == "procedural"
+    widget.close()
+    controls["samples"].value = 5
+    assert widget.settings.samples == 33
+
+
+def test_a_notebook_that_is_read_elsewhere_has_a_picture(make: Make) -> None:
+    widget = make(gyre(nodes=20))
+    started = time.perf_counter()
+    data, _ = widget._repr_mimebundle_()
+    assert time.perf_counter() - started < 1.5  # four tenths of a second, on a machine at rest
+    assert "gyre: 20 x 20" in data["text/plain"]
+    assert data["application/vnd.jupyter.widget-view+json"]["model_id"] == widget.model_id
+    assert widget._feed.pictured.wait(20)
+    data, _ = widget._repr_mimebundle_()
+    with Image.open(io.BytesIO(base64.b64decode(data["image/png"]))) as picture:
+        assert picture.size == (480, 300)
+        pixels = np.asarray(picture.convert("RGB"), dtype=float)
+    assert pixels[150, 200:280].std() > 10
+    assert (pixels[0, 0] == 255).all()
+    widget._handle_custom_msg({"kind": "frame"}, [memoryview(b"png")])
+    data, _ = widget._repr_mimebundle_()
+    assert base64.b64decode(data["image/png"]) == b"png"
+
+
+def test_nothing_is_left_after_closing(make: Make) -> None:
+    widget = make(gyre(3))
+    settings = widget.settings
+    widget.controls()
+    widget.close()
+    widget.close()
+    assert settings._observers == []
+    assert repr(widget).endswith("closed)")
+    for _ in range(100):
+        names = [thread.name for thread in threading.enumerate()]
+        if not any(name.startswith("flowtex") for name in names):
+            break
+        time.sleep(0.05)
+    else:
+        pytest.fail(f"threads are left: {names}")
+
+
+@pytest.mark.parametrize("missing", ["anywidget", "ipywidgets", "traitlets"])
+def test_a_missing_extra_is_named(missing: str) -> None:
+    code = (
+        f"import sys; sys.modules[{missing!r}] = None\nimport flowtex\n"
+        "try:\n    flowtex.FlowWidget\nexcept ModuleNotFoundError as error:\n    print(error)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert f"the notebook widget needs {missing}, not installed here" in done.stdout
+    assert "[notebook]" in done.stdout
+
+
+class Shell:
+    """What IPython has in a notebook."""
+
+    kernel = object()
+    execution_count = 3
+
+
+def test_show_displays_once_in_a_notebook(make: Make, monkeypatch: pytest.MonkeyPatch) -> None:
+    import IPython
+    from IPython import display as displays
+
+    shown: list[Any] = []
+    monkeypatch.setattr(IPython, "get_ipython", Shell)
+    monkeypatch.setattr(displays, "display", lambda data, **_: shown.append(data))
+    widget = flowtex.show(gyre(), samples=9)
+    assert isinstance(widget, FlowWidget)
+    assert len(shown) == 1
+    widget._ipython_display_()  # as the value of the same cell
+    assert len(shown) == 1
+    widget._ipython_display_()
+    assert len(shown) == 2
+    monkeypatch.setattr(Shell, "execution_count", 4)
+    widget._ipython_display_()
+    assert len(shown) == 3
+    with pytest.raises(ValueError, match=r"^two views need a window"):
+        flowtex.show(gyre(), beside={"lod": False})
+    widget.close()
+
+
+def test_it_is_written_as_a_page_from_where_it_is(make: Make, tmp_path: Any) -> None:
+    widget = make()
+    widget.camera = {"parallel_scale": 0.123}
+    text = widget.to_html()
+    assert text is not None
+    assert '"parallel_scale":0.123' in text
+    assert widget.to_html(tmp_path / "page.html", title="here") is None
+    assert "<title>here</title>" in (tmp_path / "page.html").read_text()

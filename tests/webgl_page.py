@@ -1,0 +1,134 @@
+"""A page with the browser client on it, for tests: scenes in, pictures and errors out."""
+
+from __future__ import annotations
+
+import base64
+import io
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from flowtex.renderers.cpu import Camera
+from flowtex.renderers.webgl import Scene, asset
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+__all__ = ["ClientPage", "packed", "state"]
+
+Pixels = NDArray[np.uint8]
+
+#: Types that the client knows, by the names that NumPy has for them.
+DTYPES = ("float32", "float16", "int16", "int8", "uint8")
+
+HTML = """<!doctype html><meta charset="utf-8"><title>client</title>
+<style>body { margin: 0 } .view { width: 300px; height: 200px }</style><body></body>"""
+
+LOAD = """async (source) => {
+  const url = URL.createObjectURL(new Blob([source], { type: "text/javascript" }));
+  window.client = await import(url);
+  window.viewers = [];
+  window.events = [];
+  window.unpack = (scene) => Object.fromEntries(Object.entries(scene.parts).map(([name, part]) => [
+    name,
+    { ...part, data: Uint8Array.from(atob(part.data), (c) => c.charCodeAt(0)).buffer },
+  ]));
+}"""
+
+MOUNT = """([scene, options, size]) => {
+  const element = document.createElement("div");
+  element.className = "view";
+  if (size) element.style.cssText = `float: left; width: ${size[0]}px; height: ${size[1]}px`;
+  document.body.append(element);
+  const heard = {};
+  for (const name of options.hear ?? []) heard[name] = (value) => events.push([name, value]);
+  const viewer = client.mountPage(element, scene.header, unpack(scene), { ...options, ...heard });
+  viewers.push(viewer);
+  return viewers.length - 1;
+}"""
+
+PIXELS = "(n) => viewers[n].canvas.toDataURL('image/png').split(',')[1]"
+
+
+def state(camera: Camera) -> dict[str, Any]:
+    """Return a camera of the NumPy renderer as the client takes it."""
+    return {
+        "position": list(map(float, camera.position)),
+        "focal_point": list(map(float, camera.focal_point)),
+        "up": list(map(float, camera.up)),
+        "parallel": camera.parallel_scale is not None,
+        "parallel_scale": float(camera.parallel_scale or 1.0),
+        "view_angle": float(camera.view_angle),
+    }
+
+
+def packed(scene: Scene, header: Mapping[str, Any], steps: tuple[int, ...] = (0,)) -> Any:
+    """Return header and parts as JSON."""
+    arrays = dict(scene.surface())
+    for step in sorted(set(steps)):
+        arrays |= scene.step(step)
+    parts = {
+        name: {
+            "dtype": DTYPES[DTYPES.index(array.dtype.name)],
+            "shape": list(array.shape),
+            "data": base64.b64encode(array.tobytes()).decode(),
+        }
+        for name, array in arrays.items()
+    }
+    return {"header": dict(header), "parts": parts}
+
+
+@dataclass
+class ClientPage:
+    """A page that has loaded the client, with what it complained of and asked for."""
+
+    page: Page
+    errors: list[str] = field(default_factory=list)
+    asked: list[str] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        """Load the client."""
+        self.page.on("console", lambda m: self._heard(m.text) if m.type == "error" else None)
+        self.page.on("pageerror", lambda error: self._heard(str(error)))
+        self.page.on("request", lambda request: self.asked.append(request.url))
+        self.page.set_content(HTML)
+        self.page.evaluate(LOAD, asset("client.js").read_text(encoding="utf-8"))
+
+    def _heard(self, text: str) -> None:
+        self.errors.append(text)
+
+    def mount(self, scene: Any, size: tuple[int, int] | None = None, **options: Any) -> int:
+        """Show a scene; return the number of its viewer."""
+        return int(self.page.evaluate(MOUNT, [scene, options, size]))
+
+    def sharp(self, viewer: int = 0) -> None:
+        """Wait for the full picture."""
+        self.page.wait_for_function(
+            "(n) => viewers[n].sharp || viewers[n].root.dataset.failed", arg=viewer, timeout=20_000
+        )
+        failed = self.page.evaluate("(n) => viewers[n].root.dataset.failed", viewer)
+        assert not failed, self.page.evaluate(
+            "(n) => viewers[n].root.shadowRoot.querySelector('.note').textContent", viewer
+        )
+
+    def picture(self, viewer: int = 0) -> Pixels:
+        """Full picture of a viewer, (H, W, 3)."""
+        self.sharp(viewer)
+        return self.pixels(viewer)
+
+    def pixels(self, viewer: int = 0) -> Pixels:
+        """What a viewer shows now, (H, W, 3)."""
+        data = base64.b64decode(self.page.evaluate(PIXELS, viewer))
+        with Image.open(io.BytesIO(data)) as image:
+            return np.asarray(image.convert("RGB"))
+
+    def clear(self) -> None:
+        """Dispose of all viewers."""
+        self.page.evaluate(
+            "() => { viewers.forEach((v) => v.dispose()); viewers.length = events.length = 0;"
+            " document.body.replaceChildren(); }"
+        )
