@@ -11,7 +11,7 @@ import anywidget
 __all__ = ["Displayed"]
 
 #: Seconds that a cell waits for the small picture, at most.
-PATIENCE = 0.5
+PATIENCE = 1.0
 
 
 class Displayed(anywidget.AnyWidget):

@@ -2939,6 +2939,9 @@ input[role="switch"]:checked::after { transform: translateX(12px); }
   .readout { flex-direction: column; gap: 0; }
   .head { flex-direction: column; gap: 0; max-width: calc(100% - 134px); }
 }
+@container (max-width: 220px) {
+  .legend { display: none; }
+}
 @container (max-width: 330px) {
   button { width: 27px; height: 27px; }
 }
