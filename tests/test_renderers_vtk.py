@@ -67,8 +67,8 @@ def test_streaks_follow_the_flow_at_every_zoom(opengl: Any, zoom: float, sheared
     if sheared:
         mask &= (x > 0.25) & (x < 1.85)
     found = streaks(picture, *gyre(x, y), mask)
-    assert found["angle"] <= 3.0
-    assert found["coherence"] >= 0.88
+    assert found["angle"] <= 2.4
+    assert found["coherence"] >= 0.93
 
 
 def test_the_grain_keeps_its_size_in_pixels_through_a_thousandfold_zoom(opengl: Any) -> None:
