@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -207,6 +208,33 @@ def streaming() -> list[Picture]:
     return frames
 
 
+#: Pictures of docs/paper.md: sections of ``flowtex paper``, and the files that each is made of.
+PAPER = {
+    "figure5": ("pictures/figure5-1-1", "pictures/figure5-1-2", "pictures/figure5-1-3"),
+    "figure6": ("pictures/figure6-3-1", "pictures/figure6-4-1", "pictures/figure6-4-2"),
+    "figure3": ("plots/figure3-1",),
+    "zooms": ("plots/zooms-1",),
+    "moving": ("plots/moving-2",),
+}
+
+
+def paper() -> None:
+    """Draw the pictures of docs/paper.md, which `flowtex paper` has on its page."""
+    from flowtex.paper import reproduce
+
+    with TemporaryDirectory() as made:
+        reproduce(made, only=tuple(PAPER), progress=False)
+        for name, files in PAPER.items():
+            if files[0].startswith("plots"):
+                text = Path(made, f"{files[0]}.svg").read_text(encoding="utf-8")
+                (FOLDER / f"paper_{name}.svg").write_text(text, encoding="utf-8")
+                continue
+            parts = [np.asarray(Image.open(Path(made, f"{file}.jpg"))) for file in files]
+            Image.fromarray(_row(parts)).save(
+                FOLDER / f"paper_{name}.jpg", quality=82, optimize=True
+            )
+
+
 STILLS = (
     *(wake, zooms, vortices, sphere, torus, level_of_detail, grain, levels, correction),
     *(kernels, patterns, half_turns, gyre),
@@ -226,8 +254,11 @@ def main() -> None:
     from rich.progress import track
 
     FOLDER.mkdir(exist_ok=True)
-    wanted = sys.argv[1:] or [*PICTURES, "streaming"]
+    wanted = sys.argv[1:] or [*PICTURES, "streaming", "paper"]
     for name in track(wanted, "Drawing the gallery"):
+        if name == "paper":
+            paper()
+            continue
         if name == "streaming":
             first, *others = (Image.fromarray(frame) for frame in streaming())
             first.save(

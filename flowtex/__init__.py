@@ -17,10 +17,20 @@ from flowtex.trace import TraceSlices, trace
 
 if TYPE_CHECKING:
     from flowtex import examples
+    from flowtex.movies import movie
     from flowtex.pictures import render, show
     from flowtex.widget import FlowWidget as FlowWidget
 
-__all__ = ["FlowField", "Settings", "TraceSlices", "examples", "render", "show", "trace"]
+__all__ = [
+    "FlowField",
+    "Settings",
+    "TraceSlices",
+    "examples",
+    "movie",
+    "render",
+    "show",
+    "trace",
+]
 
 
 def __getattr__(name: str) -> Any:
@@ -33,6 +43,10 @@ def __getattr__(name: str) -> Any:
         from flowtex import pictures
 
         return getattr(pictures, name)
+    if name == "movie":
+        from flowtex import movies
+
+        return movies.movie
     if name == "FlowWidget":
         from flowtex import widget
 

@@ -13,11 +13,8 @@ import gzip
 import hashlib
 import html
 import json
-import os
 import string
-import tempfile
-from collections.abc import Callable, Iterator
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -29,7 +26,9 @@ from flowtex import preview
 from flowtex._version import __version__
 from flowtex.progress import track
 from flowtex.renderers.webgl import Scene, asset
-from flowtex.staging import Stage
+from flowtex.sharing import digest
+from flowtex.staging import Stage, staged
+from flowtex.whole_file import whole_file
 
 __all__ = ["Page", "estimate", "export", "page_text", "write_page"]
 
@@ -74,6 +73,7 @@ def export(
     zoom: float = 1.0,
     focus: tuple[float, ...] | None = None,
     announce: Callable[[int, int], None] | None = None,
+    beside: Mapping[str, Any] | None = None,
     **options: Any,
 ) -> Page:
     """Write a flow as one HTML file that needs no server and no network.
@@ -93,6 +93,9 @@ def export(
         How far in, and on what point of the mesh, the page begins.
     announce
         Called with the estimated size in bytes and the number of steps before the work begins.
+    beside
+        What is different in a second view to the right of the first one, such as
+        ``{"lod": False}``; both views move together.
     **options
         Further arguments and settings of ``plotter.flowtex.add``.
 
@@ -109,16 +112,17 @@ def export(
     OSError
         When the file cannot be written; what was there before is left as it was.
     """
-    stage = Stage(mesh, steps=steps, **options)
+    stages = staged(mesh, beside, steps=steps, **options)
     try:
-        camera = stage.first_look(zoom=zoom, focus=focus)
-        return write_page(stage, path, camera=camera, title=title, announce=announce)
+        camera = stages[0].first_look(zoom=zoom, focus=focus)
+        return write_page(stages, path, camera=camera, title=title, announce=announce)
     finally:
-        stage.view.close()
+        for stage in stages:
+            stage.view.close()
 
 
 def write_page(
-    stage: Stage,
+    stages: Sequence[Stage],
     path: str | Path,
     *,
     camera: dict[str, Any] | None = None,
@@ -128,18 +132,18 @@ def write_page(
     picture: bytes | None = None,
     announce: Callable[[int, int], None] | None = None,
 ) -> Page:
-    """Write a stage as a page; :func:`export` has the parameters."""
+    """Write a stage, or two beside each other, as a page; :func:`export` has the parameters."""
     path = Path(path)
-    scene = stage.scene()
-    estimated = estimate(scene)
+    scenes = [stage.scene() for stage in stages]
+    estimated = estimate(scenes)
     if announce is not None:
-        announce(estimated, scene.steps)
-    pieces = _pieces(stage, scene, camera, time, clock, title, picture)
-    return Page(path, _write(path, pieces), estimated, scene.steps)
+        announce(estimated, scenes[0].steps)
+    pieces = _pieces(stages, scenes, camera, time, clock, title, picture)
+    return Page(path, _write(path, pieces), estimated, scenes[0].steps)
 
 
 def page_text(
-    stage: Stage,
+    stages: Sequence[Stage],
     *,
     camera: dict[str, Any] | None = None,
     time: float | None = None,
@@ -147,19 +151,25 @@ def page_text(
     title: str | None = None,
     picture: bytes | None = None,
 ) -> str:
-    """Return a stage as the text of a page; :func:`export` has the parameters."""
-    return "".join(_pieces(stage, stage.scene(), camera, time, clock, title, picture))
+    """Return a stage, or two, as the text of a page; :func:`export` has the parameters."""
+    scenes = [stage.scene() for stage in stages]
+    return "".join(_pieces(stages, scenes, camera, time, clock, title, picture))
 
 
-def estimate(scene: Scene) -> int:
-    """Bytes that a page is going to have, about."""
-    arrays = sum(part.nbytes for part in scene.surface().values())
-    return AROUND + int(PACKED * (arrays + scene.steps * scene.nbytes_of_step))
+def estimate(scenes: Sequence[Scene]) -> int:
+    """Bytes that a page is going to have, about; textures of both views count once."""
+    size = 0
+    for n, scene in enumerate(scenes):
+        if n and scene.textures is scenes[0].textures:
+            break
+        arrays = sum(part.nbytes for part in scene.surface().values())
+        size += arrays + scene.steps * scene.nbytes_of_step
+    return AROUND + int(PACKED * size)
 
 
 def _pieces(
-    stage: Stage,
-    scene: Scene,
+    stages: Sequence[Stage],
+    scenes: Sequence[Scene],
     camera: dict[str, Any] | None,
     time: float | None,
     clock: float,
@@ -167,14 +177,24 @@ def _pieces(
     picture: bytes | None,
 ) -> Iterator[str]:
     """Give the text of a page piece by piece; each array is packed when it is reached."""
-    header = scene.header(stage.view.settings, camera=camera, time=time, clock=clock)
+    header, *others = (
+        scene.header(stage.view.settings, camera=camera, time=time, clock=clock)
+        for stage, scene in zip(stages, scenes, strict=True)
+    )
+    for stage, other in zip(stages[1:], others, strict=True):
+        other["differs"] = header["differs"] = list(stage.own)
+        header["beside"] = other
     if picture is None:
-        picture = preview.preview_png(stage, PREVIEW, camera=header["camera"], time=time, coarser=1)
+        picture = preview.preview_png(
+            stages[0], PREVIEW, camera=header["camera"], time=time, coarser=1
+        )
     before, after = asset("page.html").read_text("utf-8").split("$parts\n")
-    values = _values(header, title or header["name"], picture)
+    values = _values(header, title or header["name"] or "Flow", picture)
     yield string.Template(before).substitute(values)
-    for name, array in _all_parts(scene):
-        yield _element(name, array)
+    written: dict[bytes, str] = {}
+    for name, array in _all_parts(scenes):
+        same = written.setdefault(digest(array), name)
+        yield _element(name, array) if same == name else _reference(name, same)
     yield string.Template(after).substitute(values)
 
 
@@ -224,25 +244,25 @@ def _element(name: str, array: NDArray[Any]) -> str:
     )
 
 
-def _all_parts(scene: Scene) -> Iterator[tuple[str, NDArray[Any]]]:
-    yield from scene.surface().items()
-    for step in track(range(scene.steps), scene.steps, "Packing time steps"):
-        yield from scene.step(step).items()
+def _reference(name: str, same: str) -> str:
+    """Return an element for a part that is the same as another one."""
+    return (
+        f'<script type="text/plain" data-part="{html.escape(name)}" '
+        f'data-same="{html.escape(same)}"></script>\n'
+    )
+
+
+def _all_parts(scenes: Sequence[Scene]) -> Iterator[tuple[str, NDArray[Any]]]:
+    for scene, before in zip(scenes, ("", "beside:"), strict=False):
+        for name, array in scene.surface().items():
+            yield before + name, array
+        for step in track(range(scene.steps), scene.steps, "Packing time steps"):
+            for name, array in scene.step(step).items():
+                yield before + name, array
 
 
 def _write(path: Path, text: Iterator[str]) -> int:
     """Write a file that is there whole or not at all; return its size."""
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".part")
-    try:
-        with os.fdopen(handle, "w", encoding="utf-8", newline="\n") as file:
-            file.writelines(text)
-        # A temporary file is for its owner alone; the page gets the rights of any new file.
-        mask = os.umask(0)
-        os.umask(mask)
-        Path(name).chmod(0o666 & ~mask)
-        Path(name).replace(path)
-    except BaseException:
-        with suppress(OSError):
-            Path(name).unlink()
-        raise
+    with whole_file(path) as part, part.open("w", encoding="utf-8", newline="\n") as file:
+        file.writelines(text)
     return path.stat().st_size

@@ -103,6 +103,23 @@ class FlowHandle:
         self._draw()
 
     @property
+    def density(self) -> float:
+        """Pixels drawn, along a side, for one that the settings speak of; 1 on a plain screen.
+
+        Twice the density shows the same in twice as many pixels, as fine screens, print and
+        supersampling want it.
+        """
+        return self._layer.view.density
+
+    @density.setter
+    def density(self, value: float) -> None:
+        if not value > 0:
+            msg = f"density is {value!r}; expected a positive number, 1 for a plain screen"
+            raise ValueError(msg)
+        self._layer.view.density = float(value)
+        self._draw()
+
+    @property
     def closed(self) -> bool:
         """Whether the texture has been removed."""
         return self._plotter is None

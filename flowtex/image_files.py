@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import warnings
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
 
 from flowtex.textures import ImageError
 
-__all__ = ["load_image"]
+__all__ = ["load_image", "read_image"]
 
 
 def load_image(image: Any) -> Any:
@@ -40,26 +40,45 @@ def load_image(image: Any) -> Any:
         what = "is a folder" if path.is_dir() else "there is no such file"
         msg = f"{image}: {what}; expected a picture, such as a PNG or a JPEG"
         raise ImageError(msg)
-    return _read(path)
+    return read_image(path, str(path))
 
 
-def _read(path: Path) -> NDArray[Any]:
+def read_image(file: Path | BinaryIO, name: str) -> NDArray[Any]:
+    """Read an image from a file or from what holds the bytes of one.
+
+    Parameters
+    ----------
+    file
+        The path, or an open file.
+    name
+        What errors call it.
+
+    Returns
+    -------
+    numpy.ndarray
+        As :func:`load_image` returns it.
+
+    Raises
+    ------
+    ImageError
+        When it is no picture that can be read.
+    """
     from PIL import Image, ImageOps, UnidentifiedImageError
 
     try:
         # Pillow warns of a picture so large that it may be an attack, and refuses twice as large.
         with warnings.catch_warnings():
             warnings.simplefilter("error", Image.DecompressionBombWarning)
-            with Image.open(path) as opened:
+            with Image.open(file) as opened:
                 return _array(ImageOps.exif_transpose(opened))
     except (Image.DecompressionBombWarning, Image.DecompressionBombError) as error:
-        msg = f"{path}: has more than {Image.MAX_IMAGE_PIXELS:,} pixels; make it smaller"
+        msg = f"{name}: has more than {Image.MAX_IMAGE_PIXELS:,} pixels; make it smaller"
         raise ImageError(msg) from error
     except UnidentifiedImageError as error:
-        msg = f"{path}: is no picture that can be read; expected a PNG, a JPEG or the like"
+        msg = f"{name}: is no picture that can be read; expected a PNG, a JPEG or the like"
         raise ImageError(msg) from error
     except (OSError, SyntaxError) as error:  # Pillow raises either for a file cut short
-        msg = f"{path}: cannot be read ({error}); give another picture, or its array"
+        msg = f"{name}: cannot be read ({error}); give another picture, or its array"
         raise ImageError(msg) from error
 
 

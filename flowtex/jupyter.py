@@ -85,6 +85,8 @@ def _look_of(plotter: Any, handle: FlowHandle) -> dict[str, Any]:
         **colours,
         "image": None if image is None else straight(image),
         "lighting": bool(handle.actor.prop.lighting),
+        "opacity": float(handle.actor.prop.opacity),
+        "show_scalar_bar": bool(plotter.scalar_bars),
         "background": plotter.background_color,
         "size": (int(width), int(height)),
         "camera": {
@@ -111,12 +113,9 @@ def _others(plotter: Any, shown: FlowHandle) -> list[str]:
 
 def _moved(shown: FlowHandle) -> list[str]:
     """Name what is done to the texture's actor that the browser does not do."""
-    found = []
     if not np.allclose(shown.actor.user_matrix, np.eye(4)) or any(shown.actor.position):
-        found.append("the actor's own place")
-    if shown.actor.prop.opacity < 1:
-        found.append("its opacity")
-    return found
+        return ["the actor's own place"]
+    return []
 
 
 def _asked_for() -> bool:

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import pyvista as pv
 from numpy.typing import NDArray
 
 from flowtex.camera import look
 from flowtex.doctor import has_display, prefer_headless, require_opengl
-from flowtex.field import FlowField
-from flowtex.handle import FlowHandle
-from flowtex.plotter import FIELD_ARGUMENTS, FlowtexComponent, as_field
+from flowtex.plotter import FIELD_ARGUMENTS, as_field
+from flowtex.studio import Changes, Studio, new_plotter, put
 
 if TYPE_CHECKING:
     from flowtex.widget import FlowWidget
@@ -23,8 +20,8 @@ __all__ = ["in_notebook", "render", "show"]
 
 #: Width and height of a window.
 WINDOW = (1024, 768)
-
-Changes = Mapping[str, Any]
+#: Arguments of ``plotter.flowtex.add`` that say something to VTK alone.
+WINDOWED = ("scalar_bar_args", "reset_camera")
 
 
 def render(
@@ -38,6 +35,7 @@ def render(
     background: Any = "white",
     camera_position: Any | None = None,
     beside: Changes | None = None,
+    supersampling: int = 1,
     **options: Any,
 ) -> NDArray[np.uint8]:
     """Draw a flow without a window.
@@ -61,6 +59,9 @@ def render(
     beside
         What is different in a second view, which is drawn to the right of the first one, such
         as ``{"lod": False}``. Each view then has half the width.
+    supersampling
+        Times that the picture is drawn larger along each side and averaged, 1 to 8: 2 takes four
+        times as long and smooths what is finer than a pixel. Grains keep their size.
     **options
         Further arguments and settings of ``plotter.flowtex.add``, such as ``image``.
 
@@ -75,29 +76,21 @@ def render(
         When the mesh or a setting does not fit.
     OpenGLMissingError
         When nothing can draw; the text names the command that installs what is missing.
+    ValueError
+        When the picture would be too large to draw.
     """
-    require_opengl()
-    field = as_field(mesh, **{k: options.pop(k, None) for k in FIELD_ARGUMENTS})
-    plotter = _plotter(size, beside, off_screen=True, lighting="light kit")
-    try:
-        plotter.enable_anti_aliasing("msaa", multi_samples=4)  # smooths the outline
-        plotter.set_background(background)
-        handles = _put(plotter, field, {"show_scalar_bar": False, **options}, beside)
-        for handle in handles:
-            if time is not None:
-                handle.time = time
-            handle.clock = clock
-        if camera_position is not None:
-            plotter.camera.parallel_projection = False
-            plotter.camera_position = camera_position
-        else:
-            look(plotter, field, zoom=zoom, focus=focus)
-        picture: Any = plotter.screenshot(return_img=True)
-        for handle in handles:
-            handle.remove(render=False)
-    finally:
-        plotter.close()
-    return np.asarray(picture[..., :3], dtype=np.uint8)
+    with Studio(
+        mesh,
+        size=size,
+        zoom=zoom,
+        focus=focus,
+        background=background,
+        camera_position=camera_position,
+        beside=beside,
+        supersampling=supersampling,
+        **options,
+    ) as studio:
+        return studio.picture(time=time, clock=clock)
 
 
 def show(
@@ -125,7 +118,7 @@ def show(
         How far in, and on what point of the mesh, the window begins.
     beside
         What is different in a second view to the right of the first one, such as
-        ``{"lod": False}``; both views move together. It needs a window.
+        ``{"lod": False}``; both views move together. It needs a window or a notebook.
     **options
         Further arguments and settings of ``plotter.flowtex.add``, such as ``image``.
 
@@ -143,7 +136,9 @@ def show(
     ModuleNotFoundError
         When a notebook lacks what widgets need; the text names the command that installs it.
     ValueError
-        When two views are asked for and there is no window.
+        When two views are asked for and there is neither a window nor a notebook.
+    TypeError
+        When a notebook is given what only a window has.
     """
     if in_notebook():
         return _show_widget(mesh, size=size, zoom=zoom, focus=focus, beside=beside, **options)
@@ -159,10 +154,10 @@ def show(
 
         serve(field, zoom=zoom, focus=focus, **options)
         return None
-    plotter = _plotter(size, beside)
+    plotter = new_plotter(size, beside)
     plotter.disable_anti_aliasing()
     plotter.set_background("white")
-    _put(plotter, field, options, beside)
+    put(plotter, field, options, beside)
     look(plotter, field, zoom=zoom, focus=focus)
     plotter.show()
     return None
@@ -178,40 +173,15 @@ def in_notebook() -> bool:
 def _show_widget(
     mesh: Any, *, size: tuple[int, int] | None, beside: Changes | None, **options: Any
 ) -> FlowWidget:
-    if beside is not None:
-        msg = "two views need a window; flowtex.render draws both as one picture"
-        raise ValueError(msg)
+    for name in WINDOWED:
+        if name in options:
+            msg = (
+                f"{name} is for windows, and the browser draws this; leave it out, or draw with "
+                "flowtex.render, or with plotter.flowtex.add and plotter.show"
+            )
+            raise TypeError(msg)
     from flowtex.widget import FlowWidget
 
     if size is not None:
         options["size"] = size
-    return FlowWidget(mesh, **options).show()
-
-
-def _plotter(size: tuple[int, int], beside: Changes | None, **options: Any) -> Any:
-    shape = (1, 1) if beside is None else (1, 2)
-    return pv.Plotter(window_size=list(size), shape=shape, border=False, **options)
-
-
-def _put(
-    plotter: Any, field: FlowField, options: Changes, beside: Changes | None
-) -> list[FlowHandle]:
-    """Add the flow to one view, or to two that share a camera and say how they differ."""
-    component = FlowtexComponent(plotter)
-    if beside is None:
-        return [component.add(field, **options)]
-    handles = []
-    for column, chosen in enumerate((options, {**options, **beside})):
-        plotter.subplot(0, column)
-        handles.append(component.add(field, **chosen))
-        label = plotter.add_text(_difference(handles[-1], beside), font_size=9, color="black")
-        label.prop.background_color, label.prop.background_opacity = "white", 0.8
-    plotter.link_views()
-    plotter.subplot(0, 0)
-    return handles
-
-
-def _difference(handle: FlowHandle, beside: Changes) -> str:
-    """Tell the settings by which one of two views differs from the other."""
-    settings = dict(handle.settings)
-    return ", ".join(f"{name} = {settings[name]}" for name in beside if name in settings)
+    return FlowWidget(mesh, beside=beside, **options).show()

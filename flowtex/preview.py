@@ -77,10 +77,14 @@ def png(picture: Bytes) -> bytes:
     """Return a picture (H, W, 3) as a PNG file."""
     from PIL import Image
 
+    # Colours are chosen among a few pixels: among all of them it takes longer than the drawing.
+    few = Image.fromarray(np.ascontiguousarray(picture[::4, ::4])).quantize(160)
+    drawn = Image.fromarray(picture).quantize(palette=few, dither=Image.Dither.NONE)
+    palette, corner = drawn.getpalette() or [], 3 * int(np.asarray(drawn)[0, 0])
+    palette[corner : corner + 3] = picture[0, 0].tolist()  # the ground keeps its very colour
+    drawn.putpalette(palette)
     file = io.BytesIO()
-    Image.fromarray(picture).quantize(160, dither=Image.Dither.NONE).save(
-        file, "PNG", optimize=True
-    )
+    drawn.save(file, "PNG", optimize=True)
     return file.getvalue()
 
 
@@ -120,7 +124,13 @@ def _drawn(
         view=ViewState(between=between),
         steps=(scene.source(steps[0]), scene.source(steps[-1])),
     )
-    return picture.rgb(_colour(scene, picture, steps, between), scene.colours.background)
+    ground = scene.colours.background
+    drawn = picture.rgb(_colour(scene, picture, steps, between), ground)
+    opacity = scene.colours.opacity
+    if opacity == 1:
+        return drawn
+    behind = 255.0 * np.asarray(ground)
+    return np.rint(behind + opacity * (drawn - behind)).astype(np.uint8)
 
 
 def _colour(

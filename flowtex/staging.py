@@ -6,6 +6,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -17,15 +18,17 @@ from flowtex.first_look import first_look
 from flowtex.image_files import load_image
 from flowtex.plotter import CMAP, FIELD_ARGUMENTS, PLAIN, as_field, with_image
 from flowtex.renderers.webgl import Colours, Scene, camera_state
-from flowtex.settings import Settings
-from flowtex.textures import TextureSet
+from flowtex.settings import TABLE, Settings
+from flowtex.sharing import Shared, shared_field, shared_textures
 from flowtex.trace import SliceStore
 from flowtex.view import FlowView
 
-__all__ = ["Stage", "coarsened", "straight"]
+__all__ = ["Stage", "coarsened", "staged", "straight"]
 
 #: Entries of a colour map.
 ENTRIES = 256
+
+_coarse: Shared[SliceStore] = Shared()
 
 
 class Stage:
@@ -35,7 +38,7 @@ class Stage:
     ----------
     mesh
         What ``plotter.flowtex.add`` takes.
-    scalars, cmap, clim, color, lighting
+    scalars, cmap, clim, color, opacity, lighting, show_scalar_bar
         As there; a colour map may also be an array (N, 3 or 4), uint8 or from 0 to 1.
     image
         A picture that the flow smears, as there.
@@ -47,6 +50,15 @@ class Stage:
     **options
         Arguments for the making of the field, and settings.
 
+    Attributes
+    ----------
+    view
+        The flow, its settings and its traces.
+    name
+        What it is coloured by; ``None`` for a plain surface.
+    own
+        Settings of this view alone, where it stands beside another.
+
     Raises
     ------
     FieldError, SettingsError
@@ -54,7 +66,8 @@ class Stage:
     KeyError
         When there is no such scalar.
     ValueError
-        When there is no such colour map, or fewer than one time step is wanted.
+        When there is no such colour map, the opacity is none, or fewer than one time step is
+        wanted.
     """
 
     def __init__(
@@ -65,7 +78,9 @@ class Stage:
         cmap: Any | None = None,
         clim: tuple[float, float] | None = None,
         color: Any = PLAIN,
+        opacity: float = 1.0,
         lighting: bool | None = None,
+        show_scalar_bar: bool | None = None,
         image: Any | None = None,
         background: Any = "white",
         steps: int | None = None,
@@ -76,11 +91,19 @@ class Stage:
         settings.update(**(options if image is None else with_image(options)))
         picture = load_image(image)
         table, plain, behind = colour_table(cmap), rgb(color), rgb(background)
-        self.view = FlowView(as_field(mesh, **of_field), settings, image=picture)
+        field = shared_field(as_field(mesh, **of_field))
+        self.view = FlowView(field, settings, image=picture)
         self._kept = evenly(len(self.view.field.times), steps)
         self._clim = None if clim is None else (float(clim[0]), float(clim[1]))
-        self._look = Colours(table=table, plain=plain, background=behind)
+        if not 0 <= opacity <= 1:
+            msg = f"opacity is {opacity!r}; expected a number from 0 to 1"
+            raise ValueError(msg)
+        bar = image is None if show_scalar_bar is None else show_scalar_bar
+        self._look = Colours(
+            table=table, plain=plain, background=behind, opacity=float(opacity), bar=bar
+        )
         self._lighting = lighting
+        self.own: tuple[str, ...] = ()
         self.name = None if scalars is False else "speed"
         if isinstance(scalars, str):
             self.name = scalars
@@ -122,16 +145,42 @@ class Stage:
     def scene(self) -> Scene:
         """Return the scene as the settings are now; makes noise textures, and traces nothing."""
         settings = self.view.settings.copy()  # those of this moment: a thread may be building
-        textures = TextureSet.build(self.view.store, settings, self.view.image)
+        textures = shared_textures(self.view.store, settings, self.view.image)
         return Scene(textures, self.colours(), self._kept)
 
     def coarse_scene(self, nodes: int) -> Scene:
         """Return the same with so many nodes at most, for a first picture."""
-        field = coarsened(self.field, nodes)
         settings = self.view.settings
-        store = SliceStore(field, parameter=settings.parameter, compose=False)
-        textures = TextureSet.build(store, settings, self.view.image)
+        field = shared_field(coarsened(self.field, nodes))
+        store = _coarse.get(
+            (id(field), settings.parameter),  # a store keeps its field alive
+            lambda: SliceStore(field, parameter=settings.parameter, compose=False),
+        )
+        textures = shared_textures(store, settings, self.view.image)
         return Scene(textures, self.colours(field), self._kept)
+
+
+def staged(mesh: Any, beside: Mapping[str, Any] | None = None, **options: Any) -> tuple[Stage, ...]:
+    """Return the stage of a flow, and of a second view that differs in what ``beside`` has.
+
+    Parameters
+    ----------
+    mesh, **options
+        As for :class:`Stage`.
+    beside
+        Options of the second view, where there is one; the field is that of the first.
+    """
+    first = Stage(mesh, **options)
+    if beside is None:
+        return (first,)
+    of_field = [name for name in FIELD_ARGUMENTS if name in beside]
+    if of_field:
+        msg = f"beside has {', '.join(of_field)}; both views show one field, expected settings"
+        raise ValueError(msg)
+    rest = {name: value for name, value in options.items() if name not in FIELD_ARGUMENTS}
+    second = Stage(first.field, **{**rest, **beside})
+    second.own = tuple(name for name in beside if name in TABLE)
+    return first, second
 
 
 def straight(image: NDArray[np.float32]) -> NDArray[np.float32]:

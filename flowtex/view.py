@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flowtex.field import FlowField
+from flowtex.field.reading import moment
 from flowtex.settings import TABLE, Affects, Settings, SettingsError
 from flowtex.textures import TextureSet, as_picture
 from flowtex.trace import SliceStore, TraceSlices, shared_store
@@ -28,6 +29,10 @@ BAKED = {
     "tiles": ("checkerboard",),
     "resolution": ("texture", "spots", "checkerboard", "image"),
 }
+
+#: Values that differ by less than this share of the greatest are the same, and the share of it by
+#: which their range is widened then.
+SAME, WIDER = 1e-9, 0.05
 
 NO_IMAGE = (
     "noise is 'image' and there is no image; give one as image=, or later with set_image(image)"
@@ -133,11 +138,7 @@ class FlowView:
     @property
     def moment(self) -> tuple[int, int, float]:
         """The two time steps around the time that is shown, and how far it is between them."""
-        times = self.field.times
-        if len(times) == 1:
-            return 0, 0, 0.0
-        step = int(np.clip(np.searchsorted(times, self._time, side="right") - 1, 0, len(times) - 2))
-        return step, step + 1, float((self._time - times[step]) / (times[step + 1] - times[step]))
+        return moment(self.field.times, self._time)
 
     def scalar(self, name: str) -> NDArray[np.float64]:
         """Nodal values at the time that is shown, (J, I); ``"speed"`` is always there.
@@ -154,10 +155,20 @@ class FlowView:
         return np.asarray(steps[before] * (1 - late) + steps[after] * late)
 
     def scalar_range(self, name: str) -> tuple[float, float]:
-        """Least and greatest value over the valid nodes and all times."""
+        """Least and greatest value over the valid nodes and all times.
+
+        Where all are the same but for rounding, the range is widened, so that colours do not tell
+        of differences that are none.
+        """
         inside = self._steps_of(name)[:, self.field.valid]
         inside = inside[np.isfinite(inside)]
-        return (float(inside.min()), float(inside.max())) if inside.size else (0.0, 1.0)
+        if not inside.size:
+            return 0.0, 1.0
+        low, high = float(inside.min()), float(inside.max())
+        size = max(abs(low), abs(high))
+        if high - low > SAME * size:
+            return low, high
+        return (low - WIDER * size, high + WIDER * size) if size > 0 else (0.0, 1.0)
 
     def _steps_of(self, name: str) -> NDArray[np.float64]:
         if name in self.field.scalars:

@@ -13,7 +13,7 @@ pytest.importorskip("trame_rca")
 
 from flowtex import FlowField, examples
 from flowtex.app import FlowApp
-from flowtex.app.controls import PRIMARY, REST
+from flowtex.app.controls import GROUPS, PRIMARY
 from flowtex.app.quality import COARSEST, Cost
 from flowtex.app.warp import Shot, coverage, warp
 from flowtex.settings import TABLE
@@ -70,11 +70,12 @@ def difference(one: Any, other: Any) -> float:
 def test_the_state_has_every_setting_under_a_prefix_of_its_own(
     flat: FlowApp, bent: FlowApp
 ) -> None:
-    assert {*PRIMARY, *REST} == set(TABLE) and len(PRIMARY) + 1 == 5
+    grouped = [name for names in (PRIMARY, *GROUPS.values()) for name in names]
+    assert sorted(grouped) == sorted(TABLE) and len(PRIMARY) + 1 == 5
     for name, value in flat.scene.handle.settings:
-        assert flat.get(f"set_{name}") == value
-    assert flat.key("lod") != bent.key("lod")
-    assert flat.get("colours") == ["speed", "height", "none"]
+        assert flat.state.get(f"set_{name}") == value
+    assert flat.state.key("lod") != bent.state.key("lod")
+    assert flat.state.get("colours") == ["speed", "height", "none"]
 
 
 def test_the_page_has_a_control_with_a_hint_for_each_setting(flat: FlowApp) -> None:
@@ -85,43 +86,43 @@ def test_the_page_has_a_control_with_a_hint_for_each_setting(flat: FlowApp) -> N
 
 
 def test_a_change_of_the_state_reaches_the_settings(flat: FlowApp) -> None:
-    flat.set(set_contrast=2, set_lod=False)
-    flat._on_settings()
+    flat.state.set(set_contrast=2, set_lod=False)
+    flat.look.take_settings()
     assert flat.scene.handle.settings.contrast == 2 and flat.scene.handle.settings.lod is False
-    flat.set(set_contrast=1.0, set_lod=True)
-    flat._on_settings()
+    flat.state.set(set_contrast=1.0, set_lod=True)
+    flat.look.take_settings()
 
 
 def test_a_wrong_value_is_told_and_taken_back(flat: FlowApp) -> None:
-    flat.set(set_samples=1000)
-    flat._on_settings()
-    assert "samples is 1000; expected" in flat.get("problem")
-    assert flat.get("set_samples") == flat.scene.handle.settings.samples == 9
-    flat.set(problem="")
+    flat.state.set(set_samples=1000)
+    flat.look.take_settings()
+    assert "samples is 1000; expected" in flat.state.get("problem")
+    assert flat.state.get("set_samples") == flat.scene.handle.settings.samples == 9
+    flat.state.set(problem="")
 
 
 def test_colours_and_their_bar_change(flat: FlowApp) -> None:
     speed = picture(flat)
-    flat.set(colour="height")
-    flat._on_colour()
-    assert flat.get("bar")["name"] == "height" and flat.get("bar")["high"] == "3"
+    flat.state.set(colour="height")
+    flat.look.take_colour()
+    assert flat.state.get("bar")["name"] == "height" and flat.state.get("bar")["high"] == "3"
     assert difference(picture(flat), speed) > 3
-    flat.set(colour="none")
-    flat._on_colour()
+    flat.state.set(colour="none")
+    flat.look.take_colour()
     grey = picture(flat)
-    assert np.ptp(grey[80, 120]) == 0 and flat.get("bar")["name"] == ""
-    flat.set(colour="speed")
-    flat._on_colour()
+    assert np.ptp(grey[80, 120]) == 0 and flat.state.get("bar")["name"] == ""
+    flat.state.set(colour="speed")
+    flat.look.take_colour()
     assert difference(picture(flat), speed) == 0
 
 
 def test_themes_change_the_background(flat: FlowApp) -> None:
     dark = picture(flat)[0, 0]
-    flat.set(theme="light")
-    flat._on_theme()
+    flat.state.set(theme="light")
+    flat.look.take_background()
     assert picture(flat)[0, 0].min() > 200 > dark.max()
-    flat.set(theme="dark")
-    flat._on_theme()
+    flat.state.set(theme="dark")
+    flat.look.take_background()
 
 
 @pytest.mark.parametrize("kind", ["flat", "bent"])
@@ -135,7 +136,7 @@ def test_tiles_are_the_same_picture(kind: str, request: pytest.FixtureRequest) -
 
 
 def test_a_full_picture_is_the_whole_one(flat: FlowApp) -> None:
-    painter = flat.stream.painter
+    painter = flat.stream.composer.painters[0]
     painter.forget()
     painter.cost.learn(5.0, 240 * 160, 9)
     quick = painter.quick(0.01)
@@ -147,7 +148,7 @@ def test_a_full_picture_is_the_whole_one(flat: FlowApp) -> None:
 
 def test_the_point_under_the_pointer_stays_at_every_zoom(flat: FlowApp) -> None:
     navigator = flat.scene.navigator
-    flat.reset_camera()
+    flat.area.reset_camera()
 
     def under(x: float, y: float) -> Any:
         right, up, _ = navigator.axes
@@ -162,12 +163,12 @@ def test_the_point_under_the_pointer_stays_at_every_zoom(flat: FlowApp) -> None:
     for _ in range(90):
         navigator.wheel(-1.0, 0.5, -0.3)
     assert navigator.zoom == pytest.approx(0.25)
-    flat.reset_camera()
+    flat.area.reset_camera()
     assert navigator.zoom == pytest.approx(1.0)
 
 
 def test_a_drag_carries_a_flat_surface_along(flat: FlowApp) -> None:
-    flat.reset_camera()
+    flat.area.reset_camera()
     before = picture(flat)
     event = {"w": 240, "h": 160, "x": 100, "y": 80}
     send = flat.stream.on_interaction
@@ -177,11 +178,11 @@ def test_a_drag_carries_a_flat_surface_along(flat: FlowApp) -> None:
     moved = picture(flat)
     assert difference(moved[24:100, 64:180], before[40:116, 40:156]) < 1.5
     assert flat.scene.navigator.axes[2] == pytest.approx([0, 0, -1])
-    flat.reset_camera()
+    flat.area.reset_camera()
 
 
 def test_a_drag_turns_a_curved_surface(bent: FlowApp) -> None:
-    bent.reset_camera()
+    bent.area.reset_camera()
     before = bent.scene.navigator.axes[2]
     send = bent.stream.on_interaction
     event = {"w": 240, "h": 160, "x": 100, "y": 80}
@@ -194,30 +195,30 @@ def test_a_drag_turns_a_curved_surface(bent: FlowApp) -> None:
     send("test", {"type": "MouseMove", **event, "x": 140})
     send("test", {"type": "LeftButtonRelease", **event})
     assert focus != bent.scene.navigator.camera.GetFocalPoint()
-    bent.reset_camera()
+    bent.area.reset_camera()
 
 
 def test_a_zoom_into_a_curved_surface_stops_before_it(bent: FlowApp) -> None:
-    bent.reset_camera()
+    bent.area.reset_camera()
     for _ in range(40):
         bent.scene.navigator.wheel(1.0, 0.1, 0.1)
-    assert bent.scene._hit(0.1, 0.1) is not None
+    assert bent.scene.hit(0.1, 0.1) is not None
     assert bent.scene.navigator.zoom > 1000
-    bent.reset_camera()
+    bent.area.reset_camera()
 
 
 def test_pinching_zooms_between_the_fingers(flat: FlowApp) -> None:
-    flat.reset_camera()
+    flat.area.reset_camera()
     send = flat.stream.on_interaction
     fingers = {"0": {"x": 60, "y": 80}, "1": {"x": 180, "y": 80}}
     send("test", {"type": "StartPinch", "w": 240, "h": 160, "factor": 1})
     send("test", {"type": "Pinch", "w": 240, "h": 160, "factor": 2, "positions": fingers})
     assert flat.scene.navigator.zoom == pytest.approx(2)
-    flat.reset_camera()
+    flat.area.reset_camera()
 
 
 def test_a_moved_picture_is_the_one_that_would_be_drawn(flat: FlowApp) -> None:
-    flat.reset_camera()
+    flat.area.reset_camera()
     scene = flat.scene
     view = scene.plane_view()
     assert view is not None
@@ -233,40 +234,40 @@ def test_a_moved_picture_is_the_one_that_would_be_drawn(flat: FlowApp) -> None:
     scene.navigator.zoom_by(2.0)
     closer = scene.plane_view()
     assert closer is not None and coverage(shot, closer)[1] == pytest.approx(2)
-    flat.reset_camera()
+    flat.area.reset_camera()
 
 
 def test_time_and_colours_follow_the_slider(series: FlowApp) -> None:
-    series.set(time=0.0)
-    series._on_time()
+    series.state.set(time=0.0)
+    series.clockwork.take_time()
     early = picture(series)
-    series.set(time=2.5)
-    series._on_time()
-    assert series.scene.handle.time == 2.5 and series.get("moment") == "t = 2.50"
+    series.state.set(time=2.5)
+    series.clockwork.take_time()
+    assert series.scene.handle.time == 2.5 and series.state.get("moment") == "t = 2.50"
     assert difference(picture(series), early) > 2
-    series.set(time=99.0)
-    series._on_time()
+    series.state.set(time=99.0)
+    series.clockwork.take_time()
     assert series.scene.handle.time == 3.0
 
 
 def test_playing_goes_round(series: FlowApp) -> None:
-    series.set(time=2.9)
-    series._on_time()
-    series._advance(0.5)
+    series.state.set(time=2.9)
+    series.clockwork.take_time()
+    series.area.player.advance(0.5)
     assert 0 <= series.scene.handle.time < 0.5
 
 
 def test_playing_a_steady_flow_moves_its_clock(flat: FlowApp) -> None:
-    flat.set(playing=True)
-    flat._on_playing()
-    flat._on_settings()
+    flat.state.set(playing=True)
+    flat.clockwork.take_playing()
+    flat.look.take_settings()
     still = picture(flat)
-    flat._advance(0.5)
+    flat.area.player.advance(0.5)
     assert flat.scene.handle.clock == 0.5 and flat.scene.handle.settings.motion == "speed"
     assert difference(picture(flat), still) > 2
-    flat.set(playing=False, set_motion="off")
-    flat._on_playing()
-    flat._on_settings()
+    flat.state.set(playing=False, set_motion="off")
+    flat.clockwork.take_playing()
+    flat.look.take_settings()
 
 
 def test_the_cost_of_a_picture_is_learnt() -> None:
@@ -294,11 +295,11 @@ class Streamer:
 
 def test_pictures_come_until_rest_and_then_no_more(flat: FlowApp) -> None:
     stream, streamer = flat.stream, Streamer()
-    flat.reset_camera()
+    flat.area.reset_camera()
 
     async def watch() -> None:
         stream.set_streamer(streamer)
-        sharp = flat.get("sharp")
+        sharp = flat.state.get("sharp")
         task = asyncio.create_task(stream.run())
         for _ in range(200):
             # Many requests at once are one picture.
@@ -308,10 +309,10 @@ def test_pictures_come_until_rest_and_then_no_more(flat: FlowApp) -> None:
             if len(streamer.sent) >= 3:
                 break
         for _ in range(500):
-            if flat.get("sharp") > sharp:
+            if flat.state.get("sharp") > sharp:
                 break
             await asyncio.sleep(0.02)
-        assert flat.get("sharp") == sharp + 1 and flat.get("picture") == "sharp"
+        assert flat.state.get("sharp") == sharp + 1 and flat.state.get("picture") == "sharp"
         assert streamer.sent[-1]["quality"] > streamer.sent[0]["quality"]
         assert (streamer.sent[-1]["w"], streamer.sent[-1]["h"]) == (240, 160)
         count = len(streamer.sent)
@@ -331,7 +332,7 @@ def test_examples_make_an_app() -> None:
     app.stream.update_size("test", {"w": 64, "h": 48})
     assert app.scene.navigator.zoom == pytest.approx(3.0)
     assert (
-        app.get("colour") == "none"
-        and app.get("about") == "161 × 65 nodes · 31 times · periodic along i"
+        app.state.get("colour") == "none"
+        and app.state.get("about") == "161 × 65 nodes · 31 times · periodic along i"
     )
     app.close()

@@ -73,9 +73,11 @@ class Reader(html.parser.HTMLParser):
         return dict(json.loads(text))
 
     def parts(self) -> dict[str, NDArray[Any]]:
-        found = {}
+        found: dict[str, NDArray[Any]] = {}
         for given, text in self.scripts:
-            if given.get("data-part"):
+            if given.get("data-same"):
+                found[str(given["data-part"])] = found[str(given["data-same"])]
+            elif given.get("data-part"):
                 kind = np.dtype(given["data-dtype"])
                 planes = np.frombuffer(gzip.decompress(base64.b64decode(text)), np.uint8)
                 data = np.ascontiguousarray(planes.reshape(kind.itemsize, -1).T).view(kind)
@@ -189,6 +191,59 @@ def test_a_page_draws_from_a_file_without_a_network(
     assert [a for a in asked if a != address and not a.startswith(("data:", "blob:"))] == []
     drawn = pixels(page)
     assert np.abs(np.diff(drawn.mean(axis=-1), axis=0))[60:120, 60:240].mean() > 3
+
+
+PLAY = ".flowtex [data-name=play]"
+
+
+@pytest.mark.browser
+@pytest.mark.parametrize("times", [1, 3])
+def test_a_page_is_played_from_a_file_without_a_network(
+    times: int, offline: tuple[Page, list[str], list[str]], tmp_path: Path
+) -> None:
+    page, _, said = offline
+    export(gyre(times), tmp_path / "page.html", samples=5)
+    page.goto((tmp_path / "page.html").as_uri())
+    page.locator('[data-sharp="true"]').wait_for()
+    page.wait_for_function("() => !document.getElementById('preview')")
+    start = pixels(page)
+    page.locator(PLAY).click()
+    readout = page.locator(".flowtex .time")
+    readout.wait_for()
+    shown = readout.inner_text()
+    ask = "(was) => document.querySelector('.flowtex').shadowRoot.querySelector('.time')"
+    page.wait_for_function(f"{ask}.textContent !== was", arg=shown)
+    now = readout.inner_text()
+    page.wait_for_function(f"{ask}.textContent !== was", arg=now)
+    page.locator(PLAY).click()
+    page.locator('[data-sharp="true"]').wait_for()
+    inside = np.abs(pixels(page) - start)[60:120, 60:240]
+    assert inside.mean() > 3
+    assert said == []
+
+
+@pytest.mark.browser
+def test_two_views_on_a_page_move_together(
+    offline: tuple[Page, list[str], list[str]], tmp_path: Path
+) -> None:
+    page, _, said = offline
+    one = export(gyre(), tmp_path / "one.html", samples=5)
+    two = export(gyre(), tmp_path / "two.html", samples=5, beside={"lod": False})
+    assert two.nbytes < one.nbytes + 40_000  # the arrays lie in it once
+    page.goto(two.path.as_uri())
+    page.wait_for_function("() => !document.getElementById('preview')")
+    views = page.locator(".flowtex .picture")
+    assert views.count() == 2
+    before = [views.nth(n).screenshot() for n in range(2)]
+    box = views.nth(0).bounding_box()
+    assert box is not None
+    page.mouse.move(box["x"] + 70, box["y"] + 100)
+    page.mouse.wheel(0, -200)
+    page.wait_for_function("() => document.querySelector('[data-sharp=\"false\"]')")
+    page.wait_for_function("() => !document.querySelector('[data-sharp=\"false\"]')")
+    after = [views.nth(n).screenshot() for n in range(2)]
+    assert all(was != now for was, now in zip(before, after, strict=True))
+    assert said == []
 
 
 @pytest.mark.browser

@@ -498,7 +498,7 @@ def test_logging_is_left_as_it_was(tmp_path: Path) -> None:
 def test_what_vtk_only_warns_of_is_passed_on(tmp_path: Path) -> None:
     with (
         pytest.warns(UserWarning, match=r"^a\.vts: VTK says: odd$"),
-        files._reading(Path("a.vts")),
+        files.reading(Path("a.vts")),
     ):
         from vtkmodules.vtkCommonCore import vtkOutputWindow
 

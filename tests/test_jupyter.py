@@ -88,7 +88,7 @@ class Lab:
 def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     """Yield the address of a JupyterLab with an empty notebook."""
     folder = tmp_path_factory.mktemp("lab")
-    for name in ("test.ipynb", "pyvista.ipynb"):
+    for name in ("test.ipynb", "pyvista.ipynb", "thirty.ipynb", "two.ipynb"):
         (folder / name).write_text(json.dumps(_empty_notebook()))
     settings = folder / "settings" / "@jupyterlab" / "apputils-extension"
     settings.mkdir(parents=True)
@@ -142,7 +142,8 @@ def variation(pixels: NDArray[np.uint8]) -> float:
 def sharp(page: Page) -> None:
     """Wait for the picture; the client begins a new one in the frame after a change."""
     page.wait_for_timeout(400)
-    page.locator(SHARP).wait_for()
+    page.locator(SHARP).first.wait_for()
+    page.wait_for_function("() => !document.querySelector('.flowtex[data-sharp=\"false\"]')")
 
 
 def test_a_cell_shows_a_flow_that_both_sides_can_change(page: Page, server: str) -> None:
@@ -210,3 +211,91 @@ def test_pyvista_shows_a_plotter_when_it_is_asked_to(page: Page, server: str) ->
     assert (box["width"], box["height"]) == (300, 200)
     assert lab.said("w.camera['parallel_scale']") == "0.25"
     page.get_by_text("leaves out: 'ball'").first.wait_for()
+
+
+THIRTY = """import flowtex
+mesh = flowtex.examples.double_gyre_field(shape=(30, 60))
+ws = [flowtex.show(mesh, samples=5, size=(90, 60), bar=False) for n in range(30)]"""
+#: What all widgets of the page hold together; of a page without a widget nothing is left.
+HELD = """() => {
+  const gl = globalThis[Symbol.for("flowtex.gl/2")];
+  return { objects: gl.objects, users: gl.users.size, arrays: gl.stock.size,
+    common: gl.common.size, waiting: gl.waiting.size };
+}"""
+COUNT = """() => {
+  window.contexts = 0;
+  const get = HTMLCanvasElement.prototype.getContext;
+  HTMLCanvasElement.prototype.getContext = function (kind, ...given) {
+    if (kind === "webgl2") window.contexts += 1;
+    return get.call(this, kind, ...given);
+  };
+  window.listening = 0;
+  for (const target of [document, window]) {
+    const add = target.addEventListener.bind(target);
+    target.addEventListener = (kind, call, options) => {
+      const { signal } = options ?? {};
+      if (signal) window.listening += 1;
+      signal?.addEventListener("abort", () => (window.listening -= 1));
+      add(kind, call, options);
+    };
+  }
+}"""
+
+
+def test_thirty_widgets_draw_share_and_leave_nothing(page: Page, server: str) -> None:
+    page.set_default_timeout(60_000)
+    page.set_viewport_size({"width": 700, "height": 2900})
+    lab = Lab(page, server, "thirty.ipynb")
+    page.evaluate(COUNT)
+    lab.run(THIRTY)
+    drawn = f"() => document.querySelectorAll('{SHARP}').length"
+    page.wait_for_function(f"() => ({drawn})() === 30")
+    assert page.evaluate("window.contexts") == 1
+    assert variation(picture(page)) > 3
+    # Textures and buffers lie there once; each view adds what binds them to a program.
+    held = page.evaluate(HELD)
+    assert held["users"] == 30
+    assert held["arrays"] < 10
+    assert held["common"] < 10
+    assert held["objects"] < 60
+    assert page.evaluate("window.listening") >= 60
+
+    assert lab.said("[w.close() for w in ws][0]") == "None"
+    page.wait_for_function("() => !document.querySelector('.flowtex')")
+    left = {"objects": 0, "users": 0, "arrays": 0, "common": 0, "waiting": 0}
+    assert page.evaluate(HELD) == left
+    assert page.evaluate("window.listening") == 0
+
+
+TWO = """import flowtex, pathlib, time
+w = flowtex.show(flowtex.examples.double_gyre(), samples=5, size=(500, 200), bar=False,
+                 beside={"lod": False})
+while not pathlib.Path("FILE").exists():
+    time.sleep(0.1)"""
+
+
+def test_two_views_are_drawn_while_the_cell_still_runs(
+    page: Page, server: str, tmp_path: Path
+) -> None:
+    page.set_default_timeout(60_000)
+    page.set_viewport_size({"width": 900, "height": 900})
+    lab = Lab(page, server, "two.ipynb")
+    lab.run(TWO.replace("FILE", (tmp_path / "go").as_posix()))
+    page.wait_for_function(f"() => document.querySelectorAll('{SHARP}').length === 2")
+    (tmp_path / "go").touch()
+    assert page.locator(".flowtex .title").all_inner_texts() == [
+        "Level of detail: on",
+        "Level of detail: off",
+    ]
+    # A drag in one is the camera of both, and of Python.
+    box = page.locator(".flowtex").nth(1).bounding_box()
+    assert box is not None
+    was = json.loads(lab.said("__import__('json').dumps(w.camera)"))
+    page.mouse.move(box["x"] + 100, box["y"] + 100)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 140, box["y"] + 100, steps=4)
+    page.mouse.up()
+    sharp(page)
+    now = json.loads(lab.said("__import__('json').dumps(w.camera)"))
+    moved = now["focal_point"][0] - was["focal_point"][0]
+    assert moved == pytest.approx(-40 / 200 * 2 * now["parallel_scale"], rel=0.05)

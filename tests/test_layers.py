@@ -23,25 +23,31 @@ ROOT_NAME = "flowtex"
 # From the bottom to the top: a module imports from lines above its own here, and never from
 # one on the same line. The empty name is the package itself.
 LAYERS: tuple[tuple[str, ...], ...] = (
-    ("errors", "extras", "progress", "_assets", "_version"),
+    ("errors", "extras", "progress", "whole_file", "_assets", "_version"),
     ("settings",),
     ("field",),
     ("trace",),
-    ("textures", "first_look"),
+    ("textures", "first_look", "moments"),
+    ("movie_formats",),
+    ("movie_files",),
     ("glsl",),
     ("doctor",),
     ("renderers",),
-    ("view",),
+    ("view", "references"),
+    ("probe",),
     ("examples",),
     ("camera", "image_files"),
     ("handle",),
     ("plotter",),
+    ("sharing",),
     ("staging",),
     ("preview",),
     ("export",),
+    ("studio",),
     ("widget", "app"),
-    ("pictures", "jupyter"),
+    ("pictures", "movies", "jupyter"),
     ("",),
+    ("paper",),
     ("cli",),
 )
 RENDERERS = ("renderers.cpu", "renderers.vtk", "renderers.webgl")
@@ -51,11 +57,14 @@ FRONT_ENDS = (
     "plotter",
     "staging",
     "preview",
+    "studio",
     "pictures",
+    "movies",
     "jupyter",
     "widget",
     "app",
     "export",
+    "paper",
     "cli",
 )
 
@@ -91,6 +100,7 @@ ROOMS = (
     ),
     Room(("anywidget", "ipywidgets", "traitlets", "IPython"), on_load=("widget",)),
     Room(("xarray", "netCDF4", "pandas"), in_functions=("field", "examples")),
+    Room(("av",), in_functions=("movie_formats",)),
     Room(("cyclopts",), on_load=("cli",)),
 )
 SLOW = tuple(library for room in ROOMS for library in room.libraries)

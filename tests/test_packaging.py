@@ -7,11 +7,15 @@ import sys
 import tarfile
 import zipfile
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 
 import flowtex
 from flowtex import _assets
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
 
 ROOT = Path(__file__).resolve().parents[1]
 SHADERS = ROOT / "shaders"
@@ -111,6 +115,96 @@ def test_installed_wheel_reads_its_own_shaders(wheel: Path, tmp_path: Path) -> N
     assert Path(told["package"]).is_relative_to(site)
     assert Path(told["folder"]) == (site / "flowtex" / "_shaders").resolve()
     assert told["texts"] == _texts_of_checkout()
+
+
+WIDGET = """
+import json, shutil, sys, threading
+import flowtex
+from flowtex.widget import FlowWidget
+
+came, parts, done = [], {}, threading.Event()
+def send(self, content, buffers=None):
+    for name, kind, shape, data in zip(
+        content["names"], content.get("dtypes", ()), content.get("shapes", ()), buffers or ()
+    ):
+        parts[name] = {"dtype": kind, "shape": shape, "data": bytes(data).hex()}
+    if "slices/0" in parts:
+        done.set()
+FlowWidget.send = send
+widget = FlowWidget(flowtex.examples.double_gyre_field(shape=(20, 40)), samples=5)
+assert done.wait(30)
+header = {
+    **widget._header, "settings": dict(widget.settings), "camera": widget.camera,
+    "time": widget.time, "clock": widget.clock,
+}
+json.dump({
+    "package": flowtex.__file__, "node": shutil.which("node"), "client": str(widget._esm),
+    "header": header, "parts": parts,
+}, sys.stdout)
+"""
+SHOWN = """async ([source, header, parts]) => {
+  const url = URL.createObjectURL(new Blob([source], { type: "text/javascript" }));
+  const client = await import(url);
+  const opened = Object.fromEntries(Object.entries(parts).map(([name, part]) => [
+    name, { ...part, data: Uint8Array.from(part.data.match(/../g), (h) => parseInt(h, 16)) },
+  ]));
+  document.body.style.height = "200px";
+  window.viewer = client.mountPage(document.body, header, opened);
+}"""
+
+
+@pytest.fixture
+def empty_environment(wheel: Path, tmp_path: Path) -> Path:
+    """Install the wheel in an environment of its own, which sees the libraries of this one.
+
+    Nothing else of this environment's own is seen: neither its flowtex nor its commands.
+    """
+    folder = tmp_path / "environment"
+    _run(sys.executable, "-m", "venv", "--without-pip", str(folder), cwd=tmp_path)
+    python = folder / "bin" / "python"
+    site = Path(_run(str(python), "-c", SITE, cwd=tmp_path).strip())
+    _run(*PIP, "--target", str(site), str(wheel), cwd=tmp_path)
+    # A path file does not run those that lie where it points to, such as an editable install's.
+    (site / "libraries.pth").write_text("\n".join(p for p in sys.path if p.endswith("-packages")))
+    return python
+
+
+SITE = "import sysconfig; print(sysconfig.get_path('purelib'))"
+PIP = (
+    *(sys.executable, "-m", "pip", "install", "--quiet", "--disable-pip-version-check"),
+    *("--no-index", "--no-deps", "--no-compile"),
+)
+
+
+@pytest.mark.slow
+@pytest.mark.browser
+@pytest.mark.skipif(os.name == "nt", reason="commands lie in another folder there")
+def test_installed_wheel_shows_the_widget_without_node(
+    empty_environment: Path, page: Page, tmp_path: Path
+) -> None:
+    pytest.importorskip("anywidget")
+    plain = {"PATH": str(empty_environment.parent), "PYTHONPATH": ""}
+    told = json.loads(_run(str(empty_environment), "-P", "-c", WIDGET, cwd=tmp_path, **plain))
+    assert told["node"] is None
+    assert Path(told["package"]).is_relative_to(empty_environment.parents[1])
+    page.goto("about:blank")
+    client = Path(told["package"]).parent / "renderers" / "webgl" / "client.js"
+    assert client.read_text(encoding="utf-8") == told["client"]
+    page.evaluate(SHOWN, [told["client"], told["header"], told["parts"]])
+    page.locator('.flowtex[data-sharp="true"]').wait_for()
+    drawn = page.evaluate(DRAWN)
+    assert drawn > 10
+
+
+#: Standard deviation of what is drawn, in steps of 8 bits.
+DRAWN = """() => {
+  const { canvas } = window.viewer;
+  const { width, height } = canvas;
+  const data = canvas.getContext("2d").getImageData(0, 0, width, height).data;
+  const red = data.filter((_, n) => n % 4 === 0);
+  const mean = red.reduce((sum, x) => sum + x, 0) / red.length;
+  return Math.sqrt(red.reduce((sum, x) => sum + (x - mean) ** 2, 0) / red.length);
+}"""
 
 
 def test_editable_install_reads_the_checkout() -> None:

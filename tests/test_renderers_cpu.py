@@ -573,46 +573,6 @@ IMAGE[5:25, 10:40, 3] = 1.0
 #: The paper's textures, and pictures in their place, of a size that is made soon.
 TEXTURE: dict[str, Any] = {"noise": "texture", "resolution": 256}
 
-#: Name, field and options; each is another part of the shaders.
-VIEWS: dict[str, tuple[Callable[[], FlowField], dict[str, Any]]] = {
-    "whole": (gyre, {}),
-    "zoom 16": (gyre, {"zoom": 16}),
-    "zoom 256": (gyre, {"zoom": 256}),
-    "many cells in a pixel": (lambda: gyre(201, 101), {}),
-    "tilted": (gyre, {"position": TILTED}),
-    "curved": (torus, {"position": ASIDE}),
-    "no lod": (gyre, {"lod": False, "resolution": 128}),
-    "box": (gyre, {"kernel": "box", "zoom": 4}),
-    "one-sided": (gyre, {"two_sided": False, "kernel": "ramp", "zoom": 4}),
-    "by time": (gyre, {"parameter": "time", "zoom": 4}),
-    "fixed grain": (gyre, {"fixed_grain": True, "resolution": 128, "zoom": 2}),
-    "streaming": (gyre, {"motion": "speed", "clock": 1.7, "zoom": 2}),
-    "between two steps": (swinging, {"time": 0.55}),
-    "texture": (gyre, TEXTURE),
-    "texture, stretched": (gyre, TEXTURE | {"noise_correction": False}),
-    "texture, zoom 16": (gyre, TEXTURE | {"zoom": 16}),
-    "texture, curved": (torus, TEXTURE | {"position": ASIDE}),
-    "texture, no lod": (gyre, TEXTURE | {"lod": False}),
-    "texture in time": (swinging, TEXTURE | {"time": 0.55}),
-    "spots": (gyre, TEXTURE | {"noise": "spots"}),
-    "squares": (gyre, TEXTURE | {"noise": "checkerboard", "position": TILTED}),
-    "image": (gyre, {"image": IMAGE, "tiles": 3}),
-    "grazing": (gyre, {"position": GRAZING}),
-    "levels": (gyre, {"show_level": True, "position": TILTED}),
-}
-
-
-@pytest.mark.parametrize("name", VIEWS)
-def test_vtk_draws_the_same_picture(plotter: Any, name: str) -> None:
-    make, options = VIEWS[name]
-    theirs, picture = both(plotter, make(), **options)
-    root, share, only_one = difference(theirs, picture)
-    assert picture.covered.mean() > 0.1
-    assert root < ROOT
-    assert share < SHARE
-    # Where an edge of the surface passes through the middle of a pixel, either may cover it.
-    assert only_one <= 3
-
 
 @pytest.mark.parametrize("name", ["spacing", "grain", "contrast"])
 def test_two_hundredths_more_would_be_noticed(plotter: Any, name: str) -> None:

@@ -1,21 +1,26 @@
-"""The browser client: its pictures against those of NumPy, its hands, and what it leaves behind.
-
-How near the pictures come. Both get the same half-precision textures and compute the same
-uniforms; what is left is single precision along the path and eight bits at the end, 0.02 to 0.1
-of a step root mean square, and at the greatest zooms the position of a pixel within its cell,
-0.6 of a step. Two hundredths more of a setting make nearly a whole step. On a curved surface
-normals have eight bits, which moves the level where it is seen from aside.
-"""
+"""The browser client: its hands, its numbers, what it leaves behind; matrix.py has the pictures."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from functools import cache
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
+from matrix import (
+    ASIDE,
+    IMAGE,
+    ROOT,
+    SIZE,
+    TILTED,
+    WHOLE,
+    difference,
+    gyre,
+    straight,
+    swinging,
+    torus,
+)
 from numpy.typing import NDArray
 from webgl_page import ClientPage, packed, state
 
@@ -36,64 +41,12 @@ pytestmark = pytest.mark.browser
 Floats = NDArray[np.float64]
 Pixels = NDArray[np.uint8]
 
-SIZE = (180, 120)
-#: Root mean square in steps of 8 bits, and share of pixels that differ by more than 8 of them.
-ROOT, SHARE = 0.6, 0.001
-#: Whether Chromium draws with the WebGL that it brings.
-OWN = """(({ gl }) => gl.getExtension('WEBGL_debug_renderer_info') !== null
-  && /SwiftShader/.test(gl.getParameter(37446)))(viewers[0].graphics)"""
-#: The same where Chromium brings its own WebGL, which filters textures with fewer digits.
-COARSE = 2.5
-#: On a curved surface, whose normals have eight bits: 0.65, and 0.04 with normals of sixteen.
-CURVED = 0.6
 #: The processor draws: few samples, and no more smoothing than the NumPy renderer has.
 QUICK: dict[str, Any] = {"samples": 11}
 PLAIN: dict[str, Any] = {"controls": False, "smooth": False}
 
 
-@pytest.fixture(scope="module")
-def fast(browser: Browser, chromium: Path) -> Iterator[Browser]:
-    """A browser whose WebGL is Mesa's, several times as fast as the one it brings."""
-    arguments = ["--use-angle=gl-egl", "--ignore-gpu-blocklist"]
-    started = browser.browser_type.launch(executable_path=chromium, args=arguments)
-    page = started.new_page()
-    if not page.evaluate("!!document.createElement('canvas').getContext('webgl2')"):
-        started.close()
-        yield browser
-        return
-    page.close()
-    yield started
-    started.close()
-
-
-@pytest.fixture(scope="module")
-def opened(fast: Browser) -> Iterator[ClientPage]:
-    context = fast.new_context(viewport={"width": 900, "height": 700})
-    yield ClientPage(context.new_page())
-    context.close()
-
-
-@pytest.fixture
-def client(opened: ClientPage) -> Iterator[ClientPage]:
-    """The client, without a viewer and with nothing to complain of afterwards."""
-    yield opened
-    opened.clear()
-    heard, opened.errors = opened.errors, []
-    assert heard == []
-
-
 # --- scenes -----------------------------------------------------------------------------------
-
-
-@cache
-def gyre() -> FlowField:
-    """Two vortices on a bent grid, its nodes at numbers that single precision holds exactly."""
-    s, t = np.meshgrid(np.linspace(0, 1, 61), np.linspace(0, 1, 31))
-    x = 2 * (s + 0.06 * np.sin(2 * np.pi * s)) + 0.12 * np.sin(np.pi * t)
-    points = np.rint(np.stack([x, t**1.3], axis=-1) * 1024) / 1024
-    a, b = np.pi * points[..., 0], np.pi * points[..., 1]
-    velocity = np.stack([-np.sin(a) * np.cos(b), np.cos(a) * np.sin(b)], axis=-1)
-    return FlowField.from_arrays(points, velocity)
 
 
 @cache
@@ -106,38 +59,6 @@ def coarse_gyre() -> FlowField:
 
 
 @cache
-def torus() -> FlowField:
-    a, b = np.meshgrid(np.linspace(0, 2 * np.pi, 49), np.linspace(0, 2 * np.pi, 25))
-    radius = 1 + 0.4 * np.cos(b)
-    points = np.stack([radius * np.cos(a), radius * np.sin(a), 0.4 * np.sin(b)], axis=-1)
-    around = np.stack([-np.sin(a), np.cos(a), 0 * a], axis=-1)
-    over = np.stack([-np.sin(b) * np.cos(a), -np.sin(b) * np.sin(a), np.cos(b)], axis=-1)
-    velocity = (1 + 0.5 * np.sin(b))[..., None] * around + 0.6 * np.cos(2 * a)[..., None] * over
-    return FlowField.from_arrays(points, velocity)
-
-
-@cache
-def swinging() -> FlowField:
-    """A vortex that wanders, at three times."""
-    y, x = np.mgrid[-1:1:31j, -1:1:31j]
-    steps = [np.stack([-(y - 0.2 * t), x - 0.1 * t * t], axis=-1) for t in (0.0, 1.0, 2.0)]
-    return FlowField.from_arrays(np.stack([x, y], axis=-1), np.stack(steps), times=[0.0, 0.4, 0.8])
-
-
-@cache
-def lines() -> FlowField:
-    """Lines around a point that all point to the right: they turn over where x is 0."""
-    y, x = np.mgrid[-1:1:32j, -1:1:32j]
-    way = np.stack([-y, x], axis=-1) * np.where(y > 0, -1, 1)[..., None]
-    return FlowField.from_arrays(np.stack([x, y], axis=-1), way, sign_free=True)
-
-
-IMAGE = np.zeros((30, 50, 4))
-IMAGE[..., :2] = np.moveaxis(np.indices((30, 50)), 0, -1) / 50
-IMAGE[5:25, 10:40, 3] = 1.0
-
-
-@cache
 def store(field: Callable[[], FlowField]) -> SliceStore:
     return SliceStore(field())
 
@@ -145,17 +66,6 @@ def store(field: Callable[[], FlowField]) -> SliceStore:
 def made(field: Callable[[], FlowField], settings: Settings) -> TextureSet:
     image = as_picture(IMAGE) if settings.noise == "image" else None
     return TextureSet.build(store(field), settings, image)
-
-
-def straight(zoom: float, focus: tuple[float, float] = (0.63, 0.37)) -> Camera:
-    x, y = focus
-    return Camera((x, y, 5.0), (x, y, 0.0), (0, 1, 0), SIZE, 0.9 / zoom)
-
-
-WHOLE = straight(1, (1.0, 0.5))
-TILTED = Camera((1.9, -0.9, 1.1), (0.9, 0.45, 0.0), (0, 0, 1), SIZE)
-ASIDE = Camera((2.4, -1.9, 1.5), (0.0, 0.0, 0.0), (0, 0, 1), SIZE)
-TEXTURE: dict[str, Any] = {"noise": "texture", "resolution": 256}
 
 
 def scene(
@@ -177,59 +87,21 @@ def scene(
     return packed(whole, header | {"camera": look or None}, steps)
 
 
-def difference(theirs: Pixels, ours: Pixels) -> tuple[float, float, int]:
-    """Root mean square, share beyond 8 steps, and pixels that only one of them covers."""
-    covered = [(p != [255, 0, 0]).any(axis=-1) for p in (theirs, ours)]
-    off = (theirs.astype(float) - ours)[covered[0] & covered[1]]
-    root = float(np.sqrt(np.mean(off**2)))
-    return root, float(np.mean(np.abs(off) > 8)), int((covered[0] != covered[1]).sum())
-
-
 def colours(picture: Picture) -> Pixels:
     return picture.rgb((0.6, 0.6, 0.6), background=(1, 0, 0))
 
 
 # --- pictures ---------------------------------------------------------------------------------
 
-#: Name, field, camera and options; each is another part of the client.
+#: Name, field, camera and options, for what is computed apart from the pictures.
 VIEWS: dict[str, tuple[Callable[[], FlowField], Camera, dict[str, Any]]] = {
     "whole": (gyre, WHOLE, {}),
     "zoom 64": (gyre, straight(64), {}),
     "zoom 1e5": (gyre, straight(1e5), {}),
-    "tilted, levels": (gyre, TILTED, {"show_level": True}),
     "curved": (torus, ASIDE, {}),
-    "no lod": (gyre, WHOLE, {"lod": False, "resolution": 128}),
-    "one-sided": (gyre, straight(4), {"two_sided": False, "kernel": "ramp"}),
-    "streaming": (gyre, straight(2), {"motion": "speed", "clock": 1.7}),
     "between two steps": (swinging, straight(1, (0, 0)), {"time": 0.55}),
-    "without a sign": (lines, straight(1, (0, 0)), {}),
-    "texture": (gyre, WHOLE, TEXTURE),
-    "texture in time": (swinging, straight(1, (0, 0)), TEXTURE | {"time": 0.55}),
-    "texture, curved": (torus, ASIDE, TEXTURE),
     "image": (gyre, WHOLE, {"noise": "image", "tiles": 3}),
 }
-
-
-@pytest.mark.parametrize("name", VIEWS)
-def test_the_client_draws_the_same_picture(client: ClientPage, name: str) -> None:
-    field, camera, options = VIEWS[name]
-    steps = (1, 2) if "time" in options else (0,)
-    theirs = client.picture(
-        client.mount(scene(field, camera, steps=steps, **options), SIZE, **PLAIN)
-    )
-    view = ViewState(between=0.375 if "time" in options else 0.0, clock=options.get("clock", 0.0))
-    left = {k: v for k, v in options.items() if k not in ("time", "clock")}
-    settings = Settings(**{**QUICK, **left})
-    picture = render(
-        made(field, settings), settings, camera, view=view, steps=(steps[0], steps[-1])
-    )
-    assert picture.covered.mean() > 0.1
-    root, share, only_one = difference(theirs, colours(picture))
-    own = number(client, OWN)
-    assert root < (COARSE if own else CURVED if field is torus else ROOT)
-    assert share < (5 * SHARE if own else SHARE)
-    # Where an edge of the surface passes through the middle of a pixel, either may cover it.
-    assert only_one <= 3
 
 
 def test_two_hundredths_more_would_be_noticed(client: ClientPage) -> None:
@@ -586,10 +458,10 @@ def test_the_whole_surface_is_seen_in_any_shape(client: ClientPage) -> None:
             client.clear()
 
 
-def test_finer_pixels_show_the_same_grains(fast: Browser, client: ClientPage) -> None:
+def test_finer_pixels_show_the_same_grains(webgl_browser: Browser, client: ClientPage) -> None:
     client.mount(scene(gyre, straight(4)), SIZE, **PLAIN)
     coarse = client.picture().astype(float)
-    context = fast.new_context(device_scale_factor=2)
+    context = webgl_browser.new_context(device_scale_factor=2)
     other = ClientPage(context.new_page())
     other.mount(scene(gyre, straight(4)), SIZE, **PLAIN)
     fine = other.picture().astype(float)

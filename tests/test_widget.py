@@ -55,6 +55,8 @@ class Heard:
                 for (name, kind, shape), data in zip(described, buffers, strict=True):
                     self.arrays[name] = np.frombuffer(data, kind).reshape(shape)
             self._came.notify_all()
+        if content["kind"] == "offer":
+            self.say(kind="want", names=content["names"])
 
     def say(self, **message: Any) -> None:
         self.widget._handle_custom_msg(message, [])
@@ -147,13 +149,12 @@ def test_a_client_that_is_ready_gets_what_it_needs(
     widget.time = 1.5
     heard = Heard(widget, monkeypatch)
     heard.say(kind="ready")
-    heard.wait(lambda: "slices/2" in heard.arrays)
-    assert sorted(n for n in heard.arrays if n.startswith("slices")) == ["slices/1", "slices/2"]
+    heard.wait(lambda: {"slices/1", "slices/2"} <= set(heard.arrays))
+    assert "slices/0" not in heard.arrays
     assert {"position", "cmap", "scalars/1", "extra/1"} <= set(heard.arrays)
-    np.testing.assert_array_equal(heard.arrays["slices/1"], widget._feed.scene.step(1)["slices/1"])
-    np.testing.assert_array_equal(
-        heard.arrays["position"], widget._feed.scene.surface()["position"]
-    )
+    scene = widget._views.feeds[0].scene
+    np.testing.assert_array_equal(heard.arrays["slices/1"], scene.step(1)["slices/1"])
+    np.testing.assert_array_equal(heard.arrays["position"], scene.surface()["position"])
     heard.say(kind="need", step=3)
     heard.wait(lambda: "slices/3" in heard.arrays)
     heard.say(kind="need", step=7)
@@ -179,6 +180,20 @@ def test_a_large_field_comes_coarse_first(make: Make, monkeypatch: pytest.Monkey
     )
 
 
+def test_a_field_that_takes_long_has_a_form_between(
+    make: Make, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name, nodes in (("LARGE", 2000), ("LONG", 3000)):
+        monkeypatch.setattr(feed, name, nodes)
+    for name, nodes in (("COARSE_VARYING", 100), ("BETWEEN_VARYING", 400)):
+        monkeypatch.setattr(feed, name, nodes)
+    widget = make(gyre(2, nodes=60))
+    shapes = [widget._header["geometry"]["shape"]]
+    widget.observe(lambda change: shapes.append(change["new"]["geometry"]["shape"]), "_header")
+    assert widget._views.feeds[0].settled.wait(20)
+    assert shapes == [[10, 10], [20, 20], [60, 60]]
+
+
 def test_a_setting_sends_what_it_changes_and_no_more(
     make: Make, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -186,7 +201,7 @@ def test_a_setting_sends_what_it_changes_and_no_more(
     heard = Heard(widget, monkeypatch)
     heard.say(kind="ready")
     heard.wait(lambda: "noise" in heard.arrays)
-    assert widget._feed.settled.wait(20)
+    assert widget._views.feeds[0].settled.wait(20)
     heard.messages.clear()
     widget.contrast = 2.0
     widget.samples = 30
@@ -205,7 +220,7 @@ def test_an_image_can_come_later(make: Make, monkeypatch: pytest.MonkeyPatch) ->
     widget = make()
     widget.set_image(SQUARES.astype(np.uint8))
     assert widget.noise == "image"
-    assert widget._feed.settled.wait(20)
+    assert widget._views.feeds[0].settled.wait(20)
     assert widget._header["paper"]["picture"]
 
 
@@ -219,7 +234,7 @@ def test_an_error_while_tracing_is_told(
         msg = "out of memory"
         raise MemoryError(msg)
 
-    monkeypatch.setattr(widget._stage, "scene", fail)
+    monkeypatch.setattr(widget._views.stages[0], "scene", fail)
     widget.noise = "spots"
     heard.wait(lambda: any(m["kind"] == "error" for m in heard.messages))
     assert heard.messages[-1]["text"] == "MemoryError: out of memory"
@@ -248,7 +263,7 @@ def test_a_notebook_that_is_read_elsewhere_has_a_picture(make: Make) -> None:
     assert time.perf_counter() - started < 1.5  # four tenths of a second, on a machine at rest
     assert "gyre: 20 x 20" in data["text/plain"]
     assert data["application/vnd.jupyter.widget-view+json"]["model_id"] == widget.model_id
-    assert widget._feed.pictured.wait(20)
+    assert widget._views.feeds[0].pictured.wait(20)
     data, _ = widget._repr_mimebundle_()
     with Image.open(io.BytesIO(base64.b64decode(data["image/png"]))) as picture:
         assert picture.size == (480, 300)
@@ -312,8 +327,8 @@ def test_show_displays_once_in_a_notebook(make: Make, monkeypatch: pytest.Monkey
     monkeypatch.setattr(Shell, "execution_count", 4)
     widget._ipython_display_()
     assert len(shown) == 3
-    with pytest.raises(ValueError, match=r"^two views need a window"):
-        flowtex.show(gyre(), beside={"lod": False})
+    with pytest.raises(TypeError, match=r"^scalar_bar_args is for windows"):
+        flowtex.show(gyre(), scalar_bar_args={"title": "speed"})
     widget.close()
 
 
@@ -325,3 +340,66 @@ def test_it_is_written_as_a_page_from_where_it_is(make: Make, tmp_path: Any) -> 
     assert '"parallel_scale":0.123' in text
     assert widget.to_html(tmp_path / "page.html", title="here") is None
     assert "<title>here</title>" in (tmp_path / "page.html").read_text()
+
+
+def test_many_views_of_one_mesh_share_what_is_made_of_it(
+    make: Make, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    first, other = make(gyre(nodes=60)), make(gyre(nodes=60), contrast=2.0)  # made twice
+    assert first.field is other.field
+    first_scene, other_scene = (w._views.feeds[0].scene for w in (first, other))
+    assert first_scene.textures is other_scene.textures
+    assert first_scene.step(0)["slices/0"] is other_scene.step(0)["slices/0"]
+    different = make(gyre(nodes=61))
+    assert different.field is not first.field
+    assert make(gyre(nodes=60), noise="spots", resolution=32).view.store is first.view.store
+    # What has gone to a page is offered to the next view, and sent to whoever lacks it.
+    heard = Heard(other, monkeypatch)
+    heard.say(kind="ready")
+    heard.wait(lambda: "slices/0" in heard.arrays)
+    offers = [m for m in heard.messages if m["kind"] == "offer"]
+    assert "slices/0" in offers[0]["names"]
+
+
+def test_what_is_shown_is_sent_before_anybody_asks(
+    make: Make, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    came = threading.Event()
+
+    def send(self: FlowWidget, content: dict[str, Any], buffers: Any = None) -> None:
+        if any(name == "slices/0" for name in content.get("names", ())):
+            came.set()
+
+    monkeypatch.setattr(FlowWidget, "send", send)
+    make(gyre(nodes=17))
+    assert came.wait(20)
+
+
+def test_two_views_are_one_widget(make: Make, monkeypatch: pytest.MonkeyPatch) -> None:
+    widget = make(gyre(3), beside={"noise": "spots", "resolution": 32})
+    assert widget._header_beside["own"] == {"noise": "spots", "resolution": 32}
+    assert widget._header["differs"] == widget._header_beside["differs"] == ["noise", "resolution"]
+    assert "FLOWTEX_PAPER" in widget._header_beside["variant"]
+    heard = Heard(widget, monkeypatch)
+    heard.say(kind="ready")
+    heard.wait(lambda: {0, 1} <= {m["view"] for m in heard.messages})
+    # The second follows the first but in what is its own.
+    second = widget._views.stages[1].view.settings
+    widget.samples = 33
+    assert second.samples == 33
+    widget.noise = "checkerboard"
+    assert second.noise == "spots"
+    with pytest.raises(ValueError, match=r"^beside has plane; both views show one field"):
+        make(beside={"plane": "k=2"})
+    text = widget.to_html()
+    assert text is not None
+    assert 'data-part="beside:noise"' in text
+    assert 'data-part="beside:position" data-same="position"' in text
+
+
+def test_opacity_and_legend(make: Make) -> None:
+    widget = make(opacity=0.5, show_scalar_bar=False)
+    assert widget._header["opacity"] == 0.5
+    assert widget._header["scalars"]["bar"] is False
+    with pytest.raises(ValueError, match=r"^opacity is 2; expected a number from 0 to 1"):
+        make(opacity=2)

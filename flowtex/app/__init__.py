@@ -1,21 +1,27 @@
-"""The page: a flow drawn on this machine and looked at in a browser.
+"""The page: flows drawn on this machine and looked at in a browser.
 
 ::
 
-    browser   drags, wheel, controls                pictures (JPEG)
-                 |                                      ^
-    trame     state of the controls          remote controlled area
-                 |                                      |
-    FlowApp   change handlers  ----------------->  FrameStream   when, and how well, to draw
-                 |                                      |
-                 +------------> Scene, Navigator <------+        VTK, off screen; the camera
+    browser    drags, wheel, controls                       pictures (JPEG)
+                  |                                             ^
+    trame      state of the controls               remote controlled area
+                  |                                             |
+    FlowApp    its parts: data, look, time, ... -> FlowArea -> FrameStream   when to draw
+                                                      |         |
+                                                      |      Composer, Painters   how well
+                                                      v         v
+                                                    Scene: panes, colours, Canvas (VTK)
 
-:func:`serve` runs it on one port of this machine, behind a secret of its own.
+:class:`FlowApp` is a whole page, :class:`FlowArea` the view alone, for other trame applications.
+:func:`serve` runs pages on one port of this machine, each with a state of its own, behind a
+secret; :class:`Library` is what they may open.
 """
 
 from __future__ import annotations
 
+from flowtex.app.area import FlowArea
 from flowtex.app.flow_app import FlowApp
+from flowtex.app.library import Choice, Library
 from flowtex.app.serving import ServeError, serve
 
-__all__ = ["FlowApp", "ServeError", "serve"]
+__all__ = ["Choice", "FlowApp", "FlowArea", "Library", "ServeError", "serve"]

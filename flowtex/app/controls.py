@@ -3,22 +3,39 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 from trame.widgets import html
 from trame.widgets import vuetify3 as v3
 
-from flowtex.settings import TABLE, Setting
+from flowtex.settings import Setting
 
-__all__ = ["ARIA", "PRIMARY", "REST", "control", "label"]
+__all__ = [
+    "ARIA",
+    "GROUPS",
+    "PRIMARY",
+    "control",
+    "hint",
+    "label",
+    "number",
+    "row",
+    "select",
+    "slider",
+    "switch",
+]
 
-#: What everybody needs; the rest is unfolded.
+#: What everybody needs, besides the colour; the rest is unfolded, group by group.
 PRIMARY = ("lod", "noise", "samples", "contrast")
-REST = tuple(name for name in TABLE if name not in PRIMARY)
+GROUPS: dict[str, tuple[str, ...]] = {
+    "Texture": ("kernel", "two_sided", "grain", "fixed_grain", "spacing", "strength", "show_level"),
+    "Noise": ("seed", "tiles", "noise_correction", "resolution"),
+    "Motion": ("motion", "speed", "speed_in", "period", "parameter"),
+}
 
 #: More choices than this are a menu.
 MOST_BUTTONS = 3
 #: A range with more values than this is typed, not dragged.
-MOST_STOPS = 1000
+MOST_STOPS = 500
 
 #: Attributes that trame's widgets do not know by themselves.
 ARIA = [("aria_label", "aria-label"), ("aria_expanded", "aria-expanded")]
@@ -32,46 +49,75 @@ def label(name: str) -> str:
     return LABELS.get(name, name.replace("_", " ").capitalize())
 
 
-def control(row: Setting, key: str) -> None:
+def control(setting: Setting, key: str) -> None:
     """Put a control for one setting into the widget that is open.
 
     Parameters
     ----------
-    row
+    setting
         The setting.
     key
         Name of the state that holds its value.
     """
-    with html.Div(classes="flowtex-row", data_setting=row.name, __properties=DATA):
-        _hint(row.text)
-        _widget(row)(row, key)
+    with row(setting.name, setting.text):
+        _widget(setting)(setting, key)
 
 
-def _widget(row: Setting) -> Callable[[Setting, str], None]:
-    if row.kind is bool:
+def row(name: str, text: str, **attributes: Any) -> Any:
+    """Return a row of the panel, with a hint, to be filled."""
+    line = html.Div(classes="flowtex-row", data_setting=name, __properties=DATA, **attributes)
+    with line:
+        hint(text)
+    return line
+
+
+def hint(text: str, location: str = "start") -> None:
+    """Say what the widget that is open is for, when the pointer rests on it."""
+    v3.VTooltip(
+        text=text, activator="parent", location=location, max_width=240, open_delay=400, offset=18
+    )
+
+
+def select(name: str, key: str, items: Any, **attributes: Any) -> None:
+    """Put a menu of choices into the row that is open."""
+    html.Span(name, classes="flowtex-label")
+    v3.VSelect(
+        v_model=(key,),
+        items=items,
+        aria_label=name,
+        __properties=ARIA,
+        density="compact",
+        variant="plain",
+        hide_details=True,
+        classes="flowtex-select",
+        **attributes,
+    )
+
+
+def _widget(setting: Setting) -> Callable[[Setting, str], None]:
+    if setting.kind is bool:
         return _switch
-    if row.choices:
-        return _choice if len(row.choices) <= MOST_BUTTONS else _menu
-    if (row.high or 0) - (row.low or 0) > MOST_STOPS:
+    if setting.choices:
+        return _choice if len(setting.choices) <= MOST_BUTTONS else _menu
+    if (setting.high or 0) - (setting.low or 0) > MOST_STOPS:
         return _number
     return _slider
 
 
-def _hint(text: str) -> None:
-    v3.VTooltip(
-        text=text, activator="parent", location="start", max_width=240, open_delay=400, offset=18
-    )
+def _name(setting: Setting) -> None:
+    html.Span(label(setting.name), classes="flowtex-label")
 
 
-def _name(row: Setting) -> None:
-    html.Span(label(row.name), classes="flowtex-label")
+def _switch(setting: Setting, key: str) -> None:
+    _name(setting)
+    switch(label(setting.name), key)
 
 
-def _switch(row: Setting, key: str) -> None:
-    _name(row)
+def switch(name: str, key: str) -> None:
+    """Put a switch into the row that is open."""
     v3.VSwitch(
         v_model=(key,),
-        aria_label=label(row.name),
+        aria_label=name,
         __properties=ARIA,
         color="primary",
         density="compact",
@@ -81,8 +127,8 @@ def _switch(row: Setting, key: str) -> None:
     )
 
 
-def _choice(row: Setting, key: str) -> None:
-    _name(row)
+def _choice(setting: Setting, key: str) -> None:
+    _name(setting)
     with v3.VBtnToggle(
         v_model=(key,),
         mandatory=True,
@@ -91,61 +137,65 @@ def _choice(row: Setting, key: str) -> None:
         divided=False,
         color="primary",
         classes="flowtex-toggle",
-        aria_label=label(row.name),
+        aria_label=label(setting.name),
         __properties=ARIA,
     ):
-        for choice in row.choices:
+        for choice in setting.choices:
             v3.VBtn(choice, value=choice, size="small")
 
 
-def _menu(row: Setting, key: str) -> None:
-    _name(row)
-    v3.VSelect(
+def _menu(setting: Setting, key: str) -> None:
+    select(label(setting.name), key, (f"{key}_choices", list(setting.choices)))
+
+
+def _slider(setting: Setting, key: str) -> None:
+    low, high = setting.low or 0, setting.high or 1
+    step = 1 if setting.kind is int else _step(high - low)
+    digits = 0 if setting.kind is int else 2
+    with html.Div(classes="flowtex-stack"):
+        with html.Div(classes="flowtex-line"):
+            _name(setting)
+            html.Span(f"{{{{ Number({key}).toFixed({digits}) }}}}", classes="flowtex-value")
+        slider(label(setting.name), key, low, high, step)
+
+
+def slider(name: str, key: str, low: Any, high: Any, step: Any, **attributes: Any) -> None:
+    """Put a slider into the widget that is open."""
+    v3.VSlider(
         v_model=(key,),
-        items=(f"{key}_choices", list(row.choices)),
-        aria_label=label(row.name),
+        min=low,
+        max=high,
+        step=step,
+        aria_label=name,
         __properties=ARIA,
+        color="primary",
         density="compact",
-        variant="plain",
         hide_details=True,
-        classes="flowtex-select",
+        thumb_size=14,
+        track_size=3,
+        **attributes,
     )
 
 
-def _slider(row: Setting, key: str) -> None:
-    low, high = row.low or 0, row.high or 1
-    step = 1 if row.kind is int else _step(high - low)
-    digits = 0 if row.kind is int else 2
-    with html.Div(classes="flowtex-stack"):
-        with html.Div(classes="flowtex-line"):
-            _name(row)
-            html.Span(f"{{{{ Number({key}).toFixed({digits}) }}}}", classes="flowtex-value")
-        v3.VSlider(
-            v_model=(key,),
-            min=low,
-            max=high,
-            step=step,
-            aria_label=label(row.name),
-            __properties=ARIA,
-            color="primary",
-            density="compact",
-            hide_details=True,
-            thumb_size=14,
-            track_size=3,
-        )
+def _number(setting: Setting, key: str) -> None:
+    _name(setting)
+    number(label(setting.name), key, setting.low, setting.high, whole=setting.kind is int)
 
 
-def _number(row: Setting, key: str) -> None:
-    _name(row)
+def number(
+    name: str, key: str, low: float | None = None, high: float | None = None, *, whole: bool = False
+) -> None:
+    """Put a field to type a number in into the row that is open."""
     typed = "Number($event.target.value)"
     html.Input(
         type="number",
+        step="any",
         value=(key,),
-        change=f"{key} = {f'Math.round({typed})' if row.kind is int else typed}",
-        min=row.low,
-        max=row.high,
-        aria_label=label(row.name),
-        __properties=[*ARIA, "value", "min", "max", "type"],
+        change=f"{key} = {f'Math.round({typed})' if whole else typed}",
+        min=low,
+        max=high,
+        aria_label=name,
+        __properties=[*ARIA, "value", "min", "max", "type", "step"],
         __events=["change"],
         classes="flowtex-number",
     )

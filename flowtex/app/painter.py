@@ -1,4 +1,4 @@
-"""Pictures of a scene: a quick one for motion, and the full one a tile at a time.
+"""Pictures of a pane: a quick one for motion, and the full one a tile at a time.
 
 The quick one is the full picture where that is fast enough. Otherwise, when only the camera
 moved over a flat surface, it is the last full picture moved to its new place, and else a draft of
@@ -9,13 +9,14 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterator
+from collections.abc import Generator
 
 import numpy as np
 from numpy.typing import NDArray
 
+from flowtex.app.canvas import Rect
+from flowtex.app.pane import Pane
 from flowtex.app.quality import Cost, Quality
-from flowtex.app.scene import Rect, Scene
 from flowtex.app.warp import Shot, coverage, warp
 
 __all__ = ["Painter"]
@@ -31,20 +32,32 @@ WIDER = 1.7
 
 
 class Painter:
-    """Draws a scene as well as the time allows.
+    """Draws a pane as well as the time allows.
+
+    Parameters
+    ----------
+    pane
+        What is drawn.
+    cost
+        What pictures cost here, where it is known; learnt from the pictures.
 
     Attributes
     ----------
+    pane
+        What is drawn.
     cost
         What pictures cost here.
     complete
         Whether the last picture that was drawn is at full quality.
+    drafting
+        Whether a setting is changed for the moment, for a draft.
     """
 
-    def __init__(self, scene: Scene) -> None:
-        self.cost = Cost()
+    def __init__(self, pane: Pane, cost: Cost | None = None) -> None:
+        self.pane = pane
+        self.cost = cost or Cost()
         self.complete = False
-        self._scene = scene
+        self.drafting = False
         self._shot: Shot | None = None
         self._under: Shot | None = None
         self._last: Pixels | None = None
@@ -58,7 +71,7 @@ class Painter:
 
     @property
     def _samples(self) -> int:
-        return self._scene.handle.settings.samples
+        return self.pane.handle.settings.samples
 
     def quick(self, budget: float) -> Pixels:
         """Return a picture within about ``budget`` seconds, (h, w, 3) uint8."""
@@ -66,9 +79,9 @@ class Painter:
         return self._last
 
     def _quick(self, budget: float) -> Pixels:
-        width, height = self._scene.size
+        width, height = self.pane.size
         quality = self.cost.choose(width * height, self._samples, budget)
-        view = self._scene.plane_view()
+        view = self.pane.plane_view()
         self.complete = quality.scale >= 1.0 and quality.samples == self._samples
         if self.complete:
             pixels = self._draw(width, height)
@@ -87,31 +100,31 @@ class Painter:
             share, stretch = coverage(self._under, view)
             if share >= 1.0 and stretch < STRETCH / quality.scale:
                 return self._under
-        width, height = self._scene.size
+        width, height = self.pane.size
         around = (round(width * (1 - WIDER) / 2), round(height * (1 - WIDER) / 2))
         part = (*around, width - 2 * around[0], height - 2 * around[1])
         wider = np.diag([width / part[2], height / part[3], 1.0]) @ view
         self._under = Shot(self._draft(quality, part), wider)
         return self._under
 
-    def full(self) -> Iterator[Pixels]:
+    def full(self) -> Generator[Pixels, None, None]:
         """Draw the full picture over the quick one, a tile at a time.
 
         Yields
         ------
         numpy.ndarray
             The picture so far, (H, W, 3) uint8, after each tile. The array is the same one each
-            time. Between two tiles the scene may be left for good, and the drawing given up.
+            time. Between two tiles the pane may be left for good, and the drawing given up.
         """
-        width, height = self._scene.size
-        view, state = self._scene.plane_view(), self._state
+        width, height = self.pane.size
+        view, state = self.pane.plane_view(), self._state
         begun = self.quick(0.0) if self._last is None else self._last
         canvas = self._enlarged(begun, width, height)
         spent = 0.0
         try:
             for left, top, wide, high in self._tiles(width, height):
                 started = time.perf_counter()
-                tile = self._scene.draw(wide, high, (left, top, wide, high))
+                tile = self.pane.draw(wide, high, (left, top, wide, high))
                 canvas[top : top + high, left : left + wide] = tile
                 spent += time.perf_counter() - started
                 yield canvas
@@ -142,8 +155,9 @@ class Painter:
         return sorted(tiles, key=far)
 
     def _draft(self, quality: Quality, part: Rect | None = None) -> Pixels:
-        width, height = self._scene.size
-        settings = self._scene.handle.settings
+        width, height = self.pane.size
+        settings = self.pane.handle.settings
+        self.drafting = True
         chosen, settings.samples = settings.samples, quality.samples
         try:
             return self._draw(
@@ -151,10 +165,11 @@ class Painter:
             )
         finally:
             settings.samples = chosen
+            self.drafting = False
 
     def _draw(self, width: int, height: int, part: Rect | None = None) -> Pixels:
         started = time.perf_counter()
-        pixels = self._scene.draw(width, height, part)
+        pixels = self.pane.draw(width, height, part)
         self.cost.learn(time.perf_counter() - started, width * height, self._samples)
         return pixels
 

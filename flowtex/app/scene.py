@@ -1,29 +1,34 @@
-"""One flow in an off-screen window, drawn whole or a rectangle at a time.
+"""A flow, its camera and its colours, in one pane or in two beside each other.
 
-Pictures are drawn into the lower left corner of a window that keeps its size: a draft is the
-whole view in a small corner, a tile a part of the view at full size. Nothing is allocated between
-one and the next, and a tile has the same pixels as the whole picture has there.
+Two panes show the same flow from the same camera with other settings.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from flowtex.app.aim import hit, plane_view
+from flowtex.app.canvas import Canvas, Rect
 from flowtex.app.navigate import Navigator
+from flowtex.app.pane import Pane
 from flowtex.field import FlowField
+from flowtex.first_look import first_look
+from flowtex.handle import FlowHandle
+from flowtex.settings import Settings
+from flowtex.textures.images import as_image
 
-__all__ = ["BACKGROUNDS", "Scene"]
+__all__ = ["BACKGROUNDS", "GAP", "Rect", "Scene"]
 
 #: Colours behind the surface, by theme.
 BACKGROUNDS = {"dark": "#12161c", "light": "#eef1f4"}
-
-#: Point array that holds the colours.
-COLOUR = "flowtex colour"
-
-Rect = tuple[int, int, int, int]
+#: Pixels between two panes.
+GAP = 2
+#: Entries of a colour map.
+ENTRIES = 256
 
 
 class Scene:
@@ -37,6 +42,21 @@ class Scene:
         How far in, and on what point of the mesh, the first look is.
     **options
         Arguments and settings of ``plotter.flowtex.add``.
+
+    Attributes
+    ----------
+    field
+        The flow.
+    colour, cmap
+        Name of what the surface is coloured by, empty for nothing, and of the colour map.
+    plain
+        Colour of the surface where it is coloured by nothing.
+    lighting
+        Whether the surface is lit; ``None`` for curved ones only.
+    panes
+        The views beside each other, one or two.
+    navigator
+        What moves the camera.
     """
 
     def __init__(
@@ -47,29 +67,35 @@ class Scene:
         focus: tuple[float, ...] | None = None,
         **options: Any,
     ) -> None:
-        import pyvista as pv
+        from flowtex.plotter import CMAP, PLAIN, FlowtexComponent
 
-        from flowtex.plotter import FlowtexComponent
-
-        self.field = field
-        self.plotter = pv.Plotter(off_screen=True, window_size=[640, 400], lighting="light kit")
-        self.plotter.disable_anti_aliasing()
+        self.canvas = Canvas(640, 400)
         wanted = options.pop("scalars", None)
-        self.colour = "" if wanted is False else (wanted or "speed")
-        clim = options.get("clim")
-        self.handle = FlowtexComponent(self.plotter).add(
-            field, scalars=self.colour or None, show_scalar_bar=False, **options
-        )
-        # The handle asks for a picture at each change; here it is the stream that knows when.
-        self.plotter.suppress_rendering = True
-        self._clim = (self.colour, clim) if clim is not None else None
-        self._mapper = self.handle.actor.mapper
-        self._mesh = self._mapper.dataset
-        self.navigator = Navigator(self.plotter.camera, flat=self.flat, hit=self._hit)
-        self.colour_by(self.colour)
+        self.colour = "" if wanted is False else ("speed" if wanted in (None, True) else wanted)
+        self.cmap = options.pop("cmap", None) or CMAP
+        self.plain = options.pop("color", PLAIN)
+        clim = options.pop("clim", None)
+        self._clims = {} if clim is None else {self.colour: (float(clim[0]), float(clim[1]))}
         self._first = (zoom, focus)
-        self.resize(640, 400)
+        self._size = self.canvas.size
+        self._component = FlowtexComponent(self.canvas.plotter)
+        self._beside: dict[str, Any] = {}
+        self._end_following = lambda: None
+        self.panes: list[Pane] = [self._pane(field, options)]
+        self.lighting = options.get("lighting")
+        self.canvas.hush()
+        self._begin()
         self.first_look()
+
+    @property
+    def handle(self) -> FlowHandle:
+        """The texture of the first pane."""
+        return self.panes[0].handle
+
+    @property
+    def field(self) -> FlowField:
+        """The flow."""
+        return self.handle.field
 
     @property
     def flat(self) -> bool:
@@ -78,160 +104,218 @@ class Scene:
 
     @property
     def size(self) -> tuple[int, int]:
-        """Width and height of a whole picture, in pixels."""
-        width, height = self.plotter.window_size
-        return int(width), int(height)
+        """Width and height of the whole view, in pixels."""
+        return self._size
+
+    @property
+    def pane_size(self) -> tuple[int, int]:
+        """Width and height of one pane, in pixels."""
+        width, height = self._size
+        return (width if len(self.panes) == 1 else max((width - GAP) // 2, 1)), height
+
+    @property
+    def beside(self) -> dict[str, Any]:
+        """What is different in the second pane; empty where there is one pane."""
+        return dict(self._beside)
 
     @property
     def colours(self) -> tuple[str, ...]:
         """Names of what the surface can be coloured by."""
         return tuple(dict.fromkeys(("speed", *self.field.scalars)))
 
-    @property
-    def _window(self) -> Any:
-        return self.plotter.render_window
+    def _pane(self, field: FlowField, options: Mapping[str, Any]) -> Pane:
+        handle = self._component.add(
+            field, scalars="speed", show_scalar_bar=False, reset_camera=False, **options
+        )
+        return Pane(handle, self._draw, lambda: self.pane_size, self.plane_view)
+
+    def _begin(self) -> None:
+        """Make ready for a field."""
+        self.navigator = Navigator(self.canvas.plotter.camera, flat=self.flat, hit=self.hit)
+        if self.colour not in ("", *self.colours):
+            self.colour = "speed"
+        self.colour_by(self.colour)
+        self.resize(*self._size)
 
     def close(self) -> None:
         """Free the graphics card."""
-        self.handle.remove()
-        self.plotter.close()
+        self._end_following()
+        for pane in self.panes:
+            pane.handle.remove(render=False)
+        self.canvas.close()
+
+    def show(self, field: FlowField, *, keep_view: bool = False) -> None:
+        """Show another flow with the same settings.
+
+        Parameters
+        ----------
+        field
+            The flow.
+        keep_view
+            Whether the camera stays where it is.
+        """
+        settings, image, beside = dict(self.handle.settings), self.handle.view.image, self._beside
+        camera, clock, flat = self.canvas.camera(), self.handle.clock, self.flat
+        self.compare(None)
+        old = self.handle
+        plain = {**settings, "noise": "procedural" if image is not None else settings["noise"]}
+        self.panes[0] = self._pane(field, {**plain, "lighting": self.lighting})
+        old.remove(render=False)
+        if image is not None:
+            self.handle.set_image(as_image(image))
+            self.handle.settings.noise = settings["noise"]
+        self._clims.clear()
+        self._begin()
+        self.home()
+        if keep_view and flat == self.flat:
+            self.canvas.set_camera(camera)
+        self.clock = clock
+        if beside:
+            self.compare(beside)
+
+    def compare(self, changes: Mapping[str, Any] | None) -> None:
+        """Show a second pane in which some settings differ, or one pane again for ``None``.
+
+        Raises
+        ------
+        SettingsError
+            When a setting is unknown or out of range; the panes stay as they are.
+        """
+        wanted = {**dict(self.handle.settings), **(changes or {})}
+        Settings().update(**wanted)
+        self._end_following()
+        self._end_following = lambda: None
+        for pane in self.panes[1:]:
+            pane.handle.remove(render=False)
+        del self.panes[1:]
+        self._beside = dict(changes or {})
+        if changes:
+            self._add_beside(wanted)
+        self.colour_by(self.colour)
+        self.resize(*self._size)
+
+    def _add_beside(self, wanted: dict[str, Any]) -> None:
+        image = self.handle.view.image
+        noise = wanted["noise"]
+        if noise == "image":
+            wanted = {**wanted, "noise": "procedural"}
+        pane = self._pane(self.field, {**wanted, "lighting": self.lighting})
+        if image is not None:
+            pane.handle.set_image(as_image(image))
+            pane.handle.settings.noise = noise
+        self.panes.append(pane)
+        self._end_following = self.handle.settings.observe(self._follow)
+        self.set_time(self.handle.time)
+        self.clock = self.handle.clock
+
+    def _follow(self, name: str, value: Any) -> None:
+        """Change a setting of the second pane as that of the first one changes."""
+        if name not in self._beside:
+            self.panes[1].handle.settings.update(**{name: value})
 
     def resize(self, width: int, height: int) -> None:
-        """Change the size of whole pictures."""
-        self.plotter.window_size = [width, height]
-        self.navigator.aspect = width / max(height, 1)
+        """Change the size of the whole view."""
+        self._size = (width, height)
+        self.canvas.size = self.pane_size
+        self.navigator.aspect = self.pane_size[0] / max(self.pane_size[1], 1)
 
-    def home(self) -> None:
-        """Look at the whole surface."""
-        from flowtex.camera import look
-
-        look(self.plotter, self.field)
+    def home(self, zoom: float = 1.0, focus: tuple[float, ...] | None = None) -> None:
+        """Look at the whole surface, or closer at a point of it."""
+        aspect = self.navigator.aspect
+        self.canvas.place(first_look(self.field, aspect))
         self.navigator.settle()
+        if zoom != 1.0 or focus is not None:
+            self.canvas.place(first_look(self.field, aspect, zoom=zoom, focus=focus))
 
     def first_look(self) -> None:
         """Look at what was asked for when the scene was made."""
-        from flowtex.camera import look
+        self.home(*self._first)
 
-        self.home()
-        zoom, focus = self._first
-        look(self.plotter, self.field, zoom=zoom, focus=focus)
+    def set_background(self, colour: str) -> None:
+        """Take the colour behind the surface: a theme's, or any that PyVista knows."""
+        self.canvas.set_background(BACKGROUNDS.get(colour, colour))
 
-    def set_background(self, theme: str) -> None:
-        """Take the colour behind the surface from a theme."""
-        self.plotter.renderer.set_background(BACKGROUNDS[theme])
+    def colour_by(
+        self,
+        name: str,
+        *,
+        cmap: str | None = None,
+        clim: tuple[float, float] | None = None,
+    ) -> None:
+        """Colour by a scalar, or plainly for an empty name.
 
-    def colour_by(self, name: str) -> None:
-        """Colour by a scalar, or plainly for an empty name."""
-        from flowtex.plotter import PLAIN
+        Parameters
+        ----------
+        name
+            One of :attr:`colours`, or empty.
+        cmap
+            Another colour map.
+        clim
+            Values at the ends of the colour map; kept for this scalar.
+        """
+        import pyvista as pv
 
         self.colour = name
-        self._mapper.scalar_visibility = bool(name)
-        if not name:
-            self.handle.actor.prop.color = PLAIN
-            return
-        self._mapper.scalar_range = self.colour_range
-        self._mapper.SelectColorArray(COLOUR)
-        self._write_colours()
+        self.cmap = cmap or self.cmap
+        if clim is not None:
+            self._clims[name] = (float(clim[0]), float(clim[1]))
+        self._table = pv.LookupTable(self.cmap, n_values=ENTRIES)
+        self._table.scalar_range = self.colour_range
+        for pane in self.panes:
+            pane.colour_by(name, self._table, self.colour_range, self.plain)
+
+    def forget_range(self) -> None:
+        """Let the colours go from the least value to the greatest again."""
+        self._clims.pop(self.colour, None)
+        self.colour_by(self.colour)
 
     @property
     def colour_range(self) -> tuple[float, float]:
         """Values at the ends of the colour bar."""
-        if self._clim is not None and self._clim[0] == self.colour:
-            return self._clim[1]
-        return self.handle.view.scalar_range(self.colour)
+        if not self.colour:
+            return 0.0, 1.0
+        return self._clims.get(self.colour) or self.handle.view.scalar_range(self.colour)
+
+    @property
+    def chosen_range(self) -> tuple[float, float] | None:
+        """The same, where somebody has chosen them."""
+        return self._clims.get(self.colour)
 
     def colour_stops(self, count: int = 17) -> list[str]:
         """Colours along the bar, from low to high, as ``#rrggbb``."""
-        table = self._mapper.lookup_table
-        low, high = self.colour_range
-        stops = []
-        for value in np.linspace(low, high, count):
-            rgb: list[float] = [0.0, 0.0, 0.0]
-            table.GetColor(float(value), rgb)
-            stops.append("#" + "".join(f"{round(255 * c):02x}" for c in rgb))
-        return stops
+        colours = [self._table.map_value(v) for v in np.linspace(*self.colour_range, count)]
+        return ["#" + "".join(f"{round(255 * c):02x}" for c in rgb[:3]) for rgb in colours]
 
     def set_time(self, time: float) -> None:
         """Show another time of a field that varies in time."""
-        self.handle.time = time
-        if self.colour:
-            self._write_colours()
+        for pane in self.panes:
+            pane.handle.time = time
+            if self.colour:
+                pane.write_colours(self.colour)
 
-    def _write_colours(self) -> None:
-        self._mesh.point_data[COLOUR] = self.handle.view.scalar(self.colour).ravel()
+    @property
+    def clock(self) -> float:
+        """Clock of the animation of a steady flow, in seconds."""
+        return self.handle.clock
+
+    @clock.setter
+    def clock(self, seconds: float) -> None:
+        for pane in self.panes:
+            pane.handle.clock = seconds
 
     def draw(self, width: int, height: int, part: Rect | None = None) -> NDArray[np.uint8]:
-        """Draw the view, or a part of it.
+        """Draw the first pane, or a part of it; :meth:`Canvas.draw` has the parameters."""
+        return self.panes[0].draw(width, height, part)
 
-        Parameters
-        ----------
-        width, height
-            Size of the picture, at most that of a whole one.
-        part
-            Left, top, width and height of the part within a whole picture, in pixels.
-
-        Returns
-        -------
-        numpy.ndarray
-            (height, width, 3) uint8, row 0 at the top.
-        """
-        whole_width, whole_height = self.size
-        camera, renderer = self.plotter.camera, self.plotter.renderer
-        renderer.SetViewport(0, 0, width / whole_width, height / whole_height)
-        renderer.ResetCameraClippingRange()
-        kept = (camera.GetWindowCenter(), camera.GetParallelScale(), camera.GetViewAngle())
-        if part is not None:
-            self._aim(camera, part)
-        self._window.Render()
-        camera.SetWindowCenter(*kept[0])
-        camera.SetParallelScale(kept[1])
-        camera.SetViewAngle(kept[2])
-        return self._read(width, height)
-
-    def _aim(self, camera: Any, part: Rect) -> None:
-        """Narrow the camera to a part of the view."""
-        left, top, width, height = part
-        whole_width, whole_height = self.size
-        camera.SetWindowCenter(
-            (2 * left + width - whole_width) / width,
-            (whole_height - 2 * top - height) / height,
-        )
-        share = height / whole_height
-        camera.SetParallelScale(camera.GetParallelScale() * share)
-        half = np.radians(camera.GetViewAngle()) / 2
-        camera.SetViewAngle(float(np.degrees(2 * np.arctan(np.tan(half) * share))))
-
-    def _read(self, width: int, height: int) -> NDArray[np.uint8]:
-        from vtkmodules.util.numpy_support import vtk_to_numpy
-        from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
-
-        values = vtkUnsignedCharArray()
-        self._window.GetPixelData(0, 0, width - 1, height - 1, 0, values, 0)
-        rows = np.asarray(vtk_to_numpy(values), dtype=np.uint8).reshape(height, width, 3)
-        return np.ascontiguousarray(rows[::-1])
+    def _draw(self, pane: Pane, width: int, height: int, part: Rect | None) -> NDArray[np.uint8]:
+        for other in self.panes:
+            other.show(visible=other is pane)
+        return self.canvas.draw(width, height, part)
 
     def plane_view(self) -> NDArray[np.float64] | None:
         """Affine map from the surface's plane to the view, (3, 3); ``None`` when it has none."""
-        frame = self.field.surface.frame
-        if frame is None or not self.plotter.camera.parallel_projection:
-            return None
-        right, up, _ = self.navigator.axes
-        scale = np.array([self.navigator.aspect, 1.0])[:, None] * self.navigator.height
-        view = np.eye(3)
-        view[:2, :2] = np.stack([right, up]) @ frame.T / scale
-        offset = self.field.surface.center - np.asarray(self.plotter.camera.focal_point)
-        view[:2, 2] = np.stack([right, up]) @ offset / scale[:, 0]
-        # A plane seen edge on cannot be moved to another view.
-        return view if abs(np.linalg.det(view[:2, :2])) > 1e-12 * np.abs(view).max() ** 2 else None
+        return plane_view(self.field.surface, self.navigator)
 
-    def _hit(self, x: float, y: float) -> NDArray[np.float64] | None:
-        """Point of the surface at a place of the view."""
-        camera, navigator = self.plotter.camera, self.navigator
-        right, up, ahead = navigator.axes
-        position, focus = np.asarray(camera.position), np.asarray(camera.focal_point)
-        at = focus + (right * x * navigator.aspect + up * y) * navigator.height
-        start = at - ahead * camera.distance if camera.parallel_projection else position
-        along = (at - start) / np.linalg.norm(at - start)
-        reach = camera.distance + 2 * self.field.surface.extent
-        points, _ = self._mesh.ray_trace(start, start + along * reach, first_point=True)
-        return np.asarray(points, dtype=float) if len(points) else None
+    def hit(self, x: float, y: float) -> NDArray[np.float64] | None:
+        """Point of the surface at a place of the view, from -1 to 1, right and up."""
+        return hit(self.panes[0].mesh, self.field.surface.extent, self.navigator, x, y)

@@ -1,4 +1,4 @@
-"""Serving the page on one port of this machine until Ctrl-C."""
+"""Serving pages on one port of this machine until Ctrl-C, each with a state of its own."""
 
 from __future__ import annotations
 
@@ -6,18 +6,22 @@ import asyncio
 import os
 import signal
 import webbrowser
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
 from typing import Any
 
-from flowtex.app.flow_app import FlowApp
-from flowtex.app.security import guard, new_secret
+from flowtex.app.flow_app import MAKING, FlowApp
+from flowtex.app.library import Library
+from flowtex.app.security import new_secret
+from flowtex.app.sessions import MakeApp, Sessions, usual_limit
+from flowtex.app.site import Site
 from flowtex.doctor import has_display
 
-__all__ = ["ServeError", "serve"]
+__all__ = ["IDLE", "ServeError", "serve"]
 
-#: Seconds that connections have to end in.
-FAREWELL = 2.0
+#: Minutes for which a session waits for its page.
+IDLE = 15.0
 
 
 class ServeError(RuntimeError):
@@ -29,91 +33,121 @@ def serve(
     *,
     host: str = "127.0.0.1",
     port: int = 0,
+    limit: int | None = None,
+    idle: float = IDLE,
+    folder: str | Path | None = None,
     open_browser: bool = True,
     announce: Callable[[str], None] | None = None,
     **options: Any,
 ) -> None:
     """Show a flow on a page, until Ctrl-C.
 
+    Each browser tab that opens the address has a state of its own: camera, settings and time are
+    nobody else's. Fields and their traces are shared.
+
     Parameters
     ----------
     field
-        A :class:`~flowtex.FlowField`, or what ``plotter.flowtex.add`` takes.
+        What :class:`FlowApp` shows: a :class:`~flowtex.FlowField`, a mesh, the path of a file or
+        of a folder; or a function that takes a trame server and returns an application on it,
+        such as a :class:`FlowApp`.
     host
         Address to listen on. With another than this machine's own, everybody on the network who
         has the page's address can use it.
     port
         Port to listen on; 0 takes one that is free.
+    limit
+        Pages at one time, at most; by default what the cores and the free memory have room for.
+    idle
+        Minutes for which a page's state is kept after the page was closed.
+    folder
+        Folder whose files a page may open besides; none by default.
     open_browser
         Whether to open the page where there is a browser.
     announce
         Called with the page's address, which holds its secret; printed by default.
     **options
-        Arguments and settings of ``plotter.flowtex.add``.
+        Arguments and settings of ``plotter.flowtex.add``; none with a function.
 
     Raises
     ------
     FieldError, SettingsError
         When the mesh or a setting does not fit.
     ServeError
-        When the port or the host cannot be listened on.
+        When the port or the host cannot be listened on, or ``limit`` or ``idle`` is out of range.
+    TypeError
+        When options are given with a function.
     """
-    with _trame_kept_quiet(), suppress(KeyboardInterrupt):
-        opened = _open if open_browser and has_display() else None
-        asyncio.run(_serve(FlowApp(field, **options), host, port, announce or print, opened))
+    if limit is not None and limit < 1:
+        msg = f"limit is {limit}; expected 1 or more pages"
+        raise ServeError(msg)
+    if not idle > 0:
+        msg = f"idle is {idle:g}; expected a positive number of minutes"
+        raise ServeError(msg)
+    make_app = _maker(field, folder, options)
+    opened = _open if open_browser and has_display() else None
+    with suppress(KeyboardInterrupt, asyncio.CancelledError):
+        asyncio.run(
+            _serve(make_app, host, port, limit or usual_limit(), idle, announce or print, opened)
+        )
+
+
+def _maker(field: Any, folder: str | Path | None, options: dict[str, Any]) -> MakeApp:
+    """Return what makes an application for each page."""
+    if callable(field):
+        given = [*options, *(["folder"] if folder is not None else [])]
+        if given:
+            msg = f"{', '.join(given)} cannot go with a function; give them to what it makes"
+            raise TypeError(msg)
+        made: MakeApp = field
+        return made
+    # One library for all: files that are open and flows that are traced are shared.
+    making = {name: options.pop(name, None) for name in MAKING}
+    library = Library.of(field, folder=folder, **making)
+    return lambda server: FlowApp(library, server=server, **options)
 
 
 async def _serve(
-    app: FlowApp,
+    make_app: MakeApp,
     host: str,
     port: int,
+    limit: int,
+    idle: float,
     announce: Callable[[str], None],
     opened: Callable[[str], None] | None,
 ) -> None:
-    server, secret = app.server, new_secret()
-    # Defaults of trame's own command line reach it without showing up in a list of processes.
-    server.cli.set_defaults(authKey=secret, nowscompress=True)
-
-    def bound(web: Any) -> None:
-        app.stream.watched = guard(web.app)
-
-    def ready(**_: Any) -> None:
-        shown = host if host not in ("0.0.0.0", "::") else os.uname().nodename
-        address = f"http://{shown}:{server.port}/?secret={secret}"
-        announce(address)
-        if opened is not None:
-            opened(address)
-
-    server.controller.on_server_bind.add(bound)
-    server.controller.on_server_ready.add(ready)
-    serving = server.start(
-        exec_mode="coroutine",
-        host=host,
-        port=port,
-        timeout=0,
-        thread=True,
-        open_browser=False,
-        show_connection_info=False,
-        disable_logging=True,
-    )
+    secret = new_secret()
+    site = Site(Sessions(make_app, secret, limit=limit, idle=idle), secret)
     main = asyncio.current_task()
     with suppress(NotImplementedError):  # on Windows
         asyncio.get_running_loop().add_signal_handler(
             signal.SIGTERM, lambda: main and main.cancel()
         )
     try:
-        await serving
-    except OSError as error:
-        msg = (
-            f"cannot listen on {host}:{port} ({error.strerror or error}); choose another port, "
-            "or 0 for one that is free"
-        )
-        raise ServeError(msg) from error
-    except asyncio.CancelledError:
-        with suppress(TimeoutError, asyncio.InvalidStateError):
-            await asyncio.wait_for(server.stop(), FAREWELL)
+        await site.prepare()
+        try:
+            await site.listen((host, port))
+        except OSError as error:
+            msg = (
+                f"cannot listen on {host}:{port} ({error.strerror or error}); choose another port, "
+                "or 0 for one that is free"
+            )
+            raise ServeError(msg) from error
+        address = f"http://{_shown(host)}:{site.port}/?secret={secret}"
+        announce(address)
+        if opened is not None:
+            opened(address)
+        with suppress(asyncio.CancelledError):
+            await asyncio.Event().wait()
     finally:
-        app.close()
+        await site.stop()
+
+
+def _shown(host: str) -> str:
+    """Name of this machine in an address."""
+    if host in ("0.0.0.0", "::", ""):
+        return os.uname().nodename if hasattr(os, "uname") else "localhost"
+    return f"[{host}]" if ":" in host else host
 
 
 def _open(address: str) -> None:
@@ -124,19 +158,3 @@ def _open(address: str) -> None:
             webbrowser.open(address)
 
     asyncio.get_running_loop().run_in_executor(None, in_thread)
-
-
-@contextmanager
-def _trame_kept_quiet() -> Iterator[None]:
-    """Keep trame from reading this program's arguments, and from printing on its own."""
-    ours = {"TRAME_ARGS": "", "WSLINK_READY_MSG": ""}
-    before = {name: os.environ.get(name) for name in ours}
-    os.environ.update(ours)
-    try:
-        yield
-    finally:
-        for name, value in before.items():
-            if value is None:
-                os.environ.pop(name, None)
-            else:
-                os.environ[name] = value

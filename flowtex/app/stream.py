@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from flowtex.app.painter import Painter
+from flowtex.app.composer import Composer
 from flowtex.app.pointer import Pointer
 from flowtex.app.quality import MOVING, PLAYING
 from flowtex.app.scene import Scene
@@ -52,12 +52,16 @@ class Figures:
         Time that the last one took: drawing, and for a sharp one all its tiles.
     size
         Width and height of the full picture, in pixels.
+    limit
+        What took most of the time: ``"drawing"``, ``"encoding"``, ``"network"``, or ``"nothing"``
+        where pictures come as fast as they may.
     """
 
     sharp: bool
     rate: int
     seconds: float
     size: tuple[int, int]
+    limit: str
 
 
 class FrameStream:
@@ -71,18 +75,33 @@ class FrameStream:
         What is drawn.
     report
         Called with :class:`Figures` after each picture.
+
+    Attributes
+    ----------
+    playing
+        Whether pictures follow one another by themselves.
+    paused
+        Whether somebody else draws, and no picture is wanted.
+    elsewhere
+        Called in place of drawing while that is so.
+    watched
+        Tells whether anyone looks; nothing is drawn for nobody.
+    pointer
+        What follows the mouse, the wheel and fingers.
     """
 
     def __init__(self, name: str, scene: Scene, report: Callable[[Figures], None]) -> None:
         self.area_name = name
         self.streamer: Any = None
         self.playing = False
-        #: Whether anyone looks; nothing is drawn for nobody.
+        self.paused = False
+        self.elsewhere: Callable[[], None] = lambda: None
         self.watched: Callable[[], bool] = lambda: True
-        self.painter = Painter(scene)
+        self.composer = Composer(scene)
+        self.pointer = Pointer(scene)
         self._scene = scene
         self._report = report
-        self._pointer = Pointer(scene.navigator)
+        self._spent = {"drawing": 0.0, "encoding": 0.0, "network": 0.0}
         self._wake = asyncio.Event()
         self._drawn = asyncio.Event()
         self._sized = False
@@ -103,18 +122,18 @@ class FrameStream:
         if new != self._scene.size:
             at_home = abs(self._scene.navigator.zoom - 1) < 1e-9
             self._scene.resize(*new)
-            if not self._sized:
+            if not self._sized and at_home:
                 self._scene.first_look()
             elif at_home:
                 self._scene.home()
-            self.painter.forget()
+            self.composer.forget()
         self._sized = True
         self.moved()
 
     def on_interaction(self, origin: str, event: dict[str, Any]) -> None:
         """Follow the pointer."""
         del origin
-        if self._pointer(event):
+        if self.pointer(event):
             self.moved()
 
     def reset(self) -> None:
@@ -133,11 +152,13 @@ class FrameStream:
     def moved(self) -> None:
         """Ask for a picture after a move of the camera."""
         self._wake.set()
+        if self.paused:
+            self.elsewhere()
 
     def changed(self) -> None:
         """Ask for a picture after a change of what is seen."""
-        self.painter.forget()
-        self._wake.set()
+        self.composer.forget()
+        self.moved()
 
     async def next_picture(self) -> None:
         """Wait until a picture has been sent."""
@@ -150,21 +171,25 @@ class FrameStream:
         self._scene.draw(16, 16)
         while True:
             await self._wake.wait()
-            if not self._sized or self.streamer is None or not self.watched():
+            if not self._wanted():
                 self._wake.clear()
                 await asyncio.sleep(0.1)
-                if self._sized and self.streamer is not None and self.watched():
+                if self._wanted():
                     self._wake.set()
                 continue
             await self._quick()
             if await self._rests():
                 await self._full()
 
+    def _wanted(self) -> bool:
+        return self._sized and self.streamer is not None and not self.paused and self.watched()
+
     async def _quick(self) -> None:
         """Send one picture in motion, no sooner than the last one allows."""
         self._wake.clear()
         started = time.perf_counter()
-        pixels = self.painter.quick(PLAYING if self.playing else MOVING)
+        pixels = self.composer.quick(PLAYING if self.playing else MOVING)
+        self._spend("drawing", started)
         await self._send(pixels, MOTION_QUALITY)
         self._tell(started, sharp=False)
         # Events of the page arrive while this sleeps; without it they would wait for the picture.
@@ -181,10 +206,10 @@ class FrameStream:
         """Draw the full picture, and give up as soon as something changes."""
         started = looked = time.perf_counter()
         canvas: NDArray[np.uint8] | None = None
-        if self.painter.complete:
-            canvas = self.painter.quick(float("inf"))
+        if self.composer.complete:
+            canvas = self.composer.quick(float("inf"))
         else:
-            for canvas in self.painter.full():
+            for canvas in self.composer.full():
                 await asyncio.sleep(0)
                 if self._wake.is_set():
                     return
@@ -197,11 +222,13 @@ class FrameStream:
 
     async def _send(self, pixels: NDArray[np.uint8], quality: int) -> None:
         height, width = pixels.shape[:2]
-        loop = asyncio.get_running_loop()
+        loop, begun = asyncio.get_running_loop(), time.perf_counter()
         content = await loop.run_in_executor(None, encode, pixels, quality)
+        begun = self._spend("encoding", begun)
         meta = {"type": "image/jpeg", "codec": "", "w": width, "h": height, "key": "key"}
         meta |= {"st": time.time_ns() // 1_000_000, "quality": quality}
         await self._uncongested()
+        self._spend("network", begun)
         self.streamer.push_content(self.area_name, meta, content)
         self._drawn.set()
 
@@ -216,7 +243,16 @@ class FrameStream:
         now = time.perf_counter()
         self._recent.append(now)
         rate = sum(1 for at in self._recent if at > now - 1.0)
-        self._report(Figures(sharp, rate, now - started, self._scene.size))
+        limit = max(self._spent, key=lambda part: self._spent[part])
+        if not sharp and now - started < 0.9 / FASTEST:
+            limit = "nothing"
+        self._report(Figures(sharp, rate, now - started, self._scene.size, limit))
+
+    def _spend(self, part: str, since: float) -> float:
+        """Count the time since then for a part of the work, the latest pictures most."""
+        now = time.perf_counter()
+        self._spent[part] += 0.3 * (now - since - self._spent[part])
+        return now
 
 
 def encode(pixels: NDArray[np.uint8], quality: int) -> bytes:

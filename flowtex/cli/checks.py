@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,7 +12,15 @@ from flowtex.extras import install_extra
 if TYPE_CHECKING:
     from flowtex.field import FlowField
 
-__all__ = ["check_colours", "check_image", "check_output", "check_page", "need_app", "need_opengl"]
+__all__ = [
+    "check_colours",
+    "check_film",
+    "check_image",
+    "check_output",
+    "check_page",
+    "need_app",
+    "need_opengl",
+]
 
 
 def check_output(output: Path) -> None:
@@ -32,6 +41,17 @@ def check_page(output: Path) -> None:
     if output.suffix.lower() not in (".html", ".htm"):
         msg = f"{output}: expected a name that ends in .html, as a page has"
         raise UsageError(msg)
+    _check_folder(output)
+
+
+def check_film(output: Path, size: tuple[int, int], fps: float | None, quality: int) -> None:
+    """Refuse a movie that could not be written, before anything is drawn."""
+    from flowtex.movie_files import check_movie, default_fps
+
+    try:
+        check_movie(output, size, default_fps(output) if fps is None else fps, quality)
+    except ModuleNotFoundError as error:
+        raise UsageError(str(error)) from error
     _check_folder(output)
 
 
@@ -83,8 +103,6 @@ def need_opengl() -> None:
 
 def need_app() -> None:
     """Refuse to serve a page where what it needs is not installed."""
-    import importlib.util
-
     wanted = ("trame", "trame_vuetify", "trame_rca")
     missing = [name for name in wanted if importlib.util.find_spec(name) is None]
     if missing:

@@ -11,47 +11,36 @@ import sys
 import time
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated
 
 from cyclopts import App, CycloptsError, Parameter
 
-from flowtex import examples
 from flowtex.cli.checks import (
     check_colours,
     check_image,
     check_output,
     check_page,
-    need_app,
     need_opengl,
 )
 from flowtex.cli.options import (
+    FILE,
+    FLAT,
     PICTURE,
     DrawOptions,
     FieldOptions,
     LookOptions,
-    ServeOptions,
     SettingFlags,
     UsageError,
+    given,
+    read,
     settings_in,
 )
-from flowtex.cli.talk import announcer, complain, nodes, say
+from flowtex.cli.talk import complain, nodes, say
 from flowtex.errors import FieldError
-from flowtex.examples import NAMES
+from flowtex.moments import MovieError
 from flowtex.settings import SettingsError
 
-if TYPE_CHECKING:
-    from flowtex.field import FlowField
-
 __all__ = ["main"]
-
-#: How each example is first seen: zoom and point of the mesh.
-FIRST_LOOKS: dict[str, tuple[float, tuple[float, ...] | None]] = {
-    "cylinder": (3.2, (4.0, 0.0)),
-    "airfoil": (6.0, (0.5, 0.0)),
-}
-
-FILE = Annotated[Path, Parameter(help="A structured mesh: any file that PyVista reads, or PLOT3D.")]
-FLAT = Parameter(name="*")
 
 app = App(
     name="flowtex",
@@ -59,52 +48,10 @@ app = App(
     version=lambda: __import__("flowtex").__version__,
     help_epilogue="Try `flowtex demo`. Add --debug to see where an error came from.",
 )
-
-
-@app.command
-def demo(
-    *,
-    example: Annotated[str, Parameter(help=f"Which flow: {', '.join(NAMES)}.")] = "cylinder",
-    page: Annotated[ServeOptions | None, FLAT] = None,
-    settings: Annotated[SettingFlags | None, FLAT] = None,
-) -> int:
-    """Show an example on a page in the browser."""
-    if example not in NAMES:
-        msg = f"there is no example {example!r}; there are {', '.join(NAMES)}"
-        raise UsageError(msg)
-    chosen = _given(settings)
-    need_opengl()
-    field = getattr(examples, f"{example}_field")()
-    zoom, focus = FIRST_LOOKS.get(example, (1.0, None))
-    return _serve(field, page, {**chosen, "zoom": zoom, "focus": focus})
-
-
-@app.command
-def show(
-    file: FILE,
-    /,
-    *,
-    which: Annotated[FieldOptions | None, FLAT] = None,
-    draw: Annotated[DrawOptions | None, FLAT] = None,
-    page: Annotated[ServeOptions | None, FLAT] = None,
-    settings: Annotated[SettingFlags | None, FLAT] = None,
-) -> int:
-    """Show a file: in a window, or where there is no display on a page."""
-    draw = draw or DrawOptions()
-    options = {**draw.look(), **_given(settings)}
-    size = draw.pixels()
-    check_image(options)
-    need_opengl()
-    field = _read(file, which)
-    check_colours(field, options)
-    from flowtex import doctor
-
-    if page is not None or not doctor.has_display():
-        return _serve(field, page, options)
-    from flowtex import pictures
-
-    pictures.show(field, size=size, **options)
-    return 0
+app.command("flowtex.cli.pages:demo")
+app.command("flowtex.cli.pages:show")
+app.command("flowtex.cli.movie:movie")
+app.command("flowtex.cli.paper:paper")
 
 
 @app.command
@@ -119,6 +66,9 @@ def render(
     clock: Annotated[
         float, Parameter(group=PICTURE, help="Moment of the streaming (--motion), in seconds.")
     ] = 0.0,
+    supersampling: Annotated[
+        int, Parameter(group=PICTURE, help="Draw larger by as much along each side, and average.")
+    ] = 1,
     beside: Annotated[
         tuple[str, ...],
         Parameter(
@@ -134,12 +84,12 @@ def render(
     """Draw a file as a picture."""
     started = time.perf_counter()
     draw = draw or DrawOptions()
-    options, size = {**draw.look(), **_given(settings), "clock": clock}, draw.pixels()
-    options["beside"] = settings_in(beside)
+    options, size = {**draw.look(), **given(settings), "clock": clock}, draw.pixels()
+    options |= {"beside": settings_in(beside), "supersampling": supersampling}
     check_output(output)
     check_image(options)
     need_opengl()
-    field = _read(file, which)
+    field = read(file, which)
     check_colours(field, options)
     from PIL import Image
 
@@ -180,10 +130,10 @@ def export(
 ) -> int:
     """Write a file as one page that draws in any browser, without a server or a network."""
     started = time.perf_counter()
-    options = {**(draw or LookOptions()).look(), **_given(settings)}
+    options = {**(draw or LookOptions()).look(), **given(settings)}
     check_page(output)
     check_image(options)
-    field = _read(file, which)
+    field = read(file, which)
     check_colours(field, options)
     if steps is not None and steps < 1:
         msg = f"--steps is {steps}; expected 1 to {len(field.times)}, the steps of the file"
@@ -259,42 +209,10 @@ def _code(error: Exception) -> int | None:
 
     if isinstance(error, OpenGLMissingError):
         return 1
-    if isinstance(error, (CycloptsError, FieldError, SettingsError, UsageError)):
+    if isinstance(error, (CycloptsError, FieldError, MovieError, SettingsError, UsageError)):
         return 2
     # The page's own error is known only where the page is.
     serving = sys.modules.get("flowtex.app")
     if serving is not None and isinstance(error, serving.ServeError):
         return 2
     return None
-
-
-def _read(file: Path, which: FieldOptions | None) -> FlowField:
-    from flowtex.field import FlowField
-
-    return FlowField.from_file(file, **(which.given() if which is not None else {}))
-
-
-def _given(settings: SettingFlags | None) -> dict[str, Any]:
-    """Return the settings that were given as keyword arguments, checked."""
-    from flowtex.settings import Settings
-
-    flags = {} if settings is None else vars(settings)
-    values = {name: value for name, value in flags.items() if value is not None}
-    Settings().update(**values)
-    return values
-
-
-def _serve(field: FlowField, page: ServeOptions | None, options: dict[str, Any]) -> int:
-    need_app()
-    from flowtex.app import serve
-
-    page = page or ServeOptions()
-    serve(
-        field,
-        host=page.host,
-        port=page.port,
-        open_browser=page.browser,
-        announce=announcer(field, page.host),
-        **options,
-    )
-    return 0

@@ -13,9 +13,14 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Group, Parameter
 
-from flowtex.settings import TABLE, Setting, setting
+from flowtex.settings import TABLE, Setting, Settings, setting
+
+if TYPE_CHECKING:
+    from flowtex.field import FlowField
 
 __all__ = [
+    "FILE",
+    "FLAT",
     "PICTURE",
     "DrawOptions",
     "FieldOptions",
@@ -23,11 +28,16 @@ __all__ = [
     "ServeOptions",
     "SettingFlags",
     "UsageError",
+    "given",
+    "read",
     "settings_in",
 ]
 
 FLOW, PICTURE = Group("The flow", sort_key=1), Group("The picture", sort_key=2)
 PAGE, SETTINGS = Group("The page", sort_key=3), Group("Settings", sort_key=4)
+
+FILE = Annotated[Path, Parameter(help="A structured mesh: any file that PyVista reads, or PLOT3D.")]
+FLAT = Parameter(name="*")
 
 
 class UsageError(ValueError):
@@ -136,6 +146,18 @@ class ServeOptions:
     host: Annotated[
         str, Parameter(group=PAGE, help="Address to listen on: others may reach another one.")
     ] = "127.0.0.1"
+    limit: Annotated[
+        int | None,
+        Parameter(
+            group=PAGE,
+            help="Pages at one time, each with a state of its own; by default what cores and "
+            "memory have room for.",
+        ),
+    ] = None
+    idle: Annotated[
+        float,
+        Parameter(group=PAGE, help="Minutes for which a page that was closed can come back."),
+    ] = 15.0
     browser: Annotated[bool, Parameter(group=PAGE, help="Open the page in the browser.")] = True
 
 
@@ -147,6 +169,21 @@ def _numbers(flag: str, text: str) -> tuple[float, ...]:
     if len(values) not in (2, 3):
         msg = f"{flag} is {text!r}; expected two or three coordinates, as in {flag} 1.5,0"
         raise UsageError(msg)
+    return values
+
+
+def read(file: Path, which: FieldOptions | None) -> FlowField:
+    """Return the flow of a file."""
+    from flowtex.field import FlowField
+
+    return FlowField.from_file(file, **(which.given() if which is not None else {}))
+
+
+def given(settings: SettingFlags | None) -> dict[str, Any]:
+    """Return the settings that were given as keyword arguments, checked."""
+    flags = {} if settings is None else vars(settings)
+    values = {name: value for name, value in flags.items() if value is not None}
+    Settings().update(**values)
     return values
 
 

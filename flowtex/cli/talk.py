@@ -38,7 +38,8 @@ def announcer(field: FlowField, host: str) -> Callable[[str], None]:
         say(f"  [cyan]{address}[/]\n")
         if host not in ("127.0.0.1", "localhost", "::1"):
             say(
-                "  [yellow]Everybody who can reach this machine and has this address can use it.[/]"
+                "  [yellow]Everybody who can reach this machine and has this address can use it,\n"
+                "  and read along: a proxy with TLS keeps it private.[/]"
             )
         say("  [dim]Ctrl-C ends it.[/]")
         sys.stdout.flush()

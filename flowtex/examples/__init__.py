@@ -8,6 +8,7 @@ Each comes three ways: ``name()`` is one ``pyvista.StructuredGrid`` with the poi
     vortex       time-varying   Cartesian       two-dimensional turbulence, periodic both ways
     double_gyre  either         Cartesian       exact at any point and time
     airfoil      steady         O-grid          exact, cells of very different sizes
+    delta_wing   steady         curved surface  a winged body, 52 x 62 nodes
     liquid_oxygen_post  steady  plane of a 3D grid   a file of NASA's, not shipped
 
 What takes long to compute is shipped as a file; ``python -m flowtex.examples.build`` makes those
@@ -27,6 +28,7 @@ from flowtex.examples._fields import (
     _double_gyre_at,
     airfoil_field,
     cylinder_field,
+    delta_wing_field,
     double_gyre_field,
     liquid_oxygen_post_field,
     vortex_field,
@@ -43,6 +45,8 @@ __all__ = [
     "cylinder",
     "cylinder_field",
     "cylinder_series",
+    "delta_wing",
+    "delta_wing_field",
     "double_gyre",
     "double_gyre_field",
     "double_gyre_series",
@@ -163,6 +167,22 @@ def airfoil() -> pv.StructuredGrid:
     airfoil_field : The same as arrays; its documentation has the details.
     """
     return to_grid(airfoil_field())
+
+
+def delta_wing() -> pv.StructuredGrid:
+    """Flow over the upper side of a winged body, steady, on a curved surface.
+
+    Returns
+    -------
+    pyvista.StructuredGrid
+        62 x 52 x 1 nodes along and across, lengths in body lengths; point arrays ``velocity``
+        and ``height``.
+
+    See Also
+    --------
+    delta_wing_field : The same as arrays; its documentation has the details.
+    """
+    return to_grid(delta_wing_field())
 
 
 def liquid_oxygen_post(folder: str | Path | None = None, plane: str = "k=20") -> pv.StructuredGrid:

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from flowtex.examples import _cylinder, _double_gyre, _vortex
+from flowtex.examples import _cylinder, _delta_wing, _double_gyre, _vortex
 from flowtex.examples._airfoil import Joukowski
 from flowtex.examples._post import find_post
 from flowtex.field import FlowField
@@ -17,6 +17,7 @@ __all__ = [
     "NAMES",
     "airfoil_field",
     "cylinder_field",
+    "delta_wing_field",
     "double_gyre_field",
     "liquid_oxygen_post_field",
     "vortex_field",
@@ -164,6 +165,41 @@ def airfoil_field(shape: tuple[int, int] = (65, 193), extent: float = 2.5) -> Fl
     )
 
 
+def delta_wing_field(shape: tuple[int, int] = (52, 62)) -> FlowField:
+    """Steady flow over the upper side of a winged body, in the manner of a shuttle orbiter.
+
+    A curved surface and a flow along it in closed form, in place of the shuttle data set of Li
+    and Shen, which was not published, with as many nodes.
+
+    Parameters
+    ----------
+    shape : tuple of int, default: (52, 62)
+        Number of nodes (J, I): across, from the left edge to the right, and from nose to tail.
+
+    Returns
+    -------
+    FlowField
+        Lengths in body lengths, with x along the body, z upwards and the stream 12 degrees from
+        below; speeds in free-stream speeds. Scalar ``height``.
+
+    Notes
+    -----
+    The flow parts on one line of each wing and meets on another, as beneath the vortices of a
+    real one, but is made up: it solves no equation of motion. Cells differ in area by more than
+    a hundred to one.
+    """
+    points, velocity = _delta_wing.arrays(shape)
+    return FlowField.from_arrays(
+        points,
+        velocity,
+        periodic="",
+        scalars={"height": points[..., 2]},
+        name="delta wing",
+        length_unit="body lengths",
+        time_unit="body lengths / free-stream speed",
+    )
+
+
 def liquid_oxygen_post_field(folder: str | Path | None = None, plane: str = "k=20") -> FlowField:
     """Flow around NASA's liquid-oxygen post, one plane of a curvilinear grid.
 
@@ -197,5 +233,6 @@ NAMES: dict[str, Callable[[], FlowField]] = {
     "vortex": vortex_field,
     "double_gyre": double_gyre_field,
     "airfoil": airfoil_field,
+    "delta_wing": delta_wing_field,
     "liquid_oxygen_post": liquid_oxygen_post_field,
 }

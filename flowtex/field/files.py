@@ -24,7 +24,7 @@ from flowtex.field.meshes import is_reader, is_structured, leaves
 from flowtex.field.summary import FileSummary, summarize
 from flowtex.field.vtk_log import kept_vtk_log
 
-__all__ = ["FileSummary", "describe", "from_file"]
+__all__ = ["FileSummary", "describe", "from_file", "open_file", "reading"]
 
 _KNOWN = (
     "a structured mesh that PyVista reads (.vts, .vtr, .vti, .vtk, .vtm, .pvd and more), or "
@@ -76,9 +76,8 @@ def from_file(
         When the file is missing, empty, not readable, of an unknown or broken format, or does
         not hold a structured flow; the text starts with the path.
     """
-    file = _checked(path)
-    with _reading(file):
-        source, velocity = _open(file)
+    file, source, velocity = open_file(path)
+    with reading(file):
         if time is not None:
             source = _at_time(source, time)
         if block is not None:
@@ -111,13 +110,35 @@ def describe(path: str | Path) -> FileSummary:
     FieldError
         When the file cannot be read at all.
     """
-    file = _checked(path)
-    with _reading(file):
-        source, velocity = _open(file)
+    file, source, velocity = open_file(path)
+    with reading(file):
         times = _times(source)
         if is_reader(source):
             source = source.read()
         return summarize(file, source, times, velocity)
+
+
+def open_file(path: str | Path) -> tuple[Path, Any, str | None]:
+    """Open a file without reading more of it than its format asks for.
+
+    Parameters
+    ----------
+    path
+        As for :func:`from_file`.
+
+    Returns
+    -------
+    path, source, velocity
+        The file; a reader or a mesh; and the name of its velocity where the format fixes it.
+
+    Raises
+    ------
+    FieldError
+        When it is missing, empty, or of an unknown format; the text starts with the path.
+    """
+    file = _checked(path)
+    with reading(file):
+        return file, *_open(file)
 
 
 def _checked(path: str | Path) -> Path:
@@ -151,7 +172,7 @@ def _checked(path: str | Path) -> Path:
 
 
 @contextmanager
-def _reading(file: Path) -> Iterator[None]:
+def reading(file: Path) -> Iterator[None]:
     """Turn what readers raise and log into one error that starts with the path."""
     said_no: Exception | None = None
     with kept_vtk_log() as log:

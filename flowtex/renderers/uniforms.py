@@ -48,6 +48,9 @@ class ViewState:
         Time that is shown of a field that varies, in its own unit.
     clock
         Clock of the streaming of a steady flow, in seconds.
+    density
+        Pixels drawn, along a side, for one that the settings speak of: a picture of twice the
+        density has grains of twice as many pixels, and shows the same.
     """
 
     focus: NDArray[np.float64] = field(default_factory=lambda: np.zeros(3))
@@ -56,6 +59,7 @@ class ViewState:
     between: float = 0.0
     time: float = 0.0
     clock: float = 0.0
+    density: float = 1.0
 
 
 def variants(textures: TextureSet, *, unsteady: bool) -> frozenset[str]:
@@ -102,7 +106,7 @@ def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[
         "u_unit": textures.unit,
         "u_samples": 2 * settings.samples - 1 if motion["u_moving"] else settings.samples,
         "u_spacing": settings.spacing,
-        "u_grain": settings.grain,
+        "u_grain": settings.grain * view.density,
         "u_kernel": KERNELS.index(kernel),
         "u_lod": settings.lod,
         "u_contrast": settings.contrast,
@@ -116,7 +120,7 @@ def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[
         "u_texel": geometry.extent / settings.resolution,
     }
     if textures.paper is not None:
-        values |= _paper(textures.paper, settings)
+        values |= _paper(textures.paper, settings, view.density)
     return values
 
 
@@ -140,10 +144,10 @@ def _motion(textures: TextureSet, settings: Settings, view: ViewState) -> dict[s
     return {
         "u_moving": moving and textures.space == "physical",
         "u_clock": (coarse, turns - coarse),
-        "u_travel": float(travel),
+        "u_travel": float(travel) * (view.density if pixels else 1.0),
         "u_travelInPixels": pixels,
         "u_travelBySpeed": by_speed,
-        "u_wave": WAVE,
+        "u_wave": WAVE * view.density,
     }
 
 
@@ -161,10 +165,13 @@ def _noise_origin(
     }
 
 
-def _paper(paper: PaperTextures, settings: Settings) -> dict[str, Any]:
-    """Sizes of the noise texture, or of the picture that lies in its place."""
-    height, width = paper.step.shape
-    rows, columns = paper.noise.shape[:2]
+def _paper(paper: PaperTextures, settings: Settings, density: float) -> dict[str, Any]:
+    """Sizes of the noise texture, or of the picture that lies in its place.
+
+    What is drawn more densely takes its level from so many times more texels.
+    """
+    height, width = (n * density for n in paper.step.shape)
+    rows, columns = (n * density for n in paper.noise.shape[:2])
     tiles = settings.tiles if settings.noise == "image" else 1
     return {
         "u_noiseSize": (float(width), float(height)),

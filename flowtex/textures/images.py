@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from flowtex.settings import SettingsError
 
-__all__ = ["LARGEST", "ImageError", "as_picture"]
+__all__ = ["LARGEST", "ImageError", "as_image", "as_picture"]
 
 Singles = NDArray[np.float32]
 
@@ -64,6 +64,25 @@ def as_picture(image: Any) -> Singles:
         picture[..., 3] = values[..., 3]
         picture[..., :3] *= picture[..., 3:]
     return np.ascontiguousarray(_shrunk(picture)[::-1])
+
+
+def as_image(picture: Singles) -> Singles:
+    """Return the image of which :func:`as_picture` makes these texels.
+
+    Parameters
+    ----------
+    picture
+        (h, w, 4) texels, as :attr:`flowtex.view.FlowView.image` holds them.
+
+    Returns
+    -------
+    numpy.ndarray
+        (h, w, 4) colours and opacity from 0 to 1, row 0 at the top.
+    """
+    image = np.array(picture[::-1])
+    opaque = image[..., 3:] > 0
+    np.divide(image[..., :3], image[..., 3:], out=image[..., :3], where=opaque)
+    return np.asarray(np.clip(image, 0, 1), np.float32)
 
 
 def _fractions(array: NDArray[Any]) -> Singles:

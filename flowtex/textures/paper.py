@@ -147,6 +147,15 @@ class PaperTextures:
         ]
         return np.stack(parts, axis=-1)
 
+    def index(self, coordinate: Floats) -> Floats:
+        """Positions in index space of noise coordinates, (..., 2): the way back from :meth:`at`."""
+        lines = ((self.along_i, self.repeat[1]), (self.along_j, self.repeat[0]))
+        parts = [
+            _traced_back(line, coordinate[..., axis], periodic=periodic)
+            for axis, (line, periodic) in enumerate(lines)
+        ]
+        return np.stack(parts, axis=-1)
+
     def by_cell(self) -> Floats:
         """Return derivatives of the noise coordinates by index at the nodes, (J, I, 2)."""
         slopes = [np.gradient(line) for line in (self.along_i, self.along_j)]
@@ -173,6 +182,17 @@ def _extended(line: Floats, x: Floats, *, periodic: bool) -> Floats:
     inside = np.interp(x, np.arange(last + 1), line)
     before = np.minimum(x, 0) * (line[1] - line[0])
     return np.asarray(inside + before + np.maximum(x - last, 0) * (line[-1] - line[-2]))
+
+
+def _traced_back(line: Floats, u: Floats, *, periodic: bool) -> Floats:
+    """Index at which a line, gone on as by :func:`_extended`, has a value."""
+    last = len(line) - 1
+    turns = np.floor(u) if periodic else np.zeros_like(u)
+    inside = np.interp(u - turns, line, np.arange(last + 1))
+    if periodic:
+        return np.asarray(inside + turns * last)
+    before = np.minimum(u, 0) / (line[1] - line[0])
+    return np.asarray(inside + before + np.maximum(u - 1, 0) / (line[-1] - line[-2]))
 
 
 def _size(field: FlowField, resolution: int) -> tuple[int, int]:

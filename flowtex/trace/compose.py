@@ -27,6 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flowtex.field import FlowField
+from flowtex.progress import check
 from flowtex.trace.known import CLOSE, Known, Piece
 
 __all__ = ["compose", "landings"]
@@ -143,6 +144,7 @@ class _Doubling:
         count = len(self._left)
         blocks: list[Some] = [slice(k, min(k + BLOCK, count)) for k in range(0, count, BLOCK)]
         for number in range(2 * MOST_PIECES):
+            check()
             longest = self._before if number >= MOST_PIECES else None
             more = np.concatenate(list(run(partial(self.follow, longest=longest), blocks)))
             if not len(more) and self._stuck:

@@ -4,14 +4,38 @@ from __future__ import annotations
 
 import base64
 import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any, Self
 
 import anywidget
 
 __all__ = ["Displayed"]
 
-#: Seconds that a cell waits for the small picture, at most.
-PATIENCE = 1.0
+#: Seconds that cells wait for small pictures, at most; how much comes back in a second.
+PATIENCE, REGAINED = 1.0, 0.2
+
+
+class Patience:
+    """Time that may be waited for pictures, however many widgets are shown at once."""
+
+    def __init__(self) -> None:
+        self._left, self._at = PATIENCE, time.monotonic()
+
+    @contextmanager
+    def spent(self) -> Iterator[float]:
+        """Give the seconds that are left; those that pass meanwhile are used up."""
+        started = time.monotonic()
+        self._left = min(PATIENCE, self._left + REGAINED * (started - self._at))
+        try:
+            yield self._left
+        finally:
+            self._at = time.monotonic()
+            self._left = max(self._left - (self._at - started), 0.0)
+
+
+_patience = Patience()
 
 
 class Displayed(anywidget.AnyWidget):
@@ -29,7 +53,8 @@ class Displayed(anywidget.AnyWidget):
         if not isinstance(bundle, tuple):
             return bundle
         data, metadata = bundle
-        picture = self._picture(PATIENCE)
+        with _patience.spent() as seconds:
+            picture = self._picture(seconds)
         encoded = {"image/png": base64.b64encode(picture).decode()} if picture else {}
         return {**data, **encoded}, metadata
 

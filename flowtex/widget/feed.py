@@ -1,17 +1,18 @@
 """Sends a client its arrays: coarse ones first, then all, then what it asks for.
 
-Two threads do all that takes time. One answers the client from the scene that there is; the other
+Two workers do all that takes time. One answers the client from the scene that there is; the other
 makes the next scene, the whole one after a coarse one or that of new settings, and puts it in the
 place of the first when it can be shown.
+
+An array that has gone to some page already is offered by its digest and not sent: a page that
+shows the same mesh many times holds it once, and asks for what it lacks.
 """
 
 from __future__ import annotations
 
-import hashlib
 import threading
 import traceback
-from collections import OrderedDict
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from contextlib import suppress
 from typing import Any
 
@@ -20,8 +21,10 @@ from numpy.typing import NDArray
 
 from flowtex import preview
 from flowtex.renderers.webgl import Scene
+from flowtex.sharing import digest
 from flowtex.staging import Stage
-from flowtex.widget.worker import Worker
+from flowtex.widget.gone import has_gone
+from flowtex.widget.worker import Crew, Worker
 
 __all__ = ["Feed"]
 
@@ -31,12 +34,19 @@ Parts = dict[str, NDArray[Any]]
 LARGE = 60_000
 #: Nodes of the coarse form of a steady field, and of one that varies, which takes longer to trace.
 COARSE_STEADY, COARSE_VARYING = 6_000, 2_500
+#: A field of more nodes than these, at all times together, is shown in a form between as well.
+LONG = 600_000
+#: Nodes of that form.
+BETWEEN_STEADY, BETWEEN_VARYING = 100_000, 16_000
 #: Bytes that go in one message together.
 TOGETHER = 2_000_000
-#: Steps whose arrays are kept, for another client of the same widget.
-KEPT_STEPS = 2
-#: Seconds for which the whole scene waits until the coarse one can be seen.
-HEAD_START = 3.0
+#: Seconds after which what nobody has acknowledged is sent once more.
+LOST = 2.5
+#: Bytes from which an array is offered before it is sent again.
+OFFERED = 50_000
+
+#: Those who answer are more than there are processors: one may be tracing for long.
+ANSWERS, MAKES = Crew("flowtex-answers", 4), Crew("flowtex-makes", 2)
 
 
 class Feed:
@@ -66,27 +76,38 @@ class Feed:
         self._moment, self._announce, self._send = moment, announce, send
         self._lock = threading.RLock()  # scene and generation, and the order of messages
         self._generation = self._order = 0
-        self._live = self._closed = False
+        self._live = self._closed = self._drawing = False
         self._asked: set[int] = set()
         self._sent: dict[str, bytes] = {}
-        self._steps: OrderedDict[int, Parts] = OrderedDict()
+        self._sent_whole: set[str] = set()
         self.picture: bytes | None = None
         self.pictured, self.settled = threading.Event(), threading.Event()
         self.scene = self._first()
-        self._answers = Worker("flowtex-answers", self._failed)
-        self._makes = Worker("flowtex-makes", self._failed)
+        self.heard = False
+        self._timer = threading.Timer(LOST, self._send_again)
+        self._timer.daemon = True
+        self._answers = Worker(ANSWERS, self._failed)
+        self._makes = Worker(MAKES, self._failed)
 
     @property
     def header(self) -> dict[str, Any]:
         """Header of the present scene, without settings and camera."""
         return {**self.scene.constants(), "generation": self._generation}
 
-    def start(self, size: tuple[int, int], camera: dict[str, Any]) -> None:
-        """Begin to work; a small picture of that size is drawn as soon as there is time."""
-        self._answers.do(self._prepare, urgency=2)
-        self._answers.do(lambda: self._draw(size, camera))
-        self._makes.do(lambda: (self.pictured.wait(HEAD_START), None)[1])
-        self._refine()
+    def start(self) -> None:
+        """Send what is shown first, without being asked, and then make the whole of it.
+
+        Until the cell that shows a widget has come to its end nobody can ask.
+        """
+        self._answers.do(self._send_all, urgency=2)
+        self._answers.do(self._refine)
+        self._timer.start()
+
+    def draw(self, size: tuple[int, int], camera: dict[str, Any]) -> None:
+        """Draw a small picture, once, as soon as there is time; ``pictured`` tells when."""
+        if not self._drawing:
+            self._drawing = True
+            self._answers.do(lambda: self._draw(size, camera), urgency=1)
 
     def ready(self) -> None:
         """Answer a client that has nothing yet."""
@@ -99,6 +120,15 @@ class Feed:
         self._asked.add(step)
         self._answers.do(lambda: self._send_step(step), urgency=1)
 
+    def _send_again(self) -> None:
+        """Send once more to who has said nothing: it may not have been there yet to listen."""
+        if not self.heard and self._live:
+            self._answers.do(lambda: self._send_named(sorted(self._sent_whole)), urgency=1)
+
+    def want(self, names: list[str]) -> None:
+        """Answer a client that lacks arrays that it was offered."""
+        self._answers.do(lambda: self._send_named(names), urgency=1)
+
     def restart(self, *, traces: bool) -> None:
         """Follow new settings: make the textures again, and the traces if need be."""
         with self._lock:
@@ -110,12 +140,13 @@ class Feed:
             if order == self._order:
                 self._replace(self._first() if traces else self._stage.scene())
 
-        self._makes.do(change)
+        self._makes.do(change, urgency=2)
         self._refine()
 
     def close(self) -> None:
         """Stop; a trace that is being made comes to its end unheard."""
         self._closed = True
+        self._timer.cancel()
         self._answers.close()
         self._makes.close()
         for event in (self.pictured, self.settled):
@@ -129,95 +160,116 @@ class Feed:
         return self._stage.coarse_scene(COARSE_STEADY if field.steady else COARSE_VARYING)
 
     def _refine(self) -> None:
-        """Replace a coarse scene by the whole one."""
+        """Replace a coarse scene by one between, where the whole takes long, and by the whole."""
         order = self._order
+        self._makes.do(lambda: self._come_between(order), urgency=1)
+        self._makes.do(lambda: self._complete(order))
 
-        def change() -> None:
-            if order != self._order:
-                return
-            if self.scene.textures.geometry.field.shape != self._stage.field.shape:
-                self._replace(self._stage.scene())
-            if order == self._order:
-                self.settled.set()
+    def _come_between(self, order: int) -> None:
+        field = self._stage.field
+        if field.valid.size * len(field.times) < LONG:
+            return
+        if order == self._order and self._coarse:
+            nodes = BETWEEN_STEADY if field.steady else BETWEEN_VARYING
+            self._replace(self._stage.coarse_scene(nodes))
 
-        self._makes.do(change)
+    def _complete(self, order: int) -> None:
+        if order != self._order:
+            return
+        if self._coarse:
+            self._replace(self._stage.scene())
+        if order == self._order:
+            self.settled.set()
+
+    @property
+    def _coarse(self) -> bool:
+        return self.scene.textures.geometry.field.shape != self._stage.field.shape
 
     def _replace(self, scene: Scene) -> None:
         """Put a scene in the place of the present one, once it can be shown."""
         order = self._order
-        steps = {step: scene.step(step) for step in scene.moment(self._moment())}
+        parts = self._now(scene)
         with self._lock:
             if order != self._order or self._closed:
                 return
-            self.scene, self._steps = scene, OrderedDict(steps)
+            self.scene = scene
             self._generation += 1
             self._announce(self.header)
             if self._live:
-                self._deliver({**scene.surface(), **_merged(steps)}, again=False)
+                self._deliver({**scene.surface(), **parts}, again=False)
 
-    def _prepare(self) -> None:
-        """Trace and pack what shows the present moment."""
-        scene = self.scene
+    def _now(self, scene: Scene) -> Parts:
+        """Return what shows the present moment of a scene."""
+        parts: Parts = {}
         for step in scene.moment(self._moment()):
-            self._parts_of(scene, step)
-
-    def _parts_of(self, scene: Scene, step: int) -> Parts:
-        with self._lock:
-            if scene is self.scene and step in self._steps:
-                self._steps.move_to_end(step)
-                return self._steps[step]
-        made = scene.step(step)
-        with self._lock:
-            if scene is self.scene:
-                self._steps[step] = made
-                while len(self._steps) > KEPT_STEPS:
-                    self._steps.popitem(last=False)
-        return made
+            parts |= scene.step(step)
+        return parts
 
     def _send_all(self) -> None:
         scene = self.scene
-        steps = {step: self._parts_of(scene, step) for step in scene.moment(self._moment())}
+        parts = self._now(scene)
         with self._lock:
             self._live = True
-            if scene is not self.scene:  # replaced meanwhile, and not sent, as nobody had asked
-                scene, steps = self.scene, dict(self._steps)
-            self._deliver({**scene.surface(), **_merged(steps)}, again=True)
+            if scene is self.scene:
+                self._deliver({**scene.surface(), **parts}, again=True)
+                return
+        self._send_all()  # replaced meanwhile, and not sent, as nobody had asked
 
     def _send_step(self, step: int) -> None:
         self._asked.discard(step)
         scene = self.scene
         if step >= scene.steps:
             return
-        parts = self._parts_of(scene, step)
+        parts = scene.step(step)
         with self._lock:
             if scene is self.scene:
                 self._deliver(parts, again=True)
                 return
         self._send_step(step)
 
-    def _deliver(self, parts: Parts, *, again: bool) -> None:
+    def _send_named(self, names: list[str]) -> None:
+        scene = self.scene
+        parts = scene.surface()
+        for step in {int(name.split("/")[1]) for name in names if "/" in name}:
+            if 0 <= step < scene.steps:
+                parts |= scene.step(step)
+        with self._lock:
+            if scene is self.scene:  # what was offered of another is not waited for any more
+                self._deliver({n: parts[n] for n in names if n in parts}, again=True, offer=False)
+
+    def _deliver(self, parts: Parts, *, again: bool, offer: bool = True) -> None:
         """Send arrays, the small ones first; those that a client has only when ``again``."""
-        batch: Parts = {}
+        offered: dict[str, bytes] = {}
+        batch: dict[str, tuple[NDArray[Any], bytes]] = {}
         for name, array in sorted(parts.items(), key=lambda item: item[1].nbytes):
-            digest = hashlib.blake2b(np.ascontiguousarray(array).data, digest_size=16).digest()
-            if not again and "/" not in name and self._sent.get(name) == digest:
+            told = digest(array)
+            if not again and "/" not in name and self._sent.get(name) == told:
                 continue
-            self._sent[name] = digest
-            if batch and sum(a.nbytes for a in batch.values()) + array.nbytes > TOGETHER:
+            self._sent[name] = told
+            if has_gone(told) and offer and array.nbytes >= OFFERED:
+                offered[name] = told
+                continue
+            if batch and sum(a.nbytes for a, _ in batch.values()) + array.nbytes > TOGETHER:
                 self._post(batch)
                 batch = {}
-            batch[name] = array
+            batch[name] = array, told
+            self._sent_whole.add(name)
         if batch:
             self._post(batch)
+        if offered and not self._closed:
+            digests = [told.hex() for told in offered.values()]
+            self._send({**self._about("offer", offered), "digests": digests}, [])
 
-    def _post(self, parts: Parts) -> None:
+    def _about(self, kind: str, names: Iterable[str]) -> dict[str, Any]:
+        return {"kind": kind, "generation": self._generation, "names": list(names)}
+
+    def _post(self, parts: dict[str, tuple[NDArray[Any], bytes]]) -> None:
         if self._closed:
             return
-        arrays = [np.ascontiguousarray(array) for array in parts.values()]
+        arrays = [np.ascontiguousarray(array) for array, _ in parts.values()]
         message = {
-            "kind": "parts",
-            "generation": self._generation,
-            "names": list(parts),
+            **self._about("parts", parts),
+            "digests": [told.hex() for _, told in parts.values()],
             "dtypes": [array.dtype.name for array in arrays],
             "shapes": [list(array.shape) for array in arrays],
         }
@@ -237,7 +289,3 @@ class Feed:
         self.settled.set()
         with suppress(Exception):
             self._send({"kind": "error", "text": f"{type(error).__name__}: {error}"}, [])
-
-
-def _merged(steps: dict[int, Parts]) -> Parts:
-    return {name: array for parts in steps.values() for name, array in parts.items()}

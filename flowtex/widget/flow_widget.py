@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable
+import uuid
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -15,17 +16,16 @@ from flowtex.image_files import load_image
 from flowtex.plotter import PLAIN
 from flowtex.renderers.webgl import asset
 from flowtex.settings import TABLE, Affects, Settings, SettingsError
-from flowtex.staging import Stage
+from flowtex.staging import staged
 from flowtex.view import NO_IMAGE, FlowView
 from flowtex.widget.displaying import Displayed
-from flowtex.widget.feed import Feed
 from flowtex.widget.panel import make_panel
 from flowtex.widget.traits import CameraTrait, SettingTraits, SizeTrait
+from flowtex.widget.views import HEADERS, Views
 
 __all__ = ["FlowWidget"]
 
-#: Share of the field's duration by which a time may lie outside it, for rounding's sake.
-SLACK = 1e-9
+SLACK = 1e-9  #: Share of the duration by which a time may lie outside it, for rounding's sake.
 
 
 class FlowWidget(SettingTraits, Displayed):
@@ -57,6 +57,8 @@ class FlowWidget(SettingTraits, Displayed):
     _esm = asset("client.js")
 
     _header = traitlets.Dict().tag(sync=True)
+    _header_beside = traitlets.Dict().tag(sync=True)
+    _key = traitlets.Unicode().tag(sync=True)
     camera = CameraTrait().tag(sync=True, echo_update=False)
     time = traitlets.Float(0.0).tag(sync=True, echo_update=False)
     clock = traitlets.Float(0.0).tag(sync=True, echo_update=False)
@@ -79,33 +81,41 @@ class FlowWidget(SettingTraits, Displayed):
         sign_free: bool | None = None,
         image: Any | None = None,
         color: Any = PLAIN,
+        opacity: float = 1.0,
         lighting: bool | None = None,
+        show_scalar_bar: bool | None = None,
         background: Any = "white",
         size: tuple[int, int] = (0, 400),
         zoom: float = 1.0,
         focus: tuple[float, ...] | None = None,
         camera: dict[str, Any] | None = None,
         bar: bool = True,
+        beside: Mapping[str, Any] | None = None,
         **settings: Any,
     ) -> None:
         """Make a widget from a mesh or a field.
 
         Parameters
         ----------
-        mesh, vectors, scalars, cmap, clim, plane, times, periodic, sign_free, image
+        mesh, vectors, scalars, cmap, clim, plane, times, periodic, sign_free, image, color
             As for ``plotter.flowtex.add``.
-        color, lighting
+        lighting
             As for ``plotter.flowtex.add``.
+        opacity
+            1 is opaque, 0 invisible; the side that is nearest is seen before the background.
+        show_scalar_bar
+            Whether there is a legend; by default unless an image covers the surface.
         background
             Colour behind the surface.
-        size
-            Width and height in pixels of the page; a width of 0 fills the cell.
+        size, bar
+            As the attributes of these names.
         zoom, focus
             How far in, and on what point of the mesh, the view begins.
         camera
             Another view to begin with, as :attr:`camera` has it.
-        bar
-            Whether the bar of controls is shown on the picture.
+        beside
+            What is different in a second view to the right of the first one, such as
+            ``{"lod": False}``; both views move together.
         **settings
             Any setting of :class:`~flowtex.Settings`.
 
@@ -114,8 +124,9 @@ class FlowWidget(SettingTraits, Displayed):
         FieldError, SettingsError
             When the mesh or a setting does not fit.
         """
-        stage = Stage(
+        stages = staged(
             mesh,
+            beside,
             vectors=vectors,
             scalars=scalars,
             cmap=cmap,
@@ -126,31 +137,30 @@ class FlowWidget(SettingTraits, Displayed):
             sign_free=sign_free,
             image=image,
             color=color,
+            opacity=opacity,
             lighting=lighting,
+            show_scalar_bar=show_scalar_bar,
             background=background,
             **settings,
         )
-        self._stage = stage
         self._state_lock = threading.RLock()
         self._frame: bytes | None = None
         self._ends: list[Callable[[], None]] = []
-        self._feed = Feed(
-            stage,
-            moment=lambda: stage.view.time,
-            announce=self._announce,
-            send=lambda content, buffers: self.send(content, buffers),
+        self._views = Views(
+            stages, self._announce, lambda content, buffers: self.send(content, buffers)
         )
-        look = stage.first_look(PREVIEW[0] / PREVIEW[1], zoom=zoom, focus=focus)
+        look = stages[0].first_look(PREVIEW[0] / PREVIEW[1], zoom=zoom, focus=focus)
         super().__init__(
-            _header=self._feed.header,
+            **dict(zip(HEADERS, self._views.headers, strict=False)),
+            _key=uuid.uuid4().hex,
             camera={**look, **(camera or {})},
-            time=stage.view.time,
+            time=self.view.time,
             size=size,
             bar=bar,
-            **dict(stage.view.settings),
+            **dict(self.settings),
         )
         self._connect()
-        self._feed.start(PREVIEW, dict(self.camera))
+        self._views.start()
 
     def _connect(self) -> None:
         self.on_msg(self._hear)
@@ -158,23 +168,23 @@ class FlowWidget(SettingTraits, Displayed):
         self.observe(self._to_time, "time")
         self._ends = [
             self.settings.observe(lambda name, value: self._set(name, value)),
-            self._stage.view.observe(self._view_changed),
+            self.view.observe(self._view_changed),
         ]
 
     @property
     def field(self) -> FlowField:
         """The flow."""
-        return self._stage.field
+        return self.view.field
 
     @property
     def settings(self) -> Settings:
         """Every setting; the traits of the same names follow it."""
-        return self._stage.view.settings
+        return self.view.settings
 
     @property
     def view(self) -> FlowView:
         """The arrays behind the picture."""
-        return self._stage.view
+        return self._views.first
 
     def set_image(self, image: Any) -> None:
         """Advect another image, and set ``noise`` to ``"image"``.
@@ -189,7 +199,7 @@ class FlowWidget(SettingTraits, Displayed):
         ImageError
             When it cannot be used; nothing is changed then.
         """
-        self._stage.view.set_image(load_image(image))
+        self._views.set_image(load_image(image))
 
     def controls(self) -> Any:
         """Return a panel of ipywidgets with a control for each setting."""
@@ -210,23 +220,23 @@ class FlowWidget(SettingTraits, Displayed):
         now: dict[str, Any] = {"camera": dict(self.camera), "time": self.time, "clock": self.clock}
         picture = self._picture(patience=0.0)
         if path is None:
-            return page_text(self._stage, title=title, picture=picture, **now)
-        write_page(self._stage, path, title=title, picture=picture, **now)
+            return page_text(self._views.stages, title=title, picture=picture, **now)
+        write_page(self._views.stages, path, title=title, picture=picture, **now)
         return None
 
     def close(self) -> None:
         """Take the widget out of the page and let go of everything."""
-        for end in self._ends:
-            end()
-        self._ends = []
-        self._feed.close()
-        self._stage.view.close()
+        if "_views" in vars(self):  # a widget whose making failed is closed too
+            for end in self._ends:
+                end()
+            self._ends = []
+            self._views.close()
         super().close()
 
     @traitlets.validate("noise")
     def _check_noise(self, proposal: Any) -> Any:
-        stage = getattr(self, "_stage", None)
-        if proposal["value"] == "image" and stage is not None and stage.view.image is None:
+        views = getattr(self, "_views", None)
+        if proposal["value"] == "image" and views is not None and views.first.image is None:
             raise SettingsError(NO_IMAGE)
         return proposal["value"]
 
@@ -249,36 +259,31 @@ class FlowWidget(SettingTraits, Displayed):
                 except (traitlets.TraitError, ValueError):  # SettingsError is a ValueError
                     self.send_state(name)
 
-    def _announce(self, header: dict[str, Any]) -> None:
+    def _announce(self, number: int, header: dict[str, Any]) -> None:
         # Not while the browser's values are being taken in, which would hold it back until
         # after the arrays that belong to it.
         with self._state_lock:
-            self._header = header
+            setattr(self, HEADERS[number], header)
 
     def _hear(self, _: Any, content: Any, buffers: list[Any]) -> None:
         """Answer the client."""
-        kind = content.get("kind") if isinstance(content, dict) else None
-        if kind == "ready":
-            self._feed.ready()
-        elif kind == "need":
-            step = content.get("step")
-            if isinstance(step, int):
-                self._feed.need(step)
-        elif kind == "frame" and buffers:
-            self._frame = bytes(buffers[0])
+        if isinstance(content, dict):
+            self._frame = bytes(buffers[0]) if content.get("kind") == "frame" else self._frame
+            self._views.hear(content)
 
     def _picture(self, patience: float) -> bytes | None:
         """Return the browser's own first frame, or the small picture that stands in for it."""
-        if self._frame is None:
-            self._feed.pictured.wait(patience)
-        return self._frame or self._feed.picture
+        if self._frame is not None:
+            return self._frame
+        return self._views.picture(PREVIEW, dict(self.camera), patience)
 
     def _to_settings(self, change: Any) -> None:
         setattr(self.settings, change["name"], change["new"])
+        self._views.follow(change["name"], change["new"])
 
     def _to_time(self, change: Any) -> None:
-        if change["new"] != self._stage.view.time:
-            self._stage.view.time = change["new"]
+        if change["new"] != self.view.time:
+            self.view.time = change["new"]
 
     def _set(self, name: str, value: Any) -> None:
         if getattr(self, name) != value:
@@ -286,9 +291,8 @@ class FlowWidget(SettingTraits, Displayed):
 
     def _view_changed(self, affects: Affects) -> None:
         if affects == "uniform":
-            self._set("time", self._stage.view.time)
-        else:
-            self._feed.restart(traces=affects == "trace")
+            self._set("time", self.view.time)
+        self._views.changed(affects)
 
     def __repr__(self) -> str:
         state = "closed" if self.comm is None else f"time {self.time:g}"

@@ -1,55 +1,107 @@
-"""A thread that does one job after the other, the urgent ones first.
+"""A few threads that work for all widgets of a process: the urgent jobs first.
 
-It is a daemon, so that a long trace does not keep a kernel from ending.
+Thirty widgets with threads of their own would all be slow together; so would be all behind one
+whose trace takes long. Threads are there while there is work, and are daemons, so that a long
+trace does not keep a kernel from ending.
 """
 
 from __future__ import annotations
 
 import itertools
-import queue
 import threading
 from collections.abc import Callable
 
-__all__ = ["Worker"]
+__all__ = ["Crew", "Worker"]
 
 Job = Callable[[], None]
+#: Urgency as a number that is least for what comes first, order of asking, for whom, and what.
+Entry = tuple[int, int, "Worker", Job]
 
 
-class Worker:
-    """Jobs in a thread of their own.
+class Crew:
+    """Threads that do the jobs of many workers, for each worker one at a time.
 
     Parameters
     ----------
     name
-        Name of the thread.
+        Name of the threads.
+    size
+        How many there are at most.
+    """
+
+    def __init__(self, name: str, size: int) -> None:
+        self._name, self._size = name, size
+        self._lock = threading.Lock()
+        self._count = itertools.count()
+        self._waiting: list[Entry] = []
+        self._busy: set[Worker] = set()
+        self._threads = 0
+
+    def put(self, worker: Worker, job: Job, urgency: int) -> None:
+        """Do a job when its turn has come."""
+        with self._lock:
+            self._waiting.append((-urgency, next(self._count), worker, job))
+            if self._threads == self._size:
+                return
+            self._threads += 1
+        threading.Thread(target=self._work, name=self._name, daemon=True).start()
+
+    def drop(self, worker: Worker) -> None:
+        """Forget the jobs of a worker that have not begun."""
+        with self._lock:
+            self._waiting = [entry for entry in self._waiting if entry[2] is not worker]
+
+    def _work(self) -> None:
+        done: Worker | None = None
+        while (entry := self._next(done)) is not None:
+            _, _, done, job = entry
+            done.run(job)
+
+    def _next(self, done: Worker | None) -> Entry | None:
+        with self._lock:
+            if done is not None:
+                self._busy.discard(done)
+            free = [entry for entry in self._waiting if entry[2] not in self._busy]
+            if not free:
+                self._threads -= 1
+                return None
+            entry = min(free, key=lambda e: e[:2])
+            self._waiting.remove(entry)
+            self._busy.add(entry[2])
+            return entry
+
+
+class Worker:
+    """One's jobs, done by a crew one after the other.
+
+    Parameters
+    ----------
+    crew
+        Who does them.
     failed
         Told of an error that a job raised; the next job is done all the same.
     """
 
-    def __init__(self, name: str, failed: Callable[[Exception], None]) -> None:
-        self._jobs: queue.PriorityQueue[tuple[int, int, Job]] = queue.PriorityQueue()
-        self._count = itertools.count()
-        self._failed = failed
-        self._closed = threading.Event()
-        threading.Thread(target=self._work, name=name, daemon=True).start()
+    def __init__(self, crew: Crew, failed: Callable[[Exception], None]) -> None:
+        self._crew, self._failed = crew, failed
+        self._closed = False
 
     def do(self, job: Job, *, urgency: int = 0) -> None:
-        """Do a job after all that are as urgent or more so."""
-        if not self._closed.is_set():
-            self._jobs.put((-urgency, next(self._count), job))
+        """Do a job after all that are as urgent or more so, also those of other workers."""
+        if not self._closed:
+            self._crew.put(self, job, urgency)
 
     def close(self) -> None:
         """Begin no other job."""
-        self._closed.set()
-        self._jobs.put((-1_000_000, next(self._count), lambda: None))
+        self._closed = True
+        self._crew.drop(self)
 
-    def _work(self) -> None:
-        while not self._closed.is_set():
-            job = self._jobs.get()[-1]
-            if self._closed.is_set():
-                return
-            try:
-                job()
-            except Exception as error:  # whoever asked is in another thread
-                if not self._closed.is_set():
-                    self._failed(error)
+    def run(self, job: Job) -> None:
+        """Do a job in the calling thread."""
+        if self._closed:
+            return
+        try:
+            job()
+        except Exception as error:  # whoever asked is in another thread
+            if not self._closed:
+                self._failed(error)

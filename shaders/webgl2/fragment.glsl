@@ -16,6 +16,8 @@ uniform bool u_mapped;     // colour by the scalar, or one colour for all
 uniform vec3 u_colour;
 uniform bool u_lit;
 uniform vec3 u_toEye;      // way to the light, which is the camera's own
+uniform vec3 u_ground;     // behind the surface
+uniform float u_opacity;
 
 // Ambient and diffuse light: dark sides stay bright enough to read the texture there.
 const vec2 flowtexLight = vec2(0.3, 0.8);
@@ -59,5 +61,6 @@ void main()
 #endif
     colour *= min(flowtexLight.x + flowtexLight.y * facing, 1.0);
   }
-  flowtexOut = vec4(colour, 1.0);
+  // One layer before the ground: no order of drawing to keep.
+  flowtexOut = vec4(mix(u_ground, colour, u_opacity), 1.0);
 }

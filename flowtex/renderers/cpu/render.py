@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flowtex.renderers.cpu.camera import Camera
+from flowtex.renderers.cpu.cover import cover
 from flowtex.renderers.cpu.fragments import Fragments
 from flowtex.renderers.cpu.levels import slice_level
 from flowtex.renderers.cpu.lookup import Mips
@@ -17,13 +18,13 @@ from flowtex.renderers.cpu.lookup_paper import PaperImages, PaperNoise, PaperPic
 from flowtex.renderers.cpu.lookup_space import SpaceNoise
 from flowtex.renderers.cpu.path import SignFreeSlices, Slices
 from flowtex.renderers.cpu.picture import Picture
-from flowtex.renderers.cpu.raster import Coverage, rasterise
+from flowtex.renderers.cpu.raster import Coverage
 from flowtex.renderers.cpu.texture import Lookup, LookupMaker, Summing
 from flowtex.renderers.uniforms import ViewState, uniforms
 from flowtex.settings import Settings
 from flowtex.textures import TextureSet
 
-__all__ = ["render"]
+__all__ = ["maker_of", "mips_of", "render", "slices_at", "view_state"]
 
 Floats = NDArray[np.float64]
 
@@ -65,12 +66,12 @@ def render(
     -------
     Picture
     """
-    values = uniforms(textures, settings, _state(textures, camera, view or ViewState(), steps))
-    coverage = _cover(textures, camera)
+    values = uniforms(textures, settings, view_state(textures, camera, view or ViewState(), steps))
+    coverage = cover(textures.geometry.field.surface, camera)
     fragments = Fragments.of(textures, coverage)
     level = slice_level(fragments.coordinate, values)
-    slices = _slices(textures, steps, values)
-    make = lookup or _maker(textures)
+    slices = slices_at(textures, steps, values)
+    make = lookup or maker_of(textures)
     value, noise_level = [np.zeros((0,))], [np.zeros(0)]
     for some, part in fragments.parts(PART):
         found = make(part, values)
@@ -91,7 +92,7 @@ def render(
     )
 
 
-def _state(
+def view_state(
     textures: TextureSet, camera: Camera, view: ViewState, steps: tuple[int, int]
 ) -> ViewState:
     """State of the view, with what the camera and the steps decide."""
@@ -101,31 +102,27 @@ def _state(
     return replace(view, focus=focus, eye=camera.eye, time=time)
 
 
-def _cover(textures: TextureSet, camera: Camera) -> Coverage:
-    """Find the visible cells; quads are cut along the diagonal from their first corner."""
-    geometry = textures.geometry
-    surface = geometry.field.surface
-    points = (surface.points - geometry.center).reshape(-1, 3)
-    matrix = camera.matrix(geometry.center)
-    clip = points @ matrix[:, :3].T + matrix[:, 3]
-    columns = geometry.field.shape[1]
-    j, i = np.nonzero(surface.cells)
-    halves = np.array([0, 1, columns + 1, 0, columns + 1, columns])
-    triangles = ((j * columns + i)[:, None] + halves).reshape(-1, 3)
-    return rasterise(clip, triangles, camera.size)
+def mips_of(textures: TextureSet, step: int) -> Mips:
+    """Slice texture of one destination time, with its mip levels."""
+    return Mips(textures.layers(step), levels=textures.geometry.levels)
 
 
-def _slices(textures: TextureSet, steps: tuple[int, int], values: Mapping[str, Any]) -> Slices:
-    levels = textures.geometry.levels
-    before = Mips(textures.layers(steps[0]), levels=levels)
+def slices_at(
+    textures: TextureSet,
+    steps: tuple[int, int],
+    values: Mapping[str, Any],
+    mips: Callable[[TextureSet, int], Mips] = mips_of,
+) -> Slices:
+    """Slice texture between two destination times; ``mips`` may keep what it returns."""
+    before = mips(textures, steps[0])
     if textures.geometry.field.sign_free:
         return SignFreeSlices(before, size=values["u_slicesSize"], lags=values["u_lagCount"])
     if steps[0] == steps[1]:
         return Slices(before)
-    return Slices(before, Mips(textures.layers(steps[1]), levels=levels), values["u_between"])
+    return Slices(before, mips(textures, steps[1]), values["u_between"])
 
 
-def _maker(textures: TextureSet) -> LookupMaker:
+def maker_of(textures: TextureSet) -> LookupMaker:
     """Look-up of the noise, or of the picture, that the textures were made for."""
     paper, planar = textures.paper, textures.geometry.planar
     if paper is None:

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from flowtex.settings import Settings
 
-__all__ = ["paint", "shade"]
+__all__ = ["paint", "shade", "tone"]
 
 Floats = NDArray[np.float64]
 
@@ -49,12 +49,16 @@ def shade(colour: ArrayLike, value: Floats, settings: Settings) -> Floats:
     strength = settings.strength
     lightness = lab[..., 0]
     base = lightness + strength * (0.36 + 0.44 * lightness - lightness)
-    tone = 2.0 / (1.0 + np.exp(-1.1 * settings.contrast * value)) - 1.0
-    light = np.clip(base + 0.34 * strength * tone, 0.0, 1.0)
+    light = np.clip(base + 0.34 * strength * tone(value, settings.contrast), 0.0, 1.0)
     tiny = np.finfo(float).tiny
     up = (1.0 - light) / np.maximum(1.0 - base, tiny)
     room = np.where(light < base, light / np.maximum(base, tiny), up)
     return _from_oklab(np.concatenate([light[..., None], lab[..., 1:] * room[..., None]], axis=-1))
+
+
+def tone(value: Floats, contrast: float) -> Floats:
+    """How far the texture lightens, from -1 to 1."""
+    return np.asarray(2.0 / (1.0 + np.exp(-1.1 * contrast * value)) - 1.0)
 
 
 def paint(colour: ArrayLike, picture: Floats, settings: Settings) -> Floats:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from flowtex.renderers.cpu.fragments import Fragments
 from flowtex.renderers.cpu.path import Path, Slices
 
-__all__ = ["Lookup", "LookupMaker", "Summing", "Sums", "shared", "weight"]
+__all__ = ["Lookup", "LookupMaker", "Side", "Summing", "Sums", "shared", "weight"]
 
 Floats = NDArray[np.float64]
 Values = Mapping[str, Any]
@@ -61,6 +61,36 @@ class Lookup(Protocol):
 
     def blend(self, sums: Sums) -> Floats:
         """Texture from the sums: (N,), or the colours and opacity of a picture, (N, 4)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Side:
+    """One side of the paths of N fragments.
+
+    Attributes
+    ----------
+    sign
+        -1 behind the particles, 1 ahead of them.
+    path
+        The paths, from lag zero outward.
+    spacing
+        Distance between two samples in nominal length, (N,).
+    reach
+        Lag at which each path ends, (N,).
+    scale
+        Nominal length of a unit of lag, (N,).
+    """
+
+    sign: float
+    path: Path
+    spacing: Floats
+    reach: Floats
+    scale: Floats
+
+    def step(self, lag: Floats) -> Floats:
+        """Lag to the next sample from lags (N,): equation 3, with the speed that is there."""
+        speed = np.maximum(self.path.speed(lag), 1e-6)
+        return np.asarray(self.spacing / (self.scale * speed))
 
 
 #: Makes the look-up of some fragments from the uniforms.
@@ -121,15 +151,20 @@ class Summing:
         moving = values["u_moving"]
         lookup.move(speed, self._slices.layer(coordinate, 2, level)[:, 3] if moving else speed)
         sums = self._first(len(base))
-        scale = np.ones(len(base)) if self._paper else base[:, 3] * values["u_unit"]
-        spacing = lookup.spacing * speed if self._paper else lookup.spacing
-        for side, before in self._sides():
+        for side in self.sides(coordinate, level, base):
+            self._add(sums, side)
+        return lookup.blend(sums)
+
+    def sides(self, coordinate: Floats, level: Floats, base: Floats) -> Iterator[Side]:
+        """Sides of the paths of N fragments, whose layer 0 is ``base``, (N, 4)."""
+        speed = np.linalg.norm(base[:, :3], axis=-1)
+        scale = np.ones(len(base)) if self._paper else base[:, 3] * self._values["u_unit"]
+        spacing = self._lookup.spacing * speed if self._paper else self._lookup.spacing
+        for sign, before in self._sides():
             next_ = self._slices.layer(coordinate, before + 1, level)
             ends = (base[:, :3], next_[:, :3])
             path = Path(self._slices, coordinate, level, ends, before, self._lags)
-            reach = np.where(speed > 1e-6, next_[:, 3], -np.inf)
-            self._side(sums, path, side, spacing, reach, scale)
-        return lookup.blend(sums)
+            yield Side(sign, path, spacing, np.where(speed > 1e-6, next_[:, 3], -np.inf), scale)
 
     def _sides(self) -> tuple[tuple[float, int], ...]:
         """Sides of the paths: their sign, and the layer before their first slice."""
@@ -142,21 +177,13 @@ class Summing:
         found = self._lookup.lookup(np.zeros((count, 3)), np.zeros(count))
         return Sums(middle * found, np.full(count, middle**2), np.zeros(count))
 
-    def _side(
-        self,
-        sums: Sums,
-        path: Path,
-        side: float,
-        spacing: Floats,
-        reach: Floats,
-        scale: Floats,
-    ) -> None:
-        """Add one side of the paths, its points ``spacing`` apart in nominal length."""
-        values = self._values
+    def _add(self, sums: Sums, one: Side) -> None:
+        """Add one side of the paths."""
+        values, path, side, scale = self._values, one.path, one.sign, one.scale
         count = values["u_samples"] // 2 if values["u_sides"] == 2 else values["u_samples"] - 1
-        last = np.minimum(reach, self._lags[-1])
+        last = np.minimum(one.reach, self._lags[-1])
         lag, live = np.zeros(len(scale)), np.ones(len(scale), dtype=bool)
-        step = spacing / (scale * np.maximum(np.linalg.norm(path.before, axis=-1), 1e-6))
+        step = one.step(lag)
         before = np.full(len(scale), weight(0.0, values))
         for k in range(1, count + 1):
             lag = np.where(live, lag + step, lag)
@@ -174,5 +201,5 @@ class Summing:
             sums.neighbours += weights * before
             before = weights
             if not self._paper:
-                # Equation 3 at every point: evenly spaced where the speed differs from here.
-                step = spacing / (scale * np.maximum(path.speed(lag), 1e-6))
+                # At every point: evenly spaced where the speed differs from here.
+                step = one.step(lag)

@@ -17,7 +17,7 @@
  * @typedef {boolean | number | string} Value
  * @typedef {Record<string, Value>} Settings
  * @typedef {Float32Array | Uint16Array | Int16Array | Int8Array | Uint8Array} Data
- * @typedef {{ data: Data, shape: number[] }} Part
+ * @typedef {{ data: Data, shape: number[], digest?: string }} Part
  * @typedef {{ before: number, size: number }} Padding
  * @typedef {{
  *   name: string, kind: string, default: Value, affects: string, text: string,
@@ -42,10 +42,13 @@
  *     count: number, channels: number, extra: number[], lags: number[], sides: number,
  *     unit: number, pace: number, steps: number, times: number[], timeUnit?: string,
  *   },
- *   scalars: { name: string | null, low: number, high: number, steps: number, unit: string },
- *   colour: number[], background: number[], lighting: boolean, paper: Paper | null,
+ *   scalars: {
+ *     name: string | null, low: number, high: number, steps: number, unit: string, bar?: boolean,
+ *   },
+ *   colour: number[], background: number[], lighting: boolean, opacity?: number,
+ *   paper: Paper | null,
  *   settings: Settings, table: Row[], camera: CameraState | null, time: number, clock: number,
- *   generation?: number,
+ *   generation?: number, differs?: string[], own?: Settings, beside?: Header,
  * }} Header
  * @typedef {{
  *   focus: Vector, anchor: Vector, eye: number[], between: number, time: number, clock: number,
@@ -565,7 +568,7 @@ const SMOOTH = 256;
 /** Milliseconds that all viewers may draw in one frame of the page. */
 const TURN = 45;
 /** Key of what all copies of this module on a page share. */
-const SHARED = Symbol.for("flowtex.gl/1");
+const SHARED = Symbol.for("flowtex.gl/2");
 
 /**
  * @typedef {{
@@ -573,6 +576,7 @@ const SHARED = Symbol.for("flowtex.gl/1");
  *   uniforms: Map<string, { at: WebGLUniformLocation, type: number }>,
  *   shaders: WebGLShader[],
  * }} Program
+ * @typedef {{ kind: string, object: object, count: number, key: string, users: number }} Made
  * @typedef {{ frame: WebGLFramebuffer, buffers: WebGLRenderbuffer[] }} Target
  * @typedef {{ frame(now: number, until: number): void, lost(): void, restored(): void }} User
  */
@@ -594,6 +598,11 @@ class Graphics {
     this.users = new Set();
     /** @type {Set<User>} */
     this.waiting = new Set();
+    // What views of the same scene have in common: objects by what they were made of, and arrays.
+    /** @type {Map<string, Made>} */
+    this.common = new Map();
+    /** @type {Map<string, { part: Part, users: number }>} */
+    this.stock = new Map();
     this.objects = 0;
     this.isLost = false;
     this.restorations = 0;
@@ -608,6 +617,7 @@ class Graphics {
       this.isLost = true;
       this.objects = 0;
       this.programs.clear();
+      this.common.clear();
       this._picker = this._smooth = null;
       for (const user of this.users) user.lost();
     });
@@ -688,6 +698,23 @@ class Graphics {
       {throw new Error("the graphics card has no memory left, or the context is lost");}
     this.objects += 1;
     return object;
+  }
+
+  /** Hold an array for one more view; where it is there already that one is returned. @param {Part} part @returns {Part} */
+  hold(part) {
+    if (!part.digest) return part;
+    const known = this.stock.get(part.digest);
+    if (!known) this.stock.set(part.digest, { part, users: 1 });
+    else known.users += 1;
+    return known?.part ?? part;
+  }
+
+  /** @param {Part | undefined} part */
+  release(part) {
+    const known = part?.digest ? this.stock.get(part.digest) : undefined;
+    if (!part?.digest || !known) return;
+    known.users -= 1;
+    if (!known.users) this.stock.delete(part.digest);
   }
 
   /** @param {string} kind @param {object | null} object */
@@ -886,12 +913,11 @@ class Drawing {
     this.graphics = graphics;
     this.header = header;
     this.parts = parts;
-    /** @type {Map<string, { kind: string, object: object }>} */
+    /** @type {Map<string, Made>} */
     this._made = new Map();
     /** @type {Vector} */
     this.anchor = [0, 0, 0];
     this._scalars = "";
-    this._count = 0;
   }
 
   /** Names of the parts that a moment needs and that are not there. @param {number} before @param {number} after */
@@ -953,8 +979,12 @@ class Drawing {
   /** @param {string} name */
   _drop(name) {
     const made = this._made.get(name);
-    if (made) this.graphics.free(made.kind, made.object);
     this._made.delete(name);
+    if (!made) return;
+    made.users -= 1;
+    if (made.users) return;
+    this.graphics.free(made.kind, made.object);
+    this.graphics.common.delete(made.key);
   }
 
   dispose() {
@@ -962,33 +992,57 @@ class Drawing {
   }
 
   /**
-   * @template {object} T @param {string} name @param {string} kind @param {() => T | null} make
-   * @param {(object: T) => void} fill @returns {T}
+   * What some parts are known by on the whole page; nothing where one of them has no digest.
+   * @param {string[]} names @param {unknown[]} rest @returns {string}
    */
-  _take(name, kind, make, fill) {
+  _key(names, ...rest) {
+    const digests = names.map((name) => (this.parts.has(name) ? this.part(name).digest : "none"));
+    return digests.every(Boolean) ? JSON.stringify([digests, rest]) : "";
+  }
+
+  /**
+   * An object by its name, made when it is first needed; `key` finds that of another view.
+   * @template {object} T @param {string} name @param {string} kind @param {string} key
+   * @param {() => T | null} make @param {(object: T) => number | void} fill gives a count
+   * @returns {T}
+   */
+  _take(name, kind, key, make, fill) {
     const known = this._made.get(name);
     if (known) return /** @type {T} */ (known.object);
+    const { common } = this.graphics;
+    const whole = key && `${name.split("/")[0]} ${key}`;
+    const theirs = whole ? common.get(whole) : undefined;
+    if (theirs) {
+      theirs.users += 1;
+      this._made.set(name, theirs);
+      return /** @type {T} */ (theirs.object);
+    }
     const object = this.graphics.made(make());
-    this._made.set(name, { kind, object });
-    fill(object);
+    const made = { kind, object, count: 0, key: whole, users: 1 };
+    this._made.set(name, made);
+    made.count = fill(object) || 0;
+    if (whole) common.set(whole, made);
     return object;
   }
 
   /**
-   * @param {string} name @param {() => ArrayBufferView} data @param {boolean} [elements]
-   * @returns {WebGLBuffer}
+   * @param {string} name @param {string} key @param {() => Data | Uint32Array} data
+   * @param {boolean} [elements] @returns {WebGLBuffer}
    */
-  _buffer(name, data, elements = false) {
+  _buffer(name, key, data, elements = false) {
     const gl = this.graphics.context;
     return this._take(
       name,
       "Buffer",
+      key,
       () => gl.createBuffer(),
       (buffer) => {
         const target = elements ? gl.ELEMENT_ARRAY_BUFFER : gl.ARRAY_BUFFER;
+        const numbers = data();
         gl.bindVertexArray(null);
         gl.bindBuffer(target, buffer);
-        gl.bufferData(target, data(), gl.STATIC_DRAW);
+        gl.bufferData(target, numbers, gl.STATIC_DRAW);
+        return numbers.length;
       },
     );
   }
@@ -1008,7 +1062,6 @@ class Drawing {
         ((index[n++] = corner), (index[n++] = far), (index[n++] = far - 1));
       }
     }
-    this._count = n;
     return index.subarray(0, n);
   }
 
@@ -1079,12 +1132,18 @@ class Drawing {
     if (anchor.some((x, k) => x !== this.anchor[k])) (this._drop("position"), this._drop("array"));
     this._scalars = scalars;
     this.anchor = anchor;
+    const { geometry, scalars: range } = this.header;
+    const own = range.name === null ? [] : range.steps > 1 ? [before, after] : [0];
+    const painted = own.map((step) => `scalars/${step}`);
     const array = this._take(
       "array",
       "VertexArray",
+      "",
       () => gl.createVertexArray(),
       (made) => {
-        const index = this._buffer("index", () => this._triangles(), true);
+        const grid = JSON.stringify([geometry.shape, geometry.rows, geometry.columns]);
+        const cells = this._key(["cells"], geometry.shape);
+        const index = this._buffer("index", cells, () => this._triangles(), true);
         const normal = this.header.geometry.planar ? null : this.part("normal").data;
         const kind =
           normal instanceof Int8Array
@@ -1094,11 +1153,23 @@ class Drawing {
               : gl.FLOAT;
         /** @type {[WebGLBuffer | null, number, number][]} */
         const attributes = [
-          [this._buffer("position", () => this._positions()), 3, gl.FLOAT],
-          [this._buffer("coordinate", () => this._coordinates()), 2, gl.FLOAT],
-          [normal ? this._buffer("normal", () => normal) : null, 3, kind],
-          [this.header.paper ? this._buffer("along", () => this._along()) : null, 2, gl.FLOAT],
-          [this._buffer("scalar", () => this._shares(before, after)), 2, gl.FLOAT],
+          [
+            this._buffer("position", this._key(["position"], anchor), () => this._positions()),
+            3,
+            gl.FLOAT,
+          ],
+          [this._buffer("coordinate", grid, () => this._coordinates()), 2, gl.FLOAT],
+          [normal ? this._buffer("normal", this._key(["normal"]), () => normal) : null, 3, kind],
+          [this.header.paper ? this._buffer("along", "", () => this._along()) : null, 2, gl.FLOAT],
+          [
+            this._buffer(
+              "scalar",
+              this._key(painted, geometry.shape, range.low, range.high),
+              () => this._shares(before, after),
+            ),
+            2,
+            gl.FLOAT,
+          ],
         ];
         gl.bindVertexArray(made);
         gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, index);
@@ -1120,6 +1191,7 @@ class Drawing {
     return this._take(
       `slices/${step}`,
       "Texture",
+      this._key([`slices/${step}`, `extra/${step}`], geometry.levels, slices.extra),
       () => gl.createTexture(),
       (texture) => {
         const [layers, height, width, channels] = this.part(`slices/${step}`).shape;
@@ -1152,6 +1224,7 @@ class Drawing {
     return this._take(
       name,
       "Texture",
+      this._key([name], repeat),
       () => gl.createTexture(),
       (texture) => {
         const { data, shape } = this.part(name);
@@ -1229,6 +1302,7 @@ class Drawing {
     return this._take(
       "cmap",
       "Texture",
+      this._key(["cmap"]),
       () => gl.createTexture(),
       (texture) => {
         gl.bindTexture(gl.TEXTURE_2D, texture);
@@ -1281,7 +1355,7 @@ class Drawing {
       gl.activeTexture(gl.TEXTURE0 + SAMPLERS.length);
     }
     this._bindNodes(before, after, anchor);
-    gl.drawElements(gl.TRIANGLES, this._count, gl.UNSIGNED_INT, 0);
+    gl.drawElements(gl.TRIANGLES, this._made.get("index")?.count ?? 0, gl.UNSIGNED_INT, 0);
     gl.bindVertexArray(null);
   }
 }
@@ -1358,7 +1432,12 @@ export function quality(price, fixed, pixels, samples, budget) {
  *   onPoint?: (point: Point) => void, onNeed?: (step: number) => void, onFrame?: () => void,
  *   onSetting?: (name: string, value: Value) => void, onControls?: (shown: boolean) => void,
  * }} Callbacks
- * @typedef {Callbacks & { rebuild?: boolean, controls?: boolean, smooth?: boolean }} Options
+ * @typedef {Callbacks & { bare?: boolean,
+ *   rebuild?: boolean, controls?: boolean, smooth?: boolean, guarded?: boolean, follows?: Viewer,
+ * }} Options
+ *
+ * `rebuild`: the host makes textures anew. `guarded`: the view is part of a page that is scrolled,
+ * and takes wheel and finger only once it was clicked. `follows`: another view that has the bar.
  */
 
 /** Seconds in which a whole series is shown: at least, for each step, at most. */
@@ -1385,6 +1464,8 @@ export class Viewer {
     this.playing = false;
     this.sharp = false;
     this.disposed = false;
+    /** The views that stand beside each other. @type {Viewer[]} */
+    this.together = [this];
     /** @type {Navigator | null} */
     this.navigator = null;
     /** @type {Drawing | null} */
@@ -1497,7 +1578,7 @@ export class Viewer {
     this._timers.clear();
     this.drawing?.dispose();
     this.drawing = null;
-    this.parts.clear();
+    for (const name of [...this.parts.keys()]) this._remove(name);
     this.graphics.leave(this);
     for (const canvas of [this.canvas, this._back, this._kept]) canvas.width = canvas.height = 0;
     this.root.remove();
@@ -1516,7 +1597,7 @@ export class Viewer {
     }
     const was = this.header;
     this.header = header;
-    this.settings = { ...header.settings };
+    this.settings = { ...header.settings, ...header.own };
     if (!was || !equal(was.slices.times, header.slices.times)) {
       this.time = header.time;
       this.clock = header.clock;
@@ -1530,7 +1611,7 @@ export class Viewer {
     }
     if (was && was.generation !== header.generation) {
       // What is the same at all times is sent again only where it differs.
-      for (const name of [...this.parts.keys()]) if (name.includes("/")) this.parts.delete(name);
+      for (const name of [...this.parts.keys()]) if (name.includes("/")) this._remove(name);
     }
     this.panel.build();
     this.change();
@@ -1553,11 +1634,23 @@ export class Viewer {
     if (!given || !equal(given, camera)) this.options.onCamera?.(copied(camera));
   }
 
-  /** @param {string} name @param {Data} data @param {number[]} shape */
-  setPart(name, data, shape) {
-    this.parts.set(name, { data, shape });
-    this.drawing?.forget(name);
+  /** @param {string} name */
+  _remove(name) {
+    this.graphics.release(this.parts.get(name));
+    this.parts.delete(name);
+  }
+
+  /**
+   * @param {string} name @param {Data} data @param {number[]} shape
+   * @param {string} [digest] what the array is known by on the whole page
+   */
+  setPart(name, data, shape, digest = "") {
     this._asked.delete(Number(name.split("/")[1]));
+    if (digest && this.parts.get(name)?.digest === digest) return;
+    const part = this.graphics.hold({ data, shape, digest });
+    this._remove(name);
+    this.parts.set(name, part);
+    this.drawing?.forget(name);
     this._trim();
     if (name === "cmap") this.panel.colours();
     this.change();
@@ -1571,7 +1664,7 @@ export class Viewer {
     for (const name of steps.slice(0, Math.max(steps.length - KEPT, 0))) {
       const step = Number(name.slice(7));
       if (needed.slice(0, 2).includes(step)) continue;
-      for (const kind of ["slices", "extra"]) this.parts.delete(`${kind}/${step}`);
+      for (const kind of ["slices", "extra"]) this._remove(`${kind}/${step}`);
     }
   }
 
@@ -1581,6 +1674,11 @@ export class Viewer {
     Object.assign(this.settings, settings);
     this.panel.update();
     this.change();
+  }
+
+  /** Follow the setting of another view, unless it is this one's own. @param {string} name @param {Value} value */
+  takeSetting(name, value) {
+    if (!(name in (this.header?.own ?? {}))) this.setSettings({ [name]: value });
   }
 
   /** Set one setting as a person does, which the host is told of. @param {string} name @param {Value} value */
@@ -1637,7 +1735,9 @@ export class Viewer {
     return (this.header?.slices.steps ?? 1) > 1;
   }
 
+  /** @returns {void} */
   play() {
+    if (this.options.follows) return this.options.follows.play();
     if (this.playing || !this.header) return;
     if (!this.varies && this.settings.motion === "off") this.choose("motion", "speed");
     this.playing = true;
@@ -1647,7 +1747,9 @@ export class Viewer {
     this.options.onPlaying?.(true);
   }
 
+  /** @returns {void} */
   pause() {
+    if (this.options.follows) return this.options.follows.pause();
     if (!this.playing) return;
     this.playing = false;
     this.panel.update();
@@ -1832,7 +1934,9 @@ export class Viewer {
   _draft(program, shown) {
     const { width, height } = this.canvas;
     const samples = Number(this.settings.samples);
-    const crowd = Math.max(this.graphics.waiting.size + 1, 1);
+    // Views that move share the time; at rest one after the other gets its whole picture.
+    const moving = this.playing || performance.now() < this._busyUntil;
+    const crowd = moving ? this.graphics.waiting.size + 1 : 1;
     const budget = Math.max(MOVING / crowd, 14);
     if (!program.warm) this._warm(program, shown);
     const cost = this._cost(program, samples);
@@ -2020,6 +2124,8 @@ export class Viewer {
       u_mapped: header.scalars.name !== null,
       u_colour: header.colour,
       u_lit: header.lighting,
+      u_ground: header.background,
+      u_opacity: header.opacity ?? 1,
       u_toEye: toFrame(header, eye),
     });
     drawing.draw(before, after, view.anchor, true);
@@ -2144,13 +2250,74 @@ export class Viewer {
 
   /** The picture as PNG. @returns {Promise<Blob>} */
   png() {
-    return new Promise((done, failed) => {
-      this.canvas.toBlob(
-        (blob) => (blob ? done(blob) : failed(new Error("there is no picture yet"))),
-        "image/png",
-      );
-    });
+    return pngOf([this]);
   }
+}
+
+/** Pictures beside each other as PNG. @param {Viewer[]} viewers @returns {Promise<Blob>} */
+function pngOf(viewers) {
+  const canvas = viewers.length > 1 ? document.createElement("canvas") : viewers[0].canvas;
+  if (viewers.length > 1) {
+    canvas.width = viewers.reduce((sum, viewer) => sum + viewer.canvas.width, 0);
+    canvas.height = viewers[0].canvas.height;
+    let left = 0;
+    for (const viewer of viewers) {
+      canvas.getContext("2d")?.drawImage(viewer.canvas, left, 0);
+      left += viewer.canvas.width;
+    }
+  }
+  return new Promise((done, failed) => {
+    canvas.toBlob(
+      (blob) => (blob ? done(blob) : failed(new Error("there is no picture yet"))),
+      "image/png",
+    );
+  });
+}
+
+/**
+ * One view of a scene in an element, or two beside each other that move together.
+ * @param {HTMLElement} element @param {number} count @param {Options} options of the first view
+ * @param {(n: number) => Options} [rest] callbacks that each view has for itself
+ * @returns {Viewer[]}
+ */
+function viewersIn(element, count, options, rest = () => ({})) {
+  if (count < 2) return [new Viewer(element, { ...options, ...rest(0) })];
+  const pair = dom("div", { class: "flowtex-pair" });
+  pair.style.cssText = "display: flex; gap: 2px; width: 100%; height: 100%";
+  element.append(pair);
+  /** @type {Viewer[]} */
+  const viewers = [];
+  for (let n = 0; n < count; n += 1) {
+    const cell = dom("div", {});
+    cell.style.cssText = "flex: 1 1 0; min-width: 0; height: 100%";
+    pair.append(cell);
+    const others = () => viewers.filter((_, m) => m !== n);
+    /** @type {Options} */
+    const linked = {
+      ...options,
+      ...rest(n),
+      onCamera: (camera) => {
+        for (const other of others()) other.setCamera(camera);
+        options.onCamera?.(camera);
+      },
+      onTime: (time) => {
+        for (const other of others()) other.setTime(time);
+        options.onTime?.(time);
+      },
+      onClock: (clock) => {
+        for (const other of others()) other.setClock(clock);
+        options.onClock?.(clock);
+      },
+      onSetting: (name, value) => {
+        for (const other of others()) other.takeSetting(name, value);
+        options.onSetting?.(name, value);
+      },
+    };
+    if (n) Object.assign(linked, { controls: false, follows: viewers[0] });
+    viewers.push(new Viewer(cell, linked));
+  }
+  for (const viewer of viewers) viewer.together = viewers;
+  return viewers;
 }
 
 /** @param {HTMLCanvasElement} canvas @returns {HTMLCanvasElement} */
@@ -2171,6 +2338,9 @@ function equal(a, b) {
 
 /** Pixels and milliseconds within which a press is a click. */
 const CLICK = [4, 450];
+/** Milliseconds after which who scrolls means the page; for which a hint is shown. */
+const POINTED = 1500;
+const HINT = 1600;
 /** Part of the view that an arrow key pans; turns as much of half a turn. */
 const KEY = 0.2;
 
@@ -2186,7 +2356,10 @@ class Pointers {
     this._looked = 0;
     /** @type {ReturnType<typeof setTimeout> | null} */
     this._look = null;
+    this._pointed = -Infinity;
     const { canvas, root } = viewer;
+    root.classList.toggle("flowtex-guarded", viewer.options.guarded ?? false);
+    if (viewer.options.guarded) this._guard();
     viewer.listen(canvas, "pointerdown", (event) => this._press(event));
     viewer.listen(canvas, "pointermove", (event) => this._move(event));
     for (const kind of ["pointerup", "pointercancel"]) {
@@ -2197,6 +2370,32 @@ class Pointers {
     viewer.listen(canvas, "wheel", (event) => this._wheel(event), { passive: false });
     viewer.listen(canvas, "dblclick", (event) => this._zoom(2, event));
     viewer.listen(root, "keydown", (event) => this._key(event));
+  }
+
+  /** Take the wheel from a click on, until the page is clicked or scrolled elsewhere. */
+  _guard() {
+    const { viewer } = this;
+    const elsewhere = (/** @type {Event} */ event) => {
+      if (!event.composedPath().includes(viewer.root)) this._hold(false);
+    };
+    viewer.listen(document, "pointerdown", elsewhere, { capture: true });
+    viewer.listen(document, "wheel", elsewhere, { capture: true, passive: true });
+    viewer.listen(viewer.root, "focus", () => {
+      if (viewer.root.matches(":focus-visible")) this._hold(true);
+    });
+  }
+
+  /** @param {boolean} held */
+  _hold(held) {
+    this.viewer.root.classList.toggle("flowtex-held", held);
+    if (held) this.viewer.panel.hint(false);
+  }
+
+  /** Whether wheel and finger are the view's and not the page's. @returns {boolean} */
+  get held() {
+    const { root } = this.viewer;
+    if (!this.viewer.options.guarded || root.classList.contains("flowtex-held")) return true;
+    return document.fullscreenElement !== null && document.fullscreenElement.contains(root);
   }
 
   /** Place in the view, from -1 to 1. @param {{ clientX: number, clientY: number }} event @returns {{ x: number, y: number }} */
@@ -2212,6 +2411,7 @@ class Pointers {
   _press(event) {
     if (event.button > 2) return;
     this.viewer.root.focus({ preventScroll: true });
+    if (event.pointerType !== "touch") this._hold(true);
     this.viewer.canvas.setPointerCapture(event.pointerId);
     this._down.set(event.pointerId, this._place(event));
     this._other = event.button === 2 || event.shiftKey;
@@ -2230,6 +2430,8 @@ class Pointers {
     if (!navigator) return;
     const place = this._place(event);
     const was = this._down.get(event.pointerId);
+    // What the page moves under a pointer at rest was not pointed at.
+    if (event.movementX || event.movementY) this._pointed = performance.now();
     if (!was) return this._hover(place);
     const far = Math.hypot(event.clientX - this._pressed.x, event.clientY - this._pressed.y);
     if (far > CLICK[0]) this._pressed.moved = true;
@@ -2267,6 +2469,7 @@ class Pointers {
     if (this._down.size) return;
     this.viewer.root.classList.remove("flowtex-grabbing");
     const quick = event.timeStamp - this._pressed.at < CLICK[1];
+    if (event.type === "pointerup") this._hold(true);
     if (!place || event.type !== "pointerup" || this._pressed.moved || !quick || event.button !== 0)
       {return;}
     const point = this.viewer.point(place.x, place.y);
@@ -2276,6 +2479,10 @@ class Pointers {
 
   /** @param {WheelEvent} event */
   _wheel(event) {
+    if (!this.held && !event.ctrlKey && !event.metaKey) {
+      if (performance.now() - this._pointed < POINTED) this.viewer.panel.hint(true);
+      return;
+    }
     event.preventDefault();
     // A notch is 100 pixels or 3 lines; a pinch on a touch pad comes as a wheel with ctrl.
     const size = event.deltaMode === 1 ? 3 : event.deltaMode === 2 ? 1 : event.ctrlKey ? 20 : 100;
@@ -2331,10 +2538,13 @@ class Pointers {
       "-": () => zoom(1 / NOTCH),
       _: () => zoom(1 / NOTCH),
       0: () => viewer.reset(),
-      " ": () => (viewer.playing ? viewer.pause() : viewer.play()),
+      " ": () => ((viewer.options.follows ?? viewer).playing ? viewer.pause() : viewer.play()),
       f: () => viewer.panel.fullscreen(),
-      h: () => viewer.panel.toggle(),
-      Escape: () => viewer.panel.fold(),
+      h: () => (viewer.options.follows ?? viewer).panel.toggle(),
+      Escape: () => {
+        viewer.panel.fold();
+        this._hold(false);
+      },
     };
     const action = actions[event.key];
     if (!action) return;
@@ -2419,11 +2629,16 @@ class Panel {
     this._sheet = dom("div", { class: "settings glass", hidden: "", "aria-label": "Settings" });
     this._note = dom("div", { class: "note", hidden: "", role: "alert" });
     this._busy = dom("div", { class: "busy", hidden: "" }, ["waiting for data …"]);
+    const key = /Mac|iP(hone|ad)/.test(navigator.platform) ? "⌘" : "Ctrl";
+    this._hint = dom("div", { class: "hint glass", hidden: "" }, [
+      `Click, or hold ${key}, to zoom with the wheel`,
+    ]);
     this._handle = this._button("show", "Show the bar (h)", () => this.toggle());
     this._handle.classList.add("handle", "glass");
     this._bar = dom("div", { class: "bar glass", role: "toolbar", "aria-label": "Controls" });
     this._head = dom("div", { class: "head glass", hidden: "" }, [this._title, this._readout]);
     viewer.canvas.className = "picture";
+    viewer.root.classList.toggle("flowtex-bare", viewer.options.bare ?? false);
     shadow.append(
       viewer.canvas,
       this._head,
@@ -2432,6 +2647,7 @@ class Panel {
       this._bar,
       this._handle,
       this._busy,
+      this._hint,
       this._note,
     );
     /** @type {Map<string, (value: Value) => void>} */
@@ -2494,8 +2710,6 @@ class Panel {
     const { header } = this.viewer;
     if (!header) return;
     this._note.hidden = true;
-    this._title.textContent = header.name;
-    this.viewer.root.setAttribute("aria-label", `Flow texture of ${header.name}`);
     this._controls.clear();
     this._sheet.replaceChildren();
     for (const row of header.table) if (this._useful(row)) this._sheet.append(this._control(row));
@@ -2594,9 +2808,24 @@ class Panel {
     return input;
   }
 
+  /** Name the flow, or tell what is different in one of two views of it. */
+  _name() {
+    const { header, settings } = this.viewer;
+    const names = (header?.differs ?? []).filter((name) => name in settings);
+    const told = names.map((name) => {
+      const value = settings[name];
+      return `${label(name)}: ${value === true ? "on" : value === false ? "off" : value}`;
+    });
+    const title = told.join(", ") || header?.name || "";
+    this._title.textContent = title;
+    this._title.hidden = !title;
+    this.viewer.root.setAttribute("aria-label", title ? `Flow texture: ${title}` : "Flow texture");
+  }
+
   /** Show the present values. */
   update() {
     const { settings, playing } = this.viewer;
+    this._name();
     for (const [name, show] of this._controls) if (name in settings) show(settings[name]);
     if (this._ramps !== Boolean(settings.show_level)) this.colours();
     this._lod?.setAttribute("aria-pressed", String(Boolean(settings.lod)));
@@ -2650,8 +2879,10 @@ class Panel {
     const map = parts.get("cmap")?.data;
     const name = header?.scalars.name ?? null;
     this._ramps = Boolean(settings.show_level);
-    const bare = header?.paper?.picture === true && settings.strength === 1;
-    this._legend.hidden = name === null || !map || bare || Boolean(settings.show_level);
+    const bare =
+      header?.paper?.picture === true && settings.strength === 1 && !header.scalars.bar;
+    const unwanted = header?.scalars.bar === false || Boolean(settings.show_level);
+    this._legend.hidden = name === null || !map || bare || unwanted;
     if (this._legend.hidden || !header || !map) return;
     const stops = Array.from({ length: 33 }, (_, n) => {
       const at = 4 * Math.round((n / 32) * 255);
@@ -2719,8 +2950,9 @@ class Panel {
   _arrange() {
     const ready = this.viewer.header !== null;
     this._bar.hidden = !this.shown || !ready;
-    this._handle.hidden = this.shown || !ready;
-    this._head.hidden = !this.shown || !ready;
+    const follows = Boolean(this.viewer.options.follows);
+    this._handle.hidden = this.shown || !ready || follows;
+    this._head.hidden = !(this.shown || follows) || !ready;
     this._sheet.hidden = !this.shown || !this._open || !ready;
     this.viewer.root.classList.toggle("flowtex-open", !this._sheet.hidden);
     this._gear?.setAttribute("aria-pressed", String(this._open));
@@ -2742,6 +2974,14 @@ class Panel {
     }
   }
 
+  /** Tell for a moment how the wheel zooms, or no longer. @param {boolean} shown */
+  hint(shown) {
+    if (this._hinted) clearTimeout(this._hinted);
+    if (this._hinted) this.viewer._timers.delete(this._hinted);
+    this._hinted = shown ? this.viewer.later(() => this.hint(false), HINT) : null;
+    this._hint.hidden = !shown;
+  }
+
   /** A picture is complete. */
   drawn() {
     this._note.hidden = true;
@@ -2757,15 +2997,17 @@ class Panel {
   }
 
   fullscreen() {
+    const { root } = this.viewer;
+    const whole = root.closest(".flowtex-pair") ?? root;
     if (document.fullscreenElement) void document.exitFullscreen();
-    else void this.viewer.root.requestFullscreen?.().catch(() => undefined);
+    else void whole.requestFullscreen?.().catch(() => undefined);
   }
 
   async _save() {
-    const blob = await this.viewer.png();
+    const blob = await pngOf(this.viewer.together);
     const link = dom("a", {
       href: URL.createObjectURL(blob),
-      download: `${this.viewer.header?.name || "flow"}.png`,
+      download: `${(this.viewer.header?.name || "flow").replace(/[\\/:*?"<>|]+/g, " ").trim()}.png`,
     });
     link.click();
     this.viewer.later(() => URL.revokeObjectURL(link.href), 5000);
@@ -2816,6 +3058,7 @@ const STYLE = `
   position: absolute; inset: 0; width: 100%; height: 100%;
   cursor: grab; touch-action: none; display: block;
 }
+:host(.flowtex-guarded:not(.flowtex-held, :fullscreen)) .picture { touch-action: pan-y; }
 :host(.flowtex-grabbing) .picture { cursor: grabbing; }
 .glass {
   background: var(--glass);
@@ -2834,6 +3077,7 @@ const STYLE = `
 .title::first-letter { text-transform: uppercase; }
 .readout { display: flex; gap: 8px; color: var(--quiet); font-variant-numeric: tabular-nums; }
 .readout:empty { display: none; }
+.head:not(:has(.title:not([hidden]), .readout:not(:empty))) { display: none; }
 .readout b { color: var(--ink); font-weight: 500; }
 .legend {
   position: absolute; right: 10px; top: 10px; width: 150px; padding: 5px 10px 6px;
@@ -2921,6 +3165,11 @@ input[role="switch"]:checked::after { transform: translateX(12px); }
   position: absolute; left: 50%; top: 50%; transform: translate(-50%, -50%); padding: 5px 12px;
   border-radius: 10px; background: var(--glass); color: var(--quiet); pointer-events: none;
 }
+.hint {
+  position: absolute; left: 50%; bottom: 56px; transform: translateX(-50%); padding: 4px 12px;
+  color: var(--quiet); pointer-events: none; white-space: nowrap; max-width: calc(100% - 20px);
+  overflow: hidden; text-overflow: ellipsis;
+}
 .note {
   position: absolute; inset: 0; display: flex; flex-direction: column; align-items: center;
   justify-content: center; gap: 6px; padding: 24px; text-align: center; background: var(--ground);
@@ -2945,6 +3194,7 @@ input[role="switch"]:checked::after { transform: translateX(12px); }
 @container (max-width: 330px) {
   button { width: 27px; height: 27px; }
 }
+:host(.flowtex-bare) :is(.head, .legend, .settings, .bar, .handle) { display: none; }
 `;
 
 // --- a page of its own, and a notebook -----------------------------------------------------------
@@ -2974,20 +3224,33 @@ export function decoded(kind, bytes) {
 }
 
 /**
+ * @typedef {{
+ *   dtype: string, shape: number[], data: ArrayBuffer | ArrayBufferView, digest?: string,
+ * }} Packed
+ */
+
+/** Before the names of the parts of a second view. */
+const BESIDE = "beside:";
+
+/**
  * Show a scene that is there as a whole.
  * @param {HTMLElement} element
  * @param {Header} header
- * @param {Record<string, { dtype: string, shape: number[], data: ArrayBuffer | ArrayBufferView }>} parts
+ * @param {Record<string, Packed>} parts those of a view beside it are named `beside:...`
  * @param {Options} [options]
- * @returns {Viewer}
+ * @returns {Viewer} the first view
  */
 export function mountPage(element, header, parts, options = {}) {
-  const viewer = new Viewer(element, options);
-  viewer.setHeader(header);
+  const headers = header.beside ? [header, header.beside] : [header];
+  const viewers = viewersIn(element, headers.length, options);
+  viewers.forEach((viewer, n) => viewer.setHeader(headers[n]));
   for (const [name, part] of Object.entries(parts)) {
-    viewer.setPart(name, decoded(part.dtype, part.data), part.shape);
+    const aside = name.startsWith(BESIDE);
+    const viewer = viewers[aside ? 1 : 0];
+    const data = decoded(part.dtype, part.data);
+    viewer?.setPart(aside ? name.slice(BESIDE.length) : name, data, part.shape, part.digest);
   }
-  return viewer;
+  return viewers[0];
 }
 
 /** Milliseconds between two messages about the camera, and about the time. */
@@ -3018,6 +3281,58 @@ function throttled(viewer, wait, call) {
 }
 
 /**
+ * A message with arrays, which the page holds for as long as nobody has taken them; what was only
+ * offered, and is not there, is null.
+ * @typedef {{ view: number, generation: number, names: string[], parts: (Part | null)[] }} Letter
+ */
+
+/** @param {any} content @param {any[]} buffers @returns {Letter} */
+function opened(content, buffers) {
+  const graphics = sharedGraphics();
+  const { view = 0, generation = 0, names, kind, digests = [] } = content;
+  const parts = names.map((/** @type {string} */ _, /** @type {number} */ n) => {
+    const known = graphics.stock.get(digests[n])?.part;
+    if (known) return graphics.hold(known);
+    if (kind === "offer") return null;
+    const data = decoded(content.dtypes[n], buffers[n]);
+    return graphics.hold({ data, shape: content.shapes[n], digest: digests[n] });
+  });
+  return { view, generation, names, parts };
+}
+
+/** @param {Letter[]} letters */
+function discard(letters) {
+  for (const { parts } of letters) for (const part of parts) sharedGraphics().release(part ?? undefined);
+}
+
+/** Traits with the headers of the views. */
+const HEADERS = ["_header", "_header_beside"];
+
+/** Letters that came before there was a view, by the widget's key. @type {Map<string, Letter[]>} */
+const mailbox = new Map();
+
+/**
+ * What anywidget calls for each widget: arrays come as soon as the kernel has them, while the cell
+ * that shows the widget may still be running.
+ * @param {{ model: any }} given @returns {() => void}
+ */
+function initialize({ model }) {
+  const key = model.get("_key");
+  mailbox.set(key, []);
+  const hear = (/** @type {any} */ content, /** @type {any[]} */ buffers) => {
+    if (content?.kind === "parts" || content?.kind === "offer") {
+      mailbox.get(key)?.push(opened(content, buffers));
+    }
+  };
+  model.on("msg:custom", hear);
+  return () => {
+    model.off("msg:custom", hear);
+    discard(mailbox.get(key) ?? []);
+    mailbox.delete(key);
+  };
+}
+
+/**
  * What anywidget calls for each view of a widget; see flowtex/widget.
  * @param {{ model: any, el: HTMLElement }} given @returns {() => void}
  */
@@ -3030,8 +3345,12 @@ function render({ model, el }) {
     model.save_changes();
   };
   let told = false;
-  const viewer = new Viewer(el, {
+  const beside = model.get("_header_beside");
+  const count = beside && beside.format ? 2 : 1;
+  /** @type {Options} */
+  const options = {
     rebuild: true,
+    guarded: true,
     controls: model.get("bar") ?? true,
     onCamera: (camera) => tellCamera(camera),
     onTime: (time) => tellTime({ time }),
@@ -3040,18 +3359,20 @@ function render({ model, el }) {
     onPoint: (point) => tell("point", point),
     onSetting: (name, value) => tell(name, value),
     onControls: (shown) => tell("bar", shown),
-    onNeed: (step) => model.send({ kind: "need", step }),
+  };
+  const viewers = viewersIn(el, count, options, (n) => ({
+    onNeed: (step) => model.send({ kind: "need", step, view: n }),
     onFrame: () => {
-      if (told) return;
+      if (told || !viewers.every(({ sharp }) => sharp)) return;
       told = true;
-      void viewer
-        .png()
+      void pngOf(viewers)
         .then((blob) => blob.arrayBuffer())
         .then((png) => {
           if (!viewer.disposed) model.send({ kind: "frame" }, undefined, [png]);
         });
     },
-  });
+  }));
+  const [viewer] = viewers;
   const tellCamera = throttled(viewer, CAMERA, (/** @type {CameraState} */ camera) =>
     tell("camera", camera),
   );
@@ -3060,17 +3381,18 @@ function render({ model, el }) {
   });
   const resize = () => {
     const [width, height] = model.get("size") ?? [0, 480];
-    viewer.root.style.width = width ? `${width}px` : "100%";
-    viewer.root.style.height = `${height || 480}px`;
+    const frame = /** @type {HTMLElement} */ (viewer.root.closest(".flowtex-pair") ?? viewer.root);
+    frame.style.width = width ? `${width}px` : "100%";
+    frame.style.height = `${height || 480}px`;
   };
-  const takeHeader = () => {
-    const header = model.get("_header");
+  const takeHeader = (/** @type {number} */ n) => {
+    const header = model.get(HEADERS[n]);
     if (!header || !header.format) return;
     const rows = /** @type {Row[]} */ (header.table);
     const settings = Object.fromEntries(
       rows.map(({ name, default: usual }) => [name, model.get(name) ?? usual]),
     );
-    viewer.setHeader({
+    viewers[n].setHeader({
       ...header,
       settings,
       camera: stateOf(model.get("camera")),
@@ -3079,9 +3401,11 @@ function render({ model, el }) {
     });
     const came = early;
     early = [];
-    for (const { content, buffers } of came) takeParts(content, buffers);
+    came.forEach(take);
     for (const { name } of rows) {
-      follow(name, (value) => viewer.setSettings({ [name]: /** @type {Value} */ (value) }));
+      follow(name, (value) => {
+        for (const each of viewers) each.takeSetting(name, /** @type {Value} */ (value));
+      });
     }
   };
   /** @type {[string, (...given: any[]) => void][]} */
@@ -3098,41 +3422,57 @@ function render({ model, el }) {
       if (sent.get(name) !== JSON.stringify(value)) take(value);
       sent.delete(name);
     });
-  /** @type {{ content: any, buffers: any[] }[]} */
-  let early = [];
-  const takeParts = (/** @type {any} */ content, /** @type {any[]} */ buffers) => {
-    const [now, theirs] = [viewer.header?.generation, content.generation];
-    if (theirs > (now ?? -1)) {
-      early.push({ content, buffers });
+  // The first view takes what has come; further ones ask.
+  /** @type {Letter[]} */
+  let early = mailbox.get(model.get("_key")) ?? [];
+  mailbox.delete(model.get("_key"));
+  const take = (/** @type {Letter} */ letter) => {
+    const theirs = viewers[letter.view];
+    if (!theirs) return;
+    const now = theirs.header ? (theirs.header.generation ?? 0) : -1;
+    if (letter.generation > now) {
+      early.push(letter);
       return;
     }
-    content.names.forEach((/** @type {string} */ name, /** @type {number} */ n) => {
+    /** @type {string[]} */
+    const lacking = [];
+    letter.names.forEach((name, n) => {
       // Slices that the kernel has made anew meanwhile are on their way.
-      if (theirs !== now && name.includes("/")) return;
-      viewer.setPart(name, decoded(content.dtypes[n], buffers[n]), content.shapes[n]);
+      if (letter.generation !== now && name.includes("/")) return;
+      const part = letter.parts[n];
+      if (part) theirs.setPart(name, part.data, part.shape, part.digest);
+      else lacking.push(name);
     });
+    discard([letter]);
+    if (lacking.length) model.send({ kind: "want", names: lacking, view: letter.view });
   };
   listen("msg:custom", (content, buffers) => {
-    if (content?.kind === "parts") takeParts(content, buffers);
+    if (content?.kind === "parts" || content?.kind === "offer") take(opened(content, buffers));
     if (content?.kind === "error") viewer.panel.fail("The kernel could not go on.", content.text);
   });
-  listen("change:_header", takeHeader);
+  viewers.forEach((_, n) => listen(`change:${HEADERS[n]}`, () => takeHeader(n)));
   listen("change:size", resize);
   follow("camera", (camera) => {
     const state = stateOf(/** @type {CameraState | null} */ (camera));
-    if (state) viewer.setCamera(state);
+    if (state) for (const each of viewers) each.setCamera(state);
   });
-  follow("time", (time) => viewer.setTime(Number(time)));
-  follow("clock", (clock) => viewer.setClock(Number(clock)));
+  follow("time", (time) => viewers.forEach((each) => each.setTime(Number(time))));
+  follow("clock", (clock) => viewers.forEach((each) => each.setClock(Number(clock))));
   follow("playing", (playing) => (playing ? viewer.play() : viewer.pause()));
   follow("bar", (shown) => viewer.panel.toggle(Boolean(shown)));
   resize();
-  takeHeader();
+  viewers.forEach((_, n) => takeHeader(n));
   if (model.get("playing")) viewer.play();
-  model.send({ kind: "ready" });
+  // What came before the client was loaded is lost.
+  const whole = viewers.every((each) => {
+    const [before, after] = each._moment();
+    return each.drawing && !each.drawing.missing(before, after).length;
+  });
+  if (!whole) model.send({ kind: "ready" });
   return () => {
     for (const [event, call] of followed) model.off(event, call);
-    viewer.dispose();
+    discard(early);
+    for (const each of viewers) each.dispose();
   };
 }
 
@@ -3141,4 +3481,4 @@ function stateOf(camera) {
   return camera && Array.isArray(camera.position) ? camera : null;
 }
 
-export default { render };
+export default { initialize, render };

@@ -38,6 +38,10 @@ class Colours:
         Colours from 0 to 1 where there are no values, and behind the surface.
     lighting
         Whether the surface is lit.
+    opacity
+        How much of the background it hides, 0 to 1.
+    bar
+        Whether there is a legend.
     """
 
     name: str | None = None
@@ -49,6 +53,8 @@ class Colours:
     plain: tuple[float, float, float] = (0.63, 0.63, 0.63)
     background: tuple[float, float, float] = (1.0, 1.0, 1.0)
     lighting: bool = False
+    opacity: float = 1.0
+    bar: bool = True
 
 
 def camera_state(look: FirstLook) -> dict[str, Any]:

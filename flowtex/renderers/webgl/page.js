@@ -30,16 +30,19 @@ async function openPage() {
   const said = /** @type {HTMLElement} */ (document.getElementById("said"));
   try {
     const header = JSON.parse(document.getElementById("header")?.textContent ?? "");
-    /** @type {Record<string, {dtype: string, shape: number[], data: Uint8Array}>} */
+    /** @type {Record<string, {dtype: string, shape: number[], data: Uint8Array, digest: string}>} */
     const parts = {};
     for (const element of document.querySelectorAll("script[data-part]")) {
-      if (element instanceof HTMLElement) parts[element.dataset.part ?? ""] = await pagePart(element);
+      if (!(element instanceof HTMLElement)) continue;
+      const { part = "", same } = element.dataset;
+      // What two views, or two times, have in common lies in the page once.
+      parts[part] = same ? parts[same] : { ...(await pagePart(element)), digest: part };
     }
     const look = () => {
       // The client says why in its own place, which the preview covers.
       said.hidden = !place.querySelector('[data-failed="true"]');
       said.textContent = "This browser cannot draw the flow, for want of WebGL2; here is a picture of it.";
-      if (!place.querySelector('[data-sharp="true"]')) return;
+      if (place.querySelector('[data-sharp="false"]')) return;
       watch.disconnect();
       document.getElementById("preview")?.remove();
     };

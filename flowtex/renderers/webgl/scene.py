@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cache, cached_property
 from typing import Any
 
 import numpy as np
@@ -32,6 +33,7 @@ from flowtex.renderers.webgl.header import (
     paper_state,
     table_state,
 )
+from flowtex.renderers.webgl.packing import Packing, packing_of
 from flowtex.settings import Settings
 from flowtex.textures import TextureSet
 
@@ -67,6 +69,11 @@ class Scene:
     textures: TextureSet
     colours: Colours = field(default_factory=Colours)
     kept: tuple[int, ...] = ()
+
+    @cached_property
+    def packing(self) -> Packing:
+        """The slices, packed."""
+        return packing_of(self.textures)
 
     @property
     def steps(self) -> int:
@@ -119,9 +126,9 @@ class Scene:
         return {
             "format": FORMAT,
             "version": __version__,
-            "name": textures.geometry.field.name or "flow",
+            "name": textures.geometry.field.name,
             "variant": variant,
-            "shaders": {key: compose(name, variant) for key, name in SHADERS.items()},
+            "shaders": dict(_shaders(tuple(variant))),
             "geometry": self._geometry(),
             "slices": self._slices(),
             "scalars": {
@@ -130,10 +137,12 @@ class Scene:
                 "high": float(colours.high),
                 "steps": 1 if self._values is None else len(self._values),
                 "unit": colours.unit,
+                "bar": bool(colours.bar),
             },
             "colour": [float(c) for c in colours.plain],
             "background": [float(c) for c in colours.background],
             "lighting": bool(colours.lighting),
+            "opacity": float(colours.opacity),
             "paper": None if textures.paper is None else paper_state(textures.paper),
             "table": table_state(),
         }
@@ -171,9 +180,8 @@ class Scene:
         parts: Parts = {}
         if values is not None and step < len(values):
             parts[f"scalars/{step}"] = np.ascontiguousarray(values[step], "<f4")
-        layers = self.textures.layers(self.source(step))
-        parts[f"extra/{step}"] = half(layers[self._extra(), :, :, 3])
-        parts[f"slices/{step}"] = half(layers[..., : self._channels])
+        slopes, parts[f"extra/{step}"] = self.packing.step(self.source(step))
+        parts[f"slices/{step}"] = slopes
         return parts
 
     def source(self, step: int) -> int:
@@ -194,7 +202,7 @@ class Scene:
         geometry = self.textures.geometry
         texels = geometry.rows.size * geometry.columns.size
         nodes = geometry.field.valid.size
-        numbers = self.textures.count * self._channels + len(self._extra())
+        numbers = self.textures.count * self.packing.channels + len(self.packing.extra)
         return 2 * texels * numbers + (4 * nodes if self.colours.values is not None else 0)
 
     @property
@@ -204,16 +212,6 @@ class Scene:
         if values is None or not self.kept or len(values) == 1:
             return values
         return values[list(self.kept)]
-
-    @property
-    def _channels(self) -> int:
-        """Slopes in a plane, or in noise coordinates, have two components."""
-        return 2 if self.textures.geometry.planar or self.textures.paper is not None else 4
-
-    def _extra(self) -> list[int]:
-        """Layers whose fourth channel says something: unit, reach, speed, and reach forward."""
-        ahead = [1 + len(self.textures.lags)] if self.textures.sides == 2 else []
-        return [0, 1, 2, *ahead]
 
     def _geometry(self) -> dict[str, Any]:
         geometry = self.textures.geometry
@@ -233,8 +231,8 @@ class Scene:
         textures = self.textures
         return {
             "count": int(textures.count),
-            "channels": self._channels,
-            "extra": self._extra(),
+            "channels": self.packing.channels,
+            "extra": self.packing.extra,
             "lags": numbers(textures.lags),
             "sides": int(textures.sides),
             "unit": float(textures.unit),
@@ -244,3 +242,8 @@ class Scene:
             "timeUnit": textures.geometry.field.time_unit,
             "signFree": bool(textures.geometry.field.sign_free),
         }
+
+
+@cache
+def _shaders(variant: tuple[str, ...]) -> dict[str, str]:
+    return {key: compose(name, variant) for key, name in SHADERS.items()}

@@ -1,0 +1,266 @@
+"""What a page may open: the files it was given, by name.
+
+From the page comes a name, never a path. Names are looked up among those of the files that were
+found when the library was made or looked through again, so nothing outside them can be opened.
+Files that are open, and the flows made from them, are kept for all pages of a server.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections import OrderedDict
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from flowtex.errors import FieldError
+from flowtex.field import FlowField
+from flowtex.field.source import FlowSource
+from flowtex.settings import Settings
+from flowtex.trace import SliceStore, shared_store
+
+__all__ = ["Choice", "Library", "Opened"]
+
+#: Endings of files that a folder is searched for.
+SUFFIXES = frozenset(
+    [
+        *(".vts", ".vtr", ".vti", ".vtk", ".vtm", ".pvd", ".pvts", ".pvtr", ".pvti"),
+        *(".xyz", ".x", ".g", ".foam", ".case", ".cgns", ".ex2"),
+    ]
+)
+#: Folders below the one that was given that are looked into, and files that are listed.
+DEEPEST, MOST_FILES = 4, 500
+#: Files, and flows, that are kept open.
+SOURCES, FLOWS = 4, 12
+
+Open = Callable[[], FlowSource]
+
+
+@dataclass(frozen=True)
+class Choice:
+    """What is shown of a file.
+
+    Attributes
+    ----------
+    vectors, plane, block
+        As for :meth:`FlowSource.field`; empty for what that chooses by itself.
+    """
+
+    vectors: str = ""
+    plane: str = ""
+    block: str = ""
+
+
+@dataclass(frozen=True)
+class Opened:
+    """A flow, with its traces so that they stay."""
+
+    field: FlowField
+    store: SliceStore | None = None
+
+
+class Library:
+    """Names of flows, and how each is opened.
+
+    Parameters
+    ----------
+    entries
+        What opens each, by name.
+    folder
+        A folder that is looked through for more.
+    files
+        Which of the entries are files.
+
+    Raises
+    ------
+    FieldError
+        When there is nothing to open.
+    """
+
+    def __init__(
+        self, entries: Mapping[str, Open], folder: Path | None = None, files: Iterable[str] = ()
+    ) -> None:
+        self._entries = dict(entries)
+        self._files = frozenset(files)
+        self._folder = None if folder is None else folder.resolve()
+        self._sources: OrderedDict[str, FlowSource] = OrderedDict()
+        self._flows: OrderedDict[tuple[str, Choice], Opened] = OrderedDict()
+        self._lock = threading.RLock()
+        if not self.names:
+            endings = " ".join(sorted(SUFFIXES))
+            msg = f"{folder}: there is no file in it that can be opened; expected {endings}"
+            raise FieldError(msg)
+
+    @classmethod
+    def of(cls, *flows: Any, folder: str | Path | None = None, **options: Any) -> Library:
+        """Make a library of whatever can be shown.
+
+        Parameters
+        ----------
+        *flows
+            Fields, meshes, paths of files, or one folder.
+        folder
+            A folder that is looked through for more.
+        **options
+            Arguments of :meth:`FlowField.from_pyvista` for meshes.
+
+        Raises
+        ------
+        FieldError
+            When a path leads nowhere, or a mesh makes no field.
+        """
+        if len(flows) == 1 and isinstance(flows[0], Library):
+            return flows[0]
+        if len(flows) == 1 and isinstance(flows[0], (str, Path)) and Path(flows[0]).is_dir():
+            return cls({}, Path(flows[0]))
+        entries: dict[str, Open] = {}
+        files: list[str] = []
+        for flow in flows:
+            if isinstance(flow, (str, Path)):
+                files.append(_free(Path(flow).name, entries))
+                entries[files[-1]] = _opener(Path(flow))
+                continue
+            source = flow if isinstance(flow, FlowSource) else _made(flow, options)
+            entries[_free(source.name or "flow", entries)] = _given(source)
+        return cls(entries, None if folder is None else Path(folder), files)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of all that can be opened; a folder is looked through anew."""
+        found = dict(self._entries)
+        if self._folder is not None:
+            found |= {name: _opener(path) for name, path in _search(self._folder)}
+        self._found = found
+        return tuple(found)
+
+    def source(self, name: str) -> FlowSource:
+        """Open one, or return it when it is open.
+
+        Raises
+        ------
+        FieldError
+            When there is none of that name, or it cannot be read.
+        """
+        with self._lock:
+            if name in self._sources:
+                self._sources.move_to_end(name)
+                return self._sources[name]
+            opener = self._found.get(name)
+            if opener is None:
+                msg = f"there is no file {name!r} among those that may be opened here"
+                raise FieldError(msg)
+            source = self._sources[name] = opener()
+            while len(self._sources) > SOURCES:
+                self._sources.popitem(last=False)
+            return source
+
+    def is_file(self, name: str) -> bool:
+        """Whether a name is that of a file."""
+        return name in self._files or name not in self._entries
+
+    def complete(self, name: str, choice: Choice) -> Choice:
+        """Fill in what is not chosen: the middle plane, the first array that may be the velocity.
+
+        Raises
+        ------
+        FieldError
+            As :meth:`source`.
+        """
+        source = self.source(name)
+        plane = choice.plane
+        if not plane and source.planes:
+            plane = f"k={source.planes['k'] // 2}"
+        vectors = choice.vectors or (source.vectors[0] if source.vectors else "")
+        block = choice.block or (source.blocks[0] if source.blocks else "")
+        return Choice(vectors, plane, block)
+
+    def field(self, name: str, choice: Choice) -> FlowField:
+        """Make a flow, or return it when it is at hand; nothing is traced.
+
+        Raises
+        ------
+        FieldError
+            When there is no such file, or what is chosen of it makes no flow.
+        """
+        known = self._flows.get((name, choice))
+        if known is not None:
+            return known.field
+        with self._lock:
+            return self.source(name).field(
+                vectors=choice.vectors or None,
+                plane=choice.plane or None,
+                block=choice.block or None,
+            )
+
+    def trace(self, name: str, choice: Choice, field: FlowField, settings: Settings) -> Opened:
+        """Make ready what the first picture of a flow needs, and keep it.
+
+        Raises
+        ------
+        Stopped
+            When that is not wanted any more, see :func:`flowtex.progress.stoppable`.
+        """
+        known = self._flows.get((name, choice))
+        if known is not None and known.field is field and known.store is not None:
+            return known
+        store = shared_store(field, settings.parameter)
+        store.at(len(field.times) - 1)
+        opened = Opened(field, store)
+        with self._lock:
+            self._flows[name, choice] = opened
+            while len(self._flows) > FLOWS:
+                self._flows.popitem(last=False)
+        return opened
+
+
+def _made(flow: Any, options: dict[str, Any]) -> FlowSource:
+    """Take a mesh as it is where nothing is chosen about it, else the field that is meant."""
+    given = {key: value for key, value in options.items() if value is not None}
+    if isinstance(flow, FlowField) or not given:
+        return FlowSource(flow)
+    return FlowSource(FlowField.from_pyvista(flow, **given))
+
+
+def _given(source: FlowSource) -> Open:
+    return lambda: source
+
+
+def _opener(path: Path) -> Open:
+    return lambda: FlowSource.from_file(path)
+
+
+def _free(name: str, taken: Iterable[str]) -> str:
+    """Return a name that is not taken yet."""
+    found, number = name, 1
+    while found in taken:
+        number += 1
+        found = f"{name} ({number})"
+    return found
+
+
+def _search(folder: Path) -> list[tuple[str, Path]]:
+    """Find files below a folder; what a link leads to outside of it is left out."""
+    found: list[tuple[str, Path]] = []
+    waiting = [(folder, 0)]
+    while waiting and len(found) < MOST_FILES:
+        here, depth = waiting.pop(0)
+        try:
+            inside = sorted(here.iterdir())
+        except OSError:
+            continue
+        for path in inside:
+            if path.name.startswith(".") or not path.resolve().is_relative_to(folder):
+                continue
+            if path.is_dir() and not path.is_symlink() and depth < DEEPEST:
+                waiting.append((path, depth + 1))
+            elif path.is_file() and path.suffix.lower() in SUFFIXES | {".bin"}:
+                found.append((path.relative_to(folder).as_posix(), path))
+    return [(name, path) for name, path in found[:MOST_FILES] if not _is_solution(path)]
+
+
+def _is_solution(path: Path) -> bool:
+    """Whether this is the part of a PLOT3D pair that is opened along with its grid."""
+    from flowtex.field import plot3d
+
+    return path.suffix.lower() == ".bin" and plot3d.find_grid(path) not in (None, path)

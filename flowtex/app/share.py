@@ -1,0 +1,168 @@
+"""What leaves the page: pictures, movies, a link to the present state, and the lines of Python."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import Any
+
+from flowtex.app.downloads import Downloads
+from flowtex.app.exports import ExportError, Job, MovieJob, PictureJob
+from flowtex.app.links import from_link, to_link
+from flowtex.app.part import Part
+from flowtex.app.python_lines import to_python
+from flowtex.app.routes import Content, Routes
+from flowtex.moments import MovieError
+from flowtex.progress import Stopped
+
+__all__ = ["FORMATS", "Share"]
+
+#: What can be saved.
+FORMATS = ("PNG", "MP4", "GIF")
+#: Seconds between two looks at how far a job is.
+LOOK = 0.15
+
+
+class Share(Part):
+    """What leaves the page.
+
+    Parameters
+    ----------
+    app
+        The application.
+    """
+
+    def __init__(self, app: Any) -> None:
+        super().__init__(app)
+        self.downloads = Downloads()
+        self._routes = Routes.of(app.server)
+        self._job: Job | None = None
+        self._task: asyncio.Task[None] | None = None
+
+    def values(self) -> dict[str, Any]:
+        """Return what the page begins with."""
+        return {
+            "out_format": FORMATS[0],
+            "out_width": 1920,
+            "out_height": 1080,
+            "out_density": 1.0,
+            "out_smooth": True,
+            "out_seconds": 4.0,
+            "out_fps": 30.0,
+            "out_progress": None,
+            "out_file": None,
+            "link": "",
+            "python": "",
+        }
+
+    def refresh(self) -> None:
+        """Follow another flow that is shown."""
+        self.cancel()
+
+    def begin(self) -> None:
+        """Make what the page asks for."""
+        self.cancel()
+        try:
+            job = self._made()
+        except (ExportError, MovieError, ModuleNotFoundError, TypeError, ValueError) as error:
+            self.app.complain(error)
+            return
+        self._job = job
+        self.state.set(out_progress=0.0, out_file=None)
+        self._task = asyncio.create_task(self._run(job))
+
+    def cancel(self) -> None:
+        """Make no more of it."""
+        if self._job is not None:
+            self._job.cancel()
+        self._job = None
+        self.state.set(out_progress=None)
+
+    def _made(self) -> Job:
+        get = self.state.get
+        kind = get("out_format")
+        if kind not in FORMATS:
+            msg = f"the format is {kind!r}; expected {', '.join(FORMATS)}"
+            raise ExportError(msg)
+        name = f"{self.scene.field.name or 'flow'}.{kind.lower()}"
+        path = self.downloads.place(name)
+        size = (int(get("out_width")), int(get("out_height")))
+        options: dict[str, Any] = {
+            "supersampling": 2 if get("out_smooth") else 1,
+            "density": float(get("out_density")),
+            "busy": self._busy,
+        }
+        if kind == "PNG":
+            return PictureJob(self.scene, path, size, **options)
+        seconds, fps = float(get("out_seconds")), float(get("out_fps"))
+        return MovieJob(self.scene, path, size, seconds=seconds, fps=fps, **options)
+
+    def _busy(self) -> bool:
+        """Whether the view needs the time more."""
+        return not self.area.stream.paused and self.state.get("picture") == "moving"
+
+    async def _run(self, job: Job) -> None:
+        telling = asyncio.create_task(self._tell(job))
+        try:
+            path = await job.run()
+        except Stopped:
+            return
+        except (ExportError, MovieError, OSError) as error:
+            self.app.complain(error)
+            return
+        finally:
+            telling.cancel()
+            if job is self._job:
+                self._job = None
+                self.state.send(out_progress=None)
+        token = self.downloads.add(path, path.name)
+        self.state.send(
+            out_file={"name": path.name, "url": self._routes.give(token, self._giver(token))}
+        )
+
+    def _giver(self, token: str) -> Any:
+        def content() -> Content:
+            found = self.downloads.get(token)
+            if found is None:
+                return b"This file is not there any more.", "text/plain", None
+            return found.path, found.headers["Content-Type"], found.name
+
+        return content
+
+    async def _tell(self, job: Job) -> None:
+        """Tell the page how far the job is."""
+        while True:
+            self.state.send(out_progress=round(100 * job.progress, 1))
+            await asyncio.sleep(LOOK)
+
+    def present(self) -> dict[str, Any]:
+        """Return the state of the page as a link has it."""
+        said: dict[str, Any] = {}
+        for part in self.app.parts:
+            said |= part.describe()
+        return said
+
+    def show_state(self) -> None:
+        """Let the page show the link and the lines of Python."""
+        said = self.present()
+        source = None if self.app.data.from_file else "field  # the flow that was given"
+        self.state.set(
+            link="#" + to_link(said),
+            python=to_python(said, source=source, size=self.scene.size),
+        )
+
+    def take_link(self, text: Any) -> None:
+        """Show the state that the page's address holds."""
+        faults: list[str] = []
+        said = from_link(str(text)[:10_000], faults)
+        if faults:
+            self.app.complain("; ".join(faults))
+        if said:
+            self.app.restore(said)
+
+    def close(self) -> None:
+        """End what goes on."""
+        if self._job is not None:
+            self._job.cancel()
+        if self._task is not None:
+            self._task.cancel()
+        self.downloads.close()

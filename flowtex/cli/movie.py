@@ -1,0 +1,87 @@
+"""``flowtex movie``: a file as a movie."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from flowtex.cli.checks import check_colours, check_film, check_image, need_opengl
+from flowtex.cli.options import (
+    FILE,
+    FLAT,
+    PICTURE,
+    DrawOptions,
+    FieldOptions,
+    SettingFlags,
+    UsageError,
+    given,
+    read,
+    settings_in,
+)
+from flowtex.cli.talk import nodes, say
+
+__all__ = ["movie"]
+
+
+def movie(
+    file: FILE,
+    /,
+    *,
+    output: Annotated[
+        Path, Parameter(name=["--output", "-o"], help="File to write: .mp4, .gif or .webp.")
+    ],
+    seconds: Annotated[
+        float | None,
+        Parameter(group=PICTURE, help="Length; a steady flow begins again after as many."),
+    ] = None,
+    fps: Annotated[
+        float | None,
+        Parameter(group=PICTURE, help="Frames in a second. [default: 30, and 20 in a GIF]"),
+    ] = None,
+    quality: Annotated[
+        int, Parameter(group=PICTURE, help="1 to 100: the more, the truer and the larger.")
+    ] = 80,
+    supersampling: Annotated[
+        int, Parameter(group=PICTURE, help="Draw larger by as much along each side, and average.")
+    ] = 1,
+    beside: Annotated[
+        tuple[str, ...],
+        Parameter(
+            group=PICTURE,
+            negative="",
+            help="What differs in a second view beside the first, such as lod=false.",
+        ),
+    ] = (),
+    which: Annotated[FieldOptions | None, FLAT] = None,
+    draw: Annotated[DrawOptions | None, FLAT] = None,
+    settings: Annotated[SettingFlags | None, FLAT] = None,
+) -> int:
+    """Write a file as a movie: a loop without a seam, or all times of a flow that varies."""
+    started = time.perf_counter()
+    draw = draw or DrawOptions()
+    options, size = {**draw.look(), **given(settings)}, draw.pixels()
+    options |= {"beside": settings_in(beside), "supersampling": supersampling}
+    check_film(output, size, fps, quality)
+    check_image(options)
+    need_opengl()
+    field = read(file, which)
+    check_colours(field, options)
+    from flowtex import movies
+
+    try:
+        made = movies.movie(
+            field, output, size=size, seconds=seconds, fps=fps, quality=quality, **options
+        )
+    except OSError as error:
+        msg = f"{output}: cannot be written ({error.strerror or error})"
+        raise UsageError(msg) from error
+    loop = ", a loop without a seam" if made.closed else ""
+    say(
+        f"[bold]{output}[/]  {field.name}, {nodes(field)}{loop}  "
+        f"[dim]{size[0]} × {size[1]}, {made.frames} frames in {made.seconds:g} s, "
+        f"{made.nbytes / 1e6:.1f} MB, {time.perf_counter() - started:.1f} s[/]"
+    )
+    return 0

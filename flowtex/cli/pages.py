@@ -1,0 +1,139 @@
+"""``flowtex demo`` and ``flowtex show``: flows in a window, or on a page."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+from cyclopts import Parameter
+
+from flowtex import examples
+from flowtex.cli.checks import check_colours, check_image, need_app, need_opengl
+from flowtex.cli.options import (
+    FLAT,
+    DrawOptions,
+    FieldOptions,
+    ServeOptions,
+    SettingFlags,
+    UsageError,
+    given,
+    read,
+)
+from flowtex.cli.talk import announcer
+from flowtex.examples import NAMES
+
+if TYPE_CHECKING:
+    from flowtex.app import Library
+
+__all__ = ["demo", "show"]
+
+#: How each example is first seen: zoom and point of the mesh.
+FIRST_LOOKS: dict[str, tuple[float, tuple[float, ...] | None]] = {
+    "cylinder": (3.2, (4.0, 0.0)),
+    "airfoil": (6.0, (0.5, 0.0)),
+}
+#: Options that make another field of a file; the others choose a part of it.
+MAKING = ("periodic", "time", "sign_free")
+
+FILE = Annotated[
+    Path,
+    Parameter(
+        help="Structured meshes, any files that PyVista reads or PLOT3D; or one folder of them.",
+    ),
+]
+
+
+def demo(
+    *,
+    example: Annotated[str, Parameter(help=f"Which flow: {', '.join(NAMES)}.")] = "cylinder",
+    page: Annotated[ServeOptions | None, FLAT] = None,
+    settings: Annotated[SettingFlags | None, FLAT] = None,
+) -> int:
+    """Show the examples on a page in the browser."""
+    if example not in NAMES:
+        msg = f"there is no example {example!r}; there are {', '.join(NAMES)}"
+        raise UsageError(msg)
+    chosen = given(settings)
+    need_opengl()
+    need_app()
+    from flowtex.app import Library
+    from flowtex.field.source import FlowSource
+
+    def opener(name: str) -> Any:
+        return lambda: FlowSource(getattr(examples, f"{name}_field")())
+
+    names = [example, *(name for name in NAMES if name != example)]
+    library = Library({name: opener(name) for name in names})
+    zoom, focus = FIRST_LOOKS.get(example, (1.0, None))
+    return _serve(library, page, {**chosen, "zoom": zoom, "focus": focus})
+
+
+def show(
+    *files: FILE,
+    which: Annotated[FieldOptions | None, FLAT] = None,
+    draw: Annotated[DrawOptions | None, FLAT] = None,
+    page: Annotated[ServeOptions | None, FLAT] = None,
+    settings: Annotated[SettingFlags | None, FLAT] = None,
+) -> int:
+    """Show a file: in a window, or where there is no display on a page.
+
+    Several files, or a folder, are shown on a page where one can be chosen.
+    """
+    draw = draw or DrawOptions()
+    options = {**draw.look(), **given(settings)}
+    size = draw.pixels()
+    check_image(options)
+    need_opengl()
+    from flowtex import doctor
+
+    on_page = page is not None or not doctor.has_display()
+    if on_page or len(files) != 1 or files[0].is_dir():
+        return _show_page(files, which, page, options)
+    field = read(files[0], which)
+    check_colours(field, options)
+    from flowtex import pictures
+
+    pictures.show(field, size=size, **options)
+    return 0
+
+
+def _show_page(
+    files: tuple[Path, ...],
+    which: FieldOptions | None,
+    page: ServeOptions | None,
+    options: dict[str, Any],
+) -> int:
+    need_app()
+    from flowtex.app import Library
+
+    if not files:
+        msg = "there is no file to show; name one, or a folder, or try `flowtex demo`"
+        raise UsageError(msg)
+    chosen = which.given() if which is not None else {}
+    if len(files) == 1 and files[0].is_file() and any(name in chosen for name in MAKING):
+        return _serve(Library.of(read(files[0], which)), page, options)
+    if not_here := [name for name in MAKING if name in chosen]:
+        msg = f"--{not_here[0].replace('_', '-')} goes with one file, not with several or a folder"
+        raise UsageError(msg)
+    return _serve(Library.of(*files), page, {**options, **chosen})
+
+
+def _serve(library: Library, page: ServeOptions | None, options: dict[str, Any]) -> int:
+    from flowtex.app import serve
+    from flowtex.app.flow_app import first_choice
+
+    page = page or ServeOptions()
+    field = library.field(*first_choice(library, options))
+    if "scalars" in options:
+        check_colours(field, options)
+    serve(
+        library,
+        host=page.host,
+        port=page.port,
+        limit=page.limit,
+        idle=page.idle,
+        open_browser=page.browser,
+        announce=announcer(field, page.host),
+        **options,
+    )
+    return 0

@@ -1,0 +1,279 @@
+"""Where on the surface a point in space lies, in index space.
+
+The nodes nearest to a point are found in a tree, which is kept with the field. From each of them
+cells are walked, each step to the cell in which the point would lie if the present one went on
+straight; that also finds the way over cells that are thousands of times longer than wide, where
+the nearest node is no corner of the right cell. Of all triangles on the way, the closest counts.
+"""
+
+from __future__ import annotations
+
+import weakref
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.spatial import cKDTree
+
+from flowtex.field.facets import HALVES
+from flowtex.field.field import FlowField
+from flowtex.field.surface import Surface
+
+__all__ = ["Locator", "locate", "locator"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.intp]
+
+#: Nodes around a point that cells are walked from.
+STARTS = 4
+#: Nodes closer than this share of the surface's extent lie at one point.
+TOGETHER = 1e-12
+#: Steps of a walk, and cells along an axis that one of them goes, at most.
+STEPS, STRIDE = 24, 4
+#: Distance from a triangle, in sizes of its cell, within which a point lies on it.
+ON = 1e-9
+#: Height of a triangle over a side, squared, below which it has no area.
+THIN = 1e-20
+#: Squared sine of the angle between two sides of a cell, below which they are one.
+FLAT = 1e-14
+AROUND = np.stack(np.meshgrid([-1, 0, 1], [-1, 0, 1]), axis=-1).reshape(-1, 2)
+
+
+class Locator:
+    """Finds points on one surface."""
+
+    def __init__(self, surface: Surface) -> None:
+        self._surface = surface
+        self._nodes = surface.points.reshape(-1, 3)
+        self._number = np.flatnonzero(_starts(surface))
+        self._tree = cKDTree(self._nodes[self._number])
+        self._last = np.array(surface.shape) - 2
+        # An axis goes around in space, or ends and is repeated a period farther.
+        away = np.linalg.norm(surface.offset, axis=-1) > 1e-6 * surface.extent
+        self._around = np.array(surface.periodic) & ~away
+        turns = [(0.0, -1.0, 1.0) if far else (0.0,) for far in away]
+        self._shifts = np.stack(
+            [m * surface.offset[0] + n * surface.offset[1] for m in turns[0] for n in turns[1]]
+        )
+
+    def nearest(self, points: Floats) -> tuple[Floats, Floats]:
+        """Find the nearest places on the surface as it is drawn.
+
+        Parameters
+        ----------
+        points
+            Points in the mesh's own coordinates, (P, 3). Where a flat map is one period of what
+            repeats, points in the periods beside it are found as well.
+
+        Returns
+        -------
+        index
+            (j, i) of the nearest places, (P, 2).
+        distance
+            How far they are, in sizes of the cell that was found, (P,).
+        """
+        starts = min(STARTS, len(self._number))
+        targets = (points[:, None] - self._shifts).reshape(-1, 3)
+        _, found = self._tree.query(targets, k=np.arange(1, starts + 1))
+        row, column = np.divmod(self._number[found.ravel()], self._surface.shape[1])
+        first = np.minimum(np.stack([row, column], axis=-1), self._last)
+        index, distance = self._walk(np.repeat(targets, starts, axis=0), first)
+        distance = distance.reshape(len(points), -1)
+        best = np.argmin(distance, axis=1)
+        rows = np.arange(len(points))
+        return index.reshape(len(points), -1, 2)[rows, best], distance[rows, best]
+
+    def _walk(self, at: Floats, cell: Ints) -> tuple[Floats, Floats]:
+        """Walk from cells (N, 2) towards points (N, 3)."""
+        index, distance = np.zeros((len(at), 2)), np.full(len(at), np.inf)
+        on, cell = np.arange(len(at)), cell.copy()
+        for _ in range(STEPS):
+            corners = self._corners(cell[on])
+            self._take(index, distance, on, cell[on], self._place(at[on], cell[on], corners))
+            next_ = self._inside(cell[on] + _step(at[on], corners))
+            going = (next_ != cell[on]).any(axis=-1) & (distance[on] > ON)
+            on = on[going]
+            if not len(on):
+                break
+            cell[on] = next_[going]
+        aside = np.flatnonzero(distance > ON)
+        if len(aside):
+            known = np.isfinite(distance[aside, None])
+            middle = np.where(
+                known, np.minimum(index[aside].astype(np.intp), self._last), cell[aside]
+            )
+            self._look_around(index, distance, at, aside, middle)
+        return index, distance
+
+    def _look_around(
+        self, index: Floats, distance: Floats, at: Floats, aside: Ints, middle: Ints
+    ) -> None:
+        """Look at the cells around those (M, 2) of the points that lie beside the surface."""
+        near = self._inside(middle + AROUND[:, None]).reshape(-1, 2)
+        inside, far = self._place(np.tile(at[aside], (len(AROUND), 1)), near, self._corners(near))
+        best = np.argmin(far.reshape(len(AROUND), -1), axis=0) * len(aside) + np.arange(len(aside))
+        self._take(index, distance, aside, near[best], (inside[best], far[best]))
+
+    @staticmethod
+    def _take(
+        index: Floats, distance: Floats, some: Ints, cell: Ints, found: tuple[Floats, Floats]
+    ) -> None:
+        """Keep what is closer than what was found before."""
+        inside, far = found
+        closer = far < distance[some]
+        index[some[closer]] = (cell + inside)[closer]
+        distance[some[closer]] = far[closer]
+
+    def _inside(self, cell: Ints) -> Ints:
+        return np.where(
+            self._around, np.mod(cell, self._last + 1), np.clip(cell, 0, self._last)
+        ).astype(np.intp)
+
+    def _corners(self, cell: Ints) -> Floats:
+        """Nodes (j, j + 1) by (i, i + 1) of cells, (N, 2, 2, 3)."""
+        columns = self._surface.shape[1]
+        first = cell[:, 0] * columns + cell[:, 1]
+        return np.asarray(self._nodes[first[:, None, None] + [[0, 1], [columns, columns + 1]]])
+
+    def _place(self, at: Floats, cell: Ints, corners: Floats) -> tuple[Floats, Floats]:
+        """Places (N, 2) as (j, i) in cells, and how far they are in sizes of the cell, (N,)."""
+        sides = [corners[:, :, 1] - corners[:, :, 0], corners[:, 1] - corners[:, 0]]
+        size = np.sqrt(np.max([np.sum(s * s, axis=-1) for s in sides], axis=(0, 2)))
+        place, distance = np.zeros((len(at), 2)), np.full(len(at), np.inf)
+        for half in HALVES:
+            shares, far = _closest(at, *(corners[:, j, i] for j, i in half))
+            closer = far < distance
+            place[closer] = shares[closer] @ np.array(half, dtype=float)
+            distance[closer] = far[closer]
+        distance /= np.where(size > 0, size, 1.0)
+        distance[~self._surface.cells[cell[:, 0], cell[:, 1]]] = np.inf
+        return place, distance
+
+
+def _starts(surface: Surface) -> NDArray[np.bool_]:
+    """Nodes to walk from, (J, I): those of the cells that are drawn.
+
+    Where many nodes lie at one point, those nearest to a point beside it may be on the far side;
+    the nodes of the next line do better.
+    """
+    drawn = np.zeros(surface.shape, dtype=bool)
+    one = drawn.copy()
+    ends = (slice(None, -1), slice(1, None))
+    for j in ends:
+        for i in ends:
+            drawn[j, i] |= surface.cells
+    for axis in (0, 1):
+        lines, same = np.swapaxes(surface.points, 0, axis), np.swapaxes(one, 0, axis)
+        together = np.linalg.norm(np.diff(lines, axis=0), axis=-1) <= TOGETHER * surface.extent
+        same[:-1] |= together
+        same[1:] |= together
+    for pole in surface.poles or ():
+        pole.lines(one)[pole.line] = True
+    return drawn & ~one if (drawn & ~one).any() else drawn
+
+
+def _step(at: Floats, corners: Floats) -> Ints:
+    """Cells from those of the corners to where points would lie if they went on straight."""
+    e_j = (corners[:, 1] - corners[:, 0]).mean(axis=1)
+    e_i = (corners[:, :, 1] - corners[:, :, 0]).mean(axis=1)
+    away = at - corners.mean(axis=(1, 2))
+    jj, ii, ij, dj, di = (
+        np.einsum("nc,nc->n", a, b)
+        for a, b in ((e_j, e_j), (e_i, e_i), (e_j, e_i), (away, e_j), (away, e_i))
+    )
+    area = jj * ii - ij * ij
+    solid = area > FLAT * jj * ii
+    safe = np.where(solid, area, 1.0)
+    tiny = np.finfo(float).tiny
+    alone = np.stack([dj / np.maximum(jj, tiny), di / np.maximum(ii, tiny)], axis=-1)
+    both = np.stack([(ii * dj - ij * di) / safe, (jj * di - ij * dj) / safe], axis=-1)
+    steps = np.where(solid[:, None], both, np.clip(alone, -1, 1))
+    return np.asarray(np.rint(np.clip(steps, -STRIDE, STRIDE)), dtype=np.intp)
+
+
+def _closest(at: Floats, a: Floats, b: Floats, c: Floats) -> tuple[Floats, Floats]:
+    """Shares of the corners (N, 3) at the nearest points of triangles, and how far, (N,).
+
+    A triangle without area is infinitely far: the one beside it has the same points.
+    """
+    u, v, w = b - a, c - a, at - a
+    uu, vv, uv, wu = (np.einsum("nc,nc->n", p, q) for p, q in ((u, u), (v, v), (u, v), (w, u)))
+    # What v has across u: long triangles lose no digits by it.
+    lean = uv / np.where(uu > 0, uu, 1.0)
+    across = v - lean[:, None] * u
+    height = np.einsum("nc,nc->n", across, across)
+    solid = (height > THIN * vv) & (uu > THIN * vv)
+    t = np.einsum("nc,nc->n", w, across) / np.where(solid, height, 1.0)
+    s = wu / np.where(uu > 0, uu, 1.0) - lean * t
+    shares = np.stack([1 - s - t, s, t], axis=-1)
+    aside = np.flatnonzero((shares < 0).any(axis=-1))
+    if len(aside):
+        nodes = np.stack([a, b, c], axis=1)[aside]
+        shares[aside] = _on_border(at[aside], nodes)
+    foot = shares[:, :1] * a + shares[:, 1:2] * b + shares[:, 2:] * c
+    return shares, np.where(solid, np.linalg.norm(at - foot, axis=-1), np.inf)
+
+
+def _on_border(at: Floats, nodes: Floats) -> Floats:
+    """Shares of the corners (N, 3) at the nearest points of the triangles' sides."""
+    best, result = np.full(len(at), np.inf), np.zeros((len(at), 3))
+    for k, n in ((0, 1), (1, 2), (2, 0)):
+        side, away = nodes[:, n] - nodes[:, k], at - nodes[:, k]
+        length = np.maximum(np.sum(side * side, axis=-1), np.finfo(float).tiny)
+        share = np.clip(np.sum(away * side, axis=-1) / length, 0.0, 1.0)
+        far = np.sum((away - share[:, None] * side) ** 2, axis=-1)
+        closer = far < best
+        best = np.where(closer, far, best)
+        result[closer] = 0.0
+        result[closer, k], result[closer, n] = 1 - share[closer], share[closer]
+    return result
+
+
+_locators: weakref.WeakKeyDictionary[FlowField, Locator] = weakref.WeakKeyDictionary()
+
+
+def locator(field: FlowField) -> Locator:
+    """Return the locator of a field's surface, which is kept for as long as the field is."""
+    found = _locators.get(field)
+    if found is None:
+        found = _locators[field] = Locator(field.surface)
+    return found
+
+
+def locate(
+    field: FlowField, point: ArrayLike, *, tolerance: float = 0.1
+) -> tuple[float, float] | None:
+    """Find where on the surface a point lies.
+
+    The surface is what renderers draw, triangles, so a point of a picture is found exactly. The
+    first call for a field builds a tree of its nodes; the next ones take about a millisecond.
+
+    Parameters
+    ----------
+    field
+        The flow.
+    point
+        Point in the mesh's own coordinates, (3,), or (2,) with z = 0.
+    tolerance
+        How far from the surface, or beside it, it may lie, in sizes of the nearest cell. Another
+        program's triangles may cut a curved cell the other way.
+
+    Returns
+    -------
+    tuple of float or None
+        (j, i) in cells; ``None`` where there is no surface, or none that is drawn.
+
+    Raises
+    ------
+    ValueError
+        When the point is not two or three finite numbers.
+    """
+    at = np.asarray(point, dtype=float)
+    if at.shape not in ((2,), (3,)) or not np.isfinite(at).all():
+        msg = f"point is {point!r}; expected two or three finite coordinates in the mesh's units"
+        raise ValueError(msg)
+    whole = np.zeros((1, 3))
+    whole[0, : len(at)] = at
+    index, distance = locator(field).nearest(whole)
+    if distance[0] > tolerance:
+        return None
+    return float(index[0, 0]), float(index[0, 1])

@@ -1,0 +1,118 @@
+"""What an experiment hands to the page: claims, tables, pictures, plots and numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Block", "Claim", "Finding", "Panel", "Plate", "Plot", "Table", "Text"]
+
+Sense = Literal["at most", "at least"]
+
+
+@dataclass(frozen=True)
+class Claim:
+    """A statement of the paper as a number and what the number must be.
+
+    Attributes
+    ----------
+    name
+        Short name in ``numbers.json``.
+    text
+        The statement, in own words.
+    value
+        What was measured.
+    bound
+        What it is compared with.
+    sense
+        ``"at most"`` or ``"at least"``: on which side of the bound the statement holds.
+    unit
+        Unit of both, for the page.
+    timed
+        Whether the value is a time, which differs from run to run.
+    """
+
+    name: str
+    text: str
+    value: float
+    bound: float
+    sense: Sense = "at most"
+    unit: str = ""
+    timed: bool = False
+
+    @property
+    def holds(self) -> bool:
+        """Whether the value lies on the right side of the bound; NaN never does."""
+        return bool(
+            self.value <= self.bound if self.sense == "at most" else self.value >= self.bound
+        )
+
+
+@dataclass(frozen=True)
+class Table:
+    """Rows under a head; numbers are set to the right."""
+
+    head: Sequence[str]
+    rows: Sequence[Sequence[Any]]
+    caption: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Panel:
+    """One picture, (H, W, 3) uint8, with what is written under it."""
+
+    image: NDArray[np.uint8]
+    label: str
+
+
+@dataclass(frozen=True)
+class Plate:
+    """Pictures beside each other, with a caption."""
+
+    panels: Sequence[Panel]
+    caption: str = ""
+
+
+@dataclass(frozen=True)
+class Plot:
+    """A drawing as SVG text, with a caption and what it shows in words for those who do not see."""
+
+    svg: str
+    caption: str
+    alt: str
+
+
+@dataclass(frozen=True)
+class Text:
+    """A paragraph."""
+
+    text: str
+
+
+Block = Table | Plate | Plot | Text
+
+
+@dataclass(frozen=True)
+class Finding:
+    """What came of one experiment.
+
+    Attributes
+    ----------
+    blocks
+        What is shown, in order.
+    numbers
+        What was measured, as nested dictionaries of plain numbers; the same for the same seed.
+    claims
+        Statements of the paper that were put to the test.
+    timings
+        Seconds and rates, which differ from run to run.
+    """
+
+    blocks: Sequence[Block]
+    numbers: Mapping[str, Any] = field(default_factory=dict)
+    claims: Sequence[Claim] = ()
+    timings: Mapping[str, Any] = field(default_factory=dict)

@@ -1,0 +1,299 @@
+"""The method read at one point of the surface: its path, its samples, and their sum.
+
+Everything comes from the NumPy renderer. It draws the one pixel as it draws all, with a look-up
+that writes down where it is asked, so what is told here is what is drawn.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from flowtex.field.facets import facet
+from flowtex.field.locate import locate, locator
+from flowtex.field.reading import Reading, reading
+from flowtex.renderers.cpu import Camera
+from flowtex.renderers.cpu.fragments import Fragments
+from flowtex.renderers.cpu.levels import footprint, slice_level
+from flowtex.renderers.cpu.record import Kept, Recorder
+from flowtex.renderers.cpu.render import slices_at, view_state
+from flowtex.renderers.cpu.shade import tone
+from flowtex.renderers.cpu.spot import facing, spot
+from flowtex.renderers.cpu.texture import Side, Summing
+from flowtex.renderers.uniforms import ViewState, uniforms
+from flowtex.textures import TextureSet
+from flowtex.view import FlowView
+
+__all__ = ["Probe", "Reading", "locate", "probe", "reading"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.intp]
+
+#: Points of a path between two slices: it is a parabola there.
+BETWEEN = 12
+
+
+@dataclass(frozen=True, eq=False)
+class Probe:
+    """How the texture at one point of the surface comes about.
+
+    The K samples stand in the order in which the flow passes them: from the farthest behind the
+    point to the farthest ahead of it. Those that the path does not reach are left out, so K is
+    less than ``asked`` where it ends. Lags are lengths in the mesh's units for paths by arc
+    length, and times in the field's own unit else; they are positive behind the point, where its
+    particle has been, and negative ahead.
+
+    Attributes
+    ----------
+    reading
+        Position, velocity and speed at the point, with units.
+    parameter
+        What a lag measures: ``"arclength"`` or ``"time"``.
+    asked
+        Samples of a path that does not end.
+    lags
+        Lags of the samples, (K,), decreasing.
+    points
+        Where they are in space, (K, 3), in the mesh's own units. Beyond the seam of a flat map
+        that is one period they go on straight.
+    coordinates
+        Where they are in index space, (K, 2) as (j, i), folded back into one period.
+    slices
+        Numbers of the two trace slices that each lies between, (K, 2): the nearer in time first,
+        0 for the point itself.
+    shares
+        How far each is from the one slice to the other, (K,), 0 to 1; more for a last sample that
+        fades out beyond the last slice.
+    slice_lags
+        Lags of the trace slices at this point without a sign, (M + 1,), the first one 0.
+    slice_level
+        Mip level of the trace slices.
+    weights
+        Share of each sample in the mean, (K,); they sum to one.
+    noise
+        Noise that each meets, (K,), of mean zero and deviation one; for a picture in its place
+        red, green and blue times opacity, and opacity, (K, 4).
+    noise_coordinates
+        Where it is looked up in the noise texture, (K, 2) as (u, v), 0 to 1 across it; ``None``
+        for noise that has no texture.
+    level
+        Level of detail: each is twice as coarse as the one before. For noise with a texture, its
+        mip level.
+    pixel
+        Longer side of what a pixel covers on the surface, in the mesh's units.
+    grain
+        Size of a grain of the noise, or of a picture's texel, on the surface, in the same.
+    step
+        Lag from the point to the next sample; NaN where nothing moves.
+    gain
+        What the mean of the noise is multiplied by, so that contrast is the same everywhere.
+    value
+        The texture: ``gain * (weights @ noise)``, of mean zero and deviation one over a picture;
+        (4,) for a picture in the place of the noise.
+    path, path_lags
+        The whole path, as far as the slices lead, in the order of the samples: points (N, 3) and
+        their lags (N,). Where it ends, the last sample may lie up to a step beyond.
+    """
+
+    reading: Reading
+    parameter: str
+    asked: int
+    lags: Floats
+    points: Floats
+    coordinates: Floats
+    slices: Ints
+    shares: Floats
+    slice_lags: Floats
+    slice_level: float
+    weights: Floats
+    noise: Floats
+    noise_coordinates: Floats | None
+    level: float
+    pixel: float
+    grain: float
+    step: float
+    gain: float
+    value: float | Floats
+    path: Floats
+    path_lags: Floats
+
+    @property
+    def greys(self) -> Floats:
+        """The noise as it would be drawn by itself, (K,), from 0, black, to 1, white."""
+        if self.noise.ndim == 1:
+            return 0.5 + 0.5 * tone(self.noise, 1.0)
+        return np.asarray(self.noise[:, :3].mean(axis=-1) + 1.0 - self.noise[:, 3])
+
+
+def probe(
+    view: FlowView,
+    at: ArrayLike,
+    *,
+    pixel: float | Camera,
+    clock: float = 0.0,
+    density: float = 1.0,
+) -> Probe:
+    """Read the method at a point of the surface.
+
+    The first call for new textures takes as long as a renderer takes to load them; the next ones
+    take milliseconds.
+
+    Parameters
+    ----------
+    view
+        The flow, its settings and the time that is shown.
+    at
+        The point as (j, i), in cells; :func:`locate` finds it for a point in space.
+    pixel
+        Width of a pixel on the surface at the point, in the mesh's units, seen straight on; or
+        the camera of a picture, for the pixel of that picture which shows the point.
+    clock
+        Clock of the streaming of a steady flow, in seconds.
+    density
+        Pixels drawn, along a side, for one that the settings speak of.
+
+    Returns
+    -------
+    Probe
+
+    Raises
+    ------
+    ValueError
+        When the point is not on the surface, or the pixel no length, or the camera does not see
+        the point.
+    """
+    surface = view.field.surface
+    place = facet(surface, at)
+    camera = pixel if isinstance(pixel, Camera) else facing(surface, place, pixel)
+    before, after, between = view.moment
+    state = ViewState(between=between, clock=clock, density=density)
+    state = view_state(view.textures, camera, state, (before, after))
+    values = uniforms(view.textures, view.settings, state)
+    fragments = Fragments.of(view.textures, spot(surface, place, camera))
+    read = reading(view.field, place.index, view.time)
+    return _Pixel(view.textures, (before, after), fragments, values, read).probe()
+
+
+class _Pixel:
+    """One fragment, drawn by the NumPy renderer."""
+
+    def __init__(
+        self,
+        textures: TextureSet,
+        steps: tuple[int, int],
+        fragments: Fragments,
+        values: Mapping[str, Any],
+        read: Reading,
+    ) -> None:
+        kept = Kept.of(textures)
+        self._read = read
+        self._textures, self._values, self._fragments = textures, values, fragments
+        self._level = slice_level(fragments.coordinate, values)
+        self._slices = slices_at(textures, steps, values, kept.mips)
+        self._lookup = Recorder(kept.make(fragments, values), values["u_samples"] + 2)
+        paper = textures.paper is not None
+        self._summing = Summing(self._slices, values, self._lookup, paper=paper)
+        self._base = self._slices.layer(fragments.coordinate.value, 0, self._level)
+        #: One unit of lag at the fragment.
+        self._unit = float(self._base[0, 3]) * textures.unit / textures.pace
+
+    def probe(self) -> Probe:
+        """Draw the pixel, and tell how."""
+        values, found = self._values, self._lookup
+        value = self._summing.texture(self._fragments.coordinate.value, self._level)[0]
+        sides = list(self._sides(1))
+        lags = -np.concatenate(found.length) / float(sides[0].scale[0])
+        order = np.argsort(-lags)
+        lags = lags[order] + 0.0
+        points, coordinates, noise = self._places(np.concatenate(found.displacement)[order])
+        knots = np.concatenate([[0.0], values["u_lags"]])
+        m = np.clip(np.searchsorted(knots, np.abs(lags)) - 1, 0, len(knots) - 2)
+        path_lags, path = self._path(sides, knots, lags)
+        pixel, grain = self._sizes()
+        moves = np.isfinite(sides[0].reach[0])
+        samples = values["u_samples"]
+        return Probe(
+            reading=self._read,
+            parameter=self._textures.store.parameter,
+            asked=2 * (samples // 2) + 1 if values["u_sides"] == 2 else samples,
+            lags=lags * self._unit,
+            points=points,
+            coordinates=coordinates,
+            slices=np.stack([m, m + 1], axis=-1),
+            shares=(np.abs(lags) - knots[m]) / (knots[m + 1] - knots[m]),
+            slice_lags=knots * self._unit,
+            slice_level=float(self._level[0]),
+            weights=found.weights[order],
+            noise=found.noise[order],
+            noise_coordinates=noise,
+            level=float(found.level[0]),
+            pixel=pixel,
+            grain=grain,
+            step=float(sides[0].step(np.zeros(1))[0]) * self._unit if moves else np.nan,
+            gain=found.gain,
+            value=float(value) if np.ndim(value) == 0 else np.asarray(value),
+            path=path,
+            path_lags=path_lags * self._unit,
+        )
+
+    def _sides(self, count: int) -> Iterator[Side]:
+        """Sides of the path, as often as it is followed at once."""
+        coordinate, base = (
+            np.repeat(a, count, axis=0) for a in (self._fragments.coordinate.value, self._base)
+        )
+        return self._summing.sides(coordinate, np.repeat(self._level, count), base)
+
+    def _path(self, sides: list[Side], knots: Floats, samples: Floats) -> tuple[Floats, Floats]:
+        """Lags in multiples of the unit, and points, of the whole path, with all its samples."""
+        fine = np.interp(
+            np.arange((len(knots) - 1) * BETWEEN + 1) / BETWEEN, range(len(knots)), knots
+        )
+        lags, displacements = [np.zeros(1)], [np.zeros((1, 3))]
+        for one, many in zip(sides, self._sides(len(fine) + 1), strict=True):
+            end = max(float(np.clip(one.reach[0], 0.0, knots[-1])), *(-one.sign * samples))
+            lag = np.unique([*fine[fine < end], end])[1:]
+            some = np.zeros(len(fine) + 1)
+            some[: len(lag)] = lag
+            moved = many.path.follow(some)[: len(lag)] * (one.sign * one.scale[0])
+            lags.append(-one.sign * lag)
+            displacements.append(moved)
+        lag = np.concatenate(lags)
+        order = np.argsort(-lag)
+        points, _, _ = self._places(np.concatenate(displacements)[order], coordinates=False)
+        return lag[order], points
+
+    def _places(
+        self, displacement: Floats, *, coordinates: bool = True
+    ) -> tuple[Floats, Floats, Floats | None]:
+        """Points, coordinates as (j, i), and noise coordinates, of displacements (N, 3)."""
+        geometry, paper, noise = (
+            self._textures.geometry,
+            self._textures.paper,
+            self._fragments.noise,
+        )
+        # From the place itself in double precision: renderers have the nodes in single.
+        start, surface = self._read.position, geometry.field.surface
+        if paper is None or noise is None:
+            points = start + displacement @ geometry.frame
+            found = locator(geometry.field).nearest(points)[0] if coordinates else points
+            return points, found, None
+        at = noise.value + displacement[:, :2]
+        here, there = (paper.index(where) for where in (noise.value, at))
+        return start + surface.at(there) - surface.at(here), surface.wrap(there)[:, ::-1], at
+
+    def _sizes(self) -> tuple[float, float]:
+        """Longer side of the pixel, and size of a grain."""
+        values, paper, noise = self._values, self._textures.paper, self._fragments.noise
+        position = self._fragments.position
+        sides = [float(side[0]) for side in footprint(position.dx, position.dy)]
+        width = 2.0 ** float(self._lookup.level[0])
+        if paper is None or noise is None:
+            return sides[0], width * values["u_texel"]
+        size = np.array(paper.noise.shape[1::-1]) * (values["u_tiles"] if paper.picture else 1)
+        texels = [float(side[0]) for side in footprint(noise.dx * size, noise.dy * size)]
+        texel = np.sqrt(sides[0] * sides[1] / max(texels[0] * texels[1], 1e-30))
+        return sides[0], float(width * paper.grain * texel)

@@ -1,0 +1,203 @@
+"""The views over which all renderers must draw the same picture.
+
+How near they come. All get the same half-precision textures and the same uniforms, and the
+renderer in NumPy, in double precision, judges the others. What is left is single precision along
+the path, eight bits at the end, and at the greatest zooms the position of a pixel in its cell: 0.02
+to 0.55 of a step of 8 bits, root mean square, while two hundredths more of a setting make nearly a
+whole step. Few pixels differ by more than 8 steps: those where two nearly equal numbers decide,
+such as the lag at which a path ends.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Mapping
+from functools import cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flowtex import FlowField
+from flowtex.renderers.cpu import Camera, render
+from flowtex.renderers.uniforms import ViewState
+from flowtex.settings import Settings
+from flowtex.view import FlowView
+
+__all__ = [
+    "COLOUR",
+    "DEEP",
+    "GROUND",
+    "ROOT",
+    "SHARE",
+    "SIZE",
+    "VIEWS",
+    "View",
+    "difference",
+    "judged",
+]
+
+Pixels = NDArray[np.uint8]
+
+#: Root mean square in steps of 8 bits, and share of pixels that differ by more than 8 of them.
+ROOT, SHARE = 0.6, 0.001
+#: One and a half times as wide as high: what the client widens no camera for.
+SIZE = (180, 120)
+COLOUR, GROUND = (0.6, 0.6, 0.6), (1.0, 0.0, 0.0)
+
+
+@cache
+def gyre(columns: int = 61, rows: int = 31) -> FlowField:
+    """Two vortices on a bent grid, its nodes at numbers that single precision holds exactly."""
+    s, t = np.meshgrid(np.linspace(0, 1, columns), np.linspace(0, 1, rows))
+    x = 2 * (s + 0.06 * np.sin(2 * np.pi * s)) + 0.12 * np.sin(np.pi * t)
+    points = np.rint(np.stack([x, t**1.3], axis=-1) * 1024) / 1024
+    a, b = np.pi * points[..., 0], np.pi * points[..., 1]
+    velocity = np.stack([-np.sin(a) * np.cos(b), np.cos(a) * np.sin(b)], axis=-1)
+    return FlowField.from_arrays(points, velocity)
+
+
+@cache
+def dense_gyre() -> FlowField:
+    """The same with many cells in a pixel."""
+    return gyre(201, 101)
+
+
+@cache
+def holed() -> FlowField:
+    """A stream past a hole, where paths end."""
+    y, x = np.mgrid[-1:1:41j, -1:1:41j]
+    inside = np.hypot(x, y) < 0.4
+    velocity = np.where(inside[..., None], np.nan, np.stack([1 + 0 * x, 0.3 * x], axis=-1))
+    return FlowField.from_arrays(np.stack([x, y], axis=-1), velocity)
+
+
+@cache
+def torus() -> FlowField:
+    """A closed surface, over which flow goes around and across."""
+    a, b = np.meshgrid(np.linspace(0, 2 * np.pi, 49), np.linspace(0, 2 * np.pi, 25))
+    radius = 1 + 0.4 * np.cos(b)
+    points = np.stack([radius * np.cos(a), radius * np.sin(a), 0.4 * np.sin(b)], axis=-1)
+    around = np.stack([-np.sin(a), np.cos(a), 0 * a], axis=-1)
+    over = np.stack([-np.sin(b) * np.cos(a), -np.sin(b) * np.sin(a), np.cos(b)], axis=-1)
+    velocity = (1 + 0.5 * np.sin(b))[..., None] * around + 0.6 * np.cos(2 * a)[..., None] * over
+    return FlowField.from_arrays(points, velocity)
+
+
+@cache
+def swinging() -> FlowField:
+    """A vortex that wanders, at three times."""
+    y, x = np.mgrid[-1:1:31j, -1:1:31j]
+    steps = [np.stack([-(y - 0.2 * t), x - 0.1 * t * t], axis=-1) for t in (0.0, 1.0, 2.0)]
+    return FlowField.from_arrays(np.stack([x, y], axis=-1), np.stack(steps), times=[0.0, 0.4, 0.8])
+
+
+@cache
+def lines() -> FlowField:
+    """Lines around a point that all point to the right: they turn over where x is 0."""
+    y, x = np.mgrid[-1:1:32j, -1:1:32j]
+    way = np.stack([-y, x], axis=-1) * np.where(y > 0, -1, 1)[..., None]
+    return FlowField.from_arrays(np.stack([x, y], axis=-1), way, sign_free=True)
+
+
+def straight(zoom: float, focus: tuple[float, float] = (0.63, 0.37)) -> Camera:
+    """See a part of a plane without perspective."""
+    x, y = focus
+    return Camera((x, y, 5.0), (x, y, 0.0), (0, 1, 0), SIZE, 0.9 / zoom)
+
+
+WHOLE, MIDDLE = straight(1, (1.0, 0.5)), straight(1, (0.0, 0.0))
+TILTED = Camera((1.9, -0.9, 1.1), (0.9, 0.45, 0.0), (0, 0, 1), SIZE)
+GRAZING = Camera((1.0, -0.3, 0.2), (1.0, 0.5, 0.0), (0, 0, 1), SIZE)
+ASIDE = Camera((2.4, -1.9, 1.5), (0.0, 0.0, 0.0), (0, 0, 1), SIZE)
+
+IMAGE = np.zeros((30, 50, 4))
+IMAGE[..., :2] = np.moveaxis(np.indices((30, 50)), 0, -1) / 50
+IMAGE[5:25, 10:40, 3] = 1.0
+
+#: The paper's textures, of a size that is made soon.
+TEXTURE: dict[str, Any] = {"noise": "texture", "resolution": 256}
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class View:
+    """A field, from where it is seen, and how it is drawn."""
+
+    field: Callable[[], FlowField] = gyre
+    camera: Camera = WHOLE
+    settings: Mapping[str, Any] = dataclasses.field(default_factory=dict)
+    time: float | None = None
+    clock: float = 0.0
+
+    @property
+    def image(self) -> NDArray[np.float64] | None:
+        """What is laid on the surface."""
+        return IMAGE if self.settings.get("noise") == "image" else None
+
+    def made(self) -> FlowView:
+        """Make the flow with its settings, at its time."""
+        settings = Settings(**{"samples": 11, **self.settings})
+        shown = FlowView(self.field(), settings, image=self.image)
+        if self.time is not None:
+            shown.time = self.time
+        return shown
+
+
+#: Each is another part of the shaders, or of what they are given.
+VIEWS: dict[str, View] = {
+    "whole": View(),
+    "zoom 16": View(camera=straight(16)),
+    "zoom 256": View(camera=straight(256)),
+    "zoom 4096": View(camera=straight(4096)),
+    "many cells in a pixel": View(dense_gyre),
+    "many samples": View(camera=straight(4), settings={"samples": 49, "spacing": 1.2}),
+    "tilted": View(camera=TILTED),
+    "grazing": View(camera=GRAZING),
+    "curved": View(torus, ASIDE),
+    "holes": View(holed, MIDDLE),
+    "levels": View(camera=TILTED, settings={"show_level": True}),
+    "no lod": View(settings={"lod": False, "resolution": 128}),
+    "box": View(camera=straight(4), settings={"kernel": "box"}),
+    "one-sided": View(camera=straight(4), settings={"two_sided": False, "kernel": "ramp"}),
+    "by time": View(camera=straight(4), settings={"parameter": "time"}),
+    "fixed grain": View(camera=straight(2), settings={"fixed_grain": True, "resolution": 128}),
+    "grain, contrast, seed": View(settings={"grain": 3.0, "contrast": 2.0, "seed": 7}),
+    "streaming": View(camera=straight(2), settings={"motion": "speed"}, clock=1.7),
+    "streaming evenly": View(camera=straight(2), settings={"motion": "uniform"}, clock=0.9),
+    "between two steps": View(swinging, MIDDLE, time=0.55),
+    "without a sign": View(lines, MIDDLE),
+    "texture": View(settings=TEXTURE),
+    "texture, stretched": View(settings=TEXTURE | {"noise_correction": False}),
+    "texture, zoom 16": View(camera=straight(16), settings=TEXTURE),
+    "texture, curved": View(torus, ASIDE, TEXTURE),
+    "texture, no lod": View(settings=TEXTURE | {"lod": False}),
+    "texture in time": View(swinging, MIDDLE, TEXTURE, time=0.55),
+    "spots": View(settings=TEXTURE | {"noise": "spots"}),
+    "squares": View(camera=TILTED, settings=TEXTURE | {"noise": "checkerboard"}),
+    "image": View(settings={"noise": "image", "tiles": 3, "strength": 1.0}),
+    "image, mixed": View(camera=TILTED, settings={"noise": "image", "strength": 0.5}),
+}
+
+
+#: Deeper than VTK comes to: the positions that it hands on are single, half a pixel here.
+DEEP: dict[str, View] = {"zoom 1e5": View(camera=straight(1e5))}
+
+
+@cache
+def judged(name: str) -> tuple[FlowView, Pixels]:
+    """Return a view and its picture by NumPy, (H, W, 3)."""
+    view = (VIEWS | DEEP)[name]
+    shown = view.made()
+    before, after, between = shown.moment
+    state = ViewState(between=between, clock=view.clock)
+    drawn = render(shown.textures, shown.settings, view.camera, view=state, steps=(before, after))
+    return shown, drawn.rgb(COLOUR, background=GROUND)
+
+
+def difference(theirs: Pixels, ours: Pixels) -> tuple[float, float, int]:
+    """Root mean square, share beyond 8 steps, and pixels that only one of them covers."""
+    ground = np.rint(255 * np.array(GROUND))
+    covered = [(p != ground).any(axis=-1) for p in (theirs, ours)]
+    off = (theirs.astype(float) - ours)[covered[0] & covered[1]]
+    root = float(np.sqrt(np.mean(off**2)))
+    return root, float(np.mean(np.abs(off) > 8)), int((covered[0] != covered[1]).sum())

@@ -1,0 +1,151 @@
+"""A program that serves pages, and a connection to it that speaks as trame's client does."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import re
+import subprocess
+import sys
+from dataclasses import dataclass
+from typing import Any
+from urllib.parse import parse_qs, urlsplit
+
+import aiohttp
+import msgpack
+import pytest
+from wslink.chunking import UnChunker, generate_chunks
+
+#: Bytes of one chunk of a message.
+CHUNK = 4_000_000
+PATIENCE = 30.0
+
+
+@dataclass
+class Served:
+    """A program that serves, and the address that it announced."""
+
+    process: subprocess.Popen[str]
+    address: str
+
+    @property
+    def bare(self) -> str:
+        return self.address.split("?")[0]
+
+    @property
+    def secret(self) -> str:
+        return parse_qs(urlsplit(self.address).query)["secret"][0]
+
+    def end(self, number: int, seconds: float = 20) -> str:
+        """Send a signal, wait for the end, and return the rest of what was said."""
+        if self.process.poll() is None:
+            self.process.send_signal(number)
+        return self.process.communicate(timeout=seconds)[0]
+
+
+def start(*words: str) -> Served:
+    """Start ``flowtex`` with a page, and wait for its address."""
+    process = subprocess.Popen(
+        [sys.executable, "-m", "flowtex.cli", *words, "--no-browser", "--port", "0"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        env={**os.environ, "COLUMNS": "60"},
+    )
+    assert process.stdout is not None
+    said = ""
+    for line in process.stdout:
+        said += line
+        if found := re.search(r"http://\S+", line):
+            return Served(process, found.group())
+    pytest.fail(f"it ended without an address:\n{said}")
+
+
+async def enter(
+    http: aiohttp.ClientSession, bare: str, secret: str, session: str | None = None
+) -> tuple[int, dict[str, str]]:
+    """Ask at the door, and return the status and what was said."""
+    asked = {"secret": secret, "session": session}
+    async with http.post(f"{bare}flowtex/session", json=asked) as answer:
+        return answer.status, await answer.json()
+
+
+class Link:
+    """A connection to one session."""
+
+    def __init__(self, socket: aiohttp.ClientWebSocketResponse) -> None:
+        self.socket = socket
+        self.state: dict[str, Any] = {}
+        self.pictures = 0
+        self._count = 0
+        self._answers: dict[str, asyncio.Future[Any]] = {}
+        self._news = asyncio.Event()
+        self._task = asyncio.create_task(self._listen())
+
+    @classmethod
+    async def open(cls, http: aiohttp.ClientSession, bare: str, token: str, secret: str) -> Link:
+        """Connect, and read the state."""
+        socket = await http.ws_connect(f"{bare}page/{token}/ws", max_msg_size=0)
+        link = cls(socket)
+        await link.call("wslink.hello", {"secret": secret}, kind="system")
+        link.state |= (await link.call("trame.state.get"))["state"]
+        return link
+
+    async def close(self) -> None:
+        """End the connection."""
+        await self.socket.close()
+        await self._task
+
+    async def call(self, method: str, *args: Any, kind: str = "rpc") -> Any:
+        """Call a method of the server and return what it answers."""
+        self._count += 1
+        name = f"{kind}:c:{self._count}"
+        self._answers[name] = asyncio.get_running_loop().create_future()
+        message = {"wslink": "1.0", "id": name, "method": method, "args": args, "kwargs": {}}
+        for chunk in generate_chunks(msgpack.packb(message), CHUNK):
+            await self.socket.send_bytes(chunk)
+        return await asyncio.wait_for(self._answers[name], PATIENCE)
+
+    def key(self, name: str) -> str:
+        """Name in the state of one of the application's own."""
+        found = [key for key in self.state if re.fullmatch(rf"flow\d+_{name}", key)]
+        assert len(found) == 1, (name, found)
+        return found[0]
+
+    def get(self, name: str) -> Any:
+        """Value of the state."""
+        return self.state[self.key(name)]
+
+    async def set(self, **values: Any) -> None:
+        """Change values of the state."""
+        changes = [{"key": self.key(name), "value": value} for name, value in values.items()]
+        await self.call("trame.state.update", changes)
+
+    async def until(self, holds: Any) -> None:
+        """Wait until a condition on this connection holds."""
+        async with asyncio.timeout(PATIENCE):
+            while not holds():
+                self._news.clear()
+                await self._news.wait()
+
+    async def _listen(self) -> None:
+        pieces = UnChunker()
+        pieces.set_max_message_size(2**32)
+        async for message in self.socket:
+            whole = pieces.process_chunk(message.data)
+            if whole is not None:
+                self._take(whole)
+                self._news.set()
+
+    def _take(self, message: dict[str, Any]) -> None:
+        name = message["id"]
+        waiting = self._answers.pop(name, None)
+        if waiting is not None:
+            if "error" in message:
+                waiting.set_exception(RuntimeError(message["error"]["message"]))
+            else:
+                waiting.set_result(message["result"])
+        elif "trame.state.topic" in name:
+            self.state |= message["result"]
+        elif "trame.rca.topic.stream" in name:
+            self.pictures += 1

@@ -1,0 +1,206 @@
+"""Places on a surface: from a point in space to an index, and what the field says there."""
+
+from __future__ import annotations
+
+import gc
+import weakref
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from flowtex import FlowField
+from flowtex.field.facets import facet
+from flowtex.field.locate import Locator, locate, locator
+from flowtex.field.reading import moment, reading
+
+Floats = NDArray[np.float64]
+
+
+def flat(rows: int = 9, columns: int = 13) -> FlowField:
+    """A sheared plane whose cells grow fourfold along j."""
+    t, s = np.meshgrid(np.linspace(0, 1, rows), np.linspace(0, 2, columns), indexing="ij")
+    points = np.stack([s + 0.3 * t, t**2 + 0.2 * t], axis=-1)
+    return FlowField.from_arrays(points, np.ones_like(points), periodic="")
+
+
+def sphere() -> FlowField:
+    lon, lat = np.meshgrid(np.linspace(0, 2 * np.pi, 37), np.linspace(0, np.pi, 19))
+    points = np.stack([np.sin(lat) * np.cos(lon), np.sin(lat) * np.sin(lon), np.cos(lat)], axis=-1)
+    east = np.stack([-points[..., 1], points[..., 0], 0 * lon], axis=-1)
+    return FlowField.from_arrays(points, east)
+
+
+def world() -> FlowField:
+    """A flat map, one period wide."""
+    x, y = np.meshgrid(np.arange(0.0, 361.0, 10.0), np.arange(-60.0, 61.0, 10.0))
+    return FlowField.from_arrays(np.stack([x, y], -1), np.ones((*x.shape, 2)), periodic="i")
+
+
+def boundary_layer() -> FlowField:
+    """An O-grid whose cells at the body are 10,000 times as long as they are high."""
+    angle = np.linspace(0, 2 * np.pi, 33)
+    radius = 1 + np.concatenate([[0], np.geomspace(2e-5, 5, 40)])
+    points = radius[:, None, None] * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    return FlowField.from_arrays(points, np.ones_like(points))
+
+
+@pytest.mark.parametrize("make", [flat, sphere, world, boundary_layer])
+def test_a_point_of_the_surface_is_found(
+    make: Callable[[], FlowField], rng: np.random.Generator
+) -> None:
+    field = make()
+    rows, columns = field.shape
+    # Next to a pole an index says little: positions are compared.
+    for _ in range(60):
+        at = rng.uniform(0, 1, 2) * [rows - 1, columns - 1]
+        point = facet(field.surface, at).mix(field.surface.points)
+        found = locate(field, point)
+        assert found is not None
+        there = facet(field.surface, found).mix(field.surface.points)
+        assert np.abs(there - point).max() < 1e-9 * field.surface.extent
+
+
+def test_an_index_comes_back(rng: np.random.Generator) -> None:
+    field = flat()
+    for at in rng.uniform(0.01, 0.99, (40, 2)) * [8, 12]:
+        assert locate(field, reading(field, at).position) == pytest.approx(tuple(at), abs=1e-9)
+
+
+def test_a_point_off_the_surface_has_no_index() -> None:
+    plane, ball = flat(), sphere()
+    assert locate(plane, (-0.5, 0.5)) is None
+    assert locate(plane, (1.0, 0.5, 3.0)) is None
+    assert locate(ball, (0.0, 0.0, 0.0)) is None
+    assert locate(ball, (0.0, 2.0, 0.0)) is None
+    # As far beside the surface as is asked for.
+    assert locate(plane, (1.0, -0.01)) == pytest.approx((0.0, 6.0), abs=0.1)
+    assert locate(plane, (1.0, -0.01), tolerance=1e-3) is None
+    assert locate(ball, (0.0, 1.01, 0.0), tolerance=1e-3) is None
+
+
+def test_a_blanked_cell_has_no_index() -> None:
+    points = np.stack(np.meshgrid(np.arange(6.0), np.arange(5.0)), axis=-1)
+    valid = np.ones((5, 6), dtype=bool)
+    valid[2, 2] = False
+    field = FlowField.from_arrays(points, np.ones_like(points), valid=valid)
+    assert locate(field, (1.5, 1.5)) is None
+    assert locate(field, (3.5, 1.5)) == pytest.approx((1.5, 3.5))
+    with pytest.raises(ValueError, match=r"\(1\.5, 1\.5\), in a cell with a blanked node"):
+        reading(field, (1.5, 1.5))
+    # A node beside it belongs to other cells too.
+    assert reading(field, (3, 2)).position == pytest.approx([2, 3, 0])
+
+
+def test_a_seam_is_no_border() -> None:
+    ball, flat_map = sphere(), world()
+    for y, i in ((-1e-3, 36 - 0.00573), (1e-3, 0.00573)):
+        assert locate(ball, (1.0, y, 0.0)) == pytest.approx((9, i), abs=1e-4)
+    # A point in the next period is the one in this.
+    assert locate(flat_map, (365.0, 5.0)) == pytest.approx((6.5, 0.5))
+    assert locate(flat_map, (-5.0, 5.0)) == pytest.approx((6.5, 35.5))
+    assert reading(flat_map, (6.5, 36.5)).position == pytest.approx([5, 5, 0])
+
+
+def test_the_nearest_of_two_sheets_counts() -> None:
+    s, t = np.meshgrid(np.linspace(-1, 1, 41), np.linspace(0, 1, 6))
+    # A strip folded over, a tenth apart.
+    x = np.minimum(1 - np.abs(s), 0.95)
+    points = np.stack([x, t, 0.1 * np.tanh(20 * s)], axis=-1)
+    field = FlowField.from_arrays(points, np.ones_like(points), periodic="")
+    low, high = locate(field, (0.5, 0.5, -0.101)), locate(field, (0.5, 0.5, 0.101))
+    assert low == pytest.approx((2.5, 10.0), abs=1e-6)
+    assert high == pytest.approx((2.5, 30.0), abs=1e-6)
+
+
+def test_the_tree_lives_as_long_as_its_field() -> None:
+    field = flat()
+    kept: weakref.ref[Locator] = weakref.ref(locator(field))
+    assert locator(field) is kept()
+    del field
+    gc.collect()
+    assert kept() is None
+
+
+@pytest.mark.parametrize("point", [(1.0,), (np.nan, 0.0), ((1.0, 2.0),), "here"])
+def test_what_is_no_point_is_refused(point: object) -> None:
+    with pytest.raises(ValueError, match=r"point is|could not convert"):
+        locate(flat(), point)  # type: ignore[arg-type]
+
+
+def test_a_reading_is_linear_in_space_and_time() -> None:
+    y, x = np.mgrid[0:4.0, 0:5.0]
+    points = np.stack([x, y], axis=-1)
+    steps = np.stack([np.stack([1 + x + t, 2 * y], axis=-1) for t in (0.0, 10.0)])
+    warmth = 3 * x - y
+    field = FlowField.from_arrays(
+        points,
+        steps,
+        times=[1.0, 3.0],
+        scalars={"warmth": warmth, "tide": np.stack([0 * x, 0 * x + 4])},
+        length_unit="m",
+        time_unit="s",
+    )
+    got = reading(field, (1.25, 2.5), 1.5)
+    assert got.position == pytest.approx([2.5, 1.25, 0])
+    assert got.velocity == pytest.approx([1 + 2.5 + 2.5, 2.5, 0])
+    assert got.scalars == pytest.approx({"warmth": 7.5 - 1.25, "tide": 1.0})
+    assert (got.time, got.speed_unit) == (1.5, "m/s")
+    assert reading(field, (1, 2)).time == 3.0
+    assert reading(field, (1, 2), 1.0).speed == pytest.approx(np.hypot(3, 2))
+    with pytest.raises(ValueError, match="time is 4; expected 1 to 3"):
+        reading(field, (1, 2), 4)
+
+
+@pytest.mark.parametrize(
+    ("length", "time", "speed"),
+    [
+        ("m", "s", "m/s"),
+        ("", "s", ""),
+        ("m", "", ""),
+        ("chords", "chords / free-stream speed", "free-stream speed"),
+        ("m", "1/Hz", "m / (1/Hz)"),
+    ],
+)
+def test_the_unit_of_speed(length: str, time: str, speed: str) -> None:
+    y, x = np.mgrid[0:3.0, 0:3.0]
+    made = FlowField.from_arrays(
+        np.stack([x, y], -1), np.ones((3, 3, 2)), length_unit=length, time_unit=time
+    )
+    assert reading(made, (1, 1)).speed_unit == speed
+
+
+def test_a_reading_without_a_sign_does_not_cancel() -> None:
+    y, x = np.mgrid[-1:1:5j, -1:1:5j]
+    half = 0.5 * np.arctan2(y, x)
+    points = np.stack([x, y], axis=-1)
+    field = FlowField.from_arrays(
+        points, np.stack([np.cos(half), np.sin(half)], -1), sign_free=True, periodic=""
+    )
+    for j in np.linspace(0.1, 3.9, 7):
+        got = reading(field, (j, 0.3))
+        assert np.linalg.norm(got.velocity) > 0.65
+
+
+@pytest.mark.parametrize(
+    ("at", "fault"),
+    [
+        ((9.5, 1), r"\(9\.5, 1\), outside the surface; expected j from 0 to 8"),
+        ((-0.1, 1), "outside the surface"),
+        ((1, 12.5), "i from 0 to 12"),
+        ((1, np.nan), "two finite numbers"),
+        ((1, 2, 3), "two finite numbers"),
+    ],
+)
+def test_a_place_outside_is_refused(at: tuple[float, ...], fault: str) -> None:
+    with pytest.raises(ValueError, match=fault):
+        reading(flat(), at)
+
+
+def test_moments() -> None:
+    times = np.array([0.0, 1.0, 3.0])
+    assert moment(times[:1], 0.0) == (0, 0, 0.0)
+    assert moment(times, 0.25) == (0, 1, 0.25)
+    assert moment(times, 1.0) == (1, 2, 0.0)
+    assert moment(times, 3.0) == (1, 2, 1.0)
