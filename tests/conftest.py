@@ -28,6 +28,14 @@ if TYPE_CHECKING:
 # Before anything opens a window, and for every process that a test starts.
 doctor.prefer_headless()
 
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Let the tests with a browser come last: Playwright's event loop runs from the first one on.
+
+    While it does, no test could run an event loop of its own.
+    """
+    items.sort(key=lambda item: "browser" in getattr(item, "fixturenames", ()))
+
+
 CHROMIUMS = ("chromium", "chromium-browser", "google-chrome")
 
 

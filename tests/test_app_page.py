@@ -231,9 +231,9 @@ def test_the_pointer_reads_the_flow_and_a_click_shows_the_path(page: Page) -> No
     page.mouse.down()
     page.mouse.up()
     page.locator(".flowtex-card").wait_for()
-    # The flow stopped at its first time is one of three: 9 samples, on one side.
-    assert page.locator(".flowtex-bars > i").count() == 9
     text = page.inner_text(".flowtex-card")
+    told = re.search(r"samples\s+(\d+)", text)
+    assert told and page.locator(".flowtex-bars > i").count() == int(told[1]) >= 9
     assert "level of detail" in text and "grain" in text
     point = page.locator(".flowtex-path .point")
     x, y = float(point.get_attribute("cx") or 0), float(point.get_attribute("cy") or 0)
@@ -250,6 +250,7 @@ def test_the_pointer_reads_the_flow_and_a_click_shows_the_path(page: Page) -> No
 
 
 def test_keys_move_the_view_and_change_the_page(page: Page) -> None:
+    page.evaluate("document.activeElement.blur()")  # a menu would take the key
     before = count(page)
     page.keyboard.press("0")
     whole = settled(page, before)
@@ -265,15 +266,16 @@ def test_keys_move_the_view_and_change_the_page(page: Page) -> None:
     page.locator(".flowtex-light").wait_for()
     settled(page, before)
     page.keyboard.press("?")
-    page.get_by_role("dialog").wait_for()
+    page.locator(".flowtex-help").wait_for()
     page.keyboard.press("Escape")
-    page.get_by_role("dialog").wait_for(state="hidden")
+    page.locator(".flowtex-help").wait_for(state="hidden")
     before = count(page)
     page.keyboard.press("t")
     settled(page, before)
 
 
 def test_two_panes_move_together(page: Page) -> None:
+    page.evaluate("document.activeElement.blur()")  # a menu would take the key
     before = count(page)
     page.keyboard.press("0")
     settled(page, before)
@@ -296,6 +298,7 @@ def test_two_panes_move_together(page: Page) -> None:
 
 
 def test_the_browser_draws_the_same_from_the_same_camera(page: Page) -> None:
+    page.evaluate("document.activeElement.blur()")  # a menu would take the key
     before = count(page)
     page.keyboard.press("0")
     page.keyboard.press("+")
@@ -350,8 +353,7 @@ def test_a_movie_is_saved_and_can_be_cancelled(page: Page, tmp_path: Path) -> No
         page.get_by_label(name, exact=True).fill(value)
         page.get_by_label(name, exact=True).press("Enter")
     page.get_by_text("Make it").click()
-    page.locator("[role=progressbar]").first.wait_for()
-    page.locator(".flowtex-rest").get_by_text("Cancel").click()
+    page.locator(".flowtex-panel").get_by_text("Cancel").click()
     page.get_by_text("Make it").wait_for()
     page.get_by_label("Seconds", exact=True).fill("1")
     page.get_by_label("Seconds", exact=True).press("Enter")
@@ -368,6 +370,7 @@ def test_a_movie_is_saved_and_can_be_cancelled(page: Page, tmp_path: Path) -> No
 
 
 def test_a_link_and_lines_of_python_tell_the_state(page: Page, folder: Path) -> None:
+    page.evaluate("document.activeElement.blur()")  # a menu would take the key
     before = count(page)
     page.keyboard.press("0")
     settled(page, before)
@@ -378,9 +381,13 @@ def test_a_link_and_lines_of_python_tell_the_state(page: Page, folder: Path) -> 
     assert "file=series.pvd" in link and "cmap=magma" in link
     assert "series.pvd" in python and "pl.flowtex.add" in python
     seen = shot(page)
+    page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    page.get_by_label("Copy the link").click()
+    copied = page.evaluate("navigator.clipboard.readText()")
+    assert copied == page.context.first_address + link.strip()  # type: ignore[attr-defined]
     other = page.context.new_page()
     other.set_viewport_size(SIZE)  # type: ignore[arg-type]
-    other.goto(start_address(page) + link)
+    other.goto(copied)
     other.get_by_text("3 times").wait_for(timeout=PATIENCE)
     settled(other, count(other) - 1)
     other.wait_for_function(
@@ -388,8 +395,3 @@ def test_a_link_and_lines_of_python_tell_the_state(page: Page, folder: Path) -> 
     )
     comes_to(other, seen)
     other.close()
-
-
-def start_address(page: Page) -> str:
-    """Address of the page's own start, with its secret."""
-    return str(page.context.first_address)  # type: ignore[attr-defined]

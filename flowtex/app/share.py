@@ -130,7 +130,7 @@ class Share(Part):
 
     async def _tell(self, job: Job) -> None:
         """Tell the page how far the job is."""
-        while True:
+        while job is self._job:
             self.state.send(out_progress=round(100 * job.progress, 1))
             await asyncio.sleep(LOOK)
 

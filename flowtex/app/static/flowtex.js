@@ -258,13 +258,23 @@
     },
   };
 
+  /**
+   * An address that opens a page with a state: that of the door, with the secret that it keeps.
+   * @param {string} hash
+   */
+  function linked(hash) {
+    const folder = new URL(".", document.baseURI);
+    const secret = sessionStorage.getItem(`flowtex ${folder.pathname} secret`);
+    if (secret) folder.search = new URLSearchParams({ secret }).toString();
+    return folder.href + hash;
+  }
+
   /** @type {any} */ (window).flowtex_page = {
     install(/** @type {any} */ app) {
       for (const component of [keys, path, client]) app.component(component.name, component);
       Object.assign(app.config.globalProperties, {
         flowtex_fullscreen: fullscreen,
-        /** The page's own address with a state. @param {string} hash */
-        flowtex_address: (hash) => window.location.href.split("#")[0] + hash,
+        flowtex_address: linked,
         /** @param {string} text */
         flowtex_copy: (text) => navigator.clipboard?.writeText(text),
       });
