@@ -33,7 +33,7 @@ flowtex.app.serve(flow, open_browser=False, announce=lambda text: print(text, fl
 #: PyVista's own page: a sphere of 60 x 60, without edges and without anti-aliasing.
 BARE = """
 import pyvista as pv
-from trame_pyvista.ui import plotter_ui
+from trame_pyvista.widgets import PyVistaRCAView
 from trame.app import get_server
 from trame.ui.vuetify3 import SinglePageLayout
 
@@ -42,7 +42,7 @@ pl = pv.Plotter(off_screen=True, theme=pv.themes.DocumentTheme())
 pl.disable_anti_aliasing()
 pl.add_mesh(pv.Sphere(theta_resolution=60, phi_resolution=60))
 with SinglePageLayout(server) as layout, layout.content:
-    plotter_ui(pl, default_server_rendering=True, mode="server", add_menu=False)
+    PyVistaRCAView(pl)
 server.controller.on_server_ready.add(
     lambda **_: print(f"http://127.0.0.1:{server.port}/", flush=True))
 server.start(port=0, host="127.0.0.1", open_browser=False, show_connection_info=False)
@@ -125,7 +125,7 @@ def main() -> None:
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=shutil.which("chromium"))
         cases = [(OURS, [flow], ".flowtex-view img", f"flowtex, {flow}") for flow in given.flows]
-        cases.append((BARE, [], "img", "PyVista's viewer, a sphere"))
+        cases.append((BARE, [], "img", "PyVista, a sphere"))
         for script, words, image, name in cases:
             try:
                 found = measure(browser, script, words, image, given.seconds)

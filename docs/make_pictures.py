@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import io
+import re
+import shutil
+import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -16,6 +20,8 @@ from PIL import Image
 import flowtex
 from flowtex.camera import look
 
+#: Address of a page as it is announced.
+ADDRESS = re.compile(r"http://\S+")
 FOLDER = Path(__file__).parent / "pictures"
 Picture = NDArray[np.uint8]
 DARK = "#10131a"
@@ -235,6 +241,69 @@ def paper() -> None:
             )
 
 
+def app() -> None:
+    """Take the pictures of docs/app.md: the page in a browser, as people see it."""
+    from playwright.sync_api import Page, sync_playwright
+
+    def settle(page: Page) -> None:
+        page.wait_for_timeout(900)
+        page.wait_for_selector("[data-picture=sharp]")
+        page.wait_for_timeout(900)
+
+    def opened(size: tuple[int, int], name: str, address: str) -> Page:
+        page = browser.new_page(viewport={"width": size[0], "height": size[1]})
+        page.set_default_timeout(60_000)
+        page.goto(address)
+        settle(page)
+        if name != "cylinder":
+            page.get_by_label("Open another file").click()
+            page.locator(".v-overlay--active .v-list-item", has_text=name).click()
+            settle(page)
+        return page
+
+    command = [sys.executable, "-m", "flowtex.cli", "demo", "--no-browser", "--port", "0"]
+    with (
+        subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as served,
+        sync_playwright() as playwright,
+    ):
+        address = next(m.group() for line in served.stdout or () if (m := ADDRESS.search(line)))
+        browser = playwright.chromium.launch(executable_path=shutil.which("chromium"))
+        dark = opened((1200, 700), "cylinder", address)
+        _page_picture(dark, "app_dark")
+        compared = opened((1200, 700), "double gyre", address)
+        compared.locator(".flowtex-more", has_text="View").click()
+        compared.locator("[data-setting=compare] .v-field").click()
+        compared.get_by_text("the paper's kernel").last.click()
+        settle(compared)
+        compared.get_by_label("Controls").click()
+        settle(compared)
+        _page_picture(compared, "app_compare")
+        path = opened((1200, 700), "vortex", address)
+        path.get_by_label("Controls").click()
+        path.mouse.move(620, 330)
+        for _ in range(8):
+            path.mouse.wheel(0, -200)
+        settle(path)
+        path.mouse.click(560, 300)
+        path.mouse.move(760, 420)
+        settle(path)
+        _page_picture(path, "app_path")
+        narrow = opened((400, 760), "airfoil", address)
+        narrow.get_by_label("Light or dark").click()
+        settle(narrow)
+        _page_picture(narrow, "app_narrow")
+        browser.close()
+        served.terminate()
+
+
+def _page_picture(page: Any, name: str) -> None:
+    """Save what a page shows, in few colours."""
+    with Image.open(io.BytesIO(page.screenshot())) as picture:
+        picture.convert("RGB").quantize(256, dither=Image.Dither.NONE).save(
+            FOLDER / f"{name}.png", optimize=True
+        )
+
+
 STILLS = (
     *(wake, zooms, vortices, sphere, torus, level_of_detail, grain, levels, correction),
     *(kernels, patterns, half_turns, gyre),
@@ -254,10 +323,10 @@ def main() -> None:
     from rich.progress import track
 
     FOLDER.mkdir(exist_ok=True)
-    wanted = sys.argv[1:] or [*PICTURES, "streaming", "paper"]
+    wanted = sys.argv[1:] or [*PICTURES, "streaming", "paper", "app"]
     for name in track(wanted, "Drawing the gallery"):
-        if name == "paper":
-            paper()
+        if name in ("paper", "app"):
+            {"paper": paper, "app": app}[name]()
             continue
         if name == "streaming":
             first, *others = (Image.fromarray(frame) for frame in streaming())

@@ -29,10 +29,14 @@ if TYPE_CHECKING:
 doctor.prefer_headless()
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Let the tests with a browser come last: Playwright's event loop runs from the first one on.
+    """Mark the tests with a browser, and let them come last.
 
-    While it does, no test could run an event loop of its own.
+    Playwright's event loop runs from the first one on, and meanwhile no test could run an event
+    loop of its own.
     """
+    for item in items:
+        if "browser" in getattr(item, "fixturenames", ()):
+            item.add_marker("browser")
     items.sort(key=lambda item: "browser" in getattr(item, "fixturenames", ()))
 
 

@@ -146,6 +146,36 @@ def test_a_full_picture_is_the_whole_one(flat: FlowApp) -> None:
     painter.cost = Cost()
 
 
+@pytest.mark.parametrize("by", [(30, 20), (-30, 20), (30, -20), (-41, -20), (0, 12), (-12, 0)])
+def test_after_a_drag_only_what_came_into_view_is_drawn(
+    flat: FlowApp, by: tuple[int, int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    painter = flat.stream.composer.painters[0]
+    flat.area.reset_camera()
+    painter.forget()
+    painter.cost.learn(5.0, 240 * 160, 9)
+    painter.quick(0.01)
+    for _ in painter.full():
+        pass
+    flat.scene.navigator.pan(-2 * by[0] / 240, 2 * by[1] / 160)
+    drawn = []
+    draw = type(painter.pane).draw
+
+    def counted(pane: Any, width: int, height: int, part: Any = None) -> Any:
+        drawn.append(width * height)
+        return draw(pane, width, height, part)
+
+    monkeypatch.setattr(type(painter.pane), "draw", counted)
+    painter.quick(0.01)
+    drawn.clear()
+    *_, full = painter.full()
+    exposed = 240 * 160 - (240 - abs(by[0])) * (160 - abs(by[1]))
+    assert painter.complete and sum(drawn) == exposed
+    assert difference(full, picture(flat)) < 0.5
+    painter.cost = Cost()
+    flat.area.reset_camera()
+
+
 def test_the_point_under_the_pointer_stays_at_every_zoom(flat: FlowApp) -> None:
     navigator = flat.scene.navigator
     flat.area.reset_camera()

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Generator
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +18,7 @@ from numpy.typing import NDArray
 from flowtex.app.canvas import Rect
 from flowtex.app.pane import Pane
 from flowtex.app.quality import Cost, Quality
-from flowtex.app.warp import Shot, coverage, warp
+from flowtex.app.warp import Shot, coverage, shifted, warp
 
 __all__ = ["Painter"]
 
@@ -85,7 +86,7 @@ class Painter:
         self.complete = quality.scale >= 1.0 and quality.samples == self._samples
         if self.complete:
             pixels = self._draw(width, height)
-            self._shot = None if view is None else Shot(pixels, view)
+            self._shot = None if view is None else Shot(pixels, view, sharp=True)
             return pixels
         if self._shot is not None and view is not None:
             share, stretch = coverage(self._shot, view)
@@ -120,33 +121,55 @@ class Painter:
         view, state = self.pane.plane_view(), self._state
         begun = self.quick(0.0) if self._last is None else self._last
         canvas = self._enlarged(begun, width, height)
-        spent = 0.0
+        kept = self._keep(canvas, view)
+        wanted = [(0, 0, width, height)] if kept is None else _around(kept, width, height)
+        spent, drawn, complete = 0.0, 0, False
         try:
-            for left, top, wide, high in self._tiles(width, height):
+            for left, top, wide, high in self._tiles(wanted, width, height):
                 started = time.perf_counter()
                 tile = self.pane.draw(wide, high, (left, top, wide, high))
                 canvas[top : top + high, left : left + wide] = tile
                 spent += time.perf_counter() - started
+                drawn += wide * high
                 yield canvas
-            self.complete = state == self._state
+            if not drawn:
+                yield canvas
+            self.complete = complete = state == self._state
             # All tiles together: one at the rim of the surface may be empty and cost nothing.
-            self.cost.learn(spent, width * height, self._samples)
+            if kept is None:
+                self.cost.learn(spent, drawn, self._samples)
         finally:
-            # Half of a full picture serves a moved view better than none.
-            if view is not None and state == self._state:
-                self._shot = Shot(canvas.copy(), view)
+            # Half of a full picture serves a moved view better than none, but not than a sharp one.
+            if view is not None and state == self._state and (complete or kept is None):
+                self._shot = Shot(canvas.copy(), view, sharp=complete)
 
-    def _tiles(self, width: int, height: int) -> list[Rect]:
-        """Tiles of about the same size, from the middle outwards."""
+    def _keep(self, canvas: Pixels, view: NDArray[np.float64] | None) -> Rect | None:
+        """Put what is sharp already in its new place; return the rectangle that it fills.
+
+        A drag over a flat surface shifts the picture by whole pixels, and most of it stays.
+        """
+        if view is None or self._shot is None or not self._shot.sharp:
+            return None
+        if self._shot.pixels.shape != canvas.shape or (by := shifted(self._shot, view)) is None:
+            return None
+        height, width = canvas.shape[:2]
+        left, top = max(by[0], 0), max(by[1], 0)
+        wide, high = width - abs(by[0]), height - abs(by[1])
+        x, y = max(-by[0], 0), max(-by[1], 0)
+        canvas[top : top + high, left : left + wide] = self._shot.pixels[y : y + high, x : x + wide]
+        return left, top, wide, high
+
+    def _tiles(self, areas: list[Rect], width: int, height: int) -> list[Rect]:
+        """Tiles of about the same size, from the middle of the view outwards."""
         side = self.cost.tile(self._samples)
-        across, down = math.ceil(width / side), math.ceil(height / side)
-        xs = [2 * round(width * n / across / 2) for n in range(across)] + [width]
-        ys = [2 * round(height * n / down / 2) for n in range(down)] + [height]
-        tiles = [
-            (xs[i], ys[j], xs[i + 1] - xs[i], ys[j + 1] - ys[j])
-            for j in range(down)
-            for i in range(across)
-        ]
+        tiles = []
+        for left, top, wide, high in areas:
+            xs, ys = _cuts(left, wide, side), _cuts(top, high, side)
+            tiles += [
+                (x, y, right - x, below - y)
+                for y, below in pairwise(ys)
+                for x, right in pairwise(xs)
+            ]
 
         def far(tile: Rect) -> float:
             left, top, wide, high = tile
@@ -181,3 +204,20 @@ class Painter:
 
         smooth = Image.Resampling.BILINEAR
         return np.array(Image.fromarray(pixels).resize((width, height), smooth))
+
+
+def _around(kept: Rect, width: int, height: int) -> list[Rect]:
+    """Rectangles that a picture has besides one that reaches to two of its borders."""
+    left, top, wide, high = kept
+    above = (0, 0, width, top) if top else (0, high, width, height - high)
+    beside = (0, top, left, high) if left else (wide, top, width - wide, high)
+    return [area for area in (above, beside) if area[2] > 0 and area[3] > 0]
+
+
+def _cuts(start: int, length: int, side: int) -> list[int]:
+    """Places at which to cut a length into parts of about one size; even distances but the last.
+
+    Derivatives are taken in blocks of 2 x 2 pixels.
+    """
+    count = math.ceil(length / side)
+    return [start + 2 * round(length * n / count / 2) for n in range(count)] + [start + length]

@@ -12,10 +12,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Shot", "coverage", "warp"]
+__all__ = ["Shot", "coverage", "shifted", "warp"]
 
 #: A change of scale below this is taken for none.
 SHIFT = 1e-3
+#: A shift is one of whole pixels when it is no farther from it than this, in pixels.
+EXACT = 0.02
 
 Pixels = NDArray[np.uint8]
 Matrix = NDArray[np.float64]
@@ -31,10 +33,13 @@ class Shot:
         (H, W, 3) uint8, row 0 at the top.
     view
         Affine map from coordinates in the plane to the view's (x, y) from -1 to 1, (3, 3).
+    sharp
+        Whether it is at full quality everywhere.
     """
 
     pixels: Pixels
     view: Matrix
+    sharp: bool = False
 
 
 def coverage(shot: Shot, view: Matrix) -> tuple[float, float]:
@@ -52,6 +57,24 @@ def coverage(shot: Shot, view: Matrix) -> tuple[float, float]:
     inside = (np.abs(seen[:2]) <= 1.0 + 1e-9).all(axis=0)
     area = abs(float(np.linalg.det(back[:2, :2])))
     return float(inside.mean()), float(area**-0.5) if area > 0 else float("inf")
+
+
+def shifted(shot: Shot, view: Matrix) -> tuple[int, int] | None:
+    """Tell by how many whole pixels a picture is shifted in another view, right and down.
+
+    Returns
+    -------
+    tuple of int or None
+        ``None`` when the scale or the direction has changed, or the shift is no whole number.
+    """
+    height, width = shot.pixels.shape[:2]
+    to = view @ np.linalg.inv(shot.view)
+    if np.abs(to[:2, :2] - np.eye(2)).max() * max(width, height) > EXACT:
+        return None
+    right, down = to[0, 2] * width / 2, -to[1, 2] * height / 2
+    whole = round(right), round(down)
+    exact = max(abs(right - whole[0]), abs(down - whole[1])) < EXACT
+    return whole if exact and abs(whole[0]) < width and abs(whole[1]) < height else None
 
 
 def warp(shot: Shot, view: Matrix, size: tuple[int, int], under: Shot | None = None) -> Pixels:
