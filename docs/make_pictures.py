@@ -246,7 +246,7 @@ def app() -> None:
     from playwright.sync_api import Page, sync_playwright
 
     def settle(page: Page) -> None:
-        page.wait_for_timeout(900)
+        page.wait_for_timeout(900)  # hints fade
         page.wait_for_selector("[data-picture=sharp]")
         page.wait_for_timeout(900)
 
@@ -276,20 +276,26 @@ def app() -> None:
         compared.get_by_text("the paper's kernel").last.click()
         settle(compared)
         compared.get_by_label("Controls").click()
+        compared.mouse.move(700, 650)
         settle(compared)
         _page_picture(compared, "app_compare")
-        path = opened((1200, 700), "vortex", address)
+        path = opened((1200, 700), "double gyre", address)
         path.get_by_label("Controls").click()
-        path.mouse.move(620, 330)
-        for _ in range(8):
+        path.mouse.move(310, 350)
+        for _ in range(4):
             path.mouse.wheel(0, -200)
+        path.mouse.move(310, 350)
+        path.mouse.down()
+        path.mouse.move(640, 360, steps=4)
+        path.mouse.up()
         settle(path)
-        path.mouse.click(560, 300)
-        path.mouse.move(760, 420)
+        path.mouse.click(590, 340)
+        path.mouse.move(800, 470)
         settle(path)
         _page_picture(path, "app_path")
         narrow = opened((400, 760), "airfoil", address)
         narrow.get_by_label("Light or dark").click()
+        narrow.mouse.move(380, 600)
         settle(narrow)
         _page_picture(narrow, "app_narrow")
         browser.close()
@@ -297,10 +303,10 @@ def app() -> None:
 
 
 def _page_picture(page: Any, name: str) -> None:
-    """Save what a page shows, in few colours."""
+    """Save what a page shows."""
     with Image.open(io.BytesIO(page.screenshot())) as picture:
-        picture.convert("RGB").quantize(256, dither=Image.Dither.NONE).save(
-            FOLDER / f"{name}.png", optimize=True
+        picture.convert("RGB").save(
+            FOLDER / f"{name}.jpg", quality=86, subsampling=0, optimize=True
         )
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from flowtex.textures import ImageError
 
-__all__ = ["load_image", "read_image"]
+__all__ = ["load_image", "pixels_of", "read_image"]
 
 
 def load_image(image: Any) -> Any:
@@ -70,7 +70,7 @@ def read_image(file: Path | BinaryIO, name: str) -> NDArray[Any]:
         with warnings.catch_warnings():
             warnings.simplefilter("error", Image.DecompressionBombWarning)
             with Image.open(file) as opened:
-                return _array(ImageOps.exif_transpose(opened))
+                return pixels_of(ImageOps.exif_transpose(opened))
     except (Image.DecompressionBombWarning, Image.DecompressionBombError) as error:
         msg = f"{name}: has more than {Image.MAX_IMAGE_PIXELS:,} pixels; make it smaller"
         raise ImageError(msg) from error
@@ -82,7 +82,7 @@ def read_image(file: Path | BinaryIO, name: str) -> NDArray[Any]:
         raise ImageError(msg) from error
 
 
-def _array(picture: Any) -> NDArray[Any]:
+def pixels_of(picture: Any) -> NDArray[Any]:
     """Pixels, with opacity where the picture has any; deep grey keeps its depth."""
     if picture.mode.startswith("I"):  # 16 bits, which some versions of Pillow hold in 32
         return np.asarray(picture).astype(np.uint16)

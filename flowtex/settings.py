@@ -70,7 +70,7 @@ class Setting:
 
 def _is_number(value: Any) -> bool:
     try:
-        return not isinstance(value, (bool, str)) and float(value) == float(value)
+        return not isinstance(value, (bool, str, bytes)) and float(value) == float(value)
     except (TypeError, ValueError):
         return False
 

@@ -179,6 +179,16 @@ class FlowView:
         msg = f"there is no scalar {name!r} on this field; there are {known}"
         raise KeyError(msg)
 
+    def still(self) -> FlowView:
+        """Return a view that shows the same, and that no later change of this one reaches.
+
+        A thread can read it while this one goes on.
+        """
+        made = FlowView(self.field)
+        made.settings, made._image, made._time = self.settings.copy(), self._image, self._time
+        made._store, made._textures = self.store, self.textures
+        return made
+
     def observe(self, notice: Notice) -> Callable[[], None]:
         """Call ``notice(affects)`` after each change; returns what ends it."""
         self._notices.append(notice)

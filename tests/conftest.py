@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 # Before anything opens a window, and for every process that a test starts.
 doctor.prefer_headless()
 
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Mark the tests with a browser, and let them come last.
 

@@ -29,6 +29,11 @@ class Served:
     address: str
 
     @property
+    def place(self) -> tuple[str, int]:
+        parts = urlsplit(self.address)
+        return str(parts.hostname), int(parts.port or 0)
+
+    @property
     def bare(self) -> str:
         return self.address.split("?")[0]
 

@@ -2,22 +2,20 @@ from __future__ import annotations
 
 import http.client
 import io
-import os
-import re
 import signal
 import socket
 import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import closing
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
-from urllib.parse import urlsplit
 
 import numpy as np
 import pytest
 from PIL import Image
+from served import Served, start
+from watching import PATIENCE, Watch, count, difference
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
@@ -29,56 +27,18 @@ pytestmark = [pytest.mark.browser, pytest.mark.usefixtures("opengl")]
 #: A small view: a processor that draws needs seconds for a whole screen of texture.
 SIZE = {"width": 480, "height": 400}
 #: Part of the view that nothing lies on, as left, top, right, bottom.
-BARE = (20, 120, 460, 300)
-PATIENCE = 20_000
-
-
-@dataclass
-class Demo:
-    """A demo that runs, and where it is."""
-
-    process: subprocess.Popen[str]
-    address: str
-
-    @property
-    def place(self) -> tuple[str, int]:
-        parts = urlsplit(self.address)
-        return str(parts.hostname), int(parts.port or 0)
-
-    @property
-    def bare(self) -> str:
-        return self.address.split("?")[0]
-
-
-def start_demo(*words: str) -> Demo:
-    command = [sys.executable, "-m", "flowtex.cli", "demo", "--no-browser", "--port", "0", *words]
-    process = subprocess.Popen(
-        command,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-        env={**os.environ, "COLUMNS": "60"},
-    )
-    assert process.stdout is not None
-    said = ""
-    for line in process.stdout:
-        said += line
-        found = re.search(r"http://\S+", line)
-        if found:
-            return Demo(process, found.group())
-    pytest.fail(f"the demo ended without an address:\n{said}")
+WATCH = Watch((20, 120, 460, 300))
 
 
 @pytest.fixture(scope="module")
-def demo(opengl: object) -> Iterator[Demo]:
-    started = start_demo("--example", "double_gyre", "--samples", "15")
+def demo(opengl: object) -> Iterator[Served]:
+    started = start("demo", "--example", "double_gyre", "--samples", "15")
     yield started
-    started.process.send_signal(signal.SIGINT)
-    started.process.communicate(timeout=20)
+    started.end(signal.SIGINT)
 
 
 @pytest.fixture(scope="module")
-def opened(browser: Browser, demo: Demo) -> Iterator[Page]:
+def opened(browser: Browser, demo: Served) -> Iterator[Page]:
     """The page of the demo, with what it complained of and asked for in ``page.heard``."""
     context = browser.new_context(viewport=SIZE)  # type: ignore[arg-type]
     page = context.new_page()
@@ -88,37 +48,9 @@ def opened(browser: Browser, demo: Demo) -> Iterator[Page]:
     page.on("request", lambda request: heard["asked"].append(request.url))
     page.heard = heard  # type: ignore[attr-defined]
     page.goto(demo.address)
-    settled(page, 0)
+    WATCH.settled(page, 0)
     yield page
     context.close()
-
-
-def count(page: Page) -> int:
-    return int(page.get_attribute("[data-sharp]", "data-sharp") or 0)
-
-
-def settled(page: Page, before: int) -> Any:
-    """Wait for the next full picture, and return its bare part as (h, w) greys."""
-    page.wait_for_function(
-        "n => Number(document.querySelector('[data-sharp]')?.dataset.sharp) > n"
-        " && document.querySelector('[data-picture=sharp]')"
-        " && document.querySelector('.flowtex-view img').complete",
-        arg=before,
-        timeout=PATIENCE,
-    )
-    last = shot(page)
-    for _ in range(50):  # the picture itself is decoded a moment later
-        page.wait_for_timeout(60)
-        now = shot(page)
-        if np.array_equal(last, now):
-            return now
-        last = now
-    pytest.fail("the picture at rest keeps changing")
-
-
-def shot(page: Page) -> Any:
-    with Image.open(io.BytesIO(page.screenshot())) as picture:
-        return np.asarray(picture.convert("L").crop(BARE), dtype=float)
 
 
 def fineness(pixels: Any) -> float:
@@ -126,14 +58,10 @@ def fineness(pixels: Any) -> float:
     return float(np.abs(np.diff(pixels, axis=0)).mean())
 
 
-def difference(one: Any, other: Any) -> float:
-    return float(np.abs(one - other).mean())
-
-
 def home(page: Page) -> Any:
     before = count(page)
     page.get_by_label("Show the whole surface").click()
-    return settled(page, before)
+    return WATCH.settled(page, before)
 
 
 def zoom(page: Page, notches: int) -> Any:
@@ -141,11 +69,11 @@ def zoom(page: Page, notches: int) -> Any:
     page.mouse.move(150, 220)
     for _ in range(abs(notches)):
         page.mouse.wheel(0, -100 if notches > 0 else 100)
-    return settled(page, before)
+    return WATCH.settled(page, before)
 
 
 def test_the_flow_appears(opened: Page) -> None:
-    assert fineness(shot(opened)) > 8
+    assert fineness(WATCH.shot(opened)) > 8
     text = opened.inner_text(".flowtex").lower()
     assert "double gyre" in text and "201 × 101 nodes" in text and "speed" in text
 
@@ -168,14 +96,14 @@ def test_without_level_of_detail_it_blurs(opened: Page) -> None:
     switch.click()
     opened.get_by_label("Controls").click()
     opened.wait_for_selector(".flowtex-panel", state="hidden")
-    blurred = settled(opened, before)
+    blurred = WATCH.settled(opened, before)
     assert fineness(blurred) < 0.6 * fineness(sharp)
     before = count(opened)
     opened.get_by_label("Controls").click()
     switch.click()
     opened.get_by_label("Controls").click()
     opened.wait_for_selector(".flowtex-panel", state="hidden")
-    assert fineness(settled(opened, before)) > 0.8 * fineness(sharp)
+    assert fineness(WATCH.settled(opened, before)) > 0.8 * fineness(sharp)
 
 
 def test_a_drag_carries_the_surface_along(opened: Page) -> None:
@@ -186,7 +114,7 @@ def test_a_drag_carries_the_surface_along(opened: Page) -> None:
     opened.mouse.down()
     opened.mouse.move(300, 230, steps=8)
     opened.mouse.up()
-    moved = settled(opened, before)
+    moved = WATCH.settled(opened, before)
     assert difference(moved[30:, 60:], still[:-30, :-60]) < 0.25 * difference(moved, still)
 
 
@@ -201,16 +129,16 @@ def test_play_changes_one_picture_after_the_other(opened: Page) -> None:
             .observe(image, { attributeFilter: ['src'] });
         }"""
     )
-    before, still = count(opened), shot(opened)
+    before, still = count(opened), WATCH.shot(opened)
     opened.get_by_label("Play").click()
     opened.wait_for_function("() => window.pictures > 4", timeout=PATIENCE)
-    one = shot(opened)
+    one = WATCH.shot(opened)
     seen = opened.evaluate("() => window.pictures")
     opened.wait_for_function("n => window.pictures > n + 3", arg=seen, timeout=PATIENCE)
-    other = shot(opened)
+    other = WATCH.shot(opened)
     assert difference(one, still) > 2 and difference(one, other) > 2
     opened.get_by_label("Pause").click()
-    settled(opened, before)
+    WATCH.settled(opened, before)
     quiet = opened.evaluate("() => window.pictures")
     opened.wait_for_timeout(500)
     assert opened.evaluate("() => window.pictures") == quiet
@@ -219,13 +147,15 @@ def test_play_changes_one_picture_after_the_other(opened: Page) -> None:
 def test_the_theme_can_be_light(opened: Page) -> None:
     before = count(opened)
     opened.get_by_label("Light or dark").click()
-    settled(opened, before)
+    WATCH.settled(opened, before)
     assert opened.locator(".flowtex-light").count() == 1
     with Image.open(io.BytesIO(opened.screenshot())) as picture:
         assert min(picture.convert("RGB").getpixel((4, 200))) > 200  # type: ignore[arg-type]
 
 
-def test_nothing_is_complained_of_and_nothing_comes_from_outside(opened: Page, demo: Demo) -> None:
+def test_nothing_is_complained_of_and_nothing_comes_from_outside(
+    opened: Page, demo: Served
+) -> None:
     heard = opened.heard  # type: ignore[attr-defined]
     # trame's client first asks for a launcher, which there is none of.
     errors = [text for text in heard["errors"] if "405" not in text]
@@ -239,10 +169,10 @@ def test_a_page_loaded_again_still_opens(opened: Page) -> None:
     assert "secret" not in opened.url
     opened.reload()
     opened.wait_for_selector("[data-sharp]", timeout=PATIENCE)
-    settled(opened, 0)
+    WATCH.settled(opened, 0)
 
 
-def test_a_page_without_a_secret_says_so(page: Page, demo: Demo) -> None:
+def test_a_page_without_a_secret_says_so(page: Page, demo: Served) -> None:
     tried: list[object] = []
     page.on("websocket", lambda link: tried.append(link))
     for path in ("", "index.html"):
@@ -252,7 +182,9 @@ def test_a_page_without_a_secret_says_so(page: Page, demo: Demo) -> None:
 
 
 @pytest.mark.parametrize("secret", ["?secret=wslink-secret", "?secret=wrong"])
-def test_without_the_right_secret_there_is_no_picture(page: Page, demo: Demo, secret: str) -> None:
+def test_without_the_right_secret_there_is_no_picture(
+    page: Page, demo: Served, secret: str
+) -> None:
     tried: list[object] = []
     page.on("websocket", lambda link: tried.append(link))
     page.goto(demo.bare + secret)
@@ -261,7 +193,7 @@ def test_without_the_right_secret_there_is_no_picture(page: Page, demo: Demo, se
     assert page.locator(".flowtex").count() == 0
 
 
-def test_other_sites_are_refused_and_the_page_may_load_nothing_of_theirs(demo: Demo) -> None:
+def test_other_sites_are_refused_and_the_page_may_load_nothing_of_theirs(demo: Served) -> None:
     def ask(path: str, origin: str) -> tuple[int, dict[str, str]]:
         with closing(http.client.HTTPConnection(*demo.place, timeout=10)) as link:
             link.request("GET", path, headers={"Origin": origin})
@@ -279,7 +211,7 @@ def test_other_sites_are_refused_and_the_page_may_load_nothing_of_theirs(demo: D
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals")
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="reads /proc")
-def test_the_secret_is_new_each_time_and_not_in_the_list_of_processes(demo: Demo) -> None:
+def test_the_secret_is_new_each_time_and_not_in_the_list_of_processes(demo: Served) -> None:
     secret = demo.address.split("secret=")[1]
     assert len(secret) >= 24 and secret != "wslink-secret"
     assert secret not in Path(f"/proc/{demo.process.pid}/cmdline").read_text(encoding="utf-8")
@@ -287,7 +219,7 @@ def test_the_secret_is_new_each_time_and_not_in_the_list_of_processes(demo: Demo
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals")
 def test_ctrl_c_ends_it_at_once_with_a_page_open(page: Page, opengl: object) -> None:
-    demo = start_demo("--example", "double_gyre", "--samples", "3")
+    demo = start("demo", "--example", "double_gyre", "--samples", "3")
     page.set_viewport_size({"width": 200, "height": 160})
     page.goto(demo.address)
     page.wait_for_selector("[data-picture=sharp]", timeout=PATIENCE)

@@ -2,7 +2,6 @@ from __future__ import annotations
 
 import asyncio
 import gc
-import io
 import signal
 import threading
 import time
@@ -16,12 +15,12 @@ from typing import TYPE_CHECKING, Any
 import aiohttp
 import numpy as np
 import pytest
-from PIL import Image
 
 pytest.importorskip("trame_rca")
 
 from served import Link, Served, enter, start
 from trame.app.core import AVAILABLE_SERVERS
+from watching import Watch, count, difference
 
 from flowtex import FlowField, examples
 from flowtex.app import FlowApp, ServeError, serve, session, sessions
@@ -37,7 +36,7 @@ if TYPE_CHECKING:
 BROWSER_PATIENCE = 30_000
 SIZE = {"width": 480, "height": 400}
 #: Part of the view that nothing lies on, as left, top, right, bottom.
-BARE = (20, 120, 460, 270)
+WATCH = Watch((20, 120, 460, 270))
 
 
 class Plain:
@@ -397,44 +396,12 @@ def test_what_cannot_be_served_is_told() -> None:
     assert usual_limit() >= 2
 
 
-def shot(page: Page) -> Any:
-    with Image.open(io.BytesIO(page.screenshot())) as picture:
-        return np.asarray(picture.convert("L").crop(BARE), dtype=float)
-
-
-def sharp(page: Page, before: int = 0) -> Any:
-    """Wait for the next full picture, and return its bare part as (h, w) greys."""
-    page.wait_for_function(
-        "n => Number(document.querySelector('[data-sharp]')?.dataset.sharp) > n"
-        " && document.querySelector('[data-picture=sharp]')"
-        " && document.querySelector('.flowtex-view img').complete",
-        arg=before,
-        timeout=BROWSER_PATIENCE,
-    )
-    last = shot(page)
-    for _ in range(50):  # the picture itself is decoded a moment later
-        page.wait_for_timeout(60)
-        now = shot(page)
-        if np.array_equal(last, now):
-            return now
-        last = now
-    pytest.fail("the picture at rest keeps changing")
-
-
-def count(page: Page) -> int:
-    return int(page.get_attribute("[data-sharp]", "data-sharp") or 0)
-
-
 def zoom(page: Page) -> Any:
     before = count(page)
     page.mouse.move(150, 220)
     for _ in range(10):
         page.mouse.wheel(0, -100)
-    return sharp(page, before)
-
-
-def difference(one: Any, other: Any) -> float:
-    return float(np.abs(one - other).mean())
+    return WATCH.settled(page, before)
 
 
 @pytest.fixture(scope="module")
@@ -451,17 +418,17 @@ def test_two_users_at_once_look_from_different_places(browser: Browser, two_plac
     one, other = (user.new_page() for user in users)
     for page in (one, other):
         page.goto(two_places.address)
-        sharp(page)
-    whole = shot(other)
+        WATCH.settled(page)
+    whole = WATCH.shot(other)
     closer = zoom(one)
     assert difference(whole, closer) > 8
-    assert difference(shot(other), whole) == 0
+    assert difference(WATCH.shot(other), whole) == 0
     assert "zoom 10" in one.inner_text(".flowtex") or "9.3" in one.inner_text(".flowtex")
 
     # A page that is loaded again is where it was, and its address does not tell the secret.
     before = count(one)
     one.reload()
-    assert difference(sharp(one, before), closer) < 1
+    assert difference(WATCH.settled(one, before), closer) < 1
     assert "secret" not in one.url and two_places.secret not in one.url
 
     # Both places are taken: a third page says so, and opens when one has become free.
@@ -477,7 +444,7 @@ def test_two_users_at_once_look_from_different_places(browser: Browser, two_plac
             again.click()
         third.wait_for_timeout(200)
     # Another tab of the first user, and yet not the first user's camera.
-    assert difference(sharp(third), whole) < 1
+    assert difference(WATCH.settled(third), whole) < 1
     for user in users:
         user.close()
 
@@ -487,7 +454,7 @@ def test_a_page_whose_session_is_over_says_so_and_comes_back(page: Page, opengl:
     served = start("demo", "--example", "double_gyre", "--samples", "5")
     page.set_viewport_size(SIZE)  # type: ignore[arg-type]
     page.goto(served.address)
-    sharp(page)
+    WATCH.settled(page)
     served.end(signal.SIGTERM)
     assert served.process.returncode == 0
     page.get_by_text("lost its connection").wait_for(timeout=BROWSER_PATIENCE)

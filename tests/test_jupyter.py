@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import io
 import json
-import re
-import subprocess
-import sys
-import time
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
+from lab import Lab, lab
 from numpy.typing import NDArray
 from PIL import Image
 
@@ -25,16 +22,7 @@ pytest.importorskip("anywidget")
 
 pytestmark = [pytest.mark.slow, pytest.mark.browser]
 
-TOKEN = "test"
 SHARP = '.flowtex[data-sharp="true"]'
-OPTIONS = (
-    "--no-browser",
-    "--allow-root",
-    "--ip=127.0.0.1",
-    "--port=0",
-    "--ServerApp.log_level=INFO",
-)
-QUIET = {"fetchNews": "false", "checkForUpdates": False, "doNotDisturbMode": True}
 SHOW = """import flowtex
 w = flowtex.show(flowtex.examples.double_gyre(), samples=9, size=(300, 200), bar=False)
 w"""
@@ -46,85 +34,14 @@ pl.camera.parallel_scale = 0.25
 w = pl.show(jupyter_backend="flowtex", return_viewer=True)
 w"""
 THREADS = "[t.name for t in __import__('threading').enumerate() if 'flowtex' in t.name]"
-READY = """async () => {
-  await jupyterapp.restored;
-  const context = jupyterapp.shell.currentWidget.sessionContext;
-  await context.ready;
-  await context.session.kernel.info;
-}"""
-RUN = """(code) => {
-  const notebook = jupyterapp.shell.currentWidget.content;
-  jupyterapp.commands.execute("notebook:insert-cell-below").then(() => {
-    notebook.activeCell.model.sharedModel.setSource(code);
-    jupyterapp.commands.execute("notebook:run-cell");
-  });
-}"""
-
-
-class Lab:
-    """One notebook in a JupyterLab."""
-
-    def __init__(self, page: Page, address: str, name: str = "test.ipynb") -> None:
-        self.page = page
-        self._count = 0
-        page.goto(f"{address}/doc/tree/{name}?token={TOKEN}")
-        page.wait_for_function("() => window.jupyterapp?.shell?.currentWidget?.sessionContext")
-        page.evaluate(READY)
-
-    def run(self, code: str) -> None:
-        """Run a cell; what it prints is waited for by :meth:`said`."""
-        self.page.evaluate(RUN, code)
-
-    def said(self, code: str) -> str:
-        """Run a cell and return what it prints of an expression."""
-        self._count += 1
-        self.run(f"print('<<{self._count}:', {code}, ':{self._count}>>', flush=True)")
-        found = self.page.locator(".jp-OutputArea-output pre", has_text=f":{self._count}>>").first
-        found.wait_for()
-        return found.inner_text().split(":", 1)[1].rsplit(":", 1)[0].strip()
 
 
 @pytest.fixture(scope="module")
 def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    """Yield the address of a JupyterLab with an empty notebook."""
-    folder = tmp_path_factory.mktemp("lab")
-    for name in ("test.ipynb", "pyvista.ipynb", "thirty.ipynb", "two.ipynb"):
-        (folder / name).write_text(json.dumps(_empty_notebook()))
-    settings = folder / "settings" / "@jupyterlab" / "apputils-extension"
-    settings.mkdir(parents=True)
-    (settings / "notification.jupyterlab-settings").write_text(json.dumps(QUIET))
-    own = (
-        f"--IdentityProvider.token={TOKEN}",
-        f"--ServerApp.root_dir={folder}",
-        "--LabApp.expose_app_in_browser=True",
-        f"--LabApp.user_settings_dir={folder / 'settings'}",
-    )
-    log = folder / "log.txt"
-    with log.open("w") as file:
-        process = subprocess.Popen(
-            [sys.executable, "-m", "jupyterlab", *OPTIONS, *own], stdout=file, stderr=file
-        )
-    try:
-        yield _address(process, log)
-    finally:
-        process.terminate()
-        process.wait(20)
-
-
-def _empty_notebook() -> dict[str, Any]:
-    kernel = {"name": "python3", "display_name": "Python 3", "language": "python"}
-    return {"cells": [], "metadata": {"kernelspec": kernel}, "nbformat": 4, "nbformat_minor": 5}
-
-
-def _address(process: subprocess.Popen[bytes], log: Path) -> str:
-    for _ in range(600):
-        found = re.search(r"http://127\.0\.0\.1:\d+(?=/lab\?token=)", log.read_text())
-        if found:
-            return found.group()
-        if process.poll() is not None:
-            break
-        time.sleep(0.1)
-    pytest.fail(f"JupyterLab did not start:\n{log.read_text()}")
+    """Yield the address of a JupyterLab with empty notebooks."""
+    names = ("test.ipynb", "pyvista.ipynb", "thirty.ipynb", "two.ipynb")
+    with lab(tmp_path_factory.mktemp("lab"), names) as address:
+        yield address
 
 
 def picture(page: Page) -> NDArray[np.uint8]:

@@ -51,25 +51,6 @@ def gyre(columns: int = 61, rows: int = 31) -> FlowField:
     return FlowField.from_arrays(points, gyre_velocity(points))
 
 
-@cache
-def torus() -> FlowField:
-    a, b = np.meshgrid(np.linspace(0, 2 * np.pi, 49), np.linspace(0, 2 * np.pi, 25))
-    radius = 1 + 0.4 * np.cos(b)
-    points = np.stack([radius * np.cos(a), radius * np.sin(a), 0.4 * np.sin(b)], axis=-1)
-    around = np.stack([-np.sin(a), np.cos(a), 0 * a], axis=-1)
-    over = np.stack([-np.sin(b) * np.cos(a), -np.sin(b) * np.sin(a), np.cos(b)], axis=-1)
-    velocity = (1 + 0.5 * np.sin(b))[..., None] * around + 0.6 * np.cos(2 * a)[..., None] * over
-    return FlowField.from_arrays(points, velocity)
-
-
-@cache
-def swinging() -> FlowField:
-    """A vortex that wanders, at three times."""
-    y, x = np.mgrid[-1:1:31j, -1:1:31j]
-    steps = [np.stack([-(y - 0.2 * t), x - 0.1 * t * t], axis=-1) for t in (0.0, 1.0, 2.0)]
-    return FlowField.from_arrays(np.stack([x, y], axis=-1), np.stack(steps), times=[0.0, 0.4, 0.8])
-
-
 def planar(points: Floats, velocity: Floats) -> FlowField:
     return FlowField.from_arrays(points, velocity, periodic="")
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
+from flows import gyre, swinging, torus
 from matrix import (
     ASIDE,
     IMAGE,
@@ -16,10 +17,7 @@ from matrix import (
     TILTED,
     WHOLE,
     difference,
-    gyre,
     straight,
-    swinging,
-    torus,
 )
 from numpy.typing import NDArray
 from webgl_page import ClientPage, packed, state

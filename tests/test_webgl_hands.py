@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
-from matrix import SIZE, WHOLE, gyre
+from flows import gyre
+from matrix import SIZE, WHOLE
 from PIL import Image
 from webgl_page import ClientPage, packed, state
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,10 @@ from numpy.typing import NDArray
 from flowtex.app.navigate import Navigator
 from flowtex.field import Surface
 
-__all__ = ["hit", "plane_view", "ray"]
+__all__ = ["hit", "plane_view", "ray", "within_reach"]
+
+#: Farthest and nearest that a camera may be, in extents of the surface: beyond, numbers end.
+FAR, NEAR = 1e9, 1e-9
 
 
 def plane_view(surface: Surface, navigator: Navigator) -> NDArray[np.float64] | None:
@@ -26,6 +30,14 @@ def plane_view(surface: Surface, navigator: Navigator) -> NDArray[np.float64] | 
     view[:2, 2] = np.stack([right, up]) @ offset / scale[:, 0]
     # A plane seen edge on cannot be moved to another view.
     return view if abs(np.linalg.det(view[:2, :2])) > 1e-12 * np.abs(view).max() ** 2 else None
+
+
+def within_reach(camera: Mapping[str, Any], surface: Surface) -> bool:
+    """Tell whether a camera, as :meth:`Canvas.camera` has it, is of use for a surface."""
+    eye, focus = (np.asarray(camera[name], dtype=float) for name in ("position", "focal_point"))
+    far = np.abs([eye - surface.center, focus - surface.center]).max() <= FAR * surface.extent
+    sizes = (float(np.abs(eye - focus).max()), float(camera["parallel_scale"]))
+    return bool(far and all(NEAR <= size / surface.extent <= FAR for size in sizes))
 
 
 def hit(

@@ -117,15 +117,18 @@ class FlowArea:
             )
         return element
 
-    def show(self, field: FlowField, *, keep_view: bool = False) -> None:
+    def show(self, field: FlowField, *, keep_view: bool = False, keep_range: bool = False) -> None:
         """Show another flow with the same settings; :meth:`Scene.show` has the parameters."""
-        self.scene.show(field, keep_view=keep_view)
+        self.scene.show(field, keep_view=keep_view, keep_range=keep_range)
         self._watch()
         self.stream.changed()
 
     def compare(self, changes: dict[str, Any] | None) -> None:
         """Show a second pane, or one again; :meth:`Scene.compare` has the parameters."""
+        at_home = self.scene.at_home
         self.scene.compare(changes)
+        if at_home:  # a pane is half as wide as the whole view
+            self.scene.home()
         self.stream.changed()
 
     def reset_camera(self) -> None:
@@ -135,6 +138,7 @@ class FlowArea:
 
     def close(self) -> None:
         """End the tasks and free the graphics card."""
+        self.stream.close()
         for task in self._tasks:
             task.cancel()
         self._tasks.clear()
@@ -151,6 +155,8 @@ class FlowArea:
             self.stream.changed()
 
     def _on_ready(self, **_: Any) -> None:
+        if self._tasks:  # a page can have trame say this once more
+            return
         self.server.controller.rc_area_register(self.stream)
         for work in (self.stream.run(), self.player.play()):
             task = asyncio.create_task(work)

@@ -17,10 +17,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from flowtex.app.canvas import checked_camera
 from flowtex.app.part import Part
 from flowtex.app.routes import Content, Routes
 from flowtex.app.scene import BACKGROUNDS
+from flowtex.app.untrusted import number
 from flowtex.renderers.webgl import Colours, asset
 from flowtex.renderers.webgl import Scene as BrowserScene
 from flowtex.settings import TABLE
@@ -80,12 +80,23 @@ class Browser(Part):
         wanted = self.state.get("rendering")
         if wanted not in RENDERERS:
             self.state.set(rendering=RENDERERS[int(self.active)])
-        elif (wanted == "browser") != self.active:
-            self._begin() if wanted == "browser" else self._end()
+        elif wanted == "browser" and not self.active:
+            # Its client draws one view.
+            self.state.set(compare="nothing")
+            self.app.look.take_comparison()
+            self._begin()
+        elif wanted == "server":
+            self.leave()
+
+    def leave(self) -> None:
+        """Draw here again."""
+        if self.active:
+            self._end()
+            self.state.set(rendering="server")
 
     def refresh(self) -> None:
         """Follow another flow that is shown."""
-        if self.active:
+        if self.active and self._look != self._present_look():
             self._begin()
 
     def follow(self) -> None:
@@ -99,15 +110,14 @@ class Browser(Part):
         if camera != self._camera:
             self._camera = camera
             self.state.set(there_camera=camera)
+            self.app.moves.show_scale()
+            self.app.reader.follow_camera()
         self.state.send(there_settings=dict(self.area.settings), there_time=self.scene.handle.time)
 
     def take_camera(self, camera: Any) -> None:
         """Follow the camera of the browser."""
-        try:
-            made = checked_camera(camera, self.scene.canvas.camera())
-        except ValueError:
+        if not self.active or not self.app.moves.take_camera(camera):
             return  # not of our client's making
-        self.scene.canvas.set_camera(made)
         self._camera = self.scene.canvas.camera()
         self.app.moves.show_scale()
         self.app.reader.follow_camera()
@@ -115,14 +125,16 @@ class Browser(Part):
     def take_time(self, time: Any) -> None:
         """Follow the time of the browser while it plays."""
         times = self.scene.field.times
-        if isinstance(time, (int, float)) and times[0] <= time <= times[-1]:
-            self.scene.set_time(float(time))
+        told = number(time, float(times[0]), float(times[-1]))
+        if self.active and told is not None:
+            self.scene.set_time(told)
             self.app.clockwork.show_time()
 
     def take_sharp(self, milliseconds: Any) -> None:
         """Follow how long the browser's last full picture took."""
-        if isinstance(milliseconds, (int, float)):
-            self.app.moves.show_sharp(f"{milliseconds:.0f} ms in the browser")
+        told = number(milliseconds, 0, 1e6)
+        if self.active and told is not None:
+            self.app.moves.show_sharp(f"{told:.0f} ms in the browser")
 
     def _present_look(self) -> tuple[Any, ...]:
         """Return all that the client cannot follow by itself."""
@@ -136,8 +148,8 @@ class Browser(Part):
             self.scene.colour,
             self.scene.cmap,
             self.scene.colour_range,
-            self.state.get("theme"),
-            self.state.get("background"),
+            self.app.look.theme,
+            self.app.look.background,
         )
 
     def _begin(self) -> None:
@@ -188,8 +200,8 @@ class Browser(Part):
                 self._routes.withdraw(f"step-{step}-{self._generation}")
 
     def _colours(self) -> Colours:
-        scene, theme = self.scene, self.state.get("background")
-        behind = BACKGROUNDS[self.state.get("theme")] if theme == "theme" else theme
+        scene, look = self.scene, self.app.look
+        behind = BACKGROUNDS[look.theme] if look.background == "theme" else look.background
         low, high = scene.colour_range
         own = scene.field.scalars.get(scene.colour)
         values = scene.field.speed if own is None else own
@@ -207,6 +219,7 @@ class Browser(Part):
     def close(self) -> None:
         """End what goes on."""
         self._withdraw()
+        self._scene = None
 
 
 def packed(parts: Parts) -> bytes:

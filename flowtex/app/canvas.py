@@ -171,9 +171,10 @@ def checked_camera(given: Any, present: Mapping[str, Any]) -> dict[str, Any]:
     except (TypeError, ValueError) as error:
         msg = f"camera is {given!r}; expected points of three numbers, and numbers"
         raise ValueError(msg) from error
-    ahead = np.subtract(points["focal_point"], points["position"])
-    sees = [len(point) == 3 and np.isfinite(point).all() for point in points.values()]
-    good = all(sees) and np.linalg.norm(np.cross(ahead, points["up"])) > 0
+    good = all(len(point) == 3 and np.isfinite(point).all() for point in points.values())
+    with np.errstate(over="ignore", invalid="ignore"):
+        ahead = np.subtract(points["focal_point"], points["position"]) if good else np.zeros(3)
+        good = good and 0 < np.linalg.norm(np.cross(ahead, points["up"])) < np.inf
     if not (good and np.isfinite([scale, angle]).all() and scale > 0 and 0 < angle < 180):
         msg = f"camera is {given!r}; expected one that looks at something"
         raise ValueError(msg)

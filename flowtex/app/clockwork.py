@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from flowtex.app.part import Part
+from flowtex.app.untrusted import number
 
 __all__ = ["PACES", "Clockwork"]
 
@@ -37,12 +38,10 @@ class Clockwork(Part):
 
     def take_time(self) -> None:
         """Show the time that the page asks for."""
-        try:
-            wanted = float(self.state.get("time"))
-        except (TypeError, ValueError):
-            self.show_time()
-            return
-        self.area.player.go_to(wanted)
+        wanted = number(self.state.get("time"))
+        if wanted is not None and wanted != self.scene.handle.time:
+            self.area.player.seek(wanted)
+        self.state.set(time=self.scene.handle.time)
 
     def show_time(self) -> None:
         """Let the page show the time."""
@@ -50,22 +49,23 @@ class Clockwork(Part):
 
     def take_playing(self) -> None:
         """Let time go by, or stop it."""
-        self.area.player.playing = bool(self.state.get("playing"))
-        self.state.set(set_motion=self.area.settings.motion)
+        self.area.player.playing = playing = bool(self.state.get("playing"))
+        self.state.set(playing=playing, set_motion=self.area.settings.motion)
 
     def take_pace(self) -> None:
         """Let time go by faster or slower."""
         pace = self.state.get("pace")
-        if pace not in PACES:
-            self.state.set(pace=self.area.player.pace)
-            return
-        self.area.player.pace = float(pace)
+        if number(pace) in PACES:
+            self.area.player.pace = float(pace)
+        self.state.set(pace=self.area.player.pace)
 
-    def step(self, count: int) -> None:
-        """Go to the next step, or the one before."""
+    def step(self, count: Any) -> None:
+        """Go to the next step, 1, or the one before, -1."""
+        if number(count) not in (-1.0, 1.0):
+            return
         self.state.set(playing=False)
         self.area.player.playing = False
-        self.area.player.step(count)
+        self.area.player.step(int(count))
 
     def describe(self) -> dict[str, Any]:
         """Return what a link needs to know."""

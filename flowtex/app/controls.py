@@ -89,6 +89,8 @@ def select(name: str, key: str, items: Any, **attributes: Any) -> None:
         density="compact",
         variant="plain",
         hide_details=True,
+        menu_props=("{ contentClass: 'flowtex-list' }",),
+        list_props=("{ density: 'compact' }",),
         classes="flowtex-select",
         **attributes,
     )

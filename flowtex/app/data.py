@@ -8,20 +8,28 @@ another to put in its place.
 from __future__ import annotations
 
 import asyncio
+import logging
 import threading
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
+import numpy as np
+
 from flowtex.app.library import Choice, Library
 from flowtex.app.part import Part
+from flowtex.app.untrusted import clipped, name_among, shortened
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
+from flowtex.field.reading import moment
+from flowtex.field.source import FlowSource
 from flowtex.progress import Stopped, stoppable
 from flowtex.staging import coarsened
 from flowtex.trace import SliceStore
 
 __all__ = ["Data"]
+
+_log = logging.getLogger(__name__)
 
 #: A flow of more nodes than this is first shown with so many of them.
 LARGE, FEW = 40_000, 8_000
@@ -47,15 +55,18 @@ class Data(Part):
         self.library = library
         self.name = name
         self.choice = choice
+        # Kept here: the library may let go of it, and to read it again takes a while.
+        self._source = library.source(name)
+        self._goal = (name, choice)
         self._store: SliceStore | None = None
         self._wanted = threading.Event()
         self._worker = ThreadPoolExecutor(1, thread_name_prefix="flowtex opening")
         self._opening: asyncio.Task[None] | None = None
 
     @property
-    def from_file(self) -> bool:
-        """Whether what is shown comes from a file that has a name."""
-        return self.library.is_file(self.name)
+    def python(self) -> str | None:
+        """Expression that makes what is shown, unless that comes from a file."""
+        return self.library.python(self.name)
 
     def values(self) -> dict[str, Any]:
         """Return what the page begins with."""
@@ -69,13 +80,23 @@ class Data(Part):
     def take_file(self) -> None:
         """Open another file."""
         wanted = self.state.get("file")
-        if wanted != self.name:
-            self.begin(str(wanted), Choice())
+        if wanted == self.name:
+            if self._goal[0] != self.name:  # the person has come back
+                self.cancel()
+        elif not isinstance(wanted, str):
+            self._show_choice()
+        elif wanted != self._goal[0]:
+            self.begin(wanted, Choice())
 
     def take_choice(self) -> None:
         """Show another array or plane of the same file."""
         wanted = self._asked()
-        if wanted != self.choice:
+        if wanted == self.choice:
+            if self._goal != (self.name, wanted) and self._goal[0] == self.name:
+                self.cancel()  # the slider has come back to what is shown
+            else:
+                self.state.set(**self._offers())
+        elif (self.name, wanted) != self._goal:
             self.begin(self.name, wanted)
 
     def look_again(self) -> None:
@@ -85,6 +106,7 @@ class Data(Part):
     def cancel(self) -> None:
         """Stop what is being opened; the old view stands."""
         self._wanted.set()
+        self._goal = (self.name, self.choice)
         self._show_choice()
 
     def begin(self, name: str, choice: Choice, then: Callable[[], None] | None = None) -> None:
@@ -99,8 +121,8 @@ class Data(Part):
         """
         self._wanted.set()
         self._wanted = unwanted = threading.Event()
+        self._goal = (name, choice)
         self._opening = asyncio.ensure_future(self._open(name, choice, unwanted, then))
-        self._opening.add_done_callback(_tell_failure)
 
     async def _open(
         self,
@@ -122,14 +144,23 @@ class Data(Part):
                 then()
         except Stopped:
             pass
-        except FieldError as error:
-            if not unwanted.is_set():
-                self.app.complain(error)
-                self._show_choice()
+        except (FieldError, OSError) as error:
+            self._give_up(error, unwanted)
+        except Exception as error:
+            _log.exception("%s could not be opened", name)
+            words = shortened(name, 80)
+            self._give_up(f"{words} could not be opened: {error!r}", unwanted)
         finally:
             telling.cancel()
             if not unwanted.is_set():
                 self.state.send(busy="")
+
+    def _give_up(self, problem: Any, unwanted: threading.Event) -> None:
+        """Say why there is nothing else to show; the old view stands."""
+        if not unwanted.is_set():
+            self.app.complain(problem)
+            self._goal = (self.name, self.choice)
+            self._show_choice()
 
     async def _in_thread(self, unwanted: threading.Event, work: Callable[[], Any]) -> Any:
         """Do some work off the event loop, unless nobody wants it any more."""
@@ -150,20 +181,33 @@ class Data(Part):
         return self.library.field(name, choice), choice
 
     def _trace(self, name: str, choice: Choice, field: FlowField) -> SliceStore | None:
-        return self.library.trace(name, choice, field, self.area.settings).store
+        store = self.library.trace(name, choice, field, self.area.settings).store
+        # The time that is shown stays where another part of the same data is.
+        if store is not None and np.array_equal(field.times, self.scene.field.times):
+            for step in sorted(set(moment(field.times, self.scene.handle.time)[:2])):
+                store.at(step)
+        return store
 
     def _show(self, field: FlowField, store: SliceStore | None, name: str, choice: Choice) -> None:
-        same = name == self.name
-        of_plane = same and choice.vectors == self.choice.vectors
-        keep = of_plane and choice.plane[:1] == self.choice.plane[:1]
+        """Put another flow in the place of the one that is shown; where that fails, it stands."""
+        before = (self._store, self.name, self.choice, self._source)
+        same = name == self.name and choice.block == self.choice.block
+        same = same and choice.vectors == self.choice.vectors
+        keep = same and choice.plane[:1] == self.choice.plane[:1]
         self._store, self.name, self.choice = store, name, choice
-        self.app.show(field, keep_view=keep)
+        try:
+            self._source = self.library.source(name) if name != before[1] else self._source
+            self.app.show(field, keep_view=keep, keep_range=same)
+        except BaseException:
+            self._store, self.name, self.choice, self._source = before
+            raise
+        self._goal = (name, choice)
 
     async def _say(self, name: str, unwanted: threading.Event) -> None:
         """Tell the page what goes on, once it has gone on for a moment."""
         await asyncio.sleep(PATIENCE)
         if not unwanted.is_set():
-            self.state.send(busy=f"Tracing {name}")
+            self.state.send(busy=f"Opening {shortened(name, 80)}")
 
     def refresh(self) -> None:
         """Follow another flow that is shown."""
@@ -174,29 +218,41 @@ class Data(Part):
         self.state.send(busy="", file=self.name, **self._offers())
 
     def _asked(self) -> Choice:
-        axis, index = self.state.get("axis"), self.state.get("index")
-        planes = self.library.source(self.name).planes
+        """Return what the page asks for; where it asks for nothing that is there, what is shown."""
+        offers = self._offers()
+        block, vectors, axis = (
+            self.state.get(one) if name_among(self.state.get(one), offers[all_]) else offers[one]
+            for one, all_ in (("block", "blocks"), ("vectors", "vectors_choices"), ("axis", "axes"))
+        )
+        if block != offers["block"]:  # its planes, and its arrays, are others
+            known = self._source.part(block).vectors
+            return Choice(vectors if vectors in known else "", "", block)
         plane = ""
-        if axis in planes:
-            moved = axis != self.choice.plane[:1]
-            at = planes[axis] // 2 if moved else min(max(int(index or 0), 0), planes[axis] - 1)
-            plane = f"{axis}={at}"
-        return Choice(self.state.get("vectors") or "", plane, self.state.get("block") or "")
+        if axis:
+            last = self._part.planes[axis] - 1
+            at = int(clipped(self.state.get("index"), offers["index"], 0, last))
+            plane = f"{axis}={at if axis == offers['axis'] else (last + 1) // 2}"
+        return Choice(vectors, plane, block)
+
+    @property
+    def _part(self) -> FlowSource:
+        """The source of the block that is shown."""
+        return self._source.part(self.choice.block or None)
 
     def _offers(self) -> dict[str, Any]:
         """Return what there is to choose from in the present file, and what is chosen."""
-        source = self.library.source(self.name)
-        axis = self.choice.plane[:1]
-        count = source.planes.get(axis, 0)
+        source, part = self._source, self._part
+        axis = self.choice.plane[:1] if part.planes else ""
+        count = part.planes.get(axis, 0)
         field = self.scene.field
         return {
             "name": (field.name or source.name).replace("_", " ") or "flow",
             "about": about(field),
-            "vectors_choices": list(source.vectors) if len(source.vectors) > 1 else [],
-            "vectors": self.choice.vectors or (source.vectors[0] if source.vectors else ""),
+            "vectors_choices": list(part.vectors) if len(part.vectors) > 1 else [],
+            "vectors": self.choice.vectors or (part.vectors[0] if part.vectors else ""),
             "blocks": list(source.blocks),
             "block": self.choice.block or (source.blocks[0] if source.blocks else ""),
-            "axes": list(source.planes),
+            "axes": list(part.planes),
             "axis": axis,
             "index": int(self.choice.plane[2:] or 0) if count else 0,
             "planes": max(count - 1, 0),
@@ -229,9 +285,3 @@ def about(field: FlowField) -> str:
     if closed:
         words.append(f"periodic along {' and '.join(sorted(closed))}")
     return " · ".join(words)
-
-
-def _tell_failure(task: asyncio.Task[None]) -> None:
-    """Let an error that nobody waits for be seen."""
-    if not task.cancelled():
-        task.exception()

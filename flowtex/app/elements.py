@@ -6,7 +6,7 @@ from typing import Any
 
 from trame_client.widgets.core import AbstractElement
 
-__all__ = ["Client", "Keys", "PathLines"]
+__all__ = ["Client", "Keys", "PathInset", "PathLines"]
 
 
 class Client(AbstractElement):
@@ -37,4 +37,12 @@ class PathLines(AbstractElement):
 
     def __init__(self, **attributes: Any) -> None:
         super().__init__("flowtex-path", **attributes)
+        self._attr_names += ["over"]
+
+
+class PathInset(AbstractElement):
+    """The samples of the path, enlarged; see ``static/flowtex.js``."""
+
+    def __init__(self, **attributes: Any) -> None:
+        super().__init__("flowtex-inset", **attributes)
         self._attr_names += ["over"]

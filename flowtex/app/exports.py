@@ -127,6 +127,10 @@ class Job:
         OSError
             When it cannot be written.
         """
+        if self._cancelled:  # before it began
+            self.done = True
+            self._pool.shutdown(wait=False)
+            raise Stopped
         scene = copy_of(self._view)
         try:
             await self._make(scene)

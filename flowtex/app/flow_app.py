@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +24,7 @@ from flowtex.app.scene import Scene
 from flowtex.app.share import Share
 from flowtex.app.state import PageState
 from flowtex.app.stream import FrameStream
+from flowtex.app.untrusted import shortened
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.settings import SettingsError
@@ -110,18 +112,10 @@ class FlowApp(InCell):
         """The flow that is shown."""
         return self.scene.field
 
-    def show(self, field: FlowField, *, keep_view: bool = False) -> None:
-        """Show another flow.
-
-        Parameters
-        ----------
-        field
-            The flow.
-        keep_view
-            Whether the camera stays where it is.
-        """
+    def show(self, field: FlowField, *, keep_view: bool = False, keep_range: bool = False) -> None:
+        """Show another flow; :meth:`Scene.show` has the parameters."""
         playing = self.area.player.playing
-        self.area.show(field, keep_view=keep_view)
+        self.area.show(field, keep_view=keep_view, keep_range=keep_range)
         for part in self.parts:
             part.refresh()
         self.area.player.playing = playing
@@ -152,7 +146,7 @@ class FlowApp(InCell):
 
     def complain(self, problem: Any) -> None:
         """Let the page say what is wrong."""
-        self.state.send(problem=str(problem))
+        self.state.send(problem=shortened(str(problem)))
 
     def close(self) -> None:
         """End the tasks and free the graphics card."""
@@ -197,10 +191,25 @@ def first_choice(library: Library, options: Mapping[str, Any]) -> tuple[str, Cho
     Raises
     ------
     FieldError
-        When the first flow cannot be opened.
+        When none can be opened; it tells of the first one.
     """
-    name = library.names[0]
-    chosen = (options.get(key) for key in CHOOSING)
-    return name, library.complete(
-        name, Choice(*("" if value is None else str(value) for value in chosen))
+    chosen = Choice(
+        *("" if (value := options.get(key)) is None else str(value) for key in CHOOSING)
     )
+    name, *others = library.names
+    try:
+        return name, _first_of(library, name, chosen, sure=not others)
+    except (FieldError, OSError):
+        # In a folder lies this and that: what cannot be drawn does not hide the rest.
+        for other in others:
+            with suppress(FieldError, OSError):
+                return other, _first_of(library, other, chosen)
+        raise
+
+
+def _first_of(library: Library, name: str, chosen: Choice, *, sure: bool = False) -> Choice:
+    """Return what is chosen of a flow in full, after making sure that it can be drawn."""
+    choice = library.complete(name, chosen)
+    if not sure:
+        library.field(name, choice)
+    return choice

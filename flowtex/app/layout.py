@@ -51,7 +51,7 @@ def build_page(app: FlowApp) -> Any:
                 classes="flowtex-view", pointerleave=app.reader.leave, __events=["pointerleave"]
             )
             _client(app)
-            PathLines(over=(key("over"),), classes="flowtex-path")
+            PathLines(over=(key("over"),), classes="flowtex-path flowtex-path-lines")
             _keys(app)
             pane_labels(app)
             with html.Div(classes="flowtex-left"):
@@ -93,10 +93,11 @@ def _client(app: FlowApp) -> None:
 
 def _keys(app: FlowApp) -> None:
     key = app.state.key
+    close_card = app.server.trigger_name(app.reader.close_card)
     toggles = {
         "play": f"{key('playing')} = !{key('playing')}",
         "theme": _other_theme(key("theme")),
-        "close": f"{key('help')} = false; {key('group')} = null",
+        "close": f"{key('help')} = false; {key('group')} = null; trigger('{close_card}')",
         "help": f"{key('help')} = !{key('help')}",
     }
     cases = "; ".join(f"if ($event === '{name}') {{ {code} }}" for name, code in toggles.items())

@@ -12,11 +12,12 @@ from collections import OrderedDict
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol, TypeVar
 
+from flowtex.app.untrusted import shortened
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
-from flowtex.field.source import FlowSource
+from flowtex.field.source import FlowSource, field_bytes
 from flowtex.settings import Settings
 from flowtex.trace import SliceStore, shared_store
 
@@ -31,9 +32,12 @@ SUFFIXES = frozenset(
 )
 #: Folders below the one that was given that are looked into, and files that are listed.
 DEEPEST, MOST_FILES = 4, 500
-#: Files, and flows, that are kept open.
+#: Files, and flows, that are kept open at most, and bytes of each of the two together; what was
+#: asked for last is always kept.
 SOURCES, FLOWS = 4, 12
+SOURCE_BYTES, FLOW_BYTES = 2_000_000_000, 1_000_000_000
 
+T = TypeVar("T", bound="_Sized")
 Open = Callable[[], FlowSource]
 
 
@@ -59,6 +63,16 @@ class Opened:
     field: FlowField
     store: SliceStore | None = None
 
+    @property
+    def nbytes(self) -> int:
+        """Bytes that are in memory for it."""
+        return field_bytes(self.field) + (0 if self.store is None else self.store.nbytes)
+
+
+class _Sized(Protocol):
+    @property
+    def nbytes(self) -> int: ...
+
 
 class Library:
     """Names of flows, and how each is opened.
@@ -71,6 +85,8 @@ class Library:
         A folder that is looked through for more.
     files
         Which of the entries are files.
+    python
+        Expressions of Python that make the entries' fields, by name, as far as they are known.
 
     Raises
     ------
@@ -79,14 +95,20 @@ class Library:
     """
 
     def __init__(
-        self, entries: Mapping[str, Open], folder: Path | None = None, files: Iterable[str] = ()
+        self,
+        entries: Mapping[str, Open],
+        folder: Path | None = None,
+        files: Iterable[str] = (),
+        python: Mapping[str, str] | None = None,
     ) -> None:
         self._entries = dict(entries)
         self._files = frozenset(files)
+        self._python = dict(python or {})
         self._folder = None if folder is None else folder.resolve()
         self._sources: OrderedDict[str, FlowSource] = OrderedDict()
         self._flows: OrderedDict[tuple[str, Choice], Opened] = OrderedDict()
         self._lock = threading.RLock()
+        self._gates: dict[str, threading.RLock] = {}
         if not self.names:
             endings = " ".join(sorted(SUFFIXES))
             msg = f"{folder}: there is no file in it that can be opened; expected {endings}"
@@ -142,22 +164,42 @@ class Library:
         FieldError
             When there is none of that name, or it cannot be read.
         """
-        with self._lock:
-            if name in self._sources:
-                self._sources.move_to_end(name)
-                return self._sources[name]
-            opener = self._found.get(name)
-            if opener is None:
-                msg = f"there is no file {name!r} among those that may be opened here"
-                raise FieldError(msg)
-            source = self._sources[name] = opener()
-            while len(self._sources) > SOURCES:
-                self._sources.popitem(last=False)
+        with self._gate(name):
+            with self._lock:
+                if name in self._sources:
+                    self._sources.move_to_end(name)
+                    return self._sources[name]
+            source = self._found[name]()
+            with self._lock:
+                self._sources[name] = source
+                _trim(self._sources, SOURCES, SOURCE_BYTES)
             return source
+
+    def _gate(self, name: str) -> threading.RLock:
+        """Lock of one file: who opens a large one keeps nobody from the others.
+
+        Raises
+        ------
+        FieldError
+            When there is none of that name.
+        """
+        with self._lock:
+            if name not in self._found:
+                msg = (
+                    f"there is no file {shortened(name, 80)!r} among those that may be opened here"
+                )
+                raise FieldError(msg)
+            return self._gates.setdefault(name, threading.RLock())
 
     def is_file(self, name: str) -> bool:
         """Whether a name is that of a file."""
         return name in self._files or name not in self._entries
+
+    def python(self, name: str) -> str | None:
+        """Return the expression that makes a flow, or ``None`` for what comes from a file."""
+        if self.is_file(name):
+            return None
+        return self._python.get(name, "...  # the mesh or the field that was given")
 
     def complete(self, name: str, choice: Choice) -> Choice:
         """Fill in what is not chosen: the middle plane, the first array that may be the velocity.
@@ -168,11 +210,12 @@ class Library:
             As :meth:`source`.
         """
         source = self.source(name)
-        plane = choice.plane
-        if not plane and source.planes:
-            plane = f"k={source.planes['k'] // 2}"
-        vectors = choice.vectors or (source.vectors[0] if source.vectors else "")
         block = choice.block or (source.blocks[0] if source.blocks else "")
+        part = source.part(block or None)
+        plane = choice.plane
+        if not plane and part.planes:
+            plane = f"k={part.planes['k'] // 2}"
+        vectors = choice.vectors or (part.vectors[0] if part.vectors else "")
         return Choice(vectors, plane, block)
 
     def field(self, name: str, choice: Choice) -> FlowField:
@@ -186,7 +229,7 @@ class Library:
         known = self._flows.get((name, choice))
         if known is not None:
             return known.field
-        with self._lock:
+        with self._gate(name):
             return self.source(name).field(
                 vectors=choice.vectors or None,
                 plane=choice.plane or None,
@@ -203,15 +246,26 @@ class Library:
         """
         known = self._flows.get((name, choice))
         if known is not None and known.field is field and known.store is not None:
+            with self._lock:
+                if (name, choice) in self._flows:
+                    self._flows.move_to_end((name, choice))
             return known
         store = shared_store(field, settings.parameter)
         store.at(len(field.times) - 1)
         opened = Opened(field, store)
         with self._lock:
             self._flows[name, choice] = opened
-            while len(self._flows) > FLOWS:
-                self._flows.popitem(last=False)
+            self._flows.move_to_end((name, choice))
+            _trim(self._flows, FLOWS, FLOW_BYTES)
         return opened
+
+
+def _trim(kept: OrderedDict[Any, T], count: int, nbytes: int) -> None:
+    """Let go of what was asked for longest ago, until few enough are left, and small enough."""
+    while len(kept) > 1 and (
+        len(kept) > count or sum(one.nbytes for one in kept.values()) > nbytes
+    ):
+        kept.popitem(last=False)
 
 
 def _made(flow: Any, options: dict[str, Any]) -> FlowSource:

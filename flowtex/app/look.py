@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Mapping
 from typing import Any
 
 from flowtex.app.part import Part
+from flowtex.app.scene import BACKGROUNDS as THEMES
+from flowtex.app.untrusted import name_among, number
+from flowtex.app.uploads import decoded
 from flowtex.errors import FieldError
 from flowtex.settings import TABLE, SettingsError
 
@@ -41,23 +43,38 @@ COMPARISONS: dict[str, dict[str, Any]] = {
     "10 samples": {"samples": 10},
     "levels in colour": {"show_level": True},
 }
-#: Bytes of an image that is sent, at most.
-LARGEST_IMAGE = 8_000_000
+#: Greatest value at an end of the colour map: the distance of two is a number, too.
+WIDEST = 1e300
 
 
 class Look(Part):
-    """How the flow is drawn."""
+    """How the flow is drawn.
+
+    Parameters
+    ----------
+    app
+        The application.
+
+    Attributes
+    ----------
+    theme, background, compared
+        What was chosen last of what the page may choose: a page may say anything.
+    """
+
+    def __init__(self, app: Any) -> None:
+        super().__init__(app)
+        self.theme, self.background, self.compared = "dark", BACKGROUNDS[0], "nothing"
 
     def values(self) -> dict[str, Any]:
         """Return what the page begins with."""
         return {
-            "theme": "dark",
-            "background": BACKGROUNDS[0],
-            "compare": "nothing",
+            "theme": self.theme,
+            "background": self.background,
+            "compare": self.compared,
             "comparisons": list(COMPARISONS),
             "colour": self.scene.colour or PLAIN,
             "colours": [*self.scene.colours, PLAIN],
-            "cmap": self.scene.cmap if isinstance(self.scene.cmap, str) else CMAPS[0],
+            "cmap": self._cmap(),
             "low": self._span()[0],
             "high": self._span()[1],
             "bar": self._bar(),
@@ -80,6 +97,7 @@ class Look(Part):
     def refresh(self) -> None:
         """Follow another flow that is shown."""
         self.state.set(colours=[*self.scene.colours, PLAIN], colour=self.scene.colour or PLAIN)
+        self.show_settings()
         self._show_range()
 
     def take_settings(self) -> None:
@@ -100,7 +118,7 @@ class Look(Part):
 
     def take_setting(self, pair: Any) -> None:
         """Set what the browser's client has set by itself."""
-        if isinstance(pair, list) and len(pair) == 2 and pair[0] in TABLE:
+        if isinstance(pair, list) and len(pair) == 2 and name_among(pair[0], TABLE):
             self.state.set(**{f"set_{pair[0]}": pair[1]})
             self.take_settings()
 
@@ -111,27 +129,25 @@ class Look(Part):
     def take_colour(self) -> None:
         """Colour by what the page asks for."""
         wanted, cmap = self.state.get("colour"), self.state.get("cmap")
-        name = "" if wanted == PLAIN else str(wanted)
-        if name not in ("", *self.scene.colours) or cmap not in (*CMAPS, self.scene.cmap):
-            self.state.set(colour=self.scene.colour or PLAIN, cmap=self.scene.cmap)
+        known = name_among(wanted, (PLAIN, *self.scene.colours))
+        if not known or not name_among(cmap, (*CMAPS, self._cmap())):
+            self.state.set(colour=self.scene.colour or PLAIN, cmap=self._cmap())
             return
-        if (name, cmap) != (self.scene.colour, self.scene.cmap):
-            self.scene.colour_by(name, cmap=cmap)
+        name = "" if wanted == PLAIN else wanted
+        if (name, cmap) != (self.scene.colour, self._cmap()):
+            self.scene.colour_by(name, cmap=None if cmap == self._cmap() else cmap)
             self._show_range()
             self.area.stream.changed()
 
     def take_range(self) -> None:
         """Let the colours go from and to what the page asks for."""
-        try:
-            low, high = float(self.state.get("low")), float(self.state.get("high"))
-        except (TypeError, ValueError):
-            low = high = float("nan")
+        low, high = (number(self.state.get(end), -WIDEST, WIDEST) for end in ("low", "high"))
         if (low, high) == self._span():
             return
-        if not low < high < float("inf") or low == float("-inf"):
-            self.app.complain(
-                f"the colours go from {low:g} to {high:g}; expected a lower number first"
-            )
+        if low is None or high is None or not low < high:
+            told = f"{self.state.get('low')!r} to {self.state.get('high')!r}"
+            self.app.complain(f"the colours go from {told}; expected a lower number first")
+        if low is None or high is None or not low < high or not self.scene.colour:
             self._show_range()
             return
         self.scene.colour_by(self.scene.colour, clim=(low, high))
@@ -146,18 +162,24 @@ class Look(Part):
 
     def take_background(self) -> None:
         """Take the colour behind the surface that the page asks for."""
-        wanted = self.state.get("background")
-        themed = wanted not in BACKGROUNDS[1:]
-        self.scene.set_background(self.state.get("theme") if themed else wanted)
+        theme, wanted = self.state.get("theme"), self.state.get("background")
+        self.theme = theme if name_among(theme, THEMES) else self.theme
+        self.background = wanted if name_among(wanted, BACKGROUNDS) else self.background
+        self.state.set(theme=self.theme, background=self.background)
+        themed = self.background == BACKGROUNDS[0]
+        self.scene.set_background(self.theme if themed else self.background)
         self.area.stream.changed()
 
     def take_comparison(self) -> None:
         """Show a second pane, or one again."""
-        changes = COMPARISONS.get(self.state.get("compare"))
-        if changes is None:
-            self.state.set(compare="nothing")
-        elif changes != self.scene.beside:
-            self.area.compare(changes or None)
+        wanted = self.state.get("compare")
+        if not name_among(wanted, COMPARISONS):
+            self.state.set(compare=self.compared)
+        elif wanted != self.compared:
+            self.compared = wanted
+            if wanted != "nothing":  # the browser's client draws one view
+                self.app.browser.leave()
+            self.area.compare(COMPARISONS[wanted] or None)
 
     def take_image(self) -> None:
         """Lay a picture of the person's own on the surface."""
@@ -167,8 +189,7 @@ class Look(Part):
             return
         self.state.set(image_file=None)
         try:
-            for pane in self.scene.panes:
-                pane.handle.set_image(_decoded(sent))
+            self.scene.lay_image(decoded(sent))
         except SettingsError as error:
             self.app.complain(error)
             return
@@ -181,11 +202,11 @@ class Look(Part):
         return {
             "settings": dict(self.area.settings),
             "colour": self.scene.colour or PLAIN,
-            "cmap": self.state.get("cmap"),
+            "cmap": self._cmap(),
             "clim": self.scene.chosen_range,
-            "theme": self.state.get("theme"),
-            "background": self.state.get("background"),
-            "split": self.state.get("compare"),
+            "theme": self.theme,
+            "background": self.background,
+            "split": self.compared,
         }
 
     def restore(self, said: Mapping[str, Any]) -> None:
@@ -203,6 +224,10 @@ class Look(Part):
             self.take_range()
         self.take_background()
         self.take_comparison()
+
+    def _cmap(self) -> str:
+        """Name of the colour map; the first one for a map that has no name here."""
+        return self.scene.cmap if isinstance(self.scene.cmap, str) else CMAPS[0]
 
     def _noises(self) -> list[str]:
         """Kinds of noise to choose from; an image only where there is one."""
@@ -228,26 +253,3 @@ class Look(Part):
             "high": f"{high:.3g}",
             "stops": self.scene.colour_stops(),
         }
-
-
-def _decoded(sent: Any) -> Any:
-    """Read a picture that a page has sent.
-
-    Raises
-    ------
-    SettingsError
-        When it is too large, or no picture.
-    """
-    from flowtex.image_files import read_image
-
-    content = sent.get("content") if isinstance(sent, Mapping) else None
-    if isinstance(content, list):
-        content = b"".join(part for part in content if isinstance(part, bytes))
-    name = str(sent.get("name", "the picture")) if isinstance(sent, Mapping) else "the picture"
-    if not isinstance(content, bytes) or not content:
-        msg = f"{name}: did not arrive; expected a PNG or a JPEG"
-        raise SettingsError(msg)
-    if len(content) > LARGEST_IMAGE:
-        msg = f"{name}: has {len(content) / 1e6:.1f} MB; expected {LARGEST_IMAGE / 1e6:g} at most"
-        raise SettingsError(msg)
-    return read_image(io.BytesIO(content), name)

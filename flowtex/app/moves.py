@@ -9,8 +9,11 @@ from typing import Any
 
 import numpy as np
 
+from flowtex.app.aim import within_reach
+from flowtex.app.canvas import checked_camera
 from flowtex.app.part import Part
 from flowtex.app.stream import Figures
+from flowtex.app.untrusted import name_among
 
 __all__ = ["KEYS", "VIEWS", "Moves"]
 
@@ -50,11 +53,26 @@ LIMITS = {
 
 
 class Moves(Part):
-    """Where the camera stands."""
+    """Where the camera stands.
+
+    Parameters
+    ----------
+    app
+        The application.
+
+    Attributes
+    ----------
+    moving
+        Whether the last picture was one in motion.
+    """
+
+    def __init__(self, app: Any) -> None:
+        super().__init__(app)
+        self.moving = False
+        self._told, self._sharp = 0.0, 0
 
     def values(self) -> dict[str, Any]:
         """Return what the page begins with."""
-        self._told = 0.0
         return {"picture": "waiting", "sharp": 0, "figures": "", "scale": self._scale()}
 
     def watch(self) -> None:
@@ -70,9 +88,9 @@ class Moves(Part):
         """Directions that make sense: all of them for a surface that is not flat."""
         return [] if self.scene.flat else list(VIEWS)
 
-    def look_from(self, name: str) -> None:
+    def look_from(self, name: Any) -> None:
         """Turn the camera around what it looks at."""
-        if name not in VIEWS:
+        if not name_among(name, VIEWS):
             return
         toward, up = (np.asarray(v, dtype=float) for v in VIEWS[name])
         self.scene.home()
@@ -82,8 +100,10 @@ class Moves(Part):
         self.scene.canvas.set_camera({"position": [*(focus + distance * toward)], "up": [*up]})
         self.area.stream.moved()
 
-    def command(self, name: str) -> None:
+    def command(self, name: Any) -> None:
         """Do what a key asks for."""
+        if not isinstance(name, str):
+            return
         navigator = self.scene.navigator
         pans = {"left": (-1, 0), "right": (1, 0), "up": (0, 1), "down": (0, -1)}
         if name in pans:
@@ -102,7 +122,8 @@ class Moves(Part):
     def report(self, figures: Figures) -> None:
         """Tell the page how the stream is doing, a few times in a second."""
         now = time.perf_counter()
-        turned = figures.sharp or self.state.get("picture") != "moving"
+        turned = figures.sharp or not self.moving
+        self.moving = not figures.sharp
         if not turned and now - self._told < FIGURES_EVERY:
             return
         self._told = now
@@ -116,14 +137,19 @@ class Moves(Part):
         ]
         self.state.send(
             picture="sharp" if figures.sharp else "moving",
-            sharp=self.state.get("sharp") + int(figures.sharp),
+            sharp=self._counted(figures.sharp),
             figures=" · ".join(word for word in words if word),
             scale=self._scale(),
         )
 
     def show_sharp(self, figures: str) -> None:
         """Let the page tell that the full picture is there, and what it took."""
-        self.state.send(picture="sharp", sharp=self.state.get("sharp") + 1, figures=figures)
+        self.moving = False
+        self.state.send(picture="sharp", sharp=self._counted(True), figures=figures)
+
+    def _counted(self, sharp: bool) -> int:  # noqa: FBT001 one more, or not
+        self._sharp += int(sharp)
+        return self._sharp
 
     def show_scale(self) -> None:
         """Let the page show the scale bar as it is."""
@@ -136,8 +162,19 @@ class Moves(Part):
     def restore(self, said: Mapping[str, Any]) -> None:
         """Take over what a link says."""
         if said.get("camera"):
-            self.scene.canvas.set_camera(said["camera"])
+            self.take_camera(said["camera"])
             self.area.stream.moved()
+
+    def take_camera(self, camera: Any) -> bool:
+        """Take a camera that somebody sent; tells whether it is one that sees something."""
+        try:
+            made = checked_camera(camera, self.scene.canvas.camera())
+        except ValueError:
+            return False
+        good = within_reach(made, self.scene.field.surface)
+        if good:
+            self.scene.look(made)
+        return good
 
     def _zoom(self) -> str:
         zoom = self.scene.navigator.zoom

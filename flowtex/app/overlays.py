@@ -8,12 +8,16 @@ from trame.widgets import html
 from trame.widgets import vuetify3 as v3
 
 from flowtex.app.controls import hint
+from flowtex.app.elements import PathInset
 from flowtex.app.moves import KEYS
 
 if TYPE_CHECKING:
     from flowtex.app.flow_app import FlowApp
 
 __all__ = ["busy", "card", "complaint", "help_text", "pane_labels", "tip"]
+
+#: Time for which a complaint stands, for each letter that is to be read.
+MILLISECONDS = 70
 
 
 def pane_labels(app: FlowApp) -> None:
@@ -31,6 +35,7 @@ def card(app: FlowApp) -> None:
         with html.Div(classes="flowtex-line"):
             html.Span("The path through this point", classes="flowtex-label")
             html.Button("Close", click=app.reader.close_card, classes="flowtex-link")
+        PathInset(over=(app.state.key("over"),), classes="flowtex-inset flowtex-path-lines")
         with html.Div(classes="flowtex-bars"):
             hint("Each bar is a sample: its height the weight, its grey the noise it meets.", "end")
             html.I(
@@ -92,10 +97,15 @@ def help_text(app: FlowApp) -> None:
 def complaint(app: FlowApp) -> None:
     """Say what is wrong."""
     problem = app.state.key("problem")
-    v3.VSnackbar(
-        f"{{{{ {problem} }}}}",
-        model_value=(f"!!{problem}",),
-        update_modelValue=f"{problem} = ''",
-        timeout=8000,
-        location="bottom",
-    )
+    with (
+        v3.VSnackbar(
+            f"{{{{ {problem} }}}}",
+            model_value=(f"!!{problem}",),
+            update_modelValue=f"{problem} = ''",
+            timeout=(f"Math.max(8000, {MILLISECONDS} * {problem}.length)",),
+            location="top",
+            content_class="flowtex-complaint",
+        ),
+        html.Template(v_slot_actions=True),
+    ):
+        html.Button("Close", click=f"{problem} = ''", classes="flowtex-link")

@@ -76,7 +76,6 @@ def _image(app: FlowApp) -> None:
             variant="plain",
             hide_details=True,
             prepend_icon="",
-            placeholder="choose",
             aria_label="Your image",
             __properties=[*ARIA, "accept"],
             classes="flowtex-file",
@@ -165,9 +164,9 @@ def _share(app: FlowApp) -> None:
     with html.Div(classes="flowtex-row"):
         html.Button("Describe what is shown", click=app.share.show_state, classes="flowtex-action")
     with html.Div(v_if=(key("python"),)):
-        for title, name, text in (
-            ("Link", "link", f"flowtex_address({key('link')})"),
-            ("Python", "python", key("python")),
+        for title, text in (
+            ("Link", f"flowtex_address({key('link')})"),
+            ("Python", key("python")),
         ):
             with html.Div(classes="flowtex-row"):
                 html.Span(title, classes="flowtex-label")
@@ -175,7 +174,7 @@ def _share(app: FlowApp) -> None:
                     "Copy",
                     click=f"flowtex_copy({text})",
                     classes="flowtex-link",
-                    aria_label=f"Copy the {name}",
+                    aria_label=f"Copy the {title.lower()}",
                     __properties=ARIA,
                 )
-            html.Pre(f"{{{{ {key(name)} }}}}", classes="flowtex-text")
+            html.Pre(f"{{{{ {text} }}}}", classes="flowtex-text")

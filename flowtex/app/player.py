@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import logging
 import time
 from collections.abc import Callable
 
@@ -19,6 +20,10 @@ RATE = 20.0
 STEP_SECONDS, SHORTEST, LONGEST = 0.25, 5.0, 30.0
 #: Seconds that one picture may let go by, however long it takes.
 LEAP = 0.5
+#: Seconds that time stands after somebody has moved it by hand.
+HOLD = 0.4
+
+_log = logging.getLogger(__name__)
 
 
 class Player:
@@ -44,6 +49,7 @@ class Player:
         self._scene = scene
         self._stream = stream
         self._told = told
+        self._held = 0.0
 
     @property
     def playing(self) -> bool:
@@ -74,6 +80,11 @@ class Player:
             self._told()
             self._stream.changed()
 
+    def seek(self, time_: float) -> None:
+        """Go to a time for a person, whose slider must not run away under the hand."""
+        self._held = time.monotonic() + HOLD
+        self.go_to(time_)
+
     def step(self, count: int) -> None:
         """Go so many steps of the field on, or back; round and round."""
         times = self._scene.field.times
@@ -103,7 +114,16 @@ class Player:
         while True:
             now = time.perf_counter()
             passed, before = now - before, now
-            if self.playing and not self._stream.paused and self._stream.watched():
-                self.advance(min(passed, LEAP))
+            held = time.monotonic() < self._held
+            if self.playing and not (held or self._stream.paused) and self._stream.watched():
+                self._go_on(min(passed, LEAP))
                 await self._stream.next_picture()
             await asyncio.sleep(max(1 / RATE - (time.perf_counter() - now), 0.005))
+
+    def _go_on(self, seconds: float) -> None:
+        """Advance; where that fails time stands, and the log tells why."""
+        try:
+            self.advance(seconds)
+        except Exception:
+            _log.exception("time cannot go on")
+            self.playing = False

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from flowtex.app.scene import GAP, Scene
+from flowtex.app.untrusted import clipped, mapping
 
 __all__ = ["Pointer"]
 
 #: Notches of the wheel that one event may stand for; trackpads send small parts of one.
 MOST_NOTCHES = 5.0
-
-
+#: Farthest from the view that a pointer is followed, in pixels, and how far two fingers may spread.
+FARTHEST, SPREAD = 1e5, 1e3
 #: A button that is let go within so many seconds and pixels is a click.
 CLICK_SECONDS, CLICK_PIXELS = 0.4, 4.0
 
@@ -50,10 +51,10 @@ class Pointer:
     def _navigator(self) -> Any:
         return self._scene.navigator
 
-    def __call__(self, event: dict[str, Any]) -> bool:
+    def __call__(self, event: Any) -> bool:
         """Follow one event; tells whether the view changed."""
-        event = self._within_pane(event)
-        kind = str(event.get("type", ""))
+        event = self._within_pane(_cleaned(mapping(event)))
+        kind = event["type"]
         handler = {
             "MouseMove": self._move,
             "MouseWheel": self._wheel,
@@ -65,8 +66,7 @@ class Pointer:
         if handler is not None:
             return handler(event)
         if kind.endswith("ButtonPress"):
-            shift = bool(event.get("shiftKey"))
-            other = shift or not kind.startswith("Left")
+            other = event["shiftKey"] or not kind.startswith("Left")
             self._held = True
             self._pressed = (time.monotonic(), *self._pixel(event))
             self._navigator.press(*self._place(event), other=other)
@@ -88,7 +88,7 @@ class Pointer:
         """Count from the pane under the pointer; a drag stays with the one in which it began."""
         if len(self._scene.panes) == 1:
             return event
-        width, x = self._size(event)[0], float(event.get("x") or 0.0)
+        width, x = event["w"], event["x"]
         share = self._scene.pane_size[0] / max(self._scene.size[0], 1)
         side = int(x > width / 2)
         if not self._held:
@@ -103,7 +103,7 @@ class Pointer:
         return bool(self._navigator.move(*self._place(event)))
 
     def _wheel(self, event: dict[str, Any]) -> bool:
-        spin = float(event.get("spinY") or 0.0)
+        spin = event["spinY"]
         if not spin:
             return False
         # The page counts turns away from the person as negative.
@@ -118,39 +118,55 @@ class Pointer:
         return False
 
     def _spread(self, event: dict[str, Any]) -> bool:
-        factor = float(event.get("factor") or 1.0)
+        factor = event["factor"]
         self._navigator.zoom_by(factor / self._pinch, *self._middle(event))
         self._pinch = factor
         return True
 
     def _slid(self, event: dict[str, Any]) -> bool:
         """Follow two fingers that move together."""
-        x, y = (float(v) for v in (event.get("translation") or (0.0, 0.0))[:2])
-        width, height = self._size(event)
+        (x, y), width, height = event["translation"], event["w"], event["h"]
         self._navigator.pan(-2 * (x - self._slide[0]) / width, -2 * (y - self._slide[1]) / height)
         self._slide = (x, y)
         return True
 
     @staticmethod
-    def _size(event: dict[str, Any]) -> Place:
-        return max(float(event.get("w") or 1), 1.0), max(float(event.get("h") or 1), 1.0)
-
-    @staticmethod
     def _pixel(event: dict[str, Any]) -> Place:
-        return float(event.get("x") or 0.0), float(event.get("y") or 0.0)
+        return event["x"], event["y"]
 
     def _place(self, event: dict[str, Any]) -> Place:
-        width, height = self._size(event)
-        x, y = self._pixel(event)
-        return 2 * x / width - 1, 2 * y / height - 1
+        return 2 * event["x"] / event["w"] - 1, 2 * event["y"] / event["h"] - 1
 
     def _middle(self, event: dict[str, Any]) -> Place:
         """Place between the fingers; the middle of the view when it is not told."""
-        positions = event.get("positions")
-        if not isinstance(positions, dict) or not positions:
+        if not event["positions"]:
             return 0.0, 0.0
-        places = [self._place({**event, **at}) for at in positions.values()]
+        places = [self._place({**event, "x": x, "y": y}) for x, y in event["positions"]]
         return (
             sum(x for x, _ in places) / len(places),
             sum(y for _, y in places) / len(places),
         )
+
+
+def _cleaned(event: Mapping[str, Any]) -> dict[str, Any]:
+    """Return an event in which every value is there, and is a number where one is meant."""
+
+    def pixel(value: Any) -> float:
+        return clipped(value, 0.0, -FARTHEST, FARTHEST)
+
+    slide, fingers = event.get("translation"), mapping(event.get("positions"))
+    slide = slide if isinstance(slide, (list, tuple)) and len(slide) >= 2 else (0.0, 0.0)
+    return {
+        "type": str(event.get("type", "")),
+        "x": pixel(event.get("x")),
+        "y": pixel(event.get("y")),
+        "w": clipped(event.get("w"), 1.0, 1.0, FARTHEST),
+        "h": clipped(event.get("h"), 1.0, 1.0, FARTHEST),
+        "shiftKey": bool(event.get("shiftKey")),
+        "spinY": pixel(event.get("spinY")),
+        "factor": clipped(event.get("factor"), 1.0, 1 / SPREAD, SPREAD),
+        "translation": (pixel(slide[0]), pixel(slide[1])),
+        "positions": [
+            (pixel(at.get("x")), pixel(at.get("y"))) for at in map(mapping, fingers.values())
+        ],
+    }

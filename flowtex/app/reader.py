@@ -1,9 +1,16 @@
-"""Reading the picture: a tip under the pointer, and the path through a point that was clicked."""
+"""Reading the picture: a tip under the pointer, and the path through a point that was clicked.
+
+A path is read in a thread: with new textures it takes as long as a renderer takes to load them.
+What is clicked next makes an end of what was read before.
+"""
 
 from __future__ import annotations
 
 import asyncio
+import logging
 import time
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 from flowtex.app.part import Part
@@ -11,12 +18,15 @@ from flowtex.app.places import camera_of
 from flowtex.app.pointer import Place
 from flowtex.app.reading import Hover, PathCard
 from flowtex.app.stream import Figures
-from flowtex.probe import probe
+from flowtex.app.untrusted import number
+from flowtex.probe import Probe, probe
 
 __all__ = ["Reader"]
 
 #: Seconds between two tips.
 PATIENCE = 0.06
+
+_log = logging.getLogger(__name__)
 
 
 class Reader(Part):
@@ -35,6 +45,14 @@ class Reader(Part):
         self._card: PathCard | None = None
         self._looked = 0.0
         self._later: asyncio.TimerHandle | None = None
+        self._asked = 0
+        self._worker = ThreadPoolExecutor(1, thread_name_prefix="flowtex reading")
+        self._reading: asyncio.Task[None] | None = None
+
+    @property
+    def busy(self) -> bool:
+        """Whether a path is being read."""
+        return self._reading is not None and not self._reading.done()
 
     def _made_hover(self) -> Hover:
         return Hover(self.scene.handle.view, self.scene.navigator, self.scene.hit)
@@ -91,45 +109,68 @@ class Reader(Part):
 
     def take_place(self, place: Any) -> None:
         """Tell what is under the pointer of the browser's client, (x, y) from -1 to 1."""
-        if isinstance(place, list) and len(place) == 2:
-            x, y = place
-            if isinstance(x, (int, float)) and isinstance(y, (int, float)):
-                self.point((float(x), float(y)))
-                return
-        self.point(None)
+        numbers = [number(v, -1, 1) for v in place] if _is_pair(place) else [None, None]
+        x, y = numbers
+        self.point(None if x is None or y is None else (x, y))
 
     def take_point(self, index: Any) -> None:
         """Show the path through a point that the browser's client tells, (i, j)."""
         rows, columns = self.scene.field.shape
-        if isinstance(index, list) and len(index) == 2:
-            i, j = index
-            numbers = isinstance(i, (int, float)) and isinstance(j, (int, float))
-            if numbers and 0 <= i <= columns - 1 and 0 <= j <= rows - 1:
-                self.show_path((float(j), float(i)))
+        if _is_pair(index):
+            i, j = number(index[0], 0, columns - 1), number(index[1], 0, rows - 1)
+            if i is not None and j is not None:
+                self.show_path((j, i))
 
     def show_path(self, at: tuple[float, float] | None) -> None:
         """Show the path through a point (j, i) of the surface."""
         self._at = at
+        self._asked += 1
         if at is None:
             self.close_card()
             return
         try:
-            read = probe(
-                self.scene.handle.view,
-                at,
-                pixel=camera_of(self.scene.navigator, self.scene.pane_size),
-                clock=self.scene.clock,
-            )
-        except ValueError:  # it is not in view
+            loop = asyncio.get_running_loop()
+        except RuntimeError:  # a script, which waits
+            self._show(self._reader(at)())
+            return
+        if not self.busy:
+            self._reading = loop.create_task(self._read())
+            self._reading.add_done_callback(_tell_failure)
+
+    async def _read(self) -> None:
+        """Read the path through what was asked for last, until nothing else is asked for."""
+        asked, loop = -1, asyncio.get_running_loop()
+        while self._at is not None and asked != self._asked:
+            asked = self._asked
+            found = await loop.run_in_executor(self._worker, self._reader(self._at))
+            if asked == self._asked:
+                self._show(found)
+
+    def _reader(self, at: tuple[float, float]) -> Callable[[], Probe | None]:
+        """Return what reads the path through a point as things are now, if it is in view."""
+        view, clock = self.scene.handle.view.still(), self.scene.clock
+        camera = camera_of(self.scene.navigator, self.scene.pane_size)
+
+        def read() -> Probe | None:
+            try:
+                return probe(view, at, pixel=camera, clock=clock)
+            except ValueError:
+                return None
+
+        return read
+
+    def _show(self, found: Probe | None) -> None:
+        if found is None:
             self.close_card()
             return
-        self._card = PathCard(read)
-        told = {"lines": [list(line) for line in self._card.lines()], "bars": self._card.bars()}
-        self.state.send(card=told, over=self._over())
+        self._card = PathCard(found)
+        lines = [list(line) for line in self._card.lines()]
+        self.state.send(card={"lines": lines, "bars": self._card.bars()}, over=self._over())
 
     def close_card(self) -> None:
         """Show no path."""
         self._at = self._card = None
+        self._asked += 1
         if self.state.get("card") is not None:
             self.state.send(card=None, over=None)
 
@@ -150,9 +191,24 @@ class Reader(Part):
     def _over(self) -> dict[str, Any] | None:
         if self._card is None:
             return None
-        return {**self._card.over(self.scene.navigator), "panes": len(self.scene.panes)}
+        navigator, panes = self.scene.navigator, len(self.scene.panes)
+        return {**self._card.over(navigator), "panes": panes, "aspect": navigator.aspect}
 
     def close(self) -> None:
         """End what goes on."""
+        self._at = None
         if self._later is not None:
             self._later.cancel()
+        if self._reading is not None:
+            self._reading.cancel()
+        self._worker.shutdown(wait=False, cancel_futures=True)
+
+
+def _is_pair(value: Any) -> bool:
+    return isinstance(value, (list, tuple)) and len(value) == 2
+
+
+def _tell_failure(task: asyncio.Task[None]) -> None:
+    """Let an error that nobody waits for be seen."""
+    if not task.cancelled() and (error := task.exception()) is not None:
+        _log.error("a path could not be read", exc_info=error)

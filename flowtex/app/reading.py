@@ -25,6 +25,8 @@ Lines = list[tuple[str, str]]
 
 #: Digits of a position at zoom 1, and at most.
 DIGITS, MOST_DIGITS = 4, 14
+#: How many times as long as the part with samples the path is that is shown.
+BEYOND_SAMPLES = 4.0
 #: Units longer than this are left out.
 LONGEST_UNIT = 12
 
@@ -33,6 +35,7 @@ def number(x: float, digits: int = DIGITS) -> str:
     """Write a number in a few digits, as the browser's client writes it."""
     if not np.isfinite(x):
         return "–"
+    x += 0.0  # zero has no sign
     if digits <= DIGITS + 1 and x != 0 and not 1e-3 <= abs(x) < 1e5:
         mantissa, exponent = f"{x:.2e}".split("e")
         return f"{mantissa}e{int(exponent)}"
@@ -137,10 +140,12 @@ class PathCard:
             [x, y] or ``None``. Places go from -1 to 1 to the right and up.
         """
         probe = self.probe
-        path = project(navigator, probe.path)
-        inside = (probe.path_lags <= probe.lags[0]) & (probe.path_lags >= probe.lags[-1])
+        # Far beyond the samples the slices are too coarse to look at, and no picture needs them.
+        near = np.abs(probe.path_lags) <= BEYOND_SAMPLES * float(np.abs(probe.lags).max())
+        path, path_lags = project(navigator, probe.path[near]), probe.path_lags[near]
+        inside = (path_lags <= probe.lags[0]) & (path_lags >= probe.lags[-1])
         places = project(navigator, probe.points)
-        lags = np.concatenate([probe.path_lags[inside], probe.lags])
+        lags = np.concatenate([path_lags[inside], probe.lags])
         _, order = np.unique(-lags, return_index=True)
         sampled = np.concatenate([path[inside], places])[order]
         point = project(navigator, probe.reading.position)
@@ -202,8 +207,8 @@ class PathCard:
             ("level of detail", f"{probe.level:.2f}"),
             ("grain", f"{with_unit(probe.grain, length)}, {pixels}"),
             ("step", with_unit(probe.step, unit)),
-            ("behind", with_unit(max(float(probe.lags[0]), 0.0), unit)),
-            ("ahead", with_unit(max(-float(probe.lags[-1]), 0.0), unit)),
+            ("behind", with_unit(max(0.0, float(probe.lags[0])), unit)),
+            ("ahead", with_unit(max(0.0, -float(probe.lags[-1])), unit)),
         ]
         if not isinstance(probe.value, float):
             return lines

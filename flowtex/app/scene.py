@@ -27,6 +27,8 @@ __all__ = ["BACKGROUNDS", "GAP", "Rect", "Scene"]
 BACKGROUNDS = {"dark": "#12161c", "light": "#eef1f4"}
 #: Pixels between two panes.
 GAP = 2
+#: Zoom and focus of the whole surface.
+WHOLE: tuple[float, tuple[float, ...] | None] = (1.0, None)
 #: Entries of a colour map.
 ENTRIES = 256
 
@@ -144,7 +146,7 @@ class Scene:
             pane.handle.remove(render=False)
         self.canvas.close()
 
-    def show(self, field: FlowField, *, keep_view: bool = False) -> None:
+    def show(self, field: FlowField, *, keep_view: bool = False, keep_range: bool = False) -> None:
         """Show another flow with the same settings.
 
         Parameters
@@ -153,9 +155,14 @@ class Scene:
             The flow.
         keep_view
             Whether the camera stays where it is.
+        keep_range
+            Whether the ends of the colour map that somebody chose stay, and the time that is
+            shown where the flow has the same times: it is another part of the same data.
         """
         settings, image, beside = dict(self.handle.settings), self.handle.view.image, self._beside
+        self._first = WHOLE
         camera, clock, flat = self.canvas.camera(), self.handle.clock, self.flat
+        times, time = self.field.times, self.handle.time
         self.compare(None)
         old = self.handle
         plain = {**settings, "noise": "procedural" if image is not None else settings["noise"]}
@@ -164,8 +171,11 @@ class Scene:
         if image is not None:
             self.handle.set_image(as_image(image))
             self.handle.settings.noise = settings["noise"]
-        self._clims.clear()
+        if not keep_range:
+            self._clims.clear()
         self._begin()
+        if keep_range and np.array_equal(times, field.times):
+            self.set_time(time)
         self.home()
         if keep_view and flat == self.flat:
             self.canvas.set_camera(camera)
@@ -213,6 +223,20 @@ class Scene:
         if name not in self._beside:
             self.panes[1].handle.settings.update(**{name: value})
 
+    def lay_image(self, image: Any) -> None:
+        """Lay an image on the surface in place of the noise, where that is no difference kept.
+
+        Raises
+        ------
+        ImageError
+            When it cannot be used; nothing is changed then.
+        """
+        # The first pane is followed by the second, which has to have the image by then.
+        for pane in reversed(self.panes):
+            pane.handle.set_image(image)
+        if "noise" in self._beside:
+            self.panes[1].handle.settings.noise = self._beside["noise"]
+
     def resize(self, width: int, height: int) -> None:
         """Change the size of the whole view."""
         self._size = (width, height)
@@ -224,12 +248,25 @@ class Scene:
         aspect = self.navigator.aspect
         self.canvas.place(first_look(self.field, aspect))
         self.navigator.settle()
+        self._home_camera = self.canvas.camera()
         if zoom != 1.0 or focus is not None:
             self.canvas.place(first_look(self.field, aspect, zoom=zoom, focus=focus))
+
+    @property
+    def at_home(self) -> bool:
+        """Whether the camera stands where :meth:`home` has put it."""
+        return self.canvas.camera() == self._home_camera
+
+    def look(self, camera: Mapping[str, Any]) -> None:
+        """Look from a camera, and not from where was asked for when the scene was made."""
+        self._first = WHOLE
+        self.canvas.set_camera(camera)
 
     def first_look(self) -> None:
         """Look at what was asked for when the scene was made."""
         self.home(*self._first)
+        if self._first[0] == 1.0:
+            self._home_camera = self.canvas.camera()
 
     def set_background(self, colour: str) -> None:
         """Take the colour behind the surface: a theme's, or any that PyVista knows."""

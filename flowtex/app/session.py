@@ -7,6 +7,7 @@ brings them, and the web server that all pages share brings them.
 from __future__ import annotations
 
 import asyncio
+import logging
 import os
 import time
 from collections.abc import Iterator
@@ -21,6 +22,7 @@ from trame_client.widgets.core import HTML_CTX
 from trame_server.protocol import CoreServer
 from wslink.protocol import MAX_MSG_SIZE
 
+from flowtex.app.messages import Messages
 from flowtex.app.routes import Routes
 from flowtex.app.security import new_secret
 
@@ -33,6 +35,8 @@ PATIENCE = 2.0
 HEARTBEAT = 20.0
 #: What wslink adds to a message, in bytes, at most.
 OVERHEAD = 4096
+
+_log = logging.getLogger(__name__)
 
 ENDED = Path(__file__).with_name("static") / "ended.html"
 
@@ -114,11 +118,15 @@ class Session:
                 await (socket.send_bytes if is_binary else socket.send_str)(content)
 
         link = await self._endpoint.connect()
+        self._endpoint.unchunkers[link.client_id] = Messages()
         link.on_message(send)
         try:
             async for message in socket:
                 if message.type in (WSMsgType.BINARY, WSMsgType.TEXT):
                     await link.send(message.type == WSMsgType.BINARY, message)
+        except Exception as error:  # a message that no page of ours sends
+            _log.warning("a connection was ended: %s: %s", type(error).__name__, error)
+            await socket.close(code=WSCloseCode.POLICY_VIOLATION)
         finally:
             self._sockets.discard(socket)
             self.expect()

@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+import logging
+import shutil
+from contextlib import suppress
+from pathlib import Path
 from typing import Any
 
 from flowtex.app.downloads import Downloads
@@ -11,6 +15,7 @@ from flowtex.app.links import from_link, to_link
 from flowtex.app.part import Part
 from flowtex.app.python_lines import to_python
 from flowtex.app.routes import Content, Routes
+from flowtex.app.untrusted import number
 from flowtex.moments import MovieError
 from flowtex.progress import Stopped
 
@@ -20,6 +25,16 @@ __all__ = ["FORMATS", "Share"]
 FORMATS = ("PNG", "MP4", "GIF")
 #: Seconds between two looks at how far a job is.
 LOOK = 0.15
+#: What numbers of the page are called when they are of no use.
+WORDS = {
+    "out_width": "the width",
+    "out_height": "the height",
+    "out_density": "the fineness",
+    "out_seconds": "the length in seconds",
+    "out_fps": "the pictures in a second",
+}
+
+_log = logging.getLogger(__name__)
 
 
 class Share(Part):
@@ -63,12 +78,12 @@ class Share(Part):
         self.cancel()
         try:
             job = self._made()
-        except (ExportError, MovieError, ModuleNotFoundError, TypeError, ValueError) as error:
+        except (ExportError, MovieError, ModuleNotFoundError, OSError) as error:
             self.app.complain(error)
             return
         self._job = job
         self.state.set(out_progress=0.0, out_file=None)
-        self._task = asyncio.create_task(self._run(job))
+        self._task = asyncio.create_task(self._run(job, self._task))
 
     def cancel(self) -> None:
         """Make no more of it."""
@@ -83,34 +98,56 @@ class Share(Part):
         if kind not in FORMATS:
             msg = f"the format is {kind!r}; expected {', '.join(FORMATS)}"
             raise ExportError(msg)
-        name = f"{self.scene.field.name or 'flow'}.{kind.lower()}"
-        path = self.downloads.place(name)
-        size = (int(get("out_width")), int(get("out_height")))
+        path = self.downloads.place(f"{self.scene.field.name or 'flow'}.{kind.lower()}")
+        try:
+            return self._job_of(kind, path)
+        except BaseException:
+            _forget(path)
+            raise
+
+    def _job_of(self, kind: str, path: Path) -> Job:
+        size = (int(self._number("out_width")), int(self._number("out_height")))
         options: dict[str, Any] = {
-            "supersampling": 2 if get("out_smooth") else 1,
-            "density": float(get("out_density")),
+            "supersampling": 2 if self.state.get("out_smooth") else 1,
+            "density": self._number("out_density"),
             "busy": self._busy,
         }
         if kind == "PNG":
             return PictureJob(self.scene, path, size, **options)
-        seconds, fps = float(get("out_seconds")), float(get("out_fps"))
-        return MovieJob(self.scene, path, size, seconds=seconds, fps=fps, **options)
+        times = {"seconds": self._number("out_seconds"), "fps": self._number("out_fps")}
+        return MovieJob(self.scene, path, size, **times, **options)
+
+    def _number(self, name: str) -> float:
+        value = self.state.get(name)
+        found = number(value)
+        if found is None:
+            msg = f"{WORDS[name]} is {value!r}; expected a number"
+            raise ExportError(msg)
+        return found
 
     def _busy(self) -> bool:
         """Whether the view needs the time more."""
-        return not self.area.stream.paused and self.state.get("picture") == "moving"
+        return not self.area.stream.paused and self.app.moves.moving
 
-    async def _run(self, job: Job) -> None:
+    async def _run(self, job: Job, before: asyncio.Task[None] | None) -> None:
+        if before is not None:
+            # It was cancelled, and its window goes before there is another one.
+            await asyncio.wait([before])
         telling = asyncio.create_task(self._tell(job))
+        path: Path | None = None
         try:
             path = await job.run()
         except Stopped:
             return
-        except (ExportError, MovieError, OSError) as error:
-            self.app.complain(error)
+        except Exception as error:
+            if not isinstance(error, (ExportError, MovieError, OSError)):
+                _log.exception("%s could not be made", job.path.name)
+            self.app.complain(f"{job.path.name} could not be made: {error or type(error).__name__}")
             return
         finally:
             telling.cancel()
+            if path is None:
+                _forget(job.path)
             if job is self._job:
                 self._job = None
                 self.state.send(out_progress=None)
@@ -144,7 +181,7 @@ class Share(Part):
     def show_state(self) -> None:
         """Let the page show the link and the lines of Python."""
         said = self.present()
-        source = None if self.app.data.from_file else "field  # the flow that was given"
+        source = self.app.data.python
         self.state.set(
             link="#" + to_link(said),
             python=to_python(said, source=source, size=self.scene.size),
@@ -166,3 +203,9 @@ class Share(Part):
         if self._task is not None:
             self._task.cancel()
         self.downloads.close()
+
+
+def _forget(path: Path) -> None:
+    """Remove the folder that was made for a file that is not there."""
+    with suppress(OSError):
+        shutil.rmtree(path.parent)

@@ -10,9 +10,11 @@ from __future__ import annotations
 
 import asyncio
 import io
+import logging
 import time
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
@@ -23,6 +25,7 @@ from flowtex.app.composer import Composer
 from flowtex.app.pointer import Pointer
 from flowtex.app.quality import MOVING, PLAYING
 from flowtex.app.scene import Scene
+from flowtex.app.untrusted import clipped, mapping
 
 __all__ = ["Figures", "FrameStream"]
 
@@ -34,8 +37,12 @@ FASTEST = 30.0
 LOOK = 0.2
 #: Pixels of a picture, at most: a screen of 2,560 x 1,600.
 MOST_PIXELS = 4_100_000
+#: Sides of a picture in pixels, and pixels for one of CSS, at least and at most.
+SIDES, RATIOS = (16.0, 8192.0), (0.25, 8.0)
 #: JPEG qualities in motion and at rest.
 MOTION_QUALITY, REST_QUALITY = 80, 94
+
+_log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)
@@ -105,22 +112,22 @@ class FrameStream:
         self._wake = asyncio.Event()
         self._drawn = asyncio.Event()
         self._sized = False
+        self._closed = False
+        self._fault = ""
         self._recent: deque[float] = deque(maxlen=60)
 
     def set_streamer(self, streamer: Any) -> None:
         """Take what sends pictures to the page."""
         self.streamer = streamer
 
-    def update_size(self, origin: str, size: dict[str, Any]) -> None:
+    def update_size(self, origin: str, size: Any) -> None:
         """Follow the size of the view in the page, in CSS pixels ``w``, ``h`` times ``p``."""
         del origin
-        ratio = float(size.get("p") or 1.0)
-        width = max(float(size.get("w") or 0.0), 16.0) * ratio
-        height = max(float(size.get("h") or 0.0), 16.0) * ratio
-        shrink = min(1.0, (MOST_PIXELS / (width * height)) ** 0.5)
-        new = (round(width * shrink), round(height * shrink))
+        if self._closed:
+            return
+        new = _pixels(mapping(size))
         if new != self._scene.size:
-            at_home = abs(self._scene.navigator.zoom - 1) < 1e-9
+            at_home = self._scene.at_home
             self._scene.resize(*new)
             if not self._sized and at_home:
                 self._scene.first_look()
@@ -130,10 +137,10 @@ class FrameStream:
         self._sized = True
         self.moved()
 
-    def on_interaction(self, origin: str, event: dict[str, Any]) -> None:
+    def on_interaction(self, origin: str, event: Any) -> None:
         """Follow the pointer."""
         del origin
-        if self.pointer(event):
+        if not self._closed and self.pointer(event):
             self.moved()
 
     def reset(self) -> None:
@@ -149,14 +156,22 @@ class FrameStream:
         del codecs
         return {"error": "not-a-video-stream"}
 
+    def close(self) -> None:
+        """Follow nothing any more."""
+        self._closed = True
+
     def moved(self) -> None:
         """Ask for a picture after a move of the camera."""
+        if self._closed:
+            return
         self._wake.set()
         if self.paused:
             self.elsewhere()
 
     def changed(self) -> None:
         """Ask for a picture after a change of what is seen."""
+        if self._closed:
+            return
         self.composer.forget()
         self.moved()
 
@@ -168,7 +183,8 @@ class FrameStream:
     async def run(self) -> None:
         """Draw for as long as the task lives."""
         # The shader is built for the first picture: better now, while a browser starts.
-        self._scene.draw(16, 16)
+        with self._faults_told():
+            self._scene.draw(16, 16)
         while True:
             await self._wake.wait()
             if not self._wanted():
@@ -177,9 +193,22 @@ class FrameStream:
                 if self._wanted():
                     self._wake.set()
                 continue
-            await self._quick()
-            if await self._rests():
-                await self._full()
+            with self._faults_told():
+                await self._quick()
+                if await self._rests():
+                    await self._full()
+
+    @contextmanager
+    def _faults_told(self) -> Iterator[None]:
+        """Let a picture that fails be seen in the log; it must not be the last one."""
+        try:
+            yield
+        except Exception as error:
+            # While time goes by it may fail many times in a second.
+            if repr(error) != self._fault:
+                self._fault = repr(error)
+                _log.exception("a picture could not be drawn")
+            self._drawn.set()
 
     def _wanted(self) -> bool:
         return self._sized and self.streamer is not None and not self.paused and self.watched()
@@ -253,6 +282,17 @@ class FrameStream:
         now = time.perf_counter()
         self._spent[part] += 0.3 * (now - since - self._spent[part])
         return now
+
+
+def _pixels(size: Mapping[str, Any]) -> tuple[int, int]:
+    """Width and height in pixels of a view of so many CSS pixels ``w``, ``h`` times ``p``."""
+    ratio = clipped(size.get("p"), 1.0, *RATIOS)
+    width, height = (
+        min(max(clipped(size.get(side), SIDES[0], *SIDES) * ratio, SIDES[0]), SIDES[1])
+        for side in ("w", "h")
+    )
+    shrink = min(1.0, (MOST_PIXELS / (width * height)) ** 0.5)
+    return round(width * shrink), round(height * shrink)
 
 
 def encode(pixels: NDArray[np.uint8], quality: int) -> bytes:

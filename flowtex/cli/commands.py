@@ -48,10 +48,14 @@ app = App(
     version=lambda: __import__("flowtex").__version__,
     help_epilogue="Try `flowtex demo`. Add --debug to see where an error came from.",
 )
-app.command("flowtex.cli.pages:demo")
-app.command("flowtex.cli.pages:show")
-app.command("flowtex.cli.movie:movie")
-app.command("flowtex.cli.paper:paper")
+# These are imported when they run, so the list of commands cannot read what they say of themselves.
+for _path, _help in (
+    ("flowtex.cli.pages:demo", "Show the examples on a page in the browser."),
+    ("flowtex.cli.pages:show", "Show files, or a folder of them, in a window or on a page."),
+    ("flowtex.cli.movie:movie", "Write a file as a movie: a loop, or all times of a flow."),
+    ("flowtex.cli.paper:paper", "Compute the tables and figures of the paper, and check it."),
+):
+    app.command(_path, help=_help)
 
 
 @app.command

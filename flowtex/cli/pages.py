@@ -63,7 +63,11 @@ def demo(
         return lambda: FlowSource(getattr(examples, f"{name}_field")())
 
     names = [example, *(name for name in NAMES if name != example)]
-    library = Library({name: opener(name) for name in names})
+    shown = {name.replace("_", " "): name for name in names}
+    library = Library(
+        {title: opener(name) for title, name in shown.items()},
+        python={title: f"flowtex.examples.{name}_field()" for title, name in shown.items()},
+    )
     zoom, focus = FIRST_LOOKS.get(example, (1.0, None))
     return _serve(library, page, {**chosen, "zoom": zoom, "focus": focus})
 

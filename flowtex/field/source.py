@@ -16,7 +16,7 @@ from flowtex.field.from_pyvista import from_pyvista
 from flowtex.field.mesh_arrays import candidates
 from flowtex.field.meshes import Step, is_structured, leaves, steps
 
-__all__ = ["FlowSource"]
+__all__ = ["FlowSource", "field_bytes"]
 
 #: Bytes of a series that are kept in memory.
 KEEP = 2_000_000_000
@@ -44,6 +44,8 @@ class FlowSource:
         Number of nodes (I, J, K); ``None`` for a field that is made already.
     blocks
         Names of the structured grids, where there are several that are no time steps.
+    nbytes
+        Bytes that are in memory for it.
 
     Raises
     ------
@@ -56,11 +58,13 @@ class FlowSource:
         self.vectors: tuple[str, ...] = ()
         self.dimensions: tuple[int, int, int] | None = None
         self.blocks: tuple[str, ...] = ()
+        self.nbytes = 0
         self._grids: dict[str, Any] = {}
+        self._parts: dict[str, FlowSource] = {}
         self._mesh = mesh
         self._velocity = velocity
         if isinstance(mesh, FlowField):
-            self.name = name or mesh.name
+            self.name, self.nbytes = name or mesh.name, field_bytes(mesh)
             return
         found = self._series(mesh)
         if found is None:
@@ -116,19 +120,39 @@ class FlowSource:
         """
         if isinstance(self._mesh, FlowField):
             return self._mesh
-        mesh = self._mesh
         if self.blocks:
-            if block is not None and block.isdecimal() and int(block) < len(self.blocks):
-                block = self.blocks[int(block)] if block not in self._grids else block
-            if block is not None and block not in self._grids:
-                msg = f"block is {block!r}; there are {', '.join(self.blocks)}"
-                raise FieldError(msg)
-            mesh = self._grids[block or self.blocks[0]]
-            self._describe(mesh)
+            return self.part(block).field(vectors=vectors, plane=plane, **options)
         if plane is None and self.planes:
             plane = f"k={self.planes['k'] // 2}"
         chosen = vectors or (self.vectors[0] if self.vectors else None)
-        return from_pyvista(mesh, vectors=chosen, plane=plane, name=self.name, **options)
+        return from_pyvista(self._mesh, vectors=chosen, plane=plane, name=self.name, **options)
+
+    def part(self, block: str | None = None) -> FlowSource:
+        """Return the source of one of the :attr:`blocks`; this one itself where there are none.
+
+        Parameters
+        ----------
+        block
+            Its name or its number; the first by default.
+
+        Raises
+        ------
+        FieldError
+            When there is no such block.
+        """
+        if not self.blocks:
+            return self
+        if block is not None and block.isdecimal() and int(block) < len(self.blocks):
+            block = self.blocks[int(block)] if block not in self._grids else block
+        block = block or self.blocks[0]
+        if block not in self._grids:
+            msg = f"block is {block!r}; there are {', '.join(self.blocks)}"
+            raise FieldError(msg)
+        if block not in self._parts:
+            self._parts[block] = FlowSource(
+                self._grids[block], name=self.name, velocity=self._velocity
+            )
+        return self._parts[block]
 
     def _describe(self, grid: Any) -> None:
         """Note what one grid offers."""
@@ -146,11 +170,13 @@ class FlowSource:
         several = [(name, grid) for name, grid in leaves(mesh) if is_structured(grid)]
         if len({tuple(grid.dimensions) for _, grid in several}) > 1:
             self._grids = dict(several)
+            self.nbytes = sum(int(grid.actual_memory_size) * 1024 for _, grid in several)
             return None
         kept, size = [], 0
         for step in steps(mesh):
             kept.append(step)
             size += int(step.grid.actual_memory_size) * 1024
+            self.nbytes = size
             if size > KEEP:
                 return kept[:1]
         if len(kept) == 1:
@@ -158,6 +184,12 @@ class FlowSource:
         elif all(step.time is not None for step in kept) or not isinstance(mesh, (list, tuple)):
             self._mesh = _Kept(kept)
         return kept
+
+
+def field_bytes(field: FlowField) -> int:
+    """Return the bytes of a field's arrays."""
+    arrays = (field.points, field.velocity, field.valid, *field.scalars.values())
+    return sum(array.nbytes for array in arrays)
 
 
 class _Kept:

@@ -76,6 +76,12 @@ class SliceStore:
         return len(self.field.times)
 
     @property
+    def nbytes(self) -> int:
+        """Bytes of the slices that it holds."""
+        whole = [] if self._whole is None else [self._whole]
+        return sum(slices.nbytes for slices in (*whole, *self._kept.values()))
+
+    @property
     def two_sided(self) -> bool:
         """Whether paths lead forward too."""
         return self.field.steady if self._whole is None else self._whole.forward is not None

@@ -9,7 +9,7 @@
    * @typedef {{ client: string, header: any, surface: string, steps: string[] }} Source
    * @typedef {{ x: number, y: number, weight: number, grey: string }} Sample
    * @typedef {[number, number][]} Line
-   * @typedef {{ path: Line[], sampled: Line[], samples: Sample[], point: [number, number] | null, panes: number }} Over
+   * @typedef {{ path: Line[], sampled: Line[], samples: Sample[], point: [number, number] | null, panes: number, aspect: number }} Over
    * @typedef {(event: string, ...values: unknown[]) => void} Emit
    */
 
@@ -65,11 +65,8 @@
 
   // --- the path through a point ------------------------------------------------------------------
 
-  /** Radius of a sample's dot, in pixels, at least and at most. */
-  const [SMALL, LARGE] = [1, 5];
-
   /**
-   * Draw a path in one of the panes: its whole length, the part that is summed, and the samples.
+   * Draw a path in one of the panes: its whole length, and the part that is summed.
    * @param {Over} over @param {number} number of the pane @param {number} width of a pane @param {number} height
    */
   function drawn(over, number, width, height) {
@@ -80,22 +77,14 @@
         const points = line.map((place) => at(place).map((v) => v.toFixed(1))).join(" ");
         return h("polyline", { class: kind, points });
       });
-    const centres = over.samples.map(({ x, y }) => at([x, y]));
-    const dots = over.samples.map(({ weight, grey }, n) => {
-      const [cx, cy] = centres[n];
-      const [nx, ny] = centres[n > 0 ? n - 1 : 1] ?? [cx + LARGE, cy + LARGE];
-      // Neighbours do not hide one another, however far out the view is.
-      const most = Math.min(Math.max(0.55 * Math.hypot(nx - cx, ny - cy), SMALL), LARGE);
-      return h("circle", { cx, cy, r: most * (0.5 + 0.5 * weight), fill: grey });
-    });
     const parts = [...lines(over.path, "whole"), ...lines(over.sampled, "under"), ...lines(over.sampled, "sampled")];
     if (over.point) {
       const [cx, cy] = at(over.point);
-      dots.push(h("circle", { cx, cy, r: 7, class: "point" }));
+      parts.push(h("circle", { cx, cy, r: 7, class: "point" }));
     }
     const id = `flowtex-pane-${number}`;
     const clip = h("clipPath", { id }, h("rect", { x: number * width, y: 0, width, height }));
-    return h("g", { "clip-path": `url(#${id})` }, [clip, ...parts, ...dots]);
+    return h("g", { "clip-path": `url(#${id})` }, [clip, ...parts]);
   }
 
   const path = {
@@ -118,6 +107,53 @@
         const panes = Array.from({ length: over.panes }, (_, n) => drawn(over, n, width / over.panes, height));
         return h("div", { ref: place }, h("svg", panes));
       };
+    },
+  };
+
+  /** Width and height of the enlarged path, and what is left free around it, in pixels. */
+  const [WIDE, HIGH, AROUND] = [232, 112, 9];
+  /** Radius of a sample's dot, at most. */
+  const LARGEST = 4.5;
+
+  /**
+   * Draw the samples of a path, enlarged: in the picture they are a pixel apart.
+   * @param {Over} over
+   */
+  function enlarged({ samples, sampled, point, aspect }) {
+    const { h } = vue();
+    const flat = (/** @type {[number, number]} */ [x, y]) => [x * aspect, -y];
+    const places = samples.map(({ x, y }) => flat([x, y]));
+    const [xs, ys] = [places.map(([x]) => x), places.map(([, y]) => y)];
+    const [left, top] = [Math.min(...xs), Math.min(...ys)];
+    const [width, height] = [Math.max(...xs) - left, Math.max(...ys) - top];
+    const scale = Math.min((WIDE - 2 * AROUND) / (width || 1e-9), (HIGH - 2 * AROUND) / (height || 1e-9));
+    const at = (/** @type {number[]} */ [x, y]) => [
+      WIDE / 2 + (x - left - width / 2) * scale,
+      HIGH / 2 + (y - top - height / 2) * scale,
+    ];
+    const points = (/** @type {Line} */ line) => line.map((p) => at(flat(p)).map((v) => v.toFixed(1)).join(",")).join(" ");
+    const lines = sampled.map((line) => h("polyline", { class: "sampled", points: points(line) }));
+    const centres = places.map(at);
+    const dots = samples.map(({ weight, grey }, n) => {
+      const [cx, cy] = centres[n];
+      const [nx, ny] = centres[n > 0 ? n - 1 : 1] ?? [cx + LARGEST, cy + LARGEST];
+      // Neighbours touch, and do not hide one another.
+      const most = Math.min(Math.max(0.75 * Math.hypot(nx - cx, ny - cy), 1.5), LARGEST);
+      return h("circle", { cx, cy, r: most * (0.35 + 0.65 * weight), fill: grey });
+    });
+    if (point) {
+      const [cx, cy] = at(flat(point));
+      dots.push(h("circle", { cx, cy, r: 6, class: "point" }));
+    }
+    return h("svg", { viewBox: `0 0 ${WIDE} ${HIGH}`, width: WIDE, height: HIGH }, [...lines, ...dots]);
+  }
+
+  const inset = {
+    name: "flowtex-inset",
+    props: ["over"],
+    /** @param {{ over: Over | null }} props */
+    setup(props) {
+      return () => vue().h("div", props.over?.samples.length ? [enlarged(props.over)] : []);
     },
   };
 
@@ -271,7 +307,7 @@
 
   /** @type {any} */ (window).flowtex_page = {
     install(/** @type {any} */ app) {
-      for (const component of [keys, path, client]) app.component(component.name, component);
+      for (const component of [keys, path, inset, client]) app.component(component.name, component);
       Object.assign(app.config.globalProperties, {
         flowtex_fullscreen: fullscreen,
         flowtex_address: linked,

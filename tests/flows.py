@@ -1,0 +1,65 @@
+"""Flows on which renderers are tried: flat and curved, with holes, seams and time."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+
+from flowtex import FlowField
+
+__all__ = ["dense_gyre", "gyre", "holed", "lines", "swinging", "torus"]
+
+
+@cache
+def gyre(columns: int = 61, rows: int = 31) -> FlowField:
+    """Two vortices on a bent grid, its nodes at numbers that single precision holds exactly."""
+    s, t = np.meshgrid(np.linspace(0, 1, columns), np.linspace(0, 1, rows))
+    x = 2 * (s + 0.06 * np.sin(2 * np.pi * s)) + 0.12 * np.sin(np.pi * t)
+    points = np.rint(np.stack([x, t**1.3], axis=-1) * 1024) / 1024
+    a, b = np.pi * points[..., 0], np.pi * points[..., 1]
+    velocity = np.stack([-np.sin(a) * np.cos(b), np.cos(a) * np.sin(b)], axis=-1)
+    return FlowField.from_arrays(points, velocity)
+
+
+@cache
+def dense_gyre() -> FlowField:
+    """The same with many cells in a pixel."""
+    return gyre(201, 101)
+
+
+@cache
+def holed() -> FlowField:
+    """A stream past a hole, where paths end."""
+    y, x = np.mgrid[-1:1:41j, -1:1:41j]
+    inside = np.hypot(x, y) < 0.4
+    velocity = np.where(inside[..., None], np.nan, np.stack([1 + 0 * x, 0.3 * x], axis=-1))
+    return FlowField.from_arrays(np.stack([x, y], axis=-1), velocity)
+
+
+@cache
+def torus() -> FlowField:
+    """A closed surface, over which flow goes around and across."""
+    a, b = np.meshgrid(np.linspace(0, 2 * np.pi, 49), np.linspace(0, 2 * np.pi, 25))
+    radius = 1 + 0.4 * np.cos(b)
+    points = np.stack([radius * np.cos(a), radius * np.sin(a), 0.4 * np.sin(b)], axis=-1)
+    around = np.stack([-np.sin(a), np.cos(a), 0 * a], axis=-1)
+    over = np.stack([-np.sin(b) * np.cos(a), -np.sin(b) * np.sin(a), np.cos(b)], axis=-1)
+    velocity = (1 + 0.5 * np.sin(b))[..., None] * around + 0.6 * np.cos(2 * a)[..., None] * over
+    return FlowField.from_arrays(points, velocity)
+
+
+@cache
+def swinging() -> FlowField:
+    """A vortex that wanders, at three times."""
+    y, x = np.mgrid[-1:1:31j, -1:1:31j]
+    steps = [np.stack([-(y - 0.2 * t), x - 0.1 * t * t], axis=-1) for t in (0.0, 1.0, 2.0)]
+    return FlowField.from_arrays(np.stack([x, y], axis=-1), np.stack(steps), times=[0.0, 0.4, 0.8])
+
+
+@cache
+def lines() -> FlowField:
+    """Lines around a point that all point to the right: they turn over where x is 0."""
+    y, x = np.mgrid[-1:1:32j, -1:1:32j]
+    way = np.stack([-y, x], axis=-1) * np.where(y > 0, -1, 1)[..., None]
+    return FlowField.from_arrays(np.stack([x, y], axis=-1), way, sign_free=True)

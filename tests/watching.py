@@ -1,0 +1,66 @@
+"""Looking at the page of the app as a person does: at its pixels, once they are at rest."""
+
+from __future__ import annotations
+
+import io
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+from PIL import Image
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+__all__ = ["Watch", "count", "difference"]
+
+PATIENCE = 20_000
+
+
+def count(page: Page) -> int:
+    """Full pictures that the page has shown."""
+    return int(page.get_attribute("[data-sharp]", "data-sharp") or 0)
+
+
+def difference(one: Any, other: Any) -> float:
+    """Mean difference of two pictures, in 8-bit steps."""
+    return float(np.abs(one - other).mean())
+
+
+class Watch:
+    """A part of the page that nothing lies on, as left, top, right, bottom."""
+
+    def __init__(self, bare: tuple[int, int, int, int], mode: str = "L") -> None:
+        self._bare, self._mode = bare, mode
+        self.left = bare[0]
+
+    def shot(self, page: Page) -> Any:
+        """Return what is seen there, (h, w) or (h, w, 3)."""
+        with Image.open(io.BytesIO(page.screenshot())) as picture:
+            return np.asarray(picture.convert(self._mode).crop(self._bare), dtype=float)
+
+    def settled(self, page: Page, before: int = 0) -> Any:
+        """Wait for the next full picture after so many, and return what is seen."""
+        page.wait_for_function(
+            "n => Number(document.querySelector('[data-sharp]')?.dataset.sharp) > n"
+            " && document.querySelector('[data-picture=sharp]')"
+            " && document.querySelector('.flowtex-view img').complete",
+            arg=before,
+            timeout=PATIENCE,
+        )
+        last = self.shot(page)
+        for _ in range(60):  # the picture itself is decoded a moment later
+            page.wait_for_timeout(60)
+            now = self.shot(page)
+            if np.array_equal(last, now):
+                return now
+            last = now
+        pytest.fail("the picture at rest keeps changing")
+
+    def comes_to(self, page: Page, wanted: Any) -> None:
+        """Wait until the page shows what it showed before."""
+        for _ in range(100):
+            if difference(self.shot(page), wanted) < 2:
+                return
+            page.wait_for_timeout(100)
+        pytest.fail("the page shows something else")
