@@ -48,7 +48,7 @@ clean: ## remove the environment and everything that was built
 	rm -rf $(VENV) dist build .mypy_cache .pytest_cache .ruff_cache
 
 $(VENV)/.ready-demo: $(SETUP)
-	@sh tools/setup.sh "$(PYTHON)" $(VENV) app
+	@sh tools/setup.sh "$(PYTHON)" $(VENV) app,movie
 	@touch $@
 
 # What the tests need includes what the demo needs.

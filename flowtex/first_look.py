@@ -60,6 +60,8 @@ def first_look(
     *,
     zoom: float = 1.0,
     focus: tuple[float, ...] | None = None,
+    toward: Point = ASIDE,
+    up: Point = UP,
 ) -> FirstLook:
     """Return the camera that shows a field.
 
@@ -73,6 +75,8 @@ def first_look(
         1 shows the whole surface, 8 an eighth of its width.
     focus
         Point of the mesh to look at, two or three coordinates; the middle by default.
+    toward, up
+        The way from a curved surface to the camera, and what is up there: no parallels.
 
     Raises
     ------
@@ -91,7 +95,8 @@ def first_look(
             raise ValueError(msg)
         centre[: len(point)] = point
     if surface.frame is None:
-        return _at_curved(field, centre, aspect, zoom, come_closer=focus is not None)
+        sides = (np.asarray(toward, dtype=float), np.asarray(up, dtype=float))
+        return _at_curved(field, centre, aspect, zoom, sides, come_closer=focus is not None)
     return _at_flat(field, surface.frame, centre, aspect, zoom)
 
 
@@ -114,15 +119,21 @@ def _at_flat(
 
 
 def _at_curved(
-    field: FlowField, centre: NDArray[Any], aspect: float, zoom: float, *, come_closer: bool
+    field: FlowField,
+    centre: NDArray[Any],
+    aspect: float,
+    zoom: float,
+    sides: tuple[NDArray[Any], NDArray[Any]],
+    *,
+    come_closer: bool,
 ) -> FirstLook:
-    """From above and aside, so far away that the whole surface just fits.
+    """From a side, so far away that the whole surface just fits.
 
     With a point on the surface to look at, the camera comes closer to it, and then the view grows
     narrower. The middle of a sphere is not on it, so without a point the view only grows narrower.
     """
-    toward = np.asarray(ASIDE) / np.linalg.norm(ASIDE)
-    right = np.cross(UP, toward)
+    toward = sides[0] / np.linalg.norm(sides[0])
+    right = np.cross(sides[1], toward)
     right /= np.linalg.norm(right)
     up = np.cross(toward, right)
     half = np.tan(np.radians(VIEW_ANGLE / 2))
@@ -134,7 +145,7 @@ def _at_curved(
     return FirstLook(
         position=_point(centre + toward * (distance / closer)),
         focal_point=_point(centre),
-        up=UP,
+        up=_point(sides[1]),
         parallel=False,
         parallel_scale=float(distance / closer * half * closer / zoom),
         view_angle=float(2 * np.degrees(np.arctan(half * closer / zoom))),

@@ -25,9 +25,9 @@ pytest.importorskip("trame_rca")
 pytestmark = [pytest.mark.browser, pytest.mark.usefixtures("opengl")]
 
 #: A small view: a processor that draws needs seconds for a whole screen of texture.
-SIZE = {"width": 480, "height": 400}
+SIZE = {"width": 860, "height": 400}
 #: Part of the view that nothing lies on, as left, top, right, bottom.
-WATCH = Watch((20, 120, 460, 300))
+WATCH = Watch((300, 80, 740, 320))
 
 
 @pytest.fixture(scope="module")
@@ -54,8 +54,8 @@ def opened(browser: Browser, demo: Served) -> Iterator[Page]:
 
 
 def fineness(pixels: Any) -> float:
-    """Strength of what changes from one pixel to the next, across the flow."""
-    return float(np.abs(np.diff(pixels, axis=0)).mean())
+    """Strength of what changes from one pixel to the next, wherever the flow goes."""
+    return float(np.mean([np.abs(np.diff(pixels, axis=axis)).mean() for axis in (0, 1)]))
 
 
 def home(page: Page) -> Any:

@@ -34,9 +34,9 @@ if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
 BROWSER_PATIENCE = 30_000
-SIZE = {"width": 480, "height": 400}
+SIZE = {"width": 860, "height": 400}
 #: Part of the view that nothing lies on, as left, top, right, bottom.
-WATCH = Watch((20, 120, 460, 270))
+WATCH = Watch((300, 80, 740, 320))
 
 
 class Plain:

@@ -174,7 +174,7 @@ def checked_camera(given: Any, present: Mapping[str, Any]) -> dict[str, Any]:
     good = all(len(point) == 3 and np.isfinite(point).all() for point in points.values())
     with np.errstate(over="ignore", invalid="ignore"):
         ahead = np.subtract(points["focal_point"], points["position"]) if good else np.zeros(3)
-        good = good and 0 < np.linalg.norm(np.cross(ahead, points["up"])) < np.inf
+        good = good and 0 < float(np.linalg.norm(np.cross(ahead, points["up"]))) < np.inf
     if not (good and np.isfinite([scale, angle]).all() and scale > 0 and 0 < angle < 180):
         msg = f"camera is {given!r}; expected one that looks at something"
         raise ValueError(msg)

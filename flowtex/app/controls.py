@@ -41,6 +41,17 @@ MOST_STOPS = 500
 ARIA = [("aria_label", "aria-label"), ("aria_expanded", "aria-expanded")]
 DATA = [("data_setting", "data-setting")]
 
+#: When a setting makes a difference, where others decide that.
+_TEXTURE, _STREAMS = "set_noise !== 'procedural'", "set_motion !== 'off'"
+MATTERS = {
+    "tiles": _TEXTURE,
+    "noise_correction": _TEXTURE,
+    "resolution": f"{_TEXTURE} || set_fixed_grain || !set_lod",
+    "speed": _STREAMS,
+    "speed_in": _STREAMS,
+    "period": _STREAMS,
+}
+
 LABELS = {"lod": "Level of detail"}
 
 
@@ -59,13 +70,20 @@ def control(setting: Setting, key: str) -> None:
     key
         Name of the state that holds its value.
     """
-    with row(setting.name, setting.text):
+    other = key.removesuffix(setting.name)
+    matters = MATTERS.get(setting.name, "true").replace("set_", other)
+    with row(
+        setting.name,
+        setting.text,
+        classes=(f"{{ 'flowtex-row': true, 'flowtex-idle': !({matters}) }}",),
+    ):
         _widget(setting)(setting, key)
 
 
 def row(name: str, text: str, **attributes: Any) -> Any:
     """Return a row of the panel, with a hint, to be filled."""
-    line = html.Div(classes="flowtex-row", data_setting=name, __properties=DATA, **attributes)
+    attributes.setdefault("classes", "flowtex-row")
+    line = html.Div(data_setting=name, __properties=DATA, **attributes)
     with line:
         hint(text)
     return line
@@ -152,7 +170,7 @@ def _menu(setting: Setting, key: str) -> None:
 
 def _slider(setting: Setting, key: str) -> None:
     low, high = setting.low or 0, setting.high or 1
-    step = 1 if setting.kind is int else _step(high - low)
+    step = 1 if setting.kind is int else _step(low, high, setting.default)
     digits = 0 if setting.kind is int else 2
     with html.Div(classes="flowtex-stack"):
         with html.Div(classes="flowtex-line"):
@@ -203,9 +221,10 @@ def number(
     )
 
 
-def _step(span: float) -> float:
-    """Return a round number of which the range holds some hundred."""
+def _step(low: float, high: float, default: float) -> float:
+    """Return a round number of which the range holds some hundred, and that meets the default."""
     for step in (0.01, 0.02, 0.05, 0.1):
-        if span / step <= 400:
+        steps = (default - low) / step
+        if (high - low) / step <= 400 and abs(steps - round(steps)) < 1e-6:
             return step
     return 0.25

@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import asyncio
 import logging
-import threading
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -19,11 +19,12 @@ import numpy as np
 from flowtex.app.library import Choice, Library
 from flowtex.app.part import Part
 from flowtex.app.untrusted import clipped, name_among, shortened
+from flowtex.app.wishes import Found, Wish
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.reading import moment
 from flowtex.field.source import FlowSource
-from flowtex.progress import Stopped, stoppable
+from flowtex.progress import Stopped
 from flowtex.staging import coarsened
 from flowtex.trace import SliceStore
 
@@ -33,6 +34,8 @@ _log = logging.getLogger(__name__)
 
 #: A flow of more nodes than this is first shown with so many of them.
 LARGE, FEW = 40_000, 8_000
+#: The same for another part of the data that is shown: a slider redraws while it moves.
+MANY, SOME = 5_000, 2_500
 #: Seconds after which the page says that something is being made.
 PATIENCE = 0.3
 
@@ -59,7 +62,8 @@ class Data(Part):
         self._source = library.source(name)
         self._goal = (name, choice)
         self._store: SliceStore | None = None
-        self._wanted = threading.Event()
+        self._wish = Wish(name, choice)
+        self._whole = True
         self._worker = ThreadPoolExecutor(1, thread_name_prefix="flowtex opening")
         self._opening: asyncio.Task[None] | None = None
 
@@ -92,8 +96,11 @@ class Data(Part):
         """Show another array or plane of the same file."""
         wanted = self._asked()
         if wanted == self.choice:
-            if self._goal != (self.name, wanted) and self._goal[0] == self.name:
+            there = self._goal == (self.name, wanted) or self._goal[0] != self.name
+            if not there and self._whole:
                 self.cancel()  # the slider has come back to what is shown
+            elif not there:
+                self.begin(self.name, wanted)
             else:
                 self.state.set(**self._offers())
         elif (self.name, wanted) != self._goal:
@@ -105,7 +112,7 @@ class Data(Part):
 
     def cancel(self) -> None:
         """Stop what is being opened; the old view stands."""
-        self._wanted.set()
+        self._wish.dropped = True
         self._goal = (self.name, self.choice)
         self._show_choice()
 
@@ -119,103 +126,101 @@ class Data(Part):
         then
             Called once it is shown.
         """
-        self._wanted.set()
-        self._wanted = unwanted = threading.Event()
-        self._goal = (name, choice)
-        self._opening = asyncio.ensure_future(self._open(name, choice, unwanted, then))
+        if name == self._wish.name and then is None:
+            self._wish.passed = True
+        else:
+            self._wish.dropped = True
+        self._wish, self._goal = Wish(name, choice, then), (name, choice)
+        self._opening = asyncio.ensure_future(self._open(self._wish))
 
-    async def _open(
-        self,
-        name: str,
-        choice: Choice,
-        unwanted: threading.Event,
-        then: Callable[[], None] | None,
-    ) -> None:
-        telling = asyncio.create_task(self._say(name, unwanted))
+    async def _open(self, wish: Wish) -> None:
+        telling = asyncio.create_task(self._say(wish))
         try:
-            field, choice = await self._in_thread(unwanted, lambda: self._read(name, choice))
-            if field.valid.size > LARGE:
-                few = coarsened(field, FEW)
-                quick = await self._in_thread(unwanted, lambda: self._trace("", choice, few))
-                self._show(few, quick, name, choice)
-            store = await self._in_thread(unwanted, lambda: self._trace(name, choice, field))
-            self._show(field, store, name, choice)
-            if then is not None:
-                then()
+            many, few = (LARGE, FEW) if wish.name != self.name else (MANY, SOME)
+            found = await wish.in_thread(
+                self._worker, lambda: self._quick_look(wish, many, few), quick=True
+            )
+            self._show(found, wish)
+            if not found.whole:
+                field = found.field
+                whole = lambda: replace(found, shown=field, store=self._trace(found, field))  # noqa: E731
+                self._show(await wish.in_thread(self._worker, whole, quick=False), wish)
+            if wish.then is not None and not wish.over:
+                wish.then()
         except Stopped:
             pass
         except (FieldError, OSError) as error:
-            self._give_up(error, unwanted)
+            self._give_up(error, wish)
         except Exception as error:
-            _log.exception("%s could not be opened", name)
-            words = shortened(name, 80)
-            self._give_up(f"{words} could not be opened: {error!r}", unwanted)
+            _log.exception("%s could not be opened", shortened(wish.name, 80))
+            words = f"{shortened(wish.name, 80)} could not be opened"
+            self._give_up(f"{words}: {str(error) or type(error).__name__}", wish)
         finally:
             telling.cancel()
-            if not unwanted.is_set():
+            if not wish.over:
                 self.state.send(busy="")
 
-    def _give_up(self, problem: Any, unwanted: threading.Event) -> None:
+    def _give_up(self, problem: Any, wish: Wish) -> None:
         """Say why there is nothing else to show; the old view stands."""
-        if not unwanted.is_set():
+        if not wish.over:
             self.app.complain(problem)
             self._goal = (self.name, self.choice)
             self._show_choice()
+            if not self._whole:  # only a quick look at it was there, on the way
+                self.begin(self.name, self.choice)
 
-    async def _in_thread(self, unwanted: threading.Event, work: Callable[[], Any]) -> Any:
-        """Do some work off the event loop, unless nobody wants it any more."""
+    def _quick_look(self, wish: Wish, many: int, few: int) -> Found:
+        """Read a flow, and trace what there is time for."""
+        source, field, choice = self._read(wish.name, wish.choice)
+        shown = coarsened(field, few) if field.valid.size > many else field
+        found = Found(wish.name, choice, source, field, shown)
+        return replace(found, store=self._trace(found, shown))
 
-        def guarded() -> Any:
-            with stoppable(unwanted.is_set):
-                if unwanted.is_set():
-                    raise Stopped
-                return work()
-
-        made = await asyncio.get_running_loop().run_in_executor(self._worker, guarded)
-        if unwanted.is_set():
-            raise Stopped
-        return made
-
-    def _read(self, name: str, choice: Choice) -> tuple[FlowField, Choice]:
+    def _read(self, name: str, choice: Choice) -> tuple[FlowSource, FlowField, Choice]:
         choice = self.library.complete(name, choice)
-        return self.library.field(name, choice), choice
+        return self.library.source(name), self.library.field(name, choice), choice
 
-    def _trace(self, name: str, choice: Choice, field: FlowField) -> SliceStore | None:
-        store = self.library.trace(name, choice, field, self.area.settings).store
+    def _trace(self, found: Found, field: FlowField) -> SliceStore | None:
+        name = found.name if field is found.field else ""
+        store = self.library.trace(name, found.choice, field, self.area.settings).store
         # The time that is shown stays where another part of the same data is.
         if store is not None and np.array_equal(field.times, self.scene.field.times):
             for step in sorted(set(moment(field.times, self.scene.handle.time)[:2])):
                 store.at(step)
         return store
 
-    def _show(self, field: FlowField, store: SliceStore | None, name: str, choice: Choice) -> None:
+    def _show(self, found: Found, wish: Wish) -> None:
         """Put another flow in the place of the one that is shown; where that fails, it stands."""
-        before = (self._store, self.name, self.choice, self._source)
-        same = name == self.name and choice.block == self.choice.block
-        same = same and choice.vectors == self.choice.vectors
-        keep = same and choice.plane[:1] == self.choice.plane[:1]
-        self._store, self.name, self.choice = store, name, choice
+        before = (self._store, self.name, self.choice, self._source, self._whole, self._goal)
+        now, then = found.choice, self.choice
+        same = (found.name, now.block, now.vectors) == (self.name, then.block, then.vectors)
+        keep = same and now.plane[:1] == then.plane[:1]
+        self._store, self.name, self.choice = found.store, found.name, now
+        self._source, self._whole = found.source, found.whole
+        if not wish.passed:
+            self._goal = (found.name, now)
         try:
-            self._source = self.library.source(name) if name != before[1] else self._source
-            self.app.show(field, keep_view=keep, keep_range=same)
+            self.app.show(found.shown, keep_view=keep, keep_range=same)
         except BaseException:
-            self._store, self.name, self.choice, self._source = before
+            self._store, self.name, self.choice, self._source, self._whole, self._goal = before
             raise
-        self._goal = (name, choice)
 
-    async def _say(self, name: str, unwanted: threading.Event) -> None:
+    async def _say(self, wish: Wish) -> None:
         """Tell the page what goes on, once it has gone on for a moment."""
         await asyncio.sleep(PATIENCE)
-        if not unwanted.is_set():
-            self.state.send(busy=f"Opening {shortened(name, 80)}")
+        if not wish.over:
+            self.state.send(busy=f"Opening {shortened(wish.name, 80)}")
 
     def refresh(self) -> None:
         """Follow another flow that is shown."""
         self._show_choice()
 
     def _show_choice(self) -> None:
-        """Let the page show what is chosen."""
-        self.state.send(busy="", file=self.name, **self._offers())
+        """Let the page show what is chosen; not while it has gone on to something else."""
+        said = {"file": self.name, **self._offers()}
+        if self._goal != (self.name, self.choice):
+            said = {name: said[name] for name in ("name", "about")}
+        self.state.send(busy="", **said)
 
     def _asked(self) -> Choice:
         """Return what the page asks for; where it asks for nothing that is there, what is shown."""
@@ -270,7 +275,7 @@ class Data(Part):
 
     def close(self) -> None:
         """End what goes on."""
-        self._wanted.set()
+        self._wish.dropped = True
         if self._opening is not None:
             self._opening.cancel()
         self._worker.shutdown(wait=False, cancel_futures=True)

@@ -127,10 +127,6 @@ class Job:
         OSError
             When it cannot be written.
         """
-        if self._cancelled:  # before it began
-            self.done = True
-            self._pool.shutdown(wait=False)
-            raise Stopped
         scene = copy_of(self._view)
         try:
             await self._make(scene)
@@ -250,8 +246,11 @@ class MovieJob(Job):
             for pane in scene.panes:
                 pane.handle.settings.update(motion=motion, period=self._moments.seconds)
         fps, count = self._moments.fps, len(self._moments)
-        writer = await self._aside(movie_writer, self.path, self._size, fps, self._quality)
+        made = asyncio.ensure_future(
+            self._aside(movie_writer, self.path, self._size, fps, self._quality)
+        )
         try:
+            writer = await asyncio.shield(made)
             sheet = self._sheet(scene)
             written: asyncio.Future[None] | None = None
             for number in range(count):
@@ -269,7 +268,9 @@ class MovieJob(Job):
         finally:
             # In the thread, after whatever it is busy with.
             self.done = True
-            await asyncio.wrap_future(self._pool.submit(writer.abandon))
+            await asyncio.wait([made])  # who cancels this may do so while it is being opened
+            if not made.cancelled() and made.exception() is None:
+                await asyncio.wrap_future(self._pool.submit(made.result().abandon))
 
     async def _show(self, scene: Scene, number: int) -> None:
         if scene.field.steady:

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol, TypeVar
 
+from flowtex.app.folders import SUFFIXES, search
 from flowtex.app.untrusted import shortened
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
@@ -23,15 +24,6 @@ from flowtex.trace import SliceStore, shared_store
 
 __all__ = ["Choice", "Library", "Opened"]
 
-#: Endings of files that a folder is searched for.
-SUFFIXES = frozenset(
-    [
-        *(".vts", ".vtr", ".vti", ".vtk", ".vtm", ".pvd", ".pvts", ".pvtr", ".pvti"),
-        *(".xyz", ".x", ".g", ".foam", ".case", ".cgns", ".ex2"),
-    ]
-)
-#: Folders below the one that was given that are looked into, and files that are listed.
-DEEPEST, MOST_FILES = 4, 500
 #: Files, and flows, that are kept open at most, and bytes of each of the two together; what was
 #: asked for last is always kept.
 SOURCES, FLOWS = 4, 12
@@ -152,7 +144,7 @@ class Library:
         """Names of all that can be opened; a folder is looked through anew."""
         found = dict(self._entries)
         if self._folder is not None:
-            found |= {name: _opener(path) for name, path in _search(self._folder)}
+            found |= {name: _opener(path) for name, path in search(self._folder)}
         self._found = found
         return tuple(found)
 
@@ -291,30 +283,3 @@ def _free(name: str, taken: Iterable[str]) -> str:
         number += 1
         found = f"{name} ({number})"
     return found
-
-
-def _search(folder: Path) -> list[tuple[str, Path]]:
-    """Find files below a folder; what a link leads to outside of it is left out."""
-    found: list[tuple[str, Path]] = []
-    waiting = [(folder, 0)]
-    while waiting and len(found) < MOST_FILES:
-        here, depth = waiting.pop(0)
-        try:
-            inside = sorted(here.iterdir())
-        except OSError:
-            continue
-        for path in inside:
-            if path.name.startswith(".") or not path.resolve().is_relative_to(folder):
-                continue
-            if path.is_dir() and not path.is_symlink() and depth < DEEPEST:
-                waiting.append((path, depth + 1))
-            elif path.is_file() and path.suffix.lower() in SUFFIXES | {".bin"}:
-                found.append((path.relative_to(folder).as_posix(), path))
-    return [(name, path) for name, path in found[:MOST_FILES] if not _is_solution(path)]
-
-
-def _is_solution(path: Path) -> bool:
-    """Whether this is the part of a PLOT3D pair that is opened along with its grid."""
-    from flowtex.field import plot3d
-
-    return path.suffix.lower() == ".bin" and plot3d.find_grid(path) not in (None, path)

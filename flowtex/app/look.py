@@ -184,10 +184,12 @@ class Look(Part):
     def take_image(self) -> None:
         """Lay a picture of the person's own on the surface."""
         sent = self.state.get("image_file")
-        sent = sent[0] if isinstance(sent, list) and sent else sent
-        if not sent:
+        if sent is None:
             return
         self.state.set(image_file=None)
+        sent = sent[0] if isinstance(sent, list) and sent else sent
+        if not sent:  # a choice that was taken back
+            return
         try:
             self.scene.lay_image(decoded(sent))
         except SettingsError as error:

@@ -16,7 +16,7 @@ __all__ = ["LONGEST", "Messages"]
 LONGEST, MOST = 16_000_000, 4
 
 
-class Messages(UnChunker):  # type: ignore[misc]
+class Messages(UnChunker):
     """What makes messages of pieces, for one connection."""
 
     def set_max_message_size(self, size: int) -> None:

@@ -7,13 +7,12 @@ import time
 from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
-
 from flowtex.app.aim import within_reach
 from flowtex.app.canvas import checked_camera
 from flowtex.app.part import Part
 from flowtex.app.stream import Figures
 from flowtex.app.untrusted import name_among
+from flowtex.first_look import first_look
 
 __all__ = ["KEYS", "VIEWS", "Moves"]
 
@@ -89,15 +88,14 @@ class Moves(Part):
         return [] if self.scene.flat else list(VIEWS)
 
     def look_from(self, name: Any) -> None:
-        """Turn the camera around what it looks at."""
+        """Look at the whole of a curved surface from a side."""
         if not name_among(name, VIEWS):
             return
-        toward, up = (np.asarray(v, dtype=float) for v in VIEWS[name])
+        toward, up = VIEWS[name]
         self.scene.home()
-        camera = self.scene.canvas.camera()
-        focus = np.asarray(camera["focal_point"])
-        distance = float(np.linalg.norm(np.asarray(camera["position"]) - focus))
-        self.scene.canvas.set_camera({"position": [*(focus + distance * toward)], "up": [*up]})
+        aspect = self.scene.navigator.aspect
+        self.scene.canvas.place(first_look(self.scene.field, aspect, toward=toward, up=up))
+        self.scene.navigator.settle()
         self.area.stream.moved()
 
     def command(self, name: Any) -> None:
@@ -187,9 +185,15 @@ class Moves(Part):
         length = round_length(LONGEST_BAR * across)
         unit = self.scene.field.length_unit
         return {
-            "text": f"{length:.12g} {unit}".strip(),
+            "text": f"{length:.12g} {singular(unit) if length == 1 else unit}".strip(),
             "width": round(100 * length / across, 3) if across > 0 else 0,
         }
+
+
+def singular(unit: str) -> str:
+    """Return the name of one unit where it is a whole word in the plural, such as metres."""
+    plural = len(unit) > 4 and unit.endswith("s") and not unit.endswith(("ss", "ches"))
+    return unit[:-1] if plural else unit
 
 
 def round_length(most: float) -> float:

@@ -8,9 +8,13 @@ processor draws a coarse picture in motion and the full one, in tiles, at rest.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
-__all__ = ["MOVING", "PLAYING", "TILE", "Cost", "Quality"]
+from flowtex.app.untrusted import clipped
+
+__all__ = ["MOVING", "PLAYING", "TILE", "Cost", "Quality", "view_pixels"]
 
 #: Seconds that a picture may take in motion, while playing, and for one tile at rest.
 MOVING, PLAYING, TILE = 0.06, 0.14, 0.1
@@ -19,6 +23,10 @@ MOVING, PLAYING, TILE = 0.06, 0.14, 0.1
 #: in samples.
 FIXED, BASE = 0.006, 8
 
+#: Pixels of a picture, at most: a screen of 2,560 x 1,600.
+MOST_PIXELS = 4_100_000
+#: Sides of a picture in pixels, and pixels for one of CSS, at least and at most.
+SIDES, RATIOS = (16.0, 8192.0), (0.25, 8.0)
 #: Samples of a draft. Its pixels are larger, so its streaks are as long with fewer samples.
 DRAFT = 9
 #: A draft is never smaller than this share of the view's width.
@@ -75,3 +83,14 @@ class Cost:
         side = math.sqrt((TILE - FIXED) / (self._price * (samples + BASE)))
         # An even number keeps the 2 x 2 blocks in which derivatives are taken.
         return max(int(side) // 2 * 2, SMALLEST_TILE)
+
+
+def view_pixels(size: Mapping[str, Any]) -> tuple[int, int]:
+    """Width and height in pixels of a view of so many CSS pixels ``w``, ``h`` times ``p``."""
+    ratio = clipped(size.get("p"), 1.0, *RATIOS)
+    width, height = (
+        min(max(clipped(size.get(side), SIDES[0], *SIDES) * ratio, SIDES[0]), SIDES[1])
+        for side in ("w", "h")
+    )
+    shrink = min(1.0, (MOST_PIXELS / (width * height)) ** 0.5)
+    return round(width * shrink), round(height * shrink)

@@ -196,7 +196,7 @@ class Reader(Part):
 
     def close(self) -> None:
         """End what goes on."""
-        self._at = None
+        self._at = self._card = None
         if self._later is not None:
             self._later.cancel()
         if self._reading is not None:

@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 
 from flowtex.app.aim import hit, plane_view
 from flowtex.app.canvas import Canvas, Rect
+from flowtex.app.coloured import Coloured
 from flowtex.app.navigate import Navigator
 from flowtex.app.pane import Pane
 from flowtex.field import FlowField
 from flowtex.first_look import first_look
-from flowtex.handle import FlowHandle
 from flowtex.settings import Settings
 from flowtex.textures.images import as_image
 
@@ -29,11 +29,9 @@ BACKGROUNDS = {"dark": "#12161c", "light": "#eef1f4"}
 GAP = 2
 #: Zoom and focus of the whole surface.
 WHOLE: tuple[float, tuple[float, ...] | None] = (1.0, None)
-#: Entries of a colour map.
-ENTRIES = 256
 
 
-class Scene:
+class Scene(Coloured):
     """A flow texture, its camera, and pictures of them.
 
     Parameters
@@ -90,16 +88,6 @@ class Scene:
         self.first_look()
 
     @property
-    def handle(self) -> FlowHandle:
-        """The texture of the first pane."""
-        return self.panes[0].handle
-
-    @property
-    def field(self) -> FlowField:
-        """The flow."""
-        return self.handle.field
-
-    @property
     def flat(self) -> bool:
         """Whether the surface lies in a plane."""
         return self.field.surface.frame is not None
@@ -119,11 +107,6 @@ class Scene:
     def beside(self) -> dict[str, Any]:
         """What is different in the second pane; empty where there is one pane."""
         return dict(self._beside)
-
-    @property
-    def colours(self) -> tuple[str, ...]:
-        """Names of what the surface can be coloured by."""
-        return tuple(dict.fromkeys(("speed", *self.field.scalars)))
 
     def _pane(self, field: FlowField, options: Mapping[str, Any]) -> Pane:
         handle = self._component.add(
@@ -271,57 +254,6 @@ class Scene:
     def set_background(self, colour: str) -> None:
         """Take the colour behind the surface: a theme's, or any that PyVista knows."""
         self.canvas.set_background(BACKGROUNDS.get(colour, colour))
-
-    def colour_by(
-        self,
-        name: str,
-        *,
-        cmap: str | None = None,
-        clim: tuple[float, float] | None = None,
-    ) -> None:
-        """Colour by a scalar, or plainly for an empty name.
-
-        Parameters
-        ----------
-        name
-            One of :attr:`colours`, or empty.
-        cmap
-            Another colour map.
-        clim
-            Values at the ends of the colour map; kept for this scalar.
-        """
-        import pyvista as pv
-
-        self.colour = name
-        self.cmap = cmap or self.cmap
-        if clim is not None:
-            self._clims[name] = (float(clim[0]), float(clim[1]))
-        self._table = pv.LookupTable(self.cmap, n_values=ENTRIES)
-        self._table.scalar_range = self.colour_range
-        for pane in self.panes:
-            pane.colour_by(name, self._table, self.colour_range, self.plain)
-
-    def forget_range(self) -> None:
-        """Let the colours go from the least value to the greatest again."""
-        self._clims.pop(self.colour, None)
-        self.colour_by(self.colour)
-
-    @property
-    def colour_range(self) -> tuple[float, float]:
-        """Values at the ends of the colour bar."""
-        if not self.colour:
-            return 0.0, 1.0
-        return self._clims.get(self.colour) or self.handle.view.scalar_range(self.colour)
-
-    @property
-    def chosen_range(self) -> tuple[float, float] | None:
-        """The same, where somebody has chosen them."""
-        return self._clims.get(self.colour)
-
-    def colour_stops(self, count: int = 17) -> list[str]:
-        """Colours along the bar, from low to high, as ``#rrggbb``."""
-        colours = [self._table.map_value(v) for v in np.linspace(*self.colour_range, count)]
-        return ["#" + "".join(f"{round(255 * c):02x}" for c in rgb[:3]) for rgb in colours]
 
     def set_time(self, time: float) -> None:
         """Show another time of a field that varies in time."""

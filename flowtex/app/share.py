@@ -114,8 +114,8 @@ class Share(Part):
         }
         if kind == "PNG":
             return PictureJob(self.scene, path, size, **options)
-        times = {"seconds": self._number("out_seconds"), "fps": self._number("out_fps")}
-        return MovieJob(self.scene, path, size, **times, **options)
+        seconds, fps = self._number("out_seconds"), self._number("out_fps")
+        return MovieJob(self.scene, path, size, seconds=seconds, fps=fps, **options)
 
     def _number(self, name: str) -> float:
         value = self.state.get(name)
@@ -133,6 +133,9 @@ class Share(Part):
         if before is not None:
             # It was cancelled, and its window goes before there is another one.
             await asyncio.wait([before])
+        if job.cancelled:
+            _forget(job.path)
+            return
         telling = asyncio.create_task(self._tell(job))
         path: Path | None = None
         try:
@@ -142,7 +145,9 @@ class Share(Part):
         except Exception as error:
             if not isinstance(error, (ExportError, MovieError, OSError)):
                 _log.exception("%s could not be made", job.path.name)
-            self.app.complain(f"{job.path.name} could not be made: {error or type(error).__name__}")
+            self.app.complain(
+                f"{job.path.name} could not be made: {str(error) or type(error).__name__}"
+            )
             return
         finally:
             telling.cancel()

@@ -13,7 +13,7 @@ import io
 import logging
 import time
 from collections import deque
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
@@ -23,9 +23,9 @@ from numpy.typing import NDArray
 
 from flowtex.app.composer import Composer
 from flowtex.app.pointer import Pointer
-from flowtex.app.quality import MOVING, PLAYING
+from flowtex.app.quality import MOVING, PLAYING, view_pixels
 from flowtex.app.scene import Scene
-from flowtex.app.untrusted import clipped, mapping
+from flowtex.app.untrusted import mapping
 
 __all__ = ["Figures", "FrameStream"]
 
@@ -35,10 +35,6 @@ REST = 0.12
 FASTEST = 30.0
 #: Seconds between two looks at an unfinished full picture.
 LOOK = 0.2
-#: Pixels of a picture, at most: a screen of 2,560 x 1,600.
-MOST_PIXELS = 4_100_000
-#: Sides of a picture in pixels, and pixels for one of CSS, at least and at most.
-SIDES, RATIOS = (16.0, 8192.0), (0.25, 8.0)
 #: JPEG qualities in motion and at rest.
 MOTION_QUALITY, REST_QUALITY = 80, 94
 
@@ -125,7 +121,7 @@ class FrameStream:
         del origin
         if self._closed:
             return
-        new = _pixels(mapping(size))
+        new = view_pixels(mapping(size))
         if new != self._scene.size:
             at_home = self._scene.at_home
             self._scene.resize(*new)
@@ -282,17 +278,6 @@ class FrameStream:
         now = time.perf_counter()
         self._spent[part] += 0.3 * (now - since - self._spent[part])
         return now
-
-
-def _pixels(size: Mapping[str, Any]) -> tuple[int, int]:
-    """Width and height in pixels of a view of so many CSS pixels ``w``, ``h`` times ``p``."""
-    ratio = clipped(size.get("p"), 1.0, *RATIOS)
-    width, height = (
-        min(max(clipped(size.get(side), SIDES[0], *SIDES) * ratio, SIDES[0]), SIDES[1])
-        for side in ("w", "h")
-    )
-    shrink = min(1.0, (MOST_PIXELS / (width * height)) ** 0.5)
-    return round(width * shrink), round(height * shrink)
 
 
 def encode(pixels: NDArray[np.uint8], quality: int) -> bytes:

@@ -44,8 +44,8 @@ def _downloaded() -> Path:
     # What the network raises (requests) derives from OSError.
     except OSError as error:
         message = (
-            f"PyVista could not download {GRID} and {SOLUTION} ({error}); check the network, or "
-            "give the folder that holds them, as in liquid_oxygen_post(folder=...)"
+            f"PyVista could not download {GRID} and {SOLUTION} ({type(error).__name__}); check the "
+            "network, or give the folder that holds them, as in liquid_oxygen_post(folder=...)"
         )
         raise FileNotFoundError(message) from error
     return paths[0]
