@@ -366,3 +366,14 @@ def test_examples_make_an_app() -> None:
         and app.state.get("about") == "161 × 65 nodes · 31 times · periodic along i"
     )
     app.close()
+
+
+def test_a_complaint_does_not_tell_where_a_file_lies() -> None:
+    from flowtex.app.data import _without_folder
+
+    said = "/srv/private/runs/torn.vts: the file is broken. VTK says: no"
+    assert _without_folder(said, "runs/torn.vts") == "torn.vts: the file is broken. VTK says: no"
+    assert (
+        _without_folder("block is 'x'; there are a, b", "torn.vts")
+        == "block is 'x'; there are a, b"
+    )

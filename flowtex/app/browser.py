@@ -176,6 +176,8 @@ class Browser(Part):
             there_settings=dict(self.area.settings),
             there_camera=self._camera,
             there_time=self.scene.handle.time,
+            picture="moving",
+            figures="drawn by the browser",
         )
 
     def _end(self) -> None:

@@ -163,7 +163,7 @@ class Data(Part):
     def _give_up(self, problem: Any, wish: Wish) -> None:
         """Say why there is nothing else to show; the old view stands."""
         if not wish.over:
-            self.app.complain(problem)
+            self.app.complain(_without_folder(str(problem), wish.name))
             self._goal = (self.name, self.choice)
             self._show_choice()
             if not self._whole:  # only a quick look at it was there, on the way
@@ -201,6 +201,9 @@ class Data(Part):
             self._goal = (found.name, now)
         try:
             self.app.show(found.shown, keep_view=keep, keep_range=same)
+            if not keep:
+                self.scene.home(*self.library.look(found.name))
+                self.area.stream.moved()
         except BaseException:
             self._store, self.name, self.choice, self._source, self._whole, self._goal = before
             raise
@@ -279,6 +282,13 @@ class Data(Part):
         if self._opening is not None:
             self._opening.cancel()
         self._worker.shutdown(wait=False, cancel_futures=True)
+
+
+def _without_folder(problem: str, name: str) -> str:
+    """Leave out where the file lies: that is the server's own affair."""
+    last = name.rsplit("/", 1)[-1]
+    at = problem.find(f"/{last}:")
+    return problem if at < 0 or ":" in problem[:at] else problem[at + 1 :]
 
 
 def about(field: FlowField) -> str:

@@ -61,6 +61,10 @@ class Opened:
         return field_bytes(self.field) + (0 if self.store is None else self.store.nbytes)
 
 
+#: How far in, and on what point of the mesh.
+Look = tuple[float, tuple[float, ...] | None]
+
+
 class _Sized(Protocol):
     @property
     def nbytes(self) -> int: ...
@@ -79,6 +83,8 @@ class Library:
         Which of the entries are files.
     python
         Expressions of Python that make the entries' fields, by name, as far as they are known.
+    looks
+        How far in, and on what point, some of them are first seen; the others as a whole.
 
     Raises
     ------
@@ -92,10 +98,12 @@ class Library:
         folder: Path | None = None,
         files: Iterable[str] = (),
         python: Mapping[str, str] | None = None,
+        looks: Mapping[str, Look] | None = None,
     ) -> None:
         self._entries = dict(entries)
         self._files = frozenset(files)
         self._python = dict(python or {})
+        self._looks = dict(looks or {})
         self._folder = None if folder is None else folder.resolve()
         self._sources: OrderedDict[str, FlowSource] = OrderedDict()
         self._flows: OrderedDict[tuple[str, Choice], Opened] = OrderedDict()
@@ -186,6 +194,10 @@ class Library:
     def is_file(self, name: str) -> bool:
         """Whether a name is that of a file."""
         return name in self._files or name not in self._entries
+
+    def look(self, name: str) -> Look:
+        """Return how far in, and on what point of the mesh, a flow is first seen."""
+        return self._looks.get(name, (1.0, None))
 
     def python(self, name: str) -> str | None:
         """Return the expression that makes a flow, or ``None`` for what comes from a file."""

@@ -127,7 +127,7 @@ class Moves(Part):
         self._told = now
         width, height = figures.size
         words = [
-            "" if figures.sharp else f"{figures.rate} fps",
+            "" if figures.sharp or figures.rate < 2 else f"{figures.rate} fps",
             f"{1000 * figures.seconds:.0f} ms",
             "" if figures.sharp else LIMITS[figures.limit],
             f"{width} × {height}",

@@ -67,6 +67,7 @@ def demo(
     library = Library(
         {title: opener(name) for title, name in shown.items()},
         python={title: f"flowtex.examples.{name}_field()" for title, name in shown.items()},
+        looks=FIRST_LOOKS,
     )
     zoom, focus = FIRST_LOOKS.get(example, (1.0, None))
     return _serve(library, page, {**chosen, "zoom": zoom, "focus": focus})

@@ -40,8 +40,8 @@ LONG = 600_000
 BETWEEN_STEADY, BETWEEN_VARYING = 100_000, 16_000
 #: Bytes that go in one message together.
 TOGETHER = 2_000_000
-#: Seconds after which what nobody has acknowledged is sent once more.
-LOST = 2.5
+#: Seconds between the times at which what nobody has acknowledged is sent once more.
+LOST = (2.5, 4.0, 8.0, 16.0)
 #: Bytes from which an array is offered before it is sent again.
 OFFERED = 50_000
 
@@ -79,13 +79,11 @@ class Feed:
         self._live = self._closed = self._drawing = False
         self._asked: set[int] = set()
         self._sent: dict[str, bytes] = {}
-        self._sent_whole: set[str] = set()
         self.picture: bytes | None = None
         self.pictured, self.settled = threading.Event(), threading.Event()
         self.scene = self._first()
         self.heard = False
-        self._timer = threading.Timer(LOST, self._send_again)
-        self._timer.daemon = True
+        self._timer = self._timed(LOST)
         self._answers = Worker(ANSWERS, self._failed)
         self._makes = Worker(MAKES, self._failed)
 
@@ -120,10 +118,23 @@ class Feed:
         self._asked.add(step)
         self._answers.do(lambda: self._send_step(step), urgency=1)
 
-    def _send_again(self) -> None:
-        """Send once more to who has said nothing: it may not have been there yet to listen."""
-        if not self.heard and self._live:
-            self._answers.do(lambda: self._send_named(sorted(self._sent_whole)), urgency=1)
+    def _timed(self, waits: tuple[float, ...]) -> threading.Timer:
+        timer = threading.Timer(waits[0], self._send_again, [waits[1:]])
+        timer.daemon = True
+        return timer
+
+    def _send_again(self, waits: tuple[float, ...]) -> None:
+        """Send once more to who has said nothing: it may not have been there yet to listen.
+
+        What was only offered goes along whole: what it was offered from may be lost as well.
+        """
+        if self.heard or self._closed:
+            return
+        if self._live:
+            self._answers.do(lambda: self._send_named(sorted(self._sent)), urgency=1)
+        if waits:
+            self._timer = self._timed(waits)
+            self._timer.start()
 
     def want(self, names: list[str]) -> None:
         """Answer a client that lacks arrays that it was offered."""
@@ -253,7 +264,6 @@ class Feed:
                 self._post(batch)
                 batch = {}
             batch[name] = array, told
-            self._sent_whole.add(name)
         if batch:
             self._post(batch)
         if offered and not self._closed:
