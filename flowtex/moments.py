@@ -15,7 +15,7 @@ import numpy as np
 from flowtex.field import FlowField
 from flowtex.settings import TABLE, Settings
 
-__all__ = ["LONGEST", "SHORTEST", "Moments", "MovieError", "choose_moments"]
+__all__ = ["LONGEST", "SHORTEST", "Moments", "MovieError", "choose_moments", "run_seconds"]
 
 #: Seconds for one run through the times of a field: so many for each step, within limits.
 STEP_SECONDS, SHORTEST, LONGEST = 0.25, 5.0, 30.0
@@ -102,11 +102,16 @@ def choose_moments(
     return Moments(tuple(map(float, times)), (), fps, whole, closed=closed)
 
 
+def run_seconds(times: int) -> float:
+    """Seconds for one run through so many times of a field, in a movie and on a page."""
+    return min(max(STEP_SECONDS * (times - 1), SHORTEST), LONGEST)
+
+
 def _seconds(field: FlowField, settings: Settings, seconds: float | None) -> float:
     if seconds is None:
         if field.steady:
             return settings.period
-        return min(max(STEP_SECONDS * (len(field.times) - 1), SHORTEST), LONGEST)
+        return run_seconds(len(field.times))
     row = TABLE["period"]
     low, high = row.low or 0.0, row.high or math.inf
     if not low <= seconds <= high:

@@ -21,7 +21,7 @@ from flowtex.renderers.webgl import Colours, Scene, camera_state
 from flowtex.settings import TABLE, Settings
 from flowtex.sharing import Shared, shared_field, shared_textures
 from flowtex.trace import SliceStore
-from flowtex.view import FlowView
+from flowtex.view import FlowView, steps_of
 
 __all__ = ["Stage", "coarsened", "staged", "straight"]
 
@@ -136,9 +136,7 @@ class Stage:
         look = replace(self._look, lighting=lit)
         if self.name is None:
             return look
-        field = field or self.field
-        own = field.scalars.get(self.name)
-        values = field.speed if own is None else own
+        values = steps_of(field or self.field, self.name)
         low, high = self._clim or self.view.scalar_range(self.name)
         return replace(look, name=self.name, values=values, low=low, high=high)
 

@@ -19,7 +19,7 @@ from flowtex.settings import TABLE, Affects, Settings, SettingsError
 from flowtex.textures import TextureSet, as_picture
 from flowtex.trace import SliceStore, TraceSlices, shared_store
 
-__all__ = ["NO_IMAGE", "FlowView"]
+__all__ = ["NO_IMAGE", "FlowView", "steps_of"]
 
 Notice = Callable[[Affects], None]
 
@@ -148,7 +148,7 @@ class FlowView:
         KeyError
             When there is no such array; the text lists those that exist.
         """
-        steps = self._steps_of(name)
+        steps = steps_of(self.field, name)
         before, after, late = self.moment
         if len(steps) == 1:
             return np.asarray(steps[0])
@@ -160,7 +160,7 @@ class FlowView:
         Where all are the same but for rounding, the range is widened, so that colours do not tell
         of differences that are none.
         """
-        inside = self._steps_of(name)[:, self.field.valid]
+        inside = steps_of(self.field, name)[:, self.field.valid]
         inside = inside[np.isfinite(inside)]
         if not inside.size:
             return 0.0, 1.0
@@ -169,15 +169,6 @@ class FlowView:
         if high - low > SAME * size:
             return low, high
         return (low - WIDER * size, high + WIDER * size) if size > 0 else (0.0, 1.0)
-
-    def _steps_of(self, name: str) -> NDArray[np.float64]:
-        if name in self.field.scalars:
-            return self.field.scalars[name]
-        if name == "speed":
-            return self.field.speed
-        known = ", ".join(repr(n) for n in ("speed", *self.field.scalars))
-        msg = f"there is no scalar {name!r} on this field; there are {known}"
-        raise KeyError(msg)
 
     def still(self) -> FlowView:
         """Return a view that shows the same, and that no later change of this one reaches.
@@ -220,3 +211,20 @@ class FlowView:
     def _tell(self, affects: Affects) -> None:
         for notice in list(self._notices):
             notice(affects)
+
+
+def steps_of(field: FlowField, name: str) -> NDArray[np.float64]:
+    """Return nodal values at all times, (T or 1, J, I); ``"speed"`` is always there.
+
+    Raises
+    ------
+    KeyError
+        When there is no such array; the text lists those that exist.
+    """
+    if name in field.scalars:
+        return field.scalars[name]
+    if name == "speed":
+        return field.speed
+    known = ", ".join(repr(n) for n in ("speed", *field.scalars))
+    msg = f"there is no scalar {name!r} on this field; there are {known}"
+    raise KeyError(msg)

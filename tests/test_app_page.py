@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 import signal
+import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -26,6 +28,7 @@ SIZE = {"width": 1000, "height": 600}
 #: Part of the picture that nothing lies on, as left, top, right, bottom.
 WATCH = Watch((300, 120, 680, 420), "RGB")
 PATIENCE = 15_000
+ADDRESS = re.compile(r"http://\S+").search
 
 
 def block(turn: float) -> pv.StructuredGrid:
@@ -384,3 +387,39 @@ def test_a_link_and_lines_of_python_tell_the_state(page: Page, folder: Path) -> 
     )
     WATCH.comes_to(other, seen)
     other.close()
+
+
+OWN = """import flowtex
+mesh = flowtex.examples.double_gyre()
+BLOCK
+server.controller.on_server_ready.add(
+    lambda **_: print(f"http://127.0.0.1:{server.port}/", flush=True))
+server.start(host="127.0.0.1", port=0, open_browser=False, show_connection_info=False)
+"""
+
+
+def test_the_view_alone_serves_in_an_application_of_ones_own(browser: Browser) -> None:
+    """The lines of docs/app.md, as they stand there."""
+    text = (Path(__file__).parents[1] / "docs" / "app.md").read_text(encoding="utf-8")
+    (block,) = re.findall(r"```py\n(from flowtex.app import FlowArea\n.*?)```", text, re.DOTALL)
+    assert block.endswith("server.start()\n")
+    script = OWN.replace("BLOCK", block.removesuffix("server.start()\n"))
+    process = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True)
+    page = browser.new_page(viewport={"width": 400, "height": 300})
+    try:
+        address = next(found.group() for line in process.stdout or () if (found := ADDRESS(line)))
+        page.goto(address)
+        page.locator("img").wait_for(timeout=PATIENCE)
+        pictures = []
+        for _ in range(200):  # it plays: no two pictures are the same
+            shown = Watch((20, 20, 380, 280)).shot(page)
+            if np.abs(np.diff(shown, axis=0)).mean() > 5:
+                pictures.append(shown)
+            if len(pictures) > 1 and difference(pictures[0], pictures[-1]) > 2:
+                return
+            page.wait_for_timeout(50)
+        pytest.fail("the view does not show a flow that moves")
+    finally:
+        page.close()
+        process.kill()
+        process.communicate(timeout=20)

@@ -16,12 +16,12 @@ wheel zooms. Whatever is changed through :attr:`FlowArea.settings` is drawn at o
 from __future__ import annotations
 
 import asyncio
-import logging
 from collections.abc import Callable
 from typing import Any
 
 from trame.widgets import html, rca
 
+from flowtex.app.background import begin
 from flowtex.app.player import Player
 from flowtex.app.scene import Scene
 from flowtex.app.state import PageState
@@ -30,8 +30,6 @@ from flowtex.field import FlowField
 from flowtex.settings import Settings
 
 __all__ = ["FlowArea"]
-
-_log = logging.getLogger(__name__)
 
 
 class FlowArea:
@@ -159,9 +157,7 @@ class FlowArea:
             return
         self.server.controller.rc_area_register(self.stream)
         for work in (self.stream.run(), self.player.play()):
-            task = asyncio.create_task(work)
-            task.add_done_callback(_tell_failure)
-            self._tasks.append(task)
+            self._tasks.append(begin(work, "the page has stopped drawing"))
 
     def _report(self, figures: Figures) -> None:
         for call in self.reports:
@@ -170,9 +166,3 @@ class FlowArea:
     def _timed(self) -> None:
         for call in self.timed:
             call()
-
-
-def _tell_failure(task: asyncio.Task[None]) -> None:
-    """Let an error in a task of ours be seen: nobody waits for these tasks."""
-    if not task.cancelled() and (error := task.exception()) is not None:
-        _log.error("the page has stopped drawing", exc_info=error)

@@ -26,6 +26,7 @@ from flowtex.renderers.webgl import Scene as BrowserScene
 from flowtex.settings import TABLE
 from flowtex.sharing import digest
 from flowtex.staging import colour_table, rgb
+from flowtex.view import steps_of
 
 __all__ = ["RENDERERS", "Browser", "packed"]
 
@@ -205,11 +206,9 @@ class Browser(Part):
         scene, look = self.scene, self.app.look
         behind = BACKGROUNDS[look.theme] if look.background == "theme" else look.background
         low, high = scene.colour_range
-        own = scene.field.scalars.get(scene.colour)
-        values = scene.field.speed if own is None else own
         return Colours(
             name=scene.colour or None,
-            values=values if scene.colour else None,
+            values=steps_of(scene.field, scene.colour) if scene.colour else None,
             low=low,
             high=high,
             table=colour_table(scene.cmap),

@@ -62,11 +62,6 @@ class Navigator:
         return self._home / self.height
 
     @property
-    def dragging(self) -> bool:
-        """Whether a button is held down."""
-        return self._drag is not None
-
-    @property
     def axes(self) -> tuple[Vector, Vector, Vector]:
         """Unit vectors to the right of the view, upwards, and away from the eye."""
         ahead = self._focus - np.asarray(self.camera.GetPosition())

@@ -11,13 +11,12 @@ import numpy as np
 
 from flowtex.app.scene import Scene
 from flowtex.app.stream import FrameStream
+from flowtex.moments import run_seconds
 
 __all__ = ["Player"]
 
 #: Pictures in a second while playing, at most.
 RATE = 20.0
-#: Seconds for one run through the times of a field: so many for each step, within limits.
-STEP_SECONDS, SHORTEST, LONGEST = 0.25, 5.0, 30.0
 #: Seconds that one picture may let go by, however long it takes.
 LEAP = 0.5
 #: Seconds that time stands after somebody has moved it by hand.
@@ -65,12 +64,6 @@ class Player:
                     pane.handle.settings.motion = "speed"
         self._stream.moved()
 
-    @property
-    def run(self) -> float:
-        """Seconds for one run through the times of the field, at the usual pace."""
-        steps = len(self._scene.field.times) - 1
-        return min(max(STEP_SECONDS * steps, SHORTEST), LONGEST)
-
     def go_to(self, time: float) -> None:
         """Show a time, or the nearest there is."""
         times = self._scene.field.times
@@ -105,8 +98,9 @@ class Player:
             self._stream.changed()
             return
         first, span = float(field.times[0]), float(np.ptp(field.times))
+        run = run_seconds(len(field.times))
         # After the last time comes the first: a period goes round, anything else begins again.
-        self.go_to(first + (self._scene.handle.time - first + span * seconds / self.run) % span)
+        self.go_to(first + (self._scene.handle.time - first + span * seconds / run) % span)
 
     async def play(self) -> None:
         """Let time go by while playing, no faster than pictures are drawn."""

@@ -7,12 +7,12 @@ What is clicked next makes an end of what was read before.
 from __future__ import annotations
 
 import asyncio
-import logging
 import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
+from flowtex.app.background import begin
 from flowtex.app.part import Part
 from flowtex.app.places import camera_of
 from flowtex.app.pointer import Place
@@ -25,8 +25,6 @@ __all__ = ["Reader"]
 
 #: Seconds between two tips.
 PATIENCE = 0.06
-
-_log = logging.getLogger(__name__)
 
 
 class Reader(Part):
@@ -129,13 +127,12 @@ class Reader(Part):
             self.close_card()
             return
         try:
-            loop = asyncio.get_running_loop()
+            asyncio.get_running_loop()
         except RuntimeError:  # a script, which waits
             self._show(self._reader(at)())
             return
         if not self.busy:
-            self._reading = loop.create_task(self._read())
-            self._reading.add_done_callback(_tell_failure)
+            self._reading = begin(self._read(), "a path could not be read")
 
     async def _read(self) -> None:
         """Read the path through what was asked for last, until nothing else is asked for."""
@@ -206,9 +203,3 @@ class Reader(Part):
 
 def _is_pair(value: Any) -> bool:
     return isinstance(value, (list, tuple)) and len(value) == 2
-
-
-def _tell_failure(task: asyncio.Task[None]) -> None:
-    """Let an error that nobody waits for be seen."""
-    if not task.cancelled() and (error := task.exception()) is not None:
-        _log.error("a path could not be read", exc_info=error)

@@ -108,10 +108,19 @@ class Scene(Coloured):
         """What is different in the second pane; empty where there is one pane."""
         return dict(self._beside)
 
-    def _pane(self, field: FlowField, options: Mapping[str, Any]) -> Pane:
+    def _pane(
+        self, field: FlowField, options: Mapping[str, Any], picture: Any | None = None
+    ) -> Pane:
+        """Add a pane; with the texels of a picture, when there is one, whatever its noise is."""
+        given = dict(options)
+        if picture is not None:
+            given["noise"] = "procedural"
         handle = self._component.add(
-            field, scalars="speed", show_scalar_bar=False, reset_camera=False, **options
+            field, scalars="speed", show_scalar_bar=False, reset_camera=False, **given
         )
+        if picture is not None:
+            handle.set_image(as_image(picture))
+            handle.settings.noise = options["noise"]
         return Pane(handle, self._draw, lambda: self.pane_size, self.plane_view)
 
     def _begin(self) -> None:
@@ -148,12 +157,8 @@ class Scene(Coloured):
         times, time = self.field.times, self.handle.time
         self.compare(None)
         old = self.handle
-        plain = {**settings, "noise": "procedural" if image is not None else settings["noise"]}
-        self.panes[0] = self._pane(field, {**plain, "lighting": self.lighting})
+        self.panes[0] = self._pane(field, {**settings, "lighting": self.lighting}, image)
         old.remove(render=False)
-        if image is not None:
-            self.handle.set_image(as_image(image))
-            self.handle.settings.noise = settings["noise"]
         if not keep_range:
             self._clims.clear()
         self._begin()
@@ -188,15 +193,8 @@ class Scene(Coloured):
         self.resize(*self._size)
 
     def _add_beside(self, wanted: dict[str, Any]) -> None:
-        image = self.handle.view.image
-        noise = wanted["noise"]
-        if noise == "image":
-            wanted = {**wanted, "noise": "procedural"}
-        pane = self._pane(self.field, {**wanted, "lighting": self.lighting})
-        if image is not None:
-            pane.handle.set_image(as_image(image))
-            pane.handle.settings.noise = noise
-        self.panes.append(pane)
+        options = {**wanted, "lighting": self.lighting}
+        self.panes.append(self._pane(self.field, options, self.handle.view.image))
         self._end_following = self.handle.settings.observe(self._follow)
         self.set_time(self.handle.time)
         self.clock = self.handle.clock

@@ -26,14 +26,13 @@ from flowtex.cli.options import (
     FILE,
     FLAT,
     PICTURE,
-    DrawOptions,
     FieldOptions,
+    FrameOptions,
     LookOptions,
     SettingFlags,
     UsageError,
     given,
     read,
-    settings_in,
 )
 from flowtex.cli.talk import complain, nodes, say
 from flowtex.errors import FieldError
@@ -70,26 +69,14 @@ def render(
     clock: Annotated[
         float, Parameter(group=PICTURE, help="Moment of the streaming (--motion), in seconds.")
     ] = 0.0,
-    supersampling: Annotated[
-        int, Parameter(group=PICTURE, help="Draw larger by as much along each side, and average.")
-    ] = 1,
-    beside: Annotated[
-        tuple[str, ...],
-        Parameter(
-            group=PICTURE,
-            negative="",
-            help="What differs in a second view beside the first, such as lod=false.",
-        ),
-    ] = (),
     which: Annotated[FieldOptions | None, FLAT] = None,
-    draw: Annotated[DrawOptions | None, FLAT] = None,
+    draw: Annotated[FrameOptions | None, FLAT] = None,
     settings: Annotated[SettingFlags | None, FLAT] = None,
 ) -> int:
     """Draw a file as a picture."""
     started = time.perf_counter()
-    draw = draw or DrawOptions()
+    draw = draw or FrameOptions()
     options, size = {**draw.look(), **given(settings), "clock": clock}, draw.pixels()
-    options |= {"beside": settings_in(beside), "supersampling": supersampling}
     check_output(output)
     check_image(options)
     need_opengl()

@@ -13,13 +13,12 @@ from flowtex.cli.options import (
     FILE,
     FLAT,
     PICTURE,
-    DrawOptions,
     FieldOptions,
+    FrameOptions,
     SettingFlags,
     UsageError,
     given,
     read,
-    settings_in,
 )
 from flowtex.cli.talk import nodes, say
 
@@ -44,26 +43,14 @@ def movie(
     quality: Annotated[
         int, Parameter(group=PICTURE, help="1 to 100: the more, the truer and the larger.")
     ] = 80,
-    supersampling: Annotated[
-        int, Parameter(group=PICTURE, help="Draw larger by as much along each side, and average.")
-    ] = 1,
-    beside: Annotated[
-        tuple[str, ...],
-        Parameter(
-            group=PICTURE,
-            negative="",
-            help="What differs in a second view beside the first, such as lod=false.",
-        ),
-    ] = (),
     which: Annotated[FieldOptions | None, FLAT] = None,
-    draw: Annotated[DrawOptions | None, FLAT] = None,
+    draw: Annotated[FrameOptions | None, FLAT] = None,
     settings: Annotated[SettingFlags | None, FLAT] = None,
 ) -> int:
     """Write a file as a movie: a loop without a seam, or all times of a flow that varies."""
     started = time.perf_counter()
-    draw = draw or DrawOptions()
+    draw = draw or FrameOptions()
     options, size = {**draw.look(), **given(settings)}, draw.pixels()
-    options |= {"beside": settings_in(beside), "supersampling": supersampling}
     check_film(output, size, fps, quality)
     check_image(options)
     need_opengl()

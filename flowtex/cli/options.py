@@ -24,6 +24,7 @@ __all__ = [
     "PICTURE",
     "DrawOptions",
     "FieldOptions",
+    "FrameOptions",
     "LookOptions",
     "ServeOptions",
     "SettingFlags",
@@ -136,6 +137,28 @@ class DrawOptions(LookOptions):
             msg = f"--size is {self.size!r}; expected width x height up to 16384, as in 1024x768"
             raise UsageError(msg)
         return int(words[0]), int(words[1])
+
+
+@dataclass(kw_only=True)
+class FrameOptions(DrawOptions):
+    """How a picture, or each of a movie, is taken without a window."""
+
+    supersampling: Annotated[
+        int, Parameter(group=PICTURE, help="Draw larger by as much along each side, and average.")
+    ] = 1
+    beside: Annotated[
+        tuple[str, ...],
+        Parameter(
+            group=PICTURE,
+            negative="",
+            help="What differs in a second view beside the first, such as lod=false.",
+        ),
+    ] = ()
+
+    def look(self) -> dict[str, Any]:
+        """Return what :meth:`LookOptions.look` does, and these."""
+        own = {"beside": settings_in(self.beside), "supersampling": self.supersampling}
+        return {**super().look(), **own}
 
 
 @dataclass(kw_only=True)
