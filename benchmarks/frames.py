@@ -14,7 +14,7 @@ from rich.console import Console
 from rich.table import Table
 
 import flowtex
-from flowtex.doctor import require_opengl
+from flowtex.diagnostics import require_opengl
 
 
 def frame(size: tuple[int, int], nodes: int, samples: int, repeats: int) -> float:

@@ -27,7 +27,7 @@ from scenes import Stage, gyre_field, gyre_view, vortex_view
 from seams import across_lines, seams
 
 import flowtex
-from flowtex.doctor import require_opengl
+from flowtex.diagnostics import require_opengl
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 import measures

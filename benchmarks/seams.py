@@ -11,8 +11,8 @@ import pyvista as pv
 from numpy.typing import NDArray
 
 import flowtex
-from flowtex.camera import look
-from flowtex.renderers.cpu import Camera, render
+from flowtex.plotting.look import look
+from flowtex.rendering.cpu import Camera, render
 from flowtex.textures import TextureSet
 from flowtex.trace import SliceStore
 

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 import flowtex
-from flowtex.camera import look
+from flowtex.plotting.look import look
 
 #: Address of a page as it is announced.
 ADDRESS = re.compile(r"http://\S+")
@@ -226,7 +226,7 @@ PAPER = {
 
 def paper() -> None:
     """Draw the pictures of docs/paper.md, which `flowtex paper` has on its page."""
-    from flowtex.paper import reproduce
+    from paper import reproduce
 
     with TemporaryDirectory() as made:
         reproduce(made, only=tuple(PAPER), progress=False)

@@ -17,8 +17,8 @@ from flowtex.trace import TraceSlices, trace
 
 if TYPE_CHECKING:
     from flowtex import examples
-    from flowtex.movies import movie
-    from flowtex.pictures import render, show
+    from flowtex.offscreen.movie import movie
+    from flowtex.offscreen.render import render, show
     from flowtex.widget import FlowWidget as FlowWidget
 
 __all__ = [
@@ -40,11 +40,11 @@ def __getattr__(name: str) -> Any:
 
         return importlib.import_module("flowtex.examples")
     if name in {"render", "show"}:
-        from flowtex import pictures
+        from flowtex.offscreen import render as pictures
 
         return getattr(pictures, name)
     if name == "movie":
-        from flowtex import movies
+        from flowtex.offscreen import movie as movies
 
         return movies.movie
     if name == "FlowWidget":

@@ -16,15 +16,15 @@ from numpy.typing import ArrayLike, NDArray
 from flowtex.field.facets import facet
 from flowtex.field.locate import locate, locator
 from flowtex.field.reading import Reading, reading
-from flowtex.renderers.cpu import Camera
-from flowtex.renderers.cpu.fragments import Fragments
-from flowtex.renderers.cpu.levels import footprint, slice_level
-from flowtex.renderers.cpu.record import Kept, Recorder
-from flowtex.renderers.cpu.render import slices_at, view_state
-from flowtex.renderers.cpu.shade import tone
-from flowtex.renderers.cpu.spot import facing, spot
-from flowtex.renderers.cpu.texture import Side, Summing
-from flowtex.renderers.uniforms import ViewState, uniforms
+from flowtex.rendering.cpu import Camera
+from flowtex.rendering.cpu.fragments import Fragments
+from flowtex.rendering.cpu.levels import footprint, slice_level
+from flowtex.rendering.cpu.record import Kept, Recorder
+from flowtex.rendering.cpu.render import slices_at, view_state
+from flowtex.rendering.cpu.shade import tone
+from flowtex.rendering.cpu.spot import facing, spot
+from flowtex.rendering.cpu.texture import Side, Summing
+from flowtex.rendering.uniforms import ViewState, uniforms
 from flowtex.textures import TextureSet
 from flowtex.view import FlowView
 

@@ -1,7 +1,7 @@
 """From a mesh and the arguments of ``plotter.flowtex.add`` to what a browser is handed.
 
 :class:`Stage` joins a :class:`~flowtex.view.FlowView` to its colours and makes a
-:class:`~flowtex.renderers.webgl.Scene` of both. The widget and the exported page begin with it.
+:class:`~flowtex.rendering.webgl.Scene` of both. The widget and the exported page begin with it.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ from numpy.typing import NDArray
 
 from flowtex.field import FlowField
 from flowtex.first_look import first_look
-from flowtex.image_files import load_image
-from flowtex.plotter import CMAP, FIELD_ARGUMENTS, PLAIN, as_field, with_image
-from flowtex.renderers.webgl import Colours, Scene, camera_state
+from flowtex.plotting.component import CMAP, FIELD_ARGUMENTS, PLAIN, as_field, with_image
+from flowtex.rendering.webgl import Colours, Scene, camera_state
 from flowtex.settings import TABLE, Settings
 from flowtex.sharing import Shared, shared_field, shared_textures
+from flowtex.textures.image_files import load_image
 from flowtex.trace import SliceStore
 from flowtex.view import FlowView, steps_of
 

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
-from flowtex import doctor
+from flowtex import diagnostics as doctor
 
 if TYPE_CHECKING:
     import pyvista as pv

@@ -20,8 +20,8 @@ from flows import dense_gyre, gyre, holed, lines, swinging, torus
 from numpy.typing import NDArray
 
 from flowtex import FlowField
-from flowtex.renderers.cpu import Camera, render
-from flowtex.renderers.uniforms import ViewState
+from flowtex.rendering.cpu import Camera, render
+from flowtex.rendering.uniforms import ViewState
 from flowtex.settings import Settings
 from flowtex.view import FlowView
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 import flowtex
-from flowtex import _assets
+from flowtex.rendering import shader_files as _assets
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -43,7 +43,7 @@ def _texts_of_checkout() -> dict[str, str]:
 
 
 def _client_of_checkout() -> list[Path]:
-    folder = ROOT / "flowtex" / "renderers" / "webgl"
+    folder = ROOT / "flowtex" / "web"
     found = [path for path in folder.iterdir() if path.suffix in (".js", ".css", ".html")]
     assert {"client.js", "page.js", "page.css", "page.html"} <= {path.name for path in found}
     return found
@@ -97,9 +97,9 @@ def test_wheel_declares_command_and_plotter_component(wheel: Path) -> None:
         declared = archive.read(name).decode()
     assert "flowtex = flowtex.cli:main" in declared
     # PyVista hands the value to import_module, so it must name a module and nothing in it.
-    assert "flowtex = flowtex.plotter\n" in f"{declared}\n"
+    assert "flowtex = flowtex.plotting.component\n" in f"{declared}\n"
     # Here PyVista loads the value itself, so it must name a function.
-    assert "flowtex = flowtex.jupyter:show_plotter" in declared
+    assert "flowtex = flowtex.plotting.jupyter_backend:show_plotter" in declared
 
 
 def test_installed_wheel_reads_its_own_shaders(wheel: Path, tmp_path: Path) -> None:
@@ -188,7 +188,7 @@ def test_installed_wheel_shows_the_widget_without_node(
     assert told["node"] is None
     assert Path(told["package"]).is_relative_to(empty_environment.parents[1])
     page.goto("about:blank")
-    client = Path(told["package"]).parent / "renderers" / "webgl" / "client.js"
+    client = Path(told["package"]).parent / "web" / "client.js"
     assert client.read_text(encoding="utf-8") == told["client"]
     page.evaluate(SHOWN, [told["client"], told["header"], told["parts"]])
     page.locator('.flowtex[data-sharp="true"]').wait_for()

@@ -16,10 +16,10 @@ from scipy import ndimage
 
 from flowtex import FlowField
 from flowtex.probe import Probe, locate, probe
-from flowtex.renderers.cpu import Camera, render
-from flowtex.renderers.cpu.lookup import Mips
-from flowtex.renderers.cpu.record import Kept, Window
-from flowtex.renderers.uniforms import ViewState
+from flowtex.rendering.cpu import Camera, render
+from flowtex.rendering.cpu.lookup import Mips
+from flowtex.rendering.cpu.record import Kept, Window
+from flowtex.rendering.uniforms import ViewState
 from flowtex.settings import Settings
 from flowtex.view import FlowView
 

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from flowtex.renderers.cpu import Camera
-from flowtex.renderers.webgl import Scene, asset
+from flowtex.rendering.cpu import Camera
+from flowtex.rendering.webgl import Scene, asset
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page

@@ -17,7 +17,7 @@ stamp=$(dirname "$(dirname "$python")")/.opengl-$kind
 [ -e "$stamp" ] && exit 0
 
 # A fault of the code must not look like a missing library.
-"$python" -c 'import flowtex.doctor' || fail "flowtex itself cannot be imported"
+"$python" -c 'import flowtex.diagnostics' || fail "flowtex itself cannot be imported"
 
 draws() {
     "$python" -c 'from flowtex import doctor; doctor.require_opengl()' >/dev/null 2>&1

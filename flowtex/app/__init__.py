@@ -19,9 +19,9 @@ secret; :class:`Library` is what they may open.
 
 from __future__ import annotations
 
-from flowtex.app.area import FlowArea
+from flowtex.app.controllers.library import Choice, Library
 from flowtex.app.flow_app import FlowApp
-from flowtex.app.library import Choice, Library
-from flowtex.app.serving import ServeError, serve
+from flowtex.app.server.serving import ServeError, serve
+from flowtex.app.streaming.area import FlowArea
 
 __all__ = ["Choice", "FlowApp", "FlowArea", "Library", "ServeError", "serve"]

@@ -9,22 +9,22 @@ from typing import Any
 
 from trame.app import get_server
 
-from flowtex.app.area import FlowArea
-from flowtex.app.browser import Browser
-from flowtex.app.cell import InCell
-from flowtex.app.clockwork import Clockwork
-from flowtex.app.data import Data
-from flowtex.app.layout import build_page
-from flowtex.app.library import Choice, Library
-from flowtex.app.look import Look
-from flowtex.app.moves import Moves
-from flowtex.app.part import Part
-from flowtex.app.reader import Reader
-from flowtex.app.scene import Scene
-from flowtex.app.share import Share
-from flowtex.app.state import PageState
-from flowtex.app.stream import FrameStream
-from flowtex.app.untrusted import shortened
+from flowtex.app.controllers.browser import Browser
+from flowtex.app.controllers.clockwork import Clockwork
+from flowtex.app.controllers.data import Data
+from flowtex.app.controllers.library import Choice, Library
+from flowtex.app.controllers.look import Look
+from flowtex.app.controllers.moves import Moves
+from flowtex.app.controllers.part import Part
+from flowtex.app.controllers.reader import Reader
+from flowtex.app.controllers.share import Share
+from flowtex.app.server.cell import InCell
+from flowtex.app.server.state import PageState
+from flowtex.app.server.untrusted import shortened
+from flowtex.app.streaming.area import FlowArea
+from flowtex.app.streaming.scene import Scene
+from flowtex.app.streaming.stream import FrameStream
+from flowtex.app.ui.layout import build_page
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.settings import SettingsError
@@ -127,7 +127,7 @@ class FlowApp(InCell):
         Parameters
         ----------
         said
-            As :func:`flowtex.app.links.from_link` returns it.
+            As :func:`flowtex.app.controllers.links.from_link` returns it.
         """
         name = str(said.get("file", self.data.name))
         choice = Choice(*(str(said.get(k, "")) for k in CHOOSING))
@@ -166,7 +166,7 @@ class FlowApp(InCell):
         self.server.state.trame__title = f"{self.field.name or 'flow'} - flowtex"
 
     def _build_page(self) -> None:
-        static = str(Path(__file__).with_name("static"))
+        static = str(Path(__file__).parent / "ui" / "static")
         self.server.enable_module(
             {
                 "serve": {"__flowtex": static},

@@ -6,8 +6,8 @@ import importlib.util
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from flowtex._util.extras import install_extra
 from flowtex.cli.options import UsageError
-from flowtex.extras import install_extra
 
 if TYPE_CHECKING:
     from flowtex.field import FlowField
@@ -46,7 +46,7 @@ def check_page(output: Path) -> None:
 
 def check_film(output: Path, size: tuple[int, int], fps: float | None, quality: int) -> None:
     """Refuse a movie that could not be written, before anything is drawn."""
-    from flowtex.movie_files import check_movie, default_fps
+    from flowtex.offscreen.movie_files import check_movie, default_fps
 
     try:
         check_movie(output, size, default_fps(output) if fps is None else fps, quality)
@@ -71,7 +71,7 @@ def check_image(options: dict[str, Any]) -> None:
     if options.get("noise", "image") != "image":
         msg = f"--noise is {options['noise']} and --image is given; leave out one of them"
         raise UsageError(msg)
-    from flowtex.image_files import load_image
+    from flowtex.textures.image_files import load_image
 
     options["image"] = load_image(options["image"])
 
@@ -95,7 +95,7 @@ def check_colours(field: FlowField, options: dict[str, Any]) -> None:
 
 def need_opengl() -> None:
     """Refuse to go on where nothing can draw."""
-    from flowtex import doctor
+    from flowtex import diagnostics as doctor
 
     doctor.prefer_headless()
     doctor.require_opengl()

@@ -22,6 +22,7 @@ from flowtex.cli.checks import (
     check_page,
     need_opengl,
 )
+from flowtex.cli.console import complain, nodes, say
 from flowtex.cli.options import (
     FILE,
     FLAT,
@@ -34,9 +35,8 @@ from flowtex.cli.options import (
     given,
     read,
 )
-from flowtex.cli.talk import complain, nodes, say
 from flowtex.errors import FieldError
-from flowtex.moments import MovieError
+from flowtex.offscreen.moments import MovieError
 from flowtex.settings import SettingsError
 
 __all__ = ["main"]
@@ -84,7 +84,7 @@ def render(
     check_colours(field, options)
     from PIL import Image
 
-    from flowtex import pictures
+    from flowtex.offscreen import render as pictures
 
     picture = pictures.render(field, size=size, **options)
     try:
@@ -129,7 +129,7 @@ def export(
     if steps is not None and steps < 1:
         msg = f"--steps is {steps}; expected 1 to {len(field.times)}, the steps of the file"
         raise UsageError(msg)
-    from flowtex import export as export_
+    from flowtex.web import export as export_
 
     def announce(size: int, count: int) -> None:
         some = "" if count == len(field.times) else f", {count} of them"
@@ -159,7 +159,7 @@ def info(file: FILE, /, *, which: Annotated[FieldOptions | None, FLAT] = None) -
 @app.command
 def doctor() -> int:
     """Look at what flowtex runs on, and say what is missing."""
-    from flowtex import doctor as doctor_
+    from flowtex import diagnostics as doctor_
 
     return doctor_.main()
 
@@ -196,7 +196,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _code(error: Exception) -> int | None:
     """Exit code for what the user can mend; ``None`` for a fault of the program."""
-    from flowtex.doctor import OpenGLMissingError
+    from flowtex.diagnostics import OpenGLMissingError
 
     if isinstance(error, OpenGLMissingError):
         return 1

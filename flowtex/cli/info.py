@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from rich.table import Table
 
     from flowtex.field import FlowField
-    from flowtex.field.summary import ArraySummary, FileSummary
+    from flowtex.field.io.summary import ArraySummary, FileSummary
 
 __all__ = ["print_info"]
 
@@ -34,7 +34,7 @@ def print_info(file: Path, options: dict[str, Any]) -> None:
     from rich.text import Text
 
     from flowtex.field import FlowField
-    from flowtex.field.files import describe
+    from flowtex.field.io.files import describe
 
     summary = describe(file)
     console = Console(highlight=False)

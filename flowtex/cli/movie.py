@@ -9,6 +9,7 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from flowtex.cli.checks import check_colours, check_film, check_image, need_opengl
+from flowtex.cli.console import nodes, say
 from flowtex.cli.options import (
     FILE,
     FLAT,
@@ -20,7 +21,6 @@ from flowtex.cli.options import (
     given,
     read,
 )
-from flowtex.cli.talk import nodes, say
 
 __all__ = ["movie"]
 
@@ -56,7 +56,7 @@ def movie(
     need_opengl()
     field = read(file, which)
     check_colours(field, options)
-    from flowtex import movies
+    from flowtex.offscreen import movie as movies
 
     try:
         made = movies.movie(

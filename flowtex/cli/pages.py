@@ -9,6 +9,7 @@ from cyclopts import Parameter
 
 from flowtex import examples
 from flowtex.cli.checks import check_colours, check_image, need_app, need_opengl
+from flowtex.cli.console import announcer
 from flowtex.cli.options import (
     FLAT,
     DrawOptions,
@@ -19,7 +20,6 @@ from flowtex.cli.options import (
     given,
     read,
 )
-from flowtex.cli.talk import announcer
 from flowtex.examples import NAMES
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ def demo(
     need_opengl()
     need_app()
     from flowtex.app import Library
-    from flowtex.field.source import FlowSource
+    from flowtex.field.io.source import FlowSource
 
     def opener(name: str) -> Any:
         return lambda: FlowSource(getattr(examples, f"{name}_field")())
@@ -89,14 +89,14 @@ def show(
     size = draw.pixels()
     check_image(options)
     need_opengl()
-    from flowtex import doctor
+    from flowtex import diagnostics as doctor
 
     on_page = page is not None or not doctor.has_display()
     if on_page or len(files) != 1 or files[0].is_dir():
         return _show_page(files, which, page, options)
     field = read(files[0], which)
     check_colours(field, options)
-    from flowtex import pictures
+    from flowtex.offscreen import render as pictures
 
     pictures.show(field, size=size, **options)
     return 0

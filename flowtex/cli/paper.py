@@ -8,8 +8,8 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
+from flowtex.cli.console import say
 from flowtex.cli.options import UsageError
-from flowtex.cli.talk import say
 
 __all__ = ["paper"]
 
@@ -46,7 +46,7 @@ def paper(
     if output.exists() and not output.is_dir():
         msg = f"{output} is a file; expected a folder to write to"
         raise UsageError(msg)
-    from flowtex.paper import SectionError, reproduce
+    from paper import SectionError, reproduce
 
     started = time.perf_counter()
     try:

@@ -178,15 +178,15 @@ class FlowField:
 
     @classmethod
     def from_pyvista(cls, mesh: Any, **options: Any) -> FlowField:
-        """Make a field from PyVista; see :func:`flowtex.field.from_pyvista.from_pyvista`."""
-        from flowtex.field.from_pyvista import from_pyvista
+        """Make a field from PyVista; see :func:`flowtex.field.io.from_pyvista.from_pyvista`."""
+        from flowtex.field.io.from_pyvista import from_pyvista
 
         return from_pyvista(mesh, **options)
 
     @classmethod
     def from_file(cls, path: str | Path, **options: Any) -> FlowField:
-        """Make a field from a file; see :func:`flowtex.field.files.from_file`."""
-        from flowtex.field.files import from_file
+        """Make a field from a file; see :func:`flowtex.field.io.files.from_file`."""
+        from flowtex.field.io.files import from_file
 
         return from_file(path, **options)
 

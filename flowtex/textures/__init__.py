@@ -6,6 +6,6 @@ from flowtex.textures.ahead import Ahead
 from flowtex.textures.geometry import Geometry
 from flowtex.textures.images import ImageError, as_picture
 from flowtex.textures.paper import PaperTextures
-from flowtex.textures.textureset import TextureSet
+from flowtex.textures.texture_set import TextureSet
 
 __all__ = ["Ahead", "Geometry", "ImageError", "PaperTextures", "TextureSet", "as_picture"]

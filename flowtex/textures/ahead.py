@@ -11,7 +11,7 @@ from concurrent.futures import Future, ThreadPoolExecutor
 import numpy as np
 from numpy.typing import NDArray
 
-from flowtex.textures.textureset import TextureSet
+from flowtex.textures.texture_set import TextureSet
 
 __all__ = ["Ahead"]
 

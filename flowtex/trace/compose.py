@@ -26,8 +26,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from flowtex._util.progress import check
 from flowtex.field import FlowField
-from flowtex.progress import check
 from flowtex.trace.known import CLOSE, Known, Piece
 
 __all__ = ["compose", "landings"]

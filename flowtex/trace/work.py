@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from flowtex._util.progress import track
 from flowtex.field import FlowField
-from flowtex.progress import track
 from flowtex.trace.compose import Within, compose
 from flowtex.trace.integrate import integrate
 from flowtex.trace.sampler import Sampler

@@ -19,10 +19,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from flowtex import preview
-from flowtex.renderers.webgl import Scene
+from flowtex.rendering.webgl import Scene
 from flowtex.sharing import digest
 from flowtex.staging import Stage
+from flowtex.web import preview
 from flowtex.widget.gone import has_gone
 from flowtex.widget.worker import Crew, Worker
 

@@ -10,15 +10,15 @@ from typing import Any
 
 import traitlets
 
-from flowtex.export import PREVIEW, page_text, write_page
 from flowtex.field import FlowField
-from flowtex.image_files import load_image
-from flowtex.plotter import PLAIN
-from flowtex.renderers.webgl import asset
+from flowtex.plotting.component import PLAIN
+from flowtex.rendering.webgl import asset
 from flowtex.settings import TABLE, Affects, Settings, SettingsError
 from flowtex.staging import staged
+from flowtex.textures.image_files import load_image
 from flowtex.view import NO_IMAGE, FlowView
-from flowtex.widget.displaying import Displayed
+from flowtex.web.export import PREVIEW, page_text, write_page
+from flowtex.widget.display import Displayed
 from flowtex.widget.panel import make_panel
 from flowtex.widget.traits import CameraTrait, SettingTraits, SizeTrait
 from flowtex.widget.views import HEADERS, Views
@@ -208,7 +208,7 @@ class FlowWidget(SettingTraits, Displayed):
         return panel
 
     def to_html(self, path: str | Path | None = None, *, title: str | None = None) -> str | None:
-        """Write what is shown as a page that needs no server; :func:`flowtex.export.export`.
+        """Write what is shown as a page that needs no server; :func:`flowtex.web.export.export`.
 
         Parameters
         ----------

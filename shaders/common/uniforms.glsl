@@ -1,4 +1,4 @@
-// What a renderer sets. The names are those of flowtex/renderers/uniforms.py.
+// What a renderer sets. The names are those of flowtex/rendering/uniforms.py.
 
 uniform highp sampler2DArray u_slices;
 #ifdef FLOWTEX_UNSTEADY

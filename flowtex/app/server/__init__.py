@@ -1,0 +1,1 @@
+"""Serving pages: sessions, files and who may have them."""

@@ -1,0 +1,194 @@
+"""The web server that all pages share: the door, the pages' files, and their connections.
+
+::
+
+    GET  /                         the door: keeps secret and session in the browser's tab
+    POST /flowtex/session          secret and token for a token: of one's own session, or a new one
+    GET  /page/<token>/index.html  trame's page with ?secret=..., without it the door
+    GET  /page/<token>/ws          the connection of a session
+    GET  /flowtex/<token>/<name>   what a session hands out
+    GET  /...                      scripts and styles, the same for all pages
+
+trame's client looks for its connection beside its page. It can be told another address, but
+writes that in small letters, which loses the tokens and the paths of some proxies.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import logging
+import socket as sockets
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+from aiohttp import web
+
+from flowtex.app.server.routes import add_route
+from flowtex.app.server.security import guard, is_same
+from flowtex.app.server.sessions import FullError, Sessions
+from flowtex.errors import FieldError
+from flowtex.settings import SettingsError
+
+__all__ = ["Site"]
+
+DOOR = Path(__file__).parents[1] / "ui" / "static" / "door.html"
+#: Seconds that connections have to end in.
+FAREWELL = 2.0
+#: Bytes of what the door sends, at most.
+LONGEST = 4096
+
+WRONG = "This page opens with the whole address that flowtex printed, the secret included."
+FULL = (
+    "There is room for {pages} at a time here, and all places are taken. One becomes free soon "
+    "after somebody closes a page."
+)
+BROKEN = "The page could not be made: {error}"
+FAULT = "The page could not be made. The program that serves it has printed why."
+
+_log = logging.getLogger(__name__)
+
+
+class Site:
+    """Pages on one port.
+
+    Parameters
+    ----------
+    sessions
+        The sessions of the pages.
+    secret
+        What the door asks for.
+    framed
+        Whether pages of other sites may hold these in a frame, as a notebook does.
+
+    Attributes
+    ----------
+    port
+        Where it listens; 0 before it does.
+    """
+
+    def __init__(self, sessions: Sessions, secret: str, *, framed: bool = False) -> None:
+        self.sessions = sessions
+        self.port = 0
+        self._secret = secret
+        self._framed = framed
+        self._runner: web.AppRunner | None = None
+        self._sweep: asyncio.Task[None] | None = None
+
+    async def prepare(self, app: Any = None) -> None:
+        """Make the first session, with an application that there is already if any.
+
+        Raises
+        ------
+        Exception
+            What the making of an application raises.
+        """
+        application = self._application(await self.sessions.prepare(app))
+        # What ends the program is told to it, and not to the web server.
+        self._runner = web.AppRunner(
+            application, handle_signals=False, access_log=None, shutdown_timeout=FAREWELL
+        )
+        await self._runner.setup()
+
+    async def listen(self, where: sockets.socket | tuple[str, int] = ("127.0.0.1", 0)) -> None:
+        """Let pages in, after :meth:`prepare`.
+
+        Parameters
+        ----------
+        where
+            Host and port, where port 0 takes one that is free; or a socket that listens already.
+
+        Raises
+        ------
+        OSError
+            When the port or the host cannot be listened on.
+        """
+        if self._runner is None:
+            msg = "nothing is there to let in to; call prepare() first"
+            raise RuntimeError(msg)
+        site: web.BaseSite = (
+            web.TCPSite(self._runner, *where)
+            if isinstance(where, tuple)
+            else web.SockSite(self._runner, where)
+        )
+        await site.start()
+        self.port = self._runner.addresses[0][1]
+        self._sweep = asyncio.create_task(self.sessions.sweep())
+
+    async def stop(self) -> None:
+        """End all sessions, and listen no more."""
+        if self._sweep is not None:
+            self._sweep.cancel()
+            with suppress(asyncio.CancelledError):
+                await self._sweep
+        await self.sessions.close()
+        if self._runner is not None:
+            await self._runner.cleanup()
+
+    def _application(self, static: dict[str, Any]) -> web.Application:
+        application = web.Application(client_max_size=LONGEST)
+        guard(application, framed=self._framed)
+        router = application.router
+        router.add_get("/", self._door)
+        router.add_get("/index.html", self._door)
+        router.add_get("/page/{token}/index.html", self._page)
+        router.add_get("/page/{token}/ws", self._connection)
+        router.add_post("/flowtex/session", self._session)
+        add_route(application, self.sessions.routes)
+        index = (Path(static["/"]) / "index.html").read_text(encoding="utf-8")
+        # Everything but the connection lies two folders above; the first base counts.
+        self._index = index.replace("<head>", '<head><base href="../../" />', 1)
+        # The longest first: the last one is the root, which would take all.
+        for route in sorted(static, reverse=True):
+            router.add_static(f"/{route.strip('/')}", static[route])
+        return application
+
+    async def _door(self, request: web.Request) -> web.StreamResponse:
+        del request
+        return web.FileResponse(DOOR, headers={"Cache-Control": "no-store"})
+
+    async def _page(self, request: web.Request) -> web.StreamResponse:
+        if "secret" not in request.query:  # a page that is loaded again
+            return await self._door(request)
+        return web.Response(
+            text=self._index, content_type="text/html", headers={"Cache-Control": "no-store"}
+        )
+
+    async def _connection(self, request: web.Request) -> web.StreamResponse:
+        session = self.sessions.get(request.match_info["token"])
+        if session is None:
+            raise web.HTTPNotFound
+        return await session.connect(request, shared=self.sessions.shared)
+
+    async def _session(self, request: web.Request) -> web.StreamResponse:
+        asked = await _json(request)
+        if not is_same(asked.get("secret"), self._secret):
+            return _answer(403, words=WRONG)
+        token = asked.get("session")
+        try:
+            session = await self.sessions.find(token if isinstance(token, str) else None)
+        except FullError:
+            return _answer(503, words=FULL.format(pages=_pages(self.sessions.limit)))
+        except (FieldError, SettingsError, OSError) as error:
+            return _answer(500, words=BROKEN.format(error=error))
+        except Exception:
+            _log.exception("a page could not be made")
+            return _answer(500, words=FAULT)
+        return _answer(200, session=session.token)
+
+
+def _pages(count: int) -> str:
+    return "one page" if count == 1 else f"{count} pages"
+
+
+async def _json(request: web.Request) -> dict[str, Any]:
+    try:
+        asked = json.loads(await request.read())
+    except ValueError:
+        asked = None
+    return asked if isinstance(asked, dict) else {}
+
+
+def _answer(status: int, **values: str) -> web.Response:
+    return web.json_response(values, status=status, headers={"Cache-Control": "no-store"})

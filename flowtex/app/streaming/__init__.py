@@ -1,0 +1,1 @@
+"""Pictures of a flow on their way to a page."""

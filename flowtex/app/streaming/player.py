@@ -1,0 +1,123 @@
+"""Time that goes by: the steps of a flow that varies, or the streaming of a steady one."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import time
+from collections.abc import Callable
+
+import numpy as np
+
+from flowtex.app.streaming.scene import Scene
+from flowtex.app.streaming.stream import FrameStream
+from flowtex.offscreen.moments import run_seconds
+
+__all__ = ["Player"]
+
+#: Pictures in a second while playing, at most.
+RATE = 20.0
+#: Seconds that one picture may let go by, however long it takes.
+LEAP = 0.5
+#: Seconds that time stands after somebody has moved it by hand.
+HOLD = 0.4
+
+_log = logging.getLogger(__name__)
+
+
+class Player:
+    """Plays a scene.
+
+    Parameters
+    ----------
+    scene
+        What is played.
+    stream
+        What draws it.
+    told
+        Called when the time that is shown has changed.
+
+    Attributes
+    ----------
+    pace
+        How many times faster than usual.
+    """
+
+    def __init__(self, scene: Scene, stream: FrameStream, told: Callable[[], None]) -> None:
+        self.pace = 1.0
+        self._scene = scene
+        self._stream = stream
+        self._told = told
+        self._held = 0.0
+
+    @property
+    def playing(self) -> bool:
+        """Whether time goes by."""
+        return self._stream.playing
+
+    @playing.setter
+    def playing(self, playing: bool) -> None:
+        self._stream.playing = bool(playing)
+        if playing and self._scene.field.steady:
+            for pane in self._scene.panes:
+                if pane.handle.settings.motion == "off":
+                    pane.handle.settings.motion = "speed"
+        self._stream.moved()
+
+    def go_to(self, time: float) -> None:
+        """Show a time, or the nearest there is."""
+        times = self._scene.field.times
+        wanted = min(max(float(time), float(times[0])), float(times[-1]))
+        if wanted != self._scene.handle.time:
+            self._scene.set_time(wanted)
+            self._told()
+            self._stream.changed()
+
+    def seek(self, time_: float) -> None:
+        """Go to a time for a person, whose slider must not run away under the hand."""
+        self._held = time.monotonic() + HOLD
+        self.go_to(time_)
+
+    def step(self, count: int) -> None:
+        """Go so many steps of the field on, or back; round and round."""
+        times = self._scene.field.times
+        if len(times) == 1:
+            self._scene.clock += count / RATE
+            self._stream.changed()
+            return
+        at = self._scene.handle.time
+        after = np.searchsorted(times, at, side="right" if count > 0 else "left")
+        self.go_to(float(times[(after - (count > 0) + count) % len(times)]))
+
+    def advance(self, seconds: float) -> None:
+        """Go on by so many seconds of the person's own time."""
+        seconds *= self.pace
+        field = self._scene.field
+        if field.steady:
+            self._scene.clock += seconds
+            self._stream.changed()
+            return
+        first, span = float(field.times[0]), float(np.ptp(field.times))
+        run = run_seconds(len(field.times))
+        # After the last time comes the first: a period goes round, anything else begins again.
+        self.go_to(first + (self._scene.handle.time - first + span * seconds / run) % span)
+
+    async def play(self) -> None:
+        """Let time go by while playing, no faster than pictures are drawn."""
+        before = time.perf_counter()
+        while True:
+            now = time.perf_counter()
+            passed, before = now - before, now
+            held = time.monotonic() < self._held
+            if self.playing and not (held or self._stream.paused) and self._stream.watched():
+                self._go_on(min(passed, LEAP))
+                await self._stream.next_picture()
+            await asyncio.sleep(max(1 / RATE - (time.perf_counter() - now), 0.005))
+
+    def _go_on(self, seconds: float) -> None:
+        """Advance; where that fails time stands, and the log tells why."""
+        try:
+            self.advance(seconds)
+        except Exception:
+            _log.exception("time cannot go on")
+            self.playing = False

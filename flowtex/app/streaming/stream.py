@@ -1,0 +1,290 @@
+"""The stream of pictures to the page: when to draw, and how well.
+
+One task draws. It sleeps until something asks for a picture, draws quick ones for as long as they
+are asked for, and the full one once nothing has moved for a moment. What is asked for meanwhile
+is not queued: the next picture shows the latest state. The page's remote controlled area
+(trame-rca) gives the events and takes the pictures.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import io
+import logging
+import time
+from collections import deque
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flowtex.app.server.untrusted import mapping
+from flowtex.app.streaming.composer import Composer
+from flowtex.app.streaming.pointer import Pointer
+from flowtex.app.streaming.quality import MOVING, PLAYING, view_pixels
+from flowtex.app.streaming.scene import Scene
+
+__all__ = ["Figures", "FrameStream"]
+
+#: Seconds without a change after which the full picture is drawn.
+REST = 0.12
+#: Pictures in a second, at most.
+FASTEST = 30.0
+#: Seconds between two looks at an unfinished full picture.
+LOOK = 0.2
+#: JPEG qualities in motion and at rest.
+MOTION_QUALITY, REST_QUALITY = 80, 94
+
+_log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class Figures:
+    """How the stream is doing.
+
+    Attributes
+    ----------
+    sharp
+        Whether the full picture is shown.
+    rate
+        Pictures in the last second.
+    seconds
+        Time that the last one took: drawing, and for a sharp one all its tiles.
+    size
+        Width and height of the full picture, in pixels.
+    limit
+        What took most of the time: ``"drawing"``, ``"encoding"``, ``"network"``, or ``"nothing"``
+        where pictures come as fast as they may.
+    """
+
+    sharp: bool
+    rate: int
+    seconds: float
+    size: tuple[int, int]
+    limit: str
+
+
+class FrameStream:
+    """One view of the page, as trame-rca's areas are made.
+
+    Parameters
+    ----------
+    name
+        Name of the area in the page.
+    scene
+        What is drawn.
+    report
+        Called with :class:`Figures` after each picture.
+
+    Attributes
+    ----------
+    playing
+        Whether pictures follow one another by themselves.
+    paused
+        Whether somebody else draws, and no picture is wanted.
+    elsewhere
+        Called in place of drawing while that is so.
+    watched
+        Tells whether anyone looks; nothing is drawn for nobody.
+    pointer
+        What follows the mouse, the wheel and fingers.
+    """
+
+    def __init__(self, name: str, scene: Scene, report: Callable[[Figures], None]) -> None:
+        self.area_name = name
+        self.streamer: Any = None
+        self.playing = False
+        self.paused = False
+        self.elsewhere: Callable[[], None] = lambda: None
+        self.watched: Callable[[], bool] = lambda: True
+        self.composer = Composer(scene)
+        self.pointer = Pointer(scene)
+        self._scene = scene
+        self._report = report
+        self._spent = {"drawing": 0.0, "encoding": 0.0, "network": 0.0}
+        self._wake = asyncio.Event()
+        self._drawn = asyncio.Event()
+        self._sized = False
+        self._closed = False
+        self._fault = ""
+        self._recent: deque[float] = deque(maxlen=60)
+
+    def set_streamer(self, streamer: Any) -> None:
+        """Take what sends pictures to the page."""
+        self.streamer = streamer
+
+    def update_size(self, origin: str, size: Any) -> None:
+        """Follow the size of the view in the page, in CSS pixels ``w``, ``h`` times ``p``."""
+        del origin
+        if self._closed:
+            return
+        new = view_pixels(mapping(size))
+        if new != self._scene.size:
+            at_home = self._scene.at_home
+            self._scene.resize(*new)
+            if not self._sized and at_home:
+                self._scene.first_look()
+            elif at_home:
+                self._scene.home()
+            self.composer.forget()
+        self._sized = True
+        self.moved()
+
+    def on_interaction(self, origin: str, event: Any) -> None:
+        """Follow the pointer."""
+        del origin
+        if not self._closed and self.pointer(event):
+            self.moved()
+
+    def reset(self) -> None:
+        """Begin again, as when the page is loaded anew."""
+        self.moved()
+
+    def video_codecs(self) -> list[dict[str, Any]]:
+        """Return the video formats that are offered: none."""
+        return []
+
+    def negotiate_video(self, codecs: list[str]) -> dict[str, Any]:
+        """Refuse video: it costs more than it saves on a picture that is all texture."""
+        del codecs
+        return {"error": "not-a-video-stream"}
+
+    def close(self) -> None:
+        """Follow nothing any more."""
+        self._closed = True
+
+    def moved(self) -> None:
+        """Ask for a picture after a move of the camera."""
+        if self._closed:
+            return
+        self._wake.set()
+        if self.paused:
+            self.elsewhere()
+
+    def changed(self) -> None:
+        """Ask for a picture after a change of what is seen."""
+        if self._closed:
+            return
+        self.composer.forget()
+        self.moved()
+
+    async def next_picture(self) -> None:
+        """Wait until a picture has been sent."""
+        self._drawn.clear()
+        await self._drawn.wait()
+
+    async def run(self) -> None:
+        """Draw for as long as the task lives."""
+        # The shader is built for the first picture: better now, while a browser starts.
+        with self._faults_told():
+            self._scene.draw(16, 16)
+        while True:
+            await self._wake.wait()
+            if not self._wanted():
+                self._wake.clear()
+                await asyncio.sleep(0.1)
+                if self._wanted():
+                    self._wake.set()
+                continue
+            with self._faults_told():
+                await self._quick()
+                if await self._rests():
+                    await self._full()
+
+    @contextmanager
+    def _faults_told(self) -> Iterator[None]:
+        """Let a picture that fails be seen in the log; it must not be the last one."""
+        try:
+            yield
+        except Exception as error:
+            # While time goes by it may fail many times in a second.
+            if repr(error) != self._fault:
+                self._fault = repr(error)
+                _log.exception("a picture could not be drawn")
+            self._drawn.set()
+
+    def _wanted(self) -> bool:
+        return self._sized and self.streamer is not None and not self.paused and self.watched()
+
+    async def _quick(self) -> None:
+        """Send one picture in motion, no sooner than the last one allows."""
+        self._wake.clear()
+        started = time.perf_counter()
+        pixels = self.composer.quick(PLAYING if self.playing else MOVING)
+        self._spend("drawing", started)
+        await self._send(pixels, MOTION_QUALITY)
+        self._tell(started, sharp=False)
+        # Events of the page arrive while this sleeps; without it they would wait for the picture.
+        await asyncio.sleep(max(1 / FASTEST - (time.perf_counter() - started), 0.004))
+
+    async def _rests(self) -> bool:
+        try:
+            await asyncio.wait_for(self._wake.wait(), REST)
+        except TimeoutError:
+            return not self.playing
+        return False
+
+    async def _full(self) -> None:
+        """Draw the full picture, and give up as soon as something changes."""
+        started = looked = time.perf_counter()
+        canvas: NDArray[np.uint8] | None = None
+        if self.composer.complete:
+            canvas = self.composer.quick(float("inf"))
+        else:
+            for canvas in self.composer.full():
+                await asyncio.sleep(0)
+                if self._wake.is_set():
+                    return
+                if time.perf_counter() - looked > LOOK:
+                    await self._send(canvas, MOTION_QUALITY)
+                    looked = time.perf_counter()
+        if canvas is not None:
+            await self._send(canvas, REST_QUALITY)
+            self._tell(started, sharp=True)
+
+    async def _send(self, pixels: NDArray[np.uint8], quality: int) -> None:
+        height, width = pixels.shape[:2]
+        loop, begun = asyncio.get_running_loop(), time.perf_counter()
+        content = await loop.run_in_executor(None, encode, pixels, quality)
+        begun = self._spend("encoding", begun)
+        meta = {"type": "image/jpeg", "codec": "", "w": width, "h": height, "key": "key"}
+        meta |= {"st": time.time_ns() // 1_000_000, "quality": quality}
+        await self._uncongested()
+        self._spend("network", begun)
+        self.streamer.push_content(self.area_name, meta, content)
+        self._drawn.set()
+
+    async def _uncongested(self, patience: float = 2.0) -> None:
+        """Wait while earlier pictures are still on their way."""
+        end = time.perf_counter() + patience
+        monitor = self.streamer.coreServer.network_monitor
+        while monitor.pending > 1 and time.perf_counter() < end:
+            await asyncio.sleep(0.002)
+
+    def _tell(self, started: float, *, sharp: bool) -> None:
+        now = time.perf_counter()
+        self._recent.append(now)
+        rate = sum(1 for at in self._recent if at > now - 1.0)
+        limit = max(self._spent, key=lambda part: self._spent[part])
+        if not sharp and now - started < 0.9 / FASTEST:
+            limit = "nothing"
+        self._report(Figures(sharp, rate, now - started, self._scene.size, limit))
+
+    def _spend(self, part: str, since: float) -> float:
+        """Count the time since then for a part of the work, the latest pictures most."""
+        now = time.perf_counter()
+        self._spent[part] += 0.3 * (now - since - self._spent[part])
+        return now
+
+
+def encode(pixels: NDArray[np.uint8], quality: int) -> bytes:
+    """Return a picture as JPEG; at rest without halving the resolution of the colours."""
+    from PIL import Image
+
+    buffer = io.BytesIO()
+    subsampling = 0 if quality >= REST_QUALITY else 2
+    Image.fromarray(pixels).save(buffer, "JPEG", quality=quality, subsampling=subsampling)
+    return buffer.getvalue()

@@ -1,0 +1,283 @@
+"""The page: the picture over the whole window, and what lies on it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from trame.ui.vuetify3 import VAppLayout
+from trame.widgets import html
+from trame.widgets import vuetify3 as v3
+
+from flowtex.app.controllers.clockwork import PACES
+from flowtex.app.ui.controls import ARIA, hint, select, slider
+from flowtex.app.ui.elements import Client, Keys, PathLines
+from flowtex.app.ui.overlays import busy, card, complaint, help_text, pane_labels, tip
+from flowtex.app.ui.panel import build_panel
+
+if TYPE_CHECKING:
+    from flowtex.app.flow_app import FlowApp
+
+__all__ = ["THEMES", "build_page"]
+
+THEMES = {
+    "dark": {"dark": True, "colors": {"primary": "#4fd1c5", "surface": "#171c23"}},
+    "light": {"dark": False, "colors": {"primary": "#0f766e", "surface": "#ffffff"}},
+}
+
+#: Attributes that tell the page's state to whoever watches it, such as a test.
+DATA = [("data_picture", "data-picture"), ("data_sharp", "data-sharp"), ("data_busy", "data-busy")]
+
+
+def build_page(app: FlowApp) -> Any:
+    """Build the page of an application.
+
+    Returns
+    -------
+    object
+        trame's layout; its ``html`` is the text of the page.
+    """
+    key = app.state.key
+    config = {"theme": {"defaultTheme": "dark", "themes": THEMES}}
+    with VAppLayout(app.server, vuetify_config=config) as layout:
+        layout.root.theme = (key("theme"),)
+        with html.Div(
+            classes=(f"'flowtex flowtex-' + {key('theme')}",),
+            data_picture=(key("picture"),),
+            data_sharp=(key("sharp"),),
+            data_busy=(key("busy"),),
+            __properties=DATA,
+        ):
+            app.area.ui(
+                classes="flowtex-view", pointerleave=app.reader.leave, __events=["pointerleave"]
+            )
+            _client(app)
+            PathLines(over=(key("over"),), classes="flowtex-path flowtex-path-lines")
+            _keys(app)
+            pane_labels(app)
+            with html.Div(classes="flowtex-left"):
+                _title(app)
+                _planes(app)
+                card(app)
+            _buttons(app)
+            build_panel(app)
+            busy(app)
+            with html.Div(classes="flowtex-foot"):
+                _bar(app)
+                _player(app)
+                html.Div(f"{{{{ {key('figures')} }}}}", classes="flowtex-figures")
+            tip(app)
+            help_text(app)
+            complaint(app)
+    return layout
+
+
+def _client(app: FlowApp) -> None:
+    key, browser = app.state.key, app.browser
+    Client(
+        v_if=(key("there"),),
+        classes="flowtex-there",
+        source=(key("there"),),
+        settings=(key("there_settings"),),
+        camera=(key("there_camera"),),
+        time=(key("there_time"),),
+        playing=(key("playing"),),
+        update_camera=(browser.take_camera, "[$event]"),
+        update_time=(browser.take_time, "[$event]"),
+        update_playing=f"{key('playing')} = $event",
+        setting=(app.look.take_setting, "[$event]"),
+        sharp=(browser.take_sharp, "[$event]"),
+        point=(app.reader.take_point, "[$event]"),
+        hover=(app.reader.take_place, "[$event]"),
+    )
+
+
+def _keys(app: FlowApp) -> None:
+    key = app.state.key
+    close_card = app.server.trigger_name(app.reader.close_card)
+    toggles = {
+        "play": f"{key('playing')} = !{key('playing')}",
+        "theme": _other_theme(key("theme")),
+        "close": f"{key('help')} = false; {key('group')} = null; trigger('{close_card}')",
+        "help": f"{key('help')} = !{key('help')}",
+    }
+    cases = "; ".join(f"if ($event === '{name}') {{ {code} }}" for name, code in toggles.items())
+    Keys(
+        command=(app.moves.command, "[$event]"),
+        toggle=cases,
+        linked=(app.share.take_link, "[$event]"),
+    )
+
+
+def _title(app: FlowApp) -> None:
+    key = app.state.key
+    with html.Div(classes="flowtex-title flowtex-glass"):
+        html.Div("flowtex", classes="flowtex-mark")
+        with html.Div(classes="flowtex-name", v_if=(f"{key('files')}.length < 2",)):
+            html.Span(f"{{{{ {key('name')} }}}}")
+        with html.Button(
+            classes="flowtex-name flowtex-open",
+            v_else=True,
+            click=app.data.look_again,
+            aria_label="Open another file",
+            __properties=ARIA,
+        ):
+            html.Span(f"{{{{ {key('name')} }}}}")
+            v3.VIcon("mdi-chevron-down", size=18)
+            with (
+                v3.VMenu(activator="parent", max_height=360),
+                v3.VList(density="compact", classes="flowtex-list"),
+            ):
+                v3.VListItem(
+                    v_for=f"name in {key('files')}",
+                    key="name",
+                    title=("name",),
+                    active=(f"name === {key('file')}",),
+                    click=f"{key('file')} = name",
+                )
+        html.Div(f"{{{{ {key('about')} }}}}", classes="flowtex-about")
+
+
+def _planes(app: FlowApp) -> None:
+    """Let array and plane be chosen, where there is a choice."""
+    key = app.state.key
+    some = " || ".join(f"{key(name)}.length" for name in ("vectors_choices", "axes", "blocks"))
+    with html.Div(classes="flowtex-planes flowtex-glass", v_if=(some,)):
+        for name, choices, text in (
+            ("block", "blocks", "Which of the grids in the file is drawn."),
+            ("vectors", "vectors_choices", "Which array is taken for the velocity."),
+        ):
+            with html.Div(classes="flowtex-row", v_if=(f"{key(choices)}.length",)):
+                hint(text, "end")
+                select("Grid" if name == "block" else "Velocity", key(name), (key(choices),))
+        with html.Div(classes="flowtex-stack", v_if=(f"{key('axes')}.length",)):
+            with html.Div(classes="flowtex-line"):
+                html.Span("Plane", classes="flowtex-label")
+                with v3.VBtnToggle(
+                    v_model=(key("axis"),),
+                    mandatory=True,
+                    density="compact",
+                    variant="text",
+                    color="primary",
+                    classes="flowtex-toggle",
+                    aria_label="Axis across the plane",
+                    __properties=ARIA,
+                ):
+                    hint("Draw planes of constant i, j or k.", "end")
+                    v3.VBtn(
+                        "{{ one }}",
+                        v_for=f"one in {key('axes')}",
+                        key="one",
+                        value=("one",),
+                        size="small",
+                    )
+                html.Span(
+                    f"{{{{ {key('axis')} }}}} = {{{{ {key('index')} }}}}", classes="flowtex-value"
+                )
+            slider("Plane", key("index"), 0, (key("planes"),), 1)
+
+
+def _button(icon: str, text: str, click: Any, **attributes: Any) -> Any:
+    button = v3.VBtn(
+        icon=True,
+        variant="text",
+        size="small",
+        click=click,
+        aria_label=text,
+        __properties=ARIA,
+        **attributes,
+    )
+    with button:
+        v3.VIcon(icon, size=20)
+        v3.VTooltip(text=text, activator="parent", location="bottom", open_delay=400)
+    return button
+
+
+def _buttons(app: FlowApp) -> None:
+    key = app.state.key
+    with html.Div(classes="flowtex-buttons flowtex-glass"):
+        _button("mdi-fit-to-screen-outline", "Show the whole surface", app.area.reset_camera)
+        with (
+            _button("mdi-axis-arrow", "Look from a side", None, v_if=(f"{key('views')}.length",)),
+            v3.VMenu(activator="parent"),
+            v3.VList(density="compact", classes="flowtex-list"),
+        ):
+            v3.VListItem(
+                v_for=f"view in {key('views')}",
+                key="view",
+                title=("view",),
+                click=(app.moves.look_from, "[view]"),
+            )
+        _button("mdi-theme-light-dark", "Light or dark", _other_theme(key("theme")))
+        _button("mdi-fullscreen", "Full screen", "flowtex_fullscreen()")
+        _button("mdi-help", "Keys and the mouse", f"{key('help')} = true")
+        _button("mdi-tune-variant", "Controls", f"{key('panel')} = !({shown(key('panel'))})")
+
+
+def _other_theme(theme: str) -> str:
+    return f"{theme} = {theme} === 'dark' ? 'light' : 'dark'"
+
+
+def shown(panel: str) -> str:
+    """Whether the panel is shown: as chosen, or at first where there is room for it."""
+    return f"({panel} === null ? $vuetify.display.mdAndUp : {panel})"
+
+
+def _bar(app: FlowApp) -> None:
+    bar, scale = app.state.key("bar"), app.state.key("scale")
+    with html.Div(classes="flowtex-corner"):
+        with html.Div(classes="flowtex-scale", v_show=(f"{scale}.width",)):
+            html.Span(f"{{{{ {scale}.text }}}}")
+            html.Div(classes="flowtex-ruler", style=(f"{{ width: {scale}.width + 'vw' }}",))
+        with html.Div(classes="flowtex-bar flowtex-glass", v_show=(f"{bar}.name",)):
+            html.Div(f"{{{{ {bar}.name }}}}", classes="flowtex-label")
+            ramp = f"{{ background: 'linear-gradient(to right, ' + {bar}.stops.join(',') + ')' }}"
+            html.Div(classes="flowtex-ramp", style=(ramp,))
+            with html.Div(classes="flowtex-line"):
+                html.Span(f"{{{{ {bar}.low }}}}", classes="flowtex-value")
+                html.Span(f"{{{{ {bar}.high }}}}", classes="flowtex-value")
+
+
+def _player(app: FlowApp) -> None:
+    key = app.state.key
+    playing, steady = key("playing"), key("steady")
+    step = app.clockwork.step
+    with html.Div(classes="flowtex-player flowtex-glass"):
+        _button("mdi-skip-previous", "A step back", (step, "[-1]"), v_if=(f"!{steady}",))
+        with v3.VBtn(
+            icon=True,
+            variant="text",
+            size="small",
+            click=f"{playing} = !{playing}",
+            aria_label=(f"{playing} ? 'Pause' : 'Play'",),
+            __properties=ARIA,
+        ):
+            v3.VIcon(f"{{{{ {playing} ? 'mdi-pause' : 'mdi-play' }}}}", size=24)
+        _button("mdi-skip-next", "A step on", (step, "[1]"), v_if=(f"!{steady}",))
+        html.Span("Stream along the flow", classes="flowtex-label flowtex-hint", v_if=(steady,))
+        slider(
+            "Time",
+            key("time"),
+            (key("first"),),
+            (key("last"),),
+            (key("tick"),),
+            v_if=(f"!{steady}",),
+        )
+        html.Span(
+            f"{{{{ {key('moment')} }}}}",
+            classes="flowtex-value flowtex-moment",
+            v_if=(f"!{steady}",),
+        )
+        with html.Button(
+            f"{{{{ {key('pace')} }}}}×",
+            classes="flowtex-link flowtex-pace",
+            aria_label="How fast time goes by",
+            __properties=ARIA,
+        ):
+            hint("How fast time goes by.", "top")
+            with v3.VMenu(activator="parent"), v3.VList(density="compact", classes="flowtex-list"):
+                v3.VListItem(
+                    v_for=f"pace in {list(PACES)}",
+                    key="pace",
+                    title=("pace + '×'",),
+                    click=f"{key('pace')} = pace",
+                )

@@ -1,0 +1,302 @@
+"""What flowtex runs on: which OpenGL answers, what is missing, and the command that mends it.
+
+VTK without an OpenGL library ends the process (a segmentation fault) and raises nothing, so the
+question is put to a second process, which draws a picture of 16 x 16 pixels, reads it back and
+prints what it found as one line of JSON::
+
+    probe()  ->  python doctor.py --probe  ->  OpenGLReport, also when that process crashed
+
+The second process runs this very file and needs nothing of flowtex but the standard library and
+VTK; the answer is asked for once per process.
+"""
+
+from __future__ import annotations
+
+import functools
+import importlib.metadata
+import importlib.util
+import json
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Literal
+
+from flowtex._util.extras import install_extra
+
+__all__ = [
+    "Check",
+    "OpenGLMissingError",
+    "OpenGLReport",
+    "diagnose",
+    "main",
+    "prefer_headless",
+    "probe",
+    "report",
+    "require_opengl",
+]
+
+WINDOW_VARIABLE = "VTK_DEFAULT_OPENGL_WINDOW"
+PROBE_COMMAND = (sys.executable, "-P", str(Path(__file__).resolve()), "--probe")
+PROBE_SECONDS = 120.0
+REQUIRED = ("numpy", "scipy", "pyvista", "vtk")
+OPTIONAL = {"trame": "app", "trame-vuetify": "app", "trame-rca": "app", "anywidget": "notebook"}
+SOFTWARE = ("llvmpipe", "softpipe", "swrast", "swiftshader", "basic render", "gdi generic")
+
+
+class OpenGLMissingError(RuntimeError):
+    """VTK cannot draw here; the text names what to install."""
+
+
+@dataclass(frozen=True)
+class OpenGLReport:
+    """What the probe found.
+
+    ``usable`` says whether a picture was drawn and read back; where not, ``failure`` says what
+    happened and ``remedy`` what to do. ``software`` is true where the processor draws and no
+    graphics card. ``max_texture_size`` is in texels along one side; ``texture_units`` counts the
+    textures that one fragment can read.
+    """
+
+    usable: bool
+    window_class: str = ""
+    vendor: str = ""
+    renderer: str = ""
+    version: str = ""
+    software: bool = False
+    max_texture_size: int = 0
+    texture_units: int = 0
+    failure: str = ""
+    remedy: str = ""
+
+
+@dataclass(frozen=True)
+class Check:
+    """One line of the diagnosis: what was looked at, how it stands, and what would mend it."""
+
+    name: str
+    status: Literal["ok", "warn", "fail"]
+    detail: str
+    remedy: str = ""
+
+
+def has_display() -> bool:
+    """Tell whether a window could be opened."""
+    if not sys.platform.startswith("linux"):
+        return True
+    return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
+
+
+def prefer_headless() -> None:
+    """Have VTK draw through EGL where there is no display, unless the user chose otherwise.
+
+    Without a display VTK tries X first and prints a warning for every window. It reads the
+    environment variable when it makes its first window, so calling this before that is enough.
+    """
+    if not has_display():
+        os.environ.setdefault(WINDOW_VARIABLE, "vtkEGLRenderWindow")
+
+
+@functools.cache
+def probe() -> OpenGLReport:
+    """Ask a second process which OpenGL there is; the answer is kept. About one second."""
+    prefer_headless()
+    return ask(PROBE_COMMAND)
+
+
+def ask(command: Sequence[str], timeout: float = PROBE_SECONDS) -> OpenGLReport:
+    """Run the command of a probe and read its answer, whatever becomes of it.
+
+    Parameters
+    ----------
+    command : sequence of str
+        What to run; its last line on stdout is the answer, as JSON.
+    timeout : float
+        Seconds to wait for it.
+    """
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, timeout=timeout, check=False)
+    except subprocess.TimeoutExpired:
+        return _unusable(f"the probe did not answer within {timeout:g} s")
+    except OSError as error:
+        return _unusable(f"the probe could not be started: {error}")
+    lines = done.stdout.strip().splitlines()
+    if done.returncode == 0 and lines:
+        found = OpenGLReport(**json.loads(lines[-1]))
+        return found if found.usable else _unusable(found.failure)
+    said = re.sub(r"\x1b\[[0-9;]*m", "", done.stderr).strip().splitlines()
+    # What a process says before it crashes is VTK's advice about another library than the one
+    # that is missing.
+    told = f"; it said: {said[-1].rstrip('.')}" if said and done.returncode >= 0 else ""
+    return _unusable(_ending(done.returncode) + told)
+
+
+def require_opengl() -> OpenGLReport:
+    """Return the report, or say what to install.
+
+    Raises
+    ------
+    OpenGLMissingError
+        When VTK cannot draw. Going on would end the process.
+    """
+    found = probe()
+    if not found.usable:
+        msg = f"VTK cannot draw here: {found.failure}. To mend it:\n  {found.remedy}"
+        raise OpenGLMissingError(msg)
+    return found
+
+
+def _unusable(failure: str) -> OpenGLReport:
+    chosen = os.environ.get(WINDOW_VARIABLE, "")
+    return OpenGLReport(usable=False, window_class=chosen, failure=failure, remedy=_remedy())
+
+
+def _ending(code: int) -> str:
+    """Say in words how a process ended."""
+    if code >= 0:
+        return f"the process that tried it ended with code {code}"
+    try:
+        name = signal.Signals(-code).name
+    except ValueError:  # a number that this system has no name for
+        name = f"signal {-code}"
+    return f"the process that tried it was ended by {name}, as happens without an OpenGL library"
+
+
+def _remedy() -> str:
+    """Name what installs an OpenGL that VTK can use in the present environment."""
+    chosen = os.environ.get(WINDOW_VARIABLE, "")
+    if importlib.util.find_spec("vtkmodules") is None:
+        return "python -m pip install vtk"
+    if "OSOpenGL" in chosen:
+        return f"{install_command('libosmesa6')}, or unset {WINDOW_VARIABLE}"
+    if not sys.platform.startswith("linux"):
+        return "install a graphics driver with OpenGL 3.2 or later"
+    if "EGL" in chosen or not has_display():
+        return install_command("libegl1", "libgl1-mesa-dri")
+    return install_command("libgl1", "libegl1", "libgl1-mesa-dri")
+
+
+def install_command(*packages: str) -> str:
+    """Return the command that installs Debian packages, or their names for other systems."""
+    if shutil.which("apt-get") is None:
+        return f"install Mesa's OpenGL (on Debian and Ubuntu it is {' '.join(packages)})"
+    sudo = "" if os.geteuid() == 0 else "sudo "
+    install = f"{sudo}apt-get install --no-install-recommends {' '.join(packages)}"
+    return f"{sudo}apt-get update && {install}"
+
+
+def diagnose() -> list[Check]:
+    """Look at everything that flowtex needs; raises nothing."""
+    python = Check("Python", "ok", f"{sys.version.split()[0]}, {sys.executable}")
+    return [python, _opengl(), _display(), _shaders(), *_packages()]
+
+
+def _opengl() -> Check:
+    found = probe()
+    if not found.usable:
+        return Check("OpenGL", "fail", found.failure, found.remedy)
+    kind = "drawn by the processor" if found.software else "drawn by a graphics card"
+    return Check(
+        "OpenGL",
+        "ok",
+        f"{found.version}; {found.renderer} ({found.vendor}), {kind}; {found.window_class}; "
+        f"textures up to {found.max_texture_size}, {found.texture_units} at once",
+    )
+
+
+def _display() -> Check:
+    if has_display():
+        return Check("Display", "ok", os.environ.get("DISPLAY") or "the system's")
+    return Check("Display", "ok", "none: pictures and the browser work, windows do not")
+
+
+def _shaders() -> Check:
+    from flowtex.rendering import shader_files as _assets
+
+    mend = "python -m pip install --force-reinstall --no-deps flowtex"
+    try:
+        folder, names = _assets.shader_folder(), _assets.shader_names()
+    except FileNotFoundError as error:
+        return Check("Shaders", "fail", str(error), mend)
+    return Check("Shaders", "ok" if names else "fail", f"{len(names)} files in {folder}", mend)
+
+
+def _packages() -> list[Check]:
+    checks = []
+    for name in (*REQUIRED, *OPTIONAL):
+        extra = OPTIONAL.get(name)
+        try:
+            checks.append(Check(name, "ok", importlib.metadata.version(name)))
+        except importlib.metadata.PackageNotFoundError:
+            mend = install_extra(extra) if extra else f"python -m pip install {name}"
+            status: Literal["warn", "fail"] = "warn" if extra else "fail"
+            use = f"not installed; only the extra {extra!r} needs it" if extra else "not installed"
+            checks.append(Check(name, status, use, mend))
+    return checks
+
+
+def report(checks: Sequence[Check]) -> None:
+    """Print the checks as a table, and each remedy on a line of its own that can be copied."""
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    colours = {"ok": "green", "warn": "yellow", "fail": "bold red"}
+    table = Table("", "what", "found", box=None)
+    for check in checks:
+        table.add_row(Text(check.status, colours[check.status]), check.name, Text(check.detail))
+    console = Console()
+    console.print(table)
+    for check in checks:
+        if check.remedy and check.status != "ok":
+            console.print(f"\n{check.name}, to mend it:", markup=False, highlight=False)
+            console.print(f"  {check.remedy}", markup=False, highlight=False, soft_wrap=True)
+
+
+def main() -> int:
+    """Diagnose and report; return 1 when something that flowtex needs is missing."""
+    checks = diagnose()
+    report(checks)
+    return int(any(check.status == "fail" for check in checks))
+
+
+def draw() -> OpenGLReport:
+    """Draw a red picture and read it back: the probe, which may end the process."""
+    import vtkmodules.vtkRenderingOpenGL2 as gl
+    from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
+    from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow
+
+    window = gl.vtkOpenGLRenderWindow.SafeDownCast(vtkRenderWindow())
+    renderer, pixel = vtkRenderer(), vtkUnsignedCharArray()
+    window.SetOffScreenRendering(1)
+    window.SetSize(16, 16)
+    renderer.SetBackground(1.0, 0.0, 0.0)
+    window.AddRenderer(renderer)
+    window.Render()
+    window.GetPixelData(8, 8, 8, 8, 0, pixel, 0)
+    rgb = tuple(pixel.GetValue(n) for n in range(pixel.GetNumberOfValues()))
+    lines = window.ReportCapabilities().splitlines()
+    told = dict(line.split(" string:", 1) for line in lines if " string:" in line)
+    return OpenGLReport(
+        usable=rgb == (255, 0, 0),
+        window_class=window.GetClassName(),
+        vendor=told.get("OpenGL vendor", "").strip(),
+        renderer=(name := told.get("OpenGL renderer", "").strip()),
+        version=told.get("OpenGL version", "").strip(),
+        software=any(word in name.lower() for word in SOFTWARE),
+        max_texture_size=gl.vtkTextureObject.GetMaximumTextureSize(window),
+        texture_units=window.GetTextureUnitManager().GetNumberOfTextureUnits(),
+        failure="" if rgb == (255, 0, 0) else f"a red picture came back as {rgb}",
+    )
+
+
+if __name__ == "__main__":
+    if sys.argv[1:] == ["--probe"]:
+        sys.stdout.write(json.dumps(asdict(draw())) + "\n")
+    else:
+        sys.exit(main())

@@ -1,0 +1,1 @@
+"""From meshes and files to fields."""

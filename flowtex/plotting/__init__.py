@@ -1,0 +1,1 @@
+"""Flow textures in PyVista plotters."""

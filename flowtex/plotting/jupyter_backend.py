@@ -1,0 +1,144 @@
+"""PyVista's Jupyter backend ``"flowtex"``: the flow of a plotter, drawn by the browser.
+
+PyVista finds :func:`show_plotter` through its entry point. A backend that is found so may be
+taken for the default where no other is installed; this one then stands back.
+"""
+
+from __future__ import annotations
+
+import sys
+import warnings
+from typing import Any
+
+import numpy as np
+
+from flowtex.plotting.handle import FlowHandle
+from flowtex.staging import straight
+
+__all__ = ["show_plotter"]
+
+NAME = "flowtex"
+
+
+def show_plotter(plotter: Any, *, screenshot: Any = None, **options: Any) -> Any:
+    """Show the flow texture of a plotter in the notebook, from the plotter's own camera.
+
+    Parameters
+    ----------
+    plotter
+        A PyVista plotter on which ``plotter.flowtex.add`` was called.
+    screenshot
+        Where the picture goes as well, as in ``plotter.show``.
+    **options
+        Further arguments of :class:`flowtex.FlowWidget`, from ``jupyter_kwargs``.
+
+    Returns
+    -------
+    FlowWidget
+
+    Raises
+    ------
+    ValueError
+        When there is no flow texture on the plotter.
+
+    Warns
+    -----
+    UserWarning
+        When there is more on the plotter than the browser draws; the text names it.
+    """
+    if not _asked_for():
+        return _instead(plotter, screenshot, options)
+    handles = list(plotter.flowtex)
+    if not handles:
+        msg = (
+            "there is no flow texture on this plotter; add one with plotter.flowtex.add(mesh), or "
+            "choose another jupyter_backend"
+        )
+        raise ValueError(msg)
+    shown = handles[0]
+    left_out = [*_others(plotter, shown), *_moved(shown)]
+    if left_out:
+        warnings.warn(
+            f"The backend 'flowtex' draws one flow texture, and leaves out: {', '.join(left_out)}; "
+            "another jupyter_backend, such as 'trame', draws them.",
+            stacklevel=2,
+        )
+    if screenshot:
+        plotter.screenshot(screenshot)
+    from flowtex.widget import FlowWidget
+
+    return FlowWidget(shown.field, **{**_look_of(plotter, shown), **options})
+
+
+def _look_of(plotter: Any, handle: FlowHandle) -> dict[str, Any]:
+    """Return the arguments of a widget that looks the same."""
+    camera, mapper = plotter.camera, handle.actor.mapper
+    width, height = plotter.window_size
+    name = handle.scalars
+    colours: dict[str, Any] = {"scalars": False, "color": handle.actor.prop.color}
+    if name is not None:
+        table = np.asarray(mapper.lookup_table.values)
+        colours = {"scalars": name, "cmap": table, "clim": tuple(mapper.scalar_range)}
+    image = handle.view.image
+    return {
+        **dict(handle.settings),
+        **colours,
+        "image": None if image is None else straight(image),
+        "lighting": bool(handle.actor.prop.lighting),
+        "opacity": float(handle.actor.prop.opacity),
+        "show_scalar_bar": bool(plotter.scalar_bars),
+        "background": plotter.background_color,
+        "size": (int(width), int(height)),
+        "camera": {
+            "position": camera.position,
+            "focal_point": camera.focal_point,
+            "up": camera.up,
+            "parallel": bool(camera.parallel_projection),
+            "parallel_scale": camera.parallel_scale,
+            "view_angle": camera.view_angle,
+        },
+    }
+
+
+def _others(plotter: Any, shown: FlowHandle) -> list[str]:
+    """Name what is on the plotter beside one flow texture and the bars of scalars."""
+    own = {id(bar) for bar in plotter.scalar_bars.values()}
+    return [
+        f"{name!r}"
+        for renderer in plotter.renderers
+        for name, actor in renderer.actors.items()
+        if actor is not shown.actor and id(actor) not in own and actor.GetVisibility()
+    ]
+
+
+def _moved(shown: FlowHandle) -> list[str]:
+    """Name what is done to the texture's actor that the browser does not do."""
+    if not np.allclose(shown.actor.user_matrix, np.eye(4)) or any(shown.actor.position):
+        return ["the actor's own place"]
+    return []
+
+
+def _asked_for() -> bool:
+    """Tell whether the user has named this backend.
+
+    PyVista does not tell a backend whether it was named or is merely the first that was found,
+    so the caller's own argument is looked at; where that has another form, being called counts.
+    """
+    frame = sys._getframe(1)
+    while (caller := frame.f_back) is not None:
+        frame = caller
+        if frame.f_code.co_name == "show" and "jupyter_backend" in frame.f_locals:
+            named = frame.f_locals["jupyter_backend"]
+            return named is not None and str(named).lower() == NAME
+    return True
+
+
+def _instead(plotter: Any, screenshot: Any, options: dict[str, Any]) -> Any:
+    """Do what PyVista would do if this backend were not installed."""
+    import pyvista as pv
+    from pyvista.jupyter.notebook import show_static_image
+
+    for backend in pv.registered_jupyter_backends():
+        if backend.name != NAME:
+            return backend.handler(plotter, screenshot=screenshot, **options)
+    return show_static_image(plotter, screenshot)

@@ -1,9 +1,0 @@
-"""The texture in VTK: fragment shader replacements on a PyVista actor."""
-
-from __future__ import annotations
-
-from flowtex.renderers.vtk.layer import FlowLayer
-from flowtex.renderers.vtk.mapper import use_flow_mapper
-from flowtex.renderers.vtk.mesh import set_attributes, surface_mesh
-
-__all__ = ["FlowLayer", "set_attributes", "surface_mesh", "use_flow_mapper"]

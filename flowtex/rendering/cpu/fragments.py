@@ -1,0 +1,77 @@
+"""What the rasteriser hands to the method: the varyings of every pixel and their derivatives."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flowtex.rendering.cpu.raster import Coverage
+from flowtex.textures import TextureSet
+
+__all__ = ["Fragments", "Varying"]
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Varying:
+    """Values at N fragments, (N, C), and their derivatives for a pixel to the right and down."""
+
+    value: Floats
+    dx: Floats
+    dy: Floats
+
+    def __getitem__(self, some: slice) -> Varying:
+        """Take some of the fragments."""
+        return Varying(self.value[some], self.dx[some], self.dy[some])
+
+
+@dataclass(frozen=True, eq=False)
+class Fragments:
+    """N pixels of a surface.
+
+    Attributes
+    ----------
+    position
+        Positions in the surface's own frame, three channels.
+    coordinate
+        Texture coordinates in the slices, two channels.
+    noise
+        Noise coordinates, two channels, where the textures have a noise texture.
+    normal
+        Normals in the surface's own frame, of any length, where it is not flat.
+    """
+
+    position: Varying
+    coordinate: Varying
+    noise: Varying | None = None
+    normal: Varying | None = None
+
+    @classmethod
+    def of(cls, textures: TextureSet, coverage: Coverage) -> Fragments:
+        """Interpolate what the nodes have to the pixels of a coverage."""
+        geometry, paper = textures.geometry, textures.paper
+
+        def varying(nodal: NDArray[np.floating]) -> Varying:
+            return Varying(*coverage.mix(nodal.reshape(-1, nodal.shape[-1])))
+
+        return cls(
+            varying(geometry.position),
+            varying(geometry.coordinate),
+            None if paper is None else varying(paper.coordinate),
+            None if geometry.planar else varying(geometry.normal),
+        )
+
+    def __len__(self) -> int:
+        """Count the fragments."""
+        return len(self.position.value)
+
+    def parts(self, count: int) -> Iterator[tuple[slice, Fragments]]:
+        """Cut into parts of at most ``count`` fragments."""
+        for start in range(0, len(self), count):
+            some = slice(start, start + count)
+            noise, normal = (None if v is None else v[some] for v in (self.noise, self.normal))
+            yield some, Fragments(self.position[some], self.coordinate[some], noise, normal)

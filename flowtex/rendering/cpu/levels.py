@@ -1,0 +1,68 @@
+"""Levels of detail from the footprint of a pixel: ``shaders/common/levels.glsl``."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flowtex.rendering.cpu.fragments import Varying
+
+__all__ = ["footprint", "level_colour", "on_surface", "slice_level"]
+
+Floats = NDArray[np.float64]
+
+
+def footprint(dx: Floats, dy: Floats) -> tuple[Floats, Floats]:
+    """Longest and shortest side of what a pixel covers, from derivatives (N, C), (N,) each."""
+    aa, bb, ab = (np.einsum("nc,nc->n", p, q) for p, q in ((dx, dx), (dy, dy), (dx, dy)))
+    # |dx x dy|^2, whatever the number of channels is.
+    square = np.maximum(aa * bb - ab * ab, 0.0)
+    half = 0.5 * (aa + bb)
+    root = np.sqrt(np.maximum(half * half - square, 0.0))
+    longest = np.sqrt(np.maximum(half + root, 1e-38))
+    return longest, np.sqrt(square) / longest
+
+
+def on_surface(position: Varying, normal: Varying, eye: Floats) -> Varying:
+    """Positions with their derivatives as they are on the smooth surface, not on its facets.
+
+    Parameters
+    ----------
+    position, normal
+        Positions and normals, three channels each.
+    eye
+        ``u_eye``: the eye and 1, or the way to it and 0, (4,).
+    """
+    ray = _unit(eye[:3] - eye[3] * position.value)
+    toward = _unit(normal.value)
+    facing = np.einsum("nc,nc->n", toward, ray)
+    facing = np.where(facing < 0, -1.0, 1.0) * np.maximum(np.abs(facing), 0.05)
+
+    def moved(derivative: Floats) -> Floats:
+        off = np.einsum("nc,nc->n", toward, derivative) / facing
+        return np.asarray(derivative - ray * off[:, None])
+
+    return Varying(position.value, moved(position.dx), moved(position.dy))
+
+
+def _unit(vector: Floats) -> Floats:
+    length = np.linalg.norm(vector, axis=-1, keepdims=True)
+    return np.asarray(vector / np.maximum(length, np.finfo(float).tiny))
+
+
+def slice_level(coordinate: Varying, values: Mapping[str, Any]) -> Floats:
+    """Mip level of the slice texture, (N,): the shorter side of the footprint decides."""
+    if not values["u_lod"]:
+        return np.zeros(len(coordinate.value))
+    size = np.asarray(values["u_slicesSize"])
+    _, shortest = footprint(coordinate.dx * size, coordinate.dy * size)
+    return np.clip(np.log2(np.maximum(shortest, 1e-6)), 0.0, values["u_deepest"])
+
+
+def level_colour(level: Floats) -> Floats:
+    """Colours (..., 3) for levels of detail (...): one hue for each doubling, six in a round."""
+    turn = level[..., None] / 6.0 + np.array([0.0, -0.333, 0.333])
+    return np.asarray(0.35 + 0.65 * (0.5 + 0.5 * np.cos(2 * np.pi * turn)))

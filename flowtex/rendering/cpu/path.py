@@ -1,0 +1,123 @@
+"""Paths from the slice texture: ``shaders/common/path.glsl`` for many fragments at once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flowtex.rendering.cpu.lookup import Mips
+
+__all__ = ["Path", "SignFreeSlices", "Slices"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.intp]
+
+
+@dataclass(frozen=True, eq=False)
+class Slices:
+    """The slice texture at one moment: one destination time, or two and what is between them."""
+
+    before: Mips
+    after: Mips | None = None
+    between: float = 0.0
+
+    def layer(self, coordinate: Floats, layer: int | Ints, level: Floats) -> Floats:
+        """Channels of one layer, (N, 4), at texture coordinates (N, 2) and mip levels (N,)."""
+        value = self.before.at(coordinate, level, layer)
+        if self.after is None:
+            return value
+        return value + self.between * (self.after.at(coordinate, level, layer) - value)
+
+
+@dataclass(frozen=True, eq=False)
+class SignFreeSlices(Slices):
+    """The slice texture of a field in which v and -v mean the same, at its finest level.
+
+    Texels around a fragment that point against the others are turned over: their two sides
+    change places, and their slopes the sign.
+    """
+
+    size: tuple[float, float] = (1.0, 1.0)
+    lags: int = 0
+
+    def layer(self, coordinate: Floats, layer: int | Ints, level: Floats) -> Floats:
+        """Channels of one layer, (N, 4), at texture coordinates (N, 2)."""
+        del level
+        at = coordinate * np.array(self.size) - 0.5
+        base = np.floor(at)
+        s, t = (at - base).T
+        weights = ((1 - s) * (1 - t), s * (1 - t), (1 - s) * t, s * t)
+        # The side that a texel which is turned over is taken from instead.
+        other = np.asarray(layer) + np.where(np.asarray(layer) > self.lags, -1, 1) * self.lags
+        other = np.where(np.asarray(layer) == 0, 0, other)
+        together, result = np.zeros((len(s), 3)), np.zeros((len(s), 4))
+        for weight, right in zip(weights, ((0, 0), (1, 0), (0, 1), (1, 1)), strict=True):
+            place, finest = (base + right + 0.5) / self.size, np.zeros(len(s))
+            tangent = self.before.at(place, finest, 0)[:, :3]
+            turned = np.einsum("nc,nc->n", together, tangent) < 0
+            sign = np.where(turned, -1.0, 1.0)[:, None]
+            together += sign * tangent
+            found = self.before.at(place, finest, np.where(turned, other, layer))
+            found[:, :3] *= sign
+            result += weight[:, None] * found
+        return result
+
+
+class Path:
+    """Paths followed outward from lag zero, one side at a time.
+
+    Parameters
+    ----------
+    slices
+        The slice texture.
+    coordinate, level
+        Texture coordinates (N, 2) and mip levels (N,) of the fragments.
+    ends
+        Slopes at lag zero and at the first lag, (N, 3) each.
+    first
+        Layer before the side's first slice.
+    lags
+        Lags of the slices.
+    """
+
+    def __init__(
+        self,
+        slices: Slices,
+        coordinate: Floats,
+        level: Floats,
+        ends: tuple[Floats, Floats],
+        first: int,
+        lags: Floats,
+    ) -> None:
+        self._slices, self._coordinate, self._level = slices, coordinate, level
+        self._first, self._lags = first, lags
+        self._segment = np.zeros(len(coordinate), dtype=np.intp)
+        self.before, self._after = ends[0].copy(), ends[1].copy()
+        self._from = np.zeros(len(coordinate))
+        self._to = np.full(len(coordinate), lags[0])
+
+    def follow(self, lag: Floats) -> Floats:
+        """Displacements (N, 3) at lags (N,) that are not smaller than those of the call before."""
+        while True:
+            on = np.flatnonzero((lag > self._to) & (self._segment < len(self._lags) - 1))
+            if not len(on):
+                break
+            self._segment[on] += 1
+            segment = self._segment[on]
+            self.before[on] = self._after[on]
+            layer = self._first + segment + 1
+            found = self._slices.layer(self._coordinate[on], layer, self._level[on])
+            self._after[on] = found[:, :3]
+            self._from[on] = self._to[on]
+            self._to[on] = self._lags[segment]
+        late = (lag - self._from) / (self._to - self._from)
+        slope = self.before + late[:, None] * (self._after - self.before)
+        return np.asarray(lag[:, None] * slope)
+
+    def speed(self, lag: Floats) -> Floats:
+        """Speed of the particles at that lag, (N,): the length of d(lag * slope) / d lag."""
+        bend = (self._after - self.before) / (self._to - self._from)[:, None]
+        along = self.before + bend * (2.0 * lag - self._from)[:, None]
+        return np.asarray(np.linalg.norm(along, axis=-1))

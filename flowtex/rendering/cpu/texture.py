@@ -1,0 +1,205 @@
+"""The sum of equation 2: ``shaders/common/texture.glsl`` for many fragments at once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flowtex.rendering.cpu.fragments import Fragments
+from flowtex.rendering.cpu.path import Path, Slices
+
+__all__ = ["Lookup", "LookupMaker", "Side", "Summing", "Sums", "shared", "weight"]
+
+Floats = NDArray[np.float64]
+Values = Mapping[str, Any]
+
+
+@dataclass
+class Sums:
+    """Sums along the paths of N fragments.
+
+    Attributes
+    ----------
+    values
+        Of the weighted values, (N, C).
+    squares
+        Of the squared weights, (N,).
+    neighbours
+        Of the products of neighbouring weights, (N,).
+    """
+
+    values: Floats
+    squares: Floats
+    neighbours: Floats
+
+
+class Lookup(Protocol):
+    """What is summed along the paths of N fragments, and how the sums become the texture.
+
+    Attributes
+    ----------
+    spacing
+        Distance between two samples of each fragment, (N,), as a length; with the paper's
+        textures in units of lag at unit speed.
+    level
+        Level of detail of what is summed, (N,), to be shown.
+    """
+
+    spacing: Floats
+    level: Floats
+
+    def move(self, slope: Floats, speed: Floats) -> None:
+        """Learn the slopes at lag zero and the speeds, (N,), before anything is looked up."""
+        return
+
+    def lookup(self, displacement: Floats, length: Floats) -> Floats:
+        """Values (N, C) at displacements (N, 3) from the fragments, ``length`` (N,) on the way."""
+
+    def blend(self, sums: Sums) -> Floats:
+        """Texture from the sums: (N,), or the colours and opacity of a picture, (N, 4)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Side:
+    """One side of the paths of N fragments.
+
+    Attributes
+    ----------
+    sign
+        -1 behind the particles, 1 ahead of them.
+    path
+        The paths, from lag zero outward.
+    spacing
+        Distance between two samples in nominal length, (N,).
+    reach
+        Lag at which each path ends, (N,).
+    scale
+        Nominal length of a unit of lag, (N,).
+    """
+
+    sign: float
+    path: Path
+    spacing: Floats
+    reach: Floats
+    scale: Floats
+
+    def step(self, lag: Floats) -> Floats:
+        """Lag to the next sample from lags (N,): equation 3, with the speed that is there."""
+        speed = np.maximum(self.path.speed(lag), 1e-6)
+        return np.asarray(self.spacing / (self.scale * speed))
+
+
+#: Makes the look-up of some fragments from the uniforms.
+LookupMaker = Callable[[Fragments, Values], Lookup]
+
+
+def weight(x: float, values: Values) -> float:
+    """Weight at x in -1 ... 1, negative behind the particle."""
+    if values["u_kernel"] == 1:
+        return 1.0
+    if values["u_kernel"] == 2:
+        return 0.5 * (1.0 - x) if values["u_sides"] == 2 else 1.0 - abs(x)
+    return 0.5 + 0.5 * float(np.cos(np.pi * x))
+
+
+def shared(apart: Floats, near: Floats) -> Floats:
+    """Variance of a sum over that of independent samples, (N,).
+
+    Parameters
+    ----------
+    apart
+        Distance of two samples in grains, (N,).
+    near
+        Correlation of the weights with those of the next sample, (N,).
+    """
+    total = np.ones(np.broadcast_shapes(np.shape(apart), np.shape(near)))
+    for m in range(1, 25):
+        d = m * m * np.square(apart)
+        bell = np.exp(-np.minimum(d, 3.0) * (1.19 + 0.06 * np.minimum(d, 3.0)))
+        total += np.where(d > 3.0, 0.0, 2.0 * np.power(near, m * m) * bell)
+    return total
+
+
+class Summing:
+    """The loop over the samples of some fragments.
+
+    Parameters
+    ----------
+    slices
+        The slice texture.
+    values
+        The uniforms.
+    lookup
+        What is summed.
+    paper
+        Whether the slopes are those of the paper's noise texture.
+    """
+
+    def __init__(self, slices: Slices, values: Values, lookup: Lookup, *, paper: bool) -> None:
+        self._slices, self._values, self._lookup, self._paper = slices, values, lookup, paper
+        self._lags = np.asarray(values["u_lags"])
+
+    def texture(self, coordinate: Floats, level: Floats) -> Floats:
+        """Texture of the fragments at slice coordinates (N, 2) and mip levels (N,)."""
+        values, lookup = self._values, self._lookup
+        base = self._slices.layer(coordinate, 0, level)
+        speed = np.linalg.norm(base[:, :3], axis=-1)
+        moving = values["u_moving"]
+        lookup.move(speed, self._slices.layer(coordinate, 2, level)[:, 3] if moving else speed)
+        sums = self._first(len(base))
+        for side in self.sides(coordinate, level, base):
+            self._add(sums, side)
+        return lookup.blend(sums)
+
+    def sides(self, coordinate: Floats, level: Floats, base: Floats) -> Iterator[Side]:
+        """Sides of the paths of N fragments, whose layer 0 is ``base``, (N, 4)."""
+        speed = np.linalg.norm(base[:, :3], axis=-1)
+        scale = np.ones(len(base)) if self._paper else base[:, 3] * self._values["u_unit"]
+        spacing = self._lookup.spacing * speed if self._paper else self._lookup.spacing
+        for sign, before in self._sides():
+            next_ = self._slices.layer(coordinate, before + 1, level)
+            ends = (base[:, :3], next_[:, :3])
+            path = Path(self._slices, coordinate, level, ends, before, self._lags)
+            yield Side(sign, path, spacing, np.where(speed > 1e-6, next_[:, 3], -np.inf), scale)
+
+    def _sides(self) -> tuple[tuple[float, int], ...]:
+        """Sides of the paths: their sign, and the layer before their first slice."""
+        sides = ((-1.0, 0), (1.0, len(self._lags)))
+        return sides[: self._values["u_sides"]]
+
+    def _first(self, count: int) -> Sums:
+        """Start with the sample at the fragments themselves."""
+        middle = max(weight(0.0, self._values), 1e-3)
+        found = self._lookup.lookup(np.zeros((count, 3)), np.zeros(count))
+        return Sums(middle * found, np.full(count, middle**2), np.zeros(count))
+
+    def _add(self, sums: Sums, one: Side) -> None:
+        """Add one side of the paths."""
+        values, path, side, scale = self._values, one.path, one.sign, one.scale
+        count = values["u_samples"] // 2 if values["u_sides"] == 2 else values["u_samples"] - 1
+        last = np.minimum(one.reach, self._lags[-1])
+        lag, live = np.zeros(len(scale)), np.ones(len(scale), dtype=bool)
+        step = one.step(lag)
+        before = np.full(len(scale), weight(0.0, values))
+        for k in range(1, count + 1):
+            lag = np.where(live, lag + step, lag)
+            alive = live * np.clip((last - lag) / step + 1.0, 0.0, 1.0)
+            live = alive > 0
+            if not live.any():
+                break
+            # What has ended stays at its end, where its weight is zero.
+            lag = np.where(live, lag, np.maximum(last, 0.0))
+            displacement = path.follow(lag) * (side * scale)[:, None]
+            weights = alive * weight(side * k / (count + 1), values)
+            found = self._lookup.lookup(displacement, side * lag * scale)
+            sums.values += weights[:, None] * found
+            sums.squares += weights**2
+            sums.neighbours += weights * before
+            before = weights
+            if not self._paper:
+                # At every point: evenly spaced where the speed differs from here.
+                step = one.step(lag)

@@ -1,0 +1,276 @@
+"""One flow texture on one PyVista actor.
+
+The shader's text is put in by ``Actor.add_shader_replacement`` under flowtex's own name, so it
+can be taken out again exactly. Everything that changes from frame to frame is a uniform: VTK
+calls back with the shader program before each draw, and the numbers and texture units are written
+to it there. The text is built again only for another variant.
+
+::
+
+    TextureSet, Settings, ViewState --> FlowLayer --text------------------> Actor
+                                            +----uniforms, texture units-> vtkShaderProgram
+"""
+
+from __future__ import annotations
+
+import weakref
+from typing import Any
+
+import numpy as np
+import pyvista as pv
+from vtkmodules.util.vtkConstants import VTK_OBJECT
+from vtkmodules.vtkCommonDataModel import vtkDataObject
+
+from flowtex.rendering.shader_text import compose
+from flowtex.rendering.uniforms import ViewState, uniforms, variants
+from flowtex.rendering.vtk.gpu import GPUTexture
+from flowtex.rendering.vtk.mesh import COORDINATE, NOISE, NORMAL, POSITION, set_position
+from flowtex.settings import Settings
+from flowtex.textures import Ahead, TextureSet
+
+__all__ = ["FlowLayer"]
+
+#: Under this name PyVista keeps who put a replacement in.
+OWNER = "flowtex"
+
+#: Heights of the window within which positions may be counted from another point than its middle.
+NEAR = 8.0
+
+#: Shader, the mark of VTK's that our text goes before, and our file.
+REPLACEMENTS = (
+    ("vertex", "//VTK::PositionVC::Dec", "vtk/vertex_dec.glsl"),
+    ("vertex", "//VTK::PositionVC::Impl", "vtk/vertex_impl.glsl"),
+    ("geometry", "//VTK::PositionVC::Dec", "vtk/geometry_dec.glsl"),
+    ("geometry", "//VTK::PositionVC::Impl", "vtk/geometry_impl.glsl"),
+    ("fragment", "//VTK::PositionVC::Dec", "vtk/fragment_dec.glsl"),
+    ("fragment", "//VTK::Light::Impl", "vtk/fragment_impl.glsl"),
+)
+
+
+class FlowLayer:
+    """Draws a texture set on an actor whose mesh :func:`surface_mesh` made.
+
+    Parameters
+    ----------
+    actor
+        The actor; its mapper draws polygons.
+    renderer
+        The PyVista renderer that shows it: its camera tells where precision is needed.
+    textures
+        What to draw.
+    settings
+        How to draw it; read anew before each frame.
+    """
+
+    def __init__(
+        self, actor: pv.Actor, renderer: Any, textures: TextureSet, settings: Settings
+    ) -> None:
+        self._actor = actor
+        self._renderer = weakref.ref(renderer)
+        self._textures = textures
+        self._settings = settings
+        self._ahead = Ahead(textures)
+        self._steps = (0, 0)
+        self._drawn = False
+        self._variant: frozenset[str] | None = None
+        self._gpu: dict[str, GPUTexture] = {}
+        self._retired: list[GPUTexture] = []
+        self.view = ViewState()
+        self._map_attributes()
+        self._write_text()
+        update = self._observer("_before_draw")
+        update.CallDataType = VTK_OBJECT
+        self._observed = [
+            (actor.mapper, actor.mapper.AddObserver("UpdateShaderEvent", update)),
+            (renderer, renderer.AddObserver("StartEvent", self._observer("_before_frame"))),
+            (renderer, renderer.AddObserver("EndEvent", self._observer("_after_draw"))),
+        ]
+
+    def set_textures(self, textures: TextureSet) -> None:
+        """Draw another texture set of the same surface from now on."""
+        same = textures.same_paths(self._textures)
+        self._textures = textures
+        self._ahead.close()
+        self._ahead = Ahead(textures)
+        self.view.anchor = np.zeros(3)  # that of the mesh's new attributes
+        self._retire(*(["u_noiseImage"] if same else self._gpu))
+        self._map_attributes()
+        self._write_text()
+
+    def set_moment(self, before: int, after: int, between: float) -> None:
+        """Show the time between two destination times of the slices.
+
+        Once something has been drawn, the slices that come next in the direction in which the
+        time has moved are made ready.
+        """
+        was = self.view.time
+        if (before, after) != self._steps:
+            old = dict(zip(self._steps, ("u_slices", "u_slicesNext"), strict=True))
+            kept = {old[s]: self._gpu.pop(old[s], None) for s in (before, after) if s in old}
+            self._retire("u_slices", "u_slicesNext")
+            for step, name in ((before, "u_slices"), (after, "u_slicesNext")):
+                texture = kept.get(old.get(step, ""))
+                if texture is not None:
+                    self._gpu[name] = texture
+            self._steps = (before, after)
+        first, last = self._textures.store.field.times[[before, after]]
+        self.view.between, self.view.time = between, float(first + between * (last - first))
+        if self._drawn and self.view.time != was:
+            self._ahead.prepare(after + 1 if self.view.time > was else before - 1)
+
+    def close(self) -> None:
+        """Take everything out of the actor again and free the graphics card's memory."""
+        for subject, tag in self._observed:
+            subject.RemoveObserver(tag)
+        self._observed = []
+        self._ahead.close()
+        self._actor.clear_shader_replacements(_feature_name=OWNER)
+        for attribute in ("flowtexPosition", "flowtexCoordinate", "flowtexNormal", "flowtexNoise"):
+            self._actor.mapper.RemoveVertexAttributeMapping(attribute)
+        self._retire(*self._gpu)
+        self._free(self._window())
+
+    def _observer(self, name: str) -> Any:
+        """Return a callback that does not keep this layer alive."""
+        this = weakref.WeakMethod(getattr(self, name))
+
+        def call(caller: Any, event: str, data: Any = None) -> None:
+            method = this()
+            if method is not None:
+                method(data)
+
+        return call
+
+    def _map_attributes(self) -> None:
+        mapper, points = self._actor.mapper, vtkDataObject.FIELD_ASSOCIATION_POINTS
+        names = [("flowtexPosition", POSITION), ("flowtexCoordinate", COORDINATE)]
+        if not self._textures.geometry.planar:
+            names.append(("flowtexNormal", NORMAL))
+        if self._textures.paper is not None:
+            names.append(("flowtexNoise", NOISE))
+        for attribute, array in names:
+            mapper.MapDataArrayToVertexAttribute(attribute, array, points, -1)
+
+    def _write_text(self) -> None:
+        unsteady = self._textures.store.steps > 1
+        variant = variants(self._textures, unsteady=unsteady)
+        if variant == self._variant:
+            return
+        self._variant = variant
+        self._actor.clear_shader_replacements(_feature_name=OWNER)
+        for shader, mark, name in REPLACEMENTS:
+            text = f"{compose(name, variant)}\n{mark}\n"
+            self._actor.add_shader_replacement(shader, mark, text, _feature_name=OWNER)
+
+    def _before_draw(self, program: Any) -> None:
+        """Write uniforms and texture units to the program that is about to draw."""
+        window = self._window()
+        if program is None or window is None:
+            return
+        self._free(window)
+        values = uniforms(self._textures, self._settings, self.view)
+        for name, value in values.items():
+            if program.IsUniformUsed(name) or isinstance(value, list):
+                _write(program, name, value)
+        for name in self._samplers():
+            if program.IsUniformUsed(name):
+                program.SetUniformi(name, self._texture(name).bind(window))
+
+    def _after_draw(self, data: Any) -> None:
+        del data
+        self._drawn = True
+        for texture in self._gpu.values():
+            texture.unbind()
+
+    def _samplers(self) -> list[str]:
+        names = ["u_slices"]
+        if self._textures.store.steps > 1:
+            names.append("u_slicesNext")
+        if self._textures.paper is not None:
+            names += ["u_noiseImage", "u_stepImage"]
+        return names
+
+    def _texture(self, name: str) -> GPUTexture:
+        """Texture by the name of its sampler, made when it is first drawn."""
+        if name not in self._gpu:
+            levels = self._textures.geometry.levels
+            paper = self._textures.paper
+            if name == "u_slices":
+                made = GPUTexture(self._ahead.take(self._steps[0]), levels=levels)
+            elif name == "u_slicesNext":
+                made = GPUTexture(self._ahead.take(self._steps[1]), levels=levels)
+            elif paper is not None and name == "u_noiseImage":
+                rows, columns = paper.noise.shape[:2]
+                repeat = (True, True) if paper.picture else paper.repeat
+                made = GPUTexture(paper.noise.reshape(1, rows, columns, -1), repeat=repeat)
+            elif paper is not None:
+                made = GPUTexture(paper.step[None, :, :, None], repeat=paper.repeat)
+            else:
+                raise KeyError(name)
+            self._gpu[name] = made
+        return self._gpu[name]
+
+    def _before_frame(self, data: Any) -> None:
+        """Take the camera into the mesh's own coordinates, and the anchor to where it looks."""
+        del data
+        renderer = self._renderer()
+        if renderer is None:
+            return
+        camera = renderer.GetActiveCamera()
+        parallel = bool(camera.GetParallelProjection())
+        eye = (
+            np.multiply(camera.GetDirectionOfProjection(), -1) if parallel else camera.GetPosition()
+        )
+        matrix = self._actor.GetMatrix()
+        placed = np.array([[matrix.GetElement(r, c) for c in range(4)] for r in range(4)])
+        points = [(*camera.GetFocalPoint(), 1.0), (*eye, float(not parallel))]
+        focus, self.view.eye = np.linalg.solve(placed, np.transpose(points)).T
+        self.view.focus = focus[:3]
+        scale = float(np.cbrt(abs(np.linalg.det(placed[:3, :3]))))
+        self._move_anchor(_window_height(camera) / scale)
+
+    def _move_anchor(self, seen: float) -> None:
+        """Count positions from near the focus once their digits do not do from elsewhere."""
+        geometry = self._textures.geometry
+        there = geometry.local(self.view.focus)
+        if np.abs(there - self.view.anchor).max() <= NEAR * seen:
+            return
+        near_middle = np.abs(there).max() <= NEAR * seen
+        self.view.anchor = np.zeros(3) if near_middle else there
+        set_position(self._actor.mapper.dataset, geometry.position_from(self.view.anchor))
+
+    def _window(self) -> Any:
+        renderer = self._renderer()
+        return None if renderer is None else renderer.GetRenderWindow()
+
+    def _retire(self, *names: str) -> None:
+        """Put textures aside until their window's context is at hand."""
+        self._retired += [t for n in names if (t := self._gpu.pop(n, None)) is not None]
+
+    def _free(self, window: Any) -> None:
+        for texture in self._retired:
+            texture.release(window)
+        self._retired.clear()
+
+
+def _window_height(camera: Any) -> float:
+    """Height of what the camera sees at its focal point."""
+    if camera.GetParallelProjection():
+        return float(2 * camera.GetParallelScale())
+    return float(2 * camera.GetDistance() * np.tan(np.radians(camera.GetViewAngle() / 2)))
+
+
+def _write(program: Any, name: str, value: Any) -> None:
+    """Set one uniform, by the type of its value."""
+    if isinstance(value, (bool, int)):
+        program.SetUniformi(name, int(value))
+    elif isinstance(value, float):
+        program.SetUniformf(name, value)
+    elif isinstance(value, list):
+        program.SetUniform1fv(name, len(value), value)
+    elif len(value) == 2:
+        program.SetUniform2f(name, value)
+    elif len(value) == 4:
+        program.SetUniform4f(name, value)
+    else:
+        program.SetUniform3f(name, value)

@@ -1,0 +1,234 @@
+"""TraceSlices as textures.
+
+A layer of the slice texture does not hold a displacement D(s) at lag s but the mean slope D(s) / s
+since lag zero. It is of order one at every lag, so half precision serves; it tends to the tangent
+as s goes to zero, which is layer 0; and interpolating it linearly between two lags gives a path
+of second order. Both sides share one sign: D(s) = s * slope(s), with s negative backward.
+
+====================  =====================================================  =================
+layer                 first three channels                                   fourth channel
+====================  =====================================================  =================
+0                     slope at lag zero                                      unit of lag
+1 ... M               slopes of the backward slices                          1: reach; 2: speed
+M + 1 ... 2 M         slopes of the forward slices, where there are any      M + 1: reach
+====================  =====================================================  =================
+
+Slopes are in space (the surface's own frame), lengths per unit of nominal length, for the
+procedural noise; in noise coordinates per unit of lag for the paper's noise texture.
+"""
+
+from __future__ import annotations
+
+import os
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flowtex.field.checks import three
+from flowtex.settings import Settings
+from flowtex.textures.displacements import Moves
+from flowtex.textures.geometry import Geometry
+from flowtex.textures.paper import PaperTextures
+from flowtex.trace import SliceStore, TraceSlices
+
+__all__ = ["MOST_LAGS", "TextureSet"]
+
+Singles = NDArray[np.float32]
+
+#: Slices on each side that a shader has room for.
+MOST_LAGS = 32
+
+
+@dataclass(frozen=True, eq=False)
+class TextureSet:
+    """All that a renderer needs of a flow, beside the settings.
+
+    Attributes
+    ----------
+    geometry
+        The surface.
+    store
+        The traces, by destination time.
+    space
+        ``"physical"`` for slopes in space, ``"parameter"`` for slopes in noise coordinates.
+    paper
+        The noise texture and the step texture, for ``space="parameter"``.
+    """
+
+    geometry: Geometry
+    store: SliceStore
+    space: str = "physical"
+    paper: PaperTextures | None = None
+
+    @classmethod
+    def build(
+        cls, store: SliceStore, settings: Settings, image: Singles | None = None
+    ) -> TextureSet:
+        """Make the textures that the settings ask for.
+
+        Parameters
+        ----------
+        store
+            The traces.
+        settings
+            Which noise, how fine, and how it is spread.
+        image
+            The picture for ``noise="image"``, (H, W, 4), from
+            :func:`~flowtex.textures.images.as_picture`.
+
+        Raises
+        ------
+        ValueError
+            When the slices do not belong to the field, or are more than a shader has room for;
+            or an image is asked for and there is none.
+        """
+        field = store.field
+        if store.unit.shape != field.shape:
+            msg = (
+                f"the slices have {store.unit.shape} nodes and the field {field.shape}; expected "
+                "slices traced in this field"
+            )
+            raise ValueError(msg)
+        if not 2 <= len(store.lags) <= MOST_LAGS:
+            msg = f"{len(store.lags)} lags were traced; expected 2 to {MOST_LAGS} to draw with"
+            raise ValueError(msg)
+        geometry = Geometry.of(field)
+        if settings.noise == "procedural":
+            return cls(geometry, store)
+        paper = PaperTextures.build(
+            store,
+            resolution=settings.resolution,
+            correction=settings.noise_correction,
+            seed=settings.seed,
+            pattern=settings.noise,
+            tiles=settings.tiles,
+            image=image,
+        )
+        return cls(geometry, store, "parameter", paper)
+
+    def with_image(self, image: Singles) -> TextureSet:
+        """Return the same with another picture in place of the noise texture.
+
+        Raises
+        ------
+        ValueError
+            When there is no noise texture.
+        """
+        if self.paper is None:
+            msg = "there is no noise texture, which an image could replace; expected noise='image'"
+            raise ValueError(msg)
+        return replace(self, paper=self.paper.with_image(image))
+
+    def same_paths(self, other: TextureSet) -> bool:
+        """Tell whether nothing but the picture in place of the noise differs."""
+        steps = [made.paper.step if made.paper is not None else None for made in (self, other)]
+        return self.geometry is other.geometry and steps[0] is steps[1] is not None
+
+    @property
+    def sides(self) -> int:
+        """1 when paths lead backward only, 2 when forward too."""
+        return 2 if self.store.two_sided else 1
+
+    @cached_property
+    def pace(self) -> float:
+        """Nominal length of a unit of ``store.unit``: 1 by arc length, a typical speed by time."""
+        return 1.0 if self.store.parameter == "arclength" else self.typical_speed
+
+    @cached_property
+    def typical_speed(self) -> float:
+        """Root mean square of the speed in the field's own units; 1 in a flow at rest."""
+        speed = self.geometry.field.speed[:, self.geometry.field.valid]
+        return float(np.sqrt(np.mean(speed**2))) or 1.0
+
+    @cached_property
+    def unit(self) -> float:
+        """Length that the fourth channel of layer 0 is measured in."""
+        return float(np.median(self.store.unit[self.geometry.field.valid])) * self.pace
+
+    @property
+    def lags(self) -> Singles:
+        """Lags of the slices, (M,), in multiples of the unit at each node."""
+        return self.store.lags.astype(np.float32)
+
+    @property
+    def count(self) -> int:
+        """Number of layers."""
+        return 1 + self.sides * len(self.store.lags)
+
+    def layers(self, step: int = 0) -> Singles:
+        """Texels of the slice texture for one destination time, (layers, H, W, 4)."""
+        slices = self.store.at(step)
+        size = (self.geometry.rows.size, self.geometry.columns.size)
+        result = np.empty((self.count, *size, 4), np.float32)
+
+        def make(layer: int) -> None:
+            self.geometry.lay(self._nodal(slices, layer), result[layer])
+
+        with ThreadPoolExecutor(max_workers=min(os.cpu_count() or 1, 8)) as pool:
+            list(pool.map(make, range(self.count)))
+        return result
+
+    def _nodal(self, slices: TraceSlices, layer: int) -> Singles:
+        """Give the four channels of one layer at the nodes, (J, I, 4)."""
+        result = np.zeros((*slices.shape, 4), np.float32)
+        if layer == 0:
+            result[..., :3] = self._tangent(slices)
+            result[..., 3] = slices.unit * self.pace / self.unit
+            return result
+        side, m = divmod(layer - 1, len(slices.lags))
+        sign, displacement, reach = -1.0, slices.displacement, slices.reach
+        if side and slices.forward is not None and slices.forward_reach is not None:
+            sign, displacement, reach = 1.0, slices.forward, slices.forward_reach
+        scale = sign / float(slices.lags[m])
+        if self.paper is not None:
+            moved = self.paper.at(slices.nodes + displacement[0, m]) - self.paper.coordinate
+            result[..., :2] = moved * scale
+        else:
+            by_length = scale / self._length[..., 0]
+            for channel, moved in enumerate(self._moves(displacement[0, m])):
+                np.multiply(moved, by_length, out=result[..., channel], casting="same_kind")
+        if m == 0:
+            result[..., 3] = _usable_reach(reach[0], slices)
+        if layer == 2:
+            result[..., 3] = self._speed(slices)
+        return result
+
+    def _speed(self, slices: TraceSlices) -> NDArray[Any]:
+        """Speed of the flow at the nodes in multiples of its typical speed, (J, I)."""
+        field = self.geometry.field
+        step = int(np.argmin(np.abs(field.times - slices.times[0])))
+        return np.asarray(field.speed[step] / self.typical_speed)
+
+    def _tangent(self, slices: TraceSlices) -> NDArray[Any]:
+        rate = slices.rate[0]
+        if self.paper is not None:
+            return three(rate * self.paper.by_cell())
+        surface = self.geometry.field.surface
+        p_i, p_j = surface.tangents
+        along = rate[..., :1] * p_i + rate[..., 1:] * p_j
+        for pole in surface.poles or ():
+            # One point has one slope, of which its nodes hold a component each.
+            across = pole.lines(rate)[pole.line, :, pole.component]
+            pole.lines(along)[pole.line] = pole.vector(across) @ pole.plane
+        return np.asarray(along @ self.geometry.frame.T) / self._length
+
+    @cached_property
+    def _moves(self) -> Moves:
+        """Takes displacements to space; a flat surface has no third component."""
+        frame = self.geometry.frame
+        return Moves(self.geometry.field.surface, frame[:2] if self.geometry.planar else frame)
+
+    @cached_property
+    def _length(self) -> NDArray[np.float64]:
+        """Nominal length of one unit of lag at each node, (J, I, 1)."""
+        return (self.store.unit * self.pace)[..., None]
+
+
+def _usable_reach(reach: NDArray[Any], slices: TraceSlices) -> NDArray[Any]:
+    """Reach to draw with: where nothing moves, the neighbours alone decide."""
+    still = ~np.abs(slices.rate[0]).any(axis=-1)
+    return np.where(still, np.inf, reach).clip(max=2 * float(slices.lags[-1]))

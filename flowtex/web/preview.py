@@ -1,0 +1,152 @@
+"""A small picture of a flow, for where the client cannot draw or has not drawn yet.
+
+The renderer in NumPy draws it from few nodes and samples, so that it takes a fraction of a second,
+needs no OpenGL, and can be made in any thread.
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flowtex.rendering.cpu import Camera, Picture, render
+from flowtex.rendering.uniforms import ViewState
+from flowtex.rendering.webgl import Scene
+from flowtex.settings import Settings
+from flowtex.staging import Stage
+
+__all__ = ["png", "preview", "preview_png"]
+
+#: Nodes and samples of a small picture, which no eye can tell from more of them.
+NODES, SAMPLES = 3_000, 9
+#: Pixels of the picture by one that NumPy draws, along each side.
+COARSER = 2
+
+Bytes = NDArray[np.uint8]
+
+
+def preview(
+    stage: Stage,
+    size: tuple[int, int],
+    *,
+    camera: Mapping[str, Any] | None = None,
+    time: float | None = None,
+    scene: Scene | None = None,
+    coarser: int = COARSER,
+) -> Bytes:
+    """Draw a small picture.
+
+    Parameters
+    ----------
+    stage
+        The flow and its colours.
+    size
+        Width and height in pixels.
+    camera
+        From where, as the header of a scene has it; the whole surface by default.
+    time
+        Time that is shown; the last one by default.
+    scene
+        The stage's scene with few nodes, when it is at hand.
+    coarser
+        Pixels of the picture by one that is computed, along each side.
+
+    Returns
+    -------
+    numpy.ndarray
+        (height, width, 3), row 0 at the top.
+    """
+    scene = scene or stage.coarse_scene(NODES)
+    camera = camera or scene.first_look(size)
+    drawn = _drawn(stage, scene, (size[0] // coarser, size[1] // coarser), camera, time)
+    from PIL import Image
+
+    return np.asarray(Image.fromarray(drawn).resize(size, Image.Resampling.BICUBIC))
+
+
+def preview_png(stage: Stage, size: tuple[int, int], **options: Any) -> bytes:
+    """Draw a small picture and return it as PNG; :func:`preview` has the parameters."""
+    return png(preview(stage, size, **options))
+
+
+def png(picture: Bytes) -> bytes:
+    """Return a picture (H, W, 3) as a PNG file."""
+    from PIL import Image
+
+    # Colours are chosen among a few pixels: among all of them it takes longer than the drawing.
+    few = Image.fromarray(np.ascontiguousarray(picture[::4, ::4])).quantize(160)
+    drawn = Image.fromarray(picture).quantize(palette=few, dither=Image.Dither.NONE)
+    palette, corner = drawn.getpalette() or [], 3 * int(np.asarray(drawn)[0, 0])
+    palette[corner : corner + 3] = picture[0, 0].tolist()  # the ground keeps its very colour
+    drawn.putpalette(palette)
+    file = io.BytesIO()
+    drawn.save(file, "PNG", optimize=True)
+    return file.getvalue()
+
+
+def _few_samples(settings: Settings) -> Settings:
+    settings = settings.copy()
+    few = min(settings.samples, SAMPLES)
+    # The streaks keep their length.
+    spacing = settings.spacing * min(settings.samples / few, 2.0)
+    settings.update(samples=few, spacing=min(spacing, 10.0))
+    return settings
+
+
+def _drawn(
+    stage: Stage,
+    scene: Scene,
+    size: tuple[int, int],
+    camera: Mapping[str, Any],
+    time: float | None,
+) -> Bytes:
+    where = Camera(
+        position=tuple(camera["position"]),
+        focal_point=tuple(camera["focal_point"]),
+        up=tuple(camera["up"]),
+        size=(max(size[0], 1), max(size[1], 1)),
+        parallel_scale=camera["parallel_scale"] if camera["parallel"] else None,
+        view_angle=camera["view_angle"],
+    )
+    times = scene.times
+    shown = float(times[-1] if time is None else time)
+    steps = scene.moment(shown)
+    first, last = times[steps[0]], times[steps[-1]]
+    between = float((shown - first) / (last - first)) if last > first else 0.0
+    picture = render(
+        scene.textures,
+        _few_samples(stage.view.settings),
+        where,
+        view=ViewState(between=between),
+        steps=(scene.source(steps[0]), scene.source(steps[-1])),
+    )
+    ground = scene.colours.background
+    drawn = picture.rgb(_colour(scene, picture, steps, between), ground)
+    opacity = scene.colours.opacity
+    if opacity == 1:
+        return drawn
+    behind = 255.0 * np.asarray(ground)
+    return np.rint(behind + opacity * (drawn - behind)).astype(np.uint8)
+
+
+def _colour(
+    scene: Scene, picture: Picture, steps: tuple[int, ...], between: float
+) -> NDArray[np.float64]:
+    """Colour of the surface at each pixel, (H, W, 3)."""
+    colours, geometry = scene.colours, scene.textures.geometry
+    if colours.values is None or colours.table is None:
+        return np.asarray(colours.plain)
+    sources = (scene.source(step) for step in (steps[0], steps[-1]))
+    before, after = (colours.values[min(s, len(colours.values) - 1)] for s in sources)
+    values = np.nan_to_num(before * (1 - between) + after * between, nan=colours.low)
+    rows, columns = geometry.rows, geometry.columns
+    at = np.nan_to_num(picture.coordinate, nan=0.0)
+    j = np.rint(at[..., 1] * rows.size - rows.before - 0.5).astype(int).clip(0, rows.nodes - 1)
+    i = np.rint(at[..., 0] * columns.size - columns.before - 0.5).astype(int)
+    found = values[j, i.clip(0, columns.nodes - 1)]
+    share = (found - colours.low) / ((colours.high - colours.low) or 1.0)
+    return np.asarray(colours.table[(share * 256).clip(0, 255).astype(int), :3] / 255.0)

@@ -1,0 +1,108 @@
+"""What the experiments share: how much is done, the seed, fields, traces and textures."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numpy as np
+
+from flowtex.field import FlowField
+from flowtex.settings import Settings
+from flowtex.textures import TextureSet
+from flowtex.trace import SliceStore
+from paper import fields
+
+__all__ = ["OURS", "PAPER", "Bench"]
+
+T = TypeVar("T")
+
+#: The paper's own method: its noise texture and step texture, ten even contributions, backward.
+PAPER: dict[str, Any] = {
+    "noise": "texture",
+    "samples": 10,
+    "spacing": 1.0,
+    "kernel": "box",
+    "two_sided": False,
+}
+#: What flowtex does when nothing is set.
+OURS: dict[str, Any] = {}
+
+
+@dataclass
+class Bench:
+    """Scale and seed of a run, and what is made once for all experiments.
+
+    Attributes
+    ----------
+    quick
+        Whether to do the reduced form: smaller pictures, fewer particles, fewer views.
+    seed
+        Number that every random choice follows from.
+    data
+        Folder of the liquid-oxygen post; by default PyVista downloads it.
+    """
+
+    quick: bool = False
+    seed: int = 0
+    data: Path | None = None
+    _kept: dict[Any, Any] = field(default_factory=dict, repr=False)
+
+    def pick(self, full: T, quick: T) -> T:
+        """Return the one or the other, by the scale of the run."""
+        return quick if self.quick else full
+
+    @property
+    def rng(self) -> np.random.Generator:
+        """Random numbers from the seed, the same ones each time it is asked for."""
+        return np.random.default_rng(self.seed)
+
+    def once(self, key: Any, make: Callable[[], T]) -> T:
+        """Return what was made under a key, made when it is first asked for."""
+        if key not in self._kept:
+            self._kept[key] = make()
+        found: T = self._kept[key]
+        return found
+
+    @property
+    def post(self) -> FlowField | None:
+        """The liquid-oxygen post, or ``None`` where its files cannot be had."""
+        return self.once("post", lambda: fields.post(self.data))
+
+    @property
+    def shuttle(self) -> FlowField:
+        """A curved surface of 52 x 62 nodes, in the shuttle's place."""
+        return self.once("shuttle", fields.shuttle)
+
+    @property
+    def vortex(self) -> FlowField:
+        """100 x 100 nodes over 31 time steps."""
+        return self.once("vortex", fields.vortex)
+
+    @property
+    def gyre(self) -> FlowField:
+        """Steady double gyre on a sheared, stretched grid; its flow is known at every point."""
+        return self.once("gyre", fields.gyre)
+
+    @property
+    def stretched(self) -> FlowField:
+        """The same flow on 52 x 62 nodes whose cells grow to the right and upwards."""
+        return self.once("stretched", fields.stretched)
+
+    def settings(self, **values: Any) -> Settings:
+        """Return settings with the seed of the run."""
+        return Settings(**{"seed": self.seed % 65536, **values})
+
+    def textures(self, flow: FlowField, settings: Settings) -> TextureSet:
+        """Textures of a field, each kind made once; the field must be one that is kept."""
+        store = self.once(
+            ("store", id(flow), settings.parameter),
+            lambda: SliceStore(flow, parameter=settings.parameter, compose=False),
+        )
+        kind = (settings.noise, settings.noise_correction, settings.resolution, settings.seed)
+        if settings.noise == "procedural":
+            kind = (settings.noise, True, 0, 0)
+        key = ("textures", id(flow), settings.parameter, *kind)
+        return self.once(key, lambda: TextureSet.build(store, settings))

@@ -1,0 +1,829 @@
+"""What a page may send, and when: nothing of it ends the drawing, or reaches another page."""
+
+from __future__ import annotations
+
+import asyncio
+import io
+import logging
+import math
+import threading
+from collections.abc import Awaitable, Callable, Iterator
+from types import SimpleNamespace
+from typing import Any
+
+import msgpack
+import numpy as np
+import pytest
+import pyvista as pv
+from PIL import Image
+
+pytest.importorskip("trame_rca")
+
+from wslink.chunking import generate_chunks
+
+from flowtex import FlowField
+from flowtex._util.progress import check
+from flowtex.app import FlowApp, Library
+from flowtex.app.controllers import library as library_module
+from flowtex.app.controllers import reader as reader_module
+from flowtex.app.controllers.library import Choice
+from flowtex.app.server.messages import LONGEST, Messages
+from flowtex.app.streaming.quality import MOST_PIXELS
+from flowtex.errors import FieldError
+from flowtex.field.io.source import FlowSource
+from flowtex.probe import probe
+from flowtex.settings import TABLE, Settings, SettingsError
+
+pytestmark = pytest.mark.usefixtures("opengl")
+
+#: What a page may send in the place of anything.
+JUNK: list[Any] = [
+    *(None, True, -1, 0, 10**18, 2.5, -1e308, 1e308, math.nan, math.inf, -math.inf),
+    *("", "x" * 50_000, "1", b"1", b"\xff" * 9, [], {}, [1, 2], [math.nan, {}], [[], []]),
+    *({"x": "y"}, {"content": 3}, [{"name": [], "content": []}]),
+]
+EVENTS = ("MouseMove", "MouseWheel", "Pinch", "Pan", "LeftButtonPress", "LeftButtonRelease")
+
+
+def field(*, curved: bool = False, steps: int = 1, name: str = "") -> FlowField:
+    """A patch of 12 x 8 nodes in which everything moves along x."""
+    x, y = np.meshgrid(np.linspace(0, 3, 12), np.linspace(0, 2, 8))
+    points = np.stack([x, y, 0.4 * np.sin(x) if curved else 0 * x], axis=-1)
+    velocity = np.zeros((steps, *points.shape))
+    velocity[..., 0] = 1 + 0.1 * np.arange(steps)[:, None, None] + 0.2 * y
+    times = np.arange(steps, dtype=float) if steps > 1 else None
+    moving = velocity if steps > 1 else velocity[0]
+    return FlowField.from_arrays(points, moving, times=times, scalars={"height": x}, name=name)
+
+
+def block(size: tuple[int, int, int] = (9, 8, 7), *arrays: str) -> pv.ImageData:
+    """A grid in which the plane can be told from the velocity."""
+    grid = pv.ImageData(dimensions=size)
+    velocity = np.zeros((grid.n_points, 3))
+    velocity[:, 0] = 1.0
+    for name in arrays or ("velocity",):
+        grid.point_data[name] = velocity
+    grid.point_data["depth"] = grid.points[:, 2].copy()
+    return grid
+
+
+def page(flow: Any, **options: Any) -> FlowApp:
+    app = FlowApp(flow, samples=3, **options)
+    app.stream.update_size("test", {"w": 96, "h": 64, "p": 1})
+    return app
+
+
+def picture(app: FlowApp) -> Any:
+    return app.scene.draw(*app.scene.pane_size).astype(int)
+
+
+def opened(app: FlowApp) -> bool:
+    """Tell whether nothing is being opened."""
+    return app.data._opening is None or app.data._opening.done()
+
+
+async def until(true: Callable[[], Any], seconds: float = 10.0) -> None:
+    async with asyncio.timeout(seconds):
+        while not true():
+            await asyncio.sleep(0.005)
+
+
+def played(app: FlowApp, story: Callable[[], Awaitable[None]]) -> None:
+    """Let something happen in an event loop, and close the application in it."""
+
+    async def run() -> None:
+        app.server.state.ready()
+        try:
+            await story()
+        finally:
+            app.close()
+
+    asyncio.run(run())
+
+
+@pytest.fixture(scope="module")
+def app() -> Iterator[FlowApp]:
+    made = page(field(steps=3))
+    yield made
+    made.close()
+
+
+class Streamer:
+    """Stands for trame-rca's."""
+
+    def __init__(self) -> None:
+        self.sent = 0
+        self.coreServer = SimpleNamespace(network_monitor=SimpleNamespace(pending=0))
+
+    def push_content(self, name: str, meta: dict[str, Any], content: bytes) -> None:
+        self.sent += 1
+
+
+# --- what a page may send ------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        *(f"set_{name}" for name in TABLE),
+        *("colour", "cmap", "low", "high", "theme", "background", "compare", "image_file"),
+        *("time", "playing", "pace", "rendering"),
+    ],
+)
+def test_a_value_of_any_kind_is_taken_or_set_back(app: FlowApp, name: str) -> None:
+    look, clockwork = app.look, app.clockwork
+    handlers: dict[str, Callable[[], None]] = {
+        **dict.fromkeys(("colour", "cmap"), look.take_colour),
+        **dict.fromkeys(("low", "high"), look.take_range),
+        **dict.fromkeys(("theme", "background"), look.take_background),
+        "compare": look.take_comparison,
+        "image_file": look.take_image,
+        "time": clockwork.take_time,
+        "playing": clockwork.take_playing,
+        "pace": clockwork.take_pace,
+        "rendering": app.browser.take_renderer,
+    }
+    handler = handlers.get(name, look.take_settings)
+    before = app.state.get(name)
+    for junk in JUNK:
+        app.state.set(**{name: junk, "problem": ""})
+        handler()
+        kept = app.state.get(name)
+        if name.startswith("set_"):
+            assert kept == getattr(app.area.settings, name.removeprefix("set_"))
+        else:
+            assert kept == before or isinstance(kept, type(before))
+        assert len(app.state.get("problem")) < 1000
+    app.state.set(**{name: before})
+    handler()
+    assert app.state.get(name) == before
+    assert np.ptp(picture(app)) > 0
+
+
+@pytest.mark.parametrize("junk", JUNK, ids=lambda junk: repr(junk)[:12])
+def test_a_command_with_anything_for_an_argument_does_nothing(app: FlowApp, junk: Any) -> None:
+    camera, time, at = app.scene.canvas.camera(), app.scene.handle.time, app.scene.clock
+
+    async def story() -> None:
+        app.moves.command(junk)
+        app.moves.look_from(junk)
+        if junk is not True and junk != -1:
+            app.clockwork.step(junk)
+        app.look.take_setting(junk)
+        app.look.take_setting([junk, junk])
+        app.look.take_setting(["samples", junk])
+        app.reader.take_point(junk)
+        app.reader.take_point([junk, 0.5])
+        app.reader.take_place(junk)
+        app.reader.take_place([0.5, junk])
+        app.share.take_link(junk)
+        for telling in (app.browser.take_camera, app.browser.take_time, app.browser.take_sharp):
+            telling(junk)
+
+    asyncio.run(story())
+    app.reader.close_card()
+    app.area.settings.samples = 3
+    assert (camera, at) == (app.scene.canvas.camera(), app.scene.clock)
+    assert app.scene.handle.time in (time, *app.field.times)
+
+
+@pytest.mark.parametrize("junk", JUNK, ids=lambda junk: repr(junk)[:12])
+def test_an_event_of_the_pointer_may_hold_anything(app: FlowApp, junk: Any) -> None:
+    async def story() -> None:
+        names = ("x", "y", "w", "h", "spinY", "factor", "translation", "positions", "shiftKey")
+        send = app.stream.on_interaction
+        send("test", junk)
+        send("test", {"type": junk})
+        for kind in EVENTS:
+            for name in names:
+                send("test", {"type": kind, "x": 3, "y": 4, "w": 96, "h": 64, name: junk})
+            send("test", {"type": kind, "translation": [junk, junk], "positions": {"0": junk}})
+            send("test", {"type": kind, "positions": {"0": {"x": junk, "y": junk}}})
+
+    asyncio.run(story())
+    app.reader.leave()
+    camera = app.scene.canvas.camera()
+    assert np.isfinite([*camera["position"], *camera["focal_point"]]).all()
+    app.reader.close_card()
+    app.area.reset_camera()
+    assert np.ptp(picture(app)) > 0
+
+
+@pytest.mark.parametrize("junk", JUNK, ids=lambda junk: repr(junk)[:12])
+def test_a_view_has_a_size_that_can_be_drawn(app: FlowApp, junk: Any) -> None:
+    for size in (junk, {"w": junk, "h": 64}, {"w": 96, "h": junk}, {"w": 96, "h": 64, "p": junk}):
+        app.stream.update_size("test", size)
+        width, height = app.scene.size
+        assert min(width, height) >= 4 and max(width, height) <= 8192
+        assert width * height <= 1.01 * MOST_PIXELS
+    app.stream.update_size("test", {"w": 96, "h": 64, "p": 1})
+    assert app.scene.size == (96, 64)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"position": [1e300, 0, 1]},
+        {"position": [1e200, 0, 1], "focal_point": [-1e200, 0, 0]},
+        {"parallel_scale": 1e-300},
+        {"parallel_scale": 1e300},
+        {"position": [0, 0], "up": [1, 0]},
+        {"view_angle": "x"},
+        {"position": "123456"},
+        {"up": [0, 0, 0]},
+    ],
+)
+def test_a_camera_that_sees_nothing_is_not_taken(app: FlowApp, change: dict[str, Any]) -> None:
+    before = app.scene.canvas.camera()
+    assert not app.moves.take_camera({**before, **change})
+    app.moves.restore({"camera": {**before, **change}})
+    assert app.scene.canvas.camera() == before
+    assert app.moves.take_camera({**before, "parallel_scale": 0.5})
+    app.area.reset_camera()
+
+
+def test_what_the_server_counts_is_no_page_s_to_change() -> None:
+    app, streamer = page(field()), Streamer()
+
+    async def story() -> None:
+        app.stream.set_streamer(streamer)
+        task = asyncio.create_task(app.stream.run())
+        app.state.set(sharp="many", picture={}, there_time=None)
+        app.stream.changed()
+        await until(lambda: app.state.get("picture") == "sharp")
+        assert isinstance(app.state.get("sharp"), int) and not task.done()
+        task.cancel()
+
+    played(app, story)
+
+
+def raising(error: Exception) -> Callable[..., Any]:
+    def fail(*_: Any, **__: Any) -> Any:
+        raise error
+
+    return fail
+
+
+def test_a_picture_that_fails_is_not_the_last_one(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    app, streamer = page(field()), Streamer()
+    quick = app.stream.composer.quick
+
+    async def story() -> None:
+        app.stream.set_streamer(streamer)
+        monkeypatch.setattr(app.stream.composer, "quick", raising(RuntimeError("no context")))
+        waiting = asyncio.create_task(app.stream.next_picture())
+        task = asyncio.create_task(app.stream.run())
+        app.stream.changed()
+        await until(lambda: "could not be drawn" in caplog.text and waiting.done())
+        monkeypatch.setattr(app.stream.composer, "quick", quick)
+        app.stream.changed()
+        await until(lambda: streamer.sent)
+        assert not task.done()
+        task.cancel()
+
+    with caplog.at_level(logging.ERROR):
+        played(app, story)
+
+
+def test_drawing_begins_once_however_often_a_page_has_it_said() -> None:
+    app = page(field())
+
+    async def story() -> None:
+        app.area.server.controller.rc_area_register = lambda stream: None
+        app.area._on_ready()
+        tasks = list(app.area._tasks)
+        for _ in range(5):
+            app.area._on_ready()
+        assert app.area._tasks == tasks and len(tasks) == 2
+
+    played(app, story)
+
+
+# --- pictures, movies, messages ------------------------------------------------------------------
+
+
+def sent(picture: Image.Image, kind: str = "PNG") -> dict[str, Any]:
+    buffer = io.BytesIO()
+    picture.save(buffer, kind)
+    return {"name": "mine", "content": buffer.getvalue()}
+
+
+def laid(app: FlowApp, file: dict[str, Any]) -> str:
+    app.state.set(image_file=file, problem="")
+    app.look.take_image()
+    return str(app.state.get("problem"))
+
+
+def test_an_image_takes_no_more_room_than_it_may() -> None:
+    app = page(field())
+    bomb = sent(Image.new("1", (9_000, 9_000)))  # 81 million pixels in 10 kB
+    assert len(bomb["content"]) < 50_000 and "9000 x 9000 pixels" in laid(app, bomb)
+    assert "far too many pixels" in laid(app, sent(Image.new("1", (20_000, 20_000))))
+    # Pillow hands an EPS to another program.
+    assert "is no picture that can be read" in laid(app, sent(Image.new("RGB", (9, 9)), "EPS"))
+    assert "is no picture" in laid(app, {"name": "x" * 9_000, "content": b"\x89PNG\r\n\x1a\n"})
+    assert app.area.settings.noise == "procedural" and app.scene.handle.view.image is None
+    for kind, mode in (("PNG", "RGBA"), ("JPEG", "RGB"), ("PNG", "P")):
+        assert (
+            laid(app, sent(Image.new(mode, (3_000, 1_500), 200 if mode == "P" else 0), kind)) == ""
+        )
+        image = app.scene.handle.view.image
+        assert image is not None and image.shape == (750, 1500, 4)
+    app.close()
+
+
+@pytest.mark.parametrize("compared", ["level of detail off", "the paper's noise"])
+def test_an_image_is_laid_in_both_panes_where_noise_is_no_difference(compared: str) -> None:
+    app = page(field(), resolution=64)
+    app.state.set(compare=compared)
+    app.look.take_comparison()
+    assert laid(app, sent(Image.new("RGB", (8, 8), "red"))) == ""
+    first, second = (pane.handle.settings.noise for pane in app.scene.panes)
+    assert first == "image" and second == ("image" if "detail" in compared else "texture")
+    # Another flow, and one pane, and two again, with the same image.
+    app.show(field(curved=True))
+    assert [pane.handle.settings.noise for pane in app.scene.panes] == [first, second]
+    app.area.compare(None)
+    app.show(field(steps=2))
+    app.area.compare({"lod": False})
+    assert [pane.handle.settings.noise for pane in app.scene.panes] == ["image", "image"]
+    assert app.state.get("set_noise") == "image" and np.ptp(picture(app)) > 0
+    app.close()
+
+
+@pytest.mark.parametrize("name", ["out_width", "out_density", "out_seconds", "out_fps"])
+def test_a_picture_of_no_size_is_refused_and_leaves_no_folder(app: FlowApp, name: str) -> None:
+    before = {key: app.state.get(key) for key in ("out_format", name)}
+    for junk in [j for j in JUNK if j not in (2.5, True)]:
+        app.state.set(**{"out_format": "PNG" if name in ("out_width",) else "GIF", name: junk})
+        app.state.set(problem="")
+        app.share.begin()
+        assert 0 < len(app.state.get("problem")) < 1000
+        assert app.state.get("out_progress") is None
+        assert list(app.share.downloads.folder.iterdir()) == []
+    app.state.set(**before, problem="")
+
+
+def test_of_many_pictures_that_are_begun_one_is_made_at_a_time(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    from flowtex.app.controllers import exports
+    from flowtex.app.streaming import scene_copy
+
+    app = page(field())
+    copies: list[Any] = []
+    copy_of = scene_copy.copy_of
+
+    def counted(scene: Any) -> Any:
+        copies.append(copy_of(scene))
+        return copies[-1]
+
+    monkeypatch.setattr(exports, "copy_of", counted)
+
+    async def story() -> None:
+        app.state.set(out_width=40, out_height=30, out_smooth=False)
+        for _ in range(20):
+            app.share.begin()
+        await until(lambda: app.state.get("out_file"))
+        assert len(copies) == 1
+        assert len(list(app.share.downloads.folder.iterdir())) == 1
+
+    played(app, story)
+
+
+def test_a_picture_that_fails_says_so(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    from flowtex.app.controllers import exports
+
+    app = page(field())
+
+    monkeypatch.setattr(exports, "copy_of", raising(RuntimeError("no memory")))
+
+    async def story() -> None:
+        app.share.begin()
+        await until(lambda: "no memory" in app.state.get("problem"))
+        assert app.state.get("out_progress") is None and "no memory" in caplog.text
+        assert list(app.share.downloads.folder.iterdir()) == []
+
+    played(app, story)
+
+
+def test_a_message_has_an_end() -> None:
+    messages = Messages()
+    messages.set_max_message_size(4 * 2**30)
+    whole = msgpack.packb({"id": 1, "content": b"x" * 1000})
+    found = [messages.process_chunk(chunk) for chunk in generate_chunks(whole, 300)]
+    assert found[-1]["id"] == 1 and not any(found[:-1])
+    head = (7).to_bytes(4, "little") + bytes(4)
+    with pytest.raises(ValueError, match="exceeds"):
+        messages.process_chunk(head + (LONGEST + 1).to_bytes(4, "little"))
+    with pytest.raises(ValueError, match="were begun"):
+        for number in range(10):
+            begun = number.to_bytes(4, "little") + bytes(4) + (99).to_bytes(4, "little")
+            messages.process_chunk(begun)
+    assert not messages.pending_messages
+
+
+def test_bytes_are_no_number() -> None:
+    for value in (b"12", b"x"):
+        with pytest.raises(SettingsError, match="expected a whole number"):
+            Settings().update(samples=value)
+
+
+# --- files and planes ----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["file", "vectors", "block", "axis", "index"])
+def test_a_choice_of_any_kind_is_one_that_there_is(name: str) -> None:
+    app = page(Library.of(block(), field(name="other")))
+    data = app.data
+
+    async def story() -> None:
+        before = (data.name, data.choice)
+        for junk in JUNK:
+            app.state.set(problem="", **{name: junk})
+            data.take_file() if name == "file" else data.take_choice()
+            await until(lambda: opened(app))
+            assert app.state.get("busy") == ""
+            if name != "index":
+                assert (data.name, data.choice) == before
+                assert app.state.get(name) == data._offers().get(name, data.name)
+            assert app.state.get("index") == int(data.choice.plane[2:])
+            assert len(app.state.get("problem")) < 500
+            data.begin(*before)
+            await until(lambda: data.choice == before[1] and opened(app))
+
+    played(app, story)
+
+
+def slow(monkeypatch: pytest.MonkeyPatch, app: FlowApp) -> dict[str, threading.Event]:
+    """Let each plane be opened when its event is set, or when it is not wanted any more."""
+    gates: dict[str, threading.Event] = {}
+    read = app.data._read
+
+    def waiting(name: str, choice: Choice) -> Any:
+        gate = gates.setdefault(choice.plane, threading.Event())
+        while not gate.wait(0.005):
+            check()
+        return read(name, choice)
+
+    monkeypatch.setattr(app.data, "_read", waiting)
+    return gates
+
+
+def test_the_latest_plane_wins_and_the_slider_stays(monkeypatch: pytest.MonkeyPatch) -> None:
+    app = page(block())
+    gates = slow(monkeypatch, app)
+    shown: list[str] = []
+    show = app.show
+
+    def noted(*arguments: Any, **options: Any) -> None:
+        shown.append(app.data.choice.plane)
+        show(*arguments, **options)
+
+    monkeypatch.setattr(app, "show", noted)
+    told: list[Any] = []
+
+    async def story() -> None:
+        app.state.on("index")(lambda: told.append(app.state.get("index")))
+        for index in (4, 5, 6):
+            app.state.send(index=index)
+            await asyncio.sleep(0.02)
+        for gate in ("k=4", "k=5", "k=6"):
+            gates.setdefault(gate, threading.Event()).set()
+        await until(lambda: app.data.choice.plane == "k=6" and opened(app))
+        # What had begun was seen on the way, and the slider heard nothing of it.
+        assert shown == ["k=4", "k=6"] and told == [4, 5, 6]
+        # Away and back again before the other one was there: it stays away.
+        app.state.send(index=2)
+        await asyncio.sleep(0.02)
+        app.state.send(index=6)
+        gates.setdefault("k=2", threading.Event()).set()
+        await until(lambda: opened(app))
+        assert (
+            shown == ["k=4", "k=6"] and app.state.get("index") == 6 and app.state.get("busy") == ""
+        )
+
+    played(app, story)
+
+
+def test_a_file_that_fails_in_any_way_says_so_and_the_old_view_stands(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    app = page(Library.of(block(), field(name="other")))
+
+    async def story() -> None:
+        before, failing = app.field, raising(RuntimeError("reader crashed"))
+        places: list[tuple[Any, str]] = [(app.data, "_read"), (app.data, "_trace"), (app, "show")]
+        for owner, name in places:
+            with monkeypatch.context() as patch:
+                patch.setattr(owner, name, failing)
+                app.state.send(file="other")
+                await until(lambda: "reader crashed" in app.state.get("problem"))
+                await until(lambda: opened(app))
+            assert app.field is before and app.state.get("busy") == ""
+            assert app.state.get("file") == app.data.name != "other"
+            assert app.state.get("index") == 3 and "reader crashed" in caplog.text
+            app.state.send(problem="")
+        app.state.send(file="other")
+        await until(lambda: app.data.name == "other" and app.state.get("axes") == [])
+
+    played(app, story)
+
+
+def test_blocks_have_planes_of_their_own() -> None:
+    blocks = pv.MultiBlock(
+        {"large": block((9, 8, 20)), "small": block((9, 8, 4), "other", "third")}
+    )
+    library = Library.of(blocks)
+    app, beside = page(library), page(library)
+
+    async def story() -> None:
+        app.state.send(index=15)
+        await until(lambda: app.data.choice.plane == "k=15")
+        app.state.send(block="small")
+        await until(lambda: app.data.choice == Choice("other", "k=2", "small"))
+        await until(lambda: app.state.get("planes") == 3)
+        assert app.state.get("vectors_choices") == ["other", "third"]
+        # Another page, which shows the other block, sees nothing of it.
+        assert beside.data._offers()["planes"] == 19
+        beside.data.take_choice()
+        assert beside.data._opening is None
+        beside.close()
+        app.state.send(block="large")
+        await until(lambda: app.data.choice == Choice("velocity", "k=10", "large"))
+
+    played(app, story)
+
+
+def test_a_plane_keeps_time_range_and_camera_and_another_file_does_not() -> None:
+    steps = [block() for _ in range(3)]
+    app = page(Library.of(steps, field(name="other")), times=None)
+    assert len(app.field.times) == 3
+
+    async def story() -> None:
+        app.state.send(colour="depth")
+        app.state.send(low=-1.0, high=99.0)
+        app.state.send(time=1.0)
+        app.scene.navigator.pan(0.2, 0.1)
+        camera = app.scene.canvas.camera()
+        app.state.send(index=5)
+        await until(lambda: app.data.choice.plane == "k=5")
+        assert app.scene.handle.time == app.state.get("time") == 1.0
+        assert app.scene.colour_range == (-1.0, 99.0) and app.state.get("high") == 99.0
+        assert app.scene.canvas.camera() == camera
+        app.state.send(file="other")
+        await until(lambda: app.data.name == "other" and app.state.get("steady"))
+        assert app.scene.colour == "speed" and app.scene.chosen_range is None
+
+    played(app, story)
+
+
+def test_a_slow_file_of_one_page_keeps_nobody_from_another(monkeypatch: pytest.MonkeyPatch) -> None:
+    library = Library.of(field(name="quick"), field(name="slow"))
+    held, opening = threading.Event(), threading.Event()
+    entry = library._found["slow"]
+
+    def waiting() -> FlowSource:
+        opening.set()
+        assert held.wait(10)
+        return entry()
+
+    library._found["slow"] = waiting
+    thread = threading.Thread(target=library.source, args=("slow",))
+    thread.start()
+    assert opening.wait(10)
+    other = threading.Thread(target=library.field, args=("quick", Choice()))
+    other.start()
+    other.join(5)
+    in_time = not other.is_alive()
+    held.set()
+    thread.join()
+    other.join()
+    assert in_time
+    with pytest.raises(FieldError, match="there is no file") as told:
+        library.source("../" * 1000)
+    assert len(str(told.value)) < 300
+
+
+def test_a_page_goes_on_with_a_file_that_the_library_let_go() -> None:
+    library = Library.of(block(), field(name="other"))
+    app = page(library)
+    library._sources.clear()
+    library._found.clear()
+    app.state.set(index=1)
+    assert app.data._asked().plane == "k=1" and app.data._offers()["planes"] == 6
+    app.close()
+
+
+def test_what_is_kept_open_is_bounded_in_bytes(monkeypatch: pytest.MonkeyPatch) -> None:
+    library = Library.of(*(field(name=name) for name in "abcde"))
+    monkeypatch.setattr(library_module, "FLOW_BYTES", 1)
+    monkeypatch.setattr(library_module, "SOURCE_BYTES", 1)
+    for name in library.names:
+        flow = library.field(name, Choice())
+        assert library.trace(name, Choice(), flow, Settings()).nbytes > 1000
+    assert [len(library._flows), len(library._sources)] == [1, 1]
+    assert library.source("e").nbytes > 1000 and FlowSource(block()).nbytes > 1000
+
+
+# --- life cycle ----------------------------------------------------------------------------------
+
+
+def test_a_page_that_closes_leaves_nothing_behind(monkeypatch: pytest.MonkeyPatch) -> None:
+    before = threading.enumerate()
+    app = page(block())
+    gates = slow(monkeypatch, app)
+
+    async def story() -> None:
+        app.clockwork.take_playing()
+        app.state.send(playing=True, index=5)
+        app.state.set(out_format="GIF", out_width=64, out_height=48, out_seconds=1.0, out_fps=10.0)
+        app.share.begin()
+        app.reader.click((0.0, 0.0))
+        await asyncio.sleep(0.03)
+        app.close()
+        gates.setdefault("k=5", threading.Event()).set()
+        tasks = [app.data._opening, app.share._task, app.reader._reading]
+        await asyncio.wait([task for task in tasks if task is not None], timeout=10)
+        assert all(task is None or task.done() for task in tasks)
+        assert app.data.choice.plane == "k=3" and app.reader._card is None
+        # What the page sends in its last moments is heard by nobody.
+        app.stream.update_size("test", {"w": 50, "h": 50})
+        app.stream.on_interaction("test", {"type": "MouseWheel", "spinY": 1, "w": 9, "h": 9})
+        app.stream.changed()
+
+    played(app, story)  # and it may be closed twice
+    for thread in [thread for thread in threading.enumerate() if thread not in before]:
+        thread.join(10)
+        assert not thread.is_alive(), thread.name
+
+
+def test_a_flow_may_come_between_any_two_tiles() -> None:
+    app = page(field())
+    flows = [field(curved=True), field(steps=2), field()]
+    for number, flow in enumerate(flows * 2):
+        composer = app.stream.composer
+        composer.forget()
+        for painter in composer.painters:
+            painter.cost.learn(9.0, 96 * 64, 3)
+        app.reader.show_path((3.0, 4.0))
+        composer.quick(0.01)
+        tiles = composer.full()
+        next(tiles)
+        app.show(flow)
+        app.area.compare({"lod": False} if number % 2 else None)
+        next(tiles, None)
+        tiles.close()
+        assert app.state.get("card") is None
+        assert app.state.get("steady") == flow.steady
+        assert composer.quick(float("inf")).shape == (64, 96, 3)
+    app.close()
+
+
+def test_time_that_is_moved_by_hand_does_not_run_away() -> None:
+    app = page(field(steps=3))
+    streamer = Streamer()
+
+    async def story() -> None:
+        app.stream.set_streamer(streamer)
+        app.area._tasks += [
+            asyncio.create_task(work) for work in (app.stream.run(), app.area.player.play())
+        ]
+        app.state.send(playing=True)
+        first = app.scene.handle.time
+        await until(lambda: app.scene.handle.time != first)
+        for wanted in (0.25, 0.5, 0.75):
+            app.state.send(time=wanted)
+            await asyncio.sleep(0.12)
+            assert app.scene.handle.time == app.state.get("time") == wanted
+        await until(lambda: app.scene.handle.time != 0.75)
+
+    played(app, story)
+
+
+def test_playing_goes_over_from_times_to_streaming_and_back() -> None:
+    app = page(field(steps=3))
+    app.state.set(playing=True)
+    app.clockwork.take_playing()
+    app.show(field())
+    assert app.area.settings.motion == "speed"
+    assert app.area.player.playing
+    assert app.state.get("steady") is True
+    app.show(field(steps=2))
+    assert app.area.player.playing
+    assert app.state.get("last") == 1.0
+    app.close()
+
+
+def test_the_browser_draws_one_view_and_is_handed_a_flow_once() -> None:
+    app = page(field())
+    app.state.set(compare="10 samples")
+    app.look.take_comparison()
+    app.state.set(rendering="browser")
+    app.browser.take_renderer()
+    assert app.browser.active and len(app.scene.panes) == 1
+    assert app.state.get("compare") == "nothing"
+    before = app.browser._generation
+    app.show(field(curved=True))
+    assert app.browser._generation == before + 1
+    app.state.set(compare="10 samples")
+    app.look.take_comparison()
+    assert not app.browser.active and app.state.get("rendering") == "server"
+    assert len(app.scene.panes) == 2 and not app.stream.paused
+    app.close()
+
+
+# --- reading -------------------------------------------------------------------------------------
+
+
+def test_a_path_is_read_beside_the_page_and_the_latest_click_wins(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    app = page(field())
+    asked: list[Any] = []
+    free = threading.Event()
+
+    def slowly(view: Any, at: Any, **options: Any) -> Any:
+        assert threading.current_thread() is not threading.main_thread()
+        asked.append(at)
+        assert free.wait(10)
+        return probe(view, at, **options)
+
+    monkeypatch.setattr(reader_module, "probe", slowly)
+
+    async def story() -> None:
+        for n in range(8):
+            app.reader.show_path((1.0 + n / 2, 3.0))
+            await asyncio.sleep(0.005)
+        assert app.state.get("card") is None and len(asked) == 1
+        app.area.settings.samples = 5  # what is read is not changed on the way
+        free.set()
+        await until(lambda: app.state.get("card"))
+        assert asked == [(1.0, 3.0), (4.5, 3.0)]
+        assert app.reader._card is not None and app.reader._card.probe.asked == 5
+        # A path that is closed, or whose flow has gone, does not come back.
+        free.clear()
+        app.reader.show_path((2.0, 2.0))
+        await until(lambda: len(asked) == 3)
+        app.show(field(curved=True))
+        free.set()
+        await until(lambda: not app.reader.busy)
+        assert app.state.get("card") is None
+
+    played(app, story)
+
+
+def test_a_path_that_fails_is_logged(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    app = page(field())
+
+    monkeypatch.setattr(reader_module, "probe", raising(IndexError("beyond")))
+
+    async def story() -> None:
+        app.reader.show_path((2.0, 2.0))
+        await until(lambda: "beyond" in caplog.text)
+        assert not app.reader.busy
+
+    played(app, story)
+
+
+# --- where the camera stands ---------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("size", [(60, 240), (240, 60)])
+@pytest.mark.parametrize("panes", [1, 2])
+@pytest.mark.parametrize("curved", [False, True])
+def test_the_whole_surface_is_in_view(size: tuple[int, int], panes: int, *, curved: bool) -> None:
+    flow = field(curved=curved)
+    # Long, so that one side of it tells nothing of another.
+    app = page(FlowField.from_arrays(flow.points * [4, 1, 1], flow.velocity[0]))
+    app.stream.update_size("test", {"w": size[0], "h": size[1], "p": 1})
+    app.area.compare({"lod": False} if panes == 2 else None)
+    from flowtex.app.streaming.places import project
+
+    def seen() -> float:
+        points = app.field.points.reshape(-1, 3)
+        return float(np.abs(project(app.scene.navigator, points)).max())
+
+    assert 0.5 < seen() <= 1.0
+    app.moves.command("closer")
+    app.moves.command("whole")
+    assert 0.5 < seen() <= 1.0 and app.scene.navigator.zoom == pytest.approx(1)
+    for view in app.moves.views:
+        app.moves.look_from(view)
+        assert 0.3 < seen() <= 1.0 and app.scene.navigator.zoom == pytest.approx(1)
+    app.close()
+
+
+def test_another_size_of_the_window_leaves_a_turned_surface_turned() -> None:
+    app = page(field(curved=True))
+    app.scene.navigator.turn(0.3, 0.1)
+    before = app.scene.navigator.axes[2]
+    app.stream.update_size("test", {"w": 120, "h": 64, "p": 1})
+    assert app.scene.navigator.axes[2] == pytest.approx(before)
+    app.close()

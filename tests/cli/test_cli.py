@@ -1,0 +1,288 @@
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from flowtex import diagnostics as doctor
+from flowtex import examples
+from flowtex.cli import commands, main
+from flowtex.settings import TABLE
+
+Run = Callable[..., tuple[int, str, str]]
+
+
+@pytest.fixture
+def run(capsys: pytest.CaptureFixture[str]) -> Run:
+    def call(*words: object) -> tuple[int, str, str]:
+        code = main([str(word) for word in words])
+        said = capsys.readouterr()
+        # Rich wraps at the width of the terminal; words are what is judged here.
+        return code, " ".join(said.out.split()), " ".join(said.err.split())
+
+    return call
+
+
+@pytest.fixture(scope="session")
+def gyre(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("flow") / "gyre.vts"
+    examples.double_gyre(2.5).save(path)
+    return path
+
+
+@pytest.fixture(scope="session")
+def block(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A box of 6 x 5 x 4 nodes in which everything moves along x."""
+    import pyvista as pv
+
+    mesh = pv.ImageData(dimensions=(6, 5, 4)).cast_to_structured_grid()
+    mesh.point_data["wind"] = np.tile([1.0, 0.0, 0.0], (mesh.n_points, 1))
+    mesh.point_data["force"] = np.tile([0.0, 1.0, 0.5], (mesh.n_points, 1))
+    path = tmp_path_factory.mktemp("flow") / "block.vts"
+    mesh.save(path)
+    return path
+
+
+def grey(path: Path) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
+    with Image.open(path) as picture:
+        return np.asarray(picture.convert("L"), dtype=float)
+
+
+def roughness(pixels: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> tuple[float, float]:
+    """Mean difference of neighbours along x and along y."""
+    return float(np.abs(np.diff(pixels, axis=1)).mean()), float(
+        np.abs(np.diff(pixels, axis=0)).mean()
+    )
+
+
+def test_without_arguments_the_help_is_printed(run: Run) -> None:
+    code, out, err = run()
+    assert code == 0 and not err
+    assert all(word in out for word in ("demo", "show", "render", "info", "doctor"))
+
+
+def test_the_version_is_printed(run: Run) -> None:
+    import flowtex
+
+    assert run("--version") == (0, flowtex.__version__, "")
+
+
+def test_every_setting_is_a_flag_with_its_sentence(run: Run) -> None:
+    _, out, _ = run("render", "--help")
+    plain = "".join(c for c in out if c.isalnum())
+    for row in TABLE.values():
+        assert f"--{row.name.replace('_', '-')}" in out
+        first = row.text.split(",")[0].split(" ")[0]
+        assert first in plain
+        if row.kind is bool:
+            assert f"--no-{row.name.replace('_', '-')}" in out
+
+
+@pytest.mark.parametrize("command", ["demo", "show"])
+def test_the_other_commands_have_them_too(run: Run, command: str) -> None:
+    _, out, _ = run(command, "--help")
+    assert all(f"--{name.replace('_', '-')}" in out for name in TABLE)
+    assert "--no-browser" in out and "--port" in out
+
+
+def test_a_picture_is_drawn_along_the_flow(
+    run: Run, block: Path, tmp_path: Path, opengl: object
+) -> None:
+    out = tmp_path / "wind.png"
+    code, said, err = run(
+        "render", block, "-o", out, "--plane", "k=1", "--vectors", "wind", "--size", "200x150",
+        "--scalars", "none", "--zoom", "2",
+    )  # fmt: skip
+    assert (code, err) == (0, "")
+    assert "6 × 5 nodes" in said and "200 × 150" in said and "leaves the surface" not in said
+    pixels = grey(out)
+    assert pixels.shape == (150, 200)
+    along, across = roughness(pixels)
+    assert across > 5 and across > 2.5 * along
+
+
+def test_flags_reach_the_picture(run: Run, block: Path, tmp_path: Path, opengl: object) -> None:
+    base = ("render", block, "--plane", "k=1", "--size", "120x90", "--scalars", "none")
+    one, two, flat = (tmp_path / f"{name}.png" for name in ("one", "two", "flat"))
+    assert run(*base, "--vectors", "wind", "-o", one)[0] == 0
+    assert run(*base, "--vectors", "wind", "-o", two, "--seed", "7", "--no-lod")[0] == 0
+    assert run(*base, "--vectors", "wind", "-o", flat, "--contrast", "0")[0] == 0
+    assert np.abs(grey(one) - grey(two)).mean() > 5
+    assert roughness(grey(flat)[30:60, 40:80])[1] < 1
+
+
+def test_flow_that_leaves_the_surface_is_told(
+    run: Run, block: Path, tmp_path: Path, opengl: object
+) -> None:
+    out = tmp_path / "force.png"
+    _, said, _ = run(
+        "render", block, "-o", out, "--plane", "k=1", "--vectors", "force", "--size", "60x40"
+    )
+    assert "of the flow leaves the surface" in said
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (("render", "{gyre}", "-o", "{tmp}/a.xyz"), "'.xyz' is no format"),
+        (("render", "{gyre}", "-o", "{tmp}/a"), "no suffix is no format"),
+        (("render", "{gyre}", "-o", "{tmp}/nowhere/a.png"), "there is no folder"),
+        (("render", "{tmp}/no.vts", "-o", "{tmp}/a.png"), "no such file"),
+        (("render", "{gyre}", "-o", "{tmp}/a.png", "--samples", "0"), "samples is 0; expected"),
+        (("render", "{gyre}", "-o", "{tmp}/a.png", "--samples", "x"), "--samples"),
+        (("render", "{gyre}", "-o", "{tmp}/a.png", "--kernel", "flat"), "--kernel"),
+        (("render", "{gyre}", "-o", "{tmp}/a.png", "--size", "10"), "expected width x height"),
+        (("render", "{gyre}", "-o", "{tmp}/a.png", "--zoom", "0"), "--zoom is 0"),
+        (("render", "{gyre}", "-o", "{tmp}/a.png", "--focus", "1"), "two or three coordinates"),
+        (("render", "{gyre}", "-o", "{tmp}/a.png", "--scalars", "heat"), "there are speed"),
+        (("render", "{gyre}", "-o", "{tmp}/a.png", "--cmap", "mud"), "expected a colour map"),
+        (("render", "{gyre}", "-o", "{tmp}/a.png", "--vectors", "wind"), "wind"),
+        (("render", "{block}", "-o", "{tmp}/a.png", "--vectors", "wind"), "plane"),
+        (("render", "{gyre}"), "--output"),
+        (("info", "{tmp}/no.vts"), "no such file"),
+        (("info", "{tmp}"), "a folder"),
+        (("demo", "--example", "soup"), "there is no example 'soup'; there are cylinder"),
+        (("show", "{tmp}/no.vts"), "no such file"),
+        (("shwo",), "Unknown command"),
+        (("info", "{gyre}", "--colour"), "Unknown option"),
+    ],
+)
+def test_what_cannot_be_is_told_in_one_paragraph(
+    run: Run,
+    words: tuple[str, ...],
+    told: str,
+    gyre: Path,
+    block: Path,
+    tmp_path: Path,
+    opengl: object,
+) -> None:
+    filled = [word.format(gyre=gyre, block=block, tmp=tmp_path) for word in words]
+    code, out, err = run(*filled)
+    assert code == 2
+    assert told in err and err.startswith("flowtex: ")
+    assert not out and "Traceback" not in err
+    assert not list(tmp_path.iterdir())
+
+
+def test_missing_opengl_has_a_code_of_its_own(
+    run: Run, gyre: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def missing() -> doctor.OpenGLReport:
+        msg = "VTK cannot draw here"
+        raise doctor.OpenGLMissingError(msg)
+
+    monkeypatch.setattr(doctor, "require_opengl", missing)
+    for words in (("render", gyre, "-o", tmp_path / "a.png"), ("show", gyre), ("demo",)):
+        code, out, err = run(*words)
+        assert (code, out, err) == (1, "", "flowtex: VTK cannot draw here")
+
+
+def test_a_missing_extra_is_told_with_its_command(
+    run: Run, monkeypatch: pytest.MonkeyPatch, opengl: object
+) -> None:
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    code, _, err = run("demo")
+    assert code == 2 and 'pip install -e ".[app]"' in err and "trame_rca" in err
+
+
+def test_debug_shows_where_an_error_came_from() -> None:
+    with pytest.raises(Exception, match="no such file"):
+        main(["info", "/no/such.vts", "--debug"])
+
+
+def test_a_fault_of_the_program_is_not_dressed_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(*_: object, **__: object) -> None:
+        raise ZeroDivisionError
+
+    monkeypatch.setattr(commands, "app", broken)
+    with pytest.raises(ZeroDivisionError):
+        main(["info", "x"])
+
+
+def test_info_describes_the_file_and_the_flow(run: Run, gyre: Path) -> None:
+    code, out, err = run("info", gyre)
+    assert (code, err) == (0, "")
+    for words in ("StructuredGrid, 201 × 101 × 1 nodes", "vorticity", "What would be drawn"):
+        assert words in out
+    for words in ("one, steady", "periodic no", "0 nodes", "flat", "lost 0.0%", "MB of traces"):
+        assert words in out
+
+
+def test_info_says_what_is_needed(run: Run, block: Path) -> None:
+    code, out, _ = run("info", block)
+    assert code == 0 and "To draw it:" in out and "What would be drawn" not in out
+    code, out, _ = run("info", block, "--plane", "k=1", "--vectors", "wind")
+    assert code == 0 and "6 × 5 (i × j)" in out
+
+
+def test_the_console_script_runs_without_loading_vtk() -> None:
+    code = (
+        "import sys; from flowtex.cli import main; assert main(['--help']) == 0;"
+        "assert not {'vtkmodules', 'pyvista', 'trame'} & set(sys.modules)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+
+
+def test_two_views_and_a_moment(run: Run, gyre: Path, tmp_path: Path, opengl: object) -> None:
+    words = [gyre, "--size", "200x80", "--motion", "speed", "--beside", "lod=false"]
+    words += ["--beside", "resolution=512"]
+    for name, clock in (("a", 0.0), ("b", 1.0)):
+        code, _, said = run("render", *words, "--clock", clock, "-o", tmp_path / f"{name}.png")
+        assert code == 0, said
+    first, second = (grey(tmp_path / f"{name}.png") for name in "ab")
+    assert first.shape == (80, 200)
+    assert np.abs(first - second).mean() > 2
+    below = slice(30, 60)
+    assert np.abs(first[below, 10:90] - first[below, 110:190]).mean() > 2
+
+
+@pytest.mark.parametrize(
+    ("word", "text"),
+    [
+        ("lod", "expected name=value, as in --beside lod=false"),
+        ("lod=maybe", "lod is 'maybe'; expected True or False"),
+        ("smaples=3", "did you mean 'samples'?"),
+        ("samples=x", "samples is 'x'; expected a whole number"),
+    ],
+)
+def test_a_wrong_second_view_says_so(
+    run: Run, gyre: Path, tmp_path: Path, word: str, text: str
+) -> None:
+    code, _, said = run("render", gyre, "-o", tmp_path / "a.png", "--beside", word)
+    assert code != 0
+    assert text in said
+
+
+def test_export_writes_a_page_and_tells_its_size(run: Run, gyre: Path, tmp_path: Path) -> None:
+    page = tmp_path / "page.html"
+    code, out, err = run("export", gyre, "-o", page, "--samples", 9, "--title", "two gyres")
+    assert (code, err) == (0, "")
+    assert "about 1." in out or "about 0." in out
+    assert f"{page.stat().st_size / 1e6:.2f} MB" in out
+    assert "<title>two gyres</title>" in page.read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("-o", "page.png"), "page.png: expected a name that ends in .html"),
+        (("-o", "nowhere/page.html"), "there is no folder 'nowhere'"),
+        (("-o", "page.html", "--steps", "0"), "--steps is 0; expected 1 to 1"),
+        (("-o", "page.html", "--scalars", "heat"), "--scalars is 'heat'; there are"),
+    ],
+)
+def test_export_refuses_what_it_cannot_do(
+    run: Run, gyre: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, words: Any, said: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    code, _, err = run("export", gyre, *words)
+    assert code == 2
+    assert said in err
+    assert list(tmp_path.iterdir()) == []

@@ -1,0 +1,711 @@
+"""PyVista's structured meshes become a field, whichever way they lie and hide."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from flowtex import FlowField
+from flowtex.errors import FieldError
+from flowtex.field.io.from_pyvista import from_pyvista
+from flowtex.field.io.planes import nodes_to_keep, spread
+
+pv = pytest.importorskip("pyvista")
+
+Floats = NDArray[np.float64]
+
+HIDDEN_POINT, HIDDEN_CELL = 2, 32
+SHIFT = np.array([0.5, 0.25, 0.125])
+UNSTRUCTURED = (
+    ", and no structured grid: its nodes have no order along i and j, which the method needs. "
+    "Sample it onto a grid, as in pyvista.ImageData(dimensions=(400, 300, 1), spacing=..., "
+    "origin=...).sample(mesh), or draw it with ParaView's Surface LIC, which takes any mesh"
+)
+
+
+def says(text: str) -> pytest.RaisesExc[FieldError]:
+    """Expect an error with exactly this text."""
+    return pytest.raises(FieldError, match=f"^{re.escape(text)}$")
+
+
+def structured(i: int = 4, j: int = 3, k: int = 1) -> Any:
+    """A grid whose nodes tell their indices: x = i, y = 10 j, z = 100 k."""
+    z, y, x = np.meshgrid(*[np.arange(float(n)) for n in (k, j, i)], indexing="ij")
+    grid = pv.StructuredGrid()
+    grid.points = np.stack([x, 10 * y, 100 * z], axis=-1).reshape(-1, 3)
+    grid.dimensions = (i, j, k)
+    return grid
+
+
+def rectilinear(i: int = 4, j: int = 3, k: int = 1) -> Any:
+    return pv.RectilinearGrid(*[np.arange(float(n)) * s for n, s in ((i, 1), (j, 10), (k, 100))])
+
+
+def image(i: int = 4, j: int = 3, k: int = 1) -> Any:
+    return pv.ImageData(dimensions=(i, j, k), spacing=(1, 10, 100))
+
+
+KINDS = [structured, rectilinear, image]
+
+
+def with_flow(grid: Any) -> Any:
+    """Give a grid a velocity that is its own positions, shifted."""
+    grid["v"] = np.asarray(grid.points, dtype=float) + SHIFT
+    return grid
+
+
+def flowing(i: int = 4, j: int = 3, k: int = 1) -> Any:
+    return with_flow(structured(i, j, k))
+
+
+def expected(i: Any, j: Any, k: Any) -> Floats:
+    """Positions of nodes with these indices, broadcast to (J, I, 3)."""
+    return np.stack(np.broadcast_arrays(1.0 * i, 10.0 * j, 100.0 * k), axis=-1)
+
+
+# --- planes ---------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("make", KINDS)
+@pytest.mark.parametrize(
+    ("size", "flat_axis"), [((4, 3, 1), "k"), ((4, 1, 3), "j"), ((1, 4, 3), "i")]
+)
+def test_a_flat_mesh_of_any_direction(
+    make: Any, size: tuple[int, int, int], flat_axis: str
+) -> None:
+    field = from_pyvista(with_flow(make(*size)))
+    first, second = np.arange(4)[None], np.arange(3)[:, None]
+    wanted = {
+        "k": expected(first, second, 0),
+        "j": expected(first, 0, second),
+        "i": expected(0, first, second),
+    }[flat_axis]
+    assert np.array_equal(field.points, wanted)
+    np.testing.assert_array_equal(field.velocity[0], wanted + SHIFT)
+
+
+@pytest.mark.parametrize("make", KINDS)
+@pytest.mark.parametrize(
+    ("plane", "wanted"),
+    [
+        ("k=1", expected(np.arange(5)[None], np.arange(4)[:, None], 1)),
+        ("K = -1", expected(np.arange(5)[None], np.arange(4)[:, None], 2)),
+        ("j=3", expected(np.arange(5)[None], 3, np.arange(3)[:, None])),
+        ("j=-4", expected(np.arange(5)[None], 0, np.arange(3)[:, None])),
+        (" i=+2 ", expected(2, np.arange(4)[None], np.arange(3)[:, None])),
+    ],
+)
+def test_a_plane_of_a_solid_mesh(make: Any, plane: str, wanted: Floats) -> None:
+    field = from_pyvista(with_flow(make(5, 4, 3)), plane=plane)
+    assert np.array_equal(field.points, wanted)
+    np.testing.assert_array_equal(field.velocity[0], wanted + SHIFT)
+
+
+def test_a_flat_mesh_may_be_told_its_plane() -> None:
+    assert from_pyvista(flowing(), plane="k=0").shape == (3, 4)
+
+
+def test_an_image_that_is_turned_and_shifted() -> None:
+    grid = pv.ImageData(dimensions=(4, 3, 2), spacing=(1, 2, 3), origin=(5, 6, 7))
+    grid.direction_matrix = [[0, -1, 0], [1, 0, 0], [0, 0, 1]]
+    grid.offset = (10, 20, 30)
+    with_flow(grid)
+    field = from_pyvista(grid, plane="k=1")
+    wanted = np.asarray(grid.points).reshape(2, 3, 4, 3)[1]
+    np.testing.assert_allclose(field.points, wanted, atol=1e-12)
+
+
+def test_integer_coordinates_become_real() -> None:
+    grid = structured()
+    points = pv.vtk_points(np.asarray(grid.points).astype(np.int32), force_float=False)
+    grid.SetPoints(points)
+    grid["v"] = np.ones((12, 3))
+    field = from_pyvista(grid)
+    assert field.points.dtype == np.float64
+    assert np.array_equal(field.points, expected(np.arange(4)[None], np.arange(3)[:, None], 0))
+
+
+def test_a_bare_vtk_mesh_is_a_mesh() -> None:
+    from vtkmodules.vtkCommonDataModel import vtkStructuredGrid
+
+    bare = vtkStructuredGrid()
+    bare.ShallowCopy(flowing())
+    assert from_pyvista(bare).shape == (3, 4)
+
+
+@pytest.mark.parametrize(
+    ("plane", "text"),
+    [
+        (
+            None,
+            "the mesh has 5 x 4 x 3 nodes (I x J x K), and a flow is drawn on one surface: choose "
+            'a plane, as in plane="k=1"; there are i=0 to 4, j=0 to 3, k=0 to 2, and -1 is the '
+            "last one",
+        ),
+        (
+            "k=3",
+            "plane is 'k=3'; expected k between -3 and 2, as the mesh has 5 x 4 x 3 nodes "
+            "(I x J x K)",
+        ),
+        (
+            "i=-6",
+            "plane is 'i=-6'; expected i between -5 and 4, as the mesh has 5 x 4 x 3 nodes "
+            "(I x J x K)",
+        ),
+        (
+            "z=3",
+            'plane is \'z=3\'; expected "i=N", "j=N" or "k=N" with a whole number N, as in '
+            'plane="k=1"',
+        ),
+        (
+            3,
+            'plane is 3; expected "i=N", "j=N" or "k=N" with a whole number N, as in plane="k=1"',
+        ),
+    ],
+)
+def test_a_plane_that_is_not_there(plane: Any, text: str) -> None:
+    with says(text):
+        from_pyvista(flowing(5, 4, 3), plane=plane)
+
+
+def test_a_plane_across_a_flat_mesh() -> None:
+    with says(
+        "plane is 'i=2', which leaves a single row, as the mesh has 4 x 3 x 1 nodes (I x J x K); "
+        "it is one surface already: leave plane out"
+    ):
+        from_pyvista(flowing(), plane="i=2")
+
+
+def test_a_single_row_of_nodes() -> None:
+    with says(
+        "the mesh has 4 x 1 x 1 nodes (I x J x K), a single row; a surface needs at least 2 nodes "
+        "along two of the axes"
+    ):
+        from_pyvista(flowing(4, 1, 1))
+
+
+@pytest.mark.parametrize("empty", [pv.StructuredGrid(), pv.ImageData(), pv.RectilinearGrid()])
+def test_an_empty_mesh(empty: Any) -> None:
+    with says("the mesh is empty: check that the file or the filter that made it gave any nodes"):
+        from_pyvista(empty)
+
+
+def test_plane_and_vectors_are_refused_together() -> None:
+    with says(
+        "2 things are wrong:\n"
+        "  1. plane is 'k=9'; expected k between -3 and 2, as the mesh has 5 x 4 x 3 nodes "
+        "(I x J x K)\n"
+        "  2. vectors is 'w', and the mesh has no such array. Its arrays, with their components: "
+        "v (points, 3)"
+    ):
+        from_pyvista(flowing(5, 4, 3), plane="k=9", vectors="w")
+
+
+# --- vectors --------------------------------------------------------------------------------
+
+
+def test_the_only_candidate_is_found() -> None:
+    grid = flowing()
+    grid["Normals"] = np.ones((12, 3))
+    grid["surface_normals"] = np.ones((12, 3))
+    grid["Texture Coordinates"] = np.ones((12, 2))
+    grid["coords"] = np.ones((12, 3))
+    grid["rgb"] = np.ones((12, 3), np.uint8)
+    grid["stress"] = np.ones((12, 6))
+    grid["p"] = np.arange(12.0)
+    grid["n"] = np.ones((12, 3))
+    grid.point_data.active_normals_name = "n"
+    field = from_pyvista(grid)
+    assert field.velocity[0, 0, 0].tolist() == [0.5, 0.25, 0.125]
+
+
+def test_the_active_vectors_win() -> None:
+    grid = flowing()
+    grid["w"] = np.full((12, 3), 7.0)
+    grid.set_active_vectors("w")
+    assert (from_pyvista(grid).velocity == 7).all()
+    assert (from_pyvista(grid, vectors="v").velocity != 7).any()
+
+
+def test_momentum_that_a_reader_marked_is_no_choice() -> None:
+    grid = structured()
+    grid["Momentum"], grid["Velocity"] = np.ones((12, 3)), np.full((12, 3), 2.0)
+    grid.set_active_vectors("Momentum")
+    with says(
+        "the mesh has 2 arrays that could be the velocity: Momentum (points, 3), Velocity "
+        '(points, 3); choose one, as in vectors="Velocity"'
+    ):
+        from_pyvista(grid)
+
+
+def test_several_candidates_are_listed() -> None:
+    grid = flowing()
+    grid.cell_data["w"] = np.ones((6, 2))
+    with says(
+        "the mesh has 2 arrays that could be the velocity: v (points, 3), w (cells, 2); choose "
+        'one, as in vectors="w"'
+    ):
+        from_pyvista(grid)
+
+
+def test_no_candidate() -> None:
+    grid = structured()
+    grid["p"] = np.ones(12)
+    with says(
+        "the mesh has no vectors that could be the velocity; expected a point or cell array of "
+        "real numbers with 2 or 3 components. Its arrays, with their components: p (points, 1). "
+        'Join single components with mesh["velocity"] = numpy.column_stack((u, v, w))'
+    ):
+        from_pyvista(grid)
+
+
+def test_a_name_that_is_not_there() -> None:
+    with says(
+        "vectors is 'V1', and the mesh has no such array. Its arrays, with their components: "
+        "v (points, 3)"
+    ):
+        from_pyvista(flowing(), vectors="V1")
+    grid = structured()
+    grid["velocity"] = np.ones((12, 3))
+    with says(
+        "vectors is 'velcity', and the mesh has no such array. Did you mean \"velocity\"? Its "
+        "arrays, with their components: velocity (points, 3)"
+    ):
+        from_pyvista(grid, vectors="velcity")
+
+
+def test_a_name_of_something_else() -> None:
+    grid = flowing()
+    grid["p"] = np.ones(12)
+    with says(
+        "vectors is 'p', an array of 1 component(s); expected 2 or 3 numbers at each point or "
+        "cell. The arrays of the mesh, with their components: v (points, 3), p (points, 1)"
+    ):
+        from_pyvista(grid, vectors="p")
+
+
+def test_two_components_and_integers_when_named() -> None:
+    grid = structured()
+    grid["uv"] = np.arange(24).reshape(12, 2)
+    field = from_pyvista(grid, vectors="uv")
+    assert field.velocity[0, 2, 3].tolist() == [22, 23, 0]
+
+
+def test_zero_everywhere_warns() -> None:
+    grid = structured()
+    grid["v"] = np.zeros((12, 3))
+    with pytest.warns(UserWarning, match="^The velocity is zero at every node, so the picture"):
+        from_pyvista(grid)
+
+
+def test_nan_everywhere() -> None:
+    grid = structured()
+    grid["v"] = np.full((12, 3), np.nan)
+    with says(
+        "none of the 12 nodes is usable: each is blanked, masked or NaN; check the chosen vectors "
+        "and the blanking"
+    ):
+        from_pyvista(grid)
+
+
+# --- scalars --------------------------------------------------------------------------------
+
+
+def test_other_arrays_of_one_component_become_scalars() -> None:
+    grid = flowing(4, 3, 2)
+    grid["p"] = np.arange(24, dtype=np.int32)
+    grid["one column"] = np.arange(24.0).reshape(-1, 1)
+    grid["words"] = np.array(["a"] * 24)
+    grid["w"] = np.ones((24, 3))
+    grid["IBlank"] = np.ones(24, np.int32)
+    grid.cell_data["c"] = np.arange(6.0)
+    grid.cell_data["p"] = np.full(6, -1.0)
+    field = from_pyvista(grid, vectors="v", plane="k=1")
+    assert list(field.scalars) == ["p", "one column", "c"]
+    assert np.array_equal(field.scalars["p"][0], np.arange(12, 24).reshape(3, 4))
+    assert np.array_equal(field.scalars["one column"], field.scalars["p"])
+    wanted = [[0, 0.5, 1.5, 2], [1.5, 2, 3, 3.5], [3, 3.5, 4.5, 5]]
+    assert field.scalars["c"][0].tolist() == wanted
+
+
+# --- cells ----------------------------------------------------------------------------------
+
+
+def test_cell_vectors_become_means_around_the_nodes() -> None:
+    grid = structured()
+    grid.cell_data["v"] = np.arange(18.0).reshape(6, 3)
+    field = from_pyvista(grid)
+    wanted = grid.cell_data_to_point_data()["v"].reshape(3, 4, 3)
+    np.testing.assert_allclose(field.velocity[0], wanted)
+
+
+@pytest.mark.parametrize("plane", ["k=0", "k=2", "k=3", "j=1", "i=4"])
+def test_cells_on_both_sides_of_a_plane_count(plane: str) -> None:
+    grid = structured(5, 4, 4)
+    grid.cell_data["v"] = np.random.default_rng(0).random((36, 3))
+    nodes = with_points(grid, grid.cell_data_to_point_data()["v"])
+    np.testing.assert_allclose(
+        from_pyvista(grid, plane=plane).velocity, from_pyvista(nodes, plane=plane).velocity
+    )
+
+
+def with_points(grid: Any, velocity: Any) -> Any:
+    bare = pv.StructuredGrid()
+    bare.copy_structure(grid)
+    bare["v"] = np.asarray(velocity)
+    return bare
+
+
+@pytest.mark.parametrize("how", ["ghosts", "nan"])
+def test_hidden_cells_leak_nothing(how: str) -> None:
+    grid = structured(7, 6)
+    velocity, ghosts = np.ones((30, 3)), np.zeros(30, np.uint8)
+    block = [14, 15, 20, 21]
+    if how == "ghosts":
+        velocity[block] = 1e6
+        ghosts[block] = HIDDEN_CELL
+        grid.cell_data["vtkGhostType"] = ghosts
+    else:
+        velocity[block] = np.nan
+    grid.cell_data["v"] = velocity
+    grid.cell_data["c"] = velocity[:, 0]
+    field = from_pyvista(grid)
+    assert np.argwhere(~field.valid).tolist() == [[3, 3]]
+    assert (field.velocity[0, field.valid] == 1).all()
+    assert (field.scalars["c"][0][field.valid] == 1).all()
+    hidden = np.zeros(30, bool)
+    hidden[block] = True
+    assert np.array_equal(field.surface.cells, ~hidden.reshape(5, 6))
+
+
+def test_a_wall_one_cell_thick_stays_shut() -> None:
+    grid = with_flow(structured(7, 6))
+    ghosts = np.zeros((5, 6), np.uint8)
+    ghosts[:, 3] = HIDDEN_CELL
+    grid.cell_data["vtkGhostType"] = ghosts.ravel()
+    field = from_pyvista(grid)
+    assert not field.surface.cells[:, 3].any()
+    assert field.surface.cells[:, :2].all()
+    assert field.surface.cells[:, 5].all()
+
+
+def test_cells_are_kept_as_they_are_shown() -> None:
+    """No hidden cell is drawn, and one that is two cells away from any is."""
+    rng = np.random.default_rng(6)
+    for _ in range(50):
+        visible = rng.random((8, 9)) > 0.2
+        keep = nodes_to_keep(visible, (False, False))
+        drawn = keep[:-1, :-1] & keep[1:, :-1] & keep[:-1, 1:] & keep[1:, 1:]
+        assert not (drawn & ~visible).any()
+        near = np.pad(~visible, 1)
+        calm = ~np.logical_or.reduce(
+            [near[1 + a : 9 + a, 1 + b : 10 + b] for a in (-1, 0, 1) for b in (-1, 0, 1)]
+        )
+        assert drawn[calm].all()
+
+
+def test_duplicates_of_a_neighbouring_piece_are_kept() -> None:
+    grid = flowing()
+    grid.point_data["vtkGhostType"] = np.full(12, 1, np.uint8)
+    grid.cell_data["vtkGhostType"] = np.full(6, 1, np.uint8)
+    assert from_pyvista(grid).valid.all()
+
+
+def test_means_go_round_a_seam() -> None:
+    layers, visible = np.arange(12.0).reshape(1, 4, 3), np.ones((1, 4, 3), bool)
+    nodes = spread(layers, visible, (True, False))
+    assert nodes[:, 0].tolist() == [4.5, 1.5, 4.5, 7.5, 4.5]
+    open_nodes = spread(layers, visible, (False, False))
+    assert open_nodes[:, 0].tolist() == [0, 1.5, 4.5, 7.5, 9]
+
+
+def annulus() -> Any:
+    angle, radius = np.linspace(0, 2 * np.pi, 13), np.linspace(1, 2, 4)
+    a, r = np.meshgrid(angle, radius)
+    grid = pv.StructuredGrid()
+    grid.points = np.stack([r * np.cos(a), r * np.sin(a), 0 * a], axis=-1).reshape(-1, 3)
+    grid.dimensions = (13, 4, 1)
+    return grid
+
+
+def test_cell_vectors_agree_on_both_sides_of_a_seam() -> None:
+    grid = annulus()
+    grid.cell_data["v"] = np.random.default_rng(0).random((36, 3))
+    field = from_pyvista(grid)
+    assert field.periodic == (False, True)
+    cells = grid.cell_data["v"].reshape(3, 12, 3)
+    np.testing.assert_allclose(field.velocity[0, 0, 0], (cells[0, 0] + cells[0, -1]) / 2)
+    np.testing.assert_allclose(field.velocity[0, 0, -1], (cells[0, 0] + cells[0, -1]) / 2)
+    apart = from_pyvista(grid, periodic="")
+    assert apart.periodic == (False, False)
+    np.testing.assert_allclose(apart.velocity[0, 0, 0], cells[0, 0])
+
+
+def test_cells_do_not_go_round_a_ring_that_lacks_its_last_ones() -> None:
+    grid = annulus().extract_subset([0, 11, 0, 3, 0, 0])
+    cells = np.random.default_rng(0).random((3, 11, 3))
+    grid.cell_data["v"] = cells.reshape(-1, 3)
+    field = from_pyvista(grid)
+    assert field.shape == (4, 13)
+    np.testing.assert_allclose(field.velocity[0, 0, 0], cells[0, 0])
+    np.testing.assert_allclose(field.velocity[0, 0, 11], cells[0, -1])
+    np.testing.assert_allclose(field.velocity[0, 0, 12], cells[0, 0])
+
+
+def test_a_hidden_cell_beside_a_seam_stays_hidden() -> None:
+    grid = with_flow(annulus())
+    ghosts = np.zeros((3, 12), np.uint8)
+    ghosts[0, 0] = HIDDEN_CELL
+    grid.cell_data["vtkGhostType"] = ghosts.ravel()
+    field = from_pyvista(grid)
+    assert field.periodic == (False, True)
+    assert not field.surface.cells[0, 0]
+    assert field.surface.cells[2].all()
+
+
+# --- hidden points --------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("how", ["vtkGhostType", "IBlank", "vtkValidPointMask", "hide_points"])
+def test_hidden_points_are_not_valid(how: str) -> None:
+    grid = flowing(4, 3, 2)
+    flags = np.zeros(24, np.int32 if how == "IBlank" else np.uint8)
+    if how == "vtkGhostType":
+        flags[18] = HIDDEN_POINT
+        grid[how] = flags
+    elif how == "hide_points":
+        grid.hide_points([18])
+    else:
+        flags[:] = 1
+        flags[18] = 0
+        grid[how] = flags
+    assert np.argwhere(~from_pyvista(grid, plane="k=1").valid).tolist() == [[1, 2]]
+    assert from_pyvista(grid, plane="k=0").valid.all()
+
+
+def test_other_codes_of_iblank_carry_data() -> None:
+    grid = flowing()
+    grid["IBlank"] = np.array([0, -1, 2, 1, -3, 5, 1, 1, 1, 1, 1, 1], np.int32)
+    assert np.argwhere(~from_pyvista(grid).valid).tolist() == [[0, 0]]
+
+
+def test_what_a_sampling_filter_missed_is_not_valid() -> None:
+    source = pv.ImageData(dimensions=(6, 6, 1))
+    source["v"] = np.ones((36, 3))
+    target = pv.ImageData(dimensions=(10, 6, 1)).sample(source)
+    field = from_pyvista(target, vectors="v")
+    assert field.valid[:, :6].all()
+    assert not field.valid[:, 6:].any()
+
+
+# --- series ---------------------------------------------------------------------------------
+
+
+def at_time(time: float | None, speed: float = 1.0, **size: int) -> Any:
+    grid = structured(**size)
+    grid["v"] = np.full((grid.n_points, 3), speed)
+    grid["p"] = np.full(grid.n_points, 10 * speed)
+    if time is not None:
+        grid.field_data["TimeValue"] = [time]
+    return grid
+
+
+@pytest.mark.parametrize("container", [list, tuple, pv.MultiBlock])
+def test_grids_are_time_steps(container: Any) -> None:
+    series = container([at_time(0.5, 1.0), at_time(2.0, 3.0), at_time(2.5, 4.0)])
+    field = from_pyvista(series)
+    assert field.times.tolist() == [0.5, 2.0, 2.5]
+    assert field.velocity[:, 1, 1, 0].tolist() == [1, 3, 4]
+    assert field.scalars["p"][:, 1, 1].tolist() == [10, 30, 40]
+    assert from_pyvista(series, times=[0, 1, 2]).times.tolist() == [0, 1, 2]
+
+
+def test_steps_without_times_are_numbered() -> None:
+    assert from_pyvista([at_time(None), at_time(7.0)]).times.tolist() == [0, 1]
+
+
+def test_a_single_mesh_keeps_its_time() -> None:
+    assert from_pyvista(at_time(7.0)).times.tolist() == [7]
+
+
+def test_one_structured_block_is_the_mesh() -> None:
+    blocks = pv.MultiBlock([None, pv.Sphere(), pv.MultiBlock([at_time(None, 5.0), None])])
+    field = from_pyvista(blocks)
+    assert field.steady
+    assert (field.velocity == 5).all()
+    steps = [pv.MultiBlock([at_time(1.0, 1.0)]), pv.MultiBlock([at_time(2.0, 2.0)])]
+    assert from_pyvista(steps).times.tolist() == [1, 2]
+
+
+def test_a_block_of_a_single_row_is_not_the_mesh() -> None:
+    assert from_pyvista(pv.MultiBlock([flowing(4, 1, 1), flowing()])).shape == (3, 4)
+
+
+def test_a_node_hidden_at_one_time_is_hidden_at_all() -> None:
+    second = at_time(1.0)
+    second.hide_points([5])
+    field = from_pyvista([at_time(0.0), second])
+    assert np.argwhere(~field.valid).tolist() == [[1, 1]]
+
+
+class Reader:
+    """As little of a PyVista reader as is needed."""
+
+    def __init__(self, meshes: dict[float, Any]) -> None:
+        self.meshes = meshes
+        self.time_values = list(meshes)
+        self.active_time_value = self.time_values[0]
+
+    def set_active_time_value(self, time: float) -> None:
+        self.active_time_value = time
+
+    def read(self) -> Any:
+        return self.meshes[self.active_time_value]
+
+
+def test_a_reader_of_a_series_is_read_through_and_left_as_it_was() -> None:
+    reader = Reader({t: pv.MultiBlock([at_time(None, t)]) for t in (1.0, 2.0, 4.0)})
+    reader.set_active_time_value(2.0)
+    field = from_pyvista(reader)
+    assert field.times.tolist() == [1, 2, 4]
+    assert field.velocity[:, 0, 0, 0].tolist() == [1, 2, 4]
+    assert reader.active_time_value == 2.0
+    assert from_pyvista(Reader({3.0: at_time(None)})).times.tolist() == [3]
+
+
+def test_a_reader_of_pyvista_is_a_reader(tmp_path: Path) -> None:
+    flowing().save(tmp_path / "flow.vts")
+    assert from_pyvista(pv.get_reader(tmp_path / "flow.vts")).shape == (3, 4)
+
+
+def test_times_out_of_order() -> None:
+    with says(
+        "times[1] = 1 does not come after times[0] = 2; expected strictly increasing times: sort "
+        "the steps, and drop those that repeat"
+    ):
+        from_pyvista([at_time(2.0), at_time(1.0)])
+
+
+def test_times_of_another_number() -> None:
+    with says("times has shape (3,); expected (2,), one for each step of velocity"):
+        from_pyvista([at_time(0.0), at_time(1.0)], times=[0, 1, 2])
+
+
+PARTS = (
+    " If these are parts of one mesh and not time steps, give one of them: mesh[0], or block=0 "
+    "for a file"
+)
+
+
+def test_steps_of_another_size() -> None:
+    with says(
+        "step 1 has 5 x 3 x 1 nodes (I x J x K) and the first step has 4 x 3 x 1 nodes "
+        "(I x J x K); expected the same nodes in every step." + PARTS
+    ):
+        from_pyvista([at_time(0.0), at_time(1.0, i=5)])
+
+
+def test_parts_of_one_mesh_are_no_steps() -> None:
+    left, right = flowing(), flowing()
+    right.points = np.asarray(right.points) + np.array([3.0, 0, 0])
+    with says(
+        "the nodes of block 'right' are up to 3 away from those of the first step; moving meshes "
+        "are not supported: sample all steps onto one mesh with mesh.sample(step)." + PARTS
+    ):
+        from_pyvista(pv.MultiBlock({"left": left, "right": right}))
+
+
+def test_rounded_nodes_have_not_moved() -> None:
+    second = at_time(1.0)
+    second.points = np.asarray(second.points) * (1 + 1e-9)
+    assert len(from_pyvista([at_time(0.0), second]).times) == 2
+
+
+def test_a_step_without_the_vectors() -> None:
+    second = structured()
+    second["p"] = np.ones(12)
+    with says(
+        "step 1 has no array v (points, 3), which the first step has; expected it in every step. "
+        "Its arrays, with their components: p (points, 1)"
+    ):
+        from_pyvista([at_time(0.0), second])
+
+
+def test_a_scalar_that_a_step_lacks_is_left_out() -> None:
+    second = at_time(1.0)
+    second.point_data.remove("p")
+    assert not from_pyvista([at_time(0.0), second]).scalars
+
+
+def test_an_empty_list() -> None:
+    with says("the list of meshes is empty; expected one structured mesh for each time step"):
+        from_pyvista([])
+
+
+def test_a_step_of_several_blocks() -> None:
+    with says(
+        "step 0 has 2 structured blocks: 4 x 3 x 1 nodes (I x J x K); 5 x 3 x 1 nodes "
+        "(I x J x K); give the one to draw: mesh[0], or block=0 for a file"
+    ):
+        from_pyvista([pv.MultiBlock([flowing(), flowing(5)])])
+
+
+# --- what is no structured mesh -------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("mesh", "what"),
+    [
+        (pv.Sphere(), "the mesh is a PolyData"),
+        (pv.Sphere().cast_to_unstructured_grid(), "the mesh is a UnstructuredGrid"),
+        (pv.MultiBlock([pv.Sphere(), None]), "the mesh is a MultiBlock of PolyData"),
+        ([pv.Sphere()], "step 0 is a PolyData"),
+    ],
+)
+def test_an_unstructured_mesh(mesh: Any, what: str) -> None:
+    with says(what + UNSTRUCTURED):
+        from_pyvista(mesh)
+
+
+def test_a_multiblock_without_blocks() -> None:
+    with says("the mesh has no blocks; check the file or the filter that made it"):
+        from_pyvista(pv.MultiBlock([None]))
+
+
+@pytest.mark.parametrize("thing", [np.ones((3, 4, 3)), "flow.vts", None])
+def test_no_mesh_at_all(thing: Any) -> None:
+    with says(
+        f"the mesh is of type {type(thing).__name__}; expected a PyVista StructuredGrid, "
+        "RectilinearGrid, ImageData or MultiBlock, a list of them, or a reader. Arrays go to "
+        "FlowField.from_arrays(points, velocity)"
+    ):
+        from_pyvista(thing)
+
+
+def test_the_advice_for_unstructured_meshes_works() -> None:
+    mesh = pv.Plane(i_size=4, j_size=4, i_resolution=8, j_resolution=8).triangulate()
+    mesh["v"] = np.ones((mesh.n_points, 3))
+    grid = pv.ImageData(dimensions=(21, 21, 1), spacing=(0.25, 0.25, 1), origin=(-2.5, -2.5, 0))
+    field = FlowField.from_pyvista(grid.sample(mesh), vectors="v")
+    assert field.shape == (21, 21)
+    assert 0 < field.valid.sum() < field.valid.size
+
+
+# --- manners --------------------------------------------------------------------------------
+
+
+def test_the_mesh_is_not_changed() -> None:
+    grid = flowing(4, 3, 2)
+    grid.cell_data["c"] = np.arange(6.0)
+    grid.hide_points([3])
+    before = grid.copy()
+    field = FlowField.from_pyvista(grid, vectors="v", plane="k=1", name="mine")
+    assert field.name == "mine"
+    assert grid == before
+    assert grid.active_vectors_name is None
+    assert not np.shares_memory(field.points, np.asarray(grid.points))

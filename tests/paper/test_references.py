@@ -1,0 +1,278 @@
+"""The methods of the paper's related work: symmetries, exact solutions, and their known faults."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import pytest
+from measures import grain, streaks
+from numpy.typing import NDArray
+
+from flowtex import FlowField
+from flowtex.rendering.cpu import Camera
+from paper.references import ImageSpace, draw_texture, forssell_lic, lic
+
+Floats = NDArray[np.float64]
+KERNELS = ("box", "hann")
+
+
+def swirl(rows: int = 41, columns: int = 53) -> Floats:
+    """A flow of all directions, with no vectors opposed along an edge but by chance."""
+    y, x = np.mgrid[-1 : 1 : rows * 1j, -1 : 1 : columns * 1j]
+    return np.stack([0.3 - y + 0.2 * x, x + 0.5 * y * x], axis=-1)
+
+
+def noise(rng: np.random.Generator, *shape: int) -> Floats:
+    return rng.standard_normal(shape)
+
+
+# --- LIC ------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("kernel", KERNELS)
+def test_lic_has_the_symmetries_of_its_image(kernel: str, rng: np.random.Generator) -> None:
+    v, n = swirl(), noise(rng, 41, 53)
+    plain = lic(v, n, 15.0, kernel)
+    turned = np.swapaxes(v, 0, 1)[..., ::-1]
+    np.testing.assert_allclose(lic(turned, n.T, 15.0, kernel).T, plain, atol=1e-9)
+    mirrored = lic(v[:, ::-1] * [-1, 1], n[:, ::-1], 15.0, kernel)
+    np.testing.assert_allclose(mirrored[:, ::-1], plain, atol=1e-9)
+    np.testing.assert_allclose(lic(-v, n, 15.0, kernel), plain, atol=1e-12)
+    np.testing.assert_allclose(lic(7 * v, n, 15.0, kernel), plain, atol=1e-9)
+    np.testing.assert_allclose(lic(v, 2 * n + 1, 15.0, kernel), 2 * plain + 1, atol=1e-12)
+
+
+@pytest.mark.parametrize("axis", [0, 1])
+def test_lic_of_a_straight_flow_is_a_convolution(axis: int, rng: np.random.Generator) -> None:
+    n = noise(rng, 30, 30)
+    v = np.zeros((30, 30, 2))
+    v[..., 1 - axis] = 3.0
+    found = lic(v, n, 6.0, "box", periodic=(True, True))
+    # A box 6 long covers five pixels and half of two more.
+    parts = [(k, 0.5 if abs(k) == 3 else 1.0) for k in range(-3, 4)]
+    expected = sum(w * np.roll(n, k, axis=axis) for k, w in parts)
+    np.testing.assert_allclose(found, np.asarray(expected) / 6, atol=1e-12)
+
+
+def test_lic_ends_at_the_border_and_shares_what_there_is(rng: np.random.Generator) -> None:
+    n = noise(rng, 3, 20)
+    v = np.broadcast_to([1.0, 0.0], (3, 20, 2))
+    # From the first pixel: half a pixel back, and three pixels ahead.
+    expected = (n[:, 0] + n[:, 1] + n[:, 2] + 0.5 * n[:, 3]) / 3.5
+    np.testing.assert_allclose(lic(v, n, 6.0)[:, 0], expected, atol=1e-12)
+
+
+@pytest.mark.parametrize("kernel", KERNELS)
+def test_lic_smears_along_circles(kernel: str, rng: np.random.Generator) -> None:
+    y, x = np.mgrid[-80:81, -80:81].astype(float)
+    v = np.stack([-y, x], axis=-1)
+    radius = np.hypot(x, y)
+    mask = (radius > 15) & (radius < 60)
+    smeared = lic(v, radius, 20.0, kernel)
+    assert np.abs(smeared - radius)[mask].max() < 0.6
+    found = streaks(lic(v, noise(rng, 161, 161), 20.0, kernel), v[..., 0], -v[..., 1], mask)
+    assert found["angle"] < 3
+    assert found["coherence"] > 0.8
+
+
+def test_lic_stops_where_nothing_moves_and_where_vectors_are_opposed(
+    rng: np.random.Generator,
+) -> None:
+    n = noise(rng, 4, 10)
+    v = np.zeros((4, 10, 2))
+    np.testing.assert_array_equal(lic(v, n), n)
+    v[:, :5, 0], v[:, 5:, 0] = 1.0, -1.0
+    # Ahead there is half a pixel, behind five pixels to the border.
+    expected = (n[:, :5].sum(axis=1)) / 5
+    np.testing.assert_allclose(lic(v, n, 100.0)[:, 4], expected, atol=1e-12)
+
+
+def test_lic_tells_all_faults() -> None:
+    with pytest.raises(ValueError, match=r"3 things") as told:
+        lic(np.zeros((3, 4, 2)), np.zeros((4, 3)), -1.0, "gauss")
+    for part in ("(3, 4, 2)", "-1.0", "'gauss'", "'hann'"):
+        assert part in str(told.value)
+    with pytest.raises(ValueError, match="NaN"):
+        lic(np.full((3, 4, 2), np.nan), np.zeros((3, 4)))
+
+
+# --- Forssell and Cohen ---------------------------------------------------------------------
+
+
+def sheet(x: Floats, y: Floats, velocity: tuple[float, float] = (1.0, 0.0)) -> FlowField:
+    """A flat grid of lines at x and y."""
+    points = np.stack(np.meshgrid(x, y), axis=-1)
+    return FlowField.from_arrays(points, np.broadcast_to(velocity, points.shape), periodic="")
+
+
+def above(x: float, y: float, size: tuple[int, int], height: float) -> Camera:
+    """Straight view of the x-y plane, x to the right and y up."""
+    return Camera((x, y, 5.0), (x, y, 0.0), (0, 1, 0), size, height / 2)
+
+
+def test_computational_space_knows_nothing_of_the_surface() -> None:
+    v = swirl(21, 31)
+    points = np.stack(np.meshgrid(np.arange(31.0), np.arange(21.0)), axis=-1)
+    flat = FlowField.from_arrays(points, v, periodic="")
+    linear = np.array([[2.0, 0.3], [-0.5, 0.1], [0.7, 1.0]])
+    bent = FlowField.from_arrays(points @ linear.T, v @ linear.T, periodic="")
+    one, other = (forssell_lic(f, (40, 60), 12.0) for f in (flat, bent))
+    np.testing.assert_allclose(one, other, atol=1e-9)
+    # With texels that are square on the surface it is LIC of the image.
+    fine = forssell_lic(flat, (20, 30), 12.0, seed=5)
+    middle = 0.25 * (v[1:, 1:] + v[:-1, 1:] + v[1:, :-1] + v[:-1, :-1])
+    white = np.random.default_rng(5).standard_normal((20, 30))
+    np.testing.assert_allclose(fine, lic(middle, white, 12.0), atol=1e-9)
+
+
+def test_a_closed_surface_has_no_seam() -> None:
+    a = np.linspace(0, 2 * np.pi, 61)
+    points = np.stack([np.cos(a), np.sin(a), 0 * a], axis=-1)[None].repeat(11, axis=0)
+    points[..., 2] = np.linspace(0, 1, 11)[:, None]
+    around = np.stack([-np.sin(a), np.cos(a), 0 * a], axis=-1)
+    field = FlowField.from_arrays(points, np.broadcast_to(around, points.shape))
+    texture = forssell_lic(field, (30, 60), 20.0)
+    steps = np.abs(np.diff(texture, axis=1, append=texture[:, :1])).mean(axis=0)
+    assert steps[-1] < 1.5 * steps.mean()
+
+
+def test_a_texture_lies_on_its_surface() -> None:
+    field = sheet(np.linspace(0, 6, 13), np.linspace(0, 4, 9))
+    texture = np.arange(24.0).reshape(4, 6)
+    camera = above(3, 2, (80, 60), 6.0)
+    squares = draw_texture(texture, field, camera, smooth=False)
+    assert np.isnan(squares[:10]).all()
+    assert np.isnan(squares[:, :10]).all()
+    np.testing.assert_array_equal(squares[45:50, 12:18], 0.0)
+    # Each texel is ten pixels wide, and row 0 of the texture is at the bottom.
+    np.testing.assert_array_equal(squares[10:50, 10:70][::-10, ::10], texture)
+    smooth = draw_texture(texture, field, camera)
+    middle = smooth[15:45, 15:65]
+    np.testing.assert_allclose(np.diff(middle, axis=1), 0.1, atol=1e-9)
+    np.testing.assert_allclose(np.diff(middle, axis=0), -0.6, atol=1e-9)
+
+
+@pytest.mark.parametrize("even", [False, True])
+def test_noise_is_stretched_with_the_cells(even: bool) -> None:
+    """Both ways grains are as wide as cells; only the streaks can be made equally long."""
+    x = np.concatenate([np.arange(0, 120.0), np.arange(120, 480, 3.0), [480.0]])
+    field = sheet(x, np.arange(0.0, 101.0))
+    texture = forssell_lic(field, length=10.0, even=even)
+    picture = draw_texture(texture, field, above(240, 50, (480, 100), 100))
+    u, v = np.ones(picture.shape), np.zeros(picture.shape)
+    masks = [np.zeros(picture.shape, bool) for _ in range(2)]
+    masks[0][15:85, 15:75] = True
+    masks[1][15:85, 220:410] = True
+    fine, coarse = (grain(picture, u, v, mask)["along"] for mask in masks)
+    ratio = coarse / fine
+    assert 0.9 < ratio < 1.1 if even else 2.5 < ratio < 3.5
+    # The same flow across: grains of the noise itself.
+    across = sheet(x, np.arange(0.0, 101.0), (0.0, 1.0))
+    picture = draw_texture(forssell_lic(across, even=even), across, above(240, 50, (480, 100), 100))
+    fine, coarse = (grain(picture, v, u, mask)["across"] for mask in masks)
+    assert 2 < coarse / fine < 4
+
+
+def test_forssell_lic_says_what_is_wrong() -> None:
+    field = sheet(np.arange(4.0), np.arange(4.0))
+    with pytest.raises(ValueError, match=r"shape is \(0, 3\)"):
+        forssell_lic(field, (0, 3))
+    with pytest.raises(ValueError, match=r"texture has shape \(3,\)"):
+        draw_texture(np.zeros(3), field, above(1, 1, (8, 8), 4))
+
+
+# --- in the image ---------------------------------------------------------------------------
+
+PLAIN = sheet(np.linspace(-40, 40, 9), np.linspace(-40, 40, 9))
+
+
+def rolled(degrees: float, size: tuple[int, int] = (120, 120), height: float = 40.0) -> Camera:
+    a = np.radians(degrees)
+    up = (float(np.sin(a)), float(np.cos(a)), 0.0)
+    return Camera((0, 0, 5), (0, 0, 0), up, size, height / 2)
+
+
+def judged(images: ImageSpace, picture: Floats) -> dict[str, float]:
+    mask = np.zeros(picture.shape, bool)
+    mask[20:-20, 20:-20] = True
+    return streaks(picture, images.way[..., 0], -images.way[..., 1], mask)
+
+
+def test_the_velocity_is_projected_with_the_surface() -> None:
+    camera = Camera((5, -60, 30), (0, 0, 0), (0, 0, 1), (90, 60))
+    images = ImageSpace(camera, PLAIN, even=False)
+    matrix = camera.matrix()
+
+    def pixel(x: Floats) -> Floats:
+        clip = matrix[:, :3] @ x + matrix[:, 3]
+        return np.array([(clip[0] / clip[3] + 1) * 45, (1 - clip[1] / clip[3]) * 30])
+
+    ways, truths = [], []
+    for x, y in [(0.0, 0.0), (8.0, -5.0), (-6.0, 4.0)]:
+        here = np.array([x, y, 0.0])
+        change = (pixel(here + np.array([1e-4, 0, 0])) - pixel(here)) / 1e-4
+        column, row = pixel(here) - 0.5
+        ways.append(images.way[round(row), round(column)])
+        truths.append(change)
+    scale = np.linalg.norm(ways[0]) / np.linalg.norm(truths[0])
+    np.testing.assert_allclose(ways, scale * np.array(truths), rtol=0.02, atol=0.01)
+    assert np.nanmax(np.linalg.norm(images.way, axis=-1)) == pytest.approx(2.0)
+
+
+def test_a_frame_is_the_last_one_carried_along_and_fresh_noise() -> None:
+    images = ImageSpace(rolled(0), PLAIN, blend=0.2, pixels=3.0)
+    frames = [images.frame() for _ in range(26)]
+    fresh = [(new[:, 3:] - 0.8 * old[:, :-3]) / 0.2 for old, new in pairwise(frames)]
+    assert abs(fresh[0].mean()) < 0.05
+    assert fresh[0].std() == pytest.approx(1.0, abs=0.02)
+    # Every grain blinks once in 24 frames, each in its own time.
+    np.testing.assert_allclose(fresh[24], fresh[0], atol=1e-9)
+    np.testing.assert_allclose(fresh[12], -fresh[0], atol=1e-9)
+    assert abs(np.corrcoef(fresh[0].ravel(), fresh[6].ravel())[0, 1]) < 0.05
+
+
+@pytest.mark.parametrize("degrees", [0, 30, 135])
+def test_streaks_have_the_direction_of_the_flow(degrees: float) -> None:
+    images = ImageSpace(rolled(degrees), PLAIN)
+    found = judged(images, images.frames(40))
+    assert found["angle"] < 5
+    assert found["coherence"] > 0.55
+
+
+def test_the_picture_does_not_tell_how_far_away_the_surface_is() -> None:
+    """The noise has one size in pixels and stays at its pixels: no cue of depth or of motion."""
+    near, far = (
+        ImageSpace(above(x, 0, (120, 120), h), PLAIN).frames(30) for x, h in ((0, 4), (7, 40))
+    )
+    np.testing.assert_allclose(near, far, atol=1e-6)
+
+
+def test_after_a_turn_the_streaks_come_right_over_several_frames() -> None:
+    images = ImageSpace(rolled(0), PLAIN)
+    images.frames(40)
+    images.look(rolled(90))
+    angles = [judged(images, images.frame())["angle"] for _ in range(40)]
+    assert angles[0] > 70
+    assert angles[3] > 20
+    assert angles[-1] < 6
+
+
+def test_while_the_view_turns_streaks_lag_behind() -> None:
+    images = ImageSpace(rolled(0), PLAIN)
+    still = judged(images, images.frames(40))
+    for frame in range(1, 31):
+        images.look(rolled(8 * frame))
+        picture = images.frame()
+    moving = judged(images, picture)
+    assert moving["angle"] > 3 * still["angle"]
+    assert moving["coherence"] < 0.7 * still["coherence"]
+
+
+def test_image_space_says_what_is_wrong() -> None:
+    options: dict[str, Any] = {"blend": 0.0, "pixels": np.nan}
+    with pytest.raises(ValueError, match=r"2 things(.|\n)*blend is 0.0(.|\n)*pixels is nan"):
+        ImageSpace(rolled(0), PLAIN, **options)
+    with pytest.raises(ValueError, match=r"size is \(8, 8\); expected \(120, 120\)"):
+        ImageSpace(rolled(0), PLAIN).look(rolled(0, (8, 8)))

@@ -1,0 +1,71 @@
+"""NumPy, VTK and WebGL2 draw the same pictures, over the one list in matrix.py."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from matrix import COLOUR, DEEP, GROUND, ROOT, SHARE, SIZE, VIEWS, Pixels, View, difference, judged
+from webgl_page import ClientPage, packed, state
+
+from flowtex.rendering.webgl import Colours, Scene
+
+#: Whether Chromium draws with the WebGL that it brings, which filters with fewer digits.
+OWN = """(({ gl }) => gl.getExtension('WEBGL_debug_renderer_info') !== null
+  && /SwiftShader/.test(gl.getParameter(37446)))(viewers[0].graphics)"""
+#: As many times the tolerances are, there; and with VTK, whose filters have the most digits.
+COARSER, FINER = 4.5, 0.83
+
+
+def agree(theirs: Pixels, name: str, more: float = 1.0) -> None:
+    ours = judged(name)[1]
+    assert theirs.shape == ours.shape
+    root, share, only_one = difference(theirs, ours)
+    assert (ours != np.rint(255 * np.array(GROUND))).any(axis=-1).mean() > 0.1
+    assert root < more * ROOT
+    assert share < more * SHARE
+    # Where an edge of the surface passes through the middle of a pixel, either may cover it.
+    assert only_one <= 3
+
+
+def drawn_by_vtk(plotter: Any, view: View) -> Pixels:
+    camera = view.camera
+    plotter.window_size = list(SIZE)
+    plotter.set_background(GROUND)
+    shown: dict[str, Any] = {"scalars": False, "lighting": False, "color": COLOUR}
+    settings = {"samples": 11, **view.settings}
+    handle = plotter.flowtex.add(view.field(), image=view.image, **shown, **settings)
+    if view.time is not None:
+        handle.time = view.time
+    handle.clock = view.clock
+    plotter.camera_position = [camera.position, camera.focal_point, camera.up]
+    plotter.camera.parallel_projection = camera.parallel_scale is not None
+    if camera.parallel_scale is not None:
+        plotter.camera.parallel_scale = camera.parallel_scale
+    plotter.camera.view_angle = camera.view_angle
+    plotter.renderer.reset_camera_clipping_range()
+    return np.asarray(plotter.screenshot(return_img=True))[..., :3]
+
+
+def drawn_by_webgl(client: ClientPage, name: str) -> Pixels:
+    view, (shown, _) = (VIEWS | DEEP)[name], judged(name)
+    before, after, _ = shown.moment
+    whole = Scene(shown.textures, Colours(plain=COLOUR, background=GROUND))
+    header = whole.header(
+        shown.settings, camera=state(view.camera), time=shown.time, clock=view.clock
+    )
+    given = packed(whole, header, (before, after))
+    return client.picture(client.mount(given, SIZE, controls=False, smooth=False))
+
+
+@pytest.mark.parametrize("name", VIEWS)
+def test_vtk_agrees_with_numpy(plotter: Any, name: str) -> None:
+    agree(drawn_by_vtk(plotter, VIEWS[name]), name, FINER)
+
+
+@pytest.mark.browser
+@pytest.mark.parametrize("name", VIEWS | DEEP)
+def test_webgl_agrees_with_numpy(client: ClientPage, name: str) -> None:
+    theirs = drawn_by_webgl(client, name)
+    agree(theirs, name, COARSER if client.page.evaluate(OWN) else 1.0)

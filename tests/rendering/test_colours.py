@@ -1,0 +1,56 @@
+"""Colour maps under the texture: lightness keeps its order, and hue stays."""
+
+from __future__ import annotations
+
+import matplotlib
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from flowtex.rendering.cpu.shade import shade
+from flowtex.settings import Settings
+
+Floats = NDArray[np.float64]
+
+
+def lightness(colours: Floats) -> Floats:
+    """CIE L* of sRGB colours, by the standard's own formula."""
+    linear = np.where(colours <= 0.04045, colours / 12.92, ((colours + 0.055) / 1.055) ** 2.4)
+    y = linear @ np.array([0.2126, 0.7152, 0.0722])
+    return np.asarray(np.where(y > 0.008856, 116 * np.cbrt(y) - 16, 903.3 * y))
+
+
+@pytest.fixture(scope="module")
+def values() -> Floats:
+    return np.random.default_rng(1).standard_normal(4000)
+
+
+@pytest.mark.parametrize("strength", [0.3, 0.8, 1.0])
+@pytest.mark.parametrize("name", ["viridis", "cividis", "magma", "gray", "Blues_r"])
+def test_a_map_that_grows_lighter_still_does(name: str, strength: float, values: Floats) -> None:
+    colours = matplotlib.colormaps[name](np.linspace(0, 1, 33))[:, :3]
+    assert (np.diff(lightness(colours)) > 0).all()
+    settings = Settings(strength=strength)
+    mean = [lightness(shade(colour, values, settings)).mean() for colour in colours]
+    assert (np.diff(mean) > 0).all()
+
+
+@pytest.mark.parametrize("name", ["viridis", "coolwarm", "plasma"])
+def test_the_texture_shows_on_every_colour(name: str, values: Floats) -> None:
+    colours = matplotlib.colormaps[name](np.linspace(0, 1, 33))[:, :3]
+    spread = [lightness(shade(colour, values, Settings())).std() for colour in colours]
+    assert min(spread) > 8
+    assert max(spread) / min(spread) < 1.6
+
+
+def test_without_strength_or_contrast_colours_are_what_they_were(values: Floats) -> None:
+    colours = np.random.default_rng(2).random((50, 3))
+    drawn = shade(colours, values[:50], Settings(strength=0.0))
+    np.testing.assert_allclose(drawn, colours, atol=2e-4)
+
+
+def test_more_contrast_is_more_contrast(values: Floats) -> None:
+    grey = np.full(3, 0.6)
+    spread = [shade(grey, values, Settings(contrast=c)).std() for c in (0.0, 0.5, 1.0, 2.0)]
+    assert spread[0] < 1e-6
+    assert (np.diff(spread) > 0).all()

@@ -1,0 +1,421 @@
+"""The picture that VTK draws, judged by what it shows."""
+
+from __future__ import annotations
+
+import gc
+import weakref
+from typing import Any
+
+import numpy as np
+import pytest
+import pyvista as pv
+from measures import carried, fineness, streaks
+from numpy.typing import NDArray
+
+import flowtex
+from flowtex.plotting.look import look
+from flowtex.settings import TABLE
+
+SIZE = (400, 300)
+Image = NDArray[Any]
+
+
+def gyre(x: Any, y: Any) -> tuple[Any, Any]:
+    a = 0.1 * np.pi
+    return (
+        -a * np.sin(np.pi * x) * np.cos(np.pi * y),
+        a * np.cos(np.pi * x) * np.sin(np.pi * y),
+    )
+
+
+def gyre_field(columns: int = 100, rows: int = 50, *, sheared: bool = False) -> flowtex.FlowField:
+    s, t = np.meshgrid(np.linspace(0, 1, columns), np.linspace(0, 1, rows))
+    x, y = 2 * s, t
+    if sheared:
+        x, y = 2 * (s + 0.06 * np.sin(2 * np.pi * s)) + 0.12 * np.sin(np.pi * t), t**1.3
+    return flowtex.FlowField.from_arrays(np.stack([x, y], -1), np.stack(gyre(x, y), -1))
+
+
+def pixels(field: flowtex.FlowField, zoom: float, focus: tuple[float, float]) -> tuple[Any, Any]:
+    """Coordinates of the middle of every pixel of a straight view."""
+    width, height = SIZE
+    extent = np.ptp(field.points[field.valid][:, :2], axis=0)
+    scale = max(extent[1], extent[0] * height / width) / 0.92 / zoom / height
+    x = focus[0] + (np.arange(width) + 0.5 - width / 2) * scale
+    y = focus[1] - (np.arange(height) + 0.5 - height / 2) * scale
+    return np.meshgrid(x, y)
+
+
+def inside(x: Any, y: Any) -> NDArray[np.bool_]:
+    margin = np.zeros(x.shape, dtype=bool)
+    margin[12:-12, 12:-12] = True
+    step = abs(x[0, 1] - x[0, 0])
+    margin &= (x > 14 * step) & (x < 2 - 14 * step) & (y > 14 * step) & (y < 1 - 14 * step)
+    return np.asarray(margin & (np.hypot(*gyre(x, y)) > 0.02))
+
+
+@pytest.mark.parametrize("sheared", [False, True])
+@pytest.mark.parametrize("zoom", [1, 4, 16, 64])
+def test_streaks_follow_the_flow_at_every_zoom(opengl: Any, zoom: float, sheared: bool) -> None:
+    field, focus = gyre_field(sheared=sheared), (0.63, 0.37)
+    picture = flowtex.render(field, size=SIZE, zoom=zoom, focus=focus, scalars=False)
+    if zoom == 1:
+        focus = tuple(field.surface.center[:2])
+        picture = flowtex.render(field, size=SIZE, scalars=False)
+    x, y = pixels(field, zoom, focus)
+    mask = inside(x, y)
+    if sheared:
+        mask &= (x > 0.25) & (x < 1.85)
+    found = streaks(picture, *gyre(x, y), mask)
+    assert found["angle"] <= 2.4
+    assert found["coherence"] >= 0.93
+
+
+def test_the_grain_keeps_its_size_in_pixels_through_a_thousandfold_zoom(opengl: Any) -> None:
+    field, focus = gyre_field(), (0.63, 0.37)
+    sizes = []
+    for zoom in (4, 32, 256, 4096):
+        picture = flowtex.render(field, size=SIZE, zoom=zoom, focus=focus, scalars=False)
+        sizes.append(fineness(picture, inside(*pixels(field, zoom, focus))))
+    assert max(sizes) / min(sizes) < 1.15
+
+
+def test_a_thousandth_of_a_cell_is_as_sharp_as_the_whole(opengl: Any) -> None:
+    field, focus = gyre_field(), (0.63, 0.37)
+    found = {}
+    for zoom in (50, 1e5):
+        picture = flowtex.render(field, size=SIZE, zoom=zoom, focus=focus, scalars=False)
+        x, y = pixels(field, zoom, focus)
+        found[zoom] = streaks(picture, *gyre(x, y), inside(x, y))
+        assert found[zoom]["coherence"] > 0.95
+        assert found[zoom]["angle"] < 2.2
+
+
+def test_the_way_to_a_view_does_not_show_in_it(plotter: Any) -> None:
+    field = gyre_field()
+    plotter.flowtex.add(field, scalars=False)
+    pictures = []
+    for focus in ((0.63, 0.37), (0.63 + 3e-4, 0.37), (1.7, 0.8), (0.63, 0.37)):
+        look(plotter, field, zoom=2e4, focus=focus)
+        plotter.render()
+        pictures.append(plotter.screenshot(return_img=True).astype(float))
+    assert np.sqrt(np.mean((pictures[0] - pictures[3]) ** 2)) < 2
+    assert np.abs(pictures[0] - pictures[2]).mean() > 10
+
+
+def test_white_stays_white_without_strength(opengl: Any) -> None:
+    options: dict[str, Any] = {"scalars": False, "color": "white", "background": "black"}
+    picture = flowtex.render(gyre_field(), size=(100, 60), strength=0.0, **options)
+    assert picture[30, 50].tolist() == [255, 255, 255]
+
+
+def test_two_views_beside_each_other_share_the_camera(opengl: Any) -> None:
+    field = gyre_field()
+    options: dict[str, Any] = {"scalars": False, "zoom": 8, "focus": (0.63, 0.37)}
+    both = flowtex.render(field, size=(600, 300), beside={"seed": 4}, **options)
+    one = flowtex.render(field, size=(300, 300), **options)
+    other = flowtex.render(field, size=(300, 300), seed=4, **options)
+    below = slice(40, None)  # the label lies above
+    assert np.abs(both[below, :300].astype(float) - one[below]).mean() < 1
+    assert np.abs(both[below, 300:].astype(float) - other[below]).mean() < 1
+    assert np.abs(one[below].astype(float) - other[below]).mean() > 10
+
+
+def test_the_level_of_detail_can_be_seen(opengl: Any) -> None:
+    options: dict[str, Any] = {"size": (100, 60), "scalars": False, "show_level": True}
+    near, far = (
+        flowtex.render(gyre_field(), zoom=zoom, **options).mean(axis=(0, 1)) for zoom in (4, 16)
+    )
+    assert np.abs(near - far).max() > 20
+
+
+def test_without_level_of_detail_the_grain_is_fixed_on_the_surface(opengl: Any) -> None:
+    field, focus = gyre_field(), (0.63, 0.37)
+    options: dict[str, Any] = {"size": SIZE, "focus": focus, "scalars": False}
+    options |= {"lod": False, "resolution": 256}
+    near = flowtex.render(field, zoom=32, **options)
+    far = flowtex.render(field, zoom=4, **options)
+    mask = inside(*pixels(field, 32, focus))
+    assert fineness(far, mask) > 2.5 * fineness(near, mask)
+
+
+def test_the_texture_sticks_to_the_surface(opengl: Any) -> None:
+    field = gyre_field()
+    x, _ = pixels(field, 8, (0.63, 0.37))
+    step = x[0, 1] - x[0, 0]
+    options: dict[str, Any] = {"size": SIZE, "zoom": 8, "scalars": False}
+    first = flowtex.render(field, focus=(0.63, 0.37), **options)
+    second = flowtex.render(field, focus=(0.63 - 3 * step, 0.37), **options)
+    shift = np.full(x.shape, 3.0)
+    assert carried(first, second, shift, 0 * shift, 20) > 0.95
+    assert carried(first, second, 0 * shift, 0 * shift, 20) < 0.6
+
+
+def test_far_from_the_origin_the_picture_is_as_sharp(opengl: Any) -> None:
+    y, x = np.mgrid[0:0.5:51j, 0:1:101j]
+    velocity = np.stack(gyre(2 * x, 2 * y), axis=-1)
+    pictures = []
+    for offset in (0.0, 1e6):
+        points = np.stack([x + offset, y - offset], axis=-1)
+        field = flowtex.FlowField.from_arrays(points, velocity)
+        pictures.append(flowtex.render(field, size=SIZE, zoom=8, scalars=False).astype(float))
+    assert np.corrcoef(pictures[0].ravel(), pictures[1].ravel())[0, 1] > 0.98
+
+
+def ring(turned: int = 0) -> flowtex.FlowField:
+    angle = np.linspace(0, 2 * np.pi, 65) + turned * 2 * np.pi / 64
+    radius = np.geomspace(0.2, 1, 25)[:, None]
+    x, y = radius * np.cos(angle), radius * np.sin(angle)
+    return flowtex.FlowField.from_arrays(np.stack([x, y], -1), np.stack([1 - y, 0.3 + x], -1))
+
+
+@pytest.mark.parametrize("noise", ["procedural", "texture"])
+@pytest.mark.parametrize("zoom", [0.25, 1, 6])
+def test_a_seam_is_not_seen(opengl: Any, zoom: float, noise: str) -> None:
+    # The same flow on the same ring, joined at another column: if the seam left a trace, the
+    # two pictures would differ there. The noise texture lies on the columns, so only the
+    # change across the seam, against that across other columns, can be judged for it.
+    options: dict[str, Any] = {"size": SIZE, "zoom": zoom, "focus": (0.6, 0.0)}
+    options |= {"scalars": False, "noise": noise}
+    here = flowtex.render(ring(), **options).astype(float)
+    if noise == "procedural":
+        there = flowtex.render(ring(21), **options).astype(float)
+        assert np.abs(here - there).mean() < 6.0
+        return
+    middle = SIZE[1] // 2
+    jumps = np.abs(np.diff(here.mean(axis=-1), axis=0))
+    columns = slice(SIZE[0] // 2 - 20, SIZE[0] // 2 + 20)
+    at_seam = jumps[middle - 2 : middle + 2, columns].mean()
+    beside = np.concatenate(
+        [jumps[middle - 12 : middle - 3, columns], jumps[middle + 3 :, columns]]
+    )
+    assert at_seam < 1.6 * beside[:9].mean() + 4.0
+
+
+def test_a_field_at_rest_is_plain_noise_and_says_so(opengl: Any) -> None:
+    y, x = np.mgrid[0:1:20j, 0:1:20j]
+    with pytest.warns(UserWarning, match=r"^The velocity is zero at every node"):
+        field = flowtex.FlowField.from_arrays(np.stack([x, y], -1), np.zeros((20, 20, 2)))
+    picture = flowtex.render(field, size=(200, 200), scalars=False)
+    inner = picture[40:160, 40:160]
+    found = streaks(inner, np.ones((120, 120)), np.zeros((120, 120)), np.ones((120, 120), bool))
+    assert inner.std() > 20
+    assert found["coherence"] < 0.5
+
+
+def test_blanked_cells_are_not_drawn(opengl: Any) -> None:
+    y, x = np.mgrid[0:1:21j, 0:1:21j]
+    valid = np.hypot(x - 0.5, y - 0.5) > 0.2
+    velocity = np.where(valid[..., None], [1.0, 0.0], np.nan)
+    field = flowtex.FlowField.from_arrays(np.stack([x, y], -1), velocity)
+    picture = flowtex.render(field, size=(200, 200), background="red", scalars=False)
+    assert (picture[95:105, 95:105] == [255, 0, 0]).all()
+    assert not (picture[30:60, 60:140] == [255, 0, 0]).all(axis=-1).any()
+
+
+@pytest.mark.parametrize("kernel", TABLE["kernel"].choices)
+@pytest.mark.parametrize("noise", ["procedural", "texture", "spots"])
+@pytest.mark.parametrize("curved", [False, True])
+@pytest.mark.parametrize("steps", [1, 3])
+def test_every_variant_compiles_and_streaks(
+    opengl: Any, steps: int, curved: bool, noise: str, kernel: str
+) -> None:
+    y, x = np.mgrid[0:1:21j, 0:1:31j]
+    z = 0.2 * np.sin(3 * x) if curved else 0 * x
+    tangent = np.stack([np.ones_like(x), 0 * x, 0.6 * np.cos(3 * x) if curved else 0 * x], -1)
+    field = flowtex.FlowField.from_arrays(
+        np.stack([x, y, z], -1), np.stack([tangent] * steps), times=np.arange(steps)
+    )
+    picture = flowtex.render(
+        field,
+        size=(200, 200),
+        scalars=False,
+        noise=noise,
+        kernel=kernel,
+        resolution=256,
+        camera_position=[(0.5, 0.5, 3), (0.5, 0.5, 0), (0, 1, 0)],
+    )
+    middle = picture[80:120, 80:120]
+    ones = np.ones((40, 40))
+    found = streaks(middle, ones, 0 * ones, ones.astype(bool))
+    assert found["angle"] < 12
+    assert found["coherence"] > 0.6
+
+
+def test_settings_change_the_picture_live_without_a_new_shader(plotter: Any) -> None:
+    handle = plotter.flowtex.add(gyre_field(), scalars=False)
+    first = plotter.screenshot(return_img=True)
+    handle.settings.lod = False
+    second = plotter.screenshot(return_img=True)
+    handle.settings.lod = True
+    third = plotter.screenshot(return_img=True)
+    assert np.abs(first.astype(float) - second).mean() > 5
+    np.testing.assert_array_equal(first, third)
+
+
+def test_another_noise_is_another_shader_and_comes_back(plotter: Any) -> None:
+    handle = plotter.flowtex.add(gyre_field(), scalars=False)
+    first = plotter.screenshot(return_img=True)
+    handle.settings.noise = "texture"
+    second = plotter.screenshot(return_img=True)
+    handle.settings.noise = "procedural"
+    third = plotter.screenshot(return_img=True)
+    assert np.abs(first.astype(float) - second).mean() > 5
+    np.testing.assert_array_equal(first, third)
+
+
+def test_scalars_keep_their_colours_and_their_bar(plotter: Any) -> None:
+    field = gyre_field()
+    handle = plotter.flowtex.add(field, scalars="speed", cmap="plasma", clim=(0, 0.3))
+    assert list(plotter.scalar_bars.keys()) == ["speed"]
+    assert handle.actor.mapper.scalar_range == (0, 0.3)
+    handle.settings.strength = 0.0
+    plain = plotter.screenshot(return_img=True)
+    reference = pv.Plotter(off_screen=True, window_size=plotter.window_size)
+    reference.disable_anti_aliasing()
+    mesh = pv.StructuredGrid(*(field.points[..., c][:, :, None] for c in range(3)))
+    mesh["speed"] = field.speed[0].ravel(order="F")
+    reference.add_mesh(mesh, scalars="speed", cmap="plasma", clim=(0, 0.3), lighting=False)
+    look(reference, field)
+    expected: Any = reference.screenshot(return_img=True)
+    reference.close()
+    width, height = plotter.window_size
+    inner = (slice(height // 3, height // 2), slice(width // 4, 3 * width // 4))
+    assert np.abs(plain[inner].astype(float) - expected[inner]).mean() < 2.0
+
+
+@pytest.mark.parametrize("noise", ["procedural", "texture"])
+def test_edges_do_not_take_the_texture_away(plotter: Any, noise: str) -> None:
+    handle = plotter.flowtex.add(gyre_field(9, 5), scalars=False, noise=noise)
+    plain = plotter.screenshot(return_img=True).astype(float)
+    handle.actor.prop.show_edges = True
+    handle.actor.prop.edge_color = "red"
+    plotter.render()
+    edged = plotter.screenshot(return_img=True).astype(float)
+    red = edged[..., 0] - edged[..., 1] > 20
+    assert 0.005 < red.mean() < 0.3
+    same = (np.abs(edged - plain).max(axis=-1) < 2)[~red]
+    assert same.mean() > 0.85
+
+
+def test_each_subplot_shows_its_whole_surface(opengl: Any) -> None:
+    plotter: Any = pv.Plotter(off_screen=True, shape=(1, 3), window_size=[600, 200], border=False)
+    for column in range(3):
+        plotter.subplot(0, column)
+        plotter.flowtex.add(gyre_field(), scalars=False)
+    picture = plotter.screenshot(return_img=True)
+    plotter.close()
+    for column in range(3):
+        part = picture[:, 200 * column : 200 * (column + 1)]
+        assert (part[:, :4] == 255).all()
+        assert (part[:, -4:] == 255).all()
+        assert part[90:110, 20:180].std() > 20
+
+
+def test_several_on_one_plotter_and_removal_leaves_nothing(plotter: Any) -> None:
+    empty = plotter.screenshot(return_img=True)
+    left = plotter.flowtex.add(gyre_field())
+    plotter.flowtex.add(gyre_field(), scalars=False)
+    assert len(plotter.flowtex) == 2
+    plotter.screenshot(return_img=True)
+    actor = left.actor
+    plotter.flowtex.clear()
+    assert len(plotter.flowtex) == 0
+    assert left.closed
+    assert list(plotter.scalar_bars.keys()) == []
+    assert not plotter.renderer.actors
+    assert not actor.mapper.HasObserver("UpdateShaderEvent")
+    assert actor.GetShaderProperty().GetNumberOfShaderReplacements() == 0
+    left.remove()
+    np.testing.assert_array_equal(plotter.screenshot(return_img=True), empty)
+
+
+def test_a_closed_plotter_lets_everything_go(opengl: Any) -> None:
+    plotter: Any = pv.Plotter(off_screen=True, window_size=[100, 100])
+    handle = plotter.flowtex.add(gyre_field())
+    plotter.screenshot(return_img=True)
+    layer = weakref.ref(handle._layer)
+    plotter.close()
+    assert handle.closed
+    del handle, plotter
+    gc.collect()
+    assert layer() is None
+
+
+def test_time_moves_the_picture_and_the_colours(plotter: Any) -> None:
+    y, x = np.mgrid[0:1:21j, 0:1:21j]
+    flat = np.stack([np.ones_like(x), 0 * x], -1)
+    steps = np.stack([flat, flat[..., ::-1]])
+    field = flowtex.FlowField.from_arrays(np.stack([x, y], -1), steps, times=[0.0, 50.0])
+    handle = plotter.flowtex.add(field, scalars=False)
+    ones = np.ones(plotter.window_size[::-1])
+    middle = np.zeros(ones.shape, dtype=bool)
+    height, width = ones.shape
+    middle[height // 3 : 2 * height // 3, 2 * width // 5 : 3 * width // 5] = True
+    handle.time = 0.0
+    early = streaks(plotter.screenshot(return_img=True), ones, 0 * ones, middle)
+    handle.time = 50.0
+    late = streaks(plotter.screenshot(return_img=True), 0 * ones, ones, middle)
+    assert early["angle"] < 5
+    assert late["angle"] < 5
+
+
+@pytest.mark.parametrize("motion", ["uniform", "speed"])
+def test_a_period_closes_into_a_loop(plotter: Any, motion: str) -> None:
+    handle = plotter.flowtex.add(gyre_field(), scalars=False, motion=motion, period=2.0)
+    frames = []
+    for clock in (0.0, 0.5, 2.0, 6.5):
+        handle.clock = clock
+        frames.append(plotter.screenshot(return_img=True).astype(float))
+    assert np.abs(frames[0] - frames[1]).mean() > 5
+    np.testing.assert_array_equal(frames[0], frames[2])
+    np.testing.assert_array_equal(frames[1], frames[3])
+
+
+def uniform_field() -> flowtex.FlowField:
+    y, x = np.mgrid[0:3:25j, 0:4:33j]
+    return flowtex.FlowField.from_arrays(np.stack([x, y], -1), np.stack([2 + y, 0 * y], -1))
+
+
+@pytest.mark.parametrize("units", ["pixels", "units"])
+@pytest.mark.parametrize("motion", ["uniform", "speed"])
+def test_streaming_carries_the_picture_at_the_speed_asked_for(
+    plotter: Any, motion: str, units: str
+) -> None:
+    field = uniform_field()
+    look(plotter, field, zoom=2)
+    pixel = 2 * plotter.camera.parallel_scale / plotter.window_size[1]
+    speed = 60.0 * (pixel if units == "units" else 1.0)
+    handle = plotter.flowtex.add(
+        field, scalars=False, motion=motion, speed=speed, speed_in=units, reset_camera=False
+    )
+    look(plotter, field, zoom=2)
+    frames = []
+    for clock in (0.5, 0.6):
+        handle.clock = clock
+        frames.append(plotter.screenshot(return_img=True))
+    height, width = frames[0].shape[:2]
+    y = field.surface.center[1] - (np.arange(height) + 0.5 - height / 2) * pixel
+    pace = (2 + y) / np.sqrt(np.mean(field.speed**2)) if motion == "speed" else np.ones(height)
+    right = np.repeat((60.0 * 0.1 * pace)[:, None], width, axis=1)
+    with_it = carried(frames[0], frames[1], right, 0 * right, 20)
+    assert with_it > 0.93
+    # Neither twice as fast nor the other way.
+    for other in (2 * right, 0 * right, -right):
+        assert carried(frames[0], frames[1], other, 0 * right, 20) < with_it - 0.03
+
+
+def test_streaming_shows_no_edge_where_its_rate_changes(plotter: Any) -> None:
+    y, x = np.mgrid[0:3:25j, 0:4:33j]
+    velocity = np.stack([0.3 + 8 * y**2 / 9, 0 * y], -1)
+    field = flowtex.FlowField.from_arrays(np.stack([x, y], -1), velocity)
+    handle = plotter.flowtex.add(field, scalars=False, motion="speed", speed=80.0)
+    handle.clock = 1.7
+    pictures = []
+    for seed in range(16):
+        handle.settings.seed = seed
+        pictures.append(plotter.screenshot(return_img=True).mean(axis=-1)[20:-20, 40:-40])
+    # Two lines of pixels side by side agree; across an edge they would not at all.
+    lines = np.concatenate(pictures, axis=1)
+    agree = [np.corrcoef(a, b)[0, 1] for a, b in zip(lines[1:], lines[:-1], strict=True)]
+    assert min(agree) > 0.25

@@ -1,0 +1,211 @@
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import flowtex
+from flowtex import examples
+from flowtex.first_look import first_look
+from flowtex.rendering.cpu import Camera
+from flowtex.rendering.webgl import Scene
+from flowtex.settings import TABLE, Settings
+from flowtex.staging import Stage, coarsened, colour_table, evenly
+from flowtex.textures import TextureSet
+from flowtex.trace import SliceStore
+
+
+def plane(times: int = 1, shape: tuple[int, int] = (9, 12)) -> flowtex.FlowField:
+    """A flow on a flat, blanked grid."""
+    x, y = np.meshgrid(np.linspace(0, 3, shape[1]), np.linspace(0, 2, shape[0]))
+    points = np.stack([x, y], axis=-1)
+    velocity = np.stack([np.stack([1 + 0.1 * y, np.cos(x + t)], axis=-1) for t in range(times)])
+    velocity[:, 0, 0] = np.nan
+    return flowtex.FlowField.from_arrays(points, velocity, name="plane")
+
+
+def ball() -> flowtex.FlowField:
+    """A flow on a bent strip."""
+    a, b = np.meshgrid(np.linspace(0, 2, 14), np.linspace(-0.8, 0.8, 10))
+    points = np.stack([np.cos(a) * np.cos(b), np.sin(a) * np.cos(b), np.sin(b)], axis=-1)
+    velocity = np.stack([-np.sin(a), np.cos(a), 0 * a], axis=-1)
+    return flowtex.FlowField.from_arrays(points, velocity)
+
+
+def staged(field: flowtex.FlowField, **options: Any) -> tuple[Stage, Scene]:
+    stage = Stage(field, **options)
+    return stage, stage.scene()
+
+
+@pytest.mark.parametrize("make", [plane, ball, lambda: plane(3)])
+@pytest.mark.parametrize("noise", ["procedural", "texture", "checkerboard"])
+def test_arrays_are_those_of_the_texture_set(make: Any, noise: str) -> None:
+    stage, scene = staged(make(), noise=noise, resolution=64)
+    header = json.loads(json.dumps(scene.header(stage.view.settings), allow_nan=False))
+    textures = stage.view.textures
+    geometry = textures.geometry
+    for step in range(scene.steps):
+        parts = scene.step(step)
+        layers = textures.layers(step)
+        channels = header["slices"]["channels"]
+        slices = parts[f"slices/{step}"]
+        assert slices.dtype == np.float16
+        shape = (header["slices"]["count"], geometry.rows.size, geometry.columns.size, channels)
+        assert slices.shape == shape
+        np.testing.assert_allclose(slices, layers[..., :channels], rtol=1e-3, atol=1e-4)
+        assert channels == 4 or not layers[..., channels:3].any()  # nothing is lost
+        extra = parts[f"extra/{step}"]
+        fourth = layers[header["slices"]["extra"], ..., 3]
+        np.testing.assert_allclose(extra, fourth, rtol=1e-3, atol=1e-6)
+        others = np.delete(layers[..., 3], header["slices"]["extra"], axis=0)
+        assert not others.any()
+        speed = geometry.field.speed[min(step, len(geometry.field.speed) - 1)]
+        np.testing.assert_allclose(parts[f"scalars/{step}"], speed, rtol=1e-6)
+        assert sum(part.nbytes for part in parts.values()) == scene.nbytes_of_step
+    surface = scene.surface()
+    np.testing.assert_array_equal(surface["position"], geometry.position)
+    if not geometry.planar:
+        np.testing.assert_allclose(surface["normal"] / 32767, geometry.normal, atol=2e-5)
+    assert ("cells" in surface) == (not geometry.field.valid.all())
+    if "cells" in surface:
+        np.testing.assert_array_equal(surface["cells"], geometry.field.surface.cells)
+    if textures.paper is not None:
+        np.testing.assert_allclose(surface["noise"], textures.paper.noise, rtol=1e-3, atol=1e-6)
+        np.testing.assert_allclose(surface["step"], textures.paper.step, rtol=1e-3)
+        nodes = np.stack(np.meshgrid(header["paper"]["alongI"], header["paper"]["alongJ"]), axis=-1)
+        np.testing.assert_allclose(nodes, textures.paper.coordinate, atol=1e-6)
+
+
+def test_the_header_says_what_the_client_needs() -> None:
+    stage, scene = staged(plane(3), scalars="speed", samples=7, background="black")
+    header = scene.header(stage.view.settings, time=1.25)
+    assert header["name"] == "plane"
+    assert header["geometry"]["shape"] == [9, 12]
+    assert header["slices"]["times"] == [0.0, 1.0, 2.0]
+    assert header["slices"]["lags"] == [float(np.float32(lag)) for lag in stage.view.store.lags]
+    assert header["variant"] == ["FLOWTEX_PLANAR", "FLOWTEX_UNSTEADY"]
+    assert header["settings"] == {**dict(Settings()), "samples": 7}
+    assert [row["name"] for row in header["table"]] == list(TABLE)
+    assert header["scalars"]["steps"] == 3
+    assert (header["scalars"]["low"], header["scalars"]["high"]) == stage.view.scalar_range("speed")
+    assert header["background"] == [0, 0, 0]
+    assert not header["lighting"]
+    assert header["time"] == 1.25
+    for text in header["shaders"].values():
+        assert "//#include" not in text
+        assert "#define FLOWTEX_PLANAR" in text
+
+
+def test_a_time_needs_the_steps_around_it() -> None:
+    stage, scene = staged(plane(3))
+    assert scene.moment(0.0) == (0, 1)
+    assert scene.moment(1.0) == (1, 2) == stage.view.moment[:2]
+    assert scene.moment(2.0) == (1, 2)
+    assert staged(plane())[1].moment(0.0) == (0,)
+    with pytest.raises(IndexError, match=r"^time step 3 does not exist: expected 0 to 2$"):
+        scene.step(3)
+
+
+def test_fewer_steps_are_traced_through_all_of_them() -> None:
+    whole, some = staged(plane(5))[1], staged(plane(5), steps=3)[1]
+    assert some.header(Settings())["slices"]["times"] == [0.0, 2.0, 4.0]
+    np.testing.assert_array_equal(some.step(1)["slices/1"], whole.step(2)["slices/2"])
+    np.testing.assert_array_equal(some.step(2)["scalars/2"], whole.step(4)["scalars/4"])
+    one = staged(plane(5), steps=1)[1]
+    np.testing.assert_array_equal(one.step(0)["slices/0"], whole.step(4)["slices/4"])
+    assert "FLOWTEX_UNSTEADY" not in one.constants()["variant"]
+
+
+def test_evenly_chosen_numbers() -> None:
+    assert evenly(5, None) == evenly(5, 5) == evenly(5, 9) == ()
+    assert evenly(11, 3) == (0, 5, 10)
+    assert evenly(4, 1) == (3,)
+    with pytest.raises(ValueError, match=r"^steps is 0; expected 1 to 4"):
+        evenly(4, 0)
+
+
+@pytest.mark.parametrize("aspect", [1.5, 0.6])
+@pytest.mark.parametrize("make", [plane, ball])
+@pytest.mark.parametrize("view", [{}, {"zoom": 5.0}, {"zoom": 40.0, "focus": (0.3, 0.2, 0.1)}])
+def test_the_first_look_is_that_of_vtk(make: Any, view: Any, aspect: float, opengl: Any) -> None:
+    import pyvista as pv
+
+    from flowtex.plotting.look import look
+
+    plotter = pv.Plotter(off_screen=True, window_size=[int(300 * aspect), 300])
+    field = make()
+    look(plotter, field, **view)
+    found, camera = first_look(field, aspect, **view), plotter.camera
+    for name in ("position", "focal_point", "up"):
+        np.testing.assert_allclose(getattr(found, name), getattr(camera, name), atol=1e-9)
+    assert found.parallel == bool(camera.parallel_projection)
+    if found.parallel:
+        assert found.parallel_scale == pytest.approx(camera.parallel_scale)
+    else:
+        assert found.view_angle == pytest.approx(camera.view_angle)
+    plotter.close()
+
+
+@pytest.mark.parametrize("make", [plane, ball])
+def test_the_first_look_holds_the_whole_surface(make: Any) -> None:
+    field = make()
+    found = first_look(field, 1.5)
+    camera = Camera(
+        found.position,
+        found.focal_point,
+        found.up,
+        (300, 200),
+        parallel_scale=found.parallel_scale if found.parallel else None,
+        view_angle=found.view_angle,
+    )
+    points = field.surface.points[field.valid]
+    seen = points @ camera.matrix()[:, :3].T + camera.matrix()[:, 3]
+    across = np.abs(seen[:, :2] / seen[:, 3:]).max()
+    assert 0.8 < across < 1.0
+
+
+def bright(colours: NDArray[Any]) -> Any:
+    return colours[[0, -1], :3].sum(axis=1)
+
+
+def test_colour_maps_of_every_kind() -> None:
+    import pyvista as pv
+
+    named = colour_table("viridis")
+    assert named.shape == (256, 4)
+    assert named.dtype == np.uint8
+    dark, light = bright(named.astype(int))
+    assert dark < light
+    np.testing.assert_array_equal(colour_table(None), named)
+    np.testing.assert_array_equal(colour_table(pv.LookupTable("viridis")), named)
+    two = colour_table(np.array([[0.0, 0.0, 0.0], [1.0, 1.0, 1.0]]))
+    np.testing.assert_array_equal(np.unique(two[:, 0], return_counts=True), [[0, 255], [128, 128]])
+    with pytest.raises(ValueError, match=r"^cmap has shape \(3,\); expected a name"):
+        colour_table(np.zeros(3))
+
+
+def test_a_coarse_field_keeps_its_edges_and_its_data() -> None:
+    fine = examples.double_gyre_field()
+    coarse = coarsened(fine, 1000)
+    assert 700 < coarse.valid.size <= 1000
+    for corner in ((0, 0), (0, -1), (-1, 0), (-1, -1)):
+        np.testing.assert_array_equal(coarse.points[corner], fine.points[corner])
+    assert coarse.surface.extent == pytest.approx(fine.surface.extent)
+    assert coarsened(fine, 10**6) is fine
+
+
+def test_a_store_that_does_not_compose_traces_the_same() -> None:
+    field = plane(4)
+    whole = SliceStore(field).at(3).displacement
+    alone = SliceStore(field, compose=False).at(3).displacement
+    np.testing.assert_allclose(whole, alone, atol=0.05)
+
+
+def test_slopes_beyond_half_precision_stay_finite(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = staged(plane())[1]
+    layers = scene.textures.layers(0) * 1e9
+    monkeypatch.setattr(TextureSet, "layers", lambda self, step: layers)
+    assert np.isfinite(scene.step(0)["slices/0"]).all()

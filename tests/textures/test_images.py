@@ -1,0 +1,517 @@
+"""Images in place of the noise: a user's picture, a checkerboard, and Spot Noise."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from measures import grey
+from numpy.typing import NDArray
+from PIL import Image
+from scipy.ndimage import map_coordinates, uniform_filter
+
+import flowtex
+from flowtex import FlowField
+from flowtex.cli import main
+from flowtex.settings import Settings, SettingsError
+from flowtex.textures import ImageError, PaperTextures, as_picture
+from flowtex.textures.image_files import load_image
+from flowtex.textures.images import LARGEST
+from flowtex.textures.patterns import SPOT_GRAIN, SQUARES
+from flowtex.trace import SliceStore
+from flowtex.view import FlowView
+
+SIZE = (240, 140)
+Floats = NDArray[np.float64]
+
+
+def uniform(u: float = 1.0, v: float = 0.0, steps: int = 1) -> FlowField:
+    """A flow that is the same everywhere on 0 ... 2 by 0 ... 1."""
+    y, x = np.mgrid[0:1:11j, 0:2:21j]
+    velocity = np.broadcast_to([u, v], (steps, *x.shape, 2))
+    times = None if steps == 1 else np.arange(steps) * 1.0
+    points = np.stack([x, y], axis=-1)
+    return FlowField.from_arrays(points, velocity, times=times, periodic="")
+
+
+def gyre() -> FlowField:
+    y, x = np.mgrid[0:1:31j, 0:2:61j]
+    u = -np.sin(np.pi * x) * np.cos(np.pi * y)
+    v = np.cos(np.pi * x) * np.sin(np.pi * y)
+    return FlowField.from_arrays(np.stack([x, y], -1), np.stack([u, v], -1), periodic="")
+
+
+def stretched(power: float = 3.0) -> FlowField:
+    """Cells that are twenty times as long on the right as on the left."""
+    x = np.sinh(np.linspace(0, power, 61))
+    points = np.stack(np.meshgrid(2 * x / x[-1], np.linspace(0, 1, 31)), axis=-1)
+    return FlowField.from_arrays(points, np.broadcast_to([1.0, 0.0], points.shape), periodic="")
+
+
+def still() -> FlowField:
+    with pytest.warns(UserWarning, match="velocity is zero at every node"):
+        return uniform(0.0)
+
+
+def photo(rng: np.random.Generator, height: int = 64, width: int = 128) -> NDArray[np.uint8]:
+    """Blobs of all colours, (H, W, 3)."""
+    colours = rng.uniform(0, 255, (height, width, 3))
+    blobs = uniform_filter(colours, (height // 8, width // 16, 0))
+    low, high = blobs.min(axis=(0, 1)), blobs.max(axis=(0, 1))
+    return np.asarray(255 * (blobs - low) / (high - low)).astype(np.uint8)
+
+
+def draw(field: FlowField, **options: Any) -> Floats:
+    return flowtex.render(field, **{"size": SIZE, **options}).astype(float)
+
+
+def places() -> tuple[Floats, Floats, NDArray[np.bool_]]:
+    """Coordinates of the middles of the pixels, and whether they lie well inside 2 by 1."""
+    width, height = SIZE
+    scale = max(1.0, 2.0 * height / width) / 0.92 / height
+    x = 1 + (np.arange(width) + 0.5 - width / 2) * scale
+    y = 0.5 - (np.arange(height) + 0.5 - height / 2) * scale
+    x, y = np.meshgrid(x, y)
+    return x, y, (np.abs(x - 1) < 0.98) & (np.abs(y - 0.5) < 0.48)
+
+
+def seen(image: NDArray[Any], x: Floats, y: Floats) -> Floats:
+    """Values of an image that is laid over 2 by 1, row 0 at the top, interpolated bilinearly."""
+    height, width = image.shape[:2]
+    at = [(1 - y) * height - 0.5, x / 2 * width - 0.5]
+    channels = np.moveaxis(image.astype(float), -1, 0)
+    return np.stack([map_coordinates(c, at, order=1, mode="nearest") for c in channels], axis=-1)
+
+
+# --- what comes in --------------------------------------------------------------------------
+
+
+def test_an_image_becomes_colours_times_opacity_with_its_bottom_first() -> None:
+    image = np.zeros((2, 3, 4), np.uint8)
+    image[0, 0] = [255, 51, 0, 102]
+    picture = as_picture(image)
+    assert picture.shape == (2, 3, 4) and picture.dtype == np.float32
+    np.testing.assert_allclose(picture[1, 0], [0.4, 0.08, 0, 0.4], atol=1e-6)
+    assert not picture[0].any()
+
+
+@pytest.mark.parametrize(
+    "image",
+    [
+        np.array([[255, 0]], np.uint8),
+        np.array([[65535, 0]], np.uint16),
+        np.array([[1.0, 0.0]]),
+        np.array([[1.0, 0.0]], np.float16),
+        np.array([[True, False]]),
+        np.array([[[1.0] * 3, [0.0] * 3]]),
+        [[[1.0, 1.0, 1.0, 1.0], [0.0, 0.0, 0.0, 1.0]]],
+    ],
+)
+def test_every_kind_of_numbers_and_shape_is_taken(image: Any) -> None:
+    np.testing.assert_array_equal(as_picture(image), [[[1, 1, 1, 1], [0, 0, 0, 1]]])
+
+
+@pytest.mark.parametrize(
+    ("image", "told"),
+    [
+        (np.zeros((3, 4, 2)), r"^the image has shape \(3, 4, 2\); expected \(H, W\) for grey"),
+        (np.zeros(3), r"^the image has shape \(3,\); expected"),
+        (None, r"^the image has shape \(\); expected"),
+        (np.zeros((0, 4)), r"^the image is empty, of shape \(0, 4\); expected at least one"),
+        (np.array([[0.0, np.nan]]), r"^the image has 1 values that are NaN or infinite; replace"),
+        (np.array([[0.0, 255.0]]), r"floats go from 0 to 255; expected 0 to 1: divide by"),
+        (np.array([[0, 1]]), r"^the image holds int64; expected uint8, or floats from 0 to 1$"),
+        (np.array([["red"]]), r"^the image holds <U3; expected uint8"),
+    ],
+)
+def test_what_is_no_image_is_told(image: Any, told: str) -> None:
+    with pytest.raises(ImageError, match=told):
+        as_picture(image)
+
+
+def test_an_image_that_is_too_large_is_averaged_down() -> None:
+    image = np.zeros((3, 2 * LARGEST), np.uint8)
+    image[:, ::2] = 255
+    picture = as_picture(image)
+    assert picture.shape == (2, LARGEST, 4)
+    np.testing.assert_allclose(picture[..., :3], 0.5)
+
+
+def test_files_are_read_as_they_look(tmp_path: Path, rng: np.random.Generator) -> None:
+    image = photo(rng, 16, 24)
+    Image.fromarray(image).save(tmp_path / "a.png")
+    np.testing.assert_array_equal(load_image(tmp_path / "a.png"), image)
+    Image.fromarray(image).save(tmp_path / "a.jpg", quality=95, subsampling=0)
+    assert np.abs(load_image(str(tmp_path / "a.jpg")).astype(float) - image).mean() < 4
+    Image.fromarray(image[..., 0]).save(tmp_path / "grey.png")
+    np.testing.assert_array_equal(
+        as_picture(load_image(tmp_path / "grey.png")), as_picture(image[..., 0])
+    )
+    deep = (image[..., 0].astype(np.uint16) << 8) + 7
+    Image.fromarray(deep).save(tmp_path / "deep.png")
+    np.testing.assert_array_equal(load_image(tmp_path / "deep.png"), deep)
+    # Orientation 6 of a camera: to be turned by a quarter to the right.
+    turned = Image.Exif()
+    turned[0x0112] = 6
+    Image.fromarray(image).save(tmp_path / "turned.png", exif=turned)
+    np.testing.assert_array_equal(load_image(tmp_path / "turned.png"), np.rot90(image, -1))
+    see_through = np.dstack([image, image[..., :1]])
+    Image.fromarray(see_through).save(tmp_path / "dye.png")
+    np.testing.assert_array_equal(load_image(tmp_path / "dye.png"), see_through)
+
+
+def test_files_that_cannot_be_read_are_told(tmp_path: Path, rng: np.random.Generator) -> None:
+    (tmp_path / "text.png").write_text("no picture")
+    Image.fromarray(photo(rng)).save(tmp_path / "whole.png")
+    (tmp_path / "cut.png").write_bytes((tmp_path / "whole.png").read_bytes()[:900])
+    for name, told in (
+        ("none.png", r"none.png: there is no such file; expected a picture"),
+        (".", r": is a folder; expected a picture"),
+        ("text.png", r"text.png: is no picture that can be read; expected a PNG"),
+        ("cut.png", r"cut.png: cannot be read \(.+\); give another picture"),
+    ):
+        with pytest.raises(ImageError, match=told):
+            load_image(tmp_path / name)
+
+
+# --- pictures along the flow ----------------------------------------------------------------
+
+
+def test_without_flow_the_checkerboard_is_the_checkerboard(opengl: Any) -> None:
+    x, y, inside = places()
+    board = draw(still(), noise="checkerboard", strength=1)
+    side = 2 / SQUARES
+    dark = (np.floor(x / side) + np.floor(y / side)) % 2 == 1
+    to_edge = np.minimum(*(np.abs(c / side - np.rint(c / side)) * side for c in (x, y)))
+    clear = inside & (to_edge > 1.5 * (x[0, 1] - x[0, 0]))
+    assert clear.mean() > 0.3
+    assert (board[clear & dark] < 3).all()
+    assert (board[clear & ~dark] > 252).all()
+
+
+@pytest.mark.parametrize("lod", [True, False])
+def test_without_flow_an_image_is_itself_with_its_top_up(
+    opengl: Any, rng: np.random.Generator, lod: bool
+) -> None:
+    image = photo(rng)
+    x, y, inside = places()
+    found = draw(still(), image=image, lod=lod)
+    # The level of detail may average a pixel of the picture with the next.
+    assert np.abs(found - seen(image, x, y))[inside].max() < (12 if lod else 3)
+    assert np.abs(found - seen(image[::-1], x, y))[inside].mean() > 20
+
+
+@pytest.mark.parametrize("along", ["i", "j"])
+def test_a_uniform_flow_blurs_along_itself_alone(
+    opengl: Any, rng: np.random.Generator, along: str
+) -> None:
+    """The kernel written out: a mean of Hann weights over points that are one step apart."""
+    image = photo(rng)
+    x, y, inside = places()
+    samples, spacing, resolution = 21, 2.0, 256
+    u, v = (1.0, 0.0) if along == "i" else (0.0, 1.0)
+    found = draw(
+        uniform(u, v), image=image, samples=samples, spacing=spacing, resolution=resolution,
+        lod=False,
+    )  # fmt: skip
+    # A step is two texels, of which there are 256 along x and 128 along y.
+    k = np.arange(-10, 11)
+    weight = 0.5 + 0.5 * np.cos(np.pi * k / 11)
+    way = k * spacing * 2 / resolution
+    terms = [w * seen(image, x + s * u, y + s * v) for w, s in zip(weight, way, strict=True)]
+    expected = np.sum(terms, axis=0) / weight.sum()
+    reach = float(way.max()) + 0.01
+    clear = inside & (np.abs(x - 1) < 1 - reach * u) & (np.abs(y - 0.5) < 0.5 - reach * v)
+    assert clear.sum() > 5000
+    assert np.abs(found - expected)[clear].max() < 4
+    assert np.abs(found - seen(image, x, y))[clear].mean() > 10
+
+
+def test_stripes_along_the_flow_stay_and_stripes_across_go(opengl: Any) -> None:
+    rows = np.zeros((64, 128), np.uint8)
+    rows[::8] = rows[1::8] = rows[2::8] = rows[3::8] = 255
+    _, _, inside = places()
+    inner = inside & (np.abs(places()[0] - 1) < 0.6)
+    plain = draw(still(), image=rows)[inner].std()
+    assert draw(uniform(), image=rows)[inner].std() == pytest.approx(plain, rel=0.02)
+    assert draw(uniform(0.0, 1.0), image=rows)[inner].std() < 0.25 * plain
+
+
+@pytest.mark.parametrize("steps", [1, 2])
+@pytest.mark.parametrize("correction", [True, False])
+def test_colours_survive(opengl: Any, steps: int, correction: bool) -> None:
+    red = np.zeros((5, 9, 3))
+    red[..., 0] = 1.0
+    found = draw(uniform(1, 0.3, steps), image=red, noise_correction=correction)
+    assert (found[places()[2]] == [255, 0, 0]).all()
+
+
+@pytest.mark.parametrize("steps", [1, 2])
+def test_colours_survive_on_a_curved_surface_in_the_light(opengl: Any, steps: int) -> None:
+    angle, height = np.meshgrid(np.linspace(0, 2, 41), np.linspace(0, 1, 21))
+    points = np.stack([np.cos(angle), np.sin(angle), height], axis=-1)
+    along = np.stack([-np.sin(angle), np.cos(angle), 0 * angle], axis=-1)
+    times = None if steps == 1 else np.arange(steps)
+    field = FlowField.from_arrays(points, np.stack([along] * steps), times=times, periodic="")
+    found = draw(field, image=np.full((3, 3, 3), [255, 0, 0], np.uint8), background="black")
+    assert (found[..., 0] > 100).mean() > 0.03
+    assert found[..., 1:].max() < 2
+
+
+def test_the_mean_is_kept_by_a_flow_that_keeps_area(opengl: Any, rng: np.random.Generator) -> None:
+    image = photo(rng)
+    whole = (np.abs(places()[0] - 1) < 1) & (np.abs(places()[1] - 0.5) < 0.5)
+    found = draw(gyre(), image=image)[whole].mean(axis=0)
+    np.testing.assert_allclose(found, image.mean(axis=(0, 1)), atol=2.5)
+    assert draw(gyre(), image=image)[whole].std() < 0.95 * image.std()
+
+
+def test_dye_lies_on_the_colour_of_the_surface(opengl: Any) -> None:
+    dye = np.zeros((32, 64, 4))
+    dye[..., 1] = 1.0  # green that is not seen where it is transparent
+    dye[:, 32:, 3] = 0.5
+    found = draw(uniform(0.0, 1.0), image=dye, scalars=False, color=(1.0, 0.0, 0.0))
+    x, _, inside = places()
+    np.testing.assert_allclose(found[inside & (x < 0.9)].mean(axis=0), [255, 0, 0], atol=1)
+    np.testing.assert_allclose(found[inside & (x > 1.1)].mean(axis=0), [127.5, 127.5, 0], atol=1.5)
+
+
+def test_strength_mixes_it_with_the_colour_of_the_surface(opengl: Any) -> None:
+    options: dict[str, Any] = {"scalars": False, "color": (1.0, 0.0, 0.0)}
+    blue = np.zeros((4, 4, 3))
+    blue[..., 2] = 1.0
+    found = draw(uniform(), image=blue, strength=0.25, **options)[places()[2]]
+    np.testing.assert_allclose(found.mean(axis=0), [191.25, 0, 63.75], atol=1)
+
+
+def test_tiles_repeat_the_image(opengl: Any, rng: np.random.Generator) -> None:
+    image = photo(rng, 32, 64)
+    one = draw(gyre(), image=np.tile(image, (3, 3, 1)))
+    three = draw(gyre(), image=image, tiles=3)
+    assert np.abs(one - three)[places()[2]].max() < 3
+    assert np.abs(draw(gyre(), image=image) - three).mean() > 10
+
+
+def test_nothing_comes_over_from_the_opposite_edge(opengl: Any) -> None:
+    image = np.zeros((16, 32), np.uint8)
+    image[:, 0] = 255
+    found = draw(still(), image=image)
+    x, _, _ = places()
+    inside = np.abs(places()[1] - 0.5) < 0.45
+    assert found[inside & (x > 1.9) & (x < 1.995)].max() < 2
+    assert found[inside & (x < 0.02) & (x > 0.005)].min() > 250
+
+
+def test_the_level_of_detail_keeps_a_fine_image_from_flickering(opengl: Any) -> None:
+    fine = (np.indices((512, 1024)).sum(axis=0) % 2).astype(bool)
+    _, _, inside = places()
+    smooth, rough = (
+        draw(uniform(), image=fine, samples=1, lod=lod)[inside] for lod in (True, False)
+    )
+    assert smooth.std() < 3
+    assert smooth.mean() == pytest.approx(127.5, abs=2)
+    assert rough.std() > 15
+
+
+# --- patterns on the texture ----------------------------------------------------------------
+
+
+def pattern(field: FlowField, name: str, **options: Any) -> PaperTextures:
+    store = SliceStore(field, parameter="arclength")
+    settings = {"resolution": 256, "correction": True, **options}
+    return PaperTextures.build(store, pattern=name, **settings)
+
+
+def in_space(made: PaperTextures, field: FlowField) -> Floats:
+    """Texture of a stretched grid at even places of 2 by 1, (200, 400)."""
+    height, width = made.noise.shape
+    along = np.interp(np.linspace(0, 2, 401)[1:], field.points[0, :, 0], made.along_i)
+    v, u = np.meshgrid(np.arange(200) / 200 * height, along * width - 0.5, indexing="ij")
+    return np.asarray(map_coordinates(made.noise.astype(float), [v, u], order=1, mode="nearest"))
+
+
+def widths(noise: Floats) -> tuple[float, float]:
+    """Pixels along x and y over which the correlation falls to a half."""
+    noise = noise - noise.mean()
+    found = []
+    for axis in (1, 0):
+        lags = range(1, 40)
+        moved = [np.roll(noise, lag, axis=axis) for lag in lags]
+        like = np.array([1.0] + [(noise * m).mean() / noise.var() for m in moved])
+        first = int(np.argmax(like < 0.5))
+        found.append(first - (0.5 - like[first]) / (like[first - 1] - like[first]))
+    return found[0], found[1]
+
+
+def test_spots_are_round_and_even_on_a_stretched_grid() -> None:
+    field = stretched()
+    even, plain = (in_space(pattern(field, "spots", correction=c), field) for c in (True, False))
+    halves = (slice(0, 200), slice(200, 400))
+    for half in halves:
+        along, across = widths(even[:, half])
+        assert along / across == pytest.approx(1, abs=0.2)
+    sizes = [widths(even[:, half])[0] for half in halves]
+    assert sizes[1] / sizes[0] == pytest.approx(1, abs=0.2)
+    stretched_sizes = [widths(plain[:, half])[0] for half in halves]
+    assert stretched_sizes[1] > 1.7 * stretched_sizes[0]
+
+
+def test_spots_have_both_signs_and_a_seed() -> None:
+    one, other = (pattern(uniform(), "spots", seed=s).noise for s in (1, 2))
+    assert one.mean() == pytest.approx(0, abs=1e-5)
+    assert one.std() == pytest.approx(1, abs=1e-4)
+    assert np.quantile(one, 0.2) < -0.5 and np.quantile(one, 0.8) > 0.5
+    assert abs(np.corrcoef(one.ravel(), other.ravel())[0, 1]) < 0.1
+
+
+@pytest.mark.parametrize("correction", [True, False])
+def test_averaged_spots_lose_the_contrast_that_the_gain_gives_back(correction: bool) -> None:
+    noise = pattern(uniform(), "spots", correction=correction, resolution=1024).noise
+    for level in (1, 2, 4, 5):
+        width = 2**level
+        rows, columns = (n // width for n in noise.shape)
+        mean = noise.reshape(rows, width, columns, width).mean(axis=(1, 3))
+        gain = np.sqrt(1 + (width**2 - 1) / SPOT_GRAIN**2)
+        assert mean.std() * gain == pytest.approx(1, abs=0.12)
+
+
+def test_spots_keep_their_contrast_from_far_and_near(opengl: Any) -> None:
+    options: dict[str, Any] = {"noise": "spots", "scalars": False, "focus": (0.8, 0.4)}
+    inner = (slice(30, 110), slice(40, 200))
+    spread = [grey(draw(gyre(), zoom=z, **options))[inner].std() for z in (1, 4, 16)]
+    assert min(spread) > 15
+    assert max(spread) / min(spread) < 1.5
+
+
+def test_squares_are_even_on_a_stretched_grid() -> None:
+    field = stretched()
+    x = field.points[0, :, 0]
+
+    def sides(made: PaperTextures) -> Floats:
+        row = made.noise[8]
+        assert set(np.unique(row)) >= {0.0, 1.0}
+        edges = np.flatnonzero((row[1:] > 0.5) != (row[:-1] > 0.5)) + 1
+        return np.diff(np.interp(edges / len(row), made.along_i, x))
+
+    even = sides(pattern(field, "checkerboard", resolution=1024))
+    assert len(even) == SQUARES - 2
+    np.testing.assert_allclose(even, 2 / SQUARES, atol=0.01)
+    plain = sides(pattern(field, "checkerboard", resolution=1024, correction=False))
+    assert plain.max() > 5 * plain.min()
+
+
+def test_squares_close_around_a_ring_that_is_not_flat() -> None:
+    angle = np.linspace(0, 2 * np.pi, 65)
+    a, z = np.meshgrid(angle, np.linspace(0, 2, 17))
+    points = np.stack([np.cos(a), np.sin(a), z], axis=-1)
+    points[:, -1] = points[:, 0]
+    field = FlowField.from_arrays(points, np.stack([-np.sin(a), np.cos(a), 0 * a], axis=-1))
+    assert field.periodic == (False, True)
+    row = pattern(field, "checkerboard").noise[5] > 0.5
+    changes = np.count_nonzero(row != np.roll(row, 1))
+    assert changes == SQUARES
+    assert row[0] != row[-1]
+
+
+def test_an_unknown_pattern_is_told() -> None:
+    for name in ("image", "marble"):
+        with pytest.raises(ValueError, match=rf"^pattern is '{name}'; expected 'texture', 'spots'"):
+            pattern(uniform(), name)
+
+
+# --- live, and what cannot be ---------------------------------------------------------------
+
+
+def test_another_image_is_shown_at_once_and_paths_are_not_sent_again(
+    plotter: Any, rng: np.random.Generator
+) -> None:
+    image = photo(rng)
+    handle = plotter.flowtex.add(gyre(), image=image)
+    assert (handle.settings.noise, handle.settings.strength) == ("image", 1.0)
+    assert len(plotter.scalar_bars) == 0
+    first = plotter.screenshot(return_img=True)
+    paths = handle._layer._gpu["u_slices"]
+    handle.set_image(255 - image)
+    second = plotter.screenshot(return_img=True)
+    assert handle._layer._gpu["u_slices"] is paths
+    inside = (first != 255).any(axis=-1) & (second != 255).any(axis=-1)
+    assert inside.mean() > 0.4
+    assert np.abs(first.astype(float) + second - 255)[inside].max() < 4
+    handle.set_image(image)
+    np.testing.assert_array_equal(plotter.screenshot(return_img=True), first)
+
+
+def test_an_image_can_come_later_and_go_again(plotter: Any, rng: np.random.Generator) -> None:
+    handle = plotter.flowtex.add(gyre(), show_scalar_bar=False)
+    first = plotter.screenshot(return_img=True)
+    handle.set_image(photo(rng))
+    assert handle.settings.noise == "image"
+    second = plotter.screenshot(return_img=True)
+    assert np.abs(first.astype(float) - second).mean() > 10
+    handle.settings.tiles = 4
+    assert np.abs(plotter.screenshot(return_img=True).astype(float) - second).mean() > 5
+    handle.settings.noise = "procedural"
+    np.testing.assert_array_equal(plotter.screenshot(return_img=True), first)
+
+
+@pytest.mark.parametrize(
+    ("noise", "name", "affects"),
+    [
+        ("image", "tiles", "uniform"),
+        ("checkerboard", "tiles", "textures"),
+        ("spots", "seed", "textures"),
+        ("checkerboard", "seed", "uniform"),
+        ("checkerboard", "resolution", "textures"),
+        ("image", "resolution", "textures"),
+    ],
+)
+def test_a_change_costs_no_more_than_it_must(noise: str, name: str, affects: str) -> None:
+    view = FlowView(uniform(), Settings(noise=noise, resolution=64), image=np.ones((2, 2)))
+    before, heard = view.textures, list[str]()
+    view.observe(heard.append)
+    view.settings.update(**{name: 32})
+    assert heard == [affects]
+    assert (view.textures is before) == (affects == "uniform")
+
+
+def test_an_image_that_is_not_there_is_told_and_nothing_changes(plotter: Any) -> None:
+    told = r"^noise is 'image' and there is no image; give one as image="
+    with pytest.raises(SettingsError, match=told):
+        plotter.flowtex.add(uniform(), noise="image")
+    assert len(plotter.flowtex) == 0
+    handle = plotter.flowtex.add(uniform(), noise="spots")
+    first = plotter.screenshot(return_img=True)
+    with pytest.raises(SettingsError, match=told):
+        handle.settings.noise = "image"
+    assert handle.settings.noise == "spots"
+    with pytest.raises(ImageError, match="expected"):
+        handle.set_image(np.zeros((2, 2, 7)))
+    assert handle.settings.noise == "spots" and handle.view.image is None
+    np.testing.assert_array_equal(plotter.screenshot(return_img=True), first)
+
+
+def test_an_image_and_another_noise_are_too_much(plotter: Any) -> None:
+    with pytest.raises(SettingsError, match=r"^noise is 'texture' and an image is given; leave"):
+        plotter.flowtex.add(uniform(), noise="texture", image=np.ones((2, 2)))
+
+
+def test_an_image_is_a_flag_of_the_command_line(
+    tmp_path: Path, opengl: Any, capsys: pytest.CaptureFixture[str]
+) -> None:
+    mesh, picture, out = (str(tmp_path / n) for n in ("wind.vts", "red.png", "out.png"))
+    flowtex.examples.double_gyre(2.5).save(mesh)
+    Image.fromarray(np.full((4, 4, 3), [200, 0, 0], np.uint8)).save(picture)
+    words = ["render", mesh, "-o", out, "--size", "60x40"]
+    assert main([*words, "--image", picture]) == 0
+    with Image.open(out) as drawn:
+        assert drawn.getpixel((30, 20)) == (200, 0, 0)
+    for more, told in (
+        (["--image", str(tmp_path / "no.png")], "no.png: there is no such file"),
+        (["--noise", "image"], "there is no picture; name one with --image FILE"),
+        (["--noise", "spots", "--image", picture], "leave out one of them"),
+    ):
+        capsys.readouterr()
+        assert main([*words, *more]) == 2
+        assert told in " ".join(capsys.readouterr().err.split())

@@ -1,0 +1,296 @@
+"""Trace slices as textures, and the paper's own noise and step textures."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from flowtex import FlowField
+from flowtex.examples import airfoil_field, cylinder_field, double_gyre_field
+from flowtex.settings import Settings
+from flowtex.textures import Geometry, PaperTextures, TextureSet
+from flowtex.textures.displacements import Moves
+from flowtex.trace import SliceStore, TraceSlices, trace
+
+Floats = NDArray[np.float64]
+
+
+def textures(field: FlowField, slices: TraceSlices | None = None, **settings: object) -> TextureSet:
+    options = Settings(**settings)  # type: ignore[arg-type]
+    parameter = str(settings.get("parameter", "arclength"))
+    return TextureSet.build(SliceStore(field, parameter=parameter, slices=slices), options)
+
+
+def nodal(made: TextureSet, layer: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Texels that lie on the nodes, (J, I, ...)."""
+    rows, columns = made.geometry.rows, made.geometry.columns
+    return layer[
+        rows.before : rows.before + rows.nodes, columns.before : columns.before + columns.nodes
+    ]
+
+
+def stretched(count: int = 41, power: float = 2.5) -> FlowField:
+    x = np.sinh(np.linspace(0, power, count))
+    points = np.stack(np.meshgrid(x, np.linspace(0, 1, count)), axis=-1)
+    return FlowField.from_arrays(points, np.broadcast_to([1.0, 0.1], points.shape), periodic="")
+
+
+# --- layers ---------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("parameter", ["arclength", "time"])
+@pytest.mark.parametrize(
+    "make", [lambda: double_gyre_field(shape=(21, 41)), lambda: airfoil_field((33, 97))]
+)
+def test_slopes_tend_to_the_tangent(make: object, parameter: str) -> None:
+    field: FlowField = make()  # type: ignore[operator]
+    slices = trace(field, lags=[1e-3, 0.5], parameter=parameter)
+    made = textures(field, slices)
+    layers = made.layers()
+    tangent = nodal(made, layers[0])[..., :3]
+    size = np.linalg.norm(tangent, axis=-1)
+    inside = (slices.reach[0] > 1e-3) & (size > 0.1 * np.median(size))
+    for layer in (1, 3):
+        slope = nodal(made, layers[layer])[..., :3]
+        away = np.linalg.norm(slope - tangent, axis=-1) / np.maximum(size, 1e-9)
+        assert np.median(away[inside]) < 5e-3
+        assert np.quantile(away[inside], 0.99) < 0.03
+
+
+def test_arc_length_slopes_are_of_unit_length() -> None:
+    made = textures(double_gyre_field(shape=(41, 81)))
+    size = np.linalg.norm(nodal(made, made.layers()[0])[..., :3], axis=-1)
+    np.testing.assert_allclose(size[1:-1, 1:-1].max(), 1, atol=1e-5)
+    assert np.median(size) == pytest.approx(1, abs=1e-5)
+
+
+def test_slope_times_lag_is_the_way_in_space() -> None:
+    field = airfoil_field((33, 97))
+    made = textures(field)
+    slices = made.store.at(0)
+    layers = made.layers()
+    for m in (0, 3):
+        expected = field.surface.at(slices.nodes + slices.displacement[0, m]) - field.points
+        lag = slices.lags[m] * slices.unit[..., None]
+        found = -nodal(made, layers[1 + m])[..., :3] * lag
+        expected = expected @ made.geometry.frame.T
+        # The closing column repeats the first.
+        np.testing.assert_allclose(found[:, :-1], expected[:, :-1], atol=2e-6)
+
+
+def test_fourth_channel_holds_unit_reach_and_speed() -> None:
+    field = stretched()
+    made = textures(field)
+    slices = made.store.at(0)
+    layers = made.layers()
+    np.testing.assert_allclose(nodal(made, layers[0])[..., 3] * made.unit, slices.unit, rtol=1e-5)
+    last = 2 * slices.lags[-1]
+    count = len(slices.lags)
+    assert layers.shape[0] == made.count == 1 + 2 * count
+    np.testing.assert_allclose(nodal(made, layers[1])[..., 3], np.minimum(slices.reach[0], last))
+    assert slices.forward_reach is not None
+    np.testing.assert_allclose(
+        nodal(made, layers[count + 1])[..., 3], np.minimum(slices.forward_reach[0], last)
+    )
+    np.testing.assert_allclose(
+        nodal(made, layers[2])[..., 3] * made.typical_speed, field.speed[0], rtol=1e-5
+    )
+    assert not layers[3 : count + 1, ..., 3].any()
+    assert np.isfinite(layers).all()
+
+
+def test_by_time_slopes_are_speeds_over_a_typical_speed() -> None:
+    field = double_gyre_field(shape=(21, 41))
+    made = textures(field, parameter="time")
+    tangent = nodal(made, made.layers()[0])[..., :3]
+    np.testing.assert_allclose(
+        np.linalg.norm(tangent, axis=-1) * made.pace, field.speed[0], atol=1e-6
+    )
+    assert np.sqrt(np.mean(np.sum(tangent**2, axis=-1))) == pytest.approx(1, rel=1e-4)
+
+
+def test_periodic_axis_goes_on_by_its_own_period() -> None:
+    made = textures(cylinder_field().at_step(0))
+    columns, rows = made.geometry.columns, made.geometry.rows
+    assert columns.periodic and not rows.periodic
+    period = columns.nodes - 1
+    layers = made.layers()
+    np.testing.assert_array_equal(layers[:, :, :-period], layers[:, :, period:])
+    # Beyond the border of an open axis the last line is repeated.
+    beyond = layers[:, rows.nodes :]
+    assert beyond.shape[1] > 0
+    last = layers[:, rows.nodes - 1 : rows.nodes]
+    np.testing.assert_array_equal(beyond, np.repeat(last, beyond.shape[1], axis=1))
+
+
+def test_paths_go_on_across_the_seam() -> None:
+    """A rotation on a ring is the same everywhere but for the turn, at the seam as elsewhere."""
+    angle = np.linspace(0, 2 * np.pi, 65)
+    r, a = np.meshgrid(np.linspace(1, 2, 17), angle, indexing="ij")
+    points = np.stack([r * np.cos(a), r * np.sin(a)], axis=-1)
+    points[:, -1] = points[:, 0]
+    field = FlowField.from_arrays(points, points[..., ::-1] * [-1, 1])
+    assert field.periodic == (False, True)
+    made = textures(field)
+    layers = made.layers()
+    for layer in (0, 2, made.count // 2, made.count - 1):
+        size = np.linalg.norm(nodal(made, layers[layer])[..., :2], axis=-1)
+        np.testing.assert_allclose(size, np.broadcast_to(size[:, 30:31], size.shape), atol=2e-3)
+
+
+def test_layers_fill_whole_blocks_of_the_coarsest_level() -> None:
+    made = textures(double_gyre_field(shape=(21, 41)))
+    block = 2**made.geometry.levels
+    height, width = made.layers().shape[1:3]
+    assert height % block == width % block == 0
+    texel = made.geometry.coordinate * [width, height]
+    i, j = np.meshgrid(np.arange(41), np.arange(21))
+    np.testing.assert_allclose(texel, np.stack([i, j], axis=-1) + 0.5, atol=1e-3)
+
+
+def test_flat_surfaces_lie_in_their_own_plane(rng: np.random.Generator) -> None:
+    turn = np.linalg.qr(rng.standard_normal((3, 3)))[0]
+    flat = double_gyre_field(shape=(21, 41))
+    field = FlowField.from_arrays(flat.points @ turn.T, flat.velocity[0] @ turn.T, periodic="")
+    made = textures(field)
+    assert made.geometry.planar
+    assert np.abs(made.geometry.position[..., 2]).max() < 1e-6
+    assert not made.layers()[..., :, 2].any() or np.abs(made.layers()[..., 2]).max() < 1e-5
+    one = np.linalg.norm(nodal(made, made.layers()[5])[..., :3], axis=-1)
+    plain = textures(flat)
+    two = np.linalg.norm(nodal(plain, plain.layers()[5])[..., :3], axis=-1)
+    np.testing.assert_allclose(one, two, atol=1e-3)
+
+
+def test_curved_surfaces_keep_three_dimensions() -> None:
+    a, z = np.meshgrid(np.linspace(0, 3, 31), np.linspace(0, 1, 21))
+    points = np.stack([np.cos(a), np.sin(a), z], axis=-1)
+    velocity = np.stack([-np.sin(a), np.cos(a), 0 * z + 0.2], axis=-1)
+    made = textures(FlowField.from_arrays(points, velocity, periodic=""))
+    assert not made.geometry.planar
+    tangent = nodal(made, made.layers()[0])[..., :3]
+    expected = velocity / np.linalg.norm(velocity, axis=-1, keepdims=True)
+    np.testing.assert_allclose(tangent[1:-1, 1:-1], expected[1:-1, 1:-1], atol=2e-3)
+
+
+def test_blanked_nodes_take_what_is_beside_them() -> None:
+    field = double_gyre_field(shape=(21, 41))
+    valid = np.ones(field.shape, bool)
+    valid[5:9, 10:14] = False
+    masked = FlowField.from_arrays(field.points, field.velocity[0], valid=valid, periodic="")
+    made = textures(masked)
+    layers = made.layers()
+    assert np.isfinite(layers).all()
+    for layer in layers[:4]:
+        values = nodal(made, layer)
+        np.testing.assert_array_equal(values[6, 10], values[6, 9])
+        np.testing.assert_array_equal(values[5, 12], values[4, 12])
+
+
+@pytest.mark.parametrize("correction", [True, False])
+def test_layers_for_the_noise_texture_hold_ways_across_it(correction: bool) -> None:
+    field = airfoil_field((17, 49))
+    made = textures(field, noise="texture", noise_correction=correction)
+    assert made.paper is not None
+    slices = made.store.at(0)
+    layers = made.layers()
+    inner = (slice(None), slice(0, -1))  # The closing column repeats the first.
+    expected = slices.rate[0] * made.paper.by_cell()
+    np.testing.assert_allclose(nodal(made, layers[0])[inner][..., :2], expected[inner], rtol=1e-5)
+    there = made.paper.at(slices.nodes + slices.displacement[0, 2])
+    expected = (made.paper.coordinate - there) / slices.lags[2]
+    np.testing.assert_allclose(nodal(made, layers[3])[inner][..., :2], expected[inner], atol=1e-6)
+    assert not layers[..., 2].any()
+
+
+def test_moves_are_those_of_the_surface(rng: np.random.Generator) -> None:
+    for field in (double_gyre_field(shape=(11, 21)), stretched(15), airfoil_field((17, 49))):
+        rows, columns = field.shape
+        displacement = rng.standard_normal((rows, columns, 2)) * [columns / 2, rows / 2]
+        i, j = np.meshgrid(np.arange(columns), np.arange(rows))
+        start = np.stack([i, j], axis=-1)
+        expected = field.surface.at(start + displacement) - field.points
+        found = Moves(field.surface, np.eye(3))(displacement)
+        np.testing.assert_allclose(
+            np.moveaxis(found, 0, -1), expected, atol=1e-10 * field.surface.extent
+        )
+
+
+def test_slices_of_another_field_are_refused() -> None:
+    slices = trace(double_gyre_field(shape=(6, 11)))
+    with pytest.raises(
+        ValueError, match=r"^the slices have \(6, 11\) nodes and the field \(7, 11\)"
+    ):
+        textures(double_gyre_field(shape=(7, 11)), slices)
+
+
+@pytest.mark.parametrize("count", [1, 33])
+def test_slices_that_a_shader_cannot_use_are_refused(count: int) -> None:
+    field = double_gyre_field(shape=(6, 11))
+    slices = trace(field, lags=np.linspace(0.1, 1, count))
+    with pytest.raises(ValueError, match=rf"^{count} lags were traced; expected 2 to 32 to draw"):
+        textures(field, slices)
+
+
+# --- the paper's textures -------------------------------------------------------------------
+
+
+def paper(field: FlowField, *, correction: bool, parameter: str = "arclength") -> PaperTextures:
+    store = SliceStore(field, parameter=parameter)
+    return PaperTextures.build(store, resolution=128, correction=correction)
+
+
+@pytest.mark.parametrize("parameter", ["arclength", "time"])
+@pytest.mark.parametrize("correction", [True, False])
+def test_a_step_moves_one_texel(correction: bool, parameter: str) -> None:
+    """Equation 3."""
+    field = stretched()
+    made = paper(field, correction=correction, parameter=parameter)
+    height, width = made.step.shape
+    rate = SliceStore(field, parameter=parameter).at(0).rate[0]
+    texels = np.abs(rate * made.by_cell() * [width, height]).max(axis=-1)
+    u, v = np.moveaxis(made.coordinate[2:-2, 2:-2] * [width, height], -1, 0).astype(int)
+    moved = made.step[v, u] * texels[2:-2, 2:-2]
+    assert np.median(moved) == pytest.approx(1, abs=0.03)
+    np.testing.assert_allclose(moved, 1, atol=0.2)
+
+
+@pytest.mark.parametrize("correction", [True, False])
+def test_noise_has_zero_mean_and_unit_variance(correction: bool) -> None:
+    noise = paper(stretched(), correction=correction).noise
+    assert noise.mean() == pytest.approx(0, abs=1e-5)
+    assert noise.std() == pytest.approx(1, abs=1e-4)
+
+
+def test_correction_makes_the_grain_even_on_the_surface() -> None:
+    """Figure 6: grains of the corrected noise have the same length where cells have not."""
+    field = stretched()
+    x = field.points[0, :, 0]
+    plain, even = (paper(field, correction=c) for c in (False, True))
+    np.testing.assert_allclose(plain.coordinate[0, :, 0], np.linspace(0, 1, 41), atol=1e-6)
+    np.testing.assert_allclose(even.coordinate[0, :, 0], x / x[-1], atol=5e-3)
+
+    def spread(made: PaperTextures) -> float:
+        """Ninth over first decile of the lengths of grains along a row."""
+        row = made.noise[made.noise.shape[0] // 2]
+        edges = (np.flatnonzero(np.diff(row)) + 1) / len(row)
+        grains = np.diff(np.interp(edges, made.along_i, x))
+        return float(np.quantile(grains, 0.9) / np.quantile(grains, 0.1))
+
+    assert spread(plain) > 4
+    assert spread(even) < 3
+
+
+def test_noise_is_the_same_for_the_same_seed() -> None:
+    store = SliceStore(stretched(21))
+    one, two, other = (
+        PaperTextures.build(store, resolution=64, correction=True, seed=s).noise for s in (1, 1, 2)
+    )
+    np.testing.assert_array_equal(one, two)
+    assert np.corrcoef(one.ravel(), other.ravel())[0, 1] < 0.2
+
+
+def test_noise_is_repeated_where_the_axis_is() -> None:
+    assert paper(cylinder_field().at_step(0), correction=True).repeat == (False, True)
+    assert Geometry.of(stretched()).columns.before == 0

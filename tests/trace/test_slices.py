@@ -1,0 +1,349 @@
+"""Trace slices: the paper's figures 3 and 4, reading and writing, and what callers get wrong."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy.ndimage import map_coordinates
+
+from flowtex import FlowField, TraceSlices, trace
+from flowtex._util import progress
+from flowtex.examples import cylinder_field, double_gyre_field, vortex_field
+from flowtex.trace import SliceStore, paths
+
+Floats = NDArray[np.float64]
+
+
+@pytest.fixture(scope="module")
+def slices() -> TraceSlices:
+    return trace(double_gyre_field(shape=(21, 41)), lags=[0.25, 1.0, 4.0])
+
+
+# --- figures 3 and 4 ------------------------------------------------------------------------
+
+FIGURES: dict[str, tuple[Callable[[], FlowField], float, int]] = {
+    "vortex": (vortex_field, 0.04, 10),
+    "double gyre": (lambda: double_gyre_field(True, shape=(51, 101)), 0.5, 30),
+    "cylinder": (cylinder_field, 0.2, 30),
+}
+
+
+def displacements(field: FlowField, lags: Floats, step: int) -> Floats:
+    """Integrated slices (M, J, I, 2) of one step."""
+    slices = trace(field, lags=lags, parameter="time", steps=[step], compose=False)
+    return np.asarray(slices.displacement[0], dtype=float)
+
+
+def compared(name: str, factor: int) -> dict[str, Floats]:
+    """Mean errors in cells for lags of 1 to 10 steps, against the slices of the whole field.
+
+    "slices" keeps every ``factor``-th entry of the slices, "field" traces the field of every
+    ``factor``-th node; "at nodes" compares at the entries that are left, "everywhere" at all
+    nodes, interpolated.
+    """
+    make, step_length, step = FIGURES[name]
+    field, lags = make(), np.linspace(step_length, 10 * step_length, 10)
+    full = displacements(field, lags, step)
+    coarse = displacements(field.downsample(factor), lags, step) * factor
+    rows, columns = ((n - 1) // factor * factor + 1 for n in field.shape)
+    full, kept = full[:, :rows, :columns], full[:, :rows:factor, :columns:factor]
+    coarse = coarse[:, : kept.shape[1], : kept.shape[2]]
+    j, i = np.meshgrid(np.arange(rows) / factor, np.arange(columns) / factor, indexing="ij")
+
+    def everywhere(data: Floats) -> Floats:
+        return np.stack(
+            [[map_coordinates(d[..., c], [j, i], order=1) for c in range(2)] for d in data]
+        )
+
+    exact = np.moveaxis(full, -1, 1)
+    return {
+        "field, at nodes": np.linalg.norm(coarse - kept, axis=-1).mean(axis=(1, 2)),
+        "field, everywhere": np.linalg.norm(everywhere(coarse) - exact, axis=1).mean(axis=(1, 2)),
+        "slices, everywhere": np.linalg.norm(everywhere(kept) - exact, axis=1).mean(axis=(1, 2)),
+    }
+
+
+@pytest.mark.parametrize("factor", [2, 4])
+@pytest.mark.parametrize("name", FIGURES)
+def test_figures_3_and_4(name: str, factor: int) -> None:
+    """Slices are true wherever an entry is left, at any lag; traces of a coarse field drift off."""
+    found = compared(name, factor)
+    drift, by_field, by_slices = found.values()
+    # At the entries that are left slices have no error, and the field's accumulates.
+    assert (np.diff(drift) > 0).all()
+    assert drift[-1] > 4 * drift[0]
+    # Between them slices have the error of interpolation; the field's has its drift on top.
+    assert (by_slices < 0.95 * by_field).all()
+    assert by_field[-1] - by_slices[-1] > 2 * (by_field[0] - by_slices[0])
+
+
+@pytest.mark.parametrize("name", FIGURES)
+def test_a_coarser_field_drifts_further(name: str) -> None:
+    two, four = (compared(name, factor)["field, at nodes"] for factor in (2, 4))
+    assert (four > 1.5 * two).all()
+
+
+@pytest.mark.parametrize("factor", [2, 4])
+def test_the_error_of_averaged_slices_is_bounded_by_their_own_bend(factor: int) -> None:
+    """What averaging a block adds depends on the slice of that lag, not on those before."""
+    field, lags = vortex_field(), np.arange(1, 11) * 0.04
+    full = trace(field, lags=lags, steps=[10], compose=False)
+    small = full.downsample(factor)
+    exact = paths(field, small.nodes.reshape(-1, 2), lags, step=10).positions
+    found = (small.nodes + small.displacement[0]).reshape(len(lags), -1, 2)
+    error = np.linalg.norm(found - exact, axis=-1).mean(axis=1)
+    slices = full.displacement[0].astype(float)
+    bend = sum(np.linalg.norm(np.diff(slices, 2, axis=a), axis=-1).mean((1, 2)) for a in (1, 2))
+    # The mean over a block of f differs from f at its middle by (n^2 - 1) / 24 f'' in each axis.
+    assert (error < 1.2 * (factor**2 - 1) / 24 * bend).all()
+
+
+# --- one set of slices ----------------------------------------------------------------------
+
+
+def test_slopes_at_lag_zero_are_the_rates(slices: TraceSlices) -> None:
+    for forward, sign in ((False, -1), (True, 1)):
+        slope = (slices.positions(1e-6, forward=forward) - slices.nodes) / 1e-6
+        np.testing.assert_allclose(slope, sign * slices.rate[0], atol=1e-4)
+
+
+def test_positions_at_the_slices_are_the_slices(slices: TraceSlices) -> None:
+    inside = slices.reach[0] >= 4.0
+    for m, lag in enumerate(slices.lags):
+        expected = slices.nodes + slices.displacement[0, m]
+        np.testing.assert_allclose(slices.positions(lag)[inside], expected[inside], atol=1e-5)
+    assert inside.sum() > 500
+
+
+def test_positions_at_lag_zero_are_the_nodes(slices: TraceSlices) -> None:
+    np.testing.assert_array_equal(slices.positions(0.0), slices.nodes)
+
+
+def test_positions_between_the_slices_lie_on_the_path(slices: TraceSlices) -> None:
+    lag, inside = 2.0, slices.reach[0] >= 4.0
+    field = double_gyre_field(shape=(21, 41))
+    start = slices.nodes[inside]
+    exact = paths(field, start, [lag * field.surface.cell_size[0, 0]]).positions[0]
+    away = np.linalg.norm(slices.positions(lag)[inside] - exact, axis=-1)
+    assert np.median(away) < 0.05
+
+
+def test_positions_beyond_the_slices_are_refused(slices: TraceSlices) -> None:
+    with pytest.raises(ValueError, match=r"^lag is 4\.5; expected 0 to 4, the lag of the last"):
+        slices.positions(4.5)
+    with pytest.raises(ValueError, match=r"^lag is -1; expected 0 to 4"):
+        slices.positions(-1)
+
+
+def test_forward_positions_need_forward_slices() -> None:
+    one_sided = trace(double_gyre_field(shape=(6, 11)), two_sided=False)
+    assert one_sided.forward is None
+    with pytest.raises(
+        ValueError, match=r"^there are no forward slices: trace a steady field with"
+    ):
+        one_sided.positions(0.1, forward=True)
+
+
+def test_downsampled_slices_stand_at_the_middle_of_their_blocks(slices: TraceSlices) -> None:
+    small = slices.downsample(4)
+    assert small.shape == (5, 10)
+    np.testing.assert_allclose(small.nodes[0, 0], [1.5, 1.5])
+    np.testing.assert_allclose(small.nodes[-1, -1], [37.5, 17.5])
+    np.testing.assert_allclose(
+        small.displacement[0, 1, 2, 3],
+        slices.displacement[0, 1, 8:12, 12:16].mean(axis=(0, 1)),
+        rtol=1e-5,
+    )
+    np.testing.assert_array_equal(slices.downsample(1).displacement, slices.displacement)
+
+
+@pytest.mark.parametrize("factor", [0, -1, 22])
+def test_downsampling_that_leaves_nothing_is_refused(slices: TraceSlices, factor: int) -> None:
+    with pytest.raises(ValueError, match=rf"^factor is {factor}; expected 1 to 21, the shorter"):
+        slices.downsample(factor)
+
+
+def test_one_step_of_several() -> None:
+    whole = trace(double_gyre_field(True, shape=(6, 11)))
+    for step in (0, 7, -1):
+        one = whole.at_step(step)
+        np.testing.assert_array_equal(one.displacement[0], whole.displacement[step])
+        assert one.times.tolist() == [whole.times[step]]
+
+
+def test_repr_tells_the_sizes(slices: TraceSlices) -> None:
+    assert re.fullmatch(
+        r"TraceSlices\(41 x 21 nodes \(I x J\), 1 destination times, 3 lags by arclength, "
+        r"backward and forward, \d\.\d MB\)",
+        repr(slices),
+    )
+
+
+# --- files ----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("two_sided", [True, False])
+def test_saved_slices_are_read_back(tmp_path: Path, two_sided: bool) -> None:
+    before = trace(double_gyre_field(shape=(6, 11)), two_sided=two_sided)
+    before.save(tmp_path / "slices.npz")
+    after = TraceSlices.open(tmp_path / "slices.npz")
+    for name in TraceSlices.__dataclass_fields__:
+        one, two = getattr(before, name), getattr(after, name)
+        if isinstance(one, np.ndarray):
+            assert one.dtype == two.dtype
+            np.testing.assert_array_equal(one, two)
+        else:
+            assert one == two
+
+
+class Trap:
+    """Writes a file when it is unpickled."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return Path.touch, (self.path,)
+
+
+def broken(path: Path, kind: str) -> None:
+    good = path.with_name("good.npz")
+    trace(double_gyre_field(shape=(6, 11))).save(good)
+    data = good.read_bytes()
+    if kind == "text":
+        path.write_text("lags,1,2")
+    elif kind == "empty":
+        path.write_bytes(b"")
+    elif kind == "cut":
+        path.write_bytes(data[: len(data) // 2])
+    elif kind == "array":
+        with path.open("wb") as file:
+            np.save(file, np.zeros(3))
+    elif kind == "other arrays":
+        np.savez(path, lags=np.zeros(3))
+    elif kind == "arrays missing":
+        np.savez(path, format=np.array("flowtex-slices-1"), lags=np.zeros(3))
+    elif kind == "damaged":
+        middle = len(data) // 2
+        path.write_bytes(data[:middle] + bytes(64) + data[middle + 64 :])
+    else:
+        trap = np.array([Trap(path.with_name("sprung"))], dtype=object)
+        np.savez(path, format=np.array("flowtex-slices-1"), lags=trap, allow_pickle=True)
+
+
+@pytest.mark.parametrize(
+    "kind",
+    ["text", "empty", "cut", "array", "other arrays", "arrays missing", "damaged", "pickle"],
+)
+def test_files_of_another_kind_are_refused(tmp_path: Path, kind: str) -> None:
+    path = tmp_path / "slices.npz"
+    broken(path, kind)
+    expected = f"{path} does not hold trace slices; expected a file that TraceSlices.save wrote"
+    with pytest.raises(ValueError, match=f"^{re.escape(expected)}$"):
+        TraceSlices.open(path)
+    assert not (tmp_path / "sprung").exists()
+
+
+def test_a_missing_file_is_told_as_such(tmp_path: Path) -> None:
+    with pytest.raises(FileNotFoundError):
+        TraceSlices.open(tmp_path / "none.npz")
+
+
+# --- arguments ------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "lags", [[], [0.0, 1.0], [-1.0], [2.0, 1.0], [1.0, 1.0], [1.0, np.inf], [np.nan], [[1.0, 2.0]]]
+)
+def test_lags_that_do_not_increase_are_refused(lags: list[float]) -> None:
+    message = f"lags is {lags!r}; expected positive numbers in increasing order"
+    field = double_gyre_field(shape=(6, 11))
+    with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
+        trace(field, lags=lags)
+    with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
+        paths(field, [[1.0, 1.0]], lags)
+
+
+def test_other_arguments_are_checked() -> None:
+    field = double_gyre_field(shape=(6, 11))
+    message = 'parameter is \'length\'; expected "arclength" or "time"'
+    with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
+        trace(field, parameter="length")
+    message = "unit has values from -1 to -1; expected positive numbers"
+    with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
+        trace(field, unit=-1.0)
+    message = "tolerance is 0; expected a positive number of cells, such as 1e-3"
+    with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
+        trace(field, tolerance=0)
+    with pytest.raises(IndexError, match=r"^time step 1 does not exist: expected 0 to 0$"):
+        trace(field, steps=[1])
+
+
+def test_a_time_varying_field_is_followed_by_time() -> None:
+    assert trace(double_gyre_field(True, shape=(6, 11))).parameter == "time"
+
+
+def test_unit_scales_the_lags() -> None:
+    field = double_gyre_field(shape=(11, 21))
+    one = trace(field, lags=[1.0, 4.0], unit=0.05)
+    two = trace(field, lags=[2.0, 8.0], unit=0.025)
+    np.testing.assert_allclose(one.displacement, two.displacement, atol=1e-4)
+    np.testing.assert_allclose(one.reach, two.reach / 2, rtol=1e-4)
+
+
+def test_automatic_lags_of_a_time_varying_field_reach_its_steps() -> None:
+    for field in (vortex_field(), double_gyre_field(True, shape=(21, 41))):
+        lags = trace(field, steps=[0]).lags
+        step = np.diff(field.times)[0]
+        np.testing.assert_allclose(np.log2(lags / step) % 1, 0, atol=1e-6)
+        assert lags[0] <= step < lags[-1]
+
+
+# --- progress, and the store ----------------------------------------------------------------
+
+
+def bars_drawn(monkeypatch: pytest.MonkeyPatch, seconds: float, *, show: bool = True) -> int:
+    drawn: list[str] = []
+
+    class Bar:
+        def __init__(self, text: str, total: int) -> None:
+            drawn.append(text)
+
+        def move(self, done: int) -> None:
+            pass
+
+        def close(self, total: int) -> None:
+            drawn.append("closed")
+
+    clock = iter(np.arange(0, 1000 * seconds, seconds))
+    monkeypatch.setattr("flowtex._util.progress.time.monotonic", lambda: float(next(clock)))
+    monkeypatch.setattr(progress, "_Bar", Bar)
+    trace(double_gyre_field(True, shape=(6, 11)), progress=show)
+    assert drawn in ([], ["Tracing", "closed"])
+    return len(drawn)
+
+
+def test_a_progress_bar_appears_after_a_second(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert bars_drawn(monkeypatch, 0.3)
+
+
+def test_no_progress_bar_for_short_work(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert not bars_drawn(monkeypatch, 0.001)
+
+
+def test_no_progress_bar_when_it_is_not_wanted(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert not bars_drawn(monkeypatch, 0.3, show=False)
+
+
+def test_store_gives_each_step_once() -> None:
+    field = double_gyre_field(True, shape=(11, 21))
+    store = SliceStore(field)
+    one = store.at(5)
+    assert store.at(5) is one
+    assert one.times.tolist() == [field.times[5]]
+    np.testing.assert_allclose(one.displacement, trace(field).at_step(5).displacement, atol=1e-6)

@@ -1,0 +1,660 @@
+"""The browser client: its hands, its numbers, what it leaves behind; matrix.py has the pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+from flows import gyre, swinging, torus
+from matrix import (
+    ASIDE,
+    IMAGE,
+    ROOT,
+    SIZE,
+    TILTED,
+    WHOLE,
+    difference,
+    straight,
+)
+from numpy.typing import NDArray
+from webgl_page import ClientPage, packed, state
+
+from flowtex import FlowField
+from flowtex.rendering.cpu import Camera, Picture, render
+from flowtex.rendering.cpu.lookup import Mips
+from flowtex.rendering.uniforms import ViewState, uniforms
+from flowtex.rendering.webgl import Colours, Scene
+from flowtex.settings import Settings
+from flowtex.textures import TextureSet, as_picture
+from flowtex.trace import SliceStore
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
+
+pytestmark = pytest.mark.browser
+
+Floats = NDArray[np.float64]
+Pixels = NDArray[np.uint8]
+
+#: The processor draws: few samples, and no more smoothing than the NumPy renderer has.
+QUICK: dict[str, Any] = {"samples": 11}
+PLAIN: dict[str, Any] = {"controls": False, "smooth": False}
+
+
+# --- scenes -----------------------------------------------------------------------------------
+
+
+@cache
+def coarse_gyre() -> FlowField:
+    """The same place, with fewer nodes."""
+    points = gyre().points[:, np.rint(np.linspace(0, 60, 41)).astype(int)]
+    a, b = np.pi * points[..., 0], np.pi * points[..., 1]
+    velocity = np.stack([-np.sin(a) * np.cos(b), np.cos(a) * np.sin(b)], axis=-1)
+    return FlowField.from_arrays(points[..., :2], velocity)
+
+
+@cache
+def store(field: Callable[[], FlowField]) -> SliceStore:
+    return SliceStore(field())
+
+
+def made(field: Callable[[], FlowField], settings: Settings) -> TextureSet:
+    image = as_picture(IMAGE) if settings.noise == "image" else None
+    return TextureSet.build(store(field), settings, image)
+
+
+def scene(
+    field: Callable[[], FlowField] = gyre,
+    camera: Camera | None = WHOLE,
+    *,
+    colours: Colours | None = None,
+    steps: tuple[int, ...] = (0,),
+    time: float | None = None,
+    clock: float = 0.0,
+    **options: Any,
+) -> Any:
+    """A scene as JSON."""
+    settings = Settings(**{**QUICK, **options})
+    plain = colours or Colours(plain=(0.6, 0.6, 0.6), background=(1.0, 0.0, 0.0))
+    whole = Scene(made(field, settings), plain)
+    look = {} if camera is None else state(camera)
+    header = whole.header(settings, camera=look, time=time, clock=clock)
+    return packed(whole, header | {"camera": look or None}, steps)
+
+
+def colours(picture: Picture) -> Pixels:
+    return picture.rgb((0.6, 0.6, 0.6), background=(1, 0, 0))
+
+
+# --- pictures ---------------------------------------------------------------------------------
+
+#: Name, field, camera and options, for what is computed apart from the pictures.
+VIEWS: dict[str, tuple[Callable[[], FlowField], Camera, dict[str, Any]]] = {
+    "whole": (gyre, WHOLE, {}),
+    "zoom 64": (gyre, straight(64), {}),
+    "zoom 1e5": (gyre, straight(1e5), {}),
+    "curved": (torus, ASIDE, {}),
+    "between two steps": (swinging, straight(1, (0, 0)), {"time": 0.55}),
+    "image": (gyre, WHOLE, {"noise": "image", "tiles": 3}),
+}
+
+
+def test_two_hundredths_more_would_be_noticed(client: ClientPage) -> None:
+    camera = straight(4)
+    theirs = client.picture(client.mount(scene(gyre, camera), SIZE, **PLAIN))
+    near, far = (
+        difference(theirs, colours(render(made(gyre, s), s, camera)))[0]
+        for s in (Settings(**QUICK), Settings(**QUICK, spacing=0.714))
+    )
+    assert near < ROOT < far
+
+
+def test_smooth_outlines_leave_the_inside_alone(client: ClientPage) -> None:
+    views = [scene(gyre, TILTED), scene(gyre, TILTED)]
+    rough, smooth = (
+        client.picture(client.mount(v, SIZE, **PLAIN | {"smooth": s}))
+        for v, s in zip(views, (False, True), strict=True)
+    )
+    off = np.abs(rough.astype(float) - smooth).max(axis=-1)
+    ground = (rough == [255, 0, 0]).all(axis=-1)
+    near = ground != np.roll(ground, 1, 0)
+    for shift, axis in ((-1, 0), (1, 1), (-1, 1)):
+        near |= ground != np.roll(ground, shift, axis)
+    assert (off[near] > 40).mean() > 0.1
+    assert off[~near & ground].max() == 0
+    assert (off[~near & ~ground] > 16).mean() < 0.01
+
+
+def table() -> Pixels:
+    ramp = np.arange(256, dtype=np.uint8)
+    return np.stack([ramp, ramp[::-1], np.full_like(ramp, 40), np.full_like(ramp, 255)], axis=-1)
+
+
+def test_scalars_are_interpolated_before_they_are_mapped(client: ClientPage) -> None:
+    x = gyre().points[..., 0].copy()
+    x[3, 40] = np.nan
+    painted = Colours("x", "m", x[None], 0.5, 1.5, table(), background=(1.0, 0.0, 0.0))
+    theirs = client.picture(client.mount(scene(colours=painted, strength=0.0), SIZE, **PLAIN))
+    settings = Settings(strength=0.0)
+    picture = render(made(gyre, settings), settings, WHOLE)
+    hole = np.abs(picture.position[..., :2] - gyre().points[3, 40, :2]).max(axis=-1) < 0.12
+    seen = picture.covered & ~hole
+    share = np.clip(picture.position[seen][:, 0] - 0.5, 0, 1)
+    expected = table()[np.minimum((share * 256).astype(int), 255), :3]
+    off = np.abs(theirs[seen].astype(int) - expected).max(axis=-1)
+    assert (off > 0).mean() < 0.01
+    assert off.max() <= 1 or (off > 1).sum() <= 3
+    assert (theirs[picture.covered & hole] == 169).all(axis=-1).any()
+
+
+def test_a_lit_surface_is_darker_aside(client: ClientPage) -> None:
+    painted = Colours(plain=(0.6, 0.6, 0.6), background=(1.0, 0.0, 0.0), lighting=True)
+    theirs = client.picture(
+        client.mount(scene(torus, ASIDE, colours=painted, strength=0.0), SIZE, **PLAIN)
+    )
+    settings = Settings(strength=0.0)
+    picture = render(made(torus, settings), settings, ASIDE)
+    seen = picture.covered & (theirs != [255, 0, 0]).any(axis=-1)
+    p = picture.position[seen]
+    flat = np.hypot(p[:, 0], p[:, 1])
+    normal = np.stack([*((1 - 1 / flat) * p[:, :2].T), p[:, 2]], axis=-1)
+    normal /= np.linalg.norm(normal, axis=-1, keepdims=True)
+    light = np.minimum(0.3 + 0.8 * np.abs(normal @ -ASIDE.axes[2]), 1.0)
+    off = theirs[seen][:, 0] - 0.6 * 255 * light
+    assert np.std(light) > 0.1
+    # The facets of the torus hold its normals only nearly.
+    assert np.abs(off).mean() < 2.5
+
+
+# --- numbers ----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["whole", "zoom 1e5", "curved", "between two steps", "image"])
+def test_uniforms_are_those_of_python(client: ClientPage, name: str) -> None:
+    field, camera, options = VIEWS[name]
+    left = {k: v for k, v in options.items() if k != "time"}
+    settings = Settings(**{**QUICK, **left})
+    textures = made(field, settings)
+    view = ViewState(
+        focus=np.asarray(camera.focal_point),
+        anchor=np.array([0.1, 0.2, 0.0]),
+        eye=camera.eye,
+        between=0.375,
+        time=0.55,
+        clock=7.3,
+    )
+    header = Scene(textures).header(settings)
+    paper = textures.paper
+    given = {
+        "focus": list(view.focus),
+        "anchor": list(view.anchor),
+        "eye": list(view.eye),
+        "between": 0.375,
+        "time": 0.55,
+        "clock": 7.3,
+    }
+    theirs = client.page.evaluate(
+        "([h, v, shape]) => client.uniforms(h, h.settings, v, shape && { data: [], shape })",
+        [header, given, None if paper is None else list(paper.noise.shape)],
+    )
+    ours = uniforms(textures, settings, view)
+    assert set(theirs) == set(ours)
+    for key, value in ours.items():
+        np.testing.assert_allclose(
+            np.asarray(theirs[key], dtype=float),
+            np.asarray(value, dtype=float),
+            rtol=1e-12,
+            atol=1e-15,
+            err_msg=key,
+        )
+
+
+def test_mip_levels_without_the_driver(client: ClientPage, rng: np.random.Generator) -> None:
+    texels = rng.normal(size=(1, 6, 11, 2)).astype(np.float32)
+    bits = texels.astype(np.float16).view(np.uint16)
+    found = client.page.evaluate(
+        "(bits) => [...client.halved(Uint16Array.from(bits), 11, 6, 2)[0]]", bits.ravel().tolist()
+    )
+    halved = np.array(found, np.uint16).view(np.float16).reshape(3, 5, 2).astype(float)
+    mips = Mips(texels, levels=1)
+    v, u = np.meshgrid((np.arange(3) + 0.5) / 3, (np.arange(5) + 0.5) / 5, indexing="ij")
+    expected = mips.at(np.stack([u.ravel(), v.ravel()], axis=-1), np.ones(15)).reshape(3, 5, 2)
+    np.testing.assert_allclose(halved, expected, atol=1e-3)
+
+
+def test_a_slow_machine_gets_fewer_and_larger_pixels(client: ClientPage) -> None:
+    ask = "([price, pixels]) => client.quality(price, 2, pixels, 49, 55)"
+    assert client.page.evaluate(ask, [1e-7, 2e6]) == {"scale": 1, "samples": 49}
+    slow = client.page.evaluate(ask, [3e-5, 1e6])
+    assert slow["samples"] == 9
+    assert 0.2 <= slow["scale"] < 0.5
+    assert 3e-5 * 1e6 * slow["scale"] ** 2 * (9 + 8) < 60
+
+
+# --- the hand ---------------------------------------------------------------------------------
+
+
+def box(client: ClientPage, viewer: int = 0) -> tuple[float, float]:
+    found = client.page.evaluate(
+        "(n) => { const b = viewers[n].canvas.getBoundingClientRect(); return [b.left, b.top]; }",
+        viewer,
+    )
+    return found[0], found[1]
+
+
+def number(client: ClientPage, expression: str) -> Any:
+    return client.page.evaluate(f"() => {expression}")
+
+
+def test_a_drag_carries_the_picture_along(client: ClientPage) -> None:
+    client.mount(scene(gyre, straight(8)), SIZE, hear=["onCamera"], **PLAIN)
+    before = client.picture().astype(float)
+    left, top = box(client)
+    mouse = client.page.mouse
+    mouse.move(left + 60, top + 60)
+    mouse.down()
+    mouse.move(left + 80, top + 70, steps=3)
+    mouse.move(left + 92, top + 47, steps=3)
+    mouse.up()
+    after = client.picture().astype(float)
+    off = after[:-13, 32:] - before[13:, :-32]
+    assert np.sqrt(np.mean(off**2)) < 2.5
+    assert np.std(before) > 20
+    assert number(client, "events.filter(([name]) => name === 'onCamera').length") >= 2
+
+
+def test_on_a_slow_machine_a_moved_picture_serves_until_the_next(client: ClientPage) -> None:
+    squares = scene(gyre, straight(3, (0.8, 0.5)), noise="checkerboard", resolution=256, tiles=4)
+    client.mount(squares, SIZE, **PLAIN)
+    before = client.picture()
+    slow = "viewers[0].graphics.programs.forEach((p) => { p.price = 1 })"
+    ahead = "viewers[0].navigator.pan(-60 / 180, 20 / 120); viewers[0].moved(); viewers[0].draw()"
+    number(client, f"{{ {slow}; {ahead}; }}")
+    moved = client.pixels()
+    assert not number(client, "viewers[0].sharp")
+    np.testing.assert_array_equal(moved[10:, 30:], before[:-10, :-30])
+    number(client, f"{{ {slow}; viewers[0].navigator.zoomBy(1.5, 0.2, 0.1); viewers[0].moved() }}")
+    number(client, "viewers[0].draw()")
+    near = client.pixels().astype(float)
+    number(client, "viewers[0].graphics.programs.forEach((p) => { p.price = 1e-5 })")
+    sharp = client.picture().astype(float)
+    inner = (slice(40, 100), slice(60, 160))
+    shown, expected = near[inner].ravel(), sharp[inner].ravel()
+    assert np.std(expected) > 20
+    assert np.corrcoef(shown, expected)[0, 1] > 0.95
+    beside = np.corrcoef(near[inner].ravel(), np.roll(sharp, 3, axis=1)[inner].ravel())[0, 1]
+    assert beside < 0.9
+
+
+def test_a_drag_turns_a_curved_surface_and_shift_pans_it(client: ClientPage) -> None:
+    client.mount(scene(torus, ASIDE), SIZE, **PLAIN)
+    client.sharp()
+    left, top = box(client)
+    mouse, keyboard = client.page.mouse, client.page.keyboard
+    found = []
+    for held in (False, True):
+        if held:
+            keyboard.down("Shift")
+        mouse.move(left + 90, top + 60)
+        mouse.down()
+        mouse.move(left + 120, top + 75, steps=2)
+        mouse.up()
+        found.append(number(client, "viewers[0].camera"))
+    keyboard.up("Shift")
+    turned, panned = found
+    np.testing.assert_allclose(turned["focal_point"], ASIDE.focal_point, atol=1e-12)
+    np.testing.assert_allclose(
+        np.linalg.norm(turned["position"]), np.linalg.norm(ASIDE.position), rtol=1e-9
+    )
+    assert np.linalg.norm(np.subtract(turned["position"], ASIDE.position)) > 0.3
+    moved = np.subtract(panned["position"], turned["position"])
+    np.testing.assert_allclose(moved, np.subtract(panned["focal_point"], turned["focal_point"]))
+    assert np.linalg.norm(moved) > 0.1
+
+
+@pytest.mark.parametrize("name", ["zoom 64", "curved"])
+def test_the_wheel_zooms_to_the_pointer(client: ClientPage, name: str) -> None:
+    field, camera, _ = VIEWS[name]
+    client.mount(scene(field, camera), SIZE, **PLAIN)
+    client.sharp()
+    left, top = box(client)
+    # Left of the middle, where the torus is too.
+    x, y = 40, 66
+    place = f"viewers[0].point({2 * x / SIZE[0] - 1}, {1 - 2 * y / SIZE[1]})"
+    client.page.wait_for_function("() => viewers[0].canPick")
+    before = number(client, place)
+    client.page.mouse.move(left + x, top + y)
+    client.page.mouse.wheel(0, -300)
+    client.page.wait_for_function("() => viewers[0].navigator.zoom > 1.9")
+    client.sharp()
+    if name != "curved":  # there the zoom is counted at the depth of what is pointed at
+        zoom = number(client, "viewers[0].navigator.zoom")
+        np.testing.assert_allclose(zoom, 1.25**3, rtol=1e-9)
+    height = 2 * number(client, "viewers[0].navigator.height")
+    after = number(client, place)
+    np.testing.assert_allclose(after["position"], before["position"], atol=1e-4 * height)
+
+
+def test_zoom_ends_where_single_precision_does(client: ClientPage) -> None:
+    client.mount(scene(), SIZE, **PLAIN)
+    client.sharp()
+    number(client, "viewers[0].navigator.zoomBy(1e9)")
+    np.testing.assert_allclose(number(client, "viewers[0].navigator.zoom"), 1e6)
+    number(client, "viewers[0].navigator.zoomBy(1e-9)")
+    np.testing.assert_allclose(number(client, "viewers[0].navigator.zoom"), 0.25)
+
+
+def test_keys(client: ClientPage) -> None:
+    client.mount(scene(), SIZE, hear=["onPlaying", "onControls"], smooth=False)
+    client.sharp()
+    start = number(client, "viewers[0].camera")
+    client.page.evaluate("() => viewers[0].root.focus()")
+    press = client.page.keyboard.press
+    press("ArrowRight")
+    assert number(client, "viewers[0].camera.focal_point[0]") > start["focal_point"][0]
+    press("ArrowUp")
+    assert number(client, "viewers[0].camera.focal_point[1]") > start["focal_point"][1]
+    press("+")
+    np.testing.assert_allclose(number(client, "viewers[0].navigator.zoom"), 1.25)
+    press("-")
+    press("0")
+    assert number(client, "viewers[0].camera") == start
+    press("h")
+    assert number(client, "viewers[0].root.shadowRoot.querySelector('.bar').hidden")
+    press(" ")
+    client.page.wait_for_function("() => viewers[0].clock > 0.05")
+    assert number(client, "viewers[0].settings.motion") == "speed"
+    press(" ")
+    assert not number(client, "viewers[0].playing")
+    assert number(client, "events") == [
+        ["onControls", False],
+        ["onPlaying", True],
+        ["onPlaying", False],
+    ]
+
+
+def test_a_click_tells_the_point(client: ClientPage) -> None:
+    values = gyre().points[..., 0] + 2 * gyre().points[..., 1]
+    painted = Colours("sum", "", values[None], 0.0, 4.0, table())
+    client.mount(scene(colours=painted), SIZE, hear=["onPoint"], **PLAIN)
+    client.sharp()
+    client.page.wait_for_function("() => viewers[0].canPick")
+    left, top = box(client)
+    client.page.mouse.click(left + 100, top + 50)
+    ((name, point),) = number(client, "events")
+    assert name == "onPoint"
+    x, y = 1.0 + 10 * 0.015, 0.5 + 10 * 0.015
+    np.testing.assert_allclose(point["position"], [x, y, 0], atol=1e-6)
+    np.testing.assert_allclose(point["values"]["sum"], x + 2 * y, atol=1e-5)
+    i, j = point["index"]
+    near = gyre().points[round(j), round(i)]
+    assert np.abs(near[:2] - [x, y]).max() < 0.04
+    client.page.mouse.click(left + 2, top + 2)  # beside the surface
+    assert len(number(client, "events")) == 1
+
+
+def test_the_bar_and_the_settings(client: ClientPage) -> None:
+    values = Colours("speed", "m/s", gyre().speed, 0.0, 1.0, table())
+    client.mount(scene(colours=values), (460, 300), hear=["onSetting"], smooth=False)
+    client.sharp()
+    page = client.page
+    page.locator("[data-name=settings]").click()
+    rows = page.locator("[data-setting]").evaluate_all("(all) => all.map((r) => r.dataset.setting)")
+    assert {"samples", "kernel", "contrast", "motion", "seed", "resolution"} <= set(rows)
+    # What would need the host, has no effect here, or lies in the bar.
+    assert not {"noise", "parameter", "tiles", "noise_correction", "lod"} & set(rows)
+    page.locator("[data-setting=contrast] input").fill("2")
+    page.locator("[data-setting=kernel] select").select_option("box")
+    page.locator("[data-setting=seed] input").fill("7")
+    page.locator("[data-setting=seed] input").press("Enter")
+    page.locator("[data-setting=two_sided] input").click()
+    page.locator("[data-name=levels]").click()
+    assert page.locator(".legend").is_hidden()  # the colours say something else now
+    page.locator("[data-name=lod]").click()
+    told = [value for name, value in number(client, "events") if name == "onSetting"]
+    assert told == ["contrast", "kernel", "seed", "two_sided", "show_level", "lod"]
+    chosen = number(client, "viewers[0].settings")
+    assert [chosen[name] for name in told] == [2, "box", 7, False, True, False]
+    page.locator("[data-name=levels]").click()
+    page.locator("[data-name=settings]").click()
+    client.sharp()
+    left, top = box(client)
+    page.mouse.move(left + 230, top + 150)
+    page.wait_for_function("() => viewers[0].root.shadowRoot.querySelector('.readout').textContent")
+    read = page.locator(".readout").inner_text()
+    assert read.startswith("(1, 0.5)")
+    assert "speed" in read
+    assert "m/s" in read
+    assert page.locator(".legend").inner_text().split() == ["speed", "(m/s)", "0", "1"]
+
+
+def test_a_host_that_builds_anew_shows_all_settings(client: ClientPage) -> None:
+    client.mount(scene(), (460, 300), rebuild=True, smooth=False)
+    client.page.locator("[data-name=settings]").click()
+    rows = client.page.locator("[data-setting]").evaluate_all(
+        "(a) => a.map((r) => r.dataset.setting)"
+    )
+    assert {"noise", "parameter"} <= set(rows)
+    client.sharp()
+
+
+def test_the_whole_surface_is_seen_in_any_shape(client: ClientPage) -> None:
+    for field in (gyre, torus):
+        given = scene(field, None)
+        settings = Settings(**QUICK)
+        given["header"]["camera"] = Scene(made(field, settings)).first_look((480, 300))
+        for camera in (given["header"]["camera"], None):
+            given["header"]["camera"] = camera
+            picture = client.picture(client.mount(given, (120, 180), **PLAIN))
+            drawn = (picture != [255, 0, 0]).any(axis=-1)
+            rim = [drawn[0], drawn[-1], drawn[:, 0], drawn[:, -1]]
+            assert not any(line.any() for line in rim)
+            assert drawn.any(axis=0).mean() > 0.6
+            client.clear()
+
+
+def test_finer_pixels_show_the_same_grains(webgl_browser: Browser, client: ClientPage) -> None:
+    client.mount(scene(gyre, straight(4)), SIZE, **PLAIN)
+    coarse = client.picture().astype(float)
+    context = webgl_browser.new_context(device_scale_factor=2)
+    other = ClientPage(context.new_page())
+    other.mount(scene(gyre, straight(4)), SIZE, **PLAIN)
+    fine = other.picture().astype(float)
+    context.close()
+    assert fine.shape == (2 * SIZE[1], 2 * SIZE[0], 3)
+    means = fine.reshape(SIZE[1], 2, SIZE[0], 2, 3).mean(axis=(1, 3))
+    assert np.corrcoef(means.ravel(), coarse.ravel())[0, 1] > 0.97
+
+
+# --- time -------------------------------------------------------------------------------------
+
+
+def test_playing_goes_through_the_times_and_asks_for_what_is_missing(client: ClientPage) -> None:
+    packed_scene = scene(swinging, straight(1, (0, 0)), steps=(0, 1, 2), time=0.0)
+    late = {k: packed_scene["parts"].pop(k) for k in list(packed_scene["parts"]) if k[-2:] == "/2"}
+    client.mount(packed_scene, SIZE, hear=["onNeed", "onTime"], smooth=False)
+    client.sharp()
+    assert number(client, "events") == []
+    number(client, "viewers[0].setTime(0.39)")
+    number(client, "viewers[0].play()")
+    client.page.wait_for_function("() => events.some(([name]) => name === 'onNeed')")
+    client.page.wait_for_timeout(300)
+    needed = {tuple(e) for e in number(client, "events.filter(([name]) => name === 'onNeed')")}
+    assert needed == {("onNeed", 2)}
+    assert number(client, "viewers[0].time") < 0.4 + 1e-9
+    client.page.evaluate(
+        "(parts) => { for (const [name, p] of Object.entries(unpack({ parts })))"
+        " viewers[0].setPart(name, client.decoded(p.dtype, p.data), p.shape); }",
+        late,
+    )
+    client.page.wait_for_function("() => viewers[0].time > 0.42")
+    number(client, "viewers[0].setTime(0.79)")
+    client.page.wait_for_function("() => viewers[0].time < 0.2")  # it begins again
+    number(client, "viewers[0].pause()")
+    client.sharp()
+
+
+# --- what goes wrong, and what is left -----------------------------------------------------------
+
+
+def test_a_lost_context_comes_back_with_the_same_picture(client: ClientPage) -> None:
+    client.mount(scene(), SIZE, **PLAIN)
+    before = client.picture()
+    number(client, "window.ext = viewers[0].graphics.gl.getExtension('WEBGL_lose_context')")
+    number(client, "ext.loseContext()")
+    client.page.wait_for_function("() => viewers[0].graphics.isLost && !viewers[0].sharp")
+    number(client, "ext.restoreContext()")
+    client.page.wait_for_function("() => !viewers[0].graphics.isLost")
+    np.testing.assert_array_equal(client.picture(), before)
+
+
+def test_thirty_viewers_draw_and_leave_nothing(client: ClientPage) -> None:
+    given = scene(samples=5)
+    before = number(client, "document.querySelectorAll('*').length")
+    for _ in range(30):
+        client.mount(given, (90, 60), smooth=False)
+    client.page.wait_for_function("() => viewers.every((v) => v.sharp)", timeout=30_000)
+    assert number(client, "new Set(viewers.map((v) => v.graphics.gl)).size") == 1
+    pictures = number(client, "new Set(viewers.map((v) => v.canvas.toDataURL())).size")
+    assert pictures == 1
+    first = client.picture()
+    assert np.std(first[20:40, 20:70].astype(float)) > 15
+    number(client, "viewers.forEach((v) => v.dispose())")
+    left = number(client, "viewers[7].stats()")
+    assert {k: left[k] for k in ("objects", "users", "listeners", "observers", "timers")} == {
+        "objects": 0,
+        "users": 0,
+        "listeners": 0,
+        "observers": 0,
+        "timers": 0,
+    }
+    assert number(client, "document.querySelectorAll('*').length") == before + 30
+    assert number(client, "viewers.every((v) => !v.parts.size && !v.root.isConnected)")
+
+
+def test_nothing_is_drawn_out_of_sight_or_at_rest(client: ClientPage) -> None:
+    client.mount(scene(), SIZE, **PLAIN)
+    client.sharp()
+    assert number(client, "viewers[0].graphics.waiting.size") == 0
+    frames = number(client, "viewers[0].stats().frames")
+    client.page.evaluate("() => { document.querySelector('.view').style.marginTop = '5000px' }")
+    client.page.wait_for_function("() => !viewers[0]._visible")
+    number(client, "viewers[0].setSettings({ grain: 3 })")
+    client.page.wait_for_timeout(200)
+    assert number(client, "viewers[0].stats().frames") == frames
+    client.page.evaluate("() => { document.querySelector('.view').style.marginTop = '0' }")
+    client.sharp()
+    assert number(client, "viewers[0].stats().frames") == frames + 1
+
+
+def test_a_shader_that_does_not_compile_says_where(client: ClientPage) -> None:
+    broken = scene()
+    broken["header"]["shaders"]["fragment"] += "\nnonsense"
+    client.mount(broken, SIZE, **PLAIN)
+    client.page.wait_for_function("() => viewers[0].root.dataset.failed")
+    said = number(client, "viewers[0].root.shadowRoot.querySelector('.note').textContent")
+    assert "does not compile" in said
+    assert "nonsense" in said
+
+
+def test_another_format_is_refused(client: ClientPage) -> None:
+    other = scene()
+    other["header"]["format"] = 99
+    client.mount(other, SIZE, **PLAIN)
+    said = number(client, "viewers[0].root.shadowRoot.querySelector('.note').textContent")
+    assert "format 99" in said
+
+
+def test_nothing_is_asked_for_from_outside(client: ClientPage) -> None:
+    client.mount(scene(), SIZE)
+    client.sharp()
+    assert [url for url in client.asked if not url.startswith("blob:")] == []
+
+
+def test_a_whole_scene_takes_the_place_of_a_coarse_one(client: ClientPage) -> None:
+    first = scene(gyre, straight(8))
+    client.mount(first, SIZE, **PLAIN)
+    client.sharp()
+    number(client, "viewers[0].navigator.zoomBy(2, 0.5, 0.5)")
+    number(client, "viewers[0].moved()")
+    client.sharp()
+    before = number(client, "viewers[0].camera")
+    other = scene(coarse_gyre, straight(1))
+    other["header"]["generation"] = 1
+    take = """(given) => { viewers[0].setHeader(given.header);
+      for (const [name, p] of Object.entries(unpack(given)))
+        viewers[0].setPart(name, client.decoded(p.dtype, p.data), p.shape); }"""
+    client.page.evaluate(take, other)
+    client.sharp()
+    assert number(client, "viewers[0].camera") == before
+    assert number(client, "viewers[0].parts.get('position').shape") == [31, 41, 3]
+
+
+# --- in a notebook ------------------------------------------------------------------------------
+
+MODEL = """([scene, size]) => {
+  const { settings, camera, time, clock, ...header } = scene.header;
+  const values = { _header: header, ...settings, camera, time, clock, playing: false,
+    point: null, size, bar: true };
+  const handlers = new Map();
+  const log = (window.log = []);
+  const fire = (name, ...given) => (handlers.get(name) ?? []).slice().forEach((f) => f(...given));
+  window.model = {
+    handlers, fire,
+    get: (name) => values[name],
+    set: (name, value) => { values[name] = value; log.push(["set", name, value, performance.now()]);
+      fire(`change:${name}`); },
+    save_changes: () => log.push(["save"]),
+    on: (name, f) => handlers.set(name, [...(handlers.get(name) ?? []), f]),
+    off: (name, f) => handlers.set(name, handlers.get(name).filter((g) => g !== f)),
+    send: (content, callbacks, buffers) => log.push(["send", content, buffers?.length ?? 0]),
+  };
+  const el = document.createElement("div");
+  document.body.append(el);
+  window.left = client.default.render({ model, el });
+  window.host = el.firstElementChild;
+  const parts = unpack(scene), names = Object.keys(parts);
+  // In a message the bytes of several parts may begin anywhere.
+  const views = names.map((name) => {
+    const bytes = new Uint8Array(parts[name].data.byteLength + 3);
+    bytes.set(new Uint8Array(parts[name].data), 3);
+    return new DataView(bytes.buffer, 3);
+  });
+  fire("msg:custom", { kind: "parts", names, dtypes: names.map((n) => parts[n].dtype),
+    shapes: names.map((n) => parts[n].shape) }, views);
+}"""
+
+
+def test_a_widget_shows_its_model_and_tells_it_what_a_person_does(client: ClientPage) -> None:
+    page = client.page
+    page.evaluate(MODEL, [scene(gyre, straight(2)), [200, 140]])
+    page.wait_for_function("() => host.dataset.sharp === 'true'", timeout=20_000)
+    assert number(client, "[host.clientWidth, host.clientHeight]") == [200, 140]
+    assert number(client, "log[0]") == ["send", {"kind": "ready"}, 0]
+    page.wait_for_function("() => log.some((m) => m[0] === 'send' && m[1].kind === 'frame')")
+    assert number(client, "log.filter((m) => m[0] === 'set').length") == 0
+    # From the kernel to the picture.
+    assert number(client, "(model.set('contrast', 2.5), host.dataset.sharp)") == "false"
+    page.wait_for_function("() => host.dataset.sharp === 'true'")
+    # From the hand to the kernel.
+    number(client, "log.length = 0")
+    page.locator("[data-name=lod]").click()
+    assert number(client, "log[0].slice(0, 3)") == ["set", "lod", False]
+    box_ = page.locator(".flowtex .picture").bounding_box()
+    assert box_ is not None
+    page.mouse.move(box_["x"] + 60, box_["y"] + 40)
+    page.mouse.down()
+    page.mouse.move(box_["x"] + 80, box_["y"] + 50, steps=12)
+    page.mouse.up()
+    page.wait_for_timeout(250)
+    told = number(client, "log.filter((m) => m[1] === 'camera')")
+    assert (np.diff([at for *_, at in told]) > 95).all()  # milliseconds: not for each move
+    assert told[-1][2] == number(client, "model.get('camera')")
+    assert told[-1][2]["focal_point"][0] < 0.63
+    # And nothing stays behind.
+    number(client, "left()")
+    assert number(client, "[...model.handlers.values()].flat().length") == 0
+    assert not number(client, "host.isConnected")

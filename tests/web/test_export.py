@@ -1,0 +1,285 @@
+"""Pages that need no server: what is in them, and what a browser makes of them."""
+
+from __future__ import annotations
+
+import base64
+import gzip
+import html.parser
+import io
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from PIL import Image
+
+import flowtex
+from flowtex import examples
+from flowtex.examples._double_gyre import nodes as nodes_of
+from flowtex.staging import Stage
+from flowtex.web.export import export
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page
+
+WICKED = "</script ><!--<script \"'&<b>"
+
+
+def gyre(times: int = 1, nodes: int = 24) -> flowtex.FlowField:
+    at = nodes_of((nodes, nodes))
+    series = np.stack([examples.double_gyre_velocity(at, float(t)) for t in range(times)])
+    heights = np.stack([at[..., 1] * t for t in range(times)])
+    return flowtex.FlowField.from_arrays(at, series, name=WICKED, scalars={WICKED: heights})
+
+
+class Reader(html.parser.HTMLParser):
+    """Reads a page as a browser does: elements, and the text of each script."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.tags: list[str] = []
+        self.addresses: list[str] = []
+        self.policy = self.title = ""
+        self.scripts: list[tuple[dict[str, str | None], str]] = []
+        self._in = ""
+        self.feed(text)
+        self.close()
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        given = dict(attrs)
+        self.tags.append(tag)
+        self._in = tag
+        self.addresses += [v or "" for k, v in attrs if k in ("src", "href")]
+        if given.get("http-equiv") == "Content-Security-Policy":
+            self.policy = given["content"] or ""
+        if tag == "script":
+            self.scripts.append((given, ""))
+
+    def handle_endtag(self, tag: str) -> None:
+        self._in = ""
+
+    def handle_data(self, data: str) -> None:
+        if self._in == "title":
+            self.title += data
+        if self._in == "script":
+            attributes, text = self.scripts[-1]
+            self.scripts[-1] = (attributes, text + data)
+
+    def header(self) -> dict[str, Any]:
+        (text,) = [text for given, text in self.scripts if given.get("id") == "header"]
+        return dict(json.loads(text))
+
+    def parts(self) -> dict[str, NDArray[Any]]:
+        found: dict[str, NDArray[Any]] = {}
+        for given, text in self.scripts:
+            if given.get("data-same"):
+                found[str(given["data-part"])] = found[str(given["data-same"])]
+            elif given.get("data-part"):
+                kind = np.dtype(given["data-dtype"])
+                planes = np.frombuffer(gzip.decompress(base64.b64decode(text)), np.uint8)
+                data = np.ascontiguousarray(planes.reshape(kind.itemsize, -1).T).view(kind)
+                shape = tuple(map(int, (given["data-shape"] or "").split()))
+                found[str(given["data-part"])] = data.reshape(shape)
+        return found
+
+
+def test_a_page_holds_the_scene_and_nothing_from_outside(tmp_path: Path) -> None:
+    told: list[tuple[int, int]] = []
+    made = export(
+        gyre(4), tmp_path / "page.html", scalars=WICKED, announce=lambda *n: told.append(n)
+    )
+    read = Reader(made.path.read_text(encoding="utf-8"))
+    assert read.title == WICKED
+    assert read.tags.count("script") == 2 + len(read.parts())  # nothing has ended one early
+    assert [a for a in read.addresses if not a.startswith("data:")] == []
+    assert read.policy.startswith("default-src 'none'; script-src 'sha256-")
+    assert "http" not in read.policy
+    assert read.tags.count("noscript") == 1
+    stage = Stage(gyre(4), scalars=WICKED)
+    scene = stage.scene()
+    header = read.header()
+    header["camera"], expected = None, {**scene.header(stage.view.settings), "camera": None}
+    assert header == json.loads(json.dumps(expected))
+    parts = read.parts()
+    wanted = {**scene.surface(), **{k: v for s in range(4) for k, v in scene.step(s).items()}}
+    assert set(parts) == set(wanted)
+    for name, array in wanted.items():
+        assert parts[name].dtype == array.dtype
+        np.testing.assert_array_equal(parts[name], array)
+    # The size was told beforehand, within a third.
+    assert told == [(made.estimated, 4)]
+    assert made.nbytes == made.path.stat().st_size
+    assert made.estimated == pytest.approx(made.nbytes, rel=0.35)
+
+
+def test_a_page_of_the_post_is_small(data_dir: Path, tmp_path: Path) -> None:
+    field = flowtex.FlowField.from_file(data_dir / "postxyz.bin", plane="k=20")
+    assert export(field, tmp_path / "post.html").nbytes < 1_000_000
+
+
+def test_fewer_steps_make_a_smaller_page(tmp_path: Path) -> None:
+    whole = export(gyre(5), tmp_path / "whole.html")
+    some = export(gyre(5), tmp_path / "some.html", steps=2)
+    assert (whole.steps, some.steps) == (5, 2)
+    assert some.nbytes < whole.nbytes
+    assert Reader(some.path.read_text()).header()["slices"]["times"] == [0.0, 4.0]
+    with pytest.raises(ValueError, match=r"^steps is 0; expected 1 to 5"):
+        export(gyre(5), tmp_path / "none.html", steps=0)
+
+
+def test_a_file_is_there_whole_or_as_it_was(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "page.html"
+    path.write_text("before")
+
+    def fail(self: Any, step: int) -> Any:
+        msg = "disk full"
+        raise OSError(msg)
+
+    with monkeypatch.context() as patch:
+        patch.setattr("flowtex.rendering.webgl.Scene.step", fail)
+        patch.setattr("flowtex.web.preview.preview_png", lambda *a, **k: b"")
+        with pytest.raises(OSError, match="disk full"):
+            export(gyre(), path)
+    assert path.read_text() == "before"
+    assert [p.name for p in tmp_path.iterdir()] == ["page.html"]
+    export(gyre(), path)
+    assert path.stat().st_size > 100_000
+    assert path.stat().st_mode & 0o777 == (tmp_path / "page.html").stat().st_mode & 0o777
+    plain = tmp_path / "plain"
+    plain.touch()
+    assert path.stat().st_mode == plain.stat().st_mode
+
+
+@pytest.fixture
+def offline(browser: Browser) -> Iterator[tuple[Page, list[str], list[str]]]:
+    """Yield a page without a network, the addresses that it asks for, and what it complains of."""
+    context = browser.new_context(viewport={"width": 300, "height": 200}, offline=True)
+    page = context.new_page()
+    asked: list[str] = []
+    said: list[str] = []
+    page.on("request", lambda request: asked.append(request.url))
+    page.on("pageerror", lambda error: said.append(str(error)))
+    page.on("console", lambda line: said.append(line.text) if line.type == "error" else None)
+    yield page, asked, said
+    context.close()
+
+
+def pixels(page: Page) -> NDArray[Any]:
+    with Image.open(io.BytesIO(page.locator("canvas").first.screenshot())) as picture:
+        return np.asarray(picture.convert("RGB"), dtype=float)
+
+
+@pytest.mark.browser
+@pytest.mark.parametrize("times", [1, 3])
+def test_a_page_draws_from_a_file_without_a_network(
+    times: int, offline: tuple[Page, list[str], list[str]], tmp_path: Path
+) -> None:
+    page, asked, said = offline
+    field = gyre(times)
+    export(field, tmp_path / "page.html", samples=9, title=WICKED)
+    address = (tmp_path / "page.html").as_uri()
+    page.goto(address)
+    page.locator('[data-sharp="true"]').wait_for()
+    page.wait_for_function("() => !document.getElementById('preview')")
+    assert page.title() == WICKED
+    assert said == []
+    assert [a for a in asked if a != address and not a.startswith(("data:", "blob:"))] == []
+    drawn = pixels(page)
+    assert np.abs(np.diff(drawn.mean(axis=-1), axis=0))[60:120, 60:240].mean() > 3
+
+
+PLAY = ".flowtex [data-name=play]"
+
+
+@pytest.mark.browser
+@pytest.mark.parametrize("times", [1, 3])
+def test_a_page_is_played_from_a_file_without_a_network(
+    times: int, offline: tuple[Page, list[str], list[str]], tmp_path: Path
+) -> None:
+    page, _, said = offline
+    export(gyre(times), tmp_path / "page.html", samples=5)
+    page.goto((tmp_path / "page.html").as_uri())
+    page.locator('[data-sharp="true"]').wait_for()
+    page.wait_for_function("() => !document.getElementById('preview')")
+    start = pixels(page)
+    page.locator(PLAY).click()
+    readout = page.locator(".flowtex .time")
+    readout.wait_for()
+    shown = readout.inner_text()
+    ask = "(was) => document.querySelector('.flowtex').shadowRoot.querySelector('.time')"
+    page.wait_for_function(f"{ask}.textContent !== was", arg=shown)
+    now = readout.inner_text()
+    page.wait_for_function(f"{ask}.textContent !== was", arg=now)
+    page.locator(PLAY).click()
+    page.locator('[data-sharp="true"]').wait_for()
+    inside = np.abs(pixels(page) - start)[60:120, 60:240]
+    assert inside.mean() > 3
+    assert said == []
+
+
+@pytest.mark.browser
+def test_two_views_on_a_page_move_together(
+    offline: tuple[Page, list[str], list[str]], tmp_path: Path
+) -> None:
+    page, _, said = offline
+    one = export(gyre(), tmp_path / "one.html", samples=5)
+    two = export(gyre(), tmp_path / "two.html", samples=5, beside={"lod": False})
+    assert two.nbytes < one.nbytes + 40_000  # the arrays lie in it once
+    page.goto(two.path.as_uri())
+    page.wait_for_function("() => !document.getElementById('preview')")
+    views = page.locator(".flowtex .picture")
+    assert views.count() == 2
+    before = [views.nth(n).screenshot() for n in range(2)]
+    box = views.nth(0).bounding_box()
+    assert box is not None
+    page.mouse.move(box["x"] + 70, box["y"] + 100)
+    page.mouse.wheel(0, -200)
+    for _ in range(100):  # a quick machine is done before anybody could see that it began
+        after = [views.nth(n).screenshot() for n in range(2)]
+        if all(was != now for was, now in zip(before, after, strict=True)):
+            break
+        page.wait_for_timeout(50)
+    else:
+        pytest.fail("one of the views stands still")
+    assert said == []
+
+
+@pytest.mark.browser
+def test_a_page_cannot_fetch_or_run_anything_else(
+    offline: tuple[Page, list[str], list[str]], tmp_path: Path
+) -> None:
+    page, _, said = offline
+    export(gyre(), tmp_path / "page.html", samples=9)
+    page.goto((tmp_path / "page.html").as_uri())
+    page.locator('[data-sharp="true"]').wait_for()
+    page.evaluate("""() => {
+      const script = document.createElement("script");
+      script.textContent = "window.ran = true";
+      document.body.append(script);
+      fetch("https://example.org/").catch(() => { window.refused = true; });
+    }""")
+    page.wait_for_function("() => window.refused")
+    assert page.evaluate("() => window.ran") is None
+    assert sum("Content Security Policy" in line for line in said) >= 2
+
+
+@pytest.mark.browser
+def test_a_page_without_webgl_says_so_and_keeps_its_picture(
+    offline: tuple[Page, list[str], list[str]], tmp_path: Path
+) -> None:
+    page, _, _ = offline
+    export(gyre(), tmp_path / "page.html", samples=9)
+    page.add_init_script(
+        "HTMLCanvasElement.prototype.getContext = new Proxy("
+        "HTMLCanvasElement.prototype.getContext, { apply: (get, canvas, given) =>"
+        " String(given[0]).startsWith('webgl') ? null : Reflect.apply(get, canvas, given) });"
+        "delete window.OffscreenCanvas;"
+    )
+    page.goto((tmp_path / "page.html").as_uri())
+    page.get_by_text("for want of WebGL2").wait_for()
+    assert page.locator("#preview").count() == 1
