@@ -26,19 +26,22 @@ export interface CameraState {
   view_angle: number;
 }
 
-/** How far a camera may go. */
+/** How far a camera may go: CameraLimits of flowtex/camera.py. */
 export interface CameraLimits {
   /** Deepest and farthest zoom, relative to the whole surface. */
-  deepest: number;
-  farthest: number;
+  deepest_zoom: number;
+  farthest_zoom: number;
   /** How many times closer the camera comes. */
   closest: number;
-  /** Zoom by one notch of the wheel. */
-  notch: number;
   /** View angle in perspective, in degrees. */
-  angle: number;
-  /** Share of the view that is left empty around a flat surface. */
+  view_angle: number;
+  /** Share of the view that is left empty around a surface. */
   margin: number;
+  /** Zoom by one notch of the wheel. */
+  wheel_zoom: number;
+  /** Degrees that a drag over half the height of the view turns, and the aspect up to which it does. */
+  turn: number;
+  widest_turn: number;
   /** Width over height of the view that a camera in perspective is usually made for. */
   aspect: number;
 }
@@ -108,14 +111,14 @@ export class Camera {
     this.shift(add(scale(right, dx * this.aspect * height), up, dy * height));
   }
 
-  /** Go around the focal point, by half a turn for the whole view. */
+  /** Go around the focal point, as a drag by (dx, dy) asks. */
   rotate(dx: number, dy: number): void {
-    const { state } = this;
+    const { state, limits } = this;
     const up = unit(state.up);
     let back = subtract(state.position, state.focal_point);
-    back = rotated(back, up, -90 * dx * Math.min(this.aspect, 2));
+    back = rotated(back, up, -limits.turn * dx * Math.min(this.aspect, limits.widest_turn));
     const right = unit(cross(up, back));
-    back = rotated(back, right, 90 * dy);
+    back = rotated(back, right, limits.turn * dy);
     state.position = add(state.focal_point, back);
     state.up = unit(cross(back, right));
   }
@@ -124,7 +127,7 @@ export class Camera {
   zoomBy(factor: number, x = 0, y = 0): void {
     if (!Number.isFinite(factor) || factor <= 0) return;
     if (!this.flat) this.focusAt(x, y);
-    const { farthest, deepest } = this.limits;
+    const { farthest_zoom: farthest, deepest_zoom: deepest } = this.limits;
     const by = clamp(factor, farthest / this.zoom, deepest / this.zoom);
     const [right, up, ahead] = this.axes;
     const height = this.height * (1 - 1 / by);
@@ -144,7 +147,7 @@ export class Camera {
 
   /** Come closer, and from near look more narrowly. */
   private approach(height: number, ahead: Vector): void {
-    const distance = Math.max(height / tangent(this.limits.angle), this.nearest);
+    const distance = Math.max(height / tangent(this.limits.view_angle), this.nearest);
     this.state.position = add(this.state.focal_point, ahead, -distance);
     this.state.view_angle = (Math.atan(height / distance) * 360) / Math.PI;
   }
@@ -177,7 +180,7 @@ export function fitted(
   aspect: number,
 ): CameraState {
   const { center, extent, planar, frame } = geometry;
-  const half = tangent(limits.angle);
+  const half = tangent(limits.view_angle);
   const back = planar ? fromFrame(frame, [0, 0, 1]) : unit([1, 1, 1]);
   const up: Vector = planar ? fromFrame(frame, [0, 1, 0]) : [0, 0, 1];
   const right = unit(cross(up, back));
@@ -203,7 +206,7 @@ export function fitted(
     up,
     parallel: planar,
     parallel_scale: (0.5 * tall) / (1 - 2 * limits.margin),
-    view_angle: limits.angle,
+    view_angle: limits.view_angle,
   };
 }
 
@@ -228,7 +231,7 @@ export function widened(
     if (state.parallel_scale > 0.98 * high) {
       camera.parallel_scale = Math.max(state.parallel_scale, all);
     }
-  } else if (!state.parallel && state.view_angle > 0.9 * limits.angle) {
+  } else if (!state.parallel && state.view_angle > 0.9 * limits.view_angle) {
     const back = subtract(state.position, state.focal_point);
     camera.position = add(state.focal_point, back, Math.max(1, limits.aspect / aspect));
   }

@@ -168,7 +168,7 @@ export class Pointers {
     const isPinch = event.ctrlKey && event.deltaMode === 0;
     const size = isPinch ? PINCH_PX : NOTCH_SIZES[event.deltaMode];
     const notches = clamp(-event.deltaY / size, -MOST_NOTCHES, MOST_NOTCHES);
-    this.zoom((this.viewer.camera?.limits.notch ?? 1) ** notches, event);
+    this.zoom((this.viewer.camera?.limits.wheel_zoom ?? 1) ** notches, event);
   }
 
   private zoom(factor: number, event: MouseEvent): void {
@@ -214,7 +214,7 @@ export class Pointers {
       else camera.pan(x, y);
       viewer.moved();
     } else if (command === "closer" || command === "farther") {
-      const { notch } = camera.limits;
+      const { wheel_zoom: notch } = camera.limits;
       camera.zoomBy(command === "closer" ? notch : 1 / notch);
       viewer.moved();
     } else if (command === "whole") viewer.reset();

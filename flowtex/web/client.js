@@ -142,43 +142,43 @@ position))}get zoom(){return this.homeHeight/this.height}get axes(){let ahead=un
 state.position)),right=unit(cross2(ahead,this.state.up));return[right,cross2(right,ahead),ahead]}get toEye(){return unit(
 subtract2(this.state.position,this.state.focal_point))}get eye(){return this.state.parallel?[...scale2(this.axes[2],-1),
 0]:[...this.state.position,1]}pan(dx,dy){let[right,up]=this.axes,{height}=this;this.shift(add(scale2(right,dx*this.aspect*
-height),up,dy*height))}rotate(dx,dy){let{state}=this,up=unit(state.up),back=subtract2(state.position,state.focal_point);
-back=rotated(back,up,-90*dx*Math.min(this.aspect,2));let right=unit(cross2(up,back));back=rotated(back,right,90*dy),state.
-position=add(state.focal_point,back),state.up=unit(cross2(back,right))}zoomBy(factor,x=0,y=0){if(!Number.isFinite(factor)||
-factor<=0)return;this.flat||this.focusAt(x,y);let{farthest,deepest}=this.limits,by=clamp(factor,farthest/this.zoom,deepest/
-this.zoom),[right,up,ahead]=this.axes,height=this.height*(1-1/by);this.shift(add(scale2(right,x*this.aspect*height),up,y*
-height)),this.state.parallel?this.state.parallel_scale/=by:this.approach(this.height/by,ahead)}ray(x,y){let[right,up,ahead]=this.
-axes,{height,state}=this,there=add(add(state.focal_point,right,x*this.aspect*height),up,y*height);return state.parallel?
-[add(there,ahead,-this.distance),ahead]:[add(state.position,[0,0,0]),unit(subtract2(there,state.position))]}approach(height,ahead){
-let distance=Math.max(height/tangent(this.limits.angle),this.nearest);this.state.position=add(this.state.focal_point,ahead,
--distance),this.state.view_angle=Math.atan(height/distance)*360/Math.PI}focusAt(x,y){let point=this.pick?.(x,y);if(!point)
-return;let ahead=this.axes[2],depth=dot2(subtract2(point,this.state.position),ahead);depth>0&&(this.state.focal_point=add(
-this.state.position,ahead,depth))}shift(by){this.state.focal_point=add(this.state.focal_point,by),this.state.position=add(
-this.state.position,by)}};function copyOf(state){let{position,focal_point:focus,up}=state;return{...state,position:[...position],
-focal_point:[...focus],up:[...up]}}function fitted(geometry,limits,positions2,aspect){let{center,extent,planar,frame}=geometry,
-half=tangent(limits.angle),back=planar?fromFrame(frame,[0,0,1]):unit([1,1,1]),up=planar?fromFrame(frame,[0,1,0]):[0,0,1],
-right=unit(cross2(up,back)),rows=[right,cross2(back,right),back].map(row=>toFrame(frame,row)),low=[1/0,1/0],high=[-1/0,-1/0],
-distance=0;for(let n=0;n<positions2.length;n+=3){let node=[positions2[n],positions2[n+1],positions2[n+2]];if(!Number.isFinite(
-node[0]))continue;let[x,y,z]=rows.map(row=>dot2(row,node));[x,y].forEach((value,k)=>{low[k]=Math.min(low[k],value),high[k]=
-Math.max(high[k],value)});let wide=Math.max(Math.abs(x)/aspect,Math.abs(y));distance=Math.max(distance,z+wide/half/(1-2*
-limits.margin))}let tall=Math.max(high[1]-low[1],(high[0]-low[0])/aspect,1e-12*extent);return{position:add(center,back,planar?
-extent:distance),focal_point:[...center],up,parallel:planar,parallel_scale:.5*tall/(1-2*limits.margin),view_angle:limits.
-angle}}function widened(geometry,limits,state,positions2,aspect){let{center,extent,planar}=geometry,camera=copyOf(state);
-if(length2(subtract2(state.focal_point,center))>.001*extent)return camera;if(planar&&state.parallel){let[high,all]=[1e9,
-aspect].map(shape=>fitted(geometry,limits,positions2,shape).parallel_scale);state.parallel_scale>.98*high&&(camera.parallel_scale=
-Math.max(state.parallel_scale,all))}else if(!state.parallel&&state.view_angle>.9*limits.angle){let back=subtract2(state.
-position,state.focal_point);camera.position=add(state.focal_point,back,Math.max(1,limits.aspect/aspect))}return camera}function isSamePlace(a,b){
-let near=length2(subtract2(a.center,b.center))<.1*a.extent,ratio=a.extent/b.extent;return a.planar===b.planar&&near&&ratio>
-.8&&ratio<1.25}function projection(geometry,camera,anchor){let{state,aspect}=camera,{center,extent,frame}=geometry,[right,
-up,ahead]=camera.axes.map(axis=>toFrame(frame,axis)),local=point=>subtract2(toFrame(frame,subtract2(point,center)),anchor),
-focus=local(state.focal_point),middle=scale2(anchor,-1),radius=.51*extent,m=new Array(16).fill(0),half=state.parallel?state.
-parallel_scale:tangent(state.view_angle);if([right.map(c=>c/half/aspect),up.map(c=>c/half)].forEach((row,k)=>{for(let n=0;n<
-3;n+=1)m[4*n+k]=row[n];m[12+k]=-dot2(row,focus)}),state.parallel){for(let n=0;n<3;n+=1)m[4*n+2]=ahead[n]/radius;return m[14]=
--dot2(ahead,middle)/radius,m[15]=1,m}let eye=local(state.position),depth=dot2(subtract2(middle,eye),ahead),far=Math.max(
-depth+radius,.001*radius),near=Math.max(depth-radius,.001*far),a=(far+near)/(far-near),b=-2*far*near/(far-near);for(let n=0;n<
-3;n+=1)m[4*n+2]=ahead[n]*a,m[4*n+3]=ahead[n];return m[15]=-dot2(ahead,eye),m[14]=m[15]*a+b,m}function atPixel(matrix,[x,
-y],[width,height]){let m=[...matrix];for(let n=0;n<4;n+=1)m[4*n]=(m[4*n]-x*m[4*n+3])*width,m[4*n+1]=(m[4*n+1]-y*m[4*n+3])*
-height;return m}var MOST_STOPS=1e5,MOST_WHOLE_STOPS=2e4,LOGARITHMIC_RATIO=60,SLIDER_STOPS=400,IN_BAR=["lod","show_level"];function hasStreaming(header){
+height),up,dy*height))}rotate(dx,dy){let{state,limits}=this,up=unit(state.up),back=subtract2(state.position,state.focal_point);
+back=rotated(back,up,-limits.turn*dx*Math.min(this.aspect,limits.widest_turn));let right=unit(cross2(up,back));back=rotated(
+back,right,limits.turn*dy),state.position=add(state.focal_point,back),state.up=unit(cross2(back,right))}zoomBy(factor,x=0,y=0){
+if(!Number.isFinite(factor)||factor<=0)return;this.flat||this.focusAt(x,y);let{farthest_zoom:farthest,deepest_zoom:deepest}=this.
+limits,by=clamp(factor,farthest/this.zoom,deepest/this.zoom),[right,up,ahead]=this.axes,height=this.height*(1-1/by);this.
+shift(add(scale2(right,x*this.aspect*height),up,y*height)),this.state.parallel?this.state.parallel_scale/=by:this.approach(
+this.height/by,ahead)}ray(x,y){let[right,up,ahead]=this.axes,{height,state}=this,there=add(add(state.focal_point,right,x*
+this.aspect*height),up,y*height);return state.parallel?[add(there,ahead,-this.distance),ahead]:[add(state.position,[0,0,
+0]),unit(subtract2(there,state.position))]}approach(height,ahead){let distance=Math.max(height/tangent(this.limits.view_angle),
+this.nearest);this.state.position=add(this.state.focal_point,ahead,-distance),this.state.view_angle=Math.atan(height/distance)*
+360/Math.PI}focusAt(x,y){let point=this.pick?.(x,y);if(!point)return;let ahead=this.axes[2],depth=dot2(subtract2(point,this.
+state.position),ahead);depth>0&&(this.state.focal_point=add(this.state.position,ahead,depth))}shift(by){this.state.focal_point=
+add(this.state.focal_point,by),this.state.position=add(this.state.position,by)}};function copyOf(state){let{position,focal_point:focus,
+up}=state;return{...state,position:[...position],focal_point:[...focus],up:[...up]}}function fitted(geometry,limits,positions2,aspect){
+let{center,extent,planar,frame}=geometry,half=tangent(limits.view_angle),back=planar?fromFrame(frame,[0,0,1]):unit([1,1,
+1]),up=planar?fromFrame(frame,[0,1,0]):[0,0,1],right=unit(cross2(up,back)),rows=[right,cross2(back,right),back].map(row=>toFrame(
+frame,row)),low=[1/0,1/0],high=[-1/0,-1/0],distance=0;for(let n=0;n<positions2.length;n+=3){let node=[positions2[n],positions2[n+
+1],positions2[n+2]];if(!Number.isFinite(node[0]))continue;let[x,y,z]=rows.map(row=>dot2(row,node));[x,y].forEach((value,k)=>{
+low[k]=Math.min(low[k],value),high[k]=Math.max(high[k],value)});let wide=Math.max(Math.abs(x)/aspect,Math.abs(y));distance=
+Math.max(distance,z+wide/half/(1-2*limits.margin))}let tall=Math.max(high[1]-low[1],(high[0]-low[0])/aspect,1e-12*extent);
+return{position:add(center,back,planar?extent:distance),focal_point:[...center],up,parallel:planar,parallel_scale:.5*tall/
+(1-2*limits.margin),view_angle:limits.view_angle}}function widened(geometry,limits,state,positions2,aspect){let{center,extent,
+planar}=geometry,camera=copyOf(state);if(length2(subtract2(state.focal_point,center))>.001*extent)return camera;if(planar&&
+state.parallel){let[high,all]=[1e9,aspect].map(shape=>fitted(geometry,limits,positions2,shape).parallel_scale);state.parallel_scale>
+.98*high&&(camera.parallel_scale=Math.max(state.parallel_scale,all))}else if(!state.parallel&&state.view_angle>.9*limits.
+view_angle){let back=subtract2(state.position,state.focal_point);camera.position=add(state.focal_point,back,Math.max(1,limits.
+aspect/aspect))}return camera}function isSamePlace(a,b){let near=length2(subtract2(a.center,b.center))<.1*a.extent,ratio=a.
+extent/b.extent;return a.planar===b.planar&&near&&ratio>.8&&ratio<1.25}function projection(geometry,camera,anchor){let{state,
+aspect}=camera,{center,extent,frame}=geometry,[right,up,ahead]=camera.axes.map(axis=>toFrame(frame,axis)),local=point=>subtract2(
+toFrame(frame,subtract2(point,center)),anchor),focus=local(state.focal_point),middle=scale2(anchor,-1),radius=.51*extent,
+m=new Array(16).fill(0),half=state.parallel?state.parallel_scale:tangent(state.view_angle);if([right.map(c=>c/half/aspect),
+up.map(c=>c/half)].forEach((row,k)=>{for(let n=0;n<3;n+=1)m[4*n+k]=row[n];m[12+k]=-dot2(row,focus)}),state.parallel){for(let n=0;n<
+3;n+=1)m[4*n+2]=ahead[n]/radius;return m[14]=-dot2(ahead,middle)/radius,m[15]=1,m}let eye=local(state.position),depth=dot2(
+subtract2(middle,eye),ahead),far=Math.max(depth+radius,.001*radius),near=Math.max(depth-radius,.001*far),a=(far+near)/(far-
+near),b=-2*far*near/(far-near);for(let n=0;n<3;n+=1)m[4*n+2]=ahead[n]*a,m[4*n+3]=ahead[n];return m[15]=-dot2(ahead,eye),
+m[14]=m[15]*a+b,m}function atPixel(matrix,[x,y],[width,height]){let m=[...matrix];for(let n=0;n<4;n+=1)m[4*n]=(m[4*n]-x*
+m[4*n+3])*width,m[4*n+1]=(m[4*n+1]-y*m[4*n+3])*height;return m}var MOST_STOPS=1e5,MOST_WHOLE_STOPS=2e4,LOGARITHMIC_RATIO=60,SLIDER_STOPS=400,IN_BAR=["lod","show_level"];function hasStreaming(header){
 return header.slices.steps===1&&!header.paper&&!isSignFree(header)}function isUseful(row,header,rebuild){let{paper,slices}=header;
 switch(row.name){case"motion":case"speed":case"speed_in":case"period":return hasStreaming(header);case"grain":case"fixed\
 _grain":return!paper;case"two_sided":return slices.sides===2;case"seed":return!paper||rebuild&&!paper.picture;case"resol\
@@ -540,7 +540,7 @@ this.press.moved||!isQuick||event.button!==0)return;let point=this.viewer.point(
 onPoint?.(point),this.viewer.panel.read(point)}onWheel(event){if(!this.isHeld&&!event.ctrlKey&&!event.metaKey){performance.
 now()-this.lastPointed<POINTED_MS&&this.viewer.panel.hint(!0);return}event.preventDefault();let size=event.ctrlKey&&event.
 deltaMode===0?PINCH_PX:NOTCH_SIZES[event.deltaMode],notches=clamp(-event.deltaY/size,-MOST_NOTCHES,MOST_NOTCHES);this.zoom(
-(this.viewer.camera?.limits.notch??1)**notches,event)}zoom(factor,event){let{x,y}=this.place(event);this.viewer.camera?.
+(this.viewer.camera?.limits.wheel_zoom??1)**notches,event)}zoom(factor,event){let{x,y}=this.place(event);this.viewer.camera?.
 zoomBy(factor,x,y),this.viewer.moved()}hover(place){let{viewer}=this;viewer.lifetime.cancel(this.look);let rest=HOVER_MS-
 (performance.now()-this.lastLook),look=()=>{this.look=null,this.lastLook=performance.now(),viewer.sharp&&viewer.canPick?
 viewer.panel.read(viewer.point(place.x,place.y)):viewer.playing||this.hover(place)};this.look=viewer.lifetime.later(look,
@@ -549,9 +549,10 @@ Element&&target!==root?target.tagName:"",isControl=/^(INPUT|SELECT)$/.test(insid
 hasModifier(event)||isControl||!this.command(event)||(event.preventDefault(),event.stopPropagation())}command({key,shiftKey}){
 let{viewer}=this,{camera,panel,options}=viewer;if(!camera)return!1;let command=CAMERA_KEYS[key];if(command in DIRECTIONS){
 let[x,y]=DIRECTIONS[command].map(way=>way*KEY_STEP);camera.flat===shiftKey?camera.rotate(-x,-y):camera.pan(x,y),viewer.moved()}else if(command===
-"closer"||command==="farther"){let{notch}=camera.limits;camera.zoomBy(command==="closer"?notch:1/notch),viewer.moved()}else if(command===
-"whole")viewer.reset();else if(key===PLAY_KEY)viewer.togglePlaying();else if(key===FULLSCREEN_KEY)panel.fullscreen();else if(key===
-"h")(options.follows??viewer).panel.toggle();else if(key===CLOSE_KEY)panel.fold(),this.hold(!1);else return!1;return!0}};function reused(before,now,width,height){let size=before[0]*before[5]-before[4]*before[1],a=(now[0]*before[5]-now[4]*before[1])/
+"closer"||command==="farther"){let{wheel_zoom:notch}=camera.limits;camera.zoomBy(command==="closer"?notch:1/notch),viewer.
+moved()}else if(command==="whole")viewer.reset();else if(key===PLAY_KEY)viewer.togglePlaying();else if(key===FULLSCREEN_KEY)
+panel.fullscreen();else if(key==="h")(options.follows??viewer).panel.toggle();else if(key===CLOSE_KEY)panel.fold(),this.
+hold(!1);else return!1;return!0}};function reused(before,now,width,height){let size=before[0]*before[5]-before[4]*before[1],a=(now[0]*before[5]-now[4]*before[1])/
 size,b=(now[4]*before[0]-now[0]*before[4])/size,c=(now[1]*before[5]-now[5]*before[1])/size,d=(now[5]*before[0]-now[1]*before[4])/
 size,determinant=a*d-b*c,area=Math.abs(determinant);if(!(area>.3**2&&area<4**2))return null;let e=now[12]-a*before[12]-b*
 before[13],f=now[13]-c*before[12]-d*before[13],[w,h]=[width/2,height/2],matrix=[a,-c*h/w,-b*w/h,d,w*(1+e-a+b),h*(1-f+c-d)],
