@@ -10,7 +10,7 @@ BIN := $(VENV)/bin
 SETUP := pyproject.toml tools/setup.sh tools/common.sh
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint format docs gallery wheel clean
+.PHONY: help demo test lint format client docs gallery wheel clean
 
 help: ## list what can be made
 	@echo "flowtex. Choose an interpreter with PYTHON=python3.12, tests with PYTEST_ARGS='-k trace'."
@@ -29,11 +29,14 @@ lint: $(VENV)/.ready-test ## style, format and types, without the tests
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
-	sh tools/javascript.sh $(BIN)
+	sh tools/client.sh $(BIN)
 
 format: $(VENV)/.ready-test ## put the code in its format
 	$(BIN)/ruff check --select I --fix
 	$(BIN)/ruff format
+
+client: $(VENV)/.ready-test ## build the browser client into the package
+	sh tools/client.sh $(BIN) build
 
 docs: $(VENV)/.ready-test ## write the table of settings into the guide
 	FLOWTEX_WRITE_DOCS=1 $(BIN)/python -m pytest -q tests/test_docs.py -k table

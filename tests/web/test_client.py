@@ -389,12 +389,15 @@ def test_the_whole_surface_is_seen_in_any_shape(client: ClientPage) -> None:
             client.clear()
 
 
-def test_finer_pixels_show_the_same_grains(webgl_browser: Browser, client: ClientPage) -> None:
-    client.mount(scene(gyre, straight(4)), SIZE, **PLAIN)
+@pytest.mark.parametrize("noise", ["procedural", "texture"])
+def test_finer_pixels_show_the_same_grains(
+    webgl_browser: Browser, client: ClientPage, noise: str
+) -> None:
+    client.mount(scene(gyre, straight(4), noise=noise), SIZE, **PLAIN)
     coarse = client.picture().astype(float)
     context = webgl_browser.new_context(device_scale_factor=2)
     other = ClientPage(context.new_page())
-    other.mount(scene(gyre, straight(4)), SIZE, **PLAIN)
+    other.mount(scene(gyre, straight(4), noise=noise), SIZE, **PLAIN)
     fine = other.picture().astype(float)
     context.close()
     assert fine.shape == (2 * SIZE[1], 2 * SIZE[0], 3)
