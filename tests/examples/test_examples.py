@@ -14,7 +14,7 @@ import pytest
 from numpy.typing import NDArray
 
 from flowtex import FlowField, examples
-from flowtex.examples import _airfoil, _post
+from flowtex.examples import _airfoil, _shipped
 
 if TYPE_CHECKING:
     import pyvista as pv
@@ -272,7 +272,7 @@ def test_without_a_folder_pyvista_fetches_the_post(data_dir: Path, tmp_path: Pat
     """PyVista's own machinery, told to take its collection from a local folder."""
     collection = tmp_path / "Data"
     collection.mkdir()
-    for name in (_post.GRID, _post.SOLUTION):
+    for name in (_shipped.POST_GRID, _shipped.POST_SOLUTION):
         (collection / name).symlink_to(data_dir / name)
     code = (
         "from flowtex import examples; field = examples.liquid_oxygen_post_field(); "
