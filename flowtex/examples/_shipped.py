@@ -188,7 +188,8 @@ def _downloaded() -> Path:
     except OSError as error:
         message = (
             f"PyVista could not download {POST_GRID} and {POST_SOLUTION} ({type(error).__name__}); "
-            "check the network, or give the folder that holds them, as in liquid_oxygen_post(folder=...)"
+            "check the network, or give the folder that holds them, as in "
+            "liquid_oxygen_post(folder=...)"
         )
         raise FileNotFoundError(message) from error
     return paths[0]
