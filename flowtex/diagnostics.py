@@ -6,8 +6,7 @@ report as one line of JSON::
 
     opengl_report()  ->  python diagnostics.py --try  ->  OpenGLReport, also after a crash
 
-The second process runs this file and needs nothing but the standard library and VTK. It is started
-once per process.
+The second process is started once per process.
 """
 
 from __future__ import annotations
@@ -46,14 +45,8 @@ TRIAL_COMMAND = (sys.executable, "-P", str(Path(__file__).resolve()), "--try")
 TRIAL_TIMEOUT_S = 120.0
 REQUIRED = ("numpy", "scipy", "pyvista", "vtk")
 OPTIONAL = {"trame": "app", "trame-vuetify": "app", "trame-rca": "app", "anywidget": "notebook"}
-SOFTWARE_RENDERERS = (
-    "llvmpipe",
-    "softpipe",
-    "swrast",
-    "swiftshader",
-    "basic render",
-    "gdi generic",
-)
+#: Words in the names of renderers that draw with the processor.
+SOFTWARE = ("llvmpipe", "softpipe", "swrast", "swiftshader", "basic render", "gdi generic")
 
 
 class OpenGLMissingError(RuntimeError):
@@ -296,7 +289,7 @@ def try_opengl() -> OpenGLReport:
         vendor=words.get("OpenGL vendor", "").strip(),
         renderer=(name := words.get("OpenGL renderer", "").strip()),
         version=words.get("OpenGL version", "").strip(),
-        software=any(word in name.lower() for word in SOFTWARE_RENDERERS),
+        software=any(word in name.lower() for word in SOFTWARE),
         max_texture_size=gl.vtkTextureObject.GetMaximumTextureSize(window),
         texture_units=window.GetTextureUnitManager().GetNumberOfTextureUnits(),
         failure="" if rgb == (255, 0, 0) else f"a red picture came back as {rgb}",
