@@ -1,7 +1,8 @@
 """Faults of one call, raised together.
 
-Checks return each fault as one sentence that names the value, what was expected and the remedy; :func:`raise_faults` turns them into a single error, so that a user mends a call
-once and not once for every argument.
+Checks return each fault as one sentence that names the value, what was expected and the remedy.
+:func:`raise_faults` turns them into a single error, so that a user corrects a call once and not
+once for every argument.
 """
 
 from __future__ import annotations
