@@ -60,11 +60,6 @@ class Joukowski:
         """Extent of the mapped airfoil along x."""
         return float(np.ptp(self._outline().real))
 
-    @property
-    def lift(self) -> float:
-        """Lift coefficient, from the circulation (Kutta and Joukowski)."""
-        return 2.0 * self.circulation / self.chord
-
     def _outline(self) -> Complex:
         """Return the airfoil in the plane of the map, before it is scaled."""
         angles = self.edge + np.linspace(0.0, 2.0 * np.pi, 4001)

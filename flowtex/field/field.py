@@ -233,10 +233,9 @@ class FlowField:
         """
         from flowtex.field.io.from_pyvista import read_meshes
 
-        arguments = read_meshes(
-            mesh, vectors=vectors, plane=plane, times=times, periodic=periodic, sign_free=sign_free
-        )
-        return cls.from_arrays(**arguments, name=name)
+        options: dict[str, Any] = {"periodic": periodic, "sign_free": sign_free}
+        arguments = read_meshes(mesh, vectors=vectors, plane=plane, times=times, **options)
+        return cls.from_arrays(**arguments, name=name, **options)
 
     @classmethod
     def from_file(
@@ -283,16 +282,11 @@ class FlowField:
         from flowtex.field.io.files import errors_of_file, read_file
 
         with errors_of_file(path):
+            options: dict[str, Any] = {"periodic": periodic, "sign_free": sign_free}
             arguments = read_file(
-                path,
-                vectors=vectors,
-                plane=plane,
-                periodic=periodic,
-                time=time,
-                block=block,
-                sign_free=sign_free,
+                path, time=time, block=block, vectors=vectors, plane=plane, **options
             )
-            return cls.from_arrays(**arguments, name=Path(path).stem)
+            return cls.from_arrays(**arguments, name=Path(path).stem, **options)
 
     @property
     def shape(self) -> tuple[int, int]:

@@ -52,16 +52,15 @@ class OpenFile:
 def read_file(
     path: str | Path,
     *,
-    vectors: str | None = None,
-    plane: str | None = None,
-    periodic: str | None = None,
     time: float | None = None,
     block: int | str | None = None,
-    sign_free: bool = False,
+    vectors: str | None = None,
+    **options: Any,
 ) -> FieldArguments:
     """Read what a field needs from a file.
 
-    Parameters are those of :meth:`FlowField.from_file`.
+    Parameters are those of :meth:`FlowField.from_file`; the options go to
+    :func:`~flowtex.field.io.from_pyvista.read_meshes`.
 
     Raises
     ------
@@ -75,13 +74,8 @@ def read_file(
         source = _at_time(source, time)
     if block is not None:
         source = _BlockReader(source, block) if is_reader(source) else _pick(source, block)
-    return read_meshes(
-        source,
-        vectors=vectors if vectors is not None else file.velocity,
-        plane=plane,
-        periodic=periodic,
-        sign_free=sign_free,
-    )
+    name = vectors if vectors is not None else file.velocity
+    return read_meshes(source, vectors=name, **options)
 
 
 def open_file(path: str | Path) -> OpenFile:

@@ -45,15 +45,13 @@ SAME_NODE_SHARE = 1e-6
 
 
 class FieldArguments(TypedDict):
-    """Arguments of :meth:`FlowField.from_arrays`."""
+    """Those arguments of :meth:`FlowField.from_arrays` that a mesh holds."""
 
     points: Floats
     velocity: Floats
     times: ArrayLike | None
     valid: Bools
-    periodic: str | None
     scalars: dict[str, Floats]
-    sign_free: bool
 
 
 @dataclass
@@ -123,9 +121,7 @@ def read_meshes(
         velocity=np.stack([sheet.vectors for sheet in sheets]),
         times=times,
         valid=shown,
-        periodic=periodic,
         scalars=_stacked(sheets),
-        sign_free=sign_free,
     )
 
 
