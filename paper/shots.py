@@ -10,11 +10,11 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from flowtex.first_look import first_look
 from numpy.typing import NDArray
 from scipy import ndimage
 
 from flowtex.field import FlowField
+from flowtex.first_look import first_look
 from flowtex.rendering.cpu import Camera, LookupMaker, Picture, render, shade
 from flowtex.rendering.cpu.cover import cover
 from flowtex.rendering.uniforms import ViewState

@@ -97,15 +97,14 @@ MOVES: list[tuple[str, list[float]]] = [
 
 
 def moved(camera: Camera, whole: Camera, aspect: float, move: tuple[str, list[float]]) -> Camera:
-    name, values = move
+    name, (x, y, *rest) = move
     if name == "zoom":
-        return camera.zoom_by(*values, aspect=aspect, whole=whole)
-    return camera.pan(*values, aspect) if name == "pan" else camera.rotate(*values, aspect)
+        return camera.zoom_by(x, y, *rest, aspect=aspect, whole=whole)
+    return camera.pan(x, y, aspect) if name == "pan" else camera.rotate(x, y, aspect)
 
 
 def camera_of(name: str) -> dict[str, Any]:
-    make, aspect = {"flat": (lambda: gyre(9, 5), 1.5), "curved": (strip, 2.3)}[name]
-    field = make()
+    field, aspect = (gyre(9, 5), 1.5) if name == "flat" else (strip(), 2.3)
     data = ClientData(Scene(field).textures)
     whole = camera = Camera.fit(field.surface, aspect)
     states = [camera := moved(camera, whole, aspect, move) for move in MOVES]

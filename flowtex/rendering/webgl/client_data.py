@@ -17,7 +17,7 @@ import numpy as np
 
 from flowtex._util.array_types import Bytes, Floats
 from flowtex.camera import CAMERA_LIMITS, Camera
-from flowtex.field.reading import moment
+from flowtex.field.interpolation import steps_around
 from flowtex.rendering.shader_text import compose
 from flowtex.rendering.uniforms import client_constants, variants
 from flowtex.rendering.webgl.packing import Packing, half, packing_of
@@ -218,7 +218,7 @@ class ClientData:
 
     def moment(self, time: float) -> tuple[int, ...]:
         """Return the steps that are needed to show a time, one or two."""
-        before, after, _ = moment(self.times, time)
+        before, after, _ = steps_around(self.times, time)
         return (before,) if before == after else (before, after)
 
     @property
