@@ -9,8 +9,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import ndimage
+
+from flowtex._util.array_types import Bools, Floats
 
 __all__ = [
     "Evenness",
@@ -27,8 +28,6 @@ __all__ = [
     "streaks",
 ]
 
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 #: Width in pixels of the derivative, and of the window over which directions are averaged.
 EDGE, WINDOW = 1.0, 4.0

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from paper.bench import Bench
-from paper.findings import Finding, Text
-from paper.lod import finding
-from paper.registry import Section
-from paper.shots import shoot
+from paper.findings import Finding, Section, Text
+from paper.level_of_detail import finding
+from paper.views import view_of
 
 __all__ = ["SECTIONS"]
 
@@ -24,10 +23,10 @@ def _post(bench: Bench) -> Finding:
     found = finding(
         "figure5_post",
         "The post as a whole (figure 5)",
-        shoot(bench, post, size, zoom=5.0, focus=BESIDE),
-        shoot(bench, post, size),
+        view_of(bench, post, size, zoom=5.0, focus=BESIDE),
+        view_of(bench, post, size),
         [
-            (z, shoot(bench, post, small, zoom=z, focus=BESIDE if z > 1 else None))
+            (z, view_of(bench, post, small, zoom=z, focus=BESIDE if z > 1 else None))
             for z in bench.pick((1, 4, 16, 64), (1, 16))
         ],
         times=bench.pick(4, 2),

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from flowtex.rendering.cpu import Camera
 from paper.bench import Bench
-from paper.findings import Finding
-from paper.lod import finding
-from paper.registry import Section
-from paper.shots import Shot
+from paper.findings import Finding, Section
+from paper.level_of_detail import finding
+from paper.views import View
 
 __all__ = ["SECTIONS", "wing"]
 
@@ -15,13 +14,13 @@ __all__ = ["SECTIONS", "wing"]
 EYE, WHOLE, NEAR, HALF = (0.25, -1.0, 1.5), (0.56, 0.0, 0.0), (0.78, -0.16, 0.03), 0.43
 
 
-def wing(bench: Bench, size: tuple[int, int], zoom: float) -> Shot:
+def wing(bench: Bench, size: tuple[int, int], zoom: float) -> View:
     """Look at the wing from above and aside; closer, at the flow beside its left edge."""
     at = NEAR if zoom > 1 else WHOLE
     eye = tuple(e - w + a for e, w, a in zip(EYE, WHOLE, at, strict=True))
     scale = HALF * max(1.0, 1.45 * size[1] / size[0]) / zoom
     camera = Camera((eye[0], eye[1], eye[2]), at, (0.0, 0.0, 1.0), size, parallel_scale=scale)
-    return Shot(bench, bench.shuttle, camera)
+    return View(bench, bench.shuttle, camera)
 
 
 def _shuttle(bench: Bench) -> Finding:

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from paper.bench import Bench
-from paper.findings import Finding
-from paper.lod import finding
-from paper.registry import Section
-from paper.shots import shoot
+from paper.findings import Finding, Section
+from paper.level_of_detail import finding
+from paper.views import view_of
 
 __all__ = ["SECTIONS"]
 
@@ -21,10 +20,13 @@ def _vortex(bench: Bench) -> Finding:
     return finding(
         "figure8_vortex",
         "The vortex data, zoomed out (figure 8)",
-        shoot(bench, vortex, size, zoom=5.0, focus=POINT, step=STEP),
-        shoot(bench, vortex, size, step=STEP),
+        view_of(bench, vortex, size, zoom=5.0, focus=POINT, step=STEP),
+        view_of(bench, vortex, size, step=STEP),
         [
-            (z, shoot(bench, vortex, small, zoom=z, focus=POINT if z > 1 else None, step=STEP))
+            (
+                z,
+                view_of(bench, vortex, small, zoom=z, focus=POINT if z > 1 else None, step=STEP),
+            )
             for z in bench.pick((1, 4, 16, 64), (1, 16))
         ],
         times=bench.pick(4, 2),

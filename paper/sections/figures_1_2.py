@@ -5,20 +5,18 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from flowtex._util.array_types import Floats, Floats32, Indices
 from flowtex.field import FlowField
 from flowtex.probe import Probe, probe
 from flowtex.trace import trace
 from flowtex.view import FlowView
 from paper.bench import PAPER, Bench
-from paper.findings import Block, Claim, Finding, Plot, Table
-from paper.plots import COLOURS, GROUND, INK, RULE, SOFT, canvas
-from paper.registry import Section
+from paper.findings import Block, Claim, Finding, Plot, Section, Table
+from paper.plots import COLOURS, GROUND, INK, RULE, SOFT, plot_axes
 
 __all__ = ["SECTIONS"]
 
-Floats = NDArray[np.float64]
 
 #: Destination time of figure 1, slices that are drawn, and the middle (i, j) of a vortex.
 STEP, COUNT, MIDDLE = 12, 4, (18, 64)
@@ -67,15 +65,15 @@ def _figure1(bench: Bench) -> Finding:
 
 def _planes(scaled: list[Floats], own: Floats) -> Plot:
     """Draw the patch of nodes at every time, one plane above the other."""
-    with canvas(
+    with plot_axes(
         "Figure 1: a patch of nodes at Td, on top, and where its particles were at K earlier "
         "times: each plane is a trace slice, and its points are the entries. The orange line is "
         "the pathline of one node, followed backward.",
         "Planes of five times, with a patch of nodes that is more and more bent the earlier the "
         "time, and one pathline through all of them.",
         size=(8.6, 6.6),
-    ) as made:
-        axes, last = made.axes, len(scaled) - 1
+    ) as figure:
+        axes, last = figure.axes, len(scaled) - 1
         corners = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]], float)
         path = []
         for m, place in enumerate(scaled):
@@ -91,7 +89,7 @@ def _planes(scaled: list[Floats], own: Floats) -> Plot:
         axes.plot(*np.array(path).T, color=COLOURS[1], linewidth=2.2, zorder=4)
         axes.set_xlim(-0.75, 1.55)
         axes.set_axis_off()
-    return _plot(made.plot)
+    return figure.plot
 
 
 def _say(axes: Any, m: int, place: Floats, level: float) -> None:
@@ -105,13 +103,6 @@ def _say(axes: Any, m: int, place: Floats, level: float) -> None:
     at = _tilted(np.array([0.0, 0.5]), level)
     axes.annotate(name, at - [0.78, -0.04], color=INK, fontsize=10.5, annotation_clip=False)
     axes.annotate(what, at - [0.78, 0.09], color=SOFT, fontsize=9.5, annotation_clip=False)
-
-
-def _plot(plot: Plot | None) -> Plot:
-    if plot is None:
-        msg = "the plot was not drawn"
-        raise RuntimeError(msg)
-    return plot
 
 
 def _probed(bench: Bench) -> tuple[FlowView, Probe]:
@@ -145,7 +136,7 @@ def _figure2(bench: Bench) -> Finding:
     return Finding(blocks, numbers, _claims(found, texels))
 
 
-def _rows(found: Probe, order: NDArray[np.intp], texels: Floats) -> Table:
+def _rows(found: Probe, order: Indices, texels: Floats) -> Table:
     """Tell the look-ups of the pixel, from the nearest to the farthest."""
     rows = [
         (
@@ -191,27 +182,27 @@ def _claims(found: Probe, texels: Floats) -> list[Claim]:
     ]
 
 
-def _level(noise: NDArray[np.float32], level: int) -> Floats:
+def _level(noise: Floats32, level: int) -> Floats:
     """Mip level of a noise, (H, W)."""
     rows, columns = (n // 2**level for n in noise.shape)
     return np.asarray(noise.reshape(rows, 2**level, columns, 2**level).mean(axis=(1, 3)), float)
 
 
-def _lookups(noise: Floats, texels: Floats, found: Probe, order: NDArray[np.intp]) -> Plot:
+def _lookups(noise: Floats, texels: Floats, found: Probe, order: Indices) -> Plot:
     """Draw the path over the mesh, the texels in the noise, and the values that are averaged."""
-    with canvas(
+    with plot_axes(
         "Figure 2: from a fragment to its colour. Left: the fragment (i, j) and the positions "
         "(a, b) that the slices give. Middle: the texels of the noise that they meet. Right: "
         "their values and the mean, which is the colour.",
         "A path over a mesh, the texels of the noise along it, and ten values with their mean.",
         columns=3,
         size=(10.4, 3.9),
-    ) as made:
+    ) as figure:
         places = found.coordinates[order][:, ::-1]
-        _mesh(made.axes[0], places)
-        _noise(made.axes[1], noise, texels)
-        _mean(made.axes[2], found.noise[order], found)
-    return _plot(made.plot)
+        _mesh(figure.axes[0], places)
+        _noise(figure.axes[1], noise, texels)
+        _mean(figure.axes[2], found.noise[order], found)
+    return figure.plot
 
 
 def _mesh(axes: Any, places: Floats) -> None:

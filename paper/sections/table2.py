@@ -10,8 +10,7 @@ from flowtex.settings import Settings
 from flowtex.textures import TextureSet
 from flowtex.trace import SliceStore, trace
 from paper.bench import PAPER, Bench
-from paper.findings import Block, Claim, Finding, Table, Text
-from paper.registry import Section
+from paper.findings import Block, Claim, Finding, Section, Table, Text
 
 __all__ = ["SECTIONS"]
 

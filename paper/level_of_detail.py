@@ -6,17 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
+from flowtex._util.array_types import Floats
 from paper import measures
 from paper.bench import OURS, PAPER
 from paper.findings import Block, Claim, Finding, Panel, Plate, Table
-from paper.shots import Shot, tone
+from paper.views import View, grey
 
 __all__ = ["Pair", "clearer", "compare", "finding", "series"]
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +30,7 @@ class Pair:
         """Both pictures, each with its error printed."""
         return [
             Panel(
-                tone(self.pictures[lod]),
+                grey(self.pictures[lod]),
                 f"{'With' if lod else 'Without'} level of detail: aliasing error "
                 f"{self.figures[lod]['aliasing']:.2f}, coherence "
                 f"{self.figures[lod]['coherence']:.2f}.",
@@ -43,17 +39,17 @@ class Pair:
         ]
 
 
-def compare(shot: Shot, times: int, **settings: Any) -> Pair:
+def compare(view: View, times: int, **settings: Any) -> Pair:
     """Draw a view both ways, and each again with ``times`` x ``times`` samples a pixel."""
     pictures, figures = {}, {}
     for lod in (True, False):
-        values = shot.picture(**settings, lod=lod).value
-        reference = shot.reference(times, **settings, lod=lod)
-        streaks = shot.streaks(values)
+        values = view.picture(**settings, lod=lod).value
+        reference = view.reference(times, **settings, lod=lod)
+        streaks = view.streaks(values)
         pictures[lod] = values
         figures[lod] = {
-            "aliasing": measures.aliasing(values, reference, shot.mask),
-            "likeness": measures.likeness(values, reference, shot.mask),
+            "aliasing": measures.aliasing(values, reference, view.mask),
+            "likeness": measures.likeness(values, reference, view.mask),
             "angle": streaks.angle,
             "coherence": streaks.coherence,
         }
@@ -91,14 +87,14 @@ def clearer(name: str, where: str, pair: Pair) -> list[Claim]:
 
 
 def series(
-    shots: Sequence[tuple[float, Shot]], **settings: Any
+    views: Sequence[tuple[float, View]], **settings: Any
 ) -> tuple[list[Panel], dict[str, dict[str, float]]]:
     """Draw a view at several zooms with level of detail, and measure streaks and grain."""
     panels, numbers = [], {}
-    for zoom, shot in shots:
-        values = shot.picture(**settings).value
-        streaks, grain = shot.streaks(values), shot.grain(values)
-        panels.append(Panel(tone(values), f"Zoom {zoom:g}: grain {grain.across:.2f} px across."))
+    for zoom, view in views:
+        values = view.picture(**settings).value
+        streaks, grain = view.streaks(values), view.grain(values)
+        panels.append(Panel(grey(values), f"Zoom {zoom:g}: grain {grain.across:.2f} px across."))
         numbers[f"{zoom:g}"] = {**streaks._asdict(), **grain._asdict()}
     return panels, numbers
 
@@ -106,9 +102,9 @@ def series(
 def finding(
     name: str,
     where: str,
-    close: Shot,
-    far: Shot,
-    zooms: Sequence[tuple[float, Shot]],
+    close: View,
+    far: View,
+    zooms: Sequence[tuple[float, View]],
     *,
     times: int,
     resolution: int,
@@ -137,7 +133,7 @@ def finding(
     near, pair = compare(close, times, **paper), compare(far, times, **paper)
     panels, numbers = series(zooms, **OURS)
     blocks: list[Block] = [
-        Plate([Panel(tone(near.pictures[True]), "Close up."), *pair.panels()], caption),
+        Plate([Panel(grey(near.pictures[True]), "Close up."), *pair.panels()], caption),
         _table(near, pair),
         Plate(
             panels,

@@ -5,15 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import ndimage
 
+from flowtex._util.array_types import Floats
 from flowtex.field import FlowField
 from flowtex.trace import TraceSlices, paths, trace
 
 __all__ = ["Errors", "position_errors", "step_slices"]
 
-Floats = NDArray[np.float64]
 
 #: Steps of time that a particle goes back, and error allowed in one step of the integration.
 STEPS, TOLERANCE = 10, 1e-5
