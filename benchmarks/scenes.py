@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import map_coordinates
 
 import flowtex
-from flowtex.plotting.look import look
+from flowtex.plotting.vtk_camera import look
 
 __all__ = ["FOCUS", "Stage", "View", "gyre", "gyre_field", "gyre_view", "vortex_view"]
 

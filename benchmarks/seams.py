@@ -11,7 +11,7 @@ import pyvista as pv
 from numpy.typing import NDArray
 
 import flowtex
-from flowtex.plotting.look import look
+from flowtex.plotting.vtk_camera import look
 from flowtex.rendering.cpu import Camera, render
 from flowtex.textures import TextureSet
 from flowtex.trace import SliceStore

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 import flowtex
-from flowtex.plotting.look import look
+from flowtex.plotting.vtk_camera import look
 
 #: Address of a page as it is announced.
 ADDRESS = re.compile(r"http://\S+")

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from flowtex.diagnostics import has_display, prefer_headless, require_opengl
 from flowtex.offscreen.studio import Changes, Studio, new_plotter, put
 from flowtex.plotting.component import FIELD_ARGUMENTS, as_field
-from flowtex.plotting.look import look
+from flowtex.plotting.vtk_camera import look
 
 if TYPE_CHECKING:
     from flowtex.widget import FlowWidget

@@ -12,7 +12,7 @@ from flowtex.diagnostics import require_opengl
 from flowtex.field import FlowField
 from flowtex.plotting.component import FIELD_ARGUMENTS, FlowtexComponent, as_field
 from flowtex.plotting.handle import FlowHandle
-from flowtex.plotting.look import look
+from flowtex.plotting.vtk_camera import look
 
 __all__ = ["Studio", "new_plotter", "put"]
 

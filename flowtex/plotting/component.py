@@ -14,7 +14,7 @@ import pyvista as pv
 
 from flowtex.field import FlowField
 from flowtex.plotting.handle import FlowHandle
-from flowtex.plotting.look import look
+from flowtex.plotting.vtk_camera import look
 from flowtex.settings import Settings, SettingsError
 from flowtex.textures.image_files import load_image
 from flowtex.view import FlowView

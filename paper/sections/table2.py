@@ -56,7 +56,7 @@ def _drawn(bench: Bench, field: FlowField, slices: Any) -> dict[str, float]:
     import pyvista as pv
 
     from flowtex.plotting.handle import FlowHandle
-    from flowtex.plotting.look import look
+    from flowtex.plotting.vtk_camera import look
     from flowtex.view import FlowView
 
     plotter: Any = pv.Plotter(off_screen=True, window_size=list(SIZE))

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from flowtex import FlowField
-from flowtex.plotting.look import look
+from flowtex.plotting.vtk_camera import look
 from flowtex.rendering.cpu import Camera, Picture, raster, render, shade, smooth
 from flowtex.rendering.cpu.lookup import Mips
 from flowtex.rendering.cpu.raster import Coverage, rasterise

@@ -13,7 +13,7 @@ from measures import carried, fineness, streaks
 from numpy.typing import NDArray
 
 import flowtex
-from flowtex.plotting.look import look
+from flowtex.plotting.vtk_camera import look
 from flowtex.settings import TABLE
 
 SIZE = (400, 300)

@@ -133,7 +133,7 @@ def test_evenly_chosen_numbers() -> None:
 def test_the_first_look_is_that_of_vtk(make: Any, view: Any, aspect: float, opengl: Any) -> None:
     import pyvista as pv
 
-    from flowtex.plotting.look import look
+    from flowtex.plotting.vtk_camera import look
 
     plotter = pv.Plotter(off_screen=True, window_size=[int(300 * aspect), 300])
     field = make()

@@ -1,0 +1,466 @@
+"""The camera: where a flow is seen from, as plain numbers that every renderer takes.
+
+Places in the view are (x, y) from -1 to 1, right and up, so nothing here depends on the size of a
+picture but ``aspect``, its width over its height. A flat surface is seen straight on and without
+perspective, a curved one from above and aside. The numbers of :data:`CAMERA_LIMITS` travel to the
+browser in the header, so that both sides move the camera alike.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, fields, replace
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from flowtex._util.array_types import Floats
+from flowtex.field import Surface
+
+__all__ = ["CAMERA_LIMITS", "Camera", "CameraError", "CameraLimits"]
+
+Point = tuple[float, float, float]
+
+#: The way from a curved surface to the camera, and what is up there.
+ASIDE, UP = (1.0, 1.0, 1.0), (0.0, 0.0, 1.0)
+#: Farthest and nearest that a camera may be, in extents of the surface: beyond, numbers end.
+FARTHEST_REACH, NEAREST_REACH = 1e9, 1e-9
+
+
+@dataclass(frozen=True)
+class CameraLimits:
+    """How far a camera may go, and how fast it moves.
+
+    Attributes
+    ----------
+    deepest_zoom, farthest_zoom
+        Greatest and least zoom relative to the whole surface; single precision ends beyond.
+    closest
+        How many times closer a perspective camera comes than the distance that shows the whole
+        surface; beyond, its view angle narrows, so that nothing near is cut off.
+    view_angle
+        View angle in perspective while the camera is farther than that, in degrees.
+    margin
+        Share of the picture that is left empty at each side of a flat surface.
+    wheel_zoom
+        Zoom by one notch of the wheel.
+    turn
+        Degrees that a drag over half the height of the view turns a curved surface.
+    widest_turn
+        Aspect beyond which a drag to the side turns no farther.
+    """
+
+    deepest_zoom: float = 1e6
+    farthest_zoom: float = 0.25
+    closest: float = 16.0
+    view_angle: float = 30.0
+    margin: float = 0.04
+    wheel_zoom: float = 1.25
+    turn: float = 90.0
+    widest_turn: float = 2.0
+
+
+CAMERA_LIMITS = CameraLimits()
+
+
+class CameraError(ValueError):
+    """Numbers that make no camera, or one that sees nothing."""
+
+
+@dataclass(frozen=True)
+class Camera:
+    """Where a picture is taken from.
+
+    Attributes
+    ----------
+    position, focal_point
+        Where the camera stands and what it looks at, in the mesh's own coordinates.
+    up
+        Direction that is up in the picture, of any length.
+    parallel
+        Whether it has no perspective.
+    parallel_scale
+        Half the height of what a parallel projection shows, in the mesh's units.
+    view_angle
+        Angle from the lower to the upper border of a view in perspective, in degrees.
+
+    Raises
+    ------
+    CameraError
+        When one of them is out of its range, or the camera sees nothing; all faults are told.
+    """
+
+    position: Point
+    focal_point: Point
+    up: Point
+    parallel: bool = False
+    parallel_scale: float = 1.0
+    view_angle: float = CAMERA_LIMITS.view_angle
+
+    def __post_init__(self) -> None:
+        """Check the values and bring them into plain Python numbers."""
+        faults = []
+        for name in ("position", "focal_point", "up"):
+            value = getattr(self, name)
+            if _is_point(value):
+                object.__setattr__(self, name, _point(value))
+            else:
+                faults.append(f"{name} is {value!r}; expected three finite numbers")
+        for name, greatest, expected in (
+            ("parallel_scale", math.inf, "a positive length"),
+            ("view_angle", 180.0, "0 to 180 degrees"),
+        ):
+            value = getattr(self, name)
+            if _is_number(value) and 0 < value < greatest:
+                object.__setattr__(self, name, float(value))
+            else:
+                faults.append(f"{name} is {value!r}; expected {expected}")
+        object.__setattr__(self, "parallel", bool(self.parallel))
+        if not faults and not self._sees():
+            faults.append(
+                f"position {self.position!r}, focal_point {self.focal_point!r} and up {self.up!r} "
+                "lie on one line; expected up to point away from the line of sight"
+            )
+        if faults:
+            raise CameraError("; ".join(faults))
+
+    def _sees(self) -> bool:
+        with np.errstate(over="ignore", invalid="ignore", under="ignore"):
+            ahead = np.subtract(self.focal_point, self.position)
+            return 0 < float(np.linalg.norm(np.cross(ahead, self.up))) < math.inf
+
+    @classmethod
+    def fit(
+        cls,
+        surface: Surface,
+        aspect: float = 1.5,
+        *,
+        zoom: float = 1.0,
+        focus: ArrayLike | None = None,
+        toward: Point = ASIDE,
+        up: Point = UP,
+    ) -> Self:
+        """Return the camera that shows a surface.
+
+        Parameters
+        ----------
+        surface
+            What to look at.
+        aspect
+            Width of the picture over its height.
+        zoom
+            1 shows the whole surface, 8 an eighth of its width.
+        focus
+            Point of the mesh to look at, two or three coordinates; the middle by default.
+        toward, up
+            The way from a curved surface to the camera, and what is up there: no parallels.
+
+        Raises
+        ------
+        ValueError
+            When ``zoom`` is not positive, or ``focus`` is no point.
+        """
+        if not zoom > 0:
+            msg = f"zoom is {zoom!r}; expected a positive number, 1 for the whole surface"
+            raise ValueError(msg)
+        center = surface.center.copy()
+        if focus is not None:
+            point = np.asarray(focus, dtype=float)
+            if point.shape not in ((2,), (3,)) or not np.isfinite(point).all():
+                msg = f"focus is {focus!r}; expected two or three coordinates in the mesh's units"
+                raise ValueError(msg)
+            center[: len(point)] = point
+        if surface.frame is not None:
+            return cls._fit_flat(surface, surface.frame, center, aspect, zoom)
+        closest = CAMERA_LIMITS.closest if focus is not None else 1.0
+        return cls._fit_curved(surface, center, aspect, zoom, closest, toward, up)
+
+    @classmethod
+    def _fit_flat(
+        cls, surface: Surface, frame: Floats, center: Floats, aspect: float, zoom: float
+    ) -> Self:
+        """Look straight on, without perspective, the surface's own axes to the right and up."""
+        right, up = frame
+        width, height = np.ptp((surface.points[surface.valid] - surface.center) @ frame.T, axis=0)
+        share = 1 - 2 * CAMERA_LIMITS.margin
+        return cls(
+            position=_point(center + np.cross(right, up) * surface.extent),
+            focal_point=_point(center),
+            up=_point(up),
+            parallel=True,
+            parallel_scale=float(0.5 * max(height, width / aspect) / share / zoom),
+        )
+
+    @classmethod
+    def _fit_curved(
+        cls,
+        surface: Surface,
+        center: Floats,
+        aspect: float,
+        zoom: float,
+        closest: float,
+        toward: Point,
+        up: Point,
+    ) -> Self:
+        """Look from a side, so far away that the whole surface just fits.
+
+        With a point on the surface to look at, the camera comes up to ``closest`` times closer,
+        and then its view narrows. The middle of a sphere is not on it, so without a point the
+        view only narrows.
+        """
+        ahead = np.asarray(toward, dtype=float)
+        ahead /= np.linalg.norm(ahead)
+        right = np.cross(np.asarray(up, dtype=float), ahead)
+        right /= np.linalg.norm(right)
+        half = np.tan(np.radians(CAMERA_LIMITS.view_angle / 2))
+        axes = np.stack([right, np.cross(ahead, right), ahead])
+        x, y, z = axes @ (surface.points[surface.valid] - surface.center).T
+        share = 1 - 2 * CAMERA_LIMITS.margin
+        reach = np.maximum(np.abs(x) / aspect, np.abs(y))
+        distance = float(np.max(z + reach / half / share))
+        closer = min(zoom, closest)
+        return cls(
+            position=_point(center + ahead * (distance / closer)),
+            focal_point=_point(center),
+            up=_point(up),
+            parallel=False,
+            parallel_scale=float(distance / closer * half * closer / zoom),
+            view_angle=float(2 * np.degrees(np.arctan(half * closer / zoom))),
+        )
+
+    @classmethod
+    def from_dict(cls, values: Any, base: Camera | None = None) -> Self:
+        """Return a camera from numbers by name, as :meth:`to_dict` gives them.
+
+        Parameters
+        ----------
+        values
+            A mapping with some of the attributes; it may come from anybody.
+        base
+            Has what ``values`` leaves out.
+
+        Raises
+        ------
+        CameraError
+            When there is a name that no camera has, something is missing, or a value is wrong.
+        """
+        names = [f.name for f in fields(cls)]
+        if not isinstance(values, Mapping) or not set(values) <= set(names):
+            msg = f"camera is {values!r}; expected a mapping with some of {', '.join(names)}"
+            raise CameraError(msg)
+        whole = {**({} if base is None else asdict(base)), **values}
+        missing = [name for name in ("position", "focal_point", "up") if name not in whole]
+        if missing:
+            msg = f"camera is {values!r}; expected {', '.join(missing)} as well"
+            raise CameraError(msg)
+        return cls(**whole)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the attributes by name: lists of numbers, numbers, and a bool, for JSON."""
+        return {k: list(v) if isinstance(v, tuple) else v for k, v in asdict(self).items()}
+
+    @property
+    def axes(self) -> Floats:
+        """Unit vectors to the right, up, and into the picture, by row, (3, 3)."""
+        ahead = np.subtract(self.focal_point, self.position)
+        ahead /= np.linalg.norm(ahead)
+        right = np.cross(ahead, self.up)
+        right /= np.linalg.norm(right)
+        return np.stack([right, np.cross(right, ahead), ahead])
+
+    @property
+    def distance(self) -> float:
+        """Distance from the eye to the focal point."""
+        return math.dist(self.position, self.focal_point)
+
+    @property
+    def height(self) -> float:
+        """Half the height of the view at the focal point, in the mesh's units."""
+        if self.parallel:
+            return self.parallel_scale
+        return self.distance * math.tan(math.radians(self.view_angle) / 2)
+
+    @property
+    def eye(self) -> Floats:
+        """The eye and 1, or the way to it and 0 where all rays are parallel, (4,)."""
+        if self.parallel:
+            return np.array([*-self.axes[2], 0.0])
+        return np.array([*self.position, 1.0])
+
+    def matrix(self, aspect: float, origin: ArrayLike = (0.0, 0.0, 0.0)) -> Floats:
+        """Matrix that takes (x, y, z, 1) to clip space (x, y, z, w), (4, 4).
+
+        x / w and y / w go from -1 to 1 across the picture, to the right and up, as in VTK. There
+        is no near and no far plane: w is the distance in perspective and 1 otherwise, and z / w
+        grows with the distance, without a bound.
+
+        Parameters
+        ----------
+        aspect
+            Width of the picture over its height.
+        origin
+            Point that (x, y, z) is counted from, (3,). One in the middle of the surface keeps
+            the digits of a mesh far from the origin.
+        """
+        axes = self.axes
+        half = (
+            self.parallel_scale if self.parallel else float(np.tan(np.radians(self.view_angle / 2)))
+        )
+        view = np.zeros((3, 4))
+        view[:, :3] = axes
+        view[:, 3] = axes @ np.subtract(origin, self.position, dtype=float)
+        result = np.zeros((4, 4))
+        result[0] = view[0] / (half * aspect)
+        result[1] = view[1] / half
+        if self.parallel:
+            result[2] = view[2]
+            result[3, 3] = 1.0
+        else:
+            result[2, 3] = -1.0
+            result[3] = view[2]
+        return result
+
+    def project(self, points: ArrayLike, aspect: float) -> Floats:
+        """Return the places of points in the view, (..., 2); NaN for points behind the camera.
+
+        Parameters
+        ----------
+        points
+            Points in the mesh's own coordinates, (..., 3).
+        aspect
+            Width of the picture over its height.
+        """
+        # Counted from the focal point, the digits are those of the view.
+        offset = np.asarray(points, dtype=float) - np.asarray(self.focal_point)
+        right, up, depth = (offset @ axis for axis in self.axes)
+        places = np.asarray(np.stack([right / aspect, up], axis=-1) / self.height)
+        if self.parallel:
+            return places
+        # What is as far away as the focal point is seen as if there were no perspective.
+        scale: Floats = np.asarray(1.0 + depth / self.distance)[..., None]
+        return np.where(scale > 0, places / np.where(scale > 0, scale, 1.0), np.nan)
+
+    def ray(self, x: float, y: float, aspect: float) -> tuple[Floats, Floats]:
+        """Return start and direction, of length one, of what is seen at a place of the view."""
+        right, up, ahead = self.axes
+        at = np.asarray(self.focal_point) + (right * x * aspect + up * y) * self.height
+        start = at - ahead * self.distance if self.parallel else np.asarray(self.position)
+        return start, (at - start) / np.linalg.norm(at - start)
+
+    def shift(self, offset: ArrayLike) -> Self:
+        """Return the camera moved by a vector, (3,)."""
+        return replace(
+            self,
+            position=_point(np.add(self.position, offset)),
+            focal_point=_point(np.add(self.focal_point, offset)),
+        )
+
+    def pan(self, dx: float, dy: float, aspect: float) -> Self:
+        """Return the camera after what is seen has moved by a part of the view."""
+        right, up, _ = self.axes
+        return self.shift((right * dx * aspect + up * dy) * self.height)
+
+    def rotate(self, dx: float, dy: float, aspect: float) -> Self:
+        """Return the camera after a turn around the focal point, as a drag by (dx, dy) asks."""
+        turn = CAMERA_LIMITS.turn
+        aside = _turned(
+            np.subtract(self.position, self.focal_point),
+            np.asarray(self.up),
+            -turn * dx * min(aspect, CAMERA_LIMITS.widest_turn),
+        )
+        camera = replace(self, position=_point(aside + self.focal_point))
+        right = camera.axes[0]
+        above = _turned(aside, -right, -turn * dy)
+        # The old up need not be off the new line of sight, so the axes turn along with it.
+        up = _turned(camera.axes[1], -right, -turn * dy)
+        return replace(camera, position=_point(above + self.focal_point), up=_point(up))
+
+    def zoom_by(
+        self,
+        factor: float,
+        x: float = 0.0,
+        y: float = 0.0,
+        *,
+        aspect: float,
+        whole: Camera,
+        target: ArrayLike | None = None,
+    ) -> Self:
+        """Return the camera after a zoom; the point at (x, y) stays where it is.
+
+        Parameters
+        ----------
+        factor
+            More than 1 comes closer; what is no positive number changes nothing.
+        x, y
+            Place in the view that stays.
+        aspect
+            Width of the picture over its height.
+        whole
+            Camera that shows the whole surface, from which zoom counts.
+        target
+            Point of the surface at (x, y), (3,). The focal point comes to its depth, without a
+            change of what is seen, so that a zoom in perspective never runs into the surface.
+        """
+        if not math.isfinite(factor) or factor <= 0:
+            return self
+        camera = self if target is None else self._focused(np.asarray(target, dtype=float))
+        limits, zoom = CAMERA_LIMITS, whole.height / camera.height
+        factor = min(max(factor, limits.farthest_zoom / zoom), limits.deepest_zoom / zoom)
+        right, up, ahead = camera.axes
+        offset = (right * x * aspect + up * y) * camera.height
+        moved = camera.shift(offset * (1 - 1 / factor))
+        if camera.parallel:
+            return replace(moved, parallel_scale=camera.parallel_scale / factor)
+        height = camera.height / factor
+        half = math.tan(math.radians(limits.view_angle / 2))
+        distance = max(height / half, whole.distance / limits.closest)
+        return replace(
+            moved,
+            position=_point(np.asarray(moved.focal_point) - ahead * distance),
+            view_angle=2 * math.degrees(math.atan(height / distance)),
+        )
+
+    def _focused(self, point: Floats) -> Self:
+        """Bring the focal point to the depth of a point; the view stays the same."""
+        ahead = self.axes[2]
+        depth = float((point - self.position) @ ahead)
+        if depth <= 0:
+            return self
+        return replace(self, focal_point=_point(self.position + ahead * depth))
+
+    def is_near(self, surface: Surface) -> bool:
+        """Tell whether double precision resolves the surface from this camera."""
+        eye, focus = np.asarray(self.position), np.asarray(self.focal_point)
+        offsets = np.abs([eye - surface.center, focus - surface.center])
+        sizes = (float(np.abs(eye - focus).max()), self.parallel_scale)
+        return bool(offsets.max() <= FARTHEST_REACH * surface.extent) and all(
+            NEAREST_REACH <= size / surface.extent <= FARTHEST_REACH for size in sizes
+        )
+
+
+def _turned(vector: Floats, axis: Floats, degrees: float) -> Floats:
+    """Rotate a vector about an axis, by the right hand's rule."""
+    axis = axis / np.linalg.norm(axis)
+    angle = math.radians(degrees)
+    along = axis * (axis @ vector)
+    across = vector - along
+    return np.asarray(along + across * math.cos(angle) + np.cross(axis, vector) * math.sin(angle))
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, (int, float, np.integer, np.floating)) and not isinstance(value, bool)
+
+
+def _is_point(value: Any) -> bool:
+    try:
+        numbers = np.asarray(value, dtype=float)
+    except (TypeError, ValueError):
+        return False
+    return numbers.shape == (3,) and bool(np.isfinite(numbers).all())
+
+
+def _point(values: ArrayLike) -> Point:
+    x, y, z = (float(v) for v in np.asarray(values))
+    return x, y, z

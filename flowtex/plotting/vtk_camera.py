@@ -1,0 +1,59 @@
+"""Between :class:`~flowtex.camera.Camera` and the camera of a VTK renderer."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from flowtex.camera import Camera
+from flowtex.field import FlowField
+
+__all__ = ["apply_camera", "look", "read_camera"]
+
+
+def read_camera(vtk_camera: Any) -> Camera:
+    """Return what a VTK camera has, such as ``plotter.camera``.
+
+    Raises
+    ------
+    CameraError
+        When it sees nothing.
+    """
+    return Camera(
+        position=vtk_camera.GetPosition(),
+        focal_point=vtk_camera.GetFocalPoint(),
+        up=vtk_camera.GetViewUp(),
+        parallel=bool(vtk_camera.GetParallelProjection()),
+        parallel_scale=vtk_camera.GetParallelScale(),
+        view_angle=vtk_camera.GetViewAngle(),
+    )
+
+
+def apply_camera(camera: Camera, vtk_camera: Any) -> None:
+    """Put a VTK camera where another one stands."""
+    vtk_camera.SetPosition(*camera.position)
+    vtk_camera.SetFocalPoint(*camera.focal_point)
+    vtk_camera.SetViewUp(*camera.up)
+    vtk_camera.SetParallelProjection(camera.parallel)
+    vtk_camera.SetParallelScale(camera.parallel_scale)
+    vtk_camera.SetViewAngle(camera.view_angle)
+
+
+def look(
+    plotter: Any,
+    field: FlowField,
+    *,
+    zoom: float = 1.0,
+    focus: tuple[float, ...] | None = None,
+) -> None:
+    """Point a plotter's camera at a field; :meth:`Camera.fit` has the parameters."""
+    camera = Camera.fit(field.surface, subplot_aspect(plotter), zoom=zoom, focus=focus)
+    apply_camera(camera, plotter.camera)
+    plotter.camera_set = True
+    plotter.renderer.reset_camera_clipping_range()
+
+
+def subplot_aspect(plotter: Any) -> float:
+    """Width over height of the part of the window that the present subplot fills."""
+    width, height = plotter.window_size
+    left, bottom, right, top = plotter.renderer.GetViewport()
+    return float(width * (right - left)) / max(float(height * (top - bottom)), 1.0)
