@@ -22,16 +22,15 @@ __all__ = [
     "FILE",
     "FLAT",
     "PICTURE",
-    "DrawOptions",
-    "FieldOptions",
-    "FrameOptions",
-    "LookOptions",
-    "ServeOptions",
+    "DrawFlags",
+    "FieldFlags",
+    "FrameFlags",
+    "LookFlags",
+    "ServeFlags",
     "SettingFlags",
     "UsageError",
-    "given",
-    "read",
-    "settings_in",
+    "load_field",
+    "settings_from",
 ]
 
 FLOW, PICTURE = Group("The flow", sort_key=1), Group("The picture", sort_key=2)
@@ -42,11 +41,11 @@ FLAT = Parameter(name="*")
 
 
 class UsageError(ValueError):
-    """Something was asked for in a way that cannot be; the text says how it can."""
+    """Arguments that cannot be followed; the text says how they can."""
 
 
 @dataclass(kw_only=True)
-class FieldOptions:
+class FieldFlags:
     """What of a file makes the flow."""
 
     plane: Annotated[
@@ -71,8 +70,8 @@ class FieldOptions:
         Parameter(group=FLOW, negative="", help="Vectors have no sign: v and -v mean the same."),
     ] = None
 
-    def given(self) -> dict[str, Any]:
-        """Return what was given, as arguments of ``FlowField.from_file``."""
+    def arguments(self) -> dict[str, Any]:
+        """Return the flags that were set, as arguments of ``FlowField.from_file``."""
         values = {name: value for name, value in asdict(self).items() if value is not None}
         if values.get("periodic") == "none":
             values["periodic"] = ""
@@ -82,7 +81,7 @@ class FieldOptions:
 
 
 @dataclass(kw_only=True)
-class LookOptions:
+class LookFlags:
     """Colours, and what of the flow is seen."""
 
     scalars: Annotated[
@@ -110,7 +109,7 @@ class LookOptions:
         ),
     ] = None
 
-    def look(self) -> dict[str, Any]:
+    def arguments(self) -> dict[str, Any]:
         """Return colours, camera and image, as arguments of ``flowtex.render``."""
         if not self.zoom > 0:
             msg = f"--zoom is {self.zoom:g}; expected a positive number, 1 for the whole surface"
@@ -125,7 +124,7 @@ class LookOptions:
 
 
 @dataclass(kw_only=True)
-class DrawOptions(LookOptions):
+class DrawFlags(LookFlags):
     """How a picture is taken."""
 
     size: Annotated[str, Parameter(group=PICTURE, help="Width and height in pixels.")] = "1024x768"
@@ -140,7 +139,7 @@ class DrawOptions(LookOptions):
 
 
 @dataclass(kw_only=True)
-class FrameOptions(DrawOptions):
+class FrameFlags(DrawFlags):
     """How a picture, or each of a movie, is taken without a window."""
 
     supersampling: Annotated[
@@ -155,14 +154,14 @@ class FrameOptions(DrawOptions):
         ),
     ] = ()
 
-    def look(self) -> dict[str, Any]:
-        """Return what :meth:`LookOptions.look` does, and these."""
-        own = {"beside": settings_in(self.beside), "supersampling": self.supersampling}
-        return {**super().look(), **own}
+    def arguments(self) -> dict[str, Any]:
+        """Return what :meth:`LookFlags.arguments` does, and these."""
+        own = {"beside": _parsed_settings(self.beside), "supersampling": self.supersampling}
+        return {**super().arguments(), **own}
 
 
 @dataclass(kw_only=True)
-class ServeOptions:
+class ServeFlags:
     """Where the page is served."""
 
     port: Annotated[int, Parameter(group=PAGE, help="Port; 0 takes a free one.")] = 0
@@ -195,22 +194,21 @@ def _numbers(flag: str, text: str) -> tuple[float, ...]:
     return values
 
 
-def read(file: Path, which: FieldOptions | None) -> FlowField:
+def load_field(file: Path, flow: FieldFlags | None) -> FlowField:
     """Return the flow of a file."""
     from flowtex.field import FlowField
 
-    return FlowField.from_file(file, **(which.given() if which is not None else {}))
+    return FlowField.from_file(file, **(flow or FieldFlags()).arguments())
 
 
-def given(settings: SettingFlags | None) -> dict[str, Any]:
-    """Return the settings that were given as keyword arguments, checked."""
-    flags = {} if settings is None else vars(settings)
-    values = {name: value for name, value in flags.items() if value is not None}
+def settings_from(flags: SettingFlags | None) -> dict[str, Any]:
+    """Return the settings of flags that were set, checked, as keyword arguments."""
+    values = {name: v for name, v in vars(flags or SettingFlags()).items() if v is not None}
     Settings().update(**values)
     return values
 
 
-def settings_in(words: tuple[str, ...]) -> dict[str, Any] | None:
+def _parsed_settings(words: tuple[str, ...]) -> dict[str, Any] | None:
     """Read words such as ``lod=false`` as settings; ``None`` where there are none.
 
     Raises
@@ -220,15 +218,15 @@ def settings_in(words: tuple[str, ...]) -> dict[str, Any] | None:
     SettingsError
         When there is no such setting, or the value is not one of its.
     """
-    found: dict[str, Any] = {}
+    values: dict[str, Any] = {}
     for word in words:
         name, equals, text = word.partition("=")
         if not equals:
             msg = f"--beside {word!r} is no setting; expected name=value, as in --beside lod=false"
             raise UsageError(msg)
         row = setting(name.strip().replace("-", "_"))
-        found[row.name] = row.check(_value(row, text.strip()))
-    return found or None
+        values[row.name] = row.check(_value(row, text.strip()))
+    return values or None
 
 
 def _value(row: Setting, text: str) -> Any:
@@ -244,7 +242,7 @@ def _value(row: Setting, text: str) -> Any:
 
 
 def _annotation(row: Setting) -> Any:
-    """Type of a flag that is None where it was not given, and tells the setting's default."""
+    """Type of a flag that is None by default; its help names the default of the setting."""
     kind: Any = Literal[row.choices] if row.choices else row.kind
     span = f" From {row.low:g} to {row.high:g}." if row.low is not None else ""
     default = f" [default: {row.default}]"

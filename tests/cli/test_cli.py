@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from flowtex import diagnostics as doctor
-from flowtex import examples
+from flowtex import diagnostics, examples
 from flowtex.cli import commands, main
 from flowtex.settings import TABLE
 
@@ -173,11 +172,11 @@ def test_what_cannot_be_is_told_in_one_paragraph(
 def test_missing_opengl_has_a_code_of_its_own(
     run: Run, gyre: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def missing() -> doctor.OpenGLReport:
+    def missing() -> diagnostics.OpenGLReport:
         msg = "VTK cannot draw here"
-        raise doctor.OpenGLMissingError(msg)
+        raise diagnostics.OpenGLMissingError(msg)
 
-    monkeypatch.setattr(doctor, "require_opengl", missing)
+    monkeypatch.setattr(diagnostics, "require_opengl", missing)
     for words in (("render", gyre, "-o", tmp_path / "a.png"), ("show", gyre), ("demo",)):
         code, out, err = run(*words)
         assert (code, out, err) == (1, "", "flowtex: VTK cannot draw here")
