@@ -9,7 +9,6 @@ of the paper is a check with a number. It is no part of the installed package.
     bench.py, data_sets.py  what the experiments share: scale, seed, fields, textures
     views.py                a field seen by a camera, drawn by the renderer in NumPy
     measures.py             direction, grain and aliasing of a picture
-    level_of_detail.py      one view with and without level of detail
     position_errors.py      errors of particle positions from coarser slices and fields
     redundancy/             a slice predicted from slices of shorter lag, and what is left of it
     references/             methods of the related work

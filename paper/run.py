@@ -21,24 +21,28 @@ from paper.views import grey, view_of
 
 __all__ = ["SectionError", "reproduce", "sections"]
 
-#: Modules of the sections, in the order of the page.
-ORDER = (
+#: Modules of ``paper.sections``, and the keys of their sections in the order of the page.
+MODULES = (
     "table1",
     "table2",
     "table3",
     "redundancy",
     "figures_1_2",
     "figures_3_4",
-    "figure5",
     "figure6",
-    "figure7",
-    "figure8",
+    "level_of_detail",
     "step_size",
     "zooms",
     "sample_counts",
     "camera_motion",
     "depth_cues",
     "computational_space",
+)
+ORDER = (
+    *("table1", "table2", "table3", "redundancy"),
+    *("figure1", "figure2", "figure3", "figure4", "figures34_others"),
+    *("figure5", "figure6", "figure7", "figure8"),
+    *("section41", "zooms", "samples", "moving", "depth", "stretched"),
 )
 #: Significant digits of a number: more would differ from one processor to the next.
 DIGITS = 6
@@ -52,8 +56,9 @@ class SectionError(ValueError):
 
 def sections() -> list[Section]:
     """Every section, in order."""
-    modules = (import_module(f"paper.sections.{name}") for name in ORDER)
-    return [section for module in modules for section in module.SECTIONS]
+    modules = (import_module(f"paper.sections.{name}") for name in MODULES)
+    by_key = {section.key: section for module in modules for section in module.SECTIONS}
+    return [by_key[key] for key in ORDER]
 
 
 def reproduce(

@@ -22,7 +22,7 @@ from flowtex.settings import Settings
 from paper import measures
 from paper.bench import Bench
 
-__all__ = ["SURFACE_GREY", "View", "grey", "view_of"]
+__all__ = ["View", "grey", "view_of", "wing_view"]
 
 
 #: Colour of a surface without scalars.
@@ -30,6 +30,10 @@ SURFACE_GREY = (0.627, 0.627, 0.627)
 #: Pixels along an outline that are not judged, and the share of the greatest speed below which the
 #: direction of the flow counts as unknown.
 BORDER, SLOW = 10, 0.05
+#: Views of the wing: where the camera stands, what it looks at from afar and close up, and half
+#: the height that it sees.
+WING_EYE, WING_WHOLE, WING_NEAR = (0.25, -1.0, 1.5), (0.56, 0.0, 0.0), (0.78, -0.16, 0.03)
+WING_HALF_HEIGHT = 0.43
 
 
 @dataclass(frozen=True, eq=False)
@@ -179,6 +183,15 @@ def view_of(
         view_angle=look.view_angle,
     )
     return View(bench, field, camera, step)
+
+
+def wing_view(bench: Bench, size: tuple[int, int], zoom: float) -> View:
+    """Look at the wing from above and aside; closer, at the flow beside its left edge."""
+    at = WING_NEAR if zoom > 1 else WING_WHOLE
+    eye = tuple(e - w + a for e, w, a in zip(WING_EYE, WING_WHOLE, at, strict=True))
+    scale = WING_HALF_HEIGHT * max(1.0, 1.45 * size[1] / size[0]) / zoom
+    camera = Camera((eye[0], eye[1], eye[2]), at, (0.0, 0.0, 1.0), size, parallel_scale=scale)
+    return View(bench, bench.shuttle, camera)
 
 
 def grey(value: Floats, colour: Any = SURFACE_GREY, **settings: Any) -> Bytes:

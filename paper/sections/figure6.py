@@ -9,8 +9,7 @@ from paper import measures
 from paper.bench import OURS, PAPER, Bench
 from paper.findings import Block, Claim, Finding, Panel, Plate, Section, Table
 from paper.references import draw_texture, forssell_lic
-from paper.sections.figure7 import wing
-from paper.views import View, grey, view_of
+from paper.views import View, grey, view_of, wing_view
 
 __all__ = ["SECTIONS"]
 
@@ -67,7 +66,7 @@ def _evenness(view: View, resolution: int) -> tuple[list[Panel], dict[str, dict[
 def _figure6(bench: Bench) -> Finding:
     flat = view_of(bench, bench.stretched, bench.pick((440, 230), (300, 156)))
     noise, even = _evenness(flat, bench.pick(256, 128))
-    view = wing(bench, bench.pick((440, 340), (200, 155)), 3.0)
+    view = wing_view(bench, bench.pick((440, 340), (200, 155)), 3.0)
     pictures = _pictures(bench, view)
     figures: dict[str, dict[str, float]] = {
         name: {
