@@ -84,8 +84,8 @@ def _statements(report: Report) -> str:
     """List what does not hold, and below it, folded, all claims."""
     pairs = [(section, claim) for section, finding in report.findings for claim in finding.claims]
     failing = [(section, claim) for section, claim in pairs if not claim.holds]
-    shown = f"<h3>Does not hold</h3>{_rows(failing)}" if failing else "<p>All of them hold.</p>"
-    return f"{shown}<details><summary>All {len(pairs)} statements</summary>{_rows(pairs)}</details>"
+    first = f"<h3>Does not hold</h3>{_rows(failing)}" if failing else "<p>All of them hold.</p>"
+    return f"{first}<details><summary>All {len(pairs)} statements</summary>{_rows(pairs)}</details>"
 
 
 def _rows(pairs: Sequence[tuple[Section, Claim]]) -> str:
@@ -104,15 +104,15 @@ def _rows(pairs: Sequence[tuple[Section, Claim]]) -> str:
 
 
 def _sections(report: Report, folder: Path) -> str:
-    written = []
+    parts = []
     for part, group in groupby(report.findings, key=lambda pair: pair[0].part):
-        written.append(f'<p class="part">{escape(part)}</p>')
-        written += [_section(section, finding, folder) for section, finding in group]
-    return "\n".join(written)
+        parts.append(f'<p class="part">{escape(part)}</p>')
+        parts += [_section(section, finding, folder) for section, finding in group]
+    return "\n".join(parts)
 
 
 def _section(section: Section, finding: Finding, folder: Path) -> str:
-    shown = [
+    blocks = [
         _block(block, f"{section.key}-{count}", folder)
         for count, block in enumerate(finding.blocks, start=1)
     ]
@@ -122,7 +122,7 @@ def _section(section: Section, finding: Finding, folder: Path) -> str:
         title=escape(section.title),
         states=escape(section.states),
         computes=escape(section.computes),
-        blocks="\n".join(shown),
+        blocks="\n".join(blocks),
         claims=_claims(finding.claims),
     )
 

@@ -131,8 +131,8 @@ class Predictor:
             if (missing <= LAG_TOLERANCE * whole * grid.unit).all():
                 break
             longest = np.inf if piece == MAX_PIECES else half
-            moved, lag = self._piece(means, total, elapsed, missing, longest)
-            total += moved
+            offset, lag = self._piece(means, total, elapsed, missing, longest)
+            total += offset
             elapsed += lag
         ended = self._reach < half
         if ended.any():
@@ -140,17 +140,17 @@ class Predictor:
         return total
 
     def _piece(
-        self, means: Floats, moved: Floats, elapsed: Floats, missing: Floats, longest: float
+        self, means: Floats, offset: Floats, elapsed: Floats, missing: Floats, longest: float
     ) -> tuple[Floats, Floats]:
         """Go on from the ends of paths: displacement, and lag in the field's units."""
         grid = self._grid
-        steps, rows, columns, _ = moved.shape
-        corners = _corners(moved / grid.spacing, self._periodic())
+        steps, rows, columns, _ = offset.shape
+        corners = _corners(offset / grid.spacing, self._periodic())
         unit = np.zeros(missing.shape)
         for corner, share in corners:
             unit += share * grid.unit.ravel()[corner]
         lag = np.minimum(missing / unit, longest)
-        total = np.zeros(moved.shape)
+        total = np.zeros(offset.shape)
         before, fraction = self._steps(elapsed)
         after = np.minimum(before + 1, steps - 1)
         for corner, share in corners:
@@ -192,13 +192,13 @@ class Predictor:
         return over_j, over_i
 
 
-def _corners(moved: Floats, periodic: tuple[bool, bool]) -> list[tuple[Indices, Floats]]:
+def _corners(offset: Floats, periodic: tuple[bool, bool]) -> list[tuple[Indices, Floats]]:
     """Entries around each entry moved by so many entries, and their bilinear shares."""
-    rows, columns = moved.shape[1:3]
+    rows, columns = offset.shape[1:3]
     parts = []
     for axis, count in ((1, rows), (0, columns)):
         own = np.arange(count).reshape((-1, 1) if axis else (1, -1))
-        x = own + moved[..., axis]
+        x = own + offset[..., axis]
         if count == 1:
             parts.append([(np.zeros(x.shape, np.intp), np.ones(x.shape))])
             continue

@@ -64,8 +64,8 @@ class TexelDensity:
         around = ndimage.maximum_filter(self._nodal, (3, 3, 1), mode="nearest")
         result = around.copy()
         for data in _sides(slices):
-            for moved in data.reshape(-1, *result.shape):
-                i, j = np.moveaxis(np.rint(self._entry(moved)).astype(np.intp), -1, 0)
+            for offset in data.reshape(-1, *result.shape):
+                i, j = np.moveaxis(np.rint(self._entry(offset)).astype(np.intp), -1, 0)
                 np.maximum(result, around[j, i], out=result)
         return result
 
@@ -82,8 +82,8 @@ class TexelDensity:
 
     def _entry(self, displacement: NDArray[np.floating]) -> Floats:
         """Positions in entries, (J, I, 2) as (i, j), between the first and the last."""
-        moved = np.nan_to_num(displacement.astype(float), nan=0.0, posinf=1e9, neginf=-1e9)
-        x = (self._nodes + moved - self._origin) / self._spacing
+        offset = np.nan_to_num(displacement.astype(float), nan=0.0, posinf=1e9, neginf=-1e9)
+        x = (self._nodes + offset - self._origin) / self._spacing
         wrapped = np.mod(x, np.maximum(self._last, 1))
         return np.asarray(np.clip(np.where(self._periodic, wrapped, x), 0, self._last))
 

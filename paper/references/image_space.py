@@ -63,7 +63,7 @@ class ImageSpace:
     Raises
     ------
     ValueError
-        When a number is out of range; all faults are told.
+        When a number is out of range; all faults are listed.
     """
 
     def __init__(

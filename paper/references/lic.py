@@ -69,7 +69,7 @@ def lic(
     ------
     ValueError
         When the shapes do not fit, a number is not finite, a length is not positive or the
-        kernel is unknown; all faults are told.
+        kernel is unknown; all faults are listed.
     """
     v, image = np.asarray(velocity, dtype=float), np.asarray(noise, dtype=float)
     lengths = np.asarray(length, dtype=float)

@@ -33,12 +33,12 @@ def _panned(view: View, pixels: float) -> View:
     scale = camera.parallel_scale or 1.0
     way = camera.axes[0] * (pixels * 2.0 * scale / camera.size[1])
     eye, at = (np.asarray(p) + way for p in (camera.position, camera.focal_point))
-    moved = replace(
+    panned = replace(
         camera,
         position=(float(eye[0]), float(eye[1]), float(eye[2])),
         focal_point=(float(at[0]), float(at[1]), float(at[2])),
     )
-    return replace(view, camera=moved)
+    return replace(view, camera=panned)
 
 
 def _unit(values: Floats) -> Floats:
@@ -54,7 +54,7 @@ def _moving(bench: Bench) -> Finding:
     figures: dict[str, dict[str, list[float]]] = {
         name: {"angle": [], "coherence": []} for name in (IMAGE, OURS)
     }
-    kept: dict[str, Floats] = {}
+    last: dict[str, Floats] = {}
     frames = list(range(-2, moving + after))
     for frame in frames:
         view = _panned(first, PAN * min(max(frame + 1, 0), moving))
@@ -66,22 +66,22 @@ def _moving(bench: Bench) -> Finding:
             ours = view.picture().value
             _note(figures[OURS], view, ours)
         if frame == moving - 1:
-            kept = {IMAGE: values, OURS: view.picture().value}
+            last = {IMAGE: values, OURS: view.picture().value}
     rest = _panned(first, PAN * moving)
     fresh = rest.picture().value
-    same = float(np.nanmax(np.abs(fresh - kept[OURS])))
-    return _found(figures, kept, image, rest, same, frames, moving)
+    same = float(np.nanmax(np.abs(fresh - last[OURS])))
+    return _finding(figures, last, image, rest, same, frames, moving)
 
 
 def _note(figures: dict[str, list[float]], view: View, values: Floats) -> None:
-    found = view.streaks(values)
-    figures["angle"].append(found.angle)
-    figures["coherence"].append(found.coherence)
+    streaks = view.streaks(values)
+    figures["angle"].append(streaks.angle)
+    figures["coherence"].append(streaks.coherence)
 
 
-def _found(
+def _finding(
     figures: dict[str, dict[str, list[float]]],
-    kept: dict[str, Floats],
+    last: dict[str, Floats],
     image: ImageSpace,
     view: View,
     same: float,
@@ -99,20 +99,20 @@ def _found(
         alt="In image space the angle rises while the camera moves and falls over some frames "
         "after; here it stays as it is.",
     )
-    settled = image.frames(STILL)
+    at_rest = image.frames(STILL)
     sharp = {
-        "moving": measures.sharpness(kept[IMAGE], view.mask),
-        "at rest": measures.sharpness(settled, view.mask),
+        "moving": measures.sharpness(last[IMAGE], view.mask),
+        "at rest": measures.sharpness(at_rest, view.mask),
     }
     panels = [
-        Panel(grey(_unit(kept[IMAGE])), "Image space: the last frame in which the camera moves."),
-        Panel(grey(_unit(settled)), f"Image space: {STILL} frames later."),
-        Panel(grey(kept[OURS]), "This method: the last frame in which the camera moves."),
+        Panel(grey(_unit(last[IMAGE])), "Image space: the last frame in which the camera moves."),
+        Panel(grey(_unit(at_rest)), f"Image space: {STILL} frames later."),
+        Panel(grey(last[OURS]), "This method: the last frame in which the camera moves."),
     ]
     angles = figures[IMAGE]["angle"]
     numbers: dict[str, Any] = {
-        "angles": {name: found["angle"] for name, found in figures.items()},
-        "coherence": {name: found["coherence"] for name, found in figures.items()},
+        "angles": {name: streaks["angle"] for name, streaks in figures.items()},
+        "coherence": {name: streaks["coherence"] for name, streaks in figures.items()},
         "difference_from_a_fresh_frame": same,
         "sharpness_image_space": sharp,
         "frames_to_recover": _recovery(angles, moving + 2),

@@ -59,7 +59,7 @@ def _stretched(bench: Bench) -> Finding:
         "mean angle, °",
         "coherence",
     )
-    table = Table(head, [(name, *found.values()) for name, found in figures.items()])
+    table = Table(head, [(name, *row.values()) for name, row in figures.items()])
     where = "A double gyre on 52 × 62 nodes whose cells grow to the right and upwards."
     plate = Plate(panels, where)
     return Finding([plate, table], figures, _claims(figures))

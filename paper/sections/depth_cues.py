@@ -97,7 +97,7 @@ def _depth(bench: Bench) -> Finding:
         )
         for name, values in _advected(bench, view).items()
     ]
-    rows = [(name, *found.values()) for name, found in figures.items()]
+    rows = [(name, *row.values()) for name, row in figures.items()]
     head = ("noise", "grain near, px", "grain far, px", "far: width over height", "near over far")
     blocks: list[Block] = [
         Plate(panels[:2], ""),

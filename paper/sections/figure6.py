@@ -45,12 +45,12 @@ def _evenness(view: View, resolution: int) -> tuple[list[Panel], dict[str, dict[
     for correction in (True, False):
         paper = {**PAPER, "resolution": resolution, "noise_correction": correction}
         noise = view.picture(**{**paper, "samples": 1}, lod=False).value
-        found = measures.evenness(noise, view.mask)
+        evenness = measures.evenness(noise, view.mask)
         word = "With" if correction else "Without"
-        numbers[f"{word.lower()} correction"] = dict(found._asdict())
+        numbers[f"{word.lower()} correction"] = dict(evenness._asdict())
         label = (
-            f"{word} the correction: grains {found.stretch:.2f} times as long as wide, large ones "
-            f"{found.spread:.1f} times the small ones."
+            f"{word} the correction: grains {evenness.stretch:.2f} times as long as wide, large "
+            f"ones {evenness.spread:.1f} times the small ones."
         )
         panels += [
             Panel(grey(noise), label),
@@ -58,8 +58,8 @@ def _evenness(view: View, resolution: int) -> tuple[list[Panel], dict[str, dict[
         ]
     # With level of detail, from so many texels that mip levels decide what is seen.
     paper = {**PAPER, "samples": 1, "resolution": 4 * resolution}
-    found = measures.evenness(view.picture(**paper).value, view.mask)
-    numbers["with correction, level of detail"] = dict(found._asdict())
+    evenness = measures.evenness(view.picture(**paper).value, view.mask)
+    numbers["with correction, level of detail"] = dict(evenness._asdict())
     return panels, numbers
 
 
@@ -80,7 +80,7 @@ def _figure6(bench: Bench) -> Finding:
         Panel(grey(values), f"{LABELS[name]} Streaks {figures[name]['across']:.1f} px wide.")
         for name, values in pictures.items()
     ]
-    rows = [(name, *found.values()) for name, found in figures.items()]
+    rows = [(name, *row.values()) for name, row in figures.items()]
     blocks: list[Block] = [
         Plate(noise[:2], ""),
         Plate(noise[2:], "A flow on 52 × 62 nodes whose cells grow to the right and upwards."),

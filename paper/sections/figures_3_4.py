@@ -138,7 +138,7 @@ def _claims(errors: Errors, figure: int, nodes: str) -> list[Claim]:
 
 
 def _figure4(bench: Bench) -> Finding:
-    found = _figure(bench, 4)
+    finding = _figure(bench, 4)
     half, quarter = (_measured(bench, "vortex", bench.vortex, 10, f) for f in (2, 4))
     larger = Claim(
         "figure4_field_errors_larger_at_25",
@@ -148,7 +148,7 @@ def _figure4(bench: Bench) -> Finding:
         "at least",
         "× after ten steps",
     )
-    return Finding(found.blocks, found.numbers, [larger, *found.claims])
+    return Finding(finding.blocks, finding.numbers, [larger, *finding.claims])
 
 
 def _others(bench: Bench) -> Finding:

@@ -67,10 +67,10 @@ def _coherence(view: View, values: Floats) -> dict[str, float]:
         "slow": view.mask & (view.speed <= low),
         "fast": view.mask & (view.speed >= high),
     }
-    found = {
+    coherence = {
         name: measures.streaks(values, *view.flow, mask).coherence for name, mask in masks.items()
     }
-    return {**found, "angle": view.streaks(values).angle}
+    return {**coherence, "angle": view.streaks(values).angle}
 
 
 def _section41(bench: Bench) -> Finding:
@@ -83,7 +83,7 @@ def _section41(bench: Bench) -> Finding:
     # The fixed step is right for the typical speed at the finest level.
     lookups = _lookups(textures.paper, float(np.median(textures.paper.step)))
     zooms = bench.pick((0.5, 1.0, 2.0, 4.0, 8.0), (1.0, 4.0))
-    shown = 1.0
+    panel_zoom = 1.0
     figures: dict[str, dict[str, Any]] = {name: {} for name in lookups}
     panels = []
     for zoom in zooms:
@@ -91,9 +91,9 @@ def _section41(bench: Bench) -> Finding:
         for name, lookup in lookups.items():
             values = view.picture(lookup, **SETTINGS).value
             values = (values - np.nanmean(values)) / np.nanstd(values)
-            found = figures[name][f"{zoom:g}"] = _coherence(view, values)
-            if zoom == shown:
-                label = f"Δt {name}: coherence {found['all']:.2f}."
+            row = figures[name][f"{zoom:g}"] = _coherence(view, values)
+            if zoom == panel_zoom:
+                label = f"Δt {name}: coherence {row['all']:.2f}."
                 panels.append(Panel(grey(values), label))
     plot = line_plot(
         [
@@ -107,22 +107,22 @@ def _section41(bench: Bench) -> Finding:
         log="x",
         ticks=zooms,
     )
-    at = f"{shown:g}"
+    at = f"{panel_zoom:g}"
     plate = Plate(panels, "A double gyre by the paper's method, the whole of it.")
     return Finding([plate, _table(figures, at), plot], figures, _claims(figures, at))
 
 
 def _table(figures: dict[str, dict[str, Any]], at: str) -> Table:
     rows = [
-        (f"Δt {name}", *(found[at][key] for key in ("all", "slow", "fast", "angle")))
-        for name, found in figures.items()
+        (f"Δt {name}", *(by_zoom[at][key] for key in ("all", "slow", "fast", "angle")))
+        for name, by_zoom in figures.items()
     ]
     head = ("step", "coherence", "where slow", "where fast", "mean angle, °")
     return Table(head, rows, "At zoom 1, where a pixel covers several texels of the noise.")
 
 
 def _claims(figures: dict[str, dict[str, Any]], at: str) -> list[Claim]:
-    best, local, fixed = (found[at] for found in figures.values())
+    best, local, fixed = (by_zoom[at] for by_zoom in figures.values())
     text = "Section 4.1: the adapted step makes streaks coherent that a "
     return [
         Claim(

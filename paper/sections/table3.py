@@ -29,9 +29,9 @@ def _slices(field: FlowField) -> dict[str, int]:
     """Count slices: the paper's K, those that its sizes come to, and those of this package."""
     steps = len(field.times)
     # A field that varies has lags from 0 to K, as far as there are earlier time steps.
-    told = STEADY if field.steady else sum(min(step, K) + 1 for step in range(steps))
+    published = STEADY if field.steady else sum(min(step, K) + 1 for step in range(steps))
     parameter = "arclength" if field.steady else "time"
-    return {"k": K * steps, "told": told, "ours": len(choose_lags(field, parameter)) * steps}
+    return {"k": K * steps, "told": published, "ours": len(choose_lags(field, parameter)) * steps}
 
 
 def _table3(bench: Bench) -> Finding:

@@ -40,7 +40,7 @@ def _drawn(bench: Bench, view: View, method: str) -> Floats:
 
 def _measured(bench: Bench) -> tuple[dict[str, dict[str, Any]], list[Panel]]:
     zooms = [2.0**n for n in bench.pick(range(11), (0, 5, 10))]
-    shown = bench.pick((1, 16, 256, 1024), (1, 1024))
+    panel_zooms = bench.pick((1, 16, 256, 1024), (1, 1024))
     size = bench.pick((320, 260), (130, 104))
     figures: dict[str, dict[str, Any]] = {name: {} for name in METHODS}
     panels = []
@@ -50,7 +50,7 @@ def _measured(bench: Bench) -> tuple[dict[str, dict[str, Any]], list[Panel]]:
             values = _drawn(bench, view, name)
             grain, streaks = view.grain(values), view.streaks(values)
             figures[name][f"{zoom:g}"] = {**grain._asdict(), **streaks._asdict()}
-            if zoom in shown:
+            if zoom in panel_zooms:
                 panels.append(Panel(grey(values), f"{METHODS[name]}, zoom {zoom:g}."))
     return figures, panels
 
@@ -71,11 +71,11 @@ def _plot(figures: dict[str, dict[str, Any]]) -> Plot:
             ("Grain across the flow", "Length of streaks"),
             strict=True,
         ):
-            drawn = [
+            lines = [
                 Line(label, zooms, [figures[name][f"{z:g}"][key] for z in zooms])
                 for name, label in METHODS.items()
             ]
-            draw_lines(axes, drawn, log="xy", ticks=zooms[:: max(1, len(zooms) // 5)])
+            draw_lines(axes, lines, log="xy", ticks=zooms[:: max(1, len(zooms) // 5)])
             axes.set_title(f"{what}, px")
             axes.set_xlabel("zoom")
         figure.figure.legend(
@@ -86,15 +86,15 @@ def _plot(figures: dict[str, dict[str, Any]]) -> Plot:
 
 def _spread(figures: dict[str, Any], key: str) -> float:
     """Greatest over least value over the zooms."""
-    values = [found[key] for found in figures.values()]
+    values = [by_zoom[key] for by_zoom in figures.values()]
     return float(max(values) / min(values))
 
 
 def _grain(bench: Bench) -> Finding:
     figures, panels = _measured(bench)
     spreads = {
-        name: {key: _spread(found, key) for key in ("across", "along")}
-        for name, found in figures.items()
+        name: {key: _spread(by_zoom, key) for key in ("across", "along")}
+        for name, by_zoom in figures.items()
     }
     count = len(panels) // len(METHODS)
     plates = [Plate(panels[n * count : (n + 1) * count]) for n in range(len(METHODS))]
