@@ -33,6 +33,7 @@ LAYERS: tuple[tuple[str, ...], ...] = (
     ("rendering",),
     ("diagnostics",),
     ("examples",),
+    ("options",),
     ("scene",),
     ("probe",),
     ("web",),
@@ -64,11 +65,11 @@ class Library:
 VTK = Library(
     ("vtk", "vtkmodules", "pyvista"),
     on_load=("rendering.vtk", "plotting", "offscreen", "app"),
-    in_functions=("field.io", "diagnostics", "examples"),
+    in_functions=("_util.colours", "field.io", "diagnostics", "examples"),
 )
 LIBRARIES = (
     VTK,
-    Library(("matplotlib",), in_functions=("rendering", "scene", "examples", "cli")),
+    Library(("matplotlib",), in_functions=("_util.colours",)),
     Library(
         (
             "trame",

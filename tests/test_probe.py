@@ -15,13 +15,14 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from flowtex import FlowField
+from flowtex.options import Appearance
 from flowtex.probe import Probe, locate, probe
 from flowtex.rendering.cpu import Camera, render
 from flowtex.rendering.cpu.lookup import Mips
 from flowtex.rendering.cpu.record import Kept, Window
 from flowtex.rendering.uniforms import ViewState
+from flowtex.scene import Scene
 from flowtex.settings import Settings
-from flowtex.view import FlowView
 
 Floats = NDArray[np.float64]
 
@@ -85,11 +86,11 @@ def fibres() -> FlowField:
     return FlowField.from_arrays(p, axes, sign_free=True, periodic="")
 
 
-def view_of(field: FlowField, **settings: Any) -> FlowView:
+def view_of(field: FlowField, **settings: Any) -> Scene:
     chosen = Settings()
     image = settings.pop("image", None)
     chosen.update(**settings)
-    return FlowView(field, chosen, image=image)
+    return Scene(field, chosen, Appearance(image=image))
 
 
 def camera(field: FlowField, *, aside: bool = False, size: tuple[int, int] = (36, 24)) -> Camera:

@@ -17,7 +17,7 @@ from flowtex.cli.info import info
 from flowtex.cli.options import UsageError
 from flowtex.cli.write import export, movie, render
 from flowtex.errors import FieldError
-from flowtex.offscreen.moments import MovieError
+from flowtex.offscreen.encoders import MovieError
 from flowtex.settings import SettingsError
 
 __all__ = ["main"]

@@ -72,7 +72,7 @@ def as_image(picture: Singles) -> Singles:
     Parameters
     ----------
     picture
-        (h, w, 4) texels, as :attr:`flowtex.view.FlowView.image` holds them.
+        (h, w, 4) texels, as :attr:`flowtex.scene.Scene.image` holds them.
 
     Returns
     -------

@@ -13,11 +13,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from flowtex.rendering.cpu import Camera, Picture, render
+from flowtex.camera import Camera
+from flowtex.rendering.cpu import Camera as SizedCamera
+from flowtex.rendering.cpu import Picture, render
 from flowtex.rendering.uniforms import ViewState
 from flowtex.rendering.webgl import Scene
 from flowtex.settings import Settings
-from flowtex.staging import Stage
+from flowtex.web.view import WebView
 
 __all__ = ["png", "preview", "preview_png"]
 
@@ -30,7 +32,7 @@ Bytes = NDArray[np.uint8]
 
 
 def preview(
-    stage: Stage,
+    view: WebView,
     size: tuple[int, int],
     *,
     camera: Mapping[str, Any] | None = None,
@@ -42,7 +44,7 @@ def preview(
 
     Parameters
     ----------
-    stage
+    view
         The flow and its colours.
     size
         Width and height in pixels.
@@ -51,7 +53,7 @@ def preview(
     time
         Time that is shown; the last one by default.
     scene
-        The stage's scene with few nodes, when it is at hand.
+        The view's data with few nodes, when they are at hand.
     coarser
         Pixels of the picture by one that is computed, along each side.
 
@@ -60,17 +62,17 @@ def preview(
     numpy.ndarray
         (height, width, 3), row 0 at the top.
     """
-    scene = scene or stage.coarse_scene(NODES)
+    scene = scene or view.coarse_data(NODES)
     camera = camera or scene.first_look(size)
-    drawn = _drawn(stage, scene, (size[0] // coarser, size[1] // coarser), camera, time)
+    drawn = _drawn(view, scene, (size[0] // coarser, size[1] // coarser), camera, time)
     from PIL import Image
 
     return np.asarray(Image.fromarray(drawn).resize(size, Image.Resampling.BICUBIC))
 
 
-def preview_png(stage: Stage, size: tuple[int, int], **options: Any) -> bytes:
+def preview_png(view: WebView, size: tuple[int, int], **options: Any) -> bytes:
     """Draw a small picture and return it as PNG; :func:`preview` has the parameters."""
-    return png(preview(stage, size, **options))
+    return png(preview(view, size, **options))
 
 
 def png(picture: Bytes) -> bytes:
@@ -98,19 +100,20 @@ def _few_samples(settings: Settings) -> Settings:
 
 
 def _drawn(
-    stage: Stage,
+    view: WebView,
     scene: Scene,
     size: tuple[int, int],
     camera: Mapping[str, Any],
     time: float | None,
 ) -> Bytes:
-    where = Camera(
-        position=tuple(camera["position"]),
-        focal_point=tuple(camera["focal_point"]),
-        up=tuple(camera["up"]),
+    whole = Camera.from_dict(camera)
+    where = SizedCamera(
+        position=whole.position,
+        focal_point=whole.focal_point,
+        up=whole.up,
         size=(max(size[0], 1), max(size[1], 1)),
-        parallel_scale=camera["parallel_scale"] if camera["parallel"] else None,
-        view_angle=camera["view_angle"],
+        parallel_scale=whole.parallel_scale if whole.parallel else None,
+        view_angle=whole.view_angle,
     )
     times = scene.times
     shown = float(times[-1] if time is None else time)
@@ -119,7 +122,7 @@ def _drawn(
     between = float((shown - first) / (last - first)) if last > first else 0.0
     picture = render(
         scene.textures,
-        _few_samples(stage.view.settings),
+        _few_samples(view.scene.settings),
         where,
         view=ViewState(between=between),
         steps=(scene.source(steps[0]), scene.source(steps[-1])),

@@ -9,8 +9,8 @@ import numpy as np
 from flowtex._util.array_types import Floats, Floats32, Indices
 from flowtex.field import FlowField
 from flowtex.probe import Probe, probe
+from flowtex.scene import Scene
 from flowtex.trace import trace
-from flowtex.view import FlowView
 from paper.bench import PAPER, Bench
 from paper.findings import Block, Claim, Finding, Plot, Section, Table
 from paper.plots import COLOURS, GROUND, INK, RULE, SOFT, plot_axes
@@ -105,10 +105,10 @@ def _say(axes: Any, m: int, position: Floats, level: float) -> None:
     axes.annotate(what, at - [0.78, 0.09], color=SOFT, fontsize=9.5, annotation_clip=False)
 
 
-def _probed(bench: Bench) -> tuple[FlowView, Probe]:
+def _probed(bench: Bench) -> tuple[Scene, Probe]:
     field: FlowField = bench.gyre
     settings = bench.settings(**PAPER, resolution=RESOLUTION)
-    view = FlowView(field, settings)
+    view = Scene(field, settings)
     pixel = COVERS * field.surface.extent / RESOLUTION
     return view, probe(view, PLACE, pixel=pixel)
 
