@@ -84,10 +84,10 @@ def check_colours(field: FlowField, options: dict[str, Any]) -> None:
         raise UsageError(msg)
     if options["cmap"] is None:
         return
-    import pyvista as pv
+    from flowtex._util.colours import colour_table
 
     try:
-        pv.LookupTable(options["cmap"])
+        colour_table(options["cmap"])
     except (ValueError, KeyError, ImportError) as error:
         msg = f"--cmap is {options['cmap']!r}; expected a colour map such as viridis or cividis"
         raise UsageError(msg) from error

@@ -1,7 +1,7 @@
-"""Options of the command line: those of the file, of the picture, of the page, and the settings.
+"""Flags of the command line: those of the file, of the picture, of the page, and the settings.
 
-One flag for each setting is made from :data:`flowtex.settings.TABLE`; there is no list of them
-here.
+Their help comes from the fields of the option classes of :mod:`flowtex.options` and from
+:data:`flowtex.settings.TABLE`; it stands here only where a shell has another form for a value.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Group, Parameter
 
+from flowtex.options import Appearance, FieldOptions, ViewOptions, option_text
 from flowtex.settings import TABLE, Setting, Settings, setting
 
 if TYPE_CHECKING:
@@ -44,31 +45,41 @@ class UsageError(ValueError):
     """Arguments that cannot be followed; the text says how they can."""
 
 
+def _flag(kind: type, name: str, text: str | None = None, **more: Any) -> Parameter:
+    """Return a flag for a field of an option class.
+
+    Parameters
+    ----------
+    kind, name
+        The class and the field; its text is the help.
+    text
+        Help where a shell has another form for the value.
+    **more
+        Other arguments of ``cyclopts.Parameter``.
+    """
+    group = FLOW if kind is FieldOptions else PICTURE
+    return Parameter(group=group, help=text or option_text(kind, name), **more)
+
+
 @dataclass(kw_only=True)
 class FieldFlags:
     """What of a file makes the flow."""
 
-    plane: Annotated[
-        str | None, Parameter(group=FLOW, help="Surface of a 3D mesh, such as k=20.")
-    ] = None
-    vectors: Annotated[
-        str | None, Parameter(group=FLOW, help="Name of the velocity, where it is not clear.")
-    ] = None
+    plane: Annotated[str | None, _flag(FieldOptions, "plane")] = None
+    vectors: Annotated[str | None, _flag(FieldOptions, "vectors")] = None
     time: Annotated[
         float | None, Parameter(group=FLOW, help="One time of a series; all of them by default.")
     ] = None
     periodic: Annotated[
         str | None,
-        Parameter(group=FLOW, help="Axes that close on themselves: i, j, ij or none."),
+        _flag(
+            FieldOptions, "periodic", "Axes that close on themselves: ``i``, ``j``, ``ij`` or none."
+        ),
     ] = None
     block: Annotated[
         str | None, Parameter(group=FLOW, help="Number or name of the block to draw.")
     ] = None
-
-    sign_free: Annotated[
-        bool | None,
-        Parameter(group=FLOW, negative="", help="Vectors have no sign: v and -v mean the same."),
-    ] = None
+    sign_free: Annotated[bool | None, _flag(FieldOptions, "sign_free", negative="")] = None
 
     def arguments(self) -> dict[str, Any]:
         """Return the flags that were set, as arguments of ``FlowField.from_file``."""
@@ -85,29 +96,25 @@ class LookFlags:
     """Colours, and what of the flow is seen."""
 
     scalars: Annotated[
-        str, Parameter(group=PICTURE, help="Array to colour by, or none for a plain texture.")
+        str, _flag(Appearance, "scalars", "Array to colour by, or none for a plain surface.")
     ] = "speed"
-    cmap: Annotated[
-        str | None, Parameter(group=PICTURE, help="Colour map, by matplotlib's name.")
-    ] = None
-    zoom: Annotated[
-        float, Parameter(group=PICTURE, help="1 shows the whole surface, 8 an eighth of it.")
-    ] = 1.0
+    cmap: Annotated[str | None, _flag(Appearance, "cmap", "Colour map, by matplotlib's name.")] = (
+        Appearance.cmap
+    )
+    zoom: Annotated[float, _flag(ViewOptions, "zoom")] = ViewOptions.zoom
     focus: Annotated[
         str | None,
-        Parameter(
-            group=PICTURE,
+        _flag(
+            ViewOptions,
+            "focus",
+            "Point of the mesh to look at, as x,y or x,y,z; the middle by default.",
             allow_leading_hyphen=True,
-            help="Point of the mesh to look at, as x,y or x,y,z.",
         ),
     ] = None
     image: Annotated[
         Path | None,
-        Parameter(
-            group=PICTURE,
-            help="Picture that the flow smears, in place of the noise: a PNG, a JPEG or the like.",
-        ),
-    ] = None
+        _flag(Appearance, "image", "PNG or JPEG that the flow smears, in place of the noise."),
+    ] = Appearance.image
 
     def arguments(self) -> dict[str, Any]:
         """Return colours, camera and image, as arguments of ``flowtex.render``."""
@@ -147,10 +154,12 @@ class FrameFlags(DrawFlags):
     ] = 1
     beside: Annotated[
         tuple[str, ...],
-        Parameter(
-            group=PICTURE,
+        _flag(
+            ViewOptions,
+            "beside",
+            "What is different in a second view to the right of the first one, such as lod=false.",
             negative="",
-            help="What differs in a second view beside the first, such as lod=false.",
+            show_default=False,
         ),
     ] = ()
 
