@@ -11,7 +11,7 @@ BIN := $(VENV)/bin
 SETUP := pyproject.toml tools/setup.sh tools/common.sh
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint format docs gallery paper paper-quick wheel clean
+.PHONY: help demo test lint format docs gallery client paper paper-quick wheel clean
 
 help: ## list what can be made
 	@echo "flowtex. Choose an interpreter with PYTHON=python3.12, tests with PYTEST_ARGS='-k trace'."
@@ -42,6 +42,9 @@ docs: $(VENV)/.ready-test ## write the table of settings into the guide
 gallery: $(VENV)/.ready-test ## draw the pictures of the README and the gallery
 	$(BIN)/python docs/make_pictures.py
 
+client: $(VENV)/.ready-test ## build the browser client from client/src into the package
+	sh tools/javascript.sh $(BIN) build
+
 paper: $(VENV)/.ready-demo ## compute the paper's tables and figures into out/paper, in some minutes
 	@$(BIN)/python -m paper -o $(PAPER)
 
@@ -53,7 +56,7 @@ wheel: $(VENV)/.ready-test ## build dist/flowtex-*.whl and the source archive
 
 clean: ## remove the environment and everything that was built
 	rm -rf $(VENV) dist build out .mypy_cache .pytest_cache .ruff_cache
-	rm -rf tools/javascript/node_modules
+	find . -name node_modules -type d -prune -exec rm -rf {} +
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
 $(VENV)/.ready-demo: $(SETUP)
