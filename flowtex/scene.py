@@ -17,7 +17,7 @@ import numpy as np
 from flowtex._util.array_types import Floats, Floats32
 from flowtex._util.cache import WeakCache, digest
 from flowtex.field import FlowField
-from flowtex.field.reading import moment
+from flowtex.field.interpolation import steps_around
 from flowtex.options import Appearance, FieldOptions, Options
 from flowtex.settings import TABLE, Affects, Settings, SettingsError
 from flowtex.textures import TextureSet
@@ -237,7 +237,7 @@ class Scene:
     @property
     def moment(self) -> tuple[int, int, float]:
         """The two time steps around the time that is shown, and how far it is between them."""
-        return moment(self.field.times, self._time)
+        return steps_around(self.field.times, self._time)
 
     def scalar(self, name: str) -> Floats:
         """Nodal values at the time that is shown, (J, I); ``"speed"`` is always there.

@@ -120,7 +120,7 @@ def data_dir() -> Path:
 @pytest.fixture(scope="session")
 def opengl() -> diagnostics.OpenGLReport:
     """Return what VTK draws with; skip where it cannot, as it would end the test process."""
-    found = diagnostics.probe()
+    found = diagnostics.opengl_report()
     if not found.usable:
         pytest.skip(f"VTK cannot draw here: {found.failure}; {found.remedy}")
     return found

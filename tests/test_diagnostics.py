@@ -32,7 +32,7 @@ def apt(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(os, "geteuid", lambda: 1000)
 
 
-def test_the_probe_drew_a_picture(opengl: diagnostics.OpenGLReport) -> None:
+def test_the_trial_drew_a_picture(opengl: diagnostics.OpenGLReport) -> None:
     assert opengl.usable
     assert opengl.window_class.endswith("RenderWindow")
     assert opengl.vendor
@@ -43,15 +43,15 @@ def test_the_probe_drew_a_picture(opengl: diagnostics.OpenGLReport) -> None:
     assert opengl.failure == opengl.remedy == ""
 
 
-def test_the_probe_is_asked_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    diagnostics.probe()
-    monkeypatch.setattr(diagnostics, "ask", lambda _: pytest.fail("asked again"))
-    assert diagnostics.probe() is diagnostics.probe()
+def test_opengl_is_tried_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    diagnostics.opengl_report()
+    monkeypatch.setattr(diagnostics, "run_trial", lambda _: pytest.fail("asked again"))
+    assert diagnostics.opengl_report() is diagnostics.opengl_report()
 
 
 @pytest.mark.usefixtures("headless", "apt")
 def test_a_crash_becomes_a_report() -> None:
-    found = diagnostics.ask(CRASHES)
+    found = diagnostics.run_trial(CRASHES)
     assert not found.usable
     assert found.failure == (
         "the process that tried it was ended by SIGSEGV, as happens without an OpenGL library"
@@ -68,7 +68,7 @@ def test_a_crash_becomes_a_report() -> None:
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="VTK uses OSMesa on Linux")
 def test_vtk_without_its_library_really_crashes(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(diagnostics.WINDOW_VARIABLE, "vtkOSOpenGLRenderWindow")
-    found = diagnostics.ask(diagnostics.PROBE_COMMAND)
+    found = diagnostics.run_trial(diagnostics.TRIAL_COMMAND)
     assert not found.usable
     assert f"ended by {signal.SIGSEGV.name}" in found.failure
     assert "it said" not in found.failure  # VTK's advice names another library
@@ -77,19 +77,21 @@ def test_vtk_without_its_library_really_crashes(monkeypatch: pytest.MonkeyPatch)
     assert found.remedy.endswith("or unset VTK_DEFAULT_OPENGL_WINDOW")
 
 
-def test_a_probe_that_hangs_is_given_up() -> None:
-    found = diagnostics.ask((sys.executable, "-c", "import time; time.sleep(60)"), timeout=0.2)
-    assert found.failure == "the probe did not answer within 0.2 s"
+def test_a_trial_that_hangs_is_given_up() -> None:
+    found = diagnostics.run_trial(
+        (sys.executable, "-c", "import time; time.sleep(60)"), timeout=0.2
+    )
+    assert found.failure == "the trial did not end within 0.2 s"
     assert found.remedy
 
 
-def test_a_probe_that_cannot_start_is_reported() -> None:
-    found = diagnostics.ask(("/nowhere/python",))
-    assert found.failure.startswith("the probe could not be started: ")
+def test_a_trial_that_cannot_start_is_reported() -> None:
+    found = diagnostics.run_trial(("/nowhere/python",))
+    assert found.failure.startswith("the trial could not be started: ")
 
 
-def test_what_the_probe_said_is_passed_on() -> None:
-    found = diagnostics.ask(
+def test_what_the_trial_printed_is_passed_on() -> None:
+    found = diagnostics.run_trial(
         (sys.executable, "-c", "raise SystemExit('\\033[31mbad server\\033[0m')")
     )
     assert found.failure == "the process that tried it ended with code 1; it said: bad server"
@@ -98,7 +100,7 @@ def test_what_the_probe_said_is_passed_on() -> None:
 @pytest.mark.usefixtures("headless")
 def test_a_wrong_picture_is_no_opengl() -> None:
     answer = '{"usable": false, "failure": "a red picture came back as (0, 0, 0)"}'
-    found = diagnostics.ask((sys.executable, "-c", f"print({answer!r})"))
+    found = diagnostics.run_trial((sys.executable, "-c", f"print({answer!r})"))
     assert not found.usable
     assert found.failure == "a red picture came back as (0, 0, 0)"
     assert "libgl1-mesa-dri" in found.remedy
@@ -109,7 +111,7 @@ def test_with_a_display_x_is_wanted_too(monkeypatch: pytest.MonkeyPatch) -> None
     monkeypatch.setattr(sys, "platform", "linux")
     monkeypatch.setenv("DISPLAY", ":0")
     monkeypatch.delenv(diagnostics.WINDOW_VARIABLE, raising=False)
-    assert diagnostics.ask(CRASHES).remedy.endswith(" libgl1 libegl1 libgl1-mesa-dri")
+    assert diagnostics.run_trial(CRASHES).remedy.endswith(" libgl1 libegl1 libgl1-mesa-dri")
 
 
 def test_root_needs_no_sudo(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -129,7 +131,7 @@ def test_other_systems_get_the_names(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_require_opengl_names_failure_and_remedy(monkeypatch: pytest.MonkeyPatch) -> None:
     broken = diagnostics.OpenGLReport(usable=False, failure="it crashed", remedy="install it")
-    monkeypatch.setattr(diagnostics, "probe", lambda: broken)
+    monkeypatch.setattr(diagnostics, "opengl_report", lambda: broken)
     expected = r"^VTK cannot draw here: it crashed\. To mend it:\n  install it$"
     with pytest.raises(diagnostics.OpenGLMissingError, match=expected):
         diagnostics.require_opengl()
@@ -137,7 +139,7 @@ def test_require_opengl_names_failure_and_remedy(monkeypatch: pytest.MonkeyPatch
 
 def test_require_opengl_returns_the_report(monkeypatch: pytest.MonkeyPatch) -> None:
     good = diagnostics.OpenGLReport(usable=True)
-    monkeypatch.setattr(diagnostics, "probe", lambda: good)
+    monkeypatch.setattr(diagnostics, "opengl_report", lambda: good)
     assert diagnostics.require_opengl() is good
 
 
@@ -192,7 +194,7 @@ def test_a_missing_extra_warns_and_a_missing_requirement_fails(
 def test_the_report_shows_every_check_and_the_remedies_that_matter(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    diagnostics.report([OK, WARN, FAIL])
+    diagnostics.print_checks([OK, WARN, FAIL])
     shown = capsys.readouterr().out
     for text in ("Thing", "there", "trame", "not installed", "OpenGL", "it [crashed]"):
         assert text in shown

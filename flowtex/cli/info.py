@@ -22,7 +22,7 @@ def info(file: FILE, /, *, flow: Annotated[FieldFlags | None, FLAT] = None) -> i
     from rich.text import Text
 
     from flowtex.field import FlowField
-    from flowtex.field.io.files import describe
+    from flowtex.field.io.summary import describe
 
     options = (flow or FieldFlags()).arguments()
     summary = describe(file)

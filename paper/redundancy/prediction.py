@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flowtex._util.array_types import Floats, Indices
+from flowtex.field.interpolation import bracket
 from flowtex.trace import TraceSlices
 
 __all__ = ["BY_LAG", "COMPOSED", "Predictor", "SliceGrid"]
@@ -169,18 +170,16 @@ class Predictor:
         if not grid.moving:
             return np.broadcast_to(own, elapsed.shape), np.zeros(elapsed.shape)
         then = np.clip(grid.times.reshape(-1, 1, 1) - elapsed, grid.times[0], grid.times[-1])
-        step = np.clip(np.searchsorted(grid.times, then, side="right") - 1, 0, count - 2)
-        return step, (then - grid.times[step]) / (grid.times[step + 1] - grid.times[step])
+        return bracket(grid.times, then)
 
     def _interpolated(self, means: Floats, entry: Indices, lag: Floats, slice_size: int) -> Floats:
         """Displacements of the known slices at entries and at any lag, (T, J, I, 2)."""
         last = len(self._slices) - 1
         knots = self._knots[: last + 1]
-        m = np.clip(np.searchsorted(knots, lag, side="right") - 1, 0, last - 1)
-        fraction = ((lag - knots[m]) / (knots[m + 1] - knots[m]))[..., None]
+        m, fraction = bracket(knots, lag)
         at = m * slice_size + entry
         low, high = means[at], means[at + slice_size]
-        return np.asarray(lag[..., None] * (low + (high - low) * fraction))
+        return np.asarray(lag[..., None] * (low + (high - low) * fraction[..., None]))
 
     def _periodic(self) -> tuple[bool, bool]:
         """Whether the (j, i) axis seems to be periodic: its first and last line are equal."""

@@ -48,10 +48,10 @@ def _timed(bench: Bench, name: str, field: FlowField) -> dict[str, float]:
 
 def _frame_times(bench: Bench, field: FlowField, slices: Any) -> dict[str, float]:
     """Time the first frame, which loads the textures, and the next; nothing without OpenGL."""
-    from flowtex.diagnostics import prefer_headless, probe
+    from flowtex.diagnostics import opengl_report, prefer_headless
 
     prefer_headless()
-    if not probe().usable:
+    if not opengl_report().usable:
         return {}
     import pyvista as pv
 
@@ -85,7 +85,7 @@ def _frame_times(bench: Bench, field: FlowField, slices: Any) -> dict[str, float
 
 
 def _table2(bench: Bench) -> Finding:
-    from flowtex.diagnostics import probe
+    from flowtex.diagnostics import opengl_report
 
     flows = {"post": bench.post, "shuttle": bench.shuttle}
     # All steps of the whole vortex field take ten seconds; the quick form takes every second node.
@@ -111,7 +111,7 @@ def _table2(bench: Bench) -> Finding:
         "first frame, s",
         "frames a second",
     )
-    renderer = probe().renderer if probe().usable else ""
+    renderer = opengl_report().renderer if opengl_report().usable else ""
     drawing = (
         f"Drawn at 512 × 512 pixels by: {renderer}."
         if renderer
