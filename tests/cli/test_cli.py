@@ -220,6 +220,17 @@ def test_info_says_what_is_needed(run: Run, block: Path) -> None:
     assert code == 0 and "6 × 5 (i × j)" in out
 
 
+def test_info_says_that_a_field_has_no_sign(run: Run, tmp_path: Path) -> None:
+    import pyvista as pv
+
+    mesh = pv.ImageData(dimensions=(9, 7, 1))
+    mesh.point_data["axis"] = np.tile([0.6, 0.8, 0.0], (63, 1)) * np.resize([1, -1], (63, 1))
+    mesh.save(tmp_path / "axis.vti")
+    words = "v and -v mean the same"
+    assert words in run("info", tmp_path / "axis.vti", "--sign-free")[1]
+    assert words not in run("info", tmp_path / "axis.vti")[1]
+
+
 def test_the_console_script_runs_without_loading_vtk() -> None:
     code = (
         "import sys; from flowtex.cli import main; assert main(['--help']) == 0;"
