@@ -18,9 +18,9 @@ __all__ = ["SECTIONS"]
 BOUND, RESOLUTION = 0.25, 1024
 READING = (
     "There is much to save, but less of it lies between the slices than the paper believes: "
-    "most of what can be predicted of an entry, the entries beside it in the same slice tell. "
-    "To the last bit of a float nearly all that is left is rounding and the error of the "
-    "integration, which nothing tells; so the room is in not keeping what cannot be seen."
+    "most of what can be predicted of an entry follows from the entries beside it in the same "
+    "slice. To the last bit of a float nearly all that is left is rounding and the error of the "
+    "integration, which nothing predicts; the room is in not storing what cannot be seen."
 )
 
 
@@ -68,8 +68,8 @@ def _redundancy(bench: Bench) -> Finding:
     }
     rows = [(name, *(of(row) for of in columns.values())) for name, row in numbers.items()]
     caption = (
-        "Bits left of the 32 of a number, as entropy. Shared: part of the bits that a slice does "
-        "not tell of itself, but its neighbours do. "
+        "Bits left of the 32 of a number, as entropy. Shared: part of the bits left of a slice by "
+        "itself that its neighbours predict. "
         f"Texels of a noise of {RESOLUTION:,} along the longer side."
     )
     blocks: list[Block] = [Table(("data", *columns), rows, caption), Text(READING)]
@@ -83,7 +83,8 @@ def _claims(numbers: dict[str, Any]) -> list[Claim]:
             Claim(
                 f"redundancy_{name}",
                 f"Sections 5 and 6, {name}: slices of adjacent times are highly redundant. Share "
-                f"of what a slice does not tell of itself, within {BOUND:g} texels.",
+                "of the bits left of a slice by itself that its neighbours predict, within "
+                f"{BOUND:g} texels.",
                 row["shared_bounded"],
                 0.5,
                 "at least",
