@@ -409,12 +409,4 @@ def coarsened_field(field: FlowField, nodes: int) -> FlowField:
         np.unique(np.rint(np.linspace(0, n - 1, max(int(n * share), min(n, 8)))).astype(int))
         for n in field.shape
     )
-    at = np.ix_(rows, columns)
-    return replace(
-        field,
-        points=field.points[at],
-        velocity=field.velocity[:, at[0], at[1]],
-        valid=field.valid[at],
-        placed=None if field.placed is None else field.placed[at],
-        scalars={k: s[:, at[0], at[1]] for k, s in field.scalars.items()},
-    )
+    return field.at_lines(rows, columns)

@@ -294,6 +294,12 @@ class FlowField:
         return self.valid.shape[0], self.valid.shape[1]
 
     @property
+    def nbytes(self) -> int:
+        """Size of the arrays in memory."""
+        arrays = (self.points, self.velocity, self.valid, *self.scalars.values())
+        return sum(array.nbytes for array in arrays)
+
+    @property
     def steady(self) -> bool:
         """Whether there is one time step only."""
         return len(self.times) == 1
@@ -346,11 +352,22 @@ class FlowField:
         ValueError
             When fewer than two lines would be left.
         """
-        picks = [
+        rows, columns = (
             _every(count, factor, closed=closed)
             for count, closed in zip(self.shape, self.periodic, strict=True)
-        ]
-        at = np.ix_(*picks)
+        )
+        return self.at_lines(rows, columns)
+
+    def at_lines(self, rows: Indices, columns: Indices) -> FlowField:
+        """Return the field on some of its lines of nodes.
+
+        Parameters
+        ----------
+        rows, columns
+            Increasing numbers of the lines along j and i. An axis that closes on itself keeps
+            its first and its last line.
+        """
+        at = np.ix_(rows, columns)
         return replace(
             self,
             points=self.points[at],
