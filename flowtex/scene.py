@@ -375,9 +375,9 @@ def share_field(field: FlowField) -> FlowField:
     A notebook shows one mesh many times over, and makes it a field each time.
     """
     words = (field.periodic, field.name, field.length_unit, field.time_unit, field.sign_free)
-    placed = () if field.placed is None else (field.placed,)
-    arrays = (field.points, field.velocity, field.times, field.valid, *placed)
-    key = digest(*arrays, *field.scalars.values(), words=(words, len(placed), *field.scalars))
+    positions = () if field.has_position is None else (field.has_position,)
+    arrays = (field.points, field.velocity, field.times, field.valid, *positions)
+    key = digest(*arrays, *field.scalars.values(), words=(words, len(positions), *field.scalars))
     return _fields.get(key, lambda: field)
 
 

@@ -92,7 +92,11 @@ def render(
     except OSError as error:
         msg = f"{output}: cannot be written ({error.strerror or error})"
         raise UsageError(msg) from error
-    lost = f", {field.lost:.0%} of the flow leaves the surface" if field.lost > 0.01 else ""
+    lost = (
+        f", {field.normal_share:.0%} of the flow leaves the surface"
+        if field.normal_share > 0.01
+        else ""
+    )
     say(
         f"[bold]{output}[/]  {field.name}, {nodes(field)}{lost}  "
         f"[dim]{size[0]} × {size[1]}, {time.perf_counter() - started:.1f} s[/]"

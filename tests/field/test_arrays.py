@@ -511,8 +511,8 @@ def test_positions_that_were_filled_in_stay_marked() -> None:
     velocity = np.stack([velocity, velocity])
     field = FlowField.from_arrays(points, velocity)
     for part in (field, field.at_step(1), field.downsample(2)):
-        assert part.placed is not None
-        assert np.argwhere(~part.placed).tolist() == np.argwhere(~part.valid).tolist()
+        assert part.has_position is not None
+        assert np.argwhere(~part.has_position).tolist() == np.argwhere(~part.valid).tolist()
         assert np.isfinite(part.points).all()
         size = part.points[0, 1, 0]
         u = part.index_velocity.components[:, part.valid]
