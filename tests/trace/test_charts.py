@@ -235,7 +235,7 @@ def over_the_pole(field: FlowField, zoom: float, up: float = 1.0) -> NDArray[Any
     """Picture of a pole from straight above, y upwards."""
     camera = [(0.0, 0.0, up * (1 + 2.2 / zoom)), (0.0, 0.0, up), (0.0, 1.0, 0.0)]
     return flowtex.render(
-        field, size=(140, 140), camera_position=camera, scalars=False, lighting=False
+        field, size=(140, 140), camera=camera, scalars=False, lighting=False
     )
 
 
