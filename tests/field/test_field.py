@@ -86,6 +86,12 @@ def test_a_steady_field_takes_scalars_with_one_step() -> None:
     assert field.scalars["p"].shape == (1, 5, 7)
 
 
+def test_the_size_is_that_of_the_arrays() -> None:
+    p = flat()
+    field = FlowField.from_arrays(p, ones(p), scalars={"a": p[..., 0]})
+    assert field.nbytes == field.valid.size * (3 + 3 + 1) * 8 + field.valid.size
+
+
 def test_nothing_given_is_changed_or_shared() -> None:
     points, velocity = flat(), ones(flat(), 2)
     velocity[0, 2, 2] = np.nan
