@@ -112,6 +112,8 @@ export interface Header {
     coarse: number;
     kernels: string[];
     anchorRange: number;
+    /** Ambient and diffuse. */
+    light: [number, number];
   };
   limits: CameraLimits;
   table: Row[];

@@ -15,7 +15,15 @@ from numpy.typing import NDArray
 from flowtex.settings import Settings
 from flowtex.textures import PaperTextures, TextureSet
 
-__all__ = ["ANCHOR_RANGE", "ViewState", "client_constants", "finest_cell", "uniforms", "variants"]
+__all__ = [
+    "ANCHOR_RANGE",
+    "LIGHT",
+    "ViewState",
+    "client_constants",
+    "finest_cell",
+    "uniforms",
+    "variants",
+]
 
 #: Octaves between the finest cell of the noise and the extent of the surface.
 OCTAVES = 30
@@ -28,6 +36,9 @@ COARSE = 2.0**-12
 
 #: Heights of the view within which positions may be counted from another point than its middle.
 ANCHOR_RANGE = 8.0
+
+#: Ambient and diffuse light: dark sides stay bright enough to read the texture there.
+LIGHT = (0.3, 0.8)
 
 KERNELS = ("hann", "box", "ramp")
 
@@ -90,6 +101,7 @@ def client_constants() -> dict[str, Any]:
         "coarse": COARSE,
         "kernels": list(KERNELS),
         "anchorRange": ANCHOR_RANGE,
+        "light": list(LIGHT),
     }
 
 

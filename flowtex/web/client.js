@@ -601,11 +601,11 @@ this.values(view,samples,draft)),scene.draw(shown[0],shown[1],view.anchor,!0),sm
 settle()}values(view,samples,draft){let{settings,header,camera,parts}=this.viewer;if(!header||!camera)return{};let noise=parts.
 get("noise")?.shape??null;return{...uniforms(header,{...settings,samples},view,noise),...draft?draftUniforms(settings,samples,
 view.density):{},u_matrix:projection(header.geometry,camera,view.anchor),u_mapped:header.scalars.name!==null,u_colour:header.
-colour,u_lit:header.lighting,u_ground:header.background,u_opacity:header.opacity,u_toEye:toFrame(header.geometry.frame,camera.
-toEye)}}copy(pen,{width:w,height:h,rows},top,width,height,to){if(!pen)return;let{canvas}=this.graphics;pen.imageSmoothingEnabled=
-w!==width||h!==height,pen.drawImage(canvas,0,canvas.height-h+top,w,rows,0,to,width,rows*height/h)}};function copyOfCanvas(canvas){
-let copy=document.createElement("canvas");return copy.width=canvas.width,copy.height=canvas.height,copy.getContext("2d")?.
-drawImage(canvas,0,0),copy}function fromHalf(bits){let exponent=bits>>10&31,part=bits&1023,size;return exponent===0?size=part*2**-24:exponent===31?
+colour,u_lit:header.lighting,u_light:header.constants.light,u_ground:header.background,u_opacity:header.opacity,u_toEye:toFrame(
+header.geometry.frame,camera.toEye)}}copy(pen,{width:w,height:h,rows},top,width,height,to){if(!pen)return;let{canvas}=this.
+graphics;pen.imageSmoothingEnabled=w!==width||h!==height,pen.drawImage(canvas,0,canvas.height-h+top,w,rows,0,to,width,rows*
+height/h)}};function copyOfCanvas(canvas){let copy=document.createElement("canvas");return copy.width=canvas.width,copy.
+height=canvas.height,copy.getContext("2d")?.drawImage(canvas,0,0),copy}function fromHalf(bits){let exponent=bits>>10&31,part=bits&1023,size;return exponent===0?size=part*2**-24:exponent===31?
 size=part?NaN:1/0:size=(1024+part)*2**(exponent-25),bits&32768?-size:size}function toHalf(x){let sign=x<0?32768:0,size=Math.
 abs(x);if(!(size<65520))return sign|(size>=65520?31744:32256);let exponent=Math.max(Math.floor(Math.log2(size||1e-30)),-14),
 part=Math.round(size/2**(exponent-10));return sign|(part<1024?part:(exponent+14)*1024+part)}function halved(texels,width,height,channels){
