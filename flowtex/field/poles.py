@@ -131,7 +131,7 @@ class Pole:
         return result
 
     def nearest(self, position: Floats, near: Floats) -> Floats:
-        """Return positions (2, N) in the form, before or beyond the pole, that is nearest to others.
+        """Return positions (2, N) in that form, before or beyond the pole, nearest to others.
 
         A position that lies a quarter of a turn or more to the side changes its form.
         """
