@@ -15,7 +15,7 @@ __all__ = ["SECTIONS"]
 
 
 #: Texels of the texture of computational space, for each node.
-FINER = 6
+TEXELS_PER_NODE = 6
 
 
 def _unit(values: Floats) -> Floats:
@@ -25,7 +25,7 @@ def _unit(values: Floats) -> Floats:
 def _stretched(bench: Bench) -> Finding:
     field = bench.stretched
     view = view_of(bench, field, bench.pick((520, 272), (300, 156)))
-    rows, columns = (FINER * n for n in field.shape)
+    rows, columns = (TEXELS_PER_NODE * n for n in field.shape)
     white = np.random.default_rng(bench.seed).standard_normal((rows, columns))
     texture = forssell_lic(field, (rows, columns), length=30.0, kernel="hann", seed=bench.seed)
     paper = {**PAPER, "resolution": 512}

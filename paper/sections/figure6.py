@@ -15,7 +15,7 @@ __all__ = ["SECTIONS"]
 
 
 #: Length of the kernel of LIC in nodes, and texels of the noise along the surface.
-LENGTH, RESOLUTION = 12.0, 512
+LIC_LENGTH_NODES, RESOLUTION = 12.0, 512
 
 
 LABELS = {
@@ -29,7 +29,7 @@ LABELS = {
 def _pictures(bench: Bench, view: View) -> dict[str, Floats]:
     """Draw the view by every method; values of mean zero and deviation one."""
     paper = {**PAPER, "resolution": RESOLUTION}
-    texture = forssell_lic(view.field, length=LENGTH, seed=bench.seed)
+    texture = forssell_lic(view.field, length=LIC_LENGTH_NODES, seed=bench.seed)
     lic = draw_texture(texture, view.field, view.camera)
     return {
         "corrected": view.picture(**paper).value,

@@ -25,7 +25,7 @@ Values = Mapping[str, Any]
 RESOLUTION, POINT = 1024, (0.63, 0.37)
 SETTINGS: dict[str, Any] = {**PAPER, "resolution": RESOLUTION, "parameter": "time"}
 #: Pixels count as slow or fast below or above these shares of the pixels in view.
-SLOW, FAST = 0.25, 0.75
+SLOW_QUANTILE, FAST_QUANTILE = 0.25, 0.75
 
 
 class _FixedStep(PaperNoise):
@@ -61,7 +61,7 @@ def _coherence(view: View, values: Floats) -> dict[str, float]:
     """Coherence in all of the view, and where the flow is slow and fast."""
     from paper import measures
 
-    low, high = np.quantile(view.speed[view.mask], (SLOW, FAST))
+    low, high = np.quantile(view.speed[view.mask], (SLOW_QUANTILE, FAST_QUANTILE))
     masks = {
         "all": view.mask,
         "slow": view.mask & (view.speed <= low),
