@@ -16,7 +16,7 @@ from paper.views import View, grey, view_of
 __all__ = ["SECTIONS"]
 
 
-#: Texels of the paper's noise, a point to zoom into, and texels of the texture that LIC_SHAPE makes.
+#: Texels of the paper's noise, a point to zoom into, and texels of the texture of LIC.
 RESOLUTION, POINT, LIC_SHAPE = 1024, (0.63, 0.37), (128, 256)
 METHODS = {
     "procedural noise": "Noise in space (default)",
