@@ -74,8 +74,8 @@ def _reading() -> str:
     return (
         "The published sizes come out to the last digit (the paper cuts digits off) with pairs of "
         f"single floats: {STEADY_SLICES} slices for the steady data, far more than K = 10; and for "
-        "the vortex data lags 0 to 10 as far as earlier steps exist, 286 slices. Many lags are what "
-        "adapted steps need: a step doubles with each level of detail, so ten even lags only "
+        "the vortex data lags 0 to 10 as far as earlier steps exist, 286 slices. Many lags are "
+        "what adapted steps need: a step doubles with each level of detail, so ten even lags only "
         "serve one zoom. Lags that double serve all of them."
     )
 
