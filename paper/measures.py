@@ -24,6 +24,7 @@ __all__ = [
     "likeness",
     "local_grain",
     "sharpness",
+    "standardised",
     "streaks",
 ]
 
@@ -174,6 +175,11 @@ def blocks(picture: Floats, times: int) -> Floats:
     rows, columns = (n // times for n in picture.shape)
     cut = picture[: rows * times, : columns * times]
     return np.asarray(cut.reshape(rows, times, columns, times).mean(axis=(1, 3)))
+
+
+def standardised(picture: Floats) -> Floats:
+    """Return the picture with mean zero and deviation one; NaN stays."""
+    return np.asarray((picture - np.nanmean(picture)) / np.nanstd(picture))
 
 
 def _filled(picture: Floats) -> Floats:

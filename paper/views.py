@@ -165,7 +165,7 @@ def view_of(
     Parameters
     ----------
     bench
-        What is shared.
+        Scale, seed and shared textures of the run.
     field
         What to look at.
     size

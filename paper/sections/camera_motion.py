@@ -41,10 +41,6 @@ def _panned(view: View, pixels: float) -> View:
     return replace(view, camera=panned)
 
 
-def _unit(values: Floats) -> Floats:
-    return np.asarray((values - np.nanmean(values)) / np.nanstd(values))
-
-
 def _moving(bench: Bench) -> Finding:
     size = bench.pick((360, 300), (140, 116))
     moving, after = bench.pick((12, 24), (6, 10))
@@ -107,8 +103,11 @@ def _finding(
         "at rest": measures.sharpness(at_rest, view.mask),
     }
     panels = [
-        Panel(grey(_unit(last[IMAGE])), "Image space: the last frame in which the camera moves."),
-        Panel(grey(_unit(at_rest)), f"Image space: {STILL_FRAMES} frames later."),
+        Panel(
+            grey(measures.standardised(last[IMAGE])),
+            "Image space: the last frame in which the camera moves.",
+        ),
+        Panel(grey(measures.standardised(at_rest)), f"Image space: {STILL_FRAMES} frames later."),
         Panel(grey(last[OURS]), "This method: the last frame in which the camera moves."),
     ]
     angles = figures[IMAGE]["angle"]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from flowtex._util.array_types import Floats
 from paper import measures
 from paper.bench import PAPER, Bench
 from paper.findings import Claim, Finding, Panel, Plate, Section, Table
@@ -16,10 +15,6 @@ __all__ = ["SECTIONS"]
 
 #: Texels of the texture of computational space, for each node.
 TEXELS_PER_NODE = 6
-
-
-def _unit(values: Floats) -> Floats:
-    return np.asarray((values - np.nanmean(values)) / np.nanstd(values))
 
 
 def _stretched(bench: Bench) -> Finding:
@@ -41,12 +36,12 @@ def _stretched(bench: Bench) -> Finding:
     }
     figures = {
         name: measures.evenness(noises[name], view.mask)._asdict()
-        | view.streaks(_unit(values))._asdict()
+        | view.streaks(measures.standardised(values))._asdict()
         for name, values in pictures.items()
     }
     panels = [
         Panel(
-            grey(_unit(values)),
+            grey(measures.standardised(values)),
             f"{name[0].upper()}{name[1:]}: grains "
             f"{figures[name]['stretch']:.2f} times as long as wide.",
         )

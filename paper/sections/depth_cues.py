@@ -70,7 +70,7 @@ def _advected(bench: Bench, view: View) -> dict[str, Floats]:
     fine = _resolution(view)
     values = image.frames(bench.pick(40, 25))
     return {
-        "image space": (values - np.nanmean(values)) / np.nanstd(values),
+        "image space": measures.standardised(values),
         "the paper's texture": view.picture(**{**PAPER, "samples": 25, "resolution": fine}).value,
         "default": view.picture().value,
         "default, fixed grain": view.picture(fixed_grain=True, resolution=fine).value,
