@@ -101,7 +101,7 @@ def _field_table(field: FlowField) -> Table:
     sizes = sizes[np.isfinite(sizes) & (sizes > 0)]
     if sizes.size:
         table.add_row("cells", f"the longest is {sizes.max() / sizes.min():,.3g} × the shortest")
-    table.add_row("lost", f"{field.lost:.1%} of the flow points out of the surface")
+    table.add_row("lost", f"{field.normal_share:.1%} of the flow points out of the surface")
     table.add_row("memory", f"about {_megabytes(field):,.0f} MB of traces for one time")
     return table
 

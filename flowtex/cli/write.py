@@ -69,7 +69,11 @@ def render(
     pixels = draw(field, size=size, **options)
     with _writing(output):
         Image.fromarray(pixels).save(output)
-    lost = f", {field.lost:.0%} of the flow leaves the surface" if field.lost > NOTABLE_LOSS else ""
+    lost = (
+        f", {field.normal_share:.0%} of the flow leaves the surface"
+        if field.normal_share > NOTABLE_LOSS
+        else ""
+    )
     say(
         f"[bold]{output}[/]  {describe(field)}{lost}  "
         f"[dim]{size[0]} × {size[1]}, {time.perf_counter() - start:.1f} s[/]"
