@@ -15,7 +15,7 @@ __all__ = ["Errors", "position_errors", "step_slices"]
 
 
 #: Steps of time that a particle goes back, and error allowed in one step of the integration.
-STEPS, TOLERANCE = 10, 1e-5
+STEPS, TOLERANCE_CELLS = 10, 1e-5
 
 
 @dataclass(frozen=True)
@@ -81,7 +81,12 @@ class Errors:
 def step_slices(field: FlowField, step: int) -> TraceSlices:
     """Trace the slices of one destination time at lags of 1 ... 10 time steps."""
     return trace(
-        field, lags=_lags(field), steps=[step], compose=False, tolerance=TOLERANCE, progress=False
+        field,
+        lags=_lags(field),
+        steps=[step],
+        compose=False,
+        tolerance=TOLERANCE_CELLS,
+        progress=False,
     )
 
 
@@ -121,7 +126,7 @@ def position_errors(
         _inverse(lines, start),
         _lags(field),
         step=step,
-        tolerance=TOLERANCE,
+        tolerance=TOLERANCE_CELLS,
     )
 
     coarse_positions = _looked_up(coarse, start)
@@ -148,7 +153,7 @@ def _lags(field: FlowField) -> Floats:
 
 def _accurate(field: FlowField, start: Floats, step: int) -> tuple[Floats, Floats]:
     """Return starts whose paths do not end, (N, 2), and the true positions, (M, N, 2)."""
-    result = paths(field, start, _lags(field), step=step, tolerance=TOLERANCE)
+    result = paths(field, start, _lags(field), step=step, tolerance=TOLERANCE_CELLS)
     alive = result.reach >= _lags(field)[-1]
     return start[alive], result.positions[:, alive]
 
