@@ -1,39 +1,30 @@
 """Drawing in the browser instead of on the server, with the client of the notebook widget.
 
-The page asks for two kinds of files: the surface of a scene, and the slices of one of its times.
-Each is one binary file: the length of a header as four bytes, the header in JSON with the names,
-types, shapes and digests of the arrays, and the arrays one after the other. What the page has
-already it knows by the digest. Camera, time and settings travel as state, both ways.
+The page asks for two kinds of files of parts: the surface of a scene, and the slices of one of its
+times; :mod:`flowtex.rendering.webgl.protocol` says what is in them. Camera, time and settings
+travel as state, both ways.
 """
 
 from __future__ import annotations
 
 import asyncio
-import json
-import struct
-from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
-from flowtex._util.cache import digest
 from flowtex._util.colours import colour_table, rgb
 from flowtex.app.controllers.part import Part
 from flowtex.app.server.routes import Content, Routes
 from flowtex.app.server.untrusted import number
 from flowtex.app.streaming.scene import BACKGROUNDS
-from flowtex.rendering.webgl import Colours, asset
-from flowtex.rendering.webgl import Scene as BrowserScene
+from flowtex.rendering.webgl import ClientData, Colours
+from flowtex.rendering.webgl.protocol import parts_file
 from flowtex.scene import steps_of
 from flowtex.settings import TABLE
+from flowtex.web.assets import asset
 
-__all__ = ["RENDERERS", "Browser", "packed"]
+__all__ = ["RENDERERS", "Browser"]
 
 #: Where the picture is drawn.
 RENDERERS = ("server", "browser")
-
-Parts = Mapping[str, NDArray[Any]]
 
 
 class Browser(Part):
@@ -47,7 +38,7 @@ class Browser(Part):
 
     def __init__(self, app: Any) -> None:
         super().__init__(app)
-        self._scene: BrowserScene | None = None
+        self._scene: ClientData | None = None
         self._generation = 0
         self._routes = Routes.of(app.server)
         self._look: tuple[Any, ...] = ()
@@ -157,14 +148,14 @@ class Browser(Part):
         """Hand a scene over, in place of an earlier one."""
         self._withdraw()
         self._look = self._present_look()
-        self._scene = scene = BrowserScene(self.scene.handle.scene.textures, self._colours())
+        self._scene = scene = ClientData(self.scene.handle.scene.textures, self._colours())
         self._generation += 1
         self._camera = self.scene.canvas.camera()
         self.area.stream.paused = True
         header = scene.header(self.area.settings, camera=self._camera, time=self.scene.handle.time)
-        surface = self._give("surface", lambda: packed(scene.surface()))
+        surface = self._give("surface", lambda: parts_file(scene.surface()))
         steps = [
-            self._give(f"step-{step}", lambda step=step: packed(scene.step(step)))
+            self._give(f"step-{step}", lambda step=step: parts_file(scene.step(step)))
             for step in range(scene.steps)
         ]
         self.state.send(
@@ -221,20 +212,3 @@ class Browser(Part):
         """End what goes on."""
         self._withdraw()
         self._scene = None
-
-
-def packed(parts: Parts) -> bytes:
-    """Return arrays as one binary file; the module says how it is laid out."""
-    arrays = {name: np.ascontiguousarray(array) for name, array in parts.items()}
-    header = [
-        {
-            "name": name,
-            "dtype": array.dtype.name,
-            "shape": list(array.shape),
-            "bytes": array.nbytes,
-            "digest": digest(array).hex(),
-        }
-        for name, array in arrays.items()
-    ]
-    text = json.dumps(header).encode()
-    return b"".join((struct.pack("<I", len(text)), text, *(a.tobytes() for a in arrays.values())))

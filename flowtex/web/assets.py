@@ -1,4 +1,4 @@
-"""The client's files, which lie beside this module in a checkout and in a wheel alike."""
+"""The client's files, built and kept beside this module, in a checkout and in a wheel alike."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from pathlib import Path
 
 __all__ = ["asset"]
 
-_FOLDER = Path(__file__).resolve().parents[2] / "web"
+_FOLDER = Path(__file__).resolve().parent
 
 
 def asset(name: str) -> Path:

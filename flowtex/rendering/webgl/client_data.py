@@ -1,61 +1,86 @@
-"""A flow as the client in the browser takes it: a header in JSON, and arrays.
+"""What a client in a browser is handed to draw a flow by itself.
 
-::
-
-    TextureSet, Settings, Colours --> Scene --header()-----------> JSON, with the shaders' text
-                                        +----surface(), step(k)--> named arrays, little endian
-
-The header has the numbers from which the client computes the uniforms itself, so that it answers
-a slider without asking; see :mod:`flowtex.rendering.uniforms` for what they are. Arrays come in
-the smallest type that does: slopes in half precision, as on every graphics card, normals in eight
-bits. Positions and scalars keep single precision.
+The header has the numbers from which the client computes the uniforms, so that it answers a slider
+without asking; see :mod:`flowtex.rendering.uniforms` for what they are. Arrays come in the smallest
+type that does: slopes in half precision, as on every graphics card, normals in sixteen bits.
+Positions and scalars keep single precision.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from functools import cache, cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from flowtex._version import __version__
+from flowtex._util.array_types import Bytes, Floats
+from flowtex.camera import CAMERA_LIMITS, Camera
 from flowtex.field.interpolation import steps_around
-from flowtex.first_look import first_look
 from flowtex.rendering.shader_text import compose
-from flowtex.rendering.uniforms import variants
-from flowtex.rendering.webgl.header import (
-    Colours,
-    camera_state,
-    half,
-    numbers,
-    paper_state,
-    table_state,
-)
-from flowtex.rendering.webgl.packing import Packing, packing_of
-from flowtex.settings import Settings
-from flowtex.textures import TextureSet
+from flowtex.rendering.uniforms import client_constants, variants
+from flowtex.rendering.webgl.packing import Packing, half, packing_of
+from flowtex.rendering.webgl.protocol import FORMAT, Header, Parts
+from flowtex.settings import TABLE, Settings
+from flowtex.textures import PaperTextures, TextureSet
 
-__all__ = ["FORMAT", "Scene"]
+__all__ = ["ClientData", "Colours"]
 
-Array = NDArray[Any]
-Parts = dict[str, Array]
-
-#: Number of the form of header and parts; a client refuses one that it does not know.
-FORMAT = 1
 #: Shaders of the client, by the name under which the header has their text.
 SHADERS = {
     "vertex": "webgl2/vertex.glsl",
     "fragment": "webgl2/fragment.glsl",
     "pick": "webgl2/pick.glsl",
 }
+#: Width over height of the picture that a first camera is made for; clients widen it for others.
+FIRST_ASPECT = 1.5
+#: Greatest value of a component of a normal in sixteen bits.
+NORMAL_MAX = 32767
+#: Settings whose names say too little.
+LABELS = {"lod": "Level of detail", "show_level": "Show levels", "two_sided": "Both directions"}
 
 
 @dataclass(frozen=True, eq=False)
-class Scene:
-    """A flow, its colours and a camera, ready to be handed over.
+class Colours:
+    """How the surface is coloured.
+
+    Attributes
+    ----------
+    name, unit
+        What it is coloured by, for the legend; ``None`` for a plain surface.
+    values
+        Nodal values, (T or 1, J, I).
+    low, high
+        Values at the ends of the colour map.
+    table
+        Colour map, (256, 4) uint8.
+    plain, background
+        Colours from 0 to 1 where there are no values, and behind the surface.
+    lighting
+        Whether the surface is lit.
+    opacity
+        How much of the background it hides, 0 to 1.
+    bar
+        Whether there is a legend.
+    """
+
+    name: str | None = None
+    unit: str = ""
+    values: Floats | None = None
+    low: float = 0.0
+    high: float = 1.0
+    table: Bytes | None = None
+    plain: tuple[float, float, float] = (0.63, 0.63, 0.63)
+    background: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    lighting: bool = False
+    opacity: float = 1.0
+    bar: bool = True
+
+
+@dataclass(frozen=True, eq=False)
+class ClientData:
+    """A flow and its colours, ready to be handed over.
 
     Attributes
     ----------
@@ -63,13 +88,13 @@ class Scene:
         What to draw.
     colours
         In which colours.
-    kept
-        Destination times that are handed over, increasing; all of them when empty.
+    chosen
+        Numbers of the destination times that are handed over, increasing; all when empty.
     """
 
     textures: TextureSet
     colours: Colours = field(default_factory=Colours)
-    kept: tuple[int, ...] = ()
+    chosen: tuple[int, ...] = ()
 
     @cached_property
     def packing(self) -> Packing:
@@ -79,17 +104,17 @@ class Scene:
     @property
     def steps(self) -> int:
         """Number of destination times that are handed over."""
-        return len(self.kept) or self.textures.store.steps
+        return len(self.chosen) or self.textures.store.steps
 
     @property
-    def times(self) -> NDArray[np.float64]:
+    def times(self) -> Floats:
         """Destination times, (steps,), in the field's own unit."""
         times = self.textures.geometry.field.times
-        return times[list(self.kept)] if self.kept else times
+        return times[list(self.chosen)] if self.chosen else times
 
-    def first_look(self, size: tuple[int, int] = (3, 2)) -> dict[str, Any]:
-        """Camera that shows the whole surface in a picture of a size, as the header has it."""
-        return camera_state(first_look(self.textures.geometry.field, size[0] / size[1]))
+    def first_camera(self, aspect: float = FIRST_ASPECT) -> Camera:
+        """Return the camera that shows the whole surface in a picture of a shape."""
+        return Camera.fit(self.textures.geometry.field.surface, aspect)
 
     def header(
         self,
@@ -98,7 +123,7 @@ class Scene:
         camera: Mapping[str, Any] | None = None,
         time: float | None = None,
         clock: float = 0.0,
-    ) -> dict[str, Any]:
+    ) -> Header:
         """Return all that is no array; plain Python, for JSON.
 
         Parameters
@@ -106,7 +131,7 @@ class Scene:
         settings
             How to draw.
         camera
-            From where; the whole surface by default.
+            From where, as :meth:`Camera.to_dict` has it; the whole surface by default.
         time
             Time that is shown, in the field's own unit; the last one by default.
         clock
@@ -115,18 +140,17 @@ class Scene:
         return {
             **self.constants(),
             "settings": dict(settings),
-            "camera": dict(camera) if camera is not None else self.first_look(),
+            "camera": self.first_camera().to_dict() if camera is None else dict(camera),
             "time": float(self.times[-1] if time is None else time),
             "clock": float(clock),
         }
 
-    def constants(self) -> dict[str, Any]:
+    def constants(self) -> Header:
         """Return what of the header changes only with the textures or the colours."""
         textures, colours = self.textures, self.colours
         variant = sorted(variants(textures, unsteady=self.steps > 1))
         return {
             "format": FORMAT,
-            "version": __version__,
             "name": textures.geometry.field.name,
             "variant": variant,
             "shaders": dict(_shaders(tuple(variant))),
@@ -140,12 +164,14 @@ class Scene:
                 "unit": colours.unit,
                 "bar": bool(colours.bar),
             },
-            "colour": [float(c) for c in colours.plain],
-            "background": [float(c) for c in colours.background],
+            "colour": _numbers(colours.plain),
+            "background": _numbers(colours.background),
             "lighting": bool(colours.lighting),
             "opacity": float(colours.opacity),
-            "paper": None if textures.paper is None else paper_state(textures.paper),
-            "table": table_state(),
+            "paper": None if textures.paper is None else _paper(textures.paper),
+            "constants": client_constants(),
+            "limits": {**asdict(CAMERA_LIMITS), "aspect": FIRST_ASPECT},
+            "table": _table(),
         }
 
     def surface(self) -> Parts:
@@ -157,7 +183,7 @@ class Scene:
         if not geometry.field.surface.cells.all():
             parts["cells"] = geometry.field.surface.cells.astype(np.uint8)
         if not geometry.planar:
-            parts["normal"] = np.rint(geometry.normal * 32767).astype(np.int16)
+            parts["normal"] = np.rint(geometry.normal * NORMAL_MAX).astype("<i2")
         parts["position"] = np.ascontiguousarray(geometry.position, "<f4")
         if self.textures.paper is not None:
             parts["step"] = half(self.textures.paper.step)
@@ -181,13 +207,14 @@ class Scene:
         parts: Parts = {}
         if values is not None and step < len(values):
             parts[f"scalars/{step}"] = np.ascontiguousarray(values[step], "<f4")
-        slopes, parts[f"extra/{step}"] = self.packing.step(self.source(step))
-        parts[f"slices/{step}"] = slopes
+        packed = self.packing.step(self.source(step))
+        parts[f"extra/{step}"] = packed.extra
+        parts[f"slices/{step}"] = packed.slopes
         return parts
 
     def source(self, step: int) -> int:
         """Return the field's own number of a step that is handed over."""
-        return self.kept[step] if self.kept else step
+        return self.chosen[step] if self.chosen else step
 
     def moment(self, time: float) -> tuple[int, ...]:
         """Return the steps that are needed to show a time, one or two."""
@@ -204,12 +231,12 @@ class Scene:
         return 2 * texels * numbers + (4 * nodes if self.colours.values is not None else 0)
 
     @property
-    def _values(self) -> NDArray[np.float64] | None:
+    def _values(self) -> Floats | None:
         """Nodal values of the colours at the times that are handed over, (steps or 1, J, I)."""
         values = self.colours.values
-        if values is None or not self.kept or len(values) == 1:
+        if values is None or not self.chosen or len(values) == 1:
             return values
-        return values[list(self.kept)]
+        return values[list(self.chosen)]
 
     def _geometry(self) -> dict[str, Any]:
         geometry = self.textures.geometry
@@ -220,9 +247,8 @@ class Scene:
             "levels": int(geometry.levels),
             "planar": geometry.planar,
             "extent": float(geometry.extent),
-            "center": numbers(geometry.center),
-            "frame": numbers(geometry.frame.ravel()),
-            "periodic": [bool(p) for p in geometry.field.periodic],
+            "center": _numbers(geometry.center),
+            "frame": _numbers(geometry.frame),
         }
 
     def _slices(self) -> dict[str, Any]:
@@ -231,17 +257,50 @@ class Scene:
             "count": int(textures.count),
             "channels": self.packing.channels,
             "extra": self.packing.extra,
-            "lags": numbers(textures.lags),
+            "lags": _numbers(textures.lags),
             "sides": int(textures.sides),
             "unit": float(textures.unit),
             "pace": float(textures.pace),
             "steps": int(self.steps),
-            "times": numbers(self.times),
+            "times": _numbers(self.times),
             "timeUnit": textures.geometry.field.time_unit,
-            "signFree": bool(textures.geometry.field.sign_free),
         }
+
+
+def _paper(paper: PaperTextures) -> dict[str, Any]:
+    """Return what is to be known of the noise texture, or of the picture in its place."""
+    height, width = paper.step.shape
+    return {
+        "size": [int(width), int(height)],
+        "grain": float(paper.grain),
+        "corrected": bool(paper.corrected),
+        "deviations": _numbers(paper.deviations),
+        "repeat": [bool(r) for r in paper.repeat],
+        "picture": bool(paper.picture),
+        "alongI": _numbers(paper.along_i),
+        "alongJ": _numbers(paper.along_j),
+    }
 
 
 @cache
 def _shaders(variant: tuple[str, ...]) -> dict[str, str]:
     return {key: compose(name, variant) for key, name in SHADERS.items()}
+
+
+def _table() -> list[dict[str, Any]]:
+    """Return the table of settings, for controls."""
+    same = ("name", "default", "affects", "text", "low", "high")
+    return [
+        {
+            **{key: getattr(row, key) for key in same},
+            "label": LABELS.get(row.name, row.name.replace("_", " ").capitalize()),
+            "kind": row.kind.__name__,
+            "choices": list(row.choices),
+        }
+        for row in TABLE.values()
+    ]
+
+
+def _numbers(values: Any) -> list[float]:
+    """Return an array as a flat list of Python's own numbers."""
+    return [float(v) for v in np.asarray(values).ravel()]
