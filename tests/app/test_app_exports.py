@@ -10,15 +10,16 @@ from typing import Any
 
 import numpy as np
 import pytest
+from aiohttp import web
 from PIL import Image, ImageSequence
 
 pytest.importorskip("trame_rca")
 
 from flowtex import FlowField
 from flowtex._util.progress import Stopped
-from flowtex.app.controllers.exports import ExportError, Job, MovieJob, PictureJob
-from flowtex.app.server.downloads import Downloads
-from flowtex.app.streaming.scene import Scene
+from flowtex.app.controllers.export_jobs import ExportError, Job, MovieJob, PictureJob
+from flowtex.app.server.files import Downloads, Routes
+from flowtex.app.streaming.viewport import Viewport
 from flowtex.offscreen.encoders import MovieError
 
 pytestmark = pytest.mark.usefixtures("opengl")
@@ -37,21 +38,21 @@ def patch(*, curved: bool = False, steps: int = 1) -> FlowField:
 
 
 @pytest.fixture(scope="module", params=["flat", "bent"])
-def scene(request: pytest.FixtureRequest) -> Iterator[Scene]:
-    made = Scene(
+def scene(request: pytest.FixtureRequest) -> Iterator[Viewport]:
+    made = Viewport(
         patch(curved=request.param == "bent"), zoom=2.0, samples=9, scalars="height", cmap="magma"
     )
     made.resize(240, 160)
     made.first_look()
-    made.navigator.pan(0.1, -0.2)
+    made.pan(0.1, -0.2)
     made.set_background("light")
     yield made
     made.close()
 
 
 @pytest.fixture
-def plain() -> Iterator[Scene]:
-    made = Scene(patch(), samples=5, speed=120.0)
+def plain() -> Iterator[Viewport]:
+    made = Viewport(patch(), samples=5, speed=120.0)
     made.resize(120, 80)
     made.home()
     yield made
@@ -59,8 +60,8 @@ def plain() -> Iterator[Scene]:
 
 
 @pytest.fixture
-def series() -> Iterator[Scene]:
-    made = Scene(patch(steps=4), samples=5)
+def series() -> Iterator[Viewport]:
+    made = Viewport(patch(steps=4), samples=5)
     made.resize(120, 80)
     made.home()
     yield made
@@ -80,7 +81,7 @@ def difference(one: Any, other: Any) -> float:
     return float(np.abs(np.asarray(one, int) - np.asarray(other, int)).mean())
 
 
-def test_a_picture_is_what_is_on_view(scene: Scene, tmp_path: Path) -> None:
+def test_a_picture_is_what_is_on_view(scene: Viewport, tmp_path: Path) -> None:
     job = PictureJob(scene, tmp_path / "view.png", (240, 160))
     assert (job.progress, job.done) == (0.0, False)
     path = run(job)
@@ -91,8 +92,8 @@ def test_a_picture_is_what_is_on_view(scene: Scene, tmp_path: Path) -> None:
     assert difference(np.roll(pixels(path), 3, axis=0), shown) > 3
 
 
-def test_a_larger_picture_is_finer_or_denser(scene: Scene, tmp_path: Path) -> None:
-    view = (scene.size, scene.canvas.camera(), dict(scene.handle.settings))
+def test_a_larger_picture_is_finer_or_denser(scene: Viewport, tmp_path: Path) -> None:
+    view = (scene.size, scene.camera, dict(scene.handle.settings))
     shown = scene.draw(240, 160)
     dense = run(PictureJob(scene, tmp_path / "dense.png", (720, 480), density=3.0))
     fine = run(PictureJob(scene, tmp_path / "fine.png", (720, 480)))
@@ -101,11 +102,11 @@ def test_a_larger_picture_is_finer_or_denser(scene: Scene, tmp_path: Path) -> No
     assert difference(averaged[0], shown) < 5 < difference(averaged[1], shown)
     assert difference(pixels(smooth), averaged[0]) < 1
     # Nothing of what is on view has changed.
-    assert view == (scene.size, scene.canvas.camera(), dict(scene.handle.settings))
+    assert view == (scene.size, scene.camera, dict(scene.handle.settings))
     assert difference(scene.draw(240, 160), shown) == 0
 
 
-def test_both_panes_and_an_image_are_in_the_picture(plain: Scene, tmp_path: Path) -> None:
+def test_both_panes_and_an_image_are_in_the_picture(plain: Viewport, tmp_path: Path) -> None:
     half = np.zeros((40, 60, 4), np.uint8)
     half[:20] = [250, 20, 30, 128]
     plain.handle.set_image(half)
@@ -120,7 +121,7 @@ def test_both_panes_and_an_image_are_in_the_picture(plain: Scene, tmp_path: Path
     assert left > 5 * right
 
 
-def test_the_page_goes_on_between_tiles(scene: Scene, tmp_path: Path) -> None:
+def test_the_page_goes_on_between_tiles(scene: Viewport, tmp_path: Path) -> None:
     job = PictureJob(scene, tmp_path / "large.png", (1500, 1000))
     seen: list[float] = []
 
@@ -137,7 +138,7 @@ def test_the_page_goes_on_between_tiles(scene: Scene, tmp_path: Path) -> None:
     assert pixels(job.path).shape == (1000, 1500, 3)
 
 
-def test_a_job_waits_while_the_view_is_busy(plain: Scene, tmp_path: Path) -> None:
+def test_a_job_waits_while_the_view_is_busy(plain: Viewport, tmp_path: Path) -> None:
     moving = iter([True, True, True])
     job = PictureJob(plain, tmp_path / "a.png", (60, 40), busy=lambda: next(moving, False))
     started = time.perf_counter()
@@ -146,13 +147,13 @@ def test_a_job_waits_while_the_view_is_busy(plain: Scene, tmp_path: Path) -> Non
 
 
 @pytest.mark.parametrize("kind", ["gif", "mp4"])
-def test_a_movie_is_a_loop_of_what_is_on_view(plain: Scene, tmp_path: Path, kind: str) -> None:
+def test_a_movie_is_a_loop_of_what_is_on_view(plain: Viewport, tmp_path: Path, kind: str) -> None:
     path = tmp_path / f"flow.{kind}"
     job = MovieJob(plain, path, (121, 81), seconds=1.0, fps=10, quality=95)
     run(job)
     pictures = shown(path)
     wide, high = (120, 80) if kind == "mp4" else (121, 81)
-    assert pictures.shape == (10, high, wide, 3) and job.moments.closed
+    assert pictures.shape == (10, high, wide, 3) and job.frames.closed
     steps = [difference(pictures[n - 1], pictures[n]) for n in range(10)]
     # The step from the last to the first picture, which is steps[0], is like the others.
     assert min(steps) > 1 and max(steps) < 2 * min(steps)
@@ -177,12 +178,12 @@ def shown(path: Path) -> Any:
         return np.array([f.to_ndarray(format="rgb24") for f in file.decode(video=0)], dtype=int)
 
 
-def test_a_movie_of_a_series_shows_all_times(series: Scene, tmp_path: Path) -> None:
+def test_a_movie_of_a_series_shows_all_times(series: Viewport, tmp_path: Path) -> None:
     series.set_time(1.0)
     job = MovieJob(series, tmp_path / "all.gif", (120, 80), seconds=1.0, fps=4)
     run(job)
     pictures = shown(job.path)
-    assert len(pictures) == 4 and job.moments.times == pytest.approx((0, 1, 2, 3))
+    assert len(pictures) == 4 and job.frames.times == pytest.approx((0, 1, 2, 3))
     assert series.handle.time == 1.0
     for n in (0, 3):
         series.set_time(float(n))
@@ -192,7 +193,9 @@ def test_a_movie_of_a_series_shows_all_times(series: Scene, tmp_path: Path) -> N
 
 @pytest.mark.parametrize("kind", ["mp4", "gif", "png"])
 @pytest.mark.parametrize("way", ["cancel", "task"])
-def test_a_cancelled_job_leaves_nothing(plain: Scene, tmp_path: Path, kind: str, way: str) -> None:
+def test_a_cancelled_job_leaves_nothing(
+    plain: Viewport, tmp_path: Path, kind: str, way: str
+) -> None:
     made = PictureJob if kind == "png" else MovieJob
     job = made(plain, tmp_path / f"a.{kind}", (400, 300))
     threads = threading.active_count()
@@ -222,7 +225,7 @@ def wait_until(true: Any) -> None:
         time.sleep(0.01)
 
 
-def test_a_file_that_cannot_be_written_is_told(plain: Scene, tmp_path: Path) -> None:
+def test_a_file_that_cannot_be_written_is_told(plain: Viewport, tmp_path: Path) -> None:
     for job in (
         PictureJob(plain, tmp_path / "none" / "a.png", (20, 20)),
         MovieJob(plain, tmp_path / "none" / "a.gif", (20, 20), seconds=0.1),
@@ -245,7 +248,7 @@ def test_a_file_that_cannot_be_written_is_told(plain: Scene, tmp_path: Path) -> 
     ],
 )
 def test_what_cannot_be_made_is_told(
-    plain: Scene, tmp_path: Path, made: Any, options: dict[str, Any], said: str
+    plain: Viewport, tmp_path: Path, made: Any, options: dict[str, Any], said: str
 ) -> None:
     path = tmp_path / options.pop("path", "a.gif")
     with pytest.raises((ExportError, MovieError)) as error:
@@ -253,52 +256,59 @@ def test_what_cannot_be_made_is_told(
     assert said in str(error.value)
 
 
+def added(files: Downloads, name: str = "a.gif") -> str:
+    """Token of another download of 100 bytes."""
+    path = files.reserve(name)
+    path.write_bytes(b"x" * 100)
+    return files.add(path).rsplit("/", 1)[-1]
+
+
 def test_downloads_are_private_and_under_a_token() -> None:
-    files = Downloads()
-    path = files.place("../../my flow?.png")
+    routes = Routes()
+    files = Downloads(routes)
+    path = files.reserve("../../my flow?.png")
     assert path.name == "_.._my flow_.png" and path.parent.parent == files.folder
-    path.write_bytes(b"picture")
     assert stat.S_IMODE(files.folder.stat().st_mode) == 0o700
-    one, other = files.add(path, 'a"b\r\n.png'), files.add(path, "b.mp4")
+    one, other = added(files, 'a"b\r\n.png'), added(files, "b.mp4")
     assert one != other and len(one) >= 32
     found = files.get(one)
-    assert found is not None and found.path.read_bytes() == b"picture"
-    assert found.headers["Content-Disposition"] == "attachment; filename*=UTF-8''a_b__.png"
-    assert found.headers["Content-Type"] == "image/png"
+    assert found is not None and found.read_bytes() == b"x" * 100
+    answer = asyncio.run(routes.answer(one))
+    assert "filename*=UTF-8''a_b__.png" in answer.headers["Content-Disposition"]
+    assert answer.headers["Content-Disposition"].startswith("attachment;")
+    assert answer.headers["Content-Type"] == "image/png"
     assert files.get("") is None and files.get(one[:-1]) is None and files.get("../x") is None
     with pytest.raises(ValueError, match="lies outside"):
-        files.add(Path("/etc/hostname"), "x")
+        files.add(Path("/etc/hostname"))
     files.close()
     assert files.get(one) is None and not files.folder.exists()
     files.close()
+    answer = asyncio.run(routes.answer(one))
+    assert isinstance(answer, web.Response) and "not there any more" in str(answer.text)
 
 
 def test_downloads_go_when_they_are_old_or_too_many(monkeypatch: pytest.MonkeyPatch) -> None:
     now = [0.0]
-    files = Downloads(lifetime=10.0, clock=lambda: now[0])
+    files = Downloads(Routes(), lifetime=10.0, clock=lambda: now[0])
     tokens = []
     for n in range(3):
-        path = files.place("a.gif")
-        path.write_bytes(b"x" * 100)
         now[0] = float(n)
-        tokens.append(files.add(path, "a.gif"))
+        tokens.append(added(files))
     now[0] = 11.5
     assert [files.get(t) is not None for t in tokens] == [False, False, True]
     # What was asked for just now stays for as long again.
     now[0] = 21.0
     assert files.get(tokens[2]) is not None and len(files) == 1
-    monkeypatch.setattr("flowtex.app.server.downloads.MOST_BYTES", 150)
-    path = files.place("b.gif")
-    path.write_bytes(b"x" * 100)
+    monkeypatch.setattr("flowtex.app.server.files.DOWNLOAD_BYTES", 150)
     now[0] = 22.0
-    last = files.add(path, "b.gif")
+    last = added(files, "b.gif")
     assert files.get(tokens[2]) is None and files.get(last) is not None
     assert len(list(files.folder.iterdir())) == 1
     files.close()
 
 
 def test_downloads_are_removed_with_their_owner() -> None:
-    files = Downloads()
+    files = Downloads(Routes())
     folder = files.folder
     del files
     assert not folder.exists()

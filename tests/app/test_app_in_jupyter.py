@@ -19,7 +19,7 @@ from served import Link, enter
 
 from flowtex import examples
 from flowtex.app import FlowApp
-from flowtex.app.server.cell import proxy_path
+from flowtex.app.server.notebook import proxy_path
 
 if TYPE_CHECKING:
     from playwright.sync_api import Frame, Page
@@ -151,9 +151,9 @@ def test_a_cell_shows_a_flow_that_both_sides_can_change(page: Page, jupyter: str
         page.mouse.wheel(0, -100)
     closer = drawn(page, frame, count)
     assert np.abs(closer - before).mean() > 5
-    assert float(notebook.said("app.scene.navigator.zoom")) > 3
+    assert float(notebook.said("app.viewport.zoom")) > 3
     count = int(frame.get_attribute("[data-sharp]", "data-sharp") or 0)
-    assert notebook.said("app.scene.home() or app.stream.moved()") == "None"
+    assert notebook.said("app.viewport.home() or app.stream.moved()") == "None"
     assert np.abs(drawn(page, frame, count) - before).mean() < 1
 
     assert notebook.said("app.close()") == "None"

@@ -52,17 +52,15 @@ def test_lines_of_python_make_the_flow_that_is_shown(tmp_path: Path) -> None:
     [("diameters", "diameter"), ("body lengths", "body length"), ("ms", "ms"), ("metre", "metre")],
 )
 def test_one_is_said_in_the_singular(unit: str, one: str) -> None:
-    from flowtex.app.controllers.moves import singular
+    from flowtex.app.controllers.camera_controls import singular
 
     assert singular(unit) == one
 
 
 def test_every_slider_can_be_put_back_to_its_default() -> None:
-    from flowtex.app.ui.controls import MOST_STOPS, _step
     from flowtex.settings import TABLE
 
     for setting in TABLE.values():
-        low, high = setting.low or 0.0, setting.high or 0.0
-        if setting.kind is float and high - low <= MOST_STOPS:
-            steps = (setting.default - low) / _step(low, high, setting.default)
+        if setting.kind is float and setting.control == "slider":
+            steps = (setting.default - (setting.low or 0.0)) / setting.step
             assert steps == pytest.approx(round(steps), abs=1e-6), setting.name

@@ -12,10 +12,9 @@ from PIL import Image
 pytest.importorskip("trame_rca")
 
 import flowtex
-from flowtex.app.controllers.links import DEFAULTS, from_link, to_link
-from flowtex.app.controllers.look import COMPARISONS
-from flowtex.app.controllers.python_lines import to_python
-from flowtex.app.streaming.scene import Scene
+from flowtex.app.controllers.appearance import COMPARISONS
+from flowtex.app.controllers.serialization import DEFAULTS, from_link, to_link, to_python
+from flowtex.app.streaming.viewport import Viewport
 from flowtex.settings import TABLE, SettingsError
 
 CAMERA: dict[str, Any] = {
@@ -144,7 +143,7 @@ def test_the_python_lines_draw_the_same_picture(
     monkeypatch.chdir(file.parent)
     field = flowtex.FlowField.from_file(file.name)
     changed: dict[str, Any] = {"samples": 15, "seed": 3, "motion": "speed"}
-    scene = Scene(field, zoom=3.0, scalars="vorticity", cmap="magma", clim=(-1, 2.0), **changed)
+    scene = Viewport(field, zoom=3.0, scalars="vorticity", cmap="magma", clim=(-1, 2.0), **changed)
     scene.compare(COMPARISONS[split] or None)
     count = len(scene.panes)
     scene.resize(count * 160 + 2 * (count - 1), 120)
@@ -159,7 +158,7 @@ def test_the_python_lines_draw_the_same_picture(
         "clock": 0.7,
         "theme": "light",
         "split": split,
-        "camera": scene.canvas.camera(),
+        "camera": scene.camera.to_dict(),
         "settings": dict(scene.handle.settings),
     }
     drawn = np.hstack([pane.draw(160, 120) for pane in scene.panes]).astype(int)

@@ -4,22 +4,28 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from flowtex import FlowField
-from flowtex.app.controllers.reading import Hover, PathCard, number, with_unit
-from flowtex.app.streaming.aim import ray
-from flowtex.app.streaming.navigate import Navigator
-from flowtex.app.streaming.places import camera_of, project, runs
+from flowtex._util.array_types import Floats
+from flowtex.app.controllers.point_info import (
+    PathCard,
+    PointText,
+    clip_line,
+    number_text,
+    pixel_camera,
+    with_unit,
+)
+from flowtex.app.streaming.viewport import Viewport
+from flowtex.camera import Camera
 from flowtex.options import Appearance
 from flowtex.probe import locate, probe
 from flowtex.scene import Scene
 from flowtex.settings import Settings
-
-Floats = NDArray[np.float64]
 
 
 def flat(*, tilted: bool = False) -> FlowField:
@@ -42,22 +48,32 @@ def ball() -> FlowField:
     return FlowField.from_arrays(points, np.stack([-points[..., 1], points[..., 0], 0 * lon], -1))
 
 
-def navigator_at(
-    position: tuple[float, ...], focus: tuple[float, ...], *, scale: float | None = None
-) -> Navigator:
-    """A camera with x or y to the right and z or y upwards."""
-    from vtkmodules.vtkRenderingCore import vtkCamera
+class Seen(Viewport):
+    """A viewport without a window: a field, and a camera with z or y upwards."""
 
-    camera = vtkCamera()
-    camera.SetPosition(*position)
-    camera.SetFocalPoint(*focus)
-    camera.SetViewUp(0, 1, 0.3)
-    if scale is not None:
-        camera.ParallelProjectionOn()
-        camera.SetParallelScale(scale)
-    made = Navigator(camera, flat=scale is not None)
-    made.aspect = 1.6
-    return made
+    aspect, pane_size, panes = 1.6, (320, 200), [None]  # type: ignore[list-item]
+
+    def __init__(
+        self,
+        position: tuple[float, float, float],
+        focus: tuple[float, float, float],
+        *,
+        scale: float | None = None,
+        field: FlowField | None = None,
+    ) -> None:
+        parallel = scale is not None
+        self.window = SimpleNamespace(place=lambda camera: None)  # type: ignore[assignment]
+        self.camera = Camera(position, focus, (0, 1, 0.3), parallel, scale or 1.0)
+        self.whole, self._shown = self.camera, field
+
+    @property
+    def field(self) -> FlowField:
+        assert self._shown is not None
+        return self._shown
+
+    @property
+    def handle(self) -> Any:
+        return SimpleNamespace(time=self.field.times[0])
 
 
 def view_of(field: FlowField, **settings: object) -> Scene:
@@ -66,54 +82,31 @@ def view_of(field: FlowField, **settings: object) -> Scene:
     return Scene(field, chosen)
 
 
-def never(x: float, y: float) -> Floats | None:
-    raise AssertionError((x, y))
-
-
 # --- places ---------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("scale", [None, 0.8, 1e-7], ids=["perspective", "parallel", "deep"])
-def test_a_ray_projects_to_where_it_started(scale: float | None) -> None:
-    navigator = navigator_at((0.5, -3.0, 2.0), (0.1, 0.2, -0.1), scale=scale)
-    for place in ((0.0, 0.0), (0.7, -0.4), (-1.0, 1.0)):
-        start, along = ray(navigator, *place)
-        points = start + np.array([[1.0], [3.5], [6.0]]) * along
-        assert project(navigator, points) == pytest.approx(np.tile(place, (3, 1)), abs=1e-6)
-
-
 @pytest.mark.parametrize("scale", [None, 0.8])
-def test_places_are_those_of_the_camera(scale: float | None, rng: np.random.Generator) -> None:
-    """Both the camera that a probe takes, and VTK's own."""
-    navigator = navigator_at((0.5, -3.0, 2.0), (0.1, 0.2, -0.1), scale=scale)
+def test_places_are_those_of_the_pixels(scale: float | None, rng: np.random.Generator) -> None:
+    viewport = Seen((0.5, -3.0, 2.0), (0.1, 0.2, -0.1), scale=scale)
     points = rng.uniform(-0.5, 0.5, (9, 3))
-    camera = camera_of(navigator, (320, 200))
-    whole = np.concatenate([points, np.ones((9, 1))], axis=1)
-    theirs = navigator.camera.GetCompositeProjectionTransformMatrix(1.6, -1, 1)
-    own = np.array([[theirs.GetElement(r, c) for c in range(4)] for r in range(4)])
-    for matrix in (camera.matrix(), own):
-        clip = whole @ matrix.T
-        assert project(navigator, points) == pytest.approx(clip[:, :2] / clip[:, 3:], abs=1e-9)
-
-
-def test_behind_the_camera_there_is_no_place() -> None:
-    navigator = navigator_at((0.0, 0.0, 2.0), (0.0, 0.0, 0.0))
-    assert np.isnan(project(navigator, np.array([0.1, 0.0, 3.0]))).all()
+    clip = np.concatenate([points, np.ones((9, 1))], axis=1) @ pixel_camera(viewport).matrix().T
+    places = viewport.camera.project(points, viewport.aspect)
+    assert places == pytest.approx(clip[:, :2] / clip[:, 3:], abs=1e-9)
 
 
 def test_a_line_is_cut_where_the_view_ends() -> None:
     line = np.array([[-9.0, 0.0], [0.0, 0.0], [1.0, 1.0], [1.0, 9.0], [5.0, 9.0]])
-    (run,) = runs(line)
+    (run,) = clip_line(line)
     assert run == [[-2, 0], [0, 0], [1, 1], [1, 2]]
     # Twice through the view, and once past it.
     again = np.array([[-9.0, 1.0], [9.0, 1.0], [9.0, 0.0], [-9.0, 0.0]])
-    assert runs(again) == [[[-2, 1], [2, 1]], [[2, 0], [-2, 0]]]
-    assert runs(np.array([[-9.0, 0.0], [0.0, 9.0]])) == []
+    assert clip_line(again) == [[[-2, 1], [2, 1]], [[2, 0], [-2, 0]]]
+    assert clip_line(np.array([[-9.0, 0.0], [0.0, 9.0]])) == []
     # What lies behind the camera is left out, and so is a single point.
     gap = np.array([[0.0, 0.0], [1.0, 0.0], [np.nan, np.nan], [1.0, 1.0], [0.0, 1.0]])
-    assert runs(gap) == [[[0, 0], [1, 0]], [[1, 1], [0, 1]]]
-    assert runs(np.zeros((1, 2))) == runs(np.zeros((0, 2))) == []
-    assert runs(line, beyond=1.0) == [[[-1, 0], [0, 0], [1, 1]]]
+    assert clip_line(gap) == [[[0, 0], [1, 0]], [[1, 1], [0, 1]]]
+    assert clip_line(np.zeros((1, 2))) == clip_line(np.zeros((0, 2))) == []
+    assert clip_line(line, reach=1.0) == [[[-1, 0], [0, 0], [1, 1]]]
 
 
 # --- words ----------------------------------------------------------------------------------
@@ -132,12 +125,12 @@ def test_a_line_is_cut_where_the_view_ends() -> None:
     ],
 )
 def test_numbers_are_short(x: float, text: str) -> None:
-    assert number(x) == text
+    assert number_text(x) == text
 
 
 def test_a_deep_zoom_has_more_digits() -> None:
-    assert number(0.00012345678, 9) == "0.00012345678"
-    assert number(1.23456789012, 10) == "1.23456789"
+    assert number_text(0.00012345678, 9) == "0.00012345678"
+    assert number_text(1.23456789012, 10) == "1.23456789"
 
 
 def test_a_long_unit_is_left_out() -> None:
@@ -150,8 +143,8 @@ def test_a_long_unit_is_left_out() -> None:
 
 
 def test_the_tip_of_a_flat_surface() -> None:
-    navigator = navigator_at((0.0, 0.0, 5.0), (0.0, 0.0, 0.0), scale=1.0)
-    hover = Hover(view_of(flat()), navigator, never)
+    viewport = Seen((0.0, 0.0, 5.0), (0.0, 0.0, 0.0), scale=1.0, field=flat())
+    hover = PointText(viewport)
     got = dict(hover(0.5, -0.5) or ())
     assert got == {
         "position": "(0.8, -0.5)",
@@ -160,36 +153,37 @@ def test_the_tip_of_a_flat_surface() -> None:
         "warmth": "8",
     }
     assert hover(0.5, 1.01) is None
-    assert hover.point(0.5, 1.5) == pytest.approx([0.8, 1.5, 0.0])
+    assert viewport.surface_point(0.5, 1.5) == pytest.approx([0.8, 1.5, 0.0])
 
 
 def test_a_tilted_plane_has_three_coordinates() -> None:
-    navigator = navigator_at((0.0, 0.0, 5.0), (0.0, 0.0, 0.0))
-    hover = Hover(view_of(flat(tilted=True)), navigator, never)
+    viewport = Seen((0.0, 0.0, 5.0), (0.0, 0.0, 0.0), field=flat(tilted=True))
+    hover = PointText(viewport)
     got = dict(hover(0.1, 0.3) or ())
     assert got["position"].count(",") == got["velocity"].count(",") == 2
     at = hover.index(0.1, 0.3)
     assert at is not None
     point = probe(view_of(flat(tilted=True)), at, pixel=0.01).reading.position
-    assert project(navigator, point) == pytest.approx([0.1, 0.3])
+    assert viewport.camera.project(point, viewport.aspect) == pytest.approx([0.1, 0.3])
 
 
 def test_a_plane_seen_edge_on_or_from_below_says_nothing() -> None:
-    edge = navigator_at((5.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-    away = navigator_at((0.0, 0.0, 5.0), (0.0, 0.0, 9.0))
-    for navigator in (edge, away):
-        assert Hover(view_of(flat()), navigator, never)(0.0, 0.0) is None
+    edge = Seen((5.0, 0.0, 0.0), (0.0, 0.0, 0.0), field=flat())
+    away = Seen((0.0, 0.0, 5.0), (0.0, 0.0, 9.0), field=flat())
+    for viewport in (edge, away):
+        assert PointText(viewport)(0.0, 0.0) is None
 
 
 def test_the_tip_of_a_curved_surface_asks_what_is_hit() -> None:
-    navigator = navigator_at((5.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    viewport = Seen((5.0, 0.0, 0.0), (0.0, 0.0, 0.0), field=ball())
     asked: list[tuple[float, float]] = []
 
     def hit(x: float, y: float) -> Floats | None:
         asked.append((x, y))
         return np.array([0.999, 0.01, 0.01]) if y < 0.5 else None
 
-    hover = Hover(view_of(ball()), navigator, hit)
+    viewport.surface_point = hit  # type: ignore[method-assign]
+    hover = PointText(viewport)
     lines = hover(0.0, 0.1)
     assert lines is not None
     assert [word for word, _ in lines] == ["position", "velocity", "speed"]
@@ -198,9 +192,9 @@ def test_the_tip_of_a_curved_surface_asks_what_is_hit() -> None:
 
 
 def test_the_digits_follow_the_zoom() -> None:
-    navigator = navigator_at((0.0, 0.0, 5.0), (0.0, 0.0, 0.0), scale=1.0)
-    navigator.zoom_by(1e5, 0.3333, 0.1)
-    got = dict(Hover(view_of(flat()), navigator, never)(0.3333, 0.1) or ())
+    viewport = Seen((0.0, 0.0, 5.0), (0.0, 0.0, 0.0), scale=1.0, field=flat())
+    viewport.zoom_by(1e5, 0.3333, 0.1)
+    got = dict(PointText(viewport)(0.3333, 0.1) or ())
     x = float(got["position"].strip("()").split(",")[0])
     assert x == pytest.approx(0.53328, abs=1e-8)
     assert len(got["position"]) > 12
@@ -217,14 +211,17 @@ def a_card() -> PathCard:
 
 
 def test_the_card_can_be_sent(card: PathCard) -> None:
-    data = json.loads(json.dumps(card.data(), allow_nan=False))
-    assert set(data) == {"lines", "bars", "path", "samples", "point"}
-    assert data["point"] == pytest.approx([0.3, 0.1, 0.0])
-    assert len(data["bars"]) == len(data["samples"]) == 21
-    assert max(bar["weight"] for bar in data["bars"]) == 1.0
-    assert data["bars"][10]["lag"] == 0
-    assert np.asarray(data["samples"])[10] == pytest.approx(data["point"])
-    greys = [int(bar["grey"][1:3], 16) / 255 for bar in data["bars"]]
+    viewport = Seen((0.0, 0.0, 5.0), (0.0, 0.0, 0.0), scale=1.0)
+    over, bars, lines = json.loads(
+        json.dumps([card.over(viewport), card.bars(), card.lines()], allow_nan=False)
+    )
+    place = viewport.camera.project([0.3, 0.1, 0.0], 1.6)
+    assert over["point"] == pytest.approx(place)
+    assert len(bars) == len(over["samples"]) == 21 and dict(lines)["samples"] == "21"
+    assert max(bar["weight"] for bar in bars) == 1.0
+    assert bars[10]["lag"] == 0
+    assert [over["samples"][10][axis] for axis in "xy"] == pytest.approx(list(place))
+    greys = [int(bar["grey"][1:3], 16) / 255 for bar in bars]
     assert greys == pytest.approx(card.probe.greys, abs=1 / 500)
 
 
@@ -247,10 +244,10 @@ def test_a_card_where_nothing_moves() -> None:
     speed = np.where(x > 0, 1.0, 0.0)
     field = FlowField.from_arrays(np.stack([x, y], -1), np.stack([speed, 0 * x], -1), periodic="")
     got = PathCard(probe(view_of(field), (4.5, 1.5), pixel=0.01))
-    json.dumps(got.data(), allow_nan=False)
+    json.dumps(got.bars(), allow_nan=False)
     assert dict(got.lines())["step"] == "–"
-    navigator = navigator_at((0.0, 0.0, 5.0), (0.0, 0.0, 0.0), scale=1.0)
-    over = got.over(navigator)
+    viewport = Seen((0.0, 0.0, 5.0), (0.0, 0.0, 0.0), scale=1.0, field=flat())
+    over = got.over(viewport)
     assert (over["path"], over["sampled"], len(over["samples"])) == ([], [], 1)
 
 
@@ -264,19 +261,19 @@ def test_a_picture_shows_its_colours() -> None:
     assert "value" not in dict(got.lines())
 
 
-@pytest.mark.parametrize("move", [lambda n: n.turn(0.2, 0.1), lambda n: n.zoom_by(40, 0.1, 0.1)])
-def test_the_path_follows_the_camera(card: PathCard, move: Callable[[Navigator], None]) -> None:
-    navigator = navigator_at((0.0, 0.0, 5.0), (0.0, 0.0, 0.0), scale=1.0)
-    first = card.over(navigator)
-    move(navigator)
-    over = json.loads(json.dumps(card.over(navigator), allow_nan=False))
+@pytest.mark.parametrize("move", [lambda v: v.rotate(0.2, 0.1), lambda v: v.zoom_by(40, 0.1, 0.1)])
+def test_the_path_follows_the_camera(card: PathCard, move: Callable[[Viewport], None]) -> None:
+    viewport = Seen((0.0, 0.0, 5.0), (0.0, 0.0, 0.0), scale=1.0, field=flat())
+    first = card.over(viewport)
+    move(viewport)
+    over = json.loads(json.dumps(card.over(viewport), allow_nan=False))
     assert over != first
-    assert over["point"] == pytest.approx(project(navigator, np.array([0.3, 0.1, 0.0])))
+    assert over["point"] == pytest.approx(viewport.camera.project([0.3, 0.1, 0.0], 1.6))
     for sample in over["samples"]:
         assert max(abs(sample["x"]), abs(sample["y"])) <= 2
     # The part with samples goes from the first of them to the last, and lies on the whole path.
     (line,) = over["sampled"]
-    ends = project(navigator, card.probe.points[[0, -1]])
+    ends = viewport.camera.project(card.probe.points[[0, -1]], 1.6)
     if np.abs(ends).max() <= 2:
         assert [line[0], line[-1]] == [pytest.approx(end) for end in ends]
     assert np.abs(np.asarray(line)).max() <= 2

@@ -24,8 +24,8 @@ from watching import Watch, count, difference
 
 from flowtex import FlowField, examples
 from flowtex.app import FlowApp, ServeError, serve
-from flowtex.app.server import session, sessions
-from flowtex.app.server.routes import Routes
+from flowtex.app.server import sessions
+from flowtex.app.server.files import Routes
 from flowtex.app.server.security import new_secret
 from flowtex.app.server.sessions import Sessions, usual_limit
 from flowtex.app.server.site import Site
@@ -127,7 +127,7 @@ def test_each_page_has_a_state_of_its_own_and_comes_back_to_it() -> None:
 
 
 def test_a_copied_tab_gets_a_session_of_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(session, "PATIENCE", 0.1)
+    monkeypatch.setattr(sessions, "RECONNECT_WAIT_S", 0.1)
 
     async def story() -> None:
         async with place() as here:
@@ -164,7 +164,7 @@ def test_the_page_that_is_one_too_many_is_told(monkeypatch: pytest.MonkeyPatch) 
             status, said = await here.enter()
             assert status == 503 and "room for 2 pages at a time" in said["words"]
             # Who has been away for a while makes room; who is there does not.
-            monkeypatch.setattr(sessions, "AWAY", 0.0)
+            monkeypatch.setattr(sessions, "REPLACE_AFTER_S", 0.0)
             gone = here.app(other)
             assert await here.token() not in (one, other)
             assert gone.closed and not here.app(one).closed
@@ -347,7 +347,7 @@ def leaves_nothing(count: int) -> None:
 
     def make(server: Any) -> FlowApp:
         app = FlowApp(field, server=server, samples=5)
-        made.extend(weakref.ref(thing) for thing in (app, server, app.scene, app.stream))
+        made.extend(weakref.ref(thing) for thing in (app, server, app.viewport, app.stream))
         return app
 
     async def story() -> None:

@@ -2,7 +2,7 @@
 
 From the page comes a name, never a path. Names are looked up among those of the files that were
 found when the library was made or looked through again, so nothing outside them can be opened.
-Files that are open, and the flows made from them, are kept for all pages of a server.
+Files that are open, and the flows made from them, are shared by all pages of a server.
 """
 
 from __future__ import annotations
@@ -14,8 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol, TypeVar
 
-from flowtex.app.controllers.folders import SUFFIXES, search
-from flowtex.app.server.untrusted import shortened
+from flowtex.app.server.validation import shortened
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.io.source import FlowSource, field_bytes
@@ -24,9 +23,18 @@ from flowtex.trace import SliceStore, shared_store
 
 __all__ = ["Choice", "Library", "Opened"]
 
+#: Endings of files that a folder is searched for.
+SUFFIXES = frozenset(
+    [
+        *(".vts", ".vtr", ".vti", ".vtk", ".vtm", ".pvd", ".pvts", ".pvtr", ".pvti"),
+        *(".xyz", ".x", ".g", ".foam", ".case", ".cgns", ".ex2"),
+    ]
+)
+#: Folders below the one that was given that are searched, and files that are listed, at most.
+FOLDER_DEPTH, MOST_FILES = 4, 500
 #: Files, and flows, that are kept open at most, and bytes of each of the two together; what was
 #: asked for last is always kept.
-SOURCES, FLOWS = 4, 12
+MOST_SOURCES, MOST_FLOWS = 4, 12
 SOURCE_BYTES, FLOW_BYTES = 2_000_000_000, 1_000_000_000
 
 T = TypeVar("T", bound="_Sized")
@@ -143,18 +151,18 @@ class Library:
                 files.append(_free(Path(flow).name, entries))
                 entries[files[-1]] = _opener(Path(flow))
                 continue
-            source = flow if isinstance(flow, FlowSource) else _made(flow, options)
-            entries[_free(source.name or "flow", entries)] = _given(source)
+            source = flow if isinstance(flow, FlowSource) else _source_of(flow, options)
+            entries[_free(source.name or "flow", entries)] = _constant(source)
         return cls(entries, None if folder is None else Path(folder), files)
 
     @property
     def names(self) -> tuple[str, ...]:
         """Names of all that can be opened; a folder is looked through anew."""
-        found = dict(self._entries)
+        entries = dict(self._entries)
         if self._folder is not None:
-            found |= {name: _opener(path) for name, path in search(self._folder)}
-        self._found = found
-        return tuple(found)
+            entries |= {name: _opener(path) for name, path in find_files(self._folder)}
+        self._openers = entries
+        return tuple(entries)
 
     def source(self, name: str) -> FlowSource:
         """Open one, or return it when it is open.
@@ -169,10 +177,10 @@ class Library:
                 if name in self._sources:
                     self._sources.move_to_end(name)
                     return self._sources[name]
-            source = self._found[name]()
+            source = self._openers[name]()
             with self._lock:
                 self._sources[name] = source
-                _trim(self._sources, SOURCES, SOURCE_BYTES)
+                _trim(self._sources, MOST_SOURCES, SOURCE_BYTES)
             return source
 
     def _gate(self, name: str) -> threading.RLock:
@@ -184,7 +192,7 @@ class Library:
             When there is none of that name.
         """
         with self._lock:
-            if name not in self._found:
+            if name not in self._openers:
                 msg = (
                     f"there is no file {shortened(name, 80)!r} among those that may be opened here"
                 )
@@ -260,27 +268,27 @@ class Library:
         with self._lock:
             self._flows[name, choice] = opened
             self._flows.move_to_end((name, choice))
-            _trim(self._flows, FLOWS, FLOW_BYTES)
+            _trim(self._flows, MOST_FLOWS, FLOW_BYTES)
         return opened
 
 
-def _trim(kept: OrderedDict[Any, T], count: int, nbytes: int) -> None:
+def _trim(cache: OrderedDict[Any, T], count: int, nbytes: int) -> None:
     """Let go of what was asked for longest ago, until few enough are left, and small enough."""
-    while len(kept) > 1 and (
-        len(kept) > count or sum(one.nbytes for one in kept.values()) > nbytes
+    while len(cache) > 1 and (
+        len(cache) > count or sum(one.nbytes for one in cache.values()) > nbytes
     ):
-        kept.popitem(last=False)
+        cache.popitem(last=False)
 
 
-def _made(flow: Any, options: dict[str, Any]) -> FlowSource:
+def _source_of(flow: Any, options: dict[str, Any]) -> FlowSource:
     """Take a mesh as it is where nothing is chosen about it, else the field that is meant."""
-    given = {key: value for key, value in options.items() if value is not None}
-    if isinstance(flow, FlowField) or not given:
+    options = {key: value for key, value in options.items() if value is not None}
+    if isinstance(flow, FlowField) or not options:
         return FlowSource(flow)
-    return FlowSource(FlowField.from_pyvista(flow, **given))
+    return FlowSource(FlowField.from_pyvista(flow, **options))
 
 
-def _given(source: FlowSource) -> Open:
+def _constant(source: FlowSource) -> Open:
     return lambda: source
 
 
@@ -290,8 +298,35 @@ def _opener(path: Path) -> Open:
 
 def _free(name: str, taken: Iterable[str]) -> str:
     """Return a name that is not taken yet."""
-    found, number = name, 1
-    while found in taken:
+    free, number = name, 1
+    while free in taken:
         number += 1
-        found = f"{name} ({number})"
-    return found
+        free = f"{name} ({number})"
+    return free
+
+
+def find_files(folder: Path) -> list[tuple[str, Path]]:
+    """Find files below a folder; what a link leads to outside of it is left out."""
+    files: list[tuple[str, Path]] = []
+    waiting = [(folder, 0)]
+    while waiting and len(files) < MOST_FILES:
+        here, depth = waiting.pop(0)
+        try:
+            inside = sorted(here.iterdir())
+        except OSError:
+            continue
+        for path in inside:
+            if path.name.startswith(".") or not path.resolve().is_relative_to(folder):
+                continue
+            if path.is_dir() and not path.is_symlink() and depth < FOLDER_DEPTH:
+                waiting.append((path, depth + 1))
+            elif path.is_file() and path.suffix.lower() in SUFFIXES | {".bin"}:
+                files.append((path.relative_to(folder).as_posix(), path))
+    return [(name, path) for name, path in files[:MOST_FILES] if not _is_solution(path)]
+
+
+def _is_solution(path: Path) -> bool:
+    """Whether this is the part of a PLOT3D pair that is opened along with its grid."""
+    from flowtex.field.io import plot3d
+
+    return path.suffix.lower() == ".bin" and plot3d.find_grid(path) not in (None, path)

@@ -2,20 +2,27 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from trame.ui.vuetify3 import VAppLayout
 from trame.widgets import html
 from trame.widgets import vuetify3 as v3
 
-from flowtex.app.controllers.clockwork import PACES
+from flowtex.app.controllers import Controllers
+from flowtex.app.controllers.playback import PACES
 from flowtex.app.ui.controls import ARIA, hint, select, slider
-from flowtex.app.ui.elements import Client, Keys, PathLines
-from flowtex.app.ui.overlays import busy, card, complaint, help_text, pane_labels, tip
-from flowtex.app.ui.panel import build_panel
-
-if TYPE_CHECKING:
-    from flowtex.app.flow_app import FlowApp
+from flowtex.app.ui.overlays import (
+    Client,
+    Keys,
+    PathLines,
+    busy,
+    card,
+    complaint,
+    help_text,
+    pane_labels,
+    tip,
+)
+from flowtex.app.ui.panel import build_panel, panel_shown
 
 __all__ = ["THEMES", "build_page"]
 
@@ -28,7 +35,7 @@ THEMES = {
 DATA = [("data_picture", "data-picture"), ("data_sharp", "data-sharp"), ("data_busy", "data-busy")]
 
 
-def build_page(app: FlowApp) -> Any:
+def build_page(controllers: Controllers) -> Any:
     """Build the page of an application.
 
     Returns
@@ -36,9 +43,9 @@ def build_page(app: FlowApp) -> Any:
     object
         trame's layout; its ``html`` is the text of the page.
     """
-    key = app.state.key
+    key = controllers.context.state.key
     config = {"theme": {"defaultTheme": "dark", "themes": THEMES}}
-    with VAppLayout(app.server, vuetify_config=config) as layout:
+    with VAppLayout(controllers.context.state.server, vuetify_config=config) as layout:
         layout.root.theme = (key("theme"),)
         with html.Div(
             classes=(f"'flowtex flowtex-' + {key('theme')}",),
@@ -47,32 +54,34 @@ def build_page(app: FlowApp) -> Any:
             data_busy=(key("busy"),),
             __properties=DATA,
         ):
-            app.area.ui(
-                classes="flowtex-view", pointerleave=app.reader.leave, __events=["pointerleave"]
+            controllers.context.area.ui(
+                classes="flowtex-view",
+                pointerleave=controllers.point_info.leave,
+                __events=["pointerleave"],
             )
-            _client(app)
+            _client(controllers)
             PathLines(over=(key("over"),), classes="flowtex-path flowtex-path-lines")
-            _keys(app)
-            pane_labels(app)
+            _keys(controllers)
+            pane_labels(controllers)
             with html.Div(classes="flowtex-left"):
-                _title(app)
-                _planes(app)
-                card(app)
-            _buttons(app)
-            build_panel(app)
-            busy(app)
+                _title(controllers)
+                _planes(controllers)
+                card(controllers)
+            _buttons(controllers)
+            build_panel(controllers)
+            busy(controllers)
             with html.Div(classes="flowtex-foot"):
-                _bar(app)
-                _player(app)
+                _bar(controllers)
+                _player(controllers)
                 html.Div(f"{{{{ {key('figures')} }}}}", classes="flowtex-figures")
-            tip(app)
-            help_text(app)
-            complaint(app)
+            tip(controllers)
+            help_text(controllers)
+            complaint(controllers)
     return layout
 
 
-def _client(app: FlowApp) -> None:
-    key, browser = app.state.key, app.browser
+def _client(controllers: Controllers) -> None:
+    key, browser = controllers.context.state.key, controllers.browser
     Client(
         v_if=(key("there"),),
         classes="flowtex-there",
@@ -84,16 +93,16 @@ def _client(app: FlowApp) -> None:
         update_camera=(browser.take_camera, "[$event]"),
         update_time=(browser.take_time, "[$event]"),
         update_playing=f"{key('playing')} = $event",
-        setting=(app.look.take_setting, "[$event]"),
+        setting=(controllers.appearance.take_setting, "[$event]"),
         sharp=(browser.take_sharp, "[$event]"),
-        point=(app.reader.take_point, "[$event]"),
-        hover=(app.reader.take_place, "[$event]"),
+        point=(controllers.point_info.take_point, "[$event]"),
+        hover=(controllers.point_info.take_place, "[$event]"),
     )
 
 
-def _keys(app: FlowApp) -> None:
-    key = app.state.key
-    close_card = app.server.trigger_name(app.reader.close_card)
+def _keys(controllers: Controllers) -> None:
+    key = controllers.context.state.key
+    close_card = controllers.context.state.server.trigger_name(controllers.point_info.close_card)
     toggles = {
         "play": f"{key('playing')} = !{key('playing')}",
         "theme": _other_theme(key("theme")),
@@ -102,14 +111,14 @@ def _keys(app: FlowApp) -> None:
     }
     cases = "; ".join(f"if ($event === '{name}') {{ {code} }}" for name, code in toggles.items())
     Keys(
-        command=(app.moves.command, "[$event]"),
+        command=(controllers.camera.command, "[$event]"),
         toggle=cases,
-        linked=(app.share.take_link, "[$event]"),
+        linked=(controllers.sharing.take_link, "[$event]"),
     )
 
 
-def _title(app: FlowApp) -> None:
-    key = app.state.key
+def _title(controllers: Controllers) -> None:
+    key = controllers.context.state.key
     with html.Div(classes="flowtex-title flowtex-glass"):
         html.Div("flowtex", classes="flowtex-mark")
         with html.Div(classes="flowtex-name", v_if=(f"{key('files')}.length < 2",)):
@@ -117,7 +126,7 @@ def _title(app: FlowApp) -> None:
         with html.Button(
             classes="flowtex-name flowtex-open",
             v_else=True,
-            click=app.data.look_again,
+            click=controllers.data.list_files,
             aria_label="Open another file",
             __properties=ARIA,
         ):
@@ -137,9 +146,9 @@ def _title(app: FlowApp) -> None:
         html.Div(f"{{{{ {key('about')} }}}}", classes="flowtex-about")
 
 
-def _planes(app: FlowApp) -> None:
+def _planes(controllers: Controllers) -> None:
     """Let array and plane be chosen, where there is a choice."""
-    key = app.state.key
+    key = controllers.context.state.key
     some = " || ".join(f"{key(name)}.length" for name in ("vectors_choices", "axes", "blocks"))
     with html.Div(classes="flowtex-planes flowtex-glass", v_if=(some,)):
         for name, choices, text in (
@@ -192,10 +201,14 @@ def _button(icon: str, text: str, click: Any, **attributes: Any) -> Any:
     return button
 
 
-def _buttons(app: FlowApp) -> None:
-    key = app.state.key
+def _buttons(controllers: Controllers) -> None:
+    key = controllers.context.state.key
     with html.Div(classes="flowtex-buttons flowtex-glass"):
-        _button("mdi-fit-to-screen-outline", "Show the whole surface", app.area.reset_camera)
+        _button(
+            "mdi-fit-to-screen-outline",
+            "Show the whole surface",
+            controllers.context.area.reset_camera,
+        )
         with (
             _button("mdi-axis-arrow", "Look from a side", None, v_if=(f"{key('views')}.length",)),
             v3.VMenu(activator="parent"),
@@ -205,25 +218,20 @@ def _buttons(app: FlowApp) -> None:
                 v_for=f"view in {key('views')}",
                 key="view",
                 title=("view",),
-                click=(app.moves.look_from, "[view]"),
+                click=(controllers.camera.look_from, "[view]"),
             )
         _button("mdi-theme-light-dark", "Light or dark", _other_theme(key("theme")))
         _button("mdi-fullscreen", "Full screen", "flowtex_fullscreen()")
         _button("mdi-help", "Keys and the mouse", f"{key('help')} = true")
-        _button("mdi-tune-variant", "Controls", f"{key('panel')} = !({shown(key('panel'))})")
+        _button("mdi-tune-variant", "Controls", f"{key('panel')} = !({panel_shown(key('panel'))})")
 
 
 def _other_theme(theme: str) -> str:
     return f"{theme} = {theme} === 'dark' ? 'light' : 'dark'"
 
 
-def shown(panel: str) -> str:
-    """Whether the panel is shown: as chosen, or at first where there is room for it."""
-    return f"({panel} === null ? $vuetify.display.mdAndUp : {panel})"
-
-
-def _bar(app: FlowApp) -> None:
-    bar, scale = app.state.key("bar"), app.state.key("scale")
+def _bar(controllers: Controllers) -> None:
+    bar, scale = controllers.context.state.key("bar"), controllers.context.state.key("scale")
     with html.Div(classes="flowtex-corner"):
         with html.Div(classes="flowtex-scale", v_show=(f"{scale}.width",)):
             html.Span(f"{{{{ {scale}.text }}}}")
@@ -237,10 +245,10 @@ def _bar(app: FlowApp) -> None:
                 html.Span(f"{{{{ {bar}.high }}}}", classes="flowtex-value")
 
 
-def _player(app: FlowApp) -> None:
-    key = app.state.key
+def _player(controllers: Controllers) -> None:
+    key = controllers.context.state.key
     playing, steady = key("playing"), key("steady")
-    step = app.clockwork.step
+    step = controllers.playback.step
     with html.Div(classes="flowtex-player flowtex-glass"):
         _button("mdi-skip-previous", "A step back", (step, "[-1]"), v_if=(f"!{steady}",))
         with v3.VBtn(

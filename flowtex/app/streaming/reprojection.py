@@ -10,21 +10,21 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-__all__ = ["Shot", "coverage", "shifted", "warp"]
+from flowtex._util.array_types import Bytes, Floats
+from flowtex.camera import Camera
+from flowtex.field import Surface
 
-#: A change of scale below this is taken for none.
-SHIFT = 1e-3
-#: A shift is one of whole pixels when it is no farther from it than this, in pixels.
-EXACT = 0.02
+__all__ = ["Snapshot", "coverage", "plane_to_view", "reproject", "whole_shift"]
 
-Pixels = NDArray[np.uint8]
-Matrix = NDArray[np.float64]
+#: Change of scale below which a picture only shifts.
+SCALE_TOLERANCE = 1e-3
+#: Distance from a whole number of pixels below which a shift is one, in pixels.
+SHIFT_TOLERANCE_PX = 0.02
 
 
 @dataclass(frozen=True)
-class Shot:
+class Snapshot:
     """A picture and the view that it shows.
 
     Attributes
@@ -37,12 +37,25 @@ class Shot:
         Whether it is at full quality everywhere.
     """
 
-    pixels: Pixels
-    view: Matrix
+    pixels: Bytes
+    view: Floats
     sharp: bool = False
 
 
-def coverage(shot: Shot, view: Matrix) -> tuple[float, float]:
+def plane_to_view(surface: Surface, camera: Camera, aspect: float) -> Floats | None:
+    """Affine map from a flat surface's plane to the view, (3, 3); ``None`` when it has none."""
+    if surface.frame is None or not camera.parallel:
+        return None
+    axes = camera.axes[:2]
+    scale = np.array([aspect, 1.0])[:, None] * camera.height
+    view = np.eye(3)
+    view[:2, :2] = axes @ surface.frame.T / scale
+    view[:2, 2] = axes @ (surface.center - np.asarray(camera.focal_point)) / scale[:, 0]
+    # A plane seen edge on cannot be moved to another view.
+    return view if abs(np.linalg.det(view[:2, :2])) > 1e-12 * np.abs(view).max() ** 2 else None
+
+
+def coverage(picture: Snapshot, view: Floats) -> tuple[float, float]:
     """Tell how well a picture serves for another view.
 
     Returns
@@ -50,7 +63,7 @@ def coverage(shot: Shot, view: Matrix) -> tuple[float, float]:
     share, stretch
         How much of the new view it covers, 0 to 1, and how much larger its pixels become.
     """
-    back = shot.view @ np.linalg.inv(view)
+    back = picture.view @ np.linalg.inv(view)
     grid = np.linspace(-1, 1, 9)
     x, y = np.meshgrid(grid, grid)
     seen = back @ np.stack([x.ravel(), y.ravel(), np.ones(x.size)])
@@ -59,7 +72,7 @@ def coverage(shot: Shot, view: Matrix) -> tuple[float, float]:
     return float(inside.mean()), float(area**-0.5) if area > 0 else float("inf")
 
 
-def shifted(shot: Shot, view: Matrix) -> tuple[int, int] | None:
+def whole_shift(picture: Snapshot, view: Floats) -> tuple[int, int] | None:
     """Tell by how many whole pixels a picture is shifted in another view, right and down.
 
     Returns
@@ -67,25 +80,27 @@ def shifted(shot: Shot, view: Matrix) -> tuple[int, int] | None:
     tuple of int or None
         ``None`` when the scale or the direction has changed, or the shift is no whole number.
     """
-    height, width = shot.pixels.shape[:2]
-    to = view @ np.linalg.inv(shot.view)
-    if np.abs(to[:2, :2] - np.eye(2)).max() * max(width, height) > EXACT:
+    height, width = picture.pixels.shape[:2]
+    to = view @ np.linalg.inv(picture.view)
+    if np.abs(to[:2, :2] - np.eye(2)).max() * max(width, height) > SHIFT_TOLERANCE_PX:
         return None
     right, down = to[0, 2] * width / 2, -to[1, 2] * height / 2
     whole = round(right), round(down)
-    exact = max(abs(right - whole[0]), abs(down - whole[1])) < EXACT
+    exact = max(abs(right - whole[0]), abs(down - whole[1])) < SHIFT_TOLERANCE_PX
     return whole if exact and abs(whole[0]) < width and abs(whole[1]) < height else None
 
 
-def warp(shot: Shot, view: Matrix, size: tuple[int, int], under: Shot | None = None) -> Pixels:
+def reproject(
+    picture: Snapshot, view: Floats, size: tuple[int, int], under: Snapshot | None = None
+) -> Bytes:
     """Show a picture from another view.
 
     Parameters
     ----------
-    shot
+    picture
         What was drawn.
     view
-        The new view, as in :class:`Shot`.
+        The new view, as in :class:`Snapshot`.
     size
         Width and height of the view, in pixels.
     under
@@ -100,33 +115,35 @@ def warp(shot: Shot, view: Matrix, size: tuple[int, int], under: Shot | None = N
     from PIL import Image
 
     half = (max(size[0] // 2, 1), max(size[1] // 2, 1))
-    shifts = abs(coverage(shot, view)[1] - 1) < SHIFT
+    shifts = abs(coverage(picture, view)[1] - 1) < SCALE_TOLERANCE
     goal = size if shifts else half
-    moved = _move(shot, view, goal, smooth=not shifts)
+    moved = _move(picture, view, goal, smooth=not shifts)
     if under is None:
         return np.asarray(moved)
     beneath = _move(under, view, half, smooth=True).resize(goal, Image.Resampling.NEAREST)
-    height, width = shot.pixels.shape[:2]
+    height, width = picture.pixels.shape[:2]
     inside = Image.new("L", (width, height), 255)
-    mask = inside.transform(goal, Image.Transform.AFFINE, _back(shot, view, goal))
+    mask = inside.transform(goal, Image.Transform.AFFINE, _back(picture, view, goal))
     return np.asarray(Image.composite(moved, beneath, mask))
 
 
-def _move(shot: Shot, view: Matrix, size: tuple[int, int], *, smooth: bool) -> Any:
+def _move(picture: Snapshot, view: Floats, size: tuple[int, int], *, smooth: bool) -> Any:
     from PIL import Image
 
     kind = Image.Resampling.BILINEAR if smooth else Image.Resampling.NEAREST
-    back = _back(shot, view, size)
-    return Image.fromarray(shot.pixels).transform(size, Image.Transform.AFFINE, back, resample=kind)
+    back = _back(picture, view, size)
+    return Image.fromarray(picture.pixels).transform(
+        size, Image.Transform.AFFINE, back, resample=kind
+    )
 
 
-def _back(shot: Shot, view: Matrix, size: tuple[int, int]) -> tuple[float, ...]:
+def _back(picture: Snapshot, view: Floats, size: tuple[int, int]) -> tuple[float, ...]:
     """Map from pixels of the result to pixels of the picture, as Pillow wants it."""
-    height, width = shot.pixels.shape[:2]
-    back = np.linalg.inv(_from_pixels(width, height)) @ shot.view @ np.linalg.inv(view)
+    height, width = picture.pixels.shape[:2]
+    back = np.linalg.inv(_from_pixels(width, height)) @ picture.view @ np.linalg.inv(view)
     return tuple(float(v) for v in (back @ _from_pixels(*size))[:2].ravel())
 
 
-def _from_pixels(width: int, height: int) -> Matrix:
+def _from_pixels(width: int, height: int) -> Floats:
     """Map from pixels, y down, to the view's (x, y) from -1 to 1."""
     return np.array([[2 / width, 0, -1], [0, -2 / height, 1], [0, 0, 1.0]])

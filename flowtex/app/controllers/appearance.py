@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from flowtex.app.controllers.part import Part
-from flowtex.app.server.untrusted import name_among, number
-from flowtex.app.server.uploads import decoded
-from flowtex.app.streaming.scene import BACKGROUNDS as THEMES
+from flowtex.app.controllers.context import Context, Controller
+from flowtex.app.server.validation import decode_picture, name_among, number
+from flowtex.app.streaming.viewport import BACKGROUNDS as THEMES
 from flowtex.errors import FieldError
 from flowtex.settings import TABLE, SettingsError
 
-__all__ = ["BACKGROUNDS", "CMAPS", "COMPARISONS", "PLAIN", "Look"]
+__all__ = ["BACKGROUNDS", "CMAPS", "COMPARISONS", "PLAIN", "Appearance"]
 
 #: The choice of no colours.
 PLAIN = "none"
@@ -44,47 +43,31 @@ COMPARISONS: dict[str, dict[str, Any]] = {
     "levels in colour": {"show_level": True},
 }
 #: Greatest value at an end of the colour map: the distance of two is a number, too.
-WIDEST = 1e300
+GREATEST_VALUE = 1e300
 
 
-class Look(Part):
+class Appearance(Controller):
     """How the flow is drawn.
-
-    Parameters
-    ----------
-    app
-        The application.
 
     Attributes
     ----------
     theme, background, compared
-        What was chosen last of what the page may choose: a page may say anything.
+        What was chosen last of what the page may choose: a page may send anything.
     """
 
-    def __init__(self, app: Any) -> None:
-        super().__init__(app)
+    def __init__(self, context: Context) -> None:
+        super().__init__(context)
         self.theme, self.background, self.compared = "dark", BACKGROUNDS[0], "nothing"
-
-    def values(self) -> dict[str, Any]:
-        """Return what the page begins with."""
-        return {
-            "theme": self.theme,
-            "background": self.background,
-            "compare": self.compared,
-            "comparisons": list(COMPARISONS),
-            "colour": self.scene.colour or PLAIN,
-            "colours": [*self.scene.colours, PLAIN],
-            "cmap": self._cmap(),
-            "low": self._span()[0],
-            "high": self._span()[1],
-            "bar": self._bar(),
-            "image_file": None,
-            "set_noise_choices": self._noises(),
-            **{f"set_{name}": value for name, value in self.area.settings},
-        }
-
-    def watch(self) -> None:
-        """Listen to the page."""
+        self.state.set(
+            theme=self.theme,
+            background=self.background,
+            compare=self.compared,
+            comparisons=list(COMPARISONS),
+            cmap=self._cmap(),
+            image_file=None,
+            set_noise_choices=self._noise_choices(),
+        )
+        self.show_field()
         on = self.state.on
         on(*(f"set_{name}" for name in TABLE))(self.take_settings)
         on("colour", "cmap")(self.take_colour)
@@ -92,25 +75,28 @@ class Look(Part):
         on("theme", "background")(self.take_background)
         on("compare")(self.take_comparison)
         on("image_file")(self.take_image)
+        context.field_changed.connect(self.show_field)
+        context.client_started.connect(self.end_comparison)
         self.take_background()
 
-    def refresh(self) -> None:
-        """Follow another flow that is shown."""
-        self.state.set(colours=[*self.scene.colours, PLAIN], colour=self.scene.colour or PLAIN)
+    def show_field(self) -> None:
+        """Let the page show settings and colours of the flow that is shown."""
+        viewport = self.viewport
+        self.state.set(colours=[*viewport.colours, PLAIN], colour=viewport.colour or PLAIN)
         self.show_settings()
         self._show_range()
 
     def take_settings(self) -> None:
         """Set what the page asks for, and tell it what is not possible."""
-        settings = self.area.settings
+        settings = self.settings
         for name, present in settings:
-            wanted = self.state.get(f"set_{name}")
-            if wanted == present:
+            choice = self.state.get(f"set_{name}")
+            if choice == present:
                 continue
             try:
-                settings.update(**{name: wanted})
+                settings.update(**{name: choice})
             except (SettingsError, FieldError) as error:
-                self.app.complain(error)
+                self.context.complain(error)
                 self.state.set(**{f"set_{name}": present})
                 continue
             # A whole number comes back from the page as it was sent, not as the type it has here.
@@ -124,62 +110,69 @@ class Look(Part):
 
     def show_settings(self) -> None:
         """Let the page show the settings as they are."""
-        self.state.set(**{f"set_{name}": value for name, value in self.area.settings})
+        self.state.set(**{f"set_{name}": value for name, value in self.settings})
 
     def take_colour(self) -> None:
         """Colour by what the page asks for."""
-        wanted, cmap = self.state.get("colour"), self.state.get("cmap")
-        known = name_among(wanted, (PLAIN, *self.scene.colours))
+        choice, cmap = self.state.get("colour"), self.state.get("cmap")
+        known = name_among(choice, (PLAIN, *self.viewport.colours))
         if not known or not name_among(cmap, (*CMAPS, self._cmap())):
-            self.state.set(colour=self.scene.colour or PLAIN, cmap=self._cmap())
+            self.state.set(colour=self.viewport.colour or PLAIN, cmap=self._cmap())
             return
-        name = "" if wanted == PLAIN else wanted
-        if (name, cmap) != (self.scene.colour, self._cmap()):
-            self.scene.colour_by(name, cmap=None if cmap == self._cmap() else cmap)
+        name = "" if choice == PLAIN else choice
+        if (name, cmap) != (self.viewport.colour, self._cmap()):
+            self.viewport.colour_by(name, cmap=None if cmap == self._cmap() else cmap)
             self._show_range()
-            self.area.stream.changed()
+            self.stream.changed()
 
     def take_range(self) -> None:
         """Let the colours go from and to what the page asks for."""
-        low, high = (number(self.state.get(end), -WIDEST, WIDEST) for end in ("low", "high"))
+        low, high = (
+            number(self.state.get(end), -GREATEST_VALUE, GREATEST_VALUE) for end in ("low", "high")
+        )
         if (low, high) == self._span():
             return
         if low is None or high is None or not low < high:
-            told = f"{self.state.get('low')!r} to {self.state.get('high')!r}"
-            self.app.complain(f"the colours go from {told}; expected a lower number first")
-        if low is None or high is None or not low < high or not self.scene.colour:
+            span = f"{self.state.get('low')!r} to {self.state.get('high')!r}"
+            self.context.complain(f"the colours go from {span}; expected a lower number first")
+        if low is None or high is None or not low < high or not self.viewport.colour:
             self._show_range()
             return
-        self.scene.colour_by(self.scene.colour, clim=(low, high))
+        self.viewport.colour_by(self.viewport.colour, clim=(low, high))
         self._show_range()
-        self.area.stream.changed()
+        self.stream.changed()
 
     def forget_range(self) -> None:
         """Let the colours go from the least to the greatest value again."""
-        self.scene.forget_range()
+        self.viewport.forget_range()
         self._show_range()
-        self.area.stream.changed()
+        self.stream.changed()
 
     def take_background(self) -> None:
         """Take the colour behind the surface that the page asks for."""
-        theme, wanted = self.state.get("theme"), self.state.get("background")
+        theme, choice = self.state.get("theme"), self.state.get("background")
         self.theme = theme if name_among(theme, THEMES) else self.theme
-        self.background = wanted if name_among(wanted, BACKGROUNDS) else self.background
+        self.background = choice if name_among(choice, BACKGROUNDS) else self.background
         self.state.set(theme=self.theme, background=self.background)
         themed = self.background == BACKGROUNDS[0]
-        self.scene.set_background(self.theme if themed else self.background)
-        self.area.stream.changed()
+        self.viewport.set_background(self.theme if themed else self.background)
+        self.stream.changed()
 
     def take_comparison(self) -> None:
         """Show a second pane, or one again."""
-        wanted = self.state.get("compare")
-        if not name_among(wanted, COMPARISONS):
+        choice = self.state.get("compare")
+        if not name_among(choice, COMPARISONS):
             self.state.set(compare=self.compared)
-        elif wanted != self.compared:
-            self.compared = wanted
-            if wanted != "nothing":  # the browser's client draws one view
-                self.app.browser.leave()
-            self.area.compare(COMPARISONS[wanted] or None)
+        elif choice != self.compared:
+            self.compared = choice
+            if choice != "nothing":
+                self.context.comparison_started.emit()
+            self.area.compare(COMPARISONS[choice] or None)
+
+    def end_comparison(self) -> None:
+        """Show one pane again."""
+        self.state.set(compare="nothing")
+        self.take_comparison()
 
     def take_image(self) -> None:
         """Lay a picture of the person's own on the surface."""
@@ -191,37 +184,37 @@ class Look(Part):
         if not sent:  # a choice that was taken back
             return
         try:
-            self.scene.lay_image(decoded(sent))
+            self.viewport.lay_image(decode_picture(sent))
         except SettingsError as error:
-            self.app.complain(error)
+            self.context.complain(error)
             return
-        self.area.settings.update(noise="image", strength=1.0)
-        self.state.set(set_noise_choices=self._noises())
+        self.settings.update(noise="image", strength=1.0)
+        self.state.set(set_noise_choices=self._noise_choices())
         self.show_settings()
 
     def describe(self) -> dict[str, Any]:
-        """Return what a link needs to know."""
+        """Return settings, colours, background and comparison."""
         return {
-            "settings": dict(self.area.settings),
-            "colour": self.scene.colour or PLAIN,
+            "settings": dict(self.settings),
+            "colour": self.viewport.colour or PLAIN,
             "cmap": self._cmap(),
-            "clim": self.scene.chosen_range,
+            "clim": self.viewport.chosen_range,
             "theme": self.theme,
             "background": self.background,
             "split": self.compared,
         }
 
-    def restore(self, said: Mapping[str, Any]) -> None:
-        """Take over what a link says."""
-        settings = {k: v for k, v in said.get("settings", {}).items() if v != "image"}
-        self.area.settings.update(**settings)
+    def restore(self, saved: Mapping[str, Any]) -> None:
+        """Take over saved settings, colours, background and comparison."""
+        settings = {k: v for k, v in saved.get("settings", {}).items() if v != "image"}
+        self.settings.update(**settings)
         self.show_settings()
         names = {"colour": "colour", "cmap": "cmap", "theme": "theme", "split": "compare"}
         names["background"] = "background"
-        self.state.set(**{ours: said[name] for name, ours in names.items() if name in said})
+        self.state.set(**{ours: saved[name] for name, ours in names.items() if name in saved})
         self.take_colour()
-        if said.get("clim"):
-            low, high = said["clim"]
+        if saved.get("clim"):
+            low, high = saved["clim"]
             self.state.set(low=low, high=high)
             self.take_range()
         self.take_background()
@@ -229,16 +222,16 @@ class Look(Part):
 
     def _cmap(self) -> str:
         """Name of the colour map; the first one for a map that has no name here."""
-        return self.scene.cmap if isinstance(self.scene.cmap, str) else CMAPS[0]
+        return self.viewport.cmap if isinstance(self.viewport.cmap, str) else CMAPS[0]
 
-    def _noises(self) -> list[str]:
+    def _noise_choices(self) -> list[str]:
         """Kinds of noise to choose from; an image only where there is one."""
-        there = self.scene.handle.scene.image is not None
-        return [kind for kind in TABLE["noise"].choices if there or kind != "image"]
+        has_image = self.viewport.handle.scene.image is not None
+        return [kind for kind in TABLE["noise"].choices if has_image or kind != "image"]
 
     def _span(self) -> tuple[float, float]:
         """Return the ends of the range as the page shows them, with four digits."""
-        low, high = self.scene.colour_range
+        low, high = self.viewport.colour_range
         return float(f"{low:.4g}"), float(f"{high:.4g}")
 
     def _show_range(self) -> None:
@@ -246,12 +239,12 @@ class Look(Part):
         self.state.set(bar=self._bar(), low=low, high=high)
 
     def _bar(self) -> dict[str, Any]:
-        if not self.scene.colour:
+        if not self.viewport.colour:
             return {"name": "", "low": "", "high": "", "stops": []}
-        low, high = self.scene.colour_range
+        low, high = self.viewport.colour_range
         return {
-            "name": self.scene.colour,
+            "name": self.viewport.colour,
             "low": f"{low:.3g}",
             "high": f"{high:.3g}",
-            "stops": self.scene.colour_stops(),
+            "stops": self.viewport.colour_stops(),
         }

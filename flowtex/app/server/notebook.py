@@ -1,4 +1,4 @@
-"""The page in a cell of a notebook.
+"""A page in a cell of a notebook.
 
 The kernel serves its application itself, in its own event loop, on this machine's own address
 and behind a secret of its own; the cell holds a frame that shows it. All frames of one
@@ -13,32 +13,31 @@ from __future__ import annotations
 
 import asyncio
 import html
-import logging
 import os
 import socket
 from contextlib import suppress
 from types import SimpleNamespace
 from typing import Any
 
+from flowtex.app.server.page import start_task
 from flowtex.app.server.security import new_secret
 from flowtex.app.server.sessions import Sessions
 from flowtex.app.server.site import Site
 
-__all__ = ["InCell", "proxy_path"]
+__all__ = ["NotebookPage", "proxy_path"]
 
 #: Height of a frame, in CSS pixels.
-HEIGHT = 520
+HEIGHT_PX = 520
 #: Connections that may wait while the kernel runs a cell.
-WAITING = 64
+BACKLOG = 64
 
 FRAME = (
     '<iframe src="{address}" title="flowtex" allow="fullscreen; clipboard-write"'
     ' style="display: block; width: 100%; height: {height}px; border: 0; border-radius: 6px">'
     "</iframe>"
 )
+FAILURE = "the page in the cell has failed"
 NO_LOOP = "flowtex: no event loop runs here, so nothing is shown; flowtex.app.serve makes a page"
-
-_log = logging.getLogger(__name__)
 
 
 def proxy_path(proxy: str | bool | None = None) -> str | None:  # noqa: FBT001 one question
@@ -65,12 +64,12 @@ def proxy_path(proxy: str | bool | None = None) -> str | None:  # noqa: FBT001 o
     return path.rstrip("/")
 
 
-class InCell:
-    """What an application needs to be shown in a notebook; it has ``server`` and ``stream``."""
+class NotebookPage:
+    """Base of an application that a notebook shows; it has ``server`` and ``stream``."""
 
     _served: _Served | None = None
 
-    def in_cell(self, *, height: int = HEIGHT, proxy: str | bool | None = None) -> Frame:
+    def in_cell(self, *, height: int = HEIGHT_PX, proxy: str | bool | None = None) -> Frame:
         """Show the page in a cell.
 
         Parameters
@@ -146,14 +145,13 @@ class _Served:
         self._secret = new_secret()
         # It listens before anything is awaited: the frame's address holds the port, and a browser
         # that comes while the cell still runs waits in line.
-        self._socket = socket.create_server(("127.0.0.1", 0), backlog=WAITING)
+        self._socket = socket.create_server(("127.0.0.1", 0), backlog=BACKLOG)
         self._socket.setblocking(False)
         # Who made the application closes it.
         lent = SimpleNamespace(server=app.server, stream=app.stream, close=lambda: None)
         sessions = Sessions(lambda _: lent, self._secret, limit=1, idle=float("inf"), shared=True)
         self._site = Site(sessions, self._secret, framed=True)
-        self._task = loop.create_task(self._start(lent))
-        self._task.add_done_callback(_tell)
+        self._task = start_task(self._start(lent), FAILURE)
 
     async def _start(self, lent: Any) -> None:
         await self._site.prepare(lent)
@@ -168,17 +166,13 @@ class _Served:
         if not self._loop.is_running():  # the kernel has ended, and all goes with it
             self._socket.close()
             return
-        self._task = self._loop.create_task(self._end(self._task))
-        self._task.add_done_callback(_tell)
+        self._loop.call_soon_threadsafe(self._start_end)
+
+    def _start_end(self) -> None:
+        self._task = start_task(self._end(self._task), FAILURE)
 
     async def _end(self, starting: asyncio.Task[None]) -> None:
         with suppress(Exception):
             await starting
         await self._site.stop()
         self._socket.close()
-
-
-def _tell(task: asyncio.Task[None]) -> None:
-    """Let an error be seen: nobody waits for these tasks."""
-    if not task.cancelled() and (error := task.exception()) is not None:
-        _log.error("the page in the cell has failed", exc_info=error)
