@@ -52,14 +52,10 @@ class FlowApp(NotebookPage):
 
     Attributes
     ----------
-    server
-        The trame server.
-    layout
-        The page, as trame's layout.
-    area
-        The view.
-    state
-        What the page knows, under names of this application's own.
+    server, layout
+        The trame server, and the page as trame's layout.
+    area, state
+        The view, and what the page knows, under names of this application's own.
     context, controllers
         What acts on the view.
 
@@ -146,14 +142,7 @@ class FlowApp(NotebookPage):
 
 
 def first_choice(library: Library, options: Mapping[str, Any]) -> tuple[str, Choice]:
-    """Return what is shown first: the name of a flow, and what is chosen of it.
-
-    Parameters
-    ----------
-    library
-        What there is.
-    options
-        May hold ``vectors``, ``plane`` and ``block``.
+    """Return what is shown first: the name of a flow, and what the options choose of it.
 
     Raises
     ------

@@ -24,7 +24,6 @@ from wslink.chunking import generate_chunks
 from flowtex import FlowField
 from flowtex._util.progress import check
 from flowtex.app import FlowApp, Library
-from flowtex.app.controllers import library as library_module
 from flowtex.app.controllers import point_info as point_info_module
 from flowtex.app.controllers.library import Choice
 from flowtex.app.server.security import MESSAGE_BYTES, LimitedMessages
@@ -627,10 +626,9 @@ def test_a_page_goes_on_with_a_file_that_the_library_let_go() -> None:
     app.close()
 
 
-def test_what_is_kept_open_is_bounded_in_bytes(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_stays_open_is_bounded_in_bytes() -> None:
     library = Library.of(*(field(name=name) for name in "abcde"))
-    monkeypatch.setattr(library_module, "FLOW_BYTES", 1)
-    monkeypatch.setattr(library_module, "SOURCE_BYTES", 1)
+    library._flows.max_bytes = library._sources.max_bytes = 1
     for name in library.names:
         flow = library.field(name, Choice())
         assert library.trace(name, Choice(), flow, Settings()).nbytes > 1000

@@ -19,16 +19,9 @@ __all__ = ["Controllers"]
 
 
 class Controllers:
-    """All controllers of a page.
+    """All controllers of a page that first shows a flow of the library.
 
-    Parameters
-    ----------
-    context
-        What they share.
-    name, choice
-        The flow that is shown first.
-    restore_state
-        Called with the state that a link holds.
+    ``restore_state`` is called with the state that a link holds.
     """
 
     def __init__(

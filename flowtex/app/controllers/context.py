@@ -83,13 +83,7 @@ class Context:
 
 
 class Controller:
-    """Base of what acts on one group of controls: sets their state, and follows it.
-
-    Parameters
-    ----------
-    context
-        What the controllers share.
-    """
+    """Base of what acts on one group of controls: sets their state, and follows it."""
 
     def __init__(self, context: Context) -> None:
         self.context = context

@@ -46,14 +46,10 @@ NAME_LENGTH = 80
 
 @dataclass(eq=False)
 class LoadRequest:
-    """Something that is to be opened.
+    """Something that is to be opened, after which ``then`` is called.
 
     Attributes
     ----------
-    name, choice
-        What.
-    then
-        Called once it is shown.
     cancelled
         Whether nothing of it is to be shown any more.
     superseded
@@ -73,21 +69,9 @@ class LoadRequest:
         return self.cancelled or self.superseded
 
     async def in_thread(self, worker: Executor, work: Callable[[], T], *, quick: bool) -> T:
-        """Do some work for it off the event loop.
+        """Do some work for it off the event loop; ``Stopped`` where nobody wants the result.
 
-        Parameters
-        ----------
-        worker
-            Where.
-        work
-            What.
-        quick
-            Whether it is finished, once it has begun, though something else was requested.
-
-        Raises
-        ------
-        Stopped
-            When its result is not to be shown any more.
+        Quick work is finished, once it has begun, though something else was requested.
         """
 
         def unwanted() -> bool:
@@ -123,15 +107,7 @@ class LoadedFlow:
 
 
 class Data(Controller):
-    """Which flow is shown.
-
-    Parameters
-    ----------
-    context
-        What the controllers share.
-    name, choice
-        What is shown first.
-    """
+    """Which flow is shown; ``name`` and ``choice`` at first."""
 
     def __init__(self, context: Context, name: str, choice: Choice) -> None:
         super().__init__(context)
@@ -198,15 +174,7 @@ class Data(Controller):
         self._show_choice()
 
     def open(self, name: str, choice: Choice, then: Callable[[], None] | None = None) -> None:
-        """Open something, in place of what is being opened.
-
-        Parameters
-        ----------
-        name, choice
-            What to open.
-        then
-            Called once it is shown.
-        """
+        """Open something, in place of what is being opened, and call ``then`` once it is shown."""
         if name == self._request.name and then is None:
             self._request.superseded = True
         else:
@@ -263,11 +231,11 @@ class Data(Controller):
     def _read(self, name: str, choice: Choice) -> tuple[FlowSource, FlowField]:
         return self.library.source(name), self.library.field(name, choice)
 
-    def _trace(self, flow: LoadedFlow) -> SliceStore | None:
+    def _trace(self, flow: LoadedFlow) -> SliceStore:
         name, times = flow.name if flow.whole else "", flow.shown.times
         store = self.library.trace(name, flow.choice, flow.shown, self.settings).store
         # The time that is shown stays where another part of the same data is.
-        if store is not None and np.array_equal(times, self.viewport.field.times):
+        if np.array_equal(times, self.viewport.field.times):
             for step in sorted(set(moment(times, self.viewport.handle.time)[:2])):
                 store.at(step)
         return store

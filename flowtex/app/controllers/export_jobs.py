@@ -41,9 +41,9 @@ __all__ = ["MOST_PIXELS", "ExportError", "Job", "MovieJob", "PictureJob", "Tiled
 
 T = TypeVar("T")
 
-#: Bytes of a picture, and of a movie, and its longest side, at most.
+#: Pixels of a picture, and of a movie, and its longest side, at most.
 MOST_PIXELS, MOST_MOVIE_PIXELS, LONGEST_SIDE_PX = 100_000_000, 9_000_000, 30_000
-#: Bytes that may be drawn, along a side, for one of the result, and how fine a picture may be.
+#: Pixels that may be drawn, along a side, for one of the result, and how fine a picture may be.
 MOST_SUPERSAMPLING, MOST_DENSITY = 4, 8.0
 #: Seconds between two checks whether the view has come to rest.
 BUSY_INTERVAL_S = 0.05
@@ -60,17 +60,7 @@ class TiledPicture:
 
     The window is as large as a tile, however large the picture. What it shows of the view is given
     in pixels of the window, with fractions, as though the whole picture had its height.
-
-    Parameters
-    ----------
-    viewport
-        What is drawn; its window is taken for the tiles.
-    size
-        Width and height of the picture in pixels.
-    density
-        Bytes of the picture for one that the settings speak of.
-    supersampling
-        Bytes that are drawn, along each side, for one of the picture.
+    ``density`` and ``supersampling`` are those of a :class:`Job`.
     """
 
     def __init__(
@@ -91,14 +81,7 @@ class TiledPicture:
             pane.handle.density = density * supersampling
 
     def draw(self) -> Iterator[tuple[Bytes, float]]:
-        """Draw a picture.
-
-        Yields
-        ------
-        numpy.ndarray, float
-            The picture so far, (height, width, 3) uint8, and the share of it that is drawn, after
-            each tile. The array is the same one each time.
-        """
+        """Yield the picture so far, always the same array, and its share, after each tile."""
         width, height = self.size
         canvas = np.full((height, width, 3), LINE_GREY, np.uint8)
         count = len(self._viewport.panes)
@@ -166,21 +149,17 @@ class Job:
     size
         Width and height in pixels.
     supersampling
-        Bytes that are drawn, along each side, for one of the result, 1 to 4.
+        Pixels that are drawn, along each side, for one of the result, 1 to 4.
     density
-        Bytes of the result for one that the settings speak of: 2 has grains of twice as many
+        Pixels of the result for one that the settings speak of: 2 has grains of twice as many
         pixels, as fine screens and print want it.
     busy
         Tells whether the view needs the time more; nothing is drawn meanwhile.
 
     Attributes
     ----------
-    progress
-        How much is done, 0 to 1.
-    done
-        Whether it has ended, in whatever way.
-    path
-        The file.
+    progress, done
+        How much is done, 0 to 1, and whether it has ended, in whatever way.
 
     Raises
     ------
@@ -218,20 +197,7 @@ class Job:
         return self._cancelled or self.done
 
     async def run(self) -> Path:
-        """Draw it and write it.
-
-        Returns
-        -------
-        pathlib.Path
-            The file.
-
-        Raises
-        ------
-        Stopped
-            When it was cancelled.
-        OSError
-            When it cannot be written.
-        """
+        """Draw it, write it and return the file; ``Stopped`` when it was cancelled."""
         viewport = self._viewport.copy()
         try:
             await self._make(viewport)
@@ -353,11 +319,11 @@ class MovieJob(Job):
             for pane in viewport.panes:
                 pane.handle.settings.update(motion=motion, period=self._times.seconds)
         fps, count = self._times.fps, len(self._times)
-        made = asyncio.ensure_future(
+        opening = asyncio.ensure_future(
             self._in_thread(movie_writer, self.path, self._size, fps, self._quality)
         )
         try:
-            writer = await asyncio.shield(made)
+            writer = await asyncio.shield(opening)
             tiled = self._tiled(viewport)
             written: asyncio.Future[None] | None = None
             for number in range(count):
@@ -375,9 +341,9 @@ class MovieJob(Job):
         finally:
             # In the thread, after whatever it is busy with.
             self.done = True
-            await asyncio.wait([made])  # who cancels this may do so while it is being opened
-            if not made.cancelled() and made.exception() is None:
-                await asyncio.wrap_future(self._pool.submit(made.result().abandon))
+            await asyncio.wait([opening])  # who cancels this may do so while it is being opened
+            if not opening.cancelled() and opening.exception() is None:
+                await asyncio.wrap_future(self._pool.submit(opening.result().abandon))
 
     async def _show(self, viewport: Viewport, number: int) -> None:
         if viewport.field.steady:
@@ -389,10 +355,10 @@ class MovieJob(Job):
 
 def _moving(settings: Settings, field: FlowField) -> Settings:
     """Return settings with which a steady flow streams."""
-    made = settings.copy()
-    if field.steady and made.motion == "off":
-        made.motion = "speed"
-    return made
+    moving = settings.copy()
+    if field.steady and moving.motion == "off":
+        moving.motion = "speed"
+    return moving
 
 
 def _check(size: tuple[int, int], supersampling: int, density: float) -> None:

@@ -101,13 +101,7 @@ class PointText:
 
 
 class PathCard:
-    """A probe as the page shows it: a path over the picture, and a card beside it.
-
-    Parameters
-    ----------
-    probe
-        The probe.
-    """
+    """A probe as the page shows it: a path over the picture, and a card beside it."""
 
     def __init__(self, probe: Probe) -> None:
         self.probe = probe
@@ -214,11 +208,6 @@ def clip_line(places: Floats, reach: float = LINE_REACH) -> list[list[list[float
         Places in the view, (N, 2), NaN where there is none.
     reach
         How far from the middle a line is drawn, in halves of the view.
-
-    Returns
-    -------
-    list of list of list of float
-        Stretches of the line, each of two places [x, y] or more.
     """
     a, b = places[:-1], places[1:]
     known = np.asarray(np.isfinite(a).all(axis=-1) & np.isfinite(b).all(axis=-1))

@@ -18,6 +18,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from typing import Any
 from urllib.parse import parse_qsl, quote, urlencode
 
@@ -42,8 +43,8 @@ LINK_LENGTH, MOST_VALUES, NAME_LENGTH = 8_000, 100, 400
 #: What is the page's own and no part of its state.
 IGNORED = ("secret",)
 
-#: Parts of a camera: how many numbers, in the order of the link.
-CAMERA = {"position": 3, "focal_point": 3, "up": 3, "parallel_scale": 1, "view_angle": 1}
+#: Numbers of a camera: three points, the parallel scale and the view angle.
+CAMERA_NUMBERS = 11
 #: Longest line of Python.
 LINE_LENGTH = 88
 #: Arguments of ``FlowField.from_file``.
@@ -58,21 +59,8 @@ class _ValueError(ValueError):
 def to_link(state: Mapping[str, Any]) -> str:
     """Return a state as the text of a link.
 
-    Parameters
-    ----------
-    state
-        What a page shows; values that are ``None`` or defaults are left out.
-
-    Returns
-    -------
-    str
-        A query such as ``file=post.vtk&plane=k=20&lod=off``, for behind a ``?`` or a ``#``;
-        empty where everything is as by default.
-
-    Raises
-    ------
-    SettingsError
-        When there is no setting of a name.
+    Values that are ``None`` or defaults are left out. The text is a query such as
+    ``file=post.vtk&plane=k=20&lod=off``, for behind a ``?`` or a ``#``.
     """
     pairs = [
         (name, _WRITE.get(name, str)(state[name]))
@@ -90,20 +78,10 @@ def to_link(state: Mapping[str, Any]) -> str:
 
 
 def from_link(text: str, faults: list[str] | None = None) -> dict[str, Any]:
-    """Return the state that a link holds; defaults are not filled in.
+    """Return the state that a link holds, or the part of it behind the ``?`` or the ``#``.
 
-    Parameters
-    ----------
-    text
-        A link, or the part of it behind the ``?`` or the ``#``.
-    faults
-        Takes a sentence for each part of the link that is of no use and was left out.
-
-    Returns
-    -------
-    dict
-        A state of which every value has been checked. Names of files and arrays are as they
-        were given: whether there are such is for whoever opens them to find out.
+    Every value is checked, but not whether there are files and arrays of these names. Defaults
+    are not filled in. ``faults`` takes a sentence for each part that is of no use and left out.
     """
     messages: list[str] = [] if faults is None else faults
     state: dict[str, Any] = {}
@@ -156,12 +134,8 @@ def _matching(pattern: re.Pattern[str], expected: str) -> Callable[[str], str]:
 
 
 def _one_of(*choices: str) -> Callable[[str], str]:
-    def read(text: str) -> str:
-        if text not in choices:
-            raise _ValueError(" or ".join(map(repr, choices)))
-        return text
-
-    return read
+    pattern = re.compile("|".join(map(re.escape, choices)))
+    return _matching(pattern, " or ".join(map(repr, choices)))
 
 
 def _number(text: str) -> float:
@@ -196,28 +170,22 @@ def _span_text(span: Any) -> str:
 
 
 def _camera(text: str) -> dict[str, Any]:
-    """Read a camera that sees something."""
     kind, _, rest = text.partition(",")
-    numbers = iter(_numbers(rest, sum(CAMERA.values())))
-    camera: dict[str, Any] = {"parallel": kind == "parallel"}
-    for part, count in CAMERA.items():
-        values = [next(numbers) for _ in range(count)]
-        camera[part] = values if count > 1 else values[0]
-    try:
+    numbers = _numbers(rest, CAMERA_NUMBERS)
+    position, focal_point, up = (
+        (x, y, z) for x, y, z in zip(*[iter(numbers[:9])] * 3, strict=True)
+    )
+    with suppress(CameraError):
         if kind in ("parallel", "perspective"):
-            return Camera.from_dict(camera).to_dict()
-    except CameraError:
-        pass
+            return Camera(position, focal_point, up, kind == "parallel", *numbers[9:]).to_dict()
     msg = "a camera that looks at something"
     raise _ValueError(msg)
 
 
 def _camera_text(camera: Mapping[str, Any]) -> str:
-    numbers: list[float] = []
-    for part, count in CAMERA.items():
-        numbers += camera[part] if count > 1 else [camera[part]]
-    kind = "parallel" if camera["parallel"] else "perspective"
-    return ",".join([kind, *(repr(float(number)) for number in numbers)])
+    points = [*camera["position"], *camera["focal_point"], *camera["up"]]
+    numbers = map(float, [*points, camera["parallel_scale"], camera["view_angle"]])
+    return ",".join(["parallel" if camera["parallel"] else "perspective", *map(repr, numbers)])
 
 
 #: How each name is read, in the order of a link, and how it is written.
@@ -251,12 +219,12 @@ def to_python(
     size: tuple[int, int] = (1024, 768),
     picture: str | None = None,
 ) -> str:
-    """Return the lines of Python that draw a state again.
+    """Return the lines of Python that draw a state again, where its file is at hand.
 
     Parameters
     ----------
     state
-        What a page shows; the module has its names.
+        What a page shows.
     source
         Expression that makes the field where it is not that of a file, such as
         ``"flowtex.examples.cylinder_field()"``.
@@ -264,16 +232,6 @@ def to_python(
         Width and height of the window in pixels.
     picture
         File to write a picture to; left out, a window is opened.
-
-    Returns
-    -------
-    str
-        Whole lines, which run where the file is in the working folder.
-
-    Raises
-    ------
-    ValueError
-        When the state names no file and there is no source.
     """
     panes: list[Mapping[str, Any]] = [{}]
     if changes := COMPARISONS.get(str(state.get("split"))):
@@ -345,8 +303,8 @@ def _camera_lines(camera: Mapping[str, Any] | None) -> list[str]:
     if not camera:
         return []
     lines = [f"pl.camera.parallel_projection = {bool(camera['parallel'])!r}"]
-    for part in CAMERA:
-        value = camera[part]
+    for name in ("position", "focal_point", "up", "parallel_scale", "view_angle"):
+        value = camera[name]
         plain = float(value) if isinstance(value, (int, float)) else tuple(map(float, value))
-        lines.append(f"pl.camera.{part} = {plain!r}")
+        lines.append(f"pl.camera.{name} = {plain!r}")
     return lines

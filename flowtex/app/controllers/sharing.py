@@ -41,14 +41,8 @@ _log = logging.getLogger(__name__)
 class Sharing(Controller):
     """What leaves the page.
 
-    Parameters
-    ----------
-    context
-        What the controllers share.
-    source
-        Returns the expression of Python that makes the field, if it is not that of a file.
-    restore_state
-        Called with the state that a link holds.
+    ``source`` returns the expression of Python that makes the field, if it is not that of a file;
+    ``restore_state`` is called with the state that a link holds.
     """
 
     def __init__(

@@ -41,13 +41,7 @@ KEY = "flowtex_routes"
 
 
 class Routes:
-    """What one session hands out.
-
-    Attributes
-    ----------
-    token
-        The session's part of the address; it cannot be guessed.
-    """
+    """What one session hands out, below a ``token`` that cannot be guessed."""
 
     def __init__(self) -> None:
         self.token = new_secret()
@@ -73,25 +67,14 @@ class Routes:
             add_route(application, {self.token: self}.get)
 
     def give(self, name: str, content: Give) -> str:
-        """Hand out a file, in place of an earlier one of that name.
+        """Hand out a file, in place of an earlier one of that name; return its address.
 
         Parameters
         ----------
         name
             Last part of the address, without a slash.
         content
-            Called at each request; returns the bytes or a path, the media type, and the name to
-            save it under, or ``None`` when the page is to use it. It may be a coroutine function.
-
-        Returns
-        -------
-        str
-            The address, relative to the page.
-
-        Raises
-        ------
-        ValueError
-            When the name is empty or has a slash.
+            Called at each request; it may be a coroutine function.
         """
         if not name or "/" in name:
             msg = f"the name of a file is {name!r}; expected one part of an address, as in 'a.png'"
@@ -108,13 +91,7 @@ class Routes:
         self._content.clear()
 
     async def answer(self, name: str) -> web.StreamResponse:
-        """Return what is asked for.
-
-        Raises
-        ------
-        aiohttp.web.HTTPNotFound
-            When there is nothing of that name.
-        """
+        """Return what is asked for; ``HTTPNotFound`` where there is nothing of that name."""
         give = self._content.get(name)
         if give is None:
             raise web.HTTPNotFound
@@ -139,15 +116,7 @@ class Routes:
 
 
 def add_route(application: web.Application, find: Callable[[str], Routes | None]) -> None:
-    """Serve files below ``/flowtex`` of a web application.
-
-    Parameters
-    ----------
-    application
-        Where the route is added, before it is started.
-    find
-        Returns the routes of a token, or ``None`` where there is no such session.
-    """
+    """Serve files below ``/flowtex`` of a web application; ``find`` has the routes of a token."""
 
     async def handler(request: web.Request) -> web.StreamResponse:
         routes = find(request.match_info["token"])
@@ -193,23 +162,11 @@ class Downloads:
         return len(self._files)
 
     def reserve(self, name: str) -> Path:
-        """Return where a file of this name can be written, in a folder of its own.
-
-        Raises
-        ------
-        OSError
-            When there is no room, or the files have been closed.
-        """
+        """Return where a file of this name can be written, in a folder of its own."""
         return Path(tempfile.mkdtemp(dir=self.folder)) / _plain(name)
 
     def add(self, path: Path) -> str:
-        """Hand out a file from :meth:`reserve`; return its address, relative to the page.
-
-        Raises
-        ------
-        ValueError
-            When the file lies elsewhere.
-        """
+        """Hand out a file from :meth:`reserve`; return its address, relative to the page."""
         if not path.resolve().is_relative_to(self.folder.resolve()):
             msg = f"{path} lies outside {self.folder}; expected a file from reserve()"
             raise ValueError(msg)

@@ -49,11 +49,6 @@ def proxy_path(proxy: str | bool | None = None) -> str | None:  # noqa: FBT001 o
         A path such as ``"/user/me/proxy"``, or an address; ``True`` for the usual path,
         ``False`` for none. By default the path is that of ``FLOWTEX_PROXY``, or of JupyterHub
         where its environment is found.
-
-    Returns
-    -------
-    str or None
-        Without a slash at its end.
     """
     hub = os.environ.get("JUPYTERHUB_SERVICE_PREFIX")
     if proxy is None:
@@ -70,7 +65,7 @@ class NotebookPage:
     _served: _Served | None = None
 
     def in_cell(self, *, height: int = HEIGHT_PX, proxy: str | bool | None = None) -> Frame:
-        """Show the page in a cell.
+        """Return what a notebook displays to show the page in a cell.
 
         Parameters
         ----------
@@ -79,11 +74,6 @@ class NotebookPage:
         proxy
             How the browser comes to the kernel, as :func:`proxy_path` takes it. By default
             directly, and on JupyterHub through jupyter-server-proxy.
-
-        Returns
-        -------
-        Frame
-            What a notebook displays.
 
         Raises
         ------
@@ -115,15 +105,7 @@ class NotebookPage:
 
 
 class Frame:
-    """A frame in a notebook.
-
-    Attributes
-    ----------
-    address
-        Where the page is, with its secret.
-    height
-        Height in CSS pixels.
-    """
+    """A frame in a notebook: the page's address, with its secret, and the height in CSS pixels."""
 
     def __init__(self, address: str, height: int) -> None:
         self.address = address

@@ -48,13 +48,6 @@ class PageState:
     Several applications may share a trame server, so each has a prefix of its own. A listener is
     called after a change by Python as well as by the page; it compares with the present value
     before it acts.
-
-    Attributes
-    ----------
-    server
-        The trame server.
-    prefix
-        What each name begins with on the page.
     """
 
     def __init__(self, server: Any) -> None:

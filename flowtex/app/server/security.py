@@ -44,20 +44,15 @@ def new_secret() -> str:
     return secrets.token_urlsafe(24)
 
 
-def is_same(given: object, secret: str) -> bool:
+def is_same(text: object, secret: str) -> bool:
     """Tell whether a secret is the right one, in a time that tells nothing about it."""
-    return isinstance(given, str) and hmac.compare_digest(given.encode(), secret.encode())
+    return isinstance(text, str) and hmac.compare_digest(text.encode(), secret.encode())
 
 
 def guard(application: web.Application, *, framed: bool = False) -> None:
     """Refuse other sites' pages, and send the headers above with every answer.
 
-    Parameters
-    ----------
-    application
-        What is guarded, before it is started.
-    framed
-        Whether pages of other sites may hold this one in a frame, as a notebook does.
+    With ``framed``, pages of other sites may hold this one in a frame, as a notebook does.
     """
     policy = POLICY if framed else f"{POLICY}; frame-ancestors 'self'"
 
@@ -95,13 +90,7 @@ class LimitedMessages(UnChunker):
         super().set_max_message_size(min(size, MESSAGE_BYTES))
 
     def process_chunk(self, chunk: bytes) -> Any:
-        """Take a piece; return the message when it is the last one.
-
-        Raises
-        ------
-        ValueError
-            When the message, or all that have begun, are larger than they may be.
-        """
+        """Take a piece; return the message when it is the last one."""
         message = super().process_chunk(chunk)
         if len(self.pending_messages) > OPEN_MESSAGES:
             self.release_pending_messages()

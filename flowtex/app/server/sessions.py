@@ -74,17 +74,7 @@ _log = logging.getLogger(__name__)
 
 
 class Session:
-    """One application and the connection of its page.
-
-    Attributes
-    ----------
-    token
-        What the page is known by.
-    app
-        The application.
-    routes
-        Files that it hands out.
-    """
+    """One application, the token that its page is known by, and the connection of the page."""
 
     def __init__(self, app: Any) -> None:
         self.token = new_secret()
@@ -260,36 +250,19 @@ class Sessions:
         return next((s.routes for s in self if s.routes.token == token), None)
 
     async def prepare(self, app: Any = None) -> dict[str, Any]:
-        """Make the first session before anybody asks for it.
+        """Make the first session, of an application that there is already if any.
 
         What is wrong with a mesh or a setting is told then, and the first visitor does not wait.
-
-        Parameters
-        ----------
-        app
-            The application of the first session, where there is one already.
-
-        Returns
-        -------
-        dict
-            Folders that all pages want served, by route.
+        Returns the folders that all pages want served, by route.
         """
         self._ready, static = await (self._make() if app is None else self._begin(app))
         return static
 
     async def find(self, token: str | None) -> Session:
-        """Return the session of a page: its own, or a new one.
+        """Return the session of a page: that of its token, or a new one where there is room.
 
-        Parameters
-        ----------
-        token
-            What the page remembers, if anything. When another page is connected with it, such
-            as that of a copied tab, the page gets a session of its own.
-
-        Raises
-        ------
-        FullError
-            When there is no room for a new one.
+        When another page is connected with the token, such as that of a copied tab, the page gets
+        a session of its own.
         """
         if self.shared and self._ready is not None:
             return self._ready

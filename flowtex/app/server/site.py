@@ -69,11 +69,6 @@ class Site:
         What the door asks for.
     framed
         Whether pages of other sites may hold these in a frame, as a notebook does.
-
-    Attributes
-    ----------
-    port
-        Where it listens; 0 before it does.
     """
 
     def __init__(self, sessions: Sessions, secret: str, *, framed: bool = False) -> None:
@@ -85,13 +80,7 @@ class Site:
         self._sweep: asyncio.Task[None] | None = None
 
     async def prepare(self, app: Any = None) -> None:
-        """Make the first session, with an application that there is already if any.
-
-        Raises
-        ------
-        Exception
-            What the making of an application raises.
-        """
+        """Make the first session, with an application that there is already if any."""
         application = self._application(await self.sessions.prepare(app))
         # What ends the program is told to it, and not to the web server.
         self._runner = web.AppRunner(
@@ -100,18 +89,7 @@ class Site:
         await self._runner.setup()
 
     async def listen(self, where: sockets.socket | tuple[str, int] = ("127.0.0.1", 0)) -> None:
-        """Let pages in, after :meth:`prepare`.
-
-        Parameters
-        ----------
-        where
-            Host and port, where port 0 takes one that is free; or a socket that listens already.
-
-        Raises
-        ------
-        OSError
-            When the port or the host cannot be listened on.
-        """
+        """Let pages in, after :meth:`prepare`, at a host and port, or on a socket that listens."""
         if self._runner is None:
             msg = "nothing is there to let in to; call prepare() first"
             raise RuntimeError(msg)

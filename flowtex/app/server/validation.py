@@ -57,17 +57,12 @@ def shortened(text: str, most: int = MESSAGE_LENGTH) -> str:
 
 
 def decode_picture(sent: Any) -> AnyArray:
-    """Read a picture that a page has sent.
+    """Read a picture that a page has sent, averaged to :data:`PICTURE_SIDE` on a side at most.
 
     Parameters
     ----------
     sent
         A mapping with ``content``, bytes or a list of them, and ``name``.
-
-    Returns
-    -------
-    numpy.ndarray
-        (H, W), (H, W, 3) or (H, W, 4), not more than :data:`PICTURE_SIDE` on a side.
 
     Raises
     ------

@@ -48,12 +48,8 @@ class FlowArea:
 
     Attributes
     ----------
-    viewport
-        What is drawn.
-    stream
-        The pictures that go to the page.
-    player
-        What lets time go by.
+    viewport, stream, player
+        What is drawn, the pictures that go to the page, and what lets time go by.
 
     Raises
     ------
@@ -90,13 +86,7 @@ class FlowArea:
         return self.viewport.settings
 
     def ui(self, **attributes: Any) -> Any:
-        """Put the view into the trame layout that is open.
-
-        Parameters
-        ----------
-        **attributes
-            Of the element around it, such as ``classes`` and ``style``.
-        """
+        """Put the view into the open layout; ``attributes`` are those of the element around it."""
         with html.Div(**attributes) as element:
             rca.RemoteControlledArea(
                 name=self.stream.area_name,

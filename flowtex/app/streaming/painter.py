@@ -77,17 +77,7 @@ class Cost:
         return FIXED_S + self._price * pixels * (samples + BASE_SAMPLES)
 
     def choose(self, pixels: int, samples: int, budget: float) -> Quality:
-        """Return the best quality that can be had within ``budget`` seconds.
-
-        Parameters
-        ----------
-        pixels
-            Pixels of the whole view.
-        samples
-            Samples at full quality.
-        budget
-            Seconds.
-        """
+        """Return the best quality within ``budget`` seconds, at most all pixels and samples."""
         if self.seconds(pixels, samples) <= budget:
             return Quality(1.0, samples)
         fewer = min(DRAFT_SAMPLES, samples)
@@ -116,19 +106,10 @@ def view_pixels(size: Mapping[str, Any]) -> tuple[int, int]:
 class PanePainter:
     """Draws a pane as well as the time allows.
 
-    Parameters
-    ----------
-    pane
-        What is drawn.
-    cost
-        What pictures cost here, where it is known; learnt from the pictures.
-
     Attributes
     ----------
-    pane
-        What is drawn.
-    cost
-        What pictures cost here.
+    pane, cost
+        What is drawn, and what pictures cost here, which is learnt from them.
     complete
         Whether the last picture that was drawn is at full quality.
     drafting
@@ -190,13 +171,9 @@ class PanePainter:
         return self._under
 
     def full(self) -> Generator[Bytes, None, None]:
-        """Draw the full picture over the quick one, a tile at a time.
+        """Draw the full picture over the quick one; yield it so far after each tile.
 
-        Yields
-        ------
-        numpy.ndarray
-            The picture so far, (H, W, 3) uint8, after each tile. The array is the same one each
-            time. Between two tiles the pane may be left for good, and the drawing given up.
+        The array is the same one each time. Between two tiles the drawing may be given up.
         """
         width, height = self.pane.size
         view, state = self.pane.plane_view(), self._state
@@ -310,18 +287,7 @@ def _cuts(start: int, length: int, side: int) -> list[int]:
 
 
 class ViewPainter:
-    """Draws all panes of a viewport, as well as the time allows.
-
-    Parameters
-    ----------
-    viewport
-        What is drawn; its panes may come and go.
-
-    Attributes
-    ----------
-    painters
-        What draws each pane.
-    """
+    """Draws all panes of a viewport, which may come and go, as well as the time allows."""
 
     def __init__(self, viewport: Viewport) -> None:
         self._viewport = viewport

@@ -26,14 +26,7 @@ _log = logging.getLogger(__name__)
 
 
 class Player:
-    """Lets the time of a viewport go by.
-
-    Parameters
-    ----------
-    viewport
-        What is played.
-    stream
-        What draws it.
+    """Lets the time of a viewport go by, as fast as a stream draws it.
 
     Attributes
     ----------

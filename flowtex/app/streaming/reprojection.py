@@ -56,13 +56,7 @@ def plane_to_view(surface: Surface, camera: Camera, aspect: float) -> Floats | N
 
 
 def coverage(picture: Snapshot, view: Floats) -> tuple[float, float]:
-    """Tell how well a picture serves for another view.
-
-    Returns
-    -------
-    share, stretch
-        How much of the new view it covers, 0 to 1, and how much larger its pixels become.
-    """
+    """Return the share of a new view that a picture covers, and how much its pixels grow in it."""
     back = picture.view @ np.linalg.inv(view)
     grid = np.linspace(-1, 1, 9)
     x, y = np.meshgrid(grid, grid)
@@ -73,13 +67,7 @@ def coverage(picture: Snapshot, view: Floats) -> tuple[float, float]:
 
 
 def whole_shift(picture: Snapshot, view: Floats) -> tuple[int, int] | None:
-    """Tell by how many whole pixels a picture is shifted in another view, right and down.
-
-    Returns
-    -------
-    tuple of int or None
-        ``None`` when the scale or the direction has changed, or the shift is no whole number.
-    """
+    """Return the shift of a picture in another view, right and down, if it is in whole pixels."""
     height, width = picture.pixels.shape[:2]
     to = view @ np.linalg.inv(picture.view)
     if np.abs(to[:2, :2] - np.eye(2)).max() * max(width, height) > SHIFT_TOLERANCE_PX:
@@ -93,24 +81,10 @@ def whole_shift(picture: Snapshot, view: Floats) -> tuple[int, int] | None:
 def reproject(
     picture: Snapshot, view: Floats, size: tuple[int, int], under: Snapshot | None = None
 ) -> Bytes:
-    """Show a picture from another view.
+    """Show a picture from another view, with ``under`` or black where it does not reach.
 
-    Parameters
-    ----------
-    picture
-        What was drawn.
-    view
-        The new view, as in :class:`Snapshot`.
-    size
-        Width and height of the view, in pixels.
-    under
-        What to show where the picture does not reach; black when left out.
-
-    Returns
-    -------
-    numpy.ndarray
-        uint8, (height, width, 3) where the picture only shifts, half of that where its scale
-        changes: smooth interpolation takes time, and there is nothing finer to show.
+    Where the scale changes the result has half the size, in pixels: smooth interpolation takes
+    time, and there is nothing finer to show.
     """
     from PIL import Image
 

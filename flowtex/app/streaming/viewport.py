@@ -36,15 +36,7 @@ WHOLE: tuple[float, tuple[float, ...] | None] = (1.0, None)
 
 
 class Pane:
-    """One of the views beside each other: a texture with settings of its own.
-
-    Parameters
-    ----------
-    handle
-        The texture on the viewport's plotter.
-    viewport
-        What the pane belongs to.
-    """
+    """One of the views beside each other: a texture with settings of its own."""
 
     def __init__(self, handle: FlowHandle, viewport: Viewport) -> None:
         self.handle = handle
@@ -101,18 +93,14 @@ class Viewport:
 
     Attributes
     ----------
-    window
-        Where it is drawn.
-    panes
-        The views beside each other, one or two.
+    window, panes
+        Where it is drawn, and the views beside each other, one or two.
     colour, cmap
         Name of what the surface is coloured by, empty for nothing, and of the colour map.
     plain
         Colour of the surface where it is coloured by nothing.
-    lighting
-        Whether the surface is lit; ``None`` for curved ones only.
-    background
-        Colour behind the surface.
+    lighting, background
+        Whether the surface is lit, ``None`` for curved ones only, and the colour behind it.
     whole
         The camera that shows the whole surface, from which zoom counts.
     """
@@ -275,10 +263,7 @@ class Viewport:
     def compare(self, changes: Mapping[str, Any] | None) -> None:
         """Show a second pane in which some settings differ, or one pane again for ``None``.
 
-        Raises
-        ------
-        SettingsError
-            When a setting is unknown or out of range; the panes stay as they are.
+        The panes stay as they are when a setting is unknown or out of range.
         """
         settings = {**dict(self.settings), **(changes or {})}
         Settings().update(**settings)
@@ -305,10 +290,7 @@ class Viewport:
     def lay_image(self, image: Any) -> None:
         """Lay an image on the surface in place of the noise, except where panes differ in noise.
 
-        Raises
-        ------
-        ImageError
-            When it cannot be used; nothing is changed then.
+        Nothing is changed when it cannot be used.
         """
         # The first pane is followed by the second, which has to have the image by then.
         for pane in reversed(self.panes):
@@ -332,14 +314,7 @@ class Viewport:
     ) -> None:
         """Colour by one of :attr:`colours`, or plainly for an empty name.
 
-        Parameters
-        ----------
-        name
-            What to colour by.
-        cmap
-            Another colour map.
-        clim
-            Values at the ends of the colour map; they stay with this scalar.
+        ``clim``, the values at the ends of the colour map, stays with this scalar.
         """
         import pyvista as pv
 

@@ -68,19 +68,14 @@ class OffscreenWindow:
         self.plotter.renderer.set_background(colour)
 
     def draw(self, width: int, height: int, part: Rect | None = None) -> Bytes:
-        """Draw what is visible, or a part of it.
+        """Return a picture of what is visible, (height, width, 3), row 0 at the top.
 
         Parameters
         ----------
         width, height
             Size of the picture, at most that of a whole one.
         part
-            Left, top, width and height of the part within a whole picture, in pixels.
-
-        Returns
-        -------
-        numpy.ndarray
-            (height, width, 3) uint8, row 0 at the top.
+            Left, top, width and height of a part of a whole picture that it shows, in pixels.
         """
         whole_width, whole_height = self.size
         camera, renderer = self.plotter.camera, self.plotter.renderer

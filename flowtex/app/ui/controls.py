@@ -21,6 +21,7 @@ __all__ = [
     "select",
     "slider",
     "switch",
+    "toggle",
 ]
 
 #: More choices than this are a menu.
@@ -31,15 +32,7 @@ DATA = [("data_setting", "data-setting")]
 
 
 def control(setting: Setting, key: str) -> None:
-    """Put a control for one setting into the widget that is open.
-
-    Parameters
-    ----------
-    setting
-        The setting.
-    key
-        Name of the state that holds its value.
-    """
+    """Put a control for a setting, with the state of this key, into the widget that is open."""
     prefix = key.removesuffix(setting.name)
     needs = [
         f"{prefix}{name} {sign}= {_literal(to)}" for name, sign, to in NEEDS.get(setting.name, ())
@@ -128,19 +121,23 @@ def _choice(setting: Setting, key: str) -> None:
 def buttons(name: str, key: str, choices: Sequence[str]) -> None:
     """Put buttons of which one is pressed into the row that is open."""
     html.Span(name, classes="flowtex-label")
-    with v3.VBtnToggle(
+    with toggle(name, key):
+        for choice in choices:
+            v3.VBtn(choice, value=choice, size="small")
+
+
+def toggle(name: str, key: str) -> Any:
+    """Return a group of buttons of which one is pressed, to be filled."""
+    return v3.VBtnToggle(
         v_model=(key,),
         mandatory=True,
         density="compact",
         variant="text",
-        divided=False,
         color="primary",
         classes="flowtex-toggle",
         aria_label=name,
         __properties=ARIA,
-    ):
-        for choice in choices:
-            v3.VBtn(choice, value=choice, size="small")
+    )
 
 
 def _menu(setting: Setting, key: str) -> None:
