@@ -70,7 +70,7 @@ def torus() -> Picture:
     return _row(
         [
             flowtex.render(field, size=(640, 460), background=DARK),
-            flowtex.render(field, size=(550, 460), camera_position=near),
+            flowtex.render(field, size=(550, 460), camera=near),
         ]
     )
 
@@ -93,7 +93,7 @@ def sphere() -> Picture:
     return _row(
         [
             flowtex.render(field, **common),
-            flowtex.render(field, **common, camera_position=above),
+            flowtex.render(field, **common, camera=above),
         ]
     )
 
@@ -127,7 +127,7 @@ def levels() -> Picture:
     return flowtex.render(
         flowtex.examples.double_gyre_field(),
         size=(1200, 330),
-        camera_position=[(1.0, -0.16, 0.14), (1.0, 0.22, 0.0), (0.0, 0.0, 1.0)],
+        camera=[(1.0, -0.16, 0.14), (1.0, 0.22, 0.0), (0.0, 0.0, 1.0)],
         beside={"show_level": True},
     )
 
@@ -214,7 +214,7 @@ def streaming() -> list[Picture]:
     return frames
 
 
-#: Pictures of docs/paper.md: sections of ``flowtex paper``, and the files that each is made of.
+#: Pictures of docs/paper.md: sections of ``make paper``, and the files that each is made of.
 PAPER = {
     "figure5": ("pictures/figure5-1-1", "pictures/figure5-1-2", "pictures/figure5-1-3"),
     "figure6": ("pictures/figure6-3-1", "pictures/figure6-4-1", "pictures/figure6-4-2"),
@@ -225,7 +225,7 @@ PAPER = {
 
 
 def paper() -> None:
-    """Draw the pictures of docs/paper.md, which `flowtex paper` has on its page."""
+    """Draw the pictures of docs/paper.md, which `make paper` has on its page."""
     from paper import reproduce
 
     with TemporaryDirectory() as made:

@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from flowtex.field.facets import facet
-from flowtex.field.locate import locate, locator
-from flowtex.field.reading import Reading, reading
+from flowtex.field.interpolation import bracket
+from flowtex.field.locate import locate, locator, surface_point
+from flowtex.field.point_values import PointValues, values_at
 from flowtex.rendering.cpu import Camera
 from flowtex.rendering.cpu.fragments import Fragments
 from flowtex.rendering.cpu.levels import footprint, slice_level
@@ -28,7 +28,7 @@ from flowtex.rendering.uniforms import ViewState, uniforms
 from flowtex.scene import Scene
 from flowtex.textures import TextureSet
 
-__all__ = ["Probe", "Reading", "locate", "probe", "reading"]
+__all__ = ["PointValues", "Probe", "locate", "probe", "values_at"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -49,7 +49,7 @@ class Probe:
 
     Attributes
     ----------
-    reading
+    field_values
         Position, velocity and speed at the point, with units.
     parameter
         What a lag measures: ``"arclength"`` or ``"time"``.
@@ -99,7 +99,7 @@ class Probe:
         their lags (N,). Where it ends, the last sample may lie up to a step beyond.
     """
 
-    reading: Reading
+    field_values: PointValues
     parameter: str
     asked: int
     lags: Floats
@@ -167,15 +167,15 @@ def probe(
         the point.
     """
     surface = view.field.surface
-    place = facet(surface, at)
+    place = surface_point(surface, at)
     camera = pixel if isinstance(pixel, Camera) else facing(surface, place, pixel)
     before, after, between = view.moment
     state = ViewState(between=between, clock=clock, density=density)
     state = view_state(view.textures, camera, state, (before, after))
     values = uniforms(view.textures, view.settings, state)
     fragments = Fragments.of(view.textures, spot(surface, place, camera))
-    read = reading(view.field, place.index, view.time)
-    return _Pixel(view.textures, (before, after), fragments, values, read).probe()
+    field_values = values_at(view.field, place.index, view.time)
+    return _Pixel(view.textures, (before, after), fragments, values, field_values).probe()
 
 
 class _Pixel:
@@ -187,10 +187,10 @@ class _Pixel:
         steps: tuple[int, int],
         fragments: Fragments,
         values: Mapping[str, Any],
-        read: Reading,
+        field_values: PointValues,
     ) -> None:
         kept = Kept.of(textures)
-        self._read = read
+        self._field_values = field_values
         self._textures, self._values, self._fragments = textures, values, fragments
         self._level = slice_level(fragments.coordinate, values)
         self._slices = slices_at(textures, steps, values, kept.mips)
@@ -211,20 +211,20 @@ class _Pixel:
         lags = lags[order] + 0.0
         points, coordinates, noise = self._places(np.concatenate(found.displacement)[order])
         knots = np.concatenate([[0.0], values["u_lags"]])
-        m = np.clip(np.searchsorted(knots, np.abs(lags)) - 1, 0, len(knots) - 2)
+        m, shares = bracket(knots, np.abs(lags), side="left")
         path_lags, path = self._path(sides, knots, lags)
         pixel, grain = self._sizes()
         moves = np.isfinite(sides[0].reach[0])
         samples = values["u_samples"]
         return Probe(
-            reading=self._read,
+            field_values=self._field_values,
             parameter=self._textures.store.parameter,
             asked=2 * (samples // 2) + 1 if values["u_sides"] == 2 else samples,
             lags=lags * self._unit,
             points=points,
             coordinates=coordinates,
             slices=np.stack([m, m + 1], axis=-1),
-            shares=(np.abs(lags) - knots[m]) / (knots[m + 1] - knots[m]),
+            shares=shares,
             slice_lags=knots * self._unit,
             slice_level=float(self._level[0]),
             weights=found.weights[order],
@@ -276,7 +276,7 @@ class _Pixel:
             self._fragments.noise,
         )
         # From the place itself in double precision: renderers have the nodes in single.
-        start, surface = self._read.position, geometry.field.surface
+        start, surface = self._field_values.position, geometry.field.surface
         if paper is None or noise is None:
             points = start + displacement @ geometry.frame
             found = locator(geometry.field).nearest(points)[0] if coordinates else points

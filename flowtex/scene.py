@@ -17,7 +17,7 @@ import numpy as np
 from flowtex._util.array_types import Floats, Floats32
 from flowtex._util.cache import WeakCache, digest
 from flowtex.field import FlowField
-from flowtex.field.reading import moment
+from flowtex.field.interpolation import steps_around
 from flowtex.options import Appearance, FieldOptions, Options
 from flowtex.settings import TABLE, Affects, Settings, SettingsError
 from flowtex.textures import TextureSet
@@ -237,7 +237,7 @@ class Scene:
     @property
     def moment(self) -> tuple[int, int, float]:
         """The two time steps around the time that is shown, and how far it is between them."""
-        return moment(self.field.times, self._time)
+        return steps_around(self.field.times, self._time)
 
     def scalar(self, name: str) -> Floats:
         """Nodal values at the time that is shown, (J, I); ``"speed"`` is always there.
@@ -375,9 +375,9 @@ def share_field(field: FlowField) -> FlowField:
     A notebook shows one mesh many times over, and makes it a field each time.
     """
     words = (field.periodic, field.name, field.length_unit, field.time_unit, field.sign_free)
-    placed = () if field.placed is None else (field.placed,)
-    arrays = (field.points, field.velocity, field.times, field.valid, *placed)
-    key = digest(*arrays, *field.scalars.values(), words=(words, len(placed), *field.scalars))
+    positions = () if field.has_position is None else (field.has_position,)
+    arrays = (field.points, field.velocity, field.times, field.valid, *positions)
+    key = digest(*arrays, *field.scalars.values(), words=(words, len(positions), *field.scalars))
     return _fields.get(key, lambda: field)
 
 
@@ -409,12 +409,4 @@ def coarsened_field(field: FlowField, nodes: int) -> FlowField:
         np.unique(np.rint(np.linspace(0, n - 1, max(int(n * share), min(n, 8)))).astype(int))
         for n in field.shape
     )
-    at = np.ix_(rows, columns)
-    return replace(
-        field,
-        points=field.points[at],
-        velocity=field.velocity[:, at[0], at[1]],
-        valid=field.valid[at],
-        placed=None if field.placed is None else field.placed[at],
-        scalars={k: s[:, at[0], at[1]] for k, s in field.scalars.items()},
-    )
+    return field.at_lines(rows, columns)

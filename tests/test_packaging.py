@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 import flowtex
-from flowtex.rendering import shader_files as _assets
+from flowtex.rendering import shader_files
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -25,11 +25,11 @@ SHADERS = ROOT / "shaders"
 TELL = """
 import json, sys
 import flowtex
-from flowtex import _assets
+from flowtex.rendering import shader_files
 json.dump({
     "package": flowtex.__file__,
-    "folder": str(_assets.shader_folder()),
-    "texts": {name: _assets.shader_source(name) for name in _assets.shader_names()},
+    "folder": str(shader_files.shader_folder()),
+    "texts": {name: shader_files.shader_source(name) for name in shader_files.shader_names()},
 }, sys.stdout)
 """
 
@@ -47,6 +47,14 @@ def _client_of_checkout() -> list[Path]:
     found = [path for path in folder.iterdir() if path.suffix in (".js", ".css", ".html")]
     assert {"client.js", "page.js", "page.css", "page.html"} <= {path.name for path in found}
     return found
+
+
+def _paper_of_checkout() -> list[Path]:
+    files = [
+        path for path in (ROOT / "paper").rglob("*") if path.suffix in (".py", ".html", ".css")
+    ]
+    assert {"__main__.py", "page.html", "style.css", "redundancy.py"} <= {f.name for f in files}
+    return files
 
 
 def _run(*command: str, cwd: Path, **environment: str) -> str:
@@ -85,6 +93,12 @@ def test_wheel_holds_every_shader_and_every_module(wheel: Path) -> None:
     assert "flowtex/py.typed" in held
     for path in _client_of_checkout():
         assert held[path.relative_to(ROOT).as_posix()] == path.read_bytes()
+
+
+def test_wheel_holds_the_package_and_nothing_else(wheel: Path) -> None:
+    with zipfile.ZipFile(wheel) as archive:
+        tops = {name.split("/")[0] for name in archive.namelist()}
+    assert tops == {"flowtex", f"flowtex-{flowtex.__version__}.dist-info"}
 
 
 def test_wheel_is_named_after_the_one_version(wheel: Path) -> None:
@@ -211,8 +225,10 @@ def test_editable_install_reads_the_checkout() -> None:
     package = Path(flowtex.__file__).resolve().parent
     if package.parent != ROOT:
         pytest.skip(f"flowtex is installed in {package.parent}, not as editable")
-    assert _assets.shader_folder() == SHADERS
-    assert {n: _assets.shader_source(n) for n in _assets.shader_names()} == _texts_of_checkout()
+    assert shader_files.shader_folder() == SHADERS
+    assert {
+        n: shader_files.shader_source(n) for n in shader_files.shader_names()
+    } == _texts_of_checkout()
 
 
 @pytest.fixture
@@ -228,11 +244,11 @@ def folder(tmp_path: Path) -> Path:
 
 
 def test_names_are_sorted_and_hidden_files_left_out(folder: Path) -> None:
-    assert _assets.shader_names(folder) == ("common/noise.glsl", "main.frag")
+    assert shader_files.shader_names(folder) == ("common/noise.glsl", "main.frag")
 
 
 def test_source_is_read_as_utf8(folder: Path) -> None:
-    assert _assets.shader_source("common/noise.glsl", folder) == "// µ noise\n"
+    assert shader_files.shader_source("common/noise.glsl", folder) == "// µ noise\n"
 
 
 @pytest.mark.parametrize(
@@ -242,13 +258,13 @@ def test_source_is_read_as_utf8(folder: Path) -> None:
 def test_names_that_leave_the_folder_are_refused(name: str, folder: Path) -> None:
     (folder / "link").symlink_to(folder.parent / "secret")
     with pytest.raises(ValueError, match=r"^shader name .* leaves the shader folder: expected "):
-        _assets.shader_source(name, folder)
+        shader_files.shader_source(name, folder)
 
 
 def test_an_unknown_name_lists_the_known(folder: Path) -> None:
     expected = r"^no shader is called 'noise\.glsl'; there are: common/noise\.glsl, main\.frag$"
     with pytest.raises(FileNotFoundError, match=expected):
-        _assets.shader_source("noise.glsl", folder)
+        shader_files.shader_source("noise.glsl", folder)
 
 
 def test_shaders_beside_an_installed_package_are_not_ours(tmp_path: Path) -> None:
@@ -258,7 +274,7 @@ def test_shaders_beside_an_installed_package_are_not_ours(tmp_path: Path) -> Non
     with pytest.raises(
         FileNotFoundError, match=r"^flowtex's shaders are missing: .*--no-deps flowtex$"
     ):
-        _assets.shader_folder(package)
+        shader_files.shader_folder(package)
 
 
 def test_wheel_can_be_built_from_the_source_archive(tmp_path: Path) -> None:
@@ -269,6 +285,8 @@ def test_wheel_can_be_built_from_the_source_archive(tmp_path: Path) -> None:
         safe = {"filter": "data"} if hasattr(tarfile, "data_filter") else {}
         packed.extractall(tmp_path, **safe)  # type: ignore[arg-type]
     source = tmp_path / archive.name.removesuffix(".tar.gz")
+    for path in _paper_of_checkout():
+        assert (source / path.relative_to(ROOT)).read_bytes() == path.read_bytes()
     _run(sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", str(tmp_path), cwd=source)
     (built,) = tmp_path.glob("*.whl")
     with zipfile.ZipFile(built) as held:

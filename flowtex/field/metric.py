@@ -6,7 +6,7 @@ A velocity v is projected onto the tangents P_i and P_j by solving the 2 x 2 met
     | P_i.P_j  P_j.P_j | | u_j | = | v.P_j |
 
 for the contravariant components (u_i, u_j), in cells per unit of time (Forssell and Cohen 1995,
-section 3). What is normal to the surface is lost by it, and its share is returned.
+section 3). The part that is normal to the surface has none; its share is returned.
 
 At a pole all nodes of the line are one point and have one velocity, the mean of theirs. Each
 keeps the component along its own line, of which the whole can be had again
@@ -18,17 +18,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from flowtex._util.array_types import Floats
 from flowtex.field.poles import Pole
 from flowtex.field.surface import Surface
 
 __all__ = ["IndexVelocity", "to_index_space"]
 
-Floats = NDArray[np.float64]
-
 #: Below this ratio of squared area to squared lengths a cell counts as collapsed.
-COLLAPSED = 1e-10
+COLLAPSED_AREA = 1e-10
 
 
 @dataclass(frozen=True)
@@ -42,14 +40,14 @@ class IndexVelocity:
     speed
         Length of the velocity along the surface, in the mesh's units per unit of time,
         (T, J, I).
-    lost
+    normal_share
         Share of the flow that points out of the surface: root mean square of the normal part
         over that of the whole, between 0 and 1.
     """
 
     components: Floats
     speed: Floats
-    lost: float
+    normal_share: float
 
 
 def to_index_space(surface: Surface, velocity: Floats) -> IndexVelocity:
@@ -68,8 +66,8 @@ def to_index_space(surface: Surface, velocity: Floats) -> IndexVelocity:
     along_i = np.einsum("tjic,jic->tji", velocity, p_i)
     along_j = np.einsum("tjic,jic->tji", velocity, p_j)
     typical = float(np.median((g_ii + g_jj)[surface.valid]))
-    tiny = COLLAPSED * typical
-    flat = (determinant <= COLLAPSED * g_ii * g_jj) | (g_ii <= tiny) | (g_jj <= tiny)
+    tiny = COLLAPSED_AREA * typical
+    flat = (determinant <= COLLAPSED_AREA * g_ii * g_jj) | (g_ii <= tiny) | (g_jj <= tiny)
     safe = np.where(flat, 1.0, determinant)
     u_i = np.where(flat, _alone(along_i, g_ii, tiny), (g_jj * along_i - g_ij * along_j) / safe)
     u_j = np.where(flat, _alone(along_j, g_jj, tiny), (g_ii * along_j - g_ij * along_i) / safe)
@@ -84,7 +82,7 @@ def to_index_space(surface: Surface, velocity: Floats) -> IndexVelocity:
     return IndexVelocity(
         components=u,
         speed=speed,
-        lost=float(np.sqrt(min(normal / total, 1.0))) if total > 0 else 0.0,
+        normal_share=float(np.sqrt(min(normal / total, 1.0))) if total > 0 else 0.0,
     )
 
 
@@ -99,5 +97,5 @@ def _at_pole(pole: Pole, velocity: Floats, u: Floats, speed: Floats) -> None:
 
 def _alone(along: Floats, square: Floats, tiny: float) -> Floats:
     """Component along one tangent where the other one has collapsed."""
-    kept = square > tiny
-    return np.asarray(np.where(kept, along / np.where(kept, square, 1.0), 0.0))
+    solid = square > tiny
+    return np.asarray(np.where(solid, along / np.where(solid, square, 1.0), 0.0))

@@ -13,18 +13,15 @@ from __future__ import annotations
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy import ndimage
 
+from flowtex._util.array_types import Bools, Floats
+from flowtex.field.interpolation import cell_of, cubic_weights, fill_blanked
 from flowtex.field.poles import Pole, Poles, find_poles
 
 __all__ = ["Surface"]
 
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
-
 #: Lines from a pole over which the size of the cells comes to be their length alone.
-BESIDE_POLE = 8
+POLE_LINES = 8
 
 
 class Surface:
@@ -44,7 +41,9 @@ class Surface:
     def __init__(self, points: Floats, valid: Bools, periodic: tuple[bool, bool]) -> None:
         self.valid = valid
         self.periodic = periodic
-        self.points = _fill(points, _usable(points, valid))
+        #: Nodes with a position of their own, (J, I); the others have that of the nearest one.
+        self.has_position = _has_position(points, valid)
+        self.points = fill_blanked(points, self.has_position)
         #: What to add to a position when index j, or i, grows by one period, (2, 3).
         self.offset = np.stack(
             [
@@ -52,12 +51,11 @@ class Surface:
                 np.mean(self.points[:, -1] - self.points[:, 0], axis=0) * periodic[1],
             ]
         )
-        self._usable = _usable(points, valid)
 
     @cached_property
     def poles(self) -> Poles | None:
         """The lines that have collapsed to a point with the surface closed around it, if any."""
-        return find_poles(self.points, self._usable, self.valid, self.periodic)
+        return find_poles(self.points, self.has_position, self.valid, self.periodic)
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -91,7 +89,7 @@ class Surface:
     @cached_property
     def padded(self) -> Floats:
         """Nodes with one ghost line on each side, (J + 2, I + 2, 3)."""
-        good = self._usable
+        good = self.has_position
         rows = _pad(self.points, good, self.offset[0], periodic=self.periodic[0])
         good = np.pad(good, ((1, 1), (0, 0)), mode="edge")
         columns = _pad(np.swapaxes(rows, 0, 1), good.T, self.offset[1], periodic=self.periodic[1])
@@ -105,7 +103,7 @@ class Surface:
     @cached_property
     def tangents(self) -> Floats:
         """Derivatives of position by i and by j at the nodes, (2, J, I, 3), per cell."""
-        good = np.pad(self._usable, 1, constant_values=True)
+        good = np.pad(self.has_position, 1, constant_values=True)
         p = self.padded
         middle = p[1:-1, 1:-1]
         along_i = _difference(p[1:-1, :-2], middle, p[1:-1, 2:], good[1:-1, :-2], good[1:-1, 2:])
@@ -125,7 +123,7 @@ class Surface:
         typical = float(np.median(lengths[:, self.valid])) or 1.0
         for pole in self.poles or ():
             near = np.maximum(
-                1 - np.abs(np.arange(self.shape[1 - pole.component]) - pole.line) / BESIDE_POLE, 0
+                1 - np.abs(np.arange(self.shape[1 - pole.component]) - pole.line) / POLE_LINES, 0
             )
             share = near[:, None] if pole.component else near
             lengths[1 - pole.component] = np.hypot(
@@ -174,9 +172,9 @@ class Surface:
         if self.poles is not None:
             flat = self.poles.fold(flat.T).T
         result = np.zeros((len(flat), 3))
-        i0, si, beyond_i, turns_i = _locate(flat[:, 0], self.shape[1], periodic=self.periodic[1])
-        j0, sj, beyond_j, turns_j = _locate(flat[:, 1], self.shape[0], periodic=self.periodic[0])
-        wi, wj = _cubic(si), _cubic(sj)
+        i0, si, beyond_i, turns_i = cell_of(flat[:, 0], self.shape[1], periodic=self.periodic[1])
+        j0, sj, beyond_j, turns_j = cell_of(flat[:, 1], self.shape[0], periodic=self.periodic[0])
+        wi, wj = cubic_weights(si), cubic_weights(sj)
         width = self.shape[1] + 2
         nodes = self.padded.reshape(-1, 3)
         for b in range(4):
@@ -193,7 +191,7 @@ class Surface:
         return result.reshape(*index.shape[:-1], 3)
 
 
-def _usable(points: Floats, valid: Bools) -> Bools:
+def _has_position(points: Floats, valid: Bools) -> Bools:
     """Nodes whose coordinates can be trusted: blanked ones often hold a fill value."""
     finite = np.isfinite(points).all(axis=-1)
     if not (valid & finite).any():
@@ -204,14 +202,6 @@ def _usable(points: Floats, valid: Bools) -> Bools:
     with np.errstate(invalid="ignore"):
         near = ((points > low - margin) & (points < high + margin)).all(axis=-1)
     return np.asarray(finite & (valid | near))
-
-
-def _fill(points: Floats, usable: Bools) -> Floats:
-    """Replace coordinates that cannot be trusted by those of the nearest node that can."""
-    if usable.all():
-        return points
-    nearest = ndimage.distance_transform_edt(~usable, return_distances=False, return_indices=True)
-    return np.asarray(points[tuple(nearest)])
 
 
 def _pad(p: Floats, good: Bools, offset: Floats, *, periodic: bool) -> Floats:
@@ -228,7 +218,9 @@ def _over(ring: Floats, pole: Pole) -> Floats:
     k, s = np.divmod(at, 1.0)
     first = k.astype(np.intp)
     nodes = ring[1:-2]
-    line = sum(w[:, None] * nodes[(first + a - 1) % pole.cells] for a, w in enumerate(_cubic(s)))
+    line = sum(
+        w[:, None] * nodes[(first + a - 1) % pole.cells] for a, w in enumerate(cubic_weights(s))
+    )
     return np.asarray(line)[np.arange(-1, pole.cells + 2) % pole.cells]
 
 
@@ -256,25 +248,3 @@ def _difference(
     forward = np.where(good_after[..., None], after - here, 0.0)
     count = np.maximum(good_before.astype(float) + good_after, 1.0)
     return np.asarray((backward + forward) / count[..., None])
-
-
-def _locate(
-    x: Floats, count: int, *, periodic: bool
-) -> tuple[NDArray[np.intp], Floats, Floats, Floats]:
-    """Cell, fraction inside it, distance beyond the border and whole turns of an index."""
-    cells = count - 1
-    turns = np.floor(x / cells) if periodic else np.zeros_like(x)
-    inside = x - turns * cells if periodic else np.clip(x, 0, cells)
-    cell = np.minimum(inside.astype(np.intp), cells - 1)
-    return cell, inside - cell, np.zeros_like(x) if periodic else x - inside, turns
-
-
-def _cubic(t: Floats) -> tuple[Floats, Floats, Floats, Floats]:
-    """Catmull-Rom weights of the four nodes around a fraction of a cell."""
-    t2, t3 = t * t, t * t * t
-    return (
-        0.5 * (-t3 + 2 * t2 - t),
-        0.5 * (3 * t3 - 5 * t2 + 2),
-        0.5 * (-3 * t3 + 4 * t2 + t),
-        0.5 * (t3 - t2),
-    )

@@ -16,9 +16,9 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage
 
 from flowtex.field import FlowField
+from flowtex.field.interpolation import nearest_known
 
 __all__ = ["Geometry", "Padding"]
 
@@ -184,8 +184,4 @@ class Geometry:
 
     @cached_property
     def _nearest(self) -> tuple[Any, ...]:
-        return tuple(
-            ndimage.distance_transform_edt(
-                ~self.field.valid, return_distances=False, return_indices=True
-            )
-        )
+        return nearest_known(self.field.valid)

@@ -28,7 +28,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from flowtex.field.checks import three
+from flowtex.field.validation import three_components
 from flowtex.settings import Settings
 from flowtex.textures.displacements import Moves
 from flowtex.textures.geometry import Geometry
@@ -206,7 +206,7 @@ class TextureSet:
     def _tangent(self, slices: TraceSlices) -> NDArray[Any]:
         rate = slices.rate[0]
         if self.paper is not None:
-            return three(rate * self.paper.by_cell())
+            return three_components(rate * self.paper.by_cell())
         surface = self.geometry.field.surface
         p_i, p_j = surface.tangents
         along = rate[..., :1] * p_i + rate[..., 1:] * p_j

@@ -17,9 +17,10 @@ Left out: the animations themselves, and time-varying flow.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy import ndimage
 
+from flowtex._util.array_types import Floats
 from flowtex.field import FlowField
 from flowtex.rendering.cpu import Camera
 from flowtex.rendering.cpu.cover import cover
@@ -27,7 +28,6 @@ from paper.references.lic import lic
 
 __all__ = ["draw_texture", "forssell_lic", "texel_velocity"]
 
-Floats = NDArray[np.float64]
 
 #: How many times the kernel may grow in texels where they are short on the surface.
 LONGEST = 8.0

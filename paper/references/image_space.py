@@ -22,9 +22,9 @@ lies in front streaks onto what lies behind it; and time-varying flow.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import ndimage
 
+from flowtex._util.array_types import Floats
 from flowtex.errors import raise_faults
 from flowtex.field import FlowField
 from flowtex.rendering.cpu import Camera
@@ -32,7 +32,6 @@ from flowtex.rendering.cpu.cover import cover
 
 __all__ = ["ImageSpace"]
 
-Floats = NDArray[np.float64]
 
 #: Frames in which a grain of the noise blinks once.
 PERIOD = 24
@@ -64,7 +63,7 @@ class ImageSpace:
     Raises
     ------
     ValueError
-        When a number is out of range; all faults are told.
+        When a number is out of range; all faults are listed.
     """
 
     def __init__(

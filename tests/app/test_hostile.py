@@ -30,7 +30,7 @@ from flowtex.app.server.security import MESSAGE_BYTES, LimitedMessages
 from flowtex.app.streaming.painter import MOST_PIXELS
 from flowtex.app.streaming.viewport import Viewport
 from flowtex.errors import FieldError
-from flowtex.field.io.source import FlowSource
+from flowtex.field.source import FlowSource
 from flowtex.probe import probe
 from flowtex.settings import TABLE, Settings, SettingsError
 

@@ -1,4 +1,4 @@
-"""Places on a surface: from a point in space to an index, and what the field says there."""
+"""Points of a surface: from a point in space to an index and back."""
 
 from __future__ import annotations
 
@@ -11,9 +11,8 @@ import pytest
 from numpy.typing import NDArray
 
 from flowtex import FlowField
-from flowtex.field.facets import facet
-from flowtex.field.locate import Locator, locate, locator
-from flowtex.field.reading import moment, reading
+from flowtex.field.locate import Locator, locate, locator, surface_point
+from flowtex.field.point_values import values_at
 
 Floats = NDArray[np.float64]
 
@@ -55,17 +54,17 @@ def test_a_point_of_the_surface_is_found(
     # Next to a pole an index says little: positions are compared.
     for _ in range(60):
         at = rng.uniform(0, 1, 2) * [rows - 1, columns - 1]
-        point = facet(field.surface, at).mix(field.surface.points)
+        point = surface_point(field.surface, at).mix(field.surface.points)
         found = locate(field, point)
         assert found is not None
-        there = facet(field.surface, found).mix(field.surface.points)
+        there = surface_point(field.surface, found).mix(field.surface.points)
         assert np.abs(there - point).max() < 1e-9 * field.surface.extent
 
 
 def test_an_index_comes_back(rng: np.random.Generator) -> None:
     field = flat()
     for at in rng.uniform(0.01, 0.99, (40, 2)) * [8, 12]:
-        assert locate(field, reading(field, at).position) == pytest.approx(tuple(at), abs=1e-9)
+        assert locate(field, values_at(field, at).position) == pytest.approx(tuple(at), abs=1e-9)
 
 
 def test_a_point_off_the_surface_has_no_index() -> None:
@@ -88,9 +87,9 @@ def test_a_blanked_cell_has_no_index() -> None:
     assert locate(field, (1.5, 1.5)) is None
     assert locate(field, (3.5, 1.5)) == pytest.approx((1.5, 3.5))
     with pytest.raises(ValueError, match=r"\(1\.5, 1\.5\), in a cell with a blanked node"):
-        reading(field, (1.5, 1.5))
+        values_at(field, (1.5, 1.5))
     # A node beside it belongs to other cells too.
-    assert reading(field, (3, 2)).position == pytest.approx([2, 3, 0])
+    assert values_at(field, (3, 2)).position == pytest.approx([2, 3, 0])
 
 
 def test_a_seam_is_no_border() -> None:
@@ -100,7 +99,7 @@ def test_a_seam_is_no_border() -> None:
     # A point in the next period is the one in this.
     assert locate(flat_map, (365.0, 5.0)) == pytest.approx((6.5, 0.5))
     assert locate(flat_map, (-5.0, 5.0)) == pytest.approx((6.5, 35.5))
-    assert reading(flat_map, (6.5, 36.5)).position == pytest.approx([5, 5, 0])
+    assert values_at(flat_map, (6.5, 36.5)).position == pytest.approx([5, 5, 0])
 
 
 def test_the_nearest_of_two_sheets_counts() -> None:
@@ -129,60 +128,6 @@ def test_what_is_no_point_is_refused(point: object) -> None:
         locate(flat(), point)  # type: ignore[arg-type]
 
 
-def test_a_reading_is_linear_in_space_and_time() -> None:
-    y, x = np.mgrid[0:4.0, 0:5.0]
-    points = np.stack([x, y], axis=-1)
-    steps = np.stack([np.stack([1 + x + t, 2 * y], axis=-1) for t in (0.0, 10.0)])
-    warmth = 3 * x - y
-    field = FlowField.from_arrays(
-        points,
-        steps,
-        times=[1.0, 3.0],
-        scalars={"warmth": warmth, "tide": np.stack([0 * x, 0 * x + 4])},
-        length_unit="m",
-        time_unit="s",
-    )
-    got = reading(field, (1.25, 2.5), 1.5)
-    assert got.position == pytest.approx([2.5, 1.25, 0])
-    assert got.velocity == pytest.approx([1 + 2.5 + 2.5, 2.5, 0])
-    assert got.scalars == pytest.approx({"warmth": 7.5 - 1.25, "tide": 1.0})
-    assert (got.time, got.speed_unit) == (1.5, "m/s")
-    assert reading(field, (1, 2)).time == 3.0
-    assert reading(field, (1, 2), 1.0).speed == pytest.approx(np.hypot(3, 2))
-    with pytest.raises(ValueError, match="time is 4; expected 1 to 3"):
-        reading(field, (1, 2), 4)
-
-
-@pytest.mark.parametrize(
-    ("length", "time", "speed"),
-    [
-        ("m", "s", "m/s"),
-        ("", "s", ""),
-        ("m", "", ""),
-        ("chords", "chords / free-stream speed", "free-stream speed"),
-        ("m", "1/Hz", "m / (1/Hz)"),
-    ],
-)
-def test_the_unit_of_speed(length: str, time: str, speed: str) -> None:
-    y, x = np.mgrid[0:3.0, 0:3.0]
-    made = FlowField.from_arrays(
-        np.stack([x, y], -1), np.ones((3, 3, 2)), length_unit=length, time_unit=time
-    )
-    assert reading(made, (1, 1)).speed_unit == speed
-
-
-def test_a_reading_without_a_sign_does_not_cancel() -> None:
-    y, x = np.mgrid[-1:1:5j, -1:1:5j]
-    half = 0.5 * np.arctan2(y, x)
-    points = np.stack([x, y], axis=-1)
-    field = FlowField.from_arrays(
-        points, np.stack([np.cos(half), np.sin(half)], -1), sign_free=True, periodic=""
-    )
-    for j in np.linspace(0.1, 3.9, 7):
-        got = reading(field, (j, 0.3))
-        assert np.linalg.norm(got.velocity) > 0.65
-
-
 @pytest.mark.parametrize(
     ("at", "fault"),
     [
@@ -193,14 +138,6 @@ def test_a_reading_without_a_sign_does_not_cancel() -> None:
         ((1, 2, 3), "two finite numbers"),
     ],
 )
-def test_a_place_outside_is_refused(at: tuple[float, ...], fault: str) -> None:
+def test_an_index_outside_is_refused(at: tuple[float, ...], fault: str) -> None:
     with pytest.raises(ValueError, match=fault):
-        reading(flat(), at)
-
-
-def test_moments() -> None:
-    times = np.array([0.0, 1.0, 3.0])
-    assert moment(times[:1], 0.0) == (0, 0, 0.0)
-    assert moment(times, 0.25) == (0, 1, 0.25)
-    assert moment(times, 1.0) == (1, 2, 0.0)
-    assert moment(times, 3.0) == (1, 2, 1.0)
+        values_at(flat(), at)

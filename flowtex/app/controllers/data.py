@@ -23,8 +23,8 @@ from flowtex.app.controllers.library import Choice
 from flowtex.app.server.validation import clipped, name_among, shortened
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
-from flowtex.field.io.source import FlowSource
-from flowtex.field.reading import moment
+from flowtex.field.interpolation import steps_around
+from flowtex.field.source import FlowSource
 from flowtex.scene import coarsened_field
 from flowtex.trace import SliceStore
 
@@ -236,7 +236,7 @@ class Data(Controller):
         store = self.library.trace(name, flow.choice, flow.shown, self.settings).store
         # The time that is shown stays where another part of the same data is.
         if np.array_equal(times, self.viewport.field.times):
-            for step in sorted(set(moment(times, self.viewport.handle.time)[:2])):
+            for step in sorted(set(steps_around(times, self.viewport.handle.time)[:2])):
                 store.at(step)
         return store
 

@@ -17,7 +17,7 @@ from flowtex._util.cache import ByteCache
 from flowtex.app.server.validation import shortened
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
-from flowtex.field.io.source import FlowSource, field_bytes
+from flowtex.field.source import FlowSource
 from flowtex.settings import Settings
 from flowtex.trace import SliceStore, shared_store
 
@@ -60,7 +60,7 @@ class TracedFlow:
     @property
     def nbytes(self) -> int:
         """Bytes that are in memory for it."""
-        return field_bytes(self.field) + self.store.nbytes
+        return self.field.nbytes + self.store.nbytes
 
 
 class Library:

@@ -22,7 +22,7 @@ from flowtex.app.server.validation import number
 from flowtex.app.streaming.navigation import Place
 from flowtex.app.streaming.stream import Figures
 from flowtex.app.streaming.viewport import Viewport
-from flowtex.probe import Probe, Reading, locate, probe, reading
+from flowtex.probe import PointValues, Probe, locate, probe, values_at
 from flowtex.rendering.cpu import Camera as PixelCamera
 
 __all__ = ["Lines", "PathCard", "PointInfo", "PointText", "clip_line", "number_text", "with_unit"]
@@ -70,7 +70,7 @@ class PointText:
         index = self.index(x, y)
         if index is None:
             return None
-        point = reading(self._viewport.field, index, self._viewport.handle.time)
+        point = values_at(self._viewport.field, index, self._viewport.handle.time)
         lines = [("position", self._vector(point.position, point, digits=self._digits))]
         unit = point.speed_unit
         suffix = f" {unit}" if 0 < len(unit) <= UNIT_LENGTH else ""
@@ -90,7 +90,7 @@ class PointText:
         zoom = max(self._viewport.zoom, 1.0)
         return int(min(np.ceil(DIGITS + np.log10(zoom)), MOST_DIGITS))
 
-    def _vector(self, vector: Floats, point: Reading, *, digits: int) -> str:
+    def _vector(self, vector: Floats, point: PointValues, *, digits: int) -> str:
         """Write a vector; a surface that lies across z has no third component."""
         surface = self._viewport.field.surface
         across = surface.frame is not None and not np.abs(surface.frame[:, 2]).any()
@@ -126,7 +126,7 @@ class PathCard:
         lags = np.concatenate([path_lags[inside], probe.lags])
         _, order = np.unique(-lags, return_index=True)
         sampled = np.concatenate([path[inside], places])[order]
-        point = camera.project(probe.reading.position, aspect)
+        point = camera.project(probe.field_values.position, aspect)
         return {
             "path": clip_line(path),
             "sampled": clip_line(sampled),
@@ -177,8 +177,8 @@ class PathCard:
     def lines(self) -> Lines:
         """Return the card's lines, as words and numbers."""
         probe = self.probe
-        length = probe.reading.length_unit
-        unit = length if probe.parameter == "arclength" else probe.reading.time_unit
+        length = probe.field_values.length_unit
+        unit = length if probe.parameter == "arclength" else probe.field_values.time_unit
         count = len(probe.lags)
         ended = f" of {probe.asked}: the path ends" if count < probe.asked else ""
         pixels = f"{number_text(probe.grain / probe.pixel, 3)} pixels"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from flowtex.field import Surface
-from flowtex.field.facets import HALVES
+from flowtex.field.locate import TRIANGLES
 from flowtex.rendering.cpu.camera import Camera
 from flowtex.rendering.cpu.raster import Coverage, rasterise
 
@@ -32,6 +32,6 @@ def cover(surface: Surface, camera: Camera) -> Coverage:
     clip = points @ matrix[:, :3].T + matrix[:, 3]
     columns = surface.shape[1]
     j, i = np.nonzero(surface.cells)
-    halves = np.array([j * columns + i for half in HALVES for j, i in half])
+    halves = np.array([j * columns + i for half in TRIANGLES for j, i in half])
     triangles = ((j * columns + i)[:, None] + halves).reshape(-1, 3)
     return rasterise(clip, triangles, camera.size)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flowtex.field import Surface
-from flowtex.field.facets import Facet
+from flowtex.field.locate import SurfacePoint
 from flowtex.rendering.cpu.camera import Camera
 from flowtex.rendering.cpu.raster import Coverage
 
@@ -15,7 +15,7 @@ __all__ = ["facing", "spot"]
 Floats = NDArray[np.float64]
 
 
-def spot(surface: Surface, place: Facet, camera: Camera) -> Coverage:
+def spot(surface: Surface, place: SurfacePoint, camera: Camera) -> Coverage:
     """Cover one place, whether or not something stands before it.
 
     Parameters
@@ -53,7 +53,7 @@ def spot(surface: Surface, place: Facet, camera: Camera) -> Coverage:
     return Coverage(first, place.nodes[None], place.weights[None], shares[:1], shares[1:])
 
 
-def facing(surface: Surface, place: Facet, pixel: float) -> Camera:
+def facing(surface: Surface, place: SurfacePoint, pixel: float) -> Camera:
     """Camera that looks straight at a place, and has one pixel.
 
     Parameters

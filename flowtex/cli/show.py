@@ -1,0 +1,144 @@
+"""``flowtex demo`` and ``flowtex show``: flows in a window, or on a page."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+from cyclopts import Parameter
+
+from flowtex import examples
+from flowtex.cli.checks import check_colours, check_image, require_app, require_opengl
+from flowtex.cli.console import announcer
+from flowtex.cli.options import (
+    FLAT,
+    DrawFlags,
+    FieldFlags,
+    ServeFlags,
+    SettingFlags,
+    UsageError,
+    load_field,
+    settings_from,
+)
+from flowtex.examples import NAMES
+
+if TYPE_CHECKING:
+    from flowtex.app import Library
+
+__all__ = ["demo", "show"]
+
+#: How each example is first seen: zoom and point of the mesh.
+FIRST_LOOKS: dict[str, tuple[float, tuple[float, ...] | None]] = {
+    "cylinder": (3.2, (4.0, 0.0)),
+    "airfoil": (6.0, (0.5, 0.0)),
+}
+#: Options that change the field of a file; the others choose a part of it.
+FIELD_OPTIONS = ("periodic", "time", "sign_free")
+
+FILE = Annotated[
+    Path,
+    Parameter(
+        help="Structured meshes, any files that PyVista reads or PLOT3D; or one folder of them.",
+    ),
+]
+
+
+def demo(
+    *,
+    example: Annotated[str, Parameter(help=f"Which flow: {', '.join(NAMES)}.")] = "cylinder",
+    page: Annotated[ServeFlags | None, FLAT] = None,
+    settings: Annotated[SettingFlags | None, FLAT] = None,
+) -> int:
+    """Show the examples on a page in the browser."""
+    if example not in NAMES:
+        msg = f"there is no example {example!r}; there are {', '.join(NAMES)}"
+        raise UsageError(msg)
+    options = settings_from(settings)
+    require_opengl()
+    require_app()
+    from flowtex.app import Library
+    from flowtex.field.source import FlowSource
+
+    def opener(name: str) -> Any:
+        return lambda: FlowSource(getattr(examples, f"{name}_field")())
+
+    names = [example, *(name for name in NAMES if name != example)]
+    shown = {name.replace("_", " "): name for name in names}
+    library = Library(
+        {title: opener(name) for title, name in shown.items()},
+        python={title: f"flowtex.examples.{name}_field()" for title, name in shown.items()},
+        looks=FIRST_LOOKS,
+    )
+    zoom, focus = FIRST_LOOKS.get(example, (1.0, None))
+    return _serve(library, page, {**options, "zoom": zoom, "focus": focus})
+
+
+def show(
+    *files: FILE,
+    flow: Annotated[FieldFlags | None, FLAT] = None,
+    draw: Annotated[DrawFlags | None, FLAT] = None,
+    page: Annotated[ServeFlags | None, FLAT] = None,
+    settings: Annotated[SettingFlags | None, FLAT] = None,
+) -> int:
+    """Show a file: in a window, or where there is no display on a page.
+
+    Several files, or a folder, are shown on a page where one can be chosen.
+    """
+    draw = draw or DrawFlags()
+    options = {**draw.arguments(), **settings_from(settings)}
+    size = draw.pixels()
+    check_image(options)
+    require_opengl()
+    from flowtex import diagnostics
+
+    on_page = page is not None or not diagnostics.has_display()
+    if on_page or len(files) != 1 or files[0].is_dir():
+        return _show_page(files, flow, page, options)
+    field = load_field(files[0], flow)
+    check_colours(field, options)
+    from flowtex import show as show_window
+
+    show_window(field, size=size, **options)
+    return 0
+
+
+def _show_page(
+    files: tuple[Path, ...],
+    flow: FieldFlags | None,
+    page: ServeFlags | None,
+    options: dict[str, Any],
+) -> int:
+    require_app()
+    from flowtex.app import Library
+
+    if not files:
+        msg = "there is no file to show; name one, or a folder, or try `flowtex demo`"
+        raise UsageError(msg)
+    choice = (flow or FieldFlags()).arguments()
+    if len(files) == 1 and files[0].is_file() and any(name in choice for name in FIELD_OPTIONS):
+        return _serve(Library.of(load_field(files[0], flow)), page, options)
+    if misplaced := [name for name in FIELD_OPTIONS if name in choice]:
+        msg = f"--{misplaced[0].replace('_', '-')} goes with one file, not with several or a folder"
+        raise UsageError(msg)
+    return _serve(Library.of(*files), page, {**options, **choice})
+
+
+def _serve(library: Library, page: ServeFlags | None, options: dict[str, Any]) -> int:
+    from flowtex.app import serve
+    from flowtex.app.flow_app import first_choice
+
+    page = page or ServeFlags()
+    field = library.field(*first_choice(library, options))
+    if "scalars" in options:
+        check_colours(field, options)
+    serve(
+        library,
+        host=page.host,
+        port=page.port,
+        limit=page.limit,
+        idle=page.idle,
+        open_browser=page.browser,
+        announce=announcer(field, page.host),
+        **options,
+    )
+    return 0

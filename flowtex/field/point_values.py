@@ -1,0 +1,111 @@
+"""The values of a field at one point of its surface, as a tooltip shows them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from flowtex._util.array_types import Floats
+from flowtex.field.field import FlowField
+from flowtex.field.interpolation import steps_around
+from flowtex.field.locate import SurfacePoint, surface_point
+from flowtex.field.signs import weighted_axis
+
+__all__ = ["PointValues", "values_at"]
+
+
+@dataclass(frozen=True, eq=False)
+class PointValues:
+    """The values of a field at one point of the surface and one time.
+
+    Attributes
+    ----------
+    index
+        The point as (j, i), in cells.
+    position
+        The point in space, (3,), in the mesh's own units.
+    velocity
+        Velocity there, (3,), in the mesh's units per unit of time.
+    speed
+        Speed along the surface, in the same unit; what colours show.
+    scalars
+        Values of the field's other arrays, by name.
+    time
+        The time of the values, in the field's own unit.
+    length_unit, time_unit
+        Words for captions; empty when unknown.
+    """
+
+    index: tuple[float, float]
+    position: Floats
+    velocity: Floats
+    speed: float
+    scalars: Mapping[str, float]
+    time: float
+    length_unit: str = ""
+    time_unit: str = ""
+
+    @property
+    def speed_unit(self) -> str:
+        """Word for the unit of speed; empty when one of the units is unknown."""
+        length, time = self.length_unit, self.time_unit
+        if not length or not time:
+            return ""
+        if time.startswith(f"{length} / "):
+            return time.removeprefix(f"{length} / ")
+        return f"{length} / ({time})" if "/" in time else f"{length}/{time}"
+
+
+def values_at(field: FlowField, index: ArrayLike, time: float | None = None) -> PointValues:
+    """Return the values of a field at a point of its surface.
+
+    They are linear in the triangles that the surface is drawn with, and in time, as the colours
+    of a picture are.
+
+    Parameters
+    ----------
+    field
+        The flow.
+    index
+        (j, i) in cells, as :func:`~flowtex.field.locate.locate` finds it. An axis that closes on
+        itself takes any number.
+    time
+        Time in the field's own unit; the last one by default. A steady field has one time.
+
+    Raises
+    ------
+    ValueError
+        When the point is not on the surface or the time not within the field's times.
+    """
+    point = surface_point(field.surface, index)
+    first, last = float(field.times[0]), float(field.times[-1])
+    at = last if time is None or field.steady else float(time)
+    if not first <= at <= last:
+        msg = f"time is {time!r}; expected {first:g} to {last:g}, the times of the field"
+        raise ValueError(msg)
+    before, after, share = steps_around(field.times, at)
+
+    def value(steps: Floats) -> Floats:
+        if len(steps) == 1:
+            return point.mix(steps[0])
+        a, b = (point.mix(steps[n]) for n in (before, after))
+        return np.asarray(a * (1 - share) + b * share)
+
+    return PointValues(
+        index=point.index,
+        position=point.mix(field.surface.points),
+        velocity=_axis(field, point) if field.sign_free else value(field.velocity),
+        speed=float(value(field.speed)),
+        scalars={name: float(value(steps)) for name, steps in field.scalars.items()},
+        time=at,
+        length_unit=field.length_unit,
+        time_unit=field.time_unit,
+    )
+
+
+def _axis(field: FlowField, point: SurfacePoint) -> Floats:
+    """Return the vector of a field without a sign."""
+    return weighted_axis(point.corners(field.velocity[0]), point.weights)

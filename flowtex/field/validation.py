@@ -1,0 +1,156 @@
+"""What must hold of arrays before they make a field.
+
+Functions ``..._faults`` return faults as sentences (see :mod:`flowtex.errors`); the others bring
+arrays into the one form that the rest of the package takes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from flowtex._util.array_types import Bools, Floats
+from flowtex.errors import FieldError
+
+__all__ = [
+    "as_numbers",
+    "node_faults",
+    "scalar_steps",
+    "shape_faults",
+    "three_components",
+]
+
+#: A surface narrower than this share of its length is a line.
+LINE_WIDTH = 1e-7
+
+
+def as_numbers(values: ArrayLike) -> tuple[Floats, Any]:
+    """Return values as float64, and which nodes a masked array hides: (J, I), or false."""
+    mask = np.ma.getmaskarray(values) if np.ma.isMaskedArray(values) else None
+    array = np.asarray(np.ma.getdata(values))
+    if array.dtype.kind not in "fiub":
+        msg = (
+            f"an array of {array.dtype} was given where real numbers were expected; convert it "
+            "with astype(float), or take its real part"
+        )
+        raise FieldError(msg)
+    array = array.astype(np.float64)
+    if mask is None:
+        return array, np.False_
+    hidden = mask.any(axis=-1) if mask.ndim else mask
+    while hidden.ndim > 2:
+        hidden = hidden.any(axis=0)
+    return array, hidden
+
+
+def shape_faults(
+    p: Floats,
+    v: Floats,
+    times: ArrayLike | None,
+    valid: ArrayLike | None,
+    periodic: str | None,
+    scalars: Mapping[str, ArrayLike] | None,
+) -> list[str]:
+    """Return faults in the shapes of the arguments of :meth:`FlowField.from_arrays`."""
+    if p.ndim != 3 or p.shape[-1] not in (2, 3):
+        return [
+            f"points has shape {p.shape}; expected (J, I, 2) or (J, I, 3). Flat lists of points "
+            "need reshape(J, I, 3)"
+        ]
+    grid = p.shape[:2]
+    faults = []
+    if min(grid) < 2:
+        faults.append(
+            f"points has {grid[0]} x {grid[1]} nodes (J x I); a surface needs at least 2 along "
+            "each axis. A single row is a curve: choose another plane"
+        )
+    faults += _velocity_faults(v, grid)
+    if not faults:
+        faults += _time_faults(times, len(v) if v.ndim == 4 else 1)
+    if valid is not None and np.shape(valid) != grid:
+        faults.append(f"valid has shape {np.shape(valid)}; expected {grid} as points has")
+    allowed = [grid, (len(v) if v.ndim == 4 else 1, *grid)]
+    for name, array in (scalars or {}).items():
+        if np.shape(array) not in allowed:
+            faults.append(
+                f"scalars[{name!r}] has shape {np.shape(array)}; expected {allowed[0]} or "
+                f"{allowed[1]}, as points and velocity have"
+            )
+    if periodic is not None and not set(periodic) <= {"i", "j"}:
+        faults.append(
+            f'periodic is {periodic!r}; expected "", "i", "j" or "ij", or None to find out'
+        )
+    return faults
+
+
+def _velocity_faults(v: Floats, grid: tuple[int, ...]) -> list[str]:
+    good = v.ndim in (3, 4) and v.shape[-3:-1] == grid and v.shape[-1] in (2, 3)
+    if good and v.size:
+        return []
+    j, i = grid
+    hint = ""
+    if v.ndim in (3, 4) and v.shape[-3:-1] == grid[::-1] and i != j:
+        hint = ". The two axes look swapped: arrays are (j, i), try np.swapaxes"
+    elif v.ndim in (3, 4) and v.shape[-2:] == grid:
+        hint = ". The components look first: try np.moveaxis(velocity, 0, -1)"
+    return [
+        f"velocity has shape {v.shape}; expected ({j}, {i}, 3) for a steady field or "
+        f"(T, {j}, {i}, 3) for one that varies in time, with points {(*grid, 3)}{hint}"
+    ]
+
+
+def _time_faults(times: ArrayLike | None, count: int) -> list[str]:
+    if times is None:
+        return []
+    t = np.asarray(times, dtype=float)
+    if t.shape != (count,):
+        return [f"times has shape {t.shape}; expected ({count},), one for each step of velocity"]
+    if not np.isfinite(t).all():
+        bad = int(np.flatnonzero(~np.isfinite(t))[0])
+        return [f"times[{bad}] is {t[bad]}; expected a finite number"]
+    falls = np.flatnonzero(np.diff(t) <= 0)
+    if len(falls):
+        n = int(falls[0])
+        return [
+            f"times[{n + 1}] = {t[n + 1]:g} does not come after times[{n}] = {t[n]:g}; expected "
+            "strictly increasing times: sort the steps, and drop those that repeat"
+        ]
+    return []
+
+
+def node_faults(p: Floats, ok: Bools) -> list[str]:
+    """Return faults in the nodes that are valid."""
+    if not ok.any():
+        return [
+            f"none of the {ok.size} nodes is usable: each is blanked, masked or NaN; check the "
+            "chosen vectors and the blanking"
+        ]
+    cells = ok[:-1, :-1] & ok[1:, :-1] & ok[:-1, 1:] & ok[1:, 1:]
+    if not cells.any():
+        return [
+            f"{int(ok.sum())} of {ok.size} nodes are usable, but no four of them make a cell; "
+            "check the blanking"
+        ]
+    where = p[ok] - p[ok].mean(axis=0)
+    if np.abs(where).max() == 0:
+        return ["all usable nodes lie at one point; expected a surface: check the coordinates"]
+    spans = np.linalg.svd(np.cov((where / np.abs(where).max()).T), compute_uv=False)
+    if spans[1] <= LINE_WIDTH**2 * spans[0]:
+        return ["all usable nodes lie on one line; expected a surface: check the coordinates"]
+    return []
+
+
+def three_components(a: Floats) -> Floats:
+    """Give two-dimensional vectors a third component of zero."""
+    if a.shape[-1] == 3:
+        return a
+    return np.concatenate([a, np.zeros_like(a[..., :1])], axis=-1)
+
+
+def scalar_steps(values: ArrayLike) -> Floats:
+    """Return a nodal array with a leading axis of time, (T or 1, J, I); hidden entries are NaN."""
+    array = np.ma.filled(np.ma.asarray(values).astype(np.float64), np.nan)
+    return np.asarray(array[None] if array.ndim == 2 else array)

@@ -1,0 +1,525 @@
+"""Arrays become a field, or one error that says all that is wrong with them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from flowtex import FlowField
+from flowtex.errors import FieldError
+
+Floats = NDArray[np.float64]
+
+
+def says(text: str) -> pytest.RaisesExc[FieldError]:
+    """Expect an error with exactly this text."""
+    return pytest.raises(FieldError, match=f"^{re.escape(text)}$")
+
+
+def flat(rows: int = 5, columns: int = 7, size: float = 1.0) -> Floats:
+    """Nodes of a plain rectangle with cells of one size, (J, I, 3)."""
+    x, y = np.meshgrid(np.arange(columns) * size, np.arange(rows) * size)
+    return np.stack([x, y, np.zeros_like(x)], axis=-1)
+
+
+def ring(lines: int, *, last: bool, columns: int = 4) -> Floats:
+    """Nodes around a ring along j, with or without the line that closes it, (J, I, 3)."""
+    angle = np.linspace(0, 2 * np.pi, lines, endpoint=last)[:, None]
+    radius = np.linspace(1.0, 2.0, columns)[None]
+    x, y = radius * np.cos(angle), radius * np.sin(angle)
+    return np.stack([x, y, np.zeros_like(x)], axis=-1)
+
+
+def ones(points: NDArray[Any], *steps: int) -> Floats:
+    return np.ones((*steps, *points.shape))
+
+
+# --- form -----------------------------------------------------------------------------------
+
+
+def test_a_steady_field_has_one_step() -> None:
+    field = FlowField.from_arrays(flat(), ones(flat()))
+    assert field.points.shape == (5, 7, 3)
+    assert field.velocity.shape == (1, 5, 7, 3)
+    assert field.times.tolist() == [0.0]
+    assert field.steady
+    assert field.shape == (5, 7)
+    assert field.valid.all()
+    assert field.periodic == (False, False)
+
+
+def test_two_components_get_a_third_of_zero() -> None:
+    field = FlowField.from_arrays(flat()[..., :2], ones(flat())[..., :2])
+    assert np.array_equal(field.points, flat())
+    assert np.array_equal(field.velocity[0, ..., 2], np.zeros((5, 7)))
+
+
+def test_a_series_keeps_its_times() -> None:
+    field = FlowField.from_arrays(flat(), ones(flat(), 3), times=[0.5, 1.0, 4.0])
+    assert field.times.tolist() == [0.5, 1.0, 4.0]
+    assert not field.steady
+
+
+def test_a_series_without_times_is_numbered() -> None:
+    assert FlowField.from_arrays(flat(), ones(flat(), 3)).times.tolist() == [0.0, 1.0, 2.0]
+
+
+def test_integers_and_lists_become_float64() -> None:
+    points = flat().astype(int).tolist()
+    field = FlowField.from_arrays(points, ones(flat()).astype(int).tolist())
+    assert field.points.dtype == field.velocity.dtype == np.float64
+
+
+def test_scalars_get_an_axis_of_time() -> None:
+    scalars = {"p": np.ones((5, 7)), "q": np.ones((3, 5, 7)), "valid": np.ones((3, 5, 7))}
+    field = FlowField.from_arrays(flat(), ones(flat(), 3), scalars=scalars)
+    assert {k: s.shape[0] for k, s in field.scalars.items()} == {"p": 1, "q": 3, "valid": 3}
+
+
+def test_a_steady_field_takes_scalars_with_one_step() -> None:
+    field = FlowField.from_arrays(flat(), ones(flat()), scalars={"p": np.ones((1, 5, 7))})
+    assert field.scalars["p"].shape == (1, 5, 7)
+
+
+def test_the_size_is_that_of_the_arrays() -> None:
+    p = flat()
+    field = FlowField.from_arrays(p, ones(p), scalars={"a": p[..., 0]})
+    assert field.nbytes == field.valid.size * (3 + 3 + 1) * 8 + field.valid.size
+
+
+def test_nothing_given_is_changed_or_shared() -> None:
+    points, velocity = flat(), ones(flat(), 2)
+    velocity[0, 2, 2] = np.nan
+    given: dict[str, Any] = {
+        "times": np.array([0.0, 1.0]),
+        "valid": np.ones((5, 7), bool),
+        "scalars": {"p": np.arange(35.0).reshape(5, 7)},
+    }
+    kept = [points.copy(), velocity.copy(), given["times"].copy(), given["valid"].copy()]
+    field = FlowField.from_arrays(points, velocity, **given)
+    now = [points, velocity, given["times"], given["valid"]]
+    for before, after in zip(kept, now, strict=True):
+        assert np.array_equal(before, after, equal_nan=before.dtype.kind == "f")
+    for mine, theirs in [
+        (field.points, points),
+        (field.velocity, velocity),
+        (field.times, given["times"]),
+        (field.valid, given["valid"]),
+        (field.scalars["p"], given["scalars"]["p"]),
+    ]:
+        assert not np.shares_memory(mine, theirs)
+
+
+# --- what does not count --------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("where", ["velocity", "points", "mask of velocity", "mask of points"])
+def test_nan_and_masks_blank_a_node(where: str) -> None:
+    points, velocity = flat(), ones(flat())
+    arrays: dict[str, Any] = {"points": points, "velocity": velocity}
+    name = where.split()[-1]
+    if where.startswith("mask"):
+        mask = np.zeros(arrays[name].shape, bool)
+        mask[1, 2, 0] = True
+        arrays[name] = np.ma.masked_array(arrays[name], mask)
+    else:
+        arrays[name][1, 2, 1] = np.nan
+    field = FlowField.from_arrays(**arrays)
+    assert np.argwhere(~field.valid).tolist() == [[1, 2]]
+    assert np.isfinite(field.velocity).all()
+    assert np.isfinite(field.points).all()
+    assert not field.velocity[0, 1, 2].any()
+
+
+def test_a_node_that_is_nan_at_one_time_is_blank_at_all() -> None:
+    velocity = ones(flat(), 3)
+    velocity[2, 4, 0] = np.inf
+    field = FlowField.from_arrays(flat(), velocity)
+    assert np.argwhere(~field.valid).tolist() == [[4, 0]]
+    assert not field.velocity[:, 4, 0].any()
+
+
+def test_valid_and_nan_add_up() -> None:
+    velocity, valid = ones(flat()), np.ones((5, 7), bool)
+    velocity[0, 0] = np.nan
+    valid[4, 6] = False
+    field = FlowField.from_arrays(flat(), velocity, valid=valid)
+    assert np.argwhere(~field.valid).tolist() == [[0, 0], [4, 6]]
+
+
+def test_hidden_scalars_are_nan() -> None:
+    p = np.ma.masked_equal(np.arange(35.0).reshape(5, 7), 8.0)
+    field = FlowField.from_arrays(flat(), ones(flat()), scalars={"p": p})
+    assert np.argwhere(np.isnan(field.scalars["p"][0])).tolist() == [[1, 1]]
+
+
+def test_velocity_of_zero_everywhere_warns() -> None:
+    with pytest.warns(
+        UserWarning,
+        match="^The velocity is zero at every node, so the picture is plain noise; check the array "
+        "that was chosen and the region it covers.$",
+    ):
+        FlowField.from_arrays(flat(), 0 * ones(flat()))
+
+
+# --- axes that close ------------------------------------------------------------------------
+
+
+def swapped(points: Floats) -> Floats:
+    return np.ascontiguousarray(np.swapaxes(points, 0, 1))
+
+
+AXES: list[tuple[str, Callable[[Floats], Floats], tuple[bool, bool]]] = [
+    ("j", lambda p: p, (True, False)),
+    ("i", swapped, (False, True)),
+]
+
+
+@pytest.mark.parametrize(("letter", "turn", "closed"), AXES)
+def test_coinciding_lines_close_an_axis(
+    letter: str, turn: Callable[[Floats], Floats], closed: tuple[bool, bool]
+) -> None:
+    points = turn(ring(13, last=True))
+    field = FlowField.from_arrays(points, ones(points))
+    assert field.periodic == closed
+    assert field.shape == points.shape[:2]
+
+
+@pytest.mark.parametrize(("letter", "turn", "closed"), AXES)
+def test_a_ring_one_cell_short_gets_its_line(
+    letter: str, turn: Callable[[Floats], Floats], closed: tuple[bool, bool]
+) -> None:
+    points = turn(ring(12, last=False))
+    velocity, p = np.random.default_rng(0).random((2, *points.shape)), points[..., 0]
+    field = FlowField.from_arrays(points, velocity, scalars={"p": p})
+    axis = "ji".index(letter)
+    assert field.periodic == closed
+    assert field.shape[axis] == 13
+    for array, behind in [(field.points, 0), (field.velocity, 1), (field.scalars["p"], 1)]:
+        lines = np.moveaxis(array, axis + behind, 0)
+        assert np.array_equal(lines[0], lines[-1])
+    np.testing.assert_allclose(turn(ring(13, last=True)), field.points, atol=1e-12)
+
+
+@pytest.mark.parametrize(("letter", "turn", "closed"), AXES)
+@pytest.mark.parametrize("count", [36, 37])
+def test_global_longitude_closes_an_axis(
+    count: int, letter: str, turn: Callable[[Floats], Floats], closed: tuple[bool, bool]
+) -> None:
+    x, y = np.meshgrid(np.arange(count) * 10.0 - 180, np.linspace(90, -90, 19), indexing="ij")
+    points = turn(np.stack([x, y, 0 * x], axis=-1))
+    field = FlowField.from_arrays(points, ones(points))
+    axis = "ji".index(letter)
+    assert field.periodic == closed
+    assert field.shape[axis] == 37
+    assert np.ptp(field.points[..., 0]) == pytest.approx(360)
+    assert field.surface.offset[axis].tolist() == [360, 0, 0]
+
+
+def test_a_torus_closes_both_axes() -> None:
+    a, b = np.meshgrid(*[np.linspace(0, 2 * np.pi, 24, endpoint=False)] * 2)
+    r = 3 + np.cos(a)
+    points = np.stack([r * np.cos(b), r * np.sin(b), np.sin(a)], axis=-1)
+    field = FlowField.from_arrays(points, ones(points))
+    assert field.periodic == (True, True)
+    assert field.shape == (25, 25)
+
+
+def test_half_a_ring_and_a_region_do_not_close() -> None:
+    half = ring(25, last=True)[:13]
+    assert FlowField.from_arrays(half, ones(half)).periodic == (False, False)
+    x, y = np.meshgrid(np.arange(30.0), np.arange(20.0))
+    region = np.stack([x, y], axis=-1)
+    assert FlowField.from_arrays(region, ones(region)).periodic == (False, False)
+
+
+def test_the_seam_survives_float32_far_from_the_origin() -> None:
+    points = (ring(49, last=True) + np.array([5e3, -2e3, 0])).astype(np.float32)
+    field = FlowField.from_arrays(points, ones(points))
+    assert np.abs(points[0] - points[-1]).max() <= 1e-3
+    assert field.shape == (49, 4), "a sliver of a cell was added"
+    assert field.periodic == (True, False)
+
+
+def test_a_seam_written_with_few_digits_is_no_sliver() -> None:
+    points = ring(49, last=True)
+    points[-1] += 4e-5
+    field = FlowField.from_arrays(points, ones(points))
+    assert field.shape == (49, 4)
+    assert field.periodic == (True, False)
+
+
+def test_an_axis_closes_when_asked() -> None:
+    velocity = np.random.default_rng(1).random((5, 7, 3))
+    field = FlowField.from_arrays(flat(), velocity, periodic="i")
+    assert field.periodic == (False, True)
+    assert field.shape == (5, 8)
+    assert field.surface.offset[1].tolist() == [7, 0, 0]
+    assert np.array_equal(field.velocity[0, :, -1], velocity[:, 0])
+
+
+@pytest.mark.parametrize("scale", [1e-12, 1.0, 1e12])
+def test_a_flat_map_that_repeats_its_first_line_is_taken_as_it_is(scale: float) -> None:
+    velocity = np.random.default_rng(1).random((5, 7, 3)) * scale
+    open_map = FlowField.from_arrays(flat(), velocity, periodic="i")
+    assert open_map.shape == (5, 8), "different lines were taken for the same"
+    velocity[:, -1] = velocity[:, 0]
+    assert FlowField.from_arrays(flat(), velocity, periodic="i").shape == (5, 7)
+
+
+def test_no_axis_closes_when_forbidden() -> None:
+    points = ring(13, last=True)
+    assert FlowField.from_arrays(points, ones(points), periodic="").periodic == (False, False)
+
+
+def test_both_sides_of_a_seam_get_one_value() -> None:
+    points = ring(13, last=True)
+    velocity = ones(points)
+    velocity[0], velocity[-1] = 1.0, 3.0
+    velocity[0, 1], velocity[-1, 2] = np.nan, np.nan
+    field = FlowField.from_arrays(points, velocity)
+    assert field.velocity[0, 0, :, 0].tolist() == [2, 3, 1, 2]
+    assert np.array_equal(field.velocity[0, 0], field.velocity[0, -1])
+    assert field.valid.all()
+
+
+# --- coordinates of every size --------------------------------------------------------------
+
+
+@pytest.mark.parametrize("offset", [0.0, 1e9])
+@pytest.mark.parametrize("size", [1e-9, 1.0, 1e9])
+def test_coordinates_may_be_huge_or_tiny(size: float, offset: float) -> None:
+    points = flat(size=size) + offset * size
+    field = FlowField.from_arrays(points, ones(points) * [size, 2 * size, 0])
+    assert field.valid.all()
+    assert field.periodic == (False, False)
+    u = field.index_velocity.components
+    np.testing.assert_allclose(u, np.broadcast_to([1.0, 2.0], u.shape), rtol=1e-6)
+
+
+def test_a_collapsed_row_is_a_field() -> None:
+    points = ring(13, last=True) - np.array([0.0, 0, 0])
+    points[:, 0] = 0.0
+    field = FlowField.from_arrays(points, ones(points))
+    assert field.periodic == (True, False)
+    assert np.isfinite(field.index_velocity.components).all()
+    assert np.isfinite(field.surface.cell_size).all()
+    assert (field.surface.cell_size > 0).all()
+
+
+# --- faults ---------------------------------------------------------------------------------
+
+
+def test_points_in_a_flat_list() -> None:
+    with says(
+        "points has shape (35, 3); expected (J, I, 2) or (J, I, 3). Flat lists of points need "
+        "reshape(J, I, 3)"
+    ):
+        FlowField.from_arrays(flat().reshape(-1, 3), ones(flat()))
+
+
+def test_a_single_row() -> None:
+    with says(
+        "points has 1 x 7 nodes (J x I); a surface needs at least 2 along each axis. A single row "
+        "is a curve: choose another plane"
+    ):
+        FlowField.from_arrays(flat()[:1], ones(flat()[:1]))
+
+
+@pytest.mark.parametrize(
+    ("velocity", "hint"),
+    [
+        (np.ones((7, 5, 3)), ". The two axes look swapped: arrays are (j, i), try np.swapaxes"),
+        (
+            np.ones((3, 5, 7)),
+            ". The components look first: try np.moveaxis(velocity, 0, -1)",
+        ),
+        (np.ones((5, 7)), ""),
+        (np.ones((5, 7, 4)), ""),
+        (np.ones((0, 5, 7, 3)), ""),
+    ],
+)
+def test_velocity_of_another_shape(velocity: Floats, hint: str) -> None:
+    with says(
+        f"velocity has shape {velocity.shape}; expected (5, 7, 3) for a steady field or "
+        f"(T, 5, 7, 3) for one that varies in time, with points (5, 7, 3){hint}"
+    ):
+        FlowField.from_arrays(flat(), velocity)
+
+
+@pytest.mark.parametrize(
+    ("times", "text"),
+    [
+        ([0, 1], "times has shape (2,); expected (3,), one for each step of velocity"),
+        ([0, np.nan, 2], "times[1] is nan; expected a finite number"),
+        (
+            [0, 2, 1],
+            "times[2] = 1 does not come after times[1] = 2; expected strictly increasing times: "
+            "sort the steps, and drop those that repeat",
+        ),
+        (
+            [0, 0, 1],
+            "times[1] = 0 does not come after times[0] = 0; expected strictly increasing times: "
+            "sort the steps, and drop those that repeat",
+        ),
+    ],
+)
+def test_times_that_cannot_be(times: list[float], text: str) -> None:
+    with says(text):
+        FlowField.from_arrays(flat(), ones(flat(), 3), times=times)
+
+
+def test_valid_of_another_shape() -> None:
+    with says("valid has shape (7, 5); expected (5, 7) as points has"):
+        FlowField.from_arrays(flat(), ones(flat()), valid=np.ones((7, 5), bool))
+
+
+def test_scalars_of_another_shape() -> None:
+    with says(
+        "scalars['p'] has shape (2, 5, 7); expected (5, 7) or (3, 5, 7), as points and velocity "
+        "have"
+    ):
+        FlowField.from_arrays(flat(), ones(flat(), 3), scalars={"p": np.ones((2, 5, 7))})
+    with says(
+        "scalars['p'] has shape (7, 5); expected (5, 7) or (1, 5, 7), as points and velocity have"
+    ):
+        FlowField.from_arrays(flat(), ones(flat()), scalars={"p": np.ones((7, 5))})
+
+
+def test_an_axis_that_does_not_exist() -> None:
+    with says('periodic is \'x\'; expected "", "i", "j" or "ij", or None to find out'):
+        FlowField.from_arrays(flat(), ones(flat()), periodic="x")
+
+
+def test_complex_numbers() -> None:
+    with says(
+        "an array of complex128 was given where real numbers were expected; convert it with "
+        "astype(float), or take its real part"
+    ):
+        FlowField.from_arrays(flat(), ones(flat()) * 1j)
+
+
+def test_nan_everywhere() -> None:
+    with says(
+        "none of the 35 nodes is usable: each is blanked, masked or NaN; check the chosen vectors "
+        "and the blanking"
+    ):
+        FlowField.from_arrays(flat(), np.full((5, 7, 3), np.nan))
+
+
+def test_nodes_that_make_no_cell() -> None:
+    checkers = np.indices((5, 7)).sum(axis=0) % 2 == 0
+    with says("18 of 35 nodes are usable, but no four of them make a cell; check the blanking"):
+        FlowField.from_arrays(flat(), ones(flat()), valid=checkers)
+
+
+def test_nodes_at_one_point() -> None:
+    with says("all usable nodes lie at one point; expected a surface: check the coordinates"):
+        FlowField.from_arrays(np.ones((5, 7, 3)), ones(flat()))
+
+
+@pytest.mark.parametrize("offset", [0.0, 1e6])
+def test_nodes_on_one_line(offset: float) -> None:
+    along = np.arange(35.0).reshape(5, 7, 1) * [1, 2, -0.5] + offset
+    with says("all usable nodes lie on one line; expected a surface: check the coordinates"):
+        FlowField.from_arrays(along, ones(flat()))
+
+
+def test_a_narrow_ribbon_is_a_surface() -> None:
+    points = flat() * [1e3, 1e-2, 0]
+    assert FlowField.from_arrays(points, ones(points)).shape == (5, 7)
+
+
+def test_all_faults_are_told_at_once() -> None:
+    with says(
+        "4 things are wrong:\n"
+        "  1. times has shape (2,); expected (3,), one for each step of velocity\n"
+        "  2. valid has shape (5,); expected (5, 7) as points has\n"
+        "  3. scalars['p'] has shape (1,); expected (5, 7) or (3, 5, 7), as points and velocity "
+        "have\n"
+        '  4. periodic is \'k\'; expected "", "i", "j" or "ij", or None to find out'
+    ):
+        FlowField.from_arrays(
+            flat(),
+            ones(flat(), 3),
+            times=[0, 1],
+            valid=np.ones(5, bool),
+            scalars={"p": np.ones(1)},
+            periodic="k",
+        )
+
+
+# --- parts of a field -----------------------------------------------------------------------
+
+
+def test_one_step_is_a_steady_field() -> None:
+    velocity = ones(flat(), 3) * np.arange(1.0, 4)[:, None, None, None]
+    scalars = {"p": np.ones((5, 7)), "q": velocity[..., 0]}
+    field = FlowField.from_arrays(flat(), velocity, times=[1, 2, 4], scalars=scalars).at_step(-1)
+    assert field.steady
+    assert field.times.tolist() == [4.0]
+    assert (field.velocity == 3).all()
+    assert (field.scalars["q"] == 3).all()
+    assert field.scalars["p"].shape == (1, 5, 7)
+    with pytest.raises(IndexError, match=r"^time step 1 does not exist: expected 0 to 0$"):
+        field.at_step(1)
+
+
+def test_downsampling_keeps_the_closing_line() -> None:
+    points = ring(12, last=False)
+    field = FlowField.from_arrays(points, ones(points)).downsample(2)
+    assert field.shape == (7, 2)
+    np.testing.assert_allclose(field.points[-1], field.points[0])
+
+
+@pytest.mark.parametrize(
+    ("points", "factor", "text"),
+    [
+        (flat(), 0, "factor is 0; expected 1 or more"),
+        (
+            flat(),
+            5,
+            "factor is 5, which leaves 1 of 5 lines; expected a smaller one that leaves at least 2",
+        ),
+        (
+            ring(9, last=True),
+            6,
+            "factor is 6, which leaves 3 of 9 lines; expected a smaller one that leaves at least 4",
+        ),
+    ],
+)
+def test_downsampling_too_far(points: Floats, factor: int, text: str) -> None:
+    field = FlowField.from_arrays(points, ones(points))
+    with pytest.raises(ValueError, match=f"^{re.escape(text)}$"):
+        field.downsample(factor)
+
+
+def test_the_words_for_a_field() -> None:
+    points = ring(13, last=True)
+    velocity = ones(points, 2)
+    velocity[1, 3, 3] = np.nan
+    field = FlowField.from_arrays(points, velocity, name="ring")
+    assert repr(field) == "FlowField(ring: 4 x 13 nodes (I x J), 2 steps, periodic j, 1 blanked)"
+    assert "unnamed: 7 x 5 nodes (I x J), steady, 0" in repr(
+        FlowField.from_arrays(flat(), ones(flat()))
+    )
+
+
+def test_positions_that_were_filled_in_stay_marked() -> None:
+    points, velocity = flat(13, 13), ones(flat(13, 13))
+    points[6, 6] = 1e20
+    velocity[6, 6] = np.nan
+    velocity = np.stack([velocity, velocity])
+    field = FlowField.from_arrays(points, velocity)
+    for part in (field, field.at_step(1), field.downsample(2)):
+        assert part.has_position is not None
+        assert np.argwhere(~part.has_position).tolist() == np.argwhere(~part.valid).tolist()
+        assert np.isfinite(part.points).all()
+        size = part.points[0, 1, 0]
+        u = part.index_velocity.components[:, part.valid]
+        np.testing.assert_allclose(u, np.full_like(u, 1 / size))

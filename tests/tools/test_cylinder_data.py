@@ -1,0 +1,223 @@
+"""The cylinder: the solver against exact and published results, the file against the solver."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import cylinder_run
+import numpy as np
+import packing
+import pytest
+from cylinder_flow import (
+    CylinderFlow,
+    CylinderSetup,
+    _first_derivative,
+    _running_integral,
+    _Tridiagonal,
+)
+from numpy.typing import NDArray
+from scipy import fft
+
+from flowtex.examples import _shipped
+
+SMALL = CylinderSetup(modes=24, intervals=64, step=0.02)
+
+
+def compact_error(intervals: int) -> float:
+    """Error of w'' - (2 + x) w = s on [0, 1] for w = exp(x) sin(3 x)."""
+    x = np.linspace(0.0, 1.0, intervals + 1)
+    exact = np.exp(x) * np.sin(3.0 * x)
+    bend = np.exp(x) * (6.0 * np.cos(3.0 * x) - 8.0 * np.sin(3.0 * x))
+    coefficient = (2.0 + x)[None]
+    solver = _Tridiagonal(coefficient, 1.0 / intervals)
+    source = (bend - (2.0 + x) * exact)[None].astype(np.complex128)
+    found = solver.solve(source, exact[0], exact[-1])
+    return float(np.abs(found[0] - exact).max())
+
+
+def test_the_compact_scheme_is_of_fourth_order() -> None:
+    coarse, fine = compact_error(16), compact_error(32)
+    assert fine < 1e-6
+    assert 14.0 < coarse / fine < 18.0
+
+
+def test_modes_do_not_mix_in_the_shared_tridiagonal_matrix(rng: np.random.Generator) -> None:
+    coefficient = rng.uniform(0.0, 9.0, (3, 12))
+    source = rng.standard_normal((3, 12)) + 1j * rng.standard_normal((3, 12))
+    together = _Tridiagonal(coefficient, 0.1).solve(source, 0.5, -1.0j)
+    for mode in range(3):
+        one = slice(mode, mode + 1)
+        alone = _Tridiagonal(coefficient[one], 0.1).solve(source[one], 0.5, -1.0j)
+        np.testing.assert_allclose(together[one], alone, atol=1e-12)
+
+
+def test_differences_and_integrals_are_exact_for_low_powers() -> None:
+    x = np.linspace(0.0, 2.0, 11)
+    np.testing.assert_allclose(_first_derivative(11, 0.2) @ x**4, 4.0 * x**3, atol=1e-12)
+    cubic = (x**3).astype(np.complex128)
+    np.testing.assert_allclose(_running_integral(cubic, 0.2), x**4 / 4.0, atol=1e-12)
+
+
+def test_without_vorticity_the_flow_is_the_potential_flow() -> None:
+    setup = CylinderSetup(modes=8, intervals=128, outer=30.0, sponge=20.0)
+    flow = CylinderFlow(setup, np.zeros((8, 129), dtype=np.complex128))
+    outward, around = flow.polar_velocity()
+    theta = 2.0 * np.pi * np.arange(16) / 16
+    found = fft.irfft(outward, 16, axis=0, norm="forward")
+    exact = (1.0 - 0.25 / setup.radii**2) * np.cos(theta)[:, None]
+    np.testing.assert_allclose(found, exact, atol=2e-6)
+    found = fft.irfft(around, 16, axis=0, norm="forward")
+    exact = -(1.0 + 0.25 / setup.radii**2) * np.sin(theta)[:, None]
+    # At the wall the solver states that nothing moves, whatever the streamfunction says.
+    np.testing.assert_allclose(found[:, 1:], exact[:, 1:], atol=2e-4)
+
+
+def test_the_wall_holds_the_fluid_and_the_circulation_stays() -> None:
+    flow = CylinderFlow(SMALL)
+
+    def circulation() -> float:
+        mean = _running_integral(SMALL.radii**2 * flow.vorticity[0], SMALL.spacing)
+        return float(2.0 * np.pi * mean[-1].real)
+
+    before = circulation()
+    assert before == pytest.approx(0.5 * np.pi * 0.25**2, rel=0.05)  # of the lone vortex
+    for _ in range(100):
+        flow.advance()
+    assert np.abs(flow._wall_residual(flow.vorticity, flow._psi)).max() < 1e-9
+    assert circulation() == pytest.approx(before, abs=2e-3)
+
+
+def test_a_symmetric_flow_has_no_lift() -> None:
+    flow = CylinderFlow(SMALL, np.zeros((24, 65), dtype=np.complex128))
+    for _ in range(50):
+        flow.advance()
+    drag, lift = flow.forces()
+    assert drag > 1.0
+    assert abs(lift) < 1e-10
+
+
+def test_a_state_of_another_grid_is_refused_by_name() -> None:
+    with pytest.raises(ValueError, match=r"vorticity has shape \(3, 4\), expected \(24, 65\)"):
+        CylinderFlow(SMALL, np.zeros((3, 4), dtype=np.complex128))
+
+
+@pytest.mark.slow
+def test_the_steady_wake_at_reynolds_number_40_is_the_published_one() -> None:
+    # Drag 1.50 to 1.56, separation angle 53 to 54 degrees from the rear (Dennis and Chang 1970,
+    # Fornberg 1980, and many since).
+    setup = CylinderSetup(reynolds=40.0, modes=48, intervals=128, step=0.02)
+    flow = CylinderFlow(setup, np.zeros((48, 129), dtype=np.complex128))
+    for _ in range(2000):
+        flow.advance()
+    assert flow.forces()[0] == pytest.approx(1.53, abs=0.04)
+    wall = fft.irfft(flow.vorticity[:, 0], 720, norm="forward")
+    turns = np.flatnonzero(np.sign(wall[1:180]) != np.sign(wall[2:181]))
+    assert turns.size == 1
+    assert (turns[0] + 1.5) / 2.0 == pytest.approx(53.5, abs=1.5)
+
+
+def test_the_shipped_wake_is_resolved() -> None:
+    """The shortest waves around carry next to nothing on any circle, so nothing wiggles."""
+    _, velocity, _ = _shipped.cylinder_arrays()
+    waves = np.abs(fft.rfft(velocity[:, :, :-1], axis=2, norm="forward"))
+    assert waves[:, :, 10].max() > 5e-3
+    assert waves[:, :, 70:].max() < 1e-4
+    state = np.abs(cylinder_run.restart().vorticity)
+    assert state[-8:].max() < 1e-3 * state.max()
+
+
+def test_the_code_still_makes_the_shipped_flow() -> None:
+    _, velocity, times = _shipped.cylinder_arrays()
+    flow = cylinder_run.restart()
+    np.testing.assert_allclose(cylinder_run.node_velocity(flow), velocity[0, :, :-1], atol=5e-5)
+    for _ in range(cylinder_run.STEPS):
+        flow.advance()
+    assert flow.time == pytest.approx(times[1])
+    # 16 bits leave 2.3e-5; the first step, of first order, about as much.
+    np.testing.assert_allclose(cylinder_run.node_velocity(flow), velocity[1, :, :-1], atol=1e-4)
+
+
+def test_forces_are_computed_again_as_shipped() -> None:
+    forces = _shipped.load(_shipped.CYLINDER)["forces"]
+    flow = cylinder_run.restart()
+    np.testing.assert_allclose(flow.forces(), forces[0], atol=1e-4)
+    for _ in range(20):
+        flow.advance()
+    np.testing.assert_allclose(flow.forces(), forces[20], atol=1e-3)
+
+
+@pytest.mark.slow
+def test_the_code_still_makes_the_whole_period() -> None:
+    _, velocity, times = _shipped.cylinder_arrays()
+    flow = cylinder_run.restart()
+    history = cylinder_run._advance(
+        flow, cylinder_run.STEPS * cylinder_run.INSTANTS, lambda _: None
+    )
+    np.testing.assert_allclose(cylinder_run.node_velocity(flow), velocity[-1, :, :-1], atol=3e-4)
+    rate = np.polyfit(history[:, 0], np.unwrap(np.angle(_analytic(history[:, 2]))), 1)[0]
+    assert abs(rate) / (2.0 * np.pi) == pytest.approx(1.0 / times[-1], rel=5e-3)
+    assert 1.31 < history[:, 1].mean() < 1.37
+
+
+def _analytic(signal: NDArray[np.float64]) -> NDArray[np.complex128]:
+    """Signal of one period with its negative frequencies taken away."""
+    modes = fft.fft(signal)
+    modes[len(signal) // 2 :] = 0.0
+    return np.asarray(fft.ifft(modes))
+
+
+def test_vorticity_is_derived_as_the_solver_has_it() -> None:
+    points, velocity, _ = _shipped.cylinder_arrays()
+    derived = _shipped.polar_vorticity(points, velocity[:1])[0, :, :-1]
+    flow = cylinder_run.restart()
+    # The wall is a node of both grids; the solver's values there are between -22 and 22.
+    wall = fft.irfft(flow.vorticity[:, 0], 160, norm="forward")
+    assert np.abs(wall).max() > 15.0
+    np.testing.assert_allclose(derived[0], wall, atol=0.2)
+
+
+def test_refining_keeps_the_flow() -> None:
+    flow = CylinderFlow(SMALL)
+    for _ in range(20):
+        flow.advance()
+    fine = cylinder_run.refine(flow, replace(SMALL, modes=32, intervals=128))
+    assert fine.time == flow.time
+    np.testing.assert_allclose(fine.vorticity[:24, ::2], flow.vorticity, atol=1e-12)
+    assert not fine.vorticity[24:].any()
+
+
+def test_a_whole_run_in_small_is_written_and_read(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    told: list[float] = []
+    small = replace(SMALL, step=0.01)
+    shedding = cylinder_run.run(told.append, durations=(4.0, 4.0, 25.0), coarse=small, full=small)
+    assert shedding.velocity.shape == (31, 65, 160, 2)
+    assert shedding.forces.shape == (1201, 2)
+    assert sum(told) == pytest.approx(33.0 + 2.0 * shedding.times[-1], abs=1e-6)
+    cylinder_run.write(shedding, tmp_path)
+    monkeypatch.setattr(_shipped, "DATA", tmp_path)
+    _, velocity, times = _shipped.cylinder_arrays()
+    step = np.abs(shedding.velocity).max() / packing.STEPS
+    np.testing.assert_allclose(velocity[:, :, :-1], shedding.velocity, atol=0.51 * step)
+    np.testing.assert_array_equal(times, shedding.times)
+
+
+def test_a_run_too_short_to_shed_says_so() -> None:
+    with pytest.raises(ArithmeticError, match="the wake is not shedding yet"):
+        cylinder_run.run(durations=(0.1, 0.1, 0.1), coarse=SMALL, full=SMALL)
+
+
+def test_a_run_that_blows_up_says_so() -> None:
+    coarse = replace(SMALL, step=2.0)
+    with (
+        np.errstate(all="ignore"),
+        pytest.raises(ArithmeticError, match=r"time step smaller than 2\.0"),
+    ):
+        cylinder_run.run(durations=(4000.0, 0.1, 0.1), coarse=coarse, full=SMALL)
+
+
+def test_the_shipped_files_are_small() -> None:
+    for file in (_shipped.DATA / _shipped.CYLINDER, cylinder_run.RESTART):
+        assert file.stat().st_size < 1.5e6

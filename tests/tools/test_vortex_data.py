@@ -1,0 +1,179 @@
+"""The vortices: the solver against exact solutions and identities, the file against the solver."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import build
+import numpy as np
+import packing
+import pytest
+import vortex_run
+from numpy.typing import NDArray
+from periodic_flow import PeriodicFlow, decaying_turbulence, resample
+from scipy import fft
+
+from flowtex.examples import _shipped
+
+
+def coordinates(size: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    y, x = np.mgrid[:size, :size] / size
+    return x, y
+
+
+def test_taylor_green_vortices_decay_as_the_exact_solution() -> None:
+    flow = PeriodicFlow(32, viscosity=0.01)
+    x, y = coordinates(32)
+    wave = 2.0 * np.pi
+    start = fft.rfft2(2.0 * wave * np.sin(wave * x) * np.sin(wave * y))
+    decay = np.exp(-2.0 * 0.01 * wave**2 * 0.5)
+    later = flow.advance(start, 0.01, 50)
+    np.testing.assert_allclose(later, decay * start, atol=1e-9)
+    exact = decay * np.stack(
+        [np.sin(wave * x) * np.cos(wave * y), -np.cos(wave * x) * np.sin(wave * y)], axis=-1
+    )
+    np.testing.assert_allclose(flow.velocity(later), exact, atol=1e-12)
+
+
+def test_the_flow_carries_its_vorticity() -> None:
+    """The change over a short time is minus velocity times slope, by differences in space."""
+    size, step = 256, 1e-5
+    flow = PeriodicFlow(size, viscosity=0.0)
+    start = decaying_turbulence(size, seed=1, waves=3.0)
+    before = fft.irfft2(start, (size, size))
+    after = fft.irfft2(flow.advance(start, step), (size, size))
+    around = np.pad(before, 1, mode="wrap")
+    slopes = (
+        np.stack([around[1:-1, 2:] - around[1:-1, :-2], around[2:, 1:-1] - around[:-2, 1:-1]], -1)
+        * size
+        / 2.0
+    )
+    expected = -np.sum(flow.velocity(start) * slopes, axis=-1)
+    assert np.abs((after - before) / step - expected).max() < 0.02 * np.abs(expected).max()
+
+
+def test_energy_and_enstrophy_are_kept_without_viscosity() -> None:
+    flow = PeriodicFlow(64, viscosity=0.0)
+    start = decaying_turbulence(64, seed=2, waves=4.0)
+    start = flow.advance(start, 1e-3)
+    later = flow.advance(start, 1e-3, 50)
+    assert np.abs(later - start).max() > 0.1 * np.abs(start).max()
+    assert flow.energy(later) == pytest.approx(flow.energy(start), rel=1e-6)
+    assert flow.enstrophy(later) == pytest.approx(flow.enstrophy(start), rel=1e-6)
+
+
+def test_energy_and_enstrophy_decay_as_their_identities_say() -> None:
+    """dE/dt = - 2 nu Z and dZ/dt = - nu mean |grad w|^2, by central differences in time."""
+    viscosity, step = 1e-3, 1e-3
+    flow = PeriodicFlow(96, viscosity)
+    states = [flow.advance(decaying_turbulence(96, seed=4, waves=4.0), step, 20)]
+    for _ in range(2):
+        states.append(flow.advance(states[-1], step))
+    energy = [flow.energy(state) for state in states]
+    enstrophy = [flow.enstrophy(state) for state in states]
+    ky, kx = flow.wavenumbers
+    slopes = fft.irfft2(np.stack([1j * kx * states[1], 1j * ky * states[1]]), (96, 96))
+    assert (energy[2] - energy[0]) / (2.0 * step) == pytest.approx(
+        -2.0 * viscosity * enstrophy[1], rel=1e-4
+    )
+    assert (enstrophy[2] - enstrophy[0]) / (2.0 * step) == pytest.approx(
+        -viscosity * np.mean(np.sum(slopes**2, axis=0)), rel=1e-3
+    )
+
+
+def test_the_time_scheme_is_of_fourth_order() -> None:
+    flow = PeriodicFlow(64, viscosity=1e-3)
+    start = decaying_turbulence(64, seed=5, waves=3.0)
+    reference = flow.advance(start, 0.04 / 64, 64)
+    errors = [np.abs(flow.advance(start, 0.04 / n, n) - reference).max() for n in (8, 16)]
+    assert 12.0 < errors[0] / errors[1] < 20.0
+
+
+def test_random_vorticity_is_the_same_on_every_grid() -> None:
+    coarse, fine = (decaying_turbulence(size, seed=6, waves=4.0) for size in (66, 99))
+    on_coarse = fft.irfft2(coarse, (66, 66))[::2, ::2]
+    np.testing.assert_allclose(fft.irfft2(fine, (99, 99))[::3, ::3], on_coarse, atol=1e-10)
+    assert PeriodicFlow(66, 0.0).energy(coarse) == pytest.approx(0.5)
+    assert np.abs(coarse - decaying_turbulence(66, seed=7, waves=4.0)).max() > 1.0
+
+
+def test_resampling_there_and_back_changes_nothing() -> None:
+    coarse = resample(decaying_turbulence(33, seed=8, waves=4.0), 33)
+    np.testing.assert_allclose(resample(resample(coarse, 98), 33), coarse, atol=1e-12)
+
+
+def test_the_shipped_vortices_are_periodic_and_free_of_divergence() -> None:
+    points, velocity, vorticity, times = _shipped.vortex_arrays()
+    assert points.shape == (100, 100, 2)
+    assert velocity.shape == (31, 100, 100, 2)
+    assert vorticity.shape == (31, 100, 100)
+    np.testing.assert_allclose(times, 0.04 * np.arange(31), atol=1e-12)
+    np.testing.assert_array_equal(velocity[:, 0], velocity[:, -1])
+    np.testing.assert_array_equal(velocity[:, :, 0], velocity[:, :, -1])
+    ky, kx = PeriodicFlow(99, 0.0).wavenumbers
+    u, v = np.moveaxis(velocity[:, :-1, :-1], -1, 0)
+    divergence = fft.irfft2(1j * kx * fft.rfft2(u) + 1j * ky * fft.rfft2(v), (99, 99))
+    assert np.abs(divergence).max() < 1e-9 * np.abs(vorticity).max()
+
+
+@pytest.mark.parametrize("instant", [0, 20])
+def test_the_code_still_makes_the_shipped_vortices(instant: int) -> None:
+    _, _, vorticity, _ = _shipped.vortex_arrays()
+    nodes = fft.rfft2(vorticity[instant, :-1, :-1])
+    later = vortex_run.advance(resample(nodes, vortex_run.COMPUTED), vortex_run.STEPS_BETWEEN)
+    difference = vortex_run.at_nodes(later) - vorticity[instant + 1, :-1, :-1]
+    # The file lacks the waves that its nodes cannot carry, hence not the rounding error alone.
+    assert np.abs(difference).max() < 0.02 * np.abs(vorticity[instant]).max()
+    assert np.sqrt(np.mean(difference**2)) < 5e-3 * np.sqrt(np.mean(vorticity[instant] ** 2))
+
+
+@pytest.mark.slow
+def test_the_code_still_makes_the_vortices_from_their_seed() -> None:
+    made, times = vortex_run.run()
+    _, _, vorticity, shipped_times = _shipped.vortex_arrays()
+    np.testing.assert_array_equal(times, shipped_times)
+    np.testing.assert_allclose(made, vorticity[:, :-1, :-1], atol=1e-3 * np.abs(made).max())
+
+
+def test_the_build_command_writes_what_is_read(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(vortex_run, "COMPUTED", 99)
+    monkeypatch.setattr(vortex_run, "STEPS_BEFORE", 20)
+    monkeypatch.setattr(vortex_run, "INSTANTS", 3)
+    build.main(["vortex", "--folder", str(tmp_path)])
+    assert "vortex.npz" in capsys.readouterr().out
+    monkeypatch.setattr(_shipped, "DATA", tmp_path)
+    _, velocity, _, times = _shipped.vortex_arrays()
+    assert velocity.shape == (3, 100, 100, 2)
+    np.testing.assert_allclose(times, [0.0, 0.04, 0.08])
+
+
+def test_the_build_command_refuses_a_name_it_does_not_know(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    with pytest.raises(SystemExit):
+        build.main(["vortices"])
+    assert "no example 'vortices' to build; expected vortex, cylinder" in capsys.readouterr().err
+
+
+def test_the_same_run_gives_the_same_file(tmp_path: Path) -> None:
+    values = np.sin(np.arange(60.0)).reshape(3, 4, 5)
+    for name in ("first", "second"):
+        vortex_run.write(values, np.arange(3.0), tmp_path / name)
+    first, second = ((tmp_path / n / _shipped.VORTEX).read_bytes() for n in ("first", "second"))
+    assert first == second
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_packing_rounds_by_half_a_step_at_most(rng: np.random.Generator, axis: int) -> None:
+    values = rng.standard_normal((7, 8, 9)) * 40.0
+    packed, step = packing.pack(values, axis)
+    assert packed.dtype == np.int16
+    assert np.abs(_shipped.unpack(packed, step, axis) - values).max() <= 0.5 * step * (1.0 + 1e-9)
+
+
+def test_packing_zeros_gives_zeros() -> None:
+    packed, step = packing.pack(np.zeros((2, 3)), 0)
+    assert step > 0.0
+    assert not _shipped.unpack(packed, step, 0).any()
