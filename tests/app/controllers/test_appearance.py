@@ -7,7 +7,7 @@ import pytest
 
 pytest.importorskip("trame_rca")
 
-from app_views import difference, picture
+from small_pages import difference, picture
 
 from flowtex.app import FlowApp
 

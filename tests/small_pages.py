@@ -1,9 +1,9 @@
-"""Pages of small flows."""
+"""Pages of small flows, and pictures of them, for the tests of the page."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
@@ -12,6 +12,8 @@ from flowtex import FlowField
 
 if TYPE_CHECKING:
     from flowtex.app import FlowApp
+
+__all__ = ["difference", "picture"]
 
 
 def small(*, curved: bool = False, steps: int = 1) -> FlowField:
@@ -58,3 +60,12 @@ def series(opengl: object) -> Iterator[FlowApp]:
     app = small_page(small(steps=4), 5, 120, 80)
     yield app
     app.close()
+
+
+def picture(app: Any) -> Any:
+    width, height = app.viewport.size
+    return app.viewport.draw(width, height).astype(int)
+
+
+def difference(one: Any, other: Any) -> float:
+    return float(np.abs(np.asarray(one, int) - np.asarray(other, int)).mean())
