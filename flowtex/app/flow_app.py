@@ -149,17 +149,17 @@ def first_choice(library: Library, options: Mapping[str, Any]) -> tuple[str, Cho
     FieldError
         When none can be opened; it tells of the first one.
     """
-    chosen = Choice(
+    partial_choice = Choice(
         *("" if (value := options.get(key)) is None else str(value) for key in CHOICE_ARGUMENTS)
     )
     name, *others = library.names
     try:
-        return name, _first_of(library, name, chosen, sure=not others)
+        return name, _first_of(library, name, partial_choice, sure=not others)
     except (FieldError, OSError):
         # In a folder lies this and that: what cannot be drawn does not hide the rest.
         for other in others:
             with suppress(FieldError, OSError):
-                return other, _first_of(library, other, chosen)
+                return other, _first_of(library, other, partial_choice)
         raise
 
 

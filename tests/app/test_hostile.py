@@ -252,7 +252,7 @@ def test_what_the_server_counts_is_no_page_s_to_change() -> None:
     async def story() -> None:
         app.stream.set_streamer(streamer)
         task = asyncio.create_task(app.stream.run())
-        app.state.set(sharp="many", picture={}, there_time=None)
+        app.state.set(sharp="many", picture={}, client_time=None)
         app.stream.changed()
         await until(lambda: app.state.get("picture") == "sharp")
         assert isinstance(app.state.get("sharp"), int) and not task.done()

@@ -115,8 +115,8 @@ class Appearance(Controller):
     def take_colour(self) -> None:
         """Colour by what the page asks for."""
         choice, cmap = self.state.get("colour"), self.state.get("cmap")
-        known = name_among(choice, (PLAIN, *self.viewport.colours))
-        if not known or not name_among(cmap, (*CMAPS, self._cmap())):
+        valid = name_among(choice, (PLAIN, *self.viewport.colours))
+        if not valid or not name_among(cmap, (*CMAPS, self._cmap())):
             self.state.set(colour=self.viewport.colour or PLAIN, cmap=self._cmap())
             return
         name = "" if choice == PLAIN else choice
@@ -176,15 +176,15 @@ class Appearance(Controller):
 
     def take_image(self) -> None:
         """Lay a picture of the person's own on the surface."""
-        sent = self.state.get("image_file")
-        if sent is None:
+        upload = self.state.get("image_file")
+        if upload is None:
             return
         self.state.set(image_file=None)
-        sent = sent[0] if isinstance(sent, list) and sent else sent
-        if not sent:  # a choice that was taken back
+        upload = upload[0] if isinstance(upload, list) and upload else upload
+        if not upload:  # a choice that was taken back
             return
         try:
-            self.viewport.lay_image(decode_picture(sent))
+            self.viewport.lay_image(decode_picture(upload))
         except SettingsError as error:
             self.context.complain(error)
             return

@@ -51,10 +51,10 @@ class BrowserRendering(Controller):
         )
         self.state.set(
             rendering=RENDERERS[0],
-            there=None,
-            there_settings={},
-            there_camera=None,
-            there_time=0.0,
+            client_source=None,
+            client_settings={},
+            client_camera=None,
+            client_time=0.0,
         )
         self.state.on("rendering")(self.take_renderer)
         self.stream.frame_skipped.connect(self.follow)
@@ -98,10 +98,10 @@ class BrowserRendering(Controller):
         camera = self.viewport.camera
         if camera != self._camera:
             self._camera = camera
-            self.state.set(there_camera=camera.to_dict())
+            self.state.set(client_camera=camera.to_dict())
             self.context.camera_changed.emit()
         time = self.viewport.handle.time
-        self.state.send(there_settings=dict(self.settings), there_time=time)
+        self.state.send(client_settings=dict(self.settings), client_time=time)
 
     def take_camera(self, camera: Any) -> None:
         """Follow the camera of the browser."""
@@ -156,15 +156,15 @@ class BrowserRendering(Controller):
             for step in range(scene.steps)
         ]
         self.state.send(
-            there={
+            client_source={
                 "client": self._client,
                 "header": {**header, "generation": self._generation},
                 "surface": surface,
                 "steps": steps,
             },
-            there_settings=dict(self.settings),
-            there_camera=self._camera.to_dict(),
-            there_time=self.viewport.handle.time,
+            client_settings=dict(self.settings),
+            client_camera=self._camera.to_dict(),
+            client_time=self.viewport.handle.time,
             picture="moving",
             figures="drawn by the browser",
         )
@@ -173,7 +173,7 @@ class BrowserRendering(Controller):
         self._withdraw()
         self._scene = None
         self.stream.paused = False
-        self.state.set(there=None)
+        self.state.set(client_source=None)
         self.stream.changed()
 
     def _publish(self, name: str, make: Any) -> str:

@@ -279,8 +279,8 @@ class Data(Controller):
             for one, all_ in (("block", "blocks"), ("vectors", "vectors_choices"), ("axis", "axes"))
         )
         if block != options["block"]:  # its planes, and its arrays, are others
-            known = self._current.source.part(block).vectors
-            return Choice(vectors if vectors in known else "", "", block)
+            arrays = self._current.source.part(block).vectors
+            return Choice(vectors if vectors in arrays else "", "", block)
         plane = ""
         if axis:
             last = self._part.planes[axis] - 1

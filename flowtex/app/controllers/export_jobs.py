@@ -138,7 +138,7 @@ class TiledPicture:
 
 
 class Job:
-    """Something that is drawn and written while a page goes on.
+    """Something that is drawn and writing while a page goes on.
 
     Parameters
     ----------
@@ -299,8 +299,8 @@ class MovieJob(Job):
             size = (max(size[0] // 2 * 2, 2), max(size[1] // 2 * 2, 2))
         super().__init__(viewport, path, size, **options)
         if size[0] * size[1] > MOST_MOVIE_PIXELS:
-            shown = f"the movie would be {size[0]} x {size[1]}"
-            msg = f"{shown}; expected at most {MOST_MOVIE_PIXELS:,} pixels: choose a smaller size"
+            label = f"the movie would be {size[0]} x {size[1]}"
+            msg = f"{label}; expected at most {MOST_MOVIE_PIXELS:,} pixels: choose a smaller size"
             raise MovieError(msg)
         fps = default_fps(path) if fps is None else fps
         check_movie(path, size, fps, quality)
@@ -325,18 +325,18 @@ class MovieJob(Job):
         try:
             writer = await asyncio.shield(opening)
             tiled = self._tiled(viewport)
-            written: asyncio.Future[None] | None = None
+            writing: asyncio.Future[None] | None = None
             for number in range(count):
                 await self._show(viewport, number)
                 picture = await self._draw(tiled, 0.95 * number / count, 0.95 / count)
-                if written is not None:
-                    await written
-                # The next frame is drawn while this one is written.
-                written = asyncio.ensure_future(self._in_thread(writer.add, picture))
+                if writing is not None:
+                    await writing
+                # The next frame is drawn while this one is writing.
+                writing = asyncio.ensure_future(self._in_thread(writer.add, picture))
                 # Nobody waits for it where the drawing ends in an error.
-                written.add_done_callback(lambda ended: ended.cancelled() or ended.exception())
-            if written is not None:
-                await written
+                writing.add_done_callback(lambda ended: ended.cancelled() or ended.exception())
+            if writing is not None:
+                await writing
             await self._in_thread(writer.finish, self._unwanted)
         finally:
             # In the thread, after whatever it is busy with.
@@ -363,12 +363,12 @@ def _moving(settings: Settings, field: FlowField) -> Settings:
 
 def _check(size: tuple[int, int], supersampling: int, density: float) -> None:
     width, height = size
-    shown = f"the picture would be {width} x {height}"
+    label = f"the picture would be {width} x {height}"
     msg = ""
     if not (1 <= width <= LONGEST_SIDE_PX and 1 <= height <= LONGEST_SIDE_PX):
-        msg = f"{shown}; expected 1 to {LONGEST_SIDE_PX:,} pixels along each side"
+        msg = f"{label}; expected 1 to {LONGEST_SIDE_PX:,} pixels along each side"
     elif width * height > MOST_PIXELS:
-        msg = f"{shown}; expected at most {MOST_PIXELS:,} pixels: choose a smaller size"
+        msg = f"{label}; expected at most {MOST_PIXELS:,} pixels: choose a smaller size"
     elif supersampling not in range(1, MOST_SUPERSAMPLING + 1):
         msg = f"supersampling is {supersampling!r}; expected 1 to {MOST_SUPERSAMPLING}"
     elif not 1 / MOST_DENSITY <= density <= MOST_DENSITY:

@@ -152,8 +152,8 @@ class Library:
             When there is none of that name, or it cannot be read.
         """
         if (opener := self._openers.get(name)) is None:
-            shown = repr(shortened(name, 80))
-            msg = f"there is no file {shown} among those that may be opened here"
+            label = repr(shortened(name, 80))
+            msg = f"there is no file {label} among those that may be opened here"
             raise FieldError(msg)
         return self._sources.get(name, opener)
 

@@ -96,8 +96,8 @@ class PointText:
         across = surface.frame is not None and not np.abs(surface.frame[:, 2]).any()
         size = float(np.abs(vector).max())
         smallest = 1e-9 * max(size, surface.extent if vector is point.position else size)
-        shown = [0.0 if abs(v) < smallest else float(v) for v in vector[: 2 if across else 3]]
-        return f"({', '.join(number_text(v, digits) for v in shown)})"
+        components = [0.0 if abs(v) < smallest else float(v) for v in vector[: 2 if across else 3]]
+        return f"({', '.join(number_text(v, digits) for v in components)})"
 
 
 class PathCard:
@@ -109,12 +109,9 @@ class PathCard:
     def over(self, viewport: Viewport) -> dict[str, Any]:
         """Return what lies over the picture as the camera now stands.
 
-        Returns
-        -------
-        dict
-            ``path`` and ``sampled``, stretches of places [x, y] of the whole path and of the part
-            with samples; ``samples``, dicts of ``x``, ``y``, ``weight`` and ``grey``; ``point``,
-            [x, y] or ``None``; ``panes`` and ``aspect``. Places go from -1 to 1, right and up.
+        ``path`` and ``sampled`` are stretches of places [x, y] of the whole path and of the part
+        with samples; ``samples`` are dicts of ``x``, ``y``, ``weight`` and ``grey``; ``point`` is
+        [x, y] or ``None``. Places go from -1 to 1, right and up.
         """
         probe = self.probe
         # Far beyond the samples the slices are too coarse to look at, and no picture needs them.
@@ -143,12 +140,9 @@ class PathCard:
     def bars(self) -> list[dict[str, Any]]:
         """Return the samples, from the farthest behind to the farthest ahead.
 
-        Returns
-        -------
-        list of dict
-            ``lag``; ``weight``, 1 for the greatest; ``grey``, the noise that is met, as a colour
-            ``#rrggbb``; ``slices``, the two trace slices around the sample, and ``share``, how
-            far it is from the first to the second.
+        ``weight`` is 1 for the greatest; ``grey`` is the noise that is met, as a colour
+        ``#rrggbb``; ``slices`` are the two trace slices around the sample, and ``share`` is how
+        far it is from the first to the second.
         """
         probe = self.probe
         heaviest = float(probe.weights.max())
@@ -200,7 +194,7 @@ class PathCard:
 
 
 def clip_line(places: Floats, reach: float = LINE_REACH) -> list[list[list[float]]]:
-    """Cut a line in the view to what can be seen.
+    """Cut a line in the view to what can be visible.
 
     Parameters
     ----------
@@ -210,8 +204,8 @@ def clip_line(places: Floats, reach: float = LINE_REACH) -> list[list[list[float
         How far from the middle a line is drawn, in halves of the view.
     """
     a, b = places[:-1], places[1:]
-    known = np.asarray(np.isfinite(a).all(axis=-1) & np.isfinite(b).all(axis=-1))
-    a, b = np.where(known[:, None], a, 2 * reach), np.where(known[:, None], b, 2 * reach)
+    defined = np.asarray(np.isfinite(a).all(axis=-1) & np.isfinite(b).all(axis=-1))
+    a, b = np.where(defined[:, None], a, 2 * reach), np.where(defined[:, None], b, 2 * reach)
     step = b - a
     moving = np.abs(step) > 1e-300
     ends = np.stack([(side - a) / np.where(moving, step, 1.0) for side in (-reach, reach)])
@@ -220,10 +214,10 @@ def clip_line(places: Floats, reach: float = LINE_REACH) -> list[list[list[float
     leave: Floats = np.min(np.where(moving, ends.max(axis=0), np.inf), axis=-1)
     first: Floats = np.clip(enter, 0, 1)
     last: Floats = np.clip(leave, 0, 1)
-    seen = known & (enter <= 1) & (leave >= 0) & (first < last)
+    visible = defined & (enter <= 1) & (leave >= 0) & (first < last)
     result: list[list[list[float]]] = []
-    for k in np.flatnonzero(seen).tolist():
-        if not (result and first[k] == 0 and k > 0 and seen[k - 1] and last[k - 1] == 1):
+    for k in np.flatnonzero(visible).tolist():
+        if not (result and first[k] == 0 and k > 0 and visible[k - 1] and last[k - 1] == 1):
             result.append([(a[k] + first[k] * step[k]).tolist()])
         result[-1].append((a[k] + last[k] * step[k]).tolist())
     return result

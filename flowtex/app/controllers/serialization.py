@@ -257,8 +257,8 @@ def _from_file(state: Mapping[str, Any]) -> str:
     if not state.get("file"):
         msg = "the state names no file; give the expression that makes its field as source"
         raise ValueError(msg)
-    chosen = [f"{name}={_literal(state[name])}" for name in FILE_ARGUMENTS if state.get(name)]
-    return _call("flowtex.FlowField.from_file", [_literal(state["file"]), *chosen])
+    choices = [f"{name}={_literal(state[name])}" for name in FILE_ARGUMENTS if state.get(name)]
+    return _call("flowtex.FlowField.from_file", [_literal(state["file"]), *choices])
 
 
 def _literal(value: Any) -> str:
@@ -279,24 +279,24 @@ def _call(function: str, arguments: list[str]) -> str:
 def _add_lines(state: Mapping[str, Any], different: Mapping[str, Any]) -> list[str]:
     """Add the flow to a view, with the settings that are not as by default."""
     colour = state.get("colour", DEFAULTS["colour"])
-    look = {"scalars": False if colour == PLAIN else colour}
+    appearance = {"scalars": False if colour == PLAIN else colour}
     if colour != PLAIN:
-        look |= {name: state[name] for name in ("cmap", "clim") if state.get(name)}
+        appearance |= {name: state[name] for name in ("cmap", "clim") if state.get(name)}
     settings = {**(state.get("settings") or {}), **different}
     if settings.get("noise") == "image":  # which is a person's own, and not in the state
         del settings["noise"]
     changed = {k: v for k, v in settings.items() if v != TABLE[k].default}
-    arguments = [f"{name}={_literal(value)}" for name, value in {**look, **changed}.items()]
+    arguments = [f"{name}={_literal(value)}" for name, value in {**appearance, **changed}.items()]
     lines = [_call("handle = pl.flowtex.add", ["field", *arguments])]
-    moments = [(name, state.get(name)) for name in ("time", "clock")]
-    shown = [(n, v) for n, v in moments if v is not None and v != DEFAULTS.get(n)]
-    return lines + [f"handle.{name} = {value!r}" for name, value in shown]
+    instants = [(name, state.get(name)) for name in ("time", "clock")]
+    changes = [(n, v) for n, v in instants if v is not None and v != DEFAULTS.get(n)]
+    return lines + [f"handle.{name} = {value!r}" for name, value in changes]
 
 
 def _background(state: Mapping[str, Any]) -> str:
-    chosen = str(state.get("background", DEFAULTS["background"]))
+    background = str(state.get("background", DEFAULTS["background"]))
     theme = str(state.get("theme", DEFAULTS["theme"]))
-    return THEMES[theme] if chosen == DEFAULTS["background"] else chosen
+    return THEMES[theme] if background == DEFAULTS["background"] else background
 
 
 def _camera_lines(camera: Mapping[str, Any] | None) -> list[str]:

@@ -130,13 +130,15 @@ class _Served:
         self._socket = socket.create_server(("127.0.0.1", 0), backlog=BACKLOG)
         self._socket.setblocking(False)
         # Who made the application closes it.
-        lent = SimpleNamespace(server=app.server, stream=app.stream, close=lambda: None)
-        sessions = Sessions(lambda _: lent, self._secret, limit=1, idle=float("inf"), shared=True)
+        borrowed_app = SimpleNamespace(server=app.server, stream=app.stream, close=lambda: None)
+        sessions = Sessions(
+            lambda _: borrowed_app, self._secret, limit=1, idle=float("inf"), shared=True
+        )
         self._site = Site(sessions, self._secret, framed=True)
-        self._task = start_task(self._start(lent), FAILURE)
+        self._task = start_task(self._start(borrowed_app), FAILURE)
 
-    async def _start(self, lent: Any) -> None:
-        await self._site.prepare(lent)
+    async def _start(self, borrowed_app: Any) -> None:
+        await self._site.prepare(borrowed_app)
         await self._site.listen(self._socket)
 
     def address(self, proxy: str | None) -> str:

@@ -102,12 +102,12 @@ class Session:
     async def start(self, secret: str) -> dict[str, Any]:
         """Start the trame server, and return what it wants served: folders, by route."""
         server = self.app.server
-        bound: list[Any] = []
+        web_servers: list[Any] = []
         self.app.stream.watched = lambda: self.connected
         server.state.trame__template_error = ENDED.read_text(encoding="utf-8")
         # Defaults of trame's own command line reach it without showing up in a list of processes.
         server.cli.set_defaults(authKey=secret)
-        server.controller.on_server_bind.add(bound.append)
+        server.controller.on_server_bind.add(web_servers.append)
         with _quiet_trame():
             self._task = server.start(
                 exec_mode="task",
@@ -120,8 +120,8 @@ class Session:
                 disable_logging=True,
             )
         await server.ready
-        self._endpoint = bound[0].ws
-        static: dict[str, Any] = bound[0].config["static"]
+        self._endpoint = web_servers[0].ws
+        static: dict[str, Any] = web_servers[0].config["static"]
         return static
 
     async def connect(self, request: web.Request, *, shared: bool) -> web.StreamResponse:
@@ -132,9 +132,9 @@ class Session:
             compress=False,
         )
         await socket.prepare(request)
-        earlier = [] if shared else list(self._sockets)
+        others = [] if shared else list(self._sockets)
         self._sockets.add(socket)
-        for other in earlier:
+        for other in others:
             await other.close(code=WSCloseCode.GOING_AWAY, message=b"opened in another page")
 
         async def send(is_binary: bool, content: Any) -> None:  # noqa: FBT001 wslink's call

@@ -148,10 +148,10 @@ class Site:
         return await session.connect(request, shared=self.sessions.shared)
 
     async def _session(self, request: web.Request) -> web.StreamResponse:
-        asked = await _json(request)
-        if not is_same(asked.get("secret"), self._secret):
+        request_data = await _json(request)
+        if not is_same(request_data.get("secret"), self._secret):
             return _answer(403, words=WRONG)
-        token = asked.get("session")
+        token = request_data.get("session")
         try:
             session = await self.sessions.find(token if isinstance(token, str) else None)
         except FullError:
@@ -170,10 +170,10 @@ def _pages(count: int) -> str:
 
 async def _json(request: web.Request) -> dict[str, Any]:
     try:
-        asked = json.loads(await request.read())
+        request_data = json.loads(await request.read())
     except ValueError:
-        asked = None
-    return asked if isinstance(asked, dict) else {}
+        request_data = None
+    return request_data if isinstance(request_data, dict) else {}
 
 
 def _answer(status: int, **values: str) -> web.Response:

@@ -321,7 +321,7 @@ class ViewPainter:
             yield from painters[0].full()
             return
         drawing = {number: painter.full() for number, painter in enumerate(painters)}
-        shown: dict[int, Bytes] = {}
+        pictures: dict[int, Bytes] = {}
         try:
             while drawing:
                 for number, tiles in list(drawing.items()):
@@ -329,8 +329,8 @@ class ViewPainter:
                     if picture is None:
                         del drawing[number]
                     else:
-                        shown[number] = picture
-                yield self._joined([shown[number] for number in sorted(shown)])
+                        pictures[number] = picture
+                yield self._joined([pictures[number] for number in sorted(pictures)])
         finally:
             for tiles in drawing.values():
                 tiles.close()
@@ -339,9 +339,9 @@ class ViewPainter:
         """Painters of the panes that there are; what one has learnt of its price stays."""
         panes = self._viewport.panes
         if [painter.pane for painter in self.painters] != panes:
-            known = {id(painter.pane): painter for painter in self.painters}
+            painters = {id(painter.pane): painter for painter in self.painters}
             cost = self.painters[0].cost if self.painters else None
-            self.painters = [known.get(id(pane)) or PanePainter(pane, cost) for pane in panes]
+            self.painters = [painters.get(id(pane)) or PanePainter(pane, cost) for pane in panes]
         return self.painters
 
     def _joined(self, pictures: list[Bytes]) -> Bytes:

@@ -101,8 +101,8 @@ class Player:
         while True:
             now = time.perf_counter()
             passed, before = now - before, now
-            held = time.monotonic() < self._held_until
-            if self.playing and not (held or self._stream.paused) and self._stream.watched():
+            on_hold = time.monotonic() < self._held_until
+            if self.playing and not (on_hold or self._stream.paused) and self._stream.watched():
                 self._go_on(min(passed, LONGEST_STEP_S))
                 await self._stream.next_picture()
             await asyncio.sleep(max(1 / RATE_HZ - (time.perf_counter() - now), 0.005))

@@ -60,8 +60,8 @@ def coverage(picture: Snapshot, view: Floats) -> tuple[float, float]:
     back = picture.view @ np.linalg.inv(view)
     grid = np.linspace(-1, 1, 9)
     x, y = np.meshgrid(grid, grid)
-    seen = back @ np.stack([x.ravel(), y.ravel(), np.ones(x.size)])
-    inside = (np.abs(seen[:2]) <= 1.0 + 1e-9).all(axis=0)
+    places = back @ np.stack([x.ravel(), y.ravel(), np.ones(x.size)])
+    inside = (np.abs(places[:2]) <= 1.0 + 1e-9).all(axis=0)
     area = abs(float(np.linalg.det(back[:2, :2])))
     return float(inside.mean()), float(area**-0.5) if area > 0 else float("inf")
 

@@ -172,11 +172,6 @@ class Viewport:
         """Width of a pane over its height."""
         return self.pane_size[0] / max(self.pane_size[1], 1)
 
-    @property
-    def beside(self) -> dict[str, Any]:
-        """What is different in the second pane; empty where there is one pane."""
-        return dict(self._beside)
-
     def _pane(self, field: FlowField, options: Mapping[str, Any], image: Any | None = None) -> Pane:
         """Add a pane; with the texels of an image, when there is one, whatever its noise is."""
         arguments = dict(options)

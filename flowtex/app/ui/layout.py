@@ -90,12 +90,12 @@ def _client(controllers: Controllers) -> None:
             *((f"update_{name}", f"update:{name}") for name in followed),
             *("setting", "sharp", "point", "hover"),
         ],
-        v_if=(key("there"),),
-        classes="flowtex-there",
-        source=(key("there"),),
-        settings=(key("there_settings"),),
-        camera=(key("there_camera"),),
-        time=(key("there_time"),),
+        v_if=(key("client_source"),),
+        classes="flowtex-client",
+        source=(key("client_source"),),
+        settings=(key("client_settings"),),
+        camera=(key("client_camera"),),
+        time=(key("client_time"),),
         playing=(key("playing"),),
         update_camera=(browser.take_camera, "[$event]"),
         update_time=(browser.take_time, "[$event]"),
@@ -337,8 +337,8 @@ def _busy(controllers: Controllers) -> None:
 
 def _help_text(controllers: Controllers) -> None:
     """Say what keys and mouse do."""
-    shown = controllers.context.state.key("help")
-    with html.Div(classes="flowtex-help flowtex-glass", v_if=(shown,), role="dialog"):
+    visible = controllers.context.state.key("help")
+    with html.Div(classes="flowtex-help flowtex-glass", v_if=(visible,), role="dialog"):
         html.Div("Keys and the mouse", classes="flowtex-name")
         mouse = {
             "drag": "pan a flat surface, turn a curved one",
@@ -350,7 +350,7 @@ def _help_text(controllers: Controllers) -> None:
             for name, text in {**mouse, **KEYS}.items():
                 html.Dt(name)
                 html.Dd(text)
-        html.Button("Close", click=f"{shown} = false", classes="flowtex-link")
+        html.Button("Close", click=f"{visible} = false", classes="flowtex-link")
 
 
 def _complaint(controllers: Controllers) -> None:
