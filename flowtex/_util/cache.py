@@ -1,0 +1,182 @@
+"""Caches: values that live as long as they are in use, and values that fit into some memory."""
+
+from __future__ import annotations
+
+import hashlib
+import threading
+import weakref
+from collections import OrderedDict
+from collections.abc import Callable, Hashable, Iterable
+from typing import Generic, Protocol, TypeVar
+
+import numpy as np
+
+from flowtex._util.array_types import AnyArray
+
+__all__ = ["ByteCache", "WeakCache", "digest"]
+
+
+class _Sized(Protocol):
+    """A value that knows its size in memory."""
+
+    @property
+    def nbytes(self) -> int: ...
+
+
+K = TypeVar("K", bound=Hashable)
+V = TypeVar("V")
+S = TypeVar("S", bound=_Sized)
+
+
+class _Gates:
+    """One lock for each key that is being computed, so that other keys do not wait."""
+
+    def __init__(self) -> None:
+        # A lock lives as long as a thread holds it or waits for it.
+        self._gates: weakref.WeakValueDictionary[Hashable, threading.Lock] = (
+            weakref.WeakValueDictionary()
+        )
+        self._lock = threading.Lock()
+
+    def of(self, key: Hashable) -> threading.Lock:
+        with self._lock:
+            gate = self._gates.get(key)
+            if gate is None:
+                gate = self._gates[key] = threading.Lock()
+            return gate
+
+
+class WeakCache(Generic[V]):
+    """Values by key, held weakly: a value is dropped when nothing else refers to it.
+
+    The values have to allow weak references. All methods may be called from any thread.
+    """
+
+    def __init__(self) -> None:
+        self._values: weakref.WeakValueDictionary[Hashable, V] = weakref.WeakValueDictionary()
+        self._owned: weakref.WeakKeyDictionary[object, dict[Hashable, V]] = (
+            weakref.WeakKeyDictionary()
+        )
+        self._gates = _Gates()
+
+    def get(self, key: Hashable, make: Callable[[], V], *, owner: object | None = None) -> V:
+        """Return the value of a key, computing it on the first call.
+
+        Threads that ask for the same key meanwhile wait for the value.
+
+        Parameters
+        ----------
+        key
+            Two keys that compare equal have one value.
+        make
+            Computes the value; it must not ask for the same key.
+        owner
+            Object that the value belongs to: it has values of its own for each key, which live as
+            long as the object. They must not refer to it, or neither is ever freed.
+        """
+        if owner is not None:
+            key = (weakref.ref(owner), key)
+        gate = self._gates.of(key)
+        with gate:
+            value = self._values.get(key)
+            if value is None:
+                value = make()
+                if owner is not None:
+                    self._owned.setdefault(owner, {})[key] = value
+                self._values[key] = value
+            return value
+
+
+class ByteCache(Generic[K, S]):
+    """Values by key, up to a size in memory; the ones used longest ago are dropped first.
+
+    All methods may be called from any thread.
+
+    Parameters
+    ----------
+    max_bytes
+        Size that the values may have together, by their ``nbytes``.
+    min_count
+        Number of values that stay however large they are.
+    max_count
+        Number of values that may stay however small they are.
+    """
+
+    def __init__(self, max_bytes: int, *, min_count: int = 1, max_count: int | None = None) -> None:
+        self.max_bytes = max_bytes
+        self.min_count = min_count
+        self.max_count = max_count
+        self._values: OrderedDict[K, S] = OrderedDict()
+        self._gates = _Gates()
+        self._lock = threading.Lock()
+
+    def __len__(self) -> int:
+        return len(self._values)
+
+    def __contains__(self, key: K) -> bool:
+        return key in self._values
+
+    @property
+    def nbytes(self) -> int:
+        """Size of all values together."""
+        with self._lock:
+            return self._size()
+
+    def get(self, key: K, make: Callable[[], S]) -> S:
+        """Return the value of a key, computing it where it is missing.
+
+        Threads that ask for the same key meanwhile wait for the value; other keys do not wait.
+        """
+        gate = self._gates.of(key)
+        with gate:
+            value = self.peek(key)
+            if value is None:
+                value = make()
+                self.put(key, value)
+            return value
+
+    def peek(self, key: K) -> S | None:
+        """Return the value of a key and mark it as used; ``None`` where it is missing."""
+        with self._lock:
+            value = self._values.get(key)
+            if value is not None:
+                self._values.move_to_end(key)
+            return value
+
+    def put(self, key: K, value: S) -> None:
+        """Set the value of a key, and drop others until all of them fit."""
+        with self._lock:
+            self._values[key] = value
+            self._values.move_to_end(key)
+            # Sizes are added up anew: a value may have grown since it was put here.
+            while len(self._values) > self.min_count and not self._fits():
+                self._values.popitem(last=False)
+
+    def clear(self) -> None:
+        """Drop all values."""
+        with self._lock:
+            self._values.clear()
+
+    def _fits(self) -> bool:
+        few = self.max_count is None or len(self._values) <= self.max_count
+        return few and self._size() <= self.max_bytes
+
+    def _size(self) -> int:
+        return sum(value.nbytes for value in self._values.values())
+
+
+def digest(*arrays: AnyArray, words: Iterable[object] = ()) -> bytes:
+    """Return a hash of arrays: of their values, types and shapes, 16 bytes.
+
+    Parameters
+    ----------
+    *arrays
+        Of any shape.
+    words
+        What else makes a difference, by its ``repr``.
+    """
+    result = hashlib.blake2b(repr(tuple(words)).encode(), digest_size=16)
+    for array in arrays:
+        result.update(f"{array.dtype.str}{array.shape}".encode())
+        result.update(np.ascontiguousarray(array).reshape(-1).view(np.uint8).data)
+    return result.digest()
