@@ -11,8 +11,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from flowtex._util.array_types import Floats, Indices
 from flowtex.field.facets import facet
 from flowtex.field.locate import locate, locator
 from flowtex.field.reading import Reading, reading
@@ -30,8 +31,6 @@ from flowtex.view import FlowView
 
 __all__ = ["Probe", "Reading", "locate", "probe", "reading"]
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.intp]
 
 #: Points of a path between two slices: it is a parabola there.
 BETWEEN = 12
@@ -105,7 +104,7 @@ class Probe:
     lags: Floats
     points: Floats
     coordinates: Floats
-    slices: Ints
+    slices: Indices
     shares: Floats
     slice_lags: Floats
     slice_level: float

@@ -17,9 +17,9 @@ from typing import Any
 
 import numpy as np
 from flows import dense_gyre, gyre, holed, lines, swinging, torus
-from numpy.typing import NDArray
 
 from flowtex import FlowField
+from flowtex._util.array_types import Bytes, Floats
 from flowtex.rendering.cpu import Camera, render
 from flowtex.rendering.uniforms import ViewState
 from flowtex.settings import Settings
@@ -38,7 +38,6 @@ __all__ = [
     "judged",
 ]
 
-Pixels = NDArray[np.uint8]
 
 #: Root mean square in steps of 8 bits, and share of pixels that differ by more than 8 of them.
 ROOT, SHARE = 0.6, 0.001
@@ -77,7 +76,7 @@ class View:
     clock: float = 0.0
 
     @property
-    def image(self) -> NDArray[np.float64] | None:
+    def image(self) -> Floats | None:
         """What is laid on the surface."""
         return IMAGE if self.settings.get("noise") == "image" else None
 
@@ -131,7 +130,7 @@ DEEP: dict[str, View] = {"zoom 1e5": View(camera=straight(1e5))}
 
 
 @cache
-def judged(name: str) -> tuple[FlowView, Pixels]:
+def judged(name: str) -> tuple[FlowView, Bytes]:
     """Return a view and its picture by NumPy, (H, W, 3)."""
     view = (VIEWS | DEEP)[name]
     shown = view.made()
@@ -141,7 +140,7 @@ def judged(name: str) -> tuple[FlowView, Pixels]:
     return shown, drawn.rgb(COLOUR, background=GROUND)
 
 
-def difference(theirs: Pixels, ours: Pixels) -> tuple[float, float, int]:
+def difference(theirs: Bytes, ours: Bytes) -> tuple[float, float, int]:
     """Root mean square, share beyond 8 steps, and pixels that only one of them covers."""
     ground = np.rint(255 * np.array(GROUND))
     covered = [(p != ground).any(axis=-1) for p in (theirs, ours)]

@@ -11,10 +11,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from scipy import ndimage
 
 from flowtex import FlowField
+from flowtex._util.array_types import Floats
 from flowtex.probe import Probe, locate, probe
 from flowtex.rendering.cpu import Camera, render
 from flowtex.rendering.cpu.lookup import Mips
@@ -22,9 +22,6 @@ from flowtex.rendering.cpu.record import Kept, Window
 from flowtex.rendering.uniforms import ViewState
 from flowtex.settings import Settings
 from flowtex.view import FlowView
-
-Floats = NDArray[np.float64]
-
 
 # --- fields ---------------------------------------------------------------------------------
 

@@ -10,8 +10,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from flowtex._util.array_types import Floats, Ints
 from flowtex.settings import Settings
 from flowtex.textures import PaperTextures, TextureSet
 
@@ -53,9 +53,9 @@ class ViewState:
         density has grains of twice as many pixels, and shows the same.
     """
 
-    focus: NDArray[np.float64] = field(default_factory=lambda: np.zeros(3))
-    anchor: NDArray[np.float64] = field(default_factory=lambda: np.zeros(3))
-    eye: NDArray[np.float64] = field(default_factory=lambda: np.array([0.0, 0.0, 1.0, 0.0]))
+    focus: Floats = field(default_factory=lambda: np.zeros(3))
+    anchor: Floats = field(default_factory=lambda: np.zeros(3))
+    eye: Floats = field(default_factory=lambda: np.array([0.0, 0.0, 1.0, 0.0]))
     between: float = 0.0
     time: float = 0.0
     clock: float = 0.0
@@ -151,9 +151,7 @@ def _motion(textures: TextureSet, settings: Settings, view: ViewState) -> dict[s
     }
 
 
-def _noise_origin(
-    even: NDArray[np.int64], finest: float, anchor: NDArray[np.float64]
-) -> dict[str, Any]:
+def _noise_origin(even: Ints, finest: float, anchor: Floats) -> dict[str, Any]:
     """Give the noise's origin in space and in the finest cells of both families of lattices."""
     odd = even / np.sqrt(2.0)
     whole = np.floor(odd / 2**SNAP) * 2**SNAP
@@ -185,7 +183,7 @@ def _paper(paper: PaperTextures, settings: Settings, density: float) -> dict[str
     }
 
 
-def _origin_cell(focus: NDArray[np.float64], finest: float) -> NDArray[np.int64]:
+def _origin_cell(focus: Floats, finest: float) -> Ints:
     """Lattice point near the focus, in cells of the finest octave, that a float holds exactly."""
     coarse = 2**SNAP
     limit = 2 ** (OCTAVES - SNAP) - 1

@@ -8,14 +8,10 @@ from __future__ import annotations
 
 from concurrent.futures import Future, ThreadPoolExecutor
 
-import numpy as np
-from numpy.typing import NDArray
-
+from flowtex._util.array_types import Floats32
 from flowtex.textures.texture_set import TextureSet
 
 __all__ = ["Ahead"]
-
-Singles = NDArray[np.float32]
 
 
 class Ahead:
@@ -30,7 +26,7 @@ class Ahead:
     def __init__(self, textures: TextureSet) -> None:
         self._textures = textures
         self._pool: ThreadPoolExecutor | None = None
-        self._ready: tuple[int, Future[Singles]] | None = None
+        self._ready: tuple[int, Future[Floats32]] | None = None
 
     def prepare(self, step: int) -> None:
         """Begin to make the layers of a step; one that does not exist is none."""
@@ -44,7 +40,7 @@ class Ahead:
             self._pool = ThreadPoolExecutor(max_workers=1, thread_name_prefix="flowtex-ahead")
         self._ready = (step, self._pool.submit(self._textures.layers, step))
 
-    def take(self, step: int) -> Singles:
+    def take(self, step: int) -> Floats32:
         """Layers of a step, (layers, H, W, 4): the ones made ahead, or made now."""
         ready = self._ready
         if ready is None or ready[0] != step:

@@ -8,11 +8,11 @@ the contrast is the same at every level, whatever the noise.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+
+from flowtex._util.array_types import Floats, Floats32, Indices
 
 __all__ = ["HALF_LEVELS", "deviations"]
 
-Floats = NDArray[np.float64]
 
 #: Deviations that a shader has room for: at every level and half-way to the next.
 HALF_LEVELS = 32
@@ -22,7 +22,7 @@ POINTS = 16_384
 FEWEST = 256
 
 
-def deviations(noise: NDArray[np.float32]) -> list[float]:
+def deviations(noise: Floats32) -> list[float]:
     """Return the deviation of a noise (H, W) as it is looked up at level n / 2, n = 0, 1, ...
 
     Between the texels of a level and between two levels the look-up is linear, and the noise
@@ -52,7 +52,7 @@ def _bilinear(level: Floats, at: Floats) -> Floats:
     return np.asarray(low * (1 - t) + high * t)
 
 
-def _around(x: Floats, count: int) -> tuple[NDArray[np.intp], NDArray[np.intp], Floats]:
+def _around(x: Floats, count: int) -> tuple[Indices, Indices, Floats]:
     place = x * count - 0.5
     first = np.floor(place).astype(np.intp)
     return first % count, (first + 1) % count, place - first

@@ -9,11 +9,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from flowtex._util.array_types import Floats
 from flowtex.field.surface import Surface, _cubic, _locate
 
 __all__ = ["Moves"]
 
-Floats = NDArray[np.float64]
 
 #: Nodes looked up together.
 BLOCK = 16384

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 import numpy as np
-from numpy.typing import NDArray
 
+from flowtex._util.array_types import AnyArray
 from flowtex.textures import ImageError
 
 __all__ = ["load_image", "pixels_of", "read_image"]
@@ -43,7 +43,7 @@ def load_image(image: Any) -> Any:
     return read_image(path, str(path))
 
 
-def read_image(file: Path | BinaryIO, name: str) -> NDArray[Any]:
+def read_image(file: Path | BinaryIO, name: str) -> AnyArray:
     """Read an image from a file or from what holds the bytes of one.
 
     Parameters
@@ -82,7 +82,7 @@ def read_image(file: Path | BinaryIO, name: str) -> NDArray[Any]:
         raise ImageError(msg) from error
 
 
-def pixels_of(picture: Any) -> NDArray[Any]:
+def pixels_of(picture: Any) -> AnyArray:
     """Pixels, with opacity where the picture has any; deep grey keeps its depth."""
     if picture.mode.startswith("I"):  # 16 bits, which some versions of Pillow hold in 32
         return np.asarray(picture).astype(np.uint16)

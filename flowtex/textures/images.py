@@ -9,13 +9,12 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from flowtex._util.array_types import AnyArray, Floats32
 from flowtex.settings import SettingsError
 
 __all__ = ["LARGEST", "ImageError", "as_image", "as_picture"]
 
-Singles = NDArray[np.float32]
 
 #: Texels along a side, at most; a larger image is averaged down to it.
 LARGEST = 4096
@@ -29,7 +28,7 @@ class ImageError(SettingsError):
     """An image cannot take the place of the noise; the text says what was expected."""
 
 
-def as_picture(image: Any) -> Singles:
+def as_picture(image: Any) -> Floats32:
     """Check an image and return its texels.
 
     Parameters
@@ -66,7 +65,7 @@ def as_picture(image: Any) -> Singles:
     return np.ascontiguousarray(_shrunk(picture)[::-1])
 
 
-def as_image(picture: Singles) -> Singles:
+def as_image(picture: Floats32) -> Floats32:
     """Return the image of which :func:`as_picture` makes these texels.
 
     Parameters
@@ -85,7 +84,7 @@ def as_image(picture: Singles) -> Singles:
     return np.asarray(np.clip(image, 0, 1), np.float32)
 
 
-def _fractions(array: NDArray[Any]) -> Singles:
+def _fractions(array: AnyArray) -> Floats32:
     """Values from 0 to 1."""
     if array.dtype.kind == "b":
         return array.astype(np.float32)
@@ -108,7 +107,7 @@ def _fractions(array: NDArray[Any]) -> Singles:
     return np.asarray(np.clip(array, 0, 1), np.float32)
 
 
-def _shrunk(values: Singles) -> Singles:
+def _shrunk(values: Floats32) -> Floats32:
     """Average blocks of texels where there are too many."""
     block = -(-max(values.shape[:2]) // LARGEST)
     if block == 1:

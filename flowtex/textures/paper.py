@@ -18,18 +18,15 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import ndimage
 
+from flowtex._util.array_types import Floats, Floats32
 from flowtex.field import FlowField
 from flowtex.textures.contrast import HALF_LEVELS, deviations
 from flowtex.textures.patterns import SPOT_GRAIN, Texels, checkerboard, even_noise, sample, spots
 from flowtex.trace import SliceStore
 
 __all__ = ["PaperTextures"]
-
-Floats = NDArray[np.float64]
-Singles = NDArray[np.float32]
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,8 +53,8 @@ class PaperTextures:
         Whether ``noise`` is a picture, which is averaged along the flow, and no noise.
     """
 
-    noise: Singles
-    step: Singles
+    noise: Floats32
+    step: Floats32
     along_i: Floats
     along_j: Floats
     repeat: tuple[bool, bool]
@@ -75,7 +72,7 @@ class PaperTextures:
         seed: int = 0,
         pattern: str = "texture",
         tiles: int = 1,
-        image: Singles | None = None,
+        image: Floats32 | None = None,
     ) -> PaperTextures:
         """Make both textures for a field.
 
@@ -124,7 +121,7 @@ class PaperTextures:
             **laid,
         )
 
-    def with_image(self, image: Singles) -> PaperTextures:
+    def with_image(self, image: Floats32) -> PaperTextures:
         """Return the same with a picture (H, W, 4) in place of what was there."""
         return replace(self, noise=image, grain=1.0, picture=True)
 
@@ -134,7 +131,7 @@ class PaperTextures:
         return [1.0] * HALF_LEVELS if self.picture else deviations(self.noise)
 
     @property
-    def coordinate(self) -> Singles:
+    def coordinate(self) -> Floats32:
         """Noise coordinates of the nodes, (J, I, 2)."""
         return np.stack(np.meshgrid(self.along_i, self.along_j), axis=-1).astype(np.float32)
 
@@ -235,7 +232,7 @@ def _laid(texels: Texels, pattern: str, *, seed: int, tiles: int) -> dict[str, A
     return {"noise": _unit(np.random.default_rng(seed).standard_normal(texels.shape))}
 
 
-def _unit(noise: Floats) -> Singles:
+def _unit(noise: Floats) -> Floats32:
     return np.asarray((noise - noise.mean()) / (noise.std() or 1.0), np.float32)
 
 

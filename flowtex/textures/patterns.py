@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from flowtex._util.array_types import Floats, Ints
 from flowtex.field import FlowField
 
 __all__ = [
@@ -30,7 +31,6 @@ __all__ = [
     "spots",
 ]
 
-Floats = NDArray[np.float64]
 
 #: Texels from one spot to the next, and the width of squares of noise that averages as spots do.
 SPOT, SPOT_GRAIN = 8, 7.2
@@ -130,7 +130,7 @@ def spots(texels: Texels, seed: int) -> Floats:
     return total
 
 
-def _places_in_space(texels: Texels) -> tuple[Floats, NDArray[np.int64]]:
+def _places_in_space(texels: Texels) -> tuple[Floats, Ints]:
     """Texels in cells of the lattice of spots, (H, W, 2 or 3), and its octave, (H, W)."""
     long_ = texels.lengths.max(axis=-1)
     width = SPOT * float(np.median(long_))
@@ -185,7 +185,7 @@ def _wave(x: Floats, wide: Floats) -> Floats:
     return np.asarray(np.clip(inside * (2.0 / np.maximum(wide, 1e-9)), -1.0, 1.0))
 
 
-def _hash(cell: NDArray[np.int64], octave: NDArray[np.int64], seed: int) -> NDArray[np.uint64]:
+def _hash(cell: Ints, octave: Ints, seed: int) -> NDArray[np.uint64]:
     """Uniform random whole number of a lattice cell (..., 2 or 3)."""
     primes = np.array([0x9E3779B1, 0x85EBCA77, 0xC2B2AE3D], dtype=np.uint64)
     h = np.zeros(octave.shape, np.uint64)

@@ -23,11 +23,10 @@ import os
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from flowtex._util.array_types import AnyArray, Floats, Floats32
 from flowtex.field.checks import three
 from flowtex.settings import Settings
 from flowtex.textures.displacements import Moves
@@ -37,7 +36,6 @@ from flowtex.trace import SliceStore, TraceSlices
 
 __all__ = ["MOST_LAGS", "TextureSet"]
 
-Singles = NDArray[np.float32]
 
 #: Slices on each side that a shader has room for.
 MOST_LAGS = 32
@@ -66,7 +64,7 @@ class TextureSet:
 
     @classmethod
     def build(
-        cls, store: SliceStore, settings: Settings, image: Singles | None = None
+        cls, store: SliceStore, settings: Settings, image: Floats32 | None = None
     ) -> TextureSet:
         """Make the textures that the settings ask for.
 
@@ -110,7 +108,7 @@ class TextureSet:
         )
         return cls(geometry, store, "parameter", paper)
 
-    def with_image(self, image: Singles) -> TextureSet:
+    def with_image(self, image: Floats32) -> TextureSet:
         """Return the same with another picture in place of the noise texture.
 
         Raises
@@ -150,7 +148,7 @@ class TextureSet:
         return float(np.median(self.store.unit[self.geometry.field.valid])) * self.pace
 
     @property
-    def lags(self) -> Singles:
+    def lags(self) -> Floats32:
         """Lags of the slices, (M,), in multiples of the unit at each node."""
         return self.store.lags.astype(np.float32)
 
@@ -159,7 +157,7 @@ class TextureSet:
         """Number of layers."""
         return 1 + self.sides * len(self.store.lags)
 
-    def layers(self, step: int = 0) -> Singles:
+    def layers(self, step: int = 0) -> Floats32:
         """Texels of the slice texture for one destination time, (layers, H, W, 4)."""
         slices = self.store.at(step)
         size = (self.geometry.rows.size, self.geometry.columns.size)
@@ -172,7 +170,7 @@ class TextureSet:
             list(pool.map(make, range(self.count)))
         return result
 
-    def _nodal(self, slices: TraceSlices, layer: int) -> Singles:
+    def _nodal(self, slices: TraceSlices, layer: int) -> Floats32:
         """Give the four channels of one layer at the nodes, (J, I, 4)."""
         result = np.zeros((*slices.shape, 4), np.float32)
         if layer == 0:
@@ -197,13 +195,13 @@ class TextureSet:
             result[..., 3] = self._speed(slices)
         return result
 
-    def _speed(self, slices: TraceSlices) -> NDArray[Any]:
+    def _speed(self, slices: TraceSlices) -> AnyArray:
         """Speed of the flow at the nodes in multiples of its typical speed, (J, I)."""
         field = self.geometry.field
         step = int(np.argmin(np.abs(field.times - slices.times[0])))
         return np.asarray(field.speed[step] / self.typical_speed)
 
-    def _tangent(self, slices: TraceSlices) -> NDArray[Any]:
+    def _tangent(self, slices: TraceSlices) -> AnyArray:
         rate = slices.rate[0]
         if self.paper is not None:
             return three(rate * self.paper.by_cell())
@@ -223,12 +221,12 @@ class TextureSet:
         return Moves(self.geometry.field.surface, frame[:2] if self.geometry.planar else frame)
 
     @cached_property
-    def _length(self) -> NDArray[np.float64]:
+    def _length(self) -> Floats:
         """Nominal length of one unit of lag at each node, (J, I, 1)."""
         return (self.store.unit * self.pace)[..., None]
 
 
-def _usable_reach(reach: NDArray[Any], slices: TraceSlices) -> NDArray[Any]:
+def _usable_reach(reach: AnyArray, slices: TraceSlices) -> AnyArray:
     """Reach to draw with: where nothing moves, the neighbours alone decide."""
     still = ~np.abs(slices.rate[0]).any(axis=-1)
     return np.where(still, np.inf, reach).clip(max=2 * float(slices.lags[-1]))

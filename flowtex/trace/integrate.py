@@ -16,20 +16,18 @@ changes to another chart between two steps, and what is kept are positions in in
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, fields
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from flowtex.trace.particles import Particles, Step, join
+from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.trace.sampler import Sampler
 
 __all__ = ["Paths", "integrate"]
 
-Floats = NDArray[np.float64]
-Indices = NDArray[np.intp]
-Bools = NDArray[np.bool_]
 Numbers = NDArray[np.int8]
 
 #: Longest step in cells: a path cannot jump over a blanked cell unseen.
@@ -108,6 +106,54 @@ def integrate(
     return Paths(np.moveaxis(run.out, 1, 2), run.reach / unit, run.polar, run.left)
 
 
+@dataclass
+class _Particles:
+    """Particles still under way; the last axis is theirs.
+
+    Where there are poles, ``chart`` is what ``y`` is given on, and ``index`` the same in index
+    space; elsewhere both are None.
+    """
+
+    which: Indices
+    unit: Floats
+    rest: Floats
+    y: Floats
+    lag: Floats
+    step: Floats
+    rate: Floats
+    next: Indices
+    chart: Numbers | None
+    index: Floats | None
+
+    def pick(self, mask: Bools) -> _Particles:
+        """Return some of them."""
+        return _Particles(*_picked(self, mask))
+
+
+@dataclass
+class IntegrationStep:
+    """Steps of some particles, from (y0, k0) at lag0 to (y1, k1); the last axis is theirs."""
+
+    y0: Floats
+    k0: Floats
+    y1: Floats
+    k1: Floats
+    lag0: Floats
+    h: Floats
+    chart: Numbers | None = None
+    index: Floats | None = None
+
+    def pick(self, mask: Bools | Indices) -> IntegrationStep:
+        """Return the steps of some of them."""
+        return IntegrationStep(*_picked(self, mask))
+
+    def at(self, s: Floats) -> Floats:
+        """Position at a fraction of each step, by the cubic through both ends and slopes."""
+        r = 1 - s
+        start = r * r * (self.y0 + s * (2 * self.y0 + self.h * self.k0))
+        return np.asarray(start + s * s * (self.y1 + r * (2 * self.y1 - self.h * self.k1)))
+
+
 class _Run:
     """Everything about one call of :func:`integrate`."""
 
@@ -136,7 +182,7 @@ class _Run:
             chart = self.charts.choose(start)
             y = self.charts.enter(start, chart)
             self.polar |= self.charts.close(start)
-        self.state = Particles(
+        self.state = _Particles(
             which=np.arange(count),
             unit=unit,
             rest=sampler.rest(unit, last),
@@ -177,11 +223,11 @@ class _Run:
         elif good.any():
             moved = state.pick(good)
             self._accept(moved, step.pick(good))
-            self.state = join(moved, state.pick(~good))
+            self.state = _join(moved, state.pick(~good))
         if (finished := self.state.next >= len(self.lags)).any():
             self.state = self.state.pick(~finished)
 
-    def _try(self, h: Floats) -> tuple[Step, Floats]:
+    def _try(self, h: Floats) -> tuple[IntegrationStep, Floats]:
         """One Bogacki-Shampine step, and its estimated error in cells, (N,)."""
         state = self.state
         y, k1, lag = state.y, state.rate, state.lag
@@ -190,18 +236,18 @@ class _Run:
         after = y + h * (2 / 9 * k1 + 1 / 3 * k2 + 4 / 9 * k3)
         k4 = self._rate(after, lag + h, k3)
         error = h * _speed(-5 / 72 * k1 + 1 / 12 * k2 + 1 / 9 * k3 - 1 / 8 * k4)
-        return Step(y, k1, after, k4, lag, h, state.chart, state.index), error
+        return IntegrationStep(y, k1, after, k4, lag, h, state.chart, state.index), error
 
     def _rate(self, position: Floats, lag: Floats, ahead: Floats) -> Floats:
         return self.sampler.rate(position, lag, self.direction, self.state.chart, ahead)
 
-    def _index(self, position: Floats, along: Step | Particles) -> Floats:
+    def _index(self, position: Floats, along: IntegrationStep | _Particles) -> Floats:
         """Positions in index space of positions on the charts of a step or state."""
         if self.charts is None or along.chart is None:
             return position
         return self.charts.index(position, along.chart, along.index)
 
-    def _accept(self, state: Particles, step: Step) -> None:
+    def _accept(self, state: _Particles, step: IntegrationStep) -> None:
         """Move particles by their step; those that leave the domain are ended on the way."""
         index = self._index(step.y1, step)
         gone = ~self.sampler.alive(index)
@@ -223,7 +269,7 @@ class _Run:
             before, state.index = state.index, index
             self._change_chart(state, before)
 
-    def _leave(self, state: Particles, index: Floats, gone: Bools) -> None:
+    def _leave(self, state: _Particles, index: Floats, gone: Bools) -> None:
         """Follow the paths no further that have come where they are to be left."""
         if self.within is None:
             return
@@ -235,7 +281,7 @@ class _Run:
             self.out[m][:, state.which[due]] = index[:, due]
         state.next[left] = len(self.lags)
 
-    def _change_chart(self, state: Particles, before: Floats | None) -> None:
+    def _change_chart(self, state: _Particles, before: Floats | None) -> None:
         """Go on in the plane of a pole that has come close, or in index space again."""
         if self.charts is None or state.chart is None or state.index is None or before is None:
             return
@@ -249,7 +295,7 @@ class _Run:
             ahead = y - self.charts.enter(before[:, new], there)
             state.rate[:, new] = self.sampler.rate(y, state.lag[new], self.direction, there, ahead)
 
-    def _record(self, state: Particles, step: Step, share: Floats) -> None:
+    def _record(self, state: _Particles, step: IntegrationStep, share: Floats) -> None:
         """Write the positions at the lags that the first ``share`` of the steps has passed."""
         while True:
             s = (self.wanted[state.next] * state.unit - step.lag0) / step.h
@@ -266,7 +312,7 @@ class _Run:
             self.out[state.next[d], :, state.which[d]] = where.T
             state.next[d] += 1
 
-    def _border(self, step: Step) -> Floats:
+    def _border(self, step: IntegrationStep) -> Floats:
         """Share of a step that ends outside which is still inside, by bisection."""
         low, high = np.zeros(len(step.h)), np.ones(len(step.h))
         for _ in range(BISECTIONS):
@@ -275,7 +321,7 @@ class _Run:
             low, high = np.where(inside, middle, low), np.where(inside, high, middle)
         return low
 
-    def _go_straight(self, state: Particles, rate: Floats) -> None:
+    def _go_straight(self, state: _Particles, rate: Floats) -> None:
         """End paths where they are, and fill the lags that are left straight ahead."""
         self.reach[state.which] = state.lag
         for m, lag in enumerate(self.lags):
@@ -290,3 +336,17 @@ def _speed(rate: Floats) -> Floats:
     """Greatest component of a rate, (N,)."""
     size = np.abs(rate)
     return np.asarray(np.maximum(size[0], size[1]))
+
+
+def _join(one: _Particles, two: _Particles) -> _Particles:
+    """Put some particles behind others."""
+    pairs = ((getattr(one, f.name), getattr(two, f.name)) for f in fields(_Particles))
+    joined: Iterator[Any] = (
+        None if a is None else np.concatenate([a, b], axis=-1) for a, b in pairs
+    )
+    return _Particles(*joined)
+
+
+def _picked(these: _Particles | IntegrationStep, mask: Bools | Indices) -> Iterator[Any]:
+    parts = (getattr(these, f.name) for f in fields(these))
+    return (None if part is None else part[..., mask] for part in parts)

@@ -8,13 +8,12 @@ is as good as straight, to a quarter of the whole surface.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from flowtex._util.array_types import Floats
 from flowtex.field import FlowField
 
 __all__ = ["choose_lags", "lag_unit"]
 
-Floats = NDArray[np.float64]
 
 #: First lag in cells, last lag as a share of the surface's extent, greatest number of lags.
 FIRST, LAST, MOST = 0.25, 0.25, 24

@@ -15,14 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from flowtex._util.array_types import Floats
 from flowtex.field import FlowField
-from flowtex.field.signs import corner_signs
 from flowtex.trace.charts import Charts, Patch, cap
-from flowtex.trace.lattice import Corners, Lattice
+from flowtex.trace.node_grid import Corners, NodeGrid
 
 __all__ = ["LengthSampler", "Sampler", "TimeSampler"]
 
-Floats = NDArray[np.float64]
 
 #: A particle slower than this share of the greatest speed has stopped.
 STOPPED = 1e-7
@@ -49,27 +48,21 @@ class Sampler(ABC):
     longest: float
 
     def __init__(self, field: FlowField, data: Floats) -> None:
-        lattice, parts = Lattice.of(field), _spread(data, field)
+        grid, parts = NodeGrid.of(field), _spread(data, field)
         self._poles = poles = field.surface.poles
         #: The charts of a surface that has poles.
         self.charts = None if poles is None else Charts(poles)
         #: Whether particles are inside the domain, in a cell that is not blanked.
-        self.alive = lattice.alive
-        #: Whether the field is one without a sign.
-        self.sign_free = field.sign_free
-        signs = None
-        if self.sign_free:
-            signs = corner_signs(_spread_grid(field.velocity[0], field))
-            p = field.surface.tangents
-            self._metric = [np.sum(p[a] * p[b], axis=-1).ravel() for a, b in METRIC]
-        self._patches = [
-            Patch(lattice, parts, signs=None if signs is None else signs.reshape(4, -1))
-        ]
+        self.alive = grid.alive
+        self._patches = [Patch(grid, parts)]
         if poles is not None and self.charts is not None:
-            near = self.charts.near
-            self._patches += [
-                cap(pole, lattice, parts, near, sign_free=self.sign_free) for pole in poles
-            ]
+            self._patches += [cap(pole, grid, parts, self.charts.near) for pole in poles]
+        self._axes: _Axes | None = None
+        if field.sign_free:
+            self._axes = _Axes(field, grid)
+            flat, *caps = self._patches
+            flat = flat.without_sign(_spread_grid(field.velocity[0], field))
+            self._patches = [flat, *(patch.without_sign() for patch in caps)]
 
     def rate(
         self,
@@ -97,24 +90,10 @@ class Sampler(ABC):
             # Beyond a pole index space runs the other way.
             turned = (chart == 0) & self._poles.mirrored(position)
             result[self._poles.component, turned] *= -1
-        if self.sign_free and ahead is not None:
-            result *= self._agreement(position, result, ahead, chart)
+        if self._axes is not None and ahead is not None:
+            result *= self._axes.sign(position, result, ahead, chart)
             return result
         return np.negative(result, out=result) if direction < 0 else result
-
-    def _agreement(
-        self, position: Floats, one: Floats, two: Floats, chart: NDArray[np.int8] | None
-    ) -> Floats:
-        """Sign of the angle between rates (2, N) in space, -1 where it is more than 90 degrees."""
-        along = one[0] * two[0] + one[1] * two[1]
-        flat = slice(None) if chart is None else np.flatnonzero(chart == 0)
-        here, (a, b), (c, d) = position[:, flat], one[:, flat], two[:, flat]
-        at = self._patches[0].corners(here).at
-        ii, ij, jj = (part[at] for part in self._metric)
-        if self._poles is not None:
-            ij = np.where(self._poles.mirrored(here), -ij, ij)
-        along[flat] = ii * a * c + ij * (a * d + b * c) + jj * b * d
-        return np.where(along < 0, -1.0, 1.0)
 
     @abstractmethod
     def rest(self, unit: Floats, last: float) -> Floats:
@@ -123,6 +102,29 @@ class Sampler(ABC):
     @abstractmethod
     def _rate(self, patch: Patch, position: Floats, lag: Floats, direction: float) -> Floats:
         """Rate on one chart, forward."""
+
+
+class _Axes:
+    """Choice between the two directions of a velocity whose sign means nothing."""
+
+    def __init__(self, field: FlowField, grid: NodeGrid) -> None:
+        p = field.surface.tangents
+        self._grid, self._poles = grid, field.surface.poles
+        self._metric = [np.sum(p[a] * p[b], axis=-1).ravel() for a, b in METRIC]
+
+    def sign(
+        self, position: Floats, one: Floats, two: Floats, chart: NDArray[np.int8] | None
+    ) -> Floats:
+        """Sign of the angle between rates (2, N) in space, -1 where it is more than 90 degrees."""
+        along = one[0] * two[0] + one[1] * two[1]
+        flat = slice(None) if chart is None else np.flatnonzero(chart == 0)
+        here, (a, b), (c, d) = position[:, flat], one[:, flat], two[:, flat]
+        at = self._grid.corners(here).at
+        ii, ij, jj = (part[at] for part in self._metric)
+        if self._poles is not None:
+            ij = np.where(self._poles.mirrored(here), -ij, ij)
+        along[flat] = ii * a * c + ij * (a * d + b * c) + jj * b * d
+        return np.where(along < 0, -1.0, 1.0)
 
 
 class LengthSampler(Sampler):

@@ -15,11 +15,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+
+from flowtex._util.array_types import AnyArray, Floats
 
 __all__ = ["TraceSlices"]
 
-Floats = NDArray[np.float64]
 
 #: Written into every file; a reader refuses what it does not know.
 FORMAT = "flowtex-slices-1"
@@ -55,11 +55,11 @@ class TraceSlices:
 
     lags: Floats
     unit: Floats
-    displacement: NDArray[Any]
-    forward: NDArray[Any] | None
-    rate: NDArray[Any]
-    reach: NDArray[Any]
-    forward_reach: NDArray[Any] | None
+    displacement: AnyArray
+    forward: AnyArray | None
+    rate: AnyArray
+    reach: AnyArray
+    forward_reach: AnyArray | None
     nodes: Floats
     times: Floats
     parameter: str
@@ -150,7 +150,7 @@ class TraceSlices:
             msg = f"factor is {factor}; expected 1 to {min(self.shape)}, the shorter side"
             raise ValueError(msg)
 
-        def mean(a: NDArray[Any], first: int) -> NDArray[Any]:
+        def mean(a: AnyArray, first: int) -> AnyArray:
             inner = tuple(slice(None) for _ in range(first))
             a = a[(*inner, slice(rows * factor), slice(columns * factor))]
             blocks = (*a.shape[:first], rows, factor, columns, factor, *a.shape[first + 2 :])

@@ -15,10 +15,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from scipy import ndimage
 
 from flowtex import FlowField
+from flowtex._util.array_types import Bytes, Floats
 from flowtex.plotting.vtk_camera import look
 from flowtex.rendering.cpu import Camera, Picture, raster, render, shade, smooth
 from flowtex.rendering.cpu.lookup import Mips
@@ -27,9 +27,6 @@ from flowtex.rendering.uniforms import ViewState
 from flowtex.settings import Settings
 from flowtex.textures import TextureSet
 from flowtex.trace import SliceStore
-
-Floats = NDArray[np.float64]
-
 
 # --- fields ---------------------------------------------------------------------------------
 
@@ -511,7 +508,7 @@ def both(
     time: float | None = None,
     clock: float = 0.0,
     **options: Any,
-) -> tuple[NDArray[np.uint8], Picture]:
+) -> tuple[Bytes, Picture]:
     """One view by VTK and by NumPy."""
     plotter.window_size = [160, 120]
     plotter.set_background("red")
@@ -538,7 +535,7 @@ def both(
     return theirs, picture
 
 
-def difference(theirs: NDArray[np.uint8], picture: Picture) -> tuple[float, float, int]:
+def difference(theirs: Bytes, picture: Picture) -> tuple[float, float, int]:
     """Root mean square, share beyond 8 steps, and pixels that only one of them covers."""
     covered = (theirs != [255, 0, 0]).any(axis=-1)
     ours = picture.rgb((0.6, 0.6, 0.6), background=(1, 0, 0))

@@ -6,12 +6,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from flowtex._util.array_types import Floats
 from flowtex.rendering.cpu.noise import Motion, lattice, octave
 from flowtex.rendering.cpu.texture import shared
-
-Floats = NDArray[np.float64]
 
 VALUES: dict[str, Any] = {
     "u_noiseFinest": 1.0,

@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 import pytest
 from measures import grey
-from numpy.typing import NDArray
 from PIL import Image
 from scipy.ndimage import map_coordinates, uniform_filter
 
 import flowtex
 from flowtex import FlowField
+from flowtex._util.array_types import AnyArray, Bools, Bytes, Floats
 from flowtex.cli import main
 from flowtex.settings import Settings, SettingsError
 from flowtex.textures import ImageError, PaperTextures, as_picture
@@ -24,7 +24,6 @@ from flowtex.trace import SliceStore
 from flowtex.view import FlowView
 
 SIZE = (240, 140)
-Floats = NDArray[np.float64]
 
 
 def uniform(u: float = 1.0, v: float = 0.0, steps: int = 1) -> FlowField:
@@ -55,7 +54,7 @@ def still() -> FlowField:
         return uniform(0.0)
 
 
-def photo(rng: np.random.Generator, height: int = 64, width: int = 128) -> NDArray[np.uint8]:
+def photo(rng: np.random.Generator, height: int = 64, width: int = 128) -> Bytes:
     """Blobs of all colours, (H, W, 3)."""
     colours = rng.uniform(0, 255, (height, width, 3))
     blobs = uniform_filter(colours, (height // 8, width // 16, 0))
@@ -67,7 +66,7 @@ def draw(field: FlowField, **options: Any) -> Floats:
     return flowtex.render(field, **{"size": SIZE, **options}).astype(float)
 
 
-def places() -> tuple[Floats, Floats, NDArray[np.bool_]]:
+def places() -> tuple[Floats, Floats, Bools]:
     """Coordinates of the middles of the pixels, and whether they lie well inside 2 by 1."""
     width, height = SIZE
     scale = max(1.0, 2.0 * height / width) / 0.92 / height
@@ -77,7 +76,7 @@ def places() -> tuple[Floats, Floats, NDArray[np.bool_]]:
     return x, y, (np.abs(x - 1) < 0.98) & (np.abs(y - 0.5) < 0.48)
 
 
-def seen(image: NDArray[Any], x: Floats, y: Floats) -> Floats:
+def seen(image: AnyArray, x: Floats, y: Floats) -> Floats:
     """Values of an image that is laid over 2 by 1, row 0 at the top, interpolated bilinearly."""
     height, width = image.shape[:2]
     at = [(1 - y) * height - 0.5, x / 2 * width - 0.5]

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from flowtex import FlowField
+from flowtex._util.array_types import Floats32
 from flowtex.examples import airfoil_field, cylinder_field, double_gyre_field
 from flowtex.settings import Settings
 from flowtex.textures import Geometry, PaperTextures, TextureSet
 from flowtex.textures.displacements import Moves
 from flowtex.trace import SliceStore, TraceSlices, trace
-
-Floats = NDArray[np.float64]
 
 
 def textures(field: FlowField, slices: TraceSlices | None = None, **settings: object) -> TextureSet:
@@ -22,7 +20,7 @@ def textures(field: FlowField, slices: TraceSlices | None = None, **settings: ob
     return TextureSet.build(SliceStore(field, parameter=parameter, slices=slices), options)
 
 
-def nodal(made: TextureSet, layer: NDArray[np.float32]) -> NDArray[np.float32]:
+def nodal(made: TextureSet, layer: Floats32) -> Floats32:
     """Texels that lie on the nodes, (J, I, ...)."""
     rows, columns = made.geometry.rows, made.geometry.columns
     return layer[

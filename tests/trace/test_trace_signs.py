@@ -8,17 +8,15 @@ from typing import Any
 import numpy as np
 import pytest
 from measures import grey, streaks
-from numpy.typing import NDArray
 
 import flowtex
 from flowtex import FlowField, TraceSlices, trace
+from flowtex._util.array_types import Floats
 from flowtex.rendering.cpu import Camera, render
 from flowtex.rendering.uniforms import ViewState, uniforms
 from flowtex.settings import Settings
 from flowtex.textures import TextureSet
 from flowtex.trace import SliceStore, paths
-
-Floats = NDArray[np.float64]
 
 SIZE = (200, 200)
 

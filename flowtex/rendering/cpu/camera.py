@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+
+from flowtex._util.array_types import Floats
 
 __all__ = ["Camera"]
 
-Floats = NDArray[np.float64]
 Point = tuple[float, float, float]
 
 

@@ -6,13 +6,11 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from flowtex._util.array_types import Floats
 from flowtex.rendering.cpu.fragments import Varying
 
 __all__ = ["footprint", "level_colour", "on_surface", "slice_level"]
-
-Floats = NDArray[np.float64]
 
 
 def footprint(dx: Floats, dy: Floats) -> tuple[Floats, Floats]:

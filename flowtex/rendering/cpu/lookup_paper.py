@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from flowtex._util.array_types import Floats
 from flowtex.rendering.cpu.fragments import Varying
 from flowtex.rendering.cpu.levels import footprint
 from flowtex.rendering.cpu.lookup import Mips
@@ -17,7 +17,6 @@ from flowtex.textures import PaperTextures
 
 __all__ = ["PaperImages", "PaperNoise", "PaperPicture"]
 
-Floats = NDArray[np.float64]
 Values = Mapping[str, Any]
 
 

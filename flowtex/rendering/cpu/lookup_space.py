@@ -6,16 +6,14 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from flowtex._util.array_types import Floats
 from flowtex.rendering.cpu.fragments import Fragments
 from flowtex.rendering.cpu.levels import footprint, on_surface
 from flowtex.rendering.cpu.noise import Motion, lattice, octave
 from flowtex.rendering.cpu.texture import Lookup, Sums, shared
 
 __all__ = ["SpaceNoise"]
-
-Floats = NDArray[np.float64]
 
 
 class SpaceNoise(Lookup):

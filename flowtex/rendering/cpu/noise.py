@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from flowtex._util.array_types import Floats, Ints
+
 __all__ = ["Lattice", "Motion", "lattice", "mix", "octave"]
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 Hashes = NDArray[np.uint32]
 
 PRIMES = np.array([0x8DA6B343, 0xD8163841, 0xCB1AB31F], dtype=np.uint32)

@@ -5,14 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from flowtex._util.array_types import Floats, Indices
 from flowtex.rendering.cpu.lookup import Mips
 
 __all__ = ["Path", "SignFreeSlices", "Slices"]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.intp]
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,7 +20,7 @@ class Slices:
     after: Mips | None = None
     between: float = 0.0
 
-    def layer(self, coordinate: Floats, layer: int | Ints, level: Floats) -> Floats:
+    def layer(self, coordinate: Floats, layer: int | Indices, level: Floats) -> Floats:
         """Channels of one layer, (N, 4), at texture coordinates (N, 2) and mip levels (N,)."""
         value = self.before.at(coordinate, level, layer)
         if self.after is None:
@@ -42,7 +39,7 @@ class SignFreeSlices(Slices):
     size: tuple[float, float] = (1.0, 1.0)
     lags: int = 0
 
-    def layer(self, coordinate: Floats, layer: int | Ints, level: Floats) -> Floats:
+    def layer(self, coordinate: Floats, layer: int | Indices, level: Floats) -> Floats:
         """Channels of one layer, (N, 4), at texture coordinates (N, 2)."""
         del level
         at = coordinate * np.array(self.size) - 0.5

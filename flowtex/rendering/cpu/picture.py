@@ -5,15 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from flowtex._util.array_types import Bools, Bytes, Floats
 from flowtex.rendering.cpu.levels import level_colour
 from flowtex.rendering.cpu.shade import paint, shade
 from flowtex.settings import Settings
 
 __all__ = ["Picture"]
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +38,7 @@ class Picture:
     """
 
     value: Floats
-    covered: NDArray[np.bool_]
+    covered: Bools
     coordinate: Floats
     position: Floats
     slice_level: Floats
@@ -48,7 +47,7 @@ class Picture:
 
     def rgb(
         self, colour: ArrayLike = (0.627, 0.627, 0.627), background: ArrayLike = (1.0, 1.0, 1.0)
-    ) -> NDArray[np.uint8]:
+    ) -> Bytes:
         """Colour the picture, without lights: those are the business of the other renderers.
 
         Parameters

@@ -6,16 +6,14 @@ import weakref
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from flowtex._util.array_types import Floats, Floats32, Indices
 from flowtex.rendering.cpu.lookup import Mips
 from flowtex.rendering.cpu.render import maker_of
 from flowtex.rendering.cpu.texture import Lookup, LookupMaker, Sums
 from flowtex.textures import TextureSet
 
 __all__ = ["Kept", "Recorder", "Window"]
-
-Floats = NDArray[np.float64]
 
 
 class Recorder(Lookup):
@@ -86,7 +84,7 @@ class Window(Mips):
         Mip levels beside the finest.
     """
 
-    def __init__(self, texels: NDArray[np.float32], levels: int) -> None:
+    def __init__(self, texels: Floats32, levels: int) -> None:
         self._whole, self._last, self._block = texels, levels, 2**levels
         self._seen: tuple[int, ...] = ()
 
@@ -95,7 +93,7 @@ class Window(Mips):
         """Mip levels beside the finest."""
         return self._last
 
-    def at(self, coordinate: Floats, level: Floats, layer: int | NDArray[np.intp] = 0) -> Floats:
+    def at(self, coordinate: Floats, level: Floats, layer: int | Indices = 0) -> Floats:
         """Look texels up that lie less than a block from each other, as :meth:`Mips.at` does."""
         size = np.array(self._whole.shape[2:0:-1])
         # Filtering reaches one block of the coarsest level far.

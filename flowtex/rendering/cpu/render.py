@@ -7,8 +7,8 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from flowtex._util.array_types import Bools, Floats
 from flowtex.rendering.cpu.camera import Camera
 from flowtex.rendering.cpu.cover import cover
 from flowtex.rendering.cpu.fragments import Fragments
@@ -26,7 +26,6 @@ from flowtex.textures import TextureSet
 
 __all__ = ["maker_of", "mips_of", "render", "slices_at", "view_state"]
 
-Floats = NDArray[np.float64]
 
 #: Fragments that are followed together: what a sample needs of them stays in the cache.
 PART = 1 << 14
@@ -147,7 +146,7 @@ class _Image:
         self._pixel = coverage.pixel
 
     @property
-    def covered(self) -> NDArray[np.bool_]:
+    def covered(self) -> Bools:
         """Pixels that have a fragment, (H, W)."""
         return ~np.isnan(self(np.zeros(len(self._pixel))))
 

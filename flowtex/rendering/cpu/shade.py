@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from flowtex._util.array_types import Floats
 from flowtex.settings import Settings
 
 __all__ = ["paint", "shade", "tone"]
 
-Floats = NDArray[np.float64]
 
 #: Linear colours to cone responses, and their cube roots to Oklab; vectors are rows.
 TO_CONES = np.array(

@@ -6,8 +6,8 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from flowtex._util.array_types import Floats
 from flowtex.rendering.cpu.fragments import Fragments
 from flowtex.rendering.cpu.lookup_space import SpaceNoise
 from flowtex.rendering.cpu.texture import Lookup, LookupMaker, Sums
@@ -15,7 +15,6 @@ from flowtex.textures import TextureSet
 
 __all__ = ["smooth"]
 
-Floats = NDArray[np.float64]
 Function = Callable[[Floats], Floats]
 
 

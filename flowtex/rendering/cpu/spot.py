@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from flowtex.field import Surface
 from flowtex.field.facets import Facet
@@ -11,8 +10,6 @@ from flowtex.rendering.cpu.camera import Camera
 from flowtex.rendering.cpu.raster import Coverage
 
 __all__ = ["facing", "spot"]
-
-Floats = NDArray[np.float64]
 
 
 def spot(surface: Surface, place: Facet, camera: Camera) -> Coverage:

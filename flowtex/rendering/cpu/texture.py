@@ -7,14 +7,13 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from flowtex._util.array_types import Floats
 from flowtex.rendering.cpu.fragments import Fragments
 from flowtex.rendering.cpu.path import Path, Slices
 
 __all__ = ["Lookup", "LookupMaker", "Side", "Summing", "Sums", "shared", "weight"]
 
-Floats = NDArray[np.float64]
 Values = Mapping[str, Any]
 
 

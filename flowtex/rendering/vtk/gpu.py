@@ -8,9 +8,10 @@ let go with the window at the latest.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from vtkmodules.util.vtkConstants import VTK_FLOAT
 from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLRenderWindow, vtkTextureObject
+
+from flowtex._util.array_types import Floats32
 
 __all__ = ["GPUTexture"]
 
@@ -36,12 +37,12 @@ class GPUTexture:
 
     def __init__(
         self,
-        texels: NDArray[np.float32],
+        texels: Floats32,
         *,
         levels: int | None = None,
         repeat: tuple[bool, bool] = (False, False),
     ) -> None:
-        self._texels: NDArray[np.float32] | None = np.ascontiguousarray(texels, np.float32)
+        self._texels: Floats32 | None = np.ascontiguousarray(texels, np.float32)
         self._levels = levels
         self._repeat = repeat
         self._object: vtkTextureObject | None = None

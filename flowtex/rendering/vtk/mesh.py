@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pyvista as pv
-from numpy.typing import NDArray
 
+from flowtex._util.array_types import Floats32
 from flowtex.textures import TextureSet
 
 __all__ = [
@@ -40,7 +40,7 @@ def surface_mesh(textures: TextureSet) -> pv.PolyData:
     return mesh
 
 
-def set_position(mesh: pv.PolyData, position: NDArray[np.float32]) -> None:
+def set_position(mesh: pv.PolyData, position: Floats32) -> None:
     """Write the nodes' positions in the surface's frame, (J, I, 3), relative to any anchor."""
     mesh.point_data[POSITION] = position.reshape(-1, 3)
 
