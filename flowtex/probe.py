@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import Floats, Indices
 from flowtex.field.facets import facet
+from flowtex.field.interpolation import bracket
 from flowtex.field.locate import locate, locator
 from flowtex.field.reading import Reading, reading
 from flowtex.rendering.cpu import Camera
@@ -210,7 +211,7 @@ class _Pixel:
         lags = lags[order] + 0.0
         points, coordinates, noise = self._places(np.concatenate(found.displacement)[order])
         knots = np.concatenate([[0.0], values["u_lags"]])
-        m = np.clip(np.searchsorted(knots, np.abs(lags)) - 1, 0, len(knots) - 2)
+        m, shares = bracket(knots, np.abs(lags), side="left")
         path_lags, path = self._path(sides, knots, lags)
         pixel, grain = self._sizes()
         moves = np.isfinite(sides[0].reach[0])
@@ -223,7 +224,7 @@ class _Pixel:
             points=points,
             coordinates=coordinates,
             slices=np.stack([m, m + 1], axis=-1),
-            shares=(np.abs(lags) - knots[m]) / (knots[m + 1] - knots[m]),
+            shares=shares,
             slice_lags=knots * self._unit,
             slice_level=float(self._level[0]),
             weights=found.weights[order],

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flowtex.field import FlowField
-from flowtex.field.reading import moment
+from flowtex.field.interpolation import steps_around
 from flowtex.settings import TABLE, Affects, Settings, SettingsError
 from flowtex.textures import TextureSet, as_picture
 from flowtex.trace import SliceStore, TraceSlices, shared_store
@@ -138,7 +138,7 @@ class FlowView:
     @property
     def moment(self) -> tuple[int, int, float]:
         """The two time steps around the time that is shown, and how far it is between them."""
-        return moment(self.field.times, self._time)
+        return steps_around(self.field.times, self._time)
 
     def scalar(self, name: str) -> NDArray[np.float64]:
         """Nodal values at the time that is shown, (J, I); ``"speed"`` is always there.

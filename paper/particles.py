@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from flowtex.field import FlowField
+from flowtex.field.interpolation import along_line
 from flowtex.trace import TraceSlices, paths, trace
 
 __all__ = ["Errors", "position_errors", "step_slices"]
@@ -183,12 +184,7 @@ def _lines(field: FlowField, factor: int) -> tuple[Floats, Floats]:
 
 def _forward(lines: tuple[Floats, Floats], index: Floats) -> Floats:
     """Take positions in the coarser index space to the finer one; periods go on."""
-    parts = []
-    for axis, line in enumerate(lines):
-        last = len(line) - 1
-        turns = np.floor(index[..., axis] / last)
-        inside = np.interp(index[..., axis] - turns * last, np.arange(last + 1), line)
-        parts.append(inside + turns * line[-1])
+    parts = [along_line(line, index[..., a], periodic=True) for a, line in enumerate(lines)]
     return np.stack(parts, axis=-1)
 
 

@@ -10,8 +10,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from flowtex.field.facets import Facet, facet
 from flowtex.field.field import FlowField
+from flowtex.field.interpolation import steps_around
 
-__all__ = ["Reading", "moment", "reading"]
+__all__ = ["Reading", "reading"]
 
 Floats = NDArray[np.float64]
 
@@ -58,15 +59,6 @@ class Reading:
         return f"{length} / ({time})" if "/" in time else f"{length}/{time}"
 
 
-def moment(times: Floats, time: float) -> tuple[int, int, float]:
-    """Return the two time steps around a time, and how far it is from one to the other, 0 to 1."""
-    if len(times) == 1:
-        return 0, 0, 0.0
-    step = int(np.clip(np.searchsorted(times, time, side="right") - 1, 0, len(times) - 2))
-    late = float((time - times[step]) / (times[step + 1] - times[step]))
-    return step, step + 1, late
-
-
 def reading(field: FlowField, index: ArrayLike, time: float | None = None) -> Reading:
     """Read a field at a place of its surface.
 
@@ -97,7 +89,7 @@ def _read(field: FlowField, place: Facet, time: float | None) -> Reading:
     if not first <= at <= last:
         msg = f"time is {time!r}; expected {first:g} to {last:g}, the times of the field"
         raise ValueError(msg)
-    before, after, late = moment(field.times, at)
+    before, after, late = steps_around(field.times, at)
 
     def value(steps: Floats) -> Floats:
         if len(steps) == 1:

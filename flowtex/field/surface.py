@@ -14,8 +14,8 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage
 
+from flowtex.field.interpolation import cell_of, cubic_weights, fill_blanked
 from flowtex.field.poles import Pole, Poles, find_poles
 
 __all__ = ["Surface"]
@@ -44,7 +44,7 @@ class Surface:
     def __init__(self, points: Floats, valid: Bools, periodic: tuple[bool, bool]) -> None:
         self.valid = valid
         self.periodic = periodic
-        self.points = _fill(points, _usable(points, valid))
+        self.points = fill_blanked(points, _usable(points, valid))
         #: What to add to a position when index j, or i, grows by one period, (2, 3).
         self.offset = np.stack(
             [
@@ -174,9 +174,9 @@ class Surface:
         if self.poles is not None:
             flat = self.poles.fold(flat.T).T
         result = np.zeros((len(flat), 3))
-        i0, si, beyond_i, turns_i = _locate(flat[:, 0], self.shape[1], periodic=self.periodic[1])
-        j0, sj, beyond_j, turns_j = _locate(flat[:, 1], self.shape[0], periodic=self.periodic[0])
-        wi, wj = _cubic(si), _cubic(sj)
+        i0, si, beyond_i, turns_i = cell_of(flat[:, 0], self.shape[1], periodic=self.periodic[1])
+        j0, sj, beyond_j, turns_j = cell_of(flat[:, 1], self.shape[0], periodic=self.periodic[0])
+        wi, wj = cubic_weights(si), cubic_weights(sj)
         width = self.shape[1] + 2
         nodes = self.padded.reshape(-1, 3)
         for b in range(4):
@@ -206,14 +206,6 @@ def _usable(points: Floats, valid: Bools) -> Bools:
     return np.asarray(finite & (valid | near))
 
 
-def _fill(points: Floats, usable: Bools) -> Floats:
-    """Replace coordinates that cannot be trusted by those of the nearest node that can."""
-    if usable.all():
-        return points
-    nearest = ndimage.distance_transform_edt(~usable, return_distances=False, return_indices=True)
-    return np.asarray(points[tuple(nearest)])
-
-
 def _pad(p: Floats, good: Bools, offset: Floats, *, periodic: bool) -> Floats:
     """Add a ghost line before and after the first axis."""
     if periodic:
@@ -228,7 +220,9 @@ def _over(ring: Floats, pole: Pole) -> Floats:
     k, s = np.divmod(at, 1.0)
     first = k.astype(np.intp)
     nodes = ring[1:-2]
-    line = sum(w[:, None] * nodes[(first + a - 1) % pole.cells] for a, w in enumerate(_cubic(s)))
+    line = sum(
+        w[:, None] * nodes[(first + a - 1) % pole.cells] for a, w in enumerate(cubic_weights(s))
+    )
     return np.asarray(line)[np.arange(-1, pole.cells + 2) % pole.cells]
 
 
@@ -256,25 +250,3 @@ def _difference(
     forward = np.where(good_after[..., None], after - here, 0.0)
     count = np.maximum(good_before.astype(float) + good_after, 1.0)
     return np.asarray((backward + forward) / count[..., None])
-
-
-def _locate(
-    x: Floats, count: int, *, periodic: bool
-) -> tuple[NDArray[np.intp], Floats, Floats, Floats]:
-    """Cell, fraction inside it, distance beyond the border and whole turns of an index."""
-    cells = count - 1
-    turns = np.floor(x / cells) if periodic else np.zeros_like(x)
-    inside = x - turns * cells if periodic else np.clip(x, 0, cells)
-    cell = np.minimum(inside.astype(np.intp), cells - 1)
-    return cell, inside - cell, np.zeros_like(x) if periodic else x - inside, turns
-
-
-def _cubic(t: Floats) -> tuple[Floats, Floats, Floats, Floats]:
-    """Catmull-Rom weights of the four nodes around a fraction of a cell."""
-    t2, t3 = t * t, t * t * t
-    return (
-        0.5 * (-t3 + 2 * t2 - t),
-        0.5 * (3 * t3 - 5 * t2 + 2),
-        0.5 * (-3 * t3 + 4 * t2 + t),
-        0.5 * (t3 - t2),
-    )

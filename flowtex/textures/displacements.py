@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flowtex._util.array_types import Floats
-from flowtex.field.surface import Surface, _cubic, _locate
+from flowtex.field.interpolation import cell_of, cubic_weights
+from flowtex.field.surface import Surface
 
 __all__ = ["Moves"]
 
@@ -79,9 +80,9 @@ class Moves:
         closed_j, closed_i = self._surface.periodic
         if self._surface.poles is not None:
             i, j = self._surface.poles.fold(np.stack([i, j]))
-        i0, si, beyond_i, turns_i = _locate(i, columns, periodic=closed_i)
-        j0, sj, beyond_j, turns_j = _locate(j, rows, periodic=closed_j)
-        wi, wj = _cubic(si), _cubic(sj)
+        i0, si, beyond_i, turns_i = cell_of(i, columns, periodic=closed_i)
+        j0, sj, beyond_j, turns_j = cell_of(j, rows, periodic=closed_j)
+        wi, wj = cubic_weights(si), cubic_weights(sj)
         corner = j0 * self._width + i0
         result = np.zeros((len(self._padded), len(i)))
         for b in range(4):

@@ -15,10 +15,10 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from scipy import ndimage
 
 from flowtex._util.array_types import AnyArray, Floats, Floats32, Indices
 from flowtex.field import FlowField
+from flowtex.field.interpolation import nearest_known
 
 __all__ = ["Geometry", "Padding"]
 
@@ -183,8 +183,4 @@ class Geometry:
 
     @cached_property
     def _nearest(self) -> tuple[Any, ...]:
-        return tuple(
-            ndimage.distance_transform_edt(
-                ~self.field.valid, return_distances=False, return_indices=True
-            )
-        )
+        return nearest_known(self.field.valid)

@@ -18,12 +18,17 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from scipy import ndimage
 
 from flowtex._util.array_types import Floats, Floats32
 from flowtex.field import FlowField
+from flowtex.field.interpolation import (
+    along_line,
+    between_nodes,
+    fill_blanked,
+    inverse_along_line,
+)
 from flowtex.textures.contrast import HALF_LEVELS, deviations
-from flowtex.textures.patterns import SPOT_GRAIN, Texels, checkerboard, even_noise, sample, spots
+from flowtex.textures.patterns import SPOT_GRAIN, Texels, checkerboard, even_noise, spots
 from flowtex.trace import SliceStore
 
 __all__ = ["PaperTextures"]
@@ -139,7 +144,7 @@ class PaperTextures:
         """Noise coordinates of positions in index space, (..., 2), straight on beyond the ends."""
         lines = ((self.along_i, self.repeat[1]), (self.along_j, self.repeat[0]))
         parts = [
-            _extended(line, index[..., axis], periodic=periodic)
+            along_line(line, index[..., axis], periodic=periodic)
             for axis, (line, periodic) in enumerate(lines)
         ]
         return np.stack(parts, axis=-1)
@@ -148,7 +153,7 @@ class PaperTextures:
         """Positions in index space of noise coordinates, (..., 2): the way back from :meth:`at`."""
         lines = ((self.along_i, self.repeat[1]), (self.along_j, self.repeat[0]))
         parts = [
-            _traced_back(line, coordinate[..., axis], periodic=periodic)
+            inverse_along_line(line, coordinate[..., axis], periodic=periodic)
             for axis, (line, periodic) in enumerate(lines)
         ]
         return np.stack(parts, axis=-1)
@@ -168,28 +173,6 @@ def _coordinates(field: FlowField, *, correction: bool) -> tuple[Floats, Floats]
         ends = np.concatenate([[0.0], np.cumsum(np.maximum(steps, 1e-9 * steps.max()))])
         lines.append(ends / ends[-1])
     return lines[0], lines[1]
-
-
-def _extended(line: Floats, x: Floats, *, periodic: bool) -> Floats:
-    """Interpolate a line at any index, going on by its period or straight."""
-    last = len(line) - 1
-    if periodic:
-        turns = np.floor(x / last)
-        return np.asarray(np.interp(x - turns * last, np.arange(last + 1), line) + turns)
-    inside = np.interp(x, np.arange(last + 1), line)
-    before = np.minimum(x, 0) * (line[1] - line[0])
-    return np.asarray(inside + before + np.maximum(x - last, 0) * (line[-1] - line[-2]))
-
-
-def _traced_back(line: Floats, u: Floats, *, periodic: bool) -> Floats:
-    """Index at which a line, gone on as by :func:`_extended`, has a value."""
-    last = len(line) - 1
-    turns = np.floor(u) if periodic else np.zeros_like(u)
-    inside = np.interp(u - turns, line, np.arange(last + 1))
-    if periodic:
-        return np.asarray(inside + turns * last)
-    before = np.minimum(u, 0) / (line[1] - line[0])
-    return np.asarray(inside + before + np.maximum(u - 1, 0) / (line[-1] - line[-2]))
 
 
 def _size(field: FlowField, resolution: int) -> tuple[int, int]:
@@ -247,7 +230,9 @@ def _steps(store: SliceStore, index: Floats, texel: Floats) -> Floats:
     if store.parameter == "arclength":
         speed = _by_length(speed, field)
     speed = speed * store.unit[..., None]
-    crossed = np.stack([sample(speed[..., axis], index) for axis in range(2)], axis=-1) / texel
+    crossed = (
+        np.stack([between_nodes(speed[..., axis], index) for axis in range(2)], axis=-1) / texel
+    )
     return np.asarray(1 / np.maximum(crossed.max(axis=-1), 1 / float(store.lags[-1])))
 
 
@@ -258,5 +243,4 @@ def _by_length(components: Floats, field: FlowField) -> Floats:
     if not moving.any():
         return np.zeros_like(components)
     found = components / np.where(moving, speed, 1.0)[..., None]
-    nearest = ndimage.distance_transform_edt(~moving, return_distances=False, return_indices=True)
-    return np.asarray(found[tuple(nearest)])
+    return fill_blanked(found, moving)

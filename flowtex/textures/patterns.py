@@ -15,10 +15,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage
 
 from flowtex._util.array_types import Floats, Ints
 from flowtex.field import FlowField
+from flowtex.field.interpolation import between_nodes
 
 __all__ = [
     "SPOT",
@@ -27,7 +27,6 @@ __all__ = [
     "Texels",
     "checkerboard",
     "even_noise",
-    "sample",
     "spots",
 ]
 
@@ -73,7 +72,10 @@ class Texels:
         """Sides of the texels in space, (H, W, 2) along i and along j."""
         tangents = (np.linalg.norm(t, axis=-1) for t in self.field.surface.tangents)
         return np.stack(
-            [sample(p, self.index) * self.size[..., axis] for axis, p in enumerate(tangents)],
+            [
+                between_nodes(p, self.index) * self.size[..., axis]
+                for axis, p in enumerate(tangents)
+            ],
             axis=-1,
         )
 
@@ -83,12 +85,6 @@ class Texels:
         surface = self.field.surface
         local = surface.at(self.index) - surface.center
         return local if surface.frame is None else np.asarray(local @ surface.frame.T)
-
-
-def sample(nodal: NDArray[np.generic], index: Floats) -> Floats:
-    """Nodal values (J, I) at positions in index space, (..., 2)."""
-    at = [index[..., 1], index[..., 0]]
-    return np.asarray(ndimage.map_coordinates(nodal.astype(float), at, order=1, mode="nearest"))
 
 
 def even_noise(texels: Texels, seed: int) -> Floats:

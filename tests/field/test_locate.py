@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from flowtex import FlowField
 from flowtex.field.facets import facet
 from flowtex.field.locate import Locator, locate, locator
-from flowtex.field.reading import moment, reading
+from flowtex.field.reading import reading
 
 Floats = NDArray[np.float64]
 
@@ -196,11 +196,3 @@ def test_a_reading_without_a_sign_does_not_cancel() -> None:
 def test_a_place_outside_is_refused(at: tuple[float, ...], fault: str) -> None:
     with pytest.raises(ValueError, match=fault):
         reading(flat(), at)
-
-
-def test_moments() -> None:
-    times = np.array([0.0, 1.0, 3.0])
-    assert moment(times[:1], 0.0) == (0, 0, 0.0)
-    assert moment(times, 0.25) == (0, 1, 0.25)
-    assert moment(times, 1.0) == (1, 2, 0.0)
-    assert moment(times, 3.0) == (1, 2, 1.0)

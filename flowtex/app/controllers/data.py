@@ -23,8 +23,8 @@ from flowtex.app.server.untrusted import clipped, name_among, shortened
 from flowtex.app.streaming.wishes import Found, Wish
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
+from flowtex.field.interpolation import steps_around
 from flowtex.field.io.source import FlowSource
-from flowtex.field.reading import moment
 from flowtex.staging import coarsened
 from flowtex.trace import SliceStore
 
@@ -185,7 +185,7 @@ class Data(Part):
         store = self.library.trace(name, found.choice, field, self.area.settings).store
         # The time that is shown stays where another part of the same data is.
         if store is not None and np.array_equal(field.times, self.scene.field.times):
-            for step in sorted(set(moment(field.times, self.scene.handle.time)[:2])):
+            for step in sorted(set(steps_around(field.times, self.scene.handle.time)[:2])):
                 store.at(step)
         return store
 

@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flowtex._version import __version__
+from flowtex.field.interpolation import steps_around
 from flowtex.first_look import first_look
 from flowtex.rendering.shader_text import compose
 from flowtex.rendering.uniforms import variants
@@ -190,11 +191,8 @@ class Scene:
 
     def moment(self, time: float) -> tuple[int, ...]:
         """Return the steps that are needed to show a time, one or two."""
-        times = self.times
-        if len(times) == 1:
-            return (0,)
-        step = int(np.clip(np.searchsorted(times, time, side="right") - 1, 0, len(times) - 2))
-        return (step, step + 1)
+        before, after, _ = steps_around(self.times, time)
+        return (before,) if before == after else (before, after)
 
     @property
     def nbytes_of_step(self) -> int:

@@ -1,0 +1,181 @@
+"""Values between nodes and between time steps, and at nodes that have none of their own."""
+
+from __future__ import annotations
+
+from typing import Any, Literal, TypeVar, cast
+
+import numpy as np
+from scipy import ndimage
+
+from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
+
+__all__ = [
+    "along_line",
+    "between_nodes",
+    "bracket",
+    "cell_of",
+    "cubic_weights",
+    "fill_blanked",
+    "inverse_along_line",
+    "nearest_known",
+    "steps_around",
+]
+
+A = TypeVar("A", bound=AnyArray)
+
+
+def nearest_known(known: Bools) -> tuple[Indices, Indices]:
+    """Return row and column of the nearest node that is known, for each node of (J, I)."""
+    rows, columns = ndimage.distance_transform_edt(
+        ~known, return_distances=False, return_indices=True
+    )
+    return rows, columns
+
+
+def fill_blanked(data: A, known: Bools, axis: int = 0) -> A:
+    """Give nodes that are not known the value of the nearest one that is.
+
+    Parameters
+    ----------
+    data
+        Nodal values, (..., J, I, ...).
+    known
+        Nodes whose values count, (J, I).
+    axis
+        Axis of the data along which j runs; i runs along the next one.
+
+    Returns
+    -------
+    numpy.ndarray
+        A copy, or the data themselves where all nodes are known.
+    """
+    if known.all():
+        return data
+    before: list[Any] = [slice(None)] * axis
+    filled: Any = data[(*before, *nearest_known(known))]
+    return cast("A", filled)
+
+
+def bracket(
+    line: Floats, values: Any, *, side: Literal["left", "right"] = "right"
+) -> tuple[Any, Any]:
+    """Find the interval of an increasing line in which values lie.
+
+    Parameters
+    ----------
+    line
+        Two or more increasing numbers, (N,).
+    values
+        Numbers of any shape; those beyond an end belong to the first or the last interval.
+    side
+        Which interval has a value that is equal to a number of the line: with ``"right"`` the one
+        that begins there, with ``"left"`` the one that ends there.
+
+    Returns
+    -------
+    interval
+        Number of the interval, from 0 to N - 2, in the shape of the values.
+    share
+        Distance from its start, in lengths of the interval; between 0 and 1 inside the line.
+    """
+    interval = np.clip(np.searchsorted(line, values, side=side) - 1, 0, len(line) - 2)
+    return interval, (values - line[interval]) / (line[interval + 1] - line[interval])
+
+
+def steps_around(times: Floats, time: float) -> tuple[int, int, float]:
+    """Return the two time steps around a time, and its share of the way between them, 0 to 1.
+
+    A steady field, with one time, has its only step twice.
+    """
+    if len(times) == 1:
+        return 0, 0, 0.0
+    step, share = bracket(times, time)
+    return int(step), int(step) + 1, float(share)
+
+
+def cell_of(index: Floats, count: int, *, periodic: bool) -> tuple[Indices, Floats, Floats, Floats]:
+    """Find the cells of positions along one axis.
+
+    Parameters
+    ----------
+    index
+        Positions in cells, (N,).
+    count
+        Number of nodes along the axis.
+    periodic
+        Whether the last node is the first one again.
+
+    Returns
+    -------
+    cell, inside, beyond, turns
+        Number of the cell; fraction of it that lies before the position; distance beyond the
+        nearer end, signed, where the axis is not periodic; whole periods, where it is. (N,) each.
+    """
+    cells = count - 1
+    turns = np.floor(index / cells) if periodic else np.zeros_like(index)
+    folded = index - turns * cells if periodic else np.clip(index, 0, cells)
+    cell = np.minimum(folded.astype(np.intp), cells - 1)
+    beyond = np.zeros_like(index) if periodic else index - folded
+    return cell, folded - cell, beyond, turns
+
+
+def cubic_weights(t: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+    """Catmull-Rom weights of the four nodes around a fraction of a cell."""
+    t2, t3 = t * t, t * t * t
+    return (
+        0.5 * (-t3 + 2 * t2 - t),
+        0.5 * (3 * t3 - 5 * t2 + 2),
+        0.5 * (-3 * t3 + 4 * t2 + t),
+        0.5 * (t3 - t2),
+    )
+
+
+def between_nodes(nodal: AnyArray, index: Floats) -> Floats:
+    """Interpolate nodal values linearly between the nodes, constant beyond the border.
+
+    Parameters
+    ----------
+    nodal
+        Values at the nodes, (J, I).
+    index
+        Positions as (i, j), in cells, (..., 2).
+    """
+    at = [index[..., 1], index[..., 0]]
+    return np.asarray(ndimage.map_coordinates(nodal.astype(float), at, order=1, mode="nearest"))
+
+
+def along_line(line: Floats, index: Floats, *, periodic: bool) -> Floats:
+    """Interpolate the values of a line of nodes at any index.
+
+    Parameters
+    ----------
+    line
+        Increasing values, (N,). One period is as long as the last value less the first.
+    index
+        Positions in cells, of any shape.
+    periodic
+        Whether the values go on by a period beyond each end; straight on otherwise.
+    """
+    last = len(line) - 1
+    if periodic:
+        turns = np.floor(index / last)
+        inside = np.interp(index - turns * last, np.arange(last + 1), line)
+        return np.asarray(inside + turns * (line[-1] - line[0]))
+    inside = np.interp(index, np.arange(last + 1), line)
+    before = np.minimum(index, 0) * (line[1] - line[0])
+    return np.asarray(inside + before + np.maximum(index - last, 0) * (line[-1] - line[-2]))
+
+
+def inverse_along_line(line: Floats, values: Floats, *, periodic: bool) -> Floats:
+    """Return the index at which :func:`along_line` gives these values.
+
+    The line begins at zero.
+    """
+    last = len(line) - 1
+    turns = np.floor(values / line[-1]) if periodic else np.zeros_like(values)
+    inside = np.interp(values - turns * line[-1], line, np.arange(last + 1))
+    if periodic:
+        return np.asarray(inside + turns * last)
+    before = np.minimum(values, 0) / (line[1] - line[0])
+    after = np.maximum(values - line[-1], 0) / (line[-1] - line[-2])
+    return np.asarray(inside + before + after)
