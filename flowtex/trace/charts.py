@@ -26,11 +26,11 @@ Numbers = NDArray[np.int8]
 
 #: Cells from a pole within which a path is followed in the plane: so many at least, and up to
 #: where cells are this share as wide as long.
-NEAR, WIDE = 6, 0.5
+LEAST_NEAR_CELLS, NEAR_ASPECT = 6, 0.5
 #: Cells from a pole within which nothing is looked up between nodes.
-CLOSE = 4
-#: How many more it takes to leave it again, and how many more hold data.
-LEAVE, SPARE = 1, 3
+CLOSE_CELLS = 4
+#: Cells beyond those at which a path leaves the plane again, and cells beyond that with data.
+LEAVE_CELLS, SPARE_CELLS = 1, 3
 
 
 class Patch(NamedTuple):
@@ -100,21 +100,24 @@ class Charts:
         self._poles = poles
         cells = next(iter(poles)).cells
         #: Cells from a pole within which its plane is used.
-        self.near = min(max(NEAR, int(WIDE * cells / (2 * np.pi))), max((poles.lines - 1) // 3, 1))
+        self.near = min(
+            max(LEAST_NEAR_CELLS, int(NEAR_ASPECT * cells / (2 * np.pi))),
+            max((poles.lines - 1) // 3, 1),
+        )
 
     def choose(self, index: Floats, chart: Numbers | None = None) -> Numbers:
         """Charts (N,) for positions (2, N) in index space; those of before stay a little longer."""
         index = self._poles.fold(index)
         result = np.zeros(index.shape[1], np.int8)
         for number, pole in enumerate(self._poles, 1):
-            stay = 0 if chart is None else LEAVE * (chart == number)
+            stay = 0 if chart is None else LEAVE_CELLS * (chart == number)
             result[pole.depth(index) < self.near + stay] = number
         return result
 
     def close(self, index: Floats) -> Bools:
         """Whether positions (2, N) in index space are right beside a pole, (N,)."""
         index = self._poles.fold(index)
-        close = [pole.depth(index) < min(CLOSE, self.near) for pole in self._poles]
+        close = [pole.depth(index) < min(CLOSE_CELLS, self.near) for pole in self._poles]
         return np.asarray(np.any(close, axis=0))
 
     def enter(self, index: Floats, chart: Numbers) -> Floats:
@@ -136,14 +139,14 @@ class Charts:
         for number, pole in enumerate(self._poles, 1):
             some = chart == number
             if some.any():
-                found = pole.index(position[:, some])
+                there = pole.index(position[:, some])
                 if near is not None:
                     # A path as long as from pole to pole is written anew.
                     beside = near[:, some]
                     far = np.abs(pole.depth(beside)) >= self._poles.lines - 1
                     beside = np.where(far, self._poles.fold(beside), beside)
-                    found = pole.nearest(found, beside)
-                result[:, some] = found
+                    there = pole.nearest(there, beside)
+                result[:, some] = there
         return result
 
 
@@ -163,7 +166,7 @@ def cap(pole: Pole, grid: NodeGrid, data: list[Floats], near: int) -> Patch:
     """
     shape = (-1, grid.rows, grid.columns)
     lines = (grid.rows if pole.component else grid.columns) - 1
-    depth = min(near + LEAVE + SPARE, lines)
+    depth = min(near + LEAVE_CELLS + SPARE_CELLS, lines)
     first = pole.line if pole.inward > 0 else pole.line - depth
     # From here on with the lines around the pole as the second axis.
     strips = [pole.lines(a.reshape(shape), 1)[:, first : first + depth + 1] for a in data]
@@ -188,9 +191,9 @@ def _to_plane(pole: Pole, around: Floats, across: Floats) -> list[Floats]:
     depth = np.arange(around.shape[1], dtype=float)[:, None]
     depth = depth if pole.inward > 0 else depth[::-1]
     still = pole.vector(across[:, at]) / pole.size
-    found = []
+    components = []
     for c in range(2):
         v = pole.inward * across * rays[:, c] + around * depth * turn[:, c]
         v[:, at] = still[:, c, None]
-        found.append(v)
-    return found
+        components.append(v)
+    return components

@@ -37,14 +37,14 @@ MOST_PIECES = 64
 #: Paths looked up together.
 BLOCK = 16384
 #: Cells beyond a border where a path that follows it may be put by its look-ups.
-BESIDE = 1e-2
+BORDER_CELLS = 1e-2
 #: Parts of a piece in which its end is looked for, and how often one is halved then.
-SEARCHED, BISECTIONS = 16, 6
+SEARCH_PARTS, SEARCH_BISECTIONS = 16, 6
 
 #: Error of a look-up that is allowed, as a share of the path's length, and in cells.
-SHARE, CELLS = 0.002, 0.003
+ERROR_SHARE, ERROR_CELLS = 0.002, 0.003
 #: Lags closer to a slice than this share are taken from it.
-CLOSE = np.float32(1e-4)
+LAG_ROUNDING = np.float32(1e-4)
 
 
 Some = slice | Indices
@@ -107,11 +107,11 @@ def compose(
         One unit of lag at each node, (J, I).
     slices
         Derivative of the displacement by lag at lag zero, and the displacements,
-        (2, M + 1, T, J, I), of which those of the first ``known`` lags are given.
+        (2, M + 1, T, J, I), of which those of the first ``known`` lags are filled.
     reach
         Lag at which each path ended, (T, J, I), infinite where it did not within what is known.
     known
-        How many slices are given.
+        Number of slices that are filled.
     landing
         What :func:`landings` gives.
     run
@@ -134,8 +134,8 @@ class _Piece(NamedTuple):
     """Continuations of n paths."""
 
     moved: Floats32  #: displacement, (2, n)
-    gone: Floats32  #: lag that they cover
-    reached: Floats32 | None  #: lag after which they end, beyond ``gone`` where they do not
+    covered: Floats32  #: lag that they cover
+    ends: Floats32 | None  #: lag at which they end, beyond ``covered`` where they do not
     steps: Indices | int  #: time steps that they go back
 
 
@@ -163,7 +163,7 @@ class _SliceLookup:
         self._inverse = np.concatenate([[1.0], 1 / lags]).astype(np.float32)
         self.landing = np.concatenate([[0], landing])
         self.unit = unit.ravel().astype(np.float32)
-        self._even = bool(np.ptp(self.unit) <= CLOSE * self.unit[0])
+        self._even = bool(np.ptp(self.unit) <= LAG_ROUNDING * self.unit[0])
         self.unsteady = not field.steady
         self.slices = slices.reshape(2, len(self.knots), -1)
         self.reach = reach.reshape(-1)
@@ -179,7 +179,7 @@ class _SliceLookup:
         self.polar = polar
 
     def judge(self, m: int, *, always: bool) -> None:
-        """Note where slice m is smooth enough to be looked up, and make ready to look up.
+        """Find where slice m is smooth enough to be looked up.
 
         Where it is not, the longest slice that is, is used; ``always`` accepts it everywhere.
         """
@@ -189,14 +189,14 @@ class _SliceLookup:
         else:
             grid = self._grids[:, m]
             error = (_bend(grid, 2) + _bend(grid, 3)).max(axis=0)
-            good = error <= 8 * (SHARE * self.knots[m] * self._pace + CELLS)
+            good = error <= 8 * (ERROR_SHARE * self.knots[m] * self._pace + ERROR_CELLS)
             good &= (self._trust == self.knots[m - 1]) & ~self.polar
             self._trust[good] = self.knots[m]
         # A cell may use what is good at its four nodes.
         trust = np.minimum(self._trust[:, :-1], self._trust[:, 1:])
         trust = np.minimum(trust[:, :, :-1], trust[:, :, 1:])
         self._longest = np.pad(trust, ((0, 0), (0, 1), (0, 1))).ravel()
-        # So far on that a path counts as ended only between nodes whose paths all end.
+        # Endless ones count as so long that a path ends only between nodes whose paths all end.
         self._capped = np.minimum(self.reach, 1e4 * self.knots[m])
         self._endless = bool(np.isinf(self.reach).all())
 
@@ -209,23 +209,25 @@ class _SliceLookup:
         lag: AnyArray = np.minimum(left / unit, longest)
         if self.grid.poles is not None and not self.unsteady:
             # Past a pole an index turns so quickly that nothing can be interpolated between lags.
-            whole = self.knots[np.searchsorted(self.knots, lag * (1 + CLOSE), side="right") - 1]
+            whole = self.knots[
+                np.searchsorted(self.knots, lag * (1 + LAG_ROUNDING), side="right") - 1
+            ]
             lag = np.where(whole > self._first, np.minimum(whole, lag), lag)
         if lag.min() == lag.max():
             # Even cells, smooth slices: one slice for all.
             lag = lag[:1]
         if self.unsteady:
-            m = np.searchsorted(self.knots * (1 - CLOSE), lag, side="right") - 1
+            m = np.searchsorted(self.knots * (1 - LAG_ROUNDING), lag, side="right") - 1
             lag = self.knots[m]
         else:
-            m = np.maximum(np.searchsorted(self.knots, lag * (1 - CLOSE)), 1)
+            m = np.maximum(np.searchsorted(self.knots, lag * (1 - LAG_ROUNDING)), 1)
         moved = self._displaced(corners, base, m, lag)
         self._mirror(moved, position)
-        reached = None
+        ends = None
         if not self._endless:
-            reached = self.grid.blend(self._capped, corners, base) * unit
-        gone = np.broadcast_to(lag * unit, left.shape)
-        return _Piece(moved, gone, reached, self.landing[m])
+            ends = self.grid.blend(self._capped, corners, base) * unit
+        covered = np.broadcast_to(lag * unit, left.shape)
+        return _Piece(moved, covered, ends, self.landing[m])
 
     def stuck(self, position: Floats | Floats32, step: Indices | int = 0) -> Bools:
         """Whether positions (2, n) are so close to a pole that nothing can be looked up, (n,)."""
@@ -253,7 +255,7 @@ class _SliceLookup:
     ) -> Floats32:
         """Displacements at lags (n,) or (1,), between the slices m - 1 and m."""
         late = (lag - self.knots[m - 1]) / (self.knots[m] - self.knots[m - 1])
-        exact = bool((late > 1 - 10 * CLOSE).all())
+        exact = bool((late > 1 - 10 * LAG_ROUNDING).all())
         if len(m) == 1:
             m = m[0]
         result = np.empty((2, len(corners.at)), np.float32)
@@ -317,11 +319,11 @@ class _Doubling:
         self._suspect(some, position, piece)
         for row, part in zip(self._moved, piece.moved, strict=True):
             row[some] += part
-        left -= piece.gone
+        left -= piece.covered
         self._left[some] = left
         if lookup.unsteady:
             self._step[some] = np.maximum(self._step[some] - piece.steps, 0)
-        return _numbers(some, np.flatnonzero(left > CLOSE * whole))
+        return _numbers(some, np.flatnonzero(left > LAG_ROUNDING * whole))
 
     def _where(self, some: Some) -> tuple[Some, Floats32]:
         """Nodes at which some paths begin, and where they have come, (2, n)."""
@@ -331,7 +333,7 @@ class _Doubling:
         return node, self._lookup.nodes[:, node] + self._moved[:, some]
 
     def _without_stuck(self, some: Some) -> Some:
-        """Put aside the paths that have come right beside a pole."""
+        """Set apart the paths that have come right beside a pole."""
         stuck = self._lookup.stuck(self._where(some)[1], self._step[some])
         if not stuck.any():
             return some
@@ -345,30 +347,37 @@ class _Doubling:
             return which
         node, position = self._where(which)
         within = None if lookup.unsteady or final else lookup.stuck
-        moved, gone, ends = self._integrate(position, left, step, within)
+        moved, covered, ends = self._integrate(position, left, step, within)
         self._moved[:, which] += moved
-        self._left[which] = left - gone
+        self._left[which] = left - covered
         lookup.polar.reshape(-1)[which] = True
         new = np.isinf(lookup.reach[which]) & np.isfinite(ends)
         whole = self._whole[node]
         lookup.reach[which[new]] = self._lag * (1 - (left - ends)[new] / whole[new])
-        return _numbers(which, np.flatnonzero(self._left[which] > CLOSE * whole))
+        return _numbers(which, np.flatnonzero(self._left[which] > LAG_ROUNDING * whole))
 
     def _suspect(self, some: Some, position: Floats32, piece: _Piece) -> None:
-        """Note the paths that seem to end within their piece."""
+        """List the paths that seem to end within their piece."""
         lookup = self._lookup
-        gone = ~lookup.grid.alive(position + piece.moved, BESIDE)
+        ending = ~lookup.grid.alive(position + piece.moved, BORDER_CELLS)
         rest = np.full(1, np.inf, np.float32)
-        if piece.reached is not None:
-            rest = piece.reached
-            gone |= rest < piece.gone
-        gone &= np.isinf(lookup.reach[some])
-        if gone.any():
-            g = np.flatnonzero(gone)
-            which = _numbers(some, g)
-            rest = np.broadcast_to(rest, gone.shape)[g]
+        if piece.ends is not None:
+            rest = piece.ends
+            ending |= rest < piece.covered
+        ending &= np.isinf(lookup.reach[some])
+        if ending.any():
+            ended = np.flatnonzero(ending)
+            which = _numbers(some, ended)
+            rest = np.broadcast_to(rest, ending.shape)[ended]
             self._suspects.append(
-                (which, position[:, g], piece.gone[g], rest, self._left[which], self._step[which])
+                (
+                    which,
+                    position[:, ended],
+                    piece.covered[ended],
+                    rest,
+                    self._left[which],
+                    self._step[which],
+                )
             )
 
     def _find_ends(self) -> None:
@@ -380,12 +389,12 @@ class _Doubling:
         which, once = np.unique(which, return_index=True)
         start, length, rest, left, step = (p[..., once] for p in (start, length, rest, left, step))
         first = np.full(len(which), np.inf, np.float32)
-        for share in np.linspace(1, 0, SEARCHED, endpoint=False, dtype=np.float32):
+        for share in np.linspace(1, 0, SEARCH_PARTS, endpoint=False, dtype=np.float32):
             first[self._outside(start, share * length, step)] = share
         leaves = np.isfinite(first)
         high = np.where(leaves, first, 0)
-        low = np.maximum(high - np.float32(1 / SEARCHED), 0)
-        for _ in range(BISECTIONS):
+        low = np.maximum(high - np.float32(1 / SEARCH_PARTS), 0)
+        for _ in range(SEARCH_BISECTIONS):
             middle = (low + high) / 2
             outside = self._outside(start, middle * length, step)
             low, high = np.where(outside, low, middle), np.where(outside, middle, high)
@@ -395,11 +404,11 @@ class _Doubling:
 
     def _outside(self, start: Floats32, lag: Floats32, step: Indices) -> Bools:
         moved = self._lookup.displaced(start, lag, step)
-        return ~self._lookup.grid.alive(start + moved, BESIDE)
+        return ~self._lookup.grid.alive(start + moved, BORDER_CELLS)
 
 
 def _numbers(some: Some, which: Indices) -> Indices:
-    """Numbers of paths of which numbers among some are given."""
+    """Numbers of paths from their positions in a selection."""
     if isinstance(some, slice):
         return np.asarray(which + some.start)
     return some[which]

@@ -19,7 +19,7 @@ __all__ = ["Corners", "NodeGrid"]
 #: Of single or double precision, as it comes in.
 
 #: Cells that rounding may carry a path over a border that it follows.
-EDGE = 1e-6
+BORDER_ROUNDING_CELLS = 1e-6
 
 
 class Corners(NamedTuple):
@@ -99,7 +99,7 @@ class NodeGrid:
         high += low
         return high
 
-    def alive(self, position: AnyArray, edge: float = EDGE) -> Bools:
+    def alive(self, position: AnyArray, edge: float = BORDER_ROUNDING_CELLS) -> Bools:
         """Whether positions (2, N) are inside the domain, in a cell that is not blanked.
 
         ``edge`` cells beyond a border still count as inside.

@@ -13,10 +13,10 @@ from abc import ABC, abstractmethod
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage
 
 from flowtex._util.array_types import Floats
 from flowtex.field import FlowField
+from flowtex.field.interpolation import bracket, fill_blanked
 from flowtex.trace.charts import Charts, Patch, cap
 from flowtex.trace.node_grid import Corners, NodeGrid
 
@@ -24,11 +24,11 @@ __all__ = ["LengthSampler", "Sampler", "TimeSampler"]
 
 
 #: A particle slower than this share of the greatest speed has stopped.
-STOPPED = 1e-7
+STOPPED_SPEED = 1e-7
 #: Pairs of tangents whose products make the metric.
 METRIC = ((0, 0), (0, 1), (1, 1))
 #: By arc length, a particle this slow, in cells over one unit of lag, is at a critical point.
-RESTING = 1e-3
+RESTING_CELLS = 1e-3
 
 
 class Sampler(ABC):
@@ -61,7 +61,7 @@ class Sampler(ABC):
         if field.sign_free:
             self._axes = _Axes(field, grid)
             flat, *caps = self._patches
-            flat = flat.without_sign(_spread_grid(field.velocity[0], field))
+            flat = flat.without_sign(fill_blanked(field.velocity[0], field.valid))
             self._patches = [flat, *(patch.without_sign() for patch in caps)]
 
     def rate(
@@ -84,8 +84,7 @@ class Sampler(ABC):
             for number, patch in enumerate(self._patches):
                 some = np.flatnonzero(chart == number)
                 if len(some):
-                    found = self._rate(patch, position[:, some], lag[some], direction)
-                    result[:, some] = found
+                    result[:, some] = self._rate(patch, position[:, some], lag[some], direction)
         if self._poles is not None and chart is not None:
             # Beyond a pole index space runs the other way.
             turned = (chart == 0) & self._poles.mirrored(position)
@@ -140,7 +139,7 @@ class LengthSampler(Sampler):
         flow = field.index_velocity
         speed = flow.speed[..., None]
         super().__init__(field, np.concatenate([flow.components, speed], axis=-1))
-        self._floor = max(STOPPED * float(speed.max()), np.finfo(float).tiny)
+        self._floor = max(STOPPED_SPEED * float(speed.max()), np.finfo(float).tiny)
 
     def _rate(self, patch: Patch, position: Floats, lag: Floats, direction: float) -> Floats:
         """Direction for one unit of length."""
@@ -157,7 +156,7 @@ class LengthSampler(Sampler):
     def rest(self, unit: Floats, last: float) -> Floats:
         """Rate below which a particle has come to rest: those that move cover a cell a unit."""
         del last
-        return RESTING / unit
+        return RESTING_CELLS / unit
 
 
 class TimeSampler(Sampler):
@@ -187,10 +186,8 @@ class TimeSampler(Sampler):
         return np.full(len(unit), 0.0 if len(self._times) > 1 else 1e-5) / (unit * last)
 
     def _at_time(self, patch: Patch, corners: Corners, time: Floats) -> Floats:
-        step = np.searchsorted(self._times, time) - 1
-        np.clip(step, 0, len(self._times) - 2, out=step)
-        width = self._times[step + 1] - self._times[step]
-        late = np.clip((time - self._times[step]) / width, 0, 1)
+        step, late = bracket(self._times, time, side="left")
+        np.clip(late, 0, 1, out=late)
         result = np.empty((2, len(time)))
         for component, row in enumerate(result):
             before = patch.blend(component, corners, step)
@@ -201,17 +198,7 @@ class TimeSampler(Sampler):
         return result
 
 
-def _spread_grid(data: Floats, field: FlowField) -> Floats:
-    """Give blanked nodes of data (..., J, I, C) their neighbours' value."""
-    if field.valid.all():
-        return data
-    nearest = ndimage.distance_transform_edt(
-        ~field.valid, return_distances=False, return_indices=True
-    )
-    return np.asarray(data[(..., *tuple(nearest), slice(None))])
-
-
 def _spread(data: Floats, field: FlowField) -> list[Floats]:
     """Components of (..., J, I, C) data, each flat; blanked nodes get their neighbours' value."""
-    data = _spread_grid(data, field)
+    data = fill_blanked(data, field.valid, data.ndim - 3)
     return [np.ascontiguousarray(data[..., c]).ravel() for c in range(data.shape[-1])]

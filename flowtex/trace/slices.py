@@ -2,7 +2,7 @@
 
 This is the intermediate form of the paper (section 3.1): the slice S(Td, Ts) holds, for every
 node (i, j), the position (a, b) from which a particle released at Ts reaches the node at Td. It
-is kept as the displacement (a - i, b - j), which is continuous across a seam and exact under
+is stored as the displacement (a - i, b - j), which is continuous across a seam and exact under
 interpolation at lag zero, for a handful of lags = Td - Ts.
 """
 
@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import AnyArray, Floats
+from flowtex.field.interpolation import bracket
 
 __all__ = ["TraceSlices"]
 
@@ -124,8 +125,8 @@ class TraceSlices:
             sign, data, reach = 1.0, self.forward, self.forward_reach
         held = np.minimum(lag, reach[step].astype(float))
         knots = np.concatenate([[0.0], self.lags])
-        m = np.clip(np.searchsorted(knots, held, side="right") - 1, 0, len(self.lags) - 1)
-        late = ((held - knots[m]) / (knots[m + 1] - knots[m]))[..., None]
+        m, late = bracket(knots, held)
+        late = late[..., None]
         mean = np.concatenate(
             [sign * self.rate[step][None], data[step] / self.lags[:, None, None, None]]
         )
@@ -170,9 +171,9 @@ class TraceSlices:
     def save(self, path: str | Path) -> None:
         """Write the slices to a compressed ``.npz`` file."""
         arrays = {n: getattr(self, n) for n in self.__dataclass_fields__}
-        kept = {n: a for n, a in arrays.items() if a is not None}
+        present = {n: a for n, a in arrays.items() if a is not None}
         with Path(path).open("wb") as file:
-            np.savez_compressed(file, format=np.array(FORMAT), **kept)
+            np.savez_compressed(file, format=np.array(FORMAT), **present)
 
     @classmethod
     def open(cls, path: str | Path) -> TraceSlices:
