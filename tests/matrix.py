@@ -20,7 +20,8 @@ from flows import dense_gyre, gyre, holed, lines, swinging, torus
 
 from flowtex import FlowField
 from flowtex._util.array_types import Bytes, Floats
-from flowtex.rendering.cpu import Camera, render
+from flowtex.camera import Camera
+from flowtex.rendering.cpu import render
 from flowtex.rendering.uniforms import ViewState
 from flowtex.settings import Settings
 from flowtex.view import FlowView
@@ -49,13 +50,13 @@ COLOUR, GROUND = (0.6, 0.6, 0.6), (1.0, 0.0, 0.0)
 def straight(zoom: float, focus: tuple[float, float] = (0.63, 0.37)) -> Camera:
     """See a part of a plane without perspective."""
     x, y = focus
-    return Camera((x, y, 5.0), (x, y, 0.0), (0, 1, 0), SIZE, 0.9 / zoom)
+    return Camera((x, y, 5.0), (x, y, 0.0), (0, 1, 0), parallel=True, parallel_scale=0.9 / zoom)
 
 
 WHOLE, MIDDLE = straight(1, (1.0, 0.5)), straight(1, (0.0, 0.0))
-TILTED = Camera((1.9, -0.9, 1.1), (0.9, 0.45, 0.0), (0, 0, 1), SIZE)
-GRAZING = Camera((1.0, -0.3, 0.2), (1.0, 0.5, 0.0), (0, 0, 1), SIZE)
-ASIDE = Camera((2.4, -1.9, 1.5), (0.0, 0.0, 0.0), (0, 0, 1), SIZE)
+TILTED = Camera((1.9, -0.9, 1.1), (0.9, 0.45, 0.0), (0, 0, 1))
+GRAZING = Camera((1.0, -0.3, 0.2), (1.0, 0.5, 0.0), (0, 0, 1))
+ASIDE = Camera((2.4, -1.9, 1.5), (0.0, 0.0, 0.0), (0, 0, 1))
 
 IMAGE = np.zeros((30, 50, 4))
 IMAGE[..., :2] = np.moveaxis(np.indices((30, 50)), 0, -1) / 50
@@ -136,7 +137,8 @@ def judged(name: str) -> tuple[FlowView, Bytes]:
     shown = view.made()
     before, after, between = shown.moment
     state = ViewState(between=between, clock=view.clock)
-    drawn = render(shown.textures, shown.settings, view.camera, view=state, steps=(before, after))
+    steps = (before, after)
+    drawn = render(shown.textures, shown.settings, view.camera, SIZE, view=state, steps=steps)
     return shown, drawn.rgb(COLOUR, background=GROUND)
 
 

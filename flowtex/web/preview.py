@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from flowtex.rendering.cpu import Camera, Picture, render
+from flowtex.camera import Camera
+from flowtex.rendering.cpu import Picture, render
 from flowtex.rendering.uniforms import ViewState
 from flowtex.rendering.webgl import Scene
 from flowtex.settings import Settings
@@ -104,14 +105,6 @@ def _drawn(
     camera: Mapping[str, Any],
     time: float | None,
 ) -> Bytes:
-    where = Camera(
-        position=tuple(camera["position"]),
-        focal_point=tuple(camera["focal_point"]),
-        up=tuple(camera["up"]),
-        size=(max(size[0], 1), max(size[1], 1)),
-        parallel_scale=camera["parallel_scale"] if camera["parallel"] else None,
-        view_angle=camera["view_angle"],
-    )
     times = scene.times
     shown = float(times[-1] if time is None else time)
     steps = scene.moment(shown)
@@ -120,7 +113,8 @@ def _drawn(
     picture = render(
         scene.textures,
         _few_samples(stage.view.settings),
-        where,
+        Camera.from_dict(camera),
+        (max(size[0], 1), max(size[1], 1)),
         view=ViewState(between=between),
         steps=(scene.source(steps[0]), scene.source(steps[-1])),
     )

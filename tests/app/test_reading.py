@@ -86,11 +86,11 @@ def test_places_are_those_of_the_camera(scale: float | None, rng: np.random.Gene
     """Both the camera that a probe takes, and VTK's own."""
     navigator = navigator_at((0.5, -3.0, 2.0), (0.1, 0.2, -0.1), scale=scale)
     points = rng.uniform(-0.5, 0.5, (9, 3))
-    camera = camera_of(navigator, (320, 200))
+    camera = camera_of(navigator)
     whole = np.concatenate([points, np.ones((9, 1))], axis=1)
     theirs = navigator.camera.GetCompositeProjectionTransformMatrix(1.6, -1, 1)
     own = np.array([[theirs.GetElement(r, c) for c in range(4)] for r in range(4)])
-    for matrix in (camera.matrix(), own):
+    for matrix in (camera.matrix(1.6), own):
         clip = whole @ matrix.T
         assert project(navigator, points) == pytest.approx(clip[:, :2] / clip[:, 3:], abs=1e-9)
 

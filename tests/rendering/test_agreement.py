@@ -10,6 +10,7 @@ from matrix import COLOUR, DEEP, GROUND, ROOT, SHARE, SIZE, VIEWS, View, differe
 from webgl_page import ClientPage, packed, state
 
 from flowtex._util.array_types import Bytes
+from flowtex.plotting.vtk_camera import apply_camera
 from flowtex.rendering.webgl import Colours, Scene
 
 #: Whether Chromium draws with the WebGL that it brings, which filters with fewer digits.
@@ -40,11 +41,8 @@ def drawn_by_vtk(plotter: Any, view: View) -> Bytes:
     if view.time is not None:
         handle.time = view.time
     handle.clock = view.clock
-    plotter.camera_position = [camera.position, camera.focal_point, camera.up]
-    plotter.camera.parallel_projection = camera.parallel_scale is not None
-    if camera.parallel_scale is not None:
-        plotter.camera.parallel_scale = camera.parallel_scale
-    plotter.camera.view_angle = camera.view_angle
+    apply_camera(camera, plotter.camera)
+    plotter.camera_set = True
     plotter.renderer.reset_camera_clipping_range()
     return np.asarray(plotter.screenshot(return_img=True))[..., :3]
 

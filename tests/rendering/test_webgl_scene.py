@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 import flowtex
 from flowtex import examples
+from flowtex.camera import Camera
 from flowtex.first_look import first_look
-from flowtex.rendering.cpu import Camera
 from flowtex.rendering.webgl import Scene
 from flowtex.settings import TABLE, Settings
 from flowtex.staging import Stage, coarsened, colour_table, evenly
@@ -157,13 +157,12 @@ def test_the_first_look_holds_the_whole_surface(make: Any) -> None:
         found.position,
         found.focal_point,
         found.up,
-        (300, 200),
-        parallel_scale=found.parallel_scale if found.parallel else None,
+        found.parallel,
+        found.parallel_scale,
         view_angle=found.view_angle,
     )
     points = field.surface.points[field.valid]
-    seen = points @ camera.matrix()[:, :3].T + camera.matrix()[:, 3]
-    across = np.abs(seen[:, :2] / seen[:, 3:]).max()
+    across = np.abs(camera.project(points, 1.5)).max()
     assert 0.8 < across < 1.0
 
 

@@ -146,11 +146,12 @@ class Reader(Part):
     def _reader(self, at: tuple[float, float]) -> Callable[[], Probe | None]:
         """Return what reads the path through a point as things are now, if it is in view."""
         view, clock = self.scene.handle.view.still(), self.scene.clock
-        camera = camera_of(self.scene.navigator, self.scene.pane_size)
+        camera = camera_of(self.scene.navigator)
+        size = self.scene.pane_size
 
         def read() -> Probe | None:
             try:
-                return probe(view, at, pixel=camera, clock=clock)
+                return probe(view, at, pixel=camera, size=size, clock=clock)
             except ValueError:
                 return None
 

@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flowtex.app.streaming.navigate import Navigator
-from flowtex.rendering.cpu import Camera
+from flowtex.camera import Camera
+from flowtex.plotting.vtk_camera import read_camera
 
 __all__ = ["BEYOND", "camera_of", "project", "runs"]
 
@@ -16,16 +17,9 @@ Floats = NDArray[np.float64]
 BEYOND = 2.0
 
 
-def camera_of(navigator: Navigator, size: tuple[int, int]) -> Camera:
-    """Camera of a picture of so many pixels, as :func:`flowtex.probe.probe` takes it."""
-    camera = navigator.camera
-    position, focus, up = (
-        (float(x), float(y), float(z))
-        for x, y, z in (camera.GetPosition(), camera.GetFocalPoint(), camera.GetViewUp())
-    )
-    parallel = bool(camera.GetParallelProjection())
-    scale = float(camera.GetParallelScale()) if parallel else None
-    return Camera(position, focus, up, size, scale, float(camera.GetViewAngle()))
+def camera_of(navigator: Navigator) -> Camera:
+    """Camera of the picture, as :func:`flowtex.probe.probe` takes it."""
+    return read_camera(navigator.camera)
 
 
 def project(navigator: Navigator, points: Floats) -> Floats:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flowtex._util.array_types import Floats, Indices
-from flowtex.rendering.cpu.lookup import Mips
+from flowtex.rendering.cpu.mipmaps import Mips
 
 __all__ = ["Path", "SignFreeSlices", "Slices"]
 

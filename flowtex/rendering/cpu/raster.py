@@ -19,8 +19,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex.camera import Camera
+from flowtex.field import Surface
+from flowtex.field.facets import HALVES
 
-__all__ = ["Coverage", "rasterise"]
+__all__ = ["Coverage", "cover", "rasterise"]
 
 
 #: Pixels, or rows of pixels, that are looked at together.
@@ -60,6 +63,33 @@ class Coverage:
             np.einsum("nk,nkc->nc", share, at) for share in (self.weights, self.dx, self.dy)
         )
         return value, dx, dy
+
+
+def cover(surface: Surface, camera: Camera, size: tuple[int, int]) -> Coverage:
+    """Find the visible cells; quads are cut along the diagonal from their first corner.
+
+    Parameters
+    ----------
+    surface
+        The surface; cells with a node that is not valid are left out.
+    camera
+        Where the surface is seen from.
+    size
+        Width and height of the picture in pixels.
+
+    Returns
+    -------
+    Coverage
+        Its corners count the nodes row by row: j times the number of columns, plus i.
+    """
+    points = (surface.points - surface.center).reshape(-1, 3)
+    matrix = camera.matrix(size[0] / size[1], surface.center)
+    clip = points @ matrix[:, :3].T + matrix[:, 3]
+    columns = surface.shape[1]
+    j, i = np.nonzero(surface.cells)
+    halves = np.array([j * columns + i for half in HALVES for j, i in half])
+    triangles = ((j * columns + i)[:, None] + halves).reshape(-1, 3)
+    return rasterise(clip, triangles, size)
 
 
 def rasterise(clip: Floats, triangles: Indices, size: tuple[int, int]) -> Coverage:

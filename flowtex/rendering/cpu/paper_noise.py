@@ -10,7 +10,7 @@ import numpy as np
 from flowtex._util.array_types import Floats
 from flowtex.rendering.cpu.fragments import Varying
 from flowtex.rendering.cpu.levels import footprint
-from flowtex.rendering.cpu.lookup import Mips
+from flowtex.rendering.cpu.mipmaps import Mips
 from flowtex.rendering.cpu.noise import mix
 from flowtex.rendering.cpu.texture import Lookup, Sums, shared
 from flowtex.textures import PaperTextures
