@@ -19,7 +19,8 @@ from rich.console import Console
 from rich.table import Table
 
 import flowtex
-from flowtex.staging import Stage
+from flowtex.options import Options
+from flowtex.web.view import web_views
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 from webgl_page import ClientPage, packed
@@ -49,8 +50,9 @@ DRIVER = """() => {
 
 def scene(nodes: int, samples: int) -> Any:
     """Pack a double gyre of ``nodes`` by twice as many nodes as JSON."""
-    stage = Stage(flowtex.examples.double_gyre_field(shape=(nodes, 2 * nodes)), samples=samples)
-    whole = stage.scene()
+    field = flowtex.examples.double_gyre_field(shape=(nodes, 2 * nodes))
+    view = web_views(field, Options.split(samples=samples))[0]
+    whole = view.data()
     settings = flowtex.Settings(samples=samples)
     return packed(whole, whole.header(settings, camera=whole.first_look((4, 3))))
 
@@ -84,7 +86,7 @@ def first_parts() -> float:
     """Seconds from a mesh of 500 x 500 nodes to the first textures for a notebook."""
     field = flowtex.examples.double_gyre_field(shape=(500, 500))
     start = time.perf_counter()
-    coarse = Stage(field).coarse_scene(40_000)
+    coarse = web_views(field, Options.split())[0].coarse_data(40_000)
     coarse.surface()
     coarse.step(0)
     return time.perf_counter() - start

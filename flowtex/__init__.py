@@ -17,40 +17,45 @@ from flowtex.trace import TraceSlices, trace
 
 if TYPE_CHECKING:
     from flowtex import examples
+    from flowtex.camera import Camera
+    from flowtex.display import show
     from flowtex.offscreen.movie import movie
-    from flowtex.offscreen.render import render, show
+    from flowtex.offscreen.render import render
+    from flowtex.web.export import export
     from flowtex.widget import FlowWidget as FlowWidget
 
 __all__ = [
+    "Camera",
     "FlowField",
     "Settings",
     "TraceSlices",
     "examples",
+    "export",
     "movie",
     "render",
     "show",
     "trace",
 ]
 
+#: Names that are imported when they are first used: what they need is slow to load, or optional.
+_LAZY = {
+    "Camera": "camera",
+    "FlowWidget": "widget",
+    "export": "web.export",
+    "movie": "offscreen.movie",
+    "render": "offscreen.render",
+    "show": "display",
+}
+
 
 def __getattr__(name: str) -> Any:
-    """Import what draws (PyVista, VTK) only when it is used."""
+    """Import what draws (PyVista, VTK, the widget) only when it is used."""
+    import importlib
+
     if name == "examples":
-        import importlib
-
         return importlib.import_module("flowtex.examples")
-    if name in {"render", "show"}:
-        from flowtex.offscreen import render as pictures
-
-        return getattr(pictures, name)
-    if name == "movie":
-        from flowtex.offscreen import movie as movies
-
-        return movies.movie
-    if name == "FlowWidget":
-        from flowtex import widget
-
-        return widget.FlowWidget
+    if name in _LAZY:
+        return getattr(importlib.import_module(f"flowtex.{_LAZY[name]}"), name)
     msg = f"module 'flowtex' has no attribute {name!r}"
     raise AttributeError(msg)
 

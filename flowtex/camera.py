@@ -107,7 +107,7 @@ class Camera:
             if _is_point(value):
                 object.__setattr__(self, name, _point(value))
             else:
-                faults.append(f"{name} is {value!r}; expected three finite numbers")
+                faults.append(f"camera.{name} is {value!r}; expected three finite numbers")
         for name, greatest, expected in (
             ("parallel_scale", math.inf, "a positive length"),
             ("view_angle", 180.0, "0 to 180 degrees"),
@@ -116,12 +116,12 @@ class Camera:
             if _is_number(value) and 0 < value < greatest:
                 object.__setattr__(self, name, float(value))
             else:
-                faults.append(f"{name} is {value!r}; expected {expected}")
+                faults.append(f"camera.{name} is {value!r}; expected {expected}")
         object.__setattr__(self, "parallel", bool(self.parallel))
         if not faults and not self._sees():
             faults.append(
-                f"position {self.position!r}, focal_point {self.focal_point!r} and up {self.up!r} "
-                "lie on one line; expected up to point away from the line of sight"
+                f"camera has position {self.position!r}, focal_point {self.focal_point!r} and up "
+                f"{self.up!r} on one line; expected up to point away from the line of sight"
             )
         if faults:
             raise CameraError("; ".join(faults))
@@ -256,6 +256,22 @@ class Camera:
             msg = f"camera is {values!r}; expected {', '.join(missing)} as well"
             raise CameraError(msg)
         return cls(**whole)
+
+    @classmethod
+    def from_points(cls, points: Any) -> Self:
+        """Return a camera in perspective from position, focal point and direction upwards.
+
+        Raises
+        ------
+        CameraError
+            When they are not three points.
+        """
+        try:
+            position, focal_point, up = points
+        except (TypeError, ValueError) as error:
+            msg = f"camera is {points!r}; expected position, focal point and up, three points"
+            raise CameraError(msg) from error
+        return cls(position, focal_point, up)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the attributes by name: lists of numbers, numbers, and a bool, for JSON."""

@@ -27,8 +27,8 @@ from flowtex.rendering.cpu.render import slices_at, view_state
 from flowtex.rendering.cpu.shade import tone
 from flowtex.rendering.cpu.texture import Side, Summing
 from flowtex.rendering.uniforms import ViewState, uniforms
+from flowtex.scene import Scene
 from flowtex.textures import TextureSet
-from flowtex.view import FlowView
 
 __all__ = ["Probe", "Reading", "locate", "probe", "reading"]
 
@@ -130,7 +130,7 @@ class Probe:
 
 
 def probe(
-    view: FlowView,
+    view: Scene,
     at: ArrayLike,
     *,
     pixel: float | Camera,

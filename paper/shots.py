@@ -10,13 +10,13 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+from flowtex.rendering.cpu.cover import cover
 from numpy.typing import NDArray
 from scipy import ndimage
 
 from flowtex.field import FlowField
 from flowtex.first_look import first_look
 from flowtex.rendering.cpu import Camera, LookupMaker, Picture, render, shade
-from flowtex.rendering.cpu.cover import cover
 from flowtex.rendering.uniforms import ViewState
 from flowtex.settings import Settings
 from paper import measures

@@ -21,10 +21,11 @@ from flows import dense_gyre, gyre, holed, lines, swinging, torus
 from flowtex import FlowField
 from flowtex._util.array_types import Bytes, Floats
 from flowtex.camera import Camera
+from flowtex.options import Appearance
 from flowtex.rendering.cpu import render
 from flowtex.rendering.uniforms import ViewState
+from flowtex.scene import Scene
 from flowtex.settings import Settings
-from flowtex.view import FlowView
 
 __all__ = [
     "COLOUR",
@@ -81,10 +82,10 @@ class View:
         """What is laid on the surface."""
         return IMAGE if self.settings.get("noise") == "image" else None
 
-    def made(self) -> FlowView:
+    def made(self) -> Scene:
         """Make the flow with its settings, at its time."""
         settings = Settings(**{"samples": 11, **self.settings})
-        shown = FlowView(self.field(), settings, image=self.image)
+        shown = Scene(self.field(), settings, Appearance(image=self.image))
         if self.time is not None:
             shown.time = self.time
         return shown
@@ -131,7 +132,7 @@ DEEP: dict[str, View] = {"zoom 1e5": View(camera=straight(1e5))}
 
 
 @cache
-def judged(name: str) -> tuple[FlowView, Bytes]:
+def judged(name: str) -> tuple[Scene, Bytes]:
     """Return a view and its picture by NumPy, (H, W, 3)."""
     view = (VIEWS | DEEP)[name]
     shown = view.made()

@@ -136,15 +136,18 @@ def test_a_dictionary_holds_it_whole() -> None:
     [
         (None, "^camera is None; expected a mapping with some of position, focal_point, up,"),
         ({"zoom": 2}, "^camera is {'zoom': 2}; expected a mapping with some of position,"),
-        ({"position": [0, 0]}, r"^position is \[0, 0\]; expected three finite numbers$"),
+        ({"position": [0, 0]}, r"^camera\.position is \[0, 0\]; expected three finite numbers$"),
         ({"position": [0, 0, math.nan]}, "expected three finite numbers$"),
-        ({"position": "abc"}, "^position is 'abc'; expected three finite numbers$"),
-        ({"view_angle": 180}, "^view_angle is 180; expected 0 to 180 degrees$"),
-        ({"view_angle": "30"}, "^view_angle is '30'; expected 0 to 180 degrees$"),
-        ({"parallel_scale": 0}, "^parallel_scale is 0; expected a positive length$"),
-        ({"parallel_scale": math.inf}, "^parallel_scale is inf; expected a positive length$"),
-        ({"position": [0.1, 0.2, -0.1]}, "lie on one line; expected up to point away"),
-        ({"position": [1e300, 1e300, 0]}, "lie on one line; expected up to point away"),
+        ({"position": "abc"}, r"^camera\.position is 'abc'; expected three finite numbers$"),
+        ({"view_angle": 180}, r"^camera\.view_angle is 180; expected 0 to 180 degrees$"),
+        ({"view_angle": "30"}, r"^camera\.view_angle is '30'; expected 0 to 180 degrees$"),
+        ({"parallel_scale": 0}, r"^camera\.parallel_scale is 0; expected a positive length$"),
+        (
+            {"parallel_scale": math.inf},
+            r"^camera\.parallel_scale is inf; expected a positive length$",
+        ),
+        ({"position": [0.1, 0.2, -0.1]}, "on one line; expected up to point away"),
+        ({"position": [1e300, 1e300, 0]}, "on one line; expected up to point away"),
     ],
 )
 def test_what_is_no_camera_is_refused(values: Any, text: str) -> None:

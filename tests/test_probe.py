@@ -16,13 +16,14 @@ from scipy import ndimage
 from flowtex import FlowField
 from flowtex._util.array_types import Floats
 from flowtex.camera import Camera
+from flowtex.options import Appearance
 from flowtex.probe import Probe, locate, probe
 from flowtex.rendering.cpu import render
 from flowtex.rendering.cpu.mipmaps import Mips
 from flowtex.rendering.cpu.pixel import LoadedTextures, Window
 from flowtex.rendering.uniforms import ViewState
+from flowtex.scene import Scene
 from flowtex.settings import Settings
-from flowtex.view import FlowView
 
 # --- fields ---------------------------------------------------------------------------------
 
@@ -83,11 +84,11 @@ def fibres() -> FlowField:
     return FlowField.from_arrays(p, axes, sign_free=True, periodic="")
 
 
-def view_of(field: FlowField, **settings: Any) -> FlowView:
+def view_of(field: FlowField, **settings: Any) -> Scene:
     chosen = Settings()
     image = settings.pop("image", None)
     chosen.update(**settings)
-    return FlowView(field, chosen, image=image)
+    return Scene(field, chosen, Appearance(image=image))
 
 
 #: Width and height of the pictures in pixels.

@@ -46,7 +46,7 @@ def check_page(output: Path) -> None:
 
 def check_film(output: Path, size: tuple[int, int], fps: float | None, quality: int) -> None:
     """Refuse a movie that could not be written, before anything is drawn."""
-    from flowtex.offscreen.movie_files import check_movie, default_fps
+    from flowtex.offscreen.encoders import check_movie, default_fps
 
     try:
         check_movie(output, size, default_fps(output) if fps is None else fps, quality)

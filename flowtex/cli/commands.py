@@ -36,7 +36,7 @@ from flowtex.cli.options import (
     read,
 )
 from flowtex.errors import FieldError
-from flowtex.offscreen.moments import MovieError
+from flowtex.offscreen.encoders import MovieError
 from flowtex.settings import SettingsError
 
 __all__ = ["main"]
@@ -84,9 +84,9 @@ def render(
     check_colours(field, options)
     from PIL import Image
 
-    from flowtex.offscreen import render as pictures
+    from flowtex.offscreen.render import render as draw_picture
 
-    picture = pictures.render(field, size=size, **options)
+    picture = draw_picture(field, size=size, **options)
     try:
         Image.fromarray(picture).save(output)
     except OSError as error:

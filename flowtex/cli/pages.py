@@ -96,9 +96,9 @@ def show(
         return _show_page(files, which, page, options)
     field = read(files[0], which)
     check_colours(field, options)
-    from flowtex.offscreen import render as pictures
+    from flowtex.display import show
 
-    pictures.show(field, size=size, **options)
+    show(field, size=size, **options)
     return 0
 
 

@@ -1,23 +1,153 @@
-"""A flow that moves, as a movie: :func:`movie`, and its pictures alone: :func:`frames`."""
+"""A flow that moves, as a movie: :func:`movie`, and its pictures alone: :func:`frames`.
+
+A steady flow streams round: its frames lie evenly in one period, and after the last one comes the
+first again, bit for bit. A field that varies in time is shown from its first to its last time;
+where that is a period of its own, the last time is left out, because it is the first again.
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Generator, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from flowtex._util.array_types import Bytes
 from flowtex._util.progress import track
-from flowtex.offscreen.moments import Moments, choose_moments
-from flowtex.offscreen.movie_files import QUALITY, check_movie, default_fps, write_movie
-from flowtex.offscreen.studio import Studio
-from flowtex.plotting.component import FIELD_ARGUMENTS, as_field
+from flowtex.field import FlowField
+from flowtex.offscreen.encoders import (
+    DEFAULT_QUALITY,
+    MovieError,
+    check_movie,
+    default_fps,
+    write_movie,
+)
+from flowtex.offscreen.plotter import OffscreenPlotter
+from flowtex.options import Appearance, FieldOptions, Options, ViewOptions, accepts_options
 from flowtex.settings import TABLE, Settings
 
-__all__ = ["Movie", "frames", "movie"]
+__all__ = ["FrameTimes", "Movie", "frame_times", "frames", "movie", "run_seconds"]
+
+
+#: Seconds for one run through the times of a field: so many for each step, within limits.
+STEP_S, SHORTEST_RUN_S, LONGEST_RUN_S = 0.25, 5.0, 30.0
+#: Frames of a movie and frames in a second, at most.
+MAX_FRAMES, MAX_FPS = 36_000, 120.0
+#: Velocities that differ by less than this share of the fastest are the same.
+SAME_SHARE = 1e-6
+
+
+@dataclass(frozen=True)
+class FrameTimes:
+    """What each frame of a movie shows.
+
+    Attributes
+    ----------
+    times
+        Times of a field that varies, in its own unit; empty for a steady flow.
+    clocks
+        Clocks of the streaming of a steady flow, in seconds; empty for a field that varies.
+    fps
+        Frames in a second.
+    seconds
+        How long the movie is, which for a steady flow is its ``period``.
+    closed
+        Whether the first frame follows upon the last one without a seam.
+    """
+
+    times: tuple[float, ...]
+    clocks: tuple[float, ...]
+    fps: float
+    seconds: float
+    closed: bool
+
+    def __len__(self) -> int:
+        """Count the frames."""
+        return len(self.times) or len(self.clocks)
+
+
+def frame_times(
+    field: FlowField, settings: Settings, *, fps: float, seconds: float | None = None
+) -> FrameTimes:
+    """Return what each frame of a movie shows.
+
+    Parameters
+    ----------
+    field
+        The flow.
+    settings
+        How it is drawn: ``motion``, ``noise`` and ``period`` of a steady flow.
+    fps
+        Frames in a second.
+    seconds
+        How long the movie is; the ``period`` of a steady flow, and for a field that varies a
+        quarter of a second a step, but at least 5 and at most 30 seconds.
+
+    Raises
+    ------
+    MovieError
+        When a number is out of its range, or a steady flow would stand still.
+    """
+    if not 0 < fps <= MAX_FPS:
+        msg = f"fps is {fps!r}; expected more than 0 and at most {MAX_FPS:g} frames a second"
+        raise MovieError(msg)
+    if field.steady:
+        _check_motion(field, settings)
+    whole = _seconds(field, settings, seconds)
+    count = max(round(whole * fps), 1)
+    if count > MAX_FRAMES:
+        msg = (
+            f"{whole:g} seconds of {fps:g} frames are {count:,} frames; expected at most "
+            f"{MAX_FRAMES:,}: choose fewer seconds or fewer frames a second"
+        )
+        raise MovieError(msg)
+    if field.steady:
+        clocks = tuple(whole * n / count for n in range(count))
+        return FrameTimes((), clocks, fps, whole, closed=True)
+    closed = _is_periodic(field)
+    first, last = float(field.times[0]), float(field.times[-1])
+    times = np.linspace(first, last, max(count, 2), endpoint=not closed)
+    return FrameTimes(tuple(map(float, times)), (), fps, whole, closed=closed)
+
+
+def run_seconds(times: int) -> float:
+    """Seconds for one run through so many times of a field, in a movie and on a page."""
+    return min(max(STEP_S * (times - 1), SHORTEST_RUN_S), LONGEST_RUN_S)
+
+
+def _seconds(field: FlowField, settings: Settings, seconds: float | None) -> float:
+    if seconds is None:
+        if field.steady:
+            return settings.period
+        return run_seconds(len(field.times))
+    row = TABLE["period"]
+    low, high = row.low or 0.0, row.high or math.inf
+    if not low <= seconds <= high:
+        msg = f"seconds is {seconds!r}; expected a number from {low:g} to {high:g}"
+        raise MovieError(msg)
+    return float(seconds)
+
+
+def _check_motion(field: FlowField, settings: Settings) -> None:
+    """Refuse a steady flow that would stand still."""
+    if field.sign_free:
+        msg = "the field has no sign, so it does not stream; a movie of it needs several times"
+    elif settings.noise != "procedural":
+        msg = f"noise is {settings.noise!r}, which stands still; expected 'procedural' for a movie"
+    elif settings.motion == "off":
+        msg = "motion is 'off'; expected 'speed' or 'uniform', as a steady flow has no other motion"
+    else:
+        return
+    raise MovieError(msg)
+
+
+def _is_periodic(field: FlowField) -> bool:
+    """Tell whether the velocity of the last time is that of the first."""
+    first, last = (np.nan_to_num(field.velocity[step]) for step in (0, -1))
+    return bool(np.abs(last - first).max() <= SAME_SHARE * max(np.abs(first).max(), 1e-300))
 
 
 @dataclass(frozen=True)
@@ -51,6 +181,7 @@ class Movie:
     closed: bool
 
 
+@accepts_options(FieldOptions, Appearance, ViewOptions)
 def movie(
     mesh: Any,
     path: str | Path,
@@ -58,7 +189,8 @@ def movie(
     size: tuple[int, int] = (1024, 768),
     seconds: float | None = None,
     fps: float | None = None,
-    quality: int = QUALITY,
+    quality: int = DEFAULT_QUALITY,
+    supersampling: int = 1,
     progress: bool = True,
     cancelled: Callable[[], bool] = lambda: False,
     **options: Any,
@@ -82,13 +214,15 @@ def movie(
         Pictures in a second; 30 by default, and 20 in a GIF.
     quality
         1 to 100: the more, the truer and the larger the file.
+    supersampling
+        As for :func:`flowtex.render`.
     progress
         Whether to show a progress bar when it takes longer than a second.
     cancelled
         Asked before each picture; once it is true nothing is left behind.
-    **options
-        Further arguments of :func:`flowtex.render`, such as ``zoom``, ``supersampling`` or
-        ``beside``, and settings. ``motion`` is ``"speed"`` unless it is given.
+    {options}
+    **settings
+        Any setting of :class:`~flowtex.Settings`. ``motion`` is ``"speed"`` unless it is given.
 
     Returns
     -------
@@ -109,16 +243,16 @@ def movie(
     """
     fps = default_fps(path) if fps is None else fps
     check_movie(path, size, fps, quality)
-    mesh, moments, options = _prepared(mesh, fps, seconds, options)
-    pictures = _drawn(mesh, moments, size=size, **options)
+    field, chosen, shown = _prepare(mesh, Options.split(**options), fps, seconds)
+    pictures = _draw(field, chosen, shown, size=size, supersampling=supersampling)
     try:
-        shown = track(pictures, len(moments), "Drawing the movie", show=progress)
-        write_movie(path, shown, fps, quality, cancelled=cancelled)
+        tracked = track(pictures, len(shown), "Drawing the movie", show=progress)
+        write_movie(path, tracked, fps, quality, cancelled=cancelled)
     finally:
         pictures.close()
     path = Path(path)
     nbytes = path.stat().st_size
-    return Movie(path, nbytes, size, len(moments), fps, len(moments) / fps, moments.closed)
+    return Movie(path, nbytes, size, len(shown), fps, len(shown) / fps, shown.closed)
 
 
 def frames(
@@ -127,16 +261,15 @@ def frames(
     size: tuple[int, int] = (1024, 768),
     seconds: float | None = None,
     fps: float = 30.0,
+    supersampling: int = 1,
     **options: Any,
-) -> Iterator[NDArray[np.uint8]]:
+) -> Iterator[Bytes]:
     """Draw the pictures of a movie one by one.
 
     Parameters
     ----------
-    mesh, size, seconds, fps
+    mesh, size, seconds, fps, supersampling, **options
         As for :func:`movie`.
-    **options
-        Further arguments of :func:`flowtex.render`, and settings, as for :func:`movie`.
 
     Returns
     -------
@@ -148,31 +281,33 @@ def frames(
     FieldError, SettingsError, OpenGLMissingError, MovieError
         As for :func:`movie`.
     """
-    mesh, moments, options = _prepared(mesh, fps, seconds, options)
-    return _drawn(mesh, moments, size=size, **options)
+    field, chosen, shown = _prepare(mesh, Options.split(**options), fps, seconds)
+    return _draw(field, chosen, shown, size=size, supersampling=supersampling)
 
 
-def _prepared(
-    mesh: Any, fps: float, seconds: float | None, options: dict[str, Any]
-) -> tuple[Any, Moments, dict[str, Any]]:
-    """Return the field, the moments to draw, and the options with the motion in them."""
-    field = as_field(mesh, **{k: options.pop(k, None) for k in FIELD_ARGUMENTS})
-    settings = Settings()
-    given = {name: value for name, value in options.items() if name in TABLE}
-    if field.steady:
-        given = {"motion": "speed", **given}
-    if options.get("image") is not None:
+def _prepare(
+    mesh: Any, options: Options, fps: float, seconds: float | None
+) -> tuple[FlowField, Options, FrameTimes]:
+    """Return the field, the options with the motion in them, and what the frames show."""
+    field = options.field.field(mesh)
+    defaults = {"motion": "speed"} if field.steady else {}
+    given = {**defaults, **options.settings}
+    if options.appearance.image is not None:
         given["noise"] = "image"
+    settings = Settings()
     settings.update(**given)
-    moments = choose_moments(field, settings, fps=fps, seconds=seconds)
+    shown = frame_times(field, settings, fps=fps, seconds=seconds)
+    own = dict(options.settings)
     if field.steady:
-        options = {**options, "motion": settings.motion, "period": moments.seconds}
-    return field, moments, options
+        own |= {"motion": settings.motion, "period": shown.seconds}
+    return field, replace(options, field=FieldOptions(), settings=own), shown
 
 
-def _drawn(mesh: Any, moments: Moments, **options: Any) -> Generator[NDArray[np.uint8], None, None]:
-    with Studio(mesh, **options) as studio:
-        for time in moments.times:
-            yield studio.picture(time=time)
-        for clock in moments.clocks:
-            yield studio.picture(clock=clock)
+def _draw(
+    field: FlowField, options: Options, shown: FrameTimes, **arguments: Any
+) -> Generator[Bytes, None, None]:
+    with OffscreenPlotter(field, options, **arguments) as plotter:
+        for time in shown.times:
+            yield plotter.picture(time=time)
+        for clock in shown.clocks:
+            yield plotter.picture(clock=clock)

@@ -1,6 +1,6 @@
 """One flow texture on a plotter.
 
-A handle joins a :class:`~flowtex.view.FlowView` (arrays, settings, time) to a
+A handle joins a :class:`~flowtex.scene.Scene` (arrays, appearance, settings, time) to a
 :class:`~flowtex.rendering.vtk.FlowLayer` (the graphics card) and carries changes from one to the
 other.
 """
@@ -8,16 +8,36 @@ other.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
+from flowtex._util.colours import DEFAULT_CMAP
 from flowtex.field import FlowField
 from flowtex.rendering.vtk import FlowLayer, set_attributes, surface_mesh, use_flow_mapper
+from flowtex.scene import Scene
 from flowtex.settings import Affects, Settings
-from flowtex.textures.image_files import load_image
-from flowtex.view import FlowView
 
 __all__ = ["FlowHandle"]
+
+#: A lit surface: dark sides stay bright enough to read the texture there.
+LIGHT: dict[str, Any] = {"ambient": 0.3, "diffuse": 0.8}
+
+#: A scalar bar that keeps out of the picture's way.
+SCALAR_BAR: dict[str, Any] = {
+    "fmt": "%.3g",
+    "n_labels": 3,
+    "vertical": True,  # labels of a level bar would hang over its ends
+    "width": 0.08,
+    "height": 0.36,
+    "position_x": 0.02,
+    "position_y": 0.04,
+    "fill": True,
+    "background_color": "white",
+    "color": "black",
+    "title_font_size": 16,
+    "label_font_size": 14,
+    "unconstrained_font_size": True,
+}
 
 _count = itertools.count(1)
 
@@ -38,59 +58,70 @@ class FlowHandle:
     def __init__(
         self,
         plotter: Any,
-        view: FlowView,
-        scalars: str | None,
-        add_mesh: dict[str, Any],
+        scene: Scene,
         forget: Callable[[FlowHandle], None],
+        scalar_bar_args: Mapping[str, Any] | None = None,
     ) -> None:
         self._plotter = plotter
         self._forget = forget
-        self._view = view
-        self._scalars = scalars
-        self._mesh = surface_mesh(view.textures)
-        bar = add_mesh.pop("bar")
-        if scalars is not None:
-            self._mesh.point_data[scalars] = view.scalar(scalars).ravel()
+        self._scene = scene
+        self._mesh = surface_mesh(scene.textures)
+        name, appearance = scene.scalar_name, scene.appearance
+        lit = appearance.is_lit(flat=scene.flat)
+        options: dict[str, Any] = {"opacity": appearance.opacity, "lighting": lit}
+        options |= LIGHT if lit else {}
+        if name is None:
+            options["color"] = appearance.color
+        else:
+            self._mesh.point_data[name] = scene.scalar(name).ravel()
+            options |= {"scalars": name, "cmap": appearance.cmap or DEFAULT_CMAP}
+            options["clim"] = scene.scalar_limits
         self.actor = plotter.add_mesh(
-            self._mesh, name=f"flowtex {next(_count)}", show_scalar_bar=False, **add_mesh
+            self._mesh,
+            name=f"flowtex {next(_count)}",
+            show_scalar_bar=False,
+            reset_camera=False,
+            **options,
         )
-        mapper = use_flow_mapper(self.actor, self._mesh, scalars)
-        self._bar = bar.get("title", scalars) if bar is not None and scalars else None
-        if self._bar is not None:
-            plotter.add_scalar_bar(mapper=mapper, **{"title": scalars, **bar})
-        self._layer = FlowLayer(self.actor, plotter.renderer, view.textures, view.settings)
-        self._layer.set_moment(*view.moment)
-        self._shown = view.time
-        self._end = view.observe(self._changed)
+        mapper = use_flow_mapper(self.actor, self._mesh, name)
+        self._bar_title: str | None = None
+        if name is not None and appearance.has_bar:
+            bar = {"title": name, **SCALAR_BAR, **(scalar_bar_args or {})}
+            plotter.add_scalar_bar(mapper=mapper, **bar)
+            self._bar_title = bar["title"]
+        self._layer = FlowLayer(self.actor, plotter.renderer, scene.textures, scene.settings)
+        self._layer.set_moment(*scene.moment)
+        self._shown_time = scene.time
+        self._end = scene.observe(self._changed)
 
     @property
     def field(self) -> FlowField:
         """The flow."""
-        return self._view.field
+        return self._scene.field
 
     @property
     def settings(self) -> Settings:
         """Every setting, live."""
-        return self._view.settings
+        return self._scene.settings
 
     @property
-    def view(self) -> FlowView:
+    def scene(self) -> Scene:
         """The arrays behind the picture."""
-        return self._view
+        return self._scene
 
     @property
     def scalars(self) -> str | None:
         """Name of what the texture is coloured by; ``None`` for a plain one."""
-        return self._scalars
+        return self._scene.scalar_name
 
     @property
     def time(self) -> float:
         """Time that is shown, in the field's own unit."""
-        return self._view.time
+        return self._scene.time
 
     @time.setter
     def time(self, value: float) -> None:
-        self._view.time = value
+        self._scene.time = value
 
     @property
     def clock(self) -> float:
@@ -130,14 +161,14 @@ class FlowHandle:
         Parameters
         ----------
         image
-            As for ``plotter.flowtex.add``.
+            As :class:`~flowtex.options.Appearance` has it.
 
         Raises
         ------
         ImageError
             When it cannot be used; nothing is changed then.
         """
-        self._view.set_image(load_image(image))
+        self._scene.set_image(image)
 
     def remove(self, *, render: bool = True) -> None:
         """Take the texture, its scalar bar and everything on the graphics card away.
@@ -151,10 +182,10 @@ class FlowHandle:
             return
         plotter, self._plotter = self._plotter, None
         self._end()
-        self._view.close()
+        self._scene.close()
         self._layer.close()
-        if self._bar is not None and self._bar in plotter.scalar_bars:
-            plotter.remove_scalar_bar(self._bar, render=False)
+        if self._bar_title is not None and self._bar_title in plotter.scalar_bars:
+            plotter.remove_scalar_bar(self._bar_title, render=False)
         plotter.remove_actor(self.actor, render=False)
         self._forget(self)
         if render:
@@ -164,19 +195,19 @@ class FlowHandle:
         if affects == "uniform":
             self._show_moment()
         else:
-            textures = self._view.textures
+            textures = self._scene.textures
             set_attributes(self._mesh, textures)
             self._layer.set_textures(textures)
         self._draw()
 
     def _show_moment(self) -> None:
         """Follow the time: textures at the steps around it, and the colours."""
-        if self.field.steady or self._shown == self._view.time:
+        if self.field.steady or self._shown_time == self._scene.time:
             return
-        self._shown = self._view.time
-        self._layer.set_moment(*self._view.moment)
-        if self._scalars is not None:
-            self._mesh.point_data[self._scalars] = self._view.scalar(self._scalars).ravel()
+        self._shown_time = self._scene.time
+        self._layer.set_moment(*self._scene.moment)
+        if (name := self.scalars) is not None:
+            self._mesh.point_data[name] = self._scene.scalar(name).ravel()
 
     def _draw(self) -> None:
         if self._plotter is not None:

@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 
 from flowtex.plotting.handle import FlowHandle
-from flowtex.staging import straight
+from flowtex.plotting.vtk_camera import read_camera
+from flowtex.textures.images import as_image
 
 __all__ = ["show_plotter"]
 
@@ -72,31 +73,24 @@ def show_plotter(plotter: Any, *, screenshot: Any = None, **options: Any) -> Any
 
 def _look_of(plotter: Any, handle: FlowHandle) -> dict[str, Any]:
     """Return the arguments of a widget that looks the same."""
-    camera, mapper = plotter.camera, handle.actor.mapper
+    mapper = handle.actor.mapper
     width, height = plotter.window_size
     name = handle.scalars
     colours: dict[str, Any] = {"scalars": False, "color": handle.actor.prop.color}
     if name is not None:
         table = np.asarray(mapper.lookup_table.values)
         colours = {"scalars": name, "cmap": table, "clim": tuple(mapper.scalar_range)}
-    image = handle.view.image
+    image = handle.scene.image
     return {
         **dict(handle.settings),
         **colours,
-        "image": None if image is None else straight(image),
+        "image": None if image is None else as_image(image),
         "lighting": bool(handle.actor.prop.lighting),
         "opacity": float(handle.actor.prop.opacity),
         "show_scalar_bar": bool(plotter.scalar_bars),
         "background": plotter.background_color,
         "size": (int(width), int(height)),
-        "camera": {
-            "position": camera.position,
-            "focal_point": camera.focal_point,
-            "up": camera.up,
-            "parallel": bool(camera.parallel_projection),
-            "parallel_scale": camera.parallel_scale,
-            "view_angle": camera.view_angle,
-        },
+        "camera": read_camera(plotter.camera),
     }
 
 

@@ -71,7 +71,7 @@ def as_image(picture: Floats32) -> Floats32:
     Parameters
     ----------
     picture
-        (h, w, 4) texels, as :attr:`flowtex.view.FlowView.image` holds them.
+        (h, w, 4) texels, as :attr:`flowtex.scene.Scene.image` holds them.
 
     Returns
     -------

@@ -14,7 +14,7 @@ import hashlib
 import html
 import json
 import string
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -22,13 +22,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from flowtex._util.cache import digest
 from flowtex._util.progress import track
 from flowtex._util.whole_file import whole_file
 from flowtex._version import __version__
+from flowtex.options import Appearance, FieldOptions, Options, ViewOptions, accepts_options
 from flowtex.rendering.webgl import Scene, asset
-from flowtex.sharing import digest
-from flowtex.staging import Stage, staged
 from flowtex.web import preview
+from flowtex.web.view import WebView, web_views
 
 __all__ = ["Page", "estimate", "export", "page_text", "write_page"]
 
@@ -64,16 +65,14 @@ class Page:
     steps: int
 
 
+@accepts_options(FieldOptions, Appearance, ViewOptions)
 def export(
     mesh: Any,
     path: str | Path,
     *,
     steps: int | None = None,
     title: str | None = None,
-    zoom: float = 1.0,
-    focus: tuple[float, ...] | None = None,
     announce: Callable[[int, int], None] | None = None,
-    beside: Mapping[str, Any] | None = None,
     **options: Any,
 ) -> Page:
     """Write a flow as one HTML file that needs no server and no network.
@@ -89,15 +88,11 @@ def export(
         of them by default. One step alone is drawn as a steady flow.
     title
         Title of the page; the name of the field by default.
-    zoom, focus
-        How far in, and on what point of the mesh, the page begins.
     announce
         Called with the estimated size in bytes and the number of steps before the work begins.
-    beside
-        What is different in a second view to the right of the first one, such as
-        ``{"lod": False}``; both views move together.
-    **options
-        Further arguments and settings of ``plotter.flowtex.add``.
+    {options}
+    **settings
+        Any setting of :class:`~flowtex.Settings`, such as ``samples=25``.
 
     Returns
     -------
@@ -112,17 +107,18 @@ def export(
     OSError
         When the file cannot be written; what was there before is left as it was.
     """
-    stages = staged(mesh, beside, steps=steps, **options)
+    arguments = Options.split(**options)
+    views = web_views(mesh, arguments, steps=steps)
     try:
-        camera = stages[0].first_look(zoom=zoom, focus=focus)
-        return write_page(stages, path, camera=camera, title=title, announce=announce)
+        camera = views[0].camera(arguments.view).to_dict()
+        return write_page(views, path, camera=camera, title=title, announce=announce)
     finally:
-        for stage in stages:
-            stage.view.close()
+        for view in views:
+            view.close()
 
 
 def write_page(
-    stages: Sequence[Stage],
+    views: Sequence[WebView],
     path: str | Path,
     *,
     camera: dict[str, Any] | None = None,
@@ -132,18 +128,18 @@ def write_page(
     picture: bytes | None = None,
     announce: Callable[[int, int], None] | None = None,
 ) -> Page:
-    """Write a stage, or two beside each other, as a page; :func:`export` has the parameters."""
+    """Write a view, or two beside each other, as a page; :func:`export` has the parameters."""
     path = Path(path)
-    scenes = [stage.scene() for stage in stages]
+    scenes = [view.data() for view in views]
     estimated = estimate(scenes)
     if announce is not None:
         announce(estimated, scenes[0].steps)
-    pieces = _pieces(stages, scenes, camera, time, clock, title, picture)
+    pieces = _pieces(views, scenes, camera, time, clock, title, picture)
     return Page(path, _write(path, pieces), estimated, scenes[0].steps)
 
 
 def page_text(
-    stages: Sequence[Stage],
+    views: Sequence[WebView],
     *,
     camera: dict[str, Any] | None = None,
     time: float | None = None,
@@ -151,9 +147,9 @@ def page_text(
     title: str | None = None,
     picture: bytes | None = None,
 ) -> str:
-    """Return a stage, or two, as the text of a page; :func:`export` has the parameters."""
-    scenes = [stage.scene() for stage in stages]
-    return "".join(_pieces(stages, scenes, camera, time, clock, title, picture))
+    """Return a view, or two, as the text of a page; :func:`export` has the parameters."""
+    scenes = [view.data() for view in views]
+    return "".join(_pieces(views, scenes, camera, time, clock, title, picture))
 
 
 def estimate(scenes: Sequence[Scene]) -> int:
@@ -168,7 +164,7 @@ def estimate(scenes: Sequence[Scene]) -> int:
 
 
 def _pieces(
-    stages: Sequence[Stage],
+    views: Sequence[WebView],
     scenes: Sequence[Scene],
     camera: dict[str, Any] | None,
     time: float | None,
@@ -178,15 +174,15 @@ def _pieces(
 ) -> Iterator[str]:
     """Give the text of a page piece by piece; each array is packed when it is reached."""
     header, *others = (
-        scene.header(stage.view.settings, camera=camera, time=time, clock=clock)
-        for stage, scene in zip(stages, scenes, strict=True)
+        scene.header(view.scene.settings, camera=camera, time=time, clock=clock)
+        for view, scene in zip(views, scenes, strict=True)
     )
-    for stage, other in zip(stages[1:], others, strict=True):
-        other["differs"] = header["differs"] = list(stage.own)
+    for view, other in zip(views[1:], others, strict=True):
+        other["differs"] = header["differs"] = list(view.own_settings)
         header["beside"] = other
     if picture is None:
         picture = preview.preview_png(
-            stages[0], PREVIEW, camera=header["camera"], time=time, coarser=1
+            views[0], PREVIEW, camera=header["camera"], time=time, coarser=1
         )
     before, after = asset("page.html").read_text("utf-8").split("$parts\n")
     values = _values(header, title or header["name"] or "Flow", picture)

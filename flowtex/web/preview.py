@@ -18,7 +18,7 @@ from flowtex.rendering.cpu import Picture, render
 from flowtex.rendering.uniforms import ViewState
 from flowtex.rendering.webgl import Scene
 from flowtex.settings import Settings
-from flowtex.staging import Stage
+from flowtex.web.view import WebView
 
 __all__ = ["png", "preview", "preview_png"]
 
@@ -31,7 +31,7 @@ Bytes = NDArray[np.uint8]
 
 
 def preview(
-    stage: Stage,
+    view: WebView,
     size: tuple[int, int],
     *,
     camera: Mapping[str, Any] | None = None,
@@ -43,7 +43,7 @@ def preview(
 
     Parameters
     ----------
-    stage
+    view
         The flow and its colours.
     size
         Width and height in pixels.
@@ -52,7 +52,7 @@ def preview(
     time
         Time that is shown; the last one by default.
     scene
-        The stage's scene with few nodes, when it is at hand.
+        The view's data with few nodes, when they are at hand.
     coarser
         Pixels of the picture by one that is computed, along each side.
 
@@ -61,17 +61,17 @@ def preview(
     numpy.ndarray
         (height, width, 3), row 0 at the top.
     """
-    scene = scene or stage.coarse_scene(NODES)
+    scene = scene or view.coarse_data(NODES)
     camera = camera or scene.first_look(size)
-    drawn = _drawn(stage, scene, (size[0] // coarser, size[1] // coarser), camera, time)
+    drawn = _drawn(view, scene, (size[0] // coarser, size[1] // coarser), camera, time)
     from PIL import Image
 
     return np.asarray(Image.fromarray(drawn).resize(size, Image.Resampling.BICUBIC))
 
 
-def preview_png(stage: Stage, size: tuple[int, int], **options: Any) -> bytes:
+def preview_png(view: WebView, size: tuple[int, int], **options: Any) -> bytes:
     """Draw a small picture and return it as PNG; :func:`preview` has the parameters."""
-    return png(preview(stage, size, **options))
+    return png(preview(view, size, **options))
 
 
 def png(picture: Bytes) -> bytes:
@@ -99,7 +99,7 @@ def _few_samples(settings: Settings) -> Settings:
 
 
 def _drawn(
-    stage: Stage,
+    view: WebView,
     scene: Scene,
     size: tuple[int, int],
     camera: Mapping[str, Any],
@@ -112,7 +112,7 @@ def _drawn(
     between = float((shown - first) / (last - first)) if last > first else 0.0
     picture = render(
         scene.textures,
-        _few_samples(stage.view.settings),
+        _few_samples(view.scene.settings),
         Camera.from_dict(camera),
         (max(size[0], 1), max(size[1], 1)),
         view=ViewState(between=between),

@@ -5,7 +5,7 @@
     browser    client.js  <--- traits: header, settings, camera, time, clock
                    |      <--- messages with arrays: surface, slices, scalars
                    +---------> "ready", "need" a step, clicks, its first sharp frame
-    kernel     FlowWidget ---> FlowView, settings
+    kernel     FlowWidget ---> Scene, settings
                    +---------> Feed: one thread that traces, packs and sends
 
 Nothing is drawn in the kernel but a small picture for where widgets cannot be shown.

@@ -19,10 +19,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from flowtex._util.cache import digest
 from flowtex.rendering.webgl import Scene
-from flowtex.sharing import digest
-from flowtex.staging import Stage
 from flowtex.web import preview
+from flowtex.web.view import WebView
 from flowtex.widget.gone import has_gone
 from flowtex.widget.worker import Crew, Worker
 
@@ -50,11 +50,11 @@ ANSWERS, MAKES = Crew("flowtex-answers", 4), Crew("flowtex-makes", 2)
 
 
 class Feed:
-    """Arrays of a stage on their way to a client.
+    """Arrays of a view on their way to a client.
 
     Parameters
     ----------
-    stage
+    view
         What is shown.
     moment
         Tells the time that is shown.
@@ -66,13 +66,13 @@ class Feed:
 
     def __init__(
         self,
-        stage: Stage,
+        view: WebView,
         *,
         moment: Callable[[], float],
         announce: Callable[[dict[str, Any]], None],
         send: Callable[[dict[str, Any], list[memoryview]], None],
     ) -> None:
-        self._stage = stage
+        self._view = view
         self._moment, self._announce, self._send = moment, announce, send
         self._lock = threading.RLock()  # scene and generation, and the order of messages
         self._generation = self._order = 0
@@ -149,7 +149,7 @@ class Feed:
 
         def change() -> None:
             if order == self._order:
-                self._replace(self._first() if traces else self._stage.scene())
+                self._replace(self._first() if traces else self._view.data())
 
         self._makes.do(change, urgency=2)
         self._refine()
@@ -165,10 +165,10 @@ class Feed:
 
     def _first(self) -> Scene:
         """Return the scene to begin with: a coarse one of a large field."""
-        field = self._stage.field
+        field = self._view.field
         if field.valid.size * len(field.times) <= LARGE:
-            return self._stage.scene()
-        return self._stage.coarse_scene(COARSE_STEADY if field.steady else COARSE_VARYING)
+            return self._view.data()
+        return self._view.coarse_data(COARSE_STEADY if field.steady else COARSE_VARYING)
 
     def _refine(self) -> None:
         """Replace a coarse scene by one between, where the whole takes long, and by the whole."""
@@ -177,24 +177,24 @@ class Feed:
         self._makes.do(lambda: self._complete(order))
 
     def _come_between(self, order: int) -> None:
-        field = self._stage.field
+        field = self._view.field
         if field.valid.size * len(field.times) < LONG:
             return
         if order == self._order and self._coarse:
             nodes = BETWEEN_STEADY if field.steady else BETWEEN_VARYING
-            self._replace(self._stage.coarse_scene(nodes))
+            self._replace(self._view.coarse_data(nodes))
 
     def _complete(self, order: int) -> None:
         if order != self._order:
             return
         if self._coarse:
-            self._replace(self._stage.scene())
+            self._replace(self._view.data())
         if order == self._order:
             self.settled.set()
 
     @property
     def _coarse(self) -> bool:
-        return self.scene.textures.geometry.field.shape != self._stage.field.shape
+        return self.scene.textures.geometry.field.shape != self._view.field.shape
 
     def _replace(self, scene: Scene) -> None:
         """Put a scene in the place of the present one, once it can be shown."""
@@ -289,7 +289,7 @@ class Feed:
         """Draw the small picture, which nothing depends on."""
         with suppress(Exception):
             self.picture = preview.preview_png(
-                self._stage, size, camera=camera, time=self._moment(), scene=self.scene
+                self._view, size, camera=camera, time=self._moment(), scene=self.scene
             )
         self.pictured.set()
 

@@ -4,20 +4,20 @@ from __future__ import annotations
 
 import threading
 import uuid
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import traitlets
 
 from flowtex.field import FlowField
-from flowtex.plotting.component import PLAIN
+from flowtex.options import Appearance, FieldOptions, Options, ViewOptions, accepts_options
 from flowtex.rendering.webgl import asset
+from flowtex.scene import NO_IMAGE, Scene
 from flowtex.settings import TABLE, Affects, Settings, SettingsError
-from flowtex.staging import staged
 from flowtex.textures.image_files import load_image
-from flowtex.view import NO_IMAGE, FlowView
 from flowtex.web.export import PREVIEW, page_text, write_page
+from flowtex.web.view import web_views
 from flowtex.widget.display import Displayed
 from flowtex.widget.panel import make_panel
 from flowtex.widget.traits import CameraTrait, SettingTraits, SizeTrait
@@ -67,6 +67,7 @@ class FlowWidget(SettingTraits, Displayed):
     size = SizeTrait().tag(sync=True)
     bar = traitlets.Bool(default_value=True).tag(sync=True)
 
+    @accepts_options(FieldOptions, Appearance, ViewOptions)
     def __init__(
         self,
         mesh: Any,
@@ -74,87 +75,41 @@ class FlowWidget(SettingTraits, Displayed):
         scalars: str | bool | None = None,  # noqa: FBT001 False is "by nothing", as in PyVista
         cmap: Any | None = None,
         *,
-        clim: tuple[float, float] | None = None,
-        plane: str | None = None,
-        times: Any | None = None,
-        periodic: str | None = None,
-        sign_free: bool | None = None,
-        image: Any | None = None,
-        color: Any = PLAIN,
-        opacity: float = 1.0,
-        lighting: bool | None = None,
-        show_scalar_bar: bool | None = None,
-        background: Any = "white",
         size: tuple[int, int] = (0, 400),
-        zoom: float = 1.0,
-        focus: tuple[float, ...] | None = None,
-        camera: dict[str, Any] | None = None,
         bar: bool = True,
-        beside: Mapping[str, Any] | None = None,
-        **settings: Any,
+        **options: Any,
     ) -> None:
         """Make a widget from a mesh or a field.
 
         Parameters
         ----------
-        mesh, vectors, scalars, cmap, clim, plane, times, periodic, sign_free, image, color
-            As for ``plotter.flowtex.add``.
-        lighting
-            As for ``plotter.flowtex.add``.
-        opacity
-            1 is opaque, 0 invisible; the side that is nearest is seen before the background.
-        show_scalar_bar
-            Whether there is a legend; by default unless an image covers the surface.
-        background
-            Colour behind the surface.
+        mesh
+            What ``plotter.flowtex.add`` takes.
         size, bar
             As the attributes of these names.
-        zoom, focus
-            How far in, and on what point of the mesh, the view begins.
-        camera
-            Another view to begin with, as :attr:`camera` has it.
-        beside
-            What is different in a second view to the right of the first one, such as
-            ``{"lod": False}``; both views move together.
+        {options}
         **settings
-            Any setting of :class:`~flowtex.Settings`.
+            Any setting of :class:`~flowtex.Settings`, such as ``samples=25``.
 
         Raises
         ------
         FieldError, SettingsError
             When the mesh or a setting does not fit.
         """
-        stages = staged(
-            mesh,
-            beside,
-            vectors=vectors,
-            scalars=scalars,
-            cmap=cmap,
-            clim=clim,
-            plane=plane,
-            times=times,
-            periodic=periodic,
-            sign_free=sign_free,
-            image=image,
-            color=color,
-            opacity=opacity,
-            lighting=lighting,
-            show_scalar_bar=show_scalar_bar,
-            background=background,
-            **settings,
-        )
+        arguments = Options.split(vectors=vectors, scalars=scalars, cmap=cmap, **options)
+        views = web_views(mesh, arguments)
         self._state_lock = threading.RLock()
         self._frame: bytes | None = None
         self._ends: list[Callable[[], None]] = []
         self._views = Views(
-            stages, self._announce, lambda content, buffers: self.send(content, buffers)
+            views, self._announce, lambda content, buffers: self.send(content, buffers)
         )
-        look = stages[0].first_look(PREVIEW[0] / PREVIEW[1], zoom=zoom, focus=focus)
+        first = views[0].camera(arguments.view, PREVIEW[0] / PREVIEW[1])
         super().__init__(
             **dict(zip(HEADERS, self._views.headers, strict=False)),
             _key=uuid.uuid4().hex,
-            camera={**look, **(camera or {})},
-            time=self.view.time,
+            camera=first.to_dict(),
+            time=self.scene.time,
             size=size,
             bar=bar,
             **dict(self.settings),
@@ -168,21 +123,21 @@ class FlowWidget(SettingTraits, Displayed):
         self.observe(self._to_time, "time")
         self._ends = [
             self.settings.observe(lambda name, value: self._set(name, value)),
-            self.view.observe(self._view_changed),
+            self.scene.observe(self._scene_changed),
         ]
 
     @property
     def field(self) -> FlowField:
         """The flow."""
-        return self.view.field
+        return self.scene.field
 
     @property
     def settings(self) -> Settings:
         """Every setting; the traits of the same names follow it."""
-        return self.view.settings
+        return self.scene.settings
 
     @property
-    def view(self) -> FlowView:
+    def scene(self) -> Scene:
         """The arrays behind the picture."""
         return self._views.first
 
@@ -192,7 +147,7 @@ class FlowWidget(SettingTraits, Displayed):
         Parameters
         ----------
         image
-            As for ``plotter.flowtex.add``.
+            As :class:`~flowtex.options.Appearance` has it.
 
         Raises
         ------
@@ -220,8 +175,8 @@ class FlowWidget(SettingTraits, Displayed):
         now: dict[str, Any] = {"camera": dict(self.camera), "time": self.time, "clock": self.clock}
         picture = self._picture(patience=0.0)
         if path is None:
-            return page_text(self._views.stages, title=title, picture=picture, **now)
-        write_page(self._views.stages, path, title=title, picture=picture, **now)
+            return page_text(self._views.views, title=title, picture=picture, **now)
+        write_page(self._views.views, path, title=title, picture=picture, **now)
         return None
 
     def close(self) -> None:
@@ -282,16 +237,16 @@ class FlowWidget(SettingTraits, Displayed):
         self._views.follow(change["name"], change["new"])
 
     def _to_time(self, change: Any) -> None:
-        if change["new"] != self.view.time:
-            self.view.time = change["new"]
+        if change["new"] != self.scene.time:
+            self.scene.time = change["new"]
 
     def _set(self, name: str, value: Any) -> None:
         if getattr(self, name) != value:
             setattr(self, name, value)
 
-    def _view_changed(self, affects: Affects) -> None:
+    def _scene_changed(self, affects: Affects) -> None:
         if affects == "uniform":
-            self._set("time", self.view.time)
+            self._set("time", self.scene.time)
         self._views.changed(affects)
 
     def __repr__(self) -> str:

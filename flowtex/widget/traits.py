@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 import traitlets
 
+from flowtex.camera import Camera, CameraError
 from flowtex.settings import TABLE, Setting
 
 __all__ = ["CameraTrait", "SettingTrait", "SettingTraits", "SizeTrait"]
-
-POINTS, NUMBERS = ("position", "focal_point", "up"), ("parallel_scale", "view_angle")
 
 
 class SettingTrait(traitlets.TraitType[Any, Any]):
@@ -28,7 +25,7 @@ class SettingTrait(traitlets.TraitType[Any, Any]):
 
 
 class CameraTrait(traitlets.TraitType[Any, Any]):
-    """A camera as the header of a scene has it; what is left out stays as it was."""
+    """A camera's numbers by name; what is left out stays as it was."""
 
     def validate(self, obj: Any, value: Any) -> Any:
         """Return the whole camera as plain numbers.
@@ -36,25 +33,15 @@ class CameraTrait(traitlets.TraitType[Any, Any]):
         Raises
         ------
         TraitError
-            When there is a name that no camera has, or a value that is not finite numbers.
+            When it is no camera, or one that sees nothing.
         """
-        known = (*POINTS, *NUMBERS, "parallel")
-        if not isinstance(value, Mapping) or not set(value) <= set(known):
-            msg = f"camera is {value!r}; expected a dict with some of {', '.join(known)}"
-            raise traitlets.TraitError(msg)
-        old = obj._trait_values.get(self.name) or {}
-        made = {**old, **value}
+        present = obj._trait_values.get(self.name)
         try:
-            points = {name: _numbers(made[name], 3) for name in POINTS}
-            scale, angle = _numbers([made[name] for name in NUMBERS], 2)
-            parallel = bool(made["parallel"])
-        except (KeyError, TypeError, ValueError) as error:
-            msg = f"camera is {value!r}; expected points of three numbers, and positive numbers"
-            raise traitlets.TraitError(msg) from error
-        if not (scale > 0 and 0 < angle < 180):
-            msg = f"camera is {value!r}; expected a positive scale and an angle below 180 degrees"
-            raise traitlets.TraitError(msg)
-        return {**points, "parallel": parallel, "parallel_scale": scale, "view_angle": angle}
+            if isinstance(value, Camera):
+                return value.to_dict()
+            return Camera.from_dict(value, Camera(**present) if present else None).to_dict()
+        except CameraError as error:
+            raise traitlets.TraitError(str(error)) from error
 
 
 class SizeTrait(traitlets.TraitType[Any, Any]):
@@ -70,14 +57,6 @@ class SizeTrait(traitlets.TraitType[Any, Any]):
             msg = f"size is {value!r}; expected (width, height) in pixels, or (0, height)"
             raise traitlets.TraitError(msg)
         return [width, height]
-
-
-def _numbers(values: Any, count: int) -> list[float]:
-    numbers = np.asarray(values, dtype=float)
-    if numbers.shape != (count,) or not np.isfinite(numbers).all():
-        msg = "not finite numbers"
-        raise ValueError(msg)
-    return [float(n) for n in numbers]
 
 
 if TYPE_CHECKING:

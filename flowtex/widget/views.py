@@ -10,9 +10,9 @@ import io
 from collections.abc import Callable, Sequence
 from typing import Any
 
+from flowtex.scene import Scene
 from flowtex.settings import Affects
-from flowtex.staging import Stage
-from flowtex.view import FlowView
+from flowtex.web.view import WebView
 from flowtex.widget.feed import Feed
 
 __all__ = ["HEADERS", "Views"]
@@ -25,11 +25,11 @@ Say = Callable[[dict[str, Any], list[memoryview]], None]
 
 
 class Views:
-    """One stage or two, each with its feed.
+    """One view or two, each with its feed.
 
     Parameters
     ----------
-    stages
+    views
         What is shown, from left to right.
     announce
         Given the number of a view and its new header, before its arrays are sent.
@@ -38,19 +38,19 @@ class Views:
     """
 
     def __init__(
-        self, stages: Sequence[Stage], announce: Callable[[int, Header], None], send: Say
+        self, views: Sequence[WebView], announce: Callable[[int, Header], None], send: Say
     ) -> None:
-        self.stages = tuple(stages)
-        self.first = self.stages[0].view
-        self.feeds = [self._feed(n, stage, announce, send) for n, stage in enumerate(self.stages)]
-        for feed, other in zip(self.feeds[1:], self.stages[1:], strict=True):
-            other.view.observe(self._remade(feed))
+        self.views = tuple(views)
+        self.first = self.views[0].scene
+        self.feeds = [self._feed(n, view, announce, send) for n, view in enumerate(self.views)]
+        for feed, other in zip(self.feeds[1:], self.views[1:], strict=True):
+            other.scene.observe(self._remade(feed))
 
     def _feed(
-        self, number: int, stage: Stage, announce: Callable[[int, Header], None], send: Say
+        self, number: int, view: WebView, announce: Callable[[int, Header], None], send: Say
     ) -> Feed:
         return Feed(
-            stage,
+            view,
             moment=lambda: self.first.time,
             announce=lambda header: announce(number, self._told(number, header)),
             send=lambda message, buffers: send({**message, "view": number}, buffers),
@@ -66,14 +66,14 @@ class Views:
 
     def _told(self, number: int, header: Header) -> Header:
         """Add what tells the views apart: the settings that are the view's own."""
-        if len(self.stages) == 1:
+        if len(self.views) == 1:
             return header
-        own = self.stages[1].own
-        settings: FlowView = self.stages[number].view
+        own = self.views[1].own_settings
+        scene: Scene = self.views[number].scene
         return {
             **header,
             "differs": list(own),
-            "own": {name: getattr(settings.settings, name) for name in own} if number else {},
+            "own": {name: getattr(scene.settings, name) for name in own} if number else {},
         }
 
     @property
@@ -104,16 +104,16 @@ class Views:
 
     def follow(self, name: str, value: Any) -> None:
         """Hand a setting of the first view on."""
-        for stage in self.stages[1:]:
-            if name not in stage.own:
-                setattr(stage.view.settings, name, value)
+        for view in self.views[1:]:
+            if name not in view.own_settings:
+                setattr(view.scene.settings, name, value)
 
     def set_image(self, image: Any) -> None:
         """Lay another image on the surface, in all views that show one."""
         self.first.set_image(image)
-        for stage in self.stages[1:]:
-            if stage.view.settings.noise == "image" or "noise" not in stage.own:
-                stage.view.set_image(image)
+        for view in self.views[1:]:
+            if view.scene.settings.noise == "image" or "noise" not in view.own_settings:
+                view.scene.set_image(image)
 
     def changed(self, affects: Affects) -> None:
         """Make anew what a change of the first view asks for."""
@@ -135,9 +135,9 @@ class Views:
 
     def close(self) -> None:
         """Let go of everything."""
-        for feed, stage in zip(self.feeds, self.stages, strict=True):
+        for feed, view in zip(self.feeds, self.views, strict=True):
             feed.close()
-            stage.view.close()
+            view.close()
 
 
 def _side_by_side(pictures: Sequence[bytes]) -> bytes:

@@ -17,12 +17,12 @@ Left out: the animations themselves, and time-varying flow.
 from __future__ import annotations
 
 import numpy as np
+from flowtex.rendering.cpu.cover import cover
 from numpy.typing import ArrayLike, NDArray
 from scipy import ndimage
 
 from flowtex.field import FlowField
 from flowtex.rendering.cpu import Camera
-from flowtex.rendering.cpu.cover import cover
 from paper.references.lic import lic
 
 __all__ = ["draw_texture", "forssell_lic", "texel_velocity"]

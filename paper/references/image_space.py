@@ -22,13 +22,13 @@ lies in front streaks onto what lies behind it; and time-varying flow.
 from __future__ import annotations
 
 import numpy as np
+from flowtex.rendering.cpu.cover import cover
 from numpy.typing import NDArray
 from scipy import ndimage
 
 from flowtex.errors import raise_faults
 from flowtex.field import FlowField
 from flowtex.rendering.cpu import Camera
-from flowtex.rendering.cpu.cover import cover
 
 __all__ = ["ImageSpace"]
 

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from flowtex.field import FlowField
 from flowtex.probe import Probe, probe
+from flowtex.scene import Scene
 from flowtex.trace import trace
-from flowtex.view import FlowView
 from paper.bench import PAPER, Bench
 from paper.findings import Block, Claim, Finding, Plot, Table
 from paper.plots import COLOURS, GROUND, INK, RULE, SOFT, canvas
@@ -114,10 +114,10 @@ def _plot(plot: Plot | None) -> Plot:
     return plot
 
 
-def _probed(bench: Bench) -> tuple[FlowView, Probe]:
+def _probed(bench: Bench) -> tuple[Scene, Probe]:
     field: FlowField = bench.gyre
     settings = bench.settings(**PAPER, resolution=RESOLUTION)
-    view = FlowView(field, settings)
+    view = Scene(field, settings)
     pixel = COVERS * field.surface.extent / RESOLUTION
     return view, probe(view, PLACE, pixel=pixel)
 

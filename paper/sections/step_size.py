@@ -6,11 +6,11 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+from flowtex.rendering.cpu.lookup_paper import PaperImages, PaperNoise
 from numpy.typing import NDArray
 
 from flowtex.rendering.cpu import LookupMaker
 from flowtex.rendering.cpu.fragments import Fragments
-from flowtex.rendering.cpu.lookup_paper import PaperImages, PaperNoise
 from flowtex.textures import PaperTextures
 from paper.bench import PAPER, Bench
 from paper.findings import Claim, Finding, Panel, Plate, Table

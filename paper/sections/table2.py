@@ -56,17 +56,19 @@ def _drawn(bench: Bench, field: FlowField, slices: Any) -> dict[str, float]:
         return {}
     import pyvista as pv
 
+    from flowtex.options import Appearance
     from flowtex.plotting.handle import FlowHandle
     from flowtex.plotting.vtk_camera import look
-    from flowtex.view import FlowView
+    from flowtex.scene import Scene
 
     plotter: Any = pv.Plotter(off_screen=True, window_size=list(SIZE))
     try:
         plotter.disable_anti_aliasing()
-        view = FlowView(field, Settings(**PAPER, resolution=512), slices=slices)
+        grey = Appearance(scalars=False, color="grey")
+        scene = Scene(field, Settings(**PAPER, resolution=512), grey, slices=slices)
         look(plotter, field)
         plotter.render()
-        made = FlowHandle(plotter, view, None, {"color": "grey", "bar": None}, lambda _: None)
+        made = FlowHandle(plotter, scene, lambda _: None)
         look(plotter, field)
         first, _ = _clock(plotter.screenshot)
         frames = bench.pick(12, 4)

@@ -19,7 +19,7 @@ from flowtex._util.progress import Stopped
 from flowtex.app.controllers.exports import ExportError, Job, MovieJob, PictureJob
 from flowtex.app.server.downloads import Downloads
 from flowtex.app.streaming.scene import Scene
-from flowtex.offscreen.moments import MovieError
+from flowtex.offscreen.encoders import MovieError
 
 pytestmark = pytest.mark.usefixtures("opengl")
 

@@ -324,12 +324,12 @@ def test_an_image_takes_no_more_room_than_it_may() -> None:
     # Pillow hands an EPS to another program.
     assert "is no picture that can be read" in laid(app, sent(Image.new("RGB", (9, 9)), "EPS"))
     assert "is no picture" in laid(app, {"name": "x" * 9_000, "content": b"\x89PNG\r\n\x1a\n"})
-    assert app.area.settings.noise == "procedural" and app.scene.handle.view.image is None
+    assert app.area.settings.noise == "procedural" and app.scene.handle.scene.image is None
     for kind, mode in (("PNG", "RGBA"), ("JPEG", "RGB"), ("PNG", "P")):
         assert (
             laid(app, sent(Image.new(mode, (3_000, 1_500), 200 if mode == "P" else 0), kind)) == ""
         )
-        image = app.scene.handle.view.image
+        image = app.scene.handle.scene.image
         assert image is not None and image.shape == (750, 1500, 4)
     app.close()
 

@@ -14,9 +14,10 @@ from flowtex.app.controllers.reading import Hover, PathCard, number, with_unit
 from flowtex.app.streaming.aim import ray
 from flowtex.app.streaming.navigate import Navigator
 from flowtex.app.streaming.places import camera_of, project, runs
+from flowtex.options import Appearance
 from flowtex.probe import locate, probe
+from flowtex.scene import Scene
 from flowtex.settings import Settings
-from flowtex.view import FlowView
 
 Floats = NDArray[np.float64]
 
@@ -59,10 +60,10 @@ def navigator_at(
     return made
 
 
-def view_of(field: FlowField, **settings: object) -> FlowView:
+def view_of(field: FlowField, **settings: object) -> Scene:
     chosen = Settings()
     chosen.update(**settings)
-    return FlowView(field, chosen)
+    return Scene(field, chosen)
 
 
 def never(x: float, y: float) -> Floats | None:
@@ -256,7 +257,7 @@ def test_a_card_where_nothing_moves() -> None:
 def test_a_picture_shows_its_colours() -> None:
     dye = np.zeros((4, 4, 4), np.uint8)
     dye[...] = [255, 0, 0, 51]
-    view = FlowView(flat(), Settings(), image=dye)
+    view = Scene(flat(), Settings(), Appearance(image=dye))
     view.settings.noise = "image"
     got = PathCard(probe(view, (10.0, 20.0), pixel=0.01))
     assert {bar["grey"] for bar in got.bars()} == {"#ffcccc"}

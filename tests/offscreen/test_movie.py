@@ -17,9 +17,8 @@ import flowtex
 from flowtex import FlowField
 from flowtex._util.progress import Stopped
 from flowtex.cli import main
-from flowtex.offscreen.moments import MovieError, choose_moments
-from flowtex.offscreen.movie import Movie, frames
-from flowtex.offscreen.movie_files import check_movie, write_movie
+from flowtex.offscreen.encoders import MovieError, check_movie, write_movie
+from flowtex.offscreen.movie import Movie, frame_times, frames
 from flowtex.settings import Settings
 
 Pixels = NDArray[np.uint8]
@@ -201,7 +200,7 @@ def _palettes(file: Any) -> Iterator[Any]:
 
 def test_a_field_that_varies_is_shown_from_first_to_last(opengl: object) -> None:
     field = shear(steps=4, turn=1.5)
-    moments = choose_moments(field, Settings(), fps=2, seconds=3)
+    moments = frame_times(field, Settings(), fps=2, seconds=3)
     assert moments.times == pytest.approx(np.linspace(0, 3, 6)) and not moments.closed
     drawn = list(frames(field, size=SIZE, fps=2, seconds=3, samples=5))
     assert len(drawn) == 6
@@ -211,9 +210,9 @@ def test_a_field_that_varies_is_shown_from_first_to_last(opengl: object) -> None
 
 def test_a_period_leaves_its_last_time_out() -> None:
     field = shear(steps=5, turn=2 * np.pi)
-    moments = choose_moments(field, Settings(), fps=2, seconds=4)
+    moments = frame_times(field, Settings(), fps=2, seconds=4)
     assert moments.closed and moments.times == pytest.approx(np.arange(8) * 0.5)
-    assert choose_moments(field, Settings(), fps=10).seconds == 5.0
+    assert frame_times(field, Settings(), fps=10).seconds == 5.0
 
 
 @pytest.mark.parametrize(
@@ -248,7 +247,7 @@ def test_a_field_without_a_sign_does_not_stream() -> None:
         np.stack([x, y], -1), np.stack([1 + 0 * x, 0.2 * y], -1), sign_free=True
     )
     with pytest.raises(MovieError, match="has no sign, so it does not stream"):
-        choose_moments(field, Settings(motion="speed"), fps=10)
+        frame_times(field, Settings(motion="speed"), fps=10)
 
 
 @pytest.mark.parametrize("kind", ["mp4", "gif", "webp"])

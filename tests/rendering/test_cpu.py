@@ -527,9 +527,9 @@ def both(
         plotter.camera_position = position
         plotter.renderer.reset_camera_clipping_range()
     theirs = np.asarray(plotter.screenshot(return_img=True))[..., :3]
-    before, after, between = handle.view.moment
+    before, after, between = handle.scene.moment
     picture = render(
-        handle.view.textures,
+        handle.scene.textures,
         handle.settings,
         *shot_of(plotter),
         view=ViewState(between=between, clock=clock),

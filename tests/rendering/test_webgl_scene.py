@@ -9,13 +9,16 @@ from numpy.typing import NDArray
 
 import flowtex
 from flowtex import examples
+from flowtex._util.colours import colour_table
 from flowtex.camera import Camera
 from flowtex.first_look import first_look
+from flowtex.options import Options
 from flowtex.rendering.webgl import Scene
+from flowtex.scene import coarsened_field
 from flowtex.settings import TABLE, Settings
-from flowtex.staging import Stage, coarsened, colour_table, evenly
 from flowtex.textures import TextureSet
 from flowtex.trace import SliceStore
+from flowtex.web.view import WebView, _evenly, web_views
 
 
 def plane(times: int = 1, shape: tuple[int, int] = (9, 12)) -> flowtex.FlowField:
@@ -35,17 +38,21 @@ def ball() -> flowtex.FlowField:
     return flowtex.FlowField.from_arrays(points, velocity)
 
 
-def staged(field: flowtex.FlowField, **options: Any) -> tuple[Stage, Scene]:
-    stage = Stage(field, **options)
-    return stage, stage.scene()
+def web_view(field: flowtex.FlowField, *, steps: int | None = None, **options: Any) -> WebView:
+    return web_views(field, Options.split(**options), steps=steps)[0]
+
+
+def staged(field: flowtex.FlowField, **options: Any) -> tuple[WebView, Scene]:
+    view = web_view(field, **options)
+    return view, view.data()
 
 
 @pytest.mark.parametrize("make", [plane, ball, lambda: plane(3)])
 @pytest.mark.parametrize("noise", ["procedural", "texture", "checkerboard"])
 def test_arrays_are_those_of_the_texture_set(make: Any, noise: str) -> None:
-    stage, scene = staged(make(), noise=noise, resolution=64)
-    header = json.loads(json.dumps(scene.header(stage.view.settings), allow_nan=False))
-    textures = stage.view.textures
+    view, scene = staged(make(), noise=noise, resolution=64)
+    header = json.loads(json.dumps(scene.header(view.scene.settings), allow_nan=False))
+    textures = view.scene.textures
     geometry = textures.geometry
     for step in range(scene.steps):
         parts = scene.step(step)
@@ -80,17 +87,17 @@ def test_arrays_are_those_of_the_texture_set(make: Any, noise: str) -> None:
 
 
 def test_the_header_says_what_the_client_needs() -> None:
-    stage, scene = staged(plane(3), scalars="speed", samples=7, background="black")
-    header = scene.header(stage.view.settings, time=1.25)
+    view, scene = staged(plane(3), scalars="speed", samples=7, background="black")
+    header = scene.header(view.scene.settings, time=1.25)
     assert header["name"] == "plane"
     assert header["geometry"]["shape"] == [9, 12]
     assert header["slices"]["times"] == [0.0, 1.0, 2.0]
-    assert header["slices"]["lags"] == [float(np.float32(lag)) for lag in stage.view.store.lags]
+    assert header["slices"]["lags"] == [float(np.float32(lag)) for lag in view.scene.store.lags]
     assert header["variant"] == ["FLOWTEX_PLANAR", "FLOWTEX_UNSTEADY"]
     assert header["settings"] == {**dict(Settings()), "samples": 7}
     assert [row["name"] for row in header["table"]] == list(TABLE)
     assert header["scalars"]["steps"] == 3
-    assert (header["scalars"]["low"], header["scalars"]["high"]) == stage.view.scalar_range("speed")
+    assert (header["scalars"]["low"], header["scalars"]["high"]) == view.scene.scalar_range("speed")
     assert header["background"] == [0, 0, 0]
     assert not header["lighting"]
     assert header["time"] == 1.25
@@ -100,9 +107,9 @@ def test_the_header_says_what_the_client_needs() -> None:
 
 
 def test_a_time_needs_the_steps_around_it() -> None:
-    stage, scene = staged(plane(3))
+    view, scene = staged(plane(3))
     assert scene.moment(0.0) == (0, 1)
-    assert scene.moment(1.0) == (1, 2) == stage.view.moment[:2]
+    assert scene.moment(1.0) == (1, 2) == view.scene.moment[:2]
     assert scene.moment(2.0) == (1, 2)
     assert staged(plane())[1].moment(0.0) == (0,)
     with pytest.raises(IndexError, match=r"^time step 3 does not exist: expected 0 to 2$"):
@@ -120,11 +127,11 @@ def test_fewer_steps_are_traced_through_all_of_them() -> None:
 
 
 def test_evenly_chosen_numbers() -> None:
-    assert evenly(5, None) == evenly(5, 5) == evenly(5, 9) == ()
-    assert evenly(11, 3) == (0, 5, 10)
-    assert evenly(4, 1) == (3,)
+    assert _evenly(5, None) == _evenly(5, 5) == _evenly(5, 9) == ()
+    assert _evenly(11, 3) == (0, 5, 10)
+    assert _evenly(4, 1) == (3,)
     with pytest.raises(ValueError, match=r"^steps is 0; expected 1 to 4"):
-        evenly(4, 0)
+        _evenly(4, 0)
 
 
 @pytest.mark.parametrize("aspect", [1.5, 0.6])
@@ -188,12 +195,12 @@ def test_colour_maps_of_every_kind() -> None:
 
 def test_a_coarse_field_keeps_its_edges_and_its_data() -> None:
     fine = examples.double_gyre_field()
-    coarse = coarsened(fine, 1000)
+    coarse = coarsened_field(fine, 1000)
     assert 700 < coarse.valid.size <= 1000
     for corner in ((0, 0), (0, -1), (-1, 0), (-1, -1)):
         np.testing.assert_array_equal(coarse.points[corner], fine.points[corner])
     assert coarse.surface.extent == pytest.approx(fine.surface.extent)
-    assert coarsened(fine, 10**6) is fine
+    assert coarsened_field(fine, 10**6) is fine
 
 
 def test_a_store_that_does_not_compose_traces_the_same() -> None:

@@ -15,13 +15,14 @@ import flowtex
 from flowtex import FlowField
 from flowtex._util.array_types import AnyArray, Bools, Bytes, Floats
 from flowtex.cli import main
+from flowtex.options import Appearance
+from flowtex.scene import Scene
 from flowtex.settings import Settings, SettingsError
 from flowtex.textures import ImageError, PaperTextures, as_picture
 from flowtex.textures.image_files import load_image
 from flowtex.textures.images import LARGEST
 from flowtex.textures.patterns import SPOT_GRAIN, SQUARES
 from flowtex.trace import SliceStore
-from flowtex.view import FlowView
 
 SIZE = (240, 140)
 
@@ -467,7 +468,7 @@ def test_an_image_can_come_later_and_go_again(plotter: Any, rng: np.random.Gener
     ],
 )
 def test_a_change_costs_no_more_than_it_must(noise: str, name: str, affects: str) -> None:
-    view = FlowView(uniform(), Settings(noise=noise, resolution=64), image=np.ones((2, 2)))
+    view = Scene(uniform(), Settings(noise=noise, resolution=64), Appearance(image=np.ones((2, 2))))
     before, heard = view.textures, list[str]()
     view.observe(heard.append)
     view.settings.update(**{name: 32})
@@ -487,7 +488,7 @@ def test_an_image_that_is_not_there_is_told_and_nothing_changes(plotter: Any) ->
     assert handle.settings.noise == "spots"
     with pytest.raises(ImageError, match="expected"):
         handle.set_image(np.zeros((2, 2, 7)))
-    assert handle.settings.noise == "spots" and handle.view.image is None
+    assert handle.settings.noise == "spots" and handle.scene.image is None
     np.testing.assert_array_equal(plotter.screenshot(return_img=True), first)
 
 

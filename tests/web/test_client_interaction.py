@@ -16,9 +16,10 @@ from PIL import Image
 from webgl_page import ClientPage, packed, state
 
 from flowtex.camera import Camera
-from flowtex.rendering.webgl import Colours, Scene
+from flowtex.rendering.webgl import Colours
+from flowtex.rendering.webgl import Scene as ClientData
+from flowtex.scene import Scene
 from flowtex.settings import Settings
-from flowtex.view import FlowView
 
 if TYPE_CHECKING:
     from playwright.sync_api import CDPSession
@@ -28,8 +29,8 @@ pytestmark = pytest.mark.browser
 
 def scene(camera: Camera = WHOLE, *, beside: Mapping[str, Any] | None = None) -> Any:
     settings = Settings(samples=7)
-    textures = FlowView(gyre(), settings).textures
-    whole = Scene(textures, Colours(plain=(0.6, 0.6, 0.6)))
+    textures = Scene(gyre(), settings).textures
+    whole = ClientData(textures, Colours(plain=(0.6, 0.6, 0.6)))
     header = whole.header(settings, camera=state(camera))
     made = packed(whole, header)
     if beside is not None:

@@ -19,8 +19,9 @@ from PIL import Image
 import flowtex
 from flowtex import examples
 from flowtex.examples._double_gyre import nodes as nodes_of
-from flowtex.staging import Stage
+from flowtex.options import Options
 from flowtex.web.export import export
+from flowtex.web.view import web_views
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
@@ -98,10 +99,10 @@ def test_a_page_holds_the_scene_and_nothing_from_outside(tmp_path: Path) -> None
     assert read.policy.startswith("default-src 'none'; script-src 'sha256-")
     assert "http" not in read.policy
     assert read.tags.count("noscript") == 1
-    stage = Stage(gyre(4), scalars=WICKED)
-    scene = stage.scene()
+    view = web_views(gyre(4), Options.split(scalars=WICKED))[0]
+    scene = view.data()
     header = read.header()
-    header["camera"], expected = None, {**scene.header(stage.view.settings), "camera": None}
+    header["camera"], expected = None, {**scene.header(view.scene.settings), "camera": None}
     assert header == json.loads(json.dumps(expected))
     parts = read.parts()
     wanted = {**scene.surface(), **{k: v for s in range(4) for k, v in scene.step(s).items()}}

@@ -17,16 +17,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from flowtex._util.cache import digest
+from flowtex._util.colours import colour_table, rgb
 from flowtex.app.controllers.part import Part
 from flowtex.app.server.routes import Content, Routes
 from flowtex.app.server.untrusted import number
 from flowtex.app.streaming.scene import BACKGROUNDS
 from flowtex.rendering.webgl import Colours, asset
 from flowtex.rendering.webgl import Scene as BrowserScene
+from flowtex.scene import steps_of
 from flowtex.settings import TABLE
-from flowtex.sharing import digest
-from flowtex.staging import colour_table, rgb
-from flowtex.view import steps_of
 
 __all__ = ["RENDERERS", "Browser", "packed"]
 
@@ -157,7 +157,7 @@ class Browser(Part):
         """Hand a scene over, in place of an earlier one."""
         self._withdraw()
         self._look = self._present_look()
-        self._scene = scene = BrowserScene(self.scene.handle.view.textures, self._colours())
+        self._scene = scene = BrowserScene(self.scene.handle.scene.textures, self._colours())
         self._generation += 1
         self._camera = self.scene.canvas.camera()
         self.area.stream.paused = True

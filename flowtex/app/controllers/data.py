@@ -25,7 +25,7 @@ from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.interpolation import steps_around
 from flowtex.field.io.source import FlowSource
-from flowtex.staging import coarsened
+from flowtex.scene import coarsened_field
 from flowtex.trace import SliceStore
 
 __all__ = ["Data"]
@@ -172,7 +172,7 @@ class Data(Part):
     def _quick_look(self, wish: Wish, many: int, few: int) -> Found:
         """Read a flow, and trace what there is time for."""
         source, field, choice = self._read(wish.name, wish.choice)
-        shown = coarsened(field, few) if field.valid.size > many else field
+        shown = coarsened_field(field, few) if field.valid.size > many else field
         found = Found(wish.name, choice, source, field, shown)
         return replace(found, store=self._trace(found, shown))
 

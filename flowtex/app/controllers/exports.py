@@ -28,8 +28,14 @@ from flowtex.app.streaming.scene import Scene
 from flowtex.app.streaming.scene_copy import copy_of, trace_moment
 from flowtex.app.streaming.tiles import Sheet
 from flowtex.field import FlowField
-from flowtex.offscreen.moments import Moments, MovieError, choose_moments
-from flowtex.offscreen.movie_files import QUALITY, check_movie, default_fps, movie_writer
+from flowtex.offscreen.encoders import (
+    DEFAULT_QUALITY,
+    MovieError,
+    check_movie,
+    default_fps,
+    movie_writer,
+)
+from flowtex.offscreen.movie import FrameTimes, frame_times
 from flowtex.settings import Settings
 
 __all__ = ["MOST_PIXELS", "ExportError", "Job", "MovieJob", "PictureJob"]
@@ -219,7 +225,7 @@ class MovieJob(Job):
         *,
         seconds: float | None = None,
         fps: float | None = None,
-        quality: int = QUALITY,
+        quality: int = DEFAULT_QUALITY,
         **options: Any,
     ) -> None:
         if Path(path).suffix.lower() == ".mp4":
@@ -233,10 +239,10 @@ class MovieJob(Job):
         check_movie(path, size, fps, quality)
         self._quality = quality
         settings = _moving(scene.handle.settings, scene.field)
-        self._moments = choose_moments(scene.field, settings, fps=fps, seconds=seconds)
+        self._moments = frame_times(scene.field, settings, fps=fps, seconds=seconds)
 
     @property
-    def moments(self) -> Moments:
+    def moments(self) -> FrameTimes:
         """What its frames show."""
         return self._moments
 

@@ -233,7 +233,7 @@ class Look(Part):
 
     def _noises(self) -> list[str]:
         """Kinds of noise to choose from; an image only where there is one."""
-        there = self.scene.handle.view.image is not None
+        there = self.scene.handle.scene.image is not None
         return [kind for kind in TABLE["noise"].choices if there or kind != "image"]
 
     def _span(self) -> tuple[float, float]:

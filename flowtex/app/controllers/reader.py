@@ -53,7 +53,7 @@ class Reader(Part):
         return self._reading is not None and not self._reading.done()
 
     def _made_hover(self) -> Hover:
-        return Hover(self.scene.handle.view, self.scene.navigator, self.scene.hit)
+        return Hover(self.scene.handle.scene, self.scene.navigator, self.scene.hit)
 
     def values(self) -> dict[str, Any]:
         """Return what the page begins with."""
@@ -145,7 +145,7 @@ class Reader(Part):
 
     def _reader(self, at: tuple[float, float]) -> Callable[[], Probe | None]:
         """Return what reads the path through a point as things are now, if it is in view."""
-        view, clock = self.scene.handle.view.still(), self.scene.clock
+        view, clock = self.scene.handle.scene.copy(), self.scene.clock
         camera = camera_of(self.scene.navigator)
         size = self.scene.pane_size
 

@@ -15,7 +15,7 @@ from flowtex.app.streaming.aim import ray
 from flowtex.app.streaming.navigate import Navigator
 from flowtex.app.streaming.places import BEYOND, project, runs
 from flowtex.probe import Probe, Reading, locate, reading
-from flowtex.view import FlowView
+from flowtex.scene import Scene
 
 __all__ = ["Hover", "Lines", "PathCard", "number", "with_unit"]
 
@@ -60,7 +60,7 @@ class Hover:
         Tells which point of the surface is at a place of the view; asked for curved surfaces.
     """
 
-    def __init__(self, view: FlowView, navigator: Navigator, hit: Hit) -> None:
+    def __init__(self, view: Scene, navigator: Navigator, hit: Hit) -> None:
         self._view, self._navigator, self._hit = view, navigator, hit
 
     def __call__(self, x: float, y: float) -> Lines | None:

@@ -17,7 +17,7 @@ from flowtex.app.controllers.python_lines import to_python
 from flowtex.app.server.downloads import Downloads
 from flowtex.app.server.routes import Content, Routes
 from flowtex.app.server.untrusted import number
-from flowtex.offscreen.moments import MovieError
+from flowtex.offscreen.encoders import MovieError
 
 __all__ = ["FORMATS", "Share"]
 

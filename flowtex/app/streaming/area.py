@@ -74,11 +74,12 @@ class FlowArea:
         state: PageState | None = None,
         **options: Any,
     ) -> None:
-        from flowtex.plotting.component import FIELD_ARGUMENTS, as_field
+        from flowtex.options import FieldOptions
 
         self.server = server
         self.state = state or PageState(server)
-        field = as_field(flow, **{k: options.pop(k, None) for k in FIELD_ARGUMENTS})
+        names = FieldOptions.__dataclass_fields__
+        field = FieldOptions(**{k: options.pop(k, None) for k in names}).field(flow)
         self.scene = Scene(field, **options)
         self.stream = FrameStream(self.state.key("view"), self.scene, self._report)
         self.player = Player(self.scene, self.stream, self._timed)

@@ -89,7 +89,7 @@ class Coloured:
         """Values at the ends of the colour bar."""
         if not self.colour:
             return 0.0, 1.0
-        return self._clims.get(self.colour) or self.handle.view.scalar_range(self.colour)
+        return self._clims.get(self.colour) or self.handle.scene.scalar_range(self.colour)
 
     @property
     def chosen_range(self) -> tuple[float, float] | None:

@@ -84,4 +84,4 @@ class Pane:
 
     def write_colours(self, name: str) -> None:
         """Put the scalar's values at the time that is shown on the nodes."""
-        self.mesh.point_data[COLOUR] = self.handle.view.scalar(name).ravel()
+        self.mesh.point_data[COLOUR] = self.handle.scene.scalar(name).ravel()

@@ -11,7 +11,7 @@ import numpy as np
 
 from flowtex.app.streaming.scene import Scene
 from flowtex.app.streaming.stream import FrameStream
-from flowtex.offscreen.moments import run_seconds
+from flowtex.offscreen.movie import run_seconds
 
 __all__ = ["Player"]
 

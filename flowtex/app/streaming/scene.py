@@ -67,13 +67,15 @@ class Scene(Coloured):
         focus: tuple[float, ...] | None = None,
         **options: Any,
     ) -> None:
-        from flowtex.plotting.component import CMAP, PLAIN, FlowtexComponent
+        from flowtex._util.colours import DEFAULT_CMAP
+        from flowtex.options import PLAIN_COLOR
+        from flowtex.plotting.component import FlowtexComponent
 
         self.canvas = Canvas(640, 400)
         wanted = options.pop("scalars", None)
         self.colour = "" if wanted is False else ("speed" if wanted in (None, True) else wanted)
-        self.cmap = options.pop("cmap", None) or CMAP
-        self.plain = options.pop("color", PLAIN)
+        self.cmap = options.pop("cmap", None) or DEFAULT_CMAP
+        self.plain = options.pop("color", PLAIN_COLOR)
         clim = options.pop("clim", None)
         self._clims = {} if clim is None else {self.colour: (float(clim[0]), float(clim[1]))}
         self._first = (zoom, focus)
@@ -151,7 +153,7 @@ class Scene(Coloured):
             Whether the ends of the colour map that somebody chose stay, and the time that is
             shown where the flow has the same times: it is another part of the same data.
         """
-        settings, image, beside = dict(self.handle.settings), self.handle.view.image, self._beside
+        settings, image, beside = dict(self.handle.settings), self.handle.scene.image, self._beside
         self._first = WHOLE
         camera, clock, flat = self.canvas.camera(), self.handle.clock, self.flat
         times, time = self.field.times, self.handle.time
@@ -194,7 +196,7 @@ class Scene(Coloured):
 
     def _add_beside(self, wanted: dict[str, Any]) -> None:
         options = {**wanted, "lighting": self.lighting}
-        self.panes.append(self._pane(self.field, options, self.handle.view.image))
+        self.panes.append(self._pane(self.field, options, self.handle.scene.image))
         self._end_following = self.handle.settings.observe(self._follow)
         self.set_time(self.handle.time)
         self.clock = self.handle.clock

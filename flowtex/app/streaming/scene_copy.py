@@ -14,7 +14,7 @@ def copy_of(scene: Scene) -> Scene:
     """Return a scene of its own that shows the same."""
     handle = scene.handle
     settings = dict(handle.settings)
-    image = handle.view.image
+    image = handle.scene.image
     given: dict[str, Any] = dict(settings)
     if image is not None and settings["noise"] == "image":
         given["image"] = as_image(image)
@@ -39,7 +39,7 @@ def copy_of(scene: Scene) -> Scene:
 def trace_moment(scene: Scene) -> None:
     """Trace what the time that is shown needs, so that drawing need not wait for it."""
     for pane in scene.panes:
-        view = pane.handle.view
+        view = pane.handle.scene
         before, after, _ = view.moment
         for step in {before, after}:
             view.store.at(step)

@@ -1,4 +1,4 @@
-"""A view tells what a change makes necessary, and makes nothing twice."""
+"""A scene tells what a change makes necessary, and makes nothing twice."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import flowtex
+from flowtex.scene import Scene
 from flowtex.settings import Settings
-from flowtex.view import FlowView
 
 
 def field(steps: int = 1) -> flowtex.FlowField:
@@ -30,50 +30,50 @@ def field(steps: int = 1) -> flowtex.FlowField:
 def test_a_change_costs_what_the_table_says(
     name: str, value: object, affects: str, textures: bool, traces: bool
 ) -> None:
-    view = FlowView(field())
+    scene = Scene(field())
     heard: list[str] = []
-    before, store = view.textures, view.store
-    view.observe(heard.append)
-    view.settings.update(**{name: value})
+    before, store = scene.textures, scene.store
+    scene.observe(heard.append)
+    scene.settings.update(**{name: value})
     assert heard == [affects]
-    assert (view.textures is before) == textures
-    assert (view.store is store) == traces
+    assert (scene.textures is before) == textures
+    assert (scene.store is store) == traces
 
 
 def test_a_closed_view_hears_nothing() -> None:
-    view = FlowView(field())
+    scene = Scene(field())
     heard: list[str] = []
-    view.observe(heard.append)
-    view.close()
-    view.settings.samples = 5
+    scene.observe(heard.append)
+    scene.close()
+    scene.settings.samples = 5
     assert heard == []
 
 
 def test_time_lies_between_two_steps() -> None:
-    view = FlowView(field(3))
-    view.time = 3.0
-    assert view.moment == (1, 2, 0.5)
-    x = view.field.points[..., 0]
+    scene = Scene(field(3))
+    scene.time = 3.0
+    assert scene.moment == (1, 2, 0.5)
+    x = scene.field.points[..., 0]
     np.testing.assert_allclose(
-        view.scalar("speed"), (np.hypot(1, 2 * x) + np.hypot(1, 3 * x)) / 2, rtol=1e-12
+        scene.scalar("speed"), (np.hypot(1, 2 * x) + np.hypot(1, 3 * x)) / 2, rtol=1e-12
     )
-    view.time = 4.0
-    assert view.moment == (1, 2, 1.0)
+    scene.time = 4.0
+    assert scene.moment == (1, 2, 1.0)
 
 
 def test_time_outside_is_refused() -> None:
-    view = FlowView(field(3))
+    scene = Scene(field(3))
     with pytest.raises(ValueError, match=r"^time is 4.5; expected 0 to 4, the times of the field$"):
-        view.time = 4.5
+        scene.time = 4.5
 
 
 def test_an_unknown_scalar_lists_those_that_exist() -> None:
     with pytest.raises(KeyError, match=r"no scalar 'mach' on this field; there are 'speed'"):
-        FlowView(field()).scalar("mach")
+        Scene(field()).scalar("mach")
 
 
 def test_only_the_steps_that_are_shown_are_traced() -> None:
-    view = FlowView(field(5), Settings())
-    view.textures.layers(3)
-    assert 3 in view.store._cache
-    assert len(view.store._cache) == 1
+    scene = Scene(field(5), Settings())
+    scene.textures.layers(3)
+    assert 3 in scene.store._cache
+    assert len(scene.store._cache) == 1

@@ -1,0 +1,112 @@
+"""Show a flow where the user is: :func:`show` takes a notebook, a window or a page."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING, Any
+
+from flowtex.options import Appearance, FieldOptions, Options, ViewOptions, accepts_options
+
+if TYPE_CHECKING:
+    from flowtex.widget import FlowWidget
+
+__all__ = ["in_notebook", "show"]
+
+#: Width and height of a window, in pixels.
+WINDOW_SIZE = (1024, 768)
+#: Arguments that say something to VTK alone.
+VTK_ARGUMENTS = ("scalar_bar_args", "reset_camera")
+
+
+@accepts_options(FieldOptions, Appearance, ViewOptions)
+def show(mesh: Any, *, size: tuple[int, int] | None = None, **options: Any) -> FlowWidget | None:
+    """Show a flow: in a notebook as a widget, else in a window or on a page in the browser.
+
+    A notebook's kernel draws nothing, the browser does. Elsewhere a window is opened, and where
+    there is no display a page is served.
+
+    Parameters
+    ----------
+    mesh
+        What ``plotter.flowtex.add`` takes.
+    size
+        Width and height of the window in pixels; 1024 x 768, and in a notebook as wide as the
+        cell.
+    {options}
+    **settings
+        Any setting of :class:`~flowtex.Settings`, such as ``samples=25``.
+
+    Returns
+    -------
+    FlowWidget or None
+        In a notebook the widget, which is displayed already; else nothing.
+
+    Raises
+    ------
+    FieldError, SettingsError
+        When the mesh or a setting does not fit.
+    OpenGLMissingError
+        When nothing can draw; the text names the command that installs what is missing.
+    ModuleNotFoundError
+        When a notebook lacks what widgets need; the text names the command that installs it.
+    ValueError
+        When two views are asked for and there is neither a window nor a notebook.
+    TypeError
+        When a notebook is given what only a window has.
+    """
+    if in_notebook():
+        return _show_widget(mesh, size, options)
+    from flowtex.diagnostics import has_display, prefer_headless, require_opengl
+
+    prefer_headless()
+    require_opengl()
+    if has_display():
+        _show_window(mesh, size or WINDOW_SIZE, options)
+    else:
+        _show_page(mesh, options)
+    return None
+
+
+def in_notebook() -> bool:
+    """Tell whether a notebook's kernel runs this; IPython is not loaded to find out."""
+    ipython = sys.modules.get("IPython")
+    shell = ipython.get_ipython() if ipython is not None else None
+    return getattr(shell, "kernel", None) is not None
+
+
+def _show_widget(mesh: Any, size: tuple[int, int] | None, options: dict[str, Any]) -> FlowWidget:
+    for name in VTK_ARGUMENTS:
+        if name in options:
+            msg = (
+                f"{name} is for windows, and the browser draws this; leave it out, or draw with "
+                "flowtex.render, or with plotter.flowtex.add and plotter.show"
+            )
+            raise TypeError(msg)
+    from flowtex.widget import FlowWidget
+
+    if size is not None:
+        options["size"] = size
+    return FlowWidget(mesh, **options).show()
+
+
+def _show_window(mesh: Any, size: tuple[int, int], options: dict[str, Any]) -> None:
+    from flowtex.offscreen.plotter import add_scenes, new_plotter, point_camera
+
+    bar_options = options.pop("scalar_bar_args", None)
+    arguments = Options.split(**options)
+    plotter = new_plotter(size, two_views=arguments.view.beside is not None)
+    plotter.disable_anti_aliasing()
+    plotter.set_background(arguments.view.background)
+    handles = add_scenes(plotter, mesh, arguments, bar_options)
+    point_camera(plotter, handles[0].scene, arguments.view)
+    plotter.show()
+
+
+def _show_page(mesh: Any, options: dict[str, Any]) -> None:
+    if options.pop("beside", None) is not None:
+        msg = "two views need a window and there is no display; flowtex.render draws both"
+        raise ValueError(msg)
+    field = Options.split(**options).field.field(mesh)
+    from flowtex.app import serve
+
+    serve(field, **{k: v for k, v in options.items() if k not in FieldOptions.__dataclass_fields__})

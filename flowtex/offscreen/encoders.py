@@ -1,0 +1,451 @@
+"""Movies in files, written picture by picture: MP4 by PyAV, GIF and animated WebP by Pillow.
+
+::
+
+    add(picture) ... add(picture), finish()     the file is there
+    abandon()                                   nothing is there
+
+The pictures of an MP4 are encoded as they come: H.264 as every browser plays it, with matrix,
+primaries, curve and range of the colours in the file, so that players show those that were drawn.
+Pillow takes all pictures at once, so they wait in a temporary file on the disk.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable, Iterable, Iterator
+from fractions import Fraction
+from itertools import pairwise
+from pathlib import Path
+from typing import IO, Any
+
+import numpy as np
+
+from flowtex._util.array_types import Bytes
+from flowtex._util.extras import install_extra
+from flowtex._util.progress import Stopped
+from flowtex._util.whole_file import WholeFile
+
+__all__ = [
+    "DEFAULT_QUALITY",
+    "FORMATS",
+    "MovieError",
+    "MovieWriter",
+    "check_movie",
+    "default_fps",
+    "movie_writer",
+    "write_movie",
+]
+
+
+class MovieError(ValueError):
+    """A movie cannot be made so; the text says why and what to do."""
+
+
+Size = tuple[int, int]
+
+#: Longest side of a picture, in pixels.
+LONGEST_SIDE_PIXELS = 16_384
+
+
+def _never() -> bool:
+    return False
+
+
+class MovieWriter:
+    """Takes pictures and makes a file of them.
+
+    Parameters
+    ----------
+    path
+        File to write.
+    size
+        Width and height in pixels.
+    fps
+        Frames in a second.
+    quality
+        1 to 100.
+
+    Raises
+    ------
+    OSError
+        When there is no such folder, or no right to write there.
+    """
+
+    def __init__(self, path: Path, size: Size, fps: float, quality: int) -> None:
+        self._size, self._fps, self._quality = size, fps, quality
+        self._file = WholeFile(path)
+        try:
+            self._begin(self._file.part)
+        except BaseException:
+            self._file.drop()
+            raise
+
+    @classmethod
+    def fault(cls, size: Size, fps: float) -> str:
+        """Say why such a movie cannot be written and what can; empty when it can be."""
+        del fps
+        if all(1 <= side <= LONGEST_SIDE_PIXELS for side in size):
+            return ""
+        shown = f"size is {size[0]} x {size[1]}"
+        return f"{shown}; expected 1 to {LONGEST_SIDE_PIXELS} pixels along each side"
+
+    @classmethod
+    def need(cls) -> None:
+        """Refuse to begin where what writes the file is not installed.
+
+        Raises
+        ------
+        ModuleNotFoundError
+            The text names the command that installs it.
+        """
+
+    def add(self, picture: Bytes) -> None:
+        """Take the next picture, (H, W, 3) uint8.
+
+        Raises
+        ------
+        MovieError
+            When its size is not that of the movie.
+        """
+        height, width = picture.shape[:2]
+        if (width, height) != self._size:
+            wanted = f"{self._size[0]} x {self._size[1]}"
+            msg = f"a picture is {width} x {height}; expected {wanted}, the size of the movie"
+            raise MovieError(msg)
+        self._add(picture)
+
+    def finish(self, cancelled: Callable[[], bool] = _never) -> None:
+        """Write what is left to write, and put the file in its place.
+
+        Raises
+        ------
+        Stopped
+            When ``cancelled()`` became true before.
+        """
+        self._finish(cancelled)
+        if cancelled():
+            raise Stopped
+        self._file.keep()
+
+    def abandon(self) -> None:
+        """Leave nothing behind; after :meth:`finish` there is nothing to do."""
+        self._close()
+        self._file.drop()
+
+    def _begin(self, part: Path) -> None:
+        raise NotImplementedError
+
+    def _add(self, picture: Bytes) -> None:
+        raise NotImplementedError
+
+    def _finish(self, cancelled: Callable[[], bool]) -> None:
+        raise NotImplementedError
+
+    def _close(self) -> None:
+        raise NotImplementedError
+
+
+#: Bytes of a picture at the highest level of H.264.
+MP4_MAX_PIXELS = 139_264 * 256
+#: Numbers of ITU-T H.273: matrix and primaries of BT.709, curve of sRGB, range from 16 to 235.
+BT709, SRGB_CURVE, LIMITED = 1, 13, 1
+
+
+class MP4Writer(MovieWriter):
+    """Writes H.264 with PyAV."""
+
+    @classmethod
+    def fault(cls, size: Size, fps: float) -> str:
+        """Say why such a movie cannot be written; even sides are what 4:2:0 asks for."""
+        width, height = size
+        shown = f"size is {width} x {height}"
+        if width % 2 or height % 2:
+            return f"{shown}; MP4 wants even sides, such as {width // 2 * 2} x {height // 2 * 2}"
+        if width * height > MP4_MAX_PIXELS:
+            return f"{shown}; MP4 has at most {MP4_MAX_PIXELS:,} pixels: choose fewer"
+        return super().fault(size, fps)
+
+    @classmethod
+    def need(cls) -> None:
+        """Ask for PyAV."""
+        _pyav()
+
+    def _begin(self, part: Path) -> None:
+        av = _pyav()
+        from av.video.reformatter import Interpolation
+
+        self._av = av
+        self._exact = Interpolation.AREA | Interpolation.ACCURATE_RND
+        self._movie = av.open(str(part), "w", format="mp4", options={"movflags": "+faststart"})
+        rate = Fraction(self._fps).limit_denominator(1001)
+        # Half as many steps of the quantizer again for each tenth: 80 is a rate factor of 18.
+        factor = {"crf": f"{50 - 0.4 * self._quality:g}", "preset": "medium"}
+        self._stream = self._movie.add_stream("libx264", rate=rate, options=factor)
+        self._stream.width, self._stream.height = self._size
+        self._stream.pix_fmt = "yuv420p"
+        codec = self._stream.codec_context
+        codec.colorspace, codec.color_primaries = BT709, BT709
+        codec.color_trc, codec.color_range = SRGB_CURVE, LIMITED
+
+    def _add(self, picture: Bytes) -> None:
+        frame = self._av.VideoFrame.from_ndarray(np.ascontiguousarray(picture), format="rgb24")
+        made = frame.reformat(
+            format="yuv420p",
+            src_color_range="JPEG",
+            dst_color_range="MPEG",
+            dst_colorspace="ITU709",
+            interpolation=self._exact,
+        )
+        self._movie.mux(self._stream.encode(made))
+
+    def _finish(self, cancelled: Callable[[], bool]) -> None:
+        del cancelled
+        self._movie.mux(self._stream.encode(None))
+        self._close()
+
+    def _close(self) -> None:
+        self._movie.close()
+
+
+def _pyav() -> Any:
+    """Return PyAV, which must be there and know H.264."""
+    try:
+        import av
+    except ModuleNotFoundError as error:
+        msg = (
+            "an MP4 needs PyAV, not installed here; a GIF does without. To mend it:\n"
+            f"  {install_extra('movie')}"
+        )
+        raise ModuleNotFoundError(msg) from error
+    if "libx264" not in av.codecs_available:
+        msg = "PyAV was built without libx264 here; install its own wheel, or write a GIF"
+        raise MovieError(msg)
+    return av
+
+
+#: Bytes of all the pictures of a movie, at most.
+PILLOW_MAX_PIXELS = 1_000_000_000
+#: Browsers slow down a GIF that shows a picture for less than two hundredths of a second.
+GIF_MAX_FPS = 50.0
+#: Pictures of which a palette is made, and about how many pixels of each along a side.
+PALETTE_PICTURES, PALETTE_SIDE = 8, 256
+
+
+class PillowWriter(MovieWriter):
+    """Keeps pictures on the disk until Pillow writes them."""
+
+    def _begin(self, part: Path) -> None:
+        self._part = part
+        self._count = 0
+        self._spool: IO[bytes] = tempfile.TemporaryFile()  # noqa: SIM115 closed by _close
+
+    def _add(self, picture: Bytes) -> None:
+        if (self._count + 1) * picture.shape[0] * picture.shape[1] > PILLOW_MAX_PIXELS:
+            kind = self._part.suffix[1:].upper()
+            msg = (
+                f"a {kind} takes at most {PILLOW_MAX_PIXELS:,} pixels in all; write an MP4, or less"
+            )
+            raise MovieError(msg)
+        self._spool.write(np.ascontiguousarray(picture).tobytes())
+        self._count += 1
+
+    def _close(self) -> None:
+        self._spool.close()
+
+    def _picture(self, number: int) -> Any:
+        from PIL import Image
+
+        width, height = self._size
+        self._spool.seek(number * width * height * 3)
+        return Image.frombytes("RGB", self._size, self._spool.read(width * height * 3))
+
+    def _pictures(self, cancelled: Callable[[], bool]) -> Iterator[Any]:
+        for number in range(self._count):
+            if cancelled():
+                raise Stopped
+            yield self._picture(number)
+
+    def _durations(self, unit: int) -> list[int]:
+        """Milliseconds of each picture, in whole units, whose sum is that of the movie."""
+        ends = [round(1000 * n / self._fps / unit) * unit for n in range(self._count + 1)]
+        return [after - before for before, after in pairwise(ends)]
+
+    def _save(self, pictures: Iterator[Any], unit: int, **options: Any) -> None:
+        first = next(pictures)
+        durations = self._durations(unit)
+        first.save(
+            self._part,
+            save_all=True,
+            append_images=pictures,
+            duration=durations if len(durations) > 1 else durations[0],
+            loop=0,
+            **options,
+        )
+        self._close()
+
+
+class GIFWriter(PillowWriter):
+    """Writes a GIF whose pictures share one palette, without dithering: nothing flickers."""
+
+    @classmethod
+    def fault(cls, size: Size, fps: float) -> str:
+        """Say why such a movie cannot be written."""
+        if fps > GIF_MAX_FPS:
+            return f"fps is {fps:g}; a GIF shows at most {GIF_MAX_FPS:g} a second, an MP4 more"
+        return super().fault(size, fps)
+
+    def _finish(self, cancelled: Callable[[], bool]) -> None:
+        from PIL import Image
+
+        palette, plain = self._palette(), Image.Dither.NONE
+        pictures = (p.quantize(palette=palette, dither=plain) for p in self._pictures(cancelled))
+        self._save(pictures, unit=10, optimize=False, disposal=1)
+
+    def _palette(self) -> Any:
+        """Make one palette of pictures from the whole movie, seen coarsely."""
+        from PIL import Image
+
+        chosen = np.linspace(0, self._count - 1, min(self._count, PALETTE_PICTURES)).round()
+        step = max(min(self._size) // PALETTE_SIDE, 1)
+        seen = [np.asarray(self._picture(int(n)))[::step, ::step] for n in chosen]
+        colours = max(round(256 * self._quality / 100), 2)
+        return Image.fromarray(np.vstack(seen)).quantize(
+            colours, Image.Quantize.MEDIANCUT, kmeans=2, dither=Image.Dither.NONE
+        )
+
+
+class WebPWriter(PillowWriter):
+    """Writes an animated WebP."""
+
+    def _finish(self, cancelled: Callable[[], bool]) -> None:
+        self._save(self._pictures(cancelled), unit=1, quality=self._quality, method=2)
+
+
+#: Writers by the suffix of the file.
+FORMATS: dict[str, type[MovieWriter]] = {
+    ".mp4": MP4Writer,
+    ".gif": GIFWriter,
+    ".webp": WebPWriter,
+}
+
+
+#: Quality where none is asked for.
+DEFAULT_QUALITY = 80
+
+
+def default_fps(path: str | Path) -> float:
+    """Return frames in a second where none are asked for; a GIF counts whole hundredths."""
+    return 20.0 if Path(path).suffix.lower() == ".gif" else 30.0
+
+
+def check_movie(
+    path: str | Path, size: tuple[int, int], fps: float, quality: int = DEFAULT_QUALITY
+) -> None:
+    """Refuse a movie that cannot be written, before anything is drawn.
+
+    Parameters
+    ----------
+    path, size, fps, quality
+        As for :func:`movie_writer`.
+
+    Raises
+    ------
+    MovieError
+        When it cannot be; the text says how it can.
+    ModuleNotFoundError
+        When an MP4 is asked for without PyAV; the text names the command that installs it.
+    """
+    path = Path(path)
+    suffix = path.suffix.lower()
+    if suffix not in FORMATS:
+        what = f"{path.suffix!r} is no format" if suffix else "no suffix is no format"
+        msg = f"{path}: {what} that movies are written in; use {', '.join(FORMATS)}"
+    elif not 1 <= quality <= 100:
+        msg = f"quality is {quality!r}; expected a number from 1 to 100, such as {DEFAULT_QUALITY}"
+    elif not fps > 0:
+        msg = f"fps is {fps!r}; expected a positive number of frames a second, such as 30"
+    else:
+        msg = FORMATS[suffix].fault(size, fps)
+    if msg:
+        raise MovieError(msg)
+    FORMATS[suffix].need()
+
+
+def movie_writer(
+    path: str | Path, size: tuple[int, int], fps: float, quality: int = DEFAULT_QUALITY
+) -> MovieWriter:
+    """Begin a movie.
+
+    Parameters
+    ----------
+    path
+        File to write: ``.mp4``, ``.gif`` or ``.webp``.
+    size
+        Width and height in pixels; even numbers for an MP4.
+    fps
+        Frames in a second; at most 50 for a GIF.
+    quality
+        1 to 100: the more, the truer and the larger. A GIF has so many hundredths of 256 colours.
+
+    Returns
+    -------
+    MovieWriter
+        ``add`` takes pictures, ``finish`` puts the file in its place, ``abandon`` leaves nothing.
+
+    Raises
+    ------
+    MovieError
+        When it cannot be written so.
+    ModuleNotFoundError
+        When an MP4 is asked for without PyAV; the text names the command that installs it.
+    OSError
+        When there is no such folder, or no right to write there.
+    """
+    check_movie(path, size, fps, quality)
+    path = Path(path)
+    return FORMATS[path.suffix.lower()](path, size, fps, quality)
+
+
+def write_movie(
+    path: str | Path,
+    frames: Iterable[Bytes],
+    fps: float,
+    quality: int = DEFAULT_QUALITY,
+    *,
+    cancelled: Callable[[], bool] = lambda: False,
+) -> None:
+    """Write pictures as a movie; the file is there whole or not at all.
+
+    Parameters
+    ----------
+    path, fps, quality
+        As for :func:`movie_writer`.
+    frames
+        Pictures (H, W, 3) uint8, all of one size; each is taken when the one before is written.
+    cancelled
+        Asked before each picture; once it is true nothing is left behind.
+
+    Raises
+    ------
+    MovieError, ModuleNotFoundError, OSError
+        As for :func:`movie_writer`, and when there are no pictures or one differs in size.
+    Stopped
+        When it was cancelled.
+    """
+    writer: MovieWriter | None = None
+    try:
+        for picture in frames:
+            if cancelled():
+                raise Stopped
+            if writer is None:
+                height, width = picture.shape[:2]
+                writer = movie_writer(path, (width, height), fps, quality)
+            writer.add(picture)
+        if writer is None:
+            msg = f"{path}: there are no pictures to make a movie of; expected one or more"
+            raise MovieError(msg)
+        writer.finish(cancelled)
+    finally:
+        if writer is not None:
+            writer.abandon()

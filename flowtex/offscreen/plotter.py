@@ -1,0 +1,211 @@
+"""A PyVista plotter that shows a scene, or two beside each other, in a window or without one."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from flowtex._util.array_types import Bytes
+from flowtex.camera import Camera
+from flowtex.diagnostics import require_opengl
+from flowtex.options import Options, ViewOptions
+from flowtex.plotting.component import FlowtexComponent
+from flowtex.plotting.handle import FlowHandle
+from flowtex.plotting.vtk_camera import apply_camera, look
+from flowtex.scene import Scene
+
+__all__ = ["OffscreenPlotter", "add_scenes", "new_plotter", "point_camera"]
+
+#: Longest side of what is drawn at once, in pixels.
+LONGEST_SIDE = 16_384
+#: Pixels that are drawn for one of the picture along a side, at most.
+MAX_SUPERSAMPLING = 8
+#: Samples of a pixel for smooth outlines, where the picture is not supersampled.
+OUTLINE_SAMPLES = 4
+
+
+class OffscreenPlotter:
+    """A plotter without a window that draws pictures of a flow.
+
+    Parameters
+    ----------
+    mesh
+        A mesh or a field.
+    options
+        The arguments of the call.
+    size
+        Width and height in pixels.
+    supersampling
+        Pixels that are drawn for one of the picture along each side, 1 to 8.
+    scalar_bar_args
+        As for ``plotter.add_mesh``.
+
+    Attributes
+    ----------
+    handles
+        The texture of each view.
+
+    Raises
+    ------
+    FieldError, SettingsError, OpenGLMissingError, ValueError
+        As for :func:`flowtex.render`.
+    """
+
+    def __init__(
+        self,
+        mesh: Any,
+        options: Options,
+        *,
+        size: tuple[int, int],
+        supersampling: int = 1,
+        scalar_bar_args: Mapping[str, Any] | None = None,
+    ) -> None:
+        require_opengl()
+        _check_size(size, supersampling)
+        appearance = options.appearance
+        if appearance.show_scalar_bar is None:
+            options = replace(options, appearance=replace(appearance, show_scalar_bar=False))
+        self._supersampling = supersampling
+        large = (size[0] * supersampling, size[1] * supersampling)
+        two = options.view.beside is not None
+        self._plotter = new_plotter(large, two_views=two, off_screen=True, lighting="light kit")
+        try:
+            if supersampling == 1:  # which smooths the outline as well
+                self._plotter.enable_anti_aliasing("msaa", multi_samples=OUTLINE_SAMPLES)
+            else:
+                self._plotter.disable_anti_aliasing()
+            self._plotter.set_background(options.view.background)
+            self.handles = add_scenes(self._plotter, mesh, options, scalar_bar_args)
+            window = self._plotter.render_window
+            window.SetDPI(window.GetDPI() * supersampling)
+            for handle in self.handles:
+                handle.density = supersampling
+            point_camera(self._plotter, self.handles[0].scene, options.view)
+        except BaseException:
+            self._plotter.close()
+            raise
+
+    def picture(self, *, time: float | None = None, clock: float = 0.0) -> Bytes:
+        """Draw the flow.
+
+        Parameters
+        ----------
+        time
+            Time to show of a field that varies in time; what is shown already by default.
+        clock
+            Moment of the streaming of a steady flow, in seconds.
+
+        Returns
+        -------
+        numpy.ndarray
+            (height, width, 3), row 0 at the top.
+        """
+        # One picture for all that changes.
+        self._plotter.suppress_rendering = True
+        for handle in self.handles:
+            if time is not None:
+                handle.time = time
+            handle.clock = clock
+        self._plotter.suppress_rendering = False
+        self._plotter.render()
+        pixels: Any = self._plotter.screenshot(return_img=True)
+        return _averaged(np.asarray(pixels[..., :3], dtype=np.uint8), self._supersampling)
+
+    def close(self) -> None:
+        """Free the graphics card."""
+        for handle in self.handles:
+            handle.remove(render=False)
+        self._plotter.close()
+
+    def __enter__(self) -> OffscreenPlotter:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+
+def new_plotter(size: tuple[int, int], *, two_views: bool, **options: Any) -> Any:
+    """Return a PyVista plotter with one view, or with two side by side."""
+    import pyvista as pv
+
+    shape = (1, 2) if two_views else (1, 1)
+    return pv.Plotter(window_size=list(size), shape=shape, border=False, **options)
+
+
+def add_scenes(
+    plotter: Any,
+    mesh: Any,
+    options: Options,
+    scalar_bar_args: Mapping[str, Any] | None = None,
+) -> list[FlowHandle]:
+    """Add a flow to one view, or to two that share a camera and say how they differ."""
+    component, changes = FlowtexComponent(plotter), options.view.beside
+    scenes = [Scene.from_options(mesh, options)]
+    if changes is not None:
+        scenes.append(scenes[0].beside(changes, options))
+    handles = []
+    for column, scene in enumerate(scenes):
+        if changes is not None:
+            plotter.subplot(0, column)
+        handles.append(component.add_scene(scene, scalar_bar_args=scalar_bar_args))
+        if changes is not None:
+            _label(plotter, scene, changes)
+    if changes is not None:
+        plotter.link_views()
+        plotter.subplot(0, 0)
+    return handles
+
+
+def point_camera(plotter: Any, scene: Scene, view: ViewOptions) -> None:
+    """Point a plotter's camera where a view asks for.
+
+    Raises
+    ------
+    ValueError
+        When the view's camera, zoom or focus is none.
+    """
+    if view.camera is None:
+        look(plotter, scene.field, zoom=view.zoom, focus=view.focus)
+    elif isinstance(view.camera, (Camera, Mapping)):
+        whole = Camera.fit(scene.field.surface, zoom=view.zoom, focus=view.focus)
+        given = view.camera
+        camera = given if isinstance(given, Camera) else Camera.from_dict(given, whole)
+        apply_camera(camera, plotter.camera)
+        plotter.camera_set = True
+        plotter.renderer.reset_camera_clipping_range()
+    else:
+        plotter.camera.parallel_projection = False
+        plotter.camera_position = view.camera
+
+
+def _label(plotter: Any, scene: Scene, changes: Mapping[str, Any]) -> None:
+    """Write the settings by which one of two views differs from the other."""
+    settings = dict(scene.settings)
+    text = ", ".join(f"{name} = {settings[name]}" for name in changes if name in settings)
+    label = plotter.add_text(text, font_size=9, color="black")
+    label.prop.background_color, label.prop.background_opacity = "white", 0.8
+
+
+def _check_size(size: tuple[int, int], supersampling: int) -> None:
+    if supersampling not in range(1, MAX_SUPERSAMPLING + 1):
+        msg = f"supersampling is {supersampling!r}; expected 1 to {MAX_SUPERSAMPLING}, such as 2"
+        raise ValueError(msg)
+    if not all(1 <= side * supersampling <= LONGEST_SIDE for side in size):
+        times = f" times {supersampling}" if supersampling > 1 else ""
+        msg = (
+            f"size is {size[0]} x {size[1]}{times}; expected 1 to {LONGEST_SIDE} pixels along "
+            "each side: choose a smaller size, or less supersampling"
+        )
+        raise ValueError(msg)
+
+
+def _averaged(picture: Bytes, count: int) -> Bytes:
+    """Take the mean of every so many pixels along each side."""
+    if count == 1:
+        return picture
+    from PIL import Image
+
+    return np.asarray(Image.fromarray(picture).reduce(count))

@@ -1,0 +1,278 @@
+"""Arguments that every way of drawing a flow takes, each told once.
+
+``plotter.flowtex.add``, :func:`flowtex.render`, :func:`flowtex.show`, :func:`flowtex.movie`,
+:func:`flowtex.web.export`, :class:`flowtex.FlowWidget` and the command line hand the fields of
+three frozen classes on: what of a mesh makes the field, how the surface looks, and from where it
+is seen. Whatever else is given is a setting of :class:`flowtex.Settings`.
+
+:func:`accepts_options` puts the names, defaults and texts of the fields into the signature and
+the docstring of a function, so that ``help`` and an editor show them there.
+"""
+
+from __future__ import annotations
+
+import difflib
+import inspect
+import textwrap
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, fields
+from typing import Any, TypeVar
+
+from flowtex.errors import raise_faults
+from flowtex.field import FlowField
+from flowtex.settings import TABLE, SettingsError
+
+__all__ = [
+    "Appearance",
+    "FieldOptions",
+    "Options",
+    "ViewOptions",
+    "accepts_options",
+    "option_text",
+]
+
+#: Colour of a surface that is coloured by nothing: a grey that can go darker and lighter.
+PLAIN_COLOR = "#a0a0a0"
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+def _option(default: Any, text: str) -> Any:
+    """Return a field with the text that tells a person what it is for."""
+    return field(default=default, metadata={"text": text})
+
+
+@dataclass(frozen=True, kw_only=True)
+class FieldOptions:
+    """What of a mesh makes the field; the names are those of :meth:`FlowField.from_pyvista`."""
+
+    vectors: str | None = _option(
+        None, "Name of the velocity; found when there is only one candidate."
+    )
+    plane: str | None = _option(None, 'Plane of a 3D mesh, such as ``"k=20"``.')
+    times: Any | None = _option(None, "Times of a list of meshes; their positions by default.")
+    periodic: str | None = _option(
+        None, 'Axes that close on themselves: ``"i"``, ``"j"``, ``"ij"`` or ``""``.'
+    )
+    sign_free: bool | None = _option(
+        None, "Whether the vectors have no sign, so that v and -v mean the same."
+    )
+
+    def field(self, mesh: Any) -> FlowField:
+        """Return the field of a mesh, or a field as it is.
+
+        Raises
+        ------
+        FieldError
+            When the mesh does not make a field.
+        TypeError
+            When something is chosen of a field that is made already.
+        """
+        choices = {name: value for name, value in vars(self).items() if value is not None}
+        if not isinstance(mesh, FlowField):
+            return FlowField.from_pyvista(mesh, **choices)
+        if choices:
+            msg = (
+                f"{', '.join(choices)} cannot be chosen any more for {mesh!r}; choose when it "
+                "is made"
+            )
+            raise TypeError(msg)
+        return mesh
+
+
+@dataclass(frozen=True, kw_only=True)
+class Appearance:
+    """How the surface looks under the texture.
+
+    Raises
+    ------
+    ValueError
+        When the opacity or the range is none.
+    """
+
+    scalars: str | bool | None = _option(
+        None,
+        'What to colour by: the name of an array, ``"speed"`` (the default), or ``False`` for a '
+        "plain surface.",
+    )
+    cmap: Any | None = _option(
+        None,
+        "Colour map: a name, a map of matplotlib's, a table of PyVista's, or an array (N, 3 or "
+        "4), uint8 or from 0 to 1; viridis by default.",
+    )
+    clim: tuple[float, float] | None = _option(
+        None, "Values at the ends of the colour map; by default the range over all times."
+    )
+    color: Any = _option(PLAIN_COLOR, "Colour of a plain surface, as PyVista takes it.")
+    opacity: float = _option(1.0, "1 is opaque, 0 invisible.")
+    lighting: bool | None = _option(
+        None, "Whether the surface is lit; by default a curved one is and a flat one is not."
+    )
+    show_scalar_bar: bool | None = _option(
+        None, "Whether there is a legend of the colours; by default unless an image covers them."
+    )
+    image: Any | None = _option(
+        None,
+        "A picture that the flow smears, in its own colours: an array (H, W), (H, W, 3) or (H, W, "
+        "4), uint8 or floats from 0 to 1, or the path of a PNG or a JPEG. It is laid over the "
+        "surface once, its left at the first i and its top, row 0, at the last j; ``tiles`` "
+        "repeats it. Where it is transparent the surface's colour shows. It sets "
+        '``noise="image"``, and ``strength=1`` unless that is given.',
+    )
+
+    def __post_init__(self) -> None:
+        """Check the values."""
+        faults = []
+        if not _is_between(self.opacity, 0, 1):
+            faults.append(f"opacity is {self.opacity!r}; expected a number from 0 to 1")
+        if self.clim is not None:
+            try:
+                low, high = (float(value) for value in self.clim)
+            except (TypeError, ValueError):
+                faults.append(f"clim is {self.clim!r}; expected two numbers, (low, high)")
+            else:
+                object.__setattr__(self, "clim", (low, high))
+        raise_faults(faults, ValueError)
+
+    @property
+    def scalar_name(self) -> str | None:
+        """Name of what the surface is coloured by; ``None`` for a plain one."""
+        if self.scalars is False:
+            return None
+        return self.scalars if isinstance(self.scalars, str) else "speed"
+
+    @property
+    def has_bar(self) -> bool:
+        """Whether there is a legend."""
+        return self.image is None if self.show_scalar_bar is None else self.show_scalar_bar
+
+    def is_lit(self, *, flat: bool) -> bool:
+        """Tell whether a flat or a curved surface is lit."""
+        return not flat if self.lighting is None else self.lighting
+
+
+@dataclass(frozen=True, kw_only=True)
+class ViewOptions:
+    """From where a flow is seen, and what stands beside and behind it."""
+
+    zoom: float = _option(1.0, "How far in: 1 shows the whole surface, 8 an eighth of its width.")
+    focus: tuple[float, ...] | None = _option(
+        None, "Point of the mesh to look at, two or three coordinates; the middle by default."
+    )
+    camera: Any | None = _option(
+        None,
+        "Another view: a :class:`flowtex.camera.Camera`, its numbers by name, or position, focal "
+        "point and direction upwards, three points.",
+    )
+    background: Any = _option("white", "Colour behind the surface.")
+    beside: Mapping[str, Any] | None = _option(
+        None,
+        "What is different in a second view to the right of the first one, such as "
+        '``{"lod": False}``; both views move together.',
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Options:
+    """Arguments of one call, sorted by what they are for."""
+
+    field: FieldOptions
+    appearance: Appearance
+    view: ViewOptions
+    settings: Mapping[str, Any]
+
+    @classmethod
+    def split(cls, *kinds: str, **values: Any) -> Options:
+        """Sort arguments by name.
+
+        Parameters
+        ----------
+        *kinds
+            Which are accepted: ``"field"``, ``"appearance"`` and ``"view"``; all by default.
+        **values
+            Fields of the option classes, and settings.
+
+        Raises
+        ------
+        SettingsError
+            When there is no argument of a name; the text has the nearest one.
+        ValueError
+            When the opacity or the range of the colours is none.
+        """
+        accepted = {name: _names(_KINDS[name]) for name in kinds or _KINDS}
+        parts = {
+            name: kind(**{n: values.pop(n) for n in accepted.get(name, ()) if n in values})
+            for name, kind in _KINDS.items()
+        }
+        known = (*TABLE, *(name for names in accepted.values() for name in names))
+        for name in values:
+            if name not in TABLE:
+                close = difflib.get_close_matches(name, known, n=1)
+                hint = f"did you mean {close[0]!r}?" if close else f"there are: {', '.join(known)}"
+                msg = f"there is no setting or argument {name!r}; {hint}"
+                raise SettingsError(msg)
+        return cls(**parts, settings=values)
+
+
+_KINDS: dict[str, Any] = {"field": FieldOptions, "appearance": Appearance, "view": ViewOptions}
+
+
+def accepts_options(*kinds: type) -> Callable[[Function], Function]:
+    """Show the fields of option classes as arguments of a function that takes ``**options``.
+
+    The line ``{options}`` of its docstring becomes their description.
+    """
+
+    def complete(function: Function) -> Function:
+        options = [f for kind in kinds for f in fields(kind)]
+        signature = inspect.signature(function)
+        own = [p for p in signature.parameters.values() if p.kind is not p.VAR_KEYWORD]
+        keyword = [
+            inspect.Parameter(f.name, inspect.Parameter.KEYWORD_ONLY, default=f.default)
+            for f in options
+            if f.name not in signature.parameters
+        ]
+        rest = inspect.Parameter("settings", inspect.Parameter.VAR_KEYWORD, annotation=Any)
+        whole = signature.replace(parameters=[*own, *keyword, rest])
+        function.__signature__ = whole  # type: ignore[attr-defined]
+        if function.__doc__:
+            function.__doc__ = _described(function.__doc__, options)
+        return function
+
+    return complete
+
+
+def option_text(kind: type, name: str) -> str:
+    """Return what a field of an option class is for, as one paragraph."""
+    return str(kind.__dataclass_fields__[name].metadata["text"])  # type: ignore[attr-defined]
+
+
+def _described(text: str, options: list[Any]) -> str:
+    """Put the description of options into a docstring."""
+    lines = []
+    for line in text.splitlines():
+        if line.strip() != "{options}":
+            lines.append(line)
+            continue
+        indent = line[: line.index("{")]
+        for option in options:
+            lines.append(f"{indent}{option.name}")
+            lines += textwrap.wrap(
+                option.metadata["text"],
+                width=100,
+                initial_indent=indent + "    ",
+                subsequent_indent=indent + "    ",
+                break_on_hyphens=False,
+            )
+    return "\n".join(lines)
+
+
+def _names(kind: type) -> tuple[str, ...]:
+    return tuple(f.name for f in fields(kind))
+
+
+def _is_between(value: Any, low: float, high: float) -> bool:
+    try:
+        return bool(low <= value <= high)
+    except (TypeError, ValueError):
+        return False

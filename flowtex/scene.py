@@ -1,0 +1,420 @@
+"""The scene: a field, its appearance, its settings and the time that is shown.
+
+:class:`Scene` owns the arrays and knows no toolkit. A change is told as a notice and data is
+pulled: a renderer asks for :attr:`Scene.textures` when it draws and gets new ones only when traces
+or textures have changed. Scenes of one field share its traces, and textures where the settings
+that lie in them are the same.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from flowtex._util.array_types import Floats, Floats32
+from flowtex._util.cache import WeakCache, digest
+from flowtex.field import FlowField
+from flowtex.field.interpolation import steps_around
+from flowtex.options import Appearance, FieldOptions, Options
+from flowtex.settings import TABLE, Affects, Settings, SettingsError
+from flowtex.textures import TextureSet
+from flowtex.textures.image_files import load_image
+from flowtex.textures.images import as_picture
+from flowtex.trace import SliceStore, TraceSlices, shared_store
+
+__all__ = ["NO_IMAGE", "Scene", "share_field", "steps_of"]
+
+Notice = Callable[[Affects], None]
+
+#: Settings that lie in the textures of some kinds of noise, and elsewhere only in uniforms.
+SETTINGS_IN_TEXTURES = {
+    "seed": ("texture", "spots"),
+    "tiles": ("checkerboard",),
+    "resolution": ("texture", "spots", "checkerboard", "image"),
+}
+
+#: Values that differ by less than this share of the greatest are the same.
+SAME_VALUE_SHARE = 1e-9
+#: Share of such a value by which its range is widened.
+WIDENED_SHARE = 0.05
+
+NO_IMAGE = (
+    "noise is 'image' and there is no image; give one as image=, or later with set_image(image)"
+)
+
+
+class Scene:
+    """One flow and how it is looked at.
+
+    Parameters
+    ----------
+    field
+        The flow.
+    settings
+        How the texture is drawn; changes are followed.
+    appearance
+        How the surface looks; its image is advected where ``noise="image"``.
+    slices
+        Traces of the field, when they are at hand.
+
+    Attributes
+    ----------
+    field, settings
+        As above.
+
+    Raises
+    ------
+    SettingsError
+        When an image is asked for and there is none, or the image cannot be used.
+    KeyError
+        When there is no such scalar; the text lists those that exist.
+    """
+
+    def __init__(
+        self,
+        field: FlowField,
+        settings: Settings | None = None,
+        appearance: Appearance | None = None,
+        *,
+        slices: TraceSlices | None = None,
+    ) -> None:
+        self.field = field
+        self.settings = settings or Settings()
+        self._appearance = appearance or Appearance()
+        self._image: Floats32 | None = None
+        if self._appearance.image is not None:
+            self._image = as_picture(load_image(self._appearance.image))
+        if self.settings.noise == "image" and self._image is None:
+            raise SettingsError(NO_IMAGE)
+        if self.scalar_name is not None:
+            steps_of(field, self.scalar_name)
+        self._noise = self.settings.noise
+        self._store: SliceStore | None = None
+        if slices is not None:
+            self._store = SliceStore(field, slices=slices)
+        self._textures: TextureSet | None = None
+        self._version = 0  # of the textures
+        self._notices: list[Notice] = []
+        self._time = float(field.times[-1])
+        self._end = self.settings.observe(self._setting_changed)
+
+    @classmethod
+    def of(cls, mesh: Any, **options: Any) -> Scene:
+        """Return the scene of a mesh or a field, from the arguments of one call.
+
+        Parameters
+        ----------
+        mesh
+            What :meth:`FieldOptions.field` takes.
+        **options
+            Fields of :class:`FieldOptions` and :class:`Appearance`, and settings.
+
+        Raises
+        ------
+        FieldError, SettingsError, ImageError
+            When the mesh, a setting or the image does not fit.
+        KeyError
+            When there is no such scalar.
+        ValueError
+            When another argument does not fit.
+        """
+        return cls.from_options(mesh, Options.split("field", "appearance", **options))
+
+    @classmethod
+    def from_options(cls, mesh: Any, options: Options) -> Scene:
+        """Return the scene of a mesh or a field; :meth:`of` has the errors."""
+        settings = image_settings(options) if options.appearance.image is not None else {}
+        chosen = Settings()
+        chosen.update(**{**options.settings, **settings})
+        return cls(options.field.field(mesh), chosen, options.appearance)
+
+    def beside(self, changes: Mapping[str, Any], options: Options) -> Scene:
+        """Return a second scene of the same field that differs in some options.
+
+        Parameters
+        ----------
+        changes
+            Fields of :class:`Appearance` and settings by name.
+        options
+            Those of this scene.
+
+        Raises
+        ------
+        ValueError
+            When the changes choose another field.
+        SettingsError
+            When a setting does not fit.
+        """
+        of_field = [name for name in FieldOptions.__dataclass_fields__ if name in changes]
+        if of_field:
+            msg = f"beside has {', '.join(of_field)}; both views show one field, expected settings"
+            raise ValueError(msg)
+        values = {**vars(options.appearance), **options.settings, **changes}
+        return Scene.from_options(self.field, Options.split("appearance", **values))
+
+    @property
+    def appearance(self) -> Appearance:
+        """How the surface looks."""
+        return self._appearance
+
+    @property
+    def flat(self) -> bool:
+        """Whether the surface lies in a plane."""
+        return self.field.surface.frame is not None
+
+    @property
+    def scalar_name(self) -> str | None:
+        """Name of what the surface is coloured by; ``None`` for a plain one."""
+        return self._appearance.scalar_name
+
+    @property
+    def scalar_limits(self) -> tuple[float, float]:
+        """Values at the ends of the colour map."""
+        if self._appearance.clim is not None:
+            return self._appearance.clim
+        return (0.0, 1.0) if self.scalar_name is None else self.scalar_range(self.scalar_name)
+
+    @property
+    def store(self) -> SliceStore:
+        """Traces of the field, made step by step when asked for, shared by all its scenes."""
+        if self._store is None:
+            self._store = shared_store(self.field, self.settings.parameter)
+        return self._store
+
+    @property
+    def textures(self) -> TextureSet:
+        """What a renderer needs, at the settings of this moment."""
+        textures, version = self._textures, self._version
+        if textures is None:
+            textures = _shared_textures(self.store, self.settings.copy(), self._image)
+            if version == self._version:  # no other thread has changed a setting meanwhile
+                self._textures = textures
+        return textures
+
+    @property
+    def image(self) -> Floats32 | None:
+        """Texels of the image, (H, W, 4): colours times opacity, row 0 at the bottom."""
+        return self._image
+
+    def set_image(self, image: Any) -> None:
+        """Lay an image on the surface in place of the noise; sets ``noise`` to ``"image"``.
+
+        Parameters
+        ----------
+        image
+            As :class:`Appearance` has it.
+
+        Raises
+        ------
+        ImageError
+            When it cannot be used; nothing is changed then.
+        """
+        self._image = as_picture(load_image(image))
+        if self.settings.noise != "image":
+            self.settings.noise = "image"
+            return
+        if self._textures is not None:
+            self._textures = self._textures.with_image(self._image)
+        self._notify("textures")
+
+    @property
+    def time(self) -> float:
+        """Time that is shown, in the field's own unit, within its first and last step."""
+        return self._time
+
+    @time.setter
+    def time(self, value: float) -> None:
+        first, last = float(self.field.times[0]), float(self.field.times[-1])
+        if not first <= value <= last:
+            msg = f"time is {value!r}; expected {first:g} to {last:g}, the times of the field"
+            raise ValueError(msg)
+        self._time = float(value)
+        self._notify("uniform")
+
+    @property
+    def moment(self) -> tuple[int, int, float]:
+        """The two time steps around the time that is shown, and how far it is between them."""
+        return steps_around(self.field.times, self._time)
+
+    def scalar(self, name: str) -> Floats:
+        """Nodal values at the time that is shown, (J, I); ``"speed"`` is always there.
+
+        Raises
+        ------
+        KeyError
+            When there is no such array; the text lists those that exist.
+        """
+        steps = steps_of(self.field, name)
+        before, after, share = self.moment
+        if len(steps) == 1:
+            return np.asarray(steps[0])
+        return np.asarray(steps[before] * (1 - share) + steps[after] * share)
+
+    def scalar_range(self, name: str) -> tuple[float, float]:
+        """Least and greatest value over the valid nodes and all times.
+
+        Where all are the same but for rounding, the range is widened, so that colours do not tell
+        of differences that are none.
+        """
+        values = steps_of(self.field, name)[:, self.field.valid]
+        values = values[np.isfinite(values)]
+        if not values.size:
+            return 0.0, 1.0
+        low, high = float(values.min()), float(values.max())
+        size = max(abs(low), abs(high))
+        if high - low > SAME_VALUE_SHARE * size:
+            return low, high
+        return (low - WIDENED_SHARE * size, high + WIDENED_SHARE * size) if size > 0 else (0.0, 1.0)
+
+    def copy(self) -> Scene:
+        """Return a scene that shows the same, and that no later change of this one reaches.
+
+        A thread can read it while this one goes on.
+        """
+        scene = Scene(self.field)
+        scene.settings, scene._appearance = self.settings.copy(), self._appearance
+        scene._image, scene._noise, scene._time = self._image, self._noise, self._time
+        scene._store, scene._textures = self.store, self.textures
+        return scene
+
+    def coarsened(self, nodes: int) -> Scene:
+        """Return a scene of the same settings on so many nodes at most, for a first picture.
+
+        Its colours have the range of this one.
+        """
+        field = share_field(coarsened_field(self.field, nodes))
+        scene = Scene(field)
+        limits = None if self.scalar_name is None else self.scalar_limits
+        scene._appearance = replace(self._appearance, clim=limits)
+        scene.settings, scene._image = self.settings.copy(), self._image
+        scene._noise, scene._time = self._noise, self._time
+        scene._store = _coarse_stores.get(
+            (id(field), self.settings.parameter),  # a store keeps its field alive
+            lambda: SliceStore(field, parameter=self.settings.parameter, compose=False),
+        )
+        return scene
+
+    def observe(self, notice: Notice) -> Callable[[], None]:
+        """Call ``notice(affects)`` after each change; returns what ends it."""
+        self._notices.append(notice)
+        return lambda: self._notices.remove(notice) if notice in self._notices else None
+
+    def close(self) -> None:
+        """Follow the settings no longer."""
+        self._end()
+        self._notices.clear()
+
+    def _setting_changed(self, name: str, value: Any) -> None:
+        if name == "noise":
+            if value == self._noise:
+                return
+            if value == "image" and self._image is None:
+                # Observers hear of a setting once it is set; what cannot be drawn is set back.
+                self.settings.noise = self._noise
+                raise SettingsError(NO_IMAGE)
+            self._noise = value
+        affects = TABLE[name].affects
+        if name in SETTINGS_IN_TEXTURES:
+            in_textures = self.settings.noise in SETTINGS_IN_TEXTURES[name]
+            affects = "textures" if in_textures else "uniform"
+        if affects == "trace":
+            self._store = None
+        if affects != "uniform":
+            self._version += 1
+            self._textures = None
+        self._notify(affects)
+
+    def _notify(self, affects: Affects) -> None:
+        for notice in list(self._notices):
+            notice(affects)
+
+
+def steps_of(field: FlowField, name: str) -> Floats:
+    """Return nodal values at all times, (T or 1, J, I); ``"speed"`` is always there.
+
+    Raises
+    ------
+    KeyError
+        When there is no such array; the text lists those that exist.
+    """
+    if name in field.scalars:
+        return field.scalars[name]
+    if name == "speed":
+        return field.speed
+    names = ", ".join(repr(n) for n in ("speed", *field.scalars))
+    msg = f"there is no scalar {name!r} on this field; there are {names}"
+    raise KeyError(msg)
+
+
+def image_settings(options: Options) -> dict[str, Any]:
+    """Return the settings for an image: its colours alone, unless it is asked to be mixed.
+
+    Raises
+    ------
+    SettingsError
+        When another noise is asked for.
+    """
+    noise = options.settings.get("noise", "image")
+    if noise != "image":
+        msg = f"noise is {noise!r} and an image is given; leave out one of them"
+        raise SettingsError(msg)
+    return {"strength": options.settings.get("strength", 1.0), "noise": "image"}
+
+
+_fields: WeakCache[FlowField] = WeakCache()
+_coarse_stores: WeakCache[SliceStore] = WeakCache()
+_textures: WeakCache[TextureSet] = WeakCache()
+
+
+def share_field(field: FlowField) -> FlowField:
+    """Return the field of the same numbers and names that is in use, or this one.
+
+    A notebook shows one mesh many times over, and makes it a field each time.
+    """
+    words = (field.periodic, field.name, field.length_unit, field.time_unit, field.sign_free)
+    placed = () if field.placed is None else (field.placed,)
+    arrays = (field.points, field.velocity, field.times, field.valid, *placed)
+    key = digest(*arrays, *field.scalars.values(), words=(words, len(placed), *field.scalars))
+    return _fields.get(key, lambda: field)
+
+
+def _shared_textures(store: SliceStore, settings: Settings, image: Floats32 | None) -> TextureSet:
+    """Return :meth:`TextureSet.build` of a store and settings, one for all who ask."""
+    # Textures keep their store alive, so its number is its own while they live.
+    key: tuple[Any, ...] = (id(store),)
+    if settings.noise != "procedural":
+        key += (settings.noise, settings.resolution, settings.noise_correction)
+        key += (settings.seed, settings.tiles)
+        key += () if image is None or settings.noise != "image" else (digest(image),)
+    return _textures.get(key, lambda: TextureSet.build(store, settings, image))
+
+
+def coarsened_field(field: FlowField, nodes: int) -> FlowField:
+    """Keep lines of nodes, the first and the last among them, so that so many nodes are left.
+
+    Parameters
+    ----------
+    field
+        The field.
+    nodes
+        How many nodes there may be, at least some dozens; a smaller field is returned as it is.
+    """
+    if field.valid.size <= nodes:
+        return field
+    share = np.sqrt(nodes / field.valid.size)
+    rows, columns = (
+        np.unique(np.rint(np.linspace(0, n - 1, max(int(n * share), min(n, 8)))).astype(int))
+        for n in field.shape
+    )
+    at = np.ix_(rows, columns)
+    return replace(
+        field,
+        points=field.points[at],
+        velocity=field.velocity[:, at[0], at[1]],
+        valid=field.valid[at],
+        placed=None if field.placed is None else field.placed[at],
+        scalars={k: s[:, at[0], at[1]] for k, s in field.scalars.items()},
+    )

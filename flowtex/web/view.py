@@ -1,0 +1,157 @@
+"""A scene as a browser is handed it: the header and the arrays that the client draws."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from flowtex._util.colours import colour_table, rgb
+from flowtex.camera import Camera
+from flowtex.field import FlowField
+from flowtex.options import Options, ViewOptions
+from flowtex.rendering.webgl import Colours
+from flowtex.rendering.webgl import Scene as ClientData
+from flowtex.scene import Scene, share_field, steps_of
+from flowtex.settings import TABLE
+
+__all__ = ["WebView", "web_views"]
+
+
+class WebView:
+    """A scene for a client in a browser.
+
+    Parameters
+    ----------
+    scene
+        The flow, its colours and settings.
+    background
+        Colour behind the surface.
+    steps
+        Number of time steps that are handed over, evenly chosen with the first and the last
+        among them; all of them by default. Paths are traced through all of them all the same.
+    own_settings
+        Settings of this view alone, where it stands beside another.
+
+    Attributes
+    ----------
+    scene, own_settings
+        As above.
+
+    Raises
+    ------
+    ValueError
+        When there is no such colour or colour map, or fewer than one time step is asked for.
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        *,
+        background: Any = "white",
+        steps: int | None = None,
+        own_settings: tuple[str, ...] = (),
+    ) -> None:
+        appearance = scene.appearance
+        self.scene, self.own_settings = scene, own_settings
+        self._times = _evenly(len(scene.field.times), steps)
+        self._colours = Colours(
+            table=colour_table(appearance.cmap),
+            plain=rgb(appearance.color),
+            background=rgb(background),
+            lighting=appearance.is_lit(flat=scene.flat),
+            opacity=float(appearance.opacity),
+            bar=appearance.has_bar,
+        )
+
+    @property
+    def field(self) -> FlowField:
+        """The flow."""
+        return self.scene.field
+
+    def camera(self, view: ViewOptions, aspect: float = 1.5) -> Camera:
+        """Return the camera that a view begins with."""
+        return first_camera(self.scene, view, aspect)
+
+    def data(self) -> ClientData:
+        """Return what the client is handed; makes noise textures, and traces nothing."""
+        return self._data(self.scene)
+
+    def coarse_data(self, nodes: int) -> ClientData:
+        """Return the same with so many nodes at most, for a first picture."""
+        return self._data(self.scene.coarsened(nodes))
+
+    def _data(self, scene: Scene) -> ClientData:
+        colours, name = self._colours, scene.scalar_name
+        if name is not None:
+            low, high = scene.scalar_limits
+            values = steps_of(scene.field, name)
+            colours = replace(colours, name=name, values=values, low=low, high=high)
+        return ClientData(scene.textures, colours, self._times)
+
+    def close(self) -> None:
+        """Follow the settings no longer."""
+        self.scene.close()
+
+
+def web_views(mesh: Any, options: Options, *, steps: int | None = None) -> tuple[WebView, ...]:
+    """Return the view of a flow, and a second one where ``options.view.beside`` asks for it.
+
+    Parameters
+    ----------
+    mesh
+        A mesh or a field; equal ones share their traces.
+    options
+        As :meth:`Options.split` sorts them.
+    steps
+        As for :class:`WebView`.
+
+    Raises
+    ------
+    FieldError, SettingsError
+        When the mesh or a setting does not fit.
+    KeyError
+        When there is no such scalar.
+    ValueError
+        When another argument does not fit.
+    """
+    field = share_field(options.field.field(mesh))
+    chosen = replace(options, field=type(options.field)())
+    background, changes = options.view.background, options.view.beside
+    first = Scene.from_options(field, chosen)
+    views = [WebView(first, background=background, steps=steps)]
+    if changes is not None:
+        own = tuple(name for name in changes if name in TABLE)
+        second = first.beside(changes, chosen)
+        views.append(WebView(second, background=background, steps=steps, own_settings=own))
+    return tuple(views)
+
+
+def first_camera(scene: Scene, view: ViewOptions, aspect: float) -> Camera:
+    """Return the camera that a view begins with.
+
+    Raises
+    ------
+    CameraError
+        When ``camera`` is none.
+    ValueError
+        When ``zoom`` or ``focus`` is none.
+    """
+    whole = Camera.fit(scene.field.surface, aspect, zoom=view.zoom, focus=view.focus)
+    if view.camera is None or isinstance(view.camera, Camera):
+        return view.camera or whole
+    if isinstance(view.camera, Mapping):
+        return Camera.from_dict(view.camera, whole)
+    return Camera.from_points(view.camera)
+
+
+def _evenly(count: int, steps: int | None) -> tuple[int, ...]:
+    """Return so many of the numbers below a count, or none of them where all are asked for."""
+    if steps is None or steps >= count:
+        return ()
+    if steps < 1:
+        msg = f"steps is {steps}; expected 1 to {count}, the time steps of the field"
+        raise ValueError(msg)
+    if steps == 1:
+        return (count - 1,)
+    return tuple(round(n * (count - 1) / (steps - 1)) for n in range(steps))
