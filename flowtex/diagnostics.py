@@ -216,11 +216,11 @@ def _display() -> Check:
 
 
 def _shaders() -> Check:
-    from flowtex.rendering import shader_files as _assets
+    from flowtex.rendering import shaders
 
     mend = "python -m pip install --force-reinstall --no-deps flowtex"
     try:
-        folder, names = _assets.shader_folder(), _assets.shader_names()
+        folder, names = shaders.shader_folder(), shaders.shader_names()
     except FileNotFoundError as error:
         return Check("Shaders", "fail", str(error), mend)
     return Check("Shaders", "ok" if names else "fail", f"{len(names)} files in {folder}", mend)

@@ -21,7 +21,7 @@ import pyvista as pv
 from vtkmodules.util.vtkConstants import VTK_OBJECT
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
-from flowtex.rendering.shader_text import compose
+from flowtex.rendering.shaders import shader_text
 from flowtex.rendering.uniforms import ViewState, uniforms, variants
 from flowtex.rendering.vtk.gpu import GPUTexture
 from flowtex.rendering.vtk.mesh import COORDINATE, NOISE, NORMAL, POSITION, set_position
@@ -159,7 +159,7 @@ class FlowLayer:
         self._variant = variant
         self._actor.clear_shader_replacements(_feature_name=OWNER)
         for shader, mark, name in REPLACEMENTS:
-            text = f"{compose(name, variant)}\n{mark}\n"
+            text = f"{shader_text(name, variant)}\n{mark}\n"
             self._actor.add_shader_replacement(shader, mark, text, _feature_name=OWNER)
 
     def _before_draw(self, program: Any) -> None:

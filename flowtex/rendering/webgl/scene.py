@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from flowtex._version import __version__
 from flowtex.field.interpolation import steps_around
 from flowtex.first_look import first_look
-from flowtex.rendering.shader_text import compose
+from flowtex.rendering.shaders import shader_text
 from flowtex.rendering.uniforms import variants
 from flowtex.rendering.webgl.header import (
     Colours,
@@ -244,4 +244,4 @@ class Scene:
 
 @cache
 def _shaders(variant: tuple[str, ...]) -> dict[str, str]:
-    return {key: compose(name, variant) for key, name in SHADERS.items()}
+    return {key: shader_text(name, variant) for key, name in SHADERS.items()}
