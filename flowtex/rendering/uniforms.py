@@ -12,21 +12,20 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import Floats, Ints
+from flowtex.rendering.constants import KERNELS
 from flowtex.settings import Settings
 from flowtex.textures import PaperTextures, TextureSet
 
 __all__ = ["ViewState", "finest_cell", "uniforms", "variants"]
 
 #: Octaves between the finest cell of the noise and the extent of the surface.
-OCTAVES = 30
+NOISE_DOUBLINGS = 30
 #: The origin of the noise keeps this many octaves clear, so that single precision holds it.
-SNAP = 9
+CLEAR_DOUBLINGS = 9
 #: What the flow goes while a grain in motion takes one turn, in pixels; up to twice as much.
-WAVE = 96.0
+WAVE_PIXELS = 96.0
 #: Coarse part of the clock, in base periods, that times a power of two stays exact.
-COARSE = 2.0**-12
-
-KERNELS = ("hann", "box", "ramp")
+CLOCK_STEP = 2.0**-12
 
 
 @dataclass
@@ -80,7 +79,7 @@ def variants(textures: TextureSet, *, unsteady: bool) -> frozenset[str]:
 
 def finest_cell(extent: float) -> float:
     """Width of a cell of the noise's finest octave: a power of two, so that it is exact."""
-    return float(2.0 ** (np.floor(np.log2(extent)) - OCTAVES))
+    return float(2.0 ** (np.floor(np.log2(extent)) - NOISE_DOUBLINGS))
 
 
 def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[str, Any]:
@@ -140,21 +139,21 @@ def _motion(textures: TextureSet, settings: Settings, view: ViewState) -> dict[s
         turns, travel = view.clock / settings.period % 1.0, settings.speed * settings.period
         pixels, by_speed = settings.speed_in == "pixels", settings.motion == "speed"
         moving = settings.motion != "off" and not store.field.sign_free
-    coarse = float(np.floor(turns / COARSE) * COARSE)
+    coarse = float(np.floor(turns / CLOCK_STEP) * CLOCK_STEP)
     return {
         "u_moving": moving and textures.space == "physical",
         "u_clock": (coarse, turns - coarse),
         "u_travel": float(travel) * (view.density if pixels else 1.0),
         "u_travelInPixels": pixels,
         "u_travelBySpeed": by_speed,
-        "u_wave": WAVE * view.density,
+        "u_wave": WAVE_PIXELS * view.density,
     }
 
 
 def _noise_origin(even: Ints, finest: float, anchor: Floats) -> dict[str, Any]:
     """Give the noise's origin in space and in the finest cells of both families of lattices."""
     odd = even / np.sqrt(2.0)
-    whole = np.floor(odd / 2**SNAP) * 2**SNAP
+    whole = np.floor(odd / 2**CLEAR_DOUBLINGS) * 2**CLEAR_DOUBLINGS
     return {
         "u_noiseOrigin": tuple(float(c) for c in even * finest - anchor),
         "u_noiseOriginEven": tuple(float(c) for c in even),
@@ -185,7 +184,7 @@ def _paper(paper: PaperTextures, settings: Settings, density: float) -> dict[str
 
 def _origin_cell(focus: Floats, finest: float) -> Ints:
     """Lattice point near the focus, in cells of the finest octave, that a float holds exactly."""
-    coarse = 2**SNAP
-    limit = 2 ** (OCTAVES - SNAP) - 1
+    coarse = 2**CLEAR_DOUBLINGS
+    limit = 2 ** (NOISE_DOUBLINGS - CLEAR_DOUBLINGS) - 1
     cell = np.clip(np.rint(focus / finest / coarse), -limit, limit)
     return np.asarray(cell * coarse, dtype=np.int64)

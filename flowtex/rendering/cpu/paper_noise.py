@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import Floats
+from flowtex.rendering.constants import LAST_HALF_LEVEL, LEAST_TEXELS
 from flowtex.rendering.cpu.fragments import Varying
 from flowtex.rendering.cpu.levels import footprint
 from flowtex.rendering.cpu.mipmaps import Mips
@@ -49,7 +50,9 @@ class PaperNoise(Lookup):
         self.level = self._mip
         width = np.exp2(self._mip)
         halves = np.asarray(values["u_noiseDeviation"])
-        self._gain = 1.0 / np.interp(2.0 * self._mip, np.arange(len(halves)), halves)
+        self._gain = 1.0 / np.interp(
+            np.minimum(2.0 * self._mip, LAST_HALF_LEVEL), np.arange(len(halves)), halves
+        )
         self._grains = width / np.sqrt(values["u_noiseGrain"] ** 2 + width**2 - 1.0)
         step = images.step.at(self._here, self._mip)[:, 0]
         self.spacing = step * self._width(noise, width, texels) * values["u_spacing"]
@@ -115,4 +118,4 @@ def _level(texels: Floats, values: Values) -> Floats:
     """Mip level at which a texel is as wide as that many of the finest level."""
     if not values["u_lod"]:
         return np.zeros(len(texels))
-    return np.maximum(np.log2(np.maximum(texels, 1e-6)), 0.0)
+    return np.maximum(np.log2(np.maximum(texels, LEAST_TEXELS)), 0.0)

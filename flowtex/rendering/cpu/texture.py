@@ -9,6 +9,17 @@ from typing import Any, Protocol
 import numpy as np
 
 from flowtex._util.array_types import Floats
+from flowtex.rendering.constants import (
+    BELL,
+    BELL_BEND,
+    BELL_END,
+    KERNEL_BOX,
+    KERNEL_RAMP,
+    LEAST_SPEED,
+    LEAST_WEIGHT,
+    PI,
+    SHARED_TERMS,
+)
 from flowtex.rendering.cpu.fragments import Fragments
 from flowtex.rendering.cpu.path import Path, Slices
 
@@ -88,7 +99,7 @@ class Side:
 
     def step(self, lag: Floats) -> Floats:
         """Lag to the next sample from lags (N,): equation 3, with the speed that is there."""
-        speed = np.maximum(self.path.speed(lag), 1e-6)
+        speed = np.maximum(self.path.speed(lag), LEAST_SPEED)
         return np.asarray(self.spacing / (self.scale * speed))
 
 
@@ -98,11 +109,11 @@ LookupMaker = Callable[[Fragments, Values], Lookup]
 
 def weight(x: float, values: Values) -> float:
     """Weight at x in -1 ... 1, negative behind the particle."""
-    if values["u_kernel"] == 1:
+    if values["u_kernel"] == KERNEL_BOX:
         return 1.0
-    if values["u_kernel"] == 2:
+    if values["u_kernel"] == KERNEL_RAMP:
         return 0.5 * (1.0 - x) if values["u_sides"] == 2 else 1.0 - abs(x)
-    return 0.5 + 0.5 * float(np.cos(np.pi * x))
+    return 0.5 + 0.5 * float(np.cos(PI * x))
 
 
 def shared(apart: Floats, near: Floats) -> Floats:
@@ -116,10 +127,11 @@ def shared(apart: Floats, near: Floats) -> Floats:
         Correlation of the weights with those of the next sample, (N,).
     """
     total = np.ones(np.broadcast_shapes(np.shape(apart), np.shape(near)))
-    for m in range(1, 25):
+    for m in range(1, SHARED_TERMS + 1):
         d = m * m * np.square(apart)
-        bell = np.exp(-np.minimum(d, 3.0) * (1.19 + 0.06 * np.minimum(d, 3.0)))
-        total += np.where(d > 3.0, 0.0, 2.0 * np.power(near, m * m) * bell)
+        near_d = np.minimum(d, BELL_END)
+        bell = np.exp(-near_d * (BELL + BELL_BEND * near_d))
+        total += np.where(d > BELL_END, 0.0, 2.0 * np.power(near, m * m) * bell)
     return total
 
 
@@ -163,7 +175,9 @@ class Summing:
             next_ = self._slices.layer(coordinate, before + 1, level)
             ends = (base[:, :3], next_[:, :3])
             path = Path(self._slices, coordinate, level, ends, before, self._lags)
-            yield Side(sign, path, spacing, np.where(speed > 1e-6, next_[:, 3], -np.inf), scale)
+            yield Side(
+                sign, path, spacing, np.where(speed > LEAST_SPEED, next_[:, 3], -np.inf), scale
+            )
 
     def _sides(self) -> tuple[tuple[float, int], ...]:
         """Sides of the paths: their sign, and the layer before their first slice."""
@@ -172,7 +186,7 @@ class Summing:
 
     def _first(self, count: int) -> Sums:
         """Start with the sample at the fragments themselves."""
-        middle = max(weight(0.0, self._values), 1e-3)
+        middle = max(weight(0.0, self._values), LEAST_WEIGHT)
         found = self._lookup.lookup(np.zeros((count, 3)), np.zeros(count))
         return Sums(middle * found, np.full(count, middle**2), np.zeros(count))
 
