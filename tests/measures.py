@@ -13,6 +13,7 @@ import numpy as np
 from scipy.ndimage import gaussian_filter, map_coordinates, sobel
 
 from flowtex._util.array_types import AnyArray, Bools, Floats
+from flowtex._util.blocks import block_means
 
 #: Standard deviation in pixels of the window in which streaks are told from noise.
 WINDOW = 4.0
@@ -89,10 +90,7 @@ def aliasing(image: AnyArray, reference: AnyArray, mask: Bools) -> float:
 
 def averaged(image: AnyArray, times: int) -> Floats:
     """Mean of blocks of ``times`` by ``times`` pixels."""
-    g = grey(image)
-    rows, columns = (n // times for n in g.shape)
-    blocks = g[: rows * times, : columns * times].reshape(rows, times, columns, times)
-    return np.asarray(blocks.mean(axis=(1, 3)))
+    return np.asarray(block_means(grey(image), times))
 
 
 def carried(

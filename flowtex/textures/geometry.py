@@ -16,11 +16,11 @@ from typing import Any
 
 import numpy as np
 
-from flowtex._util.array_types import AnyArray, Floats, Floats32, Indices
+from flowtex._util.array_types import Floats, Floats32, Indices
 from flowtex.field import FlowField
 from flowtex.field.interpolation import nearest_known
 
-__all__ = ["Geometry", "Padding"]
+__all__ = ["Padding", "SurfaceGeometry"]
 
 
 #: Mip levels of a texture beside its finest one, at most.
@@ -59,7 +59,7 @@ class Padding:
 
 
 @dataclass(frozen=True, eq=False)
-class Geometry:
+class SurfaceGeometry:
     """A surface ready to be drawn.
 
     Attributes
@@ -78,7 +78,7 @@ class Geometry:
     columns: Padding
 
     @classmethod
-    def of(cls, field: FlowField) -> Geometry:
+    def of(cls, field: FlowField) -> SurfaceGeometry:
         """Lay out a field's surface."""
         shortest = min(field.shape)
         levels = int(np.clip(np.log2(max(shortest / 4, 1)), 0, DEEPEST))
@@ -151,15 +151,8 @@ class Geometry:
         u, v = np.meshgrid(self.columns.coordinates, self.rows.coordinates)
         return np.stack([u, v], axis=-1).astype(np.float32)
 
-    def pad(self, data: AnyArray) -> AnyArray:
-        """Lay nodal data (J, I, ...) into texels (H, W, ...), blanked nodes filled."""
-        filled = data
-        if not self.field.valid.all():
-            filled = data[self._nearest]
-        return filled[np.ix_(self.rows.picks, self.columns.picks)]
-
-    def lay(self, data: Floats32, texels: Floats32) -> None:
-        """Write nodal data (J, I, C) into texels (H, W, C), laid out as by :meth:`pad`.
+    def write_texels(self, data: Floats32, texels: Floats32) -> None:
+        """Write nodal data (J, I, C) into texels (H, W, C), in the order of its rows and columns.
 
         Blanked nodes of ``data`` are filled in place.
         """

@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import Floats, Floats32, Indices
+from flowtex._util.blocks import block_means
 from flowtex.field import FlowField
 from flowtex.field.interpolation import (
     along_line,
@@ -27,7 +28,7 @@ from flowtex.field.interpolation import (
     fill_blanked,
     inverse_along_line,
 )
-from flowtex.textures.patterns import SPOT_GRAIN, Texels, checkerboard, even_noise, spots
+from flowtex.textures.patterns import SPOT_GRAIN, TexelMap, checkerboard, even_noise, spots
 from flowtex.trace import SliceStore
 
 __all__ = ["HALF_LEVELS", "PaperTextures"]
@@ -118,7 +119,7 @@ class PaperTextures:
         size = np.broadcast_arrays(
             _slope(along_i, index[..., 0], width), _slope(along_j, index[..., 1], height)
         )
-        texels = Texels(field, index, np.stack(size, axis=-1), correction)
+        texels = TexelMap(field, index, np.stack(size, axis=-1), correction)
         if pattern == "image" and image is not None:
             laid: dict[str, Any] = {"noise": image, "picture": True}
         else:
@@ -204,7 +205,7 @@ def _slope(line: Floats, x: Floats, texels: int) -> Floats:
     return np.asarray(1 / (np.diff(line)[cell] * texels))
 
 
-def _laid(texels: Texels, pattern: str, *, seed: int, tiles: int) -> dict[str, Any]:
+def _laid(texels: TexelMap, pattern: str, *, seed: int, tiles: int) -> dict[str, Any]:
     """Attributes of the noise, or of the picture, of a name."""
     if pattern == "checkerboard":
         return {"noise": checkerboard(texels, tiles).astype(np.float32), "picture": True}
@@ -262,8 +263,7 @@ def _deviations(noise: Floats32) -> list[float]:
     level = noise.astype(np.float64)
     values, found = _bilinear(level, at), []
     while level.size >= 4 * FEWEST_TEXELS and min(level.shape) > 1:
-        rows, columns = level.shape
-        level = level.reshape(rows // 2, 2, columns // 2, 2).mean(axis=(1, 3))
+        level = block_means(level, 2)
         coarser = _bilinear(level, at)
         found += [float(values.std()), float((0.5 * (values + coarser)).std())]
         values = coarser

@@ -24,7 +24,7 @@ __all__ = [
     "SPOT",
     "SPOT_GRAIN",
     "SQUARES",
-    "Texels",
+    "TexelMap",
     "checkerboard",
     "even_noise",
     "spots",
@@ -42,7 +42,7 @@ SQUARES = 16
 
 
 @dataclass(frozen=True, eq=False)
-class Texels:
+class TexelMap:
     """Where the texels of a texture lie on a surface.
 
     Attributes
@@ -87,7 +87,7 @@ class Texels:
         return local if surface.frame is None else np.asarray(local @ surface.frame.T)
 
 
-def even_noise(texels: Texels, seed: int) -> Floats:
+def even_noise(texels: TexelMap, seed: int) -> Floats:
     """Noise, at each texel as coarse as the texel is long, (H, W) from 0 to 1.
 
     A texel takes the random number of the cube of a lattice in space in which it lies. The
@@ -101,7 +101,7 @@ def even_noise(texels: Texels, seed: int) -> Floats:
     return _hash(cell, octave, seed).astype(np.float64) / 2.0**64
 
 
-def spots(texels: Texels, seed: int) -> Floats:
+def spots(texels: TexelMap, seed: int) -> Floats:
     """Discs of random places and of random sign, (H, W).
 
     Every cell of a lattice holds one disc at a random place inside it. The lattice is that in
@@ -126,7 +126,7 @@ def spots(texels: Texels, seed: int) -> Floats:
     return total
 
 
-def _places_in_space(texels: Texels) -> tuple[Floats, Ints]:
+def _places_in_space(texels: TexelMap) -> tuple[Floats, Ints]:
     """Texels in cells of the lattice of spots, (H, W, 2 or 3), and its octave, (H, W)."""
     long_ = texels.lengths.max(axis=-1)
     width = SPOT * float(np.median(long_))
@@ -144,7 +144,7 @@ def _disc(place: Floats, number: NDArray[np.uint64]) -> Floats:
     return np.where(number >> np.uint64(63), disc, -disc)
 
 
-def checkerboard(texels: Texels, tiles: int) -> Floats:
+def checkerboard(texels: TexelMap, tiles: int) -> Floats:
     """Black and white squares of even size, (H, W) from 0 to 1, with edges as wide as a texel.
 
     Squares lie in the plane of a flat surface when corrected, and on the parameters otherwise.

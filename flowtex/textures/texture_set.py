@@ -29,8 +29,8 @@ import numpy as np
 from flowtex._util.array_types import AnyArray, Floats, Floats32
 from flowtex.field.checks import three
 from flowtex.settings import Settings
-from flowtex.textures.displacements import Moves
-from flowtex.textures.geometry import Geometry
+from flowtex.textures.displacements import NodeDisplacements
+from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.textures.paper import PaperTextures
 from flowtex.trace import SliceStore, TraceSlices
 
@@ -57,7 +57,7 @@ class TextureSet:
         The noise texture and the step texture, for ``space="parameter"``.
     """
 
-    geometry: Geometry
+    geometry: SurfaceGeometry
     store: SliceStore
     space: str = "physical"
     paper: PaperTextures | None = None
@@ -94,7 +94,7 @@ class TextureSet:
         if not 2 <= len(store.lags) <= MOST_LAGS:
             msg = f"{len(store.lags)} lags were traced; expected 2 to {MOST_LAGS} to draw with"
             raise ValueError(msg)
-        geometry = Geometry.of(field)
+        geometry = SurfaceGeometry.of(field)
         if settings.noise == "procedural":
             return cls(geometry, store)
         paper = PaperTextures.build(
@@ -164,7 +164,7 @@ class TextureSet:
         result = np.empty((self.count, *size, 4), np.float32)
 
         def make(layer: int) -> None:
-            self.geometry.lay(self._nodal(slices, layer), result[layer])
+            self.geometry.write_texels(self._nodal(slices, layer), result[layer])
 
         with ThreadPoolExecutor(max_workers=min(os.cpu_count() or 1, 8)) as pool:
             list(pool.map(make, range(self.count)))
@@ -187,7 +187,7 @@ class TextureSet:
             result[..., :2] = moved * scale
         else:
             by_length = scale / self._length[..., 0]
-            for channel, moved in enumerate(self._moves(displacement[0, m])):
+            for channel, moved in enumerate(self._displacements(displacement[0, m])):
                 np.multiply(moved, by_length, out=result[..., channel], casting="same_kind")
         if m == 0:
             result[..., 3] = _usable_reach(reach[0], slices)
@@ -215,10 +215,12 @@ class TextureSet:
         return np.asarray(along @ self.geometry.frame.T) / self._length
 
     @cached_property
-    def _moves(self) -> Moves:
+    def _displacements(self) -> NodeDisplacements:
         """Takes displacements to space; a flat surface has no third component."""
         frame = self.geometry.frame
-        return Moves(self.geometry.field.surface, frame[:2] if self.geometry.planar else frame)
+        return NodeDisplacements(
+            self.geometry.field.surface, frame[:2] if self.geometry.planar else frame
+        )
 
     @cached_property
     def _length(self) -> Floats:

@@ -15,7 +15,7 @@ from flowtex.options import Appearance, FieldOptions, Options, ViewOptions, acce
 from flowtex.rendering.webgl import asset
 from flowtex.scene import NO_IMAGE, Scene
 from flowtex.settings import TABLE, Affects, Settings, SettingsError
-from flowtex.textures.image_files import load_image
+from flowtex.textures.images import load_image
 from flowtex.web.export import PREVIEW, page_text, write_page
 from flowtex.web.view import web_views
 from flowtex.widget.display import Displayed

@@ -19,8 +19,7 @@ from flowtex.options import Appearance
 from flowtex.scene import Scene
 from flowtex.settings import Settings, SettingsError
 from flowtex.textures import ImageError, PaperTextures, as_picture
-from flowtex.textures.image_files import load_image
-from flowtex.textures.images import LARGEST
+from flowtex.textures.images import LARGEST, load_image
 from flowtex.textures.patterns import SPOT_GRAIN, SQUARES
 from flowtex.trace import SliceStore
 

@@ -9,8 +9,8 @@ from flowtex import FlowField
 from flowtex._util.array_types import Floats32
 from flowtex.examples import airfoil_field, cylinder_field, double_gyre_field
 from flowtex.settings import Settings
-from flowtex.textures import Geometry, PaperTextures, TextureSet
-from flowtex.textures.displacements import Moves
+from flowtex.textures import PaperTextures, SurfaceGeometry, TextureSet
+from flowtex.textures.displacements import NodeDisplacements
 from flowtex.trace import SliceStore, TraceSlices, trace
 
 
@@ -209,7 +209,7 @@ def test_moves_are_those_of_the_surface(rng: np.random.Generator) -> None:
         i, j = np.meshgrid(np.arange(columns), np.arange(rows))
         start = np.stack([i, j], axis=-1)
         expected = field.surface.at(start + displacement) - field.points
-        found = Moves(field.surface, np.eye(3))(displacement)
+        found = NodeDisplacements(field.surface, np.eye(3))(displacement)
         np.testing.assert_allclose(
             np.moveaxis(found, 0, -1), expected, atol=1e-10 * field.surface.extent
         )
@@ -291,4 +291,4 @@ def test_noise_is_the_same_for_the_same_seed() -> None:
 
 def test_noise_is_repeated_where_the_axis_is() -> None:
     assert paper(cylinder_field().at_step(0), correction=True).repeat == (False, True)
-    assert Geometry.of(stretched()).columns.before == 0
+    assert SurfaceGeometry.of(stretched()).columns.before == 0

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from flowtex.app.server.untrusted import shortened
 from flowtex.settings import SettingsError
-from flowtex.textures.image_files import pixels_of
+from flowtex.textures.images import pixels_of
 
 __all__ = ["decoded"]
 

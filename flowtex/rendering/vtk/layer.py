@@ -26,7 +26,7 @@ from flowtex.rendering.uniforms import ViewState, uniforms, variants
 from flowtex.rendering.vtk.gpu import GPUTexture
 from flowtex.rendering.vtk.mesh import COORDINATE, NOISE, NORMAL, POSITION, set_position
 from flowtex.settings import Settings
-from flowtex.textures import Ahead, TextureSet
+from flowtex.textures import LayerPrefetch, TextureSet
 
 __all__ = ["FlowLayer"]
 
@@ -69,7 +69,7 @@ class FlowLayer:
         self._renderer = weakref.ref(renderer)
         self._textures = textures
         self._settings = settings
-        self._ahead = Ahead(textures)
+        self._prefetch = LayerPrefetch(textures)
         self._steps = (0, 0)
         self._drawn = False
         self._variant: frozenset[str] | None = None
@@ -90,8 +90,8 @@ class FlowLayer:
         """Draw another texture set of the same surface from now on."""
         same = textures.same_paths(self._textures)
         self._textures = textures
-        self._ahead.close()
-        self._ahead = Ahead(textures)
+        self._prefetch.close()
+        self._prefetch = LayerPrefetch(textures)
         self.view.anchor = np.zeros(3)  # that of the mesh's new attributes
         self._retire(*(["u_noiseImage"] if same else self._gpu))
         self._map_attributes()
@@ -116,14 +116,14 @@ class FlowLayer:
         first, last = self._textures.store.field.times[[before, after]]
         self.view.between, self.view.time = between, float(first + between * (last - first))
         if self._drawn and self.view.time != was:
-            self._ahead.prepare(after + 1 if self.view.time > was else before - 1)
+            self._prefetch.prepare(after + 1 if self.view.time > was else before - 1)
 
     def close(self) -> None:
         """Take everything out of the actor again and free the graphics card's memory."""
         for subject, tag in self._observed:
             subject.RemoveObserver(tag)
         self._observed = []
-        self._ahead.close()
+        self._prefetch.close()
         self._actor.clear_shader_replacements(_feature_name=OWNER)
         for attribute in ("flowtexPosition", "flowtexCoordinate", "flowtexNormal", "flowtexNoise"):
             self._actor.mapper.RemoveVertexAttributeMapping(attribute)
@@ -196,9 +196,9 @@ class FlowLayer:
             levels = self._textures.geometry.levels
             paper = self._textures.paper
             if name == "u_slices":
-                made = GPUTexture(self._ahead.take(self._steps[0]), levels=levels)
+                made = GPUTexture(self._prefetch.take(self._steps[0]), levels=levels)
             elif name == "u_slicesNext":
-                made = GPUTexture(self._ahead.take(self._steps[1]), levels=levels)
+                made = GPUTexture(self._prefetch.take(self._steps[1]), levels=levels)
             elif paper is not None and name == "u_noiseImage":
                 rows, columns = paper.noise.shape[:2]
                 repeat = (True, True) if paper.picture else paper.repeat
