@@ -40,9 +40,9 @@ def seams() -> dict[str, Seam]:
     if (folder / "eraint_uvz.nc").is_file():
         up = (0.0, 0.0, 1.0)
         views = {
-            "180 degrees": {"camera_position": [(-3.9, 0.0, 0.0), (0.0, 0.0, 0.0), up]},
-            "near": {"camera_position": [(-1.5, 0.0, 0.4), (-1.0, 0.0, 0.2), up]},
-            "north pole": {"camera_position": [(-0.3, 0.0, 1.9), (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)]},
+            "180 degrees": {"camera": [(-3.9, 0.0, 0.0), (0.0, 0.0, 0.0), up]},
+            "near": {"camera": [(-1.5, 0.0, 0.4), (-1.0, 0.0, 0.2), up]},
+            "north pole": {"camera": [(-0.3, 0.0, 1.9), (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)]},
         }
         found["wind on a sphere"] = (globe(folder / "eraint_uvz.nc"), views)
     return found
@@ -100,8 +100,8 @@ def _lines(field: flowtex.FlowField, options: Any, size: tuple[int, int], axis: 
     settings = flowtex.Settings(samples=1)
     textures = TextureSet.build(SliceStore(field), settings)
     plotter: Any = pv.Plotter(off_screen=True, window_size=list(size))
-    if "camera_position" in options:
-        plotter.camera_position = options["camera_position"]
+    if "camera" in options:
+        plotter.camera_position = options["camera"]
         plotter.camera.parallel_projection = False
     else:
         look(plotter, field, zoom=options["zoom"], focus=options["focus"])

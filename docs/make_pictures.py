@@ -70,7 +70,7 @@ def torus() -> Picture:
     return _row(
         [
             flowtex.render(field, size=(640, 460), background=DARK),
-            flowtex.render(field, size=(550, 460), camera_position=near),
+            flowtex.render(field, size=(550, 460), camera=near),
         ]
     )
 
@@ -93,7 +93,7 @@ def sphere() -> Picture:
     return _row(
         [
             flowtex.render(field, **common),
-            flowtex.render(field, **common, camera_position=above),
+            flowtex.render(field, **common, camera=above),
         ]
     )
 
@@ -127,7 +127,7 @@ def levels() -> Picture:
     return flowtex.render(
         flowtex.examples.double_gyre_field(),
         size=(1200, 330),
-        camera_position=[(1.0, -0.16, 0.14), (1.0, 0.22, 0.0), (0.0, 0.0, 1.0)],
+        camera=[(1.0, -0.16, 0.14), (1.0, 0.22, 0.0), (0.0, 0.0, 1.0)],
         beside={"show_level": True},
     )
 

@@ -1,13 +1,12 @@
-"""What flowtex runs on: which OpenGL answers, what is missing, and the command that mends it.
+"""Diagnosis of the installation: which OpenGL is used, what is missing, and what installs it.
 
-VTK without an OpenGL library ends the process (a segmentation fault) and raises nothing, so the
-question is put to a second process, which draws a picture of 16 x 16 pixels, reads it back and
-prints what it found as one line of JSON::
+VTK without an OpenGL library ends the process (a segmentation fault) and raises nothing, so OpenGL
+is tried in a second process, which draws a picture of 16 x 16 pixels, reads it back and prints its
+report as one line of JSON::
 
-    probe()  ->  python doctor.py --probe  ->  OpenGLReport, also when that process crashed
+    opengl_report()  ->  python diagnostics.py --try  ->  OpenGLReport, also after a crash
 
-The second process runs this very file and needs nothing of flowtex but the standard library and
-VTK; the answer is asked for once per process.
+The second process is started once per process.
 """
 
 from __future__ import annotations
@@ -35,17 +34,18 @@ __all__ = [
     "OpenGLReport",
     "diagnose",
     "main",
+    "opengl_report",
     "prefer_headless",
-    "probe",
-    "report",
+    "print_checks",
     "require_opengl",
 ]
 
 WINDOW_VARIABLE = "VTK_DEFAULT_OPENGL_WINDOW"
-PROBE_COMMAND = (sys.executable, "-P", str(Path(__file__).resolve()), "--probe")
-PROBE_SECONDS = 120.0
+TRIAL_COMMAND = (sys.executable, "-P", str(Path(__file__).resolve()), "--try")
+TRIAL_TIMEOUT_S = 120.0
 REQUIRED = ("numpy", "scipy", "pyvista", "vtk")
 OPTIONAL = {"trame": "app", "trame-vuetify": "app", "trame-rca": "app", "anywidget": "notebook"}
+#: Words in the names of renderers that draw with the processor.
 SOFTWARE = ("llvmpipe", "softpipe", "swrast", "swiftshader", "basic render", "gdi generic")
 
 
@@ -55,7 +55,7 @@ class OpenGLMissingError(RuntimeError):
 
 @dataclass(frozen=True)
 class OpenGLReport:
-    """What the probe found.
+    """The OpenGL that VTK uses.
 
     ``usable`` says whether a picture was drawn and read back; where not, ``failure`` says what
     happened and ``remedy`` what to do. ``software`` is true where the processor draws and no
@@ -77,7 +77,7 @@ class OpenGLReport:
 
 @dataclass(frozen=True)
 class Check:
-    """One line of the diagnosis: what was looked at, how it stands, and what would mend it."""
+    """One line of the diagnosis: its subject, how it stands, and what puts it right."""
 
     name: str
     status: Literal["ok", "warn", "fail"]
@@ -103,52 +103,53 @@ def prefer_headless() -> None:
 
 
 @functools.cache
-def probe() -> OpenGLReport:
-    """Ask a second process which OpenGL there is; the answer is kept. About one second."""
+def opengl_report() -> OpenGLReport:
+    """Try OpenGL in a second process, which takes about one second; the report is cached."""
     prefer_headless()
-    return ask(PROBE_COMMAND)
+    return run_trial(TRIAL_COMMAND)
 
 
-def ask(command: Sequence[str], timeout: float = PROBE_SECONDS) -> OpenGLReport:
-    """Run the command of a probe and read its answer, whatever becomes of it.
+def run_trial(command: Sequence[str], timeout: float = TRIAL_TIMEOUT_S) -> OpenGLReport:
+    """Run a command that tries OpenGL, and return its report; a failed one where it crashes.
 
     Parameters
     ----------
-    command : sequence of str
-        What to run; its last line on stdout is the answer, as JSON.
-    timeout : float
+    command
+        Command line; the last line that it prints is the report as JSON.
+    timeout
         Seconds to wait for it.
     """
     try:
-        done = subprocess.run(command, capture_output=True, text=True, timeout=timeout, check=False)
+        process = subprocess.run(
+            command, capture_output=True, text=True, timeout=timeout, check=False
+        )
     except subprocess.TimeoutExpired:
-        return _unusable(f"the probe did not answer within {timeout:g} s")
+        return _unusable(f"the trial did not end within {timeout:g} s")
     except OSError as error:
-        return _unusable(f"the probe could not be started: {error}")
-    lines = done.stdout.strip().splitlines()
-    if done.returncode == 0 and lines:
-        found = OpenGLReport(**json.loads(lines[-1]))
-        return found if found.usable else _unusable(found.failure)
-    said = re.sub(r"\x1b\[[0-9;]*m", "", done.stderr).strip().splitlines()
-    # What a process says before it crashes is VTK's advice about another library than the one
-    # that is missing.
-    told = f"; it said: {said[-1].rstrip('.')}" if said and done.returncode >= 0 else ""
-    return _unusable(_ending(done.returncode) + told)
+        return _unusable(f"the trial could not be started: {error}")
+    lines = process.stdout.strip().splitlines()
+    if process.returncode == 0 and lines:
+        report = OpenGLReport(**json.loads(lines[-1]))
+        return report if report.usable else _unusable(report.failure)
+    errors = re.sub(r"\x1b\[[0-9;]*m", "", process.stderr).strip().splitlines()
+    # Before a crash VTK prints advice about another library than the one that is missing.
+    detail = f"; it said: {errors[-1].rstrip('.')}" if errors and process.returncode >= 0 else ""
+    return _unusable(_ending(process.returncode) + detail)
 
 
 def require_opengl() -> OpenGLReport:
-    """Return the report, or say what to install.
+    """Return the report of an OpenGL that can be used.
 
     Raises
     ------
     OpenGLMissingError
-        When VTK cannot draw. Going on would end the process.
+        When VTK cannot draw; the process would crash. The text says what to install.
     """
-    found = probe()
-    if not found.usable:
-        msg = f"VTK cannot draw here: {found.failure}. To mend it:\n  {found.remedy}"
+    report = opengl_report()
+    if not report.usable:
+        msg = f"VTK cannot draw here: {report.failure}. To mend it:\n  {report.remedy}"
         raise OpenGLMissingError(msg)
-    return found
+    return report
 
 
 def _unusable(failure: str) -> OpenGLReport:
@@ -157,7 +158,7 @@ def _unusable(failure: str) -> OpenGLReport:
 
 
 def _ending(code: int) -> str:
-    """Say in words how a process ended."""
+    """Return a sentence on how a process ended."""
     if code >= 0:
         return f"the process that tried it ended with code {code}"
     try:
@@ -191,21 +192,21 @@ def install_command(*packages: str) -> str:
 
 
 def diagnose() -> list[Check]:
-    """Look at everything that flowtex needs; raises nothing."""
+    """Check everything that flowtex needs; raises nothing."""
     python = Check("Python", "ok", f"{sys.version.split()[0]}, {sys.executable}")
     return [python, _opengl(), _display(), _shaders(), *_packages()]
 
 
 def _opengl() -> Check:
-    found = probe()
-    if not found.usable:
-        return Check("OpenGL", "fail", found.failure, found.remedy)
-    kind = "drawn by the processor" if found.software else "drawn by a graphics card"
+    report = opengl_report()
+    if not report.usable:
+        return Check("OpenGL", "fail", report.failure, report.remedy)
+    kind = "drawn by the processor" if report.software else "drawn by a graphics card"
     return Check(
         "OpenGL",
         "ok",
-        f"{found.version}; {found.renderer} ({found.vendor}), {kind}; {found.window_class}; "
-        f"textures up to {found.max_texture_size}, {found.texture_units} at once",
+        f"{report.version}; {report.renderer} ({report.vendor}), {kind}; {report.window_class}; "
+        f"textures up to {report.max_texture_size}, {report.texture_units} at once",
     )
 
 
@@ -218,12 +219,12 @@ def _display() -> Check:
 def _shaders() -> Check:
     from flowtex.rendering import shaders
 
-    mend = "python -m pip install --force-reinstall --no-deps flowtex"
+    remedy = "python -m pip install --force-reinstall --no-deps flowtex"
     try:
         folder, names = shaders.shader_folder(), shaders.shader_names()
     except FileNotFoundError as error:
-        return Check("Shaders", "fail", str(error), mend)
-    return Check("Shaders", "ok" if names else "fail", f"{len(names)} files in {folder}", mend)
+        return Check("Shaders", "fail", str(error), remedy)
+    return Check("Shaders", "ok" if names else "fail", f"{len(names)} files in {folder}", remedy)
 
 
 def _packages() -> list[Check]:
@@ -233,14 +234,14 @@ def _packages() -> list[Check]:
         try:
             checks.append(Check(name, "ok", importlib.metadata.version(name)))
         except importlib.metadata.PackageNotFoundError:
-            mend = install_extra(extra) if extra else f"python -m pip install {name}"
+            remedy = install_extra(extra) if extra else f"python -m pip install {name}"
             status: Literal["warn", "fail"] = "warn" if extra else "fail"
             use = f"not installed; only the extra {extra!r} needs it" if extra else "not installed"
-            checks.append(Check(name, status, use, mend))
+            checks.append(Check(name, status, use, remedy))
     return checks
 
 
-def report(checks: Sequence[Check]) -> None:
+def print_checks(checks: Sequence[Check]) -> None:
     """Print the checks as a table, and each remedy on a line of its own that can be copied."""
     from rich.console import Console
     from rich.table import Table
@@ -259,14 +260,14 @@ def report(checks: Sequence[Check]) -> None:
 
 
 def main() -> int:
-    """Diagnose and report; return 1 when something that flowtex needs is missing."""
+    """Print the diagnosis; return 1 when something that flowtex needs is missing."""
     checks = diagnose()
-    report(checks)
+    print_checks(checks)
     return int(any(check.status == "fail" for check in checks))
 
 
-def draw() -> OpenGLReport:
-    """Draw a red picture and read it back: the probe, which may end the process."""
+def try_opengl() -> OpenGLReport:
+    """Draw a red picture with VTK and read it back, which may crash the process."""
     import vtkmodules.vtkRenderingOpenGL2 as gl
     from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
     from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow
@@ -281,13 +282,13 @@ def draw() -> OpenGLReport:
     window.GetPixelData(8, 8, 8, 8, 0, pixel, 0)
     rgb = tuple(pixel.GetValue(n) for n in range(pixel.GetNumberOfValues()))
     lines = window.ReportCapabilities().splitlines()
-    told = dict(line.split(" string:", 1) for line in lines if " string:" in line)
+    words = dict(line.split(" string:", 1) for line in lines if " string:" in line)
     return OpenGLReport(
         usable=rgb == (255, 0, 0),
         window_class=window.GetClassName(),
-        vendor=told.get("OpenGL vendor", "").strip(),
-        renderer=(name := told.get("OpenGL renderer", "").strip()),
-        version=told.get("OpenGL version", "").strip(),
+        vendor=words.get("OpenGL vendor", "").strip(),
+        renderer=(name := words.get("OpenGL renderer", "").strip()),
+        version=words.get("OpenGL version", "").strip(),
         software=any(word in name.lower() for word in SOFTWARE),
         max_texture_size=gl.vtkTextureObject.GetMaximumTextureSize(window),
         texture_units=window.GetTextureUnitManager().GetNumberOfTextureUnits(),
@@ -296,7 +297,7 @@ def draw() -> OpenGLReport:
 
 
 if __name__ == "__main__":
-    if sys.argv[1:] == ["--probe"]:
-        sys.stdout.write(json.dumps(asdict(draw())) + "\n")
+    if sys.argv[1:] == ["--try"]:
+        sys.stdout.write(json.dumps(asdict(try_opengl())) + "\n")
     else:
         sys.exit(main())

@@ -1,8 +1,8 @@
-"""Faults of one call, gathered and told together.
+"""Faults of one call, raised together.
 
-A checker appends each fault as one sentence that names the value that came, what was expected
-and the remedy; :func:`raise_faults` turns them into a single error, so that a user mends a call
-once and not once for every argument.
+Checks return each fault as one sentence that names the value, what was expected and the remedy.
+:func:`raise_faults` turns them into a single error, so that a user corrects a call once and not
+once for every argument.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ __all__ = ["FieldError", "raise_faults"]
 
 
 class FieldError(ValueError):
-    """What was given cannot be drawn as a flow; the text says what, why and what to do."""
+    """The data or arguments make no flow; the text names them, what was expected and the remedy."""
 
 
 def raise_faults(faults: Sequence[str], error: type[Exception] = FieldError) -> None:

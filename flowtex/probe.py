@@ -16,10 +16,9 @@ from numpy.typing import ArrayLike
 from flowtex._util.array_types import Floats, Indices
 from flowtex.camera import Camera
 from flowtex.field import Surface
-from flowtex.field.facets import Facet, facet
 from flowtex.field.interpolation import bracket
-from flowtex.field.locate import locate, locator
-from flowtex.field.reading import Reading, reading
+from flowtex.field.locate import SurfacePoint, locate, locator, surface_point
+from flowtex.field.point_values import PointValues, values_at
 from flowtex.rendering.cpu.fragments import Fragments
 from flowtex.rendering.cpu.levels import footprint, slice_level
 from flowtex.rendering.cpu.pixel import LoadedTextures, Recorder, camera_facing, cover_place
@@ -30,7 +29,7 @@ from flowtex.rendering.uniforms import ViewState, uniforms
 from flowtex.scene import Scene
 from flowtex.textures import TextureSet
 
-__all__ = ["Probe", "Reading", "locate", "probe", "reading"]
+__all__ = ["PointValues", "Probe", "locate", "probe", "values_at"]
 
 
 #: Points of a path between two slices, where it is a parabola.
@@ -49,7 +48,7 @@ class Probe:
 
     Attributes
     ----------
-    reading
+    field_values
         Position, velocity and speed at the point, with units.
     parameter
         What a lag measures: ``"arclength"`` or ``"time"``.
@@ -99,7 +98,7 @@ class Probe:
         their lags (N,). Where it ends, the last sample may lie up to a step beyond.
     """
 
-    reading: Reading
+    field_values: PointValues
     parameter: str
     asked: int
     lags: Floats
@@ -166,19 +165,19 @@ def probe(
         the point.
     """
     surface = view.field.surface
-    place = facet(surface, at)
+    place = surface_point(surface, at)
     camera, shape = _camera(surface, place, pixel, size)
     before, after, between = view.moment
     state = ViewState(between=between, clock=clock, density=density)
     state = view_state(view.textures, camera, state, (before, after))
     values = uniforms(view.textures, view.settings, state)
     fragments = Fragments.of(view.textures, cover_place(surface, place, camera, shape))
-    local = reading(view.field, place.index, view.time)
-    return _Pixel(view.textures, (before, after), fragments, values, local).probe()
+    field_values = values_at(view.field, place.index, view.time)
+    return _Pixel(view.textures, (before, after), fragments, values, field_values).probe()
 
 
 def _camera(
-    surface: Surface, place: Facet, pixel: float | Camera, size: tuple[int, int] | None
+    surface: Surface, place: SurfacePoint, pixel: float | Camera, size: tuple[int, int] | None
 ) -> tuple[Camera, tuple[int, int]]:
     """Camera and size of the picture that the pixel belongs to."""
     if not isinstance(pixel, Camera):
@@ -198,10 +197,10 @@ class _Pixel:
         steps: tuple[int, int],
         fragments: Fragments,
         values: Mapping[str, Any],
-        local: Reading,
+        field_values: PointValues,
     ) -> None:
         loaded = LoadedTextures.of(textures)
-        self._reading = local
+        self._field_values = field_values
         self._textures, self._values, self._fragments = textures, values, fragments
         self._level = slice_level(fragments.coordinate, values)
         self._slices = slices_at(textures, steps, values, loaded.mips)
@@ -228,7 +227,7 @@ class _Pixel:
         moves = np.isfinite(sides[0].reach[0])
         samples = values["u_samples"]
         return Probe(
-            reading=self._reading,
+            field_values=self._field_values,
             parameter=self._textures.store.parameter,
             asked=2 * (samples // 2) + 1 if values["u_sides"] == 2 else samples,
             lags=lags * self._unit,
@@ -290,7 +289,7 @@ class _Pixel:
             self._fragments.noise,
         )
         # From the place itself in double precision: renderers have the nodes in single.
-        start, surface = self._reading.position, geometry.field.surface
+        start, surface = self._field_values.position, geometry.field.surface
         if paper is None or noise is None:
             points = start + displacement @ geometry.frame
             nearest = locator(geometry.field).nearest(points)[0] if coordinates else points

@@ -10,7 +10,6 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from flowtex.rendering.cpu.cover import cover
 from numpy.typing import NDArray
 from scipy import ndimage
 

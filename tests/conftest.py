@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
-from flowtex import diagnostics as doctor
+from flowtex import diagnostics
 
 if TYPE_CHECKING:
     import pyvista as pv
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from webgl_page import ClientPage
 
 # Before anything opens a window, and for every process that a test starts.
-doctor.prefer_headless()
+diagnostics.prefer_headless()
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -118,16 +118,16 @@ def data_dir() -> Path:
 
 
 @pytest.fixture(scope="session")
-def opengl() -> doctor.OpenGLReport:
+def opengl() -> diagnostics.OpenGLReport:
     """Return what VTK draws with; skip where it cannot, as it would end the test process."""
-    found = doctor.probe()
+    found = diagnostics.opengl_report()
     if not found.usable:
         pytest.skip(f"VTK cannot draw here: {found.failure}; {found.remedy}")
     return found
 
 
 @pytest.fixture
-def plotter(opengl: doctor.OpenGLReport) -> Iterator[pv.Plotter]:
+def plotter(opengl: diagnostics.OpenGLReport) -> Iterator[pv.Plotter]:
     """Off-screen plotter, closed afterwards; an error that OpenGL noted fails the test."""
     import pyvista as pv
 

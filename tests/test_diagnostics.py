@@ -9,19 +9,19 @@ import sys
 
 import pytest
 
-from flowtex import diagnostics as doctor
+from flowtex import diagnostics
 
 CRASHES = (sys.executable, "-c", "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)")
-OK = doctor.Check("Thing", "ok", "there", "never shown")
-WARN = doctor.Check("trame", "warn", "not installed", 'python -m pip install "flowtex[app]"')
-FAIL = doctor.Check("OpenGL", "fail", "it [crashed]", "sudo apt-get install libegl1")
+OK = diagnostics.Check("Thing", "ok", "there", "never shown")
+WARN = diagnostics.Check("trame", "warn", "not installed", 'python -m pip install "flowtex[app]"')
+FAIL = diagnostics.Check("OpenGL", "fail", "it [crashed]", "sudo apt-get install libegl1")
 
 
 @pytest.fixture
 def headless(monkeypatch: pytest.MonkeyPatch) -> None:
     """Be on Linux without a display and without a choice of the user's."""
     monkeypatch.setattr(sys, "platform", "linux")
-    for name in ("DISPLAY", "WAYLAND_DISPLAY", doctor.WINDOW_VARIABLE):
+    for name in ("DISPLAY", "WAYLAND_DISPLAY", diagnostics.WINDOW_VARIABLE):
         monkeypatch.delenv(name, raising=False)
 
 
@@ -32,7 +32,7 @@ def apt(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(os, "geteuid", lambda: 1000)
 
 
-def test_the_probe_drew_a_picture(opengl: doctor.OpenGLReport) -> None:
+def test_the_trial_drew_a_picture(opengl: diagnostics.OpenGLReport) -> None:
     assert opengl.usable
     assert opengl.window_class.endswith("RenderWindow")
     assert opengl.vendor
@@ -43,15 +43,15 @@ def test_the_probe_drew_a_picture(opengl: doctor.OpenGLReport) -> None:
     assert opengl.failure == opengl.remedy == ""
 
 
-def test_the_probe_is_asked_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    doctor.probe()
-    monkeypatch.setattr(doctor, "ask", lambda _: pytest.fail("asked again"))
-    assert doctor.probe() is doctor.probe()
+def test_opengl_is_tried_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    diagnostics.opengl_report()
+    monkeypatch.setattr(diagnostics, "run_trial", lambda _: pytest.fail("asked again"))
+    assert diagnostics.opengl_report() is diagnostics.opengl_report()
 
 
 @pytest.mark.usefixtures("headless", "apt")
 def test_a_crash_becomes_a_report() -> None:
-    found = doctor.ask(CRASHES)
+    found = diagnostics.run_trial(CRASHES)
     assert not found.usable
     assert found.failure == (
         "the process that tried it was ended by SIGSEGV, as happens without an OpenGL library"
@@ -67,8 +67,8 @@ def test_a_crash_becomes_a_report() -> None:
 )
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="VTK uses OSMesa on Linux")
 def test_vtk_without_its_library_really_crashes(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv(doctor.WINDOW_VARIABLE, "vtkOSOpenGLRenderWindow")
-    found = doctor.ask(doctor.PROBE_COMMAND)
+    monkeypatch.setenv(diagnostics.WINDOW_VARIABLE, "vtkOSOpenGLRenderWindow")
+    found = diagnostics.run_trial(diagnostics.TRIAL_COMMAND)
     assert not found.usable
     assert f"ended by {signal.SIGSEGV.name}" in found.failure
     assert "it said" not in found.failure  # VTK's advice names another library
@@ -77,26 +77,30 @@ def test_vtk_without_its_library_really_crashes(monkeypatch: pytest.MonkeyPatch)
     assert found.remedy.endswith("or unset VTK_DEFAULT_OPENGL_WINDOW")
 
 
-def test_a_probe_that_hangs_is_given_up() -> None:
-    found = doctor.ask((sys.executable, "-c", "import time; time.sleep(60)"), timeout=0.2)
-    assert found.failure == "the probe did not answer within 0.2 s"
+def test_a_trial_that_hangs_is_given_up() -> None:
+    found = diagnostics.run_trial(
+        (sys.executable, "-c", "import time; time.sleep(60)"), timeout=0.2
+    )
+    assert found.failure == "the trial did not end within 0.2 s"
     assert found.remedy
 
 
-def test_a_probe_that_cannot_start_is_reported() -> None:
-    found = doctor.ask(("/nowhere/python",))
-    assert found.failure.startswith("the probe could not be started: ")
+def test_a_trial_that_cannot_start_is_reported() -> None:
+    found = diagnostics.run_trial(("/nowhere/python",))
+    assert found.failure.startswith("the trial could not be started: ")
 
 
-def test_what_the_probe_said_is_passed_on() -> None:
-    found = doctor.ask((sys.executable, "-c", "raise SystemExit('\\033[31mbad server\\033[0m')"))
+def test_what_the_trial_printed_is_passed_on() -> None:
+    found = diagnostics.run_trial(
+        (sys.executable, "-c", "raise SystemExit('\\033[31mbad server\\033[0m')")
+    )
     assert found.failure == "the process that tried it ended with code 1; it said: bad server"
 
 
 @pytest.mark.usefixtures("headless")
 def test_a_wrong_picture_is_no_opengl() -> None:
     answer = '{"usable": false, "failure": "a red picture came back as (0, 0, 0)"}'
-    found = doctor.ask((sys.executable, "-c", f"print({answer!r})"))
+    found = diagnostics.run_trial((sys.executable, "-c", f"print({answer!r})"))
     assert not found.usable
     assert found.failure == "a red picture came back as (0, 0, 0)"
     assert "libgl1-mesa-dri" in found.remedy
@@ -106,50 +110,50 @@ def test_a_wrong_picture_is_no_opengl() -> None:
 def test_with_a_display_x_is_wanted_too(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "platform", "linux")
     monkeypatch.setenv("DISPLAY", ":0")
-    monkeypatch.delenv(doctor.WINDOW_VARIABLE, raising=False)
-    assert doctor.ask(CRASHES).remedy.endswith(" libgl1 libegl1 libgl1-mesa-dri")
+    monkeypatch.delenv(diagnostics.WINDOW_VARIABLE, raising=False)
+    assert diagnostics.run_trial(CRASHES).remedy.endswith(" libgl1 libegl1 libgl1-mesa-dri")
 
 
 def test_root_needs_no_sudo(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("shutil.which", lambda name: f"/usr/bin/{name}")
     monkeypatch.setattr(os, "geteuid", lambda: 0)
-    assert doctor.install_command("libegl1") == (
+    assert diagnostics.install_command("libegl1") == (
         "apt-get update && apt-get install --no-install-recommends libegl1"
     )
 
 
 def test_other_systems_get_the_names(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("shutil.which", lambda _: None)
-    assert doctor.install_command("libegl1") == (
+    assert diagnostics.install_command("libegl1") == (
         "install Mesa's OpenGL (on Debian and Ubuntu it is libegl1)"
     )
 
 
 def test_require_opengl_names_failure_and_remedy(monkeypatch: pytest.MonkeyPatch) -> None:
-    broken = doctor.OpenGLReport(usable=False, failure="it crashed", remedy="install it")
-    monkeypatch.setattr(doctor, "probe", lambda: broken)
+    broken = diagnostics.OpenGLReport(usable=False, failure="it crashed", remedy="install it")
+    monkeypatch.setattr(diagnostics, "opengl_report", lambda: broken)
     expected = r"^VTK cannot draw here: it crashed\. To mend it:\n  install it$"
-    with pytest.raises(doctor.OpenGLMissingError, match=expected):
-        doctor.require_opengl()
+    with pytest.raises(diagnostics.OpenGLMissingError, match=expected):
+        diagnostics.require_opengl()
 
 
 def test_require_opengl_returns_the_report(monkeypatch: pytest.MonkeyPatch) -> None:
-    good = doctor.OpenGLReport(usable=True)
-    monkeypatch.setattr(doctor, "probe", lambda: good)
-    assert doctor.require_opengl() is good
+    good = diagnostics.OpenGLReport(usable=True)
+    monkeypatch.setattr(diagnostics, "opengl_report", lambda: good)
+    assert diagnostics.require_opengl() is good
 
 
 @pytest.mark.usefixtures("headless")
 def test_headless_prefers_egl() -> None:
-    doctor.prefer_headless()
-    assert os.environ[doctor.WINDOW_VARIABLE] == "vtkEGLRenderWindow"
+    diagnostics.prefer_headless()
+    assert os.environ[diagnostics.WINDOW_VARIABLE] == "vtkEGLRenderWindow"
 
 
 @pytest.mark.usefixtures("headless")
 def test_the_users_choice_of_window_stands(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv(doctor.WINDOW_VARIABLE, "vtkOSOpenGLRenderWindow")
-    doctor.prefer_headless()
-    assert os.environ[doctor.WINDOW_VARIABLE] == "vtkOSOpenGLRenderWindow"
+    monkeypatch.setenv(diagnostics.WINDOW_VARIABLE, "vtkOSOpenGLRenderWindow")
+    diagnostics.prefer_headless()
+    assert os.environ[diagnostics.WINDOW_VARIABLE] == "vtkOSOpenGLRenderWindow"
 
 
 @pytest.mark.usefixtures("headless")
@@ -161,16 +165,16 @@ def test_a_display_is_left_alone(name: str, value: str, monkeypatch: pytest.Monk
         monkeypatch.setattr(sys, "platform", value)
     else:
         monkeypatch.setenv(name, value)
-    doctor.prefer_headless()
-    assert doctor.WINDOW_VARIABLE not in os.environ
+    diagnostics.prefer_headless()
+    assert diagnostics.WINDOW_VARIABLE not in os.environ
 
 
 def test_the_diagnosis_covers_what_is_needed() -> None:
-    checks = {check.name: check for check in doctor.diagnose()}
+    checks = {check.name: check for check in diagnostics.diagnose()}
     assert {"Python", "OpenGL", "Display", "Shaders"} <= set(checks)
-    assert {*doctor.REQUIRED, *doctor.OPTIONAL} <= set(checks)
+    assert {*diagnostics.REQUIRED, *diagnostics.OPTIONAL} <= set(checks)
     assert all(check.remedy for check in checks.values() if check.status != "ok")
-    assert all(checks[name].status == "ok" for name in ("Python", *doctor.REQUIRED))
+    assert all(checks[name].status == "ok" for name in ("Python", *diagnostics.REQUIRED))
 
 
 def test_a_missing_extra_warns_and_a_missing_requirement_fails(
@@ -180,7 +184,7 @@ def test_a_missing_extra_warns_and_a_missing_requirement_fails(
         raise importlib.metadata.PackageNotFoundError(name)
 
     monkeypatch.setattr("importlib.metadata.version", version)
-    checks = {check.name: check for check in doctor.diagnose()}
+    checks = {check.name: check for check in diagnostics.diagnose()}
     assert checks["numpy"].status == "fail"
     assert checks["numpy"].remedy == "python -m pip install numpy"
     assert checks["trame"].status == "warn"
@@ -190,7 +194,7 @@ def test_a_missing_extra_warns_and_a_missing_requirement_fails(
 def test_the_report_shows_every_check_and_the_remedies_that_matter(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    doctor.report([OK, WARN, FAIL])
+    diagnostics.print_checks([OK, WARN, FAIL])
     shown = capsys.readouterr().out
     for text in ("Thing", "there", "trame", "not installed", "OpenGL", "it [crashed]"):
         assert text in shown
@@ -202,7 +206,7 @@ def test_the_report_shows_every_check_and_the_remedies_that_matter(
 @pytest.mark.parametrize(("checks", "code"), [([OK, WARN], 0), ([OK, FAIL, WARN], 1)])
 @pytest.mark.usefixtures("capsys")
 def test_only_a_failure_changes_the_exit_code(
-    checks: list[doctor.Check], code: int, monkeypatch: pytest.MonkeyPatch
+    checks: list[diagnostics.Check], code: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(doctor, "diagnose", lambda: checks)
-    assert doctor.main() == code
+    monkeypatch.setattr(diagnostics, "diagnose", lambda: checks)
+    assert diagnostics.main() == code

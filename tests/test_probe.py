@@ -148,7 +148,7 @@ def test_the_value_is_what_is_drawn(case: str, aside: bool, rng: np.random.Gener
         assert got.value == pytest.approx(picture.value[y, x], abs=1e-6)
         assert got.level == pytest.approx(picture.noise_level[y, x], abs=1e-6)
         assert got.slice_level == pytest.approx(picture.slice_level[y, x], abs=1e-6)
-        assert got.reading.position == pytest.approx(picture.position[y, x], abs=1e-6)
+        assert got.field_values.position == pytest.approx(picture.position[y, x], abs=1e-6)
         # And it is the sum of what is told about it.
         assert got.gain * (got.weights @ got.noise) == pytest.approx(got.value, abs=1e-9)
         check_shapes(got)
@@ -207,22 +207,22 @@ def test_a_width_on_a_curved_surface_is_that_width() -> None:
 def test_an_even_wind_has_straight_paths_and_even_samples() -> None:
     view = view_of(wind(), samples=21, spacing=0.8, grain=2.0)
     got = probe(view, (20.3, 30.4), pixel=0.004)
-    assert got.reading.velocity == pytest.approx([0.8, 0.6, 0])
+    assert got.field_values.velocity == pytest.approx([0.8, 0.6, 0])
     assert (got.asked, len(got.lags), got.parameter) == (21, 21, "arclength")
     assert got.grain == pytest.approx(0.008)
     assert got.step == pytest.approx(0.0064, rel=1e-3)
     assert np.diff(got.points, axis=0) == pytest.approx(
         np.tile([0.0064 * 0.8, 0.0064 * 0.6, 0], (20, 1)), abs=1e-5
     )
-    assert got.points[10] == pytest.approx(got.reading.position, abs=1e-6)
+    assert got.points[10] == pytest.approx(got.field_values.position, abs=1e-6)
     # Paths go backward along the wind for positive lags; by arc length a lag is a length.
-    away = (got.points - got.reading.position) @ [0.8, 0.6, 0]
+    away = (got.points - got.field_values.position) @ [0.8, 0.6, 0]
     assert away == pytest.approx(-got.lags, abs=1e-5)
     assert got.coordinates == pytest.approx((got.points[:, 1::-1] + [1, 1.5]) * 20, abs=1e-4)
     hann = 0.5 + 0.5 * np.cos(np.pi * np.arange(-10, 11) / 11)
     assert got.weights == pytest.approx(hann / hann.sum())
     # The path as a whole is a straight line as well, as far as the slices lead.
-    bent = (got.path - got.reading.position) @ [0.6, -0.8, 0]
+    bent = (got.path - got.field_values.position) @ [0.6, -0.8, 0]
     assert np.abs(bent).max() < 1e-3
     assert np.ptp(got.path_lags) > 20 * np.ptp(got.lags)
 
@@ -230,7 +230,7 @@ def test_an_even_wind_has_straight_paths_and_even_samples() -> None:
 def test_a_rotation_has_round_paths() -> None:
     view = view_of(turn(), parameter="time", samples=41)
     got = probe(view, (50.3, 70.8), pixel=0.01)
-    centre, radius = got.points[:, :2], np.hypot(*got.reading.position[:2])
+    centre, radius = got.points[:, :2], np.hypot(*got.field_values.position[:2])
     assert np.hypot(*centre.T) == pytest.approx(np.full(41, radius), rel=5e-3)
     angle = np.unwrap(np.arctan2(centre[:, 1], centre[:, 0]))
     assert angle - angle[20] == pytest.approx(-0.5 * got.lags, abs=2e-3)

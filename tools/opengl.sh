@@ -20,7 +20,7 @@ stamp=$(dirname "$(dirname "$python")")/.opengl-$kind
 "$python" -c 'import flowtex.diagnostics' || fail "flowtex itself cannot be imported"
 
 draws() {
-    "$python" -c 'from flowtex import doctor; doctor.require_opengl()' >/dev/null 2>&1
+    "$python" -c 'from flowtex import diagnostics; diagnostics.require_opengl()' >/dev/null 2>&1
 }
 
 # Whoever asked for another window than EGL's is told what it lacks, and gets nothing else.
@@ -35,10 +35,10 @@ if ! draws && can_install; then
 fi
 if ! draws; then
     "$python" -c 'import sys
-from flowtex import doctor
+from flowtex import diagnostics
 try:
-    doctor.require_opengl()
-except doctor.OpenGLMissingError as error:
+    diagnostics.require_opengl()
+except diagnostics.OpenGLMissingError as error:
     sys.exit(f"flowtex: {error}")' || exit 1
 fi
 touch "$stamp"

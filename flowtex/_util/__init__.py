@@ -1,1 +1,1 @@
-"""What every room uses: progress, whole files, caches, optional parts."""
+"""Helpers of the whole package: array types, caches, colours, files, progress, extras."""

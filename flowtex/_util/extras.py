@@ -1,4 +1,4 @@
-"""Which command installs an optional part of flowtex."""
+"""The command that installs an optional part of flowtex."""
 
 from __future__ import annotations
 

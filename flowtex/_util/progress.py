@@ -1,10 +1,7 @@
-"""Long work: a progress bar once it has lasted a second, and a way to stop it.
+"""Progress bars for work of more than a second, and a way to cancel work in a thread.
 
-The bar is drawn by rich, in a terminal or a notebook, and only once the first second has passed,
-so short work stays silent. Where rich is missing or nothing can be drawn there is no bar.
-
-Work that goes on in a thread for a person who has changed their mind is stopped by
-:func:`stoppable`: it looks now and then, with :func:`check`, whether it is still wanted.
+The bar is drawn by rich, in a terminal or a notebook; without rich there is none. Work inside
+:func:`stoppable` is cancelled at its next call of :func:`check`.
 """
 
 from __future__ import annotations
@@ -19,59 +16,59 @@ __all__ = ["Stopped", "check", "stoppable", "track"]
 
 T = TypeVar("T")
 
-#: Seconds of silence before a bar appears.
-PATIENCE = 1.0
+#: Time before a bar appears.
+BAR_DELAY_S = 1.0
 
-_unwanted: ContextVar[Callable[[], bool] | None] = ContextVar("unwanted", default=None)
+_cancelled: ContextVar[Callable[[], bool] | None] = ContextVar("cancelled", default=None)
 
 
 class Stopped(Exception):
-    """The work is not wanted any more."""
+    """The work was cancelled."""
 
 
 @contextmanager
-def stoppable(unwanted: Callable[[], bool]) -> Iterator[None]:
-    """Stop the work inside, in this thread, as soon as ``unwanted()`` is true.
+def stoppable(cancelled: Callable[[], bool]) -> Iterator[None]:
+    """Cancel the work inside, in this thread, once ``cancelled()`` is true.
 
     Raises
     ------
     Stopped
         Where the work was stopped.
     """
-    token = _unwanted.set(unwanted)
+    token = _cancelled.set(cancelled)
     try:
         yield
     finally:
-        _unwanted.reset(token)
+        _cancelled.reset(token)
 
 
 def check() -> None:
-    """Look whether the work is still wanted.
+    """Raise where the work was cancelled.
 
     Raises
     ------
     Stopped
-        When it is not.
+        When :func:`stoppable` says so.
     """
-    unwanted = _unwanted.get()
-    if unwanted is not None and unwanted():
+    cancelled = _cancelled.get()
+    if cancelled is not None and cancelled():
         raise Stopped
 
 
 def track(items: Iterable[T], total: int, text: str, *, show: bool = True) -> Iterator[T]:
-    """Give the items one by one, with a progress bar once they have taken a second.
+    """Yield the items, with a progress bar once they have taken a second.
 
     Raises
     ------
     Stopped
-        When the work is not wanted any more.
+        When the work is cancelled.
     """
     started = time.monotonic()
     bar = None
     try:
         for done, item in enumerate(items):
             check()
-            if show and bar is None and time.monotonic() - started > PATIENCE:
+            if show and bar is None and time.monotonic() - started > BAR_DELAY_S:
                 bar = _Bar(text, total)
             if bar is not None:
                 bar.move(done)

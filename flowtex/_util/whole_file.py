@@ -1,4 +1,4 @@
-"""Files that are there whole or not at all."""
+"""Files that are written as a whole or not at all."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ __all__ = ["WholeFile", "whole_file"]
 
 
 class WholeFile:
-    """A temporary file beside another, whose place it takes when it is whole.
+    """A temporary file that replaces another once it is complete.
 
     Parameters
     ----------
     path
-        File that there shall be.
+        The file to write.
 
     Attributes
     ----------
@@ -39,22 +39,22 @@ class WholeFile:
         self.part = Path(name)
 
     def keep(self) -> None:
-        """Put the temporary file in its place."""
-        # It is for its owner alone so far; here it gets the rights of any new file.
+        """Replace the file by the temporary one."""
+        # Temporary files are readable by their owner alone; this one gets the rights of any file.
         mask = os.umask(0)
         os.umask(mask)
         self.part.chmod(0o666 & ~mask)
         self.part.replace(self._path)
 
     def drop(self) -> None:
-        """Leave nothing behind; after :meth:`keep` there is nothing to do."""
+        """Delete the temporary file, if :meth:`keep` was not called."""
         with suppress(OSError):
             self.part.unlink()
 
 
 @contextmanager
 def whole_file(path: Path) -> Iterator[Path]:
-    """Give the temporary file of a :class:`WholeFile`; after an error nothing is left of it."""
+    """Yield the path of a :class:`WholeFile`, which is deleted after an error."""
     file = WholeFile(path)
     try:
         yield file.part

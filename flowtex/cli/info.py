@@ -34,7 +34,7 @@ def print_info(file: Path, options: dict[str, Any]) -> None:
     from rich.text import Text
 
     from flowtex.field import FlowField
-    from flowtex.field.io.files import describe
+    from flowtex.field.io.summary import describe
 
     summary = describe(file)
     console = Console(highlight=False)

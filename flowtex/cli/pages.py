@@ -57,7 +57,7 @@ def demo(
     need_opengl()
     need_app()
     from flowtex.app import Library
-    from flowtex.field.io.source import FlowSource
+    from flowtex.field.source import FlowSource
 
     def opener(name: str) -> Any:
         return lambda: FlowSource(getattr(examples, f"{name}_field")())

@@ -18,7 +18,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-Real = NDArray[np.float64]
+from flowtex._util.array_types import Floats
+
 Complex = NDArray[np.complex128]
 
 __all__ = ["Joukowski"]
@@ -59,11 +60,6 @@ class Joukowski:
         """Extent of the mapped airfoil along x."""
         return float(np.ptp(self._outline().real))
 
-    @property
-    def lift(self) -> float:
-        """Lift coefficient, from the circulation (Kutta and Joukowski)."""
-        return 2.0 * self.circulation / self.chord
-
     def _outline(self) -> Complex:
         """Return the airfoil in the plane of the map, before it is scaled."""
         angles = self.edge + np.linspace(0.0, 2.0 * np.pi, 4001)
@@ -92,12 +88,12 @@ class Joukowski:
         rings = np.log(extent * self.chord / self.radius) * (s / 6.0 + 5.0 / 6.0 * s**2)
         return self.center + self.radius * np.exp(rings[:, None] + 1j * angles)
 
-    def place(self, nodes: Complex) -> Real:
+    def place(self, nodes: Complex) -> Floats:
         """Positions (..., 2) in the airfoil's plane: nose at x = 0, trailing edge at (1, 0)."""
         z = (nodes + 1.0 / nodes - 2.0) / self.chord + 1.0
         return np.stack([z.real, z.imag], axis=-1)
 
-    def velocity(self, nodes: Complex) -> Real:
+    def velocity(self, nodes: Complex) -> Floats:
         """Velocity (..., 2) in the airfoil's plane; finite at the trailing edge.
 
         Parameters

@@ -15,9 +15,8 @@ one line and meets on another, as in pictures of oil flow on delta wings.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Real = NDArray[np.float64]
+from flowtex._util.array_types import Floats
 
 __all__ = ["arrays"]
 
@@ -31,7 +30,7 @@ HEIGHT, THICK, CROWDED = 0.11, 0.035, 2.2
 SWIRL, INCIDENCE = 2.0, 12.0
 
 
-def arrays(shape: tuple[int, int]) -> tuple[Real, Real]:
+def arrays(shape: tuple[int, int]) -> tuple[Floats, Floats]:
     """Nodes (J, I, 3) and velocity (J, I, 3); j across and i along the body.
 
     Parameters
@@ -47,12 +46,12 @@ def arrays(shape: tuple[int, int]) -> tuple[Real, Real]:
     return points, _velocity(s[:, None], t[None, :])
 
 
-def _crowded(x: Real) -> Real:
+def _crowded(x: Floats) -> Floats:
     """Take 0 ... 1 to itself with steps that are small at both ends."""
     return np.asarray(0.5 + 0.5 * np.tanh(CROWDED * (x - 0.5)) / np.tanh(CROWDED / 2))
 
 
-def _half_span(t: Real) -> Real:
+def _half_span(t: Floats) -> Floats:
     """Half span at a distance from the nose."""
     blunt = np.minimum(t / BLUNT, 1.0)
     body = NOSE + (BODY - NOSE) * np.sqrt(blunt * (2.0 - blunt))
@@ -60,7 +59,7 @@ def _half_span(t: Real) -> Real:
     return np.asarray(body + (SPAN - BODY) * wing**1.35)
 
 
-def _place(s: Real, t: Real) -> Real:
+def _place(s: Floats, t: Floats) -> Floats:
     """Points of the surface, (..., 3)."""
     half = _half_span(t)
     y = s * half
@@ -72,7 +71,7 @@ def _place(s: Real, t: Real) -> Real:
     return np.stack(np.broadcast_arrays(t + 0.0 * s, y, z), axis=-1)
 
 
-def _velocity(s: Real, t: Real) -> Real:
+def _velocity(s: Floats, t: Floats) -> Floats:
     """Flow along the surface, (..., 3)."""
     step = 1e-5
     # At the nose itself the surface stands upright: the slope is taken a little behind it.

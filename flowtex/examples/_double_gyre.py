@@ -8,9 +8,9 @@ Shadden, Lekien and Marsden, Physica D 212 (2005) 271-304, example 1: the stream
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Real = NDArray[np.float64]
+from flowtex._util.array_types import Floats
 
 __all__ = ["AMPLITUDE", "EPSILON", "PERIOD", "double_gyre_velocity", "nodes", "vorticity"]
 
@@ -24,7 +24,7 @@ def double_gyre_velocity(
     amplitude: float = AMPLITUDE,
     epsilon: float = EPSILON,
     period: float = PERIOD,
-) -> Real:
+) -> Floats:
     """Exact velocity of the double gyre at any point and time.
 
     Parameters
@@ -65,7 +65,7 @@ def double_gyre_velocity(
     return velocity
 
 
-def vorticity(points: Real, time: float, epsilon: float = EPSILON) -> Real:
+def vorticity(points: Floats, time: float, epsilon: float = EPSILON) -> Floats:
     """Exact vorticity (...,) at points (..., 2), with the usual amplitude and period."""
     f, slope, bend = _border(points[..., 0], time, epsilon, PERIOD)
     sine, cosine = np.sin(np.pi * f), np.cos(np.pi * f)
@@ -73,14 +73,14 @@ def vorticity(points: Real, time: float, epsilon: float = EPSILON) -> Real:
     return np.asarray(across * (cosine * bend - np.pi * sine * (slope**2 + 1.0)))
 
 
-def nodes(shape: tuple[int, int]) -> Real:
+def nodes(shape: tuple[int, int]) -> Floats:
     """Evenly spaced nodes (J, I, 2) of [0, 2] x [0, 1] for a shape (J, I)."""
     rows, columns = shape
     x, y = np.meshgrid(np.linspace(0.0, 2.0, columns), np.linspace(0.0, 1.0, rows))
     return np.stack([x, y], axis=-1)
 
 
-def _border(x: Real, time: float, epsilon: float, period: float) -> tuple[Real, Real, Real]:
+def _border(x: Floats, time: float, epsilon: float, period: float) -> tuple[Floats, Floats, Floats]:
     """Return the function f, and its first and second derivative by x."""
     a = epsilon * np.sin(2.0 * np.pi * time / period)
     return a * x**2 + (1.0 - 2.0 * a) * x, 2.0 * a * x + 1.0 - 2.0 * a, np.full_like(x, 2.0 * a)

@@ -6,11 +6,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
-from flowtex.examples import _cylinder, _delta_wing, _double_gyre, _vortex
+from flowtex._util.array_types import Floats
+from flowtex.examples import _delta_wing, _double_gyre, _shipped
 from flowtex.examples._airfoil import Joukowski
-from flowtex.examples._post import find_post
 from flowtex.field import FlowField
 
 __all__ = [
@@ -18,6 +17,7 @@ __all__ = [
     "airfoil_field",
     "cylinder_field",
     "delta_wing_field",
+    "double_gyre_at",
     "double_gyre_field",
     "liquid_oxygen_post_field",
     "vortex_field",
@@ -47,13 +47,13 @@ def cylinder_field() -> FlowField:
     -----
     Velocities are rounded to 16 bits: by at most 3e-5 free-stream speeds.
     """
-    points, velocity, times = _cylinder.arrays()
+    points, velocity, times = _shipped.cylinder_arrays()
     return FlowField.from_arrays(
         points,
         velocity,
         times=times,
         periodic="i",
-        scalars={"vorticity": _cylinder.vorticity(points, velocity)},
+        scalars={"vorticity": _shipped.polar_vorticity(points, velocity)},
         name="cylinder",
         length_unit="diameters",
         time_unit="diameters / free-stream speed",
@@ -80,7 +80,7 @@ def vortex_field() -> FlowField:
     FileNotFoundError
         When the installation lacks the example's file.
     """
-    points, velocity, vorticity, times = _vortex.arrays()
+    points, velocity, vorticity, times = _shipped.vortex_arrays()
     return FlowField.from_arrays(
         points,
         velocity,
@@ -113,12 +113,11 @@ def double_gyre_field(
     """
     points = _double_gyre.nodes(shape)
     times = np.linspace(0.0, _double_gyre.PERIOD, 41) if time_varying else np.zeros(1)
-    return _double_gyre_at(times, points, _double_gyre.EPSILON if time_varying else 0.0)
+    return double_gyre_at(times, points, _double_gyre.EPSILON if time_varying else 0.0)
 
 
-def _double_gyre_at(
-    times: NDArray[np.float64], points: NDArray[np.float64], epsilon: float
-) -> FlowField:
+def double_gyre_at(times: Floats, points: Floats, epsilon: float) -> FlowField:
+    """Double gyre at some times (T,) and points (J, I, 2)."""
     return FlowField.from_arrays(
         points,
         [_double_gyre.double_gyre_velocity(points, t, epsilon=epsilon) for t in times],
@@ -224,7 +223,7 @@ def liquid_oxygen_post_field(folder: str | Path | None = None, plane: str = "k=2
     FieldError
         When there is no such plane, or nothing moves on it.
     """
-    return FlowField.from_file(find_post(folder), plane=plane)
+    return FlowField.from_file(_shipped.find_post(folder), plane=plane)
 
 
 #: Names under which the examples are offered, each with the function that makes its field.

@@ -1,8 +1,7 @@
-"""The flow on a structured surface, as the rest of flowtex sees it.
+"""The flow on a structured surface: nodes, velocity, times, and which nodes carry data.
 
-:class:`FlowField` is the one form in which data arrives: nodes, velocity, times, and which nodes
-count. Everything that can be wrong with data is found here, told in one error, and nothing
-behind this module checks again.
+Data are checked when a :class:`FlowField` is made, with all faults in one error; the rest of the
+package relies on it.
 """
 
 from __future__ import annotations
@@ -11,25 +10,27 @@ import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.errors import raise_faults
-from flowtex.field import checks
 from flowtex.field.metric import IndexVelocity, to_index_space
-from flowtex.field.periodic import Closure, find_closure, requested_closure
-from flowtex.field.signs import oriented, with_equal_ends
+from flowtex.field.periodic import NodalArrays, close_axes
+from flowtex.field.signs import oriented, sign_free_faults, with_equal_ends
 from flowtex.field.surface import Surface
-
-if TYPE_CHECKING:
-    from pathlib import Path
+from flowtex.field.validation import (
+    as_numbers,
+    node_faults,
+    scalar_steps,
+    shape_faults,
+    three_components,
+)
 
 __all__ = ["FlowField"]
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -107,7 +108,7 @@ class FlowField:
             Nodes that carry data, (J, I). All of them by default.
         periodic
             Axes that close on themselves: ``""``, ``"i"``, ``"j"`` or ``"ij"``. By default it
-            is found out: coinciding first and last lines of nodes, a ring that stops one cell
+            it is detected: coinciding first and last lines of nodes, a ring that stops one cell
             short, and global longitude on a flat map.
         scalars
             Further nodal arrays, name to (J, I) or (T, J, I), to colour by.
@@ -125,7 +126,7 @@ class FlowField:
         Raises
         ------
         FieldError
-            When the arrays do not make a field. All faults are told at once.
+            When the arrays do not make a field. The error lists all faults.
 
         Warns
         -----
@@ -136,59 +137,156 @@ class FlowField:
         -----
         The arrays are copied to float64 and never changed.
         """
-        p, masked_points = checks.numbers(points)
-        v, masked_velocity = checks.numbers(velocity)
-        faults = checks.shapes(p, v, times, valid, periodic, scalars)
-        raise_faults(faults + checks.signs(v, sign_free=sign_free))
+        p, masked_points = as_numbers(points)
+        v, masked_velocity = as_numbers(velocity)
+        faults = shape_faults(p, v, times, valid, periodic, scalars)
+        raise_faults(faults + (sign_free_faults(v) if sign_free else []))
         v = v[None] if v.ndim == 3 else v
-        p, v = checks.three(p), checks.three(v)
+        p, v = three_components(p), three_components(v)
         v = with_equal_ends(v) if sign_free else v
         t = np.arange(len(v), dtype=float) if times is None else np.array(times, dtype=float)
         ok = np.isfinite(p).all(axis=-1) & ~masked_points
         ok &= np.isfinite(v).all(axis=(0, -1)) & ~masked_velocity
         if valid is not None:
             ok &= np.asarray(valid, dtype=bool)
-        raise_faults(checks.usable(p, ok))
-        data = {key: checks.steps(value) for key, value in (scalars or {}).items()}
-        p, v, ok, data, closed = _close(p, v, ok, data, periodic)
-        surface = Surface(p, ok, closed)
+        raise_faults(node_faults(p, ok))
+        data = {key: scalar_steps(value) for key, value in (scalars or {}).items()}
+        nodal, closed = close_axes(NodalArrays(p, v, ok, data), periodic)
+        v, ok = nodal.velocity, nodal.valid
+        surface = Surface(nodal.points, ok, closed)
         if sign_free:
             v = oriented(np.where(ok[..., None], v[0], 0.0), ok, closed)
             v = with_equal_ends(v[None], closed, surface.poles)
-        made = cls(
+        flow = cls(
             points=surface.points,
             velocity=np.where(ok[..., None], v, 0.0),
             times=t,
             valid=ok,
             periodic=closed,
-            scalars=data,
+            scalars=nodal.scalars,
             name=name,
             length_unit=length_unit,
             time_unit=time_unit,
             placed=surface._usable,
             sign_free=sign_free,
         )
-        if not made.velocity.any():
+        if not flow.velocity.any():
             warnings.warn(
                 "The velocity is zero at every node, so the picture is plain noise; check the "
                 "array that was chosen and the region it covers.",
                 stacklevel=2,
             )
-        return made
+        return flow
 
     @classmethod
-    def from_pyvista(cls, mesh: Any, **options: Any) -> FlowField:
-        """Make a field from PyVista; see :func:`flowtex.field.io.from_pyvista.from_pyvista`."""
-        from flowtex.field.io.from_pyvista import from_pyvista
+    def from_pyvista(
+        cls,
+        mesh: Any,
+        *,
+        vectors: str | None = None,
+        plane: str | None = None,
+        times: ArrayLike | None = None,
+        periodic: str | None = None,
+        name: str = "",
+        sign_free: bool = False,
+    ) -> FlowField:
+        """Make a field from a structured PyVista mesh, or from a series of them.
 
-        return from_pyvista(mesh, **options)
+        Parameters
+        ----------
+        mesh
+            A StructuredGrid, RectilinearGrid or ImageData. A MultiBlock with one structured block
+            stands for that block. A list or tuple of meshes, a MultiBlock of several grids with
+            the same nodes, and a PyVista reader with time values are time steps.
+        vectors
+            Name of the velocity on points or cells, with 2 or 3 components. By default the only
+            array that can be the velocity, or the one that the mesh marks as its active vectors.
+        plane
+            Surface to draw from a mesh of three dimensions: ``"k=20"``, ``"j=0"`` or ``"i=-1"``,
+            counted from the end when negative. On a k-plane the surface's (i, j) are the mesh's
+            (i, j), on a j-plane (i, k), on an i-plane (j, k). A mesh with one flat index
+            direction needs none, and follows the same table.
+        times
+            Time of each step, (T,). By default the reader's time values, or ``TimeValue`` in the
+            field data of every step, or 0, 1, 2, ...
+        periodic, name, sign_free
+            As for :meth:`from_arrays`.
+
+        Returns
+        -------
+        FlowField
+            Positions in the mesh's units. Arrays with one component become ``scalars``; those on
+            cells, and vectors on cells, become means of the visible cells around each node.
+
+        Raises
+        ------
+        FieldError
+            When the mesh is not structured, when the plane or the vectors have to be chosen or do
+            not exist, when the steps of a series differ in their nodes, and for what
+            :meth:`from_arrays` refuses.
+
+        Notes
+        -----
+        Hidden are points and cells that VTK's ghost arrays hide, points with ``IBlank`` 0
+        (PLOT3D), and points that a sampling filter marked in ``vtkValidPointMask``. The mesh is
+        not changed.
+        """
+        from flowtex.field.io.from_pyvista import read_meshes
+
+        options: dict[str, Any] = {"periodic": periodic, "sign_free": sign_free}
+        arguments = read_meshes(mesh, vectors=vectors, plane=plane, times=times, **options)
+        return cls.from_arrays(**arguments, name=name, **options)
 
     @classmethod
-    def from_file(cls, path: str | Path, **options: Any) -> FlowField:
-        """Make a field from a file; see :func:`flowtex.field.io.files.from_file`."""
-        from flowtex.field.io.files import from_file
+    def from_file(
+        cls,
+        path: str | Path,
+        *,
+        vectors: str | None = None,
+        plane: str | None = None,
+        periodic: str | None = None,
+        time: float | None = None,
+        block: int | str | None = None,
+        sign_free: bool = False,
+    ) -> FlowField:
+        """Make a field from a file.
 
-        return from_file(path, **options)
+        Parameters
+        ----------
+        path
+            A structured mesh in any format that PyVista reads, or a PLOT3D grid or solution. The
+            other one of the two is found beside it by its name: ``postxyz.bin`` and
+            ``postq.bin``, ``wing.xyz`` (or ``.x``, ``.g``) and ``wing.q``.
+        vectors
+            Name of the velocity, as for :meth:`from_pyvista`. A PLOT3D solution gives
+            ``Velocity``, made from its density and momentum.
+        plane, periodic, sign_free
+            As for :meth:`from_pyvista`.
+        time
+            Draw this one of the times in the file, as a steady field. All of them by default.
+        block
+            Number or name of the block to draw, where the file has several grids. Numbers count
+            the structured grids from 0.
+
+        Returns
+        -------
+        FlowField
+            Its ``name`` is the file's, without folder and suffix.
+
+        Raises
+        ------
+        FieldError
+            When the file is missing, empty, not readable, of an unknown or broken format, or does
+            not hold a structured flow; the text starts with the path.
+        """
+        from flowtex.field.io.files import errors_of_file, read_file
+
+        with errors_of_file(path):
+            options: dict[str, Any] = {"periodic": periodic, "sign_free": sign_free}
+            arguments = read_file(
+                path, time=time, block=block, vectors=vectors, plane=plane, **options
+            )
+            return cls.from_arrays(**arguments, name=Path(path).stem, **options)
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -243,15 +341,13 @@ class FlowField:
     def downsample(self, factor: int) -> FlowField:
         """Keep every ``factor``-th node along both axes, and the last line of a closed axis.
 
-        This is what the paper compares trace slices with (section 5, figures 3 and 4).
-
         Raises
         ------
         ValueError
             When fewer than two lines would be left.
         """
         picks = [
-            checks.every(count, factor, closed=closed)
+            _every(count, factor, closed=closed)
             for count, closed in zip(self.shape, self.periodic, strict=True)
         ]
         at = np.ix_(*picks)
@@ -275,24 +371,19 @@ class FlowField:
         )
 
 
-def _close(
-    p: Floats, v: Floats, ok: Bools, data: dict[str, Floats], periodic: str | None
-) -> tuple[Floats, Floats, Bools, dict[str, Floats], tuple[bool, bool]]:
-    """Find or follow the periodic axes; append and unify the closing line in every array."""
-    closed = [False, False]
-    for axis, letter in ((0, "j"), (1, "i")):
-        lines = np.swapaxes(p, 0, axis)
-        if periodic is None:
-            closure = find_closure(np.where(np.swapaxes(ok, 0, axis)[..., None], lines, np.nan))
-        elif letter in periodic:
-            closure = requested_closure(lines, np.swapaxes(v, 1, axis + 1))
-        else:
-            closure = Closure(periodic=False)
-        closed[axis] = closure.periodic
-        if closure.line is not None:
-            p = np.swapaxes(np.concatenate([lines, closure.line]), 0, axis)
-            v, ok = checks.repeat_first(v, axis + 1), checks.repeat_first(ok, axis)
-            data = {k: checks.repeat_first(s, axis + 1) for k, s in data.items()}
-        elif closure.periodic:
-            v, ok = checks.join_ends(v, ok, axis)
-    return p, v, ok, data, (closed[0], closed[1])
+def _every(count: int, factor: int, *, closed: bool) -> Indices:
+    """Return every ``factor``-th line, and the last one where the axis is closed."""
+    if factor < 1:
+        msg = f"factor is {factor}; expected 1 or more"
+        raise ValueError(msg)
+    picks = list(range(0, count, factor))
+    if closed and picks[-1] != count - 1:
+        picks.append(count - 1)
+    fewest = 4 if closed else 2
+    if len(picks) < fewest:
+        msg = (
+            f"factor is {factor}, which leaves {len(picks)} of {count} lines; expected a smaller "
+            f"one that leaves at least {fewest}"
+        )
+        raise ValueError(msg)
+    return np.array(picks)

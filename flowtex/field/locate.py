@@ -1,41 +1,128 @@
-"""Where on the surface a point in space lies, in index space.
+"""Points of a surface: the one at a position in index space, and the one nearest to a point.
 
-The nodes nearest to a point are found in a tree, which is kept with the field. From each of them
-cells are walked, each step to the cell in which the point would lie if the present one went on
-straight; that also finds the way over cells that are thousands of times longer than wide, where
-the nearest node is no corner of the right cell. Of all triangles on the way, the closest counts.
+Every renderer cuts a cell along the diagonal from its first corner (j, i) to (j + 1, i + 1), and
+what lies between the nodes is linear in the two triangles; so is what this module returns.
+
+To find a point in space, the nearest nodes are looked up in a tree, which is cached with the
+field. From each of them a walk leads over the cells, each step to the cell in which the point
+would lie if the present one went on straight; that also finds the way over cells that are
+thousands of times longer than wide, where the nearest node is no corner of the right cell. Of all
+triangles on the way, the closest one counts.
 """
 
 from __future__ import annotations
 
-import weakref
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.spatial import cKDTree
 
-from flowtex.field.facets import HALVES
+from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
+from flowtex._util.cache import WeakCache
 from flowtex.field.field import FlowField
 from flowtex.field.surface import Surface
 
-__all__ = ["Locator", "locate", "locator"]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.intp]
+__all__ = ["TRIANGLES", "Locator", "SurfacePoint", "locate", "locator", "surface_point"]
 
 #: Nodes around a point that cells are walked from.
-STARTS = 4
+START_NODES = 4
 #: Nodes closer than this share of the surface's extent lie at one point.
-TOGETHER = 1e-12
+SAME_POINT_SHARE = 1e-12
 #: Steps of a walk, and cells along an axis that one of them goes, at most.
-STEPS, STRIDE = 24, 4
+WALK_STEPS, STRIDE_CELLS = 24, 4
 #: Distance from a triangle, in sizes of its cell, within which a point lies on it.
-ON = 1e-9
+ON_SURFACE = 1e-9
 #: Height of a triangle over a side, squared, below which it has no area.
-THIN = 1e-20
+FLAT_TRIANGLE = 1e-20
 #: Squared sine of the angle between two sides of a cell, below which they are one.
-FLAT = 1e-14
-AROUND = np.stack(np.meshgrid([-1, 0, 1], [-1, 0, 1]), axis=-1).reshape(-1, 2)
+FLAT_CELL = 1e-14
+#: Offsets (j, i) of a cell and of those around it.
+NEIGHBOURS = np.stack(np.meshgrid([-1, 0, 1], [-1, 0, 1]), axis=-1).reshape(-1, 2)
+#: Corners of the two triangles of a cell, as (j, i) from its first corner.
+TRIANGLES = (((0, 0), (0, 1), (1, 1)), ((0, 0), (1, 1), (1, 0)))
+
+
+@dataclass(frozen=True, eq=False)
+class SurfacePoint:
+    """A place on a triangle of the surface.
+
+    Attributes
+    ----------
+    index
+        The place as (j, i), folded back into one period.
+    nodes
+        Numbers of the three corners, (3,): j times the number of columns, plus i.
+    weights
+        Share of each corner, (3,); they sum to one.
+    """
+
+    index: tuple[float, float]
+    nodes: Indices
+    weights: Floats
+
+    def corners(self, nodal: AnyArray) -> Floats:
+        """Values at the corners of nodal data (J, I, ...), (3, ...)."""
+        return np.asarray(nodal.reshape(-1, *nodal.shape[2:])[self.nodes], dtype=float)
+
+    def mix(self, nodal: AnyArray) -> Floats:
+        """Value at the place of nodal data (J, I, ...), (...)."""
+        return np.asarray(np.tensordot(self.weights, self.corners(nodal), axes=1))
+
+
+def surface_point(surface: Surface, index: ArrayLike) -> SurfacePoint:
+    """Find the triangle at a place in index space.
+
+    Parameters
+    ----------
+    surface
+        The surface.
+    index
+        (j, i) in cells. An axis that closes on itself takes any number.
+
+    Raises
+    ------
+    ValueError
+        When it is no pair of numbers, or lies outside the surface or in a cell that is not drawn.
+    """
+    at = np.asarray(index, dtype=float)
+    if at.shape != (2,) or not np.isfinite(at).all():
+        msg = f"the place is {index!r}; expected two finite numbers (j, i), in cells"
+        raise ValueError(msg)
+    j, i = (float(x) for x in surface.wrap(at[::-1])[::-1])
+    rows, columns = surface.shape
+    if not (0 <= j <= rows - 1 and 0 <= i <= columns - 1):
+        msg = (
+            f"(j, i) is ({j:g}, {i:g}), outside the surface; expected j from 0 to {rows - 1} and "
+            f"i from 0 to {columns - 1}"
+        )
+        raise ValueError(msg)
+    for row, column in product(_cells(j, rows), _cells(i, columns)):
+        if surface.cells[row, column]:
+            return _in_cell((j, i), row, column, columns)
+    msg = (
+        f"(j, i) is ({j:g}, {i:g}), in a cell with a blanked node; expected a place where the "
+        "surface is drawn"
+    )
+    raise ValueError(msg)
+
+
+def _cells(x: float, nodes: int) -> Iterator[int]:
+    """Cells of one axis that a place belongs to: two, where it is on a line of nodes."""
+    cell = min(int(x), nodes - 2)
+    yield cell
+    if x == cell and cell > 0:
+        yield cell - 1
+
+
+def _in_cell(index: tuple[float, float], row: int, column: int, columns: int) -> SurfacePoint:
+    b, a = index[0] - row, index[1] - column
+    half = TRIANGLES[0] if a >= b else TRIANGLES[1]
+    weights = (1 - a, a - b, b) if a >= b else (1 - b, a, b - a)
+    nodes = [(row + j) * columns + column + i for j, i in half]
+    return SurfacePoint(index, np.array(nodes, dtype=np.intp), np.array(weights))
 
 
 class Locator:
@@ -71,10 +158,10 @@ class Locator:
         distance
             How far they are, in sizes of the cell that was found, (P,).
         """
-        starts = min(STARTS, len(self._number))
+        starts = min(START_NODES, len(self._number))
         targets = (points[:, None] - self._shifts).reshape(-1, 3)
-        _, found = self._tree.query(targets, k=np.arange(1, starts + 1))
-        row, column = np.divmod(self._number[found.ravel()], self._surface.shape[1])
+        _, nodes = self._tree.query(targets, k=np.arange(1, starts + 1))
+        row, column = np.divmod(self._number[nodes.ravel()], self._surface.shape[1])
         first = np.minimum(np.stack([row, column], axis=-1), self._last)
         index, distance = self._walk(np.repeat(targets, starts, axis=0), first)
         distance = distance.reshape(len(points), -1)
@@ -82,20 +169,20 @@ class Locator:
         rows = np.arange(len(points))
         return index.reshape(len(points), -1, 2)[rows, best], distance[rows, best]
 
-    def _walk(self, at: Floats, cell: Ints) -> tuple[Floats, Floats]:
+    def _walk(self, at: Floats, cell: Indices) -> tuple[Floats, Floats]:
         """Walk from cells (N, 2) towards points (N, 3)."""
         index, distance = np.zeros((len(at), 2)), np.full(len(at), np.inf)
         on, cell = np.arange(len(at)), cell.copy()
-        for _ in range(STEPS):
+        for _ in range(WALK_STEPS):
             corners = self._corners(cell[on])
             self._take(index, distance, on, cell[on], self._place(at[on], cell[on], corners))
             next_ = self._inside(cell[on] + _step(at[on], corners))
-            going = (next_ != cell[on]).any(axis=-1) & (distance[on] > ON)
+            going = (next_ != cell[on]).any(axis=-1) & (distance[on] > ON_SURFACE)
             on = on[going]
             if not len(on):
                 break
             cell[on] = next_[going]
-        aside = np.flatnonzero(distance > ON)
+        aside = np.flatnonzero(distance > ON_SURFACE)
         if len(aside):
             known = np.isfinite(distance[aside, None])
             middle = np.where(
@@ -105,41 +192,45 @@ class Locator:
         return index, distance
 
     def _look_around(
-        self, index: Floats, distance: Floats, at: Floats, aside: Ints, middle: Ints
+        self, index: Floats, distance: Floats, at: Floats, aside: Indices, middle: Indices
     ) -> None:
         """Look at the cells around those (M, 2) of the points that lie beside the surface."""
-        near = self._inside(middle + AROUND[:, None]).reshape(-1, 2)
-        inside, far = self._place(np.tile(at[aside], (len(AROUND), 1)), near, self._corners(near))
-        best = np.argmin(far.reshape(len(AROUND), -1), axis=0) * len(aside) + np.arange(len(aside))
+        near = self._inside(middle + NEIGHBOURS[:, None]).reshape(-1, 2)
+        inside, far = self._place(
+            np.tile(at[aside], (len(NEIGHBOURS), 1)), near, self._corners(near)
+        )
+        best = np.argmin(far.reshape(len(NEIGHBOURS), -1), axis=0) * len(aside) + np.arange(
+            len(aside)
+        )
         self._take(index, distance, aside, near[best], (inside[best], far[best]))
 
     @staticmethod
     def _take(
-        index: Floats, distance: Floats, some: Ints, cell: Ints, found: tuple[Floats, Floats]
+        index: Floats, distance: Floats, some: Indices, cell: Indices, places: tuple[Floats, Floats]
     ) -> None:
-        """Keep what is closer than what was found before."""
-        inside, far = found
+        """Write the places that are closer than those so far."""
+        inside, far = places
         closer = far < distance[some]
         index[some[closer]] = (cell + inside)[closer]
         distance[some[closer]] = far[closer]
 
-    def _inside(self, cell: Ints) -> Ints:
+    def _inside(self, cell: Indices) -> Indices:
         return np.where(
             self._around, np.mod(cell, self._last + 1), np.clip(cell, 0, self._last)
         ).astype(np.intp)
 
-    def _corners(self, cell: Ints) -> Floats:
+    def _corners(self, cell: Indices) -> Floats:
         """Nodes (j, j + 1) by (i, i + 1) of cells, (N, 2, 2, 3)."""
         columns = self._surface.shape[1]
         first = cell[:, 0] * columns + cell[:, 1]
         return np.asarray(self._nodes[first[:, None, None] + [[0, 1], [columns, columns + 1]]])
 
-    def _place(self, at: Floats, cell: Ints, corners: Floats) -> tuple[Floats, Floats]:
+    def _place(self, at: Floats, cell: Indices, corners: Floats) -> tuple[Floats, Floats]:
         """Places (N, 2) as (j, i) in cells, and how far they are in sizes of the cell, (N,)."""
         sides = [corners[:, :, 1] - corners[:, :, 0], corners[:, 1] - corners[:, 0]]
         size = np.sqrt(np.max([np.sum(s * s, axis=-1) for s in sides], axis=(0, 2)))
         place, distance = np.zeros((len(at), 2)), np.full(len(at), np.inf)
-        for half in HALVES:
+        for half in TRIANGLES:
             shares, far = _closest(at, *(corners[:, j, i] for j, i in half))
             closer = far < distance
             place[closer] = shares[closer] @ np.array(half, dtype=float)
@@ -149,7 +240,7 @@ class Locator:
         return place, distance
 
 
-def _starts(surface: Surface) -> NDArray[np.bool_]:
+def _starts(surface: Surface) -> Bools:
     """Nodes to walk from, (J, I): those of the cells that are drawn.
 
     Where many nodes lie at one point, those nearest to a point beside it may be on the far side;
@@ -163,7 +254,9 @@ def _starts(surface: Surface) -> NDArray[np.bool_]:
             drawn[j, i] |= surface.cells
     for axis in (0, 1):
         lines, same = np.swapaxes(surface.points, 0, axis), np.swapaxes(one, 0, axis)
-        together = np.linalg.norm(np.diff(lines, axis=0), axis=-1) <= TOGETHER * surface.extent
+        together = (
+            np.linalg.norm(np.diff(lines, axis=0), axis=-1) <= SAME_POINT_SHARE * surface.extent
+        )
         same[:-1] |= together
         same[1:] |= together
     for pole in surface.poles or ():
@@ -171,7 +264,7 @@ def _starts(surface: Surface) -> NDArray[np.bool_]:
     return drawn & ~one if (drawn & ~one).any() else drawn
 
 
-def _step(at: Floats, corners: Floats) -> Ints:
+def _step(at: Floats, corners: Floats) -> Indices:
     """Cells from those of the corners to where points would lie if they went on straight."""
     e_j = (corners[:, 1] - corners[:, 0]).mean(axis=1)
     e_i = (corners[:, :, 1] - corners[:, :, 0]).mean(axis=1)
@@ -181,13 +274,13 @@ def _step(at: Floats, corners: Floats) -> Ints:
         for a, b in ((e_j, e_j), (e_i, e_i), (e_j, e_i), (away, e_j), (away, e_i))
     )
     area = jj * ii - ij * ij
-    solid = area > FLAT * jj * ii
+    solid = area > FLAT_CELL * jj * ii
     safe = np.where(solid, area, 1.0)
     tiny = np.finfo(float).tiny
     alone = np.stack([dj / np.maximum(jj, tiny), di / np.maximum(ii, tiny)], axis=-1)
     both = np.stack([(ii * dj - ij * di) / safe, (jj * di - ij * dj) / safe], axis=-1)
     steps = np.where(solid[:, None], both, np.clip(alone, -1, 1))
-    return np.asarray(np.rint(np.clip(steps, -STRIDE, STRIDE)), dtype=np.intp)
+    return np.asarray(np.rint(np.clip(steps, -STRIDE_CELLS, STRIDE_CELLS)), dtype=np.intp)
 
 
 def _closest(at: Floats, a: Floats, b: Floats, c: Floats) -> tuple[Floats, Floats]:
@@ -201,7 +294,7 @@ def _closest(at: Floats, a: Floats, b: Floats, c: Floats) -> tuple[Floats, Float
     lean = uv / np.where(uu > 0, uu, 1.0)
     across = v - lean[:, None] * u
     height = np.einsum("nc,nc->n", across, across)
-    solid = (height > THIN * vv) & (uu > THIN * vv)
+    solid = (height > FLAT_TRIANGLE * vv) & (uu > FLAT_TRIANGLE * vv)
     t = np.einsum("nc,nc->n", w, across) / np.where(solid, height, 1.0)
     s = wu / np.where(uu > 0, uu, 1.0) - lean * t
     shares = np.stack([1 - s - t, s, t], axis=-1)
@@ -228,15 +321,12 @@ def _on_border(at: Floats, nodes: Floats) -> Floats:
     return result
 
 
-_locators: weakref.WeakKeyDictionary[FlowField, Locator] = weakref.WeakKeyDictionary()
+_locators: WeakCache[Locator] = WeakCache()
 
 
 def locator(field: FlowField) -> Locator:
-    """Return the locator of a field's surface, which is kept for as long as the field is."""
-    found = _locators.get(field)
-    if found is None:
-        found = _locators[field] = Locator(field.surface)
-    return found
+    """Return the locator of a field's surface, which is cached as long as the field lives."""
+    return _locators.get("locator", lambda: Locator(field.surface), owner=field)
 
 
 def locate(

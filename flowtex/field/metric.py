@@ -18,17 +18,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from flowtex._util.array_types import Floats
 from flowtex.field.poles import Pole
 from flowtex.field.surface import Surface
 
 __all__ = ["IndexVelocity", "to_index_space"]
 
-Floats = NDArray[np.float64]
-
 #: Below this ratio of squared area to squared lengths a cell counts as collapsed.
-COLLAPSED = 1e-10
+COLLAPSED_AREA = 1e-10
 
 
 @dataclass(frozen=True)
@@ -68,8 +66,8 @@ def to_index_space(surface: Surface, velocity: Floats) -> IndexVelocity:
     along_i = np.einsum("tjic,jic->tji", velocity, p_i)
     along_j = np.einsum("tjic,jic->tji", velocity, p_j)
     typical = float(np.median((g_ii + g_jj)[surface.valid]))
-    tiny = COLLAPSED * typical
-    flat = (determinant <= COLLAPSED * g_ii * g_jj) | (g_ii <= tiny) | (g_jj <= tiny)
+    tiny = COLLAPSED_AREA * typical
+    flat = (determinant <= COLLAPSED_AREA * g_ii * g_jj) | (g_ii <= tiny) | (g_jj <= tiny)
     safe = np.where(flat, 1.0, determinant)
     u_i = np.where(flat, _alone(along_i, g_ii, tiny), (g_jj * along_i - g_ij * along_j) / safe)
     u_j = np.where(flat, _alone(along_j, g_jj, tiny), (g_ii * along_j - g_ij * along_i) / safe)
@@ -99,5 +97,5 @@ def _at_pole(pole: Pole, velocity: Floats, u: Floats, speed: Floats) -> None:
 
 def _alone(along: Floats, square: Floats, tiny: float) -> Floats:
     """Component along one tangent where the other one has collapsed."""
-    kept = square > tiny
-    return np.asarray(np.where(kept, along / np.where(kept, square, 1.0), 0.0))
+    solid = square > tiny
+    return np.asarray(np.where(solid, along / np.where(solid, square, 1.0), 0.0))

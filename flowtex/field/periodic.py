@@ -1,29 +1,32 @@
-"""Which axes of a structured surface close on themselves, and the line of nodes that closes them.
+"""Which axes of a structured surface close on themselves, and how their arrays are closed.
 
 Meshes close in three ways: the last line of nodes repeats the first (an O-grid in PLOT3D), the
 last line stops one cell short of the first (a sphere or ring without the repeated line), or the
 axis is global longitude on a flat map, where the first line comes back 360 degrees further on.
-Everything behind this module sees one way only: the last line is the first one again. A line is
-appended where it is missing.
+In a field there is one way only: the last line is the first one again. A line is appended where
+it is missing.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import TypeVar, cast
 
 import numpy as np
-from numpy.typing import NDArray
 
-__all__ = ["Closure", "find_closure", "requested_closure"]
+from flowtex._util.array_types import AnyArray, Bools, Floats
 
-Floats = NDArray[np.float64]
+__all__ = ["Closure", "NodalArrays", "close_axes", "find_closure", "requested_closure"]
+
+A = TypeVar("A", bound=AnyArray)
 
 #: Lines closer than this share of the extent of the mesh coincide.
-COINCIDE = 1e-6
+SAME_LINE_EXTENT = 1e-6
 #: So do lines closer than this share of the cells beside them.
-NEARLY = 1e-2
-#: Fewer lines than this are never taken for a ring with a gap.
-FEWEST = 8
+SAME_LINE_CELLS = 1e-2
+#: Number of lines that a ring with a gap has at least.
+MIN_RING_LINES = 8
 
 
 @dataclass(frozen=True)
@@ -32,6 +35,66 @@ class Closure:
 
     periodic: bool
     line: Floats | None = None
+
+
+@dataclass(frozen=True)
+class NodalArrays:
+    """Arrays at the nodes of a surface.
+
+    Attributes
+    ----------
+    points
+        Positions, (J, I, 3).
+    velocity
+        Velocity, (T, J, I, 3).
+    valid
+        Nodes that carry data, (J, I).
+    scalars
+        Other arrays, name to (T or 1, J, I).
+    """
+
+    points: Floats
+    velocity: Floats
+    valid: Bools
+    scalars: Mapping[str, Floats]
+
+
+def close_axes(nodal: NodalArrays, periodic: str | None) -> tuple[NodalArrays, tuple[bool, bool]]:
+    """Close the periodic axes: append a missing line, or give two that coincide equal values.
+
+    Parameters
+    ----------
+    nodal
+        The arrays as they came.
+    periodic
+        Axes that close, such as ``"i"`` or ``"ij"``; ``None`` to find out.
+
+    Returns
+    -------
+    nodal, periodic
+        The closed arrays, and whether the (j, i) axis closes on itself.
+    """
+    closed = [False, False]
+    for axis, letter in ((0, "j"), (1, "i")):
+        lines = np.swapaxes(nodal.points, 0, axis)
+        if periodic is None:
+            known = np.swapaxes(nodal.valid, 0, axis)[..., None]
+            closure = find_closure(np.where(known, lines, np.nan))
+        elif letter in periodic:
+            closure = requested_closure(lines, np.swapaxes(nodal.velocity, 1, axis + 1))
+        else:
+            closure = Closure(periodic=False)
+        closed[axis] = closure.periodic
+        if closure.line is not None:
+            nodal = NodalArrays(
+                points=np.swapaxes(np.concatenate([lines, closure.line]), 0, axis),
+                velocity=_repeat_first(nodal.velocity, axis + 1),
+                valid=_repeat_first(nodal.valid, axis),
+                scalars={k: _repeat_first(s, axis + 1) for k, s in nodal.scalars.items()},
+            )
+        elif closure.periodic:
+            nodal = _join_ends(nodal, axis)
+    return nodal, (closed[0], closed[1])
 
 
 def find_closure(points: Floats) -> Closure:
@@ -44,7 +107,7 @@ def find_closure(points: Floats) -> Closure:
     turn = _longitude(points)
     if turn is not None:
         return turn
-    if len(points) >= FEWEST and _one_cell_short(points):
+    if len(points) >= MIN_RING_LINES and _one_cell_short(points):
         return Closure(periodic=True, line=points[:1])
     return Closure(periodic=False)
 
@@ -55,9 +118,9 @@ def requested_closure(points: Floats, velocity: Floats) -> Closure:
     ``velocity`` is (T, N, M, 3): a flat map whose last line already carries the values of its
     first one is closed as it is.
     """
-    found = find_closure(points)
-    if found.periodic:
-        return found
+    closure = find_closure(points)
+    if closure.periodic:
+        return closure
     fastest = float(np.nanmax(np.abs(velocity), initial=0.0))
     repeats = np.allclose(
         velocity[:, 0], velocity[:, -1], rtol=0, atol=1e-6 * fastest, equal_nan=True
@@ -78,11 +141,11 @@ def _coincide(points: Floats, extent: float) -> bool:
     middle = _worst(points[len(points) // 2] - points[0])
     gap = np.linalg.norm(points[-1] - points[0], axis=-1)
     steps = np.linalg.norm(np.diff(points, axis=0)[[0, -1]], axis=-1).max(axis=0)
-    # Coordinates far from the origin, or written with few digits, miss by more than COINCIDE.
+    # Coordinates far from the origin, or of few digits, miss by more than that share of the extent.
     with np.errstate(invalid="ignore"):
-        close = gap <= np.fmax(COINCIDE * extent, NEARLY * steps)
+        close = gap <= np.fmax(SAME_LINE_EXTENT * extent, SAME_LINE_CELLS * steps)
     known = np.isfinite(gap)
-    return bool(known.any()) and bool(close[known].all()) and COINCIDE * extent < middle
+    return bool(known.any()) and bool(close[known].all()) and SAME_LINE_EXTENT * extent < middle
 
 
 def _one_cell_short(points: Floats) -> bool:
@@ -119,3 +182,23 @@ def _worst(difference: Floats) -> float:
     lengths = np.linalg.norm(difference, axis=-1)
     lengths = lengths[np.isfinite(lengths)]
     return float(lengths.max()) if len(lengths) else float("inf")
+
+
+def _repeat_first(a: A, axis: int) -> A:
+    """Append the first line of an axis behind its last."""
+    return cast("A", np.concatenate([a, np.take(a, [0], axis=axis)], axis=axis))
+
+
+def _join_ends(nodal: NodalArrays, axis: int) -> NodalArrays:
+    """Give the two coinciding lines of a closed axis one common velocity.
+
+    Cell data spread to the nodes differs across a seam, because neither side sees the other.
+    """
+    velocity, valid = nodal.velocity.copy(), nodal.valid.copy()
+    v, ok = np.swapaxes(velocity, 1, axis + 1), np.swapaxes(valid, 0, axis)
+    first, last = ok[0].copy(), ok[-1].copy()
+    mean = (v[:, 0] + v[:, -1]) / 2
+    only = np.where(first[:, None], v[:, 0], v[:, -1])
+    v[:, 0] = v[:, -1] = np.where((first & last)[:, None], mean, only)
+    ok[0] = ok[-1] = first | last
+    return replace(nodal, velocity=velocity, valid=valid)

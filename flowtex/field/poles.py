@@ -20,22 +20,21 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
+
+from flowtex._util.array_types import AnyArray, Bools, Floats
 
 __all__ = ["Pole", "Poles", "find_poles"]
 
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 #: Of single or double precision, as it comes in.
-Reals = NDArray[Any]
+Reals: TypeAlias = AnyArray
 
 #: Nodes closer than this share of the distance to the next line lie at one point.
-TOGETHER = 1e-3
+SAME_POINT_SHARE = 1e-3
 #: Lines that lie this close to where even ones would, in cells, are even.
-EVEN = 1e-6
+EVEN_CELLS = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,13 +86,15 @@ class Pole:
     @cached_property
     def _even(self) -> bool:
         step = 2 * np.pi / self.cells
-        return bool(np.abs(self._angles - self._angles[0] - step * self._lines).max() < EVEN * step)
+        return bool(
+            np.abs(self._angles - self._angles[0] - step * self._lines).max() < EVEN_CELLS * step
+        )
 
     @cached_property
     def _lines(self) -> Floats:
         return np.arange(self.cells + 1.0)
 
-    def lines(self, nodal: NDArray[Any], axis: int = 0) -> NDArray[Any]:
+    def lines(self, nodal: AnyArray, axis: int = 0) -> AnyArray:
         """Nodal data, (..., J, I, ...) from ``axis`` on, as (..., lines, n + 1, ...): a view."""
         return nodal if self.component else np.swapaxes(nodal, axis, axis + 1)
 
@@ -108,8 +109,8 @@ class Pole:
         turns = np.floor(around / self.cells)
         ahead = np.interp(around - turns * self.cells, self._lines, self._angles) + np.pi
         past = ahead > self._angles[-1]
-        found = np.interp(ahead - 2 * np.pi * past, self._angles, self._lines)
-        return np.asarray(found + (turns + past) * self.cells, dtype=around.dtype)
+        line = np.interp(ahead - 2 * np.pi * past, self._angles, self._lines)
+        return np.asarray(line + (turns + past) * self.cells, dtype=around.dtype)
 
     def place(self, position: Floats) -> Floats:
         """Positions in the plane, (2, N) in cells, of positions (2, N) not beyond the pole."""
@@ -141,7 +142,7 @@ class Pole:
         here, there = position[a], self.opposite(position[a])
         here, there = (x + self.cells * np.rint((near[a] - x) / self.cells) for x in (here, there))
         closer = np.abs(there - near[a]) - np.abs(here - near[a])
-        over = np.where(np.abs(closer) > EVEN, closer < 0, beyond)
+        over = np.where(np.abs(closer) > EVEN_CELLS, closer < 0, beyond)
         result = np.empty_like(position)
         # At the pole itself all lines meet.
         result[a] = np.where(depth == 0, near[a], np.where(over, there, here))
@@ -252,18 +253,21 @@ def _pole(line: Floats, ring: Floats, component: int, at: int) -> Pole | None:
     middle = line[:-1].mean(axis=0)
     spokes = ring - middle
     lengths = np.linalg.norm(spokes, axis=-1)
-    if len(line) < 4 or np.linalg.norm(line - middle, axis=-1).max() > TOGETHER * lengths.min():
+    if (
+        len(line) < 4
+        or np.linalg.norm(line - middle, axis=-1).max() > SAME_POINT_SHARE * lengths.min()
+    ):
         return None
-    if np.linalg.norm(spokes[-1] - spokes[0]) > TOGETHER * lengths.min():
+    if np.linalg.norm(spokes[-1] - spokes[0]) > SAME_POINT_SHARE * lengths.min():
         return None  # longitude on a flat map
     spokes[-1] = spokes[0]
     normal = np.cross(spokes[:-1], spokes[1:]).sum(axis=0)
     area = np.linalg.norm(normal)
-    if area <= TOGETHER * lengths.min() ** 2:
+    if area <= SAME_POINT_SHARE * lengths.min() ** 2:
         return None
     normal /= area
     right = spokes[0] - (spokes[0] @ normal) * normal
-    if np.linalg.norm(right) <= TOGETHER * lengths[0]:
+    if np.linalg.norm(right) <= SAME_POINT_SHARE * lengths[0]:
         return None
     right /= np.linalg.norm(right)
     plane = np.stack([right, np.cross(normal, right)])

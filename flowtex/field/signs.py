@@ -15,17 +15,33 @@ from numpy.typing import NDArray
 from scipy import sparse
 from scipy.sparse.csgraph import dijkstra
 
+from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex.field.poles import Poles
 
-__all__ = ["axes", "corner_signs", "oriented", "products", "with_equal_ends"]
+__all__ = [
+    "axes",
+    "corner_signs",
+    "oriented",
+    "products",
+    "sign_free_faults",
+    "weighted_axis",
+    "with_equal_ends",
+]
 
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
+#: Cost of a step to a node at right angles, over that of a step to one that agrees, less one.
+TURN_COST = 10.0
+#: A vector shorter than this share of the longest has no direction.
+REST_SHARE = 1e-7
 
-#: How much dearer a step to a node at right angles is than to one that agrees.
-RELUCTANCE = 10.0
-#: A vector shorter than this share of the longest is none.
-STILL = 1e-7
+
+def sign_free_faults(v: Floats) -> list[str]:
+    """Return faults in the velocity of a field without a sign."""
+    if v.ndim != 4 or len(v) == 1:
+        return []
+    return [
+        f"sign_free is True and velocity has {len(v)} time steps; a field without a sign has no "
+        "paths in time: give one step, as in velocity[-1], or make a field of each"
+    ]
 
 
 def oriented(velocity: Floats, valid: Bools, periodic: tuple[bool, bool]) -> Floats:
@@ -45,8 +61,8 @@ def oriented(velocity: Floats, valid: Bools, periodic: tuple[bool, bool]) -> Flo
     """
     flat = velocity.reshape(-1, 3)
     length = np.linalg.norm(flat, axis=-1, keepdims=True)
-    # What does not move passes no direction on.
-    valid = valid & (length > STILL * length.max()).reshape(valid.shape)
+    # A vector at rest has no direction to pass on.
+    valid = valid & (length > REST_SHARE * length.max()).reshape(valid.shape)
     number = np.arange(valid.size).reshape(valid.shape)
     pairs = [_along(number, valid, axis) for axis in (0, 1)]
     for axis, closed in enumerate(periodic):
@@ -57,7 +73,7 @@ def oriented(velocity: Floats, valid: Bools, periodic: tuple[bool, bool]) -> Flo
     one, two = np.concatenate(pairs, axis=1)
     unit = flat / np.where(length > 0, length, 1.0)
     agree = np.sum(unit[one] * unit[two], axis=-1)
-    cost = 1 + RELUCTANCE * (1 - np.abs(agree))
+    cost = 1 + TURN_COST * (1 - np.abs(agree))
     graph = sparse.csr_array((cost, (one, two)), shape=(valid.size, valid.size))
     parent = _tree(graph, valid)
     sign = np.where(np.sum(unit * unit[parent], axis=-1) < 0, -1.0, 1.0)
@@ -86,7 +102,7 @@ def with_equal_ends(
     return result
 
 
-def corner_signs(vectors: NDArray[Any]) -> NDArray[np.int8] | None:
+def corner_signs(vectors: AnyArray) -> NDArray[np.int8] | None:
     """Signs that bring the corners of each cell into line with the first.
 
     Parameters
@@ -109,6 +125,12 @@ def corner_signs(vectors: NDArray[Any]) -> NDArray[np.int8] | None:
     return signs if (signs < 0).any() else None
 
 
+def weighted_axis(vectors: Floats, weights: Floats) -> Floats:
+    """Return the weighted mean of vectors (N, C), each turned over to agree with the first."""
+    signs = np.where(vectors @ vectors[0] < 0, -1.0, 1.0)
+    return np.asarray((weights * signs) @ vectors)
+
+
 def products(vectors: Floats) -> Floats:
     """Products of vectors with themselves, over their length, (..., C) to (..., C * C).
 
@@ -126,27 +148,26 @@ def axes(means: Floats) -> Floats:
     size = round(means.shape[-1] ** 0.5)
     safe = np.where(known[..., None], means, 0.0).reshape(*means.shape[:-1], size, size)
     lengths, directions = np.linalg.eigh(safe)
-    found = directions[..., -1] * lengths[..., -1:]
-    return np.where(known[..., None], found, np.nan)
+    longest = directions[..., -1] * lengths[..., -1:]
+    return np.where(known[..., None], longest, np.nan)
 
 
 def _sign(products: Floats) -> Floats:
-    """Signs of the sums along the last axis, which is kept."""
+    """Return signs of the sums along the last axis, (..., 1)."""
     with np.errstate(invalid="ignore"):
         return np.where(np.sum(products, axis=-1, keepdims=True) < 0, -1.0, 1.0)
 
 
-def _along(number: NDArray[np.intp], valid: Bools, axis: int) -> NDArray[np.intp]:
+def _along(number: Indices, valid: Bools, axis: int) -> Indices:
     """Pairs of neighbouring valid nodes along an axis, (2, N)."""
     n, ok = np.swapaxes(number, 0, axis), np.swapaxes(valid, 0, axis)
     both = ok[:-1] & ok[1:]
     return np.stack([n[:-1][both], n[1:][both]])
 
 
-def _tree(graph: Any, valid: Bools) -> NDArray[np.intp]:
+def _tree(graph: Any, valid: Bools) -> Indices:
     """Node that each node takes its direction from; itself for the first of each part."""
-    parts, part = sparse.csgraph.connected_components(graph, directed=False)
-    del parts
+    _, part = sparse.csgraph.connected_components(graph, directed=False)
     rows, columns = valid.shape
     j, i = np.divmod(np.arange(valid.size), columns)
     aside = np.hypot(j - (rows - 1) / 2, i - (columns - 1) / 2)

@@ -13,18 +13,15 @@ from __future__ import annotations
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from flowtex._util.array_types import Bools, Floats
 from flowtex.field.interpolation import cell_of, cubic_weights, fill_blanked
 from flowtex.field.poles import Pole, Poles, find_poles
 
 __all__ = ["Surface"]
 
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
-
 #: Lines from a pole over which the size of the cells comes to be their length alone.
-BESIDE_POLE = 8
+POLE_LINES = 8
 
 
 class Surface:
@@ -125,7 +122,7 @@ class Surface:
         typical = float(np.median(lengths[:, self.valid])) or 1.0
         for pole in self.poles or ():
             near = np.maximum(
-                1 - np.abs(np.arange(self.shape[1 - pole.component]) - pole.line) / BESIDE_POLE, 0
+                1 - np.abs(np.arange(self.shape[1 - pole.component]) - pole.line) / POLE_LINES, 0
             )
             share = near[:, None] if pole.component else near
             lengths[1 - pole.component] = np.hypot(

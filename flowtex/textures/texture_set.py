@@ -27,7 +27,7 @@ from functools import cached_property
 import numpy as np
 
 from flowtex._util.array_types import AnyArray, Floats, Floats32
-from flowtex.field.checks import three
+from flowtex.field.validation import three_components
 from flowtex.settings import Settings
 from flowtex.textures.displacements import NodeDisplacements
 from flowtex.textures.geometry import SurfaceGeometry
@@ -204,7 +204,7 @@ class TextureSet:
     def _tangent(self, slices: TraceSlices) -> AnyArray:
         rate = slices.rate[0]
         if self.paper is not None:
-            return three(rate * self.paper.by_cell())
+            return three_components(rate * self.paper.by_cell())
         surface = self.geometry.field.surface
         p_i, p_j = surface.tangents
         along = rate[..., :1] * p_i + rate[..., 1:] * p_j

@@ -17,6 +17,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from flowtex.field.interpolation import bracket
+
 __all__ = ["BY_LAG", "COMPOSED", "Geometry", "History"]
 
 Floats = NDArray[np.float64]
@@ -170,18 +172,16 @@ class History:
         if not g.moving:
             return np.broadcast_to(here, gone.shape), np.zeros(gone.shape)
         then = np.clip(g.times.reshape(-1, 1, 1) - gone, g.times[0], g.times[-1])
-        step = np.clip(np.searchsorted(g.times, then, side="right") - 1, 0, count - 2)
-        return step, (then - g.times[step]) / (g.times[step + 1] - g.times[step])
+        return bracket(g.times, then)
 
     def _looked_up(self, means: Floats, entry: Ints, lag: Floats, slice_size: int) -> Floats:
         """Displacements at entries of the known slices and at any lag, (T, J, I, 2)."""
         last = len(self._slices) - 1
         knots = self._knots[: last + 1]
-        m = np.clip(np.searchsorted(knots, lag, side="right") - 1, 0, last - 1)
-        late = ((lag - knots[m]) / (knots[m + 1] - knots[m]))[..., None]
+        m, late = bracket(knots, lag)
         at = m * slice_size + entry
         one, two = means[at], means[at + slice_size]
-        return np.asarray(lag[..., None] * (one + (two - one) * late))
+        return np.asarray(lag[..., None] * (one + (two - one) * late[..., None]))
 
     def _around(self) -> tuple[bool, bool]:
         """Whether the (j, i) axis seems to go around: its first and last line are equal."""

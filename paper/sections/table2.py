@@ -49,10 +49,10 @@ def _timed(bench: Bench, name: str, field: FlowField) -> dict[str, float]:
 
 def _drawn(bench: Bench, field: FlowField, slices: Any) -> dict[str, float]:
     """Time the first frame, which loads the textures, and the next; nothing without OpenGL."""
-    from flowtex.diagnostics import prefer_headless, probe
+    from flowtex.diagnostics import opengl_report, prefer_headless
 
     prefer_headless()
-    if not probe().usable:
+    if not opengl_report().usable:
         return {}
     import pyvista as pv
 
@@ -86,7 +86,7 @@ def _drawn(bench: Bench, field: FlowField, slices: Any) -> dict[str, float]:
 
 
 def _table2(bench: Bench) -> Finding:
-    from flowtex.diagnostics import probe
+    from flowtex.diagnostics import opengl_report
 
     flows = {"post": bench.post, "shuttle": bench.shuttle}
     # All steps of the whole vortex field take ten seconds; the quick form takes every second node.
@@ -112,7 +112,7 @@ def _table2(bench: Bench) -> Finding:
         "first frame, s",
         "frames a second",
     )
-    renderer = probe().renderer if probe().usable else ""
+    renderer = opengl_report().renderer if opengl_report().usable else ""
     drawn = (
         f"Drawn at 512 × 512 pixels by: {renderer}."
         if renderer

@@ -38,7 +38,7 @@ def test_a_file_that_cannot_be_drawn_does_not_hide_the_others(tmp_path: Path) ->
 
 def test_lines_of_python_make_the_flow_that_is_shown(tmp_path: Path) -> None:
     from flowtex.app import Library
-    from flowtex.field.io.source import FlowSource
+    from flowtex.field.source import FlowSource
 
     write_flow(tmp_path / "c.vti")
     assert Library.of(tmp_path).python("c.vti") is None

@@ -30,7 +30,7 @@ from flowtex.app.controllers.library import Choice
 from flowtex.app.server.messages import LONGEST, Messages
 from flowtex.app.streaming.quality import MOST_PIXELS
 from flowtex.errors import FieldError
-from flowtex.field.io.source import FlowSource
+from flowtex.field.source import FlowSource
 from flowtex.probe import probe
 from flowtex.settings import TABLE, Settings, SettingsError
 

@@ -170,7 +170,7 @@ def test_a_tilted_plane_has_three_coordinates() -> None:
     assert got["position"].count(",") == got["velocity"].count(",") == 2
     at = hover.index(0.1, 0.3)
     assert at is not None
-    point = probe(view_of(flat(tilted=True)), at, pixel=0.01).reading.position
+    point = probe(view_of(flat(tilted=True)), at, pixel=0.01).field_values.position
     assert project(navigator, point) == pytest.approx([0.1, 0.3])
 
 

@@ -11,9 +11,8 @@ import pytest
 from numpy.typing import NDArray
 
 from flowtex import FlowField
-from flowtex.field.facets import facet
-from flowtex.field.locate import Locator, locate, locator
-from flowtex.field.reading import reading
+from flowtex.field.locate import Locator, locate, locator, surface_point
+from flowtex.field.point_values import values_at
 
 Floats = NDArray[np.float64]
 
@@ -55,17 +54,17 @@ def test_a_point_of_the_surface_is_found(
     # Next to a pole an index says little: positions are compared.
     for _ in range(60):
         at = rng.uniform(0, 1, 2) * [rows - 1, columns - 1]
-        point = facet(field.surface, at).mix(field.surface.points)
+        point = surface_point(field.surface, at).mix(field.surface.points)
         found = locate(field, point)
         assert found is not None
-        there = facet(field.surface, found).mix(field.surface.points)
+        there = surface_point(field.surface, found).mix(field.surface.points)
         assert np.abs(there - point).max() < 1e-9 * field.surface.extent
 
 
 def test_an_index_comes_back(rng: np.random.Generator) -> None:
     field = flat()
     for at in rng.uniform(0.01, 0.99, (40, 2)) * [8, 12]:
-        assert locate(field, reading(field, at).position) == pytest.approx(tuple(at), abs=1e-9)
+        assert locate(field, values_at(field, at).position) == pytest.approx(tuple(at), abs=1e-9)
 
 
 def test_a_point_off_the_surface_has_no_index() -> None:
@@ -88,9 +87,9 @@ def test_a_blanked_cell_has_no_index() -> None:
     assert locate(field, (1.5, 1.5)) is None
     assert locate(field, (3.5, 1.5)) == pytest.approx((1.5, 3.5))
     with pytest.raises(ValueError, match=r"\(1\.5, 1\.5\), in a cell with a blanked node"):
-        reading(field, (1.5, 1.5))
+        values_at(field, (1.5, 1.5))
     # A node beside it belongs to other cells too.
-    assert reading(field, (3, 2)).position == pytest.approx([2, 3, 0])
+    assert values_at(field, (3, 2)).position == pytest.approx([2, 3, 0])
 
 
 def test_a_seam_is_no_border() -> None:
@@ -100,7 +99,7 @@ def test_a_seam_is_no_border() -> None:
     # A point in the next period is the one in this.
     assert locate(flat_map, (365.0, 5.0)) == pytest.approx((6.5, 0.5))
     assert locate(flat_map, (-5.0, 5.0)) == pytest.approx((6.5, 35.5))
-    assert reading(flat_map, (6.5, 36.5)).position == pytest.approx([5, 5, 0])
+    assert values_at(flat_map, (6.5, 36.5)).position == pytest.approx([5, 5, 0])
 
 
 def test_the_nearest_of_two_sheets_counts() -> None:
@@ -142,15 +141,15 @@ def test_a_reading_is_linear_in_space_and_time() -> None:
         length_unit="m",
         time_unit="s",
     )
-    got = reading(field, (1.25, 2.5), 1.5)
+    got = values_at(field, (1.25, 2.5), 1.5)
     assert got.position == pytest.approx([2.5, 1.25, 0])
     assert got.velocity == pytest.approx([1 + 2.5 + 2.5, 2.5, 0])
     assert got.scalars == pytest.approx({"warmth": 7.5 - 1.25, "tide": 1.0})
     assert (got.time, got.speed_unit) == (1.5, "m/s")
-    assert reading(field, (1, 2)).time == 3.0
-    assert reading(field, (1, 2), 1.0).speed == pytest.approx(np.hypot(3, 2))
+    assert values_at(field, (1, 2)).time == 3.0
+    assert values_at(field, (1, 2), 1.0).speed == pytest.approx(np.hypot(3, 2))
     with pytest.raises(ValueError, match="time is 4; expected 1 to 3"):
-        reading(field, (1, 2), 4)
+        values_at(field, (1, 2), 4)
 
 
 @pytest.mark.parametrize(
@@ -168,7 +167,7 @@ def test_the_unit_of_speed(length: str, time: str, speed: str) -> None:
     made = FlowField.from_arrays(
         np.stack([x, y], -1), np.ones((3, 3, 2)), length_unit=length, time_unit=time
     )
-    assert reading(made, (1, 1)).speed_unit == speed
+    assert values_at(made, (1, 1)).speed_unit == speed
 
 
 def test_a_reading_without_a_sign_does_not_cancel() -> None:
@@ -179,7 +178,7 @@ def test_a_reading_without_a_sign_does_not_cancel() -> None:
         points, np.stack([np.cos(half), np.sin(half)], -1), sign_free=True, periodic=""
     )
     for j in np.linspace(0.1, 3.9, 7):
-        got = reading(field, (j, 0.3))
+        got = values_at(field, (j, 0.3))
         assert np.linalg.norm(got.velocity) > 0.65
 
 
@@ -195,4 +194,4 @@ def test_a_reading_without_a_sign_does_not_cancel() -> None:
 )
 def test_a_place_outside_is_refused(at: tuple[float, ...], fault: str) -> None:
     with pytest.raises(ValueError, match=fault):
-        reading(flat(), at)
+        values_at(flat(), at)

@@ -232,7 +232,7 @@ def test_every_variant_compiles_and_streaks(
         noise=noise,
         kernel=kernel,
         resolution=256,
-        camera_position=[(0.5, 0.5, 3), (0.5, 0.5, 0), (0, 1, 0)],
+        camera=[(0.5, 0.5, 3), (0.5, 0.5, 0), (0, 1, 0)],
     )
     middle = picture[80:120, 80:120]
     ones = np.ones((40, 40))

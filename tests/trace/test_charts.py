@@ -232,9 +232,7 @@ def test_the_first_meridian_is_also_the_last() -> None:
 def over_the_pole(field: FlowField, zoom: float, up: float = 1.0) -> AnyArray:
     """Picture of a pole from straight above, y upwards."""
     camera = [(0.0, 0.0, up * (1 + 2.2 / zoom)), (0.0, 0.0, up), (0.0, 1.0, 0.0)]
-    return flowtex.render(
-        field, size=(140, 140), camera_position=camera, scalars=False, lighting=False
-    )
+    return flowtex.render(field, size=(140, 140), camera=camera, scalars=False, lighting=False)
 
 
 @pytest.mark.parametrize(("zoom", "up"), [(4, 1.0), (16, -1.0), (64, 1.0)])

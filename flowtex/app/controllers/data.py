@@ -24,7 +24,7 @@ from flowtex.app.streaming.wishes import Found, Wish
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.interpolation import steps_around
-from flowtex.field.io.source import FlowSource
+from flowtex.field.source import FlowSource
 from flowtex.scene import coarsened_field
 from flowtex.trace import SliceStore
 

@@ -18,7 +18,7 @@ from flowtex.app.controllers.folders import SUFFIXES, search
 from flowtex.app.server.untrusted import shortened
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
-from flowtex.field.io.source import FlowSource, field_bytes
+from flowtex.field.source import FlowSource, field_bytes
 from flowtex.settings import Settings
 from flowtex.trace import SliceStore, shared_store
 

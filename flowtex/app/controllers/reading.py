@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from flowtex.app.streaming.aim import ray
 from flowtex.app.streaming.navigate import Navigator
 from flowtex.app.streaming.places import BEYOND, project, runs
-from flowtex.probe import Probe, Reading, locate, reading
+from flowtex.probe import PointValues, Probe, locate, values_at
 from flowtex.scene import Scene
 
 __all__ = ["Hover", "Lines", "PathCard", "number", "with_unit"]
@@ -74,7 +74,7 @@ class Hover:
         index = self.index(x, y)
         if index is None:
             return None
-        read = reading(self._view.field, index, self._view.time)
+        read = values_at(self._view.field, index, self._view.time)
         lines = [("position", self._vector(read.position, read, digits=self._digits))]
         unit = read.speed_unit
         short = f" {unit}" if 0 < len(unit) <= LONGEST_UNIT else ""
@@ -107,7 +107,7 @@ class Hover:
         zoom = max(self._navigator.zoom, 1.0)
         return int(min(np.ceil(DIGITS + np.log10(zoom)), MOST_DIGITS))
 
-    def _vector(self, vector: Floats, read: Reading, *, digits: int) -> str:
+    def _vector(self, vector: Floats, read: PointValues, *, digits: int) -> str:
         """Write a vector; a surface that lies across z has no third component."""
         surface = self._view.field.surface
         across = surface.frame is not None and not np.abs(surface.frame[:, 2]).any()
@@ -148,7 +148,7 @@ class PathCard:
         lags = np.concatenate([path_lags[inside], probe.lags])
         _, order = np.unique(-lags, return_index=True)
         sampled = np.concatenate([path[inside], places])[order]
-        point = project(navigator, probe.reading.position)
+        point = project(navigator, probe.field_values.position)
         return {
             "path": runs(path),
             "sampled": runs(sampled),
@@ -197,8 +197,8 @@ class PathCard:
     def lines(self) -> Lines:
         """Return the card's lines, as words and numbers."""
         probe = self.probe
-        length = probe.reading.length_unit
-        unit = length if probe.parameter == "arclength" else probe.reading.time_unit
+        length = probe.field_values.length_unit
+        unit = length if probe.parameter == "arclength" else probe.field_values.time_unit
         count = len(probe.lags)
         ended = f" of {probe.asked}: the path ends" if count < probe.asked else ""
         pixels = f"{number(probe.grain / probe.pixel, 3)} pixels"
@@ -233,5 +233,5 @@ class PathCard:
             "bars": self.bars(),
             "path": probe.path.tolist(),
             "samples": probe.points.tolist(),
-            "point": probe.reading.position.tolist(),
+            "point": probe.field_values.position.tolist(),
         }

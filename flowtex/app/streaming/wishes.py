@@ -11,7 +11,7 @@ from typing import TypeVar
 from flowtex._util.progress import Stopped, stoppable
 from flowtex.app.controllers.library import Choice
 from flowtex.field import FlowField
-from flowtex.field.io.source import FlowSource
+from flowtex.field.source import FlowSource
 from flowtex.trace import SliceStore
 
 __all__ = ["Found", "Wish"]

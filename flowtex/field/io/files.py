@@ -1,149 +1,113 @@
-"""From files to a field, and a summary of what a file holds.
+"""From files to the arrays of a field.
 
 PyVista's readers open most files; PLOT3D, which says little about itself, goes through
 :mod:`flowtex.field.io.plot3d`. Whatever a reader raises, and whatever VTK logs, becomes one
-:class:`~flowtex.FieldError` that starts with the name of the file.
+:class:`~flowtex.field.FieldError` that starts with the name of the file.
 """
 
 from __future__ import annotations
 
+import logging
 import math
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 from xml.etree.ElementTree import ParseError
 
 from flowtex.errors import FieldError
-from flowtex.field.field import FlowField
 from flowtex.field.io import plot3d
-from flowtex.field.io.from_pyvista import from_pyvista
-from flowtex.field.io.meshes import is_reader, is_structured, leaves
-from flowtex.field.io.summary import FileSummary, summarize
-from flowtex.field.io.vtk_log import kept_vtk_log
+from flowtex.field.io.from_pyvista import FieldArguments, read_meshes
+from flowtex.field.io.meshes import is_reader, is_structured, leaves, times_of
 
-__all__ = ["FileSummary", "describe", "from_file", "open_file", "reading"]
+__all__ = ["OpenFile", "errors_of_file", "open_file", "read_file"]
 
-_KNOWN = (
+_KNOWN_FORMATS = (
     "a structured mesh that PyVista reads (.vts, .vtr, .vti, .vtk, .vtm, .pvd and more), or "
     "PLOT3D (.xyz with .q beside it)"
 )
 
 
-def from_file(
+@dataclass(frozen=True)
+class OpenFile:
+    """A file that was opened, of which no more is read than its format asks for.
+
+    Attributes
+    ----------
+    path
+        The file.
+    source
+        One of PyVista's readers, or a mesh.
+    velocity
+        Name of the velocity where the format fixes it.
+    """
+
+    path: Path
+    source: Any
+    velocity: str | None
+
+
+def read_file(
     path: str | Path,
     *,
-    vectors: str | None = None,
-    plane: str | None = None,
-    periodic: str | None = None,
     time: float | None = None,
     block: int | str | None = None,
-    sign_free: bool = False,
-) -> FlowField:
-    """Make a field from a file.
+    vectors: str | None = None,
+    **options: Any,
+) -> FieldArguments:
+    """Read what a field needs from a file.
 
-    Parameters
-    ----------
-    path
-        A structured mesh in any format that PyVista reads, or a PLOT3D grid or solution. The
-        other one of the two is found beside it by its name: ``postxyz.bin`` and ``postq.bin``,
-        ``wing.xyz`` (or ``.x``, ``.g``) and ``wing.q``.
-    vectors
-        Name of the velocity; see :func:`flowtex.field.io.from_pyvista.from_pyvista`. A PLOT3D
-        solution gives ``Velocity``, made from its density and momentum.
-    plane
-        Surface to draw from a mesh of three dimensions, such as ``"k=20"``.
-    periodic
-        Axes of the surface that close on themselves, see :meth:`FlowField.from_arrays`.
-    time
-        Draw this one of the times in the file, as a steady field. All of them by default.
-    block
-        Number or name of the block to draw, where the file has several grids. Numbers count the
-        structured grids from 0.
-    sign_free
-        Whether v and -v mean the same, see :meth:`FlowField.from_arrays`.
-
-    Returns
-    -------
-    FlowField
-        Its ``name`` is the file's, without folder and suffix.
+    Parameters are those of :meth:`FlowField.from_file`; the options go to
+    :func:`~flowtex.field.io.from_pyvista.read_meshes`.
 
     Raises
     ------
     FieldError
-        When the file is missing, empty, not readable, of an unknown or broken format, or does
-        not hold a structured flow; the text starts with the path.
+        When the file does not hold a structured flow. This, and whatever else a reader raises,
+        is to be named by :func:`errors_of_file`.
     """
-    file, source, velocity = open_file(path)
-    with reading(file):
-        if time is not None:
-            source = _at_time(source, time)
-        if block is not None:
-            source = _OneBlock(source, block) if is_reader(source) else _pick(source, block)
-        return from_pyvista(
-            source,
-            vectors=vectors if vectors is not None else velocity,
-            plane=plane,
-            periodic=periodic,
-            name=file.stem,
-            sign_free=sign_free,
-        )
+    file = open_file(path)
+    source = file.source
+    if time is not None:
+        source = _at_time(source, time)
+    if block is not None:
+        source = _BlockReader(source, block) if is_reader(source) else _pick(source, block)
+    name = vectors if vectors is not None else file.velocity
+    return read_meshes(source, vectors=name, **options)
 
 
-def describe(path: str | Path) -> FileSummary:
-    """Tell what a file holds, whether or not a flow can be drawn from it.
-
-    Parameters
-    ----------
-    path
-        As for :func:`from_file`. Of a time series the first step is read.
-
-    Returns
-    -------
-    FileSummary
-        ``problem`` says what :func:`from_file` would need to be told, or why it has to refuse.
+def open_file(path: str | Path) -> OpenFile:
+    """Open a file, as for :meth:`FlowField.from_file`.
 
     Raises
     ------
     FieldError
-        When the file cannot be read at all.
+        When it is missing, empty, or of an unknown format; to be named by
+        :func:`errors_of_file`.
     """
-    file, source, velocity = open_file(path)
-    with reading(file):
-        times = _times(source)
-        if is_reader(source):
-            source = source.read()
-        return summarize(file, source, times, velocity)
+    import pyvista as pv
 
-
-def open_file(path: str | Path) -> tuple[Path, Any, str | None]:
-    """Open a file without reading more of it than its format asks for.
-
-    Parameters
-    ----------
-    path
-        As for :func:`from_file`.
-
-    Returns
-    -------
-    path, source, velocity
-        The file; a reader or a mesh; and the name of its velocity where the format fixes it.
-
-    Raises
-    ------
-    FieldError
-        When it is missing, empty, or of an unknown format; the text starts with the path.
-    """
-    file = _checked(path)
-    with reading(file):
-        return file, *_open(file)
-
-
-def _checked(path: str | Path) -> Path:
-    """Refuse a path that leads to nothing readable, before any reader sees it."""
     file = Path(path).expanduser()
+    _check_path(file)
+    grid = plot3d.find_grid(file) or file
+    layout = None
+    if grid.suffix.lower() in plot3d.GRID_SUFFIXES:
+        layout = plot3d.find_layout(grid)
+    if layout is not None:
+        mesh = plot3d.read_plot3d(grid, layout, plot3d.find_solution(grid))
+        return OpenFile(file, mesh, "Velocity")
+    try:
+        return OpenFile(file, pv.get_reader(str(file)), None)
+    except ValueError as error:
+        if "does not support a file" not in str(error):
+            raise
+        raise FieldError(_unknown_format(file)) from error
+
+
+def _check_path(file: Path) -> None:
+    """Refuse a path that leads to nothing readable, before any reader sees it."""
     problem = ""
     if not file.exists():
         problem = "no such file; check the spelling and the folder"
@@ -159,77 +123,30 @@ def _checked(path: str | Path) -> Path:
         )
     else:
         try:
-            with file.open("rb") as opened:
+            with file.open("rb") as stream:
                 # OpenFOAM marks a case with an empty file.
-                if not opened.read(1) and file.suffix != ".foam":
-                    problem = "the file is empty; expected " + _KNOWN
+                if not stream.read(1) and file.suffix != ".foam":
+                    problem = "the file is empty; expected " + _KNOWN_FORMATS
         except OSError as error:
             problem = f"cannot be opened ({error.strerror}); check its permissions"
     if problem:
-        msg = f"{file}: {problem}"
-        raise FieldError(msg)
-    return file
+        raise FieldError(problem)
 
 
-@contextmanager
-def reading(file: Path) -> Iterator[None]:
-    """Turn what readers raise and log into one error that starts with the path."""
-    said_no: Exception | None = None
-    with kept_vtk_log() as log:
-        try:
-            yield
-        except (ValueError, RuntimeError, OSError, KeyError, ImportError, ParseError) as error:
-            said_no = error
-        except (AttributeError, IndexError, TypeError, EOFError) as error:
-            # Readers of broken files trip over what is missing in them.
-            said_no = RuntimeError(f"its content is not as expected ({error})")
-    if log.errors:
-        # VTK goes on after an error and gives a part of the data, or none: the cause is here.
-        msg = f"{file}: the file is broken or incomplete. VTK says: {log.errors[0]}"
-        raise FieldError(msg) from said_no
-    if isinstance(said_no, FieldError):
-        msg = f"{file}: {said_no}"
-        raise FieldError(msg) from said_no
-    if said_no is not None:
-        reason = str(said_no) or type(said_no).__name__
-        msg = f"{file}: cannot be read: {reason}"
-        raise FieldError(msg) from said_no
-    for warning in dict.fromkeys(log.warnings):
-        warnings.warn(f"{file}: VTK says: {warning}", stacklevel=4)
-
-
-def _open(file: Path) -> tuple[Any, str | None]:
-    """Return a reader or a mesh, and the name of its velocity where the format fixes it."""
-    import pyvista as pv
-
-    grid = plot3d.find_grid(file) or file
-    layout = None
-    if grid.suffix.lower() in plot3d.GRID_SUFFIXES:
-        layout = plot3d.find_layout(grid)
-    if layout is not None:
-        return plot3d.read_plot3d(grid, layout, plot3d.find_solution(grid)), "Velocity"
-    try:
-        reader: Any = pv.get_reader(str(file))
-        return reader, None
-    except ValueError as error:
-        if "does not support a file" not in str(error):
-            raise
-        what = repr(file.suffix) if file.suffix else "no suffix"
-        if file.suffix.lower() in {*plot3d.GRID_SUFFIXES, ".q"}:
-            what = "no PLOT3D grid of any layout"
-        msg = f"the format is not known ({what}); expected {_KNOWN}"
-        if file.suffix.lower() in {".nc", ".nc4", ".zarr", ".grib", ".grb"}:
-            msg += ". Open it with xarray; FlowField.from_arrays takes its arrays"
-        raise FieldError(msg) from error
-
-
-def _times(source: Any) -> list[float]:
-    return [float(t) for t in getattr(source, "time_values", None) or []]
+def _unknown_format(file: Path) -> str:
+    """Return the fault of a file that no reader takes."""
+    what = repr(file.suffix) if file.suffix else "no suffix"
+    if file.suffix.lower() in {*plot3d.GRID_SUFFIXES, ".q"}:
+        what = "no PLOT3D grid of any layout"
+    msg = f"the format is not known ({what}); expected {_KNOWN_FORMATS}"
+    if file.suffix.lower() in {".nc", ".nc4", ".zarr", ".grib", ".grb"}:
+        msg += ". Open it with xarray; FlowField.from_arrays takes its arrays"
+    return msg
 
 
 def _at_time(source: Any, time: float) -> Any:
     """Read the one step of a series that is asked for."""
-    times = _times(source)
+    times = times_of(source)
     for value in times:
         if math.isclose(value, time, rel_tol=1e-6, abs_tol=1e-12):
             source.set_active_time_value(value)
@@ -240,7 +157,7 @@ def _at_time(source: Any, time: float) -> Any:
 
 
 @dataclass
-class _OneBlock:
+class _BlockReader:
     """A reader that gives one block of what another reader gives, at any of its times."""
 
     reader: Any
@@ -248,7 +165,7 @@ class _OneBlock:
 
     @property
     def time_values(self) -> list[float]:
-        return _times(self.reader)
+        return times_of(self.reader)
 
     @property
     def active_time_value(self) -> float:
@@ -270,3 +187,93 @@ def _pick(mesh: Any, block: int | str) -> Any:
     listed = ", ".join(f"{number} ({name})" for number, (name, _) in enumerate(grids)) or "none"
     msg = f"block is {block!r}; the structured blocks of the file are: {listed}"
     raise FieldError(msg)
+
+
+@contextmanager
+def errors_of_file(path: str | Path) -> Iterator[None]:
+    """Turn what readers raise and log into one error that starts with the path.
+
+    Raises
+    ------
+    FieldError
+        In place of what was raised inside, or when VTK logged an error.
+
+    Warns
+    -----
+    UserWarning
+        For each warning that VTK logged.
+    """
+    file = Path(path).expanduser()
+    cause: Exception | None = None
+    with _vtk_log() as log:
+        try:
+            yield
+        except (ValueError, RuntimeError, OSError, KeyError, ImportError, ParseError) as error:
+            cause = error
+        except (AttributeError, IndexError, TypeError, EOFError) as error:
+            # Readers of broken files trip over what is missing in them.
+            cause = RuntimeError(f"its content is not as expected ({error})")
+    if log.errors:
+        # VTK goes on after an error and gives a part of the data, or none: the cause is here.
+        msg = f"{file}: the file is broken or incomplete. VTK says: {log.errors[0]}"
+        raise FieldError(msg) from cause
+    if isinstance(cause, FieldError):
+        msg = f"{file}: {cause}"
+        raise FieldError(msg) from cause
+    if cause is not None:
+        reason = str(cause) or type(cause).__name__
+        msg = f"{file}: cannot be read: {reason}"
+        raise FieldError(msg) from cause
+    for warning in dict.fromkeys(log.warnings):
+        warnings.warn(f"{file}: VTK says: {warning}", stacklevel=4)
+
+
+@dataclass
+class _VtkLog:
+    """The first line of each error and of each warning that VTK logged."""
+
+    errors: list[str] = field(default_factory=list)
+    warnings: list[str] = field(default_factory=list)
+
+
+@contextmanager
+def _vtk_log() -> Iterator[_VtkLog]:
+    """Collect VTK's errors and warnings while the block runs, and print none.
+
+    VTK sends errors to an output window and, apart from it, to a logger that writes to standard
+    error; PyVista repeats some of them through Python's root logger. All three are held, and put
+    back as they were. The log is filled when the block ends, also by an exception.
+    """
+    import pyvista as pv
+    from vtkmodules.vtkCommonCore import vtkLogger
+
+    log = _VtkLog()
+    verbosity = vtkLogger.GetCurrentVerbosityCutoff()
+    root = logging.getLogger()
+    quiet = logging.NullHandler()
+    catcher = pv.VtkErrorCatcher(send_to_logging=False)
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
+    # Without a handler the first message would make Python set up logging to standard error.
+    root.addHandler(quiet)
+    root.addFilter(_not_from_vtk)
+    try:
+        with catcher:
+            yield log
+    finally:
+        root.removeFilter(_not_from_vtk)
+        root.removeHandler(quiet)
+        vtkLogger.SetStderrVerbosity(verbosity)
+        log.errors += [_first_line(event.alert) for event in catcher.error_events]
+        log.warnings += [_first_line(event.alert) for event in catcher.warning_events]
+
+
+def _not_from_vtk(record: logging.LogRecord) -> bool:
+    """Drop what PyVista's observer of VTK passes on to the root logger."""
+    return not (record.module == "observers" and "pyvista" in record.pathname)
+
+
+def _first_line(alert: str) -> str:
+    lines = [line for line in alert.splitlines() if line.strip()]
+    # Messages that come without an object start with a line about the source file.
+    texts = [line for line in lines if not line.startswith(("ERROR: In ", "Warning: In "))]
+    return (texts or lines or [""])[0].removeprefix("(nullptr): ").strip()

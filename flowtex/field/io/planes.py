@@ -11,8 +11,8 @@ plane          i is     j is
 ``i = n``      j        k
 =============  =======  =======
 
-Nothing is mirrored for the sake of a right-handed surface: index (i, j) of the plane is what a
-person counts in the mesh.
+Nothing is mirrored for the sake of a right-handed surface: index (i, j) of the plane is that of
+the mesh.
 
 Values of cells come to the nodes as the mean of the visible cells around each node, on both
 sides of the plane, so that nothing leaks out of blanked cells.
@@ -25,14 +25,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from flowtex._util.array_types import AnyArray, Bools, Floats
 from flowtex.errors import raise_faults
 
 __all__ = ["Plane", "choose_plane", "count_nodes", "nodes_to_keep", "plane_faults", "spread"]
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 _PLANE = re.compile(r"\s*([ijk])\s*=\s*([+-]?\d+)\s*", re.IGNORECASE)
 
@@ -55,12 +52,12 @@ class Plane:
     axis: int
     index: int
 
-    def nodes(self, values: NDArray[Any]) -> NDArray[Any]:
+    def nodes(self, values: AnyArray) -> AnyArray:
         """Take the plane out of nodal values, (N, ...) to (J, I, ...)."""
         shaped = values.reshape(*self.dimensions[::-1], *values.shape[1:])
         return np.asarray(np.take(shaped, self.index, axis=2 - self.axis))
 
-    def cells(self, values: NDArray[Any]) -> NDArray[Any]:
+    def cells(self, values: AnyArray) -> AnyArray:
         """Take the cells on both sides of the plane, (N, ...) to (1 or 2, J - 1, I - 1, ...)."""
         counts = [max(n - 1, 1) for n in self.dimensions]
         last = counts[self.axis] - 1
@@ -94,14 +91,14 @@ def plane_faults(dimensions: tuple[int, int, int], plane: Any) -> list[str]:
         ]
     if plane is None:
         return [_choose(dimensions)] if min(dimensions) > 1 else []
-    found = _PLANE.fullmatch(plane) if isinstance(plane, str) else None
-    if found is None:
+    match = _PLANE.fullmatch(plane) if isinstance(plane, str) else None
+    if match is None:
         return [
             f'plane is {plane!r}; expected "i=N", "j=N" or "k=N" with a whole number N, as in '
             f'plane="{_example(dimensions)}"'
         ]
-    letter = found[1].lower()
-    axis, index = "ijk".index(letter), int(found[2])
+    letter = match[1].lower()
+    axis, index = "ijk".index(letter), int(match[2])
     count = dimensions[axis]
     if not -count <= index < count:
         return [
@@ -125,11 +122,11 @@ def choose_plane(dimensions: tuple[int, int, int], plane: str | None) -> Plane:
         When there is no such plane, or one has to be chosen and was not.
     """
     raise_faults(plane_faults(dimensions, plane))
-    found = _PLANE.fullmatch(plane or "")
-    if found is None:
+    match = _PLANE.fullmatch(plane or "")
+    if match is None:
         return Plane(dimensions, dimensions.index(1), 0)
-    axis = "ijk".index(found[1].lower())
-    return Plane(dimensions, axis, int(found[2]) % dimensions[axis])
+    axis = "ijk".index(match[1].lower())
+    return Plane(dimensions, axis, int(match[2]) % dimensions[axis])
 
 
 def _example(dimensions: tuple[int, int, int]) -> str:

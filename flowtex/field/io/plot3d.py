@@ -3,7 +3,7 @@
 A PLOT3D file says nothing about itself: text or binary, byte order, Fortran's record marks, one
 grid or several, two or three dimensions, single or double precision, blanking or none. All of
 them change the length of the file, so the layout is the one whose length fits. This is worked
-out before VTK opens the file: told nothing, it takes any number in a broken header for a size.
+out before VTK opens the file: left to itself, it takes any number in a broken header for a size.
 """
 
 from __future__ import annotations

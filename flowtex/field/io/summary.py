@@ -1,4 +1,4 @@
-"""What a mesh file holds, in numbers and words, whether or not a flow can be drawn from it."""
+"""A summary of a mesh file, whether or not a flow can be drawn from it."""
 
 from __future__ import annotations
 
@@ -10,11 +10,23 @@ from typing import Any, Literal
 import numpy as np
 
 from flowtex.errors import FieldError
-from flowtex.field.io import mesh_arrays
-from flowtex.field.io.meshes import is_structured, leaves, steps
+from flowtex.field.io.files import errors_of_file, open_file
+from flowtex.field.io.meshes import (
+    MeshArray,
+    candidates,
+    catalogue,
+    hidden_nodes,
+    is_reader,
+    is_structured,
+    leaves,
+    time_steps,
+    times_of,
+    values_of,
+    vector_faults,
+)
 from flowtex.field.io.planes import count_nodes, plane_faults
 
-__all__ = ["ArraySummary", "FileSummary", "summarize"]
+__all__ = ["ArraySummary", "FileSummary", "describe"]
 
 
 @dataclass(frozen=True)
@@ -64,7 +76,7 @@ class FileSummary:
     blanked
         Number of nodes that the file hides.
     problem
-        What keeps :func:`flowtex.field.io.files.from_file` from reading it as it stands; empty
+        What keeps :meth:`FlowField.from_file` from reading it as it stands; empty
         when nothing does.
     """
 
@@ -93,33 +105,40 @@ class FileSummary:
         return "\n".join(lines)
 
 
-def summarize(path: Path, mesh: Any, times: Sequence[float], vectors: str | None) -> FileSummary:
-    """Summarize what was read from a file.
+def describe(path: str | Path) -> FileSummary:
+    """Summarize a file, whether or not a flow can be drawn from it.
 
     Parameters
     ----------
     path
-        The file.
-    mesh
-        The mesh, or the first step of a series.
-    times
-        Times of the series; empty for a single mesh.
-    vectors
-        Name of the velocity where the format fixes it.
+        As for :meth:`FlowField.from_file`. Of a time series the first step is read.
+
+    Raises
+    ------
+    FieldError
+        When the file cannot be read at all.
     """
+    with errors_of_file(path):
+        file = open_file(path)
+        mesh = file.source.read() if is_reader(file.source) else file.source
+        return _summary(file.path, mesh, times_of(file.source), file.velocity)
+
+
+def _summary(path: Path, mesh: Any, times: Sequence[float], vectors: str | None) -> FileSummary:
+    """Summarize the mesh of a file, or the first step of a series."""
     parts = list(leaves(mesh))
     part = next((p for _, p in parts if is_structured(p)), parts[0][1] if parts else mesh)
     structured = is_structured(part)
-    hidden = mesh_arrays.hidden_nodes(part) if structured else None
+    hidden = hidden_nodes(part) if structured else None
     data = hasattr(part, "point_data")
-    found = [a.name for a in mesh_arrays.candidates(part)] if data else []
+    names = [a.name for a in candidates(part)] if data else []
     return FileSummary(
         path=path,
         grid=type(part).__name__,
         dimensions=tuple(part.dimensions) if structured else None,
         blocks=tuple(name for name, _ in parts) if len(parts) > 1 else (),
-        arrays=tuple(_array(part, a) for a in mesh_arrays.catalogue(part)) if data else (),
-        candidates=(vectors,) if vectors is not None else tuple(found),
+        arrays=tuple(_array(part, a) for a in catalogue(part)) if data else (),
+        candidates=(vectors,) if vectors is not None else tuple(names),
         times=tuple(times),
         blanked=0 if hidden is None else int(hidden.sum()),
         problem=_problem(mesh, vectors),
@@ -127,24 +146,24 @@ def summarize(path: Path, mesh: Any, times: Sequence[float], vectors: str | None
 
 
 def _problem(mesh: Any, vectors: str | None) -> str:
-    """Say what a field could not be made without being told, or why not at all."""
+    """Return what has to be chosen to make a field, or why none can be made."""
     try:
-        found = list(steps(mesh))
+        series = list(time_steps(mesh))
     except FieldError as error:
         return str(error)
-    dimensions = tuple(found[0].grid.dimensions)
-    if any(tuple(step.grid.dimensions) != dimensions for step in found):
+    dimensions = tuple(series[0].grid.dimensions)
+    if any(tuple(step.grid.dimensions) != dimensions for step in series):
         return "the file has several grids: choose one of the blocks, as in block=0"
     faults = plane_faults(dimensions, None)
     if min(dimensions) > 0:
-        faults += mesh_arrays.vector_faults(found[0].grid, vectors)
+        faults += vector_faults(series[0].grid, vectors)
     return "; ".join(faults)
 
 
-def _array(mesh: Any, array: mesh_arrays.MeshArray) -> ArraySummary:
+def _array(mesh: Any, array: MeshArray) -> ArraySummary:
     low = high = float("nan")
     if array.numeric:
-        values = mesh_arrays.values_of(mesh, array).astype(np.float64)
+        values = values_of(mesh, array).astype(np.float64)
         if array.components > 1:
             values = np.linalg.norm(values.reshape(len(values), -1), axis=1)
         values = values[np.isfinite(values)]

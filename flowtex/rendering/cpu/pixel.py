@@ -8,7 +8,7 @@ from flowtex._util.array_types import Floats, Floats32, Indices
 from flowtex._util.cache import WeakCache
 from flowtex.camera import Camera
 from flowtex.field import Surface
-from flowtex.field.facets import Facet
+from flowtex.field.locate import SurfacePoint
 from flowtex.rendering.cpu.mipmaps import Mips
 from flowtex.rendering.cpu.raster import Coverage
 from flowtex.rendering.cpu.render import lookup_maker
@@ -18,7 +18,9 @@ from flowtex.textures import TextureSet
 __all__ = ["LoadedTextures", "Recorder", "Window", "camera_facing", "cover_place"]
 
 
-def cover_place(surface: Surface, place: Facet, camera: Camera, size: tuple[int, int]) -> Coverage:
+def cover_place(
+    surface: Surface, place: SurfacePoint, camera: Camera, size: tuple[int, int]
+) -> Coverage:
     """Cover one place, whether or not something stands before it.
 
     Parameters
@@ -58,7 +60,7 @@ def cover_place(surface: Surface, place: Facet, camera: Camera, size: tuple[int,
     return Coverage(first, place.nodes[None], place.weights[None], shares[:1], shares[1:])
 
 
-def camera_facing(surface: Surface, place: Facet, pixel: float) -> Camera:
+def camera_facing(surface: Surface, place: SurfacePoint, pixel: float) -> Camera:
     """Return the camera that looks straight at a place, for a picture of one pixel.
 
     Parameters

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.camera import Camera
 from flowtex.field import Surface
-from flowtex.field.facets import HALVES
+from flowtex.field.locate import TRIANGLES
 
 __all__ = ["Coverage", "cover", "rasterise"]
 
@@ -87,7 +87,7 @@ def cover(surface: Surface, camera: Camera, size: tuple[int, int]) -> Coverage:
     clip = points @ matrix[:, :3].T + matrix[:, 3]
     columns = surface.shape[1]
     j, i = np.nonzero(surface.cells)
-    halves = np.array([j * columns + i for half in HALVES for j, i in half])
+    halves = np.array([j * columns + i for half in TRIANGLES for j, i in half])
     triangles = ((j * columns + i)[:, None] + halves).reshape(-1, 3)
     return rasterise(clip, triangles, size)
 

@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from flowtex import FlowField
 from flowtex.errors import FieldError
 from flowtex.field.io import files
-from flowtex.field.io.files import describe, from_file
 from flowtex.field.io.plot3d import find_grid, find_layout, find_solution
+from flowtex.field.io.summary import describe
 
 pv = pytest.importorskip("pyvista")
 
@@ -61,7 +61,7 @@ def series(folder: Path, times: tuple[float, ...] = (0.5, 1.0, 2.0)) -> Path:
 @pytest.mark.parametrize("suffix", [".vts", ".vtk"])
 def test_a_structured_grid(tmp_path: Path, suffix: str) -> None:
     flowing().save(tmp_path / f"my flow{suffix}")
-    field = from_file(tmp_path / f"my flow{suffix}")
+    field = FlowField.from_file(tmp_path / f"my flow{suffix}")
     assert field.name == "my flow"
     assert field.shape == (3, 4)
     assert list(field.scalars) == ["p"]
@@ -84,7 +84,7 @@ def test_other_grids_and_the_options(tmp_path: Path, grid: Any, suffix: str) -> 
     mesh = grid.copy()
     mesh["a"], mesh["b"] = np.ones((24, 3)), np.random.default_rng(0).random((24, 3))
     mesh.save(path)
-    field = from_file(path, vectors="b", plane="k=1", periodic="i")
+    field = FlowField.from_file(path, vectors="b", plane="k=1", periodic="i")
     assert field.periodic == (False, True)
     assert field.shape == (3, 5)
     assert np.array_equal(field.velocity[0, :, :4], mesh["b"].reshape(2, 3, 4, 3)[1])
@@ -94,17 +94,17 @@ def test_blanking_survives_a_file(tmp_path: Path) -> None:
     grid = flowing()
     grid.hide_points([5])
     grid.save(tmp_path / "flow.vts")
-    assert np.argwhere(~from_file(tmp_path / "flow.vts").valid).tolist() == [[1, 1]]
+    assert np.argwhere(~FlowField.from_file(tmp_path / "flow.vts").valid).tolist() == [[1, 1]]
 
 
 def test_a_series(tmp_path: Path) -> None:
-    field = from_file(series(tmp_path))
+    field = FlowField.from_file(series(tmp_path))
     assert field.times.tolist() == [0.5, 1, 2]
     assert field.velocity[:, 0, 1, 0].tolist() == [1.5, 2, 3]
 
 
 def test_one_time_of_a_series(tmp_path: Path) -> None:
-    field = from_file(series(tmp_path), time=1)
+    field = FlowField.from_file(series(tmp_path), time=1)
     assert field.steady
     assert field.velocity[:, 0, 1, 0].tolist() == [2]
 
@@ -112,20 +112,20 @@ def test_one_time_of_a_series(tmp_path: Path) -> None:
 def test_a_time_that_is_not_there(tmp_path: Path) -> None:
     path = series(tmp_path)
     with says(f"{path}: time is 0.7; the file has the times 0.5, 1, 2"):
-        from_file(path, time=0.7)
+        FlowField.from_file(path, time=0.7)
     flowing().save(tmp_path / "flow.vts")
     with says(f"{tmp_path / 'flow.vts'}: time is 0.7; the file has no times"):
-        from_file(tmp_path / "flow.vts", time=0.7)
+        FlowField.from_file(tmp_path / "flow.vts", time=0.7)
 
 
 def test_one_of_several_blocks(tmp_path: Path) -> None:
     path = tmp_path / "flow.vtm"
     pv.MultiBlock({"left": flowing(), "hull": pv.Sphere(), "right": flowing(6)}).save(path)
-    assert from_file(path, block=0).shape == (3, 4)
-    assert from_file(path, block=1).shape == (3, 6)
-    assert from_file(path, block="right").shape == (3, 6)
+    assert FlowField.from_file(path, block=0).shape == (3, 4)
+    assert FlowField.from_file(path, block=1).shape == (3, 6)
+    assert FlowField.from_file(path, block="right").shape == (3, 6)
     with says(f"{path}: block is 2; the structured blocks of the file are: 0 (left), 1 (right)"):
-        from_file(path, block=2)
+        FlowField.from_file(path, block=2)
 
 
 def test_one_block_of_a_series(tmp_path: Path) -> None:
@@ -139,18 +139,18 @@ def test_one_block_of_a_series(tmp_path: Path) -> None:
     ]
     text = f'<VTKFile type="Collection"><Collection>{"".join(lines)}</Collection></VTKFile>'
     path.write_text(text, encoding="utf-8")
-    field = from_file(path, block=0)
+    field = FlowField.from_file(path, block=0)
     assert field.times.tolist() == [0, 1]
     assert field.velocity[:, 0, 1, 0].tolist() == [1.5, 2]
-    assert from_file(path, block=1).shape == (3, 6)
-    assert from_file(path, block=1, time=1).steady
+    assert FlowField.from_file(path, block=1).shape == (3, 6)
+    assert FlowField.from_file(path, block=1, time=1).steady
 
 
 def test_the_time_is_kept_by_the_file(tmp_path: Path) -> None:
     grid = flowing()
     grid.field_data["TimeValue"] = [3.5]
     grid.save(tmp_path / "flow.vts")
-    assert from_file(tmp_path / "flow.vts").times.tolist() == [3.5]
+    assert FlowField.from_file(tmp_path / "flow.vts").times.tolist() == [3.5]
 
 
 # --- PLOT3D ---------------------------------------------------------------------------------
@@ -236,7 +236,7 @@ def label(layout: Plot3D) -> str:
 def test_plot3d_in_any_layout(tmp_path: Path, layout: Plot3D, several: bool) -> None:
     layout.several = several
     layout.save(tmp_path / "wing.xyz", tmp_path / "wing.q")
-    field = from_file(tmp_path / "wing.xyz", plane="k=1")
+    field = FlowField.from_file(tmp_path / "wing.xyz", plane="k=1")
     assert field.name == "wing"
     j, i = np.indices((5, 6)).astype(float)
     assert np.array_equal(field.points, np.stack([i, j, 0 * i + 1], axis=-1))
@@ -248,7 +248,7 @@ def test_plot3d_in_any_layout(tmp_path: Path, layout: Plot3D, several: bool) -> 
 @pytest.mark.parametrize("binary", [True, False])
 def test_plot3d_of_two_dimensions(tmp_path: Path, binary: bool) -> None:
     Plot3D(binary=binary, axes=2, sizes=[(5, 4)]).save(tmp_path / "a.x", tmp_path / "a.q")
-    field = from_file(tmp_path / "a.x")
+    field = FlowField.from_file(tmp_path / "a.x")
     assert field.shape == (4, 5)
     assert field.velocity[0, 3, 4].tolist() == [2.5, 1.5, 0]
 
@@ -256,13 +256,13 @@ def test_plot3d_of_two_dimensions(tmp_path: Path, binary: bool) -> None:
 def test_plot3d_of_several_grids(tmp_path: Path) -> None:
     sizes: list[tuple[int, ...]] = [(5, 4, 3), (3, 6, 2)]
     Plot3D(several=True, sizes=sizes).save(tmp_path / "a.g", tmp_path / "a.q")
-    assert from_file(tmp_path / "a.g", plane="k=0", block=1).shape == (6, 3)
+    assert FlowField.from_file(tmp_path / "a.g", plane="k=0", block=1).shape == (6, 3)
     with says(
         f"{tmp_path / 'a.g'}: block '1' has 3 x 6 x 2 nodes (I x J x K) and the first step "
         "has 5 x 4 x 3 nodes (I x J x K); expected the same nodes in every step. If these are "
         "parts of one mesh and not time steps, give one of them: mesh[0], or block=0 for a file"
     ):
-        from_file(tmp_path / "a.g", plane="k=0")
+        FlowField.from_file(tmp_path / "a.g", plane="k=0")
     assert describe(tmp_path / "a.g").problem == (
         "the file has several grids: choose one of the blocks, as in block=0"
     )
@@ -285,7 +285,7 @@ def test_the_two_files_find_each_other(tmp_path: Path, grid: str, solution: str)
     assert find_solution(tmp_path / grid) == tmp_path / solution
     assert find_grid(tmp_path / solution) == tmp_path / grid
     for name in (grid, solution):
-        found = from_file(tmp_path / name, plane="k=1")
+        found = FlowField.from_file(tmp_path / name, plane="k=1")
         assert found.shape == (5, 6)
         assert found.name == Path(name).stem
 
@@ -297,7 +297,7 @@ def test_a_grid_without_its_solution(tmp_path: Path) -> None:
         f"{path}: {path} is a PLOT3D grid, and no solution lies beside it (looked for postq.bin, "
         "postxyz.q); the velocity is in the solution: put it there under such a name"
     ):
-        from_file(path)
+        FlowField.from_file(path)
 
 
 @pytest.mark.vtk_log_allowed("the solution is cut off")
@@ -306,7 +306,7 @@ def test_a_solution_that_is_cut_off(tmp_path: Path) -> None:
     whole = (tmp_path / "a.q").read_bytes()
     (tmp_path / "a.q").write_bytes(whole[: len(whole) // 2])
     with pytest.raises(FieldError) as caught:
-        from_file(tmp_path / "a.xyz", plane="k=0")
+        FlowField.from_file(tmp_path / "a.xyz", plane="k=0")
     start = f"{tmp_path / 'a.xyz'}: the file is broken or incomplete. VTK says: "
     assert str(caught.value).startswith(start)
 
@@ -321,7 +321,7 @@ def test_a_grid_that_is_cut_off(tmp_path: Path, length: int) -> None:
         f"{tmp_path / 'a.xyz'}: the format is not known (no PLOT3D grid of any layout); expected "
         + KNOWN
     ):
-        from_file(tmp_path / "a.xyz")
+        FlowField.from_file(tmp_path / "a.xyz")
 
 
 def test_random_bytes_are_no_plot3d(tmp_path: Path) -> None:
@@ -336,7 +336,7 @@ def test_random_bytes_are_no_plot3d(tmp_path: Path) -> None:
 
 def test_the_post(data_dir: Path) -> None:
     """The paper's own data: an O-grid whose 76 nodes around the post are the surface's j."""
-    field = from_file(data_dir / "postxyz.bin", plane="k=20")
+    field = FlowField.from_file(data_dir / "postxyz.bin", plane="k=20")
     assert field.shape == (76, 38)
     assert field.periodic == (True, False)
     assert field.name == "postxyz"
@@ -346,7 +346,7 @@ def test_the_post(data_dir: Path) -> None:
     assert set(field.scalars) == {"Density", "StagnationEnergy"}
     tangents = np.linalg.norm(field.surface.tangents, axis=-1)
     assert (tangents[0].max() / tangents[0].min()) * (tangents[1].max() / tangents[1].min()) > 100
-    assert from_file(data_dir / "postq.bin", plane="k=20").shape == (76, 38)
+    assert FlowField.from_file(data_dir / "postq.bin", plane="k=20").shape == (76, 38)
 
 
 def test_the_post_tells_what_it_is(data_dir: Path) -> None:
@@ -361,18 +361,18 @@ def test_the_post_tells_what_it_is(data_dir: Path) -> None:
 
 def test_a_file_that_is_missing(tmp_path: Path) -> None:
     with says(f"{tmp_path / 'flow.vts'}: no such file; check the spelling and the folder"):
-        from_file(tmp_path / "flow.vts")
+        FlowField.from_file(tmp_path / "flow.vts")
     flowing().save(tmp_path / "flow.vtk")
     with says(
         f"{tmp_path / 'flow.vts'}: no such file; check the spelling and the folder. There is "
         "flow.vtk"
     ):
-        from_file(tmp_path / "flow.vts")
+        FlowField.from_file(tmp_path / "flow.vts")
 
 
 def test_a_folder(tmp_path: Path) -> None:
     with says(f"{tmp_path}: a folder, where a file was expected; name the mesh inside it"):
-        from_file(tmp_path)
+        FlowField.from_file(tmp_path)
 
 
 @pytest.mark.parametrize("suffix", [".vts", ".xyz", ".pvd", ".abc"])
@@ -380,7 +380,7 @@ def test_an_empty_file(tmp_path: Path, suffix: str) -> None:
     path = tmp_path / f"flow{suffix}"
     path.touch()
     with says(f"{path}: the file is empty; expected {KNOWN}"):
-        from_file(path)
+        FlowField.from_file(path)
 
 
 def test_a_file_without_permission(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -392,7 +392,7 @@ def test_a_file_without_permission(tmp_path: Path, monkeypatch: pytest.MonkeyPat
 
     monkeypatch.setattr(Path, "open", refuse)
     with says(f"{path}: cannot be opened (Permission denied); check its permissions"):
-        from_file(path)
+        FlowField.from_file(path)
 
 
 @pytest.mark.parametrize("suffix", [".pkl", ".pickle", ".joblib", ".PKL"])
@@ -404,7 +404,7 @@ def test_a_pickle_is_never_loaded(tmp_path: Path, suffix: str) -> None:
         f"{path}: a pickle, which can run any program when it is loaded, and is refused; save the "
         'mesh as VTK instead, as in mesh.save("flow.vts")'
     ):
-        from_file(path)
+        FlowField.from_file(path)
     assert not (tmp_path / "made").exists()
 
 
@@ -412,10 +412,10 @@ def test_a_format_that_is_not_known(tmp_path: Path) -> None:
     path = tmp_path / "flow.abc"
     path.write_text("hello", encoding="ascii")
     with says(f"{path}: the format is not known ('.abc'); expected {KNOWN}"):
-        from_file(path)
+        FlowField.from_file(path)
     path.rename(tmp_path / "flow")
     with says(f"{tmp_path / 'flow'}: the format is not known (no suffix); expected {KNOWN}"):
-        from_file(tmp_path / "flow")
+        FlowField.from_file(tmp_path / "flow")
 
 
 def test_netcdf_is_for_xarray(tmp_path: Path) -> None:
@@ -425,7 +425,7 @@ def test_netcdf_is_for_xarray(tmp_path: Path) -> None:
         f"{path}: the format is not known ('.nc'); expected {KNOWN}. Open it with xarray; "
         "FlowField.from_arrays takes its arrays"
     ):
-        from_file(path)
+        FlowField.from_file(path)
 
 
 @pytest.mark.vtk_log_allowed("these files are broken")
@@ -452,7 +452,7 @@ def test_a_broken_file(
     path.write_text(text, encoding="ascii")
     reason = reason.format(path=path)
     with says(f"{path}: the file is broken or incomplete. VTK says: {reason}"):
-        from_file(path)
+        FlowField.from_file(path)
     with says(f"{path}: the file is broken or incomplete. VTK says: {reason}"):
         describe(path)
     out, err = capfd.readouterr()
@@ -463,13 +463,13 @@ def test_a_broken_series(tmp_path: Path) -> None:
     path = tmp_path / "a.pvd"
     path.write_text("garbage", encoding="ascii")
     with says(f"{path}: cannot be read: syntax error: line 1, column 0"):
-        from_file(path)
+        FlowField.from_file(path)
     whole = series(tmp_path)
     (tmp_path / "step1.vts").unlink()
     with says(
         f"{whole}: cannot be read: Path '{tmp_path / 'step1.vts'}' is invalid or does not exist."
     ):
-        from_file(whole)
+        FlowField.from_file(whole)
 
 
 @pytest.mark.vtk_log_allowed("a file is broken on purpose")
@@ -485,7 +485,7 @@ def test_logging_is_left_as_it_was(tmp_path: Path) -> None:
         vtkOutputWindow.GetInstance(),
     )
     with pytest.raises(FieldError):
-        from_file(tmp_path / "a.vts")
+        FlowField.from_file(tmp_path / "a.vts")
     after = (
         list(root.handlers),
         list(root.filters),
@@ -498,7 +498,7 @@ def test_logging_is_left_as_it_was(tmp_path: Path) -> None:
 def test_what_vtk_only_warns_of_is_passed_on(tmp_path: Path) -> None:
     with (
         pytest.warns(UserWarning, match=r"^a\.vts: VTK says: odd$"),
-        files.reading(Path("a.vts")),
+        files.errors_of_file(Path("a.vts")),
     ):
         from vtkmodules.vtkCommonCore import vtkOutputWindow
 
@@ -509,7 +509,7 @@ def test_an_unstructured_file(tmp_path: Path) -> None:
     path = tmp_path / "hull.vtp"
     pv.Sphere().save(path)
     with pytest.raises(FieldError) as caught:
-        from_file(path)
+        FlowField.from_file(path)
     assert str(caught.value).startswith(f"{path}: the mesh is a PolyData, and no structured grid: ")
 
 
@@ -520,7 +520,7 @@ def test_faults_of_the_field_start_with_the_path(tmp_path: Path) -> None:
         f"{path}: vectors is 'w', and the mesh has no such array. Its arrays, with their "
         "components: v (points, 3), p (points, 1)"
     ):
-        from_file(path, vectors="w")
+        FlowField.from_file(path, vectors="w")
 
 
 # --- summaries ------------------------------------------------------------------------------
@@ -563,7 +563,7 @@ def test_a_file_that_can_be_drawn_has_no_problem(tmp_path: Path) -> None:
     summary = describe(tmp_path / "flow.vts")
     assert summary.problem == ""
     assert str(summary).endswith("  to draw   nothing else is needed")
-    from_file(tmp_path / "flow.vts")
+    FlowField.from_file(tmp_path / "flow.vts")
 
 
 def test_a_series_tells_its_times(tmp_path: Path) -> None:

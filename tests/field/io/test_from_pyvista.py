@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 from flowtex import FlowField
 from flowtex.errors import FieldError
-from flowtex.field.io.from_pyvista import from_pyvista
 from flowtex.field.io.planes import nodes_to_keep, spread
 
 pv = pytest.importorskip("pyvista")
@@ -78,7 +77,7 @@ def expected(i: Any, j: Any, k: Any) -> Floats:
 def test_a_flat_mesh_of_any_direction(
     make: Any, size: tuple[int, int, int], flat_axis: str
 ) -> None:
-    field = from_pyvista(with_flow(make(*size)))
+    field = FlowField.from_pyvista(with_flow(make(*size)))
     first, second = np.arange(4)[None], np.arange(3)[:, None]
     wanted = {
         "k": expected(first, second, 0),
@@ -101,13 +100,13 @@ def test_a_flat_mesh_of_any_direction(
     ],
 )
 def test_a_plane_of_a_solid_mesh(make: Any, plane: str, wanted: Floats) -> None:
-    field = from_pyvista(with_flow(make(5, 4, 3)), plane=plane)
+    field = FlowField.from_pyvista(with_flow(make(5, 4, 3)), plane=plane)
     assert np.array_equal(field.points, wanted)
     np.testing.assert_array_equal(field.velocity[0], wanted + SHIFT)
 
 
 def test_a_flat_mesh_may_be_told_its_plane() -> None:
-    assert from_pyvista(flowing(), plane="k=0").shape == (3, 4)
+    assert FlowField.from_pyvista(flowing(), plane="k=0").shape == (3, 4)
 
 
 def test_an_image_that_is_turned_and_shifted() -> None:
@@ -115,7 +114,7 @@ def test_an_image_that_is_turned_and_shifted() -> None:
     grid.direction_matrix = [[0, -1, 0], [1, 0, 0], [0, 0, 1]]
     grid.offset = (10, 20, 30)
     with_flow(grid)
-    field = from_pyvista(grid, plane="k=1")
+    field = FlowField.from_pyvista(grid, plane="k=1")
     wanted = np.asarray(grid.points).reshape(2, 3, 4, 3)[1]
     np.testing.assert_allclose(field.points, wanted, atol=1e-12)
 
@@ -125,7 +124,7 @@ def test_integer_coordinates_become_real() -> None:
     points = pv.vtk_points(np.asarray(grid.points).astype(np.int32), force_float=False)
     grid.SetPoints(points)
     grid["v"] = np.ones((12, 3))
-    field = from_pyvista(grid)
+    field = FlowField.from_pyvista(grid)
     assert field.points.dtype == np.float64
     assert np.array_equal(field.points, expected(np.arange(4)[None], np.arange(3)[:, None], 0))
 
@@ -135,7 +134,7 @@ def test_a_bare_vtk_mesh_is_a_mesh() -> None:
 
     bare = vtkStructuredGrid()
     bare.ShallowCopy(flowing())
-    assert from_pyvista(bare).shape == (3, 4)
+    assert FlowField.from_pyvista(bare).shape == (3, 4)
 
 
 @pytest.mark.parametrize(
@@ -170,7 +169,7 @@ def test_a_bare_vtk_mesh_is_a_mesh() -> None:
 )
 def test_a_plane_that_is_not_there(plane: Any, text: str) -> None:
     with says(text):
-        from_pyvista(flowing(5, 4, 3), plane=plane)
+        FlowField.from_pyvista(flowing(5, 4, 3), plane=plane)
 
 
 def test_a_plane_across_a_flat_mesh() -> None:
@@ -178,7 +177,7 @@ def test_a_plane_across_a_flat_mesh() -> None:
         "plane is 'i=2', which leaves a single row, as the mesh has 4 x 3 x 1 nodes (I x J x K); "
         "it is one surface already: leave plane out"
     ):
-        from_pyvista(flowing(), plane="i=2")
+        FlowField.from_pyvista(flowing(), plane="i=2")
 
 
 def test_a_single_row_of_nodes() -> None:
@@ -186,13 +185,13 @@ def test_a_single_row_of_nodes() -> None:
         "the mesh has 4 x 1 x 1 nodes (I x J x K), a single row; a surface needs at least 2 nodes "
         "along two of the axes"
     ):
-        from_pyvista(flowing(4, 1, 1))
+        FlowField.from_pyvista(flowing(4, 1, 1))
 
 
 @pytest.mark.parametrize("empty", [pv.StructuredGrid(), pv.ImageData(), pv.RectilinearGrid()])
 def test_an_empty_mesh(empty: Any) -> None:
     with says("the mesh is empty: check that the file or the filter that made it gave any nodes"):
-        from_pyvista(empty)
+        FlowField.from_pyvista(empty)
 
 
 def test_plane_and_vectors_are_refused_together() -> None:
@@ -203,7 +202,7 @@ def test_plane_and_vectors_are_refused_together() -> None:
         "  2. vectors is 'w', and the mesh has no such array. Its arrays, with their components: "
         "v (points, 3)"
     ):
-        from_pyvista(flowing(5, 4, 3), plane="k=9", vectors="w")
+        FlowField.from_pyvista(flowing(5, 4, 3), plane="k=9", vectors="w")
 
 
 # --- vectors --------------------------------------------------------------------------------
@@ -220,7 +219,7 @@ def test_the_only_candidate_is_found() -> None:
     grid["p"] = np.arange(12.0)
     grid["n"] = np.ones((12, 3))
     grid.point_data.active_normals_name = "n"
-    field = from_pyvista(grid)
+    field = FlowField.from_pyvista(grid)
     assert field.velocity[0, 0, 0].tolist() == [0.5, 0.25, 0.125]
 
 
@@ -228,8 +227,8 @@ def test_the_active_vectors_win() -> None:
     grid = flowing()
     grid["w"] = np.full((12, 3), 7.0)
     grid.set_active_vectors("w")
-    assert (from_pyvista(grid).velocity == 7).all()
-    assert (from_pyvista(grid, vectors="v").velocity != 7).any()
+    assert (FlowField.from_pyvista(grid).velocity == 7).all()
+    assert (FlowField.from_pyvista(grid, vectors="v").velocity != 7).any()
 
 
 def test_momentum_that_a_reader_marked_is_no_choice() -> None:
@@ -240,7 +239,7 @@ def test_momentum_that_a_reader_marked_is_no_choice() -> None:
         "the mesh has 2 arrays that could be the velocity: Momentum (points, 3), Velocity "
         '(points, 3); choose one, as in vectors="Velocity"'
     ):
-        from_pyvista(grid)
+        FlowField.from_pyvista(grid)
 
 
 def test_several_candidates_are_listed() -> None:
@@ -250,7 +249,7 @@ def test_several_candidates_are_listed() -> None:
         "the mesh has 2 arrays that could be the velocity: v (points, 3), w (cells, 2); choose "
         'one, as in vectors="w"'
     ):
-        from_pyvista(grid)
+        FlowField.from_pyvista(grid)
 
 
 def test_no_candidate() -> None:
@@ -261,7 +260,7 @@ def test_no_candidate() -> None:
         "real numbers with 2 or 3 components. Its arrays, with their components: p (points, 1). "
         'Join single components with mesh["velocity"] = numpy.column_stack((u, v, w))'
     ):
-        from_pyvista(grid)
+        FlowField.from_pyvista(grid)
 
 
 def test_a_name_that_is_not_there() -> None:
@@ -269,14 +268,14 @@ def test_a_name_that_is_not_there() -> None:
         "vectors is 'V1', and the mesh has no such array. Its arrays, with their components: "
         "v (points, 3)"
     ):
-        from_pyvista(flowing(), vectors="V1")
+        FlowField.from_pyvista(flowing(), vectors="V1")
     grid = structured()
     grid["velocity"] = np.ones((12, 3))
     with says(
         "vectors is 'velcity', and the mesh has no such array. Did you mean \"velocity\"? Its "
         "arrays, with their components: velocity (points, 3)"
     ):
-        from_pyvista(grid, vectors="velcity")
+        FlowField.from_pyvista(grid, vectors="velcity")
 
 
 def test_a_name_of_something_else() -> None:
@@ -286,13 +285,13 @@ def test_a_name_of_something_else() -> None:
         "vectors is 'p', an array of 1 component(s); expected 2 or 3 numbers at each point or "
         "cell. The arrays of the mesh, with their components: v (points, 3), p (points, 1)"
     ):
-        from_pyvista(grid, vectors="p")
+        FlowField.from_pyvista(grid, vectors="p")
 
 
 def test_two_components_and_integers_when_named() -> None:
     grid = structured()
     grid["uv"] = np.arange(24).reshape(12, 2)
-    field = from_pyvista(grid, vectors="uv")
+    field = FlowField.from_pyvista(grid, vectors="uv")
     assert field.velocity[0, 2, 3].tolist() == [22, 23, 0]
 
 
@@ -300,7 +299,7 @@ def test_zero_everywhere_warns() -> None:
     grid = structured()
     grid["v"] = np.zeros((12, 3))
     with pytest.warns(UserWarning, match="^The velocity is zero at every node, so the picture"):
-        from_pyvista(grid)
+        FlowField.from_pyvista(grid)
 
 
 def test_nan_everywhere() -> None:
@@ -310,7 +309,7 @@ def test_nan_everywhere() -> None:
         "none of the 12 nodes is usable: each is blanked, masked or NaN; check the chosen vectors "
         "and the blanking"
     ):
-        from_pyvista(grid)
+        FlowField.from_pyvista(grid)
 
 
 # --- scalars --------------------------------------------------------------------------------
@@ -325,7 +324,7 @@ def test_other_arrays_of_one_component_become_scalars() -> None:
     grid["IBlank"] = np.ones(24, np.int32)
     grid.cell_data["c"] = np.arange(6.0)
     grid.cell_data["p"] = np.full(6, -1.0)
-    field = from_pyvista(grid, vectors="v", plane="k=1")
+    field = FlowField.from_pyvista(grid, vectors="v", plane="k=1")
     assert list(field.scalars) == ["p", "one column", "c"]
     assert np.array_equal(field.scalars["p"][0], np.arange(12, 24).reshape(3, 4))
     assert np.array_equal(field.scalars["one column"], field.scalars["p"])
@@ -339,7 +338,7 @@ def test_other_arrays_of_one_component_become_scalars() -> None:
 def test_cell_vectors_become_means_around_the_nodes() -> None:
     grid = structured()
     grid.cell_data["v"] = np.arange(18.0).reshape(6, 3)
-    field = from_pyvista(grid)
+    field = FlowField.from_pyvista(grid)
     wanted = grid.cell_data_to_point_data()["v"].reshape(3, 4, 3)
     np.testing.assert_allclose(field.velocity[0], wanted)
 
@@ -350,7 +349,8 @@ def test_cells_on_both_sides_of_a_plane_count(plane: str) -> None:
     grid.cell_data["v"] = np.random.default_rng(0).random((36, 3))
     nodes = with_points(grid, grid.cell_data_to_point_data()["v"])
     np.testing.assert_allclose(
-        from_pyvista(grid, plane=plane).velocity, from_pyvista(nodes, plane=plane).velocity
+        FlowField.from_pyvista(grid, plane=plane).velocity,
+        FlowField.from_pyvista(nodes, plane=plane).velocity,
     )
 
 
@@ -374,7 +374,7 @@ def test_hidden_cells_leak_nothing(how: str) -> None:
         velocity[block] = np.nan
     grid.cell_data["v"] = velocity
     grid.cell_data["c"] = velocity[:, 0]
-    field = from_pyvista(grid)
+    field = FlowField.from_pyvista(grid)
     assert np.argwhere(~field.valid).tolist() == [[3, 3]]
     assert (field.velocity[0, field.valid] == 1).all()
     assert (field.scalars["c"][0][field.valid] == 1).all()
@@ -388,7 +388,7 @@ def test_a_wall_one_cell_thick_stays_shut() -> None:
     ghosts = np.zeros((5, 6), np.uint8)
     ghosts[:, 3] = HIDDEN_CELL
     grid.cell_data["vtkGhostType"] = ghosts.ravel()
-    field = from_pyvista(grid)
+    field = FlowField.from_pyvista(grid)
     assert not field.surface.cells[:, 3].any()
     assert field.surface.cells[:, :2].all()
     assert field.surface.cells[:, 5].all()
@@ -413,7 +413,7 @@ def test_duplicates_of_a_neighbouring_piece_are_kept() -> None:
     grid = flowing()
     grid.point_data["vtkGhostType"] = np.full(12, 1, np.uint8)
     grid.cell_data["vtkGhostType"] = np.full(6, 1, np.uint8)
-    assert from_pyvista(grid).valid.all()
+    assert FlowField.from_pyvista(grid).valid.all()
 
 
 def test_means_go_round_a_seam() -> None:
@@ -436,12 +436,12 @@ def annulus() -> Any:
 def test_cell_vectors_agree_on_both_sides_of_a_seam() -> None:
     grid = annulus()
     grid.cell_data["v"] = np.random.default_rng(0).random((36, 3))
-    field = from_pyvista(grid)
+    field = FlowField.from_pyvista(grid)
     assert field.periodic == (False, True)
     cells = grid.cell_data["v"].reshape(3, 12, 3)
     np.testing.assert_allclose(field.velocity[0, 0, 0], (cells[0, 0] + cells[0, -1]) / 2)
     np.testing.assert_allclose(field.velocity[0, 0, -1], (cells[0, 0] + cells[0, -1]) / 2)
-    apart = from_pyvista(grid, periodic="")
+    apart = FlowField.from_pyvista(grid, periodic="")
     assert apart.periodic == (False, False)
     np.testing.assert_allclose(apart.velocity[0, 0, 0], cells[0, 0])
 
@@ -450,7 +450,7 @@ def test_cells_do_not_go_round_a_ring_that_lacks_its_last_ones() -> None:
     grid = annulus().extract_subset([0, 11, 0, 3, 0, 0])
     cells = np.random.default_rng(0).random((3, 11, 3))
     grid.cell_data["v"] = cells.reshape(-1, 3)
-    field = from_pyvista(grid)
+    field = FlowField.from_pyvista(grid)
     assert field.shape == (4, 13)
     np.testing.assert_allclose(field.velocity[0, 0, 0], cells[0, 0])
     np.testing.assert_allclose(field.velocity[0, 0, 11], cells[0, -1])
@@ -462,7 +462,7 @@ def test_a_hidden_cell_beside_a_seam_stays_hidden() -> None:
     ghosts = np.zeros((3, 12), np.uint8)
     ghosts[0, 0] = HIDDEN_CELL
     grid.cell_data["vtkGhostType"] = ghosts.ravel()
-    field = from_pyvista(grid)
+    field = FlowField.from_pyvista(grid)
     assert field.periodic == (False, True)
     assert not field.surface.cells[0, 0]
     assert field.surface.cells[2].all()
@@ -484,21 +484,21 @@ def test_hidden_points_are_not_valid(how: str) -> None:
         flags[:] = 1
         flags[18] = 0
         grid[how] = flags
-    assert np.argwhere(~from_pyvista(grid, plane="k=1").valid).tolist() == [[1, 2]]
-    assert from_pyvista(grid, plane="k=0").valid.all()
+    assert np.argwhere(~FlowField.from_pyvista(grid, plane="k=1").valid).tolist() == [[1, 2]]
+    assert FlowField.from_pyvista(grid, plane="k=0").valid.all()
 
 
 def test_other_codes_of_iblank_carry_data() -> None:
     grid = flowing()
     grid["IBlank"] = np.array([0, -1, 2, 1, -3, 5, 1, 1, 1, 1, 1, 1], np.int32)
-    assert np.argwhere(~from_pyvista(grid).valid).tolist() == [[0, 0]]
+    assert np.argwhere(~FlowField.from_pyvista(grid).valid).tolist() == [[0, 0]]
 
 
 def test_what_a_sampling_filter_missed_is_not_valid() -> None:
     source = pv.ImageData(dimensions=(6, 6, 1))
     source["v"] = np.ones((36, 3))
     target = pv.ImageData(dimensions=(10, 6, 1)).sample(source)
-    field = from_pyvista(target, vectors="v")
+    field = FlowField.from_pyvista(target, vectors="v")
     assert field.valid[:, :6].all()
     assert not field.valid[:, 6:].any()
 
@@ -518,38 +518,38 @@ def at_time(time: float | None, speed: float = 1.0, **size: int) -> Any:
 @pytest.mark.parametrize("container", [list, tuple, pv.MultiBlock])
 def test_grids_are_time_steps(container: Any) -> None:
     series = container([at_time(0.5, 1.0), at_time(2.0, 3.0), at_time(2.5, 4.0)])
-    field = from_pyvista(series)
+    field = FlowField.from_pyvista(series)
     assert field.times.tolist() == [0.5, 2.0, 2.5]
     assert field.velocity[:, 1, 1, 0].tolist() == [1, 3, 4]
     assert field.scalars["p"][:, 1, 1].tolist() == [10, 30, 40]
-    assert from_pyvista(series, times=[0, 1, 2]).times.tolist() == [0, 1, 2]
+    assert FlowField.from_pyvista(series, times=[0, 1, 2]).times.tolist() == [0, 1, 2]
 
 
 def test_steps_without_times_are_numbered() -> None:
-    assert from_pyvista([at_time(None), at_time(7.0)]).times.tolist() == [0, 1]
+    assert FlowField.from_pyvista([at_time(None), at_time(7.0)]).times.tolist() == [0, 1]
 
 
 def test_a_single_mesh_keeps_its_time() -> None:
-    assert from_pyvista(at_time(7.0)).times.tolist() == [7]
+    assert FlowField.from_pyvista(at_time(7.0)).times.tolist() == [7]
 
 
 def test_one_structured_block_is_the_mesh() -> None:
     blocks = pv.MultiBlock([None, pv.Sphere(), pv.MultiBlock([at_time(None, 5.0), None])])
-    field = from_pyvista(blocks)
+    field = FlowField.from_pyvista(blocks)
     assert field.steady
     assert (field.velocity == 5).all()
     steps = [pv.MultiBlock([at_time(1.0, 1.0)]), pv.MultiBlock([at_time(2.0, 2.0)])]
-    assert from_pyvista(steps).times.tolist() == [1, 2]
+    assert FlowField.from_pyvista(steps).times.tolist() == [1, 2]
 
 
 def test_a_block_of_a_single_row_is_not_the_mesh() -> None:
-    assert from_pyvista(pv.MultiBlock([flowing(4, 1, 1), flowing()])).shape == (3, 4)
+    assert FlowField.from_pyvista(pv.MultiBlock([flowing(4, 1, 1), flowing()])).shape == (3, 4)
 
 
 def test_a_node_hidden_at_one_time_is_hidden_at_all() -> None:
     second = at_time(1.0)
     second.hide_points([5])
-    field = from_pyvista([at_time(0.0), second])
+    field = FlowField.from_pyvista([at_time(0.0), second])
     assert np.argwhere(~field.valid).tolist() == [[1, 1]]
 
 
@@ -571,16 +571,16 @@ class Reader:
 def test_a_reader_of_a_series_is_read_through_and_left_as_it_was() -> None:
     reader = Reader({t: pv.MultiBlock([at_time(None, t)]) for t in (1.0, 2.0, 4.0)})
     reader.set_active_time_value(2.0)
-    field = from_pyvista(reader)
+    field = FlowField.from_pyvista(reader)
     assert field.times.tolist() == [1, 2, 4]
     assert field.velocity[:, 0, 0, 0].tolist() == [1, 2, 4]
     assert reader.active_time_value == 2.0
-    assert from_pyvista(Reader({3.0: at_time(None)})).times.tolist() == [3]
+    assert FlowField.from_pyvista(Reader({3.0: at_time(None)})).times.tolist() == [3]
 
 
 def test_a_reader_of_pyvista_is_a_reader(tmp_path: Path) -> None:
     flowing().save(tmp_path / "flow.vts")
-    assert from_pyvista(pv.get_reader(tmp_path / "flow.vts")).shape == (3, 4)
+    assert FlowField.from_pyvista(pv.get_reader(tmp_path / "flow.vts")).shape == (3, 4)
 
 
 def test_times_out_of_order() -> None:
@@ -588,12 +588,12 @@ def test_times_out_of_order() -> None:
         "times[1] = 1 does not come after times[0] = 2; expected strictly increasing times: sort "
         "the steps, and drop those that repeat"
     ):
-        from_pyvista([at_time(2.0), at_time(1.0)])
+        FlowField.from_pyvista([at_time(2.0), at_time(1.0)])
 
 
 def test_times_of_another_number() -> None:
     with says("times has shape (3,); expected (2,), one for each step of velocity"):
-        from_pyvista([at_time(0.0), at_time(1.0)], times=[0, 1, 2])
+        FlowField.from_pyvista([at_time(0.0), at_time(1.0)], times=[0, 1, 2])
 
 
 PARTS = (
@@ -607,7 +607,7 @@ def test_steps_of_another_size() -> None:
         "step 1 has 5 x 3 x 1 nodes (I x J x K) and the first step has 4 x 3 x 1 nodes "
         "(I x J x K); expected the same nodes in every step." + PARTS
     ):
-        from_pyvista([at_time(0.0), at_time(1.0, i=5)])
+        FlowField.from_pyvista([at_time(0.0), at_time(1.0, i=5)])
 
 
 def test_parts_of_one_mesh_are_no_steps() -> None:
@@ -617,13 +617,13 @@ def test_parts_of_one_mesh_are_no_steps() -> None:
         "the nodes of block 'right' are up to 3 away from those of the first step; moving meshes "
         "are not supported: sample all steps onto one mesh with mesh.sample(step)." + PARTS
     ):
-        from_pyvista(pv.MultiBlock({"left": left, "right": right}))
+        FlowField.from_pyvista(pv.MultiBlock({"left": left, "right": right}))
 
 
 def test_rounded_nodes_have_not_moved() -> None:
     second = at_time(1.0)
     second.points = np.asarray(second.points) * (1 + 1e-9)
-    assert len(from_pyvista([at_time(0.0), second]).times) == 2
+    assert len(FlowField.from_pyvista([at_time(0.0), second]).times) == 2
 
 
 def test_a_step_without_the_vectors() -> None:
@@ -633,18 +633,18 @@ def test_a_step_without_the_vectors() -> None:
         "step 1 has no array v (points, 3), which the first step has; expected it in every step. "
         "Its arrays, with their components: p (points, 1)"
     ):
-        from_pyvista([at_time(0.0), second])
+        FlowField.from_pyvista([at_time(0.0), second])
 
 
 def test_a_scalar_that_a_step_lacks_is_left_out() -> None:
     second = at_time(1.0)
     second.point_data.remove("p")
-    assert not from_pyvista([at_time(0.0), second]).scalars
+    assert not FlowField.from_pyvista([at_time(0.0), second]).scalars
 
 
 def test_an_empty_list() -> None:
     with says("the list of meshes is empty; expected one structured mesh for each time step"):
-        from_pyvista([])
+        FlowField.from_pyvista([])
 
 
 def test_a_step_of_several_blocks() -> None:
@@ -652,7 +652,7 @@ def test_a_step_of_several_blocks() -> None:
         "step 0 has 2 structured blocks: 4 x 3 x 1 nodes (I x J x K); 5 x 3 x 1 nodes "
         "(I x J x K); give the one to draw: mesh[0], or block=0 for a file"
     ):
-        from_pyvista([pv.MultiBlock([flowing(), flowing(5)])])
+        FlowField.from_pyvista([pv.MultiBlock([flowing(), flowing(5)])])
 
 
 # --- what is no structured mesh -------------------------------------------------------------
@@ -669,12 +669,12 @@ def test_a_step_of_several_blocks() -> None:
 )
 def test_an_unstructured_mesh(mesh: Any, what: str) -> None:
     with says(what + UNSTRUCTURED):
-        from_pyvista(mesh)
+        FlowField.from_pyvista(mesh)
 
 
 def test_a_multiblock_without_blocks() -> None:
     with says("the mesh has no blocks; check the file or the filter that made it"):
-        from_pyvista(pv.MultiBlock([None]))
+        FlowField.from_pyvista(pv.MultiBlock([None]))
 
 
 @pytest.mark.parametrize("thing", [np.ones((3, 4, 3)), "flow.vts", None])
@@ -684,7 +684,7 @@ def test_no_mesh_at_all(thing: Any) -> None:
         "RectilinearGrid, ImageData or MultiBlock, a list of them, or a reader. Arrays go to "
         "FlowField.from_arrays(points, velocity)"
     ):
-        from_pyvista(thing)
+        FlowField.from_pyvista(thing)
 
 
 def test_the_advice_for_unstructured_meshes_works() -> None:

@@ -17,6 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import fft
 
+from flowtex.examples._shipped import periodic_velocity
+
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
@@ -52,7 +54,7 @@ class PeriodicFlow:
         return np.asarray(kx**2 + ky**2)
 
     @cached_property
-    def kept(self) -> NDArray[np.bool_]:
+    def resolved(self) -> NDArray[np.bool_]:
         """Modes that the two-thirds rule keeps, (N, N // 2 + 1)."""
         ky, kx = self.wavenumbers
         limit = 2.0 * np.pi * self.size / 3.0
@@ -60,10 +62,7 @@ class PeriodicFlow:
 
     def velocity(self, vorticity: Complex) -> Real:
         """Velocity (N, N, 2) at the nodes from the coefficients of the vorticity."""
-        ky, kx = self.wavenumbers
-        psi = vorticity / np.where(self.square == 0.0, np.inf, self.square)
-        parts = fft.irfft2(np.stack([1j * ky * psi, -1j * kx * psi]), (self.size, self.size))
-        return np.moveaxis(parts, 0, -1)
+        return periodic_velocity(vorticity)
 
     def _change(self, vorticity: Complex) -> Complex:
         """Coefficients of - u . grad w."""
@@ -73,7 +72,7 @@ class PeriodicFlow:
         )
         velocity = self.velocity(vorticity)
         product = velocity[..., 0] * slopes[0] + velocity[..., 1] * slopes[1]
-        return np.where(self.kept, -fft.rfft2(product), 0.0)
+        return np.where(self.resolved, -fft.rfft2(product), 0.0)
 
     def advance(self, vorticity: Complex, step: float, count: int = 1) -> Complex:
         """Advance the coefficients of the vorticity by `count` time steps.
@@ -93,7 +92,7 @@ class PeriodicFlow:
             Coefficients at the end, without the modes that the two-thirds rule drops.
         """
         half = np.exp(-self.viscosity * self.square * step / 2.0)
-        now = np.where(self.kept, vorticity, 0.0)
+        now = np.where(self.resolved, vorticity, 0.0)
         for _ in range(count):
             first = self._change(now)
             second = self._change(half * (now + step / 2.0 * first))
@@ -133,7 +132,7 @@ def decaying_turbulence(size: int, seed: int, waves: float = 6.0) -> Complex:
     noise = fft.rfft2(np.random.default_rng(seed).standard_normal((coarse, coarse)))
     flow = PeriodicFlow(coarse, 0.0)
     count = np.sqrt(flow.square) / (2.0 * np.pi)
-    shaped = np.where(flow.kept, noise * count * (count / waves) ** 2, 0.0)
+    shaped = np.where(flow.resolved, noise * count * (count / waves) ** 2, 0.0)
     shaped *= np.exp(-((count / waves) ** 2))
     shaped /= np.sqrt(2.0 * flow.energy(shaped))
     return resample(shaped, size)
@@ -159,4 +158,4 @@ def resample(vorticity: Complex, size: int) -> Complex:
     result = np.zeros((size, size // 2 + 1), dtype=np.complex128)
     result[: top + 1, : top + 1] = vorticity[: top + 1, : top + 1]
     result[-top:, : top + 1] = vorticity[-top:, : top + 1]
-    return result * (size / old) ** 2
+    return np.asarray(result * (size / old) ** 2)

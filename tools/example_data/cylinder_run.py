@@ -1,8 +1,8 @@
-"""How the shipped period of vortex shedding is computed, and in which form it is stored.
+"""Vortex shedding, the example ``cylinder``: how it is computed, and in which form it is stored.
 
 The run has four stages: a coarse grid from rest until the wake sheds; the full grid until the
 coarse wake has left it; a few periods to measure the period; and, with a step that divides it,
-one whole period of which every 40th step is kept. Kept are velocities on an O-grid that ends
+one whole period of which every 40th step is stored: velocities on an O-grid that ends
 inside the computed domain, in 16-bit steps of the largest component, and the vorticity of the
 first of them in full, from which the run can be taken up again.
 """
@@ -11,25 +11,41 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
+from cylinder_flow import RADIUS, CylinderFlow, CylinderSetup
 from numpy.typing import NDArray
+from packing import pack, save
 from scipy import fft
 from scipy.interpolate import make_interp_spline
 
-from flowtex.examples._cylinder_flow import RADIUS, CylinderFlow, CylinderSetup
+from flowtex.examples._shipped import CYLINDER, DATA
 
 Real = NDArray[np.float64]
 
-__all__ = ["FULL", "STEPS", "Shedding", "node_radii", "node_velocity", "refine", "run"]
+__all__ = [
+    "FULL",
+    "STEPS",
+    "Shedding",
+    "node_radii",
+    "node_velocity",
+    "refine",
+    "restart",
+    "run",
+    "write",
+]
+
+#: The state from which the run can be taken up.
+RESTART = Path(__file__).parent / "cylinder_restart.npz"
 
 #: Grid and Reynolds number of the shipped run; its step is then set to divide the period.
 FULL = CylinderSetup()
 COARSE = replace(FULL, modes=64, intervals=128, step=0.01)
 #: Time from rest on the coarse grid, on the full one until it settles, and to find the period.
 DURATIONS = (120.0, 45.0, 20.0)
-#: Time steps from one kept instant to the next, and kept instants less one in a period.
-STEPS, KEPT = 40, 30
+#: Time steps from one stored instant to the next, and stored instants less one in a period.
+STEPS, INSTANTS = 40, 30
 #: Nodes outwards, and around without the closing one.
 ROWS, COLUMNS = 65, 160
 #: Radius at which the shipped grid ends; the computed one goes on to ``FULL.outer``.
@@ -70,7 +86,7 @@ def node_radii() -> Real:
     """Radii of the shipped grid (65,): cells of 0.02 diameters at the wall, of 0.43 outside."""
     s = np.linspace(-3.0, 3.0, ROWS)
     rise = np.logaddexp(0.0, s)
-    return RADIUS + (EDGE - RADIUS) * (rise - rise[0]) / (rise[-1] - rise[0])
+    return np.asarray(RADIUS + (EDGE - RADIUS) * (rise - rise[0]) / (rise[-1] - rise[0]))
 
 
 def node_velocity(flow: CylinderFlow) -> Real:
@@ -166,12 +182,37 @@ def run(
     flow = refine(flow, full)
     _advance(flow, round(settle / full.step), tell)
     period = _period(_advance(flow, round(measure / full.step), tell))
-    flow = refine(flow, replace(full, step=period / (STEPS * KEPT)))
-    _advance(flow, STEPS * KEPT, tell)
+    flow = refine(flow, replace(full, step=period / (STEPS * INSTANTS)))
+    _advance(flow, STEPS * INSTANTS, tell)
     start = flow.vorticity
     velocity, forces = [node_velocity(flow)], [flow.forces()]
-    for _ in range(KEPT):
+    for _ in range(INSTANTS):
         forces.extend((drag, lift) for _, drag, lift in _advance(flow, STEPS, tell))
         velocity.append(node_velocity(flow))
-    times: Real = np.linspace(0.0, KEPT * STEPS * flow.setup.step, KEPT + 1)
+    times: Real = np.linspace(0.0, INSTANTS * STEPS * flow.setup.step, INSTANTS + 1)
     return Shedding(np.array(velocity), times, np.array(forces), flow.setup, start)
+
+
+def write(shedding: Shedding, folder: Path | None = None) -> None:
+    """Write the example's file, and the state from which the run can be taken up."""
+    packed, step = pack(shedding.velocity, axis=2)
+    setup = shedding.setup
+    facts = {
+        "times": shedding.times,
+        "radii": node_radii(),
+        "forces": shedding.forces.astype(np.float32),
+        "reynolds": setup.reynolds,
+        "strouhal": shedding.strouhal,
+        "drag": shedding.forces[1:, 0].mean(),
+        "lift": np.abs(shedding.forces[:, 1]).max(),
+    }
+    save((folder or DATA) / CYLINDER, {"velocity": packed, "step": step, **facts})
+    start = shedding.start.astype(np.complex64)
+    save((folder or RESTART.parent) / RESTART.name, {"vorticity": start, "step": setup.step})
+
+
+def restart(file: Path = RESTART) -> CylinderFlow:
+    """Return the flow at the first stored instant, ready to advance."""
+    with np.load(file, allow_pickle=False) as arrays:
+        setup = replace(FULL, step=float(arrays["step"]))
+        return CylinderFlow(setup, arrays["vorticity"].astype(np.complex128))

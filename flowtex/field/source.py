@@ -1,7 +1,7 @@
 """A file or a mesh that stays open, and gives one field after another.
 
-A person who looks for the right plane asks for many of them. The file is read once then, and each
-plane is taken out of what is in memory; only a series too large for that is read again.
+Who looks for the right plane asks for many of them: the file is read once, and each plane is taken
+from memory. Only a series too large for that is read again.
 """
 
 from __future__ import annotations
@@ -11,19 +11,17 @@ from typing import Any
 
 from flowtex.errors import FieldError
 from flowtex.field.field import FlowField
-from flowtex.field.io.files import open_file, reading
-from flowtex.field.io.from_pyvista import from_pyvista
-from flowtex.field.io.mesh_arrays import candidates
-from flowtex.field.io.meshes import Step, is_structured, leaves, steps
+from flowtex.field.io.files import errors_of_file, open_file
+from flowtex.field.io.meshes import TimeStep, candidates, is_structured, leaves, time_steps
 
 __all__ = ["FlowSource", "field_bytes"]
 
-#: Bytes of a series that are kept in memory.
-KEEP = 2_000_000_000
+#: Size of a series that is held in memory; a larger one is read again for each field.
+MAX_SERIES_BYTES = 2_000_000_000
 
 
 class FlowSource:
-    """What fields can be made from.
+    """A mesh, a series or a field, from which one field after another is made.
 
     Parameters
     ----------
@@ -41,11 +39,11 @@ class FlowSource:
     vectors
         Names of the arrays that may be the velocity; empty where there is no choice.
     dimensions
-        Number of nodes (I, J, K); ``None`` for a field that is made already.
+        Number of nodes (I, J, K); ``None`` for a field.
     blocks
         Names of the structured grids, where there are several that are no time steps.
     nbytes
-        Bytes that are in memory for it.
+        Its size in memory.
 
     Raises
     ------
@@ -66,24 +64,24 @@ class FlowSource:
         if isinstance(mesh, FlowField):
             self.name, self.nbytes = name or mesh.name, field_bytes(mesh)
             return
-        found = self._series(mesh)
-        if found is None:
+        steps = self._series(mesh)
+        if steps is None:
             self.blocks = tuple(self._grids)
-            found = [Step(next(iter(self._grids.values())), None, "the mesh")]
-        self._describe(found[0].grid)
+            steps = [TimeStep(next(iter(self._grids.values())), None, "the mesh")]
+        self._describe(steps[0].grid)
 
     @classmethod
     def from_file(cls, path: str | Path) -> FlowSource:
-        """Open a file; :func:`flowtex.field.io.files.from_file` says which.
+        """Open a file, as for :meth:`FlowField.from_file`.
 
         Raises
         ------
         FieldError
             When it cannot be read; the text starts with the path.
         """
-        file, mesh, velocity = open_file(path)
-        with reading(file):
-            return cls(mesh, name=file.stem, velocity=velocity)
+        with errors_of_file(path):
+            file = open_file(path)
+            return cls(file.source, name=file.path.stem, velocity=file.velocity)
 
     @property
     def planes(self) -> dict[str, int]:
@@ -125,7 +123,9 @@ class FlowSource:
         if plane is None and self.planes:
             plane = f"k={self.planes['k'] // 2}"
         chosen = vectors or (self.vectors[0] if self.vectors else None)
-        return from_pyvista(self._mesh, vectors=chosen, plane=plane, name=self.name, **options)
+        return FlowField.from_pyvista(
+            self._mesh, vectors=chosen, plane=plane, name=self.name, **options
+        )
 
     def part(self, block: str | None = None) -> FlowSource:
         """Return the source of one of the :attr:`blocks`; this one itself where there are none.
@@ -155,35 +155,33 @@ class FlowSource:
         return self._parts[block]
 
     def _describe(self, grid: Any) -> None:
-        """Note what one grid offers."""
+        """Set the dimensions and the names of the vectors."""
         dimensions = tuple(int(n) for n in grid.dimensions)
         self.dimensions = (dimensions[0], dimensions[1], dimensions[2])
-        found = [array.name for array in candidates(grid)]
-        if self._velocity is not None:
-            found = [self._velocity, *(name for name in found if name != self._velocity)]
-        elif grid.active_vectors_name in found:
-            found.sort(key=lambda name: name != grid.active_vectors_name)
-        self.vectors = tuple(dict.fromkeys(found))
+        names = [array.name for array in candidates(grid)]
+        first = grid.active_vectors_name if self._velocity is None else self._velocity
+        if self._velocity is not None or first in names:
+            names = [first, *names]
+        self.vectors = tuple(dict.fromkeys(names))
 
-    def _series(self, mesh: Any) -> list[Step] | None:
-        """Time steps in a mesh, kept where they fit; ``None`` where it has unlike grids."""
+    def _series(self, mesh: Any) -> list[TimeStep] | None:
+        """Return the time steps of a mesh, in memory where they fit; ``None`` for unlike grids."""
         several = [(name, grid) for name, grid in leaves(mesh) if is_structured(grid)]
         if len({tuple(grid.dimensions) for _, grid in several}) > 1:
             self._grids = dict(several)
             self.nbytes = sum(int(grid.actual_memory_size) * 1024 for _, grid in several)
             return None
-        kept, size = [], 0
-        for step in steps(mesh):
-            kept.append(step)
-            size += int(step.grid.actual_memory_size) * 1024
-            self.nbytes = size
-            if size > KEEP:
-                return kept[:1]
-        if len(kept) == 1:
-            self._mesh = kept[0].grid
-        elif all(step.time is not None for step in kept) or not isinstance(mesh, (list, tuple)):
-            self._mesh = _Kept(kept)
-        return kept
+        steps: list[TimeStep] = []
+        for step in time_steps(mesh):
+            steps.append(step)
+            self.nbytes += int(step.grid.actual_memory_size) * 1024
+            if self.nbytes > MAX_SERIES_BYTES:
+                return steps[:1]
+        if len(steps) == 1:
+            self._mesh = steps[0].grid
+        elif all(step.time is not None for step in steps) or not isinstance(mesh, (list, tuple)):
+            self._mesh = _StepReader(steps)
+        return steps
 
 
 def field_bytes(field: FlowField) -> int:
@@ -192,15 +190,16 @@ def field_bytes(field: FlowField) -> int:
     return sum(array.nbytes for array in arrays)
 
 
-class _Kept:
-    """Steps of a series in memory, read as PyVista's readers are."""
+class _StepReader:
+    """Steps of a series in memory, with the interface of PyVista's readers."""
 
-    def __init__(self, kept: list[Step]) -> None:
-        self._kept = kept
+    def __init__(self, steps: list[TimeStep]) -> None:
+        self._steps = steps
         self._at = 0
-        known = all(step.time is not None for step in kept)
+        known = all(step.time is not None for step in steps)
         self.time_values = [
-            float(n if step.time is None or not known else step.time) for n, step in enumerate(kept)
+            float(n if step.time is None or not known else step.time)
+            for n, step in enumerate(steps)
         ]
 
     @property
@@ -211,4 +210,4 @@ class _Kept:
         self._at = self.time_values.index(time)
 
     def read(self) -> Any:
-        return self._kept[self._at].grid
+        return self._steps[self._at].grid

@@ -1,4 +1,4 @@
-"""Make the shipped files of the examples again: ``python -m flowtex.examples.build``.
+"""Make the shipped files of the examples again: ``python tools/example_data/build.py``.
 
 The vortices take about half a minute, the cylinder five. A folder may be named; by default the
 files replace those of the package.
@@ -10,10 +10,12 @@ import argparse
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+import cylinder_run
+import vortex_run
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-from flowtex.examples import _cylinder, _cylinder_run, _store, _vortex
+from flowtex.examples._shipped import DATA
 
 __all__ = ["main"]
 
@@ -27,9 +29,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
         Names of the examples, all by default, and ``--folder FOLDER``. By default those of the
         command line.
     """
-    parser = argparse.ArgumentParser(prog="python -m flowtex.examples.build", description=__doc__)
+    parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("examples", nargs="*", help=f"of {', '.join(BUILDERS)}; all by default")
-    parser.add_argument("--folder", type=Path, default=_store.DATA, help="where to write")
+    parser.add_argument("--folder", type=Path, help="where to write")
     options = parser.parse_args(arguments)
     for name in options.examples:
         if name not in BUILDERS:
@@ -38,21 +40,21 @@ def main(arguments: Sequence[str] | None = None) -> None:
     with Progress(*columns, TimeRemainingColumn(), console=Console(stderr=True)) as progress:
         for name in options.examples or BUILDERS:
             BUILDERS[name](progress, options.folder)
-    for path in sorted(options.folder.glob("*.npz")):
+    for path in sorted((options.folder or DATA).glob("*.npz")):
         Console().print(f"{path.name}: {path.stat().st_size / 1e6:.2f} MB")
 
 
-def _vortex_files(progress: Progress, folder: Path) -> None:
-    total = _vortex.BEFORE + _vortex.BETWEEN * (_vortex.KEPT - 1)
+def _build_vortex(progress: Progress, folder: Path | None) -> None:
+    total = vortex_run.STEPS_BEFORE + vortex_run.STEPS_BETWEEN * (vortex_run.INSTANTS - 1)
     task = progress.add_task("vortex", total=total)
-    _vortex.write(*_vortex.run(lambda count: progress.advance(task, count)), folder)
+    vortex_run.write(*vortex_run.run(lambda count: progress.advance(task, count)), folder)
 
 
-def _cylinder_files(progress: Progress, folder: Path) -> None:
+def _build_cylinder(progress: Progress, folder: Path | None) -> None:
     # About twice the period of 6.1 follows the stages whose length is set beforehand.
-    task = progress.add_task("cylinder", total=sum(_cylinder_run.DURATIONS) + 12.2)
-    shedding = _cylinder_run.run(lambda time: progress.advance(task, time))
-    _cylinder.write(shedding, folder)
+    task = progress.add_task("cylinder", total=sum(cylinder_run.DURATIONS) + 12.2)
+    shedding = cylinder_run.run(lambda time: progress.advance(task, time))
+    cylinder_run.write(shedding, folder)
     progress.update(task, completed=progress.tasks[task].total)
     progress.console.print(
         f"cylinder: Strouhal number {shedding.strouhal:.4f}, "
@@ -60,9 +62,9 @@ def _cylinder_files(progress: Progress, folder: Path) -> None:
     )
 
 
-BUILDERS: dict[str, Callable[[Progress, Path], None]] = {
-    "vortex": _vortex_files,
-    "cylinder": _cylinder_files,
+BUILDERS: dict[str, Callable[[Progress, Path | None], None]] = {
+    "vortex": _build_vortex,
+    "cylinder": _build_cylinder,
 }
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""What a field says at one place of its surface: what a tip under the pointer shows."""
+"""The values of a field at one point of its surface, as a tooltip shows them."""
 
 from __future__ import annotations
 
@@ -6,27 +6,27 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from flowtex.field.facets import Facet, facet
+from flowtex._util.array_types import Floats
 from flowtex.field.field import FlowField
 from flowtex.field.interpolation import steps_around
+from flowtex.field.locate import SurfacePoint, surface_point
+from flowtex.field.signs import weighted_axis
 
-__all__ = ["Reading", "reading"]
-
-Floats = NDArray[np.float64]
+__all__ = ["PointValues", "values_at"]
 
 
 @dataclass(frozen=True, eq=False)
-class Reading:
-    """The data at one place of the surface, at one time.
+class PointValues:
+    """The values of a field at one point of the surface and one time.
 
     Attributes
     ----------
     index
-        The place as (j, i), in cells.
+        The point as (j, i), in cells.
     position
-        The place in space, (3,), in the mesh's own units.
+        The point in space, (3,), in the mesh's own units.
     velocity
         Velocity there, (3,), in the mesh's units per unit of time.
     speed
@@ -34,7 +34,7 @@ class Reading:
     scalars
         Values of the field's other arrays, by name.
     time
-        The time that they are of, in the field's own unit.
+        The time of the values, in the field's own unit.
     length_unit, time_unit
         Words for captions; empty when unknown.
     """
@@ -59,11 +59,11 @@ class Reading:
         return f"{length} / ({time})" if "/" in time else f"{length}/{time}"
 
 
-def reading(field: FlowField, index: ArrayLike, time: float | None = None) -> Reading:
-    """Read a field at a place of its surface.
+def values_at(field: FlowField, index: ArrayLike, time: float | None = None) -> PointValues:
+    """Return the values of a field at a point of its surface.
 
-    Values are linear in the triangles that the surface is drawn with, and in time, so they are
-    those whose colours a picture shows.
+    They are linear in the triangles that the surface is drawn with, and in time, as the colours
+    of a picture are.
 
     Parameters
     ----------
@@ -73,34 +73,31 @@ def reading(field: FlowField, index: ArrayLike, time: float | None = None) -> Re
         (j, i) in cells, as :func:`~flowtex.field.locate.locate` finds it. An axis that closes on
         itself takes any number.
     time
-        When, in the field's own unit; the last time by default. A steady field has one time.
+        Time in the field's own unit; the last one by default. A steady field has one time.
 
     Raises
     ------
     ValueError
-        When the place is not on the surface or the time not within the field's times.
+        When the point is not on the surface or the time not within the field's times.
     """
-    return _read(field, facet(field.surface, index), time)
-
-
-def _read(field: FlowField, place: Facet, time: float | None) -> Reading:
+    point = surface_point(field.surface, index)
     first, last = float(field.times[0]), float(field.times[-1])
     at = last if time is None or field.steady else float(time)
     if not first <= at <= last:
         msg = f"time is {time!r}; expected {first:g} to {last:g}, the times of the field"
         raise ValueError(msg)
-    before, after, late = steps_around(field.times, at)
+    before, after, share = steps_around(field.times, at)
 
     def value(steps: Floats) -> Floats:
         if len(steps) == 1:
-            return place.mix(steps[0])
-        a, b = (place.mix(steps[n]) for n in (before, after))
-        return np.asarray(a * (1 - late) + b * late)
+            return point.mix(steps[0])
+        a, b = (point.mix(steps[n]) for n in (before, after))
+        return np.asarray(a * (1 - share) + b * share)
 
-    return Reading(
-        index=place.index,
-        position=place.mix(field.surface.points),
-        velocity=_axis(field, place) if field.sign_free else value(field.velocity),
+    return PointValues(
+        index=point.index,
+        position=point.mix(field.surface.points),
+        velocity=_axis(field, point) if field.sign_free else value(field.velocity),
         speed=float(value(field.speed)),
         scalars={name: float(value(steps)) for name, steps in field.scalars.items()},
         time=at,
@@ -109,8 +106,6 @@ def _read(field: FlowField, place: Facet, time: float | None) -> Reading:
     )
 
 
-def _axis(field: FlowField, place: Facet) -> Floats:
-    """Vector of a field without a sign: corners that point against the first are turned over."""
-    corners = place.corners(field.velocity[0])
-    signs = np.where(corners @ corners[0] < 0, -1.0, 1.0)
-    return np.asarray((place.weights * signs) @ corners)
+def _axis(field: FlowField, point: SurfacePoint) -> Floats:
+    """Return the vector of a field without a sign."""
+    return weighted_axis(point.corners(field.velocity[0]), point.weights)

@@ -1,7 +1,7 @@
-"""What must hold of arrays before they make a field, and how they are brought into form.
+"""What must hold of arrays before they make a field.
 
-Checkers return faults as sentences (see :mod:`flowtex.errors`); the other functions return
-arrays of the one form that the rest of the package knows.
+Functions ``..._faults`` return faults as sentences (see :mod:`flowtex.errors`); the others bring
+arrays into the one form that the rest of the package takes.
 """
 
 from __future__ import annotations
@@ -10,30 +10,24 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from flowtex._util.array_types import Bools, Floats
 from flowtex.errors import FieldError
 
 __all__ = [
-    "every",
-    "join_ends",
-    "numbers",
-    "repeat_first",
-    "shapes",
-    "signs",
-    "steps",
-    "three",
-    "usable",
+    "as_numbers",
+    "node_faults",
+    "scalar_steps",
+    "shape_faults",
+    "three_components",
 ]
 
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
-
 #: A surface narrower than this share of its length is a line.
-LINE = 1e-7
+LINE_WIDTH = 1e-7
 
 
-def numbers(values: ArrayLike) -> tuple[Floats, Any]:
+def as_numbers(values: ArrayLike) -> tuple[Floats, Any]:
     """Return values as float64, and which nodes a masked array hides: (J, I), or false."""
     mask = np.ma.getmaskarray(values) if np.ma.isMaskedArray(values) else None
     array = np.asarray(np.ma.getdata(values))
@@ -52,7 +46,7 @@ def numbers(values: ArrayLike) -> tuple[Floats, Any]:
     return array, hidden
 
 
-def shapes(
+def shape_faults(
     p: Floats,
     v: Floats,
     times: ArrayLike | None,
@@ -60,7 +54,7 @@ def shapes(
     periodic: str | None,
     scalars: Mapping[str, ArrayLike] | None,
 ) -> list[str]:
-    """Faults in the shapes of what :meth:`FlowField.from_arrays` was given."""
+    """Return faults in the shapes of the arguments of :meth:`FlowField.from_arrays`."""
     if p.ndim != 3 or p.shape[-1] not in (2, 3):
         return [
             f"points has shape {p.shape}; expected (J, I, 2) or (J, I, 3). Flat lists of points "
@@ -90,16 +84,6 @@ def shapes(
             f'periodic is {periodic!r}; expected "", "i", "j" or "ij", or None to find out'
         )
     return faults
-
-
-def signs(v: Floats, *, sign_free: bool) -> list[str]:
-    """Faults in a velocity that is said to have no sign."""
-    if not sign_free or v.ndim != 4 or len(v) == 1:
-        return []
-    return [
-        f"sign_free is True and velocity has {len(v)} time steps; a field without a sign has no "
-        "paths in time: give one step, as in velocity[-1], or make a field of each"
-    ]
 
 
 def _velocity_faults(v: Floats, grid: tuple[int, ...]) -> list[str]:
@@ -137,8 +121,8 @@ def _time_faults(times: ArrayLike | None, count: int) -> list[str]:
     return []
 
 
-def usable(p: Floats, ok: Bools) -> list[str]:
-    """Faults in what is left when blanked and NaN nodes are taken away."""
+def node_faults(p: Floats, ok: Bools) -> list[str]:
+    """Return faults in the nodes that are valid."""
     if not ok.any():
         return [
             f"none of the {ok.size} nodes is usable: each is blanked, masked or NaN; check the "
@@ -154,57 +138,19 @@ def usable(p: Floats, ok: Bools) -> list[str]:
     if np.abs(where).max() == 0:
         return ["all usable nodes lie at one point; expected a surface: check the coordinates"]
     spans = np.linalg.svd(np.cov((where / np.abs(where).max()).T), compute_uv=False)
-    if spans[1] <= LINE**2 * spans[0]:
+    if spans[1] <= LINE_WIDTH**2 * spans[0]:
         return ["all usable nodes lie on one line; expected a surface: check the coordinates"]
     return []
 
 
-def three(a: Floats) -> Floats:
+def three_components(a: Floats) -> Floats:
     """Give two-dimensional vectors a third component of zero."""
     if a.shape[-1] == 3:
         return a
     return np.concatenate([a, np.zeros_like(a[..., :1])], axis=-1)
 
 
-def steps(values: ArrayLike) -> Floats:
+def scalar_steps(values: ArrayLike) -> Floats:
     """Return a nodal array with a leading axis of time, (T or 1, J, I); hidden entries are NaN."""
     array = np.ma.filled(np.ma.asarray(values).astype(np.float64), np.nan)
     return np.asarray(array[None] if array.ndim == 2 else array)
-
-
-def repeat_first(a: NDArray[Any], axis: int) -> NDArray[Any]:
-    """Append the first line of an axis behind its last."""
-    return np.concatenate([a, np.take(a, [0], axis=axis)], axis=axis)
-
-
-def join_ends(v: Floats, ok: Bools, axis: int) -> tuple[Floats, Bools]:
-    """Give the two coinciding lines of a closed axis one common value.
-
-    Cell data spread to the nodes differs across a seam, because neither side sees the other.
-    """
-    v, ok = v.copy(), ok.copy()
-    vs, oks = np.swapaxes(v, 1, axis + 1), np.swapaxes(ok, 0, axis)
-    first, last = oks[0].copy(), oks[-1].copy()
-    mean = (vs[:, 0] + vs[:, -1]) / 2
-    only = np.where(first[:, None], vs[:, 0], vs[:, -1])
-    vs[:, 0] = vs[:, -1] = np.where((first & last)[:, None], mean, only)
-    oks[0] = oks[-1] = first | last
-    return v, ok
-
-
-def every(count: int, factor: int, *, closed: bool) -> NDArray[np.intp]:
-    """List every ``factor``-th line, and the last one where the axis is closed."""
-    if factor < 1:
-        msg = f"factor is {factor}; expected 1 or more"
-        raise ValueError(msg)
-    picks = list(range(0, count, factor))
-    if closed and picks[-1] != count - 1:
-        picks.append(count - 1)
-    fewest = 4 if closed else 2
-    if len(picks) < fewest:
-        msg = (
-            f"factor is {factor}, which leaves {len(picks)} of {count} lines; expected a smaller "
-            f"one that leaves at least {fewest}"
-        )
-        raise ValueError(msg)
-    return np.array(picks)

@@ -11,7 +11,7 @@ import pyvista as pv
 from flowtex import FlowField, examples
 from flowtex._util import progress
 from flowtex.errors import FieldError
-from flowtex.field.io.source import FlowSource
+from flowtex.field.source import FlowSource
 
 
 def block(steps: int = 1) -> pv.StructuredGrid:

@@ -5,19 +5,21 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+import cylinder_run
 import numpy as np
+import packing
 import pytest
-from numpy.typing import NDArray
-from scipy import fft
-
-from flowtex.examples import _cylinder, _cylinder_run, _store
-from flowtex.examples._cylinder_flow import (
+from cylinder_flow import (
     CylinderFlow,
     CylinderSetup,
     _first_derivative,
     _running_integral,
     _Tridiagonal,
 )
+from numpy.typing import NDArray
+from scipy import fft
+
+from flowtex.examples import _shipped
 
 SMALL = CylinderSetup(modes=24, intervals=64, step=0.02)
 
@@ -115,60 +117,30 @@ def test_the_steady_wake_at_reynolds_number_40_is_the_published_one() -> None:
     assert (turns[0] + 1.5) / 2.0 == pytest.approx(53.5, abs=1.5)
 
 
-def test_the_shipped_flow_sheds_and_drags_as_published() -> None:
-    # Reynolds number 100: Strouhal number 0.164 to 0.167, mean drag 1.32 to 1.36, lift up to
-    # 0.31 to 0.34 (Park, Kwon and Choi 1998; Williamson 1989 for the frequency).
-    facts = _cylinder.facts()
-    assert facts["reynolds"] == 100.0
-    assert 0.163 < facts["strouhal"] < 0.168
-    assert 1.31 < facts["drag"] < 1.37
-    assert 0.31 < facts["lift"] < 0.34
-    assert facts["strouhal"] == pytest.approx(1.0 / facts["times"][-1])
-    drag, lift = facts["forces"][:-1].T
-    assert facts["drag"] == pytest.approx(drag.mean(), rel=1e-3)
-    # Both sides shed alike: lift swings once in the period, drag twice.
-    assert np.abs(fft.rfft(lift))[1:].argmax() == 0
-    assert np.abs(fft.rfft(drag - drag.mean()))[1:].argmax() == 1
-    assert abs(lift.mean()) < 1e-3
-
-
-def test_the_shipped_period_closes() -> None:
-    points, velocity, times = _cylinder.arrays()
-    assert points.shape == (65, 161, 2)
-    assert velocity.shape == (31, 65, 161, 2)
-    np.testing.assert_allclose(np.diff(times), times[1], rtol=1e-9)
-    assert np.abs(velocity[-1] - velocity[0]).max() < 5e-4
-    assert np.abs(velocity[15] - velocity[0]).max() > 0.5
-    assert not velocity[:, 0].any()
-    # Half a period later the wake is its own mirror image.
-    mirrored = velocity[15, :, ::-1] * [1.0, -1.0]
-    assert np.abs(mirrored - velocity[0]).max() < 2e-3
-
-
 def test_the_shipped_wake_is_resolved() -> None:
     """The shortest waves around carry next to nothing on any circle, so nothing wiggles."""
-    _, velocity, _ = _cylinder.arrays()
+    _, velocity, _ = _shipped.cylinder_arrays()
     waves = np.abs(fft.rfft(velocity[:, :, :-1], axis=2, norm="forward"))
     assert waves[:, :, 10].max() > 5e-3
     assert waves[:, :, 70:].max() < 1e-4
-    state = np.abs(_cylinder.restart().vorticity)
+    state = np.abs(cylinder_run.restart().vorticity)
     assert state[-8:].max() < 1e-3 * state.max()
 
 
 def test_the_code_still_makes_the_shipped_flow() -> None:
-    _, velocity, times = _cylinder.arrays()
-    flow = _cylinder.restart()
-    np.testing.assert_allclose(_cylinder_run.node_velocity(flow), velocity[0, :, :-1], atol=5e-5)
-    for _ in range(_cylinder_run.STEPS):
+    _, velocity, times = _shipped.cylinder_arrays()
+    flow = cylinder_run.restart()
+    np.testing.assert_allclose(cylinder_run.node_velocity(flow), velocity[0, :, :-1], atol=5e-5)
+    for _ in range(cylinder_run.STEPS):
         flow.advance()
     assert flow.time == pytest.approx(times[1])
     # 16 bits leave 2.3e-5; the first step, of first order, about as much.
-    np.testing.assert_allclose(_cylinder_run.node_velocity(flow), velocity[1, :, :-1], atol=1e-4)
+    np.testing.assert_allclose(cylinder_run.node_velocity(flow), velocity[1, :, :-1], atol=1e-4)
 
 
 def test_forces_are_computed_again_as_shipped() -> None:
-    forces = _cylinder.facts()["forces"]
-    flow = _cylinder.restart()
+    forces = _shipped.load(_shipped.CYLINDER)["forces"]
+    flow = cylinder_run.restart()
     np.testing.assert_allclose(flow.forces(), forces[0], atol=1e-4)
     for _ in range(20):
         flow.advance()
@@ -177,10 +149,12 @@ def test_forces_are_computed_again_as_shipped() -> None:
 
 @pytest.mark.slow
 def test_the_code_still_makes_the_whole_period() -> None:
-    _, velocity, times = _cylinder.arrays()
-    flow = _cylinder.restart()
-    history = _cylinder_run._advance(flow, _cylinder_run.STEPS * _cylinder_run.KEPT, lambda _: None)
-    np.testing.assert_allclose(_cylinder_run.node_velocity(flow), velocity[-1, :, :-1], atol=3e-4)
+    _, velocity, times = _shipped.cylinder_arrays()
+    flow = cylinder_run.restart()
+    history = cylinder_run._advance(
+        flow, cylinder_run.STEPS * cylinder_run.INSTANTS, lambda _: None
+    )
+    np.testing.assert_allclose(cylinder_run.node_velocity(flow), velocity[-1, :, :-1], atol=3e-4)
     rate = np.polyfit(history[:, 0], np.unwrap(np.angle(_analytic(history[:, 2]))), 1)[0]
     assert abs(rate) / (2.0 * np.pi) == pytest.approx(1.0 / times[-1], rel=5e-3)
     assert 1.31 < history[:, 1].mean() < 1.37
@@ -194,29 +168,20 @@ def _analytic(signal: NDArray[np.float64]) -> NDArray[np.complex128]:
 
 
 def test_vorticity_is_derived_as_the_solver_has_it() -> None:
-    points, velocity, _ = _cylinder.arrays()
-    derived = _cylinder.vorticity(points, velocity[:1])[0, :, :-1]
-    flow = _cylinder.restart()
+    points, velocity, _ = _shipped.cylinder_arrays()
+    derived = _shipped.polar_vorticity(points, velocity[:1])[0, :, :-1]
+    flow = cylinder_run.restart()
     # The wall is a node of both grids; the solver's values there are between -22 and 22.
     wall = fft.irfft(flow.vorticity[:, 0], 160, norm="forward")
     assert np.abs(wall).max() > 15.0
     np.testing.assert_allclose(derived[0], wall, atol=0.2)
 
 
-def test_vorticity_of_a_rigid_rotation_and_of_a_point_vortex() -> None:
-    points, _, _ = _cylinder.arrays()
-    turned = np.stack([-points[..., 1], points[..., 0]], axis=-1)
-    squared = np.sum(points**2, axis=-1, keepdims=True)
-    found = _cylinder.vorticity(points, np.stack([turned, turned / squared]))
-    np.testing.assert_allclose(found[0], 2.0, atol=1e-6)
-    np.testing.assert_allclose(found[1], 0.0, atol=1e-9)
-
-
 def test_refining_keeps_the_flow() -> None:
     flow = CylinderFlow(SMALL)
     for _ in range(20):
         flow.advance()
-    fine = _cylinder_run.refine(flow, replace(SMALL, modes=32, intervals=128))
+    fine = cylinder_run.refine(flow, replace(SMALL, modes=32, intervals=128))
     assert fine.time == flow.time
     np.testing.assert_allclose(fine.vorticity[:24, ::2], flow.vorticity, atol=1e-12)
     assert not fine.vorticity[24:].any()
@@ -227,21 +192,21 @@ def test_a_whole_run_in_small_is_written_and_read(
 ) -> None:
     told: list[float] = []
     small = replace(SMALL, step=0.01)
-    shedding = _cylinder_run.run(told.append, durations=(4.0, 4.0, 25.0), coarse=small, full=small)
+    shedding = cylinder_run.run(told.append, durations=(4.0, 4.0, 25.0), coarse=small, full=small)
     assert shedding.velocity.shape == (31, 65, 160, 2)
     assert shedding.forces.shape == (1201, 2)
     assert sum(told) == pytest.approx(33.0 + 2.0 * shedding.times[-1], abs=1e-6)
-    _cylinder.write(shedding, tmp_path)
-    monkeypatch.setattr(_store, "DATA", tmp_path)
-    _, velocity, times = _cylinder.arrays()
-    step = np.abs(shedding.velocity).max() / _store.STEPS
+    cylinder_run.write(shedding, tmp_path)
+    monkeypatch.setattr(_shipped, "DATA", tmp_path)
+    _, velocity, times = _shipped.cylinder_arrays()
+    step = np.abs(shedding.velocity).max() / packing.STEPS
     np.testing.assert_allclose(velocity[:, :, :-1], shedding.velocity, atol=0.51 * step)
     np.testing.assert_array_equal(times, shedding.times)
 
 
 def test_a_run_too_short_to_shed_says_so() -> None:
     with pytest.raises(ArithmeticError, match="the wake is not shedding yet"):
-        _cylinder_run.run(durations=(0.1, 0.1, 0.1), coarse=SMALL, full=SMALL)
+        cylinder_run.run(durations=(0.1, 0.1, 0.1), coarse=SMALL, full=SMALL)
 
 
 def test_a_run_that_blows_up_says_so() -> None:
@@ -250,9 +215,9 @@ def test_a_run_that_blows_up_says_so() -> None:
         np.errstate(all="ignore"),
         pytest.raises(ArithmeticError, match=r"time step smaller than 2\.0"),
     ):
-        _cylinder_run.run(durations=(4000.0, 0.1, 0.1), coarse=coarse, full=SMALL)
+        cylinder_run.run(durations=(4000.0, 0.1, 0.1), coarse=coarse, full=SMALL)
 
 
 def test_the_shipped_files_are_small() -> None:
-    for name in (_cylinder.FILE, _cylinder.RESTART):
-        assert (_store.DATA / name).stat().st_size < 1.5e6
+    for file in (_shipped.DATA / _shipped.CYLINDER, cylinder_run.RESTART):
+        assert file.stat().st_size < 1.5e6

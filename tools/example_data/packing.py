@@ -1,8 +1,7 @@
-"""Arrays that are shipped as files, in as few bytes as the eye and the tests allow.
+"""Arrays in files of few bytes, as :func:`flowtex.examples._shipped.unpack` reads them.
 
 Values become whole steps of 1/32000 of the largest one (16 bits), and of those only the
-differences from node to node are stored: smooth fields have small differences, which compress
-well, and whole numbers add up again without error.
+differences from node to node are stored.
 """
 
 from __future__ import annotations
@@ -14,10 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["DATA", "load", "pack", "save", "unpack"]
+__all__ = ["STEPS", "pack", "save"]
 
-#: Folder of the shipped files.
-DATA = Path(__file__).parent / "data"
 #: Whole steps from zero to the largest value; leaves room in 16 bits.
 STEPS = 32000
 
@@ -46,42 +43,8 @@ def pack(values: NDArray[np.float64], axis: int) -> tuple[NDArray[np.int16], flo
     return unsigned.astype(np.uint16).view(np.int16), step
 
 
-def unpack(differences: NDArray[np.int16], step: float, axis: int) -> NDArray[np.float64]:
-    """Undo :func:`pack`."""
-    whole = np.cumsum(differences.view(np.uint16), axis=axis, dtype=np.uint16).view(np.int16)
-    return whole.astype(np.float64) * step
-
-
 def save(path: Path, arrays: Mapping[str, ArrayLike]) -> None:
     """Write arrays to a compressed file; the same arrays give the same bytes."""
     path.parent.mkdir(parents=True, exist_ok=True)
     plain: dict[str, Any] = {name: np.asarray(array) for name, array in arrays.items()}
     np.savez_compressed(path, **plain)
-
-
-def load(name: str) -> dict[str, NDArray[Any]]:
-    """Read a shipped file.
-
-    Parameters
-    ----------
-    name : str
-        Its name in the folder of shipped files.
-
-    Returns
-    -------
-    dict of str to ndarray
-
-    Raises
-    ------
-    FileNotFoundError
-        When the installation lacks the file.
-    """
-    path = DATA / name
-    if not path.is_file():
-        message = (
-            f"the example file {name!r} is not in {path.parent}; it comes with flowtex: reinstall "
-            "it, or compute the file with: python -m flowtex.examples.build"
-        )
-        raise FileNotFoundError(message)
-    with np.load(path, allow_pickle=False) as file:
-        return dict(file)

@@ -1,0 +1,205 @@
+"""The examples as PyVista meshes, one for each instant."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from flowtex.examples._double_gyre import EPSILON, nodes
+from flowtex.examples._fields import (
+    airfoil_field,
+    cylinder_field,
+    delta_wing_field,
+    double_gyre_at,
+    double_gyre_field,
+    liquid_oxygen_post_field,
+    vortex_field,
+)
+from flowtex.field import FlowField
+
+if TYPE_CHECKING:
+    import pyvista as pv
+
+__all__ = [
+    "airfoil",
+    "cylinder",
+    "cylinder_series",
+    "delta_wing",
+    "double_gyre",
+    "double_gyre_series",
+    "liquid_oxygen_post",
+    "to_grid",
+    "to_series",
+    "vortex",
+    "vortex_series",
+]
+
+
+def cylinder() -> pv.StructuredGrid:
+    """Vortex shedding behind a cylinder: the last instant of :func:`cylinder_field`.
+
+    Returns
+    -------
+    pyvista.StructuredGrid
+        161 x 65 x 1 nodes around and outwards; point arrays ``velocity`` and ``vorticity``, and
+        the field data ``TimeValue``.
+    """
+    return to_grid(cylinder_field())
+
+
+def cylinder_series() -> list[pv.StructuredGrid]:
+    """One period of vortex shedding behind a cylinder, as :func:`cylinder_field`.
+
+    Returns
+    -------
+    list of pyvista.StructuredGrid
+        31 instants as from :func:`cylinder`, the last one period after the first.
+    """
+    return to_series(cylinder_field())
+
+
+def vortex() -> pv.StructuredGrid:
+    """Vortices of two-dimensional turbulence: the last instant of :func:`vortex_field`.
+
+    Returns
+    -------
+    pyvista.StructuredGrid
+        100 x 100 x 1 nodes on the unit square; point arrays ``velocity`` and ``vorticity``, and
+        the field data ``TimeValue``.
+    """
+    return to_grid(vortex_field())
+
+
+def vortex_series() -> list[pv.StructuredGrid]:
+    """Vortices of two-dimensional turbulence, as :func:`vortex_field`.
+
+    Returns
+    -------
+    list of pyvista.StructuredGrid
+        31 instants as from :func:`vortex`.
+    """
+    return to_series(vortex_field())
+
+
+def double_gyre(time: float = 0.0) -> pv.StructuredGrid:
+    """Double gyre at one time of its period of 10.
+
+    Parameters
+    ----------
+    time : float, default: 0.0
+        Any time; at 0 the two gyres are of one size, as in the steady flow.
+
+    Returns
+    -------
+    pyvista.StructuredGrid
+        201 x 101 x 1 nodes on [0, 2] x [0, 1], with point arrays ``velocity`` and
+        ``vorticity``.
+
+    Raises
+    ------
+    ValueError
+        When the time is not a finite number.
+    """
+    if not np.isfinite(time):
+        message = f"time is {time!r}, expected a finite number such as 2.5"
+        raise ValueError(message)
+    return to_grid(double_gyre_at(np.array([time]), nodes((101, 201)), EPSILON))
+
+
+def double_gyre_series() -> list[pv.StructuredGrid]:
+    """One period of the double gyre.
+
+    Returns
+    -------
+    list of pyvista.StructuredGrid
+        41 instants as from :func:`double_gyre`, with ``TimeValue`` from 0 to 10.
+    """
+    return to_series(double_gyre_field(time_varying=True))
+
+
+def airfoil() -> pv.StructuredGrid:
+    """Lifting flow around a Joukowski airfoil, as :func:`airfoil_field`.
+
+    Returns
+    -------
+    pyvista.StructuredGrid
+        193 x 65 x 1 nodes around and outwards; point arrays ``velocity`` and ``pressure``.
+    """
+    return to_grid(airfoil_field())
+
+
+def delta_wing() -> pv.StructuredGrid:
+    """Flow over the upper side of a winged body, as :func:`delta_wing_field`.
+
+    Returns
+    -------
+    pyvista.StructuredGrid
+        62 x 52 x 1 nodes along and across; point arrays ``velocity`` and ``height``.
+    """
+    return to_grid(delta_wing_field())
+
+
+def liquid_oxygen_post(folder: str | Path | None = None, plane: str = "k=20") -> pv.StructuredGrid:
+    """Flow around NASA's liquid-oxygen post, as :func:`liquid_oxygen_post_field`.
+
+    Parameters
+    ----------
+    folder, plane
+        As for :func:`liquid_oxygen_post_field`.
+
+    Returns
+    -------
+    pyvista.StructuredGrid
+        The nodes of the plane, with the point array ``velocity`` and the scalars of the file.
+    """
+    return to_grid(liquid_oxygen_post_field(folder, plane))
+
+
+def to_grid(field: FlowField, step: int = -1) -> pv.StructuredGrid:
+    """One instant of a field as a mesh.
+
+    Parameters
+    ----------
+    field : FlowField
+        Surface and velocity.
+    step : int, default: -1
+        Which instant; the default is the last.
+
+    Returns
+    -------
+    pyvista.StructuredGrid
+        I x J x 1 nodes with the point array ``velocity``, the field's scalars, and the field
+        data ``TimeValue`` where the field varies in time. Nodes without data are hidden.
+    """
+    import pyvista as pv
+
+    rows, columns = field.shape
+    grid = pv.StructuredGrid()
+    grid.points = field.points.reshape(-1, 3)
+    grid.dimensions = (columns, rows, 1)
+    grid.point_data["velocity"] = field.velocity[step].reshape(-1, 3)
+    for name, values in field.scalars.items():
+        grid.point_data[name] = values[step if len(values) > 1 else 0].ravel()
+    if not field.steady:
+        grid.field_data["TimeValue"] = np.array([field.times[step]])
+    if not field.valid.all():
+        grid.hide_points((~field.valid).ravel().tolist())
+    return grid
+
+
+def to_series(field: FlowField) -> list[pv.StructuredGrid]:
+    """Every instant of a field as a mesh.
+
+    Parameters
+    ----------
+    field : FlowField
+        Surface and velocity.
+
+    Returns
+    -------
+    list of pyvista.StructuredGrid
+        In order of time, each as from :func:`to_grid`.
+    """
+    return [to_grid(field, step) for step in range(len(field.times))]

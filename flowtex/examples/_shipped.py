@@ -1,0 +1,195 @@
+"""Examples that are read from files: those that come with the package, and NASA's post.
+
+The shipped flows were computed by the scripts in ``tools/example_data``. Values were rounded to
+16 bits, and the differences from node to node stored: smooth fields have small differences, which
+compress well, and whole numbers add up again without error.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import fft
+from scipy.interpolate import CubicSpline
+
+from flowtex._util.array_types import AnyArray, Floats
+
+__all__ = [
+    "CYLINDER",
+    "DATA",
+    "VORTEX",
+    "cylinder_arrays",
+    "find_post",
+    "load",
+    "periodic_velocity",
+    "polar_vorticity",
+    "unpack",
+    "vortex_arrays",
+]
+
+#: Folder of the shipped files, and their names.
+DATA = Path(__file__).parent / "data"
+CYLINDER, VORTEX = "cylinder.npz", "vortex.npz"
+#: Names of the liquid-oxygen post's grid and solution.
+POST_GRID, POST_SOLUTION = "postxyz.bin", "postq.bin"
+
+
+def cylinder_arrays() -> tuple[Floats, Floats, Floats]:
+    """Points (65, 161, 2), velocity (31, 65, 161, 2), and times (31,)."""
+    file = load(CYLINDER)
+    velocity = unpack(file["velocity"], float(file["step"]), axis=2)
+    columns = velocity.shape[2]
+    theta = 2.0 * np.pi * np.arange(columns) / columns
+    points = file["radii"][:, None, None] * np.stack([np.cos(theta), np.sin(theta)], axis=-1)
+    closed = [np.concatenate([a, a[..., :1, :]], axis=-2) for a in (points, velocity)]
+    return closed[0], closed[1], file["times"]
+
+
+def polar_vorticity(points: Floats, velocity: Floats) -> Floats:
+    """Vorticity of a flow on the polar grid.
+
+    Parameters
+    ----------
+    points
+        Nodes (J, I, 2) on circles around the origin, evenly spaced, the last column the first.
+    velocity
+        Velocity at the nodes, (T, J, I, 2).
+
+    Returns
+    -------
+    numpy.ndarray
+        Vorticity, (T, J, I): spectral derivatives around, cubic splines outwards.
+    """
+    radii = np.hypot(points[:, 0, 0], points[:, 0, 1])
+    open_points, open_velocity = points[:, :-1], velocity[:, :, :-1]
+    cosine, sine = np.moveaxis(open_points / radii[:, None, None], -1, 0)
+    u, v = np.moveaxis(open_velocity, -1, 0)
+    outward, around = u * cosine + v * sine, v * cosine - u * sine
+    count = cosine.shape[1]
+    modes = fft.rfft(outward, axis=-1) * 1j * np.arange(count // 2 + 1)
+    slope = CubicSpline(radii, radii[:, None] * around, axis=1)(radii, 1)
+    result = (slope - fft.irfft(modes, count, axis=-1)) / radii[:, None]
+    return np.concatenate([result, result[..., :1]], axis=-1)
+
+
+def vortex_arrays() -> tuple[Floats, Floats, Floats, Floats]:
+    """Points (100, 100, 2), velocity (31, 100, 100, 2), vorticity (31, 100, 100), times (31,).
+
+    The last row and column repeat the first, one box further on.
+    """
+    file = load(VORTEX)
+    vorticity = unpack(file["vorticity"], float(file["step"]), axis=2)
+    velocity = np.array([periodic_velocity(fft.rfft2(w)) for w in vorticity])
+    size = vorticity.shape[-1]
+    axis = np.linspace(0.0, 1.0, size + 1)
+    points = np.stack(np.meshgrid(axis, axis), axis=-1)
+    joined = np.arange(size + 1) % size
+    return (
+        points,
+        velocity[:, joined][:, :, joined],
+        vorticity[:, joined][:, :, joined],
+        file["times"],
+    )
+
+
+def periodic_velocity(vorticity: NDArray[np.complex128]) -> Floats:
+    """Velocity in a periodic unit box from its vorticity.
+
+    Parameters
+    ----------
+    vorticity
+        Fourier coefficients of the vorticity as from ``scipy.fft.rfft2``, (N, N // 2 + 1).
+
+    Returns
+    -------
+    numpy.ndarray
+        Velocity at the nodes, (N, N, 2), in boxes per unit of time.
+    """
+    size = len(vorticity)
+    ky = 2.0 * np.pi * fft.fftfreq(size, 1.0 / size)[:, None]
+    kx = 2.0 * np.pi * fft.rfftfreq(size, 1.0 / size)[None, :]
+    square = np.asarray(kx**2 + ky**2)
+    psi = vorticity / np.where(square == 0.0, np.inf, square)
+    parts = fft.irfft2(np.stack([1j * ky * psi, -1j * kx * psi]), (size, size))
+    return np.moveaxis(parts, 0, -1)
+
+
+def load(name: str) -> dict[str, AnyArray]:
+    """Return the arrays of a shipped file by name.
+
+    Raises
+    ------
+    FileNotFoundError
+        When the installation lacks the file.
+    """
+    path = DATA / name
+    if not path.is_file():
+        message = (
+            f"the example file {name!r} is not in {path.parent}; it comes with flowtex: reinstall "
+            "it, or compute the file in a checkout: python tools/example_data/build.py"
+        )
+        raise FileNotFoundError(message)
+    with np.load(path, allow_pickle=False) as file:
+        return dict(file)
+
+
+def unpack(differences: NDArray[np.int16], step: float, axis: int) -> Floats:
+    """Return the numbers whose whole-numbered differences along an axis were stored.
+
+    Parameters
+    ----------
+    differences
+        Differences modulo 2^16, of any shape.
+    step
+        Value of one whole step.
+    axis
+        Axis of the differences.
+    """
+    # Unsigned numbers wrap around by definition.
+    whole = np.cumsum(differences.view(np.uint16), axis=axis, dtype=np.uint16).view(np.int16)
+    return whole.astype(np.float64) * step
+
+
+def find_post(folder: str | Path | None = None) -> Path:
+    """Path of the grid, with the solution beside it.
+
+    Parameters
+    ----------
+    folder
+        Folder with both files. By default PyVista fetches them into its cache.
+
+    Raises
+    ------
+    FileNotFoundError
+        When a file is missing and, without a folder, cannot be downloaded.
+    """
+    if folder is None:
+        return _downloaded()
+    place = Path(folder).expanduser()
+    missing = [name for name in (POST_GRID, POST_SOLUTION) if not (place / name).is_file()]
+    if missing:
+        message = (
+            f"{place} has no {' and no '.join(missing)}; give the folder that holds {POST_GRID} "
+            f"and {POST_SOLUTION}, or none to download them with PyVista"
+        )
+        raise FileNotFoundError(message)
+    return place / POST_GRID
+
+
+def _downloaded() -> Path:
+    """Return the path of the grid; PyVista's collection names both files as VTK's test data do."""
+    from pyvista.examples import downloads
+
+    try:
+        paths = [Path(str(downloads.download_file(name))) for name in (POST_GRID, POST_SOLUTION)]
+    # What the network raises (requests) derives from OSError.
+    except OSError as error:
+        message = (
+            f"PyVista could not download {POST_GRID} and {POST_SOLUTION} ({type(error).__name__}); "
+            "check the network, or give the folder that holds them, as in "
+            "liquid_oxygen_post(folder=...)"
+        )
+        raise FileNotFoundError(message) from error
+    return paths[0]
