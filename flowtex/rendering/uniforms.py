@@ -1,7 +1,7 @@
-"""The numbers that a shader is given, whoever compiles it.
+"""The uniforms of the shaders, whoever compiles them.
 
 One function turns a texture set, the settings and the state of the view into the uniforms that
-``shaders/common/uniforms.glsl`` declares. A renderer only hands them over.
+``shaders/common/uniforms.glsl`` declares. A renderer only passes them on.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ from flowtex.textures import PaperTextures, TextureSet
 
 __all__ = ["ViewState", "finest_cell", "uniforms", "variants"]
 
-#: Octaves between the finest cell of the noise and the extent of the surface.
+#: Doublings from the finest cell of the noise to the extent of the surface.
 NOISE_DOUBLINGS = 30
-#: The origin of the noise keeps this many octaves clear, so that single precision holds it.
+#: Finest doublings at which the origin of the noise is zero, so that single precision holds it.
 CLEAR_DOUBLINGS = 9
-#: What the flow goes while a grain in motion takes one turn, in pixels; up to twice as much.
+#: Pixels that the flow goes while a grain in motion takes one turn; up to twice as many.
 WAVE_PIXELS = 96.0
-#: Coarse part of the clock, in base periods, that times a power of two stays exact.
+#: Step of the coarse part of the clock, in base periods: times a power of two it stays exact.
 CLOCK_STEP = 2.0**-12
 
 
@@ -37,7 +37,7 @@ class ViewState:
     focus
         Point of the mesh that the view looks at, (3,), in the mesh's own coordinates.
     anchor
-        Point of the surface's frame that positions are given relative to, (3,).
+        Point of the surface's frame that positions are counted from, (3,).
     eye
         The eye in the mesh's own coordinates and 1, or the way to it and 0 where all rays are
         parallel, (4,).
@@ -87,11 +87,8 @@ def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[
     geometry = textures.geometry
     finest = finest_cell(geometry.extent)
     even = _origin_cell(geometry.local(view.focus), finest)
-    # Without a sign there is no forward: both sides, and no kernel that falls towards one.
-    sign_free = geometry.field.sign_free
-    sides = textures.sides if settings.two_sided or sign_free else 1
-    kernel = "hann" if sign_free and settings.kernel == "ramp" else settings.kernel
-    motion = _motion(textures, settings, view)
+    sides, kernel, streams = _direction(textures, settings)
+    motion = _motion(textures, settings, view, streams=streams)
     eye = geometry.frame @ (view.eye[:3] - view.eye[3] * geometry.center)
     eye -= view.eye[3] * view.anchor
     values: dict[str, Any] = {
@@ -123,7 +120,21 @@ def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[
     return values
 
 
-def _motion(textures: TextureSet, settings: Settings, view: ViewState) -> dict[str, Any]:
+def _direction(textures: TextureSet, settings: Settings) -> tuple[int, str, bool]:
+    """Sides of the paths, kernel, and whether the grains of a steady field stream.
+
+    A field without a sign has no forward: it has both sides, no kernel that falls towards one of
+    them, and nothing streams.
+    """
+    if textures.geometry.field.sign_free:
+        return textures.sides, "hann" if settings.kernel == "ramp" else settings.kernel, False
+    sides = textures.sides if settings.two_sided else 1
+    return sides, settings.kernel, settings.motion != "off"
+
+
+def _motion(
+    textures: TextureSet, settings: Settings, view: ViewState, *, streams: bool
+) -> dict[str, Any]:
     """How the grains change: with the time of a field that varies, by the clock of a steady one.
 
     Grains that change shorten the streaks. Twice as many samples make up for it, and let the eye
@@ -138,7 +149,7 @@ def _motion(textures: TextureSet, settings: Settings, view: ViewState) -> dict[s
     else:
         turns, travel = view.clock / settings.period % 1.0, settings.speed * settings.period
         pixels, by_speed = settings.speed_in == "pixels", settings.motion == "speed"
-        moving = settings.motion != "off" and not store.field.sign_free
+        moving = streams
     coarse = float(np.floor(turns / CLOCK_STEP) * CLOCK_STEP)
     return {
         "u_moving": moving and textures.space == "physical",

@@ -1,4 +1,4 @@
-"""TraceSlices to TextureSet: packing, noise and step size; all that a renderer is given."""
+"""TraceSlices to TextureSet: packing, noise and step size; all that a renderer takes."""
 
 from __future__ import annotations
 

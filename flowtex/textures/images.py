@@ -212,7 +212,7 @@ def read_image(file: Path | BinaryIO, name: str) -> AnyArray:
 
 
 def pixels_of(picture: Any) -> AnyArray:
-    """Pixels, with opacity where the picture has any; deep grey keeps its depth."""
+    """Pixels, with opacity where the picture has any; deep grey stays deep."""
     if picture.mode.startswith("I"):  # 16 bits, which some versions of Pillow hold in 32
         return np.asarray(picture).astype(np.uint16)
     if picture.mode == "F":

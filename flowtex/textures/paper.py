@@ -121,16 +121,16 @@ class PaperTextures:
         )
         texels = TexelMap(field, index, np.stack(size, axis=-1), correction)
         if pattern == "image" and image is not None:
-            laid: dict[str, Any] = {"noise": image, "picture": True}
+            noise: dict[str, Any] = {"noise": image, "picture": True}
         else:
-            laid = _laid(texels, pattern, seed=seed, tiles=tiles)
+            noise = _noise(texels, pattern, seed=seed, tiles=tiles)
         return cls(
             step=np.minimum(_steps(store, index, texels.size), 6e4).astype(np.float32),
             along_i=along_i,
             along_j=along_j,
             repeat=field.periodic,
             corrected=correction,
-            **laid,
+            **noise,
         )
 
     def with_image(self, image: Floats32) -> PaperTextures:
@@ -141,6 +141,21 @@ class PaperTextures:
     def deviations(self) -> list[float]:
         """Deviation of the noise at each mip level and half-way to the next."""
         return [1.0] * HALF_LEVELS if self.picture else _deviations(self.noise)
+
+    @property
+    def noise_texels(self) -> Floats32:
+        """The noise, or the picture, as a texture array of one layer, (1, H, W, C)."""
+        return self.noise.reshape(1, *self.noise.shape[:2], -1)
+
+    @property
+    def noise_repeat(self) -> tuple[bool, bool]:
+        """Whether that array goes around along (v, u): a picture always does."""
+        return (True, True) if self.picture else self.repeat
+
+    @property
+    def step_texels(self) -> Floats32:
+        """The step size as a texture array of one layer, (1, H, W, 1)."""
+        return self.step[None, :, :, None]
 
     @property
     def coordinate(self) -> Floats32:
@@ -205,7 +220,7 @@ def _slope(line: Floats, x: Floats, texels: int) -> Floats:
     return np.asarray(1 / (np.diff(line)[cell] * texels))
 
 
-def _laid(texels: TexelMap, pattern: str, *, seed: int, tiles: int) -> dict[str, Any]:
+def _noise(texels: TexelMap, pattern: str, *, seed: int, tiles: int) -> dict[str, Any]:
     """Attributes of the noise, or of the picture, of a name."""
     if pattern == "checkerboard":
         return {"noise": checkerboard(texels, tiles).astype(np.float32), "picture": True}
@@ -249,8 +264,8 @@ def _by_length(components: Floats, field: FlowField) -> Floats:
     moving = field.valid & (speed > 1e-7 * speed.max())
     if not moving.any():
         return np.zeros_like(components)
-    found = components / np.where(moving, speed, 1.0)[..., None]
-    return fill_blanked(found, moving)
+    by_length = components / np.where(moving, speed, 1.0)[..., None]
+    return fill_blanked(by_length, moving)
 
 
 def _deviations(noise: Floats32) -> list[float]:
@@ -261,16 +276,16 @@ def _deviations(noise: Floats32) -> list[float]:
     """
     at = np.random.default_rng(0).random((2, DEVIATION_POINTS))
     level = noise.astype(np.float64)
-    values, found = _bilinear(level, at), []
+    values, result = _bilinear(level, at), []
     while level.size >= 4 * FEWEST_TEXELS and min(level.shape) > 1:
         level = block_means(level, 2)
         coarser = _bilinear(level, at)
-        found += [float(values.std()), float((0.5 * (values + coarser)).std())]
+        result += [float(values.std()), float((0.5 * (values + coarser)).std())]
         values = coarser
-    found.append(float(values.std()))
-    while len(found) < HALF_LEVELS:
-        found.append(found[-1] / np.sqrt(2.0))
-    return [max(value, 1e-6) for value in found[:HALF_LEVELS]]
+    result.append(float(values.std()))
+    while len(result) < HALF_LEVELS:
+        result.append(result[-1] / np.sqrt(2.0))
+    return [max(value, 1e-6) for value in result[:HALF_LEVELS]]
 
 
 def _bilinear(level: Floats, at: Floats) -> Floats:

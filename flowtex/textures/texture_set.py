@@ -123,7 +123,7 @@ class TextureSet:
 
     def same_paths(self, other: TextureSet) -> bool:
         """Tell whether nothing but the picture in place of the noise differs."""
-        steps = [made.paper.step if made.paper is not None else None for made in (self, other)]
+        steps = [None if one.paper is None else one.paper.step for one in (self, other)]
         return self.geometry is other.geometry and steps[0] is steps[1] is not None
 
     @property

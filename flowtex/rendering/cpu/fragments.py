@@ -1,4 +1,4 @@
-"""What the rasteriser hands to the method: the varyings of every pixel and their derivatives."""
+"""Varyings of every pixel and their derivatives, between the rasteriser and the method."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ class Mips:
 
     A coarser level is the finer one, filtered linearly down to half its size: the mean of blocks
     of two by two texels where sizes are even. Every level is rounded to half precision, as a
-    graphics card keeps it.
+    graphics card stores it.
 
     Parameters
     ----------

@@ -25,9 +25,8 @@ class PaperImages:
     """The noise, or the picture in its place, and the step size, with their mip levels."""
 
     def __init__(self, paper: PaperTextures) -> None:
-        texels = paper.noise.reshape(1, *paper.noise.shape[:2], -1)
-        self.noise = Mips(texels, repeat=(True, True) if paper.picture else paper.repeat)
-        self.step = Mips(paper.step[None, ..., None], repeat=paper.repeat)
+        self.noise = Mips(paper.noise_texels, repeat=paper.noise_repeat)
+        self.step = Mips(paper.step_texels, repeat=paper.repeat)
 
 
 class PaperNoise(Lookup):

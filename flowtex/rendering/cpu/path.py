@@ -9,7 +9,7 @@ import numpy as np
 from flowtex._util.array_types import Floats, Indices
 from flowtex.rendering.cpu.mipmaps import Mips
 
-__all__ = ["Path", "SignFreeSlices", "Slices"]
+__all__ = ["AxisSlices", "Path", "Slices"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,7 +29,7 @@ class Slices:
 
 
 @dataclass(frozen=True, eq=False)
-class SignFreeSlices(Slices):
+class AxisSlices(Slices):
     """The slice texture of a field in which v and -v mean the same, at its finest level.
 
     Texels around a fragment that point against the others are turned over: their two sides
@@ -56,9 +56,9 @@ class SignFreeSlices(Slices):
             turned = np.einsum("nc,nc->n", together, tangent) < 0
             sign = np.where(turned, -1.0, 1.0)[:, None]
             together += sign * tangent
-            found = self.before.at(place, finest, np.where(turned, other, layer))
-            found[:, :3] *= sign
-            result += weight[:, None] * found
+            texel = self.before.at(place, finest, np.where(turned, other, layer))
+            texel[:, :3] *= sign
+            result += weight[:, None] * texel
         return result
 
 
@@ -105,8 +105,8 @@ class Path:
             segment = self._segment[on]
             self.before[on] = self._after[on]
             layer = self._first + segment + 1
-            found = self._slices.layer(self._coordinate[on], layer, self._level[on])
-            self._after[on] = found[:, :3]
+            channels = self._slices.layer(self._coordinate[on], layer, self._level[on])
+            self._after[on] = channels[:, :3]
             self._from[on] = self._to[on]
             self._to[on] = self._lags[segment]
         late = (lag - self._from) / (self._to - self._from)

@@ -7,7 +7,7 @@ none is negative, 1 / w is their sum, and corners mix by b over that sum. Nothin
 clipped, and the derivatives by the pixel follow from the same rows.
 
 A pixel that lies on an edge but for rounding is inside of the triangles on both sides, so that
-none is lost between them, and it is given to one: the nearer, or else the first.
+none is lost between them, and it belongs to one: the nearer, or else the first.
 """
 
 from __future__ import annotations

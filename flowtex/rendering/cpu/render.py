@@ -16,7 +16,7 @@ from flowtex.rendering.cpu.levels import level_colour, slice_level
 from flowtex.rendering.cpu.mipmaps import Mips
 from flowtex.rendering.cpu.noise import SpaceNoise
 from flowtex.rendering.cpu.paper_noise import PaperImages, PaperNoise, PaperPicture
-from flowtex.rendering.cpu.path import SignFreeSlices, Slices
+from flowtex.rendering.cpu.path import AxisSlices, Slices
 from flowtex.rendering.cpu.raster import Coverage, cover
 from flowtex.rendering.cpu.shade import paint, shade
 from flowtex.rendering.cpu.texture import Lookup, LookupMaker, Summing
@@ -138,10 +138,10 @@ def render(
     make = lookup or lookup_maker(textures)
     value, noise_level = [np.zeros((0,))], [np.zeros(0)]
     for some, part in fragments.parts(PART):
-        found = make(part, values)
-        summing = Summing(slices, values, found, paper=textures.paper is not None)
+        part_lookup = make(part, values)
+        summing = Summing(slices, values, part_lookup, paper=textures.paper is not None)
         value.append(summing.texture(part.coordinate.value, level[some]))
-        noise_level.append(found.level)
+        noise_level.append(part_lookup.level)
     image = _Image(size, coverage)
     geometry = textures.geometry
     points = (geometry.field.surface.points - geometry.center).reshape(-1, 3)
@@ -177,17 +177,17 @@ def slices_at(
     values: Mapping[str, Any],
     mips: Callable[[TextureSet, int], Mips] = slice_mips,
 ) -> Slices:
-    """Slice texture between two destination times; ``mips`` may keep what it returns."""
+    """Slice texture between two destination times; ``mips`` may cache them."""
     before = mips(textures, steps[0])
     if textures.geometry.field.sign_free:
-        return SignFreeSlices(before, size=values["u_slicesSize"], lags=values["u_lagCount"])
+        return AxisSlices(before, size=values["u_slicesSize"], lags=values["u_lagCount"])
     if steps[0] == steps[1]:
         return Slices(before)
     return Slices(before, mips(textures, steps[1]), values["u_between"])
 
 
 def lookup_maker(textures: TextureSet) -> LookupMaker:
-    """Look-up of the noise, or of the picture, that the textures were made for."""
+    """Look-up of the noise, or of the picture, that belongs to the textures."""
     paper, planar = textures.paper, textures.geometry.planar
     if paper is None:
         return lambda fragments, values: SpaceNoise(fragments, values, planar=planar)
@@ -226,7 +226,7 @@ def _colours(name: str, value: ArrayLike, shape: tuple[int, ...]) -> Floats:
     numbers = np.asarray(value, dtype=float)
     if numbers.shape not in ((3,), shape) or not ((numbers >= 0) & (numbers <= 1)).all():
         shapes = " or ".join(map(str, dict.fromkeys([(3,), shape])))
-        given = f"of shape {numbers.shape}" if numbers.size > 3 else repr(value)
-        msg = f"{name} is {given}; expected red, green and blue from 0 to 1, of shape {shapes}"
+        wrong = f"of shape {numbers.shape}" if numbers.size > 3 else repr(value)
+        msg = f"{name} is {wrong}; expected red, green and blue from 0 to 1, of shape {shapes}"
         raise ValueError(msg)
     return np.broadcast_to(numbers, shape)

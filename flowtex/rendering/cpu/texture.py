@@ -63,7 +63,7 @@ class Lookup(Protocol):
     level: Floats
 
     def move(self, slope: Floats, speed: Floats) -> None:
-        """Learn the slopes at lag zero and the speeds, (N,), before anything is looked up."""
+        """Set the slopes at lag zero and the speeds, (N,), before anything is looked up."""
         return
 
     def lookup(self, displacement: Floats, length: Floats) -> Floats:
@@ -187,8 +187,8 @@ class Summing:
     def _first(self, count: int) -> Sums:
         """Start with the sample at the fragments themselves."""
         middle = max(weight(0.0, self._values), LEAST_WEIGHT)
-        found = self._lookup.lookup(np.zeros((count, 3)), np.zeros(count))
-        return Sums(middle * found, np.full(count, middle**2), np.zeros(count))
+        values = self._lookup.lookup(np.zeros((count, 3)), np.zeros(count))
+        return Sums(middle * values, np.full(count, middle**2), np.zeros(count))
 
     def _add(self, sums: Sums, one: Side) -> None:
         """Add one side of the paths."""
@@ -208,8 +208,7 @@ class Summing:
             lag = np.where(live, lag, np.maximum(last, 0.0))
             displacement = path.follow(lag) * (side * scale)[:, None]
             weights = alive * weight(side * k / (count + 1), values)
-            found = self._lookup.lookup(displacement, side * lag * scale)
-            sums.values += weights[:, None] * found
+            sums.values += weights[:, None] * self._lookup.lookup(displacement, side * lag * scale)
             sums.squares += weights**2
             sums.neighbours += weights * before
             before = weights

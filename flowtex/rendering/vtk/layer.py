@@ -14,6 +14,8 @@ to it there. The text is built again only for another variant.
 from __future__ import annotations
 
 import weakref
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -23,20 +25,20 @@ from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 from flowtex.rendering.shaders import shader_text
 from flowtex.rendering.uniforms import ViewState, uniforms, variants
-from flowtex.rendering.vtk.gpu import GPUTexture
-from flowtex.rendering.vtk.mesh import COORDINATE, NOISE, NORMAL, POSITION, set_position
+from flowtex.rendering.vtk.gpu_texture import GPUTexture
+from flowtex.rendering.vtk.mesh import ATTRIBUTES, set_position, vertex_attributes
 from flowtex.settings import Settings
 from flowtex.textures import LayerPrefetch, TextureSet
 
 __all__ = ["FlowLayer"]
 
-#: Under this name PyVista keeps who put a replacement in.
+#: Name under which PyVista registers the replacements.
 OWNER = "flowtex"
 
 #: Heights of the window within which positions may be counted from another point than its middle.
-NEAR = 8.0
+ANCHOR_HEIGHTS = 8.0
 
-#: Shader, the mark of VTK's that our text goes before, and our file.
+#: Shader, the mark of VTK before which our text is inserted, and our file.
 REPLACEMENTS = (
     ("vertex", "//VTK::PositionVC::Dec", "vtk/vertex_dec.glsl"),
     ("vertex", "//VTK::PositionVC::Impl", "vtk/vertex_impl.glsl"),
@@ -48,18 +50,18 @@ REPLACEMENTS = (
 
 
 class FlowLayer:
-    """Draws a texture set on an actor whose mesh :func:`surface_mesh` made.
+    """Draws a texture set on an actor whose mesh comes from :func:`surface_mesh`.
 
     Parameters
     ----------
     actor
         The actor; its mapper draws polygons.
     renderer
-        The PyVista renderer that shows it: its camera tells where precision is needed.
+        The PyVista renderer that shows it: its camera decides where precision is needed.
     textures
         What to draw.
     settings
-        How to draw it; read anew before each frame.
+        How to draw it; read before each frame.
     """
 
     def __init__(
@@ -101,15 +103,15 @@ class FlowLayer:
         """Show the time between two destination times of the slices.
 
         Once something has been drawn, the slices that come next in the direction in which the
-        time has moved are made ready.
+        time has moved are prepared.
         """
         was = self.view.time
         if (before, after) != self._steps:
             old = dict(zip(self._steps, ("u_slices", "u_slicesNext"), strict=True))
-            kept = {old[s]: self._gpu.pop(old[s], None) for s in (before, after) if s in old}
+            reused = {old[s]: self._gpu.pop(old[s], None) for s in (before, after) if s in old}
             self._retire("u_slices", "u_slicesNext")
             for step, name in ((before, "u_slices"), (after, "u_slicesNext")):
-                texture = kept.get(old.get(step, ""))
+                texture = reused.get(old.get(step, ""))
                 if texture is not None:
                     self._gpu[name] = texture
             self._steps = (before, after)
@@ -125,7 +127,7 @@ class FlowLayer:
         self._observed = []
         self._prefetch.close()
         self._actor.clear_shader_replacements(_feature_name=OWNER)
-        for attribute in ("flowtexPosition", "flowtexCoordinate", "flowtexNormal", "flowtexNoise"):
+        for attribute in ATTRIBUTES:
             self._actor.mapper.RemoveVertexAttributeMapping(attribute)
         self._retire(*self._gpu)
         self._free(self._window())
@@ -143,12 +145,7 @@ class FlowLayer:
 
     def _map_attributes(self) -> None:
         mapper, points = self._actor.mapper, vtkDataObject.FIELD_ASSOCIATION_POINTS
-        names = [("flowtexPosition", POSITION), ("flowtexCoordinate", COORDINATE)]
-        if not self._textures.geometry.planar:
-            names.append(("flowtexNormal", NORMAL))
-        if self._textures.paper is not None:
-            names.append(("flowtexNoise", NOISE))
-        for attribute, array in names:
+        for attribute, array in vertex_attributes(self._textures).items():
             mapper.MapDataArrayToVertexAttribute(attribute, array, points, -1)
 
     def _write_text(self) -> None:
@@ -172,9 +169,11 @@ class FlowLayer:
         for name, value in values.items():
             if program.IsUniformUsed(name) or isinstance(value, list):
                 _write(program, name, value)
-        for name in self._samplers():
+        for name, load in self._loaders().items():
             if program.IsUniformUsed(name):
-                program.SetUniformi(name, self._texture(name).bind(window))
+                if name not in self._gpu:
+                    self._gpu[name] = load()
+                program.SetUniformi(name, self._gpu[name].bind(window))
 
     def _after_draw(self, data: Any) -> None:
         del data
@@ -182,33 +181,23 @@ class FlowLayer:
         for texture in self._gpu.values():
             texture.unbind()
 
-    def _samplers(self) -> list[str]:
-        names = ["u_slices"]
+    def _loaders(self) -> dict[str, Callable[[], GPUTexture]]:
+        """How to load the texture of each sampler of the shader."""
+        paper = self._textures.paper
+        loaders: dict[str, Callable[[], GPUTexture]] = {"u_slices": partial(self._slices, 0)}
         if self._textures.store.steps > 1:
-            names.append("u_slicesNext")
-        if self._textures.paper is not None:
-            names += ["u_noiseImage", "u_stepImage"]
-        return names
+            loaders["u_slicesNext"] = partial(self._slices, 1)
+        if paper is not None:
+            loaders["u_noiseImage"] = partial(
+                GPUTexture, paper.noise_texels, repeat=paper.noise_repeat
+            )
+            loaders["u_stepImage"] = partial(GPUTexture, paper.step_texels, repeat=paper.repeat)
+        return loaders
 
-    def _texture(self, name: str) -> GPUTexture:
-        """Texture by the name of its sampler, made when it is first drawn."""
-        if name not in self._gpu:
-            levels = self._textures.geometry.levels
-            paper = self._textures.paper
-            if name == "u_slices":
-                made = GPUTexture(self._prefetch.take(self._steps[0]), levels=levels)
-            elif name == "u_slicesNext":
-                made = GPUTexture(self._prefetch.take(self._steps[1]), levels=levels)
-            elif paper is not None and name == "u_noiseImage":
-                rows, columns = paper.noise.shape[:2]
-                repeat = (True, True) if paper.picture else paper.repeat
-                made = GPUTexture(paper.noise.reshape(1, rows, columns, -1), repeat=repeat)
-            elif paper is not None:
-                made = GPUTexture(paper.step[None, :, :, None], repeat=paper.repeat)
-            else:
-                raise KeyError(name)
-            self._gpu[name] = made
-        return self._gpu[name]
+    def _slices(self, number: int) -> GPUTexture:
+        """Slices of the first or the second of the two steps."""
+        layers = self._prefetch.take(self._steps[number])
+        return GPUTexture(layers, levels=self._textures.geometry.levels)
 
     def _before_frame(self, data: Any) -> None:
         """Take the camera into the mesh's own coordinates, and the anchor to where it looks."""
@@ -233,9 +222,9 @@ class FlowLayer:
         """Count positions from near the focus once their digits do not do from elsewhere."""
         geometry = self._textures.geometry
         there = geometry.local(self.view.focus)
-        if np.abs(there - self.view.anchor).max() <= NEAR * seen:
+        if np.abs(there - self.view.anchor).max() <= ANCHOR_HEIGHTS * seen:
             return
-        near_middle = np.abs(there).max() <= NEAR * seen
+        near_middle = np.abs(there).max() <= ANCHOR_HEIGHTS * seen
         self.view.anchor = np.zeros(3) if near_middle else there
         set_position(self._actor.mapper.dataset, geometry.position_from(self.view.anchor))
 
@@ -244,7 +233,7 @@ class FlowLayer:
         return None if renderer is None else renderer.GetRenderWindow()
 
     def _retire(self, *names: str) -> None:
-        """Put textures aside until their window's context is at hand."""
+        """Release textures when their window's context is current."""
         self._retired += [t for n in names if (t := self._gpu.pop(n, None)) is not None]
 
     def _free(self, window: Any) -> None:
