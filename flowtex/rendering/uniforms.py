@@ -16,7 +16,7 @@ from flowtex.rendering.constants import KERNELS
 from flowtex.settings import Settings
 from flowtex.textures import PaperTextures, TextureSet
 
-__all__ = ["ViewState", "finest_cell", "uniforms", "variants"]
+__all__ = ["ViewState", "uniforms", "variants"]
 
 #: Doublings from the finest cell of the noise to the extent of the surface.
 NOISE_DOUBLINGS = 30
@@ -77,15 +77,11 @@ def variants(textures: TextureSet, *, unsteady: bool) -> frozenset[str]:
     return frozenset(chosen)
 
 
-def finest_cell(extent: float) -> float:
-    """Width of a cell of the noise's finest octave: a power of two, so that it is exact."""
-    return float(2.0 ** (np.floor(np.log2(extent)) - NOISE_DOUBLINGS))
-
-
 def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[str, Any]:
     """Values by name: bool, int, float, tuples of float, or lists for arrays."""
     geometry = textures.geometry
-    finest = finest_cell(geometry.extent)
+    # A power of two, so that it is exact.
+    finest = float(2.0 ** (np.floor(np.log2(geometry.extent)) - NOISE_DOUBLINGS))
     even = _origin_cell(geometry.local(view.focus), finest)
     sides, kernel, streams = _direction(textures, settings)
     motion = _motion(textures, settings, view, streams=streams)

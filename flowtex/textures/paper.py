@@ -28,11 +28,14 @@ from flowtex.field.interpolation import (
     fill_blanked,
     inverse_along_line,
 )
+from flowtex.settings import Settings
 from flowtex.textures.patterns import SPOT_GRAIN, TexelMap, checkerboard, even_noise, spots
 from flowtex.trace import SliceStore
 
 __all__ = ["HALF_LEVELS", "PaperTextures"]
 
+#: Longest step in units of lag: half precision ends soon after.
+LONGEST_STEP = 6e4
 #: Deviations that a shader has room for: at every level and half-way to the next.
 HALF_LEVELS = 32
 #: Points at which the levels are looked up.
@@ -76,61 +79,39 @@ class PaperTextures:
 
     @classmethod
     def build(
-        cls,
-        store: SliceStore,
-        *,
-        resolution: int,
-        correction: bool,
-        seed: int = 0,
-        pattern: str = "texture",
-        tiles: int = 1,
-        image: Floats32 | None = None,
+        cls, store: SliceStore, settings: Settings, image: Floats32 | None = None
     ) -> PaperTextures:
-        """Make both textures for a field.
+        """Make both textures of a flow.
 
         Parameters
         ----------
         store
             The flow and its traces.
-        resolution
-            Texels along the longer side of the surface; the other side gets as many as its
-            length on the surface asks for. Rounded up to a power of two.
-        correction
-            Whether the noise is even on the surface instead of even in the texture.
-        seed
-            Number of the noise pattern.
-        pattern
-            ``"texture"`` for the paper's noise, ``"spots"`` for that of Spot Noise,
-            ``"checkerboard"`` or ``"image"`` for a picture.
-        tiles
-            How much smaller the squares of a checkerboard are.
+        settings
+            Pattern (``noise``), ``resolution``, ``noise_correction``, ``seed`` and ``tiles``.
         image
-            The picture for ``"image"``, (H, W, 4).
+            The picture for ``noise="image"``, (H, W, 4).
 
         Raises
         ------
         ValueError
             When the pattern is an image and there is none, or there is no such pattern.
         """
-        field = store.field
-        height, width = _size(field, resolution)
-        along_i, along_j = _coordinates(field, correction=correction)
+        field, corrected = store.field, settings.noise_correction
+        height, width = _size(field, settings.resolution)
+        along_i, along_j = _coordinates(field, correction=corrected)
         index = _texel_positions(along_i, along_j, height, width)
         size = np.broadcast_arrays(
             _slope(along_i, index[..., 0], width), _slope(along_j, index[..., 1], height)
         )
-        texels = TexelMap(field, index, np.stack(size, axis=-1), correction)
-        if pattern == "image" and image is not None:
-            noise: dict[str, Any] = {"noise": image, "picture": True}
-        else:
-            noise = _noise(texels, pattern, seed=seed, tiles=tiles)
+        texels = TexelMap(field, index, np.stack(size, axis=-1), corrected)
         return cls(
-            step=np.minimum(_steps(store, index, texels.size), 6e4).astype(np.float32),
+            step=np.minimum(_steps(store, index, texels.size), LONGEST_STEP).astype(np.float32),
             along_i=along_i,
             along_j=along_j,
             repeat=field.periodic,
-            corrected=correction,
-            **noise,
+            corrected=corrected,
+            **_noise(texels, settings, image),
         )
 
     def with_image(self, image: Floats32) -> PaperTextures:
@@ -220,10 +201,14 @@ def _slope(line: Floats, x: Floats, texels: int) -> Floats:
     return np.asarray(1 / (np.diff(line)[cell] * texels))
 
 
-def _noise(texels: TexelMap, pattern: str, *, seed: int, tiles: int) -> dict[str, Any]:
-    """Attributes of the noise, or of the picture, of a name."""
+def _noise(texels: TexelMap, settings: Settings, image: Floats32 | None) -> dict[str, Any]:
+    """Attributes of the noise, or of the picture in its place."""
+    pattern, seed = settings.noise, settings.seed
+    if pattern == "image" and image is not None:
+        return {"noise": image, "picture": True}
     if pattern == "checkerboard":
-        return {"noise": checkerboard(texels, tiles).astype(np.float32), "picture": True}
+        squares = checkerboard(texels, settings.tiles)
+        return {"noise": squares.astype(np.float32), "picture": True}
     if pattern == "spots":
         return {"noise": _unit(spots(texels, seed)), "grain": SPOT_GRAIN}
     if pattern != "texture":

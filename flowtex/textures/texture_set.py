@@ -97,15 +97,7 @@ class TextureSet:
         geometry = SurfaceGeometry.of(field)
         if settings.noise == "procedural":
             return cls(geometry, store)
-        paper = PaperTextures.build(
-            store,
-            resolution=settings.resolution,
-            correction=settings.noise_correction,
-            seed=settings.seed,
-            pattern=settings.noise,
-            tiles=settings.tiles,
-            image=image,
-        )
+        paper = PaperTextures.build(store, settings, image)
         return cls(geometry, store, "parameter", paper)
 
     def with_image(self, image: Floats32) -> TextureSet:

@@ -99,26 +99,21 @@ def compose(
 
     Parameters
     ----------
-    field
-        The flow.
-    lags
-        All lags, (M,), in multiples of ``unit``.
-    unit
-        One unit of lag at each node, (J, I).
+    field, lags, unit
+        The flow, all lags, (M,), and one unit of lag at each node, (J, I).
     slices
         Derivative of the displacement by lag at lag zero, and the displacements,
         (2, M + 1, T, J, I), of which those of the first ``known`` lags are filled.
     reach
-        Lag at which each path ended, (T, J, I), infinite where it did not within what is known.
+        Lag at which each path ended, (T, J, I), infinite where it did not within these.
     known
         Number of slices that are filled.
     landing
-        What :func:`landings` gives.
+        From :func:`landings`.
     run
         Maps a function over blocks of paths.
     polar
-        Which paths have come right beside a pole within what is known, (T, J, I); more of them
-        are marked.
+        Which paths have come right beside a pole, (T, J, I); more of them are marked.
     integrate
         Follows paths right beside a pole.
     """

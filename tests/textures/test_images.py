@@ -319,8 +319,8 @@ def test_the_level_of_detail_keeps_a_fine_image_from_flickering(opengl: Any) -> 
 
 def pattern(field: FlowField, name: str, **options: Any) -> PaperTextures:
     store = SliceStore(field, parameter="arclength")
-    settings = {"resolution": 256, "correction": True, **options}
-    return PaperTextures.build(store, pattern=name, **settings)
+    settings = Settings(noise=name, **{"resolution": 256, **options})
+    return PaperTextures.build(store, settings)
 
 
 def in_space(made: PaperTextures, field: FlowField) -> Floats:
@@ -346,7 +346,9 @@ def widths(noise: Floats) -> tuple[float, float]:
 
 def test_spots_are_round_and_even_on_a_stretched_grid() -> None:
     field = stretched()
-    even, plain = (in_space(pattern(field, "spots", correction=c), field) for c in (True, False))
+    even, plain = (
+        in_space(pattern(field, "spots", noise_correction=c), field) for c in (True, False)
+    )
     halves = (slice(0, 200), slice(200, 400))
     for half in halves:
         along, across = widths(even[:, half])
@@ -367,7 +369,7 @@ def test_spots_have_both_signs_and_a_seed() -> None:
 
 @pytest.mark.parametrize("correction", [True, False])
 def test_averaged_spots_lose_the_contrast_that_the_gain_gives_back(correction: bool) -> None:
-    noise = pattern(uniform(), "spots", correction=correction, resolution=1024).noise
+    noise = pattern(uniform(), "spots", noise_correction=correction, resolution=1024).noise
     for level in (1, 2, 4, 5):
         width = 2**level
         rows, columns = (n // width for n in noise.shape)
@@ -397,7 +399,7 @@ def test_squares_are_even_on_a_stretched_grid() -> None:
     even = sides(pattern(field, "checkerboard", resolution=1024))
     assert len(even) == SQUARES - 2
     np.testing.assert_allclose(even, 2 / SQUARES, atol=0.01)
-    plain = sides(pattern(field, "checkerboard", resolution=1024, correction=False))
+    plain = sides(pattern(field, "checkerboard", resolution=1024, noise_correction=False))
     assert plain.max() > 5 * plain.min()
 
 
@@ -414,8 +416,8 @@ def test_squares_close_around_a_ring_that_is_not_flat() -> None:
     assert row[0] != row[-1]
 
 
-def test_an_unknown_pattern_is_told() -> None:
-    for name in ("image", "marble"):
+def test_what_is_no_pattern_of_a_texture_is_refused() -> None:
+    for name in ("image", "procedural"):
         with pytest.raises(ValueError, match=rf"^pattern is '{name}'; expected 'texture', 'spots'"):
             pattern(uniform(), name)
 

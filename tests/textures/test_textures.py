@@ -236,7 +236,8 @@ def test_slices_that_a_shader_cannot_use_are_refused(count: int) -> None:
 
 def paper(field: FlowField, *, correction: bool, parameter: str = "arclength") -> PaperTextures:
     store = SliceStore(field, parameter=parameter)
-    return PaperTextures.build(store, resolution=128, correction=correction)
+    settings = Settings(noise="texture", resolution=128, noise_correction=correction)
+    return PaperTextures.build(store, settings)
 
 
 @pytest.mark.parametrize("parameter", ["arclength", "time"])
@@ -283,7 +284,8 @@ def test_correction_makes_the_grain_even_on_the_surface() -> None:
 def test_noise_is_the_same_for_the_same_seed() -> None:
     store = SliceStore(stretched(21))
     one, two, other = (
-        PaperTextures.build(store, resolution=64, correction=True, seed=s).noise for s in (1, 1, 2)
+        PaperTextures.build(store, Settings(noise="texture", resolution=64, seed=s)).noise
+        for s in (1, 1, 2)
     )
     np.testing.assert_array_equal(one, two)
     assert np.corrcoef(one.ravel(), other.ravel())[0, 1] < 0.2

@@ -10,21 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flowtex._util.array_types import Floats, Ints
-from flowtex.rendering.constants import (
-    AXIS_PRIMES,
-    GRAIN_PRECISION,
-    HASH_FACTORS,
-    HASH_SHIFTS,
-    LAST_OCTAVE,
-    LEAST_RATE,
-    LEAST_TRAVEL,
-    MANY_PHASES,
-    OCTAVE_PRIME,
-    PHASE_SHIFT,
-    PHASES,
-    SEED_PRIME,
-    SQRT_HALF,
-)
+from flowtex.rendering import constants as const
 from flowtex.rendering.cpu.fragments import Fragments
 from flowtex.rendering.cpu.levels import footprint, on_surface
 from flowtex.rendering.cpu.texture import Lookup, Sums, shared
@@ -35,8 +21,8 @@ Hashes = NDArray[np.uint32]
 
 #: Keys of the corners of a cell that differ in their first two coordinates, (4,).
 CORNERS = (
-    np.array([0, 1, 0, 1], np.uint32) * AXIS_PRIMES[0]
-    + np.array([0, 0, 1, 1], np.uint32) * AXIS_PRIMES[1]
+    np.array([0, 1, 0, 1], np.uint32) * const.AXIS_PRIMES[0]
+    + np.array([0, 0, 1, 1], np.uint32) * const.AXIS_PRIMES[1]
 )
 
 
@@ -90,21 +76,21 @@ def noise_lattice(position: Floats, octave: Ints, values: Mapping[str, Any]) -> 
     """Lattice of an octave (N,) at positions (N, 3) relative to the origin of the noise."""
     odd, doublings = (octave & 1 == 1)[:, None], (octave >> 1)[:, None]
     shrink = np.exp2(-doublings.astype(float))
-    inverse = shrink / values["u_noiseFinest"] * np.where(odd, SQRT_HALF, 1.0)
+    inverse = shrink / values["u_noiseFinest"] * np.where(odd, const.SQRT_HALF, 1.0)
     finest = np.where(odd, values["u_noiseOriginOdd"], values["u_noiseOriginEven"]).astype(np.int64)
     origin = finest >> doublings
     rest = (finest - (origin << doublings) + np.where(odd, values["u_noiseRestOdd"], 0.0)) * shrink
-    key = origin.astype(np.uint32) * AXIS_PRIMES
-    seed = np.array([values["u_seed"]], np.uint32) * SEED_PRIME
-    key[:, 0] += octave.astype(np.uint32) * OCTAVE_PRIME + seed
+    key = origin.astype(np.uint32) * const.AXIS_PRIMES
+    seed = np.array([values["u_seed"]], np.uint32) * const.SEED_PRIME
+    key[:, 0] += octave.astype(np.uint32) * const.OCTAVE_PRIME + seed
     return NoiseLattice(position * inverse + rest, inverse[:, 0], key)
 
 
 def grains(h: Hashes, motion: Motion | None) -> Floats:
     """Values of lattice points from their keys (N, 4), uniform in -1 ... 1."""
-    h = (h ^ (h >> HASH_SHIFTS[0])) * HASH_FACTORS[0]
-    h = (h ^ (h >> HASH_SHIFTS[1])) * HASH_FACTORS[1]
-    phase = (h >> PHASE_SHIFT) * (1.0 / PHASES)
+    h = (h ^ (h >> const.HASH_SHIFTS[0])) * const.HASH_FACTORS[0]
+    h = (h ^ (h >> const.HASH_SHIFTS[1])) * const.HASH_FACTORS[1]
+    phase = (h >> const.PHASE_SHIFT) * (1.0 / const.PHASES)
     if motion is None:
         return np.asarray(phase * 2.0 - 1.0)
     slow, fast = (
@@ -126,15 +112,17 @@ def octave(
     base = np.floor(q)
     w = q - base
     spread = 1.0 - 2.0 * w * (1.0 - w)
-    k = lattice.key + base.astype(np.int64).astype(np.uint32) * AXIS_PRIMES
+    k = lattice.key + base.astype(np.int64).astype(np.uint32) * const.AXIS_PRIMES
     corners = (k[:, 0] + k[:, 1] + k[:, 2])[:, None] + CORNERS
     values = grains(corners, motion)
     variance = spread[:, 0] * spread[:, 1]
     if not planar:
-        values = mix(values, grains(corners + AXIS_PRIMES[2], motion), w[:, 2:])
+        values = mix(values, grains(corners + const.AXIS_PRIMES[2], motion), w[:, 2:])
         variance = variance * spread[:, 2]
     rows = mix(values[:, 0::2], values[:, 1::2], w[:, :1])
-    return np.asarray(mix(rows[:, 0], rows[:, 1], w[:, 1]) / np.sqrt(variance / GRAIN_PRECISION))
+    return np.asarray(
+        mix(rows[:, 0], rows[:, 1], w[:, 1]) / np.sqrt(variance / const.GRAIN_PRECISION)
+    )
 
 
 def mix(a: Floats, b: Floats, share: Floats | float) -> Floats:
@@ -160,7 +148,7 @@ class SpaceNoise(Lookup):
             grain = np.maximum(grain, texel)
         self.level = np.log2(grain / texel)
         self.spacing = values["u_spacing"] * grain
-        octaves = np.clip(2.0 * np.log2(grain / values["u_noiseFinest"]), 0.0, LAST_OCTAVE)
+        octaves = np.clip(2.0 * np.log2(grain / values["u_noiseFinest"]), 0.0, const.LAST_OCTAVE)
         whole = octaves.astype(np.int64)
         self._late = octaves - whole
         here = position.value - np.asarray(values["u_noiseOrigin"])
@@ -174,15 +162,15 @@ class SpaceNoise(Lookup):
         travel = values["u_travel"] * np.ones(len(speed))
         travel *= self._pixel if values["u_travelInPixels"] else 1.0
         travel *= speed if values["u_travelBySpeed"] else 1.0
-        rate = np.log2(np.maximum(travel / (values["u_wave"] * self._pixel), LEAST_RATE))
+        rate = np.log2(np.maximum(travel / (values["u_wave"] * self._pixel), const.LEAST_RATE))
         rates = np.floor(rate)[:, None] + [0.0, 1.0]
         turns = np.exp2(rates) * (rates >= 0)
         coarse, rest = values["u_clock"]
         even = np.mod(rates[:, :1], 2.0) < 0.5
         self._motion = Motion(
             clock=np.mod(turns * coarse, 1.0) + turns * rest,
-            turns=turns * (slope / np.maximum(travel, LEAST_TRAVEL))[:, None],
-            phases=np.where(even, [1.0, MANY_PHASES], [MANY_PHASES, 1.0]),
+            turns=turns * (slope / np.maximum(travel, const.LEAST_TRAVEL))[:, None],
+            phases=np.where(even, [1.0, const.MANY_PHASES], [const.MANY_PHASES, 1.0]),
             late=rate - rates[:, 0],
         )
 

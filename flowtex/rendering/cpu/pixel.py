@@ -21,18 +21,9 @@ __all__ = ["LoadedTextures", "Recorder", "Window", "camera_facing", "cover_place
 def cover_place(
     surface: Surface, place: SurfacePoint, camera: Camera, size: tuple[int, int]
 ) -> Coverage:
-    """Cover one place, whether or not something stands before it.
+    """Return the coverage of one place, whether or not something stands before it.
 
-    Parameters
-    ----------
-    surface
-        The surface.
-    place
-        A place on one of its triangles.
-    camera
-        Where the surface is seen from.
-    size
-        Width and height of the picture in pixels.
+    The pixel is one of a picture of some width and height in pixels.
 
     Raises
     ------
@@ -63,19 +54,11 @@ def cover_place(
 def camera_facing(surface: Surface, place: SurfacePoint, pixel: float) -> Camera:
     """Return the camera that looks straight at a place, for a picture of one pixel.
 
-    Parameters
-    ----------
-    surface
-        The surface.
-    place
-        A place on one of its triangles.
-    pixel
-        Width of the pixel in the mesh's units.
-
     Raises
     ------
     ValueError
-        When the width is not positive, or the triangle has no area.
+        When the width of the pixel, in the mesh's units, is not positive, or the triangle has no
+        area.
     """
     if not 0 < pixel < np.inf:
         msg = f"pixel is {pixel!r}; expected a positive length in the mesh's units, or a Camera"

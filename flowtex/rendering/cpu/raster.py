@@ -66,21 +66,10 @@ class Coverage:
 
 
 def cover(surface: Surface, camera: Camera, size: tuple[int, int]) -> Coverage:
-    """Find the visible cells; quads are cut along the diagonal from their first corner.
+    """Find the visible cells of a surface in a picture of some width and height in pixels.
 
-    Parameters
-    ----------
-    surface
-        The surface; cells with a node that is not valid are left out.
-    camera
-        Where the surface is seen from.
-    size
-        Width and height of the picture in pixels.
-
-    Returns
-    -------
-    Coverage
-        Its corners count the nodes row by row: j times the number of columns, plus i.
+    Quads are cut along the diagonal from their first corner; cells with a node that is not valid
+    are left out. The corners count the nodes row by row: j times the number of columns, plus i.
     """
     points = (surface.points - surface.center).reshape(-1, 3)
     matrix = camera.matrix(size[0] / size[1], surface.center)

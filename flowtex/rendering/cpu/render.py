@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flowtex._util.array_types import Bools, Bytes, Floats
+from flowtex._util.array_types import Bools, Bytes, Floats, Indices
 from flowtex.camera import Camera
 from flowtex.rendering.cpu.fragments import Fragments
 from flowtex.rendering.cpu.levels import level_colour, slice_level
@@ -17,7 +18,7 @@ from flowtex.rendering.cpu.mipmaps import Mips
 from flowtex.rendering.cpu.noise import SpaceNoise
 from flowtex.rendering.cpu.paper_noise import PaperImages, PaperNoise, PaperPicture
 from flowtex.rendering.cpu.path import AxisSlices, Slices
-from flowtex.rendering.cpu.raster import Coverage, cover
+from flowtex.rendering.cpu.raster import cover
 from flowtex.rendering.cpu.shade import paint, shade
 from flowtex.rendering.cpu.texture import Lookup, LookupMaker, Summing
 from flowtex.rendering.uniforms import ViewState, uniforms
@@ -142,12 +143,12 @@ def render(
         summing = Summing(slices, values, part_lookup, paper=textures.paper is not None)
         value.append(summing.texture(part.coordinate.value, level[some]))
         noise_level.append(part_lookup.level)
-    image = _Image(size, coverage)
+    image = partial(_image, pixel=coverage.pixel, size=size)
     geometry = textures.geometry
     points = (geometry.field.surface.points - geometry.center).reshape(-1, 3)
     return Picture(
         value=image(np.concatenate(value[1:] or value)),
-        covered=image.covered,
+        covered=np.isfinite(image(level)),
         coordinate=image(fragments.coordinate.value),
         position=image(coverage.mix(points)[0] + geometry.center),
         slice_level=image(level),
@@ -203,23 +204,12 @@ def lookup_maker(textures: TextureSet) -> LookupMaker:
     return make
 
 
-class _Image:
-    """Lays what the fragments have into an image."""
-
-    def __init__(self, size: tuple[int, int], coverage: Coverage) -> None:
-        self._width, self._height = size
-        self._pixel = coverage.pixel
-
-    @property
-    def covered(self) -> Bools:
-        """Pixels that have a fragment, (H, W)."""
-        return ~np.isnan(self(np.zeros(len(self._pixel))))
-
-    def __call__(self, data: Floats) -> Floats:
-        """Image (H, W, ...) of data (N, ...), NaN elsewhere."""
-        result = np.full((self._height * self._width, *data.shape[1:]), np.nan)
-        result[self._pixel] = data
-        return result.reshape(self._height, self._width, *data.shape[1:])
+def _image(data: Floats, pixel: Indices, size: tuple[int, int]) -> Floats:
+    """Lay data (N, ...) of pixels (N,) into an image (H, W, ...), NaN elsewhere."""
+    width, height = size
+    result = np.full((height * width, *data.shape[1:]), np.nan)
+    result[pixel] = data
+    return result.reshape(height, width, *data.shape[1:])
 
 
 def _colours(name: str, value: ArrayLike, shape: tuple[int, ...]) -> Floats:

@@ -6,24 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import Floats
-from flowtex.rendering.constants import (
-    BASE_DARK,
-    BASE_LIGHT,
-    FROM_CONES,
-    FROM_LAB,
-    LEAST_LIGHTNESS,
-    LEVEL_STRENGTH,
-    SRGB_KNEE,
-    SRGB_LINEAR_KNEE,
-    SRGB_OFFSET,
-    SRGB_POWER,
-    SRGB_SCALE,
-    SRGB_SLOPE,
-    TO_CONES,
-    TO_LAB,
-    TONE_RANGE,
-    TONE_SLOPE,
-)
+from flowtex.rendering import constants as const
 from flowtex.settings import Settings
 
 __all__ = ["paint", "shade", "tone"]
@@ -49,16 +32,18 @@ def shade(colour: ArrayLike, value: Floats, settings: Settings) -> Floats:
     lab = np.broadcast_to(_to_oklab(np.asarray(colour, dtype=float)), (*value.shape, 3))
     strength = settings.strength
     lightness = lab[..., 0]
-    base = lightness + strength * (BASE_DARK + (BASE_LIGHT - BASE_DARK) * lightness - lightness)
-    light = np.clip(base + TONE_RANGE * strength * tone(value, settings.contrast), 0.0, 1.0)
-    up = (1.0 - light) / np.maximum(1.0 - base, LEAST_LIGHTNESS)
-    room = np.where(light < base, light / np.maximum(base, LEAST_LIGHTNESS), up)
+    base = lightness + strength * (
+        const.BASE_DARK + (const.BASE_LIGHT - const.BASE_DARK) * lightness - lightness
+    )
+    light = np.clip(base + const.TONE_RANGE * strength * tone(value, settings.contrast), 0.0, 1.0)
+    up = (1.0 - light) / np.maximum(1.0 - base, const.LEAST_LIGHTNESS)
+    room = np.where(light < base, light / np.maximum(base, const.LEAST_LIGHTNESS), up)
     return _from_oklab(np.concatenate([light[..., None], lab[..., 1:] * room[..., None]], axis=-1))
 
 
 def tone(value: Floats, contrast: float) -> Floats:
     """How far the texture lightens, from -1 to 1."""
-    return np.asarray(2.0 / (1.0 + np.exp(-TONE_SLOPE * contrast * value)) - 1.0)
+    return np.asarray(2.0 / (1.0 + np.exp(-const.TONE_SLOPE * contrast * value)) - 1.0)
 
 
 def paint(colour: ArrayLike, picture: Floats, settings: Settings) -> Floats:
@@ -66,31 +51,35 @@ def paint(colour: ArrayLike, picture: Floats, settings: Settings) -> Floats:
 
     Parameters
     ----------
-    colour
-        Red, green and blue from 0 to 1, (3,) or (..., 3).
+    colour, settings
+        As for :func:`shade`.
     picture
         Red, green and blue times opacity, and opacity, (..., 4).
-    settings
-        Strength is taken from them.
 
     Returns
     -------
     numpy.ndarray
         Colours from 0 to 1, (..., 3).
     """
-    strength = LEVEL_STRENGTH * settings.strength if settings.show_level else settings.strength
+    strength = (
+        const.LEVEL_STRENGTH * settings.strength if settings.show_level else settings.strength
+    )
     below = np.asarray(colour, dtype=float) * (1.0 - strength * picture[..., 3:])
     return np.asarray(below + strength * picture[..., :3])
 
 
 def _to_oklab(colour: Floats) -> Floats:
     c = np.clip(colour, 0.0, 1.0)
-    linear = np.where(c < SRGB_KNEE, c / SRGB_SLOPE, ((c + SRGB_OFFSET) / SRGB_SCALE) ** SRGB_POWER)
-    return np.asarray(np.cbrt(linear @ TO_CONES) @ TO_LAB)
+    linear = np.where(
+        c < const.SRGB_KNEE,
+        c / const.SRGB_SLOPE,
+        ((c + const.SRGB_OFFSET) / const.SRGB_SCALE) ** const.SRGB_POWER,
+    )
+    return np.asarray(np.cbrt(linear @ const.TO_CONES) @ const.TO_LAB)
 
 
 def _from_oklab(lab: Floats) -> Floats:
-    roots = lab @ FROM_LAB
-    linear = np.clip(roots**3 @ FROM_CONES, 0.0, 1.0)
-    curved = SRGB_SCALE * np.power(linear, 1.0 / SRGB_POWER) - SRGB_OFFSET
-    return np.where(linear < SRGB_LINEAR_KNEE, linear * SRGB_SLOPE, curved)
+    roots = lab @ const.FROM_LAB
+    linear = np.clip(roots**3 @ const.FROM_CONES, 0.0, 1.0)
+    curved = const.SRGB_SCALE * np.power(linear, 1.0 / const.SRGB_POWER) - const.SRGB_OFFSET
+    return np.where(linear < const.SRGB_LINEAR_KNEE, linear * const.SRGB_SLOPE, curved)

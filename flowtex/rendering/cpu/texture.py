@@ -9,17 +9,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from flowtex._util.array_types import Floats
-from flowtex.rendering.constants import (
-    BELL,
-    BELL_BEND,
-    BELL_END,
-    KERNEL_BOX,
-    KERNEL_RAMP,
-    LEAST_SPEED,
-    LEAST_WEIGHT,
-    PI,
-    SHARED_TERMS,
-)
+from flowtex.rendering import constants as const
 from flowtex.rendering.cpu.fragments import Fragments
 from flowtex.rendering.cpu.path import Path, Slices
 
@@ -99,7 +89,7 @@ class Side:
 
     def step(self, lag: Floats) -> Floats:
         """Lag to the next sample from lags (N,): equation 3, with the speed that is there."""
-        speed = np.maximum(self.path.speed(lag), LEAST_SPEED)
+        speed = np.maximum(self.path.speed(lag), const.LEAST_SPEED)
         return np.asarray(self.spacing / (self.scale * speed))
 
 
@@ -109,11 +99,11 @@ LookupMaker = Callable[[Fragments, Values], Lookup]
 
 def weight(x: float, values: Values) -> float:
     """Weight at x in -1 ... 1, negative behind the particle."""
-    if values["u_kernel"] == KERNEL_BOX:
+    if values["u_kernel"] == const.KERNEL_BOX:
         return 1.0
-    if values["u_kernel"] == KERNEL_RAMP:
+    if values["u_kernel"] == const.KERNEL_RAMP:
         return 0.5 * (1.0 - x) if values["u_sides"] == 2 else 1.0 - abs(x)
-    return 0.5 + 0.5 * float(np.cos(PI * x))
+    return 0.5 + 0.5 * float(np.cos(const.PI * x))
 
 
 def shared(apart: Floats, near: Floats) -> Floats:
@@ -127,11 +117,11 @@ def shared(apart: Floats, near: Floats) -> Floats:
         Correlation of the weights with those of the next sample, (N,).
     """
     total = np.ones(np.broadcast_shapes(np.shape(apart), np.shape(near)))
-    for m in range(1, SHARED_TERMS + 1):
+    for m in range(1, const.SHARED_TERMS + 1):
         d = m * m * np.square(apart)
-        near_d = np.minimum(d, BELL_END)
-        bell = np.exp(-near_d * (BELL + BELL_BEND * near_d))
-        total += np.where(d > BELL_END, 0.0, 2.0 * np.power(near, m * m) * bell)
+        near_d = np.minimum(d, const.BELL_END)
+        bell = np.exp(-near_d * (const.BELL + const.BELL_BEND * near_d))
+        total += np.where(d > const.BELL_END, 0.0, 2.0 * np.power(near, m * m) * bell)
     return total
 
 
@@ -175,9 +165,8 @@ class Summing:
             next_ = self._slices.layer(coordinate, before + 1, level)
             ends = (base[:, :3], next_[:, :3])
             path = Path(self._slices, coordinate, level, ends, before, self._lags)
-            yield Side(
-                sign, path, spacing, np.where(speed > LEAST_SPEED, next_[:, 3], -np.inf), scale
-            )
+            reach = np.where(speed > const.LEAST_SPEED, next_[:, 3], -np.inf)
+            yield Side(sign, path, spacing, reach, scale)
 
     def _sides(self) -> tuple[tuple[float, int], ...]:
         """Sides of the paths: their sign, and the layer before their first slice."""
@@ -186,7 +175,7 @@ class Summing:
 
     def _first(self, count: int) -> Sums:
         """Start with the sample at the fragments themselves."""
-        middle = max(weight(0.0, self._values), LEAST_WEIGHT)
+        middle = max(weight(0.0, self._values), const.LEAST_WEIGHT)
         values = self._lookup.lookup(np.zeros((count, 3)), np.zeros(count))
         return Sums(middle * values, np.full(count, middle**2), np.zeros(count))
 
