@@ -5,16 +5,17 @@
 PYTHON ?= python3
 VENV   ?= .venv
 PYTEST_ARGS ?=
+PAPER ?= out/paper
 
 BIN := $(VENV)/bin
 SETUP := pyproject.toml tools/setup.sh tools/common.sh
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint format docs gallery wheel clean
+.PHONY: help demo test lint format docs gallery client paper paper-quick wheel clean
 
 help: ## list what can be made
 	@echo "flowtex. Choose an interpreter with PYTHON=python3.12, tests with PYTEST_ARGS='-k trace'."
-	@sed -n 's/^\([a-z]*\):[^#]*## /  make \1\t/p' Makefile | expand -t 16
+	@sed -n 's/^\([a-z-]*\):[^#]*## /  make \1\t/p' Makefile | expand -t 20
 
 demo: $(VENV)/.ready-demo ## set up if need be, and show flow on a surface
 	@sh tools/opengl.sh $(BIN)/python
@@ -41,11 +42,22 @@ docs: $(VENV)/.ready-test ## write the table of settings into the guide
 gallery: $(VENV)/.ready-test ## draw the pictures of the README and the gallery
 	$(BIN)/python docs/make_pictures.py
 
+client: $(VENV)/.ready-test ## build the browser client from client/src into the package
+	sh tools/javascript.sh $(BIN) build
+
+paper: $(VENV)/.ready-demo ## compute the paper's tables and figures into out/paper, in some minutes
+	@$(BIN)/python -m paper -o $(PAPER)
+
+paper-quick: $(VENV)/.ready-demo ## the same in the reduced form, in less than a minute
+	@$(BIN)/python -m paper --quick -o $(PAPER)
+
 wheel: $(VENV)/.ready-test ## build dist/flowtex-*.whl and the source archive
 	$(BIN)/hatchling build
 
 clean: ## remove the environment and everything that was built
-	rm -rf $(VENV) dist build .mypy_cache .pytest_cache .ruff_cache
+	rm -rf $(VENV) dist build out .mypy_cache .pytest_cache .ruff_cache
+	find . -name node_modules -type d -prune -exec rm -rf {} +
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
 $(VENV)/.ready-demo: $(SETUP)
 	@sh tools/setup.sh "$(PYTHON)" $(VENV) app,movie

@@ -214,7 +214,7 @@ def streaming() -> list[Picture]:
     return frames
 
 
-#: Pictures of docs/paper.md: sections of ``flowtex paper``, and the files that each is made of.
+#: Pictures of docs/paper.md: sections of ``make paper``, and the files that each is made of.
 PAPER = {
     "figure5": ("pictures/figure5-1-1", "pictures/figure5-1-2", "pictures/figure5-1-3"),
     "figure6": ("pictures/figure6-3-1", "pictures/figure6-4-1", "pictures/figure6-4-2"),
@@ -225,7 +225,7 @@ PAPER = {
 
 
 def paper() -> None:
-    """Draw the pictures of docs/paper.md, which `flowtex paper` has on its page."""
+    """Draw the pictures of docs/paper.md, which `make paper` has on its page."""
     from paper import reproduce
 
     with TemporaryDirectory() as made:

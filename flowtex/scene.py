@@ -374,9 +374,9 @@ def share_field(field: FlowField) -> FlowField:
     A notebook shows one mesh many times over, and makes it a field each time.
     """
     words = (field.periodic, field.name, field.length_unit, field.time_unit, field.sign_free)
-    placed = () if field.placed is None else (field.placed,)
-    arrays = (field.points, field.velocity, field.times, field.valid, *placed)
-    key = digest(*arrays, *field.scalars.values(), words=(words, len(placed), *field.scalars))
+    positions = () if field.has_position is None else (field.has_position,)
+    arrays = (field.points, field.velocity, field.times, field.valid, *positions)
+    key = digest(*arrays, *field.scalars.values(), words=(words, len(positions), *field.scalars))
     return _fields.get(key, lambda: field)
 
 
@@ -408,12 +408,4 @@ def coarsened_field(field: FlowField, nodes: int) -> FlowField:
         np.unique(np.rint(np.linspace(0, n - 1, max(int(n * share), min(n, 8)))).astype(int))
         for n in field.shape
     )
-    at = np.ix_(rows, columns)
-    return replace(
-        field,
-        points=field.points[at],
-        velocity=field.velocity[:, at[0], at[1]],
-        valid=field.valid[at],
-        placed=None if field.placed is None else field.placed[at],
-        scalars={k: s[:, at[0], at[1]] for k, s in field.scalars.items()},
-    )
+    return field.at_lines(rows, columns)

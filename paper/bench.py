@@ -1,4 +1,4 @@
-"""What the experiments share: how much is done, the seed, fields, traces and textures."""
+"""What the experiments share: scale, seed, fields, traces and textures."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from flowtex.field import FlowField
 from flowtex.settings import Settings
 from flowtex.textures import TextureSet
 from flowtex.trace import SliceStore
-from paper import fields
+from paper import data_sets
 
 __all__ = ["OURS", "PAPER", "Bench"]
 
@@ -33,7 +33,7 @@ OURS: dict[str, Any] = {}
 
 @dataclass
 class Bench:
-    """Scale and seed of a run, and what is made once for all experiments.
+    """Scale and seed of a run, and what is computed once for all experiments.
 
     Attributes
     ----------
@@ -48,7 +48,7 @@ class Bench:
     quick: bool = False
     seed: int = 0
     data: Path | None = None
-    _kept: dict[Any, Any] = field(default_factory=dict, repr=False)
+    _cache: dict[Any, Any] = field(default_factory=dict, repr=False)
 
     def pick(self, full: T, quick: T) -> T:
         """Return the one or the other, by the scale of the run."""
@@ -60,43 +60,49 @@ class Bench:
         return np.random.default_rng(self.seed)
 
     def once(self, key: Any, make: Callable[[], T]) -> T:
-        """Return what was made under a key, made when it is first asked for."""
-        if key not in self._kept:
-            self._kept[key] = make()
-        found: T = self._kept[key]
-        return found
+        """Return the value of a key, computed when it is first asked for."""
+        if key not in self._cache:
+            self._cache[key] = make()
+        value: T = self._cache[key]
+        return value
 
     @property
     def post(self) -> FlowField | None:
         """The liquid-oxygen post, or ``None`` where its files cannot be had."""
-        return self.once("post", lambda: fields.post(self.data))
+        return self.once("post", lambda: data_sets.post(self.data))
 
     @property
     def shuttle(self) -> FlowField:
         """A curved surface of 52 x 62 nodes, in the shuttle's place."""
-        return self.once("shuttle", fields.shuttle)
+        return self.once("shuttle", data_sets.shuttle)
 
     @property
     def vortex(self) -> FlowField:
         """100 x 100 nodes over 31 time steps."""
-        return self.once("vortex", fields.vortex)
+        return self.once("vortex", data_sets.vortex)
+
+    @property
+    def published(self) -> dict[str, FlowField]:
+        """The data sets of the paper's tables by name; without the post where it is missing."""
+        fields = {"post": self.post, "shuttle": self.shuttle, "vortex": self.vortex}
+        return {name: flow for name, flow in fields.items() if flow is not None}
 
     @property
     def gyre(self) -> FlowField:
         """Steady double gyre on a sheared, stretched grid; its flow is known at every point."""
-        return self.once("gyre", fields.gyre)
+        return self.once("gyre", data_sets.gyre)
 
     @property
     def stretched(self) -> FlowField:
         """The same flow on 52 x 62 nodes whose cells grow to the right and upwards."""
-        return self.once("stretched", fields.stretched)
+        return self.once("stretched", data_sets.stretched)
 
     def settings(self, **values: Any) -> Settings:
         """Return settings with the seed of the run."""
         return Settings(**{"seed": self.seed % 65536, **values})
 
     def textures(self, flow: FlowField, settings: Settings) -> TextureSet:
-        """Textures of a field, each kind made once; the field must be one that is kept."""
+        """Textures of a field, each kind built once; the field must be one of this bench."""
         store = self.once(
             ("store", id(flow), settings.parameter),
             lambda: SliceStore(flow, parameter=settings.parameter, compose=False),

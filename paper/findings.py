@@ -1,15 +1,26 @@
-"""What an experiment hands to the page: claims, tables, pictures, plots and numbers."""
+"""What an experiment is, and what it hands to the page: claims, tables, pictures, numbers."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-import numpy as np
-from numpy.typing import NDArray
+from flowtex._util.array_types import Bytes
+from paper.bench import Bench
 
-__all__ = ["Block", "Claim", "Finding", "Panel", "Plate", "Plot", "Table", "Text"]
+__all__ = [
+    "Block",
+    "Claim",
+    "Finding",
+    "Panel",
+    "Plate",
+    "Plot",
+    "Report",
+    "Section",
+    "Table",
+    "Text",
+]
 
 Sense = Literal["at most", "at least"]
 
@@ -65,7 +76,7 @@ class Table:
 class Panel:
     """One picture, (H, W, 3) uint8, with what is written under it."""
 
-    image: NDArray[np.uint8]
+    image: Bytes
     label: str
 
 
@@ -116,3 +127,61 @@ class Finding:
     numbers: Mapping[str, Any] = field(default_factory=dict)
     claims: Sequence[Claim] = ()
     timings: Mapping[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Section:
+    """One table, figure or experiment.
+
+    Attributes
+    ----------
+    key
+        Name in ``numbers.json`` and in the page's addresses.
+    title
+        Headline.
+    place
+        Where the paper says it: a section, table or figure.
+    states
+        What the paper states, in own words, with its numbers.
+    computes
+        What is computed here, and on what.
+    run
+        Does it.
+    part
+        Part of the page: what is reproduced, or what goes beyond.
+    """
+
+    key: str
+    title: str
+    place: str
+    states: str
+    computes: str
+    run: Callable[[Bench], Finding]
+    part: str = "The paper, reproduced"
+
+
+@dataclass(frozen=True)
+class Report:
+    """All findings of a run.
+
+    Attributes
+    ----------
+    findings
+        Sections with their findings, in order.
+    about
+        Version, Python, form, seed, and whether the post was there.
+    seconds
+        Seconds that each section took.
+    title
+        The picture above all.
+    """
+
+    findings: Sequence[tuple[Section, Finding]]
+    about: Mapping[str, Any]
+    seconds: Mapping[str, float]
+    title: Panel
+
+    @property
+    def claims(self) -> list[Claim]:
+        """Every claim, in order."""
+        return [claim for _, finding in self.findings for claim in finding.claims]

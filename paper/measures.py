@@ -1,7 +1,7 @@
 """What a flow texture shows, measured from its values alone.
 
 A picture is (H, W), row 0 at the top. The flow at a pixel is ``u`` to the right and ``v`` up, of
-any length. ``mask`` (H, W) tells which pixels are judged.
+any length. ``mask`` (H, W) says which pixels are judged.
 """
 
 from __future__ import annotations
@@ -9,8 +9,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import ndimage
+
+from flowtex._util.array_types import Bools, Floats
 
 __all__ = [
     "Evenness",
@@ -22,13 +23,10 @@ __all__ = [
     "grain",
     "likeness",
     "local_grain",
-    "moved",
     "sharpness",
     "streaks",
 ]
 
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 #: Width in pixels of the derivative, and of the window over which directions are averaged.
 EDGE, WINDOW = 1.0, 4.0
@@ -114,9 +112,10 @@ def evenness(picture: Floats, mask: Bools, tile: int = 40) -> Evenness:
             inside = np.zeros_like(mask)
             inside[part] = mask[part]
             if inside.sum() > tile * tile / 2:
-                found = local_grain(picture, inside)
-                sizes.append(np.sqrt(found.along * found.across))
-                sides.append(max(found.along / found.across, found.across / found.along))
+                part_grain = local_grain(picture, inside)
+                sizes.append(np.sqrt(part_grain.along * part_grain.across))
+                ratio = part_grain.along / part_grain.across
+                sides.append(max(ratio, 1 / ratio))
     if not sizes:
         return Evenness(float("nan"), float("nan"))
     small, large = np.percentile(sizes, (10, 90))
@@ -158,15 +157,6 @@ def likeness(first: Floats, second: Floats, mask: Bools) -> float:
     a, b = first[mask] - first[mask].mean(), second[mask] - second[mask].mean()
     scale = float(np.sqrt(np.mean(a * a) * np.mean(b * b)))
     return float(np.mean(a * b)) / max(scale, 1e-12)
-
-
-def moved(picture: Floats, right: Floats | float, down: Floats | float) -> Floats:
-    """Carry a picture by a displacement in pixels."""
-    filled = _filled(picture)
-    rows, columns = np.indices(picture.shape)
-    return np.asarray(
-        ndimage.map_coordinates(filled, [rows - down, columns - right], order=3, mode="nearest")
-    )
 
 
 def sharpness(picture: Floats, mask: Bools) -> float:

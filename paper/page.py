@@ -9,17 +9,15 @@ from pathlib import Path
 from string import Template
 from typing import Any
 
-from paper.findings import Block, Claim, Finding, Panel, Plate, Plot, Table
-from paper.registry import Section
-from paper.report import Report
+from paper.findings import Block, Claim, Finding, Panel, Plate, Plot, Report, Section, Table
 
 __all__ = ["write_page"]
 
 TEMPLATES = Path(__file__).parent / "templates"
-#: Folders of the pictures and of the plots, and how well pictures are kept.
-PICTURES, PLOTS, QUALITY = "pictures", "plots", 88
-#: Pictures that are less wide than this are shown pixel by pixel.
-SMALL = 200
+#: Folders of the pictures and of the plots, and the quality of JPEG files.
+PICTURES, PLOTS, JPEG_QUALITY = "pictures", "plots", 88
+#: Pictures less wide than this, in pixels, are shown pixel by pixel.
+SMALL_WIDTH = 200
 
 
 def write_page(report: Report, folder: Path) -> None:
@@ -66,7 +64,7 @@ def _duration(seconds: float) -> str:
 def _contents(report: Report) -> str:
     """List the sections by part, each with a mark for its claims."""
     lists = ['<ul><li><a href="#statements"><span class="mark"></span>All statements</a></li></ul>']
-    for part, group in groupby(report.found, key=lambda pair: pair[0].part):
+    for part, group in groupby(report.findings, key=lambda pair: pair[0].part):
         rows = [
             f'<li><a href="#{section.key}"><span class="mark{_mark(finding)}"></span>'
             f"{escape(section.title)}</a></li>"
@@ -84,10 +82,10 @@ def _mark(finding: Finding) -> str:
 
 def _statements(report: Report) -> str:
     """List what does not hold, and below it, folded, all claims."""
-    pairs = [(section, claim) for section, finding in report.found for claim in finding.claims]
+    pairs = [(section, claim) for section, finding in report.findings for claim in finding.claims]
     failing = [(section, claim) for section, claim in pairs if not claim.holds]
-    shown = f"<h3>Does not hold</h3>{_rows(failing)}" if failing else "<p>All of them hold.</p>"
-    return f"{shown}<details><summary>All {len(pairs)} statements</summary>{_rows(pairs)}</details>"
+    first = f"<h3>Does not hold</h3>{_rows(failing)}" if failing else "<p>All of them hold.</p>"
+    return f"{first}<details><summary>All {len(pairs)} statements</summary>{_rows(pairs)}</details>"
 
 
 def _rows(pairs: Sequence[tuple[Section, Claim]]) -> str:
@@ -106,15 +104,15 @@ def _rows(pairs: Sequence[tuple[Section, Claim]]) -> str:
 
 
 def _sections(report: Report, folder: Path) -> str:
-    written = []
-    for part, group in groupby(report.found, key=lambda pair: pair[0].part):
-        written.append(f'<p class="part">{escape(part)}</p>')
-        written += [_section(section, finding, folder) for section, finding in group]
-    return "\n".join(written)
+    parts = []
+    for part, group in groupby(report.findings, key=lambda pair: pair[0].part):
+        parts.append(f'<p class="part">{escape(part)}</p>')
+        parts += [_section(section, finding, folder) for section, finding in group]
+    return "\n".join(parts)
 
 
 def _section(section: Section, finding: Finding, folder: Path) -> str:
-    shown = [
+    blocks = [
         _block(block, f"{section.key}-{count}", folder)
         for count, block in enumerate(finding.blocks, start=1)
     ]
@@ -124,7 +122,7 @@ def _section(section: Section, finding: Finding, folder: Path) -> str:
         title=escape(section.title),
         states=escape(section.states),
         computes=escape(section.computes),
-        blocks="\n".join(shown),
+        blocks="\n".join(blocks),
         claims=_claims(finding.claims),
     )
 
@@ -231,8 +229,8 @@ def _panel(panel: Panel, file: str, folder: Path) -> str:
     from PIL import Image
 
     picture = Image.fromarray(panel.image)
-    picture.save(folder / PICTURES / file, quality=QUALITY, optimize=True, subsampling=0)
-    pixels = ' class="pixels"' if picture.width < SMALL else ""
+    picture.save(folder / PICTURES / file, quality=JPEG_QUALITY, optimize=True, subsampling=0)
+    pixels = ' class="pixels"' if picture.width < SMALL_WIDTH else ""
     return (
         f'<div class="panel"><img{pixels} src="{PICTURES}/{file}" width="{picture.width}" '
         f'height="{picture.height}" loading="lazy" alt="{escape(panel.label)}">'

@@ -16,7 +16,18 @@ from typing import Any
 
 from paper.findings import Plot
 
-__all__ = ["Canvas", "Line", "canvas", "lines"]
+__all__ = [
+    "COLOURS",
+    "GROUND",
+    "INK",
+    "RULE",
+    "SOFT",
+    "Line",
+    "PlotAxes",
+    "draw_lines",
+    "line_plot",
+    "plot_axes",
+]
 
 #: Marker colours, and the CSS variables that they stand for.
 INKS = {
@@ -33,7 +44,7 @@ INKS = {
 }
 INK, SOFT, RULE, GROUND, *COLOURS = INKS
 MARKS = "osD^vP"
-#: Width of a plot in inches of 72 CSS pixels each.
+#: Size of a plot in inches of 72 CSS pixels each.
 WIDTH, HEIGHT = 8.6, 4.3
 
 STYLE: Any = {
@@ -77,19 +88,33 @@ class Line:
 
 
 @dataclass
-class Canvas:
-    """Axes to draw on; ``plot`` is there once the block is left."""
+class PlotAxes:
+    """Axes to draw on, of :func:`plot_axes`."""
 
     figure: Any
     axes: Any
-    plot: Plot | None = None
+    _plot: Plot | None = None
+
+    @property
+    def plot(self) -> Plot:
+        """The finished plot.
+
+        Raises
+        ------
+        RuntimeError
+            Before the ``with`` block is left.
+        """
+        if self._plot is None:
+            msg = "the plot is not finished; expected to be read after the with block"
+            raise RuntimeError(msg)
+        return self._plot
 
 
 @contextmanager
-def canvas(
+def plot_axes(
     caption: str, alt: str, *, columns: int = 1, size: tuple[float, float] = (WIDTH, HEIGHT)
-) -> Iterator[Canvas]:
-    """Give axes in the page's style, and make a plot of what is drawn on them."""
+) -> Iterator[PlotAxes]:
+    """Yield axes in the page's style, and turn the drawing into a plot."""
     import matplotlib as mpl
     from matplotlib.backends.backend_svg import FigureCanvasSVG
     from matplotlib.figure import Figure
@@ -98,15 +123,15 @@ def canvas(
         figure = Figure(figsize=size, layout="constrained")
         FigureCanvasSVG(figure)
         axes = figure.subplots(1, columns)
-        drawn = Canvas(figure, axes)
-        yield drawn
+        result = PlotAxes(figure, axes)
+        yield result
         text = io.StringIO()
         figure.savefig(text, format="svg", metadata={"Date": None, "Creator": None})
-    drawn.plot = Plot(_themed(text.getvalue(), alt), caption, alt)
+    result._plot = Plot(_themed(text.getvalue(), alt), caption, alt)
 
 
-def lines(
-    drawn: Sequence[Line],
+def line_plot(
+    lines: Sequence[Line],
     *,
     x: str,
     y: str,
@@ -119,7 +144,7 @@ def lines(
 
     Parameters
     ----------
-    drawn
+    lines
         The lines.
     x, y
         What the axes show, with units.
@@ -130,22 +155,19 @@ def lines(
     ticks
         Where the x axis has ticks.
     """
-    with canvas(caption, alt) as made:
-        put(made.axes, drawn, log=log, ticks=ticks)
-        made.axes.set_xlabel(x)
-        made.axes.set_ylabel(y)
-        made.axes.legend()
-    if made.plot is None:
-        msg = "the plot was not drawn"
-        raise RuntimeError(msg)
-    return made.plot
+    with plot_axes(caption, alt) as figure:
+        draw_lines(figure.axes, lines, log=log, ticks=ticks)
+        figure.axes.set_xlabel(x)
+        figure.axes.set_ylabel(y)
+        figure.axes.legend()
+    return figure.plot
 
 
-def put(
-    axes: Any, drawn: Sequence[Line], *, log: str = "", ticks: Sequence[float] | None = None
+def draw_lines(
+    axes: Any, lines: Sequence[Line], *, log: str = "", ticks: Sequence[float] | None = None
 ) -> None:
     """Draw lines on axes, each with its own colour and mark."""
-    for number, line in enumerate(drawn):
+    for number, line in enumerate(lines):
         axes.plot(
             line.x,
             line.y,
@@ -171,8 +193,8 @@ def _themed(svg: str, alt: str) -> str:
     svg = svg[svg.index("<svg") :]
     head, body = svg.split(">", 1)
     box = re.search(r'viewBox="([^"]*)"', head)
-    shown = alt.replace("&", "&amp;").replace('"', "&quot;").replace("<", "&lt;")
-    head = f'<svg viewBox="{box.group(1) if box else ""}" role="img" aria-label="{shown}"'
+    label = alt.replace("&", "&amp;").replace('"', "&quot;").replace("<", "&lt;")
+    head = f'<svg viewBox="{box.group(1) if box else ""}" role="img" aria-label="{label}"'
     body = re.sub(r"<metadata>.*?</metadata>", "", body, flags=re.DOTALL)
     body = body.replace("xlink:href", "href")
     for marker, variable in INKS.items():

@@ -1,27 +1,64 @@
-"""Runs the experiments and writes the page and the numbers."""
+"""Run the experiments and write the page and the numbers."""
 
 from __future__ import annotations
 
+import json
 import platform
 import time
 from collections.abc import Mapping
+from importlib import import_module
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from flowtex._util.progress import track
 from flowtex._version import __version__
 from paper.bench import Bench
-from paper.findings import Finding
+from paper.findings import Claim, Finding, Panel, Report, Section
 from paper.page import write_page
-from paper.registry import Section, sections
-from paper.report import Report, write_numbers
-from paper.title import title_picture
+from paper.views import grey, view_of
 
-__all__ = ["SectionError", "reproduce"]
+__all__ = ["SectionError", "reproduce", "sections"]
+
+#: Modules of ``paper.sections``, and the keys of their sections in the order of the page.
+MODULES = (
+    "table1",
+    "table2",
+    "table3",
+    "redundancy",
+    "figures_1_2",
+    "figures_3_4",
+    "figure6",
+    "level_of_detail",
+    "step_size",
+    "zooms",
+    "sample_counts",
+    "camera_motion",
+    "depth_cues",
+    "computational_space",
+)
+ORDER = (
+    *("table1", "table2", "table3", "redundancy"),
+    *("figure1", "figure2", "figure3", "figure4", "figures34_others"),
+    *("figure5", "figure6", "figure7", "figure8"),
+    *("section41", "zooms", "samples", "moving", "depth", "stretched"),
+)
+#: Significant digits of a number: more would differ from one processor to the next.
+DIGITS = 6
+#: Title picture: time step of the vortices, colour map, and the part of the map that is used.
+TITLE_STEP, TITLE_COLOURS, TITLE_PART = 24, "viridis", (0.12, 0.95)
 
 
 class SectionError(ValueError):
-    """A section was asked for that there is not."""
+    """There is no section of that key."""
+
+
+def sections() -> list[Section]:
+    """Every section, in order."""
+    modules = (import_module(f"paper.sections.{name}") for name in MODULES)
+    by_key = {section.key: section for module in modules for section in module.SECTIONS}
+    return [by_key[key] for key in ORDER]
 
 
 def reproduce(
@@ -55,7 +92,7 @@ def reproduce(
     Returns
     -------
     Report
-        What was found.
+        All findings.
 
     Raises
     ------
@@ -64,33 +101,32 @@ def reproduce(
     OSError
         When the folder cannot be written.
     """
-    chosen = _chosen(only)
-    place = Path(folder)
-    place.mkdir(parents=True, exist_ok=True)
+    selection = _selection(only)
+    target = Path(folder)
+    target.mkdir(parents=True, exist_ok=True)
     bench = Bench(quick=quick, seed=seed, data=None if data is None else Path(data))
-    found: list[tuple[Section, Finding]] = []
+    findings: list[tuple[Section, Finding]] = []
     seconds: dict[str, float] = {}
-    for section in track(chosen, len(chosen), "The paper", show=progress):
-        started = time.perf_counter()
-        found.append((section, section.run(bench)))
-        seconds[section.key] = time.perf_counter() - started
-    report = Report(found, _about(bench), seconds, title_picture(bench))
-    write_numbers(report, place / "numbers.json")
-    write_page(report, place)
+    for section in track(selection, len(selection), "The paper", show=progress):
+        start = time.perf_counter()
+        findings.append((section, section.run(bench)))
+        seconds[section.key] = time.perf_counter() - start
+    report = Report(findings, _about(bench), seconds, _title_picture(bench))
+    _write_numbers(report, target / "numbers.json")
+    write_page(report, target)
     return report
 
 
-def _chosen(only: tuple[str, ...]) -> list[Section]:
-    known = {section.key: section for section in sections()}
-    wrong = [key for key in only if key not in known]
+def _selection(only: tuple[str, ...]) -> list[Section]:
+    by_key = {section.key: section for section in sections()}
+    wrong = [key for key in only if key not in by_key]
     if wrong:
-        msg = f"there is no section {wrong[0]!r}; there are {', '.join(known)}"
+        msg = f"there is no section {wrong[0]!r}; there are {', '.join(by_key)}"
         raise SectionError(msg)
-    return [known[key] for key in only] if only else list(known.values())
+    return [by_key[key] for key in only] if only else list(by_key.values())
 
 
 def _about(bench: Bench) -> Mapping[str, Any]:
-    """Tell what was run."""
     return {
         "flowtex": __version__,
         "python": platform.python_version(),
@@ -98,3 +134,54 @@ def _about(bench: Bench) -> Mapping[str, Any]:
         "seed": bench.seed,
         "post": bench.post is not None,
     }
+
+
+def _title_picture(bench: Bench) -> Panel:
+    """Draw a wide view of the vortices, coloured by speed."""
+    import matplotlib as mpl
+
+    size = bench.pick((1240, 420), (400, 136))
+    view = view_of(bench, bench.vortex, size, zoom=size[0] / size[1] / 0.92, step=TITLE_STEP)
+    share = np.clip(view.speed / np.quantile(view.speed, 0.98), 0, 1)
+    low, high = TITLE_PART
+    colour = mpl.colormaps[TITLE_COLOURS](low + (high - low) * share)[..., :3]
+    image = grey(view.picture(samples=31).value, colour)
+    return Panel(image, "The vortex field, coloured by speed: every streak is a pathline.")
+
+
+def _write_numbers(report: Report, path: Path) -> None:
+    """Write ``numbers.json``.
+
+    ``figures`` and the claims without ``timed`` are the same for the same seed; ``timings``, and
+    the claims with it, are seconds of one run.
+    """
+    pairs = report.findings
+    timings = {section.key: finding.timings for section, finding in pairs if finding.timings}
+    document = {
+        "about": report.about,
+        "claims": [_claim(claim) for claim in report.claims],
+        "figures": {section.key: finding.numbers for section, finding in pairs},
+        "timings": {"sections": report.seconds, **timings},
+    }
+    text = json.dumps(_plain(document), indent=1, allow_nan=False)
+    path.write_text(f"{text}\n", encoding="utf-8")
+
+
+def _claim(claim: Claim) -> dict[str, Any]:
+    names = ("name", "holds", "value", "bound", "sense", "unit", "text", "timed")
+    return {name: getattr(claim, name) for name in names}
+
+
+def _plain(value: Any) -> Any:
+    """Take a value to what JSON has; numbers are rounded, and what is not finite is null."""
+    if isinstance(value, Mapping):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if isinstance(value, np.ndarray | list | tuple):
+        return [_plain(item) for item in value]
+    if isinstance(value, bool | np.bool_):
+        return bool(value)
+    if isinstance(value, int | np.integer):
+        return int(value)
+    if isinstance(value, float | np.floating):
+        return float(f"{value:.{DIGITS}g}") if np.isfinite(value) else None
+    return value

@@ -37,6 +37,21 @@ def test_every_link_inside_the_project_leads_somewhere(page: Path) -> None:
     assert [link for link in links if not (page.parent / link).exists()] == []
 
 
+def test_the_picture_of_the_house_has_every_room() -> None:
+    text = (ROOT / "CONTRIBUTING.md").read_text()
+    picture = text[text.index("```") : text.index("## To change this")]
+    rooms = [p.name for p in (ROOT / "flowtex").iterdir() if p.name[0] != "_" or p.is_dir()]
+    left_out = ("__pycache__", "py.typed")
+    assert [room for room in rooms if room not in left_out and room not in picture] == []
+
+
+def test_every_path_in_the_text_for_contributors_exists() -> None:
+    text = (ROOT / "CONTRIBUTING.md").read_text()
+    names = re.findall(r"`((?:flowtex|shaders|client|paper|tests|tools|docs)/[\w./]*)`", text)
+    assert len(names) > 12
+    assert [name for name in names if not (ROOT / name).exists()] == []
+
+
 def row(setting: Setting) -> str:
     """One row of the table in the guide."""
     default = repr(setting.default).replace("'", '"')

@@ -1,7 +1,8 @@
-"""Imports run down one list, and what is slow or optional is loaded where it is used.
+"""The structure of the package: imports run down one list, and no room grows beyond its measure.
 
-The tables below are the rule. A new module of ``flowtex`` gets its place in ``LAYERS``; a
-library that not every user has, or that takes long to load, gets its line in ``ROOMS``.
+The tables below are the rule. A new module at the top of ``flowtex`` gets its place in
+``LAYERS``; a library that not every user has, or that takes long to load, gets its line in
+``LIBRARIES``.
 """
 
 from __future__ import annotations
@@ -10,82 +11,66 @@ import ast
 import json
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
 import pytest
 
-PACKAGE = Path(__file__).resolve().parents[1] / "flowtex"
-ROOT_NAME = "flowtex"
+ROOT = Path(__file__).resolve().parents[1]
+PACKAGE = ROOT / "flowtex"
 
 # From the bottom to the top: a module imports from lines above its own here, and never from
-# one on the same line. The empty name is the package itself.
+# another on the same line. The empty name is the package itself.
 LAYERS: tuple[tuple[str, ...], ...] = (
-    ("errors", "extras", "progress", "whole_file", "_assets", "_version"),
+    ("errors", "_version", "_util"),
     ("settings",),
     ("field",),
     ("trace",),
-    ("textures", "first_look", "moments"),
-    ("movie_formats",),
-    ("movie_files",),
-    ("glsl",),
-    ("doctor",),
-    ("renderers",),
-    ("view", "references"),
-    ("probe",),
+    ("camera",),
+    ("textures",),
+    ("rendering",),
+    ("diagnostics",),
     ("examples",),
-    ("camera", "image_files"),
-    ("handle",),
-    ("plotter",),
-    ("sharing",),
-    ("staging",),
-    ("preview",),
-    ("export",),
-    ("studio",),
-    ("widget", "app"),
-    ("pictures", "movies", "jupyter"),
+    ("options",),
+    ("scene",),
+    ("probe",),
+    ("web",),
+    ("widget",),
+    ("plotting",),
+    ("offscreen",),
+    ("app",),
+    ("display",),
     ("",),
-    ("paper",),
     ("cli",),
 )
-RENDERERS = ("renderers.cpu", "renderers.vtk", "renderers.webgl")
-FRONT_ENDS = (
-    "camera",
-    "handle",
-    "plotter",
-    "staging",
-    "preview",
-    "studio",
-    "pictures",
-    "movies",
-    "jupyter",
-    "widget",
-    "app",
-    "export",
-    "paper",
-    "cli",
-)
+RENDERERS = ("rendering.cpu", "rendering.vtk", "rendering.webgl")
+#: Folders of the checkout that import the package and that it knows nothing of.
+OUTSIDE = ("benchmarks", "docs", "paper", "tests", "tools")
+
+#: Most entries at the top of the package, modules in a folder, and lines in a source file.
+MAX_ENTRIES, MAX_MODULES, MAX_LINES = 24, 15, 600
 
 
 @dataclass(frozen=True)
-class Room:
+class Library:
     """Where libraries may be imported: when a module loads, and only inside functions."""
 
-    libraries: tuple[str, ...]
+    names: tuple[str, ...]
     on_load: tuple[str, ...] = ()
     in_functions: tuple[str, ...] = ()
 
 
-ROOMS = (
-    Room(
-        ("vtk", "vtkmodules", "pyvista"),
-        on_load=("renderers.vtk", "plotter", "pictures"),
-        in_functions=("field", "doctor", "examples", *FRONT_ENDS),
-    ),
-    Room(("matplotlib",), in_functions=("renderers", "view", "examples", *FRONT_ENDS)),
-    Room(
+VTK = Library(
+    ("vtk", "vtkmodules", "pyvista"),
+    on_load=("rendering.vtk", "plotting", "offscreen", "app"),
+    in_functions=("_util.colours", "field.io", "diagnostics", "examples"),
+)
+LIBRARIES = (
+    VTK,
+    Library(("matplotlib",), in_functions=("_util.colours",)),
+    Library(
         (
             "trame",
             "trame_client",
@@ -98,12 +83,12 @@ ROOMS = (
         ),
         on_load=("app",),
     ),
-    Room(("anywidget", "ipywidgets", "traitlets", "IPython"), on_load=("widget",)),
-    Room(("xarray", "netCDF4", "pandas"), in_functions=("field", "examples")),
-    Room(("av",), in_functions=("movie_formats",)),
-    Room(("cyclopts",), on_load=("cli",)),
+    Library(("anywidget", "ipywidgets", "traitlets", "IPython"), on_load=("widget",)),
+    Library(("xarray", "netCDF4", "pandas"), in_functions=("field", "examples")),
+    Library(("av",), in_functions=("offscreen.encoders",)),
+    Library(("cyclopts",), on_load=("cli",)),
 )
-SLOW = tuple(library for room in ROOMS for library in room.libraries)
+SLOW = tuple(name for library in LIBRARIES for name in library.names)
 
 
 @dataclass(frozen=True)
@@ -120,13 +105,13 @@ class Import:
 
 
 def module_name(path: Path, package: Path) -> str:
-    """Return ``renderers.vtk.actor`` for ``flowtex/renderers/vtk/actor.py``, "" for the package."""
+    """Return ``rendering.vtk.actor`` for ``flowtex/rendering/vtk/actor.py``, "" for the package."""
     parts = path.relative_to(package).with_suffix("").parts
     return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
 
 
-def imports_of(path: Path, package: Path) -> Iterator[Import]:
-    """Read every import of a file, also those inside functions."""
+def imports_of(path: Path, package: Path, root: str = "flowtex") -> Iterator[Import]:
+    """Read every import of a file, also those inside functions and under TYPE_CHECKING."""
     name = module_name(path, package)
     tree = ast.parse(path.read_text(encoding="utf-8"), str(path))
 
@@ -135,7 +120,7 @@ def imports_of(path: Path, package: Path) -> Iterator[Import]:
             for alias in node.names:
                 yield Import(name, alias.name, node.lineno, when)
         elif isinstance(node, ast.ImportFrom):
-            for target in _targets(node, package):
+            for target in _targets(node, package, root):
                 yield Import(name, target, node.lineno, when)
         elif isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda):
             when = "function" if when == "load" else when
@@ -151,11 +136,11 @@ def imports_of(path: Path, package: Path) -> Iterator[Import]:
     yield from visit(tree, "load")
 
 
-def _targets(node: ast.ImportFrom, package: Path) -> list[str]:
+def _targets(node: ast.ImportFrom, package: Path, root: str) -> list[str]:
     """Return what a ``from`` import loads: submodules by their own name."""
     base = "." * node.level + (node.module or "")
     inside = base.split(".")
-    if inside[0] != ROOT_NAME:
+    if inside[0] != root:
         return [base]
     folder = package.joinpath(*inside[1:])
     return sorted(
@@ -187,36 +172,87 @@ def faults_in(package: Path) -> list[str]:
         if level_of(name) is None:
             faults.append(f"flowtex.{name} has no place: give {name.split('.')[0]!r} one in LAYERS")
             continue
-        for found in imports_of(path, package):
-            faults.extend(
-                _inner(found) if found.target.split(".")[0] == ROOT_NAME else _outer(found)
-            )
+        for imported in imports_of(path, package):
+            inner = imported.target.split(".")[0] == "flowtex"
+            faults.extend(_inner(imported) if inner else _outer(imported))
     return faults
 
 
-def _inner(found: Import) -> Iterator[str]:
-    target = found.target.removeprefix(ROOT_NAME).removeprefix(".")
-    own, other = level_of(found.importer), level_of(target)
-    if found.importer.split(".")[0] != target.split(".")[0]:
+def _inner(imported: Import) -> Iterator[str]:
+    target = imported.target.removeprefix("flowtex").removeprefix(".")
+    own, other = level_of(imported.importer), level_of(target)
+    if imported.importer.split(".")[0] != target.split(".")[0]:
         if own is None or other is None or other >= own:
-            yield f"{found}, which is not below it"
+            yield f"{imported}, which is not below it"
         return
-    here = [room for room in RENDERERS if is_in(found.importer, (room,))]
+    here = [room for room in RENDERERS if is_in(imported.importer, (room,))]
     there = [room for room in RENDERERS if is_in(target, (room,))]
     if here and there and here != there:
-        yield f"{found}: renderers do not know each other"
+        yield f"{imported}: renderers do not know each other"
 
 
-def _outer(found: Import) -> Iterator[str]:
-    if found.target.startswith("."):
-        yield f"{found}: write the absolute name"
-    for room in ROOMS:
-        if found.target.split(".")[0] not in room.libraries or is_in(found.importer, room.on_load):
+def _outer(imported: Import) -> Iterator[str]:
+    top = imported.target.split(".")[0]
+    if imported.target.startswith("."):
+        yield f"{imported}: write the absolute name"
+    if top in OUTSIDE:
+        yield f"{imported}, which is no part of the package"
+    for library in LIBRARIES:
+        if top not in library.names or is_in(imported.importer, library.on_load):
             continue
-        if not is_in(found.importer, room.in_functions):
-            yield f"{found}, which belongs in {', '.join((*room.on_load, *room.in_functions))}"
-        elif found.when == "load":
-            yield f"{found} when it loads: import it inside the function that needs it"
+        if not is_in(imported.importer, library.in_functions):
+            rooms = ", ".join((*library.on_load, *library.in_functions))
+            yield f"{imported}, which belongs in {rooms}"
+        elif imported.when == "load":
+            yield f"{imported} when it loads: import it inside the function that needs it"
+
+
+def graph_of(package: Path, root: str = "flowtex") -> dict[str, set[str]]:
+    """Return which modules of a package each of its modules imports, anywhere in its text."""
+    graph: dict[str, set[str]] = {module_name(p, package): set() for p in package.rglob("*.py")}
+    for path in package.rglob("*.py"):
+        name = module_name(path, package)
+        for imported in imports_of(path, package, root):
+            if imported.target.split(".")[0] == root:
+                graph[name].add(imported.target.removeprefix(root).removeprefix("."))
+    return graph
+
+
+def circles_in(graph: Mapping[str, set[str]]) -> list[list[str]]:
+    """Return circles of imports: of modules that import each other, one shortest circle each."""
+    circles: list[list[str]] = []
+    seen: set[str] = set()
+    for start in sorted(graph):
+        circle = None if start in seen else _way_back(graph, start)
+        if circle:
+            circles.append(circle)
+            seen |= set(circle)
+    return circles
+
+
+def _way_back(graph: Mapping[str, set[str]], start: str) -> list[str] | None:
+    """Shortest way along imports from a module back to itself."""
+    ways, visited = [[start]], {start}
+    while ways:
+        longer = []
+        for way in ways:
+            for target in sorted(graph.get(way[-1], ())):
+                if target == start:
+                    return [*way, start]
+                if target not in visited:
+                    visited.add(target)
+                    longer.append([*way, target])
+        ways = longer
+    return None
+
+
+def sources() -> list[Path]:
+    """Return every source file of the package, of the paper, and of the browser's client."""
+    folders = {"flowtex": "*.py", "paper": "*.py", "client/src": "*.ts", "client/tests": "*.ts"}
+    return sorted(path for name, kind in folders.items() for path in (ROOT / name).rglob(kind))
+
+
+# --- the package --------------------------------------------------------------------------------
 
 
 def test_every_import_keeps_to_the_layers() -> None:
@@ -224,62 +260,128 @@ def test_every_import_keeps_to_the_layers() -> None:
     assert not faults, "\n".join(faults)
 
 
+@pytest.mark.parametrize("root", ["flowtex", "paper"])
+def test_no_module_imports_itself_in_a_circle(root: str) -> None:
+    circles = circles_in(graph_of(ROOT / root, root))
+    assert not circles, "\n".join(" -> ".join(circle) for circle in circles)
+
+
 def test_something_was_read() -> None:
-    found = [i for path in PACKAGE.rglob("*.py") for i in imports_of(path, PACKAGE)]
-    assert {"load", "function"} <= {i.when for i in found}
-    assert any(i.target.startswith("flowtex.") for i in found)
+    imports = [i for path in PACKAGE.rglob("*.py") for i in imports_of(path, PACKAGE)]
+    assert {"load", "function"} <= {i.when for i in imports}
+    assert any(i.target.startswith("flowtex.") for i in imports)
+    graph = graph_of(PACKAGE)
+    assert "errors" in graph["settings"] | graph["field"] | graph["field.field"]
+
+
+def test_the_top_of_the_package_can_be_taken_in_at_a_glance() -> None:
+    entries = sorted(path.name for path in PACKAGE.iterdir() if path.name != "__pycache__")
+    assert len(entries) <= MAX_ENTRIES, entries
+
+
+def test_no_folder_has_too_many_modules() -> None:
+    counts: dict[str, int] = {}
+    for path in sources():
+        if path.suffix == ".py":
+            folder = path.parent.relative_to(ROOT).as_posix()
+            counts[folder] = counts.get(folder, 0) + 1
+    assert not {folder: count for folder, count in counts.items() if count > MAX_MODULES}
+
+
+def test_no_source_file_is_too_long() -> None:
+    lengths = {
+        path.relative_to(ROOT).as_posix(): len(path.read_text(encoding="utf-8").splitlines())
+        for path in sources()
+    }
+    assert not {name: count for name, count in lengths.items() if count > MAX_LINES}
+
+
+# --- the rules themselves -----------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
     ("module", "text", "fault"),
     [
         ("field/a.py", "import flowtex.trace", "flowtex.field.a:1 imports flowtex.trace, which"),
-        ("field/a.py", "def f():\n    from flowtex import view", "imports flowtex.view, which"),
+        ("field/a.py", "def f():\n    from flowtex import scene", "imports flowtex.scene, which"),
         ("field/a.py", "from flowtex import FlowField", "flowtex.field.a:1 imports flowtex, which"),
-        ("app/a.py", "import flowtex.widget", "which is not below it"),
-        (
-            "renderers/vtk/a.py",
-            "import flowtex.rendering.cpu.b",
-            "renderers do not know each other",
-        ),
-        ("field/a.py", "import pyvista", "imports pyvista when it loads: import it inside"),
-        ("field/a.py", "class A:\n    import pyvista", "imports pyvista when it loads"),
+        ("web/a.py", "import flowtex.widget", "which is not below it"),
+        ("camera.py", "import flowtex.camera.b\nimport flowtex.scene", "which is not below it"),
+        ("rendering/vtk/a.py", "import flowtex.rendering.cpu.b", "do not know each other"),
+        ("field/io/a.py", "import pyvista", "imports pyvista when it loads: import it inside"),
+        ("field/io/a.py", "class A:\n    import pyvista", "imports pyvista when it loads"),
+        ("field/a.py", "def f():\n    import pyvista", "which belongs in rendering.vtk"),
         ("field/a.py", "try:\n    import xarray\nexcept ImportError:\n    pass", "when it loads"),
-        (
-            "trace/a.py",
-            "def f():\n    import vtkmodules.vtkCommonCore",
-            "which belongs in renderers.vtk",
-        ),
-        ("renderers/cpu/a.py", "import pyvista", "which belongs in renderers.vtk"),
+        ("trace/a.py", "def f():\n    import vtkmodules.vtkCommonCore", "belongs in rendering.vtk"),
+        ("web/a.py", "def f():\n    import pyvista", "which belongs in rendering.vtk"),
+        ("rendering/cpu/a.py", "import pyvista", "which belongs in rendering.vtk"),
         ("cli.py", "def f():\n    from trame.app import get_server", "which belongs in app"),
         ("field/a.py", "from . import surface", "write the absolute name"),
+        ("probe.py", "def f():\n    from paper import measures", "no part of the package"),
         ("stray.py", "", "flowtex.stray has no place: give 'stray' one in LAYERS"),
     ],
 )
 def test_a_broken_rule_is_found(module: str, text: str, fault: str, tmp_path: Path) -> None:
-    for made in ("trace", "view.py", "widget.py"):
-        (tmp_path / made).touch() if made.endswith(".py") else (tmp_path / made).mkdir()
+    (tmp_path / "trace").mkdir()
+    for name in ("scene.py", "widget.py"):
+        (tmp_path / name).touch()
     (tmp_path / module).parent.mkdir(parents=True, exist_ok=True)
     (tmp_path / module).write_text(text, encoding="utf-8")
-    (said,) = faults_in(tmp_path)
-    assert fault in said
+    (sentence,) = faults_in(tmp_path)
+    assert fault in sentence
 
 
 @pytest.mark.parametrize(
     ("module", "text"),
     [
-        ("field/a.py", "def f():\n    import pyvista"),
-        ("field/a.py", "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    import pyvista"),
-        ("renderers/vtk/a.py", "import pyvista\nfrom flowtex import glsl"),
+        ("field/io/a.py", "def f():\n    import pyvista"),
+        (
+            "field/io/a.py",
+            "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    import pyvista",
+        ),
+        ("rendering/vtk/a.py", "import pyvista\nfrom flowtex.rendering import shader_text"),
         ("cli.py", "import cyclopts\ndef f():\n    import flowtex.app"),
         ("__init__.py", "from flowtex.field import FlowField\nimport numpy"),
     ],
 )
 def test_a_kept_rule_is_not_reported(module: str, text: str, tmp_path: Path) -> None:
-    (tmp_path / "glsl.py").touch()
     (tmp_path / module).parent.mkdir(parents=True, exist_ok=True)
     (tmp_path / module).write_text(text, encoding="utf-8")
     assert faults_in(tmp_path) == []
+
+
+@pytest.mark.parametrize(
+    ("files", "circle"),
+    [
+        ({"a.py": "import flowtex.b", "b.py": "import flowtex.a"}, ["a", "b", "a"]),
+        (
+            {"a.py": "def f():\n    from flowtex import b", "b.py": "from flowtex.a import x"},
+            ["a", "b", "a"],
+        ),
+        (
+            {
+                "a.py": "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n"
+                "    from flowtex.c import C",
+                "b.py": "import flowtex.a",
+                "c.py": "import flowtex.b",
+            },
+            ["a", "c", "b", "a"],
+        ),
+        (
+            {"d/__init__.py": "from flowtex.d.e import x", "d/e.py": "from flowtex.d import y"},
+            ["d", "d.e", "d"],
+        ),
+        ({"a.py": "import flowtex.b", "b.py": "import flowtex.c", "c.py": "import a"}, None),
+    ],
+)
+def test_a_circle_is_found(files: dict[str, str], circle: list[str] | None, tmp_path: Path) -> None:
+    for name, text in files.items():
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    assert circles_in(graph_of(tmp_path)) == ([] if circle is None else [circle])
+
+
+# --- what a fresh process loads -----------------------------------------------------------------
 
 
 def loaded_by(*modules: str) -> set[str]:
@@ -294,14 +396,21 @@ def loaded_by(*modules: str) -> set[str]:
 
 
 def test_importing_flowtex_loads_nothing_slow() -> None:
-    loaded = loaded_by(ROOT_NAME)
-    assert ROOT_NAME in loaded
+    loaded = loaded_by("flowtex")
+    assert "flowtex" in loaded
     assert not loaded & {*SLOW, "rich", "PIL"}
+
+
+@pytest.mark.parametrize("module", ["flowtex.web.export", "flowtex.widget"])
+def test_what_the_browser_draws_needs_no_vtk(module: str) -> None:
+    loaded = loaded_by(module)
+    assert "flowtex" in loaded
+    assert not loaded & set(VTK.names)
 
 
 def test_what_lies_below_vtk_never_loads_it() -> None:
     names = [module_name(path, PACKAGE) for path in PACKAGE.rglob("*.py")]
-    rooms = ("renderers.vtk", *FRONT_ENDS)
-    below = [f"{ROOT_NAME}.{name}" for name in names if name and not is_in(name, rooms)]
-    assert "flowtex.diagnostics" in below
+    rooms = (*VTK.on_load, "widget", "display", "cli")
+    below = [f"flowtex.{name}" for name in names if name and not is_in(name, rooms)]
+    assert "flowtex.diagnostics" in below and "flowtex.web.export" in below
     assert not loaded_by(*sorted(below)) & set(SLOW)

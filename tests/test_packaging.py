@@ -49,6 +49,14 @@ def _client_of_checkout() -> list[Path]:
     return found
 
 
+def _paper_of_checkout() -> list[Path]:
+    files = [
+        path for path in (ROOT / "paper").rglob("*") if path.suffix in (".py", ".html", ".css")
+    ]
+    assert {"__main__.py", "page.html", "style.css", "redundancy.py"} <= {f.name for f in files}
+    return files
+
+
 def _run(*command: str, cwd: Path, **environment: str) -> str:
     done = subprocess.run(
         command,
@@ -85,6 +93,12 @@ def test_wheel_holds_every_shader_and_every_module(wheel: Path) -> None:
     assert "flowtex/py.typed" in held
     for path in _client_of_checkout():
         assert held[path.relative_to(ROOT).as_posix()] == path.read_bytes()
+
+
+def test_wheel_holds_the_package_and_nothing_else(wheel: Path) -> None:
+    with zipfile.ZipFile(wheel) as archive:
+        tops = {name.split("/")[0] for name in archive.namelist()}
+    assert tops == {"flowtex", f"flowtex-{flowtex.__version__}.dist-info"}
 
 
 def test_wheel_is_named_after_the_one_version(wheel: Path) -> None:
@@ -269,6 +283,8 @@ def test_wheel_can_be_built_from_the_source_archive(tmp_path: Path) -> None:
         safe = {"filter": "data"} if hasattr(tarfile, "data_filter") else {}
         packed.extractall(tmp_path, **safe)  # type: ignore[arg-type]
     source = tmp_path / archive.name.removesuffix(".tar.gz")
+    for path in _paper_of_checkout():
+        assert (source / path.relative_to(ROOT)).read_bytes() == path.read_bytes()
     _run(sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", str(tmp_path), cwd=source)
     (built,) = tmp_path.glob("*.whl")
     with zipfile.ZipFile(built) as held:

@@ -1,4 +1,4 @@
-"""The command line: ``flowtex demo | show | render | movie | export | paper | info | doctor``."""
+"""The command line: ``flowtex demo | show | render | movie | export | info | doctor``."""
 
 from __future__ import annotations
 

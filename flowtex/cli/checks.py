@@ -1,4 +1,4 @@
-"""What is refused before anything is drawn, with the way to mend it."""
+"""Checks before anything is drawn; each error says how to mend it."""
 
 from __future__ import annotations
 
@@ -14,29 +14,29 @@ if TYPE_CHECKING:
 
 __all__ = [
     "check_colours",
-    "check_film",
     "check_image",
-    "check_output",
-    "check_page",
-    "need_app",
-    "need_opengl",
+    "check_movie_file",
+    "check_page_file",
+    "check_picture_file",
+    "require_app",
+    "require_opengl",
 ]
 
 
-def check_output(output: Path) -> None:
+def check_picture_file(output: Path) -> None:
     """Refuse a picture that could not be written, before anything is drawn."""
     from PIL import Image
 
     Image.init()
-    known = {suffix for suffix, kind in Image.EXTENSION.items() if kind in Image.SAVE}
-    if output.suffix.lower() not in known:
+    suffixes = {suffix for suffix, kind in Image.EXTENSION.items() if kind in Image.SAVE}
+    if output.suffix.lower() not in suffixes:
         what = f"{output.suffix!r} is no format" if output.suffix else "no suffix is no format"
         msg = f"{output}: {what} that pictures are written in; use .png, .jpg, .webp or .tiff"
         raise UsageError(msg)
     _check_folder(output)
 
 
-def check_page(output: Path) -> None:
+def check_page_file(output: Path) -> None:
     """Refuse a page that could not be written, before anything is traced."""
     if output.suffix.lower() not in (".html", ".htm"):
         msg = f"{output}: expected a name that ends in .html, as a page has"
@@ -44,7 +44,7 @@ def check_page(output: Path) -> None:
     _check_folder(output)
 
 
-def check_film(output: Path, size: tuple[int, int], fps: float | None, quality: int) -> None:
+def check_movie_file(output: Path, size: tuple[int, int], fps: float | None, quality: int) -> None:
     """Refuse a movie that could not be written, before anything is drawn."""
     from flowtex.offscreen.encoders import check_movie, default_fps
 
@@ -62,7 +62,7 @@ def _check_folder(output: Path) -> None:
 
 
 def check_image(options: dict[str, Any]) -> None:
-    """Refuse a picture that cannot be read, or one too few; put its pixels in the path's place."""
+    """Read the picture of ``image``; refuse one that cannot be read, or that is missing."""
     if options["image"] is None:
         if options.get("noise") == "image":
             msg = "--noise is image and there is no picture; name one with --image FILE"
@@ -78,33 +78,33 @@ def check_image(options: dict[str, Any]) -> None:
 
 def check_colours(field: FlowField, options: dict[str, Any]) -> None:
     """Refuse a scalar or a colour map that there is not."""
-    known = dict.fromkeys(("speed", *field.scalars))
-    if options["scalars"] is not False and options["scalars"] not in known:
-        msg = f"--scalars is {options['scalars']!r}; there are {', '.join(known)} and none"
+    names = dict.fromkeys(("speed", *field.scalars))
+    if options["scalars"] is not False and options["scalars"] not in names:
+        msg = f"--scalars is {options['scalars']!r}; there are {', '.join(names)} and none"
         raise UsageError(msg)
     if options["cmap"] is None:
         return
-    import pyvista as pv
+    from flowtex._util.colours import colour_table
 
     try:
-        pv.LookupTable(options["cmap"])
+        colour_table(options["cmap"])
     except (ValueError, KeyError, ImportError) as error:
         msg = f"--cmap is {options['cmap']!r}; expected a colour map such as viridis or cividis"
         raise UsageError(msg) from error
 
 
-def need_opengl() -> None:
+def require_opengl() -> None:
     """Refuse to go on where nothing can draw."""
-    from flowtex import diagnostics as doctor
+    from flowtex import diagnostics
 
-    doctor.prefer_headless()
-    doctor.require_opengl()
+    diagnostics.prefer_headless()
+    diagnostics.require_opengl()
 
 
-def need_app() -> None:
+def require_app() -> None:
     """Refuse to serve a page where what it needs is not installed."""
-    wanted = ("trame", "trame_vuetify", "trame_rca")
-    missing = [name for name in wanted if importlib.util.find_spec(name) is None]
+    packages = ("trame", "trame_vuetify", "trame_rca")
+    missing = [name for name in packages if importlib.util.find_spec(name) is None]
     if missing:
         msg = (
             f"the page needs {', '.join(missing)}, not installed here. To mend it:\n"

@@ -1,4 +1,4 @@
-"""What the command line says: on stdout what was done, on stderr what went wrong."""
+"""Messages of the command line: results on stdout, errors on stderr."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from flowtex.field import FlowField
 
-__all__ = ["announcer", "complain", "nodes", "say"]
+__all__ = ["announcer", "complain", "describe", "say"]
 
 
 def complain(error: Exception) -> None:
-    """Tell of an error in one paragraph."""
+    """Print an error in one paragraph on stderr."""
     from rich.console import Console
 
     text = str(error).strip() or type(error).__name__
@@ -23,17 +23,17 @@ def complain(error: Exception) -> None:
 
 
 def say(text: str) -> None:
-    """Print a line with marks of rich."""
+    """Print a line of rich markup."""
     from rich.console import Console
 
     Console(highlight=False).print(text, soft_wrap=True)
 
 
 def announcer(field: FlowField, host: str) -> Callable[[str], None]:
-    """Return what tells the address of a page."""
+    """Return a function that prints the address of a page."""
 
     def announce(address: str) -> None:
-        say(f"[bold]flowtex[/]  {field.name or 'flow'}, {nodes(field)}\n")
+        say(f"[bold]flowtex[/]  {describe(field)}\n")
         # A link that is wrapped or coloured in pieces cannot be clicked.
         say(f"  [cyan]{address}[/]\n")
         if host not in ("127.0.0.1", "localhost", "::1"):
@@ -47,8 +47,8 @@ def announcer(field: FlowField, host: str) -> Callable[[str], None]:
     return announce
 
 
-def nodes(field: FlowField) -> str:
-    """Return the size of a field in words."""
+def describe(field: FlowField) -> str:
+    """Return name and size of a field in words."""
     rows, columns = field.shape
     times = "" if field.steady else f", {len(field.times)} times"
-    return f"{columns} × {rows} nodes{times}"
+    return f"{field.name or 'flow'}, {columns} × {rows} nodes{times}"

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated
+
+from flowtex.cli.options import FILE, FLAT, FieldFlags
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -12,30 +13,18 @@ if TYPE_CHECKING:
     from flowtex.field import FlowField
     from flowtex.field.io.summary import ArraySummary, FileSummary
 
-__all__ = ["print_info"]
+__all__ = ["info"]
 
 
-def print_info(file: Path, options: dict[str, Any]) -> None:
-    """Print what a file holds; then the flow, or what is needed to make one.
-
-    Parameters
-    ----------
-    file
-        The file.
-    options
-        Arguments of ``FlowField.from_file``.
-
-    Raises
-    ------
-    FieldError
-        When the file cannot be read at all, or the options do not fit it.
-    """
+def info(file: FILE, /, *, flow: Annotated[FieldFlags | None, FLAT] = None) -> int:
+    """Tell what a file holds, and what would be drawn."""
     from rich.console import Console
     from rich.text import Text
 
     from flowtex.field import FlowField
     from flowtex.field.io.summary import describe
 
+    options = (flow or FieldFlags()).arguments()
     summary = describe(file)
     console = Console(highlight=False)
     console.print(Text(str(file), "bold"), soft_wrap=True)
@@ -44,8 +33,9 @@ def print_info(file: Path, options: dict[str, Any]) -> None:
         console.print(_array_table(summary))
     if summary.problem and not options:
         console.print(Text(f"To draw it: {summary.problem}", "yellow"))
-        return
+        return 0
     console.print(_field_table(FlowField.from_file(file, **options)))
+    return 0
 
 
 def _pairs(title: str) -> Table:
@@ -111,7 +101,7 @@ def _field_table(field: FlowField) -> Table:
     sizes = sizes[np.isfinite(sizes) & (sizes > 0)]
     if sizes.size:
         table.add_row("cells", f"the longest is {sizes.max() / sizes.min():,.3g} × the shortest")
-    table.add_row("lost", f"{field.lost:.1%} of the flow points out of the surface")
+    table.add_row("lost", f"{field.normal_share:.1%} of the flow points out of the surface")
     table.add_row("memory", f"about {_megabytes(field):,.0f} MB of traces for one time")
     return table
 

@@ -1,7 +1,7 @@
-"""Options of the command line: those of the file, of the picture, of the page, and the settings.
+"""Flags of the command line: those of the file, of the picture, of the page, and the settings.
 
-One flag for each setting is made from :data:`flowtex.settings.TABLE`; there is no list of them
-here.
+Their help comes from the fields of the option classes of :mod:`flowtex.options` and from
+:data:`flowtex.settings.TABLE`; it stands here only where a shell has another form for a value.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Group, Parameter
 
+from flowtex.options import Appearance, FieldOptions, ViewOptions, option_text
 from flowtex.settings import TABLE, Setting, Settings, setting
 
 if TYPE_CHECKING:
@@ -22,16 +23,15 @@ __all__ = [
     "FILE",
     "FLAT",
     "PICTURE",
-    "DrawOptions",
-    "FieldOptions",
-    "FrameOptions",
-    "LookOptions",
-    "ServeOptions",
+    "DrawFlags",
+    "FieldFlags",
+    "FrameFlags",
+    "LookFlags",
+    "ServeFlags",
     "SettingFlags",
     "UsageError",
-    "given",
-    "read",
-    "settings_in",
+    "load_field",
+    "settings_from",
 ]
 
 FLOW, PICTURE = Group("The flow", sort_key=1), Group("The picture", sort_key=2)
@@ -42,37 +42,47 @@ FLAT = Parameter(name="*")
 
 
 class UsageError(ValueError):
-    """Something was asked for in a way that cannot be; the text says how it can."""
+    """Arguments that cannot be followed; the text says how they can."""
+
+
+def _flag(kind: type, name: str, text: str | None = None, **more: Any) -> Parameter:
+    """Return a flag for a field of an option class.
+
+    Parameters
+    ----------
+    kind, name
+        The class and the field; its text is the help.
+    text
+        Help where a shell has another form for the value.
+    **more
+        Other arguments of ``cyclopts.Parameter``.
+    """
+    group = FLOW if kind is FieldOptions else PICTURE
+    return Parameter(group=group, help=text or option_text(kind, name), **more)
 
 
 @dataclass(kw_only=True)
-class FieldOptions:
+class FieldFlags:
     """What of a file makes the flow."""
 
-    plane: Annotated[
-        str | None, Parameter(group=FLOW, help="Surface of a 3D mesh, such as k=20.")
-    ] = None
-    vectors: Annotated[
-        str | None, Parameter(group=FLOW, help="Name of the velocity, where it is not clear.")
-    ] = None
+    plane: Annotated[str | None, _flag(FieldOptions, "plane")] = None
+    vectors: Annotated[str | None, _flag(FieldOptions, "vectors")] = None
     time: Annotated[
         float | None, Parameter(group=FLOW, help="One time of a series; all of them by default.")
     ] = None
     periodic: Annotated[
         str | None,
-        Parameter(group=FLOW, help="Axes that close on themselves: i, j, ij or none."),
+        _flag(
+            FieldOptions, "periodic", "Axes that close on themselves: ``i``, ``j``, ``ij`` or none."
+        ),
     ] = None
     block: Annotated[
         str | None, Parameter(group=FLOW, help="Number or name of the block to draw.")
     ] = None
+    sign_free: Annotated[bool | None, _flag(FieldOptions, "sign_free", negative="")] = None
 
-    sign_free: Annotated[
-        bool | None,
-        Parameter(group=FLOW, negative="", help="Vectors have no sign: v and -v mean the same."),
-    ] = None
-
-    def given(self) -> dict[str, Any]:
-        """Return what was given, as arguments of ``FlowField.from_file``."""
+    def arguments(self) -> dict[str, Any]:
+        """Return the flags that were set, as arguments of ``FlowField.from_file``."""
         values = {name: value for name, value in asdict(self).items() if value is not None}
         if values.get("periodic") == "none":
             values["periodic"] = ""
@@ -82,35 +92,31 @@ class FieldOptions:
 
 
 @dataclass(kw_only=True)
-class LookOptions:
+class LookFlags:
     """Colours, and what of the flow is seen."""
 
     scalars: Annotated[
-        str, Parameter(group=PICTURE, help="Array to colour by, or none for a plain texture.")
+        str, _flag(Appearance, "scalars", "Array to colour by, or none for a plain surface.")
     ] = "speed"
-    cmap: Annotated[
-        str | None, Parameter(group=PICTURE, help="Colour map, by matplotlib's name.")
-    ] = None
-    zoom: Annotated[
-        float, Parameter(group=PICTURE, help="1 shows the whole surface, 8 an eighth of it.")
-    ] = 1.0
+    cmap: Annotated[str | None, _flag(Appearance, "cmap", "Colour map, by matplotlib's name.")] = (
+        Appearance.cmap
+    )
+    zoom: Annotated[float, _flag(ViewOptions, "zoom")] = ViewOptions.zoom
     focus: Annotated[
         str | None,
-        Parameter(
-            group=PICTURE,
+        _flag(
+            ViewOptions,
+            "focus",
+            "Point of the mesh to look at, as x,y or x,y,z; the middle by default.",
             allow_leading_hyphen=True,
-            help="Point of the mesh to look at, as x,y or x,y,z.",
         ),
     ] = None
     image: Annotated[
         Path | None,
-        Parameter(
-            group=PICTURE,
-            help="Picture that the flow smears, in place of the noise: a PNG, a JPEG or the like.",
-        ),
-    ] = None
+        _flag(Appearance, "image", "PNG or JPEG that the flow smears, in place of the noise."),
+    ] = Appearance.image
 
-    def look(self) -> dict[str, Any]:
+    def arguments(self) -> dict[str, Any]:
         """Return colours, camera and image, as arguments of ``flowtex.render``."""
         if not self.zoom > 0:
             msg = f"--zoom is {self.zoom:g}; expected a positive number, 1 for the whole surface"
@@ -125,7 +131,7 @@ class LookOptions:
 
 
 @dataclass(kw_only=True)
-class DrawOptions(LookOptions):
+class DrawFlags(LookFlags):
     """How a picture is taken."""
 
     size: Annotated[str, Parameter(group=PICTURE, help="Width and height in pixels.")] = "1024x768"
@@ -140,7 +146,7 @@ class DrawOptions(LookOptions):
 
 
 @dataclass(kw_only=True)
-class FrameOptions(DrawOptions):
+class FrameFlags(DrawFlags):
     """How a picture, or each of a movie, is taken without a window."""
 
     supersampling: Annotated[
@@ -148,21 +154,23 @@ class FrameOptions(DrawOptions):
     ] = 1
     beside: Annotated[
         tuple[str, ...],
-        Parameter(
-            group=PICTURE,
+        _flag(
+            ViewOptions,
+            "beside",
+            "What is different in a second view to the right of the first one, such as lod=false.",
             negative="",
-            help="What differs in a second view beside the first, such as lod=false.",
+            show_default=False,
         ),
     ] = ()
 
-    def look(self) -> dict[str, Any]:
-        """Return what :meth:`LookOptions.look` does, and these."""
-        own = {"beside": settings_in(self.beside), "supersampling": self.supersampling}
-        return {**super().look(), **own}
+    def arguments(self) -> dict[str, Any]:
+        """Return what :meth:`LookFlags.arguments` does, and these."""
+        own = {"beside": _parsed_settings(self.beside), "supersampling": self.supersampling}
+        return {**super().arguments(), **own}
 
 
 @dataclass(kw_only=True)
-class ServeOptions:
+class ServeFlags:
     """Where the page is served."""
 
     port: Annotated[int, Parameter(group=PAGE, help="Port; 0 takes a free one.")] = 0
@@ -195,22 +203,21 @@ def _numbers(flag: str, text: str) -> tuple[float, ...]:
     return values
 
 
-def read(file: Path, which: FieldOptions | None) -> FlowField:
+def load_field(file: Path, flow: FieldFlags | None) -> FlowField:
     """Return the flow of a file."""
     from flowtex.field import FlowField
 
-    return FlowField.from_file(file, **(which.given() if which is not None else {}))
+    return FlowField.from_file(file, **(flow or FieldFlags()).arguments())
 
 
-def given(settings: SettingFlags | None) -> dict[str, Any]:
-    """Return the settings that were given as keyword arguments, checked."""
-    flags = {} if settings is None else vars(settings)
-    values = {name: value for name, value in flags.items() if value is not None}
+def settings_from(flags: SettingFlags | None) -> dict[str, Any]:
+    """Return the settings of flags that were set, checked, as keyword arguments."""
+    values = {name: v for name, v in vars(flags or SettingFlags()).items() if v is not None}
     Settings().update(**values)
     return values
 
 
-def settings_in(words: tuple[str, ...]) -> dict[str, Any] | None:
+def _parsed_settings(words: tuple[str, ...]) -> dict[str, Any] | None:
     """Read words such as ``lod=false`` as settings; ``None`` where there are none.
 
     Raises
@@ -220,15 +227,15 @@ def settings_in(words: tuple[str, ...]) -> dict[str, Any] | None:
     SettingsError
         When there is no such setting, or the value is not one of its.
     """
-    found: dict[str, Any] = {}
+    values: dict[str, Any] = {}
     for word in words:
         name, equals, text = word.partition("=")
         if not equals:
             msg = f"--beside {word!r} is no setting; expected name=value, as in --beside lod=false"
             raise UsageError(msg)
         row = setting(name.strip().replace("-", "_"))
-        found[row.name] = row.check(_value(row, text.strip()))
-    return found or None
+        values[row.name] = row.check(_value(row, text.strip()))
+    return values or None
 
 
 def _value(row: Setting, text: str) -> Any:
@@ -244,7 +251,7 @@ def _value(row: Setting, text: str) -> Any:
 
 
 def _annotation(row: Setting) -> Any:
-    """Type of a flag that is None where it was not given, and tells the setting's default."""
+    """Type of a flag that is None by default; its help names the default of the setting."""
     kind: Any = Literal[row.choices] if row.choices else row.kind
     span = f" From {row.low:g} to {row.high:g}." if row.low is not None else ""
     default = f" [default: {row.default}]"

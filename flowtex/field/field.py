@@ -58,7 +58,7 @@ class FlowField:
         Other nodal arrays, name to (T or 1, J, I).
     name, length_unit, time_unit
         Words for captions; empty when unknown.
-    placed
+    has_position
         Nodes whose own position is known, (J, I); the others, blanked ones, have the position
         of the nearest node. ``None`` stands for all.
     sign_free
@@ -74,7 +74,7 @@ class FlowField:
     name: str = ""
     length_unit: str = ""
     time_unit: str = ""
-    placed: Bools | None = None
+    has_position: Bools | None = None
     sign_free: bool = False
 
     @classmethod
@@ -167,7 +167,7 @@ class FlowField:
             name=name,
             length_unit=length_unit,
             time_unit=time_unit,
-            placed=surface._usable,
+            has_position=surface.has_position,
             sign_free=sign_free,
         )
         if not flow.velocity.any():
@@ -294,6 +294,12 @@ class FlowField:
         return self.valid.shape[0], self.valid.shape[1]
 
     @property
+    def nbytes(self) -> int:
+        """Size of the arrays in memory."""
+        arrays = (self.points, self.velocity, self.valid, *self.scalars.values())
+        return sum(array.nbytes for array in arrays)
+
+    @property
     def steady(self) -> bool:
         """Whether there is one time step only."""
         return len(self.times) == 1
@@ -301,7 +307,7 @@ class FlowField:
     @cached_property
     def surface(self) -> Surface:
         """The geometry: tangents, cell sizes and positions between nodes."""
-        known = True if self.placed is None else self.placed[..., None]
+        known = True if self.has_position is None else self.has_position[..., None]
         # Positions that were filled in must not pass for known ones: tangents would bend.
         points = np.where(known, self.points, np.nan)
         return Surface(points, self.valid, self.periodic)
@@ -317,9 +323,9 @@ class FlowField:
         return self.index_velocity.speed
 
     @property
-    def lost(self) -> float:
-        """Share of the flow that points out of the surface and cannot be drawn on it."""
-        return self.index_velocity.lost
+    def normal_share(self) -> float:
+        """Share of the flow that is normal to the surface and cannot be drawn on it, 0 to 1."""
+        return self.index_velocity.normal_share
 
     def at_step(self, step: int) -> FlowField:
         """Return one time step of this field as a steady field.
@@ -346,17 +352,28 @@ class FlowField:
         ValueError
             When fewer than two lines would be left.
         """
-        picks = [
+        rows, columns = (
             _every(count, factor, closed=closed)
             for count, closed in zip(self.shape, self.periodic, strict=True)
-        ]
-        at = np.ix_(*picks)
+        )
+        return self.at_lines(rows, columns)
+
+    def at_lines(self, rows: Indices, columns: Indices) -> FlowField:
+        """Return the field on some of its lines of nodes.
+
+        Parameters
+        ----------
+        rows, columns
+            Increasing numbers of the lines along j and i. An axis that closes on itself keeps
+            its first and its last line.
+        """
+        at = np.ix_(rows, columns)
         return replace(
             self,
             points=self.points[at],
             velocity=self.velocity[:, at[0], at[1]],
             valid=self.valid[at],
-            placed=None if self.placed is None else self.placed[at],
+            has_position=None if self.has_position is None else self.has_position[at],
             scalars={k: s[:, at[0], at[1]] for k, s in self.scalars.items()},
         )
 

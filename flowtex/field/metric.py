@@ -6,7 +6,7 @@ A velocity v is projected onto the tangents P_i and P_j by solving the 2 x 2 met
     | P_i.P_j  P_j.P_j | | u_j | = | v.P_j |
 
 for the contravariant components (u_i, u_j), in cells per unit of time (Forssell and Cohen 1995,
-section 3). What is normal to the surface is lost by it, and its share is returned.
+section 3). The part that is normal to the surface has none; its share is returned.
 
 At a pole all nodes of the line are one point and have one velocity, the mean of theirs. Each
 keeps the component along its own line, of which the whole can be had again
@@ -40,14 +40,14 @@ class IndexVelocity:
     speed
         Length of the velocity along the surface, in the mesh's units per unit of time,
         (T, J, I).
-    lost
+    normal_share
         Share of the flow that points out of the surface: root mean square of the normal part
         over that of the whole, between 0 and 1.
     """
 
     components: Floats
     speed: Floats
-    lost: float
+    normal_share: float
 
 
 def to_index_space(surface: Surface, velocity: Floats) -> IndexVelocity:
@@ -82,7 +82,7 @@ def to_index_space(surface: Surface, velocity: Floats) -> IndexVelocity:
     return IndexVelocity(
         components=u,
         speed=speed,
-        lost=float(np.sqrt(min(normal / total, 1.0))) if total > 0 else 0.0,
+        normal_share=float(np.sqrt(min(normal / total, 1.0))) if total > 0 else 0.0,
     )
 
 

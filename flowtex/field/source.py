@@ -14,7 +14,7 @@ from flowtex.field.field import FlowField
 from flowtex.field.io.files import errors_of_file, open_file
 from flowtex.field.io.meshes import TimeStep, candidates, is_structured, leaves, time_steps
 
-__all__ = ["FlowSource", "field_bytes"]
+__all__ = ["FlowSource"]
 
 #: Size of a series that is held in memory; a larger one is read again for each field.
 MAX_SERIES_BYTES = 2_000_000_000
@@ -62,7 +62,7 @@ class FlowSource:
         self._mesh = mesh
         self._velocity = velocity
         if isinstance(mesh, FlowField):
-            self.name, self.nbytes = name or mesh.name, field_bytes(mesh)
+            self.name, self.nbytes = name or mesh.name, mesh.nbytes
             return
         steps = self._series(mesh)
         if steps is None:
@@ -182,12 +182,6 @@ class FlowSource:
         elif all(step.time is not None for step in steps) or not isinstance(mesh, (list, tuple)):
             self._mesh = _StepReader(steps)
         return steps
-
-
-def field_bytes(field: FlowField) -> int:
-    """Return the bytes of a field's arrays."""
-    arrays = (field.points, field.velocity, field.valid, *field.scalars.values())
-    return sum(array.nbytes for array in arrays)
 
 
 class _StepReader:

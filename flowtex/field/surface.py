@@ -41,7 +41,9 @@ class Surface:
     def __init__(self, points: Floats, valid: Bools, periodic: tuple[bool, bool]) -> None:
         self.valid = valid
         self.periodic = periodic
-        self.points = fill_blanked(points, _usable(points, valid))
+        #: Nodes with a position of their own, (J, I); the others have that of the nearest one.
+        self.has_position = _has_position(points, valid)
+        self.points = fill_blanked(points, self.has_position)
         #: What to add to a position when index j, or i, grows by one period, (2, 3).
         self.offset = np.stack(
             [
@@ -49,12 +51,11 @@ class Surface:
                 np.mean(self.points[:, -1] - self.points[:, 0], axis=0) * periodic[1],
             ]
         )
-        self._usable = _usable(points, valid)
 
     @cached_property
     def poles(self) -> Poles | None:
         """The lines that have collapsed to a point with the surface closed around it, if any."""
-        return find_poles(self.points, self._usable, self.valid, self.periodic)
+        return find_poles(self.points, self.has_position, self.valid, self.periodic)
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -88,7 +89,7 @@ class Surface:
     @cached_property
     def padded(self) -> Floats:
         """Nodes with one ghost line on each side, (J + 2, I + 2, 3)."""
-        good = self._usable
+        good = self.has_position
         rows = _pad(self.points, good, self.offset[0], periodic=self.periodic[0])
         good = np.pad(good, ((1, 1), (0, 0)), mode="edge")
         columns = _pad(np.swapaxes(rows, 0, 1), good.T, self.offset[1], periodic=self.periodic[1])
@@ -102,7 +103,7 @@ class Surface:
     @cached_property
     def tangents(self) -> Floats:
         """Derivatives of position by i and by j at the nodes, (2, J, I, 3), per cell."""
-        good = np.pad(self._usable, 1, constant_values=True)
+        good = np.pad(self.has_position, 1, constant_values=True)
         p = self.padded
         middle = p[1:-1, 1:-1]
         along_i = _difference(p[1:-1, :-2], middle, p[1:-1, 2:], good[1:-1, :-2], good[1:-1, 2:])
@@ -190,7 +191,7 @@ class Surface:
         return result.reshape(*index.shape[:-1], 3)
 
 
-def _usable(points: Floats, valid: Bools) -> Bools:
+def _has_position(points: Floats, valid: Bools) -> Bools:
     """Nodes whose coordinates can be trusted: blanked ones often hold a fill value."""
     finite = np.isfinite(points).all(axis=-1)
     if not (valid & finite).any():

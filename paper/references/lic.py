@@ -18,14 +18,13 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from flowtex._util.array_types import Bools, Floats
 from flowtex.errors import raise_faults
 
 __all__ = ["KERNELS", "lic"]
 
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 #: Lengths in pixels by which a line may miss a corner between pixels and still pass through it.
 CORNER = 1e-9
@@ -70,7 +69,7 @@ def lic(
     ------
     ValueError
         When the shapes do not fit, a number is not finite, a length is not positive or the
-        kernel is unknown; all faults are told.
+        kernel is unknown; all faults are listed.
     """
     v, image = np.asarray(velocity, dtype=float), np.asarray(noise, dtype=float)
     lengths = np.asarray(length, dtype=float)

@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from flowtex._util.array_types import Floats
 from paper import measures
 from paper.bench import OURS, PAPER, Bench
-from paper.findings import Block, Claim, Finding, Panel, Plate, Table
+from paper.findings import Block, Claim, Finding, Panel, Plate, Section, Table
 from paper.references import draw_texture, forssell_lic
-from paper.registry import Section
-from paper.sections.figure7 import wing
-from paper.shots import Shot, shoot, tone
+from paper.views import View, grey, view_of, wing_view
 
 __all__ = ["SECTIONS"]
 
-Floats = NDArray[np.float64]
 
 #: Length of the kernel of LIC in nodes, and texels of the noise along the surface.
 LENGTH, RESOLUTION = 12.0, 512
@@ -29,58 +26,61 @@ LABELS = {
 }
 
 
-def _pictures(bench: Bench, shot: Shot) -> dict[str, Floats]:
+def _pictures(bench: Bench, view: View) -> dict[str, Floats]:
     """Draw the view by every method; values of mean zero and deviation one."""
     paper = {**PAPER, "resolution": RESOLUTION}
-    texture = forssell_lic(shot.field, length=LENGTH, seed=bench.seed)
-    lic = draw_texture(texture, shot.field, shot.camera)
+    texture = forssell_lic(view.field, length=LENGTH, seed=bench.seed)
+    lic = draw_texture(texture, view.field, view.camera, view.size)
     return {
-        "corrected": shot.picture(**paper).value,
-        "not corrected": shot.picture(**paper, noise_correction=False).value,
+        "corrected": view.picture(**paper).value,
+        "not corrected": view.picture(**paper, noise_correction=False).value,
         "LIC at 52 × 62": (lic - np.nanmean(lic)) / np.nanstd(lic),
-        "default": shot.picture(**OURS).value,
+        "default": view.picture(**OURS).value,
     }
 
 
-def _evenness(shot: Shot, resolution: int) -> tuple[list[Panel], dict[str, dict[str, float]]]:
+def _evenness(view: View, resolution: int) -> tuple[list[Panel], dict[str, dict[str, float]]]:
     """Draw and measure the noise by itself, with the correction and without."""
     panels, numbers = [], {}
     for correction in (True, False):
         paper = {**PAPER, "resolution": resolution, "noise_correction": correction}
-        noise = shot.picture(**{**paper, "samples": 1}, lod=False).value
-        found = measures.evenness(noise, shot.mask)
+        noise = view.picture(**{**paper, "samples": 1}, lod=False).value
+        evenness = measures.evenness(noise, view.mask)
         word = "With" if correction else "Without"
-        numbers[f"{word.lower()} correction"] = dict(found._asdict())
+        numbers[f"{word.lower()} correction"] = dict(evenness._asdict())
         label = (
-            f"{word} the correction: grains {found.stretch:.2f} times as long as wide, large ones "
-            f"{found.spread:.1f} times the small ones."
+            f"{word} the correction: grains {evenness.stretch:.2f} times as long as wide, large "
+            f"ones {evenness.spread:.1f} times the small ones."
         )
-        panels += [Panel(tone(noise), label), Panel(tone(shot.picture(**paper).value), "Advected.")]
+        panels += [
+            Panel(grey(noise), label),
+            Panel(grey(view.picture(**paper).value), "Advected."),
+        ]
     # With level of detail, from so many texels that mip levels decide what is seen.
     paper = {**PAPER, "samples": 1, "resolution": 4 * resolution}
-    found = measures.evenness(shot.picture(**paper).value, shot.mask)
-    numbers["with correction, level of detail"] = dict(found._asdict())
+    evenness = measures.evenness(view.picture(**paper).value, view.mask)
+    numbers["with correction, level of detail"] = dict(evenness._asdict())
     return panels, numbers
 
 
 def _figure6(bench: Bench) -> Finding:
-    flat = shoot(bench, bench.stretched, bench.pick((440, 230), (300, 156)))
+    flat = view_of(bench, bench.stretched, bench.pick((440, 230), (300, 156)))
     noise, even = _evenness(flat, bench.pick(256, 128))
-    shot = wing(bench, bench.pick((440, 340), (200, 155)), 3.0)
-    pictures = _pictures(bench, shot)
+    view = wing_view(bench, bench.pick((440, 340), (200, 155)), 3.0)
+    pictures = _pictures(bench, view)
     figures: dict[str, dict[str, float]] = {
         name: {
-            **shot.streaks(values)._asdict(),
-            **shot.grain(values)._asdict(),
-            "sharpness": measures.sharpness(values, shot.mask),
+            **view.streaks(values)._asdict(),
+            **view.grain(values)._asdict(),
+            "sharpness": measures.sharpness(values, view.mask),
         }
         for name, values in pictures.items()
     }
     panels = [
-        Panel(tone(values), f"{LABELS[name]} Streaks {figures[name]['across']:.1f} px wide.")
+        Panel(grey(values), f"{LABELS[name]} Streaks {figures[name]['across']:.1f} px wide.")
         for name, values in pictures.items()
     ]
-    rows = [(name, *found.values()) for name, found in figures.items()]
+    rows = [(name, *row.values()) for name, row in figures.items()]
     blocks: list[Block] = [
         Plate(noise[:2], ""),
         Plate(noise[2:], "A flow on 52 × 62 nodes whose cells grow to the right and upwards."),

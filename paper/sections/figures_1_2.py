@@ -5,20 +5,18 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from flowtex._util.array_types import Floats, Floats32, Indices
 from flowtex.field import FlowField
 from flowtex.probe import Probe, probe
 from flowtex.scene import Scene
 from flowtex.trace import trace
 from paper.bench import PAPER, Bench
-from paper.findings import Block, Claim, Finding, Plot, Table
-from paper.plots import COLOURS, GROUND, INK, RULE, SOFT, canvas
-from paper.registry import Section
+from paper.findings import Block, Claim, Finding, Plot, Section, Table
+from paper.plots import COLOURS, GROUND, INK, RULE, SOFT, plot_axes
 
 __all__ = ["SECTIONS"]
 
-Floats = NDArray[np.float64]
 
 #: Destination time of figure 1, slices that are drawn, and the middle (i, j) of a vortex.
 STEP, COUNT, MIDDLE = 12, 4, (18, 64)
@@ -42,18 +40,18 @@ def _figure1(bench: Bench) -> Finding:
     slices = trace(field, lags=lags, steps=[STEP], compose=False, progress=False)
     i, j = np.meshgrid(MIDDLE[0] + AROUND, MIDDLE[1] + AROUND)
     nodes = np.stack([i, j], axis=-1).astype(float)
-    places = [nodes, *(nodes + slices.displacement[0, m][j, i] for m in range(COUNT))]
-    own = np.array([place[OWN[1], OWN[0]] for place in places])
-    low = np.min([p.min(axis=(0, 1)) for p in places], axis=0) - 2
-    high = np.max([p.max(axis=(0, 1)) for p in places], axis=0) + 2
-    scaled = [(p - low) / (high - low) for p in places]
+    positions = [nodes, *(nodes + slices.displacement[0, m][j, i] for m in range(COUNT))]
+    own = np.array([position[OWN[1], OWN[0]] for position in positions])
+    low = np.min([p.min(axis=(0, 1)) for p in positions], axis=0) - 2
+    high = np.max([p.max(axis=(0, 1)) for p in positions], axis=0) + 2
+    scaled = [(p - low) / (high - low) for p in positions]
     rows = [
         (
             f"Td − {m} Δt" if m else "Td",
-            *(float(c) for c in place),
-            *(float(c) for c in place - own[0]),
+            *(float(c) for c in position),
+            *(float(c) for c in position - own[0]),
         )
-        for m, place in enumerate(own)
+        for m, position in enumerate(own)
     ]
     table = Table(
         ("time", "a", "b", "a − i", "b − j"),
@@ -67,51 +65,44 @@ def _figure1(bench: Bench) -> Finding:
 
 def _planes(scaled: list[Floats], own: Floats) -> Plot:
     """Draw the patch of nodes at every time, one plane above the other."""
-    with canvas(
+    with plot_axes(
         "Figure 1: a patch of nodes at Td, on top, and where its particles were at K earlier "
         "times: each plane is a trace slice, and its points are the entries. The orange line is "
         "the pathline of one node, followed backward.",
         "Planes of five times, with a patch of nodes that is more and more bent the earlier the "
         "time, and one pathline through all of them.",
         size=(8.6, 6.6),
-    ) as made:
-        axes, last = made.axes, len(scaled) - 1
+    ) as figure:
+        axes, last = figure.axes, len(scaled) - 1
         corners = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]], float)
         path = []
-        for m, place in enumerate(scaled):
+        for m, position in enumerate(scaled):
             level = float(last - m)
             axes.plot(*_tilted(corners, level).T, color=RULE, linewidth=1.2, zorder=1)
-            drawn = _tilted(place, level)
-            for line in (*drawn, *np.swapaxes(drawn, 0, 1)):
+            patch = _tilted(position, level)
+            for line in (*patch, *np.swapaxes(patch, 0, 1)):
                 axes.plot(*line.T, color=COLOURS[0], linewidth=0.9, alpha=0.75, zorder=2)
-            axes.plot(*drawn.reshape(-1, 2).T, ".", color=COLOURS[0], markersize=4, zorder=3)
-            path.append(drawn[OWN[1], OWN[0]])
+            axes.plot(*patch.reshape(-1, 2).T, ".", color=COLOURS[0], markersize=4, zorder=3)
+            path.append(patch[OWN[1], OWN[0]])
             axes.plot(*path[-1], "o", color=COLOURS[1], markersize=7, zorder=5)
             _say(axes, m, own[m], level)
         axes.plot(*np.array(path).T, color=COLOURS[1], linewidth=2.2, zorder=4)
         axes.set_xlim(-0.75, 1.55)
         axes.set_axis_off()
-    return _plot(made.plot)
+    return figure.plot
 
 
-def _say(axes: Any, m: int, place: Floats, level: float) -> None:
+def _say(axes: Any, m: int, position: Floats, level: float) -> None:
     """Name a plane on its left."""
     name = f"S  at  Td − {m} Δt" if m else "nodes at Td"
     what = (
-        f"(a, b) = ({place[0]:.1f}, {place[1]:.1f})"
+        f"(a, b) = ({position[0]:.1f}, {position[1]:.1f})"
         if m
-        else f"(i, j) = ({place[0]:.0f}, {place[1]:.0f})"
+        else f"(i, j) = ({position[0]:.0f}, {position[1]:.0f})"
     )
     at = _tilted(np.array([0.0, 0.5]), level)
     axes.annotate(name, at - [0.78, -0.04], color=INK, fontsize=10.5, annotation_clip=False)
     axes.annotate(what, at - [0.78, 0.09], color=SOFT, fontsize=9.5, annotation_clip=False)
-
-
-def _plot(plot: Plot | None) -> Plot:
-    if plot is None:
-        msg = "the plot was not drawn"
-        raise RuntimeError(msg)
-    return plot
 
 
 def _probed(bench: Bench) -> tuple[Scene, Probe]:
@@ -123,59 +114,59 @@ def _probed(bench: Bench) -> tuple[Scene, Probe]:
 
 
 def _figure2(bench: Bench) -> Finding:
-    view, found = _probed(bench)
+    view, result = _probed(bench)
     paper = view.textures.paper
-    if paper is None or found.noise_coordinates is None:
+    if paper is None or result.noise_coordinates is None:
         msg = "there is no noise texture; expected that of the paper's method"
         raise ValueError(msg)
-    level, order = round(found.level), np.argsort(found.lags)
+    level, order = round(result.level), np.argsort(result.lags)
     size = np.array(paper.noise.shape[::-1]) // 2**level
-    texels = (found.noise_coordinates * size - 0.5)[order]
+    texels = (result.noise_coordinates * size - 0.5)[order]
     numbers = {
-        "level": found.level,
-        "slice_level": found.slice_level,
-        "lags": found.lags[order],
-        "noise": found.noise[order],
-        "weights": found.weights[order],
+        "level": result.level,
+        "slice_level": result.slice_level,
+        "lags": result.lags[order],
+        "noise": result.noise[order],
+        "weights": result.weights[order],
         "texels": texels,
-        "value": found.value,
+        "value": result.value,
     }
-    plot = _lookups(_level(paper.noise, level), texels, found, order)
-    blocks: list[Block] = [plot, _rows(found, order, texels)]
-    return Finding(blocks, numbers, _claims(found, texels))
+    plot = _lookups(_level(paper.noise, level), texels, result, order)
+    blocks: list[Block] = [plot, _rows(result, order, texels)]
+    return Finding(blocks, numbers, _claims(result, texels))
 
 
-def _rows(found: Probe, order: NDArray[np.intp], texels: Floats) -> Table:
+def _rows(result: Probe, order: Indices, texels: Floats) -> Table:
     """Tell the look-ups of the pixel, from the nearest to the farthest."""
     rows = [
         (
             number + 1,
-            float(found.lags[k]),
-            f"{found.slices[k, 0]} and {found.slices[k, 1]}",
-            float(found.shares[k]),
-            "{:.2f}, {:.2f}".format(*found.coordinates[k][::-1]),
+            float(result.lags[k]),
+            f"{result.slices[k, 0]} and {result.slices[k, 1]}",
+            float(result.shares[k]),
+            "{:.2f}, {:.2f}".format(*result.coordinates[k][::-1]),
             "{:.1f}, {:.1f}".format(*texels[number]),
-            float(found.noise[k]),
+            float(result.noise[k]),
         )
         for number, k in enumerate(order)
     ]
     head = ("contribution", "lag", "slices", "share of the later", "(a, b)", "texel", "noise")
     caption = (
         "The look-ups of one pixel: between which slices each lies, where its particle was, and "
-        f"the noise there. The mean times {found.gain:.2f} is the pixel, {found.value:.2f}."
+        f"the noise there. The mean times {result.gain:.2f} is the pixel, {result.value:.2f}."
     )
     return Table(head, rows, caption)
 
 
-def _claims(found: Probe, texels: Floats) -> list[Claim]:
-    mean = float(np.sum(found.weights * found.noise) * found.gain)
+def _claims(result: Probe, texels: Floats) -> list[Claim]:
+    mean = float(np.sum(result.weights * result.noise) * result.gain)
     ways = np.linalg.norm(np.diff(texels, axis=0), axis=1)
     return [
         Claim(
             "figure2_value_is_the_mean",
             "Figure 2, equation 2: the pixel is the mean of the looked-up texels. Difference of "
             "both.",
-            abs(mean - float(np.asarray(found.value))),
+            abs(mean - float(np.asarray(result.value))),
             1e-9,
             "at most",
         ),
@@ -191,39 +182,39 @@ def _claims(found: Probe, texels: Floats) -> list[Claim]:
     ]
 
 
-def _level(noise: NDArray[np.float32], level: int) -> Floats:
+def _level(noise: Floats32, level: int) -> Floats:
     """Mip level of a noise, (H, W)."""
     rows, columns = (n // 2**level for n in noise.shape)
     return np.asarray(noise.reshape(rows, 2**level, columns, 2**level).mean(axis=(1, 3)), float)
 
 
-def _lookups(noise: Floats, texels: Floats, found: Probe, order: NDArray[np.intp]) -> Plot:
+def _lookups(noise: Floats, texels: Floats, result: Probe, order: Indices) -> Plot:
     """Draw the path over the mesh, the texels in the noise, and the values that are averaged."""
-    with canvas(
+    with plot_axes(
         "Figure 2: from a fragment to its colour. Left: the fragment (i, j) and the positions "
         "(a, b) that the slices give. Middle: the texels of the noise that they meet. Right: "
         "their values and the mean, which is the colour.",
         "A path over a mesh, the texels of the noise along it, and ten values with their mean.",
         columns=3,
         size=(10.4, 3.9),
-    ) as made:
-        places = found.coordinates[order][:, ::-1]
-        _mesh(made.axes[0], places)
-        _noise(made.axes[1], noise, texels)
-        _mean(made.axes[2], found.noise[order], found)
-    return _plot(made.plot)
+    ) as figure:
+        positions = result.coordinates[order][:, ::-1]
+        _mesh(figure.axes[0], positions)
+        _noise(figure.axes[1], noise, texels)
+        _mean(figure.axes[2], result.noise[order], result)
+    return figure.plot
 
 
-def _mesh(axes: Any, places: Floats) -> None:
-    low, high = np.floor(places.min(axis=0)) - 1, np.ceil(places.max(axis=0)) + 1
+def _mesh(axes: Any, positions: Floats) -> None:
+    low, high = np.floor(positions.min(axis=0)) - 1, np.ceil(positions.max(axis=0)) + 1
     for line in np.arange(low[0], high[0] + 1):
         axes.plot([line, line], [low[1], high[1]], color=RULE, linewidth=1)
     for line in np.arange(low[1], high[1] + 1):
         axes.plot([low[0], high[0]], [line, line], color=RULE, linewidth=1)
-    axes.plot(*places.T, "-o", color=COLOURS[0], markersize=4.5)
-    axes.plot(*places[0], "o", color=COLOURS[1], markersize=9)
-    axes.annotate("(i, j)", places[0], xytext=(7, 7), textcoords="offset points", color=INK)
-    axes.annotate("(a, b)", places[-1], xytext=(7, -12), textcoords="offset points", color=INK)
+    axes.plot(*positions.T, "-o", color=COLOURS[0], markersize=4.5)
+    axes.plot(*positions[0], "o", color=COLOURS[1], markersize=9)
+    axes.annotate("(i, j)", positions[0], xytext=(7, 7), textcoords="offset points", color=INK)
+    axes.annotate("(a, b)", positions[-1], xytext=(7, -12), textcoords="offset points", color=INK)
     axes.set_title("1  trace slices")
     axes.set_aspect("equal")
     axes.grid(visible=False)
@@ -247,10 +238,10 @@ def _noise(axes: Any, noise: Floats, texels: Floats) -> None:
     axes.grid(visible=False)
 
 
-def _mean(axes: Any, noise: Floats, found: Probe) -> None:
+def _mean(axes: Any, noise: Floats, result: Probe) -> None:
     at = np.arange(1, len(noise) + 1)
     axes.bar(at, noise, color=COLOURS[0], width=0.7)
-    mean = float(np.sum(found.weights * found.noise))
+    mean = float(np.sum(result.weights * result.noise))
     axes.axhline(mean, color=COLOURS[1], linewidth=2)
     axes.set_title(f"3  mean of equation 2: {mean:.2f}")
     axes.set_xlabel("contribution")

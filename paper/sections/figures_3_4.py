@@ -10,10 +10,9 @@ import numpy as np
 from flowtex.examples import cylinder_field, double_gyre_field
 from flowtex.field import FlowField
 from paper.bench import Bench
-from paper.findings import Claim, Finding, Table, Text
-from paper.particles import STEPS, Errors, position_errors, step_slices
-from paper.plots import Line, lines
-from paper.registry import Section
+from paper.findings import Claim, Finding, Section, Table, Text
+from paper.plots import Line, line_plot
+from paper.position_errors import STEPS, Errors, position_errors, step_slices
 
 __all__ = ["SECTIONS"]
 
@@ -36,7 +35,7 @@ def _figure(bench: Bench, factor: int) -> Finding:
     errors = _measured(bench, "vortex", bench.vortex, 10, factor)
     figure, nodes = {2: (3, "50 × 50"), 4: (4, "25 × 25")}[factor]
     steps = list(range(1, STEPS + 1))
-    plot = lines(
+    plot = line_plot(
         [
             Line("field, down-sampled", steps, list(errors.field)),
             Line("trace slices, down-sampled: at their entries", steps, list(errors.slices)),
@@ -139,7 +138,7 @@ def _claims(errors: Errors, figure: int, nodes: str) -> list[Claim]:
 
 
 def _figure4(bench: Bench) -> Finding:
-    found = _figure(bench, 4)
+    finding = _figure(bench, 4)
     half, quarter = (_measured(bench, "vortex", bench.vortex, 10, f) for f in (2, 4))
     larger = Claim(
         "figure4_field_errors_larger_at_25",
@@ -149,7 +148,7 @@ def _figure4(bench: Bench) -> Finding:
         "at least",
         "× after ten steps",
     )
-    return Finding(found.blocks, found.numbers, [larger, *found.claims])
+    return Finding(finding.blocks, finding.numbers, [larger, *finding.claims])
 
 
 def _others(bench: Bench) -> Finding:

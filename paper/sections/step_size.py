@@ -6,21 +6,19 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from flowtex.rendering.cpu.lookup_paper import PaperImages, PaperNoise
-from numpy.typing import NDArray
 
+from flowtex._util.array_types import Floats
 from flowtex.rendering.cpu import LookupMaker
 from flowtex.rendering.cpu.fragments import Fragments
+from flowtex.rendering.cpu.paper_noise import PaperImages, PaperNoise
 from flowtex.textures import PaperTextures
 from paper.bench import PAPER, Bench
-from paper.findings import Claim, Finding, Panel, Plate, Table
-from paper.plots import Line, lines
-from paper.registry import Section
-from paper.shots import Shot, shoot, tone
+from paper.findings import Claim, Finding, Panel, Plate, Section, Table
+from paper.plots import Line, line_plot
+from paper.views import View, grey, view_of
 
 __all__ = ["SECTIONS"]
 
-Floats = NDArray[np.float64]
 Values = Mapping[str, Any]
 
 #: Texels of the noise, and the zoom at which one is about as wide as a pixel.
@@ -59,20 +57,20 @@ def _lookups(paper: PaperTextures, step: float) -> dict[str, LookupMaker | None]
     return {"adapted to flow and level": None, "adapted to the flow": local, "fixed": fixed}
 
 
-def _coherence(shot: Shot, values: Floats) -> dict[str, float]:
+def _coherence(view: View, values: Floats) -> dict[str, float]:
     """Coherence in all of the view, and where the flow is slow and fast."""
     from paper import measures
 
-    low, high = np.quantile(shot.speed[shot.mask], (SLOW, FAST))
+    low, high = np.quantile(view.speed[view.mask], (SLOW, FAST))
     masks = {
-        "all": shot.mask,
-        "slow": shot.mask & (shot.speed <= low),
-        "fast": shot.mask & (shot.speed >= high),
+        "all": view.mask,
+        "slow": view.mask & (view.speed <= low),
+        "fast": view.mask & (view.speed >= high),
     }
-    found = {
-        name: measures.streaks(values, *shot.flow, mask).coherence for name, mask in masks.items()
+    coherence = {
+        name: measures.streaks(values, *view.flow, mask).coherence for name, mask in masks.items()
     }
-    return {**found, "angle": shot.streaks(values).angle}
+    return {**coherence, "angle": view.streaks(values).angle}
 
 
 def _section41(bench: Bench) -> Finding:
@@ -85,19 +83,19 @@ def _section41(bench: Bench) -> Finding:
     # The fixed step is right for the typical speed at the finest level.
     lookups = _lookups(textures.paper, float(np.median(textures.paper.step)))
     zooms = bench.pick((0.5, 1.0, 2.0, 4.0, 8.0), (1.0, 4.0))
-    shown = 1.0
+    panel_zoom = 1.0
     figures: dict[str, dict[str, Any]] = {name: {} for name in lookups}
     panels = []
     for zoom in zooms:
-        shot = shoot(bench, field, size, zoom=zoom, focus=POINT if zoom > 1 else None)
+        view = view_of(bench, field, size, zoom=zoom, focus=POINT if zoom > 1 else None)
         for name, lookup in lookups.items():
-            values = shot.picture(lookup, **SETTINGS).value
+            values = view.picture(lookup, **SETTINGS).value
             values = (values - np.nanmean(values)) / np.nanstd(values)
-            found = figures[name][f"{zoom:g}"] = _coherence(shot, values)
-            if zoom == shown:
-                label = f"Δt {name}: coherence {found['all']:.2f}."
-                panels.append(Panel(tone(values), label))
-    plot = lines(
+            row = figures[name][f"{zoom:g}"] = _coherence(view, values)
+            if zoom == panel_zoom:
+                label = f"Δt {name}: coherence {row['all']:.2f}."
+                panels.append(Panel(grey(values), label))
+    plot = line_plot(
         [
             Line(f"Δt {name}", list(zooms), [figures[name][f"{z:g}"]["all"] for z in zooms])
             for name in lookups
@@ -109,22 +107,22 @@ def _section41(bench: Bench) -> Finding:
         log="x",
         ticks=zooms,
     )
-    at = f"{shown:g}"
+    at = f"{panel_zoom:g}"
     plate = Plate(panels, "A double gyre by the paper's method, the whole of it.")
     return Finding([plate, _table(figures, at), plot], figures, _claims(figures, at))
 
 
 def _table(figures: dict[str, dict[str, Any]], at: str) -> Table:
     rows = [
-        (f"Δt {name}", *(found[at][key] for key in ("all", "slow", "fast", "angle")))
-        for name, found in figures.items()
+        (f"Δt {name}", *(by_zoom[at][key] for key in ("all", "slow", "fast", "angle")))
+        for name, by_zoom in figures.items()
     ]
     head = ("step", "coherence", "where slow", "where fast", "mean angle, °")
     return Table(head, rows, "At zoom 1, where a pixel covers several texels of the noise.")
 
 
 def _claims(figures: dict[str, dict[str, Any]], at: str) -> list[Claim]:
-    best, local, fixed = (found[at] for found in figures.values())
+    best, local, fixed = (by_zoom[at] for by_zoom in figures.values())
     text = "Section 4.1: the adapted step makes streaks coherent that a "
     return [
         Claim(

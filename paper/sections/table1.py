@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from paper.bench import Bench
-from paper.findings import Claim, Finding, Table
-from paper.registry import Section
-from paper.sections.data_sets import KILO, PUBLISHED, VECTOR, flows
+from paper.data_sets import KILO, PUBLISHED, VECTOR_BYTES
+from paper.findings import Claim, Finding, Section, Table
 
 __all__ = ["SECTIONS"]
 
 
 def _table1(bench: Bench) -> Finding:
     rows, numbers, claims = [], {}, []
-    for name, field in flows(bench).items():
+    for name, field in bench.published.items():
         shape, steps, published, _ = PUBLISHED[name]
-        ours = field.points.shape[0] * field.points.shape[1] * len(field.times) * VECTOR / KILO
+        ours = (
+            field.points.shape[0] * field.points.shape[1] * len(field.times) * VECTOR_BYTES / KILO
+        )
         rows.append(
             (
                 name,

@@ -10,8 +10,7 @@ from flowtex.settings import Settings
 from flowtex.textures import TextureSet
 from flowtex.trace import SliceStore, trace
 from paper.bench import PAPER, Bench
-from paper.findings import Block, Claim, Finding, Table, Text
-from paper.registry import Section
+from paper.findings import Block, Claim, Finding, Section, Table, Text
 
 __all__ = ["SECTIONS"]
 
@@ -24,9 +23,9 @@ SIZE = (512, 512)
 
 
 def _clock(do: Any) -> tuple[float, Any]:
-    started = time.perf_counter()
-    made = do()
-    return time.perf_counter() - started, made
+    start = time.perf_counter()
+    result = do()
+    return time.perf_counter() - start, result
 
 
 def _timed(bench: Bench, name: str, field: FlowField) -> dict[str, float]:
@@ -37,17 +36,17 @@ def _timed(bench: Bench, name: str, field: FlowField) -> dict[str, float]:
     settings = Settings(**PAPER, resolution=512)
 
     def textures() -> TextureSet:
-        made = TextureSet.build(store, settings)
-        made.layers(store.steps - 1)
-        return made
+        result = TextureSet.build(store, settings)
+        result.layers(store.steps - 1)
+        return result
 
     figures["textures"], _ = _clock(textures)
     # Drawing without a graphics card is slow: the quick form draws one of the data sets.
-    drawn = bench.pick(True, name == "shuttle")  # noqa: FBT003 - either of two values
-    return figures | (_drawn(bench, field, slices) if drawn else {})
+    with_frames = bench.pick(True, name == "shuttle")  # noqa: FBT003 - either of two values
+    return figures | (_frame_times(bench, field, slices) if with_frames else {})
 
 
-def _drawn(bench: Bench, field: FlowField, slices: Any) -> dict[str, float]:
+def _frame_times(bench: Bench, field: FlowField, slices: Any) -> dict[str, float]:
     """Time the first frame, which loads the textures, and the next; nothing without OpenGL."""
     from flowtex.diagnostics import opengl_report, prefer_headless
 
@@ -68,7 +67,7 @@ def _drawn(bench: Bench, field: FlowField, slices: Any) -> dict[str, float]:
         scene = Scene(field, Settings(**PAPER, resolution=512), grey, slices=slices)
         look(plotter, field)
         plotter.render()
-        made = FlowHandle(plotter, scene, lambda _: None)
+        handle = FlowHandle(plotter, scene, lambda _: None)
         look(plotter, field)
         first, _ = _clock(plotter.screenshot)
         frames = bench.pick(12, 4)
@@ -79,7 +78,7 @@ def _drawn(bench: Bench, field: FlowField, slices: Any) -> dict[str, float]:
                 plotter.render()
 
         seconds, _ = _clock(turn)
-        made.remove(render=False)
+        handle.remove(render=False)
     finally:
         plotter.close()
     return {"first_frame": first, "frames_a_second": frames / seconds}
@@ -96,12 +95,12 @@ def _table2(bench: Bench) -> Finding:
         (
             name,
             *PUBLISHED[name],
-            found["preprocessing"],
-            found["textures"],
-            found.get("first_frame"),
-            found.get("frames_a_second"),
+            row["preprocessing"],
+            row["textures"],
+            row.get("first_frame"),
+            row.get("frames_a_second"),
         )
-        for name, found in timings.items()
+        for name, row in timings.items()
     ]
     head = (
         "data",
@@ -113,12 +112,12 @@ def _table2(bench: Bench) -> Finding:
         "frames a second",
     )
     renderer = opengl_report().renderer if opengl_report().usable else ""
-    drawn = (
+    drawing = (
         f"Drawn at 512 × 512 pixels by: {renderer}."
         if renderer
         else "Nothing could be drawn: no OpenGL."
     )
-    caption = f"Times of this run. {drawn} The paper's: Pentium 4 at 2 GHz, GeForce 6800 GT."
+    caption = f"Times of this run. {drawing} The paper's: Pentium 4 at 2 GHz, GeForce 6800 GT."
     size = "The quick form takes every second node of the vortex field." if bench.quick else ""
     blocks: list[Block] = [Table(head, rows, caption), *([Text(size)] if size else [])]
     return Finding(
@@ -132,15 +131,15 @@ def _claims(timings: dict[str, dict[str, float]]) -> list[Claim]:
             f"table2_{name}_preprocessing",
             f"Table 2, {name}: preprocessing takes "
             f"{'slightly more than ' if name == 'vortex' else ''}a few seconds.",
-            found["preprocessing"],
+            row["preprocessing"],
             MORE if name == "vortex" else FEW,
             "at most",
             "s",
             timed=True,
         )
-        for name, found in timings.items()
+        for name, row in timings.items()
     ]
-    rates = [found["frames_a_second"] for found in timings.values() if "frames_a_second" in found]
+    rates = [row["frames_a_second"] for row in timings.values() if "frames_a_second" in row]
     if rates:
         claims.append(
             Claim(

@@ -5,9 +5,8 @@ from __future__ import annotations
 from flowtex.field import FlowField
 from flowtex.trace.lags import choose_lags
 from paper.bench import Bench
-from paper.findings import Claim, Finding, Table, Text
-from paper.registry import Section
-from paper.sections.data_sets import KILO, MEGA, PAIR, PUBLISHED, VECTOR, flows
+from paper.data_sets import KILO, MEGA, PAIR_BYTES, PUBLISHED, VECTOR_BYTES
+from paper.findings import Claim, Finding, Section, Table, Text
 
 __all__ = ["SECTIONS"]
 
@@ -30,17 +29,17 @@ def _slices(field: FlowField) -> dict[str, int]:
     """Count slices: the paper's K, those that its sizes come to, and those of this package."""
     steps = len(field.times)
     # A field that varies has lags from 0 to K, as far as there are earlier time steps.
-    told = STEADY if field.steady else sum(min(step, K) + 1 for step in range(steps))
+    published = STEADY if field.steady else sum(min(step, K) + 1 for step in range(steps))
     parameter = "arclength" if field.steady else "time"
-    return {"k": K * steps, "told": told, "ours": len(choose_lags(field, parameter)) * steps}
+    return {"k": K * steps, "told": published, "ours": len(choose_lags(field, parameter)) * steps}
 
 
 def _table3(bench: Bench) -> Finding:
     rows, numbers, claims = [], {}, []
-    for name, field in flows(bench).items():
+    for name, field in bench.published.items():
         published = PUBLISHED[name][3]
         nodes, count = field.points[..., 0].size, _slices(field)
-        size = {key: nodes * number * PAIR / MEGA for key, number in count.items()}
+        size = {key: nodes * number * PAIR_BYTES / MEGA for key, number in count.items()}
         rows.append(
             (
                 name,
@@ -60,7 +59,7 @@ def _table3(bench: Bench) -> Finding:
             "megabytes_float32": size["ours"],
             "megabytes_half": size["ours"] / 2,
             "over_data_published": published * MEGA / (PUBLISHED[name][2] * KILO),
-            "over_data_half": size["ours"] / 2 * MEGA / (nodes * len(field.times) * VECTOR),
+            "over_data_half": size["ours"] / 2 * MEGA / (nodes * len(field.times) * VECTOR_BYTES),
         }
         claims += _claims(name, size)
     caption = (

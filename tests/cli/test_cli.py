@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from flowtex import diagnostics as doctor
-from flowtex import examples
+from flowtex import diagnostics, examples
 from flowtex.cli import commands, main
 from flowtex.settings import TABLE
 
@@ -173,11 +172,11 @@ def test_what_cannot_be_is_told_in_one_paragraph(
 def test_missing_opengl_has_a_code_of_its_own(
     run: Run, gyre: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def missing() -> doctor.OpenGLReport:
+    def missing() -> diagnostics.OpenGLReport:
         msg = "VTK cannot draw here"
-        raise doctor.OpenGLMissingError(msg)
+        raise diagnostics.OpenGLMissingError(msg)
 
-    monkeypatch.setattr(doctor, "require_opengl", missing)
+    monkeypatch.setattr(diagnostics, "require_opengl", missing)
     for words in (("render", gyre, "-o", tmp_path / "a.png"), ("show", gyre), ("demo",)):
         code, out, err = run(*words)
         assert (code, out, err) == (1, "", "flowtex: VTK cannot draw here")
@@ -219,6 +218,17 @@ def test_info_says_what_is_needed(run: Run, block: Path) -> None:
     assert code == 0 and "To draw it:" in out and "What would be drawn" not in out
     code, out, _ = run("info", block, "--plane", "k=1", "--vectors", "wind")
     assert code == 0 and "6 × 5 (i × j)" in out
+
+
+def test_info_says_that_a_field_has_no_sign(run: Run, tmp_path: Path) -> None:
+    import pyvista as pv
+
+    mesh = pv.ImageData(dimensions=(9, 7, 1))
+    mesh.point_data["axis"] = np.tile([0.6, 0.8, 0.0], (63, 1)) * np.resize([1, -1], (63, 1))
+    mesh.save(tmp_path / "axis.vti")
+    words = "v and -v mean the same"
+    assert words in run("info", tmp_path / "axis.vti", "--sign-free")[1]
+    assert words not in run("info", tmp_path / "axis.vti")[1]
 
 
 def test_the_console_script_runs_without_loading_vtk() -> None:

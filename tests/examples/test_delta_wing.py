@@ -28,9 +28,9 @@ def test_both_sides_mirror_each_other(wing: FlowField) -> None:
 
 
 def test_the_flow_lies_along_the_surface(wing: FlowField) -> None:
-    assert wing.lost < 0.02
+    assert wing.normal_share < 0.02
     fine = delta_wing_field((206, 246))
-    assert fine.lost < wing.lost / 3
+    assert fine.normal_share < wing.normal_share / 3
 
 
 def test_cells_differ_and_none_is_turned_over(wing: FlowField) -> None:

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 import pyvista as pv
 from numpy.typing import NDArray
 
 from flowtex import FlowField
-from flowtex.cli.info import print_info
-from flowtex.cli.options import FieldOptions
 from flowtex.errors import FieldError
 from flowtex.field.signs import axes, corner_signs, oriented, products
 
@@ -136,15 +132,6 @@ def test_it_is_said() -> None:
     assert "sign-free" in repr(field)
     assert field.downsample(2).sign_free
     assert "sign-free" not in repr(FlowField.from_arrays(grid(), half(grid())))
-
-
-def test_the_command_line_says_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    mesh = pv.ImageData(dimensions=(9, 7, 1))
-    mesh.point_data["axis"] = flipped(np.tile([0.6, 0.8, 0.0], (63, 1)))
-    mesh.save(tmp_path / "axis.vti")
-    for given, said in ((True, True), (None, False)):
-        print_info(tmp_path / "axis.vti", FieldOptions(sign_free=given).given())
-        assert ("v and -v mean the same" in capsys.readouterr().out) == said
 
 
 def test_time_steps_are_refused() -> None:

@@ -1,4 +1,4 @@
-"""Places on a surface: from a point in space to an index, and what the field says there."""
+"""Points of a surface: from a point in space to an index and back."""
 
 from __future__ import annotations
 
@@ -128,60 +128,6 @@ def test_what_is_no_point_is_refused(point: object) -> None:
         locate(flat(), point)  # type: ignore[arg-type]
 
 
-def test_a_reading_is_linear_in_space_and_time() -> None:
-    y, x = np.mgrid[0:4.0, 0:5.0]
-    points = np.stack([x, y], axis=-1)
-    steps = np.stack([np.stack([1 + x + t, 2 * y], axis=-1) for t in (0.0, 10.0)])
-    warmth = 3 * x - y
-    field = FlowField.from_arrays(
-        points,
-        steps,
-        times=[1.0, 3.0],
-        scalars={"warmth": warmth, "tide": np.stack([0 * x, 0 * x + 4])},
-        length_unit="m",
-        time_unit="s",
-    )
-    got = values_at(field, (1.25, 2.5), 1.5)
-    assert got.position == pytest.approx([2.5, 1.25, 0])
-    assert got.velocity == pytest.approx([1 + 2.5 + 2.5, 2.5, 0])
-    assert got.scalars == pytest.approx({"warmth": 7.5 - 1.25, "tide": 1.0})
-    assert (got.time, got.speed_unit) == (1.5, "m/s")
-    assert values_at(field, (1, 2)).time == 3.0
-    assert values_at(field, (1, 2), 1.0).speed == pytest.approx(np.hypot(3, 2))
-    with pytest.raises(ValueError, match="time is 4; expected 1 to 3"):
-        values_at(field, (1, 2), 4)
-
-
-@pytest.mark.parametrize(
-    ("length", "time", "speed"),
-    [
-        ("m", "s", "m/s"),
-        ("", "s", ""),
-        ("m", "", ""),
-        ("chords", "chords / free-stream speed", "free-stream speed"),
-        ("m", "1/Hz", "m / (1/Hz)"),
-    ],
-)
-def test_the_unit_of_speed(length: str, time: str, speed: str) -> None:
-    y, x = np.mgrid[0:3.0, 0:3.0]
-    made = FlowField.from_arrays(
-        np.stack([x, y], -1), np.ones((3, 3, 2)), length_unit=length, time_unit=time
-    )
-    assert values_at(made, (1, 1)).speed_unit == speed
-
-
-def test_a_reading_without_a_sign_does_not_cancel() -> None:
-    y, x = np.mgrid[-1:1:5j, -1:1:5j]
-    half = 0.5 * np.arctan2(y, x)
-    points = np.stack([x, y], axis=-1)
-    field = FlowField.from_arrays(
-        points, np.stack([np.cos(half), np.sin(half)], -1), sign_free=True, periodic=""
-    )
-    for j in np.linspace(0.1, 3.9, 7):
-        got = values_at(field, (j, 0.3))
-        assert np.linalg.norm(got.velocity) > 0.65
-
-
 @pytest.mark.parametrize(
     ("at", "fault"),
     [
@@ -192,6 +138,6 @@ def test_a_reading_without_a_sign_does_not_cancel() -> None:
         ((1, 2, 3), "two finite numbers"),
     ],
 )
-def test_a_place_outside_is_refused(at: tuple[float, ...], fault: str) -> None:
+def test_an_index_outside_is_refused(at: tuple[float, ...], fault: str) -> None:
     with pytest.raises(ValueError, match=fault):
         values_at(flat(), at)

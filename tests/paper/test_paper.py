@@ -1,4 +1,4 @@
-"""``flowtex paper --quick``: every section, its claims, its numbers, and the page."""
+"""``python -m paper --quick``: every section, its claims, its numbers, and the page."""
 
 from __future__ import annotations
 
@@ -12,9 +12,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from flowtex.cli import main
-from paper import SectionError, reproduce
-from paper.registry import sections
+from paper import SectionError, reproduce, sections
+from paper.__main__ import main
 
 #: The quick form takes half a minute, once.
 pytestmark = pytest.mark.slow
@@ -64,7 +63,7 @@ def data() -> Path | None:
 def written(data: Path | None, opengl: Any, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("paper") / "page"
     empty = tmp_path_factory.mktemp("empty")
-    words = ["paper", "-o", folder, "--quick", "--data", data or empty]
+    words = ["-o", folder, "--quick", "--data", data or empty]
     assert main([str(word) for word in words]) == 0
     return folder
 
@@ -184,8 +183,9 @@ def test_sections_that_there_are_not_are_refused(
     with pytest.raises(SectionError, match=r"figure9.*figure1"):
         reproduce(tmp_path / "page", only=("figure9",))
     assert not (tmp_path / "page").exists()
-    assert main(["paper", "-o", str(tmp_path), "--only", "figure9"]) == 2
-    assert "--only: there is no section 'figure9'" in " ".join(capsys.readouterr().err.split())
+    with pytest.raises(SystemExit, match="2"):
+        main(["-o", str(tmp_path), "--only", "figure9"])
+    assert "--only: there is no section 'figure9'" in capsys.readouterr().err
 
 
 def test_a_file_is_no_folder_to_write_to(
@@ -193,6 +193,13 @@ def test_a_file_is_no_folder_to_write_to(
 ) -> None:
     file = tmp_path / "page"
     file.write_text("mine")
-    assert main(["paper", "-o", str(file)]) == 2
-    assert "expected a folder" in " ".join(capsys.readouterr().err.split())
+    with pytest.raises(SystemExit, match="2"):
+        main(["-o", str(file)])
+    assert "expected a folder" in capsys.readouterr().err
     assert file.read_text() == "mine"
+
+
+def test_a_wrong_seed_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit, match="2"):
+        main(["-o", str(tmp_path), "--seed", "-1"])
+    assert "--seed is -1; expected 0 or more" in capsys.readouterr().err

@@ -18,7 +18,7 @@ from flowtex.app.controllers.folders import SUFFIXES, search
 from flowtex.app.server.untrusted import shortened
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
-from flowtex.field.source import FlowSource, field_bytes
+from flowtex.field.source import FlowSource
 from flowtex.settings import Settings
 from flowtex.trace import SliceStore, shared_store
 
@@ -58,7 +58,7 @@ class Opened:
     @property
     def nbytes(self) -> int:
         """Bytes that are in memory for it."""
-        return field_bytes(self.field) + (0 if self.store is None else self.store.nbytes)
+        return self.field.nbytes + (0 if self.store is None else self.store.nbytes)
 
 
 #: How far in, and on what point of the mesh.

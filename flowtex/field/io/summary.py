@@ -24,7 +24,7 @@ from flowtex.field.io.meshes import (
     values_of,
     vector_faults,
 )
-from flowtex.field.io.planes import count_nodes, plane_faults
+from flowtex.field.io.planes import plane_faults
 
 __all__ = ["ArraySummary", "FileSummary", "describe"]
 
@@ -89,20 +89,6 @@ class FileSummary:
     times: tuple[float, ...]
     blanked: int
     problem: str
-
-    def __str__(self) -> str:
-        lines = [f"{self.path}", f"  grid      {self.grid}"]
-        if self.dimensions is not None:
-            lines[-1] += f", {count_nodes(self.dimensions)}, {self.blanked} blanked"
-        if len(self.blocks) > 1:
-            lines.append(f"  blocks    {', '.join(self.blocks)}")
-        if self.times:
-            ends = f"{self.times[0]:g} to {self.times[-1]:g}"
-            lines.append(f"  times     {len(self.times)}, {ends}")
-        lines += [f"  array     {_line(array)}" for array in self.arrays]
-        lines.append(f"  vectors   {', '.join(self.candidates) or 'none found'}")
-        lines.append(f"  to draw   {self.problem or 'nothing else is needed'}")
-        return "\n".join(lines)
 
 
 def describe(path: str | Path) -> FileSummary:
@@ -170,11 +156,3 @@ def _array(mesh: Any, array: MeshArray) -> ArraySummary:
         if len(values):
             low, high = float(values.min()), float(values.max())
     return ArraySummary(array.name, array.where, array.components, low, high)
-
-
-def _line(array: ArraySummary) -> str:
-    kind = "lengths" if array.components > 1 else "values"
-    numbers = "number" if array.components == 1 else "numbers"
-    known = np.isfinite(array.low)
-    span = f"{kind} {array.low:g} to {array.high:g}" if known else "no finite values"
-    return f"{array.name}: {array.components} {numbers} on {array.where}, {span}"

@@ -544,17 +544,11 @@ def test_a_file_tells_what_it_holds(tmp_path: Path) -> None:
     assert found["p"] == ("points", 1, 0, 23)
     assert found["v"] == ("points", 3, np.sqrt(3), np.sqrt(16 + 9 + 4))
     assert found["c"] == ("cells", 1, 1, 5)
-    assert str(summary) == (
-        f"{path}\n"
-        "  grid      StructuredGrid, 4 x 3 x 2 nodes (I x J x K), 2 blanked\n"
-        "  array     v: 3 numbers on points, lengths 1.73205 to 5.38516\n"
-        "  array     p: 1 number on points, values 0 to 23\n"
-        "  array     empty: 1 number on points, no finite values\n"
-        "  array     c: 1 number on cells, values 1 to 5\n"
-        "  vectors   v\n"
-        "  to draw   the mesh has 4 x 3 x 2 nodes (I x J x K), and a flow is drawn on one surface: "
-        'choose a plane, as in plane="k=1"; there are i=0 to 3, j=0 to 2, k=0 to 1, and -1 is the '
-        "last one"
+    assert list(found) == ["v", "p", "empty", "c"]
+    assert np.isnan(found["empty"][2:]).all()
+    assert summary.problem == (
+        "the mesh has 4 x 3 x 2 nodes (I x J x K), and a flow is drawn on one surface: choose a "
+        'plane, as in plane="k=1"; there are i=0 to 3, j=0 to 2, k=0 to 1, and -1 is the last one'
     )
 
 
@@ -562,7 +556,6 @@ def test_a_file_that_can_be_drawn_has_no_problem(tmp_path: Path) -> None:
     flowing().save(tmp_path / "flow.vts")
     summary = describe(tmp_path / "flow.vts")
     assert summary.problem == ""
-    assert str(summary).endswith("  to draw   nothing else is needed")
     FlowField.from_file(tmp_path / "flow.vts")
 
 
@@ -570,7 +563,6 @@ def test_a_series_tells_its_times(tmp_path: Path) -> None:
     summary = describe(series(tmp_path))
     assert summary.times == (0.5, 1.0, 2.0)
     assert summary.problem == ""
-    assert "  times     3, 0.5 to 2\n" in str(summary)
 
 
 def test_blocks_are_listed(tmp_path: Path) -> None:
@@ -580,7 +572,6 @@ def test_blocks_are_listed(tmp_path: Path) -> None:
     assert summary.blocks == ("hull", "sea")
     assert summary.dimensions == (4, 3, 1)
     assert summary.problem == ""
-    assert "  blocks    hull, sea\n" in str(summary)
 
 
 def test_an_unstructured_file_tells_what_it_is(tmp_path: Path) -> None:

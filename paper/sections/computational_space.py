@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from flowtex._util.array_types import Floats
 from paper import measures
 from paper.bench import PAPER, Bench
-from paper.findings import Claim, Finding, Panel, Plate, Table
+from paper.findings import Claim, Finding, Panel, Plate, Section, Table
 from paper.references import draw_texture, forssell_lic
-from paper.registry import Section
-from paper.shots import shoot, tone
+from paper.views import grey, view_of
 
 __all__ = ["SECTIONS"]
 
-Floats = NDArray[np.float64]
 
 #: Texels of the texture of computational space, for each node.
 FINER = 6
@@ -26,29 +24,29 @@ def _unit(values: Floats) -> Floats:
 
 def _stretched(bench: Bench) -> Finding:
     field = bench.stretched
-    shot = shoot(bench, field, bench.pick((520, 272), (300, 156)))
+    view = view_of(bench, field, bench.pick((520, 272), (300, 156)))
     rows, columns = (FINER * n for n in field.shape)
     white = np.random.default_rng(bench.seed).standard_normal((rows, columns))
     texture = forssell_lic(field, (rows, columns), length=30.0, kernel="hann", seed=bench.seed)
     paper = {**PAPER, "resolution": 512}
     pictures = {
-        "Forssell and Cohen": draw_texture(texture, field, shot.camera),
-        "the paper's method": shot.picture(**paper).value,
-        "default": shot.picture().value,
+        "Forssell and Cohen": draw_texture(texture, field, view.camera, view.size),
+        "the paper's method": view.picture(**paper).value,
+        "default": view.picture().value,
     }
     noises = {
-        "Forssell and Cohen": draw_texture(white, field, shot.camera),
-        "the paper's method": shot.picture(**{**paper, "samples": 1}).value,
-        "default": shot.picture(samples=1).value,
+        "Forssell and Cohen": draw_texture(white, field, view.camera, view.size),
+        "the paper's method": view.picture(**{**paper, "samples": 1}).value,
+        "default": view.picture(samples=1).value,
     }
     figures = {
-        name: measures.evenness(noises[name], shot.mask)._asdict()
-        | shot.streaks(_unit(values))._asdict()
+        name: measures.evenness(noises[name], view.mask)._asdict()
+        | view.streaks(_unit(values))._asdict()
         for name, values in pictures.items()
     }
     panels = [
         Panel(
-            tone(_unit(values)),
+            grey(_unit(values)),
             f"{name[0].upper()}{name[1:]}: grains "
             f"{figures[name]['stretch']:.2f} times as long as wide.",
         )
@@ -61,7 +59,7 @@ def _stretched(bench: Bench) -> Finding:
         "mean angle, °",
         "coherence",
     )
-    table = Table(head, [(name, *found.values()) for name, found in figures.items()])
+    table = Table(head, [(name, *row.values()) for name, row in figures.items()])
     where = "A double gyre on 52 × 62 nodes whose cells grow to the right and upwards."
     plate = Plate(panels, where)
     return Finding([plate, table], figures, _claims(figures))

@@ -6,10 +6,9 @@ import time
 from typing import Any
 
 from paper.bench import PAPER, Bench
-from paper.findings import Claim, Finding, Panel, Plate, Plot
-from paper.plots import Line, canvas, put
-from paper.registry import Section
-from paper.shots import shoot, tone
+from paper.findings import Claim, Finding, Panel, Plate, Plot, Section
+from paper.plots import Line, draw_lines, plot_axes
+from paper.views import grey, view_of
 
 __all__ = ["SECTIONS"]
 
@@ -23,7 +22,7 @@ KERNELS: dict[str, dict[str, Any]] = {
 
 def _samples(bench: Bench) -> Finding:
     counts = bench.pick((5, 10, 15, 20, 25, 30, 40, 50), (5, 10, 50))
-    shot = shoot(bench, bench.gyre, bench.pick((320, 260), (130, 104)), zoom=2.0, focus=POINT)
+    view = view_of(bench, bench.gyre, bench.pick((320, 260), (130, 104)), zoom=2.0, focus=POINT)
     figures: dict[str, dict[str, Any]] = {}
     seconds: dict[str, dict[str, float]] = {}
     panels = []
@@ -31,41 +30,38 @@ def _samples(bench: Bench) -> Finding:
         figures[name], seconds[name] = {}, {}
         for count in counts:
             started = time.perf_counter()
-            values = shot.picture(**{**settings, "samples": count}).value
+            values = view.picture(**{**settings, "samples": count}).value
             seconds[name][str(count)] = time.perf_counter() - started
             figures[name][str(count)] = {
-                **shot.streaks(values)._asdict(),
-                **shot.grain(values)._asdict(),
+                **view.streaks(values)._asdict(),
+                **view.grain(values)._asdict(),
             }
             if count in (5, 10, 50):
-                panels.append(Panel(tone(values), f"{name.capitalize()}, K = {count}."))
+                panels.append(Panel(grey(values), f"{name.capitalize()}, K = {count}."))
     plates = [Plate(panels[:3]), Plate(panels[3:])]
     return Finding([_plot(figures), *plates], figures, _claims(figures), {"seconds": seconds})
 
 
 def _plot(figures: dict[str, dict[str, Any]]) -> Plot:
     counts = [int(count) for count in next(iter(figures.values()))]
-    with canvas(
+    with plot_axes(
         "Half width of the autocorrelation along the flow, and coherence, against the number of "
         "contributions.",
         "Streaks grow in proportion to K; coherence rises with it and levels off.",
         columns=2,
-    ) as made:
+    ) as figure:
         for axes, key, title in zip(
-            made.axes, ("along", "coherence"), ("Length of streaks, px", "Coherence"), strict=True
+            figure.axes, ("along", "coherence"), ("Length of streaks, px", "Coherence"), strict=True
         ):
-            put(
+            draw_lines(
                 axes,
                 [Line(n, counts, [f[str(k)][key] for k in counts]) for n, f in figures.items()],
             )
             axes.set_title(title)
             axes.set_xlabel("contributions K")
-        made.axes[1].legend(loc="lower right")
-        made.axes[1].set_ylim(0, 1)
-    if made.plot is None:
-        msg = "the plot was not drawn"
-        raise RuntimeError(msg)
-    return made.plot
+        figure.axes[1].legend(loc="lower right")
+        figure.axes[1].set_ylim(0, 1)
+    return figure.plot
 
 
 def _claims(figures: dict[str, dict[str, Any]]) -> list[Claim]:

@@ -5,18 +5,16 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from flowtex._util.array_types import Floats
 from paper.bench import OURS, PAPER, Bench
-from paper.findings import Claim, Finding, Panel, Plate, Plot
-from paper.plots import Line, canvas, put
+from paper.findings import Claim, Finding, Panel, Plate, Plot, Section
+from paper.plots import Line, draw_lines, plot_axes
 from paper.references import draw_texture, forssell_lic
-from paper.registry import Section
-from paper.shots import Shot, shoot, tone
+from paper.views import View, grey, view_of
 
 __all__ = ["SECTIONS"]
 
-Floats = NDArray[np.float64]
 
 #: Texels of the paper's noise, a point to zoom into, and texels of the texture that LIC makes.
 RESOLUTION, POINT, LIC = 1024, (0.63, 0.37), (128, 256)
@@ -27,79 +25,76 @@ METHODS = {
 }
 
 
-def _drawn(bench: Bench, shot: Shot, method: str) -> Floats:
+def _drawn(bench: Bench, view: View, method: str) -> Floats:
     if method == "procedural noise":
-        return shot.picture(**OURS).value
+        return view.picture(**OURS).value
     if method == "noise texture":
-        return shot.picture(**PAPER, resolution=RESOLUTION).value
+        return view.picture(**PAPER, resolution=RESOLUTION).value
     texture = bench.once(
-        "LIC", lambda: forssell_lic(shot.field, LIC, length=24.0, kernel="hann", seed=bench.seed)
+        "LIC", lambda: forssell_lic(view.field, LIC, length=24.0, kernel="hann", seed=bench.seed)
     )
-    values = draw_texture(texture, shot.field, shot.camera)
+    values = draw_texture(texture, view.field, view.camera, view.size)
     # Far out there is nothing but grey left.
     return np.asarray((values - np.nanmean(values)) / max(float(np.nanstd(texture)), 1e-9))
 
 
 def _measured(bench: Bench) -> tuple[dict[str, dict[str, Any]], list[Panel]]:
     zooms = [2.0**n for n in bench.pick(range(11), (0, 5, 10))]
-    shown = bench.pick((1, 16, 256, 1024), (1, 1024))
+    panel_zooms = bench.pick((1, 16, 256, 1024), (1, 1024))
     size = bench.pick((320, 260), (130, 104))
     figures: dict[str, dict[str, Any]] = {name: {} for name in METHODS}
     panels = []
     for name in METHODS:
         for zoom in zooms:
-            shot = shoot(bench, bench.gyre, size, zoom=zoom, focus=POINT if zoom > 1 else None)
-            values = _drawn(bench, shot, name)
-            grain, streaks = shot.grain(values), shot.streaks(values)
+            view = view_of(bench, bench.gyre, size, zoom=zoom, focus=POINT if zoom > 1 else None)
+            values = _drawn(bench, view, name)
+            grain, streaks = view.grain(values), view.streaks(values)
             figures[name][f"{zoom:g}"] = {**grain._asdict(), **streaks._asdict()}
-            if zoom in shown:
-                panels.append(Panel(tone(values), f"{METHODS[name]}, zoom {zoom:g}."))
+            if zoom in panel_zooms:
+                panels.append(Panel(grey(values), f"{METHODS[name]}, zoom {zoom:g}."))
     return figures, panels
 
 
 def _plot(figures: dict[str, dict[str, Any]]) -> Plot:
     zooms = [float(zoom) for zoom in figures["procedural noise"]]
-    with canvas(
+    with plot_axes(
         "Half widths of the autocorrelation, across the flow and along it, from the whole surface "
         "to a thousandth of it. Grain that is wider than some thirty pixels, and streaks longer "
         "than 64, are not measured.",
         "The procedural noise keeps grain and streaks at all zooms; the noise texture keeps them "
         "until its texels are as wide as pixels, and then both grow with the zoom.",
         columns=2,
-    ) as made:
+    ) as figure:
         for axes, key, what in zip(
-            made.axes,
+            figure.axes,
             ("across", "along"),
             ("Grain across the flow", "Length of streaks"),
             strict=True,
         ):
-            drawn = [
+            lines = [
                 Line(label, zooms, [figures[name][f"{z:g}"][key] for z in zooms])
                 for name, label in METHODS.items()
             ]
-            put(axes, drawn, log="xy", ticks=zooms[:: max(1, len(zooms) // 5)])
+            draw_lines(axes, lines, log="xy", ticks=zooms[:: max(1, len(zooms) // 5)])
             axes.set_title(f"{what}, px")
             axes.set_xlabel("zoom")
-        made.figure.legend(
-            *made.axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=3
+        figure.figure.legend(
+            *figure.axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=3
         )
-    if made.plot is None:
-        msg = "the plot was not drawn"
-        raise RuntimeError(msg)
-    return made.plot
+    return figure.plot
 
 
 def _spread(figures: dict[str, Any], key: str) -> float:
     """Greatest over least value over the zooms."""
-    values = [found[key] for found in figures.values()]
+    values = [by_zoom[key] for by_zoom in figures.values()]
     return float(max(values) / min(values))
 
 
 def _grain(bench: Bench) -> Finding:
     figures, panels = _measured(bench)
     spreads = {
-        name: {key: _spread(found, key) for key in ("across", "along")}
-        for name, found in figures.items()
+        name: {key: _spread(by_zoom, key) for key in ("across", "along")}
+        for name, by_zoom in figures.items()
     }
     count = len(panels) // len(METHODS)
     plates = [Plate(panels[n * count : (n + 1) * count]) for n in range(len(METHODS))]

@@ -5,16 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import ndimage
 
+from flowtex._util.array_types import Floats
 from flowtex.field import FlowField
 from flowtex.field.interpolation import along_line
 from flowtex.trace import TraceSlices, paths, trace
 
 __all__ = ["Errors", "position_errors", "step_slices"]
 
-Floats = NDArray[np.float64]
 
 #: Steps of time that a particle goes back, and error allowed in one step of the integration.
 STEPS, TOLERANCE = 10, 1e-5
@@ -29,7 +28,7 @@ class Errors:
     slices
         With slices made coarser as a mip level is, at their own entries.
     field
-        With paths integrated anew in the field made coarser, from the same places.
+        With paths integrated anew in the field made coarser, from the same starts.
     between
         With the coarser slices between their entries, linear as a texture is looked up.
     full
@@ -118,7 +117,7 @@ def position_errors(
     low, high = coarse.nodes[0, 0], coarse.nodes[-1, -1]
     anywhere, true_anywhere = _accurate(field, rng.uniform(low, high, (count, 2)), step)
     lines = _lines(field, factor)
-    found = paths(
+    result = paths(
         field.downsample(factor),
         _inverse(lines, start),
         _lags(field),
@@ -126,16 +125,16 @@ def position_errors(
         tolerance=TOLERANCE,
     )
 
-    found_coarse = _looked_up(coarse, start)
-    cells = np.linalg.norm(found_coarse[-1] - true[-1], axis=-1)
+    coarse_positions = _looked_up(coarse, start)
+    cells = np.linalg.norm(coarse_positions[-1] - true[-1], axis=-1)
 
     def apart(one: Floats, other: Floats) -> Floats:
         distance: Floats = np.linalg.norm(at(one) - at(other), axis=-1)
         return np.asarray(distance.mean(axis=1))
 
     return Errors(
-        slices=apart(found_coarse, true),
-        field=apart(np.stack([_forward(lines, p) for p in found.positions]), true),
+        slices=apart(coarse_positions, true),
+        field=apart(np.stack([_forward(lines, p) for p in result.positions]), true),
         between=apart(_looked_up(coarse, anywhere), true_anywhere),
         full=apart(_looked_up(slices, anywhere), true_anywhere),
         travelled=apart(np.broadcast_to(start, true.shape), true),
@@ -150,9 +149,9 @@ def _lags(field: FlowField) -> Floats:
 
 def _accurate(field: FlowField, start: Floats, step: int) -> tuple[Floats, Floats]:
     """Return starts whose paths do not end, (N, 2), and the true positions, (M, N, 2)."""
-    found = paths(field, start, _lags(field), step=step, tolerance=TOLERANCE)
-    alive = found.reach >= _lags(field)[-1]
-    return start[alive], found.positions[:, alive]
+    result = paths(field, start, _lags(field), step=step, tolerance=TOLERANCE)
+    alive = result.reach >= _lags(field)[-1]
+    return start[alive], result.positions[:, alive]
 
 
 def _looked_up(slices: TraceSlices, start: Floats) -> Floats:
@@ -160,26 +159,26 @@ def _looked_up(slices: TraceSlices, start: Floats) -> Floats:
     first, last = slices.nodes[0, 0], slices.nodes[-1, -1]
     spread = (last - first) / (np.array(slices.shape[::-1]) - 1)
     i, j = ((start - first) / spread).T
-    moved = [
+    displacements = [
         [
             ndimage.map_coordinates(data[..., axis].astype(float), [j, i], order=1, mode="nearest")
             for axis in range(2)
         ]
         for data in slices.displacement[0]
     ]
-    return np.asarray(start + np.moveaxis(np.array(moved), 1, 2))
+    return np.asarray(start + np.moveaxis(np.array(displacements), 1, 2))
 
 
 def _lines(field: FlowField, factor: int) -> tuple[Floats, Floats]:
     """Lines of nodes (I,) and (J,) that a coarser field keeps: every so many, and a closing one."""
     rows, columns = field.shape
-    kept = []
+    result = []
     for count, closed in ((columns, field.periodic[1]), (rows, field.periodic[0])):
         line = np.arange(0, count, factor)
         if closed and line[-1] != count - 1:
             line = np.append(line, count - 1)
-        kept.append(line.astype(float))
-    return kept[0], kept[1]
+        result.append(line.astype(float))
+    return result[0], result[1]
 
 
 def _forward(lines: tuple[Floats, Floats], index: Floats) -> Floats:

@@ -6,19 +6,17 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from flowtex._util.array_types import Floats
 from paper import measures
 from paper.bench import Bench
-from paper.findings import Claim, Finding, Panel, Plate
-from paper.plots import Line, lines
+from paper.findings import Claim, Finding, Panel, Plate, Section
+from paper.plots import Line, line_plot
 from paper.references import ImageSpace
-from paper.registry import Section
-from paper.shots import Shot, shoot, tone
+from paper.views import View, grey, view_of
 
 __all__ = ["SECTIONS"]
 
-Floats = NDArray[np.float64]
 
 #: Frames before the camera moves, while it moves, and after it; pixels that it moves in a frame.
 STILL, PAN = 30, 6.0
@@ -29,18 +27,11 @@ EVERY = 4
 IMAGE, OURS = "image space, frame upon frame", "this method, each frame by itself"
 
 
-def _panned(shot: Shot, pixels: float) -> Shot:
+def _panned(view: View, pixels: float) -> View:
     """Return the same view moved to the side by that many pixels."""
-    camera = shot.camera
-    scale = camera.parallel_scale or 1.0
-    way = camera.axes[0] * (pixels * 2.0 * scale / camera.size[1])
-    eye, at = (np.asarray(p) + way for p in (camera.position, camera.focal_point))
-    moved = replace(
-        camera,
-        position=(float(eye[0]), float(eye[1]), float(eye[2])),
-        focal_point=(float(at[0]), float(at[1]), float(at[2])),
-    )
-    return replace(shot, camera=moved)
+    camera = view.camera
+    way = camera.axes[0] * (pixels * 2.0 * camera.parallel_scale / view.size[1])
+    return replace(view, camera=camera.shift(way))
 
 
 def _unit(values: Floats) -> Floats:
@@ -50,47 +41,47 @@ def _unit(values: Floats) -> Floats:
 def _moving(bench: Bench) -> Finding:
     size = bench.pick((360, 300), (140, 116))
     moving, after = bench.pick((12, 24), (6, 10))
-    first = shoot(bench, bench.gyre, size, zoom=ZOOM, focus=POINT)
-    image = ImageSpace(first.camera, bench.gyre, blend=0.1, pixels=2.0, seed=bench.seed)
+    first = view_of(bench, bench.gyre, size, zoom=ZOOM, focus=POINT)
+    image = ImageSpace(first.camera, first.size, bench.gyre, blend=0.1, pixels=2.0, seed=bench.seed)
     image.frames(STILL)
     figures: dict[str, dict[str, list[float]]] = {
         name: {"angle": [], "coherence": []} for name in (IMAGE, OURS)
     }
-    kept: dict[str, Floats] = {}
+    last: dict[str, Floats] = {}
     frames = list(range(-2, moving + after))
     for frame in frames:
-        shot = _panned(first, PAN * min(max(frame + 1, 0), moving))
-        image.look(shot.camera)
+        view = _panned(first, PAN * min(max(frame + 1, 0), moving))
+        image.look(view.camera)
         values = image.frame()
-        _note(figures[IMAGE], shot, values)
+        _note(figures[IMAGE], view, values)
         # Frames without memory: the picture of this view is all that there is.
         if frame % EVERY == 0:
-            ours = shot.picture().value
-            _note(figures[OURS], shot, ours)
+            ours = view.picture().value
+            _note(figures[OURS], view, ours)
         if frame == moving - 1:
-            kept = {IMAGE: values, OURS: shot.picture().value}
+            last = {IMAGE: values, OURS: view.picture().value}
     rest = _panned(first, PAN * moving)
     fresh = rest.picture().value
-    same = float(np.nanmax(np.abs(fresh - kept[OURS])))
-    return _found(figures, kept, image, rest, same, frames, moving)
+    same = float(np.nanmax(np.abs(fresh - last[OURS])))
+    return _finding(figures, last, image, rest, same, frames, moving)
 
 
-def _note(figures: dict[str, list[float]], shot: Shot, values: Floats) -> None:
-    found = shot.streaks(values)
-    figures["angle"].append(found.angle)
-    figures["coherence"].append(found.coherence)
+def _note(figures: dict[str, list[float]], view: View, values: Floats) -> None:
+    streaks = view.streaks(values)
+    figures["angle"].append(streaks.angle)
+    figures["coherence"].append(streaks.coherence)
 
 
-def _found(
+def _finding(
     figures: dict[str, dict[str, list[float]]],
-    kept: dict[str, Floats],
+    last: dict[str, Floats],
     image: ImageSpace,
-    shot: Shot,
+    view: View,
     same: float,
     frames: list[int],
     moving: int,
 ) -> Finding:
-    plot = lines(
+    plot = line_plot(
         [
             Line(IMAGE, frames, figures[IMAGE]["angle"]),
             Line(OURS, [f for f in frames if f % EVERY == 0], figures[OURS]["angle"]),
@@ -101,20 +92,20 @@ def _found(
         alt="In image space the angle rises while the camera moves and falls over some frames "
         "after; here it stays as it is.",
     )
-    settled = image.frames(STILL)
+    at_rest = image.frames(STILL)
     sharp = {
-        "moving": measures.sharpness(kept[IMAGE], shot.mask),
-        "at rest": measures.sharpness(settled, shot.mask),
+        "moving": measures.sharpness(last[IMAGE], view.mask),
+        "at rest": measures.sharpness(at_rest, view.mask),
     }
     panels = [
-        Panel(tone(_unit(kept[IMAGE])), "Image space: the last frame in which the camera moves."),
-        Panel(tone(_unit(settled)), f"Image space: {STILL} frames later."),
-        Panel(tone(kept[OURS]), "This method: the last frame in which the camera moves."),
+        Panel(grey(_unit(last[IMAGE])), "Image space: the last frame in which the camera moves."),
+        Panel(grey(_unit(at_rest)), f"Image space: {STILL} frames later."),
+        Panel(grey(last[OURS]), "This method: the last frame in which the camera moves."),
     ]
     angles = figures[IMAGE]["angle"]
     numbers: dict[str, Any] = {
-        "angles": {name: found["angle"] for name, found in figures.items()},
-        "coherence": {name: found["coherence"] for name, found in figures.items()},
+        "angles": {name: streaks["angle"] for name, streaks in figures.items()},
+        "coherence": {name: streaks["coherence"] for name, streaks in figures.items()},
         "difference_from_a_fresh_frame": same,
         "sharpness_image_space": sharp,
         "frames_to_recover": _recovery(angles, moving + 2),

@@ -10,47 +10,53 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import ndimage
 
+from flowtex._util.array_types import Bools, Bytes, Floats
+from flowtex.camera import Camera
 from flowtex.field import FlowField
-from flowtex.first_look import first_look
-from flowtex.rendering.cpu import Camera, LookupMaker, Picture, render, shade
+from flowtex.rendering.cpu import LookupMaker, Picture, render, shade
+from flowtex.rendering.cpu.raster import cover
 from flowtex.rendering.uniforms import ViewState
 from flowtex.settings import Settings
 from paper import measures
 from paper.bench import Bench
 
-__all__ = ["GREY", "Shot", "shoot", "tone"]
+__all__ = ["View", "grey", "view_of", "wing_view"]
 
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 #: Colour of a surface without scalars.
-GREY = (0.627, 0.627, 0.627)
+SURFACE_GREY = (0.627, 0.627, 0.627)
 #: Pixels along an outline that are not judged, and the share of the greatest speed below which the
 #: direction of the flow counts as unknown.
 BORDER, SLOW = 10, 0.05
+#: Views of the wing: where the camera stands, what it looks at from afar and close up, and half
+#: the height that it sees.
+WING_EYE, WING_WHOLE, WING_NEAR = (0.25, -1.0, 1.5), (0.56, 0.0, 0.0), (0.78, -0.16, 0.03)
+WING_HALF_HEIGHT = 0.43
 
 
 @dataclass(frozen=True, eq=False)
-class Shot:
+class View:
     """A field seen by a camera at one of its time steps."""
 
     bench: Bench
     field: FlowField
     camera: Camera
+    #: Width and height of the picture in pixels.
+    size: tuple[int, int]
     step: int = 0
 
     def picture(
         self, lookup: LookupMaker | None = None, *, density: float = 1.0, **settings: Any
     ) -> Picture:
         """Draw it; ``lookup`` takes the place of the noise."""
-        chosen = self.bench.settings(**settings)
+        values = self.bench.settings(**settings)
         return render(
-            self.bench.textures(self.field, chosen),
-            chosen,
+            self.bench.textures(self.field, values),
+            values,
             self.camera,
+            self.size,
             view=ViewState(density=density),
             steps=(self.step, self.step),
             lookup=lookup,
@@ -64,20 +70,20 @@ class Shot:
         numpy.ndarray
             Mean values, (H, W).
         """
-        width, height = self.camera.size
-        fine = replace(self, camera=replace(self.camera, size=(width * times, height * times)))
+        width, height = self.size
+        fine = replace(self, size=(width * times, height * times))
         return measures.blocks(fine.picture(density=times, **settings).value, times)
 
     @cached_property
-    def _places(self) -> tuple[Bools, Floats, Floats]:
+    def _surface(self) -> tuple[Bools, Floats, Floats]:
         """Pixels of the surface (H, W), their (i, j), (H, W, 2), and positions, (H, W, 3)."""
         surface = self.field.surface
-        coverage = cover(surface, self.camera)
+        coverage = cover(surface, self.camera, self.size)
         rows, columns = surface.shape
         nodes = np.stack(np.meshgrid(np.arange(columns), np.arange(rows)), axis=-1)
         nodal = np.concatenate([nodes, surface.points - surface.center], axis=-1)
         mixed, _, _ = coverage.mix(nodal.reshape(-1, 5))
-        width, height = self.camera.size
+        width, height = self.size
         flat = np.full((height * width, 5), np.nan)
         flat[coverage.pixel] = mixed
         image = flat.reshape(height, width, 5)
@@ -86,17 +92,17 @@ class Shot:
     @property
     def covered(self) -> Bools:
         """Pixels that show the surface, (H, W)."""
-        return self._places[0]
+        return self._surface[0]
 
     @property
     def index(self) -> Floats:
         """Position of each pixel in index space, (H, W, 2) as (i, j); NaN off the surface."""
-        return self._places[1]
+        return self._surface[1]
 
     @property
     def position(self) -> Floats:
         """Position of each pixel in the mesh's coordinates, (H, W, 3); NaN off the surface."""
-        return self._places[2]
+        return self._surface[2]
 
     @cached_property
     def flow(self) -> tuple[Floats, Floats]:
@@ -107,8 +113,8 @@ class Shot:
         small = 1e-4 * self.field.surface.extent / speed
         origin = self.field.surface.center
         ends = [self._screen(at - origin, origin) for at in (position, position + small * velocity)]
-        moved = np.where(self.covered[..., None], (ends[1] - ends[0]) / small, 0.0)
-        return moved[..., 0], moved[..., 1]
+        on_screen = np.where(self.covered[..., None], (ends[1] - ends[0]) / small, 0.0)
+        return on_screen[..., 0], on_screen[..., 1]
 
     @cached_property
     def speed(self) -> Floats:
@@ -126,18 +132,18 @@ class Shot:
         """Interpolate nodal data (J, I) or (J, I, C) to the pixels; zero off the surface."""
         i, j = np.moveaxis(np.nan_to_num(self.index), -1, 0)
         channels = data[..., None] if data.ndim == 2 else data
-        found = [
+        at_pixels = [
             ndimage.map_coordinates(channels[..., c], [j, i], order=1, mode="nearest")
             for c in range(channels.shape[-1])
         ]
-        result = np.stack(found, axis=-1) * self.covered[..., None]
+        result = np.stack(at_pixels, axis=-1) * self.covered[..., None]
         return np.asarray(result[..., 0] if data.ndim == 2 else result)
 
     def _screen(self, points: Floats, origin: Floats) -> Floats:
         """Pixels to the right and up, (..., 2), of points counted from an origin."""
-        matrix = self.camera.matrix(origin)
+        matrix = self.camera.matrix(self.size[0] / self.size[1], origin)
         clip = points @ matrix[:, :3].T + matrix[:, 3]
-        return np.asarray(clip[..., :2] / clip[..., 3:] * np.array(self.camera.size) / 2)
+        return np.asarray(clip[..., :2] / clip[..., 3:] * np.array(self.size) / 2)
 
     def streaks(self, value: Floats) -> measures.Streaks:
         """Direction of the texture against the flow."""
@@ -148,7 +154,7 @@ class Shot:
         return measures.grain(value, *self.flow, self.mask, self.bench.seed)
 
 
-def shoot(
+def view_of(
     bench: Bench,
     field: FlowField,
     size: tuple[int, int],
@@ -156,7 +162,7 @@ def shoot(
     zoom: float = 1.0,
     focus: tuple[float, ...] | None = None,
     step: int = 0,
-) -> Shot:
+) -> View:
     """Look at a field as ``flowtex.render`` does.
 
     Parameters
@@ -170,19 +176,21 @@ def shoot(
     zoom, focus, step
         How far in, on what point, and at which time step.
     """
-    look = first_look(field, size[0] / size[1], zoom=zoom, focus=focus)
-    camera = Camera(
-        look.position,
-        look.focal_point,
-        look.up,
-        size,
-        parallel_scale=look.parallel_scale if look.parallel else None,
-        view_angle=look.view_angle,
-    )
-    return Shot(bench, field, camera, step)
+    camera = Camera.fit(field.surface, size[0] / size[1], zoom=zoom, focus=focus)
+    return View(bench, field, camera, size, step)
 
 
-def tone(value: Floats, colour: Any = GREY, **settings: Any) -> NDArray[np.uint8]:
+def wing_view(bench: Bench, size: tuple[int, int], zoom: float) -> View:
+    """Look at the wing from above and aside; closer, at the flow beside its left edge."""
+    at = WING_NEAR if zoom > 1 else WING_WHOLE
+    eye = tuple(e - w + a for e, w, a in zip(WING_EYE, WING_WHOLE, at, strict=True))
+    scale = WING_HALF_HEIGHT * max(1.0, 1.45 * size[1] / size[0]) / zoom
+    position = (eye[0], eye[1], eye[2])
+    camera = Camera(position, at, (0.0, 0.0, 1.0), parallel=True, parallel_scale=scale)
+    return View(bench, bench.shuttle, camera, size)
+
+
+def grey(value: Floats, colour: Any = SURFACE_GREY, **settings: Any) -> Bytes:
     """Turn values (H, W), NaN off the surface, into grey (H, W, 3); white where there is none."""
     inside = ~np.isnan(value)
     result = np.ones((*value.shape, 3))

@@ -6,15 +6,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import ndimage
 
-from flowtex.trace.slices import TraceSlices
+from flowtex._util.array_types import Floats
+from flowtex.trace import TraceSlices
 
-__all__ = ["Texels", "error_in_texels"]
-
-Floats = NDArray[np.float64]
+__all__ = ["TexelDensity", "error_in_texels"]
 
 
-class Texels:
-    """How many texels of the noise a cell has, anywhere.
+class TexelDensity:
+    """Texels of the noise per cell, anywhere on the surface.
 
     Parameters
     ----------
@@ -26,7 +25,7 @@ class Texels:
     slices
         The slices whose errors are to be judged.
     periodic
-        Whether the (j, i) axis goes around. It decides what counts beyond the border, when there
+        Whether the (j, i) axis is periodic. It decides what counts beyond the border, when there
         are texels for each entry.
 
     Raises
@@ -38,40 +37,40 @@ class Texels:
     def __init__(
         self, texels: ArrayLike, slices: TraceSlices, periodic: tuple[bool, bool] = (False, False)
     ) -> None:
-        given = np.asarray(texels, dtype=float)
+        density = np.asarray(texels, dtype=float)
         whole = (*slices.shape, 2)
-        if given.shape not in ((), (2,), whole):
-            msg = f"texels has shape {given.shape}; expected one number, two, or {whole}"
+        if density.shape not in ((), (2,), whole):
+            msg = f"texels has shape {density.shape}; expected one number, two, or {whole}"
             raise ValueError(msg)
-        if not (np.isfinite(given) & (given > 0)).all():
+        if not (np.isfinite(density) & (density > 0)).all():
             msg = (
-                f"texels goes from {given.min():g} to {given.max():g}; expected positive numbers "
-                "of texels per cell"
+                f"texels goes from {density.min():g} to {density.max():g}; expected positive "
+                "numbers of texels per cell"
             )
             raise ValueError(msg)
-        self.even = given.shape != whole
-        self._nodal = np.broadcast_to(given, whole)
-        ends = slices.nodes[-1, -1] - slices.nodes[0, 0]
+        self.even = density.shape != whole
+        self._nodal = np.broadcast_to(density, whole)
+        size = slices.nodes[-1, -1] - slices.nodes[0, 0]
         self._last = np.array(slices.shape[::-1]) - 1
-        self._spacing = np.where(ends > 0, ends, 1.0) / np.maximum(self._last, 1)
+        self._spacing = np.where(size > 0, size, 1.0) / np.maximum(self._last, 1)
         self._origin = slices.nodes[0, 0]
         self._nodes = slices.nodes
         self._periodic = np.array(periodic[::-1])
 
     def most(self, slices: TraceSlices) -> Floats:
-        """Most texels per cell around any place that the paths come to, (J, I, 2)."""
+        """Most texels per cell around any position of the paths, (J, I, 2)."""
         if self.even:
             return self._nodal
         around = ndimage.maximum_filter(self._nodal, (3, 3, 1), mode="nearest")
         result = around.copy()
         for data in _sides(slices):
-            for moved in data.reshape(-1, *result.shape):
-                i, j = np.moveaxis(np.rint(self._entry(moved)).astype(np.intp), -1, 0)
+            for offset in data.reshape(-1, *result.shape):
+                i, j = np.moveaxis(np.rint(self._entry(offset)).astype(np.intp), -1, 0)
                 np.maximum(result, around[j, i], out=result)
         return result
 
     def at(self, displacement: NDArray[np.floating]) -> Floats:
-        """Texels per cell where displacements (J, I, 2) lead, (J, I, 2)."""
+        """TexelDensity per cell where displacements (J, I, 2) lead, (J, I, 2)."""
         if self.even:
             return self._nodal
         i, j = np.moveaxis(self._entry(displacement), -1, 0)
@@ -82,11 +81,11 @@ class Texels:
         return np.stack(parts, axis=-1)
 
     def _entry(self, displacement: NDArray[np.floating]) -> Floats:
-        """Places among the entries, (J, I, 2) as (i, j), inside of the first and the last."""
-        moved = np.nan_to_num(displacement.astype(float), nan=0.0, posinf=1e9, neginf=-1e9)
-        x = (self._nodes + moved - self._origin) / self._spacing
-        turned = np.mod(x, np.maximum(self._last, 1))
-        return np.asarray(np.clip(np.where(self._periodic, turned, x), 0, self._last))
+        """Positions in entries, (J, I, 2) as (i, j), between the first and the last."""
+        offset = np.nan_to_num(displacement.astype(float), nan=0.0, posinf=1e9, neginf=-1e9)
+        x = (self._nodes + offset - self._origin) / self._spacing
+        wrapped = np.mod(x, np.maximum(self._last, 1))
+        return np.asarray(np.clip(np.where(self._periodic, wrapped, x), 0, self._last))
 
 
 def error_in_texels(
@@ -105,14 +104,14 @@ def error_in_texels(
     slices, other
         The true slices and those to be judged, of one shape.
     texels, periodic
-        As for :class:`Texels`.
+        As for :class:`TexelDensity`.
 
     Returns
     -------
     float
         Infinite where an entry that is not finite differs.
     """
-    measure = Texels(texels, slices, periodic)
+    measure = TexelDensity(texels, slices, periodic)
     worst = 0.0
     for true, judged in zip(_sides(slices), _sides(other), strict=True):
         shape = (-1, *slices.shape, 2)

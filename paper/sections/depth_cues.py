@@ -5,21 +5,19 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from flowtex._util.array_types import Bools, Floats
+from flowtex.camera import Camera
 from flowtex.examples import double_gyre_velocity
 from flowtex.field import FlowField
-from flowtex.rendering.cpu import Camera
 from paper import measures
 from paper.bench import PAPER, Bench
-from paper.findings import Block, Claim, Finding, Panel, Plate, Table
+from paper.findings import Block, Claim, Finding, Panel, Plate, Section, Table
 from paper.references import ImageSpace
-from paper.registry import Section
-from paper.shots import Shot, tone
+from paper.views import View, grey
 
 __all__ = ["SECTIONS"]
 
-Floats = NDArray[np.float64]
 
 #: Texels of the noise for each pixel of the picture's width: few enough that near by one covers
 #: several pixels, as otherwise mip levels bring all grains to the size of a pixel.
@@ -37,53 +35,53 @@ def _plane() -> FlowField:
     return FlowField.from_arrays(points, flow, periodic="", name="plane")
 
 
-def _view(bench: Bench) -> Shot:
+def _view(bench: Bench) -> View:
     size = bench.pick((440, 300), (220, 150))
-    camera = Camera((-1.15, 1.0, 0.8), (1.6, 1.0, 0.0), (0.0, 0.0, 1.0), size, view_angle=38.0)
-    return Shot(bench, bench.once("plane", _plane), camera)
+    camera = Camera((-1.15, 1.0, 0.8), (1.6, 1.0, 0.0), (0.0, 0.0, 1.0), view_angle=38.0)
+    return View(bench, bench.once("plane", _plane), camera, size)
 
 
-def _resolution(shot: Shot) -> int:
-    return round(TEXELS * shot.camera.size[0])
+def _resolution(view: View) -> int:
+    return round(TEXELS * view.size[0])
 
 
-def _bands(shot: Shot) -> dict[str, NDArray[np.bool_]]:
+def _bands(view: View) -> dict[str, Bools]:
     """Pixels near by and far off, by their distance along the plane."""
-    far = shot.position[..., 0]
-    low, high = np.quantile(far[shot.mask], (NEAR, 1 - FAR))
+    far = view.position[..., 0]
+    low, high = np.quantile(far[view.mask], (NEAR, 1 - FAR))
     with np.errstate(invalid="ignore"):
-        return {"near": shot.mask & (far <= low), "far": shot.mask & (far >= high)}
+        return {"near": view.mask & (far <= low), "far": view.mask & (far >= high)}
 
 
-def _noises(bench: Bench, shot: Shot) -> dict[str, Floats]:
+def _noises(bench: Bench, view: View) -> dict[str, Floats]:
     """Draw the noise by itself, before it is advected."""
-    image = ImageSpace(shot.camera, shot.field, blend=1.0, seed=bench.seed)
-    fine = _resolution(shot)
+    image = ImageSpace(view.camera, view.size, view.field, blend=1.0, seed=bench.seed)
+    fine = _resolution(view)
     return {
         "image space": image.frame(),
-        "the paper's texture": shot.picture(**{**PAPER, "samples": 1, "resolution": fine}).value,
-        "default": shot.picture(samples=1).value,
-        "default, fixed grain": shot.picture(samples=1, fixed_grain=True, resolution=fine).value,
+        "the paper's texture": view.picture(**{**PAPER, "samples": 1, "resolution": fine}).value,
+        "default": view.picture(samples=1).value,
+        "default, fixed grain": view.picture(samples=1, fixed_grain=True, resolution=fine).value,
     }
 
 
-def _advected(bench: Bench, shot: Shot) -> dict[str, Floats]:
-    image = ImageSpace(shot.camera, shot.field, seed=bench.seed)
-    fine = _resolution(shot)
+def _advected(bench: Bench, view: View) -> dict[str, Floats]:
+    image = ImageSpace(view.camera, view.size, view.field, seed=bench.seed)
+    fine = _resolution(view)
     values = image.frames(bench.pick(40, 25))
     return {
         "image space": (values - np.nanmean(values)) / np.nanstd(values),
-        "the paper's texture": shot.picture(**{**PAPER, "samples": 25, "resolution": fine}).value,
-        "default": shot.picture().value,
-        "default, fixed grain": shot.picture(fixed_grain=True, resolution=fine).value,
+        "the paper's texture": view.picture(**{**PAPER, "samples": 25, "resolution": fine}).value,
+        "default": view.picture().value,
+        "default, fixed grain": view.picture(fixed_grain=True, resolution=fine).value,
     }
 
 
 def _depth(bench: Bench) -> Finding:
-    shot = _view(bench)
-    bands = _bands(shot)
+    view = _view(bench)
+    bands = _bands(view)
     figures: dict[str, dict[str, float]] = {}
-    for name, values in _noises(bench, shot).items():
+    for name, values in _noises(bench, view).items():
         near, far = (measures.local_grain(values, mask) for mask in bands.values())
         figures[name] = {
             "near": float(np.sqrt(near.along * near.across)),
@@ -93,13 +91,13 @@ def _depth(bench: Bench) -> Finding:
         figures[name]["near_over_far"] = figures[name]["near"] / figures[name]["far"]
     panels = [
         Panel(
-            tone(values),
+            grey(values),
             f"{name.capitalize()}: near grains {figures[name]['near_over_far']:.2f} "
             f"times far ones; far ones {figures[name]['flattened']:.2f} times as wide as high.",
         )
-        for name, values in _advected(bench, shot).items()
+        for name, values in _advected(bench, view).items()
     ]
-    rows = [(name, *found.values()) for name, found in figures.items()]
+    rows = [(name, *row.values()) for name, row in figures.items()]
     head = ("noise", "grain near, px", "grain far, px", "far: width over height", "near over far")
     blocks: list[Block] = [
         Plate(panels[:2], ""),

@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import Parameter
 
 from flowtex import examples
-from flowtex.cli.checks import check_colours, check_image, need_app, need_opengl
+from flowtex.cli.checks import check_colours, check_image, require_app, require_opengl
 from flowtex.cli.console import announcer
 from flowtex.cli.options import (
     FLAT,
-    DrawOptions,
-    FieldOptions,
-    ServeOptions,
+    DrawFlags,
+    FieldFlags,
+    ServeFlags,
     SettingFlags,
     UsageError,
-    given,
-    read,
+    load_field,
+    settings_from,
 )
 from flowtex.examples import NAMES
 
@@ -32,8 +32,8 @@ FIRST_LOOKS: dict[str, tuple[float, tuple[float, ...] | None]] = {
     "cylinder": (3.2, (4.0, 0.0)),
     "airfoil": (6.0, (0.5, 0.0)),
 }
-#: Options that make another field of a file; the others choose a part of it.
-MAKING = ("periodic", "time", "sign_free")
+#: Options that change the field of a file; the others choose a part of it.
+FIELD_OPTIONS = ("periodic", "time", "sign_free")
 
 FILE = Annotated[
     Path,
@@ -46,16 +46,16 @@ FILE = Annotated[
 def demo(
     *,
     example: Annotated[str, Parameter(help=f"Which flow: {', '.join(NAMES)}.")] = "cylinder",
-    page: Annotated[ServeOptions | None, FLAT] = None,
+    page: Annotated[ServeFlags | None, FLAT] = None,
     settings: Annotated[SettingFlags | None, FLAT] = None,
 ) -> int:
     """Show the examples on a page in the browser."""
     if example not in NAMES:
         msg = f"there is no example {example!r}; there are {', '.join(NAMES)}"
         raise UsageError(msg)
-    chosen = given(settings)
-    need_opengl()
-    need_app()
+    options = settings_from(settings)
+    require_opengl()
+    require_app()
     from flowtex.app import Library
     from flowtex.field.source import FlowSource
 
@@ -70,64 +70,64 @@ def demo(
         looks=FIRST_LOOKS,
     )
     zoom, focus = FIRST_LOOKS.get(example, (1.0, None))
-    return _serve(library, page, {**chosen, "zoom": zoom, "focus": focus})
+    return _serve(library, page, {**options, "zoom": zoom, "focus": focus})
 
 
 def show(
     *files: FILE,
-    which: Annotated[FieldOptions | None, FLAT] = None,
-    draw: Annotated[DrawOptions | None, FLAT] = None,
-    page: Annotated[ServeOptions | None, FLAT] = None,
+    flow: Annotated[FieldFlags | None, FLAT] = None,
+    draw: Annotated[DrawFlags | None, FLAT] = None,
+    page: Annotated[ServeFlags | None, FLAT] = None,
     settings: Annotated[SettingFlags | None, FLAT] = None,
 ) -> int:
     """Show a file: in a window, or where there is no display on a page.
 
     Several files, or a folder, are shown on a page where one can be chosen.
     """
-    draw = draw or DrawOptions()
-    options = {**draw.look(), **given(settings)}
+    draw = draw or DrawFlags()
+    options = {**draw.arguments(), **settings_from(settings)}
     size = draw.pixels()
     check_image(options)
-    need_opengl()
-    from flowtex import diagnostics as doctor
+    require_opengl()
+    from flowtex import diagnostics
 
-    on_page = page is not None or not doctor.has_display()
+    on_page = page is not None or not diagnostics.has_display()
     if on_page or len(files) != 1 or files[0].is_dir():
-        return _show_page(files, which, page, options)
-    field = read(files[0], which)
+        return _show_page(files, flow, page, options)
+    field = load_field(files[0], flow)
     check_colours(field, options)
-    from flowtex.display import show
+    from flowtex import show as show_window
 
-    show(field, size=size, **options)
+    show_window(field, size=size, **options)
     return 0
 
 
 def _show_page(
     files: tuple[Path, ...],
-    which: FieldOptions | None,
-    page: ServeOptions | None,
+    flow: FieldFlags | None,
+    page: ServeFlags | None,
     options: dict[str, Any],
 ) -> int:
-    need_app()
+    require_app()
     from flowtex.app import Library
 
     if not files:
         msg = "there is no file to show; name one, or a folder, or try `flowtex demo`"
         raise UsageError(msg)
-    chosen = which.given() if which is not None else {}
-    if len(files) == 1 and files[0].is_file() and any(name in chosen for name in MAKING):
-        return _serve(Library.of(read(files[0], which)), page, options)
-    if not_here := [name for name in MAKING if name in chosen]:
-        msg = f"--{not_here[0].replace('_', '-')} goes with one file, not with several or a folder"
+    choice = (flow or FieldFlags()).arguments()
+    if len(files) == 1 and files[0].is_file() and any(name in choice for name in FIELD_OPTIONS):
+        return _serve(Library.of(load_field(files[0], flow)), page, options)
+    if misplaced := [name for name in FIELD_OPTIONS if name in choice]:
+        msg = f"--{misplaced[0].replace('_', '-')} goes with one file, not with several or a folder"
         raise UsageError(msg)
-    return _serve(Library.of(*files), page, {**options, **chosen})
+    return _serve(Library.of(*files), page, {**options, **choice})
 
 
-def _serve(library: Library, page: ServeOptions | None, options: dict[str, Any]) -> int:
+def _serve(library: Library, page: ServeFlags | None, options: dict[str, Any]) -> int:
     from flowtex.app import serve
     from flowtex.app.flow_app import first_choice
 
-    page = page or ServeOptions()
+    page = page or ServeFlags()
     field = library.field(*first_choice(library, options))
     if "scalars" in options:
         check_colours(field, options)

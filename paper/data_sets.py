@@ -1,4 +1,4 @@
-"""The flows of the paper: its data where it can be had, and flows of the same kind where not."""
+"""The paper's data sets where they can be had, flows of the same kind where not, their sizes."""
 
 from __future__ import annotations
 
@@ -6,21 +6,40 @@ import os
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from flowtex import examples
 from flowtex.field import FlowField
 
-__all__ = ["RINGS", "gyre", "post", "shuttle", "stretched", "vortex"]
+__all__ = [
+    "KILO",
+    "MEGA",
+    "PAIR_BYTES",
+    "PUBLISHED",
+    "VECTOR_BYTES",
+    "gyre",
+    "post",
+    "shuttle",
+    "stretched",
+    "vortex",
+]
 
-Floats = NDArray[np.float64]
+#: Nodes, time steps, kilobytes of the data and megabytes of the slices, as the paper has them.
+PUBLISHED: dict[str, tuple[tuple[int, int], int, float, float]] = {
+    "post": ((32, 76), 1, 28.5, 1.00),
+    "shuttle": ((52, 62), 1, 37.7, 1.32),
+    "vortex": ((100, 100), 31, 3747.0, 21.8),
+}
+KILO, MEGA = 1024.0, 1024.0**2
+#: Bytes of two coordinates, and of three components of velocity, in single precision.
+PAIR_BYTES, VECTOR_BYTES = 8, 12
+
 
 #: Rings of the post that the paper has; the public file has six more outside.
 RINGS = 32
 #: Plane of the post that is shown.
 PLANE = "k=20"
-#: How far the grid of the gyre bulges, and how much its rows are crowded to one side.
-BULGE, CROWDED = 0.12, 1.3
+#: How far the grid of the gyre bulges, and the power that crowds its rows to one side.
+BULGE, CROWDING = 0.12, 1.3
 
 
 def post(folder: Path | None = None) -> FlowField | None:
@@ -61,7 +80,7 @@ def gyre(rows: int = 60, columns: int = 120) -> FlowField:
     """Return the steady double gyre on a sheared grid whose cells differ."""
     s, t = np.meshgrid(np.linspace(0, 1, columns), np.linspace(0, 1, rows))
     x = 2 * (s + 0.06 * np.sin(2 * np.pi * s)) + BULGE * np.sin(np.pi * t)
-    y = t**CROWDED
+    y = t**CROWDING
     points = np.stack([x, y], axis=-1)
     return FlowField.from_arrays(
         points, examples.double_gyre_velocity(points, 0.0, epsilon=0.0), name="double gyre"

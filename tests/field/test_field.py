@@ -86,6 +86,12 @@ def test_a_steady_field_takes_scalars_with_one_step() -> None:
     assert field.scalars["p"].shape == (1, 5, 7)
 
 
+def test_the_size_is_that_of_the_arrays() -> None:
+    p = flat()
+    field = FlowField.from_arrays(p, ones(p), scalars={"a": p[..., 0]})
+    assert field.nbytes == field.valid.size * (3 + 3 + 1) * 8 + field.valid.size
+
+
 def test_nothing_given_is_changed_or_shared() -> None:
     points, velocity = flat(), ones(flat(), 2)
     velocity[0, 2, 2] = np.nan
@@ -511,8 +517,8 @@ def test_positions_that_were_filled_in_stay_marked() -> None:
     velocity = np.stack([velocity, velocity])
     field = FlowField.from_arrays(points, velocity)
     for part in (field, field.at_step(1), field.downsample(2)):
-        assert part.placed is not None
-        assert np.argwhere(~part.placed).tolist() == np.argwhere(~part.valid).tolist()
+        assert part.has_position is not None
+        assert np.argwhere(~part.has_position).tolist() == np.argwhere(~part.valid).tolist()
         assert np.isfinite(part.points).all()
         size = part.points[0, 1, 0]
         u = part.index_velocity.components[:, part.valid]

@@ -1,0 +1,178 @@
+"""``flowtex render``, ``movie`` and ``export``: a file as a picture, a movie or a page."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from flowtex.cli.checks import (
+    check_colours,
+    check_image,
+    check_movie_file,
+    check_page_file,
+    check_picture_file,
+    require_opengl,
+)
+from flowtex.cli.console import describe, say
+from flowtex.cli.options import (
+    FILE,
+    FLAT,
+    PICTURE,
+    FieldFlags,
+    FrameFlags,
+    LookFlags,
+    SettingFlags,
+    UsageError,
+    load_field,
+    settings_from,
+)
+
+__all__ = ["export", "movie", "render"]
+
+#: Share of the flow that may leave the surface before it is said.
+NOTABLE_LOSS = 0.01
+
+
+def render(
+    file: FILE,
+    /,
+    *,
+    output: Annotated[
+        Path,
+        Parameter(name=["--output", "-o"], help="Picture to write; its suffix is its format."),
+    ],
+    clock: Annotated[
+        float, Parameter(group=PICTURE, help="Moment of the streaming (--motion), in seconds.")
+    ] = 0.0,
+    flow: Annotated[FieldFlags | None, FLAT] = None,
+    frame: Annotated[FrameFlags | None, FLAT] = None,
+    settings: Annotated[SettingFlags | None, FLAT] = None,
+) -> int:
+    """Draw a file as a picture."""
+    start = time.perf_counter()
+    frame = frame or FrameFlags()
+    options, size = {**frame.arguments(), **settings_from(settings), "clock": clock}, frame.pixels()
+    check_picture_file(output)
+    check_image(options)
+    require_opengl()
+    field = load_field(file, flow)
+    check_colours(field, options)
+    from PIL import Image
+
+    from flowtex import render as draw
+
+    pixels = draw(field, size=size, **options)
+    with _writing(output):
+        Image.fromarray(pixels).save(output)
+    lost = (
+        f", {field.normal_share:.0%} of the flow leaves the surface"
+        if field.normal_share > NOTABLE_LOSS
+        else ""
+    )
+    say(
+        f"[bold]{output}[/]  {describe(field)}{lost}  "
+        f"[dim]{size[0]} × {size[1]}, {time.perf_counter() - start:.1f} s[/]"
+    )
+    return 0
+
+
+def movie(
+    file: FILE,
+    /,
+    *,
+    output: Annotated[
+        Path, Parameter(name=["--output", "-o"], help="File to write: .mp4, .gif or .webp.")
+    ],
+    seconds: Annotated[
+        float | None,
+        Parameter(group=PICTURE, help="Length; a steady flow begins again after as many."),
+    ] = None,
+    fps: Annotated[
+        float | None,
+        Parameter(group=PICTURE, help="Frames in a second. [default: 30, and 20 in a GIF]"),
+    ] = None,
+    quality: Annotated[
+        int, Parameter(group=PICTURE, help="1 to 100: the more, the truer and the larger.")
+    ] = 80,
+    flow: Annotated[FieldFlags | None, FLAT] = None,
+    frame: Annotated[FrameFlags | None, FLAT] = None,
+    settings: Annotated[SettingFlags | None, FLAT] = None,
+) -> int:
+    """Write a file as a movie: a loop without a seam, or all times of a flow that varies."""
+    start = time.perf_counter()
+    frame = frame or FrameFlags()
+    options, size = {**frame.arguments(), **settings_from(settings)}, frame.pixels()
+    check_movie_file(output, size, fps, quality)
+    check_image(options)
+    require_opengl()
+    field = load_field(file, flow)
+    check_colours(field, options)
+    from flowtex import movie as write_movie
+
+    with _writing(output):
+        result = write_movie(
+            field, output, size=size, seconds=seconds, fps=fps, quality=quality, **options
+        )
+    loop = ", a loop without a seam" if result.closed else ""
+    say(
+        f"[bold]{output}[/]  {describe(field)}{loop}  "
+        f"[dim]{size[0]} × {size[1]}, {result.frames} frames in {result.seconds:g} s, "
+        f"{result.nbytes / 1e6:.1f} MB, {time.perf_counter() - start:.1f} s[/]"
+    )
+    return 0
+
+
+def export(
+    file: FILE,
+    /,
+    *,
+    output: Annotated[
+        Path, Parameter(name=["--output", "-o"], help="Page to write, such as page.html.")
+    ],
+    steps: Annotated[
+        int | None,
+        Parameter(group=PICTURE, help="Time steps that the page has; all of them by default."),
+    ] = None,
+    title: Annotated[
+        str | None, Parameter(group=PICTURE, help="Title of the page; the file's name by default.")
+    ] = None,
+    flow: Annotated[FieldFlags | None, FLAT] = None,
+    look: Annotated[LookFlags | None, FLAT] = None,
+    settings: Annotated[SettingFlags | None, FLAT] = None,
+) -> int:
+    """Write a file as one page that draws in any browser, without a server or a network."""
+    start = time.perf_counter()
+    options = {**(look or LookFlags()).arguments(), **settings_from(settings)}
+    check_page_file(output)
+    check_image(options)
+    field = load_field(file, flow)
+    check_colours(field, options)
+    if steps is not None and steps < 1:
+        msg = f"--steps is {steps}; expected 1 to {len(field.times)}, the steps of the file"
+        raise UsageError(msg)
+    from flowtex.web.export import export as write_page
+
+    def announce(size: int, count: int) -> None:
+        some = "" if count == len(field.times) else f", {count} of them"
+        say(f"{describe(field)}{some}: about {size / 1e6:.1f} MB")
+
+    with _writing(output):
+        page = write_page(field, output, steps=steps, title=title, announce=announce, **options)
+    seconds = time.perf_counter() - start
+    say(f"[bold]{output}[/]  [dim]{page.nbytes / 1e6:.2f} MB, {seconds:.1f} s[/]")
+    return 0
+
+
+@contextmanager
+def _writing(output: Path) -> Iterator[None]:
+    """Turn what the disk refuses into an error that names the file."""
+    try:
+        yield
+    except OSError as error:
+        msg = f"{output}: cannot be written ({error.strerror or error})"
+        raise UsageError(msg) from error

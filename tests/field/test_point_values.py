@@ -1,0 +1,63 @@
+"""The values of a field at a point of its surface."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from flowtex import FlowField
+from flowtex.field.point_values import values_at
+
+
+def test_values_are_linear_in_space_and_time() -> None:
+    y, x = np.mgrid[0:4.0, 0:5.0]
+    points = np.stack([x, y], axis=-1)
+    steps = np.stack([np.stack([1 + x + t, 2 * y], axis=-1) for t in (0.0, 10.0)])
+    warmth = 3 * x - y
+    field = FlowField.from_arrays(
+        points,
+        steps,
+        times=[1.0, 3.0],
+        scalars={"warmth": warmth, "tide": np.stack([0 * x, 0 * x + 4])},
+        length_unit="m",
+        time_unit="s",
+    )
+    got = values_at(field, (1.25, 2.5), 1.5)
+    assert got.position == pytest.approx([2.5, 1.25, 0])
+    assert got.velocity == pytest.approx([1 + 2.5 + 2.5, 2.5, 0])
+    assert got.scalars == pytest.approx({"warmth": 7.5 - 1.25, "tide": 1.0})
+    assert (got.time, got.speed_unit) == (1.5, "m/s")
+    assert values_at(field, (1, 2)).time == 3.0
+    assert values_at(field, (1, 2), 1.0).speed == pytest.approx(np.hypot(3, 2))
+    with pytest.raises(ValueError, match="time is 4; expected 1 to 3"):
+        values_at(field, (1, 2), 4)
+
+
+@pytest.mark.parametrize(
+    ("length", "time", "speed"),
+    [
+        ("m", "s", "m/s"),
+        ("", "s", ""),
+        ("m", "", ""),
+        ("chords", "chords / free-stream speed", "free-stream speed"),
+        ("m", "1/Hz", "m / (1/Hz)"),
+    ],
+)
+def test_the_unit_of_speed(length: str, time: str, speed: str) -> None:
+    y, x = np.mgrid[0:3.0, 0:3.0]
+    field = FlowField.from_arrays(
+        np.stack([x, y], -1), np.ones((3, 3, 2)), length_unit=length, time_unit=time
+    )
+    assert values_at(field, (1, 1)).speed_unit == speed
+
+
+def test_a_vector_without_a_sign_does_not_cancel() -> None:
+    y, x = np.mgrid[-1:1:5j, -1:1:5j]
+    half = 0.5 * np.arctan2(y, x)
+    points = np.stack([x, y], axis=-1)
+    field = FlowField.from_arrays(
+        points, np.stack([np.cos(half), np.sin(half)], -1), sign_free=True, periodic=""
+    )
+    for j in np.linspace(0.1, 3.9, 7):
+        got = values_at(field, (j, 0.3))
+        assert np.linalg.norm(got.velocity) > 0.65
