@@ -5,11 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import ndimage
 
 from flowtex._util.array_types import Floats
 from flowtex.field import FlowField
-from flowtex.field.interpolation import along_line
+from flowtex.field.interpolation import along_line, between_nodes
 from flowtex.trace import TraceSlices, paths, trace
 
 __all__ = ["Errors", "position_errors", "step_slices"]
@@ -163,12 +162,9 @@ def _looked_up(slices: TraceSlices, start: Floats) -> Floats:
     """Positions (M, N, 2) from the displacements of the entries around, linear between them."""
     first, last = slices.nodes[0, 0], slices.nodes[-1, -1]
     spread = (last - first) / (np.array(slices.shape[::-1]) - 1)
-    i, j = ((start - first) / spread).T
+    index = (start - first) / spread
     displacements = [
-        [
-            ndimage.map_coordinates(data[..., axis].astype(float), [j, i], order=1, mode="nearest")
-            for axis in range(2)
-        ]
+        [between_nodes(data[..., axis], index) for axis in range(2)]
         for data in slices.displacement[0]
     ]
     return np.asarray(start + np.moveaxis(np.array(displacements), 1, 2))

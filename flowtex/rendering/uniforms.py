@@ -15,7 +15,15 @@ from numpy.typing import NDArray
 from flowtex.settings import Settings
 from flowtex.textures import PaperTextures, TextureSet
 
-__all__ = ["ViewState", "finest_cell", "uniforms", "variants"]
+__all__ = [
+    "ANCHOR_RANGE",
+    "LIGHT",
+    "ViewState",
+    "client_constants",
+    "finest_cell",
+    "uniforms",
+    "variants",
+]
 
 #: Octaves between the finest cell of the noise and the extent of the surface.
 OCTAVES = 30
@@ -25,6 +33,12 @@ SNAP = 9
 WAVE = 96.0
 #: Coarse part of the clock, in base periods, that times a power of two stays exact.
 COARSE = 2.0**-12
+
+#: Heights of the view within which positions may be counted from another point than its middle.
+ANCHOR_RANGE = 8.0
+
+#: Ambient and diffuse light: dark sides stay bright enough to read the texture there.
+LIGHT = (0.3, 0.8)
 
 KERNELS = ("hann", "box", "ramp")
 
@@ -76,6 +90,19 @@ def variants(textures: TextureSet, *, unsteady: bool) -> frozenset[str]:
     if unsteady:
         chosen.add("FLOWTEX_UNSTEADY")
     return frozenset(chosen)
+
+
+def client_constants() -> dict[str, Any]:
+    """Numbers by which a client computes the uniforms itself, for JSON."""
+    return {
+        "octaves": OCTAVES,
+        "snap": SNAP,
+        "wave": WAVE,
+        "coarse": COARSE,
+        "kernels": list(KERNELS),
+        "anchorRange": ANCHOR_RANGE,
+        "light": list(LIGHT),
+    }
 
 
 def finest_cell(extent: float) -> float:

@@ -15,12 +15,11 @@ uniform sampler2D u_cmap;  // 256 colours
 uniform bool u_mapped;     // colour by the scalar, or one colour for all
 uniform vec3 u_colour;
 uniform bool u_lit;
+uniform vec2 u_light;      // ambient and diffuse: dark sides stay bright enough to read the texture
 uniform vec3 u_toEye;      // way to the light, which is the camera's own
 uniform vec3 u_ground;     // behind the surface
 uniform float u_opacity;
 
-// Ambient and diffuse light: dark sides stay bright enough to read the texture there.
-const vec2 flowtexLight = vec2(0.3, 0.8);
 // Where there is no value: nodes without one are given one far below all others.
 const vec3 flowtexNothing = vec3(0.663);
 
@@ -59,7 +58,7 @@ void main()
 #else
     float facing = abs(dot(normalize(flowtexNormalOut), u_toEye));
 #endif
-    colour *= min(flowtexLight.x + flowtexLight.y * facing, 1.0);
+    colour *= min(u_light.x + u_light.y * facing, 1.0);
   }
   // One layer before the ground: no order of drawing to keep.
   flowtexOut = vec4(mix(u_ground, colour, u_opacity), 1.0);

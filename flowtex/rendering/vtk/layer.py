@@ -22,7 +22,7 @@ from vtkmodules.util.vtkConstants import VTK_OBJECT
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 from flowtex.rendering.shader_text import compose
-from flowtex.rendering.uniforms import ViewState, uniforms, variants
+from flowtex.rendering.uniforms import ANCHOR_RANGE, ViewState, uniforms, variants
 from flowtex.rendering.vtk.gpu import GPUTexture
 from flowtex.rendering.vtk.mesh import COORDINATE, NOISE, NORMAL, POSITION, set_position
 from flowtex.settings import Settings
@@ -32,9 +32,6 @@ __all__ = ["FlowLayer"]
 
 #: Under this name PyVista keeps who put a replacement in.
 OWNER = "flowtex"
-
-#: Heights of the window within which positions may be counted from another point than its middle.
-NEAR = 8.0
 
 #: Shader, the mark of VTK's that our text goes before, and our file.
 REPLACEMENTS = (
@@ -233,9 +230,9 @@ class FlowLayer:
         """Count positions from near the focus once their digits do not do from elsewhere."""
         geometry = self._textures.geometry
         there = geometry.local(self.view.focus)
-        if np.abs(there - self.view.anchor).max() <= NEAR * seen:
+        if np.abs(there - self.view.anchor).max() <= ANCHOR_RANGE * seen:
             return
-        near_middle = np.abs(there).max() <= NEAR * seen
+        near_middle = np.abs(there).max() <= ANCHOR_RANGE * seen
         self.view.anchor = np.zeros(3) if near_middle else there
         set_position(self._actor.mapper.dataset, geometry.position_from(self.view.anchor))
 
