@@ -11,8 +11,8 @@ import pyvista as pv
 from numpy.typing import NDArray
 
 import flowtex
-from flowtex.plotting.vtk_camera import look
-from flowtex.rendering.cpu import Camera, render
+from flowtex.plotting.vtk_camera import look, read_camera
+from flowtex.rendering.cpu import render
 from flowtex.textures import TextureSet
 from flowtex.trace import SliceStore
 
@@ -105,20 +105,7 @@ def _lines(field: flowtex.FlowField, options: Any, size: tuple[int, int], axis: 
         plotter.camera.parallel_projection = False
     else:
         look(plotter, field, zoom=options["zoom"], focus=options["focus"])
-    camera = plotter.camera
-    parallel = camera.parallel_scale if camera.parallel_projection else None
-    seen = render(
-        textures,
-        settings,
-        Camera(
-            position=camera.position,
-            focal_point=camera.focal_point,
-            up=camera.up,
-            size=size,
-            parallel_scale=parallel,
-            view_angle=camera.view_angle,
-        ),
-    )
+    seen = render(textures, settings, read_camera(plotter.camera), size)
     plotter.close()
     lines = (textures.geometry.rows, textures.geometry.columns)[axis]
     return np.asarray(seen.coordinate[..., 1 - axis] * lines.size - 0.5 - lines.before)

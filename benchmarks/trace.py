@@ -6,6 +6,7 @@ and compare with one 25-tap pass of rlic over the same number of nodes in the sa
 
 from __future__ import annotations
 
+import importlib
 import sys
 import time
 from collections.abc import Callable
@@ -18,9 +19,10 @@ import rlic
 from flowtex import FlowField, Settings, examples, trace
 from flowtex.textures import TextureSet
 from flowtex.trace import SliceStore
-from flowtex.trace import work as paths_of_one_call
 
 RUNS = 3
+#: The module, which the function of the same name hides.
+TRACE = importlib.import_module("flowtex.trace.trace")
 
 
 def best(function: Callable[[], Any], runs: int = RUNS) -> float:
@@ -44,14 +46,14 @@ def convolution(field: FlowField) -> float:
 def composing(field: FlowField) -> tuple[float, float]:
     """Return the times of a whole trace, and of what of it is composing."""
     spent: list[float] = []
-    original = paths_of_one_call.compose
+    original = TRACE.compose
 
     def timed(*arguments: Any, **options: Any) -> None:
         started = time.perf_counter()
         original(*arguments, **options)
         spent.append(time.perf_counter() - started)
 
-    paths_of_one_call.compose = timed
+    TRACE.compose = timed
     try:
         whole = []
         for _ in range(RUNS):
@@ -60,19 +62,19 @@ def composing(field: FlowField) -> tuple[float, float]:
             trace(field, progress=False)
             whole.append((time.perf_counter() - started, sum(spent)))
     finally:
-        paths_of_one_call.compose = original
+        TRACE.compose = original
     return min(whole)
 
 
 def fields(columns: list[int]) -> dict[str, Callable[[], FlowField]]:
     """Return the fields, by the name that the table gives them."""
-    made: dict[str, Callable[[], FlowField]] = {}
+    makers: dict[str, Callable[[], FlowField]] = {}
     for n in columns:
-        made[f"double gyre {n}"] = partial(examples.double_gyre_field, shape=(n, n))
-        made[f"airfoil {n}"] = partial(examples.airfoil_field, (n, n + 1))
-    made["cylinder, 31 steps"] = examples.cylinder_field
-    made["vortex, 31 steps"] = examples.vortex_field
-    return made
+        makers[f"double gyre {n}"] = partial(examples.double_gyre_field, shape=(n, n))
+        makers[f"airfoil {n}"] = partial(examples.airfoil_field, (n, n + 1))
+    makers["cylinder, 31 steps"] = examples.cylinder_field
+    makers["vortex, 31 steps"] = examples.vortex_field
+    return makers
 
 
 def say(line: str) -> None:

@@ -217,11 +217,11 @@ def _display() -> Check:
 
 
 def _shaders() -> Check:
-    from flowtex.rendering import shader_files
+    from flowtex.rendering import shaders
 
     remedy = "python -m pip install --force-reinstall --no-deps flowtex"
     try:
-        folder, names = shader_files.shader_folder(), shader_files.shader_names()
+        folder, names = shaders.shader_folder(), shaders.shader_names()
     except FileNotFoundError as error:
         return Check("Shaders", "fail", str(error), remedy)
     return Check("Shaders", "ok" if names else "fail", f"{len(names)} files in {folder}", remedy)

@@ -1,7 +1,7 @@
-"""The method read at one point of the surface: its path, its samples, and their sum.
+"""The method at one point of the surface: its path, its samples, and their sum.
 
 Everything comes from the NumPy renderer. It draws the one pixel as it draws all, with a look-up
-that writes down where it is asked, so what is told here is what is drawn.
+that records its samples, so that they are those of the picture.
 """
 
 from __future__ import annotations
@@ -11,18 +11,19 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from flowtex._util.array_types import Floats, Indices
+from flowtex.camera import Camera
+from flowtex.field import Surface
 from flowtex.field.interpolation import bracket
-from flowtex.field.locate import locate, locator, surface_point
+from flowtex.field.locate import SurfacePoint, locate, locator, surface_point
 from flowtex.field.point_values import PointValues, values_at
-from flowtex.rendering.cpu import Camera
 from flowtex.rendering.cpu.fragments import Fragments
 from flowtex.rendering.cpu.levels import footprint, slice_level
-from flowtex.rendering.cpu.record import Kept, Recorder
+from flowtex.rendering.cpu.pixel import LoadedTextures, Recorder, camera_facing, cover_place
 from flowtex.rendering.cpu.render import slices_at, view_state
 from flowtex.rendering.cpu.shade import tone
-from flowtex.rendering.cpu.spot import facing, spot
 from flowtex.rendering.cpu.texture import Side, Summing
 from flowtex.rendering.uniforms import ViewState, uniforms
 from flowtex.scene import Scene
@@ -30,11 +31,9 @@ from flowtex.textures import TextureSet
 
 __all__ = ["PointValues", "Probe", "locate", "probe", "values_at"]
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.intp]
 
-#: Points of a path between two slices: it is a parabola there.
-BETWEEN = 12
+#: Points of a path between two slices, where it is a parabola.
+POINTS_BETWEEN_SLICES = 12
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,10 +74,10 @@ class Probe:
     weights
         Share of each sample in the mean, (K,); they sum to one.
     noise
-        Noise that each meets, (K,), of mean zero and deviation one; for a picture in its place
+        Noise at each, (K,), of mean zero and deviation one; for a picture in its place
         red, green and blue times opacity, and opacity, (K, 4).
     noise_coordinates
-        Where it is looked up in the noise texture, (K, 2) as (u, v), 0 to 1 across it; ``None``
+        Places of the samples in the noise texture, (K, 2) as (u, v), 0 to 1 across it; ``None``
         for noise that has no texture.
     level
         Level of detail: each is twice as coarse as the one before. For noise with a texture, its
@@ -90,7 +89,7 @@ class Probe:
     step
         Lag from the point to the next sample; NaN where nothing moves.
     gain
-        What the mean of the noise is multiplied by, so that contrast is the same everywhere.
+        Factor of the mean of the noise, so that contrast is the same everywhere.
     value
         The texture: ``gain * (weights @ noise)``, of mean zero and deviation one over a picture;
         (4,) for a picture in the place of the noise.
@@ -105,7 +104,7 @@ class Probe:
     lags: Floats
     points: Floats
     coordinates: Floats
-    slices: Ints
+    slices: Indices
     shares: Floats
     slice_lags: Floats
     slice_level: float
@@ -134,10 +133,11 @@ def probe(
     at: ArrayLike,
     *,
     pixel: float | Camera,
+    size: tuple[int, int] | None = None,
     clock: float = 0.0,
     density: float = 1.0,
 ) -> Probe:
-    """Read the method at a point of the surface.
+    """Return how the texture at a point of the surface comes about.
 
     The first call for new textures takes as long as a renderer takes to load them; the next ones
     take milliseconds.
@@ -151,14 +151,12 @@ def probe(
     pixel
         Width of a pixel on the surface at the point, in the mesh's units, seen straight on; or
         the camera of a picture, for the pixel of that picture which shows the point.
+    size
+        Width and height of the picture in pixels, for a camera.
     clock
         Clock of the streaming of a steady flow, in seconds.
     density
         Pixels drawn, along a side, for one that the settings speak of.
-
-    Returns
-    -------
-    Probe
 
     Raises
     ------
@@ -168,14 +166,26 @@ def probe(
     """
     surface = view.field.surface
     place = surface_point(surface, at)
-    camera = pixel if isinstance(pixel, Camera) else facing(surface, place, pixel)
+    camera, shape = _camera(surface, place, pixel, size)
     before, after, between = view.moment
     state = ViewState(between=between, clock=clock, density=density)
     state = view_state(view.textures, camera, state, (before, after))
     values = uniforms(view.textures, view.settings, state)
-    fragments = Fragments.of(view.textures, spot(surface, place, camera))
+    fragments = Fragments.of(view.textures, cover_place(surface, place, camera, shape))
     field_values = values_at(view.field, place.index, view.time)
     return _Pixel(view.textures, (before, after), fragments, values, field_values).probe()
+
+
+def _camera(
+    surface: Surface, place: SurfacePoint, pixel: float | Camera, size: tuple[int, int] | None
+) -> tuple[Camera, tuple[int, int]]:
+    """Camera and size of the picture that the pixel belongs to."""
+    if not isinstance(pixel, Camera):
+        return camera_facing(surface, place, pixel), (1, 1)
+    if size is None:
+        msg = "size is None; expected width and height of the camera's picture, in pixels"
+        raise ValueError(msg)
+    return pixel, size
 
 
 class _Pixel:
@@ -189,12 +199,12 @@ class _Pixel:
         values: Mapping[str, Any],
         field_values: PointValues,
     ) -> None:
-        kept = Kept.of(textures)
+        loaded = LoadedTextures.of(textures)
         self._field_values = field_values
         self._textures, self._values, self._fragments = textures, values, fragments
         self._level = slice_level(fragments.coordinate, values)
-        self._slices = slices_at(textures, steps, values, kept.mips)
-        self._lookup = Recorder(kept.make(fragments, values), values["u_samples"] + 2)
+        self._slices = slices_at(textures, steps, values, loaded.mips)
+        self._lookup = Recorder(loaded.make_lookup(fragments, values), values["u_samples"] + 2)
         paper = textures.paper is not None
         self._summing = Summing(self._slices, values, self._lookup, paper=paper)
         self._base = self._slices.layer(fragments.coordinate.value, 0, self._level)
@@ -202,14 +212,14 @@ class _Pixel:
         self._unit = float(self._base[0, 3]) * textures.unit / textures.pace
 
     def probe(self) -> Probe:
-        """Draw the pixel, and tell how."""
-        values, found = self._values, self._lookup
+        """Draw the pixel, and return how."""
+        values, recorder = self._values, self._lookup
         value = self._summing.texture(self._fragments.coordinate.value, self._level)[0]
         sides = list(self._sides(1))
-        lags = -np.concatenate(found.length) / float(sides[0].scale[0])
+        lags = -np.concatenate(recorder.length) / float(sides[0].scale[0])
         order = np.argsort(-lags)
         lags = lags[order] + 0.0
-        points, coordinates, noise = self._places(np.concatenate(found.displacement)[order])
+        points, coordinates, noise = self._places(np.concatenate(recorder.displacement)[order])
         knots = np.concatenate([[0.0], values["u_lags"]])
         m, shares = bracket(knots, np.abs(lags), side="left")
         path_lags, path = self._path(sides, knots, lags)
@@ -227,14 +237,14 @@ class _Pixel:
             shares=shares,
             slice_lags=knots * self._unit,
             slice_level=float(self._level[0]),
-            weights=found.weights[order],
-            noise=found.noise[order],
+            weights=recorder.weights[order],
+            noise=recorder.noise[order],
             noise_coordinates=noise,
-            level=float(found.level[0]),
+            level=float(recorder.level[0]),
             pixel=pixel,
             grain=grain,
             step=float(sides[0].step(np.zeros(1))[0]) * self._unit if moves else np.nan,
-            gain=found.gain,
+            gain=recorder.gain,
             value=float(value) if np.ndim(value) == 0 else np.asarray(value),
             path=path,
             path_lags=path_lags * self._unit,
@@ -249,8 +259,11 @@ class _Pixel:
 
     def _path(self, sides: list[Side], knots: Floats, samples: Floats) -> tuple[Floats, Floats]:
         """Lags in multiples of the unit, and points, of the whole path, with all its samples."""
+        number = np.arange((len(knots) - 1) * POINTS_BETWEEN_SLICES + 1)
         fine = np.interp(
-            np.arange((len(knots) - 1) * BETWEEN + 1) / BETWEEN, range(len(knots)), knots
+            number / POINTS_BETWEEN_SLICES,
+            range(len(knots)),
+            knots,
         )
         lags, displacements = [np.zeros(1)], [np.zeros((1, 3))]
         for one, many in zip(sides, self._sides(len(fine) + 1), strict=True):
@@ -279,8 +292,8 @@ class _Pixel:
         start, surface = self._field_values.position, geometry.field.surface
         if paper is None or noise is None:
             points = start + displacement @ geometry.frame
-            found = locator(geometry.field).nearest(points)[0] if coordinates else points
-            return points, found, None
+            nearest = locator(geometry.field).nearest(points)[0] if coordinates else points
+            return points, nearest, None
         at = noise.value + displacement[:, :2]
         here, there = (paper.index(where) for where in (noise.value, at))
         return start + surface.at(there) - surface.at(here), surface.wrap(there)[:, ::-1], at

@@ -21,8 +21,7 @@ from flowtex.field.interpolation import steps_around
 from flowtex.options import Appearance, FieldOptions, Options
 from flowtex.settings import TABLE, Affects, Settings, SettingsError
 from flowtex.textures import TextureSet
-from flowtex.textures.image_files import load_image
-from flowtex.textures.images import as_picture
+from flowtex.textures.images import as_picture, load_image
 from flowtex.trace import SliceStore, TraceSlices, shared_store
 
 __all__ = ["NO_IMAGE", "Scene", "share_field", "steps_of"]

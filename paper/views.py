@@ -13,10 +13,10 @@ import numpy as np
 from scipy import ndimage
 
 from flowtex._util.array_types import Bools, Bytes, Floats
+from flowtex.camera import Camera
 from flowtex.field import FlowField
-from flowtex.first_look import first_look
-from flowtex.rendering.cpu import Camera, LookupMaker, Picture, render, shade
-from flowtex.rendering.cpu.cover import cover
+from flowtex.rendering.cpu import LookupMaker, Picture, render, shade
+from flowtex.rendering.cpu.raster import cover
 from flowtex.rendering.uniforms import ViewState
 from flowtex.settings import Settings
 from paper import measures
@@ -43,6 +43,8 @@ class View:
     bench: Bench
     field: FlowField
     camera: Camera
+    #: Width and height of the picture in pixels.
+    size: tuple[int, int]
     step: int = 0
 
     def picture(
@@ -54,6 +56,7 @@ class View:
             self.bench.textures(self.field, values),
             values,
             self.camera,
+            self.size,
             view=ViewState(density=density),
             steps=(self.step, self.step),
             lookup=lookup,
@@ -67,20 +70,20 @@ class View:
         numpy.ndarray
             Mean values, (H, W).
         """
-        width, height = self.camera.size
-        fine = replace(self, camera=replace(self.camera, size=(width * times, height * times)))
+        width, height = self.size
+        fine = replace(self, size=(width * times, height * times))
         return measures.blocks(fine.picture(density=times, **settings).value, times)
 
     @cached_property
     def _surface(self) -> tuple[Bools, Floats, Floats]:
         """Pixels of the surface (H, W), their (i, j), (H, W, 2), and positions, (H, W, 3)."""
         surface = self.field.surface
-        coverage = cover(surface, self.camera)
+        coverage = cover(surface, self.camera, self.size)
         rows, columns = surface.shape
         nodes = np.stack(np.meshgrid(np.arange(columns), np.arange(rows)), axis=-1)
         nodal = np.concatenate([nodes, surface.points - surface.center], axis=-1)
         mixed, _, _ = coverage.mix(nodal.reshape(-1, 5))
-        width, height = self.camera.size
+        width, height = self.size
         flat = np.full((height * width, 5), np.nan)
         flat[coverage.pixel] = mixed
         image = flat.reshape(height, width, 5)
@@ -138,9 +141,9 @@ class View:
 
     def _screen(self, points: Floats, origin: Floats) -> Floats:
         """Pixels to the right and up, (..., 2), of points counted from an origin."""
-        matrix = self.camera.matrix(origin)
+        matrix = self.camera.matrix(self.size[0] / self.size[1], origin)
         clip = points @ matrix[:, :3].T + matrix[:, 3]
-        return np.asarray(clip[..., :2] / clip[..., 3:] * np.array(self.camera.size) / 2)
+        return np.asarray(clip[..., :2] / clip[..., 3:] * np.array(self.size) / 2)
 
     def streaks(self, value: Floats) -> measures.Streaks:
         """Direction of the texture against the flow."""
@@ -173,16 +176,8 @@ def view_of(
     zoom, focus, step
         How far in, on what point, and at which time step.
     """
-    look = first_look(field, size[0] / size[1], zoom=zoom, focus=focus)
-    camera = Camera(
-        look.position,
-        look.focal_point,
-        look.up,
-        size,
-        parallel_scale=look.parallel_scale if look.parallel else None,
-        view_angle=look.view_angle,
-    )
-    return View(bench, field, camera, step)
+    camera = Camera.fit(field.surface, size[0] / size[1], zoom=zoom, focus=focus)
+    return View(bench, field, camera, size, step)
 
 
 def wing_view(bench: Bench, size: tuple[int, int], zoom: float) -> View:
@@ -190,8 +185,9 @@ def wing_view(bench: Bench, size: tuple[int, int], zoom: float) -> View:
     at = WING_NEAR if zoom > 1 else WING_WHOLE
     eye = tuple(e - w + a for e, w, a in zip(WING_EYE, WING_WHOLE, at, strict=True))
     scale = WING_HALF_HEIGHT * max(1.0, 1.45 * size[1] / size[0]) / zoom
-    camera = Camera((eye[0], eye[1], eye[2]), at, (0.0, 0.0, 1.0), size, parallel_scale=scale)
-    return View(bench, bench.shuttle, camera)
+    position = (eye[0], eye[1], eye[2])
+    camera = Camera(position, at, (0.0, 0.0, 1.0), parallel=True, parallel_scale=scale)
+    return View(bench, bench.shuttle, camera, size)
 
 
 def grey(value: Floats, colour: Any = SURFACE_GREY, **settings: Any) -> Bytes:

@@ -17,11 +17,12 @@ from typing import Any
 
 import numpy as np
 from flows import dense_gyre, gyre, holed, lines, swinging, torus
-from numpy.typing import NDArray
 
 from flowtex import FlowField
+from flowtex._util.array_types import Bytes, Floats
+from flowtex.camera import Camera
 from flowtex.options import Appearance
-from flowtex.rendering.cpu import Camera, render
+from flowtex.rendering.cpu import render
 from flowtex.rendering.uniforms import ViewState
 from flowtex.scene import Scene
 from flowtex.settings import Settings
@@ -39,7 +40,6 @@ __all__ = [
     "judged",
 ]
 
-Pixels = NDArray[np.uint8]
 
 #: Root mean square in steps of 8 bits, and share of pixels that differ by more than 8 of them.
 ROOT, SHARE = 0.6, 0.001
@@ -51,13 +51,13 @@ COLOUR, GROUND = (0.6, 0.6, 0.6), (1.0, 0.0, 0.0)
 def straight(zoom: float, focus: tuple[float, float] = (0.63, 0.37)) -> Camera:
     """See a part of a plane without perspective."""
     x, y = focus
-    return Camera((x, y, 5.0), (x, y, 0.0), (0, 1, 0), SIZE, 0.9 / zoom)
+    return Camera((x, y, 5.0), (x, y, 0.0), (0, 1, 0), parallel=True, parallel_scale=0.9 / zoom)
 
 
 WHOLE, MIDDLE = straight(1, (1.0, 0.5)), straight(1, (0.0, 0.0))
-TILTED = Camera((1.9, -0.9, 1.1), (0.9, 0.45, 0.0), (0, 0, 1), SIZE)
-GRAZING = Camera((1.0, -0.3, 0.2), (1.0, 0.5, 0.0), (0, 0, 1), SIZE)
-ASIDE = Camera((2.4, -1.9, 1.5), (0.0, 0.0, 0.0), (0, 0, 1), SIZE)
+TILTED = Camera((1.9, -0.9, 1.1), (0.9, 0.45, 0.0), (0, 0, 1))
+GRAZING = Camera((1.0, -0.3, 0.2), (1.0, 0.5, 0.0), (0, 0, 1))
+ASIDE = Camera((2.4, -1.9, 1.5), (0.0, 0.0, 0.0), (0, 0, 1))
 
 IMAGE = np.zeros((30, 50, 4))
 IMAGE[..., :2] = np.moveaxis(np.indices((30, 50)), 0, -1) / 50
@@ -78,7 +78,7 @@ class View:
     clock: float = 0.0
 
     @property
-    def image(self) -> NDArray[np.float64] | None:
+    def image(self) -> Floats | None:
         """What is laid on the surface."""
         return IMAGE if self.settings.get("noise") == "image" else None
 
@@ -132,17 +132,18 @@ DEEP: dict[str, View] = {"zoom 1e5": View(camera=straight(1e5))}
 
 
 @cache
-def judged(name: str) -> tuple[Scene, Pixels]:
+def judged(name: str) -> tuple[Scene, Bytes]:
     """Return a view and its picture by NumPy, (H, W, 3)."""
     view = (VIEWS | DEEP)[name]
     shown = view.made()
     before, after, between = shown.moment
     state = ViewState(between=between, clock=view.clock)
-    drawn = render(shown.textures, shown.settings, view.camera, view=state, steps=(before, after))
+    steps = (before, after)
+    drawn = render(shown.textures, shown.settings, view.camera, SIZE, view=state, steps=steps)
     return shown, drawn.rgb(COLOUR, background=GROUND)
 
 
-def difference(theirs: Pixels, ours: Pixels) -> tuple[float, float, int]:
+def difference(theirs: Bytes, ours: Bytes) -> tuple[float, float, int]:
     """Root mean square, share beyond 8 steps, and pixels that only one of them covers."""
     ground = np.rint(255 * np.array(GROUND))
     covered = [(p != ground).any(axis=-1) for p in (theirs, ours)]

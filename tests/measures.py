@@ -10,11 +10,10 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter, map_coordinates, sobel
 
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
+from flowtex._util.array_types import AnyArray, Bools, Floats
+from flowtex._util.blocks import block_means
 
 #: Standard deviation in pixels of the window in which streaks are told from noise.
 WINDOW = 4.0
@@ -22,13 +21,13 @@ WINDOW = 4.0
 SHADES = 20.0
 
 
-def grey(image: NDArray[Any]) -> Floats:
+def grey(image: AnyArray) -> Floats:
     """Mean of the channels, (H, W)."""
     image = np.asarray(image, dtype=float)
     return np.asarray(image[..., :3].mean(axis=-1) if image.ndim == 3 else image)
 
 
-def streaks(image: NDArray[Any], u: Floats, v: Floats, mask: Bools) -> dict[str, float]:
+def streaks(image: AnyArray, u: Floats, v: Floats, mask: Bools) -> dict[str, float]:
     """Mean angle in degrees between streaks and flow, and coherence from 0 to 1.
 
     Both come from the structure tensor, averaged over a Gaussian of four pixels.
@@ -45,7 +44,7 @@ def streaks(image: NDArray[Any], u: Floats, v: Floats, mask: Bools) -> dict[str,
     }
 
 
-def grain(image: NDArray[Any], u: Floats, v: Floats, mask: Bools) -> dict[str, float]:
+def grain(image: AnyArray, u: Floats, v: Floats, mask: Bools) -> dict[str, float]:
     """Distance in pixels, along the flow and across it, at which grey values agree by half."""
     g = grey(image)
     g = g - gaussian_filter(g, SHADES)
@@ -73,14 +72,14 @@ def _half(g: Floats, rows: Any, columns: Any, right: Floats, down: Floats) -> fl
     return 60.0
 
 
-def fineness(image: NDArray[Any], mask: Bools) -> float:
+def fineness(image: AnyArray, mask: Bools) -> float:
     """Mean change from pixel to pixel over the deviation: how fine the grain is."""
     g = grey(image)
     step = np.hypot(np.diff(g, axis=0)[:, :-1], np.diff(g, axis=1)[:-1])
     return float(step[mask[:-1, :-1]].mean() / g[mask].std())
 
 
-def aliasing(image: NDArray[Any], reference: NDArray[Any], mask: Bools) -> float:
+def aliasing(image: AnyArray, reference: AnyArray, mask: Bools) -> float:
     """Root mean square of the error over the deviation of the reference.
 
     The reference is the same view, drawn several times as large and averaged.
@@ -89,17 +88,14 @@ def aliasing(image: NDArray[Any], reference: NDArray[Any], mask: Bools) -> float
     return float(np.sqrt(np.mean((a - b) ** 2)) / b.std())
 
 
-def averaged(image: NDArray[Any], times: int) -> Floats:
+def averaged(image: AnyArray, times: int) -> Floats:
     """Mean of blocks of ``times`` by ``times`` pixels."""
-    g = grey(image)
-    rows, columns = (n // times for n in g.shape)
-    blocks = g[: rows * times, : columns * times].reshape(rows, times, columns, times)
-    return np.asarray(blocks.mean(axis=(1, 3)))
+    return np.asarray(block_means(grey(image), times))
 
 
 def carried(
-    first: NDArray[Any],
-    second: NDArray[Any],
+    first: AnyArray,
+    second: AnyArray,
     dx: Floats,
     dy: Floats,
     margin: int | Bools,

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 import flowtex
-from flowtex.rendering import shader_files
+from flowtex.rendering import shaders
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -25,11 +25,11 @@ SHADERS = ROOT / "shaders"
 TELL = """
 import json, sys
 import flowtex
-from flowtex.rendering import shader_files
+from flowtex.rendering import shaders
 json.dump({
     "package": flowtex.__file__,
-    "folder": str(shader_files.shader_folder()),
-    "texts": {name: shader_files.shader_source(name) for name in shader_files.shader_names()},
+    "folder": str(shaders.shader_folder()),
+    "texts": {name: shaders.shader_source(name) for name in shaders.shader_names()},
 }, sys.stdout)
 """
 
@@ -222,10 +222,8 @@ def test_editable_install_reads_the_checkout() -> None:
     package = Path(flowtex.__file__).resolve().parent
     if package.parent != ROOT:
         pytest.skip(f"flowtex is installed in {package.parent}, not as editable")
-    assert shader_files.shader_folder() == SHADERS
-    assert {
-        n: shader_files.shader_source(n) for n in shader_files.shader_names()
-    } == _texts_of_checkout()
+    assert shaders.shader_folder() == SHADERS
+    assert {n: shaders.shader_source(n) for n in shaders.shader_names()} == _texts_of_checkout()
 
 
 @pytest.fixture
@@ -241,11 +239,11 @@ def folder(tmp_path: Path) -> Path:
 
 
 def test_names_are_sorted_and_hidden_files_left_out(folder: Path) -> None:
-    assert shader_files.shader_names(folder) == ("common/noise.glsl", "main.frag")
+    assert shaders.shader_names(folder) == ("common/noise.glsl", "main.frag")
 
 
 def test_source_is_read_as_utf8(folder: Path) -> None:
-    assert shader_files.shader_source("common/noise.glsl", folder) == "// µ noise\n"
+    assert shaders.shader_source("common/noise.glsl", folder) == "// µ noise\n"
 
 
 @pytest.mark.parametrize(
@@ -255,13 +253,13 @@ def test_source_is_read_as_utf8(folder: Path) -> None:
 def test_names_that_leave_the_folder_are_refused(name: str, folder: Path) -> None:
     (folder / "link").symlink_to(folder.parent / "secret")
     with pytest.raises(ValueError, match=r"^shader name .* leaves the shader folder: expected "):
-        shader_files.shader_source(name, folder)
+        shaders.shader_source(name, folder)
 
 
 def test_an_unknown_name_lists_the_known(folder: Path) -> None:
     expected = r"^no shader is called 'noise\.glsl'; there are: common/noise\.glsl, main\.frag$"
     with pytest.raises(FileNotFoundError, match=expected):
-        shader_files.shader_source("noise.glsl", folder)
+        shaders.shader_source("noise.glsl", folder)
 
 
 def test_shaders_beside_an_installed_package_are_not_ours(tmp_path: Path) -> None:
@@ -271,7 +269,7 @@ def test_shaders_beside_an_installed_package_are_not_ours(tmp_path: Path) -> Non
     with pytest.raises(
         FileNotFoundError, match=r"^flowtex's shaders are missing: .*--no-deps flowtex$"
     ):
-        shader_files.shader_folder(package)
+        shaders.shader_folder(package)
 
 
 def test_wheel_can_be_built_from_the_source_archive(tmp_path: Path) -> None:

@@ -11,21 +11,19 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from scipy import ndimage
 
 from flowtex import FlowField
+from flowtex._util.array_types import Floats
+from flowtex.camera import Camera
 from flowtex.options import Appearance
 from flowtex.probe import Probe, locate, probe
-from flowtex.rendering.cpu import Camera, render
-from flowtex.rendering.cpu.lookup import Mips
-from flowtex.rendering.cpu.record import Kept, Window
+from flowtex.rendering.cpu import render
+from flowtex.rendering.cpu.mipmaps import Mips
+from flowtex.rendering.cpu.pixel import LoadedTextures, Window
 from flowtex.rendering.uniforms import ViewState
 from flowtex.scene import Scene
 from flowtex.settings import Settings
-
-Floats = NDArray[np.float64]
-
 
 # --- fields ---------------------------------------------------------------------------------
 
@@ -93,12 +91,16 @@ def view_of(field: FlowField, **settings: Any) -> Scene:
     return Scene(field, chosen, Appearance(image=image))
 
 
-def camera(field: FlowField, *, aside: bool = False, size: tuple[int, int] = (36, 24)) -> Camera:
+#: Width and height of the pictures in pixels.
+SIZE = (36, 24)
+
+
+def camera(field: FlowField, *, aside: bool = False) -> Camera:
     """Straight on without perspective, or from aside with it."""
     c, away = field.surface.center, np.array([0.5, -0.8, 1.2] if aside else [0.0, 0.0, 1.0])
     at = c + 1.5 * field.surface.extent * away
-    scale = None if aside else 0.3 * field.surface.extent
-    return Camera(tuple(at), tuple(c), (0.0, 1.0, 0.0), size, parallel_scale=scale)
+    scale = 0.3 * field.surface.extent
+    return Camera(tuple(at), tuple(c), (0.0, 1.0, 0.0), not aside, scale)
 
 
 # --- the pixel ------------------------------------------------------------------------------
@@ -138,11 +140,11 @@ def test_the_value_is_what_is_drawn(case: str, aside: bool, rng: np.random.Gener
         view.time = 0.5
     before, after, between = view.moment
     state = ViewState(between=between, clock=clock)
-    picture = render(view.textures, view.settings, shot, view=state, steps=(before, after))
+    picture = render(view.textures, view.settings, shot, SIZE, view=state, steps=(before, after))
     for y, x in rng.permutation(np.argwhere(picture.covered))[:4]:
         at = locate(field, picture.position[y, x])
         assert at is not None
-        got = probe(view, at, pixel=shot, clock=clock)
+        got = probe(view, at, pixel=shot, size=SIZE, clock=clock)
         assert got.value == pytest.approx(picture.value[y, x], abs=1e-6)
         assert got.level == pytest.approx(picture.noise_level[y, x], abs=1e-6)
         assert got.slice_level == pytest.approx(picture.slice_level[y, x], abs=1e-6)
@@ -185,9 +187,8 @@ def check_shapes(got: Probe) -> None:
 def test_a_width_is_a_picture_seen_straight_on() -> None:
     field = gyre()
     view, shot = view_of(field), camera(field)
-    picture = render(view.textures, view.settings, shot)
-    assert shot.parallel_scale is not None
-    width = 2 * shot.parallel_scale / shot.size[1]
+    picture = render(view.textures, view.settings, shot, SIZE)
+    width = 2 * shot.parallel_scale / SIZE[1]
     at = locate(field, picture.position[12, 20])
     got = probe(view, at, pixel=width)  # type: ignore[arg-type]
     assert got.pixel == pytest.approx(width)
@@ -374,10 +375,10 @@ def test_a_path_around_a_ring_comes_back() -> None:
         ((41.0, 3.0), 0.1, r"\(41, 3\), outside the surface"),
         ((1.0, 3.0), 0.0, r"pixel is 0\.0; expected a positive length"),
         ((1.0, 3.0), np.nan, "pixel is nan"),
-        ((1.0, 3.0), Camera((0, 0, -1), (0, 0, -2), (0, 1, 0), (9, 9)), "lies behind the camera"),
+        ((1.0, 3.0), Camera((0, 0, -1), (0, 0, -2), (0, 1, 0)), "lies behind the camera"),
         (
             (1.0, 3.0),
-            Camera((0, -9, 0), (0, 0, 0), (0, 0, 1), (9, 9), parallel_scale=1.0),
+            Camera((0, -9, 0), (0, 0, 0), (0, 0, 1), parallel=True),
             "seen edge on",
         ),
     ],
@@ -386,7 +387,7 @@ def test_what_cannot_be_read_is_refused(
     at: tuple[float, float], pixel: float | Camera, fault: str
 ) -> None:
     with pytest.raises(ValueError, match=fault):
-        probe(view_of(wind()), at, pixel=pixel)
+        probe(view_of(wind()), at, pixel=pixel, size=(9, 9))
 
 
 def test_a_window_filters_as_the_whole_does(rng: np.random.Generator) -> None:
@@ -402,10 +403,11 @@ def test_a_window_filters_as_the_whole_does(rng: np.random.Generator) -> None:
 def test_from_afar_slices_are_coarse() -> None:
     field = turn()
     view, c = view_of(field), field.surface.center
-    shot = Camera((*c[:2], 5.0), (*c[:2], 0.0), (0.0, 1.0, 0.0), (12, 9), parallel_scale=1.2)
-    picture = render(view.textures, view.settings, shot)
+    shot = Camera((*c[:2], 5.0), (*c[:2], 0.0), (0.0, 1.0, 0.0), True, 1.2)
+    picture = render(view.textures, view.settings, shot, (12, 9))
     for y, x in np.argwhere(picture.covered)[::7]:
-        got = probe(view, locate(field, picture.position[y, x]), pixel=shot)  # type: ignore[arg-type]
+        at = locate(field, picture.position[y, x])
+        got = probe(view, at, pixel=shot, size=(12, 9))  # type: ignore[arg-type]
         assert got.slice_level > 2
         assert got.value == pytest.approx(picture.value[y, x], abs=1e-6)
 
@@ -417,9 +419,9 @@ def test_textures_are_let_go() -> None:
     for time in (0.1, 0.5, 0.7):
         view.time = time
         probe(view, (15, 15), pixel=0.01)
-    kept = Kept.of(textures)
-    assert len(kept._mips) == 2
-    gone = weakref.ref(kept)
-    del view, textures, kept
+    loaded = LoadedTextures.of(textures)
+    assert len(loaded._mips) == 2
+    reference = weakref.ref(loaded)
+    del view, textures, loaded
     gc.collect()
-    assert gone() is None
+    assert reference() is None

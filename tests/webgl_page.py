@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from flowtex.rendering.cpu import Camera
+from flowtex.camera import Camera
 from flowtex.rendering.webgl import ClientData
 from flowtex.rendering.webgl.protocol import part_info
 from flowtex.web.assets import asset
@@ -53,15 +53,8 @@ PIXELS = "(n) => viewers[n].canvas.toDataURL('image/png').split(',')[1]"
 
 
 def state(camera: Camera) -> dict[str, Any]:
-    """Return a camera of the NumPy renderer as the client takes it."""
-    return {
-        "position": list(map(float, camera.position)),
-        "focal_point": list(map(float, camera.focal_point)),
-        "up": list(map(float, camera.up)),
-        "parallel": camera.parallel_scale is not None,
-        "parallel_scale": float(camera.parallel_scale or 1.0),
-        "view_angle": float(camera.view_angle),
-    }
+    """Return a camera as the client takes it."""
+    return camera.to_dict()
 
 
 def packed(scene: ClientData, header: Mapping[str, Any], steps: tuple[int, ...] = (0,)) -> Any:

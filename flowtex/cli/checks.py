@@ -71,7 +71,7 @@ def check_image(options: dict[str, Any]) -> None:
     if options.get("noise", "image") != "image":
         msg = f"--noise is {options['noise']} and --image is given; leave out one of them"
         raise UsageError(msg)
-    from flowtex.textures.image_files import load_image
+    from flowtex.textures.images import load_image
 
     options["image"] = load_image(options["image"])
 

@@ -16,6 +16,7 @@ from flowtex.plotting.component import FlowtexComponent
 from flowtex.plotting.handle import FlowHandle
 from flowtex.plotting.vtk_camera import apply_camera, look
 from flowtex.scene import Scene
+from flowtex.textures.images import averaged
 
 __all__ = ["OffscreenPlotter", "add_scenes", "new_plotter", "point_camera"]
 
@@ -112,7 +113,7 @@ class OffscreenPlotter:
         self._plotter.suppress_rendering = False
         self._plotter.render()
         pixels: Any = self._plotter.screenshot(return_img=True)
-        return _averaged(np.asarray(pixels[..., :3], dtype=np.uint8), self._supersampling)
+        return averaged(np.asarray(pixels[..., :3], dtype=np.uint8), self._supersampling)
 
     def close(self) -> None:
         """Free the graphics card."""
@@ -200,12 +201,3 @@ def _check_size(size: tuple[int, int], supersampling: int) -> None:
             "each side: choose a smaller size, or less supersampling"
         )
         raise ValueError(msg)
-
-
-def _averaged(picture: Bytes, count: int) -> Bytes:
-    """Take the mean of every so many pixels along each side."""
-    if count == 1:
-        return picture
-    from PIL import Image
-
-    return np.asarray(Image.fromarray(picture).reduce(count))

@@ -1,1 +1,1 @@
-"""TextureSet and settings to pixels, by several hands that know nothing of one another."""
+"""TextureSet and settings to pixels, by renderers that know nothing of one another."""

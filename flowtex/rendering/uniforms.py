@@ -1,7 +1,7 @@
-"""The numbers that a shader is given, whoever compiles it.
+"""The uniforms of the shaders, whoever compiles them.
 
 One function turns a texture set, the settings and the state of the view into the uniforms that
-``shaders/common/uniforms.glsl`` declares. A renderer only hands them over.
+``shaders/common/uniforms.glsl`` declares. A renderer only passes them on.
 """
 
 from __future__ import annotations
@@ -10,37 +10,25 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from flowtex._util.array_types import Floats, Ints
+from flowtex.rendering.constants import KERNELS
 from flowtex.settings import Settings
 from flowtex.textures import PaperTextures, TextureSet
 
-__all__ = [
-    "ANCHOR_RANGE",
-    "LIGHT",
-    "ViewState",
-    "client_constants",
-    "finest_cell",
-    "uniforms",
-    "variants",
-]
+__all__ = ["ANCHOR_RANGE", "ViewState", "client_constants", "uniforms", "variants"]
 
-#: Octaves between the finest cell of the noise and the extent of the surface.
-OCTAVES = 30
-#: The origin of the noise keeps this many octaves clear, so that single precision holds it.
-SNAP = 9
-#: What the flow goes while a grain in motion takes one turn, in pixels; up to twice as much.
-WAVE = 96.0
-#: Coarse part of the clock, in base periods, that times a power of two stays exact.
-COARSE = 2.0**-12
+#: Doublings from the finest cell of the noise to the extent of the surface.
+NOISE_DOUBLINGS = 30
+#: Finest doublings at which the origin of the noise is zero, so that single precision holds it.
+CLEAR_DOUBLINGS = 9
+#: Pixels that the flow goes while a grain in motion takes one turn; up to twice as many.
+WAVE_PIXELS = 96.0
+#: Step of the coarse part of the clock, in base periods: times a power of two it stays exact.
+CLOCK_STEP = 2.0**-12
 
 #: Heights of the view within which positions may be counted from another point than its middle.
 ANCHOR_RANGE = 8.0
-
-#: Ambient and diffuse light: dark sides stay bright enough to read the texture there.
-LIGHT = (0.3, 0.8)
-
-KERNELS = ("hann", "box", "ramp")
 
 
 @dataclass
@@ -52,7 +40,7 @@ class ViewState:
     focus
         Point of the mesh that the view looks at, (3,), in the mesh's own coordinates.
     anchor
-        Point of the surface's frame that positions are given relative to, (3,).
+        Point of the surface's frame that positions are counted from, (3,).
     eye
         The eye in the mesh's own coordinates and 1, or the way to it and 0 where all rays are
         parallel, (4,).
@@ -67,9 +55,9 @@ class ViewState:
         density has grains of twice as many pixels, and shows the same.
     """
 
-    focus: NDArray[np.float64] = field(default_factory=lambda: np.zeros(3))
-    anchor: NDArray[np.float64] = field(default_factory=lambda: np.zeros(3))
-    eye: NDArray[np.float64] = field(default_factory=lambda: np.array([0.0, 0.0, 1.0, 0.0]))
+    focus: Floats = field(default_factory=lambda: np.zeros(3))
+    anchor: Floats = field(default_factory=lambda: np.zeros(3))
+    eye: Floats = field(default_factory=lambda: np.array([0.0, 0.0, 1.0, 0.0]))
     between: float = 0.0
     time: float = 0.0
     clock: float = 0.0
@@ -95,31 +83,23 @@ def variants(textures: TextureSet, *, unsteady: bool) -> frozenset[str]:
 def client_constants() -> dict[str, Any]:
     """Numbers by which a client computes the uniforms itself, for JSON."""
     return {
-        "octaves": OCTAVES,
-        "snap": SNAP,
-        "wave": WAVE,
-        "coarse": COARSE,
+        "noiseDoublings": NOISE_DOUBLINGS,
+        "clearDoublings": CLEAR_DOUBLINGS,
+        "wavePixels": WAVE_PIXELS,
+        "clockStep": CLOCK_STEP,
         "kernels": list(KERNELS),
         "anchorRange": ANCHOR_RANGE,
-        "light": list(LIGHT),
     }
-
-
-def finest_cell(extent: float) -> float:
-    """Width of a cell of the noise's finest octave: a power of two, so that it is exact."""
-    return float(2.0 ** (np.floor(np.log2(extent)) - OCTAVES))
 
 
 def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[str, Any]:
     """Values by name: bool, int, float, tuples of float, or lists for arrays."""
     geometry = textures.geometry
-    finest = finest_cell(geometry.extent)
+    # A power of two, so that it is exact.
+    finest = float(2.0 ** (np.floor(np.log2(geometry.extent)) - NOISE_DOUBLINGS))
     even = _origin_cell(geometry.local(view.focus), finest)
-    # Without a sign there is no forward: both sides, and no kernel that falls towards one.
-    sign_free = geometry.field.sign_free
-    sides = textures.sides if settings.two_sided or sign_free else 1
-    kernel = "hann" if sign_free and settings.kernel == "ramp" else settings.kernel
-    motion = _motion(textures, settings, view)
+    sides, kernel, streams = _direction(textures, settings)
+    motion = _motion(textures, settings, view, streams=streams)
     eye = geometry.frame @ (view.eye[:3] - view.eye[3] * geometry.center)
     eye -= view.eye[3] * view.anchor
     values: dict[str, Any] = {
@@ -151,7 +131,21 @@ def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[
     return values
 
 
-def _motion(textures: TextureSet, settings: Settings, view: ViewState) -> dict[str, Any]:
+def _direction(textures: TextureSet, settings: Settings) -> tuple[int, str, bool]:
+    """Sides of the paths, kernel, and whether the grains of a steady field stream.
+
+    A field without a sign has no forward: it has both sides, no kernel that falls towards one of
+    them, and nothing streams.
+    """
+    if textures.geometry.field.sign_free:
+        return textures.sides, "hann" if settings.kernel == "ramp" else settings.kernel, False
+    sides = textures.sides if settings.two_sided else 1
+    return sides, settings.kernel, settings.motion != "off"
+
+
+def _motion(
+    textures: TextureSet, settings: Settings, view: ViewState, *, streams: bool
+) -> dict[str, Any]:
     """How the grains change: with the time of a field that varies, by the clock of a steady one.
 
     Grains that change shorten the streaks. Twice as many samples make up for it, and let the eye
@@ -166,24 +160,22 @@ def _motion(textures: TextureSet, settings: Settings, view: ViewState) -> dict[s
     else:
         turns, travel = view.clock / settings.period % 1.0, settings.speed * settings.period
         pixels, by_speed = settings.speed_in == "pixels", settings.motion == "speed"
-        moving = settings.motion != "off" and not store.field.sign_free
-    coarse = float(np.floor(turns / COARSE) * COARSE)
+        moving = streams
+    coarse = float(np.floor(turns / CLOCK_STEP) * CLOCK_STEP)
     return {
         "u_moving": moving and textures.space == "physical",
         "u_clock": (coarse, turns - coarse),
         "u_travel": float(travel) * (view.density if pixels else 1.0),
         "u_travelInPixels": pixels,
         "u_travelBySpeed": by_speed,
-        "u_wave": WAVE * view.density,
+        "u_wave": WAVE_PIXELS * view.density,
     }
 
 
-def _noise_origin(
-    even: NDArray[np.int64], finest: float, anchor: NDArray[np.float64]
-) -> dict[str, Any]:
+def _noise_origin(even: Ints, finest: float, anchor: Floats) -> dict[str, Any]:
     """Give the noise's origin in space and in the finest cells of both families of lattices."""
     odd = even / np.sqrt(2.0)
-    whole = np.floor(odd / 2**SNAP) * 2**SNAP
+    whole = np.floor(odd / 2**CLEAR_DOUBLINGS) * 2**CLEAR_DOUBLINGS
     return {
         "u_noiseOrigin": tuple(float(c) for c in even * finest - anchor),
         "u_noiseOriginEven": tuple(float(c) for c in even),
@@ -212,9 +204,9 @@ def _paper(paper: PaperTextures, settings: Settings, density: float) -> dict[str
     }
 
 
-def _origin_cell(focus: NDArray[np.float64], finest: float) -> NDArray[np.int64]:
+def _origin_cell(focus: Floats, finest: float) -> Ints:
     """Lattice point near the focus, in cells of the finest octave, that a float holds exactly."""
-    coarse = 2**SNAP
-    limit = 2 ** (OCTAVES - SNAP) - 1
+    coarse = 2**CLEAR_DOUBLINGS
+    limit = 2 ** (NOISE_DOUBLINGS - CLEAR_DOUBLINGS) - 1
     cell = np.clip(np.rint(focus / finest / coarse), -limit, limit)
     return np.asarray(cell * coarse, dtype=np.int64)

@@ -1,11 +1,18 @@
-"""TraceSlices to TextureSet: packing, noise and step size; all that a renderer is given."""
+"""TraceSlices to TextureSet: packing, noise and step size; all that a renderer takes."""
 
 from __future__ import annotations
 
-from flowtex.textures.ahead import Ahead
-from flowtex.textures.geometry import Geometry
+from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.textures.images import ImageError, as_picture
 from flowtex.textures.paper import PaperTextures
+from flowtex.textures.prefetch import LayerPrefetch
 from flowtex.textures.texture_set import TextureSet
 
-__all__ = ["Ahead", "Geometry", "ImageError", "PaperTextures", "TextureSet", "as_picture"]
+__all__ = [
+    "ImageError",
+    "LayerPrefetch",
+    "PaperTextures",
+    "SurfaceGeometry",
+    "TextureSet",
+    "as_picture",
+]

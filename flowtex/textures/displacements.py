@@ -1,4 +1,4 @@
-"""What displacements in index space are in space, for every node at once.
+"""Displacements of the nodes in space, from those in index space.
 
 The same interpolation as :meth:`flowtex.field.surface.Surface.at`, written for millions of
 look-ups: each coordinate is an array of its own, and blocks stay in a processor's cache.
@@ -9,12 +9,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from flowtex._util.array_types import Floats
 from flowtex.field.interpolation import cell_of, cubic_weights
 from flowtex.field.surface import Surface
 
-__all__ = ["Moves"]
+__all__ = ["NodeDisplacements"]
 
-Floats = NDArray[np.float64]
 
 #: Nodes looked up together.
 BLOCK = 16384
@@ -22,8 +22,8 @@ BLOCK = 16384
 LINEAR = 1e-9
 
 
-class Moves:
-    """Displacements of the nodes of a surface.
+class NodeDisplacements:
+    """Map from displacements in index space to those in space, for all nodes of a surface.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ class Moves:
         self._offset = surface.offset @ frame.T
 
     def __call__(self, displacement: NDArray[np.floating]) -> Floats:
-        """Move the nodes.
+        """Return where displacements of the nodes lead.
 
         Parameters
         ----------

@@ -15,14 +15,13 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from flowtex._util.array_types import Floats, Floats32, Indices
 from flowtex.field import FlowField
 from flowtex.field.interpolation import nearest_known
 
-__all__ = ["Geometry", "Padding"]
+__all__ = ["Padding", "SurfaceGeometry"]
 
-Singles = NDArray[np.float32]
 
 #: Mip levels of a texture beside its finest one, at most.
 DEEPEST = 5
@@ -46,7 +45,7 @@ class Padding:
         return cls(nodes, before, -(-needed // block) * block, periodic)
 
     @property
-    def picks(self) -> NDArray[np.intp]:
+    def picks(self) -> Indices:
         """Node that each texel holds, (size,)."""
         at = np.arange(self.size) - self.before
         if self.periodic:
@@ -54,13 +53,13 @@ class Padding:
         return np.clip(at, 0, self.nodes - 1)
 
     @property
-    def coordinates(self) -> NDArray[np.float64]:
+    def coordinates(self) -> Floats:
         """Texture coordinate of each node, (nodes,): the middle of its texel."""
         return (np.arange(self.nodes) + self.before + 0.5) / self.size
 
 
 @dataclass(frozen=True, eq=False)
-class Geometry:
+class SurfaceGeometry:
     """A surface ready to be drawn.
 
     Attributes
@@ -79,7 +78,7 @@ class Geometry:
     columns: Padding
 
     @classmethod
-    def of(cls, field: FlowField) -> Geometry:
+    def of(cls, field: FlowField) -> SurfaceGeometry:
         """Lay out a field's surface."""
         shortest = min(field.shape)
         levels = int(np.clip(np.log2(max(shortest / 4, 1)), 0, DEEPEST))
@@ -95,7 +94,7 @@ class Geometry:
         return self.field.surface.frame is not None
 
     @property
-    def center(self) -> NDArray[np.float64]:
+    def center(self) -> Floats:
         """What was taken from the mesh's coordinates, (3,)."""
         return self.field.surface.center
 
@@ -105,17 +104,17 @@ class Geometry:
         return self.field.surface.extent
 
     @cached_property
-    def frame(self) -> NDArray[np.float64]:
+    def frame(self) -> Floats:
         """Rows that take a vector of the mesh to the frame of ``position``, (3, 3)."""
         flat = self.field.surface.frame
         return np.eye(3) if flat is None else np.vstack([flat, np.cross(flat[0], flat[1])])
 
     @cached_property
-    def position(self) -> Singles:
+    def position(self) -> Floats32:
         """Nodes in the surface's own frame, (J, I, 3)."""
         return self.position_from(np.zeros(3))
 
-    def position_from(self, anchor: NDArray[np.float64]) -> Singles:
+    def position_from(self, anchor: Floats) -> Floats32:
         """Nodes in the surface's own frame relative to a point of it (3,), (J, I, 3).
 
         Close to the anchor single precision tells points apart that it would not from the middle.
@@ -123,12 +122,12 @@ class Geometry:
         local = (self.field.surface.points - self.center) @ self.frame.T
         return np.asarray(local - anchor, dtype=np.float32)
 
-    def local(self, point: NDArray[np.float64]) -> NDArray[np.float64]:
+    def local(self, point: Floats) -> Floats:
         """Take a point from the mesh's own coordinates to the surface's frame, (3,)."""
         return np.asarray(self.frame @ (point - self.center))
 
     @cached_property
-    def normal(self) -> Singles:
+    def normal(self) -> Floats32:
         """Unit normals at the nodes, (J, I, 3), in the mesh's own axes.
 
         A node whose cells have collapsed takes that of the line beside it.
@@ -147,20 +146,13 @@ class Geometry:
         return np.where(length > 0, normal / safe, [0.0, 0.0, 1.0]).astype(np.float32)
 
     @cached_property
-    def coordinate(self) -> Singles:
+    def coordinate(self) -> Floats32:
         """Texture coordinates of the nodes in the slices, (J, I, 2) as (u, v)."""
         u, v = np.meshgrid(self.columns.coordinates, self.rows.coordinates)
         return np.stack([u, v], axis=-1).astype(np.float32)
 
-    def pad(self, data: NDArray[Any]) -> NDArray[Any]:
-        """Lay nodal data (J, I, ...) into texels (H, W, ...), blanked nodes filled."""
-        filled = data
-        if not self.field.valid.all():
-            filled = data[self._nearest]
-        return filled[np.ix_(self.rows.picks, self.columns.picks)]
-
-    def lay(self, data: Singles, texels: Singles) -> None:
-        """Write nodal data (J, I, C) into texels (H, W, C), laid out as by :meth:`pad`.
+    def write_texels(self, data: Floats32, texels: Floats32) -> None:
+        """Write nodal data (J, I, C) into texels (H, W, C), in the order of its rows and columns.
 
         Blanked nodes of ``data`` are filled in place.
         """

@@ -1,21 +1,32 @@
 """A user's image as texels that a shader can average: colour times opacity, and opacity.
 
 Averaging colours that were multiplied by their opacity is what keeps a transparent pixel's own
-colour out of its neighbours, so dye has clean edges at every level of detail.
+colour out of its neighbours, so dye has clean edges at every level of detail. Files are PNG, JPEG
+and whatever else Pillow, which PyVista brings, can read.
 """
 
 from __future__ import annotations
 
-from typing import Any
+import warnings
+from pathlib import Path
+from typing import Any, BinaryIO
 
 import numpy as np
-from numpy.typing import NDArray
 
+from flowtex._util.array_types import AnyArray, Bytes, Floats32
 from flowtex.settings import SettingsError
 
-__all__ = ["LARGEST", "ImageError", "as_image", "as_picture"]
+__all__ = [
+    "LARGEST",
+    "ImageError",
+    "as_image",
+    "as_picture",
+    "averaged",
+    "load_image",
+    "pixels_of",
+    "read_image",
+]
 
-Singles = NDArray[np.float32]
 
 #: Texels along a side, at most; a larger image is averaged down to it.
 LARGEST = 4096
@@ -29,7 +40,7 @@ class ImageError(SettingsError):
     """An image cannot take the place of the noise; the text says what was expected."""
 
 
-def as_picture(image: Any) -> Singles:
+def as_picture(image: Any) -> Floats32:
     """Check an image and return its texels.
 
     Parameters
@@ -66,7 +77,7 @@ def as_picture(image: Any) -> Singles:
     return np.ascontiguousarray(_shrunk(picture)[::-1])
 
 
-def as_image(picture: Singles) -> Singles:
+def as_image(picture: Floats32) -> Floats32:
     """Return the image of which :func:`as_picture` makes these texels.
 
     Parameters
@@ -85,7 +96,7 @@ def as_image(picture: Singles) -> Singles:
     return np.asarray(np.clip(image, 0, 1), np.float32)
 
 
-def _fractions(array: NDArray[Any]) -> Singles:
+def _fractions(array: AnyArray) -> Floats32:
     """Values from 0 to 1."""
     if array.dtype.kind == "b":
         return array.astype(np.float32)
@@ -108,7 +119,7 @@ def _fractions(array: NDArray[Any]) -> Singles:
     return np.asarray(np.clip(array, 0, 1), np.float32)
 
 
-def _shrunk(values: Singles) -> Singles:
+def _shrunk(values: Floats32) -> Floats32:
     """Average blocks of texels where there are too many."""
     block = -(-max(values.shape[:2]) // LARGEST)
     if block == 1:
@@ -121,3 +132,90 @@ def _shrunk(values: Singles) -> Singles:
         sums = np.add.reduceat(values, starts, axis=axis)
         values = np.asarray(sums / counts.reshape(shape), np.float32)
     return values
+
+
+def averaged(pixels: Bytes, times: int) -> Bytes:
+    """Average every ``times`` x ``times`` pixels of a supersampled picture, (H, W, ...)."""
+    if times == 1:
+        return pixels
+    from PIL import Image
+
+    return np.asarray(Image.fromarray(pixels).reduce(times))
+
+
+def load_image(image: Any) -> Any:
+    """Read an image when it is a path, and return anything else as it is.
+
+    Parameters
+    ----------
+    image
+        A path to a PNG, a JPEG or another picture, or an array.
+
+    Returns
+    -------
+    numpy.ndarray
+        (H, W), (H, W, 3) or (H, W, 4), row 0 at the top, as the file's own orientation says; or
+        the argument.
+
+    Raises
+    ------
+    ImageError
+        When there is no such file, or it is no picture that can be read.
+    """
+    if not isinstance(image, (str, Path)):
+        return image
+    path = Path(image).expanduser()
+    if not path.is_file():
+        what = "is a folder" if path.is_dir() else "there is no such file"
+        msg = f"{image}: {what}; expected a picture, such as a PNG or a JPEG"
+        raise ImageError(msg)
+    return read_image(path, str(path))
+
+
+def read_image(file: Path | BinaryIO, name: str) -> AnyArray:
+    """Read an image from a file or from what holds the bytes of one.
+
+    Parameters
+    ----------
+    file
+        The path, or an open file.
+    name
+        What errors call it.
+
+    Returns
+    -------
+    numpy.ndarray
+        As :func:`load_image` returns it.
+
+    Raises
+    ------
+    ImageError
+        When it is no picture that can be read.
+    """
+    from PIL import Image, ImageOps, UnidentifiedImageError
+
+    try:
+        # Pillow warns of a picture so large that it may be an attack, and refuses twice as large.
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", Image.DecompressionBombWarning)
+            with Image.open(file) as opened:
+                return pixels_of(ImageOps.exif_transpose(opened))
+    except (Image.DecompressionBombWarning, Image.DecompressionBombError) as error:
+        msg = f"{name}: has more than {Image.MAX_IMAGE_PIXELS:,} pixels; make it smaller"
+        raise ImageError(msg) from error
+    except UnidentifiedImageError as error:
+        msg = f"{name}: is no picture that can be read; expected a PNG, a JPEG or the like"
+        raise ImageError(msg) from error
+    except (OSError, SyntaxError) as error:  # Pillow raises either for a file cut short
+        msg = f"{name}: cannot be read ({error}); give another picture, or its array"
+        raise ImageError(msg) from error
+
+
+def pixels_of(picture: Any) -> AnyArray:
+    """Pixels, with opacity where the picture has any; deep grey stays deep."""
+    if picture.mode.startswith("I"):  # 16 bits, which some versions of Pillow hold in 32
+        return np.asarray(picture).astype(np.uint16)
+    if picture.mode == "F":
+        return np.asarray(picture)
+    see_through = "A" in picture.getbands() or "transparency" in picture.info
+    return np.asarray(picture.convert("RGBA" if see_through else "RGB"))

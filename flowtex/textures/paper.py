@@ -18,8 +18,9 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from flowtex._util.array_types import Floats, Floats32, Indices
+from flowtex._util.blocks import block_means
 from flowtex.field import FlowField
 from flowtex.field.interpolation import (
     along_line,
@@ -27,14 +28,20 @@ from flowtex.field.interpolation import (
     fill_blanked,
     inverse_along_line,
 )
-from flowtex.textures.contrast import HALF_LEVELS, deviations
-from flowtex.textures.patterns import SPOT_GRAIN, Texels, checkerboard, even_noise, spots
+from flowtex.settings import Settings
+from flowtex.textures.patterns import SPOT_GRAIN, TexelMap, checkerboard, even_noise, spots
 from flowtex.trace import SliceStore
 
-__all__ = ["PaperTextures"]
+__all__ = ["HALF_LEVELS", "PaperTextures"]
 
-Floats = NDArray[np.float64]
-Singles = NDArray[np.float32]
+#: Longest step in units of lag: half precision ends soon after.
+LONGEST_STEP = 6e4
+#: Deviations that a shader has room for: at every level and half-way to the next.
+HALF_LEVELS = 32
+#: Points at which the levels are looked up.
+DEVIATION_POINTS = 16_384
+#: A level of fewer texels than this has too few to be judged by.
+FEWEST_TEXELS = 256
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,8 +68,8 @@ class PaperTextures:
         Whether ``noise`` is a picture, which is averaged along the flow, and no noise.
     """
 
-    noise: Singles
-    step: Singles
+    noise: Floats32
+    step: Floats32
     along_i: Floats
     along_j: Floats
     repeat: tuple[bool, bool]
@@ -72,74 +79,67 @@ class PaperTextures:
 
     @classmethod
     def build(
-        cls,
-        store: SliceStore,
-        *,
-        resolution: int,
-        correction: bool,
-        seed: int = 0,
-        pattern: str = "texture",
-        tiles: int = 1,
-        image: Singles | None = None,
+        cls, store: SliceStore, settings: Settings, image: Floats32 | None = None
     ) -> PaperTextures:
-        """Make both textures for a field.
+        """Make both textures of a flow.
 
         Parameters
         ----------
         store
             The flow and its traces.
-        resolution
-            Texels along the longer side of the surface; the other side gets as many as its
-            length on the surface asks for. Rounded up to a power of two.
-        correction
-            Whether the noise is even on the surface instead of even in the texture.
-        seed
-            Number of the noise pattern.
-        pattern
-            ``"texture"`` for the paper's noise, ``"spots"`` for that of Spot Noise,
-            ``"checkerboard"`` or ``"image"`` for a picture.
-        tiles
-            How much smaller the squares of a checkerboard are.
+        settings
+            Pattern (``noise``), ``resolution``, ``noise_correction``, ``seed`` and ``tiles``.
         image
-            The picture for ``"image"``, (H, W, 4).
+            The picture for ``noise="image"``, (H, W, 4).
 
         Raises
         ------
         ValueError
             When the pattern is an image and there is none, or there is no such pattern.
         """
-        field = store.field
-        height, width = _size(field, resolution)
-        along_i, along_j = _coordinates(field, correction=correction)
+        field, corrected = store.field, settings.noise_correction
+        height, width = _size(field, settings.resolution)
+        along_i, along_j = _coordinates(field, correction=corrected)
         index = _texel_positions(along_i, along_j, height, width)
         size = np.broadcast_arrays(
             _slope(along_i, index[..., 0], width), _slope(along_j, index[..., 1], height)
         )
-        texels = Texels(field, index, np.stack(size, axis=-1), correction)
-        if pattern == "image" and image is not None:
-            laid: dict[str, Any] = {"noise": image, "picture": True}
-        else:
-            laid = _laid(texels, pattern, seed=seed, tiles=tiles)
+        texels = TexelMap(field, index, np.stack(size, axis=-1), corrected)
         return cls(
-            step=np.minimum(_steps(store, index, texels.size), 6e4).astype(np.float32),
+            step=np.minimum(_steps(store, index, texels.size), LONGEST_STEP).astype(np.float32),
             along_i=along_i,
             along_j=along_j,
             repeat=field.periodic,
-            corrected=correction,
-            **laid,
+            corrected=corrected,
+            **_noise(texels, settings, image),
         )
 
-    def with_image(self, image: Singles) -> PaperTextures:
+    def with_image(self, image: Floats32) -> PaperTextures:
         """Return the same with a picture (H, W, 4) in place of what was there."""
         return replace(self, noise=image, grain=1.0, picture=True)
 
     @cached_property
     def deviations(self) -> list[float]:
         """Deviation of the noise at each mip level and half-way to the next."""
-        return [1.0] * HALF_LEVELS if self.picture else deviations(self.noise)
+        return [1.0] * HALF_LEVELS if self.picture else _deviations(self.noise)
 
     @property
-    def coordinate(self) -> Singles:
+    def noise_texels(self) -> Floats32:
+        """The noise, or the picture, as a texture array of one layer, (1, H, W, C)."""
+        return self.noise.reshape(1, *self.noise.shape[:2], -1)
+
+    @property
+    def noise_repeat(self) -> tuple[bool, bool]:
+        """Whether that array goes around along (v, u): a picture always does."""
+        return (True, True) if self.picture else self.repeat
+
+    @property
+    def step_texels(self) -> Floats32:
+        """The step size as a texture array of one layer, (1, H, W, 1)."""
+        return self.step[None, :, :, None]
+
+    @property
+    def coordinate(self) -> Floats32:
         """Noise coordinates of the nodes, (J, I, 2)."""
         return np.stack(np.meshgrid(self.along_i, self.along_j), axis=-1).astype(np.float32)
 
@@ -201,10 +201,14 @@ def _slope(line: Floats, x: Floats, texels: int) -> Floats:
     return np.asarray(1 / (np.diff(line)[cell] * texels))
 
 
-def _laid(texels: Texels, pattern: str, *, seed: int, tiles: int) -> dict[str, Any]:
-    """Attributes of the noise, or of the picture, of a name."""
+def _noise(texels: TexelMap, settings: Settings, image: Floats32 | None) -> dict[str, Any]:
+    """Attributes of the noise, or of the picture in its place."""
+    pattern, seed = settings.noise, settings.seed
+    if pattern == "image" and image is not None:
+        return {"noise": image, "picture": True}
     if pattern == "checkerboard":
-        return {"noise": checkerboard(texels, tiles).astype(np.float32), "picture": True}
+        squares = checkerboard(texels, settings.tiles)
+        return {"noise": squares.astype(np.float32), "picture": True}
     if pattern == "spots":
         return {"noise": _unit(spots(texels, seed)), "grain": SPOT_GRAIN}
     if pattern != "texture":
@@ -218,7 +222,7 @@ def _laid(texels: Texels, pattern: str, *, seed: int, tiles: int) -> dict[str, A
     return {"noise": _unit(np.random.default_rng(seed).standard_normal(texels.shape))}
 
 
-def _unit(noise: Floats) -> Singles:
+def _unit(noise: Floats) -> Floats32:
     return np.asarray((noise - noise.mean()) / (noise.std() or 1.0), np.float32)
 
 
@@ -245,5 +249,40 @@ def _by_length(components: Floats, field: FlowField) -> Floats:
     moving = field.valid & (speed > 1e-7 * speed.max())
     if not moving.any():
         return np.zeros_like(components)
-    found = components / np.where(moving, speed, 1.0)[..., None]
-    return fill_blanked(found, moving)
+    by_length = components / np.where(moving, speed, 1.0)[..., None]
+    return fill_blanked(by_length, moving)
+
+
+def _deviations(noise: Floats32) -> list[float]:
+    """Return the deviation of a noise (H, W) as it is looked up at level n / 2, n = 0, 1, ...
+
+    Between the texels of a level and between two levels the look-up is linear, and the noise
+    goes around. Levels too coarse to be judged lose half from one to the next, as white noise.
+    """
+    at = np.random.default_rng(0).random((2, DEVIATION_POINTS))
+    level = noise.astype(np.float64)
+    values, result = _bilinear(level, at), []
+    while level.size >= 4 * FEWEST_TEXELS and min(level.shape) > 1:
+        level = block_means(level, 2)
+        coarser = _bilinear(level, at)
+        result += [float(values.std()), float((0.5 * (values + coarser)).std())]
+        values = coarser
+    result.append(float(values.std()))
+    while len(result) < HALF_LEVELS:
+        result.append(result[-1] / np.sqrt(2.0))
+    return [max(value, 1e-6) for value in result[:HALF_LEVELS]]
+
+
+def _bilinear(level: Floats, at: Floats) -> Floats:
+    """Values at coordinates (2, N) from 0 to 1, texels in the middle of their squares."""
+    rows, columns = level.shape
+    (j0, j1, t), (i0, i1, s) = _around(at[0], rows), _around(at[1], columns)
+    low = level[j0, i0] * (1 - s) + level[j0, i1] * s
+    high = level[j1, i0] * (1 - s) + level[j1, i1] * s
+    return np.asarray(low * (1 - t) + high * t)
+
+
+def _around(x: Floats, count: int) -> tuple[Indices, Indices, Floats]:
+    place = x * count - 0.5
+    first = np.floor(place).astype(np.intp)
+    return first % count, (first + 1) % count, place - first

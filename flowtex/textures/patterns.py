@@ -16,6 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from flowtex._util.array_types import Floats, Ints
 from flowtex.field import FlowField
 from flowtex.field.interpolation import between_nodes
 
@@ -23,13 +24,12 @@ __all__ = [
     "SPOT",
     "SPOT_GRAIN",
     "SQUARES",
-    "Texels",
+    "TexelMap",
     "checkerboard",
     "even_noise",
     "spots",
 ]
 
-Floats = NDArray[np.float64]
 
 #: Texels from one spot to the next, and the width of squares of noise that averages as spots do.
 SPOT, SPOT_GRAIN = 8, 7.2
@@ -42,7 +42,7 @@ SQUARES = 16
 
 
 @dataclass(frozen=True, eq=False)
-class Texels:
+class TexelMap:
     """Where the texels of a texture lie on a surface.
 
     Attributes
@@ -87,7 +87,7 @@ class Texels:
         return local if surface.frame is None else np.asarray(local @ surface.frame.T)
 
 
-def even_noise(texels: Texels, seed: int) -> Floats:
+def even_noise(texels: TexelMap, seed: int) -> Floats:
     """Noise, at each texel as coarse as the texel is long, (H, W) from 0 to 1.
 
     A texel takes the random number of the cube of a lattice in space in which it lies. The
@@ -101,7 +101,7 @@ def even_noise(texels: Texels, seed: int) -> Floats:
     return _hash(cell, octave, seed).astype(np.float64) / 2.0**64
 
 
-def spots(texels: Texels, seed: int) -> Floats:
+def spots(texels: TexelMap, seed: int) -> Floats:
     """Discs of random places and of random sign, (H, W).
 
     Every cell of a lattice holds one disc at a random place inside it. The lattice is that in
@@ -126,7 +126,7 @@ def spots(texels: Texels, seed: int) -> Floats:
     return total
 
 
-def _places_in_space(texels: Texels) -> tuple[Floats, NDArray[np.int64]]:
+def _places_in_space(texels: TexelMap) -> tuple[Floats, Ints]:
     """Texels in cells of the lattice of spots, (H, W, 2 or 3), and its octave, (H, W)."""
     long_ = texels.lengths.max(axis=-1)
     width = SPOT * float(np.median(long_))
@@ -144,7 +144,7 @@ def _disc(place: Floats, number: NDArray[np.uint64]) -> Floats:
     return np.where(number >> np.uint64(63), disc, -disc)
 
 
-def checkerboard(texels: Texels, tiles: int) -> Floats:
+def checkerboard(texels: TexelMap, tiles: int) -> Floats:
     """Black and white squares of even size, (H, W) from 0 to 1, with edges as wide as a texel.
 
     Squares lie in the plane of a flat surface when corrected, and on the parameters otherwise.
@@ -181,7 +181,7 @@ def _wave(x: Floats, wide: Floats) -> Floats:
     return np.asarray(np.clip(inside * (2.0 / np.maximum(wide, 1e-9)), -1.0, 1.0))
 
 
-def _hash(cell: NDArray[np.int64], octave: NDArray[np.int64], seed: int) -> NDArray[np.uint64]:
+def _hash(cell: Ints, octave: Ints, seed: int) -> NDArray[np.uint64]:
     """Uniform random whole number of a lattice cell (..., 2 or 3)."""
     primes = np.array([0x9E3779B1, 0x85EBCA77, 0xC2B2AE3D], dtype=np.uint64)
     h = np.zeros(octave.shape, np.uint64)

@@ -23,21 +23,19 @@ import os
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from flowtex._util.array_types import AnyArray, Floats, Floats32
 from flowtex.field.validation import three_components
 from flowtex.settings import Settings
-from flowtex.textures.displacements import Moves
-from flowtex.textures.geometry import Geometry
+from flowtex.textures.displacements import NodeDisplacements
+from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.textures.paper import PaperTextures
 from flowtex.trace import SliceStore, TraceSlices
 
 __all__ = ["MOST_LAGS", "TextureSet"]
 
-Singles = NDArray[np.float32]
 
 #: Slices on each side that a shader has room for.
 MOST_LAGS = 32
@@ -59,14 +57,14 @@ class TextureSet:
         The noise texture and the step texture, for ``space="parameter"``.
     """
 
-    geometry: Geometry
+    geometry: SurfaceGeometry
     store: SliceStore
     space: str = "physical"
     paper: PaperTextures | None = None
 
     @classmethod
     def build(
-        cls, store: SliceStore, settings: Settings, image: Singles | None = None
+        cls, store: SliceStore, settings: Settings, image: Floats32 | None = None
     ) -> TextureSet:
         """Make the textures that the settings ask for.
 
@@ -96,21 +94,13 @@ class TextureSet:
         if not 2 <= len(store.lags) <= MOST_LAGS:
             msg = f"{len(store.lags)} lags were traced; expected 2 to {MOST_LAGS} to draw with"
             raise ValueError(msg)
-        geometry = Geometry.of(field)
+        geometry = SurfaceGeometry.of(field)
         if settings.noise == "procedural":
             return cls(geometry, store)
-        paper = PaperTextures.build(
-            store,
-            resolution=settings.resolution,
-            correction=settings.noise_correction,
-            seed=settings.seed,
-            pattern=settings.noise,
-            tiles=settings.tiles,
-            image=image,
-        )
+        paper = PaperTextures.build(store, settings, image)
         return cls(geometry, store, "parameter", paper)
 
-    def with_image(self, image: Singles) -> TextureSet:
+    def with_image(self, image: Floats32) -> TextureSet:
         """Return the same with another picture in place of the noise texture.
 
         Raises
@@ -125,7 +115,7 @@ class TextureSet:
 
     def same_paths(self, other: TextureSet) -> bool:
         """Tell whether nothing but the picture in place of the noise differs."""
-        steps = [made.paper.step if made.paper is not None else None for made in (self, other)]
+        steps = [None if one.paper is None else one.paper.step for one in (self, other)]
         return self.geometry is other.geometry and steps[0] is steps[1] is not None
 
     @property
@@ -150,7 +140,7 @@ class TextureSet:
         return float(np.median(self.store.unit[self.geometry.field.valid])) * self.pace
 
     @property
-    def lags(self) -> Singles:
+    def lags(self) -> Floats32:
         """Lags of the slices, (M,), in multiples of the unit at each node."""
         return self.store.lags.astype(np.float32)
 
@@ -159,20 +149,20 @@ class TextureSet:
         """Number of layers."""
         return 1 + self.sides * len(self.store.lags)
 
-    def layers(self, step: int = 0) -> Singles:
+    def layers(self, step: int = 0) -> Floats32:
         """Texels of the slice texture for one destination time, (layers, H, W, 4)."""
         slices = self.store.at(step)
         size = (self.geometry.rows.size, self.geometry.columns.size)
         result = np.empty((self.count, *size, 4), np.float32)
 
         def make(layer: int) -> None:
-            self.geometry.lay(self._nodal(slices, layer), result[layer])
+            self.geometry.write_texels(self._nodal(slices, layer), result[layer])
 
         with ThreadPoolExecutor(max_workers=min(os.cpu_count() or 1, 8)) as pool:
             list(pool.map(make, range(self.count)))
         return result
 
-    def _nodal(self, slices: TraceSlices, layer: int) -> Singles:
+    def _nodal(self, slices: TraceSlices, layer: int) -> Floats32:
         """Give the four channels of one layer at the nodes, (J, I, 4)."""
         result = np.zeros((*slices.shape, 4), np.float32)
         if layer == 0:
@@ -189,7 +179,7 @@ class TextureSet:
             result[..., :2] = moved * scale
         else:
             by_length = scale / self._length[..., 0]
-            for channel, moved in enumerate(self._moves(displacement[0, m])):
+            for channel, moved in enumerate(self._displacements(displacement[0, m])):
                 np.multiply(moved, by_length, out=result[..., channel], casting="same_kind")
         if m == 0:
             result[..., 3] = _usable_reach(reach[0], slices)
@@ -197,13 +187,13 @@ class TextureSet:
             result[..., 3] = self._speed(slices)
         return result
 
-    def _speed(self, slices: TraceSlices) -> NDArray[Any]:
+    def _speed(self, slices: TraceSlices) -> AnyArray:
         """Speed of the flow at the nodes in multiples of its typical speed, (J, I)."""
         field = self.geometry.field
         step = int(np.argmin(np.abs(field.times - slices.times[0])))
         return np.asarray(field.speed[step] / self.typical_speed)
 
-    def _tangent(self, slices: TraceSlices) -> NDArray[Any]:
+    def _tangent(self, slices: TraceSlices) -> AnyArray:
         rate = slices.rate[0]
         if self.paper is not None:
             return three_components(rate * self.paper.by_cell())
@@ -217,18 +207,20 @@ class TextureSet:
         return np.asarray(along @ self.geometry.frame.T) / self._length
 
     @cached_property
-    def _moves(self) -> Moves:
+    def _displacements(self) -> NodeDisplacements:
         """Takes displacements to space; a flat surface has no third component."""
         frame = self.geometry.frame
-        return Moves(self.geometry.field.surface, frame[:2] if self.geometry.planar else frame)
+        return NodeDisplacements(
+            self.geometry.field.surface, frame[:2] if self.geometry.planar else frame
+        )
 
     @cached_property
-    def _length(self) -> NDArray[np.float64]:
+    def _length(self) -> Floats:
         """Nominal length of one unit of lag at each node, (J, I, 1)."""
         return (self.store.unit * self.pace)[..., None]
 
 
-def _usable_reach(reach: NDArray[Any], slices: TraceSlices) -> NDArray[Any]:
+def _usable_reach(reach: AnyArray, slices: TraceSlices) -> AnyArray:
     """Reach to draw with: where nothing moves, the neighbours alone decide."""
     still = ~np.abs(slices.rate[0]).any(axis=-1)
     return np.where(still, np.inf, reach).clip(max=2 * float(slices.lags[-1]))

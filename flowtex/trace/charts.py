@@ -2,8 +2,8 @@
 
 Cells around a pole have no width, and in index space the velocity there has no bound. In the
 plane that touches the surface at the pole both are ordinary, so a path that comes within a few
-cells of a pole is followed in that plane, across the pole if need be. What is kept of it are
-positions in index space again.
+cells of a pole is followed in that plane, across the pole if need be. Its positions are stored in
+index space again.
 
 Chart 0 is index space; the others are the planes of the poles, in cells towards the pole.
 """
@@ -15,45 +15,59 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.field.poles import Pole, Poles
 from flowtex.field.signs import corner_signs
-from flowtex.trace.lattice import Corners, Lattice
+from flowtex.trace.node_grid import Corners, NodeGrid
 
 __all__ = ["Charts", "Patch", "cap"]
 
-Floats = NDArray[np.float64]
 Numbers = NDArray[np.int8]
 
 #: Cells from a pole within which a path is followed in the plane: so many at least, and up to
 #: where cells are this share as wide as long.
-NEAR, WIDE = 6, 0.5
+LEAST_NEAR_CELLS, NEAR_ASPECT = 6, 0.5
 #: Cells from a pole within which nothing is looked up between nodes.
-CLOSE = 4
-#: How many more it takes to leave it again, and how many more hold data.
-LEAVE, SPARE = 1, 3
+CLOSE_CELLS = 4
+#: Cells beyond those at which a path leaves the plane again, and cells beyond that with data.
+LEAVE_CELLS, SPARE_CELLS = 1, 3
 
 
 class Patch(NamedTuple):
     """Nodal data on one chart, each array flat, of sets behind each other."""
 
-    lattice: Lattice
+    grid: NodeGrid
     data: list[Floats]
     pole: Pole | None = None
-    #: First line of the lattice that counts from the pole.
+    #: First line of the grid that counts from the pole.
     offset: int = 0
     #: Signs of the corners of each cell, (4, J * I), where the first two arrays have no sign.
     signs: NDArray[np.int8] | None = None
+
+    def without_sign(self, vectors: Floats | None = None) -> Patch:
+        """Return the patch for data of which only the axis counts, v meaning the same as -v.
+
+        Parameters
+        ----------
+        vectors
+            Vectors at the nodes, (J, I, C); those of the chart itself when left out.
+        """
+        if vectors is None:
+            parts = [a.reshape(self.grid.rows, self.grid.columns) for a in self.data[:2]]
+            vectors = np.stack(parts, axis=-1)
+        signs = corner_signs(vectors)
+        return self._replace(signs=None if signs is None else signs.reshape(4, -1))
 
     def corners(self, position: Floats) -> Corners:
         """Cells of positions (2, N) of the chart."""
         if self.pole is not None:
             position = self.pole.index(position)
             position[self.pole.component] -= self.offset
-        return self.lattice.corners(position)
+        return self.grid.corners(position)
 
-    def blend(self, number: int, corners: Corners, step: NDArray[np.intp] | int = 0) -> Floats:
+    def blend(self, number: int, corners: Corners, step: Indices | int = 0) -> Floats:
         """Interpolate one of the arrays, in the set of the number ``step``."""
-        result = self.lattice.blend(self.data[number], corners, step * self.lattice.size)
+        result = self.grid.blend(self.data[number], corners, step * self.grid.size)
         if self.signs is not None and number < 2:
             cut = np.flatnonzero((self.signs[:, corners.at] < 0).any(axis=0))
             some = Corners(*(part[cut] for part in corners))
@@ -66,7 +80,7 @@ class Patch(NamedTuple):
         weights = ((1 - s) * (1 - t), s * (1 - t), (1 - s) * t, s * t)
         result = np.zeros(len(at))
         if self.signs is not None:
-            width = self.lattice.columns
+            width = self.grid.columns
             for sign, weight, on in zip(self.signs, weights, (0, 1, width, width + 1), strict=True):
                 result += sign[at] * weight * data[at + on]
             result *= self.signs[(s >= 0.5) + 2 * (t >= 0.5), at]
@@ -86,21 +100,24 @@ class Charts:
         self._poles = poles
         cells = next(iter(poles)).cells
         #: Cells from a pole within which its plane is used.
-        self.near = min(max(NEAR, int(WIDE * cells / (2 * np.pi))), max((poles.lines - 1) // 3, 1))
+        self.near = min(
+            max(LEAST_NEAR_CELLS, int(NEAR_ASPECT * cells / (2 * np.pi))),
+            max((poles.lines - 1) // 3, 1),
+        )
 
     def choose(self, index: Floats, chart: Numbers | None = None) -> Numbers:
         """Charts (N,) for positions (2, N) in index space; those of before stay a little longer."""
         index = self._poles.fold(index)
         result = np.zeros(index.shape[1], np.int8)
         for number, pole in enumerate(self._poles, 1):
-            stay = 0 if chart is None else LEAVE * (chart == number)
+            stay = 0 if chart is None else LEAVE_CELLS * (chart == number)
             result[pole.depth(index) < self.near + stay] = number
         return result
 
-    def close(self, index: Floats) -> NDArray[np.bool_]:
+    def close(self, index: Floats) -> Bools:
         """Whether positions (2, N) in index space are right beside a pole, (N,)."""
         index = self._poles.fold(index)
-        close = [pole.depth(index) < min(CLOSE, self.near) for pole in self._poles]
+        close = [pole.depth(index) < min(CLOSE_CELLS, self.near) for pole in self._poles]
         return np.asarray(np.any(close, axis=0))
 
     def enter(self, index: Floats, chart: Numbers) -> Floats:
@@ -122,52 +139,46 @@ class Charts:
         for number, pole in enumerate(self._poles, 1):
             some = chart == number
             if some.any():
-                found = pole.index(position[:, some])
+                there = pole.index(position[:, some])
                 if near is not None:
                     # A path as long as from pole to pole is written anew.
                     beside = near[:, some]
                     far = np.abs(pole.depth(beside)) >= self._poles.lines - 1
                     beside = np.where(far, self._poles.fold(beside), beside)
-                    found = pole.nearest(found, beside)
-                result[:, some] = found
+                    there = pole.nearest(there, beside)
+                result[:, some] = there
         return result
 
 
-def cap(
-    pole: Pole, lattice: Lattice, data: list[Floats], near: int, *, sign_free: bool = False
-) -> Patch:
+def cap(pole: Pole, grid: NodeGrid, data: list[Floats], near: int) -> Patch:
     """Lay out the data around a pole on its plane.
 
     Parameters
     ----------
     pole
         The pole.
-    lattice
+    grid
         The nodes of the whole surface.
     data
         Components along i and j, in cells, and anything else, each (sets * J * I,).
     near
         Cells from the pole within which the plane is used.
-    sign_free
-        Whether velocities have no sign.
     """
-    grid = (-1, lattice.rows, lattice.columns)
-    lines = (lattice.rows if pole.component else lattice.columns) - 1
-    depth = min(near + LEAVE + SPARE, lines)
+    shape = (-1, grid.rows, grid.columns)
+    lines = (grid.rows if pole.component else grid.columns) - 1
+    depth = min(near + LEAVE_CELLS + SPARE_CELLS, lines)
     first = pole.line if pole.inward > 0 else pole.line - depth
     # From here on with the lines around the pole as the second axis.
-    strips = [pole.lines(a.reshape(grid), 1)[:, first : first + depth + 1] for a in data]
+    strips = [pole.lines(a.reshape(shape), 1)[:, first : first + depth + 1] for a in data]
     strips[:2] = _to_plane(pole, strips[1 - pole.component], strips[pole.component])
     strips = [pole.lines(a, 1) for a in strips]
     rows, columns = strips[0].shape[1:]
-    signs = corner_signs(np.stack([a[0] for a in strips[:2]], axis=-1)) if sign_free else None
     cells = np.ones((rows - 1, columns - 1), bool)
     return Patch(
-        Lattice((rows, columns), lattice.periodic, cells),
+        NodeGrid((rows, columns), grid.periodic, cells),
         [np.ascontiguousarray(a).ravel() for a in strips],
         pole,
         first,
-        None if signs is None else signs.reshape(4, -1),
     )
 
 
@@ -180,9 +191,9 @@ def _to_plane(pole: Pole, around: Floats, across: Floats) -> list[Floats]:
     depth = np.arange(around.shape[1], dtype=float)[:, None]
     depth = depth if pole.inward > 0 else depth[::-1]
     still = pole.vector(across[:, at]) / pole.size
-    found = []
+    components = []
     for c in range(2):
         v = pole.inward * across * rays[:, c] + around * depth * turn[:, c]
         v[:, at] = still[:, c, None]
-        found.append(v)
-    return found
+        components.append(v)
+    return components

@@ -21,46 +21,53 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from flowtex._util.array_types import AnyArray, Bools, Floats, Floats32, Indices
 from flowtex._util.progress import check
 from flowtex.field import FlowField
-from flowtex.trace.known import CLOSE, Known, Piece
+from flowtex.trace.node_grid import Corners, NodeGrid
 
-__all__ = ["compose", "landings"]
-
-Floats = NDArray[np.float64]
-Singles = NDArray[np.float32]
-Indices = NDArray[np.intp]
+__all__ = ["Integrate", "Within", "compose", "landings"]
 
 #: Pieces of a path, at most, before the rest is looked up in one whatever its error.
 MOST_PIECES = 64
 #: Paths looked up together.
 BLOCK = 16384
 #: Cells beyond a border where a path that follows it may be put by its look-ups.
-BESIDE = 1e-2
+BORDER_CELLS = 1e-2
 #: Parts of a piece in which its end is looked for, and how often one is halved then.
-SEARCHED, BISECTIONS = 16, 6
+SEARCH_PARTS, SEARCH_BISECTIONS = 16, 6
+
+#: Error of a look-up that is allowed, as a share of the path's length, and in cells.
+ERROR_SHARE, ERROR_CELLS = 0.002, 0.003
+#: Lags closer to a slice than this share are taken from it.
+LAG_ROUNDING = np.float32(1e-4)
+
 
 Some = slice | Indices
 #: Runs a function over blocks, perhaps in threads, and gives the results in order.
 Map = Callable[[Callable[[Any], Any], Iterable[Any]], Iterable[Any]]
 #: Whether positions (2, n) are where paths are to be followed, (n,).
-Within = Callable[[Floats], NDArray[np.bool_]]
+Within = Callable[[Floats], Bools]
 #: Follows paths from positions (2, n), by lags (n,), from time steps (n,), as long as they are
 #: there: displacements (2, n), lags covered, and lags at which they end, infinite if they do not.
-Integrate = Callable[[Singles, Singles, Indices, Within | None], tuple[Singles, Singles, Singles]]
+Integrate = Callable[
+    [Floats32, Floats32, Indices, Within | None], tuple[Floats32, Floats32, Floats32]
+]
 
 
 def landings(field: FlowField, lags: Floats, unit: Floats) -> Indices | None:
     """Time steps that each lag of a time-varying field spans, 0 for a part of one, (M,).
 
     ``None`` when paths cannot be composed: the steps are not equal, or the lags are not multiples
-    of the first one that is a whole number of them.
+    of the first one that is a whole number of them; or the field has no sign, so that slices of
+    nodes that point either way cannot be interpolated.
     """
+    if field.sign_free:
+        return None
     if field.steady:
         return np.zeros(len(lags), dtype=np.intp)
     steps = np.diff(field.times)
@@ -80,64 +87,199 @@ def compose(
     field: FlowField,
     lags: Floats,
     unit: Floats,
-    slices: Singles,
-    reach: Singles,
+    slices: Floats32,
+    reach: Floats32,
     known: int,
     landing: Indices,
     run: Map = map,
-    polar: NDArray[np.bool_] | None = None,
+    polar: Bools | None = None,
     integrate: Integrate | None = None,
 ) -> None:
     """Fill the long slices of one direction in place.
 
     Parameters
     ----------
-    field
-        The flow.
-    lags
-        All lags, (M,), in multiples of ``unit``.
-    unit
-        One unit of lag at each node, (J, I).
+    field, lags, unit
+        The flow, all lags, (M,), and one unit of lag at each node, (J, I).
     slices
         Derivative of the displacement by lag at lag zero, and the displacements,
-        (2, M + 1, T, J, I), of which those of the first ``known`` lags are given.
+        (2, M + 1, T, J, I), of which those of the first ``known`` lags are filled.
     reach
-        Lag at which each path ended, (T, J, I), infinite where it did not within what is known.
+        Lag at which each path ended, (T, J, I), infinite where it did not within these.
     known
-        How many slices are given.
+        Number of slices that are filled.
     landing
-        What :func:`landings` gives.
+        From :func:`landings`.
     run
         Maps a function over blocks of paths.
     polar
-        Which paths have come right beside a pole within what is known, (T, J, I); more of them
-        are marked.
+        Which paths have come right beside a pole, (T, J, I); more of them are marked.
     integrate
         Follows paths right beside a pole.
     """
     polar = np.zeros(reach.shape, bool) if polar is None else polar
-    store = Known(field, lags, unit, slices, reach, landing, polar)
+    lookup = _SliceLookup(field, lags, unit, slices, reach, landing, polar)
     beside = None if field.surface.poles is None else integrate
     for m in range(known + 1, len(lags) + 1):
-        store.judge(m - 1, always=m - 1 == known)
-        _Doubling(store, m, beside).run(run)
+        lookup.judge(m - 1, always=m - 1 == known)
+        _Doubling(lookup, m, beside).run(run)
+
+
+class _Piece(NamedTuple):
+    """Continuations of n paths."""
+
+    moved: Floats32  #: displacement, (2, n)
+    covered: Floats32  #: lag that they cover
+    ends: Floats32 | None  #: lag at which they end, beyond ``covered`` where they do not
+    steps: Indices | int  #: time steps that they go back
+
+
+class _SliceLookup:
+    """Slices that are known so far, looked up at any position.
+
+    For each slice it is known where it is smooth enough, for its length, to be looked up between
+    nodes. Where a path comes right beside a pole it never is, because its neighbours pass the
+    pole on the other side: a slice is used up to the lag at which they do.
+    """
+
+    def __init__(
+        self,
+        field: FlowField,
+        lags: Floats,
+        unit: Floats,
+        slices: Floats32,
+        reach: Floats32,
+        landing: Indices,
+        polar: Bools,
+    ) -> None:
+        self.grid = NodeGrid.of(field)
+        self.knots = np.concatenate([[0.0], lags]).astype(np.float32)
+        # What is stored at lag zero is the slope itself.
+        self._inverse = np.concatenate([[1.0], 1 / lags]).astype(np.float32)
+        self.landing = np.concatenate([[0], landing])
+        self.unit = unit.ravel().astype(np.float32)
+        self._even = bool(np.ptp(self.unit) <= LAG_ROUNDING * self.unit[0])
+        self.unsteady = not field.steady
+        self.slices = slices.reshape(2, len(self.knots), -1)
+        self.reach = reach.reshape(-1)
+        i, j = np.meshgrid(np.arange(self.grid.columns), np.arange(self.grid.rows))
+        self.nodes = np.stack([i, j]).reshape(2, -1).astype(np.float32)
+        self._grids = slices
+        self._pace = np.abs(slices[:, 0]).max(axis=0)
+        self._trust = np.zeros(reach.shape, np.float32)
+        self._longest = self._capped = np.empty(0, np.float32)
+        self._endless = False
+        self._first = np.float32(0)
+        #: Which nodes have a path that has come right beside a pole, (T, J, I).
+        self.polar = polar
+
+    def judge(self, m: int, *, always: bool) -> None:
+        """Find where slice m is smooth enough to be looked up.
+
+        Where it is not, the longest slice that is, is used; ``always`` accepts it everywhere.
+        """
+        if always:
+            self._trust[:] = np.where(self.polar, 0, self.knots[m])
+            self._first = self.knots[m]
+        else:
+            grid = self._grids[:, m]
+            error = (_bend(grid, 2) + _bend(grid, 3)).max(axis=0)
+            good = error <= 8 * (ERROR_SHARE * self.knots[m] * self._pace + ERROR_CELLS)
+            good &= (self._trust == self.knots[m - 1]) & ~self.polar
+            self._trust[good] = self.knots[m]
+        # A cell may use what is good at its four nodes.
+        trust = np.minimum(self._trust[:, :-1], self._trust[:, 1:])
+        trust = np.minimum(trust[:, :, :-1], trust[:, :, 1:])
+        self._longest = np.pad(trust, ((0, 0), (0, 1), (0, 1))).ravel()
+        # Endless ones count as so long that a path ends only between nodes whose paths all end.
+        self._capped = np.minimum(self.reach, 1e4 * self.knots[m])
+        self._endless = bool(np.isinf(self.reach).all())
+
+    def continued(self, position: Floats32, left: Floats32, step: Indices, most: Any) -> _Piece:
+        """Continue paths from positions (2, n) by up to ``left`` of lag."""
+        corners = self.grid.corners(position)
+        base = step * self.grid.size if self.unsteady else 0
+        unit = self.unit[:1] if self._even else self.grid.blend(self.unit, corners)
+        longest = self._longest[corners.at + base] if most is None else most
+        lag: AnyArray = np.minimum(left / unit, longest)
+        if self.grid.poles is not None and not self.unsteady:
+            # Past a pole an index turns so quickly that nothing can be interpolated between lags.
+            whole = self.knots[
+                np.searchsorted(self.knots, lag * (1 + LAG_ROUNDING), side="right") - 1
+            ]
+            lag = np.where(whole > self._first, np.minimum(whole, lag), lag)
+        if lag.min() == lag.max():
+            # Even cells, smooth slices: one slice for all.
+            lag = lag[:1]
+        if self.unsteady:
+            m = np.searchsorted(self.knots * (1 - LAG_ROUNDING), lag, side="right") - 1
+            lag = self.knots[m]
+        else:
+            m = np.maximum(np.searchsorted(self.knots, lag * (1 - LAG_ROUNDING)), 1)
+        moved = self._displaced(corners, base, m, lag)
+        self._mirror(moved, position)
+        ends = None
+        if not self._endless:
+            ends = self.grid.blend(self._capped, corners, base) * unit
+        covered = np.broadcast_to(lag * unit, left.shape)
+        return _Piece(moved, covered, ends, self.landing[m])
+
+    def stuck(self, position: Floats | Floats32, step: Indices | int = 0) -> Bools:
+        """Whether positions (2, n) are so close to a pole that nothing can be looked up, (n,)."""
+        base = step * self.grid.size if self.unsteady else 0
+        return np.asarray(self._longest[self.grid.corners(position).at + base] == 0)
+
+    def displaced(self, position: Floats32, lag: Floats32, step: Indices) -> Floats32:
+        """Displacements (2, n) of paths from positions (2, n) at any lags up to the last slice."""
+        corners = self.grid.corners(position)
+        base = step * self.grid.size if self.unsteady else 0
+        units: Any = lag / (self.unit[:1] if self._even else self.grid.blend(self.unit, corners))
+        m = np.clip(np.searchsorted(self.knots, units), 1, len(self.knots) - 1)
+        moved = self._displaced(corners, base, m, units)
+        self._mirror(moved, position)
+        return moved
+
+    def _mirror(self, moved: Floats32, position: Floats32) -> None:
+        """Turn displacements from positions beyond a pole to run as index space does there."""
+        poles = self.grid.poles
+        if poles is not None:
+            moved[poles.component, poles.mirrored(position)] *= -1
+
+    def _displaced(
+        self, corners: Corners, base: Indices | int, m: Indices, lag: Floats32
+    ) -> Floats32:
+        """Displacements at lags (n,) or (1,), between the slices m - 1 and m."""
+        late = (lag - self.knots[m - 1]) / (self.knots[m] - self.knots[m - 1])
+        exact = bool((late > 1 - 10 * LAG_ROUNDING).all())
+        if len(m) == 1:
+            m = m[0]
+        result = np.empty((2, len(corners.at)), np.float32)
+        stride = self.slices.shape[2]
+        for out, data in zip(result, self.slices.reshape(2, -1), strict=True):
+            slope = self.grid.blend(data, corners, base + m * stride) * self._inverse[m]
+            if not exact:
+                before = self.grid.blend(data, corners, base + (m - 1) * stride)
+                before *= self._inverse[m - 1]
+                slope = before + late * (slope - before)
+            np.multiply(slope, lag, out=out)
+        return result
 
 
 class _Doubling:
     """Paths on their way from one slice to the next, (T * J * I,) of them."""
 
-    def __init__(self, store: Known, m: int, integrate: Integrate | None) -> None:
-        count, nodes = len(store.reach), store.lattice.size
-        before, lag = store.knots[m - 1], store.knots[m]
-        self._store, self._lag, self._before = store, lag, before
-        self._moved = store.slices[:, m]
-        self._moved[:] = store.slices[:, m - 1]
-        self._whole = lag * store.unit
-        self._left = np.tile((lag - before) * store.unit, count // nodes)
+    def __init__(self, lookup: _SliceLookup, m: int, integrate: Integrate | None) -> None:
+        count, nodes = len(lookup.reach), lookup.grid.size
+        before, lag = lookup.knots[m - 1], lookup.knots[m]
+        self._lookup, self._lag, self._before = lookup, lag, before
+        self._moved = lookup.slices[:, m]
+        self._moved[:] = lookup.slices[:, m - 1]
+        self._whole = lag * lookup.unit
+        self._left = np.tile((lag - before) * lookup.unit, count // nodes)
         self._integrate = integrate
         self._stuck: list[Indices] = []
-        self._suspects: list[tuple[NDArray[Any], ...]] = []
-        self._step = np.maximum(np.arange(count) // nodes - store.landing[m - 1], 0)
+        self._suspects: list[tuple[AnyArray, ...]] = []
+        self._step = np.maximum(np.arange(count) // nodes - lookup.landing[m - 1], 0)
 
     def run(self, run: Map) -> None:
         """Follow all paths to their end, piece by piece."""
@@ -160,34 +302,34 @@ class _Doubling:
 
     def follow(self, some: Some, longest: np.float32 | None) -> Indices:
         """Continue some paths by a piece, and return those that must go further."""
-        store = self._store
+        lookup = self._lookup
         if self._integrate is not None:
             some = self._without_stuck(some)
         left = self._left[some]
         if not len(left):
             return np.empty(0, np.intp)
         node, position = self._where(some)
-        piece = store.continued(position, left, self._step[some], longest)
+        piece = lookup.continued(position, left, self._step[some], longest)
         whole = self._whole[node]
         self._suspect(some, position, piece)
         for row, part in zip(self._moved, piece.moved, strict=True):
             row[some] += part
-        left -= piece.gone
+        left -= piece.covered
         self._left[some] = left
-        if store.unsteady:
+        if lookup.unsteady:
             self._step[some] = np.maximum(self._step[some] - piece.steps, 0)
-        return _numbers(some, np.flatnonzero(left > CLOSE * whole))
+        return _numbers(some, np.flatnonzero(left > LAG_ROUNDING * whole))
 
-    def _where(self, some: Some) -> tuple[Some, Singles]:
+    def _where(self, some: Some) -> tuple[Some, Floats32]:
         """Nodes at which some paths begin, and where they have come, (2, n)."""
         node = some
-        if self._store.unsteady:
-            node = np.arange(len(self._left))[some] % self._store.lattice.size
-        return node, self._store.nodes[:, node] + self._moved[:, some]
+        if self._lookup.unsteady:
+            node = np.arange(len(self._left))[some] % self._lookup.grid.size
+        return node, self._lookup.nodes[:, node] + self._moved[:, some]
 
     def _without_stuck(self, some: Some) -> Some:
-        """Put aside the paths that have come right beside a pole."""
-        stuck = self._store.stuck(self._where(some)[1], self._step[some])
+        """Set apart the paths that have come right beside a pole."""
+        stuck = self._lookup.stuck(self._where(some)[1], self._step[some])
         if not stuck.any():
             return some
         self._stuck.append(_numbers(some, np.flatnonzero(stuck)))
@@ -195,35 +337,42 @@ class _Doubling:
 
     def _pass(self, which: Indices, *, final: bool) -> Indices:
         """Integrate paths by a pole, or to their end, and return those that must go further."""
-        store, left, step = self._store, self._left[which], self._step[which]
+        lookup, left, step = self._lookup, self._left[which], self._step[which]
         if self._integrate is None:
             return which
         node, position = self._where(which)
-        within = None if store.unsteady or final else store.stuck
-        moved, gone, ends = self._integrate(position, left, step, within)
+        within = None if lookup.unsteady or final else lookup.stuck
+        moved, covered, ends = self._integrate(position, left, step, within)
         self._moved[:, which] += moved
-        self._left[which] = left - gone
-        store.polar.reshape(-1)[which] = True
-        new = np.isinf(store.reach[which]) & np.isfinite(ends)
+        self._left[which] = left - covered
+        lookup.polar.reshape(-1)[which] = True
+        new = np.isinf(lookup.reach[which]) & np.isfinite(ends)
         whole = self._whole[node]
-        store.reach[which[new]] = self._lag * (1 - (left - ends)[new] / whole[new])
-        return _numbers(which, np.flatnonzero(self._left[which] > CLOSE * whole))
+        lookup.reach[which[new]] = self._lag * (1 - (left - ends)[new] / whole[new])
+        return _numbers(which, np.flatnonzero(self._left[which] > LAG_ROUNDING * whole))
 
-    def _suspect(self, some: Some, position: Singles, piece: Piece) -> None:
-        """Note the paths that seem to end within their piece."""
-        store = self._store
-        gone = ~store.lattice.alive(position + piece.moved, BESIDE)
+    def _suspect(self, some: Some, position: Floats32, piece: _Piece) -> None:
+        """List the paths that seem to end within their piece."""
+        lookup = self._lookup
+        ending = ~lookup.grid.alive(position + piece.moved, BORDER_CELLS)
         rest = np.full(1, np.inf, np.float32)
-        if piece.reached is not None:
-            rest = piece.reached
-            gone |= rest < piece.gone
-        gone &= np.isinf(store.reach[some])
-        if gone.any():
-            g = np.flatnonzero(gone)
-            which = _numbers(some, g)
-            rest = np.broadcast_to(rest, gone.shape)[g]
+        if piece.ends is not None:
+            rest = piece.ends
+            ending |= rest < piece.covered
+        ending &= np.isinf(lookup.reach[some])
+        if ending.any():
+            ended = np.flatnonzero(ending)
+            which = _numbers(some, ended)
+            rest = np.broadcast_to(rest, ending.shape)[ended]
             self._suspects.append(
-                (which, position[:, g], piece.gone[g], rest, self._left[which], self._step[which])
+                (
+                    which,
+                    position[:, ended],
+                    piece.covered[ended],
+                    rest,
+                    self._left[which],
+                    self._step[which],
+                )
             )
 
     def _find_ends(self) -> None:
@@ -231,30 +380,30 @@ class _Doubling:
         which, start, length, rest, left, step = (
             np.concatenate(part, axis=-1) for part in zip(*self._suspects, strict=True)
         )
-        # Pieces come in order, and only the first in which a path ends counts.
+        # _Pieces come in order, and only the first in which a path ends counts.
         which, once = np.unique(which, return_index=True)
         start, length, rest, left, step = (p[..., once] for p in (start, length, rest, left, step))
         first = np.full(len(which), np.inf, np.float32)
-        for share in np.linspace(1, 0, SEARCHED, endpoint=False, dtype=np.float32):
+        for share in np.linspace(1, 0, SEARCH_PARTS, endpoint=False, dtype=np.float32):
             first[self._outside(start, share * length, step)] = share
         leaves = np.isfinite(first)
         high = np.where(leaves, first, 0)
-        low = np.maximum(high - np.float32(1 / SEARCHED), 0)
-        for _ in range(BISECTIONS):
+        low = np.maximum(high - np.float32(1 / SEARCH_PARTS), 0)
+        for _ in range(SEARCH_BISECTIONS):
             middle = (low + high) / 2
             outside = self._outside(start, middle * length, step)
             low, high = np.where(outside, low, middle), np.where(outside, middle, high)
         further = np.where(leaves, low * length, np.where(rest < length, rest, np.inf))
-        whole = self._whole[which % self._store.lattice.size]
-        self._store.reach[which] = self._lag * (1 - (left - further) / whole)
+        whole = self._whole[which % self._lookup.grid.size]
+        self._lookup.reach[which] = self._lag * (1 - (left - further) / whole)
 
-    def _outside(self, start: Singles, lag: Singles, step: Indices) -> NDArray[np.bool_]:
-        moved = self._store.displaced(start, lag, step)
-        return ~self._store.lattice.alive(start + moved, BESIDE)
+    def _outside(self, start: Floats32, lag: Floats32, step: Indices) -> Bools:
+        moved = self._lookup.displaced(start, lag, step)
+        return ~self._lookup.grid.alive(start + moved, BORDER_CELLS)
 
 
 def _numbers(some: Some, which: Indices) -> Indices:
-    """Numbers of paths of which numbers among some are given."""
+    """Numbers of paths from their positions in a selection."""
     if isinstance(some, slice):
         return np.asarray(which + some.start)
     return some[which]
@@ -262,3 +411,11 @@ def _numbers(some: Some, which: Indices) -> Indices:
 
 def _parts(which: Indices) -> list[Some]:
     return [which[k : k + BLOCK] for k in range(0, len(which), BLOCK)]
+
+
+def _bend(grid: Floats32, axis: int) -> Floats32:
+    """Size of second differences along an axis of (2, T, J, I), as beside it at the border."""
+    if grid.shape[axis] < 3:
+        return np.zeros_like(grid)
+    bend = np.abs(np.diff(grid, 2, axis=axis))
+    return np.pad(bend, [(int(a == axis),) * 2 for a in range(grid.ndim)], mode="edge")

@@ -3,48 +3,48 @@
 The scheme is the embedded Runge-Kutta pair of order 3(2) by Bogacki and Shampine (1989), whose
 last stage is the first of the next step. Every particle keeps its own step size, which follows
 its own error; the arrays hold the particles still under way and shrink as paths come to their
-end. Positions at the wanted lags come from the cubic Hermite polynomial through a step's two
+end. Positions at the lags come from the cubic Hermite polynomial through a step's two
 ends, of the order of the scheme, so the lags do not shorten the steps.
 
-A path that leaves the domain, enters a blanked cell or stops is ended there. Its reach is kept,
-and beyond it the path goes on straight: interpolation between a path that has ended and its
+A path that leaves the domain, enters a blanked cell or stops is ended there. That lag is its
+reach, and beyond it the path goes on straight: interpolation between a path that has ended and its
 neighbour that has not then stays true up to the reach.
 
 Next to a pole a particle is followed in the plane there (see :mod:`flowtex.trace.charts`): it
-changes to another chart between two steps, and what is kept are positions in index space.
+changes to another chart between two steps, and its positions are returned in index space.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, fields
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from flowtex.trace.particles import Particles, Step, join
+from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.trace.sampler import Sampler
 
 __all__ = ["Paths", "integrate"]
 
-Floats = NDArray[np.float64]
-Indices = NDArray[np.intp]
-Bools = NDArray[np.bool_]
 Numbers = NDArray[np.int8]
 
 #: Longest step in cells: a path cannot jump over a blanked cell unseen.
-LONGEST = 1.0
+LONGEST_STEP_CELLS = 1.0
 #: A step may grow or shrink by these factors.
-SHRINK, GROW, SAFETY = 0.2, 4.0, 0.9
+STEP_SHRINK, STEP_GROWTH, STEP_SAFETY = 0.2, 4.0, 0.9
 #: Bisections that find where inside a step a path ends.
 BISECTIONS = 20
+#: Rounds of steps after which the paths that still go on are ended where they are.
+MOST_STEPS = 20_000
 #: Share of a step by which rounding may miss a lag.
-ROUNDING = 1e-9
+LAG_ROUNDING = 1e-9
 
 
 @dataclass(frozen=True)
 class Paths:
-    """Positions at the wanted lags, and how the paths went.
+    """Positions at the lags, and how far the paths lead.
 
     Attributes
     ----------
@@ -54,15 +54,15 @@ class Paths:
         Lag at which each path ended, (N,), infinite where it goes on.
     polar
         Which paths came right beside a pole, (N,).
-    left
-        Which paths were left on the way, (N,): ``reach`` is the lag at which they were, and all
-        positions that were still wanted are the one where they were.
+    interrupted
+        Which paths came where they are not to be followed, (N,): ``reach`` is the lag at which
+        they did, and all their later positions are the one where they did.
     """
 
     positions: Floats
     reach: Floats
     polar: Bools
-    left: Bools
+    interrupted: Bools
 
 
 def integrate(
@@ -73,10 +73,10 @@ def integrate(
     *,
     direction: float,
     tolerance: float,
-    most_steps: int = 20_000,
+    most_steps: int = MOST_STEPS,
     within: Callable[[Floats], Bools] | None = None,
 ) -> Paths:
-    """Follow particles and return where they are at the wanted lags.
+    """Follow particles and return where they are at the lags.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def integrate(
     start
         Starting positions in index space, (N, 2) as (i, j).
     lags
-        Wanted lags in units of each particle's ``unit``, (M,), positive and increasing.
+        Lags in units of each particle's ``unit``, (M,), positive and increasing.
     unit
         Length of one unit of lag for each particle, (N,).
     direction
@@ -93,10 +93,10 @@ def integrate(
     tolerance
         Error allowed in one step, in cells.
     most_steps
-        Rounds after which the paths that are left are ended where they are.
+        Rounds of steps after which the paths that still go on are ended where they are.
     within
-        Says of positions (2, N) in index space whether they are where paths are to be followed;
-        a path is left when it comes elsewhere.
+        Returns for positions (2, N) in index space whether paths are to be followed there; a path
+        that comes elsewhere is interrupted.
     """
     run = _Run(sampler, np.ascontiguousarray(start.T), lags, unit, direction, tolerance, within)
     for _ in range(most_steps):
@@ -105,7 +105,55 @@ def integrate(
             break
         run.advance()
     run.end_all()
-    return Paths(np.moveaxis(run.out, 1, 2), run.reach / unit, run.polar, run.left)
+    return Paths(np.moveaxis(run.out, 1, 2), run.reach / unit, run.polar, run.interrupted)
+
+
+@dataclass
+class _Particles:
+    """Particles still under way; the last axis is theirs.
+
+    Where there are poles, ``chart`` is what ``y`` is given on, and ``index`` the same in index
+    space; elsewhere both are None.
+    """
+
+    which: Indices
+    unit: Floats
+    rest: Floats
+    y: Floats
+    lag: Floats
+    step: Floats
+    rate: Floats
+    next: Indices
+    chart: Numbers | None
+    index: Floats | None
+
+    def pick(self, mask: Bools) -> _Particles:
+        """Return some of them."""
+        return _Particles(*_picked(self, mask))
+
+
+@dataclass
+class IntegrationStep:
+    """Steps of some particles, from (y0, k0) at lag0 to (y1, k1); the last axis is theirs."""
+
+    y0: Floats
+    k0: Floats
+    y1: Floats
+    k1: Floats
+    lag0: Floats
+    h: Floats
+    chart: Numbers | None = None
+    index: Floats | None = None
+
+    def pick(self, mask: Bools | Indices) -> IntegrationStep:
+        """Return the steps of some of them."""
+        return IntegrationStep(*_picked(self, mask))
+
+    def at(self, s: Floats) -> Floats:
+        """Position at a fraction of each step, by the cubic through both ends and slopes."""
+        r = 1 - s
+        start = r * r * (self.y0 + s * (2 * self.y0 + self.h * self.k0))
+        return np.asarray(start + s * s * (self.y1 + r * (2 * self.y1 - self.h * self.k1)))
 
 
 class _Run:
@@ -126,17 +174,17 @@ class _Run:
         self.charts, self.within = sampler.charts, within
         self.lags = lags
         #: The lags and one that is never reached, for particles that have them all.
-        self.wanted = np.append(lags, np.inf)
+        self.next_lags = np.append(lags, np.inf)
         self.out = np.repeat(start[None], len(lags), axis=0)
         self.reach = np.full(count, np.inf)
-        self.polar, self.left = np.zeros((2, count), dtype=bool)
+        self.polar, self.interrupted = np.zeros((2, count), dtype=bool)
         last = float(lags[-1])
         chart, y = None, start
         if self.charts is not None:
             chart = self.charts.choose(start)
             y = self.charts.enter(start, chart)
             self.polar |= self.charts.close(start)
-        self.state = Particles(
+        self.state = _Particles(
             which=np.arange(count),
             unit=unit,
             rest=sampler.rest(unit, last),
@@ -153,8 +201,8 @@ class _Run:
         """End the paths that do not move any more."""
         resting = _speed(self.state.rate) < self.state.rest
         if resting.any():
-            gone = self.state.pick(resting)
-            self._go_straight(gone, np.zeros_like(gone.y))
+            ended = self.state.pick(resting)
+            self._go_straight(ended, np.zeros_like(ended.y))
             self.state = self.state.pick(~resting)
 
     def end_all(self) -> None:
@@ -162,14 +210,14 @@ class _Run:
         self._go_straight(self.state, self.state.rate)
 
     def advance(self) -> None:
-        """One step of every particle: try it, keep it where its error is small enough."""
+        """Try one step of every particle, and accept it where its error is small enough."""
         state = self.state
-        left = self.lags[-1] * state.unit - state.lag
-        longest = LONGEST / np.maximum(_speed(state.rate), 1e-300)
-        h = np.minimum(np.minimum(state.step, longest), np.minimum(left, self.sampler.longest))
+        rest = self.lags[-1] * state.unit - state.lag
+        longest = LONGEST_STEP_CELLS / np.maximum(_speed(state.rate), 1e-300)
+        h = np.minimum(np.minimum(state.step, longest), np.minimum(rest, self.sampler.longest))
         step, error = self._try(h)
         size = np.maximum(error * (1 / self.tolerance), 1e-9)
-        state.step = h * np.clip(SAFETY / np.cbrt(size), SHRINK, GROW)
+        state.step = h * np.clip(STEP_SAFETY / np.cbrt(size), STEP_SHRINK, STEP_GROWTH)
         good = size <= 1.0
         if good.all():
             self._accept(state, step)
@@ -177,11 +225,11 @@ class _Run:
         elif good.any():
             moved = state.pick(good)
             self._accept(moved, step.pick(good))
-            self.state = join(moved, state.pick(~good))
+            self.state = _join(moved, state.pick(~good))
         if (finished := self.state.next >= len(self.lags)).any():
             self.state = self.state.pick(~finished)
 
-    def _try(self, h: Floats) -> tuple[Step, Floats]:
+    def _try(self, h: Floats) -> tuple[IntegrationStep, Floats]:
         """One Bogacki-Shampine step, and its estimated error in cells, (N,)."""
         state = self.state
         y, k1, lag = state.y, state.rate, state.lag
@@ -190,52 +238,52 @@ class _Run:
         after = y + h * (2 / 9 * k1 + 1 / 3 * k2 + 4 / 9 * k3)
         k4 = self._rate(after, lag + h, k3)
         error = h * _speed(-5 / 72 * k1 + 1 / 12 * k2 + 1 / 9 * k3 - 1 / 8 * k4)
-        return Step(y, k1, after, k4, lag, h, state.chart, state.index), error
+        return IntegrationStep(y, k1, after, k4, lag, h, state.chart, state.index), error
 
     def _rate(self, position: Floats, lag: Floats, ahead: Floats) -> Floats:
         return self.sampler.rate(position, lag, self.direction, self.state.chart, ahead)
 
-    def _index(self, position: Floats, along: Step | Particles) -> Floats:
+    def _index(self, position: Floats, along: IntegrationStep | _Particles) -> Floats:
         """Positions in index space of positions on the charts of a step or state."""
         if self.charts is None or along.chart is None:
             return position
         return self.charts.index(position, along.chart, along.index)
 
-    def _accept(self, state: Particles, step: Step) -> None:
+    def _accept(self, state: _Particles, step: IntegrationStep) -> None:
         """Move particles by their step; those that leave the domain are ended on the way."""
         index = self._index(step.y1, step)
-        gone = ~self.sampler.alive(index)
-        share = np.ones(len(gone))
-        if gone.any():
-            share[gone] = self._border(step.pick(gone))
+        outside = ~self.sampler.alive(index)
+        share = np.ones(len(outside))
+        if outside.any():
+            share[outside] = self._border(step.pick(outside))
         self._record(state, step, share)
-        if gone.any():
-            out = step.pick(gone)
-            s = share[gone]
-            ended = state.pick(gone)
+        if outside.any():
+            out = step.pick(outside)
+            s = share[outside]
+            ended = state.pick(outside)
             ended.y, ended.lag = out.at(s), out.lag0 + s * out.h
             self._go_straight(ended, out.k0 + s * (out.k1 - out.k0))
-            state.next[gone] = len(self.lags)
+            state.next[outside] = len(self.lags)
         state.y, state.rate, state.lag = step.y1, step.k1, step.lag0 + step.h
         if self.within is not None:
-            self._leave(state, index, gone)
+            self._interrupt(state, index, outside)
         if state.chart is not None:
             before, state.index = state.index, index
             self._change_chart(state, before)
 
-    def _leave(self, state: Particles, index: Floats, gone: Bools) -> None:
-        """Follow the paths no further that have come where they are to be left."""
+    def _interrupt(self, state: _Particles, index: Floats, outside: Bools) -> None:
+        """Stop the paths that have come where they are not to be followed."""
         if self.within is None:
             return
-        left = ~(self.within(index) | gone) & (state.next < len(self.lags))
-        which = state.which[left]
-        self.left[which], self.reach[which] = True, state.lag[left]
+        now = ~(self.within(index) | outside) & (state.next < len(self.lags))
+        which = state.which[now]
+        self.interrupted[which], self.reach[which] = True, state.lag[now]
         for m in range(len(self.lags)):
-            due = left & (state.next <= m)
+            due = now & (state.next <= m)
             self.out[m][:, state.which[due]] = index[:, due]
-        state.next[left] = len(self.lags)
+        state.next[now] = len(self.lags)
 
-    def _change_chart(self, state: Particles, before: Floats | None) -> None:
+    def _change_chart(self, state: _Particles, before: Floats | None) -> None:
         """Go on in the plane of a pole that has come close, or in index space again."""
         if self.charts is None or state.chart is None or state.index is None or before is None:
             return
@@ -249,11 +297,11 @@ class _Run:
             ahead = y - self.charts.enter(before[:, new], there)
             state.rate[:, new] = self.sampler.rate(y, state.lag[new], self.direction, there, ahead)
 
-    def _record(self, state: Particles, step: Step, share: Floats) -> None:
+    def _record(self, state: _Particles, step: IntegrationStep, share: Floats) -> None:
         """Write the positions at the lags that the first ``share`` of the steps has passed."""
         while True:
-            s = (self.wanted[state.next] * state.unit - step.lag0) / step.h
-            due = s <= share + ROUNDING
+            s = (self.next_lags[state.next] * state.unit - step.lag0) / step.h
+            due = s <= share + LAG_ROUNDING
             if not due.any():
                 return
             if due.all() and (state.next == state.next[0]).all():
@@ -266,7 +314,7 @@ class _Run:
             self.out[state.next[d], :, state.which[d]] = where.T
             state.next[d] += 1
 
-    def _border(self, step: Step) -> Floats:
+    def _border(self, step: IntegrationStep) -> Floats:
         """Share of a step that ends outside which is still inside, by bisection."""
         low, high = np.zeros(len(step.h)), np.ones(len(step.h))
         for _ in range(BISECTIONS):
@@ -275,18 +323,32 @@ class _Run:
             low, high = np.where(inside, middle, low), np.where(inside, high, middle)
         return low
 
-    def _go_straight(self, state: Particles, rate: Floats) -> None:
+    def _go_straight(self, state: _Particles, rate: Floats) -> None:
         """End paths where they are, and fill the lags that are left straight ahead."""
         self.reach[state.which] = state.lag
         for m, lag in enumerate(self.lags):
-            left = state.next <= m
-            if left.any():
-                further = lag * state.unit[left] - state.lag[left]
-                ahead = state.y[:, left] + further * rate[:, left]
-                self.out[m][:, state.which[left]] = self._index(ahead, state.pick(left))
+            later = state.next <= m
+            if later.any():
+                further = lag * state.unit[later] - state.lag[later]
+                ahead = state.y[:, later] + further * rate[:, later]
+                self.out[m][:, state.which[later]] = self._index(ahead, state.pick(later))
 
 
 def _speed(rate: Floats) -> Floats:
     """Greatest component of a rate, (N,)."""
     size = np.abs(rate)
     return np.asarray(np.maximum(size[0], size[1]))
+
+
+def _join(one: _Particles, two: _Particles) -> _Particles:
+    """Put some particles behind others."""
+    pairs = ((getattr(one, f.name), getattr(two, f.name)) for f in fields(_Particles))
+    joined: Iterator[Any] = (
+        None if a is None else np.concatenate([a, b], axis=-1) for a, b in pairs
+    )
+    return _Particles(*joined)
+
+
+def _picked(these: _Particles | IntegrationStep, mask: Bools | Indices) -> Iterator[Any]:
+    parts = (getattr(these, f.name) for f in fields(these))
+    return (None if part is None else part[..., mask] for part in parts)

@@ -1,4 +1,4 @@
-"""At which lags the paths are kept.
+"""Lags of the slices.
 
 A streak is a fixed number of pixels, so its length on the surface doubles with every level of
 detail. The lags therefore double too, from a quarter of a cell, where a path between two nodes
@@ -8,16 +8,15 @@ is as good as straight, to a quarter of the whole surface.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from flowtex._util.array_types import Floats
 from flowtex.field import FlowField
 
 __all__ = ["choose_lags", "lag_unit"]
 
-Floats = NDArray[np.float64]
 
 #: First lag in cells, last lag as a share of the surface's extent, greatest number of lags.
-FIRST, LAST, MOST = 0.25, 0.25, 24
+FIRST_CELLS, LAST_EXTENTS, MOST_CHOSEN_LAGS = 0.25, 0.25, 24
 
 
 def lag_unit(field: FlowField, parameter: str) -> Floats:
@@ -45,18 +44,18 @@ def choose_lags(field: FlowField, parameter: str, *, ratio: float = 2.0) -> Floa
     """
     size, extent = field.surface.cell_size[field.valid], field.surface.extent
     if parameter == "arclength":
-        first, last = FIRST, LAST * extent / float(np.percentile(size, 5))
+        first, last = FIRST_CELLS, LAST_EXTENTS * extent / float(np.percentile(size, 5))
     else:
         speed = field.speed[:, field.valid]
         moving = speed > 1e-6 * speed.max() if speed.any() else np.zeros_like(speed, dtype=bool)
         if not moving.any():
             return np.array([1.0])
         crossing = np.broadcast_to(size, speed.shape)[moving] / speed[moving]
-        first = FIRST * float(np.percentile(crossing, 10))
-        last = LAST * extent / float(np.sqrt(np.mean(speed[moving] ** 2)))
+        first = FIRST_CELLS * float(np.percentile(crossing, 10))
+        last = LAST_EXTENTS * extent / float(np.sqrt(np.mean(speed[moving] ** 2)))
         if not field.steady:
             # Lags that reach other time steps are what long paths can be composed of.
             step = float(np.mean(np.diff(field.times)))
             first = step * ratio ** np.rint(np.log(first / step) / np.log(ratio))
     count = int(np.ceil(np.log(max(last / first, ratio)) / np.log(ratio))) + 1
-    return np.asarray(first * ratio ** np.arange(min(count, MOST)))
+    return np.asarray(first * ratio ** np.arange(min(count, MOST_CHOSEN_LAGS)))

@@ -13,23 +13,22 @@ from abc import ABC, abstractmethod
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage
 
+from flowtex._util.array_types import Floats
 from flowtex.field import FlowField
-from flowtex.field.signs import corner_signs
+from flowtex.field.interpolation import bracket, fill_blanked
 from flowtex.trace.charts import Charts, Patch, cap
-from flowtex.trace.lattice import Corners, Lattice
+from flowtex.trace.node_grid import Corners, NodeGrid
 
 __all__ = ["LengthSampler", "Sampler", "TimeSampler"]
 
-Floats = NDArray[np.float64]
 
 #: A particle slower than this share of the greatest speed has stopped.
-STOPPED = 1e-7
+STOPPED_SPEED = 1e-7
 #: Pairs of tangents whose products make the metric.
 METRIC = ((0, 0), (0, 1), (1, 1))
 #: By arc length, a particle this slow, in cells over one unit of lag, is at a critical point.
-RESTING = 1e-3
+RESTING_CELLS = 1e-3
 
 
 class Sampler(ABC):
@@ -49,27 +48,21 @@ class Sampler(ABC):
     longest: float
 
     def __init__(self, field: FlowField, data: Floats) -> None:
-        lattice, parts = Lattice.of(field), _spread(data, field)
+        grid, parts = NodeGrid.of(field), _spread(data, field)
         self._poles = poles = field.surface.poles
         #: The charts of a surface that has poles.
         self.charts = None if poles is None else Charts(poles)
         #: Whether particles are inside the domain, in a cell that is not blanked.
-        self.alive = lattice.alive
-        #: Whether the field is one without a sign.
-        self.sign_free = field.sign_free
-        signs = None
-        if self.sign_free:
-            signs = corner_signs(_spread_grid(field.velocity[0], field))
-            p = field.surface.tangents
-            self._metric = [np.sum(p[a] * p[b], axis=-1).ravel() for a, b in METRIC]
-        self._patches = [
-            Patch(lattice, parts, signs=None if signs is None else signs.reshape(4, -1))
-        ]
+        self.alive = grid.alive
+        self._patches = [Patch(grid, parts)]
         if poles is not None and self.charts is not None:
-            near = self.charts.near
-            self._patches += [
-                cap(pole, lattice, parts, near, sign_free=self.sign_free) for pole in poles
-            ]
+            self._patches += [cap(pole, grid, parts, self.charts.near) for pole in poles]
+        self._axes: _Axes | None = None
+        if field.sign_free:
+            self._axes = _Axes(field, grid)
+            flat, *caps = self._patches
+            flat = flat.without_sign(fill_blanked(field.velocity[0], field.valid))
+            self._patches = [flat, *(patch.without_sign() for patch in caps)]
 
     def rate(
         self,
@@ -91,30 +84,15 @@ class Sampler(ABC):
             for number, patch in enumerate(self._patches):
                 some = np.flatnonzero(chart == number)
                 if len(some):
-                    found = self._rate(patch, position[:, some], lag[some], direction)
-                    result[:, some] = found
+                    result[:, some] = self._rate(patch, position[:, some], lag[some], direction)
         if self._poles is not None and chart is not None:
             # Beyond a pole index space runs the other way.
             turned = (chart == 0) & self._poles.mirrored(position)
             result[self._poles.component, turned] *= -1
-        if self.sign_free and ahead is not None:
-            result *= self._agreement(position, result, ahead, chart)
+        if self._axes is not None and ahead is not None:
+            result *= self._axes.sign(position, result, ahead, chart)
             return result
         return np.negative(result, out=result) if direction < 0 else result
-
-    def _agreement(
-        self, position: Floats, one: Floats, two: Floats, chart: NDArray[np.int8] | None
-    ) -> Floats:
-        """Sign of the angle between rates (2, N) in space, -1 where it is more than 90 degrees."""
-        along = one[0] * two[0] + one[1] * two[1]
-        flat = slice(None) if chart is None else np.flatnonzero(chart == 0)
-        here, (a, b), (c, d) = position[:, flat], one[:, flat], two[:, flat]
-        at = self._patches[0].corners(here).at
-        ii, ij, jj = (part[at] for part in self._metric)
-        if self._poles is not None:
-            ij = np.where(self._poles.mirrored(here), -ij, ij)
-        along[flat] = ii * a * c + ij * (a * d + b * c) + jj * b * d
-        return np.where(along < 0, -1.0, 1.0)
 
     @abstractmethod
     def rest(self, unit: Floats, last: float) -> Floats:
@@ -123,6 +101,29 @@ class Sampler(ABC):
     @abstractmethod
     def _rate(self, patch: Patch, position: Floats, lag: Floats, direction: float) -> Floats:
         """Rate on one chart, forward."""
+
+
+class _Axes:
+    """Choice between the two directions of a velocity whose sign means nothing."""
+
+    def __init__(self, field: FlowField, grid: NodeGrid) -> None:
+        p = field.surface.tangents
+        self._grid, self._poles = grid, field.surface.poles
+        self._metric = [np.sum(p[a] * p[b], axis=-1).ravel() for a, b in METRIC]
+
+    def sign(
+        self, position: Floats, one: Floats, two: Floats, chart: NDArray[np.int8] | None
+    ) -> Floats:
+        """Sign of the angle between rates (2, N) in space, -1 where it is more than 90 degrees."""
+        along = one[0] * two[0] + one[1] * two[1]
+        flat = slice(None) if chart is None else np.flatnonzero(chart == 0)
+        here, (a, b), (c, d) = position[:, flat], one[:, flat], two[:, flat]
+        at = self._grid.corners(here).at
+        ii, ij, jj = (part[at] for part in self._metric)
+        if self._poles is not None:
+            ij = np.where(self._poles.mirrored(here), -ij, ij)
+        along[flat] = ii * a * c + ij * (a * d + b * c) + jj * b * d
+        return np.where(along < 0, -1.0, 1.0)
 
 
 class LengthSampler(Sampler):
@@ -138,7 +139,7 @@ class LengthSampler(Sampler):
         flow = field.index_velocity
         speed = flow.speed[..., None]
         super().__init__(field, np.concatenate([flow.components, speed], axis=-1))
-        self._floor = max(STOPPED * float(speed.max()), np.finfo(float).tiny)
+        self._floor = max(STOPPED_SPEED * float(speed.max()), np.finfo(float).tiny)
 
     def _rate(self, patch: Patch, position: Floats, lag: Floats, direction: float) -> Floats:
         """Direction for one unit of length."""
@@ -155,7 +156,7 @@ class LengthSampler(Sampler):
     def rest(self, unit: Floats, last: float) -> Floats:
         """Rate below which a particle has come to rest: those that move cover a cell a unit."""
         del last
-        return RESTING / unit
+        return RESTING_CELLS / unit
 
 
 class TimeSampler(Sampler):
@@ -185,10 +186,8 @@ class TimeSampler(Sampler):
         return np.full(len(unit), 0.0 if len(self._times) > 1 else 1e-5) / (unit * last)
 
     def _at_time(self, patch: Patch, corners: Corners, time: Floats) -> Floats:
-        step = np.searchsorted(self._times, time) - 1
-        np.clip(step, 0, len(self._times) - 2, out=step)
-        width = self._times[step + 1] - self._times[step]
-        late = np.clip((time - self._times[step]) / width, 0, 1)
+        step, late = bracket(self._times, time, side="left")
+        np.clip(late, 0, 1, out=late)
         result = np.empty((2, len(time)))
         for component, row in enumerate(result):
             before = patch.blend(component, corners, step)
@@ -199,17 +198,7 @@ class TimeSampler(Sampler):
         return result
 
 
-def _spread_grid(data: Floats, field: FlowField) -> Floats:
-    """Give blanked nodes of data (..., J, I, C) their neighbours' value."""
-    if field.valid.all():
-        return data
-    nearest = ndimage.distance_transform_edt(
-        ~field.valid, return_distances=False, return_indices=True
-    )
-    return np.asarray(data[(..., *tuple(nearest), slice(None))])
-
-
 def _spread(data: Floats, field: FlowField) -> list[Floats]:
     """Components of (..., J, I, C) data, each flat; blanked nodes get their neighbours' value."""
-    data = _spread_grid(data, field)
+    data = fill_blanked(data, field.valid, data.ndim - 3)
     return [np.ascontiguousarray(data[..., c]).ravel() for c in range(data.shape[-1])]

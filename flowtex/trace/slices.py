@@ -2,7 +2,7 @@
 
 This is the intermediate form of the paper (section 3.1): the slice S(Td, Ts) holds, for every
 node (i, j), the position (a, b) from which a particle released at Ts reaches the node at Td. It
-is kept as the displacement (a - i, b - j), which is continuous across a seam and exact under
+is stored as the displacement (a - i, b - j), which is continuous across a seam and exact under
 interpolation at lag zero, for a handful of lags = Td - Ts.
 """
 
@@ -15,14 +15,28 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+
+from flowtex._util.array_types import AnyArray, Floats
+from flowtex._util.blocks import block_means
+from flowtex.field.interpolation import bracket
 
 __all__ = ["TraceSlices"]
 
-Floats = NDArray[np.float64]
 
 #: Written into every file; a reader refuses what it does not know.
 FORMAT = "flowtex-slices-1"
+#: Arrays over the nodes, and the axis along which j runs in them.
+NODE_AXES = {
+    "unit": 0,
+    "nodes": 0,
+    "rate": 1,
+    "reach": 1,
+    "forward_reach": 1,
+    "displacement": 2,
+    "forward": 2,
+}
+#: Those whose first axis is the destination time.
+STEP_ARRAYS = tuple(name for name, axis in NODE_AXES.items() if axis > 0)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -55,11 +69,11 @@ class TraceSlices:
 
     lags: Floats
     unit: Floats
-    displacement: NDArray[Any]
-    forward: NDArray[Any] | None
-    rate: NDArray[Any]
-    reach: NDArray[Any]
-    forward_reach: NDArray[Any] | None
+    displacement: AnyArray
+    forward: AnyArray | None
+    rate: AnyArray
+    reach: AnyArray
+    forward_reach: AnyArray | None
     nodes: Floats
     times: Floats
     parameter: str
@@ -78,15 +92,12 @@ class TraceSlices:
     def at_step(self, step: int) -> TraceSlices:
         """Return the slices of one destination time, with T = 1."""
         one = slice(step, step + 1 or None)
-        return replace(
-            self,
-            displacement=self.displacement[one],
-            forward=None if self.forward is None else self.forward[one],
-            rate=self.rate[one],
-            reach=self.reach[one],
-            forward_reach=None if self.forward_reach is None else self.forward_reach[one],
-            times=self.times[one],
-        )
+        parts: dict[str, Any] = {
+            name: data[one]
+            for name in (*STEP_ARRAYS, "times")
+            if (data := getattr(self, name)) is not None
+        }
+        return replace(self, **parts)
 
     def positions(self, lag: float, *, step: int = 0, forward: bool = False) -> Floats:
         """Positions of the particles at a lag.
@@ -124,8 +135,8 @@ class TraceSlices:
             sign, data, reach = 1.0, self.forward, self.forward_reach
         held = np.minimum(lag, reach[step].astype(float))
         knots = np.concatenate([[0.0], self.lags])
-        m = np.clip(np.searchsorted(knots, held, side="right") - 1, 0, len(self.lags) - 1)
-        late = ((held - knots[m]) / (knots[m + 1] - knots[m]))[..., None]
+        m, late = bracket(knots, held)
+        late = late[..., None]
         mean = np.concatenate(
             [sign * self.rate[step][None], data[step] / self.lags[:, None, None, None]]
         )
@@ -145,34 +156,23 @@ class TraceSlices:
         ValueError
             When no block fits.
         """
-        rows, columns = (n // factor for n in self.shape) if factor > 0 else (0, 0)
-        if min(rows, columns) < 1:
+        if not 1 <= factor <= min(self.shape):
             msg = f"factor is {factor}; expected 1 to {min(self.shape)}, the shorter side"
             raise ValueError(msg)
 
-        def mean(a: NDArray[Any], first: int) -> NDArray[Any]:
-            inner = tuple(slice(None) for _ in range(first))
-            a = a[(*inner, slice(rows * factor), slice(columns * factor))]
-            blocks = (*a.shape[:first], rows, factor, columns, factor, *a.shape[first + 2 :])
-            return np.asarray(a.reshape(blocks).mean(axis=(first + 1, first + 3)))
-
-        return replace(
-            self,
-            unit=mean(self.unit, 0),
-            displacement=mean(self.displacement, 2),
-            forward=None if self.forward is None else mean(self.forward, 2),
-            rate=mean(self.rate, 1),
-            reach=mean(self.reach, 1),
-            forward_reach=None if self.forward_reach is None else mean(self.forward_reach, 1),
-            nodes=mean(self.nodes, 0),
-        )
+        means: dict[str, Any] = {
+            name: block_means(data, factor, axis)
+            for name, axis in NODE_AXES.items()
+            if (data := getattr(self, name)) is not None
+        }
+        return replace(self, **means)
 
     def save(self, path: str | Path) -> None:
         """Write the slices to a compressed ``.npz`` file."""
         arrays = {n: getattr(self, n) for n in self.__dataclass_fields__}
-        kept = {n: a for n, a in arrays.items() if a is not None}
+        present = {n: a for n, a in arrays.items() if a is not None}
         with Path(path).open("wb") as file:
-            np.savez_compressed(file, format=np.array(FORMAT), **kept)
+            np.savez_compressed(file, format=np.array(FORMAT), **present)
 
     @classmethod
     def open(cls, path: str | Path) -> TraceSlices:

@@ -1,19 +1,19 @@
 """Trace slices by destination time, traced when they are first asked for.
 
-A field of many time steps is drawn at one moment, so only the steps around that moment are
-traced, and those asked for last are kept; unless all of them fit in memory and can be composed,
-which is quicker.
+A field of many time steps is drawn at one time, so only the steps around that time are traced,
+and those used last are cached; unless all of them fit in memory and can be composed, which is
+quicker.
 """
 
 from __future__ import annotations
 
 import threading
-import weakref
-from collections import OrderedDict
+from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
+from flowtex._util.array_types import Floats
+from flowtex._util.cache import ByteCache, WeakCache
 from flowtex.field import FlowField
 from flowtex.trace.compose import landings
 from flowtex.trace.lags import choose_lags, lag_unit
@@ -22,8 +22,8 @@ from flowtex.trace.trace import trace
 
 __all__ = ["SliceStore", "shared_store"]
 
-#: Bytes of slices that are kept, besides the ones in use.
-KEEP = 512_000_000
+#: Size of the slices that are cached, besides the ones in use.
+CACHE_BYTES = 512_000_000
 
 
 class SliceStore:
@@ -61,12 +61,12 @@ class SliceStore:
         self.field = field
         self._whole = slices
         self._compose = compose
-        self._kept: OrderedDict[int, TraceSlices] = OrderedDict()
+        self._cache: ByteCache[int, TraceSlices] = ByteCache(CACHE_BYTES, min_count=2)
         self._lock = threading.Lock()
         if slices is None:
             self.parameter = parameter if field.steady else "time"
-            self.lags: NDArray[np.float64] = choose_lags(field, self.parameter)
-            self.unit: NDArray[np.float64] = lag_unit(field, self.parameter)
+            self.lags: Floats = choose_lags(field, self.parameter)
+            self.unit: Floats = lag_unit(field, self.parameter)
         else:
             self.parameter, self.lags, self.unit = slices.parameter, slices.lags, slices.unit
 
@@ -78,8 +78,7 @@ class SliceStore:
     @property
     def nbytes(self) -> int:
         """Bytes of the slices that it holds."""
-        whole = [] if self._whole is None else [self._whole]
-        return sum(slices.nbytes for slices in (*whole, *self._kept.values()))
+        return self._cache.nbytes + (0 if self._whole is None else self._whole.nbytes)
 
     @property
     def two_sided(self) -> bool:
@@ -89,27 +88,26 @@ class SliceStore:
     def at(self, step: int) -> TraceSlices:
         """Slices of one destination time, T = 1."""
         with self._lock:
-            if step in self._kept:
-                self._kept.move_to_end(step)
-                return self._kept[step]
-            found = self._trace(step) if self._whole is None else self._whole.at_step(step)
-            self._kept[step] = found
-            while len(self._kept) > max(2, KEEP // max(found.nbytes, 1)):
-                self._kept.popitem(last=False)
-            return found
+            return self._cache.get(step, partial(self._trace, step))
 
     def _trace(self, step: int) -> TraceSlices:
+        if self._whole is not None:
+            return self._whole.at_step(step)
         if self.field.steady:
             return trace(self.field, parameter=self.parameter)
         size = self.steps * len(self.lags) * self.unit.size * 2 * np.float32().nbytes
-        if self._compose and size < KEEP and landings(self.field, self.lags, self.unit) is not None:
+        if (
+            self._compose
+            and size < CACHE_BYTES
+            and landings(self.field, self.lags, self.unit) is not None
+        ):
             # Composed, all steps together take about as long as four that are integrated.
             self._whole = trace(self.field, lags=self.lags, unit=self.unit, compose=True)
             return self._whole.at_step(step)
         return trace(self.field, lags=self.lags, unit=self.unit, steps=[step])
 
 
-_shared: weakref.WeakValueDictionary[tuple[int, str], SliceStore] = weakref.WeakValueDictionary()
+_stores: WeakCache[SliceStore] = WeakCache()
 
 
 def shared_store(field: FlowField, parameter: str) -> SliceStore:
@@ -123,8 +121,4 @@ def shared_store(field: FlowField, parameter: str) -> SliceStore:
         What a lag measures, as for :func:`flowtex.trace`.
     """
     # A store keeps its field alive, so the number of the field is its own while the store lives.
-    key = (id(field), parameter)
-    store = _shared.get(key)
-    if store is None:
-        store = _shared[key] = SliceStore(field, parameter=parameter)
-    return store
+    return _stores.get((id(field), parameter), partial(SliceStore, field, parameter=parameter))

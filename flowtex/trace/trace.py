@@ -1,27 +1,39 @@
-"""FlowField to TraceSlices."""
+"""FlowField to TraceSlices: short lags are integrated, long ones composed where they can be.
+
+Particles are followed in blocks small enough to stay in a processor's cache, several blocks at a
+time in threads: NumPy releases the interpreter's lock inside its loops.
+"""
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from functools import cached_property, partial
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from flowtex._util.array_types import Bools, Floats, Floats32, Indices
+from flowtex._util.progress import track
 from flowtex.field import FlowField
-from flowtex.trace.compose import landings
+from flowtex.field.interpolation import nearest_known
+from flowtex.trace.compose import Within, compose, landings
 from flowtex.trace.integrate import Paths, integrate
 from flowtex.trace.lags import choose_lags, lag_unit
 from flowtex.trace.sampler import LengthSampler, Sampler, TimeSampler
 from flowtex.trace.slices import TraceSlices
-from flowtex.trace.work import Work
 
 __all__ = ["paths", "trace"]
 
-Floats = NDArray[np.float64]
-Indices = NDArray[np.intp]
 
 #: Error allowed in one step, in cells.
 TOLERANCE = 1e-3
+#: Particles followed together, and blocks of them followed at once.
+BLOCK, MOST_THREADS = 16384, 8
+#: Length in cells up to which the paths of a steady field are integrated, not composed.
+DIRECT_CELLS = 1.0
 
 
 def trace(
@@ -36,7 +48,7 @@ def trace(
     compose: bool | None = None,
     progress: bool = True,
 ) -> TraceSlices:
-    """Follow the path through every node and keep it at a handful of lags.
+    """Follow the path through every node, and return where it is at a handful of lags.
 
     Paper section 3.1: from every node a particle is followed backward from the destination time
     Td, and its positions at the release times Td - lag make the trace slices. A steady field is
@@ -48,7 +60,7 @@ def trace(
     field
         The flow.
     lags
-        Lags to keep, (M,), positive and increasing, in multiples of ``unit``. By default
+        Lags of the slices, (M,), positive and increasing, in multiples of ``unit``. By default
         they double from a quarter of a cell to a quarter of the surface.
     unit
         One unit of lag at each node, (J, I), or one number. By default the local cell size for
@@ -84,7 +96,7 @@ def trace(
     """
     parameter = _parameter(field, parameter)
     _check_signs(field, two_sided=two_sided, compose=compose)
-    wanted = choose_lags(field, parameter) if lags is None else _checked_lags(lags)
+    lag_values = choose_lags(field, parameter) if lags is None else _checked_lags(lags)
     units = lag_unit(field, parameter) if unit is None else np.asarray(unit, dtype=float)
     units = np.array(np.broadcast_to(units, field.shape), dtype=float)
     if not (np.isfinite(units).all() and (units > 0).all()):
@@ -93,23 +105,25 @@ def trace(
     if not tolerance > 0:
         msg = f"tolerance is {tolerance!r}; expected a positive number of cells, such as 1e-3"
         raise ValueError(msg)
-    chosen = _chosen(field, steps)
-    sides = (-1.0, 1.0) if field.steady and two_sided else (-1.0,)
-    work = Work(field, _samplers(field, chosen, parameter), wanted, units, tolerance, progress)
-    composed = lags is None and not field.sign_free if compose is None else compose
-    landing = _landing(field, wanted, units, chosen) if composed else None
-    found = work.follow(sides, landing)
-    both = len(sides) > 1
+    step_numbers = _step_numbers(field, steps)
+    directions = (-1.0, 1.0) if field.steady and two_sided else (-1.0,)
+    samplers = _samplers(field, step_numbers, parameter)
+    tracing = _Tracing(field, samplers, lag_values, units, tolerance, progress)
+    composed = lags is None if compose is None else compose
+    landing = _landing(field, lag_values, units, step_numbers) if composed else None
+    paths_by_side = tracing.follow(directions, landing)
+    backward = paths_by_side[-1.0]
+    forward = paths_by_side.get(1.0)
     return TraceSlices(
-        lags=wanted,
+        lags=lag_values,
         unit=units,
-        displacement=found[-1.0].displacement,
-        forward=found[1.0].displacement if both else None,
-        rate=work.rate,
-        reach=found[-1.0].reach,
-        forward_reach=found[1.0].reach if both else None,
-        nodes=work.nodes,
-        times=field.times[chosen],
+        displacement=backward.displacement,
+        forward=None if forward is None else forward.displacement,
+        rate=tracing.rate,
+        reach=backward.reach,
+        forward_reach=None if forward is None else forward.reach,
+        nodes=tracing.nodes,
+        times=field.times[step_numbers],
         parameter=parameter,
     )
 
@@ -133,7 +147,7 @@ def paths(
     start
         Starting positions, (N, 2) as (i, j).
     lags
-        Lags to keep, (M,), in units of length or time.
+        Lags of the positions, (M,), in units of length or time.
     step
         Which destination time.
     parameter, forward, tolerance
@@ -154,7 +168,7 @@ def paths(
     """
     parameter = _parameter(field, parameter)
     begin = np.array(start, dtype=float).reshape(-1, 2)
-    sampler = _samplers(field, _chosen(field, [step]), parameter)[0]
+    sampler = _samplers(field, _step_numbers(field, [step]), parameter)[0]
     return integrate(
         sampler,
         begin,
@@ -178,7 +192,7 @@ def _check_signs(field: FlowField, *, two_sided: bool, compose: bool | None) -> 
         raise ValueError(msg)
 
 
-def _chosen(field: FlowField, steps: Sequence[int] | None) -> list[int]:
+def _step_numbers(field: FlowField, steps: Sequence[int] | None) -> list[int]:
     """Destination times as indices from 0."""
     count = len(field.times)
     for step in () if steps is None else steps:
@@ -209,9 +223,175 @@ def _parameter(field: FlowField, parameter: str) -> str:
 
 
 def _checked_lags(lags: ArrayLike) -> Floats:
-    wanted = np.atleast_1d(np.asarray(lags, dtype=float))
-    good = wanted.ndim == 1 and len(wanted) and wanted[0] > 0 and (np.diff(wanted) > 0).all()
-    if not good or not np.isfinite(wanted).all():
+    lag_values = np.atleast_1d(np.asarray(lags, dtype=float))
+    good = (
+        lag_values.ndim == 1
+        and len(lag_values)
+        and lag_values[0] > 0
+        and (np.diff(lag_values) > 0).all()
+    )
+    if not good or not np.isfinite(lag_values).all():
         msg = f"lags is {lags!r}; expected positive numbers in increasing order"
         raise ValueError(msg)
-    return wanted
+    return lag_values
+
+
+@dataclass(frozen=True, eq=False)
+class _SideSlices:
+    """Slices of one direction, (2, M + 1, T, J, I).
+
+    Their reach, and which paths have come right beside a pole, are (T, J, I). While paths are
+    integrated, the nodes of all three are one axis.
+    """
+
+    slices: Floats32
+    reach: Floats32
+    polar: Bools
+
+    @property
+    def displacement(self) -> Floats32:
+        """The same numbers as (T, M, J, I, 2)."""
+        return np.moveaxis(self.slices[:, 1:], (0, 2), (4, 0))
+
+
+@dataclass(frozen=True, eq=False)
+class _Tracing:
+    """Everything that the paths of one call share."""
+
+    field: FlowField
+    samplers: list[Sampler]
+    lags: Floats
+    unit: Floats
+    tolerance: float
+    progress: bool
+
+    @cached_property
+    def nodes(self) -> Floats:
+        """Nodes in index space, (J, I, 2)."""
+        rows, columns = self.field.shape
+        return np.stack(np.meshgrid(np.arange(columns), np.arange(rows)), axis=-1).astype(float)
+
+    @cached_property
+    def rate(self) -> Floats:
+        """Rates at which paths leave the nodes, by unit of lag, (T, J, I, 2)."""
+        start = np.ascontiguousarray(self.nodes.reshape(-1, 2).T)
+        still = np.zeros(start.shape[1])
+        rate = np.stack([sampler.rate(start, still, 1.0) for sampler in self.samplers])
+        rate = np.moveaxis(rate.reshape(-1, 2, *self.field.shape), 1, -1) * self.unit[..., None]
+        rate[:, ~self.field.valid] = 0.0
+        return rate
+
+    def follow(
+        self, directions: Sequence[float], landing: Indices | None
+    ) -> dict[float, _SideSlices]:
+        """Follow all paths, by composition where there are landings."""
+        known = len(self.lags) if landing is None else self._direct(landing)
+        shape = (len(self.samplers), self.field.valid.size)
+        sides = {
+            direction: _SideSlices(
+                np.empty((2, len(self.lags) + 1, *shape), np.float32),
+                np.zeros(shape, np.float32),
+                np.zeros(shape, bool),
+            )
+            for direction in directions
+        }
+        with ThreadPoolExecutor(max_workers=min(os.cpu_count() or 1, MOST_THREADS)) as pool:
+            self._integrate(sides, known, pool)
+            for direction, flat in sides.items():
+                side = sides[direction] = self._as_grids(flat, direction)
+                if landing is not None and known < len(self.lags):
+                    compose(
+                        self.field,
+                        self.lags,
+                        self.unit,
+                        side.slices,
+                        side.reach,
+                        known,
+                        landing,
+                        pool.map,
+                        side.polar,
+                        partial(self._piece, direction),
+                    )
+        return sides
+
+    def _direct(self, landing: Indices) -> int:
+        """How many lags to integrate: a cell, and up to the first time step."""
+        if landing.any():
+            return int(np.flatnonzero(landing)[0]) + 1
+        pace = np.abs(self.rate[:, self.field.valid]).max(axis=-1)
+        typical = float(np.median(pace[pace > 0])) if pace.any() else 1.0
+        return max(int(np.searchsorted(self.lags * typical, DIRECT_CELLS, side="right")), 1)
+
+    def _integrate(
+        self, sides: dict[float, _SideSlices], known: int, pool: ThreadPoolExecutor
+    ) -> None:
+        """Fill the first ``known`` slices."""
+        at = np.flatnonzero(self.field.valid)
+        start, unit = self.nodes.reshape(-1, 2)[at], self.unit.ravel()[at]
+
+        def work(job: tuple[int, float, slice]) -> None:
+            step, direction, block = job
+            result = integrate(
+                self.samplers[step],
+                start[block],
+                self.lags[:known],
+                unit[block],
+                direction=direction,
+                tolerance=self.tolerance,
+            )
+            moved = np.moveaxis(result.positions - start[block], 2, 0)
+            nodes: Indices | slice = at[block]
+            if at[block][-1] - at[block][0] == len(at[block]) - 1:
+                # Writing to a slice is several times as fast as to a list of nodes.
+                nodes = slice(at[block][0], at[block][-1] + 1)
+            sides[direction].slices[:, 1 : known + 1, step, nodes] = moved
+            sides[direction].reach[step, nodes] = result.reach
+            sides[direction].polar[step, nodes] = result.polar
+
+        jobs = [
+            (step, direction, slice(first, first + BLOCK))
+            for step in range(len(self.samplers))
+            for direction in sides
+            for first in range(0, len(at), BLOCK)
+        ]
+        for _ in track(pool.map(work, jobs), len(jobs), "Tracing", show=self.progress):
+            pass
+
+    def _piece(
+        self,
+        direction: float,
+        position: Floats32,
+        lag: Floats32,
+        step: Indices,
+        within: Within | None,
+    ) -> tuple[Floats32, Floats32, Floats32]:
+        """Follow some paths, as :data:`flowtex.trace.compose.Integrate` says."""
+        moved, covered, ends = np.empty_like(position), lag.copy(), np.empty_like(lag)
+        for number in np.unique(step) if len(self.samplers) > 1 else [0]:
+            some = step == number if len(self.samplers) > 1 else slice(None)
+            start, unit = position[:, some].T.astype(float), lag[some].astype(float)
+            paths = integrate(
+                self.samplers[number],
+                start,
+                np.ones(1),
+                unit,
+                direction=direction,
+                tolerance=self.tolerance,
+                within=within,
+            )
+            moved[:, some] = (paths.positions[0] - start).T
+            covered[some] = np.where(paths.interrupted, paths.reach, 1.0) * unit
+            ends[some] = np.where(paths.interrupted, np.inf, paths.reach) * unit
+        return moved, covered, ends
+
+    def _as_grids(self, flat: _SideSlices, direction: float) -> _SideSlices:
+        """Lay out by nodes, with the slope at lag zero; blanked nodes move as the nearest."""
+        grid = self.field.shape
+        slices = flat.slices.reshape(*flat.slices.shape[:3], *grid)
+        slices[:, 0] = direction * np.moveaxis(self.rate, -1, 0)
+        blank = ~self.field.valid
+        if blank.any():
+            # In place: the slices are large, and few of them are blank.
+            rows, columns = nearest_known(self.field.valid)
+            slices[..., blank] = slices[..., rows[blank], columns[blank]]
+        return _SideSlices(slices, flat.reach.reshape(-1, *grid), flat.polar.reshape(-1, *grid))

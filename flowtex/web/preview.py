@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flowtex.camera import Camera
-from flowtex.rendering.cpu import Camera as SizedCamera
 from flowtex.rendering.cpu import Picture, render
 from flowtex.rendering.uniforms import ViewState
 from flowtex.rendering.webgl import ClientData
@@ -106,15 +105,6 @@ def _drawn(
     camera: Mapping[str, Any],
     time: float | None,
 ) -> Bytes:
-    whole = Camera.from_dict(camera)
-    where = SizedCamera(
-        position=whole.position,
-        focal_point=whole.focal_point,
-        up=whole.up,
-        size=(max(size[0], 1), max(size[1], 1)),
-        parallel_scale=whole.parallel_scale if whole.parallel else None,
-        view_angle=whole.view_angle,
-    )
     times = scene.times
     shown = float(times[-1] if time is None else time)
     steps = scene.moment(shown)
@@ -123,7 +113,8 @@ def _drawn(
     picture = render(
         scene.textures,
         _few_samples(view.scene.settings),
-        where,
+        Camera.from_dict(camera),
+        (max(size[0], 1), max(size[1], 1)),
         view=ViewState(between=between),
         steps=(scene.source(steps[0]), scene.source(steps[-1])),
     )

@@ -21,9 +21,9 @@ from numpy.typing import ArrayLike
 from scipy import ndimage
 
 from flowtex._util.array_types import Floats
+from flowtex.camera import Camera
 from flowtex.field import FlowField
-from flowtex.rendering.cpu import Camera
-from flowtex.rendering.cpu.cover import cover
+from flowtex.rendering.cpu.raster import cover
 from paper.references.lic import lic
 
 __all__ = ["draw_texture", "forssell_lic", "texel_velocity"]
@@ -115,7 +115,12 @@ def texel_velocity(
 
 
 def draw_texture(
-    texture: ArrayLike, field: FlowField, camera: Camera, *, smooth: bool = True
+    texture: ArrayLike,
+    field: FlowField,
+    camera: Camera,
+    size: tuple[int, int],
+    *,
+    smooth: bool = True,
 ) -> Floats:
     """Draw a texture of computational space on its surface.
 
@@ -129,6 +134,8 @@ def draw_texture(
         The flow whose surface it lies on.
     camera
         From where.
+    size
+        Width and height of the picture in pixels.
     smooth
         Whether texels are blended where they are larger than pixels; squares otherwise.
 
@@ -146,12 +153,12 @@ def draw_texture(
     if texels.ndim != 2 or not texels.size:
         msg = f"texture has shape {texels.shape}; expected (rows, columns)"
         raise ValueError(msg)
-    coverage = cover(field.surface, camera)
+    coverage = cover(field.surface, camera, size)
     rows, columns = field.shape
     j, i = np.meshgrid(np.linspace(0, 1, rows), np.linspace(0, 1, columns), indexing="ij")
     share, _, _ = coverage.mix(np.stack([j, i], axis=-1).reshape(-1, 2))
     at = [share[:, axis] * texels.shape[axis] - 0.5 for axis in (0, 1)]
-    width, height = camera.size
+    width, height = size
     picture = np.full(height * width, np.nan)
     picture[coverage.pixel] = _sampled(texels, at, field.periodic, smooth=smooth)
     return picture.reshape(height, width)

@@ -25,10 +25,10 @@ import numpy as np
 from scipy import ndimage
 
 from flowtex._util.array_types import Floats
+from flowtex.camera import Camera
 from flowtex.errors import raise_faults
 from flowtex.field import FlowField
-from flowtex.rendering.cpu import Camera
-from flowtex.rendering.cpu.cover import cover
+from flowtex.rendering.cpu.raster import cover
 
 __all__ = ["ImageSpace"]
 
@@ -44,6 +44,8 @@ class ImageSpace:
     ----------
     camera
         From where; :meth:`look` moves it.
+    size
+        Width and height of the frames in pixels.
     field
         The flow.
     blend
@@ -69,6 +71,7 @@ class ImageSpace:
     def __init__(
         self,
         camera: Camera,
+        size: tuple[int, int],
         field: FlowField,
         *,
         blend: float = 0.1,
@@ -89,7 +92,7 @@ class ImageSpace:
         )
         self._field, self._blend, self._pixels, self._even = field, blend, pixels, even
         self._velocity = _along_surface(field, step)
-        width, height = camera.size
+        self.size = width, height = size
         texels = [int(np.ceil(n / grain)) + 1 for n in (height, width)]
         self._phase = np.random.default_rng(seed).random(texels)
         self._lattice = np.indices((height, width)) / grain
@@ -100,17 +103,7 @@ class ImageSpace:
         self.look(camera)
 
     def look(self, camera: Camera) -> None:
-        """Move the camera; the frame that is advected stays what it is.
-
-        Raises
-        ------
-        ValueError
-            When the pictures of the camera have another size.
-        """
-        height, width = self._picture.shape
-        if tuple(camera.size) != (width, height):
-            msg = f"size is {camera.size}; expected {(width, height)}, that of the frames so far"
-            raise ValueError(msg)
+        """Move the camera; the frame that is advected stays what it is."""
         self.camera = camera
         #: Way of the flow in a frame, to the right and down in pixels, (H, W, 2); NaN outside.
         self.way: Floats = self._projected(camera)
@@ -149,19 +142,19 @@ class ImageSpace:
         """Way of the flow in a frame under a camera, (H, W, 2)."""
         surface = self._field.surface
         nodal = np.concatenate([surface.points - surface.center, self._velocity], axis=-1)
-        coverage = cover(surface, camera)
+        coverage = cover(surface, camera, self.size)
         mixed, _, _ = coverage.mix(nodal.reshape(-1, 6))
-        matrix = camera.matrix(surface.center)
+        matrix = camera.matrix(self.size[0] / self.size[1], surface.center)
         clip = mixed[:, :3] @ matrix[:, :3].T + matrix[:, 3]
         change = mixed[:, 3:] @ matrix[:, :3].T
         w = clip[:, 3:]
         way = (change[:, :2] - clip[:, :2] / w * change[:, 3:]) / w
-        way *= 0.5 * np.array(camera.size) * [1, -1]
+        way *= 0.5 * np.array(self.size) * [1, -1]
         length = np.linalg.norm(way, axis=-1, keepdims=True)
         fastest = length.max(initial=0.0)
         scale = length if self._even else fastest
         way *= self._pixels / np.where(length > 1e-9 * fastest, scale, np.inf)
-        width, height = camera.size
+        width, height = self.size
         picture = np.full((height * width, 2), np.nan)
         picture[coverage.pixel] = way
         return picture.reshape(height, width, 2)

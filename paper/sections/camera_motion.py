@@ -30,22 +30,15 @@ IMAGE, OURS = "image space, frame upon frame", "this method, each frame by itsel
 def _panned(view: View, pixels: float) -> View:
     """Return the same view moved to the side by that many pixels."""
     camera = view.camera
-    scale = camera.parallel_scale or 1.0
-    way = camera.axes[0] * (pixels * 2.0 * scale / camera.size[1])
-    eye, at = (np.asarray(p) + way for p in (camera.position, camera.focal_point))
-    panned = replace(
-        camera,
-        position=(float(eye[0]), float(eye[1]), float(eye[2])),
-        focal_point=(float(at[0]), float(at[1]), float(at[2])),
-    )
-    return replace(view, camera=panned)
+    way = camera.axes[0] * (pixels * 2.0 * camera.parallel_scale / view.size[1])
+    return replace(view, camera=camera.shift(way))
 
 
 def _moving(bench: Bench) -> Finding:
     size = bench.pick((360, 300), (140, 116))
     moving, after = bench.pick((12, 24), (6, 10))
     first = view_of(bench, bench.gyre, size, zoom=ZOOM, focus=POINT)
-    image = ImageSpace(first.camera, bench.gyre, blend=0.1, pixels=2.0, seed=bench.seed)
+    image = ImageSpace(first.camera, first.size, bench.gyre, blend=0.1, pixels=2.0, seed=bench.seed)
     image.frames(STILL_FRAMES)
     figures: dict[str, dict[str, list[float]]] = {
         name: {"angle": [], "coherence": []} for name in (IMAGE, OURS)

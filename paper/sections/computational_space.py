@@ -25,12 +25,12 @@ def _stretched(bench: Bench) -> Finding:
     texture = forssell_lic(field, (rows, columns), length=30.0, kernel="hann", seed=bench.seed)
     paper = {**PAPER, "resolution": 512}
     pictures = {
-        "Forssell and Cohen": draw_texture(texture, field, view.camera),
+        "Forssell and Cohen": draw_texture(texture, field, view.camera, view.size),
         "the paper's method": view.picture(**paper).value,
         "default": view.picture().value,
     }
     noises = {
-        "Forssell and Cohen": draw_texture(white, field, view.camera),
+        "Forssell and Cohen": draw_texture(white, field, view.camera, view.size),
         "the paper's method": view.picture(**{**paper, "samples": 1}).value,
         "default": view.picture(samples=1).value,
     }

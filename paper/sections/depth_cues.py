@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import Bools, Floats
+from flowtex.camera import Camera
 from flowtex.examples import double_gyre_velocity
 from flowtex.field import FlowField
-from flowtex.rendering.cpu import Camera
 from paper import measures
 from paper.bench import PAPER, Bench
 from paper.findings import Block, Claim, Finding, Panel, Plate, Section, Table
@@ -37,12 +37,12 @@ def _plane() -> FlowField:
 
 def _view(bench: Bench) -> View:
     size = bench.pick((440, 300), (220, 150))
-    camera = Camera((-1.15, 1.0, 0.8), (1.6, 1.0, 0.0), (0.0, 0.0, 1.0), size, view_angle=38.0)
-    return View(bench, bench.once("plane", _plane), camera)
+    camera = Camera((-1.15, 1.0, 0.8), (1.6, 1.0, 0.0), (0.0, 0.0, 1.0), view_angle=38.0)
+    return View(bench, bench.once("plane", _plane), camera, size)
 
 
 def _resolution(view: View) -> int:
-    return round(TEXELS_PER_PIXEL * view.camera.size[0])
+    return round(TEXELS_PER_PIXEL * view.size[0])
 
 
 def _bands(view: View) -> dict[str, Bools]:
@@ -55,7 +55,7 @@ def _bands(view: View) -> dict[str, Bools]:
 
 def _noises(bench: Bench, view: View) -> dict[str, Floats]:
     """Draw the noise by itself, before it is advected."""
-    image = ImageSpace(view.camera, view.field, blend=1.0, seed=bench.seed)
+    image = ImageSpace(view.camera, view.size, view.field, blend=1.0, seed=bench.seed)
     fine = _resolution(view)
     return {
         "image space": image.frame(),
@@ -66,7 +66,7 @@ def _noises(bench: Bench, view: View) -> dict[str, Floats]:
 
 
 def _advected(bench: Bench, view: View) -> dict[str, Floats]:
-    image = ImageSpace(view.camera, view.field, seed=bench.seed)
+    image = ImageSpace(view.camera, view.size, view.field, seed=bench.seed)
     fine = _resolution(view)
     values = image.frames(bench.pick(40, 25))
     return {

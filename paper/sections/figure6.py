@@ -28,7 +28,7 @@ def _pictures(bench: Bench, view: View) -> dict[str, Floats]:
     """Draw the view by every method; values of mean zero and deviation one."""
     paper = {**PAPER, "resolution": RESOLUTION}
     texture = forssell_lic(view.field, length=LIC_LENGTH_NODES, seed=bench.seed)
-    lic = draw_texture(texture, view.field, view.camera)
+    lic = draw_texture(texture, view.field, view.camera, view.size)
     return {
         "corrected": view.picture(**paper).value,
         "not corrected": view.picture(**paper, noise_correction=False).value,

@@ -34,7 +34,7 @@ def _drawn(bench: Bench, view: View, method: str) -> Floats:
         "LIC",
         lambda: forssell_lic(view.field, LIC_SHAPE, length=24.0, kernel="hann", seed=bench.seed),
     )
-    values = draw_texture(texture, view.field, view.camera)
+    values = draw_texture(texture, view.field, view.camera, view.size)
     # Far out there is nothing but grey left.
     return np.asarray((values - np.nanmean(values)) / max(float(np.nanstd(texture)), 1e-9))
 

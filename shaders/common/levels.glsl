@@ -6,7 +6,7 @@ vec3 flowtexOnSurface(vec3 derivative, vec3 position, vec3 normal)
 {
   vec3 ray = normalize(u_eye.xyz - u_eye.w * position);
   float facing = dot(normalize(normal), ray);
-  facing = (facing < 0.0 ? -1.0 : 1.0) * max(abs(facing), 0.05);
+  facing = (facing < 0.0 ? -1.0 : 1.0) * max(abs(facing), FLOWTEX_LEAST_FACING);
   return derivative - ray * (dot(normalize(normal), derivative) / facing);
 }
 #endif
@@ -24,12 +24,13 @@ float flowtexSliceLevel(vec2 dx, vec2 dy)
   vec2 sy = dy * u_slicesSize;
   float determinant = sx.x * sy.y - sx.y * sy.x;
   vec2 footprint = flowtexFootprint(dot(sx, sx), dot(sy, sy), determinant);
-  return clamp(log2(max(footprint.y, 1e-6)), 0.0, u_deepest);
+  return clamp(log2(max(footprint.y, FLOWTEX_LEAST_TEXELS)), 0.0, u_deepest);
 }
 
 // A colour for a level of detail, for teaching: one hue for each doubling, six in a round.
 vec3 flowtexLevelColour(float level)
 {
-  vec3 hue = 0.5 + 0.5 * cos(6.2831853 * (level / 6.0 + vec3(0.0, -0.333, 0.333)));
-  return mix(vec3(0.35), vec3(1.0), hue);
+  vec3 turn = level / FLOWTEX_LEVELS_AROUND + FLOWTEX_HUE_SHIFT * vec3(0.0, -1.0, 1.0);
+  vec3 hue = 0.5 + 0.5 * cos(2.0 * FLOWTEX_PI * turn);
+  return mix(vec3(FLOWTEX_LEVEL_DARKEST), vec3(1.0), hue);
 }

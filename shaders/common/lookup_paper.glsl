@@ -2,7 +2,7 @@
 //
 // The level is the one that mipmapping chooses for the noise at the fragment (section 4), and
 // the step is looked up at the same level, where its values count 2^level times (section 4.1).
-// What averaging takes of the contrast is known and made up for (flowtex/textures/contrast.py).
+// What averaging takes of the contrast is known and made up for (flowtex/textures/paper.py).
 // Corrected noise has grains as long as the longer side of a texel, so the level can be finer than
 // the longest side of the footprint asks for.
 
@@ -15,7 +15,7 @@ float flowtexNoiseLevel;
 // Deviation of the noise at a level.
 float flowtexDeviation(float level)
 {
-  float at = clamp(2.0 * level, 0.0, 30.99);
+  float at = clamp(2.0 * level, 0.0, FLOWTEX_LAST_HALF_LEVEL);
   int n = int(at);
   return mix(u_noiseDeviation[n], u_noiseDeviation[n + 1], at - float(n));
 }
@@ -62,7 +62,7 @@ float flowtexFrame(vec2 dx, vec2 dy, float texels)
   vec2 sy = dy * u_pictureSize;
   vec2 footprint = flowtexFootprint(dot(sx, sx), dot(sy, sy), sx.x * sy.y - sx.y * sy.x);
   float covered = u_noiseCorrected ? sqrt(footprint.x * footprint.y) : footprint.x;
-  flowtexPictureMip = u_lod ? max(log2(max(covered, 1e-6)), 0.0) : 0.0;
+  flowtexPictureMip = u_lod ? max(log2(max(covered, FLOWTEX_LEAST_TEXELS)), 0.0) : 0.0;
   flowtexNoiseLevel = flowtexPictureMip;
   flowtexInset = min(0.5 * exp2(ceil(flowtexPictureMip)) / u_pictureSize, 0.5);
   flowtexSeen = vec4(0.0);
@@ -76,7 +76,7 @@ float flowtexFrame(vec2 dx, vec2 dy, float texels)
 vec3 flowtexPaint(vec3 colour)
 {
   vec4 mean = flowtexSeen / flowtexWeights;
-  float strength = u_showLevel ? 0.5 * u_strength : u_strength;
+  float strength = u_showLevel ? FLOWTEX_LEVEL_STRENGTH * u_strength : u_strength;
   return colour * (1.0 - strength * mean.a) + strength * mean.rgb;
 }
 #endif
@@ -89,7 +89,7 @@ float flowtexFragment(vec2 coordinate, vec2 noise, vec2 dx, vec2 dy, float slice
   float determinant = sx.x * sy.y - sx.y * sy.x;
   vec2 footprint = flowtexFootprint(dot(sx, sx), dot(sy, sy), determinant);
   float texels = u_noiseCorrected ? sqrt(footprint.x * footprint.y) : footprint.x;
-  flowtexMip = u_lod ? max(log2(max(texels, 1e-6)), 0.0) : 0.0;
+  flowtexMip = u_lod ? max(log2(max(texels, FLOWTEX_LEAST_TEXELS)), 0.0) : 0.0;
   flowtexNoiseLevel = flowtexMip;
   float width = exp2(flowtexMip);
   flowtexGain = 1.0 / flowtexDeviation(flowtexMip);

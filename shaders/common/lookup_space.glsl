@@ -18,7 +18,7 @@ float flowtexBlend(vec2 sums, float near)
 {
   vec2 w = vec2(1.0 - flowtexLate, flowtexLate);
   float apart = u_spacing * exp2(0.5 * flowtexLate);
-  vec2 shared = vec2(flowtexShared(apart, near), flowtexShared(apart * 0.70710678, near));
+  vec2 shared = vec2(flowtexShared(apart, near), flowtexShared(apart * FLOWTEX_SQRT_HALF, near));
   return dot(sums, w) * inversesqrt(dot(w * w, shared));
 }
 
@@ -32,13 +32,14 @@ void flowtexMove(float slope, float speed)
   if (!u_moving)
     return;
   float travel = u_travel * (u_travelInPixels ? flowtexPixel : 1.0) * (u_travelBySpeed ? speed : 1.0);
-  float rate = log2(max(travel / (u_wave * flowtexPixel), 0.25));
+  float rate = log2(max(travel / (u_wave * flowtexPixel), FLOWTEX_LEAST_RATE));
   vec2 rates = floor(rate) + vec2(0.0, 1.0);
   vec2 turns = exp2(rates) * step(vec2(0.0), rates);
   flowtexMotion.clock = fract(turns * u_clock.x) + turns * u_clock.y;
-  flowtexMotion.turns = turns * slope / max(travel, 1e-30);
+  flowtexMotion.turns = turns * slope / max(travel, FLOWTEX_LEAST_TRAVEL);
   // A rate keeps its phases, whether it is the slower one or the faster one.
-  flowtexMotion.phases = mod(rates.x, 2.0) < 0.5 ? vec2(1.0, 64.0) : vec2(64.0, 1.0);
+  vec2 phases = vec2(1.0, FLOWTEX_MANY_PHASES);
+  flowtexMotion.phases = mod(rates.x, 2.0) < 0.5 ? phases : phases.yx;
   flowtexMotion.late = rate - rates.x;
 }
 
@@ -49,7 +50,7 @@ float flowtexFragment(vec3 position, vec3 dx, vec3 dy, vec2 coordinate, float sl
   flowtexPixel = u_lod ? footprint.x : u_texel / u_grain;
   float grain = u_fixed ? max(flowtexPixel * u_grain, u_texel) : flowtexPixel * u_grain;
   flowtexNoiseLevel = log2(grain / u_texel);
-  float level = clamp(2.0 * log2(grain / u_noiseFinest), 0.0, 58.99);
+  float level = clamp(2.0 * log2(grain / u_noiseFinest), 0.0, FLOWTEX_LAST_OCTAVE);
   int octave = int(level);
   flowtexLate = level - float(octave);
   flowtexFine = flowtexLattice(position - u_noiseOrigin, octave);

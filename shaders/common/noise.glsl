@@ -9,8 +9,6 @@
 // finest cells of both families, whole numbers and what is left, enter the hash, so the digits
 // that float has are spent near the view and the pattern does not depend on where the view is.
 
-const uvec3 flowtexPrimes = uvec3(0x8da6b343u, 0xd8163841u, 0xcb1ab31fu);
-
 // What is the same for every point of a fragment's path.
 struct FlowtexLattice
 {
@@ -24,12 +22,12 @@ FlowtexLattice flowtexLattice(vec3 position, int octave)
   bool odd = (octave & 1) == 1;
   int doublings = octave >> 1;
   float shrink = exp2(-float(doublings));
-  float inverse = shrink / u_noiseFinest * (odd ? 0.70710678 : 1.0);
+  float inverse = shrink / u_noiseFinest * (odd ? FLOWTEX_SQRT_HALF : 1.0);
   ivec3 finest = ivec3(odd ? u_noiseOriginOdd : u_noiseOriginEven);
   ivec3 origin = finest >> doublings;
   vec3 rest = (vec3(finest - (origin << doublings)) + (odd ? u_noiseRestOdd : vec3(0.0))) * shrink;
-  uvec3 key = uvec3(origin) * flowtexPrimes;
-  key.x += uint(octave) * 0x9e3779b9u + uint(u_seed) * 0x85ebca6bu;
+  uvec3 key = uvec3(origin) * FLOWTEX_AXIS_PRIMES;
+  key.x += uint(octave) * FLOWTEX_OCTAVE_PRIME + uint(u_seed) * FLOWTEX_SEED_PRIME;
   return FlowtexLattice(position * inverse + rest, inverse, key);
 }
 
@@ -48,9 +46,9 @@ FlowtexMotion flowtexMotion;
 // each is a mixture of two triangle waves with phases of their own.
 vec4 flowtexGrains(uvec4 h, vec2 turns)
 {
-  h = (h ^ (h >> 15)) * 0x2c1b3c6du;
-  h = (h ^ (h >> 13)) * 0x297a2d39u;
-  vec4 phase = vec4(h >> 8) * (1.0 / 16777216.0);
+  h = (h ^ (h >> FLOWTEX_HASH_SHIFTS.x)) * FLOWTEX_HASH_FACTORS.x;
+  h = (h ^ (h >> FLOWTEX_HASH_SHIFTS.y)) * FLOWTEX_HASH_FACTORS.y;
+  vec4 phase = vec4(h >> FLOWTEX_PHASE_SHIFT) * (1.0 / FLOWTEX_PHASES);
   if (!u_moving)
     return phase * 2.0 - 1.0;
   vec4 slow = abs(fract(phase * flowtexMotion.phases.x + turns.x) * 4.0 - 2.0) - 1.0;
@@ -66,15 +64,16 @@ float flowtexOctave(FlowtexLattice lattice, vec3 displacement, vec2 turns)
   vec3 base = floor(q);
   vec3 w = q - base;
   vec3 spread = 1.0 - 2.0 * w * (1.0 - w);
-  uvec3 k = lattice.key + uvec3(ivec3(base)) * flowtexPrimes;
-  uvec4 corners = uvec4(0u, flowtexPrimes.x, flowtexPrimes.y, flowtexPrimes.x + flowtexPrimes.y)
-    + (k.x + k.y + k.z);
+  uvec3 k = lattice.key + uvec3(ivec3(base)) * FLOWTEX_AXIS_PRIMES;
+  uvec4 corners = uvec4(k.x + k.y + k.z);
+  corners.yw += FLOWTEX_AXIS_PRIMES.x;
+  corners.zw += FLOWTEX_AXIS_PRIMES.y;
   vec4 grains = flowtexGrains(corners, turns);
   float variance = spread.x * spread.y;
 #ifndef FLOWTEX_PLANAR
-  grains = mix(grains, flowtexGrains(corners + flowtexPrimes.z, turns), w.z);
+  grains = mix(grains, flowtexGrains(corners + FLOWTEX_AXIS_PRIMES.z, turns), w.z);
   variance *= spread.z;
 #endif
   vec2 rows = mix(grains.xz, grains.yw, w.x);
-  return mix(rows.x, rows.y, w.y) * inversesqrt(variance * (1.0 / 3.0));
+  return mix(rows.x, rows.y, w.y) * inversesqrt(variance * (1.0 / FLOWTEX_GRAIN_PRECISION));
 }

@@ -1,6 +1,6 @@
 // Paths from the slice texture.
 //
-// A layer holds the mean slope since lag zero (see flowtex/textures/textureset.py): the
+// A layer holds the mean slope since lag zero (see flowtex/textures/texture_set.py): the
 // displacement at lag s is s * slope, s negative backward. Between two lags the slope is
 // interpolated linearly, which makes the path a parabola and not a polygon.
 

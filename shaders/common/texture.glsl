@@ -13,12 +13,12 @@
 float flowtexShared(float apart, float near)
 {
   float total = 1.0;
-  for (int m = 1; m <= 24; ++m)
+  for (int m = 1; m <= FLOWTEX_SHARED_TERMS; ++m)
   {
     float d = float(m * m) * apart * apart;
-    if (d > 3.0)
+    if (d > FLOWTEX_BELL_END)
       break;
-    total += 2.0 * pow(near, float(m * m)) * exp(-d * (1.19 + 0.06 * d));
+    total += 2.0 * pow(near, float(m * m)) * exp(-d * (FLOWTEX_BELL + FLOWTEX_BELL_BEND * d));
   }
   return total;
 }
@@ -27,18 +27,19 @@ float flowtexShared(float apart, float near)
 vec2 flowtexFootprint(float aa, float bb, float determinant)
 {
   float half_ = 0.5 * (aa + bb);
-  float longest = sqrt(max(half_ + sqrt(max(half_ * half_ - determinant * determinant, 0.0)), 1e-38));
+  float root = sqrt(max(half_ * half_ - determinant * determinant, 0.0));
+  float longest = sqrt(max(half_ + root, FLOWTEX_LEAST_SQUARE));
   return vec2(longest, abs(determinant) / longest);
 }
 
-// Weight at x in -1 ... 1, negative behind the particle. Kernels: 0 Hann, 1 box, 2 ramp.
+// Weight at x in -1 ... 1, negative behind the particle.
 float flowtexWeight(float x)
 {
-  if (u_kernel == 1)
+  if (u_kernel == FLOWTEX_KERNEL_BOX)
     return 1.0;
-  if (u_kernel == 2)
+  if (u_kernel == FLOWTEX_KERNEL_RAMP)
     return u_sides == 2 ? 0.5 * (1.0 - x) : 1.0 - abs(x);
-  return 0.5 + 0.5 * cos(3.14159265 * x);
+  return 0.5 + 0.5 * cos(FLOWTEX_PI * x);
 }
 
 // Sums along a path: of the weighted noise in both octaves, of the squared weights, and of the
@@ -67,7 +68,7 @@ void flowtexSide(inout FlowtexSums sums, FlowtexPath path, float side, float spa
 {
   float last = min(reach, u_lags[u_lagCount - 1]);
   float lag = 0.0;
-  float step_ = spacing / (scale * max(length(path.before), 1e-6));
+  float step_ = spacing / (scale * max(length(path.before), FLOWTEX_LEAST_SPEED));
   float before = flowtexWeight(0.0);
   for (int k = 1; k <= count; ++k)
   {
@@ -82,7 +83,7 @@ void flowtexSide(inout FlowtexSums sums, FlowtexPath path, float side, float spa
 #ifndef FLOWTEX_PAPER
     // Points stay evenly spaced along the path where the particle is faster or slower there
     // than it is here: equation 3 at every point of the path.
-    step_ = spacing / (scale * max(flowtexSpeed(path, lag), 1e-6));
+    step_ = spacing / (scale * max(flowtexSpeed(path, lag), FLOWTEX_LEAST_SPEED));
 #endif
   }
 }
@@ -96,8 +97,8 @@ float flowtexTexture(vec2 coordinate, float sliceLevel, float spacing)
   FlowtexSums sums = FlowtexSums(vec2(0.0), 0.0, 0.0);
   float speed = length(base.xyz);
   flowtexMove(speed, u_moving ? flowtexLayer(coordinate, 2, sliceLevel).w : 1.0);
-  flowtexAdd(sums, vec3(0.0), 0.0, max(flowtexWeight(0.0), 1e-3), 0.0);
-  if (speed > 1e-6)
+  flowtexAdd(sums, vec3(0.0), 0.0, max(flowtexWeight(0.0), FLOWTEX_LEAST_WEIGHT), 0.0);
+  if (speed > FLOWTEX_LEAST_SPEED)
   {
 #ifdef FLOWTEX_PAPER
     float scale = 1.0;

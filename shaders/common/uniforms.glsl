@@ -1,5 +1,7 @@
 // What a renderer sets. The names are those of flowtex/rendering/uniforms.py.
 
+//#include common/constants.glsl
+
 uniform highp sampler2DArray u_slices;
 #ifdef FLOWTEX_UNSTEADY
 uniform highp sampler2DArray u_slicesNext; // slices of the next destination time
@@ -7,7 +9,7 @@ uniform float u_between;                   // how far the time has come from one
 #endif
 uniform vec2 u_slicesSize;  // texels of a layer
 uniform float u_deepest;    // coarsest level of the slices
-uniform float u_lags[32];   // lags of the slices, in units of lag
+uniform float u_lags[FLOWTEX_MOST_LAGS];   // lags of the slices, in units of lag
 uniform int u_lagCount;
 uniform int u_sides;        // 1 backward only, 2 forward too
 uniform float u_unit;       // length that the fourth channel of layer 0 is measured in
@@ -15,7 +17,7 @@ uniform float u_unit;       // length that the fourth channel of layer 0 is meas
 uniform int u_samples;
 uniform float u_spacing;
 uniform float u_grain;
-uniform int u_kernel;       // 0 Hann, 1 box, 2 ramp
+uniform int u_kernel;       // FLOWTEX_KERNEL_HANN, ..._BOX or ..._RAMP
 uniform bool u_lod;
 uniform float u_contrast;
 uniform float u_strength;
@@ -44,7 +46,7 @@ uniform highp sampler2DArray u_noiseImage; // one layer each
 uniform highp sampler2DArray u_stepImage;
 uniform vec2 u_noiseSize;  // texels of the noise, and of the step texture
 uniform float u_noiseGrain; // width of a grain, in texels
-uniform float u_noiseDeviation[32]; // of the noise at each level and half-way to the next
+uniform float u_noiseDeviation[FLOWTEX_HALF_LEVELS]; // of the noise at each level and half-way to the next
 uniform bool u_noiseCorrected; // noise even on the surface, not in the texture
 #endif
 #ifdef FLOWTEX_PICTURE

@@ -11,26 +11,27 @@ in float flowtexScalarOut;
 //#include common/uniforms.glsl
 //#include common/flowtex.glsl
 
-uniform sampler2D u_cmap;  // 256 colours
+uniform sampler2D u_cmap;  // FLOWTEX_COLOURS colours
 uniform bool u_mapped;     // colour by the scalar, or one colour for all
 uniform vec3 u_colour;
 uniform bool u_lit;
-uniform vec2 u_light;      // ambient and diffuse: dark sides stay bright enough to read the texture
 uniform vec3 u_toEye;      // way to the light, which is the camera's own
 uniform vec3 u_ground;     // behind the surface
 uniform float u_opacity;
 
 // Where there is no value: nodes without one are given one far below all others.
-const vec3 flowtexNothing = vec3(0.663);
+const vec3 FLOWTEX_NO_VALUE_COLOUR = vec3(0.663);
+const float FLOWTEX_NO_VALUE = -1e3;
+const float FLOWTEX_COLOURS = 256.0; // entries of the colour map
 
 out vec4 flowtexOut;
 
 // Scalars are interpolated first and mapped then, each entry of the map over an equal share.
 vec3 flowtexMapped(float share)
 {
-  if (share < -1e3)
-    return flowtexNothing;
-  int entry = int(clamp(share * 256.0, 0.0, 255.0));
+  if (share < FLOWTEX_NO_VALUE)
+    return FLOWTEX_NO_VALUE_COLOUR;
+  int entry = int(clamp(share * FLOWTEX_COLOURS, 0.0, FLOWTEX_COLOURS - 1.0));
   return texelFetch(u_cmap, ivec2(entry, 0), 0).rgb;
 }
 
@@ -58,7 +59,7 @@ void main()
 #else
     float facing = abs(dot(normalize(flowtexNormalOut), u_toEye));
 #endif
-    colour *= min(u_light.x + u_light.y * facing, 1.0);
+    colour *= min(FLOWTEX_AMBIENT_LIGHT + FLOWTEX_DIFFUSE_LIGHT * facing, 1.0);
   }
   // One layer before the ground: no order of drawing to keep.
   flowtexOut = vec4(mix(u_ground, colour, u_opacity), 1.0);

@@ -6,9 +6,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from matrix import COLOUR, DEEP, GROUND, ROOT, SHARE, SIZE, VIEWS, Pixels, View, difference, judged
+from matrix import COLOUR, DEEP, GROUND, ROOT, SHARE, SIZE, VIEWS, View, difference, judged
 from webgl_page import ClientPage, packed, state
 
+from flowtex._util.array_types import Bytes
+from flowtex.plotting.vtk_camera import apply_camera
 from flowtex.rendering.webgl import ClientData, Colours
 
 #: Whether Chromium draws with the WebGL that it brings, which filters with fewer digits.
@@ -18,7 +20,7 @@ OWN = """(({ gl }) => gl.getExtension('WEBGL_debug_renderer_info') !== null
 COARSER, FINER = 4.5, 0.83
 
 
-def agree(theirs: Pixels, name: str, more: float = 1.0) -> None:
+def agree(theirs: Bytes, name: str, more: float = 1.0) -> None:
     ours = judged(name)[1]
     assert theirs.shape == ours.shape
     root, share, only_one = difference(theirs, ours)
@@ -29,7 +31,7 @@ def agree(theirs: Pixels, name: str, more: float = 1.0) -> None:
     assert only_one <= 3
 
 
-def drawn_by_vtk(plotter: Any, view: View) -> Pixels:
+def drawn_by_vtk(plotter: Any, view: View) -> Bytes:
     camera = view.camera
     plotter.window_size = list(SIZE)
     plotter.set_background(GROUND)
@@ -39,16 +41,13 @@ def drawn_by_vtk(plotter: Any, view: View) -> Pixels:
     if view.time is not None:
         handle.time = view.time
     handle.clock = view.clock
-    plotter.camera_position = [camera.position, camera.focal_point, camera.up]
-    plotter.camera.parallel_projection = camera.parallel_scale is not None
-    if camera.parallel_scale is not None:
-        plotter.camera.parallel_scale = camera.parallel_scale
-    plotter.camera.view_angle = camera.view_angle
+    apply_camera(camera, plotter.camera)
+    plotter.camera_set = True
     plotter.renderer.reset_camera_clipping_range()
     return np.asarray(plotter.screenshot(return_img=True))[..., :3]
 
 
-def drawn_by_webgl(client: ClientPage, name: str) -> Pixels:
+def drawn_by_webgl(client: ClientPage, name: str) -> Bytes:
     view, (shown, _) = (VIEWS | DEEP)[name], judged(name)
     before, after, _ = shown.moment
     whole = ClientData(shown.textures, Colours(plain=COLOUR, background=GROUND))

@@ -5,12 +5,10 @@ from __future__ import annotations
 import matplotlib
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from flowtex._util.array_types import Floats
 from flowtex.rendering.cpu.shade import shade
 from flowtex.settings import Settings
-
-Floats = NDArray[np.float64]
 
 
 def lightness(colours: Floats) -> Floats:

@@ -9,27 +9,30 @@ numbers decide, such as the lag at which a path ends.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import cache
 from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from scipy import ndimage
 
 from flowtex import FlowField
-from flowtex.plotting.vtk_camera import look
-from flowtex.rendering.cpu import Camera, Picture, raster, render, shade, smooth
-from flowtex.rendering.cpu.lookup import Mips
+from flowtex._util.array_types import Bytes, Floats
+from flowtex.camera import Camera
+from flowtex.plotting.vtk_camera import look, read_camera
+from flowtex.rendering.cpu import Lookup, LookupMaker, Picture, Sums, raster, render, shade
+from flowtex.rendering.cpu.fragments import Fragments
+from flowtex.rendering.cpu.mipmaps import Mips
+from flowtex.rendering.cpu.noise import SpaceNoise
 from flowtex.rendering.cpu.raster import Coverage, rasterise
 from flowtex.rendering.uniforms import ViewState
 from flowtex.settings import Settings
 from flowtex.textures import TextureSet
 from flowtex.trace import SliceStore
 
-Floats = NDArray[np.float64]
-
+#: A camera, and width and height of its picture in pixels.
+Shot = tuple[Camera, tuple[int, int]]
 
 # --- fields ---------------------------------------------------------------------------------
 
@@ -59,93 +62,92 @@ def textures(field: FlowField, settings: Settings) -> TextureSet:
     return TextureSet.build(SliceStore(field, parameter=settings.parameter), settings)
 
 
-def straight(focus: tuple[float, float], pixel: float, size: tuple[int, int] = (90, 60)) -> Camera:
+def straight(focus: tuple[float, float], pixel: float, size: tuple[int, int] = (90, 60)) -> Shot:
     """Straight view of the x-y plane with pixels of a given size."""
     x, y = focus
-    return Camera((x, y, 5.0), (x, y, 0.0), (0, 1, 0), size, pixel * size[1] / 2)
+    scale = pixel * size[1] / 2
+    return Camera((x, y, 5.0), (x, y, 0.0), (0, 1, 0), parallel=True, parallel_scale=scale), size
 
 
-def value(field: FlowField, camera: Camera, function: Any = None, **options: Any) -> Floats:
+def value(field: FlowField, shot: Shot, function: Any = None, **options: Any) -> Floats:
     settings = Settings(**options)
     made = textures(field, settings)
-    lookup = None if function is None else smooth(function, made)
-    return render(made, settings, camera, lookup=lookup).value
+    lookup = None if function is None else averaged_function(function, made)
+    return render(made, settings, *shot, lookup=lookup).value
+
+
+# --- a function of position in place of the noise ---------------------------------------------
+
+
+class FunctionLookup(Lookup):
+    """Weighted mean of a function along the paths of some fragments.
+
+    The second value that is summed is one everywhere, so that the ratio of both sums is the
+    mean, whatever the weights are.
+    """
+
+    def __init__(
+        self,
+        function: Callable[[Floats], Floats],
+        textures: TextureSet,
+        fragments: Fragments,
+        values: Mapping[str, Any],
+    ) -> None:
+        geometry = textures.geometry
+        self._function, self._frame, self._center = function, geometry.frame, geometry.center
+        self._here = fragments.position.value
+        noise = SpaceNoise(fragments, values, planar=geometry.planar)
+        self.spacing, self.level = noise.spacing, noise.level
+
+    def lookup(self, displacement: Floats, length: Floats) -> Floats:
+        """Return the function and one, (N, 2)."""
+        del length
+        value = self._function((self._here + displacement) @ self._frame + self._center)
+        return np.stack([value, np.ones_like(value)], axis=-1)
+
+    def blend(self, sums: Sums) -> Floats:
+        """Return the mean."""
+        return np.asarray(sums.values[:, 0] / sums.values[:, 1])
+
+
+def averaged_function(function: Callable[[Floats], Floats], made: TextureSet) -> LookupMaker:
+    """Look-up that averages a function along the paths.
+
+    A picture without noise is as smooth as the function, so two pictures can be compared where
+    noise would only be as random in both.
+    """
+    return lambda fragments, values: FunctionLookup(function, made, fragments, values)
 
 
 # --- the camera -----------------------------------------------------------------------------
 
 
-def camera_of(plotter: Any) -> Camera:
+def shot_of(plotter: Any) -> Shot:
     """The view of a plotter."""
-    camera = plotter.camera
-    return Camera(
-        tuple(camera.position),
-        tuple(camera.focal_point),
-        tuple(camera.up),
-        tuple(plotter.window_size),
-        camera.parallel_scale if camera.parallel_projection else None,
-        camera.view_angle,
-    )
-
-
-@pytest.mark.parametrize("parallel", [False, True])
-def test_the_camera_sees_what_vtk_sees(parallel: bool, rng: np.random.Generator) -> None:
-    from vtkmodules.vtkRenderingCore import vtkCamera
-
-    for _ in range(5):
-        position, focal, up = rng.normal(size=(3, 3))
-        theirs = vtkCamera()
-        theirs.SetPosition(*position)
-        theirs.SetFocalPoint(*focal)
-        theirs.SetViewUp(*up)
-        theirs.SetViewAngle(40.0)
-        theirs.SetParallelScale(0.7)
-        theirs.SetParallelProjection(parallel)
-        matrix = theirs.GetCompositeProjectionTransformMatrix(1.5, -1, 1)
-        expected = np.array([[matrix.GetElement(r, c) for c in range(4)] for r in (0, 1, 3)])
-        ours = Camera(
-            tuple(position), tuple(focal), tuple(up), (300, 200), 0.7 if parallel else None, 40.0
-        )
-        np.testing.assert_allclose(ours.matrix()[[0, 1, 3]], expected, atol=1e-12)
-        point, origin = rng.normal(size=(2, 3))
-        moved = ours.matrix(origin) @ [*(point - origin), 1.0]
-        np.testing.assert_allclose(moved, ours.matrix() @ [*point, 1.0], atol=1e-12)
-
-
-def test_a_camera_that_sees_nothing_says_why() -> None:
-    good: dict[str, Any] = {"position": (0, 0, 1), "focal_point": (0, 0, 0), "up": (0, 1, 0)}
-    wrong: list[tuple[dict[str, Any], str]] = [
-        ({"size": (0, 10)}, "size is"),
-        ({"size": (10, 10), "up": (0, 0, 3)}, "lie on one line"),
-        ({"size": (10, 10), "position": (0, np.nan, 0)}, "position is"),
-        ({"size": (10, 10), "parallel_scale": -1.0}, "parallel_scale is -1.0"),
-        ({"size": (10, 10), "view_angle": 180.0}, "view_angle is 180.0"),
-    ]
-    for values, text in wrong:
-        with pytest.raises(ValueError, match=text):
-            Camera(**{**good, **values})
+    return read_camera(plotter.camera), tuple(plotter.window_size)
 
 
 # --- the rasteriser -------------------------------------------------------------------------
 
 
-def rays(camera: Camera) -> tuple[Floats, Floats]:
+def rays(camera: Camera, size: tuple[int, int]) -> tuple[Floats, Floats]:
     """Start and direction of the ray through the middle of each pixel, (H * W, 3)."""
     right, up, forward = camera.axes
-    width, height = camera.size
+    width, height = size
     x, y = np.meshgrid(np.arange(width) + 0.5 - width / 2, height / 2 - np.arange(height) - 0.5)
-    half = camera.parallel_scale or np.tan(np.radians(camera.view_angle / 2))
+    half = np.tan(np.radians(camera.view_angle / 2))
+    half = camera.parallel_scale if camera.parallel else half
     aside = (x[..., None] * right + y[..., None] * up).reshape(-1, 3) * (2 * half / height)
     start = np.broadcast_to(np.asarray(camera.position, dtype=float), aside.shape)
-    if camera.parallel_scale:
+    if camera.parallel:
         return start + aside, np.broadcast_to(forward, aside.shape)
     return start, aside + forward
 
 
-def hits(camera: Camera, corners: Floats) -> Floats:
+def hits(camera: Camera, size: tuple[int, int], corners: Floats) -> Floats:
     """Distance along each ray to each triangle (M, 3, 3), (H * W, M); inf where it is missed."""
-    start, along = rays(camera)
-    behind = -np.inf if camera.parallel_scale else 0.0
+    start, along = rays(camera, size)
+    behind = -np.inf if camera.parallel else 0.0
     distances = np.full((len(start), len(corners)), np.inf)
     for m, (a, b, c) in enumerate(corners):
         columns = np.stack([np.broadcast_to(b - a, along.shape), c - a + 0 * along, -along], -1)
@@ -155,8 +157,9 @@ def hits(camera: Camera, corners: Floats) -> Floats:
     return distances
 
 
-def project(camera: Camera, points: Floats) -> Floats:
-    return np.asarray(np.c_[points, np.ones(len(points))] @ camera.matrix().T)
+def project(camera: Camera, size: tuple[int, int], points: Floats) -> Floats:
+    matrix = camera.matrix(size[0] / size[1])
+    return np.asarray(np.c_[points, np.ones(len(points))] @ matrix.T)
 
 
 @pytest.mark.parametrize("scale", [None, 1.5])
@@ -164,20 +167,21 @@ def test_triangles_are_drawn_where_rays_hit_them(
     scale: float | None, rng: np.random.Generator, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(raster, "CHUNK", 100)
-    camera = Camera((0.2, -0.1, 2.0), (0, 0.1, 0), (0.1, 1, 0), (37, 23), scale, 50.0)
+    size, parallel = (37, 23), scale is not None
+    camera = Camera((0.2, -0.1, 2.0), (0, 0.1, 0), (0.1, 1, 0), parallel, scale or 1.0, 50.0)
     # Some corners lie behind the camera, and some triangles quite outside the picture.
     points = np.repeat(rng.normal(size=(12, 3)) * [0.8, 0.8, 1.0], 3, axis=0)
     points += rng.normal(size=(36, 3)) * [0.6, 0.6, 1.2]
     triangles = np.arange(36).reshape(-1, 3)
-    assert (project(camera, points)[:, 3] < 0).any() == (scale is None)
-    found = rasterise(project(camera, points), triangles, camera.size)
-    distance = hits(camera, points[triangles])
+    assert (project(camera, size, points)[:, 3] < 0).any() == (scale is None)
+    found = rasterise(project(camera, size, points), triangles, size)
+    distance = hits(camera, size, points[triangles])
     covered = np.isfinite(distance).any(axis=-1)
     assert 0.2 < covered.mean() < 1
     np.testing.assert_array_equal(found.pixel, np.flatnonzero(covered))
     nearest = distance.argmin(axis=-1)[found.pixel]
     np.testing.assert_array_equal(found.corners[:, 0] // 3, nearest)
-    start, along = (a[found.pixel] for a in rays(camera))
+    start, along = (a[found.pixel] for a in rays(camera, size))
     expected = start + distance[found.pixel, nearest][:, None] * along
     np.testing.assert_allclose(found.mix(points)[0], expected, atol=1e-9)
 
@@ -188,11 +192,11 @@ def test_derivatives_are_those_of_the_rays(rng: np.random.Generator) -> None:
 
     def at(shift: tuple[float, float]) -> tuple[Coverage, tuple[Floats, Floats, Floats]]:
         """The picture seen through a window that is moved by parts of a pixel."""
-        camera = Camera((0, -4.0, 3.0), (0, 0, 0.3), (0, 0, 1), (20, 16))
-        clip = project(camera, corners)
+        size, camera = (20, 16), Camera((0, -4.0, 3.0), (0, 0, 0.3), (0, 0, 1))
+        clip = project(camera, size, corners)
         clip[:, 0] -= 2 * shift[0] / 20 * clip[:, 3]
         clip[:, 1] += 2 * shift[1] / 16 * clip[:, 3]
-        found = rasterise(clip, np.array([[0, 1, 2]]), camera.size)
+        found = rasterise(clip, np.array([[0, 1, 2]]), size)
         return found, found.mix(data)
 
     h = 1e-4
@@ -226,10 +230,10 @@ def test_a_mesh_has_neither_holes_nor_seams(turned: bool, rng: np.random.Generat
 
 
 def test_triangles_without_area_are_not_drawn() -> None:
-    camera = Camera((0, 0, 3), (0, 0, 0), (0, 1, 0), (16, 16), 1.0)
+    size, camera = (16, 16), Camera((0, 0, 3), (0, 0, 0), (0, 1, 0), parallel=True)
     points = np.array([[-1.0, -1, 0], [1, 1, 0], [0, 0, 0], [0, 0, 1], [0, 1, 0.5]])
     flat = np.array([[0, 1, 2], [2, 2, 1], [2, 3, 4]])
-    found = rasterise(project(camera, points), flat, camera.size)
+    found = rasterise(project(camera, size, points), flat, size)
     assert len(found.pixel) == 0
 
 
@@ -305,7 +309,7 @@ def test_straight_flow_averages_along_lines(kernel: str, two_sided: bool) -> Non
     settings = Settings(kernel=kernel, two_sided=two_sided, samples=31)
     made = textures(field, settings)
     picture = render(
-        made, settings, straight((0.1, -0.2), 0.01, (60, 40)), lookup=smooth(wave, made)
+        made, settings, *straight((0.1, -0.2), 0.01, (60, 40)), lookup=averaged_function(wave, made)
     )
     at = picture.position.reshape(-1, 3)
     expected = along(lambda s: at + s * np.array([*direction, 0]), settings, 0.01)
@@ -318,7 +322,9 @@ def test_rotating_flow_averages_along_circles() -> None:
     field = planar(np.stack([x, y], axis=-1), np.stack([-y, x], axis=-1))
     settings = Settings()
     made = textures(field, settings)
-    picture = render(made, settings, straight((0.9, 0.3), 0.012), lookup=smooth(wave, made))
+    picture = render(
+        made, settings, *straight((0.9, 0.3), 0.012), lookup=averaged_function(wave, made)
+    )
     at = picture.position.reshape(-1, 3)
     radius, angle = np.hypot(at[:, 0], at[:, 1]), np.arctan2(at[:, 1], at[:, 0])
     far = radius > 0.4
@@ -401,9 +407,9 @@ def test_turned_space_gives_the_same_picture(rng: np.random.Generator) -> None:
     p, v = (
         np.pad(a, ((0, 0), (0, 0), (0, 1))) for a in (gyre_points(), gyre_velocity(gyre_points()))
     )
-    here = value(planar(p, v), Camera(tuple(eye), tuple(focal), tuple(up), (90, 60)), wave)
-    camera = Camera(tuple(turn @ eye), tuple(turn @ focal), tuple(turn @ up), (90, 60))
-    there = value(planar(p @ turn.T, v @ turn.T), camera, lambda q: wave(q @ turn))
+    here = value(planar(p, v), (Camera(tuple(eye), tuple(focal), tuple(up)), (90, 60)), wave)
+    camera = Camera(tuple(turn @ eye), tuple(turn @ focal), tuple(turn @ up))
+    there = value(planar(p @ turn.T, v @ turn.T), (camera, (90, 60)), lambda q: wave(q @ turn))
     np.testing.assert_array_equal(np.isnan(there), np.isnan(here))
     # The axes of the slopes differ, and with them what half precision makes of them.
     away = np.abs(there - here)[~np.isnan(here)]
@@ -424,8 +430,8 @@ def test_far_from_the_origin_the_noise_is_the_same() -> None:
 def test_the_texture_does_not_depend_on_where_the_view_is(noise: str) -> None:
     settings = Settings(noise=noise, resolution=256)
     made = textures(gyre(), settings)
-    here = render(made, settings, straight(FOCUS, PIXEL))
-    there = render(made, settings, straight((FOCUS[0] + 20 * PIXEL, FOCUS[1]), PIXEL))
+    here = render(made, settings, *straight(FOCUS, PIXEL))
+    there = render(made, settings, *straight((FOCUS[0] + 20 * PIXEL, FOCUS[1]), PIXEL))
     np.testing.assert_allclose(there.value[:, :-20], here.value[:, 20:], atol=1e-6)
     shown = here.value[here.covered]
     assert abs(shown.mean()) < 0.25
@@ -442,7 +448,7 @@ def test_a_picture_says_what_it_shows() -> None:
         np.stack([x, y], -1), np.where(valid[..., None], [1.0, 0.0], np.nan)
     )
     settings = Settings()
-    picture = render(textures(field, settings), settings, straight((0.5, 0.5), 0.02, (60, 60)))
+    picture = render(textures(field, settings), settings, *straight((0.5, 0.5), 0.02, (60, 60)))
     py, px = np.mgrid[0:60, 0:60]
     at = np.stack([(px - 29.5) * 0.02 + 0.5, (29.5 - py) * 0.02 + 0.5], axis=-1)
     seen = picture.covered
@@ -461,15 +467,15 @@ def test_a_picture_says_what_it_shows() -> None:
 
 def test_an_empty_view_is_an_empty_picture() -> None:
     settings = Settings()
-    picture = render(textures(gyre(), settings), settings, straight((50, 50), 0.01, (8, 6)))
+    picture = render(textures(gyre(), settings), settings, *straight((50, 50), 0.01, (8, 6)))
     assert not picture.covered.any()
     assert (picture.rgb(background=(0, 0, 1)) == [0, 0, 255]).all()
 
 
 def test_colours_by_pixel_and_without_texture() -> None:
     settings = Settings(strength=0.0)
-    camera = straight((1.0, 0.5), 0.01, (20, 16))
-    picture = render(textures(gyre(), settings), settings, camera)
+    shot = straight((1.0, 0.5), 0.01, (20, 16))
+    picture = render(textures(gyre(), settings), settings, *shot)
     colours = np.random.default_rng(0).uniform(size=(16, 20, 3))
     np.testing.assert_array_equal(picture.rgb(colours), np.rint(colours * 255))
     for wrong in ((0, 0, 2), (0.5, 0.5), np.zeros((20, 16, 3))):
@@ -485,12 +491,6 @@ def test_shade_goes_up_and_down_by_the_same_lightness() -> None:
     for colour in ((1.0, 1.0, 1.0), (0.0, 0.0, 0.0)):
         plain = shade(colour, np.array([-1.0, 1.0]), Settings(strength=0.0))
         np.testing.assert_allclose(plain, [colour, colour], atol=1e-6)
-
-
-def test_a_smooth_function_needs_slopes_in_space() -> None:
-    made = textures(gyre(), Settings(noise="texture", resolution=64))
-    with pytest.raises(ValueError, match="slopes in parameter space; expected physical"):
-        smooth(wave, made)
 
 
 # --- against VTK ----------------------------------------------------------------------------
@@ -511,7 +511,7 @@ def both(
     time: float | None = None,
     clock: float = 0.0,
     **options: Any,
-) -> tuple[NDArray[np.uint8], Picture]:
+) -> tuple[Bytes, Picture]:
     """One view by VTK and by NumPy."""
     plotter.window_size = [160, 120]
     plotter.set_background("red")
@@ -531,14 +531,14 @@ def both(
     picture = render(
         handle.scene.textures,
         handle.settings,
-        camera_of(plotter),
+        *shot_of(plotter),
         view=ViewState(between=between, clock=clock),
         steps=(before, after),
     )
     return theirs, picture
 
 
-def difference(theirs: NDArray[np.uint8], picture: Picture) -> tuple[float, float, int]:
+def difference(theirs: Bytes, picture: Picture) -> tuple[float, float, int]:
     """Root mean square, share beyond 8 steps, and pixels that only one of them covers."""
     covered = (theirs != [255, 0, 0]).any(axis=-1)
     ours = picture.rgb((0.6, 0.6, 0.6), background=(1, 0, 0))
@@ -560,6 +560,6 @@ def test_two_hundredths_more_would_be_noticed(plotter: Any, name: str) -> None:
     theirs, picture = both(plotter, gyre(), zoom=4)
     settings = picture.settings.copy()
     setattr(settings, name, getattr(settings, name) * 1.02)
-    other = render(textures(gyre(), settings), settings, camera_of(plotter))
+    other = render(textures(gyre(), settings), settings, *shot_of(plotter))
     near, far = difference(theirs, picture)[0], difference(theirs, other)[0]
     assert near < ROOT < far

@@ -6,12 +6,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
-from flowtex.rendering.cpu.noise import Motion, lattice, octave
+from flowtex._util.array_types import Floats
+from flowtex.rendering.cpu.noise import Motion, noise_lattice, octave
 from flowtex.rendering.cpu.texture import shared
-
-Floats = NDArray[np.float64]
 
 VALUES: dict[str, Any] = {
     "u_noiseFinest": 1.0,
@@ -25,7 +23,7 @@ VALUES: dict[str, Any] = {
 def noise(position: Floats, level: int, *, planar: bool = True, motion: Any = None) -> Floats:
     """One octave at positions (N, 3)."""
     levels = np.full(len(position), level)
-    found = lattice(position, levels, VALUES)
+    found = noise_lattice(position, levels, VALUES)
     return octave(found, np.zeros_like(position), motion, planar=planar)
 
 

@@ -10,14 +10,13 @@ import numpy as np
 import pytest
 import pyvista as pv
 from measures import carried, fineness, streaks
-from numpy.typing import NDArray
 
 import flowtex
+from flowtex._util.array_types import Bools
 from flowtex.plotting.vtk_camera import look
 from flowtex.settings import TABLE
 
 SIZE = (400, 300)
-Image = NDArray[Any]
 
 
 def gyre(x: Any, y: Any) -> tuple[Any, Any]:
@@ -46,7 +45,7 @@ def pixels(field: flowtex.FlowField, zoom: float, focus: tuple[float, float]) ->
     return np.meshgrid(x, y)
 
 
-def inside(x: Any, y: Any) -> NDArray[np.bool_]:
+def inside(x: Any, y: Any) -> Bools:
     margin = np.zeros(x.shape, dtype=bool)
     margin[12:-12, 12:-12] = True
     step = abs(x[0, 1] - x[0, 0])

@@ -10,9 +10,8 @@ from numpy.typing import NDArray
 import flowtex
 from flowtex import examples
 from flowtex._util.colours import colour_table
-from flowtex.first_look import first_look
+from flowtex.camera import Camera
 from flowtex.options import Options
-from flowtex.rendering.cpu import Camera
 from flowtex.rendering.webgl import ClientData
 from flowtex.scene import coarsened_field
 from flowtex.settings import TABLE, Settings
@@ -145,7 +144,7 @@ def test_the_first_look_is_that_of_vtk(make: Any, view: Any, aspect: float, open
     plotter = pv.Plotter(off_screen=True, window_size=[int(300 * aspect), 300])
     field = make()
     look(plotter, field, **view)
-    found, camera = first_look(field, aspect, **view), plotter.camera
+    found, camera = Camera.fit(field.surface, aspect, **view), plotter.camera
     for name in ("position", "focal_point", "up"):
         np.testing.assert_allclose(getattr(found, name), getattr(camera, name), atol=1e-9)
     assert found.parallel == bool(camera.parallel_projection)
@@ -159,18 +158,17 @@ def test_the_first_look_is_that_of_vtk(make: Any, view: Any, aspect: float, open
 @pytest.mark.parametrize("make", [plane, ball])
 def test_the_first_look_holds_the_whole_surface(make: Any) -> None:
     field = make()
-    found = first_look(field, 1.5)
+    found = Camera.fit(field.surface, 1.5)
     camera = Camera(
         found.position,
         found.focal_point,
         found.up,
-        (300, 200),
-        parallel_scale=found.parallel_scale if found.parallel else None,
+        found.parallel,
+        found.parallel_scale,
         view_angle=found.view_angle,
     )
     points = field.surface.points[field.valid]
-    seen = points @ camera.matrix()[:, :3].T + camera.matrix()[:, 3]
-    across = np.abs(seen[:, :2] / seen[:, 3:]).max()
+    across = np.abs(camera.project(points, 1.5)).max()
     assert 0.8 < across < 1.0
 
 

@@ -8,24 +8,22 @@ from typing import Any
 import numpy as np
 import pytest
 from measures import grey
-from numpy.typing import NDArray
 from PIL import Image
 from scipy.ndimage import map_coordinates, uniform_filter
 
 import flowtex
 from flowtex import FlowField
+from flowtex._util.array_types import AnyArray, Bools, Bytes, Floats
 from flowtex.cli import main
 from flowtex.options import Appearance
 from flowtex.scene import Scene
 from flowtex.settings import Settings, SettingsError
 from flowtex.textures import ImageError, PaperTextures, as_picture
-from flowtex.textures.image_files import load_image
-from flowtex.textures.images import LARGEST
+from flowtex.textures.images import LARGEST, load_image
 from flowtex.textures.patterns import SPOT_GRAIN, SQUARES
 from flowtex.trace import SliceStore
 
 SIZE = (240, 140)
-Floats = NDArray[np.float64]
 
 
 def uniform(u: float = 1.0, v: float = 0.0, steps: int = 1) -> FlowField:
@@ -56,7 +54,7 @@ def still() -> FlowField:
         return uniform(0.0)
 
 
-def photo(rng: np.random.Generator, height: int = 64, width: int = 128) -> NDArray[np.uint8]:
+def photo(rng: np.random.Generator, height: int = 64, width: int = 128) -> Bytes:
     """Blobs of all colours, (H, W, 3)."""
     colours = rng.uniform(0, 255, (height, width, 3))
     blobs = uniform_filter(colours, (height // 8, width // 16, 0))
@@ -68,7 +66,7 @@ def draw(field: FlowField, **options: Any) -> Floats:
     return flowtex.render(field, **{"size": SIZE, **options}).astype(float)
 
 
-def places() -> tuple[Floats, Floats, NDArray[np.bool_]]:
+def places() -> tuple[Floats, Floats, Bools]:
     """Coordinates of the middles of the pixels, and whether they lie well inside 2 by 1."""
     width, height = SIZE
     scale = max(1.0, 2.0 * height / width) / 0.92 / height
@@ -78,7 +76,7 @@ def places() -> tuple[Floats, Floats, NDArray[np.bool_]]:
     return x, y, (np.abs(x - 1) < 0.98) & (np.abs(y - 0.5) < 0.48)
 
 
-def seen(image: NDArray[Any], x: Floats, y: Floats) -> Floats:
+def seen(image: AnyArray, x: Floats, y: Floats) -> Floats:
     """Values of an image that is laid over 2 by 1, row 0 at the top, interpolated bilinearly."""
     height, width = image.shape[:2]
     at = [(1 - y) * height - 0.5, x / 2 * width - 0.5]
@@ -321,8 +319,8 @@ def test_the_level_of_detail_keeps_a_fine_image_from_flickering(opengl: Any) -> 
 
 def pattern(field: FlowField, name: str, **options: Any) -> PaperTextures:
     store = SliceStore(field, parameter="arclength")
-    settings = {"resolution": 256, "correction": True, **options}
-    return PaperTextures.build(store, pattern=name, **settings)
+    settings = Settings(noise=name, **{"resolution": 256, **options})
+    return PaperTextures.build(store, settings)
 
 
 def in_space(made: PaperTextures, field: FlowField) -> Floats:
@@ -348,7 +346,9 @@ def widths(noise: Floats) -> tuple[float, float]:
 
 def test_spots_are_round_and_even_on_a_stretched_grid() -> None:
     field = stretched()
-    even, plain = (in_space(pattern(field, "spots", correction=c), field) for c in (True, False))
+    even, plain = (
+        in_space(pattern(field, "spots", noise_correction=c), field) for c in (True, False)
+    )
     halves = (slice(0, 200), slice(200, 400))
     for half in halves:
         along, across = widths(even[:, half])
@@ -369,7 +369,7 @@ def test_spots_have_both_signs_and_a_seed() -> None:
 
 @pytest.mark.parametrize("correction", [True, False])
 def test_averaged_spots_lose_the_contrast_that_the_gain_gives_back(correction: bool) -> None:
-    noise = pattern(uniform(), "spots", correction=correction, resolution=1024).noise
+    noise = pattern(uniform(), "spots", noise_correction=correction, resolution=1024).noise
     for level in (1, 2, 4, 5):
         width = 2**level
         rows, columns = (n // width for n in noise.shape)
@@ -399,7 +399,7 @@ def test_squares_are_even_on_a_stretched_grid() -> None:
     even = sides(pattern(field, "checkerboard", resolution=1024))
     assert len(even) == SQUARES - 2
     np.testing.assert_allclose(even, 2 / SQUARES, atol=0.01)
-    plain = sides(pattern(field, "checkerboard", resolution=1024, correction=False))
+    plain = sides(pattern(field, "checkerboard", resolution=1024, noise_correction=False))
     assert plain.max() > 5 * plain.min()
 
 
@@ -416,8 +416,8 @@ def test_squares_close_around_a_ring_that_is_not_flat() -> None:
     assert row[0] != row[-1]
 
 
-def test_an_unknown_pattern_is_told() -> None:
-    for name in ("image", "marble"):
+def test_what_is_no_pattern_of_a_texture_is_refused() -> None:
+    for name in ("image", "procedural"):
         with pytest.raises(ValueError, match=rf"^pattern is '{name}'; expected 'texture', 'spots'"):
             pattern(uniform(), name)
 

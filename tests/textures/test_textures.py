@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from flowtex import FlowField
+from flowtex._util.array_types import Floats32
 from flowtex.examples import airfoil_field, cylinder_field, double_gyre_field
 from flowtex.settings import Settings
-from flowtex.textures import Geometry, PaperTextures, TextureSet
-from flowtex.textures.displacements import Moves
+from flowtex.textures import PaperTextures, SurfaceGeometry, TextureSet
+from flowtex.textures.displacements import NodeDisplacements
 from flowtex.trace import SliceStore, TraceSlices, trace
-
-Floats = NDArray[np.float64]
 
 
 def textures(field: FlowField, slices: TraceSlices | None = None, **settings: object) -> TextureSet:
@@ -22,7 +20,7 @@ def textures(field: FlowField, slices: TraceSlices | None = None, **settings: ob
     return TextureSet.build(SliceStore(field, parameter=parameter, slices=slices), options)
 
 
-def nodal(made: TextureSet, layer: NDArray[np.float32]) -> NDArray[np.float32]:
+def nodal(made: TextureSet, layer: Floats32) -> Floats32:
     """Texels that lie on the nodes, (J, I, ...)."""
     rows, columns = made.geometry.rows, made.geometry.columns
     return layer[
@@ -211,7 +209,7 @@ def test_moves_are_those_of_the_surface(rng: np.random.Generator) -> None:
         i, j = np.meshgrid(np.arange(columns), np.arange(rows))
         start = np.stack([i, j], axis=-1)
         expected = field.surface.at(start + displacement) - field.points
-        found = Moves(field.surface, np.eye(3))(displacement)
+        found = NodeDisplacements(field.surface, np.eye(3))(displacement)
         np.testing.assert_allclose(
             np.moveaxis(found, 0, -1), expected, atol=1e-10 * field.surface.extent
         )
@@ -238,7 +236,8 @@ def test_slices_that_a_shader_cannot_use_are_refused(count: int) -> None:
 
 def paper(field: FlowField, *, correction: bool, parameter: str = "arclength") -> PaperTextures:
     store = SliceStore(field, parameter=parameter)
-    return PaperTextures.build(store, resolution=128, correction=correction)
+    settings = Settings(noise="texture", resolution=128, noise_correction=correction)
+    return PaperTextures.build(store, settings)
 
 
 @pytest.mark.parametrize("parameter", ["arclength", "time"])
@@ -285,7 +284,8 @@ def test_correction_makes_the_grain_even_on_the_surface() -> None:
 def test_noise_is_the_same_for_the_same_seed() -> None:
     store = SliceStore(stretched(21))
     one, two, other = (
-        PaperTextures.build(store, resolution=64, correction=True, seed=s).noise for s in (1, 1, 2)
+        PaperTextures.build(store, Settings(noise="texture", resolution=64, seed=s)).noise
+        for s in (1, 1, 2)
     )
     np.testing.assert_array_equal(one, two)
     assert np.corrcoef(one.ravel(), other.ravel())[0, 1] < 0.2
@@ -293,4 +293,4 @@ def test_noise_is_the_same_for_the_same_seed() -> None:
 
 def test_noise_is_repeated_where_the_axis_is() -> None:
     assert paper(cylinder_field().at_step(0), correction=True).repeat == (False, True)
-    assert Geometry.of(stretched()).columns.before == 0
+    assert SurfaceGeometry.of(stretched()).columns.before == 0

@@ -8,16 +8,14 @@ from typing import Any
 import numpy as np
 import pytest
 from measures import streaks
-from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 import flowtex
 from flowtex import FlowField, TraceSlices
+from flowtex._util.array_types import AnyArray, Floats
 from flowtex.settings import Settings
 from flowtex.textures import TextureSet
 from flowtex.trace import SliceStore, paths, trace
-
-Floats = NDArray[np.float64]
 
 X, Z, TILTED = (1.0, 0.0, 0.0), (0.0, 0.0, 1.0), (0.6, 0.0, 0.8)
 
@@ -231,7 +229,7 @@ def test_the_first_meridian_is_also_the_last() -> None:
 # --- pictures -------------------------------------------------------------------------------
 
 
-def over_the_pole(field: FlowField, zoom: float, up: float = 1.0) -> NDArray[Any]:
+def over_the_pole(field: FlowField, zoom: float, up: float = 1.0) -> AnyArray:
     """Picture of a pole from straight above, y upwards."""
     camera = [(0.0, 0.0, up * (1 + 2.2 / zoom)), (0.0, 0.0, up), (0.0, 1.0, 0.0)]
     return flowtex.render(field, size=(140, 140), camera=camera, scalars=False, lighting=False)

@@ -6,13 +6,11 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from flowtex import FlowField, TraceSlices, trace
+from flowtex._util.array_types import Floats
 from flowtex.examples import airfoil_field, cylinder_field, double_gyre_field, vortex_field
 from flowtex.trace.compose import landings
-
-Floats = NDArray[np.float64]
 
 
 def both(field: FlowField, **options: object) -> tuple[TraceSlices, TraceSlices]:

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from flowtex import FlowField
+from flowtex._util.array_types import Floats
 from flowtex.trace import paths, trace
-
-Floats = NDArray[np.float64]
 
 
 def plane(rows: int, columns: int) -> Floats:

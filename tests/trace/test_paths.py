@@ -6,16 +6,14 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
 from flowtex import FlowField
+from flowtex._util.array_types import Floats
 from flowtex.examples import double_gyre_field, double_gyre_velocity
 from flowtex.trace import paths, trace
-from flowtex.trace.particles import Step
-
-Floats = NDArray[np.float64]
+from flowtex.trace.integrate import IntegrationStep
 
 #: Linear flows v = A x: bilinear interpolation has no error in them.
 FLOWS = {
@@ -101,7 +99,7 @@ def test_positions_inside_a_step_are_of_third_order() -> None:
         turn = np.array(FLOWS["rotation"])
         y0 = np.array([[1.0], [0.0]])
         y1 = expm(h * turn) @ y0
-        step = Step(y0, turn @ y0, y1, turn @ y1, np.zeros(1), np.array([h]))
+        step = IntegrationStep(y0, turn @ y0, y1, turn @ y1, np.zeros(1), np.array([h]))
         exact = [expm(s * h * turn) @ y0 for s in np.linspace(0, 1, 9)]
         found = [step.at(np.array([s])) for s in np.linspace(0, 1, 9)]
         return float(np.abs(np.array(found) - exact).max())

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 from measures import grey, streaks
-from numpy.typing import NDArray
 
 import flowtex
+from flowtex._util.array_types import AnyArray
 
 SIZE = (400, 300)
 # Zoom, and a point beside the wall of the post at which the view looks.
@@ -25,7 +25,7 @@ def post(data_dir: Path) -> flowtex.FlowField:
 def cut_elsewhere(field: flowtex.FlowField, by: int) -> flowtex.FlowField:
     """Join the same surface at another line of nodes."""
 
-    def turned(a: NDArray[Any], axis: int) -> NDArray[Any]:
+    def turned(a: AnyArray, axis: int) -> AnyArray:
         open_ = np.take(a, range(a.shape[axis] - 1), axis=axis)
         moved = np.roll(open_, by, axis=axis)
         return np.concatenate([moved, np.take(moved, [0], axis=axis)], axis=axis)

@@ -8,15 +8,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from scipy.ndimage import map_coordinates
 
 from flowtex import FlowField, TraceSlices, trace
 from flowtex._util import progress
+from flowtex._util.array_types import Floats
 from flowtex.examples import cylinder_field, double_gyre_field, vortex_field
 from flowtex.trace import SliceStore, paths
-
-Floats = NDArray[np.float64]
 
 
 @pytest.fixture(scope="module")

@@ -8,17 +8,16 @@ from typing import Any
 import numpy as np
 import pytest
 from measures import grey, streaks
-from numpy.typing import NDArray
 
 import flowtex
 from flowtex import FlowField, TraceSlices, trace
-from flowtex.rendering.cpu import Camera, render
+from flowtex._util.array_types import Floats
+from flowtex.camera import Camera
+from flowtex.rendering.cpu import render
 from flowtex.rendering.uniforms import ViewState, uniforms
 from flowtex.settings import Settings
 from flowtex.textures import TextureSet
 from flowtex.trace import SliceStore, paths
-
-Floats = NDArray[np.float64]
 
 SIZE = (200, 200)
 
@@ -189,8 +188,8 @@ def test_both_renderers_agree(opengl: Any) -> None:
     textures = TextureSet.build(SliceStore(field), settings)
     x, y, _ = field.surface.center
     half = 0.5 * float(np.ptp(field.points[..., 1])) / 0.92
-    camera = Camera((x, y, 5.0), (x, y, 0.0), (0, 1, 0), SIZE, half)
-    texture = np.asarray(render(textures, settings, camera).value)
+    camera = Camera((x, y, 5.0), (x, y, 0.0), (0, 1, 0), parallel=True, parallel_scale=half)
+    texture = np.asarray(render(textures, settings, camera, SIZE).value)
     plain = drawn(field, samples=9)
     inside = (slice(30, -30), slice(30, -30))
     assert np.corrcoef(texture[inside].ravel(), plain[inside].ravel())[0, 1] > 0.97

@@ -23,7 +23,8 @@ from numpy.typing import NDArray
 from webgl_page import ClientPage, packed, state
 
 from flowtex import FlowField
-from flowtex.rendering.cpu import Camera, Picture, render
+from flowtex.camera import Camera
+from flowtex.rendering.cpu import Picture, render
 from flowtex.rendering.webgl import ClientData, Colours
 from flowtex.settings import Settings
 from flowtex.textures import TextureSet, as_picture
@@ -104,7 +105,7 @@ def test_two_hundredths_more_would_be_noticed(client: ClientPage) -> None:
     camera = straight(4)
     theirs = client.picture(client.mount(scene(gyre, camera), SIZE, **PLAIN))
     near, far = (
-        difference(theirs, colours(render(made(gyre, s), s, camera)))[0]
+        difference(theirs, colours(render(made(gyre, s), s, camera, SIZE)))[0]
         for s in (Settings(**QUICK), Settings(**QUICK, spacing=0.714))
     )
     assert near < ROOT < far
@@ -137,7 +138,7 @@ def test_scalars_are_interpolated_before_they_are_mapped(client: ClientPage) -> 
     painted = Colours("x", "m", x[None], 0.5, 1.5, table(), background=(1.0, 0.0, 0.0))
     theirs = client.picture(client.mount(scene(colours=painted, strength=0.0), SIZE, **PLAIN))
     settings = Settings(strength=0.0)
-    picture = render(made(gyre, settings), settings, WHOLE)
+    picture = render(made(gyre, settings), settings, WHOLE, SIZE)
     hole = np.abs(picture.position[..., :2] - gyre().points[3, 40, :2]).max(axis=-1) < 0.12
     seen = picture.covered & ~hole
     share = np.clip(picture.position[seen][:, 0] - 0.5, 0, 1)
@@ -154,7 +155,7 @@ def test_a_lit_surface_is_darker_aside(client: ClientPage) -> None:
         client.mount(scene(torus, ASIDE, colours=painted, strength=0.0), SIZE, **PLAIN)
     )
     settings = Settings(strength=0.0)
-    picture = render(made(torus, settings), settings, ASIDE)
+    picture = render(made(torus, settings), settings, ASIDE, SIZE)
     seen = picture.covered & (theirs != [255, 0, 0]).any(axis=-1)
     p = picture.position[seen]
     flat = np.hypot(p[:, 0], p[:, 1])

@@ -15,7 +15,7 @@ from matrix import SIZE, WHOLE
 from PIL import Image
 from webgl_page import ClientPage, packed, state
 
-from flowtex.rendering.cpu import Camera
+from flowtex.camera import Camera
 from flowtex.rendering.webgl import ClientData, Colours
 from flowtex.scene import Scene
 from flowtex.settings import Settings

@@ -23,7 +23,6 @@ from flowtex.app.streaming.navigation import Place
 from flowtex.app.streaming.stream import Figures
 from flowtex.app.streaming.viewport import Viewport
 from flowtex.probe import PointValues, Probe, locate, probe, values_at
-from flowtex.rendering.cpu import Camera as PixelCamera
 
 __all__ = ["Lines", "PathCard", "PointInfo", "PointText", "clip_line", "number_text", "with_unit"]
 
@@ -223,14 +222,6 @@ def clip_line(places: Floats, reach: float = LINE_REACH) -> list[list[list[float
     return result
 
 
-def pixel_camera(viewport: Viewport) -> PixelCamera:
-    """Return the camera of a pane's pixels, as :func:`flowtex.probe.probe` takes it."""
-    camera = viewport.camera
-    scale = camera.parallel_scale if camera.parallel else None
-    points = (camera.position, camera.focal_point, camera.up)
-    return PixelCamera(*points, viewport.pane_size, scale, camera.view_angle)
-
-
 class PointInfo(Controller):
     """Shows the tip under the pointer, and the path through a point."""
 
@@ -336,11 +327,11 @@ class PointInfo(Controller):
     def _reader(self, at: tuple[float, float]) -> Callable[[], Probe | None]:
         """Return what reads the path through a point as things are now, if it is in view."""
         scene, clock = self.viewport.handle.scene.copy(), self.viewport.clock
-        camera = pixel_camera(self.viewport)
+        camera, size = self.viewport.camera, self.viewport.pane_size
 
         def read() -> Probe | None:
             try:
-                return probe(scene, at, pixel=camera, clock=clock)
+                return probe(scene, at, pixel=camera, size=size, clock=clock)
             except ValueError:
                 return None
 

@@ -14,7 +14,7 @@ from typing import Any
 
 from flowtex._util.array_types import AnyArray
 from flowtex.settings import SettingsError
-from flowtex.textures.image_files import pixels_of
+from flowtex.textures.images import pixels_of
 
 __all__ = ["clipped", "decode_picture", "mapping", "name_among", "number", "shortened"]
 

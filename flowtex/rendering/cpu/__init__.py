@@ -6,11 +6,8 @@ lights here, no edges and no smoothing of outlines: only what the method itself 
 
 from __future__ import annotations
 
-from flowtex.rendering.cpu.camera import Camera
-from flowtex.rendering.cpu.picture import Picture
-from flowtex.rendering.cpu.render import render
+from flowtex.rendering.cpu.render import Picture, render
 from flowtex.rendering.cpu.shade import shade
-from flowtex.rendering.cpu.smooth import smooth
 from flowtex.rendering.cpu.texture import Lookup, LookupMaker, Sums
 
-__all__ = ["Camera", "Lookup", "LookupMaker", "Picture", "Sums", "render", "shade", "smooth"]
+__all__ = ["Lookup", "LookupMaker", "Picture", "Sums", "render", "shade"]

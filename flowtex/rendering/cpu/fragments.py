@@ -1,4 +1,4 @@
-"""What the rasteriser hands to the method: the varyings of every pixel and their derivatives."""
+"""Varyings of every pixel and their derivatives, between the rasteriser and the method."""
 
 from __future__ import annotations
 
@@ -8,12 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from flowtex._util.array_types import Floats
 from flowtex.rendering.cpu.raster import Coverage
 from flowtex.textures import TextureSet
 
 __all__ = ["Fragments", "Varying"]
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

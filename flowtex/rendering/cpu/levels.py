@@ -6,13 +6,20 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from flowtex._util.array_types import Floats
+from flowtex.rendering.constants import (
+    HUE_SHIFT,
+    LEAST_FACING,
+    LEAST_SQUARE,
+    LEAST_TEXELS,
+    LEVEL_DARKEST,
+    LEVELS_AROUND,
+    PI,
+)
 from flowtex.rendering.cpu.fragments import Varying
 
 __all__ = ["footprint", "level_colour", "on_surface", "slice_level"]
-
-Floats = NDArray[np.float64]
 
 
 def footprint(dx: Floats, dy: Floats) -> tuple[Floats, Floats]:
@@ -22,7 +29,7 @@ def footprint(dx: Floats, dy: Floats) -> tuple[Floats, Floats]:
     square = np.maximum(aa * bb - ab * ab, 0.0)
     half = 0.5 * (aa + bb)
     root = np.sqrt(np.maximum(half * half - square, 0.0))
-    longest = np.sqrt(np.maximum(half + root, 1e-38))
+    longest = np.sqrt(np.maximum(half + root, LEAST_SQUARE))
     return longest, np.sqrt(square) / longest
 
 
@@ -39,7 +46,7 @@ def on_surface(position: Varying, normal: Varying, eye: Floats) -> Varying:
     ray = _unit(eye[:3] - eye[3] * position.value)
     toward = _unit(normal.value)
     facing = np.einsum("nc,nc->n", toward, ray)
-    facing = np.where(facing < 0, -1.0, 1.0) * np.maximum(np.abs(facing), 0.05)
+    facing = np.where(facing < 0, -1.0, 1.0) * np.maximum(np.abs(facing), LEAST_FACING)
 
     def moved(derivative: Floats) -> Floats:
         off = np.einsum("nc,nc->n", toward, derivative) / facing
@@ -59,10 +66,11 @@ def slice_level(coordinate: Varying, values: Mapping[str, Any]) -> Floats:
         return np.zeros(len(coordinate.value))
     size = np.asarray(values["u_slicesSize"])
     _, shortest = footprint(coordinate.dx * size, coordinate.dy * size)
-    return np.clip(np.log2(np.maximum(shortest, 1e-6)), 0.0, values["u_deepest"])
+    return np.clip(np.log2(np.maximum(shortest, LEAST_TEXELS)), 0.0, values["u_deepest"])
 
 
 def level_colour(level: Floats) -> Floats:
     """Colours (..., 3) for levels of detail (...): one hue for each doubling, six in a round."""
-    turn = level[..., None] / 6.0 + np.array([0.0, -0.333, 0.333])
-    return np.asarray(0.35 + 0.65 * (0.5 + 0.5 * np.cos(2 * np.pi * turn)))
+    turn = level[..., None] / LEVELS_AROUND + HUE_SHIFT * np.array([0.0, -1.0, 1.0])
+    hue = 0.5 + 0.5 * np.cos(2 * PI * turn)
+    return np.asarray(LEVEL_DARKEST + (1.0 - LEVEL_DARKEST) * hue)

@@ -1,4 +1,4 @@
-"""Noise that is even in space: ``shaders/common/noise.glsl`` for many points at once."""
+"""Noise that is even in space, as in ``shaders/common``: ``noise.glsl``, ``lookup_space.glsl``."""
 
 from __future__ import annotations
 
@@ -9,21 +9,25 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Lattice", "Motion", "lattice", "mix", "octave"]
+from flowtex._util.array_types import Floats, Ints
+from flowtex.rendering import constants as const
+from flowtex.rendering.cpu.fragments import Fragments
+from flowtex.rendering.cpu.levels import footprint, on_surface
+from flowtex.rendering.cpu.texture import Lookup, Sums, shared
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
+__all__ = ["Motion", "NoiseLattice", "SpaceNoise", "mix", "noise_lattice", "octave"]
+
 Hashes = NDArray[np.uint32]
 
-PRIMES = np.array([0x8DA6B343, 0xD8163841, 0xCB1AB31F], dtype=np.uint32)
 #: Keys of the corners of a cell that differ in their first two coordinates, (4,).
 CORNERS = (
-    np.array([0, 1, 0, 1], np.uint32) * PRIMES[0] + np.array([0, 0, 1, 1], np.uint32) * PRIMES[1]
+    np.array([0, 1, 0, 1], np.uint32) * const.AXIS_PRIMES[0]
+    + np.array([0, 0, 1, 1], np.uint32) * const.AXIS_PRIMES[1]
 )
 
 
 @dataclass(frozen=True, eq=False)
-class Lattice:
+class NoiseLattice:
     """What is the same for every point of the paths of N fragments.
 
     Attributes
@@ -68,25 +72,25 @@ class Motion:
         return Motion(clock, self.turns, self.phases, self.late)
 
 
-def lattice(position: Floats, octave: Ints, values: Mapping[str, Any]) -> Lattice:
+def noise_lattice(position: Floats, octave: Ints, values: Mapping[str, Any]) -> NoiseLattice:
     """Lattice of an octave (N,) at positions (N, 3) relative to the origin of the noise."""
     odd, doublings = (octave & 1 == 1)[:, None], (octave >> 1)[:, None]
     shrink = np.exp2(-doublings.astype(float))
-    inverse = shrink / values["u_noiseFinest"] * np.where(odd, np.sqrt(0.5), 1.0)
+    inverse = shrink / values["u_noiseFinest"] * np.where(odd, const.SQRT_HALF, 1.0)
     finest = np.where(odd, values["u_noiseOriginOdd"], values["u_noiseOriginEven"]).astype(np.int64)
     origin = finest >> doublings
     rest = (finest - (origin << doublings) + np.where(odd, values["u_noiseRestOdd"], 0.0)) * shrink
-    key = origin.astype(np.uint32) * PRIMES
-    seed = np.array([values["u_seed"]], np.uint32) * np.uint32(0x85EBCA6B)
-    key[:, 0] += octave.astype(np.uint32) * np.uint32(0x9E3779B9) + seed
-    return Lattice(position * inverse + rest, inverse[:, 0], key)
+    key = origin.astype(np.uint32) * const.AXIS_PRIMES
+    seed = np.array([values["u_seed"]], np.uint32) * const.SEED_PRIME
+    key[:, 0] += octave.astype(np.uint32) * const.OCTAVE_PRIME + seed
+    return NoiseLattice(position * inverse + rest, inverse[:, 0], key)
 
 
 def grains(h: Hashes, motion: Motion | None) -> Floats:
     """Values of lattice points from their keys (N, 4), uniform in -1 ... 1."""
-    h = (h ^ (h >> np.uint32(15))) * np.uint32(0x2C1B3C6D)
-    h = (h ^ (h >> np.uint32(13))) * np.uint32(0x297A2D39)
-    phase = (h >> np.uint32(8)) * (1.0 / 16777216.0)
+    h = (h ^ (h >> const.HASH_SHIFTS[0])) * const.HASH_FACTORS[0]
+    h = (h ^ (h >> const.HASH_SHIFTS[1])) * const.HASH_FACTORS[1]
+    phase = (h >> const.PHASE_SHIFT) * (1.0 / const.PHASES)
     if motion is None:
         return np.asarray(phase * 2.0 - 1.0)
     slow, fast = (
@@ -100,23 +104,92 @@ def _triangle(turn: Floats) -> Floats:
     return np.asarray(np.abs((turn - np.floor(turn)) * 4.0 - 2.0) - 1.0)
 
 
-def octave(lat: Lattice, displacement: Floats, motion: Motion | None, *, planar: bool) -> Floats:
+def octave(
+    lattice: NoiseLattice, displacement: Floats, motion: Motion | None, *, planar: bool
+) -> Floats:
     """One octave at displacements (N, 3), of variance 1 everywhere between the lattice points."""
-    q = lat.here + displacement * lat.inverse[:, None]
+    q = lattice.here + displacement * lattice.inverse[:, None]
     base = np.floor(q)
     w = q - base
     spread = 1.0 - 2.0 * w * (1.0 - w)
-    k = lat.key + base.astype(np.int64).astype(np.uint32) * PRIMES
+    k = lattice.key + base.astype(np.int64).astype(np.uint32) * const.AXIS_PRIMES
     corners = (k[:, 0] + k[:, 1] + k[:, 2])[:, None] + CORNERS
     values = grains(corners, motion)
     variance = spread[:, 0] * spread[:, 1]
     if not planar:
-        values = mix(values, grains(corners + PRIMES[2], motion), w[:, 2:])
+        values = mix(values, grains(corners + const.AXIS_PRIMES[2], motion), w[:, 2:])
         variance = variance * spread[:, 2]
     rows = mix(values[:, 0::2], values[:, 1::2], w[:, :1])
-    return np.asarray(mix(rows[:, 0], rows[:, 1], w[:, 1]) / np.sqrt(variance / 3.0))
+    return np.asarray(
+        mix(rows[:, 0], rows[:, 1], w[:, 1]) / np.sqrt(variance / const.GRAIN_PRECISION)
+    )
 
 
 def mix(a: Floats, b: Floats, share: Floats | float) -> Floats:
     """Linear between a and b."""
     return np.asarray(a + share * (b - a))
+
+
+class SpaceNoise(Lookup):
+    """Two octaves of noise along the paths of some fragments."""
+
+    def __init__(self, fragments: Fragments, values: Mapping[str, Any], *, planar: bool) -> None:
+        self._values, self._planar = values, planar
+        self._motion: Motion | None = None
+        position = fragments.position
+        if fragments.normal is not None:
+            position = on_surface(position, fragments.normal, np.asarray(values["u_eye"]))
+        texel = values["u_texel"]
+        self._pixel = footprint(position.dx, position.dy)[0]
+        if not values["u_lod"]:
+            self._pixel = np.full(len(fragments), texel / values["u_grain"])
+        grain = self._pixel * values["u_grain"]
+        if values["u_fixed"]:
+            grain = np.maximum(grain, texel)
+        self.level = np.log2(grain / texel)
+        self.spacing = values["u_spacing"] * grain
+        octaves = np.clip(2.0 * np.log2(grain / values["u_noiseFinest"]), 0.0, const.LAST_OCTAVE)
+        whole = octaves.astype(np.int64)
+        self._late = octaves - whole
+        here = position.value - np.asarray(values["u_noiseOrigin"])
+        self._fine, self._coarse = (noise_lattice(here, whole + k, values) for k in range(2))
+
+    def move(self, slope: Floats, speed: Floats) -> None:
+        """Choose the two rates between which the motion of each fragment lies."""
+        values = self._values
+        if not values["u_moving"]:
+            return
+        travel = values["u_travel"] * np.ones(len(speed))
+        travel *= self._pixel if values["u_travelInPixels"] else 1.0
+        travel *= speed if values["u_travelBySpeed"] else 1.0
+        rate = np.log2(np.maximum(travel / (values["u_wave"] * self._pixel), const.LEAST_RATE))
+        rates = np.floor(rate)[:, None] + [0.0, 1.0]
+        turns = np.exp2(rates) * (rates >= 0)
+        coarse, rest = values["u_clock"]
+        even = np.mod(rates[:, :1], 2.0) < 0.5
+        self._motion = Motion(
+            clock=np.mod(turns * coarse, 1.0) + turns * rest,
+            turns=turns * (slope / np.maximum(travel, const.LEAST_TRAVEL))[:, None],
+            phases=np.where(even, [1.0, const.MANY_PHASES], [const.MANY_PHASES, 1.0]),
+            late=rate - rates[:, 0],
+        )
+
+    def lookup(self, displacement: Floats, length: Floats) -> Floats:
+        """Both octaves, (N, 2)."""
+        motion = None if self._motion is None else self._motion.after(length)
+        two = (
+            octave(at, displacement, motion, planar=self._planar)
+            for at in (self._fine, self._coarse)
+        )
+        return np.stack(list(two), axis=-1)
+
+    def blend(self, sums: Sums) -> Floats:
+        """Mix the octaves by the level, and bring the mixture to unit variance."""
+        near = sums.neighbours / sums.squares
+        apart = self._values["u_spacing"] * np.exp2(0.5 * self._late)
+        mixed = np.zeros(len(near))
+        variance = np.zeros(len(near))
+        for k, w in enumerate((1.0 - self._late, self._late)):
+            mixed += w * sums.values[:, k]
+            variance += w * w * shared(apart * 0.5 ** (k / 2), near)
+        return np.asarray(mixed / np.sqrt(sums.squares * variance))

@@ -5,14 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from flowtex.rendering.cpu.lookup import Mips
+from flowtex._util.array_types import Floats, Indices
+from flowtex.rendering.cpu.mipmaps import Mips
 
-__all__ = ["Path", "SignFreeSlices", "Slices"]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.intp]
+__all__ = ["AxisSlices", "Path", "Slices"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,7 +20,7 @@ class Slices:
     after: Mips | None = None
     between: float = 0.0
 
-    def layer(self, coordinate: Floats, layer: int | Ints, level: Floats) -> Floats:
+    def layer(self, coordinate: Floats, layer: int | Indices, level: Floats) -> Floats:
         """Channels of one layer, (N, 4), at texture coordinates (N, 2) and mip levels (N,)."""
         value = self.before.at(coordinate, level, layer)
         if self.after is None:
@@ -32,7 +29,7 @@ class Slices:
 
 
 @dataclass(frozen=True, eq=False)
-class SignFreeSlices(Slices):
+class AxisSlices(Slices):
     """The slice texture of a field in which v and -v mean the same, at its finest level.
 
     Texels around a fragment that point against the others are turned over: their two sides
@@ -42,7 +39,7 @@ class SignFreeSlices(Slices):
     size: tuple[float, float] = (1.0, 1.0)
     lags: int = 0
 
-    def layer(self, coordinate: Floats, layer: int | Ints, level: Floats) -> Floats:
+    def layer(self, coordinate: Floats, layer: int | Indices, level: Floats) -> Floats:
         """Channels of one layer, (N, 4), at texture coordinates (N, 2)."""
         del level
         at = coordinate * np.array(self.size) - 0.5
@@ -59,9 +56,9 @@ class SignFreeSlices(Slices):
             turned = np.einsum("nc,nc->n", together, tangent) < 0
             sign = np.where(turned, -1.0, 1.0)[:, None]
             together += sign * tangent
-            found = self.before.at(place, finest, np.where(turned, other, layer))
-            found[:, :3] *= sign
-            result += weight[:, None] * found
+            texel = self.before.at(place, finest, np.where(turned, other, layer))
+            texel[:, :3] *= sign
+            result += weight[:, None] * texel
         return result
 
 
@@ -108,8 +105,8 @@ class Path:
             segment = self._segment[on]
             self.before[on] = self._after[on]
             layer = self._first + segment + 1
-            found = self._slices.layer(self._coordinate[on], layer, self._level[on])
-            self._after[on] = found[:, :3]
+            channels = self._slices.layer(self._coordinate[on], layer, self._level[on])
+            self._after[on] = channels[:, :3]
             self._from[on] = self._to[on]
             self._to[on] = self._lags[segment]
         late = (lag - self._from) / (self._to - self._from)

@@ -7,7 +7,7 @@ none is negative, 1 / w is their sum, and corners mix by b over that sum. Nothin
 clipped, and the derivatives by the pixel follow from the same rows.
 
 A pixel that lies on an edge but for rounding is inside of the triangles on both sides, so that
-none is lost between them, and it is given to one: the nearer, or else the first.
+none is lost between them, and it belongs to one: the nearer, or else the first.
 """
 
 from __future__ import annotations
@@ -18,11 +18,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Coverage", "rasterise"]
+from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex.camera import Camera
+from flowtex.field import Surface
+from flowtex.field.locate import TRIANGLES
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.intp]
-Bools = NDArray[np.bool_]
+__all__ = ["Coverage", "cover", "rasterise"]
+
 
 #: Pixels, or rows of pixels, that are looked at together.
 CHUNK = 1 << 20
@@ -48,8 +50,8 @@ class Coverage:
         Derivatives of the shares for a pixel to the right and a pixel down, (N, 3).
     """
 
-    pixel: Ints
-    corners: Ints
+    pixel: Indices
+    corners: Indices
     weights: Floats
     dx: Floats
     dy: Floats
@@ -63,7 +65,23 @@ class Coverage:
         return value, dx, dy
 
 
-def rasterise(clip: Floats, triangles: Ints, size: tuple[int, int]) -> Coverage:
+def cover(surface: Surface, camera: Camera, size: tuple[int, int]) -> Coverage:
+    """Find the visible cells of a surface in a picture of some width and height in pixels.
+
+    Quads are cut along the diagonal from their first corner; cells with a node that is not valid
+    are left out. The corners count the nodes row by row: j times the number of columns, plus i.
+    """
+    points = (surface.points - surface.center).reshape(-1, 3)
+    matrix = camera.matrix(size[0] / size[1], surface.center)
+    clip = points @ matrix[:, :3].T + matrix[:, 3]
+    columns = surface.shape[1]
+    j, i = np.nonzero(surface.cells)
+    halves = np.array([j * columns + i for half in TRIANGLES for j, i in half])
+    triangles = ((j * columns + i)[:, None] + halves).reshape(-1, 3)
+    return rasterise(clip, triangles, size)
+
+
+def rasterise(clip: Floats, triangles: Indices, size: tuple[int, int]) -> Coverage:
     """Find the triangle in front at every pixel.
 
     Parameters
@@ -100,8 +118,8 @@ def rasterise(clip: Floats, triangles: Ints, size: tuple[int, int]) -> Coverage:
 
 
 def _prepare(
-    flat: Floats, triangles: Ints, size: tuple[int, int]
-) -> tuple[Ints, Floats, Floats, Ints]:
+    flat: Floats, triangles: Indices, size: tuple[int, int]
+) -> tuple[Indices, Floats, Floats, Indices]:
     """Triangles that may be seen, their edges, determinants and first and last rows.
 
     The edges are the rows of M^-1 times the determinant's absolute value, (M, 3, 3).
@@ -117,13 +135,13 @@ def _prepare(
     return triangles[solid], edges, np.abs(determinant), rows[solid]
 
 
-def _slack(flat: Floats, triangles: Ints, size: tuple[int, int]) -> Floats:
+def _slack(flat: Floats, triangles: Indices, size: tuple[int, int]) -> Floats:
     """Bound the rounding of the edges' values at pixels, (M, 3)."""
     most = np.abs(flat).max(axis=-1)[triangles]
     return np.asarray(np.roll(most, -1, -1) * np.roll(most, 1, -1) * (sum(size) * EPSILON))
 
 
-def _rows(flat: Floats, triangles: Ints, size: tuple[int, int]) -> tuple[Ints, Bools]:
+def _rows(flat: Floats, triangles: Indices, size: tuple[int, int]) -> tuple[Indices, Bools]:
     """First and last row of pixels of each triangle, (M, 2), and whether it has any, (M,)."""
     w = flat[:, 2]
     ahead = w > 0
@@ -137,7 +155,9 @@ def _rows(flat: Floats, triangles: Ints, size: tuple[int, int]) -> tuple[Ints, B
     return np.stack([first[:, 1], last[:, 1]], axis=-1).astype(np.intp), seen
 
 
-def _candidates(edges: Floats, rows: Ints, width: int) -> Iterator[tuple[Ints, Ints, Ints]]:
+def _candidates(
+    edges: Floats, rows: Indices, width: int
+) -> Iterator[tuple[Indices, Indices, Indices]]:
     """Triangles with the rows and columns of pixels that may lie in them, some at a time."""
     for some in _chunks(rows[:, 1] - rows[:, 0] + 1):
         triangle, row = _spread(some.start, rows[some, 0], rows[some, 1])
@@ -147,7 +167,7 @@ def _candidates(edges: Floats, rows: Ints, width: int) -> Iterator[tuple[Ints, I
             yield triangle[span], row[span], column
 
 
-def _chunks(counts: Ints) -> Iterator[slice]:
+def _chunks(counts: Indices) -> Iterator[slice]:
     """Cut a list of counts into stretches that sum to about a chunk."""
     ends = np.cumsum(counts)
     start = 0
@@ -158,7 +178,7 @@ def _chunks(counts: Ints) -> Iterator[slice]:
         start = stop
 
 
-def _spread(start: int, first: Ints, last: Ints) -> tuple[Ints, Ints]:
+def _spread(start: int, first: Indices, last: Indices) -> tuple[Indices, Indices]:
     """Count from first to last for each of a list; return which one, and the count."""
     counts = np.maximum(last - first + 1, 0)
     which = np.repeat(np.arange(len(counts)), counts)
@@ -166,7 +186,7 @@ def _spread(start: int, first: Ints, last: Ints) -> tuple[Ints, Ints]:
     return which + start, first[which] + within
 
 
-def _columns(edges: Floats, row: Ints, width: int) -> tuple[Ints, Ints]:
+def _columns(edges: Floats, row: Indices, width: int) -> tuple[Indices, Indices]:
     """First and last column in each row that no edge rules out, and one more on both sides."""
     slope = edges[..., 0]
     level = edges[..., 1] * (row + 0.5)[:, None] + edges[..., 2]
@@ -179,13 +199,13 @@ def _columns(edges: Floats, row: Ints, width: int) -> tuple[Ints, Ints]:
     return first.astype(np.intp), last.astype(np.intp)
 
 
-def _at_pixels(edges: Floats, row: Ints, column: Ints) -> Floats:
+def _at_pixels(edges: Floats, row: Indices, column: Indices) -> Floats:
     """Values of the edges at the middle of pixels, (N, 3)."""
     x, y = (column + 0.5)[:, None], (row + 0.5)[:, None]
     return np.asarray(edges[..., 0] * x + edges[..., 1] * y + edges[..., 2])
 
 
-def _coverage(pixel: Ints, corners: Ints, edges: Floats, width: int) -> Coverage:
+def _coverage(pixel: Indices, corners: Indices, edges: Floats, width: int) -> Coverage:
     """Shares of the corners with their derivatives."""
     row, column = np.divmod(pixel, width)
     shares = _at_pixels(edges, row, column)

@@ -1,41 +1,104 @@
-"""From textures, settings and a camera to a picture, by the same method as the shaders."""
+"""Textures, settings and a camera to a picture, by the same method as the shaders."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike
 
-from flowtex.rendering.cpu.camera import Camera
-from flowtex.rendering.cpu.cover import cover
+from flowtex._util.array_types import Bools, Bytes, Floats, Indices
+from flowtex.camera import Camera
 from flowtex.rendering.cpu.fragments import Fragments
-from flowtex.rendering.cpu.levels import slice_level
-from flowtex.rendering.cpu.lookup import Mips
-from flowtex.rendering.cpu.lookup_paper import PaperImages, PaperNoise, PaperPicture
-from flowtex.rendering.cpu.lookup_space import SpaceNoise
-from flowtex.rendering.cpu.path import SignFreeSlices, Slices
-from flowtex.rendering.cpu.picture import Picture
-from flowtex.rendering.cpu.raster import Coverage
+from flowtex.rendering.cpu.levels import level_colour, slice_level
+from flowtex.rendering.cpu.mipmaps import Mips
+from flowtex.rendering.cpu.noise import SpaceNoise
+from flowtex.rendering.cpu.paper_noise import PaperImages, PaperNoise, PaperPicture
+from flowtex.rendering.cpu.path import AxisSlices, Slices
+from flowtex.rendering.cpu.raster import cover
+from flowtex.rendering.cpu.shade import paint, shade
 from flowtex.rendering.cpu.texture import Lookup, LookupMaker, Summing
 from flowtex.rendering.uniforms import ViewState, uniforms
 from flowtex.settings import Settings
 from flowtex.textures import TextureSet
 
-__all__ = ["maker_of", "mips_of", "render", "slices_at", "view_state"]
+__all__ = ["Picture", "lookup_maker", "render", "slice_mips", "slices_at", "view_state"]
 
-Floats = NDArray[np.float64]
 
 #: Fragments that are followed together: what a sample needs of them stays in the cache.
 PART = 1 << 14
+
+
+@dataclass(frozen=True, eq=False)
+class Picture:
+    """A flow texture as numbers, row 0 at the top; NaN where there is no surface.
+
+    Attributes
+    ----------
+    value
+        The texture before it is laid over a colour, (H, W), of mean zero and of deviation one.
+        For a picture in place of the noise, its mean colours times opacity, and opacity,
+        (H, W, 4).
+    covered
+        Pixels that show the surface, (H, W).
+    coordinate
+        Texture coordinates (u, v) in the slices, (H, W, 2).
+    position
+        Points of the mesh, in its own coordinates, (H, W, 3).
+    slice_level, noise_level
+        Mip level of the slices, and level of detail of the noise, (H, W).
+    settings
+        What it was drawn with.
+    """
+
+    value: Floats
+    covered: Bools
+    coordinate: Floats
+    position: Floats
+    slice_level: Floats
+    noise_level: Floats
+    settings: Settings
+
+    def rgb(
+        self, colour: ArrayLike = (0.627, 0.627, 0.627), background: ArrayLike = (1.0, 1.0, 1.0)
+    ) -> Bytes:
+        """Colour the picture, without lights: those are the business of the other renderers.
+
+        Parameters
+        ----------
+        colour
+            Colour of the surface from 0 to 1, (3,), or one for each pixel, (H, W, 3).
+        background
+            Colour where there is no surface, (3,).
+
+        Returns
+        -------
+        numpy.ndarray
+            (H, W, 3), 0 to 255.
+
+        Raises
+        ------
+        ValueError
+            When a colour has another shape or lies outside 0 to 1.
+        """
+        shape = (*self.covered.shape, 3)
+        below = _colours("colour", colour, shape)[self.covered]
+        if self.settings.show_level:
+            below = level_colour(self.noise_level[self.covered])
+        lay = shade if self.value.ndim == 2 else paint
+        result = _colours("background", background, (3,)) * np.ones(shape)
+        result[self.covered] = lay(below, self.value[self.covered], self.settings)
+        return np.rint(result * 255.0).astype(np.uint8)
 
 
 def render(
     textures: TextureSet,
     settings: Settings,
     camera: Camera,
+    size: tuple[int, int],
     *,
     view: ViewState | None = None,
     steps: tuple[int, int] = (0, 0),
@@ -54,36 +117,38 @@ def render(
         How to draw it.
     camera
         From where. The digits of the noise are counted from its focal point.
+    size
+        Width and height of the picture in pixels.
     view
         How far the time is from one of the steps to the other, and the clock. The focus and the
         eye are those of the camera, and the time follows from the steps.
     steps
         The two destination times of the slices that ``view.between`` lies between.
     lookup
-        What is summed along the paths instead of the noise, such as :func:`smooth` makes.
+        What is summed along the paths instead of the noise.
 
     Returns
     -------
     Picture
     """
     values = uniforms(textures, settings, view_state(textures, camera, view or ViewState(), steps))
-    coverage = cover(textures.geometry.field.surface, camera)
+    coverage = cover(textures.geometry.field.surface, camera, size)
     fragments = Fragments.of(textures, coverage)
     level = slice_level(fragments.coordinate, values)
     slices = slices_at(textures, steps, values)
-    make = lookup or maker_of(textures)
+    make = lookup or lookup_maker(textures)
     value, noise_level = [np.zeros((0,))], [np.zeros(0)]
     for some, part in fragments.parts(PART):
-        found = make(part, values)
-        summing = Summing(slices, values, found, paper=textures.paper is not None)
+        part_lookup = make(part, values)
+        summing = Summing(slices, values, part_lookup, paper=textures.paper is not None)
         value.append(summing.texture(part.coordinate.value, level[some]))
-        noise_level.append(found.level)
-    image = _Image(camera.size, coverage)
+        noise_level.append(part_lookup.level)
+    image = partial(_image, pixel=coverage.pixel, size=size)
     geometry = textures.geometry
     points = (geometry.field.surface.points - geometry.center).reshape(-1, 3)
     return Picture(
         value=image(np.concatenate(value[1:] or value)),
-        covered=image.covered,
+        covered=np.isfinite(image(level)),
         coordinate=image(fragments.coordinate.value),
         position=image(coverage.mix(points)[0] + geometry.center),
         slice_level=image(level),
@@ -102,7 +167,7 @@ def view_state(
     return replace(view, focus=focus, eye=camera.eye, time=time)
 
 
-def mips_of(textures: TextureSet, step: int) -> Mips:
+def slice_mips(textures: TextureSet, step: int) -> Mips:
     """Slice texture of one destination time, with its mip levels."""
     return Mips(textures.layers(step), levels=textures.geometry.levels)
 
@@ -111,19 +176,19 @@ def slices_at(
     textures: TextureSet,
     steps: tuple[int, int],
     values: Mapping[str, Any],
-    mips: Callable[[TextureSet, int], Mips] = mips_of,
+    mips: Callable[[TextureSet, int], Mips] = slice_mips,
 ) -> Slices:
-    """Slice texture between two destination times; ``mips`` may keep what it returns."""
+    """Slice texture between two destination times; ``mips`` may cache them."""
     before = mips(textures, steps[0])
     if textures.geometry.field.sign_free:
-        return SignFreeSlices(before, size=values["u_slicesSize"], lags=values["u_lagCount"])
+        return AxisSlices(before, size=values["u_slicesSize"], lags=values["u_lagCount"])
     if steps[0] == steps[1]:
         return Slices(before)
     return Slices(before, mips(textures, steps[1]), values["u_between"])
 
 
-def maker_of(textures: TextureSet) -> LookupMaker:
-    """Look-up of the noise, or of the picture, that the textures were made for."""
+def lookup_maker(textures: TextureSet) -> LookupMaker:
+    """Look-up of the noise, or of the picture, that belongs to the textures."""
     paper, planar = textures.paper, textures.geometry.planar
     if paper is None:
         return lambda fragments, values: SpaceNoise(fragments, values, planar=planar)
@@ -139,20 +204,19 @@ def maker_of(textures: TextureSet) -> LookupMaker:
     return make
 
 
-class _Image:
-    """Lays what the fragments have into an image."""
+def _image(data: Floats, pixel: Indices, size: tuple[int, int]) -> Floats:
+    """Lay data (N, ...) of pixels (N,) into an image (H, W, ...), NaN elsewhere."""
+    width, height = size
+    result = np.full((height * width, *data.shape[1:]), np.nan)
+    result[pixel] = data
+    return result.reshape(height, width, *data.shape[1:])
 
-    def __init__(self, size: tuple[int, int], coverage: Coverage) -> None:
-        self._width, self._height = size
-        self._pixel = coverage.pixel
 
-    @property
-    def covered(self) -> NDArray[np.bool_]:
-        """Pixels that have a fragment, (H, W)."""
-        return ~np.isnan(self(np.zeros(len(self._pixel))))
-
-    def __call__(self, data: Floats) -> Floats:
-        """Image (H, W, ...) of data (N, ...), NaN elsewhere."""
-        result = np.full((self._height * self._width, *data.shape[1:]), np.nan)
-        result[self._pixel] = data
-        return result.reshape(self._height, self._width, *data.shape[1:])
+def _colours(name: str, value: ArrayLike, shape: tuple[int, ...]) -> Floats:
+    numbers = np.asarray(value, dtype=float)
+    if numbers.shape not in ((3,), shape) or not ((numbers >= 0) & (numbers <= 1)).all():
+        shapes = " or ".join(map(str, dict.fromkeys([(3,), shape])))
+        wrong = f"of shape {numbers.shape}" if numbers.size > 3 else repr(value)
+        msg = f"{name} is {wrong}; expected red, green and blue from 0 to 1, of shape {shapes}"
+        raise ValueError(msg)
+    return np.broadcast_to(numbers, shape)

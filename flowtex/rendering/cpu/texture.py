@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from flowtex._util.array_types import Floats
+from flowtex.rendering import constants as const
 from flowtex.rendering.cpu.fragments import Fragments
 from flowtex.rendering.cpu.path import Path, Slices
 
 __all__ = ["Lookup", "LookupMaker", "Side", "Summing", "Sums", "shared", "weight"]
 
-Floats = NDArray[np.float64]
 Values = Mapping[str, Any]
 
 
@@ -53,7 +53,7 @@ class Lookup(Protocol):
     level: Floats
 
     def move(self, slope: Floats, speed: Floats) -> None:
-        """Learn the slopes at lag zero and the speeds, (N,), before anything is looked up."""
+        """Set the slopes at lag zero and the speeds, (N,), before anything is looked up."""
         return
 
     def lookup(self, displacement: Floats, length: Floats) -> Floats:
@@ -89,7 +89,7 @@ class Side:
 
     def step(self, lag: Floats) -> Floats:
         """Lag to the next sample from lags (N,): equation 3, with the speed that is there."""
-        speed = np.maximum(self.path.speed(lag), 1e-6)
+        speed = np.maximum(self.path.speed(lag), const.LEAST_SPEED)
         return np.asarray(self.spacing / (self.scale * speed))
 
 
@@ -99,11 +99,11 @@ LookupMaker = Callable[[Fragments, Values], Lookup]
 
 def weight(x: float, values: Values) -> float:
     """Weight at x in -1 ... 1, negative behind the particle."""
-    if values["u_kernel"] == 1:
+    if values["u_kernel"] == const.KERNEL_BOX:
         return 1.0
-    if values["u_kernel"] == 2:
+    if values["u_kernel"] == const.KERNEL_RAMP:
         return 0.5 * (1.0 - x) if values["u_sides"] == 2 else 1.0 - abs(x)
-    return 0.5 + 0.5 * float(np.cos(np.pi * x))
+    return 0.5 + 0.5 * float(np.cos(const.PI * x))
 
 
 def shared(apart: Floats, near: Floats) -> Floats:
@@ -117,10 +117,11 @@ def shared(apart: Floats, near: Floats) -> Floats:
         Correlation of the weights with those of the next sample, (N,).
     """
     total = np.ones(np.broadcast_shapes(np.shape(apart), np.shape(near)))
-    for m in range(1, 25):
+    for m in range(1, const.SHARED_TERMS + 1):
         d = m * m * np.square(apart)
-        bell = np.exp(-np.minimum(d, 3.0) * (1.19 + 0.06 * np.minimum(d, 3.0)))
-        total += np.where(d > 3.0, 0.0, 2.0 * np.power(near, m * m) * bell)
+        near_d = np.minimum(d, const.BELL_END)
+        bell = np.exp(-near_d * (const.BELL + const.BELL_BEND * near_d))
+        total += np.where(d > const.BELL_END, 0.0, 2.0 * np.power(near, m * m) * bell)
     return total
 
 
@@ -164,7 +165,8 @@ class Summing:
             next_ = self._slices.layer(coordinate, before + 1, level)
             ends = (base[:, :3], next_[:, :3])
             path = Path(self._slices, coordinate, level, ends, before, self._lags)
-            yield Side(sign, path, spacing, np.where(speed > 1e-6, next_[:, 3], -np.inf), scale)
+            reach = np.where(speed > const.LEAST_SPEED, next_[:, 3], -np.inf)
+            yield Side(sign, path, spacing, reach, scale)
 
     def _sides(self) -> tuple[tuple[float, int], ...]:
         """Sides of the paths: their sign, and the layer before their first slice."""
@@ -173,9 +175,9 @@ class Summing:
 
     def _first(self, count: int) -> Sums:
         """Start with the sample at the fragments themselves."""
-        middle = max(weight(0.0, self._values), 1e-3)
-        found = self._lookup.lookup(np.zeros((count, 3)), np.zeros(count))
-        return Sums(middle * found, np.full(count, middle**2), np.zeros(count))
+        middle = max(weight(0.0, self._values), const.LEAST_WEIGHT)
+        values = self._lookup.lookup(np.zeros((count, 3)), np.zeros(count))
+        return Sums(middle * values, np.full(count, middle**2), np.zeros(count))
 
     def _add(self, sums: Sums, one: Side) -> None:
         """Add one side of the paths."""
@@ -195,8 +197,7 @@ class Summing:
             lag = np.where(live, lag, np.maximum(last, 0.0))
             displacement = path.follow(lag) * (side * scale)[:, None]
             weights = alive * weight(side * k / (count + 1), values)
-            found = self._lookup.lookup(displacement, side * lag * scale)
-            sums.values += weights[:, None] * found
+            sums.values += weights[:, None] * self._lookup.lookup(displacement, side * lag * scale)
             sums.squares += weights**2
             sums.neighbours += weights * before
             before = weights

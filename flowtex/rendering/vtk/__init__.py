@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from flowtex.rendering.vtk.layer import FlowLayer
-from flowtex.rendering.vtk.mapper import use_flow_mapper
-from flowtex.rendering.vtk.mesh import set_attributes, surface_mesh
+from flowtex.rendering.vtk.mesh import set_attributes, surface_mesh, use_flow_mapper
 
 __all__ = ["FlowLayer", "set_attributes", "surface_mesh", "use_flow_mapper"]

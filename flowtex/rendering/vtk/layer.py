@@ -14,6 +14,8 @@ to it there. The text is built again only for another variant.
 from __future__ import annotations
 
 import weakref
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -21,19 +23,19 @@ import pyvista as pv
 from vtkmodules.util.vtkConstants import VTK_OBJECT
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
-from flowtex.rendering.shader_text import compose
+from flowtex.rendering.shaders import shader_text
 from flowtex.rendering.uniforms import ANCHOR_RANGE, ViewState, uniforms, variants
-from flowtex.rendering.vtk.gpu import GPUTexture
-from flowtex.rendering.vtk.mesh import COORDINATE, NOISE, NORMAL, POSITION, set_position
+from flowtex.rendering.vtk.gpu_texture import GPUTexture
+from flowtex.rendering.vtk.mesh import ATTRIBUTES, set_position, vertex_attributes
 from flowtex.settings import Settings
-from flowtex.textures import Ahead, TextureSet
+from flowtex.textures import LayerPrefetch, TextureSet
 
 __all__ = ["FlowLayer"]
 
-#: Under this name PyVista keeps who put a replacement in.
+#: Name under which PyVista registers the replacements.
 OWNER = "flowtex"
 
-#: Shader, the mark of VTK's that our text goes before, and our file.
+#: Shader, the mark of VTK before which our text is inserted, and our file.
 REPLACEMENTS = (
     ("vertex", "//VTK::PositionVC::Dec", "vtk/vertex_dec.glsl"),
     ("vertex", "//VTK::PositionVC::Impl", "vtk/vertex_impl.glsl"),
@@ -45,18 +47,18 @@ REPLACEMENTS = (
 
 
 class FlowLayer:
-    """Draws a texture set on an actor whose mesh :func:`surface_mesh` made.
+    """Draws a texture set on an actor whose mesh comes from :func:`surface_mesh`.
 
     Parameters
     ----------
     actor
         The actor; its mapper draws polygons.
     renderer
-        The PyVista renderer that shows it: its camera tells where precision is needed.
+        The PyVista renderer that shows it: its camera decides where precision is needed.
     textures
         What to draw.
     settings
-        How to draw it; read anew before each frame.
+        How to draw it; read before each frame.
     """
 
     def __init__(
@@ -66,7 +68,7 @@ class FlowLayer:
         self._renderer = weakref.ref(renderer)
         self._textures = textures
         self._settings = settings
-        self._ahead = Ahead(textures)
+        self._prefetch = LayerPrefetch(textures)
         self._steps = (0, 0)
         self._drawn = False
         self._variant: frozenset[str] | None = None
@@ -87,8 +89,8 @@ class FlowLayer:
         """Draw another texture set of the same surface from now on."""
         same = textures.same_paths(self._textures)
         self._textures = textures
-        self._ahead.close()
-        self._ahead = Ahead(textures)
+        self._prefetch.close()
+        self._prefetch = LayerPrefetch(textures)
         self.view.anchor = np.zeros(3)  # that of the mesh's new attributes
         self._retire(*(["u_noiseImage"] if same else self._gpu))
         self._map_attributes()
@@ -98,31 +100,31 @@ class FlowLayer:
         """Show the time between two destination times of the slices.
 
         Once something has been drawn, the slices that come next in the direction in which the
-        time has moved are made ready.
+        time has moved are prepared.
         """
         was = self.view.time
         if (before, after) != self._steps:
             old = dict(zip(self._steps, ("u_slices", "u_slicesNext"), strict=True))
-            kept = {old[s]: self._gpu.pop(old[s], None) for s in (before, after) if s in old}
+            reused = {old[s]: self._gpu.pop(old[s], None) for s in (before, after) if s in old}
             self._retire("u_slices", "u_slicesNext")
             for step, name in ((before, "u_slices"), (after, "u_slicesNext")):
-                texture = kept.get(old.get(step, ""))
+                texture = reused.get(old.get(step, ""))
                 if texture is not None:
                     self._gpu[name] = texture
             self._steps = (before, after)
         first, last = self._textures.store.field.times[[before, after]]
         self.view.between, self.view.time = between, float(first + between * (last - first))
         if self._drawn and self.view.time != was:
-            self._ahead.prepare(after + 1 if self.view.time > was else before - 1)
+            self._prefetch.prepare(after + 1 if self.view.time > was else before - 1)
 
     def close(self) -> None:
         """Take everything out of the actor again and free the graphics card's memory."""
         for subject, tag in self._observed:
             subject.RemoveObserver(tag)
         self._observed = []
-        self._ahead.close()
+        self._prefetch.close()
         self._actor.clear_shader_replacements(_feature_name=OWNER)
-        for attribute in ("flowtexPosition", "flowtexCoordinate", "flowtexNormal", "flowtexNoise"):
+        for attribute in ATTRIBUTES:
             self._actor.mapper.RemoveVertexAttributeMapping(attribute)
         self._retire(*self._gpu)
         self._free(self._window())
@@ -140,12 +142,7 @@ class FlowLayer:
 
     def _map_attributes(self) -> None:
         mapper, points = self._actor.mapper, vtkDataObject.FIELD_ASSOCIATION_POINTS
-        names = [("flowtexPosition", POSITION), ("flowtexCoordinate", COORDINATE)]
-        if not self._textures.geometry.planar:
-            names.append(("flowtexNormal", NORMAL))
-        if self._textures.paper is not None:
-            names.append(("flowtexNoise", NOISE))
-        for attribute, array in names:
+        for attribute, array in vertex_attributes(self._textures).items():
             mapper.MapDataArrayToVertexAttribute(attribute, array, points, -1)
 
     def _write_text(self) -> None:
@@ -156,7 +153,7 @@ class FlowLayer:
         self._variant = variant
         self._actor.clear_shader_replacements(_feature_name=OWNER)
         for shader, mark, name in REPLACEMENTS:
-            text = f"{compose(name, variant)}\n{mark}\n"
+            text = f"{shader_text(name, variant)}\n{mark}\n"
             self._actor.add_shader_replacement(shader, mark, text, _feature_name=OWNER)
 
     def _before_draw(self, program: Any) -> None:
@@ -169,9 +166,11 @@ class FlowLayer:
         for name, value in values.items():
             if program.IsUniformUsed(name) or isinstance(value, list):
                 _write(program, name, value)
-        for name in self._samplers():
+        for name, load in self._loaders().items():
             if program.IsUniformUsed(name):
-                program.SetUniformi(name, self._texture(name).bind(window))
+                if name not in self._gpu:
+                    self._gpu[name] = load()
+                program.SetUniformi(name, self._gpu[name].bind(window))
 
     def _after_draw(self, data: Any) -> None:
         del data
@@ -179,33 +178,23 @@ class FlowLayer:
         for texture in self._gpu.values():
             texture.unbind()
 
-    def _samplers(self) -> list[str]:
-        names = ["u_slices"]
+    def _loaders(self) -> dict[str, Callable[[], GPUTexture]]:
+        """How to load the texture of each sampler of the shader."""
+        paper = self._textures.paper
+        loaders: dict[str, Callable[[], GPUTexture]] = {"u_slices": partial(self._slices, 0)}
         if self._textures.store.steps > 1:
-            names.append("u_slicesNext")
-        if self._textures.paper is not None:
-            names += ["u_noiseImage", "u_stepImage"]
-        return names
+            loaders["u_slicesNext"] = partial(self._slices, 1)
+        if paper is not None:
+            loaders["u_noiseImage"] = partial(
+                GPUTexture, paper.noise_texels, repeat=paper.noise_repeat
+            )
+            loaders["u_stepImage"] = partial(GPUTexture, paper.step_texels, repeat=paper.repeat)
+        return loaders
 
-    def _texture(self, name: str) -> GPUTexture:
-        """Texture by the name of its sampler, made when it is first drawn."""
-        if name not in self._gpu:
-            levels = self._textures.geometry.levels
-            paper = self._textures.paper
-            if name == "u_slices":
-                made = GPUTexture(self._ahead.take(self._steps[0]), levels=levels)
-            elif name == "u_slicesNext":
-                made = GPUTexture(self._ahead.take(self._steps[1]), levels=levels)
-            elif paper is not None and name == "u_noiseImage":
-                rows, columns = paper.noise.shape[:2]
-                repeat = (True, True) if paper.picture else paper.repeat
-                made = GPUTexture(paper.noise.reshape(1, rows, columns, -1), repeat=repeat)
-            elif paper is not None:
-                made = GPUTexture(paper.step[None, :, :, None], repeat=paper.repeat)
-            else:
-                raise KeyError(name)
-            self._gpu[name] = made
-        return self._gpu[name]
+    def _slices(self, number: int) -> GPUTexture:
+        """Slices of the first or the second of the two steps."""
+        layers = self._prefetch.take(self._steps[number])
+        return GPUTexture(layers, levels=self._textures.geometry.levels)
 
     def _before_frame(self, data: Any) -> None:
         """Take the camera into the mesh's own coordinates, and the anchor to where it looks."""
@@ -241,7 +230,7 @@ class FlowLayer:
         return None if renderer is None else renderer.GetRenderWindow()
 
     def _retire(self, *names: str) -> None:
-        """Put textures aside until their window's context is at hand."""
+        """Release textures when their window's context is current."""
         self._retired += [t for n in names if (t := self._gpu.pop(n, None)) is not None]
 
     def _free(self, window: Any) -> None:

@@ -1,26 +1,37 @@
-"""The surface as PyVista draws it, with the vertex attributes that the shader reads."""
+"""The surface as PyVista draws it: its mesh, the shader's vertex attributes, and its mapper."""
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pyvista as pv
-from numpy.typing import NDArray
+from pyvista.plotting.mapper import _BaseDataSetMapper
+from vtkmodules.vtkRenderingCore import vtkPolyDataMapper
 
+from flowtex._util.array_types import Floats32
 from flowtex.textures import TextureSet
 
 __all__ = [
-    "COORDINATE",
-    "NOISE",
-    "NORMAL",
-    "POSITION",
+    "ATTRIBUTES",
+    "FlowMapper",
     "set_attributes",
     "set_position",
     "surface_mesh",
+    "use_flow_mapper",
+    "vertex_attributes",
 ]
 
-#: Names of the point arrays that become vertex attributes.
+#: Point arrays of the mesh.
 POSITION, COORDINATE, NOISE = "flowtex position", "flowtex coordinate", "flowtex noise"
 NORMAL = "Normals"
+#: Those that the shader reads, by the names of its vertex attributes.
+ATTRIBUTES = {
+    "flowtexPosition": POSITION,
+    "flowtexCoordinate": COORDINATE,
+    "flowtexNormal": NORMAL,
+    "flowtexNoise": NOISE,
+}
 
 
 def surface_mesh(textures: TextureSet) -> pv.PolyData:
@@ -40,7 +51,7 @@ def surface_mesh(textures: TextureSet) -> pv.PolyData:
     return mesh
 
 
-def set_position(mesh: pv.PolyData, position: NDArray[np.float32]) -> None:
+def set_position(mesh: pv.PolyData, position: Floats32) -> None:
     """Write the nodes' positions in the surface's frame, (J, I, 3), relative to any anchor."""
     mesh.point_data[POSITION] = position.reshape(-1, 3)
 
@@ -52,3 +63,41 @@ def set_attributes(mesh: pv.PolyData, textures: TextureSet) -> None:
     mesh.point_data[COORDINATE] = geometry.coordinate.reshape(-1, 2)
     if textures.paper is not None:
         mesh.point_data[NOISE] = textures.paper.coordinate.reshape(-1, 2)
+
+
+def vertex_attributes(textures: TextureSet) -> dict[str, str]:
+    """Return the point arrays that the shader of a texture set reads, by vertex attribute."""
+    needed = {POSITION, COORDINATE}
+    if not textures.geometry.planar:
+        needed.add(NORMAL)
+    if textures.paper is not None:
+        needed.add(NOISE)
+    return {name: array for name, array in ATTRIBUTES.items() if array in needed}
+
+
+class FlowMapper(_BaseDataSetMapper, vtkPolyDataMapper):
+    """PyVista's mapper properties on ``vtkPolyDataMapper``.
+
+    PyVista's own mapper hides the polygon mapper inside ``vtkDataSetMapper``, where neither
+    vertex attributes nor the event before a draw can be reached.
+    """
+
+    def __init__(self, dataset: pv.PolyData, theme: Any = None) -> None:
+        super().__init__(theme=theme)
+        self.SetInputData(dataset)
+
+
+def use_flow_mapper(actor: pv.Actor, mesh: pv.PolyData, scalars: str | None) -> FlowMapper:
+    """Give an actor a polygon mapper with the colours of its present one.
+
+    ``scalars`` names the point array to colour by; PyVista's mapper relies on the active array
+    of a mesh of its own instead.
+    """
+    mapper = FlowMapper(mesh)
+    mapper.ShallowCopy(actor.mapper)
+    mapper.SetInputData(mesh)
+    if scalars is not None:
+        mapper.SetScalarModeToUsePointFieldData()
+        mapper.SelectColorArray(scalars)
+    actor.SetMapper(mapper)
+    return mapper

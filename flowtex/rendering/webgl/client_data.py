@@ -18,7 +18,7 @@ import numpy as np
 from flowtex._util.array_types import Bytes, Floats
 from flowtex.camera import CAMERA_LIMITS, Camera
 from flowtex.field.interpolation import steps_around
-from flowtex.rendering.shader_text import compose
+from flowtex.rendering.shaders import shader_text
 from flowtex.rendering.uniforms import client_constants, variants
 from flowtex.rendering.webgl.packing import Packing, half, packing_of
 from flowtex.rendering.webgl.protocol import FORMAT, Header, Parts
@@ -284,7 +284,7 @@ def _paper(paper: PaperTextures) -> dict[str, Any]:
 
 @cache
 def _shaders(variant: tuple[str, ...]) -> dict[str, str]:
-    return {key: compose(name, variant) for key, name in SHADERS.items()}
+    return {key: shader_text(name, variant) for key, name in SHADERS.items()}
 
 
 def _table() -> list[dict[str, Any]]:

@@ -17,7 +17,6 @@ from flowtex.app.controllers.point_info import (
     PointText,
     clip_line,
     number_text,
-    pixel_camera,
     with_unit,
 )
 from flowtex.app.streaming.viewport import Viewport
@@ -89,7 +88,10 @@ def view_of(field: FlowField, **settings: object) -> Scene:
 def test_places_are_those_of_the_pixels(scale: float | None, rng: np.random.Generator) -> None:
     viewport = Seen((0.5, -3.0, 2.0), (0.1, 0.2, -0.1), scale=scale)
     points = rng.uniform(-0.5, 0.5, (9, 3))
-    clip = np.concatenate([points, np.ones((9, 1))], axis=1) @ pixel_camera(viewport).matrix().T
+    clip = (
+        np.concatenate([points, np.ones((9, 1))], axis=1)
+        @ viewport.camera.matrix(viewport.aspect).T
+    )
     places = viewport.camera.project(points, viewport.aspect)
     assert places == pytest.approx(clip[:, :2] / clip[:, 3:], abs=1e-9)
 

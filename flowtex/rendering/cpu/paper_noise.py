@@ -6,18 +6,18 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from flowtex._util.array_types import Floats
+from flowtex.rendering.constants import LAST_HALF_LEVEL, LEAST_TEXELS
 from flowtex.rendering.cpu.fragments import Varying
 from flowtex.rendering.cpu.levels import footprint
-from flowtex.rendering.cpu.lookup import Mips
+from flowtex.rendering.cpu.mipmaps import Mips
 from flowtex.rendering.cpu.noise import mix
 from flowtex.rendering.cpu.texture import Lookup, Sums, shared
 from flowtex.textures import PaperTextures
 
 __all__ = ["PaperImages", "PaperNoise", "PaperPicture"]
 
-Floats = NDArray[np.float64]
 Values = Mapping[str, Any]
 
 
@@ -25,9 +25,8 @@ class PaperImages:
     """The noise, or the picture in its place, and the step size, with their mip levels."""
 
     def __init__(self, paper: PaperTextures) -> None:
-        texels = paper.noise.reshape(1, *paper.noise.shape[:2], -1)
-        self.noise = Mips(texels, repeat=(True, True) if paper.picture else paper.repeat)
-        self.step = Mips(paper.step[None, ..., None], repeat=paper.repeat)
+        self.noise = Mips(paper.noise_texels, repeat=paper.noise_repeat)
+        self.step = Mips(paper.step_texels, repeat=paper.repeat)
 
 
 class PaperNoise(Lookup):
@@ -50,7 +49,9 @@ class PaperNoise(Lookup):
         self.level = self._mip
         width = np.exp2(self._mip)
         halves = np.asarray(values["u_noiseDeviation"])
-        self._gain = 1.0 / np.interp(2.0 * self._mip, np.arange(len(halves)), halves)
+        self._gain = 1.0 / np.interp(
+            np.minimum(2.0 * self._mip, LAST_HALF_LEVEL), np.arange(len(halves)), halves
+        )
         self._grains = width / np.sqrt(values["u_noiseGrain"] ** 2 + width**2 - 1.0)
         step = images.step.at(self._here, self._mip)[:, 0]
         self.spacing = step * self._width(noise, width, texels) * values["u_spacing"]
@@ -116,4 +117,4 @@ def _level(texels: Floats, values: Values) -> Floats:
     """Mip level at which a texel is as wide as that many of the finest level."""
     if not values["u_lod"]:
         return np.zeros(len(texels))
-    return np.maximum(np.log2(np.maximum(texels, 1e-6)), 0.0)
+    return np.maximum(np.log2(np.maximum(texels, LEAST_TEXELS)), 0.0)

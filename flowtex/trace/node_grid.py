@@ -6,33 +6,31 @@ rows, and look-ups are most of what tracing does.
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from flowtex._util.array_types import AnyArray, Bools, Indices
 from flowtex.field import FlowField
 from flowtex.field.poles import Poles
 
-__all__ = ["Corners", "Lattice"]
+__all__ = ["Corners", "NodeGrid"]
 
 #: Of single or double precision, as it comes in.
-Reals = NDArray[Any]
-Indices = NDArray[np.intp]
 
 #: Cells that rounding may carry a path over a border that it follows.
-EDGE = 1e-6
+BORDER_ROUNDING_CELLS = 1e-6
 
 
 class Corners(NamedTuple):
     """Where particles lie: lower corner of the cell, and the fractions along i and j, (N,)."""
 
     at: Indices
-    s: Reals
-    t: Reals
+    s: AnyArray
+    t: AnyArray
 
 
-class Lattice:
+class NodeGrid:
     """The nodes of a surface in index space.
 
     Parameters
@@ -44,14 +42,14 @@ class Lattice:
     cells
         Cells that are not blanked, (J - 1, I - 1).
     poles
-        Poles beyond which the lattice goes on, where there are any.
+        Poles beyond which the grid goes on, where there are any.
     """
 
     def __init__(
         self,
         shape: tuple[int, int],
         periodic: tuple[bool, bool],
-        cells: NDArray[np.bool_],
+        cells: Bools,
         poles: Poles | None = None,
     ) -> None:
         self.rows, self.columns = shape
@@ -61,17 +59,17 @@ class Lattice:
         self._open = None if cells.all() else np.pad(cells, ((0, 1), (0, 1))).ravel()
 
     @classmethod
-    def of(cls, field: FlowField) -> Lattice:
-        """Make the lattice of a field's nodes."""
+    def of(cls, field: FlowField) -> NodeGrid:
+        """Make the grid of a field's nodes."""
         surface = field.surface
-        return Lattice(field.shape, field.periodic, surface.cells, surface.poles)
+        return NodeGrid(field.shape, field.periodic, surface.cells, surface.poles)
 
     @property
     def size(self) -> int:
         """Number of nodes."""
         return self.rows * self.columns
 
-    def corners(self, position: Reals) -> Corners:
+    def corners(self, position: AnyArray) -> Corners:
         """Cells of positions (2, N); those beyond a border are moved onto it."""
         if self.poles is not None:
             position = self.poles.fold(position)
@@ -81,7 +79,7 @@ class Lattice:
         j += i
         return Corners(j, s, t)
 
-    def blend(self, data: Reals, corners: Corners, base: Indices | int = 0) -> Reals:
+    def blend(self, data: AnyArray, corners: Corners, base: Indices | int = 0) -> AnyArray:
         """Interpolate nodal data.
 
         Parameters
@@ -101,7 +99,7 @@ class Lattice:
         high += low
         return high
 
-    def alive(self, position: Reals, edge: float = EDGE) -> NDArray[np.bool_]:
+    def alive(self, position: AnyArray, edge: float = BORDER_ROUNDING_CELLS) -> Bools:
         """Whether positions (2, N) are inside the domain, in a cell that is not blanked.
 
         ``edge`` cells beyond a border still count as inside.
@@ -119,7 +117,7 @@ class Lattice:
         return result
 
 
-def _cell(x: Reals, cells: int, *, closed: bool) -> tuple[Indices, Reals]:
+def _cell(x: AnyArray, cells: int, *, closed: bool) -> tuple[Indices, AnyArray]:
     """Return the number of the cell along one axis, and the fraction inside it."""
     if closed:
         inside = x - cells * np.floor(x * x.dtype.type(1 / cells))
@@ -133,7 +131,7 @@ def _cell(x: Reals, cells: int, *, closed: bool) -> tuple[Indices, Reals]:
     return number, inside
 
 
-def _between(data: Reals, at: Indices, s: Reals) -> Reals:
+def _between(data: AnyArray, at: Indices, s: AnyArray) -> AnyArray:
     """Interpolate between each node and the next one along i."""
     # The indices are in range by construction; "clip" only spares NumPy's own check.
     low = data.take(at, mode="clip")

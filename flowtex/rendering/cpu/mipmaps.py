@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+
+from flowtex._util.array_types import Floats, Floats32, Indices
 
 __all__ = ["Mips"]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.intp]
-Singles = NDArray[np.float32]
 
 
 class Mips:
@@ -17,7 +14,7 @@ class Mips:
 
     A coarser level is the finer one, filtered linearly down to half its size: the mean of blocks
     of two by two texels where sizes are even. Every level is rounded to half precision, as a
-    graphics card keeps it.
+    graphics card stores it.
 
     Parameters
     ----------
@@ -31,7 +28,7 @@ class Mips:
 
     def __init__(
         self,
-        texels: Singles,
+        texels: Floats32,
         *,
         levels: int | None = None,
         repeat: tuple[bool, bool] = (False, False),
@@ -52,7 +49,7 @@ class Mips:
         """Mip levels beside the finest."""
         return len(self._heights) - 1
 
-    def at(self, coordinate: Floats, level: Floats, layer: int | Ints = 0) -> Floats:
+    def at(self, coordinate: Floats, level: Floats, layer: int | Indices = 0) -> Floats:
         """Look texels up.
 
         Parameters
@@ -80,7 +77,7 @@ class Mips:
             result[between] += late[between, None] * (next_ - result[between])
         return result
 
-    def _bilinear(self, coordinate: Floats, level: Ints, layer: Ints) -> Floats:
+    def _bilinear(self, coordinate: Floats, level: Indices, layer: Indices) -> Floats:
         height, width = self._heights[level], self._widths[level]
         left, right, u = _neighbours(coordinate[:, 0], width, repeat=self._repeat[1])
         low, high, v = _neighbours(coordinate[:, 1], height, repeat=self._repeat[0])
@@ -92,7 +89,9 @@ class Mips:
         return np.asarray(a * (1 - v) + b * v)
 
 
-def _neighbours(coordinate: Floats, count: Ints, *, repeat: bool) -> tuple[Ints, Ints, Floats]:
+def _neighbours(
+    coordinate: Floats, count: Indices, *, repeat: bool
+) -> tuple[Indices, Indices, Floats]:
     """Texels on both sides of a coordinate, and how far it is from one to the other, (N, 1)."""
     x = coordinate * count - 0.5
     base = np.floor(x)
@@ -102,11 +101,11 @@ def _neighbours(coordinate: Floats, count: Ints, *, repeat: bool) -> tuple[Ints,
     return a, b, (x - base)[:, None]
 
 
-def _half(texels: Singles) -> Singles:
+def _half(texels: Floats32) -> Floats32:
     return texels.astype(np.float16).astype(np.float32)
 
 
-def _reduced(texels: Singles) -> Singles:
+def _reduced(texels: Floats32) -> Floats32:
     """Halve both axes, rounded down, by linear filtering: means of two where that is exact."""
     for axis in (1, 2):
         count = texels.shape[axis]

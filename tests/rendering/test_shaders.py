@@ -8,45 +8,44 @@ from pathlib import Path
 import pytest
 
 import flowtex
-from flowtex.rendering import shader_files, shader_text
+from flowtex.rendering import shaders
 
 
 def test_an_include_is_put_in_once() -> None:
-    text = shader_text.compose("vtk/fragment_dec.glsl")
+    text = shaders.shader_text("vtk/fragment_dec.glsl")
     assert text.count("struct FlowtexPath") == 1
     assert "//#include" not in text
 
 
 def test_variants_are_defined_first_and_in_order() -> None:
-    text = shader_text.compose("vtk/vertex_dec.glsl", ["FLOWTEX_PLANAR", "FLOWTEX_PAPER"])
+    text = shaders.shader_text("vtk/vertex_dec.glsl", ["FLOWTEX_PLANAR", "FLOWTEX_PAPER"])
     assert re.match(
         r"#ifndef FLOWTEX_PAPER\n#define FLOWTEX_PAPER\n#endif\n#ifndef FLOWTEX_PLANAR\n", text
     )
 
 
 def test_the_same_input_gives_the_same_text() -> None:
-    once = shader_text.compose("vtk/fragment_dec.glsl", {"FLOWTEX_PAPER", "FLOWTEX_UNSTEADY"})
-    assert once == shader_text.compose(
+    once = shaders.shader_text("vtk/fragment_dec.glsl", {"FLOWTEX_PAPER", "FLOWTEX_UNSTEADY"})
+    assert once == shaders.shader_text(
         "vtk/fragment_dec.glsl", ["FLOWTEX_UNSTEADY", "FLOWTEX_PAPER"]
     )
 
 
 def test_an_unknown_variant_is_refused() -> None:
     with pytest.raises(
-        shader_text.GLSLError,
+        shaders.GLSLError,
         match=r"^unknown variant FLOWTEX_PAPRE; there are FLOWTEX_PAPER, FLOWTEX_PICTURE, ",
     ):
-        shader_text.compose("vtk/vertex_dec.glsl", ["FLOWTEX_PAPRE"])
+        shaders.shader_text("vtk/vertex_dec.glsl", ["FLOWTEX_PAPRE"])
 
 
 def test_a_circle_of_includes_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     files = {"a.glsl": "//#include b.glsl\n", "b.glsl": "//#include a.glsl\n"}
-    monkeypatch.setattr(shader_text, "shader_source", files.__getitem__)
+    monkeypatch.setattr(shaders, "shader_source", files.__getitem__)
     with pytest.raises(
-        shader_text.GLSLError,
-        match=r"^shader files include one another: a.glsl -> b.glsl -> a.glsl$",
+        shaders.GLSLError, match=r"^shader files include one another: a.glsl -> b.glsl -> a.glsl$"
     ):
-        shader_text.compose("a.glsl")
+        shaders.shader_text("a.glsl")
 
 
 def test_no_line_of_shader_text_stands_in_python() -> None:
@@ -58,9 +57,9 @@ def test_no_line_of_shader_text_stands_in_python() -> None:
 
 def test_every_uniform_that_is_declared_is_set() -> None:
     declared = set(
-        re.findall(r"^uniform .*?(u_\w+)", shader_files.shader_source("common/uniforms.glsl"), re.M)
+        re.findall(r"^uniform .*?(u_\w+)", shaders.shader_source("common/uniforms.glsl"), re.M)
     )
-    package = Path(flowtex.__file__).parent
+    package = Path(shaders.__file__).parent
     written = set()
     for path in package.rglob("*.py"):
         written |= set(re.findall(r'"(u_\w+)"', path.read_text()))

@@ -10,7 +10,7 @@ import pytest
 
 import flowtex
 from flowtex.settings import Settings
-from flowtex.textures import Ahead, TextureSet
+from flowtex.textures import LayerPrefetch, TextureSet
 from flowtex.trace import SliceStore
 
 
@@ -37,31 +37,31 @@ def counted(made: TextureSet, monkeypatch: pytest.MonkeyPatch) -> list[tuple[int
 
 
 def test_what_is_ready_is_not_made_again(made: TextureSet, counted: list[tuple[int, str]]) -> None:
-    ahead = Ahead(made)
-    ahead.prepare(2)
-    ahead.prepare(2)
-    taken = ahead.take(2)
+    prefetch = LayerPrefetch(made)
+    prefetch.prepare(2)
+    prefetch.prepare(2)
+    taken = prefetch.take(2)
     assert [step for step, _ in counted] == [2]
-    assert counted[0][1].startswith("flowtex-ahead")
+    assert counted[0][1].startswith("flowtex-prefetch")
     np.testing.assert_array_equal(taken, made.layers(2))
-    ahead.close()
+    prefetch.close()
 
 
 def test_another_step_is_made_at_once(made: TextureSet, counted: list[tuple[int, str]]) -> None:
-    ahead = Ahead(made)
-    ahead.prepare(3)
-    np.testing.assert_array_equal(ahead.take(1), made.layers(1))
+    prefetch = LayerPrefetch(made)
+    prefetch.prepare(3)
+    np.testing.assert_array_equal(prefetch.take(1), made.layers(1))
     assert (1, threading.current_thread().name) in counted
-    ahead.close()
+    prefetch.close()
 
 
 @pytest.mark.parametrize("step", [-1, 4])
 def test_beyond_the_ends_there_is_nothing_to_make(
     made: TextureSet, counted: list[tuple[int, str]], step: int
 ) -> None:
-    ahead = Ahead(made)
-    ahead.prepare(step)
-    ahead.close()
+    prefetch = LayerPrefetch(made)
+    prefetch.prepare(step)
+    prefetch.close()
     assert counted == []
 
 
@@ -73,6 +73,6 @@ def test_playing_makes_the_next_step_ready_in_either_direction(
     handle.time = 1.5
     plotter.screenshot()
     prepared: list[int] = []
-    handle._layer._ahead.prepare = prepared.append
+    handle._layer._prefetch.prepare = prepared.append
     handle.time = 1.6 if forward else 1.4
     assert prepared == [3 if forward else 0]

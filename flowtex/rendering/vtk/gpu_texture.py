@@ -1,6 +1,6 @@
 """Textures on the graphics card, through VTK's texture objects.
 
-Texture arrays and half precision are out of reach of ``vtkTexture``, so texture objects are made
+``vtkTexture`` has neither texture arrays nor half precision, so texture objects are used
 directly. They belong to one render window, take a texture unit while a frame is drawn, and are
 let go with the window at the latest.
 """
@@ -8,25 +8,26 @@ let go with the window at the latest.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from vtkmodules.util.vtkConstants import VTK_FLOAT
 from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLRenderWindow, vtkTextureObject
 
+from flowtex._util.array_types import Floats32
+
 __all__ = ["GPUTexture"]
 
-#: OpenGL's numbers for half precision, with four channels and with one.
-RGBA16F, R16F = 0x881A, 0x822D
+#: OpenGL's numbers of internal formats, in half precision.
+GL_RGBA16F, GL_R16F = 0x881A, 0x822D
 
 
 class GPUTexture:
     """One texture array with its mip levels; an image is an array of one layer.
 
-    Of VTK's textures made from memory the arrays alone get mip levels.
+    Of VTK's textures from memory the arrays alone get mip levels.
 
     Parameters
     ----------
     texels
-        (layers, H, W, channels) with one channel or four, single precision; kept in half
+        (layers, H, W, channels) with one channel or four, single precision; stored in half
         precision.
     levels
         Mip levels beside the finest; all of them when left out.
@@ -36,12 +37,12 @@ class GPUTexture:
 
     def __init__(
         self,
-        texels: NDArray[np.float32],
+        texels: Floats32,
         *,
         levels: int | None = None,
         repeat: tuple[bool, bool] = (False, False),
     ) -> None:
-        self._texels: NDArray[np.float32] | None = np.ascontiguousarray(texels, np.float32)
+        self._texels: Floats32 | None = np.ascontiguousarray(texels, np.float32)
         self._levels = levels
         self._repeat = repeat
         self._object: vtkTextureObject | None = None
@@ -82,8 +83,8 @@ class GPUTexture:
         target.SetWrapT(repeat if self._repeat[0] else clamp)
         layers, height, width, channels = texels.shape
         whole = max(height, width).bit_length() - 1
-        # Left as it is, VTK's greatest level is 0, and no other level is made.
+        # Left as it is, VTK's greatest level is 0, and there is no other level.
         target.SetMaxLevel(whole if self._levels is None else self._levels)
-        target.SetInternalFormat(R16F if channels == 1 else RGBA16F)
+        target.SetInternalFormat(GL_R16F if channels == 1 else GL_RGBA16F)
         target.Create2DArrayFromRaw(width, height, channels, VTK_FLOAT, layers, texels)
         return target

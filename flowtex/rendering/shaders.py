@@ -1,18 +1,43 @@
-"""Where the GLSL text lies, and how it is read.
+"""Shader text from the files in ``shaders/``. Nothing here knows VTK or WebGL.
 
-The shaders are files in a folder of their own, which has two places: an installed wheel carries
-them as ``flowtex/_shaders``, a checkout (also one installed as editable) has them as ``shaders``
-beside the package. The folder is found from where this module lies and never from the working
-folder, so that a stray ``shaders`` folder of the user's is not taken for ours.
+An installed wheel has the files as ``flowtex/_shaders``, a checkout (also one installed as
+editable) as ``shaders`` beside the package. The folder is found from this module's own place and
+never from the working folder, where a ``shaders`` folder would be the user's.
+
+Files include one another by a line ``//#include common/noise.glsl``, each at most once. A variant
+is a set of names that are defined before the first line.
 """
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterable
 from pathlib import Path, PurePosixPath
 
-__all__ = ["shader_folder", "shader_names", "shader_source"]
+__all__ = [
+    "VARIANTS",
+    "GLSLError",
+    "shader_folder",
+    "shader_names",
+    "shader_source",
+    "shader_text",
+]
 
 _PACKAGE = Path(__file__).resolve().parents[1]
+_INCLUDE = re.compile(r"^[ \t]*//#include[ \t]+(\S+)[ \t]*$", re.MULTILINE)
+
+#: Names that the files ask for with ``#ifdef``.
+VARIANTS = (
+    "FLOWTEX_PAPER",
+    "FLOWTEX_PICTURE",
+    "FLOWTEX_PLANAR",
+    "FLOWTEX_SIGNFREE",
+    "FLOWTEX_UNSTEADY",
+)
+
+
+class GLSLError(ValueError):
+    """Shader text cannot be put together."""
 
 
 def shader_folder(package: Path = _PACKAGE) -> Path:
@@ -51,9 +76,9 @@ def shader_names(folder: Path | None = None) -> tuple[str, ...]:
         Where to look; flowtex's own folder when left out.
     """
     folder = shader_folder() if folder is None else folder
-    found = (path.relative_to(folder) for path in folder.rglob("*") if path.is_file())
+    paths = (path.relative_to(folder) for path in folder.rglob("*") if path.is_file())
     return tuple(
-        sorted(path.as_posix() for path in found if not any(p.startswith(".") for p in path.parts))
+        sorted(path.as_posix() for path in paths if not any(p.startswith(".") for p in path.parts))
     )
 
 
@@ -95,3 +120,44 @@ def _stays_inside(name: str, folder: Path) -> bool:
     if not parts or name.startswith("/") or "\\" in name or ".." in parts or ":" in parts[0]:
         return False
     return (folder / name).resolve().is_relative_to(folder.resolve())
+
+
+def shader_text(name: str, variants: Iterable[str] = ()) -> str:
+    """Return a shader file with its includes, and the variant's names defined before it.
+
+    Parameters
+    ----------
+    name
+        File inside ``shaders/``, such as ``"vtk/fragment_dec.glsl"``.
+    variants
+        Names out of :data:`VARIANTS`.
+
+    Raises
+    ------
+    GLSLError
+        When a variant is unknown, or files include one another in a circle.
+    FileNotFoundError
+        When there is no such file.
+    """
+    unknown = sorted(set(variants) - set(VARIANTS))
+    if unknown:
+        msg = f"unknown variant {', '.join(unknown)}; there are {', '.join(VARIANTS)}"
+        raise GLSLError(msg)
+    defines = "".join(
+        f"#ifndef {variant}\n#define {variant}\n#endif\n" for variant in sorted(set(variants))
+    )
+    return defines + _expand(name, set(), ())
+
+
+def _expand(name: str, seen: set[str], open_files: tuple[str, ...]) -> str:
+    if name in open_files:
+        msg = f"shader files include one another: {' -> '.join((*open_files, name))}"
+        raise GLSLError(msg)
+    if name in seen:
+        return ""
+    seen.add(name)
+
+    def insert(match: re.Match[str]) -> str:
+        return _expand(match.group(1), seen, (*open_files, name))
+
+    return _INCLUDE.sub(insert, shader_source(name))

@@ -1,0 +1,28 @@
+"""Means over blocks of an array."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flowtex._util.array_types import AnyArray
+
+__all__ = ["block_means"]
+
+
+def block_means(data: AnyArray, factor: int, axis: int = 0) -> AnyArray:
+    """Average blocks of ``factor`` x ``factor`` entries.
+
+    Parameters
+    ----------
+    data
+        (..., J, I, ...).
+    factor
+        Entries along each side of a block. Lines that do not fill a block are dropped.
+    axis
+        Axis along which j runs; i runs along the next one.
+    """
+    rows, columns = (n // factor for n in data.shape[axis : axis + 2])
+    whole = (*(slice(None),) * axis, slice(rows * factor), slice(columns * factor))
+    before, after = data.shape[:axis], data.shape[axis + 2 :]
+    blocks = data[whole].reshape(*before, rows, factor, columns, factor, *after)
+    return np.asarray(blocks.mean(axis=(axis + 1, axis + 3)))

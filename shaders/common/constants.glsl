@@ -1,0 +1,78 @@
+// The numbers of the method. flowtex/rendering/constants.py has the same, by the same names.
+
+// Lengths of the arrays that a renderer sets.
+const int FLOWTEX_MOST_LAGS = 32;
+const int FLOWTEX_HALF_LEVELS = 32;
+
+// The sum along a path.
+const int FLOWTEX_KERNEL_HANN = 0;
+const int FLOWTEX_KERNEL_BOX = 1;
+const int FLOWTEX_KERNEL_RAMP = 2;
+const float FLOWTEX_PI = 3.14159265;
+const float FLOWTEX_LEAST_WEIGHT = 1e-3; // of the sample at the fragment itself
+const float FLOWTEX_LEAST_SPEED = 1e-6;  // a particle that is slower stands still
+// Correlation of the noise at two points d grains apart: exp(-d^2 (BELL + BELL_BEND d^2)).
+const float FLOWTEX_BELL = 1.19;
+const float FLOWTEX_BELL_BEND = 0.06;
+const float FLOWTEX_BELL_END = 3.0; // d^2 beyond which it counts as zero
+const int FLOWTEX_SHARED_TERMS = 24; // neighbours of a sample that may share its grain
+
+// Levels of detail.
+const float FLOWTEX_LEAST_SQUARE = 1e-38; // square of the longest side of a footprint
+const float FLOWTEX_LEAST_TEXELS = 1e-6;  // side of a footprint in texels
+const float FLOWTEX_LEAST_FACING = 0.05;  // cosine between the normal and the ray to the eye
+const float FLOWTEX_LEVELS_AROUND = 6.0;  // levels of detail in one round of hues
+const float FLOWTEX_HUE_SHIFT = 0.333;    // from one colour channel to the next, in rounds
+const float FLOWTEX_LEVEL_DARKEST = 0.35;
+const float FLOWTEX_LEVEL_STRENGTH = 0.5; // of a picture over the colours of the levels
+
+// Noise that is even in space.
+const float FLOWTEX_SQRT_HALF = 0.70710678;
+const float FLOWTEX_LAST_OCTAVE = 58.99;    // and between two, as the next ones
+const float FLOWTEX_LAST_HALF_LEVEL = 30.99;
+const float FLOWTEX_LEAST_RATE = 0.25;      // turns in a base period of a grain in motion
+const float FLOWTEX_LEAST_TRAVEL = 1e-30;
+const float FLOWTEX_MANY_PHASES = 64.0;     // rounds of phases of every other rate
+const uvec3 FLOWTEX_AXIS_PRIMES = uvec3(0x8da6b343u, 0xd8163841u, 0xcb1ab31fu);
+const uint FLOWTEX_OCTAVE_PRIME = 0x9e3779b9u;
+const uint FLOWTEX_SEED_PRIME = 0x85ebca6bu;
+const uvec2 FLOWTEX_HASH_SHIFTS = uvec2(15u, 13u);
+const uvec2 FLOWTEX_HASH_FACTORS = uvec2(0x2c1b3c6du, 0x297a2d39u);
+const uint FLOWTEX_PHASE_SHIFT = 8u;
+const float FLOWTEX_PHASES = 16777216.0;    // number of different phases, 2^24
+const float FLOWTEX_GRAIN_PRECISION = 3.0;  // one over the variance of uniform numbers, -1 to 1
+
+// Shading: the lightness that black and white are drawn to, and how far the texture goes from it.
+const float FLOWTEX_BASE_DARK = 0.36;
+const float FLOWTEX_BASE_LIGHT = 0.80;
+const float FLOWTEX_TONE_RANGE = 0.34;
+const float FLOWTEX_TONE_SLOPE = 1.1;
+const float FLOWTEX_LEAST_LIGHTNESS = 1e-6;
+// Lights: dark sides stay bright enough to read the texture there.
+const float FLOWTEX_AMBIENT_LIGHT = 0.3;
+const float FLOWTEX_DIFFUSE_LIGHT = 0.8;
+
+// sRGB.
+const float FLOWTEX_SRGB_SLOPE = 12.92;
+const float FLOWTEX_SRGB_OFFSET = 0.055;
+const float FLOWTEX_SRGB_SCALE = 1.055;
+const float FLOWTEX_SRGB_POWER = 2.4;
+const float FLOWTEX_SRGB_KNEE = 0.04045;
+const float FLOWTEX_SRGB_LINEAR_KNEE = 0.0031308;
+// Oklab: linear colours to the responses of cones, and their cube roots to Oklab; and back.
+const mat3 FLOWTEX_TO_CONES = mat3(
+  0.4122214708, 0.2119034982, 0.0883024619,
+  0.5363325363, 0.6806995451, 0.2817188376,
+  0.0514459929, 0.1073969566, 0.6299787005);
+const mat3 FLOWTEX_TO_LAB = mat3(
+  0.2104542553, 1.9779984951, 0.0259040371,
+  0.7936177850, -2.4285922050, 0.7827717662,
+  -0.0040720468, 0.4505937099, -0.8086757660);
+const mat3 FLOWTEX_FROM_LAB = mat3(
+  1.0, 1.0, 1.0,
+  0.3963377774, -0.1055613458, -0.0894841775,
+  0.2158037573, -0.0638541728, -1.2914855480);
+const mat3 FLOWTEX_FROM_CONES = mat3(
+  4.0767416621, -1.2684380046, -0.0041960863,
+  -3.3077115913, 2.6097574011, -0.7034186147,
+  0.2309699292, -0.3413193965, 1.7076147010);
