@@ -30,20 +30,20 @@ lint: $(VENV)/.ready-test ## style, format and types, without the tests
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
-	sh tools/javascript.sh $(BIN)
+	sh tools/client.sh $(BIN)
 
 format: $(VENV)/.ready-test ## put the code in its format
 	$(BIN)/ruff check --select I --fix
 	$(BIN)/ruff format
+
+client: $(VENV)/.ready-test ## build the browser client into the package
+	sh tools/client.sh $(BIN) build
 
 docs: $(VENV)/.ready-test ## write the table of settings into the guide
 	FLOWTEX_WRITE_DOCS=1 $(BIN)/python -m pytest -q tests/test_docs.py -k table
 
 gallery: $(VENV)/.ready-test ## draw the pictures of the README and the gallery
 	$(BIN)/python docs/make_pictures.py
-
-client: $(VENV)/.ready-test ## build the browser client from client/src into the package
-	sh tools/javascript.sh $(BIN) build
 
 paper: $(VENV)/.ready-demo ## compute the paper's tables and figures into out/paper, in some minutes
 	@$(BIN)/python -m paper -o $(PAPER)

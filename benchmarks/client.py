@@ -37,7 +37,8 @@ CASES = [
 FRAME = """async ([n, zoom]) => {
   const viewer = viewers[n];
   const start = performance.now();
-  viewer.setCamera({ ...viewer.camera, parallel_scale: viewer.camera.parallel_scale / zoom });
+  const { cameraState: camera } = viewer;
+  viewer.setCamera({ ...camera, parallel_scale: camera.parallel_scale / zoom });
   while (!viewer.sharp) await new Promise(requestAnimationFrame);
   return performance.now() - start;
 }"""
@@ -54,7 +55,7 @@ def scene(nodes: int, samples: int) -> Any:
     view = web_views(field, Options.split(samples=samples))[0]
     whole = view.data()
     settings = flowtex.Settings(samples=samples)
-    return packed(whole, whole.header(settings, camera=whole.first_look((4, 3))))
+    return packed(whole, whole.header(settings, camera=whole.first_camera(4 / 3).to_dict()))
 
 
 def frames(*, gpu: bool, repeats: int) -> tuple[str, Table]:

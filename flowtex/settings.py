@@ -11,12 +11,42 @@ shader build, ``"textures"`` new textures, ``"trace"`` new traces.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass, field, fields
 from typing import Any, Literal
 
-__all__ = ["TABLE", "Affects", "Setting", "Settings", "SettingsError"]
+__all__ = ["GROUPS", "NEEDS", "TABLE", "Affects", "Control", "Setting", "Settings", "SettingsError"]
 
 Affects = Literal["uniform", "shader", "textures", "trace"]
+#: How a panel lets a setting be changed; a "number" is typed.
+Control = Literal["checkbox", "choice", "slider", "number"]
+#: A setting, and a value that it has or has not.
+Condition = tuple[str, Literal["==", "!="], Any]
+
+#: Settings of a panel by group, in order; those of the first one are always shown.
+GROUPS: dict[str, tuple[str, ...]] = {
+    "": ("lod", "noise", "samples", "contrast"),
+    "Texture": ("kernel", "two_sided", "grain", "fixed_grain", "spacing", "strength", "show_level"),
+    "Noise": ("seed", "tiles", "noise_correction", "resolution"),
+    "Motion": ("motion", "speed", "speed_in", "period", "parameter"),
+}
+#: Settings that make a difference only where one of these others has, or has not, a value.
+_NEEDS_TEXTURE: Condition = ("noise", "!=", "procedural")
+_NEEDS_MOTION: tuple[Condition] = (("motion", "!=", "off"),)
+NEEDS: dict[str, tuple[Condition, ...]] = {
+    "tiles": (_NEEDS_TEXTURE,),
+    "noise_correction": (_NEEDS_TEXTURE,),
+    "resolution": (_NEEDS_TEXTURE, ("fixed_grain", "==", True), ("lod", "==", False)),
+    "speed": _NEEDS_MOTION,
+    "speed_in": _NEEDS_MOTION,
+    "period": _NEEDS_MOTION,
+}
+#: Labels that are not the name.
+LABELS = {"lod": "Level of detail"}
+#: Widest range of a slider, and steps of one, at most.
+SLIDER_RANGE, SLIDER_STEPS = 500, 400
+#: Words for the two values of a switch; the first are those that are written.
+_SWITCH = {"on": True, "off": False, "true": True, "false": False, "yes": True, "no": False}
 
 
 class SettingsError(ValueError):
@@ -56,6 +86,55 @@ class Setting:
             msg = f"{self.name} is {value!r}; expected {self.expected} (default {self.default!r})"
             raise SettingsError(msg)
         return self.kind(value)
+
+    def parse(self, text: str) -> Any:
+        """Return the value that a text such as ``"off"``, ``"1.5"`` or ``"box"`` means.
+
+        Raises
+        ------
+        SettingsError
+            When it is none; as :meth:`check`.
+        """
+        text = text.strip()
+        value: Any = text
+        if self.kind is bool:
+            value = _SWITCH.get(text.lower(), text)
+        elif self.kind is not str:
+            with suppress(ValueError):
+                value = float(text)
+        return self.check(value)
+
+    def format(self, value: Any) -> str:
+        """Return a value as the text that :meth:`parse` reads, without loss."""
+        if self.kind is bool:
+            return "on" if value else "off"
+        return repr(float(value)) if self.kind is float else str(value)
+
+    @property
+    def label(self) -> str:
+        """The name as a panel shows it."""
+        return LABELS.get(self.name, self.name.replace("_", " ").capitalize())
+
+    @property
+    def control(self) -> Control:
+        """How a panel lets it be changed."""
+        if self.kind is bool:
+            return "checkbox"
+        if self.choices:
+            return "choice"
+        return "number" if (self.high or 0) - (self.low or 0) > SLIDER_RANGE else "slider"
+
+    @property
+    def step(self) -> float:
+        """Step of a slider: round, with some hundred in the range, one of them the default."""
+        if self.kind is int:
+            return 1
+        low, high = self.low or 0.0, self.high or 1.0
+        for step in (0.01, 0.02, 0.05, 0.1):
+            steps = (self.default - low) / step
+            if (high - low) / step <= SLIDER_STEPS and abs(steps - round(steps)) < 1e-6:
+                return step
+        return 0.25
 
     @property
     def expected(self) -> str:

@@ -24,16 +24,17 @@ __all__ = [
     "likeness",
     "local_grain",
     "sharpness",
+    "standardised",
     "streaks",
 ]
 
 
 #: Width in pixels of the derivative, and of the window over which directions are averaged.
-EDGE, WINDOW = 1.0, 4.0
+EDGE_PIXELS, WINDOW_PIXELS = 1.0, 4.0
 #: Shades wider than this many pixels are no grain.
-SHADE = 20.0
+SHADE_PIXELS = 20.0
 #: Pixels at which grain is measured, and the farthest that is looked.
-POINTS, FAR = 20_000, 64
+GRAIN_POINTS, MAX_DISTANCE_PIXELS = 20_000, 64
 
 
 class Streaks(NamedTuple):
@@ -50,15 +51,17 @@ class Grain(NamedTuple):
     across: float
 
 
-def streaks(picture: Floats, u: Floats, v: Floats, mask: Bools, window: float = WINDOW) -> Streaks:
+def streaks(
+    picture: Floats, u: Floats, v: Floats, mask: Bools, window: float = WINDOW_PIXELS
+) -> Streaks:
     """Compare the direction of a texture with the flow.
 
     The direction is that of the structure tensor: the mean, over a Gaussian window, of the outer
     product of the gradient with itself. Its coherence is 1 for parallel lines and 0 for noise.
     """
     filled = _filled(picture)
-    gx = ndimage.gaussian_filter(filled, EDGE, order=(0, 1))
-    gy = ndimage.gaussian_filter(filled, EDGE, order=(1, 0))
+    gx = ndimage.gaussian_filter(filled, EDGE_PIXELS, order=(0, 1))
+    gy = ndimage.gaussian_filter(filled, EDGE_PIXELS, order=(1, 0))
     # As complex numbers of twice the angle, which do not tell a direction from its opposite.
     turned = ndimage.gaussian_filter(gx * gx - gy * gy, window) + 2j * ndimage.gaussian_filter(
         gx * gy, window
@@ -74,9 +77,9 @@ def streaks(picture: Floats, u: Floats, v: Floats, mask: Bools, window: float = 
 def grain(picture: Floats, u: Floats, v: Floats, mask: Bools, seed: int = 0) -> Grain:
     """Measure the grain of a texture along the flow, however it bends, and across it."""
     filled = _filled(picture)
-    flat = filled - ndimage.gaussian_filter(filled, SHADE)
+    flat = filled - ndimage.gaussian_filter(filled, SHADE_PIXELS)
     rows, columns = np.nonzero(mask)
-    pick = np.random.default_rng(seed).integers(0, len(rows), min(POINTS, 4 * len(rows)))
+    pick = np.random.default_rng(seed).integers(0, len(rows), min(GRAIN_POINTS, 4 * len(rows)))
     at = np.stack([rows[pick], columns[pick]]).astype(float)
     length = np.maximum(np.hypot(u, v), np.finfo(float).tiny)
     right, down = u / length, -v / length
@@ -130,9 +133,9 @@ def _half_width(flat: Floats, start: Floats, direction: Floats) -> float:
     here = ndimage.map_coordinates(flat, start, order=1, mode="nearest")
     power = float(np.mean(here * here))
     if power == 0:
-        return float(FAR)
+        return float(MAX_DISTANCE_PIXELS)
     at, distance, before = start.copy(), 0.0, 1.0
-    while distance < FAR:
+    while distance < MAX_DISTANCE_PIXELS:
         # Quarters of a pixel close by, where fine grain falls quickly; coarser steps farther off.
         step = 0.25 if distance < 4 else 1.0
         nearest = np.rint(at).astype(np.intp)
@@ -143,7 +146,7 @@ def _half_width(flat: Floats, start: Floats, direction: Floats) -> float:
         if now < 0.5:
             return distance + step * (before - 0.5) / (before - now)
         distance, before = distance + step, now
-    return float(FAR)
+    return float(MAX_DISTANCE_PIXELS)
 
 
 def aliasing(picture: Floats, reference: Floats, mask: Bools) -> float:
@@ -172,6 +175,11 @@ def blocks(picture: Floats, times: int) -> Floats:
     rows, columns = (n // times for n in picture.shape)
     cut = picture[: rows * times, : columns * times]
     return np.asarray(cut.reshape(rows, times, columns, times).mean(axis=(1, 3)))
+
+
+def standardised(picture: Floats) -> Floats:
+    """Return the picture with mean zero and deviation one; NaN stays."""
+    return np.asarray((picture - np.nanmean(picture)) / np.nanstd(picture))
 
 
 def _filled(picture: Floats) -> Floats:

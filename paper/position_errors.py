@@ -5,18 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import ndimage
 
 from flowtex._util.array_types import Floats
 from flowtex.field import FlowField
-from flowtex.field.interpolation import along_line
+from flowtex.field.interpolation import along_line, between_nodes
 from flowtex.trace import TraceSlices, paths, trace
 
 __all__ = ["Errors", "position_errors", "step_slices"]
 
 
 #: Steps of time that a particle goes back, and error allowed in one step of the integration.
-STEPS, TOLERANCE = 10, 1e-5
+STEPS, TOLERANCE_CELLS = 10, 1e-5
 
 
 @dataclass(frozen=True)
@@ -82,7 +81,12 @@ class Errors:
 def step_slices(field: FlowField, step: int) -> TraceSlices:
     """Trace the slices of one destination time at lags of 1 ... 10 time steps."""
     return trace(
-        field, lags=_lags(field), steps=[step], compose=False, tolerance=TOLERANCE, progress=False
+        field,
+        lags=_lags(field),
+        steps=[step],
+        compose=False,
+        tolerance=TOLERANCE_CELLS,
+        progress=False,
     )
 
 
@@ -122,7 +126,7 @@ def position_errors(
         _inverse(lines, start),
         _lags(field),
         step=step,
-        tolerance=TOLERANCE,
+        tolerance=TOLERANCE_CELLS,
     )
 
     coarse_positions = _looked_up(coarse, start)
@@ -149,7 +153,7 @@ def _lags(field: FlowField) -> Floats:
 
 def _accurate(field: FlowField, start: Floats, step: int) -> tuple[Floats, Floats]:
     """Return starts whose paths do not end, (N, 2), and the true positions, (M, N, 2)."""
-    result = paths(field, start, _lags(field), step=step, tolerance=TOLERANCE)
+    result = paths(field, start, _lags(field), step=step, tolerance=TOLERANCE_CELLS)
     alive = result.reach >= _lags(field)[-1]
     return start[alive], result.positions[:, alive]
 
@@ -158,12 +162,9 @@ def _looked_up(slices: TraceSlices, start: Floats) -> Floats:
     """Positions (M, N, 2) from the displacements of the entries around, linear between them."""
     first, last = slices.nodes[0, 0], slices.nodes[-1, -1]
     spread = (last - first) / (np.array(slices.shape[::-1]) - 1)
-    i, j = ((start - first) / spread).T
+    index = (start - first) / spread
     displacements = [
-        [
-            ndimage.map_coordinates(data[..., axis].astype(float), [j, i], order=1, mode="nearest")
-            for axis in range(2)
-        ]
+        [between_nodes(data[..., axis], index) for axis in range(2)]
         for data in slices.displacement[0]
     ]
     return np.asarray(start + np.moveaxis(np.array(displacements), 1, 2))

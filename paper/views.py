@@ -29,7 +29,7 @@ __all__ = ["View", "grey", "view_of", "wing_view"]
 SURFACE_GREY = (0.627, 0.627, 0.627)
 #: Pixels along an outline that are not judged, and the share of the greatest speed below which the
 #: direction of the flow counts as unknown.
-BORDER, SLOW = 10, 0.05
+BORDER_PIXELS, SLOW_SHARE = 10, 0.05
 #: Views of the wing: where the camera stands, what it looks at from afar and close up, and half
 #: the height that it sees.
 WING_EYE, WING_WHOLE, WING_NEAR = (0.25, -1.0, 1.5), (0.56, 0.0, 0.0), (0.78, -0.16, 0.03)
@@ -125,8 +125,8 @@ class View:
     def mask(self) -> Bools:
         """Pixels to judge: off the outline and the picture's border, and where something moves."""
         inside = np.pad(self.covered, 1)
-        inside = ndimage.binary_erosion(inside, iterations=BORDER + 1)[1:-1, 1:-1]
-        return np.asarray(inside & (self.speed > SLOW * self.field.speed.max()))
+        inside = ndimage.binary_erosion(inside, iterations=BORDER_PIXELS + 1)[1:-1, 1:-1]
+        return np.asarray(inside & (self.speed > SLOW_SHARE * self.field.speed.max()))
 
     def nodal(self, data: Floats) -> Floats:
         """Interpolate nodal data (J, I) or (J, I, C) to the pixels; zero off the surface."""
@@ -168,7 +168,7 @@ def view_of(
     Parameters
     ----------
     bench
-        What is shared.
+        Scale, seed and shared textures of the run.
     field
         What to look at.
     size

@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
     from webgl_page import ClientPage
 
+pytest_plugins = ["small_pages"]
+
 # Before anything opens a window, and for every process that a test starts.
 diagnostics.prefer_headless()
 

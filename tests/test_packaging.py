@@ -138,10 +138,8 @@ from flowtex.widget import FlowWidget
 
 came, parts, done = [], {}, threading.Event()
 def send(self, content, buffers=None):
-    for name, kind, shape, data in zip(
-        content["names"], content.get("dtypes", ()), content.get("shapes", ()), buffers or ()
-    ):
-        parts[name] = {"dtype": kind, "shape": shape, "data": bytes(data).hex()}
+    for info, data in zip(content["parts"], buffers or ()):
+        parts[info["name"]] = {**info, "data": bytes(data).hex()}
     if "slices/0" in parts:
         done.set()
 FlowWidget.send = send
@@ -159,11 +157,10 @@ json.dump({
 SHOWN = """async ([source, header, parts]) => {
   const url = URL.createObjectURL(new Blob([source], { type: "text/javascript" }));
   const client = await import(url);
-  const opened = Object.fromEntries(Object.entries(parts).map(([name, part]) => [
-    name, { ...part, data: Uint8Array.from(part.data.match(/../g), (h) => parseInt(h, 16)) },
-  ]));
+  const opened = Object.values(parts).map((part) => client.decoded(
+    part, Uint8Array.from(part.data.match(/../g), (h) => parseInt(h, 16))));
   document.body.style.height = "200px";
-  window.viewer = client.mountPage(document.body, header, opened);
+  window.viewer = client.mountPage(document.body, [{ header, parts: opened }]);
 }"""
 
 

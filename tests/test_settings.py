@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from flowtex.settings import TABLE, Settings, SettingsError
+from flowtex.settings import GROUPS, NEEDS, TABLE, Setting, Settings, SettingsError
 
 
 def test_every_row_is_complete_and_its_default_fits() -> None:
@@ -73,3 +73,44 @@ def test_a_copy_has_the_values_and_not_the_observers() -> None:
     copy = settings.copy()
     copy.samples = 12
     assert (copy.samples, settings.samples, heard) == (12, 9, [])
+
+
+def test_every_slider_can_be_put_back_to_its_default() -> None:
+    for setting in TABLE.values():
+        if setting.kind is float and setting.control == "slider":
+            steps = (setting.default - (setting.low or 0.0)) / setting.step
+            assert steps == pytest.approx(round(steps), abs=1e-6), setting.name
+
+
+@pytest.mark.parametrize("row", TABLE.values(), ids=lambda row: row.name)
+def test_a_value_comes_back_from_its_text(row: Setting) -> None:
+    values = [row.default, *row.choices, *(v for v in (row.low, row.high) if v is not None)]
+    values += [True, False] if row.kind is bool else []
+    for value in map(row.check, values):
+        back = row.parse(row.format(value))
+        assert back == value and type(back) is row.kind
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "value"),
+    [("lod", "No", False), ("lod", " true ", True), ("samples", "25", 25), ("grain", "1e0", 1.0)],
+)
+def test_texts_of_people_are_read(name: str, text: str, value: object) -> None:
+    assert TABLE[name].parse(text) == value
+
+
+@pytest.mark.parametrize(("name", "text"), [("lod", "maybe"), ("samples", "2.5"), ("grain", "nan")])
+def test_a_text_that_is_no_value_is_refused(name: str, text: str) -> None:
+    with pytest.raises(SettingsError, match=f"{name} is .*; expected"):
+        TABLE[name].parse(text)
+
+
+def test_panels_show_every_setting_once_and_know_what_it_needs() -> None:
+    assert sorted(name for names in GROUPS.values() for name in names) == sorted(TABLE)
+    for name, conditions in NEEDS.items():
+        for other, _, value in conditions:
+            assert name in TABLE and TABLE[other].check(value) == value
+    controls = {row.name: row.control for row in TABLE.values()}
+    assert controls["lod"] == "checkbox" and controls["noise"] == "choice"
+    assert controls["samples"] == "slider" and controls["seed"] == "number"
+    assert TABLE["lod"].label == "Level of detail" and TABLE["speed_in"].label == "Speed in"

@@ -13,7 +13,9 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from flowtex.camera import Camera
-from flowtex.rendering.webgl import Scene, asset
+from flowtex.rendering.webgl import ClientData
+from flowtex.rendering.webgl.protocol import part_info
+from flowtex.web.assets import asset
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -21,9 +23,6 @@ if TYPE_CHECKING:
 __all__ = ["ClientPage", "packed", "state"]
 
 Pixels = NDArray[np.uint8]
-
-#: Types that the client knows, by the names that NumPy has for them.
-DTYPES = ("float32", "float16", "int16", "int8", "uint8")
 
 HTML = """<!doctype html><meta charset="utf-8"><title>client</title>
 <style>body { margin: 0 } .view { width: 300px; height: 200px }</style><body></body>"""
@@ -33,20 +32,19 @@ LOAD = """async (source) => {
   window.client = await import(url);
   window.viewers = [];
   window.events = [];
-  window.unpack = (scene) => Object.fromEntries(Object.entries(scene.parts).map(([name, part]) => [
-    name,
-    { ...part, data: Uint8Array.from(atob(part.data), (c) => c.charCodeAt(0)).buffer },
-  ]));
+  window.bytes = (part) => Uint8Array.from(atob(part.data), (c) => c.charCodeAt(0));
+  window.unpack = (parts) => Object.values(parts).map((part) => client.decoded(part, bytes(part)));
 }"""
 
-MOUNT = """([scene, options, size]) => {
+MOUNT = """([scenes, options, size]) => {
   const element = document.createElement("div");
   element.className = "view";
   if (size) element.style.cssText = `float: left; width: ${size[0]}px; height: ${size[1]}px`;
   document.body.append(element);
   const heard = {};
   for (const name of options.hear ?? []) heard[name] = (value) => events.push([name, value]);
-  const viewer = client.mountPage(element, scene.header, unpack(scene), { ...options, ...heard });
+  const unpacked = [scenes].flat().map(({ header, parts }) => ({ header, parts: unpack(parts) }));
+  const viewer = client.mountPage(element, unpacked, { ...options, ...heard });
   viewers.push(viewer);
   return viewers.length - 1;
 }"""
@@ -59,15 +57,16 @@ def state(camera: Camera) -> dict[str, Any]:
     return camera.to_dict()
 
 
-def packed(scene: Scene, header: Mapping[str, Any], steps: tuple[int, ...] = (0,)) -> Any:
+def packed(scene: ClientData, header: Mapping[str, Any], steps: tuple[int, ...] = (0,)) -> Any:
     """Return header and parts as JSON."""
     arrays = dict(scene.surface())
     for step in sorted(set(steps)):
         arrays |= scene.step(step)
     parts = {
+        # Without a digest views have nothing in common.
         name: {
-            "dtype": DTYPES[DTYPES.index(array.dtype.name)],
-            "shape": list(array.shape),
+            **part_info(name, array),
+            "digest": "",
             "data": base64.b64encode(array.tobytes()).decode(),
         }
         for name, array in arrays.items()
@@ -95,7 +94,7 @@ class ClientPage:
         self.errors.append(text)
 
     def mount(self, scene: Any, size: tuple[int, int] | None = None, **options: Any) -> int:
-        """Show a scene; return the number of its viewer."""
+        """Show a scene, or several beside each other; return the number of the first viewer."""
         return int(self.page.evaluate(MOUNT, [scene, options, size]))
 
     def sharp(self, viewer: int = 0) -> None:

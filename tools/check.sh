@@ -20,8 +20,8 @@ check() {
 check style ruff check
 check format ruff format --check
 check types mypy
-say "javascript.sh"
-sh "$here/javascript.sh" "$bin" || failed="$failed, javascript"
+say "client.sh"
+sh "$here/client.sh" "$bin" || failed="$failed, browser client"
 # pytest says with 5 that it was asked for tests of which this half has none.
 half() {
     check_name=$1

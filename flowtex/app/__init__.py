@@ -6,22 +6,23 @@
                   |                                             ^
     trame      state of the controls               remote controlled area
                   |                                             |
-    FlowApp    its parts: data, look, time, ... -> FlowArea -> FrameStream   when to draw
+    FlowApp    Controllers, signals of the Context -> FlowArea -> FrameStream    when to draw
                                                       |         |
-                                                      |      Composer, Painters   how well
+                                                      |      ViewPainter         how well
                                                       v         v
-                                                    Scene: panes, colours, Canvas (VTK)
+                                                    Viewport: panes, colours, camera, window (VTK)
 
 :class:`FlowApp` is a whole page, :class:`FlowArea` the view alone, for other trame applications.
 :func:`serve` runs pages on one port of this machine, each with a state of its own, behind a
-secret; :class:`Library` is what they may open.
+secret; :class:`Library` is what they may open. Imports run one way: ``server`` < ``streaming`` <
+``controllers`` < ``ui`` < ``flow_app``.
 """
 
 from __future__ import annotations
 
 from flowtex.app.controllers.library import Choice, Library
-from flowtex.app.flow_app import FlowApp
-from flowtex.app.server.serving import ServeError, serve
+from flowtex.app.flow_app import FlowApp, serve
+from flowtex.app.server.site import ServeError
 from flowtex.app.streaming.area import FlowArea
 
 __all__ = ["Choice", "FlowApp", "FlowArea", "Library", "ServeError", "serve"]

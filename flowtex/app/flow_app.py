@@ -1,41 +1,42 @@
-"""The application behind a page: a view, and the groups of controls that act on it."""
+"""The application behind a page, and serving it on a port of this machine."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import asyncio
+from collections.abc import Callable, Mapping
 from contextlib import suppress
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
 from trame.app import get_server
 
-from flowtex.app.controllers.browser import Browser
-from flowtex.app.controllers.clockwork import Clockwork
-from flowtex.app.controllers.data import Data
+from flowtex.app.controllers import Controllers
+from flowtex.app.controllers.context import Context
 from flowtex.app.controllers.library import Choice, Library
-from flowtex.app.controllers.look import Look
-from flowtex.app.controllers.moves import Moves
-from flowtex.app.controllers.part import Part
-from flowtex.app.controllers.reader import Reader
-from flowtex.app.controllers.share import Share
-from flowtex.app.server.cell import InCell
-from flowtex.app.server.state import PageState
-from flowtex.app.server.untrusted import shortened
+from flowtex.app.server.notebook import NotebookPage
+from flowtex.app.server.page import PageState
+from flowtex.app.server.sessions import MakeApp, usual_limit
+from flowtex.app.server.site import ServeError, run_site
 from flowtex.app.streaming.area import FlowArea
-from flowtex.app.streaming.scene import Scene
 from flowtex.app.streaming.stream import FrameStream
+from flowtex.app.streaming.viewport import Viewport
 from flowtex.app.ui.layout import build_page
+from flowtex.diagnostics import has_display
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.settings import SettingsError
 
-__all__ = ["FlowApp"]
+__all__ = ["FlowApp", "first_choice", "serve"]
 
 #: Arguments that choose something in a file or a mesh, and those that make a mesh another field.
-CHOOSING, MAKING = ("vectors", "plane", "block"), ("times", "periodic", "sign_free")
+CHOICE_ARGUMENTS = tuple(f.name for f in fields(Choice))
+FIELD_ARGUMENTS = ("times", "periodic", "sign_free")
+#: Minutes for which a session waits for its page.
+IDLE_MINUTES = 15.0
 
 
-class FlowApp(InCell):
+class FlowApp(NotebookPage):
     """Flows on a page, with everything that can be done with them.
 
     Parameters
@@ -51,14 +52,12 @@ class FlowApp(InCell):
 
     Attributes
     ----------
-    server
-        The trame server.
-    layout
-        The page, as trame's layout.
-    area
-        The view.
-    state
-        What the page knows, under names of this application's own.
+    server, layout
+        The trame server, and the page as trame's layout.
+    area, state
+        The view, and what the page knows, under names of this application's own.
+    context, controllers
+        What acts on the view.
 
     Raises
     ------
@@ -70,37 +69,23 @@ class FlowApp(InCell):
         self.server = server or get_server(f"flowtex-{id(self)}")
         self.server.client_type = "vue3"
         self.state = PageState(self.server)
-        library = Library.of(flow, **{name: options.pop(name, None) for name in MAKING})
+        library = Library.of(flow, **{name: options.pop(name, None) for name in FIELD_ARGUMENTS})
         name, choice = first_choice(library, options)
-        options = {k: v for k, v in options.items() if k not in CHOOSING}
-        self.area = FlowArea(
-            library.field(name, choice), server=self.server, state=self.state, **options
-        )
-        self.data = Data(self, library, name, choice)
-        self.look = Look(self)
-        self.clockwork = Clockwork(self)
-        self.moves = Moves(self)
-        self.browser = Browser(self)
-        self.reader = Reader(self)
-        self.share = Share(self)
-        self.parts: tuple[Part, ...] = (
-            self.data,
-            self.look,
-            self.clockwork,
-            self.moves,
-            self.browser,
-            self.reader,
-            self.share,
-        )
-        self._setup_state()
+        options = {k: v for k, v in options.items() if k not in CHOICE_ARGUMENTS}
+        field = library.field(name, choice)
+        self.area = FlowArea(field, server=self.server, state=self.state, **options)
+        self.context = Context(self.state, self.area, library)
+        self.server.state.trame__favicon = None
+        self.state.set(panel=None, group=None, help=False, problem="")
+        self.controllers = Controllers(self.context, name, choice, self.restore)
+        self.context.field_changed.connect(self._name_page)
+        self._name_page()
         self._build_page()
-        for part in self.parts:
-            part.watch()
 
     @property
-    def scene(self) -> Scene:
+    def viewport(self) -> Viewport:
         """What is drawn."""
-        return self.area.scene
+        return self.area.viewport
 
     @property
     def stream(self) -> FrameStream:
@@ -110,57 +95,35 @@ class FlowApp(InCell):
     @property
     def field(self) -> FlowField:
         """The flow that is shown."""
-        return self.scene.field
+        return self.viewport.field
 
     def show(self, field: FlowField, *, keep_view: bool = False, keep_range: bool = False) -> None:
-        """Show another flow; :meth:`Scene.show` has the parameters."""
-        playing = self.area.player.playing
-        self.area.show(field, keep_view=keep_view, keep_range=keep_range)
-        for part in self.parts:
-            part.refresh()
-        self.area.player.playing = playing
-        self._name_page()
+        """Show another flow; :meth:`Viewport.show` has the parameters."""
+        self.context.show(field, keep_view=keep_view, keep_range=keep_range)
 
-    def restore(self, said: Mapping[str, Any]) -> None:
-        """Show the state that a link has told.
-
-        Parameters
-        ----------
-        said
-            As :func:`flowtex.app.controllers.links.from_link` returns it.
-        """
-        name = str(said.get("file", self.data.name))
-        choice = Choice(*(str(said.get(k, "")) for k in CHOOSING))
-        if "file" not in said and choice == Choice():
-            self._restore_parts(said)
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Show a state as :func:`flowtex.app.controllers.serialization.from_link` returns it."""
+        data = self.controllers.data
+        choice = Choice(*(str(state.get(name, "")) for name in CHOICE_ARGUMENTS))
+        if "file" not in state and choice == Choice():
+            self._restore(state)
         else:
-            self.data.begin(name, choice, lambda: self._restore_parts(said))
+            data.open(str(state.get("file", data.name)), choice, lambda: self._restore(state))
 
-    def _restore_parts(self, said: Mapping[str, Any]) -> None:
+    def _restore(self, state: Mapping[str, Any]) -> None:
         try:
-            for part in self.parts:
-                part.restore(said)
+            for controller in self.context.controllers:
+                controller.restore(state)
         except (SettingsError, FieldError) as error:
-            self.complain(error)
-        self.area.stream.changed()
-
-    def complain(self, problem: Any) -> None:
-        """Let the page say what is wrong."""
-        self.state.send(problem=shortened(str(problem)))
+            self.context.complain(error)
+        self.stream.changed()
 
     def close(self) -> None:
         """End the tasks and free the graphics card."""
         self.leave_cell()
-        for part in self.parts:
-            part.close()
+        for controller in self.context.controllers:
+            controller.close()
         self.area.close()
-
-    def _setup_state(self) -> None:
-        self.server.state.trame__favicon = None
-        self.state.set(panel=None, group=None, help=False, problem="", views=self.moves.views)
-        for part in self.parts:
-            self.state.set(**part.values())
-        self._name_page()
 
     def _name_page(self) -> None:
         self.server.state.trame__title = f"{self.field.name or 'flow'} - flowtex"
@@ -175,35 +138,28 @@ class FlowApp(InCell):
                 "vue_use": ["flowtex_page"],
             }
         )
-        self.layout = build_page(self)
+        self.layout = build_page(self.controllers)
 
 
 def first_choice(library: Library, options: Mapping[str, Any]) -> tuple[str, Choice]:
-    """Return what is shown first: the name of a flow, and what is chosen of it.
-
-    Parameters
-    ----------
-    library
-        What there is.
-    options
-        May hold ``vectors``, ``plane`` and ``block``.
+    """Return what is shown first: the name of a flow, and what the options choose of it.
 
     Raises
     ------
     FieldError
         When none can be opened; it tells of the first one.
     """
-    chosen = Choice(
-        *("" if (value := options.get(key)) is None else str(value) for key in CHOOSING)
+    partial_choice = Choice(
+        *("" if (value := options.get(key)) is None else str(value) for key in CHOICE_ARGUMENTS)
     )
     name, *others = library.names
     try:
-        return name, _first_of(library, name, chosen, sure=not others)
+        return name, _first_of(library, name, partial_choice, sure=not others)
     except (FieldError, OSError):
         # In a folder lies this and that: what cannot be drawn does not hide the rest.
         for other in others:
             with suppress(FieldError, OSError):
-                return other, _first_of(library, other, chosen)
+                return other, _first_of(library, other, partial_choice)
         raise
 
 
@@ -213,3 +169,87 @@ def _first_of(library: Library, name: str, chosen: Choice, *, sure: bool = False
     if not sure:
         library.field(name, choice)
     return choice
+
+
+def serve(
+    field: Any,
+    *,
+    host: str = "127.0.0.1",
+    port: int = 0,
+    limit: int | None = None,
+    idle: float = IDLE_MINUTES,
+    folder: str | Path | None = None,
+    open_browser: bool = True,
+    announce: Callable[[str], None] = print,
+    **options: Any,
+) -> None:
+    """Show a flow on a page, until Ctrl-C.
+
+    Each browser tab that opens the address has a state of its own: camera, settings and time are
+    nobody else's. Fields and their traces are shared.
+
+    Parameters
+    ----------
+    field
+        What :class:`FlowApp` shows: a :class:`~flowtex.FlowField`, a mesh, the path of a file or
+        of a folder; or a function that takes a trame server and returns an application on it,
+        such as a :class:`FlowApp`.
+    host
+        Address to listen on. With another than this machine's own, everybody on the network who
+        has the page's address can use it.
+    port
+        Port to listen on; 0 takes one that is free.
+    limit
+        Pages at one time, at most; by default what the cores and the free memory have room for.
+    idle
+        Minutes for which a page's state is kept after the page was closed.
+    folder
+        Folder whose files a page may open besides; none by default.
+    open_browser
+        Whether to open the page where there is a browser.
+    announce
+        Called with the page's address, which holds its secret; printed by default.
+    **options
+        Arguments and settings of ``plotter.flowtex.add``; none with a function.
+
+    Raises
+    ------
+    FieldError, SettingsError
+        When the mesh or a setting does not fit.
+    ServeError
+        When the port or the host cannot be listened on, or ``limit`` or ``idle`` is out of range.
+    TypeError
+        When options are given with a function.
+    """
+    if limit is not None and limit < 1:
+        msg = f"limit is {limit}; expected 1 or more pages"
+        raise ServeError(msg)
+    if not idle > 0:
+        msg = f"idle is {idle:g}; expected a positive number of minutes"
+        raise ServeError(msg)
+    site = run_site(
+        _app_maker(field, folder, options),
+        host,
+        port,
+        limit=limit or usual_limit(),
+        idle=idle,
+        announce=announce,
+        open_browser=open_browser and has_display(),
+    )
+    with suppress(KeyboardInterrupt, asyncio.CancelledError):
+        asyncio.run(site)
+
+
+def _app_maker(field: Any, folder: str | Path | None, options: dict[str, Any]) -> MakeApp:
+    """Return what makes an application for each page."""
+    if callable(field):
+        names = [*options, *(["folder"] if folder is not None else [])]
+        if names:
+            msg = f"{', '.join(names)} cannot go with a function; give them to what it makes"
+            raise TypeError(msg)
+        make_app: MakeApp = field
+        return make_app
+    # One library for all: files that are open and flows that are traced are shared.
+    making = {name: options.pop(name, None) for name in FIELD_ARGUMENTS}
+    library = Library.of(field, folder=folder, **making)
+    return lambda server: FlowApp(library, server=server, **options)

@@ -47,12 +47,12 @@ TRIANGLES = (((0, 0), (0, 1), (1, 1)), ((0, 0), (1, 1), (1, 0)))
 
 @dataclass(frozen=True, eq=False)
 class SurfacePoint:
-    """A place on a triangle of the surface.
+    """A point on a triangle of the surface.
 
     Attributes
     ----------
     index
-        The place as (j, i), folded back into one period.
+        The point as (j, i), folded back into one period.
     nodes
         Numbers of the three corners, (3,): j times the number of columns, plus i.
     weights
@@ -67,13 +67,13 @@ class SurfacePoint:
         """Values at the corners of nodal data (J, I, ...), (3, ...)."""
         return np.asarray(nodal.reshape(-1, *nodal.shape[2:])[self.nodes], dtype=float)
 
-    def mix(self, nodal: AnyArray) -> Floats:
-        """Value at the place of nodal data (J, I, ...), (...)."""
+    def interpolate(self, nodal: AnyArray) -> Floats:
+        """Value at the point of nodal data (J, I, ...), (...)."""
         return np.asarray(np.tensordot(self.weights, self.corners(nodal), axes=1))
 
 
 def surface_point(surface: Surface, index: ArrayLike) -> SurfacePoint:
-    """Find the triangle at a place in index space.
+    """Find the point of a surface at a position in index space.
 
     Parameters
     ----------
@@ -85,11 +85,11 @@ def surface_point(surface: Surface, index: ArrayLike) -> SurfacePoint:
     Raises
     ------
     ValueError
-        When it is no pair of numbers, or lies outside the surface or in a cell that is not drawn.
+        When the index is no pair of numbers, or outside the surface or in a cell that is not drawn.
     """
     at = np.asarray(index, dtype=float)
     if at.shape != (2,) or not np.isfinite(at).all():
-        msg = f"the place is {index!r}; expected two finite numbers (j, i), in cells"
+        msg = f"index is {index!r}; expected two finite numbers (j, i), in cells"
         raise ValueError(msg)
     j, i = (float(x) for x in surface.wrap(at[::-1])[::-1])
     rows, columns = surface.shape
@@ -103,14 +103,14 @@ def surface_point(surface: Surface, index: ArrayLike) -> SurfacePoint:
         if surface.cells[row, column]:
             return _in_cell((j, i), row, column, columns)
     msg = (
-        f"(j, i) is ({j:g}, {i:g}), in a cell with a blanked node; expected a place where the "
+        f"(j, i) is ({j:g}, {i:g}), in a cell with a blanked node; expected a point where the "
         "surface is drawn"
     )
     raise ValueError(msg)
 
 
 def _cells(x: float, nodes: int) -> Iterator[int]:
-    """Cells of one axis that a place belongs to: two, where it is on a line of nodes."""
+    """Cells of one axis that a position belongs to: two on a line of nodes."""
     cell = min(int(x), nodes - 2)
     yield cell
     if x == cell and cell > 0:
@@ -119,9 +119,9 @@ def _cells(x: float, nodes: int) -> Iterator[int]:
 
 def _in_cell(index: tuple[float, float], row: int, column: int, columns: int) -> SurfacePoint:
     b, a = index[0] - row, index[1] - column
-    half = TRIANGLES[0] if a >= b else TRIANGLES[1]
+    triangle = TRIANGLES[0] if a >= b else TRIANGLES[1]
     weights = (1 - a, a - b, b) if a >= b else (1 - b, a, b - a)
-    nodes = [(row + j) * columns + column + i for j, i in half]
+    nodes = [(row + j) * columns + column + i for j, i in triangle]
     return SurfacePoint(index, np.array(nodes, dtype=np.intp), np.array(weights))
 
 
@@ -143,20 +143,20 @@ class Locator:
         )
 
     def nearest(self, points: Floats) -> tuple[Floats, Floats]:
-        """Find the nearest places on the surface as it is drawn.
+        """Find the nearest points of the surface as it is drawn.
 
         Parameters
         ----------
         points
-            Points in the mesh's own coordinates, (P, 3). Where a flat map is one period of what
-            repeats, points in the periods beside it are found as well.
+            Points in the mesh's own coordinates, (P, 3). On a flat map of one period,
+            points in the periods beside it count as well.
 
         Returns
         -------
         index
-            (j, i) of the nearest places, (P, 2).
+            (j, i) of the nearest points, (P, 2).
         distance
-            How far they are, in sizes of the cell that was found, (P,).
+            How far they are, in sizes of their cell, (P,).
         """
         starts = min(START_NODES, len(self._number))
         targets = (points[:, None] - self._shifts).reshape(-1, 3)
@@ -175,7 +175,7 @@ class Locator:
         on, cell = np.arange(len(at)), cell.copy()
         for _ in range(WALK_STEPS):
             corners = self._corners(cell[on])
-            self._take(index, distance, on, cell[on], self._place(at[on], cell[on], corners))
+            self._update(index, distance, on, cell[on], self._place(at[on], cell[on], corners))
             next_ = self._inside(cell[on] + _step(at[on], corners))
             going = (next_ != cell[on]).any(axis=-1) & (distance[on] > ON_SURFACE)
             on = on[going]
@@ -188,27 +188,26 @@ class Locator:
             middle = np.where(
                 known, np.minimum(index[aside].astype(np.intp), self._last), cell[aside]
             )
-            self._look_around(index, distance, at, aside, middle)
+            self._search_around(index, distance, at, aside, middle)
         return index, distance
 
-    def _look_around(
+    def _search_around(
         self, index: Floats, distance: Floats, at: Floats, aside: Indices, middle: Indices
     ) -> None:
-        """Look at the cells around those (M, 2) of the points that lie beside the surface."""
+        """Search the cells around those (M, 2) of the points that lie beside the surface."""
         near = self._inside(middle + NEIGHBOURS[:, None]).reshape(-1, 2)
         inside, far = self._place(
             np.tile(at[aside], (len(NEIGHBOURS), 1)), near, self._corners(near)
         )
-        best = np.argmin(far.reshape(len(NEIGHBOURS), -1), axis=0) * len(aside) + np.arange(
-            len(aside)
-        )
-        self._take(index, distance, aside, near[best], (inside[best], far[best]))
+        nearest = np.argmin(far.reshape(len(NEIGHBOURS), -1), axis=0)
+        best = nearest * len(aside) + np.arange(len(aside))
+        self._update(index, distance, aside, near[best], (inside[best], far[best]))
 
     @staticmethod
-    def _take(
+    def _update(
         index: Floats, distance: Floats, some: Indices, cell: Indices, places: tuple[Floats, Floats]
     ) -> None:
-        """Write the places that are closer than those so far."""
+        """Write those places that are closer than before."""
         inside, far = places
         closer = far < distance[some]
         index[some[closer]] = (cell + inside)[closer]
@@ -230,10 +229,10 @@ class Locator:
         sides = [corners[:, :, 1] - corners[:, :, 0], corners[:, 1] - corners[:, 0]]
         size = np.sqrt(np.max([np.sum(s * s, axis=-1) for s in sides], axis=(0, 2)))
         place, distance = np.zeros((len(at), 2)), np.full(len(at), np.inf)
-        for half in TRIANGLES:
-            shares, far = _closest(at, *(corners[:, j, i] for j, i in half))
+        for triangle in TRIANGLES:
+            shares, far = _closest(at, *(corners[:, j, i] for j, i in triangle))
             closer = far < distance
-            place[closer] = shares[closer] @ np.array(half, dtype=float)
+            place[closer] = shares[closer] @ np.array(triangle, dtype=float)
             distance[closer] = far[closer]
         distance /= np.where(size > 0, size, 1.0)
         distance[~self._surface.cells[cell[:, 0], cell[:, 1]]] = np.inf
@@ -334,7 +333,7 @@ def locate(
 ) -> tuple[float, float] | None:
     """Find where on the surface a point lies.
 
-    The surface is what renderers draw, triangles, so a point of a picture is found exactly. The
+    The surface consists of triangles as renderers draw it, so points of a picture are exact. The
     first call for a field builds a tree of its nodes; the next ones take about a millisecond.
 
     Parameters

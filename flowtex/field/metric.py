@@ -9,8 +9,8 @@ for the contravariant components (u_i, u_j), in cells per unit of time (Forssell
 section 3). The part that is normal to the surface has none; its share is returned.
 
 At a pole all nodes of the line are one point and have one velocity, the mean of theirs. Each
-keeps the component along its own line, of which the whole can be had again
-(:meth:`flowtex.field.poles.Pole.vector`), and the full speed.
+keeps the component along its own line, from which :meth:`flowtex.field.poles.Pole.vector` restores
+the whole, and the full speed.
 """
 
 from __future__ import annotations

@@ -90,13 +90,13 @@ def values_at(field: FlowField, index: ArrayLike, time: float | None = None) -> 
 
     def value(steps: Floats) -> Floats:
         if len(steps) == 1:
-            return point.mix(steps[0])
-        a, b = (point.mix(steps[n]) for n in (before, after))
+            return point.interpolate(steps[0])
+        a, b = (point.interpolate(steps[n]) for n in (before, after))
         return np.asarray(a * (1 - share) + b * share)
 
     return PointValues(
         index=point.index,
-        position=point.mix(field.surface.points),
+        position=point.interpolate(field.surface.points),
         velocity=_axis(field, point) if field.sign_free else value(field.velocity),
         speed=float(value(field.speed)),
         scalars={name: float(value(steps)) for name, steps in field.scalars.items()},

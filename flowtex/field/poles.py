@@ -6,13 +6,12 @@ of a disc. Index space goes on beyond it, on the far side:
 
     (i, -j) is the point (i + n / 2, j)                       for n even cells around j = 0,
 
-so a path that goes over the pole has a continuous position in index space. Where the lines that
-lead to the pole are not evenly spread, the one that leads away straight ahead takes the place
-of i + n / 2.
+so a path over the pole has a continuous position in index space. Where the lines that lead to the
+pole are not evenly spread, the line straight ahead takes the place of i + n / 2.
 
-Next to a pole index space is of no use to calculate in: the cells around it have no width, and
-velocities along them no bound. There positions are better given in a plane that touches the
-surface at the pole: :meth:`Pole.place` and :meth:`Pole.index` go there and back.
+Next to a pole index space is unsuitable for computing: cells have no width there, and velocities
+along them are unbounded. Positions in a plane that touches the surface at the pole are used
+instead: :meth:`Pole.place` and :meth:`Pole.index` convert to it and back.
 """
 
 from __future__ import annotations
@@ -132,9 +131,9 @@ class Pole:
         return result
 
     def nearest(self, position: Floats, near: Floats) -> Floats:
-        """Write positions (2, N), on either side of the pole, as close to others as can be.
+        """Return positions (2, N) in that form, before or beyond the pole, nearest to others.
 
-        What lies a quarter of a turn and more to the side is written as beyond the pole, or back.
+        A position that lies a quarter of a turn or more to the side changes its form.
         """
         a, c = 1 - self.component, self.component
         beyond = self.depth(near) < 0
@@ -249,7 +248,7 @@ def find_poles(
 
 
 def _pole(line: Floats, ring: Floats, component: int, at: int) -> Pole | None:
-    """Judge one line, (n + 1, 3), by itself and the next."""
+    """Return the pole at a line of nodes, (n + 1, 3), given the next one; ``None`` for no pole."""
     middle = line[:-1].mean(axis=0)
     spokes = ring - middle
     lengths = np.linalg.norm(spokes, axis=-1)

@@ -1,9 +1,13 @@
 """Fields without a sign: polarisation, principal directions, fibres; v and -v are the same.
 
-Such a field has no direction everywhere at once: around a half-integer singularity it comes back
-turned over. Its nodes are given directions that agree with their neighbours as far as can be, so
-that only a cut is left where they do not. In the cells of the cut, and in all others alike, the
-directions at the corners are brought into line before anything is interpolated.
+No choice of signs is continuous everywhere: around a half-integer singularity a vector comes back
+turned over. The signs at the nodes are chosen to agree with their neighbours as far as possible, so
+that they disagree along a cut only. The corners of each cell are brought into line before anything
+is interpolated.
+
+What the rest of the package does with such fields follows from ``FlowField.sign_free``: paths are
+traced to both sides, corners are aligned (:func:`corner_signs`), kernels are symmetric, and grains
+do not move.
 """
 
 from __future__ import annotations

@@ -9,7 +9,6 @@ and lets nothing be fetched.
 from __future__ import annotations
 
 import base64
-import gzip
 import hashlib
 import html
 import json
@@ -19,16 +18,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
-from flowtex._util.cache import digest
+from flowtex._util.array_types import AnyArray
 from flowtex._util.progress import track
 from flowtex._util.whole_file import whole_file
 from flowtex._version import __version__
 from flowtex.options import Appearance, FieldOptions, Options, ViewOptions, accepts_options
-from flowtex.rendering.webgl import Scene, asset
+from flowtex.rendering.webgl import ClientData
+from flowtex.rendering.webgl.protocol import Header, part_info, part_text
 from flowtex.web import preview
+from flowtex.web.assets import asset
 from flowtex.web.view import WebView, web_views
 
 __all__ = ["Page", "estimate", "export", "page_text", "write_page"]
@@ -36,9 +34,7 @@ __all__ = ["Page", "estimate", "export", "page_text", "write_page"]
 #: Size of an average part after packing, over that before, base64 included.
 PACKED = 0.62
 #: Bytes of the client, its shaders and the header, about.
-AROUND = 200_000
-#: Line of page.js that has no place in a page, where client.js stands before it.
-IMPORT = 'import { mountPage } from "./client.js";\n'
+AROUND = 160_000
 #: Size of the preview picture.
 PREVIEW = (480, 300)
 
@@ -152,7 +148,7 @@ def page_text(
     return "".join(_pieces(views, scenes, camera, time, clock, title, picture))
 
 
-def estimate(scenes: Sequence[Scene]) -> int:
+def estimate(scenes: Sequence[ClientData]) -> int:
     """Bytes that a page is going to have, about; textures of both views count once."""
     size = 0
     for n, scene in enumerate(scenes):
@@ -165,7 +161,7 @@ def estimate(scenes: Sequence[Scene]) -> int:
 
 def _pieces(
     views: Sequence[WebView],
-    scenes: Sequence[Scene],
+    scenes: Sequence[ClientData],
     camera: dict[str, Any] | None,
     time: float | None,
     clock: float,
@@ -173,32 +169,28 @@ def _pieces(
     picture: bytes | None,
 ) -> Iterator[str]:
     """Give the text of a page piece by piece; each array is packed when it is reached."""
-    header, *others = (
+    headers = [
         scene.header(view.scene.settings, camera=camera, time=time, clock=clock)
         for view, scene in zip(views, scenes, strict=True)
-    )
-    for view, other in zip(views[1:], others, strict=True):
-        other["differs"] = header["differs"] = list(view.own_settings)
-        header["beside"] = other
+    ]
+    if len(views) > 1:
+        for header in headers:
+            header["differs"] = list(views[1].own_settings)
     if picture is None:
         picture = preview.preview_png(
-            views[0], PREVIEW, camera=header["camera"], time=time, coarser=1
+            views[0], PREVIEW, camera=headers[0]["camera"], time=time, coarser=1
         )
     before, after = asset("page.html").read_text("utf-8").split("$parts\n")
-    values = _values(header, title or header["name"] or "Flow", picture)
+    values = _values(headers, title or headers[0]["name"] or "Flow", picture)
     yield string.Template(before).substitute(values)
-    written: dict[bytes, str] = {}
-    for name, array in _all_parts(scenes):
-        same = written.setdefault(digest(array), name)
-        yield _element(name, array) if same == name else _reference(name, same)
+    yield from _elements(scenes)
     yield string.Template(after).substitute(values)
 
 
-def _values(header: dict[str, Any], title: str, picture: bytes) -> dict[str, str]:
+def _values(headers: Sequence[Header], title: str, picture: bytes) -> dict[str, str]:
     """Return what the page's template asks for."""
-    background = "#" + "".join(f"{round(255 * c):02x}" for c in header["background"])
-    page = asset("page.js").read_text("utf-8").replace(IMPORT, "")
-    client = asset("client.js").read_text("utf-8") + "\n" + page
+    background = "#" + "".join(f"{round(255 * c):02x}" for c in headers[0]["background"])
+    client = asset("page.js").read_text("utf-8")
     script = "\n" + client.replace("</script", r"<\/script").replace("<!--", r"<\!--")
     look = string.Template(asset("page.css").read_text("utf-8")).substitute(background=background)
     return {
@@ -207,7 +199,7 @@ def _values(header: dict[str, Any], title: str, picture: bytes) -> dict[str, str
         "title": html.escape(title),
         "style": look,
         "preview": "data:image/png;base64," + base64.b64encode(picture).decode(),
-        "header": _json(header),
+        "headers": _json(headers),
         "script": script,
     }
 
@@ -227,34 +219,24 @@ def _json(value: Any) -> str:
     return text.replace("<", r"\u003c").replace(">", r"\u003e").replace("&", r"\u0026")
 
 
-def _element(name: str, array: NDArray[Any]) -> str:
-    """Return a part as an element of the page."""
-    numbers = np.ascontiguousarray(array)
-    # As many bytes as the array has, those of one significance side by side.
-    planes = numbers.reshape(-1).view(np.uint8).reshape(-1, numbers.itemsize).T
-    packed = base64.b64encode(gzip.compress(planes.tobytes(), 9, mtime=0)).decode()
-    shape = " ".join(map(str, array.shape))
-    return (
-        f'<script type="text/plain" data-part="{html.escape(name)}" data-dtype="{array.dtype}" '
-        f'data-shape="{shape}" data-bytes="{array.itemsize}">{packed}</script>\n'
-    )
+def _elements(scenes: Sequence[ClientData]) -> Iterator[str]:
+    """Give the parts of all views as elements of the page; equal arrays lie in it once."""
+    written: set[str] = set()
+    for n, scene in enumerate(scenes):
+        for name, array in _all_parts(scene):
+            info = part_info(name, array)
+            text = "" if info["digest"] in written else part_text(array)
+            written.add(info["digest"])
+            yield (
+                f'<script type="text/plain" data-view="{n}" '
+                f'data-part="{html.escape(json.dumps(info))}">{text}</script>\n'
+            )
 
 
-def _reference(name: str, same: str) -> str:
-    """Return an element for a part that is the same as another one."""
-    return (
-        f'<script type="text/plain" data-part="{html.escape(name)}" '
-        f'data-same="{html.escape(same)}"></script>\n'
-    )
-
-
-def _all_parts(scenes: Sequence[Scene]) -> Iterator[tuple[str, NDArray[Any]]]:
-    for scene, before in zip(scenes, ("", "beside:"), strict=False):
-        for name, array in scene.surface().items():
-            yield before + name, array
-        for step in track(range(scene.steps), scene.steps, "Packing time steps"):
-            for name, array in scene.step(step).items():
-                yield before + name, array
+def _all_parts(scene: ClientData) -> Iterator[tuple[str, AnyArray]]:
+    yield from scene.surface().items()
+    for step in track(range(scene.steps), scene.steps, "Packing time steps"):
+        yield from scene.step(step).items()
 
 
 def _write(path: Path, text: Iterator[str]) -> int:

@@ -1,61 +1,780 @@
-// The end of an exported page's script. There client.js stands before it in one and the same module,
-// and the next line is left out.
-import { mountPage } from "./client.js";
+// Built from client/src by client/build.js; change that instead.
+/*! Holds parts of gl-matrix, of which this is the licence:
 
-/**
- * Take one part out of the page: base64, gzip, and the bytes of all numbers by significance.
- * @param {HTMLElement} element
- * @returns {Promise<{dtype: string, shape: number[], data: Uint8Array}>}
- */
-async function pagePart(element) {
-  const text = atob(element.textContent ?? "");
-  const packed = Uint8Array.from(text, (letter) => letter.charCodeAt(0));
-  const opened = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
-  const planes = new Uint8Array(await new Response(opened).arrayBuffer());
-  const width = Number(element.dataset.bytes);
-  const count = planes.length / width;
-  const data = new Uint8Array(planes.length);
-  for (let plane = 0; plane < width; plane += 1) {
-    const first = plane * count;
-    for (let n = 0; n < count; n += 1) data[n * width + plane] = planes[first + n];
-  }
-  element.remove();
-  const shape = (element.dataset.shape ?? "").split(" ").map(Number);
-  return { dtype: element.dataset.dtype ?? "", shape, data };
+Copyright (c) 2015-2025, Brandon Jones, Colin MacKenzie IV.
+
+Permission is hereby granted, free of charge, to any person obtaining a copy
+of this software and associated documentation files (the "Software"), to deal
+in the Software without restriction, including without limitation the rights
+to use, copy, modify, merge, publish, distribute, sublicense, and/or sell
+copies of the Software, and to permit persons to whom the Software is
+furnished to do so, subject to the following conditions:
+
+The above copyright notice and this permission notice shall be included in
+all copies or substantial portions of the Software.
+
+THE SOFTWARE IS PROVIDED "AS IS", WITHOUT WARRANTY OF ANY KIND, EXPRESS OR
+IMPLIED, INCLUDING BUT NOT LIMITED TO THE WARRANTIES OF MERCHANTABILITY,
+FITNESS FOR A PARTICULAR PURPOSE AND NONINFRINGEMENT. IN NO EVENT SHALL THE
+AUTHORS OR COPYRIGHT HOLDERS BE LIABLE FOR ANY CLAIM, DAMAGES OR OTHER
+LIABILITY, WHETHER IN AN ACTION OF CONTRACT, TORT OR OTHERWISE, ARISING FROM,
+OUT OF OR IN CONNECTION WITH THE SOFTWARE OR THE USE OR OTHER DEALINGS IN
+THE SOFTWARE. */
+var TYPES={float32:bytes=>new Float32Array(bytes),float16:bytes=>new Uint16Array(bytes),uint16:bytes=>new Uint16Array(bytes),
+int16:bytes=>new Int16Array(bytes),int8:bytes=>new Int8Array(bytes),uint8:bytes=>new Uint8Array(bytes)};function isSignFree(header){
+return header.variant.includes("FLOWTEX_SIGNFREE")}function stepOf(name){return Number(name.split("/")[1])}function decoded(info,bytes){
+let view=ArrayBuffer.isView(bytes)?new Uint8Array(bytes.buffer,bytes.byteOffset,bytes.byteLength):new Uint8Array(bytes),
+make=TYPES[info.dtype];if(!make)throw new Error(`a part has the type "${info.dtype}"; expected ${Object.keys(TYPES).join(
+", ")}`);let{name,shape,digest}=info;return{name,shape,digest,data:make(view.slice().buffer)}}async function partOfText(info,text){let packed=Uint8Array.from(atob(text),letter=>letter.charCodeAt(0)),unpacked=new Blob(
+[packed]).stream().pipeThrough(new DecompressionStream("gzip")),planes=new Uint8Array(await new Response(unpacked).arrayBuffer()),
+count=info.shape.reduce((product,n)=>product*n,1),width=count?planes.length/count:1,bytes=new Uint8Array(planes.length);
+for(let plane=0;plane<width;plane+=1)for(let n=0;n<count;n+=1)bytes[n*width+plane]=planes[plane*count+n];return decoded(
+info,bytes)}function dom(kind,attributes={},children=[]){let element=document.createElement(kind);for(let[name,value]of Object.entries(
+attributes))element.setAttribute(name,value);return element.append(...children),element}var ICONS={play:"M8 5.2v13.6L19 \
+12z",pause:"M8.5 6v12M15.5 6v12",home:"M4 11.5 12 5l8 6.5M6.5 10v9h11v-9",lod:"M12 3.8l8 4.1-8 4.1-8-4.1zM4 12.2l8 4.1 8\
+-4.1M4 16.3l8 4.1 8-4.1",levels:"M3.5 18a8.5 8.5 0 0 1 17 0M7 18a5 5 0 0 1 10 0M10.3 18a1.7 1.7 0 0 1 3.4 0",settings:"M\
+4 7h8M17 7h3M4 17h3M12 17h8M14.5 4.8v4.4M9.5 14.8v4.4",save:"M12 4v11M7.5 10.8 12 15.3l4.5-4.5M5 19.5h14",full:"M4 9V4h5\
+M20 9V4h-5M4 15v5h5M20 15v5h-5",hide:"M6 9.5l6 6 6-6",show:"M6 14.5l6-6 6 6"};function icon(name){let space="http://www.\
+w3.org/2000/svg",svg=document.createElementNS(space,"svg");svg.setAttribute("viewBox","0 0 24 24"),svg.setAttribute("ari\
+a-hidden","true");let path=document.createElementNS(space,"path");return path.setAttribute("d",ICONS[name]),name==="play"&&
+path.setAttribute("class","solid"),svg.append(path),svg}function numberText(x){if(!Number.isFinite(x))return"–";let size=Math.
+abs(x);return size!==0&&(size>=1e5||size<.001)?x.toExponential(2).replace("e+","e"):String(Number(x.toPrecision(4)))}var EPSILON=1e-6,ARRAY_TYPE=typeof Float32Array<"u"?Float32Array:Array;var degree=Math.PI/180,radian=180/Math.PI;function transpose(out,a){if(out===a){var a01=a[1],a02=a[2],a12=a[5];out[1]=a[3],out[2]=a[6],out[3]=a01,out[5]=a[7],out[6]=
+a02,out[7]=a12}else out[0]=a[0],out[1]=a[3],out[2]=a[6],out[3]=a[1],out[4]=a[4],out[5]=a[7],out[6]=a[2],out[7]=a[5],out[8]=
+a[8];return out}function fromRotation(out,rad,axis){var x=axis[0],y=axis[1],z=axis[2],len=Math.sqrt(x*x+y*y+z*z),s,c,t;return len<EPSILON?
+null:(len=1/len,x*=len,y*=len,z*=len,s=Math.sin(rad),c=Math.cos(rad),t=1-c,out[0]=x*x*t+c,out[1]=y*x*t+z*s,out[2]=z*x*t-
+y*s,out[3]=0,out[4]=x*y*t-z*s,out[5]=y*y*t+c,out[6]=z*y*t+x*s,out[7]=0,out[8]=x*z*t+y*s,out[9]=y*z*t-x*s,out[10]=z*z*t+c,
+out[11]=0,out[12]=0,out[13]=0,out[14]=0,out[15]=1,out)}function create(){var out=new ARRAY_TYPE(3);return ARRAY_TYPE!=Float32Array&&(out[0]=0,out[1]=0,out[2]=0),out}function length(a){var x=a[0],y=a[1],z=a[2];return Math.sqrt(x*x+y*y+z*z)}function subtract(out,a,b){return out[0]=a[0]-b[0],out[1]=a[1]-b[1],out[2]=a[2]-b[2],out}function scale(out,a,b){return out[0]=a[0]*b,out[1]=a[1]*b,out[2]=a[2]*b,out}function scaleAndAdd(out,a,b,scale3){return out[0]=
+a[0]+b[0]*scale3,out[1]=a[1]+b[1]*scale3,out[2]=a[2]+b[2]*scale3,out}function normalize(out,a){var x=a[0],y=a[1],z=a[2],len=x*x+y*y+z*z;return len>0&&(len=1/Math.sqrt(len)),out[0]=a[0]*len,
+out[1]=a[1]*len,out[2]=a[2]*len,out}function dot(a,b){return a[0]*b[0]+a[1]*b[1]+a[2]*b[2]}function cross(out,a,b){var ax=a[0],
+ay=a[1],az=a[2],bx=b[0],by=b[1],bz=b[2];return out[0]=ay*bz-az*by,out[1]=az*bx-ax*bz,out[2]=ax*by-ay*bx,out}function transformMat4(out,a,m){var x=a[0],y=a[1],z=a[2],w=m[3]*x+m[7]*y+m[11]*z+m[15];return w=w||1,out[0]=(m[0]*x+m[4]*
+y+m[8]*z+m[12])/w,out[1]=(m[1]*x+m[5]*y+m[9]*z+m[13])/w,out[2]=(m[2]*x+m[6]*y+m[10]*z+m[14])/w,out}function transformMat3(out,a,m){
+var x=a[0],y=a[1],z=a[2];return out[0]=x*m[0]+y*m[3]+z*m[6],out[1]=x*m[1]+y*m[4]+z*m[7],out[2]=x*m[2]+y*m[5]+z*m[8],out}var forEach=(function(){var vec=create();return function(a,stride,offset,count,fn,arg){var i,l;for(stride||(stride=3),offset||
+(offset=0),count?l=Math.min(count*stride+offset,a.length):l=a.length,i=offset;i<l;i+=stride)vec[0]=a[i],vec[1]=a[i+1],vec[2]=
+a[i+2],fn(vec,vec,arg),a[i]=vec[0],a[i+1]=vec[1],a[i+2]=vec[2];return a}})();var v=a=>a,result=()=>[0,0,0],zeros=n=>new Array(n).fill(0),dot2=(a,b)=>dot(v(a),v(b)),length2=a=>length(v(a)),subtract2=(a,b)=>subtract(
+result(),v(a),v(b)),scale2=(a,by)=>scale(result(),v(a),by),cross2=(a,b)=>cross(result(),v(a),v(b)),unit=a=>normalize(result(),
+v(a)),add=(a,b,t=1)=>scaleAndAdd(result(),v(a),v(b),t);function rotated(a,axis,degrees){let turn=fromRotation(zeros(16),
+degrees*Math.PI/180,v(axis));return turn===null?result():transformMat4(result(),v(a),turn)}function toFrame(frame,a){let columns=transpose(
+zeros(9),frame);return transformMat3(result(),v(a),columns)}function fromFrame(frame,a){return transformMat3(result(),v(
+a),frame)}function clamp(x,low,high){return Math.min(Math.max(x,low),high)}var tangent=degrees=>Math.tan(degrees*Math.PI/360),Camera=class{flat;limits;aspect;state;start;pick=null;homeHeight;nearest;constructor(state,limits,flat,aspect=1){
+this.state=copyOf(state),this.start=copyOf(state),this.limits=limits,this.flat=flat,this.aspect=aspect,this.homeHeight=this.
+height,this.nearest=this.distance/limits.closest}get height(){let{parallel,parallel_scale:half,view_angle:angle}=this.state;
+return parallel?half:this.distance*tangent(angle)}get distance(){return length2(subtract2(this.state.focal_point,this.state.
+position))}get zoom(){return this.homeHeight/this.height}get axes(){let ahead=unit(subtract2(this.state.focal_point,this.
+state.position)),right=unit(cross2(ahead,this.state.up));return[right,cross2(right,ahead),ahead]}get toEye(){return unit(
+subtract2(this.state.position,this.state.focal_point))}get eye(){return this.state.parallel?[...scale2(this.axes[2],-1),
+0]:[...this.state.position,1]}pan(dx,dy){let[right,up]=this.axes,{height}=this;this.shift(add(scale2(right,dx*this.aspect*
+height),up,dy*height))}rotate(dx,dy){let{state,limits}=this,up=unit(state.up),back=subtract2(state.position,state.focal_point);
+back=rotated(back,up,-limits.turn*dx*Math.min(this.aspect,limits.widest_turn));let right=unit(cross2(up,back));back=rotated(
+back,right,limits.turn*dy),state.position=add(state.focal_point,back),state.up=unit(cross2(back,right))}zoomBy(factor,x=0,y=0){
+if(!Number.isFinite(factor)||factor<=0)return;this.flat||this.focusAt(x,y);let{farthest_zoom:farthest,deepest_zoom:deepest}=this.
+limits,by=clamp(factor,farthest/this.zoom,deepest/this.zoom),[right,up,ahead]=this.axes,height=this.height*(1-1/by);this.
+shift(add(scale2(right,x*this.aspect*height),up,y*height)),this.state.parallel?this.state.parallel_scale/=by:this.approach(
+this.height/by,ahead)}ray(x,y){let[right,up,ahead]=this.axes,{height,state}=this,there=add(add(state.focal_point,right,x*
+this.aspect*height),up,y*height);return state.parallel?[add(there,ahead,-this.distance),ahead]:[add(state.position,[0,0,
+0]),unit(subtract2(there,state.position))]}approach(height,ahead){let distance=Math.max(height/tangent(this.limits.view_angle),
+this.nearest);this.state.position=add(this.state.focal_point,ahead,-distance),this.state.view_angle=Math.atan(height/distance)*
+360/Math.PI}focusAt(x,y){let point=this.pick?.(x,y);if(!point)return;let ahead=this.axes[2],depth=dot2(subtract2(point,this.
+state.position),ahead);depth>0&&(this.state.focal_point=add(this.state.position,ahead,depth))}shift(by){this.state.focal_point=
+add(this.state.focal_point,by),this.state.position=add(this.state.position,by)}};function copyOf(state){let{position,focal_point:focus,
+up}=state;return{...state,position:[...position],focal_point:[...focus],up:[...up]}}function fitted(geometry,limits,positions2,aspect){
+let{center,extent,planar,frame}=geometry,half=tangent(limits.view_angle),back=planar?fromFrame(frame,[0,0,1]):unit([1,1,
+1]),up=planar?fromFrame(frame,[0,1,0]):[0,0,1],right=unit(cross2(up,back)),rows=[right,cross2(back,right),back].map(row=>toFrame(
+frame,row)),low=[1/0,1/0],high=[-1/0,-1/0],distance=0;for(let n=0;n<positions2.length;n+=3){let node=[positions2[n],positions2[n+
+1],positions2[n+2]];if(!Number.isFinite(node[0]))continue;let[x,y,z]=rows.map(row=>dot2(row,node));[x,y].forEach((value,k)=>{
+low[k]=Math.min(low[k],value),high[k]=Math.max(high[k],value)});let wide=Math.max(Math.abs(x)/aspect,Math.abs(y));distance=
+Math.max(distance,z+wide/half/(1-2*limits.margin))}let tall=Math.max(high[1]-low[1],(high[0]-low[0])/aspect,1e-12*extent);
+return{position:add(center,back,planar?extent:distance),focal_point:[...center],up,parallel:planar,parallel_scale:.5*tall/
+(1-2*limits.margin),view_angle:limits.view_angle}}function widened(geometry,limits,state,positions2,aspect){let{center,extent,
+planar}=geometry,camera=copyOf(state);if(length2(subtract2(state.focal_point,center))>.001*extent)return camera;if(planar&&
+state.parallel){let[high,all]=[1e9,aspect].map(shape=>fitted(geometry,limits,positions2,shape).parallel_scale);state.parallel_scale>
+.98*high&&(camera.parallel_scale=Math.max(state.parallel_scale,all))}else if(!state.parallel&&state.view_angle>.9*limits.
+view_angle){let back=subtract2(state.position,state.focal_point);camera.position=add(state.focal_point,back,Math.max(1,limits.
+aspect/aspect))}return camera}function isSamePlace(a,b){let near=length2(subtract2(a.center,b.center))<.1*a.extent,ratio=a.
+extent/b.extent;return a.planar===b.planar&&near&&ratio>.8&&ratio<1.25}function projection(geometry,camera,anchor){let{state,
+aspect}=camera,{center,extent,frame}=geometry,[right,up,ahead]=camera.axes.map(axis=>toFrame(frame,axis)),local=point=>subtract2(
+toFrame(frame,subtract2(point,center)),anchor),focus=local(state.focal_point),middle=scale2(anchor,-1),radius=.51*extent,
+m=new Array(16).fill(0),half=state.parallel?state.parallel_scale:tangent(state.view_angle);if([right.map(c=>c/half/aspect),
+up.map(c=>c/half)].forEach((row,k)=>{for(let n=0;n<3;n+=1)m[4*n+k]=row[n];m[12+k]=-dot2(row,focus)}),state.parallel){for(let n=0;n<
+3;n+=1)m[4*n+2]=ahead[n]/radius;return m[14]=-dot2(ahead,middle)/radius,m[15]=1,m}let eye=local(state.position),depth=dot2(
+subtract2(middle,eye),ahead),far=Math.max(depth+radius,.001*radius),near=Math.max(depth-radius,.001*far),a=(far+near)/(far-
+near),b=-2*far*near/(far-near);for(let n=0;n<3;n+=1)m[4*n+2]=ahead[n]*a,m[4*n+3]=ahead[n];return m[15]=-dot2(ahead,eye),
+m[14]=m[15]*a+b,m}function atPixel(matrix,[x,y],[width,height]){let m=[...matrix];for(let n=0;n<4;n+=1)m[4*n]=(m[4*n]-x*
+m[4*n+3])*width,m[4*n+1]=(m[4*n+1]-y*m[4*n+3])*height;return m}var PIXEL_COST=8,DRAFT_SAMPLES=9,COARSEST_SCALE=.2,DRAFT_SPACING=1.4,FEWEST_ROWS=4,FIRST_PRICE_MS=4e-5,CARD_PRICE_MS=2e-6;
+function quality(price,fixed,pixels,samples,budget){let room=Math.max(budget-fixed,2)/price;if(pixels*(samples+PIXEL_COST)<=
+room)return{scale:1,samples};let fewer=Math.min(DRAFT_SAMPLES,samples),scale3=Math.sqrt(room/(fewer+PIXEL_COST)/pixels);
+return scale3<1?{scale:Math.max(scale3,COARSEST_SCALE),samples:fewer}:{scale:1,samples:clamp(Math.floor(room/pixels-PIXEL_COST),
+fewer,samples)}}function rowsIn(budget,price,fixed,width,samples){let row=price*width*(samples+PIXEL_COST);return Math.max(
+Math.floor(Math.max(budget-fixed,fixed)/row),FEWEST_ROWS)}function motionFactor(samples){return(2*samples+PIXEL_COST)/(samples+
+PIXEL_COST)}function learnedPrice(price,spent,fixed,pixels,samples,factor){let latest=Math.max(spent-fixed,.05)/(pixels*
+(samples+PIXEL_COST)*factor);return price+(latest-price)*(latest>price?.7:.3)}function draftUniforms(settings,samples,density){
+let[grain,spacing,all]=[settings.grain,settings.spacing,settings.samples].map(Number),drawn=Math.max(grain*density,Math.
+min(grain,1)),stretched=all*spacing*grain*density/(samples*drawn);return{u_grain:drawn,u_spacing:clamp(stretched,.1,Math.
+max(DRAFT_SPACING,spacing))}}var PREAMBLE=`#version 300 es
+precision highp float;
+precision highp int;
+`,ATTRIBUTES=["flowtexPosition","flowtexCoordinate","flowtexNormal","flowtexNoise","flowtexScalar"],SAMPLERS=["u_slices",
+"u_slicesNext","u_noiseImage","u_stepImage","u_cmap"],Programs=class{graphics;entries=new Map;parallel=null;constructor(graphics){
+this.graphics=graphics}findFeatures(){this.parallel=this.graphics.context.getExtension("KHR_parallel_shader_compile")}[Symbol.
+iterator](){return this.entries.values()}clear(){this.entries.clear()}dispose(){for(let entry of this){for(let shader of entry.
+shaders)this.graphics.free("Shader",shader);this.graphics.free("Program",entry.program)}this.clear()}get(vertex,fragment){
+let key=`${vertex}\0${fragment}`,entry=this.entries.get(key);return entry||this.entries.set(key,entry=this.build(vertex,
+fragment)),!entry.ready&&!entry.error&&this.finish(entry),entry}build(vertex,fragment){let{graphics}=this,gl=graphics.context,
+program=graphics.counted(gl.createProgram()),kinds=[gl.VERTEX_SHADER,gl.FRAGMENT_SHADER],shaders=[vertex,fragment].map((source,n)=>{
+let shader=graphics.counted(gl.createShader(kinds[n]));return gl.shaderSource(shader,source.startsWith("#version")?source:
+PREAMBLE+source),gl.compileShader(shader),gl.attachShader(program,shader),shader});return ATTRIBUTES.forEach((name,n)=>gl.
+bindAttribLocation(program,n,name)),gl.linkProgram(program),{program,shaders,uniforms:new Map,...{ready:!1,error:"",warm:!1,
+price:FIRST_PRICE_MS}}}finish(entry){let gl=this.graphics.context,{program}=entry,done=this.parallel?.COMPLETION_STATUS_KHR;
+if(done&&!gl.getProgramParameter(program,done))return;if(!gl.getProgramParameter(program,gl.LINK_STATUS)){if(gl.isContextLost())
+return;let logs=entry.shaders.map(shader=>gl.getShaderInfoLog(shader)??"");entry.error=[...logs,gl.getProgramInfoLog(program)??
+""].filter(Boolean).join(`
+`),entry.error||="the driver gave no reason";return}for(let shader of entry.shaders)this.graphics.free("Shader",shader);
+entry.shaders=[];let count=gl.getProgramParameter(program,gl.ACTIVE_UNIFORMS);for(let n=0;n<count;n+=1){let info=gl.getActiveUniform(
+program,n),location=info&&gl.getUniformLocation(program,info.name);!info||!location||entry.uniforms.set(info.name.replace(
+/\[0\]$/,""),{location,type:info.type})}gl.useProgram(program),SAMPLERS.forEach((name,n)=>{let sampler=entry.uniforms.get(
+name);sampler&&gl.uniform1i(sampler.location,n)}),entry.ready=!0}use(entry,values){let gl=this.graphics.context;gl.useProgram(
+entry.program);for(let[name,value]of Object.entries(values)){let uniform=entry.uniforms.get(name);if(!uniform)continue;let{
+location,type}=uniform,list=typeof value=="object"?value:[Number(value)],numbers=list;type===gl.FLOAT?gl.uniform1fv(location,
+numbers):type===gl.FLOAT_VEC2?gl.uniform2fv(location,numbers):type===gl.FLOAT_VEC3?gl.uniform3fv(location,numbers):type===
+gl.FLOAT_VEC4?gl.uniform4fv(location,numbers):type===gl.FLOAT_MAT4?gl.uniformMatrix4fv(location,!1,numbers):gl.uniform1i(
+location,list[0])}}};var OUTLINE_SAMPLES=4,FRAME_MS=45,SHARED=Symbol.for("flowtex.gl/3"),Graphics=class{canvas=document.createElement("canvas");gl;programs;users=new Set;waiting=new Set;common=new Map;stock=new Map;objects=0;isLost=!1;restorations=0;floats=!1;scheduled=0;picker=null;smooth=null;constructor(){
+this.canvas.width=this.canvas.height=16,this.gl=this.canvas.getContext("webgl2",{alpha:!0,antialias:!1,powerPreference:"\
+high-performance"}),this.programs=new Programs(this),this.findFeatures(),this.canvas.addEventListener("webglcontextlost",
+event=>{event.preventDefault(),this.isLost=!0,this.objects=0,this.programs.clear(),this.common.clear(),this.picker=this.
+smooth=null;for(let user of this.users)user.lost()}),this.canvas.addEventListener("webglcontextrestored",()=>{this.isLost=
+!1,this.restorations+=1,this.findFeatures();for(let user of this.users)user.restored()})}findFeatures(){let{gl}=this;if(!gl)
+return;let extensions=["EXT_color_buffer_float","EXT_color_buffer_half_float"];this.floats=extensions.some(name=>gl.getExtension(
+name)!==null),this.programs.findFeatures()}get context(){if(!this.gl)throw new Error("there is no WebGL2");return this.gl}enter(user){
+this.users.add(user)}leave(user){if(this.users.delete(user),this.waiting.delete(user),!this.users.size){cancelAnimationFrame(
+this.scheduled),this.scheduled=0,this.programs.dispose();for(let target of[this.picker,this.smooth])target&&this.freeTarget(
+target);this.picker=this.smooth=null,this.canvas.width=this.canvas.height=16}}request(user){this.waiting.add(user),this.
+scheduled||=requestAnimationFrame(now=>this.run(now))}run(now){this.scheduled=0;let until=performance.now()+FRAME_MS;for(let user of[
+...this.waiting])if(this.waiting.delete(user),user.frame(now,until),performance.now()>until)break;this.waiting.size&&(this.
+scheduled||=requestAnimationFrame(then=>this.run(then)))}counted(object){if(object===null)throw new Error("the graphics \
+card has no memory left, or the context is lost");return this.objects+=1,object}free(kind,object){if(object===null||this.
+isLost||!this.gl)return;this.objects-=1,this.gl[`delete${kind}`](object)}hold(part){if(!part.digest)return part;let entry=this.
+stock.get(part.digest);return entry?entry.users+=1:this.stock.set(part.digest,{part,users:1}),entry?.part??part}release(part){
+let entry=part?.digest?this.stock.get(part.digest):void 0;!part?.digest||!entry||(entry.users-=1,entry.users||this.stock.
+delete(part.digest))}reserve(width,height){this.canvas.width<width&&(this.canvas.width=width),this.canvas.height<height&&
+(this.canvas.height=height)}settle(){let gl=this.context;gl.readPixels(0,0,1,1,gl.RGBA,gl.UNSIGNED_BYTE,new Uint8Array(4))}target(format,width,height,samples){
+let gl=this.context,frame=this.counted(gl.createFramebuffer());gl.bindFramebuffer(gl.FRAMEBUFFER,frame);let buffers=[[format,
+gl.COLOR_ATTACHMENT0],[gl.DEPTH_COMPONENT24,gl.DEPTH_ATTACHMENT]].map(([kind,attachment])=>{let buffer=this.counted(gl.createRenderbuffer());
+return gl.bindRenderbuffer(gl.RENDERBUFFER,buffer),gl.renderbufferStorageMultisample(gl.RENDERBUFFER,samples,kind,width,
+height),gl.framebufferRenderbuffer(gl.FRAMEBUFFER,attachment,gl.RENDERBUFFER,buffer),buffer});return{frame,buffers}}freeTarget(target){
+this.free("Framebuffer",target.frame);for(let buffer of target.buffers)this.free("Renderbuffer",buffer)}bindSmooth(width,rows){
+let gl=this.context,old=this.smooth,target=old;if(!old||old.width<width||old.height<rows){let size={width:Math.max(width,
+old?.width??0),height:Math.max(rows,old?.height??0)};old&&this.freeTarget(old),target={...this.target(gl.RGBA8,size.width,
+size.height,OUTLINE_SAMPLES),...size},this.smooth=target}gl.bindFramebuffer(gl.FRAMEBUFFER,target?.frame??null)}copySmooth(width,rows){
+let gl=this.context;gl.bindFramebuffer(gl.READ_FRAMEBUFFER,this.smooth?.frame??null),gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER,
+null),gl.disable(gl.SCISSOR_TEST),gl.blitFramebuffer(0,0,width,rows,0,0,width,rows,gl.COLOR_BUFFER_BIT,gl.NEAREST),gl.bindFramebuffer(
+gl.FRAMEBUFFER,null)}pixel(draw){let gl=this.context;this.picker??=this.target(gl.RGBA32UI,1,1,0),gl.bindFramebuffer(gl.
+FRAMEBUFFER,this.picker.frame),gl.viewport(0,0,1,1),gl.disable(gl.SCISSOR_TEST),gl.enable(gl.DEPTH_TEST),gl.clearBufferuiv(
+gl.COLOR,0,[0,0,0,0]),gl.clear(gl.DEPTH_BUFFER_BIT),draw();let bits=new Uint32Array(4);return gl.readPixels(0,0,1,1,gl.RGBA_INTEGER,
+gl.UNSIGNED_INT,bits),gl.bindFramebuffer(gl.FRAMEBUFFER,null),bits}};function sharedGraphics(){let page=globalThis;return page[SHARED]??=
+new Graphics}var Lifetime=class{controller=new AbortController;observers=new Set;timers=new Set;globalListeners=0;get isOver(){return this.
+controller.signal.aborted}listen(target,kind,call,options={}){(target===document||target===window)&&(this.globalListeners+=
+1);let{signal}=this.controller;target.addEventListener(kind,call,{...options,signal})}later(call,delay){let timer=setTimeout(
+()=>{this.timers.delete(timer),call()},delay);return this.timers.add(timer),timer}cancel(timer){timer!==null&&(clearTimeout(
+timer),this.timers.delete(timer))}observe(observer,element){observer.observe(element),this.observers.add(observer)}stats(){
+let{globalListeners:listeners,observers,timers}=this;return{listeners,observers:observers.size,timers:timers.size}}end(){
+this.controller.abort(),this.globalListeners=0;for(let observer of this.observers)observer.disconnect();this.observers.clear();
+for(let timer of this.timers)clearTimeout(timer);this.timers.clear()}};var MOST_STOPS=1e5,MOST_WHOLE_STOPS=2e4,LOGARITHMIC_RATIO=60,SLIDER_STOPS=400,IN_BAR=["lod","show_level"];function hasStreaming(header){
+return header.slices.steps===1&&!header.paper&&!isSignFree(header)}function isUseful(row,header,rebuild){let{paper,slices}=header;
+switch(row.name){case"motion":case"speed":case"speed_in":case"period":return hasStreaming(header);case"grain":case"fixed\
+_grain":return!paper;case"two_sided":return slices.sides===2;case"seed":return!paper||rebuild&&!paper.picture;case"resol\
+ution":return!paper||rebuild;case"tiles":return!!paper?.picture&&(header.settings.noise==="image"||rebuild);case"noise_c\
+orrection":return!!paper&&rebuild;case"parameter":return slices.steps===1&&rebuild;default:return!IN_BAR.includes(row.name)&&
+(row.affects==="uniform"||rebuild)}}var Controls=class{element=dom("div",{class:"settings glass",hidden:"","aria-label":"\
+Settings"});viewer;controls=new Map;constructor(viewer){this.viewer=viewer}build(header){this.controls.clear(),this.element.
+replaceChildren();let rebuild=this.viewer.options.rebuild??!1;for(let row of header.table.filter(each=>isUseful(each,header,
+rebuild))){let control=this.control(row);this.controls.set(row.name,control);let{input,output}=control,name=dom("span",{
+class:"name"},[row.label]),attributes={class:"row",title:row.text,"data-setting":row.name},line=dom("label",attributes,[
+name,...output?[output]:[],input]);line.classList.toggle("ranged",output!==void 0),this.element.append(line)}}update(){let{
+settings}=this.viewer;for(let[name,{show}]of this.controls)name in settings&&show(settings[name])}control(row){if(row.kind===
+"bool")return this.switch(row);if(row.choices.length)return this.menu(row);let range=(row.high??1)-(row.low??0);return range>
+MOST_STOPS||row.kind==="int"&&range>MOST_WHOLE_STOPS?this.numberField(row):this.slider(row)}listen(input,kind,call){this.
+viewer.lifetime.listen(input,kind,call)}switch({name}){let input=dom("input",{type:"checkbox",role:"switch"});return this.
+listen(input,"change",()=>this.viewer.choose(name,input.checked)),{input,show:value=>{input.checked=!!value}}}menu({name,
+choices}){let options=choices.map(choice=>dom("option",{value:choice},[choice])),input=dom("select",{},options);return this.
+listen(input,"change",()=>this.viewer.choose(name,input.value)),{input,show:value=>{input.value=String(value)}}}numberField({
+name,kind,low,high}){let[min,max]=[low??0,high??1],step=kind==="int"?"1":"any",input=dom("input",{type:"number",min:String(
+min),max:String(max),step});return this.listen(input,"change",()=>{let{valueAsNumber:value}=input;Number.isFinite(value)&&
+this.viewer.choose(name,clamp(value,min,max))}),{input,show:value=>{input.value=String(value)}}}slider(row){let{toSlider,
+fromSlider,min,max,step}=scaleOf(row),range={min:String(min),max:String(max),step:String(step)},input=dom("input",{type:"\
+range",...range}),output=dom("output"),value=()=>fromSlider(Number(input.value));this.listen(input,"input",()=>{output.textContent=
+numberText(value())});let kind=row.affects==="uniform"?"input":"change";return this.listen(input,kind,()=>this.viewer.choose(
+row.name,value())),{input,output,show:shown=>{input.value=String(toSlider(Number(shown))),output.textContent=numberText(
+Number(shown))}}}};function scaleOf(row){let[low,high]=[row.low??0,row.high??1],whole=row.kind==="int",even=!(low>0&&high/
+low>LOGARITHMIC_RATIO),toSlider=value=>even?value:Math.log2(value),fromSlider=place=>{let value=even?place:2**place;return whole?
+Math.round(value):Number(clamp(value,low,high).toPrecision(3))},[min,max]=[toSlider(low),toSlider(high)];return{toSlider,
+fromSlider,min,max,step:even&&whole?1:(max-min)/SLIDER_STOPS}}var CAMERA_KEYS={ArrowLeft:"left",ArrowRight:"right",ArrowUp:"up",ArrowDown:"down","+":"closer","=":"closer","-":"farthe\
+r",_:"farther",0:"whole"},PLAY_KEY=" ",FULLSCREEN_KEY="f",CLOSE_KEY="Escape",DIRECTIONS={left:[-1,0],right:[1,0],up:[0,1],
+down:[0,-1]};function hasModifier(event){return event.ctrlKey||event.metaKey||event.altKey}function toggleFullscreen(element){
+document.fullscreenElement?document.exitFullscreen():element.requestFullscreen?.().catch(()=>{})}var STOPS=33,COLOURS=256,Legend=class{element=dom("div",{class:"legend glass",hidden:""});mark=dom("i",{hidden:""});show(header,settings,map){
+let{name,low,high,unit:unit2,bar}=header.scalars;if(this.element.hidden=name===null||!bar||!map||!!settings.show_level,this.
+element.hidden||!map)return;let stops=Array.from({length:STOPS},(_,n)=>{let first=4*Math.round(n/(STOPS-1)*(COLOURS-1));
+return`rgb(${map[first]} ${map[first+1]} ${map[first+2]})`}),ramp=dom("div",{class:"ramp"},[this.mark]);ramp.style.background=
+`linear-gradient(90deg, ${stops.join(", ")})`,this.mark.hidden=!0;let ends=[low,high].map(value=>dom("span",{},[numberText(
+value)]));this.element.replaceChildren(dom("div",{class:"name"},[unit2?`${name} (${unit2})`:String(name)]),ramp,dom("div",
+{class:"ends"},ends))}point(header,value=NaN){if(this.mark.hidden=!header||!Number.isFinite(value),!header||this.mark.hidden)
+return;let{low,high}=header.scalars;this.mark.style.left=`${100*clamp((value-low)/(high-low||1),0,1)}%`}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */
+:host {
+  --ink: var(--jp-ui-font-color1, #1b2430);
+  --quiet: var(--jp-ui-font-color2, #566373);
+  --ground: var(--jp-layout-color1, #ffffff);
+  --edge: color-mix(in srgb, var(--ink) 14%, transparent);
+  --hover: color-mix(in srgb, var(--ink) 9%, transparent);
+  --accent: var(--jp-brand-color1, #0f766e);
+  --shadow: 0 4px 18px rgb(16 24 40 / 0.16);
+  --glass: color-mix(in srgb, var(--ground) 78%, transparent);
+  color-scheme: light dark;
+  position: relative;
+  display: block;
+  box-sizing: border-box;
+  width: 100%;
+  height: 100%;
+  overflow: hidden;
+  container-type: inline-size;
+  color: var(--ink);
+  background: var(--ground);
+  font: 12px/1.35 system-ui, -apple-system, "Segoe UI", Roboto, "Helvetica Neue", sans-serif;
+  outline: none;
+  user-select: none;
+  -webkit-user-select: none;
 }
-
-/** Unpack the page, and take the preview away once the client has drawn. */
-async function openPage() {
-  const place = /** @type {HTMLElement} */ (document.getElementById("flowtex"));
-  const said = /** @type {HTMLElement} */ (document.getElementById("said"));
-  try {
-    const header = JSON.parse(document.getElementById("header")?.textContent ?? "");
-    /** @type {Record<string, {dtype: string, shape: number[], data: Uint8Array, digest: string}>} */
-    const parts = {};
-    for (const element of document.querySelectorAll("script[data-part]")) {
-      if (!(element instanceof HTMLElement)) continue;
-      const { part = "", same } = element.dataset;
-      // What two views, or two times, have in common lies in the page once.
-      parts[part] = same ? parts[same] : { ...(await pagePart(element)), digest: part };
-    }
-    const look = () => {
-      // The client says why in its own place, which the preview covers.
-      said.hidden = !place.querySelector('[data-failed="true"]');
-      said.textContent = "This browser cannot draw the flow, for want of WebGL2; here is a picture of it.";
-      if (place.querySelector('[data-sharp="false"]')) return;
-      watch.disconnect();
-      document.getElementById("preview")?.remove();
-    };
-    const watch = new MutationObserver(look);
-    watch.observe(place, {
-      subtree: true, childList: true, attributeFilter: ["data-sharp", "data-failed"],
-    });
-    mountPage(place, header, parts);
-  } catch (error) {
-    said.hidden = false;
-    said.textContent = `The flow cannot be drawn here: ${error instanceof Error ? error.message : error}`;
-    throw error;
+@media (prefers-color-scheme: dark) {
+  :host {
+    --ink: var(--jp-ui-font-color1, #e8edf2);
+    --quiet: var(--jp-ui-font-color2, #a3b0bd);
+    --ground: var(--jp-layout-color1, #151a21);
+    --accent: var(--jp-brand-color1, #4fd1c5);
+    --shadow: 0 4px 18px rgb(0 0 0 / 0.35);
   }
 }
-
-openPage();
+:host(:focus-visible) { box-shadow: inset 0 0 0 2px var(--accent); }
+:host(:fullscreen) { width: 100vw !important; height: 100vh !important; }
+* { box-sizing: border-box; }
+[hidden] { display: none !important; }
+.picture {
+  position: absolute; inset: 0; width: 100%; height: 100%;
+  cursor: grab; touch-action: none; display: block;
+}
+:host(.flowtex-guarded:not(.flowtex-held, :fullscreen)) .picture { touch-action: pan-y; }
+:host(.flowtex-grabbing) .picture { cursor: grabbing; }
+.glass {
+  background: var(--glass);
+  border: 1px solid var(--edge);
+  border-radius: 10px;
+  box-shadow: var(--shadow);
+  backdrop-filter: blur(12px) saturate(1.3);
+  -webkit-backdrop-filter: blur(12px) saturate(1.3);
+}
+.head {
+  position: absolute; left: 10px; top: 10px; max-width: calc(100% - 20px);
+  padding: 5px 10px; display: flex; gap: 10px; align-items: baseline;
+  pointer-events: none; white-space: nowrap; overflow: hidden;
+}
+.title { font-weight: 600; overflow: hidden; text-overflow: ellipsis; }
+.title::first-letter { text-transform: uppercase; }
+.readout { display: flex; gap: 8px; color: var(--quiet); font-variant-numeric: tabular-nums; }
+.readout:empty { display: none; }
+.head:not(:has(.title:not([hidden]), .readout:not(:empty))) { display: none; }
+.readout b { color: var(--ink); font-weight: 500; }
+.legend {
+  position: absolute; right: 10px; top: 10px; width: 150px; padding: 5px 10px 6px;
+  font-size: 11px; pointer-events: none;
+}
+.legend .name { overflow: hidden; text-overflow: ellipsis; white-space: nowrap; margin-bottom: 3px; }
+.ramp { position: relative; height: 8px; border-radius: 4px; box-shadow: inset 0 0 0 1px var(--edge); }
+.ramp i {
+  position: absolute; top: -2px; bottom: -2px; width: 2px; margin-left: -1px; border-radius: 1px;
+  background: var(--ink); box-shadow: 0 0 0 1px var(--ground);
+}
+.ends {
+  display: flex; justify-content: space-between; margin-top: 2px;
+  color: var(--quiet); font-variant-numeric: tabular-nums;
+}
+.bar {
+  position: absolute; left: 10px; right: 10px; bottom: 10px; width: fit-content; margin: 0 auto;
+  display: flex; align-items: center; gap: 1px; padding: 3px;
+}
+button {
+  appearance: none; flex: none; display: grid; place-items: center; width: 30px; height: 30px;
+  margin: 0; padding: 0; border: 0; border-radius: 7px; background: none; color: var(--ink);
+  cursor: pointer; transition: background-color 0.12s, color 0.12s;
+}
+button:hover { background: var(--hover); }
+button:focus-visible, input:focus-visible, select:focus-visible {
+  outline: 2px solid var(--accent); outline-offset: -1px;
+}
+button[aria-pressed="true"] { color: var(--accent); background: color-mix(in srgb, var(--accent) 14%, transparent); }
+svg { width: 18px; height: 18px; pointer-events: none; }
+path {
+  fill: none; stroke: currentColor; stroke-width: 1.7; stroke-linecap: round; stroke-linejoin: round;
+}
+path.solid { fill: currentColor; }
+.handle {
+  position: absolute; left: 50%; bottom: 8px; margin-left: -17px; width: 34px; height: 20px; opacity: 0.35;
+}
+:host(:hover) .handle, .handle:focus-visible { opacity: 1; }
+.handle:hover { background: var(--glass); }
+.track { display: flex; align-items: center; gap: 8px; min-width: 90px; width: 260px; flex: 0 1 auto; padding: 0 6px 0 4\
+px; }
+.time { flex: none; min-width: 44px; color: var(--quiet); font-variant-numeric: tabular-nums; white-space: nowrap; }
+input[type="range"] {
+  appearance: none; -webkit-appearance: none; flex: 1; min-width: 0; width: 100%; height: 18px;
+  margin: 0; background: none; cursor: pointer; accent-color: var(--accent);
+}
+input[type="range"]::-webkit-slider-runnable-track { height: 4px; border-radius: 2px; background: var(--edge); }
+input[type="range"]::-moz-range-track { height: 4px; border-radius: 2px; background: var(--edge); }
+input[type="range"]::-webkit-slider-thumb {
+  -webkit-appearance: none; width: 14px; height: 14px; margin-top: -5px; border: 0; border-radius: 50%;
+  background: var(--accent); box-shadow: 0 1px 3px rgb(0 0 0 / 0.3);
+}
+input[type="range"]::-moz-range-thumb {
+  width: 14px; height: 14px; border: 0; border-radius: 50%; background: var(--accent);
+}
+.settings {
+  position: absolute; right: 10px; bottom: 58px; width: 248px; max-width: calc(100% - 20px);
+  max-height: calc(100% - 68px); overflow-y: auto; padding: 6px 12px; scrollbar-width: thin;
+  overscroll-behavior: contain; --glass: color-mix(in srgb, var(--ground) 90%, transparent);
+  background: var(--glass);
+}
+:host(.flowtex-open) .legend { display: none; }
+.row {
+  display: grid; grid-template-columns: 1fr auto; align-items: center; column-gap: 10px;
+  min-height: 30px; padding: 2px 0;
+}
+.row.ranged input { grid-column: 1 / -1; }
+.row output { color: var(--quiet); font-variant-numeric: tabular-nums; }
+.row + .row { border-top: 1px solid var(--edge); }
+select, input[type="number"] {
+  font: inherit; color: var(--ink); background: var(--hover); border: 0; border-radius: 6px;
+  padding: 3px 6px; width: 110px; height: 24px;
+}
+option { color: var(--ink); background: var(--ground); }
+input[role="switch"] {
+  appearance: none; -webkit-appearance: none; position: relative; width: 30px; height: 18px; margin: 0;
+  border-radius: 9px; background: var(--edge); cursor: pointer; transition: background-color 0.15s;
+}
+input[role="switch"]::after {
+  content: ""; position: absolute; left: 2px; top: 2px; width: 14px; height: 14px; border-radius: 50%;
+  background: #fff; box-shadow: 0 1px 3px rgb(0 0 0 / 0.35); transition: transform 0.15s;
+}
+input[role="switch"]:checked { background: var(--accent); }
+input[role="switch"]:checked::after { transform: translateX(12px); }
+.busy {
+  position: absolute; left: 50%; top: 50%; transform: translate(-50%, -50%); padding: 5px 12px;
+  border-radius: 10px; background: var(--glass); color: var(--quiet); pointer-events: none;
+}
+.hint {
+  position: absolute; left: 50%; bottom: 56px; transform: translateX(-50%); padding: 4px 12px;
+  color: var(--quiet); pointer-events: none; white-space: nowrap; max-width: calc(100% - 20px);
+  overflow: hidden; text-overflow: ellipsis;
+}
+.note {
+  position: absolute; inset: 0; display: flex; flex-direction: column; align-items: center;
+  justify-content: center; gap: 6px; padding: 24px; text-align: center; background: var(--ground);
+  overflow: auto; user-select: text; -webkit-user-select: text;
+}
+.note pre {
+  margin: 0; max-width: 100%; white-space: pre-wrap; color: var(--quiet);
+  font: 11px/1.4 ui-monospace, Menlo, Consolas, monospace; text-align: left;
+}
+@container (max-width: 460px) {
+  .bar { flex-wrap: wrap; justify-content: center; }
+  .track { order: -1; flex: 1 1 100%; width: auto; }
+  .legend { width: 104px; padding: 4px 8px; }
+  .settings { bottom: 80px; max-height: calc(100% - 90px); }
+  .title { max-width: 110px; }
+  .readout { flex-direction: column; gap: 0; }
+  .head { flex-direction: column; gap: 0; max-width: calc(100% - 134px); }
+}
+@container (max-width: 220px) {
+  .legend { display: none; }
+}
+@container (max-width: 330px) {
+  button { width: 27px; height: 27px; }
+}
+:host(.flowtex-bare) :is(.head, .legend, .settings, .bar, .handle) { display: none; }
+`;var HINT_MS=1600,LATE_MS=4e3,SAVED_MS=5e3,FEWEST_DIGITS=4,MOST_DIGITS=14,FORBIDDEN=/[\\/:*?"<>|]+/g,sheet=null;function styleSheet(){
+return sheet||(sheet=new CSSStyleSheet,sheet.replaceSync(styles_default)),sheet}var Panel=class{viewer;legend=new Legend;controls;isShown;isOpen=!1;showsLevels=!1;title=dom(
+"div",{class:"title"});readout=dom("div",{class:"readout",role:"status"});head;note=dom("div",{class:"note",hidden:"",role:"\
+alert"});busy=dom("div",{class:"busy",hidden:""},["waiting for data …"]);hintBox;bar;handle;playButton;toggles;gear;slider;timeText=dom(
+"span",{class:"time"});track;hintTimer=null;lateTimer=null;constructor(viewer){this.viewer=viewer;let{root,canvas,options}=viewer;
+this.isShown=options.controls??!0,this.controls=new Controls(viewer),this.head=dom("div",{class:"head glass",hidden:""},
+[this.title,this.readout]);let hint=`Click, or hold ${/Mac|iP(hone|ad)/.test(navigator.platform)?"⌘":"Ctrl"}, to zoom \
+with the wheel`;this.hintBox=dom("div",{class:"hint glass",hidden:""},[hint]),this.handle=this.button("show","Show the b\
+ar (h)",()=>this.toggle()),this.handle.classList.add("handle","glass"),this.playButton=this.button("play","Play (space)",
+()=>viewer.togglePlaying());let range={min:"0",max:"1",step:"any","aria-label":"Time"};this.slider=dom("input",{type:"ra\
+nge",...range}),viewer.lifetime.listen(this.slider,"input",()=>this.scrub(Number(this.slider.value))),this.track=dom("di\
+v",{class:"track"},[this.slider,this.timeText]);let toggle=name=>()=>viewer.choose(name,!viewer.settings[name]);this.toggles=
+{lod:this.button("lod","Level of detail",toggle("lod")),show_level:this.button("levels","Show the levels of detail",toggle(
+"show_level"))},this.gear=this.button("settings","Settings",()=>this.fold(!this.isOpen)),this.bar=this.makeBar(),canvas.
+className="picture",root.classList.toggle("flowtex-bare",options.bare??!1);let shadow=root.attachShadow({mode:"open"});shadow.
+adoptedStyleSheets=[styleSheet()];let{legend,controls,head,bar,handle,busy,hintBox,note}=this;shadow.append(canvas,head,
+legend.element,controls.element),shadow.append(bar,handle,busy,hintBox,note),this.arrange()}button(name,title,press){let button=dom(
+"button",{type:"button",title,"aria-label":title,"data-name":name},[icon(name)]);return this.viewer.lifetime.listen(button,
+"click",press),button}makeBar(){let{viewer}=this;return dom("div",{class:"bar glass",role:"toolbar","aria-label":"Contro\
+ls"},[this.playButton,this.track,this.button("home","Show everything (0)",()=>viewer.reset()),this.toggles.lod,this.toggles.
+show_level,this.gear,this.button("save","Save the picture",()=>{this.save()}),this.button("full","Fill the screen (f)",()=>this.
+fullscreen()),this.button("hide","Hide the bar (h)",()=>this.toggle())])}build(){let{header}=this.viewer;header&&(this.note.
+hidden=!0,this.controls.build(header),this.showLegend(),this.update(),this.arrange())}update(){let{header,settings,playing,
+varies}=this.viewer;this.name(),this.controls.update(),this.showsLevels!==!!settings.show_level&&this.showLegend();for(let[
+name,button]of Object.entries(this.toggles))button.setAttribute("aria-pressed",String(!!settings[name]));let title=playing?
+"Pause (space)":"Play (space)";this.playButton.replaceChildren(icon(playing?"pause":"play")),this.playButton.title=title,
+this.playButton.setAttribute("aria-label",title);let streams=header!==null&&hasStreaming(header);this.playButton.hidden=
+!varies&&!streams,this.track.hidden=!varies&&!(streams&&settings.motion!=="off"),this.tick()}name(){let{header,settings,
+root}=this.viewer,title=(header?.differs??[]).filter(name=>name in settings).map(name=>{let label=header?.table.find(row=>row.
+name===name)?.label??name,value=settings[name];return`${label}: ${typeof value=="boolean"?value?"on":"off":value}`}).join(
+", ")||header?.name||"";this.title.textContent=title,this.title.hidden=!title,root.setAttribute("aria-label",title?`Flow\
+ texture: ${title}`:"Flow texture")}tick(){let{header,varies,player,settings}=this.viewer;if(!header||this.track.hidden)
+return;let{first,last,now}=player.range(settings);this.slider.value=String((now-first)/(last-first||1));let unit2=header.
+slices.timeUnit,text=varies?`${numberText(now)} ${unit2}`:`${now.toFixed(1)} s`;this.timeText.textContent!==text&&(this.
+timeText.textContent=text)}scrub(share){let{viewer}=this,{first,last}=viewer.player.range(viewer.settings),value=first+share*
+(last-first);viewer.stir(),viewer.varies?(viewer.setTime(value),viewer.options.onTime?.(viewer.time)):(viewer.setClock(value),
+viewer.options.onClock?.(viewer.clock))}showLegend(){let{header,settings,parts}=this.viewer;this.showsLevels=!!settings.
+show_level,header&&this.legend.show(header,settings,parts.get("cmap")?.data)}read(point){let{header}=this.viewer;if(this.
+readout.replaceChildren(),this.legend.point(null),!point||!header)return;let text=this.positionText(point.position,header);
+this.readout.append(dom("span",{},[text]));for(let[name,value]of Object.entries(point.values)){let{unit:unit2}=header.scalars;
+this.readout.append(dom("b",{},[`${name} ${numberText(value)}${unit2?` ${unit2}`:""}`])),this.legend.point(header,value)}}positionText(position,{
+geometry}){let{extent,planar,center,frame}=geometry,zoom=Math.max(this.viewer.camera?.zoom??1,1),digits=Math.min(Math.ceil(
+FEWEST_DIGITS+Math.log10(zoom)),MOST_DIGITS),isInPlane=planar&&Math.abs(position[2]-center[2])<1e-12*extent&&Math.abs(frame[8])>
+.999;return`(${position.slice(0,isInPlane?2:3).map(x=>{let value=Math.abs(x)<1e-9*extent?0:x;return digits>5?String(Number(
+value.toPrecision(digits))):numberText(value)}).join(", ")})`}fold(open=!1){this.isOpen=open,this.arrange()}toggle(shown=!this.
+isShown){shown!==this.isShown&&(this.isShown=shown,this.arrange(),this.viewer.options.onControls?.(shown))}arrange(){let{
+header,options,root}=this.viewer,isReady=header!==null,follows=!!options.follows;this.bar.hidden=!this.isShown||!isReady,
+this.handle.hidden=this.isShown||!isReady||follows,this.head.hidden=!(this.isShown||follows)||!isReady,this.controls.element.
+hidden=!this.isShown||!this.isOpen||!isReady,root.classList.toggle("flowtex-open",!this.controls.element.hidden),this.gear.
+setAttribute("aria-pressed",String(this.isOpen))}wait(missing){this.busy.hidden=!missing.length;let{viewer}=this;!missing.
+length||viewer.options.onNeed||this.lateTimer||(this.lateTimer=viewer.lifetime.later(()=>{this.lateTimer=null;let{lacking}=viewer;
+lacking.length&&this.fail("The scene is not complete.",`Missing: ${lacking.join(", ")}`)},LATE_MS))}hint(shown){let{lifetime}=this.
+viewer;lifetime.cancel(this.hintTimer),this.hintTimer=shown?lifetime.later(()=>this.hint(!1),HINT_MS):null,this.hintBox.
+hidden=!shown}drawn(){this.note.hidden=!0,delete this.viewer.root.dataset.failed}fail(problem,detail){this.note.replaceChildren(
+dom("strong",{},[problem]),dom("pre",{},[detail])),this.note.hidden=!1,this.busy.hidden=!0,this.viewer.root.dataset.failed=
+"true"}fullscreen(){let{root}=this.viewer;toggleFullscreen(root.closest(".flowtex-pair")??root)}async save(){let{viewer}=this,
+href=URL.createObjectURL(await pngOf(viewer.together)),name=(viewer.header?.name||"flow").replace(FORBIDDEN," ").trim();
+dom("a",{href,download:`${name}.png`}).click(),viewer.lifetime.later(()=>URL.revokeObjectURL(href),SAVED_MS)}};function triangles([rows,columns],cells){let index=new Uint32Array(6*(rows-1)*(columns-1)),n=0;for(let j=0,cell=0;j<rows-
+1;j+=1)for(let i=0;i<columns-1;i+=1,cell+=1){if(cells&&!cells[cell])continue;let corner=j*columns+i,far=corner+columns+1;
+index[n++]=corner,index[n++]=corner+1,index[n++]=far,index[n++]=corner,index[n++]=far,index[n++]=far-1}return index.subarray(
+0,n)}function positions(data,anchor){return anchor.some(Boolean)?data.map((x,n)=>x-anchor[n%3]):data}function coordinates({
+shape,rows,columns}){let result2=new Float32Array(2*shape[0]*shape[1]);for(let j=0,n=0;j<shape[0];j+=1)for(let i=0;i<shape[1];i+=
+1)result2[n++]=(i+columns.before+.5)/columns.size,result2[n++]=(j+rows.before+.5)/rows.size;return result2}function noiseCoordinates({
+alongI,alongJ}){let result2=new Float32Array(2*alongI.length*alongJ.length),n=0;for(let v2 of alongJ)for(let u of alongI)
+result2[n++]=u,result2[n++]=v2;return result2}function shares(steps,low,high,nodes){let result2=new Float32Array(2*nodes),
+span=high-low||1;return steps.forEach((values,k)=>{for(let n=0;n<nodes;n+=1){let share=(values[n]-low)/span;result2[2*n+
+k]=Number.isFinite(share)?share:-1e9}}),result2}function interpolated([rows,columns],i,j,value){let[left,low]=[Math.min(
+Math.floor(i),columns-2),Math.min(Math.floor(j),rows-2)],[a,b]=[i-left,j-low],corner=low*columns+left,[from,to]=[value(corner),
+value(corner+columns+1)];if(a>=b){let aside2=value(corner+1);return from+a*(aside2-from)+b*(to-aside2)}let aside=value(corner+
+columns);return from+b*(aside-from)+a*(to-aside)}function pickedPoint(viewer,x,y){let{header,graphics,camera,scene,shown}=viewer;if(!header||!camera||!scene||!shown||!viewer.
+canPick)return null;let program=graphics.programs.get(header.shaders.vertex,header.shaders.pick),{anchor}=viewer.view(shown,
+1),{width,height}=viewer.canvas,matrix=atPixel(projection(header.geometry,camera,anchor),[x,y],[width,height]),bits=graphics.
+pixel(()=>{graphics.programs.use(program,{u_matrix:matrix,u_between:shown[2]}),scene.draw(shown[0],shown[1],anchor,!1)});
+if(!bits[3])return null;let[u,v2]=new Float32Array(bits.buffer,0,2),{rows,columns,shape}=header.geometry,i=clamp(u*columns.
+size-.5-columns.before,0,shape[1]-1),j=clamp(v2*rows.size-.5-rows.before,0,shape[0]-1);return{position:positionAt(viewer,
+i,j,x,y),index:[i,j],values:valuesAt(viewer,i,j,shown)}}function positionAt(viewer,i,j,x,y){let{header,camera,parts}=viewer,
+nodes=parts.get("position")?.data;if(!header||!camera||!nodes)return[NaN,NaN,NaN];let{shape,frame,center}=header.geometry,
+local=[0,1,2].map(k=>interpolated(shape,i,j,n=>nodes[3*n+k])),about=add(fromFrame(frame,local),center),[start,along]=camera.
+ray(x,y),ahead=camera.axes[2],depth=dot2(subtract2(about,start),ahead)/dot2(along,ahead);return add(start,along,depth)}function valuesAt(viewer,i,j,shown){
+let{header,scene,parts}=viewer,name=header?.scalars.name??null;if(!header||!scene||name===null)return{};let[before,after]=scene.
+scalarParts(shown[0],shown[1]).map(n=>parts.get(n)?.data);if(!before||!after)return{};let value=n=>before[n]+shown[2]*(after[n]-
+before[n]);return{[name]:interpolated(header.geometry.shape,i,j,value)}}function uniforms(header,settings,view,noiseShape=null){let{geometry,slices,constants}=header,s=settings,signFree=isSignFree(
+header),finest=2**(Math.floor(Math.log2(geometry.extent))-constants.octaves),motion=motionUniforms(header,s,view),w=view.
+eye[3],eye=toFrame(geometry.frame,subtract2(view.eye,scale2(geometry.center,w))),kernel=signFree&&s.kernel==="ramp"?"han\
+n":s.kernel;return{u_eye:[...subtract2(eye,scale2(view.anchor,w)),w],u_between:view.between,u_slicesSize:[geometry.columns.
+size,geometry.rows.size],u_deepest:geometry.levels,u_lags:slices.lags,u_lagCount:slices.lags.length,u_sides:s.two_sided||
+signFree?slices.sides:1,u_unit:slices.unit,u_samples:motion.u_moving?2*s.samples-1:s.samples,u_spacing:s.spacing,u_grain:s.
+grain*view.density,u_kernel:constants.kernels.indexOf(kernel),u_lod:s.lod,u_contrast:s.contrast,u_strength:s.strength,u_seed:s.
+seed,u_showLevel:s.show_level,u_fixed:s.fixed_grain,...motion,...noiseOrigin(header,view,finest),u_noiseFinest:finest,u_texel:geometry.
+extent/s.resolution,...header.paper&&noiseShape?paperUniforms(header.paper,s,noiseShape,view.density):{}}}function motionUniforms(header,s,view){
+let{geometry,slices,constants}=header,varies=slices.steps>1,inPixels=!varies&&s.speed_in==="pixels",turns=varies?(view.time-
+slices.times[0])/(geometry.extent/slices.pace):(view.clock/s.period%1+1)%1,travel=varies?geometry.extent:s.speed*s.period,
+coarse=Math.floor(turns/constants.coarse)*constants.coarse;return{u_moving:(varies||s.motion!=="off"&&!isSignFree(header))&&
+!header.paper,u_clock:[coarse,turns-coarse],u_travel:travel*(inPixels?view.density:1),u_travelInPixels:inPixels,u_travelBySpeed:varies||
+s.motion==="speed",u_wave:constants.wave*view.density}}function noiseOrigin(header,view,finest){let{octaves,snap}=header.
+constants,{frame,center}=header.geometry,focus=toFrame(frame,subtract2(view.focus,center)),limit=2**(octaves-snap)-1,cells=2**
+snap,even=focus.map(x=>clamp(Math.round(x/finest/cells),-limit,limit)*cells),odd=even.map(x=>x/Math.SQRT2),whole=odd.map(
+x=>Math.floor(x/cells)*cells);return{u_noiseOrigin:even.map((x,k)=>x*finest-view.anchor[k]),u_noiseOriginEven:even,u_noiseOriginOdd:whole,
+u_noiseRestOdd:odd.map((x,k)=>x-whole[k])}}function paperUniforms(paper,s,noiseShape,density){let tiles=s.noise==="image"?
+s.tiles:1,[rows,columns]=noiseShape;return{u_noiseSize:paper.size.map(n=>n*density),u_noiseGrain:paper.grain,u_noiseDeviation:paper.
+deviations,u_noiseCorrected:paper.corrected,u_pictureSize:[columns*density*tiles,rows*density*tiles],u_pictureRound:[Number(
+paper.repeat[1]),Number(paper.repeat[0])],u_pictureGrey:noiseShape.length===2,u_tiles:tiles}}function momentOf(times,time){
+if(times.length<2)return[0,0,0];let step=0;for(;step<times.length-2&&times[step+1]<=time;)step+=1;let late=(time-times[step])/
+(times[step+1]-times[step]);return[step,step+1,clamp(late,0,1)]}var SERIES_STEP_S=.5,SERIES_LEAST_S=6,SERIES_MOST_S=60,LONGEST_GAP_S=.5,Player=class{time=0;clock=0;playing=!1;times=[0];lastFrame=0;hasHeader=!1;setHeader(header){
+let{times}=header.slices;(!(times.length===this.times.length&&times.every((t,n)=>t===this.times[n]))||!this.hasHeader)&&
+(this.time=header.time,this.clock=header.clock),this.hasHeader=!0,this.times=times}get varies(){return this.times.length>
+1}get span(){return[this.times[0],this.times[this.times.length-1]]}get moment(){return momentOf(this.times,this.time)}timeOf([
+before,after,between]){return this.times[before]+between*(this.times[after]-this.times[before])}seek(time){this.time=clamp(
+time,...this.span)}start(){this.playing=!0,this.lastFrame=0}range(settings){if(this.varies)return{first:this.span[0],last:this.
+span[1],now:this.time};let period=Number(settings.period);return{first:0,last:period,now:this.clock%period}}advance(now,ready){
+let passed=this.lastFrame?Math.min((now-this.lastFrame)/1e3,LONGEST_GAP_S):0;if(this.lastFrame=now,!this.varies)return this.
+clock+=passed,!0;let[first,last]=this.span,series=clamp(SERIES_STEP_S*(this.times.length-1),SERIES_LEAST_S,SERIES_MOST_S),
+next=this.time+passed*(last-first)/series,[before,after]=momentOf(this.times,Math.min(next,last));return ready([before,after])?
+(this.time=next>last?first:next,!0):!1}};var CLICK_PX=4,CLICK_MS=450,POINTED_MS=1500,HOVER_MS=90,KEY_STEP=.2,NOTCH_SIZES=[100,3,1],PINCH_PX=20,MOST_NOTCHES=4;function placeIn(element,event){
+let box=element.getBoundingClientRect();return{x:2*(event.clientX-box.left)/Math.max(box.width,1)-1,y:1-2*(event.clientY-
+box.top)/Math.max(box.height,1)}}var Pointers=class{down=new Map;viewer;isOther=!1;press={x:0,y:0,time:0,moved:!1};lastLook=0;look=null;lastPointed=-1/0;constructor(viewer){
+this.viewer=viewer;let{canvas,root,options,lifetime}=viewer;root.classList.toggle("flowtex-guarded",options.guarded??!1),
+options.guarded&&this.guard();let listen=(kind,call)=>lifetime.listen(canvas,kind,call,{passive:!1});listen("pointerdown",
+event=>this.onDown(event)),listen("pointermove",event=>this.onMove(event)),listen("pointerup",event=>this.onUp(event)),listen(
+"pointercancel",event=>this.onUp(event)),listen("pointerleave",()=>viewer.panel.read(null)),listen("contextmenu",event=>event.
+preventDefault()),listen("wheel",event=>this.onWheel(event)),listen("dblclick",event=>this.zoom(2,event)),lifetime.listen(
+root,"keydown",event=>this.onKey(event))}guard(){let{root,lifetime}=this.viewer,release=event=>{event.composedPath().includes(
+root)||this.hold(!1)};lifetime.listen(document,"pointerdown",release,{capture:!0}),lifetime.listen(document,"wheel",release,
+{capture:!0,passive:!0}),lifetime.listen(root,"focus",()=>{root.matches(":focus-visible")&&this.hold(!0)})}hold(held){this.
+viewer.root.classList.toggle("flowtex-held",held),held&&this.viewer.panel.hint(!1)}get isHeld(){let{root,options}=this.viewer;
+return!options.guarded||root.classList.contains("flowtex-held")?!0:document.fullscreenElement?.contains(root)??!1}place(event){
+return placeIn(this.viewer.canvas,event)}onDown(event){if(event.button>2)return;let{root,canvas}=this.viewer;root.focus(
+{preventScroll:!0}),event.pointerType!=="touch"&&this.hold(!0),canvas.setPointerCapture(event.pointerId),this.down.set(event.
+pointerId,this.place(event)),this.isOther=event.button===2||event.shiftKey;let{clientX:x,clientY:y,timeStamp:time}=event;
+this.press={x,y,time,moved:this.down.size>1},root.classList.add("flowtex-grabbing")}onMove(event){let{camera,panel}=this.
+viewer;if(!camera)return;let place=this.place(event),old=this.down.get(event.pointerId);if((event.movementX||event.movementY)&&
+(this.lastPointed=performance.now()),!old)return this.hover(place);if(Math.hypot(event.clientX-this.press.x,event.clientY-
+this.press.y)>CLICK_PX&&(this.press.moved=!0),!this.press.moved)return;let before=this.middle();this.down.set(event.pointerId,
+place);let now=this.middle();this.down.size>1?(camera.pan(before.x-now.x,before.y-now.y),before.apart>0&&camera.zoomBy(now.
+apart/before.apart,now.x,now.y)):camera.flat===this.isOther?camera.rotate(place.x-old.x,place.y-old.y):camera.pan(old.x-
+place.x,old.y-place.y),panel.read(null),this.viewer.moved()}middle(){let[a,b=a]=[...this.down.values()],aspect=this.viewer.
+camera?.aspect??1,apart=Math.hypot((a.x-b.x)*aspect,a.y-b.y);return{x:(a.x+b.x)/2,y:(a.y+b.y)/2,apart}}onUp(event){let place=this.
+down.get(event.pointerId);if(this.down.delete(event.pointerId),this.down.size||(this.viewer.root.classList.remove("flowt\
+ex-grabbing"),event.type!=="pointerup"))return;this.hold(!0);let isQuick=event.timeStamp-this.press.time<CLICK_MS;if(!place||
+this.press.moved||!isQuick||event.button!==0)return;let point=this.viewer.point(place.x,place.y);point&&this.viewer.options.
+onPoint?.(point),this.viewer.panel.read(point)}onWheel(event){if(!this.isHeld&&!event.ctrlKey&&!event.metaKey){performance.
+now()-this.lastPointed<POINTED_MS&&this.viewer.panel.hint(!0);return}event.preventDefault();let size=event.ctrlKey&&event.
+deltaMode===0?PINCH_PX:NOTCH_SIZES[event.deltaMode],notches=clamp(-event.deltaY/size,-MOST_NOTCHES,MOST_NOTCHES);this.zoom(
+(this.viewer.camera?.limits.wheel_zoom??1)**notches,event)}zoom(factor,event){let{x,y}=this.place(event);this.viewer.camera?.
+zoomBy(factor,x,y),this.viewer.moved()}hover(place){let{viewer}=this;viewer.lifetime.cancel(this.look);let rest=HOVER_MS-
+(performance.now()-this.lastLook),look=()=>{this.look=null,this.lastLook=performance.now(),viewer.sharp&&viewer.canPick?
+viewer.panel.read(viewer.point(place.x,place.y)):viewer.playing||this.hover(place)};this.look=viewer.lifetime.later(look,
+Math.max(rest,viewer.sharp?0:HOVER_MS))}onKey(event){let{root}=this.viewer,[target]=event.composedPath(),inside=target instanceof
+Element&&target!==root?target.tagName:"",isControl=/^(INPUT|SELECT)$/.test(inside)||inside==="BUTTON"&&event.key===PLAY_KEY;
+hasModifier(event)||isControl||!this.command(event)||(event.preventDefault(),event.stopPropagation())}command({key,shiftKey}){
+let{viewer}=this,{camera,panel,options}=viewer;if(!camera)return!1;let command=CAMERA_KEYS[key];if(command in DIRECTIONS){
+let[x,y]=DIRECTIONS[command].map(way=>way*KEY_STEP);camera.flat===shiftKey?camera.rotate(-x,-y):camera.pan(x,y),viewer.moved()}else if(command===
+"closer"||command==="farther"){let{wheel_zoom:notch}=camera.limits;camera.zoomBy(command==="closer"?notch:1/notch),viewer.
+moved()}else if(command==="whole")viewer.reset();else if(key===PLAY_KEY)viewer.togglePlaying();else if(key===FULLSCREEN_KEY)
+panel.fullscreen();else if(key==="h")(options.follows??viewer).panel.toggle();else if(key===CLOSE_KEY)panel.fold(),this.
+hold(!1);else return!1;return!0}};function reused(before,now,width,height){let size=before[0]*before[5]-before[4]*before[1],a=(now[0]*before[5]-now[4]*before[1])/
+size,b=(now[4]*before[0]-now[0]*before[4])/size,c=(now[1]*before[5]-now[5]*before[1])/size,d=(now[5]*before[0]-now[1]*before[4])/
+size,determinant=a*d-b*c,area=Math.abs(determinant);if(!(area>.3**2&&area<4**2))return null;let e=now[12]-a*before[12]-b*
+before[13],f=now[13]-c*before[12]-d*before[13],[w,h]=[width/2,height/2],matrix=[a,-c*h/w,-b*w/h,d,w*(1+e-a+b),h*(1-f+c-d)],
+isInside=([x,y])=>Math.abs((d*(x-e)-b*(y-f))/determinant)<1+1e-6&&Math.abs((a*(y-f)-c*(x-e))/determinant)<1+1e-6,covers=[
+[-1,-1],[1,-1],[-1,1],[1,1]].every(isInside),shifts=Math.abs(a-1)+Math.abs(d-1)+Math.abs(b)+Math.abs(c)<1e-6;if(shifts)for(let n of[
+4,5])matrix[n]=Math.round(matrix[n]);return{matrix,covers,shifts}}var MOVING_MS=55,MOVING_LEAST_MS=14,STRIP_MS=40,SMOOTH_ROWS=256,ProgressiveRenderer=class{viewer;graphics;canvas;pen;back=document.
+createElement("canvas");backPen;last=document.createElement("canvas");lastPen;lastCamera=null;version=1;draftVersion=0;rowsDone=0;fixed=4;frames=0;constructor(viewer){
+this.viewer=viewer,this.graphics=viewer.graphics,this.canvas=viewer.canvas,this.pen=this.canvas.getContext("2d",{alpha:!1}),
+this.backPen=this.back.getContext("2d",{alpha:!1}),this.lastPen=this.last.getContext("2d",{alpha:!1})}get canvases(){return[
+this.canvas,this.back,this.last]}restart(moved=!1){moved||(this.lastCamera=null),this.version+=1,this.rowsDone=0}resize(width,height){
+let old=this.canvas.width>1?copyOfCanvas(this.canvas):null;for(let canvas of this.canvases)canvas.width=width,canvas.height=
+height;old&&this.pen?.drawImage(old,0,0,width,height)}dispose(){for(let canvas of this.canvases)canvas.width=canvas.height=
+0}draw(program,shown,moving,until){if(this.draftVersion!==this.version)return this.draft(program,shown,moving);if(moving)
+return!1;let complete=!1;do complete=this.strip(program,shown);while(!complete&&performance.now()<until);return complete}draft(program,shown,moving){
+let{width,height}=this.canvas,samples=Number(this.viewer.settings.samples),crowd=moving?this.graphics.waiting.size+1:1,budget=Math.
+max(MOVING_MS/crowd,MOVING_LEAST_MS);this.warm(program,shown);let price=program.price*this.factor(samples),best=quality(
+price,this.fixed,width*height,samples,budget),w=Math.max(Math.round(width*best.scale),1),h=Math.max(Math.round(height*best.
+scale),1);this.draftVersion=this.version;let reuse=best.scale<1?this.reuse():null;if(!reuse?.covers){let region={width:w,
+height:h,top:0,rows:h};this.timed(program,region,best.samples,()=>{this.render(program,shown,region,best.samples),this.copy(
+this.pen,region,0,width,height,0)})}return reuse&&this.pen&&(this.pen.imageSmoothingEnabled=!reuse.shifts,this.pen.setTransform(
+...reuse.matrix),this.pen.drawImage(this.last,0,0),this.pen.setTransform(1,0,0,1,0,0)),best.scale<1||best.samples!==samples||
+this.viewer.smooth?!1:(this.complete(),!0)}strip(program,shown){let{width,height}=this.canvas,{smooth,settings}=this.viewer,
+samples=Number(settings.samples);this.warm(program,shown);let price=program.price*this.factor(samples),most=Math.min(height-
+this.rowsDone,smooth?SMOOTH_ROWS:height),rows=Math.min(rowsIn(STRIP_MS,price,this.fixed,width,samples),most),region={width,
+height,top:this.rowsDone,rows};return this.timed(program,region,samples,()=>{this.render(program,shown,region,samples,smooth);
+let drawn=smooth?{...region,height:rows,top:0}:region;this.copy(this.backPen,drawn,drawn.top,width,drawn.height,this.rowsDone)}),
+this.rowsDone+=rows,this.rowsDone<height?!1:(this.pen?.drawImage(this.back,0,0),this.complete(),!0)}complete(){let{camera,
+playing}=this.viewer;this.rowsDone=this.canvas.height,this.frames+=1,this.draftVersion=this.version,this.lastPen?.drawImage(
+this.canvas,0,0),camera&&!playing&&(this.lastCamera=new Camera(camera.state,camera.limits,camera.flat,camera.aspect))}reuse(){
+let{viewer,lastCamera}=this,{header,camera}=viewer;if(!header||!camera||!lastCamera||!header.geometry.planar||!camera.state.
+parallel||!lastCamera.state.parallel)return null;let{geometry}=header,focus=subtract2(camera.state.focal_point,geometry.
+center),anchor=toFrame(geometry.frame,focus),[before,now]=[lastCamera,camera].map(view=>projection(geometry,view,anchor));
+return reused(before,now,this.canvas.width,this.canvas.height)}factor(samples){let{settings,varies}=this.viewer;return settings.
+motion!=="off"||varies?motionFactor(samples):1}timed(program,region,samples,draw){let started=performance.now();draw();let spent=performance.
+now()-started,pixels=region.width*region.rows,factor=this.factor(samples);program.price=learnedPrice(program.price,spent,
+this.fixed,pixels,samples,factor)}warm(program,shown){if(program.warm)return;let{width,height}=this.canvas,region={width,
+height,top:0,rows:1};this.render(program,shown,region,1);let started=performance.now();this.render(program,shown,region,
+1),this.fixed=clamp(performance.now()-started,.5,200),program.warm=!0}render(program,shown,region,samples,smooth=!1){let{
+graphics,viewer}=this,{header,camera,scene}=viewer;if(!header||!camera||!scene)return;let gl=graphics.context,{width,height,
+top,rows}=region,view=viewer.view(shown,viewer.ratio*height/this.canvas.height);graphics.reserve(width,height);let bottom=height-
+top-rows;smooth?graphics.bindSmooth(width,rows):gl.bindFramebuffer(gl.FRAMEBUFFER,null),gl.viewport(0,smooth?-bottom:0,width,
+height),gl.enable(gl.SCISSOR_TEST),gl.scissor(0,smooth?0:bottom,width,rows),gl.enable(gl.DEPTH_TEST),gl.depthFunc(gl.LESS),
+gl.disable(gl.BLEND),gl.disable(gl.CULL_FACE);let[r,g,b]=header.background;gl.clearColor(r,g,b,1),gl.clear(gl.COLOR_BUFFER_BIT|
+gl.DEPTH_BUFFER_BIT);let draft=samples!==viewer.settings.samples||height!==this.canvas.height;graphics.programs.use(program,
+this.values(view,samples,draft)),scene.draw(shown[0],shown[1],view.anchor,!0),smooth&&graphics.copySmooth(width,rows),graphics.
+settle()}values(view,samples,draft){let{settings,header,camera,parts}=this.viewer;if(!header||!camera)return{};let noise=parts.
+get("noise")?.shape??null;return{...uniforms(header,{...settings,samples},view,noise),...draft?draftUniforms(settings,samples,
+view.density):{},u_matrix:projection(header.geometry,camera,view.anchor),u_mapped:header.scalars.name!==null,u_colour:header.
+colour,u_lit:header.lighting,u_light:header.constants.light,u_ground:header.background,u_opacity:header.opacity,u_toEye:toFrame(
+header.geometry.frame,camera.toEye)}}copy(pen,{width:w,height:h,rows},top,width,height,to){if(!pen)return;let{canvas}=this.
+graphics;pen.imageSmoothingEnabled=w!==width||h!==height,pen.drawImage(canvas,0,canvas.height-h+top,w,rows,0,to,width,rows*
+height/h)}};function copyOfCanvas(canvas){let copy=document.createElement("canvas");return copy.width=canvas.width,copy.
+height=canvas.height,copy.getContext("2d")?.drawImage(canvas,0,0),copy}function fromHalf(bits){let exponent=bits>>10&31,part=bits&1023,size;return exponent===0?size=part*2**-24:exponent===31?
+size=part?NaN:1/0:size=(1024+part)*2**(exponent-25),bits&32768?-size:size}function toHalf(x){let sign=x<0?32768:0,size=Math.
+abs(x);if(!(size<65520))return sign|(size>=65520?31744:32256);let exponent=Math.max(Math.floor(Math.log2(size||1e-30)),-14),
+part=Math.round(size/2**(exponent-10));return sign|(part<1024?part:(exponent+14)*1024+part)}function halved(texels,width,height,channels){
+let[w,h]=[Math.max(width>>1,1),Math.max(height>>1,1)],result2=new Uint16Array(w*h*channels),between=(n,few,many)=>{let x=(n+
+.5)*(many/few)-.5,base=Math.floor(x);return[base,Math.min(base+1,many-1),x-base]};for(let j=0,n=0;j<h;j+=1){let[low,high,
+v2]=between(j,h,height);for(let i=0;i<w;i+=1){let[left,right,u]=between(i,w,width);for(let c=0;c<channels;c+=1){let at=(y,x)=>fromHalf(
+texels[(y*width+x)*channels+c]),below=at(low,left)*(1-u)+at(low,right)*u,above=at(high,left)*(1-u)+at(high,right)*u;result2[n++]=
+toHalf(below*(1-v2)+above*v2)}}}return[result2,w,h]}var USERS={position:["position","coordinate"],normal:["normal"],cells:["index"],cmap:["cmap"],noise:["noise"],step:["ste\
+p"],scalars:["scalar"]},Scene=class{graphics;header;parts;anchor=[0,0,0];resources=new Map;scalarSteps="";constructor(graphics,header,parts){
+this.graphics=graphics,this.header=header,this.parts=parts}missing(before,after){let{geometry,slices,scalars,paper}=this.
+header,names=["position",...geometry.planar?[]:["normal"]];for(let step of new Set([before,after]))names.push(`slices/${step}`),
+slices.channels===2&&names.push(`extra/${step}`);return names.push(...this.scalarParts(before,after)),scalars.name!==null&&
+names.push("cmap"),paper&&names.push("noise","step"),[...new Set(names)].filter(name=>!this.fits(name))}scalarParts(before,after){
+let{name,steps}=this.header.scalars;return name===null?[]:(steps>1?[before,after]:[0,0]).map(step=>`scalars/${step}`)}fits(name){
+let part=this.parts.get(name);if(!part)return!1;let{geometry,slices,paper}=this.header,shape={slices:[slices.count,geometry.
+rows.size,geometry.columns.size,slices.channels],position:[...geometry.shape,3],step:paper?[paper.size[1],paper.size[0]]:
+[]}[name.split("/")[0]];return!shape||String(shape)===String(part.shape)}part(name){let part=this.parts.get(name);if(!part)
+throw new Error(`the part "${name}" of the scene is missing`);return part}forget(name){let[kind,step]=name.split("/"),sliced=kind===
+"slices"||kind==="extra";for(let user of sliced?[`slices/${step}`]:USERS[kind]??[])this.drop(user);this.drop("array")}drop(name){
+let resource=this.resources.get(name);this.resources.delete(name),resource&&(resource.users-=1,!resource.users&&(this.graphics.
+free(resource.kind,resource.object),this.graphics.common.delete(resource.key)))}dispose(){for(let name of[...this.resources.
+keys()])this.drop(name)}key(names,...rest){let digests=names.map(name=>this.parts.has(name)?this.part(name).digest:"none");
+return digests.every(Boolean)?JSON.stringify([digests,rest]):""}take(name,kind,key,make,fill){let own=this.resources.get(
+name);if(own)return own.object;let{common}=this.graphics,whole=key&&`${name.split("/")[0]} ${key}`,shared=whole?common.get(
+whole):void 0;if(shared)return shared.users+=1,this.resources.set(name,shared),shared.object;let object=this.graphics.counted(
+make()),resource={kind,object,count:0,key:whole,users:1};return this.resources.set(name,resource),resource.count=fill(object)||
+0,whole&&common.set(whole,resource),object}buffer(name,key,data,elements=!1){let gl=this.graphics.context,fill=buffer=>{
+let target=elements?gl.ELEMENT_ARRAY_BUFFER:gl.ARRAY_BUFFER,numbers=data();return gl.bindVertexArray(null),gl.bindBuffer(
+target,buffer),gl.bufferData(target,numbers,gl.STATIC_DRAW),numbers.length};return this.take(name,"Buffer",key,()=>gl.createBuffer(),
+fill)}bindNodes(before,after,anchor){let gl=this.graphics.context,steps=String(this.scalarParts(before,after)),stale=steps!==
+this.scalarSteps?["scalar","array"]:[];anchor.some((x,k)=>x!==this.anchor[k])&&stale.push("position","array");for(let name of stale)
+this.drop(name);this.scalarSteps=steps,this.anchor=anchor;let fill=array=>this.fillArray(array,before,after),make=()=>gl.
+createVertexArray();gl.bindVertexArray(this.take("array","VertexArray","",make,fill))}fillArray(array,before,after){let gl=this.
+graphics.context,{geometry,scalars,paper}=this.header,{shape,rows,columns}=geometry,cells=()=>triangles(shape,this.parts.
+get("cells")?.data),index=this.buffer("index",this.key(["cells"],shape),cells,!0),nodes=()=>positions(this.part("positio\
+n").data,this.anchor),normal=geometry.planar?null:this.part("normal").data,painted=this.scalarParts(before,after),values=()=>{
+let steps=painted.map(name=>this.part(name).data);return shares(steps,scalars.low,scalars.high,shape[0]*shape[1])},colour=this.
+key([...new Set(painted)],shape,scalars.low,scalars.high),grid=JSON.stringify([shape,rows,columns]),type=gl.FLOAT;normal instanceof
+Int8Array&&(type=gl.BYTE),normal instanceof Int16Array&&(type=gl.SHORT);let attributes=[[this.buffer("position",this.key(
+["position"],this.anchor),nodes),3,gl.FLOAT],[this.buffer("coordinate",grid,()=>coordinates(geometry)),2,gl.FLOAT],[normal&&
+this.buffer("normal",this.key(["normal"]),()=>normal),3,type],[paper&&this.buffer("along","",()=>noiseCoordinates(paper)),
+2,gl.FLOAT],[this.buffer("scalar",colour,values),2,gl.FLOAT]];gl.bindVertexArray(array),gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER,
+index),attributes.forEach(([buffer,size,kind],n)=>{buffer&&(gl.bindBuffer(gl.ARRAY_BUFFER,buffer),gl.enableVertexAttribArray(
+n),gl.vertexAttribPointer(n,size,kind,kind!==gl.FLOAT,0,0))})}texture(name,key,fill){let gl=this.graphics.context;return this.
+take(name,"Texture",key,()=>gl.createTexture(),fill)}slices(step){let{slices,geometry}=this.header,key=this.key([`slices\
+/${step}`,`extra/${step}`],geometry.levels,slices.extra);return this.texture(`slices/${step}`,key,texture=>{let part=this.
+part(`slices/${step}`),[layers,height,width,channels]=part.shape,data=part.data,extra=this.parts.get(`extra/${step}`)?.data,
+texels=height*width,layer=n=>{let own=data.subarray(n*texels*channels,(n+1)*texels*channels);if(channels===4)return own;
+let all=new Uint16Array(4*texels),place=slices.extra.indexOf(n),fourth=place<0?null:extra?.subarray(place*texels,(place+
+1)*texels);for(let k=0;k<texels;k+=1)all[4*k]=own[2*k],all[4*k+1]=own[2*k+1],fourth&&(all[4*k+3]=fourth[k]);return all};
+this.fill(texture,{width,height,layers,channels:4,levels:geometry.levels},layer)})}image(name,repeat){let gl=this.graphics.
+context;return this.texture(name,this.key([name],repeat),texture=>{let{data,shape}=this.part(name),[height,width,channels=1]=shape,
+levels=Math.floor(Math.log2(Math.max(width,height))),size={width,height,layers:1,channels,levels};this.fill(texture,size,
+()=>data);let wrap=n=>repeat[n]?gl.REPEAT:gl.CLAMP_TO_EDGE;gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_S,wrap(1)),
+gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_T,wrap(0))})}fill(texture,size,layer){let gl=this.graphics.context,
+{width,height,layers,channels,levels}=size,target=gl.TEXTURE_2D_ARRAY;this.checkSize(size);let[format,inner]=channels===
+1?[gl.RED,gl.R16F]:[gl.RGBA,gl.RGBA16F];gl.bindTexture(target,texture),gl.texStorage3D(target,levels+1,inner,width,height,
+layers),gl.texParameteri(target,gl.TEXTURE_MIN_FILTER,gl.LINEAR_MIPMAP_LINEAR),gl.texParameteri(target,gl.TEXTURE_MAG_FILTER,
+gl.LINEAR),gl.texParameteri(target,gl.TEXTURE_WRAP_S,gl.CLAMP_TO_EDGE),gl.texParameteri(target,gl.TEXTURE_WRAP_T,gl.CLAMP_TO_EDGE),
+gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);let{floats}=this.graphics;for(let n=0;n<layers;n+=1){let texels=layer(n),[w,h]=[width,
+height];gl.texSubImage3D(target,0,0,0,n,w,h,1,format,gl.HALF_FLOAT,texels);for(let level=1;level<=levels&&!floats;level+=
+1)[texels,w,h]=halved(texels,w,h,channels),gl.texSubImage3D(target,level,0,0,n,w,h,1,format,gl.HALF_FLOAT,texels)}floats&&
+levels&&gl.generateMipmap(target)}checkSize({width,height,layers}){let gl=this.graphics.context,most=gl.getParameter(gl.
+MAX_TEXTURE_SIZE),mostLayers=gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS);if(!(Math.max(width,height)<=most&&layers<=mostLayers))
+throw new Error(`a texture of ${width} x ${height} texels in ${layers} layers is asked for, and this graphics card has ${most}\
+ x ${most} in ${mostLayers}; show fewer nodes`)}colourMap(){let gl=this.graphics.context;return this.texture("cmap",this.
+key(["cmap"]),texture=>{gl.bindTexture(gl.TEXTURE_2D,texture),gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);let data=this.parts.
+get("cmap")?.data??new Uint8Array(1024);gl.texImage2D(gl.TEXTURE_2D,0,gl.RGBA8,256,1,0,gl.RGBA,gl.UNSIGNED_BYTE,data),gl.
+texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST)})}dropSlices(before,after){
+let next=after+1<this.header.slices.steps?after+1:0;for(let name of[...this.resources.keys()])name.startsWith("slices/")&&
+([before,after,next,after+1].includes(stepOf(name))||this.drop(name))}bindTextures(before,after){let gl=this.graphics.context,
+{paper}=this.header,repeat=paper?.repeat??[!1,!1];[this.slices(before),after===before?null:this.slices(after),paper&&this.
+image("noise",paper.picture?[!0,!0]:repeat),paper&&this.image("step",repeat),this.colourMap()].forEach((texture,n)=>{gl.
+activeTexture(gl.TEXTURE0+n),gl.bindTexture(n<4?gl.TEXTURE_2D_ARRAY:gl.TEXTURE_2D,texture)}),gl.activeTexture(gl.TEXTURE0+
+SAMPLERS.length)}draw(before,after,anchor,textures){let gl=this.graphics.context;textures&&(this.dropSlices(before,after),
+this.bindTextures(before,after)),this.bindNodes(before,after,anchor),gl.drawElements(gl.TRIANGLES,this.resources.get("in\
+dex")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(null)}};var STILL_MS=160,LOST_MS=5e3,STEPS_HELD=12,isEqual=(a,b)=>JSON.stringify(a)===JSON.stringify(b),Viewer=class{options;graphics=sharedGraphics();lifetime=new Lifetime;player=new Player;root=document.
+createElement("div");canvas=document.createElement("canvas");panel;pointers;parts=new Map;header=null;settings={};scene=null;camera=null;sharp=!1;isVisible=!0;shown=null;together=[
+this];renderer;busyUntil=0;firstCamera=null;asked=new Map;constructor(element,options={}){this.options=options;let{root}=this;
+root.className="flowtex",root.tabIndex=0,root.dataset.sharp="false",root.setAttribute("data-lm-suppress-shortcuts","true"),
+root.setAttribute("role","application"),this.renderer=new ProgressiveRenderer(this),this.panel=new Panel(this),element.append(
+root),this.pointers=new Pointers(this),this.graphics.enter(this),this.observe(),this.graphics.gl||this.panel.fail("This \
+browser has no WebGL2, which the picture is drawn with.","Turn on hardware acceleration in its settings, or use a recent\
+ Firefox, Chrome or Safari.")}observe(){let{lifetime,root}=this;lifetime.observe(new ResizeObserver(()=>this.resize()),root);
+let seen=new IntersectionObserver(entries=>{this.isVisible=entries[entries.length-1].isIntersecting,this.isVisible&&this.
+request()});lifetime.observe(seen,root),lifetime.listen(document,"visibilitychange",()=>this.request()),lifetime.listen(
+window,"resize",()=>this.resize())}stats(){let{objects,users,restorations}=this.graphics,{frames}=this.renderer;return{...this.
+lifetime.stats(),objects,users:users.size,restorations,frames}}dispose(){if(!this.lifetime.isOver){this.player.playing=!1,
+this.lifetime.end(),this.scene?.dispose(),this.scene=null;for(let name of[...this.parts.keys()])this.remove(name);this.graphics.
+leave(this),this.renderer.dispose(),this.root.remove()}}setHeader(header){if(header.format!==2){this.panel.fail(`The sce\
+ne has format ${header.format}, and this client reads format ${2}.`,"Use the client of the flowtex that made the scene.");
+return}let old=this.header;if(this.header=header,this.settings={...header.settings,...header.own},this.player.setHeader(
+header),this.scene?.dispose(),this.scene=new Scene(this.graphics,header,this.parts),this.asked.clear(),(!old||!isSamePlace(
+old.geometry,header.geometry))&&(this.firstCamera=header.camera,this.camera=null),old&&old.generation!==header.generation)
+for(let name of[...this.parts.keys()])name.includes("/")&&this.remove(name);this.panel.build(),this.change()}setPart(part){
+let{name,digest}=part;if(this.asked.delete(stepOf(name)),digest&&this.parts.get(name)?.digest===digest)return;let held=this.
+graphics.hold(part);this.remove(name),this.parts.set(name,held),this.scene?.forget(name),this.trim(),name==="cmap"&&this.
+panel.showLegend(),this.change()}remove(name){this.graphics.release(this.parts.get(name)),this.parts.delete(name)}trim(){
+if(!this.options.onNeed||!this.header)return;let names=[...this.parts.keys()].filter(name=>name.startsWith("slices/")),[
+before,after]=this.player.moment;for(let name of names.slice(0,Math.max(names.length-STEPS_HELD,0))){let step=stepOf(name);
+if(!(step===before||step===after))for(let kind of["slices","extra"])this.remove(`${kind}/${step}`)}}setSettings(settings){
+Object.entries(settings).every(([name,value])=>this.settings[name]===value)||(Object.assign(this.settings,settings),this.
+panel.update(),this.change())}followSetting(name,value){name in(this.header?.own??{})||this.setSettings({[name]:value})}choose(name,value){
+this.stir(),this.setSettings({[name]:value}),this.options.onSetting?.(name,value)}get cameraState(){let state=this.camera?.
+state??this.firstCamera;return state?copyOf(state):null}setCamera(state){if(!this.camera)this.firstCamera=copyOf(state);else{
+if(isEqual(this.camera.state,state))return;this.camera.state=copyOf(state)}this.change(!0)}moved(){this.stir(),this.change(
+!0),this.camera&&this.options.onCamera?.(copyOf(this.camera.state))}reset(){this.camera&&(this.place(),this.moved())}place(){
+let{header,firstCamera:first,aspect}=this,nodes=this.parts.get("position")?.data;if(!header||!nodes)return;let{geometry,
+limits}=header,state=first?widened(geometry,limits,first,nodes,aspect):fitted(geometry,limits,nodes,aspect);this.camera=
+new Camera(state,limits,geometry.planar,aspect),this.camera.pick=(x,y)=>this.point(x,y)?.position??null,(!first||!isEqual(
+first,state))&&this.options.onCamera?.(copyOf(state))}get aspect(){return Math.max(this.root.clientWidth,1)/Math.max(this.
+root.clientHeight,1)}get varies(){return this.player.varies}get time(){return this.player.time}get clock(){return this.player.
+clock}get playing(){return this.player.playing}setTime(time){this.player.seek(time),this.panel.tick(),this.change()}setClock(clock){
+this.player.clock=clock,this.panel.tick(),this.change()}play(){if(this.options.follows)return this.options.follows.play();
+this.playing||!this.header||(!this.varies&&this.settings.motion==="off"&&this.choose("motion","speed"),this.player.start(),
+this.panel.update(),this.request(),this.options.onPlaying?.(!0))}pause(){if(this.options.follows)return this.options.follows.
+pause();this.playing&&(this.player.playing=!1,this.panel.update(),this.change(),this.options.onPlaying?.(!1))}togglePlaying(){
+let leader=this.options.follows??this;leader.playing?leader.pause():leader.play()}stir(){this.busyUntil=performance.now()+
+STILL_MS}get isBusy(){return this.playing||performance.now()<this.busyUntil}change(moved=!1){this.renderer.restart(moved),
+this.setSharp(!1),this.request()}draw(){this.frame(performance.now(),performance.now()+FRAME_MS)}setSharp(sharp){sharp!==
+this.sharp&&(this.sharp=sharp,this.root.dataset.sharp=String(sharp),sharp&&this.options.onFrame?.())}request(){!this.lifetime.
+isOver&&this.isVisible&&this.graphics.request(this)}resize(){let ratio=Math.max(window.devicePixelRatio||1,.1),width=Math.
+max(Math.round(this.root.clientWidth*ratio),1),height=Math.max(Math.round(this.root.clientHeight*ratio),1);width===this.
+canvas.width&&height===this.canvas.height||(this.renderer.resize(width,height),this.camera&&(this.camera.aspect=this.aspect,
+isEqual(this.camera.state,this.camera.start)&&this.place()),this.change())}get smooth(){let{header}=this;if(this.options.
+smooth!==void 0||!header)return this.options.smooth??!1;let{vertex,fragment}=header.shaders;return this.graphics.programs.
+get(vertex,fragment).price<CARD_PRICE_MS}get ratio(){return this.canvas.height/Math.max(this.root.clientHeight,1)}lost(){
+this.scene=this.header&&new Scene(this.graphics,this.header,this.parts),this.setSharp(!1)}restored(){this.change()}get lacking(){
+let[before,after]=this.player.moment;return this.scene?.missing(before,after)??[]}available(){let{header,scene,player,shown}=this;
+if(!header||!scene)return null;let moment=player.moment,count=header.slices.steps,ahead=player.playing?[1,2].map(n=>(moment[1]+
+n)%count):[];this.ask([moment[0],moment[1],...ahead]);let{lacking}=this;return this.panel.wait(lacking),lacking.length?shown&&
+!scene.missing(shown[0],shown[1]).length?shown:null:this.shown=moment}ask(steps){let now=performance.now(),lacking=[...new Set(
+steps)].filter(step=>this.scene?.missing(step,step).length);for(let step of lacking)!this.options.onNeed||now-(this.asked.
+get(step)??-1/0)<LOST_MS||(this.asked.set(step,now),this.options.onNeed(step));return!lacking.length}frame(now,until){if(!(this.
+lifetime.isOver||this.graphics.isLost||!this.graphics.gl||!this.isVisible)&&!(!this.header||!this.scene||this.canvas.width<
+2))try{this.advance(now),this.proceed(this.header,until)}catch(error){this.pause(),this.panel.fail("The picture could no\
+t be drawn.",String(error))}}proceed(header,until){let shown=this.available();if(this.camera||this.place(),!shown||!this.
+camera)return;let{programs}=this.graphics,{vertex,fragment,pick}=header.shaders,program=programs.get(vertex,fragment);if(program.
+error){this.panel.fail("The shader does not compile with this graphics driver.",program.error);return}if(!program.ready)
+return this.request();!this.sharp&&this.renderer.draw(program,shown,this.isBusy,until)&&(this.panel.drawn(),programs.get(
+vertex,pick),this.setSharp(!this.playing)),this.sharp||this.request()}advance(now){let{player,options}=this;!player.playing||
+!player.advance(now,steps=>this.ask(steps))||(player.varies?options.onTime?.(player.time):options.onClock?.(player.clock),
+this.panel.tick(),this.renderer.restart(),this.setSharp(!1))}view(shown,density){let{header,camera,scene,player}=this;if(!header||
+!camera)throw new Error("there is nothing to look at yet");let{geometry,constants}=header,focus=camera.state.focal_point,
+local=toFrame(geometry.frame,subtract2(focus,geometry.center)),old=scene?.anchor??[0,0,0],range=constants.anchorRange*2*
+camera.height,isFar=v2=>v2.some(c=>Math.abs(c)>range),anchor=isFar(local)?local:[0,0,0];return{focus,anchor:isFar(subtract2(
+local,old))?anchor:old,eye:camera.eye,between:shown[2],time:player.timeOf(shown),clock:player.clock,density}}get canPick(){
+let{header,graphics}=this;return!header||graphics.isLost||!graphics.gl?!1:graphics.programs.get(header.shaders.vertex,header.
+shaders.pick).ready}point(x,y){return pickedPoint(this,x,y)}};function viewersIn(element,count,options,own=()=>({})){if(count<2)return[new Viewer(element,{...options,...own(0)})];let pair=dom(
+"div",{class:"flowtex-pair"});pair.style.cssText="display: flex; gap: 2px; width: 100%; height: 100%",element.append(pair);
+let viewers=[];for(let n=0;n<count;n+=1){let cell=dom("div");cell.style.cssText="flex: 1 1 0; min-width: 0; height: 100%",
+pair.append(cell);let others=()=>viewers.filter((_,m)=>m!==n),follower=n?{controls:!1,follows:viewers[0]}:{};viewers.push(
+new Viewer(cell,{...options,...own(n),...linked(options,others),...follower}))}for(let viewer of viewers)viewer.together=
+viewers;return viewers}function linked(options,others){return{onCamera:camera=>{for(let other of others())other.setCamera(
+camera);options.onCamera?.(camera)},onTime:time=>{for(let other of others())other.setTime(time);options.onTime?.(time)},
+onClock:clock=>{for(let other of others())other.setClock(clock);options.onClock?.(clock)},onSetting:(name,value)=>{for(let other of others())
+other.followSetting(name,value);options.onSetting?.(name,value)}}}function mountPage(element,scenes,options={}){let viewers=viewersIn(
+element,scenes.length,options);return scenes.forEach(({header},n)=>viewers[n].setHeader(header)),scenes.forEach(({parts},n)=>parts.
+forEach(part=>viewers[n].setPart(part))),viewers[0]}function pngOf(viewers){let[{canvas:first}]=viewers,canvas=first;if(viewers.
+length>1){canvas=dom("canvas"),canvas.width=viewers.reduce((sum,viewer)=>sum+viewer.canvas.width,0),canvas.height=first.
+height;let left=0;for(let viewer of viewers)canvas.getContext("2d")?.drawImage(viewer.canvas,left,0),left+=viewer.canvas.
+width}return new Promise((resolve,reject)=>{canvas.toBlob(blob=>{blob?resolve(blob):reject(new Error("there is no pictur\
+e yet"))},"image/png")})}async function partsOf(view,known){let parts=[];for(let element of document.querySelectorAll(`script[data-view="${view}"\
+]`)){let info=JSON.parse(element.dataset.part??""),text=element.textContent??"",part=known.get(info.digest)??await partOfText(
+info,text);known.set(info.digest,part),parts.push({...part,name:info.name}),element.remove()}return parts}async function openPage(){
+let place=document.getElementById("flowtex"),status=document.getElementById("status");try{let headers=JSON.parse(document.
+getElementById("headers")?.textContent??""),known=new Map,scenes=[];for(let[n,header]of headers.entries())scenes.push({header,
+parts:await partsOf(String(n),known)});let look=()=>{status.hidden=!place.querySelector('[data-failed="true"]'),status.textContent=
+"This browser cannot draw the flow, for want of WebGL2; here is a picture of it.",!place.querySelector('[data-sharp="fal\
+se"]')&&(watch.disconnect(),document.getElementById("preview")?.remove())},watch=new MutationObserver(look),attributeFilter=[
+"data-sharp","data-failed"];watch.observe(place,{subtree:!0,childList:!0,attributeFilter}),mountPage(place,scenes)}catch(error){
+status.hidden=!1;let reason=error instanceof Error?error.message:String(error);throw status.textContent=`The flow cannot\
+ be drawn here: ${reason}`,error}}openPage();

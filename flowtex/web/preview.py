@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from flowtex.camera import Camera
 from flowtex.rendering.cpu import Picture, render
 from flowtex.rendering.uniforms import ViewState
-from flowtex.rendering.webgl import Scene
+from flowtex.rendering.webgl import ClientData
 from flowtex.settings import Settings
 from flowtex.web.view import WebView
 
@@ -36,7 +36,7 @@ def preview(
     *,
     camera: Mapping[str, Any] | None = None,
     time: float | None = None,
-    scene: Scene | None = None,
+    scene: ClientData | None = None,
     coarser: int = COARSER,
 ) -> Bytes:
     """Draw a small picture.
@@ -62,7 +62,7 @@ def preview(
         (height, width, 3), row 0 at the top.
     """
     scene = scene or view.coarse_data(NODES)
-    camera = camera or scene.first_look(size)
+    camera = camera or scene.first_camera(size[0] / size[1]).to_dict()
     drawn = _drawn(view, scene, (size[0] // coarser, size[1] // coarser), camera, time)
     from PIL import Image
 
@@ -100,7 +100,7 @@ def _few_samples(settings: Settings) -> Settings:
 
 def _drawn(
     view: WebView,
-    scene: Scene,
+    scene: ClientData,
     size: tuple[int, int],
     camera: Mapping[str, Any],
     time: float | None,
@@ -128,7 +128,7 @@ def _drawn(
 
 
 def _colour(
-    scene: Scene, picture: Picture, steps: tuple[int, ...], between: float
+    scene: ClientData, picture: Picture, steps: tuple[int, ...], between: float
 ) -> NDArray[np.float64]:
     """Colour of the surface at each pixel, (H, W, 3)."""
     colours, geometry = scene.colours, scene.textures.geometry

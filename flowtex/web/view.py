@@ -10,8 +10,7 @@ from flowtex._util.colours import colour_table, rgb
 from flowtex.camera import Camera
 from flowtex.field import FlowField
 from flowtex.options import Options, ViewOptions
-from flowtex.rendering.webgl import Colours
-from flowtex.rendering.webgl import Scene as ClientData
+from flowtex.rendering.webgl import ClientData, Colours
 from flowtex.scene import Scene, share_field, steps_of
 from flowtex.settings import TABLE
 

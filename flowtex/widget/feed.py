@@ -12,23 +12,19 @@ from __future__ import annotations
 
 import threading
 import traceback
-from collections.abc import Callable, Iterable
+from collections import OrderedDict
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
-from flowtex._util.cache import digest
-from flowtex.rendering.webgl import Scene
+from flowtex._util.array_types import AnyArray
+from flowtex.rendering.webgl import ClientData
+from flowtex.rendering.webgl.protocol import Header, Parts, part_buffer, part_info
 from flowtex.web import preview
 from flowtex.web.view import WebView
-from flowtex.widget.gone import has_gone
 from flowtex.widget.worker import Crew, Worker
 
 __all__ = ["Feed"]
-
-Parts = dict[str, NDArray[Any]]
 
 #: A field of more nodes, at all times together, is shown coarse first.
 LARGE = 60_000
@@ -44,6 +40,11 @@ TOGETHER = 2_000_000
 LOST = (2.5, 4.0, 8.0, 16.0)
 #: Bytes from which an array is offered before it is sent again.
 OFFERED = 50_000
+
+#: Digests of arrays that have gone to some page, and how many of them are remembered.
+_sent_digests: OrderedDict[str, None] = OrderedDict()
+_sent_lock = threading.Lock()
+MOST_DIGESTS = 10_000
 
 #: Those who answer are more than there are processors: one may be tracing for long.
 ANSWERS, MAKES = Crew("flowtex-answers", 4), Crew("flowtex-makes", 2)
@@ -69,7 +70,7 @@ class Feed:
         view: WebView,
         *,
         moment: Callable[[], float],
-        announce: Callable[[dict[str, Any]], None],
+        announce: Callable[[Header], None],
         send: Callable[[dict[str, Any], list[memoryview]], None],
     ) -> None:
         self._view = view
@@ -78,7 +79,7 @@ class Feed:
         self._generation = self._order = 0
         self._live = self._closed = self._drawing = False
         self._asked: set[int] = set()
-        self._sent: dict[str, bytes] = {}
+        self._sent: dict[str, str] = {}
         self.picture: bytes | None = None
         self.pictured, self.settled = threading.Event(), threading.Event()
         self.scene = self._first()
@@ -88,7 +89,7 @@ class Feed:
         self._makes = Worker(MAKES, self._failed)
 
     @property
-    def header(self) -> dict[str, Any]:
+    def header(self) -> Header:
         """Header of the present scene, without settings and camera."""
         return {**self.scene.constants(), "generation": self._generation}
 
@@ -163,7 +164,7 @@ class Feed:
         for event in (self.pictured, self.settled):
             event.set()
 
-    def _first(self) -> Scene:
+    def _first(self) -> ClientData:
         """Return the scene to begin with: a coarse one of a large field."""
         field = self._view.field
         if field.valid.size * len(field.times) <= LARGE:
@@ -196,7 +197,7 @@ class Feed:
     def _coarse(self) -> bool:
         return self.scene.textures.geometry.field.shape != self._view.field.shape
 
-    def _replace(self, scene: Scene) -> None:
+    def _replace(self, scene: ClientData) -> None:
         """Put a scene in the place of the present one, once it can be shown."""
         order = self._order
         parts = self._now(scene)
@@ -209,7 +210,7 @@ class Feed:
             if self._live:
                 self._deliver({**scene.surface(), **parts}, again=False)
 
-    def _now(self, scene: Scene) -> Parts:
+    def _now(self, scene: ClientData) -> Parts:
         """Return what shows the present moment of a scene."""
         parts: Parts = {}
         for step in scene.moment(self._moment()):
@@ -250,40 +251,30 @@ class Feed:
 
     def _deliver(self, parts: Parts, *, again: bool, offer: bool = True) -> None:
         """Send arrays, the small ones first; those that a client has only when ``again``."""
-        offered: dict[str, bytes] = {}
-        batch: dict[str, tuple[NDArray[Any], bytes]] = {}
+        offers: list[dict[str, Any]] = []
+        batch: list[tuple[dict[str, Any], AnyArray]] = []
         for name, array in sorted(parts.items(), key=lambda item: item[1].nbytes):
-            told = digest(array)
-            if not again and "/" not in name and self._sent.get(name) == told:
+            info = part_info(name, array)
+            if not again and "/" not in name and self._sent.get(name) == info["digest"]:
                 continue
-            self._sent[name] = told
-            if has_gone(told) and offer and array.nbytes >= OFFERED:
-                offered[name] = told
+            self._sent[name] = info["digest"]
+            if _was_sent(info["digest"]) and offer and array.nbytes >= OFFERED:
+                offers.append(info)
                 continue
-            if batch and sum(a.nbytes for a, _ in batch.values()) + array.nbytes > TOGETHER:
-                self._post(batch)
-                batch = {}
-            batch[name] = array, told
-        if batch:
-            self._post(batch)
-        if offered and not self._closed:
-            digests = [told.hex() for told in offered.values()]
-            self._send({**self._about("offer", offered), "digests": digests}, [])
+            if batch and sum(a.nbytes for _, a in batch) + array.nbytes > TOGETHER:
+                self._post("parts", batch)
+                batch = []
+            batch.append((info, array))
+        self._post("parts", batch)
+        self._post("offer", [(info, None) for info in offers])
 
-    def _about(self, kind: str, names: Iterable[str]) -> dict[str, Any]:
-        return {"kind": kind, "generation": self._generation, "names": list(names)}
-
-    def _post(self, parts: dict[str, tuple[NDArray[Any], bytes]]) -> None:
-        if self._closed:
+    def _post(self, kind: str, parts: Sequence[tuple[dict[str, Any], AnyArray | None]]) -> None:
+        """Send descriptions of parts with their arrays, or offer them without."""
+        if self._closed or not parts:
             return
-        arrays = [np.ascontiguousarray(array) for array, _ in parts.values()]
-        message = {
-            **self._about("parts", parts),
-            "digests": [told.hex() for _, told in parts.values()],
-            "dtypes": [array.dtype.name for array in arrays],
-            "shapes": [list(array.shape) for array in arrays],
-        }
-        self._send(message, [array.reshape(-1).view(np.uint8).data for array in arrays])
+        infos = [info for info, _ in parts]
+        buffers = [part_buffer(array) for _, array in parts if array is not None]
+        self._send({"kind": kind, "generation": self._generation, "parts": infos}, buffers)
 
     def _draw(self, size: tuple[int, int], camera: dict[str, Any]) -> None:
         """Draw the small picture, which nothing depends on."""
@@ -299,3 +290,14 @@ class Feed:
         self.settled.set()
         with suppress(Exception):
             self._send({"kind": "error", "text": f"{type(error).__name__}: {error}"}, [])
+
+
+def _was_sent(digest: str) -> bool:
+    """Tell whether an array has gone to some page, which from now on it has."""
+    with _sent_lock:
+        was_sent = digest in _sent_digests
+        _sent_digests[digest] = None
+        _sent_digests.move_to_end(digest)
+        while len(_sent_digests) > MOST_DIGESTS:
+            _sent_digests.popitem(last=False)
+        return was_sent

@@ -12,10 +12,10 @@ import traitlets
 
 from flowtex.field import FlowField
 from flowtex.options import Appearance, FieldOptions, Options, ViewOptions, accepts_options
-from flowtex.rendering.webgl import asset
 from flowtex.scene import NO_IMAGE, Scene
 from flowtex.settings import TABLE, Affects, Settings, SettingsError
 from flowtex.textures.images import load_image
+from flowtex.web.assets import asset
 from flowtex.web.export import PREVIEW, page_text, write_page
 from flowtex.web.view import web_views
 from flowtex.widget.display import Displayed

@@ -11,9 +11,6 @@ from flowtex.settings import TABLE, Setting, SettingsError
 
 __all__ = ["make_panel"]
 
-#: A range with more values than this is typed, not dragged.
-MOST_STOPS = 1000
-
 
 def make_panel(widget: Any) -> tuple[Any, Callable[[], None]]:
     """Return a panel with a control for each setting, and what unties and closes it.
@@ -40,23 +37,24 @@ def make_panel(widget: Any) -> tuple[Any, Callable[[], None]]:
 
 
 def _control(row: Setting, value: Any) -> Any:
-    words: dict[str, Any] = {
+    options: dict[str, Any] = {
         "value": value,
-        "description": row.name.replace("_", " "),
+        "description": row.label,
         "tooltip": row.text,
         "style": {"description_width": "9em"},
     }
-    if row.kind is bool:
-        return ipywidgets.Checkbox(**words)
-    if row.choices:
-        return ipywidgets.Dropdown(options=row.choices, **words)
-    span = {"min": row.low, "max": row.high}
-    if (row.high or 0) - (row.low or 0) > MOST_STOPS:
-        kind = ipywidgets.BoundedIntText if row.kind is int else ipywidgets.BoundedFloatText
-        return kind(**words, **span)
-    if row.kind is int:
-        return ipywidgets.IntSlider(continuous_update=True, **words, **span)
-    return ipywidgets.FloatSlider(step=0.05, readout_format=".2f", **words, **span)
+    whole = row.kind is int
+    if row.control == "checkbox":
+        return ipywidgets.Checkbox(**options)
+    if row.control == "choice":
+        return ipywidgets.Dropdown(options=row.choices, **options)
+    options |= {"min": row.low, "max": row.high}
+    if row.control == "number":
+        kind = ipywidgets.BoundedIntText if whole else ipywidgets.BoundedFloatText
+        return kind(**options)
+    if whole:
+        return ipywidgets.IntSlider(continuous_update=True, **options)
+    return ipywidgets.FloatSlider(step=row.step, readout_format=".2f", **options)
 
 
 def _join(widget: Any, name: str, control: Any) -> Callable[[], None]:

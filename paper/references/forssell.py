@@ -30,7 +30,7 @@ __all__ = ["draw_texture", "forssell_lic", "texel_velocity"]
 
 
 #: How many times the kernel may grow in texels where they are short on the surface.
-LONGEST = 8.0
+MAX_STRETCH = 8.0
 
 
 def forssell_lic(
@@ -79,7 +79,7 @@ def forssell_lic(
         msg = f"shape is {shape}; expected one row and one column of texels or more"
         raise ValueError(msg)
     velocity, size = texel_velocity(field, shape, step)
-    lengths = length * np.minimum(size.mean() / size, LONGEST) if even else length
+    lengths = length * np.minimum(size.mean() / size, MAX_STRETCH) if even else length
     noise = np.random.default_rng(seed).standard_normal(shape)
     return lic(velocity, noise, lengths, kernel, periodic=field.periodic)
 

@@ -34,7 +34,7 @@ __all__ = ["ImageSpace"]
 
 
 #: Frames in which a grain of the noise blinks once.
-PERIOD = 24
+BLINK_FRAMES = 24
 
 
 class ImageSpace:
@@ -135,7 +135,7 @@ class ImageSpace:
 
     def _noise(self, count: int) -> Floats:
         """Grains at one moment of their blinking, (H, W), of deviation one."""
-        lit = np.sqrt(2.0) * np.cos(2 * np.pi * (count / PERIOD + self._phase))
+        lit = np.sqrt(2.0) * np.cos(2 * np.pi * (count / BLINK_FRAMES + self._phase))
         return np.asarray(ndimage.map_coordinates(lit, self._lattice, order=1))
 
     def _projected(self, camera: Camera) -> Floats:

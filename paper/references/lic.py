@@ -27,7 +27,7 @@ __all__ = ["KERNELS", "lic"]
 
 
 #: Lengths in pixels by which a line may miss a corner between pixels and still pass through it.
-CORNER = 1e-9
+CORNER_TOLERANCE_PIXELS = 1e-9
 
 #: Integrals of the kernels from 0 to s, for a kernel that ends at h; both (N,).
 KERNELS: dict[str, Callable[[Floats, Floats], Floats]] = {
@@ -148,6 +148,6 @@ def _to_edge(at: Floats, ahead: Floats, left: Floats) -> tuple[Floats, Bools]:
     room = np.where(ahead > 0, 1 - at, at)
     edges = np.divide(room, np.abs(ahead), out=np.full_like(at, np.inf), where=ahead != 0)
     nearest = edges.min(axis=0)
-    crossed = (edges <= nearest + CORNER) & (nearest < left)
+    crossed = (edges <= nearest + CORNER_TOLERANCE_PIXELS) & (nearest < left)
     step = np.where(np.isinf(nearest), 0.0, np.minimum(nearest, left))
     return step, crossed & np.isfinite(edges)

@@ -19,10 +19,10 @@ __all__ = ["SECTIONS"]
 
 
 #: Frames before the camera moves, while it moves, and after it; pixels that it moves in a frame.
-STILL, PAN = 30, 6.0
+STILL_FRAMES, PAN_PIXELS = 30, 6.0
 POINT, ZOOM = (0.63, 0.37), 2.0
 #: Frames from one that this method draws to the next: they are all alike.
-EVERY = 4
+OURS_INTERVAL_FRAMES = 4
 #: Name of each method in plots.
 IMAGE, OURS = "image space, frame upon frame", "this method, each frame by itself"
 
@@ -34,33 +34,29 @@ def _panned(view: View, pixels: float) -> View:
     return replace(view, camera=camera.shift(way))
 
 
-def _unit(values: Floats) -> Floats:
-    return np.asarray((values - np.nanmean(values)) / np.nanstd(values))
-
-
 def _moving(bench: Bench) -> Finding:
     size = bench.pick((360, 300), (140, 116))
     moving, after = bench.pick((12, 24), (6, 10))
     first = view_of(bench, bench.gyre, size, zoom=ZOOM, focus=POINT)
     image = ImageSpace(first.camera, first.size, bench.gyre, blend=0.1, pixels=2.0, seed=bench.seed)
-    image.frames(STILL)
+    image.frames(STILL_FRAMES)
     figures: dict[str, dict[str, list[float]]] = {
         name: {"angle": [], "coherence": []} for name in (IMAGE, OURS)
     }
     last: dict[str, Floats] = {}
     frames = list(range(-2, moving + after))
     for frame in frames:
-        view = _panned(first, PAN * min(max(frame + 1, 0), moving))
+        view = _panned(first, PAN_PIXELS * min(max(frame + 1, 0), moving))
         image.look(view.camera)
         values = image.frame()
         _note(figures[IMAGE], view, values)
         # Frames without memory: the picture of this view is all that there is.
-        if frame % EVERY == 0:
+        if frame % OURS_INTERVAL_FRAMES == 0:
             ours = view.picture().value
             _note(figures[OURS], view, ours)
         if frame == moving - 1:
             last = {IMAGE: values, OURS: view.picture().value}
-    rest = _panned(first, PAN * moving)
+    rest = _panned(first, PAN_PIXELS * moving)
     fresh = rest.picture().value
     same = float(np.nanmax(np.abs(fresh - last[OURS])))
     return _finding(figures, last, image, rest, same, frames, moving)
@@ -84,22 +80,27 @@ def _finding(
     plot = line_plot(
         [
             Line(IMAGE, frames, figures[IMAGE]["angle"]),
-            Line(OURS, [f for f in frames if f % EVERY == 0], figures[OURS]["angle"]),
+            Line(
+                OURS, [f for f in frames if f % OURS_INTERVAL_FRAMES == 0], figures[OURS]["angle"]
+            ),
         ],
-        x=f"frame; the camera moves by {PAN:g} pixels a frame in frames 0 to {moving - 1}",
+        x=f"frame; the camera moves by {PAN_PIXELS:g} pixels a frame in frames 0 to {moving - 1}",
         y="mean angle to the flow, degrees",
         caption="Angle between streaks and flow while the camera moves, and after it has stopped.",
         alt="In image space the angle rises while the camera moves and falls over some frames "
         "after; here it stays as it is.",
     )
-    at_rest = image.frames(STILL)
+    at_rest = image.frames(STILL_FRAMES)
     sharp = {
         "moving": measures.sharpness(last[IMAGE], view.mask),
         "at rest": measures.sharpness(at_rest, view.mask),
     }
     panels = [
-        Panel(grey(_unit(last[IMAGE])), "Image space: the last frame in which the camera moves."),
-        Panel(grey(_unit(at_rest)), f"Image space: {STILL} frames later."),
+        Panel(
+            grey(measures.standardised(last[IMAGE])),
+            "Image space: the last frame in which the camera moves.",
+        ),
+        Panel(grey(measures.standardised(at_rest)), f"Image space: {STILL_FRAMES} frames later."),
         Panel(grey(last[OURS]), "This method: the last frame in which the camera moves."),
     ]
     angles = figures[IMAGE]["angle"]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from flowtex._util.array_types import Floats
 from paper import measures
 from paper.bench import PAPER, Bench
 from paper.findings import Claim, Finding, Panel, Plate, Section, Table
@@ -15,17 +14,13 @@ __all__ = ["SECTIONS"]
 
 
 #: Texels of the texture of computational space, for each node.
-FINER = 6
-
-
-def _unit(values: Floats) -> Floats:
-    return np.asarray((values - np.nanmean(values)) / np.nanstd(values))
+TEXELS_PER_NODE = 6
 
 
 def _stretched(bench: Bench) -> Finding:
     field = bench.stretched
     view = view_of(bench, field, bench.pick((520, 272), (300, 156)))
-    rows, columns = (FINER * n for n in field.shape)
+    rows, columns = (TEXELS_PER_NODE * n for n in field.shape)
     white = np.random.default_rng(bench.seed).standard_normal((rows, columns))
     texture = forssell_lic(field, (rows, columns), length=30.0, kernel="hann", seed=bench.seed)
     paper = {**PAPER, "resolution": 512}
@@ -41,12 +36,12 @@ def _stretched(bench: Bench) -> Finding:
     }
     figures = {
         name: measures.evenness(noises[name], view.mask)._asdict()
-        | view.streaks(_unit(values))._asdict()
+        | view.streaks(measures.standardised(values))._asdict()
         for name, values in pictures.items()
     }
     panels = [
         Panel(
-            grey(_unit(values)),
+            grey(measures.standardised(values)),
             f"{name[0].upper()}{name[1:]}: grains "
             f"{figures[name]['stretch']:.2f} times as long as wide.",
         )

@@ -21,9 +21,9 @@ __all__ = ["SECTIONS"]
 
 #: Texels of the noise for each pixel of the picture's width: few enough that near by one covers
 #: several pixels, as otherwise mip levels bring all grains to the size of a pixel.
-TEXELS = 0.6
+TEXELS_PER_PIXEL = 0.6
 #: Share of the picture's surface that counts as near, and as far.
-NEAR, FAR = 0.2, 0.2
+NEAR_SHARE, FAR_SHARE = 0.2, 0.2
 
 
 def _plane() -> FlowField:
@@ -42,13 +42,13 @@ def _view(bench: Bench) -> View:
 
 
 def _resolution(view: View) -> int:
-    return round(TEXELS * view.size[0])
+    return round(TEXELS_PER_PIXEL * view.size[0])
 
 
 def _bands(view: View) -> dict[str, Bools]:
     """Pixels near by and far off, by their distance along the plane."""
     far = view.position[..., 0]
-    low, high = np.quantile(far[view.mask], (NEAR, 1 - FAR))
+    low, high = np.quantile(far[view.mask], (NEAR_SHARE, 1 - FAR_SHARE))
     with np.errstate(invalid="ignore"):
         return {"near": view.mask & (far <= low), "far": view.mask & (far >= high)}
 
@@ -70,7 +70,7 @@ def _advected(bench: Bench, view: View) -> dict[str, Floats]:
     fine = _resolution(view)
     values = image.frames(bench.pick(40, 25))
     return {
-        "image space": (values - np.nanmean(values)) / np.nanstd(values),
+        "image space": measures.standardised(values),
         "the paper's texture": view.picture(**{**PAPER, "samples": 25, "resolution": fine}).value,
         "default": view.picture().value,
         "default, fixed grain": view.picture(fixed_grain=True, resolution=fine).value,

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from flowtex._util.array_types import Floats
 from paper import measures
 from paper.bench import OURS, PAPER, Bench
@@ -15,7 +13,7 @@ __all__ = ["SECTIONS"]
 
 
 #: Length of the kernel of LIC in nodes, and texels of the noise along the surface.
-LENGTH, RESOLUTION = 12.0, 512
+LIC_LENGTH_NODES, RESOLUTION = 12.0, 512
 
 
 LABELS = {
@@ -29,12 +27,12 @@ LABELS = {
 def _pictures(bench: Bench, view: View) -> dict[str, Floats]:
     """Draw the view by every method; values of mean zero and deviation one."""
     paper = {**PAPER, "resolution": RESOLUTION}
-    texture = forssell_lic(view.field, length=LENGTH, seed=bench.seed)
+    texture = forssell_lic(view.field, length=LIC_LENGTH_NODES, seed=bench.seed)
     lic = draw_texture(texture, view.field, view.camera, view.size)
     return {
         "corrected": view.picture(**paper).value,
         "not corrected": view.picture(**paper, noise_correction=False).value,
-        "LIC at 52 × 62": (lic - np.nanmean(lic)) / np.nanstd(lic),
+        "LIC at 52 × 62": measures.standardised(lic),
         "default": view.picture(**OURS).value,
     }
 

@@ -19,29 +19,29 @@ __all__ = ["SECTIONS"]
 
 
 #: Destination time of figure 1, slices that are drawn, and the middle (i, j) of a vortex.
-STEP, COUNT, MIDDLE = 12, 4, (18, 64)
+FIGURE1_STEP, FIGURE1_SLICES, VORTEX_NODE = 12, 4, (18, 64)
 #: Nodes around it that are shown, by their distance, and the one whose path is shown.
-AROUND, OWN = np.arange(-7, 8, 2), (6, 4)
+PATCH_OFFSETS, PATH_NODE = np.arange(-7, 8, 2), (6, 4)
 #: Where a plane of a time lies in the drawing: how far up, and how it is tilted.
-UP, SHEAR, FLAT = 1.15, 0.45, 0.95
+LEVEL_HEIGHT, SHEAR, LEVEL_SCALE = 1.15, 0.45, 0.95
 #: Point of figure 2 as (j, i), texels of its noise, and texels that a pixel covers.
-PLACE, RESOLUTION, COVERS = (12.4, 26.3), 512, 2.0
+FIGURE2_POINT, RESOLUTION, TEXELS_PER_PIXEL = (12.4, 26.3), 512, 2.0
 
 
 def _tilted(position: Floats, level: float) -> Floats:
     """Take positions (..., 2) of a plane to the drawing, (..., 2)."""
     x, y = position[..., 0], position[..., 1]
-    return np.stack([x + SHEAR * y, FLAT * y + UP * level], axis=-1)
+    return np.stack([x + SHEAR * y, LEVEL_SCALE * y + LEVEL_HEIGHT * level], axis=-1)
 
 
 def _figure1(bench: Bench) -> Finding:
     field = bench.vortex
-    lags = float(np.mean(np.diff(field.times))) * np.arange(1, COUNT + 1)
-    slices = trace(field, lags=lags, steps=[STEP], compose=False, progress=False)
-    i, j = np.meshgrid(MIDDLE[0] + AROUND, MIDDLE[1] + AROUND)
+    lags = float(np.mean(np.diff(field.times))) * np.arange(1, FIGURE1_SLICES + 1)
+    slices = trace(field, lags=lags, steps=[FIGURE1_STEP], compose=False, progress=False)
+    i, j = np.meshgrid(VORTEX_NODE[0] + PATCH_OFFSETS, VORTEX_NODE[1] + PATCH_OFFSETS)
     nodes = np.stack([i, j], axis=-1).astype(float)
-    positions = [nodes, *(nodes + slices.displacement[0, m][j, i] for m in range(COUNT))]
-    own = np.array([position[OWN[1], OWN[0]] for position in positions])
+    positions = [nodes, *(nodes + slices.displacement[0, m][j, i] for m in range(FIGURE1_SLICES))]
+    own = np.array([position[PATH_NODE[1], PATH_NODE[0]] for position in positions])
     low = np.min([p.min(axis=(0, 1)) for p in positions], axis=0) - 2
     high = np.max([p.max(axis=(0, 1)) for p in positions], axis=0) + 2
     scaled = [(p - low) / (high - low) for p in positions]
@@ -83,7 +83,7 @@ def _planes(scaled: list[Floats], own: Floats) -> Plot:
             for line in (*patch, *np.swapaxes(patch, 0, 1)):
                 axes.plot(*line.T, color=COLOURS[0], linewidth=0.9, alpha=0.75, zorder=2)
             axes.plot(*patch.reshape(-1, 2).T, ".", color=COLOURS[0], markersize=4, zorder=3)
-            path.append(patch[OWN[1], OWN[0]])
+            path.append(patch[PATH_NODE[1], PATH_NODE[0]])
             axes.plot(*path[-1], "o", color=COLOURS[1], markersize=7, zorder=5)
             _say(axes, m, own[m], level)
         axes.plot(*np.array(path).T, color=COLOURS[1], linewidth=2.2, zorder=4)
@@ -109,8 +109,8 @@ def _probed(bench: Bench) -> tuple[Scene, Probe]:
     field: FlowField = bench.gyre
     settings = bench.settings(**PAPER, resolution=RESOLUTION)
     view = Scene(field, settings)
-    pixel = COVERS * field.surface.extent / RESOLUTION
-    return view, probe(view, PLACE, pixel=pixel)
+    pixel = TEXELS_PER_PIXEL * field.surface.extent / RESOLUTION
+    return view, probe(view, FIGURE2_POINT, pixel=pixel)
 
 
 def _figure2(bench: Bench) -> Finding:

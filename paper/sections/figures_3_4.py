@@ -17,8 +17,8 @@ from paper.position_errors import STEPS, Errors, position_errors, step_slices
 __all__ = ["SECTIONS"]
 
 #: Growth over ten steps up to which an error counts as not accumulating.
-BOUNDED = 2.0
-WORDS = {2: "half", 4: "a quarter"}
+BOUNDED_GROWTH = 2.0
+FACTOR_WORDS = {2: "half", 4: "a quarter"}
 
 
 def _measured(bench: Bench, name: str, field: FlowField, step: int, factor: int) -> Errors:
@@ -95,7 +95,7 @@ def _claims(errors: Errors, figure: int, nodes: str) -> list[Claim]:
             f"{name}_field_errors_accumulate",
             f"Down-sampled to {nodes}, errors of the field's paths grow with the steps.",
             errors.growth["field"],
-            BOUNDED,
+            BOUNDED_GROWTH,
             "at least",
             "× from step 1 to 10",
         ),
@@ -121,7 +121,7 @@ def _claims(errors: Errors, figure: int, nodes: str) -> list[Claim]:
             f"{name}_slices_errors_bounded",
             f"Down-sampled to {nodes}, errors of the slices are bounded and do not accumulate.",
             errors.growth["slices"],
-            BOUNDED,
+            BOUNDED_GROWTH,
             "at most",
             "× from step 1 to 10",
         ),
@@ -167,7 +167,7 @@ def _others(bench: Bench) -> Finding:
             pairs = ((errors.slices[at], errors.field[at]) for at in (0, -1))
             last = float(errors.quotient[-1])
             rows.append((name, grid, *(float(1e3 * e) for pair in pairs for e in pair), last))
-            numbers[f"{name}, {WORDS[factor]}"] = _numbers(errors)
+            numbers[f"{name}, {FACTOR_WORDS[factor]}"] = _numbers(errors)
             claims.append(
                 Claim(
                     f"{name}_{grid}_slices_more_accurate".replace(" × ", "x").replace(" ", "_"),

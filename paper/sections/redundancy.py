@@ -15,7 +15,7 @@ from paper.redundancy import error_in_texels, redundancy
 __all__ = ["SECTIONS"]
 
 #: Bound of the error in texels of the noise, and texels of the noise along the surface.
-BOUND, RESOLUTION = 0.25, 1024
+BOUND_TEXELS, RESOLUTION = 0.25, 1024
 READING = (
     "There is much to save, but less of it lies between the slices than the paper believes: "
     "most of what can be predicted of an entry follows from the entries beside it in the same "
@@ -36,7 +36,7 @@ def _traced(bench: Bench, field: FlowField) -> TraceSlices:
 def _measured(bench: Bench, field: FlowField) -> dict[str, Any]:
     slices = _traced(bench, field)
     common: dict[str, Any] = {"texels": RESOLUTION / max(field.shape), "periodic": field.periodic}
-    exact, bounded = redundancy(slices), redundancy(slices, BOUND, **common)
+    exact, bounded = redundancy(slices), redundancy(slices, BOUND_TEXELS, **common)
     bits = {"exact": exact.by_neighbours.mean(), "bounded": bounded.by_neighbours.mean()}
     data, decoded = slices.displacement, exact.decoded.displacement
     return {
@@ -50,7 +50,7 @@ def _measured(bench: Bench, field: FlowField) -> dict[str, Any]:
         "shared_exact": exact.share,
         "shared_bounded": bounded.share,
         "exact_again": data.tobytes() == decoded.tobytes(),
-        "bound_texels": BOUND,
+        "bound_texels": BOUND_TEXELS,
         "error_texels": error_in_texels(slices, bounded.decoded, **common),
     }
 
@@ -60,10 +60,10 @@ def _redundancy(bench: Bench) -> Finding:
     columns = {
         "KB, float32": lambda row: row["raw_bytes"] / 1024,
         "bits left, exact": lambda row: row["bits_left_exact"],
-        f"bits left, within {BOUND:g} texels": lambda row: row["bits_left_bounded"],
+        f"bits left, within {BOUND_TEXELS:g} texels": lambda row: row["bits_left_bounded"],
         "times fewer": lambda row: row["bounded_factor"],
         "shared, to the last bit": lambda row: row["shared_exact"],
-        f"shared, to {BOUND:g} texels": lambda row: row["shared_bounded"],
+        f"shared, to {BOUND_TEXELS:g} texels": lambda row: row["shared_bounded"],
         "greatest error, texels": lambda row: row["error_texels"],
     }
     rows = [(name, *(of(row) for of in columns.values())) for name, row in numbers.items()]
@@ -84,7 +84,7 @@ def _claims(numbers: dict[str, Any]) -> list[Claim]:
                 f"redundancy_{name}",
                 f"Sections 5 and 6, {name}: slices of adjacent times are highly redundant. Share "
                 "of the bits left of a slice by itself that its neighbours predict, within "
-                f"{BOUND:g} texels.",
+                f"{BOUND_TEXELS:g} texels.",
                 row["shared_bounded"],
                 0.5,
                 "at least",
@@ -92,7 +92,7 @@ def _claims(numbers: dict[str, Any]) -> list[Claim]:
             Claim(
                 f"room_{name}",
                 f"Section 5, {name}: there is still a large room to save space, within "
-                f"{BOUND:g} texels. Bits in memory over the entropy of what is left.",
+                f"{BOUND_TEXELS:g} texels. Bits in memory over the entropy of what is left.",
                 row["bounded_factor"],
                 2.0,
                 "at least",
@@ -102,7 +102,7 @@ def _claims(numbers: dict[str, Any]) -> list[Claim]:
                 f"bound_{name}",
                 f"Beyond, {name}: rounding what is left keeps the bound.",
                 row["error_texels"],
-                BOUND,
+                BOUND_TEXELS,
                 "at most",
                 "texels",
             ),

@@ -12,6 +12,7 @@ from flowtex.rendering.cpu import LookupMaker
 from flowtex.rendering.cpu.fragments import Fragments
 from flowtex.rendering.cpu.paper_noise import PaperImages, PaperNoise
 from flowtex.textures import PaperTextures
+from paper import measures
 from paper.bench import PAPER, Bench
 from paper.findings import Claim, Finding, Panel, Plate, Section, Table
 from paper.plots import Line, line_plot
@@ -25,7 +26,7 @@ Values = Mapping[str, Any]
 RESOLUTION, POINT = 1024, (0.63, 0.37)
 SETTINGS: dict[str, Any] = {**PAPER, "resolution": RESOLUTION, "parameter": "time"}
 #: Pixels count as slow or fast below or above these shares of the pixels in view.
-SLOW, FAST = 0.25, 0.75
+SLOW_QUANTILE, FAST_QUANTILE = 0.25, 0.75
 
 
 class _FixedStep(PaperNoise):
@@ -59,9 +60,7 @@ def _lookups(paper: PaperTextures, step: float) -> dict[str, LookupMaker | None]
 
 def _coherence(view: View, values: Floats) -> dict[str, float]:
     """Coherence in all of the view, and where the flow is slow and fast."""
-    from paper import measures
-
-    low, high = np.quantile(view.speed[view.mask], (SLOW, FAST))
+    low, high = np.quantile(view.speed[view.mask], (SLOW_QUANTILE, FAST_QUANTILE))
     masks = {
         "all": view.mask,
         "slow": view.mask & (view.speed <= low),
@@ -89,8 +88,7 @@ def _section41(bench: Bench) -> Finding:
     for zoom in zooms:
         view = view_of(bench, field, size, zoom=zoom, focus=POINT if zoom > 1 else None)
         for name, lookup in lookups.items():
-            values = view.picture(lookup, **SETTINGS).value
-            values = (values - np.nanmean(values)) / np.nanstd(values)
+            values = measures.standardised(view.picture(lookup, **SETTINGS).value)
             row = figures[name][f"{zoom:g}"] = _coherence(view, values)
             if zoom == panel_zoom:
                 label = f"Δt {name}: coherence {row['all']:.2f}."

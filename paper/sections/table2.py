@@ -17,9 +17,9 @@ __all__ = ["SECTIONS"]
 #: Seconds of preprocessing, and of texture creation and loading, as the paper has them.
 PUBLISHED = {"post": (2.312, 0.08), "shuttle": (3.172, 0.077), "vortex": (8.875, 0.24)}
 #: Seconds that count as a few, and as slightly more; frames a second that count as several hundred.
-FEW, MORE, HUNDREDS = 5.0, 15.0, 200.0
+FEW_S, MORE_S, HUNDREDS_PER_S = 5.0, 15.0, 200.0
 #: Width and height of the picture whose frames are timed.
-SIZE = (512, 512)
+PICTURE_SIZE = (512, 512)
 
 
 def _clock(do: Any) -> tuple[float, Any]:
@@ -60,7 +60,7 @@ def _frame_times(bench: Bench, field: FlowField, slices: Any) -> dict[str, float
     from flowtex.plotting.vtk_camera import look
     from flowtex.scene import Scene
 
-    plotter: Any = pv.Plotter(off_screen=True, window_size=list(SIZE))
+    plotter: Any = pv.Plotter(off_screen=True, window_size=list(PICTURE_SIZE))
     try:
         plotter.disable_anti_aliasing()
         grey = Appearance(scalars=False, color="grey")
@@ -132,7 +132,7 @@ def _claims(timings: dict[str, dict[str, float]]) -> list[Claim]:
             f"Table 2, {name}: preprocessing takes "
             f"{'slightly more than ' if name == 'vortex' else ''}a few seconds.",
             row["preprocessing"],
-            MORE if name == "vortex" else FEW,
+            MORE_S if name == "vortex" else FEW_S,
             "at most",
             "s",
             timed=True,
@@ -147,7 +147,7 @@ def _claims(timings: dict[str, dict[str, float]]) -> list[Claim]:
                 "Section 5: advecting and drawing exceeds several hundred frames a second (the "
                 "paper's on a graphics card; the slowest of the data sets, on this machine).",
                 min(rates),
-                HUNDREDS,
+                HUNDREDS_PER_S,
                 "at least",
                 "frames a second",
                 timed=True,

@@ -11,7 +11,7 @@ from paper.findings import Claim, Finding, Section, Table, Text
 __all__ = ["SECTIONS"]
 
 #: Convolution size of the paper, and slices of a steady field that its sizes come to.
-K, STEADY = 10, 54
+K, STEADY_SLICES = 10, 54
 
 
 HEAD = (
@@ -29,7 +29,7 @@ def _slices(field: FlowField) -> dict[str, int]:
     """Count slices: the paper's K, those that its sizes come to, and those of this package."""
     steps = len(field.times)
     # A field that varies has lags from 0 to K, as far as there are earlier time steps.
-    published = STEADY if field.steady else sum(min(step, K) + 1 for step in range(steps))
+    published = STEADY_SLICES if field.steady else sum(min(step, K) + 1 for step in range(steps))
     parameter = "arclength" if field.steady else "time"
     return {"k": K * steps, "told": published, "ours": len(choose_lags(field, parameter)) * steps}
 
@@ -73,9 +73,9 @@ def _table3(bench: Bench) -> Finding:
 def _reading() -> str:
     return (
         "The published sizes come out to the last digit (the paper cuts digits off) with pairs of "
-        f"single floats: {STEADY} slices for the steady data, far more than K = 10; and for the "
-        "vortex data lags 0 to 10 as far as earlier steps exist, 286 slices. Many lags are what "
-        "adapted steps need: a step doubles with each level of detail, so ten even lags only "
+        f"single floats: {STEADY_SLICES} slices for the steady data, far more than K = 10; and for "
+        "the vortex data lags 0 to 10 as far as earlier steps exist, 286 slices. Many lags are "
+        "what adapted steps need: a step doubles with each level of detail, so ten even lags only "
         "serve one zoom. Lags that double serve all of them."
     )
 

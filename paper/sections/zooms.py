@@ -16,8 +16,8 @@ from paper.views import View, grey, view_of
 __all__ = ["SECTIONS"]
 
 
-#: Texels of the paper's noise, a point to zoom into, and texels of the texture that LIC makes.
-RESOLUTION, POINT, LIC = 1024, (0.63, 0.37), (128, 256)
+#: Texels of the paper's noise, a point to zoom into, and texels of the texture of LIC.
+RESOLUTION, POINT, LIC_SHAPE = 1024, (0.63, 0.37), (128, 256)
 METHODS = {
     "procedural noise": "Noise in space (default)",
     "noise texture": "The paper's noise texture",
@@ -31,7 +31,8 @@ def _drawn(bench: Bench, view: View, method: str) -> Floats:
     if method == "noise texture":
         return view.picture(**PAPER, resolution=RESOLUTION).value
     texture = bench.once(
-        "LIC", lambda: forssell_lic(view.field, LIC, length=24.0, kernel="hann", seed=bench.seed)
+        "LIC",
+        lambda: forssell_lic(view.field, LIC_SHAPE, length=24.0, kernel="hann", seed=bench.seed),
     )
     values = draw_texture(texture, view.field, view.camera, view.size)
     # Far out there is nothing but grey left.

@@ -298,7 +298,7 @@ def test_the_browser_draws_the_same_from_the_same_camera(page: Page) -> None:
     before = count(page)
     page.get_by_role("button", name="browser", exact=True).click()
     there = settled(page, before)
-    assert page.locator(".flowtex-there canvas").count() >= 1
+    assert page.locator(".flowtex-client canvas").count() >= 1
     # Either has its own look at the edge of a pixel; another camera differs by far more.
     assert difference(there, here) < 12
     before = count(page)

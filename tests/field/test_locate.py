@@ -54,10 +54,10 @@ def test_a_point_of_the_surface_is_found(
     # Next to a pole an index says little: positions are compared.
     for _ in range(60):
         at = rng.uniform(0, 1, 2) * [rows - 1, columns - 1]
-        point = surface_point(field.surface, at).mix(field.surface.points)
+        point = surface_point(field.surface, at).interpolate(field.surface.points)
         found = locate(field, point)
         assert found is not None
-        there = surface_point(field.surface, found).mix(field.surface.points)
+        there = surface_point(field.surface, found).interpolate(field.surface.points)
         assert np.abs(there - point).max() < 1e-9 * field.surface.extent
 
 

@@ -11,7 +11,7 @@ from webgl_page import ClientPage, packed, state
 
 from flowtex._util.array_types import Bytes
 from flowtex.plotting.vtk_camera import apply_camera
-from flowtex.rendering.webgl import Colours, Scene
+from flowtex.rendering.webgl import ClientData, Colours
 
 #: Whether Chromium draws with the WebGL that it brings, which filters with fewer digits.
 OWN = """(({ gl }) => gl.getExtension('WEBGL_debug_renderer_info') !== null
@@ -50,7 +50,7 @@ def drawn_by_vtk(plotter: Any, view: View) -> Bytes:
 def drawn_by_webgl(client: ClientPage, name: str) -> Bytes:
     view, (shown, _) = (VIEWS | DEEP)[name], judged(name)
     before, after, _ = shown.moment
-    whole = Scene(shown.textures, Colours(plain=COLOUR, background=GROUND))
+    whole = ClientData(shown.textures, Colours(plain=COLOUR, background=GROUND))
     header = whole.header(
         shown.settings, camera=state(view.camera), time=shown.time, clock=view.clock
     )

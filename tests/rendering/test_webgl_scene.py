@@ -13,7 +13,7 @@ from flowtex._util.colours import colour_table
 from flowtex.camera import Camera
 from flowtex.first_look import first_look
 from flowtex.options import Options
-from flowtex.rendering.webgl import Scene
+from flowtex.rendering.webgl import ClientData
 from flowtex.scene import coarsened_field
 from flowtex.settings import TABLE, Settings
 from flowtex.textures import TextureSet
@@ -42,7 +42,7 @@ def web_view(field: flowtex.FlowField, *, steps: int | None = None, **options: A
     return web_views(field, Options.split(**options), steps=steps)[0]
 
 
-def staged(field: flowtex.FlowField, **options: Any) -> tuple[WebView, Scene]:
+def staged(field: flowtex.FlowField, **options: Any) -> tuple[WebView, ClientData]:
     view = web_view(field, **options)
     return view, view.data()
 

@@ -25,9 +25,7 @@ from webgl_page import ClientPage, packed, state
 from flowtex import FlowField
 from flowtex.camera import Camera
 from flowtex.rendering.cpu import Picture, render
-from flowtex.rendering.cpu.mipmaps import Mips
-from flowtex.rendering.uniforms import ViewState, uniforms
-from flowtex.rendering.webgl import Colours, Scene
+from flowtex.rendering.webgl import ClientData, Colours
 from flowtex.settings import Settings
 from flowtex.textures import TextureSet, as_picture
 from flowtex.trace import SliceStore
@@ -80,7 +78,7 @@ def scene(
     """A scene as JSON."""
     settings = Settings(**{**QUICK, **options})
     plain = colours or Colours(plain=(0.6, 0.6, 0.6), background=(1.0, 0.0, 0.0))
-    whole = Scene(made(field, settings), plain)
+    whole = ClientData(made(field, settings), plain)
     look = {} if camera is None else state(camera)
     header = whole.header(settings, camera=look, time=time, clock=clock)
     return packed(whole, header | {"camera": look or None}, steps)
@@ -170,71 +168,6 @@ def test_a_lit_surface_is_darker_aside(client: ClientPage) -> None:
     assert np.abs(off).mean() < 2.5
 
 
-# --- numbers ----------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("name", ["whole", "zoom 1e5", "curved", "between two steps", "image"])
-def test_uniforms_are_those_of_python(client: ClientPage, name: str) -> None:
-    field, camera, options = VIEWS[name]
-    left = {k: v for k, v in options.items() if k != "time"}
-    settings = Settings(**{**QUICK, **left})
-    textures = made(field, settings)
-    view = ViewState(
-        focus=np.asarray(camera.focal_point),
-        anchor=np.array([0.1, 0.2, 0.0]),
-        eye=camera.eye,
-        between=0.375,
-        time=0.55,
-        clock=7.3,
-    )
-    header = Scene(textures).header(settings)
-    paper = textures.paper
-    given = {
-        "focus": list(view.focus),
-        "anchor": list(view.anchor),
-        "eye": list(view.eye),
-        "between": 0.375,
-        "time": 0.55,
-        "clock": 7.3,
-    }
-    theirs = client.page.evaluate(
-        "([h, v, shape]) => client.uniforms(h, h.settings, v, shape && { data: [], shape })",
-        [header, given, None if paper is None else list(paper.noise.shape)],
-    )
-    ours = uniforms(textures, settings, view)
-    assert set(theirs) == set(ours)
-    for key, value in ours.items():
-        np.testing.assert_allclose(
-            np.asarray(theirs[key], dtype=float),
-            np.asarray(value, dtype=float),
-            rtol=1e-12,
-            atol=1e-15,
-            err_msg=key,
-        )
-
-
-def test_mip_levels_without_the_driver(client: ClientPage, rng: np.random.Generator) -> None:
-    texels = rng.normal(size=(1, 6, 11, 2)).astype(np.float32)
-    bits = texels.astype(np.float16).view(np.uint16)
-    found = client.page.evaluate(
-        "(bits) => [...client.halved(Uint16Array.from(bits), 11, 6, 2)[0]]", bits.ravel().tolist()
-    )
-    halved = np.array(found, np.uint16).view(np.float16).reshape(3, 5, 2).astype(float)
-    mips = Mips(texels, levels=1)
-    v, u = np.meshgrid((np.arange(3) + 0.5) / 3, (np.arange(5) + 0.5) / 5, indexing="ij")
-    expected = mips.at(np.stack([u.ravel(), v.ravel()], axis=-1), np.ones(15)).reshape(3, 5, 2)
-    np.testing.assert_allclose(halved, expected, atol=1e-3)
-
-
-def test_a_slow_machine_gets_fewer_and_larger_pixels(client: ClientPage) -> None:
-    ask = "([price, pixels]) => client.quality(price, 2, pixels, 49, 55)"
-    assert client.page.evaluate(ask, [1e-7, 2e6]) == {"scale": 1, "samples": 49}
-    slow = client.page.evaluate(ask, [3e-5, 1e6])
-    assert slow["samples"] == 9
-    assert 0.2 <= slow["scale"] < 0.5
-    assert 3e-5 * 1e6 * slow["scale"] ** 2 * (9 + 8) < 60
-
-
 # --- the hand ---------------------------------------------------------------------------------
 
 
@@ -271,16 +204,16 @@ def test_on_a_slow_machine_a_moved_picture_serves_until_the_next(client: ClientP
     squares = scene(gyre, straight(3, (0.8, 0.5)), noise="checkerboard", resolution=256, tiles=4)
     client.mount(squares, SIZE, **PLAIN)
     before = client.picture()
-    slow = "viewers[0].graphics.programs.forEach((p) => { p.price = 1 })"
-    ahead = "viewers[0].navigator.pan(-60 / 180, 20 / 120); viewers[0].moved(); viewers[0].draw()"
+    slow = "viewers[0].graphics.programs.entries.forEach((p) => { p.price = 1 })"
+    ahead = "viewers[0].camera.pan(-60 / 180, 20 / 120); viewers[0].moved(); viewers[0].draw()"
     number(client, f"{{ {slow}; {ahead}; }}")
     moved = client.pixels()
     assert not number(client, "viewers[0].sharp")
     np.testing.assert_array_equal(moved[10:, 30:], before[:-10, :-30])
-    number(client, f"{{ {slow}; viewers[0].navigator.zoomBy(1.5, 0.2, 0.1); viewers[0].moved() }}")
+    number(client, f"{{ {slow}; viewers[0].camera.zoomBy(1.5, 0.2, 0.1); viewers[0].moved() }}")
     number(client, "viewers[0].draw()")
     near = client.pixels().astype(float)
-    number(client, "viewers[0].graphics.programs.forEach((p) => { p.price = 1e-5 })")
+    number(client, "viewers[0].graphics.programs.entries.forEach((p) => { p.price = 1e-5 })")
     sharp = client.picture().astype(float)
     inner = (slice(40, 100), slice(60, 160))
     shown, expected = near[inner].ravel(), sharp[inner].ravel()
@@ -303,7 +236,7 @@ def test_a_drag_turns_a_curved_surface_and_shift_pans_it(client: ClientPage) -> 
         mouse.down()
         mouse.move(left + 120, top + 75, steps=2)
         mouse.up()
-        found.append(number(client, "viewers[0].camera"))
+        found.append(number(client, "viewers[0].cameraState"))
     keyboard.up("Shift")
     turned, panned = found
     np.testing.assert_allclose(turned["focal_point"], ASIDE.focal_point, atol=1e-12)
@@ -329,12 +262,12 @@ def test_the_wheel_zooms_to_the_pointer(client: ClientPage, name: str) -> None:
     before = number(client, place)
     client.page.mouse.move(left + x, top + y)
     client.page.mouse.wheel(0, -300)
-    client.page.wait_for_function("() => viewers[0].navigator.zoom > 1.9")
+    client.page.wait_for_function("() => viewers[0].camera.zoom > 1.9")
     client.sharp()
     if name != "curved":  # there the zoom is counted at the depth of what is pointed at
-        zoom = number(client, "viewers[0].navigator.zoom")
+        zoom = number(client, "viewers[0].camera.zoom")
         np.testing.assert_allclose(zoom, 1.25**3, rtol=1e-9)
-    height = 2 * number(client, "viewers[0].navigator.height")
+    height = 2 * number(client, "viewers[0].camera.height")
     after = number(client, place)
     np.testing.assert_allclose(after["position"], before["position"], atol=1e-4 * height)
 
@@ -342,27 +275,27 @@ def test_the_wheel_zooms_to_the_pointer(client: ClientPage, name: str) -> None:
 def test_zoom_ends_where_single_precision_does(client: ClientPage) -> None:
     client.mount(scene(), SIZE, **PLAIN)
     client.sharp()
-    number(client, "viewers[0].navigator.zoomBy(1e9)")
-    np.testing.assert_allclose(number(client, "viewers[0].navigator.zoom"), 1e6)
-    number(client, "viewers[0].navigator.zoomBy(1e-9)")
-    np.testing.assert_allclose(number(client, "viewers[0].navigator.zoom"), 0.25)
+    number(client, "viewers[0].camera.zoomBy(1e9)")
+    np.testing.assert_allclose(number(client, "viewers[0].camera.zoom"), 1e6)
+    number(client, "viewers[0].camera.zoomBy(1e-9)")
+    np.testing.assert_allclose(number(client, "viewers[0].camera.zoom"), 0.25)
 
 
 def test_keys(client: ClientPage) -> None:
     client.mount(scene(), SIZE, hear=["onPlaying", "onControls"], smooth=False)
     client.sharp()
-    start = number(client, "viewers[0].camera")
+    start = number(client, "viewers[0].cameraState")
     client.page.evaluate("() => viewers[0].root.focus()")
     press = client.page.keyboard.press
     press("ArrowRight")
-    assert number(client, "viewers[0].camera.focal_point[0]") > start["focal_point"][0]
+    assert number(client, "viewers[0].cameraState.focal_point[0]") > start["focal_point"][0]
     press("ArrowUp")
-    assert number(client, "viewers[0].camera.focal_point[1]") > start["focal_point"][1]
+    assert number(client, "viewers[0].cameraState.focal_point[1]") > start["focal_point"][1]
     press("+")
-    np.testing.assert_allclose(number(client, "viewers[0].navigator.zoom"), 1.25)
+    np.testing.assert_allclose(number(client, "viewers[0].camera.zoom"), 1.25)
     press("-")
     press("0")
-    assert number(client, "viewers[0].camera") == start
+    assert number(client, "viewers[0].cameraState") == start
     press("h")
     assert number(client, "viewers[0].root.shadowRoot.querySelector('.bar').hidden")
     press(" ")
@@ -446,7 +379,7 @@ def test_the_whole_surface_is_seen_in_any_shape(client: ClientPage) -> None:
     for field in (gyre, torus):
         given = scene(field, None)
         settings = Settings(**QUICK)
-        given["header"]["camera"] = Scene(made(field, settings)).first_look((480, 300))
+        given["header"]["camera"] = ClientData(made(field, settings)).first_camera(1.6).to_dict()
         for camera in (given["header"]["camera"], None):
             given["header"]["camera"] = camera
             picture = client.picture(client.mount(given, (120, 180), **PLAIN))
@@ -457,12 +390,15 @@ def test_the_whole_surface_is_seen_in_any_shape(client: ClientPage) -> None:
             client.clear()
 
 
-def test_finer_pixels_show_the_same_grains(webgl_browser: Browser, client: ClientPage) -> None:
-    client.mount(scene(gyre, straight(4)), SIZE, **PLAIN)
+@pytest.mark.parametrize("noise", ["procedural", "texture"])
+def test_finer_pixels_show_the_same_grains(
+    webgl_browser: Browser, client: ClientPage, noise: str
+) -> None:
+    client.mount(scene(gyre, straight(4), noise=noise), SIZE, **PLAIN)
     coarse = client.picture().astype(float)
     context = webgl_browser.new_context(device_scale_factor=2)
     other = ClientPage(context.new_page())
-    other.mount(scene(gyre, straight(4)), SIZE, **PLAIN)
+    other.mount(scene(gyre, straight(4), noise=noise), SIZE, **PLAIN)
     fine = other.picture().astype(float)
     context.close()
     assert fine.shape == (2 * SIZE[1], 2 * SIZE[0], 3)
@@ -487,8 +423,7 @@ def test_playing_goes_through_the_times_and_asks_for_what_is_missing(client: Cli
     assert needed == {("onNeed", 2)}
     assert number(client, "viewers[0].time") < 0.4 + 1e-9
     client.page.evaluate(
-        "(parts) => { for (const [name, p] of Object.entries(unpack({ parts })))"
-        " viewers[0].setPart(name, client.decoded(p.dtype, p.data), p.shape); }",
+        "(parts) => unpack(parts).forEach((part) => viewers[0].setPart(part))",
         late,
     )
     client.page.wait_for_function("() => viewers[0].time > 0.42")
@@ -542,7 +477,7 @@ def test_nothing_is_drawn_out_of_sight_or_at_rest(client: ClientPage) -> None:
     assert number(client, "viewers[0].graphics.waiting.size") == 0
     frames = number(client, "viewers[0].stats().frames")
     client.page.evaluate("() => { document.querySelector('.view').style.marginTop = '5000px' }")
-    client.page.wait_for_function("() => !viewers[0]._visible")
+    client.page.wait_for_function("() => !viewers[0].isVisible")
     number(client, "viewers[0].setSettings({ grain: 3 })")
     client.page.wait_for_timeout(200)
     assert number(client, "viewers[0].stats().frames") == frames
@@ -579,18 +514,17 @@ def test_a_whole_scene_takes_the_place_of_a_coarse_one(client: ClientPage) -> No
     first = scene(gyre, straight(8))
     client.mount(first, SIZE, **PLAIN)
     client.sharp()
-    number(client, "viewers[0].navigator.zoomBy(2, 0.5, 0.5)")
+    number(client, "viewers[0].camera.zoomBy(2, 0.5, 0.5)")
     number(client, "viewers[0].moved()")
     client.sharp()
-    before = number(client, "viewers[0].camera")
+    before = number(client, "viewers[0].cameraState")
     other = scene(coarse_gyre, straight(1))
     other["header"]["generation"] = 1
     take = """(given) => { viewers[0].setHeader(given.header);
-      for (const [name, p] of Object.entries(unpack(given)))
-        viewers[0].setPart(name, client.decoded(p.dtype, p.data), p.shape); }"""
+      for (const part of unpack(given.parts)) viewers[0].setPart(part); }"""
     client.page.evaluate(take, other)
     client.sharp()
-    assert number(client, "viewers[0].camera") == before
+    assert number(client, "viewers[0].cameraState") == before
     assert number(client, "viewers[0].parts.get('position').shape") == [31, 41, 3]
 
 
@@ -617,15 +551,14 @@ MODEL = """([scene, size]) => {
   document.body.append(el);
   window.left = client.default.render({ model, el });
   window.host = el.firstElementChild;
-  const parts = unpack(scene), names = Object.keys(parts);
+  const parts = Object.values(scene.parts);
   // In a message the bytes of several parts may begin anywhere.
-  const views = names.map((name) => {
-    const bytes = new Uint8Array(parts[name].data.byteLength + 3);
-    bytes.set(new Uint8Array(parts[name].data), 3);
-    return new DataView(bytes.buffer, 3);
+  const views = parts.map((part) => {
+    const all = bytes(part), shifted = new Uint8Array(all.length + 3);
+    shifted.set(all, 3);
+    return new DataView(shifted.buffer, 3);
   });
-  fire("msg:custom", { kind: "parts", names, dtypes: names.map((n) => parts[n].dtype),
-    shapes: names.map((n) => parts[n].shape) }, views);
+  fire("msg:custom", { kind: "parts", parts }, views);
 }"""
 
 

@@ -70,21 +70,24 @@ class Reader(html.parser.HTMLParser):
             self.scripts[-1] = (attributes, text + data)
 
     def header(self) -> dict[str, Any]:
-        (text,) = [text for given, text in self.scripts if given.get("id") == "header"]
-        return dict(json.loads(text))
+        (text,) = [text for given, text in self.scripts if given.get("id") == "headers"]
+        return dict(json.loads(text)[0])
 
     def parts(self) -> dict[str, NDArray[Any]]:
-        found: dict[str, NDArray[Any]] = {}
+        """Parts of the first view."""
+        result: dict[str, NDArray[Any]] = {}
+        by_digest: dict[str, NDArray[Any]] = {}
         for given, text in self.scripts:
-            if given.get("data-same"):
-                found[str(given["data-part"])] = found[str(given["data-same"])]
-            elif given.get("data-part"):
-                kind = np.dtype(given["data-dtype"])
+            if given.get("data-view") != "0":
+                continue
+            info = json.loads(given["data-part"] or "")
+            if text:
+                kind = np.dtype(info["dtype"])
                 planes = np.frombuffer(gzip.decompress(base64.b64decode(text)), np.uint8)
                 data = np.ascontiguousarray(planes.reshape(kind.itemsize, -1).T).view(kind)
-                shape = tuple(map(int, (given["data-shape"] or "").split()))
-                found[str(given["data-part"])] = data.reshape(shape)
-        return found
+                by_digest[info["digest"]] = data.reshape(info["shape"])
+            result[info["name"]] = by_digest[info["digest"]]
+        return result
 
 
 def test_a_page_holds_the_scene_and_nothing_from_outside(tmp_path: Path) -> None:
@@ -142,7 +145,7 @@ def test_a_file_is_there_whole_or_as_it_was(
         raise OSError(msg)
 
     with monkeypatch.context() as patch:
-        patch.setattr("flowtex.rendering.webgl.Scene.step", fail)
+        patch.setattr("flowtex.rendering.webgl.ClientData.step", fail)
         patch.setattr("flowtex.web.preview.preview_png", lambda *a, **k: b"")
         with pytest.raises(OSError, match="disk full"):
             export(gyre(), path)

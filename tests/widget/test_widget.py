@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import base64
 import io
+import re
 import subprocess
 import sys
 import threading
@@ -35,6 +36,11 @@ def gyre(times: int = 1, nodes: int = 30) -> flowtex.FlowField:
     return flowtex.FlowField.from_arrays(at, np.stack(series), name="gyre")
 
 
+def names_of(message: dict[str, Any]) -> list[str]:
+    """Names of the parts that a message describes."""
+    return [info["name"] for info in message.get("parts", ())]
+
+
 class Heard:
     """What a client would have received: messages, and arrays by name."""
 
@@ -51,12 +57,12 @@ class Heard:
         with self._came:
             self.messages.append({**content, "header": self.widget._header["generation"]})
             if content["kind"] == "parts":
-                described = zip(content["names"], content["dtypes"], content["shapes"], strict=True)
-                for (name, kind, shape), data in zip(described, buffers, strict=True):
-                    self.arrays[name] = np.frombuffer(data, kind).reshape(shape)
+                for info, data in zip(content["parts"], buffers, strict=True):
+                    array = np.frombuffer(data, info["dtype"]).reshape(info["shape"])
+                    self.arrays[info["name"]] = array
             self._came.notify_all()
         if content["kind"] == "offer":
-            self.say(kind="want", names=content["names"])
+            self.say(kind="want", names=names_of(content))
 
     def say(self, **message: Any) -> None:
         self.widget._handle_custom_msg(message, [])
@@ -179,7 +185,7 @@ def test_a_large_field_comes_coarse_first(make: Make, monkeypatch: pytest.Monkey
     heard = Heard(widget, monkeypatch)
     heard.say(kind="ready")
     heard.wait(lambda: heard.arrays.get("position", np.zeros(1)).shape == (60, 60, 3))
-    heard.wait(lambda: heard.messages[-1]["names"][-1] == "slices/0")
+    heard.wait(lambda: names_of(heard.messages[-1])[-1] == "slices/0")
     assert widget._header["geometry"]["shape"] == [60, 60]
     # Each array comes under the header that it belongs to.
     assert all(message["generation"] == message["header"] for message in heard.messages)
@@ -218,7 +224,7 @@ def test_a_setting_sends_what_it_changes_and_no_more(
     was = heard.arrays["noise"]
     widget.seed = 5
     heard.wait(lambda: not np.array_equal(was, heard.arrays["noise"]))
-    assert "position" not in {name for m in heard.messages for name in m["names"]}
+    assert "position" not in {name for m in heard.messages for name in names_of(m)}
     widget.noise = "procedural"
     heard.wait(lambda: heard.messages[-1]["header"] == 2)
     assert "FLOWTEX_PAPER" not in widget._header["variant"]
@@ -366,7 +372,7 @@ def test_many_views_of_one_mesh_share_what_is_made_of_it(
     heard.say(kind="ready")
     heard.wait(lambda: "slices/0" in heard.arrays)
     offers = [m for m in heard.messages if m["kind"] == "offer"]
-    assert "slices/0" in offers[0]["names"]
+    assert "slices/0" in names_of(offers[0])
 
 
 def test_what_is_shown_is_sent_before_anybody_asks(
@@ -375,7 +381,7 @@ def test_what_is_shown_is_sent_before_anybody_asks(
     came = threading.Event()
 
     def send(self: FlowWidget, content: dict[str, Any], buffers: Any = None) -> None:
-        if any(name == "slices/0" for name in content.get("names", ())):
+        if any(name == "slices/0" for name in names_of(content)):
             came.set()
 
     monkeypatch.setattr(FlowWidget, "send", send)
@@ -401,8 +407,10 @@ def test_two_views_are_one_widget(make: Make, monkeypatch: pytest.MonkeyPatch) -
         make(beside={"plane": "k=2"})
     text = widget.to_html()
     assert text is not None
-    assert 'data-part="beside:noise"' in text
-    assert 'data-part="beside:position" data-same="position"' in text
+    part = r'<script type="text/plain" data-view="1" data-part="[^"]*&quot;{}&quot;[^"]*">([^<]?)'
+    assert [bool(found) for found in re.findall(part.format("noise"), text)] == [True]
+    # What the first view has as well lies in the page once.
+    assert [bool(found) for found in re.findall(part.format("position"), text)] == [False]
 
 
 def test_opacity_and_legend(make: Make) -> None:

@@ -1,1 +1,43 @@
 """What the controls of a page do."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from flowtex.app.controllers.appearance import Appearance
+from flowtex.app.controllers.browser import BrowserRendering
+from flowtex.app.controllers.camera_controls import CameraControls
+from flowtex.app.controllers.context import Context
+from flowtex.app.controllers.data import Data
+from flowtex.app.controllers.library import Choice
+from flowtex.app.controllers.playback import Playback
+from flowtex.app.controllers.point_info import PointInfo
+from flowtex.app.controllers.sharing import Sharing
+
+__all__ = ["Controllers"]
+
+
+class Controllers:
+    """All controllers of a page that first shows a flow of the library.
+
+    ``restore_state`` is called with the state that a link holds.
+    """
+
+    def __init__(
+        self,
+        context: Context,
+        name: str,
+        choice: Choice,
+        restore_state: Callable[[Mapping[str, Any]], None],
+    ) -> None:
+        self.context = context
+        self.data = Data(context, name, choice)
+        self.appearance = Appearance(context)
+        self.playback = Playback(context)
+        self.camera = CameraControls(context)
+        self.browser = BrowserRendering(context)
+        self.point_info = PointInfo(context)
+        self.sharing = Sharing(
+            context, source=lambda: self.data.python, restore_state=restore_state
+        )

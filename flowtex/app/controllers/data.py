@@ -1,8 +1,8 @@
 """Which flow is shown: files, arrays, and planes of a mesh of three dimensions.
 
-Reading and tracing go on in a thread. What is asked for next makes an end of what went before; a
-large flow is first shown with few of its nodes, and the view on the page stands until there is
-another to put in its place.
+Reading and tracing go on in a thread. A new request cancels the one before; a large flow is first
+shown with few of its nodes, and the view on the page stays until there is another to put in its
+place.
 """
 
 from __future__ import annotations
@@ -10,17 +10,17 @@ from __future__ import annotations
 import asyncio
 import logging
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
-from dataclasses import replace
-from typing import Any
+from concurrent.futures import Executor, ThreadPoolExecutor
+from dataclasses import asdict, dataclass, replace
+from functools import partial
+from typing import Any, TypeVar
 
 import numpy as np
 
-from flowtex._util.progress import Stopped
-from flowtex.app.controllers.library import Choice, Library
-from flowtex.app.controllers.part import Part
-from flowtex.app.server.untrusted import clipped, name_among, shortened
-from flowtex.app.streaming.wishes import Found, Wish
+from flowtex._util.progress import Stopped, stoppable
+from flowtex.app.controllers.context import Context, Controller
+from flowtex.app.controllers.library import Choice
+from flowtex.app.server.validation import clipped, name_among, shortened
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.interpolation import steps_around
@@ -32,227 +32,273 @@ __all__ = ["Data"]
 
 _log = logging.getLogger(__name__)
 
-#: A flow of more nodes than this is first shown with so many of them.
-LARGE, FEW = 40_000, 8_000
+T = TypeVar("T")
+
+#: Nodes of another file above which it is first shown coarser, and how many it then has.
+FILE_PREVIEW = 40_000, 8_000
 #: The same for another part of the data that is shown: a slider redraws while it moves.
-MANY, SOME = 5_000, 2_500
-#: Seconds after which the page says that something is being made.
-PATIENCE = 0.3
+PART_PREVIEW = 5_000, 2_500
+#: Seconds after which the page says that something is being opened.
+BUSY_DELAY_S = 0.3
+#: Characters of a name in a message.
+NAME_LENGTH = 80
 
 
-class Data(Part):
-    """Which flow is shown.
+@dataclass(eq=False)
+class LoadRequest:
+    """Something that is to be opened, after which ``then`` is called.
 
-    Parameters
+    Attributes
     ----------
-    app
-        The application.
-    library
-        What may be opened.
-    name, choice
-        What is shown first.
+    cancelled
+        Whether nothing of it is to be shown any more.
+    superseded
+        Whether something else was requested since. While a slider moves that is always so: what
+        is quick to load is shown all the same, or nothing would be seen on the way.
     """
 
-    def __init__(self, app: Any, library: Library, name: str, choice: Choice) -> None:
-        super().__init__(app)
-        self.library = library
-        self.name = name
-        self.choice = choice
-        # Kept here: the library may let go of it, and to read it again takes a while.
-        self._source = library.source(name)
+    name: str
+    choice: Choice
+    then: Callable[[], None] | None = None
+    cancelled: bool = False
+    superseded: bool = False
+
+    @property
+    def over(self) -> bool:
+        """Whether it is not the latest request."""
+        return self.cancelled or self.superseded
+
+    async def in_thread(self, worker: Executor, work: Callable[[], T], *, quick: bool) -> T:
+        """Do some work for it off the event loop; ``Stopped`` where nobody wants the result.
+
+        Quick work is finished, once it has begun, though something else was requested.
+        """
+
+        def unwanted() -> bool:
+            return self.cancelled if quick else self.over
+
+        def guarded() -> T:
+            if self.over:
+                raise Stopped
+            with stoppable(unwanted):
+                return work()
+
+        result = await asyncio.get_running_loop().run_in_executor(worker, guarded)
+        if unwanted():
+            raise Stopped
+        return result
+
+
+@dataclass(frozen=True, eq=False)
+class LoadedFlow:
+    """What was read, and what of it is shown: all its nodes, or few."""
+
+    name: str
+    choice: Choice
+    source: FlowSource
+    field: FlowField
+    shown: FlowField
+    store: SliceStore | None = None
+
+    @property
+    def whole(self) -> bool:
+        """Whether all nodes are shown."""
+        return self.shown is self.field
+
+
+class Data(Controller):
+    """Which flow is shown; ``name`` and ``choice`` at first."""
+
+    def __init__(self, context: Context, name: str, choice: Choice) -> None:
+        super().__init__(context)
+        self.library = context.library
+        # It holds the source: the library may let go of it, and to read it again takes a while.
+        source, field = self.library.source(name), self.viewport.field
+        self._current = LoadedFlow(name, choice, source, field, field)
         self._goal = (name, choice)
-        self._store: SliceStore | None = None
-        self._wish = Wish(name, choice)
-        self._whole = True
+        self._request = LoadRequest(name, choice)
         self._worker = ThreadPoolExecutor(1, thread_name_prefix="flowtex opening")
         self._opening: asyncio.Task[None] | None = None
+        self.state.set(busy="", files=list(self.library.names), file=name, **self._options())
+        self.state.on("file")(self.take_file)
+        self.state.on("vectors", "block", "axis", "index")(self.take_choice)
+        context.field_changed.connect(self._show_choice)
+
+    @property
+    def name(self) -> str:
+        """Name of the file that is shown."""
+        return self._current.name
+
+    @property
+    def choice(self) -> Choice:
+        """What is shown of it."""
+        return self._current.choice
 
     @property
     def python(self) -> str | None:
         """Expression that makes what is shown, unless that comes from a file."""
         return self.library.python(self.name)
 
-    def values(self) -> dict[str, Any]:
-        """Return what the page begins with."""
-        return {"busy": "", "files": list(self.library.names), "file": self.name, **self._offers()}
-
-    def watch(self) -> None:
-        """Listen to the page."""
-        self.state.on("file")(self.take_file)
-        self.state.on("vectors", "block", "axis", "index")(self.take_choice)
-
     def take_file(self) -> None:
         """Open another file."""
-        wanted = self.state.get("file")
-        if wanted == self.name:
+        name = self.state.get("file")
+        if name == self.name:
             if self._goal[0] != self.name:  # the person has come back
                 self.cancel()
-        elif not isinstance(wanted, str):
+        elif not isinstance(name, str):
             self._show_choice()
-        elif wanted != self._goal[0]:
-            self.begin(wanted, Choice())
+        elif name != self._goal[0]:
+            self.open(name, Choice())
 
     def take_choice(self) -> None:
         """Show another array or plane of the same file."""
-        wanted = self._asked()
-        if wanted == self.choice:
-            there = self._goal == (self.name, wanted) or self._goal[0] != self.name
-            if not there and self._whole:
-                self.cancel()  # the slider has come back to what is shown
-            elif not there:
-                self.begin(self.name, wanted)
-            else:
-                self.state.set(**self._offers())
-        elif (self.name, wanted) != self._goal:
-            self.begin(self.name, wanted)
+        choice = self._requested()
+        if choice != self.choice:
+            if (self.name, choice) != self._goal:
+                self.open(self.name, choice)
+        elif self._goal == (self.name, choice) or self._goal[0] != self.name:
+            self.state.set(**self._options())
+        elif self._current.whole:
+            self.cancel()  # the slider has come back to what is shown
+        else:
+            self.open(self.name, choice)
 
-    def look_again(self) -> None:
+    def list_files(self) -> None:
         """Look through the folder for files that have come or gone."""
         self.state.set(files=list(self.library.names))
 
     def cancel(self) -> None:
         """Stop what is being opened; the old view stands."""
-        self._wish.dropped = True
+        self._request.cancelled = True
         self._goal = (self.name, self.choice)
         self._show_choice()
 
-    def begin(self, name: str, choice: Choice, then: Callable[[], None] | None = None) -> None:
-        """Open something, in place of what is being opened.
-
-        Parameters
-        ----------
-        name, choice
-            What to open.
-        then
-            Called once it is shown.
-        """
-        if name == self._wish.name and then is None:
-            self._wish.passed = True
+    def open(self, name: str, choice: Choice, then: Callable[[], None] | None = None) -> None:
+        """Open something, in place of what is being opened, and call ``then`` once it is shown."""
+        if name == self._request.name and then is None:
+            self._request.superseded = True
         else:
-            self._wish.dropped = True
-        self._wish, self._goal = Wish(name, choice, then), (name, choice)
-        self._opening = asyncio.ensure_future(self._open(self._wish))
+            self._request.cancelled = True
+        self._request, self._goal = LoadRequest(name, choice, then), (name, choice)
+        self._opening = asyncio.ensure_future(self._open(self._request))
 
-    async def _open(self, wish: Wish) -> None:
-        telling = asyncio.create_task(self._say(wish))
+    async def _open(self, request: LoadRequest) -> None:
+        announcement = asyncio.create_task(self._show_busy(request))
         try:
-            many, few = (LARGE, FEW) if wish.name != self.name else (MANY, SOME)
-            found = await wish.in_thread(
-                self._worker, lambda: self._quick_look(wish, many, few), quick=True
-            )
-            self._show(found, wish)
-            if not found.whole:
-                field = found.field
-                whole = lambda: replace(found, shown=field, store=self._trace(found, field))  # noqa: E731
-                self._show(await wish.in_thread(self._worker, whole, quick=False), wish)
-            if wish.then is not None and not wish.over:
-                wish.then()
+            flow = await request.in_thread(self._worker, lambda: self._preview(request), quick=True)
+            self._show(flow, request)
+            if not flow.whole:
+                complete = partial(self._complete, flow)
+                self._show(await request.in_thread(self._worker, complete, quick=False), request)
+            if request.then is not None and not request.over:
+                request.then()
         except Stopped:
             pass
         except (FieldError, OSError) as error:
-            self._give_up(error, wish)
+            self._fail(error, request)
         except Exception as error:
-            _log.exception("%s could not be opened", shortened(wish.name, 80))
-            words = f"{shortened(wish.name, 80)} could not be opened"
-            self._give_up(f"{words}: {str(error) or type(error).__name__}", wish)
+            _log.exception("%s could not be opened", shortened(request.name, NAME_LENGTH))
+            words = f"{shortened(request.name, NAME_LENGTH)} could not be opened"
+            self._fail(f"{words}: {str(error) or type(error).__name__}", request)
         finally:
-            telling.cancel()
-            if not wish.over:
+            announcement.cancel()
+            if not request.over:
                 self.state.send(busy="")
 
-    def _give_up(self, problem: Any, wish: Wish) -> None:
+    def _fail(self, problem: Any, request: LoadRequest) -> None:
         """Say why there is nothing else to show; the old view stands."""
-        if not wish.over:
-            self.app.complain(_without_folder(str(problem), wish.name))
+        if not request.over:
+            self.context.complain(_without_folder(str(problem), request.name))
             self._goal = (self.name, self.choice)
             self._show_choice()
-            if not self._whole:  # only a quick look at it was there, on the way
-                self.begin(self.name, self.choice)
+            if not self._current.whole:  # only a quick look at it was there, on the way
+                self.open(self.name, self.choice)
 
-    def _quick_look(self, wish: Wish, many: int, few: int) -> Found:
+    def _preview(self, request: LoadRequest) -> LoadedFlow:
         """Read a flow, and trace what there is time for."""
-        source, field, choice = self._read(wish.name, wish.choice)
-        shown = coarsened_field(field, few) if field.valid.size > many else field
-        found = Found(wish.name, choice, source, field, shown)
-        return replace(found, store=self._trace(found, shown))
+        name, choice = request.name, self.library.complete(request.name, request.choice)
+        source, field = self._read(name, choice)
+        most, few = FILE_PREVIEW if name != self.name else PART_PREVIEW
+        shown = coarsened_field(field, few) if field.valid.size > most else field
+        flow = LoadedFlow(name, choice, source, field, shown)
+        return replace(flow, store=self._trace(flow))
 
-    def _read(self, name: str, choice: Choice) -> tuple[FlowSource, FlowField, Choice]:
-        choice = self.library.complete(name, choice)
-        return self.library.source(name), self.library.field(name, choice), choice
+    def _complete(self, flow: LoadedFlow) -> LoadedFlow:
+        """Trace all nodes of a flow that was shown with few."""
+        flow = replace(flow, shown=flow.field)
+        return replace(flow, store=self._trace(flow))
 
-    def _trace(self, found: Found, field: FlowField) -> SliceStore | None:
-        name = found.name if field is found.field else ""
-        store = self.library.trace(name, found.choice, field, self.area.settings).store
+    def _read(self, name: str, choice: Choice) -> tuple[FlowSource, FlowField]:
+        return self.library.source(name), self.library.field(name, choice)
+
+    def _trace(self, flow: LoadedFlow) -> SliceStore:
+        name, times = flow.name if flow.whole else "", flow.shown.times
+        store = self.library.trace(name, flow.choice, flow.shown, self.settings).store
         # The time that is shown stays where another part of the same data is.
-        if store is not None and np.array_equal(field.times, self.scene.field.times):
-            for step in sorted(set(steps_around(field.times, self.scene.handle.time)[:2])):
+        if np.array_equal(times, self.viewport.field.times):
+            for step in sorted(set(steps_around(times, self.viewport.handle.time)[:2])):
                 store.at(step)
         return store
 
-    def _show(self, found: Found, wish: Wish) -> None:
+    def _show(self, flow: LoadedFlow, request: LoadRequest) -> None:
         """Put another flow in the place of the one that is shown; where that fails, it stands."""
-        before = (self._store, self.name, self.choice, self._source, self._whole, self._goal)
-        now, then = found.choice, self.choice
-        same = (found.name, now.block, now.vectors) == (self.name, then.block, then.vectors)
-        keep = same and now.plane[:1] == then.plane[:1]
-        self._store, self.name, self.choice = found.store, found.name, now
-        self._source, self._whole = found.source, found.whole
-        if not wish.passed:
-            self._goal = (found.name, now)
+        before = self._current, self._goal
+        new, old = flow.choice, self.choice
+        same = (flow.name, new.block, new.vectors) == (self.name, old.block, old.vectors)
+        keep = same and new.plane[:1] == old.plane[:1]
+        self._current = flow
+        if not request.superseded:
+            self._goal = (flow.name, new)
         try:
-            self.app.show(found.shown, keep_view=keep, keep_range=same)
+            self.context.show(flow.shown, keep_view=keep, keep_range=same)
             if not keep:
-                self.scene.home(*self.library.look(found.name))
-                self.area.stream.moved()
+                self.viewport.home(*self.library.look(flow.name))
+                self.stream.moved()
         except BaseException:
-            self._store, self.name, self.choice, self._source, self._whole, self._goal = before
+            self._current, self._goal = before
             raise
 
-    async def _say(self, wish: Wish) -> None:
+    async def _show_busy(self, request: LoadRequest) -> None:
         """Tell the page what goes on, once it has gone on for a moment."""
-        await asyncio.sleep(PATIENCE)
-        if not wish.over:
-            self.state.send(busy=f"Opening {shortened(wish.name, 80)}")
-
-    def refresh(self) -> None:
-        """Follow another flow that is shown."""
-        self._show_choice()
+        await asyncio.sleep(BUSY_DELAY_S)
+        if not request.over:
+            self.state.send(busy=f"Opening {shortened(request.name, NAME_LENGTH)}")
 
     def _show_choice(self) -> None:
         """Let the page show what is chosen; not while it has gone on to something else."""
-        said = {"file": self.name, **self._offers()}
+        values = {"file": self.name, **self._options()}
         if self._goal != (self.name, self.choice):
-            said = {name: said[name] for name in ("name", "about")}
-        self.state.send(busy="", **said)
+            values = {name: values[name] for name in ("name", "about")}
+        self.state.send(busy="", **values)
 
-    def _asked(self) -> Choice:
+    def _requested(self) -> Choice:
         """Return what the page asks for; where it asks for nothing that is there, what is shown."""
-        offers = self._offers()
+        options = self._options()
         block, vectors, axis = (
-            self.state.get(one) if name_among(self.state.get(one), offers[all_]) else offers[one]
+            self.state.get(one) if name_among(self.state.get(one), options[all_]) else options[one]
             for one, all_ in (("block", "blocks"), ("vectors", "vectors_choices"), ("axis", "axes"))
         )
-        if block != offers["block"]:  # its planes, and its arrays, are others
-            known = self._source.part(block).vectors
-            return Choice(vectors if vectors in known else "", "", block)
+        if block != options["block"]:  # its planes, and its arrays, are others
+            arrays = self._current.source.part(block).vectors
+            return Choice(vectors if vectors in arrays else "", "", block)
         plane = ""
         if axis:
             last = self._part.planes[axis] - 1
-            at = int(clipped(self.state.get("index"), offers["index"], 0, last))
-            plane = f"{axis}={at if axis == offers['axis'] else (last + 1) // 2}"
+            at = int(clipped(self.state.get("index"), options["index"], 0, last))
+            plane = f"{axis}={at if axis == options['axis'] else (last + 1) // 2}"
         return Choice(vectors, plane, block)
 
     @property
     def _part(self) -> FlowSource:
         """The source of the block that is shown."""
-        return self._source.part(self.choice.block or None)
+        return self._current.source.part(self.choice.block or None)
 
-    def _offers(self) -> dict[str, Any]:
+    def _options(self) -> dict[str, Any]:
         """Return what there is to choose from in the present file, and what is chosen."""
-        source, part = self._source, self._part
+        source, part = self._current.source, self._part
         axis = self.choice.plane[:1] if part.planes else ""
         count = part.planes.get(axis, 0)
-        field = self.scene.field
+        field = self.viewport.field
         return {
             "name": (field.name or source.name).replace("_", " ") or "flow",
             "about": about(field),
@@ -267,18 +313,12 @@ class Data(Part):
         }
 
     def describe(self) -> dict[str, Any]:
-        """Return what a link needs to know."""
-        chosen = {
-            "file": self.name,
-            "vectors": self.choice.vectors,
-            "plane": self.choice.plane,
-            "block": self.choice.block,
-        }
-        return {name: value for name, value in chosen.items() if value}
+        """Return which flow it is."""
+        return {k: v for k, v in {"file": self.name, **asdict(self.choice)}.items() if v}
 
     def close(self) -> None:
         """End what goes on."""
-        self._wish.dropped = True
+        self._request.cancelled = True
         if self._opening is not None:
             self._opening.cancel()
         self._worker.shutdown(wait=False, cancel_futures=True)

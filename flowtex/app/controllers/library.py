@@ -2,46 +2,48 @@
 
 From the page comes a name, never a path. Names are looked up among those of the files that were
 found when the library was made or looked through again, so nothing outside them can be opened.
-Files that are open, and the flows made from them, are kept for all pages of a server.
+Files that are open, and the flows made from them, are shared by all pages of a server.
 """
 
 from __future__ import annotations
 
 import threading
-from collections import OrderedDict
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Protocol, TypeVar
+from typing import Any
 
-from flowtex.app.controllers.folders import SUFFIXES, search
-from flowtex.app.server.untrusted import shortened
+from flowtex._util.cache import ByteCache
+from flowtex.app.server.validation import shortened
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.source import FlowSource
 from flowtex.settings import Settings
 from flowtex.trace import SliceStore, shared_store
 
-__all__ = ["Choice", "Library", "Opened"]
+__all__ = ["Choice", "Library", "TracedFlow"]
 
-#: Files, and flows, that are kept open at most, and bytes of each of the two together; what was
-#: asked for last is always kept.
-SOURCES, FLOWS = 4, 12
+#: Endings of files that a folder is searched for.
+SUFFIXES = frozenset(
+    [
+        *(".vts", ".vtr", ".vti", ".vtk", ".vtm", ".pvd", ".pvts", ".pvtr", ".pvti"),
+        *(".xyz", ".x", ".g", ".foam", ".case", ".cgns", ".ex2"),
+    ]
+)
+#: Folders below the one that was given that are searched, and files that are listed, at most.
+FOLDER_DEPTH, MOST_FILES = 4, 500
+#: Files, and flows, that stay open at most, and bytes of each of the two together.
+MOST_SOURCES, MOST_FLOWS = 4, 12
 SOURCE_BYTES, FLOW_BYTES = 2_000_000_000, 1_000_000_000
 
-T = TypeVar("T", bound="_Sized")
-Open = Callable[[], FlowSource]
+Opener = Callable[[], FlowSource]
+#: How far in, and on what point of the mesh.
+Look = tuple[float, tuple[float, ...] | None]
 
 
 @dataclass(frozen=True)
 class Choice:
-    """What is shown of a file.
-
-    Attributes
-    ----------
-    vectors, plane, block
-        As for :meth:`FlowSource.field`; empty for what that chooses by itself.
-    """
+    """What is shown of a file; empty for what :meth:`FlowSource.field` chooses by itself."""
 
     vectors: str = ""
     plane: str = ""
@@ -49,25 +51,16 @@ class Choice:
 
 
 @dataclass(frozen=True)
-class Opened:
+class TracedFlow:
     """A flow, with its traces so that they stay."""
 
     field: FlowField
-    store: SliceStore | None = None
+    store: SliceStore
 
     @property
     def nbytes(self) -> int:
         """Bytes that are in memory for it."""
-        return self.field.nbytes + (0 if self.store is None else self.store.nbytes)
-
-
-#: How far in, and on what point of the mesh.
-Look = tuple[float, tuple[float, ...] | None]
-
-
-class _Sized(Protocol):
-    @property
-    def nbytes(self) -> int: ...
+        return self.field.nbytes + self.store.nbytes
 
 
 class Library:
@@ -75,14 +68,14 @@ class Library:
 
     Parameters
     ----------
-    entries
+    openers
         What opens each, by name.
     folder
-        A folder that is looked through for more.
+        A folder that is searched for more.
     files
-        Which of the entries are files.
+        Which of the names are those of files.
     python
-        Expressions of Python that make the entries' fields, by name, as far as they are known.
+        Expressions of Python that make the fields, by name, as far as they are known.
     looks
         How far in, and on what point, some of them are first seen; the others as a whole.
 
@@ -94,21 +87,22 @@ class Library:
 
     def __init__(
         self,
-        entries: Mapping[str, Open],
+        openers: Mapping[str, Opener],
         folder: Path | None = None,
         files: Iterable[str] = (),
         python: Mapping[str, str] | None = None,
         looks: Mapping[str, Look] | None = None,
     ) -> None:
-        self._entries = dict(entries)
+        self._named = dict(openers)
         self._files = frozenset(files)
         self._python = dict(python or {})
         self._looks = dict(looks or {})
         self._folder = None if folder is None else folder.resolve()
-        self._sources: OrderedDict[str, FlowSource] = OrderedDict()
-        self._flows: OrderedDict[tuple[str, Choice], Opened] = OrderedDict()
-        self._lock = threading.RLock()
-        self._gates: dict[str, threading.RLock] = {}
+        self._sources: ByteCache[str, FlowSource] = ByteCache(SOURCE_BYTES, max_count=MOST_SOURCES)
+        self._flows: ByteCache[tuple[str, Choice], TracedFlow] = ByteCache(
+            FLOW_BYTES, max_count=MOST_FLOWS
+        )
+        self._locks: dict[str, threading.Lock] = {}
         if not self.names:
             endings = " ".join(sorted(SUFFIXES))
             msg = f"{folder}: there is no file in it that can be opened; expected {endings}"
@@ -116,16 +110,9 @@ class Library:
 
     @classmethod
     def of(cls, *flows: Any, folder: str | Path | None = None, **options: Any) -> Library:
-        """Make a library of whatever can be shown.
+        """Make a library of fields, meshes, paths of files, or one folder.
 
-        Parameters
-        ----------
-        *flows
-            Fields, meshes, paths of files, or one folder.
-        folder
-            A folder that is looked through for more.
-        **options
-            Arguments of :meth:`FlowField.from_pyvista` for meshes.
+        ``options`` are arguments of :meth:`FlowField.from_pyvista` for meshes.
 
         Raises
         ------
@@ -136,25 +123,25 @@ class Library:
             return flows[0]
         if len(flows) == 1 and isinstance(flows[0], (str, Path)) and Path(flows[0]).is_dir():
             return cls({}, Path(flows[0]))
-        entries: dict[str, Open] = {}
+        openers: dict[str, Opener] = {}
         files: list[str] = []
         for flow in flows:
             if isinstance(flow, (str, Path)):
-                files.append(_free(Path(flow).name, entries))
-                entries[files[-1]] = _opener(Path(flow))
+                files.append(_free(Path(flow).name, openers))
+                openers[files[-1]] = _opener(Path(flow))
                 continue
-            source = flow if isinstance(flow, FlowSource) else _made(flow, options)
-            entries[_free(source.name or "flow", entries)] = _given(source)
-        return cls(entries, None if folder is None else Path(folder), files)
+            source = flow if isinstance(flow, FlowSource) else _source_of(flow, options)
+            openers[_free(source.name or "flow", openers)] = _constant(source)
+        return cls(openers, None if folder is None else Path(folder), files)
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Names of all that can be opened; a folder is looked through anew."""
-        found = dict(self._entries)
+        """Names of all that can be opened; a folder is searched anew."""
+        openers = dict(self._named)
         if self._folder is not None:
-            found |= {name: _opener(path) for name, path in search(self._folder)}
-        self._found = found
-        return tuple(found)
+            openers |= {name: _opener(path) for name, path in find_files(self._folder)}
+        self._openers = openers
+        return tuple(openers)
 
     def source(self, name: str) -> FlowSource:
         """Open one, or return it when it is open.
@@ -164,36 +151,15 @@ class Library:
         FieldError
             When there is none of that name, or it cannot be read.
         """
-        with self._gate(name):
-            with self._lock:
-                if name in self._sources:
-                    self._sources.move_to_end(name)
-                    return self._sources[name]
-            source = self._found[name]()
-            with self._lock:
-                self._sources[name] = source
-                _trim(self._sources, SOURCES, SOURCE_BYTES)
-            return source
-
-    def _gate(self, name: str) -> threading.RLock:
-        """Lock of one file: who opens a large one keeps nobody from the others.
-
-        Raises
-        ------
-        FieldError
-            When there is none of that name.
-        """
-        with self._lock:
-            if name not in self._found:
-                msg = (
-                    f"there is no file {shortened(name, 80)!r} among those that may be opened here"
-                )
-                raise FieldError(msg)
-            return self._gates.setdefault(name, threading.RLock())
+        if (opener := self._openers.get(name)) is None:
+            label = repr(shortened(name, 80))
+            msg = f"there is no file {label} among those that may be opened here"
+            raise FieldError(msg)
+        return self._sources.get(name, opener)
 
     def is_file(self, name: str) -> bool:
         """Whether a name is that of a file."""
-        return name in self._files or name not in self._entries
+        return name in self._files or name not in self._named
 
     def look(self, name: str) -> Look:
         """Return how far in, and on what point of the mesh, a flow is first seen."""
@@ -206,13 +172,7 @@ class Library:
         return self._python.get(name, "...  # the mesh or the field that was given")
 
     def complete(self, name: str, choice: Choice) -> Choice:
-        """Fill in what is not chosen: the middle plane, the first array that may be the velocity.
-
-        Raises
-        ------
-        FieldError
-            As :meth:`source`.
-        """
+        """Fill in what is not chosen: the middle plane, and the first array of vectors."""
         source = self.source(name)
         block = choice.block or (source.blocks[0] if source.blocks else "")
         part = source.part(block or None)
@@ -230,68 +190,80 @@ class Library:
         FieldError
             When there is no such file, or what is chosen of it makes no flow.
         """
-        known = self._flows.get((name, choice))
-        if known is not None:
-            return known.field
-        with self._gate(name):
-            return self.source(name).field(
+        if (flow := self._flows.peek((name, choice))) is not None:
+            return flow.field
+        source = self.source(name)
+        with self._locks.setdefault(name, threading.Lock()):
+            return source.field(
                 vectors=choice.vectors or None,
                 plane=choice.plane or None,
                 block=choice.block or None,
             )
 
-    def trace(self, name: str, choice: Choice, field: FlowField, settings: Settings) -> Opened:
-        """Make ready what the first picture of a flow needs, and keep it.
+    def trace(self, name: str, choice: Choice, field: FlowField, settings: Settings) -> TracedFlow:
+        """Trace what the first picture of a flow needs, and let it stay open.
 
         Raises
         ------
         Stopped
-            When that is not wanted any more, see :func:`flowtex._util.progress.stoppable`.
+            As :func:`flowtex._util.progress.stoppable` asks for.
         """
-        known = self._flows.get((name, choice))
-        if known is not None and known.field is field and known.store is not None:
-            with self._lock:
-                if (name, choice) in self._flows:
-                    self._flows.move_to_end((name, choice))
-            return known
-        store = shared_store(field, settings.parameter)
-        store.at(len(field.times) - 1)
-        opened = Opened(field, store)
-        with self._lock:
-            self._flows[name, choice] = opened
-            self._flows.move_to_end((name, choice))
-            _trim(self._flows, FLOWS, FLOW_BYTES)
-        return opened
+        flow = self._flows.peek((name, choice))
+        if flow is None or flow.field is not field:
+            store = shared_store(field, settings.parameter)
+            store.at(len(field.times) - 1)
+            flow = TracedFlow(field, store)
+            self._flows.put((name, choice), flow)
+        return flow
 
 
-def _trim(kept: OrderedDict[Any, T], count: int, nbytes: int) -> None:
-    """Let go of what was asked for longest ago, until few enough are left, and small enough."""
-    while len(kept) > 1 and (
-        len(kept) > count or sum(one.nbytes for one in kept.values()) > nbytes
-    ):
-        kept.popitem(last=False)
-
-
-def _made(flow: Any, options: dict[str, Any]) -> FlowSource:
+def _source_of(flow: Any, options: dict[str, Any]) -> FlowSource:
     """Take a mesh as it is where nothing is chosen about it, else the field that is meant."""
-    given = {key: value for key, value in options.items() if value is not None}
-    if isinstance(flow, FlowField) or not given:
+    options = {key: value for key, value in options.items() if value is not None}
+    if isinstance(flow, FlowField) or not options:
         return FlowSource(flow)
-    return FlowSource(FlowField.from_pyvista(flow, **given))
+    return FlowSource(FlowField.from_pyvista(flow, **options))
 
 
-def _given(source: FlowSource) -> Open:
+def _constant(source: FlowSource) -> Opener:
     return lambda: source
 
 
-def _opener(path: Path) -> Open:
+def _opener(path: Path) -> Opener:
     return lambda: FlowSource.from_file(path)
 
 
 def _free(name: str, taken: Iterable[str]) -> str:
     """Return a name that is not taken yet."""
-    found, number = name, 1
-    while found in taken:
+    free, number = name, 1
+    while free in taken:
         number += 1
-        found = f"{name} ({number})"
-    return found
+        free = f"{name} ({number})"
+    return free
+
+
+def find_files(folder: Path) -> list[tuple[str, Path]]:
+    """Find files below a folder; what a link leads to outside of it is left out."""
+    files: list[tuple[str, Path]] = []
+    waiting = [(folder, 0)]
+    while waiting and len(files) < MOST_FILES:
+        here, depth = waiting.pop(0)
+        try:
+            inside = sorted(here.iterdir())
+        except OSError:
+            continue
+        for path in inside:
+            if path.name.startswith(".") or not path.resolve().is_relative_to(folder):
+                continue
+            if path.is_dir() and not path.is_symlink() and depth < FOLDER_DEPTH:
+                waiting.append((path, depth + 1))
+            elif path.is_file() and path.suffix.lower() in SUFFIXES | {".bin"}:
+                files.append((path.relative_to(folder).as_posix(), path))
+    return [(name, path) for name, path in files[:MOST_FILES] if not _is_solution(path)]
+
+
+def _is_solution(path: Path) -> bool:
+    """Whether this is the part of a PLOT3D pair that is opened along with its grid."""
+    from flowtex.field.io import plot3d
+
+    return path.suffix.lower() == ".bin" and plot3d.find_grid(path) not in (None, path)

@@ -5,6 +5,9 @@ where it comes from: any page open in the same browser could drive the program. 
 has a secret of its own, which only the printed address carries, and a connection from another
 site's page is refused. Who comes without the secret gets a page that says so (``door.html``).
 The page itself may load nothing from elsewhere.
+
+wslink reserves room for a whole message when its first piece announces a length of up to 4 GB, so
+messages are limited as well: nothing that the page sends is larger than a picture.
 """
 
 from __future__ import annotations
@@ -16,8 +19,12 @@ from typing import Any
 from urllib.parse import urlsplit
 
 from aiohttp import web
+from wslink.chunking import UnChunker
 
-__all__ = ["guard", "is_same", "new_secret"]
+__all__ = ["LimitedMessages", "guard", "is_same", "new_secret"]
+
+#: Bytes of a message, and messages that a page may begin before it ends one.
+MESSAGE_BYTES, OPEN_MESSAGES = 16_000_000, 4
 
 #: The page's own scripts need eval: Vue compiles the templates that trame sends it.
 POLICY = (
@@ -37,20 +44,15 @@ def new_secret() -> str:
     return secrets.token_urlsafe(24)
 
 
-def is_same(given: object, secret: str) -> bool:
+def is_same(text: object, secret: str) -> bool:
     """Tell whether a secret is the right one, in a time that tells nothing about it."""
-    return isinstance(given, str) and hmac.compare_digest(given.encode(), secret.encode())
+    return isinstance(text, str) and hmac.compare_digest(text.encode(), secret.encode())
 
 
 def guard(application: web.Application, *, framed: bool = False) -> None:
     """Refuse other sites' pages, and send the headers above with every answer.
 
-    Parameters
-    ----------
-    application
-        What is guarded, before it is started.
-    framed
-        Whether pages of other sites may hold this one in a frame, as a notebook does.
+    With ``framed``, pages of other sites may hold this one in a frame, as a notebook does.
     """
     policy = POLICY if framed else f"{POLICY}; frame-ancestors 'self'"
 
@@ -78,3 +80,22 @@ def _own_hosts(request: web.Request) -> set[str]:
     """
     handed_on = request.headers.get("X-Forwarded-Host", "").split(",")[0].strip()
     return {request.host, handed_on} - {""}
+
+
+class LimitedMessages(UnChunker):
+    """The messages of one connection, joined from their pieces, within limits."""
+
+    def set_max_message_size(self, size: int) -> None:
+        """Allow messages of so many bytes, or as many as any may have."""
+        super().set_max_message_size(min(size, MESSAGE_BYTES))
+
+    def process_chunk(self, chunk: bytes) -> Any:
+        """Take a piece; return the message when it is the last one."""
+        message = super().process_chunk(chunk)
+        if len(self.pending_messages) > OPEN_MESSAGES:
+            self.release_pending_messages()
+            msg = (
+                f"more than {OPEN_MESSAGES} messages were begun; expected one of them to end first"
+            )
+            raise ValueError(msg)
+        return message

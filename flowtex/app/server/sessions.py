@@ -12,17 +12,16 @@ traces of the flow          shared           made again
 an end that leaves nothing  tested           by the system
 ==========================  ===============  ===============
 
-What a process of its own would give is isolation: a crash of one page would not end the others,
-and two pages would draw on two cores. What it takes is ten times the memory, a start of seconds,
-and a second set of ports and secrets, for pages that stand still most of the time. So there is
-one process, and what separates the pages is that they share nothing that can be changed: each has
-a trame server, a state, a window, and settings of its own; only fields and their traces are
-shared, which are never written again.
+A process of its own would isolate pages from a crash of another, and let two draw on two cores,
+for ten times the memory and a start of seconds. So there is one process, and pages share nothing
+that can be changed: each has a trame server, a state, a window, and settings of its own; only
+fields and their traces are shared, which are never written again.
 
 A session is known by a token that cannot be guessed and lives in its browser tab. It waits for
 its page for some minutes, so that a page that is loaded again comes back to its own state; then
-it ends, and with it its window, its tasks and its trame server, which trame itself would keep
-for ever.
+it ends, and with it its window, its tasks and its trame server, which trame itself would keep for
+ever. trame starts nothing that listens: its generic end point takes messages from whoever brings
+them, and the web server that all pages share (:mod:`flowtex.app.server.site`) brings them.
 """
 
 from __future__ import annotations
@@ -32,16 +31,24 @@ import gc
 import itertools
 import logging
 import os
+import time
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
 from typing import Any
 
+import wslink.server
+from aiohttp import WSCloseCode, WSMsgType, web
 from trame.app import get_server
 from trame.app.core import AVAILABLE_SERVERS
+from trame_client.widgets.core import HTML_CTX
+from trame_server.protocol import CoreServer
+from wslink.protocol import MAX_MSG_SIZE
 
-from flowtex.app.server.routes import Routes
-from flowtex.app.server.session import Session
+from flowtex.app.server.files import Routes
+from flowtex.app.server.security import LimitedMessages, new_secret
 
-__all__ = ["FullError", "MakeApp", "Sessions", "usual_limit"]
+__all__ = ["FullError", "MakeApp", "Session", "Sessions", "usual_limit"]
 
 #: Makes an application on a trame server. An application has ``server``, ``stream`` (a
 #: :class:`~flowtex.app.streaming.stream.FrameStream`) and ``close()``.
@@ -51,10 +58,138 @@ MakeApp = Callable[[Any], Any]
 #: 2,560 x 1,600 takes about that much. Pages at rest need no core.
 PAGES_PER_CORE, PAGE_BYTES = 8, 250e6
 #: Seconds without a connection after which a session makes room for a newcomer.
-AWAY = 30.0
+REPLACE_AFTER_S = 30.0
+#: Seconds for which a page that asks for its session waits for the connection of its earlier self
+#: to end. When it does not, somebody has made a copy of the tab.
+RECONNECT_WAIT_S = 2.0
+#: Seconds between two signs of life of a connection.
+HEARTBEAT_S = 20.0
+#: What wslink adds to a message, in bytes, at most.
+MESSAGE_OVERHEAD_BYTES = 4096
+#: What the page shows when its session has ended.
+ENDED = Path(__file__).parents[1] / "ui" / "static" / "ended.html"
 
 _count = itertools.count(1)
 _log = logging.getLogger(__name__)
+
+
+class Session:
+    """One application, the token that its page is known by, and the connection of the page."""
+
+    def __init__(self, app: Any) -> None:
+        self.token = new_secret()
+        self.app = app
+        self.routes = Routes.of(app.server)
+        self._left = time.monotonic()
+        self._sockets: set[web.WebSocketResponse] = set()
+        self._endpoint: Any = None
+        self._task: asyncio.Task[None] | None = None
+
+    @property
+    def connected(self) -> bool:
+        """Whether a page is connected."""
+        return bool(self._sockets)
+
+    @property
+    def away(self) -> float:
+        """Seconds for which no page has been connected."""
+        return 0.0 if self.connected else time.monotonic() - self._left
+
+    def expect(self) -> None:
+        """Count the time without a page from this moment on."""
+        self._left = time.monotonic()
+
+    async def start(self, secret: str) -> dict[str, Any]:
+        """Start the trame server, and return what it wants served: folders, by route."""
+        server = self.app.server
+        web_servers: list[Any] = []
+        self.app.stream.watched = lambda: self.connected
+        server.state.trame__template_error = ENDED.read_text(encoding="utf-8")
+        # Defaults of trame's own command line reach it without showing up in a list of processes.
+        server.cli.set_defaults(authKey=secret)
+        server.controller.on_server_bind.add(web_servers.append)
+        with _quiet_trame():
+            self._task = server.start(
+                exec_mode="task",
+                backend="generic",
+                port=0,
+                timeout=0,
+                thread=True,
+                open_browser=False,
+                show_connection_info=False,
+                disable_logging=True,
+            )
+        await server.ready
+        self._endpoint = web_servers[0].ws
+        static: dict[str, Any] = web_servers[0].config["static"]
+        return static
+
+    async def connect(self, request: web.Request, *, shared: bool) -> web.StreamResponse:
+        """Carry messages between a page and its application until one of them ends."""
+        socket = web.WebSocketResponse(
+            max_msg_size=MAX_MSG_SIZE + MESSAGE_OVERHEAD_BYTES,
+            heartbeat=HEARTBEAT_S,
+            compress=False,
+        )
+        await socket.prepare(request)
+        others = [] if shared else list(self._sockets)
+        self._sockets.add(socket)
+        for other in others:
+            await other.close(code=WSCloseCode.GOING_AWAY, message=b"opened in another page")
+
+        async def send(is_binary: bool, content: Any) -> None:  # noqa: FBT001 wslink's call
+            with suppress(ConnectionError):  # the page has gone, which the loop below is told
+                await (socket.send_bytes if is_binary else socket.send_str)(content)
+
+        link = await self._endpoint.connect()
+        self._endpoint.unchunkers[link.client_id] = LimitedMessages()
+        link.on_message(send)
+        try:
+            async for message in socket:
+                if message.type in (WSMsgType.BINARY, WSMsgType.TEXT):
+                    await link.send(message.type == WSMsgType.BINARY, message)
+        except Exception as error:  # a message that no page of ours sends
+            _log.warning("a connection was ended: %s: %s", type(error).__name__, error)
+            await socket.close(code=WSCloseCode.POLICY_VIOLATION)
+        finally:
+            self._sockets.discard(socket)
+            self.expect()
+            # wslink's endpoint forgets the connection, but not what it has gathered for it.
+            await self._endpoint.onClose(link.client_id)
+            self._endpoint.authentified_client_ids.discard(link.client_id)
+            await link.close()
+        return socket
+
+    async def is_free(self) -> bool:
+        """Wait a little until no page is connected, and tell whether that is so."""
+        end = time.monotonic() + RECONNECT_WAIT_S
+        while self.connected and time.monotonic() < end:
+            await asyncio.sleep(0.02)
+        return not self.connected
+
+    async def end(self) -> None:
+        """Close the connection and the application, and forget the trame server."""
+        self.routes.close()
+        for socket in list(self._sockets):
+            with suppress(ConnectionError):
+                await socket.close(code=WSCloseCode.GOING_AWAY, message=b"the session has ended")
+        try:
+            self.app.close()
+        finally:
+            await self._stop()
+
+    async def _stop(self) -> None:
+        server = self.app.server
+        await server.stop()
+        if self._task is not None:
+            await self._task
+        AVAILABLE_SERVERS.pop(server.name, None)
+        # Each library keeps the server that it used last.
+        if CoreServer.server is server:
+            CoreServer.server = None
+            wslink.server.ws_server = None
+        if getattr(HTML_CTX, "_server", None) is server:
+            HTML_CTX._server = None
 
 
 class FullError(Exception):
@@ -115,36 +250,19 @@ class Sessions:
         return next((s.routes for s in self if s.routes.token == token), None)
 
     async def prepare(self, app: Any = None) -> dict[str, Any]:
-        """Make the first session before anybody asks for it.
+        """Make the first session, of an application that there is already if any.
 
         What is wrong with a mesh or a setting is told then, and the first visitor does not wait.
-
-        Parameters
-        ----------
-        app
-            The application of the first session, where there is one already.
-
-        Returns
-        -------
-        dict
-            Folders that all pages want served, by route.
+        Returns the folders that all pages want served, by route.
         """
         self._ready, static = await (self._make() if app is None else self._begin(app))
         return static
 
     async def find(self, token: str | None) -> Session:
-        """Return the session of a page: its own, or a new one.
+        """Return the session of a page: that of its token, or a new one where there is room.
 
-        Parameters
-        ----------
-        token
-            What the page remembers, if anything. When another page is connected with it, such
-            as that of a copied tab, the page gets a session of its own.
-
-        Raises
-        ------
-        FullError
-            When there is no room for a new one.
+        When another page is connected with the token, such as that of a copied tab, the page gets
+        a session of its own.
         """
         if self.shared and self._ready is not None:
             return self._ready
@@ -182,7 +300,7 @@ class Sessions:
         if len(self) < self.limit:
             return
         longest = max(self, key=lambda session: session.away)
-        if longest.away < AWAY:
+        if longest.away < REPLACE_AFTER_S:
             raise FullError
         await self.end(longest)
 
@@ -212,3 +330,19 @@ class Sessions:
         self._ready = None
         for session in self:
             await self.end(session)
+
+
+@contextmanager
+def _quiet_trame() -> Iterator[None]:
+    """Keep trame from reading this program's arguments, and from printing on its own."""
+    ours = {"TRAME_ARGS": "", "WSLINK_READY_MSG": ""}
+    before = {name: os.environ.get(name) for name in ours}
+    os.environ.update(ours)
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                os.environ.pop(name, None)
+            else:
+                os.environ[name] = value

@@ -18,26 +18,30 @@ from __future__ import annotations
 import asyncio
 import json
 import logging
+import os
+import signal
 import socket as sockets
+import webbrowser
+from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 from aiohttp import web
 
-from flowtex.app.server.routes import add_route
-from flowtex.app.server.security import guard, is_same
-from flowtex.app.server.sessions import FullError, Sessions
+from flowtex.app.server.files import add_route
+from flowtex.app.server.security import guard, is_same, new_secret
+from flowtex.app.server.sessions import FullError, MakeApp, Sessions
 from flowtex.errors import FieldError
 from flowtex.settings import SettingsError
 
-__all__ = ["Site"]
+__all__ = ["ServeError", "Site", "run_site"]
 
 DOOR = Path(__file__).parents[1] / "ui" / "static" / "door.html"
 #: Seconds that connections have to end in.
-FAREWELL = 2.0
+SHUTDOWN_S = 2.0
 #: Bytes of what the door sends, at most.
-LONGEST = 4096
+REQUEST_BYTES = 4096
 
 WRONG = "This page opens with the whole address that flowtex printed, the secret included."
 FULL = (
@@ -48,6 +52,10 @@ BROKEN = "The page could not be made: {error}"
 FAULT = "The page could not be made. The program that serves it has printed why."
 
 _log = logging.getLogger(__name__)
+
+
+class ServeError(RuntimeError):
+    """The page cannot be served; the text says why and what to do."""
 
 
 class Site:
@@ -61,11 +69,6 @@ class Site:
         What the door asks for.
     framed
         Whether pages of other sites may hold these in a frame, as a notebook does.
-
-    Attributes
-    ----------
-    port
-        Where it listens; 0 before it does.
     """
 
     def __init__(self, sessions: Sessions, secret: str, *, framed: bool = False) -> None:
@@ -77,33 +80,16 @@ class Site:
         self._sweep: asyncio.Task[None] | None = None
 
     async def prepare(self, app: Any = None) -> None:
-        """Make the first session, with an application that there is already if any.
-
-        Raises
-        ------
-        Exception
-            What the making of an application raises.
-        """
+        """Make the first session, with an application that there is already if any."""
         application = self._application(await self.sessions.prepare(app))
         # What ends the program is told to it, and not to the web server.
         self._runner = web.AppRunner(
-            application, handle_signals=False, access_log=None, shutdown_timeout=FAREWELL
+            application, handle_signals=False, access_log=None, shutdown_timeout=SHUTDOWN_S
         )
         await self._runner.setup()
 
     async def listen(self, where: sockets.socket | tuple[str, int] = ("127.0.0.1", 0)) -> None:
-        """Let pages in, after :meth:`prepare`.
-
-        Parameters
-        ----------
-        where
-            Host and port, where port 0 takes one that is free; or a socket that listens already.
-
-        Raises
-        ------
-        OSError
-            When the port or the host cannot be listened on.
-        """
+        """Let pages in, after :meth:`prepare`, at a host and port, or on a socket that listens."""
         if self._runner is None:
             msg = "nothing is there to let in to; call prepare() first"
             raise RuntimeError(msg)
@@ -127,7 +113,7 @@ class Site:
             await self._runner.cleanup()
 
     def _application(self, static: dict[str, Any]) -> web.Application:
-        application = web.Application(client_max_size=LONGEST)
+        application = web.Application(client_max_size=REQUEST_BYTES)
         guard(application, framed=self._framed)
         router = application.router
         router.add_get("/", self._door)
@@ -162,10 +148,10 @@ class Site:
         return await session.connect(request, shared=self.sessions.shared)
 
     async def _session(self, request: web.Request) -> web.StreamResponse:
-        asked = await _json(request)
-        if not is_same(asked.get("secret"), self._secret):
+        request_data = await _json(request)
+        if not is_same(request_data.get("secret"), self._secret):
             return _answer(403, words=WRONG)
-        token = asked.get("session")
+        token = request_data.get("session")
         try:
             session = await self.sessions.find(token if isinstance(token, str) else None)
         except FullError:
@@ -184,11 +170,66 @@ def _pages(count: int) -> str:
 
 async def _json(request: web.Request) -> dict[str, Any]:
     try:
-        asked = json.loads(await request.read())
+        request_data = json.loads(await request.read())
     except ValueError:
-        asked = None
-    return asked if isinstance(asked, dict) else {}
+        request_data = None
+    return request_data if isinstance(request_data, dict) else {}
 
 
 def _answer(status: int, **values: str) -> web.Response:
     return web.json_response(values, status=status, headers={"Cache-Control": "no-store"})
+
+
+async def run_site(
+    make_app: MakeApp,
+    host: str,
+    port: int,
+    *,
+    limit: int,
+    idle: float,
+    announce: Callable[[str], None],
+    open_browser: bool,
+) -> None:
+    """Serve pages until the task is cancelled; :func:`flowtex.app.serve` has the parameters."""
+    secret = new_secret()
+    site = Site(Sessions(make_app, secret, limit=limit, idle=idle), secret)
+    main = asyncio.current_task()
+    with suppress(NotImplementedError):  # on Windows
+        asyncio.get_running_loop().add_signal_handler(
+            signal.SIGTERM, lambda: main and main.cancel()
+        )
+    try:
+        await site.prepare()
+        try:
+            await site.listen((host, port))
+        except OSError as error:
+            msg = (
+                f"cannot listen on {host}:{port} ({error.strerror or error}); choose another port, "
+                "or 0 for one that is free"
+            )
+            raise ServeError(msg) from error
+        address = f"http://{_host_name(host)}:{site.port}/?secret={secret}"
+        announce(address)
+        if open_browser:
+            _open(address)
+        with suppress(asyncio.CancelledError):
+            await asyncio.Event().wait()
+    finally:
+        await site.stop()
+
+
+def _host_name(host: str) -> str:
+    """Name of this machine in an address."""
+    if host in ("0.0.0.0", "::", ""):
+        return os.uname().nodename if hasattr(os, "uname") else "localhost"
+    return f"[{host}]" if ":" in host else host
+
+
+def _open(address: str) -> None:
+    """Open a browser without waiting for it; where there is none, the address is printed."""
+
+    def in_thread() -> None:
+        with suppress(webbrowser.Error):
+            webbrowser.open(address)
+
+    asyncio.get_running_loop().run_in_executor(None, in_thread)

@@ -16,17 +16,16 @@ wheel zooms. Whatever is changed through :attr:`FlowArea.settings` is drawn at o
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable
 from typing import Any
 
 from trame.widgets import html, rca
 
-from flowtex.app.server.background import begin
-from flowtex.app.server.state import PageState
+from flowtex.app.server.page import PageState, start_task
 from flowtex.app.streaming.player import Player
-from flowtex.app.streaming.scene import Scene
-from flowtex.app.streaming.stream import Figures, FrameStream
+from flowtex.app.streaming.stream import FrameStream
+from flowtex.app.streaming.viewport import Viewport
 from flowtex.field import FlowField
+from flowtex.options import FieldOptions
 from flowtex.settings import Settings
 
 __all__ = ["FlowArea"]
@@ -49,16 +48,8 @@ class FlowArea:
 
     Attributes
     ----------
-    scene
-        What is drawn.
-    stream
-        The pictures that go to the page.
-    player
-        What lets time go by.
-    reports
-        Called with :class:`~flowtex.app.streaming.stream.Figures` after each picture.
-    timed
-        Called when the time that is shown has changed.
+    viewport, stream, player
+        What is drawn, the pictures that go to the page, and what lets time go by.
 
     Raises
     ------
@@ -74,19 +65,15 @@ class FlowArea:
         state: PageState | None = None,
         **options: Any,
     ) -> None:
-        from flowtex.options import FieldOptions
-
         self.server = server
         self.state = state or PageState(server)
         names = FieldOptions.__dataclass_fields__
         field = FieldOptions(**{k: options.pop(k, None) for k in names}).field(flow)
-        self.scene = Scene(field, **options)
-        self.stream = FrameStream(self.state.key("view"), self.scene, self._report)
-        self.player = Player(self.scene, self.stream, self._timed)
-        self.reports: list[Callable[[Figures], None]] = []
-        self.timed: list[Callable[[], None]] = []
+        self.viewport = Viewport(field, **options)
+        self.stream = FrameStream(self.state.key("view"), self.viewport)
+        self.player = Player(self.viewport, self.stream)
         self._tasks: list[asyncio.Task[None]] = []
-        self._end_watching = lambda: None
+        self._stop_watching = lambda: None
         self._watch()
         if server.running:
             self._on_ready()
@@ -96,16 +83,10 @@ class FlowArea:
     @property
     def settings(self) -> Settings:
         """Every setting, live."""
-        return self.scene.handle.settings
+        return self.viewport.settings
 
     def ui(self, **attributes: Any) -> Any:
-        """Put the view into the trame layout that is open.
-
-        Parameters
-        ----------
-        **attributes
-            Of the element around it, such as ``classes`` and ``style``.
-        """
+        """Put the view into the open layout; ``attributes`` are those of the element around it."""
         with html.Div(**attributes) as element:
             rca.RemoteControlledArea(
                 name=self.stream.area_name,
@@ -117,22 +98,22 @@ class FlowArea:
         return element
 
     def show(self, field: FlowField, *, keep_view: bool = False, keep_range: bool = False) -> None:
-        """Show another flow with the same settings; :meth:`Scene.show` has the parameters."""
-        self.scene.show(field, keep_view=keep_view, keep_range=keep_range)
+        """Show another flow with the same settings; :meth:`Viewport.show` has the parameters."""
+        self.viewport.show(field, keep_view=keep_view, keep_range=keep_range)
         self._watch()
         self.stream.changed()
 
     def compare(self, changes: dict[str, Any] | None) -> None:
-        """Show a second pane, or one again; :meth:`Scene.compare` has the parameters."""
-        at_home = self.scene.at_home
-        self.scene.compare(changes)
+        """Show a second pane, or one again; :meth:`Viewport.compare` has the parameters."""
+        at_home = self.viewport.at_home
+        self.viewport.compare(changes)
         if at_home:  # a pane is half as wide as the whole view
-            self.scene.home()
+            self.viewport.home()
         self.stream.changed()
 
     def reset_camera(self) -> None:
         """Show the whole surface again."""
-        self.scene.home()
+        self.viewport.home()
         self.stream.moved()
 
     def close(self) -> None:
@@ -141,16 +122,16 @@ class FlowArea:
         for task in self._tasks:
             task.cancel()
         self._tasks.clear()
-        self._end_watching()
-        self.scene.close()
+        self._stop_watching()
+        self.viewport.close()
 
     def _watch(self) -> None:
         """Draw when a setting changes."""
-        self._end_watching()
-        self._end_watching = self.settings.observe(lambda name, value: self._changed())
+        self._stop_watching()
+        self._stop_watching = self.settings.observe(lambda name, value: self._changed())
 
     def _changed(self) -> None:
-        if not self.stream.composer.drafting:
+        if not self.stream.painter.drafting:
             self.stream.changed()
 
     def _on_ready(self, **_: Any) -> None:
@@ -158,12 +139,4 @@ class FlowArea:
             return
         self.server.controller.rc_area_register(self.stream)
         for work in (self.stream.run(), self.player.play()):
-            self._tasks.append(begin(work, "the page has stopped drawing"))
-
-    def _report(self, figures: Figures) -> None:
-        for call in self.reports:
-            call(figures)
-
-    def _timed(self) -> None:
-        for call in self.timed:
-            call()
+            self._tasks.append(start_task(work, "the page has stopped drawing"))

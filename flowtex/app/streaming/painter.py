@@ -1,53 +1,115 @@
-"""Pictures of a pane: a quick one for motion, and the full one a tile at a time.
+"""Pictures of a viewport as good as the time allows: quick ones in motion, the full one at rest.
 
-The quick one is the full picture where that is fast enough. Otherwise, when only the camera
-moved over a flat surface, it is the last full picture moved to its new place, and else a draft of
-fewer pixels and samples.
+A texture costs time for each pixel and each sample. :class:`Cost` learns that price from the
+pictures that were drawn, so a graphics card draws everything at its best at once. Where that is
+too slow, as on a processor, the quick picture is the last full one moved to its new place when
+only the camera moved over a flat surface, and else a draft of fewer pixels and samples; the full
+picture is drawn over it a tile at a time.
 """
 
 from __future__ import annotations
 
 import math
 import time
-from collections.abc import Generator
+from collections.abc import Generator, Mapping
+from dataclasses import dataclass
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from flowtex.app.streaming.canvas import Rect
-from flowtex.app.streaming.pane import Pane
-from flowtex.app.streaming.quality import Cost, Quality
-from flowtex.app.streaming.warp import Shot, coverage, shifted, warp
+from flowtex._util.array_types import Bytes, Floats
+from flowtex.app.server.validation import clipped
+from flowtex.app.streaming.reprojection import Snapshot, coverage, reproject, whole_shift
+from flowtex.app.streaming.viewport import GAP_PX, Pane, Rect, Viewport
 
-__all__ = ["Painter"]
+__all__ = ["MOVING_S", "PLAYING_S", "Cost", "PanePainter", "Quality", "ViewPainter", "view_pixels"]
 
-Pixels = NDArray[np.uint8]
-
+#: Seconds that a picture may take in motion, while playing, and for one tile at rest.
+MOVING_S, PLAYING_S, TILE_S = 0.06, 0.14, 0.1
+#: Seconds that a picture takes however small it is, and what a pixel costs beside its samples,
+#: in samples.
+FIXED_S, BASE_SAMPLES = 0.006, 8
+#: Seconds for one sample of one pixel: a guess until the first picture.
+FIRST_PRICE_S = 4e-8
+#: Pixels of a picture, at most: a screen of 2,560 x 1,600.
+MOST_PIXELS = 4_100_000
+#: Sides of a picture in pixels, and pixels for one of CSS, at least and at most.
+SIDES_PX, PIXEL_RATIOS = (16.0, 8192.0), (0.25, 8.0)
+#: Samples of a draft. Its pixels are larger, so its streaks are as long with fewer samples.
+DRAFT_SAMPLES = 9
+#: A draft is never smaller than this share of the view's width.
+COARSEST_DRAFT = 0.2
+#: A tile is never smaller than this, in pixels along a side.
+SMALLEST_TILE_PX = 64
 #: A picture that was drawn serves a moved view while its pixels grow less, or shrink less, than
-#: this; beyond it a draft tells more.
-STRETCH, SHRINK = 4.0, 0.3
+#: this; beyond it a draft shows more.
+MOST_STRETCH, LEAST_STRETCH = 4.0, 0.3
 #: A draft that lies beneath a moved picture shows this many times its width, so that it serves
 #: for some way.
-WIDER = 1.7
+DRAFT_MARGIN = 1.7
+#: Grey of the line between two panes.
+LINE_GREY = 128
 
 
-class Painter:
+@dataclass(frozen=True)
+class Quality:
+    """Size of a picture, as a share of the view's width, and samples for each pixel."""
+
+    scale: float
+    samples: int
+
+
+class Cost:
+    """Price of a picture, learnt from those that were drawn."""
+
+    def __init__(self) -> None:
+        self._price = FIRST_PRICE_S
+
+    def learn(self, seconds: float, pixels: int, samples: int) -> None:
+        """Take account of a picture that took ``seconds``."""
+        price = max(seconds - FIXED_S, 1e-5) / max(pixels * (samples + BASE_SAMPLES), 1)
+        # Slower is believed at once, faster by and by: a picture that is late is felt.
+        self._price += (price - self._price) * (0.7 if price > self._price else 0.3)
+
+    def seconds(self, pixels: float, samples: int) -> float:
+        """Time that a picture will take."""
+        return FIXED_S + self._price * pixels * (samples + BASE_SAMPLES)
+
+    def choose(self, pixels: int, samples: int, budget: float) -> Quality:
+        """Return the best quality within ``budget`` seconds, at most all pixels and samples."""
+        if self.seconds(pixels, samples) <= budget:
+            return Quality(1.0, samples)
+        fewer = min(DRAFT_SAMPLES, samples)
+        room = max(budget - FIXED_S, 1e-3) / (self._price * (fewer + BASE_SAMPLES))
+        scale = math.sqrt(room / max(pixels, 1))
+        return Quality(min(max(scale, COARSEST_DRAFT), 1.0), fewer)
+
+    def tile(self, samples: int) -> int:
+        """Side of a square tile, in pixels, that takes no longer than a tile may."""
+        side = math.sqrt((TILE_S - FIXED_S) / (self._price * (samples + BASE_SAMPLES)))
+        # An even number keeps the 2 x 2 blocks in which derivatives are taken.
+        return max(int(side) // 2 * 2, SMALLEST_TILE_PX)
+
+
+def view_pixels(size: Mapping[str, Any]) -> tuple[int, int]:
+    """Width and height in pixels of a view of so many CSS pixels ``w``, ``h`` times ``p``."""
+    ratio = clipped(size.get("p"), 1.0, *PIXEL_RATIOS)
+    width, height = (
+        min(max(clipped(size.get(side), SIDES_PX[0], *SIDES_PX) * ratio, SIDES_PX[0]), SIDES_PX[1])
+        for side in ("w", "h")
+    )
+    shrink = min(1.0, (MOST_PIXELS / (width * height)) ** 0.5)
+    return round(width * shrink), round(height * shrink)
+
+
+class PanePainter:
     """Draws a pane as well as the time allows.
-
-    Parameters
-    ----------
-    pane
-        What is drawn.
-    cost
-        What pictures cost here, where it is known; learnt from the pictures.
 
     Attributes
     ----------
-    pane
-        What is drawn.
-    cost
-        What pictures cost here.
+    pane, cost
+        What is drawn, and what pictures cost here, which is learnt from them.
     complete
         Whether the last picture that was drawn is at full quality.
     drafting
@@ -59,14 +121,14 @@ class Painter:
         self.cost = cost or Cost()
         self.complete = False
         self.drafting = False
-        self._shot: Shot | None = None
-        self._under: Shot | None = None
-        self._last: Pixels | None = None
+        self._snapshot: Snapshot | None = None
+        self._under: Snapshot | None = None
+        self._last: Bytes | None = None
         self._state = 0
 
     def forget(self) -> None:
         """Draw anew: what was drawn does not show the present state any more."""
-        self._shot = self._under = None
+        self._snapshot = self._under = None
         self.complete = False
         self._state += 1
 
@@ -74,58 +136,54 @@ class Painter:
     def _samples(self) -> int:
         return self.pane.handle.settings.samples
 
-    def quick(self, budget: float) -> Pixels:
+    def quick(self, budget: float) -> Bytes:
         """Return a picture within about ``budget`` seconds, (h, w, 3) uint8."""
         self._last = self._quick(budget)
         return self._last
 
-    def _quick(self, budget: float) -> Pixels:
+    def _quick(self, budget: float) -> Bytes:
         width, height = self.pane.size
         quality = self.cost.choose(width * height, self._samples, budget)
         view = self.pane.plane_view()
         self.complete = quality.scale >= 1.0 and quality.samples == self._samples
         if self.complete:
             pixels = self._draw(width, height)
-            self._shot = None if view is None else Shot(pixels, view, sharp=True)
+            self._snapshot = None if view is None else Snapshot(pixels, view, sharp=True)
             return pixels
-        if self._shot is not None and view is not None:
-            share, stretch = coverage(self._shot, view)
-            if SHRINK <= stretch <= STRETCH and share > 0.2:
+        if self._snapshot is not None and view is not None:
+            share, stretch = coverage(self._snapshot, view)
+            if LEAST_STRETCH <= stretch <= MOST_STRETCH and share > 0.2:
                 under = None if share >= 1.0 else self._beneath(view, quality)
-                return warp(self._shot, view, (width, height), under)
+                return reproject(self._snapshot, view, (width, height), under)
         return self._draft(quality)
 
-    def _beneath(self, view: NDArray[np.float64], quality: Quality) -> Shot:
+    def _beneath(self, view: Floats, quality: Quality) -> Snapshot:
         """Return a draft that covers the view and what lies around it."""
         if self._under is not None:
             share, stretch = coverage(self._under, view)
-            if share >= 1.0 and stretch < STRETCH / quality.scale:
+            if share >= 1.0 and stretch < MOST_STRETCH / quality.scale:
                 return self._under
         width, height = self.pane.size
-        around = (round(width * (1 - WIDER) / 2), round(height * (1 - WIDER) / 2))
+        around = (round(width * (1 - DRAFT_MARGIN) / 2), round(height * (1 - DRAFT_MARGIN) / 2))
         part = (*around, width - 2 * around[0], height - 2 * around[1])
         wider = np.diag([width / part[2], height / part[3], 1.0]) @ view
-        self._under = Shot(self._draft(quality, part), wider)
+        self._under = Snapshot(self._draft(quality, part), wider)
         return self._under
 
-    def full(self) -> Generator[Pixels, None, None]:
-        """Draw the full picture over the quick one, a tile at a time.
+    def full(self) -> Generator[Bytes, None, None]:
+        """Draw the full picture over the quick one; yield it so far after each tile.
 
-        Yields
-        ------
-        numpy.ndarray
-            The picture so far, (H, W, 3) uint8, after each tile. The array is the same one each
-            time. Between two tiles the pane may be left for good, and the drawing given up.
+        The array is the same one each time. Between two tiles the drawing may be given up.
         """
         width, height = self.pane.size
         view, state = self.pane.plane_view(), self._state
-        begun = self.quick(0.0) if self._last is None else self._last
-        canvas = self._enlarged(begun, width, height)
-        kept = self._keep(canvas, view)
-        wanted = [(0, 0, width, height)] if kept is None else _around(kept, width, height)
+        start = self.quick(0.0) if self._last is None else self._last
+        canvas = self._enlarged(start, width, height)
+        reused = self._reuse(canvas, view)
+        areas = [(0, 0, width, height)] if reused is None else _around(reused, width, height)
         spent, drawn, complete = 0.0, 0, False
         try:
-            for left, top, wide, high in self._tiles(wanted, width, height):
+            for left, top, wide, high in self._tiles(areas, width, height):
                 started = time.perf_counter()
                 tile = self.pane.draw(wide, high, (left, top, wide, high))
                 canvas[top : top + high, left : left + wide] = tile
@@ -136,27 +194,32 @@ class Painter:
                 yield canvas
             self.complete = complete = state == self._state
             # All tiles together: one at the rim of the surface may be empty and cost nothing.
-            if kept is None:
+            if reused is None:
                 self.cost.learn(spent, drawn, self._samples)
         finally:
             # Half of a full picture serves a moved view better than none, but not than a sharp one.
-            if view is not None and state == self._state and (complete or kept is None):
-                self._shot = Shot(canvas.copy(), view, sharp=complete)
+            if view is not None and state == self._state and (complete or reused is None):
+                self._snapshot = Snapshot(canvas.copy(), view, sharp=complete)
 
-    def _keep(self, canvas: Pixels, view: NDArray[np.float64] | None) -> Rect | None:
+    def _reuse(self, canvas: Bytes, view: Floats | None) -> Rect | None:
         """Put what is sharp already in its new place; return the rectangle that it fills.
 
         A drag over a flat surface shifts the picture by whole pixels, and most of it stays.
         """
-        if view is None or self._shot is None or not self._shot.sharp:
+        if view is None or self._snapshot is None or not self._snapshot.sharp:
             return None
-        if self._shot.pixels.shape != canvas.shape or (by := shifted(self._shot, view)) is None:
+        if (
+            self._snapshot.pixels.shape != canvas.shape
+            or (by := whole_shift(self._snapshot, view)) is None
+        ):
             return None
         height, width = canvas.shape[:2]
         left, top = max(by[0], 0), max(by[1], 0)
         wide, high = width - abs(by[0]), height - abs(by[1])
         x, y = max(-by[0], 0), max(-by[1], 0)
-        canvas[top : top + high, left : left + wide] = self._shot.pixels[y : y + high, x : x + wide]
+        canvas[top : top + high, left : left + wide] = self._snapshot.pixels[
+            y : y + high, x : x + wide
+        ]
         return left, top, wide, high
 
     def _tiles(self, areas: list[Rect], width: int, height: int) -> list[Rect]:
@@ -177,7 +240,7 @@ class Painter:
 
         return sorted(tiles, key=far)
 
-    def _draft(self, quality: Quality, part: Rect | None = None) -> Pixels:
+    def _draft(self, quality: Quality, part: Rect | None = None) -> Bytes:
         width, height = self.pane.size
         settings = self.pane.handle.settings
         self.drafting = True
@@ -190,14 +253,14 @@ class Painter:
             settings.samples = chosen
             self.drafting = False
 
-    def _draw(self, width: int, height: int, part: Rect | None = None) -> Pixels:
+    def _draw(self, width: int, height: int, part: Rect | None = None) -> Bytes:
         started = time.perf_counter()
         pixels = self.pane.draw(width, height, part)
         self.cost.learn(time.perf_counter() - started, width * height, self._samples)
         return pixels
 
     @staticmethod
-    def _enlarged(pixels: Pixels, width: int, height: int) -> Pixels:
+    def _enlarged(pixels: Bytes, width: int, height: int) -> Bytes:
         if pixels.shape[:2] == (height, width):
             return pixels.copy()
         from PIL import Image
@@ -206,9 +269,9 @@ class Painter:
         return np.array(Image.fromarray(pixels).resize((width, height), smooth))
 
 
-def _around(kept: Rect, width: int, height: int) -> list[Rect]:
+def _around(reused: Rect, width: int, height: int) -> list[Rect]:
     """Rectangles that a picture has besides one that reaches to two of its borders."""
-    left, top, wide, high = kept
+    left, top, wide, high = reused
     above = (0, 0, width, top) if top else (0, high, width, height - high)
     beside = (0, top, left, high) if left else (wide, top, width - wide, high)
     return [area for area in (above, beside) if area[2] > 0 and area[3] > 0]
@@ -221,3 +284,79 @@ def _cuts(start: int, length: int, side: int) -> list[int]:
     """
     count = math.ceil(length / side)
     return [start + 2 * round(length * n / count / 2) for n in range(count)] + [start + length]
+
+
+class ViewPainter:
+    """Draws all panes of a viewport, which may come and go, as well as the time allows."""
+
+    def __init__(self, viewport: Viewport) -> None:
+        self._viewport = viewport
+        self.painters: list[PanePainter] = []
+        self._follow()
+
+    @property
+    def complete(self) -> bool:
+        """Whether the last picture that was drawn is at full quality."""
+        return all(painter.complete for painter in self._follow())
+
+    @property
+    def drafting(self) -> bool:
+        """Whether a setting is changed for the moment, for a draft."""
+        return any(painter.drafting for painter in self.painters)
+
+    def forget(self) -> None:
+        """Draw anew: what was drawn does not show the present state any more."""
+        for painter in self._follow():
+            painter.forget()
+
+    def quick(self, budget: float) -> Bytes:
+        """Return a picture within about ``budget`` seconds, (h, w, 3) uint8."""
+        painters = self._follow()
+        return self._joined([painter.quick(budget / len(painters)) for painter in painters])
+
+    def full(self) -> Generator[Bytes, None, None]:
+        """Draw the full picture over the quick one, as :meth:`PanePainter.full` does."""
+        painters = self._follow()
+        if len(painters) == 1:
+            yield from painters[0].full()
+            return
+        drawing = {number: painter.full() for number, painter in enumerate(painters)}
+        pictures: dict[int, Bytes] = {}
+        try:
+            while drawing:
+                for number, tiles in list(drawing.items()):
+                    picture = next(tiles, None)
+                    if picture is None:
+                        del drawing[number]
+                    else:
+                        pictures[number] = picture
+                yield self._joined([pictures[number] for number in sorted(pictures)])
+        finally:
+            for tiles in drawing.values():
+                tiles.close()
+
+    def _follow(self) -> list[PanePainter]:
+        """Painters of the panes that there are; what one has learnt of its price stays."""
+        panes = self._viewport.panes
+        if [painter.pane for painter in self.painters] != panes:
+            painters = {id(painter.pane): painter for painter in self.painters}
+            cost = self.painters[0].cost if self.painters else None
+            self.painters = [painters.get(id(pane)) or PanePainter(pane, cost) for pane in panes]
+        return self.painters
+
+    def _joined(self, pictures: list[Bytes]) -> Bytes:
+        """Put pictures beside each other, a line between them."""
+        if len(pictures) == 1:
+            return pictures[0]
+        from PIL import Image
+
+        height, width = (max(p.shape[axis] for p in pictures) for axis in (0, 1))
+        gap = max(round(GAP_PX * width / self._viewport.pane_size[0]), 1)
+        joined = np.full((height, len(pictures) * (width + gap) - gap, 3), LINE_GREY, np.uint8)
+        for number, picture in enumerate(pictures):
+            if picture.shape[:2] != (height, width):
+                smooth = Image.Resampling.BILINEAR
+                picture = np.asarray(Image.fromarray(picture).resize((width, height), smooth))
+            left = number * (width + gap)
+            joined[:, left : left + width] = picture
+        return joined

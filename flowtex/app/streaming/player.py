@@ -5,50 +5,43 @@ from __future__ import annotations
 import asyncio
 import logging
 import time
-from collections.abc import Callable
 
 import numpy as np
 
-from flowtex.app.streaming.scene import Scene
+from flowtex.app.server.page import Signal
 from flowtex.app.streaming.stream import FrameStream
+from flowtex.app.streaming.viewport import Viewport
 from flowtex.offscreen.movie import run_seconds
 
 __all__ = ["Player"]
 
 #: Pictures in a second while playing, at most.
-RATE = 20.0
+RATE_HZ = 20.0
 #: Seconds that one picture may let go by, however long it takes.
-LEAP = 0.5
+LONGEST_STEP_S = 0.5
 #: Seconds that time stands after somebody has moved it by hand.
-HOLD = 0.4
+HOLD_S = 0.4
 
 _log = logging.getLogger(__name__)
 
 
 class Player:
-    """Plays a scene.
-
-    Parameters
-    ----------
-    scene
-        What is played.
-    stream
-        What draws it.
-    told
-        Called when the time that is shown has changed.
+    """Lets the time of a viewport go by, as fast as a stream draws it.
 
     Attributes
     ----------
     pace
         How many times faster than usual.
+    time_changed
+        Signal after a change of the time that is shown.
     """
 
-    def __init__(self, scene: Scene, stream: FrameStream, told: Callable[[], None]) -> None:
+    def __init__(self, viewport: Viewport, stream: FrameStream) -> None:
         self.pace = 1.0
-        self._scene = scene
+        self.time_changed = Signal()
+        self._viewport = viewport
         self._stream = stream
-        self._told = told
-        self._held = 0.0
+        self._held_until = 0.0
 
     @property
     def playing(self) -> bool:
@@ -58,49 +51,49 @@ class Player:
     @playing.setter
     def playing(self, playing: bool) -> None:
         self._stream.playing = bool(playing)
-        if playing and self._scene.field.steady:
-            for pane in self._scene.panes:
+        if playing and self._viewport.field.steady:
+            for pane in self._viewport.panes:
                 if pane.handle.settings.motion == "off":
                     pane.handle.settings.motion = "speed"
         self._stream.moved()
 
     def go_to(self, time: float) -> None:
         """Show a time, or the nearest there is."""
-        times = self._scene.field.times
-        wanted = min(max(float(time), float(times[0])), float(times[-1]))
-        if wanted != self._scene.handle.time:
-            self._scene.set_time(wanted)
-            self._told()
+        times = self._viewport.field.times
+        nearest = min(max(float(time), float(times[0])), float(times[-1]))
+        if nearest != self._viewport.handle.time:
+            self._viewport.set_time(nearest)
+            self.time_changed.emit()
             self._stream.changed()
 
     def seek(self, time_: float) -> None:
         """Go to a time for a person, whose slider must not run away under the hand."""
-        self._held = time.monotonic() + HOLD
+        self._held_until = time.monotonic() + HOLD_S
         self.go_to(time_)
 
     def step(self, count: int) -> None:
         """Go so many steps of the field on, or back; round and round."""
-        times = self._scene.field.times
+        times = self._viewport.field.times
         if len(times) == 1:
-            self._scene.clock += count / RATE
+            self._viewport.clock += count / RATE_HZ
             self._stream.changed()
             return
-        at = self._scene.handle.time
+        at = self._viewport.handle.time
         after = np.searchsorted(times, at, side="right" if count > 0 else "left")
         self.go_to(float(times[(after - (count > 0) + count) % len(times)]))
 
     def advance(self, seconds: float) -> None:
         """Go on by so many seconds of the person's own time."""
         seconds *= self.pace
-        field = self._scene.field
+        field = self._viewport.field
         if field.steady:
-            self._scene.clock += seconds
+            self._viewport.clock += seconds
             self._stream.changed()
             return
         first, span = float(field.times[0]), float(np.ptp(field.times))
         run = run_seconds(len(field.times))
         # After the last time comes the first: a period goes round, anything else begins again.
-        self.go_to(first + (self._scene.handle.time - first + span * seconds / run) % span)
+        self.go_to(first + (self._viewport.handle.time - first + span * seconds / run) % span)
 
     async def play(self) -> None:
         """Let time go by while playing, no faster than pictures are drawn."""
@@ -108,11 +101,11 @@ class Player:
         while True:
             now = time.perf_counter()
             passed, before = now - before, now
-            held = time.monotonic() < self._held
-            if self.playing and not (held or self._stream.paused) and self._stream.watched():
-                self._go_on(min(passed, LEAP))
+            on_hold = time.monotonic() < self._held_until
+            if self.playing and not (on_hold or self._stream.paused) and self._stream.watched():
+                self._go_on(min(passed, LONGEST_STEP_S))
                 await self._stream.next_picture()
-            await asyncio.sleep(max(1 / RATE - (time.perf_counter() - now), 0.005))
+            await asyncio.sleep(max(1 / RATE_HZ - (time.perf_counter() - now), 0.005))
 
     def _go_on(self, seconds: float) -> None:
         """Advance; where that fails time stands, and the log tells why."""

@@ -1,81 +1,47 @@
-"""Controls made from the table of settings: its kind chooses the widget, its sentence the hint."""
+"""Controls of a page; those of settings are made from the table in :mod:`flowtex.settings`."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import json
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from trame.widgets import html
 from trame.widgets import vuetify3 as v3
 
-from flowtex.settings import Setting
+from flowtex.settings import NEEDS, Setting
 
 __all__ = [
     "ARIA",
-    "GROUPS",
-    "PRIMARY",
+    "buttons",
     "control",
     "hint",
-    "label",
     "number",
     "row",
     "select",
     "slider",
     "switch",
+    "toggle",
 ]
-
-#: What everybody needs, besides the colour; the rest is unfolded, group by group.
-PRIMARY = ("lod", "noise", "samples", "contrast")
-GROUPS: dict[str, tuple[str, ...]] = {
-    "Texture": ("kernel", "two_sided", "grain", "fixed_grain", "spacing", "strength", "show_level"),
-    "Noise": ("seed", "tiles", "noise_correction", "resolution"),
-    "Motion": ("motion", "speed", "speed_in", "period", "parameter"),
-}
 
 #: More choices than this are a menu.
 MOST_BUTTONS = 3
-#: A range with more values than this is typed, not dragged.
-MOST_STOPS = 500
-
 #: Attributes that trame's widgets do not know by themselves.
 ARIA = [("aria_label", "aria-label"), ("aria_expanded", "aria-expanded")]
 DATA = [("data_setting", "data-setting")]
 
-#: When a setting makes a difference, where others decide that.
-_TEXTURE, _STREAMS = "set_noise !== 'procedural'", "set_motion !== 'off'"
-MATTERS = {
-    "tiles": _TEXTURE,
-    "noise_correction": _TEXTURE,
-    "resolution": f"{_TEXTURE} || set_fixed_grain || !set_lod",
-    "speed": _STREAMS,
-    "speed_in": _STREAMS,
-    "period": _STREAMS,
-}
-
-LABELS = {"lod": "Level of detail"}
-
-
-def label(name: str) -> str:
-    """Return a setting's name as people read it."""
-    return LABELS.get(name, name.replace("_", " ").capitalize())
-
 
 def control(setting: Setting, key: str) -> None:
-    """Put a control for one setting into the widget that is open.
-
-    Parameters
-    ----------
-    setting
-        The setting.
-    key
-        Name of the state that holds its value.
-    """
-    other = key.removesuffix(setting.name)
-    matters = MATTERS.get(setting.name, "true").replace("set_", other)
+    """Put a control for a setting, with the state of this key, into the widget that is open."""
+    prefix = key.removesuffix(setting.name)
+    needs = [
+        f"{prefix}{name} {sign}= {_literal(to)}" for name, sign, to in NEEDS.get(setting.name, ())
+    ]
+    idle = f"!({' || '.join(needs)})" if needs else "false"
     with row(
         setting.name,
         setting.text,
-        classes=(f"{{ 'flowtex-row': true, 'flowtex-idle': !({matters}) }}",),
+        classes=(f"{{ 'flowtex-row': true, 'flowtex-idle': {idle} }}",),
     ):
         _widget(setting)(setting, key)
 
@@ -115,22 +81,23 @@ def select(name: str, key: str, items: Any, **attributes: Any) -> None:
 
 
 def _widget(setting: Setting) -> Callable[[Setting, str], None]:
-    if setting.kind is bool:
-        return _switch
-    if setting.choices:
+    if setting.control == "choice":
         return _choice if len(setting.choices) <= MOST_BUTTONS else _menu
-    if (setting.high or 0) - (setting.low or 0) > MOST_STOPS:
-        return _number
-    return _slider
+    return {"checkbox": _switch, "number": _number, "slider": _slider}[setting.control]
+
+
+def _literal(value: Any) -> str:
+    """Return a value as JavaScript has it."""
+    return json.dumps(value).replace('"', "'")
 
 
 def _name(setting: Setting) -> None:
-    html.Span(label(setting.name), classes="flowtex-label")
+    html.Span(setting.label, classes="flowtex-label")
 
 
 def _switch(setting: Setting, key: str) -> None:
     _name(setting)
-    switch(label(setting.name), key)
+    switch(setting.label, key)
 
 
 def switch(name: str, key: str) -> None:
@@ -148,35 +115,43 @@ def switch(name: str, key: str) -> None:
 
 
 def _choice(setting: Setting, key: str) -> None:
-    _name(setting)
-    with v3.VBtnToggle(
+    buttons(setting.label, key, setting.choices)
+
+
+def buttons(name: str, key: str, choices: Sequence[str]) -> None:
+    """Put buttons of which one is pressed into the row that is open."""
+    html.Span(name, classes="flowtex-label")
+    with toggle(name, key):
+        for choice in choices:
+            v3.VBtn(choice, value=choice, size="small")
+
+
+def toggle(name: str, key: str) -> Any:
+    """Return a group of buttons of which one is pressed, to be filled."""
+    return v3.VBtnToggle(
         v_model=(key,),
         mandatory=True,
         density="compact",
         variant="text",
-        divided=False,
         color="primary",
         classes="flowtex-toggle",
-        aria_label=label(setting.name),
+        aria_label=name,
         __properties=ARIA,
-    ):
-        for choice in setting.choices:
-            v3.VBtn(choice, value=choice, size="small")
+    )
 
 
 def _menu(setting: Setting, key: str) -> None:
-    select(label(setting.name), key, (f"{key}_choices", list(setting.choices)))
+    select(setting.label, key, (f"{key}_choices", list(setting.choices)))
 
 
 def _slider(setting: Setting, key: str) -> None:
     low, high = setting.low or 0, setting.high or 1
-    step = 1 if setting.kind is int else _step(low, high, setting.default)
     digits = 0 if setting.kind is int else 2
     with html.Div(classes="flowtex-stack"):
         with html.Div(classes="flowtex-line"):
             _name(setting)
             html.Span(f"{{{{ Number({key}).toFixed({digits}) }}}}", classes="flowtex-value")
-        slider(label(setting.name), key, low, high, step)
+        slider(setting.label, key, low, high, setting.step)
 
 
 def slider(name: str, key: str, low: Any, high: Any, step: Any, **attributes: Any) -> None:
@@ -199,7 +174,7 @@ def slider(name: str, key: str, low: Any, high: Any, step: Any, **attributes: An
 
 def _number(setting: Setting, key: str) -> None:
     _name(setting)
-    number(label(setting.name), key, setting.low, setting.high, whole=setting.kind is int)
+    number(setting.label, key, setting.low, setting.high, whole=setting.kind is int)
 
 
 def number(
@@ -219,12 +194,3 @@ def number(
         __events=["change"],
         classes="flowtex-number",
     )
-
-
-def _step(low: float, high: float, default: float) -> float:
-    """Return a round number of which the range holds some hundred, and that meets the default."""
-    for step in (0.01, 0.02, 0.05, 0.1):
-        steps = (default - low) / step
-        if (high - low) / step <= 400 and abs(steps - round(steps)) < 1e-6:
-            return step
-    return 0.25

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import Any
 
 from trame.ui.vuetify3 import VAppLayout
 from trame.widgets import html
 from trame.widgets import vuetify3 as v3
+from trame_client.widgets.core import AbstractElement
 
-from flowtex.app.controllers.clockwork import PACES
-from flowtex.app.ui.controls import ARIA, hint, select, slider
-from flowtex.app.ui.elements import Client, Keys, PathLines
-from flowtex.app.ui.overlays import busy, card, complaint, help_text, pane_labels, tip
-from flowtex.app.ui.panel import build_panel
-
-if TYPE_CHECKING:
-    from flowtex.app.flow_app import FlowApp
+from flowtex.app.controllers import Controllers
+from flowtex.app.controllers.camera_controls import KEYS
+from flowtex.app.controllers.playback import PACES
+from flowtex.app.ui.controls import ARIA, hint, select, slider, toggle
+from flowtex.app.ui.panel import build_panel, panel_shown
 
 __all__ = ["THEMES", "build_page"]
 
@@ -26,19 +25,26 @@ THEMES = {
 
 #: Attributes that tell the page's state to whoever watches it, such as a test.
 DATA = [("data_picture", "data-picture"), ("data_sharp", "data-sharp"), ("data_busy", "data-busy")]
+#: Time for which a complaint stands, for each letter that is to be read.
+MS_PER_LETTER = 70
 
 
-def build_page(app: FlowApp) -> Any:
-    """Build the page of an application.
+class PageElement(AbstractElement):
+    """An element that ``static/flowtex.js`` makes."""
 
-    Returns
-    -------
-    object
-        trame's layout; its ``html`` is the text of the page.
-    """
-    key = app.state.key
+    def __init__(
+        self, name: str, properties: Sequence[str], events: Sequence[Any] = (), **attributes: Any
+    ) -> None:
+        super().__init__(f"flowtex-{name}", **attributes)
+        self._attr_names += properties
+        self._event_names += events
+
+
+def build_page(controllers: Controllers) -> Any:
+    """Build the page; return trame's layout, whose ``html`` is the text of the page."""
+    key = controllers.context.state.key
     config = {"theme": {"defaultTheme": "dark", "themes": THEMES}}
-    with VAppLayout(app.server, vuetify_config=config) as layout:
+    with VAppLayout(controllers.context.state.server, vuetify_config=config) as layout:
         layout.root.theme = (key("theme"),)
         with html.Div(
             classes=(f"'flowtex flowtex-' + {key('theme')}",),
@@ -47,53 +53,63 @@ def build_page(app: FlowApp) -> Any:
             data_busy=(key("busy"),),
             __properties=DATA,
         ):
-            app.area.ui(
-                classes="flowtex-view", pointerleave=app.reader.leave, __events=["pointerleave"]
+            controllers.context.area.ui(
+                classes="flowtex-view",
+                pointerleave=controllers.point_info.leave,
+                __events=["pointerleave"],
             )
-            _client(app)
-            PathLines(over=(key("over"),), classes="flowtex-path flowtex-path-lines")
-            _keys(app)
-            pane_labels(app)
+            _client(controllers)
+            over = (key("over"),)
+            PageElement("path", ["over"], over=over, classes="flowtex-path flowtex-path-lines")
+            _keys(controllers)
+            _pane_labels(controllers)
             with html.Div(classes="flowtex-left"):
-                _title(app)
-                _planes(app)
-                card(app)
-            _buttons(app)
-            build_panel(app)
-            busy(app)
+                _title(controllers)
+                _planes(controllers)
+                _card(controllers)
+            _buttons(controllers)
+            build_panel(controllers)
+            _busy(controllers)
             with html.Div(classes="flowtex-foot"):
-                _bar(app)
-                _player(app)
+                _bar(controllers)
+                _player(controllers)
                 html.Div(f"{{{{ {key('figures')} }}}}", classes="flowtex-figures")
-            tip(app)
-            help_text(app)
-            complaint(app)
+            _tip(controllers)
+            _help_text(controllers)
+            _complaint(controllers)
     return layout
 
 
-def _client(app: FlowApp) -> None:
-    key, browser = app.state.key, app.browser
-    Client(
-        v_if=(key("there"),),
-        classes="flowtex-there",
-        source=(key("there"),),
-        settings=(key("there_settings"),),
-        camera=(key("there_camera"),),
-        time=(key("there_time"),),
+def _client(controllers: Controllers) -> None:
+    key, browser = controllers.context.state.key, controllers.browser
+    followed = ("camera", "time", "playing")
+    PageElement(
+        "client",
+        ["source", "settings", *followed],
+        [
+            *((f"update_{name}", f"update:{name}") for name in followed),
+            *("setting", "sharp", "point", "hover"),
+        ],
+        v_if=(key("client_source"),),
+        classes="flowtex-client",
+        source=(key("client_source"),),
+        settings=(key("client_settings"),),
+        camera=(key("client_camera"),),
+        time=(key("client_time"),),
         playing=(key("playing"),),
         update_camera=(browser.take_camera, "[$event]"),
         update_time=(browser.take_time, "[$event]"),
         update_playing=f"{key('playing')} = $event",
-        setting=(app.look.take_setting, "[$event]"),
+        setting=(controllers.appearance.take_setting, "[$event]"),
         sharp=(browser.take_sharp, "[$event]"),
-        point=(app.reader.take_point, "[$event]"),
-        hover=(app.reader.take_place, "[$event]"),
+        point=(controllers.point_info.take_point, "[$event]"),
+        hover=(controllers.point_info.take_place, "[$event]"),
     )
 
 
-def _keys(app: FlowApp) -> None:
-    key = app.state.key
-    close_card = app.server.trigger_name(app.reader.close_card)
+def _keys(controllers: Controllers) -> None:
+    key = controllers.context.state.key
+    close_card = controllers.context.state.server.trigger_name(controllers.point_info.close_card)
     toggles = {
         "play": f"{key('playing')} = !{key('playing')}",
         "theme": _other_theme(key("theme")),
@@ -101,15 +117,18 @@ def _keys(app: FlowApp) -> None:
         "help": f"{key('help')} = !{key('help')}",
     }
     cases = "; ".join(f"if ($event === '{name}') {{ {code} }}" for name, code in toggles.items())
-    Keys(
-        command=(app.moves.command, "[$event]"),
+    PageElement(
+        "keys",
+        [],
+        ["command", "toggle", "linked"],
+        command=(controllers.camera.command, "[$event]"),
         toggle=cases,
-        linked=(app.share.take_link, "[$event]"),
+        linked=(controllers.sharing.take_link, "[$event]"),
     )
 
 
-def _title(app: FlowApp) -> None:
-    key = app.state.key
+def _title(controllers: Controllers) -> None:
+    key = controllers.context.state.key
     with html.Div(classes="flowtex-title flowtex-glass"):
         html.Div("flowtex", classes="flowtex-mark")
         with html.Div(classes="flowtex-name", v_if=(f"{key('files')}.length < 2",)):
@@ -117,29 +136,20 @@ def _title(app: FlowApp) -> None:
         with html.Button(
             classes="flowtex-name flowtex-open",
             v_else=True,
-            click=app.data.look_again,
+            click=controllers.data.list_files,
             aria_label="Open another file",
             __properties=ARIA,
         ):
             html.Span(f"{{{{ {key('name')} }}}}")
             v3.VIcon("mdi-chevron-down", size=18)
-            with (
-                v3.VMenu(activator="parent", max_height=360),
-                v3.VList(density="compact", classes="flowtex-list"),
-            ):
-                v3.VListItem(
-                    v_for=f"name in {key('files')}",
-                    key="name",
-                    title=("name",),
-                    active=(f"name === {key('file')}",),
-                    click=f"{key('file')} = name",
-                )
+            current = (f"item === {key('file')}",)
+            _menu(key("files"), f"{key('file')} = item", active=current, max_height=360)
         html.Div(f"{{{{ {key('about')} }}}}", classes="flowtex-about")
 
 
-def _planes(app: FlowApp) -> None:
+def _planes(controllers: Controllers) -> None:
     """Let array and plane be chosen, where there is a choice."""
-    key = app.state.key
+    key = controllers.context.state.key
     some = " || ".join(f"{key(name)}.length" for name in ("vectors_choices", "axes", "blocks"))
     with html.Div(classes="flowtex-planes flowtex-glass", v_if=(some,)):
         for name, choices, text in (
@@ -152,28 +162,28 @@ def _planes(app: FlowApp) -> None:
         with html.Div(classes="flowtex-stack", v_if=(f"{key('axes')}.length",)):
             with html.Div(classes="flowtex-line"):
                 html.Span("Plane", classes="flowtex-label")
-                with v3.VBtnToggle(
-                    v_model=(key("axis"),),
-                    mandatory=True,
-                    density="compact",
-                    variant="text",
-                    color="primary",
-                    classes="flowtex-toggle",
-                    aria_label="Axis across the plane",
-                    __properties=ARIA,
-                ):
+                with toggle("Axis across the plane", key("axis")):
                     hint("Draw planes of constant i, j or k.", "end")
-                    v3.VBtn(
-                        "{{ one }}",
-                        v_for=f"one in {key('axes')}",
-                        key="one",
-                        value=("one",),
-                        size="small",
-                    )
+                    one = f"one in {key('axes')}"
+                    v3.VBtn("{{ one }}", v_for=one, key="one", value=("one",), size="small")
                 html.Span(
                     f"{{{{ {key('axis')} }}}} = {{{{ {key('index')} }}}}", classes="flowtex-value"
                 )
             slider("Plane", key("index"), 0, (key("planes"),), 1)
+
+
+def _menu(
+    items: str, click: Any, *, title: str = "item", max_height: Any = None, **attributes: Any
+) -> None:
+    """Open a list of items at the widget that is open; ``item`` is the one that is clicked."""
+    height = {} if max_height is None else {"max_height": max_height}
+    with (
+        v3.VMenu(activator="parent", **height),
+        v3.VList(density="compact", classes="flowtex-list"),
+    ):
+        v3.VListItem(
+            v_for=f"item in {items}", key="item", title=(title,), click=click, **attributes
+        )
 
 
 def _button(icon: str, text: str, click: Any, **attributes: Any) -> Any:
@@ -192,38 +202,29 @@ def _button(icon: str, text: str, click: Any, **attributes: Any) -> Any:
     return button
 
 
-def _buttons(app: FlowApp) -> None:
-    key = app.state.key
+def _buttons(controllers: Controllers) -> None:
+    key = controllers.context.state.key
     with html.Div(classes="flowtex-buttons flowtex-glass"):
-        _button("mdi-fit-to-screen-outline", "Show the whole surface", app.area.reset_camera)
-        with (
-            _button("mdi-axis-arrow", "Look from a side", None, v_if=(f"{key('views')}.length",)),
-            v3.VMenu(activator="parent"),
-            v3.VList(density="compact", classes="flowtex-list"),
-        ):
-            v3.VListItem(
-                v_for=f"view in {key('views')}",
-                key="view",
-                title=("view",),
-                click=(app.moves.look_from, "[view]"),
-            )
+        _button(
+            "mdi-fit-to-screen-outline",
+            "Show the whole surface",
+            controllers.context.area.reset_camera,
+        )
+        some = (f"{key('views')}.length",)
+        with _button("mdi-axis-arrow", "Look from a side", None, v_if=some):
+            _menu(key("views"), (controllers.camera.look_from, "[item]"))
         _button("mdi-theme-light-dark", "Light or dark", _other_theme(key("theme")))
         _button("mdi-fullscreen", "Full screen", "flowtex_fullscreen()")
         _button("mdi-help", "Keys and the mouse", f"{key('help')} = true")
-        _button("mdi-tune-variant", "Controls", f"{key('panel')} = !({shown(key('panel'))})")
+        _button("mdi-tune-variant", "Controls", f"{key('panel')} = !({panel_shown(key('panel'))})")
 
 
 def _other_theme(theme: str) -> str:
     return f"{theme} = {theme} === 'dark' ? 'light' : 'dark'"
 
 
-def shown(panel: str) -> str:
-    """Whether the panel is shown: as chosen, or at first where there is room for it."""
-    return f"({panel} === null ? $vuetify.display.mdAndUp : {panel})"
-
-
-def _bar(app: FlowApp) -> None:
-    bar, scale = app.state.key("bar"), app.state.key("scale")
+def _bar(controllers: Controllers) -> None:
+    bar, scale = controllers.context.state.key("bar"), controllers.context.state.key("scale")
     with html.Div(classes="flowtex-corner"):
         with html.Div(classes="flowtex-scale", v_show=(f"{scale}.width",)):
             html.Span(f"{{{{ {scale}.text }}}}")
@@ -237,10 +238,10 @@ def _bar(app: FlowApp) -> None:
                 html.Span(f"{{{{ {bar}.high }}}}", classes="flowtex-value")
 
 
-def _player(app: FlowApp) -> None:
-    key = app.state.key
+def _player(controllers: Controllers) -> None:
+    key = controllers.context.state.key
     playing, steady = key("playing"), key("steady")
-    step = app.clockwork.step
+    step = controllers.playback.step
     with html.Div(classes="flowtex-player flowtex-glass"):
         _button("mdi-skip-previous", "A step back", (step, "[-1]"), v_if=(f"!{steady}",))
         with v3.VBtn(
@@ -274,10 +275,96 @@ def _player(app: FlowApp) -> None:
             __properties=ARIA,
         ):
             hint("How fast time goes by.", "top")
-            with v3.VMenu(activator="parent"), v3.VList(density="compact", classes="flowtex-list"):
-                v3.VListItem(
-                    v_for=f"pace in {list(PACES)}",
-                    key="pace",
-                    title=("pace + '×'",),
-                    click=f"{key('pace')} = pace",
-                )
+            _menu(str(list(PACES)), f"{key('pace')} = item", title="item + '×'")
+
+
+def _pane_labels(controllers: Controllers) -> None:
+    """Say in which of two panes what is shown."""
+    compare = controllers.context.state.key("compare")
+    with html.Div(classes="flowtex-panes", v_if=(f"{compare} !== 'nothing'",)):
+        html.Span("as set", classes="flowtex-chip")
+        html.Span(f"{{{{ {compare} }}}}", classes="flowtex-chip")
+
+
+def _card(controllers: Controllers) -> None:
+    """Show the samples of the path through a point, and what becomes of them."""
+    name = controllers.context.state.key("card")
+    with html.Div(classes="flowtex-card flowtex-glass", v_if=(name,), role="region"):
+        with html.Div(classes="flowtex-line"):
+            html.Span("The path through this point", classes="flowtex-label")
+            html.Button("Close", click=controllers.point_info.close_card, classes="flowtex-link")
+        over = (controllers.context.state.key("over"),)
+        PageElement("inset", ["over"], over=over, classes="flowtex-inset flowtex-path-lines")
+        with html.Div(classes="flowtex-bars"):
+            hint("Each bar is a sample: its height the weight, its grey the noise it meets.", "end")
+            html.I(
+                v_for=f"bar in {name}.bars",
+                style=("{ height: 100 * bar.weight + '%', background: bar.grey }",),
+            )
+        with html.Div(classes="flowtex-line flowtex-ends"):
+            html.Span("behind")
+            html.Span("ahead")
+        _pairs(f"{name}.lines")
+
+
+def _tip(controllers: Controllers) -> None:
+    """Tell what is under the pointer."""
+    name = controllers.context.state.key("tip")
+    place = (
+        f"{{ left: {name}.x + '%', top: {name}.y + '%', transform: "
+        f"'translate(' + ({name}.x > 70 ? 'calc(-100% - 16px)' : '16px') + ', ' + "
+        f"({name}.y > 75 ? 'calc(-100% - 12px)' : '12px') + ')' }}"
+    )
+    with html.Div(classes="flowtex-tip flowtex-glass", v_if=(name,), style=(place,)):
+        _pairs(f"{name}.lines")
+
+
+def _pairs(lines: str) -> None:
+    """Put words and numbers in two columns."""
+    with html.Dl(classes="flowtex-pairs"), html.Template(v_for=f"line in {lines}"):
+        html.Dt("{{ line[0] }}")
+        html.Dd("{{ line[1] }}")
+
+
+def _busy(controllers: Controllers) -> None:
+    """Tell what is being read or traced, and offer to stop it."""
+    name = controllers.context.state.key("busy")
+    with html.Div(classes="flowtex-busy flowtex-glass", v_if=(name,), role="status"):
+        v3.VProgressCircular(indeterminate=True, size=18, width=2, color="primary")
+        html.Span(f"{{{{ {name} }}}}")
+        html.Button("Cancel", click=controllers.data.cancel, classes="flowtex-link")
+
+
+def _help_text(controllers: Controllers) -> None:
+    """Say what keys and mouse do."""
+    visible = controllers.context.state.key("help")
+    with html.Div(classes="flowtex-help flowtex-glass", v_if=(visible,), role="dialog"):
+        html.Div("Keys and the mouse", classes="flowtex-name")
+        mouse = {
+            "drag": "pan a flat surface, turn a curved one",
+            "Shift and drag": "the other one of the two",
+            "wheel, two fingers": "zoom to the pointer",
+            "click": "the path through a point",
+        }
+        with html.Dl():
+            for name, text in {**mouse, **KEYS}.items():
+                html.Dt(name)
+                html.Dd(text)
+        html.Button("Close", click=f"{visible} = false", classes="flowtex-link")
+
+
+def _complaint(controllers: Controllers) -> None:
+    """Say what is wrong."""
+    problem = controllers.context.state.key("problem")
+    with (
+        v3.VSnackbar(
+            f"{{{{ {problem} }}}}",
+            model_value=(f"!!{problem}",),
+            update_modelValue=f"{problem} = ''",
+            timeout=(f"Math.max(8000, {MS_PER_LETTER} * {problem}.length)",),
+            location="top",
+            content_class="flowtex-complaint",
+        ),
+        html.Template(v_slot_actions=True),
+    ):
+        html.Button("Close", click=f"{problem} = ''", classes="flowtex-link")

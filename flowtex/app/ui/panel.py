@@ -3,46 +3,47 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from functools import partial
 
 from trame.widgets import html
 from trame.widgets import vuetify3 as v3
 
+from flowtex.app.controllers import Controllers
+from flowtex.app.controllers.appearance import BACKGROUNDS, CMAPS
 from flowtex.app.controllers.browser import RENDERERS
-from flowtex.app.controllers.look import BACKGROUNDS, CMAPS
-from flowtex.app.controllers.share import FORMATS
-from flowtex.app.ui.controls import ARIA, GROUPS, PRIMARY, control, number, row, select, switch
-from flowtex.settings import TABLE
+from flowtex.app.controllers.sharing import FORMATS
+from flowtex.app.ui.controls import ARIA, buttons, control, number, row, select, switch
+from flowtex.settings import GROUPS, TABLE
 
-if TYPE_CHECKING:
-    from flowtex.app.flow_app import FlowApp
-
-__all__ = ["build_panel"]
+__all__ = ["build_panel", "panel_shown"]
 
 
-def build_panel(app: FlowApp) -> None:
+def build_panel(controllers: Controllers) -> None:
     """Put the panel into the page that is open."""
-    from flowtex.app.ui.layout import shown
-
-    key = app.state.key
+    key = controllers.context.state.key
     with html.Div(
-        classes="flowtex-panel flowtex-glass", v_show=(shown(key("panel")),), role="region"
+        classes="flowtex-panel flowtex-glass", v_show=(panel_shown(key("panel")),), role="region"
     ):
-        for name in PRIMARY:
+        for name in GROUPS[""]:
             control(TABLE[name], key(f"set_{name}"))
         with row("colour", "What the colours tell."):
             select("Colour by", key("colour"), (key("colours"),))
-        _group(app, "Colours", lambda: _colours(app))
-        for title, names in GROUPS.items():
-            _group(app, title, _settings(app, title, names))
-        _group(app, "View", lambda: _view(app))
-        _group(app, "Save", lambda: _save(app))
-        _group(app, "Share", lambda: _share(app))
+        _group(controllers, "Colours", lambda: _colours(controllers))
+        for title in filter(None, GROUPS):
+            _group(controllers, title, partial(_settings, controllers, title))
+        _group(controllers, "View", lambda: _view(controllers))
+        _group(controllers, "Save", lambda: _save(controllers))
+        _group(controllers, "Share", lambda: _share(controllers))
 
 
-def _group(app: FlowApp, title: str, fill: Callable[[], None]) -> None:
+def panel_shown(panel: str) -> str:
+    """Whether the panel is shown: as chosen, or at first where there is room for it."""
+    return f"({panel} === null ? $vuetify.display.mdAndUp : {panel})"
+
+
+def _group(controllers: Controllers, title: str, fill: Callable[[], None]) -> None:
     """Put a group that unfolds into the panel; one is open at a time."""
-    group = app.state.key("group")
+    group = controllers.context.state.key("group")
     is_open = f"{group} === '{title}'"
     with html.Button(
         classes="flowtex-more",
@@ -56,21 +57,18 @@ def _group(app: FlowApp, title: str, fill: Callable[[], None]) -> None:
         fill()
 
 
-def _settings(app: FlowApp, title: str, names: tuple[str, ...]) -> Callable[[], None]:
-    def fill() -> None:
-        for name in names:
-            control(TABLE[name], app.state.key(f"set_{name}"))
-        if title == "Noise":
-            _image(app)
-
-    return fill
+def _settings(controllers: Controllers, title: str) -> None:
+    for name in GROUPS[title]:
+        control(TABLE[name], controllers.context.state.key(f"set_{name}"))
+    if title == "Noise":
+        _image(controllers)
 
 
-def _image(app: FlowApp) -> None:
+def _image(controllers: Controllers) -> None:
     with row("image", "A picture of your own, PNG or JPEG, that the flow smears."):
         html.Span("Your image", classes="flowtex-label")
         v3.VFileInput(
-            v_model=(app.state.key("image_file"),),
+            v_model=(controllers.context.state.key("image_file"),),
             accept="image/png,image/jpeg,image/webp",
             density="compact",
             variant="plain",
@@ -82,8 +80,8 @@ def _image(app: FlowApp) -> None:
         )
 
 
-def _colours(app: FlowApp) -> None:
-    key = app.state.key
+def _colours(controllers: Controllers) -> None:
+    key = controllers.context.state.key
     with row("cmap", "From low to high: even steps of lightness first, then maps with a middle."):
         select("Colour map", key("cmap"), (f"{list(CMAPS)}",))
     with row("range", "Values at the ends of the colour map."):
@@ -91,41 +89,25 @@ def _colours(app: FlowApp) -> None:
         with html.Span(classes="flowtex-range"):
             number("Lowest value", key("low"))
             number("Highest value", key("high"))
-            html.Button("auto", click=app.look.forget_range, classes="flowtex-link")
+            html.Button("auto", click=controllers.appearance.forget_range, classes="flowtex-link")
     with row("background", "What lies behind the surface."):
         select("Background", key("background"), (f"{list(BACKGROUNDS)}",))
 
 
-def _view(app: FlowApp) -> None:
-    key = app.state.key
+def _view(controllers: Controllers) -> None:
+    key = controllers.context.state.key
     with row("compare", "A second view beside the first, which moves with it."):
         select("Beside it", key("compare"), (key("comparisons"),))
     with row("rendering", "The server sends pictures; the browser draws with its own graphics."):
-        _toggle("Drawn by", key("rendering"), RENDERERS)
+        buttons("Drawn by", key("rendering"), RENDERERS)
 
 
-def _toggle(name: str, key: str, choices: tuple[str, ...]) -> None:
-    html.Span(name, classes="flowtex-label")
-    with v3.VBtnToggle(
-        v_model=(key,),
-        mandatory=True,
-        density="compact",
-        variant="text",
-        color="primary",
-        classes="flowtex-toggle",
-        aria_label=name,
-        __properties=ARIA,
-    ):
-        for choice in choices:
-            v3.VBtn(choice, value=choice, size="small")
-
-
-def _save(app: FlowApp) -> None:
+def _save(controllers: Controllers) -> None:
     """Put what makes pictures and movies into the group that is open."""
-    key = app.state.key
+    key = controllers.context.state.key
     movie = f"{key('out_format')} !== 'PNG'"
     with row("format", "A picture, or a movie: one seamless round, or all times of the flow."):
-        _toggle("Format", key("out_format"), FORMATS)
+        buttons("Format", key("out_format"), FORMATS)
     with row("size", "Width and height in pixels; it may be larger than the window."):
         html.Span("Size", classes="flowtex-label")
         with html.Span(classes="flowtex-range"):
@@ -144,7 +126,7 @@ def _save(app: FlowApp) -> None:
             number("Pictures in a second", key("out_fps"), 1, 60)
     progress, file = key("out_progress"), key("out_file")
     with html.Div(classes="flowtex-row", v_if=(f"{progress} === null",)):
-        html.Button("Make it", click=app.share.begin, classes="flowtex-action")
+        html.Button("Make it", click=controllers.sharing.start, classes="flowtex-action")
         html.A(
             f"Save {{{{ {file}.name }}}}",
             v_if=(file,),
@@ -155,14 +137,16 @@ def _save(app: FlowApp) -> None:
         )
     with html.Div(classes="flowtex-row", v_else=True):
         v3.VProgressLinear(model_value=(progress,), color="primary", height=6, rounded=True)
-        html.Button("Cancel", click=app.share.cancel, classes="flowtex-link")
+        html.Button("Cancel", click=controllers.sharing.cancel, classes="flowtex-link")
 
 
-def _share(app: FlowApp) -> None:
+def _share(controllers: Controllers) -> None:
     """Put the link and the lines of Python into the group that is open."""
-    key = app.state.key
+    key = controllers.context.state.key
     with html.Div(classes="flowtex-row"):
-        html.Button("Describe what is shown", click=app.share.show_state, classes="flowtex-action")
+        html.Button(
+            "Describe what is shown", click=controllers.sharing.show_state, classes="flowtex-action"
+        )
     with html.Div(v_if=(key("python"),)):
         for title, text in (
             ("Link", f"flowtex_address({key('link')})"),

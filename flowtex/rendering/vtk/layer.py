@@ -24,7 +24,7 @@ from vtkmodules.util.vtkConstants import VTK_OBJECT
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 from flowtex.rendering.shaders import shader_text
-from flowtex.rendering.uniforms import ViewState, uniforms, variants
+from flowtex.rendering.uniforms import ANCHOR_RANGE, ViewState, uniforms, variants
 from flowtex.rendering.vtk.gpu_texture import GPUTexture
 from flowtex.rendering.vtk.mesh import ATTRIBUTES, set_position, vertex_attributes
 from flowtex.settings import Settings
@@ -34,9 +34,6 @@ __all__ = ["FlowLayer"]
 
 #: Name under which PyVista registers the replacements.
 OWNER = "flowtex"
-
-#: Heights of the window within which positions may be counted from another point than its middle.
-ANCHOR_HEIGHTS = 8.0
 
 #: Shader, the mark of VTK before which our text is inserted, and our file.
 REPLACEMENTS = (
@@ -222,9 +219,9 @@ class FlowLayer:
         """Count positions from near the focus once their digits do not do from elsewhere."""
         geometry = self._textures.geometry
         there = geometry.local(self.view.focus)
-        if np.abs(there - self.view.anchor).max() <= ANCHOR_HEIGHTS * seen:
+        if np.abs(there - self.view.anchor).max() <= ANCHOR_RANGE * seen:
             return
-        near_middle = np.abs(there).max() <= ANCHOR_HEIGHTS * seen
+        near_middle = np.abs(there).max() <= ANCHOR_RANGE * seen
         self.view.anchor = np.zeros(3) if near_middle else there
         set_position(self._actor.mapper.dataset, geometry.position_from(self.view.anchor))
 

@@ -1,9 +1,8 @@
-"""WebGL2: what the client in the browser is handed, and the client itself (``client.js``)."""
+"""WebGL2: what the client in the browser is handed."""
 
 from __future__ import annotations
 
-from flowtex.rendering.webgl.assets import asset
-from flowtex.rendering.webgl.header import Colours, camera_state
-from flowtex.rendering.webgl.scene import FORMAT, Scene
+from flowtex.rendering.webgl.client_data import ClientData, Colours
+from flowtex.rendering.webgl.protocol import FORMAT
 
-__all__ = ["FORMAT", "Colours", "Scene", "asset", "camera_state"]
+__all__ = ["FORMAT", "ClientData", "Colours"]

@@ -1,27 +1,38 @@
-"""Slices as the client takes them, packed once for all that show the same textures."""
+"""Slices in half precision as the client takes them, packed once for all views of some textures."""
 
 from __future__ import annotations
 
-import threading
-import weakref
-from collections import OrderedDict
+from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from flowtex.rendering.webgl.header import half
+from flowtex._util.array_types import AnyArray, Halves
+from flowtex._util.cache import ByteCache, WeakCache
 from flowtex.textures import TextureSet
 
-__all__ = ["Packing", "packing_of"]
+__all__ = ["Packing", "half", "packing_of"]
 
-Halves = NDArray[np.float16]
+#: Greatest number in half precision.
+HALF_MAX = 65504.0
+#: Bytes of packed steps that are cached, and how many steps at least.
+CACHE_BYTES, LEAST_STEPS = 64_000_000, 2
 
-#: Bytes of packed steps that are kept, and how many steps at least.
-KEPT, FEWEST = 64_000_000, 2
+
+@dataclass(frozen=True, eq=False)
+class PackedStep:
+    """Slopes of one destination time, (layers, H, W, channels), and ``extra``, (n, H, W)."""
+
+    slopes: Halves
+    extra: Halves
+
+    @property
+    def nbytes(self) -> int:
+        """Size of the slopes, which are nearly all of it."""
+        return self.slopes.nbytes
 
 
 class Packing:
-    """Packed slices of some textures; those asked for last are kept.
+    """Packed slices of some textures; those asked for last are cached.
 
     Attributes
     ----------
@@ -36,37 +47,26 @@ class Packing:
         self.channels = 2 if textures.geometry.planar or textures.paper is not None else 4
         ahead = [1 + len(textures.lags)] if textures.sides == 2 else []
         self.extra = [0, 1, 2, *ahead]
-        self._steps: OrderedDict[int, tuple[Halves, Halves]] = OrderedDict()
-        self._lock = threading.Lock()
+        self._steps: ByteCache[int, PackedStep] = ByteCache(CACHE_BYTES, min_count=LEAST_STEPS)
 
-    def step(self, step: int) -> tuple[Halves, Halves]:
-        """Return slopes (layers, H, W, channels) and what ``extra`` names (n, H, W) of a step.
+    def step(self, step: int) -> PackedStep:
+        """Return a step; what is not yet traced is traced."""
+        return self._steps.get(step, lambda: self._packed(step))
 
-        What is not yet traced is traced.
-        """
-        with self._lock:
-            if step not in self._steps:
-                layers = self._textures.layers(step)
-                self._steps[step] = (
-                    half(layers[..., : self.channels]),
-                    half(layers[self.extra, :, :, 3]),
-                )
-            self._steps.move_to_end(step)
-            packed = self._steps[step]
-            while len(self._steps) > max(FEWEST, KEPT // packed[0].nbytes):
-                self._steps.popitem(last=False)
-            return packed
+    def _packed(self, step: int) -> PackedStep:
+        layers = self._textures.layers(step)
+        return PackedStep(half(layers[..., : self.channels]), half(layers[self.extra, :, :, 3]))
 
 
-_shared: weakref.WeakValueDictionary[int, Packing] = weakref.WeakValueDictionary()
-_lock = threading.Lock()
+_packings: WeakCache[Packing] = WeakCache()
 
 
 def packing_of(textures: TextureSet) -> Packing:
-    """Return the packing of some textures, one for all scenes that draw with them."""
-    with _lock:
-        # A packing keeps its textures alive, so their number is their own while it lives.
-        found = _shared.get(id(textures))
-        if found is None:
-            found = _shared[id(textures)] = Packing(textures)
-        return found
+    """Return the packing of some textures, one for all who draw with them."""
+    # A packing keeps its textures alive, so their number is its own while it lives.
+    return _packings.get(id(textures), lambda: Packing(textures))
+
+
+def half(values: AnyArray) -> Halves:
+    """Round to half precision; what is greater than its greatest number becomes that."""
+    return np.ascontiguousarray(np.clip(values, -HALF_MAX, HALF_MAX), dtype="<f2")

@@ -1,0 +1,56 @@
+// Builds the client into the package: `node build.js [--watch | --check]`.
+//
+// The built files are kept in the repository, so that nobody who only uses flowtex needs Node; --check
+// tells whether they are what the sources give. Identifiers stay as they are, for the debugger.
+import { readFile } from "node:fs/promises";
+import { fileURLToPath } from "node:url";
+import * as esbuild from "esbuild";
+
+const WEB = "../flowtex/web";
+const STATIC = "../flowtex/app/ui/static";
+
+const COMMON = {
+  absWorkingDir: fileURLToPath(new URL(".", import.meta.url)),
+  bundle: true,
+  charset: "utf8",
+  legalComments: "inline",
+  lineLimit: 120,
+  loader: { ".css": "text" },
+  minifySyntax: true,
+  minifyWhitespace: true,
+  target: "es2022",
+};
+
+const licence = await readFile(new URL("node_modules/gl-matrix/LICENSE.md", import.meta.url), "utf8");
+const ORIGIN = "// Built from client/src by client/build.js; change that instead.";
+const NOTICE = `/*! Holds parts of gl-matrix, of which this is the licence:\n\n${licence.trim()} */`;
+
+const BUILDS = [
+  ["src/client.ts", `${WEB}/client.js`, "esm", NOTICE],
+  ["src/page.ts", `${WEB}/page.js`, "esm", NOTICE],
+  ["src/app/app.ts", `${STATIC}/flowtex.js`, "iife", ""],
+].map(([entry, outfile, format, notice]) => ({
+  ...COMMON,
+  entryPoints: [entry],
+  outfile,
+  format,
+  banner: { js: `${ORIGIN}\n${notice}`.trim() },
+}));
+
+async function check(options) {
+  const { outputFiles } = await esbuild.build({ ...options, write: false });
+  const kept = await readFile(new URL(options.outfile, import.meta.url));
+  return Buffer.compare(kept, outputFiles[0].contents) === 0 ? [] : [options.outfile];
+}
+
+if (process.argv.includes("--watch")) {
+  for (const options of BUILDS) await (await esbuild.context(options)).watch();
+} else if (process.argv.includes("--check")) {
+  const stale = (await Promise.all(BUILDS.map(check))).flat();
+  if (stale.length) {
+    console.error(`not what client/src gives: ${stale.join(", ")}; run: make client`);
+    process.exitCode = 1;
+  }
+} else {
+  await Promise.all(BUILDS.map((options) => esbuild.build(options)));
+}

@@ -1,0 +1,171 @@
+// Drawing in the browser, in the page that trame serves: a Vue component around a viewer, whose client
+// is loaded when it is first needed. flowtex/app/controllers/browser.py is the other side.
+
+import type { CameraState } from "../camera.ts";
+import type * as Client from "../client.ts";
+import { throttled } from "../lifetime.ts";
+import { placeIn } from "../pointers.ts";
+import type { Header, Settings } from "../protocol.ts";
+import type { Options, Viewer } from "../viewer.ts";
+import { vue, type Emit } from "./vue.ts";
+
+/** Milliseconds between two messages to the server. */
+const MESSAGE_MS = 100;
+
+/** Where the client and the parts of a scene are found, and the scene's header. */
+interface Source {
+  client: string;
+  header: Header;
+  surface: string;
+  steps: string[];
+}
+
+interface Props {
+  source: Source;
+  settings: Settings;
+  camera: CameraState | null;
+  time: number;
+  playing: boolean;
+}
+
+const isEqual = (a: unknown, b: unknown) => JSON.stringify(a) === JSON.stringify(b);
+const slowly = <T>(call: (value: T) => void) => throttled<T>(setTimeout, MESSAGE_MS, call);
+
+/** A viewer in the page, and what it was told last. */
+class BrowserView {
+  private readonly props: Props;
+  private readonly emit: Emit;
+  private client: typeof Client | null = null;
+  private viewer: Viewer | null = null;
+  private lastCamera: CameraState | null = null;
+  private lastTime = NaN;
+  private isGone = false;
+  private started = 0;
+  private readonly watcher = new MutationObserver(() => this.look());
+
+  constructor(props: Props, emit: Emit) {
+    this.props = props;
+    this.emit = emit;
+  }
+
+  async begin(element: HTMLElement): Promise<void> {
+    const address = new URL(this.props.source.client, document.baseURI).href;
+    const client = (await import(address)) as typeof Client;
+    if (this.isGone) return;
+    this.client = client;
+    const viewer = new client.Viewer(element, this.options());
+    this.viewer = viewer;
+    viewer.root.style.height = "100%";
+    this.watcher.observe(viewer.root, { attributeFilter: ["data-sharp"] });
+    await this.show();
+  }
+
+  private options(): Options {
+    const { emit } = this;
+    const sendCamera = slowly((camera) => emit("update:camera", camera));
+    const sendTime = slowly((time) => emit("update:time", time));
+    return {
+      rebuild: true,
+      controls: false,
+      bare: true,
+      onCamera: (camera) => sendCamera((this.lastCamera = camera)),
+      onTime: (time) => sendTime((this.lastTime = time)),
+      onPlaying: (playing) => emit("update:playing", playing),
+      onPoint: (point) => emit("point", [...point.index]),
+      onSetting: (name, value) => emit("setting", [name, value]),
+      onNeed: (step) => void this.load(this.props.source.steps[step]),
+    };
+  }
+
+  async show(): Promise<void> {
+    const { source, playing } = this.props;
+    this.started = performance.now();
+    this.viewer?.setHeader(source.header);
+    await this.load(source.surface);
+    if (playing) this.viewer?.play();
+  }
+
+  /** Fetch a file of parts. */
+  private async load(address: string): Promise<void> {
+    const answer = await fetch(address);
+    if (!answer.ok) throw new Error(`${address}: ${answer.status}`);
+    const file = await answer.arrayBuffer();
+    if (this.isGone) return;
+    for (const part of this.client?.partsOfFile(file) ?? []) this.viewer?.setPart(part);
+  }
+
+  /** Tell how long the full picture took. */
+  private look(): void {
+    const now = performance.now();
+    if (this.viewer?.sharp) this.emit("sharp", now - this.started);
+    else this.started = now;
+  }
+
+  setSettings(settings: Settings): void {
+    this.viewer?.setSettings(settings);
+  }
+
+  setCamera(camera: CameraState | null): void {
+    if (camera && !isEqual(camera, this.lastCamera)) this.viewer?.setCamera(camera);
+  }
+
+  setTime(time: number): void {
+    if (time !== this.lastTime && !this.viewer?.playing) this.viewer?.setTime(time);
+  }
+
+  setPlaying(playing: boolean): void {
+    if (playing) this.viewer?.play();
+    else this.viewer?.pause();
+  }
+
+  get hasBegun(): boolean {
+    return this.viewer !== null;
+  }
+
+  dispose(): void {
+    this.isGone = true;
+    this.watcher.disconnect();
+    this.viewer?.dispose();
+  }
+}
+
+export const browser = {
+  name: "flowtex-client",
+  props: ["source", "settings", "camera", "time", "playing"],
+  emits: ["update:camera", "update:time", "update:playing", "setting", "sharp", "point", "hover"],
+  setup(props: Props, { emit }: { emit: Emit }) {
+    const { h, ref, watch, onMounted, onBeforeUnmount } = vue();
+    const place = ref<HTMLElement | null>(null);
+    const view = new BrowserView(props, emit);
+    onMounted(() => place.value && void view.begin(place.value));
+    onBeforeUnmount(() => view.dispose());
+    watch(
+      () => props.source,
+      () => view.hasBegun && void view.show(),
+    );
+    watch(
+      () => props.settings,
+      (settings) => view.setSettings(settings),
+    );
+    watch(
+      () => props.camera,
+      (camera) => view.setCamera(camera),
+    );
+    watch(
+      () => props.time,
+      (time) => view.setTime(time),
+    );
+    watch(
+      () => props.playing,
+      (playing) => view.setPlaying(playing),
+    );
+    const sendHover = slowly<[number, number] | null>((at) => emit("hover", at));
+    const onPointermove = (event: PointerEvent) => {
+      if (!place.value) return;
+      const { x, y } = placeIn(place.value, event);
+      sendHover(event.buttons ? null : [x, y]);
+    };
+    const onPointerleave = () => sendHover(null);
+    return () => h("div", { ref: place, onPointermove, onPointerleave });
+  },
+};

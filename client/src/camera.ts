@@ -1,0 +1,301 @@
+// The camera: how it is moved, and how it sees. flowtex/camera.py does the same in Python.
+
+import type { Geometry } from "./protocol.ts";
+import {
+  add,
+  clamp,
+  cross,
+  dot,
+  fromFrame,
+  length,
+  rotated,
+  scale,
+  subtract,
+  toFrame,
+  unit,
+  type Vector,
+} from "./vectors.ts";
+
+/** A camera as a plain dictionary, in the mesh's own coordinates. */
+export interface CameraState {
+  position: number[];
+  focal_point: number[];
+  up: number[];
+  parallel: boolean;
+  parallel_scale: number;
+  view_angle: number;
+}
+
+/** How far a camera may go: CameraLimits of flowtex/camera.py. */
+export interface CameraLimits {
+  /** Deepest and farthest zoom, relative to the whole surface. */
+  deepest_zoom: number;
+  farthest_zoom: number;
+  /** How many times closer the camera comes. */
+  closest: number;
+  /** View angle in perspective, in degrees. */
+  view_angle: number;
+  /** Share of the view that is left empty around a surface. */
+  margin: number;
+  /** Zoom by one notch of the wheel. */
+  wheel_zoom: number;
+  /** Degrees that a drag over half the height of the view turns, and the aspect up to which it does. */
+  turn: number;
+  widest_turn: number;
+  /** Width over height of the view that a camera in perspective is usually made for. */
+  aspect: number;
+}
+
+const tangent = (degrees: number) => Math.tan((degrees * Math.PI) / 360);
+
+/** A camera that is moved. Places in the view are (x, y) from -1 to 1, right and up. */
+export class Camera {
+  readonly flat: boolean;
+  readonly limits: CameraLimits;
+  aspect: number;
+  state: CameraState;
+  readonly start: CameraState;
+  /** Point of the surface at a place of the view. */
+  pick: ((x: number, y: number) => Vector | null) | null = null;
+  private readonly homeHeight: number;
+  private readonly nearest: number;
+
+  /** `flat` tells whether a drag pans; otherwise it rotates. */
+  constructor(state: CameraState, limits: CameraLimits, flat: boolean, aspect = 1) {
+    this.state = copyOf(state);
+    this.start = copyOf(state);
+    this.limits = limits;
+    this.flat = flat;
+    this.aspect = aspect;
+    this.homeHeight = this.height;
+    this.nearest = this.distance / limits.closest;
+  }
+
+  /** Half the height of the view at the focal point. */
+  get height(): number {
+    const { parallel, parallel_scale: half, view_angle: angle } = this.state;
+    return parallel ? half : this.distance * tangent(angle);
+  }
+
+  get distance(): number {
+    return length(subtract(this.state.focal_point, this.state.position));
+  }
+
+  /** How far in: 1 is the view that the scene came with. */
+  get zoom(): number {
+    return this.homeHeight / this.height;
+  }
+
+  /** Unit vectors to the right of the view, upwards, and away from the eye. */
+  get axes(): [Vector, Vector, Vector] {
+    const ahead = unit(subtract(this.state.focal_point, this.state.position));
+    const right = unit(cross(ahead, this.state.up));
+    return [right, cross(right, ahead), ahead];
+  }
+
+  /** Unit vector from the focal point to the eye. */
+  get toEye(): Vector {
+    return unit(subtract(this.state.position, this.state.focal_point));
+  }
+
+  /** The eye and 1, or the way to it and 0 where all rays are parallel. */
+  get eye(): number[] {
+    if (!this.state.parallel) return [...this.state.position, 1];
+    return [...scale(this.axes[2], -1), 0];
+  }
+
+  /** Move what is seen by parts of the view. */
+  pan(dx: number, dy: number): void {
+    const [right, up] = this.axes;
+    const { height } = this;
+    this.shift(add(scale(right, dx * this.aspect * height), up, dy * height));
+  }
+
+  /** Go around the focal point, as a drag by (dx, dy) asks. */
+  rotate(dx: number, dy: number): void {
+    const { state, limits } = this;
+    const up = unit(state.up);
+    let back = subtract(state.position, state.focal_point);
+    back = rotated(back, up, -limits.turn * dx * Math.min(this.aspect, limits.widest_turn));
+    const right = unit(cross(up, back));
+    back = rotated(back, right, limits.turn * dy);
+    state.position = add(state.focal_point, back);
+    state.up = unit(cross(back, right));
+  }
+
+  /** Zoom in; the point at (x, y) stays where it is. */
+  zoomBy(factor: number, x = 0, y = 0): void {
+    if (!Number.isFinite(factor) || factor <= 0) return;
+    if (!this.flat) this.focusAt(x, y);
+    const { farthest_zoom: farthest, deepest_zoom: deepest } = this.limits;
+    const by = clamp(factor, farthest / this.zoom, deepest / this.zoom);
+    const [right, up, ahead] = this.axes;
+    const height = this.height * (1 - 1 / by);
+    this.shift(add(scale(right, x * this.aspect * height), up, y * height));
+    if (this.state.parallel) this.state.parallel_scale /= by;
+    else this.approach(this.height / by, ahead);
+  }
+
+  /** Start and direction of the ray through a place of the view. */
+  ray(x: number, y: number): [Vector, Vector] {
+    const [right, up, ahead] = this.axes;
+    const { height, state } = this;
+    const there = add(add(state.focal_point, right, x * this.aspect * height), up, y * height);
+    if (state.parallel) return [add(there, ahead, -this.distance), ahead];
+    return [add(state.position, [0, 0, 0]), unit(subtract(there, state.position))];
+  }
+
+  /** Come closer, and from near look more narrowly. */
+  private approach(height: number, ahead: Vector): void {
+    const distance = Math.max(height / tangent(this.limits.view_angle), this.nearest);
+    this.state.position = add(this.state.focal_point, ahead, -distance);
+    this.state.view_angle = (Math.atan(height / distance) * 360) / Math.PI;
+  }
+
+  /** Bring the focal point to the depth of what is at a place. */
+  private focusAt(x: number, y: number): void {
+    const point = this.pick?.(x, y);
+    if (!point) return;
+    const ahead = this.axes[2];
+    const depth = dot(subtract(point, this.state.position), ahead);
+    if (depth > 0) this.state.focal_point = add(this.state.position, ahead, depth);
+  }
+
+  private shift(by: Vector): void {
+    this.state.focal_point = add(this.state.focal_point, by);
+    this.state.position = add(this.state.position, by);
+  }
+}
+
+export function copyOf(state: CameraState): CameraState {
+  const { position, focal_point: focus, up } = state;
+  return { ...state, position: [...position], focal_point: [...focus], up: [...up] };
+}
+
+/** A camera that shows the whole surface, whose nodes are given in its own frame. */
+export function fitted(
+  geometry: Geometry,
+  limits: CameraLimits,
+  positions: ArrayLike<number>,
+  aspect: number,
+): CameraState {
+  const { center, extent, planar, frame } = geometry;
+  const half = tangent(limits.view_angle);
+  const back = planar ? fromFrame(frame, [0, 0, 1]) : unit([1, 1, 1]);
+  const up: Vector = planar ? fromFrame(frame, [0, 1, 0]) : [0, 0, 1];
+  const right = unit(cross(up, back));
+  const rows = [right, cross(back, right), back].map((row) => toFrame(frame, row));
+  const low = [Infinity, Infinity];
+  const high = [-Infinity, -Infinity];
+  let distance = 0;
+  for (let n = 0; n < positions.length; n += 3) {
+    const node = [positions[n], positions[n + 1], positions[n + 2]];
+    if (!Number.isFinite(node[0])) continue;
+    const [x, y, z] = rows.map((row) => dot(row, node));
+    [x, y].forEach((value, k) => {
+      low[k] = Math.min(low[k], value);
+      high[k] = Math.max(high[k], value);
+    });
+    const wide = Math.max(Math.abs(x) / aspect, Math.abs(y));
+    distance = Math.max(distance, z + wide / half / (1 - 2 * limits.margin));
+  }
+  const tall = Math.max(high[1] - low[1], (high[0] - low[0]) / aspect, 1e-12 * extent);
+  return {
+    position: add(center, back, planar ? extent : distance),
+    focal_point: [...center],
+    up,
+    parallel: planar,
+    parallel_scale: (0.5 * tall) / (1 - 2 * limits.margin),
+    view_angle: limits.view_angle,
+  };
+}
+
+/**
+ * A camera that shows all of a surface in the shape of picture that it was made for, in another
+ * shape; any other camera as it is.
+ */
+export function widened(
+  geometry: Geometry,
+  limits: CameraLimits,
+  state: CameraState,
+  positions: ArrayLike<number>,
+  aspect: number,
+): CameraState {
+  const { center, extent, planar } = geometry;
+  const camera = copyOf(state);
+  if (length(subtract(state.focal_point, center)) > 1e-3 * extent) return camera;
+  if (planar && state.parallel) {
+    const [high, all] = [1e9, aspect].map(
+      (shape) => fitted(geometry, limits, positions, shape).parallel_scale,
+    );
+    if (state.parallel_scale > 0.98 * high) {
+      camera.parallel_scale = Math.max(state.parallel_scale, all);
+    }
+  } else if (!state.parallel && state.view_angle > 0.9 * limits.view_angle) {
+    const back = subtract(state.position, state.focal_point);
+    camera.position = add(state.focal_point, back, Math.max(1, limits.aspect / aspect));
+  }
+  return camera;
+}
+
+/** Whether two surfaces lie in the same place, as a coarse form and the whole one. */
+export function isSamePlace(a: Geometry, b: Geometry): boolean {
+  const near = length(subtract(a.center, b.center)) < 0.1 * a.extent;
+  const ratio = a.extent / b.extent;
+  return a.planar === b.planar && near && ratio > 0.8 && ratio < 1.25;
+}
+
+/**
+ * Matrix from the surface's frame, counted from an anchor, to clip space, in columns.
+ *
+ * Counting from the focal point in both axes of the picture keeps the digits of a close view.
+ */
+export function projection(geometry: Geometry, camera: Camera, anchor: Vector): number[] {
+  const { state, aspect } = camera;
+  const { center, extent, frame } = geometry;
+  const [right, up, ahead] = camera.axes.map((axis) => toFrame(frame, axis));
+  const local = (point: number[]) => subtract(toFrame(frame, subtract(point, center)), anchor);
+  const focus = local(state.focal_point);
+  const middle = scale(anchor, -1);
+  const radius = 0.51 * extent;
+  const m = new Array<number>(16).fill(0);
+  const half = state.parallel ? state.parallel_scale : tangent(state.view_angle);
+  const rows = [right.map((c) => c / half / aspect), up.map((c) => c / half)];
+  rows.forEach((row, k) => {
+    for (let n = 0; n < 3; n += 1) m[4 * n + k] = row[n];
+    m[12 + k] = -dot(row, focus);
+  });
+  if (state.parallel) {
+    for (let n = 0; n < 3; n += 1) m[4 * n + 2] = ahead[n] / radius;
+    m[14] = -dot(ahead, middle) / radius;
+    m[15] = 1;
+    return m;
+  }
+  const eye = local(state.position);
+  const depth = dot(subtract(middle, eye), ahead);
+  const far = Math.max(depth + radius, 1e-3 * radius);
+  const near = Math.max(depth - radius, 1e-3 * far);
+  const a = (far + near) / (far - near);
+  const b = (-2 * far * near) / (far - near);
+  for (let n = 0; n < 3; n += 1) {
+    m[4 * n + 2] = ahead[n] * a;
+    m[4 * n + 3] = ahead[n];
+  }
+  m[15] = -dot(ahead, eye);
+  m[14] = m[15] * a + b;
+  return m;
+}
+
+/** The matrix whose picture is the one pixel of a view at (x, y). */
+export function atPixel(
+  matrix: readonly number[],
+  [x, y]: readonly [number, number],
+  [width, height]: readonly [number, number],
+): number[] {
+  const m = [...matrix];
+  for (let n = 0; n < 4; n += 1) {
+    m[4 * n] = (m[4 * n] - x * m[4 * n + 3]) * width;
+    m[4 * n + 1] = (m[4 * n + 1] - y * m[4 * n + 3]) * height;
+  }
+  return m;
+}

@@ -1,0 +1,9 @@
+// What flowtex/web/client.js is built of: the widget for anywidget, and views for other pages.
+
+import { initialize, render } from "./widget.ts";
+
+export { decoded, partsOfFile } from "./protocol.ts";
+export { Viewer } from "./viewer.ts";
+export { mountPage } from "./views.ts";
+
+export default { initialize, render };

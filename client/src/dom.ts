@@ -1,0 +1,48 @@
+// Elements and words of the page.
+
+export function dom<K extends keyof HTMLElementTagNameMap>(
+  kind: K,
+  attributes: Record<string, string> = {},
+  children: (Node | string)[] = [],
+): HTMLElementTagNameMap[K] {
+  const element = document.createElement(kind);
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
+  element.append(...children);
+  return element;
+}
+
+/** Lines of the icons, in a square of 24. */
+const ICONS = {
+  play: "M8 5.2v13.6L19 12z",
+  pause: "M8.5 6v12M15.5 6v12",
+  home: "M4 11.5 12 5l8 6.5M6.5 10v9h11v-9",
+  lod: "M12 3.8l8 4.1-8 4.1-8-4.1zM4 12.2l8 4.1 8-4.1M4 16.3l8 4.1 8-4.1",
+  levels: "M3.5 18a8.5 8.5 0 0 1 17 0M7 18a5 5 0 0 1 10 0M10.3 18a1.7 1.7 0 0 1 3.4 0",
+  settings: "M4 7h8M17 7h3M4 17h3M12 17h8M14.5 4.8v4.4M9.5 14.8v4.4",
+  save: "M12 4v11M7.5 10.8 12 15.3l4.5-4.5M5 19.5h14",
+  full: "M4 9V4h5M20 9V4h-5M4 15v5h5M20 15v5h-5",
+  hide: "M6 9.5l6 6 6-6",
+  show: "M6 14.5l6-6 6 6",
+};
+
+export type IconName = keyof typeof ICONS;
+
+export function icon(name: IconName): SVGSVGElement {
+  const space = "http://www.w3.org/2000/svg";
+  const svg = document.createElementNS(space, "svg");
+  svg.setAttribute("viewBox", "0 0 24 24");
+  svg.setAttribute("aria-hidden", "true");
+  const path = document.createElementNS(space, "path");
+  path.setAttribute("d", ICONS[name]);
+  if (name === "play") path.setAttribute("class", "solid");
+  svg.append(path);
+  return svg;
+}
+
+/** A number as people read it. */
+export function numberText(x: number): string {
+  if (!Number.isFinite(x)) return "–";
+  const size = Math.abs(x);
+  if (size !== 0 && (size >= 1e5 || size < 1e-3)) return x.toExponential(2).replace("e+", "e");
+  return String(Number(x.toPrecision(4)));
+}

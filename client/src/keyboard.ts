@@ -1,0 +1,36 @@
+// Keys, and the command that each one gives: in a view, and in the app's page.
+
+export const CAMERA_KEYS: Record<string, string> = {
+  ArrowLeft: "left",
+  ArrowRight: "right",
+  ArrowUp: "up",
+  ArrowDown: "down",
+  "+": "closer",
+  "=": "closer",
+  "-": "farther",
+  _: "farther",
+  0: "whole",
+};
+
+export const PLAY_KEY = " ";
+export const FULLSCREEN_KEY = "f";
+export const CLOSE_KEY = "Escape";
+
+/** Directions of the keys that pan, right and up. */
+export const DIRECTIONS: Record<string, [number, number]> = {
+  left: [-1, 0],
+  right: [1, 0],
+  up: [0, 1],
+  down: [0, -1],
+};
+
+/** Whether a key is for the browser. */
+export function hasModifier(event: KeyboardEvent): boolean {
+  return event.ctrlKey || event.metaKey || event.altKey;
+}
+
+/** Fill the screen with an element, or no longer. */
+export function toggleFullscreen(element: Element): void {
+  if (document.fullscreenElement) void document.exitFullscreen();
+  else void element.requestFullscreen?.().catch(() => undefined);
+}

@@ -1,0 +1,90 @@
+// The nodes of a surface as the arrays of a draw call, and values between nodes.
+
+import type { Data, Geometry, Paper } from "./protocol.ts";
+import type { Vector } from "./vectors.ts";
+
+/** What a node without a value has, far below every colour map. */
+const NO_VALUE = -1e9;
+
+/** Triangles of the cells that are drawn; all of them without `cells`. */
+export function triangles([rows, columns]: [number, number], cells?: Data): Uint32Array {
+  const index = new Uint32Array(6 * (rows - 1) * (columns - 1));
+  let n = 0;
+  for (let j = 0, cell = 0; j < rows - 1; j += 1) {
+    for (let i = 0; i < columns - 1; i += 1, cell += 1) {
+      if (cells && !cells[cell]) continue;
+      const corner = j * columns + i;
+      const far = corner + columns + 1;
+      index[n++] = corner;
+      index[n++] = corner + 1;
+      index[n++] = far;
+      index[n++] = corner;
+      index[n++] = far;
+      index[n++] = far - 1;
+    }
+  }
+  return index.subarray(0, n);
+}
+
+/** Nodes relative to an anchor. */
+export function positions(data: Float32Array, anchor: Vector): Float32Array {
+  if (!anchor.some(Boolean)) return data;
+  return data.map((x, n) => x - anchor[n % 3]);
+}
+
+/** Coordinates of the nodes in the slices: middles of texels. */
+export function coordinates({ shape, rows, columns }: Geometry): Float32Array {
+  const result = new Float32Array(2 * shape[0] * shape[1]);
+  for (let j = 0, n = 0; j < shape[0]; j += 1) {
+    for (let i = 0; i < shape[1]; i += 1) {
+      result[n++] = (i + columns.before + 0.5) / columns.size;
+      result[n++] = (j + rows.before + 0.5) / rows.size;
+    }
+  }
+  return result;
+}
+
+/** Coordinates of the nodes in the noise texture. */
+export function noiseCoordinates({ alongI, alongJ }: Paper): Float32Array {
+  const result = new Float32Array(2 * alongI.length * alongJ.length);
+  let n = 0;
+  for (const v of alongJ) {
+    for (const u of alongI) {
+      result[n++] = u;
+      result[n++] = v;
+    }
+  }
+  return result;
+}
+
+/** Values before and after, for each node, as shares of the colour map's range. */
+export function shares(steps: Data[], low: number, high: number, nodes: number): Float32Array {
+  const result = new Float32Array(2 * nodes);
+  const span = high - low || 1;
+  steps.forEach((values, k) => {
+    for (let n = 0; n < nodes; n += 1) {
+      const share = (values[n] - low) / span;
+      result[2 * n + k] = Number.isFinite(share) ? share : NO_VALUE;
+    }
+  });
+  return result;
+}
+
+/** A nodal value at a place between nodes, as the triangles interpolate it. */
+export function interpolated(
+  [rows, columns]: [number, number],
+  i: number,
+  j: number,
+  value: (node: number) => number,
+): number {
+  const [left, low] = [Math.min(Math.floor(i), columns - 2), Math.min(Math.floor(j), rows - 2)];
+  const [a, b] = [i - left, j - low];
+  const corner = low * columns + left;
+  const [from, to] = [value(corner), value(corner + columns + 1)];
+  if (a >= b) {
+    const aside = value(corner + 1);
+    return from + a * (aside - from) + b * (to - aside);
+  }
+  const aside = value(corner + columns);
+  return from + b * (aside - from) + a * (to - aside);
+}

@@ -1,0 +1,294 @@
+// What is seen around the picture: the bar, the legend, the settings, the readout and messages.
+
+import { Controls, hasStreaming } from "./controls.ts";
+import { dom, icon, numberText, type IconName } from "./dom.ts";
+import { toggleFullscreen } from "./keyboard.ts";
+import { Legend } from "./legend.ts";
+import type { Timer } from "./lifetime.ts";
+import type { Point } from "./picking.ts";
+import type { Header } from "./protocol.ts";
+import STYLE from "./styles.css";
+import type { Viewer } from "./viewer.ts";
+import { pngOf } from "./views.ts";
+
+/** Milliseconds for which a hint is shown; after which lacking parts are told; a picture is there to be saved. */
+const HINT_MS = 1600;
+const LATE_MS = 4000;
+const SAVED_MS = 5000;
+/** Digits of a coordinate, at first and at most: more are shown the closer the view is. */
+const FEWEST_DIGITS = 4;
+const MOST_DIGITS = 14;
+/** What may stand in the name of a file. */
+const FORBIDDEN = /[\\/:*?"<>|]+/g;
+
+let sheet: CSSStyleSheet | null = null;
+
+function styleSheet(): CSSStyleSheet {
+  if (!sheet) {
+    sheet = new CSSStyleSheet();
+    sheet.replaceSync(STYLE);
+  }
+  return sheet;
+}
+
+export class Panel {
+  private readonly viewer: Viewer;
+  private readonly legend = new Legend();
+  private readonly controls: Controls;
+  private isShown: boolean;
+  private isOpen = false;
+  private showsLevels = false;
+  private readonly title = dom("div", { class: "title" });
+  private readonly readout = dom("div", { class: "readout", role: "status" });
+  private readonly head: HTMLElement;
+  private readonly note = dom("div", { class: "note", hidden: "", role: "alert" });
+  private readonly busy = dom("div", { class: "busy", hidden: "" }, ["waiting for data …"]);
+  private readonly hintBox: HTMLElement;
+  private readonly bar: HTMLElement;
+  private readonly handle: HTMLElement;
+  private readonly playButton: HTMLButtonElement;
+  private readonly toggles: Record<"lod" | "show_level", HTMLButtonElement>;
+  private readonly gear: HTMLButtonElement;
+  private readonly slider: HTMLInputElement;
+  private readonly timeText = dom("span", { class: "time" });
+  private readonly track: HTMLElement;
+  private hintTimer: Timer | null = null;
+  private lateTimer: Timer | null = null;
+
+  constructor(viewer: Viewer) {
+    this.viewer = viewer;
+    const { root, canvas, options } = viewer;
+    this.isShown = options.controls ?? true;
+    this.controls = new Controls(viewer);
+    this.head = dom("div", { class: "head glass", hidden: "" }, [this.title, this.readout]);
+    const key = /Mac|iP(hone|ad)/.test(navigator.platform) ? "⌘" : "Ctrl";
+    const hint = `Click, or hold ${key}, to zoom with the wheel`;
+    this.hintBox = dom("div", { class: "hint glass", hidden: "" }, [hint]);
+    this.handle = this.button("show", "Show the bar (h)", () => this.toggle());
+    this.handle.classList.add("handle", "glass");
+    this.playButton = this.button("play", "Play (space)", () => viewer.togglePlaying());
+    const range = { min: "0", max: "1", step: "any", "aria-label": "Time" };
+    this.slider = dom("input", { type: "range", ...range });
+    viewer.lifetime.listen(this.slider, "input", () => this.scrub(Number(this.slider.value)));
+    this.track = dom("div", { class: "track" }, [this.slider, this.timeText]);
+    const toggle = (name: string) => () => viewer.choose(name, !viewer.settings[name]);
+    this.toggles = {
+      lod: this.button("lod", "Level of detail", toggle("lod")),
+      show_level: this.button("levels", "Show the levels of detail", toggle("show_level")),
+    };
+    this.gear = this.button("settings", "Settings", () => this.fold(!this.isOpen));
+    this.bar = this.makeBar();
+    canvas.className = "picture";
+    root.classList.toggle("flowtex-bare", options.bare ?? false);
+    const shadow = root.attachShadow({ mode: "open" });
+    shadow.adoptedStyleSheets = [styleSheet()];
+    const { legend, controls, head, bar, handle, busy, hintBox, note } = this;
+    shadow.append(canvas, head, legend.element, controls.element);
+    shadow.append(bar, handle, busy, hintBox, note);
+    this.arrange();
+  }
+
+  private button(name: IconName, title: string, press: () => void): HTMLButtonElement {
+    const attributes = { type: "button", title, "aria-label": title, "data-name": name };
+    const button = dom("button", attributes, [icon(name)]);
+    this.viewer.lifetime.listen(button, "click", press);
+    return button;
+  }
+
+  private makeBar(): HTMLElement {
+    const { viewer } = this;
+    return dom("div", { class: "bar glass", role: "toolbar", "aria-label": "Controls" }, [
+      this.playButton,
+      this.track,
+      this.button("home", "Show everything (0)", () => viewer.reset()),
+      this.toggles.lod,
+      this.toggles.show_level,
+      this.gear,
+      this.button("save", "Save the picture", () => void this.save()),
+      this.button("full", "Fill the screen (f)", () => this.fullscreen()),
+      this.button("hide", "Hide the bar (h)", () => this.toggle()),
+    ]);
+  }
+
+  /** Make what depends on the scene. */
+  build(): void {
+    const { header } = this.viewer;
+    if (!header) return;
+    this.note.hidden = true;
+    this.controls.build(header);
+    this.showLegend();
+    this.update();
+    this.arrange();
+  }
+
+  /** Show the present values. */
+  update(): void {
+    const { header, settings, playing, varies } = this.viewer;
+    this.name();
+    this.controls.update();
+    if (this.showsLevels !== Boolean(settings.show_level)) this.showLegend();
+    for (const [name, button] of Object.entries(this.toggles)) {
+      button.setAttribute("aria-pressed", String(Boolean(settings[name])));
+    }
+    const title = playing ? "Pause (space)" : "Play (space)";
+    this.playButton.replaceChildren(icon(playing ? "pause" : "play"));
+    this.playButton.title = title;
+    this.playButton.setAttribute("aria-label", title);
+    const streams = header !== null && hasStreaming(header);
+    this.playButton.hidden = !varies && !streams;
+    this.track.hidden = !varies && !(streams && settings.motion !== "off");
+    this.tick();
+  }
+
+  /** Name the flow, or tell what is different in one of two views of it. */
+  private name(): void {
+    const { header, settings, root } = this.viewer;
+    const names = (header?.differs ?? []).filter((name) => name in settings);
+    const differences = names.map((name) => {
+      const label = header?.table.find((row) => row.name === name)?.label ?? name;
+      const value = settings[name];
+      return `${label}: ${typeof value === "boolean" ? (value ? "on" : "off") : value}`;
+    });
+    const title = differences.join(", ") || header?.name || "";
+    this.title.textContent = title;
+    this.title.hidden = !title;
+    root.setAttribute("aria-label", title ? `Flow texture: ${title}` : "Flow texture");
+  }
+
+  /** Show the present time. */
+  tick(): void {
+    const { header, varies, player, settings } = this.viewer;
+    if (!header || this.track.hidden) return;
+    const { first, last, now } = player.range(settings);
+    this.slider.value = String((now - first) / (last - first || 1));
+    const unit = header.slices.timeUnit;
+    const text = varies ? `${numberText(now)} ${unit}` : `${now.toFixed(1)} s`;
+    if (this.timeText.textContent !== text) this.timeText.textContent = text;
+  }
+
+  private scrub(share: number): void {
+    const { viewer } = this;
+    const { first, last } = viewer.player.range(viewer.settings);
+    const value = first + share * (last - first);
+    viewer.stir();
+    if (viewer.varies) {
+      viewer.setTime(value);
+      viewer.options.onTime?.(viewer.time);
+    } else {
+      viewer.setClock(value);
+      viewer.options.onClock?.(viewer.clock);
+    }
+  }
+
+  showLegend(): void {
+    const { header, settings, parts } = this.viewer;
+    this.showsLevels = Boolean(settings.show_level);
+    if (header) this.legend.show(header, settings, parts.get("cmap")?.data);
+  }
+
+  /** Tell what is under the pointer. */
+  read(point: Point | null): void {
+    const { header } = this.viewer;
+    this.readout.replaceChildren();
+    this.legend.point(null);
+    if (!point || !header) return;
+    const text = this.positionText(point.position, header);
+    this.readout.append(dom("span", {}, [text]));
+    for (const [name, value] of Object.entries(point.values)) {
+      const { unit } = header.scalars;
+      this.readout.append(
+        dom("b", {}, [`${name} ${numberText(value)}${unit ? ` ${unit}` : ""}`]),
+      );
+      this.legend.point(header, value);
+    }
+  }
+
+  private positionText(position: number[], { geometry }: Header): string {
+    const { extent, planar, center, frame } = geometry;
+    const zoom = Math.max(this.viewer.camera?.zoom ?? 1, 1);
+    const digits = Math.min(Math.ceil(FEWEST_DIGITS + Math.log10(zoom)), MOST_DIGITS);
+    const isInPlane =
+      planar && Math.abs(position[2] - center[2]) < 1e-12 * extent && Math.abs(frame[8]) > 0.999;
+    const texts = position.slice(0, isInPlane ? 2 : 3).map((x) => {
+      const value = Math.abs(x) < 1e-9 * extent ? 0 : x;
+      return digits > 5 ? String(Number(value.toPrecision(digits))) : numberText(value);
+    });
+    return `(${texts.join(", ")})`;
+  }
+
+  /** Unfold or fold the settings. */
+  fold(open = false): void {
+    this.isOpen = open;
+    this.arrange();
+  }
+
+  /** Show or hide the bar. */
+  toggle(shown = !this.isShown): void {
+    if (shown === this.isShown) return;
+    this.isShown = shown;
+    this.arrange();
+    this.viewer.options.onControls?.(shown);
+  }
+
+  private arrange(): void {
+    const { header, options, root } = this.viewer;
+    const isReady = header !== null;
+    const follows = Boolean(options.follows);
+    this.bar.hidden = !this.isShown || !isReady;
+    this.handle.hidden = this.isShown || !isReady || follows;
+    this.head.hidden = !(this.isShown || follows) || !isReady;
+    this.controls.element.hidden = !this.isShown || !this.isOpen || !isReady;
+    root.classList.toggle("flowtex-open", !this.controls.element.hidden);
+    this.gear.setAttribute("aria-pressed", String(this.isOpen));
+  }
+
+  /** Tell that parts are waited for, or that none are. */
+  wait(missing: string[]): void {
+    this.busy.hidden = !missing.length;
+    const { viewer } = this;
+    if (!missing.length || viewer.options.onNeed || this.lateTimer) return;
+    // Parts come in any order; what does not come within a while is told.
+    this.lateTimer = viewer.lifetime.later(() => {
+      this.lateTimer = null;
+      const { lacking } = viewer;
+      if (lacking.length) {
+        this.fail("The scene is not complete.", `Missing: ${lacking.join(", ")}`);
+      }
+    }, LATE_MS);
+  }
+
+  /** Tell for a moment how the wheel zooms, or no longer. */
+  hint(shown: boolean): void {
+    const { lifetime } = this.viewer;
+    lifetime.cancel(this.hintTimer);
+    this.hintTimer = shown ? lifetime.later(() => this.hint(false), HINT_MS) : null;
+    this.hintBox.hidden = !shown;
+  }
+
+  /** A picture is complete. */
+  drawn(): void {
+    this.note.hidden = true;
+    delete this.viewer.root.dataset.failed;
+  }
+
+  /** Tell what went wrong. */
+  fail(problem: string, detail: string): void {
+    this.note.replaceChildren(dom("strong", {}, [problem]), dom("pre", {}, [detail]));
+    this.note.hidden = false;
+    this.busy.hidden = true;
+    this.viewer.root.dataset.failed = "true";
+  }
+
+  fullscreen(): void {
+    const { root } = this.viewer;
+    toggleFullscreen(root.closest(".flowtex-pair") ?? root);
+  }
+
+  private async save(): Promise<void> {
+    const { viewer } = this;
+    const href = URL.createObjectURL(await pngOf(viewer.together));
+    const name = (viewer.header?.name || "flow").replace(FORBIDDEN, " ").trim();
+    dom("a", { href, download: `${name}.png` }).click();
+    viewer.lifetime.later(() => URL.revokeObjectURL(href), SAVED_MS);
+  }
+}

@@ -1,0 +1,278 @@
+// Progressive drawing: a draft in the time that there is, then the full picture strip by strip.
+
+import { Camera, projection } from "./camera.ts";
+import type { Graphics } from "./context.ts";
+import type { Program } from "./programs.ts";
+import { draftUniforms, learnedPrice, motionFactor, quality, rowsIn } from "./quality.ts";
+import { reused, type Reuse } from "./reuse.ts";
+import { uniforms, type Moment, type ViewState } from "./uniforms.ts";
+import { clamp, subtract, toFrame } from "./vectors.ts";
+import type { Viewer } from "./viewer.ts";
+
+/** Milliseconds for a picture in motion, of one view at least, and for a strip at rest. */
+const MOVING_MS = 55;
+const MOVING_LEAST_MS = 14;
+const STRIP_MS = 40;
+/** Rows that are drawn with smooth outlines at a time. */
+const SMOOTH_ROWS = 256;
+
+type Pen = CanvasRenderingContext2D | null;
+
+/** What is drawn of a picture. */
+interface Region {
+  width: number;
+  height: number;
+  /** First row, from the top, and their number. */
+  top: number;
+  rows: number;
+}
+
+export class ProgressiveRenderer {
+  private readonly viewer: Viewer;
+  private readonly graphics: Graphics;
+  private readonly canvas: HTMLCanvasElement;
+  private readonly pen: Pen;
+  /** The full picture while it is drawn. */
+  private readonly back = document.createElement("canvas");
+  private readonly backPen: Pen;
+  /** The last full picture, with the camera that it shows. */
+  private readonly last = document.createElement("canvas");
+  private readonly lastPen: Pen;
+  private lastCamera: Camera | null = null;
+  /** Counts what was asked for; that of which there is a draft; rows that are drawn of it. */
+  private version = 1;
+  private draftVersion = 0;
+  private rowsDone = 0;
+  /** Milliseconds that each drawing takes, however few its pixels. */
+  private fixed = 4;
+  /** Number of full pictures. */
+  frames = 0;
+
+  constructor(viewer: Viewer) {
+    this.viewer = viewer;
+    this.graphics = viewer.graphics;
+    this.canvas = viewer.canvas;
+    this.pen = this.canvas.getContext("2d", { alpha: false });
+    this.backPen = this.back.getContext("2d", { alpha: false });
+    this.lastPen = this.last.getContext("2d", { alpha: false });
+  }
+
+  private get canvases(): HTMLCanvasElement[] {
+    return [this.canvas, this.back, this.last];
+  }
+
+  /** Another picture is asked for; of the same things when only the camera has moved. */
+  restart(moved = false): void {
+    if (!moved) this.lastCamera = null;
+    this.version += 1;
+    this.rowsDone = 0;
+  }
+
+  /** Change the size; what is on show stays, stretched, until there is something better. */
+  resize(width: number, height: number): void {
+    const old = this.canvas.width > 1 ? copyOfCanvas(this.canvas) : null;
+    for (const canvas of this.canvases) {
+      canvas.width = width;
+      canvas.height = height;
+    }
+    if (old) this.pen?.drawImage(old, 0, 0, width, height);
+  }
+
+  dispose(): void {
+    for (const canvas of this.canvases) canvas.width = canvas.height = 0;
+  }
+
+  /** Go on with the picture until a time; tells whether it is complete. */
+  draw(program: Program, shown: Moment, moving: boolean, until: number): boolean {
+    if (this.draftVersion !== this.version) return this.draft(program, shown, moving);
+    if (moving) return false;
+    let complete = false;
+    do complete = this.strip(program, shown);
+    while (!complete && performance.now() < until);
+    return complete;
+  }
+
+  /** A picture in the time that there is. */
+  private draft(program: Program, shown: Moment, moving: boolean): boolean {
+    const { width, height } = this.canvas;
+    const samples = Number(this.viewer.settings.samples);
+    // Views that move share the time; at rest one after the other gets its whole picture.
+    const crowd = moving ? this.graphics.waiting.size + 1 : 1;
+    const budget = Math.max(MOVING_MS / crowd, MOVING_LEAST_MS);
+    this.warm(program, shown);
+    const price = program.price * this.factor(samples);
+    const best = quality(price, this.fixed, width * height, samples, budget);
+    const w = Math.max(Math.round(width * best.scale), 1);
+    const h = Math.max(Math.round(height * best.scale), 1);
+    this.draftVersion = this.version;
+    const reuse = best.scale < 1 ? this.reuse() : null;
+    if (!reuse?.covers) {
+      const region = { width: w, height: h, top: 0, rows: h };
+      this.timed(program, region, best.samples, () => {
+        this.render(program, shown, region, best.samples);
+        this.copy(this.pen, region, 0, width, height, 0);
+      });
+    }
+    if (reuse && this.pen) {
+      this.pen.imageSmoothingEnabled = !reuse.shifts;
+      this.pen.setTransform(...reuse.matrix);
+      this.pen.drawImage(this.last, 0, 0);
+      this.pen.setTransform(1, 0, 0, 1, 0, 0);
+    }
+    if (best.scale < 1 || best.samples !== samples || this.viewer.smooth) return false;
+    this.complete();
+    return true;
+  }
+
+  /** One more strip of the full picture, which is shown when it is complete. */
+  private strip(program: Program, shown: Moment): boolean {
+    const { width, height } = this.canvas;
+    const { smooth, settings } = this.viewer;
+    const samples = Number(settings.samples);
+    this.warm(program, shown);
+    const price = program.price * this.factor(samples);
+    const most = Math.min(height - this.rowsDone, smooth ? SMOOTH_ROWS : height);
+    const rows = Math.min(rowsIn(STRIP_MS, price, this.fixed, width, samples), most);
+    const region = { width, height, top: this.rowsDone, rows };
+    this.timed(program, region, samples, () => {
+      this.render(program, shown, region, samples, smooth);
+      // Smooth rows were put into the lowest ones of the canvas.
+      const drawn = smooth ? { ...region, height: rows, top: 0 } : region;
+      this.copy(this.backPen, drawn, drawn.top, width, drawn.height, this.rowsDone);
+    });
+    this.rowsDone += rows;
+    if (this.rowsDone < height) return false;
+    this.pen?.drawImage(this.back, 0, 0);
+    this.complete();
+    return true;
+  }
+
+  private complete(): void {
+    const { camera, playing } = this.viewer;
+    this.rowsDone = this.canvas.height;
+    this.frames += 1;
+    this.draftVersion = this.version;
+    this.lastPen?.drawImage(this.canvas, 0, 0);
+    if (camera && !playing) {
+      this.lastCamera = new Camera(camera.state, camera.limits, camera.flat, camera.aspect);
+    }
+  }
+
+  /** How the last full picture lies in the present view, where it serves. */
+  private reuse(): Reuse | null {
+    const { viewer, lastCamera } = this;
+    const { header, camera } = viewer;
+    if (!header || !camera || !lastCamera || !header.geometry.planar) return null;
+    if (!camera.state.parallel || !lastCamera.state.parallel) return null;
+    const { geometry } = header;
+    const focus = subtract(camera.state.focal_point, geometry.center);
+    const anchor = toFrame(geometry.frame, focus);
+    const [before, now] = [lastCamera, camera].map((view) => projection(geometry, view, anchor));
+    return reused(before, now, this.canvas.width, this.canvas.height);
+  }
+
+  /** As many times more each sample costs while grains move. */
+  private factor(samples: number): number {
+    const { settings, varies } = this.viewer;
+    return settings.motion !== "off" || varies ? motionFactor(samples) : 1;
+  }
+
+  /** Draw, and learn what it costs. */
+  private timed(program: Program, region: Region, samples: number, draw: () => void): void {
+    const started = performance.now();
+    draw();
+    const spent = performance.now() - started;
+    const pixels = region.width * region.rows;
+    const factor = this.factor(samples);
+    program.price = learnedPrice(program.price, spent, this.fixed, pixels, samples, factor);
+  }
+
+  /** The first drawing is slow by itself, and what it costs with hardly a pixel is paid by each. */
+  private warm(program: Program, shown: Moment): void {
+    if (program.warm) return;
+    const { width, height } = this.canvas;
+    const region = { width, height, top: 0, rows: 1 };
+    this.render(program, shown, region, 1);
+    const started = performance.now();
+    this.render(program, shown, region, 1);
+    this.fixed = clamp(performance.now() - started, 0.5, 200);
+    program.warm = true;
+  }
+
+  /** Draw some rows of a picture. */
+  private render(
+    program: Program,
+    shown: Moment,
+    region: Region,
+    samples: number,
+    smooth = false,
+  ): void {
+    const { graphics, viewer } = this;
+    const { header, camera, scene } = viewer;
+    if (!header || !camera || !scene) return;
+    const gl = graphics.context;
+    const { width, height, top, rows } = region;
+    const view = viewer.view(shown, (viewer.ratio * height) / this.canvas.height);
+    graphics.reserve(width, height);
+    const bottom = height - top - rows;
+    if (smooth) graphics.bindSmooth(width, rows);
+    else gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    gl.viewport(0, smooth ? -bottom : 0, width, height);
+    gl.enable(gl.SCISSOR_TEST);
+    gl.scissor(0, smooth ? 0 : bottom, width, rows);
+    gl.enable(gl.DEPTH_TEST);
+    gl.depthFunc(gl.LESS);
+    gl.disable(gl.BLEND);
+    gl.disable(gl.CULL_FACE);
+    const [r, g, b] = header.background;
+    gl.clearColor(r, g, b, 1);
+    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    const draft = samples !== viewer.settings.samples || height !== this.canvas.height;
+    graphics.programs.use(program, this.values(view, samples, draft));
+    scene.draw(shown[0], shown[1], view.anchor, true);
+    if (smooth) graphics.copySmooth(width, rows);
+    graphics.settle();
+  }
+
+  /** All uniforms of a picture. */
+  private values(view: ViewState, samples: number, draft: boolean) {
+    const { settings, header, camera, parts } = this.viewer;
+    if (!header || !camera) return {};
+    const noise = parts.get("noise")?.shape ?? null;
+    return {
+      ...uniforms(header, { ...settings, samples }, view, noise),
+      ...(draft ? draftUniforms(settings, samples, view.density) : {}),
+      u_matrix: projection(header.geometry, camera, view.anchor),
+      u_mapped: header.scalars.name !== null,
+      u_colour: header.colour,
+      u_lit: header.lighting,
+      u_light: header.constants.light,
+      u_ground: header.background,
+      u_opacity: header.opacity,
+      u_toEye: toFrame(header.geometry.frame, camera.toEye),
+    };
+  }
+
+  /** Copy the rows that were drawn, to row `to` of a picture of another size. */
+  private copy(
+    pen: Pen,
+    { width: w, height: h, rows }: Region,
+    top: number,
+    width: number,
+    height: number,
+    to: number,
+  ): void {
+    if (!pen) return;
+    const { canvas } = this.graphics;
+    pen.imageSmoothingEnabled = w !== width || h !== height;
+    pen.drawImage(canvas, 0, canvas.height - h + top, w, rows, 0, to, width, (rows * height) / h);
+  }
+}
+
+function copyOfCanvas(canvas: HTMLCanvasElement): HTMLCanvasElement {
+  const copy = document.createElement("canvas");
+  copy.width = canvas.width;
+  copy.height = canvas.height;
+  copy.getContext("2d")?.drawImage(canvas, 0, 0);
+  return copy;
+}

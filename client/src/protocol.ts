@@ -1,0 +1,192 @@
+// The wire format: a header (JSON) and parts (arrays). flowtex/rendering/webgl/protocol.py is the
+// other side. Widget, exported page and app carry the same descriptions of parts; a part's bytes come
+// as a buffer of a message, in a file of several parts, or as text in a page.
+
+import type { CameraLimits, CameraState } from "./camera.ts";
+
+/** Form of header and parts that this client reads. */
+export const FORMAT = 2;
+
+export type Value = boolean | number | string;
+export type Settings = Record<string, Value>;
+export type Data = Float32Array | Uint16Array | Int16Array | Int8Array | Uint8Array;
+
+/** What is known of a part before its numbers. */
+export interface PartInfo {
+  name: string;
+  dtype: string;
+  shape: number[];
+  /** Tells arrays apart; the same numbers have the same digest on the whole page. */
+  digest: string;
+}
+
+export interface Part {
+  data: Data;
+  shape: number[];
+  digest: string;
+}
+
+export interface NamedPart extends Part {
+  name: string;
+}
+
+/** A line of nodes along an axis of the textures. */
+export interface Padding {
+  before: number;
+  size: number;
+}
+
+/** A row of the table of settings. */
+export interface Row {
+  name: string;
+  label: string;
+  kind: string;
+  default: Value;
+  affects: string;
+  text: string;
+  low: number | null;
+  high: number | null;
+  choices: string[];
+}
+
+export interface Paper {
+  size: [number, number];
+  grain: number;
+  corrected: boolean;
+  deviations: number[];
+  repeat: [boolean, boolean];
+  picture: boolean;
+  alongI: number[];
+  alongJ: number[];
+}
+
+export interface Geometry {
+  shape: [number, number];
+  rows: Padding;
+  columns: Padding;
+  levels: number;
+  planar: boolean;
+  extent: number;
+  center: number[];
+  /** Rows of the matrix from the mesh to the surface's own frame. */
+  frame: number[];
+}
+
+export interface Header {
+  format: number;
+  name: string;
+  /** Names of the shaders' variant, such as FLOWTEX_PLANAR. */
+  variant: string[];
+  shaders: { vertex: string; fragment: string; pick: string };
+  geometry: Geometry;
+  slices: {
+    count: number;
+    channels: number;
+    extra: number[];
+    lags: number[];
+    sides: number;
+    unit: number;
+    pace: number;
+    steps: number;
+    times: number[];
+    timeUnit: string;
+  };
+  scalars: {
+    name: string | null;
+    low: number;
+    high: number;
+    steps: number;
+    unit: string;
+    bar: boolean;
+  };
+  colour: number[];
+  background: number[];
+  lighting: boolean;
+  opacity: number;
+  paper: Paper | null;
+  /** Numbers of flowtex/rendering/uniforms.py. */
+  constants: {
+    octaves: number;
+    snap: number;
+    wave: number;
+    coarse: number;
+    kernels: string[];
+    anchorRange: number;
+    /** Ambient and diffuse. */
+    light: [number, number];
+  };
+  limits: CameraLimits;
+  table: Row[];
+  settings: Settings;
+  camera: CameraState | null;
+  time: number;
+  clock: number;
+  /** Counts the scenes that came one in the place of the other. */
+  generation?: number;
+  /** Settings in which two views differ, and those that are this view's own. */
+  differs?: string[];
+  own?: Settings;
+}
+
+const TYPES: Record<string, (bytes: ArrayBuffer) => Data> = {
+  float32: (bytes) => new Float32Array(bytes),
+  // Half precision goes to the graphics card as it is.
+  float16: (bytes) => new Uint16Array(bytes),
+  uint16: (bytes) => new Uint16Array(bytes),
+  int16: (bytes) => new Int16Array(bytes),
+  int8: (bytes) => new Int8Array(bytes),
+  uint8: (bytes) => new Uint8Array(bytes),
+};
+
+/** Whether the flow has no direction along its lines. */
+export function isSignFree(header: Pick<Header, "variant">): boolean {
+  return header.variant.includes("FLOWTEX_SIGNFREE");
+}
+
+/** Time step in the name of a part, such as 3 of "slices/3"; NaN where there is none. */
+export function stepOf(name: string): number {
+  return Number(name.split("/")[1]);
+}
+
+/** A part of its bytes, in memory of its own: what comes over a wire need not be aligned. */
+export function decoded(info: PartInfo, bytes: ArrayBuffer | ArrayBufferView): NamedPart {
+  const view = ArrayBuffer.isView(bytes)
+    ? new Uint8Array(bytes.buffer, bytes.byteOffset, bytes.byteLength)
+    : new Uint8Array(bytes);
+  const make = TYPES[info.dtype];
+  if (!make) {
+    throw new Error(
+      `a part has the type "${info.dtype}"; expected ${Object.keys(TYPES).join(", ")}`,
+    );
+  }
+  const { name, shape, digest } = info;
+  return { name, shape, digest, data: make(view.slice().buffer) };
+}
+
+/** Parts of a file: the length of the descriptions in four bytes, descriptions in JSON, arrays. */
+export function partsOfFile(file: ArrayBuffer): NamedPart[] {
+  const length = new DataView(file).getUint32(0, true);
+  const infos: (PartInfo & { bytes: number })[] = JSON.parse(
+    new TextDecoder().decode(new Uint8Array(file, 4, length)),
+  );
+  let start = 4 + length;
+  return infos.map((info) => {
+    const bytes = new Uint8Array(file, start, info.bytes);
+    start += info.bytes;
+    return decoded(info, bytes);
+  });
+}
+
+/** A part of its text in a page: base64 of gzip of the numbers' bytes, those of one significance together. */
+export async function partOfText(info: PartInfo, text: string): Promise<NamedPart> {
+  const packed = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+  const unpacked = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
+  const planes = new Uint8Array(await new Response(unpacked).arrayBuffer());
+  const count = info.shape.reduce((product, n) => product * n, 1);
+  const width = count ? planes.length / count : 1;
+  const bytes = new Uint8Array(planes.length);
+  for (let plane = 0; plane < width; plane += 1) {
+    for (let n = 0; n < count; n += 1) bytes[n * width + plane] = planes[plane * count + n];
+  }
+  return decoded(info, bytes);
+}

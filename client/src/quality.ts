@@ -1,0 +1,94 @@
+// How well there is time to draw: what a pixel costs is learned from what was drawn.
+
+import type { Settings } from "./protocol.ts";
+import type { Uniform } from "./uniforms.ts";
+import { clamp } from "./vectors.ts";
+
+/** What a pixel costs beside its samples, in samples. */
+const PIXEL_COST = 8;
+/** Samples of a draft, and its least share of the width. */
+const DRAFT_SAMPLES = 9;
+const COARSEST_SCALE = 0.2;
+/** Greatest distance of two samples in a draft, in grains. */
+const DRAFT_SPACING = 1.4;
+/** Least rows in a strip. */
+const FEWEST_ROWS = 4;
+/** Price of a sample of a pixel, in milliseconds: at first, and below which a graphics card draws. */
+export const FIRST_PRICE_MS = 4e-5;
+export const CARD_PRICE_MS = 2e-6;
+
+export interface Quality {
+  /** Share of the width that is drawn. */
+  scale: number;
+  samples: number;
+}
+
+/**
+ * The best share of the width, and samples, that can be drawn in a time: `price` is for a sample of a
+ * pixel, `fixed` what a picture takes at least, all in milliseconds.
+ */
+export function quality(
+  price: number,
+  fixed: number,
+  pixels: number,
+  samples: number,
+  budget: number,
+): Quality {
+  const room = Math.max(budget - fixed, 2) / price;
+  if (pixels * (samples + PIXEL_COST) <= room) return { scale: 1, samples };
+  const fewer = Math.min(DRAFT_SAMPLES, samples);
+  const scale = Math.sqrt(room / (fewer + PIXEL_COST) / pixels);
+  if (scale < 1) return { scale: Math.max(scale, COARSEST_SCALE), samples: fewer };
+  return { scale: 1, samples: clamp(Math.floor(room / pixels - PIXEL_COST), fewer, samples) };
+}
+
+/** Rows of the full picture that can be drawn in a time. */
+export function rowsIn(
+  budget: number,
+  price: number,
+  fixed: number,
+  width: number,
+  samples: number,
+): number {
+  const row = price * width * (samples + PIXEL_COST);
+  return Math.max(Math.floor(Math.max(budget - fixed, fixed) / row), FEWEST_ROWS);
+}
+
+/** As many times more a sample costs while grains move, as twice the samples are taken. */
+export function motionFactor(samples: number): number {
+  return (2 * samples + PIXEL_COST) / (samples + PIXEL_COST);
+}
+
+/** The price after another picture was drawn. */
+export function learnedPrice(
+  price: number,
+  spent: number,
+  fixed: number,
+  pixels: number,
+  samples: number,
+  factor: number,
+): number {
+  const latest = Math.max(spent - fixed, 0.05) / (pixels * (samples + PIXEL_COST) * factor);
+  // Slower is believed at once, faster by and by: a picture that is late is felt.
+  return price + (latest - price) * (latest > price ? 0.7 : 0.3);
+}
+
+/**
+ * Grain and spacing of a draft, which has fewer samples and coarser pixels than the picture: streaks
+ * keep their length on the page, and no grain is so much smaller than a pixel that it would be grey.
+ * `density` is that of the draft.
+ */
+export function draftUniforms(
+  settings: Settings,
+  samples: number,
+  density: number,
+): Record<string, Uniform> {
+  const [grain, spacing, all] = [settings.grain, settings.spacing, settings.samples].map(Number);
+  const drawn = Math.max(grain * density, Math.min(grain, 1));
+  const length = all * spacing * grain;
+  const stretched = (length * density) / (samples * drawn);
+  return {
+    u_grain: drawn,
+    u_spacing: clamp(stretched, 0.1, Math.max(DRAFT_SPACING, spacing)),
+  };
+}

@@ -1,0 +1,346 @@
+// The buffers and textures of one scene, made of its parts when they are first drawn.
+
+import type { Graphics, Resource } from "./context.ts";
+import { halved } from "./half.ts";
+import { coordinates, noiseCoordinates, positions, shares, triangles } from "./mesh.ts";
+import { SAMPLERS } from "./programs.ts";
+import { stepOf, type Data, type Header, type Part } from "./protocol.ts";
+import type { Vector } from "./vectors.ts";
+
+/** Objects that are made of a part, by the part's name without its step. */
+const USERS: Record<string, string[]> = {
+  position: ["position", "coordinate"],
+  normal: ["normal"],
+  cells: ["index"],
+  cmap: ["cmap"],
+  noise: ["noise"],
+  step: ["step"],
+  scalars: ["scalar"],
+};
+
+interface TextureSize {
+  width: number;
+  height: number;
+  layers: number;
+  channels: number;
+  levels: number;
+}
+
+export class Scene {
+  readonly graphics: Graphics;
+  readonly header: Header;
+  readonly parts: Map<string, Part>;
+  anchor: Vector = [0, 0, 0];
+  private readonly resources = new Map<string, Resource>();
+  private scalarSteps = "";
+
+  constructor(graphics: Graphics, header: Header, parts: Map<string, Part>) {
+    this.graphics = graphics;
+    this.header = header;
+    this.parts = parts;
+  }
+
+  /** Names of the parts that a moment needs and that are not there. */
+  missing(before: number, after: number): string[] {
+    const { geometry, slices, scalars, paper } = this.header;
+    const names = ["position", ...(geometry.planar ? [] : ["normal"])];
+    for (const step of new Set([before, after])) {
+      names.push(`slices/${step}`);
+      if (slices.channels === 2) names.push(`extra/${step}`);
+    }
+    names.push(...this.scalarParts(before, after));
+    if (scalars.name !== null) names.push("cmap");
+    if (paper) names.push("noise", "step");
+    return [...new Set(names)].filter((name) => !this.fits(name));
+  }
+
+  /** Names of the parts with the nodal values of a moment. */
+  scalarParts(before: number, after: number): string[] {
+    const { name, steps } = this.header.scalars;
+    if (name === null) return [];
+    return (steps > 1 ? [before, after] : [0, 0]).map((step) => `scalars/${step}`);
+  }
+
+  /** Whether a part is there and of this scene: while one is built anew those of the last come first. */
+  private fits(name: string): boolean {
+    const part = this.parts.get(name);
+    if (!part) return false;
+    const { geometry, slices, paper } = this.header;
+    const shapes: Record<string, number[]> = {
+      slices: [slices.count, geometry.rows.size, geometry.columns.size, slices.channels],
+      position: [...geometry.shape, 3],
+      step: paper ? [paper.size[1], paper.size[0]] : [],
+    };
+    const shape = shapes[name.split("/")[0]];
+    return !shape || String(shape) === String(part.shape);
+  }
+
+  part(name: string): Part {
+    const part = this.parts.get(name);
+    if (!part) throw new Error(`the part "${name}" of the scene is missing`);
+    return part;
+  }
+
+  /** Forget what was made of a part, as it has changed. */
+  forget(name: string): void {
+    const [kind, step] = name.split("/");
+    const sliced = kind === "slices" || kind === "extra";
+    for (const user of sliced ? [`slices/${step}`] : (USERS[kind] ?? [])) this.drop(user);
+    this.drop("array");
+  }
+
+  private drop(name: string): void {
+    const resource = this.resources.get(name);
+    this.resources.delete(name);
+    if (!resource) return;
+    resource.users -= 1;
+    if (resource.users) return;
+    this.graphics.free(resource.kind, resource.object);
+    this.graphics.common.delete(resource.key);
+  }
+
+  dispose(): void {
+    for (const name of [...this.resources.keys()]) this.drop(name);
+  }
+
+  /** What some parts are known by on the whole page; nothing where one of them has no digest. */
+  private key(names: string[], ...rest: unknown[]): string {
+    const digests = names.map((name) => (this.parts.has(name) ? this.part(name).digest : "none"));
+    return digests.every(Boolean) ? JSON.stringify([digests, rest]) : "";
+  }
+
+  /**
+   * An object by its name, made when it is first needed; `key` finds that of another view, and `fill`
+   * may give a count.
+   */
+  private take<T extends object>(
+    name: string,
+    kind: string,
+    key: string,
+    make: () => T | null,
+    fill: (object: T) => number | void,
+  ): T {
+    const own = this.resources.get(name);
+    if (own) return own.object as T;
+    const { common } = this.graphics;
+    const whole = key && `${name.split("/")[0]} ${key}`;
+    const shared = whole ? common.get(whole) : undefined;
+    if (shared) {
+      shared.users += 1;
+      this.resources.set(name, shared);
+      return shared.object as T;
+    }
+    const object = this.graphics.counted(make());
+    const resource = { kind, object, count: 0, key: whole, users: 1 };
+    this.resources.set(name, resource);
+    resource.count = fill(object) || 0;
+    if (whole) common.set(whole, resource);
+    return object;
+  }
+
+  private buffer(
+    name: string,
+    key: string,
+    data: () => Data | Uint32Array,
+    elements = false,
+  ): WebGLBuffer {
+    const gl = this.graphics.context;
+    const fill = (buffer: WebGLBuffer) => {
+      const target = elements ? gl.ELEMENT_ARRAY_BUFFER : gl.ARRAY_BUFFER;
+      const numbers = data();
+      gl.bindVertexArray(null);
+      gl.bindBuffer(target, buffer);
+      gl.bufferData(target, numbers as AllowSharedBufferSource, gl.STATIC_DRAW);
+      return numbers.length;
+    };
+    return this.take(name, "Buffer", key, () => gl.createBuffer(), fill);
+  }
+
+  /** Make ready to draw the nodes. */
+  private bindNodes(before: number, after: number, anchor: Vector): void {
+    const gl = this.graphics.context;
+    const steps = String(this.scalarParts(before, after));
+    const stale = steps !== this.scalarSteps ? ["scalar", "array"] : [];
+    if (anchor.some((x, k) => x !== this.anchor[k])) stale.push("position", "array");
+    for (const name of stale) this.drop(name);
+    this.scalarSteps = steps;
+    this.anchor = anchor;
+    const fill = (array: WebGLVertexArrayObject) => this.fillArray(array, before, after);
+    const make = () => gl.createVertexArray();
+    gl.bindVertexArray(this.take("array", "VertexArray", "", make, fill));
+  }
+
+  private fillArray(array: WebGLVertexArrayObject, before: number, after: number): void {
+    const gl = this.graphics.context;
+    const { geometry, scalars, paper } = this.header;
+    const { shape, rows, columns } = geometry;
+    const cells = () => triangles(shape, this.parts.get("cells")?.data);
+    const index = this.buffer("index", this.key(["cells"], shape), cells, true);
+    const nodes = () => positions(this.part("position").data as Float32Array, this.anchor);
+    const normal = geometry.planar ? null : this.part("normal").data;
+    const painted = this.scalarParts(before, after);
+    const values = () => {
+      const steps = painted.map((name) => this.part(name).data);
+      return shares(steps, scalars.low, scalars.high, shape[0] * shape[1]);
+    };
+    const colour = this.key([...new Set(painted)], shape, scalars.low, scalars.high);
+    const grid = JSON.stringify([shape, rows, columns]);
+    let type: number = gl.FLOAT;
+    if (normal instanceof Int8Array) type = gl.BYTE;
+    if (normal instanceof Int16Array) type = gl.SHORT;
+    const attributes: [WebGLBuffer | null, number, number][] = [
+      [this.buffer("position", this.key(["position"], this.anchor), nodes), 3, gl.FLOAT],
+      [this.buffer("coordinate", grid, () => coordinates(geometry)), 2, gl.FLOAT],
+      [normal && this.buffer("normal", this.key(["normal"]), () => normal), 3, type],
+      [paper && this.buffer("along", "", () => noiseCoordinates(paper)), 2, gl.FLOAT],
+      [this.buffer("scalar", colour, values), 2, gl.FLOAT],
+    ];
+    gl.bindVertexArray(array);
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, index);
+    attributes.forEach(([buffer, size, kind], n) => {
+      if (!buffer) return;
+      gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+      gl.enableVertexAttribArray(n);
+      gl.vertexAttribPointer(n, size, kind, kind !== gl.FLOAT, 0, 0);
+    });
+  }
+
+  private texture(
+    name: string,
+    key: string,
+    fill: (texture: WebGLTexture) => void,
+  ): WebGLTexture {
+    const gl = this.graphics.context;
+    return this.take(name, "Texture", key, () => gl.createTexture(), fill);
+  }
+
+  private slices(step: number): WebGLTexture {
+    const { slices, geometry } = this.header;
+    const key = this.key([`slices/${step}`, `extra/${step}`], geometry.levels, slices.extra);
+    return this.texture(`slices/${step}`, key, (texture) => {
+      const part = this.part(`slices/${step}`);
+      const [layers, height, width, channels] = part.shape;
+      const data = part.data as Uint16Array;
+      const extra = this.parts.get(`extra/${step}`)?.data as Uint16Array | undefined;
+      const texels = height * width;
+      const layer = (n: number) => {
+        const own = data.subarray(n * texels * channels, (n + 1) * texels * channels);
+        if (channels === 4) return own;
+        const all = new Uint16Array(4 * texels);
+        const place = slices.extra.indexOf(n);
+        const fourth = place < 0 ? null : extra?.subarray(place * texels, (place + 1) * texels);
+        for (let k = 0; k < texels; k += 1) {
+          all[4 * k] = own[2 * k];
+          all[4 * k + 1] = own[2 * k + 1];
+          if (fourth) all[4 * k + 3] = fourth[k];
+        }
+        return all;
+      };
+      this.fill(texture, { width, height, layers, channels: 4, levels: geometry.levels }, layer);
+    });
+  }
+
+  /** An image that is repeated along (v, u). */
+  private image(name: string, repeat: [boolean, boolean]): WebGLTexture {
+    const gl = this.graphics.context;
+    return this.texture(name, this.key([name], repeat), (texture) => {
+      const { data, shape } = this.part(name);
+      const [height, width, channels = 1] = shape;
+      const levels = Math.floor(Math.log2(Math.max(width, height)));
+      const size = { width, height, layers: 1, channels, levels };
+      this.fill(texture, size, () => data as Uint16Array);
+      const wrap = (n: number) => (repeat[n] ? gl.REPEAT : gl.CLAMP_TO_EDGE);
+      gl.texParameteri(gl.TEXTURE_2D_ARRAY, gl.TEXTURE_WRAP_S, wrap(1));
+      gl.texParameteri(gl.TEXTURE_2D_ARRAY, gl.TEXTURE_WRAP_T, wrap(0));
+    });
+  }
+
+  /** Send the layers of a half-precision texture array, and make its mip levels. */
+  private fill(texture: WebGLTexture, size: TextureSize, layer: (n: number) => Uint16Array): void {
+    const gl = this.graphics.context;
+    const { width, height, layers, channels, levels } = size;
+    const target = gl.TEXTURE_2D_ARRAY;
+    this.checkSize(size);
+    const [format, inner] = channels === 1 ? [gl.RED, gl.R16F] : [gl.RGBA, gl.RGBA16F];
+    gl.bindTexture(target, texture);
+    gl.texStorage3D(target, levels + 1, inner, width, height, layers);
+    gl.texParameteri(target, gl.TEXTURE_MIN_FILTER, gl.LINEAR_MIPMAP_LINEAR);
+    gl.texParameteri(target, gl.TEXTURE_MAG_FILTER, gl.LINEAR);
+    gl.texParameteri(target, gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE);
+    gl.texParameteri(target, gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE);
+    gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
+    const { floats } = this.graphics;
+    for (let n = 0; n < layers; n += 1) {
+      let texels = layer(n);
+      let [w, h] = [width, height];
+      gl.texSubImage3D(target, 0, 0, 0, n, w, h, 1, format, gl.HALF_FLOAT, texels);
+      for (let level = 1; level <= levels && !floats; level += 1) {
+        [texels, w, h] = halved(texels, w, h, channels);
+        gl.texSubImage3D(target, level, 0, 0, n, w, h, 1, format, gl.HALF_FLOAT, texels);
+      }
+    }
+    if (floats && levels) gl.generateMipmap(target);
+  }
+
+  private checkSize({ width, height, layers }: TextureSize): void {
+    const gl = this.graphics.context;
+    const most = gl.getParameter(gl.MAX_TEXTURE_SIZE) as number;
+    const mostLayers = gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS) as number;
+    if (Math.max(width, height) <= most && layers <= mostLayers) return;
+    throw new Error(
+      `a texture of ${width} x ${height} texels in ${layers} layers is asked for, and this graphics ` +
+        `card has ${most} x ${most} in ${mostLayers}; show fewer nodes`,
+    );
+  }
+
+  private colourMap(): WebGLTexture {
+    const gl = this.graphics.context;
+    return this.texture("cmap", this.key(["cmap"]), (texture) => {
+      gl.bindTexture(gl.TEXTURE_2D, texture);
+      gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
+      const data = (this.parts.get("cmap")?.data ?? new Uint8Array(1024)) as Uint8Array;
+      gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, 256, 1, 0, gl.RGBA, gl.UNSIGNED_BYTE, data);
+      gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
+      gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
+    });
+  }
+
+  /** Drop the slices of steps that are neither shown nor next. */
+  private dropSlices(before: number, after: number): void {
+    const next = after + 1 < this.header.slices.steps ? after + 1 : 0;
+    for (const name of [...this.resources.keys()]) {
+      if (!name.startsWith("slices/")) continue;
+      if (![before, after, next, after + 1].includes(stepOf(name))) this.drop(name);
+    }
+  }
+
+  private bindTextures(before: number, after: number): void {
+    const gl = this.graphics.context;
+    const { paper } = this.header;
+    const repeat = paper?.repeat ?? [false, false];
+    const units = [
+      this.slices(before),
+      after === before ? null : this.slices(after),
+      paper && this.image("noise", paper.picture ? [true, true] : repeat),
+      paper && this.image("step", repeat),
+      this.colourMap(),
+    ];
+    units.forEach((texture, n) => {
+      gl.activeTexture(gl.TEXTURE0 + n);
+      gl.bindTexture(n < 4 ? gl.TEXTURE_2D_ARRAY : gl.TEXTURE_2D, texture);
+    });
+    gl.activeTexture(gl.TEXTURE0 + SAMPLERS.length);
+  }
+
+  /** Draw all cells with a program that is in use. */
+  draw(before: number, after: number, anchor: Vector, textures: boolean): void {
+    const gl = this.graphics.context;
+    if (textures) {
+      this.dropSlices(before, after);
+      this.bindTextures(before, after);
+    }
+    this.bindNodes(before, after, anchor);
+    gl.drawElements(gl.TRIANGLES, this.resources.get("index")?.count ?? 0, gl.UNSIGNED_INT, 0);
+    gl.bindVertexArray(null);
+  }
+}

@@ -1,0 +1,157 @@
+// The numbers that the shaders are given, by name, as flowtex/rendering/uniforms.py computes them; one
+// fixture holds both to the same values. They depend on the view, so all is in double precision.
+
+import { isSignFree, type Header, type Paper, type Settings } from "./protocol.ts";
+import { clamp, scale, subtract, toFrame, type Vector } from "./vectors.ts";
+
+export type Uniform = boolean | number | readonly number[] | Float32Array;
+
+/** What changes from frame to frame. */
+export interface ViewState {
+  focus: readonly number[];
+  anchor: Vector;
+  eye: readonly number[];
+  between: number;
+  time: number;
+  clock: number;
+  /** Pixels that are drawn along one that the settings speak of. */
+  density: number;
+}
+
+/** The table's settings with the types that they have there. */
+interface Numbers {
+  samples: number;
+  spacing: number;
+  kernel: string;
+  two_sided: boolean;
+  lod: boolean;
+  noise: string;
+  tiles: number;
+  resolution: number;
+  grain: number;
+  fixed_grain: boolean;
+  contrast: number;
+  strength: number;
+  seed: number;
+  motion: string;
+  speed: number;
+  speed_in: string;
+  period: number;
+  show_level: boolean;
+}
+
+/** Uniforms of shaders/common/uniforms.glsl; `noiseShape` is that of the noise's part. */
+export function uniforms(
+  header: Header,
+  settings: Settings,
+  view: ViewState,
+  noiseShape: readonly number[] | null = null,
+): Record<string, Uniform> {
+  const { geometry, slices, constants } = header;
+  const s = settings as unknown as Numbers;
+  const signFree = isSignFree(header);
+  const finest = 2 ** (Math.floor(Math.log2(geometry.extent)) - constants.octaves);
+  const motion = motionUniforms(header, s, view);
+  const w = view.eye[3];
+  const eye = toFrame(geometry.frame, subtract(view.eye, scale(geometry.center, w)));
+  const kernel = signFree && s.kernel === "ramp" ? "hann" : s.kernel;
+  return {
+    u_eye: [...subtract(eye, scale(view.anchor, w)), w],
+    u_between: view.between,
+    u_slicesSize: [geometry.columns.size, geometry.rows.size],
+    u_deepest: geometry.levels,
+    u_lags: slices.lags,
+    u_lagCount: slices.lags.length,
+    u_sides: s.two_sided || signFree ? slices.sides : 1,
+    u_unit: slices.unit,
+    u_samples: motion.u_moving ? 2 * s.samples - 1 : s.samples,
+    u_spacing: s.spacing,
+    u_grain: s.grain * view.density,
+    u_kernel: constants.kernels.indexOf(kernel),
+    u_lod: s.lod,
+    u_contrast: s.contrast,
+    u_strength: s.strength,
+    u_seed: s.seed,
+    u_showLevel: s.show_level,
+    u_fixed: s.fixed_grain,
+    ...motion,
+    ...noiseOrigin(header, view, finest),
+    u_noiseFinest: finest,
+    u_texel: geometry.extent / s.resolution,
+    ...(header.paper && noiseShape ? paperUniforms(header.paper, s, noiseShape, view.density) : {}),
+  };
+}
+
+/** How the grains change: with the time of a field that varies, by the clock of a steady one. */
+function motionUniforms(header: Header, s: Numbers, view: ViewState): Record<string, Uniform> {
+  const { geometry, slices, constants } = header;
+  const varies = slices.steps > 1;
+  const inPixels = !varies && s.speed_in === "pixels";
+  // The time in which the flow crosses the surface, or the setting's.
+  const turns = varies
+    ? (view.time - slices.times[0]) / (geometry.extent / slices.pace)
+    : (((view.clock / s.period) % 1) + 1) % 1;
+  const travel = varies ? geometry.extent : s.speed * s.period;
+  const coarse = Math.floor(turns / constants.coarse) * constants.coarse;
+  return {
+    u_moving: (varies || (s.motion !== "off" && !isSignFree(header))) && !header.paper,
+    u_clock: [coarse, turns - coarse],
+    u_travel: travel * (inPixels ? view.density : 1),
+    u_travelInPixels: inPixels,
+    u_travelBySpeed: varies || s.motion === "speed",
+    u_wave: constants.wave * view.density,
+  };
+}
+
+/** The noise's origin in space and in the finest cells of both families of lattices. */
+function noiseOrigin(header: Header, view: ViewState, finest: number): Record<string, Uniform> {
+  const { octaves, snap } = header.constants;
+  const { frame, center } = header.geometry;
+  const focus = toFrame(frame, subtract(view.focus, center));
+  const limit = 2 ** (octaves - snap) - 1;
+  const cells = 2 ** snap;
+  const even = focus.map((x) => clamp(Math.round(x / finest / cells), -limit, limit) * cells);
+  const odd = even.map((x) => x / Math.SQRT2);
+  const whole = odd.map((x) => Math.floor(x / cells) * cells);
+  return {
+    u_noiseOrigin: even.map((x, k) => x * finest - view.anchor[k]),
+    u_noiseOriginEven: even,
+    u_noiseOriginOdd: whole,
+    u_noiseRestOdd: odd.map((x, k) => x - whole[k]),
+  };
+}
+
+/**
+ * Sizes of the noise texture, or of the picture that lies in its place: what is drawn more densely
+ * takes its level from so many times more texels.
+ */
+function paperUniforms(
+  paper: Paper,
+  s: Numbers,
+  noiseShape: readonly number[],
+  density: number,
+): Record<string, Uniform> {
+  const tiles = s.noise === "image" ? s.tiles : 1;
+  const [rows, columns] = noiseShape;
+  return {
+    u_noiseSize: paper.size.map((n) => n * density),
+    u_noiseGrain: paper.grain,
+    u_noiseDeviation: paper.deviations,
+    u_noiseCorrected: paper.corrected,
+    u_pictureSize: [columns * density * tiles, rows * density * tiles],
+    u_pictureRound: [Number(paper.repeat[1]), Number(paper.repeat[0])],
+    u_pictureGrey: noiseShape.length === 2,
+    u_tiles: tiles,
+  };
+}
+
+/** The two time steps around a time, and how far it is between them. */
+export type Moment = [before: number, after: number, between: number];
+
+export function momentOf(times: readonly number[], time: number): Moment {
+  if (times.length < 2) return [0, 0, 0];
+  let step = 0;
+  while (step < times.length - 2 && times[step + 1] <= time) step += 1;
+  const late = (time - times[step]) / (times[step + 1] - times[step]);
+  return [step, step + 1, clamp(late, 0, 1)];
+}

@@ -1,0 +1,512 @@
+// One scene in an element.
+//
+//   header, parts --> Viewer --> Scene (buffers, textures) --> Graphics (context, programs) --> canvas
+//                       |          uniforms() of header, settings and view
+//                     Camera, Player, Panel (what is seen around the picture), Pointers
+
+import { Camera, copyOf, fitted, isSamePlace, widened, type CameraState } from "./camera.ts";
+import { FRAME_MS, sharedGraphics, type Graphics, type User } from "./context.ts";
+import { Lifetime } from "./lifetime.ts";
+import { Panel } from "./panel.ts";
+import { pickedPoint, type Point } from "./picking.ts";
+import { Player } from "./player.ts";
+import { Pointers } from "./pointers.ts";
+import { ProgressiveRenderer } from "./progressive.ts";
+import {
+  FORMAT,
+  stepOf,
+  type Header,
+  type NamedPart,
+  type Part,
+  type Settings,
+  type Value,
+} from "./protocol.ts";
+import { CARD_PRICE_MS } from "./quality.ts";
+import { Scene } from "./scene.ts";
+import type { Moment, ViewState } from "./uniforms.ts";
+import { subtract, toFrame, type Vector } from "./vectors.ts";
+
+/** What a viewer tells its host. */
+export interface Callbacks {
+  onCamera?: (camera: CameraState) => void;
+  onTime?: (time: number) => void;
+  onClock?: (clock: number) => void;
+  onPlaying?: (playing: boolean) => void;
+  onPoint?: (point: Point) => void;
+  /** The parts of a time step are lacking. */
+  onNeed?: (step: number) => void;
+  /** A picture is complete. */
+  onFrame?: () => void;
+  onSetting?: (name: string, value: Value) => void;
+  onControls?: (shown: boolean) => void;
+}
+
+export interface Options extends Callbacks {
+  /** Whether nothing but the picture is shown. */
+  bare?: boolean;
+  /** Whether the host makes textures anew where a setting asks for it. */
+  rebuild?: boolean;
+  controls?: boolean;
+  /** Whether outlines are smoothed; by default where it takes little time. */
+  smooth?: boolean;
+  /** Whether the page around is scrolled: the view takes wheel and finger only once it was clicked. */
+  guarded?: boolean;
+  /** Another view that has the bar. */
+  follows?: Viewer;
+}
+
+/** Milliseconds for which a view that was moved counts as being moved. */
+const STILL_MS = 160;
+/** Milliseconds after which a question for a step counts as lost. */
+const LOST_MS = 5000;
+/** Time steps that stay where the others can be asked for again. */
+const STEPS_HELD = 12;
+
+const isEqual = (a: unknown, b: unknown) => JSON.stringify(a) === JSON.stringify(b);
+
+export class Viewer implements User {
+  readonly options: Options;
+  readonly graphics: Graphics = sharedGraphics();
+  readonly lifetime = new Lifetime();
+  readonly player = new Player();
+  readonly root = document.createElement("div");
+  readonly canvas = document.createElement("canvas");
+  readonly panel: Panel;
+  readonly pointers: Pointers;
+  readonly parts = new Map<string, Part>();
+  header: Header | null = null;
+  settings: Settings = {};
+  scene: Scene | null = null;
+  camera: Camera | null = null;
+  /** Whether the full picture is shown. */
+  sharp = false;
+  isVisible = true;
+  /** The steps on show. */
+  shown: Moment | null = null;
+  /** The views that stand beside each other. */
+  together: Viewer[] = [this];
+  private readonly renderer: ProgressiveRenderer;
+  private busyUntil = 0;
+  /** The camera that the scene came with. */
+  private firstCamera: CameraState | null = null;
+  private readonly asked = new Map<number, number>();
+
+  constructor(element: HTMLElement, options: Options = {}) {
+    this.options = options;
+    const { root } = this;
+    root.className = "flowtex";
+    root.tabIndex = 0;
+    root.dataset.sharp = "false";
+    // JupyterLab has shortcuts of its own for the keys that move the view.
+    root.setAttribute("data-lm-suppress-shortcuts", "true");
+    root.setAttribute("role", "application");
+    this.renderer = new ProgressiveRenderer(this);
+    this.panel = new Panel(this);
+    element.append(root);
+    this.pointers = new Pointers(this);
+    this.graphics.enter(this);
+    this.observe();
+    if (!this.graphics.gl) {
+      this.panel.fail(
+        "This browser has no WebGL2, which the picture is drawn with.",
+        "Turn on hardware acceleration in its settings, or use a recent Firefox, Chrome or Safari.",
+      );
+    }
+  }
+
+  private observe(): void {
+    const { lifetime, root } = this;
+    lifetime.observe(new ResizeObserver(() => this.resize()), root);
+    const seen = new IntersectionObserver((entries) => {
+      this.isVisible = entries[entries.length - 1].isIntersecting;
+      if (this.isVisible) this.request();
+    });
+    lifetime.observe(seen, root);
+    lifetime.listen(document, "visibilitychange", () => this.request());
+    // The ratio changes when the window goes to another screen or is zoomed.
+    lifetime.listen(window, "resize", () => this.resize());
+  }
+
+  /** What is still held, for tests. */
+  stats() {
+    const { objects, users, restorations } = this.graphics;
+    const { frames } = this.renderer;
+    return { ...this.lifetime.stats(), objects, users: users.size, restorations, frames };
+  }
+
+  dispose(): void {
+    if (this.lifetime.isOver) return;
+    this.player.playing = false;
+    this.lifetime.end();
+    this.scene?.dispose();
+    this.scene = null;
+    for (const name of [...this.parts.keys()]) this.remove(name);
+    this.graphics.leave(this);
+    this.renderer.dispose();
+    this.root.remove();
+  }
+
+  // --- what is shown ---
+
+  setHeader(header: Header): void {
+    if (header.format !== FORMAT) {
+      this.panel.fail(
+        `The scene has format ${header.format}, and this client reads format ${FORMAT}.`,
+        "Use the client of the flowtex that made the scene.",
+      );
+      return;
+    }
+    const old = this.header;
+    this.header = header;
+    this.settings = { ...header.settings, ...header.own };
+    this.player.setHeader(header);
+    this.scene?.dispose();
+    this.scene = new Scene(this.graphics, header, this.parts);
+    this.asked.clear();
+    if (!old || !isSamePlace(old.geometry, header.geometry)) {
+      this.firstCamera = header.camera;
+      this.camera = null;
+    }
+    if (old && old.generation !== header.generation) {
+      // What is the same at all times is sent again only where it differs.
+      for (const name of [...this.parts.keys()]) if (name.includes("/")) this.remove(name);
+    }
+    this.panel.build();
+    this.change();
+  }
+
+  setPart(part: NamedPart): void {
+    const { name, digest } = part;
+    this.asked.delete(stepOf(name));
+    if (digest && this.parts.get(name)?.digest === digest) return;
+    const held = this.graphics.hold<Part>(part);
+    this.remove(name);
+    this.parts.set(name, held);
+    this.scene?.forget(name);
+    this.trim();
+    if (name === "cmap") this.panel.showLegend();
+    this.change();
+  }
+
+  private remove(name: string): void {
+    this.graphics.release(this.parts.get(name));
+    this.parts.delete(name);
+  }
+
+  /** Hold a few time steps where the others can be asked for again. */
+  private trim(): void {
+    if (!this.options.onNeed || !this.header) return;
+    const names = [...this.parts.keys()].filter((name) => name.startsWith("slices/"));
+    const [before, after] = this.player.moment;
+    for (const name of names.slice(0, Math.max(names.length - STEPS_HELD, 0))) {
+      const step = stepOf(name);
+      if (step === before || step === after) continue;
+      for (const kind of ["slices", "extra"]) this.remove(`${kind}/${step}`);
+    }
+  }
+
+  setSettings(settings: Settings): void {
+    if (Object.entries(settings).every(([name, value]) => this.settings[name] === value)) return;
+    Object.assign(this.settings, settings);
+    this.panel.update();
+    this.change();
+  }
+
+  /** Follow the setting of another view, unless it is this one's own. */
+  followSetting(name: string, value: Value): void {
+    if (!(name in (this.header?.own ?? {}))) this.setSettings({ [name]: value });
+  }
+
+  /** Set one setting as a person does, which the host is told of. */
+  choose(name: string, value: Value): void {
+    this.stir();
+    this.setSettings({ [name]: value });
+    this.options.onSetting?.(name, value);
+  }
+
+  // --- the camera ---
+
+  get cameraState(): CameraState | null {
+    const state = this.camera?.state ?? this.firstCamera;
+    return state ? copyOf(state) : null;
+  }
+
+  setCamera(state: CameraState): void {
+    if (!this.camera) this.firstCamera = copyOf(state);
+    else if (isEqual(this.camera.state, state)) return;
+    else this.camera.state = copyOf(state);
+    this.change(true);
+  }
+
+  /** The camera was moved by hand. */
+  moved(): void {
+    this.stir();
+    this.change(true);
+    if (this.camera) this.options.onCamera?.(copyOf(this.camera.state));
+  }
+
+  reset(): void {
+    if (!this.camera) return;
+    this.place();
+    this.moved();
+  }
+
+  /** Look from where the scene says, or so that the whole surface is seen. */
+  private place(): void {
+    const { header, firstCamera: first, aspect } = this;
+    const nodes = this.parts.get("position")?.data;
+    if (!header || !nodes) return;
+    const { geometry, limits } = header;
+    const state = first
+      ? widened(geometry, limits, first, nodes, aspect)
+      : fitted(geometry, limits, nodes, aspect);
+    this.camera = new Camera(state, limits, geometry.planar, aspect);
+    this.camera.pick = (x, y) => (this.point(x, y)?.position as Vector | undefined) ?? null;
+    // A host holds the camera that is shown.
+    if (!first || !isEqual(first, state)) this.options.onCamera?.(copyOf(state));
+  }
+
+  private get aspect(): number {
+    return Math.max(this.root.clientWidth, 1) / Math.max(this.root.clientHeight, 1);
+  }
+
+  // --- time ---
+
+  get varies(): boolean {
+    return this.player.varies;
+  }
+
+  get time(): number {
+    return this.player.time;
+  }
+
+  get clock(): number {
+    return this.player.clock;
+  }
+
+  get playing(): boolean {
+    return this.player.playing;
+  }
+
+  setTime(time: number): void {
+    this.player.seek(time);
+    this.panel.tick();
+    this.change();
+  }
+
+  /** Set the clock, in seconds. */
+  setClock(clock: number): void {
+    this.player.clock = clock;
+    this.panel.tick();
+    this.change();
+  }
+
+  play(): void {
+    if (this.options.follows) return this.options.follows.play();
+    if (this.playing || !this.header) return;
+    if (!this.varies && this.settings.motion === "off") this.choose("motion", "speed");
+    this.player.start();
+    this.panel.update();
+    this.request();
+    this.options.onPlaying?.(true);
+  }
+
+  pause(): void {
+    if (this.options.follows) return this.options.follows.pause();
+    if (!this.playing) return;
+    this.player.playing = false;
+    this.panel.update();
+    this.change();
+    this.options.onPlaying?.(false);
+  }
+
+  /** Play or pause, in the view that has the bar. */
+  togglePlaying(): void {
+    const leader = this.options.follows ?? this;
+    if (leader.playing) leader.pause();
+    else leader.play();
+  }
+
+  // --- drawing ---
+
+  /** The view is being moved, or a control is. */
+  stir(): void {
+    this.busyUntil = performance.now() + STILL_MS;
+  }
+
+  private get isBusy(): boolean {
+    return this.playing || performance.now() < this.busyUntil;
+  }
+
+  /** The picture is not sharp any more, and is drawn when its turn comes; `moved`: only the camera changed. */
+  change(moved = false): void {
+    this.renderer.restart(moved);
+    this.setSharp(false);
+    this.request();
+  }
+
+  /** Draw at once, as far as there is time. */
+  draw(): void {
+    this.frame(performance.now(), performance.now() + FRAME_MS);
+  }
+
+  private setSharp(sharp: boolean): void {
+    if (sharp === this.sharp) return;
+    this.sharp = sharp;
+    this.root.dataset.sharp = String(sharp);
+    if (sharp) this.options.onFrame?.();
+  }
+
+  private request(): void {
+    if (!this.lifetime.isOver && this.isVisible) this.graphics.request(this);
+  }
+
+  resize(): void {
+    const ratio = Math.max(window.devicePixelRatio || 1, 0.1);
+    const width = Math.max(Math.round(this.root.clientWidth * ratio), 1);
+    const height = Math.max(Math.round(this.root.clientHeight * ratio), 1);
+    if (width === this.canvas.width && height === this.canvas.height) return;
+    this.renderer.resize(width, height);
+    if (this.camera) {
+      this.camera.aspect = this.aspect;
+      if (isEqual(this.camera.state, this.camera.start)) this.place();
+    }
+    this.change();
+  }
+
+  /** Whether outlines are smoothed in the full picture: on a processor it would take many times as long. */
+  get smooth(): boolean {
+    const { header } = this;
+    if (this.options.smooth !== undefined || !header) return this.options.smooth ?? false;
+    const { vertex, fragment } = header.shaders;
+    return this.graphics.programs.get(vertex, fragment).price < CARD_PRICE_MS;
+  }
+
+  /** Pixels of the canvas along one of the page. */
+  get ratio(): number {
+    return this.canvas.height / Math.max(this.root.clientHeight, 1);
+  }
+
+  lost(): void {
+    // What was made is gone with the context.
+    this.scene = this.header && new Scene(this.graphics, this.header, this.parts);
+    this.setSharp(false);
+  }
+
+  restored(): void {
+    this.change();
+  }
+
+  /** Names of the parts that the present moment lacks. */
+  get lacking(): string[] {
+    const [before, after] = this.player.moment;
+    return this.scene?.missing(before, after) ?? [];
+  }
+
+  /** Ask for the parts of the steps that are missing; gives what can be shown. */
+  private available(): Moment | null {
+    const { header, scene, player, shown } = this;
+    if (!header || !scene) return null;
+    const moment = player.moment;
+    const count = header.slices.steps;
+    const ahead = player.playing ? [1, 2].map((n) => (moment[1] + n) % count) : [];
+    this.ask([moment[0], moment[1], ...ahead]);
+    const { lacking } = this;
+    this.panel.wait(lacking);
+    if (!lacking.length) return (this.shown = moment);
+    return shown && !scene.missing(shown[0], shown[1]).length ? shown : null;
+  }
+
+  /** Ask for the steps that are not there; tells whether all are. */
+  private ask(steps: number[]): boolean {
+    const now = performance.now();
+    const lacking = [...new Set(steps)].filter((step) => this.scene?.missing(step, step).length);
+    for (const step of lacking) {
+      // A question that was lost is asked again.
+      if (!this.options.onNeed || now - (this.asked.get(step) ?? -Infinity) < LOST_MS) continue;
+      this.asked.set(step, now);
+      this.options.onNeed(step);
+    }
+    return !lacking.length;
+  }
+
+  frame(now: number, until: number): void {
+    if (this.lifetime.isOver || this.graphics.isLost || !this.graphics.gl || !this.isVisible) return;
+    if (!this.header || !this.scene || this.canvas.width < 2) return;
+    try {
+      this.advance(now);
+      this.proceed(this.header, until);
+    } catch (error) {
+      this.pause();
+      this.panel.fail("The picture could not be drawn.", String(error));
+    }
+  }
+
+  /** Go on with the picture until a time. */
+  private proceed(header: Header, until: number): void {
+    const shown = this.available();
+    if (!this.camera) this.place();
+    if (!shown || !this.camera) return;
+    const { programs } = this.graphics;
+    const { vertex, fragment, pick } = header.shaders;
+    const program = programs.get(vertex, fragment);
+    if (program.error) {
+      this.panel.fail("The shader does not compile with this graphics driver.", program.error);
+      return;
+    }
+    if (!program.ready) return this.request();
+    if (!this.sharp && this.renderer.draw(program, shown, this.isBusy, until)) {
+      this.panel.drawn();
+      programs.get(vertex, pick); // the pointer asks for it next
+      this.setSharp(!this.playing);
+    }
+    if (!this.sharp) this.request();
+  }
+
+  /** Go on with the time or the clock. */
+  private advance(now: number): void {
+    const { player, options } = this;
+    if (!player.playing || !player.advance(now, (steps) => this.ask(steps))) return;
+    if (player.varies) options.onTime?.(player.time);
+    else options.onClock?.(player.clock);
+    this.panel.tick();
+    this.renderer.restart();
+    this.setSharp(false);
+  }
+
+  /** Where from and when a moment is seen, with so many pixels along one of the page. */
+  view(shown: Moment, density: number): ViewState {
+    const { header, camera, scene, player } = this;
+    if (!header || !camera) throw new Error("there is nothing to look at yet");
+    const { geometry, constants } = header;
+    const focus = camera.state.focal_point;
+    const local = toFrame(geometry.frame, subtract(focus, geometry.center));
+    const old = scene?.anchor ?? [0, 0, 0];
+    const range = constants.anchorRange * 2 * camera.height;
+    const isFar = (v: Vector) => v.some((c) => Math.abs(c) > range);
+    const anchor: Vector = isFar(local) ? local : [0, 0, 0];
+    return {
+      focus,
+      anchor: isFar(subtract(local, old)) ? anchor : old,
+      eye: camera.eye,
+      between: shown[2],
+      time: player.timeOf(shown),
+      clock: player.clock,
+      density,
+    };
+  }
+
+  // --- what is under the pointer ---
+
+  /** Whether the program that finds points is built. */
+  get canPick(): boolean {
+    const { header, graphics } = this;
+    if (!header || graphics.isLost || !graphics.gl) return false;
+    return graphics.programs.get(header.shaders.vertex, header.shaders.pick).ready;
+  }
+
+  /** Point of the surface at (x, y), from -1 to 1, right and up. */
+  point(x: number, y: number): Point | null {
+    return pickedPoint(this, x, y);
+  }
+}

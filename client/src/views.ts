@@ -1,0 +1,91 @@
+// One view of a scene, or two beside each other that move together.
+
+import { dom } from "./dom.ts";
+import type { Header, NamedPart } from "./protocol.ts";
+import { Viewer, type Options } from "./viewer.ts";
+
+/** A scene that is there as a whole. */
+export interface SceneData {
+  header: Header;
+  parts: NamedPart[];
+}
+
+/** Viewers in an element; `own` gives what each has for itself, and the first has the bar. */
+export function viewersIn(
+  element: HTMLElement,
+  count: number,
+  options: Options,
+  own: (n: number) => Options = () => ({}),
+): Viewer[] {
+  if (count < 2) return [new Viewer(element, { ...options, ...own(0) })];
+  const pair = dom("div", { class: "flowtex-pair" });
+  pair.style.cssText = "display: flex; gap: 2px; width: 100%; height: 100%";
+  element.append(pair);
+  const viewers: Viewer[] = [];
+  for (let n = 0; n < count; n += 1) {
+    const cell = dom("div");
+    cell.style.cssText = "flex: 1 1 0; min-width: 0; height: 100%";
+    pair.append(cell);
+    const others = () => viewers.filter((_, m) => m !== n);
+    const follower = n ? { controls: false, follows: viewers[0] } : {};
+    viewers.push(new Viewer(cell, { ...options, ...own(n), ...linked(options, others), ...follower }));
+  }
+  for (const viewer of viewers) viewer.together = viewers;
+  return viewers;
+}
+
+/** Callbacks that hand on to the other views what is told to the host. */
+function linked(options: Options, others: () => Viewer[]): Options {
+  return {
+    onCamera: (camera) => {
+      for (const other of others()) other.setCamera(camera);
+      options.onCamera?.(camera);
+    },
+    onTime: (time) => {
+      for (const other of others()) other.setTime(time);
+      options.onTime?.(time);
+    },
+    onClock: (clock) => {
+      for (const other of others()) other.setClock(clock);
+      options.onClock?.(clock);
+    },
+    onSetting: (name, value) => {
+      for (const other of others()) other.followSetting(name, value);
+      options.onSetting?.(name, value);
+    },
+  };
+}
+
+/** Show scenes that are there as a whole, beside each other; gives the first view. */
+export function mountPage(
+  element: HTMLElement,
+  scenes: SceneData[],
+  options: Options = {},
+): Viewer {
+  const viewers = viewersIn(element, scenes.length, options);
+  scenes.forEach(({ header }, n) => viewers[n].setHeader(header));
+  scenes.forEach(({ parts }, n) => parts.forEach((part) => viewers[n].setPart(part)));
+  return viewers[0];
+}
+
+/** Pictures beside each other as PNG. */
+export function pngOf(viewers: Viewer[]): Promise<Blob> {
+  const [{ canvas: first }] = viewers;
+  let canvas = first;
+  if (viewers.length > 1) {
+    canvas = dom("canvas");
+    canvas.width = viewers.reduce((sum, viewer) => sum + viewer.canvas.width, 0);
+    canvas.height = first.height;
+    let left = 0;
+    for (const viewer of viewers) {
+      canvas.getContext("2d")?.drawImage(viewer.canvas, left, 0);
+      left += viewer.canvas.width;
+    }
+  }
+  return new Promise((resolve, reject) => {
+    canvas.toBlob((blob) => {
+      if (blob) resolve(blob);
+      else reject(new Error("there is no picture yet"));
+    }, "image/png");
+  });
+}

@@ -1,0 +1,261 @@
+// The notebook widget: what anywidget calls. flowtex/widget is the other side; traits hold the state of
+// the view, messages carry arrays.
+
+import type { CameraState } from "./camera.ts";
+import { sharedGraphics } from "./context.ts";
+import { throttled } from "./lifetime.ts";
+import { decoded, type Header, type NamedPart, type PartInfo, type Value } from "./protocol.ts";
+import type { Viewer } from "./viewer.ts";
+import { pngOf, viewersIn } from "./views.ts";
+
+/** Milliseconds between two messages about the camera, and about the time. */
+const CAMERA_MS = 100;
+const TIME_MS = 250;
+/** Traits with the headers of the views. */
+const HEADERS = ["_header", "_header_beside"];
+/** Height of the picture where the widget has none, in pixels. */
+const HEIGHT_PX = 480;
+
+type Handler = (...values: never[]) => void;
+
+/** A widget's model, as anywidget has it. */
+export interface Model {
+  get(name: string): unknown;
+  set(name: string, value: unknown): void;
+  save_changes(): void;
+  on(event: string, call: Handler): void;
+  off(event: string, call: Handler): void;
+  send(content: unknown, callbacks?: unknown, buffers?: ArrayBuffer[]): void;
+}
+
+/** A message of the kernel: `parts` come with it, an `offer` names those that may be there already. */
+interface Message {
+  kind: "parts" | "offer" | "error";
+  view?: number;
+  generation?: number;
+  parts?: PartInfo[];
+  text?: string;
+}
+
+/**
+ * The parts of a message, which the page holds for as long as nobody has taken them; what was only
+ * offered, and is not there, is named in `lacking`.
+ */
+interface Delivery {
+  view: number;
+  generation: number;
+  parts: NamedPart[];
+  lacking: string[];
+}
+
+function opened(message: Message, buffers: ArrayBufferView[]): Delivery {
+  const graphics = sharedGraphics();
+  const { view = 0, generation = 0, parts: infos = [] } = message;
+  const delivery: Delivery = { view, generation, parts: [], lacking: [] };
+  infos.forEach((info, n) => {
+    const stock = graphics.stock.get(info.digest)?.part;
+    if (!stock && message.kind === "offer") {
+      delivery.lacking.push(info.name);
+      return;
+    }
+    const part = graphics.hold(stock ?? decoded(info, buffers[n]));
+    delivery.parts.push({ ...part, name: info.name });
+  });
+  return delivery;
+}
+
+function discard(deliveries: Delivery[]): void {
+  for (const { parts } of deliveries) for (const part of parts) sharedGraphics().release(part);
+}
+
+const hasParts = (message: Message | null) =>
+  message?.kind === "parts" || message?.kind === "offer";
+
+/** Deliveries that came before there was a view, by the widget's key. */
+const mailbox = new Map<unknown, Delivery[]>();
+
+/**
+ * What anywidget calls for each widget: arrays come as soon as the kernel has them, while the cell
+ * that shows the widget may still be running.
+ */
+export function initialize({ model }: { model: Model }): () => void {
+  const key = model.get("_key");
+  mailbox.set(key, []);
+  const receive = (message: Message, buffers: ArrayBufferView[]) => {
+    if (hasParts(message)) mailbox.get(key)?.push(opened(message, buffers));
+  };
+  model.on("msg:custom", receive);
+  return () => {
+    model.off("msg:custom", receive);
+    discard(mailbox.get(key) ?? []);
+    mailbox.delete(key);
+  };
+}
+
+/** What anywidget calls for each view of a widget. */
+export function render({ model, el }: { model: Model; el: HTMLElement }): () => void {
+  const view = new WidgetView(model, el);
+  return () => view.dispose();
+}
+
+/** A camera, or null where a host has none yet. */
+function cameraOf(state: unknown): CameraState | null {
+  const camera = state as CameraState | null | undefined;
+  return camera && Array.isArray(camera.position) ? camera : null;
+}
+
+class WidgetView {
+  private readonly model: Model;
+  private readonly viewers: Viewer[];
+  /** Values on their way to the kernel, which sends them back. */
+  private readonly sent = new Map<string, string>();
+  private readonly handlers: [string, Handler][] = [];
+  private early: Delivery[];
+  private hasSentFrame = false;
+
+  constructor(model: Model, element: HTMLElement) {
+    this.model = model;
+    const beside = model.get("_header_beside") as Header | undefined;
+    this.viewers = this.makeViewers(element, beside?.format ? 2 : 1);
+    // The first view takes what has come; further ones ask.
+    const key = model.get("_key");
+    this.early = mailbox.get(key) ?? [];
+    mailbox.delete(key);
+    this.connect();
+    this.resize();
+    this.viewers.forEach((_, n) => this.takeHeader(n));
+    if (model.get("playing")) this.first.play();
+    // What came before the client was loaded is lost.
+    const whole = this.viewers.every(({ scene, lacking }) => scene && !lacking.length);
+    if (!whole) model.send({ kind: "ready" });
+  }
+
+  private get first(): Viewer {
+    return this.viewers[0];
+  }
+
+  private makeViewers(element: HTMLElement, count: number): Viewer[] {
+    const { model } = this;
+    const later = (call: () => void, delay: number) => this.first.lifetime.later(call, delay);
+    const options = {
+      rebuild: true,
+      guarded: true,
+      controls: (model.get("bar") as boolean | undefined) ?? true,
+      onCamera: throttled<CameraState>(later, CAMERA_MS, (camera) => this.send("camera", camera)),
+      onTime: throttled<number>(later, TIME_MS, (time) => this.send("time", time)),
+      onClock: throttled<number>(later, TIME_MS, (clock) => this.send("clock", clock)),
+      onPlaying: (playing: boolean) => this.send("playing", playing),
+      onPoint: (point: unknown) => this.send("point", point),
+      onSetting: (name: string, value: Value) => this.send(name, value),
+      onControls: (shown: boolean) => this.send("bar", shown),
+    };
+    return viewersIn(element, count, options, (n) => ({
+      onNeed: (step) => model.send({ kind: "need", step, view: n }),
+      onFrame: () => void this.sendFrame(),
+    }));
+  }
+
+  /** Set a trait. */
+  private send(name: string, value: unknown): void {
+    this.sent.set(name, JSON.stringify(value));
+    this.model.set(name, value);
+    this.model.save_changes();
+  }
+
+  /** Send the first full picture, once. */
+  private async sendFrame(): Promise<void> {
+    if (this.hasSentFrame || !this.viewers.every(({ sharp }) => sharp)) return;
+    this.hasSentFrame = true;
+    const png = await (await pngOf(this.viewers)).arrayBuffer();
+    if (!this.first.lifetime.isOver) this.model.send({ kind: "frame" }, undefined, [png]);
+  }
+
+  private listen(event: string, call: Handler): void {
+    if (this.handlers.some(([other]) => other === event)) return;
+    this.handlers.push([event, call]);
+    this.model.on(event, call);
+  }
+
+  /** Follow a trait that the view sets as well. */
+  private follow(name: string, take: (value: unknown) => void): void {
+    this.listen(`change:${name}`, () => {
+      const value = this.model.get(name);
+      // What comes back from the kernel is what was sent, and may be late.
+      if (this.sent.get(name) !== JSON.stringify(value)) take(value);
+      this.sent.delete(name);
+    });
+  }
+
+  private connect(): void {
+    const { viewers, first } = this;
+    this.listen("msg:custom", (message: Message, buffers: ArrayBufferView[]) => {
+      if (hasParts(message)) this.take(opened(message, buffers));
+      if (message?.kind === "error") {
+        first.panel.fail("The kernel could not go on.", message.text ?? "");
+      }
+    });
+    viewers.forEach((_, n) => this.listen(`change:${HEADERS[n]}`, () => this.takeHeader(n)));
+    this.listen("change:size", () => this.resize());
+    this.follow("camera", (value) => {
+      const camera = cameraOf(value);
+      if (camera) viewers.forEach((viewer) => viewer.setCamera(camera));
+    });
+    this.follow("time", (time) => viewers.forEach((viewer) => viewer.setTime(Number(time))));
+    this.follow("clock", (clock) => viewers.forEach((viewer) => viewer.setClock(Number(clock))));
+    this.follow("playing", (playing) => (playing ? first.play() : first.pause()));
+    this.follow("bar", (shown) => first.panel.toggle(Boolean(shown)));
+  }
+
+  private resize(): void {
+    const [width, height] = (this.model.get("size") as [number, number] | undefined) ?? [0, 0];
+    const { root } = this.first;
+    const frame = root.closest<HTMLElement>(".flowtex-pair") ?? root;
+    frame.style.width = width ? `${width}px` : "100%";
+    frame.style.height = `${height || HEIGHT_PX}px`;
+  }
+
+  private takeHeader(n: number): void {
+    const { model } = this;
+    const header = model.get(HEADERS[n]) as Header | undefined;
+    if (!header?.format) return;
+    const rows = header.table ?? [];
+    const values = rows.map((row) => [row.name, model.get(row.name) ?? row.default]);
+    this.viewers[n].setHeader({
+      ...header,
+      settings: Object.fromEntries(values),
+      camera: cameraOf(model.get("camera")),
+      time: (model.get("time") as number | undefined) ?? 0,
+      clock: (model.get("clock") as number | undefined) ?? 0,
+    });
+    const early = this.early;
+    this.early = [];
+    for (const delivery of early) this.take(delivery);
+    for (const { name } of rows) {
+      this.follow(name, (value) => {
+        for (const viewer of this.viewers) viewer.followSetting(name, value as Value);
+      });
+    }
+  }
+
+  private take(delivery: Delivery): void {
+    const viewer = this.viewers[delivery.view];
+    if (!viewer) return;
+    const generation = viewer.header ? (viewer.header.generation ?? 0) : -1;
+    if (delivery.generation > generation) {
+      this.early.push(delivery);
+      return;
+    }
+    // Slices that the kernel has made anew meanwhile are on their way.
+    const isOld = (name: string) => delivery.generation !== generation && name.includes("/");
+    for (const part of delivery.parts) if (!isOld(part.name)) viewer.setPart(part);
+    const names = delivery.lacking.filter((name) => !isOld(name));
+    discard([delivery]);
+    if (names.length) this.model.send({ kind: "want", names, view: delivery.view });
+  }
+
+  dispose(): void {
+    for (const [event, call] of this.handlers) this.model.off(event, call);
+    discard(this.early);
+    for (const viewer of this.viewers) viewer.dispose();
+  }
+}

@@ -1,0 +1,136 @@
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { test } from "node:test";
+import {
+  atPixel,
+  Camera,
+  fitted,
+  isSamePlace,
+  projection,
+  widened,
+  type CameraLimits,
+  type CameraState,
+} from "../src/camera.ts";
+import type { Geometry } from "../src/protocol.ts";
+import { add, scale, subtract, toFrame, type Vector } from "../src/vectors.ts";
+import { assertClose } from "./close.ts";
+
+interface Case {
+  geometry: Geometry;
+  limits: CameraLimits;
+  nodes: number[];
+  aspect: number;
+  fit: CameraState;
+  moves: { name: "pan" | "rotate" | "zoom"; values: number[] }[];
+  states: CameraState[];
+  points: Vector[];
+  places: [number, number][];
+  ray: [Vector, Vector];
+}
+
+// What Python computes: tests/rendering/test_client_numbers.py.
+const file = new URL("camera.json", import.meta.url);
+const cases: Record<string, Case> = JSON.parse(readFileSync(file, "utf8"));
+
+function cameraOf({ fit, limits, geometry, aspect }: Case): Camera {
+  return new Camera(fit, limits, geometry.planar, aspect);
+}
+
+/** Place of a point in the view. */
+function placeOf(given: Case, camera: Camera, point: Vector, anchor: Vector): [number, number] {
+  const { geometry } = given;
+  const m = projection(geometry, camera, anchor);
+  const p = subtract(toFrame(geometry.frame, subtract(point, geometry.center)), anchor);
+  const row = (k: number) => m[k] * p[0] + m[4 + k] * p[1] + m[8 + k] * p[2] + m[12 + k];
+  return [row(0) / row(3), row(1) / row(3)];
+}
+
+for (const [name, given] of Object.entries(cases)) {
+  test(`moves of the camera are those of Python: ${name}`, () => {
+    const camera = cameraOf(given);
+    given.moves.forEach(({ name: move, values }, n) => {
+      if (move === "zoom") camera.zoomBy(values[0], values[1], values[2]);
+      else camera[move](values[0], values[1]);
+      const { parallel_scale: half, ...state } = given.states[n];
+      const { parallel_scale: ours, ...found } = camera.state;
+      if (state.parallel) assertClose(ours, half);
+      assertClose(found, state, 1e-8, `after move ${n}`);
+    });
+  });
+
+  test(`the camera that shows all is that of Python: ${name}`, () => {
+    const found = fitted(given.geometry, given.limits, given.nodes, given.aspect);
+    // Without perspective any distance will do, and with it any scale.
+    const { parallel_scale: ours, ...state } = found;
+    const { parallel_scale: theirs, ...expected } = given.fit;
+    assertClose(state, expected, 1e-6);
+    if (state.parallel) assertClose(ours, theirs, 1e-6);
+  });
+
+  test(`points are seen where Python sees them, from any anchor: ${name}`, () => {
+    const camera = cameraOf(given);
+    for (const anchor of [[0, 0, 0], [0.3, -0.2, 0.1]] as Vector[]) {
+      const places = given.points.map((point) => placeOf(given, camera, point, anchor));
+      assertClose(places, given.places);
+    }
+    const ray = camera.ray(0.4, -0.3);
+    assertClose(ray, given.ray);
+    assertClose(placeOf(given, camera, add(ray[0], scale(ray[1], 1.5)), [0, 0, 0]), [0.4, -0.3]);
+  });
+
+  test(`the point under the pointer stays there in a zoom: ${name}`, () => {
+    const camera = cameraOf(given);
+    const point = given.points[1];
+    camera.pick = () => point;
+    const [x, y] = placeOf(given, camera, point, [0, 0, 0]);
+    camera.zoomBy(5, x, y);
+    assertClose(placeOf(given, camera, point, [0, 0, 0]), [x, y]);
+    assertClose(camera.zoom > 3, true);
+  });
+
+  test(`zoom ends where the header says: ${name}`, () => {
+    const camera = cameraOf(given);
+    camera.zoomBy(1e9);
+    if (given.geometry.planar) assertClose(camera.zoom, given.limits.deepest_zoom);
+    else assertClose(camera.distance, new Camera(given.fit, given.limits, false).distance / given.limits.closest);
+    const far = cameraOf({ ...given, limits: { ...given.limits, farthest_zoom: 0.5 } });
+    far.zoomBy(1e-9);
+    assertClose(far.zoom, 0.5);
+    far.zoomBy(NaN);
+    far.zoomBy(-1);
+    assertClose(far.zoom, 0.5);
+  });
+}
+
+test("one pixel of the view can be all that is drawn", () => {
+  const given = cases.flat;
+  const m = projection(given.geometry, cameraOf(given), [0, 0, 0]);
+  const [x, y] = [0.25, -0.5];
+  const pixel = atPixel(m, [x, y], [300, 200]);
+  // What was at (x, y) is in the middle now, and one pixel away is at the border.
+  const at = (k: number, p: Vector) => pixel[k] * p[0] + pixel[4 + k] * p[1] + pixel[12 + k];
+  const p: Vector = [(x - m[12]) / m[0], (y - m[13]) / m[5], 0];
+  assertClose([at(0, p), at(1, p)], [0, 0]);
+  assertClose(at(0, [p[0] + 1 / 300 / m[0], p[1], 0]), 1);
+});
+
+test("a first camera is widened for narrower views, and any other left alone", () => {
+  for (const given of Object.values(cases)) {
+    const { geometry, limits, nodes } = given;
+    const first = fitted(geometry, limits, nodes, 1.5);
+    const narrow = widened(geometry, limits, first, nodes, 0.5);
+    const [before, after] = [first, narrow].map((state) => new Camera(state, limits, geometry.planar).height);
+    assert.ok(after > 1.2 * before);
+    assertClose(widened(geometry, limits, first, nodes, 1.5), first);
+    const aside = { ...first, focal_point: add(first.focal_point, [geometry.extent, 0, 0]) };
+    assertClose(widened(geometry, limits, aside, nodes, 0.5), aside);
+  }
+});
+
+test("a coarse form lies in the place of the whole, another surface does not", () => {
+  const { geometry } = cases.flat;
+  const center = add(geometry.center, [0.01 * geometry.extent, 0, 0]);
+  assert.ok(isSamePlace(geometry, { ...geometry, center, extent: 1.1 * geometry.extent }));
+  assert.ok(!isSamePlace(geometry, { ...geometry, extent: 2 * geometry.extent }));
+  assert.ok(!isSamePlace(geometry, cases.curved.geometry));
+});

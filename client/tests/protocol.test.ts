@@ -1,0 +1,67 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { gzipSync } from "node:zlib";
+import { decoded, isSignFree, partOfText, partsOfFile, stepOf } from "../src/protocol.ts";
+
+const INFO = { name: "position", dtype: "float32", shape: [1, 2], digest: "d" };
+
+test("bytes that begin anywhere become a part in memory of its own", () => {
+  const numbers = new Float32Array([1.5, -2]);
+  const shifted = new Uint8Array(11);
+  shifted.set(new Uint8Array(numbers.buffer), 3);
+  const part = decoded(INFO, new DataView(shifted.buffer, 3));
+  assert.deepEqual([...part.data], [1.5, -2]);
+  assert.deepEqual([part.name, part.shape, part.digest], ["position", [1, 2], "d"]);
+  shifted.fill(0);
+  assert.deepEqual([...part.data], [1.5, -2]);
+});
+
+test("half precision stays bits", () => {
+  const part = decoded({ ...INFO, dtype: "float16" }, new Uint16Array([0x3c00, 0xc000]).buffer);
+  assert.ok(part.data instanceof Uint16Array);
+});
+
+test("an unknown type is told with those that are known", () => {
+  assert.throws(() => decoded({ ...INFO, dtype: "complex64" }, new ArrayBuffer(8)), /complex64.*float32/);
+});
+
+test("a file has several parts", () => {
+  const infos = [
+    { ...INFO, bytes: 8 },
+    { name: "cells", dtype: "uint8", shape: [3], digest: "e", bytes: 3 },
+  ];
+  const text = new TextEncoder().encode(JSON.stringify(infos));
+  const file = new Uint8Array(4 + text.length + 11);
+  new DataView(file.buffer).setUint32(0, text.length, true);
+  file.set(text, 4);
+  file.set(new Uint8Array(new Float32Array([7, 8]).buffer), 4 + text.length);
+  file.set([1, 0, 1], 12 + text.length);
+  const parts = partsOfFile(file.buffer);
+  assert.deepEqual(
+    parts.map(({ name, data }) => [name, [...data]]),
+    [
+      ["position", [7, 8]],
+      ["cells", [1, 0, 1]],
+    ],
+  );
+});
+
+test("text has the bytes of one significance side by side", async () => {
+  const bytes = new Uint8Array(new Float32Array([1.5, -2]).buffer);
+  const planes = new Uint8Array(8);
+  for (let k = 0; k < 4; k += 1) for (let n = 0; n < 2; n += 1) planes[2 * k + n] = bytes[4 * n + k];
+  const part = await partOfText(INFO, gzipSync(planes).toString("base64"));
+  assert.deepEqual([...part.data], [1.5, -2]);
+});
+
+test("an array without numbers is a part as well", async () => {
+  const part = await partOfText({ ...INFO, shape: [0, 3] }, gzipSync("").toString("base64"));
+  assert.equal(part.data.length, 0);
+});
+
+test("names tell the step, the variant tells the sign", () => {
+  assert.equal(stepOf("slices/12"), 12);
+  assert.ok(Number.isNaN(stepOf("position")));
+  assert.ok(isSignFree({ variant: ["FLOWTEX_SIGNFREE"] }));
+  assert.ok(!isSignFree({ variant: ["FLOWTEX_PLANAR"] }));
+});

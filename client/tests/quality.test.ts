@@ -1,0 +1,57 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { draftUniforms, learnedPrice, motionFactor, quality, rowsIn } from "../src/quality.ts";
+
+const ask = (price: number, pixels: number) => quality(price, 2, pixels, 49, 55);
+
+test("a fast machine draws everything", () => {
+  assert.deepEqual(ask(1e-7, 2e6), { scale: 1, samples: 49 });
+});
+
+test("a slow machine gets fewer and larger pixels", () => {
+  const { scale, samples } = ask(3e-5, 1e6);
+  assert.equal(samples, 9);
+  assert.ok(scale >= 0.2 && scale < 0.5);
+  assert.ok(3e-5 * 1e6 * scale ** 2 * (9 + 8) < 60);
+  assert.equal(ask(1, 1e6).scale, 0.2);
+});
+
+test("a machine between them gets fewer samples of all pixels", () => {
+  const { scale, samples } = ask(2e-6, 1e6);
+  assert.equal(scale, 1);
+  assert.ok(samples > 9 && samples < 49);
+});
+
+test("few samples are never made more", () => {
+  assert.equal(quality(3e-5, 2, 1e6, 5, 55).samples, 5);
+});
+
+test("strips have as many rows as there is time for, and a few at least", () => {
+  const rows = rowsIn(40, 1e-5, 4, 1000, 49);
+  assert.ok(rows * 1000 * (49 + 8) * 1e-5 <= 36);
+  assert.equal(rowsIn(40, 1, 4, 1000, 49), 4);
+});
+
+test("slower is believed at once, faster by and by", () => {
+  const spent = (price: number) => 4 + price * 1e6 * (49 + 8);
+  const slower = learnedPrice(1e-6, spent(1e-5), 4, 1e6, 49, 1);
+  const faster = learnedPrice(1e-5, spent(1e-6), 4, 1e6, 49, 1);
+  assert.ok(Math.abs(slower - 7.3e-6) < 1e-9);
+  assert.ok(Math.abs(faster - 7.3e-6) < 1e-9);
+  assert.ok(Math.abs(learnedPrice(1e-5, spent(1e-5), 4, 1e6, 49, 1) - 1e-5) < 1e-12);
+});
+
+test("moving grains take twice the samples", () => {
+  assert.equal(motionFactor(49), (98 + 8) / (49 + 8));
+});
+
+test("streaks of a draft keep their length, and its grains can be seen", () => {
+  const settings = { grain: 1.5, spacing: 0.7, samples: 49 };
+  const draft = draftUniforms(settings, 9, 0.2);
+  assert.equal(draft.u_grain, 1);
+  // In pixels of the draft: five of the page's pixels each.
+  const length = 9 * Number(draft.u_spacing) * Number(draft.u_grain);
+  assert.ok(Math.abs(length / 0.2 - 49 * 0.7 * 1.5) < 1e-9);
+  // Samples that would be too far apart leave gaps.
+  assert.equal(draftUniforms(settings, 9, 1).u_spacing, 1.4);
+});

@@ -1,0 +1,250 @@
+"""How the flow is drawn: settings, colours, what is behind, and a second pane."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from flowtex.app.controllers.context import Context, Controller
+from flowtex.app.server.validation import decode_picture, name_among, number
+from flowtex.app.streaming.viewport import BACKGROUNDS as THEMES
+from flowtex.errors import FieldError
+from flowtex.settings import TABLE, SettingsError
+
+__all__ = ["BACKGROUNDS", "CMAPS", "COMPARISONS", "PLAIN", "Appearance"]
+
+#: The choice of no colours.
+PLAIN = "none"
+#: Colour maps to choose from: even steps of lightness first, those that diverge after them.
+CMAPS = (
+    "viridis",
+    "cividis",
+    "magma",
+    "inferno",
+    "plasma",
+    "gray",
+    "Blues_r",
+    "YlGnBu_r",
+    "turbo",
+    "coolwarm",
+    "RdBu_r",
+    "twilight",
+)
+#: What lies behind the surface.
+BACKGROUNDS = ("theme", "black", "white", "gray")
+#: What a second pane shows, by what it is called.
+COMPARISONS: dict[str, dict[str, Any]] = {
+    "nothing": {},
+    "level of detail off": {"lod": False},
+    "the paper's noise": {"noise": "texture"},
+    "the paper's kernel": {"kernel": "box", "two_sided": False, "samples": 12},
+    "grain fixed on the surface": {"fixed_grain": True},
+    "10 samples": {"samples": 10},
+    "levels in colour": {"show_level": True},
+}
+#: Greatest value at an end of the colour map: the distance of two is a number, too.
+GREATEST_VALUE = 1e300
+
+
+class Appearance(Controller):
+    """How the flow is drawn.
+
+    Attributes
+    ----------
+    theme, background, compared
+        What was chosen last of what the page may choose: a page may send anything.
+    """
+
+    def __init__(self, context: Context) -> None:
+        super().__init__(context)
+        self.theme, self.background, self.compared = "dark", BACKGROUNDS[0], "nothing"
+        self.state.set(
+            theme=self.theme,
+            background=self.background,
+            compare=self.compared,
+            comparisons=list(COMPARISONS),
+            cmap=self._cmap(),
+            image_file=None,
+            set_noise_choices=self._noise_choices(),
+        )
+        self.show_field()
+        on = self.state.on
+        on(*(f"set_{name}" for name in TABLE))(self.take_settings)
+        on("colour", "cmap")(self.take_colour)
+        on("low", "high")(self.take_range)
+        on("theme", "background")(self.take_background)
+        on("compare")(self.take_comparison)
+        on("image_file")(self.take_image)
+        context.field_changed.connect(self.show_field)
+        context.client_started.connect(self.end_comparison)
+        self.take_background()
+
+    def show_field(self) -> None:
+        """Let the page show settings and colours of the flow that is shown."""
+        viewport = self.viewport
+        self.state.set(colours=[*viewport.colours, PLAIN], colour=viewport.colour or PLAIN)
+        self.show_settings()
+        self._show_range()
+
+    def take_settings(self) -> None:
+        """Set what the page asks for, and tell it what is not possible."""
+        settings = self.settings
+        for name, present in settings:
+            choice = self.state.get(f"set_{name}")
+            if choice == present:
+                continue
+            try:
+                settings.update(**{name: choice})
+            except (SettingsError, FieldError) as error:
+                self.context.complain(error)
+                self.state.set(**{f"set_{name}": present})
+                continue
+            # A whole number comes back from the page as it was sent, not as the type it has here.
+            self.state.set(**{f"set_{name}": getattr(settings, name)})
+
+    def take_setting(self, pair: Any) -> None:
+        """Set what the browser's client has set by itself."""
+        if isinstance(pair, list) and len(pair) == 2 and name_among(pair[0], TABLE):
+            self.state.set(**{f"set_{pair[0]}": pair[1]})
+            self.take_settings()
+
+    def show_settings(self) -> None:
+        """Let the page show the settings as they are."""
+        self.state.set(**{f"set_{name}": value for name, value in self.settings})
+
+    def take_colour(self) -> None:
+        """Colour by what the page asks for."""
+        choice, cmap = self.state.get("colour"), self.state.get("cmap")
+        valid = name_among(choice, (PLAIN, *self.viewport.colours))
+        if not valid or not name_among(cmap, (*CMAPS, self._cmap())):
+            self.state.set(colour=self.viewport.colour or PLAIN, cmap=self._cmap())
+            return
+        name = "" if choice == PLAIN else choice
+        if (name, cmap) != (self.viewport.colour, self._cmap()):
+            self.viewport.colour_by(name, cmap=None if cmap == self._cmap() else cmap)
+            self._show_range()
+            self.stream.changed()
+
+    def take_range(self) -> None:
+        """Let the colours go from and to what the page asks for."""
+        low, high = (
+            number(self.state.get(end), -GREATEST_VALUE, GREATEST_VALUE) for end in ("low", "high")
+        )
+        if (low, high) == self._span():
+            return
+        if low is None or high is None or not low < high:
+            span = f"{self.state.get('low')!r} to {self.state.get('high')!r}"
+            self.context.complain(f"the colours go from {span}; expected a lower number first")
+        if low is None or high is None or not low < high or not self.viewport.colour:
+            self._show_range()
+            return
+        self.viewport.colour_by(self.viewport.colour, clim=(low, high))
+        self._show_range()
+        self.stream.changed()
+
+    def forget_range(self) -> None:
+        """Let the colours go from the least to the greatest value again."""
+        self.viewport.forget_range()
+        self._show_range()
+        self.stream.changed()
+
+    def take_background(self) -> None:
+        """Take the colour behind the surface that the page asks for."""
+        theme, choice = self.state.get("theme"), self.state.get("background")
+        self.theme = theme if name_among(theme, THEMES) else self.theme
+        self.background = choice if name_among(choice, BACKGROUNDS) else self.background
+        self.state.set(theme=self.theme, background=self.background)
+        themed = self.background == BACKGROUNDS[0]
+        self.viewport.set_background(self.theme if themed else self.background)
+        self.stream.changed()
+
+    def take_comparison(self) -> None:
+        """Show a second pane, or one again."""
+        choice = self.state.get("compare")
+        if not name_among(choice, COMPARISONS):
+            self.state.set(compare=self.compared)
+        elif choice != self.compared:
+            self.compared = choice
+            if choice != "nothing":
+                self.context.comparison_started.emit()
+            self.area.compare(COMPARISONS[choice] or None)
+
+    def end_comparison(self) -> None:
+        """Show one pane again."""
+        self.state.set(compare="nothing")
+        self.take_comparison()
+
+    def take_image(self) -> None:
+        """Lay a picture of the person's own on the surface."""
+        upload = self.state.get("image_file")
+        if upload is None:
+            return
+        self.state.set(image_file=None)
+        upload = upload[0] if isinstance(upload, list) and upload else upload
+        if not upload:  # a choice that was taken back
+            return
+        try:
+            self.viewport.lay_image(decode_picture(upload))
+        except SettingsError as error:
+            self.context.complain(error)
+            return
+        self.settings.update(noise="image", strength=1.0)
+        self.state.set(set_noise_choices=self._noise_choices())
+        self.show_settings()
+
+    def describe(self) -> dict[str, Any]:
+        """Return settings, colours, background and comparison."""
+        return {
+            "settings": dict(self.settings),
+            "colour": self.viewport.colour or PLAIN,
+            "cmap": self._cmap(),
+            "clim": self.viewport.chosen_range,
+            "theme": self.theme,
+            "background": self.background,
+            "split": self.compared,
+        }
+
+    def restore(self, saved: Mapping[str, Any]) -> None:
+        """Take over saved settings, colours, background and comparison."""
+        settings = {k: v for k, v in saved.get("settings", {}).items() if v != "image"}
+        self.settings.update(**settings)
+        self.show_settings()
+        names = {"colour": "colour", "cmap": "cmap", "theme": "theme", "split": "compare"}
+        names["background"] = "background"
+        self.state.set(**{ours: saved[name] for name, ours in names.items() if name in saved})
+        self.take_colour()
+        if saved.get("clim"):
+            low, high = saved["clim"]
+            self.state.set(low=low, high=high)
+            self.take_range()
+        self.take_background()
+        self.take_comparison()
+
+    def _cmap(self) -> str:
+        """Name of the colour map; the first one for a map that has no name here."""
+        return self.viewport.cmap if isinstance(self.viewport.cmap, str) else CMAPS[0]
+
+    def _noise_choices(self) -> list[str]:
+        """Kinds of noise to choose from; an image only where there is one."""
+        has_image = self.viewport.handle.scene.image is not None
+        return [kind for kind in TABLE["noise"].choices if has_image or kind != "image"]
+
+    def _span(self) -> tuple[float, float]:
+        """Return the ends of the range as the page shows them, with four digits."""
+        low, high = self.viewport.colour_range
+        return float(f"{low:.4g}"), float(f"{high:.4g}")
+
+    def _show_range(self) -> None:
+        low, high = self._span()
+        self.state.set(bar=self._bar(), low=low, high=high)
+
+    def _bar(self) -> dict[str, Any]:
+        if not self.viewport.colour:
+            return {"name": "", "low": "", "high": "", "stops": []}
+        low, high = self.viewport.colour_range
+        return {
+            "name": self.viewport.colour,
+            "low": f"{low:.3g}",
+            "high": f"{high:.3g}",
+            "stops": self.viewport.colour_stops(),
+        }

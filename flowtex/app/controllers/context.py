@@ -1,0 +1,111 @@
+"""What the controllers of a page share: the view, the state, and the signals between them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from flowtex.app.controllers.library import Library
+from flowtex.app.server.files import Routes
+from flowtex.app.server.page import PageState, Signal
+from flowtex.app.server.validation import shortened
+from flowtex.app.streaming.area import FlowArea
+from flowtex.app.streaming.viewport import Viewport
+from flowtex.camera import Camera, CameraError
+from flowtex.field import FlowField
+from flowtex.settings import Settings
+
+__all__ = ["Context", "Controller"]
+
+
+class Context:
+    """What the controllers of a page share.
+
+    Attributes
+    ----------
+    state, routes, library
+        What the page knows, the files it may fetch, and the flows it may open.
+    area
+        The view, with its ``viewport``, ``stream`` and ``player``.
+    controllers
+        All of them, in the order in which they were made.
+    field_changed
+        Signal after another flow is shown.
+    frame_drawn
+        Signal with the stream's figures after each picture.
+    camera_changed
+        Signal after a move of the camera for which the browser draws, and no frame comes.
+    frame_drawn_in_browser
+        Signal with the milliseconds that the browser's last full picture took.
+    time_changed
+        Signal after a change of the time that is shown.
+    step_requested
+        Signal with 1 or -1, to go to the next step of the field or to the one before.
+    comparison_started, client_started
+        Signals when a second pane is shown, and when the browser's client, which draws one pane,
+        begins to draw.
+    """
+
+    def __init__(self, state: PageState, area: FlowArea, library: Library) -> None:
+        self.state, self.area, self.library = state, area, library
+        self.routes = Routes.of(state.server)
+        self.controllers: list[Controller] = []
+        self.field_changed = Signal()
+        self.frame_drawn = area.stream.frame_drawn
+        self.camera_changed = Signal()
+        self.frame_drawn_in_browser = Signal()
+        self.time_changed = area.player.time_changed
+        self.step_requested = Signal()
+        self.comparison_started, self.client_started = Signal(), Signal()
+
+    def complain(self, problem: object) -> None:
+        """Let the page say what is wrong."""
+        self.state.send(problem=shortened(str(problem)))
+
+    def show(self, field: FlowField, *, keep_view: bool = False, keep_range: bool = False) -> None:
+        """Show another flow; :meth:`Viewport.show` has the parameters."""
+        playing = self.area.player.playing
+        self.area.show(field, keep_view=keep_view, keep_range=keep_range)
+        self.field_changed.emit()
+        self.area.player.playing = playing
+
+    def take_camera(self, values: Any) -> bool:
+        """Look from a camera that somebody sent; tells whether it sees something."""
+        viewport = self.area.viewport
+        try:
+            camera = Camera.from_dict(values, viewport.camera)
+        except CameraError:
+            return False
+        near = camera.is_near(viewport.field.surface)
+        if near:
+            viewport.look(camera)
+        return near
+
+
+class Controller:
+    """Base of what acts on one group of controls: sets their state, and follows it."""
+
+    def __init__(self, context: Context) -> None:
+        self.context = context
+        self.state, self.area, self.stream = context.state, context.area, context.area.stream
+        context.controllers.append(self)
+
+    @property
+    def viewport(self) -> Viewport:
+        """What is drawn."""
+        return self.area.viewport
+
+    @property
+    def settings(self) -> Settings:
+        """Every setting, live."""
+        return self.area.settings
+
+    def describe(self) -> dict[str, Any]:
+        """Return a part of the page's state, named as in :mod:`.serialization`."""
+        return {}
+
+    def restore(self, saved: Mapping[str, Any]) -> None:
+        """Take over the part of a saved state that belongs to this controller."""
+
+    def close(self) -> None:
+        """End what goes on."""

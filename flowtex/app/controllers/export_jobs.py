@@ -1,0 +1,378 @@
+"""Pictures and movies of what a page shows, made beside it.
+
+A job draws a copy of the viewport a tile at a time, and lets the event loop go on between two
+tiles. Tracing and writing files is done in a thread::
+
+    job = PictureJob(viewport, path, (8000, 6000))
+    task = asyncio.create_task(job.run())  # job.progress, job.cancel()
+    await task  # the path, or Stopped
+
+After a job that was cancelled or that failed there is no file.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import IO, Any, TypeVar, cast
+
+import numpy as np
+
+from flowtex._util.array_types import Bytes
+from flowtex._util.progress import Stopped, stoppable
+from flowtex._util.whole_file import whole_file
+from flowtex.app.streaming.painter import LINE_GREY, Cost
+from flowtex.app.streaming.viewport import GAP_PX, Pane, Rect, Viewport
+from flowtex.field import FlowField
+from flowtex.offscreen.encoders import (
+    DEFAULT_QUALITY,
+    MovieError,
+    check_movie,
+    default_fps,
+    movie_writer,
+)
+from flowtex.offscreen.movie import FrameTimes, frame_times
+from flowtex.settings import Settings
+
+__all__ = ["MOST_PIXELS", "ExportError", "Job", "MovieJob", "PictureJob", "TiledPicture"]
+
+T = TypeVar("T")
+
+#: Pixels of a picture, and of a movie, and its longest side, at most.
+MOST_PIXELS, MOST_MOVIE_PIXELS, LONGEST_SIDE_PX = 100_000_000, 9_000_000, 30_000
+#: Pixels that may be drawn, along a side, for one of the result, and how fine a picture may be.
+MOST_SUPERSAMPLING, MOST_DENSITY = 4, 8.0
+#: Seconds between two checks whether the view has come to rest.
+BUSY_INTERVAL_S = 0.05
+#: Seconds that a tile may take, and its sides in pixels.
+TILE_S, SMALLEST_TILE_PX, LARGEST_TILE_PX = 0.05, 32, 512
+
+
+class ExportError(ValueError):
+    """A picture or a movie cannot be made so; the text says why and what to do."""
+
+
+class TiledPicture:
+    """Draws pictures of any size, a tile at a time through a small window.
+
+    The window is as large as a tile, however large the picture. What it shows of the view is given
+    in pixels of the window, with fractions, as though the whole picture had its height.
+    ``density`` and ``supersampling`` are those of a :class:`Job`.
+    """
+
+    def __init__(
+        self,
+        viewport: Viewport,
+        size: tuple[int, int],
+        *,
+        density: float = 1.0,
+        supersampling: int = 1,
+    ) -> None:
+        self.size, self._viewport, self._supersampling = size, viewport, supersampling
+        self._cost = Cost()
+        self._side = SMALLEST_TILE_PX
+        count = len(viewport.panes)
+        self._gap = 0 if count == 1 else max(round(GAP_PX * density), 1)
+        viewport.resize(count * LARGEST_TILE_PX + (count - 1) * GAP_PX, LARGEST_TILE_PX)
+        for pane in viewport.panes:
+            pane.handle.density = density * supersampling
+
+    def draw(self) -> Iterator[tuple[Bytes, float]]:
+        """Yield the picture so far, always the same array, and its share, after each tile."""
+        width, height = self.size
+        canvas = np.full((height, width, 3), LINE_GREY, np.uint8)
+        count = len(self._viewport.panes)
+        wide = (width - (count - 1) * self._gap) // count
+        done = 0
+        for number, pane in enumerate(self._viewport.panes):
+            first = number * (wide + self._gap)
+            here = wide if number < count - 1 else width - first
+            for rows, columns in self._tiles(here, height):
+                tile = self._tile(pane, (here, height), rows, columns)
+                canvas[rows, first + columns.start : first + columns.stop] = tile
+                done += tile.shape[0] * tile.shape[1]
+                yield canvas, done / (width * height)
+
+    def _tiles(self, width: int, height: int) -> Iterator[tuple[slice, slice]]:
+        """Rows of tiles that are as large as the time allows by then."""
+        top = 0
+        while top < height:
+            side = max(self._side // self._supersampling, 1)
+            bottom = min(top + side, height)
+            for left in range(0, width, side):
+                yield slice(top, bottom), slice(left, min(left + side, width))
+            top = bottom
+
+    def _tile(self, pane: Pane, whole: tuple[int, int], rows: slice, columns: slice) -> Bytes:
+        wide, high = columns.stop - columns.start, rows.stop - rows.start
+        shrink = LARGEST_TILE_PX / whole[1]
+        part = (
+            LARGEST_TILE_PX / 2 + (columns.start - whole[0] / 2) * shrink,
+            rows.start * shrink,
+            wide * shrink,
+            high * shrink,
+        )
+        started = time.perf_counter()
+        # Fractions are what a picture larger than its window needs.
+        pixels = pane.draw(
+            wide * self._supersampling, high * self._supersampling, cast("Rect", part)
+        )
+        samples = pane.handle.settings.samples
+        self._cost.learn(time.perf_counter() - started, pixels.shape[0] * pixels.shape[1], samples)
+        self._side = self._affordable(samples)
+        if self._supersampling == 1:
+            return pixels
+        from PIL import Image
+
+        return np.asarray(Image.fromarray(pixels).reduce(self._supersampling))
+
+    def _affordable(self, samples: int) -> int:
+        """Side of a tile, in pixels that are drawn, that takes no longer than it may."""
+        side = SMALLEST_TILE_PX
+        while side < LARGEST_TILE_PX and self._cost.seconds(4.0 * side * side, samples) < TILE_S:
+            side *= 2
+        return side
+
+
+class Job:
+    """Something that is drawn and writing while a page goes on.
+
+    Parameters
+    ----------
+    viewport
+        What is on view; nothing of it is changed.
+    path
+        File to write.
+    size
+        Width and height in pixels.
+    supersampling
+        Pixels that are drawn, along each side, for one of the result, 1 to 4.
+    density
+        Pixels of the result for one that the settings speak of: 2 has grains of twice as many
+        pixels, as fine screens and print want it.
+    busy
+        Tells whether the view needs the time more; nothing is drawn meanwhile.
+
+    Attributes
+    ----------
+    progress, done
+        How much is done, 0 to 1, and whether it has ended, in whatever way.
+
+    Raises
+    ------
+    ExportError, MovieError
+        When it cannot be made so.
+    """
+
+    def __init__(
+        self,
+        viewport: Viewport,
+        path: Path,
+        size: tuple[int, int],
+        *,
+        supersampling: int = 1,
+        density: float = 1.0,
+        busy: Callable[[], bool] = lambda: False,
+    ) -> None:
+        _check(size, supersampling, density)
+        self.path, self.progress, self.done = Path(path), 0.0, False
+        self._viewport, self._size, self._busy = viewport, size, busy
+        self._supersampling, self._density = supersampling, density
+        self._cancelled = False
+        self._pool = ThreadPoolExecutor(1, "flowtex-export")
+
+    def cancel(self) -> None:
+        """Make no more of it; :meth:`run` ends with ``Stopped`` and no file is left."""
+        self._cancelled = not self.done
+
+    @property
+    def cancelled(self) -> bool:
+        """Whether it was cancelled before it was done."""
+        return self._cancelled
+
+    def _unwanted(self) -> bool:
+        return self._cancelled or self.done
+
+    async def run(self) -> Path:
+        """Draw it, write it and return the file; ``Stopped`` when it was cancelled."""
+        viewport = self._viewport.copy()
+        try:
+            await self._make(viewport)
+        finally:
+            self.done = True
+            viewport.close()
+            self._pool.shutdown(wait=False)
+        self.progress = 1.0
+        return self.path
+
+    async def _make(self, viewport: Viewport) -> None:
+        raise NotImplementedError
+
+    def _tiled(self, viewport: Viewport) -> TiledPicture:
+        return TiledPicture(
+            viewport, self._size, density=self._density, supersampling=self._supersampling
+        )
+
+    async def _draw(self, tiled: TiledPicture, before: float, share: float) -> Bytes:
+        """Draw one picture, which is ``share`` of the whole work, after what was ``before``."""
+        picture: Bytes | None = None
+        for canvas, drawn in tiled.draw():
+            picture, self.progress = canvas, before + share * drawn
+            # Whatever waits for the event loop has its turn.
+            await asyncio.sleep(0)
+            while self._busy() and not self._cancelled:
+                await asyncio.sleep(BUSY_INTERVAL_S)
+            if self._cancelled:
+                raise Stopped
+        if picture is None:
+            msg = "there was nothing to draw; expected a size of at least one pixel"
+            raise ExportError(msg)
+        return picture
+
+    async def _in_thread(self, work: Callable[..., T], *arguments: Any) -> T:
+        """Do something in the job's thread, where tracing can be stopped."""
+
+        def stopping() -> T:
+            with stoppable(self._unwanted):
+                return work(*arguments)
+
+        return await asyncio.get_running_loop().run_in_executor(self._pool, stopping)
+
+
+class PictureJob(Job):
+    """A picture as PNG, of any size: :class:`Job` has the parameters."""
+
+    async def _make(self, viewport: Viewport) -> None:
+        await self._in_thread(viewport.trace)
+        picture = await self._draw(self._tiled(viewport), 0.0, 0.9)
+        await self._in_thread(self._write, picture)
+
+    def _write(self, picture: Bytes) -> None:
+        from PIL import Image
+
+        with whole_file(self.path) as part, part.open("wb") as file:
+            target = _StoppableFile(file, self._unwanted)
+            Image.fromarray(picture).save(target, "PNG")  # type: ignore[arg-type]
+
+
+class _StoppableFile:
+    """A file that takes no more once it is not wanted any more."""
+
+    def __init__(self, file: IO[bytes], unwanted: Callable[[], bool]) -> None:
+        self._file, self._unwanted = file, unwanted
+        self.flush = file.flush
+
+    def write(self, content: bytes) -> int:
+        if self._unwanted():
+            raise Stopped
+        return self._file.write(content)
+
+
+class MovieJob(Job):
+    """A movie: a seamless loop of a steady flow, or all times of one that varies.
+
+    Parameters
+    ----------
+    viewport, path, size
+        As for :class:`Job`; the suffix of the file is the format. An MP4 gets even sides.
+    seconds, fps, quality
+        As for :func:`flowtex.movie`.
+    **options
+        Further arguments of :class:`Job`.
+    """
+
+    def __init__(
+        self,
+        viewport: Viewport,
+        path: Path,
+        size: tuple[int, int],
+        *,
+        seconds: float | None = None,
+        fps: float | None = None,
+        quality: int = DEFAULT_QUALITY,
+        **options: Any,
+    ) -> None:
+        if Path(path).suffix.lower() == ".mp4":
+            size = (max(size[0] // 2 * 2, 2), max(size[1] // 2 * 2, 2))
+        super().__init__(viewport, path, size, **options)
+        if size[0] * size[1] > MOST_MOVIE_PIXELS:
+            label = f"the movie would be {size[0]} x {size[1]}"
+            msg = f"{label}; expected at most {MOST_MOVIE_PIXELS:,} pixels: choose a smaller size"
+            raise MovieError(msg)
+        fps = default_fps(path) if fps is None else fps
+        check_movie(path, size, fps, quality)
+        self._quality = quality
+        settings = _moving(viewport.handle.settings, viewport.field)
+        self._times = frame_times(viewport.field, settings, fps=fps, seconds=seconds)
+
+    @property
+    def frames(self) -> FrameTimes:
+        """What its frames show."""
+        return self._times
+
+    async def _make(self, viewport: Viewport) -> None:
+        if viewport.field.steady:
+            motion = _moving(viewport.handle.settings, viewport.field).motion
+            for pane in viewport.panes:
+                pane.handle.settings.update(motion=motion, period=self._times.seconds)
+        fps, count = self._times.fps, len(self._times)
+        opening = asyncio.ensure_future(
+            self._in_thread(movie_writer, self.path, self._size, fps, self._quality)
+        )
+        try:
+            writer = await asyncio.shield(opening)
+            tiled = self._tiled(viewport)
+            writing: asyncio.Future[None] | None = None
+            for number in range(count):
+                await self._show(viewport, number)
+                picture = await self._draw(tiled, 0.95 * number / count, 0.95 / count)
+                if writing is not None:
+                    await writing
+                # The next frame is drawn while this one is writing.
+                writing = asyncio.ensure_future(self._in_thread(writer.add, picture))
+                # Nobody waits for it where the drawing ends in an error.
+                writing.add_done_callback(lambda ended: ended.cancelled() or ended.exception())
+            if writing is not None:
+                await writing
+            await self._in_thread(writer.finish, self._unwanted)
+        finally:
+            # In the thread, after whatever it is busy with.
+            self.done = True
+            await asyncio.wait([opening])  # who cancels this may do so while it is being opened
+            if not opening.cancelled() and opening.exception() is None:
+                await asyncio.wrap_future(self._pool.submit(opening.result().abandon))
+
+    async def _show(self, viewport: Viewport, number: int) -> None:
+        if viewport.field.steady:
+            viewport.clock = self._times.clocks[number]
+            return
+        viewport.set_time(self._times.times[number])
+        await self._in_thread(viewport.trace)
+
+
+def _moving(settings: Settings, field: FlowField) -> Settings:
+    """Return settings with which a steady flow streams."""
+    moving = settings.copy()
+    if field.steady and moving.motion == "off":
+        moving.motion = "speed"
+    return moving
+
+
+def _check(size: tuple[int, int], supersampling: int, density: float) -> None:
+    width, height = size
+    label = f"the picture would be {width} x {height}"
+    msg = ""
+    if not (1 <= width <= LONGEST_SIDE_PX and 1 <= height <= LONGEST_SIDE_PX):
+        msg = f"{label}; expected 1 to {LONGEST_SIDE_PX:,} pixels along each side"
+    elif width * height > MOST_PIXELS:
+        msg = f"{label}; expected at most {MOST_PIXELS:,} pixels: choose a smaller size"
+    elif supersampling not in range(1, MOST_SUPERSAMPLING + 1):
+        msg = f"supersampling is {supersampling!r}; expected 1 to {MOST_SUPERSAMPLING}"
+    elif not 1 / MOST_DENSITY <= density <= MOST_DENSITY:
+        span = f"{1 / MOST_DENSITY:g} to {MOST_DENSITY:g}, 1 for a screen"
+        msg = f"density is {density!r}; expected {span}"
+    if msg:
+        raise ExportError(msg)

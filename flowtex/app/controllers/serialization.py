@@ -1,0 +1,310 @@
+"""The state of a page as text: as a link, and back, and as the lines of Python that draw it.
+
+What a page shows is a mapping with the names below, each of which may be missing::
+
+    file vectors plane block   which flow: names as a library has them, and a plane such as k=20
+    time clock                 the field's own time; seconds of the streaming
+    colour cmap clim           scalar, colour map, and the values at its ends
+    settings                   a mapping of settings by name
+    camera                     as :meth:`flowtex.camera.Camera.to_dict` has it
+    theme background split     as the page names them
+
+A link holds what differs from the defaults, as a query that people can read. Numbers come back
+exactly. A link may come from anybody: what is unknown or out of range is left out, and reported.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from typing import Any
+from urllib.parse import parse_qsl, quote, urlencode
+
+from flowtex.app.controllers.appearance import BACKGROUNDS, COMPARISONS, PLAIN
+from flowtex.app.streaming.viewport import BACKGROUNDS as THEMES
+from flowtex.camera import Camera, CameraError
+from flowtex.settings import TABLE, SettingsError
+
+__all__ = ["DEFAULTS", "from_link", "to_link", "to_python"]
+
+#: Values that a link leaves out.
+DEFAULTS: dict[str, Any] = {
+    "clock": 0.0,
+    "colour": "speed",
+    "cmap": "viridis",
+    "theme": "dark",
+    "background": BACKGROUNDS[0],
+    "split": "nothing",
+}
+#: Characters and values of a link, and characters of a name, at most.
+LINK_LENGTH, MOST_VALUES, NAME_LENGTH = 8_000, 100, 400
+#: What is the page's own and no part of its state.
+IGNORED = ("secret",)
+
+#: Numbers of a camera: three points, the parallel scale and the view angle.
+CAMERA_NUMBERS = 11
+#: Longest line of Python.
+LINE_LENGTH = 88
+#: Arguments of ``FlowField.from_file``.
+FILE_ARGUMENTS = ("vectors", "plane", "block")
+PLANE, CMAP = re.compile(r"[ijk]=\d{1,9}"), re.compile(r"[A-Za-z]\w{0,59}", re.ASCII)
+
+
+class _ValueError(ValueError):
+    """A value of a link is of no use; the text says what was expected."""
+
+
+def to_link(state: Mapping[str, Any]) -> str:
+    """Return a state as the text of a link.
+
+    Values that are ``None`` or defaults are left out. The text is a query such as
+    ``file=post.vtk&plane=k=20&lod=off``, for behind a ``?`` or a ``#``.
+    """
+    pairs = [
+        (name, _WRITE.get(name, str)(state[name]))
+        for name in _READ
+        if state.get(name) is not None and state[name] != DEFAULTS.get(name)
+    ]
+    for name, value in (state.get("settings") or {}).items():
+        if name not in TABLE:
+            msg = f"there is no setting {name!r} to put in a link; there are: {', '.join(TABLE)}"
+            raise SettingsError(msg)
+        # An image is a person's own; a link has no room for it.
+        if value not in (TABLE[name].default, "image"):
+            pairs.append((name, TABLE[name].format(value)))
+    return urlencode(pairs, safe=",:/=", quote_via=quote)
+
+
+def from_link(text: str, faults: list[str] | None = None) -> dict[str, Any]:
+    """Return the state that a link holds, or the part of it behind the ``?`` or the ``#``.
+
+    Every value is checked, but not whether there are files and arrays of these names. Defaults
+    are not filled in. ``faults`` takes a sentence for each part that is of no use and left out.
+    """
+    messages: list[str] = [] if faults is None else faults
+    state: dict[str, Any] = {}
+    for name, value in _pairs(text, messages):
+        try:
+            if name in _READ:
+                state[name] = _READ[name](value)
+            elif name in TABLE:
+                state.setdefault("settings", {})[name] = TABLE[name].parse(value)
+            elif name not in IGNORED:
+                messages.append(f"the link says {_quoted(name)}, which means nothing here")
+        except _ValueError as fault:
+            messages.append(f"the link's {name} is {_quoted(value)}; expected {fault}")
+        except SettingsError as fault:
+            messages.append(f"in the link {fault}")
+    return state
+
+
+def _pairs(text: str, faults: list[str]) -> list[tuple[str, str]]:
+    """Take a link apart."""
+    query = re.split(r"[?#]", text)[-1]
+    if len(query) > LINK_LENGTH:
+        faults.append(f"the link has {len(query):,} characters; expected {LINK_LENGTH:,} at most")
+        return []
+    try:
+        return parse_qsl(query, max_num_fields=MOST_VALUES)
+    except ValueError:
+        faults.append(f"the link has too many values; expected {MOST_VALUES} at most")
+        return []
+
+
+def _quoted(text: str) -> str:
+    return repr(text if len(text) <= 60 else f"{text[:57]}...")
+
+
+def _name(text: str) -> str:
+    if not text.isprintable() or len(text) > NAME_LENGTH:
+        msg = f"a name of at most {NAME_LENGTH} characters that can be printed"
+        raise _ValueError(msg)
+    return text
+
+
+def _matching(pattern: re.Pattern[str], expected: str) -> Callable[[str], str]:
+    def read(text: str) -> str:
+        if not pattern.fullmatch(text):
+            raise _ValueError(expected)
+        return text
+
+    return read
+
+
+def _one_of(*choices: str) -> Callable[[str], str]:
+    pattern = re.compile("|".join(map(re.escape, choices)))
+    return _matching(pattern, " or ".join(map(repr, choices)))
+
+
+def _number(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        msg = "a number"
+        raise _ValueError(msg)
+    return value
+
+
+def _numbers(text: str, count: int) -> list[float]:
+    words = text.split(",")
+    if len(words) != count:
+        msg = f"{count} numbers with commas between them"
+        raise _ValueError(msg)
+    return [_number(word) for word in words]
+
+
+def _span(text: str) -> tuple[float, float]:
+    low, high = _numbers(text, 2)
+    if not low < high:
+        msg = "a lower number and a higher one"
+        raise _ValueError(msg)
+    return low, high
+
+
+def _span_text(span: Any) -> str:
+    return ",".join(repr(float(end)) for end in span)
+
+
+def _camera(text: str) -> dict[str, Any]:
+    kind, _, rest = text.partition(",")
+    numbers = _numbers(rest, CAMERA_NUMBERS)
+    position, focal_point, up = (
+        (x, y, z) for x, y, z in zip(*[iter(numbers[:9])] * 3, strict=True)
+    )
+    with suppress(CameraError):
+        if kind in ("parallel", "perspective"):
+            return Camera(position, focal_point, up, kind == "parallel", *numbers[9:]).to_dict()
+    msg = "a camera that looks at something"
+    raise _ValueError(msg)
+
+
+def _camera_text(camera: Mapping[str, Any]) -> str:
+    points = [*camera["position"], *camera["focal_point"], *camera["up"]]
+    numbers = map(float, [*points, camera["parallel_scale"], camera["view_angle"]])
+    return ",".join(["parallel" if camera["parallel"] else "perspective", *map(repr, numbers)])
+
+
+#: How each name is read, in the order of a link, and how it is written.
+_READ: dict[str, Callable[[str], Any]] = {
+    "file": _name,
+    "block": _name,
+    "vectors": _name,
+    "plane": _matching(PLANE, "an axis and a number, such as k=20"),
+    "time": _number,
+    "clock": _number,
+    "colour": _name,
+    "cmap": _matching(CMAP, "the name of a colour map, such as viridis"),
+    "clim": _span,
+    "theme": _one_of("dark", "light"),
+    "background": _one_of(*BACKGROUNDS),
+    "split": _one_of(*COMPARISONS),
+    "camera": _camera,
+}
+_WRITE: dict[str, Callable[[Any], str]] = {
+    "time": lambda value: repr(float(value)),
+    "clock": lambda value: repr(float(value)),
+    "clim": _span_text,
+    "camera": _camera_text,
+}
+
+
+def to_python(
+    state: Mapping[str, Any],
+    *,
+    source: str | None = None,
+    size: tuple[int, int] = (1024, 768),
+    picture: str | None = None,
+) -> str:
+    """Return the lines of Python that draw a state again, where its file is at hand.
+
+    Parameters
+    ----------
+    state
+        What a page shows.
+    source
+        Expression that makes the field where it is not that of a file, such as
+        ``"flowtex.examples.cylinder_field()"``.
+    size
+        Width and height of the window in pixels.
+    picture
+        File to write a picture to; left out, a window is opened.
+    """
+    panes: list[Mapping[str, Any]] = [{}]
+    if changes := COMPARISONS.get(str(state.get("split"))):
+        panes.append(changes)
+    window = [f"window_size={list(size)!r}"]
+    window += ["off_screen=True"] if picture is not None else []
+    window += ["shape=(1, 2)", "border=False"] if len(panes) > 1 else []
+    lines = ["import pyvista as pv", "", "import flowtex", ""]
+    lines += [f"field = {source or _from_file(state)}", _call("pl = pv.Plotter", window)]
+    for column, different in enumerate(panes):
+        lines += [f"pl.subplot(0, {column})"] if len(panes) > 1 else []
+        lines += _add_lines(state, different)
+    lines += ["pl.link_views()", "pl.subplot(0, 0)"] if len(panes) > 1 else []
+    lines += [
+        f"pl.set_background({_literal(_background(state))})",
+        *_camera_lines(state.get("camera")),
+    ]
+    lines.append("pl.show()" if picture is None else f"pl.screenshot({_literal(picture)})")
+    return "\n".join(lines) + "\n"
+
+
+def _from_file(state: Mapping[str, Any]) -> str:
+    if not state.get("file"):
+        msg = "the state names no file; give the expression that makes its field as source"
+        raise ValueError(msg)
+    choices = [f"{name}={_literal(state[name])}" for name in FILE_ARGUMENTS if state.get(name)]
+    return _call("flowtex.FlowField.from_file", [_literal(state["file"]), *choices])
+
+
+def _literal(value: Any) -> str:
+    """Return a value as people write it: with double quotes."""
+    text = repr(value)
+    plain = isinstance(value, str) and text[0] == "'" and '"' not in text and "\\" not in text
+    return f'"{text[1:-1]}"' if plain else text
+
+
+def _call(function: str, arguments: list[str]) -> str:
+    """Return a call on one line, or with a line for each argument where it is long."""
+    line = f"{function}({', '.join(arguments)})"
+    if len(line) <= LINE_LENGTH:
+        return line
+    return "\n".join([f"{function}(", *(f"    {argument}," for argument in arguments), ")"])
+
+
+def _add_lines(state: Mapping[str, Any], different: Mapping[str, Any]) -> list[str]:
+    """Add the flow to a view, with the settings that are not as by default."""
+    colour = state.get("colour", DEFAULTS["colour"])
+    appearance = {"scalars": False if colour == PLAIN else colour}
+    if colour != PLAIN:
+        appearance |= {name: state[name] for name in ("cmap", "clim") if state.get(name)}
+    settings = {**(state.get("settings") or {}), **different}
+    if settings.get("noise") == "image":  # which is a person's own, and not in the state
+        del settings["noise"]
+    changed = {k: v for k, v in settings.items() if v != TABLE[k].default}
+    arguments = [f"{name}={_literal(value)}" for name, value in {**appearance, **changed}.items()]
+    lines = [_call("handle = pl.flowtex.add", ["field", *arguments])]
+    instants = [(name, state.get(name)) for name in ("time", "clock")]
+    changes = [(n, v) for n, v in instants if v is not None and v != DEFAULTS.get(n)]
+    return lines + [f"handle.{name} = {value!r}" for name, value in changes]
+
+
+def _background(state: Mapping[str, Any]) -> str:
+    background = str(state.get("background", DEFAULTS["background"]))
+    theme = str(state.get("theme", DEFAULTS["theme"]))
+    return THEMES[theme] if background == DEFAULTS["background"] else background
+
+
+def _camera_lines(camera: Mapping[str, Any] | None) -> list[str]:
+    if not camera:
+        return []
+    lines = [f"pl.camera.parallel_projection = {bool(camera['parallel'])!r}"]
+    for name in ("position", "focal_point", "up", "parallel_scale", "view_angle"):
+        value = camera[name]
+        plain = float(value) if isinstance(value, (int, float)) else tuple(map(float, value))
+        lines.append(f"pl.camera.{name} = {plain!r}")
+    return lines

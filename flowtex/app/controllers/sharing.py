@@ -1,0 +1,202 @@
+"""What leaves the page: pictures, movies, a link to the present state, and the lines of Python."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import shutil
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+from flowtex._util.progress import Stopped
+from flowtex.app.controllers.context import Context, Controller
+from flowtex.app.controllers.export_jobs import ExportError, Job, MovieJob, PictureJob
+from flowtex.app.controllers.serialization import from_link, to_link, to_python
+from flowtex.app.server.files import Downloads
+from flowtex.app.server.validation import number
+from flowtex.offscreen.encoders import MovieError
+
+__all__ = ["FORMATS", "Sharing"]
+
+#: What can be saved.
+FORMATS = ("PNG", "MP4", "GIF")
+#: Seconds between two reports of how far a job is.
+PROGRESS_INTERVAL_S = 0.15
+#: Characters of a link that are read.
+LINK_LENGTH = 10_000
+#: What numbers of the page are called when they are of no use.
+LABELS = {
+    "out_width": "the width",
+    "out_height": "the height",
+    "out_density": "the fineness",
+    "out_seconds": "the length in seconds",
+    "out_fps": "the pictures in a second",
+}
+
+_log = logging.getLogger(__name__)
+
+
+class Sharing(Controller):
+    """What leaves the page.
+
+    ``source`` returns the expression of Python that makes the field, if it is not that of a file;
+    ``restore_state`` is called with the state that a link holds.
+    """
+
+    def __init__(
+        self,
+        context: Context,
+        *,
+        source: Callable[[], str | None],
+        restore_state: Callable[[Mapping[str, Any]], None],
+    ) -> None:
+        super().__init__(context)
+        self.downloads = Downloads(context.routes)
+        self._source, self._restore_state = source, restore_state
+        self._job: Job | None = None
+        self._task: asyncio.Task[None] | None = None
+        self.state.set(
+            out_format=FORMATS[0],
+            out_width=1920,
+            out_height=1080,
+            out_density=1.0,
+            out_smooth=True,
+            out_seconds=4.0,
+            out_fps=30.0,
+            out_progress=None,
+            out_file=None,
+            link="",
+            python="",
+        )
+        context.field_changed.connect(self.cancel)
+
+    def start(self) -> None:
+        """Make what the page asks for."""
+        self.cancel()
+        try:
+            job = self._new_job()
+        except (ExportError, MovieError, ModuleNotFoundError, OSError) as error:
+            self.context.complain(error)
+            return
+        self._job = job
+        self.state.set(out_progress=0.0, out_file=None)
+        self._task = asyncio.create_task(self._run(job, self._task))
+
+    def cancel(self) -> None:
+        """Make no more of it."""
+        if self._job is not None:
+            self._job.cancel()
+        self._job = None
+        self.state.set(out_progress=None)
+
+    def _new_job(self) -> Job:
+        get = self.state.get
+        kind = get("out_format")
+        if kind not in FORMATS:
+            msg = f"the format is {kind!r}; expected {', '.join(FORMATS)}"
+            raise ExportError(msg)
+        path = self.downloads.reserve(f"{self.viewport.field.name or 'flow'}.{kind.lower()}")
+        try:
+            return self._job_of(kind, path)
+        except BaseException:
+            _remove_folder(path)
+            raise
+
+    def _job_of(self, kind: str, path: Path) -> Job:
+        size = (int(self._number("out_width")), int(self._number("out_height")))
+        options: dict[str, Any] = {
+            "supersampling": 2 if self.state.get("out_smooth") else 1,
+            "density": self._number("out_density"),
+            "busy": self._busy,
+        }
+        if kind == "PNG":
+            return PictureJob(self.viewport, path, size, **options)
+        seconds, fps = self._number("out_seconds"), self._number("out_fps")
+        return MovieJob(self.viewport, path, size, seconds=seconds, fps=fps, **options)
+
+    def _number(self, name: str) -> float:
+        value = self.state.get(name)
+        checked = number(value)
+        if checked is None:
+            msg = f"{LABELS[name]} is {value!r}; expected a number"
+            raise ExportError(msg)
+        return checked
+
+    def _busy(self) -> bool:
+        """Whether the view needs the time more."""
+        return self.stream.moving and not self.stream.paused
+
+    async def _run(self, job: Job, before: asyncio.Task[None] | None) -> None:
+        if before is not None:
+            # It was cancelled, and its window goes before there is another one.
+            await asyncio.wait([before])
+        if job.cancelled:
+            _remove_folder(job.path)
+            return
+        reporting = asyncio.create_task(self._report_progress(job))
+        path: Path | None = None
+        try:
+            path = await job.run()
+        except Stopped:
+            return
+        except Exception as error:
+            if not isinstance(error, (ExportError, MovieError, OSError)):
+                _log.exception("%s could not be made", job.path.name)
+            self.context.complain(
+                f"{job.path.name} could not be made: {str(error) or type(error).__name__}"
+            )
+            return
+        finally:
+            reporting.cancel()
+            if path is None:
+                _remove_folder(job.path)
+            if job is self._job:
+                self._job = None
+                self.state.send(out_progress=None)
+        self.state.send(out_file={"name": path.name, "url": self.downloads.add(path)})
+
+    async def _report_progress(self, job: Job) -> None:
+        """Tell the page how far the job is."""
+        while job is self._job:
+            self.state.send(out_progress=round(100 * job.progress, 1))
+            await asyncio.sleep(PROGRESS_INTERVAL_S)
+
+    def present_state(self) -> dict[str, Any]:
+        """Return the state of the page, named as in :mod:`.serialization`."""
+        state: dict[str, Any] = {}
+        for controller in self.context.controllers:
+            state |= controller.describe()
+        return state
+
+    def show_state(self) -> None:
+        """Let the page show the link and the lines of Python."""
+        state = self.present_state()
+        self.state.set(
+            link="#" + to_link(state),
+            python=to_python(state, source=self._source(), size=self.viewport.size),
+        )
+
+    def take_link(self, text: Any) -> None:
+        """Show the state that the page's address holds."""
+        faults: list[str] = []
+        state = from_link(str(text)[:LINK_LENGTH], faults)
+        if faults:
+            self.context.complain("; ".join(faults))
+        if state:
+            self._restore_state(state)
+
+    def close(self) -> None:
+        """End what goes on."""
+        if self._job is not None:
+            self._job.cancel()
+        if self._task is not None:
+            self._task.cancel()
+        self.downloads.close()
+
+
+def _remove_folder(path: Path) -> None:
+    """Remove the folder that was made for a file that is not there."""
+    with suppress(OSError):
+        shutil.rmtree(path.parent)

@@ -1,0 +1,226 @@
+"""Files that one session hands out over HTTP: downloads, and parts for the browser's client.
+
+A file's address is ``flowtex/<token>/<name>``, below the page. The token cannot be guessed and
+belongs to one session, so the address is all that is needed, and nobody else has it. What is
+handed out is looked up at each request. Downloads lie in a temporary folder that its owner alone
+can read; they are removed after a while, when they take too much room, and when the page closes.
+"""
+
+from __future__ import annotations
+
+import inspect
+import mimetypes
+import shutil
+import tempfile
+import time
+import weakref
+from collections.abc import Awaitable, Callable
+from functools import partial
+from pathlib import Path
+from typing import Any
+from urllib.parse import quote
+
+from aiohttp import web
+
+from flowtex.app.server.security import new_secret
+
+__all__ = ["Content", "Downloads", "Give", "Routes", "add_route"]
+
+#: Seconds that a download waits to be fetched, and bytes of all of them together, at most.
+LIFETIME_S, DOWNLOAD_BYTES = 1800.0, 2_000_000_000
+#: Characters of a download's name, at most.
+NAME_LENGTH = 120
+
+#: What a file is: its bytes, or where they lie; its media type; and the name that it is saved
+#: under, or ``None`` for what the page uses itself.
+Content = tuple[bytes | Path, str, str | None]
+Give = Callable[[], Content | Awaitable[Content]]
+
+#: Where trame keeps a session's routes: in what only the server's side sees.
+KEY = "flowtex_routes"
+
+
+class Routes:
+    """What one session hands out, below a ``token`` that cannot be guessed."""
+
+    def __init__(self) -> None:
+        self.token = new_secret()
+        self._content: dict[str, Give] = {}
+
+    @classmethod
+    def of(cls, server: Any) -> Routes:
+        """Return the routes of a trame server, made when they are first asked for.
+
+        They are served by :func:`flowtex.app.serve`, and as well where the server is started by
+        trame itself.
+        """
+        if not server.context.has(KEY):
+            server.context[KEY] = cls()
+            server.controller.on_server_bind.add(server.context[KEY].bind)
+        routes: Routes = server.context[KEY]
+        return routes
+
+    def bind(self, web_server: Any) -> None:
+        """Add the route where trame has a web server of its own."""
+        application = getattr(web_server, "app", None)
+        if application is not None:
+            add_route(application, {self.token: self}.get)
+
+    def give(self, name: str, content: Give) -> str:
+        """Hand out a file, in place of an earlier one of that name; return its address.
+
+        Parameters
+        ----------
+        name
+            Last part of the address, without a slash.
+        content
+            Called at each request; it may be a coroutine function.
+        """
+        if not name or "/" in name:
+            msg = f"the name of a file is {name!r}; expected one part of an address, as in 'a.png'"
+            raise ValueError(msg)
+        self._content[name] = content
+        return f"flowtex/{self.token}/{quote(name)}"
+
+    def withdraw(self, name: str) -> None:
+        """Hand a file out no more."""
+        self._content.pop(name, None)
+
+    def close(self) -> None:
+        """Hand nothing out any more."""
+        self._content.clear()
+
+    async def answer(self, name: str) -> web.StreamResponse:
+        """Return what is asked for; ``HTTPNotFound`` where there is nothing of that name."""
+        give = self._content.get(name)
+        if give is None:
+            raise web.HTTPNotFound
+        content = give()
+        body, kind, saved_as = await content if inspect.isawaitable(content) else content
+        headers = {
+            "Content-Type": kind,
+            "Cache-Control": "no-store",
+            "X-Content-Type-Options": "nosniff",
+        }
+        if saved_as is not None:
+            # Names in other alphabets travel in the second form, RFC 6266.
+            plain = saved_as.encode("ascii", "replace").decode().translate({34: "_", 92: "_"})
+            headers["Content-Disposition"] = (
+                f"attachment; filename=\"{plain}\"; filename*=UTF-8''{quote(saved_as, safe='')}"
+            )
+        if isinstance(body, Path):
+            if not body.is_file():
+                raise web.HTTPNotFound
+            return web.FileResponse(body, headers=headers)
+        return web.Response(body=body, headers=headers)
+
+
+def add_route(application: web.Application, find: Callable[[str], Routes | None]) -> None:
+    """Serve files below ``/flowtex`` of a web application; ``find`` has the routes of a token."""
+
+    async def handler(request: web.Request) -> web.StreamResponse:
+        routes = find(request.match_info["token"])
+        if routes is None:
+            raise web.HTTPNotFound
+        return await routes.answer(request.match_info["name"])
+
+    application.router.add_get("/flowtex/{token}/{name}", handler)
+
+
+class Downloads:
+    """The files that one application offers to save.
+
+    Parameters
+    ----------
+    routes
+        Where they are handed out.
+    lifetime
+        Seconds after which a file is removed that nobody has asked for.
+    clock
+        Returns the time in seconds.
+
+    Attributes
+    ----------
+    folder
+        Where the files lie.
+    """
+
+    def __init__(
+        self,
+        routes: Routes,
+        lifetime: float = LIFETIME_S,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        # mkdtemp lets nobody else in.
+        self.folder = Path(tempfile.mkdtemp(prefix="flowtex-"))
+        self._end = weakref.finalize(self, shutil.rmtree, self.folder, ignore_errors=True)
+        self._routes, self._lifetime, self._clock = routes, lifetime, clock
+        self._files: dict[str, tuple[Path, float]] = {}
+
+    def __len__(self) -> int:
+        """Count the files that can be fetched."""
+        return len(self._files)
+
+    def reserve(self, name: str) -> Path:
+        """Return where a file of this name can be written, in a folder of its own."""
+        return Path(tempfile.mkdtemp(dir=self.folder)) / _plain(name)
+
+    def add(self, path: Path) -> str:
+        """Hand out a file from :meth:`reserve`; return its address, relative to the page."""
+        if not path.resolve().is_relative_to(self.folder.resolve()):
+            msg = f"{path} lies outside {self.folder}; expected a file from reserve()"
+            raise ValueError(msg)
+        self.expire()
+        token = new_secret()
+        self._files[token] = (path, self._clock())
+        return self._routes.give(token, partial(self._content, token))
+
+    def get(self, token: str) -> Path | None:
+        """Return the file of a token; ``None`` where there is none, or none any more."""
+        self.expire()
+        path, _ = self._files.get(token, (None, 0.0))
+        if path is None or not path.is_file():
+            return None
+        self._files[token] = (path, self._clock())
+        return path
+
+    def expire(self) -> None:
+        """Remove what has lain too long, and the oldest where all take too much room."""
+        limit = self._clock() - self._lifetime
+        for token in [t for t, (_, asked) in self._files.items() if asked < limit]:
+            self.remove(token)
+        sizes = {token: _size(path) for token, (path, _) in self._files.items()}
+        for token in sorted(sizes, key=lambda t: self._files[t][1])[:-1]:
+            if sum(sizes.values()) <= DOWNLOAD_BYTES:
+                break
+            self.remove(token)
+            del sizes[token]
+
+    def remove(self, token: str) -> None:
+        """Remove a file; where there is none of that token there is nothing to do."""
+        path, _ = self._files.pop(token, (None, 0.0))
+        if path is not None:
+            shutil.rmtree(path.parent, ignore_errors=True)
+
+    def close(self) -> None:
+        """Remove all files; nothing can be added any more."""
+        self._files.clear()
+        self._end()
+
+    def _content(self, token: str) -> Content:
+        path = self.get(token)
+        if path is None:
+            return b"This file is not there any more.", "text/plain", None
+        kind = mimetypes.guess_type(path.name)[0] or "application/octet-stream"
+        return path, kind, path.name
+
+
+def _size(path: Path) -> int:
+    return path.stat().st_size if path.is_file() else 0
+
+
+def _plain(name: str) -> str:
+    """Return a name with which no folder can be left, and which every system takes."""
+    plain = "".join(c if c.isalnum() or c in " ._-" else "_" for c in name).strip(" .")
+    stem, dot, suffix = plain.rpartition(".")
+    return f"{stem[:NAME_LENGTH]}{dot}{suffix[:20]}" if stem else (plain[:NAME_LENGTH] or "flow")

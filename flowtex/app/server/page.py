@@ -1,0 +1,82 @@
+"""What all parts of a page use: its state, signals between its parts, and tasks."""
+
+from __future__ import annotations
+
+import asyncio
+import itertools
+import logging
+from collections.abc import Callable, Coroutine
+from typing import Any
+
+__all__ = ["PageState", "Signal", "start_task"]
+
+_log = logging.getLogger(__name__)
+_count = itertools.count(1)
+
+
+class Signal:
+    """An event of the page, and the functions that it calls."""
+
+    def __init__(self) -> None:
+        self._listeners: list[Callable[..., Any]] = []
+
+    def connect(self, listener: Callable[..., Any]) -> None:
+        """Call a function at each event, after those that were connected before."""
+        self._listeners.append(listener)
+
+    def emit(self, *values: Any) -> None:
+        """Call the connected functions with these values."""
+        for listener in list(self._listeners):
+            listener(*values)
+
+
+def start_task(work: Coroutine[Any, Any, None], failure: str) -> asyncio.Task[None]:
+    """Start a task that nobody waits for; an error in it is logged after the text ``failure``."""
+    task = asyncio.get_running_loop().create_task(work)
+
+    def log_error(ended: asyncio.Task[None]) -> None:
+        if not ended.cancelled() and (error := ended.exception()) is not None:
+            _log.error(failure, exc_info=error)
+
+    task.add_done_callback(log_error)
+    return task
+
+
+class PageState:
+    """The part of a trame server's state that belongs to one application.
+
+    Several applications may share a trame server, so each has a prefix of its own. A listener is
+    called after a change by Python as well as by the page; it compares with the present value
+    before it acts.
+    """
+
+    def __init__(self, server: Any) -> None:
+        self.server = server
+        self.prefix = f"flow{next(_count)}_"
+        self._state = server.state
+
+    def key(self, name: str) -> str:
+        """Return the name that the page has for a value."""
+        return f"{self.prefix}{name}"
+
+    def get(self, name: str) -> Any:
+        """Return a value."""
+        return self._state[self.key(name)]
+
+    def set(self, **values: Any) -> None:
+        """Change values."""
+        for name, value in values.items():
+            self._state[self.key(name)] = value
+
+    def send(self, **values: Any) -> None:
+        """Change values from a task, and tell the page at once."""
+        with self._state:
+            self.set(**values)
+
+    def on(self, *names: str) -> Callable[[Callable[[], Any]], None]:
+        """Call a function without arguments after each change of some values."""
+
+        def listen(call: Callable[[], Any]) -> None:
+            self._state.change(*(self.key(name) for name in names))(lambda **_: call())
+
+        return listen

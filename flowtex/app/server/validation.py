@@ -1,0 +1,118 @@
+"""Checks of what a page sends: numbers, names and pictures.
+
+A page may send anything in the place of a number or a name. What does not fit is dropped or
+clipped here, so that no handler has to check again; pictures take no more room than they may.
+"""
+
+from __future__ import annotations
+
+import io
+import math
+import warnings
+from collections.abc import Container, Mapping
+from typing import Any
+
+from flowtex._util.array_types import AnyArray
+from flowtex.settings import SettingsError
+from flowtex.textures.images import pixels_of
+
+__all__ = ["clipped", "decode_picture", "mapping", "name_among", "number", "shortened"]
+
+#: Characters of a message to a page, at most.
+MESSAGE_LENGTH = 400
+#: Bytes of a picture that is sent, and pixels in it, at most.
+PICTURE_BYTES, PICTURE_PIXELS = 8_000_000, 50_000_000
+#: Pixels along a side of what is laid on the surface, at most; a larger picture is averaged.
+PICTURE_SIDE = 2048
+#: Formats that are read: some others of Pillow's start programs, or are seldom tried.
+PICTURE_FORMATS = ("PNG", "JPEG", "WEBP")
+
+
+def number(value: Any, low: float = -math.inf, high: float = math.inf) -> float | None:
+    """Return a finite number within limits; ``None`` for anything else, a boolean too."""
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        return None
+    return float(value) if math.isfinite(value) and low <= value <= high else None
+
+
+def clipped(value: Any, default: float, low: float, high: float) -> float:
+    """Return a number, moved to the nearest limit; the default for what is no number."""
+    checked = number(value)
+    return default if checked is None else min(max(checked, low), high)
+
+
+def name_among(value: Any, names: Container[str]) -> bool:
+    """Tell whether something is one of a few names; a list or a mapping is none."""
+    return isinstance(value, str) and value in names
+
+
+def mapping(value: Any) -> Mapping[str, Any]:
+    """Return a mapping, an empty one for anything else."""
+    return value if isinstance(value, Mapping) else {}
+
+
+def shortened(text: str, most: int = MESSAGE_LENGTH) -> str:
+    """Return a text, its end left out where it is long."""
+    return text if len(text) <= most else f"{text[: most - 1]}…"
+
+
+def decode_picture(sent: Any) -> AnyArray:
+    """Read a picture that a page has sent, averaged to :data:`PICTURE_SIDE` on a side at most.
+
+    Parameters
+    ----------
+    sent
+        A mapping with ``content``, bytes or a list of them, and ``name``.
+
+    Raises
+    ------
+    SettingsError
+        When it is too large, or no picture.
+    """
+    content = sent.get("content") if isinstance(sent, Mapping) else None
+    if isinstance(content, list):
+        content = b"".join(part for part in content if isinstance(part, bytes))
+    name = str(sent.get("name", "the picture")) if isinstance(sent, Mapping) else "the picture"
+    name = shortened(name, 80)
+    if not isinstance(content, bytes) or not content:
+        msg = f"{name}: did not arrive; expected a PNG or a JPEG"
+        raise SettingsError(msg)
+    if len(content) > PICTURE_BYTES:
+        msg = f"{name}: has {len(content) / 1e6:.1f} MB; expected {PICTURE_BYTES / 1e6:g} at most"
+        raise SettingsError(msg)
+    return _read(content, name)
+
+
+def _read(content: bytes, name: str) -> AnyArray:
+    from PIL import Image, ImageOps
+
+    try:
+        with warnings.catch_warnings():
+            # Its size is looked at below, before there is a pixel of it.
+            warnings.simplefilter("ignore", Image.DecompressionBombWarning)
+            picture = Image.open(io.BytesIO(content), formats=PICTURE_FORMATS)
+        with picture:
+            width, height = picture.size
+            if width * height > PICTURE_PIXELS:
+                msg = f"{name}: has {width} x {height} pixels; expected {PICTURE_PIXELS:,} at most"
+                raise SettingsError(msg)
+            picture.draft(
+                None, (PICTURE_SIDE, PICTURE_SIDE)
+            )  # a JPEG is read at a fraction of its size
+            times = -(-max(picture.size) // PICTURE_SIDE)
+            small = picture if times == 1 else _averaged(picture, times)
+            return pixels_of(ImageOps.exif_transpose(small))
+    except Image.DecompressionBombError as error:
+        msg = f"{name}: has far too many pixels; expected {PICTURE_PIXELS:,} at most"
+        raise SettingsError(msg) from error
+    except (OSError, SyntaxError, ValueError) as error:
+        if isinstance(error, SettingsError):
+            raise
+        msg = f"{name}: is no picture that can be read; expected a PNG, a JPEG or a WebP"
+        raise SettingsError(msg) from error
+
+
+def _averaged(picture: Any, times: int) -> Any:
+    """Average blocks of pixels; those of a palette are no colours yet."""
+    plain = picture if picture.mode in ("L", "RGB", "RGBA") else picture.convert("RGBA")
+    return plain.reduce(times)

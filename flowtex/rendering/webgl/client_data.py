@@ -1,0 +1,306 @@
+"""What a client in a browser is handed to draw a flow by itself.
+
+The header has the numbers from which the client computes the uniforms, so that it answers a slider
+without asking; see :mod:`flowtex.rendering.uniforms` for what they are. Arrays come in the smallest
+type that does: slopes in half precision, as on every graphics card, normals in sixteen bits.
+Positions and scalars keep single precision.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from functools import cache, cached_property
+from typing import Any
+
+import numpy as np
+
+from flowtex._util.array_types import Bytes, Floats
+from flowtex.camera import CAMERA_LIMITS, Camera
+from flowtex.field.interpolation import steps_around
+from flowtex.rendering.shaders import shader_text
+from flowtex.rendering.uniforms import client_constants, variants
+from flowtex.rendering.webgl.packing import Packing, half, packing_of
+from flowtex.rendering.webgl.protocol import FORMAT, Header, Parts
+from flowtex.settings import TABLE, Settings
+from flowtex.textures import PaperTextures, TextureSet
+
+__all__ = ["ClientData", "Colours"]
+
+#: Shaders of the client, by the name under which the header has their text.
+SHADERS = {
+    "vertex": "webgl2/vertex.glsl",
+    "fragment": "webgl2/fragment.glsl",
+    "pick": "webgl2/pick.glsl",
+}
+#: Width over height of the picture that a first camera is made for; clients widen it for others.
+FIRST_ASPECT = 1.5
+#: Greatest value of a component of a normal in sixteen bits.
+NORMAL_MAX = 32767
+#: Settings whose names say too little.
+LABELS = {"lod": "Level of detail", "show_level": "Show levels", "two_sided": "Both directions"}
+
+
+@dataclass(frozen=True, eq=False)
+class Colours:
+    """How the surface is coloured.
+
+    Attributes
+    ----------
+    name, unit
+        What it is coloured by, for the legend; ``None`` for a plain surface.
+    values
+        Nodal values, (T or 1, J, I).
+    low, high
+        Values at the ends of the colour map.
+    table
+        Colour map, (256, 4) uint8.
+    plain, background
+        Colours from 0 to 1 where there are no values, and behind the surface.
+    lighting
+        Whether the surface is lit.
+    opacity
+        How much of the background it hides, 0 to 1.
+    bar
+        Whether there is a legend.
+    """
+
+    name: str | None = None
+    unit: str = ""
+    values: Floats | None = None
+    low: float = 0.0
+    high: float = 1.0
+    table: Bytes | None = None
+    plain: tuple[float, float, float] = (0.63, 0.63, 0.63)
+    background: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    lighting: bool = False
+    opacity: float = 1.0
+    bar: bool = True
+
+
+@dataclass(frozen=True, eq=False)
+class ClientData:
+    """A flow and its colours, ready to be handed over.
+
+    Attributes
+    ----------
+    textures
+        What to draw.
+    colours
+        In which colours.
+    chosen
+        Numbers of the destination times that are handed over, increasing; all when empty.
+    """
+
+    textures: TextureSet
+    colours: Colours = field(default_factory=Colours)
+    chosen: tuple[int, ...] = ()
+
+    @cached_property
+    def packing(self) -> Packing:
+        """The slices, packed."""
+        return packing_of(self.textures)
+
+    @property
+    def steps(self) -> int:
+        """Number of destination times that are handed over."""
+        return len(self.chosen) or self.textures.store.steps
+
+    @property
+    def times(self) -> Floats:
+        """Destination times, (steps,), in the field's own unit."""
+        times = self.textures.geometry.field.times
+        return times[list(self.chosen)] if self.chosen else times
+
+    def first_camera(self, aspect: float = FIRST_ASPECT) -> Camera:
+        """Return the camera that shows the whole surface in a picture of a shape."""
+        return Camera.fit(self.textures.geometry.field.surface, aspect)
+
+    def header(
+        self,
+        settings: Settings,
+        *,
+        camera: Mapping[str, Any] | None = None,
+        time: float | None = None,
+        clock: float = 0.0,
+    ) -> Header:
+        """Return all that is no array; plain Python, for JSON.
+
+        Parameters
+        ----------
+        settings
+            How to draw.
+        camera
+            From where, as :meth:`Camera.to_dict` has it; the whole surface by default.
+        time
+            Time that is shown, in the field's own unit; the last one by default.
+        clock
+            Clock of the streaming of a steady flow, in seconds.
+        """
+        return {
+            **self.constants(),
+            "settings": dict(settings),
+            "camera": self.first_camera().to_dict() if camera is None else dict(camera),
+            "time": float(self.times[-1] if time is None else time),
+            "clock": float(clock),
+        }
+
+    def constants(self) -> Header:
+        """Return what of the header changes only with the textures or the colours."""
+        textures, colours = self.textures, self.colours
+        variant = sorted(variants(textures, unsteady=self.steps > 1))
+        return {
+            "format": FORMAT,
+            "name": textures.geometry.field.name,
+            "variant": variant,
+            "shaders": dict(_shaders(tuple(variant))),
+            "geometry": self._geometry(),
+            "slices": self._slices(),
+            "scalars": {
+                "name": colours.name,
+                "low": float(colours.low),
+                "high": float(colours.high),
+                "steps": 1 if self._values is None else len(self._values),
+                "unit": colours.unit,
+                "bar": bool(colours.bar),
+            },
+            "colour": _numbers(colours.plain),
+            "background": _numbers(colours.background),
+            "lighting": bool(colours.lighting),
+            "opacity": float(colours.opacity),
+            "paper": None if textures.paper is None else _paper(textures.paper),
+            "constants": client_constants(),
+            "limits": {**asdict(CAMERA_LIMITS), "aspect": FIRST_ASPECT},
+            "table": _table(),
+        }
+
+    def surface(self) -> Parts:
+        """Return the arrays that are the same at all times, the smallest first."""
+        geometry, colours = self.textures.geometry, self.colours
+        parts: Parts = {}
+        if colours.name is not None and colours.table is not None:
+            parts["cmap"] = np.ascontiguousarray(colours.table, np.uint8)
+        if not geometry.field.surface.cells.all():
+            parts["cells"] = geometry.field.surface.cells.astype(np.uint8)
+        if not geometry.planar:
+            parts["normal"] = np.rint(geometry.normal * NORMAL_MAX).astype("<i2")
+        parts["position"] = np.ascontiguousarray(geometry.position, "<f4")
+        if self.textures.paper is not None:
+            parts["step"] = half(self.textures.paper.step)
+            parts["noise"] = half(self.textures.paper.noise)
+        return parts
+
+    def step(self, step: int) -> Parts:
+        """Return the arrays of one destination time, the smallest first.
+
+        What is not yet traced is traced.
+
+        Raises
+        ------
+        IndexError
+            When there is no such step.
+        """
+        if not 0 <= step < self.steps:
+            msg = f"time step {step} does not exist: expected 0 to {self.steps - 1}"
+            raise IndexError(msg)
+        values = self._values
+        parts: Parts = {}
+        if values is not None and step < len(values):
+            parts[f"scalars/{step}"] = np.ascontiguousarray(values[step], "<f4")
+        packed = self.packing.step(self.source(step))
+        parts[f"extra/{step}"] = packed.extra
+        parts[f"slices/{step}"] = packed.slopes
+        return parts
+
+    def source(self, step: int) -> int:
+        """Return the field's own number of a step that is handed over."""
+        return self.chosen[step] if self.chosen else step
+
+    def moment(self, time: float) -> tuple[int, ...]:
+        """Return the steps that are needed to show a time, one or two."""
+        before, after, _ = steps_around(self.times, time)
+        return (before,) if before == after else (before, after)
+
+    @property
+    def nbytes_of_step(self) -> int:
+        """Bytes of the arrays of one destination time, known before anything is traced."""
+        geometry = self.textures.geometry
+        texels = geometry.rows.size * geometry.columns.size
+        nodes = geometry.field.valid.size
+        numbers = self.textures.count * self.packing.channels + len(self.packing.extra)
+        return 2 * texels * numbers + (4 * nodes if self.colours.values is not None else 0)
+
+    @property
+    def _values(self) -> Floats | None:
+        """Nodal values of the colours at the times that are handed over, (steps or 1, J, I)."""
+        values = self.colours.values
+        if values is None or not self.chosen or len(values) == 1:
+            return values
+        return values[list(self.chosen)]
+
+    def _geometry(self) -> dict[str, Any]:
+        geometry = self.textures.geometry
+        return {
+            "shape": [int(n) for n in geometry.field.shape],
+            "rows": {"before": int(geometry.rows.before), "size": int(geometry.rows.size)},
+            "columns": {"before": int(geometry.columns.before), "size": int(geometry.columns.size)},
+            "levels": int(geometry.levels),
+            "planar": geometry.planar,
+            "extent": float(geometry.extent),
+            "center": _numbers(geometry.center),
+            "frame": _numbers(geometry.frame),
+        }
+
+    def _slices(self) -> dict[str, Any]:
+        textures = self.textures
+        return {
+            "count": int(textures.count),
+            "channels": self.packing.channels,
+            "extra": self.packing.extra,
+            "lags": _numbers(textures.lags),
+            "sides": int(textures.sides),
+            "unit": float(textures.unit),
+            "pace": float(textures.pace),
+            "steps": int(self.steps),
+            "times": _numbers(self.times),
+            "timeUnit": textures.geometry.field.time_unit,
+        }
+
+
+def _paper(paper: PaperTextures) -> dict[str, Any]:
+    """Return what is to be known of the noise texture, or of the picture in its place."""
+    height, width = paper.step.shape
+    return {
+        "size": [int(width), int(height)],
+        "grain": float(paper.grain),
+        "corrected": bool(paper.corrected),
+        "deviations": _numbers(paper.deviations),
+        "repeat": [bool(r) for r in paper.repeat],
+        "picture": bool(paper.picture),
+        "alongI": _numbers(paper.along_i),
+        "alongJ": _numbers(paper.along_j),
+    }
+
+
+@cache
+def _shaders(variant: tuple[str, ...]) -> dict[str, str]:
+    return {key: shader_text(name, variant) for key, name in SHADERS.items()}
+
+
+def _table() -> list[dict[str, Any]]:
+    """Return the table of settings, for controls."""
+    same = ("name", "default", "affects", "text", "low", "high")
+    return [
+        {
+            **{key: getattr(row, key) for key in same},
+            "label": LABELS.get(row.name, row.name.replace("_", " ").capitalize()),
+            "kind": row.kind.__name__,
+            "choices": list(row.choices),
+        }
+        for row in TABLE.values()
+    ]
+
+
+def _numbers(values: Any) -> list[float]:
+    """Return an array as a flat list of Python's own numbers."""
+    return [float(v) for v in np.asarray(values).ravel()]

@@ -1,0 +1,56 @@
+"""Settings, colours and background that a page chooses."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+pytest.importorskip("trame_rca")
+
+from small_pages import difference, picture
+
+from flowtex.app import FlowApp
+
+pytestmark = pytest.mark.usefixtures("opengl")
+
+
+def test_a_change_of_the_state_reaches_the_settings(flat: FlowApp) -> None:
+    flat.state.set(set_contrast=2, set_lod=False)
+    flat.controllers.appearance.take_settings()
+    assert (
+        flat.viewport.handle.settings.contrast == 2 and flat.viewport.handle.settings.lod is False
+    )
+    flat.state.set(set_contrast=1.0, set_lod=True)
+    flat.controllers.appearance.take_settings()
+
+
+def test_a_wrong_value_is_told_and_taken_back(flat: FlowApp) -> None:
+    flat.state.set(set_samples=1000)
+    flat.controllers.appearance.take_settings()
+    assert "samples is 1000; expected" in flat.state.get("problem")
+    assert flat.state.get("set_samples") == flat.viewport.handle.settings.samples == 9
+    flat.state.set(problem="")
+
+
+def test_colours_and_their_bar_change(flat: FlowApp) -> None:
+    speed = picture(flat)
+    flat.state.set(colour="height")
+    flat.controllers.appearance.take_colour()
+    assert flat.state.get("bar")["name"] == "height" and flat.state.get("bar")["high"] == "3"
+    assert difference(picture(flat), speed) > 3
+    flat.state.set(colour="none")
+    flat.controllers.appearance.take_colour()
+    grey = picture(flat)
+    assert np.ptp(grey[80, 120]) == 0 and flat.state.get("bar")["name"] == ""
+    flat.state.set(colour="speed")
+    flat.controllers.appearance.take_colour()
+    assert difference(picture(flat), speed) == 0
+
+
+def test_themes_change_the_background(flat: FlowApp) -> None:
+    dark = picture(flat)[0, 0]
+    flat.state.set(theme="light")
+    flat.controllers.appearance.take_background()
+    assert picture(flat)[0, 0].min() > 200 > dark.max()
+    flat.state.set(theme="dark")
+    flat.controllers.appearance.take_background()

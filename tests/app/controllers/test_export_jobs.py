@@ -1,0 +1,253 @@
+from __future__ import annotations
+
+import asyncio
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image, ImageSequence
+
+pytest.importorskip("trame_rca")
+
+from flowtex import FlowField
+from flowtex._util.progress import Stopped
+from flowtex.app.controllers.export_jobs import ExportError, Job, MovieJob, PictureJob
+from flowtex.app.streaming.viewport import Viewport
+from flowtex.offscreen.encoders import MovieError
+
+pytestmark = pytest.mark.usefixtures("opengl")
+
+
+def patch(*, curved: bool = False, steps: int = 1) -> FlowField:
+    """A patch of 24 x 16 nodes, flat or bent, in which everything moves along x."""
+    x, y = np.meshgrid(np.linspace(0, 3, 24), np.linspace(0, 2, 16))
+    z = 0.4 * np.sin(x) if curved else np.zeros_like(x)
+    velocity = np.zeros((steps, 16, 24, 3))
+    velocity[..., 0] = 1 + 0.1 * np.arange(steps)[:, None, None] + 0.2 * y
+    points = np.stack([x, y, z], axis=-1)
+    if steps == 1:
+        return FlowField.from_arrays(points, velocity[0], scalars={"height": x})
+    return FlowField.from_arrays(points, velocity, times=np.arange(steps, dtype=float))
+
+
+@pytest.fixture(scope="module", params=["flat", "bent"])
+def scene(request: pytest.FixtureRequest) -> Iterator[Viewport]:
+    made = Viewport(
+        patch(curved=request.param == "bent"), zoom=2.0, samples=9, scalars="height", cmap="magma"
+    )
+    made.resize(240, 160)
+    made.first_look()
+    made.pan(0.1, -0.2)
+    made.set_background("light")
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def plain() -> Iterator[Viewport]:
+    made = Viewport(patch(), samples=5, speed=120.0)
+    made.resize(120, 80)
+    made.home()
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def series() -> Iterator[Viewport]:
+    made = Viewport(patch(steps=4), samples=5)
+    made.resize(120, 80)
+    made.home()
+    yield made
+    made.close()
+
+
+def run(job: Job) -> Path:
+    return asyncio.run(job.run())
+
+
+def pixels(path: Path) -> Any:
+    with Image.open(path) as picture:
+        return np.asarray(picture.convert("RGB")).astype(int)
+
+
+def difference(one: Any, other: Any) -> float:
+    return float(np.abs(np.asarray(one, int) - np.asarray(other, int)).mean())
+
+
+def test_a_picture_is_what_is_on_view(scene: Viewport, tmp_path: Path) -> None:
+    job = PictureJob(scene, tmp_path / "view.png", (240, 160))
+    assert (job.progress, job.done) == (0.0, False)
+    path = run(job)
+    assert (job.progress, job.done, job.cancelled) == (1.0, True, False)
+    shown = scene.draw(240, 160)
+    # Curved surfaces show a row of pixels of another level where 2 x 2 blocks fall otherwise.
+    assert difference(pixels(path), shown) < 0.5
+    assert difference(np.roll(pixels(path), 3, axis=0), shown) > 3
+
+
+def test_a_larger_picture_is_finer_or_denser(scene: Viewport, tmp_path: Path) -> None:
+    view = (scene.size, scene.camera, dict(scene.handle.settings))
+    shown = scene.draw(240, 160)
+    dense = run(PictureJob(scene, tmp_path / "dense.png", (720, 480), density=3.0))
+    fine = run(PictureJob(scene, tmp_path / "fine.png", (720, 480)))
+    smooth = run(PictureJob(scene, tmp_path / "smooth.png", (240, 160), supersampling=3))
+    averaged = [np.asarray(Image.open(path).reduce(3)) for path in (dense, fine)]
+    assert difference(averaged[0], shown) < 5 < difference(averaged[1], shown)
+    assert difference(pixels(smooth), averaged[0]) < 1
+    # Nothing of what is on view has changed.
+    assert view == (scene.size, scene.camera, dict(scene.handle.settings))
+    assert difference(scene.draw(240, 160), shown) == 0
+
+
+def test_both_panes_and_an_image_are_in_the_picture(plain: Viewport, tmp_path: Path) -> None:
+    half = np.zeros((40, 60, 4), np.uint8)
+    half[:20] = [250, 20, 30, 128]
+    plain.handle.set_image(half)
+    plain.handle.settings.strength = 1.0
+    path = run(PictureJob(plain, tmp_path / "image.png", (120, 80)))
+    assert difference(pixels(path), plain.draw(120, 80)) < 0.5
+    plain.handle.settings.noise = "procedural"
+    plain.compare({"contrast": 0.0})
+    both = pixels(run(PictureJob(plain, tmp_path / "both.png", (242, 80))))
+    assert both.shape == (80, 242, 3) and (both[:, 120:122] == 128).all()
+    left, right = (part[20:60, 30:90].std(axis=1).mean() for part in (both[:, :120], both[:, 122:]))
+    assert left > 5 * right
+
+
+def test_the_page_goes_on_between_tiles(scene: Viewport, tmp_path: Path) -> None:
+    job = PictureJob(scene, tmp_path / "large.png", (1500, 1000))
+    seen: list[float] = []
+
+    async def watch() -> None:
+        task = asyncio.create_task(job.run())
+        while not task.done():
+            if not seen or job.progress != seen[-1]:
+                seen.append(job.progress)
+            await asyncio.sleep(0)
+        await task
+
+    asyncio.run(watch())
+    assert len(seen) > 8 and seen == sorted(seen) and 0.85 < seen[-1] <= 1
+    assert pixels(job.path).shape == (1000, 1500, 3)
+
+
+def test_a_job_waits_while_the_view_is_busy(plain: Viewport, tmp_path: Path) -> None:
+    moving = iter([True, True, True])
+    job = PictureJob(plain, tmp_path / "a.png", (60, 40), busy=lambda: next(moving, False))
+    started = time.perf_counter()
+    run(job)
+    assert next(moving, None) is None and time.perf_counter() - started > 0.15
+
+
+@pytest.mark.parametrize("kind", ["gif", "mp4"])
+def test_a_movie_is_a_loop_of_what_is_on_view(plain: Viewport, tmp_path: Path, kind: str) -> None:
+    path = tmp_path / f"flow.{kind}"
+    job = MovieJob(plain, path, (121, 81), seconds=1.0, fps=10, quality=95)
+    run(job)
+    pictures = shown(path)
+    wide, high = (120, 80) if kind == "mp4" else (121, 81)
+    assert pictures.shape == (10, high, wide, 3) and job.frames.closed
+    steps = [difference(pictures[n - 1], pictures[n]) for n in range(10)]
+    # The step from the last to the first picture, which is steps[0], is like the others.
+    assert min(steps) > 1 and max(steps) < 2 * min(steps)
+    # The settings on view stay, and the motion is the movie's own.
+    assert plain.handle.settings.motion == "off" and plain.clock == 0.0
+    plain.handle.settings.update(motion="speed", period=1.0)
+    plain.resize(wide, high)
+    plain.clock = 0.3
+    assert difference(pictures[3], plain.draw(wide, high)) < 6
+
+
+def shown(path: Path) -> Any:
+    """Pictures of a movie, (N, H, W, 3)."""
+    if path.suffix == ".gif":
+        found = []
+        with Image.open(path) as file:
+            for frame in ImageSequence.Iterator(file):
+                found.append(np.array(frame.convert("RGB")))
+        return np.array(found, dtype=int)
+    av = pytest.importorskip("av")
+    with av.open(str(path)) as file:
+        return np.array([f.to_ndarray(format="rgb24") for f in file.decode(video=0)], dtype=int)
+
+
+def test_a_movie_of_a_series_shows_all_times(series: Viewport, tmp_path: Path) -> None:
+    series.set_time(1.0)
+    job = MovieJob(series, tmp_path / "all.gif", (120, 80), seconds=1.0, fps=4)
+    run(job)
+    pictures = shown(job.path)
+    assert len(pictures) == 4 and job.frames.times == pytest.approx((0, 1, 2, 3))
+    assert series.handle.time == 1.0
+    for n in (0, 3):
+        series.set_time(float(n))
+        off = [difference(picture, series.draw(120, 80)) for picture in pictures]
+        assert int(np.argmin(off)) == n and off[n] < 5
+
+
+@pytest.mark.parametrize("kind", ["mp4", "gif", "png"])
+@pytest.mark.parametrize("way", ["cancel", "task"])
+def test_a_cancelled_job_leaves_nothing(
+    plain: Viewport, tmp_path: Path, kind: str, way: str
+) -> None:
+    made = PictureJob if kind == "png" else MovieJob
+    job = made(plain, tmp_path / f"a.{kind}", (400, 300))
+    threads = threading.active_count()
+
+    async def stop() -> None:
+        task = asyncio.create_task(job.run())
+        while job.progress < 0.05:
+            await asyncio.sleep(0)
+        if way == "cancel":
+            job.cancel()
+        else:
+            task.cancel()
+        with pytest.raises(Stopped if way == "cancel" else asyncio.CancelledError):
+            await task
+
+    asyncio.run(stop())
+    assert job.done and not list(tmp_path.iterdir())
+    wait_until(lambda: threading.active_count() <= threads)
+    lists = Path("/proc/self/task").glob("*/children")
+    assert [n for found in lists for n in found.read_text().split()] == []
+
+
+def wait_until(true: Any) -> None:
+    end = time.monotonic() + 10
+    while not true():
+        assert time.monotonic() < end
+        time.sleep(0.01)
+
+
+def test_a_file_that_cannot_be_written_is_told(plain: Viewport, tmp_path: Path) -> None:
+    for job in (
+        PictureJob(plain, tmp_path / "none" / "a.png", (20, 20)),
+        MovieJob(plain, tmp_path / "none" / "a.gif", (20, 20), seconds=0.1),
+    ):
+        with pytest.raises(FileNotFoundError):
+            run(job)
+        assert job.done and not job.cancelled
+
+
+@pytest.mark.parametrize(
+    ("made", "options", "said"),
+    [
+        (PictureJob, {"size": (0, 10)}, "would be 0 x 10; expected 1 to 30,000 pixels along"),
+        (PictureJob, {"size": (20_000, 20_000)}, "expected at most 100,000,000 pixels"),
+        (PictureJob, {"supersampling": 5}, "supersampling is 5; expected 1 to 4"),
+        (PictureJob, {"density": 0.0}, "density is 0.0; expected 0.125 to 8"),
+        (MovieJob, {"size": (5000, 5000)}, "the movie would be 5000 x 5000; expected at most"),
+        (MovieJob, {"seconds": 1e9}, "seconds is 1000000000.0; expected a number from 0.1"),
+        (MovieJob, {"path": "a.avi"}, "'.avi' is no format"),
+    ],
+)
+def test_what_cannot_be_made_is_told(
+    plain: Viewport, tmp_path: Path, made: Any, options: dict[str, Any], said: str
+) -> None:
+    path = tmp_path / options.pop("path", "a.gif")
+    with pytest.raises((ExportError, MovieError)) as error:
+        made(plain, path, **{"size": (20, 20), **options})
+    assert said in str(error.value)

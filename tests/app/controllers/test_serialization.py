@@ -1,0 +1,202 @@
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+from urllib.parse import unquote
+
+import numpy as np
+import pytest
+from PIL import Image
+
+pytest.importorskip("trame_rca")
+
+import flowtex
+from flowtex.app.controllers.appearance import COMPARISONS
+from flowtex.app.controllers.serialization import DEFAULTS, from_link, to_link, to_python
+from flowtex.app.streaming.viewport import Viewport
+from flowtex.settings import TABLE, SettingsError
+
+CAMERA: dict[str, Any] = {
+    "parallel": True,
+    "position": [1 / 3, -2e-17, 3e8],
+    "focal_point": [1 / 3, math.pi, 0.0],
+    "up": [0.0, 1.0, 0.1],
+    "parallel_scale": 1e-7 / 3,
+    "view_angle": 30.0,
+}
+STATE: dict[str, Any] = {
+    "file": "runs of May/post + wake.vtk",
+    "block": "1",
+    "vectors": 'the "momentum" & more',
+    "plane": "k=20",
+    "time": 0.1 + 0.2,
+    "clock": 1.75,
+    "colour": "Geschwindigkeit ü",
+    "cmap": "RdBu_r",
+    "clim": (-1e-20, 1e20 / 3),
+    "theme": "light",
+    "background": "black",
+    "split": "the paper's kernel",
+    "camera": CAMERA,
+    "settings": {"lod": False, "samples": 25, "grain": 1 / 3, "kernel": "ramp", "speed": 1e7},
+}
+
+
+def test_a_state_comes_back_from_its_link() -> None:
+    faults: list[str] = []
+    link = to_link(STATE)
+    assert from_link(link, faults) == STATE and not faults
+    for address in ("http://127.0.0.1:8080/?", "http://host/index.html?secret=abc#", "#", "?"):
+        assert from_link(address + link, faults) == STATE and not faults
+
+
+def test_every_part_of_a_state_comes_back() -> None:
+    for name, value in STATE.items():
+        assert from_link(to_link({name: value})) == {name: value}
+    for name, row in TABLE.items():
+        others = [c for c in row.choices if c not in (row.default, "image")]
+        other = others[0] if others else (not row.default if row.kind is bool else row.high)
+        back = from_link(to_link({"settings": {name: other}}))["settings"][name]
+        assert back == other and type(back) is row.kind
+
+
+def test_a_link_is_short_and_safe_and_can_be_read() -> None:
+    defaults = {**DEFAULTS, "settings": {name: row.default for name, row in TABLE.items()}}
+    assert to_link(defaults) == to_link({}) == ""
+    assert to_link({"file": "post.vtk", "plane": "k=20", "settings": {"lod": False}}) == (
+        "file=post.vtk&plane=k=20&lod=off"
+    )
+    link = to_link(STATE)
+    assert link.isascii() and not set(link) & set(" \"'<>#?+\\") and "ü" in unquote(link)
+    assert not set(DEFAULTS) & set(TABLE) and not set(STATE) & set(TABLE)
+
+
+def test_an_image_is_not_in_a_link() -> None:
+    assert to_link({"settings": {"noise": "image", "seed": 3}}) == "seed=3"
+
+
+def test_an_unknown_setting_makes_no_link() -> None:
+    with pytest.raises(SettingsError, match="there is no setting 'smaples'"):
+        to_link({"settings": {"smaples": 3}})
+
+
+@pytest.mark.parametrize(
+    ("link", "told"),
+    [
+        ("samples=1000", "samples is 1000.0; expected a whole number from 1 to 200"),
+        ("samples=nan", "samples is nan; expected"),
+        ("samples=2.5", "samples is 2.5; expected a whole number"),
+        ("grain=1e999", "grain is inf; expected a number from 0.25 to 32"),
+        ("lod=maybe", "lod is 'maybe'; expected True or False"),
+        ("noise=__import__", "noise is '__import__'; expected 'procedural' or"),
+        ("plane=../etc", "plane is '../etc'; expected an axis and a number, such as k=20"),
+        ("plane=k=1e3", "plane is 'k=1e3'"),
+        ("cmap=os.system", "cmap is 'os.system'; expected the name of a colour map"),
+        ("clim=2,1", "clim is '2,1'; expected a lower number and a higher one"),
+        ("clim=0,inf", "clim is '0,inf'; expected a number"),
+        ("clim=0", "expected 2 numbers"),
+        ("time=nan", "time is 'nan'; expected a number"),
+        ("theme=pink", "theme is 'pink'; expected 'dark' or 'light'"),
+        ("split=all", "split is 'all'; expected 'nothing' or"),
+        ("file=a%00b", "file is 'a\\x00b'; expected a name"),
+        ("file=" + "a" * 500, "expected a name of at most 400 characters"),
+        ("camera=parallel,0,0", "camera is 'parallel,0,0'; expected 11 numbers"),
+        ("camera=parallel,0,0,1,0,0,1,0,1,0,1,30", "expected a camera that looks at something"),
+        ("camera=parallel,0,0,1,0,0,0,0,0,1,1,30", "expected a camera that looks at something"),
+        ("camera=parallel,0,0,1,0,0,0,0,1,0,-1,30", "expected a camera that looks at something"),
+        ("camera=parallel,0,0,1,0,0,0,0,1,0,1,200", "expected a camera that looks at something"),
+        ("camera=fisheye,0,0,1,0,0,0,0,1,0,1,30", "expected a camera that looks at something"),
+        ("evil=1", "the link says 'evil', which means nothing here"),
+        ("a=1&" * 101, "too many values"),
+        ("x" * 9000, "has 9,000 characters"),
+    ],
+)
+def test_what_is_of_no_use_is_left_out_and_told(link: str, told: str) -> None:
+    faults: list[str] = []
+    rest = "" if len(link) > 300 else "&seed=7"
+    assert from_link(link + rest, faults) == ({"settings": {"seed": 7}} if rest else {})
+    assert len(faults) == 1 and told in faults[0] and len(faults[0]) < 300
+
+
+def test_whatever_comes_is_taken_without_an_error(rng: np.random.Generator) -> None:
+    link = to_link(STATE)
+    for _ in range(300):
+        text = list(link)
+        for at in rng.integers(0, len(text), 5):
+            text[at] = chr(rng.integers(1, 0x250))
+        state = from_link("".join(text))
+        assert from_link(to_link(state)) == state
+
+
+@pytest.fixture(scope="module")
+def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("flow") / "two gyres.vts"
+    flowtex.examples.double_gyre(2.5).save(path)
+    return path
+
+
+@pytest.mark.parametrize("split", ["nothing", "grain fixed on the surface"])
+def test_the_python_lines_draw_the_same_picture(
+    file: Path, monkeypatch: pytest.MonkeyPatch, split: str, opengl: object
+) -> None:
+    monkeypatch.chdir(file.parent)
+    field = flowtex.FlowField.from_file(file.name)
+    changed: dict[str, Any] = {"samples": 15, "seed": 3, "motion": "speed"}
+    scene = Viewport(field, zoom=3.0, scalars="vorticity", cmap="magma", clim=(-1, 2.0), **changed)
+    scene.compare(COMPARISONS[split] or None)
+    count = len(scene.panes)
+    scene.resize(count * 160 + 2 * (count - 1), 120)
+    scene.first_look()
+    scene.clock = 0.7
+    scene.set_background("light")
+    state = {
+        "file": file.name,
+        "colour": "vorticity",
+        "cmap": "magma",
+        "clim": (-1, 2.0),
+        "clock": 0.7,
+        "theme": "light",
+        "split": split,
+        "camera": scene.camera.to_dict(),
+        "settings": dict(scene.handle.settings),
+    }
+    drawn = np.hstack([pane.draw(160, 120) for pane in scene.panes]).astype(int)
+    scene.close()
+    lines = to_python(from_link(to_link(state)), size=(count * 160, 120), picture="same.png")
+    # The scalar bar is what a window has and a page draws by itself.
+    lines = lines.replace("    field,\n", "    field,\n    show_scalar_bar=False,\n")
+    exec(compile(lines, "lines", "exec"), {})
+    with Image.open("same.png") as picture:
+        shown = np.asarray(picture.convert("RGB")).astype(int)
+    assert shown.shape == drawn.shape
+    assert np.abs(shown - drawn).mean() < 1.0
+    assert np.abs(np.roll(shown, 2, axis=1) - drawn).mean() > 5
+
+
+def test_the_python_lines_are_plain() -> None:
+    state = {"file": "post.vtk", "plane": "k=20", "settings": {"lod": False}}
+    assert to_python(state) == (
+        "import pyvista as pv\n\nimport flowtex\n\n"
+        'field = flowtex.FlowField.from_file("post.vtk", plane="k=20")\n'
+        "pl = pv.Plotter(window_size=[1024, 768])\n"
+        'handle = pl.flowtex.add(field, scalars="speed", lod=False)\n'
+        'pl.set_background("#12161c")\n'
+        "pl.show()\n"
+    )
+    assert "handle.time = 0.0\n" in to_python({"file": "a.pvd", "time": 0.0})
+    own = to_python({"colour": "none"}, source="flowtex.examples.cylinder_field()")
+    assert "field = flowtex.examples.cylinder_field()\n" in own and "scalars=False" in own
+    with pytest.raises(ValueError, match="names no file"):
+        to_python({})
+
+
+def test_no_name_becomes_code() -> None:
+    evil = "a\"); import os; os.abort() #'"
+    state = {"file": evil, "vectors": evil, "colour": evil, "cmap": evil, "block": evil}
+    lines = to_python(state, picture=evil)
+    tree = compile(lines, "lines", "exec", flags=1024)  # a syntax tree, which runs nothing
+    import ast
+
+    names = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
+    assert names <= {"pv", "flowtex", "field", "pl", "handle"}

@@ -1,0 +1,462 @@
+from __future__ import annotations
+
+import asyncio
+import gc
+import signal
+import threading
+import time
+import weakref
+from collections.abc import AsyncIterator, Callable, Coroutine, Iterator
+from contextlib import asynccontextmanager
+from pathlib import Path
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
+
+import aiohttp
+import numpy as np
+import pytest
+
+pytest.importorskip("trame_rca")
+
+from served import Link, Served, enter, start
+from trame.app.core import AVAILABLE_SERVERS
+from watching import Watch, count, difference
+
+from flowtex import FlowField, examples
+from flowtex.app import FlowApp, ServeError, serve
+from flowtex.app.server import sessions
+from flowtex.app.server.files import Routes
+from flowtex.app.server.security import new_secret
+from flowtex.app.server.sessions import Sessions, usual_limit
+from flowtex.app.server.site import Site
+from flowtex.errors import FieldError
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page
+
+BROWSER_PATIENCE = 30_000
+SIZE = {"width": 860, "height": 400}
+#: Part of the view that nothing lies on, as left, top, right, bottom.
+WATCH = Watch((300, 80, 740, 320))
+
+
+class Plain:
+    """An application that draws nothing."""
+
+    def __init__(self, server: Any) -> None:
+        self.server = server
+        self.stream = SimpleNamespace(watched=lambda: True)
+        self.closed = False
+        server.state.flow0_value = 1
+
+    def close(self) -> None:
+        self.closed = True
+
+
+class Place:
+    """A site in this process, and who goes there."""
+
+    def __init__(self, site: Site, secret: str, http: aiohttp.ClientSession) -> None:
+        self.site, self.secret, self.http = site, secret, http
+        self.bare = f"http://127.0.0.1:{site.port}/"
+
+    async def enter(self, token: str | None = None) -> tuple[int, dict[str, str]]:
+        return await enter(self.http, self.bare, self.secret, token)
+
+    async def token(self, known: str | None = None) -> str:
+        status, said = await self.enter(known)
+        assert status == 200, said
+        return said["session"]
+
+    async def link(self, token: str) -> Link:
+        return await Link.open(self.http, self.bare, token, self.secret)
+
+    def app(self, token: str) -> Any:
+        found = self.site.sessions.get(token)
+        assert found is not None
+        return found.app
+
+
+@asynccontextmanager
+async def place(
+    make: Callable[[Any], Any] = Plain, *, limit: int = 4, idle: float = 10.0
+) -> AsyncIterator[Place]:
+    secret = new_secret()
+    site = Site(Sessions(make, secret, limit=limit, idle=idle), secret)
+    await site.prepare()
+    await site.listen()
+    async with aiohttp.ClientSession() as http:
+        try:
+            yield Place(site, secret, http)
+        finally:
+            await site.stop()
+
+
+def run(story: Coroutine[Any, Any, None]) -> None:
+    """Run a story, and see that nothing of it is left."""
+    before = set(AVAILABLE_SERVERS)
+    asyncio.run(story)
+    assert set(AVAILABLE_SERVERS) == before
+
+
+async def until(holds: Callable[[], bool]) -> None:
+    async with asyncio.timeout(10):
+        while not holds():
+            await asyncio.sleep(0.01)
+
+
+def test_each_page_has_a_state_of_its_own_and_comes_back_to_it() -> None:
+    async def story() -> None:
+        async with place() as here:
+            one, other = await here.token(), await here.token()
+            assert one != other
+            link, second = await here.link(one), await here.link(other)
+            await link.set(value=7)
+            assert here.app(one).server.state.flow0_value == 7
+            assert here.app(other).server.state.flow0_value == 1
+            assert here.app(one).stream.watched() is True
+            await link.close()
+            await until(lambda: not here.app(one).stream.watched())
+            assert await here.token(one) == one
+            link = await here.link(one)
+            assert link.get("value") == 7
+            await link.close()
+            await second.close()
+
+    run(story())
+
+
+def test_a_copied_tab_gets_a_session_of_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sessions, "RECONNECT_WAIT_S", 0.1)
+
+    async def story() -> None:
+        async with place() as here:
+            token = await here.token()
+            link = await here.link(token)
+            assert await here.token(token) != token
+            # A page that is loaded again asks before the end of its old connection is known.
+            asking = asyncio.create_task(here.token(token))
+            await link.close()
+            assert await asking == token
+
+    run(story())
+
+
+def test_a_second_connection_ends_the_first() -> None:
+    async def story() -> None:
+        async with place() as here:
+            token = await here.token()
+            first = await here.link(token)
+            second = await here.link(token)
+            await until(lambda: first.socket.closed)
+            assert await second.call("trame.state.get")
+            await first.close()
+            await second.close()
+
+    run(story())
+
+
+def test_the_page_that_is_one_too_many_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    async def story() -> None:
+        async with place(limit=2) as here:
+            one, other = await here.token(), await here.token()
+            link = await here.link(one)
+            status, said = await here.enter()
+            assert status == 503 and "room for 2 pages at a time" in said["words"]
+            # Who has been away for a while makes room; who is there does not.
+            monkeypatch.setattr(sessions, "REPLACE_AFTER_S", 0.0)
+            gone = here.app(other)
+            assert await here.token() not in (one, other)
+            assert gone.closed and not here.app(one).closed
+            await link.close()
+
+    run(story())
+
+
+def test_many_who_come_at_once_are_no_more_than_the_limit() -> None:
+    async def story() -> None:
+        async with place(limit=3) as here:
+            answers = await asyncio.gather(*(here.enter() for _ in range(8)))
+            assert [status for status, _ in answers].count(200) == 3
+            assert len(here.site.sessions) == 3
+
+    run(story())
+
+
+def test_an_idle_session_ends_and_one_in_use_does_not() -> None:
+    async def story() -> None:
+        async with place(idle=0.004) as here:
+            used, idle = await here.token(), await here.token()
+            link = await here.link(used)
+            app = here.app(idle)
+            await until(lambda: app.closed)
+            await asyncio.sleep(0.3)
+            assert here.site.sessions.get(idle) is None and not here.app(used).closed
+            assert app.server.name not in AVAILABLE_SERVERS
+            with pytest.raises(aiohttp.WSServerHandshakeError):
+                await here.link(idle)
+            assert await here.token(idle) != idle
+            await link.close()
+
+    run(story())
+
+
+def test_what_cannot_be_made_is_told_and_leaves_nothing() -> None:
+    def broken(server: Any) -> Any:
+        if len(made) == 1:
+            made.append(server)
+            msg = "the file is gone"
+            raise FieldError(msg)
+        made.append(server)
+        return Plain(server)
+
+    made: list[Any] = []
+
+    async def story() -> None:
+        async with place(broken) as here:
+            await here.token()
+            status, said = await here.enter()
+            assert status == 500 and "the file is gone" in said["words"]
+            assert made[1].name not in AVAILABLE_SERVERS
+            await here.token()
+
+    run(story())
+
+
+def test_what_fails_first_ends_the_start() -> None:
+    def broken(server: Any) -> Any:
+        msg = "the mesh is wrong"
+        raise FieldError(msg)
+
+    async def story() -> None:
+        with pytest.raises(FieldError, match="mesh is wrong"):
+            async with place(broken):
+                pass
+
+    run(story())
+
+
+@pytest.mark.parametrize("secret", ["", "wrong", "wslink-secret", None])
+def test_without_the_secret_there_is_no_session(secret: str | None) -> None:
+    async def story() -> None:
+        async with place() as here:
+            token = await here.token()
+            for known in (None, token):
+                asked = {"secret": secret, "session": known}
+                async with here.http.post(f"{here.bare}flowtex/session", json=asked) as answer:
+                    assert answer.status == 403
+                    assert "secret included" in (await answer.json())["words"]
+            async with here.http.post(f"{here.bare}flowtex/session", data=b"[") as answer:
+                assert answer.status == 403
+            assert len(here.site.sessions) == 1
+            with pytest.raises(RuntimeError, match="Authentication failed"):
+                await Link.open(here.http, here.bare, token, secret or "")
+
+    run(story())
+
+
+def test_other_sites_are_refused_and_proxies_are_known() -> None:
+    async def story() -> None:
+        async with place() as here:
+            token = await here.token()
+            asked = {"secret": here.secret}
+            evil = {"Origin": "http://evil.example"}
+            async with here.http.post(
+                f"{here.bare}flowtex/session", json=asked, headers=evil
+            ) as answer:
+                assert answer.status == 403
+            with pytest.raises(aiohttp.WSServerHandshakeError) as refused:
+                await here.http.ws_connect(f"{here.bare}page/{token}/ws", headers=evil)
+            assert refused.value.status == 403
+            # A page of another site that would set the header is asked about it first.
+            async with here.http.options(f"{here.bare}flowtex/session", headers=evil) as answer:
+                assert answer.status == 403
+            proxied = {"Origin": "https://hub.example", "X-Forwarded-Host": "hub.example"}
+            async with here.http.ws_connect(
+                f"{here.bare}page/{token}/ws", headers=proxied
+            ) as socket:
+                assert not socket.closed
+            async with here.http.get(here.bare) as answer:
+                assert "frame-ancestors 'self'" in answer.headers["Content-Security-Policy"]
+
+    run(story())
+
+
+def test_files_are_handed_out_to_who_has_their_address(tmp_path: Path) -> None:
+    film = tmp_path / "a.mp4"
+    film.write_bytes(b"film")
+
+    async def later() -> Any:
+        return b"later", "text/plain", None
+
+    async def story() -> None:
+        async with place() as here:
+            routes = [Routes.of(here.app(await here.token()).server) for _ in range(2)]
+            address = routes[0].give("a b.png", lambda: (b"png", "image/png", 'Düse "1".png'))
+            async with here.http.get(here.bare + address) as answer:
+                assert (answer.status, await answer.read()) == (200, b"png")
+                said = answer.headers
+                assert said["Content-Type"] == "image/png"
+                assert said["Cache-Control"] == "no-store"
+                assert said["X-Content-Type-Options"] == "nosniff"
+                assert said["Content-Disposition"] == (
+                    'attachment; filename="D?se _1_.png"; '
+                    "filename*=UTF-8''D%C3%BCse%20%221%22.png"
+                )
+            for give, body in ((later, b"later"), (lambda: (film, "video/mp4", "a.mp4"), b"film")):
+                async with here.http.get(here.bare + routes[0].give("next", give)) as answer:
+                    assert await answer.read() == body
+                    assert answer.headers["Cache-Control"] == "no-store"
+            for wrong in (
+                address.replace(routes[0].token, routes[1].token),
+                address.replace("a%20b", "b"),
+                f"flowtex/{routes[0].token}/..%2Fnext",
+            ):
+                async with here.http.get(here.bare + wrong) as answer:
+                    assert answer.status == 404
+            routes[0].withdraw("next")
+            async with here.http.get(f"{here.bare}flowtex/{routes[0].token}/next") as answer:
+                assert answer.status == 404
+            await here.site.sessions.end(next(iter(here.site.sessions)))
+            async with here.http.get(here.bare + address) as answer:
+                assert answer.status == 404
+            with pytest.raises(ValueError, match="expected one part"):
+                routes[1].give("../a", lambda: (b"", "", None))
+
+    run(story())
+
+
+def test_files_of_the_page_are_served_and_no_others() -> None:
+    async def story() -> None:
+        async with place() as here:
+            for path, status in (
+                ("vue.global.js", 200),
+                ("..%2F..%2F__init__.py", 404),
+                ("__init__.py", 404),
+            ):
+                async with here.http.get(here.bare + path) as answer:
+                    assert answer.status == status, path
+
+    run(story())
+
+
+def leaves_nothing(count: int) -> None:
+    """Open and close sessions of real applications, one after the other."""
+    field = examples.double_gyre_field()
+    made: list[weakref.ref[Any]] = []
+
+    def make(server: Any) -> FlowApp:
+        app = FlowApp(field, server=server, samples=5)
+        made.extend(weakref.ref(thing) for thing in (app, server, app.viewport, app.stream))
+        return app
+
+    async def story() -> None:
+        async with place(make, limit=2) as here:
+            for _ in range(count):
+                token = await here.token()
+                link = await here.link(token)
+                view = here.app(token).stream.area_name
+                await link.call("trame.rca.size", view, "test", {"w": 96, "h": 64, "p": 1})
+                await link.until(lambda link=link: link.pictures > 0)
+                await link.close()
+                ended = here.site.sessions.get(token)
+                assert ended is not None
+                await here.site.sessions.end(ended)
+                del ended
+
+    threads = set(threading.enumerate())
+    run(story())
+    gc.collect()
+    assert len(made) == 4 * count
+    assert [ref() for ref in made if ref() is not None] == []
+    assert [thread for thread in threading.enumerate() if thread not in threads] == []
+
+
+@pytest.mark.usefixtures("opengl")
+def test_sessions_that_end_leave_nothing() -> None:
+    leaves_nothing(3)
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("opengl")
+def test_thirty_sessions_that_end_leave_nothing() -> None:
+    leaves_nothing(30)
+
+
+def test_what_cannot_be_served_is_told() -> None:
+    field = FlowField.from_arrays(
+        np.stack([*np.meshgrid(range(3), range(3)), np.zeros((3, 3))], axis=-1).astype(float),
+        np.ones((3, 3, 3)),
+    )
+    with pytest.raises(ServeError, match="limit is 0; expected 1 or more"):
+        serve(field, limit=0)
+    with pytest.raises(ServeError, match="idle is -1; expected a positive number"):
+        serve(field, idle=-1)
+    with pytest.raises(TypeError, match="samples cannot go with a function"):
+        serve(Plain, samples=3)
+    assert usual_limit() >= 2
+
+
+def zoom(page: Page) -> Any:
+    before = count(page)
+    page.mouse.move(150, 220)
+    for _ in range(10):
+        page.mouse.wheel(0, -100)
+    return WATCH.settled(page, before)
+
+
+@pytest.fixture(scope="module")
+def two_places(opengl: object) -> Iterator[Served]:
+    words = ("demo", "--example", "double_gyre", "--samples", "9", "--limit", "2")
+    started = start(*words, "--idle", "0.05")
+    yield started
+    started.end(signal.SIGINT)
+
+
+@pytest.mark.browser
+def test_two_users_at_once_look_from_different_places(browser: Browser, two_places: Served) -> None:
+    users = [browser.new_context(viewport=SIZE) for _ in range(2)]  # type: ignore[arg-type]
+    one, other = (user.new_page() for user in users)
+    for page in (one, other):
+        page.goto(two_places.address)
+        WATCH.settled(page)
+    whole = WATCH.shot(other)
+    closer = zoom(one)
+    assert difference(whole, closer) > 8
+    assert difference(WATCH.shot(other), whole) == 0
+    assert "zoom 10" in one.inner_text(".flowtex") or "9.3" in one.inner_text(".flowtex")
+
+    # A page that is loaded again is where it was, and its address does not tell the secret.
+    before = count(one)
+    one.reload()
+    assert difference(WATCH.settled(one, before), closer) < 1
+    assert "secret" not in one.url and two_places.secret not in one.url
+
+    # Both places are taken: a third page says so, and opens when one has become free.
+    third = users[0].new_page()
+    third.goto(two_places.address)
+    third.get_by_text("room for 2 pages at a time").wait_for(timeout=BROWSER_PATIENCE)
+    other.close()
+    again = third.get_by_role("button", name="Try again")
+    end = time.monotonic() + 20
+    while third.locator("[data-sharp]").count() == 0:
+        assert time.monotonic() < end, third.inner_text("body")
+        if again.is_visible():
+            again.click()
+        third.wait_for_timeout(200)
+    # Another tab of the first user, and yet not the first user's camera.
+    assert difference(WATCH.settled(third), whole) < 1
+    for user in users:
+        user.close()
+
+
+@pytest.mark.browser
+def test_a_page_whose_session_is_over_says_so_and_comes_back(page: Page, opengl: object) -> None:
+    served = start("demo", "--example", "double_gyre", "--samples", "5")
+    page.set_viewport_size(SIZE)  # type: ignore[arg-type]
+    page.goto(served.address)
+    WATCH.settled(page)
+    served.end(signal.SIGTERM)
+    assert served.process.returncode == 0
+    page.get_by_text("lost its connection").wait_for(timeout=BROWSER_PATIENCE)
+    assert page.get_by_role("button", name="Open it again").is_visible()

@@ -1,0 +1,76 @@
+"""A whole page: its state, its controls, and what it begins with."""
+
+from __future__ import annotations
+
+from html import unescape
+from pathlib import Path
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+pytest.importorskip("trame_rca")
+
+
+from flowtex import examples
+from flowtex.app import FlowApp, Library
+from flowtex.app.flow_app import first_choice
+from flowtex.errors import FieldError
+from flowtex.field.source import FlowSource
+from flowtex.settings import GROUPS, TABLE
+
+pytestmark = pytest.mark.usefixtures("opengl")
+
+
+def test_the_state_has_every_setting_under_a_prefix_of_its_own(
+    flat: FlowApp, bent: FlowApp
+) -> None:
+    grouped = [name for names in GROUPS.values() for name in names]
+    assert sorted(grouped) == sorted(TABLE) and len(GROUPS[""]) + 1 == 5
+    for name, value in flat.viewport.handle.settings:
+        assert flat.state.get(f"set_{name}") == value
+    assert flat.state.key("lod") != bent.state.key("lod")
+    assert flat.state.get("colours") == ["speed", "height", "none"]
+
+
+def test_the_page_has_a_control_with_a_hint_for_each_setting(flat: FlowApp) -> None:
+    html = unescape(flat.layout.html)
+    for row in TABLE.values():
+        assert f'data-setting="{row.name}"' in html
+        assert row.text in html
+
+
+def test_examples_make_an_app() -> None:
+    app = FlowApp(examples.cylinder_field(), zoom=3.0, focus=(4.0, 0.0), scalars=False)
+    app.stream.update_size("test", {"w": 64, "h": 48})
+    assert app.viewport.zoom == pytest.approx(3.0)
+    assert (
+        app.state.get("colour") == "none"
+        and app.state.get("about") == "161 × 65 nodes · 31 times · periodic along i"
+    )
+    app.close()
+
+
+def write_flow(path: Path) -> None:
+    mesh = pv.ImageData(dimensions=(6, 5, 1))
+    mesh["velocity"] = np.ones((30, 3))
+    mesh.save(path)
+
+
+def test_a_file_that_cannot_be_drawn_does_not_hide_the_others(tmp_path: Path) -> None:
+    (tmp_path / "a.vts").touch()
+    still = pv.ImageData(dimensions=(6, 5, 1))
+    still["pressure"] = np.zeros(30)
+    still.save(tmp_path / "b.vti")
+    with pytest.raises(FieldError, match=r"a\.vts"):
+        first_choice(Library.of(tmp_path), {})
+    write_flow(tmp_path / "c.vti")
+    assert first_choice(Library.of(tmp_path), {})[0] == "c.vti"
+
+
+def test_lines_of_python_make_the_flow_that_is_shown(tmp_path: Path) -> None:
+    write_flow(tmp_path / "c.vti")
+    assert Library.of(tmp_path).python("c.vti") is None
+    made = Library({"one": lambda: FlowSource(None)}, python={"one": "make()"})
+    assert made.python("one") == "make()"
+    compile(f"field = {Library.of(pv.read(tmp_path / 'c.vti')).python('flow')}", "lines", "exec")

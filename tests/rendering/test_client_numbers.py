@@ -1,0 +1,168 @@
+"""The numbers that the client in the browser is held to, in files that its own tests read.
+
+``FLOWTEX_WRITE_FIXTURES=1`` writes the files; without it they must say what Python computes.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from flows import gyre, lines, swinging, torus
+from matrix import ASIDE, IMAGE, WHOLE, straight
+
+from flowtex import FlowField
+from flowtex.camera import CAMERA_LIMITS, Camera
+from flowtex.rendering.uniforms import ViewState, uniforms
+from flowtex.rendering.webgl import ClientData
+from flowtex.scene import Scene
+from flowtex.settings import Settings
+from flowtex.textures import TextureSet, as_picture
+from flowtex.trace import SliceStore
+
+FOLDER = Path(__file__).resolve().parents[2] / "client" / "tests"
+
+#: Parts of the header that the client's uniforms come from.
+NEEDED = ("variant", "geometry", "slices", "paper", "constants", "settings")
+
+
+@cache
+def strip() -> FlowField:
+    """A flow on a bent strip of few nodes."""
+    a, b = np.meshgrid(np.linspace(0, 2, 9), np.linspace(-0.8, 0.8, 7))
+    points = np.stack([np.cos(a) * np.cos(b), np.sin(a) * np.cos(b), np.sin(b)], axis=-1)
+    velocity = np.stack([-np.sin(a), np.cos(a), 0 * a], axis=-1)
+    return FlowField.from_arrays(points, velocity)
+
+
+#: Name, field, eye, pixels drawn for one of the page, and settings.
+VIEWS: dict[str, tuple[Any, Any, float, dict[str, Any]]] = {
+    "whole": (gyre, WHOLE, 1.0, {}),
+    "zoom 1e5": (gyre, straight(1e5), 1.0, {}),
+    "curved": (torus, ASIDE, 1.0, {}),
+    "between two steps": (swinging, straight(1, (0, 0)), 1.0, {}),
+    "image": (gyre, WHOLE, 1.0, {"noise": "image", "tiles": 3}),
+    "streaming": (gyre, WHOLE, 1.0, {"motion": "uniform", "period": 3.0}),
+    "without a sign": (lines, WHOLE, 1.0, {"kernel": "ramp", "two_sided": False}),
+    "finer": (gyre, WHOLE, 2.0, {"motion": "speed", "kernel": "box"}),
+    "finer paper": (gyre, WHOLE, 2.0, {"noise": "texture", "resolution": 64}),
+    "finer image": (gyre, WHOLE, 2.0, {"noise": "image", "tiles": 3}),
+    "coarser": (gyre, WHOLE, 0.4, {"grain": 1.2}),
+    "coarser paper": (gyre, WHOLE, 0.5, {"noise": "spots", "resolution": 64}),
+}
+
+
+def uniforms_of(name: str) -> dict[str, Any]:
+    make, camera, density, options = VIEWS[name]
+    settings = Settings(**{"samples": 11, **options})
+    image = as_picture(IMAGE) if settings.noise == "image" else None
+    textures = TextureSet.build(SliceStore(make()), settings, image)
+    view = ViewState(
+        focus=np.asarray(camera.focal_point, dtype=float),
+        anchor=np.array([0.1, 0.2, 0.0]),
+        eye=np.asarray(camera.eye, dtype=float),
+        between=0.375,
+        time=0.55,
+        clock=7.3,
+        density=density,
+    )
+    header = ClientData(textures).header(settings)
+    if header["paper"] is not None:
+        header["paper"] |= {"alongI": [], "alongJ": []}
+    noise = None if textures.paper is None else list(textures.paper.noise.shape)
+    return {
+        "header": {key: header[key] for key in NEEDED},
+        "view": plain(vars(view)),
+        "noise": noise,
+        "uniforms": plain(uniforms(textures, settings, view)),
+    }
+
+
+#: Moves one after the other: name and arguments.
+MOVES: list[tuple[str, list[float]]] = [
+    ("zoom", [1.25, 0.3, -0.2]),
+    ("pan", [0.1, -0.25]),
+    ("rotate", [0.3, 0.2]),
+    ("zoom", [40.0, -0.5, 0.4]),
+    ("rotate", [-0.7, -0.1]),
+    ("pan", [-0.4, 0.3]),
+    ("zoom", [1e-3, 0.1, 0.1]),
+    ("zoom", [1e12, 0.0, 0.0]),
+]
+
+
+def moved(camera: Camera, whole: Camera, aspect: float, move: tuple[str, list[float]]) -> Camera:
+    name, (x, y, *rest) = move
+    if name == "zoom":
+        return camera.zoom_by(x, y, *rest, aspect=aspect, whole=whole)
+    return camera.pan(x, y, aspect) if name == "pan" else camera.rotate(x, y, aspect)
+
+
+def camera_of(name: str) -> dict[str, Any]:
+    field, aspect = (gyre(9, 5), 1.5) if name == "flat" else (strip(), 2.3)
+    data = ClientData(Scene(field).textures)
+    whole = camera = Camera.fit(field.surface, aspect)
+    states = [camera := moved(camera, whole, aspect, move) for move in MOVES]
+    points = field.points.reshape(-1, 3)[::7]
+    header = data.constants()
+    return {
+        "geometry": header["geometry"],
+        "limits": header["limits"],
+        "nodes": plain(data.surface()["position"].ravel()[: 3 * field.valid.size]),
+        "aspect": aspect,
+        "fit": whole.to_dict(),
+        "moves": [{"name": name, "values": values} for name, values in MOVES],
+        "states": [state.to_dict() for state in states],
+        "points": plain(points),
+        "places": plain(whole.project(points, aspect)),
+        "ray": plain(np.stack(whole.ray(0.4, -0.3, aspect))),
+    }
+
+
+def plain(value: Any) -> Any:
+    """Return numbers as Python's own."""
+    if isinstance(value, dict):
+        return {key: plain(each) for key, each in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [plain(each) for each in value]
+    return value.tolist() if isinstance(value, (np.ndarray, np.generic)) else value
+
+
+def check(name: str, expected: Any) -> None:
+    path = FOLDER / name
+    if os.environ.get("FLOWTEX_WRITE_FIXTURES"):
+        path.write_text(json.dumps(expected, separators=(",", ":")) + "\n", encoding="utf-8")
+    assert_near(json.loads(path.read_text(encoding="utf-8")), json.loads(json.dumps(expected)))
+
+
+def assert_near(found: Any, expected: Any, where: str = "") -> None:
+    if isinstance(expected, dict):
+        assert set(found) == set(expected), where
+        for key, value in expected.items():
+            assert_near(found[key], value, f"{where}.{key}")
+    elif isinstance(expected, list):
+        assert len(found) == len(expected), where
+        for n, value in enumerate(expected):
+            assert_near(found[n], value, f"{where}[{n}]")
+    elif isinstance(expected, float):
+        assert found == pytest.approx(expected, rel=1e-9, abs=1e-12), where
+    else:
+        assert found == expected, where
+
+
+def test_uniforms_for_the_client() -> None:
+    check("uniforms.json", {name: uniforms_of(name) for name in VIEWS})
+
+
+def test_cameras_for_the_client() -> None:
+    check("camera.json", {name: camera_of(name) for name in ("flat", "curved")})
+
+
+def test_the_client_gets_the_limits_of_the_camera() -> None:
+    limits = ClientData(Scene(gyre()).textures).constants()["limits"]
+    assert {name: limits[name] for name in vars(CAMERA_LIMITS)} == vars(CAMERA_LIMITS)

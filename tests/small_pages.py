@@ -1,0 +1,71 @@
+"""Pages of small flows, and pictures of them, for the tests of the page."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+
+from flowtex import FlowField
+
+if TYPE_CHECKING:
+    from flowtex.app import FlowApp
+
+__all__ = ["difference", "picture"]
+
+
+def small(*, curved: bool = False, steps: int = 1) -> FlowField:
+    """A patch of 24 x 16 nodes, flat or bent, in which everything moves along x."""
+    x, y = np.meshgrid(np.linspace(0, 3, 24), np.linspace(0, 2, 16))
+    z = 0.4 * np.sin(x) if curved else np.zeros_like(x)
+    points = np.stack([x, y, z], axis=-1)
+    velocity = np.zeros((steps, *points.shape))
+    velocity[..., 0] = 1 + 0.1 * np.arange(steps)[:, None, None] + 0.2 * y
+    times = np.arange(steps, dtype=float) if steps > 1 else None
+    return FlowField.from_arrays(
+        points, velocity if steps > 1 else velocity[0], times=times, scalars={"height": x}
+    )
+
+
+def small_page(field: FlowField, samples: int, width: int, height: int) -> FlowApp:
+    pytest.importorskip("trame_rca")
+    from flowtex.app import FlowApp
+
+    app = FlowApp(field, samples=samples)
+    app.stream.update_size("test", {"w": width, "h": height, "p": 1})
+    return app
+
+
+@pytest.fixture(scope="module")
+def flat(opengl: object) -> Iterator[FlowApp]:
+    """A page of a steady flow on a flat patch."""
+    app = small_page(small(), 9, 240, 160)
+    yield app
+    app.close()
+
+
+@pytest.fixture(scope="module")
+def bent(opengl: object) -> Iterator[FlowApp]:
+    """A page of a steady flow on a bent patch."""
+    app = small_page(small(curved=True), 9, 240, 160)
+    yield app
+    app.close()
+
+
+@pytest.fixture
+def series(opengl: object) -> Iterator[FlowApp]:
+    """A page of a flow that varies in time."""
+    app = small_page(small(steps=4), 5, 120, 80)
+    yield app
+    app.close()
+
+
+def picture(app: Any) -> Any:
+    width, height = app.viewport.size
+    return app.viewport.draw(width, height).astype(int)
+
+
+def difference(one: Any, other: Any) -> float:
+    return float(np.abs(np.asarray(one, int) - np.asarray(other, int)).mean())
