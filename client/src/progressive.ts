@@ -246,7 +246,6 @@ export class ProgressiveRenderer {
       u_mapped: header.scalars.name !== null,
       u_colour: header.colour,
       u_lit: header.lighting,
-      u_light: header.constants.light,
       u_ground: header.background,
       u_opacity: header.opacity,
       u_toEye: toFrame(header.geometry.frame, camera.toEye),

@@ -106,14 +106,12 @@ export interface Header {
   paper: Paper | null;
   /** Numbers of flowtex/rendering/uniforms.py. */
   constants: {
-    octaves: number;
-    snap: number;
-    wave: number;
-    coarse: number;
+    noiseDoublings: number;
+    clearDoublings: number;
+    wavePixels: number;
+    clockStep: number;
     kernels: string[];
     anchorRange: number;
-    /** Ambient and diffuse. */
-    light: [number, number];
   };
   limits: CameraLimits;
   table: Row[];

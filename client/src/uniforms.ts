@@ -50,7 +50,7 @@ export function uniforms(
   const { geometry, slices, constants } = header;
   const s = settings as unknown as Numbers;
   const signFree = isSignFree(header);
-  const finest = 2 ** (Math.floor(Math.log2(geometry.extent)) - constants.octaves);
+  const finest = 2 ** (Math.floor(Math.log2(geometry.extent)) - constants.noiseDoublings);
   const motion = motionUniforms(header, s, view);
   const w = view.eye[3];
   const eye = toFrame(geometry.frame, subtract(view.eye, scale(geometry.center, w)));
@@ -92,24 +92,24 @@ function motionUniforms(header: Header, s: Numbers, view: ViewState): Record<str
     ? (view.time - slices.times[0]) / (geometry.extent / slices.pace)
     : (((view.clock / s.period) % 1) + 1) % 1;
   const travel = varies ? geometry.extent : s.speed * s.period;
-  const coarse = Math.floor(turns / constants.coarse) * constants.coarse;
+  const coarse = Math.floor(turns / constants.clockStep) * constants.clockStep;
   return {
     u_moving: (varies || (s.motion !== "off" && !isSignFree(header))) && !header.paper,
     u_clock: [coarse, turns - coarse],
     u_travel: travel * (inPixels ? view.density : 1),
     u_travelInPixels: inPixels,
     u_travelBySpeed: varies || s.motion === "speed",
-    u_wave: constants.wave * view.density,
+    u_wave: constants.wavePixels * view.density,
   };
 }
 
 /** The noise's origin in space and in the finest cells of both families of lattices. */
 function noiseOrigin(header: Header, view: ViewState, finest: number): Record<string, Uniform> {
-  const { octaves, snap } = header.constants;
+  const { noiseDoublings, clearDoublings } = header.constants;
   const { frame, center } = header.geometry;
   const focus = toFrame(frame, subtract(view.focus, center));
-  const limit = 2 ** (octaves - snap) - 1;
-  const cells = 2 ** snap;
+  const limit = 2 ** (noiseDoublings - clearDoublings) - 1;
+  const cells = 2 ** clearDoublings;
   const even = focus.map((x) => clamp(Math.round(x / finest / cells), -limit, limit) * cells);
   const odd = even.map((x) => x / Math.SQRT2);
   const whole = odd.map((x) => Math.floor(x / cells) * cells);

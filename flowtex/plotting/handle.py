@@ -13,12 +13,15 @@ from typing import Any
 
 from flowtex._util.colours import DEFAULT_CMAP
 from flowtex.field import FlowField
-from flowtex.rendering.uniforms import LIGHT
+from flowtex.rendering.constants import AMBIENT_LIGHT, DIFFUSE_LIGHT
 from flowtex.rendering.vtk import FlowLayer, set_attributes, surface_mesh, use_flow_mapper
 from flowtex.scene import Scene
 from flowtex.settings import Affects, Settings
 
 __all__ = ["FlowHandle"]
+
+#: A lit surface: dark sides stay bright enough to read the texture there.
+LIGHT: dict[str, Any] = {"ambient": AMBIENT_LIGHT, "diffuse": DIFFUSE_LIGHT}
 
 #: A scalar bar that keeps out of the picture's way.
 SCALAR_BAR: dict[str, Any] = {
@@ -67,7 +70,7 @@ class FlowHandle:
         name, appearance = scene.scalar_name, scene.appearance
         lit = appearance.is_lit(flat=scene.flat)
         options: dict[str, Any] = {"opacity": appearance.opacity, "lighting": lit}
-        options |= dict(zip(("ambient", "diffuse"), LIGHT, strict=True)) if lit else {}
+        options |= LIGHT if lit else {}
         if name is None:
             options["color"] = appearance.color
         else:

@@ -16,7 +16,7 @@ from flowtex.rendering.constants import KERNELS
 from flowtex.settings import Settings
 from flowtex.textures import PaperTextures, TextureSet
 
-__all__ = ["ANCHOR_RANGE", "LIGHT", "ViewState", "client_constants", "uniforms", "variants"]
+__all__ = ["ANCHOR_RANGE", "ViewState", "client_constants", "uniforms", "variants"]
 
 #: Doublings from the finest cell of the noise to the extent of the surface.
 NOISE_DOUBLINGS = 30
@@ -26,10 +26,9 @@ CLEAR_DOUBLINGS = 9
 WAVE_PIXELS = 96.0
 #: Step of the coarse part of the clock, in base periods: times a power of two it stays exact.
 CLOCK_STEP = 2.0**-12
+
 #: Heights of the view within which positions may be counted from another point than its middle.
 ANCHOR_RANGE = 8.0
-#: Ambient and diffuse light: dark sides stay bright enough to read the texture there.
-LIGHT = (0.3, 0.8)
 
 
 @dataclass
@@ -84,13 +83,12 @@ def variants(textures: TextureSet, *, unsteady: bool) -> frozenset[str]:
 def client_constants() -> dict[str, Any]:
     """Numbers by which a client computes the uniforms itself, for JSON."""
     return {
-        "octaves": NOISE_DOUBLINGS,
-        "snap": CLEAR_DOUBLINGS,
-        "wave": WAVE_PIXELS,
-        "coarse": CLOCK_STEP,
+        "noiseDoublings": NOISE_DOUBLINGS,
+        "clearDoublings": CLEAR_DOUBLINGS,
+        "wavePixels": WAVE_PIXELS,
+        "clockStep": CLOCK_STEP,
         "kernels": list(KERNELS),
         "anchorRange": ANCHOR_RANGE,
-        "light": list(LIGHT),
     }
 
 

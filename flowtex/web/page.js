@@ -478,28 +478,29 @@ ray(x,y),ahead=camera.axes[2],depth=dot2(subtract2(about,start),ahead)/dot2(alon
 let{header,scene,parts}=viewer,name=header?.scalars.name??null;if(!header||!scene||name===null)return{};let[before,after]=scene.
 scalarParts(shown[0],shown[1]).map(n=>parts.get(n)?.data);if(!before||!after)return{};let value=n=>before[n]+shown[2]*(after[n]-
 before[n]);return{[name]:interpolated(header.geometry.shape,i,j,value)}}function uniforms(header,settings,view,noiseShape=null){let{geometry,slices,constants}=header,s=settings,signFree=isSignFree(
-header),finest=2**(Math.floor(Math.log2(geometry.extent))-constants.octaves),motion=motionUniforms(header,s,view),w=view.
-eye[3],eye=toFrame(geometry.frame,subtract2(view.eye,scale2(geometry.center,w))),kernel=signFree&&s.kernel==="ramp"?"han\
-n":s.kernel;return{u_eye:[...subtract2(eye,scale2(view.anchor,w)),w],u_between:view.between,u_slicesSize:[geometry.columns.
-size,geometry.rows.size],u_deepest:geometry.levels,u_lags:slices.lags,u_lagCount:slices.lags.length,u_sides:s.two_sided||
+header),finest=2**(Math.floor(Math.log2(geometry.extent))-constants.noiseDoublings),motion=motionUniforms(header,s,view),
+w=view.eye[3],eye=toFrame(geometry.frame,subtract2(view.eye,scale2(geometry.center,w))),kernel=signFree&&s.kernel==="ram\
+p"?"hann":s.kernel;return{u_eye:[...subtract2(eye,scale2(view.anchor,w)),w],u_between:view.between,u_slicesSize:[geometry.
+columns.size,geometry.rows.size],u_deepest:geometry.levels,u_lags:slices.lags,u_lagCount:slices.lags.length,u_sides:s.two_sided||
 signFree?slices.sides:1,u_unit:slices.unit,u_samples:motion.u_moving?2*s.samples-1:s.samples,u_spacing:s.spacing,u_grain:s.
 grain*view.density,u_kernel:constants.kernels.indexOf(kernel),u_lod:s.lod,u_contrast:s.contrast,u_strength:s.strength,u_seed:s.
 seed,u_showLevel:s.show_level,u_fixed:s.fixed_grain,...motion,...noiseOrigin(header,view,finest),u_noiseFinest:finest,u_texel:geometry.
 extent/s.resolution,...header.paper&&noiseShape?paperUniforms(header.paper,s,noiseShape,view.density):{}}}function motionUniforms(header,s,view){
 let{geometry,slices,constants}=header,varies=slices.steps>1,inPixels=!varies&&s.speed_in==="pixels",turns=varies?(view.time-
 slices.times[0])/(geometry.extent/slices.pace):(view.clock/s.period%1+1)%1,travel=varies?geometry.extent:s.speed*s.period,
-coarse=Math.floor(turns/constants.coarse)*constants.coarse;return{u_moving:(varies||s.motion!=="off"&&!isSignFree(header))&&
-!header.paper,u_clock:[coarse,turns-coarse],u_travel:travel*(inPixels?view.density:1),u_travelInPixels:inPixels,u_travelBySpeed:varies||
-s.motion==="speed",u_wave:constants.wave*view.density}}function noiseOrigin(header,view,finest){let{octaves,snap}=header.
-constants,{frame,center}=header.geometry,focus=toFrame(frame,subtract2(view.focus,center)),limit=2**(octaves-snap)-1,cells=2**
-snap,even=focus.map(x=>clamp(Math.round(x/finest/cells),-limit,limit)*cells),odd=even.map(x=>x/Math.SQRT2),whole=odd.map(
-x=>Math.floor(x/cells)*cells);return{u_noiseOrigin:even.map((x,k)=>x*finest-view.anchor[k]),u_noiseOriginEven:even,u_noiseOriginOdd:whole,
-u_noiseRestOdd:odd.map((x,k)=>x-whole[k])}}function paperUniforms(paper,s,noiseShape,density){let tiles=s.noise==="image"?
-s.tiles:1,[rows,columns]=noiseShape;return{u_noiseSize:paper.size.map(n=>n*density),u_noiseGrain:paper.grain,u_noiseDeviation:paper.
-deviations,u_noiseCorrected:paper.corrected,u_pictureSize:[columns*density*tiles,rows*density*tiles],u_pictureRound:[Number(
-paper.repeat[1]),Number(paper.repeat[0])],u_pictureGrey:noiseShape.length===2,u_tiles:tiles}}function momentOf(times,time){
-if(times.length<2)return[0,0,0];let step=0;for(;step<times.length-2&&times[step+1]<=time;)step+=1;let late=(time-times[step])/
-(times[step+1]-times[step]);return[step,step+1,clamp(late,0,1)]}var SERIES_STEP_S=.5,SERIES_LEAST_S=6,SERIES_MOST_S=60,LONGEST_GAP_S=.5,Player=class{time=0;clock=0;playing=!1;times=[0];lastFrame=0;hasHeader=!1;setHeader(header){
+coarse=Math.floor(turns/constants.clockStep)*constants.clockStep;return{u_moving:(varies||s.motion!=="off"&&!isSignFree(
+header))&&!header.paper,u_clock:[coarse,turns-coarse],u_travel:travel*(inPixels?view.density:1),u_travelInPixels:inPixels,
+u_travelBySpeed:varies||s.motion==="speed",u_wave:constants.wavePixels*view.density}}function noiseOrigin(header,view,finest){
+let{noiseDoublings,clearDoublings}=header.constants,{frame,center}=header.geometry,focus=toFrame(frame,subtract2(view.focus,
+center)),limit=2**(noiseDoublings-clearDoublings)-1,cells=2**clearDoublings,even=focus.map(x=>clamp(Math.round(x/finest/
+cells),-limit,limit)*cells),odd=even.map(x=>x/Math.SQRT2),whole=odd.map(x=>Math.floor(x/cells)*cells);return{u_noiseOrigin:even.
+map((x,k)=>x*finest-view.anchor[k]),u_noiseOriginEven:even,u_noiseOriginOdd:whole,u_noiseRestOdd:odd.map((x,k)=>x-whole[k])}}
+function paperUniforms(paper,s,noiseShape,density){let tiles=s.noise==="image"?s.tiles:1,[rows,columns]=noiseShape;return{
+u_noiseSize:paper.size.map(n=>n*density),u_noiseGrain:paper.grain,u_noiseDeviation:paper.deviations,u_noiseCorrected:paper.
+corrected,u_pictureSize:[columns*density*tiles,rows*density*tiles],u_pictureRound:[Number(paper.repeat[1]),Number(paper.
+repeat[0])],u_pictureGrey:noiseShape.length===2,u_tiles:tiles}}function momentOf(times,time){if(times.length<2)return[0,
+0,0];let step=0;for(;step<times.length-2&&times[step+1]<=time;)step+=1;let late=(time-times[step])/(times[step+1]-times[step]);
+return[step,step+1,clamp(late,0,1)]}var SERIES_STEP_S=.5,SERIES_LEAST_S=6,SERIES_MOST_S=60,LONGEST_GAP_S=.5,Player=class{time=0;clock=0;playing=!1;times=[0];lastFrame=0;hasHeader=!1;setHeader(header){
 let{times}=header.slices;(!(times.length===this.times.length&&times.every((t,n)=>t===this.times[n]))||!this.hasHeader)&&
 (this.time=header.time,this.clock=header.clock),this.hasHeader=!0,this.times=times}get varies(){return this.times.length>
 1}get span(){return[this.times[0],this.times[this.times.length-1]]}get moment(){return momentOf(this.times,this.time)}timeOf([
@@ -600,11 +601,11 @@ this.values(view,samples,draft)),scene.draw(shown[0],shown[1],view.anchor,!0),sm
 settle()}values(view,samples,draft){let{settings,header,camera,parts}=this.viewer;if(!header||!camera)return{};let noise=parts.
 get("noise")?.shape??null;return{...uniforms(header,{...settings,samples},view,noise),...draft?draftUniforms(settings,samples,
 view.density):{},u_matrix:projection(header.geometry,camera,view.anchor),u_mapped:header.scalars.name!==null,u_colour:header.
-colour,u_lit:header.lighting,u_light:header.constants.light,u_ground:header.background,u_opacity:header.opacity,u_toEye:toFrame(
-header.geometry.frame,camera.toEye)}}copy(pen,{width:w,height:h,rows},top,width,height,to){if(!pen)return;let{canvas}=this.
-graphics;pen.imageSmoothingEnabled=w!==width||h!==height,pen.drawImage(canvas,0,canvas.height-h+top,w,rows,0,to,width,rows*
-height/h)}};function copyOfCanvas(canvas){let copy=document.createElement("canvas");return copy.width=canvas.width,copy.
-height=canvas.height,copy.getContext("2d")?.drawImage(canvas,0,0),copy}function fromHalf(bits){let exponent=bits>>10&31,part=bits&1023,size;return exponent===0?size=part*2**-24:exponent===31?
+colour,u_lit:header.lighting,u_ground:header.background,u_opacity:header.opacity,u_toEye:toFrame(header.geometry.frame,camera.
+toEye)}}copy(pen,{width:w,height:h,rows},top,width,height,to){if(!pen)return;let{canvas}=this.graphics;pen.imageSmoothingEnabled=
+w!==width||h!==height,pen.drawImage(canvas,0,canvas.height-h+top,w,rows,0,to,width,rows*height/h)}};function copyOfCanvas(canvas){
+let copy=document.createElement("canvas");return copy.width=canvas.width,copy.height=canvas.height,copy.getContext("2d")?.
+drawImage(canvas,0,0),copy}function fromHalf(bits){let exponent=bits>>10&31,part=bits&1023,size;return exponent===0?size=part*2**-24:exponent===31?
 size=part?NaN:1/0:size=(1024+part)*2**(exponent-25),bits&32768?-size:size}function toHalf(x){let sign=x<0?32768:0,size=Math.
 abs(x);if(!(size<65520))return sign|(size>=65520?31744:32256);let exponent=Math.max(Math.floor(Math.log2(size||1e-30)),-14),
 part=Math.round(size/2**(exponent-10));return sign|(part<1024?part:(exponent+14)*1024+part)}function halved(texels,width,height,channels){

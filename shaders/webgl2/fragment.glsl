@@ -15,7 +15,6 @@ uniform sampler2D u_cmap;  // FLOWTEX_COLOURS colours
 uniform bool u_mapped;     // colour by the scalar, or one colour for all
 uniform vec3 u_colour;
 uniform bool u_lit;
-uniform vec2 u_light;      // ambient and diffuse: dark sides stay bright enough to read the texture
 uniform vec3 u_toEye;      // way to the light, which is the camera's own
 uniform vec3 u_ground;     // behind the surface
 uniform float u_opacity;
@@ -60,7 +59,7 @@ void main()
 #else
     float facing = abs(dot(normalize(flowtexNormalOut), u_toEye));
 #endif
-    colour *= min(u_light.x + u_light.y * facing, 1.0);
+    colour *= min(FLOWTEX_AMBIENT_LIGHT + FLOWTEX_DIFFUSE_LIGHT * facing, 1.0);
   }
   // One layer before the ground: no order of drawing to keep.
   flowtexOut = vec4(mix(u_ground, colour, u_opacity), 1.0);

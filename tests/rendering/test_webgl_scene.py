@@ -11,7 +11,6 @@ import flowtex
 from flowtex import examples
 from flowtex._util.colours import colour_table
 from flowtex.camera import Camera
-from flowtex.first_look import first_look
 from flowtex.options import Options
 from flowtex.rendering.webgl import ClientData
 from flowtex.scene import coarsened_field
@@ -145,7 +144,7 @@ def test_the_first_look_is_that_of_vtk(make: Any, view: Any, aspect: float, open
     plotter = pv.Plotter(off_screen=True, window_size=[int(300 * aspect), 300])
     field = make()
     look(plotter, field, **view)
-    found, camera = first_look(field, aspect, **view), plotter.camera
+    found, camera = Camera.fit(field.surface, aspect, **view), plotter.camera
     for name in ("position", "focal_point", "up"):
         np.testing.assert_allclose(getattr(found, name), getattr(camera, name), atol=1e-9)
     assert found.parallel == bool(camera.parallel_projection)
@@ -159,7 +158,7 @@ def test_the_first_look_is_that_of_vtk(make: Any, view: Any, aspect: float, open
 @pytest.mark.parametrize("make", [plane, ball])
 def test_the_first_look_holds_the_whole_surface(make: Any) -> None:
     field = make()
-    found = first_look(field, 1.5)
+    found = Camera.fit(field.surface, 1.5)
     camera = Camera(
         found.position,
         found.focal_point,
