@@ -70,7 +70,7 @@ class FlowHandle:
         name, appearance = scene.scalar_name, scene.appearance
         lit = appearance.is_lit(flat=scene.flat)
         options: dict[str, Any] = {"opacity": appearance.opacity, "lighting": lit}
-        options |= dict(zip(("ambient", "diffuse"), LIGHT, strict=True)) if lit else {}
+        options |= LIGHT if lit else {}
         if name is None:
             options["color"] = appearance.color
         else:
