@@ -42,9 +42,11 @@ NEEDS: dict[str, tuple[Condition, ...]] = {
     "period": _NEEDS_MOTION,
 }
 #: Labels that are not the name.
-LABELS = {"lod": "Level of detail"}
+LABELS = {"lod": "Level of detail", "show_level": "Show levels", "two_sided": "Both directions"}
 #: Widest range of a slider, and steps of one, at most.
 SLIDER_RANGE, SLIDER_STEPS = 500, 400
+#: Ratio of the ends of a range beyond which a slider that can goes by the logarithm.
+LOGARITHMIC_RATIO = 60
 #: Words for the two values of a switch; the first are those that are written.
 _SWITCH = {"on": True, "off": False, "true": True, "false": False, "yes": True, "no": False}
 
@@ -123,6 +125,11 @@ class Setting:
         if self.choices:
             return "choice"
         return "number" if (self.high or 0) - (self.low or 0) > SLIDER_RANGE else "slider"
+
+    @property
+    def logarithmic(self) -> bool:
+        """Whether a slider by the logarithm serves better than an even one."""
+        return bool(self.low and self.high and self.high / self.low > LOGARITHMIC_RATIO)
 
     @property
     def step(self) -> float:

@@ -47,8 +47,8 @@ def test_a_notebook_runs(path: Path, opengl: Any, monkeypatch: pytest.MonkeyPatc
     )
     client.execute()
     outputs = [out for cell in notebook.cells for out in cell.get("outputs", ())]
-    shown = [out.data for out in outputs if "data" in out]
-    widgets = [data for data in shown if "application/vnd.jupyter.widget-view+json" in data]
+    displays = [out.data for out in outputs if "data" in out]
+    widgets = [data for data in displays if "application/vnd.jupyter.widget-view+json" in data]
     assert widgets, "no widget was shown"
-    said = [out.text for out in outputs if out.output_type == "stream" and out.name == "stderr"]
-    assert not [text for text in said if "Warning" in text or "Error" in text]
+    messages = [out.text for out in outputs if out.output_type == "stream" and out.name == "stderr"]
+    assert not [text for text in messages if "Warning" in text or "Error" in text]

@@ -5,11 +5,6 @@ import { isSignFree, type Header, type Row, type Value } from "./protocol.ts";
 import { clamp } from "./vectors.ts";
 import type { Viewer } from "./viewer.ts";
 
-/** A range with more values than these, or whole numbers, is typed. */
-const MOST_STOPS = 100_000;
-const MOST_WHOLE_STOPS = 20_000;
-/** A range of a greater ratio goes by its logarithm. */
-const LOGARITHMIC_RATIO = 60;
 /** Stops of a slider for a number that is not whole. */
 const SLIDER_STOPS = 400;
 /** Settings with a button in the bar. */
@@ -90,11 +85,16 @@ export class Controls {
   }
 
   private control(row: Row): Control {
-    if (row.kind === "bool") return this.switch(row);
-    if (row.choices.length) return this.menu(row);
-    const range = (row.high ?? 1) - (row.low ?? 0);
-    const isTyped = range > MOST_STOPS || (row.kind === "int" && range > MOST_WHOLE_STOPS);
-    return isTyped ? this.numberField(row) : this.slider(row);
+    switch (row.control) {
+      case "checkbox":
+        return this.switch(row);
+      case "choice":
+        return this.menu(row);
+      case "number":
+        return this.numberField(row);
+      default:
+        return this.slider(row);
+    }
   }
 
   private listen(input: HTMLElement, kind: string, call: () => void): void {
@@ -114,9 +114,9 @@ export class Controls {
     return { input, show: (value) => void (input.value = String(value)) };
   }
 
-  private numberField({ name, kind, low, high }: Row): Control {
+  private numberField({ name, whole, low, high }: Row): Control {
     const [min, max] = [low ?? 0, high ?? 1];
-    const step = kind === "int" ? "1" : "any";
+    const step = whole ? "1" : "any";
     const input = dom("input", { type: "number", min: String(min), max: String(max), step });
     this.listen(input, "change", () => {
       const { valueAsNumber: value } = input;
@@ -143,16 +143,15 @@ export class Controls {
   }
 }
 
-/** Values of a setting as places of a slider: evenly, or by the logarithm where the range is great. */
-export function scaleOf(row: Pick<Row, "kind" | "low" | "high">) {
-  const [low, high] = [row.low ?? 0, row.high ?? 1];
-  const whole = row.kind === "int";
-  const even = !(low > 0 && high / low > LOGARITHMIC_RATIO);
-  const toSlider = (value: number) => (even ? value : Math.log2(value));
+/** Values of a setting as places of a slider: evenly, or by the logarithm. */
+export function scaleOf({ low, high, whole, logarithmic }: Pick<Row, "low" | "high" | "whole" | "logarithmic">) {
+  const [least, most] = [low ?? 0, high ?? 1];
+  const toSlider = (value: number) => (logarithmic ? Math.log2(value) : value);
   const fromSlider = (place: number) => {
-    const value = even ? place : 2 ** place;
-    return whole ? Math.round(value) : Number(clamp(value, low, high).toPrecision(3));
+    const value = logarithmic ? 2 ** place : place;
+    return whole ? Math.round(value) : Number(clamp(value, least, most).toPrecision(3));
   };
-  const [min, max] = [toSlider(low), toSlider(high)];
-  return { toSlider, fromSlider, min, max, step: even && whole ? 1 : (max - min) / SLIDER_STOPS };
+  const [min, max] = [least, most].map(toSlider);
+  const step = whole && !logarithmic ? 1 : (max - min) / SLIDER_STOPS;
+  return { toSlider, fromSlider, min, max, step };
 }

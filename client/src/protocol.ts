@@ -36,11 +36,14 @@ export interface Padding {
   size: number;
 }
 
-/** A row of the table of settings. */
+/** A row of the table of settings: flowtex/settings.py. */
 export interface Row {
   name: string;
   label: string;
-  kind: string;
+  control: "checkbox" | "choice" | "number" | "slider";
+  /** Whether a slider goes by the logarithm, and whether values are whole numbers. */
+  logarithmic: boolean;
+  whole: boolean;
   default: Value;
   affects: string;
   text: string;

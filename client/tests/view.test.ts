@@ -45,10 +45,10 @@ test("numbers are short", () => {
   assert.deepEqual(texts, ["0", "1.235", "1.23e5", "1.00e-4", "-2", "–"]);
 });
 
-test("a great range goes by its logarithm", () => {
-  const even = scaleOf({ kind: "int", low: 1, high: 200 / 4 });
+test("a slider goes evenly or by the logarithm", () => {
+  const even = scaleOf({ whole: true, logarithmic: false, low: 1, high: 50 });
   assert.deepEqual([even.min, even.max, even.step, even.fromSlider(7.2)], [1, 50, 1, 7]);
-  const wide = scaleOf({ kind: "float", low: 0.25, high: 32 });
+  const wide = scaleOf({ whole: false, logarithmic: true, low: 0.25, high: 32 });
   assert.deepEqual([wide.min, wide.max], [-2, 5]);
   assert.equal(wide.fromSlider(wide.toSlider(1.5)), 1.5);
 });

@@ -234,20 +234,8 @@ def _parsed_settings(words: tuple[str, ...]) -> dict[str, Any] | None:
             msg = f"--beside {word!r} is no setting; expected name=value, as in --beside lod=false"
             raise UsageError(msg)
         row = setting(name.strip().replace("-", "_"))
-        values[row.name] = row.check(_value(row, text.strip()))
+        values[row.name] = row.parse(text)
     return values or None
-
-
-def _value(row: Setting, text: str) -> Any:
-    """Take a value from its text; what cannot be read is left for the row to refuse."""
-    if row.kind is bool:
-        return {"true": True, "yes": True, "false": False, "no": False}.get(text.lower(), text)
-    if row.kind is str:
-        return text
-    try:
-        return float(text)
-    except ValueError:
-        return text
 
 
 def _annotation(row: Setting) -> Any:

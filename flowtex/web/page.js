@@ -177,36 +177,35 @@ controller.signal.aborted}listen(target,kind,call,options={}){(target===document
 timer),this.timers.delete(timer))}observe(observer,element){observer.observe(element),this.observers.add(observer)}stats(){
 let{globalListeners:listeners,observers,timers}=this;return{listeners,observers:observers.size,timers:timers.size}}end(){
 this.controller.abort(),this.globalListeners=0;for(let observer of this.observers)observer.disconnect();this.observers.clear();
-for(let timer of this.timers)clearTimeout(timer);this.timers.clear()}};var MOST_STOPS=1e5,MOST_WHOLE_STOPS=2e4,LOGARITHMIC_RATIO=60,SLIDER_STOPS=400,IN_BAR=["lod","show_level"];function hasStreaming(header){
-return header.slices.steps===1&&!header.paper&&!isSignFree(header)}function isUseful(row,header,rebuild){let{paper,slices}=header;
-switch(row.name){case"motion":case"speed":case"speed_in":case"period":return hasStreaming(header);case"grain":case"fixed\
-_grain":return!paper;case"two_sided":return slices.sides===2;case"seed":return!paper||rebuild&&!paper.picture;case"resol\
-ution":return!paper||rebuild;case"tiles":return!!paper?.picture&&(header.settings.noise==="image"||rebuild);case"noise_c\
-orrection":return!!paper&&rebuild;case"parameter":return slices.steps===1&&rebuild;default:return!IN_BAR.includes(row.name)&&
-(row.affects==="uniform"||rebuild)}}var Controls=class{element=dom("div",{class:"settings glass",hidden:"","aria-label":"\
-Settings"});viewer;controls=new Map;constructor(viewer){this.viewer=viewer}build(header){this.controls.clear(),this.element.
-replaceChildren();let rebuild=this.viewer.options.rebuild??!1;for(let row of header.table.filter(each=>isUseful(each,header,
-rebuild))){let control=this.control(row);this.controls.set(row.name,control);let{input,output}=control,name=dom("span",{
-class:"name"},[row.label]),attributes={class:"row",title:row.text,"data-setting":row.name},line=dom("label",attributes,[
-name,...output?[output]:[],input]);line.classList.toggle("ranged",output!==void 0),this.element.append(line)}}update(){let{
-settings}=this.viewer;for(let[name,{show}]of this.controls)name in settings&&show(settings[name])}control(row){if(row.kind===
-"bool")return this.switch(row);if(row.choices.length)return this.menu(row);let range=(row.high??1)-(row.low??0);return range>
-MOST_STOPS||row.kind==="int"&&range>MOST_WHOLE_STOPS?this.numberField(row):this.slider(row)}listen(input,kind,call){this.
-viewer.lifetime.listen(input,kind,call)}switch({name}){let input=dom("input",{type:"checkbox",role:"switch"});return this.
+for(let timer of this.timers)clearTimeout(timer);this.timers.clear()}};var SLIDER_STOPS=400,IN_BAR=["lod","show_level"];function hasStreaming(header){return header.slices.steps===1&&!header.paper&&
+!isSignFree(header)}function isUseful(row,header,rebuild){let{paper,slices}=header;switch(row.name){case"motion":case"sp\
+eed":case"speed_in":case"period":return hasStreaming(header);case"grain":case"fixed_grain":return!paper;case"two_sided":
+return slices.sides===2;case"seed":return!paper||rebuild&&!paper.picture;case"resolution":return!paper||rebuild;case"til\
+es":return!!paper?.picture&&(header.settings.noise==="image"||rebuild);case"noise_correction":return!!paper&&rebuild;case"\
+parameter":return slices.steps===1&&rebuild;default:return!IN_BAR.includes(row.name)&&(row.affects==="uniform"||rebuild)}}
+var Controls=class{element=dom("div",{class:"settings glass",hidden:"","aria-label":"Settings"});viewer;controls=new Map;constructor(viewer){
+this.viewer=viewer}build(header){this.controls.clear(),this.element.replaceChildren();let rebuild=this.viewer.options.rebuild??
+!1;for(let row of header.table.filter(each=>isUseful(each,header,rebuild))){let control=this.control(row);this.controls.
+set(row.name,control);let{input,output}=control,name=dom("span",{class:"name"},[row.label]),attributes={class:"row",title:row.
+text,"data-setting":row.name},line=dom("label",attributes,[name,...output?[output]:[],input]);line.classList.toggle("ran\
+ged",output!==void 0),this.element.append(line)}}update(){let{settings}=this.viewer;for(let[name,{show}]of this.controls)
+name in settings&&show(settings[name])}control(row){switch(row.control){case"checkbox":return this.switch(row);case"choi\
+ce":return this.menu(row);case"number":return this.numberField(row);default:return this.slider(row)}}listen(input,kind,call){
+this.viewer.lifetime.listen(input,kind,call)}switch({name}){let input=dom("input",{type:"checkbox",role:"switch"});return this.
 listen(input,"change",()=>this.viewer.choose(name,input.checked)),{input,show:value=>{input.checked=!!value}}}menu({name,
 choices}){let options=choices.map(choice=>dom("option",{value:choice},[choice])),input=dom("select",{},options);return this.
 listen(input,"change",()=>this.viewer.choose(name,input.value)),{input,show:value=>{input.value=String(value)}}}numberField({
-name,kind,low,high}){let[min,max]=[low??0,high??1],step=kind==="int"?"1":"any",input=dom("input",{type:"number",min:String(
-min),max:String(max),step});return this.listen(input,"change",()=>{let{valueAsNumber:value}=input;Number.isFinite(value)&&
-this.viewer.choose(name,clamp(value,min,max))}),{input,show:value=>{input.value=String(value)}}}slider(row){let{toSlider,
-fromSlider,min,max,step}=scaleOf(row),range={min:String(min),max:String(max),step:String(step)},input=dom("input",{type:"\
-range",...range}),output=dom("output"),value=()=>fromSlider(Number(input.value));this.listen(input,"input",()=>{output.textContent=
-numberText(value())});let kind=row.affects==="uniform"?"input":"change";return this.listen(input,kind,()=>this.viewer.choose(
-row.name,value())),{input,output,show:shown=>{input.value=String(toSlider(Number(shown))),output.textContent=numberText(
-Number(shown))}}}};function scaleOf(row){let[low,high]=[row.low??0,row.high??1],whole=row.kind==="int",even=!(low>0&&high/
-low>LOGARITHMIC_RATIO),toSlider=value=>even?value:Math.log2(value),fromSlider=place=>{let value=even?place:2**place;return whole?
-Math.round(value):Number(clamp(value,low,high).toPrecision(3))},[min,max]=[toSlider(low),toSlider(high)];return{toSlider,
-fromSlider,min,max,step:even&&whole?1:(max-min)/SLIDER_STOPS}}var CAMERA_KEYS={ArrowLeft:"left",ArrowRight:"right",ArrowUp:"up",ArrowDown:"down","+":"closer","=":"closer","-":"farthe\
+name,whole,low,high}){let[min,max]=[low??0,high??1],step=whole?"1":"any",input=dom("input",{type:"number",min:String(min),
+max:String(max),step});return this.listen(input,"change",()=>{let{valueAsNumber:value}=input;Number.isFinite(value)&&this.
+viewer.choose(name,clamp(value,min,max))}),{input,show:value=>{input.value=String(value)}}}slider(row){let{toSlider,fromSlider,
+min,max,step}=scaleOf(row),range={min:String(min),max:String(max),step:String(step)},input=dom("input",{type:"range",...range}),
+output=dom("output"),value=()=>fromSlider(Number(input.value));this.listen(input,"input",()=>{output.textContent=numberText(
+value())});let kind=row.affects==="uniform"?"input":"change";return this.listen(input,kind,()=>this.viewer.choose(row.name,
+value())),{input,output,show:shown=>{input.value=String(toSlider(Number(shown))),output.textContent=numberText(Number(shown))}}}};
+function scaleOf({low,high,whole,logarithmic}){let[least,most]=[low??0,high??1],toSlider=value=>logarithmic?Math.log2(value):
+value,fromSlider=place=>{let value=logarithmic?2**place:place;return whole?Math.round(value):Number(clamp(value,least,most).
+toPrecision(3))},[min,max]=[least,most].map(toSlider),step=whole&&!logarithmic?1:(max-min)/SLIDER_STOPS;return{toSlider,
+fromSlider,min,max,step}}var CAMERA_KEYS={ArrowLeft:"left",ArrowRight:"right",ArrowUp:"up",ArrowDown:"down","+":"closer","=":"closer","-":"farthe\
 r",_:"farther",0:"whole"},PLAY_KEY=" ",FULLSCREEN_KEY="f",CLOSE_KEY="Escape",DIRECTIONS={left:[-1,0],right:[1,0],up:[0,1],
 down:[0,-1]};function hasModifier(event){return event.ctrlKey||event.metaKey||event.altKey}function toggleFullscreen(element){
 document.fullscreenElement?document.exitFullscreen():element.requestFullscreen?.().catch(()=>{})}var STOPS=33,COLOURS=256,Legend=class{element=dom("div",{class:"legend glass",hidden:""});mark=dom("i",{hidden:""});show(header,settings,map){

@@ -21,9 +21,9 @@ Run = Callable[..., tuple[int, str, str]]
 def run(capsys: pytest.CaptureFixture[str]) -> Run:
     def call(*words: object) -> tuple[int, str, str]:
         code = main([str(word) for word in words])
-        said = capsys.readouterr()
+        captured = capsys.readouterr()
         # Rich wraps at the width of the terminal; words are what is judged here.
-        return code, " ".join(said.out.split()), " ".join(said.err.split())
+        return code, " ".join(captured.out.split()), " ".join(captured.err.split())
 
     return call
 
@@ -94,12 +94,12 @@ def test_a_picture_is_drawn_along_the_flow(
     run: Run, block: Path, tmp_path: Path, opengl: object
 ) -> None:
     out = tmp_path / "wind.png"
-    code, said, err = run(
+    code, output, err = run(
         "render", block, "-o", out, "--plane", "k=1", "--vectors", "wind", "--size", "200x150",
         "--scalars", "none", "--zoom", "2",
     )  # fmt: skip
     assert (code, err) == (0, "")
-    assert "6 × 5 nodes" in said and "200 × 150" in said and "leaves the surface" not in said
+    assert "6 × 5 nodes" in output and "200 × 150" in output and "leaves the surface" not in output
     pixels = grey(out)
     assert pixels.shape == (150, 200)
     along, across = roughness(pixels)
@@ -120,14 +120,14 @@ def test_flow_that_leaves_the_surface_is_told(
     run: Run, block: Path, tmp_path: Path, opengl: object
 ) -> None:
     out = tmp_path / "force.png"
-    _, said, _ = run(
+    _, output, _ = run(
         "render", block, "-o", out, "--plane", "k=1", "--vectors", "force", "--size", "60x40"
     )
-    assert "of the flow leaves the surface" in said
+    assert "of the flow leaves the surface" in output
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "message"),
     [
         (("render", "{gyre}", "-o", "{tmp}/a.xyz"), "'.xyz' is no format"),
         (("render", "{gyre}", "-o", "{tmp}/a"), "no suffix is no format"),
@@ -155,7 +155,7 @@ def test_flow_that_leaves_the_surface_is_told(
 def test_what_cannot_be_is_told_in_one_paragraph(
     run: Run,
     words: tuple[str, ...],
-    told: str,
+    message: str,
     gyre: Path,
     block: Path,
     tmp_path: Path,
@@ -164,7 +164,7 @@ def test_what_cannot_be_is_told_in_one_paragraph(
     filled = [word.format(gyre=gyre, block=block, tmp=tmp_path) for word in words]
     code, out, err = run(*filled)
     assert code == 2
-    assert told in err and err.startswith("flowtex: ")
+    assert message in err and err.startswith("flowtex: ")
     assert not out and "Traceback" not in err
     assert not list(tmp_path.iterdir())
 
@@ -244,8 +244,8 @@ def test_two_views_and_a_moment(run: Run, gyre: Path, tmp_path: Path, opengl: ob
     words = [gyre, "--size", "200x80", "--motion", "speed", "--beside", "lod=false"]
     words += ["--beside", "resolution=512"]
     for name, clock in (("a", 0.0), ("b", 1.0)):
-        code, _, said = run("render", *words, "--clock", clock, "-o", tmp_path / f"{name}.png")
-        assert code == 0, said
+        code, _, output = run("render", *words, "--clock", clock, "-o", tmp_path / f"{name}.png")
+        assert code == 0, output
     first, second = (grey(tmp_path / f"{name}.png") for name in "ab")
     assert first.shape == (80, 200)
     assert np.abs(first - second).mean() > 2
@@ -265,9 +265,9 @@ def test_two_views_and_a_moment(run: Run, gyre: Path, tmp_path: Path, opengl: ob
 def test_a_wrong_second_view_says_so(
     run: Run, gyre: Path, tmp_path: Path, word: str, text: str
 ) -> None:
-    code, _, said = run("render", gyre, "-o", tmp_path / "a.png", "--beside", word)
+    code, _, output = run("render", gyre, "-o", tmp_path / "a.png", "--beside", word)
     assert code != 0
-    assert text in said
+    assert text in output
 
 
 def test_export_writes_a_page_and_tells_its_size(run: Run, gyre: Path, tmp_path: Path) -> None:
@@ -280,7 +280,7 @@ def test_export_writes_a_page_and_tells_its_size(run: Run, gyre: Path, tmp_path:
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
+    ("words", "message"),
     [
         (("-o", "page.png"), "page.png: expected a name that ends in .html"),
         (("-o", "nowhere/page.html"), "there is no folder 'nowhere'"),
@@ -289,10 +289,10 @@ def test_export_writes_a_page_and_tells_its_size(run: Run, gyre: Path, tmp_path:
     ],
 )
 def test_export_refuses_what_it_cannot_do(
-    run: Run, gyre: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, words: Any, said: str
+    run: Run, gyre: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, words: Any, message: str
 ) -> None:
     monkeypatch.chdir(tmp_path)
     code, _, err = run("export", gyre, *words)
     assert code == 2
-    assert said in err
+    assert message in err
     assert list(tmp_path.iterdir()) == []

@@ -60,7 +60,7 @@ def data() -> Path | None:
 
 
 @pytest.fixture(scope="module")
-def written(data: Path | None, opengl: Any, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def page_folder(data: Path | None, opengl: Any, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("paper") / "page"
     empty = tmp_path_factory.mktemp("empty")
     words = ["-o", folder, "--quick", "--data", data or empty]
@@ -69,14 +69,16 @@ def written(data: Path | None, opengl: Any, tmp_path_factory: pytest.TempPathFac
 
 
 @pytest.fixture(scope="module")
-def numbers(written: Path) -> dict[str, Any]:
-    found: dict[str, Any] = json.loads((written / "numbers.json").read_text(encoding="utf-8"))
-    return found
+def numbers(page_folder: Path) -> dict[str, Any]:
+    document: dict[str, Any] = json.loads(
+        (page_folder / "numbers.json").read_text(encoding="utf-8")
+    )
+    return document
 
 
 @pytest.fixture(scope="module")
-def text(written: Path) -> str:
-    return (written / "index.html").read_text(encoding="utf-8")
+def text(page_folder: Path) -> str:
+    return (page_folder / "index.html").read_text(encoding="utf-8")
 
 
 def test_claims_are_numbers_with_bounds_and_judged_by_them(numbers: dict[str, Any]) -> None:
@@ -112,13 +114,13 @@ def test_every_section_has_figures_and_stands_on_the_page(
         assert text.count(f">{claim['text']}<".replace("'", "&#x27;").replace('"', "&quot;")) >= 2
 
 
-def test_the_page_needs_nothing_from_outside(written: Path, text: str) -> None:
+def test_the_page_needs_nothing_from_outside(page_folder: Path, text: str) -> None:
     for address in Page(text).addresses:
         if address.startswith("#"):
             continue
         if address.startswith("data:"):
             continue
-        assert (written / address).is_file(), address
+        assert (page_folder / address).is_file(), address
     assert not re.search(r"(?:src|href)\s*=\s*[\"']?(?:https?:)?//", text)
     assert not re.search(r"url\(\s*[\"']?(?!#)", text)
     assert "<script" not in text
@@ -127,27 +129,27 @@ def test_the_page_needs_nothing_from_outside(written: Path, text: str) -> None:
 def test_plots_take_their_colours_from_the_page(text: str) -> None:
     assert "prefers-color-scheme: dark" in text
     assert text.count("<svg") >= 8
-    drawn = "".join(re.findall(r"<svg.*?</svg>", text, re.DOTALL))
-    assert "var(--c0)" in drawn and "var(--ink)" in drawn
+    plots = "".join(re.findall(r"<svg.*?</svg>", text, re.DOTALL))
+    assert "var(--c0)" in plots and "var(--ink)" in plots
     # A marker colour that was not replaced would not follow from light to dark.
-    assert not re.search(r"#0[1-4]0[1-4]0[1-4]|#11111", drawn)
+    assert not re.search(r"#0[1-4]0[1-4]0[1-4]|#11111", plots)
 
 
 def test_inner_names_of_plots_lead_somewhere(text: str) -> None:
     page = Page(text)
-    wanted = {a[1:] for a in page.addresses if a.startswith("#")}
-    wanted |= set(re.findall(r"url\(#([^)]+)\)", text))
-    assert wanted <= set(page.names)
+    targets = {a[1:] for a in page.addresses if a.startswith("#")}
+    targets |= set(re.findall(r"url\(#([^)]+)\)", text))
+    assert targets <= set(page.names)
 
 
-def test_pictures_are_all_shown_and_none_is_plain(written: Path, text: str) -> None:
+def test_pictures_are_all_shown_and_none_is_plain(page_folder: Path, text: str) -> None:
     from PIL import Image
 
-    files = sorted((written / "pictures").iterdir())
+    files = sorted((page_folder / "pictures").iterdir())
     assert len(files) > 30
-    shown = set(Page(text).addresses)
+    addresses = set(Page(text).addresses)
     for file in files:
-        assert f"pictures/{file.name}" in shown
+        assert f"pictures/{file.name}" in addresses
         with Image.open(file) as picture:
             assert np.asarray(picture.convert("L")).std() > 1 or "zooms" in file.name
 
@@ -155,15 +157,15 @@ def test_pictures_are_all_shown_and_none_is_plain(written: Path, text: str) -> N
 def test_numbers_repeat_for_a_seed_and_differ_for_another(
     numbers: dict[str, Any], data: Path | None, tmp_path: Path
 ) -> None:
-    found = {}
+    figures_of = {}
     for name, seed, only in (("again", 0, CHEAP), ("other", 5, ("figure2", "figure3"))):
         place = tmp_path / name
         reproduce(place, quick=True, seed=seed, data=data or tmp_path, only=only, progress=False)
         text = (place / "numbers.json").read_text(encoding="utf-8")
-        found[name] = json.loads(text)["figures"]
+        figures_of[name] = json.loads(text)["figures"]
     for key in CHEAP:
-        assert found["again"][key] == numbers["figures"][key], key
-    for key, figures in found["other"].items():
+        assert figures_of["again"][key] == numbers["figures"][key], key
+    for key, figures in figures_of["other"].items():
         assert figures != numbers["figures"][key], key
 
 
@@ -172,9 +174,9 @@ def test_the_post_is_missed_in_words(tmp_path: Path) -> None:
     reproduce(page, quick=True, data=tmp_path, only=("table1", "figure5"), progress=False)
     text = (page / "index.html").read_text(encoding="utf-8")
     assert "The liquid-oxygen post is not on this page." in text
-    found = json.loads((page / "numbers.json").read_text(encoding="utf-8"))
-    assert found["about"]["post"] is False
-    assert set(found["figures"]["table1"]) == {"shuttle", "vortex"}
+    document = json.loads((page / "numbers.json").read_text(encoding="utf-8"))
+    assert document["about"]["post"] is False
+    assert set(document["figures"]["table1"]) == {"shuttle", "vortex"}
 
 
 def test_sections_that_there_are_not_are_refused(

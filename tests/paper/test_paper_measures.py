@@ -32,19 +32,19 @@ def noise(rng: np.random.Generator, *sigma: float) -> Floats:
 @pytest.mark.parametrize("degrees", [0, 20, 45, 90, 135, 170])
 def test_lines_are_coherent_and_at_their_angle(degrees: float) -> None:
     picture, u, v = stripes(degrees)
-    found = measures.streaks(picture, u, v, EVERYWHERE)
-    assert found.coherence > 0.99
-    assert found.angle < 1.0
+    result = measures.streaks(picture, u, v, EVERYWHERE)
+    assert result.coherence > 0.99
+    assert result.angle < 1.0
     # Neither length nor sign of the flow counts, and a right angle is the farthest.
-    assert measures.streaks(picture, -7 * u, -7 * v, EVERYWHERE) == pytest.approx(found, abs=1e-6)
+    assert measures.streaks(picture, -7 * u, -7 * v, EVERYWHERE) == pytest.approx(result, abs=1e-6)
     assert measures.streaks(picture, -v, u, EVERYWHERE).angle > 89
 
 
 def test_white_noise_has_no_direction(rng: np.random.Generator) -> None:
     ones = np.ones(SIZE)
-    found = measures.streaks(noise(rng), ones, 0 * ones, EVERYWHERE)
-    assert found.coherence < 0.25
-    assert abs(found.angle - 45) < 5
+    result = measures.streaks(noise(rng), ones, 0 * ones, EVERYWHERE)
+    assert result.coherence < 0.25
+    assert abs(result.angle - 45) < 5
 
 
 def test_grain_of_smoothed_noise_is_that_of_its_correlation(rng: np.random.Generator) -> None:
@@ -52,11 +52,11 @@ def test_grain_of_smoothed_noise_is_that_of_its_correlation(rng: np.random.Gener
     picture = noise(rng, 1.5, 4.0)  # rows, columns
     # White noise behind a Gaussian has a Gaussian correlation, root two as wide.
     half = np.sqrt(2) * np.sqrt(2 * np.log(2))
-    found = measures.grain(picture, ones, 0 * ones, EVERYWHERE)
-    assert found.along == pytest.approx(4.0 * half, rel=0.12)
-    assert found.across == pytest.approx(1.5 * half, rel=0.12)
+    result = measures.grain(picture, ones, 0 * ones, EVERYWHERE)
+    assert result.along == pytest.approx(4.0 * half, rel=0.12)
+    assert result.across == pytest.approx(1.5 * half, rel=0.12)
     turned = measures.grain(picture, 0 * ones, ones, EVERYWHERE)
-    assert turned == pytest.approx((found.across, found.along), rel=0.05)
+    assert turned == pytest.approx((result.across, result.along), rel=0.05)
 
 
 def test_grain_follows_a_bent_flow() -> None:
@@ -64,9 +64,9 @@ def test_grain_follows_a_bent_flow() -> None:
     y, x = SIZE[0] / 2 - rows - 0.3, columns - SIZE[1] / 2 + 0.3
     radius = np.hypot(x, y)
     mask = EVERYWHERE & (radius > 20) & (radius < 60)
-    found = measures.grain(np.sin(radius * 2), -y, x, mask)
-    assert found.along > 30
-    assert found.across < 1.2
+    result = measures.grain(np.sin(radius * 2), -y, x, mask)
+    assert result.along > 30
+    assert result.across < 1.2
 
 
 def test_the_measures_agree_with_the_tests_own(rng: np.random.Generator) -> None:

@@ -49,11 +49,11 @@ def test_lic_of_a_straight_flow_is_a_convolution(axis: int, rng: np.random.Gener
     n = noise(rng, 30, 30)
     v = np.zeros((30, 30, 2))
     v[..., 1 - axis] = 3.0
-    found = lic(v, n, 6.0, "box", periodic=(True, True))
+    result = lic(v, n, 6.0, "box", periodic=(True, True))
     # A box 6 long covers five pixels and half of two more.
     parts = [(k, 0.5 if abs(k) == 3 else 1.0) for k in range(-3, 4)]
     expected = sum(w * np.roll(n, k, axis=axis) for k, w in parts)
-    np.testing.assert_allclose(found, np.asarray(expected) / 6, atol=1e-12)
+    np.testing.assert_allclose(result, np.asarray(expected) / 6, atol=1e-12)
 
 
 def test_lic_ends_at_the_border_and_shares_what_there_is(rng: np.random.Generator) -> None:
@@ -72,9 +72,9 @@ def test_lic_smears_along_circles(kernel: str, rng: np.random.Generator) -> None
     mask = (radius > 15) & (radius < 60)
     smeared = lic(v, radius, 20.0, kernel)
     assert np.abs(smeared - radius)[mask].max() < 0.6
-    found = streaks(lic(v, noise(rng, 161, 161), 20.0, kernel), v[..., 0], -v[..., 1], mask)
-    assert found["angle"] < 3
-    assert found["coherence"] > 0.8
+    result = streaks(lic(v, noise(rng, 161, 161), 20.0, kernel), v[..., 0], -v[..., 1], mask)
+    assert result["angle"] < 3
+    assert result["coherence"] > 0.8
 
 
 def test_lic_stops_where_nothing_moves_and_where_vectors_are_opposed(
@@ -242,9 +242,9 @@ def test_a_frame_is_the_last_one_carried_along_and_fresh_noise() -> None:
 @pytest.mark.parametrize("degrees", [0, 30, 135])
 def test_streaks_have_the_direction_of_the_flow(degrees: float) -> None:
     images = ImageSpace(*rolled(degrees), PLAIN)
-    found = judged(images, images.frames(40))
-    assert found["angle"] < 5
-    assert found["coherence"] > 0.55
+    result = judged(images, images.frames(40))
+    assert result["angle"] < 5
+    assert result["coherence"] > 0.55
 
 
 def test_the_picture_does_not_tell_how_far_away_the_surface_is() -> None:

@@ -135,7 +135,7 @@ mesh = flowtex.examples.double_gyre_field(shape=(30, 60))
 ws = [flowtex.show(mesh, samples=5, size=(90, 60), bar=False) for n in range(30)]"""
 #: What all widgets of the page hold together; of a page without a widget nothing is left.
 HELD = """() => {
-  const gl = globalThis[Symbol.for("flowtex.gl/2")];
+  const gl = globalThis[Symbol.for("flowtex.gl/3")];
   return { objects: gl.objects, users: gl.users.size, arrays: gl.stock.size,
     common: gl.common.size, waiting: gl.waiting.size };
 }"""

@@ -37,8 +37,6 @@ SHADERS = {
 FIRST_ASPECT = 1.5
 #: Greatest value of a component of a normal in sixteen bits.
 NORMAL_MAX = 32767
-#: Settings whose names say too little.
-LABELS = {"lod": "Level of detail", "show_level": "Show levels", "two_sided": "Both directions"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -289,12 +287,13 @@ def _shaders(variant: tuple[str, ...]) -> dict[str, str]:
 
 def _table() -> list[dict[str, Any]]:
     """Return the table of settings, for controls."""
-    same = ("name", "default", "affects", "text", "low", "high")
+    names = ("name", "label", "default", "affects", "text", "low", "high", "logarithmic")
     return [
         {
-            **{key: getattr(row, key) for key in same},
-            "label": LABELS.get(row.name, row.name.replace("_", " ").capitalize()),
-            "kind": row.kind.__name__,
+            **{name: getattr(row, name) for name in names},
+            # The client has sliders by the logarithm, which need no narrow range.
+            "control": "slider" if row.logarithmic else row.control,
+            "whole": row.kind is int,
             "choices": list(row.choices),
         }
         for row in TABLE.values()

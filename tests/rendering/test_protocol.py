@@ -1,0 +1,56 @@
+"""Parts on their way to a browser, read back as ``client/src/protocol.ts`` does."""
+
+from __future__ import annotations
+
+import base64
+import gzip
+import json
+
+import numpy as np
+import pytest
+
+from flowtex._util.array_types import AnyArray
+from flowtex.rendering.webgl.protocol import part_buffer, part_info, part_text, parts_file
+
+ARRAYS: dict[str, AnyArray] = {
+    "slices/0": np.arange(24, dtype="<f2").reshape(2, 3, 4),
+    "normal": np.array([[-32767, 5, 0]], dtype="<i2"),
+    "position": np.linspace(-1, 1, 12, dtype="<f4").reshape(4, 3),
+    "cells": np.array([1, 0, 1], dtype=np.uint8),
+    "step": np.zeros((0, 3), dtype="<f2"),
+}
+
+
+def test_a_file_holds_parts_one_after_the_other() -> None:
+    file = parts_file(ARRAYS)
+    length = int.from_bytes(file[:4], "little")
+    infos = json.loads(file[4 : 4 + length])
+    start = 4 + length
+    for (name, array), info in zip(ARRAYS.items(), infos, strict=True):
+        assert info == {**part_info(name, array), "bytes": array.nbytes}
+        part = np.frombuffer(file[start : start + info["bytes"]], info["dtype"])
+        np.testing.assert_array_equal(part.reshape(info["shape"]), array)
+        start += info["bytes"]
+    assert start == len(file)
+
+
+@pytest.mark.parametrize("name", ARRAYS)
+def test_text_has_the_bytes_of_one_significance_side_by_side(name: str) -> None:
+    array = ARRAYS[name]
+    planes = np.frombuffer(gzip.decompress(base64.b64decode(part_text(array))), np.uint8)
+    numbers = np.ascontiguousarray(planes.reshape(array.itemsize, -1).T).view(array.dtype)
+    np.testing.assert_array_equal(numbers.reshape(array.shape), array)
+
+
+def test_a_part_that_lies_in_order_is_not_copied() -> None:
+    array = ARRAYS["position"]
+    assert np.shares_memory(np.frombuffer(part_buffer(array), np.uint8), array)
+    across = np.frombuffer(part_buffer(array.T), "<f4")
+    np.testing.assert_array_equal(across.reshape(3, 4), array.T)
+
+
+def test_equal_arrays_have_one_digest() -> None:
+    array = ARRAYS["position"]
+    assert part_info("a", array)["digest"] == part_info("b", array.copy())["digest"]
+    assert part_info("a", array)["digest"] != part_info("a", array[::-1])["digest"]
+    assert part_info("a", array)["digest"] != part_info("a", array.view(np.int32))["digest"]
