@@ -46,3 +46,23 @@ export function numberText(x: number): string {
   if (size !== 0 && (size >= 1e5 || size < 1e-3)) return x.toExponential(2).replace("e+", "e");
   return String(Number(x.toPrecision(4)));
 }
+
+/** Pictures of views beside each other as PNG. */
+export function pngOf(views: readonly { canvas: HTMLCanvasElement }[]): Promise<Blob> {
+  const canvases = views.map(({ canvas }) => canvas);
+  const all = dom("canvas");
+  all.width = canvases.reduce((sum, { width }) => sum + width, 0);
+  all.height = canvases[0].height;
+  const pen = all.getContext("2d", { alpha: false });
+  let left = 0;
+  for (const canvas of canvases) {
+    pen?.drawImage(canvas, left, 0);
+    left += canvas.width;
+  }
+  return new Promise((resolve, reject) => {
+    all.toBlob((blob) => {
+      if (blob) resolve(blob);
+      else reject(new Error("there is no picture yet"));
+    }, "image/png");
+  });
+}

@@ -1,15 +1,16 @@
 // What is seen around the picture: the bar, the legend, the settings, the readout and messages.
 
-import { Controls, hasStreaming } from "./controls.ts";
-import { dom, icon, numberText, type IconName } from "./dom.ts";
+import type { Camera } from "./camera.ts";
+import { Controls, hasStreaming, type ControlsHost } from "./controls.ts";
+import { dom, icon, numberText, pngOf, type IconName } from "./dom.ts";
 import { toggleFullscreen } from "./keyboard.ts";
 import { Legend } from "./legend.ts";
 import type { Timer } from "./lifetime.ts";
+import type { Options } from "./options.ts";
 import type { Point } from "./picking.ts";
-import type { Header } from "./protocol.ts";
+import type { Player } from "./player.ts";
+import type { Header, Part } from "./protocol.ts";
 import STYLE from "./styles.css";
-import type { Viewer } from "./viewer.ts";
-import { pngOf } from "./views.ts";
 
 /** Milliseconds for which a hint is shown; after which lacking parts are told; a picture is there to be saved. */
 const HINT_MS = 1600;
@@ -21,18 +22,30 @@ const MOST_DIGITS = 14;
 /** What may stand in the name of a file. */
 const FORBIDDEN = /[\\/:*?"<>|]+/g;
 
-let sheet: CSSStyleSheet | null = null;
-
-function styleSheet(): CSSStyleSheet {
-  if (!sheet) {
-    sheet = new CSSStyleSheet();
-    sheet.replaceSync(STYLE);
-  }
-  return sheet;
+/** The view that the panel is about. */
+export interface PanelHost extends ControlsHost {
+  readonly options: Options;
+  readonly root: HTMLElement;
+  readonly canvas: HTMLCanvasElement;
+  readonly header: Header | null;
+  readonly parts: ReadonlyMap<string, Part>;
+  readonly camera: Camera | null;
+  readonly player: Player;
+  /** Names of the parts that the present moment lacks. */
+  readonly lacking: string[];
+  /** The views that stand beside each other. */
+  readonly together: readonly { canvas: HTMLCanvasElement }[];
+  togglePlaying(): void;
+  /** Go to a share of the range of times. */
+  scrub(share: number): void;
+  reset(): void;
 }
 
+const styleSheet = new CSSStyleSheet();
+styleSheet.replaceSync(STYLE);
+
 export class Panel {
-  private readonly viewer: Viewer;
+  private readonly viewer: PanelHost;
   private readonly legend = new Legend();
   private readonly controls: Controls;
   private isShown: boolean;
@@ -55,7 +68,7 @@ export class Panel {
   private hintTimer: Timer | null = null;
   private lateTimer: Timer | null = null;
 
-  constructor(viewer: Viewer) {
+  constructor(viewer: PanelHost) {
     this.viewer = viewer;
     const { root, canvas, options } = viewer;
     this.isShown = options.controls ?? true;
@@ -69,7 +82,7 @@ export class Panel {
     this.playButton = this.button("play", "Play (space)", () => viewer.togglePlaying());
     const range = { min: "0", max: "1", step: "any", "aria-label": "Time" };
     this.slider = dom("input", { type: "range", ...range });
-    viewer.lifetime.listen(this.slider, "input", () => this.scrub(Number(this.slider.value)));
+    viewer.lifetime.listen(this.slider, "input", () => viewer.scrub(Number(this.slider.value)));
     this.track = dom("div", { class: "track" }, [this.slider, this.timeText]);
     const toggle = (name: string) => () => viewer.choose(name, !viewer.settings[name]);
     this.toggles = {
@@ -81,7 +94,7 @@ export class Panel {
     canvas.className = "picture";
     root.classList.toggle("flowtex-bare", options.bare ?? false);
     const shadow = root.attachShadow({ mode: "open" });
-    shadow.adoptedStyleSheets = [styleSheet()];
+    shadow.adoptedStyleSheets = [styleSheet];
     const { legend, controls, head, bar, handle, busy, hintBox, note } = this;
     shadow.append(canvas, head, legend.element, controls.element);
     shadow.append(bar, handle, busy, hintBox, note);
@@ -123,7 +136,8 @@ export class Panel {
 
   /** Show the present values. */
   update(): void {
-    const { header, settings, playing, varies } = this.viewer;
+    const { header, settings } = this.viewer;
+    const { playing, varies } = this.viewer.player;
     this.name();
     this.controls.update();
     if (this.showsLevels !== Boolean(settings.show_level)) this.showLegend();
@@ -157,27 +171,13 @@ export class Panel {
 
   /** Show the present time. */
   tick(): void {
-    const { header, varies, player, settings } = this.viewer;
+    const { header, player, settings } = this.viewer;
     if (!header || this.track.hidden) return;
     const { first, last, now } = player.range(settings);
     this.slider.value = String((now - first) / (last - first || 1));
     const unit = header.slices.timeUnit;
-    const text = varies ? `${numberText(now)} ${unit}` : `${now.toFixed(1)} s`;
+    const text = player.varies ? `${numberText(now)} ${unit}` : `${now.toFixed(1)} s`;
     if (this.timeText.textContent !== text) this.timeText.textContent = text;
-  }
-
-  private scrub(share: number): void {
-    const { viewer } = this;
-    const { first, last } = viewer.player.range(viewer.settings);
-    const value = first + share * (last - first);
-    viewer.stir();
-    if (viewer.varies) {
-      viewer.setTime(value);
-      viewer.options.onTime?.(viewer.time);
-    } else {
-      viewer.setClock(value);
-      viewer.options.onClock?.(viewer.clock);
-    }
   }
 
   showLegend(): void {

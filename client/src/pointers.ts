@@ -1,5 +1,6 @@
 // Pointers, wheel and keys on the picture.
 
+import type { Camera } from "./camera.ts";
 import {
   CAMERA_KEYS,
   CLOSE_KEY,
@@ -8,9 +9,11 @@ import {
   hasModifier,
   PLAY_KEY,
 } from "./keyboard.ts";
-import type { Timer } from "./lifetime.ts";
+import type { Lifetime, Timer } from "./lifetime.ts";
+import type { Options } from "./options.ts";
+import type { Panel } from "./panel.ts";
+import type { Point } from "./picking.ts";
 import { clamp } from "./vectors.ts";
-import type { Viewer } from "./viewer.ts";
 
 /** Within these a press is a click. */
 const CLICK_PX = 4;
@@ -41,16 +44,34 @@ export function placeIn(element: Element, event: { clientX: number; clientY: num
   };
 }
 
+/** The view that is moved. */
+export interface PointerHost {
+  readonly root: HTMLElement;
+  readonly canvas: HTMLCanvasElement;
+  readonly options: Options;
+  readonly lifetime: Lifetime;
+  readonly panel: Panel;
+  readonly camera: Camera | null;
+  readonly sharp: boolean;
+  readonly canPick: boolean;
+  readonly playing: boolean;
+  point(x: number, y: number): Point | null;
+  /** The camera was moved by hand. */
+  moved(): void;
+  reset(): void;
+  togglePlaying(): void;
+}
+
 export class Pointers {
   readonly down = new Map<number, Place>();
-  private readonly viewer: Viewer;
+  private readonly viewer: PointerHost;
   private isOther = false;
   private press = { x: 0, y: 0, time: 0, moved: false };
   private lastLook = 0;
   private look: Timer | null = null;
   private lastPointed = -Infinity;
 
-  constructor(viewer: Viewer) {
+  constructor(viewer: PointerHost) {
     this.viewer = viewer;
     const { canvas, root, options, lifetime } = viewer;
     root.classList.toggle("flowtex-guarded", options.guarded ?? false);
@@ -220,7 +241,7 @@ export class Pointers {
     } else if (command === "whole") viewer.reset();
     else if (key === PLAY_KEY) viewer.togglePlaying();
     else if (key === FULLSCREEN_KEY) panel.fullscreen();
-    else if (key === "h") (options.follows ?? viewer).panel.toggle();
+    else if (key === "h") (options.follows?.panel ?? panel).toggle();
     else if (key === CLOSE_KEY) {
       panel.fold();
       this.hold(false);

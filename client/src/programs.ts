@@ -1,6 +1,5 @@
 // Shader programs: built in the background where the browser can, found by their text, and written to.
 
-import type { Graphics } from "./context.ts";
 import { FIRST_PRICE_MS } from "./quality.ts";
 import type { Uniform } from "./uniforms.ts";
 
@@ -29,22 +28,24 @@ export interface Program {
   price: number;
 }
 
+/** The context that programs are built in, which counts its objects. */
+export interface ProgramContext {
+  readonly context: WebGL2RenderingContext;
+  counted<T>(object: T | null): T;
+  free(kind: string, object: object): void;
+}
+
 export class Programs {
-  private readonly graphics: Graphics;
+  private readonly graphics: ProgramContext;
   private readonly entries = new Map<string, Program>();
   private parallel: KHR_parallel_shader_compile | null = null;
 
-  constructor(graphics: Graphics) {
+  constructor(graphics: ProgramContext) {
     this.graphics = graphics;
   }
 
   findFeatures(): void {
     this.parallel = this.graphics.context.getExtension("KHR_parallel_shader_compile");
-  }
-
-  /** All programs that there are. */
-  [Symbol.iterator](): IterableIterator<Program> {
-    return this.entries.values();
   }
 
   /** Forget all, as they are gone with the context. */
@@ -53,7 +54,7 @@ export class Programs {
   }
 
   dispose(): void {
-    for (const entry of this) {
+    for (const entry of this.entries.values()) {
       for (const shader of entry.shaders) this.graphics.free("Shader", shader);
       this.graphics.free("Program", entry.program);
     }

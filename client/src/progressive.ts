@@ -3,11 +3,12 @@
 import { Camera, projection } from "./camera.ts";
 import type { Graphics } from "./context.ts";
 import type { Program } from "./programs.ts";
+import type { Header, Part, Settings } from "./protocol.ts";
 import { draftUniforms, learnedPrice, motionFactor, quality, rowsIn } from "./quality.ts";
 import { reused, type Reuse } from "./reuse.ts";
+import type { Scene } from "./scene.ts";
 import { uniforms, type Moment, type ViewState } from "./uniforms.ts";
 import { clamp, subtract, toFrame } from "./vectors.ts";
-import type { Viewer } from "./viewer.ts";
 
 /** Milliseconds for a picture in motion, of one view at least, and for a strip at rest. */
 const MOVING_MS = 55;
@@ -17,6 +18,23 @@ const STRIP_MS = 40;
 const SMOOTH_ROWS = 256;
 
 type Pen = CanvasRenderingContext2D | null;
+
+/** The view that is drawn. */
+export interface DrawContext {
+  readonly graphics: Graphics;
+  readonly canvas: HTMLCanvasElement;
+  readonly header: Header | null;
+  readonly settings: Settings;
+  readonly scene: Scene | null;
+  readonly camera: Camera | null;
+  readonly parts: ReadonlyMap<string, Part>;
+  readonly player: { varies: boolean; playing: boolean };
+  /** Whether outlines are smoothed. */
+  readonly smooth: boolean;
+  /** Pixels of the canvas along one of the page. */
+  readonly ratio: number;
+  view(shown: Moment, density: number): ViewState;
+}
 
 /** What is drawn of a picture. */
 interface Region {
@@ -28,7 +46,7 @@ interface Region {
 }
 
 export class ProgressiveRenderer {
-  private readonly viewer: Viewer;
+  private readonly viewer: DrawContext;
   private readonly graphics: Graphics;
   private readonly canvas: HTMLCanvasElement;
   private readonly pen: Pen;
@@ -48,17 +66,13 @@ export class ProgressiveRenderer {
   /** Number of full pictures. */
   frames = 0;
 
-  constructor(viewer: Viewer) {
+  constructor(viewer: DrawContext) {
     this.viewer = viewer;
     this.graphics = viewer.graphics;
     this.canvas = viewer.canvas;
     this.pen = this.canvas.getContext("2d", { alpha: false });
     this.backPen = this.back.getContext("2d", { alpha: false });
     this.lastPen = this.last.getContext("2d", { alpha: false });
-  }
-
-  private get canvases(): HTMLCanvasElement[] {
-    return [this.canvas, this.back, this.last];
   }
 
   /** Another picture is asked for; of the same things when only the camera has moved. */
@@ -70,16 +84,19 @@ export class ProgressiveRenderer {
 
   /** Change the size; what is on show stays, stretched, until there is something better. */
   resize(width: number, height: number): void {
-    const old = this.canvas.width > 1 ? copyOfCanvas(this.canvas) : null;
-    for (const canvas of this.canvases) {
-      canvas.width = width;
-      canvas.height = height;
-    }
-    if (old) this.pen?.drawImage(old, 0, 0, width, height);
+    const { canvas, back, last } = this;
+    back.width = canvas.width;
+    back.height = canvas.height;
+    this.backPen?.drawImage(canvas, 0, 0);
+    canvas.width = last.width = width;
+    canvas.height = last.height = height;
+    if (back.width > 1) this.pen?.drawImage(back, 0, 0, width, height);
+    back.width = width;
+    back.height = height;
   }
 
   dispose(): void {
-    for (const canvas of this.canvases) canvas.width = canvas.height = 0;
+    for (const canvas of [this.canvas, this.back, this.last]) canvas.width = canvas.height = 0;
   }
 
   /** Go on with the picture until a time; tells whether it is complete. */
@@ -148,12 +165,12 @@ export class ProgressiveRenderer {
   }
 
   private complete(): void {
-    const { camera, playing } = this.viewer;
+    const { camera, player } = this.viewer;
     this.rowsDone = this.canvas.height;
     this.frames += 1;
     this.draftVersion = this.version;
     this.lastPen?.drawImage(this.canvas, 0, 0);
-    if (camera && !playing) {
+    if (camera && !player.playing) {
       this.lastCamera = new Camera(camera.state, camera.limits, camera.flat, camera.aspect);
     }
   }
@@ -173,8 +190,8 @@ export class ProgressiveRenderer {
 
   /** As many times more each sample costs while grains move. */
   private factor(samples: number): number {
-    const { settings, varies } = this.viewer;
-    return settings.motion !== "off" || varies ? motionFactor(samples) : 1;
+    const { settings, player } = this.viewer;
+    return settings.motion !== "off" || player.varies ? motionFactor(samples) : 1;
   }
 
   /** Draw, and learn what it costs. */
@@ -266,12 +283,4 @@ export class ProgressiveRenderer {
     pen.imageSmoothingEnabled = w !== width || h !== height;
     pen.drawImage(canvas, 0, canvas.height - h + top, w, rows, 0, to, width, (rows * height) / h);
   }
-}
-
-function copyOfCanvas(canvas: HTMLCanvasElement): HTMLCanvasElement {
-  const copy = document.createElement("canvas");
-  copy.width = canvas.width;
-  copy.height = canvas.height;
-  copy.getContext("2d")?.drawImage(canvas, 0, 0);
-  return copy;
 }

@@ -2,7 +2,7 @@
 // other side. Widget, exported page and app carry the same descriptions of parts; a part's bytes come
 // as a buffer of a message, in a file of several parts, or as text in a page.
 
-import type { CameraLimits, CameraState } from "./camera.ts";
+import type { CameraLimits, CameraState, Surface } from "./camera.ts";
 
 /** Form of header and parts that this client reads. */
 export const FORMAT = 2;
@@ -63,16 +63,11 @@ export interface Paper {
   alongJ: number[];
 }
 
-export interface Geometry {
+export interface Geometry extends Surface {
   shape: [number, number];
   rows: Padding;
   columns: Padding;
   levels: number;
-  planar: boolean;
-  extent: number;
-  center: number[];
-  /** Rows of the matrix from the mesh to the surface's own frame. */
-  frame: number[];
 }
 
 export interface Header {

@@ -7,6 +7,7 @@
 import { Camera, copyOf, fitted, isSamePlace, widened, type CameraState } from "./camera.ts";
 import { FRAME_MS, sharedGraphics, type Graphics, type User } from "./context.ts";
 import { Lifetime } from "./lifetime.ts";
+import type { Options } from "./options.ts";
 import { Panel } from "./panel.ts";
 import { pickedPoint, type Point } from "./picking.ts";
 import { Player } from "./player.ts";
@@ -25,35 +26,6 @@ import { CARD_PRICE_MS } from "./quality.ts";
 import { Scene } from "./scene.ts";
 import type { Moment, ViewState } from "./uniforms.ts";
 import { subtract, toFrame, type Vector } from "./vectors.ts";
-
-/** What a viewer tells its host. */
-export interface Callbacks {
-  onCamera?: (camera: CameraState) => void;
-  onTime?: (time: number) => void;
-  onClock?: (clock: number) => void;
-  onPlaying?: (playing: boolean) => void;
-  onPoint?: (point: Point) => void;
-  /** The parts of a time step are lacking. */
-  onNeed?: (step: number) => void;
-  /** A picture is complete. */
-  onFrame?: () => void;
-  onSetting?: (name: string, value: Value) => void;
-  onControls?: (shown: boolean) => void;
-}
-
-export interface Options extends Callbacks {
-  /** Whether nothing but the picture is shown. */
-  bare?: boolean;
-  /** Whether the host makes textures anew where a setting asks for it. */
-  rebuild?: boolean;
-  controls?: boolean;
-  /** Whether outlines are smoothed; by default where it takes little time. */
-  smooth?: boolean;
-  /** Whether the page around is scrolled: the view takes wheel and finger only once it was clicked. */
-  guarded?: boolean;
-  /** Another view that has the bar. */
-  follows?: Viewer;
-}
 
 /** Milliseconds for which a view that was moved counts as being moved. */
 const STILL_MS = 160;
@@ -89,7 +61,7 @@ export class Viewer implements User {
   private busyUntil = 0;
   /** The camera that the scene came with. */
   private firstCamera: CameraState | null = null;
-  private readonly asked = new Map<number, number>();
+  private readonly requests = new Map<number, number>();
 
   constructor(element: HTMLElement, options: Options = {}) {
     this.options = options;
@@ -162,7 +134,7 @@ export class Viewer implements User {
     this.player.setHeader(header);
     this.scene?.dispose();
     this.scene = new Scene(this.graphics, header, this.parts);
-    this.asked.clear();
+    this.requests.clear();
     if (!old || !isSamePlace(old.geometry, header.geometry)) {
       this.firstCamera = header.camera;
       this.camera = null;
@@ -177,7 +149,7 @@ export class Viewer implements User {
 
   setPart(part: NamedPart): void {
     const { name, digest } = part;
-    this.asked.delete(stepOf(name));
+    this.requests.delete(stepOf(name));
     if (digest && this.parts.get(name)?.digest === digest) return;
     const held = this.graphics.hold<Part>(part);
     this.remove(name);
@@ -219,7 +191,7 @@ export class Viewer implements User {
 
   /** Set one setting as a person does, which the host is told of. */
   choose(name: string, value: Value): void {
-    this.stir();
+    this.holdDraft();
     this.setSettings({ [name]: value });
     this.options.onSetting?.(name, value);
   }
@@ -240,7 +212,7 @@ export class Viewer implements User {
 
   /** The camera was moved by hand. */
   moved(): void {
-    this.stir();
+    this.holdDraft();
     this.change(true);
     if (this.camera) this.options.onCamera?.(copyOf(this.camera.state));
   }
@@ -272,10 +244,6 @@ export class Viewer implements User {
 
   // --- time ---
 
-  get varies(): boolean {
-    return this.player.varies;
-  }
-
   get time(): number {
     return this.player.time;
   }
@@ -294,6 +262,21 @@ export class Viewer implements User {
     this.change();
   }
 
+  /** Go to a share of the times, or of the clock's period, as the slider asks. */
+  scrub(share: number): void {
+    const { player, options } = this;
+    const { first, last } = player.range(this.settings);
+    const value = first + share * (last - first);
+    this.holdDraft();
+    if (player.varies) {
+      this.setTime(value);
+      options.onTime?.(player.time);
+    } else {
+      this.setClock(value);
+      options.onClock?.(player.clock);
+    }
+  }
+
   /** Set the clock, in seconds. */
   setClock(clock: number): void {
     this.player.clock = clock;
@@ -304,7 +287,7 @@ export class Viewer implements User {
   play(): void {
     if (this.options.follows) return this.options.follows.play();
     if (this.playing || !this.header) return;
-    if (!this.varies && this.settings.motion === "off") this.choose("motion", "speed");
+    if (!this.player.varies && this.settings.motion === "off") this.choose("motion", "speed");
     this.player.start();
     this.panel.update();
     this.request();
@@ -329,8 +312,8 @@ export class Viewer implements User {
 
   // --- drawing ---
 
-  /** The view is being moved, or a control is. */
-  stir(): void {
+  /** Draw drafts alone for a while, as the view or a control is being moved. */
+  private holdDraft(): void {
     this.busyUntil = performance.now() + STILL_MS;
   }
 
@@ -423,8 +406,8 @@ export class Viewer implements User {
     const lacking = [...new Set(steps)].filter((step) => this.scene?.missing(step, step).length);
     for (const step of lacking) {
       // A question that was lost is asked again.
-      if (!this.options.onNeed || now - (this.asked.get(step) ?? -Infinity) < LOST_MS) continue;
-      this.asked.set(step, now);
+      if (!this.options.onNeed || now - (this.requests.get(step) ?? -Infinity) < LOST_MS) continue;
+      this.requests.set(step, now);
       this.options.onNeed(step);
     }
     return !lacking.length;
@@ -435,7 +418,7 @@ export class Viewer implements User {
     if (!this.header || !this.scene || this.canvas.width < 2) return;
     try {
       this.advance(now);
-      this.proceed(this.header, until);
+      this.drawPicture(this.header, until);
     } catch (error) {
       this.pause();
       this.panel.fail("The picture could not be drawn.", String(error));
@@ -443,7 +426,7 @@ export class Viewer implements User {
   }
 
   /** Go on with the picture until a time. */
-  private proceed(header: Header, until: number): void {
+  private drawPicture(header: Header, until: number): void {
     const shown = this.available();
     if (!this.camera) this.place();
     if (!shown || !this.camera) return;
@@ -507,6 +490,9 @@ export class Viewer implements User {
 
   /** Point of the surface at (x, y), from -1 to 1, right and up. */
   point(x: number, y: number): Point | null {
-    return pickedPoint(this, x, y);
+    const { scene, camera, shown, canvas } = this;
+    if (!scene || !camera || !shown || !this.canPick) return null;
+    const { anchor } = this.view(shown, 1);
+    return pickedPoint({ scene, camera, moment: shown, anchor, canvas }, x, y);
   }
 }

@@ -2,7 +2,8 @@
 
 import { dom } from "./dom.ts";
 import type { Header, NamedPart } from "./protocol.ts";
-import { Viewer, type Options } from "./viewer.ts";
+import type { Options } from "./options.ts";
+import { Viewer } from "./viewer.ts";
 
 /** A scene that is there as a whole. */
 export interface SceneData {
@@ -66,26 +67,4 @@ export function mountPage(
   scenes.forEach(({ header }, n) => viewers[n].setHeader(header));
   scenes.forEach(({ parts }, n) => parts.forEach((part) => viewers[n].setPart(part)));
   return viewers[0];
-}
-
-/** Pictures beside each other as PNG. */
-export function pngOf(viewers: Viewer[]): Promise<Blob> {
-  const [{ canvas: first }] = viewers;
-  let canvas = first;
-  if (viewers.length > 1) {
-    canvas = dom("canvas");
-    canvas.width = viewers.reduce((sum, viewer) => sum + viewer.canvas.width, 0);
-    canvas.height = first.height;
-    let left = 0;
-    for (const viewer of viewers) {
-      canvas.getContext("2d")?.drawImage(viewer.canvas, left, 0);
-      left += viewer.canvas.width;
-    }
-  }
-  return new Promise((resolve, reject) => {
-    canvas.toBlob((blob) => {
-      if (blob) resolve(blob);
-      else reject(new Error("there is no picture yet"));
-    }, "image/png");
-  });
 }

@@ -3,10 +3,11 @@
 
 import type { CameraState } from "./camera.ts";
 import { sharedGraphics } from "./context.ts";
+import { pngOf } from "./dom.ts";
 import { throttled } from "./lifetime.ts";
 import { decoded, type Header, type NamedPart, type PartInfo, type Value } from "./protocol.ts";
 import type { Viewer } from "./viewer.ts";
-import { pngOf, viewersIn } from "./views.ts";
+import { viewersIn } from "./views.ts";
 
 /** Milliseconds between two messages about the camera, and about the time. */
 const CAMERA_MS = 100;

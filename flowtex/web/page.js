@@ -38,7 +38,11 @@ M20 9V4h-5M4 15v5h5M20 15v5h-5",hide:"M6 9.5l6 6 6-6",show:"M6 14.5l6-6 6 6"};fu
 w3.org/2000/svg",svg=document.createElementNS(space,"svg");svg.setAttribute("viewBox","0 0 24 24"),svg.setAttribute("ari\
 a-hidden","true");let path=document.createElementNS(space,"path");return path.setAttribute("d",ICONS[name]),name==="play"&&
 path.setAttribute("class","solid"),svg.append(path),svg}function numberText(x){if(!Number.isFinite(x))return"–";let size=Math.
-abs(x);return size!==0&&(size>=1e5||size<.001)?x.toExponential(2).replace("e+","e"):String(Number(x.toPrecision(4)))}var EPSILON=1e-6,ARRAY_TYPE=typeof Float32Array<"u"?Float32Array:Array;var degree=Math.PI/180,radian=180/Math.PI;function transpose(out,a){if(out===a){var a01=a[1],a02=a[2],a12=a[5];out[1]=a[3],out[2]=a[6],out[3]=a01,out[5]=a[7],out[6]=
+abs(x);return size!==0&&(size>=1e5||size<.001)?x.toExponential(2).replace("e+","e"):String(Number(x.toPrecision(4)))}function pngOf(views){
+let canvases=views.map(({canvas})=>canvas),all=dom("canvas");all.width=canvases.reduce((sum,{width})=>sum+width,0),all.height=
+canvases[0].height;let pen=all.getContext("2d",{alpha:!1}),left=0;for(let canvas of canvases)pen?.drawImage(canvas,left,
+0),left+=canvas.width;return new Promise((resolve,reject)=>{all.toBlob(blob=>{blob?resolve(blob):reject(new Error("there\
+ is no picture yet"))},"image/png")})}var EPSILON=1e-6,ARRAY_TYPE=typeof Float32Array<"u"?Float32Array:Array;var degree=Math.PI/180,radian=180/Math.PI;function transpose(out,a){if(out===a){var a01=a[1],a02=a[2],a12=a[5];out[1]=a[3],out[2]=a[6],out[3]=a01,out[5]=a[7],out[6]=
 a02,out[7]=a12}else out[0]=a[0],out[1]=a[3],out[2]=a[6],out[3]=a[1],out[4]=a[4],out[5]=a[7],out[6]=a[2],out[7]=a[5],out[8]=
 a[8];return out}function fromRotation(out,rad,axis){var x=axis[0],y=axis[1],z=axis[2],len=Math.sqrt(x*x+y*y+z*z),s,c,t;return len<EPSILON?
 null:(len=1/len,x*=len,y*=len,z*=len,s=Math.sin(rad),c=Math.cos(rad),t=1-c,out[0]=x*x*t+c,out[1]=y*x*t+z*s,out[2]=z*x*t-
@@ -76,22 +80,22 @@ this.nearest);this.state.position=add(this.state.focal_point,ahead,-distance),th
 360/Math.PI}focusAt(x,y){let point=this.pick?.(x,y);if(!point)return;let ahead=this.axes[2],depth=dot2(subtract2(point,this.
 state.position),ahead);depth>0&&(this.state.focal_point=add(this.state.position,ahead,depth))}shift(by){this.state.focal_point=
 add(this.state.focal_point,by),this.state.position=add(this.state.position,by)}};function copyOf(state){let{position,focal_point:focus,
-up}=state;return{...state,position:[...position],focal_point:[...focus],up:[...up]}}function fitted(geometry,limits,positions2,aspect){
-let{center,extent,planar,frame}=geometry,half=tangent(limits.view_angle),back=planar?fromFrame(frame,[0,0,1]):unit([1,1,
-1]),up=planar?fromFrame(frame,[0,1,0]):[0,0,1],right=unit(cross2(up,back)),rows=[right,cross2(back,right),back].map(row=>toFrame(
+up}=state;return{...state,position:[...position],focal_point:[...focus],up:[...up]}}function fitted(surface,limits,positions2,aspect){
+let{center,extent,planar,frame}=surface,half=tangent(limits.view_angle),back=planar?fromFrame(frame,[0,0,1]):unit([1,1,1]),
+up=planar?fromFrame(frame,[0,1,0]):[0,0,1],right=unit(cross2(up,back)),rows=[right,cross2(back,right),back].map(row=>toFrame(
 frame,row)),low=[1/0,1/0],high=[-1/0,-1/0],distance=0;for(let n=0;n<positions2.length;n+=3){let node=[positions2[n],positions2[n+
 1],positions2[n+2]];if(!Number.isFinite(node[0]))continue;let[x,y,z]=rows.map(row=>dot2(row,node));[x,y].forEach((value,k)=>{
 low[k]=Math.min(low[k],value),high[k]=Math.max(high[k],value)});let wide=Math.max(Math.abs(x)/aspect,Math.abs(y));distance=
 Math.max(distance,z+wide/half/(1-2*limits.margin))}let tall=Math.max(high[1]-low[1],(high[0]-low[0])/aspect,1e-12*extent);
 return{position:add(center,back,planar?extent:distance),focal_point:[...center],up,parallel:planar,parallel_scale:.5*tall/
-(1-2*limits.margin),view_angle:limits.view_angle}}function widened(geometry,limits,state,positions2,aspect){let{center,extent,
-planar}=geometry,camera=copyOf(state);if(length2(subtract2(state.focal_point,center))>.001*extent)return camera;if(planar&&
-state.parallel){let[high,all]=[1e9,aspect].map(shape=>fitted(geometry,limits,positions2,shape).parallel_scale);state.parallel_scale>
+(1-2*limits.margin),view_angle:limits.view_angle}}function widened(surface,limits,state,positions2,aspect){let{center,extent,
+planar}=surface,camera=copyOf(state);if(length2(subtract2(state.focal_point,center))>.001*extent)return camera;if(planar&&
+state.parallel){let[high,all]=[1e9,aspect].map(shape=>fitted(surface,limits,positions2,shape).parallel_scale);state.parallel_scale>
 .98*high&&(camera.parallel_scale=Math.max(state.parallel_scale,all))}else if(!state.parallel&&state.view_angle>.9*limits.
 view_angle){let back=subtract2(state.position,state.focal_point);camera.position=add(state.focal_point,back,Math.max(1,limits.
 aspect/aspect))}return camera}function isSamePlace(a,b){let near=length2(subtract2(a.center,b.center))<.1*a.extent,ratio=a.
-extent/b.extent;return a.planar===b.planar&&near&&ratio>.8&&ratio<1.25}function projection(geometry,camera,anchor){let{state,
-aspect}=camera,{center,extent,frame}=geometry,[right,up,ahead]=camera.axes.map(axis=>toFrame(frame,axis)),local=point=>subtract2(
+extent/b.extent;return a.planar===b.planar&&near&&ratio>.8&&ratio<1.25}function projection(surface,camera,anchor){let{state,
+aspect}=camera,{center,extent,frame}=surface,[right,up,ahead]=camera.axes.map(axis=>toFrame(frame,axis)),local=point=>subtract2(
 toFrame(frame,subtract2(point,center)),anchor),focus=local(state.focal_point),middle=scale2(anchor,-1),radius=.51*extent,
 m=new Array(16).fill(0),half=state.parallel?state.parallel_scale:tangent(state.view_angle);if([right.map(c=>c/half/aspect),
 up.map(c=>c/half)].forEach((row,k)=>{for(let n=0;n<3;n+=1)m[4*n+k]=row[n];m[12+k]=-dot2(row,focus)}),state.parallel){for(let n=0;n<
@@ -114,19 +118,18 @@ precision highp float;
 precision highp int;
 `,ATTRIBUTES=["flowtexPosition","flowtexCoordinate","flowtexNormal","flowtexNoise","flowtexScalar"],SAMPLERS=["u_slices",
 "u_slicesNext","u_noiseImage","u_stepImage","u_cmap"],Programs=class{graphics;entries=new Map;parallel=null;constructor(graphics){
-this.graphics=graphics}findFeatures(){this.parallel=this.graphics.context.getExtension("KHR_parallel_shader_compile")}[Symbol.
-iterator](){return this.entries.values()}clear(){this.entries.clear()}dispose(){for(let entry of this){for(let shader of entry.
-shaders)this.graphics.free("Shader",shader);this.graphics.free("Program",entry.program)}this.clear()}get(vertex,fragment){
-let key=`${vertex}\0${fragment}`,entry=this.entries.get(key);return entry||this.entries.set(key,entry=this.build(vertex,
-fragment)),!entry.ready&&!entry.error&&this.finish(entry),entry}build(vertex,fragment){let{graphics}=this,gl=graphics.context,
-program=graphics.counted(gl.createProgram()),kinds=[gl.VERTEX_SHADER,gl.FRAGMENT_SHADER],shaders=[vertex,fragment].map((source,n)=>{
-let shader=graphics.counted(gl.createShader(kinds[n]));return gl.shaderSource(shader,source.startsWith("#version")?source:
-PREAMBLE+source),gl.compileShader(shader),gl.attachShader(program,shader),shader});return ATTRIBUTES.forEach((name,n)=>gl.
-bindAttribLocation(program,n,name)),gl.linkProgram(program),{program,shaders,uniforms:new Map,...{ready:!1,error:"",warm:!1,
-price:FIRST_PRICE_MS}}}finish(entry){let gl=this.graphics.context,{program}=entry,done=this.parallel?.COMPLETION_STATUS_KHR;
-if(done&&!gl.getProgramParameter(program,done))return;if(!gl.getProgramParameter(program,gl.LINK_STATUS)){if(gl.isContextLost())
-return;let logs=entry.shaders.map(shader=>gl.getShaderInfoLog(shader)??"");entry.error=[...logs,gl.getProgramInfoLog(program)??
-""].filter(Boolean).join(`
+this.graphics=graphics}findFeatures(){this.parallel=this.graphics.context.getExtension("KHR_parallel_shader_compile")}clear(){
+this.entries.clear()}dispose(){for(let entry of this.entries.values()){for(let shader of entry.shaders)this.graphics.free(
+"Shader",shader);this.graphics.free("Program",entry.program)}this.clear()}get(vertex,fragment){let key=`${vertex}\0${fragment}`,
+entry=this.entries.get(key);return entry||this.entries.set(key,entry=this.build(vertex,fragment)),!entry.ready&&!entry.error&&
+this.finish(entry),entry}build(vertex,fragment){let{graphics}=this,gl=graphics.context,program=graphics.counted(gl.createProgram()),
+kinds=[gl.VERTEX_SHADER,gl.FRAGMENT_SHADER],shaders=[vertex,fragment].map((source,n)=>{let shader=graphics.counted(gl.createShader(
+kinds[n]));return gl.shaderSource(shader,source.startsWith("#version")?source:PREAMBLE+source),gl.compileShader(shader),
+gl.attachShader(program,shader),shader});return ATTRIBUTES.forEach((name,n)=>gl.bindAttribLocation(program,n,name)),gl.linkProgram(
+program),{program,shaders,uniforms:new Map,...{ready:!1,error:"",warm:!1,price:FIRST_PRICE_MS}}}finish(entry){let gl=this.
+graphics.context,{program}=entry,done=this.parallel?.COMPLETION_STATUS_KHR;if(done&&!gl.getProgramParameter(program,done))
+return;if(!gl.getProgramParameter(program,gl.LINK_STATUS)){if(gl.isContextLost())return;let logs=entry.shaders.map(shader=>gl.
+getShaderInfoLog(shader)??"");entry.error=[...logs,gl.getProgramInfoLog(program)??""].filter(Boolean).join(`
 `),entry.error||="the driver gave no reason";return}for(let shader of entry.shaders)this.graphics.free("Shader",shader);
 entry.shaders=[];let count=gl.getProgramParameter(program,gl.ACTIVE_UNIFORMS);for(let n=0;n<count;n+=1){let info=gl.getActiveUniform(
 program,n),location=info&&gl.getUniformLocation(program,info.name);!info||!location||entry.uniforms.set(info.name.replace(
@@ -395,8 +398,8 @@ input[role="switch"]:checked::after { transform: translateX(12px); }
   button { width: 27px; height: 27px; }
 }
 :host(.flowtex-bare) :is(.head, .legend, .settings, .bar, .handle) { display: none; }
-`;var HINT_MS=1600,LATE_MS=4e3,SAVED_MS=5e3,FEWEST_DIGITS=4,MOST_DIGITS=14,FORBIDDEN=/[\\/:*?"<>|]+/g,sheet=null;function styleSheet(){
-return sheet||(sheet=new CSSStyleSheet,sheet.replaceSync(styles_default)),sheet}var Panel=class{viewer;legend=new Legend;controls;isShown;isOpen=!1;showsLevels=!1;title=dom(
+`;var HINT_MS=1600,LATE_MS=4e3,SAVED_MS=5e3,FEWEST_DIGITS=4,MOST_DIGITS=14,FORBIDDEN=/[\\/:*?"<>|]+/g,styleSheet=new CSSStyleSheet;
+styleSheet.replaceSync(styles_default);var Panel=class{viewer;legend=new Legend;controls;isShown;isOpen=!1;showsLevels=!1;title=dom(
 "div",{class:"title"});readout=dom("div",{class:"readout",role:"status"});head;note=dom("div",{class:"note",hidden:"",role:"\
 alert"});busy=dom("div",{class:"busy",hidden:""},["waiting for data …"]);hintBox;bar;handle;playButton;toggles;gear;slider;timeText=dom(
 "span",{class:"time"});track;hintTimer=null;lateTimer=null;constructor(viewer){this.viewer=viewer;let{root,canvas,options}=viewer;
@@ -405,37 +408,35 @@ this.isShown=options.controls??!0,this.controls=new Controls(viewer),this.head=d
 with the wheel`;this.hintBox=dom("div",{class:"hint glass",hidden:""},[hint]),this.handle=this.button("show","Show the b\
 ar (h)",()=>this.toggle()),this.handle.classList.add("handle","glass"),this.playButton=this.button("play","Play (space)",
 ()=>viewer.togglePlaying());let range={min:"0",max:"1",step:"any","aria-label":"Time"};this.slider=dom("input",{type:"ra\
-nge",...range}),viewer.lifetime.listen(this.slider,"input",()=>this.scrub(Number(this.slider.value))),this.track=dom("di\
-v",{class:"track"},[this.slider,this.timeText]);let toggle=name=>()=>viewer.choose(name,!viewer.settings[name]);this.toggles=
+nge",...range}),viewer.lifetime.listen(this.slider,"input",()=>viewer.scrub(Number(this.slider.value))),this.track=dom("\
+div",{class:"track"},[this.slider,this.timeText]);let toggle=name=>()=>viewer.choose(name,!viewer.settings[name]);this.toggles=
 {lod:this.button("lod","Level of detail",toggle("lod")),show_level:this.button("levels","Show the levels of detail",toggle(
 "show_level"))},this.gear=this.button("settings","Settings",()=>this.fold(!this.isOpen)),this.bar=this.makeBar(),canvas.
 className="picture",root.classList.toggle("flowtex-bare",options.bare??!1);let shadow=root.attachShadow({mode:"open"});shadow.
-adoptedStyleSheets=[styleSheet()];let{legend,controls,head,bar,handle,busy,hintBox,note}=this;shadow.append(canvas,head,
-legend.element,controls.element),shadow.append(bar,handle,busy,hintBox,note),this.arrange()}button(name,title,press){let button=dom(
+adoptedStyleSheets=[styleSheet];let{legend,controls,head,bar,handle,busy,hintBox,note}=this;shadow.append(canvas,head,legend.
+element,controls.element),shadow.append(bar,handle,busy,hintBox,note),this.arrange()}button(name,title,press){let button=dom(
 "button",{type:"button",title,"aria-label":title,"data-name":name},[icon(name)]);return this.viewer.lifetime.listen(button,
 "click",press),button}makeBar(){let{viewer}=this;return dom("div",{class:"bar glass",role:"toolbar","aria-label":"Contro\
 ls"},[this.playButton,this.track,this.button("home","Show everything (0)",()=>viewer.reset()),this.toggles.lod,this.toggles.
 show_level,this.gear,this.button("save","Save the picture",()=>{this.save()}),this.button("full","Fill the screen (f)",()=>this.
 fullscreen()),this.button("hide","Hide the bar (h)",()=>this.toggle())])}build(){let{header}=this.viewer;header&&(this.note.
-hidden=!0,this.controls.build(header),this.showLegend(),this.update(),this.arrange())}update(){let{header,settings,playing,
-varies}=this.viewer;this.name(),this.controls.update(),this.showsLevels!==!!settings.show_level&&this.showLegend();for(let[
-name,button]of Object.entries(this.toggles))button.setAttribute("aria-pressed",String(!!settings[name]));let title=playing?
-"Pause (space)":"Play (space)";this.playButton.replaceChildren(icon(playing?"pause":"play")),this.playButton.title=title,
-this.playButton.setAttribute("aria-label",title);let streams=header!==null&&hasStreaming(header);this.playButton.hidden=
-!varies&&!streams,this.track.hidden=!varies&&!(streams&&settings.motion!=="off"),this.tick()}name(){let{header,settings,
+hidden=!0,this.controls.build(header),this.showLegend(),this.update(),this.arrange())}update(){let{header,settings}=this.
+viewer,{playing,varies}=this.viewer.player;this.name(),this.controls.update(),this.showsLevels!==!!settings.show_level&&
+this.showLegend();for(let[name,button]of Object.entries(this.toggles))button.setAttribute("aria-pressed",String(!!settings[name]));
+let title=playing?"Pause (space)":"Play (space)";this.playButton.replaceChildren(icon(playing?"pause":"play")),this.playButton.
+title=title,this.playButton.setAttribute("aria-label",title);let streams=header!==null&&hasStreaming(header);this.playButton.
+hidden=!varies&&!streams,this.track.hidden=!varies&&!(streams&&settings.motion!=="off"),this.tick()}name(){let{header,settings,
 root}=this.viewer,title=(header?.differs??[]).filter(name=>name in settings).map(name=>{let label=header?.table.find(row=>row.
 name===name)?.label??name,value=settings[name];return`${label}: ${typeof value=="boolean"?value?"on":"off":value}`}).join(
 ", ")||header?.name||"";this.title.textContent=title,this.title.hidden=!title,root.setAttribute("aria-label",title?`Flow\
- texture: ${title}`:"Flow texture")}tick(){let{header,varies,player,settings}=this.viewer;if(!header||this.track.hidden)
-return;let{first,last,now}=player.range(settings);this.slider.value=String((now-first)/(last-first||1));let unit2=header.
-slices.timeUnit,text=varies?`${numberText(now)} ${unit2}`:`${now.toFixed(1)} s`;this.timeText.textContent!==text&&(this.
-timeText.textContent=text)}scrub(share){let{viewer}=this,{first,last}=viewer.player.range(viewer.settings),value=first+share*
-(last-first);viewer.stir(),viewer.varies?(viewer.setTime(value),viewer.options.onTime?.(viewer.time)):(viewer.setClock(value),
-viewer.options.onClock?.(viewer.clock))}showLegend(){let{header,settings,parts}=this.viewer;this.showsLevels=!!settings.
-show_level,header&&this.legend.show(header,settings,parts.get("cmap")?.data)}read(point){let{header}=this.viewer;if(this.
-readout.replaceChildren(),this.legend.point(null),!point||!header)return;let text=this.positionText(point.position,header);
-this.readout.append(dom("span",{},[text]));for(let[name,value]of Object.entries(point.values)){let{unit:unit2}=header.scalars;
-this.readout.append(dom("b",{},[`${name} ${numberText(value)}${unit2?` ${unit2}`:""}`])),this.legend.point(header,value)}}positionText(position,{
+ texture: ${title}`:"Flow texture")}tick(){let{header,player,settings}=this.viewer;if(!header||this.track.hidden)return;
+let{first,last,now}=player.range(settings);this.slider.value=String((now-first)/(last-first||1));let unit2=header.slices.
+timeUnit,text=player.varies?`${numberText(now)} ${unit2}`:`${now.toFixed(1)} s`;this.timeText.textContent!==text&&(this.
+timeText.textContent=text)}showLegend(){let{header,settings,parts}=this.viewer;this.showsLevels=!!settings.show_level,header&&
+this.legend.show(header,settings,parts.get("cmap")?.data)}read(point){let{header}=this.viewer;if(this.readout.replaceChildren(),
+this.legend.point(null),!point||!header)return;let text=this.positionText(point.position,header);this.readout.append(dom(
+"span",{},[text]));for(let[name,value]of Object.entries(point.values)){let{unit:unit2}=header.scalars;this.readout.append(
+dom("b",{},[`${name} ${numberText(value)}${unit2?` ${unit2}`:""}`])),this.legend.point(header,value)}}positionText(position,{
 geometry}){let{extent,planar,center,frame}=geometry,zoom=Math.max(this.viewer.camera?.zoom??1,1),digits=Math.min(Math.ceil(
 FEWEST_DIGITS+Math.log10(zoom)),MOST_DIGITS),isInPlane=planar&&Math.abs(position[2]-center[2])<1e-12*extent&&Math.abs(frame[8])>
 .999;return`(${position.slice(0,isInPlane?2:3).map(x=>{let value=Math.abs(x)<1e-9*extent?0:x;return digits>5?String(Number(
@@ -464,19 +465,18 @@ span=high-low||1;return steps.forEach((values,k)=>{for(let n=0;n<nodes;n+=1){let
 k]=Number.isFinite(share)?share:-1e9}}),result2}function interpolated([rows,columns],i,j,value){let[left,low]=[Math.min(
 Math.floor(i),columns-2),Math.min(Math.floor(j),rows-2)],[a,b]=[i-left,j-low],corner=low*columns+left,[from,to]=[value(corner),
 value(corner+columns+1)];if(a>=b){let aside2=value(corner+1);return from+a*(aside2-from)+b*(to-aside2)}let aside=value(corner+
-columns);return from+b*(aside-from)+a*(to-aside)}function pickedPoint(viewer,x,y){let{header,graphics,camera,scene,shown}=viewer;if(!header||!camera||!scene||!shown||!viewer.
-canPick)return null;let program=graphics.programs.get(header.shaders.vertex,header.shaders.pick),{anchor}=viewer.view(shown,
-1),{width,height}=viewer.canvas,matrix=atPixel(projection(header.geometry,camera,anchor),[x,y],[width,height]),bits=graphics.
-pixel(()=>{graphics.programs.use(program,{u_matrix:matrix,u_between:shown[2]}),scene.draw(shown[0],shown[1],anchor,!1)});
-if(!bits[3])return null;let[u,v2]=new Float32Array(bits.buffer,0,2),{rows,columns,shape}=header.geometry,i=clamp(u*columns.
-size-.5-columns.before,0,shape[1]-1),j=clamp(v2*rows.size-.5-rows.before,0,shape[0]-1);return{position:positionAt(viewer,
-i,j,x,y),index:[i,j],values:valuesAt(viewer,i,j,shown)}}function positionAt(viewer,i,j,x,y){let{header,camera,parts}=viewer,
-nodes=parts.get("position")?.data;if(!header||!camera||!nodes)return[NaN,NaN,NaN];let{shape,frame,center}=header.geometry,
-local=[0,1,2].map(k=>interpolated(shape,i,j,n=>nodes[3*n+k])),about=add(fromFrame(frame,local),center),[start,along]=camera.
-ray(x,y),ahead=camera.axes[2],depth=dot2(subtract2(about,start),ahead)/dot2(along,ahead);return add(start,along,depth)}function valuesAt(viewer,i,j,shown){
-let{header,scene,parts}=viewer,name=header?.scalars.name??null;if(!header||!scene||name===null)return{};let[before,after]=scene.
-scalarParts(shown[0],shown[1]).map(n=>parts.get(n)?.data);if(!before||!after)return{};let value=n=>before[n]+shown[2]*(after[n]-
-before[n]);return{[name]:interpolated(header.geometry.shape,i,j,value)}}function uniforms(header,settings,view,noiseShape=null){let{geometry,slices,constants}=header,s=settings,signFree=isSignFree(
+columns);return from+b*(aside-from)+a*(to-aside)}function pickedPoint(context,x,y){let{scene,camera,moment,anchor,canvas}=context,{graphics,header}=scene,program=graphics.
+programs.get(header.shaders.vertex,header.shaders.pick),whole=projection(header.geometry,camera,anchor),matrix=atPixel(whole,
+[x,y],[canvas.width,canvas.height]),[before,after,between]=moment,bits=graphics.pixel(()=>{graphics.programs.use(program,
+{u_matrix:matrix,u_between:between}),scene.draw(before,after,anchor,!1)});if(!bits[3])return null;let[u,v2]=new Float32Array(
+bits.buffer,0,2),{rows,columns,shape}=header.geometry,i=clamp(u*columns.size-.5-columns.before,0,shape[1]-1),j=clamp(v2*
+rows.size-.5-rows.before,0,shape[0]-1);return{position:positionAt(scene,camera,[i,j],[x,y]),index:[i,j],values:valuesAt(
+scene,i,j,moment)}}function positionAt(scene,camera,[i,j],[x,y]){let{data}=scene.part("position"),{shape,frame,center}=scene.
+header.geometry,local=[0,1,2].map(k=>interpolated(shape,i,j,n=>data[3*n+k])),about=add(fromFrame(frame,local),center),[start,
+along]=camera.ray(x,y),ahead=camera.axes[2],depth=dot2(subtract2(about,start),ahead)/dot2(along,ahead);return add(start,
+along,depth)}function valuesAt(scene,i,j,[from,to,between]){let{header,parts}=scene,{name}=header.scalars,[before,after]=scene.
+scalarParts(from,to).map(part=>parts.get(part)?.data);if(name===null||!before||!after)return{};let value=n=>before[n]+between*
+(after[n]-before[n]);return{[name]:interpolated(header.geometry.shape,i,j,value)}}function uniforms(header,settings,view,noiseShape=null){let{geometry,slices,constants}=header,s=settings,signFree=isSignFree(
 header),finest=2**(Math.floor(Math.log2(geometry.extent))-constants.noiseDoublings),motion=motionUniforms(header,s,view),
 w=view.eye[3],eye=toFrame(geometry.frame,subtract2(view.eye,scale2(geometry.center,w))),kernel=signFree&&s.kernel==="ram\
 p"?"hann":s.kernel;return{u_eye:[...subtract2(eye,scale2(view.anchor,w)),w],u_between:view.between,u_slicesSize:[geometry.
@@ -550,7 +550,7 @@ let{viewer}=this,{camera,panel,options}=viewer;if(!camera)return!1;let command=C
 let[x,y]=DIRECTIONS[command].map(way=>way*KEY_STEP);camera.flat===shiftKey?camera.rotate(-x,-y):camera.pan(x,y),viewer.moved()}else if(command===
 "closer"||command==="farther"){let{wheel_zoom:notch}=camera.limits;camera.zoomBy(command==="closer"?notch:1/notch),viewer.
 moved()}else if(command==="whole")viewer.reset();else if(key===PLAY_KEY)viewer.togglePlaying();else if(key===FULLSCREEN_KEY)
-panel.fullscreen();else if(key==="h")(options.follows??viewer).panel.toggle();else if(key===CLOSE_KEY)panel.fold(),this.
+panel.fullscreen();else if(key==="h")(options.follows?.panel??panel).toggle();else if(key===CLOSE_KEY)panel.fold(),this.
 hold(!1);else return!1;return!0}};function reused(before,now,width,height){let size=before[0]*before[5]-before[4]*before[1],a=(now[0]*before[5]-now[4]*before[1])/
 size,b=(now[4]*before[0]-now[0]*before[4])/size,c=(now[1]*before[5]-now[5]*before[1])/size,d=(now[5]*before[0]-now[1]*before[4])/
 size,determinant=a*d-b*c,area=Math.abs(determinant);if(!(area>.3**2&&area<4**2))return null;let e=now[12]-a*before[12]-b*
@@ -560,38 +560,38 @@ isInside=([x,y])=>Math.abs((d*(x-e)-b*(y-f))/determinant)<1+1e-6&&Math.abs((a*(y
 4,5])matrix[n]=Math.round(matrix[n]);return{matrix,covers,shifts}}var MOVING_MS=55,MOVING_LEAST_MS=14,STRIP_MS=40,SMOOTH_ROWS=256,ProgressiveRenderer=class{viewer;graphics;canvas;pen;back=document.
 createElement("canvas");backPen;last=document.createElement("canvas");lastPen;lastCamera=null;version=1;draftVersion=0;rowsDone=0;fixed=4;frames=0;constructor(viewer){
 this.viewer=viewer,this.graphics=viewer.graphics,this.canvas=viewer.canvas,this.pen=this.canvas.getContext("2d",{alpha:!1}),
-this.backPen=this.back.getContext("2d",{alpha:!1}),this.lastPen=this.last.getContext("2d",{alpha:!1})}get canvases(){return[
-this.canvas,this.back,this.last]}restart(moved=!1){moved||(this.lastCamera=null),this.version+=1,this.rowsDone=0}resize(width,height){
-let old=this.canvas.width>1?copyOfCanvas(this.canvas):null;for(let canvas of this.canvases)canvas.width=width,canvas.height=
-height;old&&this.pen?.drawImage(old,0,0,width,height)}dispose(){for(let canvas of this.canvases)canvas.width=canvas.height=
-0}draw(program,shown,moving,until){if(this.draftVersion!==this.version)return this.draft(program,shown,moving);if(moving)
-return!1;let complete=!1;do complete=this.strip(program,shown);while(!complete&&performance.now()<until);return complete}draft(program,shown,moving){
-let{width,height}=this.canvas,samples=Number(this.viewer.settings.samples),crowd=moving?this.graphics.waiting.size+1:1,budget=Math.
-max(MOVING_MS/crowd,MOVING_LEAST_MS);this.warm(program,shown);let price=program.price*this.factor(samples),best=quality(
-price,this.fixed,width*height,samples,budget),w=Math.max(Math.round(width*best.scale),1),h=Math.max(Math.round(height*best.
-scale),1);this.draftVersion=this.version;let reuse=best.scale<1?this.reuse():null;if(!reuse?.covers){let region={width:w,
-height:h,top:0,rows:h};this.timed(program,region,best.samples,()=>{this.render(program,shown,region,best.samples),this.copy(
-this.pen,region,0,width,height,0)})}return reuse&&this.pen&&(this.pen.imageSmoothingEnabled=!reuse.shifts,this.pen.setTransform(
-...reuse.matrix),this.pen.drawImage(this.last,0,0),this.pen.setTransform(1,0,0,1,0,0)),best.scale<1||best.samples!==samples||
-this.viewer.smooth?!1:(this.complete(),!0)}strip(program,shown){let{width,height}=this.canvas,{smooth,settings}=this.viewer,
-samples=Number(settings.samples);this.warm(program,shown);let price=program.price*this.factor(samples),most=Math.min(height-
-this.rowsDone,smooth?SMOOTH_ROWS:height),rows=Math.min(rowsIn(STRIP_MS,price,this.fixed,width,samples),most),region={width,
-height,top:this.rowsDone,rows};return this.timed(program,region,samples,()=>{this.render(program,shown,region,samples,smooth);
-let drawn=smooth?{...region,height:rows,top:0}:region;this.copy(this.backPen,drawn,drawn.top,width,drawn.height,this.rowsDone)}),
-this.rowsDone+=rows,this.rowsDone<height?!1:(this.pen?.drawImage(this.back,0,0),this.complete(),!0)}complete(){let{camera,
-playing}=this.viewer;this.rowsDone=this.canvas.height,this.frames+=1,this.draftVersion=this.version,this.lastPen?.drawImage(
-this.canvas,0,0),camera&&!playing&&(this.lastCamera=new Camera(camera.state,camera.limits,camera.flat,camera.aspect))}reuse(){
-let{viewer,lastCamera}=this,{header,camera}=viewer;if(!header||!camera||!lastCamera||!header.geometry.planar||!camera.state.
-parallel||!lastCamera.state.parallel)return null;let{geometry}=header,focus=subtract2(camera.state.focal_point,geometry.
-center),anchor=toFrame(geometry.frame,focus),[before,now]=[lastCamera,camera].map(view=>projection(geometry,view,anchor));
-return reused(before,now,this.canvas.width,this.canvas.height)}factor(samples){let{settings,varies}=this.viewer;return settings.
-motion!=="off"||varies?motionFactor(samples):1}timed(program,region,samples,draw){let started=performance.now();draw();let spent=performance.
-now()-started,pixels=region.width*region.rows,factor=this.factor(samples);program.price=learnedPrice(program.price,spent,
-this.fixed,pixels,samples,factor)}warm(program,shown){if(program.warm)return;let{width,height}=this.canvas,region={width,
-height,top:0,rows:1};this.render(program,shown,region,1);let started=performance.now();this.render(program,shown,region,
-1),this.fixed=clamp(performance.now()-started,.5,200),program.warm=!0}render(program,shown,region,samples,smooth=!1){let{
-graphics,viewer}=this,{header,camera,scene}=viewer;if(!header||!camera||!scene)return;let gl=graphics.context,{width,height,
-top,rows}=region,view=viewer.view(shown,viewer.ratio*height/this.canvas.height);graphics.reserve(width,height);let bottom=height-
+this.backPen=this.back.getContext("2d",{alpha:!1}),this.lastPen=this.last.getContext("2d",{alpha:!1})}restart(moved=!1){
+moved||(this.lastCamera=null),this.version+=1,this.rowsDone=0}resize(width,height){let{canvas,back,last}=this;back.width=
+canvas.width,back.height=canvas.height,this.backPen?.drawImage(canvas,0,0),canvas.width=last.width=width,canvas.height=last.
+height=height,back.width>1&&this.pen?.drawImage(back,0,0,width,height),back.width=width,back.height=height}dispose(){for(let canvas of[
+this.canvas,this.back,this.last])canvas.width=canvas.height=0}draw(program,shown,moving,until){if(this.draftVersion!==this.
+version)return this.draft(program,shown,moving);if(moving)return!1;let complete=!1;do complete=this.strip(program,shown);while(!complete&&
+performance.now()<until);return complete}draft(program,shown,moving){let{width,height}=this.canvas,samples=Number(this.viewer.
+settings.samples),crowd=moving?this.graphics.waiting.size+1:1,budget=Math.max(MOVING_MS/crowd,MOVING_LEAST_MS);this.warm(
+program,shown);let price=program.price*this.factor(samples),best=quality(price,this.fixed,width*height,samples,budget),w=Math.
+max(Math.round(width*best.scale),1),h=Math.max(Math.round(height*best.scale),1);this.draftVersion=this.version;let reuse=best.
+scale<1?this.reuse():null;if(!reuse?.covers){let region={width:w,height:h,top:0,rows:h};this.timed(program,region,best.samples,
+()=>{this.render(program,shown,region,best.samples),this.copy(this.pen,region,0,width,height,0)})}return reuse&&this.pen&&
+(this.pen.imageSmoothingEnabled=!reuse.shifts,this.pen.setTransform(...reuse.matrix),this.pen.drawImage(this.last,0,0),this.
+pen.setTransform(1,0,0,1,0,0)),best.scale<1||best.samples!==samples||this.viewer.smooth?!1:(this.complete(),!0)}strip(program,shown){
+let{width,height}=this.canvas,{smooth,settings}=this.viewer,samples=Number(settings.samples);this.warm(program,shown);let price=program.
+price*this.factor(samples),most=Math.min(height-this.rowsDone,smooth?SMOOTH_ROWS:height),rows=Math.min(rowsIn(STRIP_MS,price,
+this.fixed,width,samples),most),region={width,height,top:this.rowsDone,rows};return this.timed(program,region,samples,()=>{
+this.render(program,shown,region,samples,smooth);let drawn=smooth?{...region,height:rows,top:0}:region;this.copy(this.backPen,
+drawn,drawn.top,width,drawn.height,this.rowsDone)}),this.rowsDone+=rows,this.rowsDone<height?!1:(this.pen?.drawImage(this.
+back,0,0),this.complete(),!0)}complete(){let{camera,player}=this.viewer;this.rowsDone=this.canvas.height,this.frames+=1,
+this.draftVersion=this.version,this.lastPen?.drawImage(this.canvas,0,0),camera&&!player.playing&&(this.lastCamera=new Camera(
+camera.state,camera.limits,camera.flat,camera.aspect))}reuse(){let{viewer,lastCamera}=this,{header,camera}=viewer;if(!header||
+!camera||!lastCamera||!header.geometry.planar||!camera.state.parallel||!lastCamera.state.parallel)return null;let{geometry}=header,
+focus=subtract2(camera.state.focal_point,geometry.center),anchor=toFrame(geometry.frame,focus),[before,now]=[lastCamera,
+camera].map(view=>projection(geometry,view,anchor));return reused(before,now,this.canvas.width,this.canvas.height)}factor(samples){
+let{settings,player}=this.viewer;return settings.motion!=="off"||player.varies?motionFactor(samples):1}timed(program,region,samples,draw){
+let started=performance.now();draw();let spent=performance.now()-started,pixels=region.width*region.rows,factor=this.factor(
+samples);program.price=learnedPrice(program.price,spent,this.fixed,pixels,samples,factor)}warm(program,shown){if(program.
+warm)return;let{width,height}=this.canvas,region={width,height,top:0,rows:1};this.render(program,shown,region,1);let started=performance.
+now();this.render(program,shown,region,1),this.fixed=clamp(performance.now()-started,.5,200),program.warm=!0}render(program,shown,region,samples,smooth=!1){
+let{graphics,viewer}=this,{header,camera,scene}=viewer;if(!header||!camera||!scene)return;let gl=graphics.context,{width,
+height,top,rows}=region,view=viewer.view(shown,viewer.ratio*height/this.canvas.height);graphics.reserve(width,height);let bottom=height-
 top-rows;smooth?graphics.bindSmooth(width,rows):gl.bindFramebuffer(gl.FRAMEBUFFER,null),gl.viewport(0,smooth?-bottom:0,width,
 height),gl.enable(gl.SCISSOR_TEST),gl.scissor(0,smooth?0:bottom,width,rows),gl.enable(gl.DEPTH_TEST),gl.depthFunc(gl.LESS),
 gl.disable(gl.BLEND),gl.disable(gl.CULL_FACE);let[r,g,b]=header.background;gl.clearColor(r,g,b,1),gl.clear(gl.COLOR_BUFFER_BIT|
@@ -602,9 +602,7 @@ get("noise")?.shape??null;return{...uniforms(header,{...settings,samples},view,n
 view.density):{},u_matrix:projection(header.geometry,camera,view.anchor),u_mapped:header.scalars.name!==null,u_colour:header.
 colour,u_lit:header.lighting,u_ground:header.background,u_opacity:header.opacity,u_toEye:toFrame(header.geometry.frame,camera.
 toEye)}}copy(pen,{width:w,height:h,rows},top,width,height,to){if(!pen)return;let{canvas}=this.graphics;pen.imageSmoothingEnabled=
-w!==width||h!==height,pen.drawImage(canvas,0,canvas.height-h+top,w,rows,0,to,width,rows*height/h)}};function copyOfCanvas(canvas){
-let copy=document.createElement("canvas");return copy.width=canvas.width,copy.height=canvas.height,copy.getContext("2d")?.
-drawImage(canvas,0,0),copy}function fromHalf(bits){let exponent=bits>>10&31,part=bits&1023,size;return exponent===0?size=part*2**-24:exponent===31?
+w!==width||h!==height,pen.drawImage(canvas,0,canvas.height-h+top,w,rows,0,to,width,rows*height/h)}};function fromHalf(bits){let exponent=bits>>10&31,part=bits&1023,size;return exponent===0?size=part*2**-24:exponent===31?
 size=part?NaN:1/0:size=(1024+part)*2**(exponent-25),bits&32768?-size:size}function toHalf(x){let sign=x<0?32768:0,size=Math.
 abs(x);if(!(size<65520))return sign|(size>=65520?31744:32256);let exponent=Math.max(Math.floor(Math.log2(size||1e-30)),-14),
 part=Math.round(size/2**(exponent-10));return sign|(part<1024?part:(exponent+14)*1024+part)}function halved(texels,width,height,channels){
@@ -683,7 +681,7 @@ SAMPLERS.length)}draw(before,after,anchor,textures){let gl=this.graphics.context
 this.bindTextures(before,after)),this.bindNodes(before,after,anchor),gl.drawElements(gl.TRIANGLES,this.resources.get("in\
 dex")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(null)}};var STILL_MS=160,LOST_MS=5e3,STEPS_HELD=12,isEqual=(a,b)=>JSON.stringify(a)===JSON.stringify(b),Viewer=class{options;graphics=sharedGraphics();lifetime=new Lifetime;player=new Player;root=document.
 createElement("div");canvas=document.createElement("canvas");panel;pointers;parts=new Map;header=null;settings={};scene=null;camera=null;sharp=!1;isVisible=!0;shown=null;together=[
-this];renderer;busyUntil=0;firstCamera=null;asked=new Map;constructor(element,options={}){this.options=options;let{root}=this;
+this];renderer;busyUntil=0;firstCamera=null;requests=new Map;constructor(element,options={}){this.options=options;let{root}=this;
 root.className="flowtex",root.tabIndex=0,root.dataset.sharp="false",root.setAttribute("data-lm-suppress-shortcuts","true"),
 root.setAttribute("role","application"),this.renderer=new ProgressiveRenderer(this),this.panel=new Panel(this),element.append(
 root),this.pointers=new Pointers(this),this.graphics.enter(this),this.observe(),this.graphics.gl||this.panel.fail("This \
@@ -697,10 +695,10 @@ this.lifetime.end(),this.scene?.dispose(),this.scene=null;for(let name of[...thi
 leave(this),this.renderer.dispose(),this.root.remove()}}setHeader(header){if(header.format!==2){this.panel.fail(`The sce\
 ne has format ${header.format}, and this client reads format ${2}.`,"Use the client of the flowtex that made the scene.");
 return}let old=this.header;if(this.header=header,this.settings={...header.settings,...header.own},this.player.setHeader(
-header),this.scene?.dispose(),this.scene=new Scene(this.graphics,header,this.parts),this.asked.clear(),(!old||!isSamePlace(
+header),this.scene?.dispose(),this.scene=new Scene(this.graphics,header,this.parts),this.requests.clear(),(!old||!isSamePlace(
 old.geometry,header.geometry))&&(this.firstCamera=header.camera,this.camera=null),old&&old.generation!==header.generation)
 for(let name of[...this.parts.keys()])name.includes("/")&&this.remove(name);this.panel.build(),this.change()}setPart(part){
-let{name,digest}=part;if(this.asked.delete(stepOf(name)),digest&&this.parts.get(name)?.digest===digest)return;let held=this.
+let{name,digest}=part;if(this.requests.delete(stepOf(name)),digest&&this.parts.get(name)?.digest===digest)return;let held=this.
 graphics.hold(part);this.remove(name),this.parts.set(name,held),this.scene?.forget(name),this.trim(),name==="cmap"&&this.
 panel.showLegend(),this.change()}remove(name){this.graphics.release(this.parts.get(name)),this.parts.delete(name)}trim(){
 if(!this.options.onNeed||!this.header)return;let names=[...this.parts.keys()].filter(name=>name.startsWith("slices/")),[
@@ -708,52 +706,55 @@ before,after]=this.player.moment;for(let name of names.slice(0,Math.max(names.le
 if(!(step===before||step===after))for(let kind of["slices","extra"])this.remove(`${kind}/${step}`)}}setSettings(settings){
 Object.entries(settings).every(([name,value])=>this.settings[name]===value)||(Object.assign(this.settings,settings),this.
 panel.update(),this.change())}followSetting(name,value){name in(this.header?.own??{})||this.setSettings({[name]:value})}choose(name,value){
-this.stir(),this.setSettings({[name]:value}),this.options.onSetting?.(name,value)}get cameraState(){let state=this.camera?.
-state??this.firstCamera;return state?copyOf(state):null}setCamera(state){if(!this.camera)this.firstCamera=copyOf(state);else{
-if(isEqual(this.camera.state,state))return;this.camera.state=copyOf(state)}this.change(!0)}moved(){this.stir(),this.change(
-!0),this.camera&&this.options.onCamera?.(copyOf(this.camera.state))}reset(){this.camera&&(this.place(),this.moved())}place(){
-let{header,firstCamera:first,aspect}=this,nodes=this.parts.get("position")?.data;if(!header||!nodes)return;let{geometry,
-limits}=header,state=first?widened(geometry,limits,first,nodes,aspect):fitted(geometry,limits,nodes,aspect);this.camera=
-new Camera(state,limits,geometry.planar,aspect),this.camera.pick=(x,y)=>this.point(x,y)?.position??null,(!first||!isEqual(
-first,state))&&this.options.onCamera?.(copyOf(state))}get aspect(){return Math.max(this.root.clientWidth,1)/Math.max(this.
-root.clientHeight,1)}get varies(){return this.player.varies}get time(){return this.player.time}get clock(){return this.player.
-clock}get playing(){return this.player.playing}setTime(time){this.player.seek(time),this.panel.tick(),this.change()}setClock(clock){
-this.player.clock=clock,this.panel.tick(),this.change()}play(){if(this.options.follows)return this.options.follows.play();
-this.playing||!this.header||(!this.varies&&this.settings.motion==="off"&&this.choose("motion","speed"),this.player.start(),
-this.panel.update(),this.request(),this.options.onPlaying?.(!0))}pause(){if(this.options.follows)return this.options.follows.
-pause();this.playing&&(this.player.playing=!1,this.panel.update(),this.change(),this.options.onPlaying?.(!1))}togglePlaying(){
-let leader=this.options.follows??this;leader.playing?leader.pause():leader.play()}stir(){this.busyUntil=performance.now()+
-STILL_MS}get isBusy(){return this.playing||performance.now()<this.busyUntil}change(moved=!1){this.renderer.restart(moved),
-this.setSharp(!1),this.request()}draw(){this.frame(performance.now(),performance.now()+FRAME_MS)}setSharp(sharp){sharp!==
-this.sharp&&(this.sharp=sharp,this.root.dataset.sharp=String(sharp),sharp&&this.options.onFrame?.())}request(){!this.lifetime.
-isOver&&this.isVisible&&this.graphics.request(this)}resize(){let ratio=Math.max(window.devicePixelRatio||1,.1),width=Math.
-max(Math.round(this.root.clientWidth*ratio),1),height=Math.max(Math.round(this.root.clientHeight*ratio),1);width===this.
-canvas.width&&height===this.canvas.height||(this.renderer.resize(width,height),this.camera&&(this.camera.aspect=this.aspect,
-isEqual(this.camera.state,this.camera.start)&&this.place()),this.change())}get smooth(){let{header}=this;if(this.options.
-smooth!==void 0||!header)return this.options.smooth??!1;let{vertex,fragment}=header.shaders;return this.graphics.programs.
-get(vertex,fragment).price<CARD_PRICE_MS}get ratio(){return this.canvas.height/Math.max(this.root.clientHeight,1)}lost(){
-this.scene=this.header&&new Scene(this.graphics,this.header,this.parts),this.setSharp(!1)}restored(){this.change()}get lacking(){
-let[before,after]=this.player.moment;return this.scene?.missing(before,after)??[]}available(){let{header,scene,player,shown}=this;
-if(!header||!scene)return null;let moment=player.moment,count=header.slices.steps,ahead=player.playing?[1,2].map(n=>(moment[1]+
-n)%count):[];this.ask([moment[0],moment[1],...ahead]);let{lacking}=this;return this.panel.wait(lacking),lacking.length?shown&&
-!scene.missing(shown[0],shown[1]).length?shown:null:this.shown=moment}ask(steps){let now=performance.now(),lacking=[...new Set(
-steps)].filter(step=>this.scene?.missing(step,step).length);for(let step of lacking)!this.options.onNeed||now-(this.asked.
-get(step)??-1/0)<LOST_MS||(this.asked.set(step,now),this.options.onNeed(step));return!lacking.length}frame(now,until){if(!(this.
-lifetime.isOver||this.graphics.isLost||!this.graphics.gl||!this.isVisible)&&!(!this.header||!this.scene||this.canvas.width<
-2))try{this.advance(now),this.proceed(this.header,until)}catch(error){this.pause(),this.panel.fail("The picture could no\
-t be drawn.",String(error))}}proceed(header,until){let shown=this.available();if(this.camera||this.place(),!shown||!this.
-camera)return;let{programs}=this.graphics,{vertex,fragment,pick}=header.shaders,program=programs.get(vertex,fragment);if(program.
-error){this.panel.fail("The shader does not compile with this graphics driver.",program.error);return}if(!program.ready)
-return this.request();!this.sharp&&this.renderer.draw(program,shown,this.isBusy,until)&&(this.panel.drawn(),programs.get(
-vertex,pick),this.setSharp(!this.playing)),this.sharp||this.request()}advance(now){let{player,options}=this;!player.playing||
-!player.advance(now,steps=>this.ask(steps))||(player.varies?options.onTime?.(player.time):options.onClock?.(player.clock),
-this.panel.tick(),this.renderer.restart(),this.setSharp(!1))}view(shown,density){let{header,camera,scene,player}=this;if(!header||
-!camera)throw new Error("there is nothing to look at yet");let{geometry,constants}=header,focus=camera.state.focal_point,
-local=toFrame(geometry.frame,subtract2(focus,geometry.center)),old=scene?.anchor??[0,0,0],range=constants.anchorRange*2*
-camera.height,isFar=v2=>v2.some(c=>Math.abs(c)>range),anchor=isFar(local)?local:[0,0,0];return{focus,anchor:isFar(subtract2(
-local,old))?anchor:old,eye:camera.eye,between:shown[2],time:player.timeOf(shown),clock:player.clock,density}}get canPick(){
-let{header,graphics}=this;return!header||graphics.isLost||!graphics.gl?!1:graphics.programs.get(header.shaders.vertex,header.
-shaders.pick).ready}point(x,y){return pickedPoint(this,x,y)}};function viewersIn(element,count,options,own=()=>({})){if(count<2)return[new Viewer(element,{...options,...own(0)})];let pair=dom(
+this.holdDraft(),this.setSettings({[name]:value}),this.options.onSetting?.(name,value)}get cameraState(){let state=this.
+camera?.state??this.firstCamera;return state?copyOf(state):null}setCamera(state){if(!this.camera)this.firstCamera=copyOf(
+state);else{if(isEqual(this.camera.state,state))return;this.camera.state=copyOf(state)}this.change(!0)}moved(){this.holdDraft(),
+this.change(!0),this.camera&&this.options.onCamera?.(copyOf(this.camera.state))}reset(){this.camera&&(this.place(),this.
+moved())}place(){let{header,firstCamera:first,aspect}=this,nodes=this.parts.get("position")?.data;if(!header||!nodes)return;
+let{geometry,limits}=header,state=first?widened(geometry,limits,first,nodes,aspect):fitted(geometry,limits,nodes,aspect);
+this.camera=new Camera(state,limits,geometry.planar,aspect),this.camera.pick=(x,y)=>this.point(x,y)?.position??null,(!first||
+!isEqual(first,state))&&this.options.onCamera?.(copyOf(state))}get aspect(){return Math.max(this.root.clientWidth,1)/Math.
+max(this.root.clientHeight,1)}get time(){return this.player.time}get clock(){return this.player.clock}get playing(){return this.
+player.playing}setTime(time){this.player.seek(time),this.panel.tick(),this.change()}scrub(share){let{player,options}=this,
+{first,last}=player.range(this.settings),value=first+share*(last-first);this.holdDraft(),player.varies?(this.setTime(value),
+options.onTime?.(player.time)):(this.setClock(value),options.onClock?.(player.clock))}setClock(clock){this.player.clock=
+clock,this.panel.tick(),this.change()}play(){if(this.options.follows)return this.options.follows.play();this.playing||!this.
+header||(!this.player.varies&&this.settings.motion==="off"&&this.choose("motion","speed"),this.player.start(),this.panel.
+update(),this.request(),this.options.onPlaying?.(!0))}pause(){if(this.options.follows)return this.options.follows.pause();
+this.playing&&(this.player.playing=!1,this.panel.update(),this.change(),this.options.onPlaying?.(!1))}togglePlaying(){let leader=this.
+options.follows??this;leader.playing?leader.pause():leader.play()}holdDraft(){this.busyUntil=performance.now()+STILL_MS}get isBusy(){
+return this.playing||performance.now()<this.busyUntil}change(moved=!1){this.renderer.restart(moved),this.setSharp(!1),this.
+request()}draw(){this.frame(performance.now(),performance.now()+FRAME_MS)}setSharp(sharp){sharp!==this.sharp&&(this.sharp=
+sharp,this.root.dataset.sharp=String(sharp),sharp&&this.options.onFrame?.())}request(){!this.lifetime.isOver&&this.isVisible&&
+this.graphics.request(this)}resize(){let ratio=Math.max(window.devicePixelRatio||1,.1),width=Math.max(Math.round(this.root.
+clientWidth*ratio),1),height=Math.max(Math.round(this.root.clientHeight*ratio),1);width===this.canvas.width&&height===this.
+canvas.height||(this.renderer.resize(width,height),this.camera&&(this.camera.aspect=this.aspect,isEqual(this.camera.state,
+this.camera.start)&&this.place()),this.change())}get smooth(){let{header}=this;if(this.options.smooth!==void 0||!header)
+return this.options.smooth??!1;let{vertex,fragment}=header.shaders;return this.graphics.programs.get(vertex,fragment).price<
+CARD_PRICE_MS}get ratio(){return this.canvas.height/Math.max(this.root.clientHeight,1)}lost(){this.scene=this.header&&new Scene(
+this.graphics,this.header,this.parts),this.setSharp(!1)}restored(){this.change()}get lacking(){let[before,after]=this.player.
+moment;return this.scene?.missing(before,after)??[]}available(){let{header,scene,player,shown}=this;if(!header||!scene)return null;
+let moment=player.moment,count=header.slices.steps,ahead=player.playing?[1,2].map(n=>(moment[1]+n)%count):[];this.ask([moment[0],
+moment[1],...ahead]);let{lacking}=this;return this.panel.wait(lacking),lacking.length?shown&&!scene.missing(shown[0],shown[1]).
+length?shown:null:this.shown=moment}ask(steps){let now=performance.now(),lacking=[...new Set(steps)].filter(step=>this.scene?.
+missing(step,step).length);for(let step of lacking)!this.options.onNeed||now-(this.requests.get(step)??-1/0)<LOST_MS||(this.
+requests.set(step,now),this.options.onNeed(step));return!lacking.length}frame(now,until){if(!(this.lifetime.isOver||this.
+graphics.isLost||!this.graphics.gl||!this.isVisible)&&!(!this.header||!this.scene||this.canvas.width<2))try{this.advance(
+now),this.drawPicture(this.header,until)}catch(error){this.pause(),this.panel.fail("The picture could not be drawn.",String(
+error))}}drawPicture(header,until){let shown=this.available();if(this.camera||this.place(),!shown||!this.camera)return;let{
+programs}=this.graphics,{vertex,fragment,pick}=header.shaders,program=programs.get(vertex,fragment);if(program.error){this.
+panel.fail("The shader does not compile with this graphics driver.",program.error);return}if(!program.ready)return this.
+request();!this.sharp&&this.renderer.draw(program,shown,this.isBusy,until)&&(this.panel.drawn(),programs.get(vertex,pick),
+this.setSharp(!this.playing)),this.sharp||this.request()}advance(now){let{player,options}=this;!player.playing||!player.
+advance(now,steps=>this.ask(steps))||(player.varies?options.onTime?.(player.time):options.onClock?.(player.clock),this.panel.
+tick(),this.renderer.restart(),this.setSharp(!1))}view(shown,density){let{header,camera,scene,player}=this;if(!header||!camera)
+throw new Error("there is nothing to look at yet");let{geometry,constants}=header,focus=camera.state.focal_point,local=toFrame(
+geometry.frame,subtract2(focus,geometry.center)),old=scene?.anchor??[0,0,0],range=constants.anchorRange*2*camera.height,
+isFar=v2=>v2.some(c=>Math.abs(c)>range),anchor=isFar(local)?local:[0,0,0];return{focus,anchor:isFar(subtract2(local,old))?
+anchor:old,eye:camera.eye,between:shown[2],time:player.timeOf(shown),clock:player.clock,density}}get canPick(){let{header,
+graphics}=this;return!header||graphics.isLost||!graphics.gl?!1:graphics.programs.get(header.shaders.vertex,header.shaders.
+pick).ready}point(x,y){let{scene,camera,shown,canvas}=this;if(!scene||!camera||!shown||!this.canPick)return null;let{anchor}=this.
+view(shown,1);return pickedPoint({scene,camera,moment:shown,anchor,canvas},x,y)}};function viewersIn(element,count,options,own=()=>({})){if(count<2)return[new Viewer(element,{...options,...own(0)})];let pair=dom(
 "div",{class:"flowtex-pair"});pair.style.cssText="display: flex; gap: 2px; width: 100%; height: 100%",element.append(pair);
 let viewers=[];for(let n=0;n<count;n+=1){let cell=dom("div");cell.style.cssText="flex: 1 1 0; min-width: 0; height: 100%",
 pair.append(cell);let others=()=>viewers.filter((_,m)=>m!==n),follower=n?{controls:!1,follows:viewers[0]}:{};viewers.push(
@@ -763,11 +764,7 @@ camera);options.onCamera?.(camera)},onTime:time=>{for(let other of others())othe
 onClock:clock=>{for(let other of others())other.setClock(clock);options.onClock?.(clock)},onSetting:(name,value)=>{for(let other of others())
 other.followSetting(name,value);options.onSetting?.(name,value)}}}function mountPage(element,scenes,options={}){let viewers=viewersIn(
 element,scenes.length,options);return scenes.forEach(({header},n)=>viewers[n].setHeader(header)),scenes.forEach(({parts},n)=>parts.
-forEach(part=>viewers[n].setPart(part))),viewers[0]}function pngOf(viewers){let[{canvas:first}]=viewers,canvas=first;if(viewers.
-length>1){canvas=dom("canvas"),canvas.width=viewers.reduce((sum,viewer)=>sum+viewer.canvas.width,0),canvas.height=first.
-height;let left=0;for(let viewer of viewers)canvas.getContext("2d")?.drawImage(viewer.canvas,left,0),left+=viewer.canvas.
-width}return new Promise((resolve,reject)=>{canvas.toBlob(blob=>{blob?resolve(blob):reject(new Error("there is no pictur\
-e yet"))},"image/png")})}async function partsOf(view,known){let parts=[];for(let element of document.querySelectorAll(`script[data-view="${view}"\
+forEach(part=>viewers[n].setPart(part))),viewers[0]}async function partsOf(view,known){let parts=[];for(let element of document.querySelectorAll(`script[data-view="${view}"\
 ]`)){let info=JSON.parse(element.dataset.part??""),text=element.textContent??"",part=known.get(info.digest)??await partOfText(
 info,text);known.set(info.digest,part),parts.push({...part,name:info.name}),element.remove()}return parts}async function openPage(){
 let place=document.getElementById("flowtex"),status=document.getElementById("status");try{let headers=JSON.parse(document.

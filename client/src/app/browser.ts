@@ -4,9 +4,10 @@
 import type { CameraState } from "../camera.ts";
 import type * as Client from "../client.ts";
 import { throttled } from "../lifetime.ts";
+import type { Options } from "../options.ts";
 import { placeIn } from "../pointers.ts";
 import type { Header, Settings } from "../protocol.ts";
-import type { Options, Viewer } from "../viewer.ts";
+import type { Viewer } from "../viewer.ts";
 import { vue, type Emit } from "./vue.ts";
 
 /** Milliseconds between two messages to the server. */
