@@ -25,7 +25,7 @@ export interface CameraState {
   view_angle: number;
 }
 
-/** Where a surface lies: its middle, its size, and the rows of the matrix from the mesh to its own frame. */
+/** Where a surface lies; `frame` has the rows of the matrix from the mesh to the surface's own frame. */
 export interface Surface {
   planar: boolean;
   extent: number;
@@ -98,11 +98,6 @@ export class Camera {
     const ahead = unit(subtract(this.state.focal_point, this.state.position));
     const right = unit(cross(ahead, this.state.up));
     return [right, cross(right, ahead), ahead];
-  }
-
-  /** Unit vector from the focal point to the eye. */
-  get toEye(): Vector {
-    return unit(subtract(this.state.position, this.state.focal_point));
   }
 
   /** The eye and 1, or the way to it and 0 where all rays are parallel. */
@@ -192,8 +187,7 @@ export function fitted(
   const up: Vector = planar ? fromFrame(frame, [0, 1, 0]) : [0, 0, 1];
   const right = unit(cross(up, back));
   const rows = [right, cross(back, right), back].map((row) => toFrame(frame, row));
-  const low = [Infinity, Infinity];
-  const high = [-Infinity, -Infinity];
+  const [low, high] = [[Infinity, Infinity], [-Infinity, -Infinity]];
   let distance = 0;
   for (let n = 0; n < positions.length; n += 3) {
     const node = [positions[n], positions[n + 1], positions[n + 2]];

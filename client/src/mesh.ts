@@ -26,7 +26,6 @@ export function triangles([rows, columns]: [number, number], cells?: Data): Uint
   return index.subarray(0, n);
 }
 
-/** Nodes relative to an anchor. */
 export function positions(data: Float32Array, anchor: Vector): Float32Array {
   if (!anchor.some(Boolean)) return data;
   return data.map((x, n) => x - anchor[n % 3]);
@@ -44,7 +43,6 @@ export function coordinates({ shape, rows, columns }: Geometry): Float32Array {
   return result;
 }
 
-/** Coordinates of the nodes in the noise texture. */
 export function noiseCoordinates({ alongI, alongJ }: Paper): Float32Array {
   const result = new Float32Array(2 * alongI.length * alongJ.length);
   let n = 0;

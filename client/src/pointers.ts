@@ -1,6 +1,5 @@
 // Pointers, wheel and keys on the picture.
 
-import type { Camera } from "./camera.ts";
 import {
   CAMERA_KEYS,
   CLOSE_KEY,
@@ -9,9 +8,8 @@ import {
   hasModifier,
   PLAY_KEY,
 } from "./keyboard.ts";
-import type { Lifetime, Timer } from "./lifetime.ts";
-import type { Options } from "./options.ts";
-import type { Panel } from "./panel.ts";
+import type { Timer } from "./lifetime.ts";
+import type { Panel, PanelHost } from "./panel.ts";
 import type { Point } from "./picking.ts";
 import { clamp } from "./vectors.ts";
 
@@ -45,21 +43,13 @@ export function placeIn(element: Element, event: { clientX: number; clientY: num
 }
 
 /** The view that is moved. */
-export interface PointerHost {
-  readonly root: HTMLElement;
-  readonly canvas: HTMLCanvasElement;
-  readonly options: Options;
-  readonly lifetime: Lifetime;
+export interface PointerHost extends PanelHost {
   readonly panel: Panel;
-  readonly camera: Camera | null;
   readonly sharp: boolean;
   readonly canPick: boolean;
-  readonly playing: boolean;
   point(x: number, y: number): Point | null;
   /** The camera was moved by hand. */
   moved(): void;
-  reset(): void;
-  togglePlaying(): void;
 }
 
 export class Pointers {
@@ -207,7 +197,7 @@ export class Pointers {
       this.look = null;
       this.lastLook = performance.now();
       if (viewer.sharp && viewer.canPick) viewer.panel.read(viewer.point(place.x, place.y));
-      else if (!viewer.playing) this.hover(place);
+      else if (!viewer.player.playing) this.hover(place);
     };
     this.look = viewer.lifetime.later(look, Math.max(rest, viewer.sharp ? 0 : HOVER_MS));
   }

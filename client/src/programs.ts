@@ -48,7 +48,7 @@ export class Programs {
     this.parallel = this.graphics.context.getExtension("KHR_parallel_shader_compile");
   }
 
-  /** Forget all, as they are gone with the context. */
+  /** Forget programs that were lost with the context. */
   clear(): void {
     this.entries.clear();
   }
@@ -95,9 +95,9 @@ export class Programs {
     if (done && !gl.getProgramParameter(program, done)) return;
     if (!gl.getProgramParameter(program, gl.LINK_STATUS)) {
       if (gl.isContextLost()) return;
-      const logs = entry.shaders.map((shader) => gl.getShaderInfoLog(shader) ?? "");
-      entry.error = [...logs, gl.getProgramInfoLog(program) ?? ""].filter(Boolean).join("\n");
-      entry.error ||= "the driver gave no reason";
+      const logs = entry.shaders.map((shader) => gl.getShaderInfoLog(shader));
+      const log = [...logs, gl.getProgramInfoLog(program)].filter(Boolean).join("\n");
+      entry.error = log || "the driver gave no reason";
       return;
     }
     for (const shader of entry.shaders) this.graphics.free("Shader", shader);
@@ -125,15 +125,13 @@ export class Programs {
       const uniform = entry.uniforms.get(name);
       if (!uniform) continue;
       const { location, type } = uniform;
-      const list: Float32Array | readonly number[] =
-        typeof value === "object" ? value : [Number(value)];
-      const numbers = list as Float32List;
+      const numbers = (typeof value === "object" ? value : [Number(value)]) as Float32List;
       if (type === gl.FLOAT) gl.uniform1fv(location, numbers);
       else if (type === gl.FLOAT_VEC2) gl.uniform2fv(location, numbers);
       else if (type === gl.FLOAT_VEC3) gl.uniform3fv(location, numbers);
       else if (type === gl.FLOAT_VEC4) gl.uniform4fv(location, numbers);
       else if (type === gl.FLOAT_MAT4) gl.uniformMatrix4fv(location, false, numbers);
-      else gl.uniform1i(location, list[0]);
+      else gl.uniform1i(location, numbers[0]);
     }
   }
 }

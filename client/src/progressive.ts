@@ -3,12 +3,12 @@
 import { Camera, projection } from "./camera.ts";
 import type { Graphics } from "./context.ts";
 import type { Program } from "./programs.ts";
-import type { Header, Part, Settings } from "./protocol.ts";
+import type { Settings } from "./protocol.ts";
 import { draftUniforms, learnedPrice, motionFactor, quality, rowsIn } from "./quality.ts";
 import { reused, type Reuse } from "./reuse.ts";
 import type { Scene } from "./scene.ts";
 import { uniforms, type Moment, type ViewState } from "./uniforms.ts";
-import { clamp, subtract, toFrame } from "./vectors.ts";
+import { clamp, scale, subtract, toFrame } from "./vectors.ts";
 
 /** Milliseconds for a picture in motion, of one view at least, and for a strip at rest. */
 const MOVING_MS = 55;
@@ -19,15 +19,15 @@ const SMOOTH_ROWS = 256;
 
 type Pen = CanvasRenderingContext2D | null;
 
+const penOf = (canvas: HTMLCanvasElement): Pen => canvas.getContext("2d", { alpha: false });
+
 /** The view that is drawn. */
 export interface DrawContext {
   readonly graphics: Graphics;
   readonly canvas: HTMLCanvasElement;
-  readonly header: Header | null;
   readonly settings: Settings;
   readonly scene: Scene | null;
   readonly camera: Camera | null;
-  readonly parts: ReadonlyMap<string, Part>;
   readonly player: { varies: boolean; playing: boolean };
   /** Whether outlines are smoothed. */
   readonly smooth: boolean;
@@ -52,10 +52,10 @@ export class ProgressiveRenderer {
   private readonly pen: Pen;
   /** The full picture while it is drawn. */
   private readonly back = document.createElement("canvas");
-  private readonly backPen: Pen;
+  private readonly backPen = penOf(this.back);
   /** The last full picture, with the camera that it shows. */
   private readonly last = document.createElement("canvas");
-  private readonly lastPen: Pen;
+  private readonly lastPen = penOf(this.last);
   private lastCamera: Camera | null = null;
   /** Counts what was asked for; that of which there is a draft; rows that are drawn of it. */
   private version = 1;
@@ -70,9 +70,7 @@ export class ProgressiveRenderer {
     this.viewer = viewer;
     this.graphics = viewer.graphics;
     this.canvas = viewer.canvas;
-    this.pen = this.canvas.getContext("2d", { alpha: false });
-    this.backPen = this.back.getContext("2d", { alpha: false });
-    this.lastPen = this.last.getContext("2d", { alpha: false });
+    this.pen = penOf(this.canvas);
   }
 
   /** Another picture is asked for; of the same things when only the camera has moved. */
@@ -127,7 +125,7 @@ export class ProgressiveRenderer {
       const region = { width: w, height: h, top: 0, rows: h };
       this.timed(program, region, best.samples, () => {
         this.render(program, shown, region, best.samples);
-        this.copy(this.pen, region, 0, width, height, 0);
+        this.copy(this.pen, region, height, 0);
       });
     }
     if (reuse && this.pen) {
@@ -155,7 +153,7 @@ export class ProgressiveRenderer {
       this.render(program, shown, region, samples, smooth);
       // Smooth rows were put into the lowest ones of the canvas.
       const drawn = smooth ? { ...region, height: rows, top: 0 } : region;
-      this.copy(this.backPen, drawn, drawn.top, width, drawn.height, this.rowsDone);
+      this.copy(this.backPen, drawn, drawn.height, this.rowsDone);
     });
     this.rowsDone += rows;
     if (this.rowsDone < height) return false;
@@ -177,11 +175,11 @@ export class ProgressiveRenderer {
 
   /** How the last full picture lies in the present view, where it serves. */
   private reuse(): Reuse | null {
-    const { viewer, lastCamera } = this;
-    const { header, camera } = viewer;
-    if (!header || !camera || !lastCamera || !header.geometry.planar) return null;
+    const { lastCamera } = this;
+    const { scene, camera } = this.viewer;
+    if (!scene?.header.geometry.planar || !camera || !lastCamera) return null;
     if (!camera.state.parallel || !lastCamera.state.parallel) return null;
-    const { geometry } = header;
+    const { geometry } = scene.header;
     const focus = subtract(camera.state.focal_point, geometry.center);
     const anchor = toFrame(geometry.frame, focus);
     const [before, now] = [lastCamera, camera].map((view) => projection(geometry, view, anchor));
@@ -225,8 +223,8 @@ export class ProgressiveRenderer {
     smooth = false,
   ): void {
     const { graphics, viewer } = this;
-    const { header, camera, scene } = viewer;
-    if (!header || !camera || !scene) return;
+    const { camera, scene } = viewer;
+    if (!camera || !scene) return;
     const gl = graphics.context;
     const { width, height, top, rows } = region;
     const view = viewer.view(shown, (viewer.ratio * height) / this.canvas.height);
@@ -241,20 +239,25 @@ export class ProgressiveRenderer {
     gl.depthFunc(gl.LESS);
     gl.disable(gl.BLEND);
     gl.disable(gl.CULL_FACE);
-    const [r, g, b] = header.background;
+    const [r, g, b] = scene.header.background;
     gl.clearColor(r, g, b, 1);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     const draft = samples !== viewer.settings.samples || height !== this.canvas.height;
-    graphics.programs.use(program, this.values(view, samples, draft));
+    graphics.programs.use(program, this.values(scene, camera, view, samples, draft));
     scene.draw(shown[0], shown[1], view.anchor, true);
     if (smooth) graphics.copySmooth(width, rows);
     graphics.settle();
   }
 
   /** All uniforms of a picture. */
-  private values(view: ViewState, samples: number, draft: boolean) {
-    const { settings, header, camera, parts } = this.viewer;
-    if (!header || !camera) return {};
+  private values(
+    { header, parts }: Scene,
+    camera: Camera,
+    view: ViewState,
+    samples: number,
+    draft: boolean,
+  ) {
+    const { settings } = this.viewer;
     const noise = parts.get("noise")?.shape ?? null;
     return {
       ...uniforms(header, { ...settings, samples }, view, noise),
@@ -265,20 +268,15 @@ export class ProgressiveRenderer {
       u_lit: header.lighting,
       u_ground: header.background,
       u_opacity: header.opacity,
-      u_toEye: toFrame(header.geometry.frame, camera.toEye),
+      u_toEye: toFrame(header.geometry.frame, scale(camera.axes[2], -1)),
     };
   }
 
   /** Copy the rows that were drawn, to row `to` of a picture of another size. */
-  private copy(
-    pen: Pen,
-    { width: w, height: h, rows }: Region,
-    top: number,
-    width: number,
-    height: number,
-    to: number,
-  ): void {
+  private copy(pen: Pen, region: Region, height: number, to: number): void {
     if (!pen) return;
+    const { width: w, height: h, top, rows } = region;
+    const { width } = this.canvas;
     const { canvas } = this.graphics;
     pen.imageSmoothingEnabled = w !== width || h !== height;
     pen.drawImage(canvas, 0, canvas.height - h + top, w, rows, 0, to, width, (rows * height) / h);

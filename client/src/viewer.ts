@@ -53,7 +53,6 @@ export class Viewer implements User {
   /** Whether the full picture is shown. */
   sharp = false;
   isVisible = true;
-  /** The steps on show. */
   shown: Moment | null = null;
   /** The views that stand beside each other. */
   together: Viewer[] = [this];
@@ -76,7 +75,7 @@ export class Viewer implements User {
     this.panel = new Panel(this);
     element.append(root);
     this.pointers = new Pointers(this);
-    this.graphics.enter(this);
+    this.graphics.users.add(this);
     this.observe();
     if (!this.graphics.gl) {
       this.panel.fail(
@@ -151,7 +150,7 @@ export class Viewer implements User {
     const { name, digest } = part;
     this.requests.delete(stepOf(name));
     if (digest && this.parts.get(name)?.digest === digest) return;
-    const held = this.graphics.hold<Part>(part);
+    const held = this.graphics.hold(part);
     this.remove(name);
     this.parts.set(name, held);
     this.scene?.forget(name);
@@ -243,14 +242,6 @@ export class Viewer implements User {
   }
 
   // --- time ---
-
-  get time(): number {
-    return this.player.time;
-  }
-
-  get clock(): number {
-    return this.player.clock;
-  }
 
   get playing(): boolean {
     return this.player.playing;
@@ -439,7 +430,7 @@ export class Viewer implements User {
     }
     if (!program.ready) return this.request();
     if (!this.sharp && this.renderer.draw(program, shown, this.isBusy, until)) {
-      this.panel.drawn();
+      this.panel.clear();
       programs.get(vertex, pick); // the pointer asks for it next
       this.setSharp(!this.playing);
     }

@@ -35,25 +35,22 @@ export function viewersIn(
   return viewers;
 }
 
-/** Callbacks that hand on to the other views what is told to the host. */
+/** Callbacks that report to the other views and to the host. */
 function linked(options: Options, others: () => Viewer[]): Options {
+  const both =
+    <T extends unknown[]>(
+      follow: (other: Viewer, ...values: T) => void,
+      report?: (...values: T) => void,
+    ) =>
+    (...values: T) => {
+      for (const other of others()) follow(other, ...values);
+      report?.(...values);
+    };
   return {
-    onCamera: (camera) => {
-      for (const other of others()) other.setCamera(camera);
-      options.onCamera?.(camera);
-    },
-    onTime: (time) => {
-      for (const other of others()) other.setTime(time);
-      options.onTime?.(time);
-    },
-    onClock: (clock) => {
-      for (const other of others()) other.setClock(clock);
-      options.onClock?.(clock);
-    },
-    onSetting: (name, value) => {
-      for (const other of others()) other.followSetting(name, value);
-      options.onSetting?.(name, value);
-    },
+    onCamera: both((other, camera) => other.setCamera(camera), options.onCamera),
+    onTime: both((other, time) => other.setTime(time), options.onTime),
+    onClock: both((other, clock) => other.setClock(clock), options.onClock),
+    onSetting: both((other, name, value) => other.followSetting(name, value), options.onSetting),
   };
 }
 

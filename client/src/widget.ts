@@ -19,7 +19,6 @@ const HEIGHT_PX = 480;
 
 type Handler = (...values: never[]) => void;
 
-/** A widget's model, as anywidget has it. */
 export interface Model {
   get(name: string): unknown;
   set(name: string, value: unknown): void;
@@ -156,7 +155,6 @@ class WidgetView {
     }));
   }
 
-  /** Set a trait. */
   private send(name: string, value: unknown): void {
     this.sent.set(name, JSON.stringify(value));
     this.model.set(name, value);

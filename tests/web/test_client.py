@@ -299,7 +299,7 @@ def test_keys(client: ClientPage) -> None:
     press("h")
     assert number(client, "viewers[0].root.shadowRoot.querySelector('.bar').hidden")
     press(" ")
-    client.page.wait_for_function("() => viewers[0].clock > 0.05")
+    client.page.wait_for_function("() => viewers[0].player.clock > 0.05")
     assert number(client, "viewers[0].settings.motion") == "speed"
     press(" ")
     assert not number(client, "viewers[0].playing")
@@ -421,14 +421,14 @@ def test_playing_goes_through_the_times_and_asks_for_what_is_missing(client: Cli
     client.page.wait_for_timeout(300)
     needed = {tuple(e) for e in number(client, "events.filter(([name]) => name === 'onNeed')")}
     assert needed == {("onNeed", 2)}
-    assert number(client, "viewers[0].time") < 0.4 + 1e-9
+    assert number(client, "viewers[0].player.time") < 0.4 + 1e-9
     client.page.evaluate(
         "(parts) => unpack(parts).forEach((part) => viewers[0].setPart(part))",
         late,
     )
-    client.page.wait_for_function("() => viewers[0].time > 0.42")
+    client.page.wait_for_function("() => viewers[0].player.time > 0.42")
     number(client, "viewers[0].setTime(0.79)")
-    client.page.wait_for_function("() => viewers[0].time < 0.2")  # it begins again
+    client.page.wait_for_function("() => viewers[0].player.time < 0.2")  # it begins again
     number(client, "viewers[0].pause()")
     client.sharp()
 
