@@ -174,7 +174,7 @@ export function copyOf(state: CameraState): CameraState {
   return { ...state, position: [...position], focal_point: [...focus], up: [...up] };
 }
 
-/** A camera that shows the whole surface, whose nodes are given in its own frame. */
+/** A camera that shows the whole surface, whose nodes are in its own frame. */
 export function fitted(
   surface: Surface,
   limits: CameraLimits,

@@ -28,7 +28,8 @@ interface Target {
 export interface User {
   frame(now: number, until: number): void;
   lost(): void;
-  restored(): void;
+  /** The picture is not up to date any more. */
+  change(): void;
 }
 
 export class Graphics {
@@ -42,7 +43,6 @@ export class Graphics {
   readonly stock = new Map<string, { part: Part; users: number }>();
   objects = 0;
   isLost = false;
-  restorations = 0;
   /** Whether half-precision textures are drawn into, which their mip levels are made with. */
   floats = false;
   private scheduled = 0;
@@ -70,9 +70,8 @@ export class Graphics {
     });
     this.canvas.addEventListener("webglcontextrestored", () => {
       this.isLost = false;
-      this.restorations += 1;
       this.findFeatures();
-      for (const user of this.users) user.restored();
+      for (const user of this.users) user.change();
     });
   }
 
@@ -148,18 +147,6 @@ export class Graphics {
     if (!part || !entry) return;
     entry.users -= 1;
     if (!entry.users) this.stock.delete(part.digest);
-  }
-
-  /** Make the canvas large enough. */
-  reserve(width: number, height: number): void {
-    if (this.canvas.width < width) this.canvas.width = width;
-    if (this.canvas.height < height) this.canvas.height = height;
-  }
-
-  /** Wait until everything is drawn. */
-  settle(): void {
-    const gl = this.context;
-    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
   }
 
   private target(format: number, width: number, height: number, samples: number): Target {

@@ -50,19 +50,13 @@ export function numberText(x: number): string {
 /** Pictures of views beside each other as PNG. */
 export function pngOf(views: readonly { canvas: HTMLCanvasElement }[]): Promise<Blob> {
   const canvases = views.map(({ canvas }) => canvas);
-  const all = dom("canvas");
-  all.width = canvases.reduce((sum, { width }) => sum + width, 0);
-  all.height = canvases[0].height;
+  const width = canvases.reduce((sum, canvas) => sum + canvas.width, 0);
+  const all = new OffscreenCanvas(width, canvases[0].height);
   const pen = all.getContext("2d", { alpha: false });
   let left = 0;
   for (const canvas of canvases) {
     pen?.drawImage(canvas, left, 0);
     left += canvas.width;
   }
-  return new Promise((resolve, reject) => {
-    all.toBlob((blob) => {
-      if (blob) resolve(blob);
-      else reject(new Error("there is no picture yet"));
-    }, "image/png");
-  });
+  return all.convertToBlob();
 }

@@ -4,7 +4,15 @@ import type { CameraState } from "./camera.ts";
 import type { Point } from "./picking.ts";
 import type { Value } from "./protocol.ts";
 
-export interface Callbacks {
+/** A view that has the bar for another one as well. */
+interface Leader {
+  readonly playing: boolean;
+  readonly panel: { toggle(): void };
+  play(): void;
+  pause(): void;
+}
+
+export interface Options {
   onCamera?: (camera: CameraState) => void;
   onTime?: (time: number) => void;
   onClock?: (clock: number) => void;
@@ -16,17 +24,6 @@ export interface Callbacks {
   onFrame?: () => void;
   onSetting?: (name: string, value: Value) => void;
   onControls?: (shown: boolean) => void;
-}
-
-/** A view that has the bar for another one as well. */
-export interface Leader {
-  readonly playing: boolean;
-  readonly panel: { toggle(): void };
-  play(): void;
-  pause(): void;
-}
-
-export interface Options extends Callbacks {
   /** Whether nothing but the picture is shown. */
   bare?: boolean;
   /** Whether the host makes textures anew where a setting asks for it. */

@@ -39,17 +39,12 @@ export function pickedPoint(context: PickContext, x: number, y: number): Point |
   const { rows, columns, shape } = header.geometry;
   const i = clamp(u * columns.size - 0.5 - columns.before, 0, shape[1] - 1);
   const j = clamp(v * rows.size - 0.5 - rows.before, 0, shape[0] - 1);
-  const position = positionAt(scene, camera, [i, j], [x, y]);
-  return { position, index: [i, j], values: valuesAt(scene, i, j, moment) };
+  const position = positionAt(context, i, j, x, y);
+  return { position, index: [i, j], values: valuesAt(context, i, j) };
 }
 
 /** Single precision finds the depth; the place itself is on the ray through the pointer. */
-function positionAt(
-  scene: Scene,
-  camera: Camera,
-  [i, j]: [number, number],
-  [x, y]: [number, number],
-): number[] {
+function positionAt({ scene, camera }: PickContext, i: number, j: number, x: number, y: number) {
   const { data } = scene.part("position");
   const { shape, frame, center } = scene.header.geometry;
   const local = [0, 1, 2].map((k) => interpolated(shape, i, j, (n) => data[3 * n + k]));
@@ -60,9 +55,10 @@ function positionAt(
   return add(start, along, depth);
 }
 
-function valuesAt(scene: Scene, i: number, j: number, [from, to, between]: Moment) {
+function valuesAt({ scene, moment }: PickContext, i: number, j: number) {
   const { header, parts } = scene;
   const { name } = header.scalars;
+  const [from, to, between] = moment;
   const [before, after] = scene.scalarParts(from, to).map((part) => parts.get(part)?.data);
   if (name === null || !before || !after) return {};
   const value = (n: number) => before[n] + between * (after[n] - before[n]);

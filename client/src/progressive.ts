@@ -57,7 +57,7 @@ export class ProgressiveRenderer {
   private readonly last = document.createElement("canvas");
   private readonly lastPen = penOf(this.last);
   private lastCamera: Camera | null = null;
-  /** Counts what was asked for; that of which there is a draft; rows that are drawn of it. */
+  /** Number of the picture, and of the last draft; rows of the full picture that are drawn. */
   private version = 1;
   private draftVersion = 0;
   private rowsDone = 0;
@@ -73,9 +73,9 @@ export class ProgressiveRenderer {
     this.pen = penOf(this.canvas);
   }
 
-  /** Another picture is asked for; of the same things when only the camera has moved. */
-  restart(moved = false): void {
-    if (!moved) this.lastCamera = null;
+  /** Begin another picture, of the same things where only the camera has changed. */
+  restart(cameraOnly = false): void {
+    if (!cameraOnly) this.lastCamera = null;
     this.version += 1;
     this.rowsDone = 0;
   }
@@ -228,7 +228,9 @@ export class ProgressiveRenderer {
     const gl = graphics.context;
     const { width, height, top, rows } = region;
     const view = viewer.view(shown, (viewer.ratio * height) / this.canvas.height);
-    graphics.reserve(width, height);
+    const { canvas } = graphics;
+    if (canvas.width < width) canvas.width = width;
+    if (canvas.height < height) canvas.height = height;
     const bottom = height - top - rows;
     if (smooth) graphics.bindSmooth(width, rows);
     else gl.bindFramebuffer(gl.FRAMEBUFFER, null);
@@ -246,7 +248,8 @@ export class ProgressiveRenderer {
     graphics.programs.use(program, this.values(scene, camera, view, samples, draft));
     scene.draw(shown[0], shown[1], view.anchor, true);
     if (smooth) graphics.copySmooth(width, rows);
-    graphics.settle();
+    // Reading a pixel waits until everything is drawn.
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
   }
 
   /** All uniforms of a picture. */

@@ -1,4 +1,4 @@
-// The numbers that the shaders are given, by name, as flowtex/rendering/uniforms.py computes them; one
+// The uniforms of the shaders, by name, as flowtex/rendering/uniforms.py computes them; one
 // fixture holds both to the same values. They depend on the view, so all is in double precision.
 
 import { isSignFree, type Header, type Paper, type Settings } from "./protocol.ts";

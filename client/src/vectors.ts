@@ -30,7 +30,7 @@ export function rotated(a: Like, axis: Like, degrees: number): Vector {
   return turn === null ? result() : (vec3.transformMat4(result(), v(a), turn) as Vector);
 }
 
-/** A vector of the mesh in the surface's frame, whose matrix is given in rows. */
+/** A vector of the mesh in the surface's frame, whose matrix is in rows. */
 export function toFrame(frame: readonly number[], a: Like): Vector {
   const columns = mat3.transpose(zeros(9) as Mat3, frame as Mat3);
   return vec3.transformMat3(result(), v(a), columns) as Vector;

@@ -29,9 +29,9 @@ import { subtract, toFrame, type Vector } from "./vectors.ts";
 
 /** Milliseconds for which a view that was moved counts as being moved. */
 const STILL_MS = 160;
-/** Milliseconds after which a question for a step counts as lost. */
+/** Milliseconds after which a request for a step counts as lost. */
 const LOST_MS = 5000;
-/** Time steps that stay where the others can be asked for again. */
+/** Time steps that are held where the host can send the others again. */
 const STEPS_HELD = 12;
 
 const isEqual = (a: unknown, b: unknown) => JSON.stringify(a) === JSON.stringify(b);
@@ -100,9 +100,9 @@ export class Viewer implements User {
 
   /** What is still held, for tests. */
   stats() {
-    const { objects, users, restorations } = this.graphics;
+    const { objects, users } = this.graphics;
     const { frames } = this.renderer;
-    return { ...this.lifetime.stats(), objects, users: users.size, restorations, frames };
+    return { ...this.lifetime.stats(), objects, users: users.size, frames };
   }
 
   dispose(): void {
@@ -164,7 +164,7 @@ export class Viewer implements User {
     this.parts.delete(name);
   }
 
-  /** Hold a few time steps where the others can be asked for again. */
+  /** Hold a few time steps where the host can send the others again. */
   private trim(): void {
     if (!this.options.onNeed || !this.header) return;
     const names = [...this.parts.keys()].filter((name) => name.startsWith("slices/"));
@@ -188,7 +188,7 @@ export class Viewer implements User {
     if (!(name in (this.header?.own ?? {}))) this.setSettings({ [name]: value });
   }
 
-  /** Set one setting as a person does, which the host is told of. */
+  /** Set one setting as a person does, and report it to the host. */
   choose(name: string, value: Value): void {
     this.holdDraft();
     this.setSettings({ [name]: value });
@@ -209,8 +209,8 @@ export class Viewer implements User {
     this.change(true);
   }
 
-  /** The camera was moved by hand. */
-  moved(): void {
+  /** Draw what a camera sees that was moved by hand, and report it to the host. */
+  reportCamera(): void {
     this.holdDraft();
     this.change(true);
     if (this.camera) this.options.onCamera?.(copyOf(this.camera.state));
@@ -219,7 +219,7 @@ export class Viewer implements User {
   reset(): void {
     if (!this.camera) return;
     this.place();
-    this.moved();
+    this.reportCamera();
   }
 
   /** Look from where the scene says, or so that the whole surface is seen. */
@@ -312,9 +312,9 @@ export class Viewer implements User {
     return this.playing || performance.now() < this.busyUntil;
   }
 
-  /** The picture is not sharp any more, and is drawn when its turn comes; `moved`: only the camera changed. */
-  change(moved = false): void {
-    this.renderer.restart(moved);
+  /** Draw another picture when its turn comes. */
+  change(cameraOnly = false): void {
+    this.renderer.restart(cameraOnly);
     this.setSharp(false);
     this.request();
   }
@@ -362,13 +362,9 @@ export class Viewer implements User {
   }
 
   lost(): void {
-    // What was made is gone with the context.
+    // Buffers and textures are lost with the context.
     this.scene = this.header && new Scene(this.graphics, this.header, this.parts);
     this.setSharp(false);
-  }
-
-  restored(): void {
-    this.change();
   }
 
   /** Names of the parts that the present moment lacks. */
@@ -396,7 +392,7 @@ export class Viewer implements User {
     const now = performance.now();
     const lacking = [...new Set(steps)].filter((step) => this.scene?.missing(step, step).length);
     for (const step of lacking) {
-      // A question that was lost is asked again.
+      // A request that was lost is sent again.
       if (!this.options.onNeed || now - (this.requests.get(step) ?? -Infinity) < LOST_MS) continue;
       this.requests.set(step, now);
       this.options.onNeed(step);

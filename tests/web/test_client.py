@@ -205,12 +205,16 @@ def test_on_a_slow_machine_a_moved_picture_serves_until_the_next(client: ClientP
     client.mount(squares, SIZE, **PLAIN)
     before = client.picture()
     slow = "viewers[0].graphics.programs.entries.forEach((p) => { p.price = 1 })"
-    ahead = "viewers[0].camera.pan(-60 / 180, 20 / 120); viewers[0].moved(); viewers[0].draw()"
+    ahead = (
+        "viewers[0].camera.pan(-60 / 180, 20 / 120); viewers[0].reportCamera(); viewers[0].draw()"
+    )
     number(client, f"{{ {slow}; {ahead}; }}")
     moved = client.pixels()
     assert not number(client, "viewers[0].sharp")
     np.testing.assert_array_equal(moved[10:, 30:], before[:-10, :-30])
-    number(client, f"{{ {slow}; viewers[0].camera.zoomBy(1.5, 0.2, 0.1); viewers[0].moved() }}")
+    number(
+        client, f"{{ {slow}; viewers[0].camera.zoomBy(1.5, 0.2, 0.1); viewers[0].reportCamera() }}"
+    )
     number(client, "viewers[0].draw()")
     near = client.pixels().astype(float)
     number(client, "viewers[0].graphics.programs.entries.forEach((p) => { p.price = 1e-5 })")
@@ -515,7 +519,7 @@ def test_a_whole_scene_takes_the_place_of_a_coarse_one(client: ClientPage) -> No
     client.mount(first, SIZE, **PLAIN)
     client.sharp()
     number(client, "viewers[0].camera.zoomBy(2, 0.5, 0.5)")
-    number(client, "viewers[0].moved()")
+    number(client, "viewers[0].reportCamera()")
     client.sharp()
     before = number(client, "viewers[0].cameraState")
     other = scene(coarse_gyre, straight(1))
