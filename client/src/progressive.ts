@@ -215,13 +215,7 @@ export class ProgressiveRenderer {
   }
 
   /** Draw some rows of a picture. */
-  private render(
-    program: Program,
-    shown: Moment,
-    region: Region,
-    samples: number,
-    smooth = false,
-  ): void {
+  private render(program: Program, shown: Moment, region: Region, samples: number, smooth = false) {
     const { graphics, viewer } = this;
     const { camera, scene } = viewer;
     if (!camera || !scene) return;

@@ -1,7 +1,6 @@
 // How well there is time to draw: what a pixel costs is learned from what was drawn.
 
 import type { Settings } from "./protocol.ts";
-import type { Uniform } from "./uniforms.ts";
 import { clamp } from "./vectors.ts";
 
 /** What a pixel costs beside its samples, in samples. */
@@ -72,11 +71,7 @@ export function learnedPrice(
  * keep their length on the page, and no grain is so much smaller than a pixel that it would be grey.
  * `density` is that of the draft.
  */
-export function draftUniforms(
-  settings: Settings,
-  samples: number,
-  density: number,
-): Record<string, Uniform> {
+export function draftUniforms(settings: Settings, samples: number, density: number) {
   const [grain, spacing, all] = [settings.grain, settings.spacing, settings.samples].map(Number);
   const drawn = Math.max(grain * density, Math.min(grain, 1));
   const length = all * spacing * grain;

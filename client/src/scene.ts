@@ -81,7 +81,7 @@ export class Scene {
     return part;
   }
 
-  /** Forget what was made of a part, as it has changed. */
+  /** Drop the objects of a part that has changed. */
   forget(name: string): void {
     const [kind, step] = name.split("/");
     const sliced = kind === "slices" || kind === "extra";
@@ -122,28 +122,19 @@ export class Scene {
   ): T {
     const own = this.resources.get(name);
     if (own) return own.object as T;
-    const { common } = this.graphics;
+    const { graphics } = this;
     const whole = key && `${name.split("/")[0]} ${key}`;
-    const shared = whole ? common.get(whole) : undefined;
-    if (shared) {
-      shared.users += 1;
-      this.resources.set(name, shared);
-      return shared.object as T;
-    }
-    const object = this.graphics.counted(make());
-    const resource = { kind, object, count: 0, key: whole, users: 1 };
+    const shared = whole ? graphics.common.get(whole) : undefined;
+    const object = (shared?.object as T | undefined) ?? graphics.counted(make());
+    const resource = shared ?? { kind, object, count: 0, key: whole, users: 0 };
+    resource.users += 1;
     this.resources.set(name, resource);
-    resource.count = fill(object) || 0;
-    if (whole) common.set(whole, resource);
+    if (!shared) resource.count = fill(object) || 0;
+    if (whole) graphics.common.set(whole, resource);
     return object;
   }
 
-  private buffer(
-    name: string,
-    key: string,
-    data: () => Data | Uint32Array,
-    elements = false,
-  ): WebGLBuffer {
+  private buffer(name: string, key: string, data: () => Data | Uint32Array, elements = false) {
     const gl = this.graphics.context;
     const fill = (buffer: WebGLBuffer) => {
       const target = elements ? gl.ELEMENT_ARRAY_BUFFER : gl.ARRAY_BUFFER;

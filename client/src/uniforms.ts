@@ -108,12 +108,7 @@ function noiseOrigin(header: Header, view: ViewState, finest: number): Record<st
  * Sizes of the noise texture, or of the picture that lies in its place: what is drawn more densely
  * takes its level from so many times more texels.
  */
-function paperUniforms(
-  paper: Paper,
-  s: Numbers,
-  noiseShape: readonly number[],
-  density: number,
-): Record<string, Uniform> {
+function paperUniforms(paper: Paper, s: Numbers, noiseShape: readonly number[], density: number) {
   const tiles = s.noise === "image" ? s.tiles : 1;
   const [rows, columns] = noiseShape;
   return {

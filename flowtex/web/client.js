@@ -618,27 +618,27 @@ let resource=this.resources.get(name);this.resources.delete(name),resource&&(res
 free(resource.kind,resource.object),this.graphics.common.delete(resource.key)))}dispose(){for(let name of[...this.resources.
 keys()])this.drop(name)}key(names,...rest){let digests=names.map(name=>this.parts.has(name)?this.part(name).digest:"none");
 return digests.every(Boolean)?JSON.stringify([digests,rest]):""}take(name,kind,key,make,fill){let own=this.resources.get(
-name);if(own)return own.object;let{common}=this.graphics,whole=key&&`${name.split("/")[0]} ${key}`,shared=whole?common.get(
-whole):void 0;if(shared)return shared.users+=1,this.resources.set(name,shared),shared.object;let object=this.graphics.counted(
-make()),resource={kind,object,count:0,key:whole,users:1};return this.resources.set(name,resource),resource.count=fill(object)||
-0,whole&&common.set(whole,resource),object}buffer(name,key,data,elements=!1){let gl=this.graphics.context,fill=buffer=>{
-let target=elements?gl.ELEMENT_ARRAY_BUFFER:gl.ARRAY_BUFFER,numbers=data();return gl.bindVertexArray(null),gl.bindBuffer(
-target,buffer),gl.bufferData(target,numbers,gl.STATIC_DRAW),numbers.length};return this.take(name,"Buffer",key,()=>gl.createBuffer(),
-fill)}bindNodes(before,after,anchor){let gl=this.graphics.context,steps=String(this.scalarParts(before,after)),stale=steps!==
-this.scalarSteps?["scalar","array"]:[];anchor.some((x,k)=>x!==this.anchor[k])&&stale.push("position","array");for(let name of stale)
-this.drop(name);this.scalarSteps=steps,this.anchor=anchor;let fill=array=>this.fillArray(array,before,after),make=()=>gl.
-createVertexArray();gl.bindVertexArray(this.take("array","VertexArray","",make,fill))}fillArray(array,before,after){let gl=this.
-graphics.context,{geometry,scalars,paper}=this.header,{shape,rows,columns}=geometry,cells=()=>triangles(shape,this.parts.
-get("cells")?.data),index=this.buffer("index",this.key(["cells"],shape),cells,!0),nodes=()=>positions(this.part("positio\
-n").data,this.anchor),normal=geometry.planar?null:this.part("normal").data,painted=this.scalarParts(before,after),values=()=>{
-let steps=painted.map(name=>this.part(name).data);return shares(steps,scalars.low,scalars.high,shape[0]*shape[1])},colour=this.
-key([...new Set(painted)],shape,scalars.low,scalars.high),grid2=JSON.stringify([shape,rows,columns]),type=gl.FLOAT;normal instanceof
-Int8Array&&(type=gl.BYTE),normal instanceof Int16Array&&(type=gl.SHORT);let attributes=[[this.buffer("position",this.key(
-["position"],this.anchor),nodes),3,gl.FLOAT],[this.buffer("coordinate",grid2,()=>coordinates(geometry)),2,gl.FLOAT],[normal&&
-this.buffer("normal",this.key(["normal"]),()=>normal),3,type],[paper&&this.buffer("along","",()=>noiseCoordinates(paper)),
-2,gl.FLOAT],[this.buffer("scalar",colour,values),2,gl.FLOAT]];gl.bindVertexArray(array),gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER,
-index),attributes.forEach(([buffer,size,kind],n)=>{buffer&&(gl.bindBuffer(gl.ARRAY_BUFFER,buffer),gl.enableVertexAttribArray(
-n),gl.vertexAttribPointer(n,size,kind,kind!==gl.FLOAT,0,0))})}texture(name,key,fill){let gl=this.graphics.context;return this.
+name);if(own)return own.object;let{graphics}=this,whole=key&&`${name.split("/")[0]} ${key}`,shared=whole?graphics.common.
+get(whole):void 0,object=shared?.object??graphics.counted(make()),resource=shared??{kind,object,count:0,key:whole,users:0};
+return resource.users+=1,this.resources.set(name,resource),shared||(resource.count=fill(object)||0),whole&&graphics.common.
+set(whole,resource),object}buffer(name,key,data,elements=!1){let gl=this.graphics.context,fill=buffer=>{let target=elements?
+gl.ELEMENT_ARRAY_BUFFER:gl.ARRAY_BUFFER,numbers=data();return gl.bindVertexArray(null),gl.bindBuffer(target,buffer),gl.bufferData(
+target,numbers,gl.STATIC_DRAW),numbers.length};return this.take(name,"Buffer",key,()=>gl.createBuffer(),fill)}bindNodes(before,after,anchor){
+let gl=this.graphics.context,steps=String(this.scalarParts(before,after)),stale=steps!==this.scalarSteps?["scalar","arra\
+y"]:[];anchor.some((x,k)=>x!==this.anchor[k])&&stale.push("position","array");for(let name of stale)this.drop(name);this.
+scalarSteps=steps,this.anchor=anchor;let fill=array=>this.fillArray(array,before,after),make=()=>gl.createVertexArray();
+gl.bindVertexArray(this.take("array","VertexArray","",make,fill))}fillArray(array,before,after){let gl=this.graphics.context,
+{geometry,scalars,paper}=this.header,{shape,rows,columns}=geometry,cells=()=>triangles(shape,this.parts.get("cells")?.data),
+index=this.buffer("index",this.key(["cells"],shape),cells,!0),nodes=()=>positions(this.part("position").data,this.anchor),
+normal=geometry.planar?null:this.part("normal").data,painted=this.scalarParts(before,after),values=()=>{let steps=painted.
+map(name=>this.part(name).data);return shares(steps,scalars.low,scalars.high,shape[0]*shape[1])},colour=this.key([...new Set(
+painted)],shape,scalars.low,scalars.high),grid2=JSON.stringify([shape,rows,columns]),type=gl.FLOAT;normal instanceof Int8Array&&
+(type=gl.BYTE),normal instanceof Int16Array&&(type=gl.SHORT);let attributes=[[this.buffer("position",this.key(["position"],
+this.anchor),nodes),3,gl.FLOAT],[this.buffer("coordinate",grid2,()=>coordinates(geometry)),2,gl.FLOAT],[normal&&this.buffer(
+"normal",this.key(["normal"]),()=>normal),3,type],[paper&&this.buffer("along","",()=>noiseCoordinates(paper)),2,gl.FLOAT],
+[this.buffer("scalar",colour,values),2,gl.FLOAT]];gl.bindVertexArray(array),gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER,index),
+attributes.forEach(([buffer,size,kind],n)=>{buffer&&(gl.bindBuffer(gl.ARRAY_BUFFER,buffer),gl.enableVertexAttribArray(n),
+gl.vertexAttribPointer(n,size,kind,kind!==gl.FLOAT,0,0))})}texture(name,key,fill){let gl=this.graphics.context;return this.
 take(name,"Texture",key,()=>gl.createTexture(),fill)}slices(step){let{slices,geometry}=this.header,key=this.key([`slices\
 /${step}`,`extra/${step}`],geometry.levels,slices.extra);return this.texture(`slices/${step}`,key,texture=>{let part=this.
 part(`slices/${step}`),[layers,height,width,channels]=part.shape,data=part.data,extra=this.parts.get(`extra/${step}`)?.data,

@@ -213,7 +213,7 @@ def test_on_a_slow_machine_a_moved_picture_serves_until_the_next(client: ClientP
     assert not number(client, "viewers[0].sharp")
     np.testing.assert_array_equal(moved[10:, 30:], before[:-10, :-30])
     number(
-        client, f"{{ {slow}; view.camera.zoomBy(1.5, 0.2, 0.1); view.reportCamera() }}"
+        client, f"{{ {slow}; {view}.camera.zoomBy(1.5, 0.2, 0.1); {view}.reportCamera() }}"
     )
     number(client, "viewers[0].draw()")
     near = client.pixels().astype(float)

@@ -132,7 +132,8 @@ export const browser = {
     const view = new BrowserView(props, emit);
     onMounted(() => place.value && void view.begin(place.value));
     onBeforeUnmount(() => view.dispose());
-    for (const name of PROPS) watch(() => props[name], () => view.take(name));
+    const follow = (name: keyof Props) => watch(() => props[name], () => view.take(name));
+    PROPS.forEach(follow);
     const sendHover = slowly<[number, number] | null>((at) => emit("hover", at));
     const onPointermove = (event: PointerEvent) => {
       if (!place.value) return;

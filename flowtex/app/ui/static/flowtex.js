@@ -22,10 +22,10 @@ viewer.setCamera(camera):name==="time"&&time!==lastTime&&!viewer.playing?viewer.
 viewer.play():name==="playing"&&viewer.pause())}dispose(){this.isDisposed=!0,this.watcher.disconnect(),this.viewer?.dispose()}},
 browser={name:"flowtex-client",props:PROPS,emits:["update:camera","update:time","update:playing","setting","sharp","poin\
 t","hover"],setup(props,{emit}){let{h,ref,watch,onMounted,onBeforeUnmount}=vue(),place=ref(null),view=new BrowserView(props,
-emit);onMounted(()=>place.value&&void view.begin(place.value)),onBeforeUnmount(()=>view.dispose());for(let name of PROPS)
-watch(()=>props[name],()=>view.take(name));let sendHover=slowly(at=>emit("hover",at)),onPointermove=event=>{if(!place.value)
-return;let{x,y}=placeIn(place.value,event);sendHover(event.buttons?null:[x,y])},onPointerleave=()=>sendHover(null);return()=>h(
-"div",{ref:place,onPointermove,onPointerleave})}};var COMMANDS={...CAMERA_KEYS,d:"detail",".":"next",",":"previous"},TOGGLES={[PLAY_KEY]:"play",[CLOSE_KEY]:"close",t:"the\
+emit);onMounted(()=>place.value&&void view.begin(place.value)),onBeforeUnmount(()=>view.dispose());let follow=name=>watch(
+()=>props[name],()=>view.take(name));PROPS.forEach(follow);let sendHover=slowly(at=>emit("hover",at)),onPointermove=event=>{
+if(!place.value)return;let{x,y}=placeIn(place.value,event);sendHover(event.buttons?null:[x,y])},onPointerleave=()=>sendHover(
+null);return()=>h("div",{ref:place,onPointermove,onPointerleave})}};var COMMANDS={...CAMERA_KEYS,d:"detail",".":"next",",":"previous"},TOGGLES={[PLAY_KEY]:"play",[CLOSE_KEY]:"close",t:"the\
 me","?":"help"},OWNERS="input, textarea, select, [contenteditable], [role=slider], .v-overlay--active";function press(event,emit){
 let{target,key}=event,isClose=key===CLOSE_KEY;if(!hasModifier(event)&&!(!isClose&&target instanceof Element&&target.closest(
 OWNERS))&&!(key===PLAY_KEY&&target instanceof HTMLButtonElement)){if(key===FULLSCREEN_KEY)toggleFullscreen(document.documentElement);else if(key in
