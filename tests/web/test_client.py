@@ -204,17 +204,14 @@ def test_on_a_slow_machine_a_moved_picture_serves_until_the_next(client: ClientP
     squares = scene(gyre, straight(3, (0.8, 0.5)), noise="checkerboard", resolution=256, tiles=4)
     client.mount(squares, SIZE, **PLAIN)
     before = client.picture()
-    slow = "viewers[0].graphics.programs.entries.forEach((p) => { p.price = 1 })"
-    ahead = (
-        "viewers[0].camera.pan(-60 / 180, 20 / 120); viewers[0].reportCamera(); viewers[0].draw()"
-    )
+    view = "viewers[0]"
+    slow = f"{view}.graphics.programs.entries.forEach((p) => {{ p.price = 1 }})"
+    ahead = f"{view}.camera.pan(-60 / 180, 20 / 120); {view}.reportCamera(); {view}.draw()"
     number(client, f"{{ {slow}; {ahead}; }}")
     moved = client.pixels()
     assert not number(client, "viewers[0].sharp")
     np.testing.assert_array_equal(moved[10:, 30:], before[:-10, :-30])
-    number(
-        client, f"{{ {slow}; {view}.camera.zoomBy(1.5, 0.2, 0.1); {view}.reportCamera() }}"
-    )
+    number(client, f"{{ {slow}; {view}.camera.zoomBy(1.5, 0.2, 0.1); {view}.reportCamera() }}")
     number(client, "viewers[0].draw()")
     near = client.pixels().astype(float)
     number(client, "viewers[0].graphics.programs.entries.forEach((p) => { p.price = 1e-5 })")
