@@ -18,10 +18,7 @@ ENTRIES = 256
 def rgb(colour: Any) -> tuple[float, float, float]:
     """Return a colour of any form that PyVista takes as red, green and blue from 0 to 1.
 
-    Raises
-    ------
-    ValueError
-        When there is no such colour.
+    Raises a ValueError when there is no such colour.
     """
     if isinstance(colour, str):
         from matplotlib.colors import is_color_like, to_rgb
@@ -42,16 +39,8 @@ def _is_grey_number(text: str) -> bool:
 def colour_table(cmap: Any | None) -> Bytes:
     """Return a colour map as (256, 4).
 
-    Parameters
-    ----------
-    cmap
-        A name, a map of matplotlib's, or a table as PyVista takes them; or an array (N, 3 or 4),
-        uint8 or from 0 to 1.
-
-    Raises
-    ------
-    ValueError
-        When there is no such map.
+    It may be a name, a map of matplotlib's or a table as PyVista takes them, or an array
+    (N, 3 or 4), uint8 or from 0 to 1. Anything else raises a ValueError.
     """
     if isinstance(cmap, np.ndarray):
         return _resampled(cmap)

@@ -31,13 +31,7 @@ SWIRL, INCIDENCE = 2.0, 12.0
 
 
 def arrays(shape: tuple[int, int]) -> tuple[Floats, Floats]:
-    """Nodes (J, I, 3) and velocity (J, I, 3); j across and i along the body.
-
-    Parameters
-    ----------
-    shape : tuple of int
-        Nodes across and along, (J, I).
-    """
+    """Nodes (J, I, 3) and velocity (J, I, 3); j across and i along the body."""
     rows, columns = shape
     across, along = np.linspace(-1.0, 1.0, rows), np.linspace(0.0, 1.0, columns)
     s = np.sign(across) * _crowded(np.abs(across))

@@ -39,18 +39,9 @@ class Closure:
 
 @dataclass(frozen=True)
 class NodalArrays:
-    """Arrays at the nodes of a surface.
+    """Nodal arrays as :meth:`FlowField.from_arrays` takes them, all dimensions present.
 
-    Attributes
-    ----------
-    points
-        Positions, (J, I, 3).
-    velocity
-        Velocity, (T, J, I, 3).
-    valid
-        Nodes that carry data, (J, I).
-    scalars
-        Other arrays, name to (T or 1, J, I).
+    Points are (J, I, 3), velocity (T, J, I, 3), valid (J, I), and scalars (T or 1, J, I) each.
     """
 
     points: Floats
@@ -62,17 +53,8 @@ class NodalArrays:
 def close_axes(nodal: NodalArrays, periodic: str | None) -> tuple[NodalArrays, tuple[bool, bool]]:
     """Close the periodic axes: append a missing line, or give two that coincide equal values.
 
-    Parameters
-    ----------
-    nodal
-        The arrays as they came.
-    periodic
-        Axes that close, such as ``"i"`` or ``"ij"``; ``None`` to find out.
-
-    Returns
-    -------
-    nodal, periodic
-        The closed arrays, and whether the (j, i) axis closes on itself.
+    ``periodic`` names the axes, such as ``"ij"``, or is ``None`` to find out. Returns the closed
+    arrays, and whether the (j, i) axis closes on itself.
     """
     closed = [False, False]
     for axis, letter in ((0, "j"), (1, "i")):

@@ -38,22 +38,12 @@ EVEN_CELLS = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Pole:
-    """One pole.
+    """One pole: the value ``line`` of one component of positions (i, j), 0 or 1.
 
-    Attributes
-    ----------
-    component
-        Component of a position (i, j) that counts from the pole: 0 or 1.
-    line
-        Its value at the pole.
-    inward
-        1 where it grows away from the pole, -1 where it falls.
-    plane
-        Two orthonormal rows that span the plane at the pole, (2, 3). Lines around the pole turn
-        from the first to the second.
-    rays
-        How far a cell along each line that leads to the pole goes in that plane, (n + 1, 2), in
-        the mesh's units; the last is the first again.
+    ``inward`` is 1 where the component grows away from the pole, -1 where it falls. ``plane`` holds
+    two orthonormal rows that span the plane at the pole, (2, 3); lines around the pole turn from
+    the first to the second. ``rays`` says how far a cell along each line that leads to the pole
+    goes in that plane, (n + 1, 2), in the mesh's units; the last is the first again.
     """
 
     component: int
@@ -217,18 +207,10 @@ class Poles:
 def find_poles(
     points: Floats, usable: Bools, valid: Bools, periodic: tuple[bool, bool]
 ) -> Poles | None:
-    """Find the poles of a surface.
+    """Find the poles of a surface with nodes (J, I, 3).
 
-    Parameters
-    ----------
-    points
-        Nodes, (J, I, 3).
-    usable
-        Nodes whose coordinates can be trusted, (J, I).
-    valid
-        Nodes that carry data, (J, I); a blanked pole is a hole.
-    periodic
-        Whether the (j, i) axis closes on itself.
+    ``usable`` marks nodes whose coordinates can be trusted, ``valid`` those that carry data, (J,
+    I): a blanked pole is a hole. ``periodic`` says whether the (j, i) axis closes on itself.
     """
     if periodic[0] == periodic[1]:
         return None

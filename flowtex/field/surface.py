@@ -25,17 +25,10 @@ POLE_LINES = 8
 
 
 class Surface:
-    """Nodes of a structured surface.
+    """Nodes of a structured surface, (J, I, 3), in the mesh's own units.
 
-    Parameters
-    ----------
-    points
-        Node positions, (J, I, 3), in the mesh's own units.
-    valid
-        Which nodes carry data, (J, I).
-    periodic
-        Whether the (j, i) axis closes on itself; its last line of nodes is then the first one
-        again, displaced by ``offset`` on a flat map.
+    ``valid`` (J, I) marks nodes that carry data. Where the (j, i) axis is ``periodic``, its last
+    line of nodes is the first one again, displaced by ``offset`` on a flat map.
     """
 
     def __init__(self, points: Floats, valid: Bools, periodic: tuple[bool, bool]) -> None:
@@ -155,18 +148,10 @@ class Surface:
         return folded
 
     def at(self, index: Floats) -> Floats:
-        """Positions in space of positions in index space.
+        """Return positions in space (..., 3) of positions (..., 2) as (i, j) in index space.
 
-        Parameters
-        ----------
-        index
-            (i, j) in cells, (..., 2). Beyond a pole the surface goes on on its far side, and
-            straight on beyond the border of another axis that does not close.
-
-        Returns
-        -------
-        numpy.ndarray
-            Positions, (..., 3).
+        Beyond a pole the surface goes on on its far side, and straight on beyond the border of
+        another axis that does not close.
         """
         flat = index.reshape(-1, 2)
         if self.poles is not None:

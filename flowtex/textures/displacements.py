@@ -25,12 +25,7 @@ LINEAR = 1e-9
 class NodeDisplacements:
     """Map from displacements in index space to those in space, for all nodes of a surface.
 
-    Parameters
-    ----------
-    surface
-        The surface, (J, I) nodes.
-    frame
-        Rows that take a vector to the frame of the results, (C, 3).
+    The rows of ``frame`` (C, 3) take a vector to the frame of the results.
     """
 
     def __init__(self, surface: Surface, frame: Floats) -> None:
@@ -47,18 +42,7 @@ class NodeDisplacements:
         self._offset = surface.offset @ frame.T
 
     def __call__(self, displacement: NDArray[np.floating]) -> Floats:
-        """Return where displacements of the nodes lead.
-
-        Parameters
-        ----------
-        displacement
-            For each node, (J, I, 2) as (a - i, b - j) in cells.
-
-        Returns
-        -------
-        numpy.ndarray
-            Displacements in space, (C, J, I).
-        """
+        """Return displacements in space (C, J, I) of those in index space, (J, I, 2) in cells."""
         rows, columns = self._surface.shape
         along_i, along_j = (displacement[..., c].astype(float).ravel() for c in range(2))
         if self._linear:

@@ -78,18 +78,7 @@ def as_picture(image: Any) -> Floats32:
 
 
 def as_image(picture: Floats32) -> Floats32:
-    """Return the image of which :func:`as_picture` makes these texels.
-
-    Parameters
-    ----------
-    picture
-        (h, w, 4) texels, as :attr:`flowtex.scene.Scene.image` holds them.
-
-    Returns
-    -------
-    numpy.ndarray
-        (h, w, 4) colours and opacity from 0 to 1, row 0 at the top.
-    """
+    """Return the image, row 0 at the top, of which :func:`as_picture` makes these texels (h, w, 4)."""
     image = np.array(picture[::-1])
     opaque = image[..., 3:] > 0
     np.divide(image[..., :3], image[..., 3:], out=image[..., :3], where=opaque)
@@ -146,21 +135,8 @@ def averaged(pixels: Bytes, times: int) -> Bytes:
 def load_image(image: Any) -> Any:
     """Read an image when it is a path, and return anything else as it is.
 
-    Parameters
-    ----------
-    image
-        A path to a PNG, a JPEG or another picture, or an array.
-
-    Returns
-    -------
-    numpy.ndarray
-        (H, W), (H, W, 3) or (H, W, 4), row 0 at the top, as the file's own orientation says; or
-        the argument.
-
-    Raises
-    ------
-    ImageError
-        When there is no such file, or it is no picture that can be read.
+    Returns (H, W), (H, W, 3) or (H, W, 4), row 0 at the top, as the file's own orientation says. An
+    :class:`ImageError` says that there is no such file, or no picture that can be read.
     """
     if not isinstance(image, (str, Path)):
         return image

@@ -81,21 +81,10 @@ class PaperTextures:
     def build(
         cls, store: SliceStore, settings: Settings, image: Floats32 | None = None
     ) -> PaperTextures:
-        """Make both textures of a flow.
+        """Make both textures of a flow, with a picture (H, W, 4) for ``noise="image"``.
 
-        Parameters
-        ----------
-        store
-            The flow and its traces.
-        settings
-            Pattern (``noise``), ``resolution``, ``noise_correction``, ``seed`` and ``tiles``.
-        image
-            The picture for ``noise="image"``, (H, W, 4).
-
-        Raises
-        ------
-        ValueError
-            When the pattern is an image and there is none, or there is no such pattern.
+        Raises a ValueError when the pattern is an image and there is none, or there is no such
+        pattern.
         """
         field, corrected = store.field, settings.noise_correction
         height, width = _size(field, settings.resolution)

@@ -45,16 +45,8 @@ SQUARES = 16
 class TexelMap:
     """Where the texels of a texture lie on a surface.
 
-    Attributes
-    ----------
-    field
-        The field whose surface it is.
-    index
-        Index-space position of the middle of each texel, (H, W, 2) as (i, j).
-    size
-        Size of each texel in cells, (H, W, 2).
-    corrected
-        Whether a pattern is even on the surface, not on the texels.
+    ``index`` is the middle of each texel as (i, j), and ``size`` its size in cells, (H, W, 2) both.
+    ``corrected`` says whether a pattern is even on the surface, not on the texels.
     """
 
     field: FlowField

@@ -75,8 +75,7 @@ class TextureSet:
         settings
             Which noise, how fine, and how it is spread.
         image
-            The picture for ``noise="image"``, (H, W, 4), from
-            :func:`~flowtex.textures.images.as_picture`.
+            The picture for ``noise="image"``, as from :func:`~flowtex.textures.images.as_picture`.
 
         Raises
         ------
@@ -103,10 +102,7 @@ class TextureSet:
     def with_image(self, image: Floats32) -> TextureSet:
         """Return the same with another picture in place of the noise texture.
 
-        Raises
-        ------
-        ValueError
-            When there is no noise texture.
+        Raises a ValueError when there is no noise texture.
         """
         if self.paper is None:
             msg = "there is no noise texture, which an image could replace; expected noise='image'"

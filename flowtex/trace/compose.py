@@ -106,14 +106,12 @@ def compose(
         (2, M + 1, T, J, I), of which those of the first ``known`` lags are filled.
     reach
         Lag at which each path ended, (T, J, I), infinite where it did not within these.
-    known
-        Number of slices that are filled.
+    polar
+        Which paths have come right beside a pole, (T, J, I); more of them are marked.
     landing
         From :func:`landings`.
     run
         Maps a function over blocks of paths.
-    polar
-        Which paths have come right beside a pole, (T, J, I); more of them are marked.
     integrate
         Follows paths right beside a pole.
     """

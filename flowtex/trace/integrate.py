@@ -76,27 +76,12 @@ def integrate(
     most_steps: int = MOST_STEPS,
     within: Callable[[Floats], Bools] | None = None,
 ) -> Paths:
-    """Follow particles and return where they are at the lags.
+    """Follow particles from positions (N, 2) as (i, j) and return where they are at the lags (M,).
 
-    Parameters
-    ----------
-    sampler
-        The field.
-    start
-        Starting positions in index space, (N, 2) as (i, j).
-    lags
-        Lags in units of each particle's ``unit``, (M,), positive and increasing.
-    unit
-        Length of one unit of lag for each particle, (N,).
-    direction
-        -1 to follow backward, +1 forward.
-    tolerance
-        Error allowed in one step, in cells.
-    most_steps
-        Rounds of steps after which the paths that still go on are ended where they are.
-    within
-        Returns for positions (2, N) in index space whether paths are to be followed there; a path
-        that comes elsewhere is interrupted.
+    Lags are positive and increasing, in multiples of each particle's ``unit`` (N,). Direction -1 is
+    backward, 1 forward; the tolerance is the error allowed in one step, in cells. ``within`` tells
+    for positions (2, N) in index space whether paths are to be followed there; a path that comes
+    elsewhere is interrupted.
     """
     run = _Run(sampler, np.ascontiguousarray(start.T), lags, unit, direction, tolerance, within)
     for _ in range(most_steps):

@@ -31,17 +31,7 @@ def lag_unit(field: FlowField, parameter: str) -> Floats:
 
 
 def choose_lags(field: FlowField, parameter: str, *, ratio: float = 2.0) -> Floats:
-    """Lags from a quarter of a cell to a quarter of the surface, (M,), in lag units.
-
-    Parameters
-    ----------
-    field
-        The flow.
-    parameter
-        ``"arclength"`` or ``"time"``.
-    ratio
-        Quotient of one lag and the one before.
-    """
+    """Lags from a quarter of a cell to a quarter of the surface, (M,), in lag units."""
     size, extent = field.surface.cell_size[field.valid], field.surface.extent
     if parameter == "arclength":
         first, last = FIRST_CELLS, LAST_EXTENTS * extent / float(np.percentile(size, 5))

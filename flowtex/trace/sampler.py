@@ -34,14 +34,8 @@ RESTING_CELLS = 1e-3
 class Sampler(ABC):
     """What the integrator asks of a field.
 
-    Positions and rates are (2, N): as (i, j), or on the charts (N,) that are given with them.
-
-    Parameters
-    ----------
-    field
-        The flow.
-    data
-        Components along i and j, and anything else that is interpolated, (T, J, I, C).
+    Positions and rates are (2, N): as (i, j), or on the charts (N,) that are given with them. The
+    data are components along i and j, and anything else that is interpolated, (T, J, I, C).
     """
 
     #: Longest step in units of lag, so that no change in time is jumped over.

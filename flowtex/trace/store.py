@@ -111,14 +111,6 @@ _stores: WeakCache[SliceStore] = WeakCache()
 
 
 def shared_store(field: FlowField, parameter: str) -> SliceStore:
-    """Return the store of a field, one for all that show the field at the same time.
-
-    Parameters
-    ----------
-    field
-        The flow.
-    parameter
-        What a lag measures, as for :func:`flowtex.trace`.
-    """
+    """Return the store of a field, one for all that show the field at the same time."""
     # A store keeps its field alive, so the number of the field is its own while the store lives.
     return _stores.get((id(field), parameter), partial(SliceStore, field, parameter=parameter))

@@ -34,14 +34,8 @@ _KNOWN_FORMATS = (
 class OpenFile:
     """A file that was opened, of which no more is read than its format asks for.
 
-    Attributes
-    ----------
-    path
-        The file.
-    source
-        One of PyVista's readers, or a mesh.
-    velocity
-        Name of the velocity where the format fixes it.
+    ``source`` is one of PyVista's readers or a mesh; ``velocity`` is the name of the velocity where
+    the format fixes it.
     """
 
     path: Path
@@ -57,16 +51,9 @@ def read_file(
     vectors: str | None = None,
     **options: Any,
 ) -> FieldArguments:
-    """Read what a field needs from a file.
+    """Read what a field needs from a file, with the parameters of :meth:`FlowField.from_file`.
 
-    Parameters are those of :meth:`FlowField.from_file`; the options go to
-    :func:`~flowtex.field.io.from_pyvista.read_meshes`.
-
-    Raises
-    ------
-    FieldError
-        When the file does not hold a structured flow. This, and whatever else a reader raises,
-        is to be named by :func:`errors_of_file`.
+    Whatever this raises is to be named by :func:`errors_of_file`.
     """
     file = open_file(path)
     source = file.source
@@ -81,11 +68,8 @@ def read_file(
 def open_file(path: str | Path) -> OpenFile:
     """Open a file, as for :meth:`FlowField.from_file`.
 
-    Raises
-    ------
-    FieldError
-        When it is missing, empty, or of an unknown format; to be named by
-        :func:`errors_of_file`.
+    The FieldError for one that is missing, empty, or of an unknown format is to be named by
+    :func:`errors_of_file`.
     """
     import pyvista as pv
 
@@ -191,17 +175,9 @@ def _pick(mesh: Any, block: int | str) -> Any:
 
 @contextmanager
 def errors_of_file(path: str | Path) -> Iterator[None]:
-    """Turn what readers raise and log into one error that starts with the path.
+    """Turn what readers raise, and errors that VTK logs, into one FieldError with the path first.
 
-    Raises
-    ------
-    FieldError
-        In place of what was raised inside, or when VTK logged an error.
-
-    Warns
-    -----
-    UserWarning
-        For each warning that VTK logged.
+    What VTK warns of becomes a UserWarning.
     """
     file = Path(path).expanduser()
     cause: Exception | None = None

@@ -58,18 +58,9 @@ class FieldArguments(TypedDict):
 class _PlaneStep:
     """The arrays of one plane at one time.
 
-    Attributes
-    ----------
-    points, vectors
-        Positions and vectors at the nodes, (J, I, 3).
-    shown
-        Nodes that the mesh does not hide, (J, I).
-    cells
-        Cells that it shows, (J - 1, I - 1), where it says so or the vectors are theirs.
-    wrap
-        Whether the last line along (j, i) is the first one again.
-    scalars
-        Other arrays at the nodes, (J, I).
+    Points and vectors are (J, I, 3), scalars (J, I) each. ``shown`` (J, I) marks nodes that the
+    mesh does not hide, ``cells`` (J - 1, I - 1) cells that it shows, where it says so or the
+    vectors are theirs. ``wrap`` says whether the last line along (j, i) is the first one again.
     """
 
     points: Floats
@@ -91,13 +82,7 @@ def read_meshes(
 ) -> FieldArguments:
     """Read what a field needs from a mesh or a series of them.
 
-    Parameters are those of :meth:`FlowField.from_pyvista`.
-
-    Raises
-    ------
-    FieldError
-        When the mesh is not structured, when the plane or the vectors have to be chosen or do
-        not exist, or when the steps of a series differ in their nodes.
+    Parameters and errors are those of :meth:`FlowField.from_pyvista`.
     """
     sheets: list[_PlaneStep] = []
     own_times: list[float | None] = []

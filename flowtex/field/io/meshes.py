@@ -62,10 +62,7 @@ class TimeStep:
 def time_steps(source: Any) -> Iterator[TimeStep]:
     """Go through the time steps of a grid, a MultiBlock, a list of either, or a reader.
 
-    Raises
-    ------
-    FieldError
-        When something is met that is no structured grid.
+    Raises a FieldError when something is met that is no structured grid.
     """
     if is_reader(source):
         yield from _read(source)
