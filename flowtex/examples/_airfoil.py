@@ -81,7 +81,7 @@ class Joukowski:
         return np.stack([z.real, z.imag], axis=-1)
 
     def velocity(self, nodes: Complex) -> Floats:
-        """Velocity (..., 2) in the airfoil's plane at nodes in that of the circle, not inside it."""
+        """Velocity (..., 2) in the airfoil's plane at nodes in that of the circle."""
         turn = np.exp(1j * np.radians(self.incidence))
         s = nodes - self.center
         swirl = 1j * self.circulation / (2.0 * np.pi)

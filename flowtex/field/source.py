@@ -161,31 +161,5 @@ class FlowSource:
             self.nbytes += int(step.grid.actual_memory_size) * 1024
             if self.nbytes > MAX_SERIES_BYTES:
                 return steps[:1]
-        if len(steps) == 1:
-            self._mesh = steps[0].grid
-        elif all(step.time is not None for step in steps) or not isinstance(mesh, (list, tuple)):
-            self._mesh = _StepReader(steps)
+        self._mesh = steps[0].grid if len(steps) == 1 else steps
         return steps
-
-
-class _StepReader:
-    """Steps of a series in memory, with the interface of PyVista's readers."""
-
-    def __init__(self, steps: list[TimeStep]) -> None:
-        self._steps = steps
-        self._at = 0
-        known = all(step.time is not None for step in steps)
-        self.time_values = [
-            float(n if step.time is None or not known else step.time)
-            for n, step in enumerate(steps)
-        ]
-
-    @property
-    def active_time_value(self) -> float:
-        return self.time_values[self._at]
-
-    def set_active_time_value(self, time: float) -> None:
-        self._at = self.time_values.index(time)
-
-    def read(self) -> Any:
-        return self._steps[self._at].grid

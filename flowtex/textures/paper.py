@@ -13,13 +13,15 @@ every level (section 4.1).
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
+from scipy import ndimage
 
-from flowtex._util.array_types import Floats, Floats32, Indices
+from flowtex._util.array_types import Floats, Floats32
 from flowtex._util.blocks import block_means
 from flowtex.field import FlowField
 from flowtex.field.interpolation import (
@@ -134,21 +136,16 @@ class PaperTextures:
 
     def at(self, index: Floats) -> Floats:
         """Noise coordinates of positions in index space, (..., 2), straight on beyond the ends."""
-        lines = ((self.along_i, self.repeat[1]), (self.along_j, self.repeat[0]))
-        parts = [
-            along_line(line, index[..., axis], periodic=periodic)
-            for axis, (line, periodic) in enumerate(lines)
-        ]
-        return np.stack(parts, axis=-1)
+        return self._by_axis(along_line, index)
 
     def index(self, coordinate: Floats) -> Floats:
         """Positions in index space of noise coordinates, (..., 2): the way back from :meth:`at`."""
-        lines = ((self.along_i, self.repeat[1]), (self.along_j, self.repeat[0]))
-        parts = [
-            inverse_along_line(line, coordinate[..., axis], periodic=periodic)
-            for axis, (line, periodic) in enumerate(lines)
-        ]
-        return np.stack(parts, axis=-1)
+        return self._by_axis(inverse_along_line, coordinate)
+
+    def _by_axis(self, function: Callable[..., Floats], places: Floats) -> Floats:
+        i = function(self.along_i, places[..., 0], periodic=self.repeat[1])
+        j = function(self.along_j, places[..., 1], periodic=self.repeat[0])
+        return np.stack([i, j], axis=-1)
 
     def by_cell(self) -> Floats:
         """Return derivatives of the noise coordinates by index at the nodes, (J, I, 2)."""
@@ -264,14 +261,5 @@ def _deviations(noise: Floats32) -> list[float]:
 
 def _bilinear(level: Floats, at: Floats) -> Floats:
     """Values at coordinates (2, N) from 0 to 1, texels in the middle of their squares."""
-    rows, columns = level.shape
-    (j0, j1, t), (i0, i1, s) = _around(at[0], rows), _around(at[1], columns)
-    low = level[j0, i0] * (1 - s) + level[j0, i1] * s
-    high = level[j1, i0] * (1 - s) + level[j1, i1] * s
-    return np.asarray(low * (1 - t) + high * t)
-
-
-def _around(x: Floats, count: int) -> tuple[Indices, Indices, Floats]:
-    place = x * count - 0.5
-    first = np.floor(place).astype(np.intp)
-    return first % count, (first + 1) % count, place - first
+    at = at * np.array(level.shape)[:, None] - 0.5
+    return np.asarray(ndimage.map_coordinates(level, at, order=1, mode="grid-wrap"))

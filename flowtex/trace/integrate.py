@@ -73,7 +73,6 @@ def integrate(
     *,
     direction: float,
     tolerance: float,
-    most_steps: int = MOST_STEPS,
     within: Callable[[Floats], Bools] | None = None,
 ) -> Paths:
     """Follow particles from positions (N, 2) as (i, j) and return where they are at the lags (M,).
@@ -84,7 +83,7 @@ def integrate(
     elsewhere is interrupted.
     """
     run = _Run(sampler, np.ascontiguousarray(start.T), lags, unit, direction, tolerance, within)
-    for _ in range(most_steps):
+    for _ in range(MOST_STEPS):
         run.end_resting()
         if not len(run.state.which):
             break
@@ -250,8 +249,7 @@ class _Run:
             self._go_straight(ended, out.k0 + s * (out.k1 - out.k0))
             state.next[outside] = len(self.lags)
         state.y, state.rate, state.lag = step.y1, step.k1, step.lag0 + step.h
-        if self.within is not None:
-            self._interrupt(state, index, outside)
+        self._interrupt(state, index, outside)
         if state.chart is not None:
             before, state.index = state.index, index
             self._change_chart(state, before)

@@ -20,7 +20,7 @@ from xml.etree.ElementTree import ParseError
 from flowtex.errors import FieldError
 from flowtex.field.io import plot3d
 from flowtex.field.io.from_pyvista import FieldArguments, read_meshes
-from flowtex.field.io.meshes import is_reader, is_structured, leaves, times_of
+from flowtex.field.io.meshes import times_of
 
 __all__ = ["OpenFile", "errors_of_file", "open_file", "read_file"]
 
@@ -59,10 +59,8 @@ def read_file(
     source = file.source
     if time is not None:
         source = _at_time(source, time)
-    if block is not None:
-        source = _BlockReader(source, block) if is_reader(source) else _pick(source, block)
     name = vectors if vectors is not None else file.velocity
-    return read_meshes(source, vectors=name, **options)
+    return read_meshes(source, vectors=name, block=block, **options)
 
 
 def open_file(path: str | Path) -> OpenFile:
@@ -137,39 +135,6 @@ def _at_time(source: Any, time: float) -> Any:
             return source.read()
     listed = ", ".join(f"{t:g}" for t in times[:8]) + (", ..." if len(times) > 8 else "")
     msg = f"time is {time!r}; the file has {f'the times {listed}' if times else 'no times'}"
-    raise FieldError(msg)
-
-
-@dataclass
-class _BlockReader:
-    """A reader that gives one block of what another reader gives, at any of its times."""
-
-    reader: Any
-    block: int | str
-
-    @property
-    def time_values(self) -> list[float]:
-        return times_of(self.reader)
-
-    @property
-    def active_time_value(self) -> float:
-        return float(self.reader.active_time_value)
-
-    def set_active_time_value(self, time: float) -> None:
-        self.reader.set_active_time_value(time)
-
-    def read(self) -> Any:
-        return _pick(self.reader.read(), self.block)
-
-
-def _pick(mesh: Any, block: int | str) -> Any:
-    """Pick one of several structured grids, by number or by name."""
-    grids = [(name, grid) for name, grid in leaves(mesh) if is_structured(grid)]
-    for number, (name, grid) in enumerate(grids):
-        if block in (number, name):
-            return grid
-    listed = ", ".join(f"{number} ({name})" for number, (name, _) in enumerate(grids)) or "none"
-    msg = f"block is {block!r}; the structured blocks of the file are: {listed}"
     raise FieldError(msg)
 
 

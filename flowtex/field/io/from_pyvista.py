@@ -79,15 +79,17 @@ def read_meshes(
     times: ArrayLike | None = None,
     periodic: str | None = None,
     sign_free: bool = False,
+    block: int | str | None = None,
 ) -> FieldArguments:
     """Read what a field needs from a mesh or a series of them.
 
-    Parameters and errors are those of :meth:`FlowField.from_pyvista`.
+    Parameters and errors are those of :meth:`FlowField.from_pyvista`; the block is picked from
+    each step.
     """
     sheets: list[_PlaneStep] = []
     own_times: list[float | None] = []
     choice: tuple[Plane, MeshArray] | None = None
-    for step in time_steps(mesh):
+    for step in time_steps(mesh, block):
         if choice is None:
             choice = _choose(step.grid, plane, vectors)
         _check_step(step, *choice)

@@ -27,7 +27,6 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import AnyArray, Bools, Floats
-from flowtex.errors import raise_faults
 
 __all__ = ["Plane", "choose_plane", "count_nodes", "nodes_to_keep", "plane_faults", "spread"]
 
@@ -99,14 +98,7 @@ def plane_faults(dimensions: tuple[int, int, int], plane: Any) -> list[str]:
 
 
 def choose_plane(dimensions: tuple[int, int, int], plane: str | None) -> Plane:
-    """Return the plane that is meant.
-
-    Raises
-    ------
-    FieldError
-        When there is no such plane, or one has to be chosen and was not.
-    """
-    raise_faults(plane_faults(dimensions, plane))
+    """Return the plane that is meant; :func:`plane_faults` returned none before."""
     match = _PLANE.fullmatch(plane or "")
     if match is None:
         return Plane(dimensions, dimensions.index(1), 0)
