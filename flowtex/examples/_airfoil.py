@@ -22,8 +22,6 @@ from flowtex._util.array_types import Floats
 
 Complex = NDArray[np.complex128]
 
-__all__ = ["Joukowski"]
-
 
 @dataclass(frozen=True)
 class Joukowski:

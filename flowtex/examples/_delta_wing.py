@@ -18,8 +18,6 @@ import numpy as np
 
 from flowtex._util.array_types import Floats
 
-__all__ = ["arrays"]
-
 #: Half span at the nose, of the body, and at the tail; where along the body the wings begin.
 NOSE, BODY, SPAN, WINGS = 0.012, 0.085, 0.46, 0.34
 #: Length over which the nose widens, and over which it rises.

@@ -16,19 +16,6 @@ from scipy.interpolate import CubicSpline
 
 from flowtex._util.array_types import AnyArray, Floats
 
-__all__ = [
-    "CYLINDER",
-    "DATA",
-    "VORTEX",
-    "cylinder_arrays",
-    "find_post",
-    "load",
-    "periodic_velocity",
-    "polar_vorticity",
-    "unpack",
-    "vortex_arrays",
-]
-
 #: Folder of the shipped files, and their names.
 DATA = Path(__file__).parent / "data"
 CYLINDER, VORTEX = "cylinder.npz", "vortex.npz"

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from flowtex._util.array_types import Floats
 from flowtex.field.field import FlowField
 from flowtex.field.interpolation import steps_around
-from flowtex.field.locate import SurfacePoint, surface_point
+from flowtex.field.locate import surface_point
 from flowtex.field.signs import weighted_axis
 
 __all__ = ["PointValues", "values_at"]
@@ -80,18 +80,17 @@ def values_at(field: FlowField, index: ArrayLike, time: float | None = None) -> 
         a, b = (point.interpolate(steps[n]) for n in (before, after))
         return np.asarray(a * (1 - share) + b * share)
 
+    if field.sign_free:
+        velocity = weighted_axis(point.corners(field.velocity[0]), point.weights)
+    else:
+        velocity = value(field.velocity)
     return PointValues(
         index=point.index,
         position=point.interpolate(field.surface.points),
-        velocity=_axis(field, point) if field.sign_free else value(field.velocity),
+        velocity=velocity,
         speed=float(value(field.speed)),
         scalars={name: float(value(steps)) for name, steps in field.scalars.items()},
         time=at,
         length_unit=field.length_unit,
         time_unit=field.time_unit,
     )
-
-
-def _axis(field: FlowField, point: SurfacePoint) -> Floats:
-    """Return the vector of a field without a sign."""
-    return weighted_axis(point.corners(field.velocity[0]), point.weights)

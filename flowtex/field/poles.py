@@ -19,16 +19,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TypeAlias
 
 import numpy as np
 
 from flowtex._util.array_types import AnyArray, Bools, Floats
 
 __all__ = ["Pole", "Poles", "find_poles"]
-
-#: Of single or double precision, as it comes in.
-Reals: TypeAlias = AnyArray
 
 #: Nodes closer than this share of the distance to the next line lie at one point.
 SAME_POINT_SHARE = 1e-3
@@ -87,11 +83,11 @@ class Pole:
         """Nodal data, (..., J, I, ...) from ``axis`` on, as (..., lines, n + 1, ...): a view."""
         return nodal if self.component else np.swapaxes(nodal, axis, axis + 1)
 
-    def depth(self, position: Reals) -> Reals:
+    def depth(self, position: AnyArray) -> AnyArray:
         """Cells between the pole and positions (2, N) that are not beyond it, (N,)."""
         return np.asarray((position[self.component] - self.line) * self.inward)
 
-    def opposite(self, around: Reals) -> Reals:
+    def opposite(self, around: AnyArray) -> AnyArray:
         """Index, up to one turn further, of the line straight ahead beyond the pole."""
         if self._even:
             return np.asarray(around + around.dtype.type(self.cells / 2))
@@ -167,7 +163,7 @@ class Poles:
         """Component of a position (i, j) that leads from pole to pole."""
         return next(iter(self)).component
 
-    def fold(self, position: Reals) -> Reals:
+    def fold(self, position: AnyArray) -> AnyArray:
         """Positions (2, N) with those beyond a pole given as the points that they are."""
         end = self.lines - 1
         low, high = self.first is not None, self.last is not None
@@ -187,14 +183,14 @@ class Poles:
         result[c][outside], result[a][outside] = x, y
         return result
 
-    def mirrored(self, position: Reals) -> Bools:
+    def mirrored(self, position: AnyArray) -> Bools:
         """Where (2, N) index space is that of the far side, and runs towards a pole, not away."""
         outside = self._outside(position)
         if outside.any() and self.first is not None and self.last is not None:
             outside &= np.floor(position[self.component] / (self.lines - 1)) % 2 != 0
         return outside
 
-    def _outside(self, position: Reals) -> Bools:
+    def _outside(self, position: AnyArray) -> Bools:
         across = position[self.component]
         outside = np.zeros(across.shape, bool)
         if self.first is not None:

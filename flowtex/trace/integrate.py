@@ -18,7 +18,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, fields
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -93,7 +93,17 @@ def integrate(
 
 
 @dataclass
-class _Particles:
+class _Columns:
+    """Arrays whose last axis is that of the particles; some of them may be None."""
+
+    def pick(self, mask: Bools | Indices) -> Self:
+        """Return those of some particles."""
+        parts = (getattr(self, f.name) for f in fields(self))
+        return type(self)(*(None if part is None else part[..., mask] for part in parts))
+
+
+@dataclass
+class _Particles(_Columns):
     """Particles still under way; the last axis is theirs.
 
     Where there are poles, ``chart`` is what ``y`` is given on, and ``index`` the same in index
@@ -111,13 +121,9 @@ class _Particles:
     chart: Numbers | None
     index: Floats | None
 
-    def pick(self, mask: Bools) -> _Particles:
-        """Return some of them."""
-        return _Particles(*_picked(self, mask))
-
 
 @dataclass
-class IntegrationStep:
+class IntegrationStep(_Columns):
     """Steps of some particles, from (y0, k0) at lag0 to (y1, k1); the last axis is theirs."""
 
     y0: Floats
@@ -128,10 +134,6 @@ class IntegrationStep:
     h: Floats
     chart: Numbers | None = None
     index: Floats | None = None
-
-    def pick(self, mask: Bools | Indices) -> IntegrationStep:
-        """Return the steps of some of them."""
-        return IntegrationStep(*_picked(self, mask))
 
     def at(self, s: Floats) -> Floats:
         """Position at a fraction of each step, by the cubic through both ends and slopes."""
@@ -330,8 +332,3 @@ def _join(one: _Particles, two: _Particles) -> _Particles:
         None if a is None else np.concatenate([a, b], axis=-1) for a, b in pairs
     )
     return _Particles(*joined)
-
-
-def _picked(these: _Particles | IntegrationStep, mask: Bools | Indices) -> Iterator[Any]:
-    parts = (getattr(these, f.name) for f in fields(these))
-    return (None if part is None else part[..., mask] for part in parts)

@@ -16,8 +16,6 @@ from flowtex.field.poles import Poles
 
 __all__ = ["Corners", "NodeGrid"]
 
-#: Of single or double precision, as it comes in.
-
 #: Cells that rounding may carry a path over a border that it follows.
 BORDER_ROUNDING_CELLS = 1e-6
 

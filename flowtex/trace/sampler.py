@@ -18,7 +18,7 @@ from flowtex._util.array_types import Floats
 from flowtex.field import FlowField
 from flowtex.field.interpolation import bracket, fill_blanked
 from flowtex.trace.charts import Charts, Patch, cap
-from flowtex.trace.node_grid import Corners, NodeGrid
+from flowtex.trace.node_grid import NodeGrid
 
 __all__ = ["LengthSampler", "Sampler", "TimeSampler"]
 
@@ -173,16 +173,9 @@ class TimeSampler(Sampler):
         corners = patch.corners(position)
         if len(self._times) == 1:
             return np.stack([patch.blend(0, corners), patch.blend(1, corners)])
-        return self._at_time(patch, corners, self._destination + direction * lag)
-
-    def rest(self, unit: Floats, last: float) -> Floats:
-        """Rate at which a particle gets nowhere; in a flow that varies none stays at rest."""
-        return np.full(len(unit), 0.0 if len(self._times) > 1 else 1e-5) / (unit * last)
-
-    def _at_time(self, patch: Patch, corners: Corners, time: Floats) -> Floats:
-        step, late = bracket(self._times, time, side="left")
+        step, late = bracket(self._times, self._destination + direction * lag, side="left")
         np.clip(late, 0, 1, out=late)
-        result = np.empty((2, len(time)))
+        result = np.empty((2, len(lag)))
         for component, row in enumerate(result):
             before = patch.blend(component, corners, step)
             row[:] = patch.blend(component, corners, step + 1)
@@ -190,6 +183,10 @@ class TimeSampler(Sampler):
             row *= late
             row += before
         return result
+
+    def rest(self, unit: Floats, last: float) -> Floats:
+        """Rate at which a particle gets nowhere; in a flow that varies none stays at rest."""
+        return np.full(len(unit), 0.0 if len(self._times) > 1 else 1e-5) / (unit * last)
 
 
 def _spread(data: Floats, field: FlowField) -> list[Floats]:

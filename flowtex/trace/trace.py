@@ -15,11 +15,11 @@ from functools import cached_property, partial
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flowtex._util.array_types import Bools, Floats, Floats32, Indices
+from flowtex._util.array_types import Floats, Floats32, Indices
 from flowtex._util.progress import track
 from flowtex.field import FlowField
 from flowtex.field.interpolation import nearest_known
-from flowtex.trace.compose import Within, compose, landings
+from flowtex.trace.compose import SideSlices, Within, compose, landings
 from flowtex.trace.integrate import Paths, integrate
 from flowtex.trace.lags import choose_lags, lag_unit
 from flowtex.trace.sampler import LengthSampler, Sampler, TimeSampler
@@ -195,11 +195,7 @@ def _check_signs(field: FlowField, *, two_sided: bool, compose: bool | None) -> 
 def _step_numbers(field: FlowField, steps: Sequence[int] | None) -> list[int]:
     """Destination times as indices from 0."""
     count = len(field.times)
-    for step in () if steps is None else steps:
-        if not -count <= step < count:
-            msg = f"time step {step} does not exist: expected 0 to {count - 1}"
-            raise IndexError(msg)
-    return list(range(count)) if steps is None else [int(step) % count for step in steps]
+    return [field.step_number(step) for step in (range(count) if steps is None else steps)]
 
 
 def _landing(field: FlowField, lags: Floats, unit: Floats, steps: list[int]) -> Indices | None:
@@ -237,24 +233,6 @@ def _checked_lags(lags: ArrayLike) -> Floats:
 
 
 @dataclass(frozen=True, eq=False)
-class _SideSlices:
-    """Slices of one direction, (2, M + 1, T, J, I).
-
-    Their reach, and which paths have come right beside a pole, are (T, J, I). While paths are
-    integrated, the nodes of all three are one axis.
-    """
-
-    slices: Floats32
-    reach: Floats32
-    polar: Bools
-
-    @property
-    def displacement(self) -> Floats32:
-        """The same numbers as (T, M, J, I, 2)."""
-        return np.moveaxis(self.slices[:, 1:], (0, 2), (4, 0))
-
-
-@dataclass(frozen=True, eq=False)
 class _Tracing:
     """Everything that the paths of one call share."""
 
@@ -283,12 +261,12 @@ class _Tracing:
 
     def follow(
         self, directions: Sequence[float], landing: Indices | None
-    ) -> dict[float, _SideSlices]:
+    ) -> dict[float, SideSlices]:
         """Follow all paths, by composition where there are landings."""
         known = len(self.lags) if landing is None else self._direct(landing)
         shape = (len(self.samplers), self.field.valid.size)
         sides = {
-            direction: _SideSlices(
+            direction: SideSlices(
                 np.empty((2, len(self.lags) + 1, *shape), np.float32),
                 np.zeros(shape, np.float32),
                 np.zeros(shape, bool),
@@ -304,12 +282,10 @@ class _Tracing:
                         self.field,
                         self.lags,
                         self.unit,
-                        side.slices,
-                        side.reach,
+                        side,
                         known,
                         landing,
                         pool.map,
-                        side.polar,
                         partial(self._piece, direction),
                     )
         return sides
@@ -323,7 +299,7 @@ class _Tracing:
         return max(int(np.searchsorted(self.lags * typical, DIRECT_CELLS, side="right")), 1)
 
     def _integrate(
-        self, sides: dict[float, _SideSlices], known: int, pool: ThreadPoolExecutor
+        self, sides: dict[float, SideSlices], known: int, pool: ThreadPoolExecutor
     ) -> None:
         """Fill the first ``known`` slices."""
         at = np.flatnonzero(self.field.valid)
@@ -384,7 +360,7 @@ class _Tracing:
             ends[some] = np.where(paths.interrupted, np.inf, paths.reach) * unit
         return moved, covered, ends
 
-    def _as_grids(self, flat: _SideSlices, direction: float) -> _SideSlices:
+    def _as_grids(self, flat: SideSlices, direction: float) -> SideSlices:
         """Lay out by nodes, with the slope at lag zero; blanked nodes move as the nearest."""
         grid = self.field.shape
         slices = flat.slices.reshape(*flat.slices.shape[:3], *grid)
@@ -394,4 +370,4 @@ class _Tracing:
             # In place: the slices are large, and few of them are blank.
             rows, columns = nearest_known(self.field.valid)
             slices[..., blank] = slices[..., rows[blank], columns[blank]]
-        return _SideSlices(slices, flat.reach.reshape(-1, *grid), flat.polar.reshape(-1, *grid))
+        return SideSlices(slices, flat.reach.reshape(-1, *grid), flat.polar.reshape(-1, *grid))

@@ -12,7 +12,7 @@ import math
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 from xml.etree.ElementTree import ParseError
@@ -146,7 +146,7 @@ def errors_of_file(path: str | Path) -> Iterator[None]:
     """
     file = Path(path).expanduser()
     cause: Exception | None = None
-    with _vtk_log() as log:
+    with _vtk_log() as catcher:
         try:
             yield
         except (ValueError, RuntimeError, OSError, KeyError, ImportError, ParseError) as error:
@@ -154,9 +154,10 @@ def errors_of_file(path: str | Path) -> Iterator[None]:
         except (AttributeError, IndexError, TypeError, EOFError) as error:
             # Readers of broken files trip over what is missing in them.
             cause = RuntimeError(f"its content is not as expected ({error})")
-    if log.errors:
+    if catcher.error_events:
         # VTK goes on after an error and gives a part of the data, or none: the cause is here.
-        msg = f"{file}: the file is broken or incomplete. VTK says: {log.errors[0]}"
+        first = _first_line(catcher.error_events[0].alert)
+        msg = f"{file}: the file is broken or incomplete. VTK says: {first}"
         raise FieldError(msg) from cause
     if isinstance(cause, FieldError):
         msg = f"{file}: {cause}"
@@ -165,30 +166,21 @@ def errors_of_file(path: str | Path) -> Iterator[None]:
         reason = str(cause) or type(cause).__name__
         msg = f"{file}: cannot be read: {reason}"
         raise FieldError(msg) from cause
-    for warning in dict.fromkeys(log.warnings):
+    for warning in dict.fromkeys(_first_line(event.alert) for event in catcher.warning_events):
         warnings.warn(f"{file}: VTK says: {warning}", stacklevel=4)
 
 
-@dataclass
-class _VtkLog:
-    """The first line of each error and of each warning that VTK logged."""
-
-    errors: list[str] = field(default_factory=list)
-    warnings: list[str] = field(default_factory=list)
-
-
 @contextmanager
-def _vtk_log() -> Iterator[_VtkLog]:
+def _vtk_log() -> Iterator[Any]:
     """Collect VTK's errors and warnings while the block runs, and print none.
 
     VTK sends errors to an output window and, apart from it, to a logger that writes to standard
     error; PyVista repeats some of them through Python's root logger. All three are held, and put
-    back as they were. The log is filled when the block ends, also by an exception.
+    back as they were. Yields PyVista's catcher, which has the events once the block ends.
     """
     import pyvista as pv
     from vtkmodules.vtkCommonCore import vtkLogger
 
-    log = _VtkLog()
     verbosity = vtkLogger.GetCurrentVerbosityCutoff()
     root = logging.getLogger()
     quiet = logging.NullHandler()
@@ -199,13 +191,11 @@ def _vtk_log() -> Iterator[_VtkLog]:
     root.addFilter(_not_from_vtk)
     try:
         with catcher:
-            yield log
+            yield catcher
     finally:
         root.removeFilter(_not_from_vtk)
         root.removeHandler(quiet)
         vtkLogger.SetStderrVerbosity(verbosity)
-        log.errors += [_first_line(event.alert) for event in catcher.error_events]
-        log.warnings += [_first_line(event.alert) for event in catcher.warning_events]
 
 
 def _not_from_vtk(record: logging.LogRecord) -> bool:
