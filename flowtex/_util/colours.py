@@ -23,17 +23,13 @@ def rgb(colour: Any) -> tuple[float, float, float]:
     if isinstance(colour, str):
         from matplotlib.colors import is_color_like, to_rgb
 
-        if is_color_like(colour) and not _is_grey_number(colour):
+        # A text such as "0.5" is a grey to matplotlib, and no colour to PyVista.
+        if is_color_like(colour) and not colour.replace(".", "", 1).isdecimal():
             return to_rgb(colour)
     import pyvista as pv
 
     red, green, blue = pv.Color(colour).float_rgb
     return red, green, blue
-
-
-def _is_grey_number(text: str) -> bool:
-    """Tell whether matplotlib takes a text for a grey, which PyVista does not."""
-    return text.replace(".", "", 1).isdecimal()
 
 
 def colour_table(cmap: Any | None) -> Bytes:

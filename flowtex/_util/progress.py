@@ -33,10 +33,7 @@ class Stopped(Exception):
 def stoppable(cancelled: Callable[[], bool]) -> Iterator[None]:
     """Cancel the work inside, in this thread, once ``cancelled()`` is true.
 
-    Raises
-    ------
-    Stopped
-        Where the work was stopped.
+    It raises :class:`Stopped` where it was stopped.
     """
     token = _cancelled.set(cancelled)
     try:
@@ -46,13 +43,7 @@ def stoppable(cancelled: Callable[[], bool]) -> Iterator[None]:
 
 
 def check() -> None:
-    """Raise where the work was cancelled.
-
-    Raises
-    ------
-    Stopped
-        When :func:`stoppable` says so.
-    """
+    """Raise :class:`Stopped` where the work was cancelled, as :func:`stoppable` says."""
     cancelled = _cancelled.get()
     if cancelled is not None and cancelled():
         raise Stopped
@@ -61,10 +52,7 @@ def check() -> None:
 def track(items: Iterable[T], total: int, text: str, *, show: bool = True) -> Iterator[T]:
     """Yield the items, with a progress bar once they have taken a second.
 
-    Raises
-    ------
-    Stopped
-        When the work is cancelled.
+    Raises :class:`Stopped` when the work is cancelled.
     """
     start = time.monotonic()
     bar = task = None

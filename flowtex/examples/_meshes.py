@@ -26,27 +26,45 @@ if TYPE_CHECKING:
 def cylinder() -> pv.StructuredGrid:
     """Vortex shedding behind a cylinder: the last instant of :func:`cylinder_field`.
 
-    161 x 65 x 1 nodes around and outwards, with the point arrays ``velocity`` and ``vorticity``,
-    and the field data ``TimeValue``.
+    Returns
+    -------
+    pyvista.StructuredGrid
+        161 x 65 x 1 nodes around and outwards; point arrays ``velocity`` and ``vorticity``, and
+        the field data ``TimeValue``.
     """
     return to_grid(cylinder_field())
 
 
 def cylinder_series() -> list[pv.StructuredGrid]:
-    """One period of vortex shedding: the 31 instants of :func:`cylinder_field` as meshes."""
+    """One period of vortex shedding behind a cylinder, as :func:`cylinder_field`.
+
+    Returns
+    -------
+    list of pyvista.StructuredGrid
+        31 instants as from :func:`cylinder`, the last one period after the first.
+    """
     return to_series(cylinder_field())
 
 
 def vortex() -> pv.StructuredGrid:
     """Vortices of two-dimensional turbulence: the last instant of :func:`vortex_field`.
 
-    100 x 100 x 1 nodes on the unit square, with the arrays of :func:`cylinder`.
+    Returns
+    -------
+    pyvista.StructuredGrid
+        100 x 100 x 1 nodes on the unit square, with the arrays of :func:`cylinder`.
     """
     return to_grid(vortex_field())
 
 
 def vortex_series() -> list[pv.StructuredGrid]:
-    """Vortices of two-dimensional turbulence: the 31 instants of :func:`vortex_field` as meshes."""
+    """Vortices of two-dimensional turbulence, as :func:`vortex_field`.
+
+    Returns
+    -------
+    list of pyvista.StructuredGrid
+        31 instants as from :func:`vortex`.
+    """
     return to_series(vortex_field())
 
 
@@ -76,14 +94,23 @@ def double_gyre(time: float = 0.0) -> pv.StructuredGrid:
 
 
 def double_gyre_series() -> list[pv.StructuredGrid]:
-    """One period of the double gyre: 41 meshes with ``TimeValue`` from 0 to 10."""
+    """One period of the double gyre.
+
+    Returns
+    -------
+    list of pyvista.StructuredGrid
+        41 instants as from :func:`double_gyre`, with ``TimeValue`` from 0 to 10.
+    """
     return to_series(double_gyre_field(time_varying=True))
 
 
 def airfoil() -> pv.StructuredGrid:
     """Lifting flow around a Joukowski airfoil, as :func:`airfoil_field`.
 
-    193 x 65 x 1 nodes around and outwards, with the point arrays ``velocity`` and ``pressure``.
+    Returns
+    -------
+    pyvista.StructuredGrid
+        193 x 65 x 1 nodes around and outwards; point arrays ``velocity`` and ``pressure``.
     """
     return to_grid(airfoil_field())
 
@@ -91,7 +118,10 @@ def airfoil() -> pv.StructuredGrid:
 def delta_wing() -> pv.StructuredGrid:
     """Flow over the upper side of a winged body, as :func:`delta_wing_field`.
 
-    62 x 52 x 1 nodes along and across, with the point arrays ``velocity`` and ``height``.
+    Returns
+    -------
+    pyvista.StructuredGrid
+        62 x 52 x 1 nodes along and across; point arrays ``velocity`` and ``height``.
     """
     return to_grid(delta_wing_field())
 
@@ -99,7 +129,10 @@ def delta_wing() -> pv.StructuredGrid:
 def liquid_oxygen_post(folder: str | Path | None = None, plane: str = "k=20") -> pv.StructuredGrid:
     """Flow around NASA's liquid-oxygen post, as :func:`liquid_oxygen_post_field`.
 
-    The nodes of the plane, with the point array ``velocity`` and the scalars of the file.
+    Returns
+    -------
+    pyvista.StructuredGrid
+        The nodes of the plane, with the point array ``velocity`` and the scalars of the file.
     """
     return to_grid(liquid_oxygen_post_field(folder, plane))
 
@@ -137,5 +170,11 @@ def to_grid(field: FlowField, step: int = -1) -> pv.StructuredGrid:
 
 
 def to_series(field: FlowField) -> list[pv.StructuredGrid]:
-    """Every instant of a field as a mesh, in order of time, each as from :func:`to_grid`."""
+    """Every instant of a field as a mesh.
+
+    Returns
+    -------
+    list of pyvista.StructuredGrid
+        In order of time, each as from :func:`to_grid`.
+    """
     return [to_grid(field, step) for step in range(len(field.times))]

@@ -108,7 +108,7 @@ class FlowField:
             Nodes that carry data, (J, I). All of them by default.
         periodic
             Axes that close on themselves: ``""``, ``"i"``, ``"j"`` or ``"ij"``. By default it
-            it is detected: coinciding first and last lines of nodes, a ring that stops one cell
+            is detected: coinciding first and last lines of nodes, a ring that stops one cell
             short, and global longitude on a flat map.
         scalars
             Further nodal arrays, name to (J, I) or (T, J, I), to colour by.
@@ -363,13 +363,9 @@ class FlowField:
         return self.at_lines(rows, columns)
 
     def at_lines(self, rows: Indices, columns: Indices) -> FlowField:
-        """Return the field on some of its lines of nodes.
+        """Return the field on some of its lines of nodes, whose numbers along j and i increase.
 
-        Parameters
-        ----------
-        rows, columns
-            Increasing numbers of the lines along j and i. An axis that closes on itself keeps
-            its first and its last line.
+        An axis that closes on itself keeps its first and its last line.
         """
         at = np.ix_(rows, columns)
         return replace(

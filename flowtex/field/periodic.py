@@ -17,7 +17,7 @@ import numpy as np
 
 from flowtex._util.array_types import AnyArray, Bools, Floats
 
-__all__ = ["Closure", "NodalArrays", "close_axes", "find_closure", "requested_closure"]
+__all__ = ["NodalArrays", "close_axes", "find_closure"]
 
 A = TypeVar("A", bound=AnyArray)
 
@@ -63,7 +63,7 @@ def close_axes(nodal: NodalArrays, periodic: str | None) -> tuple[NodalArrays, t
             known = np.swapaxes(nodal.valid, 0, axis)[..., None]
             closure = find_closure(np.where(known, lines, np.nan))
         elif letter in periodic:
-            closure = requested_closure(lines, np.swapaxes(nodal.velocity, 1, axis + 1))
+            closure = _requested_closure(lines, np.swapaxes(nodal.velocity, 1, axis + 1))
         else:
             closure = Closure(periodic=False)
         closed[axis] = closure.periodic
@@ -94,7 +94,7 @@ def find_closure(points: Floats) -> Closure:
     return Closure(periodic=False)
 
 
-def requested_closure(points: Floats, velocity: Floats) -> Closure:
+def _requested_closure(points: Floats, velocity: Floats) -> Closure:
     """Close the first axis as the caller asks, appending a line where it is needed.
 
     ``velocity`` is (T, N, M, 3): a flat map whose last line already carries the values of its

@@ -20,7 +20,7 @@ from flowtex._util.array_types import Floats, Floats32, Indices
 from flowtex.field import FlowField
 from flowtex.field.interpolation import nearest_known
 
-__all__ = ["Padding", "SurfaceGeometry"]
+__all__ = ["SurfaceGeometry"]
 
 
 #: Mip levels of a texture beside its finest one, at most.

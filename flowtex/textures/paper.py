@@ -31,7 +31,14 @@ from flowtex.field.interpolation import (
     inverse_along_line,
 )
 from flowtex.settings import Settings
-from flowtex.textures.patterns import SPOT_GRAIN, TexelMap, checkerboard, even_noise, spots
+from flowtex.textures.patterns import (
+    SPOT_GRAIN,
+    TexelMap,
+    checkerboard,
+    even_noise,
+    side_lengths,
+    spots,
+)
 from flowtex.trace import SliceStore
 
 __all__ = ["HALF_LEVELS", "PaperTextures"]
@@ -166,11 +173,9 @@ def _coordinates(field: FlowField, *, correction: bool) -> tuple[Floats, Floats]
 
 def _size(field: FlowField, resolution: int) -> tuple[int, int]:
     """Height and width, powers of two in about the proportion of the surface."""
-    p_i, p_j = (np.linalg.norm(t, axis=-1)[field.valid] for t in field.surface.tangents)
-    rows, columns = field.shape
-    lengths = np.array([p_j.mean() * (rows - 1), p_i.mean() * (columns - 1)])
+    lengths = side_lengths(field)
     shares = np.maximum(lengths / lengths.max(), 1 / 8) * resolution
-    height, width = (int(2 ** np.ceil(np.log2(max(n, 8)))) for n in shares)
+    width, height = (int(2 ** np.ceil(np.log2(max(n, 8)))) for n in shares)
     return height, width
 
 

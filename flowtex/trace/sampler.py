@@ -42,7 +42,9 @@ class Sampler(ABC):
     longest: float
 
     def __init__(self, field: FlowField, data: Floats) -> None:
-        grid, parts = NodeGrid.of(field), _spread(data, field)
+        data = fill_blanked(data, field.valid, data.ndim - 3)
+        parts = [np.ascontiguousarray(data[..., c]).ravel() for c in range(data.shape[-1])]
+        grid = NodeGrid.of(field)
         self._poles = poles = field.surface.poles
         #: The charts of a surface that has poles.
         self.charts = None if poles is None else Charts(poles)
@@ -187,9 +189,3 @@ class TimeSampler(Sampler):
     def rest(self, unit: Floats, last: float) -> Floats:
         """Rate at which a particle gets nowhere; in a flow that varies none stays at rest."""
         return np.full(len(unit), 0.0 if len(self._times) > 1 else 1e-5) / (unit * last)
-
-
-def _spread(data: Floats, field: FlowField) -> list[Floats]:
-    """Components of (..., J, I, C) data, each flat; blanked nodes get their neighbours' value."""
-    data = fill_blanked(data, field.valid, data.ndim - 3)
-    return [np.ascontiguousarray(data[..., c]).ravel() for c in range(data.shape[-1])]

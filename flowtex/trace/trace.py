@@ -110,7 +110,8 @@ def trace(
     samplers = _samplers(field, step_numbers, parameter)
     tracing = _Tracing(field, samplers, lag_values, units, tolerance, progress)
     composed = lags is None if compose is None else compose
-    landing = _landing(field, lag_values, units, step_numbers) if composed else None
+    whole = field.steady or step_numbers == list(range(len(field.times)))
+    landing = landings(field, lag_values, units) if composed and whole else None
     paths_by_side = tracing.follow(directions, landing)
     backward = paths_by_side[-1.0]
     forward = paths_by_side.get(1.0)
@@ -151,20 +152,13 @@ def paths(
     step
         Which destination time.
     parameter, forward, tolerance
-        As for :func:`trace`.
+        As for :func:`trace`; the raised errors are the same.
 
     Returns
     -------
     Paths
         Positions (M, N, 2) in index space, and the lag at which each path ended, (N,), infinite
         where it goes on beyond the last lag.
-
-    Raises
-    ------
-    ValueError
-        When the lags are not positive and increasing, or ``parameter`` is unknown.
-    IndexError
-        When there is no such time step.
     """
     parameter = _parameter(field, parameter)
     begin = np.array(start, dtype=float).reshape(-1, 2)
@@ -196,12 +190,6 @@ def _step_numbers(field: FlowField, steps: Sequence[int] | None) -> list[int]:
     """Destination times as indices from 0."""
     count = len(field.times)
     return [field.step_number(step) for step in (range(count) if steps is None else steps)]
-
-
-def _landing(field: FlowField, lags: Floats, unit: Floats, steps: list[int]) -> Indices | None:
-    """Time steps that the lags span, where paths can be composed, else ``None``."""
-    whole = field.steady or steps == list(range(len(field.times)))
-    return landings(field, lags, unit) if whole else None
 
 
 def _samplers(field: FlowField, steps: list[int], parameter: str) -> list[Sampler]:

@@ -7,7 +7,6 @@ are then stacked into the arguments of :meth:`FlowField.from_arrays`, which chec
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, TypedDict
 
@@ -103,12 +102,13 @@ def read_meshes(
     cells = [sheet.cells for sheet in sheets if sheet.cells is not None]
     if cells:
         shown &= nodes_to_keep(np.logical_and.reduce(cells), sheets[0].wrap)
+    names = [n for n in sheets[0].scalars if all(n in sheet.scalars for sheet in sheets)]
     return FieldArguments(
         points=sheets[0].points,
         velocity=np.stack([sheet.vectors for sheet in sheets]),
         times=times,
         valid=shown,
-        scalars=_stacked(sheets),
+        scalars={n: np.stack([sheet.scalars[n] for sheet in sheets]) for n in names},
     )
 
 
@@ -227,11 +227,3 @@ def _wrap(points: Floats, periodic: str | None) -> tuple[bool, bool]:
         allowed = periodic is None or letter in periodic
         wrap.append(allowed and closure.periodic and closure.line is None)
     return wrap[0], wrap[1]
-
-
-def _stacked(sheets: Sequence[_PlaneStep]) -> dict[str, Floats]:
-    """Scalars that all steps have, (J, I) or (T, J, I)."""
-    names = [n for n in sheets[0].scalars if all(n in sheet.scalars for sheet in sheets)]
-    if len(sheets) == 1:
-        return {n: sheets[0].scalars[n] for n in names}
-    return {n: np.stack([sheet.scalars[n] for sheet in sheets]) for n in names}

@@ -19,7 +19,7 @@ import numpy as np
 
 from flowtex.errors import FieldError
 
-__all__ = ["GRID_SUFFIXES", "Layout", "find_grid", "find_layout", "find_solution", "read_plot3d"]
+__all__ = ["GRID_SUFFIXES", "find_grid", "find_layout", "find_solution", "read_plot3d"]
 
 #: VTK's number for the function that makes ``Velocity`` from density and momentum.
 VELOCITY = 200
