@@ -58,14 +58,14 @@ class _PlaneStep:
     """The arrays of one plane at one time.
 
     Points and vectors are (J, I, 3), scalars (J, I) each. ``shown`` (J, I) marks nodes that the
-    mesh does not hide, ``cells`` (J - 1, I - 1) cells that it shows, where it says so or the
-    vectors are theirs. ``wrap`` says whether the last line along (j, i) is the first one again.
+    mesh does not hide, ``cells`` (J - 1, I - 1) cells that it shows and
+    that have vectors. ``wrap`` says whether the last line along (j, i) is the first one again.
     """
 
     points: Floats
     vectors: Floats
     shown: Bools
-    cells: Bools | None
+    cells: Bools
     wrap: tuple[bool, bool]
     scalars: dict[str, Floats] = field(default_factory=dict)
 
@@ -99,9 +99,8 @@ def read_meshes(
     if times is None and len(known) == len(sheets):
         times = known
     shown = np.logical_and.reduce([sheet.shown for sheet in sheets])
-    cells = [sheet.cells for sheet in sheets if sheet.cells is not None]
-    if cells:
-        shown &= nodes_to_keep(np.logical_and.reduce(cells), sheets[0].wrap)
+    cells = np.logical_and.reduce([sheet.cells for sheet in sheets])
+    shown &= nodes_to_keep(cells, sheets[0].wrap)
     names = [n for n in sheets[0].scalars if all(n in sheet.scalars for sheet in sheets)]
     return FieldArguments(
         points=sheets[0].points,
@@ -143,8 +142,6 @@ def _check_step(step: TimeStep, plane: Plane, vectors: MeshArray) -> None:
 
 def _check_nodes(first: _PlaneStep, sheet: _PlaneStep, label: str) -> None:
     """Refuse a mesh that moves."""
-    if first is sheet:
-        return
     before, after = first.points, sheet.points
     known = first.shown & sheet.shown & np.isfinite(before).all(-1) & np.isfinite(after).all(-1)
     moved = float(np.max(np.abs(after[known] - before[known]), initial=0.0))
@@ -164,24 +161,20 @@ def _plane_step(
 ) -> _PlaneStep:
     """Take one plane out of one grid."""
     points = _positions(grid, plane)
-    hidden = hidden_nodes(grid)
-    shown = np.ones(points.shape[:2], bool) if hidden is None else ~plane.nodes(hidden)
+    shown = ~plane.nodes(hidden_nodes(grid))
     wrap = _wrap(np.where(shown[..., None], points, np.nan), periodic)
-    flags = visible_cells(grid)
-    visible = None if flags is None else plane.cells(flags)
+    visible = plane.cells(visible_cells(grid))
     values = values_of(grid, vectors)
     if vectors.where == "cells":
         layers = plane.cells(values).astype(np.float64)
-        known = np.asarray(np.isfinite(layers).all(axis=-1))
-        visible = known if visible is None else known & visible
+        visible = visible & np.isfinite(layers).all(axis=-1)
         if sign_free:
             velocity = axes(spread(products(layers), visible, wrap))
         else:
             velocity = spread(layers, visible, wrap)
     else:
         velocity = plane.nodes(values).astype(np.float64)
-    cells = None if visible is None else np.asarray(visible.any(axis=0))
-    sheet = _PlaneStep(points, velocity, shown, cells, wrap)
+    sheet = _PlaneStep(points, velocity, shown, np.asarray(visible.any(axis=0)), wrap)
     for array in catalogue(grid):
         if array.numeric and array.components == 1 and array != vectors:
             # Points come first in the catalogue, and win over cells of the same name.
@@ -195,9 +188,7 @@ def _scalar(grid: Any, plane: Plane, array: MeshArray, wrap: tuple[bool, bool]) 
     if array.where == "points":
         return plane.nodes(values).astype(np.float64)
     layers = plane.cells(values).astype(np.float64)
-    flags = visible_cells(grid)
-    seen = np.isfinite(layers) & (True if flags is None else plane.cells(flags))
-    return spread(layers, seen, wrap)
+    return spread(layers, np.isfinite(layers) & plane.cells(visible_cells(grid)), wrap)
 
 
 def _positions(grid: Any, plane: Plane) -> Floats:

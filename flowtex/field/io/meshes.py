@@ -324,22 +324,20 @@ def _search_faults(mesh: Any, listed: str) -> list[str]:
     return []
 
 
-def hidden_nodes(mesh: Any) -> Bools | None:
-    """Nodes that a mesh hides, (N,), or ``None`` when it says nothing about them."""
+def hidden_nodes(mesh: Any) -> Bools:
+    """Nodes that a mesh hides, (N,)."""
     data = mesh.point_data
-    hidden = []
+    hidden = np.zeros(mesh.n_points, dtype=bool)
     if "vtkGhostType" in data:
-        hidden.append((np.asarray(data["vtkGhostType"]) & _HIDDEN_POINT) != 0)
-    if "IBlank" in data:
-        # Negative values and those above one are walls and overlaps of grids, with data.
-        hidden.append(np.asarray(data["IBlank"]) == 0)
-    if "vtkValidPointMask" in data:
-        hidden.append(np.asarray(data["vtkValidPointMask"]) == 0)
-    return np.logical_or.reduce(hidden) if hidden else None
+        hidden |= (np.asarray(data["vtkGhostType"]) & _HIDDEN_POINT) != 0
+    # Negative values and those above one are walls and overlaps of grids, with data.
+    for name in {"IBlank", "vtkValidPointMask"} & set(data):
+        hidden |= np.asarray(data[name]) == 0
+    return hidden
 
 
-def visible_cells(mesh: Any) -> Bools | None:
-    """Cells that a mesh shows, (N,), or ``None`` when it says nothing about them."""
+def visible_cells(mesh: Any) -> Bools:
+    """Cells that a mesh shows, (N,)."""
     if "vtkGhostType" not in mesh.cell_data:
-        return None
+        return np.ones(mesh.n_cells, dtype=bool)
     return np.asarray((np.asarray(mesh.cell_data["vtkGhostType"]) & _HIDDEN_CELL) == 0)

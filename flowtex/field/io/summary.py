@@ -92,7 +92,6 @@ def _summary(file: OpenFile, mesh: Any) -> FileSummary:
     parts = list(leaves(mesh))
     part = next((p for _, p in parts if is_structured(p)), parts[0][1] if parts else mesh)
     structured = is_structured(part)
-    hidden = hidden_nodes(part) if structured else None
     data = hasattr(part, "point_data")
     names = [a.name for a in candidates(part)] if data else []
     vectors = file.velocity
@@ -104,7 +103,7 @@ def _summary(file: OpenFile, mesh: Any) -> FileSummary:
         arrays=tuple(_array(part, a) for a in catalogue(part)) if data else (),
         candidates=(vectors,) if vectors is not None else tuple(names),
         times=tuple(times_of(file.source)),
-        blanked=0 if hidden is None else int(hidden.sum()),
+        blanked=int(hidden_nodes(part).sum()) if structured else 0,
         problem=_problem(mesh, vectors),
     )
 
