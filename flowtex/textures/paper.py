@@ -57,24 +57,13 @@ FEWEST_TEXELS = 256
 class PaperTextures:
     """Noise, or a picture in its place, and step size over the parameters of the surface.
 
-    Attributes
-    ----------
-    noise
-        Zero-mean noise of unit variance, (H, W); or a picture, grey (H, W) or coloured
-        (H, W, 4) as :func:`flowtex.textures.images.as_picture` returns it. Row 0 is at j = 0.
-    step
-        Lag in which the flow crosses a texel, in multiples of the unit of lag, (H, W). Noise has
-        the same texels; a picture has its own.
-    along_i, along_j
-        Noise coordinate of each line of nodes, (I,) and (J,), from 0 to 1.
-    repeat
-        Whether the noise goes around along (v, u).
-    corrected
-        Whether the noise is even on the surface instead of even in the texture.
-    grain
-        Width of a grain of the noise, in texels.
-    picture
-        Whether ``noise`` is a picture, which is averaged along the flow, and no noise.
+    ``noise`` has mean zero and unit variance, (H, W), and grains ``grain`` texels wide; or it is a
+    ``picture``, grey (H, W) or coloured (H, W, 4) as from
+    :func:`~flowtex.textures.images.as_picture`, which is averaged along the flow. Row 0 is at j =
+    0. ``step`` (H, W) is the lag in which the flow crosses a texel, in multiples of the unit of
+    lag; noise has the same texels, a picture has its own. ``along_i`` (I,) and ``along_j`` (J,) are
+    the noise coordinates of the lines of nodes, from 0 to 1. ``repeat`` says whether the noise goes
+    around along (v, u), ``corrected`` whether it is even on the surface instead of in the texture.
     """
 
     noise: Floats32

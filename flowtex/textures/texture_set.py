@@ -45,16 +45,8 @@ MOST_LAGS = 32
 class TextureSet:
     """All that a renderer needs of a flow, beside the settings.
 
-    Attributes
-    ----------
-    geometry
-        The surface.
-    store
-        The traces, by destination time.
-    space
-        ``"physical"`` for slopes in space, ``"parameter"`` for slopes in noise coordinates.
-    paper
-        The noise texture and the step texture, for ``space="parameter"``.
+    Slopes are in space where ``space`` is ``"physical"``, in noise coordinates where it is
+    ``"parameter"``; then ``paper`` has the noise texture and the step texture.
     """
 
     geometry: SurfaceGeometry
@@ -68,20 +60,9 @@ class TextureSet:
     ) -> TextureSet:
         """Make the textures that the settings ask for.
 
-        Parameters
-        ----------
-        store
-            The traces.
-        settings
-            Which noise, how fine, and how it is spread.
-        image
-            The picture for ``noise="image"``, as from :func:`~flowtex.textures.images.as_picture`.
-
-        Raises
-        ------
-        ValueError
-            When the slices do not belong to the field, or are more than a shader has room for;
-            or an image is asked for and there is none.
+        The image (H, W, 4) is that for ``noise="image"``. Raises a ValueError when the slices do
+        not belong to the field, or are more than a shader has room for; or when an image is asked
+        for and there is none.
         """
         field = store.field
         if store.unit.shape != field.shape:
