@@ -45,13 +45,12 @@ MOST_LAGS = 32
 class TextureSet:
     """All that a renderer needs of a flow, beside the settings.
 
-    Slopes are in space where ``space`` is ``"physical"``, in noise coordinates where it is
-    ``"parameter"``; then ``paper`` has the noise texture and the step texture.
+    Slopes are in noise coordinates where there is ``paper``, the noise texture and the step
+    texture, and in space otherwise.
     """
 
     geometry: SurfaceGeometry
     store: SliceStore
-    space: str = "physical"
     paper: PaperTextures | None = None
 
     @classmethod
@@ -77,8 +76,7 @@ class TextureSet:
         geometry = SurfaceGeometry.of(field)
         if settings.noise == "procedural":
             return cls(geometry, store)
-        paper = PaperTextures.build(store, settings, image)
-        return cls(geometry, store, "parameter", paper)
+        return cls(geometry, store, PaperTextures.build(store, settings, image))
 
     def with_image(self, image: Floats32) -> TextureSet:
         """Return the same with another picture in place of the noise texture.

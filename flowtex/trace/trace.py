@@ -208,13 +208,8 @@ def _parameter(field: FlowField, parameter: str) -> str:
 
 def _checked_lags(lags: ArrayLike) -> Floats:
     lag_values = np.atleast_1d(np.asarray(lags, dtype=float))
-    good = (
-        lag_values.ndim == 1
-        and len(lag_values)
-        and lag_values[0] > 0
-        and (np.diff(lag_values) > 0).all()
-    )
-    if not good or not np.isfinite(lag_values).all():
+    good = np.isfinite(lag_values) & (np.diff(lag_values, prepend=0.0) > 0)
+    if lag_values.ndim != 1 or not lag_values.size or not good.all():
         msg = f"lags is {lags!r}; expected positive numbers in increasing order"
         raise ValueError(msg)
     return lag_values
