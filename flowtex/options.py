@@ -18,8 +18,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields
 from typing import Any, TypeVar
 
+from flowtex.camera import Camera
 from flowtex.errors import raise_faults
-from flowtex.field import FlowField
+from flowtex.field import FlowField, Surface
 from flowtex.settings import TABLE, SettingsError
 
 __all__ = [
@@ -171,6 +172,23 @@ class ViewOptions:
         '``{"lod": False}``; both views move together.',
     )
 
+    def first_camera(self, surface: Surface, aspect: float = 1.5) -> Camera:
+        """Return the camera that the view begins with, for a picture of some width over height.
+
+        Raises
+        ------
+        CameraError
+            When ``camera`` is none.
+        ValueError
+            When ``zoom`` or ``focus`` is none.
+        """
+        whole = Camera.fit(surface, aspect, zoom=self.zoom, focus=self.focus)
+        if self.camera is None or isinstance(self.camera, Camera):
+            return self.camera or whole
+        if isinstance(self.camera, Mapping):
+            return Camera.from_dict(self.camera, whole)
+        return Camera.from_points(self.camera)
+
 
 @dataclass(frozen=True, kw_only=True)
 class Options:
@@ -183,14 +201,9 @@ class Options:
 
     @classmethod
     def split(cls, *kinds: str, **values: Any) -> Options:
-        """Sort arguments by name.
+        """Sort fields of the option classes, and settings, by name.
 
-        Parameters
-        ----------
-        *kinds
-            Which are accepted: ``"field"``, ``"appearance"`` and ``"view"``; all by default.
-        **values
-            Fields of the option classes, and settings.
+        Classes that are accepted are ``"field"``, ``"appearance"`` and ``"view"``, all by default.
 
         Raises
         ------
@@ -199,7 +212,7 @@ class Options:
         ValueError
             When the opacity or the range of the colours is none.
         """
-        accepted = {name: _names(_KINDS[name]) for name in kinds or _KINDS}
+        accepted = {name: tuple(vars(_KINDS[name]())) for name in kinds or _KINDS}
         parts = {
             name: kind(**{n: values.pop(n) for n in accepted.get(name, ()) if n in values})
             for name, kind in _KINDS.items()
@@ -265,10 +278,6 @@ def _described(text: str, options: list[Any]) -> str:
                 break_on_hyphens=False,
             )
     return "\n".join(lines)
-
-
-def _names(kind: type) -> tuple[str, ...]:
-    return tuple(f.name for f in fields(kind))
 
 
 def _is_between(value: Any, low: float, high: float) -> bool:

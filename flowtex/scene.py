@@ -59,11 +59,6 @@ class Scene:
     slices
         Traces of the field, when they are at hand.
 
-    Attributes
-    ----------
-    field, settings
-        As above.
-
     Raises
     ------
     SettingsError
@@ -104,12 +99,7 @@ class Scene:
     def of(cls, mesh: Any, **options: Any) -> Scene:
         """Return the scene of a mesh or a field, from the arguments of one call.
 
-        Parameters
-        ----------
-        mesh
-            What :meth:`FieldOptions.field` takes.
-        **options
-            Fields of :class:`FieldOptions` and :class:`Appearance`, and settings.
+        These are fields of :class:`FieldOptions` and :class:`Appearance`, and settings.
 
         Raises
         ------
@@ -131,14 +121,9 @@ class Scene:
         return cls(options.field.field(mesh), chosen, options.appearance)
 
     def beside(self, changes: Mapping[str, Any], options: Options) -> Scene:
-        """Return a second scene of the same field that differs in some options.
+        """Return a second scene of the same field.
 
-        Parameters
-        ----------
-        changes
-            Fields of :class:`Appearance` and settings by name.
-        options
-            Those of this scene.
+        It has the options of this scene, but for changes of :class:`Appearance` and of settings.
 
         Raises
         ------
@@ -199,12 +184,9 @@ class Scene:
         return self._image
 
     def set_image(self, image: Any) -> None:
-        """Lay an image on the surface in place of the noise; sets ``noise`` to ``"image"``.
+        """Lay an image, as :class:`Appearance` has it, in place of the noise on the surface.
 
-        Parameters
-        ----------
-        image
-            As :class:`Appearance` has it.
+        It sets ``noise`` to ``"image"``.
 
         Raises
         ------
@@ -239,13 +221,7 @@ class Scene:
         return steps_around(self.field.times, self._time)
 
     def scalar(self, name: str) -> Floats:
-        """Nodal values at the time that is shown, (J, I); ``"speed"`` is always there.
-
-        Raises
-        ------
-        KeyError
-            When there is no such array; the text lists those that exist.
-        """
+        """Nodal values at the time that is shown, (J, I); :func:`steps_of` has the errors."""
         steps = steps_of(self.field, name)
         before, after, share = self.moment
         if len(steps) == 1:
@@ -394,12 +370,7 @@ def _shared_textures(store: SliceStore, settings: Settings, image: Floats32 | No
 def coarsened_field(field: FlowField, nodes: int) -> FlowField:
     """Keep lines of nodes, the first and the last among them, so that so many nodes are left.
 
-    Parameters
-    ----------
-    field
-        The field.
-    nodes
-        How many nodes there may be, at least some dozens; a smaller field is returned as it is.
+    A smaller field is returned as it is.
     """
     if field.valid.size <= nodes:
         return field
