@@ -106,7 +106,7 @@ def export(
     arguments = Options.split(**options)
     views = web_views(mesh, arguments, steps=steps)
     try:
-        camera = views[0].camera(arguments.view).to_dict()
+        camera = arguments.view.first_camera(views[0].field.surface).to_dict()
         return write_page(views, path, camera=camera, title=title, announce=announce)
     finally:
         for view in views:

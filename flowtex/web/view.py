@@ -6,9 +6,8 @@ from dataclasses import replace
 from typing import Any
 
 from flowtex._util.colours import colour_table, rgb
-from flowtex.camera import Camera
 from flowtex.field import FlowField
-from flowtex.options import Options, ViewOptions
+from flowtex.options import Options
 from flowtex.rendering.webgl import ClientData, Colours
 from flowtex.scene import Scene, share_field, steps_of
 from flowtex.settings import TABLE
@@ -53,10 +52,6 @@ class WebView:
     def field(self) -> FlowField:
         """The flow."""
         return self.scene.field
-
-    def camera(self, view: ViewOptions, aspect: float = 1.5) -> Camera:
-        """Return the camera that a view begins with."""
-        return view.first_camera(self.field.surface, aspect)
 
     def data(self) -> ClientData:
         """Return what the client is handed; makes noise textures, and traces nothing."""
