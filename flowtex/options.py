@@ -147,10 +147,6 @@ class Appearance:
         """Whether there is a legend."""
         return self.image is None if self.show_scalar_bar is None else self.show_scalar_bar
 
-    def is_lit(self, *, flat: bool) -> bool:
-        """Tell whether a flat or a curved surface is lit."""
-        return not flat if self.lighting is None else self.lighting
-
 
 @dataclass(frozen=True, kw_only=True)
 class ViewOptions:

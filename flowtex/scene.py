@@ -59,6 +59,11 @@ class Scene:
     slices
         Traces of the field, when they are at hand.
 
+    Attributes
+    ----------
+    image
+        Texels of the image, (H, W, 4): colours times opacity, row 0 at the bottom; or ``None``.
+
     Raises
     ------
     SettingsError
@@ -77,11 +82,11 @@ class Scene:
     ) -> None:
         self.field = field
         self.settings = settings or Settings()
-        self._appearance = appearance or Appearance()
-        self._image: Floats32 | None = None
-        if self._appearance.image is not None:
-            self._image = as_picture(load_image(self._appearance.image))
-        if self.settings.noise == "image" and self._image is None:
+        self.appearance = appearance or Appearance()
+        self.image: Floats32 | None = None
+        if self.appearance.image is not None:
+            self.image = as_picture(load_image(self.appearance.image))
+        if self.settings.noise == "image" and self.image is None:
             raise SettingsError(NO_IMAGE)
         if self.scalar_name is not None:
             steps_of(field, self.scalar_name)
@@ -140,25 +145,21 @@ class Scene:
         return Scene.from_options(self.field, Options.split("appearance", **values))
 
     @property
-    def appearance(self) -> Appearance:
-        """How the surface looks."""
-        return self._appearance
-
-    @property
-    def flat(self) -> bool:
-        """Whether the surface lies in a plane."""
-        return self.field.surface.frame is not None
+    def is_lit(self) -> bool:
+        """Whether the surface is lit; by default a curved one is."""
+        lighting = self.appearance.lighting
+        return self.field.surface.frame is None if lighting is None else lighting
 
     @property
     def scalar_name(self) -> str | None:
         """Name of what the surface is coloured by; ``None`` for a plain one."""
-        return self._appearance.scalar_name
+        return self.appearance.scalar_name
 
     @property
     def scalar_limits(self) -> tuple[float, float]:
         """Values at the ends of the colour map."""
-        if self._appearance.clim is not None:
-            return self._appearance.clim
+        if self.appearance.clim is not None:
+            return self.appearance.clim
         return (0.0, 1.0) if self.scalar_name is None else self.scalar_range(self.scalar_name)
 
     @property
@@ -173,15 +174,10 @@ class Scene:
         """What a renderer needs, at the settings of this moment."""
         textures, version = self._textures, self._version
         if textures is None:
-            textures = _shared_textures(self.store, self.settings.copy(), self._image)
+            textures = _shared_textures(self.store, self.settings.copy(), self.image)
             if version == self._version:  # no other thread has changed a setting meanwhile
                 self._textures = textures
         return textures
-
-    @property
-    def image(self) -> Floats32 | None:
-        """Texels of the image, (H, W, 4): colours times opacity, row 0 at the bottom."""
-        return self._image
 
     def set_image(self, image: Any) -> None:
         """Lay an image, as :class:`Appearance` has it, in place of the noise on the surface.
@@ -193,12 +189,12 @@ class Scene:
         ImageError
             When it cannot be used; nothing is changed then.
         """
-        self._image = as_picture(load_image(image))
+        self.image = as_picture(load_image(image))
         if self.settings.noise != "image":
             self.settings.noise = "image"
             return
         if self._textures is not None:
-            self._textures = self._textures.with_image(self._image)
+            self._textures = self._textures.with_image(self.image)
         self._notify("textures")
 
     @property
@@ -250,8 +246,8 @@ class Scene:
         A thread can read it while this one goes on.
         """
         scene = Scene(self.field)
-        scene.settings, scene._appearance = self.settings.copy(), self._appearance
-        scene._image, scene._noise, scene._time = self._image, self._noise, self._time
+        scene.settings, scene.appearance = self.settings.copy(), self.appearance
+        scene.image, scene._noise, scene._time = self.image, self._noise, self._time
         scene._store, scene._textures = self.store, self.textures
         return scene
 
@@ -263,8 +259,8 @@ class Scene:
         field = share_field(coarsened_field(self.field, nodes))
         scene = Scene(field)
         limits = None if self.scalar_name is None else self.scalar_limits
-        scene._appearance = replace(self._appearance, clim=limits)
-        scene.settings, scene._image = self.settings.copy(), self._image
+        scene.appearance = replace(self.appearance, clim=limits)
+        scene.settings, scene.image = self.settings.copy(), self.image
         scene._noise, scene._time = self._noise, self._time
         scene._store = _coarse_stores.get(
             (id(field), self.settings.parameter),  # a store keeps its field alive
@@ -286,7 +282,7 @@ class Scene:
         if name == "noise":
             if value == self._noise:
                 return
-            if value == "image" and self._image is None:
+            if value == "image" and self.image is None:
                 # Observers hear of a setting once it is set; what cannot be drawn is set back.
                 self.settings.noise = self._noise
                 raise SettingsError(NO_IMAGE)

@@ -24,18 +24,8 @@ NAME = "flowtex"
 def show_plotter(plotter: Any, *, screenshot: Any = None, **options: Any) -> Any:
     """Show the flow texture of a plotter in the notebook, from the plotter's own camera.
 
-    Parameters
-    ----------
-    plotter
-        A PyVista plotter on which ``plotter.flowtex.add`` was called.
-    screenshot
-        Where the picture goes as well, as in ``plotter.show``.
-    **options
-        Further arguments of :class:`flowtex.FlowWidget`, from ``jupyter_kwargs``.
-
-    Returns
-    -------
-    FlowWidget
+    Called by ``plotter.show``; the options, its ``jupyter_kwargs``, are further arguments of the
+    :class:`flowtex.FlowWidget` that is returned.
 
     Raises
     ------

@@ -11,9 +11,10 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from flowtex._util.array_types import Bytes, Floats
 from flowtex.camera import Camera
+from flowtex.field.interpolation import steps_around
 from flowtex.rendering.cpu import Picture, render
 from flowtex.rendering.uniforms import ViewState
 from flowtex.rendering.webgl import ClientData
@@ -27,8 +28,6 @@ NODES, SAMPLES = 3_000, 9
 #: Pixels of the picture by one that NumPy draws, along each side.
 COARSER = 2
 
-Bytes = NDArray[np.uint8]
-
 
 def preview(
     view: WebView,
@@ -39,27 +38,10 @@ def preview(
     scene: ClientData | None = None,
     coarser: int = COARSER,
 ) -> Bytes:
-    """Draw a small picture.
+    """Draw a small picture, (height, width, 3), row 0 at the top.
 
-    Parameters
-    ----------
-    view
-        The flow and its colours.
-    size
-        Width and height in pixels.
-    camera
-        From where, as the header of a scene has it; the whole surface by default.
-    time
-        Time that is shown; the last one by default.
-    scene
-        The view's data with few nodes, when they are at hand.
-    coarser
-        Pixels of the picture by one that is computed, along each side.
-
-    Returns
-    -------
-    numpy.ndarray
-        (height, width, 3), row 0 at the top.
+    By default the whole surface is shown, at the last time. ``scene`` has the view's data with
+    few nodes, when they are at hand; one pixel is computed for ``coarser`` along each side.
     """
     scene = scene or view.coarse_data(NODES)
     camera = camera or scene.first_camera(size[0] / size[1]).to_dict()
@@ -105,18 +87,17 @@ def _drawn(
     camera: Mapping[str, Any],
     time: float | None,
 ) -> Bytes:
-    times = scene.times
-    shown = float(times[-1] if time is None else time)
-    steps = scene.moment(shown)
-    first, last = times[steps[0]], times[steps[-1]]
-    between = float((shown - first) / (last - first)) if last > first else 0.0
+    before, after, between = steps_around(
+        scene.times, float(scene.times[-1] if time is None else time)
+    )
+    steps = (scene.source(before), scene.source(after))
     picture = render(
         scene.textures,
         _few_samples(view.scene.settings),
         Camera.from_dict(camera),
         (max(size[0], 1), max(size[1], 1)),
         view=ViewState(between=between),
-        steps=(scene.source(steps[0]), scene.source(steps[-1])),
+        steps=steps,
     )
     ground = scene.colours.background
     drawn = picture.rgb(_colour(scene, picture, steps, between), ground)
@@ -127,20 +108,17 @@ def _drawn(
     return np.rint(behind + opacity * (drawn - behind)).astype(np.uint8)
 
 
-def _colour(
-    scene: ClientData, picture: Picture, steps: tuple[int, ...], between: float
-) -> NDArray[np.float64]:
+def _colour(scene: ClientData, picture: Picture, steps: tuple[int, int], between: float) -> Floats:
     """Colour of the surface at each pixel, (H, W, 3)."""
     colours, geometry = scene.colours, scene.textures.geometry
     if colours.values is None or colours.table is None:
         return np.asarray(colours.plain)
-    sources = (scene.source(step) for step in (steps[0], steps[-1]))
-    before, after = (colours.values[min(s, len(colours.values) - 1)] for s in sources)
+    before, after = (colours.values[min(step, len(colours.values) - 1)] for step in steps)
     values = np.nan_to_num(before * (1 - between) + after * between, nan=colours.low)
     rows, columns = geometry.rows, geometry.columns
     at = np.nan_to_num(picture.coordinate, nan=0.0)
     j = np.rint(at[..., 1] * rows.size - rows.before - 0.5).astype(int).clip(0, rows.nodes - 1)
     i = np.rint(at[..., 0] * columns.size - columns.before - 0.5).astype(int)
-    found = values[j, i.clip(0, columns.nodes - 1)]
-    share = (found - colours.low) / ((colours.high - colours.low) or 1.0)
+    nearest = values[j, i.clip(0, columns.nodes - 1)]
+    share = (nearest - colours.low) / ((colours.high - colours.low) or 1.0)
     return np.asarray(colours.table[(share * 256).clip(0, 255).astype(int), :3] / 255.0)

@@ -43,7 +43,7 @@ class WebView:
             table=colour_table(appearance.cmap),
             plain=rgb(appearance.color),
             background=rgb(background),
-            lighting=appearance.is_lit(flat=scene.flat),
+            lighting=scene.is_lit,
             opacity=float(appearance.opacity),
             bar=appearance.has_bar,
         )

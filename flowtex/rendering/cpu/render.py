@@ -67,17 +67,7 @@ class Picture:
     ) -> Bytes:
         """Colour the picture, without lights: those are the business of the other renderers.
 
-        Parameters
-        ----------
-        colour
-            Colour of the surface from 0 to 1, (3,), or one for each pixel, (H, W, 3).
-        background
-            Colour where there is no surface, (3,).
-
-        Returns
-        -------
-        numpy.ndarray
-            (H, W, 3), 0 to 255.
+        The colour of the surface is one, (3,), or one for each pixel, (H, W, 3), from 0 to 1.
 
         Raises
         ------
