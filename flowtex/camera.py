@@ -89,7 +89,7 @@ class Camera:
     Raises
     ------
     CameraError
-        When one of them is out of its range, or the camera sees nothing; all faults are told.
+        When some are out of their range, or the camera sees nothing; the text has all faults.
     """
 
     position: Point

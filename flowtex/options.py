@@ -1,4 +1,4 @@
-"""Arguments that every way of drawing a flow takes, each told once.
+"""Arguments that every way of drawing a flow takes, each described once.
 
 ``plotter.flowtex.add``, :func:`flowtex.render`, :func:`flowtex.show`, :func:`flowtex.movie`,
 :func:`flowtex.web.export`, :class:`flowtex.FlowWidget` and the command line hand the fields of
@@ -21,7 +21,7 @@ from typing import Any, TypeVar
 from flowtex.camera import Camera
 from flowtex.errors import raise_faults
 from flowtex.field import FlowField, Surface
-from flowtex.settings import TABLE, SettingsError
+from flowtex.settings import TABLE, Settings, SettingsError
 
 __all__ = [
     "Appearance",
@@ -194,6 +194,23 @@ class Options:
     appearance: Appearance
     view: ViewOptions
     settings: Mapping[str, Any]
+
+    def make_settings(self, **defaults: Any) -> Settings:
+        """Return all settings; an image has its colours alone, unless it is asked to be mixed.
+
+        Raises
+        ------
+        SettingsError
+            When one does not fit, or both an image and another noise are asked for.
+        """
+        values = {**defaults, **self.settings}
+        if self.appearance.image is not None:
+            noise = values.setdefault("noise", "image")
+            if noise != "image":
+                msg = f"noise is {noise!r} and an image is given; leave out one of them"
+                raise SettingsError(msg)
+            values.setdefault("strength", 1.0)
+        return Settings(**values)
 
     @classmethod
     def split(cls, *kinds: str, **values: Any) -> Options:

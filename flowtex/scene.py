@@ -1,7 +1,7 @@
 """The scene: a field, its appearance, its settings and the time that is shown.
 
-:class:`Scene` owns the arrays and knows no toolkit. A change is told as a notice and data is
-pulled: a renderer asks for :attr:`Scene.textures` when it draws and gets new ones only when traces
+:class:`Scene` owns the arrays and knows no toolkit. It notifies of a change, and data is pulled:
+a renderer asks for :attr:`Scene.textures` when it draws and gets new ones only when traces
 or textures have changed. Scenes of one field share its traces, and textures where the settings
 that lie in them are the same.
 """
@@ -120,10 +120,7 @@ class Scene:
     @classmethod
     def from_options(cls, mesh: Any, options: Options) -> Scene:
         """Return the scene of a mesh or a field; :meth:`of` has the errors."""
-        settings = image_settings(options) if options.appearance.image is not None else {}
-        chosen = Settings()
-        chosen.update(**{**options.settings, **settings})
-        return cls(options.field.field(mesh), chosen, options.appearance)
+        return cls(options.field.field(mesh), options.make_settings(), options.appearance)
 
     def beside(self, changes: Mapping[str, Any], options: Options) -> Scene:
         """Return a second scene of the same field.
@@ -283,7 +280,7 @@ class Scene:
             if value == self._noise:
                 return
             if value == "image" and self.image is None:
-                # Observers hear of a setting once it is set; what cannot be drawn is set back.
+                # Observers are called once a setting is set; what cannot be drawn is set back.
                 self.settings.noise = self._noise
                 raise SettingsError(NO_IMAGE)
             self._noise = value
@@ -318,21 +315,6 @@ def steps_of(field: FlowField, name: str) -> Floats:
     names = ", ".join(repr(n) for n in ("speed", *field.scalars))
     msg = f"there is no scalar {name!r} on this field; there are {names}"
     raise KeyError(msg)
-
-
-def image_settings(options: Options) -> dict[str, Any]:
-    """Return the settings for an image: its colours alone, unless it is asked to be mixed.
-
-    Raises
-    ------
-    SettingsError
-        When another noise is asked for.
-    """
-    noise = options.settings.get("noise", "image")
-    if noise != "image":
-        msg = f"noise is {noise!r} and an image is given; leave out one of them"
-        raise SettingsError(msg)
-    return {"strength": options.settings.get("strength", 1.0), "noise": "image"}
 
 
 _fields: WeakCache[FlowField] = WeakCache()

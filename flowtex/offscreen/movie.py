@@ -261,12 +261,7 @@ def _prepare(
 ) -> tuple[FlowField, Options, FrameTimes]:
     """Return the field, the options with the motion in them, and what the frames show."""
     field = options.field.field(mesh)
-    defaults = {"motion": "speed"} if field.steady else {}
-    given = {**defaults, **options.settings}
-    if options.appearance.image is not None:
-        given["noise"] = "image"
-    settings = Settings()
-    settings.update(**given)
+    settings = options.make_settings(**({"motion": "speed"} if field.steady else {}))
     shown = frame_times(field, settings, fps=fps, seconds=seconds)
     own = dict(options.settings)
     if field.steady:

@@ -21,7 +21,7 @@ from flowtex.rendering.webgl import ClientData
 from flowtex.settings import Settings
 from flowtex.web.view import WebView
 
-__all__ = ["png", "preview", "preview_png"]
+__all__ = ["preview_png"]
 
 #: Nodes and samples of a small picture, which no eye can tell from more of them.
 NODES, SAMPLES = 3_000, 9
@@ -29,7 +29,7 @@ NODES, SAMPLES = 3_000, 9
 COARSER = 2
 
 
-def preview(
+def preview_png(
     view: WebView,
     size: tuple[int, int],
     *,
@@ -37,8 +37,8 @@ def preview(
     time: float | None = None,
     scene: ClientData | None = None,
     coarser: int = COARSER,
-) -> Bytes:
-    """Draw a small picture, (height, width, 3), row 0 at the top.
+) -> bytes:
+    """Draw a small picture and return it as PNG.
 
     By default the whole surface is shown, at the last time. ``scene`` has the view's data with
     few nodes, when they are at hand; one pixel is computed for ``coarser`` along each side.
@@ -48,26 +48,15 @@ def preview(
     drawn = _drawn(view, scene, (size[0] // coarser, size[1] // coarser), camera, time)
     from PIL import Image
 
-    return np.asarray(Image.fromarray(drawn).resize(size, Image.Resampling.BICUBIC))
-
-
-def preview_png(view: WebView, size: tuple[int, int], **options: Any) -> bytes:
-    """Draw a small picture and return it as PNG; :func:`preview` has the parameters."""
-    return png(preview(view, size, **options))
-
-
-def png(picture: Bytes) -> bytes:
-    """Return a picture (H, W, 3) as a PNG file."""
-    from PIL import Image
-
+    picture = np.asarray(Image.fromarray(drawn).resize(size, Image.Resampling.BICUBIC))
     # Colours are chosen among a few pixels: among all of them it takes longer than the drawing.
     few = Image.fromarray(np.ascontiguousarray(picture[::4, ::4])).quantize(160)
-    drawn = Image.fromarray(picture).quantize(palette=few, dither=Image.Dither.NONE)
-    palette, corner = drawn.getpalette() or [], 3 * int(np.asarray(drawn)[0, 0])
+    reduced = Image.fromarray(picture).quantize(palette=few, dither=Image.Dither.NONE)
+    palette, corner = reduced.getpalette() or [], 3 * int(np.asarray(reduced)[0, 0])
     palette[corner : corner + 3] = picture[0, 0].tolist()  # the ground keeps its very colour
-    drawn.putpalette(palette)
+    reduced.putpalette(palette)
     file = io.BytesIO()
-    drawn.save(file, "PNG", optimize=True)
+    reduced.save(file, "PNG", optimize=True)
     return file.getvalue()
 
 

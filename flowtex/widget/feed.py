@@ -4,7 +4,7 @@ Two workers do all that takes time. One answers the client from the scene that t
 makes the next scene, the whole one after a coarse one or that of new settings, and puts it in the
 place of the first when it can be shown.
 
-An array that has gone to some page already is offered by its digest and not sent: a page that
+An array that was sent to some page already is offered by its digest and not sent: a page that
 shows the same mesh many times holds it once, and asks for what it lacks.
 """
 
@@ -43,7 +43,7 @@ RESEND_WAITS_S = (2.5, 4.0, 8.0, 16.0)
 #: Bytes from which an array is offered before it is sent again.
 LEAST_OFFERED_BYTES = 50_000
 
-#: Digests of arrays that have gone to some page, and how many of them are remembered.
+#: Digests of arrays that were sent to some page, and how many of them are remembered.
 _sent_digests: OrderedDict[str, None] = OrderedDict()
 _sent_lock = threading.Lock()
 MOST_DIGESTS = 10_000
@@ -120,7 +120,7 @@ class Feed:
         return timer
 
     def _send_again(self, waits: tuple[float, ...]) -> None:
-        """Send once more to who has said nothing: it may not have been there yet to listen.
+        """Send once more to a client that has not answered: it may not have been loaded yet.
 
         What was only offered goes along whole: what it was offered from may be lost as well.
         """
@@ -278,7 +278,7 @@ class Feed:
 
 
 def _was_sent(digest: str) -> bool:
-    """Tell whether an array has gone to some page, which from now on it has."""
+    """Tell whether an array was sent to some page, and note that it is."""
     with _sent_lock:
         was_sent = digest in _sent_digests
         _sent_digests[digest] = None
