@@ -90,13 +90,7 @@ class Setting:
         return self.kind(value)
 
     def parse(self, text: str) -> Any:
-        """Return the value that a text such as ``"off"``, ``"1.5"`` or ``"box"`` means.
-
-        Raises
-        ------
-        SettingsError
-            When it is none; as :meth:`check`.
-        """
+        """Return the value of a text such as ``"off"``, ``"1.5"`` or ``"box"``, checked."""
         text = text.strip()
         value: Any = text
         if self.kind is bool:
