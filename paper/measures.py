@@ -18,7 +18,6 @@ __all__ = [
     "Grain",
     "Streaks",
     "aliasing",
-    "blocks",
     "evenness",
     "grain",
     "likeness",
@@ -168,13 +167,6 @@ def sharpness(picture: Floats, mask: Bools) -> float:
     across, down = np.diff(filled, axis=1)[:-1], np.diff(filled, axis=0)[:, :-1]
     inner = mask[:-1, :-1]
     return float(np.sqrt(np.mean(across[inner] ** 2 + down[inner] ** 2)))
-
-
-def blocks(picture: Floats, times: int) -> Floats:
-    """Mean of blocks of ``times`` x ``times`` pixels; rows that fill no block are dropped."""
-    rows, columns = (n // times for n in picture.shape)
-    cut = picture[: rows * times, : columns * times]
-    return np.asarray(cut.reshape(rows, times, columns, times).mean(axis=(1, 3)))
 
 
 def standardised(picture: Floats) -> Floats:

@@ -13,6 +13,7 @@ import numpy as np
 from scipy import ndimage
 
 from flowtex._util.array_types import Bools, Bytes, Floats
+from flowtex._util.blocks import block_means
 from flowtex.camera import Camera
 from flowtex.field import FlowField
 from flowtex.rendering.cpu import LookupMaker, Picture, render, shade
@@ -72,7 +73,7 @@ class View:
         """
         width, height = self.size
         fine = replace(self, size=(width * times, height * times))
-        return measures.blocks(fine.picture(density=times, **settings).value, times)
+        return block_means(fine.picture(density=times, **settings).value, times)
 
     @cached_property
     def _surface(self) -> tuple[Bools, Floats, Floats]:

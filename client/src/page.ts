@@ -22,11 +22,12 @@ async function openPage(): Promise<void> {
   const place = document.getElementById("flowtex") as HTMLElement;
   const status = document.getElementById("status") as HTMLElement;
   try {
+    // Of a second header there is what differs from the first.
     const headers: Header[] = JSON.parse(document.getElementById("headers")?.textContent ?? "");
     const known = new Map<string, NamedPart>();
     const scenes: SceneData[] = [];
     for (const [n, header] of headers.entries()) {
-      scenes.push({ header, parts: await partsOf(String(n), known) });
+      scenes.push({ header: { ...headers[0], ...header }, parts: await partsOf(String(n), known) });
     }
     const look = () => {
       // The client says why in its own place, which the preview covers.

@@ -195,9 +195,14 @@ def _values(headers: Sequence[Header], title: str, picture: bytes) -> dict[str, 
         "title": html.escape(title),
         "style": look,
         "preview": "data:image/png;base64," + base64.b64encode(picture).decode(),
-        "headers": _json(headers),
+        "headers": _json([headers[0], *(_different(h, headers[0]) for h in headers[1:])]),
         "script": script,
     }
+
+
+def _different(header: Header, first: Header) -> Header:
+    """Return what of a header is not as in the first: shaders and table lie in the page once."""
+    return {name: value for name, value in header.items() if value != first[name]}
 
 
 def _policy(script: str) -> str:

@@ -771,10 +771,10 @@ e yet"))},"image/png")})}async function partsOf(view,known){let parts=[];for(let
 ]`)){let info=JSON.parse(element.dataset.part??""),text=element.textContent??"",part=known.get(info.digest)??await partOfText(
 info,text);known.set(info.digest,part),parts.push({...part,name:info.name}),element.remove()}return parts}async function openPage(){
 let place=document.getElementById("flowtex"),status=document.getElementById("status");try{let headers=JSON.parse(document.
-getElementById("headers")?.textContent??""),known=new Map,scenes=[];for(let[n,header]of headers.entries())scenes.push({header,
-parts:await partsOf(String(n),known)});let look=()=>{status.hidden=!place.querySelector('[data-failed="true"]'),status.textContent=
-"This browser cannot draw the flow, for want of WebGL2; here is a picture of it.",!place.querySelector('[data-sharp="fal\
-se"]')&&(watch.disconnect(),document.getElementById("preview")?.remove())},watch=new MutationObserver(look),attributeFilter=[
-"data-sharp","data-failed"];watch.observe(place,{subtree:!0,childList:!0,attributeFilter}),mountPage(place,scenes)}catch(error){
-status.hidden=!1;let reason=error instanceof Error?error.message:String(error);throw status.textContent=`The flow cannot\
- be drawn here: ${reason}`,error}}openPage();
+getElementById("headers")?.textContent??""),known=new Map,scenes=[];for(let[n,header]of headers.entries())scenes.push({header:{
+...headers[0],...header},parts:await partsOf(String(n),known)});let look=()=>{status.hidden=!place.querySelector('[data-\
+failed="true"]'),status.textContent="This browser cannot draw the flow, for want of WebGL2; here is a picture of it.",!place.
+querySelector('[data-sharp="false"]')&&(watch.disconnect(),document.getElementById("preview")?.remove())},watch=new MutationObserver(
+look),attributeFilter=["data-sharp","data-failed"];watch.observe(place,{subtree:!0,childList:!0,attributeFilter}),mountPage(
+place,scenes)}catch(error){status.hidden=!1;let reason=error instanceof Error?error.message:String(error);throw status.textContent=
+`The flow cannot be drawn here: ${reason}`,error}}openPage();

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import Floats, Floats32, Indices
+from flowtex._util.blocks import block_means
 from flowtex.field import FlowField
 from flowtex.probe import Probe, probe
 from flowtex.scene import Scene
@@ -184,8 +185,7 @@ def _claims(result: Probe, texels: Floats) -> list[Claim]:
 
 def _level(noise: Floats32, level: int) -> Floats:
     """Mip level of a noise, (H, W)."""
-    rows, columns = (n // 2**level for n in noise.shape)
-    return np.asarray(noise.reshape(rows, 2**level, columns, 2**level).mean(axis=(1, 3)), float)
+    return np.asarray(block_means(noise, 2**level), float)
 
 
 def _lookups(noise: Floats, texels: Floats, result: Probe, order: Indices) -> Plot:

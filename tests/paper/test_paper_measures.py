@@ -104,13 +104,6 @@ def test_aliasing_of_a_picture_is_its_error_over_the_deviation(rng: np.random.Ge
     assert abs(measures.likeness(noise(rng), noise(rng), EVERYWHERE)) < 0.05
 
 
-def test_blocks_are_means_and_drop_the_rest() -> None:
-    picture = np.arange(35.0).reshape(5, 7)
-    result = measures.blocks(picture, 2)
-    assert result.shape == (2, 3)
-    assert result[0, 0] == (0 + 1 + 7 + 8) / 4
-
-
 def test_blur_takes_sharpness(rng: np.random.Generator) -> None:
     picture = noise(rng, 1.0, 1.0)
     blurred = gaussian_filter(picture, 2)

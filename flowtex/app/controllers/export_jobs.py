@@ -36,6 +36,7 @@ from flowtex.offscreen.encoders import (
 )
 from flowtex.offscreen.movie import FrameTimes, frame_times
 from flowtex.settings import Settings
+from flowtex.textures.images import averaged
 
 __all__ = ["MOST_PIXELS", "ExportError", "Job", "MovieJob", "PictureJob", "TiledPicture"]
 
@@ -123,11 +124,7 @@ class TiledPicture:
         samples = pane.handle.settings.samples
         self._cost.learn(time.perf_counter() - started, pixels.shape[0] * pixels.shape[1], samples)
         self._side = self._affordable(samples)
-        if self._supersampling == 1:
-            return pixels
-        from PIL import Image
-
-        return np.asarray(Image.fromarray(pixels).reduce(self._supersampling))
+        return averaged(pixels, self._supersampling)
 
     def _affordable(self, samples: int) -> int:
         """Side of a tile, in pixels that are drawn, that takes no longer than it may."""
