@@ -1,6 +1,5 @@
 // The camera: how it is moved, and how it sees. flowtex/camera.py does the same in Python.
 
-import type { Geometry } from "./protocol.ts";
 import {
   add,
   clamp,
@@ -24,6 +23,14 @@ export interface CameraState {
   parallel: boolean;
   parallel_scale: number;
   view_angle: number;
+}
+
+/** Where a surface lies; `frame` has the rows of the matrix from the mesh to the surface's own frame. */
+export interface Surface {
+  planar: boolean;
+  extent: number;
+  center: number[];
+  frame: number[];
 }
 
 /** How far a camera may go: CameraLimits of flowtex/camera.py. */
@@ -91,11 +98,6 @@ export class Camera {
     const ahead = unit(subtract(this.state.focal_point, this.state.position));
     const right = unit(cross(ahead, this.state.up));
     return [right, cross(right, ahead), ahead];
-  }
-
-  /** Unit vector from the focal point to the eye. */
-  get toEye(): Vector {
-    return unit(subtract(this.state.position, this.state.focal_point));
   }
 
   /** The eye and 1, or the way to it and 0 where all rays are parallel. */
@@ -172,21 +174,20 @@ export function copyOf(state: CameraState): CameraState {
   return { ...state, position: [...position], focal_point: [...focus], up: [...up] };
 }
 
-/** A camera that shows the whole surface, whose nodes are given in its own frame. */
+/** A camera that shows the whole surface, whose nodes are in its own frame. */
 export function fitted(
-  geometry: Geometry,
+  surface: Surface,
   limits: CameraLimits,
   positions: ArrayLike<number>,
   aspect: number,
 ): CameraState {
-  const { center, extent, planar, frame } = geometry;
+  const { center, extent, planar, frame } = surface;
   const half = tangent(limits.view_angle);
   const back = planar ? fromFrame(frame, [0, 0, 1]) : unit([1, 1, 1]);
   const up: Vector = planar ? fromFrame(frame, [0, 1, 0]) : [0, 0, 1];
   const right = unit(cross(up, back));
   const rows = [right, cross(back, right), back].map((row) => toFrame(frame, row));
-  const low = [Infinity, Infinity];
-  const high = [-Infinity, -Infinity];
+  const [low, high] = [[Infinity, Infinity], [-Infinity, -Infinity]];
   let distance = 0;
   for (let n = 0; n < positions.length; n += 3) {
     const node = [positions[n], positions[n + 1], positions[n + 2]];
@@ -215,18 +216,18 @@ export function fitted(
  * shape; any other camera as it is.
  */
 export function widened(
-  geometry: Geometry,
+  surface: Surface,
   limits: CameraLimits,
   state: CameraState,
   positions: ArrayLike<number>,
   aspect: number,
 ): CameraState {
-  const { center, extent, planar } = geometry;
+  const { center, extent, planar } = surface;
   const camera = copyOf(state);
   if (length(subtract(state.focal_point, center)) > 1e-3 * extent) return camera;
   if (planar && state.parallel) {
     const [high, all] = [1e9, aspect].map(
-      (shape) => fitted(geometry, limits, positions, shape).parallel_scale,
+      (shape) => fitted(surface, limits, positions, shape).parallel_scale,
     );
     if (state.parallel_scale > 0.98 * high) {
       camera.parallel_scale = Math.max(state.parallel_scale, all);
@@ -239,7 +240,7 @@ export function widened(
 }
 
 /** Whether two surfaces lie in the same place, as a coarse form and the whole one. */
-export function isSamePlace(a: Geometry, b: Geometry): boolean {
+export function isSamePlace(a: Surface, b: Surface): boolean {
   const near = length(subtract(a.center, b.center)) < 0.1 * a.extent;
   const ratio = a.extent / b.extent;
   return a.planar === b.planar && near && ratio > 0.8 && ratio < 1.25;
@@ -250,9 +251,9 @@ export function isSamePlace(a: Geometry, b: Geometry): boolean {
  *
  * Counting from the focal point in both axes of the picture keeps the digits of a close view.
  */
-export function projection(geometry: Geometry, camera: Camera, anchor: Vector): number[] {
+export function projection(surface: Surface, camera: Camera, anchor: Vector): number[] {
   const { state, aspect } = camera;
-  const { center, extent, frame } = geometry;
+  const { center, extent, frame } = surface;
   const [right, up, ahead] = camera.axes.map((axis) => toFrame(frame, axis));
   const local = (point: number[]) => subtract(toFrame(frame, subtract(point, center)), anchor);
   const focus = local(state.focal_point);

@@ -4,7 +4,6 @@
 import type { Part } from "./protocol.ts";
 import { Programs } from "./programs.ts";
 
-/** Samples of a pixel on the outline. */
 const OUTLINE_SAMPLES = 4;
 /** Milliseconds that all viewers may draw in one frame of the page. */
 export const FRAME_MS = 45;
@@ -29,7 +28,8 @@ interface Target {
 export interface User {
   frame(now: number, until: number): void;
   lost(): void;
-  restored(): void;
+  /** The picture is not up to date any more. */
+  change(): void;
 }
 
 export class Graphics {
@@ -43,7 +43,6 @@ export class Graphics {
   readonly stock = new Map<string, { part: Part; users: number }>();
   objects = 0;
   isLost = false;
-  restorations = 0;
   /** Whether half-precision textures are drawn into, which their mip levels are made with. */
   floats = false;
   private scheduled = 0;
@@ -71,9 +70,8 @@ export class Graphics {
     });
     this.canvas.addEventListener("webglcontextrestored", () => {
       this.isLost = false;
-      this.restorations += 1;
       this.findFeatures();
-      for (const user of this.users) user.restored();
+      for (const user of this.users) user.change();
     });
   }
 
@@ -88,10 +86,6 @@ export class Graphics {
   get context(): WebGL2RenderingContext {
     if (!this.gl) throw new Error("there is no WebGL2");
     return this.gl;
-  }
-
-  enter(user: User): void {
-    this.users.add(user);
   }
 
   leave(user: User): void {
@@ -141,34 +135,20 @@ export class Graphics {
   }
 
   /** Hold an array for one more view; where it is there already that one is returned. */
-  hold<P extends Part>(part: P): P | Part {
+  hold(part: Part): Part {
     if (!part.digest) return part;
-    const entry = this.stock.get(part.digest);
-    if (!entry) this.stock.set(part.digest, { part, users: 1 });
-    else entry.users += 1;
-    return entry?.part ?? part;
+    const entry = this.stock.get(part.digest) ?? { part, users: 0 };
+    this.stock.set(part.digest, { ...entry, users: entry.users + 1 });
+    return entry.part;
   }
 
   release(part: Part | undefined): void {
-    const entry = part?.digest ? this.stock.get(part.digest) : undefined;
-    if (!part?.digest || !entry) return;
+    const entry = part && this.stock.get(part.digest);
+    if (!part || !entry) return;
     entry.users -= 1;
     if (!entry.users) this.stock.delete(part.digest);
   }
 
-  /** Make the canvas large enough. */
-  reserve(width: number, height: number): void {
-    if (this.canvas.width < width) this.canvas.width = width;
-    if (this.canvas.height < height) this.canvas.height = height;
-  }
-
-  /** Wait until everything is drawn. */
-  settle(): void {
-    const gl = this.context;
-    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
-  }
-
-  /** What is drawn into instead of the canvas. */
   private target(format: number, width: number, height: number, samples: number): Target {
     const gl = this.context;
     const frame = this.counted(gl.createFramebuffer());
@@ -196,17 +176,13 @@ export class Graphics {
   bindSmooth(width: number, rows: number): void {
     const gl = this.context;
     const old = this.smooth;
-    let target = old;
     if (!old || old.width < width || old.height < rows) {
-      const size = {
-        width: Math.max(width, old?.width ?? 0),
-        height: Math.max(rows, old?.height ?? 0),
-      };
+      const [w, h] = [Math.max(width, old?.width ?? 0), Math.max(rows, old?.height ?? 0)];
       if (old) this.freeTarget(old);
-      target = { ...this.target(gl.RGBA8, size.width, size.height, OUTLINE_SAMPLES), ...size };
-      this.smooth = target;
+      const target = this.target(gl.RGBA8, w, h, OUTLINE_SAMPLES);
+      this.smooth = { ...target, width: w, height: h };
     }
-    gl.bindFramebuffer(gl.FRAMEBUFFER, target?.frame ?? null);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, this.smooth?.frame ?? null);
   }
 
   /** Put what was drawn into the lowest rows of the canvas: samples stay in place. */
@@ -237,7 +213,6 @@ export class Graphics {
   }
 }
 
-/** The context of the page. */
 export function sharedGraphics(): Graphics {
   const page = globalThis as unknown as Record<symbol, Graphics>;
   return (page[SHARED] ??= new Graphics());

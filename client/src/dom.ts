@@ -46,3 +46,17 @@ export function numberText(x: number): string {
   if (size !== 0 && (size >= 1e5 || size < 1e-3)) return x.toExponential(2).replace("e+", "e");
   return String(Number(x.toPrecision(4)));
 }
+
+/** Pictures of views beside each other as PNG. */
+export function pngOf(views: readonly { canvas: HTMLCanvasElement }[]): Promise<Blob> {
+  const canvases = views.map(({ canvas }) => canvas);
+  const width = canvases.reduce((sum, canvas) => sum + canvas.width, 0);
+  const all = new OffscreenCanvas(width, canvases[0].height);
+  const pen = all.getContext("2d", { alpha: false });
+  let left = 0;
+  for (const canvas of canvases) {
+    pen?.drawImage(canvas, left, 0);
+    left += canvas.width;
+  }
+  return all.convertToBlob();
+}

@@ -32,7 +32,6 @@ export class Legend {
     );
   }
 
-  /** Mark a value, or none. */
   point(header: Header | null, value = NaN): void {
     this.mark.hidden = !header || !Number.isFinite(value);
     if (!header || this.mark.hidden) return;

@@ -12,7 +12,6 @@ export class Lifetime {
     return this.controller.signal.aborted;
   }
 
-  /** Listen until the end. */
   listen<E extends Event>(
     target: EventTarget,
     kind: string,
@@ -24,7 +23,6 @@ export class Lifetime {
     target.addEventListener(kind, call as EventListener, { ...options, signal });
   }
 
-  /** Call after some milliseconds, unless it is cancelled. */
   later(call: () => void, delay: number): Timer {
     const timer = setTimeout(() => {
       this.timers.delete(timer);

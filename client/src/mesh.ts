@@ -1,6 +1,6 @@
 // The nodes of a surface as the arrays of a draw call, and values between nodes.
 
-import type { Data, Geometry, Paper } from "./protocol.ts";
+import type { Data, Geometry, Padding, Paper } from "./protocol.ts";
 import type { Vector } from "./vectors.ts";
 
 /** What a node without a value has, far below every colour map. */
@@ -26,35 +26,33 @@ export function triangles([rows, columns]: [number, number], cells?: Data): Uint
   return index.subarray(0, n);
 }
 
-/** Nodes relative to an anchor. */
 export function positions(data: Float32Array, anchor: Vector): Float32Array {
   if (!anchor.some(Boolean)) return data;
   return data.map((x, n) => x - anchor[n % 3]);
 }
 
-/** Coordinates of the nodes in the slices: middles of texels. */
-export function coordinates({ shape, rows, columns }: Geometry): Float32Array {
-  const result = new Float32Array(2 * shape[0] * shape[1]);
-  for (let j = 0, n = 0; j < shape[0]; j += 1) {
-    for (let i = 0; i < shape[1]; i += 1) {
-      result[n++] = (i + columns.before + 0.5) / columns.size;
-      result[n++] = (j + rows.before + 0.5) / rows.size;
-    }
-  }
-  return result;
-}
-
-/** Coordinates of the nodes in the noise texture. */
-export function noiseCoordinates({ alongI, alongJ }: Paper): Float32Array {
-  const result = new Float32Array(2 * alongI.length * alongJ.length);
+/** Pairs (u, v) of all nodes. */
+function grid(us: number[], vs: number[]): Float32Array {
+  const result = new Float32Array(2 * us.length * vs.length);
   let n = 0;
-  for (const v of alongJ) {
-    for (const u of alongI) {
+  for (const v of vs) {
+    for (const u of us) {
       result[n++] = u;
       result[n++] = v;
     }
   }
   return result;
+}
+
+/** Coordinates of the nodes in the slices: middles of texels. */
+export function coordinates({ shape, rows, columns }: Geometry): Float32Array {
+  const middles = (count: number, { before, size }: Padding) =>
+    Array.from({ length: count }, (_, n) => (n + before + 0.5) / size);
+  return grid(middles(shape[1], columns), middles(shape[0], rows));
+}
+
+export function noiseCoordinates({ alongI, alongJ }: Paper): Float32Array {
+  return grid(alongI, alongJ);
 }
 
 /** Values before and after, for each node, as shares of the colour map's range. */
@@ -81,10 +79,6 @@ export function interpolated(
   const [a, b] = [i - left, j - low];
   const corner = low * columns + left;
   const [from, to] = [value(corner), value(corner + columns + 1)];
-  if (a >= b) {
-    const aside = value(corner + 1);
-    return from + a * (aside - from) + b * (to - aside);
-  }
-  const aside = value(corner + columns);
-  return from + b * (aside - from) + a * (to - aside);
+  const aside = value(corner + (a >= b ? 1 : columns));
+  return from + Math.max(a, b) * (aside - from) + Math.min(a, b) * (to - aside);
 }

@@ -6,6 +6,11 @@ declare module "*.css" {
   export default text;
 }
 
+declare module "gl-matrix/esm/mat2d.js" {
+  import { mat2d } from "gl-matrix";
+  export = mat2d;
+}
+
 declare module "gl-matrix/esm/mat3.js" {
   import { mat3 } from "gl-matrix";
   export = mat3;

@@ -1,38 +1,50 @@
 // What is seen around the picture: the bar, the legend, the settings, the readout and messages.
 
-import { Controls, hasStreaming } from "./controls.ts";
-import { dom, icon, numberText, type IconName } from "./dom.ts";
+import type { Camera } from "./camera.ts";
+import { Controls, hasStreaming, type ControlsHost } from "./controls.ts";
+import { dom, icon, numberText, pngOf, type IconName } from "./dom.ts";
 import { toggleFullscreen } from "./keyboard.ts";
 import { Legend } from "./legend.ts";
 import type { Timer } from "./lifetime.ts";
+import type { Options } from "./options.ts";
 import type { Point } from "./picking.ts";
-import type { Header } from "./protocol.ts";
+import type { Player } from "./player.ts";
+import type { Header, Part } from "./protocol.ts";
 import STYLE from "./styles.css";
-import type { Viewer } from "./viewer.ts";
-import { pngOf } from "./views.ts";
 
-/** Milliseconds for which a hint is shown; after which lacking parts are told; a picture is there to be saved. */
+/** Milliseconds for which a hint is shown; until lacking parts are named; in which a picture is saved. */
 const HINT_MS = 1600;
 const LATE_MS = 4000;
 const SAVED_MS = 5000;
 /** Digits of a coordinate, at first and at most: more are shown the closer the view is. */
 const FEWEST_DIGITS = 4;
 const MOST_DIGITS = 14;
-/** What may stand in the name of a file. */
+const KEY = /Mac|iP(hone|ad)/.test(navigator.platform) ? "⌘" : "Ctrl";
+const HINT = `Click, or hold ${KEY}, to zoom with the wheel`;
+const TIME_RANGE = { min: "0", max: "1", step: "any", "aria-label": "Time" };
+/** What the name of a file cannot have. */
 const FORBIDDEN = /[\\/:*?"<>|]+/g;
 
-let sheet: CSSStyleSheet | null = null;
-
-function styleSheet(): CSSStyleSheet {
-  if (!sheet) {
-    sheet = new CSSStyleSheet();
-    sheet.replaceSync(STYLE);
-  }
-  return sheet;
+export interface PanelHost extends ControlsHost {
+  readonly options: Options;
+  readonly root: HTMLElement;
+  readonly canvas: HTMLCanvasElement;
+  readonly header: Header | null;
+  readonly parts: ReadonlyMap<string, Part>;
+  readonly camera: Camera | null;
+  readonly player: Player;
+  readonly lacking: string[];
+  readonly together: readonly { canvas: HTMLCanvasElement }[];
+  togglePlaying(): void;
+  scrub(share: number): void;
+  reset(): void;
 }
 
+const styleSheet = new CSSStyleSheet();
+styleSheet.replaceSync(STYLE);
+
 export class Panel {
-  private readonly viewer: Viewer;
+  private readonly viewer: PanelHost;
   private readonly legend = new Legend();
   private readonly controls: Controls;
   private isShown: boolean;
@@ -40,37 +52,30 @@ export class Panel {
   private showsLevels = false;
   private readonly title = dom("div", { class: "title" });
   private readonly readout = dom("div", { class: "readout", role: "status" });
-  private readonly head: HTMLElement;
+  private readonly head = dom("div", { class: "head glass", hidden: "" }, [this.title, this.readout]);
   private readonly note = dom("div", { class: "note", hidden: "", role: "alert" });
   private readonly busy = dom("div", { class: "busy", hidden: "" }, ["waiting for data …"]);
-  private readonly hintBox: HTMLElement;
+  private readonly hintBox = dom("div", { class: "hint glass", hidden: "" }, [HINT]);
   private readonly bar: HTMLElement;
   private readonly handle: HTMLElement;
   private readonly playButton: HTMLButtonElement;
   private readonly toggles: Record<"lod" | "show_level", HTMLButtonElement>;
   private readonly gear: HTMLButtonElement;
-  private readonly slider: HTMLInputElement;
+  private readonly slider = dom("input", { type: "range", ...TIME_RANGE });
   private readonly timeText = dom("span", { class: "time" });
-  private readonly track: HTMLElement;
+  private readonly track = dom("div", { class: "track" }, [this.slider, this.timeText]);
   private hintTimer: Timer | null = null;
   private lateTimer: Timer | null = null;
 
-  constructor(viewer: Viewer) {
+  constructor(viewer: PanelHost) {
     this.viewer = viewer;
     const { root, canvas, options } = viewer;
     this.isShown = options.controls ?? true;
     this.controls = new Controls(viewer);
-    this.head = dom("div", { class: "head glass", hidden: "" }, [this.title, this.readout]);
-    const key = /Mac|iP(hone|ad)/.test(navigator.platform) ? "⌘" : "Ctrl";
-    const hint = `Click, or hold ${key}, to zoom with the wheel`;
-    this.hintBox = dom("div", { class: "hint glass", hidden: "" }, [hint]);
     this.handle = this.button("show", "Show the bar (h)", () => this.toggle());
     this.handle.classList.add("handle", "glass");
     this.playButton = this.button("play", "Play (space)", () => viewer.togglePlaying());
-    const range = { min: "0", max: "1", step: "any", "aria-label": "Time" };
-    this.slider = dom("input", { type: "range", ...range });
-    viewer.lifetime.listen(this.slider, "input", () => this.scrub(Number(this.slider.value)));
-    this.track = dom("div", { class: "track" }, [this.slider, this.timeText]);
+    viewer.lifetime.listen(this.slider, "input", () => viewer.scrub(Number(this.slider.value)));
     const toggle = (name: string) => () => viewer.choose(name, !viewer.settings[name]);
     this.toggles = {
       lod: this.button("lod", "Level of detail", toggle("lod")),
@@ -81,7 +86,7 @@ export class Panel {
     canvas.className = "picture";
     root.classList.toggle("flowtex-bare", options.bare ?? false);
     const shadow = root.attachShadow({ mode: "open" });
-    shadow.adoptedStyleSheets = [styleSheet()];
+    shadow.adoptedStyleSheets = [styleSheet];
     const { legend, controls, head, bar, handle, busy, hintBox, note } = this;
     shadow.append(canvas, head, legend.element, controls.element);
     shadow.append(bar, handle, busy, hintBox, note);
@@ -110,7 +115,6 @@ export class Panel {
     ]);
   }
 
-  /** Make what depends on the scene. */
   build(): void {
     const { header } = this.viewer;
     if (!header) return;
@@ -121,9 +125,9 @@ export class Panel {
     this.arrange();
   }
 
-  /** Show the present values. */
   update(): void {
-    const { header, settings, playing, varies } = this.viewer;
+    const { header, settings } = this.viewer;
+    const { playing, varies } = this.viewer.player;
     this.name();
     this.controls.update();
     if (this.showsLevels !== Boolean(settings.show_level)) this.showLegend();
@@ -140,7 +144,7 @@ export class Panel {
     this.tick();
   }
 
-  /** Name the flow, or tell what is different in one of two views of it. */
+  /** Name the flow, or what is different in one of two views of it. */
   private name(): void {
     const { header, settings, root } = this.viewer;
     const names = (header?.differs ?? []).filter((name) => name in settings);
@@ -155,29 +159,14 @@ export class Panel {
     root.setAttribute("aria-label", title ? `Flow texture: ${title}` : "Flow texture");
   }
 
-  /** Show the present time. */
   tick(): void {
-    const { header, varies, player, settings } = this.viewer;
+    const { header, player, settings } = this.viewer;
     if (!header || this.track.hidden) return;
     const { first, last, now } = player.range(settings);
     this.slider.value = String((now - first) / (last - first || 1));
     const unit = header.slices.timeUnit;
-    const text = varies ? `${numberText(now)} ${unit}` : `${now.toFixed(1)} s`;
+    const text = player.varies ? `${numberText(now)} ${unit}` : `${now.toFixed(1)} s`;
     if (this.timeText.textContent !== text) this.timeText.textContent = text;
-  }
-
-  private scrub(share: number): void {
-    const { viewer } = this;
-    const { first, last } = viewer.player.range(viewer.settings);
-    const value = first + share * (last - first);
-    viewer.stir();
-    if (viewer.varies) {
-      viewer.setTime(value);
-      viewer.options.onTime?.(viewer.time);
-    } else {
-      viewer.setClock(value);
-      viewer.options.onClock?.(viewer.clock);
-    }
   }
 
   showLegend(): void {
@@ -186,19 +175,16 @@ export class Panel {
     if (header) this.legend.show(header, settings, parts.get("cmap")?.data);
   }
 
-  /** Tell what is under the pointer. */
+  /** Show the point under the pointer. */
   read(point: Point | null): void {
     const { header } = this.viewer;
     this.readout.replaceChildren();
     this.legend.point(null);
     if (!point || !header) return;
-    const text = this.positionText(point.position, header);
-    this.readout.append(dom("span", {}, [text]));
+    this.readout.append(dom("span", {}, [this.positionText(point.position, header)]));
     for (const [name, value] of Object.entries(point.values)) {
-      const { unit } = header.scalars;
-      this.readout.append(
-        dom("b", {}, [`${name} ${numberText(value)}${unit ? ` ${unit}` : ""}`]),
-      );
+      const text = `${name} ${numberText(value)} ${header.scalars.unit}`;
+      this.readout.append(dom("b", {}, [text.trimEnd()]));
       this.legend.point(header, value);
     }
   }
@@ -216,13 +202,12 @@ export class Panel {
     return `(${texts.join(", ")})`;
   }
 
-  /** Unfold or fold the settings. */
+  /** Fold or unfold the settings. */
   fold(open = false): void {
     this.isOpen = open;
     this.arrange();
   }
 
-  /** Show or hide the bar. */
   toggle(shown = !this.isShown): void {
     if (shown === this.isShown) return;
     this.isShown = shown;
@@ -242,22 +227,20 @@ export class Panel {
     this.gear.setAttribute("aria-pressed", String(this.isOpen));
   }
 
-  /** Tell that parts are waited for, or that none are. */
+  /** Show that parts are on their way, or that none are. */
   wait(missing: string[]): void {
     this.busy.hidden = !missing.length;
     const { viewer } = this;
     if (!missing.length || viewer.options.onNeed || this.lateTimer) return;
-    // Parts come in any order; what does not come within a while is told.
+    // Parts come in any order.
     this.lateTimer = viewer.lifetime.later(() => {
       this.lateTimer = null;
-      const { lacking } = viewer;
-      if (lacking.length) {
-        this.fail("The scene is not complete.", `Missing: ${lacking.join(", ")}`);
-      }
+      const names = viewer.lacking.join(", ");
+      if (names) this.fail("The scene is not complete.", `Missing: ${names}`);
     }, LATE_MS);
   }
 
-  /** Tell for a moment how the wheel zooms, or no longer. */
+  /** Show for a moment how the wheel zooms, or no longer. */
   hint(shown: boolean): void {
     const { lifetime } = this.viewer;
     lifetime.cancel(this.hintTimer);
@@ -265,13 +248,12 @@ export class Panel {
     this.hintBox.hidden = !shown;
   }
 
-  /** A picture is complete. */
-  drawn(): void {
+  /** Take a message away, as a picture is complete. */
+  clear(): void {
     this.note.hidden = true;
     delete this.viewer.root.dataset.failed;
   }
 
-  /** Tell what went wrong. */
   fail(problem: string, detail: string): void {
     this.note.replaceChildren(dom("strong", {}, [problem]), dom("pre", {}, [detail]));
     this.note.hidden = false;

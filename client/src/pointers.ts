@@ -9,8 +9,9 @@ import {
   PLAY_KEY,
 } from "./keyboard.ts";
 import type { Timer } from "./lifetime.ts";
+import type { Panel, PanelHost } from "./panel.ts";
+import type { Point } from "./picking.ts";
 import { clamp } from "./vectors.ts";
-import type { Viewer } from "./viewer.ts";
 
 /** Within these a press is a click. */
 const CLICK_PX = 4;
@@ -41,16 +42,26 @@ export function placeIn(element: Element, event: { clientX: number; clientY: num
   };
 }
 
+/** The view that is moved. */
+export interface PointerHost extends PanelHost {
+  readonly panel: Panel;
+  readonly sharp: boolean;
+  readonly canPick: boolean;
+  point(x: number, y: number): Point | null;
+  /** Draw and report a camera that was moved by hand. */
+  reportCamera(): void;
+}
+
 export class Pointers {
   readonly down = new Map<number, Place>();
-  private readonly viewer: Viewer;
+  private readonly viewer: PointerHost;
   private isOther = false;
-  private press = { x: 0, y: 0, time: 0, moved: false };
+  private press = { x: 0, y: 0, time: 0, isDrag: false };
   private lastLook = 0;
   private look: Timer | null = null;
   private lastPointed = -Infinity;
 
-  constructor(viewer: Viewer) {
+  constructor(viewer: PointerHost) {
     this.viewer = viewer;
     const { canvas, root, options, lifetime } = viewer;
     root.classList.toggle("flowtex-guarded", options.guarded ?? false);
@@ -106,7 +117,7 @@ export class Pointers {
     this.down.set(event.pointerId, this.place(event));
     this.isOther = event.button === 2 || event.shiftKey;
     const { clientX: x, clientY: y, timeStamp: time } = event;
-    this.press = { x, y, time, moved: this.down.size > 1 };
+    this.press = { x, y, time, isDrag: this.down.size > 1 };
     root.classList.add("flowtex-grabbing");
   }
 
@@ -119,8 +130,8 @@ export class Pointers {
     if (event.movementX || event.movementY) this.lastPointed = performance.now();
     if (!old) return this.hover(place);
     const distance = Math.hypot(event.clientX - this.press.x, event.clientY - this.press.y);
-    if (distance > CLICK_PX) this.press.moved = true;
-    if (!this.press.moved) return;
+    if (distance > CLICK_PX) this.press.isDrag = true;
+    if (!this.press.isDrag) return;
     const before = this.middle();
     this.down.set(event.pointerId, place);
     const now = this.middle();
@@ -133,7 +144,7 @@ export class Pointers {
       camera.pan(old.x - place.x, old.y - place.y);
     }
     panel.read(null);
-    this.viewer.moved();
+    this.viewer.reportCamera();
   }
 
   /** Middle of the pointers that are down, and how far they are apart. */
@@ -152,7 +163,7 @@ export class Pointers {
     if (event.type !== "pointerup") return;
     this.hold(true);
     const isQuick = event.timeStamp - this.press.time < CLICK_MS;
-    if (!place || this.press.moved || !isQuick || event.button !== 0) return;
+    if (!place || this.press.isDrag || !isQuick || event.button !== 0) return;
     const point = this.viewer.point(place.x, place.y);
     if (point) this.viewer.options.onPoint?.(point);
     this.viewer.panel.read(point);
@@ -174,7 +185,7 @@ export class Pointers {
   private zoom(factor: number, event: MouseEvent): void {
     const { x, y } = this.place(event);
     this.viewer.camera?.zoomBy(factor, x, y);
-    this.viewer.moved();
+    this.viewer.reportCamera();
   }
 
   /** Read off what is under the pointer, now and then. */
@@ -186,7 +197,7 @@ export class Pointers {
       this.look = null;
       this.lastLook = performance.now();
       if (viewer.sharp && viewer.canPick) viewer.panel.read(viewer.point(place.x, place.y));
-      else if (!viewer.playing) this.hover(place);
+      else if (!viewer.player.playing) this.hover(place);
     };
     this.look = viewer.lifetime.later(look, Math.max(rest, viewer.sharp ? 0 : HOVER_MS));
   }
@@ -212,15 +223,15 @@ export class Pointers {
       const [x, y] = DIRECTIONS[command].map((way) => way * KEY_STEP);
       if (camera.flat === shiftKey) camera.rotate(-x, -y);
       else camera.pan(x, y);
-      viewer.moved();
+      viewer.reportCamera();
     } else if (command === "closer" || command === "farther") {
       const { wheel_zoom: notch } = camera.limits;
       camera.zoomBy(command === "closer" ? notch : 1 / notch);
-      viewer.moved();
+      viewer.reportCamera();
     } else if (command === "whole") viewer.reset();
     else if (key === PLAY_KEY) viewer.togglePlaying();
     else if (key === FULLSCREEN_KEY) panel.fullscreen();
-    else if (key === "h") (options.follows ?? viewer).panel.toggle();
+    else if (key === "h") (options.follows?.panel ?? panel).toggle();
     else if (key === CLOSE_KEY) {
       panel.fold();
       this.hold(false);

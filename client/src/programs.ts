@@ -1,6 +1,5 @@
 // Shader programs: built in the background where the browser can, found by their text, and written to.
 
-import type { Graphics } from "./context.ts";
 import { FIRST_PRICE_MS } from "./quality.ts";
 import type { Uniform } from "./uniforms.ts";
 
@@ -29,12 +28,19 @@ export interface Program {
   price: number;
 }
 
+/** The context that programs are built in, which counts its objects. */
+export interface ProgramContext {
+  readonly context: WebGL2RenderingContext;
+  counted<T>(object: T | null): T;
+  free(kind: string, object: object): void;
+}
+
 export class Programs {
-  private readonly graphics: Graphics;
+  private readonly graphics: ProgramContext;
   private readonly entries = new Map<string, Program>();
   private parallel: KHR_parallel_shader_compile | null = null;
 
-  constructor(graphics: Graphics) {
+  constructor(graphics: ProgramContext) {
     this.graphics = graphics;
   }
 
@@ -42,18 +48,13 @@ export class Programs {
     this.parallel = this.graphics.context.getExtension("KHR_parallel_shader_compile");
   }
 
-  /** All programs that there are. */
-  [Symbol.iterator](): IterableIterator<Program> {
-    return this.entries.values();
-  }
-
-  /** Forget all, as they are gone with the context. */
+  /** Forget programs that were lost with the context. */
   clear(): void {
     this.entries.clear();
   }
 
   dispose(): void {
-    for (const entry of this) {
+    for (const entry of this.entries.values()) {
       for (const shader of entry.shaders) this.graphics.free("Shader", shader);
       this.graphics.free("Program", entry.program);
     }
@@ -94,9 +95,9 @@ export class Programs {
     if (done && !gl.getProgramParameter(program, done)) return;
     if (!gl.getProgramParameter(program, gl.LINK_STATUS)) {
       if (gl.isContextLost()) return;
-      const logs = entry.shaders.map((shader) => gl.getShaderInfoLog(shader) ?? "");
-      entry.error = [...logs, gl.getProgramInfoLog(program) ?? ""].filter(Boolean).join("\n");
-      entry.error ||= "the driver gave no reason";
+      const logs = entry.shaders.map((shader) => gl.getShaderInfoLog(shader));
+      const log = [...logs, gl.getProgramInfoLog(program)].filter(Boolean).join("\n");
+      entry.error = log || "the driver gave no reason";
       return;
     }
     for (const shader of entry.shaders) this.graphics.free("Shader", shader);
@@ -124,15 +125,13 @@ export class Programs {
       const uniform = entry.uniforms.get(name);
       if (!uniform) continue;
       const { location, type } = uniform;
-      const list: Float32Array | readonly number[] =
-        typeof value === "object" ? value : [Number(value)];
-      const numbers = list as Float32List;
+      const numbers = (typeof value === "object" ? value : [Number(value)]) as Float32List;
       if (type === gl.FLOAT) gl.uniform1fv(location, numbers);
       else if (type === gl.FLOAT_VEC2) gl.uniform2fv(location, numbers);
       else if (type === gl.FLOAT_VEC3) gl.uniform3fv(location, numbers);
       else if (type === gl.FLOAT_VEC4) gl.uniform4fv(location, numbers);
       else if (type === gl.FLOAT_MAT4) gl.uniformMatrix4fv(location, false, numbers);
-      else gl.uniform1i(location, list[0]);
+      else gl.uniform1i(location, numbers[0]);
     }
   }
 }

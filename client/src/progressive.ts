@@ -3,11 +3,12 @@
 import { Camera, projection } from "./camera.ts";
 import type { Graphics } from "./context.ts";
 import type { Program } from "./programs.ts";
+import type { Settings } from "./protocol.ts";
 import { draftUniforms, learnedPrice, motionFactor, quality, rowsIn } from "./quality.ts";
 import { reused, type Reuse } from "./reuse.ts";
+import type { Scene } from "./scene.ts";
 import { uniforms, type Moment, type ViewState } from "./uniforms.ts";
-import { clamp, subtract, toFrame } from "./vectors.ts";
-import type { Viewer } from "./viewer.ts";
+import { clamp, scale, subtract, toFrame } from "./vectors.ts";
 
 /** Milliseconds for a picture in motion, of one view at least, and for a strip at rest. */
 const MOVING_MS = 55;
@@ -17,6 +18,23 @@ const STRIP_MS = 40;
 const SMOOTH_ROWS = 256;
 
 type Pen = CanvasRenderingContext2D | null;
+
+const penOf = (canvas: HTMLCanvasElement): Pen => canvas.getContext("2d", { alpha: false });
+
+/** The view that is drawn. */
+export interface DrawContext {
+  readonly graphics: Graphics;
+  readonly canvas: HTMLCanvasElement;
+  readonly settings: Settings;
+  readonly scene: Scene | null;
+  readonly camera: Camera | null;
+  readonly player: { varies: boolean; playing: boolean };
+  /** Whether outlines are smoothed. */
+  readonly smooth: boolean;
+  /** Pixels of the canvas along one of the page. */
+  readonly ratio: number;
+  view(shown: Moment, density: number): ViewState;
+}
 
 /** What is drawn of a picture. */
 interface Region {
@@ -28,18 +46,18 @@ interface Region {
 }
 
 export class ProgressiveRenderer {
-  private readonly viewer: Viewer;
+  private readonly viewer: DrawContext;
   private readonly graphics: Graphics;
   private readonly canvas: HTMLCanvasElement;
   private readonly pen: Pen;
   /** The full picture while it is drawn. */
   private readonly back = document.createElement("canvas");
-  private readonly backPen: Pen;
+  private readonly backPen = penOf(this.back);
   /** The last full picture, with the camera that it shows. */
   private readonly last = document.createElement("canvas");
-  private readonly lastPen: Pen;
+  private readonly lastPen = penOf(this.last);
   private lastCamera: Camera | null = null;
-  /** Counts what was asked for; that of which there is a draft; rows that are drawn of it. */
+  /** Number of the picture, and of the last draft; rows of the full picture that are drawn. */
   private version = 1;
   private draftVersion = 0;
   private rowsDone = 0;
@@ -48,38 +66,35 @@ export class ProgressiveRenderer {
   /** Number of full pictures. */
   frames = 0;
 
-  constructor(viewer: Viewer) {
+  constructor(viewer: DrawContext) {
     this.viewer = viewer;
     this.graphics = viewer.graphics;
     this.canvas = viewer.canvas;
-    this.pen = this.canvas.getContext("2d", { alpha: false });
-    this.backPen = this.back.getContext("2d", { alpha: false });
-    this.lastPen = this.last.getContext("2d", { alpha: false });
+    this.pen = penOf(this.canvas);
   }
 
-  private get canvases(): HTMLCanvasElement[] {
-    return [this.canvas, this.back, this.last];
-  }
-
-  /** Another picture is asked for; of the same things when only the camera has moved. */
-  restart(moved = false): void {
-    if (!moved) this.lastCamera = null;
+  /** Begin another picture, of the same things where only the camera has changed. */
+  restart(cameraOnly = false): void {
+    if (!cameraOnly) this.lastCamera = null;
     this.version += 1;
     this.rowsDone = 0;
   }
 
   /** Change the size; what is on show stays, stretched, until there is something better. */
   resize(width: number, height: number): void {
-    const old = this.canvas.width > 1 ? copyOfCanvas(this.canvas) : null;
-    for (const canvas of this.canvases) {
-      canvas.width = width;
-      canvas.height = height;
-    }
-    if (old) this.pen?.drawImage(old, 0, 0, width, height);
+    const { canvas, back, last } = this;
+    back.width = canvas.width;
+    back.height = canvas.height;
+    this.backPen?.drawImage(canvas, 0, 0);
+    canvas.width = last.width = width;
+    canvas.height = last.height = height;
+    if (back.width > 1) this.pen?.drawImage(back, 0, 0, width, height);
+    back.width = width;
+    back.height = height;
   }
 
   dispose(): void {
-    for (const canvas of this.canvases) canvas.width = canvas.height = 0;
+    for (const canvas of [this.canvas, this.back, this.last]) canvas.width = canvas.height = 0;
   }
 
   /** Go on with the picture until a time; tells whether it is complete. */
@@ -110,7 +125,7 @@ export class ProgressiveRenderer {
       const region = { width: w, height: h, top: 0, rows: h };
       this.timed(program, region, best.samples, () => {
         this.render(program, shown, region, best.samples);
-        this.copy(this.pen, region, 0, width, height, 0);
+        this.copy(this.pen, region, height, 0);
       });
     }
     if (reuse && this.pen) {
@@ -138,7 +153,7 @@ export class ProgressiveRenderer {
       this.render(program, shown, region, samples, smooth);
       // Smooth rows were put into the lowest ones of the canvas.
       const drawn = smooth ? { ...region, height: rows, top: 0 } : region;
-      this.copy(this.backPen, drawn, drawn.top, width, drawn.height, this.rowsDone);
+      this.copy(this.backPen, drawn, drawn.height, this.rowsDone);
     });
     this.rowsDone += rows;
     if (this.rowsDone < height) return false;
@@ -148,23 +163,23 @@ export class ProgressiveRenderer {
   }
 
   private complete(): void {
-    const { camera, playing } = this.viewer;
+    const { camera, player } = this.viewer;
     this.rowsDone = this.canvas.height;
     this.frames += 1;
     this.draftVersion = this.version;
     this.lastPen?.drawImage(this.canvas, 0, 0);
-    if (camera && !playing) {
+    if (camera && !player.playing) {
       this.lastCamera = new Camera(camera.state, camera.limits, camera.flat, camera.aspect);
     }
   }
 
   /** How the last full picture lies in the present view, where it serves. */
   private reuse(): Reuse | null {
-    const { viewer, lastCamera } = this;
-    const { header, camera } = viewer;
-    if (!header || !camera || !lastCamera || !header.geometry.planar) return null;
+    const { lastCamera } = this;
+    const { scene, camera } = this.viewer;
+    if (!scene?.header.geometry.planar || !camera || !lastCamera) return null;
     if (!camera.state.parallel || !lastCamera.state.parallel) return null;
-    const { geometry } = header;
+    const { geometry } = scene.header;
     const focus = subtract(camera.state.focal_point, geometry.center);
     const anchor = toFrame(geometry.frame, focus);
     const [before, now] = [lastCamera, camera].map((view) => projection(geometry, view, anchor));
@@ -173,8 +188,8 @@ export class ProgressiveRenderer {
 
   /** As many times more each sample costs while grains move. */
   private factor(samples: number): number {
-    const { settings, varies } = this.viewer;
-    return settings.motion !== "off" || varies ? motionFactor(samples) : 1;
+    const { settings, player } = this.viewer;
+    return settings.motion !== "off" || player.varies ? motionFactor(samples) : 1;
   }
 
   /** Draw, and learn what it costs. */
@@ -208,12 +223,14 @@ export class ProgressiveRenderer {
     smooth = false,
   ): void {
     const { graphics, viewer } = this;
-    const { header, camera, scene } = viewer;
-    if (!header || !camera || !scene) return;
+    const { camera, scene } = viewer;
+    if (!camera || !scene) return;
     const gl = graphics.context;
     const { width, height, top, rows } = region;
     const view = viewer.view(shown, (viewer.ratio * height) / this.canvas.height);
-    graphics.reserve(width, height);
+    const { canvas } = graphics;
+    if (canvas.width < width) canvas.width = width;
+    if (canvas.height < height) canvas.height = height;
     const bottom = height - top - rows;
     if (smooth) graphics.bindSmooth(width, rows);
     else gl.bindFramebuffer(gl.FRAMEBUFFER, null);
@@ -224,20 +241,26 @@ export class ProgressiveRenderer {
     gl.depthFunc(gl.LESS);
     gl.disable(gl.BLEND);
     gl.disable(gl.CULL_FACE);
-    const [r, g, b] = header.background;
+    const [r, g, b] = scene.header.background;
     gl.clearColor(r, g, b, 1);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     const draft = samples !== viewer.settings.samples || height !== this.canvas.height;
-    graphics.programs.use(program, this.values(view, samples, draft));
+    graphics.programs.use(program, this.values(scene, camera, view, samples, draft));
     scene.draw(shown[0], shown[1], view.anchor, true);
     if (smooth) graphics.copySmooth(width, rows);
-    graphics.settle();
+    // Reading a pixel waits until everything is drawn.
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
   }
 
   /** All uniforms of a picture. */
-  private values(view: ViewState, samples: number, draft: boolean) {
-    const { settings, header, camera, parts } = this.viewer;
-    if (!header || !camera) return {};
+  private values(
+    { header, parts }: Scene,
+    camera: Camera,
+    view: ViewState,
+    samples: number,
+    draft: boolean,
+  ) {
+    const { settings } = this.viewer;
     const noise = parts.get("noise")?.shape ?? null;
     return {
       ...uniforms(header, { ...settings, samples }, view, noise),
@@ -248,30 +271,17 @@ export class ProgressiveRenderer {
       u_lit: header.lighting,
       u_ground: header.background,
       u_opacity: header.opacity,
-      u_toEye: toFrame(header.geometry.frame, camera.toEye),
+      u_toEye: toFrame(header.geometry.frame, scale(camera.axes[2], -1)),
     };
   }
 
   /** Copy the rows that were drawn, to row `to` of a picture of another size. */
-  private copy(
-    pen: Pen,
-    { width: w, height: h, rows }: Region,
-    top: number,
-    width: number,
-    height: number,
-    to: number,
-  ): void {
+  private copy(pen: Pen, region: Region, height: number, to: number): void {
     if (!pen) return;
+    const { width: w, height: h, top, rows } = region;
+    const { width } = this.canvas;
     const { canvas } = this.graphics;
     pen.imageSmoothingEnabled = w !== width || h !== height;
     pen.drawImage(canvas, 0, canvas.height - h + top, w, rows, 0, to, width, (rows * height) / h);
   }
-}
-
-function copyOfCanvas(canvas: HTMLCanvasElement): HTMLCanvasElement {
-  const copy = document.createElement("canvas");
-  copy.width = canvas.width;
-  copy.height = canvas.height;
-  copy.getContext("2d")?.drawImage(canvas, 0, 0);
-  return copy;
 }

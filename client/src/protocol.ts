@@ -2,7 +2,7 @@
 // other side. Widget, exported page and app carry the same descriptions of parts; a part's bytes come
 // as a buffer of a message, in a file of several parts, or as text in a page.
 
-import type { CameraLimits, CameraState } from "./camera.ts";
+import type { CameraLimits, CameraState, Surface } from "./camera.ts";
 
 /** Form of header and parts that this client reads. */
 export const FORMAT = 2;
@@ -11,23 +11,20 @@ export type Value = boolean | number | string;
 export type Settings = Record<string, Value>;
 export type Data = Float32Array | Uint16Array | Int16Array | Int8Array | Uint8Array;
 
-/** What is known of a part before its numbers. */
-export interface PartInfo {
-  name: string;
-  dtype: string;
-  shape: number[];
-  /** Tells arrays apart; the same numbers have the same digest on the whole page. */
-  digest: string;
-}
-
 export interface Part {
   data: Data;
   shape: number[];
+  /** The same numbers have the same digest on the whole page. */
   digest: string;
 }
 
 export interface NamedPart extends Part {
   name: string;
+}
+
+/** A part without its numbers. */
+export interface PartInfo extends Omit<NamedPart, "data"> {
+  dtype: string;
 }
 
 /** A line of nodes along an axis of the textures. */
@@ -63,16 +60,11 @@ export interface Paper {
   alongJ: number[];
 }
 
-export interface Geometry {
+export interface Geometry extends Surface {
   shape: [number, number];
   rows: Padding;
   columns: Padding;
   levels: number;
-  planar: boolean;
-  extent: number;
-  center: number[];
-  /** Rows of the matrix from the mesh to the surface's own frame. */
-  frame: number[];
 }
 
 export interface Header {
@@ -129,14 +121,14 @@ export interface Header {
   own?: Settings;
 }
 
-const TYPES: Record<string, (bytes: ArrayBuffer) => Data> = {
-  float32: (bytes) => new Float32Array(bytes),
-  // Half precision goes to the graphics card as it is.
-  float16: (bytes) => new Uint16Array(bytes),
-  uint16: (bytes) => new Uint16Array(bytes),
-  int16: (bytes) => new Int16Array(bytes),
-  int8: (bytes) => new Int8Array(bytes),
-  uint8: (bytes) => new Uint8Array(bytes),
+/** Types of arrays; half precision goes to the graphics card as it is. */
+const TYPES: Record<string, new (bytes: ArrayBuffer) => Data> = {
+  float32: Float32Array,
+  float16: Uint16Array,
+  uint16: Uint16Array,
+  int16: Int16Array,
+  int8: Int8Array,
+  uint8: Uint8Array,
 };
 
 /** Whether the flow has no direction along its lines. */
@@ -154,14 +146,12 @@ export function decoded(info: PartInfo, bytes: ArrayBuffer | ArrayBufferView): N
   const view = ArrayBuffer.isView(bytes)
     ? new Uint8Array(bytes.buffer, bytes.byteOffset, bytes.byteLength)
     : new Uint8Array(bytes);
-  const make = TYPES[info.dtype];
-  if (!make) {
-    throw new Error(
-      `a part has the type "${info.dtype}"; expected ${Object.keys(TYPES).join(", ")}`,
-    );
+  const { name, dtype, shape, digest } = info;
+  const Type = TYPES[dtype];
+  if (!Type) {
+    throw new Error(`a part has the type "${dtype}"; expected ${Object.keys(TYPES).join(", ")}`);
   }
-  const { name, shape, digest } = info;
-  return { name, shape, digest, data: make(view.slice().buffer) };
+  return { name, shape, digest, data: new Type(view.slice().buffer) };
 }
 
 /** Parts of a file: the length of the descriptions in four bytes, descriptions in JSON, arrays. */

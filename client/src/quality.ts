@@ -17,14 +17,8 @@ const FEWEST_ROWS = 4;
 export const FIRST_PRICE_MS = 4e-5;
 export const CARD_PRICE_MS = 2e-6;
 
-export interface Quality {
-  /** Share of the width that is drawn. */
-  scale: number;
-  samples: number;
-}
-
 /**
- * The best share of the width, and samples, that can be drawn in a time: `price` is for a sample of a
+ * The best share (`scale`) of the width, and samples, that can be drawn in a time: `price` is for a sample of a
  * pixel, `fixed` what a picture takes at least, all in milliseconds.
  */
 export function quality(
@@ -33,7 +27,7 @@ export function quality(
   pixels: number,
   samples: number,
   budget: number,
-): Quality {
+): { scale: number; samples: number } {
   const room = Math.max(budget - fixed, 2) / price;
   if (pixels * (samples + PIXEL_COST) <= room) return { scale: 1, samples };
   const fewer = Math.min(DRAFT_SAMPLES, samples);

@@ -156,7 +156,6 @@ export class Scene {
     return this.take(name, "Buffer", key, () => gl.createBuffer(), fill);
   }
 
-  /** Make ready to draw the nodes. */
   private bindNodes(before: number, after: number, anchor: Vector): void {
     const gl = this.graphics.context;
     const steps = String(this.scalarParts(before, after));
@@ -205,11 +204,7 @@ export class Scene {
     });
   }
 
-  private texture(
-    name: string,
-    key: string,
-    fill: (texture: WebGLTexture) => void,
-  ): WebGLTexture {
+  private texture(name: string, key: string, fill: (texture: WebGLTexture) => void): WebGLTexture {
     const gl = this.graphics.context;
     return this.take(name, "Texture", key, () => gl.createTexture(), fill);
   }

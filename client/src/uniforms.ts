@@ -1,4 +1,4 @@
-// The numbers that the shaders are given, by name, as flowtex/rendering/uniforms.py computes them; one
+// The uniforms of the shaders, by name, as flowtex/rendering/uniforms.py computes them; one
 // fixture holds both to the same values. They depend on the view, so all is in double precision.
 
 import { isSignFree, type Header, type Paper, type Settings } from "./protocol.ts";
@@ -6,7 +6,6 @@ import { clamp, scale, subtract, toFrame, type Vector } from "./vectors.ts";
 
 export type Uniform = boolean | number | readonly number[] | Float32Array;
 
-/** What changes from frame to frame. */
 export interface ViewState {
   focus: readonly number[];
   anchor: Vector;
@@ -19,26 +18,10 @@ export interface ViewState {
 }
 
 /** The table's settings with the types that they have there. */
-interface Numbers {
-  samples: number;
-  spacing: number;
-  kernel: string;
-  two_sided: boolean;
-  lod: boolean;
-  noise: string;
-  tiles: number;
-  resolution: number;
-  grain: number;
-  fixed_grain: boolean;
-  contrast: number;
-  strength: number;
-  seed: number;
-  motion: string;
-  speed: number;
-  speed_in: string;
-  period: number;
-  show_level: boolean;
-}
+type Numbers = Record<"kernel" | "noise" | "motion" | "speed_in", string> &
+  Record<"two_sided" | "lod" | "fixed_grain" | "show_level", boolean> &
+  Record<"samples" | "spacing" | "grain" | "contrast" | "strength" | "seed", number> &
+  Record<"tiles" | "resolution" | "speed" | "period", number>;
 
 /** Uniforms of shaders/common/uniforms.glsl; `noiseShape` is that of the noise's part. */
 export function uniforms(

@@ -23,16 +23,14 @@ export const cross = (a: Like, b: Like) => vec3.cross(result(), v(a), v(b)) as V
 export const unit = (a: Like) => vec3.normalize(result(), v(a)) as Vector;
 
 /** a + t b */
-export const add = (a: Like, b: Like, t = 1) =>
-  vec3.scaleAndAdd(result(), v(a), v(b), t) as Vector;
+export const add = (a: Like, b: Like, t = 1) => vec3.scaleAndAdd(result(), v(a), v(b), t) as Vector;
 
-/** Rotate around a unit axis. */
 export function rotated(a: Like, axis: Like, degrees: number): Vector {
   const turn = mat4.fromRotation(zeros(16) as Mat4, (degrees * Math.PI) / 180, v(axis));
   return turn === null ? result() : (vec3.transformMat4(result(), v(a), turn) as Vector);
 }
 
-/** A vector of the mesh in the surface's frame, whose matrix is given in rows. */
+/** A vector of the mesh in the surface's frame, whose matrix is in rows. */
 export function toFrame(frame: readonly number[], a: Like): Vector {
   const columns = mat3.transpose(zeros(9) as Mat3, frame as Mat3);
   return vec3.transformMat3(result(), v(a), columns) as Vector;

@@ -7,6 +7,7 @@
 import { Camera, copyOf, fitted, isSamePlace, widened, type CameraState } from "./camera.ts";
 import { FRAME_MS, sharedGraphics, type Graphics, type User } from "./context.ts";
 import { Lifetime } from "./lifetime.ts";
+import type { Options } from "./options.ts";
 import { Panel } from "./panel.ts";
 import { pickedPoint, type Point } from "./picking.ts";
 import { Player } from "./player.ts";
@@ -26,40 +27,11 @@ import { Scene } from "./scene.ts";
 import type { Moment, ViewState } from "./uniforms.ts";
 import { subtract, toFrame, type Vector } from "./vectors.ts";
 
-/** What a viewer tells its host. */
-export interface Callbacks {
-  onCamera?: (camera: CameraState) => void;
-  onTime?: (time: number) => void;
-  onClock?: (clock: number) => void;
-  onPlaying?: (playing: boolean) => void;
-  onPoint?: (point: Point) => void;
-  /** The parts of a time step are lacking. */
-  onNeed?: (step: number) => void;
-  /** A picture is complete. */
-  onFrame?: () => void;
-  onSetting?: (name: string, value: Value) => void;
-  onControls?: (shown: boolean) => void;
-}
-
-export interface Options extends Callbacks {
-  /** Whether nothing but the picture is shown. */
-  bare?: boolean;
-  /** Whether the host makes textures anew where a setting asks for it. */
-  rebuild?: boolean;
-  controls?: boolean;
-  /** Whether outlines are smoothed; by default where it takes little time. */
-  smooth?: boolean;
-  /** Whether the page around is scrolled: the view takes wheel and finger only once it was clicked. */
-  guarded?: boolean;
-  /** Another view that has the bar. */
-  follows?: Viewer;
-}
-
 /** Milliseconds for which a view that was moved counts as being moved. */
 const STILL_MS = 160;
-/** Milliseconds after which a question for a step counts as lost. */
+/** Milliseconds after which a request for a step counts as lost. */
 const LOST_MS = 5000;
-/** Time steps that stay where the others can be asked for again. */
+/** Time steps that are held where the host can send the others again. */
 const STEPS_HELD = 12;
 
 const isEqual = (a: unknown, b: unknown) => JSON.stringify(a) === JSON.stringify(b);
@@ -81,7 +53,6 @@ export class Viewer implements User {
   /** Whether the full picture is shown. */
   sharp = false;
   isVisible = true;
-  /** The steps on show. */
   shown: Moment | null = null;
   /** The views that stand beside each other. */
   together: Viewer[] = [this];
@@ -89,7 +60,7 @@ export class Viewer implements User {
   private busyUntil = 0;
   /** The camera that the scene came with. */
   private firstCamera: CameraState | null = null;
-  private readonly asked = new Map<number, number>();
+  private readonly requests = new Map<number, number>();
 
   constructor(element: HTMLElement, options: Options = {}) {
     this.options = options;
@@ -104,7 +75,7 @@ export class Viewer implements User {
     this.panel = new Panel(this);
     element.append(root);
     this.pointers = new Pointers(this);
-    this.graphics.enter(this);
+    this.graphics.users.add(this);
     this.observe();
     if (!this.graphics.gl) {
       this.panel.fail(
@@ -129,9 +100,9 @@ export class Viewer implements User {
 
   /** What is still held, for tests. */
   stats() {
-    const { objects, users, restorations } = this.graphics;
+    const { objects, users } = this.graphics;
     const { frames } = this.renderer;
-    return { ...this.lifetime.stats(), objects, users: users.size, restorations, frames };
+    return { ...this.lifetime.stats(), objects, users: users.size, frames };
   }
 
   dispose(): void {
@@ -162,7 +133,7 @@ export class Viewer implements User {
     this.player.setHeader(header);
     this.scene?.dispose();
     this.scene = new Scene(this.graphics, header, this.parts);
-    this.asked.clear();
+    this.requests.clear();
     if (!old || !isSamePlace(old.geometry, header.geometry)) {
       this.firstCamera = header.camera;
       this.camera = null;
@@ -177,9 +148,9 @@ export class Viewer implements User {
 
   setPart(part: NamedPart): void {
     const { name, digest } = part;
-    this.asked.delete(stepOf(name));
+    this.requests.delete(stepOf(name));
     if (digest && this.parts.get(name)?.digest === digest) return;
-    const held = this.graphics.hold<Part>(part);
+    const held = this.graphics.hold(part);
     this.remove(name);
     this.parts.set(name, held);
     this.scene?.forget(name);
@@ -193,7 +164,7 @@ export class Viewer implements User {
     this.parts.delete(name);
   }
 
-  /** Hold a few time steps where the others can be asked for again. */
+  /** Hold a few time steps where the host can send the others again. */
   private trim(): void {
     if (!this.options.onNeed || !this.header) return;
     const names = [...this.parts.keys()].filter((name) => name.startsWith("slices/"));
@@ -217,9 +188,9 @@ export class Viewer implements User {
     if (!(name in (this.header?.own ?? {}))) this.setSettings({ [name]: value });
   }
 
-  /** Set one setting as a person does, which the host is told of. */
+  /** Set one setting as a person does, and report it to the host. */
   choose(name: string, value: Value): void {
-    this.stir();
+    this.holdDraft();
     this.setSettings({ [name]: value });
     this.options.onSetting?.(name, value);
   }
@@ -238,9 +209,9 @@ export class Viewer implements User {
     this.change(true);
   }
 
-  /** The camera was moved by hand. */
-  moved(): void {
-    this.stir();
+  /** Draw what a camera sees that was moved by hand, and report it to the host. */
+  reportCamera(): void {
+    this.holdDraft();
     this.change(true);
     if (this.camera) this.options.onCamera?.(copyOf(this.camera.state));
   }
@@ -248,7 +219,7 @@ export class Viewer implements User {
   reset(): void {
     if (!this.camera) return;
     this.place();
-    this.moved();
+    this.reportCamera();
   }
 
   /** Look from where the scene says, or so that the whole surface is seen. */
@@ -272,18 +243,6 @@ export class Viewer implements User {
 
   // --- time ---
 
-  get varies(): boolean {
-    return this.player.varies;
-  }
-
-  get time(): number {
-    return this.player.time;
-  }
-
-  get clock(): number {
-    return this.player.clock;
-  }
-
   get playing(): boolean {
     return this.player.playing;
   }
@@ -292,6 +251,21 @@ export class Viewer implements User {
     this.player.seek(time);
     this.panel.tick();
     this.change();
+  }
+
+  /** Go to a share of the times, or of the clock's period, as the slider asks. */
+  scrub(share: number): void {
+    const { player, options } = this;
+    const { first, last } = player.range(this.settings);
+    const value = first + share * (last - first);
+    this.holdDraft();
+    if (player.varies) {
+      this.setTime(value);
+      options.onTime?.(player.time);
+    } else {
+      this.setClock(value);
+      options.onClock?.(player.clock);
+    }
   }
 
   /** Set the clock, in seconds. */
@@ -304,7 +278,7 @@ export class Viewer implements User {
   play(): void {
     if (this.options.follows) return this.options.follows.play();
     if (this.playing || !this.header) return;
-    if (!this.varies && this.settings.motion === "off") this.choose("motion", "speed");
+    if (!this.player.varies && this.settings.motion === "off") this.choose("motion", "speed");
     this.player.start();
     this.panel.update();
     this.request();
@@ -329,8 +303,8 @@ export class Viewer implements User {
 
   // --- drawing ---
 
-  /** The view is being moved, or a control is. */
-  stir(): void {
+  /** Draw drafts alone for a while, as the view or a control is being moved. */
+  private holdDraft(): void {
     this.busyUntil = performance.now() + STILL_MS;
   }
 
@@ -338,9 +312,9 @@ export class Viewer implements User {
     return this.playing || performance.now() < this.busyUntil;
   }
 
-  /** The picture is not sharp any more, and is drawn when its turn comes; `moved`: only the camera changed. */
-  change(moved = false): void {
-    this.renderer.restart(moved);
+  /** Draw another picture when its turn comes. */
+  change(cameraOnly = false): void {
+    this.renderer.restart(cameraOnly);
     this.setSharp(false);
     this.request();
   }
@@ -388,13 +362,9 @@ export class Viewer implements User {
   }
 
   lost(): void {
-    // What was made is gone with the context.
+    // Buffers and textures are lost with the context.
     this.scene = this.header && new Scene(this.graphics, this.header, this.parts);
     this.setSharp(false);
-  }
-
-  restored(): void {
-    this.change();
   }
 
   /** Names of the parts that the present moment lacks. */
@@ -422,9 +392,9 @@ export class Viewer implements User {
     const now = performance.now();
     const lacking = [...new Set(steps)].filter((step) => this.scene?.missing(step, step).length);
     for (const step of lacking) {
-      // A question that was lost is asked again.
-      if (!this.options.onNeed || now - (this.asked.get(step) ?? -Infinity) < LOST_MS) continue;
-      this.asked.set(step, now);
+      // A request that was lost is sent again.
+      if (!this.options.onNeed || now - (this.requests.get(step) ?? -Infinity) < LOST_MS) continue;
+      this.requests.set(step, now);
       this.options.onNeed(step);
     }
     return !lacking.length;
@@ -435,7 +405,7 @@ export class Viewer implements User {
     if (!this.header || !this.scene || this.canvas.width < 2) return;
     try {
       this.advance(now);
-      this.proceed(this.header, until);
+      this.drawPicture(this.header, until);
     } catch (error) {
       this.pause();
       this.panel.fail("The picture could not be drawn.", String(error));
@@ -443,7 +413,7 @@ export class Viewer implements User {
   }
 
   /** Go on with the picture until a time. */
-  private proceed(header: Header, until: number): void {
+  private drawPicture(header: Header, until: number): void {
     const shown = this.available();
     if (!this.camera) this.place();
     if (!shown || !this.camera) return;
@@ -456,7 +426,7 @@ export class Viewer implements User {
     }
     if (!program.ready) return this.request();
     if (!this.sharp && this.renderer.draw(program, shown, this.isBusy, until)) {
-      this.panel.drawn();
+      this.panel.clear();
       programs.get(vertex, pick); // the pointer asks for it next
       this.setSharp(!this.playing);
     }
@@ -507,6 +477,9 @@ export class Viewer implements User {
 
   /** Point of the surface at (x, y), from -1 to 1, right and up. */
   point(x: number, y: number): Point | null {
-    return pickedPoint(this, x, y);
+    const { scene, camera, shown, canvas } = this;
+    if (!scene || !camera || !shown || !this.canPick) return null;
+    const { anchor } = this.view(shown, 1);
+    return pickedPoint({ scene, camera, moment: shown, anchor, canvas }, x, y);
   }
 }

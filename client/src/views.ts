@@ -2,7 +2,8 @@
 
 import { dom } from "./dom.ts";
 import type { Header, NamedPart } from "./protocol.ts";
-import { Viewer, type Options } from "./viewer.ts";
+import type { Options } from "./options.ts";
+import { Viewer } from "./viewer.ts";
 
 /** A scene that is there as a whole. */
 export interface SceneData {
@@ -34,25 +35,22 @@ export function viewersIn(
   return viewers;
 }
 
-/** Callbacks that hand on to the other views what is told to the host. */
+/** Callbacks that report to the other views and to the host. */
 function linked(options: Options, others: () => Viewer[]): Options {
+  const both =
+    <T extends unknown[]>(
+      follow: (other: Viewer, ...values: T) => void,
+      report?: (...values: T) => void,
+    ) =>
+    (...values: T) => {
+      for (const other of others()) follow(other, ...values);
+      report?.(...values);
+    };
   return {
-    onCamera: (camera) => {
-      for (const other of others()) other.setCamera(camera);
-      options.onCamera?.(camera);
-    },
-    onTime: (time) => {
-      for (const other of others()) other.setTime(time);
-      options.onTime?.(time);
-    },
-    onClock: (clock) => {
-      for (const other of others()) other.setClock(clock);
-      options.onClock?.(clock);
-    },
-    onSetting: (name, value) => {
-      for (const other of others()) other.followSetting(name, value);
-      options.onSetting?.(name, value);
-    },
+    onCamera: both((other, camera) => other.setCamera(camera), options.onCamera),
+    onTime: both((other, time) => other.setTime(time), options.onTime),
+    onClock: both((other, clock) => other.setClock(clock), options.onClock),
+    onSetting: both((other, name, value) => other.followSetting(name, value), options.onSetting),
   };
 }
 
@@ -66,26 +64,4 @@ export function mountPage(
   scenes.forEach(({ header }, n) => viewers[n].setHeader(header));
   scenes.forEach(({ parts }, n) => parts.forEach((part) => viewers[n].setPart(part)));
   return viewers[0];
-}
-
-/** Pictures beside each other as PNG. */
-export function pngOf(viewers: Viewer[]): Promise<Blob> {
-  const [{ canvas: first }] = viewers;
-  let canvas = first;
-  if (viewers.length > 1) {
-    canvas = dom("canvas");
-    canvas.width = viewers.reduce((sum, viewer) => sum + viewer.canvas.width, 0);
-    canvas.height = first.height;
-    let left = 0;
-    for (const viewer of viewers) {
-      canvas.getContext("2d")?.drawImage(viewer.canvas, left, 0);
-      left += viewer.canvas.width;
-    }
-  }
-  return new Promise((resolve, reject) => {
-    canvas.toBlob((blob) => {
-      if (blob) resolve(blob);
-      else reject(new Error("there is no picture yet"));
-    }, "image/png");
-  });
 }

@@ -3,10 +3,11 @@
 
 import type { CameraState } from "./camera.ts";
 import { sharedGraphics } from "./context.ts";
+import { pngOf } from "./dom.ts";
 import { throttled } from "./lifetime.ts";
 import { decoded, type Header, type NamedPart, type PartInfo, type Value } from "./protocol.ts";
 import type { Viewer } from "./viewer.ts";
-import { pngOf, viewersIn } from "./views.ts";
+import { viewersIn } from "./views.ts";
 
 /** Milliseconds between two messages about the camera, and about the time. */
 const CAMERA_MS = 100;
@@ -18,7 +19,6 @@ const HEIGHT_PX = 480;
 
 type Handler = (...values: never[]) => void;
 
-/** A widget's model, as anywidget has it. */
 export interface Model {
   get(name: string): unknown;
   set(name: string, value: unknown): void;
@@ -54,12 +54,10 @@ function opened(message: Message, buffers: ArrayBufferView[]): Delivery {
   const delivery: Delivery = { view, generation, parts: [], lacking: [] };
   infos.forEach((info, n) => {
     const stock = graphics.stock.get(info.digest)?.part;
-    if (!stock && message.kind === "offer") {
-      delivery.lacking.push(info.name);
-      return;
-    }
-    const part = graphics.hold(stock ?? decoded(info, buffers[n]));
-    delivery.parts.push({ ...part, name: info.name });
+    if (stock || message.kind !== "offer") {
+      const part = graphics.hold(stock ?? decoded(info, buffers[n]));
+      delivery.parts.push({ ...part, name: info.name });
+    } else delivery.lacking.push(info.name);
   });
   return delivery;
 }
@@ -107,6 +105,7 @@ function cameraOf(state: unknown): CameraState | null {
 class WidgetView {
   private readonly model: Model;
   private readonly viewers: Viewer[];
+  private readonly first: Viewer;
   /** Values on their way to the kernel, which sends them back. */
   private readonly sent = new Map<string, string>();
   private readonly handlers: [string, Handler][] = [];
@@ -117,6 +116,7 @@ class WidgetView {
     this.model = model;
     const beside = model.get("_header_beside") as Header | undefined;
     this.viewers = this.makeViewers(element, beside?.format ? 2 : 1);
+    [this.first] = this.viewers;
     // The first view takes what has come; further ones ask.
     const key = model.get("_key");
     this.early = mailbox.get(key) ?? [];
@@ -130,20 +130,17 @@ class WidgetView {
     if (!whole) model.send({ kind: "ready" });
   }
 
-  private get first(): Viewer {
-    return this.viewers[0];
-  }
-
   private makeViewers(element: HTMLElement, count: number): Viewer[] {
     const { model } = this;
-    const later = (call: () => void, delay: number) => this.first.lifetime.later(call, delay);
+    const slowly = <T>(wait: number, call: (value: T) => void) =>
+      throttled((later, delay) => this.first.lifetime.later(later, delay), wait, call);
     const options = {
       rebuild: true,
       guarded: true,
       controls: (model.get("bar") as boolean | undefined) ?? true,
-      onCamera: throttled<CameraState>(later, CAMERA_MS, (camera) => this.send("camera", camera)),
-      onTime: throttled<number>(later, TIME_MS, (time) => this.send("time", time)),
-      onClock: throttled<number>(later, TIME_MS, (clock) => this.send("clock", clock)),
+      onCamera: slowly<CameraState>(CAMERA_MS, (camera) => this.send("camera", camera)),
+      onTime: slowly<number>(TIME_MS, (time) => this.send("time", time)),
+      onClock: slowly<number>(TIME_MS, (clock) => this.send("clock", clock)),
       onPlaying: (playing: boolean) => this.send("playing", playing),
       onPoint: (point: unknown) => this.send("point", point),
       onSetting: (name: string, value: Value) => this.send(name, value),
@@ -155,7 +152,6 @@ class WidgetView {
     }));
   }
 
-  /** Set a trait. */
   private send(name: string, value: unknown): void {
     this.sent.set(name, JSON.stringify(value));
     this.model.set(name, value);
@@ -227,9 +223,7 @@ class WidgetView {
       time: (model.get("time") as number | undefined) ?? 0,
       clock: (model.get("clock") as number | undefined) ?? 0,
     });
-    const early = this.early;
-    this.early = [];
-    for (const delivery of early) this.take(delivery);
+    for (const delivery of this.early.splice(0)) this.take(delivery);
     for (const { name } of rows) {
       this.follow(name, (value) => {
         for (const viewer of this.viewers) viewer.followSetting(name, value as Value);
@@ -241,10 +235,7 @@ class WidgetView {
     const viewer = this.viewers[delivery.view];
     if (!viewer) return;
     const generation = viewer.header ? (viewer.header.generation ?? 0) : -1;
-    if (delivery.generation > generation) {
-      this.early.push(delivery);
-      return;
-    }
+    if (delivery.generation > generation) return void this.early.push(delivery);
     // Slices that the kernel has made anew meanwhile are on their way.
     const isOld = (name: string) => delivery.generation !== generation && name.includes("/");
     for (const part of delivery.parts) if (!isOld(part.name)) viewer.setPart(part);

@@ -37,63 +37,63 @@ function cameraOf({ fit, limits, geometry, aspect }: Case): Camera {
 }
 
 /** Place of a point in the view. */
-function placeOf(given: Case, camera: Camera, point: Vector, anchor: Vector): [number, number] {
-  const { geometry } = given;
+function placeOf(example: Case, camera: Camera, point: Vector, anchor: Vector): [number, number] {
+  const { geometry } = example;
   const m = projection(geometry, camera, anchor);
   const p = subtract(toFrame(geometry.frame, subtract(point, geometry.center)), anchor);
   const row = (k: number) => m[k] * p[0] + m[4 + k] * p[1] + m[8 + k] * p[2] + m[12 + k];
   return [row(0) / row(3), row(1) / row(3)];
 }
 
-for (const [name, given] of Object.entries(cases)) {
+for (const [name, example] of Object.entries(cases)) {
   test(`moves of the camera are those of Python: ${name}`, () => {
-    const camera = cameraOf(given);
-    given.moves.forEach(({ name: move, values }, n) => {
+    const camera = cameraOf(example);
+    example.moves.forEach(({ name: move, values }, n) => {
       if (move === "zoom") camera.zoomBy(values[0], values[1], values[2]);
       else camera[move](values[0], values[1]);
-      const { parallel_scale: half, ...state } = given.states[n];
-      const { parallel_scale: ours, ...found } = camera.state;
+      const { parallel_scale: half, ...state } = example.states[n];
+      const { parallel_scale: ours, ...actual } = camera.state;
       if (state.parallel) assertClose(ours, half);
-      assertClose(found, state, 1e-8, `after move ${n}`);
+      assertClose(actual, state, 1e-8, `after move ${n}`);
     });
   });
 
   test(`the camera that shows all is that of Python: ${name}`, () => {
-    const found = fitted(given.geometry, given.limits, given.nodes, given.aspect);
+    const actual = fitted(example.geometry, example.limits, example.nodes, example.aspect);
     // Without perspective any distance will do, and with it any scale.
-    const { parallel_scale: ours, ...state } = found;
-    const { parallel_scale: theirs, ...expected } = given.fit;
+    const { parallel_scale: ours, ...state } = actual;
+    const { parallel_scale: theirs, ...expected } = example.fit;
     assertClose(state, expected, 1e-6);
     if (state.parallel) assertClose(ours, theirs, 1e-6);
   });
 
   test(`points are seen where Python sees them, from any anchor: ${name}`, () => {
-    const camera = cameraOf(given);
+    const camera = cameraOf(example);
     for (const anchor of [[0, 0, 0], [0.3, -0.2, 0.1]] as Vector[]) {
-      const places = given.points.map((point) => placeOf(given, camera, point, anchor));
-      assertClose(places, given.places);
+      const places = example.points.map((point) => placeOf(example, camera, point, anchor));
+      assertClose(places, example.places);
     }
     const ray = camera.ray(0.4, -0.3);
-    assertClose(ray, given.ray);
-    assertClose(placeOf(given, camera, add(ray[0], scale(ray[1], 1.5)), [0, 0, 0]), [0.4, -0.3]);
+    assertClose(ray, example.ray);
+    assertClose(placeOf(example, camera, add(ray[0], scale(ray[1], 1.5)), [0, 0, 0]), [0.4, -0.3]);
   });
 
   test(`the point under the pointer stays there in a zoom: ${name}`, () => {
-    const camera = cameraOf(given);
-    const point = given.points[1];
+    const camera = cameraOf(example);
+    const point = example.points[1];
     camera.pick = () => point;
-    const [x, y] = placeOf(given, camera, point, [0, 0, 0]);
+    const [x, y] = placeOf(example, camera, point, [0, 0, 0]);
     camera.zoomBy(5, x, y);
-    assertClose(placeOf(given, camera, point, [0, 0, 0]), [x, y]);
+    assertClose(placeOf(example, camera, point, [0, 0, 0]), [x, y]);
     assertClose(camera.zoom > 3, true);
   });
 
   test(`zoom ends where the header says: ${name}`, () => {
-    const camera = cameraOf(given);
+    const camera = cameraOf(example);
     camera.zoomBy(1e9);
-    if (given.geometry.planar) assertClose(camera.zoom, given.limits.deepest_zoom);
-    else assertClose(camera.distance, new Camera(given.fit, given.limits, false).distance / given.limits.closest);
-    const far = cameraOf({ ...given, limits: { ...given.limits, farthest_zoom: 0.5 } });
+    if (example.geometry.planar) assertClose(camera.zoom, example.limits.deepest_zoom);
+    else assertClose(camera.distance, new Camera(example.fit, example.limits, false).distance / example.limits.closest);
+    const far = cameraOf({ ...example, limits: { ...example.limits, farthest_zoom: 0.5 } });
     far.zoomBy(1e-9);
     assertClose(far.zoom, 0.5);
     far.zoomBy(NaN);
@@ -103,8 +103,8 @@ for (const [name, given] of Object.entries(cases)) {
 }
 
 test("one pixel of the view can be all that is drawn", () => {
-  const given = cases.flat;
-  const m = projection(given.geometry, cameraOf(given), [0, 0, 0]);
+  const example = cases.flat;
+  const m = projection(example.geometry, cameraOf(example), [0, 0, 0]);
   const [x, y] = [0.25, -0.5];
   const pixel = atPixel(m, [x, y], [300, 200]);
   // What was at (x, y) is in the middle now, and one pixel away is at the border.
@@ -115,8 +115,8 @@ test("one pixel of the view can be all that is drawn", () => {
 });
 
 test("a first camera is widened for narrower views, and any other left alone", () => {
-  for (const given of Object.values(cases)) {
-    const { geometry, limits, nodes } = given;
+  for (const example of Object.values(cases)) {
+    const { geometry, limits, nodes } = example;
     const first = fitted(geometry, limits, nodes, 1.5);
     const narrow = widened(geometry, limits, first, nodes, 0.5);
     const [before, after] = [first, narrow].map((state) => new Camera(state, limits, geometry.planar).height);

@@ -94,9 +94,9 @@ test("a picture that was moved serves for what it covers", () => {
     return m;
   };
   const shift = reused(whole, at(1, 0.5), 200, 100);
-  assert.deepEqual(shift, { matrix: [1, -0, -0, 1, 50, 0], covers: false, shifts: true });
+  assert.deepEqual(shift, { matrix: [1, 0, 0, 1, 50, 0], covers: false, shifts: true });
   const closer = reused(whole, at(2, 0), 200, 100);
-  assert.deepEqual(closer, { matrix: [2, -0, -0, 2, -100, -50], covers: true, shifts: false });
+  assert.deepEqual(closer, { matrix: [2, 0, 0, 2, -100, -50], covers: true, shifts: false });
   assert.equal(reused(whole, at(5, 0), 200, 100), null);
   assert.equal(reused(whole, at(0.2, 0), 200, 100), null);
 });

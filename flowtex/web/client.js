@@ -52,80 +52,59 @@ precision highp float;
 precision highp int;
 `,ATTRIBUTES=["flowtexPosition","flowtexCoordinate","flowtexNormal","flowtexNoise","flowtexScalar"],SAMPLERS=["u_slices",
 "u_slicesNext","u_noiseImage","u_stepImage","u_cmap"],Programs=class{graphics;entries=new Map;parallel=null;constructor(graphics){
-this.graphics=graphics}findFeatures(){this.parallel=this.graphics.context.getExtension("KHR_parallel_shader_compile")}[Symbol.
-iterator](){return this.entries.values()}clear(){this.entries.clear()}dispose(){for(let entry of this){for(let shader of entry.
-shaders)this.graphics.free("Shader",shader);this.graphics.free("Program",entry.program)}this.clear()}get(vertex,fragment){
-let key=`${vertex}\0${fragment}`,entry=this.entries.get(key);return entry||this.entries.set(key,entry=this.build(vertex,
-fragment)),!entry.ready&&!entry.error&&this.finish(entry),entry}build(vertex,fragment){let{graphics}=this,gl=graphics.context,
-program=graphics.counted(gl.createProgram()),kinds=[gl.VERTEX_SHADER,gl.FRAGMENT_SHADER],shaders=[vertex,fragment].map((source,n)=>{
-let shader=graphics.counted(gl.createShader(kinds[n]));return gl.shaderSource(shader,source.startsWith("#version")?source:
-PREAMBLE+source),gl.compileShader(shader),gl.attachShader(program,shader),shader});return ATTRIBUTES.forEach((name,n)=>gl.
-bindAttribLocation(program,n,name)),gl.linkProgram(program),{program,shaders,uniforms:new Map,...{ready:!1,error:"",warm:!1,
-price:FIRST_PRICE_MS}}}finish(entry){let gl=this.graphics.context,{program}=entry,done=this.parallel?.COMPLETION_STATUS_KHR;
-if(done&&!gl.getProgramParameter(program,done))return;if(!gl.getProgramParameter(program,gl.LINK_STATUS)){if(gl.isContextLost())
-return;let logs=entry.shaders.map(shader=>gl.getShaderInfoLog(shader)??"");entry.error=[...logs,gl.getProgramInfoLog(program)??
-""].filter(Boolean).join(`
-`),entry.error||="the driver gave no reason";return}for(let shader of entry.shaders)this.graphics.free("Shader",shader);
+this.graphics=graphics}findFeatures(){this.parallel=this.graphics.context.getExtension("KHR_parallel_shader_compile")}clear(){
+this.entries.clear()}dispose(){for(let entry of this.entries.values()){for(let shader of entry.shaders)this.graphics.free(
+"Shader",shader);this.graphics.free("Program",entry.program)}this.clear()}get(vertex,fragment){let key=`${vertex}\0${fragment}`,
+entry=this.entries.get(key);return entry||this.entries.set(key,entry=this.build(vertex,fragment)),!entry.ready&&!entry.error&&
+this.finish(entry),entry}build(vertex,fragment){let{graphics}=this,gl=graphics.context,program=graphics.counted(gl.createProgram()),
+kinds=[gl.VERTEX_SHADER,gl.FRAGMENT_SHADER],shaders=[vertex,fragment].map((source,n)=>{let shader=graphics.counted(gl.createShader(
+kinds[n]));return gl.shaderSource(shader,source.startsWith("#version")?source:PREAMBLE+source),gl.compileShader(shader),
+gl.attachShader(program,shader),shader});return ATTRIBUTES.forEach((name,n)=>gl.bindAttribLocation(program,n,name)),gl.linkProgram(
+program),{program,shaders,uniforms:new Map,...{ready:!1,error:"",warm:!1,price:FIRST_PRICE_MS}}}finish(entry){let gl=this.
+graphics.context,{program}=entry,done=this.parallel?.COMPLETION_STATUS_KHR;if(done&&!gl.getProgramParameter(program,done))
+return;if(!gl.getProgramParameter(program,gl.LINK_STATUS)){if(gl.isContextLost())return;let log=[...entry.shaders.map(shader=>gl.
+getShaderInfoLog(shader)),gl.getProgramInfoLog(program)].filter(Boolean).join(`
+`);entry.error=log||"the driver gave no reason";return}for(let shader of entry.shaders)this.graphics.free("Shader",shader);
 entry.shaders=[];let count=gl.getProgramParameter(program,gl.ACTIVE_UNIFORMS);for(let n=0;n<count;n+=1){let info=gl.getActiveUniform(
 program,n),location=info&&gl.getUniformLocation(program,info.name);!info||!location||entry.uniforms.set(info.name.replace(
 /\[0\]$/,""),{location,type:info.type})}gl.useProgram(program),SAMPLERS.forEach((name,n)=>{let sampler=entry.uniforms.get(
 name);sampler&&gl.uniform1i(sampler.location,n)}),entry.ready=!0}use(entry,values){let gl=this.graphics.context;gl.useProgram(
 entry.program);for(let[name,value]of Object.entries(values)){let uniform=entry.uniforms.get(name);if(!uniform)continue;let{
-location,type}=uniform,list=typeof value=="object"?value:[Number(value)],numbers=list;type===gl.FLOAT?gl.uniform1fv(location,
-numbers):type===gl.FLOAT_VEC2?gl.uniform2fv(location,numbers):type===gl.FLOAT_VEC3?gl.uniform3fv(location,numbers):type===
-gl.FLOAT_VEC4?gl.uniform4fv(location,numbers):type===gl.FLOAT_MAT4?gl.uniformMatrix4fv(location,!1,numbers):gl.uniform1i(
-location,list[0])}}};var OUTLINE_SAMPLES=4,FRAME_MS=45,SHARED=Symbol.for("flowtex.gl/3"),Graphics=class{canvas=document.createElement("canvas");gl;programs;users=new Set;waiting=new Set;common=new Map;stock=new Map;objects=0;isLost=!1;restorations=0;floats=!1;scheduled=0;picker=null;smooth=null;constructor(){
+location,type}=uniform,numbers=typeof value=="object"?value:[Number(value)];type===gl.FLOAT?gl.uniform1fv(location,numbers):
+type===gl.FLOAT_VEC2?gl.uniform2fv(location,numbers):type===gl.FLOAT_VEC3?gl.uniform3fv(location,numbers):type===gl.FLOAT_VEC4?
+gl.uniform4fv(location,numbers):type===gl.FLOAT_MAT4?gl.uniformMatrix4fv(location,!1,numbers):gl.uniform1i(location,numbers[0])}}};var OUTLINE_SAMPLES=4,FRAME_MS=45,SHARED=Symbol.for("flowtex.gl/3"),Graphics=class{canvas=document.createElement("canvas");gl;programs;users=new Set;waiting=new Set;common=new Map;stock=new Map;objects=0;isLost=!1;floats=!1;scheduled=0;picker=null;smooth=null;constructor(){
 this.canvas.width=this.canvas.height=16,this.gl=this.canvas.getContext("webgl2",{alpha:!0,antialias:!1,powerPreference:"\
 high-performance"}),this.programs=new Programs(this),this.findFeatures(),this.canvas.addEventListener("webglcontextlost",
 event=>{event.preventDefault(),this.isLost=!0,this.objects=0,this.programs.clear(),this.common.clear(),this.picker=this.
 smooth=null;for(let user of this.users)user.lost()}),this.canvas.addEventListener("webglcontextrestored",()=>{this.isLost=
-!1,this.restorations+=1,this.findFeatures();for(let user of this.users)user.restored()})}findFeatures(){let{gl}=this;if(!gl)
-return;let extensions=["EXT_color_buffer_float","EXT_color_buffer_half_float"];this.floats=extensions.some(name=>gl.getExtension(
-name)!==null),this.programs.findFeatures()}get context(){if(!this.gl)throw new Error("there is no WebGL2");return this.gl}enter(user){
-this.users.add(user)}leave(user){if(this.users.delete(user),this.waiting.delete(user),!this.users.size){cancelAnimationFrame(
-this.scheduled),this.scheduled=0,this.programs.dispose();for(let target of[this.picker,this.smooth])target&&this.freeTarget(
-target);this.picker=this.smooth=null,this.canvas.width=this.canvas.height=16}}request(user){this.waiting.add(user),this.
-scheduled||=requestAnimationFrame(now=>this.run(now))}run(now){this.scheduled=0;let until=performance.now()+FRAME_MS;for(let user of[
-...this.waiting])if(this.waiting.delete(user),user.frame(now,until),performance.now()>until)break;this.waiting.size&&(this.
-scheduled||=requestAnimationFrame(then=>this.run(then)))}counted(object){if(object===null)throw new Error("the graphics \
-card has no memory left, or the context is lost");return this.objects+=1,object}free(kind,object){if(object===null||this.
-isLost||!this.gl)return;this.objects-=1,this.gl[`delete${kind}`](object)}hold(part){if(!part.digest)return part;let entry=this.
-stock.get(part.digest);return entry?entry.users+=1:this.stock.set(part.digest,{part,users:1}),entry?.part??part}release(part){
-let entry=part?.digest?this.stock.get(part.digest):void 0;!part?.digest||!entry||(entry.users-=1,entry.users||this.stock.
-delete(part.digest))}reserve(width,height){this.canvas.width<width&&(this.canvas.width=width),this.canvas.height<height&&
-(this.canvas.height=height)}settle(){let gl=this.context;gl.readPixels(0,0,1,1,gl.RGBA,gl.UNSIGNED_BYTE,new Uint8Array(4))}target(format,width,height,samples){
+!1,this.findFeatures();for(let user of this.users)user.change()})}findFeatures(){let{gl}=this;if(!gl)return;let extensions=[
+"EXT_color_buffer_float","EXT_color_buffer_half_float"];this.floats=extensions.some(name=>gl.getExtension(name)!==null),
+this.programs.findFeatures()}get context(){if(!this.gl)throw new Error("there is no WebGL2");return this.gl}leave(user){
+if(this.users.delete(user),this.waiting.delete(user),!this.users.size){cancelAnimationFrame(this.scheduled),this.scheduled=
+0,this.programs.dispose();for(let target of[this.picker,this.smooth])target&&this.freeTarget(target);this.picker=this.smooth=
+null,this.canvas.width=this.canvas.height=16}}request(user){this.waiting.add(user),this.scheduled||=requestAnimationFrame(
+now=>this.run(now))}run(now){this.scheduled=0;let until=performance.now()+FRAME_MS;for(let user of[...this.waiting])if(this.
+waiting.delete(user),user.frame(now,until),performance.now()>until)break;this.waiting.size&&(this.scheduled||=requestAnimationFrame(
+then=>this.run(then)))}counted(object){if(object===null)throw new Error("the graphics card has no memory left, or the co\
+ntext is lost");return this.objects+=1,object}free(kind,object){if(object===null||this.isLost||!this.gl)return;this.objects-=
+1,this.gl[`delete${kind}`](object)}hold(part){if(!part.digest)return part;let entry=this.stock.get(part.digest)??{part,users:0};
+return this.stock.set(part.digest,{...entry,users:entry.users+1}),entry.part}release(part){let entry=part&&this.stock.get(
+part.digest);!part||!entry||(entry.users-=1,entry.users||this.stock.delete(part.digest))}target(format,width,height,samples){
 let gl=this.context,frame=this.counted(gl.createFramebuffer());gl.bindFramebuffer(gl.FRAMEBUFFER,frame);let buffers=[[format,
 gl.COLOR_ATTACHMENT0],[gl.DEPTH_COMPONENT24,gl.DEPTH_ATTACHMENT]].map(([kind,attachment])=>{let buffer=this.counted(gl.createRenderbuffer());
 return gl.bindRenderbuffer(gl.RENDERBUFFER,buffer),gl.renderbufferStorageMultisample(gl.RENDERBUFFER,samples,kind,width,
 height),gl.framebufferRenderbuffer(gl.FRAMEBUFFER,attachment,gl.RENDERBUFFER,buffer),buffer});return{frame,buffers}}freeTarget(target){
 this.free("Framebuffer",target.frame);for(let buffer of target.buffers)this.free("Renderbuffer",buffer)}bindSmooth(width,rows){
-let gl=this.context,old=this.smooth,target=old;if(!old||old.width<width||old.height<rows){let size={width:Math.max(width,
-old?.width??0),height:Math.max(rows,old?.height??0)};old&&this.freeTarget(old),target={...this.target(gl.RGBA8,size.width,
-size.height,OUTLINE_SAMPLES),...size},this.smooth=target}gl.bindFramebuffer(gl.FRAMEBUFFER,target?.frame??null)}copySmooth(width,rows){
-let gl=this.context;gl.bindFramebuffer(gl.READ_FRAMEBUFFER,this.smooth?.frame??null),gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER,
-null),gl.disable(gl.SCISSOR_TEST),gl.blitFramebuffer(0,0,width,rows,0,0,width,rows,gl.COLOR_BUFFER_BIT,gl.NEAREST),gl.bindFramebuffer(
-gl.FRAMEBUFFER,null)}pixel(draw){let gl=this.context;this.picker??=this.target(gl.RGBA32UI,1,1,0),gl.bindFramebuffer(gl.
-FRAMEBUFFER,this.picker.frame),gl.viewport(0,0,1,1),gl.disable(gl.SCISSOR_TEST),gl.enable(gl.DEPTH_TEST),gl.clearBufferuiv(
-gl.COLOR,0,[0,0,0,0]),gl.clear(gl.DEPTH_BUFFER_BIT),draw();let bits=new Uint32Array(4);return gl.readPixels(0,0,1,1,gl.RGBA_INTEGER,
+let gl=this.context,old=this.smooth;if(!old||old.width<width||old.height<rows){let[w,h]=[Math.max(width,old?.width??0),Math.
+max(rows,old?.height??0)];old&&this.freeTarget(old);let target=this.target(gl.RGBA8,w,h,OUTLINE_SAMPLES);this.smooth={...target,
+width:w,height:h}}gl.bindFramebuffer(gl.FRAMEBUFFER,this.smooth?.frame??null)}copySmooth(width,rows){let gl=this.context;
+gl.bindFramebuffer(gl.READ_FRAMEBUFFER,this.smooth?.frame??null),gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER,null),gl.disable(
+gl.SCISSOR_TEST),gl.blitFramebuffer(0,0,width,rows,0,0,width,rows,gl.COLOR_BUFFER_BIT,gl.NEAREST),gl.bindFramebuffer(gl.
+FRAMEBUFFER,null)}pixel(draw){let gl=this.context;this.picker??=this.target(gl.RGBA32UI,1,1,0),gl.bindFramebuffer(gl.FRAMEBUFFER,
+this.picker.frame),gl.viewport(0,0,1,1),gl.disable(gl.SCISSOR_TEST),gl.enable(gl.DEPTH_TEST),gl.clearBufferuiv(gl.COLOR,
+0,[0,0,0,0]),gl.clear(gl.DEPTH_BUFFER_BIT),draw();let bits=new Uint32Array(4);return gl.readPixels(0,0,1,1,gl.RGBA_INTEGER,
 gl.UNSIGNED_INT,bits),gl.bindFramebuffer(gl.FRAMEBUFFER,null),bits}};function sharedGraphics(){let page=globalThis;return page[SHARED]??=
-new Graphics}var Lifetime=class{controller=new AbortController;observers=new Set;timers=new Set;globalListeners=0;get isOver(){return this.
-controller.signal.aborted}listen(target,kind,call,options={}){(target===document||target===window)&&(this.globalListeners+=
-1);let{signal}=this.controller;target.addEventListener(kind,call,{...options,signal})}later(call,delay){let timer=setTimeout(
-()=>{this.timers.delete(timer),call()},delay);return this.timers.add(timer),timer}cancel(timer){timer!==null&&(clearTimeout(
-timer),this.timers.delete(timer))}observe(observer,element){observer.observe(element),this.observers.add(observer)}stats(){
-let{globalListeners:listeners,observers,timers}=this;return{listeners,observers:observers.size,timers:timers.size}}end(){
-this.controller.abort(),this.globalListeners=0;for(let observer of this.observers)observer.disconnect();this.observers.clear();
-for(let timer of this.timers)clearTimeout(timer);this.timers.clear()}};function throttled(later,wait,call){let next=null,
-running=!1,run=()=>{if(running=next!==null,!next)return;let{value}=next;next=null,call(value),later(run,wait)};return value=>{
-next={value},running||run()}}var TYPES={float32:bytes=>new Float32Array(bytes),float16:bytes=>new Uint16Array(bytes),uint16:bytes=>new Uint16Array(bytes),
-int16:bytes=>new Int16Array(bytes),int8:bytes=>new Int8Array(bytes),uint8:bytes=>new Uint8Array(bytes)};function isSignFree(header){
-return header.variant.includes("FLOWTEX_SIGNFREE")}function stepOf(name){return Number(name.split("/")[1])}function decoded(info,bytes){
-let view=ArrayBuffer.isView(bytes)?new Uint8Array(bytes.buffer,bytes.byteOffset,bytes.byteLength):new Uint8Array(bytes),
-make=TYPES[info.dtype];if(!make)throw new Error(`a part has the type "${info.dtype}"; expected ${Object.keys(TYPES).join(
-", ")}`);let{name,shape,digest}=info;return{name,shape,digest,data:make(view.slice().buffer)}}function partsOfFile(file){
-let length3=new DataView(file).getUint32(0,!0),infos=JSON.parse(new TextDecoder().decode(new Uint8Array(file,4,length3))),
-start=4+length3;return infos.map(info=>{let bytes=new Uint8Array(file,start,info.bytes);return start+=info.bytes,decoded(
-info,bytes)})}function dom(kind,attributes={},children=[]){let element=document.createElement(kind);for(let[name,value]of Object.entries(
+new Graphics}function dom(kind,attributes={},children=[]){let element=document.createElement(kind);for(let[name,value]of Object.entries(
 attributes))element.setAttribute(name,value);return element.append(...children),element}var ICONS={play:"M8 5.2v13.6L19 \
 12z",pause:"M8.5 6v12M15.5 6v12",home:"M4 11.5 12 5l8 6.5M6.5 10v9h11v-9",lod:"M12 3.8l8 4.1-8 4.1-8-4.1zM4 12.2l8 4.1 8\
 -4.1M4 16.3l8 4.1 8-4.1",levels:"M3.5 18a8.5 8.5 0 0 1 17 0M7 18a5 5 0 0 1 10 0M10.3 18a1.7 1.7 0 0 1 3.4 0",settings:"M\
@@ -134,43 +113,61 @@ M20 9V4h-5M4 15v5h5M20 15v5h-5",hide:"M6 9.5l6 6 6-6",show:"M6 14.5l6-6 6 6"};fu
 w3.org/2000/svg",svg=document.createElementNS(space,"svg");svg.setAttribute("viewBox","0 0 24 24"),svg.setAttribute("ari\
 a-hidden","true");let path=document.createElementNS(space,"path");return path.setAttribute("d",ICONS[name]),name==="play"&&
 path.setAttribute("class","solid"),svg.append(path),svg}function numberText(x){if(!Number.isFinite(x))return"–";let size=Math.
-abs(x);return size!==0&&(size>=1e5||size<.001)?x.toExponential(2).replace("e+","e"):String(Number(x.toPrecision(4)))}var tangent=degrees=>Math.tan(degrees*Math.PI/360),Camera=class{flat;limits;aspect;state;start;pick=null;homeHeight;nearest;constructor(state,limits,flat,aspect=1){
+abs(x);return size!==0&&(size>=1e5||size<.001)?x.toExponential(2).replace("e+","e"):String(Number(x.toPrecision(4)))}function pngOf(views){
+let canvases=views.map(({canvas})=>canvas),width=canvases.reduce((sum,canvas)=>sum+canvas.width,0),all=new OffscreenCanvas(
+width,canvases[0].height),pen=all.getContext("2d",{alpha:!1}),left=0;for(let canvas of canvases)pen?.drawImage(canvas,left,
+0),left+=canvas.width;return all.convertToBlob()}var Lifetime=class{controller=new AbortController;observers=new Set;timers=new Set;globalListeners=0;get isOver(){return this.
+controller.signal.aborted}listen(target,kind,call,options={}){(target===document||target===window)&&(this.globalListeners+=
+1);let{signal}=this.controller;target.addEventListener(kind,call,{...options,signal})}later(call,delay){let timer=setTimeout(
+()=>{this.timers.delete(timer),call()},delay);return this.timers.add(timer),timer}cancel(timer){timer!==null&&(clearTimeout(
+timer),this.timers.delete(timer))}observe(observer,element){observer.observe(element),this.observers.add(observer)}stats(){
+let{globalListeners:listeners,observers,timers}=this;return{listeners,observers:observers.size,timers:timers.size}}end(){
+this.controller.abort(),this.globalListeners=0;for(let observer of this.observers)observer.disconnect();this.observers.clear();
+for(let timer of this.timers)clearTimeout(timer);this.timers.clear()}};function throttled(later,wait,call){let next=null,
+running=!1,run=()=>{if(running=next!==null,!next)return;let{value}=next;next=null,call(value),later(run,wait)};return value=>{
+next={value},running||run()}}var TYPES={float32:Float32Array,float16:Uint16Array,uint16:Uint16Array,int16:Int16Array,int8:Int8Array,uint8:Uint8Array};
+function isSignFree(header){return header.variant.includes("FLOWTEX_SIGNFREE")}function stepOf(name){return Number(name.
+split("/")[1])}function decoded(info,bytes){let view=ArrayBuffer.isView(bytes)?new Uint8Array(bytes.buffer,bytes.byteOffset,
+bytes.byteLength):new Uint8Array(bytes),{name,dtype,shape,digest}=info,Type=TYPES[dtype];if(!Type)throw new Error(`a par\
+t has the type "${dtype}"; expected ${Object.keys(TYPES).join(", ")}`);return{name,shape,digest,data:new Type(view.slice().
+buffer)}}function partsOfFile(file){let length3=new DataView(file).getUint32(0,!0),infos=JSON.parse(new TextDecoder().decode(
+new Uint8Array(file,4,length3))),start=4+length3;return infos.map(info=>{let bytes=new Uint8Array(file,start,info.bytes);
+return start+=info.bytes,decoded(info,bytes)})}var tangent=degrees=>Math.tan(degrees*Math.PI/360),Camera=class{flat;limits;aspect;state;start;pick=null;homeHeight;nearest;constructor(state,limits,flat,aspect=1){
 this.state=copyOf(state),this.start=copyOf(state),this.limits=limits,this.flat=flat,this.aspect=aspect,this.homeHeight=this.
 height,this.nearest=this.distance/limits.closest}get height(){let{parallel,parallel_scale:half,view_angle:angle}=this.state;
 return parallel?half:this.distance*tangent(angle)}get distance(){return length2(subtract2(this.state.focal_point,this.state.
 position))}get zoom(){return this.homeHeight/this.height}get axes(){let ahead=unit(subtract2(this.state.focal_point,this.
-state.position)),right=unit(cross2(ahead,this.state.up));return[right,cross2(right,ahead),ahead]}get toEye(){return unit(
-subtract2(this.state.position,this.state.focal_point))}get eye(){return this.state.parallel?[...scale2(this.axes[2],-1),
-0]:[...this.state.position,1]}pan(dx,dy){let[right,up]=this.axes,{height}=this;this.shift(add(scale2(right,dx*this.aspect*
-height),up,dy*height))}rotate(dx,dy){let{state,limits}=this,up=unit(state.up),back=subtract2(state.position,state.focal_point);
-back=rotated(back,up,-limits.turn*dx*Math.min(this.aspect,limits.widest_turn));let right=unit(cross2(up,back));back=rotated(
-back,right,limits.turn*dy),state.position=add(state.focal_point,back),state.up=unit(cross2(back,right))}zoomBy(factor,x=0,y=0){
-if(!Number.isFinite(factor)||factor<=0)return;this.flat||this.focusAt(x,y);let{farthest_zoom:farthest,deepest_zoom:deepest}=this.
-limits,by=clamp(factor,farthest/this.zoom,deepest/this.zoom),[right,up,ahead]=this.axes,height=this.height*(1-1/by);this.
-shift(add(scale2(right,x*this.aspect*height),up,y*height)),this.state.parallel?this.state.parallel_scale/=by:this.approach(
-this.height/by,ahead)}ray(x,y){let[right,up,ahead]=this.axes,{height,state}=this,there=add(add(state.focal_point,right,x*
-this.aspect*height),up,y*height);return state.parallel?[add(there,ahead,-this.distance),ahead]:[add(state.position,[0,0,
-0]),unit(subtract2(there,state.position))]}approach(height,ahead){let distance=Math.max(height/tangent(this.limits.view_angle),
-this.nearest);this.state.position=add(this.state.focal_point,ahead,-distance),this.state.view_angle=Math.atan(height/distance)*
-360/Math.PI}focusAt(x,y){let point=this.pick?.(x,y);if(!point)return;let ahead=this.axes[2],depth=dot2(subtract2(point,this.
-state.position),ahead);depth>0&&(this.state.focal_point=add(this.state.position,ahead,depth))}shift(by){this.state.focal_point=
-add(this.state.focal_point,by),this.state.position=add(this.state.position,by)}};function copyOf(state){let{position,focal_point:focus,
-up}=state;return{...state,position:[...position],focal_point:[...focus],up:[...up]}}function fitted(geometry,limits,positions2,aspect){
-let{center,extent,planar,frame}=geometry,half=tangent(limits.view_angle),back=planar?fromFrame(frame,[0,0,1]):unit([1,1,
-1]),up=planar?fromFrame(frame,[0,1,0]):[0,0,1],right=unit(cross2(up,back)),rows=[right,cross2(back,right),back].map(row=>toFrame(
-frame,row)),low=[1/0,1/0],high=[-1/0,-1/0],distance=0;for(let n=0;n<positions2.length;n+=3){let node=[positions2[n],positions2[n+
-1],positions2[n+2]];if(!Number.isFinite(node[0]))continue;let[x,y,z]=rows.map(row=>dot2(row,node));[x,y].forEach((value,k)=>{
-low[k]=Math.min(low[k],value),high[k]=Math.max(high[k],value)});let wide=Math.max(Math.abs(x)/aspect,Math.abs(y));distance=
-Math.max(distance,z+wide/half/(1-2*limits.margin))}let tall=Math.max(high[1]-low[1],(high[0]-low[0])/aspect,1e-12*extent);
-return{position:add(center,back,planar?extent:distance),focal_point:[...center],up,parallel:planar,parallel_scale:.5*tall/
-(1-2*limits.margin),view_angle:limits.view_angle}}function widened(geometry,limits,state,positions2,aspect){let{center,extent,
-planar}=geometry,camera=copyOf(state);if(length2(subtract2(state.focal_point,center))>.001*extent)return camera;if(planar&&
-state.parallel){let[high,all]=[1e9,aspect].map(shape=>fitted(geometry,limits,positions2,shape).parallel_scale);state.parallel_scale>
+state.position)),right=unit(cross2(ahead,this.state.up));return[right,cross2(right,ahead),ahead]}get eye(){return this.state.
+parallel?[...scale2(this.axes[2],-1),0]:[...this.state.position,1]}pan(dx,dy){let[right,up]=this.axes,{height}=this;this.
+shift(add(scale2(right,dx*this.aspect*height),up,dy*height))}rotate(dx,dy){let{state,limits}=this,up=unit(state.up),back=subtract2(
+state.position,state.focal_point);back=rotated(back,up,-limits.turn*dx*Math.min(this.aspect,limits.widest_turn));let right=unit(
+cross2(up,back));back=rotated(back,right,limits.turn*dy),state.position=add(state.focal_point,back),state.up=unit(cross2(
+back,right))}zoomBy(factor,x=0,y=0){if(!Number.isFinite(factor)||factor<=0)return;this.flat||this.focusAt(x,y);let{farthest_zoom:farthest,
+deepest_zoom:deepest}=this.limits,by=clamp(factor,farthest/this.zoom,deepest/this.zoom),[right,up,ahead]=this.axes,height=this.
+height*(1-1/by);this.shift(add(scale2(right,x*this.aspect*height),up,y*height)),this.state.parallel?this.state.parallel_scale/=
+by:this.approach(this.height/by,ahead)}ray(x,y){let[right,up,ahead]=this.axes,{height,state}=this,there=add(add(state.focal_point,
+right,x*this.aspect*height),up,y*height);return state.parallel?[add(there,ahead,-this.distance),ahead]:[add(state.position,
+[0,0,0]),unit(subtract2(there,state.position))]}approach(height,ahead){let distance=Math.max(height/tangent(this.limits.
+view_angle),this.nearest);this.state.position=add(this.state.focal_point,ahead,-distance),this.state.view_angle=Math.atan(
+height/distance)*360/Math.PI}focusAt(x,y){let point=this.pick?.(x,y);if(!point)return;let ahead=this.axes[2],depth=dot2(
+subtract2(point,this.state.position),ahead);depth>0&&(this.state.focal_point=add(this.state.position,ahead,depth))}shift(by){
+this.state.focal_point=add(this.state.focal_point,by),this.state.position=add(this.state.position,by)}};function copyOf(state){
+let{position,focal_point:focus,up}=state;return{...state,position:[...position],focal_point:[...focus],up:[...up]}}function fitted(surface,limits,positions2,aspect){
+let{center,extent,planar,frame}=surface,half=tangent(limits.view_angle),back=planar?fromFrame(frame,[0,0,1]):unit([1,1,1]),
+up=planar?fromFrame(frame,[0,1,0]):[0,0,1],right=unit(cross2(up,back)),rows=[right,cross2(back,right),back].map(row=>toFrame(
+frame,row)),[low,high]=[[1/0,1/0],[-1/0,-1/0]],distance=0;for(let n=0;n<positions2.length;n+=3){let node=[positions2[n],
+positions2[n+1],positions2[n+2]];if(!Number.isFinite(node[0]))continue;let[x,y,z]=rows.map(row=>dot2(row,node));[x,y].forEach(
+(value,k)=>{low[k]=Math.min(low[k],value),high[k]=Math.max(high[k],value)});let wide=Math.max(Math.abs(x)/aspect,Math.abs(
+y));distance=Math.max(distance,z+wide/half/(1-2*limits.margin))}let tall=Math.max(high[1]-low[1],(high[0]-low[0])/aspect,
+1e-12*extent);return{position:add(center,back,planar?extent:distance),focal_point:[...center],up,parallel:planar,parallel_scale:.5*
+tall/(1-2*limits.margin),view_angle:limits.view_angle}}function widened(surface,limits,state,positions2,aspect){let{center,
+extent,planar}=surface,camera=copyOf(state);if(length2(subtract2(state.focal_point,center))>.001*extent)return camera;if(planar&&
+state.parallel){let[high,all]=[1e9,aspect].map(shape=>fitted(surface,limits,positions2,shape).parallel_scale);state.parallel_scale>
 .98*high&&(camera.parallel_scale=Math.max(state.parallel_scale,all))}else if(!state.parallel&&state.view_angle>.9*limits.
 view_angle){let back=subtract2(state.position,state.focal_point);camera.position=add(state.focal_point,back,Math.max(1,limits.
 aspect/aspect))}return camera}function isSamePlace(a,b){let near=length2(subtract2(a.center,b.center))<.1*a.extent,ratio=a.
-extent/b.extent;return a.planar===b.planar&&near&&ratio>.8&&ratio<1.25}function projection(geometry,camera,anchor){let{state,
-aspect}=camera,{center,extent,frame}=geometry,[right,up,ahead]=camera.axes.map(axis=>toFrame(frame,axis)),local=point=>subtract2(
+extent/b.extent;return a.planar===b.planar&&near&&ratio>.8&&ratio<1.25}function projection(surface,camera,anchor){let{state,
+aspect}=camera,{center,extent,frame}=surface,[right,up,ahead]=camera.axes.map(axis=>toFrame(frame,axis)),local=point=>subtract2(
 toFrame(frame,subtract2(point,center)),anchor),focus=local(state.focal_point),middle=scale2(anchor,-1),radius=.51*extent,
 m=new Array(16).fill(0),half=state.parallel?state.parallel_scale:tangent(state.view_angle);if([right.map(c=>c/half/aspect),
 up.map(c=>c/half)].forEach((row,k)=>{for(let n=0;n<3;n+=1)m[4*n+k]=row[n];m[12+k]=-dot2(row,focus)}),state.parallel){for(let n=0;n<
@@ -178,35 +175,35 @@ up.map(c=>c/half)].forEach((row,k)=>{for(let n=0;n<3;n+=1)m[4*n+k]=row[n];m[12+k
 subtract2(middle,eye),ahead),far=Math.max(depth+radius,.001*radius),near=Math.max(depth-radius,.001*far),a=(far+near)/(far-
 near),b=-2*far*near/(far-near);for(let n=0;n<3;n+=1)m[4*n+2]=ahead[n]*a,m[4*n+3]=ahead[n];return m[15]=-dot2(ahead,eye),
 m[14]=m[15]*a+b,m}function atPixel(matrix,[x,y],[width,height]){let m=[...matrix];for(let n=0;n<4;n+=1)m[4*n]=(m[4*n]-x*
-m[4*n+3])*width,m[4*n+1]=(m[4*n+1]-y*m[4*n+3])*height;return m}var SLIDER_STOPS=400,IN_BAR=["lod","show_level"];function hasStreaming(header){return header.slices.steps===1&&!header.paper&&
-!isSignFree(header)}function isUseful(row,header,rebuild){let{paper,slices}=header;switch(row.name){case"motion":case"sp\
-eed":case"speed_in":case"period":return hasStreaming(header);case"grain":case"fixed_grain":return!paper;case"two_sided":
-return slices.sides===2;case"seed":return!paper||rebuild&&!paper.picture;case"resolution":return!paper||rebuild;case"til\
-es":return!!paper?.picture&&(header.settings.noise==="image"||rebuild);case"noise_correction":return!!paper&&rebuild;case"\
-parameter":return slices.steps===1&&rebuild;default:return!IN_BAR.includes(row.name)&&(row.affects==="uniform"||rebuild)}}
-var Controls=class{element=dom("div",{class:"settings glass",hidden:"","aria-label":"Settings"});viewer;controls=new Map;constructor(viewer){
+m[4*n+3])*width,m[4*n+1]=(m[4*n+1]-y*m[4*n+3])*height;return m}var SLIDER_STOPS=400;function hasStreaming({slices,paper,variant}){return slices.steps===1&&!paper&&!isSignFree({variant})}
+var USES={motion:hasStreaming,speed:hasStreaming,speed_in:hasStreaming,period:hasStreaming,grain:({paper})=>!paper,fixed_grain:({
+paper})=>!paper,two_sided:({slices})=>slices.sides===2,seed:({paper},rebuild)=>!paper||rebuild&&!paper.picture,resolution:({
+paper},rebuild)=>!paper||rebuild,tiles:({paper,settings},rebuild)=>!!paper?.picture&&(settings.noise==="image"||rebuild),
+noise_correction:({paper},rebuild)=>!!paper&&rebuild,parameter:({slices},rebuild)=>slices.steps===1&&rebuild,lod:()=>!1,
+show_level:()=>!1};function isUseful({name,affects},header,rebuild){return USES[name]?.(header,rebuild)??(affects==="uni\
+form"||rebuild)}var Controls=class{element=dom("div",{class:"settings glass",hidden:"","aria-label":"Settings"});viewer;controls=new Map;constructor(viewer){
 this.viewer=viewer}build(header){this.controls.clear(),this.element.replaceChildren();let rebuild=this.viewer.options.rebuild??
 !1;for(let row of header.table.filter(each=>isUseful(each,header,rebuild))){let control=this.control(row);this.controls.
 set(row.name,control);let{input,output}=control,name=dom("span",{class:"name"},[row.label]),attributes={class:"row",title:row.
 text,"data-setting":row.name},line=dom("label",attributes,[name,...output?[output]:[],input]);line.classList.toggle("ran\
 ged",output!==void 0),this.element.append(line)}}update(){let{settings}=this.viewer;for(let[name,{show}]of this.controls)
-name in settings&&show(settings[name])}control(row){switch(row.control){case"checkbox":return this.switch(row);case"choi\
-ce":return this.menu(row);case"number":return this.numberField(row);default:return this.slider(row)}}listen(input,kind,call){
-this.viewer.lifetime.listen(input,kind,call)}switch({name}){let input=dom("input",{type:"checkbox",role:"switch"});return this.
-listen(input,"change",()=>this.viewer.choose(name,input.checked)),{input,show:value=>{input.checked=!!value}}}menu({name,
-choices}){let options=choices.map(choice=>dom("option",{value:choice},[choice])),input=dom("select",{},options);return this.
-listen(input,"change",()=>this.viewer.choose(name,input.value)),{input,show:value=>{input.value=String(value)}}}numberField({
-name,whole,low,high}){let[min,max]=[low??0,high??1],step=whole?"1":"any",input=dom("input",{type:"number",min:String(min),
-max:String(max),step});return this.listen(input,"change",()=>{let{valueAsNumber:value}=input;Number.isFinite(value)&&this.
-viewer.choose(name,clamp(value,min,max))}),{input,show:value=>{input.value=String(value)}}}slider(row){let{toSlider,fromSlider,
-min,max,step}=scaleOf(row),range={min:String(min),max:String(max),step:String(step)},input=dom("input",{type:"range",...range}),
-output=dom("output"),value=()=>fromSlider(Number(input.value));this.listen(input,"input",()=>{output.textContent=numberText(
-value())});let kind=row.affects==="uniform"?"input":"change";return this.listen(input,kind,()=>this.viewer.choose(row.name,
-value())),{input,output,show:shown=>{input.value=String(toSlider(Number(shown))),output.textContent=numberText(Number(shown))}}}};
-function scaleOf({low,high,whole,logarithmic}){let[least,most]=[low??0,high??1],toSlider=value=>logarithmic?Math.log2(value):
-value,fromSlider=place=>{let value=logarithmic?2**place:place;return whole?Math.round(value):Number(clamp(value,least,most).
-toPrecision(3))},[min,max]=[least,most].map(toSlider),step=whole&&!logarithmic?1:(max-min)/SLIDER_STOPS;return{toSlider,
-fromSlider,min,max,step}}var CAMERA_KEYS={ArrowLeft:"left",ArrowRight:"right",ArrowUp:"up",ArrowDown:"down","+":"closer","=":"closer","-":"farthe\
+name in settings&&show(settings[name])}control(row){return row.control==="checkbox"?this.switch(row):row.control==="choi\
+ce"?this.menu(row):row.control==="number"?this.numberField(row):this.slider(row)}switch({name}){let input=dom("input",{type:"\
+checkbox",role:"switch"});return this.viewer.lifetime.listen(input,"change",()=>this.viewer.choose(name,input.checked)),
+{input,show:value=>{input.checked=!!value}}}menu({name,choices}){let options=choices.map(choice=>dom("option",{value:choice},
+[choice])),input=dom("select",{},options);return this.viewer.lifetime.listen(input,"change",()=>this.viewer.choose(name,
+input.value)),{input,show:value=>{input.value=String(value)}}}numberField({name,whole,low,high}){let[min,max]=[low??0,high??
+1],step=whole?"1":"any",input=dom("input",{type:"number",min:String(min),max:String(max),step});return this.viewer.lifetime.
+listen(input,"change",()=>{let{valueAsNumber:value}=input;Number.isFinite(value)&&this.viewer.choose(name,clamp(value,min,
+max))}),{input,show:value=>{input.value=String(value)}}}slider(row){let{toSlider,fromSlider,min,max,step}=scaleOf(row),range={
+min:String(min),max:String(max),step:String(step)},input=dom("input",{type:"range",...range}),output=dom("output"),value=()=>fromSlider(
+Number(input.value)),write=shown=>{output.textContent=numberText(Number(shown))};this.viewer.lifetime.listen(input,"inpu\
+t",()=>write(value()));let kind=row.affects==="uniform"?"input":"change";return this.viewer.lifetime.listen(input,kind,()=>this.
+viewer.choose(row.name,value())),{input,output,show:shown=>{input.value=String(toSlider(Number(shown))),write(shown)}}}};
+function scaleOf(row){let{low,high,whole,logarithmic}=row,[least,most]=[low??0,high??1],toSlider=value=>logarithmic?Math.
+log2(value):value,fromSlider=place=>{let value=logarithmic?2**place:place;return whole?Math.round(value):Number(clamp(value,
+least,most).toPrecision(3))},[min,max]=[least,most].map(toSlider),step=whole&&!logarithmic?1:(max-min)/SLIDER_STOPS;return{
+toSlider,fromSlider,min,max,step}}var CAMERA_KEYS={ArrowLeft:"left",ArrowRight:"right",ArrowUp:"up",ArrowDown:"down","+":"closer","=":"closer","-":"farthe\
 r",_:"farther",0:"whole"},PLAY_KEY=" ",FULLSCREEN_KEY="f",CLOSE_KEY="Escape",DIRECTIONS={left:[-1,0],right:[1,0],up:[0,1],
 down:[0,-1]};function hasModifier(event){return event.ctrlKey||event.metaKey||event.altKey}function toggleFullscreen(element){
 document.fullscreenElement?document.exitFullscreen():element.requestFullscreen?.().catch(()=>{})}var STOPS=33,COLOURS=256,Legend=class{element=dom("div",{class:"legend glass",hidden:""});mark=dom("i",{hidden:""});show(header,settings,map){
@@ -275,7 +272,8 @@ return;let{low,high}=header.scalars;this.mark.style.left=`${100*clamp((value-low
 }
 .title { font-weight: 600; overflow: hidden; text-overflow: ellipsis; }
 .title::first-letter { text-transform: uppercase; }
-.readout { display: flex; gap: 8px; color: var(--quiet); font-variant-numeric: tabular-nums; }
+.readout, .ends, .time, .row output { color: var(--quiet); font-variant-numeric: tabular-nums; }
+.readout { display: flex; gap: 8px; }
 .readout:empty { display: none; }
 .head:not(:has(.title:not([hidden]), .readout:not(:empty))) { display: none; }
 .readout b { color: var(--ink); font-weight: 500; }
@@ -289,10 +287,7 @@ return;let{low,high}=header.scalars;this.mark.style.left=`${100*clamp((value-low
   position: absolute; top: -2px; bottom: -2px; width: 2px; margin-left: -1px; border-radius: 1px;
   background: var(--ink); box-shadow: 0 0 0 1px var(--ground);
 }
-.ends {
-  display: flex; justify-content: space-between; margin-top: 2px;
-  color: var(--quiet); font-variant-numeric: tabular-nums;
-}
+.ends { display: flex; justify-content: space-between; margin-top: 2px; }
 .bar {
   position: absolute; left: 10px; right: 10px; bottom: 10px; width: fit-content; margin: 0 auto;
   display: flex; align-items: center; gap: 1px; padding: 3px;
@@ -319,7 +314,7 @@ path.solid { fill: currentColor; }
 .handle:hover { background: var(--glass); }
 .track { display: flex; align-items: center; gap: 8px; min-width: 90px; width: 260px; flex: 0 1 auto; padding: 0 6px 0 4\
 px; }
-.time { flex: none; min-width: 44px; color: var(--quiet); font-variant-numeric: tabular-nums; white-space: nowrap; }
+.time { flex: none; min-width: 44px; white-space: nowrap; }
 input[type="range"] {
   appearance: none; -webkit-appearance: none; flex: 1; min-width: 0; width: 100%; height: 18px;
   margin: 0; background: none; cursor: pointer; accent-color: var(--accent);
@@ -345,7 +340,6 @@ input[type="range"]::-moz-range-thumb {
   min-height: 30px; padding: 2px 0;
 }
 .row.ranged input { grid-column: 1 / -1; }
-.row output { color: var(--quiet); font-variant-numeric: tabular-nums; }
 .row + .row { border-top: 1px solid var(--edge); }
 select, input[type="number"] {
   font: inherit; color: var(--ink); background: var(--hover); border: 0; border-radius: 6px;
@@ -389,54 +383,47 @@ input[role="switch"]:checked::after { transform: translateX(12px); }
   .readout { flex-direction: column; gap: 0; }
   .head { flex-direction: column; gap: 0; max-width: calc(100% - 134px); }
 }
-@container (max-width: 220px) {
-  .legend { display: none; }
-}
-@container (max-width: 330px) {
-  button { width: 27px; height: 27px; }
-}
+@container (max-width: 220px) { .legend { display: none; } }
+@container (max-width: 330px) { button { width: 27px; height: 27px; } }
 :host(.flowtex-bare) :is(.head, .legend, .settings, .bar, .handle) { display: none; }
-`;var HINT_MS=1600,LATE_MS=4e3,SAVED_MS=5e3,FEWEST_DIGITS=4,MOST_DIGITS=14,FORBIDDEN=/[\\/:*?"<>|]+/g,sheet=null;function styleSheet(){
-return sheet||(sheet=new CSSStyleSheet,sheet.replaceSync(styles_default)),sheet}var Panel=class{viewer;legend=new Legend;controls;isShown;isOpen=!1;showsLevels=!1;title=dom(
-"div",{class:"title"});readout=dom("div",{class:"readout",role:"status"});head;note=dom("div",{class:"note",hidden:"",role:"\
-alert"});busy=dom("div",{class:"busy",hidden:""},["waiting for data …"]);hintBox;bar;handle;playButton;toggles;gear;slider;timeText=dom(
-"span",{class:"time"});track;hintTimer=null;lateTimer=null;constructor(viewer){this.viewer=viewer;let{root,canvas,options}=viewer;
-this.isShown=options.controls??!0,this.controls=new Controls(viewer),this.head=dom("div",{class:"head glass",hidden:""},
-[this.title,this.readout]);let hint=`Click, or hold ${/Mac|iP(hone|ad)/.test(navigator.platform)?"⌘":"Ctrl"}, to zoom \
-with the wheel`;this.hintBox=dom("div",{class:"hint glass",hidden:""},[hint]),this.handle=this.button("show","Show the b\
-ar (h)",()=>this.toggle()),this.handle.classList.add("handle","glass"),this.playButton=this.button("play","Play (space)",
-()=>viewer.togglePlaying());let range={min:"0",max:"1",step:"any","aria-label":"Time"};this.slider=dom("input",{type:"ra\
-nge",...range}),viewer.lifetime.listen(this.slider,"input",()=>this.scrub(Number(this.slider.value))),this.track=dom("di\
-v",{class:"track"},[this.slider,this.timeText]);let toggle=name=>()=>viewer.choose(name,!viewer.settings[name]);this.toggles=
-{lod:this.button("lod","Level of detail",toggle("lod")),show_level:this.button("levels","Show the levels of detail",toggle(
-"show_level"))},this.gear=this.button("settings","Settings",()=>this.fold(!this.isOpen)),this.bar=this.makeBar(),canvas.
-className="picture",root.classList.toggle("flowtex-bare",options.bare??!1);let shadow=root.attachShadow({mode:"open"});shadow.
-adoptedStyleSheets=[styleSheet()];let{legend,controls,head,bar,handle,busy,hintBox,note}=this;shadow.append(canvas,head,
-legend.element,controls.element),shadow.append(bar,handle,busy,hintBox,note),this.arrange()}button(name,title,press){let button=dom(
-"button",{type:"button",title,"aria-label":title,"data-name":name},[icon(name)]);return this.viewer.lifetime.listen(button,
-"click",press),button}makeBar(){let{viewer}=this;return dom("div",{class:"bar glass",role:"toolbar","aria-label":"Contro\
-ls"},[this.playButton,this.track,this.button("home","Show everything (0)",()=>viewer.reset()),this.toggles.lod,this.toggles.
-show_level,this.gear,this.button("save","Save the picture",()=>{this.save()}),this.button("full","Fill the screen (f)",()=>this.
-fullscreen()),this.button("hide","Hide the bar (h)",()=>this.toggle())])}build(){let{header}=this.viewer;header&&(this.note.
-hidden=!0,this.controls.build(header),this.showLegend(),this.update(),this.arrange())}update(){let{header,settings,playing,
-varies}=this.viewer;this.name(),this.controls.update(),this.showsLevels!==!!settings.show_level&&this.showLegend();for(let[
-name,button]of Object.entries(this.toggles))button.setAttribute("aria-pressed",String(!!settings[name]));let title=playing?
-"Pause (space)":"Play (space)";this.playButton.replaceChildren(icon(playing?"pause":"play")),this.playButton.title=title,
-this.playButton.setAttribute("aria-label",title);let streams=header!==null&&hasStreaming(header);this.playButton.hidden=
-!varies&&!streams,this.track.hidden=!varies&&!(streams&&settings.motion!=="off"),this.tick()}name(){let{header,settings,
-root}=this.viewer,title=(header?.differs??[]).filter(name=>name in settings).map(name=>{let label=header?.table.find(row=>row.
-name===name)?.label??name,value=settings[name];return`${label}: ${typeof value=="boolean"?value?"on":"off":value}`}).join(
-", ")||header?.name||"";this.title.textContent=title,this.title.hidden=!title,root.setAttribute("aria-label",title?`Flow\
- texture: ${title}`:"Flow texture")}tick(){let{header,varies,player,settings}=this.viewer;if(!header||this.track.hidden)
-return;let{first,last,now}=player.range(settings);this.slider.value=String((now-first)/(last-first||1));let unit2=header.
-slices.timeUnit,text=varies?`${numberText(now)} ${unit2}`:`${now.toFixed(1)} s`;this.timeText.textContent!==text&&(this.
-timeText.textContent=text)}scrub(share){let{viewer}=this,{first,last}=viewer.player.range(viewer.settings),value=first+share*
-(last-first);viewer.stir(),viewer.varies?(viewer.setTime(value),viewer.options.onTime?.(viewer.time)):(viewer.setClock(value),
-viewer.options.onClock?.(viewer.clock))}showLegend(){let{header,settings,parts}=this.viewer;this.showsLevels=!!settings.
-show_level,header&&this.legend.show(header,settings,parts.get("cmap")?.data)}read(point){let{header}=this.viewer;if(this.
-readout.replaceChildren(),this.legend.point(null),!point||!header)return;let text=this.positionText(point.position,header);
-this.readout.append(dom("span",{},[text]));for(let[name,value]of Object.entries(point.values)){let{unit:unit2}=header.scalars;
-this.readout.append(dom("b",{},[`${name} ${numberText(value)}${unit2?` ${unit2}`:""}`])),this.legend.point(header,value)}}positionText(position,{
+`;var HINT_MS=1600,LATE_MS=4e3,SAVED_MS=5e3,FEWEST_DIGITS=4,MOST_DIGITS=14,KEY=/Mac|iP(hone|ad)/.test(navigator.platform)?
+"⌘":"Ctrl",HINT=`Click, or hold ${KEY}, to zoom with the wheel`,TIME_RANGE={min:"0",max:"1",step:"any","aria-label":"T\
+ime"},FORBIDDEN=/[\\/:*?"<>|]+/g,styleSheet=new CSSStyleSheet;styleSheet.replaceSync(styles_default);var Panel=class{viewer;legend=new Legend;controls;isShown;isOpen=!1;showsLevels=!1;title=dom(
+"div",{class:"title"});readout=dom("div",{class:"readout",role:"status"});head=dom("div",{class:"head glass",hidden:""},
+[this.title,this.readout]);note=dom("div",{class:"note",hidden:"",role:"alert"});busy=dom("div",{class:"busy",hidden:""},
+["waiting for data …"]);hintBox=dom("div",{class:"hint glass",hidden:""},[HINT]);bar;handle;playButton;toggles;gear;slider=dom(
+"input",{type:"range",...TIME_RANGE});timeText=dom("span",{class:"time"});track=dom("div",{class:"track"},[this.slider,this.
+timeText]);hintTimer=null;lateTimer=null;constructor(viewer){this.viewer=viewer;let{root,canvas,options}=viewer;this.isShown=
+options.controls??!0,this.controls=new Controls(viewer),this.handle=this.button("show","Show the bar (h)",()=>this.toggle()),
+this.handle.classList.add("handle","glass"),this.playButton=this.button("play","Play (space)",()=>viewer.togglePlaying()),
+viewer.lifetime.listen(this.slider,"input",()=>viewer.scrub(Number(this.slider.value)));let toggle=name=>()=>viewer.choose(
+name,!viewer.settings[name]);this.toggles={lod:this.button("lod","Level of detail",toggle("lod")),show_level:this.button(
+"levels","Show the levels of detail",toggle("show_level"))},this.gear=this.button("settings","Settings",()=>this.fold(!this.
+isOpen)),this.bar=this.makeBar(),canvas.className="picture",root.classList.toggle("flowtex-bare",options.bare??!1);let shadow=root.
+attachShadow({mode:"open"});shadow.adoptedStyleSheets=[styleSheet];let{legend,controls,head,bar,handle,busy,hintBox,note}=this;
+shadow.append(canvas,head,legend.element,controls.element),shadow.append(bar,handle,busy,hintBox,note),this.arrange()}button(name,title,press){
+let button=dom("button",{type:"button",title,"aria-label":title,"data-name":name},[icon(name)]);return this.viewer.lifetime.
+listen(button,"click",press),button}makeBar(){let{viewer}=this;return dom("div",{class:"bar glass",role:"toolbar","aria-\
+label":"Controls"},[this.playButton,this.track,this.button("home","Show everything (0)",()=>viewer.reset()),this.toggles.
+lod,this.toggles.show_level,this.gear,this.button("save","Save the picture",()=>{this.save()}),this.button("full","Fill \
+the screen (f)",()=>this.fullscreen()),this.button("hide","Hide the bar (h)",()=>this.toggle())])}build(){let{header}=this.
+viewer;header&&(this.note.hidden=!0,this.controls.build(header),this.showLegend(),this.update(),this.arrange())}update(){
+let{header,settings}=this.viewer,{playing,varies}=this.viewer.player;this.name(),this.controls.update(),this.showsLevels!==
+!!settings.show_level&&this.showLegend();for(let[name,button]of Object.entries(this.toggles))button.setAttribute("aria-p\
+ressed",String(!!settings[name]));let title=playing?"Pause (space)":"Play (space)";this.playButton.replaceChildren(icon(
+playing?"pause":"play")),this.playButton.title=title,this.playButton.setAttribute("aria-label",title);let streams=header!==
+null&&hasStreaming(header);this.playButton.hidden=!varies&&!streams,this.track.hidden=!varies&&!(streams&&settings.motion!==
+"off"),this.tick()}name(){let{header,settings,root}=this.viewer,title=(header?.differs??[]).filter(name=>name in settings).
+map(name=>{let label=header?.table.find(row=>row.name===name)?.label??name,value=settings[name];return`${label}: ${typeof value==
+"boolean"?value?"on":"off":value}`}).join(", ")||header?.name||"";this.title.textContent=title,this.title.hidden=!title,
+root.setAttribute("aria-label",title?`Flow texture: ${title}`:"Flow texture")}tick(){let{header,player,settings}=this.viewer;
+if(!header||this.track.hidden)return;let{first,last,now}=player.range(settings);this.slider.value=String((now-first)/(last-
+first||1));let unit2=header.slices.timeUnit,text=player.varies?`${numberText(now)} ${unit2}`:`${now.toFixed(1)} s`;this.
+timeText.textContent!==text&&(this.timeText.textContent=text)}showLegend(){let{header,settings,parts}=this.viewer;this.showsLevels=
+!!settings.show_level,header&&this.legend.show(header,settings,parts.get("cmap")?.data)}read(point){let{header}=this.viewer;
+if(this.readout.replaceChildren(),this.legend.point(null),!(!point||!header)){this.readout.append(dom("span",{},[this.positionText(
+point.position,header)]));for(let[name,value]of Object.entries(point.values)){let text=`${name} ${numberText(value)} ${header.
+scalars.unit}`;this.readout.append(dom("b",{},[text.trimEnd()])),this.legend.point(header,value)}}}positionText(position,{
 geometry}){let{extent,planar,center,frame}=geometry,zoom=Math.max(this.viewer.camera?.zoom??1,1),digits=Math.min(Math.ceil(
 FEWEST_DIGITS+Math.log10(zoom)),MOST_DIGITS),isInPlane=planar&&Math.abs(position[2]-center[2])<1e-12*extent&&Math.abs(frame[8])>
 .999;return`(${position.slice(0,isInPlane?2:3).map(x=>{let value=Math.abs(x)<1e-9*extent?0:x;return digits>5?String(Number(
@@ -446,37 +433,35 @@ header,options,root}=this.viewer,isReady=header!==null,follows=!!options.follows
 this.handle.hidden=this.isShown||!isReady||follows,this.head.hidden=!(this.isShown||follows)||!isReady,this.controls.element.
 hidden=!this.isShown||!this.isOpen||!isReady,root.classList.toggle("flowtex-open",!this.controls.element.hidden),this.gear.
 setAttribute("aria-pressed",String(this.isOpen))}wait(missing){this.busy.hidden=!missing.length;let{viewer}=this;!missing.
-length||viewer.options.onNeed||this.lateTimer||(this.lateTimer=viewer.lifetime.later(()=>{this.lateTimer=null;let{lacking}=viewer;
-lacking.length&&this.fail("The scene is not complete.",`Missing: ${lacking.join(", ")}`)},LATE_MS))}hint(shown){let{lifetime}=this.
+length||viewer.options.onNeed||this.lateTimer||(this.lateTimer=viewer.lifetime.later(()=>{this.lateTimer=null;let names=viewer.
+lacking.join(", ");names&&this.fail("The scene is not complete.",`Missing: ${names}`)},LATE_MS))}hint(shown){let{lifetime}=this.
 viewer;lifetime.cancel(this.hintTimer),this.hintTimer=shown?lifetime.later(()=>this.hint(!1),HINT_MS):null,this.hintBox.
-hidden=!shown}drawn(){this.note.hidden=!0,delete this.viewer.root.dataset.failed}fail(problem,detail){this.note.replaceChildren(
+hidden=!shown}clear(){this.note.hidden=!0,delete this.viewer.root.dataset.failed}fail(problem,detail){this.note.replaceChildren(
 dom("strong",{},[problem]),dom("pre",{},[detail])),this.note.hidden=!1,this.busy.hidden=!0,this.viewer.root.dataset.failed=
 "true"}fullscreen(){let{root}=this.viewer;toggleFullscreen(root.closest(".flowtex-pair")??root)}async save(){let{viewer}=this,
 href=URL.createObjectURL(await pngOf(viewer.together)),name=(viewer.header?.name||"flow").replace(FORBIDDEN," ").trim();
 dom("a",{href,download:`${name}.png`}).click(),viewer.lifetime.later(()=>URL.revokeObjectURL(href),SAVED_MS)}};function triangles([rows,columns],cells){let index=new Uint32Array(6*(rows-1)*(columns-1)),n=0;for(let j=0,cell=0;j<rows-
 1;j+=1)for(let i=0;i<columns-1;i+=1,cell+=1){if(cells&&!cells[cell])continue;let corner=j*columns+i,far=corner+columns+1;
 index[n++]=corner,index[n++]=corner+1,index[n++]=far,index[n++]=corner,index[n++]=far,index[n++]=far-1}return index.subarray(
-0,n)}function positions(data,anchor){return anchor.some(Boolean)?data.map((x,n)=>x-anchor[n%3]):data}function coordinates({
-shape,rows,columns}){let result2=new Float32Array(2*shape[0]*shape[1]);for(let j=0,n=0;j<shape[0];j+=1)for(let i=0;i<shape[1];i+=
-1)result2[n++]=(i+columns.before+.5)/columns.size,result2[n++]=(j+rows.before+.5)/rows.size;return result2}function noiseCoordinates({
-alongI,alongJ}){let result2=new Float32Array(2*alongI.length*alongJ.length),n=0;for(let v2 of alongJ)for(let u of alongI)
-result2[n++]=u,result2[n++]=v2;return result2}function shares(steps,low,high,nodes){let result2=new Float32Array(2*nodes),
-span=high-low||1;return steps.forEach((values,k)=>{for(let n=0;n<nodes;n+=1){let share=(values[n]-low)/span;result2[2*n+
-k]=Number.isFinite(share)?share:-1e9}}),result2}function interpolated([rows,columns],i,j,value){let[left,low]=[Math.min(
-Math.floor(i),columns-2),Math.min(Math.floor(j),rows-2)],[a,b]=[i-left,j-low],corner=low*columns+left,[from,to]=[value(corner),
-value(corner+columns+1)];if(a>=b){let aside2=value(corner+1);return from+a*(aside2-from)+b*(to-aside2)}let aside=value(corner+
-columns);return from+b*(aside-from)+a*(to-aside)}function pickedPoint(viewer,x,y){let{header,graphics,camera,scene,shown}=viewer;if(!header||!camera||!scene||!shown||!viewer.
-canPick)return null;let program=graphics.programs.get(header.shaders.vertex,header.shaders.pick),{anchor}=viewer.view(shown,
-1),{width,height}=viewer.canvas,matrix=atPixel(projection(header.geometry,camera,anchor),[x,y],[width,height]),bits=graphics.
-pixel(()=>{graphics.programs.use(program,{u_matrix:matrix,u_between:shown[2]}),scene.draw(shown[0],shown[1],anchor,!1)});
-if(!bits[3])return null;let[u,v2]=new Float32Array(bits.buffer,0,2),{rows,columns,shape}=header.geometry,i=clamp(u*columns.
-size-.5-columns.before,0,shape[1]-1),j=clamp(v2*rows.size-.5-rows.before,0,shape[0]-1);return{position:positionAt(viewer,
-i,j,x,y),index:[i,j],values:valuesAt(viewer,i,j,shown)}}function positionAt(viewer,i,j,x,y){let{header,camera,parts}=viewer,
-nodes=parts.get("position")?.data;if(!header||!camera||!nodes)return[NaN,NaN,NaN];let{shape,frame,center}=header.geometry,
-local=[0,1,2].map(k=>interpolated(shape,i,j,n=>nodes[3*n+k])),about=add(fromFrame(frame,local),center),[start,along]=camera.
-ray(x,y),ahead=camera.axes[2],depth=dot2(subtract2(about,start),ahead)/dot2(along,ahead);return add(start,along,depth)}function valuesAt(viewer,i,j,shown){
-let{header,scene,parts}=viewer,name=header?.scalars.name??null;if(!header||!scene||name===null)return{};let[before,after]=scene.
-scalarParts(shown[0],shown[1]).map(n=>parts.get(n)?.data);if(!before||!after)return{};let value=n=>before[n]+shown[2]*(after[n]-
+0,n)}function positions(data,anchor){return anchor.some(Boolean)?data.map((x,n)=>x-anchor[n%3]):data}function grid(us,vs){
+let result2=new Float32Array(2*us.length*vs.length),n=0;for(let v2 of vs)for(let u of us)result2[n++]=u,result2[n++]=v2;
+return result2}function coordinates({shape,rows,columns}){let middles=(count,{before,size})=>Array.from({length:count},(_,n)=>(n+
+before+.5)/size);return grid(middles(shape[1],columns),middles(shape[0],rows))}function noiseCoordinates({alongI,alongJ}){
+return grid(alongI,alongJ)}function shares(steps,low,high,nodes){let result2=new Float32Array(2*nodes),span=high-low||1;
+return steps.forEach((values,k)=>{for(let n=0;n<nodes;n+=1){let share=(values[n]-low)/span;result2[2*n+k]=Number.isFinite(
+share)?share:-1e9}}),result2}function interpolated([rows,columns],i,j,value){let[left,low]=[Math.min(Math.floor(i),columns-
+2),Math.min(Math.floor(j),rows-2)],[a,b]=[i-left,j-low],corner=low*columns+left,[from,to]=[value(corner),value(corner+columns+
+1)],aside=value(corner+(a>=b?1:columns));return from+Math.max(a,b)*(aside-from)+Math.min(a,b)*(to-aside)}function pickedPoint(context,x,y){let{scene,camera,moment,anchor,canvas}=context,{graphics,header}=scene,program=graphics.
+programs.get(header.shaders.vertex,header.shaders.pick),whole=projection(header.geometry,camera,anchor),matrix=atPixel(whole,
+[x,y],[canvas.width,canvas.height]),[before,after,between]=moment,bits=graphics.pixel(()=>{graphics.programs.use(program,
+{u_matrix:matrix,u_between:between}),scene.draw(before,after,anchor,!1)});if(!bits[3])return null;let[u,v2]=new Float32Array(
+bits.buffer,0,2),{rows,columns,shape}=header.geometry,i=clamp(u*columns.size-.5-columns.before,0,shape[1]-1),j=clamp(v2*
+rows.size-.5-rows.before,0,shape[0]-1);return{position:positionAt(context,i,j,x,y),index:[i,j],values:valuesAt(context,i,
+j)}}function positionAt({scene,camera},i,j,x,y){let{data}=scene.part("position"),{shape,frame,center}=scene.header.geometry,
+local=[0,1,2].map(k=>interpolated(shape,i,j,n=>data[3*n+k])),about=add(fromFrame(frame,local),center),[start,along]=camera.
+ray(x,y),ahead=camera.axes[2],depth=dot2(subtract2(about,start),ahead)/dot2(along,ahead);return add(start,along,depth)}function valuesAt({
+scene,moment},i,j){let{header,parts}=scene,{name}=header.scalars,[from,to,between]=moment,[before,after]=scene.scalarParts(
+from,to).map(part=>parts.get(part)?.data);if(name===null||!before||!after)return{};let value=n=>before[n]+between*(after[n]-
 before[n]);return{[name]:interpolated(header.geometry.shape,i,j,value)}}function uniforms(header,settings,view,noiseShape=null){let{geometry,slices,constants}=header,s=settings,signFree=isSignFree(
 header),finest=2**(Math.floor(Math.log2(geometry.extent))-constants.noiseDoublings),motion=motionUniforms(header,s,view),
 w=view.eye[3],eye=toFrame(geometry.frame,subtract2(view.eye,scale2(geometry.center,w))),kernel=signFree&&s.kernel==="ram\
@@ -512,7 +497,7 @@ clock+=passed,!0;let[first,last]=this.span,series=clamp(SERIES_STEP_S*(this.time
 next=this.time+passed*(last-first)/series,[before,after]=momentOf(this.times,Math.min(next,last));return ready([before,after])?
 (this.time=next>last?first:next,!0):!1}};var CLICK_PX=4,CLICK_MS=450,POINTED_MS=1500,HOVER_MS=90,KEY_STEP=.2,NOTCH_SIZES=[100,3,1],PINCH_PX=20,MOST_NOTCHES=4;function placeIn(element,event){
 let box=element.getBoundingClientRect();return{x:2*(event.clientX-box.left)/Math.max(box.width,1)-1,y:1-2*(event.clientY-
-box.top)/Math.max(box.height,1)}}var Pointers=class{down=new Map;viewer;isOther=!1;press={x:0,y:0,time:0,moved:!1};lastLook=0;look=null;lastPointed=-1/0;constructor(viewer){
+box.top)/Math.max(box.height,1)}}var Pointers=class{down=new Map;viewer;isOther=!1;press={x:0,y:0,time:0,isDrag:!1};lastLook=0;look=null;lastPointed=-1/0;constructor(viewer){
 this.viewer=viewer;let{canvas,root,options,lifetime}=viewer;root.classList.toggle("flowtex-guarded",options.guarded??!1),
 options.guarded&&this.guard();let listen=(kind,call)=>lifetime.listen(canvas,kind,call,{passive:!1});listen("pointerdown",
 event=>this.onDown(event)),listen("pointermove",event=>this.onMove(event)),listen("pointerup",event=>this.onUp(event)),listen(
@@ -526,86 +511,90 @@ return!options.guarded||root.classList.contains("flowtex-held")?!0:document.full
 return placeIn(this.viewer.canvas,event)}onDown(event){if(event.button>2)return;let{root,canvas}=this.viewer;root.focus(
 {preventScroll:!0}),event.pointerType!=="touch"&&this.hold(!0),canvas.setPointerCapture(event.pointerId),this.down.set(event.
 pointerId,this.place(event)),this.isOther=event.button===2||event.shiftKey;let{clientX:x,clientY:y,timeStamp:time}=event;
-this.press={x,y,time,moved:this.down.size>1},root.classList.add("flowtex-grabbing")}onMove(event){let{camera,panel}=this.
+this.press={x,y,time,isDrag:this.down.size>1},root.classList.add("flowtex-grabbing")}onMove(event){let{camera,panel}=this.
 viewer;if(!camera)return;let place=this.place(event),old=this.down.get(event.pointerId);if((event.movementX||event.movementY)&&
 (this.lastPointed=performance.now()),!old)return this.hover(place);if(Math.hypot(event.clientX-this.press.x,event.clientY-
-this.press.y)>CLICK_PX&&(this.press.moved=!0),!this.press.moved)return;let before=this.middle();this.down.set(event.pointerId,
+this.press.y)>CLICK_PX&&(this.press.isDrag=!0),!this.press.isDrag)return;let before=this.middle();this.down.set(event.pointerId,
 place);let now=this.middle();this.down.size>1?(camera.pan(before.x-now.x,before.y-now.y),before.apart>0&&camera.zoomBy(now.
 apart/before.apart,now.x,now.y)):camera.flat===this.isOther?camera.rotate(place.x-old.x,place.y-old.y):camera.pan(old.x-
-place.x,old.y-place.y),panel.read(null),this.viewer.moved()}middle(){let[a,b=a]=[...this.down.values()],aspect=this.viewer.
-camera?.aspect??1,apart=Math.hypot((a.x-b.x)*aspect,a.y-b.y);return{x:(a.x+b.x)/2,y:(a.y+b.y)/2,apart}}onUp(event){let place=this.
-down.get(event.pointerId);if(this.down.delete(event.pointerId),this.down.size||(this.viewer.root.classList.remove("flowt\
-ex-grabbing"),event.type!=="pointerup"))return;this.hold(!0);let isQuick=event.timeStamp-this.press.time<CLICK_MS;if(!place||
-this.press.moved||!isQuick||event.button!==0)return;let point=this.viewer.point(place.x,place.y);point&&this.viewer.options.
-onPoint?.(point),this.viewer.panel.read(point)}onWheel(event){if(!this.isHeld&&!event.ctrlKey&&!event.metaKey){performance.
-now()-this.lastPointed<POINTED_MS&&this.viewer.panel.hint(!0);return}event.preventDefault();let size=event.ctrlKey&&event.
-deltaMode===0?PINCH_PX:NOTCH_SIZES[event.deltaMode],notches=clamp(-event.deltaY/size,-MOST_NOTCHES,MOST_NOTCHES);this.zoom(
-(this.viewer.camera?.limits.wheel_zoom??1)**notches,event)}zoom(factor,event){let{x,y}=this.place(event);this.viewer.camera?.
-zoomBy(factor,x,y),this.viewer.moved()}hover(place){let{viewer}=this;viewer.lifetime.cancel(this.look);let rest=HOVER_MS-
+place.x,old.y-place.y),panel.read(null),this.viewer.reportCamera()}middle(){let[a,b=a]=[...this.down.values()],aspect=this.
+viewer.camera?.aspect??1,apart=Math.hypot((a.x-b.x)*aspect,a.y-b.y);return{x:(a.x+b.x)/2,y:(a.y+b.y)/2,apart}}onUp(event){
+let place=this.down.get(event.pointerId);if(this.down.delete(event.pointerId),this.down.size||(this.viewer.root.classList.
+remove("flowtex-grabbing"),event.type!=="pointerup"))return;this.hold(!0);let isQuick=event.timeStamp-this.press.time<CLICK_MS;
+if(!place||this.press.isDrag||!isQuick||event.button!==0)return;let point=this.viewer.point(place.x,place.y);point&&this.
+viewer.options.onPoint?.(point),this.viewer.panel.read(point)}onWheel(event){if(!this.isHeld&&!event.ctrlKey&&!event.metaKey){
+performance.now()-this.lastPointed<POINTED_MS&&this.viewer.panel.hint(!0);return}event.preventDefault();let size=event.ctrlKey&&
+event.deltaMode===0?PINCH_PX:NOTCH_SIZES[event.deltaMode],notches=clamp(-event.deltaY/size,-MOST_NOTCHES,MOST_NOTCHES);this.
+zoom((this.viewer.camera?.limits.wheel_zoom??1)**notches,event)}zoom(factor,event){let{x,y}=this.place(event);this.viewer.
+camera?.zoomBy(factor,x,y),this.viewer.reportCamera()}hover(place){let{viewer}=this;viewer.lifetime.cancel(this.look);let rest=HOVER_MS-
 (performance.now()-this.lastLook),look=()=>{this.look=null,this.lastLook=performance.now(),viewer.sharp&&viewer.canPick?
-viewer.panel.read(viewer.point(place.x,place.y)):viewer.playing||this.hover(place)};this.look=viewer.lifetime.later(look,
-Math.max(rest,viewer.sharp?0:HOVER_MS))}onKey(event){let{root}=this.viewer,[target]=event.composedPath(),inside=target instanceof
+viewer.panel.read(viewer.point(place.x,place.y)):viewer.player.playing||this.hover(place)};this.look=viewer.lifetime.later(
+look,Math.max(rest,viewer.sharp?0:HOVER_MS))}onKey(event){let{root}=this.viewer,[target]=event.composedPath(),inside=target instanceof
 Element&&target!==root?target.tagName:"",isControl=/^(INPUT|SELECT)$/.test(inside)||inside==="BUTTON"&&event.key===PLAY_KEY;
 hasModifier(event)||isControl||!this.command(event)||(event.preventDefault(),event.stopPropagation())}command({key,shiftKey}){
 let{viewer}=this,{camera,panel,options}=viewer;if(!camera)return!1;let command=CAMERA_KEYS[key];if(command in DIRECTIONS){
-let[x,y]=DIRECTIONS[command].map(way=>way*KEY_STEP);camera.flat===shiftKey?camera.rotate(-x,-y):camera.pan(x,y),viewer.moved()}else if(command===
+let[x,y]=DIRECTIONS[command].map(way=>way*KEY_STEP);camera.flat===shiftKey?camera.rotate(-x,-y):camera.pan(x,y),viewer.reportCamera()}else if(command===
 "closer"||command==="farther"){let{wheel_zoom:notch}=camera.limits;camera.zoomBy(command==="closer"?notch:1/notch),viewer.
-moved()}else if(command==="whole")viewer.reset();else if(key===PLAY_KEY)viewer.togglePlaying();else if(key===FULLSCREEN_KEY)
-panel.fullscreen();else if(key==="h")(options.follows??viewer).panel.toggle();else if(key===CLOSE_KEY)panel.fold(),this.
-hold(!1);else return!1;return!0}};function reused(before,now,width,height){let size=before[0]*before[5]-before[4]*before[1],a=(now[0]*before[5]-now[4]*before[1])/
-size,b=(now[4]*before[0]-now[0]*before[4])/size,c=(now[1]*before[5]-now[5]*before[1])/size,d=(now[5]*before[0]-now[1]*before[4])/
-size,determinant=a*d-b*c,area=Math.abs(determinant);if(!(area>.3**2&&area<4**2))return null;let e=now[12]-a*before[12]-b*
-before[13],f=now[13]-c*before[12]-d*before[13],[w,h]=[width/2,height/2],matrix=[a,-c*h/w,-b*w/h,d,w*(1+e-a+b),h*(1-f+c-d)],
-isInside=([x,y])=>Math.abs((d*(x-e)-b*(y-f))/determinant)<1+1e-6&&Math.abs((a*(y-f)-c*(x-e))/determinant)<1+1e-6,covers=[
-[-1,-1],[1,-1],[-1,1],[1,1]].every(isInside),shifts=Math.abs(a-1)+Math.abs(d-1)+Math.abs(b)+Math.abs(c)<1e-6;if(shifts)for(let n of[
-4,5])matrix[n]=Math.round(matrix[n]);return{matrix,covers,shifts}}var MOVING_MS=55,MOVING_LEAST_MS=14,STRIP_MS=40,SMOOTH_ROWS=256,ProgressiveRenderer=class{viewer;graphics;canvas;pen;back=document.
-createElement("canvas");backPen;last=document.createElement("canvas");lastPen;lastCamera=null;version=1;draftVersion=0;rowsDone=0;fixed=4;frames=0;constructor(viewer){
-this.viewer=viewer,this.graphics=viewer.graphics,this.canvas=viewer.canvas,this.pen=this.canvas.getContext("2d",{alpha:!1}),
-this.backPen=this.back.getContext("2d",{alpha:!1}),this.lastPen=this.last.getContext("2d",{alpha:!1})}get canvases(){return[
-this.canvas,this.back,this.last]}restart(moved=!1){moved||(this.lastCamera=null),this.version+=1,this.rowsDone=0}resize(width,height){
-let old=this.canvas.width>1?copyOfCanvas(this.canvas):null;for(let canvas of this.canvases)canvas.width=width,canvas.height=
-height;old&&this.pen?.drawImage(old,0,0,width,height)}dispose(){for(let canvas of this.canvases)canvas.width=canvas.height=
-0}draw(program,shown,moving,until){if(this.draftVersion!==this.version)return this.draft(program,shown,moving);if(moving)
-return!1;let complete=!1;do complete=this.strip(program,shown);while(!complete&&performance.now()<until);return complete}draft(program,shown,moving){
-let{width,height}=this.canvas,samples=Number(this.viewer.settings.samples),crowd=moving?this.graphics.waiting.size+1:1,budget=Math.
-max(MOVING_MS/crowd,MOVING_LEAST_MS);this.warm(program,shown);let price=program.price*this.factor(samples),best=quality(
-price,this.fixed,width*height,samples,budget),w=Math.max(Math.round(width*best.scale),1),h=Math.max(Math.round(height*best.
-scale),1);this.draftVersion=this.version;let reuse=best.scale<1?this.reuse():null;if(!reuse?.covers){let region={width:w,
-height:h,top:0,rows:h};this.timed(program,region,best.samples,()=>{this.render(program,shown,region,best.samples),this.copy(
-this.pen,region,0,width,height,0)})}return reuse&&this.pen&&(this.pen.imageSmoothingEnabled=!reuse.shifts,this.pen.setTransform(
-...reuse.matrix),this.pen.drawImage(this.last,0,0),this.pen.setTransform(1,0,0,1,0,0)),best.scale<1||best.samples!==samples||
-this.viewer.smooth?!1:(this.complete(),!0)}strip(program,shown){let{width,height}=this.canvas,{smooth,settings}=this.viewer,
-samples=Number(settings.samples);this.warm(program,shown);let price=program.price*this.factor(samples),most=Math.min(height-
-this.rowsDone,smooth?SMOOTH_ROWS:height),rows=Math.min(rowsIn(STRIP_MS,price,this.fixed,width,samples),most),region={width,
-height,top:this.rowsDone,rows};return this.timed(program,region,samples,()=>{this.render(program,shown,region,samples,smooth);
-let drawn=smooth?{...region,height:rows,top:0}:region;this.copy(this.backPen,drawn,drawn.top,width,drawn.height,this.rowsDone)}),
-this.rowsDone+=rows,this.rowsDone<height?!1:(this.pen?.drawImage(this.back,0,0),this.complete(),!0)}complete(){let{camera,
-playing}=this.viewer;this.rowsDone=this.canvas.height,this.frames+=1,this.draftVersion=this.version,this.lastPen?.drawImage(
-this.canvas,0,0),camera&&!playing&&(this.lastCamera=new Camera(camera.state,camera.limits,camera.flat,camera.aspect))}reuse(){
-let{viewer,lastCamera}=this,{header,camera}=viewer;if(!header||!camera||!lastCamera||!header.geometry.planar||!camera.state.
-parallel||!lastCamera.state.parallel)return null;let{geometry}=header,focus=subtract2(camera.state.focal_point,geometry.
-center),anchor=toFrame(geometry.frame,focus),[before,now]=[lastCamera,camera].map(view=>projection(geometry,view,anchor));
-return reused(before,now,this.canvas.width,this.canvas.height)}factor(samples){let{settings,varies}=this.viewer;return settings.
-motion!=="off"||varies?motionFactor(samples):1}timed(program,region,samples,draw){let started=performance.now();draw();let spent=performance.
+reportCamera()}else if(command==="whole")viewer.reset();else if(key===PLAY_KEY)viewer.togglePlaying();else if(key===FULLSCREEN_KEY)
+panel.fullscreen();else if(key==="h")(options.follows?.panel??panel).toggle();else if(key===CLOSE_KEY)panel.fold(),this.
+hold(!1);else return!1;return!0}};function invert(out,a){var aa=a[0],ab=a[1],ac=a[2],ad=a[3],atx=a[4],aty=a[5],det=aa*ad-ab*ac;return det?(det=1/det,out[0]=
+ad*det,out[1]=-ab*det,out[2]=-ac*det,out[3]=aa*det,out[4]=(ac*aty-ad*atx)*det,out[5]=(ab*atx-aa*aty)*det,out):null}function determinant(a){
+return a[0]*a[3]-a[1]*a[2]}function multiply(out,a,b){var a0=a[0],a1=a[1],a2=a[2],a3=a[3],a4=a[4],a5=a[5],b0=b[0],b1=b[1],
+b2=b[2],b3=b[3],b4=b[4],b5=b[5];return out[0]=a0*b0+a2*b1,out[1]=a1*b0+a3*b1,out[2]=a0*b2+a2*b3,out[3]=a1*b2+a3*b3,out[4]=
+a0*b4+a2*b5+a4,out[5]=a1*b4+a3*b5+a5,out}var GREATEST_GROWTH=4,LEAST_GROWTH=.3,ROUNDING=1e-6,product=(a,b)=>multiply([0,0,0,0,0,0],a,b),inverse=a=>invert([0,0,0,
+0,0,0],a);function reused(before,now,width,height){let[w,h]=[width/2,height/2],toPixels=m=>product([w,0,0,-h,w,h],[m[0],
+m[1],m[4],m[5],m[12],m[13]]),matrix=product(toPixels(now),inverse(toPixels(before))),area=Math.abs(determinant(matrix));
+if(!(area>LEAST_GROWTH**2&&area<GREATEST_GROWTH**2))return null;let[a,b,c,d,e,f]=inverse(matrix),isInside=([x,y])=>Math.
+abs((a*x+c*y+e)/w-1)<1+ROUNDING&&Math.abs((b*x+d*y+f)/h-1)<1+ROUNDING,covers=[[0,0],[width,0],[0,height],[width,height]].
+every(isInside),[xx,xy,yx,yy]=matrix,shifts=Math.abs(xx-1)+Math.abs(yy-1)+Math.abs(xy)+Math.abs(yx)<ROUNDING;if(shifts)for(let n of[
+4,5])matrix[n]=Math.round(matrix[n]);return{matrix,covers,shifts}}var MOVING_MS=55,MOVING_LEAST_MS=14,STRIP_MS=40,SMOOTH_ROWS=256,penOf=canvas=>canvas.getContext("2d",{alpha:!1}),ProgressiveRenderer=class{viewer;graphics;canvas;pen;back=document.
+createElement("canvas");backPen=penOf(this.back);last=document.createElement("canvas");lastPen=penOf(this.last);lastCamera=null;version=1;draftVersion=0;rowsDone=0;fixed=4;frames=0;constructor(viewer){
+this.viewer=viewer,this.graphics=viewer.graphics,this.canvas=viewer.canvas,this.pen=penOf(this.canvas)}restart(cameraOnly=!1){
+cameraOnly||(this.lastCamera=null),this.version+=1,this.rowsDone=0}resize(width,height){let{canvas,back,last}=this;back.
+width=canvas.width,back.height=canvas.height,this.backPen?.drawImage(canvas,0,0),canvas.width=last.width=width,canvas.height=
+last.height=height,back.width>1&&this.pen?.drawImage(back,0,0,width,height),back.width=width,back.height=height}dispose(){
+for(let canvas of[this.canvas,this.back,this.last])canvas.width=canvas.height=0}draw(program,shown,moving,until){if(this.
+draftVersion!==this.version)return this.draft(program,shown,moving);if(moving)return!1;let complete=!1;do complete=this.
+strip(program,shown);while(!complete&&performance.now()<until);return complete}draft(program,shown,moving){let{width,height}=this.
+canvas,samples=Number(this.viewer.settings.samples),crowd=moving?this.graphics.waiting.size+1:1,budget=Math.max(MOVING_MS/
+crowd,MOVING_LEAST_MS);this.warm(program,shown);let price=program.price*this.factor(samples),best=quality(price,this.fixed,
+width*height,samples,budget),w=Math.max(Math.round(width*best.scale),1),h=Math.max(Math.round(height*best.scale),1);this.
+draftVersion=this.version;let reuse=best.scale<1?this.reuse():null;if(!reuse?.covers){let region={width:w,height:h,top:0,
+rows:h};this.timed(program,region,best.samples,()=>{this.render(program,shown,region,best.samples),this.copy(this.pen,region,
+height,0)})}return reuse&&this.pen&&(this.pen.imageSmoothingEnabled=!reuse.shifts,this.pen.setTransform(...reuse.matrix),
+this.pen.drawImage(this.last,0,0),this.pen.setTransform(1,0,0,1,0,0)),best.scale<1||best.samples!==samples||this.viewer.
+smooth?!1:(this.complete(),!0)}strip(program,shown){let{width,height}=this.canvas,{smooth,settings}=this.viewer,samples=Number(
+settings.samples);this.warm(program,shown);let price=program.price*this.factor(samples),most=Math.min(height-this.rowsDone,
+smooth?SMOOTH_ROWS:height),rows=Math.min(rowsIn(STRIP_MS,price,this.fixed,width,samples),most),region={width,height,top:this.
+rowsDone,rows};return this.timed(program,region,samples,()=>{this.render(program,shown,region,samples,smooth);let drawn=smooth?
+{...region,height:rows,top:0}:region;this.copy(this.backPen,drawn,drawn.height,this.rowsDone)}),this.rowsDone+=rows,this.
+rowsDone<height?!1:(this.pen?.drawImage(this.back,0,0),this.complete(),!0)}complete(){let{camera,player}=this.viewer;this.
+rowsDone=this.canvas.height,this.frames+=1,this.draftVersion=this.version,this.lastPen?.drawImage(this.canvas,0,0),camera&&
+!player.playing&&(this.lastCamera=new Camera(camera.state,camera.limits,camera.flat,camera.aspect))}reuse(){let{lastCamera}=this,
+{scene,camera}=this.viewer;if(!scene?.header.geometry.planar||!camera||!lastCamera||!camera.state.parallel||!lastCamera.
+state.parallel)return null;let{geometry}=scene.header,focus=subtract2(camera.state.focal_point,geometry.center),anchor=toFrame(
+geometry.frame,focus),[before,now]=[lastCamera,camera].map(view=>projection(geometry,view,anchor));return reused(before,
+now,this.canvas.width,this.canvas.height)}factor(samples){let{settings,player}=this.viewer;return settings.motion!=="off"||
+player.varies?motionFactor(samples):1}timed(program,region,samples,draw){let started=performance.now();draw();let spent=performance.
 now()-started,pixels=region.width*region.rows,factor=this.factor(samples);program.price=learnedPrice(program.price,spent,
 this.fixed,pixels,samples,factor)}warm(program,shown){if(program.warm)return;let{width,height}=this.canvas,region={width,
 height,top:0,rows:1};this.render(program,shown,region,1);let started=performance.now();this.render(program,shown,region,
 1),this.fixed=clamp(performance.now()-started,.5,200),program.warm=!0}render(program,shown,region,samples,smooth=!1){let{
-graphics,viewer}=this,{header,camera,scene}=viewer;if(!header||!camera||!scene)return;let gl=graphics.context,{width,height,
-top,rows}=region,view=viewer.view(shown,viewer.ratio*height/this.canvas.height);graphics.reserve(width,height);let bottom=height-
-top-rows;smooth?graphics.bindSmooth(width,rows):gl.bindFramebuffer(gl.FRAMEBUFFER,null),gl.viewport(0,smooth?-bottom:0,width,
-height),gl.enable(gl.SCISSOR_TEST),gl.scissor(0,smooth?0:bottom,width,rows),gl.enable(gl.DEPTH_TEST),gl.depthFunc(gl.LESS),
-gl.disable(gl.BLEND),gl.disable(gl.CULL_FACE);let[r,g,b]=header.background;gl.clearColor(r,g,b,1),gl.clear(gl.COLOR_BUFFER_BIT|
-gl.DEPTH_BUFFER_BIT);let draft=samples!==viewer.settings.samples||height!==this.canvas.height;graphics.programs.use(program,
-this.values(view,samples,draft)),scene.draw(shown[0],shown[1],view.anchor,!0),smooth&&graphics.copySmooth(width,rows),graphics.
-settle()}values(view,samples,draft){let{settings,header,camera,parts}=this.viewer;if(!header||!camera)return{};let noise=parts.
-get("noise")?.shape??null;return{...uniforms(header,{...settings,samples},view,noise),...draft?draftUniforms(settings,samples,
-view.density):{},u_matrix:projection(header.geometry,camera,view.anchor),u_mapped:header.scalars.name!==null,u_colour:header.
-colour,u_lit:header.lighting,u_ground:header.background,u_opacity:header.opacity,u_toEye:toFrame(header.geometry.frame,camera.
-toEye)}}copy(pen,{width:w,height:h,rows},top,width,height,to){if(!pen)return;let{canvas}=this.graphics;pen.imageSmoothingEnabled=
-w!==width||h!==height,pen.drawImage(canvas,0,canvas.height-h+top,w,rows,0,to,width,rows*height/h)}};function copyOfCanvas(canvas){
-let copy=document.createElement("canvas");return copy.width=canvas.width,copy.height=canvas.height,copy.getContext("2d")?.
-drawImage(canvas,0,0),copy}function fromHalf(bits){let exponent=bits>>10&31,part=bits&1023,size;return exponent===0?size=part*2**-24:exponent===31?
+graphics,viewer}=this,{camera,scene}=viewer;if(!camera||!scene)return;let gl=graphics.context,{width,height,top,rows}=region,
+view=viewer.view(shown,viewer.ratio*height/this.canvas.height),{canvas}=graphics;canvas.width<width&&(canvas.width=width),
+canvas.height<height&&(canvas.height=height);let bottom=height-top-rows;smooth?graphics.bindSmooth(width,rows):gl.bindFramebuffer(
+gl.FRAMEBUFFER,null),gl.viewport(0,smooth?-bottom:0,width,height),gl.enable(gl.SCISSOR_TEST),gl.scissor(0,smooth?0:bottom,
+width,rows),gl.enable(gl.DEPTH_TEST),gl.depthFunc(gl.LESS),gl.disable(gl.BLEND),gl.disable(gl.CULL_FACE);let[r,g,b]=scene.
+header.background;gl.clearColor(r,g,b,1),gl.clear(gl.COLOR_BUFFER_BIT|gl.DEPTH_BUFFER_BIT);let draft=samples!==viewer.settings.
+samples||height!==this.canvas.height;graphics.programs.use(program,this.values(scene,camera,view,samples,draft)),scene.draw(
+shown[0],shown[1],view.anchor,!0),smooth&&graphics.copySmooth(width,rows),gl.readPixels(0,0,1,1,gl.RGBA,gl.UNSIGNED_BYTE,
+new Uint8Array(4))}values({header,parts},camera,view,samples,draft){let{settings}=this.viewer,noise=parts.get("noise")?.
+shape??null;return{...uniforms(header,{...settings,samples},view,noise),...draft?draftUniforms(settings,samples,view.density):
+{},u_matrix:projection(header.geometry,camera,view.anchor),u_mapped:header.scalars.name!==null,u_colour:header.colour,u_lit:header.
+lighting,u_ground:header.background,u_opacity:header.opacity,u_toEye:toFrame(header.geometry.frame,scale2(camera.axes[2],
+-1))}}copy(pen,region,height,to){if(!pen)return;let{width:w,height:h,top,rows}=region,{width}=this.canvas,{canvas}=this.
+graphics;pen.imageSmoothingEnabled=w!==width||h!==height,pen.drawImage(canvas,0,canvas.height-h+top,w,rows,0,to,width,rows*
+height/h)}};function fromHalf(bits){let exponent=bits>>10&31,part=bits&1023,size;return exponent===0?size=part*2**-24:exponent===31?
 size=part?NaN:1/0:size=(1024+part)*2**(exponent-25),bits&32768?-size:size}function toHalf(x){let sign=x<0?32768:0,size=Math.
 abs(x);if(!(size<65520))return sign|(size>=65520?31744:32256);let exponent=Math.max(Math.floor(Math.log2(size||1e-30)),-14),
 part=Math.round(size/2**(exponent-10));return sign|(part<1024?part:(exponent+14)*1024+part)}function halved(texels,width,height,channels){
@@ -643,9 +632,9 @@ graphics.context,{geometry,scalars,paper}=this.header,{shape,rows,columns}=geome
 get("cells")?.data),index=this.buffer("index",this.key(["cells"],shape),cells,!0),nodes=()=>positions(this.part("positio\
 n").data,this.anchor),normal=geometry.planar?null:this.part("normal").data,painted=this.scalarParts(before,after),values=()=>{
 let steps=painted.map(name=>this.part(name).data);return shares(steps,scalars.low,scalars.high,shape[0]*shape[1])},colour=this.
-key([...new Set(painted)],shape,scalars.low,scalars.high),grid=JSON.stringify([shape,rows,columns]),type=gl.FLOAT;normal instanceof
+key([...new Set(painted)],shape,scalars.low,scalars.high),grid2=JSON.stringify([shape,rows,columns]),type=gl.FLOAT;normal instanceof
 Int8Array&&(type=gl.BYTE),normal instanceof Int16Array&&(type=gl.SHORT);let attributes=[[this.buffer("position",this.key(
-["position"],this.anchor),nodes),3,gl.FLOAT],[this.buffer("coordinate",grid,()=>coordinates(geometry)),2,gl.FLOAT],[normal&&
+["position"],this.anchor),nodes),3,gl.FLOAT],[this.buffer("coordinate",grid2,()=>coordinates(geometry)),2,gl.FLOAT],[normal&&
 this.buffer("normal",this.key(["normal"]),()=>normal),3,type],[paper&&this.buffer("along","",()=>noiseCoordinates(paper)),
 2,gl.FLOAT],[this.buffer("scalar",colour,values),2,gl.FLOAT]];gl.bindVertexArray(array),gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER,
 index),attributes.forEach(([buffer,size,kind],n)=>{buffer&&(gl.bindBuffer(gl.ARRAY_BUFFER,buffer),gl.enableVertexAttribArray(
@@ -684,129 +673,126 @@ SAMPLERS.length)}draw(before,after,anchor,textures){let gl=this.graphics.context
 this.bindTextures(before,after)),this.bindNodes(before,after,anchor),gl.drawElements(gl.TRIANGLES,this.resources.get("in\
 dex")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(null)}};var STILL_MS=160,LOST_MS=5e3,STEPS_HELD=12,isEqual=(a,b)=>JSON.stringify(a)===JSON.stringify(b),Viewer=class{options;graphics=sharedGraphics();lifetime=new Lifetime;player=new Player;root=document.
 createElement("div");canvas=document.createElement("canvas");panel;pointers;parts=new Map;header=null;settings={};scene=null;camera=null;sharp=!1;isVisible=!0;shown=null;together=[
-this];renderer;busyUntil=0;firstCamera=null;asked=new Map;constructor(element,options={}){this.options=options;let{root}=this;
+this];renderer;busyUntil=0;firstCamera=null;requests=new Map;constructor(element,options={}){this.options=options;let{root}=this;
 root.className="flowtex",root.tabIndex=0,root.dataset.sharp="false",root.setAttribute("data-lm-suppress-shortcuts","true"),
 root.setAttribute("role","application"),this.renderer=new ProgressiveRenderer(this),this.panel=new Panel(this),element.append(
-root),this.pointers=new Pointers(this),this.graphics.enter(this),this.observe(),this.graphics.gl||this.panel.fail("This \
-browser has no WebGL2, which the picture is drawn with.","Turn on hardware acceleration in its settings, or use a recent\
- Firefox, Chrome or Safari.")}observe(){let{lifetime,root}=this;lifetime.observe(new ResizeObserver(()=>this.resize()),root);
-let seen=new IntersectionObserver(entries=>{this.isVisible=entries[entries.length-1].isIntersecting,this.isVisible&&this.
-request()});lifetime.observe(seen,root),lifetime.listen(document,"visibilitychange",()=>this.request()),lifetime.listen(
-window,"resize",()=>this.resize())}stats(){let{objects,users,restorations}=this.graphics,{frames}=this.renderer;return{...this.
-lifetime.stats(),objects,users:users.size,restorations,frames}}dispose(){if(!this.lifetime.isOver){this.player.playing=!1,
-this.lifetime.end(),this.scene?.dispose(),this.scene=null;for(let name of[...this.parts.keys()])this.remove(name);this.graphics.
-leave(this),this.renderer.dispose(),this.root.remove()}}setHeader(header){if(header.format!==2){this.panel.fail(`The sce\
-ne has format ${header.format}, and this client reads format ${2}.`,"Use the client of the flowtex that made the scene.");
-return}let old=this.header;if(this.header=header,this.settings={...header.settings,...header.own},this.player.setHeader(
-header),this.scene?.dispose(),this.scene=new Scene(this.graphics,header,this.parts),this.asked.clear(),(!old||!isSamePlace(
-old.geometry,header.geometry))&&(this.firstCamera=header.camera,this.camera=null),old&&old.generation!==header.generation)
-for(let name of[...this.parts.keys()])name.includes("/")&&this.remove(name);this.panel.build(),this.change()}setPart(part){
-let{name,digest}=part;if(this.asked.delete(stepOf(name)),digest&&this.parts.get(name)?.digest===digest)return;let held=this.
-graphics.hold(part);this.remove(name),this.parts.set(name,held),this.scene?.forget(name),this.trim(),name==="cmap"&&this.
-panel.showLegend(),this.change()}remove(name){this.graphics.release(this.parts.get(name)),this.parts.delete(name)}trim(){
-if(!this.options.onNeed||!this.header)return;let names=[...this.parts.keys()].filter(name=>name.startsWith("slices/")),[
-before,after]=this.player.moment;for(let name of names.slice(0,Math.max(names.length-STEPS_HELD,0))){let step=stepOf(name);
-if(!(step===before||step===after))for(let kind of["slices","extra"])this.remove(`${kind}/${step}`)}}setSettings(settings){
-Object.entries(settings).every(([name,value])=>this.settings[name]===value)||(Object.assign(this.settings,settings),this.
-panel.update(),this.change())}followSetting(name,value){name in(this.header?.own??{})||this.setSettings({[name]:value})}choose(name,value){
-this.stir(),this.setSettings({[name]:value}),this.options.onSetting?.(name,value)}get cameraState(){let state=this.camera?.
-state??this.firstCamera;return state?copyOf(state):null}setCamera(state){if(!this.camera)this.firstCamera=copyOf(state);else{
-if(isEqual(this.camera.state,state))return;this.camera.state=copyOf(state)}this.change(!0)}moved(){this.stir(),this.change(
-!0),this.camera&&this.options.onCamera?.(copyOf(this.camera.state))}reset(){this.camera&&(this.place(),this.moved())}place(){
-let{header,firstCamera:first,aspect}=this,nodes=this.parts.get("position")?.data;if(!header||!nodes)return;let{geometry,
-limits}=header,state=first?widened(geometry,limits,first,nodes,aspect):fitted(geometry,limits,nodes,aspect);this.camera=
-new Camera(state,limits,geometry.planar,aspect),this.camera.pick=(x,y)=>this.point(x,y)?.position??null,(!first||!isEqual(
-first,state))&&this.options.onCamera?.(copyOf(state))}get aspect(){return Math.max(this.root.clientWidth,1)/Math.max(this.
-root.clientHeight,1)}get varies(){return this.player.varies}get time(){return this.player.time}get clock(){return this.player.
-clock}get playing(){return this.player.playing}setTime(time){this.player.seek(time),this.panel.tick(),this.change()}setClock(clock){
-this.player.clock=clock,this.panel.tick(),this.change()}play(){if(this.options.follows)return this.options.follows.play();
-this.playing||!this.header||(!this.varies&&this.settings.motion==="off"&&this.choose("motion","speed"),this.player.start(),
-this.panel.update(),this.request(),this.options.onPlaying?.(!0))}pause(){if(this.options.follows)return this.options.follows.
-pause();this.playing&&(this.player.playing=!1,this.panel.update(),this.change(),this.options.onPlaying?.(!1))}togglePlaying(){
-let leader=this.options.follows??this;leader.playing?leader.pause():leader.play()}stir(){this.busyUntil=performance.now()+
-STILL_MS}get isBusy(){return this.playing||performance.now()<this.busyUntil}change(moved=!1){this.renderer.restart(moved),
-this.setSharp(!1),this.request()}draw(){this.frame(performance.now(),performance.now()+FRAME_MS)}setSharp(sharp){sharp!==
-this.sharp&&(this.sharp=sharp,this.root.dataset.sharp=String(sharp),sharp&&this.options.onFrame?.())}request(){!this.lifetime.
-isOver&&this.isVisible&&this.graphics.request(this)}resize(){let ratio=Math.max(window.devicePixelRatio||1,.1),width=Math.
-max(Math.round(this.root.clientWidth*ratio),1),height=Math.max(Math.round(this.root.clientHeight*ratio),1);width===this.
-canvas.width&&height===this.canvas.height||(this.renderer.resize(width,height),this.camera&&(this.camera.aspect=this.aspect,
-isEqual(this.camera.state,this.camera.start)&&this.place()),this.change())}get smooth(){let{header}=this;if(this.options.
-smooth!==void 0||!header)return this.options.smooth??!1;let{vertex,fragment}=header.shaders;return this.graphics.programs.
-get(vertex,fragment).price<CARD_PRICE_MS}get ratio(){return this.canvas.height/Math.max(this.root.clientHeight,1)}lost(){
-this.scene=this.header&&new Scene(this.graphics,this.header,this.parts),this.setSharp(!1)}restored(){this.change()}get lacking(){
-let[before,after]=this.player.moment;return this.scene?.missing(before,after)??[]}available(){let{header,scene,player,shown}=this;
-if(!header||!scene)return null;let moment=player.moment,count=header.slices.steps,ahead=player.playing?[1,2].map(n=>(moment[1]+
-n)%count):[];this.ask([moment[0],moment[1],...ahead]);let{lacking}=this;return this.panel.wait(lacking),lacking.length?shown&&
-!scene.missing(shown[0],shown[1]).length?shown:null:this.shown=moment}ask(steps){let now=performance.now(),lacking=[...new Set(
-steps)].filter(step=>this.scene?.missing(step,step).length);for(let step of lacking)!this.options.onNeed||now-(this.asked.
-get(step)??-1/0)<LOST_MS||(this.asked.set(step,now),this.options.onNeed(step));return!lacking.length}frame(now,until){if(!(this.
-lifetime.isOver||this.graphics.isLost||!this.graphics.gl||!this.isVisible)&&!(!this.header||!this.scene||this.canvas.width<
-2))try{this.advance(now),this.proceed(this.header,until)}catch(error){this.pause(),this.panel.fail("The picture could no\
-t be drawn.",String(error))}}proceed(header,until){let shown=this.available();if(this.camera||this.place(),!shown||!this.
-camera)return;let{programs}=this.graphics,{vertex,fragment,pick}=header.shaders,program=programs.get(vertex,fragment);if(program.
-error){this.panel.fail("The shader does not compile with this graphics driver.",program.error);return}if(!program.ready)
-return this.request();!this.sharp&&this.renderer.draw(program,shown,this.isBusy,until)&&(this.panel.drawn(),programs.get(
-vertex,pick),this.setSharp(!this.playing)),this.sharp||this.request()}advance(now){let{player,options}=this;!player.playing||
-!player.advance(now,steps=>this.ask(steps))||(player.varies?options.onTime?.(player.time):options.onClock?.(player.clock),
-this.panel.tick(),this.renderer.restart(),this.setSharp(!1))}view(shown,density){let{header,camera,scene,player}=this;if(!header||
-!camera)throw new Error("there is nothing to look at yet");let{geometry,constants}=header,focus=camera.state.focal_point,
-local=toFrame(geometry.frame,subtract2(focus,geometry.center)),old=scene?.anchor??[0,0,0],range=constants.anchorRange*2*
-camera.height,isFar=v2=>v2.some(c=>Math.abs(c)>range),anchor=isFar(local)?local:[0,0,0];return{focus,anchor:isFar(subtract2(
-local,old))?anchor:old,eye:camera.eye,between:shown[2],time:player.timeOf(shown),clock:player.clock,density}}get canPick(){
-let{header,graphics}=this;return!header||graphics.isLost||!graphics.gl?!1:graphics.programs.get(header.shaders.vertex,header.
-shaders.pick).ready}point(x,y){return pickedPoint(this,x,y)}};function viewersIn(element,count,options,own=()=>({})){if(count<2)return[new Viewer(element,{...options,...own(0)})];let pair=dom(
+root),this.pointers=new Pointers(this),this.graphics.users.add(this),this.observe(),this.graphics.gl||this.panel.fail("T\
+his browser has no WebGL2, which the picture is drawn with.","Turn on hardware acceleration in its settings, or use a re\
+cent Firefox, Chrome or Safari.")}observe(){let{lifetime,root}=this;lifetime.observe(new ResizeObserver(()=>this.resize()),
+root);let seen=new IntersectionObserver(entries=>{this.isVisible=entries[entries.length-1].isIntersecting,this.isVisible&&
+this.request()});lifetime.observe(seen,root),lifetime.listen(document,"visibilitychange",()=>this.request()),lifetime.listen(
+window,"resize",()=>this.resize())}stats(){let{objects,users}=this.graphics,{frames}=this.renderer;return{...this.lifetime.
+stats(),objects,users:users.size,frames}}dispose(){if(!this.lifetime.isOver){this.player.playing=!1,this.lifetime.end(),
+this.scene?.dispose(),this.scene=null;for(let name of[...this.parts.keys()])this.remove(name);this.graphics.leave(this),
+this.renderer.dispose(),this.root.remove()}}setHeader(header){if(header.format!==2){this.panel.fail(`The scene has forma\
+t ${header.format}, and this client reads format ${2}.`,"Use the client of the flowtex that made the scene.");return}let old=this.
+header;if(this.header=header,this.settings={...header.settings,...header.own},this.player.setHeader(header),this.scene?.
+dispose(),this.scene=new Scene(this.graphics,header,this.parts),this.requests.clear(),(!old||!isSamePlace(old.geometry,header.
+geometry))&&(this.firstCamera=header.camera,this.camera=null),old&&old.generation!==header.generation)for(let name of[...this.
+parts.keys()])name.includes("/")&&this.remove(name);this.panel.build(),this.change()}setPart(part){let{name,digest}=part;
+if(this.requests.delete(stepOf(name)),digest&&this.parts.get(name)?.digest===digest)return;let held=this.graphics.hold(part);
+this.remove(name),this.parts.set(name,held),this.scene?.forget(name),this.trim(),name==="cmap"&&this.panel.showLegend(),
+this.change()}remove(name){this.graphics.release(this.parts.get(name)),this.parts.delete(name)}trim(){if(!this.options.onNeed||
+!this.header)return;let names=[...this.parts.keys()].filter(name=>name.startsWith("slices/")),[before,after]=this.player.
+moment;for(let name of names.slice(0,Math.max(names.length-STEPS_HELD,0))){let step=stepOf(name);if(!(step===before||step===
+after))for(let kind of["slices","extra"])this.remove(`${kind}/${step}`)}}setSettings(settings){Object.entries(settings).
+every(([name,value])=>this.settings[name]===value)||(Object.assign(this.settings,settings),this.panel.update(),this.change())}followSetting(name,value){
+name in(this.header?.own??{})||this.setSettings({[name]:value})}choose(name,value){this.holdDraft(),this.setSettings({[name]:value}),
+this.options.onSetting?.(name,value)}get cameraState(){let state=this.camera?.state??this.firstCamera;return state?copyOf(
+state):null}setCamera(state){if(!this.camera)this.firstCamera=copyOf(state);else{if(isEqual(this.camera.state,state))return;
+this.camera.state=copyOf(state)}this.change(!0)}reportCamera(){this.holdDraft(),this.change(!0),this.camera&&this.options.
+onCamera?.(copyOf(this.camera.state))}reset(){this.camera&&(this.place(),this.reportCamera())}place(){let{header,firstCamera:first,
+aspect}=this,nodes=this.parts.get("position")?.data;if(!header||!nodes)return;let{geometry,limits}=header,state=first?widened(
+geometry,limits,first,nodes,aspect):fitted(geometry,limits,nodes,aspect);this.camera=new Camera(state,limits,geometry.planar,
+aspect),this.camera.pick=(x,y)=>this.point(x,y)?.position??null,(!first||!isEqual(first,state))&&this.options.onCamera?.(
+copyOf(state))}get aspect(){return Math.max(this.root.clientWidth,1)/Math.max(this.root.clientHeight,1)}get playing(){return this.
+player.playing}setTime(time){this.player.seek(time),this.panel.tick(),this.change()}scrub(share){let{player,options}=this,
+{first,last}=player.range(this.settings),value=first+share*(last-first);this.holdDraft(),player.varies?(this.setTime(value),
+options.onTime?.(player.time)):(this.setClock(value),options.onClock?.(player.clock))}setClock(clock){this.player.clock=
+clock,this.panel.tick(),this.change()}play(){if(this.options.follows)return this.options.follows.play();this.playing||!this.
+header||(!this.player.varies&&this.settings.motion==="off"&&this.choose("motion","speed"),this.player.start(),this.panel.
+update(),this.request(),this.options.onPlaying?.(!0))}pause(){if(this.options.follows)return this.options.follows.pause();
+this.playing&&(this.player.playing=!1,this.panel.update(),this.change(),this.options.onPlaying?.(!1))}togglePlaying(){let leader=this.
+options.follows??this;leader.playing?leader.pause():leader.play()}holdDraft(){this.busyUntil=performance.now()+STILL_MS}get isBusy(){
+return this.playing||performance.now()<this.busyUntil}change(cameraOnly=!1){this.renderer.restart(cameraOnly),this.setSharp(
+!1),this.request()}draw(){this.frame(performance.now(),performance.now()+FRAME_MS)}setSharp(sharp){sharp!==this.sharp&&(this.
+sharp=sharp,this.root.dataset.sharp=String(sharp),sharp&&this.options.onFrame?.())}request(){!this.lifetime.isOver&&this.
+isVisible&&this.graphics.request(this)}resize(){let ratio=Math.max(window.devicePixelRatio||1,.1),width=Math.max(Math.round(
+this.root.clientWidth*ratio),1),height=Math.max(Math.round(this.root.clientHeight*ratio),1);width===this.canvas.width&&height===
+this.canvas.height||(this.renderer.resize(width,height),this.camera&&(this.camera.aspect=this.aspect,isEqual(this.camera.
+state,this.camera.start)&&this.place()),this.change())}get smooth(){let{header}=this;if(this.options.smooth!==void 0||!header)
+return this.options.smooth??!1;let{vertex,fragment}=header.shaders;return this.graphics.programs.get(vertex,fragment).price<
+CARD_PRICE_MS}get ratio(){return this.canvas.height/Math.max(this.root.clientHeight,1)}lost(){this.scene=this.header&&new Scene(
+this.graphics,this.header,this.parts),this.setSharp(!1)}get lacking(){let[before,after]=this.player.moment;return this.scene?.
+missing(before,after)??[]}available(){let{header,scene,player,shown}=this;if(!header||!scene)return null;let moment=player.
+moment,count=header.slices.steps,ahead=player.playing?[1,2].map(n=>(moment[1]+n)%count):[];this.ask([moment[0],moment[1],
+...ahead]);let{lacking}=this;return this.panel.wait(lacking),lacking.length?shown&&!scene.missing(shown[0],shown[1]).length?
+shown:null:this.shown=moment}ask(steps){let now=performance.now(),lacking=[...new Set(steps)].filter(step=>this.scene?.missing(
+step,step).length);for(let step of lacking)!this.options.onNeed||now-(this.requests.get(step)??-1/0)<LOST_MS||(this.requests.
+set(step,now),this.options.onNeed(step));return!lacking.length}frame(now,until){if(!(this.lifetime.isOver||this.graphics.
+isLost||!this.graphics.gl||!this.isVisible)&&!(!this.header||!this.scene||this.canvas.width<2))try{this.advance(now),this.
+drawPicture(this.header,until)}catch(error){this.pause(),this.panel.fail("The picture could not be drawn.",String(error))}}drawPicture(header,until){
+let shown=this.available();if(this.camera||this.place(),!shown||!this.camera)return;let{programs}=this.graphics,{vertex,
+fragment,pick}=header.shaders,program=programs.get(vertex,fragment);if(program.error){this.panel.fail("The shader does n\
+ot compile with this graphics driver.",program.error);return}if(!program.ready)return this.request();!this.sharp&&this.renderer.
+draw(program,shown,this.isBusy,until)&&(this.panel.clear(),programs.get(vertex,pick),this.setSharp(!this.playing)),this.
+sharp||this.request()}advance(now){let{player,options}=this;!player.playing||!player.advance(now,steps=>this.ask(steps))||
+(player.varies?options.onTime?.(player.time):options.onClock?.(player.clock),this.panel.tick(),this.renderer.restart(),this.
+setSharp(!1))}view(shown,density){let{header,camera,scene,player}=this;if(!header||!camera)throw new Error("there is not\
+hing to look at yet");let{geometry,constants}=header,focus=camera.state.focal_point,local=toFrame(geometry.frame,subtract2(
+focus,geometry.center)),old=scene?.anchor??[0,0,0],range=constants.anchorRange*2*camera.height,isFar=v2=>v2.some(c=>Math.
+abs(c)>range),anchor=isFar(local)?local:[0,0,0];return{focus,anchor:isFar(subtract2(local,old))?anchor:old,eye:camera.eye,
+between:shown[2],time:player.timeOf(shown),clock:player.clock,density}}get canPick(){let{header,graphics}=this;return!header||
+graphics.isLost||!graphics.gl?!1:graphics.programs.get(header.shaders.vertex,header.shaders.pick).ready}point(x,y){let{scene,
+camera,shown,canvas}=this;if(!scene||!camera||!shown||!this.canPick)return null;let{anchor}=this.view(shown,1);return pickedPoint(
+{scene,camera,moment:shown,anchor,canvas},x,y)}};function viewersIn(element,count,options,own=()=>({})){if(count<2)return[new Viewer(element,{...options,...own(0)})];let pair=dom(
 "div",{class:"flowtex-pair"});pair.style.cssText="display: flex; gap: 2px; width: 100%; height: 100%",element.append(pair);
 let viewers=[];for(let n=0;n<count;n+=1){let cell=dom("div");cell.style.cssText="flex: 1 1 0; min-width: 0; height: 100%",
 pair.append(cell);let others=()=>viewers.filter((_,m)=>m!==n),follower=n?{controls:!1,follows:viewers[0]}:{};viewers.push(
 new Viewer(cell,{...options,...own(n),...linked(options,others),...follower}))}for(let viewer of viewers)viewer.together=
-viewers;return viewers}function linked(options,others){return{onCamera:camera=>{for(let other of others())other.setCamera(
-camera);options.onCamera?.(camera)},onTime:time=>{for(let other of others())other.setTime(time);options.onTime?.(time)},
-onClock:clock=>{for(let other of others())other.setClock(clock);options.onClock?.(clock)},onSetting:(name,value)=>{for(let other of others())
-other.followSetting(name,value);options.onSetting?.(name,value)}}}function mountPage(element,scenes,options={}){let viewers=viewersIn(
-element,scenes.length,options);return scenes.forEach(({header},n)=>viewers[n].setHeader(header)),scenes.forEach(({parts},n)=>parts.
-forEach(part=>viewers[n].setPart(part))),viewers[0]}function pngOf(viewers){let[{canvas:first}]=viewers,canvas=first;if(viewers.
-length>1){canvas=dom("canvas"),canvas.width=viewers.reduce((sum,viewer)=>sum+viewer.canvas.width,0),canvas.height=first.
-height;let left=0;for(let viewer of viewers)canvas.getContext("2d")?.drawImage(viewer.canvas,left,0),left+=viewer.canvas.
-width}return new Promise((resolve,reject)=>{canvas.toBlob(blob=>{blob?resolve(blob):reject(new Error("there is no pictur\
-e yet"))},"image/png")})}var CAMERA_MS=100,TIME_MS=250,HEADERS=["_header","_header_beside"],HEIGHT_PX=480;function opened(message,buffers){let graphics=sharedGraphics(),
+viewers;return viewers}function linked(options,others){let both=(follow,report)=>(...values)=>{for(let other of others())
+follow(other,...values);report?.(...values)};return{onCamera:both((other,camera)=>other.setCamera(camera),options.onCamera),
+onTime:both((other,time)=>other.setTime(time),options.onTime),onClock:both((other,clock)=>other.setClock(clock),options.
+onClock),onSetting:both((other,name,value)=>other.followSetting(name,value),options.onSetting)}}function mountPage(element,scenes,options={}){
+let viewers=viewersIn(element,scenes.length,options);return scenes.forEach(({header},n)=>viewers[n].setHeader(header)),scenes.
+forEach(({parts},n)=>parts.forEach(part=>viewers[n].setPart(part))),viewers[0]}var CAMERA_MS=100,TIME_MS=250,HEADERS=["_header","_header_beside"],HEIGHT_PX=480;function opened(message,buffers){let graphics=sharedGraphics(),
 {view=0,generation=0,parts:infos=[]}=message,delivery={view,generation,parts:[],lacking:[]};return infos.forEach((info,n)=>{
-let stock=graphics.stock.get(info.digest)?.part;if(!stock&&message.kind==="offer"){delivery.lacking.push(info.name);return}
-let part=graphics.hold(stock??decoded(info,buffers[n]));delivery.parts.push({...part,name:info.name})}),delivery}function discard(deliveries){
+let stock=graphics.stock.get(info.digest)?.part;if(stock||message.kind!=="offer"){let part=graphics.hold(stock??decoded(
+info,buffers[n]));delivery.parts.push({...part,name:info.name})}else delivery.lacking.push(info.name)}),delivery}function discard(deliveries){
 for(let{parts}of deliveries)for(let part of parts)sharedGraphics().release(part)}var hasParts=message=>message?.kind==="\
 parts"||message?.kind==="offer",mailbox=new Map;function initialize({model}){let key=model.get("_key");mailbox.set(key,[]);
 let receive=(message,buffers)=>{hasParts(message)&&mailbox.get(key)?.push(opened(message,buffers))};return model.on("msg\
 :custom",receive),()=>{model.off("msg:custom",receive),discard(mailbox.get(key)??[]),mailbox.delete(key)}}function render({
 model,el}){let view=new WidgetView(model,el);return()=>view.dispose()}function cameraOf(state){let camera=state;return camera&&
-Array.isArray(camera.position)?camera:null}var WidgetView=class{model;viewers;sent=new Map;handlers=[];early;hasSentFrame=!1;constructor(model,element){
-this.model=model;let beside=model.get("_header_beside");this.viewers=this.makeViewers(element,beside?.format?2:1);let key=model.
-get("_key");this.early=mailbox.get(key)??[],mailbox.delete(key),this.connect(),this.resize(),this.viewers.forEach((_,n)=>this.
-takeHeader(n)),model.get("playing")&&this.first.play(),this.viewers.every(({scene,lacking})=>scene&&!lacking.length)||model.
-send({kind:"ready"})}get first(){return this.viewers[0]}makeViewers(element,count){let{model}=this,later=(call,delay)=>this.
-first.lifetime.later(call,delay),options={rebuild:!0,guarded:!0,controls:model.get("bar")??!0,onCamera:throttled(later,CAMERA_MS,
-camera=>this.send("camera",camera)),onTime:throttled(later,TIME_MS,time=>this.send("time",time)),onClock:throttled(later,
-TIME_MS,clock=>this.send("clock",clock)),onPlaying:playing=>this.send("playing",playing),onPoint:point=>this.send("point",
-point),onSetting:(name,value)=>this.send(name,value),onControls:shown=>this.send("bar",shown)};return viewersIn(element,
-count,options,n=>({onNeed:step=>model.send({kind:"need",step,view:n}),onFrame:()=>{this.sendFrame()}}))}send(name,value){
-this.sent.set(name,JSON.stringify(value)),this.model.set(name,value),this.model.save_changes()}async sendFrame(){if(this.
-hasSentFrame||!this.viewers.every(({sharp})=>sharp))return;this.hasSentFrame=!0;let png=await(await pngOf(this.viewers)).
-arrayBuffer();this.first.lifetime.isOver||this.model.send({kind:"frame"},void 0,[png])}listen(event,call){this.handlers.
-some(([other])=>other===event)||(this.handlers.push([event,call]),this.model.on(event,call))}follow(name,take){this.listen(
-`change:${name}`,()=>{let value=this.model.get(name);this.sent.get(name)!==JSON.stringify(value)&&take(value),this.sent.
-delete(name)})}connect(){let{viewers,first}=this;this.listen("msg:custom",(message,buffers)=>{hasParts(message)&&this.take(
-opened(message,buffers)),message?.kind==="error"&&first.panel.fail("The kernel could not go on.",message.text??"")}),viewers.
-forEach((_,n)=>this.listen(`change:${HEADERS[n]}`,()=>this.takeHeader(n))),this.listen("change:size",()=>this.resize()),
-this.follow("camera",value=>{let camera=cameraOf(value);camera&&viewers.forEach(viewer=>viewer.setCamera(camera))}),this.
-follow("time",time=>viewers.forEach(viewer=>viewer.setTime(Number(time)))),this.follow("clock",clock=>viewers.forEach(viewer=>viewer.
-setClock(Number(clock)))),this.follow("playing",playing=>playing?first.play():first.pause()),this.follow("bar",shown=>first.
-panel.toggle(!!shown))}resize(){let[width,height]=this.model.get("size")??[0,0],{root}=this.first,frame=root.closest(".f\
-lowtex-pair")??root;frame.style.width=width?`${width}px`:"100%",frame.style.height=`${height||HEIGHT_PX}px`}takeHeader(n){
-let{model}=this,header=model.get(HEADERS[n]);if(!header?.format)return;let rows=header.table??[],values=rows.map(row=>[row.
-name,model.get(row.name)??row.default]);this.viewers[n].setHeader({...header,settings:Object.fromEntries(values),camera:cameraOf(
-model.get("camera")),time:model.get("time")??0,clock:model.get("clock")??0});let early=this.early;this.early=[];for(let delivery of early)
-this.take(delivery);for(let{name}of rows)this.follow(name,value=>{for(let viewer of this.viewers)viewer.followSetting(name,
-value)})}take(delivery){let viewer=this.viewers[delivery.view];if(!viewer)return;let generation=viewer.header?viewer.header.
-generation??0:-1;if(delivery.generation>generation){this.early.push(delivery);return}let isOld=name=>delivery.generation!==
-generation&&name.includes("/");for(let part of delivery.parts)isOld(part.name)||viewer.setPart(part);let names=delivery.
-lacking.filter(name=>!isOld(name));discard([delivery]),names.length&&this.model.send({kind:"want",names,view:delivery.view})}dispose(){
-for(let[event,call]of this.handlers)this.model.off(event,call);discard(this.early);for(let viewer of this.viewers)viewer.
-dispose()}};var client_default={initialize,render};export{Viewer,decoded,client_default as default,mountPage,partsOfFile};
+Array.isArray(camera.position)?camera:null}var WidgetView=class{model;viewers;first;sent=new Map;handlers=[];early;hasSentFrame=!1;constructor(model,element){
+this.model=model;let beside=model.get("_header_beside");this.viewers=this.makeViewers(element,beside?.format?2:1),[this.
+first]=this.viewers;let key=model.get("_key");this.early=mailbox.get(key)??[],mailbox.delete(key),this.connect(),this.resize(),
+this.viewers.forEach((_,n)=>this.takeHeader(n)),model.get("playing")&&this.first.play(),this.viewers.every(({scene,lacking})=>scene&&
+!lacking.length)||model.send({kind:"ready"})}makeViewers(element,count){let{model}=this,slowly=(wait,call)=>throttled((later,delay)=>this.
+first.lifetime.later(later,delay),wait,call),options={rebuild:!0,guarded:!0,controls:model.get("bar")??!0,onCamera:slowly(
+CAMERA_MS,camera=>this.send("camera",camera)),onTime:slowly(TIME_MS,time=>this.send("time",time)),onClock:slowly(TIME_MS,
+clock=>this.send("clock",clock)),onPlaying:playing=>this.send("playing",playing),onPoint:point=>this.send("point",point),
+onSetting:(name,value)=>this.send(name,value),onControls:shown=>this.send("bar",shown)};return viewersIn(element,count,options,
+n=>({onNeed:step=>model.send({kind:"need",step,view:n}),onFrame:()=>{this.sendFrame()}}))}send(name,value){this.sent.set(
+name,JSON.stringify(value)),this.model.set(name,value),this.model.save_changes()}async sendFrame(){if(this.hasSentFrame||
+!this.viewers.every(({sharp})=>sharp))return;this.hasSentFrame=!0;let png=await(await pngOf(this.viewers)).arrayBuffer();
+this.first.lifetime.isOver||this.model.send({kind:"frame"},void 0,[png])}listen(event,call){this.handlers.some(([other])=>other===
+event)||(this.handlers.push([event,call]),this.model.on(event,call))}follow(name,take){this.listen(`change:${name}`,()=>{
+let value=this.model.get(name);this.sent.get(name)!==JSON.stringify(value)&&take(value),this.sent.delete(name)})}connect(){
+let{viewers,first}=this;this.listen("msg:custom",(message,buffers)=>{hasParts(message)&&this.take(opened(message,buffers)),
+message?.kind==="error"&&first.panel.fail("The kernel could not go on.",message.text??"")}),viewers.forEach((_,n)=>this.
+listen(`change:${HEADERS[n]}`,()=>this.takeHeader(n))),this.listen("change:size",()=>this.resize()),this.follow("camera",
+value=>{let camera=cameraOf(value);camera&&viewers.forEach(viewer=>viewer.setCamera(camera))}),this.follow("time",time=>viewers.
+forEach(viewer=>viewer.setTime(Number(time)))),this.follow("clock",clock=>viewers.forEach(viewer=>viewer.setClock(Number(
+clock)))),this.follow("playing",playing=>playing?first.play():first.pause()),this.follow("bar",shown=>first.panel.toggle(
+!!shown))}resize(){let[width,height]=this.model.get("size")??[0,0],{root}=this.first,frame=root.closest(".flowtex-pair")??
+root;frame.style.width=width?`${width}px`:"100%",frame.style.height=`${height||HEIGHT_PX}px`}takeHeader(n){let{model}=this,
+header=model.get(HEADERS[n]);if(!header?.format)return;let rows=header.table??[],values=rows.map(row=>[row.name,model.get(
+row.name)??row.default]);this.viewers[n].setHeader({...header,settings:Object.fromEntries(values),camera:cameraOf(model.
+get("camera")),time:model.get("time")??0,clock:model.get("clock")??0});for(let delivery of this.early.splice(0))this.take(
+delivery);for(let{name}of rows)this.follow(name,value=>{for(let viewer of this.viewers)viewer.followSetting(name,value)})}take(delivery){
+let viewer=this.viewers[delivery.view];if(!viewer)return;let generation=viewer.header?viewer.header.generation??0:-1;if(delivery.
+generation>generation)return void this.early.push(delivery);let isOld=name=>delivery.generation!==generation&&name.includes(
+"/");for(let part of delivery.parts)isOld(part.name)||viewer.setPart(part);let names=delivery.lacking.filter(name=>!isOld(
+name));discard([delivery]),names.length&&this.model.send({kind:"want",names,view:delivery.view})}dispose(){for(let[event,
+call]of this.handlers)this.model.off(event,call);discard(this.early);for(let viewer of this.viewers)viewer.dispose()}};var client_default={initialize,render};export{Viewer,decoded,client_default as default,mountPage,partsOfFile};

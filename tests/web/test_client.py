@@ -205,12 +205,16 @@ def test_on_a_slow_machine_a_moved_picture_serves_until_the_next(client: ClientP
     client.mount(squares, SIZE, **PLAIN)
     before = client.picture()
     slow = "viewers[0].graphics.programs.entries.forEach((p) => { p.price = 1 })"
-    ahead = "viewers[0].camera.pan(-60 / 180, 20 / 120); viewers[0].moved(); viewers[0].draw()"
+    ahead = (
+        "viewers[0].camera.pan(-60 / 180, 20 / 120); viewers[0].reportCamera(); viewers[0].draw()"
+    )
     number(client, f"{{ {slow}; {ahead}; }}")
     moved = client.pixels()
     assert not number(client, "viewers[0].sharp")
     np.testing.assert_array_equal(moved[10:, 30:], before[:-10, :-30])
-    number(client, f"{{ {slow}; viewers[0].camera.zoomBy(1.5, 0.2, 0.1); viewers[0].moved() }}")
+    number(
+        client, f"{{ {slow}; view.camera.zoomBy(1.5, 0.2, 0.1); view.reportCamera() }}"
+    )
     number(client, "viewers[0].draw()")
     near = client.pixels().astype(float)
     number(client, "viewers[0].graphics.programs.entries.forEach((p) => { p.price = 1e-5 })")
@@ -299,7 +303,7 @@ def test_keys(client: ClientPage) -> None:
     press("h")
     assert number(client, "viewers[0].root.shadowRoot.querySelector('.bar').hidden")
     press(" ")
-    client.page.wait_for_function("() => viewers[0].clock > 0.05")
+    client.page.wait_for_function("() => viewers[0].player.clock > 0.05")
     assert number(client, "viewers[0].settings.motion") == "speed"
     press(" ")
     assert not number(client, "viewers[0].playing")
@@ -421,14 +425,14 @@ def test_playing_goes_through_the_times_and_asks_for_what_is_missing(client: Cli
     client.page.wait_for_timeout(300)
     needed = {tuple(e) for e in number(client, "events.filter(([name]) => name === 'onNeed')")}
     assert needed == {("onNeed", 2)}
-    assert number(client, "viewers[0].time") < 0.4 + 1e-9
+    assert number(client, "viewers[0].player.time") < 0.4 + 1e-9
     client.page.evaluate(
         "(parts) => unpack(parts).forEach((part) => viewers[0].setPart(part))",
         late,
     )
-    client.page.wait_for_function("() => viewers[0].time > 0.42")
+    client.page.wait_for_function("() => viewers[0].player.time > 0.42")
     number(client, "viewers[0].setTime(0.79)")
-    client.page.wait_for_function("() => viewers[0].time < 0.2")  # it begins again
+    client.page.wait_for_function("() => viewers[0].player.time < 0.2")  # it begins again
     number(client, "viewers[0].pause()")
     client.sharp()
 
@@ -515,7 +519,7 @@ def test_a_whole_scene_takes_the_place_of_a_coarse_one(client: ClientPage) -> No
     client.mount(first, SIZE, **PLAIN)
     client.sharp()
     number(client, "viewers[0].camera.zoomBy(2, 0.5, 0.5)")
-    number(client, "viewers[0].moved()")
+    number(client, "viewers[0].reportCamera()")
     client.sharp()
     before = number(client, "viewers[0].cameraState")
     other = scene(coarse_gyre, straight(1))

@@ -209,7 +209,7 @@ def test_two_views_move_as_one_and_tell_their_difference(
     assert cameras[0]["focal_point"][0] < WHOLE.focal_point[0]
     # Both stream by one clock, and only what is not its own is taken over.
     page.keyboard.press(" ")
-    page.wait_for_function(f"() => {PAIR}[1].clock > 0.05 && {PAIR}[0].playing")
+    page.wait_for_function(f"() => {PAIR}[1].player.clock > 0.05 && {PAIR}[0].playing")
     page.keyboard.press(" ")
     number(client, "(viewers[0].choose('contrast', 2), viewers[0].choose('strength', 0.5), 0)")
     chosen = number(client, f"{PAIR}.map(({{ settings: s, clock }}) => [s.strength, s.contrast])")

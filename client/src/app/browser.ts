@@ -4,9 +4,10 @@
 import type { CameraState } from "../camera.ts";
 import type * as Client from "../client.ts";
 import { throttled } from "../lifetime.ts";
+import type { Options } from "../options.ts";
 import { placeIn } from "../pointers.ts";
 import type { Header, Settings } from "../protocol.ts";
-import type { Options, Viewer } from "../viewer.ts";
+import type { Viewer } from "../viewer.ts";
 import { vue, type Emit } from "./vue.ts";
 
 /** Milliseconds between two messages to the server. */
@@ -28,10 +29,12 @@ interface Props {
   playing: boolean;
 }
 
+const PROPS = ["source", "settings", "camera", "time", "playing"] as const;
+
 const isEqual = (a: unknown, b: unknown) => JSON.stringify(a) === JSON.stringify(b);
 const slowly = <T>(call: (value: T) => void) => throttled<T>(setTimeout, MESSAGE_MS, call);
 
-/** A viewer in the page, and what it was told last. */
+/** A viewer in the page, with the camera and the time that it sent last. */
 class BrowserView {
   private readonly props: Props;
   private readonly emit: Emit;
@@ -39,7 +42,7 @@ class BrowserView {
   private viewer: Viewer | null = null;
   private lastCamera: CameraState | null = null;
   private lastTime = NaN;
-  private isGone = false;
+  private isDisposed = false;
   private started = 0;
   private readonly watcher = new MutationObserver(() => this.look());
 
@@ -50,10 +53,9 @@ class BrowserView {
 
   async begin(element: HTMLElement): Promise<void> {
     const address = new URL(this.props.source.client, document.baseURI).href;
-    const client = (await import(address)) as typeof Client;
-    if (this.isGone) return;
-    this.client = client;
-    const viewer = new client.Viewer(element, this.options());
+    this.client = (await import(address)) as typeof Client;
+    if (this.isDisposed) return;
+    const viewer = new this.client.Viewer(element, this.options());
     this.viewer = viewer;
     viewer.root.style.height = "100%";
     this.watcher.observe(viewer.root, { attributeFilter: ["data-sharp"] });
@@ -85,12 +87,11 @@ class BrowserView {
     if (playing) this.viewer?.play();
   }
 
-  /** Fetch a file of parts. */
   private async load(address: string): Promise<void> {
     const answer = await fetch(address);
     if (!answer.ok) throw new Error(`${address}: ${answer.status}`);
     const file = await answer.arrayBuffer();
-    if (this.isGone) return;
+    if (this.isDisposed) return;
     for (const part of this.client?.partsOfFile(file) ?? []) this.viewer?.setPart(part);
   }
 
@@ -101,29 +102,21 @@ class BrowserView {
     else this.started = now;
   }
 
-  setSettings(settings: Settings): void {
-    this.viewer?.setSettings(settings);
-  }
-
-  setCamera(camera: CameraState | null): void {
-    if (camera && !isEqual(camera, this.lastCamera)) this.viewer?.setCamera(camera);
-  }
-
-  setTime(time: number): void {
-    if (time !== this.lastTime && !this.viewer?.playing) this.viewer?.setTime(time);
-  }
-
-  setPlaying(playing: boolean): void {
-    if (playing) this.viewer?.play();
-    else this.viewer?.pause();
-  }
-
-  get hasBegun(): boolean {
-    return this.viewer !== null;
+  /** Take over a property that has changed; what the viewer sent itself comes back as well. */
+  take(name: keyof Props): void {
+    const { viewer, lastCamera, lastTime } = this;
+    const { settings, camera, time, playing } = this.props;
+    if (!viewer) return;
+    if (name === "source") void this.show();
+    else if (name === "settings") viewer.setSettings(settings);
+    else if (name === "camera" && camera && !isEqual(camera, lastCamera)) viewer.setCamera(camera);
+    else if (name === "time" && time !== lastTime && !viewer.playing) viewer.setTime(time);
+    else if (name === "playing" && playing) viewer.play();
+    else if (name === "playing") viewer.pause();
   }
 
   dispose(): void {
-    this.isGone = true;
+    this.isDisposed = true;
     this.watcher.disconnect();
     this.viewer?.dispose();
   }
@@ -131,7 +124,7 @@ class BrowserView {
 
 export const browser = {
   name: "flowtex-client",
-  props: ["source", "settings", "camera", "time", "playing"],
+  props: PROPS,
   emits: ["update:camera", "update:time", "update:playing", "setting", "sharp", "point", "hover"],
   setup(props: Props, { emit }: { emit: Emit }) {
     const { h, ref, watch, onMounted, onBeforeUnmount } = vue();
@@ -139,26 +132,7 @@ export const browser = {
     const view = new BrowserView(props, emit);
     onMounted(() => place.value && void view.begin(place.value));
     onBeforeUnmount(() => view.dispose());
-    watch(
-      () => props.source,
-      () => view.hasBegun && void view.show(),
-    );
-    watch(
-      () => props.settings,
-      (settings) => view.setSettings(settings),
-    );
-    watch(
-      () => props.camera,
-      (camera) => view.setCamera(camera),
-    );
-    watch(
-      () => props.time,
-      (time) => view.setTime(time),
-    );
-    watch(
-      () => props.playing,
-      (playing) => view.setPlaying(playing),
-    );
+    for (const name of PROPS) watch(() => props[name], () => view.take(name));
     const sendHover = slowly<[number, number] | null>((at) => emit("hover", at));
     const onPointermove = (event: PointerEvent) => {
       if (!place.value) return;

@@ -1,15 +1,11 @@
 // trame's own Vue, which is there once a component is.
 
-export interface Ref<T> {
-  value: T;
-}
-
 export type Emit = (event: string, ...values: unknown[]) => void;
 export type Node = object;
 
 interface Vue {
   h(kind: string, ...content: unknown[]): Node;
-  ref<T>(value: T): Ref<T>;
+  ref<T>(value: T): { value: T };
   watch<T>(source: () => T, call: (value: T) => void): void;
   onMounted(call: () => void): void;
   onBeforeUnmount(call: () => void): void;

@@ -1,0 +1,38 @@
+// What a host sets of a view, and what a view reports to its host.
+
+import type { CameraState } from "./camera.ts";
+import type { Point } from "./picking.ts";
+import type { Value } from "./protocol.ts";
+
+/** A view that has the bar for another one as well. */
+interface Leader {
+  readonly playing: boolean;
+  readonly panel: { toggle(): void };
+  play(): void;
+  pause(): void;
+}
+
+export interface Options {
+  onCamera?: (camera: CameraState) => void;
+  onTime?: (time: number) => void;
+  onClock?: (clock: number) => void;
+  onPlaying?: (playing: boolean) => void;
+  onPoint?: (point: Point) => void;
+  /** The parts of a time step are lacking. */
+  onNeed?: (step: number) => void;
+  /** A picture is complete. */
+  onFrame?: () => void;
+  onSetting?: (name: string, value: Value) => void;
+  onControls?: (shown: boolean) => void;
+  /** Whether nothing but the picture is shown. */
+  bare?: boolean;
+  /** Whether the host makes textures anew where a setting asks for it. */
+  rebuild?: boolean;
+  controls?: boolean;
+  /** Whether outlines are smoothed; by default where it takes little time. */
+  smooth?: boolean;
+  /** Whether the page around is scrolled: the view takes wheel and finger only after a click. */
+  guarded?: boolean;
+  /** The view that has the bar, where it is not this one. */
+  follows?: Leader;
+}

@@ -1,0 +1,58 @@
+// Which module may import which: from its own layer or a lower one, and never in a circle.
+
+import assert from "node:assert/strict";
+import { readdirSync, readFileSync } from "node:fs";
+import { dirname, join } from "node:path";
+import { test } from "node:test";
+
+const FOLDER = new URL("../src/", import.meta.url);
+/** Layers, the lowest first. */
+const LAYERS = [
+  "vectors half dom keyboard lifetime reuse modules.d app/vue",
+  "camera",
+  "protocol",
+  "uniforms quality",
+  "programs mesh player legend",
+  "context",
+  "scene",
+  "picking progressive options",
+  "controls panel pointers",
+  "viewer",
+  "views",
+  "widget",
+  "client page",
+  "app/browser app/keys app/path",
+  "app/app",
+].map((names) => names.split(" "));
+
+/** Modules that a module imports, for types as well. */
+function importsOf(name: string): string[] {
+  const text = readFileSync(new URL(`${name}.ts`, FOLDER), "utf8");
+  const addresses = text.matchAll(/(?:from|import)\s*\(?\s*"(\..+?)\.ts"/g);
+  return [...addresses].map(([, address]) => join(dirname(name), address));
+}
+
+const modules = readdirSync(FOLDER, { recursive: true, encoding: "utf8" })
+  .filter((path) => path.endsWith(".ts"))
+  .map((path) => path.slice(0, -3));
+const graph = new Map(modules.map((name) => [name, importsOf(name)]));
+
+test("each module has a layer, and imports from there or below", () => {
+  const layerOf = (name: string) => LAYERS.findIndex((names) => names.includes(name));
+  assert.deepEqual(LAYERS.flat().sort(), [...modules].sort());
+  for (const [name, imports] of graph) {
+    const higher = imports.filter((other) => layerOf(other) > layerOf(name));
+    assert.deepEqual(higher, [], `${name} imports from a higher layer`);
+  }
+});
+
+test("modules do not import each other in a circle", () => {
+  const complete = new Set<string>();
+  const follow = (name: string, path: string[]) => {
+    assert.ok(!path.includes(name), `a circle of imports: ${[...path, name].join(" > ")}`);
+    if (complete.has(name)) return;
+    for (const other of graph.get(name) ?? []) follow(other, [...path, name]);
+    complete.add(name);
+  };
+  for (const name of modules) follow(name, []);
+});
