@@ -89,7 +89,7 @@ class Camera:
     Raises
     ------
     CameraError
-        When one of them is out of its range, or the camera sees nothing; all faults are told.
+        When some are out of their range, or the camera sees nothing; the text has all faults.
     """
 
     position: Point
@@ -234,12 +234,7 @@ class Camera:
     def from_dict(cls, values: Any, base: Camera | None = None) -> Self:
         """Return a camera from numbers by name, as :meth:`to_dict` gives them.
 
-        Parameters
-        ----------
-        values
-            A mapping with some of the attributes; it may come from anybody.
-        base
-            Has what ``values`` leaves out.
+        They may come from anybody; ``base`` has what they leave out.
 
         Raises
         ------
@@ -339,14 +334,9 @@ class Camera:
         return result
 
     def project(self, points: ArrayLike, aspect: float) -> Floats:
-        """Return the places of points in the view, (..., 2); NaN for points behind the camera.
+        """Return the places in the view, (..., 2), of points of the mesh, (..., 3).
 
-        Parameters
-        ----------
-        points
-            Points in the mesh's own coordinates, (..., 3).
-        aspect
-            Width of the picture over its height.
+        They are NaN for points behind the camera.
         """
         # Counted from the focal point, the digits are those of the view.
         offset = np.asarray(points, dtype=float) - np.asarray(self.focal_point)

@@ -112,12 +112,7 @@ def opengl_report() -> OpenGLReport:
 def run_trial(command: Sequence[str], timeout: float = TRIAL_TIMEOUT_S) -> OpenGLReport:
     """Run a command that tries OpenGL, and return its report; a failed one where it crashes.
 
-    Parameters
-    ----------
-    command
-        Command line; the last line that it prints is the report as JSON.
-    timeout
-        Seconds to wait for it.
+    The last line that the command prints is the report as JSON.
     """
     try:
         process = subprocess.run(

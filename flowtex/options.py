@@ -1,4 +1,4 @@
-"""Arguments that every way of drawing a flow takes, each told once.
+"""Arguments that every way of drawing a flow takes, each described once.
 
 ``plotter.flowtex.add``, :func:`flowtex.render`, :func:`flowtex.show`, :func:`flowtex.movie`,
 :func:`flowtex.web.export`, :class:`flowtex.FlowWidget` and the command line hand the fields of
@@ -18,9 +18,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields
 from typing import Any, TypeVar
 
+from flowtex.camera import Camera
 from flowtex.errors import raise_faults
-from flowtex.field import FlowField
-from flowtex.settings import TABLE, SettingsError
+from flowtex.field import FlowField, Surface
+from flowtex.settings import TABLE, Settings, SettingsError
 
 __all__ = [
     "Appearance",
@@ -146,10 +147,6 @@ class Appearance:
         """Whether there is a legend."""
         return self.image is None if self.show_scalar_bar is None else self.show_scalar_bar
 
-    def is_lit(self, *, flat: bool) -> bool:
-        """Tell whether a flat or a curved surface is lit."""
-        return not flat if self.lighting is None else self.lighting
-
 
 @dataclass(frozen=True, kw_only=True)
 class ViewOptions:
@@ -171,6 +168,23 @@ class ViewOptions:
         '``{"lod": False}``; both views move together.',
     )
 
+    def first_camera(self, surface: Surface, aspect: float = 1.5) -> Camera:
+        """Return the camera that the view begins with, for a picture of some width over height.
+
+        Raises
+        ------
+        CameraError
+            When ``camera`` is none.
+        ValueError
+            When ``zoom`` or ``focus`` is none.
+        """
+        whole = Camera.fit(surface, aspect, zoom=self.zoom, focus=self.focus)
+        if self.camera is None or isinstance(self.camera, Camera):
+            return self.camera or whole
+        if isinstance(self.camera, Mapping):
+            return Camera.from_dict(self.camera, whole)
+        return Camera.from_points(self.camera)
+
 
 @dataclass(frozen=True, kw_only=True)
 class Options:
@@ -181,16 +195,28 @@ class Options:
     view: ViewOptions
     settings: Mapping[str, Any]
 
+    def make_settings(self, **defaults: Any) -> Settings:
+        """Return all settings; an image has its colours alone, unless it is asked to be mixed.
+
+        Raises
+        ------
+        SettingsError
+            When one does not fit, or both an image and another noise are asked for.
+        """
+        values = {**defaults, **self.settings}
+        if self.appearance.image is not None:
+            noise = values.setdefault("noise", "image")
+            if noise != "image":
+                msg = f"noise is {noise!r} and an image is given; leave out one of them"
+                raise SettingsError(msg)
+            values.setdefault("strength", 1.0)
+        return Settings(**values)
+
     @classmethod
     def split(cls, *kinds: str, **values: Any) -> Options:
-        """Sort arguments by name.
+        """Sort fields of the option classes, and settings, by name.
 
-        Parameters
-        ----------
-        *kinds
-            Which are accepted: ``"field"``, ``"appearance"`` and ``"view"``; all by default.
-        **values
-            Fields of the option classes, and settings.
+        Classes that are accepted are ``"field"``, ``"appearance"`` and ``"view"``, all by default.
 
         Raises
         ------
@@ -199,7 +225,7 @@ class Options:
         ValueError
             When the opacity or the range of the colours is none.
         """
-        accepted = {name: _names(_KINDS[name]) for name in kinds or _KINDS}
+        accepted = {name: tuple(vars(_KINDS[name]())) for name in kinds or _KINDS}
         parts = {
             name: kind(**{n: values.pop(n) for n in accepted.get(name, ()) if n in values})
             for name, kind in _KINDS.items()
@@ -265,10 +291,6 @@ def _described(text: str, options: list[Any]) -> str:
                 break_on_hyphens=False,
             )
     return "\n".join(lines)
-
-
-def _names(kind: type) -> tuple[str, ...]:
-    return tuple(f.name for f in fields(kind))
 
 
 def _is_between(value: Any, low: float, high: float) -> bool:

@@ -15,9 +15,8 @@ from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import Floats, Indices
 from flowtex.camera import Camera
-from flowtex.field import Surface
 from flowtex.field.interpolation import bracket
-from flowtex.field.locate import SurfacePoint, locate, locator, surface_point
+from flowtex.field.locate import locate, locator, surface_point
 from flowtex.field.point_values import PointValues, values_at
 from flowtex.rendering.cpu.fragments import Fragments
 from flowtex.rendering.cpu.levels import footprint, slice_level
@@ -166,26 +165,20 @@ def probe(
     """
     surface = view.field.surface
     place = surface_point(surface, at)
-    camera, shape = _camera(surface, place, pixel, size)
+    if not isinstance(pixel, Camera):
+        camera, size = camera_facing(surface, place, pixel), (1, 1)
+    elif size is None:
+        msg = "size is None; expected width and height of the camera's picture, in pixels"
+        raise ValueError(msg)
+    else:
+        camera = pixel
     before, after, between = view.moment
     state = ViewState(between=between, clock=clock, density=density)
     state = view_state(view.textures, camera, state, (before, after))
     values = uniforms(view.textures, view.settings, state)
-    fragments = Fragments.of(view.textures, cover_place(surface, place, camera, shape))
+    fragments = Fragments.of(view.textures, cover_place(surface, place, camera, size))
     field_values = values_at(view.field, place.index, view.time)
     return _Pixel(view.textures, (before, after), fragments, values, field_values).probe()
-
-
-def _camera(
-    surface: Surface, place: SurfacePoint, pixel: float | Camera, size: tuple[int, int] | None
-) -> tuple[Camera, tuple[int, int]]:
-    """Camera and size of the picture that the pixel belongs to."""
-    if not isinstance(pixel, Camera):
-        return camera_facing(surface, place, pixel), (1, 1)
-    if size is None:
-        msg = "size is None; expected width and height of the camera's picture, in pixels"
-        raise ValueError(msg)
-    return pixel, size
 
 
 class _Pixel:
@@ -260,11 +253,7 @@ class _Pixel:
     def _path(self, sides: list[Side], knots: Floats, samples: Floats) -> tuple[Floats, Floats]:
         """Lags in multiples of the unit, and points, of the whole path, with all its samples."""
         number = np.arange((len(knots) - 1) * POINTS_BETWEEN_SLICES + 1)
-        fine = np.interp(
-            number / POINTS_BETWEEN_SLICES,
-            range(len(knots)),
-            knots,
-        )
+        fine = np.interp(number / POINTS_BETWEEN_SLICES, range(len(knots)), knots)
         lags, displacements = [np.zeros(1)], [np.zeros((1, 3))]
         for one, many in zip(sides, self._sides(len(fine) + 1), strict=True):
             end = max(float(np.clip(one.reach[0], 0.0, knots[-1])), *(-one.sign * samples))
@@ -283,11 +272,8 @@ class _Pixel:
         self, displacement: Floats, *, coordinates: bool = True
     ) -> tuple[Floats, Floats, Floats | None]:
         """Points, coordinates as (j, i), and noise coordinates, of displacements (N, 3)."""
-        geometry, paper, noise = (
-            self._textures.geometry,
-            self._textures.paper,
-            self._fragments.noise,
-        )
+        geometry, paper = self._textures.geometry, self._textures.paper
+        noise = self._fragments.noise
         # From the place itself in double precision: renderers have the nodes in single.
         start, surface = self._field_values.position, geometry.field.surface
         if paper is None or noise is None:

@@ -1,7 +1,7 @@
 """The scene: a field, its appearance, its settings and the time that is shown.
 
-:class:`Scene` owns the arrays and knows no toolkit. A change is told as a notice and data is
-pulled: a renderer asks for :attr:`Scene.textures` when it draws and gets new ones only when traces
+:class:`Scene` owns the arrays and knows no toolkit. It notifies of a change, and data is pulled:
+a renderer asks for :attr:`Scene.textures` when it draws and gets new ones only when traces
 or textures have changed. Scenes of one field share its traces, and textures where the settings
 that lie in them are the same.
 """
@@ -61,8 +61,8 @@ class Scene:
 
     Attributes
     ----------
-    field, settings
-        As above.
+    image
+        Texels of the image, (H, W, 4): colours times opacity, row 0 at the bottom; or ``None``.
 
     Raises
     ------
@@ -82,11 +82,11 @@ class Scene:
     ) -> None:
         self.field = field
         self.settings = settings or Settings()
-        self._appearance = appearance or Appearance()
-        self._image: Floats32 | None = None
-        if self._appearance.image is not None:
-            self._image = as_picture(load_image(self._appearance.image))
-        if self.settings.noise == "image" and self._image is None:
+        self.appearance = appearance or Appearance()
+        self.image: Floats32 | None = None
+        if self.appearance.image is not None:
+            self.image = as_picture(load_image(self.appearance.image))
+        if self.settings.noise == "image" and self.image is None:
             raise SettingsError(NO_IMAGE)
         if self.scalar_name is not None:
             steps_of(field, self.scalar_name)
@@ -104,12 +104,7 @@ class Scene:
     def of(cls, mesh: Any, **options: Any) -> Scene:
         """Return the scene of a mesh or a field, from the arguments of one call.
 
-        Parameters
-        ----------
-        mesh
-            What :meth:`FieldOptions.field` takes.
-        **options
-            Fields of :class:`FieldOptions` and :class:`Appearance`, and settings.
+        These are fields of :class:`FieldOptions` and :class:`Appearance`, and settings.
 
         Raises
         ------
@@ -125,20 +120,12 @@ class Scene:
     @classmethod
     def from_options(cls, mesh: Any, options: Options) -> Scene:
         """Return the scene of a mesh or a field; :meth:`of` has the errors."""
-        settings = image_settings(options) if options.appearance.image is not None else {}
-        chosen = Settings()
-        chosen.update(**{**options.settings, **settings})
-        return cls(options.field.field(mesh), chosen, options.appearance)
+        return cls(options.field.field(mesh), options.make_settings(), options.appearance)
 
     def beside(self, changes: Mapping[str, Any], options: Options) -> Scene:
-        """Return a second scene of the same field that differs in some options.
+        """Return a second scene of the same field.
 
-        Parameters
-        ----------
-        changes
-            Fields of :class:`Appearance` and settings by name.
-        options
-            Those of this scene.
+        It has the options of this scene, but for changes of :class:`Appearance` and of settings.
 
         Raises
         ------
@@ -155,25 +142,21 @@ class Scene:
         return Scene.from_options(self.field, Options.split("appearance", **values))
 
     @property
-    def appearance(self) -> Appearance:
-        """How the surface looks."""
-        return self._appearance
-
-    @property
-    def flat(self) -> bool:
-        """Whether the surface lies in a plane."""
-        return self.field.surface.frame is not None
+    def is_lit(self) -> bool:
+        """Whether the surface is lit; by default a curved one is."""
+        lighting = self.appearance.lighting
+        return self.field.surface.frame is None if lighting is None else lighting
 
     @property
     def scalar_name(self) -> str | None:
         """Name of what the surface is coloured by; ``None`` for a plain one."""
-        return self._appearance.scalar_name
+        return self.appearance.scalar_name
 
     @property
     def scalar_limits(self) -> tuple[float, float]:
         """Values at the ends of the colour map."""
-        if self._appearance.clim is not None:
-            return self._appearance.clim
+        if self.appearance.clim is not None:
+            return self.appearance.clim
         return (0.0, 1.0) if self.scalar_name is None else self.scalar_range(self.scalar_name)
 
     @property
@@ -188,35 +171,27 @@ class Scene:
         """What a renderer needs, at the settings of this moment."""
         textures, version = self._textures, self._version
         if textures is None:
-            textures = _shared_textures(self.store, self.settings.copy(), self._image)
+            textures = _shared_textures(self.store, self.settings.copy(), self.image)
             if version == self._version:  # no other thread has changed a setting meanwhile
                 self._textures = textures
         return textures
 
-    @property
-    def image(self) -> Floats32 | None:
-        """Texels of the image, (H, W, 4): colours times opacity, row 0 at the bottom."""
-        return self._image
-
     def set_image(self, image: Any) -> None:
-        """Lay an image on the surface in place of the noise; sets ``noise`` to ``"image"``.
+        """Lay an image, as :class:`Appearance` has it, in place of the noise on the surface.
 
-        Parameters
-        ----------
-        image
-            As :class:`Appearance` has it.
+        It sets ``noise`` to ``"image"``.
 
         Raises
         ------
         ImageError
             When it cannot be used; nothing is changed then.
         """
-        self._image = as_picture(load_image(image))
+        self.image = as_picture(load_image(image))
         if self.settings.noise != "image":
             self.settings.noise = "image"
             return
         if self._textures is not None:
-            self._textures = self._textures.with_image(self._image)
+            self._textures = self._textures.with_image(self.image)
         self._notify("textures")
 
     @property
@@ -239,13 +214,7 @@ class Scene:
         return steps_around(self.field.times, self._time)
 
     def scalar(self, name: str) -> Floats:
-        """Nodal values at the time that is shown, (J, I); ``"speed"`` is always there.
-
-        Raises
-        ------
-        KeyError
-            When there is no such array; the text lists those that exist.
-        """
+        """Nodal values at the time that is shown, (J, I); :func:`steps_of` has the errors."""
         steps = steps_of(self.field, name)
         before, after, share = self.moment
         if len(steps) == 1:
@@ -274,8 +243,8 @@ class Scene:
         A thread can read it while this one goes on.
         """
         scene = Scene(self.field)
-        scene.settings, scene._appearance = self.settings.copy(), self._appearance
-        scene._image, scene._noise, scene._time = self._image, self._noise, self._time
+        scene.settings, scene.appearance = self.settings.copy(), self.appearance
+        scene.image, scene._noise, scene._time = self.image, self._noise, self._time
         scene._store, scene._textures = self.store, self.textures
         return scene
 
@@ -287,8 +256,8 @@ class Scene:
         field = share_field(coarsened_field(self.field, nodes))
         scene = Scene(field)
         limits = None if self.scalar_name is None else self.scalar_limits
-        scene._appearance = replace(self._appearance, clim=limits)
-        scene.settings, scene._image = self.settings.copy(), self._image
+        scene.appearance = replace(self.appearance, clim=limits)
+        scene.settings, scene.image = self.settings.copy(), self.image
         scene._noise, scene._time = self._noise, self._time
         scene._store = _coarse_stores.get(
             (id(field), self.settings.parameter),  # a store keeps its field alive
@@ -310,8 +279,8 @@ class Scene:
         if name == "noise":
             if value == self._noise:
                 return
-            if value == "image" and self._image is None:
-                # Observers hear of a setting once it is set; what cannot be drawn is set back.
+            if value == "image" and self.image is None:
+                # Observers are called once a setting is set; what cannot be drawn is set back.
                 self.settings.noise = self._noise
                 raise SettingsError(NO_IMAGE)
             self._noise = value
@@ -348,21 +317,6 @@ def steps_of(field: FlowField, name: str) -> Floats:
     raise KeyError(msg)
 
 
-def image_settings(options: Options) -> dict[str, Any]:
-    """Return the settings for an image: its colours alone, unless it is asked to be mixed.
-
-    Raises
-    ------
-    SettingsError
-        When another noise is asked for.
-    """
-    noise = options.settings.get("noise", "image")
-    if noise != "image":
-        msg = f"noise is {noise!r} and an image is given; leave out one of them"
-        raise SettingsError(msg)
-    return {"strength": options.settings.get("strength", 1.0), "noise": "image"}
-
-
 _fields: WeakCache[FlowField] = WeakCache()
 _coarse_stores: WeakCache[SliceStore] = WeakCache()
 _textures: WeakCache[TextureSet] = WeakCache()
@@ -394,12 +348,7 @@ def _shared_textures(store: SliceStore, settings: Settings, image: Floats32 | No
 def coarsened_field(field: FlowField, nodes: int) -> FlowField:
     """Keep lines of nodes, the first and the last among them, so that so many nodes are left.
 
-    Parameters
-    ----------
-    field
-        The field.
-    nodes
-        How many nodes there may be, at least some dozens; a smaller field is returned as it is.
+    A smaller field is returned as it is.
     """
     if field.valid.size <= nodes:
         return field

@@ -90,13 +90,7 @@ class Setting:
         return self.kind(value)
 
     def parse(self, text: str) -> Any:
-        """Return the value that a text such as ``"off"``, ``"1.5"`` or ``"box"`` means.
-
-        Raises
-        ------
-        SettingsError
-            When it is none; as :meth:`check`.
-        """
+        """Return the value of a text such as ``"off"``, ``"1.5"`` or ``"box"``, checked."""
         text = text.strip()
         value: Any = text
         if self.kind is bool:
@@ -299,7 +293,7 @@ class Settings:
         self._observers: list[Observer] = []
 
     def __setattr__(self, name: str, value: Any) -> None:
-        """Check a value, set it and tell the observers when it differs."""
+        """Check a value, set it, and call the observers when it differs."""
         if name.startswith("_"):
             object.__setattr__(self, name, value)
             return
@@ -307,8 +301,8 @@ class Settings:
         changed = name not in self.__dict__ or self.__dict__[name] != checked
         object.__setattr__(self, name, checked)
         if changed:
-            for tell in list(self.__dict__.get("_observers", ())):
-                tell(name, checked)
+            for observer in list(self.__dict__.get("_observers", ())):
+                observer(name, checked)
 
     def update(self, **values: Any) -> None:
         """Set several at once; nothing is set when one of them is wrong."""
@@ -316,10 +310,10 @@ class Settings:
         for name, value in checked.items():
             setattr(self, name, value)
 
-    def observe(self, tell: Observer) -> Callable[[], None]:
-        """Call ``tell(name, value)`` after each change; returns what ends it."""
-        self._observers.append(tell)
-        return lambda: self._observers.remove(tell) if tell in self._observers else None
+    def observe(self, observer: Observer) -> Callable[[], None]:
+        """Call ``observer(name, value)`` after each change; returns what ends it."""
+        self._observers.append(observer)
+        return lambda: self._observers.remove(observer) if observer in self._observers else None
 
     def copy(self) -> Settings:
         """Return the same values without the observers."""

@@ -10,16 +10,9 @@ __all__ = ["block_means"]
 
 
 def block_means(data: AnyArray, factor: int, axis: int = 0) -> AnyArray:
-    """Average blocks of ``factor`` x ``factor`` entries.
+    """Average blocks of ``factor`` x ``factor`` entries of (..., J, I, ...), with J on ``axis``.
 
-    Parameters
-    ----------
-    data
-        (..., J, I, ...).
-    factor
-        Entries along each side of a block. Lines that do not fill a block are dropped.
-    axis
-        Axis along which j runs; i runs along the next one.
+    Lines that do not fill a block are dropped.
     """
     rows, columns = (n // factor for n in data.shape[axis : axis + 2])
     whole = (*(slice(None),) * axis, slice(rows * factor), slice(columns * factor))

@@ -62,17 +62,9 @@ class WeakCache(Generic[V]):
     def get(self, key: Hashable, make: Callable[[], V], *, owner: object | None = None) -> V:
         """Return the value of a key, computing it on the first call.
 
-        Threads that ask for the same key meanwhile wait for the value.
-
-        Parameters
-        ----------
-        key
-            Two keys that compare equal have one value.
-        make
-            Computes the value; it must not ask for the same key.
-        owner
-            Object that the value belongs to: it has values of its own for each key, which live as
-            long as the object. They must not refer to it, or neither is ever freed.
+        Threads that ask for the same key meanwhile wait for the value, so ``make`` must not ask for
+        it. An ``owner`` has values of its own for each key, which live as long as it does; they
+        must not refer to it, or neither is ever freed.
         """
         if owner is not None:
             key = (weakref.ref(owner), key)
@@ -90,16 +82,9 @@ class WeakCache(Generic[V]):
 class ByteCache(Generic[K, S]):
     """Values by key, up to a size in memory; the ones used longest ago are dropped first.
 
-    All methods may be called from any thread.
-
-    Parameters
-    ----------
-    max_bytes
-        Size that the values may have together, by their ``nbytes``.
-    min_count
-        Number of values that stay however large they are.
-    max_count
-        Number of values that may stay however small they are.
+    The values together may have ``max_bytes``, by their ``nbytes``; ``min_count`` of them stay
+    however large they are, and not more than ``max_count`` however small. All methods may be called
+    from any thread.
     """
 
     def __init__(self, max_bytes: int, *, min_count: int = 1, max_count: int | None = None) -> None:
@@ -166,15 +151,7 @@ class ByteCache(Generic[K, S]):
 
 
 def digest(*arrays: AnyArray, words: Iterable[object] = ()) -> bytes:
-    """Return a hash of arrays: of their values, types and shapes, 16 bytes.
-
-    Parameters
-    ----------
-    *arrays
-        Of any shape.
-    words
-        What else makes a difference, by its ``repr``.
-    """
+    """Return a hash, 16 bytes, of arrays' values, types and shapes, and of the words' ``repr``."""
     result = hashlib.blake2b(repr(tuple(words)).encode(), digest_size=16)
     for array in arrays:
         result.update(f"{array.dtype.str}{array.shape}".encode())

@@ -18,15 +18,13 @@ ENTRIES = 256
 def rgb(colour: Any) -> tuple[float, float, float]:
     """Return a colour of any form that PyVista takes as red, green and blue from 0 to 1.
 
-    Raises
-    ------
-    ValueError
-        When there is no such colour.
+    Raises a ValueError when there is no such colour.
     """
     if isinstance(colour, str):
         from matplotlib.colors import is_color_like, to_rgb
 
-        if is_color_like(colour) and not _is_grey_number(colour):
+        # A text such as "0.5" is a grey to matplotlib, and no colour to PyVista.
+        if is_color_like(colour) and not colour.replace(".", "", 1).isdecimal():
             return to_rgb(colour)
     import pyvista as pv
 
@@ -34,24 +32,11 @@ def rgb(colour: Any) -> tuple[float, float, float]:
     return red, green, blue
 
 
-def _is_grey_number(text: str) -> bool:
-    """Tell whether matplotlib takes a text for a grey, which PyVista does not."""
-    return text.replace(".", "", 1).isdecimal()
-
-
 def colour_table(cmap: Any | None) -> Bytes:
     """Return a colour map as (256, 4).
 
-    Parameters
-    ----------
-    cmap
-        A name, a map of matplotlib's, or a table as PyVista takes them; or an array (N, 3 or 4),
-        uint8 or from 0 to 1.
-
-    Raises
-    ------
-    ValueError
-        When there is no such map.
+    It may be a name, a map of matplotlib's or a table as PyVista takes them, or an array
+    (N, 3 or 4), uint8 or from 0 to 1. Anything else raises a ValueError.
     """
     if isinstance(cmap, np.ndarray):
         return _resampled(cmap)

@@ -12,22 +12,10 @@ __all__ = ["WholeFile", "whole_file"]
 
 
 class WholeFile:
-    """A temporary file that replaces another once it is complete.
+    """A temporary file that replaces another, ``path``, once it is complete.
 
-    Parameters
-    ----------
-    path
-        The file to write.
-
-    Attributes
-    ----------
-    part
-        The temporary file, which ends as ``path`` does and is empty to begin with.
-
-    Raises
-    ------
-    OSError
-        When there is no such folder, or no right to write there.
+    The temporary file, ``part``, ends as ``path`` does and is empty to begin with. An OSError says
+    that there is no such folder, or no right to write there.
     """
 
     def __init__(self, path: Path) -> None:

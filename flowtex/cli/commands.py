@@ -46,18 +46,10 @@ def doctor() -> int:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run a command and return the exit code.
+    """Run a command, by default that of the process, and return the exit code.
 
-    Parameters
-    ----------
-    arguments
-        Words of the command line; those of the process by default.
-
-    Returns
-    -------
-    int
-        0 when all went well, 2 when something was asked for that cannot be, 1 when there is no
-        OpenGL, and for ``doctor`` when something is missing.
+    It is 0 when all went well, 2 when something was asked for that cannot be, 1 when there is no
+    OpenGL, and for ``doctor`` when something is missing.
     """
     words = list(sys.argv[1:] if arguments is None else arguments)
     debug = "--debug" in words

@@ -48,14 +48,7 @@ class UsageError(ValueError):
 def _flag(kind: type, name: str, text: str | None = None, **more: Any) -> Parameter:
     """Return a flag for a field of an option class.
 
-    Parameters
-    ----------
-    kind, name
-        The class and the field; its text is the help.
-    text
-        Help where a shell has another form for the value.
-    **more
-        Other arguments of ``cyclopts.Parameter``.
+    The text of the field is the help, but where a shell has another form for the value.
     """
     group = FLOW if kind is FieldOptions else PICTURE
     return Parameter(group=group, help=text or option_text(kind, name), **more)
@@ -218,15 +211,7 @@ def settings_from(flags: SettingFlags | None) -> dict[str, Any]:
 
 
 def _parsed_settings(words: tuple[str, ...]) -> dict[str, Any] | None:
-    """Read words such as ``lod=false`` as settings; ``None`` where there are none.
-
-    Raises
-    ------
-    UsageError
-        When a word is not of that form.
-    SettingsError
-        When there is no such setting, or the value is not one of its.
-    """
+    """Read words such as ``lod=false`` as settings; ``None`` where there are none."""
     values: dict[str, Any] = {}
     for word in words:
         name, equals, text = word.partition("=")

@@ -34,7 +34,7 @@ from flowtex.cli.options import (
 
 __all__ = ["export", "movie", "render"]
 
-#: Share of the flow that may leave the surface before it is said.
+#: Share of the flow that may leave the surface before the message has it.
 NOTABLE_LOSS = 0.01
 
 

@@ -22,19 +22,13 @@ from flowtex._util.array_types import Floats
 
 Complex = NDArray[np.complex128]
 
-__all__ = ["Joukowski"]
-
 
 @dataclass(frozen=True)
 class Joukowski:
     """An airfoil of unit chord in a stream of unit speed.
 
-    Attributes
-    ----------
-    center : complex
-        Centre of the circle: its real part, negative, gives thickness; its imaginary part camber.
-    incidence : float
-        Angle of the stream to the x axis, in degrees.
+    The real part of the circle's ``center``, negative, gives thickness, its imaginary part camber.
+    ``incidence`` is the angle of the stream to the x axis, in degrees.
     """
 
     center: complex = -0.1 + 0.08j
@@ -67,19 +61,10 @@ class Joukowski:
         return np.asarray(circle + 1.0 / circle)
 
     def grid(self, rows: int, columns: int, extent: float) -> Complex:
-        """Nodes in the plane of the circle.
+        """Nodes (rows, columns) in the plane of the circle, outwards and around.
 
-        Parameters
-        ----------
-        rows, columns : int
-            Nodes outwards and around; the last column repeats the first.
-        extent : float
-            Distance of the outer ring from the airfoil, in chords, roughly.
-
-        Returns
-        -------
-        ndarray of complex, shape (rows, columns)
-            From the trailing edge clockwise, along the lower side first.
+        They begin at the trailing edge and go clockwise, along the lower side first; the last
+        column repeats the first. The outer ring is ``extent`` chords from the airfoil, roughly.
         """
         angles = self.edge - np.linspace(0.0, 2.0 * np.pi, columns)
         angles[-1] = angles[0]
@@ -94,13 +79,7 @@ class Joukowski:
         return np.stack([z.real, z.imag], axis=-1)
 
     def velocity(self, nodes: Complex) -> Floats:
-        """Velocity (..., 2) in the airfoil's plane; finite at the trailing edge.
-
-        Parameters
-        ----------
-        nodes : ndarray of complex
-            Points in the plane of the circle, on it or outside.
-        """
+        """Velocity (..., 2) in the airfoil's plane at nodes in that of the circle."""
         turn = np.exp(1j * np.radians(self.incidence))
         s = nodes - self.center
         swirl = 1j * self.circulation / (2.0 * np.pi)

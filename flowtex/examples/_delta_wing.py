@@ -18,8 +18,6 @@ import numpy as np
 
 from flowtex._util.array_types import Floats
 
-__all__ = ["arrays"]
-
 #: Half span at the nose, of the body, and at the tail; where along the body the wings begin.
 NOSE, BODY, SPAN, WINGS = 0.012, 0.085, 0.46, 0.34
 #: Length over which the nose widens, and over which it rises.
@@ -31,13 +29,7 @@ SWIRL, INCIDENCE = 2.0, 12.0
 
 
 def arrays(shape: tuple[int, int]) -> tuple[Floats, Floats]:
-    """Nodes (J, I, 3) and velocity (J, I, 3); j across and i along the body.
-
-    Parameters
-    ----------
-    shape : tuple of int
-        Nodes across and along, (J, I).
-    """
+    """Nodes (J, I, 3) and velocity (J, I, 3); j across and i along the body."""
     rows, columns = shape
     across, along = np.linspace(-1.0, 1.0, rows), np.linspace(0.0, 1.0, columns)
     s = np.sign(across) * _crowded(np.abs(across))

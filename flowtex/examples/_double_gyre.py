@@ -12,8 +12,6 @@ from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import Floats
 
-__all__ = ["AMPLITUDE", "EPSILON", "PERIOD", "double_gyre_velocity", "nodes", "vorticity"]
-
 AMPLITUDE, EPSILON, PERIOD = 0.1, 0.25, 10.0
 
 

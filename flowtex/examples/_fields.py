@@ -12,17 +12,6 @@ from flowtex.examples import _delta_wing, _double_gyre, _shipped
 from flowtex.examples._airfoil import Joukowski
 from flowtex.field import FlowField
 
-__all__ = [
-    "NAMES",
-    "airfoil_field",
-    "cylinder_field",
-    "delta_wing_field",
-    "double_gyre_at",
-    "double_gyre_field",
-    "liquid_oxygen_post_field",
-    "vortex_field",
-]
-
 
 def cylinder_field() -> FlowField:
     """One period of vortex shedding behind a circular cylinder, Reynolds number 100.

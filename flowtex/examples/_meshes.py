@@ -22,20 +22,6 @@ from flowtex.field import FlowField
 if TYPE_CHECKING:
     import pyvista as pv
 
-__all__ = [
-    "airfoil",
-    "cylinder",
-    "cylinder_series",
-    "delta_wing",
-    "double_gyre",
-    "double_gyre_series",
-    "liquid_oxygen_post",
-    "to_grid",
-    "to_series",
-    "vortex",
-    "vortex_series",
-]
-
 
 def cylinder() -> pv.StructuredGrid:
     """Vortex shedding behind a cylinder: the last instant of :func:`cylinder_field`.
@@ -66,8 +52,7 @@ def vortex() -> pv.StructuredGrid:
     Returns
     -------
     pyvista.StructuredGrid
-        100 x 100 x 1 nodes on the unit square; point arrays ``velocity`` and ``vorticity``, and
-        the field data ``TimeValue``.
+        100 x 100 x 1 nodes on the unit square, with the arrays of :func:`cylinder`.
     """
     return to_grid(vortex_field())
 
@@ -144,11 +129,6 @@ def delta_wing() -> pv.StructuredGrid:
 def liquid_oxygen_post(folder: str | Path | None = None, plane: str = "k=20") -> pv.StructuredGrid:
     """Flow around NASA's liquid-oxygen post, as :func:`liquid_oxygen_post_field`.
 
-    Parameters
-    ----------
-    folder, plane
-        As for :func:`liquid_oxygen_post_field`.
-
     Returns
     -------
     pyvista.StructuredGrid
@@ -191,11 +171,6 @@ def to_grid(field: FlowField, step: int = -1) -> pv.StructuredGrid:
 
 def to_series(field: FlowField) -> list[pv.StructuredGrid]:
     """Every instant of a field as a mesh.
-
-    Parameters
-    ----------
-    field : FlowField
-        Surface and velocity.
 
     Returns
     -------

@@ -16,19 +16,6 @@ from scipy.interpolate import CubicSpline
 
 from flowtex._util.array_types import AnyArray, Floats
 
-__all__ = [
-    "CYLINDER",
-    "DATA",
-    "VORTEX",
-    "cylinder_arrays",
-    "find_post",
-    "load",
-    "periodic_velocity",
-    "polar_vorticity",
-    "unpack",
-    "vortex_arrays",
-]
-
 #: Folder of the shipped files, and their names.
 DATA = Path(__file__).parent / "data"
 CYLINDER, VORTEX = "cylinder.npz", "vortex.npz"
@@ -48,19 +35,10 @@ def cylinder_arrays() -> tuple[Floats, Floats, Floats]:
 
 
 def polar_vorticity(points: Floats, velocity: Floats) -> Floats:
-    """Vorticity of a flow on the polar grid.
+    """Vorticity (T, J, I) of a flow on circles around the origin, whose last column is the first.
 
-    Parameters
-    ----------
-    points
-        Nodes (J, I, 2) on circles around the origin, evenly spaced, the last column the first.
-    velocity
-        Velocity at the nodes, (T, J, I, 2).
-
-    Returns
-    -------
-    numpy.ndarray
-        Vorticity, (T, J, I): spectral derivatives around, cubic splines outwards.
+    The nodes (J, I, 2) are evenly spaced around. Derivatives are spectral around, and by cubic
+    splines outwards.
     """
     radii = np.hypot(points[:, 0, 0], points[:, 0, 1])
     open_points, open_velocity = points[:, :-1], velocity[:, :, :-1]
@@ -95,17 +73,9 @@ def vortex_arrays() -> tuple[Floats, Floats, Floats, Floats]:
 
 
 def periodic_velocity(vorticity: NDArray[np.complex128]) -> Floats:
-    """Velocity in a periodic unit box from its vorticity.
+    """Velocity (N, N, 2) in a periodic unit box, in boxes per unit of time, from its vorticity.
 
-    Parameters
-    ----------
-    vorticity
-        Fourier coefficients of the vorticity as from ``scipy.fft.rfft2``, (N, N // 2 + 1).
-
-    Returns
-    -------
-    numpy.ndarray
-        Velocity at the nodes, (N, N, 2), in boxes per unit of time.
+    The vorticity comes as Fourier coefficients from ``scipy.fft.rfft2``, (N, N // 2 + 1).
     """
     size = len(vorticity)
     ky = 2.0 * np.pi * fft.fftfreq(size, 1.0 / size)[:, None]
@@ -119,10 +89,7 @@ def periodic_velocity(vorticity: NDArray[np.complex128]) -> Floats:
 def load(name: str) -> dict[str, AnyArray]:
     """Return the arrays of a shipped file by name.
 
-    Raises
-    ------
-    FileNotFoundError
-        When the installation lacks the file.
+    Raises a FileNotFoundError when the installation lacks the file.
     """
     path = DATA / name
     if not path.is_file():
@@ -136,34 +103,16 @@ def load(name: str) -> dict[str, AnyArray]:
 
 
 def unpack(differences: NDArray[np.int16], step: float, axis: int) -> Floats:
-    """Return the numbers whose whole-numbered differences along an axis were stored.
-
-    Parameters
-    ----------
-    differences
-        Differences modulo 2^16, of any shape.
-    step
-        Value of one whole step.
-    axis
-        Axis of the differences.
-    """
+    """Return numbers whose whole-numbered differences along an axis, modulo 2^16, were stored."""
     # Unsigned numbers wrap around by definition.
     whole = np.cumsum(differences.view(np.uint16), axis=axis, dtype=np.uint16).view(np.int16)
     return whole.astype(np.float64) * step
 
 
 def find_post(folder: str | Path | None = None) -> Path:
-    """Path of the grid, with the solution beside it.
+    """Path of the grid, with the solution beside it; PyVista fetches both where no folder is given.
 
-    Parameters
-    ----------
-    folder
-        Folder with both files. By default PyVista fetches them into its cache.
-
-    Raises
-    ------
-    FileNotFoundError
-        When a file is missing and, without a folder, cannot be downloaded.
+    Raises a FileNotFoundError when a file is missing or cannot be downloaded.
     """
     if folder is None:
         return _downloaded()

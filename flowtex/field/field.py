@@ -108,7 +108,7 @@ class FlowField:
             Nodes that carry data, (J, I). All of them by default.
         periodic
             Axes that close on themselves: ``""``, ``"i"``, ``"j"`` or ``"ij"``. By default it
-            it is detected: coinciding first and last lines of nodes, a ring that stops one cell
+            is detected: coinciding first and last lines of nodes, a ring that stops one cell
             short, and global longitude on a flat map.
         scalars
             Further nodal arrays, name to (J, I) or (T, J, I), to colour by.
@@ -328,7 +328,14 @@ class FlowField:
         return self.index_velocity.normal_share
 
     def at_step(self, step: int) -> FlowField:
-        """Return one time step of this field as a steady field.
+        """Return one time step, as for :meth:`step_number`, as a steady field."""
+        step = self.step_number(step)
+        data = {k: s[step : step + 1] if len(s) > 1 else s for k, s in self.scalars.items()}
+        at = slice(step, step + 1)
+        return replace(self, velocity=self.velocity[at], times=self.times[at], scalars=data)
+
+    def step_number(self, step: int) -> int:
+        """Return the number of a time step from 0, where negative ones count from the end.
 
         Raises
         ------
@@ -339,10 +346,7 @@ class FlowField:
         if not -count <= step < count:
             msg = f"time step {step} does not exist: expected 0 to {count - 1}"
             raise IndexError(msg)
-        step %= count
-        data = {k: s[step : step + 1] if len(s) > 1 else s for k, s in self.scalars.items()}
-        at = slice(step, step + 1)
-        return replace(self, velocity=self.velocity[at], times=self.times[at], scalars=data)
+        return int(step) % count
 
     def downsample(self, factor: int) -> FlowField:
         """Keep every ``factor``-th node along both axes, and the last line of a closed axis.
@@ -359,13 +363,9 @@ class FlowField:
         return self.at_lines(rows, columns)
 
     def at_lines(self, rows: Indices, columns: Indices) -> FlowField:
-        """Return the field on some of its lines of nodes.
+        """Return the field on some of its lines of nodes, whose numbers along j and i increase.
 
-        Parameters
-        ----------
-        rows, columns
-            Increasing numbers of the lines along j and i. An axis that closes on itself keeps
-            its first and its last line.
+        An axis that closes on itself keeps its first and its last line.
         """
         at = np.ix_(rows, columns)
         return replace(

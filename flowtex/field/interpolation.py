@@ -33,21 +33,9 @@ def nearest_known(known: Bools) -> tuple[Indices, Indices]:
 
 
 def fill_blanked(data: A, known: Bools, axis: int = 0) -> A:
-    """Give nodes that are not known the value of the nearest one that is.
+    """Give nodes of (..., J, I, ...) that are not known (J, I) the value of the nearest that is.
 
-    Parameters
-    ----------
-    data
-        Nodal values, (..., J, I, ...).
-    known
-        Nodes whose values count, (J, I).
-    axis
-        Axis of the data along which j runs; i runs along the next one.
-
-    Returns
-    -------
-    numpy.ndarray
-        A copy, or the data themselves where all nodes are known.
+    J runs along ``axis``. Returns a copy, or the data themselves where all nodes are known.
     """
     if known.all():
         return data
@@ -59,24 +47,11 @@ def fill_blanked(data: A, known: Bools, axis: int = 0) -> A:
 def bracket(
     line: Floats, values: Any, *, side: Literal["left", "right"] = "right"
 ) -> tuple[Any, Any]:
-    """Find the interval of an increasing line in which values lie.
+    """Find the interval of an increasing line (N,) in which values of any shape lie.
 
-    Parameters
-    ----------
-    line
-        Two or more increasing numbers, (N,).
-    values
-        Numbers of any shape; those beyond an end belong to the first or the last interval.
-    side
-        Which interval has a value that is equal to a number of the line: with ``"right"`` the one
-        that begins there, with ``"left"`` the one that ends there.
-
-    Returns
-    -------
-    interval
-        Number of the interval, from 0 to N - 2, in the shape of the values.
-    share
-        Distance from its start, in lengths of the interval; between 0 and 1 inside the line.
+    Returns its number, 0 to N - 2, and the distance from its start in lengths of the interval.
+    Values beyond an end belong to the first or the last interval. A value equal to a number of the
+    line has the interval that begins there, with ``side="left"`` the one that ends there.
     """
     interval = np.clip(np.searchsorted(line, values, side=side) - 1, 0, len(line) - 2)
     return interval, (values - line[interval]) / (line[interval + 1] - line[interval])
@@ -94,22 +69,10 @@ def steps_around(times: Floats, time: float) -> tuple[int, int, float]:
 
 
 def cell_of(index: Floats, count: int, *, periodic: bool) -> tuple[Indices, Floats, Floats, Floats]:
-    """Find the cells of positions along one axis.
+    """Find the cells of positions (N,), given in cells, along an axis of ``count`` nodes.
 
-    Parameters
-    ----------
-    index
-        Positions in cells, (N,).
-    count
-        Number of nodes along the axis.
-    periodic
-        Whether the last node is the first one again.
-
-    Returns
-    -------
-    cell, inside, beyond, turns
-        Number of the cell; fraction of it that lies before the position; distance beyond the
-        nearer end, signed, where the axis is not periodic; whole periods, where it is. (N,) each.
+    Returns (N,) each: number of the cell; fraction of it that lies before the position; distance
+    beyond the nearer end, signed, where the axis is not periodic; whole periods, where it is.
     """
     cells = count - 1
     turns = np.floor(index / cells) if periodic else np.zeros_like(index)
@@ -131,30 +94,18 @@ def cubic_weights(t: Floats) -> tuple[Floats, Floats, Floats, Floats]:
 
 
 def between_nodes(nodal: AnyArray, index: Floats) -> Floats:
-    """Interpolate nodal values linearly between the nodes, constant beyond the border.
+    """Interpolate nodal values (J, I) linearly at positions (..., 2) as (i, j), in cells.
 
-    Parameters
-    ----------
-    nodal
-        Values at the nodes, (J, I).
-    index
-        Positions as (i, j), in cells, (..., 2).
+    Beyond the border they are constant.
     """
     at = [index[..., 1], index[..., 0]]
     return np.asarray(ndimage.map_coordinates(nodal.astype(float), at, order=1, mode="nearest"))
 
 
 def along_line(line: Floats, index: Floats, *, periodic: bool) -> Floats:
-    """Interpolate the values of a line of nodes at any index.
+    """Interpolate the increasing values of a line of nodes (N,) at any index, of any shape.
 
-    Parameters
-    ----------
-    line
-        Increasing values, (N,). One period is as long as the last value less the first.
-    index
-        Positions in cells, of any shape.
-    periodic
-        Whether the values go on by a period beyond each end; straight on otherwise.
+    They go on straight beyond each end, or by a period, the last value less the first.
     """
     last = len(line) - 1
     if periodic:

@@ -49,14 +49,8 @@ TRIANGLES = (((0, 0), (0, 1), (1, 1)), ((0, 0), (1, 1), (1, 0)))
 class SurfacePoint:
     """A point on a triangle of the surface.
 
-    Attributes
-    ----------
-    index
-        The point as (j, i), folded back into one period.
-    nodes
-        Numbers of the three corners, (3,): j times the number of columns, plus i.
-    weights
-        Share of each corner, (3,); they sum to one.
+    ``index`` is the point as (j, i), folded back into one period; ``nodes`` (3,) are the numbers of
+    the corners, j times the number of columns plus i; ``weights`` (3,) are their shares.
     """
 
     index: tuple[float, float]
@@ -73,19 +67,10 @@ class SurfacePoint:
 
 
 def surface_point(surface: Surface, index: ArrayLike) -> SurfacePoint:
-    """Find the point of a surface at a position in index space.
+    """Return the point of a surface at (j, i) in cells; an axis that closes takes any number.
 
-    Parameters
-    ----------
-    surface
-        The surface.
-    index
-        (j, i) in cells. An axis that closes on itself takes any number.
-
-    Raises
-    ------
-    ValueError
-        When the index is no pair of numbers, or outside the surface or in a cell that is not drawn.
+    Raises a ValueError when the index is no pair of numbers, or outside the surface or in a cell
+    that is not drawn.
     """
     at = np.asarray(index, dtype=float)
     if at.shape != (2,) or not np.isfinite(at).all():
@@ -143,20 +128,10 @@ class Locator:
         )
 
     def nearest(self, points: Floats) -> tuple[Floats, Floats]:
-        """Find the nearest points of the surface as it is drawn.
+        """Find the points of the surface as it is drawn that are nearest to points (P, 3) in space.
 
-        Parameters
-        ----------
-        points
-            Points in the mesh's own coordinates, (P, 3). On a flat map of one period,
-            points in the periods beside it count as well.
-
-        Returns
-        -------
-        index
-            (j, i) of the nearest points, (P, 2).
-        distance
-            How far they are, in sizes of their cell, (P,).
+        Returns them as (j, i), (P, 2), and how far they are in sizes of their cell, (P,). On a flat
+        map of one period, points in the periods beside it count as well.
         """
         starts = min(START_NODES, len(self._number))
         targets = (points[:, None] - self._shifts).reshape(-1, 3)
@@ -331,30 +306,13 @@ def locator(field: FlowField) -> Locator:
 def locate(
     field: FlowField, point: ArrayLike, *, tolerance: float = 0.1
 ) -> tuple[float, float] | None:
-    """Find where on the surface a point lies.
+    """Return (j, i), in cells, of a point (3,), or (2,) with z = 0, in the mesh's own coordinates.
 
-    The surface consists of triangles as renderers draw it, so points of a picture are exact. The
-    first call for a field builds a tree of its nodes; the next ones take about a millisecond.
-
-    Parameters
-    ----------
-    field
-        The flow.
-    point
-        Point in the mesh's own coordinates, (3,), or (2,) with z = 0.
-    tolerance
-        How far from the surface, or beside it, it may lie, in sizes of the nearest cell. Another
-        program's triangles may cut a curved cell the other way.
-
-    Returns
-    -------
-    tuple of float or None
-        (j, i) in cells; ``None`` where there is no surface, or none that is drawn.
-
-    Raises
-    ------
-    ValueError
-        When the point is not two or three finite numbers.
+    ``None`` where no surface is drawn within ``tolerance`` sizes of the nearest cell: another
+    program's triangles may cut a curved cell the other way. The surface consists of triangles as
+    renderers draw it, so points of a picture are exact. The first call for a field builds a tree of
+    its nodes; the next ones take about a millisecond. Raises a ValueError when the point is not two
+    or three finite numbers.
     """
     at = np.asarray(point, dtype=float)
     if at.shape not in ((2,), (3,)) or not np.isfinite(at).all():

@@ -33,16 +33,10 @@ COLLAPSED_AREA = 1e-10
 class IndexVelocity:
     """A velocity field in index space.
 
-    Attributes
-    ----------
-    components
-        (u_i, u_j) in cells per unit of time, (T, J, I, 2).
-    speed
-        Length of the velocity along the surface, in the mesh's units per unit of time,
-        (T, J, I).
-    normal_share
-        Share of the flow that points out of the surface: root mean square of the normal part
-        over that of the whole, between 0 and 1.
+    ``components`` (T, J, I, 2) are (u_i, u_j) in cells per unit of time, and ``speed`` (T, J, I) is
+    the length of the velocity along the surface in the mesh's units per unit of time.
+    ``normal_share`` is the root mean square of the part that points out of the surface over that of
+    the whole, 0 to 1.
     """
 
     components: Floats
@@ -51,15 +45,7 @@ class IndexVelocity:
 
 
 def to_index_space(surface: Surface, velocity: Floats) -> IndexVelocity:
-    """Project a velocity onto a surface and express it in cells per unit of time.
-
-    Parameters
-    ----------
-    surface
-        The surface, (J, I) nodes.
-    velocity
-        Velocity in space, (T, J, I, 3); zero at nodes that are not valid.
-    """
+    """Express a velocity (T, J, I, 3), zero at nodes that are not valid, in index space."""
     p_i, p_j = surface.tangents
     g_ii, g_jj, g_ij = (np.sum(a * b, axis=-1) for a, b in ((p_i, p_i), (p_j, p_j), (p_i, p_j)))
     determinant = g_ii * g_jj - g_ij**2

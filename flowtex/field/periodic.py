@@ -17,7 +17,7 @@ import numpy as np
 
 from flowtex._util.array_types import AnyArray, Bools, Floats
 
-__all__ = ["Closure", "NodalArrays", "close_axes", "find_closure", "requested_closure"]
+__all__ = ["NodalArrays", "close_axes", "find_closure"]
 
 A = TypeVar("A", bound=AnyArray)
 
@@ -39,18 +39,9 @@ class Closure:
 
 @dataclass(frozen=True)
 class NodalArrays:
-    """Arrays at the nodes of a surface.
+    """Nodal arrays as :meth:`FlowField.from_arrays` takes them, all dimensions present.
 
-    Attributes
-    ----------
-    points
-        Positions, (J, I, 3).
-    velocity
-        Velocity, (T, J, I, 3).
-    valid
-        Nodes that carry data, (J, I).
-    scalars
-        Other arrays, name to (T or 1, J, I).
+    Points are (J, I, 3), velocity (T, J, I, 3), valid (J, I), and scalars (T or 1, J, I) each.
     """
 
     points: Floats
@@ -62,17 +53,8 @@ class NodalArrays:
 def close_axes(nodal: NodalArrays, periodic: str | None) -> tuple[NodalArrays, tuple[bool, bool]]:
     """Close the periodic axes: append a missing line, or give two that coincide equal values.
 
-    Parameters
-    ----------
-    nodal
-        The arrays as they came.
-    periodic
-        Axes that close, such as ``"i"`` or ``"ij"``; ``None`` to find out.
-
-    Returns
-    -------
-    nodal, periodic
-        The closed arrays, and whether the (j, i) axis closes on itself.
+    ``periodic`` names the axes, such as ``"ij"``, or is ``None`` to find out. Returns the closed
+    arrays, and whether the (j, i) axis closes on itself.
     """
     closed = [False, False]
     for axis, letter in ((0, "j"), (1, "i")):
@@ -81,7 +63,7 @@ def close_axes(nodal: NodalArrays, periodic: str | None) -> tuple[NodalArrays, t
             known = np.swapaxes(nodal.valid, 0, axis)[..., None]
             closure = find_closure(np.where(known, lines, np.nan))
         elif letter in periodic:
-            closure = requested_closure(lines, np.swapaxes(nodal.velocity, 1, axis + 1))
+            closure = _requested_closure(lines, np.swapaxes(nodal.velocity, 1, axis + 1))
         else:
             closure = Closure(periodic=False)
         closed[axis] = closure.periodic
@@ -112,7 +94,7 @@ def find_closure(points: Floats) -> Closure:
     return Closure(periodic=False)
 
 
-def requested_closure(points: Floats, velocity: Floats) -> Closure:
+def _requested_closure(points: Floats, velocity: Floats) -> Closure:
     """Close the first axis as the caller asks, appending a line where it is needed.
 
     ``velocity`` is (T, N, M, 3): a flat map whose last line already carries the values of its

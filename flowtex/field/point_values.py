@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from flowtex._util.array_types import Floats
 from flowtex.field.field import FlowField
 from flowtex.field.interpolation import steps_around
-from flowtex.field.locate import SurfacePoint, surface_point
+from flowtex.field.locate import surface_point
 from flowtex.field.signs import weighted_axis
 
 __all__ = ["PointValues", "values_at"]
@@ -21,22 +21,9 @@ __all__ = ["PointValues", "values_at"]
 class PointValues:
     """The values of a field at one point of the surface and one time.
 
-    Attributes
-    ----------
-    index
-        The point as (j, i), in cells.
-    position
-        The point in space, (3,), in the mesh's own units.
-    velocity
-        Velocity there, (3,), in the mesh's units per unit of time.
-    speed
-        Speed along the surface, in the same unit; what colours show.
-    scalars
-        Values of the field's other arrays, by name.
-    time
-        The time of the values, in the field's own unit.
-    length_unit, time_unit
-        Words for captions; empty when unknown.
+    ``index`` is (j, i) in cells, ``position`` (3,) in the mesh's units, ``velocity`` (3,) in the
+    mesh's units per unit of time, and ``speed`` its length along the surface, which is what colours
+    show.
     """
 
     index: tuple[float, float]
@@ -70,8 +57,7 @@ def values_at(field: FlowField, index: ArrayLike, time: float | None = None) -> 
     field
         The flow.
     index
-        (j, i) in cells, as :func:`~flowtex.field.locate.locate` finds it. An axis that closes on
-        itself takes any number.
+        (j, i) in cells, as for :func:`~flowtex.field.locate.surface_point`.
     time
         Time in the field's own unit; the last one by default. A steady field has one time.
 
@@ -94,18 +80,17 @@ def values_at(field: FlowField, index: ArrayLike, time: float | None = None) -> 
         a, b = (point.interpolate(steps[n]) for n in (before, after))
         return np.asarray(a * (1 - share) + b * share)
 
+    if field.sign_free:
+        velocity = weighted_axis(point.corners(field.velocity[0]), point.weights)
+    else:
+        velocity = value(field.velocity)
     return PointValues(
         index=point.index,
         position=point.interpolate(field.surface.points),
-        velocity=_axis(field, point) if field.sign_free else value(field.velocity),
+        velocity=velocity,
         speed=float(value(field.speed)),
         scalars={name: float(value(steps)) for name, steps in field.scalars.items()},
         time=at,
         length_unit=field.length_unit,
         time_unit=field.time_unit,
     )
-
-
-def _axis(field: FlowField, point: SurfacePoint) -> Floats:
-    """Return the vector of a field without a sign."""
-    return weighted_axis(point.corners(field.velocity[0]), point.weights)

@@ -19,16 +19,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TypeAlias
 
 import numpy as np
 
 from flowtex._util.array_types import AnyArray, Bools, Floats
 
 __all__ = ["Pole", "Poles", "find_poles"]
-
-#: Of single or double precision, as it comes in.
-Reals: TypeAlias = AnyArray
 
 #: Nodes closer than this share of the distance to the next line lie at one point.
 SAME_POINT_SHARE = 1e-3
@@ -38,22 +34,12 @@ EVEN_CELLS = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Pole:
-    """One pole.
+    """One pole: the value ``line`` of one component of positions (i, j), 0 or 1.
 
-    Attributes
-    ----------
-    component
-        Component of a position (i, j) that counts from the pole: 0 or 1.
-    line
-        Its value at the pole.
-    inward
-        1 where it grows away from the pole, -1 where it falls.
-    plane
-        Two orthonormal rows that span the plane at the pole, (2, 3). Lines around the pole turn
-        from the first to the second.
-    rays
-        How far a cell along each line that leads to the pole goes in that plane, (n + 1, 2), in
-        the mesh's units; the last is the first again.
+    ``inward`` is 1 where the component grows away from the pole, -1 where it falls. ``plane`` holds
+    two orthonormal rows that span the plane at the pole, (2, 3); lines around the pole turn from
+    the first to the second. ``rays`` says how far a cell along each line that leads to the pole
+    goes in that plane, (n + 1, 2), in the mesh's units; the last is the first again.
     """
 
     component: int
@@ -97,11 +83,11 @@ class Pole:
         """Nodal data, (..., J, I, ...) from ``axis`` on, as (..., lines, n + 1, ...): a view."""
         return nodal if self.component else np.swapaxes(nodal, axis, axis + 1)
 
-    def depth(self, position: Reals) -> Reals:
+    def depth(self, position: AnyArray) -> AnyArray:
         """Cells between the pole and positions (2, N) that are not beyond it, (N,)."""
         return np.asarray((position[self.component] - self.line) * self.inward)
 
-    def opposite(self, around: Reals) -> Reals:
+    def opposite(self, around: AnyArray) -> AnyArray:
         """Index, up to one turn further, of the line straight ahead beyond the pole."""
         if self._even:
             return np.asarray(around + around.dtype.type(self.cells / 2))
@@ -177,7 +163,7 @@ class Poles:
         """Component of a position (i, j) that leads from pole to pole."""
         return next(iter(self)).component
 
-    def fold(self, position: Reals) -> Reals:
+    def fold(self, position: AnyArray) -> AnyArray:
         """Positions (2, N) with those beyond a pole given as the points that they are."""
         end = self.lines - 1
         low, high = self.first is not None, self.last is not None
@@ -197,14 +183,14 @@ class Poles:
         result[c][outside], result[a][outside] = x, y
         return result
 
-    def mirrored(self, position: Reals) -> Bools:
+    def mirrored(self, position: AnyArray) -> Bools:
         """Where (2, N) index space is that of the far side, and runs towards a pole, not away."""
         outside = self._outside(position)
         if outside.any() and self.first is not None and self.last is not None:
             outside &= np.floor(position[self.component] / (self.lines - 1)) % 2 != 0
         return outside
 
-    def _outside(self, position: Reals) -> Bools:
+    def _outside(self, position: AnyArray) -> Bools:
         across = position[self.component]
         outside = np.zeros(across.shape, bool)
         if self.first is not None:
@@ -217,18 +203,10 @@ class Poles:
 def find_poles(
     points: Floats, usable: Bools, valid: Bools, periodic: tuple[bool, bool]
 ) -> Poles | None:
-    """Find the poles of a surface.
+    """Find the poles of a surface with nodes (J, I, 3).
 
-    Parameters
-    ----------
-    points
-        Nodes, (J, I, 3).
-    usable
-        Nodes whose coordinates can be trusted, (J, I).
-    valid
-        Nodes that carry data, (J, I); a blanked pole is a hole.
-    periodic
-        Whether the (j, i) axis closes on itself.
+    ``usable`` marks nodes whose coordinates can be trusted, ``valid`` those that carry data, (J,
+    I): a blanked pole is a hole. ``periodic`` says whether the (j, i) axis closes on itself.
     """
     if periodic[0] == periodic[1]:
         return None

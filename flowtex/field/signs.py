@@ -49,19 +49,10 @@ def sign_free_faults(v: Floats) -> list[str]:
 
 
 def oriented(velocity: Floats, valid: Bools, periodic: tuple[bool, bool]) -> Floats:
-    """Turn vectors over so that neighbours agree.
+    """Turn vectors (J, I, 3) over so that neighbours agree.
 
     Directions spread from the middle of the domain along the shortest ways, on which steps
     between nodes that hardly agree are long.
-
-    Parameters
-    ----------
-    velocity
-        Vectors, (J, I, 3).
-    valid
-        Nodes that carry data, (J, I).
-    periodic
-        Whether the last line along (j, i) is the first one again.
     """
     flat = velocity.reshape(-1, 3)
     length = np.linalg.norm(flat, axis=-1, keepdims=True)
@@ -107,18 +98,11 @@ def with_equal_ends(
 
 
 def corner_signs(vectors: AnyArray) -> NDArray[np.int8] | None:
-    """Signs that bring the corners of each cell into line with the first.
+    """Return signs that bring the corners of each cell into line with the first.
 
-    Parameters
-    ----------
-    vectors
-        Vectors at the nodes in orthonormal components, (J, I, C).
-
-    Returns
-    -------
-    numpy.ndarray or None
-        For the corners (j, i), (j, i + 1), (j + 1, i), (j + 1, i + 1) of each cell, -1 or 1,
-        (4, J, I), as far as there is a cell; ``None`` where all are 1.
+    Vectors are orthonormal components at the nodes, (J, I, C). Signs are -1 or 1, (4, J, I) as far
+    as there is a cell, for the corners (j, i), (j, i + 1), (j + 1, i), (j + 1, i + 1); ``None``
+    where all are 1.
     """
     first, *others = (vectors[:-1, :-1], vectors[:-1, 1:], vectors[1:, :-1], vectors[1:, 1:])
     signs = np.ones((4, *vectors.shape[:2]), np.int8)

@@ -32,19 +32,6 @@ class FlowSource:
     velocity
         Name of the velocity where the format of a file fixes it.
 
-    Attributes
-    ----------
-    name
-        A word for captions.
-    vectors
-        Names of the arrays that may be the velocity; empty where there is no choice.
-    dimensions
-        Number of nodes (I, J, K); ``None`` for a field.
-    blocks
-        Names of the structured grids, where there are several that are no time steps.
-    nbytes
-        Its size in memory.
-
     Raises
     ------
     FieldError
@@ -53,9 +40,13 @@ class FlowSource:
 
     def __init__(self, mesh: Any, *, name: str = "", velocity: str | None = None) -> None:
         self.name = name
+        #: Names of the arrays that may be the velocity; empty where there is no choice.
         self.vectors: tuple[str, ...] = ()
+        #: Number of nodes (I, J, K); ``None`` for a field.
         self.dimensions: tuple[int, int, int] | None = None
+        #: Names of the structured grids, where there are several that are no time steps.
         self.blocks: tuple[str, ...] = ()
+        #: Size in memory.
         self.nbytes = 0
         self._grids: dict[str, Any] = {}
         self._parts: dict[str, FlowSource] = {}
@@ -107,7 +98,7 @@ class FlowSource:
         plane
             Such as ``"k=20"``; the middle of the last axis by default, where there is a choice.
         block
-            One of :attr:`blocks`, or its number; the first by default.
+            As for :meth:`part`.
         **options
             Further arguments of :meth:`FlowField.from_pyvista`.
 
@@ -130,15 +121,8 @@ class FlowSource:
     def part(self, block: str | None = None) -> FlowSource:
         """Return the source of one of the :attr:`blocks`; this one itself where there are none.
 
-        Parameters
-        ----------
-        block
-            Its name or its number; the first by default.
-
-        Raises
-        ------
-        FieldError
-            When there is no such block.
+        The block is named, or numbered; it is the first by default. Raises a FieldError when there
+        is no such block.
         """
         if not self.blocks:
             return self
@@ -177,31 +161,5 @@ class FlowSource:
             self.nbytes += int(step.grid.actual_memory_size) * 1024
             if self.nbytes > MAX_SERIES_BYTES:
                 return steps[:1]
-        if len(steps) == 1:
-            self._mesh = steps[0].grid
-        elif all(step.time is not None for step in steps) or not isinstance(mesh, (list, tuple)):
-            self._mesh = _StepReader(steps)
+        self._mesh = steps[0].grid if len(steps) == 1 else steps
         return steps
-
-
-class _StepReader:
-    """Steps of a series in memory, with the interface of PyVista's readers."""
-
-    def __init__(self, steps: list[TimeStep]) -> None:
-        self._steps = steps
-        self._at = 0
-        known = all(step.time is not None for step in steps)
-        self.time_values = [
-            float(n if step.time is None or not known else step.time)
-            for n, step in enumerate(steps)
-        ]
-
-    @property
-    def active_time_value(self) -> float:
-        return self.time_values[self._at]
-
-    def set_active_time_value(self, time: float) -> None:
-        self._at = self.time_values.index(time)
-
-    def read(self) -> Any:
-        return self._steps[self._at].grid

@@ -18,24 +18,17 @@ from flowtex._util.array_types import Bools, Floats
 from flowtex.field.interpolation import cell_of, cubic_weights, fill_blanked
 from flowtex.field.poles import Pole, Poles, find_poles
 
-__all__ = ["Surface"]
+__all__ = ["CubicMap", "Surface"]
 
 #: Lines from a pole over which the size of the cells comes to be their length alone.
 POLE_LINES = 8
 
 
 class Surface:
-    """Nodes of a structured surface.
+    """Nodes of a structured surface, (J, I, 3), in the mesh's own units.
 
-    Parameters
-    ----------
-    points
-        Node positions, (J, I, 3), in the mesh's own units.
-    valid
-        Which nodes carry data, (J, I).
-    periodic
-        Whether the (j, i) axis closes on itself; its last line of nodes is then the first one
-        again, displaced by ``offset`` on a flat map.
+    ``valid`` (J, I) marks nodes that carry data. Where the (j, i) axis is ``periodic``, its last
+    line of nodes is the first one again, displaced by ``offset`` on a flat map.
     """
 
     def __init__(self, points: Floats, valid: Bools, periodic: tuple[bool, bool]) -> None:
@@ -65,20 +58,17 @@ class Surface:
     @cached_property
     def center(self) -> Floats:
         """Middle of the bounding box of the valid nodes, (3,)."""
-        return np.asarray((self._low + self._high) / 2)
+        return np.asarray(self._bounds.mean(axis=0))
 
     @cached_property
     def extent(self) -> float:
         """Diagonal of the bounding box of the valid nodes."""
-        return float(np.linalg.norm(self._high - self._low))
+        return float(np.linalg.norm(self._bounds[1] - self._bounds[0]))
 
     @cached_property
-    def _low(self) -> Floats:
-        return np.asarray(self.points[self.valid].min(axis=0))
-
-    @cached_property
-    def _high(self) -> Floats:
-        return np.asarray(self.points[self.valid].max(axis=0))
+    def _bounds(self) -> Floats:
+        nodes = self.points[self.valid]
+        return np.stack([nodes.min(axis=0), nodes.max(axis=0)])
 
     @cached_property
     def cells(self) -> Bools:
@@ -155,40 +145,62 @@ class Surface:
         return folded
 
     def at(self, index: Floats) -> Floats:
-        """Positions in space of positions in index space.
+        """Return positions in space (..., 3) of positions (..., 2) as (i, j) in index space.
 
-        Parameters
-        ----------
-        index
-            (i, j) in cells, (..., 2). Beyond a pole the surface goes on on its far side, and
-            straight on beyond the border of another axis that does not close.
-
-        Returns
-        -------
-        numpy.ndarray
-            Positions, (..., 3).
+        Beyond a pole the surface goes on on its far side, and straight on beyond the border of
+        another axis that does not close.
         """
-        flat = index.reshape(-1, 2)
-        if self.poles is not None:
-            flat = self.poles.fold(flat.T).T
-        result = np.zeros((len(flat), 3))
-        i0, si, beyond_i, turns_i = cell_of(flat[:, 0], self.shape[1], periodic=self.periodic[1])
-        j0, sj, beyond_j, turns_j = cell_of(flat[:, 1], self.shape[0], periodic=self.periodic[0])
+        i, j = index.reshape(-1, 2).T
+        return self._positions.at(i, j).T.reshape(*index.shape[:-1], 3)
+
+    @cached_property
+    def _positions(self) -> CubicMap:
+        return CubicMap(self, np.eye(3), np.zeros(3))
+
+
+class CubicMap:
+    """Positions of a surface relative to ``origin`` (3,), along the rows of ``frame`` (C, 3).
+
+    Made for millions of look-ups: each coordinate is an array of its own.
+    """
+
+    def __init__(self, surface: Surface, frame: Floats, origin: Floats) -> None:
+        self._shape, self._periodic, self._poles = surface.shape, surface.periodic, surface.poles
+        local = np.moveaxis(surface.tangents @ frame.T, -1, 0)
+        #: Tangents by component, (C, 2, J * I).
+        self.tangents = np.ascontiguousarray(local).reshape(len(frame), 2, -1)
+        padded = (surface.padded - origin) @ frame.T
+        self._padded = np.ascontiguousarray(padded.reshape(-1, len(frame)).T)
+        self._offset = surface.offset @ frame.T
+
+    def at(self, i: Floats, j: Floats) -> Floats:
+        """Positions (C, N) of (N,) each in index space; see :meth:`Surface.at`."""
+        rows, columns = self._shape
+        closed_j, closed_i = self._periodic
+        if self._poles is not None:
+            i, j = self._poles.fold(np.stack([i, j]))
+        i0, si, beyond_i, turns_i = cell_of(i, columns, periodic=closed_i)
+        j0, sj, beyond_j, turns_j = cell_of(j, rows, periodic=closed_j)
         wi, wj = cubic_weights(si), cubic_weights(sj)
-        width = self.shape[1] + 2
-        nodes = self.padded.reshape(-1, 3)
+        width = columns + 2
+        corner = j0 * width + i0
+        result = np.zeros((len(self._padded), len(i)))
         for b in range(4):
-            row = np.zeros((len(flat), 3))
-            for a in range(4):
-                row += wi[a][:, None] * nodes[(j0 + b) * width + i0 + a]
-            result += wj[b][:, None] * row
+            at = [corner + (b * width + a) for a in range(4)]
+            for out, nodes in zip(result, self._padded, strict=True):
+                row = wi[0] * nodes.take(at[0], mode="clip")
+                for a in range(1, 4):
+                    row += wi[a] * nodes.take(at[a], mode="clip")
+                row *= wj[b]
+                out += row
         if beyond_i.any() or beyond_j.any():
-            ni = np.clip(np.rint(flat[:, 0]), 0, self.shape[1] - 1).astype(np.intp)
-            nj = np.clip(np.rint(flat[:, 1]), 0, self.shape[0] - 1).astype(np.intp)
-            result += beyond_i[:, None] * self.tangents[0][nj, ni]
-            result += beyond_j[:, None] * self.tangents[1][nj, ni]
-        result += turns_i[:, None] * self.offset[1] + turns_j[:, None] * self.offset[0]
-        return result.reshape(*index.shape[:-1], 3)
+            near_i = np.clip(np.rint(i), 0, columns - 1).astype(np.intp)
+            near_j = np.clip(np.rint(j), 0, rows - 1).astype(np.intp)
+            tangents = self.tangents[..., near_j * columns + near_i]
+            result += beyond_i * tangents[:, 0] + beyond_j * tangents[:, 1]
+        if closed_i or closed_j:
+            result += turns_i * self._offset[1][:, None] + turns_j * self._offset[0][:, None]
+        return result
 
 
 def _has_position(points: Floats, valid: Bools) -> Bools:

@@ -1,10 +1,5 @@
 """Movies in files, written picture by picture: MP4 by PyAV, GIF and animated WebP by Pillow.
 
-::
-
-    add(picture) ... add(picture), finish()     the file is there
-    abandon()                                   nothing is there
-
 The pictures of an MP4 are encoded as they come: H.264 as every browser plays it, with matrix,
 primaries, curve and range of the colours in the file, so that players show those that were drawn.
 Pillow takes all pictures at once, so they wait in a temporary file on the disk.
@@ -17,7 +12,7 @@ from collections.abc import Callable, Iterable, Iterator
 from fractions import Fraction
 from itertools import pairwise
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 import numpy as np
 
@@ -28,183 +23,75 @@ from flowtex._util.whole_file import WholeFile
 
 __all__ = [
     "DEFAULT_QUALITY",
-    "FORMATS",
     "MovieError",
     "MovieWriter",
     "check_movie",
     "default_fps",
-    "movie_writer",
     "write_movie",
 ]
+
+Size = tuple[int, int]
+
+#: Suffixes of the files that can be written.
+FORMATS = (".mp4", ".gif", ".webp")
+#: Quality where none is asked for.
+DEFAULT_QUALITY = 80
+#: Longest side of a picture, in pixels.
+LONGEST_SIDE_PIXELS = 16_384
+#: Pixels of a picture at the highest level of H.264.
+MP4_MAX_PIXELS = 139_264 * 256
+#: Numbers of ITU-T H.273: matrix and primaries of BT.709, curve of sRGB, range from 16 to 235.
+BT709, SRGB_CURVE, LIMITED = 1, 13, 1
+#: Pixels of all the pictures of a movie by Pillow, at most.
+PILLOW_MAX_PIXELS = 1_000_000_000
+#: Browsers slow down a GIF that shows a picture for less than two hundredths of a second.
+GIF_MAX_FPS = 50.0
+#: Pictures of which a palette is made, and about how many pixels of each along a side.
+PALETTE_PICTURES, PALETTE_SIDE = 8, 256
 
 
 class MovieError(ValueError):
     """A movie cannot be made so; the text says why and what to do."""
 
 
-Size = tuple[int, int]
+class MP4Encoder:
+    """Writes H.264 with PyAV; the arguments are those of :class:`MovieWriter`."""
 
-#: Longest side of a picture, in pixels.
-LONGEST_SIDE_PIXELS = 16_384
-
-
-def _never() -> bool:
-    return False
-
-
-class MovieWriter:
-    """Takes pictures and makes a file of them.
-
-    Parameters
-    ----------
-    path
-        File to write.
-    size
-        Width and height in pixels.
-    fps
-        Frames in a second.
-    quality
-        1 to 100.
-
-    Raises
-    ------
-    OSError
-        When there is no such folder, or no right to write there.
-    """
-
-    def __init__(self, path: Path, size: Size, fps: float, quality: int) -> None:
-        self._size, self._fps, self._quality = size, fps, quality
-        self._file = WholeFile(path)
-        try:
-            self._begin(self._file.part)
-        except BaseException:
-            self._file.drop()
-            raise
-
-    @classmethod
-    def fault(cls, size: Size, fps: float) -> str:
-        """Say why such a movie cannot be written and what can; empty when it can be."""
-        del fps
-        if all(1 <= side <= LONGEST_SIDE_PIXELS for side in size):
-            return ""
-        shown = f"size is {size[0]} x {size[1]}"
-        return f"{shown}; expected 1 to {LONGEST_SIDE_PIXELS} pixels along each side"
-
-    @classmethod
-    def need(cls) -> None:
-        """Refuse to begin where what writes the file is not installed.
-
-        Raises
-        ------
-        ModuleNotFoundError
-            The text names the command that installs it.
-        """
-
-    def add(self, picture: Bytes) -> None:
-        """Take the next picture, (H, W, 3) uint8.
-
-        Raises
-        ------
-        MovieError
-            When its size is not that of the movie.
-        """
-        height, width = picture.shape[:2]
-        if (width, height) != self._size:
-            wanted = f"{self._size[0]} x {self._size[1]}"
-            msg = f"a picture is {width} x {height}; expected {wanted}, the size of the movie"
-            raise MovieError(msg)
-        self._add(picture)
-
-    def finish(self, cancelled: Callable[[], bool] = _never) -> None:
-        """Write what is left to write, and put the file in its place.
-
-        Raises
-        ------
-        Stopped
-            When ``cancelled()`` became true before.
-        """
-        self._finish(cancelled)
-        if cancelled():
-            raise Stopped
-        self._file.keep()
-
-    def abandon(self) -> None:
-        """Leave nothing behind; after :meth:`finish` there is nothing to do."""
-        self._close()
-        self._file.drop()
-
-    def _begin(self, part: Path) -> None:
-        raise NotImplementedError
-
-    def _add(self, picture: Bytes) -> None:
-        raise NotImplementedError
-
-    def _finish(self, cancelled: Callable[[], bool]) -> None:
-        raise NotImplementedError
-
-    def _close(self) -> None:
-        raise NotImplementedError
-
-
-#: Bytes of a picture at the highest level of H.264.
-MP4_MAX_PIXELS = 139_264 * 256
-#: Numbers of ITU-T H.273: matrix and primaries of BT.709, curve of sRGB, range from 16 to 235.
-BT709, SRGB_CURVE, LIMITED = 1, 13, 1
-
-
-class MP4Writer(MovieWriter):
-    """Writes H.264 with PyAV."""
-
-    @classmethod
-    def fault(cls, size: Size, fps: float) -> str:
-        """Say why such a movie cannot be written; even sides are what 4:2:0 asks for."""
-        width, height = size
-        shown = f"size is {width} x {height}"
-        if width % 2 or height % 2:
-            return f"{shown}; MP4 wants even sides, such as {width // 2 * 2} x {height // 2 * 2}"
-        if width * height > MP4_MAX_PIXELS:
-            return f"{shown}; MP4 has at most {MP4_MAX_PIXELS:,} pixels: choose fewer"
-        return super().fault(size, fps)
-
-    @classmethod
-    def need(cls) -> None:
-        """Ask for PyAV."""
-        _pyav()
-
-    def _begin(self, part: Path) -> None:
+    def __init__(self, part: Path, size: Size, fps: float, quality: int) -> None:
         av = _pyav()
         from av.video.reformatter import Interpolation
 
-        self._av = av
+        self._frame_of = av.VideoFrame.from_ndarray
         self._exact = Interpolation.AREA | Interpolation.ACCURATE_RND
         self._movie = av.open(str(part), "w", format="mp4", options={"movflags": "+faststart"})
-        rate = Fraction(self._fps).limit_denominator(1001)
+        rate = Fraction(fps).limit_denominator(1001)
         # Half as many steps of the quantizer again for each tenth: 80 is a rate factor of 18.
-        factor = {"crf": f"{50 - 0.4 * self._quality:g}", "preset": "medium"}
+        factor = {"crf": f"{50 - 0.4 * quality:g}", "preset": "medium"}
         self._stream = self._movie.add_stream("libx264", rate=rate, options=factor)
-        self._stream.width, self._stream.height = self._size
+        self._stream.width, self._stream.height = size
         self._stream.pix_fmt = "yuv420p"
         codec = self._stream.codec_context
         codec.colorspace, codec.color_primaries = BT709, BT709
         codec.color_trc, codec.color_range = SRGB_CURVE, LIMITED
 
-    def _add(self, picture: Bytes) -> None:
-        frame = self._av.VideoFrame.from_ndarray(np.ascontiguousarray(picture), format="rgb24")
-        made = frame.reformat(
+    def add(self, picture: Bytes) -> None:
+        """Encode a picture."""
+        frame = self._frame_of(np.ascontiguousarray(picture), format="rgb24").reformat(
             format="yuv420p",
             src_color_range="JPEG",
             dst_color_range="MPEG",
             dst_colorspace="ITU709",
             interpolation=self._exact,
         )
-        self._movie.mux(self._stream.encode(made))
+        self._movie.mux(self._stream.encode(frame))
 
-    def _finish(self, cancelled: Callable[[], bool]) -> None:
+    def finish(self, cancelled: Callable[[], bool]) -> None:
+        """Write what is left to write."""
         del cancelled
         self._movie.mux(self._stream.encode(None))
-        self._close()
 
-    def _close(self) -> None:
+    def close(self) -> None:
+        """Let go of the file."""
         self._movie.close()
 
 
@@ -224,23 +111,19 @@ def _pyav() -> Any:
     return av
 
 
-#: Bytes of all the pictures of a movie, at most.
-PILLOW_MAX_PIXELS = 1_000_000_000
-#: Browsers slow down a GIF that shows a picture for less than two hundredths of a second.
-GIF_MAX_FPS = 50.0
-#: Pictures of which a palette is made, and about how many pixels of each along a side.
-PALETTE_PICTURES, PALETTE_SIDE = 8, 256
+class PillowEncoder:
+    """Keeps pictures on the disk until Pillow writes them as a GIF or a WebP.
 
+    The pictures of a GIF share one palette, without dithering, so that nothing flickers.
+    """
 
-class PillowWriter(MovieWriter):
-    """Keeps pictures on the disk until Pillow writes them."""
-
-    def _begin(self, part: Path) -> None:
-        self._part = part
+    def __init__(self, part: Path, size: Size, fps: float, quality: int) -> None:
+        self._part, self._size, self._fps, self._quality = part, size, fps, quality
         self._count = 0
-        self._spool: IO[bytes] = tempfile.TemporaryFile()  # noqa: SIM115 closed by _close
+        self._spool = tempfile.TemporaryFile()  # noqa: SIM115 closed by close()
 
-    def _add(self, picture: Bytes) -> None:
+    def add(self, picture: Bytes) -> None:
+        """Keep a picture."""
         if (self._count + 1) * picture.shape[0] * picture.shape[1] > PILLOW_MAX_PIXELS:
             kind = self._part.suffix[1:].upper()
             msg = (
@@ -250,7 +133,20 @@ class PillowWriter(MovieWriter):
         self._spool.write(np.ascontiguousarray(picture).tobytes())
         self._count += 1
 
-    def _close(self) -> None:
+    def finish(self, cancelled: Callable[[], bool]) -> None:
+        """Write all pictures."""
+        from PIL import Image
+
+        pictures = self._pictures(cancelled)
+        if self._part.suffix.lower() == ".gif":
+            palette, plain = self._palette(), Image.Dither.NONE
+            pictures = (p.quantize(palette=palette, dither=plain) for p in pictures)
+            self._save(pictures, unit=10, optimize=False, disposal=1)
+        else:
+            self._save(pictures, unit=1, quality=self._quality, method=2)
+
+    def close(self) -> None:
+        """Let go of the pictures."""
         self._spool.close()
 
     def _picture(self, number: int) -> Any:
@@ -266,15 +162,11 @@ class PillowWriter(MovieWriter):
                 raise Stopped
             yield self._picture(number)
 
-    def _durations(self, unit: int) -> list[int]:
-        """Milliseconds of each picture, in whole units, whose sum is that of the movie."""
-        ends = [round(1000 * n / self._fps / unit) * unit for n in range(self._count + 1)]
-        return [after - before for before, after in pairwise(ends)]
-
     def _save(self, pictures: Iterator[Any], unit: int, **options: Any) -> None:
-        first = next(pictures)
-        durations = self._durations(unit)
-        first.save(
+        """Save pictures whose durations are whole units of so many milliseconds."""
+        ends = [round(1000 * n / self._fps / unit) * unit for n in range(self._count + 1)]
+        durations = [after - before for before, after in pairwise(ends)]
+        next(pictures).save(
             self._part,
             save_all=True,
             append_images=pictures,
@@ -282,25 +174,6 @@ class PillowWriter(MovieWriter):
             loop=0,
             **options,
         )
-        self._close()
-
-
-class GIFWriter(PillowWriter):
-    """Writes a GIF whose pictures share one palette, without dithering: nothing flickers."""
-
-    @classmethod
-    def fault(cls, size: Size, fps: float) -> str:
-        """Say why such a movie cannot be written."""
-        if fps > GIF_MAX_FPS:
-            return f"fps is {fps:g}; a GIF shows at most {GIF_MAX_FPS:g} a second, an MP4 more"
-        return super().fault(size, fps)
-
-    def _finish(self, cancelled: Callable[[], bool]) -> None:
-        from PIL import Image
-
-        palette, plain = self._palette(), Image.Dither.NONE
-        pictures = (p.quantize(palette=palette, dither=plain) for p in self._pictures(cancelled))
-        self._save(pictures, unit=10, optimize=False, disposal=1)
 
     def _palette(self) -> Any:
         """Make one palette of pictures from the whole movie, seen coarsely."""
@@ -308,30 +181,11 @@ class GIFWriter(PillowWriter):
 
         chosen = np.linspace(0, self._count - 1, min(self._count, PALETTE_PICTURES)).round()
         step = max(min(self._size) // PALETTE_SIDE, 1)
-        seen = [np.asarray(self._picture(int(n)))[::step, ::step] for n in chosen]
+        samples = [np.asarray(self._picture(int(n)))[::step, ::step] for n in chosen]
         colours = max(round(256 * self._quality / 100), 2)
-        return Image.fromarray(np.vstack(seen)).quantize(
+        return Image.fromarray(np.vstack(samples)).quantize(
             colours, Image.Quantize.MEDIANCUT, kmeans=2, dither=Image.Dither.NONE
         )
-
-
-class WebPWriter(PillowWriter):
-    """Writes an animated WebP."""
-
-    def _finish(self, cancelled: Callable[[], bool]) -> None:
-        self._save(self._pictures(cancelled), unit=1, quality=self._quality, method=2)
-
-
-#: Writers by the suffix of the file.
-FORMATS: dict[str, type[MovieWriter]] = {
-    ".mp4": MP4Writer,
-    ".gif": GIFWriter,
-    ".webp": WebPWriter,
-}
-
-
-#: Quality where none is asked for.
-DEFAULT_QUALITY = 80
 
 
 def default_fps(path: str | Path) -> float:
@@ -339,15 +193,10 @@ def default_fps(path: str | Path) -> float:
     return 20.0 if Path(path).suffix.lower() == ".gif" else 30.0
 
 
-def check_movie(
-    path: str | Path, size: tuple[int, int], fps: float, quality: int = DEFAULT_QUALITY
-) -> None:
+def check_movie(path: str | Path, size: Size, fps: float, quality: int = DEFAULT_QUALITY) -> None:
     """Refuse a movie that cannot be written, before anything is drawn.
 
-    Parameters
-    ----------
-    path, size, fps, quality
-        As for :func:`movie_writer`.
+    The parameters are those of :class:`MovieWriter`.
 
     Raises
     ------
@@ -358,6 +207,8 @@ def check_movie(
     """
     path = Path(path)
     suffix = path.suffix.lower()
+    width, height = size
+    shown = f"size is {width} x {height}"
     if suffix not in FORMATS:
         what = f"{path.suffix!r} is no format" if suffix else "no suffix is no format"
         msg = f"{path}: {what} that movies are written in; use {', '.join(FORMATS)}"
@@ -365,17 +216,23 @@ def check_movie(
         msg = f"quality is {quality!r}; expected a number from 1 to 100, such as {DEFAULT_QUALITY}"
     elif not fps > 0:
         msg = f"fps is {fps!r}; expected a positive number of frames a second, such as 30"
+    elif suffix == ".gif" and fps > GIF_MAX_FPS:
+        msg = f"fps is {fps:g}; a GIF shows at most {GIF_MAX_FPS:g} a second, an MP4 more"
+    elif suffix == ".mp4" and (width % 2 or height % 2):  # 4:2:0 asks for even sides
+        msg = f"{shown}; MP4 wants even sides, such as {width // 2 * 2} x {height // 2 * 2}"
+    elif suffix == ".mp4" and width * height > MP4_MAX_PIXELS:
+        msg = f"{shown}; MP4 has at most {MP4_MAX_PIXELS:,} pixels: choose fewer"
+    elif not all(1 <= side <= LONGEST_SIDE_PIXELS for side in size):
+        msg = f"{shown}; expected 1 to {LONGEST_SIDE_PIXELS} pixels along each side"
     else:
-        msg = FORMATS[suffix].fault(size, fps)
-    if msg:
-        raise MovieError(msg)
-    FORMATS[suffix].need()
+        if suffix == ".mp4":
+            _pyav()
+        return
+    raise MovieError(msg)
 
 
-def movie_writer(
-    path: str | Path, size: tuple[int, int], fps: float, quality: int = DEFAULT_QUALITY
-) -> MovieWriter:
-    """Begin a movie.
+class MovieWriter:
+    """Takes pictures and makes a file of them, which is there whole or not at all.
 
     Parameters
     ----------
@@ -388,23 +245,58 @@ def movie_writer(
     quality
         1 to 100: the more, the truer and the larger. A GIF has so many hundredths of 256 colours.
 
-    Returns
-    -------
-    MovieWriter
-        ``add`` takes pictures, ``finish`` puts the file in its place, ``abandon`` leaves nothing.
-
     Raises
     ------
-    MovieError
-        When it cannot be written so.
-    ModuleNotFoundError
-        When an MP4 is asked for without PyAV; the text names the command that installs it.
+    MovieError, ModuleNotFoundError
+        As for :func:`check_movie`.
     OSError
         When there is no such folder, or no right to write there.
     """
-    check_movie(path, size, fps, quality)
-    path = Path(path)
-    return FORMATS[path.suffix.lower()](path, size, fps, quality)
+
+    def __init__(self, path: str | Path, size: Size, fps: float, quality: int) -> None:
+        check_movie(path, size, fps, quality)
+        self._size = size
+        self._file = WholeFile(Path(path))
+        kind = MP4Encoder if self._file.part.suffix.lower() == ".mp4" else PillowEncoder
+        try:
+            self._encoder = kind(self._file.part, size, fps, quality)
+        except BaseException:
+            self._file.drop()
+            raise
+
+    def add(self, picture: Bytes) -> None:
+        """Take the next picture, (H, W, 3) uint8.
+
+        Raises
+        ------
+        MovieError
+            When its size is not that of the movie.
+        """
+        height, width = picture.shape[:2]
+        if (width, height) != self._size:
+            expected = f"{self._size[0]} x {self._size[1]}"
+            msg = f"a picture is {width} x {height}; expected {expected}, the size of the movie"
+            raise MovieError(msg)
+        self._encoder.add(picture)
+
+    def finish(self, cancelled: Callable[[], bool]) -> None:
+        """Write what is left to write, and put the file in its place.
+
+        Raises
+        ------
+        Stopped
+            When ``cancelled()`` became true before.
+        """
+        self._encoder.finish(cancelled)
+        self._encoder.close()
+        if cancelled():
+            raise Stopped
+        self._file.keep()
+
+    def abandon(self) -> None:
+        """Leave nothing behind; after :meth:`finish` there is nothing to do."""
+        self._encoder.close()
+        self._file.drop()
 
 
 def write_movie(
@@ -415,21 +307,15 @@ def write_movie(
     *,
     cancelled: Callable[[], bool] = lambda: False,
 ) -> None:
-    """Write pictures as a movie; the file is there whole or not at all.
+    """Write pictures (H, W, 3) uint8, all of one size, as a movie.
 
-    Parameters
-    ----------
-    path, fps, quality
-        As for :func:`movie_writer`.
-    frames
-        Pictures (H, W, 3) uint8, all of one size; each is taken when the one before is written.
-    cancelled
-        Asked before each picture; once it is true nothing is left behind.
+    Each picture is taken when the one before is written; ``cancelled`` is asked before each, and
+    once it is true nothing is left behind. The other parameters are those of :class:`MovieWriter`.
 
     Raises
     ------
     MovieError, ModuleNotFoundError, OSError
-        As for :func:`movie_writer`, and when there are no pictures or one differs in size.
+        As for :class:`MovieWriter`, and when there are no pictures or one differs in size.
     Stopped
         When it was cancelled.
     """
@@ -440,7 +326,7 @@ def write_movie(
                 raise Stopped
             if writer is None:
                 height, width = picture.shape[:2]
-                writer = movie_writer(path, (width, height), fps, quality)
+                writer = MovieWriter(path, (width, height), fps, quality)
             writer.add(picture)
         if writer is None:
             msg = f"{path}: there are no pictures to make a movie of; expected one or more"

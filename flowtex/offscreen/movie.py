@@ -50,12 +50,8 @@ class FrameTimes:
         Times of a field that varies, in its own unit; empty for a steady flow.
     clocks
         Clocks of the streaming of a steady flow, in seconds; empty for a field that varies.
-    fps
-        Frames in a second.
-    seconds
-        How long the movie is, which for a steady flow is its ``period``.
-    closed
-        Whether the first frame follows upon the last one without a seam.
+    fps, seconds, closed
+        As for :class:`Movie`; a steady flow is as long as its ``period``.
     """
 
     times: tuple[float, ...]
@@ -72,19 +68,9 @@ class FrameTimes:
 def frame_times(
     field: FlowField, settings: Settings, *, fps: float, seconds: float | None = None
 ) -> FrameTimes:
-    """Return what each frame of a movie shows.
+    """Return what each frame of a movie shows; :func:`movie` has the parameters.
 
-    Parameters
-    ----------
-    field
-        The flow.
-    settings
-        How it is drawn: ``motion``, ``noise`` and ``period`` of a steady flow.
-    fps
-        Frames in a second.
-    seconds
-        How long the movie is; the ``period`` of a steady flow, and for a field that varies a
-        quarter of a second a step, but at least 5 and at most 30 seconds.
+    Of the settings ``motion``, ``noise`` and ``period`` of a steady flow count.
 
     Raises
     ------
@@ -120,9 +106,7 @@ def run_seconds(times: int) -> float:
 
 def _seconds(field: FlowField, settings: Settings, seconds: float | None) -> float:
     if seconds is None:
-        if field.steady:
-            return settings.period
-        return run_seconds(len(field.times))
+        return settings.period if field.steady else run_seconds(len(field.times))
     row = TABLE["period"]
     low, high = row.low or 0.0, row.high or math.inf
     if not low <= seconds <= high:
@@ -264,22 +248,9 @@ def frames(
     supersampling: int = 1,
     **options: Any,
 ) -> Iterator[Bytes]:
-    """Draw the pictures of a movie one by one.
+    """Give the pictures of a movie, (height, width, 3) uint8, each drawn when it is asked for.
 
-    Parameters
-    ----------
-    mesh, size, seconds, fps, supersampling, **options
-        As for :func:`movie`.
-
-    Returns
-    -------
-    Iterator
-        Pictures (height, width, 3) uint8, row 0 at the top. Each is drawn when it is asked for.
-
-    Raises
-    ------
-    FieldError, SettingsError, OpenGLMissingError, MovieError
-        As for :func:`movie`.
+    Parameters and errors are those of :func:`movie`.
     """
     field, chosen, shown = _prepare(mesh, Options.split(**options), fps, seconds)
     return _draw(field, chosen, shown, size=size, supersampling=supersampling)
@@ -290,12 +261,7 @@ def _prepare(
 ) -> tuple[FlowField, Options, FrameTimes]:
     """Return the field, the options with the motion in them, and what the frames show."""
     field = options.field.field(mesh)
-    defaults = {"motion": "speed"} if field.steady else {}
-    given = {**defaults, **options.settings}
-    if options.appearance.image is not None:
-        given["noise"] = "image"
-    settings = Settings()
-    settings.update(**given)
+    settings = options.make_settings(**({"motion": "speed"} if field.steady else {}))
     shown = frame_times(field, settings, fps=fps, seconds=seconds)
     own = dict(options.settings)
     if field.steady:

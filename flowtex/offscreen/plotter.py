@@ -31,28 +31,8 @@ OUTLINE_SAMPLES = 4
 class OffscreenPlotter:
     """A plotter without a window that draws pictures of a flow.
 
-    Parameters
-    ----------
-    mesh
-        A mesh or a field.
-    options
-        The arguments of the call.
-    size
-        Width and height in pixels.
-    supersampling
-        Pixels that are drawn for one of the picture along each side, 1 to 8.
-    scalar_bar_args
-        As for ``plotter.add_mesh``.
-
-    Attributes
-    ----------
-    handles
-        The texture of each view.
-
-    Raises
-    ------
-    FieldError, SettingsError, OpenGLMissingError, ValueError
-        As for :func:`flowtex.render`.
+    Parameters and errors are those of :func:`flowtex.render`; ``handles`` are the textures of
+    its views.
     """
 
     def __init__(
@@ -90,20 +70,7 @@ class OffscreenPlotter:
             raise
 
     def picture(self, *, time: float | None = None, clock: float = 0.0) -> Bytes:
-        """Draw the flow.
-
-        Parameters
-        ----------
-        time
-            Time to show of a field that varies in time; what is shown already by default.
-        clock
-            Moment of the streaming of a steady flow, in seconds.
-
-        Returns
-        -------
-        numpy.ndarray
-            (height, width, 3), row 0 at the top.
-        """
+        """Return a picture (height, width, 3), row 0 at the top; by default of the present time."""
         # One picture for all that changes.
         self._plotter.suppress_rendering = True
         for handle in self.handles:
@@ -171,10 +138,7 @@ def point_camera(plotter: Any, scene: Scene, view: ViewOptions) -> None:
     if view.camera is None:
         look(plotter, scene.field, zoom=view.zoom, focus=view.focus)
     elif isinstance(view.camera, (Camera, Mapping)):
-        whole = Camera.fit(scene.field.surface, zoom=view.zoom, focus=view.focus)
-        given = view.camera
-        camera = given if isinstance(given, Camera) else Camera.from_dict(given, whole)
-        apply_camera(camera, plotter.camera)
+        apply_camera(view.first_camera(scene.field.surface), plotter.camera)
         plotter.camera_set = True
         plotter.renderer.reset_camera_clipping_range()
     else:

@@ -1,8 +1,7 @@
 """Flow textures in PyVista: ``plotter.flowtex.add(mesh)``.
 
 PyVista finds :class:`FlowtexComponent` through its entry point and makes one for each plotter
-that asks for ``plotter.flowtex``. The component keeps a
-:class:`~flowtex.plotting.handle.FlowHandle` for each texture.
+that asks for ``plotter.flowtex``.
 """
 
 from __future__ import annotations

@@ -1,9 +1,4 @@
-"""One flow texture on a plotter.
-
-A handle joins a :class:`~flowtex.scene.Scene` (arrays, appearance, settings, time) to a
-:class:`~flowtex.rendering.vtk.FlowLayer` (the graphics card) and carries changes from one to the
-other.
-"""
+"""One flow texture on a plotter: it carries changes of a scene to the graphics card."""
 
 from __future__ import annotations
 
@@ -54,6 +49,8 @@ class FlowHandle:
         Every setting, live: ``handle.settings.lod = False``.
     actor
         PyVista's actor, for opacity, lighting, position and the like.
+    scene
+        The arrays behind the picture.
     """
 
     def __init__(
@@ -65,10 +62,10 @@ class FlowHandle:
     ) -> None:
         self._plotter = plotter
         self._forget = forget
-        self._scene = scene
+        self.scene = scene
         self._mesh = surface_mesh(scene.textures)
         name, appearance = scene.scalar_name, scene.appearance
-        lit = appearance.is_lit(flat=scene.flat)
+        lit = scene.is_lit
         options: dict[str, Any] = {"opacity": appearance.opacity, "lighting": lit}
         options |= LIGHT if lit else {}
         if name is None:
@@ -98,31 +95,26 @@ class FlowHandle:
     @property
     def field(self) -> FlowField:
         """The flow."""
-        return self._scene.field
+        return self.scene.field
 
     @property
     def settings(self) -> Settings:
         """Every setting, live."""
-        return self._scene.settings
-
-    @property
-    def scene(self) -> Scene:
-        """The arrays behind the picture."""
-        return self._scene
+        return self.scene.settings
 
     @property
     def scalars(self) -> str | None:
         """Name of what the texture is coloured by; ``None`` for a plain one."""
-        return self._scene.scalar_name
+        return self.scene.scalar_name
 
     @property
     def time(self) -> float:
         """Time that is shown, in the field's own unit."""
-        return self._scene.time
+        return self.scene.time
 
     @time.setter
     def time(self, value: float) -> None:
-        self._scene.time = value
+        self.scene.time = value
 
     @property
     def clock(self) -> float:
@@ -157,33 +149,19 @@ class FlowHandle:
         return self._plotter is None
 
     def set_image(self, image: Any) -> None:
-        """Advect another image, and set ``settings.noise`` to ``"image"``.
-
-        Parameters
-        ----------
-        image
-            As :class:`~flowtex.options.Appearance` has it.
-
-        Raises
-        ------
-        ImageError
-            When it cannot be used; nothing is changed then.
-        """
-        self._scene.set_image(image)
+        """Advect another image; as :meth:`Scene.set_image <flowtex.scene.Scene.set_image>`."""
+        self.scene.set_image(image)
 
     def remove(self, *, render: bool = True) -> None:
         """Take the texture, its scalar bar and everything on the graphics card away.
 
-        Parameters
-        ----------
-        render
-            Whether to draw the plotter without it at once.
+        The plotter is drawn without it at once where ``render`` says so.
         """
         if self._plotter is None:
             return
         plotter, self._plotter = self._plotter, None
         self._end()
-        self._scene.close()
+        self.scene.close()
         self._layer.close()
         if self._bar_title is not None and self._bar_title in plotter.scalar_bars:
             plotter.remove_scalar_bar(self._bar_title, render=False)
@@ -196,19 +174,19 @@ class FlowHandle:
         if affects == "uniform":
             self._show_moment()
         else:
-            textures = self._scene.textures
+            textures = self.scene.textures
             set_attributes(self._mesh, textures)
             self._layer.set_textures(textures)
         self._draw()
 
     def _show_moment(self) -> None:
         """Follow the time: textures at the steps around it, and the colours."""
-        if self.field.steady or self._shown_time == self._scene.time:
+        if self.field.steady or self._shown_time == self.scene.time:
             return
-        self._shown_time = self._scene.time
-        self._layer.set_moment(*self._scene.moment)
+        self._shown_time = self.scene.time
+        self._layer.set_moment(*self.scene.moment)
         if (name := self.scalars) is not None:
-            self._mesh.point_data[name] = self._scene.scalar(name).ravel()
+            self._mesh.point_data[name] = self.scene.scalar(name).ravel()
 
     def _draw(self) -> None:
         if self._plotter is not None:

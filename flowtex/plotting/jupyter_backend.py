@@ -24,18 +24,8 @@ NAME = "flowtex"
 def show_plotter(plotter: Any, *, screenshot: Any = None, **options: Any) -> Any:
     """Show the flow texture of a plotter in the notebook, from the plotter's own camera.
 
-    Parameters
-    ----------
-    plotter
-        A PyVista plotter on which ``plotter.flowtex.add`` was called.
-    screenshot
-        Where the picture goes as well, as in ``plotter.show``.
-    **options
-        Further arguments of :class:`flowtex.FlowWidget`, from ``jupyter_kwargs``.
-
-    Returns
-    -------
-    FlowWidget
+    Called by ``plotter.show``; the options, its ``jupyter_kwargs``, are further arguments of the
+    :class:`flowtex.FlowWidget` that is returned.
 
     Raises
     ------
@@ -57,8 +47,7 @@ def show_plotter(plotter: Any, *, screenshot: Any = None, **options: Any) -> Any
         )
         raise ValueError(msg)
     shown = handles[0]
-    left_out = [*_others(plotter, shown), *_moved(shown)]
-    if left_out:
+    if left_out := _left_out(plotter, shown):
         warnings.warn(
             f"The backend 'flowtex' draws one flow texture, and leaves out: {', '.join(left_out)}; "
             "another jupyter_backend, such as 'trame', draws them.",
@@ -94,22 +83,18 @@ def _look_of(plotter: Any, handle: FlowHandle) -> dict[str, Any]:
     }
 
 
-def _others(plotter: Any, shown: FlowHandle) -> list[str]:
-    """Name what is on the plotter beside one flow texture and the bars of scalars."""
+def _left_out(plotter: Any, shown: FlowHandle) -> list[str]:
+    """Name what the browser does not draw: all but one texture where its mesh lies, and bars."""
     own = {id(bar) for bar in plotter.scalar_bars.values()}
-    return [
+    names = [
         f"{name!r}"
         for renderer in plotter.renderers
         for name, actor in renderer.actors.items()
         if actor is not shown.actor and id(actor) not in own and actor.GetVisibility()
     ]
-
-
-def _moved(shown: FlowHandle) -> list[str]:
-    """Name what is done to the texture's actor that the browser does not do."""
     if not np.allclose(shown.actor.user_matrix, np.eye(4)) or any(shown.actor.position):
-        return ["the actor's own place"]
-    return []
+        names.append("the actor's own place")
+    return names
 
 
 def _asked_for() -> bool:

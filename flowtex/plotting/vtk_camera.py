@@ -11,13 +11,7 @@ __all__ = ["apply_camera", "look", "read_camera"]
 
 
 def read_camera(vtk_camera: Any) -> Camera:
-    """Return what a VTK camera has, such as ``plotter.camera``.
-
-    Raises
-    ------
-    CameraError
-        When it sees nothing.
-    """
+    """Return what a VTK camera has, such as ``plotter.camera``; it must see something."""
     return Camera(
         position=vtk_camera.GetPosition(),
         focal_point=vtk_camera.GetFocalPoint(),

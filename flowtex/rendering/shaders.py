@@ -3,7 +3,6 @@
 An installed wheel has the files as ``flowtex/_shaders``, a checkout (also one installed as
 editable) as ``shaders`` beside the package. The folder is found from this module's own place and
 never from the working folder, where a ``shaders`` folder would be the user's.
-
 Files include one another by a line ``//#include common/noise.glsl``, each at most once. A variant
 is a set of names that are defined before the first line.
 """
@@ -12,7 +11,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from pathlib import Path, PurePosixPath
+from pathlib import Path
 
 __all__ = [
     "VARIANTS",
@@ -41,12 +40,7 @@ class GLSLError(ValueError):
 
 
 def shader_folder(package: Path = _PACKAGE) -> Path:
-    """Return the folder that holds the shaders.
-
-    Parameters
-    ----------
-    package : Path
-        The folder of the package ``flowtex``.
+    """Return the folder that holds the shaders of a package.
 
     Raises
     ------
@@ -67,70 +61,32 @@ def shader_folder(package: Path = _PACKAGE) -> Path:
     raise FileNotFoundError(msg)
 
 
-def shader_names(folder: Path | None = None) -> tuple[str, ...]:
-    """Return the name of every shader, sorted, such as ``"common/noise.glsl"``.
-
-    Parameters
-    ----------
-    folder : Path, optional
-        Where to look; flowtex's own folder when left out.
-    """
-    folder = shader_folder() if folder is None else folder
+def shader_names() -> tuple[str, ...]:
+    """Return the name of every shader, sorted, such as ``"common/noise.glsl"``."""
+    folder = shader_folder()
     paths = (path.relative_to(folder) for path in folder.rglob("*") if path.is_file())
     return tuple(
         sorted(path.as_posix() for path in paths if not any(p.startswith(".") for p in path.parts))
     )
 
 
-def shader_source(name: str, folder: Path | None = None) -> str:
+def shader_source(name: str) -> str:
     """Return the text of one shader.
-
-    Parameters
-    ----------
-    name : str
-        Its path inside the folder, with forward slashes: ``"common/noise.glsl"``.
-    folder : Path, optional
-        Where to look; flowtex's own folder when left out.
 
     Raises
     ------
-    ValueError
-        When the name is empty or leads out of the folder.
     FileNotFoundError
         When there is no such shader; the text lists those that there are.
     """
-    folder = shader_folder() if folder is None else folder
-    if not _stays_inside(name, folder):
-        msg = (
-            f"shader name {name!r} leaves the shader folder: expected a path inside it, "
-            "with forward slashes, such as 'common/noise.glsl'"
-        )
-        raise ValueError(msg)
-    names = shader_names(folder)
+    names = shader_names()
     if name not in names:
-        known = ", ".join(names) or "none"
-        msg = f"no shader is called {name!r}; there are: {known}"
+        msg = f"no shader is called {name!r}; there are: {', '.join(names) or 'none'}"
         raise FileNotFoundError(msg)
-    return (folder / name).read_text(encoding="utf-8")
-
-
-def _stays_inside(name: str, folder: Path) -> bool:
-    """Tell whether a name is a plain relative path that no link leads elsewhere."""
-    parts = PurePosixPath(name).parts
-    if not parts or name.startswith("/") or "\\" in name or ".." in parts or ":" in parts[0]:
-        return False
-    return (folder / name).resolve().is_relative_to(folder.resolve())
+    return (shader_folder() / name).read_text(encoding="utf-8")
 
 
 def shader_text(name: str, variants: Iterable[str] = ()) -> str:
-    """Return a shader file with its includes, and the variant's names defined before it.
-
-    Parameters
-    ----------
-    name
-        File inside ``shaders/``, such as ``"vtk/fragment_dec.glsl"``.
-    variants
-        Names out of :data:`VARIANTS`.
+    """Return a shader with its includes, and names out of :data:`VARIANTS` defined before it.
 
     Raises
     ------

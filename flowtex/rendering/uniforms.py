@@ -67,7 +67,7 @@ class ViewState:
 def variants(textures: TextureSet, *, unsteady: bool) -> frozenset[str]:
     """Names of the shader's variant for a texture set."""
     chosen = set()
-    if textures.space == "parameter":
+    if textures.paper is not None:
         chosen.add("FLOWTEX_PAPER")
     if textures.paper is not None and textures.paper.picture:
         chosen.add("FLOWTEX_PICTURE")
@@ -163,7 +163,7 @@ def _motion(
         moving = streams
     coarse = float(np.floor(turns / CLOCK_STEP) * CLOCK_STEP)
     return {
-        "u_moving": moving and textures.space == "physical",
+        "u_moving": moving and textures.paper is None,
         "u_clock": (coarse, turns - coarse),
         "u_travel": float(travel) * (view.density if pixels else 1.0),
         "u_travelInPixels": pixels,

@@ -20,7 +20,7 @@ from flowtex._util.array_types import Floats, Floats32, Indices
 from flowtex.field import FlowField
 from flowtex.field.interpolation import nearest_known
 
-__all__ = ["Padding", "SurfaceGeometry"]
+__all__ = ["SurfaceGeometry"]
 
 
 #: Mip levels of a texture beside its finest one, at most.
@@ -60,16 +60,9 @@ class Padding:
 
 @dataclass(frozen=True, eq=False)
 class SurfaceGeometry:
-    """A surface ready to be drawn.
+    """A surface ready to be drawn, with ``levels`` mip levels in its textures beside the finest.
 
-    Attributes
-    ----------
-    field
-        The field whose surface it is.
-    levels
-        Mip levels of the slice textures beside the finest.
-    rows, columns
-        How the j and i axes lie in the slice textures.
+    ``rows`` and ``columns`` say how the j and i axes lie in the slice textures.
     """
 
     field: FlowField

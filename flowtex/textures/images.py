@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import warnings
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any
 
 import numpy as np
 
@@ -24,7 +24,6 @@ __all__ = [
     "averaged",
     "load_image",
     "pixels_of",
-    "read_image",
 ]
 
 
@@ -78,18 +77,7 @@ def as_picture(image: Any) -> Floats32:
 
 
 def as_image(picture: Floats32) -> Floats32:
-    """Return the image of which :func:`as_picture` makes these texels.
-
-    Parameters
-    ----------
-    picture
-        (h, w, 4) texels, as :attr:`flowtex.scene.Scene.image` holds them.
-
-    Returns
-    -------
-    numpy.ndarray
-        (h, w, 4) colours and opacity from 0 to 1, row 0 at the top.
-    """
+    """Return the image (h, w, 4), row 0 at the top, that :func:`as_picture` made into texels."""
     image = np.array(picture[::-1])
     opaque = image[..., 3:] > 0
     np.divide(image[..., :3], image[..., 3:], out=image[..., :3], where=opaque)
@@ -146,21 +134,8 @@ def averaged(pixels: Bytes, times: int) -> Bytes:
 def load_image(image: Any) -> Any:
     """Read an image when it is a path, and return anything else as it is.
 
-    Parameters
-    ----------
-    image
-        A path to a PNG, a JPEG or another picture, or an array.
-
-    Returns
-    -------
-    numpy.ndarray
-        (H, W), (H, W, 3) or (H, W, 4), row 0 at the top, as the file's own orientation says; or
-        the argument.
-
-    Raises
-    ------
-    ImageError
-        When there is no such file, or it is no picture that can be read.
+    Returns (H, W), (H, W, 3) or (H, W, 4), row 0 at the top, as the file's own orientation says. An
+    :class:`ImageError` says that there is no such file, or no picture that can be read.
     """
     if not isinstance(image, (str, Path)):
         return image
@@ -169,45 +144,22 @@ def load_image(image: Any) -> Any:
         what = "is a folder" if path.is_dir() else "there is no such file"
         msg = f"{image}: {what}; expected a picture, such as a PNG or a JPEG"
         raise ImageError(msg)
-    return read_image(path, str(path))
-
-
-def read_image(file: Path | BinaryIO, name: str) -> AnyArray:
-    """Read an image from a file or from what holds the bytes of one.
-
-    Parameters
-    ----------
-    file
-        The path, or an open file.
-    name
-        What errors call it.
-
-    Returns
-    -------
-    numpy.ndarray
-        As :func:`load_image` returns it.
-
-    Raises
-    ------
-    ImageError
-        When it is no picture that can be read.
-    """
     from PIL import Image, ImageOps, UnidentifiedImageError
 
     try:
         # Pillow warns of a picture so large that it may be an attack, and refuses twice as large.
         with warnings.catch_warnings():
             warnings.simplefilter("error", Image.DecompressionBombWarning)
-            with Image.open(file) as opened:
+            with Image.open(path) as opened:
                 return pixels_of(ImageOps.exif_transpose(opened))
     except (Image.DecompressionBombWarning, Image.DecompressionBombError) as error:
-        msg = f"{name}: has more than {Image.MAX_IMAGE_PIXELS:,} pixels; make it smaller"
+        msg = f"{path}: has more than {Image.MAX_IMAGE_PIXELS:,} pixels; make it smaller"
         raise ImageError(msg) from error
     except UnidentifiedImageError as error:
-        msg = f"{name}: is no picture that can be read; expected a PNG, a JPEG or the like"
+        msg = f"{path}: is no picture that can be read; expected a PNG, a JPEG or the like"
         raise ImageError(msg) from error
     except (OSError, SyntaxError) as error:  # Pillow raises either for a file cut short
-        msg = f"{name}: cannot be read ({error}); give another picture, or its array"
+        msg = f"{path}: cannot be read ({error}); give another picture, or its array"
         raise ImageError(msg) from error
 
 

@@ -13,13 +13,15 @@ every level (section 4.1).
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
+from scipy import ndimage
 
-from flowtex._util.array_types import Floats, Floats32, Indices
+from flowtex._util.array_types import Floats, Floats32
 from flowtex._util.blocks import block_means
 from flowtex.field import FlowField
 from flowtex.field.interpolation import (
@@ -29,7 +31,14 @@ from flowtex.field.interpolation import (
     inverse_along_line,
 )
 from flowtex.settings import Settings
-from flowtex.textures.patterns import SPOT_GRAIN, TexelMap, checkerboard, even_noise, spots
+from flowtex.textures.patterns import (
+    SPOT_GRAIN,
+    TexelMap,
+    checkerboard,
+    even_noise,
+    side_lengths,
+    spots,
+)
 from flowtex.trace import SliceStore
 
 __all__ = ["HALF_LEVELS", "PaperTextures"]
@@ -48,24 +57,13 @@ FEWEST_TEXELS = 256
 class PaperTextures:
     """Noise, or a picture in its place, and step size over the parameters of the surface.
 
-    Attributes
-    ----------
-    noise
-        Zero-mean noise of unit variance, (H, W); or a picture, grey (H, W) or coloured
-        (H, W, 4) as :func:`flowtex.textures.images.as_picture` returns it. Row 0 is at j = 0.
-    step
-        Lag in which the flow crosses a texel, in multiples of the unit of lag, (H, W). Noise has
-        the same texels; a picture has its own.
-    along_i, along_j
-        Noise coordinate of each line of nodes, (I,) and (J,), from 0 to 1.
-    repeat
-        Whether the noise goes around along (v, u).
-    corrected
-        Whether the noise is even on the surface instead of even in the texture.
-    grain
-        Width of a grain of the noise, in texels.
-    picture
-        Whether ``noise`` is a picture, which is averaged along the flow, and no noise.
+    ``noise`` has mean zero and unit variance, (H, W), and grains ``grain`` texels wide; or it is a
+    ``picture``, grey (H, W) or coloured (H, W, 4) as from
+    :func:`~flowtex.textures.images.as_picture`, which is averaged along the flow. Row 0 is at j =
+    0. ``step`` (H, W) is the lag in which the flow crosses a texel, in multiples of the unit of
+    lag; noise has the same texels, a picture has its own. ``along_i`` (I,) and ``along_j`` (J,) are
+    the noise coordinates of the lines of nodes, from 0 to 1. ``repeat`` says whether the noise goes
+    around along (v, u), ``corrected`` whether it is even on the surface instead of in the texture.
     """
 
     noise: Floats32
@@ -81,21 +79,10 @@ class PaperTextures:
     def build(
         cls, store: SliceStore, settings: Settings, image: Floats32 | None = None
     ) -> PaperTextures:
-        """Make both textures of a flow.
+        """Make both textures of a flow, with a picture (H, W, 4) for ``noise="image"``.
 
-        Parameters
-        ----------
-        store
-            The flow and its traces.
-        settings
-            Pattern (``noise``), ``resolution``, ``noise_correction``, ``seed`` and ``tiles``.
-        image
-            The picture for ``noise="image"``, (H, W, 4).
-
-        Raises
-        ------
-        ValueError
-            When the pattern is an image and there is none, or there is no such pattern.
+        Raises a ValueError when the pattern is an image and there is none, or there is no such
+        pattern.
         """
         field, corrected = store.field, settings.noise_correction
         height, width = _size(field, settings.resolution)
@@ -145,21 +132,16 @@ class PaperTextures:
 
     def at(self, index: Floats) -> Floats:
         """Noise coordinates of positions in index space, (..., 2), straight on beyond the ends."""
-        lines = ((self.along_i, self.repeat[1]), (self.along_j, self.repeat[0]))
-        parts = [
-            along_line(line, index[..., axis], periodic=periodic)
-            for axis, (line, periodic) in enumerate(lines)
-        ]
-        return np.stack(parts, axis=-1)
+        return self._by_axis(along_line, index)
 
     def index(self, coordinate: Floats) -> Floats:
         """Positions in index space of noise coordinates, (..., 2): the way back from :meth:`at`."""
-        lines = ((self.along_i, self.repeat[1]), (self.along_j, self.repeat[0]))
-        parts = [
-            inverse_along_line(line, coordinate[..., axis], periodic=periodic)
-            for axis, (line, periodic) in enumerate(lines)
-        ]
-        return np.stack(parts, axis=-1)
+        return self._by_axis(inverse_along_line, coordinate)
+
+    def _by_axis(self, function: Callable[..., Floats], places: Floats) -> Floats:
+        i = function(self.along_i, places[..., 0], periodic=self.repeat[1])
+        j = function(self.along_j, places[..., 1], periodic=self.repeat[0])
+        return np.stack([i, j], axis=-1)
 
     def by_cell(self) -> Floats:
         """Return derivatives of the noise coordinates by index at the nodes, (J, I, 2)."""
@@ -180,11 +162,9 @@ def _coordinates(field: FlowField, *, correction: bool) -> tuple[Floats, Floats]
 
 def _size(field: FlowField, resolution: int) -> tuple[int, int]:
     """Height and width, powers of two in about the proportion of the surface."""
-    p_i, p_j = (np.linalg.norm(t, axis=-1)[field.valid] for t in field.surface.tangents)
-    rows, columns = field.shape
-    lengths = np.array([p_j.mean() * (rows - 1), p_i.mean() * (columns - 1)])
+    lengths = side_lengths(field)
     shares = np.maximum(lengths / lengths.max(), 1 / 8) * resolution
-    height, width = (int(2 ** np.ceil(np.log2(max(n, 8)))) for n in shares)
+    width, height = (int(2 ** np.ceil(np.log2(max(n, 8)))) for n in shares)
     return height, width
 
 
@@ -275,14 +255,5 @@ def _deviations(noise: Floats32) -> list[float]:
 
 def _bilinear(level: Floats, at: Floats) -> Floats:
     """Values at coordinates (2, N) from 0 to 1, texels in the middle of their squares."""
-    rows, columns = level.shape
-    (j0, j1, t), (i0, i1, s) = _around(at[0], rows), _around(at[1], columns)
-    low = level[j0, i0] * (1 - s) + level[j0, i1] * s
-    high = level[j1, i0] * (1 - s) + level[j1, i1] * s
-    return np.asarray(low * (1 - t) + high * t)
-
-
-def _around(x: Floats, count: int) -> tuple[Indices, Indices, Floats]:
-    place = x * count - 0.5
-    first = np.floor(place).astype(np.intp)
-    return first % count, (first + 1) % count, place - first
+    at = at * np.array(level.shape)[:, None] - 0.5
+    return np.asarray(ndimage.map_coordinates(level, at, order=1, mode="grid-wrap"))

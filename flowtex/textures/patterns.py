@@ -21,12 +21,12 @@ from flowtex.field import FlowField
 from flowtex.field.interpolation import between_nodes
 
 __all__ = [
-    "SPOT",
     "SPOT_GRAIN",
     "SQUARES",
     "TexelMap",
     "checkerboard",
     "even_noise",
+    "side_lengths",
     "spots",
 ]
 
@@ -45,16 +45,8 @@ SQUARES = 16
 class TexelMap:
     """Where the texels of a texture lie on a surface.
 
-    Attributes
-    ----------
-    field
-        The field whose surface it is.
-    index
-        Index-space position of the middle of each texel, (H, W, 2) as (i, j).
-    size
-        Size of each texel in cells, (H, W, 2).
-    corrected
-        Whether a pattern is even on the surface, not on the texels.
+    ``index`` is the middle of each texel as (i, j), and ``size`` its size in cells, (H, W, 2) both.
+    ``corrected`` says whether a pattern is even on the surface, not on the texels.
     """
 
     field: FlowField
@@ -165,11 +157,15 @@ def checkerboard(texels: TexelMap, tiles: int) -> Floats:
     return np.asarray(0.5 + 0.5 * np.prod(_wave(place, wide), axis=-1))
 
 
+def side_lengths(field: FlowField) -> Floats:
+    """Lengths of a surface along i and along j, (2,)."""
+    tangents = (np.linalg.norm(t, axis=-1)[field.valid].mean() for t in field.surface.tangents)
+    return np.array([t * (n - 1) for t, n in zip(tangents, field.shape[::-1], strict=True)])
+
+
 def _counts(field: FlowField, count: int) -> Floats:
     """Squares along i and along j; whole pairs around an axis that closes on itself."""
-    tangents = (np.linalg.norm(t, axis=-1)[field.valid].mean() for t in field.surface.tangents)
-    rows, columns = field.shape
-    lengths = np.array([t * (n - 1) for t, n in zip(tangents, (columns, rows), strict=True)])
+    lengths = side_lengths(field)
     counts = np.asarray(count * lengths / lengths.max())
     closed = np.array(field.periodic[::-1])
     return np.where(closed, 2 * np.maximum(np.rint(counts / 2), 1), counts)

@@ -15,13 +15,7 @@ __all__ = ["LayerPrefetch"]
 
 
 class LayerPrefetch:
-    """Layers of a texture set by destination time, one of them computed before it is needed.
-
-    Parameters
-    ----------
-    textures
-        Where the layers come from.
-    """
+    """Layers of a texture set by destination time, one of them computed before it is needed."""
 
     def __init__(self, textures: TextureSet) -> None:
         self._textures = textures

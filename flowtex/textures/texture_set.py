@@ -45,21 +45,12 @@ MOST_LAGS = 32
 class TextureSet:
     """All that a renderer needs of a flow, beside the settings.
 
-    Attributes
-    ----------
-    geometry
-        The surface.
-    store
-        The traces, by destination time.
-    space
-        ``"physical"`` for slopes in space, ``"parameter"`` for slopes in noise coordinates.
-    paper
-        The noise texture and the step texture, for ``space="parameter"``.
+    Slopes are in noise coordinates where there is ``paper``, the noise texture and the step
+    texture, and in space otherwise.
     """
 
     geometry: SurfaceGeometry
     store: SliceStore
-    space: str = "physical"
     paper: PaperTextures | None = None
 
     @classmethod
@@ -68,21 +59,9 @@ class TextureSet:
     ) -> TextureSet:
         """Make the textures that the settings ask for.
 
-        Parameters
-        ----------
-        store
-            The traces.
-        settings
-            Which noise, how fine, and how it is spread.
-        image
-            The picture for ``noise="image"``, (H, W, 4), from
-            :func:`~flowtex.textures.images.as_picture`.
-
-        Raises
-        ------
-        ValueError
-            When the slices do not belong to the field, or are more than a shader has room for;
-            or an image is asked for and there is none.
+        The image (H, W, 4) is that for ``noise="image"``. Raises a ValueError when the slices do
+        not belong to the field, or are more than a shader has room for; or when an image is asked
+        for and there is none.
         """
         field = store.field
         if store.unit.shape != field.shape:
@@ -97,16 +76,12 @@ class TextureSet:
         geometry = SurfaceGeometry.of(field)
         if settings.noise == "procedural":
             return cls(geometry, store)
-        paper = PaperTextures.build(store, settings, image)
-        return cls(geometry, store, "parameter", paper)
+        return cls(geometry, store, PaperTextures.build(store, settings, image))
 
     def with_image(self, image: Floats32) -> TextureSet:
         """Return the same with another picture in place of the noise texture.
 
-        Raises
-        ------
-        ValueError
-            When there is no noise texture.
+        Raises a ValueError when there is no noise texture.
         """
         if self.paper is None:
             msg = "there is no noise texture, which an image could replace; expected noise='image'"

@@ -47,10 +47,7 @@ class Patch(NamedTuple):
     def without_sign(self, vectors: Floats | None = None) -> Patch:
         """Return the patch for data of which only the axis counts, v meaning the same as -v.
 
-        Parameters
-        ----------
-        vectors
-            Vectors at the nodes, (J, I, C); those of the chart itself when left out.
+        The vectors at the nodes (J, I, C) are those of the chart itself when left out.
         """
         if vectors is None:
             parts = [a.reshape(self.grid.rows, self.grid.columns) for a in self.data[:2]]
@@ -88,13 +85,7 @@ class Patch(NamedTuple):
 
 
 class Charts:
-    """The charts of a surface with poles.
-
-    Parameters
-    ----------
-    poles
-        The poles.
-    """
+    """The charts of a surface with poles."""
 
     def __init__(self, poles: Poles) -> None:
         self._poles = poles
@@ -151,18 +142,9 @@ class Charts:
 
 
 def cap(pole: Pole, grid: NodeGrid, data: list[Floats], near: int) -> Patch:
-    """Lay out the data around a pole on its plane.
+    """Lay out the data around a pole on its plane, up to ``near`` cells from it and some more.
 
-    Parameters
-    ----------
-    pole
-        The pole.
-    grid
-        The nodes of the whole surface.
-    data
-        Components along i and j, in cells, and anything else, each (sets * J * I,).
-    near
-        Cells from the pole within which the plane is used.
+    The data are components along i and j, in cells, and anything else, each (sets * J * I,).
     """
     shape = (-1, grid.rows, grid.columns)
     lines = (grid.rows if pole.component else grid.columns) - 1

@@ -20,6 +20,7 @@ There, and only there, paths are integrated.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -30,7 +31,7 @@ from flowtex._util.progress import check
 from flowtex.field import FlowField
 from flowtex.trace.node_grid import Corners, NodeGrid
 
-__all__ = ["Integrate", "Within", "compose", "landings"]
+__all__ = ["Integrate", "SideSlices", "Within", "compose", "landings"]
 
 #: Pieces of a path, at most, before the rest is looked up in one whatever its error.
 MOST_PIECES = 64
@@ -83,42 +84,42 @@ def landings(field: FlowField, lags: Floats, unit: Floats) -> Indices | None:
     return np.where(exact, whole, 0).astype(np.intp)
 
 
+@dataclass(frozen=True, eq=False)
+class SideSlices:
+    """Slices of one direction, (2, M + 1, T, J, I), the first of them the slope at lag zero.
+
+    Their reach, and which paths have come right beside a pole, are (T, J, I). While paths are
+    integrated, the nodes of all three are one axis.
+    """
+
+    slices: Floats32
+    reach: Floats32
+    polar: Bools
+
+    @property
+    def displacement(self) -> Floats32:
+        """The slices beyond lag zero as (T, M, J, I, 2)."""
+        return np.moveaxis(self.slices[:, 1:], (0, 2), (4, 0))
+
+
 def compose(
     field: FlowField,
     lags: Floats,
     unit: Floats,
-    slices: Floats32,
-    reach: Floats32,
+    side: SideSlices,
     known: int,
     landing: Indices,
-    run: Map = map,
-    polar: Bools | None = None,
-    integrate: Integrate | None = None,
+    run: Map,
+    integrate: Integrate,
 ) -> None:
     """Fill the long slices of one direction in place.
 
-    Parameters
-    ----------
-    field, lags, unit
-        The flow, all lags, (M,), and one unit of lag at each node, (J, I).
-    slices
-        Derivative of the displacement by lag at lag zero, and the displacements,
-        (2, M + 1, T, J, I), of which those of the first ``known`` lags are filled.
-    reach
-        Lag at which each path ended, (T, J, I), infinite where it did not within these.
-    known
-        Number of slices that are filled.
-    landing
-        From :func:`landings`.
-    run
-        Maps a function over blocks of paths.
-    polar
-        Which paths have come right beside a pole, (T, J, I); more of them are marked.
-    integrate
-        Follows paths right beside a pole.
+    The slices of the first ``known`` of all lags (M,) are filled, and ``reach`` is infinite for
+    paths that did not end within these. ``landing`` comes from :func:`landings`, ``run`` maps a
+    function over blocks of paths, and ``integrate`` follows paths right beside a pole, of which
+    more are marked.
     """
-    polar = np.zeros(reach.shape, bool) if polar is None else polar
-    lookup = _SliceLookup(field, lags, unit, slices, reach, landing, polar)
+    lookup = _SliceLookup(field, lags, unit, side, landing)
     beside = None if field.surface.poles is None else integrate
     for m in range(known + 1, len(lags) + 1):
         lookup.judge(m - 1, always=m - 1 == known)
@@ -147,11 +148,10 @@ class _SliceLookup:
         field: FlowField,
         lags: Floats,
         unit: Floats,
-        slices: Floats32,
-        reach: Floats32,
+        side: SideSlices,
         landing: Indices,
-        polar: Bools,
     ) -> None:
+        slices, reach = side.slices, side.reach
         self.grid = NodeGrid.of(field)
         self.knots = np.concatenate([[0.0], lags]).astype(np.float32)
         # What is stored at lag zero is the slope itself.
@@ -171,7 +171,7 @@ class _SliceLookup:
         self._endless = False
         self._first = np.float32(0)
         #: Which nodes have a path that has come right beside a pole, (T, J, I).
-        self.polar = polar
+        self.polar = side.polar
 
     def judge(self, m: int, *, always: bool) -> None:
         """Find where slice m is smooth enough to be looked up.
@@ -198,7 +198,7 @@ class _SliceLookup:
     def continued(self, position: Floats32, left: Floats32, step: Indices, most: Any) -> _Piece:
         """Continue paths from positions (2, n) by up to ``left`` of lag."""
         corners = self.grid.corners(position)
-        base = step * self.grid.size if self.unsteady else 0
+        base = self._base(step)
         unit = self.unit[:1] if self._even else self.grid.blend(self.unit, corners)
         longest = self._longest[corners.at + base] if most is None else most
         lag: AnyArray = np.minimum(left / unit, longest)
@@ -226,18 +226,22 @@ class _SliceLookup:
 
     def stuck(self, position: Floats | Floats32, step: Indices | int = 0) -> Bools:
         """Whether positions (2, n) are so close to a pole that nothing can be looked up, (n,)."""
-        base = step * self.grid.size if self.unsteady else 0
+        base = self._base(step)
         return np.asarray(self._longest[self.grid.corners(position).at + base] == 0)
 
     def displaced(self, position: Floats32, lag: Floats32, step: Indices) -> Floats32:
         """Displacements (2, n) of paths from positions (2, n) at any lags up to the last slice."""
         corners = self.grid.corners(position)
-        base = step * self.grid.size if self.unsteady else 0
+        base = self._base(step)
         units: Any = lag / (self.unit[:1] if self._even else self.grid.blend(self.unit, corners))
         m = np.clip(np.searchsorted(self.knots, units), 1, len(self.knots) - 1)
         moved = self._displaced(corners, base, m, units)
         self._mirror(moved, position)
         return moved
+
+    def _base(self, step: Indices | int) -> Indices | int:
+        """Return the number, among those of all steps, of the first node of a step."""
+        return step * self.grid.size if self.unsteady else 0
 
     def _mirror(self, moved: Floats32, position: Floats32) -> None:
         """Turn displacements from positions beyond a pole to run as index space does there."""

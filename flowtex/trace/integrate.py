@@ -18,7 +18,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, fields
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -73,33 +73,17 @@ def integrate(
     *,
     direction: float,
     tolerance: float,
-    most_steps: int = MOST_STEPS,
     within: Callable[[Floats], Bools] | None = None,
 ) -> Paths:
-    """Follow particles and return where they are at the lags.
+    """Follow particles from positions (N, 2) as (i, j) and return where they are at the lags (M,).
 
-    Parameters
-    ----------
-    sampler
-        The field.
-    start
-        Starting positions in index space, (N, 2) as (i, j).
-    lags
-        Lags in units of each particle's ``unit``, (M,), positive and increasing.
-    unit
-        Length of one unit of lag for each particle, (N,).
-    direction
-        -1 to follow backward, +1 forward.
-    tolerance
-        Error allowed in one step, in cells.
-    most_steps
-        Rounds of steps after which the paths that still go on are ended where they are.
-    within
-        Returns for positions (2, N) in index space whether paths are to be followed there; a path
-        that comes elsewhere is interrupted.
+    Lags are positive and increasing, in multiples of each particle's ``unit`` (N,). Direction -1 is
+    backward, 1 forward; the tolerance is the error allowed in one step, in cells. ``within`` tells
+    for positions (2, N) in index space whether paths are to be followed there; a path that comes
+    elsewhere is interrupted.
     """
     run = _Run(sampler, np.ascontiguousarray(start.T), lags, unit, direction, tolerance, within)
-    for _ in range(most_steps):
+    for _ in range(MOST_STEPS):
         run.end_resting()
         if not len(run.state.which):
             break
@@ -109,7 +93,17 @@ def integrate(
 
 
 @dataclass
-class _Particles:
+class _Columns:
+    """Arrays whose last axis is that of the particles; some of them may be None."""
+
+    def pick(self, mask: Bools | Indices) -> Self:
+        """Return those of some particles."""
+        parts = (getattr(self, f.name) for f in fields(self))
+        return type(self)(*(None if part is None else part[..., mask] for part in parts))
+
+
+@dataclass
+class _Particles(_Columns):
     """Particles still under way; the last axis is theirs.
 
     Where there are poles, ``chart`` is what ``y`` is given on, and ``index`` the same in index
@@ -127,13 +121,9 @@ class _Particles:
     chart: Numbers | None
     index: Floats | None
 
-    def pick(self, mask: Bools) -> _Particles:
-        """Return some of them."""
-        return _Particles(*_picked(self, mask))
-
 
 @dataclass
-class IntegrationStep:
+class IntegrationStep(_Columns):
     """Steps of some particles, from (y0, k0) at lag0 to (y1, k1); the last axis is theirs."""
 
     y0: Floats
@@ -144,10 +134,6 @@ class IntegrationStep:
     h: Floats
     chart: Numbers | None = None
     index: Floats | None = None
-
-    def pick(self, mask: Bools | Indices) -> IntegrationStep:
-        """Return the steps of some of them."""
-        return IntegrationStep(*_picked(self, mask))
 
     def at(self, s: Floats) -> Floats:
         """Position at a fraction of each step, by the cubic through both ends and slopes."""
@@ -265,8 +251,7 @@ class _Run:
             self._go_straight(ended, out.k0 + s * (out.k1 - out.k0))
             state.next[outside] = len(self.lags)
         state.y, state.rate, state.lag = step.y1, step.k1, step.lag0 + step.h
-        if self.within is not None:
-            self._interrupt(state, index, outside)
+        self._interrupt(state, index, outside)
         if state.chart is not None:
             before, state.index = state.index, index
             self._change_chart(state, before)
@@ -347,8 +332,3 @@ def _join(one: _Particles, two: _Particles) -> _Particles:
         None if a is None else np.concatenate([a, b], axis=-1) for a, b in pairs
     )
     return _Particles(*joined)
-
-
-def _picked(these: _Particles | IntegrationStep, mask: Bools | Indices) -> Iterator[Any]:
-    parts = (getattr(these, f.name) for f in fields(these))
-    return (None if part is None else part[..., mask] for part in parts)

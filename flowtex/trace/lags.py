@@ -17,6 +17,8 @@ __all__ = ["choose_lags", "lag_unit"]
 
 #: First lag in cells, last lag as a share of the surface's extent, greatest number of lags.
 FIRST_CELLS, LAST_EXTENTS, MOST_CHOSEN_LAGS = 0.25, 0.25, 24
+#: Quotient of one lag and the one before.
+RATIO = 2.0
 
 
 def lag_unit(field: FlowField, parameter: str) -> Floats:
@@ -30,18 +32,8 @@ def lag_unit(field: FlowField, parameter: str) -> Floats:
     return np.ones(field.shape)
 
 
-def choose_lags(field: FlowField, parameter: str, *, ratio: float = 2.0) -> Floats:
-    """Lags from a quarter of a cell to a quarter of the surface, (M,), in lag units.
-
-    Parameters
-    ----------
-    field
-        The flow.
-    parameter
-        ``"arclength"`` or ``"time"``.
-    ratio
-        Quotient of one lag and the one before.
-    """
+def choose_lags(field: FlowField, parameter: str) -> Floats:
+    """Lags from a quarter of a cell to a quarter of the surface, (M,), in lag units."""
     size, extent = field.surface.cell_size[field.valid], field.surface.extent
     if parameter == "arclength":
         first, last = FIRST_CELLS, LAST_EXTENTS * extent / float(np.percentile(size, 5))
@@ -56,6 +48,6 @@ def choose_lags(field: FlowField, parameter: str, *, ratio: float = 2.0) -> Floa
         if not field.steady:
             # Lags that reach other time steps are what long paths can be composed of.
             step = float(np.mean(np.diff(field.times)))
-            first = step * ratio ** np.rint(np.log(first / step) / np.log(ratio))
-    count = int(np.ceil(np.log(max(last / first, ratio)) / np.log(ratio))) + 1
-    return np.asarray(first * ratio ** np.arange(min(count, MOST_CHOSEN_LAGS)))
+            first = step * RATIO ** np.rint(np.log(first / step) / np.log(RATIO))
+    count = int(np.ceil(np.log(max(last / first, RATIO)) / np.log(RATIO))) + 1
+    return np.asarray(first * RATIO ** np.arange(min(count, MOST_CHOSEN_LAGS)))

@@ -16,8 +16,6 @@ from flowtex.field.poles import Poles
 
 __all__ = ["Corners", "NodeGrid"]
 
-#: Of single or double precision, as it comes in.
-
 #: Cells that rounding may carry a path over a border that it follows.
 BORDER_ROUNDING_CELLS = 1e-6
 
@@ -31,18 +29,9 @@ class Corners(NamedTuple):
 
 
 class NodeGrid:
-    """The nodes of a surface in index space.
+    """The nodes of a surface in index space, (J, I), going on beyond its poles where there are any.
 
-    Parameters
-    ----------
-    shape
-        Number of nodes (J, I).
-    periodic
-        Whether the (j, i) axis closes on itself.
-    cells
-        Cells that are not blanked, (J - 1, I - 1).
-    poles
-        Poles beyond which the grid goes on, where there are any.
+    ``cells`` (J - 1, I - 1) are those that are not blanked.
     """
 
     def __init__(
@@ -80,16 +69,9 @@ class NodeGrid:
         return Corners(j, s, t)
 
     def blend(self, data: AnyArray, corners: Corners, base: Indices | int = 0) -> AnyArray:
-        """Interpolate nodal data.
+        """Interpolate nodal data, several sets behind each other, (sets * J * I,).
 
-        Parameters
-        ----------
-        data
-            One or several sets of nodal values behind each other, (sets * J * I,).
-        corners
-            Where to interpolate, N particles.
-        base
-            Index at which the set of each particle begins.
+        The set of each particle begins at index ``base``.
         """
         at = corners.at + base if np.ndim(base) or base else corners.at
         low = _between(data, at, corners.s)

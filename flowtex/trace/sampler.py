@@ -18,7 +18,7 @@ from flowtex._util.array_types import Floats
 from flowtex.field import FlowField
 from flowtex.field.interpolation import bracket, fill_blanked
 from flowtex.trace.charts import Charts, Patch, cap
-from flowtex.trace.node_grid import Corners, NodeGrid
+from flowtex.trace.node_grid import NodeGrid
 
 __all__ = ["LengthSampler", "Sampler", "TimeSampler"]
 
@@ -34,21 +34,17 @@ RESTING_CELLS = 1e-3
 class Sampler(ABC):
     """What the integrator asks of a field.
 
-    Positions and rates are (2, N): as (i, j), or on the charts (N,) that are given with them.
-
-    Parameters
-    ----------
-    field
-        The flow.
-    data
-        Components along i and j, and anything else that is interpolated, (T, J, I, C).
+    Positions and rates are (2, N): as (i, j), or on the charts (N,) that are given with them. The
+    data are components along i and j, and anything else that is interpolated, (T, J, I, C).
     """
 
     #: Longest step in units of lag, so that no change in time is jumped over.
     longest: float
 
     def __init__(self, field: FlowField, data: Floats) -> None:
-        grid, parts = NodeGrid.of(field), _spread(data, field)
+        data = fill_blanked(data, field.valid, data.ndim - 3)
+        parts = [np.ascontiguousarray(data[..., c]).ravel() for c in range(data.shape[-1])]
+        grid = NodeGrid.of(field)
         self._poles = poles = field.surface.poles
         #: The charts of a surface that has poles.
         self.charts = None if poles is None else Charts(poles)
@@ -179,16 +175,9 @@ class TimeSampler(Sampler):
         corners = patch.corners(position)
         if len(self._times) == 1:
             return np.stack([patch.blend(0, corners), patch.blend(1, corners)])
-        return self._at_time(patch, corners, self._destination + direction * lag)
-
-    def rest(self, unit: Floats, last: float) -> Floats:
-        """Rate at which a particle gets nowhere; in a flow that varies none stays at rest."""
-        return np.full(len(unit), 0.0 if len(self._times) > 1 else 1e-5) / (unit * last)
-
-    def _at_time(self, patch: Patch, corners: Corners, time: Floats) -> Floats:
-        step, late = bracket(self._times, time, side="left")
+        step, late = bracket(self._times, self._destination + direction * lag, side="left")
         np.clip(late, 0, 1, out=late)
-        result = np.empty((2, len(time)))
+        result = np.empty((2, len(lag)))
         for component, row in enumerate(result):
             before = patch.blend(component, corners, step)
             row[:] = patch.blend(component, corners, step + 1)
@@ -197,8 +186,6 @@ class TimeSampler(Sampler):
             row += before
         return result
 
-
-def _spread(data: Floats, field: FlowField) -> list[Floats]:
-    """Components of (..., J, I, C) data, each flat; blanked nodes get their neighbours' value."""
-    data = fill_blanked(data, field.valid, data.ndim - 3)
-    return [np.ascontiguousarray(data[..., c]).ravel() for c in range(data.shape[-1])]
+    def rest(self, unit: Floats, last: float) -> Floats:
+        """Rate at which a particle gets nowhere; in a flow that varies none stays at rest."""
+        return np.full(len(unit), 0.0 if len(self._times) > 1 else 1e-5) / (unit * last)

@@ -29,22 +29,10 @@ CACHE_BYTES = 512_000_000
 class SliceStore:
     """Slices of one field, one destination time at a time.
 
-    Parameters
-    ----------
-    field
-        The flow.
-    parameter
-        What a lag measures, as for :func:`flowtex.trace`.
-    slices
-        Slices of all steps that were traced already; nothing is traced then.
-    compose
-        Whether all steps may be composed together, which is quicker than step by step, but
-        slower for one or two of them.
-
-    Raises
-    ------
-    ValueError
-        When slices of a field without a sign lead to one side only.
+    The parameter is that of :func:`flowtex.trace`. With slices of all steps that were traced
+    already nothing is traced; in a field without a sign they have to lead to both sides.
+    ``compose`` allows to compose all steps together, which is quicker than step by step, but slower
+    for one or two of them.
     """
 
     def __init__(
@@ -111,14 +99,6 @@ _stores: WeakCache[SliceStore] = WeakCache()
 
 
 def shared_store(field: FlowField, parameter: str) -> SliceStore:
-    """Return the store of a field, one for all that show the field at the same time.
-
-    Parameters
-    ----------
-    field
-        The flow.
-    parameter
-        What a lag measures, as for :func:`flowtex.trace`.
-    """
+    """Return the store of a field, one for all that show the field at the same time."""
     # A store keeps its field alive, so the number of the field is its own while the store lives.
     return _stores.get((id(field), parameter), partial(SliceStore, field, parameter=parameter))

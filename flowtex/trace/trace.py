@@ -15,11 +15,11 @@ from functools import cached_property, partial
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flowtex._util.array_types import Bools, Floats, Floats32, Indices
+from flowtex._util.array_types import Floats, Floats32, Indices
 from flowtex._util.progress import track
 from flowtex.field import FlowField
 from flowtex.field.interpolation import nearest_known
-from flowtex.trace.compose import Within, compose, landings
+from flowtex.trace.compose import SideSlices, Within, compose, landings
 from flowtex.trace.integrate import Paths, integrate
 from flowtex.trace.lags import choose_lags, lag_unit
 from flowtex.trace.sampler import LengthSampler, Sampler, TimeSampler
@@ -110,7 +110,8 @@ def trace(
     samplers = _samplers(field, step_numbers, parameter)
     tracing = _Tracing(field, samplers, lag_values, units, tolerance, progress)
     composed = lags is None if compose is None else compose
-    landing = _landing(field, lag_values, units, step_numbers) if composed else None
+    whole = field.steady or step_numbers == list(range(len(field.times)))
+    landing = landings(field, lag_values, units) if composed and whole else None
     paths_by_side = tracing.follow(directions, landing)
     backward = paths_by_side[-1.0]
     forward = paths_by_side.get(1.0)
@@ -151,20 +152,13 @@ def paths(
     step
         Which destination time.
     parameter, forward, tolerance
-        As for :func:`trace`.
+        As for :func:`trace`; the raised errors are the same.
 
     Returns
     -------
     Paths
         Positions (M, N, 2) in index space, and the lag at which each path ended, (N,), infinite
         where it goes on beyond the last lag.
-
-    Raises
-    ------
-    ValueError
-        When the lags are not positive and increasing, or ``parameter`` is unknown.
-    IndexError
-        When there is no such time step.
     """
     parameter = _parameter(field, parameter)
     begin = np.array(start, dtype=float).reshape(-1, 2)
@@ -195,17 +189,7 @@ def _check_signs(field: FlowField, *, two_sided: bool, compose: bool | None) -> 
 def _step_numbers(field: FlowField, steps: Sequence[int] | None) -> list[int]:
     """Destination times as indices from 0."""
     count = len(field.times)
-    for step in () if steps is None else steps:
-        if not -count <= step < count:
-            msg = f"time step {step} does not exist: expected 0 to {count - 1}"
-            raise IndexError(msg)
-    return list(range(count)) if steps is None else [int(step) % count for step in steps]
-
-
-def _landing(field: FlowField, lags: Floats, unit: Floats, steps: list[int]) -> Indices | None:
-    """Time steps that the lags span, where paths can be composed, else ``None``."""
-    whole = field.steady or steps == list(range(len(field.times)))
-    return landings(field, lags, unit) if whole else None
+    return [field.step_number(step) for step in (range(count) if steps is None else steps)]
 
 
 def _samplers(field: FlowField, steps: list[int], parameter: str) -> list[Sampler]:
@@ -224,34 +208,11 @@ def _parameter(field: FlowField, parameter: str) -> str:
 
 def _checked_lags(lags: ArrayLike) -> Floats:
     lag_values = np.atleast_1d(np.asarray(lags, dtype=float))
-    good = (
-        lag_values.ndim == 1
-        and len(lag_values)
-        and lag_values[0] > 0
-        and (np.diff(lag_values) > 0).all()
-    )
-    if not good or not np.isfinite(lag_values).all():
+    good = np.isfinite(lag_values) & (np.diff(lag_values, prepend=0.0) > 0)
+    if lag_values.ndim != 1 or not lag_values.size or not good.all():
         msg = f"lags is {lags!r}; expected positive numbers in increasing order"
         raise ValueError(msg)
     return lag_values
-
-
-@dataclass(frozen=True, eq=False)
-class _SideSlices:
-    """Slices of one direction, (2, M + 1, T, J, I).
-
-    Their reach, and which paths have come right beside a pole, are (T, J, I). While paths are
-    integrated, the nodes of all three are one axis.
-    """
-
-    slices: Floats32
-    reach: Floats32
-    polar: Bools
-
-    @property
-    def displacement(self) -> Floats32:
-        """The same numbers as (T, M, J, I, 2)."""
-        return np.moveaxis(self.slices[:, 1:], (0, 2), (4, 0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -283,12 +244,12 @@ class _Tracing:
 
     def follow(
         self, directions: Sequence[float], landing: Indices | None
-    ) -> dict[float, _SideSlices]:
+    ) -> dict[float, SideSlices]:
         """Follow all paths, by composition where there are landings."""
         known = len(self.lags) if landing is None else self._direct(landing)
         shape = (len(self.samplers), self.field.valid.size)
         sides = {
-            direction: _SideSlices(
+            direction: SideSlices(
                 np.empty((2, len(self.lags) + 1, *shape), np.float32),
                 np.zeros(shape, np.float32),
                 np.zeros(shape, bool),
@@ -304,12 +265,10 @@ class _Tracing:
                         self.field,
                         self.lags,
                         self.unit,
-                        side.slices,
-                        side.reach,
+                        side,
                         known,
                         landing,
                         pool.map,
-                        side.polar,
                         partial(self._piece, direction),
                     )
         return sides
@@ -323,7 +282,7 @@ class _Tracing:
         return max(int(np.searchsorted(self.lags * typical, DIRECT_CELLS, side="right")), 1)
 
     def _integrate(
-        self, sides: dict[float, _SideSlices], known: int, pool: ThreadPoolExecutor
+        self, sides: dict[float, SideSlices], known: int, pool: ThreadPoolExecutor
     ) -> None:
         """Fill the first ``known`` slices."""
         at = np.flatnonzero(self.field.valid)
@@ -384,7 +343,7 @@ class _Tracing:
             ends[some] = np.where(paths.interrupted, np.inf, paths.reach) * unit
         return moved, covered, ends
 
-    def _as_grids(self, flat: _SideSlices, direction: float) -> _SideSlices:
+    def _as_grids(self, flat: SideSlices, direction: float) -> SideSlices:
         """Lay out by nodes, with the slope at lag zero; blanked nodes move as the nearest."""
         grid = self.field.shape
         slices = flat.slices.reshape(*flat.slices.shape[:3], *grid)
@@ -394,4 +353,4 @@ class _Tracing:
             # In place: the slices are large, and few of them are blank.
             rows, columns = nearest_known(self.field.valid)
             slices[..., blank] = slices[..., rows[blank], columns[blank]]
-        return _SideSlices(slices, flat.reach.reshape(-1, *grid), flat.polar.reshape(-1, *grid))
+        return SideSlices(slices, flat.reach.reshape(-1, *grid), flat.polar.reshape(-1, *grid))

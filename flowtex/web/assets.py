@@ -1,4 +1,4 @@
-"""The client's files, built and kept beside this module, in a checkout and in a wheel alike."""
+"""The client's files, which are built into this folder, in a checkout and in a wheel alike."""
 
 from __future__ import annotations
 

@@ -15,10 +15,10 @@ import json
 import string
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
-from flowtex._util.array_types import AnyArray
 from flowtex._util.progress import track
 from flowtex._util.whole_file import whole_file
 from flowtex._version import __version__
@@ -29,12 +29,12 @@ from flowtex.web import preview
 from flowtex.web.assets import asset
 from flowtex.web.view import WebView, web_views
 
-__all__ = ["Page", "estimate", "export", "page_text", "write_page"]
+__all__ = ["Page", "estimate", "export", "page_pieces", "page_text", "write_page"]
 
 #: Size of an average part after packing, over that before, base64 included.
-PACKED = 0.62
+PACKED_SHARE = 0.62
 #: Bytes of the client, its shaders and the header, about.
-AROUND = 160_000
+CLIENT_BYTES = 160_000
 #: Size of the preview picture.
 PREVIEW = (480, 300)
 
@@ -106,7 +106,7 @@ def export(
     arguments = Options.split(**options)
     views = web_views(mesh, arguments, steps=steps)
     try:
-        camera = views[0].camera(arguments.view).to_dict()
+        camera = arguments.view.first_camera(views[0].field.surface).to_dict()
         return write_page(views, path, camera=camera, title=title, announce=announce)
     finally:
         for view in views:
@@ -117,35 +117,26 @@ def write_page(
     views: Sequence[WebView],
     path: str | Path,
     *,
-    camera: dict[str, Any] | None = None,
-    time: float | None = None,
-    clock: float = 0.0,
-    title: str | None = None,
-    picture: bytes | None = None,
     announce: Callable[[int, int], None] | None = None,
+    **options: Any,
 ) -> Page:
-    """Write a view, or two beside each other, as a page; :func:`export` has the parameters."""
+    """Write a view, or two beside each other, as a page.
+
+    ``announce`` is that of :func:`export`, the options are those of :func:`page_pieces`.
+    """
     path = Path(path)
     scenes = [view.data() for view in views]
     estimated = estimate(scenes)
     if announce is not None:
         announce(estimated, scenes[0].steps)
-    pieces = _pieces(views, scenes, camera, time, clock, title, picture)
-    return Page(path, _write(path, pieces), estimated, scenes[0].steps)
+    with whole_file(path) as part, part.open("w", encoding="utf-8", newline="\n") as file:
+        file.writelines(page_pieces(views, scenes, **options))
+    return Page(path, path.stat().st_size, estimated, scenes[0].steps)
 
 
-def page_text(
-    views: Sequence[WebView],
-    *,
-    camera: dict[str, Any] | None = None,
-    time: float | None = None,
-    clock: float = 0.0,
-    title: str | None = None,
-    picture: bytes | None = None,
-) -> str:
-    """Return a view, or two, as the text of a page; :func:`export` has the parameters."""
-    scenes = [view.data() for view in views]
-    return "".join(_pieces(views, scenes, camera, time, clock, title, picture))
+def page_text(views: Sequence[WebView], **options: Any) -> str:
+    """Return a view, or two, as the text of a page; the options are of :func:`page_pieces`."""
+    return "".join(page_pieces(views, [view.data() for view in views], **options))
 
 
 def estimate(scenes: Sequence[ClientData]) -> int:
@@ -156,19 +147,24 @@ def estimate(scenes: Sequence[ClientData]) -> int:
             break
         arrays = sum(part.nbytes for part in scene.surface().values())
         size += arrays + scene.steps * scene.nbytes_of_step
-    return AROUND + int(PACKED * size)
+    return CLIENT_BYTES + int(PACKED_SHARE * size)
 
 
-def _pieces(
+def page_pieces(
     views: Sequence[WebView],
     scenes: Sequence[ClientData],
-    camera: dict[str, Any] | None,
-    time: float | None,
-    clock: float,
-    title: str | None,
-    picture: bytes | None,
+    *,
+    camera: dict[str, Any] | None = None,
+    time: float | None = None,
+    clock: float = 0.0,
+    title: str | None = None,
+    picture: bytes | None = None,
 ) -> Iterator[str]:
-    """Give the text of a page piece by piece; each array is packed when it is reached."""
+    """Give the text of a page piece by piece; each array is packed when it is reached.
+
+    Camera, time and clock are those of :meth:`ClientData.header`; ``picture`` is a PNG that is
+    shown until the page has drawn, made here where there is none.
+    """
     headers = [
         scene.header(view.scene.settings, camera=camera, time=time, clock=clock)
         for view, scene in zip(views, scenes, strict=True)
@@ -228,7 +224,10 @@ def _elements(scenes: Sequence[ClientData]) -> Iterator[str]:
     """Give the parts of all views as elements of the page; equal arrays lie in it once."""
     written: set[str] = set()
     for n, scene in enumerate(scenes):
-        for name, array in _all_parts(scene):
+        steps = track(range(scene.steps), scene.steps, "Packing time steps")
+        for name, array in chain(
+            scene.surface().items(), (part for step in steps for part in scene.step(step).items())
+        ):
             info = part_info(name, array)
             text = "" if info["digest"] in written else part_text(array)
             written.add(info["digest"])
@@ -236,16 +235,3 @@ def _elements(scenes: Sequence[ClientData]) -> Iterator[str]:
                 f'<script type="text/plain" data-view="{n}" '
                 f'data-part="{html.escape(json.dumps(info))}">{text}</script>\n'
             )
-
-
-def _all_parts(scene: ClientData) -> Iterator[tuple[str, AnyArray]]:
-    yield from scene.surface().items()
-    for step in track(range(scene.steps), scene.steps, "Packing time steps"):
-        yield from scene.step(step).items()
-
-
-def _write(path: Path, text: Iterator[str]) -> int:
-    """Write a file that is there whole or not at all; return its size."""
-    with whole_file(path) as part, part.open("w", encoding="utf-8", newline="\n") as file:
-        file.writelines(text)
-    return path.stat().st_size

@@ -11,26 +11,25 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from flowtex._util.array_types import Bytes, Floats
 from flowtex.camera import Camera
+from flowtex.field.interpolation import steps_around
 from flowtex.rendering.cpu import Picture, render
 from flowtex.rendering.uniforms import ViewState
 from flowtex.rendering.webgl import ClientData
 from flowtex.settings import Settings
 from flowtex.web.view import WebView
 
-__all__ = ["png", "preview", "preview_png"]
+__all__ = ["preview_png"]
 
 #: Nodes and samples of a small picture, which no eye can tell from more of them.
 NODES, SAMPLES = 3_000, 9
 #: Pixels of the picture by one that NumPy draws, along each side.
 COARSER = 2
 
-Bytes = NDArray[np.uint8]
 
-
-def preview(
+def preview_png(
     view: WebView,
     size: tuple[int, int],
     *,
@@ -38,54 +37,26 @@ def preview(
     time: float | None = None,
     scene: ClientData | None = None,
     coarser: int = COARSER,
-) -> Bytes:
-    """Draw a small picture.
+) -> bytes:
+    """Draw a small picture and return it as PNG.
 
-    Parameters
-    ----------
-    view
-        The flow and its colours.
-    size
-        Width and height in pixels.
-    camera
-        From where, as the header of a scene has it; the whole surface by default.
-    time
-        Time that is shown; the last one by default.
-    scene
-        The view's data with few nodes, when they are at hand.
-    coarser
-        Pixels of the picture by one that is computed, along each side.
-
-    Returns
-    -------
-    numpy.ndarray
-        (height, width, 3), row 0 at the top.
+    By default the whole surface is shown, at the last time. ``scene`` has the view's data with
+    few nodes, when they are at hand; one pixel is computed for ``coarser`` along each side.
     """
     scene = scene or view.coarse_data(NODES)
     camera = camera or scene.first_camera(size[0] / size[1]).to_dict()
     drawn = _drawn(view, scene, (size[0] // coarser, size[1] // coarser), camera, time)
     from PIL import Image
 
-    return np.asarray(Image.fromarray(drawn).resize(size, Image.Resampling.BICUBIC))
-
-
-def preview_png(view: WebView, size: tuple[int, int], **options: Any) -> bytes:
-    """Draw a small picture and return it as PNG; :func:`preview` has the parameters."""
-    return png(preview(view, size, **options))
-
-
-def png(picture: Bytes) -> bytes:
-    """Return a picture (H, W, 3) as a PNG file."""
-    from PIL import Image
-
+    picture = np.asarray(Image.fromarray(drawn).resize(size, Image.Resampling.BICUBIC))
     # Colours are chosen among a few pixels: among all of them it takes longer than the drawing.
     few = Image.fromarray(np.ascontiguousarray(picture[::4, ::4])).quantize(160)
-    drawn = Image.fromarray(picture).quantize(palette=few, dither=Image.Dither.NONE)
-    palette, corner = drawn.getpalette() or [], 3 * int(np.asarray(drawn)[0, 0])
+    reduced = Image.fromarray(picture).quantize(palette=few, dither=Image.Dither.NONE)
+    palette, corner = reduced.getpalette() or [], 3 * int(np.asarray(reduced)[0, 0])
     palette[corner : corner + 3] = picture[0, 0].tolist()  # the ground keeps its very colour
-    drawn.putpalette(palette)
+    reduced.putpalette(palette)
     file = io.BytesIO()
-    drawn.save(file, "PNG", optimize=True)
+    reduced.save(file, "PNG", optimize=True)
     return file.getvalue()
 
 
@@ -105,18 +76,17 @@ def _drawn(
     camera: Mapping[str, Any],
     time: float | None,
 ) -> Bytes:
-    times = scene.times
-    shown = float(times[-1] if time is None else time)
-    steps = scene.moment(shown)
-    first, last = times[steps[0]], times[steps[-1]]
-    between = float((shown - first) / (last - first)) if last > first else 0.0
+    before, after, between = steps_around(
+        scene.times, float(scene.times[-1] if time is None else time)
+    )
+    steps = (scene.source(before), scene.source(after))
     picture = render(
         scene.textures,
         _few_samples(view.scene.settings),
         Camera.from_dict(camera),
         (max(size[0], 1), max(size[1], 1)),
         view=ViewState(between=between),
-        steps=(scene.source(steps[0]), scene.source(steps[-1])),
+        steps=steps,
     )
     ground = scene.colours.background
     drawn = picture.rgb(_colour(scene, picture, steps, between), ground)
@@ -127,20 +97,17 @@ def _drawn(
     return np.rint(behind + opacity * (drawn - behind)).astype(np.uint8)
 
 
-def _colour(
-    scene: ClientData, picture: Picture, steps: tuple[int, ...], between: float
-) -> NDArray[np.float64]:
+def _colour(scene: ClientData, picture: Picture, steps: tuple[int, int], between: float) -> Floats:
     """Colour of the surface at each pixel, (H, W, 3)."""
     colours, geometry = scene.colours, scene.textures.geometry
     if colours.values is None or colours.table is None:
         return np.asarray(colours.plain)
-    sources = (scene.source(step) for step in (steps[0], steps[-1]))
-    before, after = (colours.values[min(s, len(colours.values) - 1)] for s in sources)
+    before, after = (colours.values[min(step, len(colours.values) - 1)] for step in steps)
     values = np.nan_to_num(before * (1 - between) + after * between, nan=colours.low)
     rows, columns = geometry.rows, geometry.columns
     at = np.nan_to_num(picture.coordinate, nan=0.0)
     j = np.rint(at[..., 1] * rows.size - rows.before - 0.5).astype(int).clip(0, rows.nodes - 1)
     i = np.rint(at[..., 0] * columns.size - columns.before - 0.5).astype(int)
-    found = values[j, i.clip(0, columns.nodes - 1)]
-    share = (found - colours.low) / ((colours.high - colours.low) or 1.0)
+    nearest = values[j, i.clip(0, columns.nodes - 1)]
+    share = (nearest - colours.low) / ((colours.high - colours.low) or 1.0)
     return np.asarray(colours.table[(share * 256).clip(0, 255).astype(int), :3] / 255.0)

@@ -2,40 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
 from flowtex._util.colours import colour_table, rgb
-from flowtex.camera import Camera
 from flowtex.field import FlowField
-from flowtex.options import Options, ViewOptions
+from flowtex.options import Options
 from flowtex.rendering.webgl import ClientData, Colours
 from flowtex.scene import Scene, share_field, steps_of
 from flowtex.settings import TABLE
 
-__all__ = ["WebView", "web_views"]
+__all__ = ["WebView", "even_steps", "web_views"]
 
 
 class WebView:
     """A scene for a client in a browser.
 
-    Parameters
-    ----------
-    scene
-        The flow, its colours and settings.
-    background
-        Colour behind the surface.
-    steps
-        Number of time steps that are handed over, evenly chosen with the first and the last
-        among them; all of them by default. Paths are traced through all of them all the same.
-    own_settings
-        Settings of this view alone, where it stands beside another.
-
-    Attributes
-    ----------
-    scene, own_settings
-        As above.
+    Of the time steps so many are handed over, evenly chosen with the first and the last among
+    them; paths are traced through all of them all the same. ``own_settings`` are those of this
+    view alone, where it stands beside another.
 
     Raises
     ------
@@ -53,12 +38,12 @@ class WebView:
     ) -> None:
         appearance = scene.appearance
         self.scene, self.own_settings = scene, own_settings
-        self._times = _evenly(len(scene.field.times), steps)
+        self._times = even_steps(len(scene.field.times), steps)
         self._colours = Colours(
             table=colour_table(appearance.cmap),
             plain=rgb(appearance.color),
             background=rgb(background),
-            lighting=appearance.is_lit(flat=scene.flat),
+            lighting=scene.is_lit,
             opacity=float(appearance.opacity),
             bar=appearance.has_bar,
         )
@@ -67,10 +52,6 @@ class WebView:
     def field(self) -> FlowField:
         """The flow."""
         return self.scene.field
-
-    def camera(self, view: ViewOptions, aspect: float = 1.5) -> Camera:
-        """Return the camera that a view begins with."""
-        return first_camera(self.scene, view, aspect)
 
     def data(self) -> ClientData:
         """Return what the client is handed; makes noise textures, and traces nothing."""
@@ -94,25 +75,10 @@ class WebView:
 
 
 def web_views(mesh: Any, options: Options, *, steps: int | None = None) -> tuple[WebView, ...]:
-    """Return the view of a flow, and a second one where ``options.view.beside`` asks for it.
+    """Return the view of a mesh or a field, and one beside it if ``options.view`` asks for it.
 
-    Parameters
-    ----------
-    mesh
-        A mesh or a field; equal ones share their traces.
-    options
-        As :meth:`Options.split` sorts them.
-    steps
-        As for :class:`WebView`.
-
-    Raises
-    ------
-    FieldError, SettingsError
-        When the mesh or a setting does not fit.
-    KeyError
-        When there is no such scalar.
-    ValueError
-        When another argument does not fit.
+    Equal meshes share their traces. ``steps`` and the errors are those of :class:`WebView` and
+    :meth:`Scene.of`.
     """
     field = share_field(options.field.field(mesh))
     chosen = replace(options, field=type(options.field)())
@@ -126,25 +92,7 @@ def web_views(mesh: Any, options: Options, *, steps: int | None = None) -> tuple
     return tuple(views)
 
 
-def first_camera(scene: Scene, view: ViewOptions, aspect: float) -> Camera:
-    """Return the camera that a view begins with.
-
-    Raises
-    ------
-    CameraError
-        When ``camera`` is none.
-    ValueError
-        When ``zoom`` or ``focus`` is none.
-    """
-    whole = Camera.fit(scene.field.surface, aspect, zoom=view.zoom, focus=view.focus)
-    if view.camera is None or isinstance(view.camera, Camera):
-        return view.camera or whole
-    if isinstance(view.camera, Mapping):
-        return Camera.from_dict(view.camera, whole)
-    return Camera.from_points(view.camera)
-
-
-def _evenly(count: int, steps: int | None) -> tuple[int, ...]:
+def even_steps(count: int, steps: int | None) -> tuple[int, ...]:
     """Return so many of the numbers below a count, or none of them where all are asked for."""
     if steps is None or steps >= count:
         return ()

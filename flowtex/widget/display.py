@@ -14,20 +14,20 @@ import anywidget
 __all__ = ["Displayed"]
 
 #: Seconds that cells wait for small pictures, at most; how much comes back in a second.
-PATIENCE, REGAINED = 1.0, 0.2
+MAX_WAIT_S, WAIT_REGAINED = 1.0, 0.2
 
 
-class Patience:
+class WaitBudget:
     """Time that may be waited for pictures, however many widgets are shown at once."""
 
     def __init__(self) -> None:
-        self._left, self._at = PATIENCE, time.monotonic()
+        self._left, self._at = MAX_WAIT_S, time.monotonic()
 
     @contextmanager
-    def spent(self) -> Iterator[float]:
+    def spend(self) -> Iterator[float]:
         """Give the seconds that are left; those that pass meanwhile are used up."""
         started = time.monotonic()
-        self._left = min(PATIENCE, self._left + REGAINED * (started - self._at))
+        self._left = min(MAX_WAIT_S, self._left + WAIT_REGAINED * (started - self._at))
         try:
             yield self._left
         finally:
@@ -35,7 +35,7 @@ class Patience:
             self._left = max(self._left - (self._at - started), 0.0)
 
 
-_patience = Patience()
+_wait_budget = WaitBudget()
 
 
 class Displayed(anywidget.AnyWidget):
@@ -43,7 +43,7 @@ class Displayed(anywidget.AnyWidget):
 
     _shown_in: int | None = None
 
-    def _picture(self, patience: float) -> bytes | None:
+    def _picture(self, timeout_s: float) -> bytes | None:
         """Return a PNG of the widget, which may be waited for."""
         raise NotImplementedError
 
@@ -53,7 +53,7 @@ class Displayed(anywidget.AnyWidget):
         if not isinstance(bundle, tuple):
             return bundle
         data, metadata = bundle
-        with _patience.spent() as seconds:
+        with _wait_budget.spend() as seconds:
             picture = self._picture(seconds)
         encoded = {"image/png": base64.b64encode(picture).decode()} if picture else {}
         return {**data, **encoded}, metadata

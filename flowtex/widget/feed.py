@@ -4,7 +4,7 @@ Two workers do all that takes time. One answers the client from the scene that t
 makes the next scene, the whole one after a coarse one or that of new settings, and puts it in the
 place of the first when it can be shown.
 
-An array that has gone to some page already is offered by its digest and not sent: a page that
+An array that was sent to some page already is offered by its digest and not sent: a page that
 shows the same mesh many times holds it once, and asks for what it lacks.
 """
 
@@ -15,54 +15,48 @@ import traceback
 from collections import OrderedDict
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from functools import partial
 from typing import Any
 
 from flowtex._util.array_types import AnyArray
 from flowtex.rendering.webgl import ClientData
 from flowtex.rendering.webgl.protocol import Header, Parts, part_buffer, part_info
+from flowtex.settings import Affects
 from flowtex.web import preview
 from flowtex.web.view import WebView
-from flowtex.widget.worker import Crew, Worker
+from flowtex.widget.worker import Worker, WorkerPool
 
 __all__ = ["Feed"]
 
 #: A field of more nodes, at all times together, is shown coarse first.
-LARGE = 60_000
+LARGE_NODES = 60_000
 #: Nodes of the coarse form of a steady field, and of one that varies, which takes longer to trace.
 COARSE_STEADY, COARSE_VARYING = 6_000, 2_500
 #: A field of more nodes than these, at all times together, is shown in a form between as well.
-LONG = 600_000
+VERY_LARGE_NODES = 600_000
 #: Nodes of that form.
 BETWEEN_STEADY, BETWEEN_VARYING = 100_000, 16_000
 #: Bytes that go in one message together.
-TOGETHER = 2_000_000
+MESSAGE_BYTES = 2_000_000
 #: Seconds between the times at which what nobody has acknowledged is sent once more.
-LOST = (2.5, 4.0, 8.0, 16.0)
+RESEND_WAITS_S = (2.5, 4.0, 8.0, 16.0)
 #: Bytes from which an array is offered before it is sent again.
-OFFERED = 50_000
+LEAST_OFFERED_BYTES = 50_000
 
-#: Digests of arrays that have gone to some page, and how many of them are remembered.
+#: Digests of arrays that were sent to some page, and how many of them are remembered.
 _sent_digests: OrderedDict[str, None] = OrderedDict()
 _sent_lock = threading.Lock()
 MOST_DIGESTS = 10_000
 
-#: Those who answer are more than there are processors: one may be tracing for long.
-ANSWERS, MAKES = Crew("flowtex-answers", 4), Crew("flowtex-makes", 2)
+#: Threads that answer are more than there are processors: one may be tracing for long.
+ANSWER_POOL, BUILD_POOL = WorkerPool("flowtex-answer", 4), WorkerPool("flowtex-build", 2)
 
 
 class Feed:
     """Arrays of a view on their way to a client.
 
-    Parameters
-    ----------
-    view
-        What is shown.
-    moment
-        Tells the time that is shown.
-    announce
-        Given a new header, without settings and camera, before its arrays are sent.
-    send
-        Given a message and its buffers.
+    ``moment`` returns the time that is shown. ``announce`` is called with a new header, without
+    settings and camera, before its arrays are sent; ``send`` with a message and its buffers.
     """
 
     def __init__(
@@ -83,10 +77,11 @@ class Feed:
         self.picture: bytes | None = None
         self.pictured, self.settled = threading.Event(), threading.Event()
         self.scene = self._first()
-        self.heard = False
-        self._timer = self._timed(LOST)
-        self._answers = Worker(ANSWERS, self._failed)
-        self._makes = Worker(MAKES, self._failed)
+        self.acknowledged = False
+        self._timer = self._resend_timer(RESEND_WAITS_S)
+        self._answers = Worker(ANSWER_POOL, self._failed)
+        self._builds = Worker(BUILD_POOL, self._failed)
+        view.scene.observe(self._scene_changed)
 
     @property
     def header(self) -> Header:
@@ -98,7 +93,7 @@ class Feed:
 
         Until the cell that shows a widget has come to its end nobody can ask.
         """
-        self._answers.do(self._send_all, urgency=2)
+        self._answers.do(lambda: self._send_parts(self._first_parts), urgency=2)
         self._answers.do(self._refine)
         self._timer.start()
 
@@ -110,7 +105,7 @@ class Feed:
 
     def ready(self) -> None:
         """Answer a client that has nothing yet."""
-        self._answers.do(self._send_all, urgency=1)
+        self._answers.do(lambda: self._send_parts(self._first_parts), urgency=1)
 
     def need(self, step: int) -> None:
         """Answer a client that needs a step."""
@@ -119,30 +114,32 @@ class Feed:
         self._asked.add(step)
         self._answers.do(lambda: self._send_step(step), urgency=1)
 
-    def _timed(self, waits: tuple[float, ...]) -> threading.Timer:
+    def _resend_timer(self, waits: tuple[float, ...]) -> threading.Timer:
         timer = threading.Timer(waits[0], self._send_again, [waits[1:]])
         timer.daemon = True
         return timer
 
     def _send_again(self, waits: tuple[float, ...]) -> None:
-        """Send once more to who has said nothing: it may not have been there yet to listen.
+        """Send once more to a client that has not answered: it may not have been loaded yet.
 
         What was only offered goes along whole: what it was offered from may be lost as well.
         """
-        if self.heard or self._closed:
+        if self.acknowledged or self._closed:
             return
         if self._live:
-            self._answers.do(lambda: self._send_named(sorted(self._sent)), urgency=1)
+            self.want(sorted(self._sent))
         if waits:
-            self._timer = self._timed(waits)
+            self._timer = self._resend_timer(waits)
             self._timer.start()
 
     def want(self, names: list[str]) -> None:
         """Answer a client that lacks arrays that it was offered."""
         self._answers.do(lambda: self._send_named(names), urgency=1)
 
-    def restart(self, *, traces: bool) -> None:
-        """Follow new settings: make the textures again, and the traces if need be."""
+    def _scene_changed(self, affects: Affects) -> None:
+        """Make the textures again, and the traces if need be."""
+        if affects == "uniform":
+            return
         with self._lock:
             self._order += 1
             order = self._order
@@ -150,57 +147,52 @@ class Feed:
 
         def change() -> None:
             if order == self._order:
-                self._replace(self._first() if traces else self._view.data())
+                self._replace(self._first() if affects == "trace" else self._view.data())
 
-        self._makes.do(change, urgency=2)
+        self._builds.do(change, urgency=2)
         self._refine()
 
     def close(self) -> None:
-        """Stop; a trace that is being made comes to its end unheard."""
+        """Stop; a trace that is being made comes to its end and is not sent."""
         self._closed = True
         self._timer.cancel()
         self._answers.close()
-        self._makes.close()
+        self._builds.close()
         for event in (self.pictured, self.settled):
             event.set()
 
     def _first(self) -> ClientData:
         """Return the scene to begin with: a coarse one of a large field."""
         field = self._view.field
-        if field.valid.size * len(field.times) <= LARGE:
+        if field.valid.size * len(field.times) <= LARGE_NODES:
             return self._view.data()
         return self._view.coarse_data(COARSE_STEADY if field.steady else COARSE_VARYING)
 
     def _refine(self) -> None:
         """Replace a coarse scene by one between, where the whole takes long, and by the whole."""
-        order = self._order
-        self._makes.do(lambda: self._come_between(order), urgency=1)
-        self._makes.do(lambda: self._complete(order))
+        order, field = self._order, self._view.field
+        nodes = BETWEEN_STEADY if field.steady else BETWEEN_VARYING
 
-    def _come_between(self, order: int) -> None:
-        field = self._view.field
-        if field.valid.size * len(field.times) < LONG:
-            return
-        if order == self._order and self._coarse:
-            nodes = BETWEEN_STEADY if field.steady else BETWEEN_VARYING
-            self._replace(self._view.coarse_data(nodes))
+        def complete() -> None:
+            self._refine_to(self._view.data, order)
+            if order == self._order:
+                self.settled.set()
 
-    def _complete(self, order: int) -> None:
-        if order != self._order:
-            return
-        if self._coarse:
-            self._replace(self._view.data())
-        if order == self._order:
-            self.settled.set()
+        if field.valid.size * len(field.times) >= VERY_LARGE_NODES:
+            between = partial(self._refine_to, partial(self._view.coarse_data, nodes), order)
+            self._builds.do(between, urgency=1)
+        self._builds.do(complete)
 
-    @property
-    def _coarse(self) -> bool:
-        return self.scene.textures.geometry.field.shape != self._view.field.shape
+    def _refine_to(self, make: Callable[[], ClientData], order: int) -> None:
+        """Replace a scene that is still coarse and wanted."""
+        shape = self.scene.textures.geometry.field.shape
+        if order == self._order and shape != self._view.field.shape:
+            self._replace(make())
 
     def _replace(self, scene: ClientData) -> None:
         """Put a scene in the place of the present one, once it can be shown."""
         order = self._order
-        parts = self._now(scene)
+        parts = self._first_parts(scene)
         with self._lock:
             if order != self._order or self._closed:
                 return
@@ -208,36 +200,29 @@ class Feed:
             self._generation += 1
             self._announce(self.header)
             if self._live:
-                self._deliver({**scene.surface(), **parts}, again=False)
+                self._deliver(parts, again=False)
 
-    def _now(self, scene: ClientData) -> Parts:
+    def _first_parts(self, scene: ClientData) -> Parts:
         """Return what shows the present moment of a scene."""
-        parts: Parts = {}
+        parts = scene.surface()
         for step in scene.moment(self._moment()):
             parts |= scene.step(step)
         return parts
 
-    def _send_all(self) -> None:
-        scene = self.scene
-        parts = self._now(scene)
-        with self._lock:
-            self._live = True
-            if scene is self.scene:
-                self._deliver({**scene.surface(), **parts}, again=True)
-                return
-        self._send_all()  # replaced meanwhile, and not sent, as nobody had asked
-
     def _send_step(self, step: int) -> None:
         self._asked.discard(step)
-        scene = self.scene
-        if step >= scene.steps:
-            return
-        parts = scene.step(step)
-        with self._lock:
-            if scene is self.scene:
-                self._deliver(parts, again=True)
-                return
-        self._send_step(step)
+        self._send_parts(lambda scene: scene.step(step) if step < scene.steps else {})
+
+    def _send_parts(self, parts_of: Callable[[ClientData], Parts]) -> None:
+        """Send parts of the present scene, also when it is replaced while they are made."""
+        while True:
+            scene = self.scene
+            parts = parts_of(scene)
+            with self._lock:
+                self._live = True
+                if scene is self.scene:
+                    self._deliver(parts, again=True)
+                    return
 
     def _send_named(self, names: list[str]) -> None:
         scene = self.scene
@@ -258,10 +243,10 @@ class Feed:
             if not again and "/" not in name and self._sent.get(name) == info["digest"]:
                 continue
             self._sent[name] = info["digest"]
-            if _was_sent(info["digest"]) and offer and array.nbytes >= OFFERED:
+            if _was_sent(info["digest"]) and offer and array.nbytes >= LEAST_OFFERED_BYTES:
                 offers.append(info)
                 continue
-            if batch and sum(a.nbytes for _, a in batch) + array.nbytes > TOGETHER:
+            if batch and sum(a.nbytes for _, a in batch) + array.nbytes > MESSAGE_BYTES:
                 self._post("parts", batch)
                 batch = []
             batch.append((info, array))
@@ -293,7 +278,7 @@ class Feed:
 
 
 def _was_sent(digest: str) -> bool:
-    """Tell whether an array has gone to some page, which from now on it has."""
+    """Tell whether an array was sent to some page, and note that it is."""
     with _sent_lock:
         was_sent = digest in _sent_digests
         _sent_digests[digest] = None

@@ -104,7 +104,7 @@ class FlowWidget(SettingTraits, Displayed):
         self._views = Views(
             views, self._announce, lambda content, buffers: self.send(content, buffers)
         )
-        first = views[0].camera(arguments.view, PREVIEW[0] / PREVIEW[1])
+        first = arguments.view.first_camera(views[0].field.surface, PREVIEW[0] / PREVIEW[1])
         super().__init__(
             **dict(zip(HEADERS, self._views.headers, strict=False)),
             _key=uuid.uuid4().hex,
@@ -114,17 +114,11 @@ class FlowWidget(SettingTraits, Displayed):
             bar=bar,
             **dict(self.settings),
         )
-        self._connect()
-        self._views.start()
-
-    def _connect(self) -> None:
-        self.on_msg(self._hear)
+        self.on_msg(self._handle_message)
         self.observe(self._to_settings, list(TABLE))
         self.observe(self._to_time, "time")
-        self._ends = [
-            self.settings.observe(lambda name, value: self._set(name, value)),
-            self.scene.observe(self._scene_changed),
-        ]
+        self._ends = [self.settings.observe(self._set), self.scene.observe(self._scene_changed)]
+        self._views.start()
 
     @property
     def field(self) -> FlowField:
@@ -142,18 +136,7 @@ class FlowWidget(SettingTraits, Displayed):
         return self._views.first
 
     def set_image(self, image: Any) -> None:
-        """Advect another image, and set ``noise`` to ``"image"``.
-
-        Parameters
-        ----------
-        image
-            As :class:`~flowtex.options.Appearance` has it.
-
-        Raises
-        ------
-        ImageError
-            When it cannot be used; nothing is changed then.
-        """
+        """Advect another image; as :meth:`Scene.set_image <flowtex.scene.Scene.set_image>`."""
         self._views.set_image(load_image(image))
 
     def controls(self) -> Any:
@@ -173,7 +156,7 @@ class FlowWidget(SettingTraits, Displayed):
             Title of the page; the name of the field by default.
         """
         now: dict[str, Any] = {"camera": dict(self.camera), "time": self.time, "clock": self.clock}
-        picture = self._picture(patience=0.0)
+        picture = self._picture(timeout_s=0.0)
         if path is None:
             return page_text(self._views.views, title=title, picture=picture, **now)
         write_page(self._views.views, path, title=title, picture=picture, **now)
@@ -220,21 +203,21 @@ class FlowWidget(SettingTraits, Displayed):
         with self._state_lock:
             setattr(self, HEADERS[number], header)
 
-    def _hear(self, _: Any, content: Any, buffers: list[Any]) -> None:
+    def _handle_message(self, _: Any, content: Any, buffers: list[Any]) -> None:
         """Answer the client."""
         if isinstance(content, dict):
             self._frame = bytes(buffers[0]) if content.get("kind") == "frame" else self._frame
-            self._views.hear(content)
+            self._views.handle_message(content)
 
-    def _picture(self, patience: float) -> bytes | None:
+    def _picture(self, timeout_s: float) -> bytes | None:
         """Return the browser's own first frame, or the small picture that stands in for it."""
         if self._frame is not None:
             return self._frame
-        return self._views.picture(PREVIEW, dict(self.camera), patience)
+        return self._views.picture(PREVIEW, dict(self.camera), timeout_s)
 
     def _to_settings(self, change: Any) -> None:
         setattr(self.settings, change["name"], change["new"])
-        self._views.follow(change["name"], change["new"])
+        self._views.share_setting(change["name"], change["new"])
 
     def _to_time(self, change: Any) -> None:
         if change["new"] != self.scene.time:
@@ -247,7 +230,6 @@ class FlowWidget(SettingTraits, Displayed):
     def _scene_changed(self, affects: Affects) -> None:
         if affects == "uniform":
             self._set("time", self.scene.time)
-        self._views.changed(affects)
 
     def __repr__(self) -> str:
         state = "closed" if self.comm is None else f"time {self.time:g}"

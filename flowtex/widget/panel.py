@@ -1,4 +1,4 @@
-"""A panel of ipywidgets made from the table of settings, joined to a widget's traits."""
+"""A panel of ipywidgets for the rows of the table of settings, joined to a widget's traits."""
 
 from __future__ import annotations
 
@@ -13,17 +13,12 @@ __all__ = ["make_panel"]
 
 
 def make_panel(widget: Any) -> tuple[Any, Callable[[], None]]:
-    """Return a panel with a control for each setting, and what unties and closes it.
+    """Return a panel with a control for each setting, and what closes it.
 
-    Parameters
-    ----------
-    widget
-        Has a trait for each setting; both follow each other.
+    The widget has a trait for each setting; both follow each other.
     """
-    ends: list[Callable[[], None]] = []
     controls = [_control(row, getattr(widget, row.name)) for row in TABLE.values()]
-    for row, control in zip(TABLE.values(), controls, strict=True):
-        ends.append(_join(widget, row.name, control))
+    ends = [_join(widget, name, control) for name, control in zip(TABLE, controls, strict=True)]
     panel = ipywidgets.VBox(controls)
 
     def close() -> None:

@@ -28,13 +28,7 @@ class CameraTrait(traitlets.TraitType[Any, Any]):
     """A camera's numbers by name; what is left out stays as it was."""
 
     def validate(self, obj: Any, value: Any) -> Any:
-        """Return the whole camera as plain numbers.
-
-        Raises
-        ------
-        TraitError
-            When it is no camera, or one that sees nothing.
-        """
+        """Return the whole camera as plain numbers; raise TraitError where it is none."""
         present = obj._trait_values.get(self.name)
         try:
             if isinstance(value, Camera):

@@ -11,23 +11,15 @@ import itertools
 import threading
 from collections.abc import Callable
 
-__all__ = ["Crew", "Worker"]
+__all__ = ["Worker", "WorkerPool"]
 
 Job = Callable[[], None]
 #: Urgency as a number that is least for what comes first, order of asking, for whom, and what.
 Entry = tuple[int, int, "Worker", Job]
 
 
-class Crew:
-    """Threads that do the jobs of many workers, for each worker one at a time.
-
-    Parameters
-    ----------
-    name
-        Name of the threads.
-    size
-        How many there are at most.
-    """
+class WorkerPool:
+    """So many threads at most that do the jobs of many workers, for each worker one at a time."""
 
     def __init__(self, name: str, size: int) -> None:
         self._name, self._size = name, size
@@ -72,29 +64,24 @@ class Crew:
 
 
 class Worker:
-    """One's jobs, done by a crew one after the other.
+    """Jobs that a pool does one after the other.
 
-    Parameters
-    ----------
-    crew
-        Who does them.
-    failed
-        Told of an error that a job raised; the next job is done all the same.
+    ``failed`` is called with an error that a job raised; the next job is done all the same.
     """
 
-    def __init__(self, crew: Crew, failed: Callable[[Exception], None]) -> None:
-        self._crew, self._failed = crew, failed
+    def __init__(self, pool: WorkerPool, failed: Callable[[Exception], None]) -> None:
+        self._pool, self._failed = pool, failed
         self._closed = False
 
     def do(self, job: Job, *, urgency: int = 0) -> None:
         """Do a job after all that are as urgent or more so, also those of other workers."""
         if not self._closed:
-            self._crew.put(self, job, urgency)
+            self._pool.put(self, job, urgency)
 
     def close(self) -> None:
         """Begin no other job."""
         self._closed = True
-        self._crew.drop(self)
+        self._pool.drop(self)
 
     def run(self, job: Job) -> None:
         """Do a job in the calling thread."""

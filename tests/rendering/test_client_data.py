@@ -17,7 +17,7 @@ from flowtex.scene import coarsened_field
 from flowtex.settings import TABLE, Settings
 from flowtex.textures import TextureSet
 from flowtex.trace import SliceStore
-from flowtex.web.view import WebView, _evenly, web_views
+from flowtex.web.view import WebView, even_steps, web_views
 
 
 def plane(times: int = 1, shape: tuple[int, int] = (9, 12)) -> flowtex.FlowField:
@@ -126,11 +126,11 @@ def test_fewer_steps_are_traced_through_all_of_them() -> None:
 
 
 def test_evenly_chosen_numbers() -> None:
-    assert _evenly(5, None) == _evenly(5, 5) == _evenly(5, 9) == ()
-    assert _evenly(11, 3) == (0, 5, 10)
-    assert _evenly(4, 1) == (3,)
+    assert even_steps(5, None) == even_steps(5, 5) == even_steps(5, 9) == ()
+    assert even_steps(11, 3) == (0, 5, 10)
+    assert even_steps(4, 1) == (3,)
     with pytest.raises(ValueError, match=r"^steps is 0; expected 1 to 4"):
-        _evenly(4, 0)
+        even_steps(4, 0)
 
 
 @pytest.mark.parametrize("aspect", [1.5, 0.6])

@@ -309,18 +309,22 @@ def bars_drawn(monkeypatch: pytest.MonkeyPatch, seconds: float, *, show: bool = 
     drawn: list[str] = []
 
     class Bar:
-        def __init__(self, text: str, total: int) -> None:
+        def add_task(self, text: str, total: int) -> int:
             drawn.append(text)
+            return 0
 
-        def move(self, done: int) -> None:
+        def start(self) -> None:
             pass
 
-        def close(self, total: int) -> None:
+        def update(self, task: int, completed: int) -> None:
+            pass
+
+        def stop(self) -> None:
             drawn.append("closed")
 
     clock = iter(np.arange(0, 1000 * seconds, seconds))
     monkeypatch.setattr("flowtex._util.progress.time.monotonic", lambda: float(next(clock)))
-    monkeypatch.setattr(progress, "_Bar", Bar)
+    monkeypatch.setattr(progress, "_bar", Bar)
     trace(double_gyre_field(True, shape=(6, 11)), progress=show)
     assert drawn in ([], ["Tracing", "closed"])
     return len(drawn)

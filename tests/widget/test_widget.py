@@ -178,7 +178,7 @@ def test_a_client_that_is_ready_gets_what_it_needs(
 
 
 def test_a_large_field_comes_coarse_first(make: Make, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(feed, "LARGE", 2000)
+    monkeypatch.setattr(feed, "LARGE_NODES", 2000)
     monkeypatch.setattr(feed, "COARSE_STEADY", 400)
     widget = make(gyre(nodes=60))
     assert widget._header["geometry"]["shape"] == [20, 20]
@@ -197,7 +197,7 @@ def test_a_large_field_comes_coarse_first(make: Make, monkeypatch: pytest.Monkey
 def test_a_field_that_takes_long_has_a_form_between(
     make: Make, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for name, nodes in (("LARGE", 2000), ("LONG", 3000)):
+    for name, nodes in (("LARGE_NODES", 2000), ("VERY_LARGE_NODES", 3000)):
         monkeypatch.setattr(feed, name, nodes)
     for name, nodes in (("COARSE_VARYING", 100), ("BETWEEN_VARYING", 400)):
         monkeypatch.setattr(feed, name, nodes)

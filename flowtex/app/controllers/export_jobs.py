@@ -30,9 +30,9 @@ from flowtex.field import FlowField
 from flowtex.offscreen.encoders import (
     DEFAULT_QUALITY,
     MovieError,
+    MovieWriter,
     check_movie,
     default_fps,
-    movie_writer,
 )
 from flowtex.offscreen.movie import FrameTimes, frame_times
 from flowtex.settings import Settings
@@ -317,7 +317,7 @@ class MovieJob(Job):
                 pane.handle.settings.update(motion=motion, period=self._times.seconds)
         fps, count = self._times.fps, len(self._times)
         opening = asyncio.ensure_future(
-            self._in_thread(movie_writer, self.path, self._size, fps, self._quality)
+            self._in_thread(MovieWriter, self.path, self._size, fps, self._quality)
         )
         try:
             writer = await asyncio.shield(opening)

@@ -12,7 +12,7 @@ import math
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 from xml.etree.ElementTree import ParseError
@@ -20,7 +20,7 @@ from xml.etree.ElementTree import ParseError
 from flowtex.errors import FieldError
 from flowtex.field.io import plot3d
 from flowtex.field.io.from_pyvista import FieldArguments, read_meshes
-from flowtex.field.io.meshes import is_reader, is_structured, leaves, times_of
+from flowtex.field.io.meshes import times_of
 
 __all__ = ["OpenFile", "errors_of_file", "open_file", "read_file"]
 
@@ -34,14 +34,8 @@ _KNOWN_FORMATS = (
 class OpenFile:
     """A file that was opened, of which no more is read than its format asks for.
 
-    Attributes
-    ----------
-    path
-        The file.
-    source
-        One of PyVista's readers, or a mesh.
-    velocity
-        Name of the velocity where the format fixes it.
+    ``source`` is one of PyVista's readers or a mesh; ``velocity`` is the name of the velocity where
+    the format fixes it.
     """
 
     path: Path
@@ -57,35 +51,23 @@ def read_file(
     vectors: str | None = None,
     **options: Any,
 ) -> FieldArguments:
-    """Read what a field needs from a file.
+    """Read what a field needs from a file, with the parameters of :meth:`FlowField.from_file`.
 
-    Parameters are those of :meth:`FlowField.from_file`; the options go to
-    :func:`~flowtex.field.io.from_pyvista.read_meshes`.
-
-    Raises
-    ------
-    FieldError
-        When the file does not hold a structured flow. This, and whatever else a reader raises,
-        is to be named by :func:`errors_of_file`.
+    Whatever this raises is to be named by :func:`errors_of_file`.
     """
     file = open_file(path)
     source = file.source
     if time is not None:
         source = _at_time(source, time)
-    if block is not None:
-        source = _BlockReader(source, block) if is_reader(source) else _pick(source, block)
     name = vectors if vectors is not None else file.velocity
-    return read_meshes(source, vectors=name, **options)
+    return read_meshes(source, vectors=name, block=block, **options)
 
 
 def open_file(path: str | Path) -> OpenFile:
     """Open a file, as for :meth:`FlowField.from_file`.
 
-    Raises
-    ------
-    FieldError
-        When it is missing, empty, or of an unknown format; to be named by
-        :func:`errors_of_file`.
+    The FieldError for one that is missing, empty, or of an unknown format is to be named by
+    :func:`errors_of_file`.
     """
     import pyvista as pv
 
@@ -156,56 +138,15 @@ def _at_time(source: Any, time: float) -> Any:
     raise FieldError(msg)
 
 
-@dataclass
-class _BlockReader:
-    """A reader that gives one block of what another reader gives, at any of its times."""
-
-    reader: Any
-    block: int | str
-
-    @property
-    def time_values(self) -> list[float]:
-        return times_of(self.reader)
-
-    @property
-    def active_time_value(self) -> float:
-        return float(self.reader.active_time_value)
-
-    def set_active_time_value(self, time: float) -> None:
-        self.reader.set_active_time_value(time)
-
-    def read(self) -> Any:
-        return _pick(self.reader.read(), self.block)
-
-
-def _pick(mesh: Any, block: int | str) -> Any:
-    """Pick one of several structured grids, by number or by name."""
-    grids = [(name, grid) for name, grid in leaves(mesh) if is_structured(grid)]
-    for number, (name, grid) in enumerate(grids):
-        if block in (number, name):
-            return grid
-    listed = ", ".join(f"{number} ({name})" for number, (name, _) in enumerate(grids)) or "none"
-    msg = f"block is {block!r}; the structured blocks of the file are: {listed}"
-    raise FieldError(msg)
-
-
 @contextmanager
 def errors_of_file(path: str | Path) -> Iterator[None]:
-    """Turn what readers raise and log into one error that starts with the path.
+    """Turn what readers raise, and errors that VTK logs, into one FieldError with the path first.
 
-    Raises
-    ------
-    FieldError
-        In place of what was raised inside, or when VTK logged an error.
-
-    Warns
-    -----
-    UserWarning
-        For each warning that VTK logged.
+    What VTK warns of becomes a UserWarning.
     """
     file = Path(path).expanduser()
     cause: Exception | None = None
-    with _vtk_log() as log:
+    with _vtk_log() as catcher:
         try:
             yield
         except (ValueError, RuntimeError, OSError, KeyError, ImportError, ParseError) as error:
@@ -213,9 +154,10 @@ def errors_of_file(path: str | Path) -> Iterator[None]:
         except (AttributeError, IndexError, TypeError, EOFError) as error:
             # Readers of broken files trip over what is missing in them.
             cause = RuntimeError(f"its content is not as expected ({error})")
-    if log.errors:
+    if catcher.error_events:
         # VTK goes on after an error and gives a part of the data, or none: the cause is here.
-        msg = f"{file}: the file is broken or incomplete. VTK says: {log.errors[0]}"
+        first = _first_line(catcher.error_events[0].alert)
+        msg = f"{file}: the file is broken or incomplete. VTK says: {first}"
         raise FieldError(msg) from cause
     if isinstance(cause, FieldError):
         msg = f"{file}: {cause}"
@@ -224,30 +166,21 @@ def errors_of_file(path: str | Path) -> Iterator[None]:
         reason = str(cause) or type(cause).__name__
         msg = f"{file}: cannot be read: {reason}"
         raise FieldError(msg) from cause
-    for warning in dict.fromkeys(log.warnings):
+    for warning in dict.fromkeys(_first_line(event.alert) for event in catcher.warning_events):
         warnings.warn(f"{file}: VTK says: {warning}", stacklevel=4)
 
 
-@dataclass
-class _VtkLog:
-    """The first line of each error and of each warning that VTK logged."""
-
-    errors: list[str] = field(default_factory=list)
-    warnings: list[str] = field(default_factory=list)
-
-
 @contextmanager
-def _vtk_log() -> Iterator[_VtkLog]:
+def _vtk_log() -> Iterator[Any]:
     """Collect VTK's errors and warnings while the block runs, and print none.
 
     VTK sends errors to an output window and, apart from it, to a logger that writes to standard
     error; PyVista repeats some of them through Python's root logger. All three are held, and put
-    back as they were. The log is filled when the block ends, also by an exception.
+    back as they were. Yields PyVista's catcher, which has the events once the block ends.
     """
     import pyvista as pv
     from vtkmodules.vtkCommonCore import vtkLogger
 
-    log = _VtkLog()
     verbosity = vtkLogger.GetCurrentVerbosityCutoff()
     root = logging.getLogger()
     quiet = logging.NullHandler()
@@ -258,13 +191,11 @@ def _vtk_log() -> Iterator[_VtkLog]:
     root.addFilter(_not_from_vtk)
     try:
         with catcher:
-            yield log
+            yield catcher
     finally:
         root.removeFilter(_not_from_vtk)
         root.removeHandler(quiet)
         vtkLogger.SetStderrVerbosity(verbosity)
-        log.errors += [_first_line(event.alert) for event in catcher.error_events]
-        log.warnings += [_first_line(event.alert) for event in catcher.warning_events]
 
 
 def _not_from_vtk(record: logging.LogRecord) -> bool:

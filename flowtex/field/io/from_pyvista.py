@@ -7,7 +7,6 @@ are then stacked into the arguments of :meth:`FlowField.from_arrays`, which chec
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, TypedDict
 
@@ -58,24 +57,15 @@ class FieldArguments(TypedDict):
 class _PlaneStep:
     """The arrays of one plane at one time.
 
-    Attributes
-    ----------
-    points, vectors
-        Positions and vectors at the nodes, (J, I, 3).
-    shown
-        Nodes that the mesh does not hide, (J, I).
-    cells
-        Cells that it shows, (J - 1, I - 1), where it says so or the vectors are theirs.
-    wrap
-        Whether the last line along (j, i) is the first one again.
-    scalars
-        Other arrays at the nodes, (J, I).
+    Points and vectors are (J, I, 3), scalars (J, I) each. ``shown`` (J, I) marks nodes that the
+    mesh does not hide, ``cells`` (J - 1, I - 1) cells that it shows and
+    that have vectors. ``wrap`` says whether the last line along (j, i) is the first one again.
     """
 
     points: Floats
     vectors: Floats
     shown: Bools
-    cells: Bools | None
+    cells: Bools
     wrap: tuple[bool, bool]
     scalars: dict[str, Floats] = field(default_factory=dict)
 
@@ -88,21 +78,17 @@ def read_meshes(
     times: ArrayLike | None = None,
     periodic: str | None = None,
     sign_free: bool = False,
+    block: int | str | None = None,
 ) -> FieldArguments:
     """Read what a field needs from a mesh or a series of them.
 
-    Parameters are those of :meth:`FlowField.from_pyvista`.
-
-    Raises
-    ------
-    FieldError
-        When the mesh is not structured, when the plane or the vectors have to be chosen or do
-        not exist, or when the steps of a series differ in their nodes.
+    Parameters and errors are those of :meth:`FlowField.from_pyvista`; the block is picked from
+    each step.
     """
     sheets: list[_PlaneStep] = []
     own_times: list[float | None] = []
     choice: tuple[Plane, MeshArray] | None = None
-    for step in time_steps(mesh):
+    for step in time_steps(mesh, block):
         if choice is None:
             choice = _choose(step.grid, plane, vectors)
         _check_step(step, *choice)
@@ -113,15 +99,15 @@ def read_meshes(
     if times is None and len(known) == len(sheets):
         times = known
     shown = np.logical_and.reduce([sheet.shown for sheet in sheets])
-    cells = [sheet.cells for sheet in sheets if sheet.cells is not None]
-    if cells:
-        shown &= nodes_to_keep(np.logical_and.reduce(cells), sheets[0].wrap)
+    cells = np.logical_and.reduce([sheet.cells for sheet in sheets])
+    shown &= nodes_to_keep(cells, sheets[0].wrap)
+    names = [n for n in sheets[0].scalars if all(n in sheet.scalars for sheet in sheets)]
     return FieldArguments(
         points=sheets[0].points,
         velocity=np.stack([sheet.vectors for sheet in sheets]),
         times=times,
         valid=shown,
-        scalars=_stacked(sheets),
+        scalars={n: np.stack([sheet.scalars[n] for sheet in sheets]) for n in names},
     )
 
 
@@ -156,8 +142,6 @@ def _check_step(step: TimeStep, plane: Plane, vectors: MeshArray) -> None:
 
 def _check_nodes(first: _PlaneStep, sheet: _PlaneStep, label: str) -> None:
     """Refuse a mesh that moves."""
-    if first is sheet:
-        return
     before, after = first.points, sheet.points
     known = first.shown & sheet.shown & np.isfinite(before).all(-1) & np.isfinite(after).all(-1)
     moved = float(np.max(np.abs(after[known] - before[known]), initial=0.0))
@@ -177,24 +161,20 @@ def _plane_step(
 ) -> _PlaneStep:
     """Take one plane out of one grid."""
     points = _positions(grid, plane)
-    hidden = hidden_nodes(grid)
-    shown = np.ones(points.shape[:2], bool) if hidden is None else ~plane.nodes(hidden)
+    shown = ~plane.nodes(hidden_nodes(grid))
     wrap = _wrap(np.where(shown[..., None], points, np.nan), periodic)
-    flags = visible_cells(grid)
-    visible = None if flags is None else plane.cells(flags)
+    visible = plane.cells(visible_cells(grid))
     values = values_of(grid, vectors)
     if vectors.where == "cells":
         layers = plane.cells(values).astype(np.float64)
-        known = np.asarray(np.isfinite(layers).all(axis=-1))
-        visible = known if visible is None else known & visible
+        visible = visible & np.isfinite(layers).all(axis=-1)
         if sign_free:
             velocity = axes(spread(products(layers), visible, wrap))
         else:
             velocity = spread(layers, visible, wrap)
     else:
         velocity = plane.nodes(values).astype(np.float64)
-    cells = None if visible is None else np.asarray(visible.any(axis=0))
-    sheet = _PlaneStep(points, velocity, shown, cells, wrap)
+    sheet = _PlaneStep(points, velocity, shown, np.asarray(visible.any(axis=0)), wrap)
     for array in catalogue(grid):
         if array.numeric and array.components == 1 and array != vectors:
             # Points come first in the catalogue, and win over cells of the same name.
@@ -208,9 +188,7 @@ def _scalar(grid: Any, plane: Plane, array: MeshArray, wrap: tuple[bool, bool]) 
     if array.where == "points":
         return plane.nodes(values).astype(np.float64)
     layers = plane.cells(values).astype(np.float64)
-    flags = visible_cells(grid)
-    seen = np.isfinite(layers) & (True if flags is None else plane.cells(flags))
-    return spread(layers, seen, wrap)
+    return spread(layers, np.isfinite(layers) & plane.cells(visible_cells(grid)), wrap)
 
 
 def _positions(grid: Any, plane: Plane) -> Floats:
@@ -240,11 +218,3 @@ def _wrap(points: Floats, periodic: str | None) -> tuple[bool, bool]:
         allowed = periodic is None or letter in periodic
         wrap.append(allowed and closure.periodic and closure.line is None)
     return wrap[0], wrap[1]
-
-
-def _stacked(sheets: Sequence[_PlaneStep]) -> dict[str, Floats]:
-    """Scalars that all steps have, (J, I) or (T, J, I)."""
-    names = [n for n in sheets[0].scalars if all(n in sheet.scalars for sheet in sheets)]
-    if len(sheets) == 1:
-        return {n: sheets[0].scalars[n] for n in names}
-    return {n: np.stack([sheet.scalars[n] for sheet in sheets]) for n in names}

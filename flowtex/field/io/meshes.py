@@ -59,24 +59,22 @@ class TimeStep:
     label: str
 
 
-def time_steps(source: Any) -> Iterator[TimeStep]:
+def time_steps(source: Any, block: int | str | None = None) -> Iterator[TimeStep]:
     """Go through the time steps of a grid, a MultiBlock, a list of either, or a reader.
 
-    Raises
-    ------
-    FieldError
-        When something is met that is no structured grid.
+    With a block, by its name or number, only of that one. Raises a FieldError when something is
+    met that is no structured grid.
     """
     if is_reader(source):
-        yield from _read(source)
+        yield from _read(source, block)
     elif isinstance(source, (list, tuple)):
         if not source:
             msg = "the list of meshes is empty; expected one structured mesh for each time step"
             raise FieldError(msg)
         for n, item in enumerate(source):
-            yield _single(item, f"step {n}")
+            yield item if isinstance(item, TimeStep) else _single(item, f"step {n}")
     else:
-        yield from _blocks(_wrapped(source, "the mesh"))
+        yield from _blocks(_wrapped(source, "the mesh"), block)
 
 
 def is_reader(source: Any) -> bool:
@@ -110,11 +108,11 @@ def leaves(mesh: Any, name: str = "") -> Iterator[tuple[str, Any]]:
             yield from leaves(block, f"{name}/{own}" if name else own)
 
 
-def _read(reader: Any) -> Iterator[TimeStep]:
+def _read(reader: Any, block: int | str | None) -> Iterator[TimeStep]:
     """Read one time after the other, and leave the reader at the time it was set to."""
     times = times_of(reader)
     if len(times) < 2 or not hasattr(reader, "set_active_time_value"):
-        for step in _blocks(_wrapped(reader.read(), "the mesh")):
+        for step in _blocks(_wrapped(reader.read(), "the mesh"), block):
             time = step.time if len(times) != 1 else times[0]
             yield TimeStep(step.grid, time, step.label)
         return
@@ -122,14 +120,28 @@ def _read(reader: Any) -> Iterator[TimeStep]:
     try:
         for n, time in enumerate(times):
             reader.set_active_time_value(time)
-            step = _single(reader.read(), f"step {n}")
+            mesh = reader.read()
+            step = _single(mesh if block is None else _pick(mesh, block), f"step {n}")
             yield TimeStep(step.grid, time, step.label)
     finally:
         reader.set_active_time_value(before)
 
 
-def _blocks(mesh: Any) -> Iterator[TimeStep]:
+def _pick(mesh: Any, block: int | str) -> Any:
+    """Pick one of several structured grids, by number or by name."""
+    grids = [(name, grid) for name, grid in leaves(mesh) if is_structured(grid)]
+    for number, (name, grid) in enumerate(grids):
+        if block in (number, name):
+            return grid
+    listed = ", ".join(f"{number} ({name})" for number, (name, _) in enumerate(grids)) or "none"
+    msg = f"block is {block!r}; the structured blocks of the file are: {listed}"
+    raise FieldError(msg)
+
+
+def _blocks(mesh: Any, block: int | str | None) -> Iterator[TimeStep]:
     """Take a mesh for one step, and a MultiBlock of several grids for a series."""
+    if block is not None:
+        mesh = _pick(mesh, block)
     grids = [(name, block) for name, block in leaves(mesh) if is_structured(block)]
     usable = [(name, block) for name, block in grids if _is_surface(block)] or grids
     if len(usable) < 2:
@@ -312,22 +324,20 @@ def _search_faults(mesh: Any, listed: str) -> list[str]:
     return []
 
 
-def hidden_nodes(mesh: Any) -> Bools | None:
-    """Nodes that a mesh hides, (N,), or ``None`` when it says nothing about them."""
+def hidden_nodes(mesh: Any) -> Bools:
+    """Nodes that a mesh hides, (N,)."""
     data = mesh.point_data
-    hidden = []
+    hidden = np.zeros(mesh.n_points, dtype=bool)
     if "vtkGhostType" in data:
-        hidden.append((np.asarray(data["vtkGhostType"]) & _HIDDEN_POINT) != 0)
-    if "IBlank" in data:
-        # Negative values and those above one are walls and overlaps of grids, with data.
-        hidden.append(np.asarray(data["IBlank"]) == 0)
-    if "vtkValidPointMask" in data:
-        hidden.append(np.asarray(data["vtkValidPointMask"]) == 0)
-    return np.logical_or.reduce(hidden) if hidden else None
+        hidden |= (np.asarray(data["vtkGhostType"]) & _HIDDEN_POINT) != 0
+    # Negative values and those above one are walls and overlaps of grids, with data.
+    for name in {"IBlank", "vtkValidPointMask"} & set(data):
+        hidden |= np.asarray(data[name]) == 0
+    return hidden
 
 
-def visible_cells(mesh: Any) -> Bools | None:
-    """Cells that a mesh shows, (N,), or ``None`` when it says nothing about them."""
+def visible_cells(mesh: Any) -> Bools:
+    """Cells that a mesh shows, (N,)."""
     if "vtkGhostType" not in mesh.cell_data:
-        return None
+        return np.ones(mesh.n_cells, dtype=bool)
     return np.asarray((np.asarray(mesh.cell_data["vtkGhostType"]) & _HIDDEN_CELL) == 0)

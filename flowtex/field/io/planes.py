@@ -27,7 +27,6 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import AnyArray, Bools, Floats
-from flowtex.errors import raise_faults
 
 __all__ = ["Plane", "choose_plane", "count_nodes", "nodes_to_keep", "plane_faults", "spread"]
 
@@ -36,17 +35,7 @@ _PLANE = re.compile(r"\s*([ijk])\s*=\s*([+-]?\d+)\s*", re.IGNORECASE)
 
 @dataclass(frozen=True)
 class Plane:
-    """A plane of constant i, j or k.
-
-    Attributes
-    ----------
-    dimensions
-        Number of nodes (I, J, K) of the mesh.
-    axis
-        Which index is constant: 0 for i, 1 for j, 2 for k.
-    index
-        Its value.
-    """
+    """A plane of constant i, j or k (axis 0, 1 or 2) of a mesh of (I, J, K) nodes."""
 
     dimensions: tuple[int, int, int]
     axis: int
@@ -72,14 +61,9 @@ def count_nodes(dimensions: tuple[int, int, int]) -> str:
 
 
 def plane_faults(dimensions: tuple[int, int, int], plane: Any) -> list[str]:
-    """Faults in a choice of plane.
+    """Return faults in a choice of plane, ``"k=20"`` and the like.
 
-    Parameters
-    ----------
-    dimensions
-        Number of nodes (I, J, K) of the mesh.
-    plane
-        ``"k=20"`` and the like, or ``None`` for a mesh that is one plane itself.
+    ``None`` is right for a mesh of (I, J, K) nodes that is one plane itself.
     """
     size = count_nodes(dimensions)
     if min(dimensions) < 1:
@@ -114,14 +98,7 @@ def plane_faults(dimensions: tuple[int, int, int], plane: Any) -> list[str]:
 
 
 def choose_plane(dimensions: tuple[int, int, int], plane: str | None) -> Plane:
-    """Return the plane that is meant.
-
-    Raises
-    ------
-    FieldError
-        When there is no such plane, or one has to be chosen and was not.
-    """
-    raise_faults(plane_faults(dimensions, plane))
+    """Return the plane that is meant; :func:`plane_faults` returned none before."""
     match = _PLANE.fullmatch(plane or "")
     if match is None:
         return Plane(dimensions, dimensions.index(1), 0)
@@ -142,22 +119,11 @@ def _choose(dimensions: tuple[int, int, int]) -> str:
 
 
 def spread(values: Floats, visible: Bools, wrap: tuple[bool, bool]) -> Floats:
-    """Bring values of cells to the nodes.
+    """Return the mean of the visible cells around each node, (J, I, ...); NaN where there are none.
 
-    Parameters
-    ----------
-    values
-        One or two layers of cells, (L, J - 1, I - 1) or (L, J - 1, I - 1, C).
-    visible
-        Which of them count, (L, J - 1, I - 1).
-    wrap
-        Whether the last line of nodes along (j, i) is the first one again, so that the cells
-        beyond it are known.
-
-    Returns
-    -------
-    numpy.ndarray
-        Mean of the visible cells around each node, (J, I) or (J, I, C); NaN where there are none.
+    Values are one or two layers of cells, (L, J - 1, I - 1, ...), and ``visible`` says which of
+    them count, (L, J - 1, I - 1). ``wrap`` says whether the last line of nodes along (j, i) is the
+    first one again, so that the cells beyond it are known.
     """
     seen = visible.reshape(*visible.shape, *[1] * (values.ndim - 3))
     total = _around(np.where(seen, values, 0.0).sum(axis=0), wrap)
@@ -166,22 +132,10 @@ def spread(values: Floats, visible: Bools, wrap: tuple[bool, bool]) -> Floats:
 
 
 def nodes_to_keep(visible: Bools, wrap: tuple[bool, bool]) -> Bools:
-    """Nodes that draw the visible cells and none of the hidden ones.
+    """Return nodes (J, I) that draw the visible cells (J - 1, I - 1) and none of the hidden ones.
 
     A cell is drawn when its four nodes are kept. Nodes between a visible and a hidden cell are
     kept, unless that would draw a hidden cell: a wall one cell thick takes its nodes with it.
-
-    Parameters
-    ----------
-    visible
-        Cells of the plane, (J - 1, I - 1).
-    wrap
-        Whether the last line of nodes along (j, i) is the first one again.
-
-    Returns
-    -------
-    numpy.ndarray
-        The nodes, (J, I).
     """
     keep = _around(visible.astype(np.float64), wrap) > 0
     drawn = keep[:-1, :-1] & keep[1:, :-1] & keep[:-1, 1:] & keep[1:, 1:]

@@ -19,13 +19,15 @@ import numpy as np
 
 from flowtex.errors import FieldError
 
-__all__ = ["GRID_SUFFIXES", "Layout", "find_grid", "find_layout", "find_solution", "read_plot3d"]
+__all__ = ["GRID_SUFFIXES", "find_grid", "find_layout", "find_solution", "read_plot3d"]
 
 #: VTK's number for the function that makes ``Velocity`` from density and momentum.
 VELOCITY = 200
 
 #: Suffixes under which PLOT3D grids are met.
 GRID_SUFFIXES = (".xyz", ".x", ".g", ".p3d", ".grd", ".bin", ".dat", ".fmt")
+#: Grids in one file, at most; a header that tells of more is none.
+MOST_GRIDS = 100_000
 _TEXT = frozenset(b"0123456789+-.eEdD \t\r\n,")
 
 
@@ -56,14 +58,14 @@ class Layout:
 def find_layout(path: Path) -> Layout | None:
     """Find out how a grid file is laid out, or return ``None`` where it is no PLOT3D grid."""
     with path.open("rb") as file:
-        head = file.read(256)
+        head = file.read(4 * (3 * MOST_GRIDS + 4))
     if not head:
         return None
-    if set(head) <= _TEXT:
+    if set(head[:256]) <= _TEXT:
         return _text_layout(path)
     size = path.stat().st_size
     for order, marks, several, axes in product(("<", ">"), (False, True), (False, True), (3, 2)):
-        dimensions = _binary_header(path, order, axes, marks=marks, several=several)
+        dimensions = _binary_header(head, order, axes, marks=marks, several=several)
         for double, blanked in product((False, True), (False, True)):
             layout = Layout(
                 dimensions,
@@ -79,22 +81,15 @@ def find_layout(path: Path) -> Layout | None:
 
 
 def _binary_header(
-    path: Path, order: str, axes: int, *, marks: bool, several: bool
+    head: bytes, order: str, axes: int, *, marks: bool, several: bool
 ) -> tuple[tuple[int, ...], ...]:
     """Dimensions as a header of this form has them, or nothing where they make no sense."""
-    skip = 4 if marks else 0
-    with path.open("rb") as file:
-        count = 1
-        if several:
-            file.seek(skip)
-            count = int.from_bytes(file.read(4), "big" if order == ">" else "little")
-            file.seek(skip, 1)
-        file.seek(skip, 1)
-        if not 0 < count <= 100_000:
-            return ()
-        text = file.read(4 * axes * count)
-    numbers = np.frombuffer(text[: len(text) // 4 * 4], dtype=f"{order}i4")
-    return _grids(numbers.tolist(), count, axes)
+    words = np.frombuffer(head[: len(head) // 4 * 4], dtype=f"{order}i4")
+    # A record mark stands before and after each record.
+    count, first = 1, int(marks)
+    if several:
+        count, first = int(words[first : first + 1].sum()), 3 * first + 1
+    return _grids(words[first : first + axes * count].tolist(), count, axes)
 
 
 def _text_layout(path: Path) -> Layout | None:
@@ -102,8 +97,6 @@ def _text_layout(path: Path) -> Layout | None:
     for several, axes in product((False, True), (3, 2)):
         try:
             count = int(words[0]) if several else 1
-            if not 0 < count <= 100_000:
-                continue
             numbers = [int(word) for word in words[several : several + axes * count]]
         except ValueError:
             continue
@@ -116,7 +109,8 @@ def _text_layout(path: Path) -> Layout | None:
 
 
 def _grids(numbers: list[int], count: int, axes: int) -> tuple[tuple[int, ...], ...]:
-    if len(numbers) != axes * count or not all(0 < n < 2**31 for n in numbers):
+    known = 0 < count <= MOST_GRIDS and len(numbers) == axes * count
+    if not known or not all(0 < n < 2**31 for n in numbers):
         return ()
     return tuple(tuple(numbers[n * axes : n * axes + axes]) for n in range(count))
 
@@ -124,10 +118,7 @@ def _grids(numbers: list[int], count: int, axes: int) -> tuple[tuple[int, ...], 
 def find_solution(grid: Path) -> Path:
     """Find the solution beside a grid: ``xyz`` in its name gives ``q``, or its suffix does.
 
-    Raises
-    ------
-    FieldError
-        When there is none; the text says which names were looked for.
+    When there is none, a FieldError says which names were looked for.
     """
     names = list(dict.fromkeys(_solution_names(grid)))
     for name in names:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
@@ -10,7 +9,7 @@ from typing import Any, Literal
 import numpy as np
 
 from flowtex.errors import FieldError
-from flowtex.field.io.files import errors_of_file, open_file
+from flowtex.field.io.files import OpenFile, errors_of_file, open_file
 from flowtex.field.io.meshes import (
     MeshArray,
     candidates,
@@ -33,17 +32,9 @@ __all__ = ["ArraySummary", "FileSummary", "describe"]
 class ArraySummary:
     """One array of a file.
 
-    Attributes
-    ----------
-    name
-        Its name.
-    where
-        What its values belong to.
-    components
-        How many numbers there are at each point or cell.
-    low, high
-        Range of the finite values, of the lengths where there are several components; NaN when
-        there is none.
+    ``components`` is the count of numbers at each point or cell; ``low`` and ``high`` are the range
+    of the finite values, of the lengths where there are several components, NaN where there are
+    none.
     """
 
     name: str
@@ -59,16 +50,12 @@ class FileSummary:
 
     Attributes
     ----------
-    path
-        The file.
     grid
         Type of its mesh: of the first structured block where it has several.
     dimensions
         Number of nodes (I, J, K), or ``None`` for an unstructured mesh.
     blocks
         Paths of the blocks that hold something, when there are several.
-    arrays
-        Arrays on points and on cells.
     candidates
         Names of the arrays that may be the velocity.
     times
@@ -76,8 +63,7 @@ class FileSummary:
     blanked
         Number of nodes that the file hides.
     problem
-        What keeps :meth:`FlowField.from_file` from reading it as it stands; empty
-        when nothing does.
+        What keeps :meth:`FlowField.from_file` from reading it as it stands; empty if nothing.
     """
 
     path: Path
@@ -92,41 +78,32 @@ class FileSummary:
 
 
 def describe(path: str | Path) -> FileSummary:
-    """Summarize a file, whether or not a flow can be drawn from it.
+    """Summarize a file, whether or not a flow can be drawn from it; the first step of a series.
 
-    Parameters
-    ----------
-    path
-        As for :meth:`FlowField.from_file`. Of a time series the first step is read.
-
-    Raises
-    ------
-    FieldError
-        When the file cannot be read at all.
+    Raises a FieldError when the file cannot be read at all.
     """
     with errors_of_file(path):
         file = open_file(path)
         mesh = file.source.read() if is_reader(file.source) else file.source
-        return _summary(file.path, mesh, times_of(file.source), file.velocity)
+        return _summary(file, mesh)
 
 
-def _summary(path: Path, mesh: Any, times: Sequence[float], vectors: str | None) -> FileSummary:
-    """Summarize the mesh of a file, or the first step of a series."""
+def _summary(file: OpenFile, mesh: Any) -> FileSummary:
     parts = list(leaves(mesh))
     part = next((p for _, p in parts if is_structured(p)), parts[0][1] if parts else mesh)
     structured = is_structured(part)
-    hidden = hidden_nodes(part) if structured else None
     data = hasattr(part, "point_data")
     names = [a.name for a in candidates(part)] if data else []
+    vectors = file.velocity
     return FileSummary(
-        path=path,
+        path=file.path,
         grid=type(part).__name__,
         dimensions=tuple(part.dimensions) if structured else None,
         blocks=tuple(name for name, _ in parts) if len(parts) > 1 else (),
         arrays=tuple(_array(part, a) for a in catalogue(part)) if data else (),
         candidates=(vectors,) if vectors is not None else tuple(names),
-        times=tuple(times),
-        blanked=0 if hidden is None else int(hidden.sum()),
+        times=tuple(times_of(file.source)),
+        blanked=int(hidden_nodes(part).sum()) if structured else 0,
         problem=_problem(mesh, vectors),
     )
 

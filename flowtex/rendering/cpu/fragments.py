@@ -30,18 +30,10 @@ class Varying:
 
 @dataclass(frozen=True, eq=False)
 class Fragments:
-    """N pixels of a surface.
+    """N pixels of a surface: their positions and normals in its own frame, (N, 3), and coordinates.
 
-    Attributes
-    ----------
-    position
-        Positions in the surface's own frame, three channels.
-    coordinate
-        Texture coordinates in the slices, two channels.
-    noise
-        Noise coordinates, two channels, where the textures have a noise texture.
-    normal
-        Normals in the surface's own frame, of any length, where it is not flat.
+    These are of the slices, (N, 2), and of the noise where it has a texture. A flat surface has no
+    normals; others are of any length.
     """
 
     position: Varying

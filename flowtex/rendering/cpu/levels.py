@@ -36,12 +36,7 @@ def footprint(dx: Floats, dy: Floats) -> tuple[Floats, Floats]:
 def on_surface(position: Varying, normal: Varying, eye: Floats) -> Varying:
     """Positions with their derivatives as they are on the smooth surface, not on its facets.
 
-    Parameters
-    ----------
-    position, normal
-        Positions and normals, three channels each.
-    eye
-        ``u_eye``: the eye and 1, or the way to it and 0, (4,).
+    Positions and normals have three channels; ``eye`` is ``u_eye``, (4,).
     """
     ray = _unit(eye[:3] - eye[3] * position.value)
     toward = _unit(normal.value)

@@ -12,18 +12,11 @@ __all__ = ["Mips"]
 class Mips:
     """A texture array, or an image as an array of one layer, with its mip levels.
 
-    A coarser level is the finer one, filtered linearly down to half its size: the mean of blocks
-    of two by two texels where sizes are even. Every level is rounded to half precision, as a
-    graphics card stores it.
-
-    Parameters
-    ----------
-    texels
-        (layers, H, W, C), single precision.
-    levels
-        Mip levels beside the finest; all of them when left out.
-    repeat
-        Whether the texture goes around along (v, u); it is clamped at its edges otherwise.
+    The texels are (layers, H, W, C). A coarser level is the finer one, filtered linearly down to
+    half its size: the mean of blocks of two by two texels where sizes are even. Every level is
+    rounded to half precision, as a graphics card stores it. There are so many beside the finest,
+    or all of them. The texture goes around along (v, u) where ``repeat`` says so, and is clamped
+    at its edges otherwise.
     """
 
     def __init__(
@@ -50,21 +43,9 @@ class Mips:
         return len(self._heights) - 1
 
     def at(self, coordinate: Floats, level: Floats, layer: int | Indices = 0) -> Floats:
-        """Look texels up.
+        """Look up channels, (N, C), at (u, v) from 0 to 1 across the texture, (N, 2).
 
-        Parameters
-        ----------
-        coordinate
-            (u, v), (N, 2): 0 to 1 across the texture.
-        level
-            Mip level, (N,), linear between whole ones; clamped to those that there are.
-        layer
-            Layer of the array, one or (N,).
-
-        Returns
-        -------
-        numpy.ndarray
-            Channels, (N, C).
+        Mip levels (N,) are linear between whole ones, and clamped to those that there are.
         """
         clamped = np.clip(level, 0, self.levels)
         base = clamped.astype(np.intp)

@@ -30,17 +30,7 @@ class PaperImages:
 
 
 class PaperNoise(Lookup):
-    """The noise texture along the paths of some fragments.
-
-    Parameters
-    ----------
-    noise
-        Noise coordinates of the fragments.
-    images
-        The paper's textures.
-    values
-        The uniforms.
-    """
+    """The noise texture along the paths of fragments with some noise coordinates."""
 
     def __init__(self, noise: Varying, images: PaperImages, values: Values) -> None:
         self._images, self._values, self._here = images, values, noise.value

@@ -83,15 +83,8 @@ def camera_facing(surface: Surface, place: SurfacePoint, pixel: float) -> Camera
 class Recorder(Lookup):
     """Records where another look-up is used for one fragment, and the values that it returns.
 
-    In place of the values it returns rows of zeros with a one at the number of the sample, so
-    that their weighted sums are the weights.
-
-    Parameters
-    ----------
-    inner
-        The look-up that is drawn with.
-    most_samples
-        Greatest number of samples.
+    In place of the values it returns rows of zeros with a one at the number of the sample, of at
+    most so many, so that their weighted sums are the weights.
 
     Attributes
     ----------
@@ -138,14 +131,9 @@ class Recorder(Lookup):
 
 
 class Window(Mips):
-    """A slice texture of which only the part around one place is filtered.
+    """A slice texture (layers, H, W, C) of which only the part around one place is filtered.
 
-    Parameters
-    ----------
-    texels
-        (layers, H, W, C), single precision; H and W are multiples of the coarsest level's block.
-    levels
-        Mip levels beside the finest.
+    H and W are multiples of the coarsest level's block.
     """
 
     def __init__(self, texels: Floats32, levels: int) -> None:
@@ -172,13 +160,7 @@ class Window(Mips):
 
 
 class LoadedTextures:
-    """A texture set as the renderer reads it, for pixels that are drawn one after the other.
-
-    Attributes
-    ----------
-    make_lookup
-        Makes the look-up of the noise, or of the picture in its place.
-    """
+    """A texture set as the renderer reads it, for pixels that are drawn one after the other."""
 
     def __init__(self, make_lookup: LookupMaker) -> None:
         self.make_lookup = make_lookup

@@ -82,16 +82,10 @@ def cover(surface: Surface, camera: Camera, size: tuple[int, int]) -> Coverage:
 
 
 def rasterise(clip: Floats, triangles: Indices, size: tuple[int, int]) -> Coverage:
-    """Find the triangle in front at every pixel.
+    """Find the triangle in front at every pixel of a picture of some width and height.
 
-    Parameters
-    ----------
-    clip
-        Points in clip space, (P, 4), as :meth:`Camera.matrix` gives them.
-    triangles
-        Points of each triangle, (M, 3). Both sides are drawn; those without area are not.
-    size
-        Width and height of the picture in pixels.
+    The points are in clip space, (P, 4), as :meth:`Camera.matrix` gives them; ``triangles`` has
+    the numbers of three, (M, 3). Both sides are drawn; those without area are not.
     """
     width, height = size
     x = (clip[:, 0] + clip[:, 3]) * (0.5 * width)

@@ -67,17 +67,7 @@ class Picture:
     ) -> Bytes:
         """Colour the picture, without lights: those are the business of the other renderers.
 
-        Parameters
-        ----------
-        colour
-            Colour of the surface from 0 to 1, (3,), or one for each pixel, (H, W, 3).
-        background
-            Colour where there is no surface, (3,).
-
-        Returns
-        -------
-        numpy.ndarray
-            (H, W, 3), 0 to 255.
+        The colour of the surface is one, (3,), or one for each pixel, (H, W, 3), from 0 to 1.
 
         Raises
         ------
@@ -111,25 +101,17 @@ def render(
 
     Parameters
     ----------
-    textures
-        What to draw.
-    settings
-        How to draw it.
-    camera
-        From where. The digits of the noise are counted from its focal point.
+    textures, settings, camera
+        What to draw, how, and from where: the digits of the noise count from the focal point.
     size
         Width and height of the picture in pixels.
     view
-        How far the time is from one of the steps to the other, and the clock. The focus and the
-        eye are those of the camera, and the time follows from the steps.
+        How far the time is from one of the two steps to the other, and the clock; focus and eye
+        are those of the camera.
     steps
         The two destination times of the slices that ``view.between`` lies between.
     lookup
         What is summed along the paths instead of the noise.
-
-    Returns
-    -------
-    Picture
     """
     values = uniforms(textures, settings, view_state(textures, camera, view or ViewState(), steps))
     coverage = cover(textures.geometry.field.surface, camera, size)

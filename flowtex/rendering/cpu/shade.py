@@ -13,22 +13,7 @@ __all__ = ["paint", "shade", "tone"]
 
 
 def shade(colour: ArrayLike, value: Floats, settings: Settings) -> Floats:
-    """Lay the texture over a colour, as ``flowtexShade`` does.
-
-    Parameters
-    ----------
-    colour
-        Red, green and blue from 0 to 1, (3,) or (..., 3).
-    value
-        The texture, (...).
-    settings
-        Contrast and strength are taken from them.
-
-    Returns
-    -------
-    numpy.ndarray
-        Colours from 0 to 1, (..., 3).
-    """
+    """Lay the texture, (...), over colours from 0 to 1, (3,) or (..., 3), as ``flowtexShade``."""
     lab = np.broadcast_to(_to_oklab(np.asarray(colour, dtype=float)), (*value.shape, 3))
     strength = settings.strength
     lightness = lab[..., 0]
@@ -47,19 +32,9 @@ def tone(value: Floats, contrast: float) -> Floats:
 
 
 def paint(colour: ArrayLike, picture: Floats, settings: Settings) -> Floats:
-    """Lay a picture over a colour, as ``flowtexPaint`` does.
+    """Lay a picture over colours as for :func:`shade`, as ``flowtexPaint`` does.
 
-    Parameters
-    ----------
-    colour, settings
-        As for :func:`shade`.
-    picture
-        Red, green and blue times opacity, and opacity, (..., 4).
-
-    Returns
-    -------
-    numpy.ndarray
-        Colours from 0 to 1, (..., 3).
+    The picture is red, green and blue times opacity, and opacity, (..., 4).
     """
     strength = (
         const.LEVEL_STRENGTH * settings.strength if settings.show_level else settings.strength

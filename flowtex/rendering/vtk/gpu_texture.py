@@ -22,17 +22,9 @@ GL_RGBA16F, GL_R16F = 0x881A, 0x822D
 class GPUTexture:
     """One texture array with its mip levels; an image is an array of one layer.
 
-    Of VTK's textures from memory the arrays alone get mip levels.
-
-    Parameters
-    ----------
-    texels
-        (layers, H, W, channels) with one channel or four, single precision; stored in half
-        precision.
-    levels
-        Mip levels beside the finest; all of them when left out.
-    repeat
-        Whether the texture goes around along (v, u).
+    Of VTK's textures from memory the arrays alone get mip levels. The texels (layers, H, W,
+    channels), with one channel or four, are stored in half precision. There are so many mip levels
+    beside the finest, or all of them; ``repeat`` says whether the texture goes around along (v, u).
     """
 
     def __init__(

@@ -80,14 +80,8 @@ class Colours:
 class ClientData:
     """A flow and its colours, ready to be handed over.
 
-    Attributes
-    ----------
-    textures
-        What to draw.
-    colours
-        In which colours.
-    chosen
-        Numbers of the destination times that are handed over, increasing; all when empty.
+    ``chosen`` are the numbers of the destination times that are handed over, increasing; all are
+    where it is empty.
     """
 
     textures: TextureSet
@@ -124,16 +118,8 @@ class ClientData:
     ) -> Header:
         """Return all that is no array; plain Python, for JSON.
 
-        Parameters
-        ----------
-        settings
-            How to draw.
-        camera
-            From where, as :meth:`Camera.to_dict` has it; the whole surface by default.
-        time
-            Time that is shown, in the field's own unit; the last one by default.
-        clock
-            Clock of the streaming of a steady flow, in seconds.
+        The camera is as :meth:`Camera.to_dict` has it, by default of the whole surface; the time
+        is in the field's own unit, by default the last; the clock of the streaming in seconds.
         """
         return {
             **self.constants(),

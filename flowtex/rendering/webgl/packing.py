@@ -34,12 +34,8 @@ class PackedStep:
 class Packing:
     """Packed slices of some textures; those asked for last are cached.
 
-    Attributes
-    ----------
-    channels
-        Components of a slope: two in a plane and in noise coordinates.
-    extra
-        Layers whose fourth channel says something: unit, reach, speed, and reach forward.
+    A slope has so many ``channels``, two in a plane and in noise coordinates. ``extra`` are the
+    layers whose fourth channel says something: unit, reach, speed, and reach forward.
     """
 
     def __init__(self, textures: TextureSet) -> None:
