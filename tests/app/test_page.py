@@ -108,7 +108,9 @@ def open_file(page: Page, name: str) -> None:
 
 def test_a_folder_offers_its_files_and_nothing_beside_them(page: Page) -> None:
     page.get_by_label("Open another file").click()
-    names = page.locator(".v-overlay--active .v-list-item").all_inner_texts()
+    items = page.locator(".v-overlay--active .v-list-item")
+    items.first.wait_for()  # a menu that is still opening has no text
+    names = items.all_inner_texts()
     assert names == ["block.vts", "series.pvd", "torn.vts"]
     page.keyboard.press("Escape")
     page.wait_for_selector(".v-overlay--active", state="hidden")
