@@ -100,6 +100,13 @@ export class Camera {
     return [right, cross(right, ahead), ahead];
   }
 
+  /** What the triangles of a picture of so many rows are chosen by. */
+  sight(pixels: number): { eye: Vector | null; halfHeight: number; pixels: number } {
+    const { parallel, position, view_angle: angle } = this.state;
+    if (parallel) return { eye: null, halfHeight: this.height, pixels };
+    return { eye: position as Vector, halfHeight: tangent(angle), pixels };
+  }
+
   /** The eye and 1, or the way to it and 0 where all rays are parallel. */
   get eye(): number[] {
     if (!this.state.parallel) return [...this.state.position, 1];

@@ -6,26 +6,6 @@ import type { Vector } from "./vectors.ts";
 /** What a node without a value has, far below every colour map. */
 const NO_VALUE = -1e9;
 
-/** Triangles of the cells that are drawn; all of them without `cells`. */
-export function triangles([rows, columns]: [number, number], cells?: Data): Uint32Array {
-  const index = new Uint32Array(6 * (rows - 1) * (columns - 1));
-  let n = 0;
-  for (let j = 0, cell = 0; j < rows - 1; j += 1) {
-    for (let i = 0; i < columns - 1; i += 1, cell += 1) {
-      if (cells && !cells[cell]) continue;
-      const corner = j * columns + i;
-      const far = corner + columns + 1;
-      index[n++] = corner;
-      index[n++] = corner + 1;
-      index[n++] = far;
-      index[n++] = corner;
-      index[n++] = far;
-      index[n++] = far - 1;
-    }
-  }
-  return index.subarray(0, n);
-}
-
 export function positions(data: Float32Array, anchor: Vector): Float32Array {
   if (!anchor.some(Boolean)) return data;
   return data.map((x, n) => x - anchor[n % 3]);

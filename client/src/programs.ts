@@ -61,23 +61,24 @@ export class Programs {
     this.clear();
   }
 
-  /** Program of two texts, which may not be ready yet. */
-  get(vertex: string, fragment: string): Program {
-    const key = `${vertex}\0${fragment}`;
+  /** Program of two texts and names that are defined before them, which may not be ready yet. */
+  get(vertex: string, fragment: string, ...defines: string[]): Program {
+    const key = [vertex, fragment, ...defines].join("\0");
     let entry = this.entries.get(key);
-    if (!entry) this.entries.set(key, (entry = this.build(vertex, fragment)));
+    if (!entry) this.entries.set(key, (entry = this.build(vertex, fragment, defines)));
     if (!entry.ready && !entry.error) this.finish(entry);
     return entry;
   }
 
-  private build(vertex: string, fragment: string): Program {
+  private build(vertex: string, fragment: string, defines: string[]): Program {
     const { graphics } = this;
     const gl = graphics.context;
     const program = graphics.counted(gl.createProgram());
     const kinds = [gl.VERTEX_SHADER, gl.FRAGMENT_SHADER];
+    const preamble = PREAMBLE + defines.map((name) => `#define ${name}\n`).join("");
     const shaders = [vertex, fragment].map((source, n) => {
       const shader = graphics.counted(gl.createShader(kinds[n]));
-      gl.shaderSource(shader, source.startsWith("#version") ? source : PREAMBLE + source);
+      gl.shaderSource(shader, source.startsWith("#version") ? source : preamble + source);
       gl.compileShader(shader);
       gl.attachShader(program, shader);
       return shader;

@@ -240,6 +240,7 @@ export class ProgressiveRenderer {
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     const draft = samples !== viewer.settings.samples || height !== this.canvas.height;
     graphics.programs.use(program, this.values(scene, camera, view, samples, draft));
+    scene.look(camera.sight(this.canvas.height));
     scene.draw(shown[0], shown[1], view.anchor, true);
     if (smooth) graphics.copySmooth(width, rows);
     // Reading a pixel waits until everything is drawn.

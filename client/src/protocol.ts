@@ -9,7 +9,7 @@ export const FORMAT = 2;
 
 export type Value = boolean | number | string;
 export type Settings = Record<string, Value>;
-export type Data = Float32Array | Uint16Array | Int16Array | Int8Array | Uint8Array;
+export type Data = Float64Array | Float32Array | Uint16Array | Int16Array | Int8Array | Uint8Array;
 
 export interface Part {
   data: Data;
@@ -62,9 +62,20 @@ export interface Paper {
 
 export interface Geometry extends Surface {
   shape: [number, number];
+  /** Whether the first line of nodes lies where the last one does, along j and i. */
+  periodic: [boolean, boolean];
   rows: Padding;
   columns: Padding;
   levels: number;
+}
+
+/** Cells along a side of a tile, and limits of the errors: those of flowtex/rendering/mesh_levels.py. */
+export interface MeshLimits {
+  tileCells: number;
+  maxErrorPixels: number;
+  maxColourError: number;
+  maxSideHeights: number;
+  leastDistance: number;
 }
 
 export interface Header {
@@ -108,6 +119,7 @@ export interface Header {
     kernels: string[];
     anchorRange: number;
   };
+  mesh: MeshLimits;
   limits: CameraLimits;
   table: Row[];
   settings: Settings;

@@ -2,7 +2,8 @@
 
 import type { Graphics, Resource } from "./context.ts";
 import { halved } from "./half.ts";
-import { coordinates, noiseCoordinates, positions, shares, triangles } from "./mesh.ts";
+import { coordinates, noiseCoordinates, positions, shares } from "./mesh.ts";
+import { MeshLevels, type Sight } from "./meshlevels.ts";
 import { SAMPLERS } from "./programs.ts";
 import { stepOf, type Data, type Header, type Part } from "./protocol.ts";
 import type { Vector } from "./vectors.ts";
@@ -12,6 +13,7 @@ const USERS: Record<string, string[]> = {
   position: ["position", "coordinate"],
   normal: ["normal"],
   cells: ["index"],
+  mesh: ["index"],
   cmap: ["cmap"],
   noise: ["noise"],
   step: ["step"],
@@ -33,6 +35,8 @@ export class Scene {
   anchor: Vector = [0, 0, 0];
   private readonly resources = new Map<string, Resource>();
   private scalarSteps = "";
+  /** Level of each tile of the mesh; without a view that of every node. */
+  private levels: Uint8Array = new Uint8Array();
 
   constructor(graphics: Graphics, header: Header, parts: Map<string, Part>) {
     this.graphics = graphics;
@@ -43,7 +47,7 @@ export class Scene {
   /** Names of the parts that a moment needs and that are not there. */
   missing(before: number, after: number): string[] {
     const { geometry, slices, scalars, paper } = this.header;
-    const names = ["position", ...(geometry.planar ? [] : ["normal"])];
+    const names = ["position", "mesh", ...(geometry.planar ? [] : ["normal"])];
     for (const step of new Set([before, after])) {
       names.push(`slices/${step}`);
       if (slices.channels === 2) names.push(`extra/${step}`);
@@ -147,6 +151,22 @@ export class Scene {
     return this.take(name, "Buffer", key, () => gl.createBuffer(), fill);
   }
 
+  private mesh(): MeshLevels {
+    const { geometry, mesh } = this.header;
+    const { shape, periodic } = geometry;
+    const parts = { tiles: this.part("mesh").data, cells: this.parts.get("cells")?.data };
+    return new MeshLevels({ shape, periodic, ...parts }, mesh);
+  }
+
+  /** Choose the triangles for a view. */
+  look(sight: Sight): void {
+    const levels = this.mesh().levels(sight);
+    if (String(levels) === String(this.levels)) return;
+    this.levels = levels;
+    this.drop("index");
+    this.drop("array");
+  }
+
   private bindNodes(before: number, after: number, anchor: Vector): void {
     const gl = this.graphics.context;
     const steps = String(this.scalarParts(before, after));
@@ -164,8 +184,8 @@ export class Scene {
     const gl = this.graphics.context;
     const { geometry, scalars, paper } = this.header;
     const { shape, rows, columns } = geometry;
-    const cells = () => triangles(shape, this.parts.get("cells")?.data);
-    const index = this.buffer("index", this.key(["cells"], shape), cells, true);
+    const cells = () => this.mesh().triangles(this.levels);
+    const index = this.buffer("index", this.key(["cells", "mesh"], shape, [...this.levels]), cells, true);
     const nodes = () => positions(this.part("position").data as Float32Array, this.anchor);
     const normal = geometry.planar ? null : this.part("normal").data;
     const painted = this.scalarParts(before, after);

@@ -34,7 +34,6 @@ export function uniforms(
   const s = settings as unknown as Numbers;
   const signFree = isSignFree(header);
   const finest = 2 ** (Math.floor(Math.log2(geometry.extent)) - constants.noiseDoublings);
-  const motion = motionUniforms(header, s, view);
   const w = view.eye[3];
   const eye = toFrame(geometry.frame, subtract(view.eye, scale(geometry.center, w)));
   const kernel = signFree && s.kernel === "ramp" ? "hann" : s.kernel;
@@ -47,7 +46,7 @@ export function uniforms(
     u_lagCount: slices.lags.length,
     u_sides: s.two_sided || signFree ? slices.sides : 1,
     u_unit: slices.unit,
-    u_samples: motion.u_moving ? 2 * s.samples - 1 : s.samples,
+    u_samples: isMoving(header, settings) ? 2 * s.samples - 1 : s.samples,
     u_spacing: s.spacing,
     u_grain: s.grain * view.density,
     u_kernel: constants.kernels.indexOf(kernel),
@@ -57,12 +56,18 @@ export function uniforms(
     u_seed: s.seed,
     u_showLevel: s.show_level,
     u_fixed: s.fixed_grain,
-    ...motion,
+    ...motionUniforms(header, s, view),
     ...noiseOrigin(header, view, finest),
     u_noiseFinest: finest,
     u_texel: geometry.extent / s.resolution,
     ...(header.paper && noiseShape ? paperUniforms(header.paper, s, noiseShape, view.density) : {}),
   };
+}
+
+/** Whether the grains change in time, which is a variant of the shader. */
+export function isMoving(header: Header, settings: Settings): boolean {
+  const streams = settings.motion !== "off" && !isSignFree(header);
+  return !header.paper && (header.slices.steps > 1 || streams);
 }
 
 /** How the grains change: with the time of a field that varies, by the clock of a steady one. */
@@ -77,7 +82,6 @@ function motionUniforms(header: Header, s: Numbers, view: ViewState): Record<str
   const travel = varies ? geometry.extent : s.speed * s.period;
   const coarse = Math.floor(turns / constants.clockStep) * constants.clockStep;
   return {
-    u_moving: (varies || (s.motion !== "off" && !isSignFree(header))) && !header.paper,
     u_clock: [coarse, turns - coarse],
     u_travel: travel * (inPixels ? view.density : 1),
     u_travelInPixels: inPixels,

@@ -24,7 +24,8 @@ import {
 } from "./protocol.ts";
 import { CARD_PRICE_MS } from "./quality.ts";
 import { Scene } from "./scene.ts";
-import type { Moment, ViewState } from "./uniforms.ts";
+import type { Program } from "./programs.ts";
+import { isMoving, type Moment, type ViewState } from "./uniforms.ts";
 import { subtract, toFrame, type Vector } from "./vectors.ts";
 
 /** Milliseconds for which a view that was moved counts as being moved. */
@@ -352,8 +353,7 @@ export class Viewer implements User {
   get smooth(): boolean {
     const { header } = this;
     if (this.options.smooth !== undefined || !header) return this.options.smooth ?? false;
-    const { vertex, fragment } = header.shaders;
-    return this.graphics.programs.get(vertex, fragment).price < CARD_PRICE_MS;
+    return this.program(header).price < CARD_PRICE_MS;
   }
 
   /** Pixels of the canvas along one of the page. */
@@ -412,14 +412,20 @@ export class Viewer implements User {
     }
   }
 
+  /** The program that draws at the present settings. */
+  private program(header: Header): Program {
+    const { vertex, fragment } = header.shaders;
+    const defines = isMoving(header, this.settings) ? ["FLOWTEX_MOVING"] : [];
+    return this.graphics.programs.get(vertex, fragment, ...defines);
+  }
+
   /** Go on with the picture until a time. */
   private drawPicture(header: Header, until: number): void {
     const shown = this.available();
     if (!this.camera) this.place();
     if (!shown || !this.camera) return;
     const { programs } = this.graphics;
-    const { vertex, fragment, pick } = header.shaders;
-    const program = programs.get(vertex, fragment);
+    const program = this.program(header);
     if (program.error) {
       this.panel.fail("The shader does not compile with this graphics driver.", program.error);
       return;
@@ -427,7 +433,7 @@ export class Viewer implements User {
     if (!program.ready) return this.request();
     if (!this.sharp && this.renderer.draw(program, shown, this.isBusy, until)) {
       this.panel.clear();
-      programs.get(vertex, pick); // the pointer asks for it next
+      programs.get(header.shaders.vertex, header.shaders.pick); // the pointer asks for it next
       this.setSharp(!this.playing);
     }
     if (!this.sharp) this.request();

@@ -12,7 +12,7 @@ const LAYERS = [
   "camera",
   "protocol",
   "uniforms quality",
-  "programs mesh player legend",
+  "programs mesh meshlevels player legend",
   "context",
   "scene",
   "picking progressive options",

@@ -2,13 +2,14 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import type { Header } from "../src/protocol.ts";
-import { momentOf, uniforms, type Uniform, type ViewState } from "../src/uniforms.ts";
+import { isMoving, momentOf, uniforms, type Uniform, type ViewState } from "../src/uniforms.ts";
 import { assertClose } from "./close.ts";
 
 interface Case {
   header: Header;
   view: ViewState;
   noise: number[] | null;
+  moving: boolean;
   uniforms: Record<string, Uniform>;
 }
 
@@ -16,9 +17,10 @@ interface Case {
 const file = new URL("uniforms.json", import.meta.url);
 const cases: Record<string, Case> = JSON.parse(readFileSync(file, "utf8"));
 
-for (const [name, { header, view, noise, uniforms: expected }] of Object.entries(cases)) {
+for (const [name, { header, view, noise, moving, uniforms: expected }] of Object.entries(cases)) {
   test(`uniforms are those of Python: ${name}`, () => {
     assertClose(uniforms(header, header.settings, view, noise), expected, 1e-12);
+    assert.equal(isMoving(header, header.settings), moving);
   });
 }
 

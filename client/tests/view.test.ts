@@ -5,15 +5,10 @@ import { test } from "node:test";
 import { isUseful, scaleOf } from "../src/controls.ts";
 import { numberText } from "../src/dom.ts";
 import { throttled } from "../src/lifetime.ts";
-import { coordinates, interpolated, positions, shares, triangles } from "../src/mesh.ts";
+import { coordinates, interpolated, positions, shares } from "../src/mesh.ts";
 import { Player } from "../src/player.ts";
 import type { Geometry, Header, Row } from "../src/protocol.ts";
 import { reused } from "../src/reuse.ts";
-
-test("cells that are left out have no triangles", () => {
-  assert.deepEqual([...triangles([2, 3])], [0, 1, 4, 0, 4, 3, 1, 2, 5, 1, 5, 4]);
-  assert.deepEqual([...triangles([2, 3], Uint8Array.of(0, 1))], [1, 2, 5, 1, 5, 4]);
-});
 
 test("nodes lie in the middles of texels", () => {
   const padding = { before: 1, size: 4 };

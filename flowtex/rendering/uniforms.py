@@ -16,7 +16,7 @@ from flowtex.rendering.constants import KERNELS
 from flowtex.settings import Settings
 from flowtex.textures import PaperTextures, TextureSet
 
-__all__ = ["ANCHOR_RANGE", "ViewState", "client_constants", "uniforms", "variants"]
+__all__ = ["ANCHOR_RANGE", "ViewState", "client_constants", "is_moving", "uniforms", "variants"]
 
 #: Doublings from the finest cell of the noise to the extent of the surface.
 NOISE_DOUBLINGS = 30
@@ -64,9 +64,11 @@ class ViewState:
     density: float = 1.0
 
 
-def variants(textures: TextureSet, *, unsteady: bool) -> frozenset[str]:
-    """Names of the shader's variant for a texture set."""
+def variants(textures: TextureSet, *, unsteady: bool, moving: bool) -> frozenset[str]:
+    """Names of the shader's variant for a texture set, and whether the grains change in time."""
     chosen = set()
+    if moving:
+        chosen.add("FLOWTEX_MOVING")
     if textures.paper is not None:
         chosen.add("FLOWTEX_PAPER")
     if textures.paper is not None and textures.paper.picture:
@@ -93,13 +95,16 @@ def client_constants() -> dict[str, Any]:
 
 
 def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[str, Any]:
-    """Values by name: bool, int, float, tuples of float, or lists for arrays."""
+    """Values by name: bool, int, float, tuples of float, or lists for arrays.
+
+    ``moving`` is no uniform: shaders have a variant for it.
+    """
     geometry = textures.geometry
     # A power of two, so that it is exact.
     finest = float(2.0 ** (np.floor(np.log2(geometry.extent)) - NOISE_DOUBLINGS))
     even = _origin_cell(geometry.local(view.focus), finest)
-    sides, kernel, streams = _direction(textures, settings)
-    motion = _motion(textures, settings, view, streams=streams)
+    sides, kernel = _direction(textures, settings)
+    moving = is_moving(textures, settings)
     eye = geometry.frame @ (view.eye[:3] - view.eye[3] * geometry.center)
     eye -= view.eye[3] * view.anchor
     values: dict[str, Any] = {
@@ -111,7 +116,7 @@ def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[
         "u_lagCount": len(textures.lags),
         "u_sides": sides,
         "u_unit": textures.unit,
-        "u_samples": 2 * settings.samples - 1 if motion["u_moving"] else settings.samples,
+        "u_samples": 2 * settings.samples - 1 if moving else settings.samples,
         "u_spacing": settings.spacing,
         "u_grain": settings.grain * view.density,
         "u_kernel": KERNELS.index(kernel),
@@ -121,7 +126,8 @@ def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[
         "u_seed": settings.seed,
         "u_showLevel": settings.show_level,
         "u_fixed": settings.fixed_grain,
-        **motion,
+        "moving": moving,
+        **_motion(textures, settings, view),
         **_noise_origin(even, finest, view.anchor),
         "u_noiseFinest": finest,
         "u_texel": geometry.extent / settings.resolution,
@@ -131,21 +137,28 @@ def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[
     return values
 
 
-def _direction(textures: TextureSet, settings: Settings) -> tuple[int, str, bool]:
-    """Sides of the paths, kernel, and whether the grains of a steady field stream.
+def is_moving(textures: TextureSet, settings: Settings) -> bool:
+    """Tell whether the grains change in time: with a field that varies, or by the clock.
 
-    A field without a sign has no forward: it has both sides, no kernel that falls towards one of
-    them, and nothing streams.
+    A field without a sign has no forward, so nothing streams; the paper's textures stand still.
+    """
+    if textures.paper is not None:
+        return False
+    streams = settings.motion != "off" and not textures.geometry.field.sign_free
+    return textures.store.steps > 1 or streams
+
+
+def _direction(textures: TextureSet, settings: Settings) -> tuple[int, str]:
+    """Sides of the paths, and kernel.
+
+    A field without a sign has no forward: it has both sides, and no kernel that falls towards one.
     """
     if textures.geometry.field.sign_free:
-        return textures.sides, "hann" if settings.kernel == "ramp" else settings.kernel, False
-    sides = textures.sides if settings.two_sided else 1
-    return sides, settings.kernel, settings.motion != "off"
+        return textures.sides, "hann" if settings.kernel == "ramp" else settings.kernel
+    return textures.sides if settings.two_sided else 1, settings.kernel
 
 
-def _motion(
-    textures: TextureSet, settings: Settings, view: ViewState, *, streams: bool
-) -> dict[str, Any]:
+def _motion(textures: TextureSet, settings: Settings, view: ViewState) -> dict[str, Any]:
     """How the grains change: with the time of a field that varies, by the clock of a steady one.
 
     Grains that change shorten the streaks. Twice as many samples make up for it, and let the eye
@@ -156,14 +169,12 @@ def _motion(
         # The time in which the flow crosses the surface.
         period = textures.geometry.extent / textures.pace
         turns, travel = (view.time - float(store.field.times[0])) / period, textures.geometry.extent
-        pixels, by_speed, moving = False, True, True
+        pixels, by_speed = False, True
     else:
         turns, travel = view.clock / settings.period % 1.0, settings.speed * settings.period
         pixels, by_speed = settings.speed_in == "pixels", settings.motion == "speed"
-        moving = streams
     coarse = float(np.floor(turns / CLOCK_STEP) * CLOCK_STEP)
     return {
-        "u_moving": moving and textures.paper is None,
         "u_clock": (coarse, turns - coarse),
         "u_travel": float(travel) * (view.density if pixels else 1.0),
         "u_travelInPixels": pixels,

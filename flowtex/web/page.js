@@ -63,45 +63,47 @@ this.state=copyOf(state),this.start=copyOf(state),this.limits=limits,this.flat=f
 height,this.nearest=this.distance/limits.closest}get height(){let{parallel,parallel_scale:half,view_angle:angle}=this.state;
 return parallel?half:this.distance*tangent(angle)}get distance(){return length2(subtract2(this.state.focal_point,this.state.
 position))}get zoom(){return this.homeHeight/this.height}get axes(){let ahead=unit(subtract2(this.state.focal_point,this.
-state.position)),right=unit(cross2(ahead,this.state.up));return[right,cross2(right,ahead),ahead]}get eye(){return this.state.
-parallel?[...scale2(this.axes[2],-1),0]:[...this.state.position,1]}pan(dx,dy){let[right,up]=this.axes,{height}=this;this.
-shift(add(scale2(right,dx*this.aspect*height),up,dy*height))}rotate(dx,dy){let{state,limits}=this,up=unit(state.up),back=subtract2(
-state.position,state.focal_point);back=rotated(back,up,-limits.turn*dx*Math.min(this.aspect,limits.widest_turn));let right=unit(
-cross2(up,back));back=rotated(back,right,limits.turn*dy),state.position=add(state.focal_point,back),state.up=unit(cross2(
-back,right))}zoomBy(factor,x=0,y=0){if(!Number.isFinite(factor)||factor<=0)return;this.flat||this.focusAt(x,y);let{farthest_zoom:farthest,
-deepest_zoom:deepest}=this.limits,by=clamp(factor,farthest/this.zoom,deepest/this.zoom),[right,up,ahead]=this.axes,height=this.
-height*(1-1/by);this.shift(add(scale2(right,x*this.aspect*height),up,y*height)),this.state.parallel?this.state.parallel_scale/=
-by:this.approach(this.height/by,ahead)}ray(x,y){let[right,up,ahead]=this.axes,{height,state}=this,there=add(add(state.focal_point,
-right,x*this.aspect*height),up,y*height);return state.parallel?[add(there,ahead,-this.distance),ahead]:[add(state.position,
-[0,0,0]),unit(subtract2(there,state.position))]}approach(height,ahead){let distance=Math.max(height/tangent(this.limits.
-view_angle),this.nearest);this.state.position=add(this.state.focal_point,ahead,-distance),this.state.view_angle=Math.atan(
-height/distance)*360/Math.PI}focusAt(x,y){let point=this.pick?.(x,y);if(!point)return;let ahead=this.axes[2],depth=dot2(
-subtract2(point,this.state.position),ahead);depth>0&&(this.state.focal_point=add(this.state.position,ahead,depth))}shift(by){
-this.state.focal_point=add(this.state.focal_point,by),this.state.position=add(this.state.position,by)}};function copyOf(state){
-let{position,focal_point:focus,up}=state;return{...state,position:[...position],focal_point:[...focus],up:[...up]}}function fitted(surface,limits,positions2,aspect){
-let{center,extent,planar,frame}=surface,half=tangent(limits.view_angle),back=planar?fromFrame(frame,[0,0,1]):unit([1,1,1]),
-up=planar?fromFrame(frame,[0,1,0]):[0,0,1],right=unit(cross2(up,back)),rows=[right,cross2(back,right),back].map(row=>toFrame(
-frame,row)),[low,high]=[[1/0,1/0],[-1/0,-1/0]],distance=0;for(let n=0;n<positions2.length;n+=3){let node=[positions2[n],
-positions2[n+1],positions2[n+2]];if(!Number.isFinite(node[0]))continue;let[x,y,z]=rows.map(row=>dot2(row,node));[x,y].forEach(
-(value,k)=>{low[k]=Math.min(low[k],value),high[k]=Math.max(high[k],value)});let wide=Math.max(Math.abs(x)/aspect,Math.abs(
-y));distance=Math.max(distance,z+wide/half/(1-2*limits.margin))}let tall=Math.max(high[1]-low[1],(high[0]-low[0])/aspect,
-1e-12*extent);return{position:add(center,back,planar?extent:distance),focal_point:[...center],up,parallel:planar,parallel_scale:.5*
-tall/(1-2*limits.margin),view_angle:limits.view_angle}}function widened(surface,limits,state,positions2,aspect){let{center,
-extent,planar}=surface,camera=copyOf(state);if(length2(subtract2(state.focal_point,center))>.001*extent)return camera;if(planar&&
-state.parallel){let[high,all]=[1e9,aspect].map(shape=>fitted(surface,limits,positions2,shape).parallel_scale);state.parallel_scale>
-.98*high&&(camera.parallel_scale=Math.max(state.parallel_scale,all))}else if(!state.parallel&&state.view_angle>.9*limits.
-view_angle){let back=subtract2(state.position,state.focal_point);camera.position=add(state.focal_point,back,Math.max(1,limits.
-aspect/aspect))}return camera}function isSamePlace(a,b){let near=length2(subtract2(a.center,b.center))<.1*a.extent,ratio=a.
-extent/b.extent;return a.planar===b.planar&&near&&ratio>.8&&ratio<1.25}function projection(surface,camera,anchor){let{state,
-aspect}=camera,{center,extent,frame}=surface,[right,up,ahead]=camera.axes.map(axis=>toFrame(frame,axis)),local=point=>subtract2(
-toFrame(frame,subtract2(point,center)),anchor),focus=local(state.focal_point),middle=scale2(anchor,-1),radius=.51*extent,
-m=new Array(16).fill(0),half=state.parallel?state.parallel_scale:tangent(state.view_angle);if([right.map(c=>c/half/aspect),
-up.map(c=>c/half)].forEach((row,k)=>{for(let n=0;n<3;n+=1)m[4*n+k]=row[n];m[12+k]=-dot2(row,focus)}),state.parallel){for(let n=0;n<
-3;n+=1)m[4*n+2]=ahead[n]/radius;return m[14]=-dot2(ahead,middle)/radius,m[15]=1,m}let eye=local(state.position),depth=dot2(
-subtract2(middle,eye),ahead),far=Math.max(depth+radius,.001*radius),near=Math.max(depth-radius,.001*far),a=(far+near)/(far-
-near),b=-2*far*near/(far-near);for(let n=0;n<3;n+=1)m[4*n+2]=ahead[n]*a,m[4*n+3]=ahead[n];return m[15]=-dot2(ahead,eye),
-m[14]=m[15]*a+b,m}function atPixel(matrix,[x,y],[width,height]){let m=[...matrix];for(let n=0;n<4;n+=1)m[4*n]=(m[4*n]-x*
-m[4*n+3])*width,m[4*n+1]=(m[4*n+1]-y*m[4*n+3])*height;return m}var PIXEL_COST=8,DRAFT_SAMPLES=9,COARSEST_SCALE=.2,DRAFT_SPACING=1.4,FEWEST_ROWS=4,FIRST_PRICE_MS=4e-5,CARD_PRICE_MS=2e-6;
+state.position)),right=unit(cross2(ahead,this.state.up));return[right,cross2(right,ahead),ahead]}sight(pixels){let{parallel,
+position,view_angle:angle}=this.state;return parallel?{eye:null,halfHeight:this.height,pixels}:{eye:position,halfHeight:tangent(
+angle),pixels}}get eye(){return this.state.parallel?[...scale2(this.axes[2],-1),0]:[...this.state.position,1]}pan(dx,dy){
+let[right,up]=this.axes,{height}=this;this.shift(add(scale2(right,dx*this.aspect*height),up,dy*height))}rotate(dx,dy){let{
+state,limits}=this,up=unit(state.up),back=subtract2(state.position,state.focal_point);back=rotated(back,up,-limits.turn*
+dx*Math.min(this.aspect,limits.widest_turn));let right=unit(cross2(up,back));back=rotated(back,right,limits.turn*dy),state.
+position=add(state.focal_point,back),state.up=unit(cross2(back,right))}zoomBy(factor,x=0,y=0){if(!Number.isFinite(factor)||
+factor<=0)return;this.flat||this.focusAt(x,y);let{farthest_zoom:farthest,deepest_zoom:deepest}=this.limits,by=clamp(factor,
+farthest/this.zoom,deepest/this.zoom),[right,up,ahead]=this.axes,height=this.height*(1-1/by);this.shift(add(scale2(right,
+x*this.aspect*height),up,y*height)),this.state.parallel?this.state.parallel_scale/=by:this.approach(this.height/by,ahead)}ray(x,y){
+let[right,up,ahead]=this.axes,{height,state}=this,there=add(add(state.focal_point,right,x*this.aspect*height),up,y*height);
+return state.parallel?[add(there,ahead,-this.distance),ahead]:[add(state.position,[0,0,0]),unit(subtract2(there,state.position))]}approach(height,ahead){
+let distance=Math.max(height/tangent(this.limits.view_angle),this.nearest);this.state.position=add(this.state.focal_point,
+ahead,-distance),this.state.view_angle=Math.atan(height/distance)*360/Math.PI}focusAt(x,y){let point=this.pick?.(x,y);if(!point)
+return;let ahead=this.axes[2],depth=dot2(subtract2(point,this.state.position),ahead);depth>0&&(this.state.focal_point=add(
+this.state.position,ahead,depth))}shift(by){this.state.focal_point=add(this.state.focal_point,by),this.state.position=add(
+this.state.position,by)}};function copyOf(state){let{position,focal_point:focus,up}=state;return{...state,position:[...position],
+focal_point:[...focus],up:[...up]}}function fitted(surface,limits,positions2,aspect){let{center,extent,planar,frame}=surface,
+half=tangent(limits.view_angle),back=planar?fromFrame(frame,[0,0,1]):unit([1,1,1]),up=planar?fromFrame(frame,[0,1,0]):[0,
+0,1],right=unit(cross2(up,back)),rows=[right,cross2(back,right),back].map(row=>toFrame(frame,row)),[low,high]=[[1/0,1/0],
+[-1/0,-1/0]],distance=0;for(let n=0;n<positions2.length;n+=3){let node=[positions2[n],positions2[n+1],positions2[n+2]];if(!Number.
+isFinite(node[0]))continue;let[x,y,z]=rows.map(row=>dot2(row,node));[x,y].forEach((value,k)=>{low[k]=Math.min(low[k],value),
+high[k]=Math.max(high[k],value)});let wide=Math.max(Math.abs(x)/aspect,Math.abs(y));distance=Math.max(distance,z+wide/half/
+(1-2*limits.margin))}let tall=Math.max(high[1]-low[1],(high[0]-low[0])/aspect,1e-12*extent);return{position:add(center,back,
+planar?extent:distance),focal_point:[...center],up,parallel:planar,parallel_scale:.5*tall/(1-2*limits.margin),view_angle:limits.
+view_angle}}function widened(surface,limits,state,positions2,aspect){let{center,extent,planar}=surface,camera=copyOf(state);
+if(length2(subtract2(state.focal_point,center))>.001*extent)return camera;if(planar&&state.parallel){let[high,all]=[1e9,
+aspect].map(shape=>fitted(surface,limits,positions2,shape).parallel_scale);state.parallel_scale>.98*high&&(camera.parallel_scale=
+Math.max(state.parallel_scale,all))}else if(!state.parallel&&state.view_angle>.9*limits.view_angle){let back=subtract2(state.
+position,state.focal_point);camera.position=add(state.focal_point,back,Math.max(1,limits.aspect/aspect))}return camera}function isSamePlace(a,b){
+let near=length2(subtract2(a.center,b.center))<.1*a.extent,ratio=a.extent/b.extent;return a.planar===b.planar&&near&&ratio>
+.8&&ratio<1.25}function projection(surface,camera,anchor){let{state,aspect}=camera,{center,extent,frame}=surface,[right,
+up,ahead]=camera.axes.map(axis=>toFrame(frame,axis)),local=point=>subtract2(toFrame(frame,subtract2(point,center)),anchor),
+focus=local(state.focal_point),middle=scale2(anchor,-1),radius=.51*extent,m=new Array(16).fill(0),half=state.parallel?state.
+parallel_scale:tangent(state.view_angle);if([right.map(c=>c/half/aspect),up.map(c=>c/half)].forEach((row,k)=>{for(let n=0;n<
+3;n+=1)m[4*n+k]=row[n];m[12+k]=-dot2(row,focus)}),state.parallel){for(let n=0;n<3;n+=1)m[4*n+2]=ahead[n]/radius;return m[14]=
+-dot2(ahead,middle)/radius,m[15]=1,m}let eye=local(state.position),depth=dot2(subtract2(middle,eye),ahead),far=Math.max(
+depth+radius,.001*radius),near=Math.max(depth-radius,.001*far),a=(far+near)/(far-near),b=-2*far*near/(far-near);for(let n=0;n<
+3;n+=1)m[4*n+2]=ahead[n]*a,m[4*n+3]=ahead[n];return m[15]=-dot2(ahead,eye),m[14]=m[15]*a+b,m}function atPixel(matrix,[x,
+y],[width,height]){let m=[...matrix];for(let n=0;n<4;n+=1)m[4*n]=(m[4*n]-x*m[4*n+3])*width,m[4*n+1]=(m[4*n+1]-y*m[4*n+3])*
+height;return m}var PIXEL_COST=8,DRAFT_SAMPLES=9,COARSEST_SCALE=.2,DRAFT_SPACING=1.4,FEWEST_ROWS=4,FIRST_PRICE_MS=4e-5,CARD_PRICE_MS=2e-6;
 function quality(price,fixed,pixels,samples,budget){let room=Math.max(budget-fixed,2)/price;if(pixels*(samples+PIXEL_COST)<=
 room)return{scale:1,samples};let fewer=Math.min(DRAFT_SAMPLES,samples),scale3=Math.sqrt(room/(fewer+PIXEL_COST)/pixels);
 return scale3<1?{scale:Math.max(scale3,COARSEST_SCALE),samples:fewer}:{scale:1,samples:clamp(Math.floor(room/pixels-PIXEL_COST),
@@ -118,16 +120,18 @@ precision highp int;
 "u_slicesNext","u_noiseImage","u_stepImage","u_cmap"],Programs=class{graphics;entries=new Map;parallel=null;constructor(graphics){
 this.graphics=graphics}findFeatures(){this.parallel=this.graphics.context.getExtension("KHR_parallel_shader_compile")}clear(){
 this.entries.clear()}dispose(){for(let entry of this.entries.values()){for(let shader of entry.shaders)this.graphics.free(
-"Shader",shader);this.graphics.free("Program",entry.program)}this.clear()}get(vertex,fragment){let key=`${vertex}\0${fragment}`,
-entry=this.entries.get(key);return entry||this.entries.set(key,entry=this.build(vertex,fragment)),!entry.ready&&!entry.error&&
-this.finish(entry),entry}build(vertex,fragment){let{graphics}=this,gl=graphics.context,program=graphics.counted(gl.createProgram()),
-kinds=[gl.VERTEX_SHADER,gl.FRAGMENT_SHADER],shaders=[vertex,fragment].map((source,n)=>{let shader=graphics.counted(gl.createShader(
-kinds[n]));return gl.shaderSource(shader,source.startsWith("#version")?source:PREAMBLE+source),gl.compileShader(shader),
-gl.attachShader(program,shader),shader});return ATTRIBUTES.forEach((name,n)=>gl.bindAttribLocation(program,n,name)),gl.linkProgram(
-program),{program,shaders,uniforms:new Map,...{ready:!1,error:"",warm:!1,price:FIRST_PRICE_MS}}}finish(entry){let gl=this.
-graphics.context,{program}=entry,done=this.parallel?.COMPLETION_STATUS_KHR;if(done&&!gl.getProgramParameter(program,done))
-return;if(!gl.getProgramParameter(program,gl.LINK_STATUS)){if(gl.isContextLost())return;let log=[...entry.shaders.map(shader=>gl.
-getShaderInfoLog(shader)),gl.getProgramInfoLog(program)].filter(Boolean).join(`
+"Shader",shader);this.graphics.free("Program",entry.program)}this.clear()}get(vertex,fragment,...defines){let key=[vertex,
+fragment,...defines].join("\0"),entry=this.entries.get(key);return entry||this.entries.set(key,entry=this.build(vertex,fragment,
+defines)),!entry.ready&&!entry.error&&this.finish(entry),entry}build(vertex,fragment,defines){let{graphics}=this,gl=graphics.
+context,program=graphics.counted(gl.createProgram()),kinds=[gl.VERTEX_SHADER,gl.FRAGMENT_SHADER],preamble=PREAMBLE+defines.
+map(name=>`#define ${name}
+`).join(""),shaders=[vertex,fragment].map((source,n)=>{let shader=graphics.counted(gl.createShader(kinds[n]));return gl.
+shaderSource(shader,source.startsWith("#version")?source:preamble+source),gl.compileShader(shader),gl.attachShader(program,
+shader),shader});return ATTRIBUTES.forEach((name,n)=>gl.bindAttribLocation(program,n,name)),gl.linkProgram(program),{program,
+shaders,uniforms:new Map,...{ready:!1,error:"",warm:!1,price:FIRST_PRICE_MS}}}finish(entry){let gl=this.graphics.context,
+{program}=entry,done=this.parallel?.COMPLETION_STATUS_KHR;if(done&&!gl.getProgramParameter(program,done))return;if(!gl.getProgramParameter(
+program,gl.LINK_STATUS)){if(gl.isContextLost())return;let log=[...entry.shaders.map(shader=>gl.getShaderInfoLog(shader)),
+gl.getProgramInfoLog(program)].filter(Boolean).join(`
 `);entry.error=log||"the driver gave no reason";return}for(let shader of entry.shaders)this.graphics.free("Shader",shader);
 entry.shaders=[];let count=gl.getProgramParameter(program,gl.ACTIVE_UNIFORMS);for(let n=0;n<count;n+=1){let info=gl.getActiveUniform(
 program,n),location=info&&gl.getUniformLocation(program,info.name);!info||!location||entry.uniforms.set(info.name.replace(
@@ -440,18 +444,15 @@ hidden=!shown}clear(){this.note.hidden=!0,delete this.viewer.root.dataset.failed
 dom("strong",{},[problem]),dom("pre",{},[detail])),this.note.hidden=!1,this.busy.hidden=!0,this.viewer.root.dataset.failed=
 "true"}fullscreen(){let{root}=this.viewer;toggleFullscreen(root.closest(".flowtex-pair")??root)}async save(){let{viewer}=this,
 href=URL.createObjectURL(await pngOf(viewer.together)),name=(viewer.header?.name||"flow").replace(FORBIDDEN," ").trim();
-dom("a",{href,download:`${name}.png`}).click(),viewer.lifetime.later(()=>URL.revokeObjectURL(href),SAVED_MS)}};function triangles([rows,columns],cells){let index=new Uint32Array(6*(rows-1)*(columns-1)),n=0;for(let j=0,cell=0;j<rows-
-1;j+=1)for(let i=0;i<columns-1;i+=1,cell+=1){if(cells&&!cells[cell])continue;let corner=j*columns+i,far=corner+columns+1;
-index[n++]=corner,index[n++]=corner+1,index[n++]=far,index[n++]=corner,index[n++]=far,index[n++]=far-1}return index.subarray(
-0,n)}function positions(data,anchor){return anchor.some(Boolean)?data.map((x,n)=>x-anchor[n%3]):data}function grid(us,vs){
-let result2=new Float32Array(2*us.length*vs.length),n=0;for(let v2 of vs)for(let u of us)result2[n++]=u,result2[n++]=v2;
-return result2}function coordinates({shape,rows,columns}){let middles=(count,{before,size})=>Array.from({length:count},(_,n)=>(n+
-before+.5)/size);return grid(middles(shape[1],columns),middles(shape[0],rows))}function noiseCoordinates({alongI,alongJ}){
-return grid(alongI,alongJ)}function shares(steps,low,high,nodes){let result2=new Float32Array(2*nodes),span=high-low||1;
-return steps.forEach((values,k)=>{for(let n=0;n<nodes;n+=1){let share=(values[n]-low)/span;result2[2*n+k]=Number.isFinite(
-share)?share:-1e9}}),result2}function interpolated([rows,columns],i,j,value){let[left,low]=[Math.min(Math.floor(i),columns-
-2),Math.min(Math.floor(j),rows-2)],[a,b]=[i-left,j-low],corner=low*columns+left,[from,to]=[value(corner),value(corner+columns+
-1)],aside=value(corner+(a>=b?1:columns));return from+Math.max(a,b)*(aside-from)+Math.min(a,b)*(to-aside)}function pickedPoint(context,x,y){let{scene,camera,moment,anchor,canvas}=context,{graphics,header}=scene,program=graphics.
+dom("a",{href,download:`${name}.png`}).click(),viewer.lifetime.later(()=>URL.revokeObjectURL(href),SAVED_MS)}};function positions(data,anchor){return anchor.some(Boolean)?data.map((x,n)=>x-anchor[n%3]):data}function grid(us,vs){let result2=new Float32Array(
+2*us.length*vs.length),n=0;for(let v2 of vs)for(let u of us)result2[n++]=u,result2[n++]=v2;return result2}function coordinates({
+shape,rows,columns}){let middles=(count,{before,size})=>Array.from({length:count},(_,n)=>(n+before+.5)/size);return grid(
+middles(shape[1],columns),middles(shape[0],rows))}function noiseCoordinates({alongI,alongJ}){return grid(alongI,alongJ)}
+function shares(steps,low,high,nodes){let result2=new Float32Array(2*nodes),span=high-low||1;return steps.forEach((values,k)=>{
+for(let n=0;n<nodes;n+=1){let share=(values[n]-low)/span;result2[2*n+k]=Number.isFinite(share)?share:-1e9}}),result2}function interpolated([
+rows,columns],i,j,value){let[left,low]=[Math.min(Math.floor(i),columns-2),Math.min(Math.floor(j),rows-2)],[a,b]=[i-left,
+j-low],corner=low*columns+left,[from,to]=[value(corner),value(corner+columns+1)],aside=value(corner+(a>=b?1:columns));return from+
+Math.max(a,b)*(aside-from)+Math.min(a,b)*(to-aside)}function pickedPoint(context,x,y){let{scene,camera,moment,anchor,canvas}=context,{graphics,header}=scene,program=graphics.
 programs.get(header.shaders.vertex,header.shaders.pick),whole=projection(header.geometry,camera,anchor),matrix=atPixel(whole,
 [x,y],[canvas.width,canvas.height]),[before,after,between]=moment,bits=graphics.pixel(()=>{graphics.programs.use(program,
 {u_matrix:matrix,u_between:between}),scene.draw(before,after,anchor,!1)});if(!bits[3])return null;let[u,v2]=new Float32Array(
@@ -463,29 +464,29 @@ ray(x,y),ahead=camera.axes[2],depth=dot2(subtract2(about,start),ahead)/dot2(alon
 scene,moment},i,j){let{header,parts}=scene,{name}=header.scalars,[from,to,between]=moment,[before,after]=scene.scalarParts(
 from,to).map(part=>parts.get(part)?.data);if(name===null||!before||!after)return{};let value=n=>before[n]+between*(after[n]-
 before[n]);return{[name]:interpolated(header.geometry.shape,i,j,value)}}function uniforms(header,settings,view,noiseShape=null){let{geometry,slices,constants}=header,s=settings,signFree=isSignFree(
-header),finest=2**(Math.floor(Math.log2(geometry.extent))-constants.noiseDoublings),motion=motionUniforms(header,s,view),
-w=view.eye[3],eye=toFrame(geometry.frame,subtract2(view.eye,scale2(geometry.center,w))),kernel=signFree&&s.kernel==="ram\
-p"?"hann":s.kernel;return{u_eye:[...subtract2(eye,scale2(view.anchor,w)),w],u_between:view.between,u_slicesSize:[geometry.
-columns.size,geometry.rows.size],u_deepest:geometry.levels,u_lags:slices.lags,u_lagCount:slices.lags.length,u_sides:s.two_sided||
-signFree?slices.sides:1,u_unit:slices.unit,u_samples:motion.u_moving?2*s.samples-1:s.samples,u_spacing:s.spacing,u_grain:s.
-grain*view.density,u_kernel:constants.kernels.indexOf(kernel),u_lod:s.lod,u_contrast:s.contrast,u_strength:s.strength,u_seed:s.
-seed,u_showLevel:s.show_level,u_fixed:s.fixed_grain,...motion,...noiseOrigin(header,view,finest),u_noiseFinest:finest,u_texel:geometry.
-extent/s.resolution,...header.paper&&noiseShape?paperUniforms(header.paper,s,noiseShape,view.density):{}}}function motionUniforms(header,s,view){
+header),finest=2**(Math.floor(Math.log2(geometry.extent))-constants.noiseDoublings),w=view.eye[3],eye=toFrame(geometry.frame,
+subtract2(view.eye,scale2(geometry.center,w))),kernel=signFree&&s.kernel==="ramp"?"hann":s.kernel;return{u_eye:[...subtract2(
+eye,scale2(view.anchor,w)),w],u_between:view.between,u_slicesSize:[geometry.columns.size,geometry.rows.size],u_deepest:geometry.
+levels,u_lags:slices.lags,u_lagCount:slices.lags.length,u_sides:s.two_sided||signFree?slices.sides:1,u_unit:slices.unit,
+u_samples:isMoving(header,settings)?2*s.samples-1:s.samples,u_spacing:s.spacing,u_grain:s.grain*view.density,u_kernel:constants.
+kernels.indexOf(kernel),u_lod:s.lod,u_contrast:s.contrast,u_strength:s.strength,u_seed:s.seed,u_showLevel:s.show_level,u_fixed:s.
+fixed_grain,...motionUniforms(header,s,view),...noiseOrigin(header,view,finest),u_noiseFinest:finest,u_texel:geometry.extent/
+s.resolution,...header.paper&&noiseShape?paperUniforms(header.paper,s,noiseShape,view.density):{}}}function isMoving(header,settings){
+let streams=settings.motion!=="off"&&!isSignFree(header);return!header.paper&&(header.slices.steps>1||streams)}function motionUniforms(header,s,view){
 let{geometry,slices,constants}=header,varies=slices.steps>1,inPixels=!varies&&s.speed_in==="pixels",turns=varies?(view.time-
 slices.times[0])/(geometry.extent/slices.pace):(view.clock/s.period%1+1)%1,travel=varies?geometry.extent:s.speed*s.period,
-coarse=Math.floor(turns/constants.clockStep)*constants.clockStep;return{u_moving:(varies||s.motion!=="off"&&!isSignFree(
-header))&&!header.paper,u_clock:[coarse,turns-coarse],u_travel:travel*(inPixels?view.density:1),u_travelInPixels:inPixels,
-u_travelBySpeed:varies||s.motion==="speed",u_wave:constants.wavePixels*view.density}}function noiseOrigin(header,view,finest){
-let{noiseDoublings,clearDoublings}=header.constants,{frame,center}=header.geometry,focus=toFrame(frame,subtract2(view.focus,
-center)),limit=2**(noiseDoublings-clearDoublings)-1,cells=2**clearDoublings,even=focus.map(x=>clamp(Math.round(x/finest/
-cells),-limit,limit)*cells),odd=even.map(x=>x/Math.SQRT2),whole=odd.map(x=>Math.floor(x/cells)*cells);return{u_noiseOrigin:even.
-map((x,k)=>x*finest-view.anchor[k]),u_noiseOriginEven:even,u_noiseOriginOdd:whole,u_noiseRestOdd:odd.map((x,k)=>x-whole[k])}}
-function paperUniforms(paper,s,noiseShape,density){let tiles=s.noise==="image"?s.tiles:1,[rows,columns]=noiseShape;return{
-u_noiseSize:paper.size.map(n=>n*density),u_noiseGrain:paper.grain,u_noiseDeviation:paper.deviations,u_noiseCorrected:paper.
-corrected,u_pictureSize:[columns*density*tiles,rows*density*tiles],u_pictureRound:[Number(paper.repeat[1]),Number(paper.
-repeat[0])],u_pictureGrey:noiseShape.length===2,u_tiles:tiles}}function momentOf(times,time){if(times.length<2)return[0,
-0,0];let step=0;for(;step<times.length-2&&times[step+1]<=time;)step+=1;let late=(time-times[step])/(times[step+1]-times[step]);
-return[step,step+1,clamp(late,0,1)]}var SERIES_STEP_S=.5,SERIES_LEAST_S=6,SERIES_MOST_S=60,LONGEST_GAP_S=.5,Player=class{time=0;clock=0;playing=!1;times=[0];lastFrame=0;hasHeader=!1;setHeader(header){
+coarse=Math.floor(turns/constants.clockStep)*constants.clockStep;return{u_clock:[coarse,turns-coarse],u_travel:travel*(inPixels?
+view.density:1),u_travelInPixels:inPixels,u_travelBySpeed:varies||s.motion==="speed",u_wave:constants.wavePixels*view.density}}
+function noiseOrigin(header,view,finest){let{noiseDoublings,clearDoublings}=header.constants,{frame,center}=header.geometry,
+focus=toFrame(frame,subtract2(view.focus,center)),limit=2**(noiseDoublings-clearDoublings)-1,cells=2**clearDoublings,even=focus.
+map(x=>clamp(Math.round(x/finest/cells),-limit,limit)*cells),odd=even.map(x=>x/Math.SQRT2),whole=odd.map(x=>Math.floor(x/
+cells)*cells);return{u_noiseOrigin:even.map((x,k)=>x*finest-view.anchor[k]),u_noiseOriginEven:even,u_noiseOriginOdd:whole,
+u_noiseRestOdd:odd.map((x,k)=>x-whole[k])}}function paperUniforms(paper,s,noiseShape,density){let tiles=s.noise==="image"?
+s.tiles:1,[rows,columns]=noiseShape;return{u_noiseSize:paper.size.map(n=>n*density),u_noiseGrain:paper.grain,u_noiseDeviation:paper.
+deviations,u_noiseCorrected:paper.corrected,u_pictureSize:[columns*density*tiles,rows*density*tiles],u_pictureRound:[Number(
+paper.repeat[1]),Number(paper.repeat[0])],u_pictureGrey:noiseShape.length===2,u_tiles:tiles}}function momentOf(times,time){
+if(times.length<2)return[0,0,0];let step=0;for(;step<times.length-2&&times[step+1]<=time;)step+=1;let late=(time-times[step])/
+(times[step+1]-times[step]);return[step,step+1,clamp(late,0,1)]}var SERIES_STEP_S=.5,SERIES_LEAST_S=6,SERIES_MOST_S=60,LONGEST_GAP_S=.5,Player=class{time=0;clock=0;playing=!1;times=[0];lastFrame=0;hasHeader=!1;setHeader(header){
 let{times}=header.slices;(!(times.length===this.times.length&&times.every((t,n)=>t===this.times[n]))||!this.hasHeader)&&
 (this.time=header.time,this.clock=header.clock),this.hasHeader=!0,this.times=times}get varies(){return this.times.length>
 1}get span(){return[this.times[0],this.times[this.times.length-1]]}get moment(){return momentOf(this.times,this.time)}timeOf([
@@ -586,15 +587,15 @@ canvas.height<height&&(canvas.height=height);let bottom=height-top-rows;smooth?g
 gl.FRAMEBUFFER,null),gl.viewport(0,smooth?-bottom:0,width,height),gl.enable(gl.SCISSOR_TEST),gl.scissor(0,smooth?0:bottom,
 width,rows),gl.enable(gl.DEPTH_TEST),gl.depthFunc(gl.LESS),gl.disable(gl.BLEND),gl.disable(gl.CULL_FACE);let[r,g,b]=scene.
 header.background;gl.clearColor(r,g,b,1),gl.clear(gl.COLOR_BUFFER_BIT|gl.DEPTH_BUFFER_BIT);let draft=samples!==viewer.settings.
-samples||height!==this.canvas.height;graphics.programs.use(program,this.values(scene,camera,view,samples,draft)),scene.draw(
-shown[0],shown[1],view.anchor,!0),smooth&&graphics.copySmooth(width,rows),gl.readPixels(0,0,1,1,gl.RGBA,gl.UNSIGNED_BYTE,
-new Uint8Array(4))}values({header,parts},camera,view,samples,draft){let{settings}=this.viewer,noise=parts.get("noise")?.
-shape??null;return{...uniforms(header,{...settings,samples},view,noise),...draft?draftUniforms(settings,samples,view.density):
-{},u_matrix:projection(header.geometry,camera,view.anchor),u_mapped:header.scalars.name!==null,u_colour:header.colour,u_lit:header.
-lighting,u_ground:header.background,u_opacity:header.opacity,u_toEye:toFrame(header.geometry.frame,scale2(camera.axes[2],
--1))}}copy(pen,region,height,to){if(!pen)return;let{width:w,height:h,top,rows}=region,{width}=this.canvas,{canvas}=this.
-graphics;pen.imageSmoothingEnabled=w!==width||h!==height,pen.drawImage(canvas,0,canvas.height-h+top,w,rows,0,to,width,rows*
-height/h)}};function fromHalf(bits){let exponent=bits>>10&31,part=bits&1023,size;return exponent===0?size=part*2**-24:exponent===31?
+samples||height!==this.canvas.height;graphics.programs.use(program,this.values(scene,camera,view,samples,draft)),scene.look(
+camera.sight(this.canvas.height)),scene.draw(shown[0],shown[1],view.anchor,!0),smooth&&graphics.copySmooth(width,rows),gl.
+readPixels(0,0,1,1,gl.RGBA,gl.UNSIGNED_BYTE,new Uint8Array(4))}values({header,parts},camera,view,samples,draft){let{settings}=this.
+viewer,noise=parts.get("noise")?.shape??null;return{...uniforms(header,{...settings,samples},view,noise),...draft?draftUniforms(
+settings,samples,view.density):{},u_matrix:projection(header.geometry,camera,view.anchor),u_mapped:header.scalars.name!==
+null,u_colour:header.colour,u_lit:header.lighting,u_ground:header.background,u_opacity:header.opacity,u_toEye:toFrame(header.
+geometry.frame,scale2(camera.axes[2],-1))}}copy(pen,region,height,to){if(!pen)return;let{width:w,height:h,top,rows}=region,
+{width}=this.canvas,{canvas}=this.graphics;pen.imageSmoothingEnabled=w!==width||h!==height,pen.drawImage(canvas,0,canvas.
+height-h+top,w,rows,0,to,width,rows*height/h)}};function fromHalf(bits){let exponent=bits>>10&31,part=bits&1023,size;return exponent===0?size=part*2**-24:exponent===31?
 size=part?NaN:1/0:size=(1024+part)*2**(exponent-25),bits&32768?-size:size}function toHalf(x){let sign=x<0?32768:0,size=Math.
 abs(x);if(!(size<65520))return sign|(size>=65520?31744:32256);let exponent=Math.max(Math.floor(Math.log2(size||1e-30)),-14),
 part=Math.round(size/2**(exponent-10));return sign|(part<1024?part:(exponent+14)*1024+part)}function halved(texels,width,height,channels){
@@ -602,12 +603,33 @@ let[w,h]=[Math.max(width>>1,1),Math.max(height>>1,1)],result2=new Uint16Array(w*
 .5)*(many/few)-.5,base=Math.floor(x);return[base,Math.min(base+1,many-1),x-base]};for(let j=0,n=0;j<h;j+=1){let[low,high,
 v2]=between(j,h,height);for(let i=0;i<w;i+=1){let[left,right,u]=between(i,w,width);for(let c=0;c<channels;c+=1){let at=(y,x)=>fromHalf(
 texels[(y*width+x)*channels+c]),below=at(low,left)*(1-u)+at(low,right)*u,above=at(high,left)*(1-u)+at(high,right)*u;result2[n++]=
-toHalf(below*(1-v2)+above*v2)}}}return[result2,w,h]}var USERS={position:["position","coordinate"],normal:["normal"],cells:["index"],cmap:["cmap"],noise:["noise"],step:["ste\
-p"],scalars:["scalar"]},Scene=class{graphics;header;parts;anchor=[0,0,0];resources=new Map;scalarSteps="";constructor(graphics,header,parts){
+toHalf(below*(1-v2)+above*v2)}}}return[result2,w,h]}var PLACE=5;function tilesOf(nodes,size){let count=Math.max(Math.ceil((nodes-1)/size),1);return Array.from({length:count},
+(_,n)=>({first:n*size,cells:Math.min(nodes-1-n*size,size)}))}var MeshLevels=class{mesh;limits;rows;columns;constructor(mesh,limits){
+this.mesh=mesh,this.limits=limits,this.rows=tilesOf(mesh.shape[0],limits.tileCells),this.columns=tilesOf(mesh.shape[1],limits.
+tileCells)}levels({eye,halfHeight,pixels}){let{limits}=this,{tiles}=this.mesh,count=this.rows.length*this.columns.length,
+size=tiles.length/count,last=(size-PLACE)/2-1;return Uint8Array.from({length:count},(_,tile)=>{let record=tiles.subarray(
+size*tile,size*(tile+1)),[x,y,z,radius,cell]=record.subarray(size-PLACE),near=limits.leastDistance*radius,away=eye?Math.
+max(length2(subtract2(eye,[x,y,z]))-radius,near):1,scale3=.5*pixels/(halfHeight*Math.max(away,Number.MIN_VALUE)),level=0;
+for(;level<last;level+=1){let error=record[level+1],colourError=record[last+2+level],side=cell*scale3*2**(level+1);if(!(error*
+scale3<=limits.maxErrorPixels&&colourError<=limits.maxColourError||Number.isFinite(error)&&side<=1)||side>limits.maxSideHeights*
+pixels)break}return level})}triangles(levels){let index=[];return this.rows.forEach((_,j)=>this.columns.forEach((__,i)=>this.
+add(index,levels,j,i))),Uint32Array.from(index)}add(index,levels,j,i){let{rows,columns,limits}=this,{shape,cells}=this.mesh,
+step=1<<levels[j*columns.length+i],count=limits.tileCells/step+1,[row,column]=[rows[j],columns[i]],along=length3=>Array.
+from({length:count},(_,n)=>Math.min(n*step,length3)),[y,x]=[along(row.cells),along(column.cells)],border=(dj,di)=>1<<this.
+coarser(levels,j,i,dj,di),snapped=(place,length3,coarse)=>place===length3?place:Math.floor(place/coarse)*coarse,[below,above,
+left,right]=[border(-1,0),border(1,0),border(0,-1),border(0,1)],node=(b,a)=>{let[inX,inY]=[a>0&&a<count-1,b>0&&b<count-1],
+px=inY?x[a]:snapped(x[a],column.cells,b===0?below:above),py=inX?y[b]:snapped(y[b],row.cells,a===0?left:right);return(row.
+first+py)*shape[1]+column.first+px};for(let b=0;b<count-1;b+=1){let cellRow=Math.min(row.first+y[b],shape[0]-2)*(shape[1]-
+1);for(let a=0;a<count-1;a+=1){if(cells&&!cells[cellRow+Math.min(column.first+x[a],shape[1]-2)])continue;let[p,q,r,s]=[node(
+b,a),node(b,a+1),node(b+1,a+1),node(b+1,a)];p!==q&&q!==r&&p!==r&&index.push(p,q,r),p!==r&&r!==s&&p!==s&&index.push(p,r,s)}}}coarser(levels,j,i,dj,di){
+let{rows,columns}=this,{periodic}=this.mesh,own=levels[j*columns.length+i],[row,column]=[j+dj,i+di];return periodic[0]&&
+(row=(row+rows.length)%rows.length),periodic[1]&&(column=(column+columns.length)%columns.length),row<0||row>=rows.length||
+column<0||column>=columns.length?own:Math.max(own,levels[row*columns.length+column])}};var USERS={position:["position","coordinate"],normal:["normal"],cells:["index"],mesh:["index"],cmap:["cmap"],noise:["noi\
+se"],step:["step"],scalars:["scalar"]},Scene=class{graphics;header;parts;anchor=[0,0,0];resources=new Map;scalarSteps="";levels=new Uint8Array;constructor(graphics,header,parts){
 this.graphics=graphics,this.header=header,this.parts=parts}missing(before,after){let{geometry,slices,scalars,paper}=this.
-header,names=["position",...geometry.planar?[]:["normal"]];for(let step of new Set([before,after]))names.push(`slices/${step}`),
-slices.channels===2&&names.push(`extra/${step}`);return names.push(...this.scalarParts(before,after)),scalars.name!==null&&
-names.push("cmap"),paper&&names.push("noise","step"),[...new Set(names)].filter(name=>!this.fits(name))}scalarParts(before,after){
+header,names=["position","mesh",...geometry.planar?[]:["normal"]];for(let step of new Set([before,after]))names.push(`sl\
+ices/${step}`),slices.channels===2&&names.push(`extra/${step}`);return names.push(...this.scalarParts(before,after)),scalars.
+name!==null&&names.push("cmap"),paper&&names.push("noise","step"),[...new Set(names)].filter(name=>!this.fits(name))}scalarParts(before,after){
 let{name,steps}=this.header.scalars;return name===null?[]:(steps>1?[before,after]:[0,0]).map(step=>`scalars/${step}`)}fits(name){
 let part=this.parts.get(name);if(!part)return!1;let{geometry,slices,paper}=this.header,shape={slices:[slices.count,geometry.
 rows.size,geometry.columns.size,slices.channels],position:[...geometry.shape,3],step:paper?[paper.size[1],paper.size[0]]:
@@ -623,13 +645,16 @@ get(whole):void 0,object=shared?.object??graphics.counted(make()),resource=share
 return resource.users+=1,this.resources.set(name,resource),shared||(resource.count=fill(object)||0),whole&&graphics.common.
 set(whole,resource),object}buffer(name,key,data,elements=!1){let gl=this.graphics.context,fill=buffer=>{let target=elements?
 gl.ELEMENT_ARRAY_BUFFER:gl.ARRAY_BUFFER,numbers=data();return gl.bindVertexArray(null),gl.bindBuffer(target,buffer),gl.bufferData(
-target,numbers,gl.STATIC_DRAW),numbers.length};return this.take(name,"Buffer",key,()=>gl.createBuffer(),fill)}bindNodes(before,after,anchor){
-let gl=this.graphics.context,steps=String(this.scalarParts(before,after)),stale=steps!==this.scalarSteps?["scalar","arra\
-y"]:[];anchor.some((x,k)=>x!==this.anchor[k])&&stale.push("position","array");for(let name of stale)this.drop(name);this.
-scalarSteps=steps,this.anchor=anchor;let fill=array=>this.fillArray(array,before,after),make=()=>gl.createVertexArray();
-gl.bindVertexArray(this.take("array","VertexArray","",make,fill))}fillArray(array,before,after){let gl=this.graphics.context,
-{geometry,scalars,paper}=this.header,{shape,rows,columns}=geometry,cells=()=>triangles(shape,this.parts.get("cells")?.data),
-index=this.buffer("index",this.key(["cells"],shape),cells,!0),nodes=()=>positions(this.part("position").data,this.anchor),
+target,numbers,gl.STATIC_DRAW),numbers.length};return this.take(name,"Buffer",key,()=>gl.createBuffer(),fill)}mesh(){let{
+geometry,mesh}=this.header,{shape,periodic}=geometry,parts={tiles:this.part("mesh").data,cells:this.parts.get("cells")?.
+data};return new MeshLevels({shape,periodic,...parts},mesh)}look(sight){let levels=this.mesh().levels(sight);String(levels)!==
+String(this.levels)&&(this.levels=levels,this.drop("index"),this.drop("array"))}bindNodes(before,after,anchor){let gl=this.
+graphics.context,steps=String(this.scalarParts(before,after)),stale=steps!==this.scalarSteps?["scalar","array"]:[];anchor.
+some((x,k)=>x!==this.anchor[k])&&stale.push("position","array");for(let name of stale)this.drop(name);this.scalarSteps=steps,
+this.anchor=anchor;let fill=array=>this.fillArray(array,before,after),make=()=>gl.createVertexArray();gl.bindVertexArray(
+this.take("array","VertexArray","",make,fill))}fillArray(array,before,after){let gl=this.graphics.context,{geometry,scalars,
+paper}=this.header,{shape,rows,columns}=geometry,cells=()=>this.mesh().triangles(this.levels),index=this.buffer("index",
+this.key(["cells","mesh"],shape,[...this.levels]),cells,!0),nodes=()=>positions(this.part("position").data,this.anchor),
 normal=geometry.planar?null:this.part("normal").data,painted=this.scalarParts(before,after),values=()=>{let steps=painted.
 map(name=>this.part(name).data);return shares(steps,scalars.low,scalars.high,shape[0]*shape[1])},colour=this.key([...new Set(
 painted)],shape,scalars.low,scalars.high),grid2=JSON.stringify([shape,rows,columns]),type=gl.FLOAT;normal instanceof Int8Array&&
@@ -720,32 +745,33 @@ sharp=sharp,this.root.dataset.sharp=String(sharp),sharp&&this.options.onFrame?.(
 isVisible&&this.graphics.request(this)}resize(){let ratio=Math.max(window.devicePixelRatio||1,.1),width=Math.max(Math.round(
 this.root.clientWidth*ratio),1),height=Math.max(Math.round(this.root.clientHeight*ratio),1);width===this.canvas.width&&height===
 this.canvas.height||(this.renderer.resize(width,height),this.camera&&(this.camera.aspect=this.aspect,isEqual(this.camera.
-state,this.camera.start)&&this.place()),this.change())}get smooth(){let{header}=this;if(this.options.smooth!==void 0||!header)
-return this.options.smooth??!1;let{vertex,fragment}=header.shaders;return this.graphics.programs.get(vertex,fragment).price<
-CARD_PRICE_MS}get ratio(){return this.canvas.height/Math.max(this.root.clientHeight,1)}lost(){this.scene=this.header&&new Scene(
-this.graphics,this.header,this.parts),this.setSharp(!1)}get lacking(){let[before,after]=this.player.moment;return this.scene?.
-missing(before,after)??[]}available(){let{header,scene,player,shown}=this;if(!header||!scene)return null;let moment=player.
-moment,count=header.slices.steps,ahead=player.playing?[1,2].map(n=>(moment[1]+n)%count):[];this.ask([moment[0],moment[1],
-...ahead]);let{lacking}=this;return this.panel.wait(lacking),lacking.length?shown&&!scene.missing(shown[0],shown[1]).length?
-shown:null:this.shown=moment}ask(steps){let now=performance.now(),lacking=[...new Set(steps)].filter(step=>this.scene?.missing(
-step,step).length);for(let step of lacking)!this.options.onNeed||now-(this.requests.get(step)??-1/0)<LOST_MS||(this.requests.
-set(step,now),this.options.onNeed(step));return!lacking.length}frame(now,until){if(!(this.lifetime.isOver||this.graphics.
-isLost||!this.graphics.gl||!this.isVisible)&&!(!this.header||!this.scene||this.canvas.width<2))try{this.advance(now),this.
-drawPicture(this.header,until)}catch(error){this.pause(),this.panel.fail("The picture could not be drawn.",String(error))}}drawPicture(header,until){
-let shown=this.available();if(this.camera||this.place(),!shown||!this.camera)return;let{programs}=this.graphics,{vertex,
-fragment,pick}=header.shaders,program=programs.get(vertex,fragment);if(program.error){this.panel.fail("The shader does n\
-ot compile with this graphics driver.",program.error);return}if(!program.ready)return this.request();!this.sharp&&this.renderer.
-draw(program,shown,this.isBusy,until)&&(this.panel.clear(),programs.get(vertex,pick),this.setSharp(!this.playing)),this.
-sharp||this.request()}advance(now){let{player,options}=this;!player.playing||!player.advance(now,steps=>this.ask(steps))||
-(player.varies?options.onTime?.(player.time):options.onClock?.(player.clock),this.panel.tick(),this.renderer.restart(),this.
-setSharp(!1))}view(shown,density){let{header,camera,scene,player}=this;if(!header||!camera)throw new Error("there is not\
-hing to look at yet");let{geometry,constants}=header,focus=camera.state.focal_point,local=toFrame(geometry.frame,subtract2(
-focus,geometry.center)),old=scene?.anchor??[0,0,0],range=constants.anchorRange*2*camera.height,isFar=v2=>v2.some(c=>Math.
-abs(c)>range),anchor=isFar(local)?local:[0,0,0];return{focus,anchor:isFar(subtract2(local,old))?anchor:old,eye:camera.eye,
-between:shown[2],time:player.timeOf(shown),clock:player.clock,density}}get canPick(){let{header,graphics}=this;return!header||
-graphics.isLost||!graphics.gl?!1:graphics.programs.get(header.shaders.vertex,header.shaders.pick).ready}point(x,y){let{scene,
-camera,shown,canvas}=this;if(!scene||!camera||!shown||!this.canPick)return null;let{anchor}=this.view(shown,1);return pickedPoint(
-{scene,camera,moment:shown,anchor,canvas},x,y)}};function viewersIn(element,count,options,own=()=>({})){if(count<2)return[new Viewer(element,{...options,...own(0)})];let pair=dom(
+state,this.camera.start)&&this.place()),this.change())}get smooth(){let{header}=this;return this.options.smooth!==void 0||
+!header?this.options.smooth??!1:this.program(header).price<CARD_PRICE_MS}get ratio(){return this.canvas.height/Math.max(
+this.root.clientHeight,1)}lost(){this.scene=this.header&&new Scene(this.graphics,this.header,this.parts),this.setSharp(!1)}get lacking(){
+let[before,after]=this.player.moment;return this.scene?.missing(before,after)??[]}available(){let{header,scene,player,shown}=this;
+if(!header||!scene)return null;let moment=player.moment,count=header.slices.steps,ahead=player.playing?[1,2].map(n=>(moment[1]+
+n)%count):[];this.ask([moment[0],moment[1],...ahead]);let{lacking}=this;return this.panel.wait(lacking),lacking.length?shown&&
+!scene.missing(shown[0],shown[1]).length?shown:null:this.shown=moment}ask(steps){let now=performance.now(),lacking=[...new Set(
+steps)].filter(step=>this.scene?.missing(step,step).length);for(let step of lacking)!this.options.onNeed||now-(this.requests.
+get(step)??-1/0)<LOST_MS||(this.requests.set(step,now),this.options.onNeed(step));return!lacking.length}frame(now,until){
+if(!(this.lifetime.isOver||this.graphics.isLost||!this.graphics.gl||!this.isVisible)&&!(!this.header||!this.scene||this.
+canvas.width<2))try{this.advance(now),this.drawPicture(this.header,until)}catch(error){this.pause(),this.panel.fail("The\
+ picture could not be drawn.",String(error))}}program(header){let{vertex,fragment}=header.shaders,defines=isMoving(header,
+this.settings)?["FLOWTEX_MOVING"]:[];return this.graphics.programs.get(vertex,fragment,...defines)}drawPicture(header,until){
+let shown=this.available();if(this.camera||this.place(),!shown||!this.camera)return;let{programs}=this.graphics,program=this.
+program(header);if(program.error){this.panel.fail("The shader does not compile with this graphics driver.",program.error);
+return}if(!program.ready)return this.request();!this.sharp&&this.renderer.draw(program,shown,this.isBusy,until)&&(this.panel.
+clear(),programs.get(header.shaders.vertex,header.shaders.pick),this.setSharp(!this.playing)),this.sharp||this.request()}advance(now){
+let{player,options}=this;!player.playing||!player.advance(now,steps=>this.ask(steps))||(player.varies?options.onTime?.(player.
+time):options.onClock?.(player.clock),this.panel.tick(),this.renderer.restart(),this.setSharp(!1))}view(shown,density){let{
+header,camera,scene,player}=this;if(!header||!camera)throw new Error("there is nothing to look at yet");let{geometry,constants}=header,
+focus=camera.state.focal_point,local=toFrame(geometry.frame,subtract2(focus,geometry.center)),old=scene?.anchor??[0,0,0],
+range=constants.anchorRange*2*camera.height,isFar=v2=>v2.some(c=>Math.abs(c)>range),anchor=isFar(local)?local:[0,0,0];return{
+focus,anchor:isFar(subtract2(local,old))?anchor:old,eye:camera.eye,between:shown[2],time:player.timeOf(shown),clock:player.
+clock,density}}get canPick(){let{header,graphics}=this;return!header||graphics.isLost||!graphics.gl?!1:graphics.programs.
+get(header.shaders.vertex,header.shaders.pick).ready}point(x,y){let{scene,camera,shown,canvas}=this;if(!scene||!camera||
+!shown||!this.canPick)return null;let{anchor}=this.view(shown,1);return pickedPoint({scene,camera,moment:shown,anchor,canvas},
+x,y)}};function viewersIn(element,count,options,own=()=>({})){if(count<2)return[new Viewer(element,{...options,...own(0)})];let pair=dom(
 "div",{class:"flowtex-pair"});pair.style.cssText="display: flex; gap: 2px; width: 100%; height: 100%",element.append(pair);
 let viewers=[];for(let n=0;n<count;n+=1){let cell=dom("div");cell.style.cssText="flex: 1 1 0; min-width: 0; height: 100%",
 pair.append(cell);let others=()=>viewers.filter((_,m)=>m!==n),follower=n?{controls:!1,follows:viewers[0]}:{};viewers.push(

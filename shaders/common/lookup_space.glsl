@@ -8,7 +8,11 @@ float flowtexNoiseLevel; // octaves of a factor 2 above the grain that is fixed 
 
 vec2 flowtexLookup(vec3 displacement, float length_)
 {
+#ifdef FLOWTEX_MOVING
   vec2 turns = flowtexMotion.clock + flowtexMotion.turns * length_;
+#else
+  const vec2 turns = vec2(0.0);
+#endif
   return vec2(flowtexOctave(flowtexFine, displacement, turns),
               flowtexOctave(flowtexCoarse, displacement, turns));
 }
@@ -28,9 +32,6 @@ float flowtexBlend(vec2 sums, float near)
 // period, and two neighbours are blended. Where the flow is too slow for one turn it stands.
 void flowtexMove(float slope, float speed)
 {
-  flowtexMotion = FlowtexMotion(vec2(0.0), vec2(0.0), vec2(1.0), 0.0);
-  if (!u_moving)
-    return;
   float travel = u_travel * (u_travelInPixels ? flowtexPixel : 1.0) * (u_travelBySpeed ? speed : 1.0);
   float rate = log2(max(travel / (u_wave * flowtexPixel), FLOWTEX_LEAST_RATE));
   vec2 rates = floor(rate) + vec2(0.0, 1.0);

@@ -49,12 +49,14 @@ vec4 flowtexGrains(uvec4 h, vec2 turns)
   h = (h ^ (h >> FLOWTEX_HASH_SHIFTS.x)) * FLOWTEX_HASH_FACTORS.x;
   h = (h ^ (h >> FLOWTEX_HASH_SHIFTS.y)) * FLOWTEX_HASH_FACTORS.y;
   vec4 phase = vec4(h >> FLOWTEX_PHASE_SHIFT) * (1.0 / FLOWTEX_PHASES);
-  if (!u_moving)
-    return phase * 2.0 - 1.0;
+#ifndef FLOWTEX_MOVING
+  return phase * 2.0 - 1.0;
+#else
   vec4 slow = abs(fract(phase * flowtexMotion.phases.x + turns.x) * 4.0 - 2.0) - 1.0;
   vec4 fast = abs(fract(phase * flowtexMotion.phases.y + turns.y) * 4.0 - 2.0) - 1.0;
   float late = flowtexMotion.late;
   return mix(slow, fast, late) * inversesqrt(1.0 - 2.0 * late * (1.0 - late));
+#endif
 }
 
 // One octave at a displacement, with the variance of 1 everywhere between the lattice points.

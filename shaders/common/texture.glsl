@@ -32,14 +32,15 @@ vec2 flowtexFootprint(float aa, float bb, float determinant)
   return vec2(longest, abs(determinant) / longest);
 }
 
-// Weight at x in -1 ... 1, negative behind the particle.
-float flowtexWeight(float x)
+// Weights along a side of the path are x + y * cos(pi * t) + z * t, with t from 0 at the particle to 1
+// beyond the last sample. Kernels: 0 Hann, 1 box, 2 ramp, which falls behind the particle.
+vec3 flowtexKernel(float side)
 {
   if (u_kernel == FLOWTEX_KERNEL_BOX)
-    return 1.0;
+    return vec3(1.0, 0.0, 0.0);
   if (u_kernel == FLOWTEX_KERNEL_RAMP)
-    return u_sides == 2 ? 0.5 * (1.0 - x) : 1.0 - abs(x);
-  return 0.5 + 0.5 * cos(FLOWTEX_PI * x);
+    return u_sides == 2 ? vec3(0.5, 0.0, -0.5 * side) : vec3(1.0, 0.0, -1.0);
+  return vec3(0.5, 0.5, 0.0);
 }
 
 // Sums along a path: of the weighted noise in both octaves, of the squared weights, and of the
@@ -62,29 +63,52 @@ void flowtexAdd(inout FlowtexSums sums, vec3 displacement, float length_, float 
   sums.neighbours += weight * before;
 }
 
-// Adds one side of the path, ``count`` points ``spacing`` apart in nominal length.
-void flowtexSide(inout FlowtexSums sums, FlowtexPath path, float side, float spacing, float reach,
-                 float scale, int count)
+// Adds one side of the path, ``count`` points ``spacing`` apart in nominal length. ``before`` and
+// ``after`` are the slopes at lag zero and at the first lag, ``first`` the layer before the first slice.
+//
+// The loop over the segments between two lags is outside, so that no sample fetches anything.
+void flowtexSide(inout FlowtexSums sums, vec2 coordinate, float level, vec3 before, vec3 after,
+                 int first, float side, float spacing, float reach, float scale, int count)
 {
   float last = min(reach, u_lags[u_lagCount - 1]);
-  float lag = 0.0;
-  float step_ = spacing / (scale * max(length(path.before), FLOWTEX_LEAST_SPEED));
-  float before = flowtexWeight(0.0);
-  for (int k = 1; k <= count; ++k)
+  float per_speed = scale / spacing;
+  float rate = per_speed * max(length(before), FLOWTEX_LEAST_SPEED); // samples in a unit of lag
+  float lag = 1.0 / rate;
+  float from = 0.0;
+  float to = u_lags[0];
+  vec3 kernel = flowtexKernel(side);
+  float angle = FLOWTEX_PI / float(count + 1);
+  vec2 turn = vec2(cos(angle), sin(angle));
+  vec2 turned = turn; // cosine and sine of pi * t, turned on from sample to sample
+  float previous = kernel.x + kernel.y;
+  int k = 1;
+  for (int segment = 1; k <= count; ++segment)
   {
-    lag += step_;
-    float alive = clamp((last - lag) / step_ + 1.0, 0.0, 1.0);
-    if (alive <= 0.0)
-      break;
-    vec3 displacement = flowtexFollow(path, lag) * (side * scale);
-    float weight = alive * flowtexWeight(side * float(k) / float(count + 1));
-    flowtexAdd(sums, displacement, side * lag * scale, weight, before);
-    before = weight;
+    bool final = segment >= u_lagCount;
+    vec3 bend = (after - before) / (to - from);
+    for (; k <= count && (final || lag <= to); ++k)
+    {
+      float alive = clamp((last - lag) * rate + 1.0, 0.0, 1.0);
+      if (alive <= 0.0)
+        return;
+      vec3 slope = before + bend * (lag - from);
+      float weight = alive * dot(kernel, vec3(1.0, turned.x, float(k) / float(count + 1)));
+      flowtexAdd(sums, slope * (lag * side * scale), side * lag * scale, weight, previous);
+      previous = weight;
+      turned = vec2(turned.x * turn.x - turned.y * turn.y, turned.y * turn.x + turned.x * turn.y);
 #ifndef FLOWTEX_PAPER
-    // Points stay evenly spaced along the path where the particle is faster or slower there
-    // than it is here: equation 3 at every point of the path.
-    step_ = spacing / (scale * max(flowtexSpeed(path, lag), FLOWTEX_LEAST_SPEED));
+      // Points stay evenly spaced along the path where the particle is faster or slower there
+      // than it is here: equation 3 at every point of the path, with the derivative of lag * slope.
+      rate = per_speed * max(length(slope + bend * lag), FLOWTEX_LEAST_SPEED);
 #endif
+      lag += 1.0 / rate;
+    }
+    if (final)
+      return;
+    before = after;
+    after = flowtexLayer(coordinate, first + segment + 1, level).xyz;
+    from = to;
+    to = u_lags[segment];
   }
 }
 
@@ -96,8 +120,11 @@ float flowtexTexture(vec2 coordinate, float sliceLevel, float spacing)
   vec4 back = flowtexLayer(coordinate, 1, sliceLevel);
   FlowtexSums sums = FlowtexSums(vec2(0.0), 0.0, 0.0);
   float speed = length(base.xyz);
-  flowtexMove(speed, u_moving ? flowtexLayer(coordinate, 2, sliceLevel).w : 1.0);
-  flowtexAdd(sums, vec3(0.0), 0.0, max(flowtexWeight(0.0), FLOWTEX_LEAST_WEIGHT), 0.0);
+#ifdef FLOWTEX_MOVING
+  flowtexMove(speed, flowtexLayer(coordinate, 2, sliceLevel).w);
+#endif
+  vec3 kernel = flowtexKernel(-1.0);
+  flowtexAdd(sums, vec3(0.0), 0.0, max(kernel.x + kernel.y, FLOWTEX_LEAST_WEIGHT), 0.0);
   if (speed > FLOWTEX_LEAST_SPEED)
   {
 #ifdef FLOWTEX_PAPER
@@ -107,13 +134,13 @@ float flowtexTexture(vec2 coordinate, float sliceLevel, float spacing)
     float scale = base.w * u_unit;
 #endif
     int count = u_sides == 2 ? u_samples / 2 : u_samples - 1;
-    flowtexSide(sums, flowtexStart(coordinate, sliceLevel, base.xyz, back.xyz, 0), -1.0, spacing,
-                back.w, scale, count);
+    flowtexSide(sums, coordinate, sliceLevel, base.xyz, back.xyz, 0, -1.0, spacing, back.w, scale,
+                count);
     if (u_sides == 2)
     {
       vec4 ahead = flowtexLayer(coordinate, u_lagCount + 1, sliceLevel);
-      flowtexSide(sums, flowtexStart(coordinate, sliceLevel, base.xyz, ahead.xyz, u_lagCount), 1.0,
-                  spacing, ahead.w, scale, count);
+      flowtexSide(sums, coordinate, sliceLevel, base.xyz, ahead.xyz, u_lagCount, 1.0, spacing,
+                  ahead.w, scale, count);
     }
   }
   return flowtexBlend(sums.noise * inversesqrt(sums.squares), sums.neighbours / sums.squares);

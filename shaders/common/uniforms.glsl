@@ -25,7 +25,6 @@ uniform int u_seed;
 uniform bool u_showLevel;   // colour by the level of detail
 uniform bool u_fixed;       // grains no smaller on the surface than u_texel
 
-uniform bool u_moving;         // whether grains change with the clock
 uniform vec2 u_clock;          // clock in base periods: a coarse part and the rest
 uniform float u_travel;        // what the flow goes in a base period: a length, or pixels,
 uniform bool u_travelInPixels;

@@ -17,7 +17,9 @@ from flows import gyre, lines, swinging, torus
 from matrix import ASIDE, IMAGE, WHOLE, straight
 
 from flowtex import FlowField
+from flowtex._util.array_types import Indices
 from flowtex.camera import CAMERA_LIMITS, Camera
+from flowtex.rendering.mesh_levels import MeshLevels, mesh_limits
 from flowtex.rendering.uniforms import ViewState, uniforms
 from flowtex.rendering.webgl import ClientData
 from flowtex.scene import Scene
@@ -75,11 +77,13 @@ def uniforms_of(name: str) -> dict[str, Any]:
     if header["paper"] is not None:
         header["paper"] |= {"alongI": [], "alongJ": []}
     noise = None if textures.paper is None else list(textures.paper.noise.shape)
+    values = uniforms(textures, settings, view)
     return {
         "header": {key: header[key] for key in NEEDED},
         "view": plain(vars(view)),
         "noise": noise,
-        "uniforms": plain(uniforms(textures, settings, view)),
+        "moving": values.pop("moving"),
+        "uniforms": plain(values),
     }
 
 
@@ -166,3 +170,52 @@ def test_cameras_for_the_client() -> None:
 def test_the_client_gets_the_limits_of_the_camera() -> None:
     limits = ClientData(Scene(gyre()).textures).constants()["limits"]
     assert {name: limits[name] for name in vars(CAMERA_LIMITS)} == vars(CAMERA_LIMITS)
+
+
+def checksum(triangles: Indices) -> int:
+    """A number that tells sets of triangles apart."""
+    result = 0
+    for nodes in sorted(sorted(t) for t in triangles.tolist()):
+        for node in nodes:
+            result = (31 * result + node) % 1_000_003
+    return result
+
+
+def bumpy(seed: int) -> dict[str, Any]:
+    """A rough mesh with a hole: its errors, and the levels and triangles of three views."""
+    rng = np.random.default_rng(seed)
+    y, x = np.mgrid[0:131, 0:70].astype(float)
+    points = np.stack([x, y, 3 * np.sin(0.2 * x) * (y > 60)], axis=-1)
+    cells = np.ones((130, 69), dtype=bool)
+    cells[100:104, 30:50] = False
+    mesh = MeshLevels(points, cells, (False, True))
+    mesh.set_colours(0.5 + 0.5 * np.sin(0.05 * y) * rng.uniform(0.9, 1, y.shape) * (x > 64))
+    views = []
+    for eye, half, pixels in (
+        (None, 70.0, 300),
+        (None, 4000.0, 300),
+        (np.array([30.0, -40.0, 60.0]), 0.27, 500),
+    ):
+        levels = mesh.levels(eye, half, pixels)
+        triangles = mesh.triangles(levels)
+        views.append(
+            {
+                "sight": {"eye": plain(eye), "halfHeight": half, "pixels": pixels},
+                "levels": levels.ravel().tolist(),
+                "triangles": len(triangles),
+                "checksum": checksum(triangles),
+            }
+        )
+    return {
+        "shape": [131, 70],
+        "periodic": [False, True],
+        # JSON has no infinity.
+        "tiles": np.minimum(mesh.records, 1e30).ravel().tolist(),
+        "hole": [100, 104, 30, 50],
+        "limits": mesh_limits(),
+        "views": views,
+    }
+
+
+def test_mesh_levels_for_the_client() -> None:
+    check("mesh.json", bumpy(1))

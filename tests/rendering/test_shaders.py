@@ -13,7 +13,7 @@ from flowtex.rendering import shaders
 
 def test_an_include_is_put_in_once() -> None:
     text = shaders.shader_text("vtk/fragment_dec.glsl")
-    assert text.count("struct FlowtexPath") == 1
+    assert text.count("struct FlowtexSums") == 1
     assert "//#include" not in text
 
 
@@ -34,7 +34,7 @@ def test_the_same_input_gives_the_same_text() -> None:
 def test_an_unknown_variant_is_refused() -> None:
     with pytest.raises(
         shaders.GLSLError,
-        match=r"^unknown variant FLOWTEX_PAPRE; there are FLOWTEX_PAPER, FLOWTEX_PICTURE, ",
+        match=r"^unknown variant FLOWTEX_PAPRE; there are FLOWTEX_MOVING, FLOWTEX_PAPER, ",
     ):
         shaders.shader_text("vtk/vertex_dec.glsl", ["FLOWTEX_PAPRE"])
 

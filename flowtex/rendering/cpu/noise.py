@@ -157,7 +157,7 @@ class SpaceNoise(Lookup):
     def move(self, slope: Floats, speed: Floats) -> None:
         """Choose the two rates between which the motion of each fragment lies."""
         values = self._values
-        if not values["u_moving"]:
+        if not values["moving"]:
             return
         travel = values["u_travel"] * np.ones(len(speed))
         travel *= self._pixel if values["u_travelInPixels"] else 1.0

@@ -149,7 +149,7 @@ class Summing:
         values, lookup = self._values, self._lookup
         base = self._slices.layer(coordinate, 0, level)
         speed = np.linalg.norm(base[:, :3], axis=-1)
-        moving = values["u_moving"]
+        moving = values["moving"]
         lookup.move(speed, self._slices.layer(coordinate, 2, level)[:, 3] if moving else speed)
         sums = self._first(len(base))
         for side in self.sides(coordinate, level, base):

@@ -20,13 +20,21 @@ from typing import Any
 
 import numpy as np
 import pyvista as pv
+from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.util.vtkConstants import VTK_OBJECT
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
+from flowtex._util.array_types import Ints
+from flowtex.rendering.mesh_levels import MeshLevels
 from flowtex.rendering.shaders import shader_text
-from flowtex.rendering.uniforms import ANCHOR_RANGE, ViewState, uniforms, variants
+from flowtex.rendering.uniforms import ANCHOR_RANGE, ViewState, is_moving, uniforms, variants
 from flowtex.rendering.vtk.gpu_texture import GPUTexture
-from flowtex.rendering.vtk.mesh import ATTRIBUTES, set_position, vertex_attributes
+from flowtex.rendering.vtk.mesh import (
+    ATTRIBUTES,
+    set_position,
+    set_triangles,
+    vertex_attributes,
+)
 from flowtex.settings import Settings
 from flowtex.textures import LayerPrefetch, TextureSet
 
@@ -72,6 +80,12 @@ class FlowLayer:
         self._steps = (0, 0)
         self._drawn = False
         self._variant: frozenset[str] | None = None
+        surface = textures.geometry.field.surface
+        self._mesh_levels = MeshLevels(
+            surface.points, surface.cells, textures.geometry.field.periodic
+        )
+        self._levels: Ints | None = None
+        self._colours: tuple[Any, ...] | None = None
         self._gpu: dict[str, GPUTexture] = {}
         self._retired: list[GPUTexture] = []
         self.view = ViewState()
@@ -147,7 +161,8 @@ class FlowLayer:
 
     def _write_text(self) -> None:
         unsteady = self._textures.store.steps > 1
-        variant = variants(self._textures, unsteady=unsteady)
+        moving = is_moving(self._textures, self._settings)
+        variant = variants(self._textures, unsteady=unsteady, moving=moving)
         if variant == self._variant:
             return
         self._variant = variant
@@ -197,11 +212,12 @@ class FlowLayer:
         return GPUTexture(layers, levels=self._textures.geometry.levels)
 
     def _before_frame(self, data: Any) -> None:
-        """Take the camera into the mesh's own coordinates, and the anchor to where it looks."""
+        """Choose the shader, and take the camera and the anchor into the mesh's own coordinates."""
         del data
         renderer = self._renderer()
         if renderer is None:
             return
+        self._write_text()
         camera = renderer.GetActiveCamera()
         parallel = bool(camera.GetParallelProjection())
         eye = (
@@ -213,7 +229,9 @@ class FlowLayer:
         focus, self.view.eye = np.linalg.solve(placed, np.transpose(points)).T
         self.view.focus = focus[:3]
         scale = float(np.cbrt(abs(np.linalg.det(placed[:3, :3]))))
-        self._move_anchor(_window_height(camera) / scale)
+        height = _window_height(camera) / scale
+        self._move_anchor(height)
+        self._choose_triangles(camera, height if parallel else None)
 
     def _move_anchor(self, seen: float) -> None:
         """Count positions from near the focus once their digits do not do from elsewhere."""
@@ -224,6 +242,40 @@ class FlowLayer:
         near_middle = np.abs(there).max() <= ANCHOR_RANGE * seen
         self.view.anchor = np.zeros(3) if near_middle else there
         set_position(self._actor.mapper.dataset, geometry.position_from(self.view.anchor))
+
+    def _choose_triangles(self, camera: Any, height: float | None) -> None:
+        """Draw as few triangles as the view needs; ``height`` is what a parallel view sees."""
+        renderer = self._renderer()
+        if renderer is None:
+            return
+        if height is None:
+            eye, half = self.view.eye[:3], float(np.tan(np.radians(camera.GetViewAngle() / 2)))
+        else:
+            eye, half = None, 0.5 * height
+        self._follow_colours()
+        levels = self._mesh_levels.levels(eye, half, renderer.GetSize()[1])
+        if self._actor.prop.show_edges or self._actor.prop.style != "Surface":
+            levels = np.zeros_like(levels)
+        if self._levels is None or not np.array_equal(levels, self._levels):
+            self._levels = levels
+            set_triangles(self._actor.mapper.dataset, self._mesh_levels.triangles(levels))
+
+    def _follow_colours(self) -> None:
+        """Let the triangles keep the colours of the nodes, whoever has changed them."""
+        mapper = self._actor.mapper
+        name = mapper.GetArrayName() if mapper.GetScalarVisibility() else None
+        array = mapper.dataset.GetPointData().GetArray(name) if name else None
+        low, high = mapper.GetScalarRange()
+        state = None if array is None else (name, array.GetMTime(), low, high)
+        if state == self._colours:
+            return
+        self._colours = state
+        if array is None or not high > low:
+            self._mesh_levels.set_colours()
+            return
+        shares = (vtk_to_numpy(array).astype(float) - low) / (high - low)
+        shape = self._textures.geometry.field.shape
+        self._mesh_levels.set_colours(np.clip(shares, 0, 1).reshape(shape))
 
     def _window(self) -> Any:
         renderer = self._renderer()

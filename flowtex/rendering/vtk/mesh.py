@@ -7,9 +7,12 @@ from typing import Any
 import numpy as np
 import pyvista as pv
 from pyvista.plotting.mapper import _BaseDataSetMapper
+from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.util.vtkConstants import VTK_ID_TYPE
+from vtkmodules.vtkCommonDataModel import vtkCellArray
 from vtkmodules.vtkRenderingCore import vtkPolyDataMapper
 
-from flowtex._util.array_types import Floats32
+from flowtex._util.array_types import Floats32, Indices
 from flowtex.textures import TextureSet
 
 __all__ = [
@@ -17,6 +20,7 @@ __all__ = [
     "FlowMapper",
     "set_attributes",
     "set_position",
+    "set_triangles",
     "surface_mesh",
     "use_flow_mapper",
     "vertex_attributes",
@@ -54,6 +58,13 @@ def surface_mesh(textures: TextureSet) -> pv.PolyData:
 def set_position(mesh: pv.PolyData, position: Floats32) -> None:
     """Write the nodes' positions in the surface's frame, (J, I, 3), relative to any anchor."""
     mesh.point_data[POSITION] = position.reshape(-1, 3)
+
+
+def set_triangles(mesh: pv.PolyData, triangles: Indices) -> None:
+    """Draw other triangles, (N, 3), of the mesh's points."""
+    cells = vtkCellArray()
+    cells.SetData(3, numpy_to_vtk(triangles.ravel(), deep=True, array_type=VTK_ID_TYPE))
+    mesh.SetPolys(cells)
 
 
 def set_attributes(mesh: pv.PolyData, textures: TextureSet) -> None:

@@ -15,9 +15,10 @@ from typing import Any
 
 import numpy as np
 
-from flowtex._util.array_types import Bytes, Floats
+from flowtex._util.array_types import Bytes, Floats, Floats32
 from flowtex.camera import CAMERA_LIMITS, Camera
 from flowtex.field.interpolation import steps_around
+from flowtex.rendering.mesh_levels import MeshLevels, mesh_limits
 from flowtex.rendering.shaders import shader_text
 from flowtex.rendering.uniforms import client_constants, variants
 from flowtex.rendering.webgl.packing import Packing, half, packing_of
@@ -132,7 +133,7 @@ class ClientData:
     def constants(self) -> Header:
         """Return what of the header changes only with the textures or the colours."""
         textures, colours = self.textures, self.colours
-        variant = sorted(variants(textures, unsteady=self.steps > 1))
+        variant = sorted(variants(textures, unsteady=self.steps > 1, moving=False))
         return {
             "format": FORMAT,
             "name": textures.geometry.field.name,
@@ -154,6 +155,7 @@ class ClientData:
             "opacity": float(colours.opacity),
             "paper": None if textures.paper is None else _paper(textures.paper),
             "constants": client_constants(),
+            "mesh": mesh_limits(),
             "limits": {**asdict(CAMERA_LIMITS), "aspect": FIRST_ASPECT},
             "table": _table(),
         }
@@ -168,6 +170,7 @@ class ClientData:
             parts["cells"] = geometry.field.surface.cells.astype(np.uint8)
         if not geometry.planar:
             parts["normal"] = np.rint(geometry.normal * NORMAL_MAX).astype("<i2")
+        parts["mesh"] = self._mesh()
         parts["position"] = np.ascontiguousarray(geometry.position, "<f4")
         if self.textures.paper is not None:
             parts["step"] = half(self.textures.paper.step)
@@ -222,6 +225,15 @@ class ClientData:
             return values
         return values[list(self.chosen)]
 
+    def _mesh(self) -> Floats32:
+        """Return what the client chooses its triangles by, of each tile."""
+        field = self.textures.geometry.field
+        levels = MeshLevels(field.surface.points, field.surface.cells, field.periodic)
+        low, high = self.colours.low, self.colours.high
+        if self._values is not None and high > low:
+            levels.set_colours(*(np.clip((v - low) / (high - low), 0, 1) for v in self._values))
+        return levels.records.astype("<f4")
+
     def _geometry(self) -> dict[str, Any]:
         geometry = self.textures.geometry
         return {
@@ -229,6 +241,7 @@ class ClientData:
             "rows": {"before": int(geometry.rows.before), "size": int(geometry.rows.size)},
             "columns": {"before": int(geometry.columns.before), "size": int(geometry.columns.size)},
             "levels": int(geometry.levels),
+            "periodic": [bool(p) for p in geometry.field.periodic],
             "planar": geometry.planar,
             "extent": float(geometry.extent),
             "center": _numbers(geometry.center),

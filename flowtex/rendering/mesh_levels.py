@@ -1,0 +1,307 @@
+"""Triangles of a structured surface, as many as a view needs.
+
+A surface is cut into tiles of :data:`TILE_CELLS` cells a side. Each tile is drawn with every node,
+every second, every fourth, ..., up to one cell a tile: with as few as keep the error on the screen
+below :data:`MAX_ERROR_PIXELS`. Triangles smaller than a few pixels are shaded several times over,
+so the cost of a frame follows its pixels only without them.
+
+Along the border of two tiles, the finer one moves its extra nodes to those of the coarser one, so
+that no crack opens. Where a coarse cell would cover blanked cells and others, its tile stays finer.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flowtex._util.array_types import Bools, Floats, Indices, Ints
+
+__all__ = ["MAX_ERROR_PIXELS", "MeshLevels", "mesh_limits"]
+
+#: Cells along a side of a tile, a power of two.
+TILE_CELLS = 64
+#: Distance on the screen between a node and the triangle that stands for it.
+MAX_ERROR_PIXELS = 0.05
+#: Error of a colour, as a share of the range of the colour map.
+MAX_COLOUR_ERROR = 1 / 256
+#: Longest side of a triangle, in heights of the view: single precision interpolates across it.
+MAX_SIDE_HEIGHTS = 2.0
+#: Nearest that a tile is taken to be, as a share of its radius, when the eye is inside of it.
+LEAST_DISTANCE = 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class _Tiles:
+    """Along one axis: the first node of each tile, and the number of its cells."""
+
+    first: Ints
+    cells: Ints
+
+    @classmethod
+    def of(cls, nodes: int) -> _Tiles:
+        first = np.arange(0, max(nodes - 1, 1), TILE_CELLS, dtype=np.int64)
+        return cls(first, np.minimum(nodes - 1 - first, TILE_CELLS))
+
+
+class MeshLevels:
+    """The levels of a surface's mesh, and the triangles that a view needs.
+
+    Parameters
+    ----------
+    points
+        Nodes of the surface, (J, I, 3).
+    cells
+        Cells that are drawn, (J - 1, I - 1).
+    periodic
+        Whether the first line of nodes lies where the last one does, along j and i.
+
+    Attributes
+    ----------
+    error
+        Greatest distance of a node from the triangles of each level, (L, tile rows, tile columns).
+    colour_error
+        The same of the colours, as shares of the range of the colour map.
+    tiles
+        Centre, radius, and longest side of a cell of each tile, (tile rows, tile columns, 5).
+    """
+
+    def __init__(
+        self, points: Floats, cells: Bools, periodic: tuple[bool, bool] = (False, False)
+    ) -> None:
+        rows, columns = points.shape[:2]
+        self._shape = (rows, columns)
+        self._cells, self._periodic = cells, periodic
+        self._rows, self._columns = (_Tiles.of(n) for n in self._shape)
+        points = np.where(np.isfinite(points), points, 0.0)
+        self.error = self._errors(points)
+        self.error[self._mixed_levels()] = np.inf
+        self.set_colours()
+        self.tiles = self._sizes(points)
+
+    def set_colours(self, *colours: Floats) -> None:
+        """Count the errors of values that are interpolated between the nodes as well.
+
+        Parameters
+        ----------
+        *colours
+            Shares of the range of the colour map, (J, I), of all times that are shown; none where
+            the surface has one colour.
+        """
+        self.colour_error = np.zeros_like(self.error)
+        for values in colours:
+            errors = self._errors(np.nan_to_num(values)[..., None])
+            self.colour_error = np.maximum(self.colour_error, errors)
+
+    @property
+    def records(self) -> Floats:
+        """What levels are chosen by, for a client: errors, colour errors and place of each tile."""
+        errors = np.moveaxis(np.concatenate([self.error, self.colour_error]), 0, -1)
+        return np.concatenate([errors, self.tiles], axis=-1)
+
+    def levels(self, eye: Floats | None, half_height: float, pixels: int) -> Ints:
+        """Return the level of each tile, (tile rows, tile columns): 0 has every node.
+
+        Parameters
+        ----------
+        eye
+            Where the camera is, (3,), in the coordinates of the points; ``None`` where all rays
+            are parallel.
+        half_height
+            Half the height of what is seen: a length where all rays are parallel, else for a
+            distance of one.
+        pixels
+            Height of the picture in pixels.
+        """
+        radius, cell_size = self.tiles[..., 3], self.tiles[..., 4]
+        distance = np.ones(radius.shape)
+        if eye is not None:
+            distance = np.linalg.norm(self.tiles[..., :3] - eye, axis=-1) - radius
+            distance = np.maximum(distance, LEAST_DISTANCE * radius)
+        scale = 0.5 * pixels / (half_height * np.maximum(distance, np.finfo(float).tiny))
+        side = cell_size * scale * 2.0 ** np.arange(len(self.error))[:, None, None]
+        exact = (self.error * scale <= MAX_ERROR_PIXELS) & (self.colour_error <= MAX_COLOUR_ERROR)
+        # What lies within a pixel may be left out, however rough it is.
+        fits = exact | (np.isfinite(self.error) & (side <= 1.0))
+        fits &= side <= MAX_SIDE_HEIGHTS * pixels
+        fits[0] = True
+        levels: Ints = np.argmin(fits, axis=0) - 1 + len(fits) * fits.all(axis=0)
+        return levels
+
+    def triangles(self, levels: Ints) -> Indices:
+        """Return the nodes of the triangles, (N, 3), numbered row by row.
+
+        Parameters
+        ----------
+        levels
+            Of each tile, as :meth:`levels` gives them.
+        """
+        border = _border_levels(levels, self._periodic)
+        parts = [
+            self._triangles_of(np.nonzero(levels == level), int(level), border)
+            for level in np.unique(levels)
+        ]
+        return np.concatenate(parts)
+
+    def _triangles_of(self, tiles: tuple[Indices, ...], level: int, border: Ints) -> Indices:
+        """Triangles of the tiles of one level."""
+        step, (j, i) = 1 << level, tiles
+        places = np.arange(TILE_CELLS // step + 1) * step
+        rows = np.minimum(places, self._rows.cells[j][:, None])
+        columns = np.minimum(places, self._columns.cells[i][:, None])
+        row, column = (
+            np.broadcast_to(a, (len(j), len(places), len(places))).copy()
+            for a in (rows[:, :, None], columns[:, None, :])
+        )
+        below, above, left, right = (border[side][tiles] for side in range(4))
+        column[:, 0] = _snapped(columns, below)
+        column[:, -1] = _snapped(columns, above)
+        row[:, :, 0] = _snapped(rows, left)
+        row[:, :, -1] = _snapped(rows, right)
+        first_row, first_column = self._rows.first[j], self._columns.first[i]
+        width = self._shape[1]
+        node = (row + first_row[:, None, None]) * width + column + first_column[:, None, None]
+        drawn = self._cells[
+            np.minimum(rows[:, :-1, None] + first_row[:, None, None], self._shape[0] - 2),
+            np.minimum(columns[:, None, :-1] + first_column[:, None, None], width - 2),
+        ]
+        corners = (node[:, :-1, :-1], node[:, :-1, 1:], node[:, 1:, 1:], node[:, 1:, :-1])
+        a, b, c, d = (corner[drawn] for corner in corners)
+        both = np.stack([np.stack([a, b, c], axis=-1), np.stack([a, c, d], axis=-1)], axis=1)
+        flat = both.reshape(-1, 3)
+        distinct = (flat[:, 0] != flat[:, 1]) & (flat[:, 1] != flat[:, 2])
+        triangles: Indices = flat[distinct & (flat[:, 0] != flat[:, 2])]
+        return triangles
+
+    def _errors(self, values: Floats) -> Floats:
+        """Greatest error of the values (J, I, C) in each tile at each level, (L, ., .).
+
+        A level leaves out every second line of the one before. Its error is at most that one's
+        and what the lines that are left out deviate from their neighbours.
+        """
+        count = TILE_CELLS.bit_length()
+        errors = np.zeros((count, len(self._rows.first), len(self._columns.first)))
+        rows, columns = (np.arange(n) for n in self._shape)
+        for level in range(1, count):
+            step = 1 << level
+            next_rows, next_columns = (_lines(n, step) for n in self._shape)
+            along_rows = self._deviation(values[np.ix_(rows, columns)], rows, next_rows)
+            kept = values[np.ix_(next_rows, columns)]
+            along_columns = self._deviation(kept.swapaxes(0, 1), columns, next_columns).T
+            twist = kept[:, np.searchsorted(columns, next_columns)]
+            twist = twist[1:, 1:] + twist[:-1, :-1] - twist[1:, :-1] - twist[:-1, 1:]
+            errors[level] = errors[level - 1]
+            errors[level] += self._greatest(along_rows, rows, columns)
+            errors[level] += self._greatest(along_columns, next_rows, columns)
+            size = np.linalg.norm(twist, axis=-1) / 4
+            errors[level] += self._greatest(size, next_rows[:-1], next_columns[:-1])
+            rows, columns = next_rows, next_columns
+        return errors
+
+    @staticmethod
+    def _deviation(values: Floats, lines: Indices, kept: Indices) -> Floats:
+        """Distance of each line of values from those that are kept beside it, by axis 0."""
+        after = np.clip(np.searchsorted(kept, lines), 1, max(len(kept) - 1, 1))
+        if len(kept) == 1:
+            return np.zeros(values.shape[:2])
+        low, high = kept[after - 1], kept[after]
+        share = ((lines - low) / (high - low))[:, None, None]
+        at = np.searchsorted(lines, low), np.searchsorted(lines, high)
+        between = values[at[0]] * (1 - share) + values[at[1]] * share
+        return np.asarray(np.linalg.norm(values - between, axis=-1))
+
+    def _greatest(self, values: Floats, rows: Indices, columns: Indices) -> Floats:
+        """Greatest value in each tile, of values on lines of nodes; a border counts for both."""
+        if not values.size:
+            return np.zeros((len(self._rows.first), len(self._columns.first)))
+        for axis, (lines, tiles) in enumerate(((rows, self._rows), (columns, self._columns))):
+            first = np.minimum(np.searchsorted(lines, tiles.first), len(lines) - 1)
+            inner = np.maximum.reduceat(values, first, axis=axis)
+            last = np.minimum(np.searchsorted(lines, tiles.first + tiles.cells), len(lines) - 1)
+            values = np.maximum(inner, np.take(values, last, axis=axis))
+        return values
+
+    def _mixed_levels(self) -> Bools:
+        """Levels at which a cell of a tile would cover blanked cells and others."""
+        shape = (TILE_CELLS.bit_length(), len(self._rows.first), len(self._columns.first))
+        mixed = np.zeros(shape, dtype=bool)
+        if self._cells.all() or not self._cells.size:
+            return mixed
+        for level in range(1, len(mixed)):
+            rows, columns = (np.arange(0, n - 1, 1 << level) for n in self._shape)
+            drawn = np.add.reduceat(np.add.reduceat(self._cells.astype(int), rows, 0), columns, 1)
+            whole = np.outer(
+                np.diff([*rows, self._shape[0] - 1]), np.diff([*columns, self._shape[1] - 1])
+            )
+            some = ((drawn > 0) & (drawn < whole)).astype(float)
+            first = (
+                np.searchsorted(rows, self._rows.first),
+                np.searchsorted(columns, self._columns.first),
+            )
+            reduced = np.maximum.reduceat(np.maximum.reduceat(some, first[0], 0), first[1], 1)
+            mixed[level] = mixed[level - 1] | (reduced > 0)
+        return mixed
+
+    def _sizes(self, points: Floats) -> Floats:
+        """Centre and radius of each tile, and the longest side of its cells."""
+        rows, columns = self._rows, self._columns
+        corners = np.stack(
+            [
+                points[np.ix_(r, c)]
+                for r in (rows.first, rows.first + rows.cells)
+                for c in (columns.first, columns.first + columns.cells)
+            ]
+        )
+        center = corners.mean(axis=0)
+        lines = (np.arange(self._shape[0]), np.arange(self._shape[1]))
+        side = np.zeros(self._shape)
+        side[:-1] = np.linalg.norm(np.diff(points, axis=0), axis=-1)
+        across = np.linalg.norm(np.diff(points, axis=1), axis=-1)
+        side[:, :-1] = np.maximum(side[:, :-1], across)
+        size = self._greatest(side, *lines)
+        tile_of = (
+            np.repeat(np.arange(len(rows.first)), np.append(rows.cells[:-1], rows.cells[-1] + 1)),
+            np.repeat(
+                np.arange(len(columns.first)), np.append(columns.cells[:-1], columns.cells[-1] + 1)
+            ),
+        )
+        away = np.linalg.norm(points - center[np.ix_(*tile_of)], axis=-1)
+        radius = self._greatest(away, *lines) + size
+        return np.concatenate([center, radius[..., None], size[..., None]], axis=-1)
+
+
+def mesh_limits() -> dict[str, float]:
+    """Numbers by which a client chooses the levels itself, for JSON."""
+    return {
+        "tileCells": TILE_CELLS,
+        "maxErrorPixels": MAX_ERROR_PIXELS,
+        "maxColourError": MAX_COLOUR_ERROR,
+        "maxSideHeights": MAX_SIDE_HEIGHTS,
+        "leastDistance": LEAST_DISTANCE,
+    }
+
+
+def _lines(nodes: int, step: int) -> Indices:
+    """Every so many lines of nodes in each tile, and the last one."""
+    lines = np.arange(0, nodes, step)
+    return lines if lines[-1] == nodes - 1 else np.append(lines, nodes - 1)
+
+
+def _border_levels(levels: Ints, periodic: tuple[bool, bool]) -> Ints:
+    """Levels of the borders below, above, left and right of each tile: the coarser of both."""
+    border = np.stack([levels] * 4)
+    border[0, 1:] = np.maximum(levels[1:], levels[:-1])
+    border[1, :-1] = border[0, 1:]
+    border[2, :, 1:] = np.maximum(levels[:, 1:], levels[:, :-1])
+    border[3, :, :-1] = border[2, :, 1:]
+    if periodic[0]:
+        border[0, 0] = border[1, -1] = np.maximum(levels[0], levels[-1])
+    if periodic[1]:
+        border[2, :, 0] = border[3, :, -1] = np.maximum(levels[:, 0], levels[:, -1])
+    return border
+
+
+def _snapped(places: Ints, level: Ints) -> Ints:
+    """Places along borders, (N, M), moved to those of their levels, (N,); the ends stay."""
+    step = (1 << level)[:, None]
+    return np.where(places == places[:, -1:], places, places // step * step)

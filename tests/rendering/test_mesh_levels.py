@@ -1,0 +1,136 @@
+"""Triangles of a surface by level: no crack, no lost cell, and an error that is kept."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import Any
+
+import numpy as np
+import pytest
+
+from flowtex._util.array_types import Floats, Indices
+from flowtex.rendering.mesh_levels import MAX_ERROR_PIXELS, TILE_CELLS, MeshLevels
+
+SHAPES = [(2, 2), (65, 65), (66, 130), (64, 200), (3, 300), (100, 2)]
+
+
+def grid(shape: tuple[int, int], height: float = 0.0) -> Floats:
+    """Nodes of unit cells, bent by a wave of some height."""
+    y, x = np.mgrid[0 : shape[0], 0 : shape[1]].astype(float)
+    return np.stack([x, y, height * np.sin(0.11 * x) * np.cos(0.07 * y)], axis=-1)
+
+
+def whole(shape: tuple[int, int]) -> Any:
+    return np.ones((shape[0] - 1, shape[1] - 1), dtype=bool)
+
+
+def edges(triangles: Indices) -> Counter[tuple[int, int]]:
+    """How many triangles have each edge."""
+    pairs = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+    return Counter(map(tuple, np.sort(pairs, axis=1).tolist()))
+
+
+def area(points: Floats, triangles: Indices) -> float:
+    a, b, c = (points.reshape(-1, 3)[triangles[:, k]] for k in range(3))
+    return float(0.5 * np.cross(b - a, c - a)[:, 2].sum())
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize("seed", range(4))
+def test_neighbours_of_any_levels_join_without_cracks(shape: tuple[int, int], seed: int) -> None:
+    points, rng = grid(shape), np.random.default_rng(seed)
+    mesh = MeshLevels(points, whole(shape))
+    levels = rng.integers(0, len(mesh.error), mesh.error.shape[1:])
+    triangles = mesh.triangles(levels)
+    assert area(points, triangles) == pytest.approx((shape[0] - 1) * (shape[1] - 1))
+    for (a, b), count in edges(triangles).items():
+        j, i = np.divmod([a, b], shape[1])
+        outside = any(
+            (k == end).all() for k, n in ((j, shape[0]), (i, shape[1])) for end in (0, n - 1)
+        )
+        assert count == (1 if outside else 2)
+
+
+def test_the_finest_level_is_every_cell() -> None:
+    shape = (70, 90)
+    mesh = MeshLevels(grid(shape), whole(shape))
+    triangles = mesh.triangles(np.zeros(mesh.error.shape[1:], dtype=int))
+    assert len(triangles) == 2 * 69 * 89
+    assert len(np.unique(triangles)) == 70 * 90
+
+
+def test_a_flat_uniform_grid_is_two_triangles_a_tile() -> None:
+    shape = (4 * TILE_CELLS + 1, 2 * TILE_CELLS + 1)
+    mesh = MeshLevels(grid(shape), whole(shape))
+    assert len(mesh.triangles(mesh.levels(None, 130.0, 600))) == 16
+
+
+@pytest.mark.parametrize("level", [1, 2, 4])
+def test_no_node_is_farther_from_the_triangles_than_the_error(level: int) -> None:
+    shape = (129, 193)
+    points = grid(shape, height=4.0)
+    mesh = MeshLevels(points, whole(shape))
+    step = 1 << level
+    j, i = np.mgrid[0 : shape[0], 0 : shape[1]]
+    a, b = (
+        np.minimum(j // step * step, shape[0] - 1 - step),
+        np.minimum(i // step * step, shape[1] - 1 - step),
+    )
+    s, t = ((i - b) / step)[..., None], ((j - a) / step)[..., None]
+    p, q, r, u = points[a, b], points[a, b + step], points[a + step, b + step], points[a + step, b]
+    drawn = np.where(s >= t, p + s * (q - p) + t * (r - q), p + t * (u - p) + s * (r - u))
+    off = np.linalg.norm(drawn - points, axis=-1).max()
+    assert 0.1 * mesh.error[level].max() < off <= mesh.error[level].max()
+
+
+def test_levels_follow_the_error_on_the_screen() -> None:
+    shape = (257, 257)
+    mesh = MeshLevels(grid(shape, height=0.3), whole(shape))
+    counts = []
+    for half in (1000.0, 130.0, 1.0):
+        levels = mesh.levels(None, half, 600)
+        pixels = 0.5 * 600 / half
+        chosen = np.take_along_axis(mesh.error, levels[None], axis=0)[0]
+        assert (chosen[levels > 0] * pixels <= MAX_ERROR_PIXELS).all() or pixels < 1
+        counts.append(len(mesh.triangles(levels)))
+    assert counts[0] < counts[1] < counts[2] == 2 * 256**2
+
+
+def test_what_is_near_the_eye_is_finer() -> None:
+    shape = (513, 65)
+    mesh = MeshLevels(grid(shape, height=0.3), whole(shape))
+    levels = mesh.levels(np.array([32.0, -5.0, 8.0]), 0.5, 600)[:, 0]
+    assert (np.diff(levels) >= 0).all() and levels[0] < levels[-1]
+
+
+def test_colours_keep_their_error_too() -> None:
+    shape = (257, 257)
+    mesh = MeshLevels(grid(shape), whole(shape))
+    assert (mesh.levels(None, 130.0, 600) > 4).all()
+    x = grid(shape)[..., 0]
+    mesh.set_colours(0.5 + 0.5 * np.sin(0.2 * x) * (x < 128))
+    levels = mesh.levels(None, 130.0, 600)
+    assert (levels[:, :2] < 3).all() and (levels[:, 2:] > 4).all()
+    mesh.set_colours()
+    assert (mesh.levels(None, 130.0, 600) > 4).all()
+
+
+def test_no_triangle_covers_what_is_blanked() -> None:
+    shape = (200, 300)
+    points, cells = grid(shape), whole(shape)
+    cells[70:90, 100:131] = False
+    cells[0, 0] = False
+    points[75:85, 110:120] = np.nan
+    mesh = MeshLevels(points, cells)
+    triangles = mesh.triangles(mesh.levels(None, 100.0, 50))
+    assert area(np.nan_to_num(points), triangles) == pytest.approx(cells.sum())
+    assert np.isfinite(points.reshape(-1, 3)[triangles]).all()
+
+
+def test_a_seam_has_the_same_nodes_on_both_sides() -> None:
+    shape = (65, 129)
+    mesh = MeshLevels(grid(shape), whole(shape), periodic=(False, True))
+    levels = np.array([[0, 5]])
+    triangles = mesh.triangles(levels)
+    nodes = [{int(n) // 129 for n in np.unique(triangles) if n % 129 == i} for i in (0, 128)]
+    assert nodes[0] == nodes[1]
