@@ -252,6 +252,44 @@ def test_settings_change_the_picture_live_without_a_new_shader(plotter: Any) -> 
     np.testing.assert_array_equal(first, third)
 
 
+def test_motion_is_another_shader_and_comes_back(plotter: Any) -> None:
+    handle = plotter.flowtex.add(gyre_field(), scalars=False)
+    first = plotter.screenshot(return_img=True)
+    handle.settings.motion = "speed"
+    handle.clock = 0.0
+    second = plotter.screenshot(return_img=True)
+    handle.clock = 1.0
+    third = plotter.screenshot(return_img=True)
+    handle.settings.motion = "off"
+    fourth = plotter.screenshot(return_img=True)
+    assert np.abs(first.astype(float) - second).mean() > 5
+    assert np.abs(second.astype(float) - third).mean() > 5
+    np.testing.assert_array_equal(first, fourth)
+
+
+def test_a_frame_has_as_many_triangles_as_the_view_needs(plotter: Any) -> None:
+    y, x = np.mgrid[0:2:257j, 0:4:513j]
+    points, velocity = np.stack([x, y], axis=-1), np.stack([1 + 0 * x, 0.2 * np.sin(y)], axis=-1)
+    field = flowtex.FlowField.from_arrays(points, velocity)
+    handle = plotter.flowtex.add(field, scalars=False)
+
+    def cells() -> int:
+        plotter.render()
+        plotter.screenshot(return_img=True)
+        return int(handle.actor.mapper.dataset.n_cells)
+
+    assert cells() == 2 * 4 * 8
+    plain = np.asarray(plotter.screenshot(return_img=True), dtype=float)
+    handle.actor.prop.style = "Wireframe"
+    assert cells() == 2 * 256 * 512  # who looks at the mesh sees all of it
+    handle.actor.prop.style = "Surface"
+    assert cells() == 2 * 4 * 8
+    handle._layer._mesh_levels.error[1:] = np.inf
+    assert cells() == 2 * 256 * 512
+    every = np.asarray(plotter.screenshot(return_img=True), dtype=float)
+    assert np.abs(every - plain).max() <= 2
+
+
 def test_another_noise_is_another_shader_and_comes_back(plotter: Any) -> None:
     handle = plotter.flowtex.add(gyre_field(), scalars=False)
     first = plotter.screenshot(return_img=True)
