@@ -154,7 +154,7 @@ def test_settings_that_tell_forward_from_backward_are_left_out() -> None:
     settings = Settings(two_sided=False, kernel="ramp", motion="speed")
     textures = TextureSet.build(SliceStore(field), settings)
     values = uniforms(textures, settings, ViewState())
-    assert (values["u_sides"], values["u_kernel"], values["u_moving"]) == (2, 0, False)
+    assert (values["u_sides"], values["u_kernel"], values["moving"]) == (2, 0, False)
     settings.kernel = "box"
     assert uniforms(textures, settings, ViewState())["u_kernel"] == 1
 
