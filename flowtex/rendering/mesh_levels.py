@@ -24,7 +24,7 @@ TILE_CELLS = 64
 #: Distance on the screen between a node and the triangle that stands for it.
 MAX_ERROR_PIXELS = 0.05
 #: Error of a colour, as a share of the range of the colour map.
-MAX_COLOUR_ERROR = 1 / 256
+MAX_COLOUR_ERROR = 1 / 100
 #: Longest side of a triangle, in heights of the view: single precision interpolates across it.
 MAX_SIDE_HEIGHTS = 2.0
 #: Nearest that a tile is taken to be, as a share of its radius, when the eye is inside of it.
