@@ -118,9 +118,11 @@ class MeshLevels:
         if eye is not None:
             distance = np.linalg.norm(self.tiles[..., :3] - eye, axis=-1) - radius
             distance = np.maximum(distance, LEAST_DISTANCE * radius)
-        scale = 0.5 * pixels / (half_height * np.maximum(distance, np.finfo(float).tiny))
-        side = cell_size * scale * 2.0 ** np.arange(len(self.error))[:, None, None]
-        exact = (self.error * scale <= MAX_ERROR_PIXELS) & (self.colour_error <= MAX_COLOUR_ERROR)
+        with np.errstate(all="ignore"):  # where numbers end, every node is drawn
+            scale = 0.5 * pixels / (half_height * distance)
+            side = cell_size * scale * 2.0 ** np.arange(len(self.error))[:, None, None]
+            exact = self.error * scale <= MAX_ERROR_PIXELS
+        exact &= self.colour_error <= MAX_COLOUR_ERROR
         # What lies within a pixel may be left out, however rough it is.
         fits = exact | (np.isfinite(self.error) & (side <= 1.0))
         fits &= side <= MAX_SIDE_HEIGHTS * pixels

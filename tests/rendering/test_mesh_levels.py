@@ -134,3 +134,14 @@ def test_a_seam_has_the_same_nodes_on_both_sides() -> None:
     triangles = mesh.triangles(levels)
     nodes = [{int(n) // 129 for n in np.unique(triangles) if n % 129 == i} for i in (0, 128)]
     assert nodes[0] == nodes[1]
+
+
+@pytest.mark.parametrize("size", [1e-300, 1e-12, 1e12, 1e150])
+def test_any_size_of_a_surface_has_levels(size: float) -> None:
+    shape = (70, 90)
+    mesh = MeshLevels(size * grid(shape, height=1.0), whole(shape))
+    for eye, half in ((None, 45 * size), (np.zeros(3), 0.3), (None, 1e-320)):
+        levels = mesh.levels(eye, half, 600)
+        assert ((levels >= 0) & (levels < len(mesh.error))).all()
+    flat = MeshLevels(np.zeros((70, 90, 3)), whole(shape))
+    assert len(flat.triangles(flat.levels(np.zeros(3), 0.3, 600)))
