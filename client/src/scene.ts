@@ -37,6 +37,7 @@ export class Scene {
   private scalarSteps = "";
   /** Level of each tile of the mesh; without a view that of every node. */
   private levels: Uint8Array = new Uint8Array();
+  private meshLevels: MeshLevels | null = null;
 
   constructor(graphics: Graphics, header: Header, parts: Map<string, Part>) {
     this.graphics = graphics;
@@ -69,10 +70,12 @@ export class Scene {
   private fits(name: string): boolean {
     const part = this.parts.get(name);
     if (!part) return false;
-    const { geometry, slices, paper } = this.header;
+    const { geometry, slices, paper, mesh } = this.header;
+    const tiles = geometry.shape.map((n) => Math.max(Math.ceil((n - 1) / mesh.tileCells), 1));
     const shapes: Record<string, number[]> = {
       slices: [slices.count, geometry.rows.size, geometry.columns.size, slices.channels],
       position: [...geometry.shape, 3],
+      mesh: [...tiles, part.shape[2]],
       step: paper ? [paper.size[1], paper.size[0]] : [],
     };
     const shape = shapes[name.split("/")[0]];
@@ -88,6 +91,7 @@ export class Scene {
   /** Drop the objects of a part that has changed. */
   forget(name: string): void {
     const [kind, step] = name.split("/");
+    if (kind === "mesh" || kind === "cells") this.meshLevels = null;
     const sliced = kind === "slices" || kind === "extra";
     for (const user of sliced ? [`slices/${step}`] : (USERS[kind] ?? [])) this.drop(user);
     this.drop("array");
@@ -152,10 +156,13 @@ export class Scene {
   }
 
   private mesh(): MeshLevels {
-    const { geometry, mesh } = this.header;
-    const { shape, periodic } = geometry;
-    const parts = { tiles: this.part("mesh").data, cells: this.parts.get("cells")?.data };
-    return new MeshLevels({ shape, periodic, ...parts }, mesh);
+    if (!this.meshLevels) {
+      const { geometry, mesh } = this.header;
+      const { shape, periodic } = geometry;
+      const parts = { tiles: this.part("mesh").data, cells: this.parts.get("cells")?.data };
+      this.meshLevels = new MeshLevels({ shape, periodic, ...parts }, mesh);
+    }
+    return this.meshLevels;
   }
 
   /** Choose the triangles for a view. */

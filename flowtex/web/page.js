@@ -625,45 +625,46 @@ b,a),node(b,a+1),node(b+1,a+1),node(b+1,a)];p!==q&&q!==r&&p!==r&&index.push(p,q,
 let{rows,columns}=this,{periodic}=this.mesh,own=levels[j*columns.length+i],[row,column]=[j+dj,i+di];return periodic[0]&&
 (row=(row+rows.length)%rows.length),periodic[1]&&(column=(column+columns.length)%columns.length),row<0||row>=rows.length||
 column<0||column>=columns.length?own:Math.max(own,levels[row*columns.length+column])}};var USERS={position:["position","coordinate"],normal:["normal"],cells:["index"],mesh:["index"],cmap:["cmap"],noise:["noi\
-se"],step:["step"],scalars:["scalar"]},Scene=class{graphics;header;parts;anchor=[0,0,0];resources=new Map;scalarSteps="";levels=new Uint8Array;constructor(graphics,header,parts){
+se"],step:["step"],scalars:["scalar"]},Scene=class{graphics;header;parts;anchor=[0,0,0];resources=new Map;scalarSteps="";levels=new Uint8Array;meshLevels=null;constructor(graphics,header,parts){
 this.graphics=graphics,this.header=header,this.parts=parts}missing(before,after){let{geometry,slices,scalars,paper}=this.
 header,names=["position","mesh",...geometry.planar?[]:["normal"]];for(let step of new Set([before,after]))names.push(`sl\
 ices/${step}`),slices.channels===2&&names.push(`extra/${step}`);return names.push(...this.scalarParts(before,after)),scalars.
 name!==null&&names.push("cmap"),paper&&names.push("noise","step"),[...new Set(names)].filter(name=>!this.fits(name))}scalarParts(before,after){
 let{name,steps}=this.header.scalars;return name===null?[]:(steps>1?[before,after]:[0,0]).map(step=>`scalars/${step}`)}fits(name){
-let part=this.parts.get(name);if(!part)return!1;let{geometry,slices,paper}=this.header,shape={slices:[slices.count,geometry.
-rows.size,geometry.columns.size,slices.channels],position:[...geometry.shape,3],step:paper?[paper.size[1],paper.size[0]]:
-[]}[name.split("/")[0]];return!shape||String(shape)===String(part.shape)}part(name){let part=this.parts.get(name);if(!part)
-throw new Error(`the part "${name}" of the scene is missing`);return part}forget(name){let[kind,step]=name.split("/"),sliced=kind===
-"slices"||kind==="extra";for(let user of sliced?[`slices/${step}`]:USERS[kind]??[])this.drop(user);this.drop("array")}drop(name){
-let resource=this.resources.get(name);this.resources.delete(name),resource&&(resource.users-=1,!resource.users&&(this.graphics.
-free(resource.kind,resource.object),this.graphics.common.delete(resource.key)))}dispose(){for(let name of[...this.resources.
-keys()])this.drop(name)}key(names,...rest){let digests=names.map(name=>this.parts.has(name)?this.part(name).digest:"none");
-return digests.every(Boolean)?JSON.stringify([digests,rest]):""}take(name,kind,key,make,fill){let own=this.resources.get(
-name);if(own)return own.object;let{graphics}=this,whole=key&&`${name.split("/")[0]} ${key}`,shared=whole?graphics.common.
-get(whole):void 0,object=shared?.object??graphics.counted(make()),resource=shared??{kind,object,count:0,key:whole,users:0};
-return resource.users+=1,this.resources.set(name,resource),shared||(resource.count=fill(object)||0),whole&&graphics.common.
-set(whole,resource),object}buffer(name,key,data,elements=!1){let gl=this.graphics.context,fill=buffer=>{let target=elements?
-gl.ELEMENT_ARRAY_BUFFER:gl.ARRAY_BUFFER,numbers=data();return gl.bindVertexArray(null),gl.bindBuffer(target,buffer),gl.bufferData(
-target,numbers,gl.STATIC_DRAW),numbers.length};return this.take(name,"Buffer",key,()=>gl.createBuffer(),fill)}mesh(){let{
-geometry,mesh}=this.header,{shape,periodic}=geometry,parts={tiles:this.part("mesh").data,cells:this.parts.get("cells")?.
-data};return new MeshLevels({shape,periodic,...parts},mesh)}look(sight){let levels=this.mesh().levels(sight);String(levels)!==
-String(this.levels)&&(this.levels=levels,this.drop("index"),this.drop("array"))}bindNodes(before,after,anchor){let gl=this.
-graphics.context,steps=String(this.scalarParts(before,after)),stale=steps!==this.scalarSteps?["scalar","array"]:[];anchor.
-some((x,k)=>x!==this.anchor[k])&&stale.push("position","array");for(let name of stale)this.drop(name);this.scalarSteps=steps,
-this.anchor=anchor;let fill=array=>this.fillArray(array,before,after),make=()=>gl.createVertexArray();gl.bindVertexArray(
-this.take("array","VertexArray","",make,fill))}fillArray(array,before,after){let gl=this.graphics.context,{geometry,scalars,
-paper}=this.header,{shape,rows,columns}=geometry,cells=()=>this.mesh().triangles(this.levels),index=this.buffer("index",
-this.key(["cells","mesh"],shape,[...this.levels]),cells,!0),nodes=()=>positions(this.part("position").data,this.anchor),
-normal=geometry.planar?null:this.part("normal").data,painted=this.scalarParts(before,after),values=()=>{let steps=painted.
-map(name=>this.part(name).data);return shares(steps,scalars.low,scalars.high,shape[0]*shape[1])},colour=this.key([...new Set(
-painted)],shape,scalars.low,scalars.high),grid2=JSON.stringify([shape,rows,columns]),type=gl.FLOAT;normal instanceof Int8Array&&
-(type=gl.BYTE),normal instanceof Int16Array&&(type=gl.SHORT);let attributes=[[this.buffer("position",this.key(["position"],
-this.anchor),nodes),3,gl.FLOAT],[this.buffer("coordinate",grid2,()=>coordinates(geometry)),2,gl.FLOAT],[normal&&this.buffer(
-"normal",this.key(["normal"]),()=>normal),3,type],[paper&&this.buffer("along","",()=>noiseCoordinates(paper)),2,gl.FLOAT],
-[this.buffer("scalar",colour,values),2,gl.FLOAT]];gl.bindVertexArray(array),gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER,index),
-attributes.forEach(([buffer,size,kind],n)=>{buffer&&(gl.bindBuffer(gl.ARRAY_BUFFER,buffer),gl.enableVertexAttribArray(n),
-gl.vertexAttribPointer(n,size,kind,kind!==gl.FLOAT,0,0))})}texture(name,key,fill){let gl=this.graphics.context;return this.
+let part=this.parts.get(name);if(!part)return!1;let{geometry,slices,paper,mesh}=this.header,tiles=geometry.shape.map(n=>Math.
+max(Math.ceil((n-1)/mesh.tileCells),1)),shape={slices:[slices.count,geometry.rows.size,geometry.columns.size,slices.channels],
+position:[...geometry.shape,3],mesh:[...tiles,part.shape[2]],step:paper?[paper.size[1],paper.size[0]]:[]}[name.split("/")[0]];
+return!shape||String(shape)===String(part.shape)}part(name){let part=this.parts.get(name);if(!part)throw new Error(`the \
+part "${name}" of the scene is missing`);return part}forget(name){let[kind,step]=name.split("/");(kind==="mesh"||kind===
+"cells")&&(this.meshLevels=null);let sliced=kind==="slices"||kind==="extra";for(let user of sliced?[`slices/${step}`]:USERS[kind]??
+[])this.drop(user);this.drop("array")}drop(name){let resource=this.resources.get(name);this.resources.delete(name),resource&&
+(resource.users-=1,!resource.users&&(this.graphics.free(resource.kind,resource.object),this.graphics.common.delete(resource.
+key)))}dispose(){for(let name of[...this.resources.keys()])this.drop(name)}key(names,...rest){let digests=names.map(name=>this.
+parts.has(name)?this.part(name).digest:"none");return digests.every(Boolean)?JSON.stringify([digests,rest]):""}take(name,kind,key,make,fill){
+let own=this.resources.get(name);if(own)return own.object;let{graphics}=this,whole=key&&`${name.split("/")[0]} ${key}`,shared=whole?
+graphics.common.get(whole):void 0,object=shared?.object??graphics.counted(make()),resource=shared??{kind,object,count:0,
+key:whole,users:0};return resource.users+=1,this.resources.set(name,resource),shared||(resource.count=fill(object)||0),whole&&
+graphics.common.set(whole,resource),object}buffer(name,key,data,elements=!1){let gl=this.graphics.context,fill=buffer=>{
+let target=elements?gl.ELEMENT_ARRAY_BUFFER:gl.ARRAY_BUFFER,numbers=data();return gl.bindVertexArray(null),gl.bindBuffer(
+target,buffer),gl.bufferData(target,numbers,gl.STATIC_DRAW),numbers.length};return this.take(name,"Buffer",key,()=>gl.createBuffer(),
+fill)}mesh(){if(!this.meshLevels){let{geometry,mesh}=this.header,{shape,periodic}=geometry,parts={tiles:this.part("mesh").
+data,cells:this.parts.get("cells")?.data};this.meshLevels=new MeshLevels({shape,periodic,...parts},mesh)}return this.meshLevels}look(sight){
+let levels=this.mesh().levels(sight);String(levels)!==String(this.levels)&&(this.levels=levels,this.drop("index"),this.drop(
+"array"))}bindNodes(before,after,anchor){let gl=this.graphics.context,steps=String(this.scalarParts(before,after)),stale=steps!==
+this.scalarSteps?["scalar","array"]:[];anchor.some((x,k)=>x!==this.anchor[k])&&stale.push("position","array");for(let name of stale)
+this.drop(name);this.scalarSteps=steps,this.anchor=anchor;let fill=array=>this.fillArray(array,before,after),make=()=>gl.
+createVertexArray();gl.bindVertexArray(this.take("array","VertexArray","",make,fill))}fillArray(array,before,after){let gl=this.
+graphics.context,{geometry,scalars,paper}=this.header,{shape,rows,columns}=geometry,cells=()=>this.mesh().triangles(this.
+levels),index=this.buffer("index",this.key(["cells","mesh"],shape,[...this.levels]),cells,!0),nodes=()=>positions(this.part(
+"position").data,this.anchor),normal=geometry.planar?null:this.part("normal").data,painted=this.scalarParts(before,after),
+values=()=>{let steps=painted.map(name=>this.part(name).data);return shares(steps,scalars.low,scalars.high,shape[0]*shape[1])},
+colour=this.key([...new Set(painted)],shape,scalars.low,scalars.high),grid2=JSON.stringify([shape,rows,columns]),type=gl.
+FLOAT;normal instanceof Int8Array&&(type=gl.BYTE),normal instanceof Int16Array&&(type=gl.SHORT);let attributes=[[this.buffer(
+"position",this.key(["position"],this.anchor),nodes),3,gl.FLOAT],[this.buffer("coordinate",grid2,()=>coordinates(geometry)),
+2,gl.FLOAT],[normal&&this.buffer("normal",this.key(["normal"]),()=>normal),3,type],[paper&&this.buffer("along","",()=>noiseCoordinates(
+paper)),2,gl.FLOAT],[this.buffer("scalar",colour,values),2,gl.FLOAT]];gl.bindVertexArray(array),gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER,
+index),attributes.forEach(([buffer,size,kind],n)=>{buffer&&(gl.bindBuffer(gl.ARRAY_BUFFER,buffer),gl.enableVertexAttribArray(
+n),gl.vertexAttribPointer(n,size,kind,kind!==gl.FLOAT,0,0))})}texture(name,key,fill){let gl=this.graphics.context;return this.
 take(name,"Texture",key,()=>gl.createTexture(),fill)}slices(step){let{slices,geometry}=this.header,key=this.key([`slices\
 /${step}`,`extra/${step}`],geometry.levels,slices.extra);return this.texture(`slices/${step}`,key,texture=>{let part=this.
 part(`slices/${step}`),[layers,height,width,channels]=part.shape,data=part.data,extra=this.parts.get(`extra/${step}`)?.data,

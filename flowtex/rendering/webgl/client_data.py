@@ -170,7 +170,7 @@ class ClientData:
             parts["cells"] = geometry.field.surface.cells.astype(np.uint8)
         if not geometry.planar:
             parts["normal"] = np.rint(geometry.normal * NORMAL_MAX).astype("<i2")
-        parts["mesh"] = self._mesh()
+        parts["mesh"] = self._mesh
         parts["position"] = np.ascontiguousarray(geometry.position, "<f4")
         if self.textures.paper is not None:
             parts["step"] = half(self.textures.paper.step)
@@ -225,6 +225,7 @@ class ClientData:
             return values
         return values[list(self.chosen)]
 
+    @cached_property
     def _mesh(self) -> Floats32:
         """Return what the client chooses its triangles by, of each tile."""
         field = self.textures.geometry.field
