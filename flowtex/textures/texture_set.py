@@ -52,6 +52,8 @@ class TextureSet:
     geometry: SurfaceGeometry
     store: SliceStore
     paper: PaperTextures | None = None
+    #: The typical speed of the whole flow, in a tile.
+    whole_speed: float | None = None
 
     @classmethod
     def build(
@@ -106,6 +108,8 @@ class TextureSet:
     @cached_property
     def typical_speed(self) -> float:
         """Root mean square of the speed in the field's own units; 1 in a flow at rest."""
+        if self.whole_speed is not None:
+            return self.whole_speed
         speed = self.geometry.field.speed[:, self.geometry.field.valid]
         return float(np.sqrt(np.mean(speed**2))) or 1.0
 
@@ -126,7 +130,7 @@ class TextureSet:
 
     def layers(self, step: int = 0) -> Floats32:
         """Texels of the slice texture for one destination time, (layers, H, W, 4)."""
-        slices = self.store.at(step)
+        slices = self.store.at(step).part(*self.geometry.texels)
         size = (self.geometry.rows.size, self.geometry.columns.size)
         result = np.empty((self.count, *size, 4), np.float32)
 
@@ -166,14 +170,14 @@ class TextureSet:
         """Speed of the flow at the nodes in multiples of its typical speed, (J, I)."""
         field = self.geometry.field
         step = int(np.argmin(np.abs(field.times - slices.times[0])))
-        return np.asarray(field.speed[step] / self.typical_speed)
+        return np.asarray(field.speed[step][self.geometry.texels] / self.typical_speed)
 
     def _tangent(self, slices: TraceSlices) -> AnyArray:
         rate = slices.rate[0]
         if self.paper is not None:
             return three_components(rate * self.paper.by_cell())
         surface = self.geometry.field.surface
-        p_i, p_j = surface.tangents
+        p_i, p_j = surface.tangents[:, *self.geometry.texels]
         along = rate[..., :1] * p_i + rate[..., 1:] * p_j
         for pole in surface.poles or ():
             # One point has one slope, of which its nodes hold a component each.
@@ -186,13 +190,15 @@ class TextureSet:
         """Takes displacements to space; a flat surface has no third component."""
         frame = self.geometry.frame
         return NodeDisplacements(
-            self.geometry.field.surface, frame[:2] if self.geometry.planar else frame
+            self.geometry.field.surface,
+            frame[:2] if self.geometry.planar else frame,
+            self.geometry.texels,
         )
 
     @cached_property
     def _length(self) -> Floats:
         """Nominal length of one unit of lag at each node, (J, I, 1)."""
-        return (self.store.unit * self.pace)[..., None]
+        return (self.store.unit * self.pace)[self.geometry.texels][..., None]
 
 
 def _usable_reach(reach: AnyArray, slices: TraceSlices) -> AnyArray:
