@@ -15,7 +15,7 @@ from functools import cached_property, partial
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flowtex._util.array_types import Floats, Floats32, Indices
+from flowtex._util.array_types import Bools, Floats, Floats32, Indices
 from flowtex._util.progress import track
 from flowtex.field import FlowField
 from flowtex.field.interpolation import nearest_known
@@ -46,6 +46,7 @@ def trace(
     tolerance: float = TOLERANCE,
     steps: Sequence[int] | None = None,
     compose: bool | None = None,
+    nodes: ArrayLike | None = None,
     progress: bool = True,
 ) -> TraceSlices:
     """Follow the path through every node, and return where it is at a handful of lags.
@@ -78,6 +79,9 @@ def trace(
         instead of being integrated. By default they are when the lags are chosen automatically.
         In a field that varies this takes equal time steps, of which all are traced; otherwise
         all lags are integrated, as they are in a field without a sign.
+    nodes
+        Nodes whose paths are wanted, (J, I), all by default. Where paths are integrated only these
+        are followed, and the others are treated as blanked ones; to compose takes all.
     progress
         Whether to show a progress bar when the work takes longer than a second.
 
@@ -88,9 +92,9 @@ def trace(
     Raises
     ------
     ValueError
-        When the lags are not positive and increasing, ``parameter`` is unknown, or the unit or
-        the tolerance is not positive; or a field without a sign is to be followed to one side,
-        or composed.
+        When the lags are not positive and increasing, ``parameter`` is unknown, the unit or the
+        tolerance is not positive, or ``nodes`` has another shape than the field; or a field without
+        a sign is to be followed to one side, or composed.
     IndexError
         When there is no such time step.
     """
@@ -108,10 +112,13 @@ def trace(
     step_numbers = _step_numbers(field, steps)
     directions = (-1.0, 1.0) if field.steady and two_sided else (-1.0,)
     samplers = _samplers(field, step_numbers, parameter)
-    tracing = _Tracing(field, samplers, lag_values, units, tolerance, progress)
     composed = lags is None if compose is None else compose
     whole = field.steady or step_numbers == list(range(len(field.times)))
     landing = landings(field, lag_values, units) if composed and whole else None
+    followed = field.valid
+    if nodes is not None and landing is None:
+        followed = followed & _checked_nodes(field, nodes)
+    tracing = _Tracing(field, samplers, lag_values, units, followed, tolerance, progress)
     paths_by_side = tracing.follow(directions, landing)
     backward = paths_by_side[-1.0]
     forward = paths_by_side.get(1.0)
@@ -215,6 +222,14 @@ def _checked_lags(lags: ArrayLike) -> Floats:
     return lag_values
 
 
+def _checked_nodes(field: FlowField, nodes: ArrayLike) -> Bools:
+    chosen = np.asarray(nodes, dtype=bool)
+    if chosen.shape != field.shape:
+        msg = f"nodes has shape {chosen.shape}; expected {field.shape} as the field has"
+        raise ValueError(msg)
+    return chosen
+
+
 @dataclass(frozen=True, eq=False)
 class _Tracing:
     """Everything that the paths of one call share."""
@@ -223,6 +238,7 @@ class _Tracing:
     samplers: list[Sampler]
     lags: Floats
     unit: Floats
+    followed: Bools  #: nodes whose paths are followed, (J, I)
     tolerance: float
     progress: bool
 
@@ -250,7 +266,7 @@ class _Tracing:
         shape = (len(self.samplers), self.field.valid.size)
         sides = {
             direction: SideSlices(
-                np.empty((2, len(self.lags) + 1, *shape), np.float32),
+                np.zeros((2, len(self.lags) + 1, *shape), np.float32),
                 np.zeros(shape, np.float32),
                 np.zeros(shape, bool),
             )
@@ -285,7 +301,7 @@ class _Tracing:
         self, sides: dict[float, SideSlices], known: int, pool: ThreadPoolExecutor
     ) -> None:
         """Fill the first ``known`` slices."""
-        at = np.flatnonzero(self.field.valid)
+        at = np.flatnonzero(self.followed)
         start, unit = self.nodes.reshape(-1, 2)[at], self.unit.ravel()[at]
 
         def work(job: tuple[int, float, slice]) -> None:
@@ -344,13 +360,13 @@ class _Tracing:
         return moved, covered, ends
 
     def _as_grids(self, flat: SideSlices, direction: float) -> SideSlices:
-        """Lay out by nodes, with the slope at lag zero; blanked nodes move as the nearest."""
+        """Lay out by nodes, with the slope at lag zero; nodes left out move as the nearest."""
         grid = self.field.shape
         slices = flat.slices.reshape(*flat.slices.shape[:3], *grid)
         slices[:, 0] = direction * np.moveaxis(self.rate, -1, 0)
-        blank = ~self.field.valid
-        if blank.any():
+        blank = ~self.followed
+        if blank.any() and self.followed.any():
             # In place: the slices are large, and few of them are blank.
-            rows, columns = nearest_known(self.field.valid)
+            rows, columns = nearest_known(self.followed)
             slices[..., blank] = slices[..., rows[blank], columns[blank]]
         return SideSlices(slices, flat.reach.reshape(-1, *grid), flat.polar.reshape(-1, *grid))
