@@ -1,0 +1,148 @@
+"""Tiles on their way: made in threads, coarse ones first, within a budget of memory.
+
+Whoever draws asks for the tiles of a view, in the order of their need, and draws those that are
+ready. What a view does not ask for any more is cancelled when it has not come to its end, and
+dropped last when memory is short.
+"""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections.abc import Callable, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor, wait
+from dataclasses import dataclass, field
+from functools import cached_property
+
+from flowtex._util.array_types import Floats32
+from flowtex._util.cache import ByteCache
+from flowtex._util.progress import Stopped, stoppable
+from flowtex.textures import TextureSet
+from flowtex.tiles.pyramid import Pyramid, TileKey
+
+__all__ = ["Tile", "TileLoader"]
+
+#: Memory of the tiles that are kept, in bytes.
+BUDGET_BYTES = 512_000_000
+#: Tiles that are made at once, at most.
+MOST_THREADS = 4
+
+
+@dataclass(eq=False)
+class Tile:
+    """One tile with the layers of the destination times that were asked for."""
+
+    key: TileKey
+    textures: TextureSet
+    layers: dict[int, Floats32] = field(default_factory=dict)
+
+    @property
+    def nbytes(self) -> int:
+        """Memory that it takes, on the graphics card and beside it."""
+        sizes = self.textures.geometry.rows.size * self.textures.geometry.columns.size
+        return sizes * self.textures.count * 16 * max(len(self.layers), 1)
+
+    @cached_property
+    def is_empty(self) -> bool:
+        """Whether nothing of it is drawn."""
+        return not self.textures.geometry.cells.any()
+
+
+class TileLoader:
+    """Makes tiles of a pyramid in threads.
+
+    ``notify`` is called, in a thread, whenever a tile has become ready or has failed. Errors are
+    kept in ``errors`` by tile; a tile that failed is not tried again.
+    """
+
+    def __init__(
+        self,
+        pyramid: Pyramid,
+        notify: Callable[[], None] = lambda: None,
+        *,
+        budget: int = BUDGET_BYTES,
+    ) -> None:
+        self.pyramid = pyramid
+        self.errors: dict[TileKey, Exception] = {}
+        self._notify = notify
+        self._tiles: ByteCache[TileKey, Tile] = ByteCache(budget)
+        self._wanted: frozenset[TileKey] = frozenset()
+        self._running: dict[tuple[TileKey, int], Future[None]] = {}
+        self._lock = threading.Lock()
+        self._pool: ThreadPoolExecutor | None = None
+
+    def get(self, key: TileKey, steps: Sequence[int]) -> Tile | None:
+        """Return a tile that has the layers of these destination times, or ``None``."""
+        tile = self._tiles.peek(key)
+        ready = tile is not None and all(step in tile.layers for step in steps)
+        return tile if ready else None
+
+    def request(self, keys: Sequence[TileKey], steps: Sequence[int]) -> None:
+        """Ask for tiles in this order, and give up those that were asked for before."""
+        self._wanted = frozenset(keys)
+        with self._lock:
+            for job, future in list(self._running.items()):
+                if job[0] not in self._wanted and future.cancel():
+                    del self._running[job]
+            for key in keys:
+                tile = self._tiles.peek(key)
+                for step in steps:
+                    job = (key, step)
+                    made = tile is not None and step in tile.layers
+                    if made or job in self._running or key in self.errors:
+                        continue
+                    if self._pool is None:
+                        threads = min(os.cpu_count() or 1, MOST_THREADS)
+                        self._pool = ThreadPoolExecutor(threads, thread_name_prefix="flowtex-tile")
+                    self._running[job] = self._pool.submit(self._make, key, step)
+
+    @property
+    def busy(self) -> bool:
+        """Whether tiles that are wanted are on their way."""
+        with self._lock:
+            return any(key in self._wanted for key, _ in self._running)
+
+    def wait(self) -> None:
+        """Wait for the tiles that were asked for last.
+
+        Raises
+        ------
+        Exception
+            What went wrong with one of them.
+        """
+        with self._lock:
+            futures = [f for (key, _), f in self._running.items() if key in self._wanted]
+        wait(futures)
+        for key in self._wanted:
+            if key in self.errors:
+                raise self.errors[key]
+
+    def close(self) -> None:
+        """Stop, without waiting for what is being made."""
+        self._wanted = frozenset()
+        if self._pool is not None:
+            self._pool.shutdown(wait=False, cancel_futures=True)
+        self._pool = None
+        self._tiles.clear()
+
+    def _make(self, key: TileKey, step: int) -> None:
+        """Make a tile with the layers of one destination time."""
+        try:
+            with stoppable(lambda: key not in self._wanted):
+                tile = self._tiles.peek(key)
+                if tile is None:
+                    tile = Tile(key, self.pyramid.textures(key))
+                if not tile.is_empty:
+                    tile.layers[step] = tile.textures.layers(step)
+                    tile.textures.store.forget()
+                else:
+                    tile.layers[step] = NO_LAYERS
+                self._tiles.put(key, tile)
+        except Stopped:
+            pass
+        except Exception as error:  # noqa: BLE001 told to whoever draws
+            self.errors[key] = error
+        finally:
+            with self._lock:
+                self._running.pop((key, step), None)
+            self._notify()

@@ -1,0 +1,274 @@
+"""A field at every level of detail, cut into tiles.
+
+Level 0 has all nodes, level l every 2^l-th line of them, with velocities averaged over what is
+left out. The coarsest level is a field of moderate size that is traced whole, the root; a tile of a
+finer level is traced in a window of its level, with a halo around the tile as wide as its paths are
+long. A streak is a fixed number of pixels, so that is the same number of cells at every level, and
+what a tile costs does not depend on the size of the surface.
+
+::
+
+    level 2  (root)      level 1                  level 0
+    ┌───────┐            ┌───────┬───────┐        ┌───┬───┬───┬───┐
+    │       │            │       │       │        │   │   │   │   │   a tile covers a quarter of one
+    └───────┘            └───────┴───────┘        └───┴───┴───┴───┘   tile of the level above it
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex.field import FlowField
+from flowtex.textures import TextureSet
+from flowtex.textures.geometry import SurfaceGeometry
+from flowtex.trace import SliceStore
+
+__all__ = ["BLOCK_CELLS", "TILE_BLOCKS", "Pyramid", "TileKey"]
+
+#: Most nodes, of one time, of a field that is traced whole.
+ROOT_NODES = 150_000
+#: Cells along a side of a block, the smallest part of a tile that is drawn or left out by itself,
+#: and blocks along a side of a tile.
+BLOCK_CELLS, TILE_BLOCKS = 64, 4
+TILE_CELLS = BLOCK_CELLS * TILE_BLOCKS
+#: Length of the paths in cells, by their longer side.
+PATH_CELLS = 32
+#: Lines of a halo beyond the length of the paths; its least and its greatest width.
+HALO_SPARE, LEAST_HALO, MOST_HALO = 3, 16, 256
+#: Rows that are averaged together.
+ROWS = 256
+
+
+class TileKey(NamedTuple):
+    """Which tile: its level, and its row and column among the tiles of that level."""
+
+    level: int
+    row: int
+    column: int
+
+
+class _Level(NamedTuple):
+    """Lines of nodes of a level, numbered as in the field, and the velocity at their nodes."""
+
+    rows: Indices
+    columns: Indices
+    velocity: Floats
+
+
+class Pyramid:
+    """The levels of a field and their tiles.
+
+    Parameters
+    ----------
+    field
+        The flow.
+    parameter
+        As for :func:`flowtex.trace`.
+
+    Attributes
+    ----------
+    depth
+        Level of the root; 0 where the whole field is one.
+    """
+
+    def __init__(self, field: FlowField, parameter: str = "arclength") -> None:
+        self.field, self.parameter = field, parameter
+        self.depth = 0
+        while np.prod([len(_lines(n, self.depth)) for n in field.shape]) > ROOT_NODES:
+            self.depth += 1
+        self._levels: list[_Level] = [
+            _Level(*(np.arange(n) for n in field.shape), velocity=field.velocity)
+        ]
+
+    @cached_property
+    def root(self) -> FlowField:
+        """The field at the coarsest level."""
+        return self._part(self.depth, *(np.arange(n) for n in self.shape(self.depth)))
+
+    @property
+    def blocks(self) -> tuple[int, int]:
+        """Rows and columns of blocks at level 0."""
+        rows, columns = (max(-(-(n - 1) // BLOCK_CELLS), 1) for n in self.field.shape)
+        return rows, columns
+
+    def shape(self, level: int) -> tuple[int, int]:
+        """Number of nodes (J, I) of a level."""
+        rows, columns = (len(_lines(n, level)) for n in self.field.shape)
+        return rows, columns
+
+    def children(self, key: TileKey | None) -> list[TileKey]:
+        """Tiles of the next level that cover a tile, or the root for ``None``."""
+        if key is None:
+            level = self.depth - 1
+            rows, columns = (range(-(-(n - 1) // TILE_CELLS)) for n in self.shape(level))
+        else:
+            level = key.level - 1
+            counts = (-(-(n - 1) // TILE_CELLS) for n in self.shape(level))
+            rows, columns = (
+                range(2 * at, min(2 * at + 2, count))
+                for at, count in zip(key[1:], counts, strict=True)
+            )
+        return [TileKey(level, j, i) for j in rows for i in columns]
+
+    def textures(self, key: TileKey) -> TextureSet:
+        """Return the textures of a tile, whose layers are traced when they are asked for.
+
+        Raises
+        ------
+        KeyError
+            When there is no such tile.
+        """
+        first = [at * TILE_CELLS for at in key[1:]]
+        shape = self.shape(key.level) if 0 <= key.level < self.depth else (0, 0)
+        if not all(0 <= at < n - 1 for at, n in zip(first, shape, strict=True)):
+            msg = f"there is no tile {tuple(key)}; levels are 0 to {self.depth - 1}"
+            raise KeyError(msg)
+        last = [min(at + TILE_CELLS, n - 1) for at, n in zip(first, shape, strict=True)]
+        longest, halo = self._reach(key.level, first, last)
+        lines, drawn = [], []
+        for axis in (0, 1):
+            some = np.arange(first[axis] - halo[axis], last[axis] + halo[axis] + 1)
+            if not self.field.periodic[axis]:
+                some = some[(some >= 0) & (some < shape[axis])]
+            start = first[axis] - int(some[0])
+            lines.append(some)
+            drawn.append(slice(start, start + last[axis] - first[axis] + 1))
+        window = self._part(key.level, *lines)
+        geometry = SurfaceGeometry.of_tile(window, (drawn[0], drawn[1]), self.root.surface)
+        nodes = np.zeros(window.shape, dtype=bool)
+        nodes[geometry.texels] = True
+        store = SliceStore(
+            window,
+            parameter=self.parameter,
+            compose=False,
+            longest=longest,
+            nodes=nodes,
+        )
+        return TextureSet(geometry, store, whole_speed=self._typical_speed)
+
+    @cached_property
+    def _typical_speed(self) -> float:
+        speed = self.root.speed[:, self.root.valid]
+        return float(np.sqrt(np.mean(speed**2))) or 1.0
+
+    def _reach(
+        self, level: int, first: list[int], last: list[int]
+    ) -> tuple[float, tuple[int, int]]:
+        """Length of the paths of a tile, and how many lines beyond its rows and columns they go."""
+        rows, columns = (
+            _lines(n, level)[a : b + 1]
+            for n, a, b in zip(self.field.shape, first, last, strict=True)
+        )
+        at = np.ix_(rows, columns)
+        points, valid = self.field.points[at], self.field.valid[at]
+        sides = []
+        for axis in (0, 1):
+            both = np.moveaxis(valid, axis, 0)
+            size = np.linalg.norm(np.diff(points, axis=axis), axis=-1)
+            known = np.moveaxis(size, axis, 0)[both[1:] & both[:-1]]
+            sides.append(known[known > 0])
+        longest = PATH_CELLS * max(
+            (float(np.percentile(s, 95)) for s in sides if s.size), default=1
+        )
+        widths = [
+            int(np.clip(longest / np.percentile(s, 5) + HALO_SPARE, LEAST_HALO, MOST_HALO))
+            if s.size
+            else LEAST_HALO
+            for s in sides
+        ]
+        return longest, (widths[0], widths[1])
+
+    def _part(self, level: int, rows: Indices, columns: Indices) -> FlowField:
+        """Return some lines of a level, numbered there; those beyond a period are the next one's."""
+        this, field = self._level(level), self.field
+        if len(rows) == len(this.rows) and len(columns) == len(this.columns):
+            periodic = field.periodic
+        else:
+            periodic = (False, False)
+        (turns_j, rows), (turns_i, columns) = (
+            np.divmod(some, len(lines) - 1) if closed and not whole else (np.zeros_like(some), some)
+            for some, lines, closed, whole in zip(
+                (rows, columns), this[:2], field.periodic, periodic, strict=True
+            )
+        )
+        at = np.ix_(this.rows[rows], this.columns[columns])
+        here = np.ix_(rows, columns)
+        p = field.points
+        points = p[at]
+        for axis, turns in ((0, turns_j[:, None, None]), (1, turns_i[None, :, None])):
+            if turns.any():
+                offset = np.mean(np.take(p, -1, axis=axis) - np.take(p, 0, axis=axis), axis=0)
+                points = points + turns * offset
+        return replace(
+            field,
+            points=points,
+            velocity=np.where(field.valid[at][..., None], this.velocity[:, here[0], here[1]], 0.0),
+            valid=field.valid[at],
+            periodic=periodic,
+            has_position=None if field.has_position is None else field.has_position[at],
+            scalars={k: s[:, at[0], at[1]] for k, s in field.scalars.items()},
+        )
+
+    def _level(self, level: int) -> _Level:
+        """Return a level, making those before it first."""
+        while len(self._levels) <= level:
+            fine, depth = self._levels[-1], len(self._levels)
+            rows, columns = (_lines(n, depth) for n in self.field.shape)
+            valid = self.field.valid[np.ix_(fine.rows, fine.columns)]
+            picks = tuple(
+                np.searchsorted(lines, some)
+                for lines, some in ((fine.rows, rows), (fine.columns, columns))
+            )
+            velocity = np.stack(
+                [_averaged(step, valid, picks, self.field.periodic) for step in fine.velocity]
+            )
+            self._levels.append(_Level(rows, columns, velocity))
+        return self._levels[level]
+
+
+def _lines(count: int, level: int) -> Indices:
+    """Every 2^level-th of so many lines, and the last one."""
+    lines = np.arange(0, count, 1 << level)
+    return lines if lines[-1] == count - 1 else np.append(lines, count - 1)
+
+
+def _averaged(
+    velocity: Floats, valid: Bools, picks: tuple[Indices, ...], periodic: tuple[bool, bool]
+) -> Floats:
+    """Velocity (J, I, 3) at some rows and columns, averaged with the lines beside them.
+
+    Weights are a quarter, a half and a quarter along each axis, of the nodes that are valid.
+    """
+    result = np.empty((len(picks[0]), len(picks[1]), velocity.shape[2]))
+    whole = bool(valid.all())
+    for first in range(0, len(picks[0]), ROWS):
+        some = picks[0][first : first + ROWS]
+        weights = np.zeros((len(some), len(picks[1]), 1))
+        total = np.zeros((len(some), *result.shape[1:]))
+        for a in (-1, 0, 1):
+            rows = _beside(some, a, len(velocity), closed=periodic[0])
+            for b in (-1, 0, 1):
+                at = np.ix_(rows, _beside(picks[1], b, velocity.shape[1], closed=periodic[1]))
+                weight = (2 - abs(a)) * (2 - abs(b)) / 16
+                if whole:
+                    total += weight * velocity[at]
+                else:
+                    share = weight * valid[at][..., None]
+                    total += share * velocity[at]
+                    weights += share
+        if not whole:
+            total /= np.where(weights > 0, weights, 1.0)
+        result[first : first + ROWS] = total
+    return result
+
+
+def _beside(lines: Indices, by: int, count: int, *, closed: bool) -> Indices:
+    """Numbers of the lines beside some; a border repeats itself, or the next period begins."""
+    if closed:
+        return np.mod(lines + by, count - 1)
+    return np.clip(lines + by, 0, count - 1)
