@@ -30,6 +30,7 @@ LAYERS: tuple[tuple[str, ...], ...] = (
     ("trace",),
     ("camera",),
     ("textures",),
+    ("tiles",),
     ("rendering",),
     ("diagnostics",),
     ("examples",),

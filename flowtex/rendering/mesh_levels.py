@@ -2,8 +2,8 @@
 
 A surface is cut into blocks of :data:`BLOCK_CELLS` cells a side. Each block is drawn with every
 node, every second, every fourth, ..., up to one cell a block: with as few as keep the error on the
-screen below :data:`MAX_ERROR_PIXELS`. Triangles smaller than a few pixels are shaded several times over,
-so the cost of a frame follows its pixels only without them.
+screen below :data:`MAX_ERROR_PIXELS`. Triangles smaller than a few pixels are shaded several times
+over, so the cost of a frame follows its pixels only without them.
 
 Along the border of two blocks, the finer one moves its extra nodes to those of the coarser one, so
 that no crack opens, also where both belong to tiles of different levels. Where a coarse cell would
@@ -25,6 +25,9 @@ __all__ = ["MAX_ERROR_PIXELS", "MeshLevels", "Region", "join", "mesh_limits"]
 
 #: Distance on the screen between a node and the triangle that stands for it.
 MAX_ERROR_PIXELS = 0.05
+#: What counts of an error of the outline, a quarter of a pixel; and of one along the surface: noise
+#: is looked up where a point lies, and only paths belong to a place that is off by this error.
+OUTLINE_SHARE, SLIDE_SHARE = 0.2, 0.1
 #: Error of a colour, as a share of the range of the colour map.
 MAX_COLOUR_ERROR = 1 / 100
 #: Longest side of a triangle, in heights of the view: single precision interpolates across it.
@@ -61,7 +64,8 @@ class MeshLevels:
     Attributes
     ----------
     error
-        Greatest distance of a node from the triangles of each level, (L, block rows, block columns).
+        Greatest distance of a node from the triangles of each level, (L, rows, columns) of blocks;
+        of its outline, and along the surface, shares of it.
     colour_error
         The same of the colours, as shares of the range of the colour map.
     blocks
@@ -76,7 +80,7 @@ class MeshLevels:
         self._cells, self._periodic = cells, periodic
         self._rows, self._columns = (_Blocks.of(n) for n in self._shape)
         points = np.where(np.isfinite(points), points, 0.0)
-        self.error = self._errors(points)
+        self.error = self._errors(points, _normals(points))
         self.error[self._mixed_levels()] = np.inf
         self.set_colours()
         self.blocks = self._sizes(points)
@@ -97,7 +101,7 @@ class MeshLevels:
 
     @property
     def records(self) -> Floats:
-        """What levels are chosen by, for a client: errors, colour errors and place of each block."""
+        """What levels are chosen by, for a client: errors, colour errors and places of blocks."""
         errors = np.moveaxis(np.concatenate([self.error, self.colour_error]), 0, -1)
         return np.concatenate([errors, self.blocks], axis=-1)
 
@@ -182,11 +186,12 @@ class MeshLevels:
         triangles: Indices = flat[distinct & (flat[:, 0] != flat[:, 2])]
         return triangles
 
-    def _errors(self, values: Floats) -> Floats:
+    def _errors(self, values: Floats, normals: Floats | None = None) -> Floats:
         """Greatest error of the values (J, I, C) in each block at each level, (L, ., .).
 
         A level leaves out every second line of the one before. Its error is at most that one's
-        and what the lines that are left out deviate from their neighbours.
+        and what the lines that are left out deviate from their neighbours. Where there are normals,
+        most counts what is along them.
         """
         count = BLOCK_CELLS.bit_length()
         errors = np.zeros((count, len(self._rows.first), len(self._columns.first)))
@@ -194,30 +199,36 @@ class MeshLevels:
         for level in range(1, count):
             step = 1 << level
             next_rows, next_columns = (_lines(n, step) for n in self._shape)
-            along_rows = self._deviation(values[np.ix_(rows, columns)], rows, next_rows)
-            kept = values[np.ix_(next_rows, columns)]
-            along_columns = self._deviation(kept.swapaxes(0, 1), columns, next_columns).T
+            here, kept = np.ix_(rows, columns), values[np.ix_(next_rows, columns)]
+            along_rows = self._size(_deviation(values[here], rows, next_rows), normals, here)
+            here = np.ix_(next_rows, columns)
+            off = _deviation(kept.swapaxes(0, 1), columns, next_columns).swapaxes(0, 1)
+            along_columns = self._size(off, normals, here)
             twist = kept[:, np.searchsorted(columns, next_columns)]
             twist = twist[1:, 1:] + twist[:-1, :-1] - twist[1:, :-1] - twist[:-1, 1:]
+            here = np.ix_(next_rows[:-1], next_columns[:-1])
             errors[level] = errors[level - 1]
             errors[level] += self._greatest(along_rows, rows, columns)
             errors[level] += self._greatest(along_columns, next_rows, columns)
-            size = np.linalg.norm(twist, axis=-1) / 4
+            size = self._size(twist / 4, normals, here, border=False)
             errors[level] += self._greatest(size, next_rows[:-1], next_columns[:-1])
             rows, columns = next_rows, next_columns
         return errors
 
     @staticmethod
-    def _deviation(values: Floats, lines: Indices, kept: Indices) -> Floats:
-        """Distance of each line of values from those that are kept beside it, by axis 0."""
-        after = np.clip(np.searchsorted(kept, lines), 1, max(len(kept) - 1, 1))
-        if len(kept) == 1:
-            return np.zeros(values.shape[:2])
-        low, high = kept[after - 1], kept[after]
-        share = ((lines - low) / (high - low))[:, None, None]
-        at = np.searchsorted(lines, low), np.searchsorted(lines, high)
-        between = values[at[0]] * (1 - share) + values[at[1]] * share
-        return np.asarray(np.linalg.norm(values - between, axis=-1))
+    def _size(
+        off: Floats, normals: Floats | None, at: tuple[Indices, ...], *, border: bool = True
+    ) -> Floats:
+        """Size of errors (J, I, C) at some nodes, where those along the surface count less."""
+        size: Floats = np.linalg.norm(off, axis=-1)
+        if normals is None:
+            return size
+        across = np.abs(np.sum(off * normals[at], axis=-1))
+        less: Floats = np.maximum(across, SLIDE_SHARE * size)
+        if border:
+            for side in ((0,), (-1,), (slice(None), 0), (slice(None), -1)):
+                less[side] = np.maximum(less[side], OUTLINE_SHARE * size[side])
+        return less
 
     def _greatest(self, values: Floats, rows: Indices, columns: Indices) -> Floats:
         """Greatest value in each block, of values on lines of nodes; a border counts for both."""
@@ -290,10 +301,36 @@ def mesh_limits() -> dict[str, float]:
     }
 
 
+def _normals(points: Floats) -> Floats:
+    """Unit normals at the nodes, (J, I, 3); zero where there is none."""
+    if min(points.shape[:2]) < 2:
+        return np.zeros_like(points)
+    # Only directions count, so no number is too large to be squared.
+    points = points / max(float(np.abs(points).max()), np.finfo(float).tiny)
+    normals = np.cross(np.gradient(points, axis=1), np.gradient(points, axis=0))
+    length = np.linalg.norm(normals, axis=-1, keepdims=True)
+    return np.asarray(normals / np.where(length > 0, length, 1.0))
+
+
+def _deviation(values: Floats, lines: Indices, kept: Indices) -> Floats:
+    """How each line of values differs from those that are kept beside it, by axis 0."""
+    if len(kept) == 1:
+        return np.zeros_like(values)
+    after = np.clip(np.searchsorted(kept, lines), 1, max(len(kept) - 1, 1))
+    low, high = kept[after - 1], kept[after]
+    share = ((lines - low) / (high - low))[:, None, None]
+    at = np.searchsorted(lines, low), np.searchsorted(lines, high)
+    return np.asarray(values - (values[at[0]] * (1 - share) + values[at[1]] * share))
+
+
 def _lines(nodes: int, step: int) -> Indices:
     """Every so many lines of nodes in each block, and the last one."""
     lines = np.arange(0, nodes, step)
     return lines if lines[-1] == nodes - 1 else np.append(lines, nodes - 1)
+
+
+#: More doublings than there are.
+NOT_DRAWN = 99
 
 
 class Region(NamedTuple):
@@ -327,7 +364,8 @@ def join(
     periodic
         Whether the first line of blocks follows on the last one, along j and i.
     """
-    nodes = np.zeros(blocks, dtype=np.int64)  # doublings from the finest nodes to those here
+    # Doublings from the finest nodes to those here; what is not drawn is no neighbour.
+    nodes = np.full(blocks, NOT_DRAWN)
     for part in parts:
         _put(nodes, part, np.full_like(part.levels, part.step))
     finest = nodes.copy()

@@ -78,7 +78,7 @@ class Padding:
     @property
     def start(self) -> int:
         """Texel that holds the first of them."""
-        return self.texels.start - self.first + self.before
+        return int(self.texels.start) - self.first + self.before
 
     @property
     def coordinates(self) -> Floats:

@@ -3,6 +3,22 @@
 from __future__ import annotations
 
 from flowtex.tiles.loader import Tile, TileLoader
-from flowtex.tiles.pyramid import BLOCK_CELLS, TILE_BLOCKS, Pyramid, TileKey
+from flowtex.tiles.pyramid import (
+    BLOCK_CELLS,
+    PATH_CELLS,
+    TILE_BLOCKS,
+    Pyramid,
+    TileKey,
+    shared_pyramid,
+)
 
-__all__ = ["BLOCK_CELLS", "TILE_BLOCKS", "Pyramid", "Tile", "TileKey", "TileLoader"]
+__all__ = [
+    "BLOCK_CELLS",
+    "PATH_CELLS",
+    "TILE_BLOCKS",
+    "Pyramid",
+    "Tile",
+    "TileKey",
+    "TileLoader",
+    "shared_pyramid",
+]

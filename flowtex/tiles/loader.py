@@ -12,7 +12,8 @@ import threading
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, field
-from functools import cached_property
+
+import numpy as np
 
 from flowtex._util.array_types import Floats32
 from flowtex._util.cache import ByteCache
@@ -23,29 +24,40 @@ from flowtex.tiles.pyramid import Pyramid, TileKey
 __all__ = ["Tile", "TileLoader"]
 
 #: Memory of the tiles that are kept, in bytes.
-BUDGET_BYTES = 512_000_000
+BUDGET_BYTES = 768_000_000
+#: Memory of a texel, whose four numbers have single precision first and half of it later.
+TEXEL_BYTES = 16
 #: Tiles that are made at once, at most.
 MOST_THREADS = 4
 
 
 @dataclass(eq=False)
 class Tile:
-    """One tile with the layers of the destination times that were asked for."""
+    """One tile with the layers of the destination times that were asked for.
+
+    ``textures`` are None where nothing of it is drawn.
+    """
 
     key: TileKey
-    textures: TextureSet
-    layers: dict[int, Floats32] = field(default_factory=dict)
+    textures: TextureSet | None
+    layers: dict[int, Floats32 | None] = field(default_factory=dict)
 
     @property
     def nbytes(self) -> int:
-        """Memory that it takes, on the graphics card and beside it."""
-        sizes = self.textures.geometry.rows.size * self.textures.geometry.columns.size
-        return sizes * self.textures.count * 16 * max(len(self.layers), 1)
+        """Memory that it takes, on the graphics card or on its way there."""
+        if self.textures is None:
+            return 0
+        geometry = self.textures.geometry
+        texels = geometry.rows.size * geometry.columns.size * self.textures.count
+        return texels * TEXEL_BYTES * max(len(self.layers), 1)
 
-    @cached_property
-    def is_empty(self) -> bool:
-        """Whether nothing of it is drawn."""
-        return not self.textures.geometry.cells.any()
+    def take(self, step: int) -> Floats32:
+        """Hand the layers of a destination time over; they are not kept."""
+        layers, self.layers[step] = self.layers.get(step), None
+        if layers is None and self.textures is not None:
+            layers = self.textures.layers(step)
+            self.textures.store.forget()
+        return np.empty((0, 0, 0, 4), np.float32) if layers is None else layers
 
 
 class TileLoader:
@@ -70,6 +82,10 @@ class TileLoader:
         self._running: dict[tuple[TileKey, int], Future[None]] = {}
         self._lock = threading.Lock()
         self._pool: ThreadPoolExecutor | None = None
+
+    def keeps(self, key: TileKey) -> bool:
+        """Whether a tile is in memory."""
+        return key in self._tiles
 
     def get(self, key: TileKey, steps: Sequence[int]) -> Tile | None:
         """Return a tile that has the layers of these destination times, or ``None``."""
@@ -132,15 +148,11 @@ class TileLoader:
                 tile = self._tiles.peek(key)
                 if tile is None:
                     tile = Tile(key, self.pyramid.textures(key))
-                if not tile.is_empty:
-                    tile.layers[step] = tile.textures.layers(step)
-                    tile.textures.store.forget()
-                else:
-                    tile.layers[step] = NO_LAYERS
+                tile.layers[step] = None if tile.textures is None else tile.take(step)
                 self._tiles.put(key, tile)
         except Stopped:
             pass
-        except Exception as error:  # noqa: BLE001 told to whoever draws
+        except Exception as error:
             self.errors[key] = error
         finally:
             with self._lock:

@@ -16,6 +16,7 @@ what a tile costs does not depend on the size of the surface.
 
 from __future__ import annotations
 
+import threading
 from dataclasses import replace
 from functools import cached_property
 from typing import NamedTuple
@@ -23,12 +24,13 @@ from typing import NamedTuple
 import numpy as np
 
 from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex._util.cache import WeakCache
 from flowtex.field import FlowField
 from flowtex.textures import TextureSet
 from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.trace import SliceStore
 
-__all__ = ["BLOCK_CELLS", "TILE_BLOCKS", "Pyramid", "TileKey"]
+__all__ = ["BLOCK_CELLS", "PATH_CELLS", "TILE_BLOCKS", "Pyramid", "TileKey", "shared_pyramid"]
 
 #: Most nodes, of one time, of a field that is traced whole.
 ROOT_NODES = 150_000
@@ -81,8 +83,9 @@ class Pyramid:
         self.depth = 0
         while np.prod([len(_lines(n, self.depth)) for n in field.shape]) > ROOT_NODES:
             self.depth += 1
+        self._lock = threading.Lock()
         self._levels: list[_Level] = [
-            _Level(*(np.arange(n) for n in field.shape), velocity=field.velocity)
+            _Level(np.arange(field.shape[0]), np.arange(field.shape[1]), field.velocity)
         ]
 
     @cached_property
@@ -97,7 +100,7 @@ class Pyramid:
         return rows, columns
 
     def shape(self, level: int) -> tuple[int, int]:
-        """Number of nodes (J, I) of a level."""
+        """Return the number of nodes (J, I) of a level."""
         rows, columns = (len(_lines(n, level)) for n in self.field.shape)
         return rows, columns
 
@@ -115,8 +118,10 @@ class Pyramid:
             )
         return [TileKey(level, j, i) for j in rows for i in columns]
 
-    def textures(self, key: TileKey) -> TextureSet:
+    def textures(self, key: TileKey) -> TextureSet | None:
         """Return the textures of a tile, whose layers are traced when they are asked for.
+
+        ``None`` stands for a tile of which nothing is drawn.
 
         Raises
         ------
@@ -129,7 +134,16 @@ class Pyramid:
             msg = f"there is no tile {tuple(key)}; levels are 0 to {self.depth - 1}"
             raise KeyError(msg)
         last = [min(at + TILE_CELLS, n - 1) for at, n in zip(first, shape, strict=True)]
-        longest, halo = self._reach(key.level, first, last)
+        at = np.ix_(
+            *(
+                _lines(n, key.level)[a : b + 1]
+                for n, a, b in zip(self.field.shape, first, last, strict=True)
+            )
+        )
+        valid = self.field.valid[at]
+        if not (valid[:-1, :-1] & valid[1:, :-1] & valid[:-1, 1:] & valid[1:, 1:]).any():
+            return None
+        longest, halo = _reach(self.field.points[at], valid)
         lines, drawn = [], []
         for axis in (0, 1):
             some = np.arange(first[axis] - halo[axis], last[axis] + halo[axis] + 1)
@@ -156,35 +170,8 @@ class Pyramid:
         speed = self.root.speed[:, self.root.valid]
         return float(np.sqrt(np.mean(speed**2))) or 1.0
 
-    def _reach(
-        self, level: int, first: list[int], last: list[int]
-    ) -> tuple[float, tuple[int, int]]:
-        """Length of the paths of a tile, and how many lines beyond its rows and columns they go."""
-        rows, columns = (
-            _lines(n, level)[a : b + 1]
-            for n, a, b in zip(self.field.shape, first, last, strict=True)
-        )
-        at = np.ix_(rows, columns)
-        points, valid = self.field.points[at], self.field.valid[at]
-        sides = []
-        for axis in (0, 1):
-            both = np.moveaxis(valid, axis, 0)
-            size = np.linalg.norm(np.diff(points, axis=axis), axis=-1)
-            known = np.moveaxis(size, axis, 0)[both[1:] & both[:-1]]
-            sides.append(known[known > 0])
-        longest = PATH_CELLS * max(
-            (float(np.percentile(s, 95)) for s in sides if s.size), default=1
-        )
-        widths = [
-            int(np.clip(longest / np.percentile(s, 5) + HALO_SPARE, LEAST_HALO, MOST_HALO))
-            if s.size
-            else LEAST_HALO
-            for s in sides
-        ]
-        return longest, (widths[0], widths[1])
-
     def _part(self, level: int, rows: Indices, columns: Indices) -> FlowField:
-        """Return some lines of a level, numbered there; those beyond a period are the next one's."""
+        """Return some lines of a level, by their numbers, which may lie beyond a period."""
         this, field = self._level(level), self.field
         if len(rows) == len(this.rows) and len(columns) == len(this.columns):
             periodic = field.periodic
@@ -216,6 +203,10 @@ class Pyramid:
 
     def _level(self, level: int) -> _Level:
         """Return a level, making those before it first."""
+        with self._lock:
+            return self._made(level)
+
+    def _made(self, level: int) -> _Level:
         while len(self._levels) <= level:
             fine, depth = self._levels[-1], len(self._levels)
             rows, columns = (_lines(n, depth) for n in self.field.shape)
@@ -231,10 +222,34 @@ class Pyramid:
         return self._levels[level]
 
 
+_pyramids: WeakCache[Pyramid] = WeakCache()
+
+
+def shared_pyramid(field: FlowField, parameter: str) -> Pyramid:
+    """Return the pyramid of a field, one for all that show the field at the same time."""
+    # A pyramid keeps its field alive, so the number of the field is its own meanwhile.
+    return _pyramids.get((id(field), parameter), lambda: Pyramid(field, parameter))
+
+
 def _lines(count: int, level: int) -> Indices:
     """Every 2^level-th of so many lines, and the last one."""
     lines = np.arange(0, count, 1 << level)
     return lines if lines[-1] == count - 1 else np.append(lines, count - 1)
+
+
+def _reach(points: Floats, valid: Bools) -> tuple[float, tuple[int, int]]:
+    """Length of the paths of a tile (J, I, 3), and how many rows and columns beyond it they go."""
+    sides = []
+    for axis in (0, 1):
+        both = np.moveaxis(valid, axis, 0)
+        size = np.linalg.norm(np.diff(points, axis=axis), axis=-1)
+        known = np.moveaxis(size, axis, 0)[both[1:] & both[:-1]]
+        sides.append(np.percentile(known[known > 0], (5, 95)) if known.any() else np.ones(2))
+    longest = PATH_CELLS * max(float(most) for _, most in sides)
+    rows, columns = (
+        int(np.clip(longest / least + HALO_SPARE, LEAST_HALO, MOST_HALO)) for least, _ in sides
+    )
+    return longest, (rows, columns)
 
 
 def _averaged(

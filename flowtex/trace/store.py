@@ -84,6 +84,10 @@ class SliceStore:
         with self._lock:
             return self._cache.get(step, partial(self._trace, step))
 
+    def forget(self) -> None:
+        """Drop the slices that can be traced again."""
+        self._cache.clear()
+
     def _trace(self, step: int) -> TraceSlices:
         if self._whole is not None:
             return self._whole.at_step(step)
@@ -101,7 +105,10 @@ class SliceStore:
         return self._trace_with(steps=[step])
 
     def _trace_with(self, **options: Any) -> TraceSlices:
-        return trace(self.field, lags=self.lags, unit=self.unit, nodes=self._nodes, **options)
+        # A part of a surface is one of many, whose bars would tell nothing.
+        alone = self._nodes is None
+        parts: dict[str, Any] = {"nodes": self._nodes, "progress": alone}
+        return trace(self.field, lags=self.lags, unit=self.unit, **parts, **options)
 
 
 _stores: WeakCache[SliceStore] = WeakCache()

@@ -72,11 +72,7 @@ class Pane:
         self._mapper.SetLookupTable(table)
         self._mapper.scalar_range = span
         self._mapper.SelectColorArray(COLOUR_ARRAY)
-        self.write_colours(name)
-
-    def write_colours(self, name: str) -> None:
-        """Put the scalar's values at the time that is shown on the nodes."""
-        self.mesh.point_data[COLOUR_ARRAY] = self.handle.scene.scalar(name).ravel()
+        self.handle.set_scalars(COLOUR_ARRAY, name)
 
 
 class Viewport:
@@ -154,7 +150,7 @@ class Viewport:
     @property
     def flat(self) -> bool:
         """Whether the surface lies in a plane."""
-        return self.field.surface.frame is not None
+        return self.handle.scene.whole.surface.frame is not None
 
     @property
     def size(self) -> tuple[int, int]:
@@ -356,8 +352,6 @@ class Viewport:
         """Show another time of a field that varies in time."""
         for pane in self.panes:
             pane.handle.time = time
-            if self.colour:
-                pane.write_colours(self.colour)
 
     def trace(self) -> None:
         """Trace what the time that is shown needs, so that drawing need not wait for it."""
@@ -400,7 +394,7 @@ class Viewport:
 
     def home(self, zoom: float = 1.0, focus: tuple[float, ...] | None = None) -> None:
         """Look at the whole surface, or closer at a point of it."""
-        surface, aspect = self.field.surface, self.aspect
+        surface, aspect = self.handle.scene.whole.surface, self.aspect
         self.whole = self._home = Camera.fit(surface, aspect)
         near = zoom != 1.0 or focus is not None
         self.camera = Camera.fit(surface, aspect, zoom=zoom, focus=focus) if near else self.whole
@@ -424,7 +418,8 @@ class Viewport:
     def look_from(self, toward: tuple[float, float, float], up: tuple[float, float, float]) -> None:
         """Look at the whole of a curved surface from a side."""
         self.home()
-        self.camera = self.whole = Camera.fit(self.field.surface, self.aspect, toward=toward, up=up)
+        surface = self.handle.scene.whole.surface
+        self.camera = self.whole = Camera.fit(surface, self.aspect, toward=toward, up=up)
 
     def pan(self, dx: float, dy: float) -> None:
         """Move what is seen by a part of the view."""
@@ -443,7 +438,7 @@ class Viewport:
 
     def plane_view(self) -> Floats | None:
         """Affine map from the surface's plane to the view, (3, 3); ``None`` when it has none."""
-        return plane_to_view(self.field.surface, self.camera, self.aspect)
+        return plane_to_view(self.handle.scene.whole.surface, self.camera, self.aspect)
 
     def surface_point(self, x: float, y: float) -> Floats | None:
         """Point of the surface at a place of the view, from -1 to 1; ``None`` beside it.
@@ -451,7 +446,7 @@ class Viewport:
         A flat surface has a point everywhere in its plane.
         """
         start, direction = self.camera.ray(x, y, self.aspect)
-        surface = self.field.surface
+        surface = self.handle.scene.whole.surface
         if surface.frame is None:
             reach = self.camera.distance + 2 * surface.extent
             points, _ = self.panes[0].mesh.ray_trace(

@@ -1,0 +1,296 @@
+"""One flow in a PyVista renderer: its surface, whole or in tiles, each an actor with a texture.
+
+The actor that PyVista knows draws the whole surface, or of a large one the coarsest level. Where a
+view asks for more, tiles are drawn in place of its triangles, with its properties, colours and
+position; they come and go with the view.
+"""
+
+from __future__ import annotations
+
+import weakref
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import pyvista as pv
+
+from flowtex._util.array_types import Floats
+from flowtex.field import FlowField
+from flowtex.rendering.mesh_levels import MeshLevels, Region, join
+from flowtex.rendering.tile_choice import TileView, cell_pixels, choose_tiles
+from flowtex.rendering.uniforms import ViewState
+from flowtex.rendering.vtk.layer import FlowLayer
+from flowtex.rendering.vtk.mesh import FlowMapper, set_attributes, surface_mesh
+from flowtex.settings import Settings
+from flowtex.textures import TextureSet
+from flowtex.tiles import TILE_BLOCKS, Pyramid, Tile, TileKey, TileLoader
+
+__all__ = ["FlowSurface"]
+
+
+@dataclass(eq=False)
+class _TileActor:
+    """A tile as it is drawn."""
+
+    tile: Tile
+    actor: pv.Actor
+    mesh: pv.PolyData
+    layer: FlowLayer
+
+
+class FlowSurface:
+    """Draws a flow by an actor whose mesh comes from :func:`surface_mesh`, and by tiles.
+
+    Parameters
+    ----------
+    actor
+        The actor; its mapper draws polygons.
+    renderer
+        The PyVista renderer that shows it.
+    textures
+        What to draw; of a pyramid, the textures of its root.
+    settings
+        How to draw it; read before each frame.
+    pyramid
+        The tiles of a large surface.
+
+    Attributes
+    ----------
+    view
+        Clock, density and time of the next frame.
+    patient
+        Whether a frame waits for the tiles that it asks for, or is drawn with those that are there.
+    """
+
+    def __init__(
+        self,
+        actor: pv.Actor,
+        renderer: Any,
+        textures: TextureSet,
+        settings: Settings,
+        pyramid: Pyramid | None = None,
+    ) -> None:
+        self._actor, self._renderer, self._settings = actor, weakref.ref(renderer), settings
+        self._base = FlowLayer(actor, renderer, textures, settings)
+        self._moment = (0, 0, 0.0)
+        self._scalars: tuple[str, Callable[[FlowField], Floats]] | None = None
+        self._drawn: tuple[Any, ...] = ()
+        self._tiles: dict[TileKey, _TileActor] = {}
+        self._loader = None if pyramid is None else TileLoader(pyramid)
+        self.patient = True
+        self._observed = [
+            (event, renderer.AddObserver(event, self._observer(name)))
+            for event, name in (("StartEvent", "_before_frame"), ("EndEvent", "_after_frame"))
+        ]
+
+    @property
+    def view(self) -> ViewState:
+        """Clock, density and time of the next frame."""
+        return self._base.view
+
+    @property
+    def busy(self) -> bool:
+        """Whether tiles that the last frame has asked for are on their way."""
+        return self._loader is not None and self._loader.busy
+
+    def set_textures(self, textures: TextureSet, pyramid: Pyramid | None = None) -> None:
+        """Draw another texture set of the same flow from now on."""
+        self._drop(list(self._tiles))
+        if self._loader is not None:
+            self._loader.close()
+        self._loader = None if pyramid is None else TileLoader(pyramid)
+        self._drawn = ()
+        if textures.geometry.shape == self._base.textures.geometry.shape:
+            set_attributes(self._actor.mapper.dataset, textures)
+            self._base.set_textures(textures)
+            return
+        # Another level is the whole surface now, with other nodes.
+        view = self._base.view
+        self._base.close()
+        self._actor.mapper.SetInputData(surface_mesh(textures))
+        self._base = FlowLayer(self._actor, self._renderer(), textures, self._settings)
+        self._base.view = replace(view, anchor=np.zeros(3))
+        self._base.set_moment(*self._moment)
+        self.write_scalars()
+
+    def set_moment(self, before: int, after: int, between: float) -> None:
+        """Show the time between two destination times of the slices."""
+        self._moment = (before, after, between)
+        self._base.set_moment(before, after, between)
+
+    def set_scalars(self, name: str, values: Callable[[FlowField], Floats]) -> None:
+        """Have the values that a function gives for a field (J, I) as a point array."""
+        self._scalars = (name, values)
+        self.write_scalars()
+
+    def write_scalars(self) -> None:
+        """Ask for the values anew, since they have changed."""
+        self._write_scalars(self._base, self._actor.mapper.dataset)
+        for drawn in self._tiles.values():
+            self._write_scalars(drawn.layer, drawn.mesh)
+
+    def close(self) -> None:
+        """Take everything out of the renderer again, and free the graphics card's memory."""
+        renderer = self._renderer()
+        if renderer is not None:
+            for _, tag in self._observed:
+                renderer.RemoveObserver(tag)
+        self._drop(list(self._tiles))
+        if self._loader is not None:
+            self._loader.close()
+        self._base.close()
+
+    def _observer(self, name: str) -> Any:
+        """Return a callback that does not keep this surface alive."""
+        this = weakref.WeakMethod(getattr(self, name))
+
+        def call(caller: Any, event: str) -> None:
+            del caller, event
+            method = this()
+            if method is not None:
+                method()
+
+        return call
+
+    def _write_scalars(self, layer: FlowLayer, mesh: pv.PolyData) -> None:
+        if self._scalars is not None:
+            name, values = self._scalars
+            geometry = layer.textures.geometry
+            mesh.point_data[name] = values(geometry.field)[geometry.drawn].ravel()
+
+    def _before_frame(self) -> None:
+        """Choose tiles, shaders and triangles for the camera of the frame."""
+        renderer = self._renderer()
+        if renderer is None or not self._actor.GetVisibility():
+            self._show([])
+            return
+        self._base.look()
+        view = self._tile_view(renderer)
+        chosen = self._choose(view)
+        self._show(chosen)
+        layers: dict[TileKey | None, FlowLayer] = {None: self._base}
+        layers |= {key: self._tiles[key].layer for key in chosen}
+        for key in chosen:
+            layer = self._tiles[key].layer
+            layer.view = replace(self._base.view, anchor=layer.view.anchor)
+            layer.set_moment(*self._moment)
+            layer.look()
+        self._set_triangles(layers, view)
+
+    def _after_frame(self) -> None:
+        for layer in (self._base, *(drawn.layer for drawn in self._tiles.values())):
+            layer.after_frame()
+
+    def _choose(self, view: TileView) -> list[TileKey]:
+        """Return the tiles to draw, each after the one that it refines, and ask for the others."""
+        loader = self._loader
+        if loader is None:
+            return []
+        steps = sorted({*self._moment[:2]})
+        wanted: list[TileKey] = []
+        for _ in range(loader.pyramid.depth + 1):
+            before = wanted
+            wanted = choose_tiles(loader.pyramid, view, self._mesh_of)
+            loader.request(wanted, steps)
+            if not self.patient:
+                break
+            loader.wait()
+            for key in wanted:
+                self._ready(key, steps)
+            if wanted == before:
+                break
+        for key in [key for key in self._tiles if not loader.keeps(key)]:
+            self._drop([key])
+        return [key for key in wanted if self._ready(key, steps)]
+
+    def _tile_view(self, renderer: Any) -> TileView:
+        """Return what of the camera decides on tiles, in the mesh's coordinates."""
+        eye, half = self._base.eye_and_half_height(renderer.GetActiveCamera())
+        width, height = renderer.GetSize()
+        planes = [0.0] * 24
+        renderer.GetActiveCamera().GetFrustumPlanes(width / max(height, 1), planes)
+        matrix = self._actor.GetMatrix()
+        placed = np.array([[matrix.GetElement(r, c) for c in range(4)] for r in range(4)])
+        sides = np.reshape(planes, (6, 4))[:4] @ placed  # not those before and behind
+        pixels = height / self.view.density
+        return TileView(eye, half, pixels, sides, cell_pixels(self._settings))
+
+    def _mesh_of(self, key: TileKey | None) -> MeshLevels | None:
+        if key is None:
+            return self._base.mesh_levels
+        drawn = self._tiles.get(key)
+        return None if drawn is None else drawn.layer.mesh_levels
+
+    def _ready(self, key: TileKey, steps: list[int]) -> bool:
+        """Whether a tile can be drawn, making its actor first."""
+        tile = None if self._loader is None else self._loader.get(key, steps)
+        if tile is None or tile.textures is None:
+            return False
+        if key not in self._tiles:
+            self._tiles[key] = self._actor_of(tile, tile.textures)
+        return True
+
+    def _actor_of(self, tile: Tile, textures: TextureSet) -> _TileActor:
+        """Make the actor of a tile, with the properties of the surface's own one."""
+        renderer = self._renderer()
+        mesh = surface_mesh(textures)
+        actor = pv.Actor(mapper=FlowMapper(mesh))
+        actor.SetProperty(self._actor.prop)
+        actor.SetUserMatrix(self._actor.GetMatrix())
+        layer = FlowLayer(actor, renderer, textures, self._settings, layers=tile.take)
+        self._write_scalars(layer, mesh)
+        return _TileActor(tile, actor, mesh, layer)
+
+    def _show(self, keys: list[TileKey]) -> None:
+        """Have these tiles in the renderer and no others."""
+        renderer, base = self._renderer(), self._actor
+        if renderer is None:
+            return
+        for key, drawn in self._tiles.items():
+            shown = renderer.HasViewProp(drawn.actor)
+            if (key in keys) != bool(shown):
+                (renderer.AddActor if key in keys else renderer.RemoveActor)(drawn.actor)
+            if key in keys:
+                drawn.layer.follow(base.mapper)
+                drawn.actor.SetPickable(base.GetPickable())
+
+    def _drop(self, keys: list[TileKey]) -> None:
+        renderer = self._renderer()
+        for key in keys:
+            drawn = self._tiles.pop(key)
+            if renderer is not None:
+                renderer.RemoveActor(drawn.actor)
+            drawn.layer.close()
+
+    def _set_triangles(self, layers: dict[TileKey | None, FlowLayer], view: TileView) -> None:
+        """Draw as few triangles as the view needs, without a crack between tiles."""
+        renderer = self._renderer()
+        depth = 0 if self._loader is None else self._loader.pyramid.depth
+        regions: dict[TileKey | None, Region] = {}
+        for key, layer in layers.items():
+            levels = layer.choose_levels(renderer, view)
+            if key is None:
+                regions[key] = Region(depth, 0, 0, levels)
+                continue
+            at = (TILE_BLOCKS * key.row << key.level, TILE_BLOCKS * key.column << key.level)
+            regions[key] = Region(key.level, *at, levels)
+            parent = TileKey(key.level + 1, key.row // 2, key.column // 2)
+            above = regions.get(parent) or regions[None]
+            row, column = (
+                (here - there) >> above.step
+                for here, there in zip(at, (above.row, above.column), strict=True)
+            )
+            half = TILE_BLOCKS // 2
+            above.levels[row : row + half, column : column + half] = -1
+        drawn = tuple((key, region.levels.tobytes()) for key, region in regions.items())
+        if drawn == self._drawn:
+            return
+        geometry = self._base.textures.geometry
+        blocks = self._base.mesh_levels.blocks.shape[:2]
+        if self._loader is not None:
+            blocks = self._loader.pyramid.blocks
+        joins = join(list(regions.values()), (blocks[0], blocks[1]), geometry.periodic)
+        for (key, region), borders in zip(regions.items(), joins, strict=True):
+            layers[key].set_triangles(region.levels, borders)
+        self._drawn = drawn
