@@ -327,6 +327,11 @@ class FlowField:
         """Share of the flow that is normal to the surface and cannot be drawn on it, 0 to 1."""
         return self.index_velocity.normal_share
 
+    def forget(self) -> None:
+        """Drop what was derived from the arrays and can be computed again."""
+        for name in ("surface", "index_velocity"):
+            self.__dict__.pop(name, None)
+
     def at_step(self, step: int) -> FlowField:
         """Return one time step, as for :meth:`step_number`, as a steady field."""
         step = self.step_number(step)

@@ -19,7 +19,8 @@ from typing import NamedTuple
 import numpy as np
 
 from flowtex._util.array_types import Bools, Floats, Indices, Ints
-from flowtex.tiles import BLOCK_CELLS
+from flowtex.textures import TextureSet
+from flowtex.tiles import BLOCK_CELLS, block_places
 
 __all__ = ["MAX_ERROR_PIXELS", "MeshLevels", "Region", "join", "mesh_limits"]
 
@@ -83,7 +84,13 @@ class MeshLevels:
         self.error = self._errors(points, _normals(points))
         self.error[self._mixed_levels()] = np.inf
         self.set_colours()
-        self.blocks = self._sizes(points)
+        self.blocks = block_places(points)
+
+    @classmethod
+    def of(cls, textures: TextureSet) -> MeshLevels:
+        """Return the levels of what a texture set draws."""
+        geometry = textures.geometry
+        return cls(geometry.points, geometry.cells, geometry.periodic)
 
     def set_colours(self, *colours: Floats) -> None:
         """Count the errors of values that are interpolated between the nodes as well.
@@ -262,33 +269,6 @@ class MeshLevels:
             mixed[level] = mixed[level - 1] | (reduced > 0)
         return mixed
 
-    def _sizes(self, points: Floats) -> Floats:
-        """Centre and radius of each block, and the longest side of its cells."""
-        rows, columns = self._rows, self._columns
-        corners = np.stack(
-            [
-                points[np.ix_(r, c)]
-                for r in (rows.first, rows.first + rows.cells)
-                for c in (columns.first, columns.first + columns.cells)
-            ]
-        )
-        center = corners.mean(axis=0)
-        lines = (np.arange(self._shape[0]), np.arange(self._shape[1]))
-        side = np.zeros(self._shape)
-        side[:-1] = np.linalg.norm(np.diff(points, axis=0), axis=-1)
-        across = np.linalg.norm(np.diff(points, axis=1), axis=-1)
-        side[:, :-1] = np.maximum(side[:, :-1], across)
-        size = self._greatest(side, *lines)
-        block_of = (
-            np.repeat(np.arange(len(rows.first)), np.append(rows.cells[:-1], rows.cells[-1] + 1)),
-            np.repeat(
-                np.arange(len(columns.first)), np.append(columns.cells[:-1], columns.cells[-1] + 1)
-            ),
-        )
-        away = np.linalg.norm(points - center[np.ix_(*block_of)], axis=-1)
-        radius = self._greatest(away, *lines) + size
-        return np.concatenate([center, radius[..., None], size[..., None]], axis=-1)
-
 
 def mesh_limits() -> dict[str, float]:
     """Numbers by which a client chooses the levels itself, for JSON."""
@@ -302,7 +282,7 @@ def mesh_limits() -> dict[str, float]:
 
 
 def _normals(points: Floats) -> Floats:
-    """Unit normals at the nodes, (J, I, 3); zero where there is none."""
+    """Return unit normals at the nodes, (J, I, 3); zero where there is none."""
     if min(points.shape[:2]) < 2:
         return np.zeros_like(points)
     # Only directions count, so no number is too large to be squared.

@@ -9,6 +9,7 @@ from flowtex.tiles.pyramid import (
     TILE_BLOCKS,
     Pyramid,
     TileKey,
+    block_places,
     shared_pyramid,
 )
 
@@ -20,5 +21,6 @@ __all__ = [
     "Tile",
     "TileKey",
     "TileLoader",
+    "block_places",
     "shared_pyramid",
 ]

@@ -12,6 +12,7 @@ import threading
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -24,9 +25,10 @@ from flowtex.tiles.pyramid import Pyramid, TileKey
 __all__ = ["Tile", "TileLoader"]
 
 #: Memory of the tiles that are kept, in bytes.
-BUDGET_BYTES = 768_000_000
-#: Memory of a texel, whose four numbers have single precision first and half of it later.
-TEXEL_BYTES = 16
+BUDGET_BYTES = 1_000_000_000
+#: Memory of a texel, whose four numbers have single precision first and half of it later, and of a
+#: node beside it.
+TEXEL_BYTES, NODE_BYTES = 16, 200
 #: Tiles that are made at once, at most.
 MOST_THREADS = 4
 
@@ -35,11 +37,13 @@ MOST_THREADS = 4
 class Tile:
     """One tile with the layers of the destination times that were asked for.
 
-    ``textures`` are None where nothing of it is drawn.
+    ``textures`` are None where nothing of it is drawn; ``prepared`` is what whoever draws has made of
+    them.
     """
 
     key: TileKey
     textures: TextureSet | None
+    prepared: Any = None
     layers: dict[int, Floats32 | None] = field(default_factory=dict)
 
     @property
@@ -49,7 +53,8 @@ class Tile:
             return 0
         geometry = self.textures.geometry
         texels = geometry.rows.size * geometry.columns.size * self.textures.count
-        return texels * TEXEL_BYTES * max(len(self.layers), 1)
+        nodes = geometry.field.valid.size
+        return texels * TEXEL_BYTES * max(len(self.layers), 1) + nodes * NODE_BYTES
 
     def take(self, step: int) -> Floats32:
         """Hand the layers of a destination time over; they are not kept."""
@@ -63,6 +68,7 @@ class Tile:
 class TileLoader:
     """Makes tiles of a pyramid in threads.
 
+    ``prepare`` makes of textures, in a thread, what is needed to draw them beside their layers.
     ``notify`` is called, in a thread, whenever a tile has become ready or has failed. Errors are
     kept in ``errors`` by tile; a tile that failed is not tried again.
     """
@@ -70,13 +76,14 @@ class TileLoader:
     def __init__(
         self,
         pyramid: Pyramid,
-        notify: Callable[[], None] = lambda: None,
         *,
+        prepare: Callable[[TextureSet], Any] = lambda textures: None,
+        notify: Callable[[], None] = lambda: None,
         budget: int = BUDGET_BYTES,
     ) -> None:
         self.pyramid = pyramid
         self.errors: dict[TileKey, Exception] = {}
-        self._notify = notify
+        self._prepare, self._notify = prepare, notify
         self._tiles: ByteCache[TileKey, Tile] = ByteCache(budget)
         self._wanted: frozenset[TileKey] = frozenset()
         self._running: dict[tuple[TileKey, int], Future[None]] = {}
@@ -147,7 +154,8 @@ class TileLoader:
             with stoppable(lambda: key not in self._wanted):
                 tile = self._tiles.peek(key)
                 if tile is None:
-                    tile = Tile(key, self.pyramid.textures(key))
+                    textures = self.pyramid.textures(key)
+                    tile = Tile(key, textures, textures and self._prepare(textures))
                 tile.layers[step] = None if tile.textures is None else tile.take(step)
                 self._tiles.put(key, tile)
         except Stopped:

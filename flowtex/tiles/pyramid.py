@@ -30,7 +30,15 @@ from flowtex.textures import TextureSet
 from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.trace import SliceStore
 
-__all__ = ["BLOCK_CELLS", "PATH_CELLS", "TILE_BLOCKS", "Pyramid", "TileKey", "shared_pyramid"]
+__all__ = [
+    "BLOCK_CELLS",
+    "PATH_CELLS",
+    "TILE_BLOCKS",
+    "Pyramid",
+    "TileKey",
+    "block_places",
+    "shared_pyramid",
+]
 
 #: Most nodes, of one time, of a field that is traced whole.
 ROOT_NODES = 150_000
@@ -52,6 +60,11 @@ class TileKey(NamedTuple):
     level: int
     row: int
     column: int
+
+    @property
+    def parent(self) -> TileKey:
+        """The tile that this one refines; at the depth of the root it stands for the root."""
+        return TileKey(self.level + 1, self.row // 2, self.column // 2)
 
 
 class _Level(NamedTuple):
@@ -84,6 +97,7 @@ class Pyramid:
         while np.prod([len(_lines(n, self.depth)) for n in field.shape]) > ROOT_NODES:
             self.depth += 1
         self._lock = threading.Lock()
+        self._places: dict[int, Floats] = {}
         self._levels: list[_Level] = [
             _Level(np.arange(field.shape[0]), np.arange(field.shape[1]), field.velocity)
         ]
@@ -99,10 +113,29 @@ class Pyramid:
         rows, columns = (max(-(-(n - 1) // BLOCK_CELLS), 1) for n in self.field.shape)
         return rows, columns
 
+    def places(self, level: int) -> Floats:
+        """Return where the blocks of a level lie, as :func:`block_places` does, from the root.
+
+        What a tile is like is thus known before anything of it is read.
+        """
+        if level not in self._places:
+            finer = self.depth - level
+            places = block_places(self.root.surface.points, BLOCK_CELLS >> finer)
+            places[..., 4] /= 1 << finer
+            self._places[level] = places
+        return self._places[level]
+
     def shape(self, level: int) -> tuple[int, int]:
         """Return the number of nodes (J, I) of a level."""
         rows, columns = (len(_lines(n, level)) for n in self.field.shape)
         return rows, columns
+
+    def blocks_of(self, key: TileKey | None) -> tuple[slice, slice]:
+        """Return the rows and columns of blocks that a tile has among those of its level."""
+        if key is None:
+            return slice(0, None), slice(0, None)
+        row, column = (TILE_BLOCKS * at for at in key[1:])
+        return slice(row, row + TILE_BLOCKS), slice(column, column + TILE_BLOCKS)
 
     def children(self, key: TileKey | None) -> list[TileKey]:
         """Tiles of the next level that cover a tile, or the root for ``None``."""
@@ -220,6 +253,36 @@ class Pyramid:
             )
             self._levels.append(_Level(rows, columns, velocity))
         return self._levels[level]
+
+
+def block_places(points: Floats, cells: int = BLOCK_CELLS) -> Floats:
+    """Return centre, radius, and longest side of a cell of each block, (rows, columns, 5).
+
+    Blocks have so many cells a side of a surface with nodes (J, I, 3).
+    """
+    firsts = [np.arange(0, max(n - 1, 1), cells) for n in points.shape[:2]]
+    lasts = [np.minimum(f + cells, n - 1) for f, n in zip(firsts, points.shape, strict=False)]
+    center = np.zeros((len(firsts[0]), len(firsts[1]), 3))
+    for rows in (firsts[0], lasts[0]):
+        for columns in (firsts[1], lasts[1]):
+            center += 0.25 * points[np.ix_(rows, columns)]
+    side = np.zeros(points.shape[:2])
+    side[:-1] = np.linalg.norm(np.diff(points, axis=0), axis=-1)
+    across = np.linalg.norm(np.diff(points, axis=1), axis=-1)
+    side[:, :-1] = np.maximum(side[:, :-1], across)
+    size = _greatest(side, firsts, lasts)
+    at = [np.minimum(np.arange(n) // cells, len(f) - 1) for f, n in zip(firsts, side.shape)]
+    away = np.linalg.norm(points - center[np.ix_(*at)], axis=-1)
+    radius = _greatest(away, firsts, lasts) + size
+    return np.concatenate([center, radius[..., None], size[..., None]], axis=-1)
+
+
+def _greatest(values: Floats, firsts: list[Indices], lasts: list[Indices]) -> Floats:
+    """Greatest value (J, I) in each block; a border counts for both sides."""
+    for axis in (0, 1):
+        inner = np.maximum.reduceat(values, firsts[axis], axis=axis)
+        values = np.maximum(inner, np.take(values, lasts[axis], axis=axis))
+    return values
 
 
 _pyramids: WeakCache[Pyramid] = WeakCache()

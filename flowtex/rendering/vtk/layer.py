@@ -70,6 +70,8 @@ class FlowLayer:
         How to draw it; read before each frame.
     layers
         Gives the layers of a destination time, where the texture set is not to be asked.
+    mesh_levels
+        Those of the texture set, where they are there already.
 
     Attributes
     ----------
@@ -84,6 +86,7 @@ class FlowLayer:
         textures: TextureSet,
         settings: Settings,
         layers: Callable[[int], Floats32] | None = None,
+        mesh_levels: MeshLevels | None = None,
     ) -> None:
         self._actor = actor
         self._mapper: Any = actor.mapper
@@ -96,8 +99,7 @@ class FlowLayer:
         self._height = 1.0
         self._drawn = False
         self._variant: frozenset[str] | None = None
-        geometry = textures.geometry
-        self.mesh_levels = MeshLevels(geometry.points, geometry.cells, geometry.periodic)
+        self.mesh_levels = mesh_levels or MeshLevels.of(textures)
         self._colours: tuple[Any, ...] | None = None
         self._gpu: dict[str, GPUTexture] = {}
         self._retired: list[GPUTexture] = []

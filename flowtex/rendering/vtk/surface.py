@@ -18,7 +18,14 @@ import pyvista as pv
 from flowtex._util.array_types import Floats
 from flowtex.field import FlowField
 from flowtex.rendering.mesh_levels import MeshLevels, Region, join
-from flowtex.rendering.tile_choice import TileView, cell_pixels, choose_tiles
+from flowtex.rendering.tile_choice import (
+    TileView,
+    cell_pixels,
+    choose_tiles,
+    cover,
+    finer_part,
+    wanted_tiles,
+)
 from flowtex.rendering.uniforms import ViewState
 from flowtex.rendering.vtk.layer import FlowLayer
 from flowtex.rendering.vtk.mesh import FlowMapper, set_attributes, surface_mesh
@@ -77,7 +84,7 @@ class FlowSurface:
         self._scalars: tuple[str, Callable[[FlowField], Floats]] | None = None
         self._drawn: tuple[Any, ...] = ()
         self._tiles: dict[TileKey, _TileActor] = {}
-        self._loader = None if pyramid is None else TileLoader(pyramid)
+        self._loader = None if pyramid is None else TileLoader(pyramid, prepare=self._prepare)
         self.patient = True
         self._observed = [
             (event, renderer.AddObserver(event, self._observer(name)))
@@ -99,7 +106,7 @@ class FlowSurface:
         self._drop(list(self._tiles))
         if self._loader is not None:
             self._loader.close()
-        self._loader = None if pyramid is None else TileLoader(pyramid)
+        self._loader = None if pyramid is None else TileLoader(pyramid, prepare=self._prepare)
         self._drawn = ()
         if textures.geometry.shape == self._base.textures.geometry.shape:
             set_attributes(self._actor.mapper.dataset, textures)
@@ -167,42 +174,34 @@ class FlowSurface:
             return
         self._base.look()
         view = self._tile_view(renderer)
-        chosen = self._choose(view)
-        self._show(chosen)
+        shown = self._choose(view)
         layers: dict[TileKey | None, FlowLayer] = {None: self._base}
-        layers |= {key: self._tiles[key].layer for key in chosen}
-        for key in chosen:
-            layer = self._tiles[key].layer
+        layers |= {key: self._tiles[key].layer for key in shown if key in self._tiles}
+        self._show(list(layers))
+        for key, layer in layers.items():
+            if key is None:
+                continue
             layer.view = replace(self._base.view, anchor=layer.view.anchor)
             layer.set_moment(*self._moment)
             layer.look()
-        self._set_triangles(layers, view)
+        self._set_triangles(layers, shown, view)
 
     def _after_frame(self) -> None:
         for layer in (self._base, *(drawn.layer for drawn in self._tiles.values())):
             layer.after_frame()
 
-    def _choose(self, view: TileView) -> list[TileKey]:
-        """Return the tiles to draw, each after the one that it refines, and ask for the others."""
+    def _choose(self, view: TileView) -> dict[TileKey | None, list[TileKey]]:
+        """Return the tiles to draw and what of them finer ones cover, and ask for others."""
         loader = self._loader
         if loader is None:
-            return []
+            return {None: []}
         steps = sorted({*self._moment[:2]})
-        wanted: list[TileKey] = []
-        for _ in range(loader.pyramid.depth + 1):
-            before = wanted
-            wanted = choose_tiles(loader.pyramid, view, self._mesh_of)
-            loader.request(wanted, steps)
-            if not self.patient:
-                break
+        choices = choose_tiles(loader.pyramid, view)
+        loader.request(wanted_tiles(choices), steps)
+        if self.patient:
             loader.wait()
-            for key in wanted:
-                self._ready(key, steps)
-            if wanted == before:
-                break
-        for key in [key for key in self._tiles if not loader.keeps(key)]:
-            self._drop([key])
-        return [key for key in wanted if self._ready(key, steps)]
+        self._drop([key for key in self._tiles if not loader.keeps(key)])
+        return cover(choices, lambda key: self._ready(key, steps))
 
     def _tile_view(self, renderer: Any) -> TileView:
         """Return what of the camera decides on tiles, in the mesh's coordinates."""
@@ -216,33 +215,34 @@ class FlowSurface:
         pixels = height / self.view.density
         return TileView(eye, half, pixels, sides, cell_pixels(self._settings))
 
-    def _mesh_of(self, key: TileKey | None) -> MeshLevels | None:
-        if key is None:
-            return self._base.mesh_levels
-        drawn = self._tiles.get(key)
-        return None if drawn is None else drawn.layer.mesh_levels
-
     def _ready(self, key: TileKey, steps: list[int]) -> bool:
         """Whether a tile can be drawn, making its actor first."""
         tile = None if self._loader is None else self._loader.get(key, steps)
-        if tile is None or tile.textures is None:
+        if tile is None:
             return False
-        if key not in self._tiles:
+        if key not in self._tiles and tile.textures is not None:
             self._tiles[key] = self._actor_of(tile, tile.textures)
         return True
+
+    def _prepare(self, textures: TextureSet) -> tuple[pv.PolyData, MeshLevels]:
+        """Return the mesh of a tile and its levels, and have the values of its nodes at hand."""
+        if self._scalars is not None:
+            self._scalars[1](textures.geometry.field)
+        return surface_mesh(textures), MeshLevels.of(textures)
 
     def _actor_of(self, tile: Tile, textures: TextureSet) -> _TileActor:
         """Make the actor of a tile, with the properties of the surface's own one."""
         renderer = self._renderer()
-        mesh = surface_mesh(textures)
+        mesh, mesh_levels = tile.prepared
         actor = pv.Actor(mapper=FlowMapper(mesh))
         actor.SetProperty(self._actor.prop)
         actor.SetUserMatrix(self._actor.GetMatrix())
-        layer = FlowLayer(actor, renderer, textures, self._settings, layers=tile.take)
+        layer = FlowLayer(actor, renderer, textures, self._settings, tile.take, mesh_levels)
         self._write_scalars(layer, mesh)
+        textures.geometry.field.forget()
         return _TileActor(tile, actor, mesh, layer)
 
-    def _show(self, keys: list[TileKey]) -> None:
+    def _show(self, keys: list[TileKey | None]) -> None:
         """Have these tiles in the renderer and no others."""
         renderer, base = self._renderer(), self._actor
         if renderer is None:
@@ -263,33 +263,27 @@ class FlowSurface:
                 renderer.RemoveActor(drawn.actor)
             drawn.layer.close()
 
-    def _set_triangles(self, layers: dict[TileKey | None, FlowLayer], view: TileView) -> None:
+    def _set_triangles(
+        self,
+        layers: dict[TileKey | None, FlowLayer],
+        shown: dict[TileKey | None, list[TileKey]],
+        view: TileView,
+    ) -> None:
         """Draw as few triangles as the view needs, without a crack between tiles."""
-        renderer = self._renderer()
-        depth = 0 if self._loader is None else self._loader.pyramid.depth
+        renderer, geometry = self._renderer(), self._base.textures.geometry
+        depth, blocks = 0, self._base.mesh_levels.blocks.shape[:2]
+        if self._loader is not None:
+            depth, blocks = self._loader.pyramid.depth, self._loader.pyramid.blocks
         regions: dict[TileKey | None, Region] = {}
         for key, layer in layers.items():
             levels = layer.choose_levels(renderer, view)
-            if key is None:
-                regions[key] = Region(depth, 0, 0, levels)
-                continue
-            at = (TILE_BLOCKS * key.row << key.level, TILE_BLOCKS * key.column << key.level)
-            regions[key] = Region(key.level, *at, levels)
-            parent = TileKey(key.level + 1, key.row // 2, key.column // 2)
-            above = regions.get(parent) or regions[None]
-            row, column = (
-                (here - there) >> above.step
-                for here, there in zip(at, (above.row, above.column), strict=True)
-            )
-            half = TILE_BLOCKS // 2
-            above.levels[row : row + half, column : column + half] = -1
+            for child in shown[key]:
+                levels[finer_part(child, key)] = -1
+            place = (0, 0) if key is None else (TILE_BLOCKS * at << key.level for at in key[1:])
+            regions[key] = Region(depth if key is None else key.level, *place, levels)
         drawn = tuple((key, region.levels.tobytes()) for key, region in regions.items())
         if drawn == self._drawn:
             return
-        geometry = self._base.textures.geometry
-        blocks = self._base.mesh_levels.blocks.shape[:2]
-        if self._loader is not None:
-            blocks = self._loader.pyramid.blocks
         joins = join(list(regions.values()), (blocks[0], blocks[1]), geometry.periodic)
         for (key, region), borders in zip(regions.items(), joins, strict=True):
             layers[key].set_triangles(region.levels, borders)
