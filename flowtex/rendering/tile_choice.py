@@ -1,7 +1,7 @@
 """Which tiles a view asks for.
 
-From the root down, a block is replaced by finer ones where its cells cover too many pixels, and where
-it is in view.
+From the root down, a block is replaced by finer ones where its cells cover too many pixels, and
+where it is in view.
 """
 
 from __future__ import annotations

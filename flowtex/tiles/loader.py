@@ -37,8 +37,8 @@ MOST_THREADS = 4
 class Tile:
     """One tile with the layers of the destination times that were asked for.
 
-    ``textures`` are None where nothing of it is drawn; ``prepared`` is what whoever draws has made of
-    them.
+    ``textures`` are None where nothing of it is drawn; ``prepared`` is what whoever draws has made
+    of them.
     """
 
     key: TileKey

@@ -271,7 +271,10 @@ def block_places(points: Floats, cells: int = BLOCK_CELLS) -> Floats:
     across = np.linalg.norm(np.diff(points, axis=1), axis=-1)
     side[:, :-1] = np.maximum(side[:, :-1], across)
     size = _greatest(side, firsts, lasts)
-    at = [np.minimum(np.arange(n) // cells, len(f) - 1) for f, n in zip(firsts, side.shape)]
+    at = [
+        np.minimum(np.arange(n) // cells, len(f) - 1)
+        for f, n in zip(firsts, points.shape[:2], strict=True)
+    ]
     away = np.linalg.norm(points - center[np.ix_(*at)], axis=-1)
     radius = _greatest(away, firsts, lasts) + size
     return np.concatenate([center, radius[..., None], size[..., None]], axis=-1)

@@ -279,8 +279,9 @@ class FlowSurface:
             levels = layer.choose_levels(renderer, view)
             for child in shown[key]:
                 levels[finer_part(child, key)] = -1
-            place = (0, 0) if key is None else (TILE_BLOCKS * at << key.level for at in key[1:])
-            regions[key] = Region(depth if key is None else key.level, *place, levels)
+            at = TileKey(depth, 0, 0) if key is None else key
+            row, column = (TILE_BLOCKS * place << at.level for place in at[1:])
+            regions[key] = Region(at.level, row, column, levels)
         drawn = tuple((key, region.levels.tobytes()) for key, region in regions.items())
         if drawn == self._drawn:
             return
