@@ -21,7 +21,7 @@ from flowtex._util.array_types import Floats32
 from flowtex._util.cache import ByteCache
 from flowtex._util.progress import Stopped, stoppable
 from flowtex.textures import TextureSet
-from flowtex.tiles.pyramid import Pyramid, TileKey
+from flowtex.tiles.pyramid import Pyramid, TileKey, is_cut
 
 __all__ = ["Tile", "TileLoader"]
 
@@ -32,6 +32,8 @@ BUDGET_BYTES = 1_000_000_000
 TEXEL_BYTES, NODE_BYTES = 16, 200
 #: Tiles that are made at once, at most.
 MOST_THREADS = 4
+#: Widths of the halo that are tried one after the other, where paths are cut by it.
+SPARES = (1, 2, 4)
 #: Seconds before the last request within which a tile must have been asked for, not to be given up.
 GRACE_S = 2.0
 
@@ -165,7 +167,10 @@ class TileLoader:
             with stoppable(lambda: not self._is_wanted(key)):
                 tile = self._tiles.peek(key)
                 if tile is None:
-                    textures = self.pyramid.textures(key)
+                    for spare in SPARES:
+                        textures = self.pyramid.textures(key, spare)
+                        if textures is None or not is_cut(textures, step):
+                            break
                     tile = Tile(key, textures, textures and self._prepare(textures))
                 tile.layers[step] = None if tile.textures is None else tile.take(step)
                 self._tiles.put(key, tile)
