@@ -24,14 +24,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex.trace.node_grid import BORDER_ROUNDING_CELLS
 from flowtex.trace.sampler import Sampler
 
 __all__ = ["Paths", "integrate"]
 
 Numbers = NDArray[np.int8]
 
-#: Longest step in cells: a path cannot jump over a blanked cell unseen.
-LONGEST_STEP_CELLS = 1.0
 #: A step may grow or shrink by these factors.
 STEP_SHRINK, STEP_GROWTH, STEP_SAFETY = 0.2, 4.0, 0.9
 #: Bisections that find where inside a step a path ends.
@@ -40,6 +39,9 @@ BISECTIONS = 20
 MOST_STEPS = 20_000
 #: Share of a step by which rounding may miss a lag.
 LAG_ROUNDING = 1e-9
+#: All of these for :mod:`flowtex.trace.kernels`: numbers, and greatest counts.
+RULES = (STEP_SHRINK, STEP_GROWTH, STEP_SAFETY, LAG_ROUNDING, BORDER_ROUNDING_CELLS)
+MOST = (MOST_STEPS, BISECTIONS)
 
 
 @dataclass(frozen=True)
@@ -199,7 +201,8 @@ class _Run:
         """Try one step of every particle, and accept it where its error is small enough."""
         state = self.state
         rest = self.lags[-1] * state.unit - state.lag
-        longest = LONGEST_STEP_CELLS / np.maximum(_speed(state.rate), 1e-300)
+        # A path must not jump over a blanked cell unseen.
+        longest = self.sampler.room(state.y) / np.maximum(_speed(state.rate), 1e-300)
         h = np.minimum(np.minimum(state.step, longest), np.minimum(rest, self.sampler.longest))
         step, error = self._try(h)
         size = np.maximum(error * (1 / self.tolerance), 1e-9)

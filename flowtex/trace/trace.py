@@ -19,6 +19,7 @@ from flowtex._util.array_types import Bools, Floats, Floats32, Indices
 from flowtex._util.progress import track
 from flowtex.field import FlowField
 from flowtex.field.interpolation import nearest_known
+from flowtex.trace import compiled
 from flowtex.trace.compose import SideSlices, Within, compose, landings
 from flowtex.trace.integrate import Paths, integrate
 from flowtex.trace.lags import choose_lags, lag_unit
@@ -302,10 +303,24 @@ class _Tracing:
     ) -> None:
         """Fill the first ``known`` slices."""
         at = np.flatnonzero(self.followed)
+        compiled.prepare(len(at) * len(self.samplers) * len(sides))
         start, unit = self.nodes.reshape(-1, 2)[at], self.unit.ravel()[at]
 
         def work(job: tuple[int, float, slice]) -> None:
             step, direction, block = job
+            side, nodes = sides[direction], at[block]
+            slices, reach = side.slices[:, 1 : known + 1, step], side.reach[step]
+            if compiled.follow(
+                self.samplers[step],
+                nodes,
+                self.lags[:known],
+                unit[block],
+                direction,
+                self.tolerance,
+                slices,
+                reach,
+            ):
+                return
             result = integrate(
                 self.samplers[step],
                 start[block],
@@ -315,13 +330,13 @@ class _Tracing:
                 tolerance=self.tolerance,
             )
             moved = np.moveaxis(result.positions - start[block], 2, 0)
-            nodes: Indices | slice = at[block]
-            if at[block][-1] - at[block][0] == len(at[block]) - 1:
+            some: Indices | slice = nodes
+            if nodes[-1] - nodes[0] == len(nodes) - 1:
                 # Writing to a slice is several times as fast as to a list of nodes.
-                nodes = slice(at[block][0], at[block][-1] + 1)
-            sides[direction].slices[:, 1 : known + 1, step, nodes] = moved
-            sides[direction].reach[step, nodes] = result.reach
-            sides[direction].polar[step, nodes] = result.polar
+                some = slice(nodes[0], nodes[-1] + 1)
+            slices[..., some] = moved
+            reach[some] = result.reach
+            side.polar[step, some] = result.polar
 
         jobs = [
             (step, direction, slice(first, first + BLOCK))
