@@ -14,7 +14,8 @@ from functools import cached_property
 
 import numpy as np
 
-from flowtex._util.array_types import Bools, Floats
+from flowtex._util import compiled
+from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex._util.blocks import bounds, row_blocks
 from flowtex.field.interpolation import cell_of, cubic_weights, fill_blanked
 from flowtex.field.poles import Pole, Poles, find_poles
@@ -81,10 +82,13 @@ class Surface:
     def padded(self) -> Floats:
         """Nodes with one ghost line on each side, (J + 2, I + 2, 3)."""
         good = self.has_position
-        rows = _pad(self.points, good, self.offset[0], periodic=self.periodic[0])
-        good = np.pad(good, ((1, 1), (0, 0)), mode="edge")
-        columns = _pad(np.swapaxes(rows, 0, 1), good.T, self.offset[1], periodic=self.periodic[1])
-        padded = np.ascontiguousarray(np.swapaxes(columns, 0, 1))
+        padded = np.empty((self.shape[0] + 2, self.shape[1] + 2, 3))
+        rows, columns = padded[:, 1:-1], np.swapaxes(padded, 0, 1)
+        rows[1:-1] = self.points
+        rows[0], rows[-1] = _ghosts(rows[1:-1], good, self.offset[0], periodic=self.periodic[0])
+        good = np.pad(good, ((1, 1), (0, 0)), mode="edge").T
+        ghosts = _ghosts(columns[1:-1], good, self.offset[1], periodic=self.periodic[1])
+        columns[0], columns[-1] = ghosts
         for pole in self.poles or ():
             lines = pole.lines(padded)
             ghost, ring = (0, 2) if pole.inward > 0 else (-1, -3)
@@ -191,10 +195,24 @@ class CubicMap:
             i, j = self._poles.fold(np.stack([i, j]))
         i0, si, beyond_i, turns_i = cell_of(i, columns, periodic=closed_i)
         j0, sj, beyond_j, turns_j = cell_of(j, rows, periodic=closed_j)
+        result = self._cubic(j0 * (columns + 2) + i0, si, sj)
+        if beyond_i.any() or beyond_j.any():
+            near_i = np.clip(np.rint(i), 0, columns - 1).astype(np.intp)
+            near_j = np.clip(np.rint(j), 0, rows - 1).astype(np.intp)
+            tangents = self.tangents[..., near_j * columns + near_i]
+            result += beyond_i * tangents[:, 0] + beyond_j * tangents[:, 1]
+        if closed_i or closed_j:
+            result += turns_i * self._offset[1][:, None] + turns_j * self._offset[0][:, None]
+        return result
+
+    def _cubic(self, corner: Indices, si: Floats, sj: Floats) -> Floats:
+        """Interpolate between 16 nodes each, given the first of them and fractions of the cell."""
+        width = self._shape[1] + 2
+        result = np.zeros((len(self._padded), len(corner)))
+        if (kernels := compiled.kernels()) is not None:
+            kernels.cubic(self._padded, width, corner, si, sj, result)
+            return result
         wi, wj = cubic_weights(si), cubic_weights(sj)
-        width = columns + 2
-        corner = j0 * width + i0
-        result = np.zeros((len(self._padded), len(i)))
         for b in range(4):
             at = [corner + (b * width + a) for a in range(4)]
             for out, nodes in zip(result, self._padded, strict=True):
@@ -203,13 +221,6 @@ class CubicMap:
                     row += wi[a] * nodes.take(at[a], mode="clip")
                 row *= wj[b]
                 out += row
-        if beyond_i.any() or beyond_j.any():
-            near_i = np.clip(np.rint(i), 0, columns - 1).astype(np.intp)
-            near_j = np.clip(np.rint(j), 0, rows - 1).astype(np.intp)
-            tangents = self.tangents[..., near_j * columns + near_i]
-            result += beyond_i * tangents[:, 0] + beyond_j * tangents[:, 1]
-        if closed_i or closed_j:
-            result += turns_i * self._offset[1][:, None] + turns_j * self._offset[0][:, None]
         return result
 
 
@@ -226,12 +237,11 @@ def _has_position(points: Floats, valid: Bools) -> Bools:
     return np.asarray(finite & (valid | near))
 
 
-def _pad(p: Floats, good: Bools, offset: Floats, *, periodic: bool) -> Floats:
-    """Add a ghost line before and after the first axis."""
+def _ghosts(p: Floats, good: Bools, offset: Floats, *, periodic: bool) -> tuple[Floats, Floats]:
+    """Return the ghost lines before and after the first axis."""
     if periodic:
-        return np.concatenate([p[-2:-1] - offset, p, p[1:2] + offset])
-    before, after = _beyond(p[:3], good[:3]), _beyond(p[:-4:-1], good[:-4:-1])
-    return np.concatenate([before[None], p, after[None]])
+        return p[-2] - offset, p[1] + offset
+    return _beyond(p[:3], good[:3]), _beyond(p[:-4:-1], good[:-4:-1])
 
 
 def _over(ring: Floats, pole: Pole) -> Floats:

@@ -42,7 +42,7 @@ class NodeDisplacements:
         result = np.empty_like(self._points)
         for first in range(0, rows * columns, BLOCK):
             block = slice(first, first + BLOCK)
-            node = np.arange(rows * columns)[block]
+            node = np.arange(first, min(first + BLOCK, rows * columns))
             j, i = np.divmod(node.astype(float), columns)
             i += along_i[block]
             j += along_j[block]

@@ -23,11 +23,12 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex._util import compiled
+from flowtex._util.array_types import Bools, Floats, Floats32, Indices
 from flowtex.trace.node_grid import BORDER_ROUNDING_CELLS
 from flowtex.trace.sampler import Sampler
 
-__all__ = ["Paths", "integrate"]
+__all__ = ["Paths", "follow", "integrate"]
 
 Numbers = NDArray[np.int8]
 
@@ -39,7 +40,7 @@ BISECTIONS = 20
 MOST_STEPS = 20_000
 #: Share of a step by which rounding may miss a lag.
 LAG_ROUNDING = 1e-9
-#: All of these for :mod:`flowtex.trace.kernels`: numbers, and greatest counts.
+#: All of these for :mod:`flowtex._util.kernels`: numbers, and greatest counts.
 RULES = (STEP_SHRINK, STEP_GROWTH, STEP_SAFETY, LAG_ROUNDING, BORDER_ROUNDING_CELLS)
 MOST = (MOST_STEPS, BISECTIONS)
 
@@ -92,6 +93,42 @@ def integrate(
         run.advance()
     run.end_all()
     return Paths(np.moveaxis(run.out, 1, 2), run.reach / unit, run.polar, run.interrupted)
+
+
+def follow(
+    sampler: Sampler,
+    nodes: Indices,
+    lags: Floats,
+    unit: Floats,
+    moved: Floats32,
+    reach: Floats32,
+    *,
+    direction: float,
+    tolerance: float,
+) -> bool:
+    """Do the same for particles from nodes (N,), compiled, and tell whether that was possible.
+
+    Displacements are written to ``moved`` (2, M, J * I), and reaches to (J * I,).
+    """
+    kernels = compiled.kernels()
+    if kernels is None or not sampler.plain:
+        return False
+    grid = sampler.grid
+    kernels.follow(
+        (grid.rows, grid.columns, *grid.periodic),
+        grid.room,
+        (sampler.nodal, sampler.times, sampler.destination, direction, sampler.floor),
+        (tolerance, *RULES),
+        MOST,
+        nodes,
+        np.array(lags),
+        unit,
+        sampler.rest(unit, float(lags[-1])),
+        sampler.longest,
+        moved,
+        reach,
+    )
+    return True
 
 
 @dataclass

@@ -11,17 +11,18 @@ from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cached_property, partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from flowtex._util import compiled
 from flowtex._util.array_types import Bools, Floats, Floats32, Indices
 from flowtex._util.progress import track
 from flowtex.field import FlowField
 from flowtex.field.interpolation import nearest_known
-from flowtex.trace import compiled
 from flowtex.trace.compose import SideSlices, Within, compose, landings
-from flowtex.trace.integrate import Paths, integrate
+from flowtex.trace.integrate import Paths, follow, integrate
 from flowtex.trace.lags import choose_lags, lag_unit
 from flowtex.trace.sampler import LengthSampler, Sampler, TimeSampler
 from flowtex.trace.slices import TraceSlices
@@ -310,25 +311,11 @@ class _Tracing:
             step, direction, block = job
             side, nodes = sides[direction], at[block]
             slices, reach = side.slices[:, 1 : known + 1, step], side.reach[step]
-            if compiled.follow(
-                self.samplers[step],
-                nodes,
-                self.lags[:known],
-                unit[block],
-                direction,
-                self.tolerance,
-                slices,
-                reach,
-            ):
+            options: dict[str, Any] = {"direction": direction, "tolerance": self.tolerance}
+            lags, units = self.lags[:known], unit[block]
+            if follow(self.samplers[step], nodes, lags, units, slices, reach, **options):
                 return
-            result = integrate(
-                self.samplers[step],
-                start[block],
-                self.lags[:known],
-                unit[block],
-                direction=direction,
-                tolerance=self.tolerance,
-            )
+            result = integrate(self.samplers[step], start[block], lags, units, **options)
             moved = np.moveaxis(result.positions - start[block], 2, 0)
             some: Indices | slice = nodes
             if nodes[-1] - nodes[0] == len(nodes) - 1:

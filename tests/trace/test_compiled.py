@@ -6,49 +6,43 @@ import subprocess
 import sys
 import threading
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
 
-from flowtex import FlowField, TraceSlices, trace
-from flowtex._util.array_types import Floats
+from flowtex import FlowField, Settings, TraceSlices, trace
+from flowtex._util import compiled
+from flowtex._util.array_types import AnyArray, Floats
 from flowtex.examples import airfoil_field, cylinder_field, double_gyre_field, vortex_field
-from flowtex.trace import compiled
+from flowtex.textures import TextureSet
+from flowtex.trace import SliceStore
 from flowtex.trace.lags import choose_lags
 
 
 @pytest.fixture(scope="module")
-def kernel() -> Callable[..., None]:
+def kernels() -> Any:
     pytest.importorskip("numba")
-    if not compiled._kernels:
+    if not compiled._loaded:
         compiled._load()
-    return compiled._kernels[0]
+    return compiled._loaded[0]
 
 
 @pytest.fixture(autouse=True)
 def nothing_ready(monkeypatch: pytest.MonkeyPatch) -> None:
     """Begin each test in a process that has not compiled anything."""
-    monkeypatch.setattr(compiled, "_kernels", [])
+    monkeypatch.setattr(compiled, "_loaded", [])
     monkeypatch.setattr(compiled, "_begun", threading.Lock())
 
 
-def both(
-    kernel: Callable[..., None], field: FlowField, **options: object
-) -> tuple[TraceSlices, TraceSlices]:
+def both(kernels: Any, field: FlowField, **options: object) -> tuple[TraceSlices, TraceSlices]:
     """Integrated paths by NumPy and compiled."""
     lags = choose_lags(field, "arclength" if field.steady else "time")[-5:]
     arguments: dict[str, object] = {"lags": lags, "compose": False, **options}
     by_numpy = trace(field, **arguments)  # type: ignore[arg-type]
-    calls: list[int] = []
-
-    def counted(*values: object) -> None:
-        calls.append(1)
-        kernel(*values)
-
-    compiled._kernels.append(counted)
+    compiled._loaded.append(kernels)
     result = trace(field, **arguments)  # type: ignore[arg-type]
-    assert calls
-    compiled._kernels.clear()
+    compiled._loaded.clear()
     return by_numpy, result
 
 
@@ -87,9 +81,9 @@ FIELDS: dict[str, tuple[Callable[[], FlowField], dict[str, object]]] = {
 
 
 @pytest.mark.parametrize("name", FIELDS)
-def test_paths_are_those_of_numpy(kernel: Callable[..., None], name: str) -> None:
+def test_paths_are_those_of_numpy(kernels: Any, name: str) -> None:
     make, options = FIELDS[name]
-    one, two = both(kernel, make(), **options)
+    one, two = both(kernels, make(), **options)
     for a, b in ((one.displacement, two.displacement), (one.forward, two.forward)):
         if a is not None and b is not None:
             apart = np.abs(a - b).max(axis=-1)
@@ -100,36 +94,50 @@ def test_paths_are_those_of_numpy(kernel: Callable[..., None], name: str) -> Non
     assert same.mean() > 0.999
 
 
-def test_a_rotation_is_followed_exactly(kernel: Callable[..., None]) -> None:
+def test_a_rotation_is_followed_exactly(kernels: Any) -> None:
     """Bilinear velocity is a rotation itself, so that both are wrong by their steps alone."""
     p = plane(41, 41) - 20
     field = FlowField.from_arrays(p, p[..., ::-1] * [-1, 1])
     inside = np.hypot(p[..., 0], p[..., 1]) < 19
     turned = np.stack([p[..., 1], -p[..., 0]], axis=-1)  # by a quarter, backward
-    for slices in both(kernel, field, lags=[np.pi / 2], parameter="time"):
+    for slices in both(kernels, field, lags=[np.pi / 2], parameter="time"):
         error = np.abs(slices.displacement[0, 0] - (turned - p))[inside]
         assert error.max() < 0.02
 
 
-def test_a_path_ends_at_the_border(kernel: Callable[..., None]) -> None:
+def test_a_path_ends_at_the_border(kernels: Any) -> None:
     p = plane(11, 21)
     field = FlowField.from_arrays(p, np.broadcast_to([1.0, 0.0], p.shape))
-    for slices in both(kernel, field, lags=[1.0, 30.0]):
+    for slices in both(kernels, field, lags=[1.0, 30.0]):
         np.testing.assert_allclose(slices.reach[0], p[..., 0], atol=1e-4)
         np.testing.assert_allclose(slices.displacement[0, 1, ..., 0], -30.0, rtol=1e-6)
 
 
-def test_only_chosen_nodes_are_followed(kernel: Callable[..., None]) -> None:
+@pytest.mark.parametrize("name", ["gyre by length", "cylinder", "hole", "O-grid"])
+def test_composed_paths_and_their_places_are_those_of_numpy(kernels: Any, name: str) -> None:
+    field = FIELDS[name][0]()
+    one: list[AnyArray] = []
+    two: list[AnyArray] = []
+    for found in (one, two):
+        slices = trace(field, progress=False)
+        textures = TextureSet.build(SliceStore(field, slices=slices), Settings())
+        found += [slices.displacement, slices.reach, textures.layers()]
+        compiled._loaded.append(kernels)
+    for a, b in zip(one, two, strict=True):
+        assert np.isclose(a, b, rtol=1e-4, atol=1e-4).mean() > 0.999
+
+
+def test_only_chosen_nodes_are_followed(kernels: Any) -> None:
     field = double_gyre_field(shape=(21, 41))
     nodes = np.zeros(field.shape, bool)
     nodes[3:9, 4:20:3] = True
-    one, two = both(kernel, field, nodes=nodes)
+    one, two = both(kernels, field, nodes=nodes)
     np.testing.assert_allclose(one.displacement, two.displacement, rtol=1e-5, atol=1e-5)
     assert not two.reach[:, ~nodes].any()
 
 
-def test_what_is_not_compiled_is_left_to_numpy(kernel: Callable[..., None]) -> None:
-    compiled._kernels.append(kernel)
+def test_what_is_not_compiled_is_left_to_numpy(kernels: Any) -> None:
+    compiled._loaded.append(kernels)
     field = double_gyre_field(shape=(11, 21))
     free = FlowField.from_arrays(field.points, field.velocity[0], sign_free=True)
     assert np.isfinite(trace(free).displacement).all()
@@ -140,24 +148,26 @@ def test_small_work_does_not_compile() -> None:
     assert compiled._begun.acquire(blocking=False)
 
 
-def test_large_work_compiles_once(kernel: Callable[..., None]) -> None:
-    thread = compiled.prepare(compiled.LARGE_PATHS)
+def test_large_work_compiles_once(kernels: Any) -> None:
+    thread = compiled.prepare(compiled.LARGE_WORK)
     assert thread is not None
-    assert compiled.prepare(compiled.LARGE_PATHS) is None
+    assert compiled.prepare(compiled.LARGE_WORK) is None
     thread.join()
-    assert compiled._kernels == [kernel]
+    assert compiled._loaded == [kernels]
 
 
 def test_without_numba_numpy_does_it(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "numba", None)
-    monkeypatch.delitem(sys.modules, "flowtex.trace.kernels", raising=False)
-    monkeypatch.setattr(compiled, "LARGE_PATHS", 0)
-    trace(double_gyre_field(shape=(21, 41)), progress=False)
-    assert not compiled._kernels
+    monkeypatch.delitem(sys.modules, "flowtex._util.kernels", raising=False)
+    monkeypatch.delattr("flowtex._util.kernels", raising=False)
+    thread = compiled.prepare(compiled.LARGE_WORK)
+    assert thread is not None
+    thread.join()
+    assert compiled.kernels() is None
 
 
 def test_a_process_may_end_while_it_compiles() -> None:
     pytest.importorskip("numba")
-    code = "from flowtex.trace import compiled; compiled.prepare(10**9).join(0.3)"
+    code = "from flowtex._util import compiled; compiled.prepare(10**9).join(0.3)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False)
     assert (done.returncode, done.stdout, done.stderr) == (0, b"", b"")

@@ -1,8 +1,8 @@
-"""The integrator of :mod:`flowtex.trace.integrate` as a loop that numba compiles.
+"""Loops that numba compiles: the integrator, look-ups in slices, positions on a surface.
 
-One particle after the other by the same scheme and rules, so that both give the same paths up to
-rounding. Surfaces with poles and fields without a sign are left to the other. Importing this
-module compiles it, or loads it from numba's cache; :mod:`flowtex.trace.compiled` does.
+One particle after the other by the same scheme and rules as in NumPy, so that both give the same
+up to rounding. Paths over poles and those in fields without a sign are left to the other. Importing
+this module compiles it, or loads it from numba's cache; :mod:`flowtex.trace.compiled` does.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from numba import boolean, float32, float64, int64, njit, types, uint64, void
 
 from flowtex._util.array_types import Bytes, Floats, Floats32, Indices
 
-__all__ = ["follow"]
+__all__ = ["blend", "cubic", "follow"]
 
 #: Rows and columns, and which of the (j, i) axes close.
 _SHAPE = types.Tuple((int64, int64, boolean, boolean))
@@ -200,3 +200,59 @@ def follow(
             moved[0, later, node] = i + further * a - i0
             moved[1, later, node] = j + further * b - j0
         reach[node] = end / unit
+
+
+@njit(
+    void(float32[:, :, :], int64, int64[::1], float32[:], float32[:], int64[:], float32[:, :, :]),
+    **_OPTIONS,
+)
+def blend(
+    slices: Floats32,
+    width: int,
+    at: Indices,
+    s: Floats32,
+    t: Floats32,
+    m: Indices,
+    result: Floats32,
+) -> None:
+    """Interpolate slices (2, M, N) between nodes, those of numbers m and m - 1: (2, 2, n).
+
+    The lower corners (n,) count from the first node of all.
+    """
+    for c in range(2):
+        for n in range(len(at)):
+            for k in range(result.shape[1]):
+                a, row = uint64(at[n]), slices[c, m[n] - k]
+                b = a + uint64(width)
+                low = row[a] + s[n] * (row[a + uint64(1)] - row[a])
+                high = row[b] + s[n] * (row[b + uint64(1)] - row[b])
+                result[c, k, n] = low + t[n] * (high - low)
+
+
+@njit(types.UniTuple(float64, 4)(float64), **_INNER)
+def _weights(t: float) -> tuple[float, float, float, float]:
+    """Catmull-Rom weights of the four nodes around a fraction of a cell."""
+    t2, t3 = t * t, t * t * t
+    return (
+        0.5 * (-t3 + 2 * t2 - t),
+        0.5 * (3 * t3 - 5 * t2 + 2),
+        0.5 * (-3 * t3 + 4 * t2 + t),
+        0.5 * (t3 - t2),
+    )
+
+
+@njit(
+    void(float64[:, ::1], int64, int64[::1], float64[::1], float64[::1], float64[:, ::1]),
+    **_OPTIONS,
+)
+def cubic(nodes: Floats, width: int, corner: Indices, s: Floats, t: Floats, result: Floats) -> None:
+    """Interpolate nodal data (C, J * I) by cubics, from the first of 16 nodes of each: (C, N)."""
+    for n in range(len(corner)):
+        along, across = _weights(s[n]), _weights(t[n])
+        for c in range(len(nodes)):
+            result[c, n] = 0.0
+            for b in range(4):
+                at = uint64(corner[n] + b * width)
+                row = along[0] * nodes[c, at] + along[1] * nodes[c, at + uint64(1)]
+                row += along[2] * nodes[c, at + uint64(2)] + along[3] * nodes[c, at + uint64(3)]
+                result[c, n] += across[b] * row
