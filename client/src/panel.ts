@@ -2,7 +2,7 @@
 
 import type { Camera } from "./camera.ts";
 import { Controls, hasStreaming, type ControlsHost } from "./controls.ts";
-import { dom, icon, numberText, pngOf, type IconName } from "./dom.ts";
+import { dom, icon, numberText, pictureOf, type IconName } from "./dom.ts";
 import { toggleFullscreen } from "./keyboard.ts";
 import { Legend } from "./legend.ts";
 import type { Timer } from "./lifetime.ts";
@@ -268,7 +268,7 @@ export class Panel {
 
   private async save(): Promise<void> {
     const { viewer } = this;
-    const href = URL.createObjectURL(await pngOf(viewer.together));
+    const href = URL.createObjectURL(await pictureOf(viewer.together));
     const name = (viewer.header?.name || "flow").replace(FORBIDDEN, " ").trim();
     dom("a", { href, download: `${name}.png` }).click();
     viewer.lifetime.later(() => URL.revokeObjectURL(href), SAVED_MS);

@@ -115,10 +115,11 @@ M20 9V4h-5M4 15v5h5M20 15v5h-5",hide:"M6 9.5l6 6 6-6",show:"M6 14.5l6-6 6 6"};fu
 w3.org/2000/svg",svg=document.createElementNS(space,"svg");svg.setAttribute("viewBox","0 0 24 24"),svg.setAttribute("ari\
 a-hidden","true");let path=document.createElementNS(space,"path");return path.setAttribute("d",ICONS[name]),name==="play"&&
 path.setAttribute("class","solid"),svg.append(path),svg}function numberText(x){if(!Number.isFinite(x))return"–";let size=Math.
-abs(x);return size!==0&&(size>=1e5||size<.001)?x.toExponential(2).replace("e+","e"):String(Number(x.toPrecision(4)))}function pngOf(views){
-let canvases=views.map(({canvas})=>canvas),width=canvases.reduce((sum,canvas)=>sum+canvas.width,0),all=new OffscreenCanvas(
-width,canvases[0].height),pen=all.getContext("2d",{alpha:!1}),left=0;for(let canvas of canvases)pen?.drawImage(canvas,left,
-0),left+=canvas.width;return all.convertToBlob()}var Lifetime=class{controller=new AbortController;observers=new Set;timers=new Set;globalListeners=0;get isOver(){return this.
+abs(x);return size!==0&&(size>=1e5||size<.001)?x.toExponential(2).replace("e+","e"):String(Number(x.toPrecision(4)))}function pictureOf(views,size=1,format={}){
+let widths=views.map(({canvas})=>Math.max(Math.round(size*canvas.width),1)),height=Math.max(Math.round(size*views[0].canvas.
+height),1),all=new OffscreenCanvas(widths.reduce((sum,width)=>sum+width,0),height),pen=all.getContext("2d",{alpha:!1}),left=0;
+for(let[n,{canvas}]of views.entries())pen?.drawImage(canvas,left,0,widths[n],height),left+=widths[n];return all.convertToBlob(
+format)}var Lifetime=class{controller=new AbortController;observers=new Set;timers=new Set;globalListeners=0;get isOver(){return this.
 controller.signal.aborted}listen(target,kind,call,options={}){(target===document||target===window)&&(this.globalListeners+=
 1);let{signal}=this.controller;target.addEventListener(kind,call,{...options,signal})}later(call,delay){let timer=setTimeout(
 ()=>{this.timers.delete(timer),call()},delay);return this.timers.add(timer),timer}cancel(timer){timer!==null&&(clearTimeout(
@@ -443,7 +444,7 @@ viewer;lifetime.cancel(this.hintTimer),this.hintTimer=shown?lifetime.later(()=>t
 hidden=!shown}clear(){this.note.hidden=!0,delete this.viewer.root.dataset.failed}fail(problem,detail){this.note.replaceChildren(
 dom("strong",{},[problem]),dom("pre",{},[detail])),this.note.hidden=!1,this.busy.hidden=!0,this.viewer.root.dataset.failed=
 "true"}fullscreen(){let{root}=this.viewer;toggleFullscreen(root.closest(".flowtex-pair")??root)}async save(){let{viewer}=this,
-href=URL.createObjectURL(await pngOf(viewer.together)),name=(viewer.header?.name||"flow").replace(FORBIDDEN," ").trim();
+href=URL.createObjectURL(await pictureOf(viewer.together)),name=(viewer.header?.name||"flow").replace(FORBIDDEN," ").trim();
 dom("a",{href,download:`${name}.png`}).click(),viewer.lifetime.later(()=>URL.revokeObjectURL(href),SAVED_MS)}};function positions(data,anchor){return anchor.some(Boolean)?data.map((x,n)=>x-anchor[n%3]):data}function grid(us,vs){let result2=new Float32Array(
 2*us.length*vs.length),n=0;for(let v2 of vs)for(let u of us)result2[n++]=u,result2[n++]=v2;return result2}function coordinates({
 shape,rows,columns}){let middles=(count,{before,size})=>Array.from({length:count},(_,n)=>(n+before+.5)/size);return grid(
@@ -782,44 +783,51 @@ follow(other,...values);report?.(...values)};return{onCamera:both((other,camera)
 onTime:both((other,time)=>other.setTime(time),options.onTime),onClock:both((other,clock)=>other.setClock(clock),options.
 onClock),onSetting:both((other,name,value)=>other.followSetting(name,value),options.onSetting)}}function mountPage(element,scenes,options={}){
 let viewers=viewersIn(element,scenes.length,options);return scenes.forEach(({header},n)=>viewers[n].setHeader(header)),scenes.
-forEach(({parts},n)=>parts.forEach(part=>viewers[n].setPart(part))),viewers[0]}var CAMERA_MS=100,TIME_MS=250,HEADERS=["_header","_header_beside"],HEIGHT_PX=480;function opened(message,buffers){let graphics=sharedGraphics(),
-{view=0,generation=0,parts:infos=[]}=message,delivery={view,generation,parts:[],lacking:[]};return infos.forEach((info,n)=>{
-let stock=graphics.stock.get(info.digest)?.part;if(stock||message.kind!=="offer"){let part=graphics.hold(stock??decoded(
-info,buffers[n]));delivery.parts.push({...part,name:info.name})}else delivery.lacking.push(info.name)}),delivery}function discard(deliveries){
-for(let{parts}of deliveries)for(let part of parts)sharedGraphics().release(part)}var hasParts=message=>message?.kind==="\
-parts"||message?.kind==="offer",mailbox=new Map;function initialize({model}){let key=model.get("_key");mailbox.set(key,[]);
-let receive=(message,buffers)=>{hasParts(message)&&mailbox.get(key)?.push(opened(message,buffers))};return model.on("msg\
-:custom",receive),()=>{model.off("msg:custom",receive),discard(mailbox.get(key)??[]),mailbox.delete(key)}}function render({
+forEach(({parts},n)=>parts.forEach(part=>viewers[n].setPart(part))),viewers[0]}var CAMERA_MS=100,TIME_MS=250,STILL_MS2=1500,STILL_FORMAT={type:"image/jpeg",quality:.9},HEADERS=["_header","_header_bes\
+ide"],ROOM=".flowtex-room { width: 100%; min-width: 160px; flex: 0 9999 auto }",HEIGHT_PX=480;function opened(message,buffers){
+let graphics=sharedGraphics(),{view=0,generation=0,parts:infos=[]}=message,delivery={view,generation,parts:[],lacking:[]};
+return infos.forEach((info,n)=>{let stock=graphics.stock.get(info.digest)?.part;if(stock||message.kind!=="offer"){let part=graphics.
+hold(stock??decoded(info,buffers[n]));delivery.parts.push({...part,name:info.name})}else delivery.lacking.push(info.name)}),
+delivery}function discard(deliveries){for(let{parts}of deliveries)for(let part of parts)sharedGraphics().release(part)}var hasParts=message=>message?.
+kind==="parts"||message?.kind==="offer",mailbox=new Map;function initialize({model}){let key=model.get("_key");mailbox.set(
+key,[]);let receive=(message,buffers)=>{hasParts(message)&&mailbox.get(key)?.push(opened(message,buffers))};return model.
+on("msg:custom",receive),()=>{model.off("msg:custom",receive),discard(mailbox.get(key)??[]),mailbox.delete(key)}}function render({
 model,el}){let view=new WidgetView(model,el);return()=>view.dispose()}function cameraOf(state){let camera=state;return camera&&
-Array.isArray(camera.position)?camera:null}var WidgetView=class{model;viewers;first;sent=new Map;handlers=[];early;hasSentFrame=!1;constructor(model,element){
+Array.isArray(camera.position)?camera:null}var WidgetView=class{model;viewers;first;sent=new Map;handlers=[];early;frameTimer=null;hasSentFrame=!1;sheet=new CSSStyleSheet;constructor(model,element){
 this.model=model;let beside=model.get("_header_beside");this.viewers=this.makeViewers(element,beside?.format?2:1),[this.
-first]=this.viewers;let key=model.get("_key");this.early=mailbox.get(key)??[],mailbox.delete(key),this.connect(),this.resize(),
-this.viewers.forEach((_,n)=>this.takeHeader(n)),model.get("playing")&&this.first.play(),this.viewers.every(({scene,lacking})=>scene&&
-!lacking.length)||model.send({kind:"ready"})}makeViewers(element,count){let{model}=this,slowly=(wait,call)=>throttled((later,delay)=>this.
-first.lifetime.later(later,delay),wait,call),options={rebuild:!0,guarded:!0,controls:model.get("bar")??!0,onCamera:slowly(
-CAMERA_MS,camera=>this.send("camera",camera)),onTime:slowly(TIME_MS,time=>this.send("time",time)),onClock:slowly(TIME_MS,
-clock=>this.send("clock",clock)),onPlaying:playing=>this.send("playing",playing),onPoint:point=>this.send("point",point),
-onSetting:(name,value)=>this.send(name,value),onControls:shown=>this.send("bar",shown)};return viewersIn(element,count,options,
-n=>({onNeed:step=>model.send({kind:"need",step,view:n}),onFrame:()=>{this.sendFrame()}}))}send(name,value){this.sent.set(
-name,JSON.stringify(value)),this.model.set(name,value),this.model.save_changes()}async sendFrame(){if(this.hasSentFrame||
-!this.viewers.every(({sharp})=>sharp))return;this.hasSentFrame=!0;let png=await(await pngOf(this.viewers)).arrayBuffer();
-this.first.lifetime.isOver||this.model.send({kind:"frame"},void 0,[png])}listen(event,call){this.handlers.some(([other])=>other===
-event)||(this.handlers.push([event,call]),this.model.on(event,call))}follow(name,take){this.listen(`change:${name}`,()=>{
-let value=this.model.get(name);this.sent.get(name)!==JSON.stringify(value)&&take(value),this.sent.delete(name)})}connect(){
-let{viewers,first}=this;this.listen("msg:custom",(message,buffers)=>{hasParts(message)&&this.take(opened(message,buffers)),
-message?.kind==="error"&&first.panel.fail("The kernel could not go on.",message.text??"")}),viewers.forEach((_,n)=>this.
-listen(`change:${HEADERS[n]}`,()=>this.takeHeader(n))),this.listen("change:size",()=>this.resize()),this.follow("camera",
-value=>{let camera=cameraOf(value);camera&&viewers.forEach(viewer=>viewer.setCamera(camera))}),this.follow("time",time=>viewers.
-forEach(viewer=>viewer.setTime(Number(time)))),this.follow("clock",clock=>viewers.forEach(viewer=>viewer.setClock(Number(
-clock)))),this.follow("playing",playing=>playing?first.play():first.pause()),this.follow("bar",shown=>first.panel.toggle(
-!!shown))}resize(){let[width,height]=this.model.get("size")??[0,0],{root}=this.first,frame=root.closest(".flowtex-pair")??
-root;frame.style.width=width?`${width}px`:"100%",frame.style.height=`${height||HEIGHT_PX}px`}takeHeader(n){let{model}=this,
-header=model.get(HEADERS[n]);if(!header?.format)return;let rows=header.table??[],values=rows.map(row=>[row.name,model.get(
-row.name)??row.default]);this.viewers[n].setHeader({...header,settings:Object.fromEntries(values),camera:cameraOf(model.
-get("camera")),time:model.get("time")??0,clock:model.get("clock")??0});for(let delivery of this.early.splice(0))this.take(
-delivery);for(let{name}of rows)this.follow(name,value=>{for(let viewer of this.viewers)viewer.followSetting(name,value)})}take(delivery){
+first]=this.viewers;let key=model.get("_key");this.early=mailbox.get(key)??[],mailbox.delete(key),this.sheet.replaceSync(
+ROOM),document.adoptedStyleSheets.push(this.sheet),this.connect(),this.resize(),this.viewers.forEach((_,n)=>this.takeHeader(
+n)),model.get("playing")&&this.first.play(),this.viewers.every(({scene,lacking})=>scene&&!lacking.length)||model.send({kind:"\
+ready"})}makeViewers(element,count){let{model}=this,slowly=(wait,call)=>throttled((later,delay)=>this.first.lifetime.later(
+later,delay),wait,call),options={rebuild:!0,guarded:!0,controls:model.get("bar")??!0,onCamera:slowly(CAMERA_MS,camera=>this.
+send("camera",camera)),onTime:slowly(TIME_MS,time=>this.send("time",time)),onClock:slowly(TIME_MS,clock=>this.send("cloc\
+k",clock)),onPlaying:playing=>this.send("playing",playing),onPoint:point=>this.send("point",point),onSetting:(name,value)=>this.
+send(name,value),onControls:shown=>this.send("bar",shown)};return viewersIn(element,count,options,n=>({onNeed:step=>model.
+send({kind:"need",step,view:n}),onFrame:()=>this.planFrame()}))}send(name,value){this.sent.set(name,JSON.stringify(value)),
+this.model.set(name,value),this.model.save_changes()}planFrame(){let{lifetime}=this.first;lifetime.cancel(this.frameTimer);
+let wait=this.hasSentFrame?STILL_MS2:0;this.frameTimer=lifetime.later(()=>{this.sendFrame()},wait)}async sendFrame(){let{
+first,viewers}=this;if(!viewers.every(({sharp})=>sharp))return;this.hasSentFrame=!0;let data=await(await pictureOf(viewers,
+1/first.ratio,STILL_FORMAT)).arrayBuffer();first.lifetime.isOver||this.model.send({kind:"frame"},void 0,[data])}becomeLive(){
+let{root}=this.first;if(root.dataset.live||root.dataset.failed)return;root.dataset.live="true";let still=`[data-flowtex~\
+="${String(this.model.get("_key"))}"]`;this.sheet.insertRule(`${still}, :is(.jp-OutputArea-child, .output_area):has(> * \
+> ${still}) { display: none !important }`)}listen(event,call){this.handlers.some(([other])=>other===event)||(this.handlers.
+push([event,call]),this.model.on(event,call))}follow(name,take){this.listen(`change:${name}`,()=>{let value=this.model.get(
+name);this.sent.get(name)!==JSON.stringify(value)&&take(value),this.sent.delete(name)})}connect(){let{viewers,first}=this;
+this.listen("msg:custom",(message,buffers)=>{hasParts(message)&&this.take(opened(message,buffers)),message?.kind==="erro\
+r"&&first.panel.fail("The kernel could not go on.",message.text??"")}),viewers.forEach((_,n)=>this.listen(`change:${HEADERS[n]}`,
+()=>this.takeHeader(n))),this.listen("change:size",()=>this.resize()),this.follow("camera",value=>{let camera=cameraOf(value);
+camera&&viewers.forEach(viewer=>viewer.setCamera(camera))}),this.follow("time",time=>viewers.forEach(viewer=>viewer.setTime(
+Number(time)))),this.follow("clock",clock=>viewers.forEach(viewer=>viewer.setClock(Number(clock)))),this.follow("playing",
+playing=>playing?first.play():first.pause()),this.follow("bar",shown=>first.panel.toggle(!!shown))}resize(){let[width,height]=this.
+model.get("size")??[0,0],{root}=this.first,frame=root.closest(".flowtex-pair")??root;frame.style.width=width?`${width}px`:
+"100%",frame.style.height=`${height||HEIGHT_PX}px`,frame.parentElement?.classList.toggle("flowtex-room",!width)}takeHeader(n){
+let{model}=this,header=model.get(HEADERS[n]);if(!header?.format)return;let rows=header.table??[],values=rows.map(row=>[row.
+name,model.get(row.name)??row.default]);this.viewers[n].setHeader({...header,settings:Object.fromEntries(values),camera:cameraOf(
+model.get("camera")),time:model.get("time")??0,clock:model.get("clock")??0});for(let delivery of this.early.splice(0))this.
+take(delivery);for(let{name}of rows)this.follow(name,value=>{for(let viewer of this.viewers)viewer.followSetting(name,value)})}take(delivery){
 let viewer=this.viewers[delivery.view];if(!viewer)return;let generation=viewer.header?viewer.header.generation??0:-1;if(delivery.
 generation>generation)return void this.early.push(delivery);let isOld=name=>delivery.generation!==generation&&name.includes(
 "/");for(let part of delivery.parts)isOld(part.name)||viewer.setPart(part);let names=delivery.lacking.filter(name=>!isOld(
-name));discard([delivery]),names.length&&this.model.send({kind:"want",names,view:delivery.view})}dispose(){for(let[event,
-call]of this.handlers)this.model.off(event,call);discard(this.early);for(let viewer of this.viewers)viewer.dispose()}};var client_default={initialize,render};export{Viewer,decoded,client_default as default,mountPage,partsOfFile};
+name));discard([delivery]),this.becomeLive(),names.length&&this.model.send({kind:"want",names,view:delivery.view})}dispose(){
+for(let[event,call]of this.handlers)this.model.off(event,call);discard(this.early),document.adoptedStyleSheets=document.
+adoptedStyleSheets.filter(s=>s!==this.sheet);for(let viewer of this.viewers)viewer.dispose()}};var client_default={initialize,render};export{Viewer,decoded,client_default as default,mountPage,partsOfFile};

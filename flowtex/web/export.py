@@ -162,8 +162,8 @@ def page_pieces(
 ) -> Iterator[str]:
     """Give the text of a page piece by piece; each array is packed when it is reached.
 
-    Camera, time and clock are those of :meth:`ClientData.header`; ``picture`` is a PNG that is
-    shown until the page has drawn, made here where there is none.
+    Camera, time and clock are those of :meth:`ClientData.header`; ``picture`` is a PNG or JPEG
+    that is shown until the page has drawn, made here where there is none.
     """
     headers = [
         scene.header(view.scene.settings, camera=camera, time=time, clock=clock)
@@ -194,6 +194,7 @@ def _values(headers: Sequence[Header], title: str, picture: bytes) -> dict[str, 
         "version": __version__,
         "title": html.escape(title),
         "style": look,
+        # Browsers tell JPEG by itself.
         "preview": "data:image/png;base64," + base64.b64encode(picture).decode(),
         "headers": _json([headers[0], *(_different(h, headers[0]) for h in headers[1:])]),
         "script": script,
