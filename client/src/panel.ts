@@ -139,8 +139,11 @@ export class Panel {
     this.playButton.title = title;
     this.playButton.setAttribute("aria-label", title);
     const streams = header !== null && hasStreaming(header);
-    this.playButton.hidden = !varies && !streams;
-    this.track.hidden = !varies && !(streams && settings.motion !== "off");
+    // The bar keeps its width when playing begins, and the button its place.
+    this.playButton.hidden = this.track.hidden = !varies && !streams;
+    this.slider.disabled = !varies && settings.motion === "off";
+    const unit = header?.slices.timeUnit ?? "";
+    this.timeText.style.minWidth = `${varies ? 8 + unit.length : 7}ch`;
     this.tick();
   }
 

@@ -319,7 +319,8 @@ path.solid { fill: currentColor; }
 .handle:hover { background: var(--glass); }
 .track { display: flex; align-items: center; gap: 8px; min-width: 90px; width: 260px; flex: 0 1 auto; padding: 0 6px 0 4\
 px; }
-.time { flex: none; min-width: 44px; white-space: nowrap; }
+.time { flex: none; white-space: nowrap; }
+.track:has(input:disabled) { opacity: 0.45; }
 input[type="range"] {
   appearance: none; -webkit-appearance: none; flex: 1; min-width: 0; width: 100%; height: 18px;
   margin: 0; background: none; cursor: pointer; accent-color: var(--accent);
@@ -417,35 +418,36 @@ let{header,settings}=this.viewer,{playing,varies}=this.viewer.player;this.name()
 !!settings.show_level&&this.showLegend();for(let[name,button]of Object.entries(this.toggles))button.setAttribute("aria-p\
 ressed",String(!!settings[name]));let title=playing?"Pause (space)":"Play (space)";this.playButton.replaceChildren(icon(
 playing?"pause":"play")),this.playButton.title=title,this.playButton.setAttribute("aria-label",title);let streams=header!==
-null&&hasStreaming(header);this.playButton.hidden=!varies&&!streams,this.track.hidden=!varies&&!(streams&&settings.motion!==
-"off"),this.tick()}name(){let{header,settings,root}=this.viewer,title=(header?.differs??[]).filter(name=>name in settings).
-map(name=>{let label=header?.table.find(row=>row.name===name)?.label??name,value=settings[name];return`${label}: ${typeof value==
-"boolean"?value?"on":"off":value}`}).join(", ")||header?.name||"";this.title.textContent=title,this.title.hidden=!title,
-root.setAttribute("aria-label",title?`Flow texture: ${title}`:"Flow texture")}tick(){let{header,player,settings}=this.viewer;
-if(!header||this.track.hidden)return;let{first,last,now}=player.range(settings);this.slider.value=String((now-first)/(last-
-first||1));let unit2=header.slices.timeUnit,text=player.varies?`${numberText(now)} ${unit2}`:`${now.toFixed(1)} s`;this.
-timeText.textContent!==text&&(this.timeText.textContent=text)}showLegend(){let{header,settings,parts}=this.viewer;this.showsLevels=
-!!settings.show_level,header&&this.legend.show(header,settings,parts.get("cmap")?.data)}read(point){let{header}=this.viewer;
-if(this.readout.replaceChildren(),this.legend.point(null),!(!point||!header)){this.readout.append(dom("span",{},[this.positionText(
-point.position,header)]));for(let[name,value]of Object.entries(point.values)){let text=`${name} ${numberText(value)} ${header.
-scalars.unit}`;this.readout.append(dom("b",{},[text.trimEnd()])),this.legend.point(header,value)}}}positionText(position,{
-geometry}){let{extent,planar,center,frame}=geometry,zoom=Math.max(this.viewer.camera?.zoom??1,1),digits=Math.min(Math.ceil(
-FEWEST_DIGITS+Math.log10(zoom)),MOST_DIGITS),isInPlane=planar&&Math.abs(position[2]-center[2])<1e-12*extent&&Math.abs(frame[8])>
-.999;return`(${position.slice(0,isInPlane?2:3).map(x=>{let value=Math.abs(x)<1e-9*extent?0:x;return digits>5?String(Number(
-value.toPrecision(digits))):numberText(value)}).join(", ")})`}fold(open=!1){this.isOpen=open,this.arrange()}toggle(shown=!this.
-isShown){shown!==this.isShown&&(this.isShown=shown,this.arrange(),this.viewer.options.onControls?.(shown))}arrange(){let{
-header,options,root}=this.viewer,isReady=header!==null,follows=!!options.follows;this.bar.hidden=!this.isShown||!isReady,
-this.handle.hidden=this.isShown||!isReady||follows,this.head.hidden=!(this.isShown||follows)||!isReady,this.controls.element.
-hidden=!this.isShown||!this.isOpen||!isReady,root.classList.toggle("flowtex-open",!this.controls.element.hidden),this.gear.
-setAttribute("aria-pressed",String(this.isOpen))}wait(missing){this.busy.hidden=!missing.length;let{viewer}=this;!missing.
-length||viewer.options.onNeed||this.lateTimer||(this.lateTimer=viewer.lifetime.later(()=>{this.lateTimer=null;let names=viewer.
-lacking.join(", ");names&&this.fail("The scene is not complete.",`Missing: ${names}`)},LATE_MS))}hint(shown){let{lifetime}=this.
-viewer;lifetime.cancel(this.hintTimer),this.hintTimer=shown?lifetime.later(()=>this.hint(!1),HINT_MS):null,this.hintBox.
-hidden=!shown}clear(){this.note.hidden=!0,delete this.viewer.root.dataset.failed}fail(problem,detail){this.note.replaceChildren(
-dom("strong",{},[problem]),dom("pre",{},[detail])),this.note.hidden=!1,this.busy.hidden=!0,this.viewer.root.dataset.failed=
-"true"}fullscreen(){let{root}=this.viewer;toggleFullscreen(root.closest(".flowtex-pair")??root)}async save(){let{viewer}=this,
-href=URL.createObjectURL(await pictureOf(viewer.together)),name=(viewer.header?.name||"flow").replace(FORBIDDEN," ").trim();
-dom("a",{href,download:`${name}.png`}).click(),viewer.lifetime.later(()=>URL.revokeObjectURL(href),SAVED_MS)}};function positions(data,anchor){return anchor.some(Boolean)?data.map((x,n)=>x-anchor[n%3]):data}function grid(us,vs){let result2=new Float32Array(
+null&&hasStreaming(header);this.playButton.hidden=this.track.hidden=!varies&&!streams,this.slider.disabled=!varies&&settings.
+motion==="off";let unit2=header?.slices.timeUnit??"";this.timeText.style.minWidth=`${varies?8+unit2.length:7}ch`,this.tick()}name(){
+let{header,settings,root}=this.viewer,title=(header?.differs??[]).filter(name=>name in settings).map(name=>{let label=header?.
+table.find(row=>row.name===name)?.label??name,value=settings[name];return`${label}: ${typeof value=="boolean"?value?"on":
+"off":value}`}).join(", ")||header?.name||"";this.title.textContent=title,this.title.hidden=!title,root.setAttribute("ar\
+ia-label",title?`Flow texture: ${title}`:"Flow texture")}tick(){let{header,player,settings}=this.viewer;if(!header||this.
+track.hidden)return;let{first,last,now}=player.range(settings);this.slider.value=String((now-first)/(last-first||1));let unit2=header.
+slices.timeUnit,text=player.varies?`${numberText(now)} ${unit2}`:`${now.toFixed(1)} s`;this.timeText.textContent!==text&&
+(this.timeText.textContent=text)}showLegend(){let{header,settings,parts}=this.viewer;this.showsLevels=!!settings.show_level,
+header&&this.legend.show(header,settings,parts.get("cmap")?.data)}read(point){let{header}=this.viewer;if(this.readout.replaceChildren(),
+this.legend.point(null),!(!point||!header)){this.readout.append(dom("span",{},[this.positionText(point.position,header)]));
+for(let[name,value]of Object.entries(point.values)){let text=`${name} ${numberText(value)} ${header.scalars.unit}`;this.
+readout.append(dom("b",{},[text.trimEnd()])),this.legend.point(header,value)}}}positionText(position,{geometry}){let{extent,
+planar,center,frame}=geometry,zoom=Math.max(this.viewer.camera?.zoom??1,1),digits=Math.min(Math.ceil(FEWEST_DIGITS+Math.
+log10(zoom)),MOST_DIGITS),isInPlane=planar&&Math.abs(position[2]-center[2])<1e-12*extent&&Math.abs(frame[8])>.999;return`\
+(${position.slice(0,isInPlane?2:3).map(x=>{let value=Math.abs(x)<1e-9*extent?0:x;return digits>5?String(Number(value.toPrecision(
+digits))):numberText(value)}).join(", ")})`}fold(open=!1){this.isOpen=open,this.arrange()}toggle(shown=!this.isShown){shown!==
+this.isShown&&(this.isShown=shown,this.arrange(),this.viewer.options.onControls?.(shown))}arrange(){let{header,options,root}=this.
+viewer,isReady=header!==null,follows=!!options.follows;this.bar.hidden=!this.isShown||!isReady,this.handle.hidden=this.isShown||
+!isReady||follows,this.head.hidden=!(this.isShown||follows)||!isReady,this.controls.element.hidden=!this.isShown||!this.
+isOpen||!isReady,root.classList.toggle("flowtex-open",!this.controls.element.hidden),this.gear.setAttribute("aria-presse\
+d",String(this.isOpen))}wait(missing){this.busy.hidden=!missing.length;let{viewer}=this;!missing.length||viewer.options.
+onNeed||this.lateTimer||(this.lateTimer=viewer.lifetime.later(()=>{this.lateTimer=null;let names=viewer.lacking.join(", ");
+names&&this.fail("The scene is not complete.",`Missing: ${names}`)},LATE_MS))}hint(shown){let{lifetime}=this.viewer;lifetime.
+cancel(this.hintTimer),this.hintTimer=shown?lifetime.later(()=>this.hint(!1),HINT_MS):null,this.hintBox.hidden=!shown}clear(){
+this.note.hidden=!0,delete this.viewer.root.dataset.failed}fail(problem,detail){this.note.replaceChildren(dom("strong",{},
+[problem]),dom("pre",{},[detail])),this.note.hidden=!1,this.busy.hidden=!0,this.viewer.root.dataset.failed="true"}fullscreen(){
+let{root}=this.viewer;toggleFullscreen(root.closest(".flowtex-pair")??root)}async save(){let{viewer}=this,href=URL.createObjectURL(
+await pictureOf(viewer.together)),name=(viewer.header?.name||"flow").replace(FORBIDDEN," ").trim();dom("a",{href,download:`${name}\
+.png`}).click(),viewer.lifetime.later(()=>URL.revokeObjectURL(href),SAVED_MS)}};function positions(data,anchor){return anchor.some(Boolean)?data.map((x,n)=>x-anchor[n%3]):data}function grid(us,vs){let result2=new Float32Array(
 2*us.length*vs.length),n=0;for(let v2 of vs)for(let u of us)result2[n++]=u,result2[n++]=v2;return result2}function coordinates({
 shape,rows,columns}){let middles=(count,{before,size})=>Array.from({length:count},(_,n)=>(n+before+.5)/size);return grid(
 middles(shape[1],columns),middles(shape[0],rows))}function noiseCoordinates({alongI,alongJ}){return grid(alongI,alongJ)}

@@ -135,6 +135,21 @@ def test_planes_and_arrays_can_be_chosen(page: Page) -> None:
     assert "16 × 6" in page.inner_text(".flowtex-about")
 
 
+@pytest.mark.parametrize("width", [1000, 700, 380])
+def test_the_play_button_stays_when_the_figures_grow(page: Page, width: int) -> None:
+    page.set_viewport_size({"width": width, "height": 600})
+    figures, play = page.locator(".flowtex-figures"), page.get_by_role("button", name="Play")
+    places = []
+    for text in ("9 ms", "1600 × 1000 · 12 fps · 1234 ms · with fewer samples and lower resolution"):
+        figures.evaluate("(element, text) => void (element.textContent = text)", text)
+        places.append(play.bounding_box())
+        foot, whole = figures.bounding_box(), play.locator("..").bounding_box()
+        assert foot is not None and whole is not None
+        assert foot["x"] >= whole["x"] + whole["width"] or foot["y"] >= whole["y"] + whole["height"]
+    page.set_viewport_size(SIZE)  # type: ignore[arg-type]
+    assert places[0] == places[1] is not None
+
+
 def test_a_broken_file_is_told_and_the_view_stands(page: Page) -> None:
     still = WATCH.shot(page)
     open_file(page, "torn.vts")
