@@ -252,7 +252,10 @@ return;let{low,high}=header.scalars;this.mark.style.left=`${100*clamp((value-low
     --shadow: 0 4px 18px rgb(0 0 0 / 0.35);
   }
 }
-:host(:focus-visible) { box-shadow: inset 0 0 0 2px var(--accent); }
+:host(:focus-visible)::after {
+  content: ""; position: absolute; inset: 0; z-index: 1; pointer-events: none;
+  box-shadow: inset 0 0 0 2px var(--accent);
+}
 :host(:fullscreen) { width: 100vw !important; height: 100vh !important; }
 * { box-sizing: border-box; }
 [hidden] { display: none !important; }
@@ -283,18 +286,21 @@ return;let{low,high}=header.scalars;this.mark.style.left=`${100*clamp((value-low
 .head:not(:has(.title:not([hidden]), .readout:not(:empty))) { display: none; }
 .readout b { color: var(--ink); font-weight: 500; }
 .legend {
-  position: absolute; right: 10px; top: 10px; width: 150px; padding: 5px 10px 6px;
+  position: absolute; right: 10px; top: 10px; min-width: 150px; max-width: 60%; padding: 5px 10px 6px;
   font-size: 11px; pointer-events: none;
 }
-.legend .name { overflow: hidden; text-overflow: ellipsis; white-space: nowrap; margin-bottom: 3px; }
+.legend .name { width: 0; min-width: 100%; overflow: hidden; text-overflow: ellipsis; white-space: nowrap; margin-bottom\
+: 3px; }
 .ramp { position: relative; height: 8px; border-radius: 4px; box-shadow: inset 0 0 0 1px var(--edge); }
 .ramp i {
   position: absolute; top: -2px; bottom: -2px; width: 2px; margin-left: -1px; border-radius: 1px;
   background: var(--ink); box-shadow: 0 0 0 1px var(--ground);
 }
-.ends { display: flex; justify-content: space-between; margin-top: 2px; }
+.ends { display: flex; justify-content: space-between; gap: 8px; margin-top: 2px; white-space: nowrap; }
+.head:has(~ .legend:not([hidden])) { max-width: calc(100% - 190px); }
 .bar {
   position: absolute; left: 10px; right: 10px; bottom: 10px; width: fit-content; margin: 0 auto;
+  max-width: calc(100% - 20px);
   display: flex; align-items: center; gap: 1px; padding: 3px;
 }
 button {
@@ -383,11 +389,13 @@ input[role="switch"]:checked::after { transform: translateX(12px); }
 @container (max-width: 460px) {
   .bar { flex-wrap: wrap; justify-content: center; }
   .track { order: -1; flex: 1 1 100%; width: auto; }
-  .legend { width: 104px; padding: 4px 8px; }
+  .track:has(input:disabled) { display: none; }
+  .legend { min-width: 104px; padding: 4px 8px; }
   .settings { bottom: 80px; max-height: calc(100% - 90px); }
   .title { max-width: 110px; }
   .readout { flex-direction: column; gap: 0; }
-  .head { flex-direction: column; gap: 0; max-width: calc(100% - 134px); }
+  .head { flex-direction: column; gap: 0; }
+  .head:has(~ .legend:not([hidden])) { max-width: calc(100% - 144px); }
 }
 @container (max-width: 220px) { .legend { display: none; } }
 @container (max-width: 330px) { button { width: 27px; height: 27px; } }
@@ -552,34 +560,35 @@ if(!(area>LEAST_GROWTH**2&&area<GREATEST_GROWTH**2))return null;let[a,b,c,d,e,f]
 abs((a*x+c*y+e)/w-1)<1+ROUNDING&&Math.abs((b*x+d*y+f)/h-1)<1+ROUNDING,covers=[[0,0],[width,0],[0,height],[width,height]].
 every(isInside),[xx,xy,yx,yy]=matrix,shifts=Math.abs(xx-1)+Math.abs(yy-1)+Math.abs(xy)+Math.abs(yx)<ROUNDING;if(shifts)for(let n of[
 4,5])matrix[n]=Math.round(matrix[n]);return{matrix,covers,shifts}}var MOVING_MS=55,MOVING_LEAST_MS=14,STRIP_MS=40,SMOOTH_ROWS=256,penOf=canvas=>canvas.getContext("2d",{alpha:!1}),ProgressiveRenderer=class{viewer;graphics;canvas;pen;back=document.
-createElement("canvas");backPen=penOf(this.back);last=document.createElement("canvas");lastPen=penOf(this.last);lastCamera=null;version=1;draftVersion=0;rowsDone=0;fixed=4;frames=0;constructor(viewer){
+createElement("canvas");backPen=penOf(this.back);last=document.createElement("canvas");lastPen=penOf(this.last);lastCamera=null;coarse=document.
+createElement("canvas");coarsePen=penOf(this.coarse);version=1;draftVersion=0;rowsDone=0;fixed=4;frames=0;constructor(viewer){
 this.viewer=viewer,this.graphics=viewer.graphics,this.canvas=viewer.canvas,this.pen=penOf(this.canvas)}restart(cameraOnly=!1){
 cameraOnly||(this.lastCamera=null),this.version+=1,this.rowsDone=0}resize(width,height){let{canvas,back,last}=this;back.
 width=canvas.width,back.height=canvas.height,this.backPen?.drawImage(canvas,0,0),canvas.width=last.width=width,canvas.height=
 last.height=height,back.width>1&&this.pen?.drawImage(back,0,0,width,height),back.width=width,back.height=height}dispose(){
-for(let canvas of[this.canvas,this.back,this.last])canvas.width=canvas.height=0}draw(program,shown,moving,until){if(this.
-draftVersion!==this.version)return this.draft(program,shown,moving);if(moving)return!1;let complete=!1;do complete=this.
-strip(program,shown);while(!complete&&performance.now()<until);return complete}draft(program,shown,moving){let{width,height}=this.
-canvas,samples=Number(this.viewer.settings.samples),crowd=moving?this.graphics.waiting.size+1:1,budget=Math.max(MOVING_MS/
-crowd,MOVING_LEAST_MS);this.warm(program,shown);let price=program.price*this.factor(samples),best=quality(price,this.fixed,
-width*height,samples,budget),w=Math.max(Math.round(width*best.scale),1),h=Math.max(Math.round(height*best.scale),1);this.
-draftVersion=this.version;let reuse=best.scale<1?this.reuse():null;if(!reuse?.covers){let region={width:w,height:h,top:0,
-rows:h};this.timed(program,region,best.samples,()=>{this.render(program,shown,region,best.samples),this.copy(this.pen,region,
-height,0)})}return reuse&&this.pen&&(this.pen.imageSmoothingEnabled=!reuse.shifts,this.pen.setTransform(...reuse.matrix),
-this.pen.drawImage(this.last,0,0),this.pen.setTransform(1,0,0,1,0,0)),best.scale<1||best.samples!==samples||this.viewer.
-smooth?!1:(this.complete(),!0)}strip(program,shown){let{width,height}=this.canvas,{smooth,settings}=this.viewer,samples=Number(
-settings.samples);this.warm(program,shown);let price=program.price*this.factor(samples),most=Math.min(height-this.rowsDone,
-smooth?SMOOTH_ROWS:height),rows=Math.min(rowsIn(STRIP_MS,price,this.fixed,width,samples),most),region={width,height,top:this.
-rowsDone,rows};return this.timed(program,region,samples,()=>{this.render(program,shown,region,samples,smooth);let drawn=smooth?
-{...region,height:rows,top:0}:region;this.copy(this.backPen,drawn,drawn.height,this.rowsDone)}),this.rowsDone+=rows,this.
-rowsDone<height?!1:(this.pen?.drawImage(this.back,0,0),this.complete(),!0)}complete(){let{camera,player}=this.viewer;this.
-rowsDone=this.canvas.height,this.frames+=1,this.draftVersion=this.version,this.lastPen?.drawImage(this.canvas,0,0),camera&&
-!player.playing&&(this.lastCamera=new Camera(camera.state,camera.limits,camera.flat,camera.aspect))}reuse(){let{lastCamera}=this,
-{scene,camera}=this.viewer;if(!scene?.header.geometry.planar||!camera||!lastCamera||!camera.state.parallel||!lastCamera.
-state.parallel)return null;let{geometry}=scene.header,focus=subtract2(camera.state.focal_point,geometry.center),anchor=toFrame(
-geometry.frame,focus),[before,now]=[lastCamera,camera].map(view=>projection(geometry,view,anchor));return reused(before,
-now,this.canvas.width,this.canvas.height)}factor(samples){let{settings,player}=this.viewer;return settings.motion!=="off"||
-player.varies?motionFactor(samples):1}timed(program,region,samples,draw){let started=performance.now();draw();let spent=performance.
+for(let canvas of[this.canvas,this.back,this.last,this.coarse])canvas.width=canvas.height=0}draw(program,shown,moving,until){
+if(this.draftVersion!==this.version)return this.draft(program,shown,moving);if(moving)return!1;let complete=!1;do complete=
+this.strip(program,shown);while(!complete&&performance.now()<until);return complete}draft(program,shown,moving){let{width,
+height}=this.canvas,samples=Number(this.viewer.settings.samples),crowd=moving?this.graphics.waiting.size+1:1,budget=Math.
+max(MOVING_MS/crowd,MOVING_LEAST_MS);this.warm(program,shown);let price=program.price*this.factor(samples),best=quality(
+price,this.fixed,width*height,samples,budget),w=Math.max(Math.round(width*best.scale),1),h=Math.max(Math.round(height*best.
+scale),1);this.draftVersion=this.version;let reuse=best.scale<1?this.reuse():null;if(!reuse?.covers){let region={width:w,
+height:h,top:0,rows:h};this.timed(program,region,best.samples,()=>{this.render(program,shown,region,best.samples),this.copy(
+this.pen,region,height,0)})}return reuse&&this.pen&&(this.pen.imageSmoothingEnabled=!reuse.shifts,this.pen.setTransform(
+...reuse.matrix),this.pen.drawImage(this.last,0,0),this.pen.setTransform(1,0,0,1,0,0)),best.scale<1||best.samples!==samples||
+this.viewer.smooth?!1:(this.complete(),!0)}strip(program,shown){let{width,height}=this.canvas,{smooth,settings}=this.viewer,
+samples=Number(settings.samples);this.warm(program,shown);let price=program.price*this.factor(samples),most=Math.min(height-
+this.rowsDone,smooth?SMOOTH_ROWS:height),rows=Math.min(rowsIn(STRIP_MS,price,this.fixed,width,samples),most),region={width,
+height,top:this.rowsDone,rows};return this.timed(program,region,samples,()=>{this.render(program,shown,region,samples,smooth);
+let drawn=smooth?{...region,height:rows,top:0}:region;this.copy(this.backPen,drawn,drawn.height,this.rowsDone)}),this.rowsDone+=
+rows,this.rowsDone<height?!1:(this.pen?.drawImage(this.back,0,0),this.complete(),!0)}complete(){let{camera,player}=this.
+viewer;this.rowsDone=this.canvas.height,this.frames+=1,this.draftVersion=this.version,this.lastPen?.drawImage(this.canvas,
+0,0),camera&&!player.playing&&(this.lastCamera=new Camera(camera.state,camera.limits,camera.flat,camera.aspect))}reuse(){
+let{lastCamera}=this,{scene,camera}=this.viewer;if(!scene?.header.geometry.planar||!camera||!lastCamera||!camera.state.parallel||
+!lastCamera.state.parallel)return null;let{geometry}=scene.header,focus=subtract2(camera.state.focal_point,geometry.center),
+anchor=toFrame(geometry.frame,focus),[before,now]=[lastCamera,camera].map(view=>projection(geometry,view,anchor));return reused(
+before,now,this.canvas.width,this.canvas.height)}factor(samples){let{settings,player}=this.viewer;return settings.motion!==
+"off"||player.varies?motionFactor(samples):1}timed(program,region,samples,draw){let started=performance.now();draw();let spent=performance.
 now()-started,pixels=region.width*region.rows,factor=this.factor(samples);program.price=learnedPrice(program.price,spent,
 this.fixed,pixels,samples,factor)}warm(program,shown){if(program.warm)return;let{width,height}=this.canvas,region={width,
 height,top:0,rows:1};this.render(program,shown,region,1);let started=performance.now();this.render(program,shown,region,
@@ -597,8 +606,9 @@ viewer,noise=parts.get("noise")?.shape??null;return{...uniforms(header,{...setti
 settings,samples,view.density):{},u_matrix:projection(header.geometry,camera,view.anchor),u_mapped:header.scalars.name!==
 null,u_colour:header.colour,u_lit:header.lighting,u_ground:header.background,u_opacity:header.opacity,u_toEye:toFrame(header.
 geometry.frame,scale2(camera.axes[2],-1))}}copy(pen,region,height,to){if(!pen)return;let{width:w,height:h,top,rows}=region,
-{width}=this.canvas,{canvas}=this.graphics;pen.imageSmoothingEnabled=w!==width||h!==height,pen.drawImage(canvas,0,canvas.
-height-h+top,w,rows,0,to,width,rows*height/h)}};function fromHalf(bits){let exponent=bits>>10&31,part=bits&1023,size;return exponent===0?size=part*2**-24:exponent===31?
+{width}=this.canvas,{canvas}=this.graphics,first=canvas.height-h+top;if(pen.imageSmoothingEnabled=w!==width||h!==height,
+pen.imageSmoothingEnabled){let{coarse,coarsePen}=this;coarse.width=w,coarse.height=rows,coarsePen?.drawImage(canvas,0,first,
+w,rows,0,0,w,rows),[canvas,first]=[coarse,0]}pen.drawImage(canvas,0,first,w,rows,0,to,width,rows*height/h)}};function fromHalf(bits){let exponent=bits>>10&31,part=bits&1023,size;return exponent===0?size=part*2**-24:exponent===31?
 size=part?NaN:1/0:size=(1024+part)*2**(exponent-25),bits&32768?-size:size}function toHalf(x){let sign=x<0?32768:0,size=Math.
 abs(x);if(!(size<65520))return sign|(size>=65520?31744:32256);let exponent=Math.max(Math.floor(Math.log2(size||1e-30)),-14),
 part=Math.round(size/2**(exponent-10));return sign|(part<1024?part:(exponent+14)*1024+part)}function halved(texels,width,height,channels){

@@ -169,8 +169,9 @@ def page_pieces(
         scene.header(view.scene.settings, camera=camera, time=time, clock=clock)
         for view, scene in zip(views, scenes, strict=True)
     ]
-    if len(views) > 1:
-        for header in headers:
+    for header in headers:
+        header["name"] = title or header["name"]
+        if len(views) > 1:
             header["differs"] = list(views[1].own_settings)
     if picture is None:
         picture = preview.preview_png(
