@@ -140,7 +140,10 @@ def test_the_play_button_stays_when_the_figures_grow(page: Page, width: int) -> 
     page.set_viewport_size({"width": width, "height": 600})
     figures, play = page.locator(".flowtex-figures"), page.get_by_role("button", name="Play")
     places = []
-    for text in ("9 ms", "1600 × 1000 · 12 fps · 1234 ms · with fewer samples and lower resolution"):
+    for text in (
+        "9 ms",
+        "12 fps · 1234 ms · limited by compression · 1600 × 1000 · zoom 1000000",
+    ):
         figures.evaluate("(element, text) => void (element.textContent = text)", text)
         places.append(play.bounding_box())
         foot, whole = figures.bounding_box(), play.locator("..").bounding_box()
