@@ -111,7 +111,10 @@ class Displayed(anywidget.AnyWidget):
 
 
 def _display(shown: Any) -> None:
-    """Display a widget or a box of widgets, and its still."""
+    """Display a widget or a box of widgets, and its still; a notebook of marimo's keeps none."""
+    if (marimo := sys.modules.get("marimo")) is not None and marimo.running_in_notebook():
+        marimo.output.append(shown)
+        return
     from IPython.display import display
 
     bundle = shown._repr_mimebundle_()

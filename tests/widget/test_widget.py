@@ -7,6 +7,7 @@ import subprocess
 import sys
 import threading
 import time
+import types
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -353,6 +354,18 @@ def test_show_displays_once_in_a_notebook(make: Make, monkeypatch: pytest.Monkey
     assert len(shown) == 6
     with pytest.raises(TypeError, match=r"^scalar_bar_args is for windows"):
         flowtex.show(gyre(), scalar_bar_args={"title": "speed"})
+    widget.close()
+
+
+def test_show_displays_a_widget_in_marimo(make: Make, monkeypatch: pytest.MonkeyPatch) -> None:
+    shown: list[Any] = []
+    marimo = types.SimpleNamespace(
+        running_in_notebook=lambda: True, output=types.SimpleNamespace(append=shown.append)
+    )
+    monkeypatch.setitem(sys.modules, "marimo", marimo)  # type: ignore[arg-type]
+    widget = flowtex.show(gyre(), samples=9)
+    assert shown == [widget]
+    assert isinstance(widget, FlowWidget)
     widget.close()
 
 
