@@ -153,6 +153,17 @@ def test_the_play_button_stays_when_the_figures_grow(page: Page, width: int) -> 
     assert places[0] == places[1] is not None
 
 
+def test_what_has_the_focus_has_a_ring(page: Page) -> None:
+    rings = """() => [...document.querySelectorAll(".flowtex *")].filter((element) =>
+      getComputedStyle(element).outline.startsWith("rgb(79, 209, 197) solid 2px")).length"""
+    page.get_by_role("button", name="Play").focus()
+    for _ in range(16):
+        page.keyboard.press("Tab")
+        focused = page.evaluate("() => !!document.activeElement.closest('.flowtex')")
+        assert page.evaluate(rings) == focused
+    page.evaluate("() => document.activeElement.blur()")
+
+
 def test_a_broken_file_is_told_and_the_view_stands(page: Page) -> None:
     still = WATCH.shot(page)
     open_file(page, "torn.vts")
