@@ -27,7 +27,14 @@ from vtkmodules.vtkCommonDataModel import vtkDataObject
 from flowtex._util.array_types import Ints
 from flowtex.rendering.mesh_levels import MeshLevels
 from flowtex.rendering.shaders import shader_text
-from flowtex.rendering.uniforms import ANCHOR_RANGE, ViewState, is_moving, uniforms, variants
+from flowtex.rendering.uniforms import (
+    ANCHOR_RANGE,
+    ViewState,
+    is_moving,
+    is_near,
+    uniforms,
+    variants,
+)
 from flowtex.rendering.vtk.gpu_texture import GPUTexture
 from flowtex.rendering.vtk.mesh import (
     ATTRIBUTES,
@@ -162,7 +169,8 @@ class FlowLayer:
     def _write_text(self) -> None:
         unsteady = self._textures.store.steps > 1
         moving = is_moving(self._textures, self._settings)
-        variant = variants(self._textures, unsteady=unsteady, moving=moving)
+        near = is_near(self._textures, self._settings, self.view)
+        variant = variants(self._textures, unsteady=unsteady, moving=moving, near=near)
         if variant == self._variant:
             return
         self._variant = variant
@@ -217,7 +225,6 @@ class FlowLayer:
         renderer = self._renderer()
         if renderer is None:
             return
-        self._write_text()
         camera = renderer.GetActiveCamera()
         parallel = bool(camera.GetParallelProjection())
         eye = (
@@ -230,6 +237,8 @@ class FlowLayer:
         self.view.focus = focus[:3]
         scale = float(np.cbrt(abs(np.linalg.det(placed[:3, :3]))))
         height = _window_height(camera) / scale
+        self.view.pixel = height / renderer.GetSize()[1]
+        self._write_text()
         self._move_anchor(height)
         self._choose_triangles(camera, height if parallel else None)
 
