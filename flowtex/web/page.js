@@ -479,11 +479,15 @@ header),finest=2**(Math.floor(Math.log2(geometry.extent))-constants.noiseDoublin
 subtract2(view.eye,scale2(geometry.center,w))),kernel=signFree&&s.kernel==="ramp"?"hann":s.kernel;return{u_eye:[...subtract2(
 eye,scale2(view.anchor,w)),w],u_between:view.between,u_slicesSize:[geometry.columns.size,geometry.rows.size],u_deepest:geometry.
 levels,u_lags:slices.lags,u_lagCount:slices.lags.length,u_sides:s.two_sided||signFree?slices.sides:1,u_unit:slices.unit,
-u_samples:isMoving(header,settings)?2*s.samples-1:s.samples,u_spacing:s.spacing,u_grain:s.grain*view.density,u_kernel:constants.
-kernels.indexOf(kernel),u_lod:s.lod,u_contrast:s.contrast,u_strength:s.strength,u_seed:s.seed,u_showLevel:s.show_level,u_fixed:s.
-fixed_grain,...motionUniforms(header,s,view),...noiseOrigin(header,view,finest),u_noiseFinest:finest,u_texel:geometry.extent/
-s.resolution,...header.paper&&noiseShape?paperUniforms(header.paper,s,noiseShape,view.density):{}}}function isMoving(header,settings){
-let streams=settings.motion!=="off"&&!isSignFree(header);return!header.paper&&(header.slices.steps>1||streams)}function motionUniforms(header,s,view){
+u_rateLayer:slices.count-1,u_cell:slices.cell,u_samples:isMoving(header,settings)?2*s.samples-1:s.samples,u_spacing:s.spacing,
+u_grain:s.grain*view.density,u_kernel:constants.kernels.indexOf(kernel),u_lod:s.lod,u_contrast:s.contrast,u_strength:s.strength,
+u_seed:s.seed,u_showLevel:s.show_level,u_fixed:s.fixed_grain,...motionUniforms(header,s,view),...noiseOrigin(header,view,
+finest),u_noiseFinest:finest,u_texel:geometry.extent/s.resolution,...header.paper&&noiseShape?paperUniforms(header.paper,
+s,noiseShape,view.density):{}}}function isMoving(header,settings){let streams=settings.motion!=="off"&&!isSignFree(header);
+return!header.paper&&(header.slices.steps>1||streams)}function isNear(header,settings,view){let{geometry,slices,constants}=header,
+s=settings,gap=Math.hypot(...subtract2(view.eye,geometry.center))-.5*geometry.extent,away=view.eye[3]?Math.max(gap,0)/Math.
+hypot(...subtract2(view.eye,view.focus)):1,grain=s.lod?view.pixel*away*s.grain*view.density:geometry.extent/s.resolution;
+return Math.floor(s.samples/2)*s.spacing*grain<constants.farCells*slices.critical}function motionUniforms(header,s,view){
 let{geometry,slices,constants}=header,varies=slices.steps>1,inPixels=!varies&&s.speed_in==="pixels",turns=varies?(view.time-
 slices.times[0])/(geometry.extent/slices.pace):(view.clock/s.period%1+1)%1,travel=varies?geometry.extent:s.speed*s.period,
 coarse=Math.floor(turns/constants.clockStep)*constants.clockStep;return{u_clock:[coarse,turns-coarse],u_travel:travel*(inPixels?
@@ -770,22 +774,24 @@ steps)].filter(step=>this.scene?.missing(step,step).length);for(let step of lack
 get(step)??-1/0)<LOST_MS||(this.requests.set(step,now),this.options.onNeed(step));return!lacking.length}frame(now,until){
 if(!(this.lifetime.isOver||this.graphics.isLost||!this.graphics.gl||!this.isVisible)&&!(!this.header||!this.scene||this.
 canvas.width<2))try{this.advance(now),this.drawPicture(this.header,until)}catch(error){this.pause(),this.panel.fail("The\
- picture could not be drawn.",String(error))}}program(header){let{vertex,fragment}=header.shaders,defines=isMoving(header,
-this.settings)?["FLOWTEX_MOVING"]:[];return this.graphics.programs.get(vertex,fragment,...defines)}drawPicture(header,until){
-let shown=this.available();if(this.camera||this.place(),!shown||!this.camera)return;let{programs}=this.graphics,program=this.
-program(header);if(program.error){this.panel.fail("The shader does not compile with this graphics driver.",program.error);
-return}if(!program.ready)return this.request();!this.sharp&&this.renderer.draw(program,shown,this.isBusy,until)&&(this.panel.
-clear(),programs.get(header.shaders.vertex,header.shaders.pick),this.setSharp(!this.playing)),this.sharp||this.request()}advance(now){
-let{player,options}=this;!player.playing||!player.advance(now,steps=>this.ask(steps))||(player.varies?options.onTime?.(player.
-time):options.onClock?.(player.clock),this.panel.tick(),this.renderer.restart(),this.setSharp(!1))}view(shown,density){let{
-header,camera,scene,player}=this;if(!header||!camera)throw new Error("there is nothing to look at yet");let{geometry,constants}=header,
+ picture could not be drawn.",String(error))}}program(header,isClose=this.isClose(header)){let{vertex,fragment}=header.shaders,
+defines=isMoving(header,this.settings)?["FLOWTEX_MOVING"]:[];return isClose&&defines.push("FLOWTEX_CELLS"),this.graphics.
+programs.get(vertex,fragment,...defines)}isClose(header){return this.camera!==null&&isNear(header,this.settings,this.view(
+[0,0,0],this.ratio))}drawPicture(header,until){let shown=this.available();if(this.camera||this.place(),!shown||!this.camera)
+return;let{programs}=this.graphics,program=this.program(header);if(program.error){this.panel.fail("The shader does not c\
+ompile with this graphics driver.",program.error);return}if(!program.ready)return this.request();!this.sharp&&this.renderer.
+draw(program,shown,this.isBusy,until)&&(this.panel.clear(),programs.get(header.shaders.vertex,header.shaders.pick),header.
+slices.critical&&this.program(header,!0),this.setSharp(!this.playing)),this.sharp||this.request()}advance(now){let{player,
+options}=this;!player.playing||!player.advance(now,steps=>this.ask(steps))||(player.varies?options.onTime?.(player.time):
+options.onClock?.(player.clock),this.panel.tick(),this.renderer.restart(),this.setSharp(!1))}view(shown,density){let{header,
+camera,scene,player}=this;if(!header||!camera)throw new Error("there is nothing to look at yet");let{geometry,constants}=header,
 focus=camera.state.focal_point,local=toFrame(geometry.frame,subtract2(focus,geometry.center)),old=scene?.anchor??[0,0,0],
 range=constants.anchorRange*2*camera.height,isFar=v2=>v2.some(c=>Math.abs(c)>range),anchor=isFar(local)?local:[0,0,0];return{
 focus,anchor:isFar(subtract2(local,old))?anchor:old,eye:camera.eye,between:shown[2],time:player.timeOf(shown),clock:player.
-clock,density}}get canPick(){let{header,graphics}=this;return!header||graphics.isLost||!graphics.gl?!1:graphics.programs.
-get(header.shaders.vertex,header.shaders.pick).ready}point(x,y){let{scene,camera,shown,canvas}=this;if(!scene||!camera||
-!shown||!this.canPick)return null;let{anchor}=this.view(shown,1);return pickedPoint({scene,camera,moment:shown,anchor,canvas},
-x,y)}};function viewersIn(element,count,options,own=()=>({})){if(count<2)return[new Viewer(element,{...options,...own(0)})];let pair=dom(
+clock,density,pixel:2*camera.height/Math.max(this.root.clientHeight*density,1)}}get canPick(){let{header,graphics}=this;
+return!header||graphics.isLost||!graphics.gl?!1:graphics.programs.get(header.shaders.vertex,header.shaders.pick).ready}point(x,y){
+let{scene,camera,shown,canvas}=this;if(!scene||!camera||!shown||!this.canPick)return null;let{anchor}=this.view(shown,1);
+return pickedPoint({scene,camera,moment:shown,anchor,canvas},x,y)}};function viewersIn(element,count,options,own=()=>({})){if(count<2)return[new Viewer(element,{...options,...own(0)})];let pair=dom(
 "div",{class:"flowtex-pair"});pair.style.cssText="display: flex; gap: 2px; width: 100%; height: 100%",element.append(pair);
 let viewers=[];for(let n=0;n<count;n+=1){let cell=dom("div");cell.style.cssText="flex: 1 1 0; min-width: 0; height: 100%",
 pair.append(cell);let others=()=>viewers.filter((_,m)=>m!==n),follower=n?{controls:!1,follows:viewers[0]}:{};viewers.push(
