@@ -49,8 +49,8 @@ BLOCK_CELLS, TILE_BLOCKS = 64, 4
 TILE_CELLS = BLOCK_CELLS * TILE_BLOCKS
 #: Length of the paths in cells, by their longer side.
 PATH_CELLS = 32
-#: Width of a halo in lengths of the paths, for cells that grow smaller beyond a tile; lines more than
-#: that; and its greatest width.
+#: Width of a halo in lengths of the paths, for cells that grow smaller beyond a tile; lines that it
+#: has more than that; and its greatest width.
 HALO_SHARE, HALO_SPARE, MOST_HALO = 1.2, 3, 512
 #: Nodes of a window around a pole from which on its paths are not composed: all are traced then.
 MOST_COMPOSED = 500_000
