@@ -18,12 +18,16 @@ from contextlib import suppress
 from functools import partial
 from typing import Any
 
+import numpy as np
+
 from flowtex._util.array_types import AnyArray
 from flowtex.rendering.webgl import ClientData
 from flowtex.rendering.webgl.protocol import Header, Parts, part_buffer, part_info
 from flowtex.settings import Affects
+from flowtex.tiles import TileKey
 from flowtex.web import preview
 from flowtex.web.view import WebView
+from flowtex.widget.tile_feed import TileFeed
 from flowtex.widget.worker import Worker, WorkerPool
 
 __all__ = ["Feed"]
@@ -81,6 +85,8 @@ class Feed:
         self._timer = self._resend_timer(RESEND_WAITS_S)
         self._answers = Worker(ANSWER_POOL, self._failed)
         self._builds = Worker(BUILD_POOL, self._failed)
+        # Apart from the answers, which may be tracing for long.
+        self._tiles = TileFeed(Worker(ANSWER_POOL, self._failed), self._send_tile, self.scene)
         view.scene.observe(self._scene_changed)
 
     @property
@@ -105,6 +111,7 @@ class Feed:
 
     def ready(self) -> None:
         """Answer a client that has nothing yet."""
+        self._tiles.forget()
         self._answers.do(lambda: self._send_parts(self._first_parts), urgency=1)
 
     def need(self, step: int) -> None:
@@ -113,6 +120,16 @@ class Feed:
             return
         self._asked.add(step)
         self._answers.do(lambda: self._send_step(step), urgency=1)
+
+    def need_tiles(self, keys: Sequence[TileKey], steps: Sequence[int], seen: int) -> None:
+        """Answer a client that needs tiles; :meth:`TileFeed.request` has the parameters."""
+        self._tiles.request(keys, steps, seen)
+
+    def _send_tile(self, scene: ClientData, parts: Parts, number: int) -> None:
+        with self._lock:
+            if scene is self.scene and not self._closed:
+                self._deliver(parts, again=True, offer=False)
+                self._send({"kind": "tiles", "seen": number}, [])
 
     def _resend_timer(self, waits: tuple[float, ...]) -> threading.Timer:
         timer = threading.Timer(waits[0], self._send_again, [waits[1:]])
@@ -157,6 +174,7 @@ class Feed:
         self._closed = True
         self._timer.cancel()
         self._answers.close()
+        self._tiles.close()
         self._builds.close()
         for event in (self.pictured, self.settled):
             event.set()
@@ -164,9 +182,14 @@ class Feed:
     def _first(self) -> ClientData:
         """Return the scene to begin with: a coarse one of a large field."""
         field = self._view.field
-        if field.valid.size * len(field.times) <= LARGE_NODES:
+        if self._view.scene.pyramid is None and self._nodes <= LARGE_NODES:
             return self._view.data()
         return self._view.coarse_data(COARSE_STEADY if field.steady else COARSE_VARYING)
+
+    @property
+    def _nodes(self) -> int:
+        """Nodes of the whole, at all times together."""
+        return int(np.prod(self._view.shape)) * len(self._view.field.times)
 
     def _refine(self) -> None:
         """Replace a coarse scene by one between, where the whole takes long, and by the whole."""
@@ -178,15 +201,15 @@ class Feed:
             if order == self._order:
                 self.settled.set()
 
-        if field.valid.size * len(field.times) >= VERY_LARGE_NODES:
+        if self._nodes >= VERY_LARGE_NODES:
             between = partial(self._refine_to, partial(self._view.coarse_data, nodes), order)
             self._builds.do(between, urgency=1)
         self._builds.do(complete)
 
     def _refine_to(self, make: Callable[[], ClientData], order: int) -> None:
         """Replace a scene that is still coarse and wanted."""
-        shape = self.scene.textures.geometry.field.shape
-        if order == self._order and shape != self._view.field.shape:
+        shape = self.scene.textures.geometry.shape
+        if order == self._order and shape != self._view.shape:
             self._replace(make())
 
     def _replace(self, scene: ClientData) -> None:
@@ -197,6 +220,7 @@ class Feed:
             if order != self._order or self._closed:
                 return
             self.scene = scene
+            self._tiles.show(scene)
             self._generation += 1
             self._announce(self.header)
             if self._live:
