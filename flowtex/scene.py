@@ -166,14 +166,13 @@ class Scene:
     def pyramid(self) -> Pyramid | None:
         """The tiles of a large field; ``None`` where all of it is traced together.
 
-        Noise in a texture, and a field without a sign or with poles, are not drawn in tiles.
+        Noise in a texture, and a field without a sign, are not drawn in tiles.
         """
         if self._sliced or self.settings.noise != "procedural" or self.field.sign_free:
             return None
         if self._pyramid is None:
             self._pyramid = shared_pyramid(self.field, self.settings.parameter)
-        pyramid = self._pyramid
-        return None if pyramid.depth == 0 or pyramid.root.surface.poles is not None else pyramid
+        return self._pyramid if self._pyramid.depth else None
 
     @property
     def whole(self) -> FlowField:
@@ -293,7 +292,7 @@ class Scene:
         scene._noise, scene._time = self._noise, self._time
         scene._store = _coarse_stores.get(
             (id(field), self.settings.parameter),  # a store keeps its field alive
-            lambda: SliceStore(field, parameter=self.settings.parameter, compose=False),
+            lambda: SliceStore(field, parameter=self.settings.parameter, compose=field.steady),
         )
         return scene
 

@@ -152,6 +152,23 @@ class FlowHandle:
         """Whether the texture has been removed."""
         return self._plotter is None
 
+    def load_in_background(self, notify: Callable[[], None]) -> None:
+        """Draw with the tiles that are there; ``notify`` is called in a thread when there are more.
+
+        Of a large surface only what is seen is traced, in tiles. By default a picture waits for
+        those that it needs.
+        """
+        self._surface.load_in_background(notify)
+
+    def draw_for(self, height: int | None) -> None:
+        """Choose tiles as for a picture of so many pixels, of which the next ones are drafts."""
+        self._surface.full_height = height
+
+    @property
+    def busy(self) -> bool:
+        """Whether tiles of the last picture are on their way."""
+        return self._surface.busy
+
     def set_scalars(self, array: str, name: str) -> None:
         """Write a scalar of the scene to a point array of what is drawn, at all times shown."""
         self._surface.set_scalars(array, lambda field: self.scene.scalar(name, field))

@@ -92,7 +92,8 @@ class SurfaceGeometry:
 
     ``rows`` and ``columns`` say how the j and i axes lie in the slice textures, and which nodes of
     the field are drawn: in a tile, those around it only continue it. ``whole`` is the surface that
-    a tile is a part of, whose middle, size and frame it has.
+    a tile is a part of, whose middle, size and frame it has; ``open_sides`` tells of its field
+    whether that goes on before and after its rows, and its columns.
     """
 
     field: FlowField
@@ -100,6 +101,7 @@ class SurfaceGeometry:
     rows: Padding
     columns: Padding
     whole: Surface
+    open_sides: tuple[tuple[bool, bool], ...] = ((False, False), (False, False))
 
     @classmethod
     def of(cls, field: FlowField) -> SurfaceGeometry:
@@ -114,14 +116,18 @@ class SurfaceGeometry:
 
     @classmethod
     def of_tile(
-        cls, field: FlowField, drawn: tuple[slice, slice], whole: Surface
+        cls,
+        field: FlowField,
+        drawn: tuple[slice, slice],
+        whole: Surface,
+        open_sides: tuple[tuple[bool, bool], ...],
     ) -> SurfaceGeometry:
         """Lay out some of a field's rows and columns, as a part of a larger surface."""
         rows, columns = (
             Padding.of(n, TILE_LEVELS, periodic=False, drawn=part)
             for n, part in zip(field.shape, drawn, strict=True)
         )
-        return cls(field, TILE_LEVELS, rows, columns, whole)
+        return cls(field, TILE_LEVELS, rows, columns, whole, open_sides)
 
     @property
     def drawn(self) -> tuple[slice, slice]:

@@ -130,22 +130,23 @@ class TextureSet:
 
     def layers(self, step: int = 0) -> Floats32:
         """Texels of the slice texture for one destination time, (layers, H, W, 4)."""
-        slices = self.store.at(step).part(*self.geometry.texels)
+        whole = self.store.at(step)
+        slices, tangent = whole.part(*self.geometry.texels), self._tangent(whole)
         size = (self.geometry.rows.size, self.geometry.columns.size)
         result = np.empty((self.count, *size, 4), np.float32)
 
         def make(layer: int) -> None:
-            self.geometry.write_texels(self._nodal(slices, layer), result[layer])
+            self.geometry.write_texels(self._nodal(slices, tangent, layer), result[layer])
 
         with ThreadPoolExecutor(max_workers=min(os.cpu_count() or 1, 8)) as pool:
             list(pool.map(make, range(self.count)))
         return result
 
-    def _nodal(self, slices: TraceSlices, layer: int) -> Floats32:
+    def _nodal(self, slices: TraceSlices, tangent: AnyArray, layer: int) -> Floats32:
         """Give the four channels of one layer at the nodes, (J, I, 4)."""
         result = np.zeros((*slices.shape, 4), np.float32)
         if layer == 0:
-            result[..., :3] = self._tangent(slices)
+            result[..., :3] = tangent
             result[..., 3] = slices.unit * self.pace / self.unit
             return result
         side, m = divmod(layer - 1, len(slices.lags))
@@ -173,17 +174,18 @@ class TextureSet:
         return np.asarray(field.speed[step][self.geometry.texels] / self.typical_speed)
 
     def _tangent(self, slices: TraceSlices) -> AnyArray:
-        rate = slices.rate[0]
+        """Slopes at lag zero of the nodes in the textures, from the slices of all nodes."""
+        rate, texels = slices.rate[0], self.geometry.texels
         if self.paper is not None:
             return three_components(rate * self.paper.by_cell())
         surface = self.geometry.field.surface
-        p_i, p_j = surface.tangents[:, *self.geometry.texels]
+        p_i, p_j = surface.tangents
         along = rate[..., :1] * p_i + rate[..., 1:] * p_j
         for pole in surface.poles or ():
             # One point has one slope, of which its nodes hold a component each.
             across = pole.lines(rate)[pole.line, :, pole.component]
             pole.lines(along)[pole.line] = pole.vector(across) @ pole.plane
-        return np.asarray(along @ self.geometry.frame.T) / self._length
+        return np.asarray(along[texels] @ self.geometry.frame.T) / self._length
 
     @cached_property
     def _displacements(self) -> NodeDisplacements:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import os
 import threading
+import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, field
@@ -20,7 +21,7 @@ from flowtex._util.array_types import Floats32
 from flowtex._util.cache import ByteCache
 from flowtex._util.progress import Stopped, stoppable
 from flowtex.textures import TextureSet
-from flowtex.tiles.pyramid import Pyramid, TileKey
+from flowtex.tiles.pyramid import Pyramid, TileKey, is_cut
 
 __all__ = ["Tile", "TileLoader"]
 
@@ -31,6 +32,10 @@ BUDGET_BYTES = 1_000_000_000
 TEXEL_BYTES, NODE_BYTES = 16, 200
 #: Tiles that are made at once, at most.
 MOST_THREADS = 4
+#: Widths of the halo that are tried one after the other, where paths are cut by it.
+SPARES = (1, 2, 4)
+#: Seconds before the last request within which a tile must have been asked for, not to be given up.
+GRACE_S = 2.0
 
 
 @dataclass(eq=False)
@@ -85,7 +90,9 @@ class TileLoader:
         self.errors: dict[TileKey, Exception] = {}
         self._prepare, self._notify = prepare, notify
         self._tiles: ByteCache[TileKey, Tile] = ByteCache(budget)
-        self._wanted: frozenset[TileKey] = frozenset()
+        #: When each tile was asked for last, on a clock of requests.
+        self._wanted: dict[TileKey, float] = {}
+        self._asked = 0.0
         self._running: dict[tuple[TileKey, int], Future[None]] = {}
         self._lock = threading.Lock()
         self._pool: ThreadPoolExecutor | None = None
@@ -101,13 +108,17 @@ class TileLoader:
         return tile if ready else None
 
     def request(self, keys: Sequence[TileKey], steps: Sequence[int]) -> None:
-        """Ask for tiles in this order, and give up those that were asked for before."""
-        self._wanted = frozenset(keys)
+        """Ask for tiles in this order, and give up those that nobody has asked for lately.
+
+        A picture may be drawn in several parts, each of which asks for its own.
+        """
+        self._asked = time.monotonic()
         with self._lock:
             for job, future in list(self._running.items()):
-                if job[0] not in self._wanted and future.cancel():
+                if not self._is_wanted(job[0]) and future.cancel():
                     del self._running[job]
             for key in keys:
+                self._wanted[key] = self._asked
                 tile = self._tiles.peek(key)
                 for step in steps:
                     job = (key, step)
@@ -123,10 +134,10 @@ class TileLoader:
     def busy(self) -> bool:
         """Whether tiles that are wanted are on their way."""
         with self._lock:
-            return any(key in self._wanted for key, _ in self._running)
+            return any(self._is_wanted(key) for key, _ in self._running)
 
     def wait(self) -> None:
-        """Wait for the tiles that were asked for last.
+        """Wait for the tiles that were asked for.
 
         Raises
         ------
@@ -134,27 +145,32 @@ class TileLoader:
             What went wrong with one of them.
         """
         with self._lock:
-            futures = [f for (key, _), f in self._running.items() if key in self._wanted]
+            futures = [f for (key, _), f in self._running.items() if self._is_wanted(key)]
         wait(futures)
-        for key in self._wanted:
-            if key in self.errors:
-                raise self.errors[key]
+        for error in self.errors.values():
+            raise error
 
     def close(self) -> None:
         """Stop, without waiting for what is being made."""
-        self._wanted = frozenset()
+        self._wanted.clear()
         if self._pool is not None:
             self._pool.shutdown(wait=False, cancel_futures=True)
         self._pool = None
         self._tiles.clear()
 
+    def _is_wanted(self, key: TileKey) -> bool:
+        return self._wanted.get(key, -np.inf) > self._asked - GRACE_S
+
     def _make(self, key: TileKey, step: int) -> None:
         """Make a tile with the layers of one destination time."""
         try:
-            with stoppable(lambda: key not in self._wanted):
+            with stoppable(lambda: not self._is_wanted(key)):
                 tile = self._tiles.peek(key)
                 if tile is None:
-                    textures = self.pyramid.textures(key)
+                    for spare in SPARES:
+                        textures = self.pyramid.textures(key, spare)
+                        if textures is None or not is_cut(textures, step):
+                            break
                     tile = Tile(key, textures, textures and self._prepare(textures))
                 tile.layers[step] = None if tile.textures is None else tile.take(step)
                 self._tiles.put(key, tile)

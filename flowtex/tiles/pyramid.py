@@ -37,6 +37,7 @@ __all__ = [
     "Pyramid",
     "TileKey",
     "block_places",
+    "is_cut",
     "shared_pyramid",
 ]
 
@@ -48,8 +49,12 @@ BLOCK_CELLS, TILE_BLOCKS = 64, 4
 TILE_CELLS = BLOCK_CELLS * TILE_BLOCKS
 #: Length of the paths in cells, by their longer side.
 PATH_CELLS = 32
-#: Lines of a halo beyond the length of the paths; its least and its greatest width.
-HALO_SPARE, LEAST_HALO, MOST_HALO = 3, 16, 256
+#: Lines of a halo beyond the length of the paths, and its greatest width.
+HALO_SPARE, MOST_HALO = 3, 512
+#: Nodes of a window around a pole from which on its paths are not composed: all are traced then.
+MOST_COMPOSED = 500_000
+#: Share of the paths of a tile that may end where its window does.
+MOST_CUT_SHARE = 1e-3
 #: Rows that are averaged together.
 ROWS = 256
 
@@ -105,7 +110,8 @@ class Pyramid:
     @cached_property
     def root(self) -> FlowField:
         """The field at the coarsest level."""
-        return self._part(self.depth, *(np.arange(n) for n in self.shape(self.depth)))
+        rows, columns = (np.arange(n) for n in self.shape(self.depth))
+        return self._part(self.depth, rows, columns, self.field.periodic)
 
     @property
     def blocks(self) -> tuple[int, int]:
@@ -151,10 +157,11 @@ class Pyramid:
             )
         return [TileKey(level, j, i) for j in rows for i in columns]
 
-    def textures(self, key: TileKey) -> TextureSet | None:
+    def textures(self, key: TileKey, spare: int = 1) -> TextureSet | None:
         """Return the textures of a tile, whose layers are traced when they are asked for.
 
-        ``None`` stands for a tile of which nothing is drawn.
+        ``None`` stands for a tile of which nothing is drawn. The halo is ``spare`` times as wide
+        as paths of even speed need; :func:`is_cut` tells whether that was enough.
 
         Raises
         ------
@@ -176,23 +183,35 @@ class Pyramid:
         valid = self.field.valid[at]
         if not (valid[:-1, :-1] & valid[1:, :-1] & valid[:-1, 1:] & valid[1:, 1:]).any():
             return None
-        longest, halo = _reach(self.field.points[at], valid)
-        lines, drawn = [], []
-        for axis in (0, 1):
-            some = np.arange(first[axis] - halo[axis], last[axis] + halo[axis] + 1)
-            if not self.field.periodic[axis]:
-                some = some[(some >= 0) & (some < shape[axis])]
-            start = first[axis] - int(some[0])
-            lines.append(some)
-            drawn.append(slice(start, start + last[axis] - first[axis] + 1))
-        window = self._part(key.level, *lines)
-        geometry = SurfaceGeometry.of_tile(window, (drawn[0], drawn[1]), self.root.surface)
+        longest, widths = _reach(self.field.points[at], valid)
+        halo = [min(spare * width, MOST_HALO) for width in widths]
+        lines = [np.arange(a - h, b + h + 1) for a, b, h in zip(first, last, halo, strict=True)]
+        around = self._around_pole(lines, shape)
+        closed = [False, False]
+        for axis, count in enumerate(shape):
+            if axis == around:
+                # Whoever passes a pole comes out on its far side: all of the ring is needed.
+                spare = max(count - 1 - (last[axis] - first[axis]), 0) // 2
+                lines[axis] = np.arange(count) + first[axis] - min(spare, BLOCK_CELLS)
+                closed[axis] = True
+            elif not self.field.periodic[axis]:
+                lines[axis] = lines[axis][(lines[axis] >= 0) & (lines[axis] < count)]
+        start = [a - int(some[0]) for a, some in zip(first, lines, strict=True)]
+        drawn = [slice(s, s + b - a + 1) for s, a, b in zip(start, first, last, strict=True)]
+        window = self._part(key.level, lines[0], lines[1], (closed[0], closed[1]))
+        sides = [
+            (not c and (p or int(some[0]) > 0), not c and (p or int(some[-1]) < n - 1))
+            for c, p, some, n in zip(closed, self.field.periodic, lines, shape, strict=True)
+        ]
+        geometry = SurfaceGeometry.of_tile(
+            window, (drawn[0], drawn[1]), self.root.surface, (sides[0], sides[1])
+        )
         nodes = np.zeros(window.shape, dtype=bool)
         nodes[geometry.texels] = True
         store = SliceStore(
             window,
             parameter=self.parameter,
-            compose=False,
+            compose=self.field.steady and (around is None or nodes.size <= MOST_COMPOSED),
             longest=longest,
             nodes=nodes,
         )
@@ -203,18 +222,25 @@ class Pyramid:
         speed = self.root.speed[:, self.root.valid]
         return float(np.sqrt(np.mean(speed**2))) or 1.0
 
-    def _part(self, level: int, rows: Indices, columns: Indices) -> FlowField:
-        """Return some lines of a level, by their numbers, which may lie beyond a period."""
+    def _around_pole(self, lines: list[Indices], shape: tuple[int, int]) -> int | None:
+        """Return the axis that goes around a pole beyond which some lines lie."""
+        for pole in self.root.surface.poles or ():
+            axis = 1 - pole.component
+            if lines[axis][0] < 0 if pole.inward > 0 else lines[axis][-1] >= shape[axis]:
+                return pole.component
+        return None
+
+    def _part(
+        self, level: int, rows: Indices, columns: Indices, periodic: tuple[bool, bool]
+    ) -> FlowField:
+        """Return some lines of a level, by their numbers, which may lie beyond a period.
+
+        Axes that are ``periodic`` have one whole period.
+        """
         this, field = self._level(level), self.field
-        if len(rows) == len(this.rows) and len(columns) == len(this.columns):
-            periodic = field.periodic
-        else:
-            periodic = (False, False)
         (turns_j, rows), (turns_i, columns) = (
-            np.divmod(some, len(lines) - 1) if closed and not whole else (np.zeros_like(some), some)
-            for some, lines, closed, whole in zip(
-                (rows, columns), this[:2], field.periodic, periodic, strict=True
-            )
+            np.divmod(some, len(lines) - 1) if closed else (np.zeros_like(some), some)
+            for some, lines, closed in zip((rows, columns), this[:2], field.periodic, strict=True)
         )
         at = np.ix_(this.rows[rows], this.columns[columns])
         here = np.ix_(rows, columns)
@@ -253,6 +279,25 @@ class Pyramid:
             )
             self._levels.append(_Level(rows, columns, velocity))
         return self._levels[level]
+
+
+def is_cut(textures: TextureSet, step: int) -> bool:
+    """Whether paths of a tile end where its window does, though the surface goes on."""
+    slices = textures.store.at(step).part(*textures.geometry.texels)
+    for moved, reach in (
+        (slices.displacement, slices.reach),
+        (slices.forward, slices.forward_reach),
+    ):
+        if moved is None or reach is None:
+            continue
+        there = slices.nodes + moved[0, -1]
+        gone = np.zeros(reach[0].shape, dtype=bool)
+        for axis, (before, after) in enumerate(textures.geometry.open_sides):
+            at, last = there[..., 1 - axis], textures.geometry.field.shape[axis] - 1
+            gone |= (before & (at < 0)) | (after & (at > last))
+        if (gone & (reach[0] < slices.lags[-1])).mean() > MOST_CUT_SHARE:
+            return True
+    return False
 
 
 def block_places(points: Floats, cells: int = BLOCK_CELLS) -> Floats:
@@ -312,9 +357,7 @@ def _reach(points: Floats, valid: Bools) -> tuple[float, tuple[int, int]]:
         known = np.moveaxis(size, axis, 0)[both[1:] & both[:-1]]
         sides.append(np.percentile(known[known > 0], (5, 95)) if known.any() else np.ones(2))
     longest = PATH_CELLS * max(float(most) for _, most in sides)
-    rows, columns = (
-        int(np.clip(longest / least + HALO_SPARE, LEAST_HALO, MOST_HALO)) for least, _ in sides
-    )
+    rows, columns = (int(longest / least) + HALO_SPARE for least, _ in sides)
     return longest, (rows, columns)
 
 

@@ -92,7 +92,9 @@ class SliceStore:
         if self._whole is not None:
             return self._whole.at_step(step)
         if self.field.steady:
-            return self._trace_with(parameter=self.parameter, compose=not self.field.sign_free)
+            return self._trace_with(
+                parameter=self.parameter, compose=self._compose and not self.field.sign_free
+            )
         size = self.steps * len(self.lags) * self.unit.size * 2 * np.float32().nbytes
         if (
             self._compose

@@ -61,6 +61,7 @@ class Pane:
         """Draw this pane alone; :meth:`OffscreenWindow.draw` has the parameters."""
         for other in self._viewport.panes:
             other.handle.actor.SetVisibility(other is self)
+        self.handle.draw_for(self.size[1] if part is None else part[3])
         return self._viewport.window.draw(width, height, part)
 
     def colour_by(self, name: str, table: Any, span: tuple[float, float], plain: Any) -> None:
@@ -126,6 +127,7 @@ class Viewport:
         self._component = FlowtexComponent(self.window.plotter)
         self._beside: dict[str, Any] = {}
         self._stop_following: Callable[[], None] = lambda: None
+        self._tile_ready: Callable[[], None] | None = None
         self.panes: list[Pane] = [self._pane(field, options)]
         self.lighting = options.get("lighting")
         self.window.suppress_rendering()
@@ -179,7 +181,20 @@ class Viewport:
         if image is not None:
             handle.set_image(as_image(image))
             handle.settings.noise = options["noise"]
+        if self._tile_ready is not None:
+            handle.load_in_background(self._tile_ready)
         return Pane(handle, self)
+
+    def load_in_background(self, notify: Callable[[], None]) -> None:
+        """Draw large surfaces with what is there; as :meth:`FlowHandle.load_in_background`."""
+        self._tile_ready = notify
+        for pane in self.panes:
+            pane.handle.load_in_background(notify)
+
+    @property
+    def busy(self) -> bool:
+        """Whether more of a large surface is on its way."""
+        return any(pane.handle.busy for pane in self.panes)
 
     def _prepare(self) -> None:
         """Make ready for a field."""

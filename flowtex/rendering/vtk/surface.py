@@ -35,6 +35,9 @@ from flowtex.tiles import TILE_BLOCKS, Pyramid, Tile, TileKey, TileLoader
 
 __all__ = ["FlowSurface"]
 
+#: Time after which a window is drawn again while tiles are on their way.
+LOOK_INTERVAL_MS = 250
+
 
 @dataclass(eq=False)
 class _TileActor:
@@ -66,8 +69,8 @@ class FlowSurface:
     ----------
     view
         Clock, density and time of the next frame.
-    patient
-        Whether a frame waits for the tiles that it asks for, or is drawn with those that are there.
+    full_height
+        Height in pixels for which tiles are chosen, where a frame is a draft of fewer.
     """
 
     def __init__(
@@ -84,8 +87,9 @@ class FlowSurface:
         self._scalars: tuple[str, Callable[[FlowField], Floats]] | None = None
         self._drawn: tuple[Any, ...] = ()
         self._tiles: dict[TileKey, _TileActor] = {}
-        self._loader = None if pyramid is None else TileLoader(pyramid, prepare=self._prepare)
-        self.patient = True
+        self._loader = None if pyramid is None else self._loader_of(pyramid)
+        self.full_height: int | None = None
+        self._notify: Callable[[], None] | None = None
         self._observed = [
             (event, renderer.AddObserver(event, self._observer(name)))
             for event, name in (("StartEvent", "_before_frame"), ("EndEvent", "_after_frame"))
@@ -95,6 +99,13 @@ class FlowSurface:
     def view(self) -> ViewState:
         """Clock, density and time of the next frame."""
         return self._base.view
+
+    def load_in_background(self, notify: Callable[[], None]) -> None:
+        """Draw frames with the tiles that are there, and tell, from a thread, when there are more.
+
+        Otherwise a frame waits for the tiles that it asks for, but in a window that somebody uses.
+        """
+        self._notify = notify
 
     @property
     def busy(self) -> bool:
@@ -106,7 +117,7 @@ class FlowSurface:
         self._drop(list(self._tiles))
         if self._loader is not None:
             self._loader.close()
-        self._loader = None if pyramid is None else TileLoader(pyramid, prepare=self._prepare)
+        self._loader = None if pyramid is None else self._loader_of(pyramid)
         self._drawn = ()
         if textures.geometry.shape == self._base.textures.geometry.shape:
             set_attributes(self._actor.mapper.dataset, textures)
@@ -198,10 +209,34 @@ class FlowSurface:
         steps = sorted({*self._moment[:2]})
         choices = choose_tiles(loader.pyramid, view)
         loader.request(wanted_tiles(choices), steps)
-        if self.patient:
+        if not self._goes_on():
             loader.wait()
         self._drop([key for key in self._tiles if not loader.keeps(key)])
         return cover(choices, lambda key: self._ready(key, steps))
+
+    def _goes_on(self) -> bool:
+        """Whether another frame follows by itself when tiles are ready."""
+        if self._notify is not None:
+            return True
+        renderer = self._renderer()
+        window = renderer.GetRenderWindow() if renderer is not None else None
+        if window is None:
+            return False
+        interactor = window.GetInteractor()
+        if window.GetOffScreenRendering() or interactor is None or not interactor.GetInitialized():
+            return False
+        if self.busy:
+            # VTK draws in the window's own thread, which looks again by and by.
+            observers: list[int] = []
+
+            def look(caller: Any, event: str) -> None:
+                del event
+                caller.RemoveObserver(observers[0])
+                caller.Render()
+
+            observers.append(interactor.AddObserver("TimerEvent", look))
+            interactor.CreateOneShotTimer(LOOK_INTERVAL_MS)
+        return True
 
     def _tile_view(self, renderer: Any) -> TileView:
         """Return what of the camera decides on tiles, in the mesh's coordinates."""
@@ -212,7 +247,7 @@ class FlowSurface:
         matrix = self._actor.GetMatrix()
         placed = np.array([[matrix.GetElement(r, c) for c in range(4)] for r in range(4)])
         sides = np.reshape(planes, (6, 4))[:4] @ placed  # not those before and behind
-        pixels = height / self.view.density
+        pixels = (self.full_height or height) / self.view.density
         return TileView(eye, half, pixels, sides, cell_pixels(self._settings))
 
     def _ready(self, key: TileKey, steps: list[int]) -> bool:
@@ -224,11 +259,22 @@ class FlowSurface:
             self._tiles[key] = self._actor_of(tile, tile.textures)
         return True
 
-    def _prepare(self, textures: TextureSet) -> tuple[pv.PolyData, MeshLevels]:
-        """Return the mesh of a tile and its levels, and have the values of its nodes at hand."""
-        if self._scalars is not None:
-            self._scalars[1](textures.geometry.field)
-        return surface_mesh(textures), MeshLevels.of(textures)
+    def _loader_of(self, pyramid: Pyramid) -> TileLoader:
+        """Return a loader that does not keep this surface alive."""
+        this = weakref.ref(self)
+
+        def prepare(textures: TextureSet) -> tuple[pv.PolyData, MeshLevels]:
+            surface = this()
+            if surface is not None and surface._scalars is not None:
+                surface._scalars[1](textures.geometry.field)  # which keeps the values at hand
+            return surface_mesh(textures), MeshLevels.of(textures)
+
+        def notify() -> None:
+            surface = this()
+            if surface is not None and surface._notify is not None:
+                surface._notify()
+
+        return TileLoader(pyramid, prepare=prepare, notify=notify)
 
     def _actor_of(self, tile: Tile, textures: TextureSet) -> _TileActor:
         """Make the actor of a tile, with the properties of the surface's own one."""
