@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 import io
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -14,13 +14,13 @@ from PIL import Image
 
 from flowtex.camera import Camera
 from flowtex.rendering.webgl import ClientData
-from flowtex.rendering.webgl.protocol import part_info
+from flowtex.rendering.webgl.protocol import Parts, part_info
 from flowtex.web.assets import asset
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
-__all__ = ["ClientPage", "packed", "state"]
+__all__ = ["ClientPage", "packed", "packed_parts", "state"]
 
 Pixels = NDArray[np.uint8]
 
@@ -43,7 +43,10 @@ MOUNT = """([scenes, options, size]) => {
   document.body.append(element);
   const heard = {};
   for (const name of options.hear ?? []) heard[name] = (value) => events.push([name, value]);
-  const unpacked = [scenes].flat().map(({ header, parts }) => ({ header, parts: unpack(parts) }));
+  const loadTile = async (key, steps) => unpack(await window.tile(key, steps));
+  const unpacked = [scenes].flat().map(({ header, parts }) => ({
+    header, parts: unpack(parts), loadTile,
+  }));
   const viewer = client.mountPage(element, unpacked, { ...options, ...heard });
   viewers.push(viewer);
   return viewers.length - 1;
@@ -62,7 +65,12 @@ def packed(scene: ClientData, header: Mapping[str, Any], steps: tuple[int, ...] 
     arrays = dict(scene.surface())
     for step in sorted(set(steps)):
         arrays |= scene.step(step)
-    parts = {
+    return {"header": dict(header), "parts": packed_parts(arrays)}
+
+
+def packed_parts(arrays: Parts) -> Any:
+    """Return parts as JSON."""
+    return {
         # Without a digest views have nothing in common.
         name: {
             **part_info(name, array),
@@ -71,7 +79,6 @@ def packed(scene: ClientData, header: Mapping[str, Any], steps: tuple[int, ...] 
         }
         for name, array in arrays.items()
     }
-    return {"header": dict(header), "parts": parts}
 
 
 @dataclass
@@ -81,14 +88,22 @@ class ClientPage:
     page: Page
     errors: list[str] = field(default_factory=list)
     asked: list[str] = field(default_factory=list)
+    #: Gives the parts of a tile, by its key and time steps.
+    tile: Callable[[Any, Any], Parts] = lambda key, steps: {}
+    tiles: list[Any] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         """Load the client."""
         self.page.on("console", lambda m: self._heard(m.text) if m.type == "error" else None)
         self.page.on("pageerror", lambda error: self._heard(str(error)))
         self.page.on("request", lambda request: self.asked.append(request.url))
+        self.page.expose_function("tile", self._tile)
         self.page.set_content(HTML)
         self.page.evaluate(LOAD, asset("client.js").read_text(encoding="utf-8"))
+
+    def _tile(self, key: Any, steps: Any) -> Any:
+        self.tiles.append(tuple(key))
+        return packed_parts(self.tile(key, steps))
 
     def _heard(self, text: str) -> None:
         self.errors.append(text)
@@ -105,6 +120,12 @@ class ClientPage:
         failed = self.page.evaluate("(n) => viewers[n].root.dataset.failed", viewer)
         assert not failed, self.page.evaluate(
             "(n) => viewers[n].root.shadowRoot.querySelector('.note').textContent", viewer
+        )
+
+    def complete(self, viewer: int = 0) -> None:
+        """Wait for all tiles that the view asks for, and the full picture."""
+        self.page.wait_for_function(
+            "(n) => viewers[n].sharp && !viewers[n].tiles.missing.length", arg=viewer, timeout=60_000
         )
 
     def picture(self, viewer: int = 0) -> Pixels:
