@@ -125,7 +125,9 @@ class ClientPage:
     def complete(self, viewer: int = 0) -> None:
         """Wait for all tiles that the view asks for, and the full picture."""
         self.page.wait_for_function(
-            "(n) => viewers[n].sharp && !viewers[n].tiles.missing.length", arg=viewer, timeout=60_000
+            "(n) => viewers[n].sharp && !viewers[n].tiles.missing.length",
+            arg=viewer,
+            timeout=60_000,
         )
 
     def picture(self, viewer: int = 0) -> Pixels:

@@ -11,10 +11,9 @@ from flowtex.options import Options
 from flowtex.rendering.webgl import ClientData, Colours
 from flowtex.scene import Scene, share_field, steps_of
 from flowtex.settings import TABLE
-from flowtex.textures import TextureSet
 from flowtex.tiles import Pyramid
 
-__all__ = ["WebView", "even_steps", "tile_data", "web_views"]
+__all__ = ["WebView", "even_steps", "web_views"]
 
 
 class WebView:
@@ -81,12 +80,6 @@ class WebView:
     def close(self) -> None:
         """Follow the settings no longer."""
         self.scene.close()
-
-
-def tile_data(whole: ClientData, textures: TextureSet) -> ClientData:
-    """Return what is handed over of one of the tiles of a flow."""
-    name, field = whole.colours.name, textures.geometry.field
-    return whole.tile(textures, None if name is None else steps_of(field, name))
 
 
 def web_views(mesh: Any, options: Options, *, steps: int | None = None) -> tuple[WebView, ...]:

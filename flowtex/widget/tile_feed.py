@@ -6,10 +6,10 @@ import threading
 from collections.abc import Callable, Sequence
 from itertools import product
 
-from flowtex.rendering.webgl import ClientData, tile_parts
+from flowtex.rendering.webgl import ClientData
 from flowtex.rendering.webgl.protocol import Parts
 from flowtex.tiles import TileKey, TileLoader
-from flowtex.web.view import tile_data
+from flowtex.web.tiles import packed_tile, tile_loader
 from flowtex.widget.worker import Worker
 
 __all__ = ["TileFeed"]
@@ -46,9 +46,9 @@ class TileFeed:
             self._scene = scene
             self.forget()
             if scene.pyramid is not None:
-                self._loader = TileLoader(
+                self._loader = tile_loader(
+                    scene,
                     scene.pyramid,
-                    prepare=lambda textures: tile_data(scene, textures),
                     notify=lambda: self._worker.do(self._send_ready, urgency=1),
                     budget=BUDGET_BYTES,
                 )
@@ -85,8 +85,7 @@ class TileFeed:
             return
         for job in list(self._wanted):
             key, step = job
-            source = scene.source(step)
-            tile = loader.get(key, [source])
+            tile = loader.get(key, [scene.source(step)])
             failed = loader.errors.get(key)
             if tile is None and failed is None:
                 continue
@@ -96,9 +95,8 @@ class TileFeed:
                 self._wanted.remove(job)
                 self._count += 1
                 self._sent[job] = self._count
-            if tile is None:
-                raise failed or AssertionError
-            data: ClientData | None = tile.prepared
-            if data is not None and tile.layers[source] is not None:
-                data.packing.take(source, tile.take(source))
-            self._send(scene, tile_parts(key, data, step), self._count)
+                number = self._count
+            if failed is not None:
+                raise failed
+            if tile is not None:
+                self._send(scene, packed_tile(scene, tile, [step]), number)

@@ -85,13 +85,15 @@ class ClientData:
     """A flow and its colours, ready to be handed over.
 
     ``chosen`` are the numbers of the destination times that are handed over, increasing; all are
-    where it is empty. ``pyramid`` has the tiles of a large flow, of which this is the root.
+    where it is empty. ``pyramid`` has the tiles of a large flow, of which this is the root, and
+    ``finest`` is the finest level of those that are handed over.
     """
 
     textures: TextureSet
     colours: Colours = field(default_factory=Colours)
     chosen: tuple[int, ...] = ()
     pyramid: Pyramid | None = None
+    finest: int = 0
 
     @cached_property
     def packing(self) -> Packing:
@@ -160,7 +162,7 @@ class ClientData:
             "paper": None if textures.paper is None else _paper(textures.paper),
             "constants": client_constants(),
             "mesh": mesh_limits(),
-            "pyramid": None if self.pyramid is None else _pyramid(self.pyramid),
+            "pyramid": None if self.pyramid is None else _pyramid(self.pyramid, self.finest),
             "limits": {**asdict(CAMERA_LIMITS), "aspect": FIRST_ASPECT},
             "table": _table(),
         }
@@ -299,11 +301,11 @@ def tile_parts(key: TileKey, tile: ClientData | None, *steps: int) -> Parts:
     return {f"{prefix}/{name}": part for name, part in parts.items()}
 
 
-def _pyramid(pyramid: Pyramid) -> dict[str, Any]:
+def _pyramid(pyramid: Pyramid, finest: int) -> dict[str, Any]:
     """Return what a client chooses the tiles by, beside the places of their blocks."""
     return {
         "depth": pyramid.depth,
-        "finest": 0,
+        "finest": finest,
         "blocks": list(pyramid.blocks),
         "shapes": [list(pyramid.shape(level)) for level in range(pyramid.depth + 1)],
         "tileBlocks": TILE_BLOCKS,
