@@ -342,7 +342,9 @@ export class Viewer implements User {
 
   /** Choose what is drawn at a moment: the whole, or the root and the tiles of a large surface. */
   arrange(shown: Moment): Scene[] {
-    return this.tiles?.arrange(shown) ?? [];
+    const scenes = this.tiles?.arrange(shown) ?? [];
+    this.root.dataset.tiles = String(this.tiles?.missing.length ?? 0);
+    return scenes;
   }
 
   /** Draw at once, as far as there is time. */

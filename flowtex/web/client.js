@@ -848,25 +848,25 @@ update(),this.request(),this.options.onPlaying?.(!0))}pause(){if(this.options.fo
 this.playing&&(this.player.playing=!1,this.panel.update(),this.change(),this.options.onPlaying?.(!1))}togglePlaying(){let leader=this.
 options.follows??this;leader.playing?leader.pause():leader.play()}holdDraft(){this.busyUntil=performance.now()+STILL_MS}get isBusy(){
 return this.playing||performance.now()<this.busyUntil}change(cameraOnly=!1){this.renderer.restart(cameraOnly),this.setSharp(
-!1),this.request()}refine(){this.renderer.refine(),this.setSharp(!1),this.request()}arrange(shown){return this.tiles?.arrange(
-shown)??[]}draw(){this.frame(performance.now(),performance.now()+FRAME_MS)}setSharp(sharp){sharp!==this.sharp&&(this.sharp=
-sharp,this.root.dataset.sharp=String(sharp),sharp&&this.options.onFrame?.())}request(){!this.lifetime.isOver&&this.isVisible&&
-this.graphics.request(this)}resize(){let ratio=Math.max(window.devicePixelRatio||1,.1),width=Math.max(Math.round(this.root.
-clientWidth*ratio),1),height=Math.max(Math.round(this.root.clientHeight*ratio),1);width===this.canvas.width&&height===this.
-canvas.height||(this.renderer.resize(width,height),this.camera&&(this.camera.aspect=this.aspect,isEqual(this.camera.state,
-this.camera.start)&&this.place()),this.change())}get smooth(){let{header}=this;return this.options.smooth!==void 0||!header?
-this.options.smooth??!1:this.program(header).price<CARD_PRICE_MS}get ratio(){return this.canvas.height/Math.max(this.root.
-clientHeight,1)}lost(){this.tiles?.dispose(),this.header&&this.makeScene(this.header),this.setSharp(!1)}get lacking(){let[
-before,after]=this.player.moment;return this.scene?.missing(before,after)??[]}available(){let{header,scene,player,shown}=this;
-if(!header||!scene)return null;let moment=player.moment,count=header.slices.steps,ahead=player.playing?[1,2].map(n=>(moment[1]+
-n)%count):[];this.ask([moment[0],moment[1],...ahead]);let{lacking}=this;return this.panel.wait(lacking),lacking.length?shown&&
-!scene.missing(shown[0],shown[1]).length?shown:null:this.shown=moment}ask(steps){let now=performance.now(),lacking=[...new Set(
-steps)].filter(step=>this.scene?.missing(step,step).length);for(let step of lacking)!this.options.onNeed||now-(this.requests.
-get(step)??-1/0)<LOST_MS2||(this.requests.set(step,now),this.options.onNeed(step));return!lacking.length}frame(now,until){
-if(!(this.lifetime.isOver||this.graphics.isLost||!this.graphics.gl||!this.isVisible)&&!(!this.header||!this.scene||this.
-canvas.width<2))try{this.advance(now),this.drawPicture(this.header,until)}catch(error){this.pause(),this.panel.fail("The\
- picture could not be drawn.",String(error))}}program(header){let{vertex,fragment}=header.shaders,defines=isMoving(header,
-this.settings)?["FLOWTEX_MOVING"]:[];return this.graphics.programs.get(vertex,fragment,...defines)}drawPicture(header,until){
+!1),this.request()}refine(){this.renderer.refine(),this.setSharp(!1),this.request()}arrange(shown){let scenes=this.tiles?.
+arrange(shown)??[];return this.root.dataset.tiles=String(this.tiles?.missing.length??0),scenes}draw(){this.frame(performance.
+now(),performance.now()+FRAME_MS)}setSharp(sharp){sharp!==this.sharp&&(this.sharp=sharp,this.root.dataset.sharp=String(sharp),
+sharp&&this.options.onFrame?.())}request(){!this.lifetime.isOver&&this.isVisible&&this.graphics.request(this)}resize(){let ratio=Math.
+max(window.devicePixelRatio||1,.1),width=Math.max(Math.round(this.root.clientWidth*ratio),1),height=Math.max(Math.round(
+this.root.clientHeight*ratio),1);width===this.canvas.width&&height===this.canvas.height||(this.renderer.resize(width,height),
+this.camera&&(this.camera.aspect=this.aspect,isEqual(this.camera.state,this.camera.start)&&this.place()),this.change())}get smooth(){
+let{header}=this;return this.options.smooth!==void 0||!header?this.options.smooth??!1:this.program(header).price<CARD_PRICE_MS}get ratio(){
+return this.canvas.height/Math.max(this.root.clientHeight,1)}lost(){this.tiles?.dispose(),this.header&&this.makeScene(this.
+header),this.setSharp(!1)}get lacking(){let[before,after]=this.player.moment;return this.scene?.missing(before,after)??[]}available(){
+let{header,scene,player,shown}=this;if(!header||!scene)return null;let moment=player.moment,count=header.slices.steps,ahead=player.
+playing?[1,2].map(n=>(moment[1]+n)%count):[];this.ask([moment[0],moment[1],...ahead]);let{lacking}=this;return this.panel.
+wait(lacking),lacking.length?shown&&!scene.missing(shown[0],shown[1]).length?shown:null:this.shown=moment}ask(steps){let now=performance.
+now(),lacking=[...new Set(steps)].filter(step=>this.scene?.missing(step,step).length);for(let step of lacking)!this.options.
+onNeed||now-(this.requests.get(step)??-1/0)<LOST_MS2||(this.requests.set(step,now),this.options.onNeed(step));return!lacking.
+length}frame(now,until){if(!(this.lifetime.isOver||this.graphics.isLost||!this.graphics.gl||!this.isVisible)&&!(!this.header||
+!this.scene||this.canvas.width<2))try{this.advance(now),this.drawPicture(this.header,until)}catch(error){this.pause(),this.
+panel.fail("The picture could not be drawn.",String(error))}}program(header){let{vertex,fragment}=header.shaders,defines=isMoving(
+header,this.settings)?["FLOWTEX_MOVING"]:[];return this.graphics.programs.get(vertex,fragment,...defines)}drawPicture(header,until){
 let shown=this.available();if(this.camera||this.place(),!shown||!this.camera)return;let{programs}=this.graphics,program=this.
 program(header);if(program.error){this.panel.fail("The shader does not compile with this graphics driver.",program.error);
 return}if(!program.ready)return this.request();!this.sharp&&this.renderer.draw(program,shown,this.isBusy,until)&&(this.panel.
