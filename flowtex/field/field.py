@@ -24,6 +24,7 @@ from flowtex.field.signs import oriented, sign_free_faults, with_equal_ends
 from flowtex.field.surface import Surface
 from flowtex.field.validation import (
     as_numbers,
+    finite_nodes,
     node_faults,
     scalar_steps,
     shape_faults,
@@ -142,11 +143,12 @@ class FlowField:
         faults = shape_faults(p, v, times, valid, periodic, scalars)
         raise_faults(faults + (sign_free_faults(v) if sign_free else []))
         v = v[None] if v.ndim == 3 else v
-        p, v = three_components(p), three_components(v)
+        # What was given is not changed, and copied once.
+        p, v = (three_components(a) if a.shape[-1] == 2 else a.copy("C") for a in (p, v))
         v = with_equal_ends(v) if sign_free else v
         t = np.arange(len(v), dtype=float) if times is None else np.array(times, dtype=float)
-        ok = np.isfinite(p).all(axis=-1) & ~masked_points
-        ok &= np.isfinite(v).all(axis=(0, -1)) & ~masked_velocity
+        ok = finite_nodes(p) & ~masked_points
+        ok &= finite_nodes(v) & ~masked_velocity
         if valid is not None:
             ok &= np.asarray(valid, dtype=bool)
         raise_faults(node_faults(p, ok))
@@ -157,9 +159,10 @@ class FlowField:
         if sign_free:
             v = oriented(np.where(ok[..., None], v[0], 0.0), ok, closed)
             v = with_equal_ends(v[None], closed, surface.poles)
+        v[:, ~ok] = 0.0
         flow = cls(
             points=surface.points,
-            velocity=np.where(ok[..., None], v, 0.0),
+            velocity=v,
             times=t,
             valid=ok,
             periodic=closed,
@@ -170,6 +173,7 @@ class FlowField:
             has_position=surface.has_position,
             sign_free=sign_free,
         )
+        flow.__dict__["surface"] = surface  # the same that the property would make again
         if not flow.velocity.any():
             warnings.warn(
                 "The velocity is zero at every node, so the picture is plain noise; check the "
@@ -307,9 +311,10 @@ class FlowField:
     @cached_property
     def surface(self) -> Surface:
         """The geometry: tangents, cell sizes and positions between nodes."""
-        known = True if self.has_position is None else self.has_position[..., None]
-        # Positions that were filled in must not pass for known ones: tangents would bend.
-        points = np.where(known, self.points, np.nan)
+        points, known = self.points, self.has_position
+        if known is not None and not known.all():
+            # Positions that were filled in must not pass for known ones: tangents would bend.
+            points = np.where(known[..., None], points, np.nan)
         return Surface(points, self.valid, self.periodic)
 
     @cached_property

@@ -13,10 +13,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import Bools, Floats
+from flowtex._util.blocks import bounds
 from flowtex.errors import FieldError
 
 __all__ = [
     "as_numbers",
+    "finite_nodes",
     "node_faults",
     "scalar_steps",
     "shape_faults",
@@ -25,10 +27,15 @@ __all__ = [
 
 #: A surface narrower than this share of its length is a line.
 LINE_WIDTH = 1e-7
+#: Lines of nodes along each axis that are looked at first.
+FEW_LINES = 100
 
 
 def as_numbers(values: ArrayLike) -> tuple[Floats, Any]:
-    """Return values as float64, and which nodes a masked array hides: (J, I), or false."""
+    """Return values as float64, and which nodes a masked array hides: (J, I), or false.
+
+    Those that are float64 are not copied.
+    """
     mask = np.ma.getmaskarray(values) if np.ma.isMaskedArray(values) else None
     array = np.asarray(np.ma.getdata(values))
     if array.dtype.kind not in "fiub":
@@ -37,7 +44,7 @@ def as_numbers(values: ArrayLike) -> tuple[Floats, Any]:
             "with astype(float), or take its real part"
         )
         raise FieldError(msg)
-    array = array.astype(np.float64)
+    array = np.asarray(array, np.float64)
     if mask is None:
         return array, np.False_
     hidden = mask.any(axis=-1) if mask.ndim else mask
@@ -134,6 +141,8 @@ def node_faults(p: Floats, ok: Bools) -> list[str]:
             f"{int(ok.sum())} of {ok.size} nodes are usable, but no four of them make a cell; "
             "check the blanking"
         ]
+    if _spread(p, ok):
+        return []
     where = p[ok] - p[ok].mean(axis=0)
     if np.abs(where).max() == 0:
         return ["all usable nodes lie at one point; expected a surface: check the coordinates"]
@@ -141,6 +150,29 @@ def node_faults(p: Floats, ok: Bools) -> list[str]:
     if spans[1] <= LINE_WIDTH**2 * spans[0]:
         return ["all usable nodes lie on one line; expected a surface: check the coordinates"]
     return []
+
+
+def _spread(p: Floats, ok: Bools) -> bool:
+    """Whether a few of the valid nodes show that all of them are wider than a line.
+
+    Variances summed over more nodes are never smaller, and never greater than the bounding box's.
+    """
+    every = [slice(None, None, max(n // FEW_LINES, 1)) for n in ok.shape]
+    some = p[tuple(every)][ok[tuple(every)]]
+    if len(some) < 3:
+        return False
+    low, high = bounds(p if ok.all() else p[ok])
+    offsets = (some - some.mean(axis=0)) / max(float((high - low).max()), np.finfo(float).tiny)
+    spans = np.linalg.svd(offsets.T @ offsets, compute_uv=False)
+    return bool(spans[1] > 2 * LINE_WIDTH**2 * p.shape[-1] * ok.size)
+
+
+def finite_nodes(a: Floats) -> Bools:
+    """Nodes at which all components of (..., J, I, C) are finite, (J, I)."""
+    finite = np.isfinite(a)
+    if finite.all():
+        return np.ones(a.shape[-3:-1], dtype=bool)
+    return np.asarray(finite.all(axis=(*range(a.ndim - 3), -1)))
 
 
 def three_components(a: Floats) -> Floats:

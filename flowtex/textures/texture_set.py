@@ -52,8 +52,9 @@ class TextureSet:
     geometry: SurfaceGeometry
     store: SliceStore
     paper: PaperTextures | None = None
-    #: The typical speed of the whole flow, in a tile.
+    #: In a tile, the typical speed of the whole flow, and how long its paths have to be.
     whole_speed: float | None = None
+    longest: float = np.inf
 
     @classmethod
     def build(

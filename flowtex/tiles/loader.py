@@ -61,13 +61,18 @@ class Tile:
         nodes = geometry.field.valid.size
         return texels * TEXEL_BYTES * max(len(self.layers), 1) + nodes * NODE_BYTES
 
+    def make(self, step: int) -> Floats32:
+        """Make the layers of a destination time."""
+        if self.textures is None:
+            return np.empty((0, 0, 0, 4), np.float32)
+        layers = self.textures.layers(step)
+        self.textures.store.forget()
+        return layers
+
     def take(self, step: int) -> Floats32:
         """Hand the layers of a destination time over; they are not kept."""
         layers, self.layers[step] = self.layers.get(step), None
-        if layers is None and self.textures is not None:
-            layers = self.textures.layers(step)
-            self.textures.store.forget()
-        return np.empty((0, 0, 0, 4), np.float32) if layers is None else layers
+        return self.make(step) if layers is None else layers
 
 
 class TileLoader:
@@ -161,19 +166,23 @@ class TileLoader:
     def _is_wanted(self, key: TileKey) -> bool:
         return self._wanted.get(key, -np.inf) > self._asked - GRACE_S
 
+    def _tile(self, key: TileKey, step: int) -> Tile:
+        """Return a tile without layers, with a halo that does for a destination time."""
+        for spare in SPARES:
+            textures = self.pyramid.textures(key, spare)
+            if textures is None:
+                return Tile(key, None)
+            if spare == SPARES[-1] or not is_cut(textures, step):
+                break
+        return Tile(key, textures, textures and self._prepare(textures))
+
     def _make(self, key: TileKey, step: int) -> None:
         """Make a tile with the layers of one destination time."""
         try:
             with stoppable(lambda: not self._is_wanted(key)):
-                tile = self._tiles.peek(key)
-                if tile is None:
-                    for spare in SPARES:
-                        textures = self.pyramid.textures(key, spare)
-                        if textures is None or not is_cut(textures, step):
-                            break
-                    tile = Tile(key, textures, textures and self._prepare(textures))
-                tile.layers[step] = None if tile.textures is None else tile.take(step)
-                self._tiles.put(key, tile)
+                tile = self._tiles.get(key, lambda: self._tile(key, step))
+                tile.layers[step] = tile.make(step)
+                self._tiles.put(key, tile)  # which has grown
         except Stopped:
             pass
         except Exception as error:

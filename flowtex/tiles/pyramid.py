@@ -110,8 +110,12 @@ class Pyramid:
     @cached_property
     def root(self) -> FlowField:
         """The field at the coarsest level."""
-        rows, columns = (np.arange(n) for n in self.shape(self.depth))
-        return self._part(self.depth, rows, columns, self.field.periodic)
+        return self.at_level(self.depth)
+
+    def at_level(self, level: int) -> FlowField:
+        """Return the whole field at a level."""
+        rows, columns = (np.arange(n) for n in self.shape(level))
+        return self._part(level, rows, columns, self.field.periodic)
 
     @property
     def blocks(self) -> tuple[int, int]:
@@ -145,6 +149,8 @@ class Pyramid:
 
     def children(self, key: TileKey | None) -> list[TileKey]:
         """Tiles of the next level that cover a tile, or the root for ``None``."""
+        if (self.depth if key is None else key.level) == 0:
+            return []
         if key is None:
             level = self.depth - 1
             rows, columns = (range(-(-(n - 1) // TILE_CELLS)) for n in self.shape(level))
@@ -215,7 +221,7 @@ class Pyramid:
             longest=longest,
             nodes=nodes,
         )
-        return TextureSet(geometry, store, whole_speed=self._typical_speed)
+        return TextureSet(geometry, store, whole_speed=self._typical_speed, longest=longest)
 
     @cached_property
     def _typical_speed(self) -> float:
@@ -282,8 +288,12 @@ class Pyramid:
 
 
 def is_cut(textures: TextureSet, step: int) -> bool:
-    """Whether paths of a tile end where its window does, though the surface goes on."""
+    """Whether paths of a tile end where its window does, though the surface goes on.
+
+    Slices may have longer lags than are needed: they double.
+    """
     slices = textures.store.at(step).part(*textures.geometry.texels)
+    needed = textures.longest / (slices.unit * textures.pace)
     for moved, reach in (
         (slices.displacement, slices.reach),
         (slices.forward, slices.forward_reach),
@@ -295,7 +305,7 @@ def is_cut(textures: TextureSet, step: int) -> bool:
         for axis, (before, after) in enumerate(textures.geometry.open_sides):
             at, last = there[..., 1 - axis], textures.geometry.field.shape[axis] - 1
             gone |= (before & (at < 0)) | (after & (at > last))
-        if (gone & (reach[0] < slices.lags[-1])).mean() > MOST_CUT_SHARE:
+        if (gone & (reach[0] < needed)).mean() > MOST_CUT_SHARE:
             return True
     return False
 
@@ -356,7 +366,8 @@ def _reach(points: Floats, valid: Bools) -> tuple[float, tuple[int, int]]:
         size = np.linalg.norm(np.diff(points, axis=axis), axis=-1)
         known = np.moveaxis(size, axis, 0)[both[1:] & both[:-1]]
         sides.append(np.percentile(known[known > 0], (5, 95)) if known.any() else np.ones(2))
-    longest = PATH_CELLS * max(float(most) for _, most in sides)
+    # A little less, so that rounding does not make even cells ask for twice as long a lag.
+    longest = 0.99 * PATH_CELLS * max(float(most) for _, most in sides)
     rows, columns = (int(longest / least) + HALO_SPARE for least, _ in sides)
     return longest, (rows, columns)
 

@@ -23,15 +23,15 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex._util import compiled
+from flowtex._util.array_types import Bools, Floats, Floats32, Indices
+from flowtex.trace.node_grid import BORDER_ROUNDING_CELLS
 from flowtex.trace.sampler import Sampler
 
-__all__ = ["Paths", "integrate"]
+__all__ = ["Paths", "follow", "integrate"]
 
 Numbers = NDArray[np.int8]
 
-#: Longest step in cells: a path cannot jump over a blanked cell unseen.
-LONGEST_STEP_CELLS = 1.0
 #: A step may grow or shrink by these factors.
 STEP_SHRINK, STEP_GROWTH, STEP_SAFETY = 0.2, 4.0, 0.9
 #: Bisections that find where inside a step a path ends.
@@ -40,6 +40,9 @@ BISECTIONS = 20
 MOST_STEPS = 20_000
 #: Share of a step by which rounding may miss a lag.
 LAG_ROUNDING = 1e-9
+#: All of these for :mod:`flowtex._util.kernels`: numbers, and greatest counts.
+RULES = (STEP_SHRINK, STEP_GROWTH, STEP_SAFETY, LAG_ROUNDING, BORDER_ROUNDING_CELLS)
+MOST = (MOST_STEPS, BISECTIONS)
 
 
 @dataclass(frozen=True)
@@ -90,6 +93,42 @@ def integrate(
         run.advance()
     run.end_all()
     return Paths(np.moveaxis(run.out, 1, 2), run.reach / unit, run.polar, run.interrupted)
+
+
+def follow(
+    sampler: Sampler,
+    nodes: Indices,
+    lags: Floats,
+    unit: Floats,
+    moved: Floats32,
+    reach: Floats32,
+    *,
+    direction: float,
+    tolerance: float,
+) -> bool:
+    """Do the same for particles from nodes (N,), compiled, and tell whether that was possible.
+
+    Displacements are written to ``moved`` (2, M, J * I), and reaches to (J * I,).
+    """
+    kernels = compiled.kernels()
+    if kernels is None or not sampler.plain:
+        return False
+    grid = sampler.grid
+    kernels.follow(
+        (grid.rows, grid.columns, *grid.periodic),
+        grid.room,
+        (sampler.nodal, sampler.times, sampler.destination, direction, sampler.floor),
+        (tolerance, *RULES),
+        MOST,
+        nodes,
+        np.array(lags),
+        unit,
+        sampler.rest(unit, float(lags[-1])),
+        sampler.longest,
+        moved,
+        reach,
+    )
+    return True
 
 
 @dataclass
@@ -199,7 +238,8 @@ class _Run:
         """Try one step of every particle, and accept it where its error is small enough."""
         state = self.state
         rest = self.lags[-1] * state.unit - state.lag
-        longest = LONGEST_STEP_CELLS / np.maximum(_speed(state.rate), 1e-300)
+        # A path must not jump over a blanked cell unseen.
+        longest = self.sampler.room(state.y) / np.maximum(_speed(state.rate), 1e-300)
         h = np.minimum(np.minimum(state.step, longest), np.minimum(rest, self.sampler.longest))
         step, error = self._try(h)
         size = np.maximum(error * (1 / self.tolerance), 1e-9)

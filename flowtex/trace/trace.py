@@ -11,16 +11,18 @@ from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cached_property, partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from flowtex._util import compiled
 from flowtex._util.array_types import Bools, Floats, Floats32, Indices
 from flowtex._util.progress import track
 from flowtex.field import FlowField
 from flowtex.field.interpolation import nearest_known
 from flowtex.trace.compose import SideSlices, Within, compose, landings
-from flowtex.trace.integrate import Paths, integrate
+from flowtex.trace.integrate import Paths, follow, integrate
 from flowtex.trace.lags import choose_lags, lag_unit
 from flowtex.trace.sampler import LengthSampler, Sampler, TimeSampler
 from flowtex.trace.slices import TraceSlices
@@ -302,26 +304,26 @@ class _Tracing:
     ) -> None:
         """Fill the first ``known`` slices."""
         at = np.flatnonzero(self.followed)
+        compiled.prepare(len(at) * len(self.samplers) * len(sides))
         start, unit = self.nodes.reshape(-1, 2)[at], self.unit.ravel()[at]
 
         def work(job: tuple[int, float, slice]) -> None:
             step, direction, block = job
-            result = integrate(
-                self.samplers[step],
-                start[block],
-                self.lags[:known],
-                unit[block],
-                direction=direction,
-                tolerance=self.tolerance,
-            )
+            side, nodes = sides[direction], at[block]
+            slices, reach = side.slices[:, 1 : known + 1, step], side.reach[step]
+            options: dict[str, Any] = {"direction": direction, "tolerance": self.tolerance}
+            lags, units = self.lags[:known], unit[block]
+            if follow(self.samplers[step], nodes, lags, units, slices, reach, **options):
+                return
+            result = integrate(self.samplers[step], start[block], lags, units, **options)
             moved = np.moveaxis(result.positions - start[block], 2, 0)
-            nodes: Indices | slice = at[block]
-            if at[block][-1] - at[block][0] == len(at[block]) - 1:
+            some: Indices | slice = nodes
+            if nodes[-1] - nodes[0] == len(nodes) - 1:
                 # Writing to a slice is several times as fast as to a list of nodes.
-                nodes = slice(at[block][0], at[block][-1] + 1)
-            sides[direction].slices[:, 1 : known + 1, step, nodes] = moved
-            sides[direction].reach[step, nodes] = result.reach
-            sides[direction].polar[step, nodes] = result.polar
+                some = slice(nodes[0], nodes[-1] + 1)
+            slices[..., some] = moved
+            reach[some] = result.reach
+            side.polar[step, some] = result.polar
 
         jobs = [
             (step, direction, slice(first, first + BLOCK))
