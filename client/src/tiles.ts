@@ -185,8 +185,10 @@ export class Tiles {
   }
 
   /** Ask for what is missing, once the view has come to rest a little, and again where nothing comes. */
-  private ask(steps: number[]): void {
+  private ask(all: number[]): void {
     const { options, lifetime } = this.host;
+    const isLacking = (step: number) => this.missing.some((name) => !this.isHere(name, [step]));
+    const steps = all.filter(isLacking);
     const open = this.asked.names.filter((name) => !this.isHere(name, this.asked.steps));
     const isAsked =
       performance.now() - this.lastCame < LOST_MS &&
@@ -200,7 +202,7 @@ export class Tiles {
       this.lastCame = performance.now();
       this.asked = { names: this.missing, steps };
       options.onTiles?.(this.missing.map(keyOf), steps);
-      if (this.missing.length) lifetime.later(() => this.isOver || this.ask(steps), LOST_MS);
+      if (this.missing.length) lifetime.later(() => this.isOver || this.ask(all), LOST_MS);
     }, REQUEST_MS);
   }
 

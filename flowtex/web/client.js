@@ -791,18 +791,18 @@ this.count)}let until=performance.now()+LOAD_MS,wanted=wantedTiles(choices);retu
 isHere(name,steps)),this.ask(steps),this.trim(steps),cover(choices,name=>this.isHere(name,steps)&&this.load(name,steps,until))}isHere(name,steps){
 let scene=this.tiles.get(name)?.scene;return scene===null||scene?.missing(steps[0],steps[steps.length-1]).length===0}load(name,steps,until){
 let scene=this.tiles.get(name)?.scene;return!scene||scene.isLoaded(steps)?!0:performance.now()>until?(this.host.refine(),
-!1):(scene.load(steps),!0)}ask(steps){let{options,lifetime}=this.host,open=this.asked.names.filter(name=>!this.isHere(name,
-this.asked.steps));performance.now()-this.lastCame<LOST_MS&&String(open.sort())===String([...this.missing].sort())&&(!open.
-length||String(steps)===String(this.asked.steps))||this.isWaiting||!options.onTiles||(this.isWaiting=!0,lifetime.later(()=>{
-this.isWaiting=!1,!this.isOver&&(this.lastCame=performance.now(),this.asked={names:this.missing,steps},options.onTiles?.(
-this.missing.map(keyOf),steps),this.missing.length&&lifetime.later(()=>this.isOver||this.ask(steps),LOST_MS))},REQUEST_MS))}trim(steps){
-let bytes=0;for(let[name,tile]of[...this.tiles].sort(([,a],[,b])=>b.used-a.used)){let{parts,used}=tile,slices=[...parts.
-keys()].filter(part=>part.startsWith("slices/"));for(let part of slices.slice(0,Math.max(slices.length-STEPS_HELD,0))){let step=stepOf(
-part);if(!steps.includes(step))for(let kind of["slices","extra","scalars"])this.release(tile,`${kind}/${step}`)}for(let{
-data}of parts.values())bytes+=BYTES_HELD*data.byteLength;bytes>BUDGET_BYTES&&used<this.count&&this.drop(name)}}drop(name){
-let tile=this.tiles.get(name);tile?.scene?.dispose();for(let part of[...tile?.parts.keys()??[]])this.release(tile,part);
-this.tiles.delete(name)}release(tile,part){part!=="cmap"&&this.root.graphics.release(tile?.parts.get(part)),tile?.parts.
-delete(part)}};var STILL_MS=160,LOST_MS2=5e3,STEPS_HELD2=12,isEqual=(a,b)=>JSON.stringify(a)===JSON.stringify(b),Viewer=class{options;graphics=sharedGraphics();lifetime=new Lifetime;player=new Player;root=document.
+!1):(scene.load(steps),!0)}ask(all){let{options,lifetime}=this.host,isLacking=step=>this.missing.some(name=>!this.isHere(
+name,[step])),steps=all.filter(isLacking),open=this.asked.names.filter(name=>!this.isHere(name,this.asked.steps));performance.
+now()-this.lastCame<LOST_MS&&String(open.sort())===String([...this.missing].sort())&&(!open.length||String(steps)===String(
+this.asked.steps))||this.isWaiting||!options.onTiles||(this.isWaiting=!0,lifetime.later(()=>{this.isWaiting=!1,!this.isOver&&
+(this.lastCame=performance.now(),this.asked={names:this.missing,steps},options.onTiles?.(this.missing.map(keyOf),steps),
+this.missing.length&&lifetime.later(()=>this.isOver||this.ask(all),LOST_MS))},REQUEST_MS))}trim(steps){let bytes=0;for(let[
+name,tile]of[...this.tiles].sort(([,a],[,b])=>b.used-a.used)){let{parts,used}=tile,slices=[...parts.keys()].filter(part=>part.
+startsWith("slices/"));for(let part of slices.slice(0,Math.max(slices.length-STEPS_HELD,0))){let step=stepOf(part);if(!steps.
+includes(step))for(let kind of["slices","extra","scalars"])this.release(tile,`${kind}/${step}`)}for(let{data}of parts.values())
+bytes+=BYTES_HELD*data.byteLength;bytes>BUDGET_BYTES&&used<this.count&&this.drop(name)}}drop(name){let tile=this.tiles.get(
+name);tile?.scene?.dispose();for(let part of[...tile?.parts.keys()??[]])this.release(tile,part);this.tiles.delete(name)}release(tile,part){
+part!=="cmap"&&this.root.graphics.release(tile?.parts.get(part)),tile?.parts.delete(part)}};var STILL_MS=160,LOST_MS2=5e3,STEPS_HELD2=12,isEqual=(a,b)=>JSON.stringify(a)===JSON.stringify(b),Viewer=class{options;graphics=sharedGraphics();lifetime=new Lifetime;player=new Player;root=document.
 createElement("div");canvas=document.createElement("canvas");panel;pointers;parts=new Map;header=null;settings={};scene=null;tiles=null;camera=null;sharp=!1;isVisible=!0;shown=null;together=[
 this];renderer;busyUntil=0;firstCamera=null;requests=new Map;constructor(element,options={}){this.options=options;let{root}=this;
 root.className="flowtex",root.tabIndex=0,root.dataset.sharp="false",root.setAttribute("data-lm-suppress-shortcuts","true"),

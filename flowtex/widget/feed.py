@@ -11,6 +11,7 @@ shows the same mesh many times holds it once, and asks for what it lacks.
 from __future__ import annotations
 
 import threading
+import time
 import traceback
 from collections import OrderedDict
 from collections.abc import Callable, Sequence
@@ -44,6 +45,8 @@ BETWEEN_STEADY, BETWEEN_VARYING = 100_000, 16_000
 MESSAGE_BYTES = 2_000_000
 #: Seconds between the times at which what nobody has acknowledged is sent once more.
 RESEND_WAITS_S = (2.5, 4.0, 8.0, 16.0)
+#: Seconds in which a client asks for what it has just been sent, as the header comes first.
+COMING_S = 2.0
 #: Bytes from which an array is offered before it is sent again.
 LEAST_OFFERED_BYTES = 50_000
 
@@ -77,6 +80,8 @@ class Feed:
         self._generation = self._order = 0
         self._live = self._closed = self._drawing = False
         self._asked: set[int] = set()
+        #: Steps that come with a new header, and until when they are not sent to who asks.
+        self._coming: tuple[float, tuple[int, ...]] = (0.0, ())
         self._sent: dict[str, str] = {}
         self.picture: bytes | None = None
         self.pictured, self.settled = threading.Event(), threading.Event()
@@ -116,7 +121,8 @@ class Feed:
 
     def need(self, step: int) -> None:
         """Answer a client that needs a step."""
-        if step in self._asked or not 0 <= step < self.scene.steps:
+        is_coming = step in self._coming[1] and time.monotonic() < self._coming[0]
+        if step in self._asked or is_coming or not 0 <= step < self.scene.steps:
             return
         self._asked.add(step)
         self._answers.do(lambda: self._send_step(step), urgency=1)
@@ -224,6 +230,7 @@ class Feed:
             self._generation += 1
             self._announce(self.header)
             if self._live:
+                self._coming = (time.monotonic() + COMING_S, scene.moment(self._moment()))
                 self._deliver(parts, again=False)
 
     def _first_parts(self, scene: ClientData) -> Parts:
