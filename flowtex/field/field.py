@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.errors import raise_faults
+from flowtex.field.dates import as_seconds
 from flowtex.field.metric import IndexVelocity, to_index_space
 from flowtex.field.periodic import NodalArrays, close_axes
 from flowtex.field.signs import oriented, sign_free_faults, with_equal_ends
@@ -104,7 +105,8 @@ class FlowField:
             in time, in units of length per unit of time. NaN and masked entries blank a node.
         times
             Time of each step, (T,), strictly increasing, in any unit of time. Steps are
-            numbered 0, 1, 2, ... when it is left out.
+            numbered 0, 1, 2, ... when it is left out. Dates (``datetime64``) become seconds
+            since the first, and the unit of time ``"s"``.
         valid
             Nodes that carry data, (J, I). All of them by default.
         periodic
@@ -140,6 +142,7 @@ class FlowField:
         """
         p, masked_points = as_numbers(points)
         v, masked_velocity = as_numbers(velocity)
+        times, time_unit = as_seconds(times, time_unit)
         faults = shape_faults(p, v, times, valid, periodic, scalars)
         raise_faults(faults + (sign_free_faults(v) if sign_free else []))
         v = v[None] if v.ndim == 3 else v

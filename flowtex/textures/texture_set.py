@@ -11,6 +11,7 @@ layer                 first three channels                                   fou
 0                     slope at lag zero                                      unit of lag
 1 ... M               slopes of the backward slices                          1: reach; 2: speed
 M + 1 ... 2 M         slopes of the forward slices, where there are any      M + 1: reach
+the last              of a steady field: layer 0 in cells, two channels      speed
 ====================  =====================================================  =================
 
 Slopes are in space (the surface's own frame), lengths per unit of nominal length, for the
@@ -34,11 +35,13 @@ from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.textures.paper import PaperTextures
 from flowtex.trace import SliceStore, TraceSlices
 
-__all__ = ["MOST_LAGS", "TextureSet"]
+__all__ = ["AGREED", "MOST_LAGS", "TextureSet"]
 
 
 #: Slices on each side that a shader has room for.
 MOST_LAGS = 32
+#: Nodes agree on the direction where their mean velocity is so long, over the mean of the lengths.
+AGREED = 0.99
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,7 +130,47 @@ class TextureSet:
     @property
     def count(self) -> int:
         """Number of layers."""
-        return 1 + self.sides * len(self.store.lags)
+        return 1 + self.sides * len(self.store.lags) + self.in_cells
+
+    @property
+    def in_cells(self) -> bool:
+        """Whether there is the last layer, of the velocity in cells."""
+        return self.store.steps == 1 and self.paper is None and not self.geometry.field.sign_free
+
+    @cached_property
+    def cell(self) -> float:
+        """Length of a cell that the last layer's velocities are measured in."""
+        return float(np.median(self.geometry.field.surface.cell_size[self.geometry.field.valid]))
+
+    @cached_property
+    def critical_cell(self) -> float:
+        """Length of the longest cell whose nodes do not agree on the direction; 0 if all do."""
+        if not self.in_cells:
+            return 0.0
+        field = self.geometry.field
+        flow, tangents = field.index_velocity.components[0], field.surface.tangents
+        along = np.einsum("jic,cjik->jik", flow, tangents)
+        length = np.linalg.norm(along, axis=-1, keepdims=True)
+        along = np.divide(along, length, out=np.zeros_like(along), where=length > 0)
+        parts = (slice(None, -1), slice(1, None))
+        corners = [(j, i) for j in parts for i in parts]
+        mean: Floats = np.sum([along[at] for at in corners], axis=0)
+        mean /= np.maximum(np.linalg.norm(mean, axis=-1, keepdims=True), np.finfo(float).tiny)
+        # What stands still says nothing of the direction.
+        cosines = [
+            np.where(length[at][..., 0] > 0, (along[at] * mean).sum(-1), 1) for at in corners
+        ]
+        parting = (np.min(cosines, axis=0) < AGREED) & field.surface.cells
+        j, i = (np.linalg.norm(np.diff(field.surface.points, axis=k), axis=-1) for k in (0, 1))
+        longest = np.hypot(np.maximum(j[:, :-1], j[:, 1:]), np.maximum(i[:-1], i[1:]))
+        return float(longest[parting].max(initial=0.0))
+
+    def forget(self) -> None:
+        """Drop what only making the layers needs."""
+        self.store.forget()
+        self.geometry.field.forget()
+        for name in ("_displacements", "_length"):
+            self.__dict__.pop(name, None)
 
     def layers(self, step: int = 0) -> Floats32:
         """Texels of the slice texture for one destination time, (layers, H, W, 4)."""
@@ -149,6 +192,12 @@ class TextureSet:
         if layer == 0:
             result[..., :3] = tangent
             result[..., 3] = slices.unit * self.pace / self.unit
+            return result
+        if self.in_cells and layer == self.count - 1:
+            result[..., :2] = slices.rate[0] * (self.cell / self.unit)
+            # Tangents by arc length have no speed of their own.
+            timed = self.store.parameter == "time"
+            result[..., 3] = 1.0 if timed else self._speed(slices)
             return result
         side, m = divmod(layer - 1, len(slices.lags))
         sign, displacement, reach = -1.0, slices.displacement, slices.reach

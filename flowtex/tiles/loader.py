@@ -66,7 +66,7 @@ class Tile:
         if self.textures is None:
             return np.empty((0, 0, 0, 4), np.float32)
         layers = self.textures.layers(step)
-        self.textures.store.forget()
+        self.textures.forget()
         return layers
 
     def take(self, step: int) -> Floats32:

@@ -49,12 +49,13 @@ BLOCK_CELLS, TILE_BLOCKS = 64, 4
 TILE_CELLS = BLOCK_CELLS * TILE_BLOCKS
 #: Length of the paths in cells, by their longer side.
 PATH_CELLS = 32
-#: Lines of a halo beyond the length of the paths, and its greatest width.
-HALO_SPARE, MOST_HALO = 3, 512
+#: Width of a halo in lengths of the paths, for cells that grow smaller beyond a tile; lines that it
+#: has more than that; and its greatest width.
+HALO_SHARE, HALO_SPARE, MOST_HALO = 1.2, 3, 512
 #: Nodes of a window around a pole from which on its paths are not composed: all are traced then.
 MOST_COMPOSED = 500_000
-#: Share of the paths of a tile that may end where its window does.
-MOST_CUT_SHARE = 1e-3
+#: Share of its length up to which a path must not be cut, and of the paths of a tile that may be.
+NEEDED_SHARE, MOST_CUT_SHARE = 0.75, 5e-3
 #: Rows that are averaged together.
 ROWS = 256
 
@@ -290,10 +291,10 @@ class Pyramid:
 def is_cut(textures: TextureSet, step: int) -> bool:
     """Whether paths of a tile end where its window does, though the surface goes on.
 
-    Slices may have longer lags than are needed: they double.
+    Slices may have longer lags than are needed: they double. The last part of a path weighs little.
     """
     slices = textures.store.at(step).part(*textures.geometry.texels)
-    needed = textures.longest / (slices.unit * textures.pace)
+    needed = NEEDED_SHARE * textures.longest / (slices.unit * textures.pace)
     for moved, reach in (
         (slices.displacement, slices.reach),
         (slices.forward, slices.forward_reach),
@@ -368,7 +369,7 @@ def _reach(points: Floats, valid: Bools) -> tuple[float, tuple[int, int]]:
         sides.append(np.percentile(known[known > 0], (5, 95)) if known.any() else np.ones(2))
     # A little less, so that rounding does not make even cells ask for twice as long a lag.
     longest = 0.99 * PATH_CELLS * max(float(most) for _, most in sides)
-    rows, columns = (int(longest / least) + HALO_SPARE for least, _ in sides)
+    rows, columns = (int(HALO_SHARE * longest / least) + HALO_SPARE for least, _ in sides)
     return longest, (rows, columns)
 
 

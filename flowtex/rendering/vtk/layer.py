@@ -28,7 +28,14 @@ from flowtex._util.array_types import Floats, Floats32, Indices, Ints
 from flowtex.rendering.mesh_levels import MeshLevels
 from flowtex.rendering.shaders import shader_text
 from flowtex.rendering.tile_choice import TileView
-from flowtex.rendering.uniforms import ANCHOR_RANGE, ViewState, is_moving, uniforms, variants
+from flowtex.rendering.uniforms import (
+    ANCHOR_RANGE,
+    ViewState,
+    is_moving,
+    is_near,
+    uniforms,
+    variants,
+)
 from flowtex.rendering.vtk.gpu_texture import GPUTexture
 from flowtex.rendering.vtk.mesh import (
     ATTRIBUTES,
@@ -191,7 +198,8 @@ class FlowLayer:
     def _write_text(self) -> None:
         unsteady = self._textures.store.steps > 1
         moving = is_moving(self._textures, self._settings)
-        variant = variants(self._textures, unsteady=unsteady, moving=moving)
+        near = is_near(self._textures, self._settings, self.view)
+        variant = variants(self._textures, unsteady=unsteady, moving=moving, near=near)
         if variant == self._variant:
             return
         self._variant = variant
@@ -246,7 +254,6 @@ class FlowLayer:
         renderer = self._renderer()
         if renderer is None:
             return
-        self._write_text()
         camera = renderer.GetActiveCamera()
         parallel = bool(camera.GetParallelProjection())
         eye = (
@@ -259,6 +266,8 @@ class FlowLayer:
         self.view.focus = focus[:3]
         scale = float(np.cbrt(abs(np.linalg.det(placed[:3, :3]))))
         self._height = _window_height(camera) / scale
+        self.view.pixel = self._height / renderer.GetSize()[1]
+        self._write_text()
         self._move_anchor(self._height)
 
     def _move_anchor(self, seen: float) -> None:

@@ -267,6 +267,7 @@ class FlowSurface:
             surface = this()
             if surface is not None and surface._scalars is not None:
                 surface._scalars[1](textures.geometry.field)  # which keeps the values at hand
+            _ = textures.unit, textures.cell, textures.critical_cell  # which are kept as well
             return surface_mesh(textures), MeshLevels.of(textures)
 
         def notify() -> None:
