@@ -63,6 +63,7 @@ def mounted(
     make: Callable[[], flowtex.FlowField] = field,
     *,
     tiles: Callable[[TileKey], bool] = lambda key: True,
+    time: float | None = None,
     **options: Any,
 ) -> int:
     """Show a view whose tiles, or some of them, are made when the client asks for them."""
@@ -79,14 +80,23 @@ def mounted(
 
     client.tile = tile
     client.tiles.clear()
-    header = data.header(view.scene.settings, camera=state(camera))
-    return client.mount(packed(data, header), SIZE, controls=False, smooth=False)
+    header = data.header(view.scene.settings, camera=state(camera), time=time)
+    given = packed(data, header, tuple(range(data.steps)))
+    return client.mount(given, SIZE, controls=False, smooth=False)
 
 
-def drawn_by_vtk(plotter: Any, camera: Camera, **options: Any) -> Bytes:
+def drawn_by_vtk(
+    plotter: Any,
+    camera: Camera,
+    make: Callable[[], flowtex.FlowField] = field,
+    time: float | None = None,
+    **options: Any,
+) -> Bytes:
     plotter.window_size = list(SIZE)
     plotter.set_background(GROUND)
-    plotter.flowtex.add(field(), **{**LOOK, **options})
+    handle = plotter.flowtex.add(make(), **{**LOOK, **options})
+    if time is not None:
+        handle.time = time
     apply_camera(camera, plotter.camera)
     plotter.camera_set = True
     plotter.renderer.reset_camera_clipping_range()
@@ -181,6 +191,33 @@ def test_a_page_without_room_has_no_tiles(monkeypatch: pytest.MonkeyPatch) -> No
     text = page_text([viewed()[0]])
     assert "tile/2/0/0" not in text
     assert '"pyramid":null' in text
+
+
+@cache
+def swinging() -> flowtex.FlowField:
+    """A vortex that wanders, at three times."""
+    y, x = np.mgrid[-1:1:200j, -1:1:260j]
+    steps = [np.stack([-(y - 0.2 * t), x - 0.1 * t * t], axis=-1) for t in (0.0, 1.0, 2.0)]
+    return flowtex.FlowField.from_arrays(np.stack([x, y], -1), np.stack(steps), times=[0, 0.4, 0.8])
+
+
+@pytest.mark.browser
+def test_tiles_of_the_times_around_that_of_the_view(client: ClientPage, plotter: Any) -> None:
+    camera = straight(6, (-0.3, 0.1))
+    viewer = mounted(client, camera, swinging, time=0.55)
+    client.complete(viewer)
+    assert len(layers(client, viewer)) > 1
+    root, share, _ = difference(
+        client.pixels(viewer), drawn_by_vtk(plotter, camera, swinging, time=0.55)
+    )
+    assert root < ROOT
+    assert share < SHARE
+    # Of the next moment one step is there already, and only the other is asked for.
+    client.page.evaluate("(n) => viewers[n].setTime(0.2)", viewer)
+    client.page.wait_for_function("(n) => viewers[n].tiles.missing.length", arg=viewer)
+    client.complete(viewer)
+    asked = [address for address in client.asked if "tiles.test" in address]
+    assert asked[-1].endswith(",[0]]")
 
 
 @cache
