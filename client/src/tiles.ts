@@ -8,7 +8,16 @@ import type { Camera } from "./camera.ts";
 import { join, type Region } from "./meshlevels.ts";
 import { stepOf, type NamedPart, type Part, type Settings, type TileHeader } from "./protocol.ts";
 import { Scene } from "./scene.ts";
-import { cellPixels, cover, keyOf, Pyramid, ROOT, wantedTiles, type TileKey } from "./tilechoice.ts";
+import {
+  cellPixels,
+  cover,
+  keyOf,
+  Pyramid,
+  ROOT,
+  wantedTiles,
+  type Choices,
+  type TileKey,
+} from "./tilechoice.ts";
 import type { Moment } from "./uniforms.ts";
 
 /** Milliseconds from a change of what is wanted to the request, and after which a request counts as lost. */
@@ -60,6 +69,12 @@ export class Tiles {
   private readonly root: Scene;
   private readonly tiles = new Map<string, Tile>();
   private pyramid: Pyramid | null = null;
+  /** What the last picture has asked for and shown. */
+  private chosen: { choices: Choices; steps: number[]; names: string } = {
+    choices: new Map(),
+    steps: [],
+    names: "",
+  };
   private drawn = "";
   private asked: { names: string[]; steps: number[] } = { names: [], steps: [] };
   private count = 0;
@@ -93,7 +108,10 @@ export class Tiles {
       if (map) tile.parts.set("cmap", map);
     } else tile.scene?.forget(part.name);
     this.lastCame = performance.now();
-    this.host.refine();
+    const { names, steps } = this.chosen;
+    this.missing = this.missing.filter((missing) => !this.isHere(missing, steps));
+    const shown = cover(this.chosen.choices, (other) => this.isHere(other, steps));
+    if (String([...shown.keys()]) !== names) this.host.refine();
   }
 
   /** Choose what is drawn at a moment, and its triangles. */
@@ -163,7 +181,9 @@ export class Tiles {
     this.missing = wanted.filter((name) => !this.isHere(name, steps));
     this.ask(steps);
     this.trim(steps);
-    return cover(choices, (name) => this.isHere(name, steps) && this.load(name, steps, until));
+    const shown = cover(choices, (name) => this.isHere(name, steps) && this.load(name, steps, until));
+    this.chosen = { choices, steps, names: String([...shown.keys()]) };
+    return shown;
   }
 
   /** Whether all of a tile has come that these steps need. */

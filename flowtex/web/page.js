@@ -782,31 +782,33 @@ image("noise",paper.picture?[!0,!0]:repeat),paper&&this.image("step",repeat),thi
 activeTexture(gl.TEXTURE0+n),gl.bindTexture(n<4?gl.TEXTURE_2D_ARRAY:gl.TEXTURE_2D,texture)}),gl.activeTexture(gl.TEXTURE0+
 SAMPLERS.length)}draw(before,after,anchor,textures){let gl=this.graphics.context;textures&&(this.dropSlices(before,after),
 this.bindTextures(before,after)),this.bindNodes(before,after,anchor),gl.drawElements(gl.TRIANGLES,this.resources.get("in\
-dex")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(null)}};var REQUEST_MS=60,LOST_MS=8e3,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD=4,Tiles=class{layers=[];missing=[];host;root;tiles=new Map;pyramid=null;drawn="";asked={
-names:[],steps:[]};count=0;isWaiting=!1;isOver=!1;lastCame=0;constructor(host,root){this.host=host,this.root=root}dispose(){
-this.isOver=!0;for(let name of[...this.tiles.keys()])this.drop(name)}setPart(name,part){let{graphics,header}=this.root,tile=this.
-tiles.get(name)??{parts:new Map,scene:void 0,used:this.count};if(this.tiles.set(name,tile),!(part.digest&&tile.parts.get(
-part.name)?.digest===part.digest)){if(graphics.release(tile.parts.get(part.name)),tile.parts.set(part.name,graphics.hold(
-part)),part.name==="header"){let own=JSON.parse(new TextDecoder().decode(part.data));tile.scene?.dispose(),tile.scene=own&&
-new Scene(graphics,{...header,...own,pyramid:null},tile.parts);let map=this.root.parts.get("cmap");map&&tile.parts.set("\
-cmap",map)}else tile.scene?.forget(part.name);this.lastCame=performance.now(),this.host.refine()}}arrange([before,after]){
-let{camera,canvas}=this.host;if(!camera)return[];let steps=[...new Set([before,after])],shown=this.choose(camera,steps),
-layers=[{scene:this.root,key:[this.root.header.pyramid?.depth??0,0,0]}],names=[ROOT];for(let name of shown.keys()){let scene=this.
-tiles.get(name)?.scene;scene&&(names.push(name),layers.push({scene,key:keyOf(name)}))}let sight=camera.sight(canvas.height),
-parts=layers.map(({scene,key},n)=>{let{levels,shape}=scene.levels(sight);for(let finer of shown.get(names[n])??[])this.hide(
-levels,shape[1],finer,names[n]);let{pyramid}=this.root.header,[row,column]=key.slice(1).map(at=>at*(pyramid?.tileBlocks??
-0)<<key[0]);return{step:key[0],row,column,shape,levels}});return this.layers=layers,this.setTriangles(names,parts),layers.
-map(({scene})=>scene)}hide(levels,columns,finer,above){let[row,column,size]=this.pyramid?.finerPart(keyOf(finer),above)??
-[0,0,0];for(let j=row;j<Math.min(row+size,levels.length/columns);j+=1)levels.fill(-1,j*columns+column,j*columns+Math.min(
-column+size,columns))}setTriangles(names,parts){let drawn=String(parts.map(({levels},n)=>[names[n],levels]));if(drawn===
-this.drawn&&this.layers.every(({scene})=>scene.hasTriangles))return;this.drawn=drawn;let{geometry,mesh,pyramid}=this.root.
-header,most=Math.log2(mesh.tileCells),joins=join(parts,pyramid?.blocks??parts[0].shape,geometry.periodic,most);parts.forEach(
-({levels},n)=>this.layers[n].scene.setTriangles(levels,joins[n]))}choose(camera,steps){let{header}=this.root,{settings,canvas,
-ratio}=this.host;if(!header.pyramid)return new Map;this.pyramid??=new Pyramid(header.pyramid,header.mesh,this.root.part(
-"places").data);let choices=this.pyramid.choose({...camera.sight(canvas.height/ratio),planes:camera.planes,cellPixels:cellPixels(
-header.pyramid,settings)});this.count+=1;for(let name of choices.keys()){let tile=this.tiles.get(name);tile&&(tile.used=
-this.count)}let until=performance.now()+LOAD_MS,wanted=wantedTiles(choices);return this.missing=wanted.filter(name=>!this.
-isHere(name,steps)),this.ask(steps),this.trim(steps),cover(choices,name=>this.isHere(name,steps)&&this.load(name,steps,until))}isHere(name,steps){
+dex")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(null)}};var REQUEST_MS=60,LOST_MS=8e3,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD=4,Tiles=class{layers=[];missing=[];host;root;tiles=new Map;pyramid=null;chosen={
+choices:new Map,steps:[],names:""};drawn="";asked={names:[],steps:[]};count=0;isWaiting=!1;isOver=!1;lastCame=0;constructor(host,root){
+this.host=host,this.root=root}dispose(){this.isOver=!0;for(let name of[...this.tiles.keys()])this.drop(name)}setPart(name,part){
+let{graphics,header}=this.root,tile=this.tiles.get(name)??{parts:new Map,scene:void 0,used:this.count};if(this.tiles.set(
+name,tile),part.digest&&tile.parts.get(part.name)?.digest===part.digest)return;if(graphics.release(tile.parts.get(part.name)),
+tile.parts.set(part.name,graphics.hold(part)),part.name==="header"){let own=JSON.parse(new TextDecoder().decode(part.data));
+tile.scene?.dispose(),tile.scene=own&&new Scene(graphics,{...header,...own,pyramid:null},tile.parts);let map=this.root.parts.
+get("cmap");map&&tile.parts.set("cmap",map)}else tile.scene?.forget(part.name);this.lastCame=performance.now();let{names,
+steps}=this.chosen;this.missing=this.missing.filter(missing=>!this.isHere(missing,steps));let shown=cover(this.chosen.choices,
+other=>this.isHere(other,steps));String([...shown.keys()])!==names&&this.host.refine()}arrange([before,after]){let{camera,
+canvas}=this.host;if(!camera)return[];let steps=[...new Set([before,after])],shown=this.choose(camera,steps),layers=[{scene:this.
+root,key:[this.root.header.pyramid?.depth??0,0,0]}],names=[ROOT];for(let name of shown.keys()){let scene=this.tiles.get(
+name)?.scene;scene&&(names.push(name),layers.push({scene,key:keyOf(name)}))}let sight=camera.sight(canvas.height),parts=layers.
+map(({scene,key},n)=>{let{levels,shape}=scene.levels(sight);for(let finer of shown.get(names[n])??[])this.hide(levels,shape[1],
+finer,names[n]);let{pyramid}=this.root.header,[row,column]=key.slice(1).map(at=>at*(pyramid?.tileBlocks??0)<<key[0]);return{
+step:key[0],row,column,shape,levels}});return this.layers=layers,this.setTriangles(names,parts),layers.map(({scene})=>scene)}hide(levels,columns,finer,above){
+let[row,column,size]=this.pyramid?.finerPart(keyOf(finer),above)??[0,0,0];for(let j=row;j<Math.min(row+size,levels.length/
+columns);j+=1)levels.fill(-1,j*columns+column,j*columns+Math.min(column+size,columns))}setTriangles(names,parts){let drawn=String(
+parts.map(({levels},n)=>[names[n],levels]));if(drawn===this.drawn&&this.layers.every(({scene})=>scene.hasTriangles))return;
+this.drawn=drawn;let{geometry,mesh,pyramid}=this.root.header,most=Math.log2(mesh.tileCells),joins=join(parts,pyramid?.blocks??
+parts[0].shape,geometry.periodic,most);parts.forEach(({levels},n)=>this.layers[n].scene.setTriangles(levels,joins[n]))}choose(camera,steps){
+let{header}=this.root,{settings,canvas,ratio}=this.host;if(!header.pyramid)return new Map;this.pyramid??=new Pyramid(header.
+pyramid,header.mesh,this.root.part("places").data);let choices=this.pyramid.choose({...camera.sight(canvas.height/ratio),
+planes:camera.planes,cellPixels:cellPixels(header.pyramid,settings)});this.count+=1;for(let name of choices.keys()){let tile=this.
+tiles.get(name);tile&&(tile.used=this.count)}let until=performance.now()+LOAD_MS,wanted=wantedTiles(choices);this.missing=
+wanted.filter(name=>!this.isHere(name,steps)),this.ask(steps),this.trim(steps);let shown=cover(choices,name=>this.isHere(
+name,steps)&&this.load(name,steps,until));return this.chosen={choices,steps,names:String([...shown.keys()])},shown}isHere(name,steps){
 let scene=this.tiles.get(name)?.scene;return scene===null||scene?.missing(steps[0],steps[steps.length-1]).length===0}load(name,steps,until){
 let scene=this.tiles.get(name)?.scene;return!scene||scene.isLoaded(steps)?!0:performance.now()>until?(this.host.refine(),
 !1):(scene.load(steps),!0)}ask(all){let{options,lifetime}=this.host,isLacking=step=>this.missing.some(name=>!this.isHere(
