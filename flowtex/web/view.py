@@ -11,6 +11,7 @@ from flowtex.options import Options
 from flowtex.rendering.webgl import ClientData, Colours
 from flowtex.scene import Scene, share_field, steps_of
 from flowtex.settings import TABLE
+from flowtex.tiles import Pyramid
 
 __all__ = ["WebView", "even_steps", "web_views"]
 
@@ -55,19 +56,26 @@ class WebView:
 
     def data(self) -> ClientData:
         """Return what the client is handed; makes noise textures, and traces nothing."""
-        return self._data(self.scene)
+        scene = self.scene
+        return self._data(scene, scene.pyramid)
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Rows and columns of nodes of what is handed over."""
+        pyramid = self.scene.pyramid
+        return self.field.shape if pyramid is None else pyramid.shape(pyramid.depth)
 
     def coarse_data(self, nodes: int) -> ClientData:
         """Return the same with so many nodes at most, for a first picture."""
         return self._data(self.scene.coarsened(nodes))
 
-    def _data(self, scene: Scene) -> ClientData:
+    def _data(self, scene: Scene, pyramid: Pyramid | None = None) -> ClientData:
         colours, name = self._colours, scene.scalar_name
         if name is not None:
             low, high = scene.scalar_limits
-            values = steps_of(scene.field, name)
+            values = steps_of(scene.textures.geometry.field, name)
             colours = replace(colours, name=name, values=values, low=low, high=high)
-        return ClientData(scene.textures, colours, self._times)
+        return ClientData(scene.textures, colours, self._times, pyramid)
 
     def close(self) -> None:
         """Follow the settings no longer."""

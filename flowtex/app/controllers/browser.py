@@ -12,19 +12,23 @@ from typing import Any
 
 from flowtex._util.colours import colour_table, rgb
 from flowtex.app.controllers.context import Context, Controller
-from flowtex.app.server.files import Content
+from flowtex.app.server.files import Content, Give
 from flowtex.app.server.validation import number
 from flowtex.camera import Camera
 from flowtex.rendering.webgl import ClientData, Colours
 from flowtex.rendering.webgl.protocol import parts_file
 from flowtex.scene import steps_of
 from flowtex.settings import TABLE
+from flowtex.tiles import TileKey, TileLoader
 from flowtex.web.assets import asset
+from flowtex.web.tiles import packed_tile, tile_loader
 
 __all__ = ["RENDERERS", "BrowserRendering"]
 
 #: Where the picture is drawn.
 RENDERERS = ("server", "browser")
+#: Seconds between looks at whether a tile is there that a page waits for.
+TILE_WAIT_S = 0.05
 
 
 class BrowserRendering(Controller):
@@ -33,6 +37,7 @@ class BrowserRendering(Controller):
     def __init__(self, context: Context) -> None:
         super().__init__(context)
         self._scene: ClientData | None = None
+        self._loader: TileLoader | None = None
         self._generation = 0
         self._routes = context.routes
         self._appearance: tuple[Any, ...] = ()
@@ -134,7 +139,10 @@ class BrowserRendering(Controller):
         """Hand a scene over, in place of an earlier one."""
         self._withdraw()
         self._appearance = self._present_appearance()
-        self._scene = scene = ClientData(self.viewport.handle.scene.textures, self._colours())
+        shown = self.viewport.handle.scene
+        scene = ClientData(shown.textures, self._colours(), pyramid=shown.pyramid)
+        self._scene = scene
+        self._loader = None if shown.pyramid is None else tile_loader(scene, shown.pyramid)
         self._generation += 1
         self._camera = self.viewport.camera
         self.stream.paused = True
@@ -146,12 +154,16 @@ class BrowserRendering(Controller):
             self._publish(f"step-{step}", lambda step=step: parts_file(scene.step(step)))
             for step in range(scene.steps)
         ]
+        tiles = self._routes.give_each(
+            f"tile-{self._generation}", lambda name: self._tile(scene, name)
+        )
         self.state.send(
             client_source={
                 "client": self._client,
                 "header": {**header, "generation": self._generation},
                 "surface": surface,
                 "steps": steps,
+                "tiles": tiles,
             },
             client_settings=dict(self.settings),
             client_camera=self._camera.to_dict(),
@@ -175,8 +187,35 @@ class BrowserRendering(Controller):
 
         return self._routes.give(f"{name}-{self._generation}", content)
 
+    def _tile(self, scene: ClientData, name: str) -> Give:
+        """Return how the tile of a name, its key and time steps, becomes a file."""
+        level, row, column, *steps = (int(number) for number in name.split("."))
+        key, loader = TileKey(level, row, column), self._loader
+        sources = [scene.source(step) for step in steps]
+        if loader is None or not all(0 <= step < scene.steps for step in steps):
+            raise LookupError(name)
+
+        async def content() -> Content:
+            while (tile := loader.get(key, sources)) is None:
+                if key in loader.errors:
+                    raise loader.errors[key]
+                if loader is not self._loader:
+                    return parts_file({}), "application/octet-stream", None
+                # Asked for again, as tiles are given up that nobody asks for.
+                loader.request([key], sources)
+                await asyncio.sleep(TILE_WAIT_S)
+            run = asyncio.get_running_loop().run_in_executor
+            body = await run(None, lambda: parts_file(packed_tile(scene, tile, steps)))
+            return body, "application/octet-stream", None
+
+        return content
+
     def _withdraw(self) -> None:
+        if self._loader is not None:
+            self._loader.close()
+            self._loader = None
         if self._scene is not None:
+            self._routes.withdraw(f"tile-{self._generation}")
             self._routes.withdraw(f"surface-{self._generation}")
             for step in range(self._scene.steps):
                 self._routes.withdraw(f"step-{step}-{self._generation}")
@@ -186,7 +225,7 @@ class BrowserRendering(Controller):
         low, high = scene.colour_range
         return Colours(
             name=scene.colour or None,
-            values=steps_of(scene.field, scene.colour) if scene.colour else None,
+            values=steps_of(scene.handle.scene.whole, scene.colour) if scene.colour else None,
             low=low,
             high=high,
             table=colour_table(scene.cmap),

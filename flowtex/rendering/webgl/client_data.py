@@ -8,8 +8,9 @@ Positions and scalars keep single precision.
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from functools import cache, cached_property
 from typing import Any
 
@@ -20,13 +21,15 @@ from flowtex.camera import CAMERA_LIMITS, Camera
 from flowtex.field.interpolation import steps_around
 from flowtex.rendering.mesh_levels import MeshLevels, mesh_limits
 from flowtex.rendering.shaders import shader_text
+from flowtex.rendering.tile_choice import CELL_PIXELS
 from flowtex.rendering.uniforms import client_constants, variants
 from flowtex.rendering.webgl.packing import Packing, half, packing_of
 from flowtex.rendering.webgl.protocol import FORMAT, Header, Parts
 from flowtex.settings import TABLE, Settings
 from flowtex.textures import PaperTextures, TextureSet
+from flowtex.tiles import PATH_CELLS, TILE_BLOCKS, Pyramid, TileKey
 
-__all__ = ["ClientData", "Colours"]
+__all__ = ["ClientData", "Colours", "tile_parts"]
 
 #: Shaders of the client, by the name under which the header has their text.
 SHADERS = {
@@ -49,7 +52,7 @@ class Colours:
     name, unit
         What it is coloured by, for the legend; ``None`` for a plain surface.
     values
-        Nodal values, (T or 1, J, I).
+        Values at all nodes of the field, (T or 1, J, I).
     low, high
         Values at the ends of the colour map.
     table
@@ -82,12 +85,15 @@ class ClientData:
     """A flow and its colours, ready to be handed over.
 
     ``chosen`` are the numbers of the destination times that are handed over, increasing; all are
-    where it is empty.
+    where it is empty. ``pyramid`` has the tiles of a large flow, of which this is the root, and
+    ``finest`` is the finest level of those that are handed over.
     """
 
     textures: TextureSet
     colours: Colours = field(default_factory=Colours)
     chosen: tuple[int, ...] = ()
+    pyramid: Pyramid | None = None
+    finest: int = 0
 
     @cached_property
     def packing(self) -> Packing:
@@ -156,6 +162,7 @@ class ClientData:
             "paper": None if textures.paper is None else _paper(textures.paper),
             "constants": client_constants(),
             "mesh": mesh_limits(),
+            "pyramid": None if self.pyramid is None else _pyramid(self.pyramid, self.finest),
             "limits": {**asdict(CAMERA_LIMITS), "aspect": FIRST_ASPECT},
             "table": _table(),
         }
@@ -166,10 +173,13 @@ class ClientData:
         parts: Parts = {}
         if colours.name is not None and colours.table is not None:
             parts["cmap"] = np.ascontiguousarray(colours.table, np.uint8)
-        if not geometry.field.surface.cells.all():
-            parts["cells"] = geometry.field.surface.cells.astype(np.uint8)
+        if not geometry.cells.all():
+            parts["cells"] = geometry.cells.astype(np.uint8)
         if not geometry.planar:
             parts["normal"] = np.rint(geometry.normal * NORMAL_MAX).astype("<i2")
+        if self.pyramid is not None:
+            places = [self.pyramid.places(level) for level in range(self.pyramid.depth + 1)]
+            parts["places"] = np.concatenate([p.reshape(-1, 5) for p in places]).astype("<f4")
         parts["mesh"] = self._mesh
         parts["position"] = np.ascontiguousarray(geometry.position, "<f4")
         if self.textures.paper is not None:
@@ -199,6 +209,15 @@ class ClientData:
         parts[f"slices/{step}"] = packed.slopes
         return parts
 
+    def tile(self, textures: TextureSet, values: Floats | None) -> ClientData:
+        """Return what is handed over of a tile, with the values at the nodes of its field."""
+        return ClientData(textures, replace(self.colours, values=values), self.chosen)
+
+    @property
+    def tile_header(self) -> Header:
+        """What of the header of a tile differs from that of the root."""
+        return {"geometry": self._geometry(), "slices": self._slices()}
+
     def source(self, step: int) -> int:
         """Return the field's own number of a step that is handed over."""
         return self.chosen[step] if self.chosen else step
@@ -213,7 +232,7 @@ class ClientData:
         """Bytes of the arrays of one destination time, known before anything is traced."""
         geometry = self.textures.geometry
         texels = geometry.rows.size * geometry.columns.size
-        nodes = geometry.field.valid.size
+        nodes = int(np.prod(geometry.shape))
         numbers = self.textures.count * self.packing.channels + len(self.packing.extra)
         return 2 * texels * numbers + (4 * nodes if self.colours.values is not None else 0)
 
@@ -221,15 +240,16 @@ class ClientData:
     def _values(self) -> Floats | None:
         """Nodal values of the colours at the times that are handed over, (steps or 1, J, I)."""
         values = self.colours.values
-        if values is None or not self.chosen or len(values) == 1:
-            return values
-        return values[list(self.chosen)]
+        if values is None:
+            return None
+        rows, columns = self.textures.geometry.drawn
+        values = values[:, rows, columns]
+        return values if not self.chosen or len(values) == 1 else values[list(self.chosen)]
 
     @cached_property
     def _mesh(self) -> Floats32:
         """Return what the client chooses its triangles by, of each tile."""
-        field = self.textures.geometry.field
-        levels = MeshLevels(field.surface.points, field.surface.cells, field.periodic)
+        levels = MeshLevels.of(self.textures)
         low, high = self.colours.low, self.colours.high
         if self._values is not None and high > low:
             levels.set_colours(*(np.clip((v - low) / (high - low), 0, 1) for v in self._values))
@@ -238,11 +258,11 @@ class ClientData:
     def _geometry(self) -> dict[str, Any]:
         geometry = self.textures.geometry
         return {
-            "shape": [int(n) for n in geometry.field.shape],
+            "shape": [int(n) for n in geometry.shape],
             "rows": {"before": int(geometry.rows.before), "size": int(geometry.rows.size)},
             "columns": {"before": int(geometry.columns.before), "size": int(geometry.columns.size)},
             "levels": int(geometry.levels),
-            "periodic": [bool(p) for p in geometry.field.periodic],
+            "periodic": [bool(p) for p in geometry.periodic],
             "planar": geometry.planar,
             "extent": float(geometry.extent),
             "center": _numbers(geometry.center),
@@ -265,6 +285,35 @@ class ClientData:
             "times": _numbers(self.times),
             "timeUnit": textures.geometry.field.time_unit,
         }
+
+
+def tile_parts(key: TileKey, tile: ClientData | None, *steps: int) -> Parts:
+    """Return the arrays of a tile for some times, or of one of which nothing is drawn.
+
+    Its own header is among them, as JSON.
+    """
+    text = json.dumps(None if tile is None else tile.tile_header)
+    parts: Parts = {"header": np.frombuffer(text.encode(), np.uint8)}
+    if tile is not None:
+        parts |= tile.surface()
+        parts.pop("cmap", None)  # that of the root
+        for step in steps:
+            parts |= tile.step(step)
+    prefix = f"tile/{key.level}/{key.row}/{key.column}"
+    return {f"{prefix}/{name}": part for name, part in parts.items()}
+
+
+def _pyramid(pyramid: Pyramid, finest: int) -> dict[str, Any]:
+    """Return what a client chooses the tiles by, beside the places of their blocks."""
+    return {
+        "depth": pyramid.depth,
+        "finest": finest,
+        "blocks": list(pyramid.blocks),
+        "shapes": [list(pyramid.shape(level)) for level in range(pyramid.depth + 1)],
+        "tileBlocks": TILE_BLOCKS,
+        "cellPixels": CELL_PIXELS,
+        "pathCells": PATH_CELLS,
+    }
 
 
 def _paper(paper: PaperTextures) -> dict[str, Any]:
