@@ -21,13 +21,15 @@ from flowtex.errors import raise_faults
 from flowtex.field.metric import IndexVelocity, to_index_space
 from flowtex.field.periodic import NodalArrays, close_axes
 from flowtex.field.signs import oriented, sign_free_faults, with_equal_ends
-from flowtex.field.surface import Surface
+from flowtex.field.surface import Surface, known_positions
 from flowtex.field.validation import (
+    MAGNITUDES,
     as_numbers,
     node_faults,
-    scalar_steps,
+    range_faults,
     shape_faults,
     three_components,
+    with_gaps,
 )
 
 __all__ = ["FlowField"]
@@ -111,7 +113,8 @@ class FlowField:
             is detected: coinciding first and last lines of nodes, a ring that stops one cell
             short, and global longitude on a flat map.
         scalars
-            Further nodal arrays, name to (J, I) or (T, J, I), to colour by.
+            Further nodal arrays, name to (J, I) or (T, J, I), to colour by. What is beyond 1e100
+            becomes NaN, as nothing is known there.
         name, length_unit, time_unit
             Words for captions.
         sign_free
@@ -137,20 +140,31 @@ class FlowField:
         -----
         The arrays are copied to float64 and never changed.
         """
-        p, masked_points = as_numbers(points)
-        v, masked_velocity = as_numbers(velocity)
-        faults = shape_faults(p, v, times, valid, periodic, scalars)
+        p, masked_points = as_numbers("points", points)
+        v, masked_velocity = as_numbers("velocity", velocity)
+        given = {key: with_gaps(f"scalars[{key!r}]", s) for key, s in (scalars or {}).items()}
+        t, shown = (
+            None if values is None else with_gaps(name, values)
+            for name, values in (("times", times), ("valid", valid))
+        )
+        faults = shape_faults(p, v, t, shown, periodic, given)
         raise_faults(faults + (sign_free_faults(v) if sign_free else []))
         v = v[None] if v.ndim == 3 else v
         p, v = three_components(p), three_components(v)
-        v = with_equal_ends(v) if sign_free else v
-        t = np.arange(len(v), dtype=float) if times is None else np.array(times, dtype=float)
+        t = np.arange(len(v), dtype=float) if t is None else t
         ok = np.isfinite(p).all(axis=-1) & ~masked_points
         ok &= np.isfinite(v).all(axis=(0, -1)) & ~masked_velocity
-        if valid is not None:
-            ok &= np.asarray(valid, dtype=bool)
-        raise_faults(node_faults(p, ok))
-        data = {key: scalar_steps(value) for key, value in (scalars or {}).items()}
+        if shown is not None:
+            ok &= np.nan_to_num(shown) != 0
+        raise_faults(range_faults(p, v, ok) or node_faults(p, ok))
+        # What stands for missing data must not be computed with.
+        p = np.where(known_positions(p, ok)[..., None], p, np.nan)
+        v = np.where(ok[..., None], v, np.nan)
+        v = with_equal_ends(v) if sign_free else v
+        data = {
+            key: np.where(np.abs(s) <= MAGNITUDES[1], s, np.nan).reshape(-1, *p.shape[:2])
+            for key, s in given.items()
+        }
         nodal, closed = close_axes(NodalArrays(p, v, ok, data), periodic)
         v, ok = nodal.velocity, nodal.valid
         surface = Surface(nodal.points, ok, closed)

@@ -16,6 +16,7 @@ from typing import TypeVar, cast
 import numpy as np
 
 from flowtex._util.array_types import AnyArray, Bools, Floats
+from flowtex.field.validation import LENGTHS
 
 __all__ = ["NodalArrays", "close_axes", "find_closure"]
 
@@ -81,6 +82,8 @@ def close_axes(nodal: NodalArrays, periodic: str | None) -> tuple[NodalArrays, t
 
 def find_closure(points: Floats) -> Closure:
     """Decide from the geometry whether the first axis of (N, M, 3) nodes closes."""
+    # Numbers that are no lengths stand for missing data.
+    points = np.where(np.abs(points) <= LENGTHS[1], points, np.nan)
     extent = _extent(points)
     if extent == 0.0 or len(points) < 3:
         return Closure(periodic=False)

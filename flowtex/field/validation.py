@@ -16,25 +16,34 @@ from flowtex._util.array_types import Bools, Floats
 from flowtex.errors import FieldError
 
 __all__ = [
+    "LENGTHS",
+    "MAGNITUDES",
     "as_numbers",
     "node_faults",
-    "scalar_steps",
+    "range_faults",
     "shape_faults",
     "three_components",
+    "with_gaps",
 ]
 
 #: A surface narrower than this share of its length is a line.
 LINE_WIDTH = 1e-7
+#: Ends of lengths, for single precision, and of speeds and times, whose squares must be numbers.
+LENGTHS, MAGNITUDES = (1e-30, 1e30), (1e-100, 1e100)
 
 
-def as_numbers(values: ArrayLike) -> tuple[Floats, Any]:
+def as_numbers(name: str, values: ArrayLike) -> tuple[Floats, Any]:
     """Return values as float64, and which nodes a masked array hides: (J, I), or false."""
     mask = np.ma.getmaskarray(values) if np.ma.isMaskedArray(values) else None
-    array = np.asarray(np.ma.getdata(values))
+    try:
+        array = np.asarray(np.ma.getdata(values))
+    except (TypeError, ValueError) as error:
+        msg = f"{name} is no array ({error}); expected real numbers, as many in every row"
+        raise FieldError(msg) from error
     if array.dtype.kind not in "fiub":
         msg = (
-            f"an array of {array.dtype} was given where real numbers were expected; convert it "
-            "with astype(float), or take its real part"
+            f"{name} holds {array.dtype}; expected real numbers: convert it with astype(float), "
+            "or take its real part"
         )
         raise FieldError(msg)
     array = array.astype(np.float64)
@@ -46,13 +55,20 @@ def as_numbers(values: ArrayLike) -> tuple[Floats, Any]:
     return array, hidden
 
 
+def with_gaps(name: str, values: ArrayLike) -> Floats:
+    """Return values as float64, NaN where a masked array hides them."""
+    array, _ = as_numbers(name, values)
+    array[np.ma.getmaskarray(np.ma.asarray(values))] = np.nan
+    return array
+
+
 def shape_faults(
     p: Floats,
     v: Floats,
-    times: ArrayLike | None,
-    valid: ArrayLike | None,
-    periodic: str | None,
-    scalars: Mapping[str, ArrayLike] | None,
+    times: Floats | None,
+    valid: Floats | None,
+    periodic: Any,
+    scalars: Mapping[str, Floats],
 ) -> list[str]:
     """Return faults in the shapes of the arguments of :meth:`FlowField.from_arrays`."""
     if p.ndim != 3 or p.shape[-1] not in (2, 3):
@@ -73,13 +89,13 @@ def shape_faults(
     if valid is not None and np.shape(valid) != grid:
         faults.append(f"valid has shape {np.shape(valid)}; expected {grid} as points has")
     allowed = [grid, (len(v) if v.ndim == 4 else 1, *grid)]
-    for name, array in (scalars or {}).items():
+    for name, array in scalars.items():
         if np.shape(array) not in allowed:
             faults.append(
                 f"scalars[{name!r}] has shape {np.shape(array)}; expected {allowed[0]} or "
                 f"{allowed[1]}, as points and velocity have"
             )
-    if periodic is not None and not set(periodic) <= {"i", "j"}:
+    if periodic is not None and not (isinstance(periodic, str) and set(periodic) <= {"i", "j"}):
         faults.append(
             f'periodic is {periodic!r}; expected "", "i", "j" or "ij", or None to find out'
         )
@@ -102,16 +118,17 @@ def _velocity_faults(v: Floats, grid: tuple[int, ...]) -> list[str]:
     ]
 
 
-def _time_faults(times: ArrayLike | None, count: int) -> list[str]:
-    if times is None:
+def _time_faults(t: Floats | None, count: int) -> list[str]:
+    if t is None:
         return []
-    t = np.asarray(times, dtype=float)
     if t.shape != (count,):
         return [f"times has shape {t.shape}; expected ({count},), one for each step of velocity"]
     if not np.isfinite(t).all():
         bad = int(np.flatnonzero(~np.isfinite(t))[0])
         return [f"times[{bad}] is {t[bad]}; expected a finite number"]
-    falls = np.flatnonzero(np.diff(t) <= 0)
+    if np.abs(t).max() > MAGNITUDES[1]:
+        return [f"times go up to {np.abs(t).max():.3g}; expected {MAGNITUDES[1]:g} at most"]
+    falls = np.flatnonzero(np.diff(t) < MAGNITUDES[0])
     if len(falls):
         n = int(falls[0])
         return [
@@ -119,6 +136,19 @@ def _time_faults(times: ArrayLike | None, count: int) -> list[str]:
             "strictly increasing times: sort the steps, and drop those that repeat"
         ]
     return []
+
+
+def range_faults(p: Floats, v: Floats, ok: Bools) -> list[str]:
+    """Return faults in the size of positions and of velocities at the nodes ``ok``."""
+    faults = []
+    for name, data, ends in (("points", p[ok], LENGTHS), ("velocity", v[:, ok], MAGNITUDES)):
+        most = float(np.abs(data).max(initial=0.0))
+        if most and not ends[0] <= most <= ends[1]:
+            faults.append(
+                f"{name} has values up to {most:.3g}; expected {ends[0]:g} to {ends[1]:g}: take "
+                "another unit, or NaN for what is missing"
+            )
+    return faults
 
 
 def node_faults(p: Floats, ok: Bools) -> list[str]:
@@ -148,9 +178,3 @@ def three_components(a: Floats) -> Floats:
     if a.shape[-1] == 3:
         return a
     return np.concatenate([a, np.zeros_like(a[..., :1])], axis=-1)
-
-
-def scalar_steps(values: ArrayLike) -> Floats:
-    """Return a nodal array with a leading axis of time, (T or 1, J, I); hidden entries are NaN."""
-    array = np.ma.filled(np.ma.asarray(values).astype(np.float64), np.nan)
-    return np.asarray(array[None] if array.ndim == 2 else array)

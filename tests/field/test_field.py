@@ -398,8 +398,8 @@ def test_an_axis_that_does_not_exist() -> None:
 
 def test_complex_numbers() -> None:
     with says(
-        "an array of complex128 was given where real numbers were expected; convert it with "
-        "astype(float), or take its real part"
+        "velocity holds complex128; expected real numbers: convert it with astype(float), or take "
+        "its real part"
     ):
         FlowField.from_arrays(flat(), ones(flat()) * 1j)
 
