@@ -36,8 +36,9 @@ LONGEST_STEP_CELLS = 1.0
 STEP_SHRINK, STEP_GROWTH, STEP_SAFETY = 0.2, 4.0, 0.9
 #: Bisections that find where inside a step a path ends.
 BISECTIONS = 20
-#: Rounds of steps after which the paths that still go on are ended where they are.
-MOST_STEPS = 20_000
+#: Rounds of steps after which the paths that still go on are ended where they are: so many for
+#: each line of nodes, as a path in few cells goes round and round, and between these ends.
+STEPS_PER_LINE, LEAST_STEPS, MOST_STEPS = 50, 1_000, 20_000
 #: Share of a step by which rounding may miss a lag.
 LAG_ROUNDING = 1e-9
 
@@ -83,7 +84,7 @@ def integrate(
     elsewhere is interrupted.
     """
     run = _Run(sampler, np.ascontiguousarray(start.T), lags, unit, direction, tolerance, within)
-    for _ in range(MOST_STEPS):
+    for _ in range(int(np.clip(STEPS_PER_LINE * sampler.lines, LEAST_STEPS, MOST_STEPS))):
         run.end_resting()
         if not len(run.state.which):
             break
@@ -200,7 +201,9 @@ class _Run:
         state = self.state
         rest = self.lags[-1] * state.unit - state.lag
         longest = LONGEST_STEP_CELLS / np.maximum(_speed(state.rate), 1e-300)
-        h = np.minimum(np.minimum(state.step, longest), np.minimum(rest, self.sampler.longest))
+        h = np.minimum(np.minimum(state.step, longest), rest)
+        # Before the first time step nothing changes.
+        h = np.where(state.lag < self.sampler.span, np.minimum(h, self.sampler.longest), h)
         step, error = self._try(h)
         size = np.maximum(error * (1 / self.tolerance), 1e-9)
         state.step = h * np.clip(STEP_SAFETY / np.cbrt(size), STEP_SHRINK, STEP_GROWTH)

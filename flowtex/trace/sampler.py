@@ -38,8 +38,9 @@ class Sampler(ABC):
     data are components along i and j, and anything else that is interpolated, (T, J, I, C).
     """
 
-    #: Longest step in units of lag, so that no change in time is jumped over.
+    #: Longest step in units of lag up to a lag, so that no change in time is jumped over.
     longest: float
+    span: float
 
     def __init__(self, field: FlowField, data: Floats) -> None:
         data = fill_blanked(data, field.valid, data.ndim - 3)
@@ -48,6 +49,8 @@ class Sampler(ABC):
         self._poles = poles = field.surface.poles
         #: The charts of a surface that has poles.
         self.charts = None if poles is None else Charts(poles)
+        #: Number of lines of nodes along both axes.
+        self.lines = grid.rows + grid.columns
         #: Whether particles are inside the domain, in a cell that is not blanked.
         self.alive = grid.alive
         self._patches = [Patch(grid, parts)]
@@ -129,7 +132,7 @@ class LengthSampler(Sampler):
     comes to rest there instead of jumping across.
     """
 
-    longest = np.inf
+    longest = span = np.inf
 
     def __init__(self, field: FlowField) -> None:
         flow = field.index_velocity
@@ -163,11 +166,13 @@ class TimeSampler(Sampler):
         self._times = field.times
         self._destination = float(field.times[-1])
         self.longest = np.inf if field.steady else float(np.diff(field.times).max())
+        self.span = self._destination - float(field.times[0])
 
     def since(self, destination: float) -> TimeSampler:
         """Return this sampler with lags counted from another destination time."""
         other = object.__new__(TimeSampler)
-        other.__dict__.update(self.__dict__, _destination=destination)
+        span = destination - self._times[0]
+        other.__dict__.update(self.__dict__, _destination=destination, span=span)
         return other
 
     def _rate(self, patch: Patch, position: Floats, lag: Floats, direction: float) -> Floats:

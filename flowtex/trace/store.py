@@ -55,6 +55,10 @@ class SliceStore:
             self.parameter = parameter if field.steady else "time"
             self.lags: Floats = choose_lags(field, self.parameter)
             self.unit: Floats = lag_unit(field, self.parameter)
+            if self.parameter == "time":
+                # Half precision holds lags near one, whatever the field's unit of time is.
+                first = 2.0 ** np.rint(np.log2(self.lags[0]))
+                self.lags, self.unit = self.lags / first, self.unit * first
         else:
             self.parameter, self.lags, self.unit = slices.parameter, slices.lags, slices.unit
 
@@ -82,7 +86,13 @@ class SliceStore:
         if self._whole is not None:
             return self._whole.at_step(step)
         if self.field.steady:
-            return trace(self.field, parameter=self.parameter)
+            return trace(
+                self.field,
+                lags=self.lags,
+                unit=self.unit,
+                parameter=self.parameter,
+                compose=not self.field.sign_free,
+            )
         size = self.steps * len(self.lags) * self.unit.size * 2 * np.float32().nbytes
         if (
             self._compose

@@ -28,6 +28,8 @@ from flowtex.trace.slices import TraceSlices
 __all__ = ["paths", "trace"]
 
 
+#: Lags that single precision holds, with what is computed of them.
+LEAST_LAG, MOST_LAG = 1e-30, 1e30
 #: Error allowed in one step, in cells.
 TOLERANCE = 1e-3
 #: Particles followed together, and blocks of them followed at once.
@@ -88,7 +90,8 @@ def trace(
     Raises
     ------
     ValueError
-        When the lags are not positive and increasing, ``parameter`` is unknown, or the unit or
+        When the lags are not positive and increasing, or too large for single precision,
+        ``parameter`` is unknown, or the unit or
         the tolerance is not positive; or a field without a sign is to be followed to one side,
         or composed.
     IndexError
@@ -101,6 +104,12 @@ def trace(
     units = np.array(np.broadcast_to(units, field.shape), dtype=float)
     if not (np.isfinite(units).all() and (units > 0).all()):
         msg = f"unit has values from {units.min():g} to {units.max():g}; expected positive numbers"
+        raise ValueError(msg)
+    if not LEAST_LAG <= lag_values[0] <= lag_values[-1] <= MOST_LAG:
+        msg = (
+            f"lags go from {lag_values[0]:g} to {lag_values[-1]:g}; expected {LEAST_LAG:g} to "
+            f"{MOST_LAG:g}, for single precision: give a unit of their size"
+        )
         raise ValueError(msg)
     if not tolerance > 0:
         msg = f"tolerance is {tolerance!r}; expected a positive number of cells, such as 1e-3"
@@ -320,15 +329,15 @@ class _Tracing:
         self,
         direction: float,
         position: Floats32,
-        lag: Floats32,
+        lag: Floats,
         step: Indices,
         within: Within | None,
-    ) -> tuple[Floats32, Floats32, Floats32]:
+    ) -> tuple[Floats32, Floats, Floats]:
         """Follow some paths, as :data:`flowtex.trace.compose.Integrate` says."""
         moved, covered, ends = np.empty_like(position), lag.copy(), np.empty_like(lag)
         for number in np.unique(step) if len(self.samplers) > 1 else [0]:
             some = step == number if len(self.samplers) > 1 else slice(None)
-            start, unit = position[:, some].T.astype(float), lag[some].astype(float)
+            start, unit = position[:, some].T.astype(float), lag[some]
             paths = integrate(
                 self.samplers[number],
                 start,
