@@ -39,6 +39,8 @@ __all__ = ["MOST_LAGS", "TextureSet"]
 
 #: Slices on each side that a shader has room for.
 MOST_LAGS = 32
+#: Greatest number in half precision, in which texels are stored.
+HALF_MAX = 65504.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,7 +133,8 @@ class TextureSet:
         result = np.empty((self.count, *size, 4), np.float32)
 
         def make(layer: int) -> None:
-            self.geometry.write_texels(self._nodal(slices, layer), result[layer])
+            nodal = self._nodal(slices, layer)
+            self.geometry.write_texels(np.clip(nodal, -HALF_MAX, HALF_MAX, nodal), result[layer])
 
         with ThreadPoolExecutor(max_workers=min(os.cpu_count() or 1, 8)) as pool:
             list(pool.map(make, range(self.count)))
