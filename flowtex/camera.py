@@ -9,6 +9,7 @@ browser in the header, so that both sides move the camera alike.
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields, replace
 from typing import Any, Self
@@ -109,7 +110,7 @@ class Camera:
             else:
                 faults.append(f"camera.{name} is {value!r}; expected three finite numbers")
         for name, greatest, expected in (
-            ("parallel_scale", math.inf, "a positive length"),
+            ("parallel_scale", sys.float_info.max, "a positive length"),
             ("view_angle", 180.0, "0 to 180 degrees"),
         ):
             value = getattr(self, name)
@@ -462,7 +463,7 @@ def _is_number(value: Any) -> bool:
 def _is_point(value: Any) -> bool:
     try:
         numbers = np.asarray(value, dtype=float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         return False
     return numbers.shape == (3,) and bool(np.isfinite(numbers).all())
 

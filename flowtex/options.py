@@ -129,7 +129,7 @@ class Appearance:
         if self.clim is not None:
             try:
                 low, high = (float(value) for value in self.clim)
-            except (TypeError, ValueError):
+            except (TypeError, ValueError, OverflowError):
                 faults.append(f"clim is {self.clim!r}; expected two numbers, (low, high)")
             else:
                 object.__setattr__(self, "clim", (low, high))
