@@ -23,7 +23,15 @@ from flowtex import FlowField
 from flowtex.errors import FieldError
 from flowtex.settings import TABLE
 
-__all__ = ["field_arguments", "field_of", "junk", "property_test", "setting_values", "within"]
+__all__ = [
+    "field_arguments",
+    "field_of",
+    "junk",
+    "links",
+    "property_test",
+    "setting_values",
+    "within",
+]
 
 Array = NDArray[Any]
 Strategy = st.SearchStrategy[Any]
@@ -221,6 +229,15 @@ def setting_values(*, resolution: int = 64, samples: int = 30) -> Strategy:
         else:
             kinds[name] = st.floats(row.low, high)
     return st.fixed_dictionaries({"resolution": kinds.pop("resolution")}, optional=kinds)
+
+
+def links() -> st.SearchStrategy[str]:
+    """Links of any text, and of names that mean something with any values."""
+    names = st.sampled_from(["file", "plane", "time", "colour", "clim", "camera", "split", *TABLE])
+    words = ["on", "1e999", "%00", "\ud800", "k=2", "-1,1", "parallel,0,0,9,0,0,0,0,1,0,1,30"]
+    values = st.text(max_size=20) | st.floats().map(repr) | st.sampled_from(words)
+    pairs = st.lists(st.tuples(names, values).map("=".join), max_size=5)
+    return st.text() | pairs.map("&".join)
 
 
 def junk() -> Strategy:

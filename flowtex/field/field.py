@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import Bools, Floats, Indices
-from flowtex.errors import raise_faults
+from flowtex.errors import FieldError, raise_faults
 from flowtex.field.metric import IndexVelocity, to_index_space
 from flowtex.field.periodic import NodalArrays, close_axes
 from flowtex.field.signs import oriented, sign_free_faults, with_equal_ends
@@ -142,6 +142,9 @@ class FlowField:
         """
         p, masked_points = as_numbers("points", points)
         v, masked_velocity = as_numbers("velocity", velocity)
+        if not isinstance(scalars or {}, Mapping):
+            msg = f"scalars is a {type(scalars).__name__}; expected a mapping of arrays by name"
+            raise FieldError(msg)
         given = {key: with_gaps(f"scalars[{key!r}]", s) for key, s in (scalars or {}).items()}
         t, shown = (
             None if values is None else with_gaps(name, values)

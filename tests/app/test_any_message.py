@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from flows import swinging
 from hypothesis import given
-from strategies import junk, property_test
+from strategies import junk, links, property_test
 
 pytest.importorskip("trame_rca")
 
@@ -31,8 +31,8 @@ def app() -> Iterator[FlowApp]:
 
 
 @property_test(40)
-@given(junk(), junk())
-def test_whatever_a_page_sends_it_goes_on(app: FlowApp, one: Any, two: Any) -> None:
+@given(junk(), junk(), links())
+def test_whatever_a_page_sends_it_goes_on(app: FlowApp, one: Any, two: Any, link: str) -> None:
     controllers, send = app.controllers, app.stream.on_interaction
     names = [*(f"set_{name}" for name in TABLE), "colour", "cmap", "low", "high", "theme"]
     names += ["background", "time", "playing", "pace", "rendering", "image_file"]
@@ -43,6 +43,7 @@ def test_whatever_a_page_sends_it_goes_on(app: FlowApp, one: Any, two: Any) -> N
         controllers.point_info.take_place([one, two])
         controllers.point_info.take_point([two, one])
         controllers.sharing.take_link(one)
+        controllers.sharing.take_link(link)
         controllers.browser.take_camera(two)
         app.context.take_camera({"position": [one, two, 0], "parallel_scale": two})
         app.stream.update_size("test", {"w": one, "h": two, "p": one})

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 from PIL import Image
-from strategies import property_test, setting_values
+from strategies import links, property_test, setting_values
 
 pytest.importorskip("trame_rca")
 
@@ -122,16 +122,8 @@ def test_what_is_of_no_use_is_left_out_and_told(link: str, told: str) -> None:
     assert len(faults) == 1 and told in faults[0] and len(faults[0]) < 300
 
 
-def hostile_links() -> st.SearchStrategy[str]:
-    """Links of any text, and of names that mean something with any values."""
-    names = st.sampled_from([*STATE, *TABLE, "secret"])
-    values = st.text() | st.floats().map(repr) | st.sampled_from(["on", "1e999", "%00", "\ud800"])
-    pairs = st.lists(st.tuples(names, values).map("=".join), max_size=5)
-    return st.text() | pairs.map("&".join)
-
-
 @property_test(200)
-@given(hostile_links())
+@given(links())
 @example("file=\ud800")
 @example("camera=parallel," + ",".join(["1e308"] * 11))
 def test_whatever_comes_is_taken_without_an_error(link: str) -> None:
