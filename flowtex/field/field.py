@@ -159,10 +159,10 @@ class FlowField:
         ok &= np.isfinite(v).all(axis=(0, -1)) & ~masked_velocity
         if shown is not None:
             ok &= np.nan_to_num(shown) != 0
-        raise_faults(range_faults(p, v, ok) or node_faults(p, ok))
         # What stands for missing data must not be computed with.
-        p = np.where(known_positions(p, ok)[..., None], p, np.nan)
-        v = np.where(ok[..., None], v, np.nan)
+        v[:, ~ok] = np.nan
+        raise_faults(range_faults(np.where(ok[..., None], p, np.nan), v) or node_faults(p, ok))
+        p[~known_positions(p, ok)] = np.nan
         v = with_equal_ends(v) if sign_free else v
         data = {
             key: np.where(np.abs(s) <= MAGNITUDES[1], s, np.nan).reshape(-1, *p.shape[:2])

@@ -138,11 +138,13 @@ def _time_faults(t: Floats | None, count: int) -> list[str]:
     return []
 
 
-def range_faults(p: Floats, v: Floats, ok: Bools) -> list[str]:
-    """Return faults in the size of positions and of velocities at the nodes ``ok``."""
+def range_faults(p: Floats, v: Floats) -> list[str]:
+    """Return faults in the size of positions and velocities; NaN stands for those not used."""
     faults = []
-    for name, data, ends in (("points", p[ok], LENGTHS), ("velocity", v[:, ok], MAGNITUDES)):
-        most = float(np.abs(data).max(initial=0.0))
+    for name, data, ends in (("points", p, LENGTHS), ("velocity", v, MAGNITUDES)):
+        # Without a copy: a velocity may fill much of the memory.
+        low, high = (part.reduce(data, axis=None, initial=0.0) for part in (np.fmin, np.fmax))
+        most = float(max(-low, high))
         if most and not ends[0] <= most <= ends[1]:
             faults.append(
                 f"{name} has values up to {most:.3g}; expected {ends[0]:g} to {ends[1]:g}: take "
