@@ -28,8 +28,8 @@ from flowtex.trace.slices import TraceSlices
 __all__ = ["paths", "trace"]
 
 
-#: Lags that single precision holds, with what is computed of them.
-LEAST_LAG, MOST_LAG = 1e-30, 1e30
+#: Lags and cells that single precision holds, with what is computed of them.
+LEAST_LAG, MOST_LAG, MOST_CELLS = 1e-30, 1e30, 1e30
 #: Error allowed in one step, in cells.
 TOLERANCE = 1e-3
 #: Particles followed together, and blocks of them followed at once.
@@ -215,6 +215,11 @@ def _parameter(field: FlowField, parameter: str) -> str:
     return parameter if field.steady else "time"
 
 
+def _in_single(cells: Floats) -> Floats:
+    """Limit displacements: a path that has ended goes on straight, however fast it was."""
+    return np.asarray(np.clip(cells, -MOST_CELLS, MOST_CELLS))
+
+
 def _checked_lags(lags: ArrayLike) -> Floats:
     lag_values = np.atleast_1d(np.asarray(lags, dtype=float))
     good = np.isfinite(lag_values) & (np.diff(lag_values, prepend=0.0) > 0)
@@ -307,7 +312,7 @@ class _Tracing:
                 direction=direction,
                 tolerance=self.tolerance,
             )
-            moved = np.moveaxis(result.positions - start[block], 2, 0)
+            moved = np.moveaxis(_in_single(result.positions - start[block]), 2, 0)
             nodes: Indices | slice = at[block]
             if at[block][-1] - at[block][0] == len(at[block]) - 1:
                 # Writing to a slice is several times as fast as to a list of nodes.
@@ -356,7 +361,7 @@ class _Tracing:
         """Lay out by nodes, with the slope at lag zero; blanked nodes move as the nearest."""
         grid = self.field.shape
         slices = flat.slices.reshape(*flat.slices.shape[:3], *grid)
-        slices[:, 0] = direction * np.moveaxis(self.rate, -1, 0)
+        slices[:, 0] = direction * np.moveaxis(_in_single(self.rate), -1, 0)
         blank = ~self.field.valid
         if blank.any():
             # In place: the slices are large, and few of them are blank.

@@ -117,6 +117,13 @@ def test_lags_that_single_precision_does_not_hold_are_refused() -> None:
         trace(field, lags=[1e-40, 1.0])
 
 
+def test_a_path_of_more_cells_than_single_precision_holds_ends_before() -> None:
+    points, velocity = turning()
+    field = FlowField.from_arrays(points, velocity + 1e40)
+    for compose in (False, True):
+        check(trace(field, lags=[1.0, 2.0], parameter="time", compose=compose))
+
+
 def test_a_field_at_rest_has_lags_to_draw_with() -> None:
     with pytest.warns(UserWarning, match="plain noise"):
         field = FlowField.from_arrays(plane(3, 3), np.zeros((3, 3, 2)))
