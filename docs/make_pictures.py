@@ -45,6 +45,20 @@ def zooms() -> Picture:
     return _row([flowtex.render(field, size=(300, 400), zoom=z, focus=tuple(p)) for z, p in views])
 
 
+def critical() -> Picture:
+    """Draw four critical points, between the nodes of 40 by 40, from ever nearer."""
+    points = np.stack(np.meshgrid(np.linspace(0, 1, 40), np.linspace(0, 1, 40)), axis=-1)
+    place = np.array([19.87, 19.29]) / 39
+    saddle, centre = [[1, 0.3], [0.2, -1]], [[0.1, -1], [1.3, -0.1]]
+    node, focus = [[-1, 0.3], [0.1, -0.6]], [[-0.4, -1], [1, -0.3]]
+    common: dict[str, Any] = {"size": (194, 194), "scalars": False, "focus": tuple(place)}
+    rows = []
+    for flow in (saddle, centre, node, focus):
+        field = flowtex.FlowField.from_arrays(points, (points - place) @ np.transpose(flow))
+        rows.append(_row([flowtex.render(field, zoom=4.0**n, **common) for n in range(6)]))
+    return np.swapaxes(_row([np.swapaxes(row, 0, 1) for row in rows]), 0, 1)
+
+
 def vortices() -> Picture:
     """Draw decaying turbulence at two moments."""
     field = flowtex.examples.vortex_field()
@@ -311,7 +325,7 @@ def _page_picture(page: Any, name: str) -> None:
 
 
 STILLS = (
-    *(wake, zooms, vortices, sphere, torus, level_of_detail, grain, levels, correction),
+    *(wake, zooms, critical, vortices, sphere, torus, level_of_detail, grain, levels, correction),
     *(kernels, patterns, half_turns, gyre),
 )
 PICTURES: dict[str, Callable[[], Picture]] = {f.__name__: f for f in STILLS}

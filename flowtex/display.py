@@ -68,7 +68,9 @@ def show(mesh: Any, *, size: tuple[int, int] | None = None, **options: Any) -> F
 
 
 def in_notebook() -> bool:
-    """Tell whether a notebook's kernel runs this; IPython is not loaded to find out."""
+    """Tell whether a notebook runs this; neither IPython nor marimo is loaded to find out."""
+    if (marimo := sys.modules.get("marimo")) is not None and marimo.running_in_notebook():
+        return True
     ipython = sys.modules.get("IPython")
     shell = ipython.get_ipython() if ipython is not None else None
     return getattr(shell, "kernel", None) is not None

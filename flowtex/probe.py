@@ -94,7 +94,8 @@ class Probe:
         (4,) for a picture in the place of the noise.
     path, path_lags
         The whole path, as far as the slices lead, in the order of the samples: points (N, 3) and
-        their lags (N,). Where it ends, the last sample may lie up to a step beyond.
+        their lags (N,). Where it ends, the last sample may lie up to a step beyond. Beside a
+        critical point, seen from near, it is no longer than the samples.
     """
 
     field_values: PointValues
@@ -215,7 +216,9 @@ class _Pixel:
         points, coordinates, noise = self._places(np.concatenate(recorder.displacement)[order])
         knots = np.concatenate([[0.0], values["u_lags"]])
         m, shares = bracket(knots, np.abs(lags), side="left")
-        path_lags, path = self._path(sides, knots, lags)
+        cell = self._summing.cell(self._fragments.coordinate.value)
+        in_cell = cell is not None and cell.share[0] > 0
+        path_lags, path = (lags, points) if in_cell else self._path(sides, knots, lags)
         pixel, grain = self._sizes()
         moves = np.isfinite(sides[0].reach[0])
         samples = values["u_samples"]

@@ -22,6 +22,7 @@ from flowtex.options import Appearance, FieldOptions, Options
 from flowtex.settings import TABLE, Affects, Settings, SettingsError
 from flowtex.textures import TextureSet
 from flowtex.textures.images import as_picture, load_image
+from flowtex.tiles import Pyramid, shared_pyramid
 from flowtex.trace import SliceStore, TraceSlices, shared_store
 
 __all__ = ["NO_IMAGE", "Scene", "share_field", "steps_of"]
@@ -92,6 +93,8 @@ class Scene:
             steps_of(field, self.scalar_name)
         self._noise = self.settings.noise
         self._store: SliceStore | None = None
+        self._pyramid: Pyramid | None = None
+        self._sliced = slices is not None
         if slices is not None:
             self._store = SliceStore(field, slices=slices)
         self._textures: TextureSet | None = None
@@ -145,7 +148,7 @@ class Scene:
     def is_lit(self) -> bool:
         """Whether the surface is lit; by default a curved one is."""
         lighting = self.appearance.lighting
-        return self.field.surface.frame is None if lighting is None else lighting
+        return self.whole.surface.frame is None if lighting is None else lighting
 
     @property
     def scalar_name(self) -> str | None:
@@ -160,10 +163,27 @@ class Scene:
         return (0.0, 1.0) if self.scalar_name is None else self.scalar_range(self.scalar_name)
 
     @property
+    def pyramid(self) -> Pyramid | None:
+        """The tiles of a large field; ``None`` where all of it is traced together.
+
+        Noise in a texture, and a field without a sign, are not drawn in tiles.
+        """
+        if self._sliced or self.settings.noise != "procedural" or self.field.sign_free:
+            return None
+        if self._pyramid is None:
+            self._pyramid = shared_pyramid(self.field, self.settings.parameter)
+        return self._pyramid if self._pyramid.depth else None
+
+    @property
+    def whole(self) -> FlowField:
+        """The field that is drawn when all of it is in view: of a large one, its coarsest level."""
+        return self.field if self.pyramid is None else self.pyramid.root
+
+    @property
     def store(self) -> SliceStore:
-        """Traces of the field, made step by step when asked for, shared by all its scenes."""
+        """Traces of :attr:`whole`, made step by step when asked for, shared by all its scenes."""
         if self._store is None:
-            self._store = shared_store(self.field, self.settings.parameter)
+            self._store = shared_store(self.whole, self.settings.parameter)
         return self._store
 
     @property
@@ -213,9 +233,12 @@ class Scene:
         """The two time steps around the time that is shown, and how far it is between them."""
         return steps_around(self.field.times, self._time)
 
-    def scalar(self, name: str) -> Floats:
-        """Nodal values at the time that is shown, (J, I); :func:`steps_of` has the errors."""
-        steps = steps_of(self.field, name)
+    def scalar(self, name: str, field: FlowField | None = None) -> Floats:
+        """Nodal values at the time that is shown, (J, I); :func:`steps_of` has the errors.
+
+        They are those of a part of the field, or of a coarser form of it, where one is given.
+        """
+        steps = steps_of(field or self.field, name)
         before, after, share = self.moment
         if len(steps) == 1:
             return np.asarray(steps[0])
@@ -227,7 +250,7 @@ class Scene:
         Where all are the same but for rounding, the range is widened, so that colours do not tell
         of differences that are none.
         """
-        values = steps_of(self.field, name)[:, self.field.valid]
+        values = self._range_values(name)
         values = values[np.isfinite(values)]
         if not values.size:
             return 0.0, 1.0
@@ -237,6 +260,13 @@ class Scene:
             return low, high
         return (low - WIDENED_SHARE * size, high + WIDENED_SHARE * size) if size > 0 else (0.0, 1.0)
 
+    def _range_values(self, name: str) -> Floats:
+        """Values of the valid nodes at all times; the speed of a large field is that in space."""
+        valid = self.field.valid
+        if self.pyramid is None or name in self.field.scalars:
+            return steps_of(self.field, name)[:, valid]
+        return np.asarray(np.linalg.norm(self.field.velocity, axis=-1)[:, valid])
+
     def copy(self) -> Scene:
         """Return a scene that shows the same, and that no later change of this one reaches.
 
@@ -245,6 +275,7 @@ class Scene:
         scene = Scene(self.field)
         scene.settings, scene.appearance = self.settings.copy(), self.appearance
         scene.image, scene._noise, scene._time = self.image, self._noise, self._time
+        scene._sliced, scene._pyramid = self._sliced, self._pyramid
         scene._store, scene._textures = self.store, self.textures
         return scene
 
@@ -261,7 +292,7 @@ class Scene:
         scene._noise, scene._time = self._noise, self._time
         scene._store = _coarse_stores.get(
             (id(field), self.settings.parameter),  # a store keeps its field alive
-            lambda: SliceStore(field, parameter=self.settings.parameter, compose=False),
+            lambda: SliceStore(field, parameter=self.settings.parameter, compose=field.steady),
         )
         return scene
 
@@ -289,7 +320,10 @@ class Scene:
             in_textures = self.settings.noise in SETTINGS_IN_TEXTURES[name]
             affects = "textures" if in_textures else "uniform"
         if affects == "trace":
-            self._store = None
+            self._store = self._pyramid = None
+            self._sliced = False
+        elif name == "noise" and self._pyramid is not None and self._pyramid.depth:
+            self._store = None  # in tiles or whole
         if affects != "uniform":
             self._version += 1
             self._textures = None

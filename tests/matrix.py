@@ -65,6 +65,7 @@ IMAGE[5:25, 10:40, 3] = 1.0
 
 #: The paper's textures, of a size that is made soon.
 TEXTURE: dict[str, Any] = {"noise": "texture", "resolution": 256}
+MOTION = {"motion": "speed"}
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -110,10 +111,12 @@ VIEWS: dict[str, View] = {
     "by time": View(camera=straight(4), settings={"parameter": "time"}),
     "fixed grain": View(camera=straight(2), settings={"fixed_grain": True, "resolution": 128}),
     "grain, contrast, seed": View(settings={"grain": 3.0, "contrast": 2.0, "seed": 7}),
-    "streaming": View(camera=straight(2), settings={"motion": "speed"}, clock=1.7),
+    "streaming": View(camera=straight(2), settings=MOTION, clock=1.7),
     "streaming evenly": View(camera=straight(2), settings={"motion": "uniform"}, clock=0.9),
     "between two steps": View(swinging, MIDDLE, time=0.55),
     "without a sign": View(lines, MIDDLE),
+    "centre": View(camera=straight(64, (0.5, 0.5))),
+    "centre, streaming": View(camera=straight(8, (0.5, 0.5)), settings=MOTION, clock=1.7),
     "texture": View(settings=TEXTURE),
     "texture, stretched": View(settings=TEXTURE | {"noise_correction": False}),
     "texture, zoom 16": View(camera=straight(16), settings=TEXTURE),

@@ -30,6 +30,7 @@ LAYERS: tuple[tuple[str, ...], ...] = (
     ("trace",),
     ("camera",),
     ("textures",),
+    ("tiles",),
     ("rendering",),
     ("diagnostics",),
     ("examples",),
@@ -87,6 +88,7 @@ LIBRARIES = (
     Library(("xarray", "netCDF4", "pandas"), in_functions=("field", "examples")),
     Library(("av",), in_functions=("offscreen.encoders",)),
     Library(("cyclopts",), on_load=("cli",)),
+    Library(("numba", "llvmlite"), on_load=("_util.kernels",)),
 )
 SLOW = tuple(name for library in LIBRARIES for name in library.names)
 
@@ -410,7 +412,7 @@ def test_what_the_browser_draws_needs_no_vtk(module: str) -> None:
 
 def test_what_lies_below_vtk_never_loads_it() -> None:
     names = [module_name(path, PACKAGE) for path in PACKAGE.rglob("*.py")]
-    rooms = (*VTK.on_load, "widget", "display", "cli")
+    rooms = (*VTK.on_load, "widget", "display", "cli", "_util.kernels")
     below = [f"flowtex.{name}" for name in names if name and not is_in(name, rooms)]
     assert "flowtex.diagnostics" in below and "flowtex.web.export" in below
     assert not loaded_by(*sorted(below)) & set(SLOW)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 FOLDER = Path(__file__).parents[1] / "notebooks"
@@ -33,6 +34,20 @@ def test_a_notebook_is_stored_without_output(path: Path) -> None:
     assert "widgets" not in notebook.metadata
     assert notebook.cells[0].cell_type == "markdown"
     assert notebook.cells[0].source.startswith("# ")
+
+
+def test_the_dye_can_be_seen(opengl: Any) -> None:
+    cells = [cell.source for cell in read(FOLDER / "your_data.ipynb").cells]
+    arrays, dye = (next(c for c in cells if text in c) for text in ("from_arrays", "image=dye"))
+    drawing = dye.replace("flowtex.FlowWidget(", "pixels = flowtex.render(")
+    drawing = drawing.replace("size=(0, 320)", "size=(800, 320)")
+    found: dict[str, Any] = {}
+    pictures = []
+    for image in ("dye", "0 * dye"):
+        exec(f"{arrays}\n{drawing}".replace("image=dye", f"image={image}"), found)
+        pictures.append(found["pixels"].astype(int))
+    off = np.abs(pictures[0] - pictures[1]).max(axis=-1)
+    assert (off > 60).mean() > 0.08
 
 
 @pytest.mark.slow

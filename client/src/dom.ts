@@ -47,16 +47,23 @@ export function numberText(x: number): string {
   return String(Number(x.toPrecision(4)));
 }
 
-/** Pictures of views beside each other as PNG. */
-export function pngOf(views: readonly { canvas: HTMLCanvasElement }[]): Promise<Blob> {
-  const canvases = views.map(({ canvas }) => canvas);
-  const width = canvases.reduce((sum, canvas) => sum + canvas.width, 0);
-  const all = new OffscreenCanvas(width, canvases[0].height);
+/** Pictures of views beside each other, as PNG and in full size where nothing else is said. */
+export function pictureOf(
+  views: readonly { canvas: HTMLCanvasElement }[],
+  size = 1,
+  format: ImageEncodeOptions = {},
+): Promise<Blob> {
+  const widths = views.map(({ canvas }) => Math.max(Math.round(size * canvas.width), 1));
+  const height = Math.max(Math.round(size * views[0].canvas.height), 1);
+  const all = new OffscreenCanvas(
+    widths.reduce((sum, width) => sum + width, 0),
+    height,
+  );
   const pen = all.getContext("2d", { alpha: false });
   let left = 0;
-  for (const canvas of canvases) {
-    pen?.drawImage(canvas, left, 0);
-    left += canvas.width;
+  for (const [n, { canvas }] of views.entries()) {
+    pen?.drawImage(canvas, left, 0, widths[n], height);
+    left += widths[n];
   }
-  return all.convertToBlob();
+  return all.convertToBlob(format);
 }

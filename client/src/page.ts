@@ -41,7 +41,12 @@ async function openPage(): Promise<void> {
     const watch = new MutationObserver(look);
     const attributeFilter = ["data-sharp", "data-failed"];
     watch.observe(place, { subtree: true, childList: true, attributeFilter });
-    mountPage(place, scenes);
+    const { root } = mountPage(place, scenes);
+    // Keys are the view's from the beginning, without a click.
+    document.addEventListener("keydown", (event) => {
+      const isFree = event.target === document.body;
+      if (isFree && !root.dispatchEvent(new KeyboardEvent("keydown", event))) event.preventDefault();
+    });
   } catch (error) {
     status.hidden = false;
     const reason = error instanceof Error ? error.message : String(error);

@@ -2,7 +2,7 @@
 
 import type { Camera } from "./camera.ts";
 import { Controls, hasStreaming, type ControlsHost } from "./controls.ts";
-import { dom, icon, numberText, pngOf, type IconName } from "./dom.ts";
+import { dom, icon, numberText, pictureOf, type IconName } from "./dom.ts";
 import { toggleFullscreen } from "./keyboard.ts";
 import { Legend } from "./legend.ts";
 import type { Timer } from "./lifetime.ts";
@@ -139,8 +139,11 @@ export class Panel {
     this.playButton.title = title;
     this.playButton.setAttribute("aria-label", title);
     const streams = header !== null && hasStreaming(header);
-    this.playButton.hidden = !varies && !streams;
-    this.track.hidden = !varies && !(streams && settings.motion !== "off");
+    // The bar keeps its width when playing begins, and the button its place.
+    this.playButton.hidden = this.track.hidden = !varies && !streams;
+    this.slider.disabled = !varies && settings.motion === "off";
+    const unit = header?.slices.timeUnit ?? "";
+    this.timeText.style.minWidth = `${varies ? 8 + unit.length : 7}ch`;
     this.tick();
   }
 
@@ -268,7 +271,7 @@ export class Panel {
 
   private async save(): Promise<void> {
     const { viewer } = this;
-    const href = URL.createObjectURL(await pngOf(viewer.together));
+    const href = URL.createObjectURL(await pictureOf(viewer.together));
     const name = (viewer.header?.name || "flow").replace(FORBIDDEN, " ").trim();
     dom("a", { href, download: `${name}.png` }).click();
     viewer.lifetime.later(() => URL.revokeObjectURL(href), SAVED_MS);

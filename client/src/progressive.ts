@@ -57,6 +57,9 @@ export class ProgressiveRenderer {
   private readonly last = document.createElement("canvas");
   private readonly lastPen = penOf(this.last);
   private lastCamera: Camera | null = null;
+  /** A picture of few pixels. */
+  private readonly coarse = document.createElement("canvas");
+  private readonly coarsePen = penOf(this.coarse);
   /** Number of the picture, and of the last draft; rows of the full picture that are drawn. */
   private version = 1;
   private draftVersion = 0;
@@ -94,7 +97,7 @@ export class ProgressiveRenderer {
   }
 
   dispose(): void {
-    for (const canvas of [this.canvas, this.back, this.last]) canvas.width = canvas.height = 0;
+    for (const canvas of [this.canvas, this.back, this.last, this.coarse]) canvas.width = canvas.height = 0;
   }
 
   /** Go on with the picture until a time; tells whether it is complete. */
@@ -275,8 +278,17 @@ export class ProgressiveRenderer {
     if (!pen) return;
     const { width: w, height: h, top, rows } = region;
     const { width } = this.canvas;
-    const { canvas } = this.graphics;
+    let { canvas } = this.graphics;
+    let first = canvas.height - h + top;
     pen.imageSmoothingEnabled = w !== width || h !== height;
-    pen.drawImage(canvas, 0, canvas.height - h + top, w, rows, 0, to, width, (rows * height) / h);
+    if (pen.imageSmoothingEnabled) {
+      // Alone, or what lies beside it would be smoothed into its edges.
+      const { coarse, coarsePen } = this;
+      coarse.width = w;
+      coarse.height = rows;
+      coarsePen?.drawImage(canvas, 0, first, w, rows, 0, 0, w, rows);
+      [canvas, first] = [coarse, 0];
+    }
+    pen.drawImage(canvas, 0, first, w, rows, 0, to, width, (rows * height) / h);
   }
 }

@@ -93,6 +93,9 @@ export interface Header {
     sides: number;
     unit: number;
     pace: number;
+    /** Lengths of a typical cell, and of the longest in which the flow turns. */
+    cell: number;
+    critical: number;
     steps: number;
     times: number[];
     timeUnit: string;
@@ -118,6 +121,8 @@ export interface Header {
     clockStep: number;
     kernels: string[];
     anchorRange: number;
+    /** Cells that a side of a path goes over, beyond which it does not follow their own velocity. */
+    farCells: number;
   };
   mesh: MeshLimits;
   limits: CameraLimits;

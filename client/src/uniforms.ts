@@ -15,6 +15,8 @@ export interface ViewState {
   clock: number;
   /** Pixels that are drawn along one that the settings speak of. */
   density: number;
+  /** Length that a pixel drawn covers at the focus. */
+  pixel: number;
 }
 
 /** The table's settings with the types that they have there. */
@@ -46,6 +48,8 @@ export function uniforms(
     u_lagCount: slices.lags.length,
     u_sides: s.two_sided || signFree ? slices.sides : 1,
     u_unit: slices.unit,
+    u_rateLayer: slices.count - 1,
+    u_cell: slices.cell,
     u_samples: isMoving(header, settings) ? 2 * s.samples - 1 : s.samples,
     u_spacing: s.spacing,
     u_grain: s.grain * view.density,
@@ -68,6 +72,19 @@ export function uniforms(
 export function isMoving(header: Header, settings: Settings): boolean {
   const streams = settings.motion !== "off" && !isSignFree(header);
   return !header.paper && (header.slices.steps > 1 || streams);
+}
+
+/**
+ * Whether a path may be so short that it stays in a cell where the flow turns, which is a variant too.
+ * In perspective the nearest point of the surface counts, or of the ball around it.
+ */
+export function isNear(header: Header, settings: Settings, view: ViewState): boolean {
+  const { geometry, slices, constants } = header;
+  const s = settings as unknown as Numbers;
+  const gap = Math.hypot(...subtract(view.eye, geometry.center)) - 0.5 * geometry.extent;
+  const away = view.eye[3] ? Math.max(gap, 0) / Math.hypot(...subtract(view.eye, view.focus)) : 1;
+  const grain = s.lod ? view.pixel * away * s.grain * view.density : geometry.extent / s.resolution;
+  return Math.floor(s.samples / 2) * s.spacing * grain < constants.farCells * slices.critical;
 }
 
 /** How the grains change: with the time of a field that varies, by the clock of a steady one. */

@@ -25,7 +25,7 @@ import {
 import { CARD_PRICE_MS } from "./quality.ts";
 import { Scene } from "./scene.ts";
 import type { Program } from "./programs.ts";
-import { isMoving, type Moment, type ViewState } from "./uniforms.ts";
+import { isMoving, isNear, type Moment, type ViewState } from "./uniforms.ts";
 import { subtract, toFrame, type Vector } from "./vectors.ts";
 
 /** Milliseconds for which a view that was moved counts as being moved. */
@@ -412,11 +412,16 @@ export class Viewer implements User {
     }
   }
 
-  /** The program that draws at the present settings. */
-  private program(header: Header): Program {
+  /** The program that draws at the present settings, from near or from afar. */
+  private program(header: Header, isClose = this.isClose(header)): Program {
     const { vertex, fragment } = header.shaders;
     const defines = isMoving(header, this.settings) ? ["FLOWTEX_MOVING"] : [];
+    if (isClose) defines.push("FLOWTEX_CELLS");
     return this.graphics.programs.get(vertex, fragment, ...defines);
+  }
+
+  private isClose(header: Header): boolean {
+    return this.camera !== null && isNear(header, this.settings, this.view([0, 0, 0], this.ratio));
   }
 
   /** Go on with the picture until a time. */
@@ -433,7 +438,8 @@ export class Viewer implements User {
     if (!program.ready) return this.request();
     if (!this.sharp && this.renderer.draw(program, shown, this.isBusy, until)) {
       this.panel.clear();
-      programs.get(header.shaders.vertex, header.shaders.pick); // the pointer asks for it next
+      programs.get(header.shaders.vertex, header.shaders.pick); // the pointer asks for it next,
+      if (header.slices.critical) this.program(header, true); // and the wheel for this
       this.setSharp(!this.playing);
     }
     if (!this.sharp) this.request();
@@ -469,6 +475,7 @@ export class Viewer implements User {
       time: player.timeOf(shown),
       clock: player.clock,
       density,
+      pixel: (2 * camera.height) / Math.max(this.root.clientHeight * density, 1),
     };
   }
 

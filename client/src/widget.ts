@@ -3,8 +3,8 @@
 
 import type { CameraState } from "./camera.ts";
 import { sharedGraphics } from "./context.ts";
-import { pngOf } from "./dom.ts";
-import { throttled } from "./lifetime.ts";
+import { pictureOf } from "./dom.ts";
+import { throttled, type Timer } from "./lifetime.ts";
 import { decoded, type Header, type NamedPart, type PartInfo, type Value } from "./protocol.ts";
 import type { Viewer } from "./viewer.ts";
 import { viewersIn } from "./views.ts";
@@ -12,8 +12,13 @@ import { viewersIn } from "./views.ts";
 /** Milliseconds between two messages about the camera, and about the time. */
 const CAMERA_MS = 100;
 const TIME_MS = 250;
+/** Milliseconds that a picture stands before the kernel gets it as the still of a saved notebook. */
+const STILL_MS = 1500;
+const STILL_FORMAT = { type: "image/jpeg", quality: 0.9 };
 /** Traits with the headers of the views. */
 const HEADERS = ["_header", "_header_beside"];
+/** In a row of boxes a view takes the room that the others leave. */
+const ROOM = ".flowtex-room { width: 100%; min-width: 160px; flex: 0 9999 auto }";
 /** Height of the picture where the widget has none, in pixels. */
 const HEIGHT_PX = 480;
 
@@ -110,7 +115,10 @@ class WidgetView {
   private readonly sent = new Map<string, string>();
   private readonly handlers: [string, Handler][] = [];
   private early: Delivery[];
+  private frameTimer: Timer | null = null;
   private hasSentFrame = false;
+  /** Style of the page around: the element's own is the widget's layout's. */
+  private readonly sheet = new CSSStyleSheet();
 
   constructor(model: Model, element: HTMLElement) {
     this.model = model;
@@ -121,6 +129,8 @@ class WidgetView {
     const key = model.get("_key");
     this.early = mailbox.get(key) ?? [];
     mailbox.delete(key);
+    this.sheet.replaceSync(ROOM);
+    document.adoptedStyleSheets.push(this.sheet);
     this.connect();
     this.resize();
     this.viewers.forEach((_, n) => this.takeHeader(n));
@@ -148,7 +158,7 @@ class WidgetView {
     };
     return viewersIn(element, count, options, (n) => ({
       onNeed: (step) => model.send({ kind: "need", step, view: n }),
-      onFrame: () => void this.sendFrame(),
+      onFrame: () => this.planFrame(),
     }));
   }
 
@@ -158,12 +168,32 @@ class WidgetView {
     this.model.save_changes();
   }
 
-  /** Send the first full picture, once. */
+  /** Send the first full picture, and later ones when they have stood for a while. */
+  private planFrame(): void {
+    const { lifetime } = this.first;
+    lifetime.cancel(this.frameTimer);
+    const wait = this.hasSentFrame ? STILL_MS : 0;
+    this.frameTimer = lifetime.later(() => void this.sendFrame(), wait);
+  }
+
   private async sendFrame(): Promise<void> {
-    if (this.hasSentFrame || !this.viewers.every(({ sharp }) => sharp)) return;
+    const { first, viewers } = this;
+    if (!viewers.every(({ sharp }) => sharp)) return;
     this.hasSentFrame = true;
-    const png = await (await pngOf(this.viewers)).arrayBuffer();
-    if (!this.first.lifetime.isOver) this.model.send({ kind: "frame" }, undefined, [png]);
+    const picture = await pictureOf(viewers, 1 / first.ratio, STILL_FORMAT);
+    const data = await picture.arrayBuffer();
+    if (!first.lifetime.isOver) this.model.send({ kind: "frame" }, undefined, [data]);
+  }
+
+  /** The kernel is there and so is what to draw: the still goes. */
+  private becomeLive(): void {
+    const { root } = this.first;
+    if (root.dataset.live || root.dataset.failed) return;
+    root.dataset.live = "true";
+    // Made by flowtex/widget/display.py, in an output of its own.
+    const still = `[data-flowtex~="${String(this.model.get("_key"))}"]`;
+    const output = ":is(.jp-OutputArea-child, .output_area)";
+    this.sheet.insertRule(`${still}, ${output}:has(> * > ${still}) { display: none !important }`);
   }
 
   private listen(event: string, call: Handler): void {
@@ -208,6 +238,7 @@ class WidgetView {
     const frame = root.closest<HTMLElement>(".flowtex-pair") ?? root;
     frame.style.width = width ? `${width}px` : "100%";
     frame.style.height = `${height || HEIGHT_PX}px`;
+    frame.parentElement?.classList.toggle("flowtex-room", !width);
   }
 
   private takeHeader(n: number): void {
@@ -241,12 +272,14 @@ class WidgetView {
     for (const part of delivery.parts) if (!isOld(part.name)) viewer.setPart(part);
     const names = delivery.lacking.filter((name) => !isOld(name));
     discard([delivery]);
+    this.becomeLive();
     if (names.length) this.model.send({ kind: "want", names, view: delivery.view });
   }
 
   dispose(): void {
     for (const [event, call] of this.handlers) this.model.off(event, call);
     discard(this.early);
+    document.adoptedStyleSheets = document.adoptedStyleSheets.filter((s) => s !== this.sheet);
     for (const viewer of this.viewers) viewer.dispose();
   }
 }

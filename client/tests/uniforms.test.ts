@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import type { Header } from "../src/protocol.ts";
-import { isMoving, momentOf, uniforms, type Uniform, type ViewState } from "../src/uniforms.ts";
+import { isMoving, isNear, momentOf, uniforms, type Uniform, type ViewState } from "../src/uniforms.ts";
 import { assertClose } from "./close.ts";
 
 interface Case {
@@ -10,6 +10,7 @@ interface Case {
   view: ViewState;
   noise: number[] | null;
   moving: boolean;
+  near: boolean;
   uniforms: Record<string, Uniform>;
 }
 
@@ -17,10 +18,11 @@ interface Case {
 const file = new URL("uniforms.json", import.meta.url);
 const cases: Record<string, Case> = JSON.parse(readFileSync(file, "utf8"));
 
-for (const [name, { header, view, noise, moving, uniforms: expected }] of Object.entries(cases)) {
+for (const [name, { header, view, noise, moving, near, uniforms: expected }] of Object.entries(cases)) {
   test(`uniforms are those of Python: ${name}`, () => {
     assertClose(uniforms(header, header.settings, view, noise), expected, 1e-12);
     assert.equal(isMoving(header, header.settings), moving);
+    assert.equal(isNear(header, header.settings, view), near);
   });
 }
 

@@ -14,14 +14,16 @@ from typing import TYPE_CHECKING, TypeVar
 
 if TYPE_CHECKING:
     from rich.progress import Progress
+    from rich.status import Status
 
-__all__ = ["Stopped", "check", "stoppable", "track"]
+__all__ = ["Stopped", "check", "stoppable", "track", "waiting"]
 
 T = TypeVar("T")
 
 #: Time before a bar appears.
 BAR_DELAY_S = 1.0
 
+_waiting: list[Status] = []
 _cancelled: ContextVar[Callable[[], bool] | None] = ContextVar("cancelled", default=None)
 
 
@@ -49,6 +51,21 @@ def check() -> None:
         raise Stopped
 
 
+@contextmanager
+def waiting(text: str) -> Iterator[Callable[[], None]]:
+    """Say in a terminal what goes on inside, until it ends, has a bar, or the result is called."""
+    from rich.console import Console
+
+    status = Console(stderr=True).status(text)
+    _waiting.append(status)
+    try:
+        status.start()
+        yield status.stop
+    finally:
+        status.stop()
+        _waiting.remove(status)
+
+
 def track(items: Iterable[T], total: int, text: str, *, show: bool = True) -> Iterator[T]:
     """Yield the items, with a progress bar once they have taken a second.
 
@@ -62,6 +79,8 @@ def track(items: Iterable[T], total: int, text: str, *, show: bool = True) -> It
             if show and bar is None and time.monotonic() - start > BAR_DELAY_S:
                 bar = _bar()
                 task = bar.add_task(text, total=total)
+                for status in _waiting:
+                    status.stop()
                 bar.start()
             if bar is not None and task is not None:
                 bar.update(task, completed=count)

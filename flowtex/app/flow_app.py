@@ -217,12 +217,16 @@ def serve(
     FieldError, SettingsError
         When the mesh or a setting does not fit.
     ServeError
-        When the port or the host cannot be listened on, or ``limit`` or ``idle`` is out of range.
+        When the port or the host cannot be listened on, or ``port``, ``limit`` or ``idle`` is out
+        of range.
     TypeError
         When options are given with a function.
     """
     if limit is not None and limit < 1:
         msg = f"limit is {limit}; expected 1 or more pages"
+        raise ServeError(msg)
+    if not 0 <= port <= 65535:
+        msg = f"port is {port}; expected 0 to 65535"
         raise ServeError(msg)
     if not idle > 0:
         msg = f"idle is {idle:g}; expected a positive number of minutes"

@@ -12,7 +12,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Group, Parameter
+from cyclopts.validators import Number
 
+from flowtex._util.progress import waiting
 from flowtex.options import Appearance, FieldOptions, ViewOptions, option_text
 from flowtex.settings import TABLE, Setting, Settings, setting
 
@@ -37,6 +39,7 @@ __all__ = [
 FLOW, PICTURE = Group("The flow", sort_key=1), Group("The picture", sort_key=2)
 PAGE, SETTINGS = Group("The page", sort_key=3), Group("Settings", sort_key=4)
 
+PORT = Number(gte=0, lt=65536)
 FILE = Annotated[Path, Parameter(help="A structured mesh: any file that PyVista reads, or PLOT3D.")]
 FLAT = Parameter(name="*")
 
@@ -166,7 +169,9 @@ class FrameFlags(DrawFlags):
 class ServeFlags:
     """Where the page is served."""
 
-    port: Annotated[int, Parameter(group=PAGE, help="Port; 0 takes a free one.")] = 0
+    port: Annotated[
+        int, Parameter(group=PAGE, help="Port; 0 takes a free one.", validator=PORT)
+    ] = 0
     host: Annotated[
         str, Parameter(group=PAGE, help="Address to listen on: others may reach another one.")
     ] = "127.0.0.1"
@@ -200,7 +205,8 @@ def load_field(file: Path, flow: FieldFlags | None) -> FlowField:
     """Return the flow of a file."""
     from flowtex.field import FlowField
 
-    return FlowField.from_file(file, **(flow or FieldFlags()).arguments())
+    with waiting(f"Reading {file.name}"):
+        return FlowField.from_file(file, **(flow or FieldFlags()).arguments())
 
 
 def settings_from(flags: SettingFlags | None) -> dict[str, Any]:

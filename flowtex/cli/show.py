@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import Parameter
 
 from flowtex import examples
+from flowtex._util.progress import waiting
 from flowtex.cli.checks import check_colours, check_image, require_app, require_opengl
-from flowtex.cli.console import announcer
+from flowtex.cli.console import announcer, describe
 from flowtex.cli.options import (
     FLAT,
     DrawFlags,
@@ -128,17 +129,25 @@ def _serve(library: Library, page: ServeFlags | None, options: dict[str, Any]) -
     from flowtex.app.flow_app import first_choice
 
     page = page or ServeFlags()
-    field = library.field(*first_choice(library, options))
+    with waiting(f"Reading {library.names[0]}"):
+        field = library.field(*first_choice(library, options))
     if "scalars" in options:
         check_colours(field, options)
-    serve(
-        library,
-        host=page.host,
-        port=page.port,
-        limit=page.limit,
-        idle=page.idle,
-        open_browser=page.browser,
-        announce=announcer(field, page.host),
-        **options,
-    )
+    with waiting(f"Tracing {describe(field)}") as end_waiting:
+        print_address = announcer(field, page.host)
+
+        def announce(address: str) -> None:
+            end_waiting()
+            print_address(address)
+
+        serve(
+            library,
+            host=page.host,
+            port=page.port,
+            limit=page.limit,
+            idle=page.idle,
+            open_browser=page.browser,
+            announce=announce,
+            **options,
+        )
     return 0

@@ -18,15 +18,17 @@ from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.errors import FieldError, raise_faults
+from flowtex.field.dates import as_seconds
 from flowtex.field.metric import IndexVelocity, to_index_space
 from flowtex.field.periodic import NodalArrays, close_axes
 from flowtex.field.signs import oriented, sign_free_faults, with_equal_ends
 from flowtex.field.surface import Surface, known_positions
 from flowtex.field.validation import (
-    MAGNITUDES,
     as_numbers,
+    finite_nodes,
     node_faults,
     range_faults,
+    scalar_steps,
     shape_faults,
     three_components,
     with_gaps,
@@ -105,7 +107,8 @@ class FlowField:
             in time, in units of length per unit of time. NaN and masked entries blank a node.
         times
             Time of each step, (T,), strictly increasing, in any unit of time. Steps are
-            numbered 0, 1, 2, ... when it is left out.
+            numbered 0, 1, 2, ... when it is left out. Dates (``datetime64``) become seconds
+            since the first, and the unit of time ``"s"``.
         valid
             Nodes that carry data, (J, I). All of them by default.
         periodic
@@ -142,10 +145,11 @@ class FlowField:
         """
         p, masked_points = as_numbers("points", points)
         v, masked_velocity = as_numbers("velocity", velocity)
-        if not isinstance(scalars or {}, Mapping):
+        if scalars is not None and not isinstance(scalars, Mapping):
             msg = f"scalars is a {type(scalars).__name__}; expected a mapping of arrays by name"
             raise FieldError(msg)
         given = {key: with_gaps(f"scalars[{key!r}]", s) for key, s in (scalars or {}).items()}
+        times, time_unit = as_seconds(times, time_unit)
         t, shown = (
             None if values is None else with_gaps(name, values)
             for name, values in (("times", times), ("valid", valid))
@@ -153,30 +157,29 @@ class FlowField:
         faults = shape_faults(p, v, t, shown, periodic, given)
         raise_faults(faults + (sign_free_faults(v) if sign_free else []))
         v = v[None] if v.ndim == 3 else v
-        p, v = three_components(p), three_components(v)
-        t = np.arange(len(v), dtype=float) if t is None else t
-        ok = np.isfinite(p).all(axis=-1) & ~masked_points
-        ok &= np.isfinite(v).all(axis=(0, -1)) & ~masked_velocity
+        # What was given is not changed, and copied once.
+        p, v = (three_components(a) if a.shape[-1] == 2 else a.copy("C") for a in (p, v))
+        t = np.arange(len(v), dtype=float) if t is None else t.copy()
+        ok = finite_nodes(p) & ~masked_points
+        ok &= finite_nodes(v) & ~masked_velocity
         if shown is not None:
             ok &= np.nan_to_num(shown) != 0
         # What stands for missing data must not be computed with.
         v[:, ~ok] = np.nan
-        raise_faults(range_faults(np.where(ok[..., None], p, np.nan), v) or node_faults(p, ok))
+        raise_faults(range_faults(p, v, ok) or node_faults(p, ok))
         p[~known_positions(p, ok)] = np.nan
         v = with_equal_ends(v) if sign_free else v
-        data = {
-            key: np.where(np.abs(s) <= MAGNITUDES[1], s, np.nan).reshape(-1, *p.shape[:2])
-            for key, s in given.items()
-        }
+        data = {key: scalar_steps(values, p.shape[:2]) for key, values in given.items()}
         nodal, closed = close_axes(NodalArrays(p, v, ok, data), periodic)
         v, ok = nodal.velocity, nodal.valid
         surface = Surface(nodal.points, ok, closed)
         if sign_free:
             v = oriented(np.where(ok[..., None], v[0], 0.0), ok, closed)
             v = with_equal_ends(v[None], closed, surface.poles)
+        v[:, ~ok] = 0.0
         flow = cls(
             points=surface.points,
-            velocity=np.where(ok[..., None], v, 0.0),
+            velocity=v,
             times=t,
             valid=ok,
             periodic=closed,
@@ -187,6 +190,7 @@ class FlowField:
             has_position=surface.has_position,
             sign_free=sign_free,
         )
+        flow.__dict__["surface"] = surface  # the same that the property would make again
         if not flow.velocity.any():
             warnings.warn(
                 "The velocity is zero at every node, so the picture is plain noise; check the "
@@ -324,9 +328,10 @@ class FlowField:
     @cached_property
     def surface(self) -> Surface:
         """The geometry: tangents, cell sizes and positions between nodes."""
-        known = True if self.has_position is None else self.has_position[..., None]
-        # Positions that were filled in must not pass for known ones: tangents would bend.
-        points = np.where(known, self.points, np.nan)
+        points, known = self.points, self.has_position
+        if known is not None and not known.all():
+            # Positions that were filled in must not pass for known ones: tangents would bend.
+            points = np.where(known[..., None], points, np.nan)
         return Surface(points, self.valid, self.periodic)
 
     @cached_property
@@ -343,6 +348,11 @@ class FlowField:
     def normal_share(self) -> float:
         """Share of the flow that is normal to the surface and cannot be drawn on it, 0 to 1."""
         return self.index_velocity.normal_share
+
+    def forget(self) -> None:
+        """Drop what was derived from the arrays and can be computed again."""
+        for name in ("surface", "index_velocity"):
+            self.__dict__.pop(name, None)
 
     def at_step(self, step: int) -> FlowField:
         """Return one time step, as for :meth:`step_number`, as a steady field."""

@@ -19,7 +19,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flowtex._util.array_types import Floats
+from flowtex._util.array_types import Bools, Floats
+from flowtex._util.blocks import row_blocks
 from flowtex.field.poles import Pole
 from flowtex.field.surface import Surface
 
@@ -47,29 +48,58 @@ class IndexVelocity:
 def to_index_space(surface: Surface, velocity: Floats) -> IndexVelocity:
     """Express a velocity (T, J, I, 3), zero at nodes that are not valid, in index space."""
     p_i, p_j = surface.tangents
-    g_ii, g_jj, g_ij = (np.sum(a * b, axis=-1) for a, b in ((p_i, p_i), (p_j, p_j), (p_i, p_j)))
-    determinant = g_ii * g_jj - g_ij**2
-    along_i = np.einsum("tjic,jic->tji", velocity, p_i)
-    along_j = np.einsum("tjic,jic->tji", velocity, p_j)
-    typical = float(np.median((g_ii + g_jj)[surface.valid]))
-    tiny = COLLAPSED_AREA * typical
-    flat = (determinant <= COLLAPSED_AREA * g_ii * g_jj) | (g_ii <= tiny) | (g_jj <= tiny)
-    safe = np.where(flat, 1.0, determinant)
-    u_i = np.where(flat, _alone(along_i, g_ii, tiny), (g_jj * along_i - g_ij * along_j) / safe)
-    u_j = np.where(flat, _alone(along_j, g_jj, tiny), (g_ii * along_j - g_ij * along_i) / safe)
-    along = u_i[..., None] * p_i + u_j[..., None] * p_j
-    u = np.stack([u_i, u_j], axis=-1)
-    speed = np.linalg.norm(along, axis=-1)
+    square = np.einsum("djic,djic->ji", surface.tangents, surface.tangents)
+    tiny = COLLAPSED_AREA * float(
+        np.median(square if surface.valid.all() else square[surface.valid])
+    )
+    u, speed = np.empty((*velocity.shape[:-1], 2)), np.empty(velocity.shape[:-1])
+    squares = np.zeros(2)
+    for rows in row_blocks(*surface.shape):
+        squares += _project(
+            velocity[:, rows],
+            p_i[rows],
+            p_j[rows],
+            surface.valid[rows],
+            tiny,
+            u[:, rows],
+            speed[:, rows],
+        )
     for pole in surface.poles or ():
         _at_pole(pole, velocity, u, speed)
-    known = ~flat & surface.valid
-    total = float(np.sum(velocity[:, known] ** 2))
-    normal = float(np.sum((velocity - along)[:, known] ** 2))
+    total, normal = squares
     return IndexVelocity(
         components=u,
         speed=speed,
         normal_share=float(np.sqrt(min(normal / total, 1.0))) if total > 0 else 0.0,
     )
+
+
+def _project(
+    velocity: Floats, p_i: Floats, p_j: Floats, valid: Bools, tiny: float, u: Floats, speed: Floats
+) -> tuple[float, float]:
+    """Write components and speed of some nodes, and return squares of all and of the normal part.
+
+    Squares of tangents below ``tiny`` count as none.
+    """
+    g_ii, g_jj, g_ij = (
+        np.einsum("jic,jic->ji", a, b) for a, b in ((p_i, p_i), (p_j, p_j), (p_i, p_j))
+    )
+    determinant = g_ii * g_jj - g_ij**2
+    along_i = np.einsum("tjic,jic->tji", velocity, p_i)
+    along_j = np.einsum("tjic,jic->tji", velocity, p_j)
+    flat = (determinant <= COLLAPSED_AREA * g_ii * g_jj) | (g_ii <= tiny) | (g_jj <= tiny)
+    safe = np.where(flat, 1.0, determinant)
+    u_i = np.where(flat, _alone(along_i, g_ii, tiny), (g_jj * along_i - g_ij * along_j) / safe)
+    u_j = np.where(flat, _alone(along_j, g_jj, tiny), (g_ii * along_j - g_ij * along_i) / safe)
+    u[..., 0], u[..., 1] = u_i, u_j
+    along = u_i[..., None] * p_i + u_j[..., None] * p_j
+    np.sqrt(np.einsum("tjic,tjic->tji", along, along), out=speed)
+    np.subtract(velocity, along, out=along)
+    known = ~flat & valid
+    all_, normal = (
+        float(np.einsum("tjic,tjic,ji->", v, v, known.astype(float))) for v in (velocity, along)
+    )
+    return all_, normal
 
 
 def _at_pole(pole: Pole, velocity: Floats, u: Floats, speed: Floats) -> None:

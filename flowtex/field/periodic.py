@@ -10,13 +10,14 @@ it is missing.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TypeVar, cast
 
 import numpy as np
 
 from flowtex._util.array_types import AnyArray, Bools, Floats
-from flowtex.field.validation import LENGTHS
+from flowtex._util.blocks import bounds
+from flowtex.field.validation import LENGTHS, finite_nodes, largest
 
 __all__ = ["NodalArrays", "close_axes", "find_closure"]
 
@@ -55,14 +56,14 @@ def close_axes(nodal: NodalArrays, periodic: str | None) -> tuple[NodalArrays, t
     """Close the periodic axes: append a missing line, or give two that coincide equal values.
 
     ``periodic`` names the axes, such as ``"ij"``, or is ``None`` to find out. Returns the closed
-    arrays, and whether the (j, i) axis closes on itself.
+    arrays, and whether the (j, i) axis closes on itself. Values are made equal in place.
     """
     closed = [False, False]
     for axis, letter in ((0, "j"), (1, "i")):
         lines = np.swapaxes(nodal.points, 0, axis)
         if periodic is None:
             known = np.swapaxes(nodal.valid, 0, axis)[..., None]
-            closure = find_closure(np.where(known, lines, np.nan))
+            closure = find_closure(lines if known.all() else np.where(known, lines, np.nan))
         elif letter in periodic:
             closure = _requested_closure(lines, np.swapaxes(nodal.velocity, 1, axis + 1))
         else:
@@ -76,14 +77,15 @@ def close_axes(nodal: NodalArrays, periodic: str | None) -> tuple[NodalArrays, t
                 scalars={k: _repeat_first(s, axis + 1) for k, s in nodal.scalars.items()},
             )
         elif closure.periodic:
-            nodal = _join_ends(nodal, axis)
+            _join_ends(nodal, axis)
     return nodal, (closed[0], closed[1])
 
 
 def find_closure(points: Floats) -> Closure:
     """Decide from the geometry whether the first axis of (N, M, 3) nodes closes."""
     # Numbers that are no lengths stand for missing data.
-    points = np.where(np.abs(points) <= LENGTHS[1], points, np.nan)
+    if largest(points) > LENGTHS[1]:
+        points = np.where(np.abs(points) <= LENGTHS[1], points, np.nan)
     extent = _extent(points)
     if extent == 0.0 or len(points) < 3:
         return Closure(periodic=False)
@@ -116,16 +118,19 @@ def _requested_closure(points: Floats, velocity: Floats) -> Closure:
 
 
 def _extent(points: Floats) -> float:
-    flat = points.reshape(-1, 3)
-    flat = flat[np.isfinite(flat).all(axis=1)]
-    return float(np.linalg.norm(np.ptp(flat, axis=0))) if len(flat) else 0.0
+    known = finite_nodes(points)
+    if not known.any():
+        return 0.0
+    low, high = bounds(points if known.all() else points[known])
+    return float(np.linalg.norm(high - low))
 
 
 def _coincide(points: Floats, extent: float) -> bool:
     """Whether the last line lies on the first one, and the lines between do not."""
     middle = _worst(points[len(points) // 2] - points[0])
     gap = np.linalg.norm(points[-1] - points[0], axis=-1)
-    steps = np.linalg.norm(np.diff(points, axis=0)[[0, -1]], axis=-1).max(axis=0)
+    ends = np.stack([points[1] - points[0], points[-1] - points[-2]])
+    steps = np.linalg.norm(ends, axis=-1).max(axis=0)
     # Coordinates far from the origin, or of few digits, miss by more than that share of the extent.
     with np.errstate(invalid="ignore"):
         close = gap <= np.fmax(SAME_LINE_EXTENT * extent, SAME_LINE_CELLS * steps)
@@ -135,32 +140,38 @@ def _coincide(points: Floats, extent: float) -> bool:
 
 def _one_cell_short(points: Floats) -> bool:
     """Whether the gap between the last line and the first is one cell among others."""
-    steps = np.linalg.norm(np.diff(points, axis=0), axis=-1)
-    gap = np.linalg.norm(points[-1] - points[0], axis=-1)
-    with np.errstate(invalid="ignore"):
-        near = gap <= 1.5 * np.maximum(steps[0], steps[-1])
-        around = np.nansum(steps, axis=0) >= 0.75 * len(steps) * gap
+    first, last, gap = (
+        np.linalg.norm(points[a] - points[b], axis=-1) for a, b in ((1, 0), (-1, -2), (-1, 0))
+    )
     known = np.isfinite(gap)
-    open_somewhere = bool((gap[known] > 0).any())
-    return open_somewhere and bool((near & around)[known].all())
+    with np.errstate(invalid="ignore"):
+        near = gap <= 1.5 * np.maximum(first, last)
+    if not ((gap[known] > 0).any() and near[known].all()):
+        return False
+    steps = np.linalg.norm(np.diff(points, axis=0), axis=-1)
+    with np.errstate(invalid="ignore"):
+        around = np.nansum(steps, axis=0) >= 0.75 * len(steps) * gap
+    return bool(around[known].all())
 
 
 def _longitude(points: Floats) -> Closure | None:
     """Recognise global longitude in degrees along the first axis of a flat map."""
-    if not np.isfinite(points).all() or np.ptp(points[..., 2]) > 0:
-        return None
     x, y = points[..., 0], points[..., 1]
-    same = np.ptp(x, axis=1).max() <= 1e-6 * 360
+    if not np.isfinite(x[:, 0]).all():
+        return None
+    # One line tells most other meshes apart.
     steps = np.diff(x[:, 0])
     even = len(steps) > 3 and np.ptp(steps) <= 1e-3 * abs(steps[0]) and steps[0] != 0
-    if not (same and even and np.abs(y).max() <= 90.01 and np.ptp(y) > 0):
-        return None
     span, step = abs(x[-1, 0] - x[0, 0]), abs(steps[0])
-    if abs(span - 360) <= 1e-3 * step:
-        return Closure(periodic=True)
-    if abs(span + step - 360) <= 1e-2 * step:
-        return Closure(periodic=True, line=2 * points[-1:] - points[-2:-1])
-    return None
+    whole, short = abs(span - 360) <= 1e-3 * step, abs(span + step - 360) <= 1e-2 * step
+    if not (even and (whole or short)):
+        return None
+    if not np.isfinite(points).all() or np.ptp(points[..., 2]) > 0:
+        return None
+    same = np.ptp(x, axis=1).max() <= 1e-6 * 360
+    if not (same and np.abs(y).max() <= 90.01 and np.ptp(y) > 0):
+        return None
+    return Closure(periodic=True, line=None if whole else 2 * points[-1:] - points[-2:-1])
 
 
 def _worst(difference: Floats) -> float:
@@ -174,16 +185,15 @@ def _repeat_first(a: A, axis: int) -> A:
     return cast("A", np.concatenate([a, np.take(a, [0], axis=axis)], axis=axis))
 
 
-def _join_ends(nodal: NodalArrays, axis: int) -> NodalArrays:
-    """Give the two coinciding lines of a closed axis one common velocity.
+def _join_ends(nodal: NodalArrays, axis: int) -> None:
+    """Give the two coinciding lines of a closed axis one common velocity, in place.
 
     Cell data spread to the nodes differs across a seam, because neither side sees the other.
     """
-    velocity, valid = nodal.velocity.copy(), nodal.valid.copy()
+    velocity, valid = nodal.velocity, nodal.valid
     v, ok = np.swapaxes(velocity, 1, axis + 1), np.swapaxes(valid, 0, axis)
     first, last = ok[0].copy(), ok[-1].copy()
     mean = (v[:, 0] + v[:, -1]) / 2
     only = np.where(first[:, None], v[:, 0], v[:, -1])
     v[:, 0] = v[:, -1] = np.where((first & last)[:, None], mean, only)
     ok[0] = ok[-1] = first | last
-    return replace(nodal, velocity=velocity, valid=valid)

@@ -14,9 +14,12 @@ from functools import cached_property
 
 import numpy as np
 
-from flowtex._util.array_types import Bools, Floats
+from flowtex._util import compiled
+from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex._util.blocks import bounds, row_blocks
 from flowtex.field.interpolation import cell_of, cubic_weights, fill_blanked
 from flowtex.field.poles import Pole, Poles, find_poles
+from flowtex.field.validation import finite_nodes
 
 __all__ = ["CubicMap", "Surface", "known_positions"]
 
@@ -67,8 +70,7 @@ class Surface:
 
     @cached_property
     def _bounds(self) -> Floats:
-        nodes = self.points[self.valid]
-        return np.stack([nodes.min(axis=0), nodes.max(axis=0)])
+        return bounds(self.points if self.valid.all() else self.points[self.valid])
 
     @cached_property
     def cells(self) -> Bools:
@@ -80,10 +82,13 @@ class Surface:
     def padded(self) -> Floats:
         """Nodes with one ghost line on each side, (J + 2, I + 2, 3)."""
         good = self.has_position
-        rows = _pad(self.points, good, self.offset[0], periodic=self.periodic[0])
-        good = np.pad(good, ((1, 1), (0, 0)), mode="edge")
-        columns = _pad(np.swapaxes(rows, 0, 1), good.T, self.offset[1], periodic=self.periodic[1])
-        padded = np.ascontiguousarray(np.swapaxes(columns, 0, 1))
+        padded = np.empty((self.shape[0] + 2, self.shape[1] + 2, 3))
+        rows, columns = padded[:, 1:-1], np.swapaxes(padded, 0, 1)
+        rows[1:-1] = self.points
+        rows[0], rows[-1] = _ghosts(rows[1:-1], good, self.offset[0], periodic=self.periodic[0])
+        good = np.pad(good, ((1, 1), (0, 0)), mode="edge").T
+        ghosts = _ghosts(columns[1:-1], good, self.offset[1], periodic=self.periodic[1])
+        columns[0], columns[-1] = ghosts
         for pole in self.poles or ():
             lines = pole.lines(padded)
             ghost, ring = (0, 2) if pole.inward > 0 else (-1, -3)
@@ -96,9 +101,15 @@ class Surface:
         good = np.pad(self.has_position, 1, constant_values=True)
         p = self.padded
         middle = p[1:-1, 1:-1]
-        along_i = _difference(p[1:-1, :-2], middle, p[1:-1, 2:], good[1:-1, :-2], good[1:-1, 2:])
-        along_j = _difference(p[:-2, 1:-1], middle, p[2:, 1:-1], good[:-2, 1:-1], good[2:, 1:-1])
-        return np.stack([along_i, along_j])
+        result = np.empty((2, *self.points.shape))
+        sides = (
+            (p[1:-1, :-2], p[1:-1, 2:], good[1:-1, :-2], good[1:-1, 2:]),
+            (p[:-2, 1:-1], p[2:, 1:-1], good[:-2, 1:-1], good[2:, 1:-1]),
+        )
+        for b in row_blocks(*self.shape):
+            for out, (before, after, known, further) in zip(result, sides, strict=True):
+                _difference(before[b], middle[b], after[b], known[b], further[b], out[b])
+        return result
 
     @cached_property
     def cell_size(self) -> Floats:
@@ -109,8 +120,8 @@ class Surface:
         size, so that a length measured in cells stays finite there.
         """
         inverse = np.zeros(self.shape)
-        lengths = np.linalg.norm(self.tangents, axis=-1)
-        typical = float(np.median(lengths[:, self.valid])) or 1.0
+        lengths = np.sqrt(np.einsum("djic,djic->dji", self.tangents, self.tangents))
+        typical = float(np.median(lengths if self.valid.all() else lengths[:, self.valid])) or 1.0
         for pole in self.poles or ():
             near = np.maximum(
                 1 - np.abs(np.arange(self.shape[1 - pole.component]) - pole.line) / POLE_LINES, 0
@@ -120,15 +131,18 @@ class Surface:
                 lengths[1 - pole.component], share * lengths[pole.component]
             )
         for length in lengths:
-            inverse += np.maximum(length, 1e-9 * typical) ** -2.0
+            inverse += 1 / np.square(np.maximum(length, 1e-9 * typical))
         return np.maximum(np.sqrt(2.0 / inverse), 1e-4 * typical)
 
     @cached_property
     def frame(self) -> Floats | None:
         """Two orthonormal rows that span the surface where it is flat, (2, 3), else ``None``."""
-        offsets = self.points[self.valid] - self.center
-        _, _, basis = np.linalg.svd(offsets.T @ offsets)
-        if np.abs(offsets @ basis[2]).max() > 1e-6 * self.extent:
+        nodes = self.points.reshape(-1, 3) if self.valid.all() else self.points[self.valid]
+        blocks = [nodes[block] for block in row_blocks(len(nodes), 1)]
+        offsets = (nodes - self.center for nodes in blocks)
+        _, _, basis = np.linalg.svd(sum(o.T @ o for o in offsets))
+        height = max(np.abs((nodes - self.center) @ basis[2]).max() for nodes in blocks)
+        if height > 1e-6 * self.extent:
             return None
         normal = basis[2]
         if np.abs(normal).max() > 1 - 1e-12:
@@ -181,18 +195,7 @@ class CubicMap:
             i, j = self._poles.fold(np.stack([i, j]))
         i0, si, beyond_i, turns_i = cell_of(i, columns, periodic=closed_i)
         j0, sj, beyond_j, turns_j = cell_of(j, rows, periodic=closed_j)
-        wi, wj = cubic_weights(si), cubic_weights(sj)
-        width = columns + 2
-        corner = j0 * width + i0
-        result = np.zeros((len(self._padded), len(i)))
-        for b in range(4):
-            at = [corner + (b * width + a) for a in range(4)]
-            for out, nodes in zip(result, self._padded, strict=True):
-                row = wi[0] * nodes.take(at[0], mode="clip")
-                for a in range(1, 4):
-                    row += wi[a] * nodes.take(at[a], mode="clip")
-                row *= wj[b]
-                out += row
+        result = self._cubic(j0 * (columns + 2) + i0, si, sj)
         if beyond_i.any() or beyond_j.any():
             near_i = np.clip(np.rint(i), 0, columns - 1).astype(np.intp)
             near_j = np.clip(np.rint(j), 0, rows - 1).astype(np.intp)
@@ -202,26 +205,43 @@ class CubicMap:
             result += turns_i * self._offset[1][:, None] + turns_j * self._offset[0][:, None]
         return result
 
+    def _cubic(self, corner: Indices, si: Floats, sj: Floats) -> Floats:
+        """Interpolate between 16 nodes each, given the first of them and fractions of the cell."""
+        width = self._shape[1] + 2
+        result = np.zeros((len(self._padded), len(corner)))
+        if (kernels := compiled.kernels()) is not None:
+            kernels.cubic(self._padded, width, corner, si, sj, result)
+            return result
+        wi, wj = cubic_weights(si), cubic_weights(sj)
+        for b in range(4):
+            at = [corner + (b * width + a) for a in range(4)]
+            for out, nodes in zip(result, self._padded, strict=True):
+                row = wi[0] * nodes.take(at[0], mode="clip")
+                for a in range(1, 4):
+                    row += wi[a] * nodes.take(at[a], mode="clip")
+                row *= wj[b]
+                out += row
+        return result
+
 
 def known_positions(points: Floats, valid: Bools) -> Bools:
     """Nodes whose coordinates can be trusted: blanked ones often hold a fill value."""
-    finite = np.isfinite(points).all(axis=-1)
-    if not (valid & finite).any():
-        return np.asarray(finite)
-    inside = points[valid & finite]
-    low, high = inside.min(axis=0), inside.max(axis=0)
+    finite = finite_nodes(points)
+    # Where all nodes with coordinates are valid, or none, there is nothing to tell apart.
+    if not (valid & finite).any() or not (finite & ~valid).any():
+        return finite
+    low, high = bounds(points[valid & finite])
     margin = (high - low).max()
     with np.errstate(invalid="ignore"):
         near = ((points > low - margin) & (points < high + margin)).all(axis=-1)
     return np.asarray(finite & (valid | near))
 
 
-def _pad(p: Floats, good: Bools, offset: Floats, *, periodic: bool) -> Floats:
-    """Add a ghost line before and after the first axis."""
+def _ghosts(p: Floats, good: Bools, offset: Floats, *, periodic: bool) -> tuple[Floats, Floats]:
+    """Return the ghost lines before and after the first axis."""
     if periodic:
-        return np.concatenate([p[-2:-1] - offset, p, p[1:2] + offset])
-    before, after = _beyond(p[:3], good[:3]), _beyond(p[:-4:-1], good[:-4:-1])
-    return np.concatenate([before[None], p, after[None]])
+        return p[-2] - offset, p[1] + offset
+    return _beyond(p[:3], good[:3]), _beyond(p[:-4:-1], good[:-4:-1])
 
 
 def _over(ring: Floats, pole: Pole) -> Floats:
@@ -253,10 +273,20 @@ def _beyond(p: Floats, good: Bools) -> Floats:
 
 
 def _difference(
-    before: Floats, here: Floats, after: Floats, good_before: Bools, good_after: Bools
-) -> Floats:
+    before: Floats,
+    here: Floats,
+    after: Floats,
+    good_before: Bools,
+    good_after: Bools,
+    out: Floats,
+) -> None:
     """Central difference, one-sided beside a node whose coordinates cannot be trusted."""
+    if good_before.all() and good_after.all():
+        np.subtract(here, before, out=out)
+        out += after - here
+        out /= 2
+        return
     backward = np.where(good_before[..., None], here - before, 0.0)
     forward = np.where(good_after[..., None], after - here, 0.0)
     count = np.maximum(good_before.astype(float) + good_after, 1.0)
-    return np.asarray((backward + forward) / count[..., None])
+    np.divide(backward + forward, count[..., None], out=out)

@@ -13,14 +13,18 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import Bools, Floats
+from flowtex._util.blocks import bounds
 from flowtex.errors import FieldError
 
 __all__ = [
     "LENGTHS",
     "MAGNITUDES",
     "as_numbers",
+    "finite_nodes",
+    "largest",
     "node_faults",
     "range_faults",
+    "scalar_steps",
     "shape_faults",
     "three_components",
     "with_gaps",
@@ -30,10 +34,15 @@ __all__ = [
 LINE_WIDTH = 1e-7
 #: Ends of lengths, for single precision, and of speeds and times, whose squares must be numbers.
 LENGTHS, MAGNITUDES = (1e-30, 1e30), (1e-100, 1e100)
+#: Lines of nodes along each axis that are looked at first.
+FEW_LINES = 100
 
 
 def as_numbers(name: str, values: ArrayLike) -> tuple[Floats, Any]:
-    """Return values as float64, and which nodes a masked array hides: (J, I), or false."""
+    """Return values as float64, and which nodes a masked array hides: (J, I), or false.
+
+    Those that are float64 are not copied.
+    """
     mask = np.ma.getmaskarray(values) if np.ma.isMaskedArray(values) else None
     try:
         array = np.asarray(np.ma.getdata(values))
@@ -46,7 +55,7 @@ def as_numbers(name: str, values: ArrayLike) -> tuple[Floats, Any]:
             "or take its real part"
         )
         raise FieldError(msg)
-    array = array.astype(np.float64)
+    array = np.asarray(array, np.float64)
     if mask is None:
         return array, np.False_
     hidden = mask.any(axis=-1) if mask.ndim else mask
@@ -56,9 +65,13 @@ def as_numbers(name: str, values: ArrayLike) -> tuple[Floats, Any]:
 
 
 def with_gaps(name: str, values: ArrayLike) -> Floats:
-    """Return values as float64, NaN where a masked array hides them."""
+    """Return values as float64, NaN where a masked array hides them.
+
+    Those that are float64, with nothing hidden, are not copied.
+    """
     array, _ = as_numbers(name, values)
-    array[np.ma.getmaskarray(np.ma.asarray(values))] = np.nan
+    if isinstance(values, np.ma.MaskedArray) and np.ma.is_masked(values):
+        array = np.where(np.ma.getmaskarray(values), np.nan, array)
     return array
 
 
@@ -138,13 +151,14 @@ def _time_faults(t: Floats | None, count: int) -> list[str]:
     return []
 
 
-def range_faults(p: Floats, v: Floats) -> list[str]:
-    """Return faults in the size of positions and velocities; NaN stands for those not used."""
+def range_faults(p: Floats, v: Floats, ok: Bools) -> list[str]:
+    """Return faults in the size of positions and velocities of the nodes that are valid.
+
+    Velocities of the others are NaN.
+    """
     faults = []
-    for name, data, ends in (("points", p, LENGTHS), ("velocity", v, MAGNITUDES)):
-        # Without a copy: a velocity may fill much of the memory.
-        low, high = (part.reduce(data, axis=None, initial=0.0) for part in (np.fmin, np.fmax))
-        most = float(max(-low, high))
+    of_nodes = largest(p) if ok.all() else largest(p, ok[..., None])
+    for name, most, ends in (("points", of_nodes, LENGTHS), ("velocity", largest(v), MAGNITUDES)):
         if most and not ends[0] <= most <= ends[1]:
             faults.append(
                 f"{name} has values up to {most:.3g}; expected {ends[0]:g} to {ends[1]:g}: take "
@@ -166,6 +180,8 @@ def node_faults(p: Floats, ok: Bools) -> list[str]:
             f"{int(ok.sum())} of {ok.size} nodes are usable, but no four of them make a cell; "
             "check the blanking"
         ]
+    if _spread(p, ok):
+        return []
     where = p[ok] - p[ok].mean(axis=0)
     if np.abs(where).max() == 0:
         return ["all usable nodes lie at one point; expected a surface: check the coordinates"]
@@ -175,8 +191,51 @@ def node_faults(p: Floats, ok: Bools) -> list[str]:
     return []
 
 
+def _spread(p: Floats, ok: Bools) -> bool:
+    """Whether a few of the valid nodes show that all of them are wider than a line.
+
+    Variances summed over more nodes are never smaller, and never greater than the bounding box's.
+    """
+    every = [slice(None, None, max(n // FEW_LINES, 1)) for n in ok.shape]
+    some = p[tuple(every)][ok[tuple(every)]]
+    if len(some) < 3:
+        return False
+    low, high = bounds(p if ok.all() else p[ok])
+    offsets = (some - some.mean(axis=0)) / max(float((high - low).max()), np.finfo(float).tiny)
+    spans = np.linalg.svd(offsets.T @ offsets, compute_uv=False)
+    return bool(spans[1] > 2 * LINE_WIDTH**2 * p.shape[-1] * ok.size)
+
+
+def finite_nodes(a: Floats) -> Bools:
+    """Nodes at which all components of (..., J, I, C) are finite, (J, I)."""
+    finite = np.isfinite(a)
+    if finite.all():
+        return np.ones(a.shape[-3:-1], dtype=bool)
+    return np.asarray(finite.all(axis=(*range(a.ndim - 3), -1)))
+
+
+def largest(a: Floats, where: Bools | bool = True) -> float:  # noqa: FBT001, FBT002
+    """Greatest size of the numbers in an array, and 0 where all are NaN.
+
+    Nothing is copied: a velocity may fill much of the memory.
+    """
+    options: dict[str, Any] = {"axis": None, "initial": 0.0, "where": where}
+    return float(max(-np.fmin.reduce(a, **options), np.fmax.reduce(a, **options)))
+
+
 def three_components(a: Floats) -> Floats:
     """Give two-dimensional vectors a third component of zero."""
     if a.shape[-1] == 3:
         return a
     return np.concatenate([a, np.zeros_like(a[..., :1])], axis=-1)
+
+
+def scalar_steps(values: Floats, grid: tuple[int, ...]) -> Floats:
+    """Copy a nodal array, (J, I) or (T, J, I), with an axis of time, and NaN for what is no number.
+
+    Nothing is known where a number is beyond :data:`MAGNITUDES`.
+    """
+    result = values.reshape(-1, *grid).copy("C")
+    if largest(result) > MAGNITUDES[1]:
+        result[np.abs(result) > MAGNITUDES[1]] = np.nan
+    return result

@@ -136,9 +136,9 @@ def point_camera(plotter: Any, scene: Scene, view: ViewOptions) -> None:
         When the view's camera, zoom or focus is none.
     """
     if view.camera is None:
-        look(plotter, scene.field, zoom=view.zoom, focus=view.focus)
+        look(plotter, scene.whole, zoom=view.zoom, focus=view.focus)
     elif isinstance(view.camera, (Camera, Mapping)):
-        apply_camera(view.first_camera(scene.field.surface), plotter.camera)
+        apply_camera(view.first_camera(scene.whole.surface), plotter.camera)
         plotter.camera_set = True
         plotter.renderer.reset_camera_clipping_range()
     else:

@@ -83,7 +83,7 @@ class FlowtexComponent:
         handle = FlowHandle(self._plotter, scene, self._forget, scalar_bar_args)
         self._handles.append(handle)
         if reset_camera or (reset_camera is None and first):
-            look(self._plotter, scene.field)
+            look(self._plotter, scene.whole)
         return handle
 
     def __iter__(self) -> Iterator[FlowHandle]:

@@ -9,7 +9,7 @@ from typing import Any
 from flowtex._util.colours import DEFAULT_CMAP
 from flowtex.field import FlowField
 from flowtex.rendering.constants import AMBIENT_LIGHT, DIFFUSE_LIGHT
-from flowtex.rendering.vtk import FlowLayer, set_attributes, surface_mesh, use_flow_mapper
+from flowtex.rendering.vtk import FlowSurface, surface_mesh, use_flow_mapper
 from flowtex.scene import Scene
 from flowtex.settings import Affects, Settings
 
@@ -63,7 +63,7 @@ class FlowHandle:
         self._plotter = plotter
         self._forget = forget
         self.scene = scene
-        self._mesh = surface_mesh(scene.textures)
+        mesh = surface_mesh(scene.textures)
         name, appearance = scene.scalar_name, scene.appearance
         lit = scene.is_lit
         options: dict[str, Any] = {"opacity": appearance.opacity, "lighting": lit}
@@ -71,24 +71,28 @@ class FlowHandle:
         if name is None:
             options["color"] = appearance.color
         else:
-            self._mesh.point_data[name] = scene.scalar(name).ravel()
+            mesh.point_data[name] = scene.scalar(name, scene.textures.geometry.field).ravel()
             options |= {"scalars": name, "cmap": appearance.cmap or DEFAULT_CMAP}
             options["clim"] = scene.scalar_limits
         self.actor = plotter.add_mesh(
-            self._mesh,
+            mesh,
             name=f"flowtex {next(_count)}",
             show_scalar_bar=False,
             reset_camera=False,
             **options,
         )
-        mapper = use_flow_mapper(self.actor, self._mesh, name)
+        mapper = use_flow_mapper(self.actor, mesh, name)
         self._bar_title: str | None = None
         if name is not None and appearance.has_bar:
             bar = {"title": name, **SCALAR_BAR, **(scalar_bar_args or {})}
             plotter.add_scalar_bar(mapper=mapper, **bar)
             self._bar_title = bar["title"]
-        self._layer = FlowLayer(self.actor, plotter.renderer, scene.textures, scene.settings)
-        self._layer.set_moment(*scene.moment)
+        self._surface = FlowSurface(
+            self.actor, plotter.renderer, scene.textures, scene.settings, scene.pyramid
+        )
+        self._surface.set_moment(*scene.moment)
+        if name is not None:
+            self.set_scalars(name, name)
         self._shown_time = scene.time
         self._end = scene.observe(self._changed)
 
@@ -119,11 +123,11 @@ class FlowHandle:
     @property
     def clock(self) -> float:
         """Clock of the animation in seconds; set it to draw the frame of any moment."""
-        return self._layer.view.clock
+        return self._surface.view.clock
 
     @clock.setter
     def clock(self, value: float) -> None:
-        self._layer.view.clock = float(value)
+        self._surface.view.clock = float(value)
         self._draw()
 
     @property
@@ -133,20 +137,41 @@ class FlowHandle:
         Twice the density shows the same in twice as many pixels, as fine screens, print and
         supersampling want it.
         """
-        return self._layer.view.density
+        return self._surface.view.density
 
     @density.setter
     def density(self, value: float) -> None:
         if not value > 0:
             msg = f"density is {value!r}; expected a positive number, 1 for a plain screen"
             raise ValueError(msg)
-        self._layer.view.density = float(value)
+        self._surface.view.density = float(value)
         self._draw()
 
     @property
     def closed(self) -> bool:
         """Whether the texture has been removed."""
         return self._plotter is None
+
+    def load_in_background(self, notify: Callable[[], None]) -> None:
+        """Draw with the tiles that are there; ``notify`` is called in a thread when there are more.
+
+        Of a large surface only what is seen is traced, in tiles. By default a picture waits for
+        those that it needs.
+        """
+        self._surface.load_in_background(notify)
+
+    def draw_for(self, height: int | None) -> None:
+        """Choose tiles as for a picture of so many pixels, of which the next ones are drafts."""
+        self._surface.full_height = height
+
+    @property
+    def busy(self) -> bool:
+        """Whether tiles of the last picture are on their way."""
+        return self._surface.busy
+
+    def set_scalars(self, array: str, name: str) -> None:
+        """Write a scalar of the scene to a point array of what is drawn, at all times shown."""
+        self._surface.set_scalars(array, lambda field: self.scene.scalar(name, field))
 
     def set_image(self, image: Any) -> None:
         """Advect another image; as :meth:`Scene.set_image <flowtex.scene.Scene.set_image>`."""
@@ -162,7 +187,7 @@ class FlowHandle:
         plotter, self._plotter = self._plotter, None
         self._end()
         self.scene.close()
-        self._layer.close()
+        self._surface.close()
         if self._bar_title is not None and self._bar_title in plotter.scalar_bars:
             plotter.remove_scalar_bar(self._bar_title, render=False)
         plotter.remove_actor(self.actor, render=False)
@@ -174,9 +199,7 @@ class FlowHandle:
         if affects == "uniform":
             self._show_moment()
         else:
-            textures = self.scene.textures
-            set_attributes(self._mesh, textures)
-            self._layer.set_textures(textures)
+            self._surface.set_textures(self.scene.textures, self.scene.pyramid)
         self._draw()
 
     def _show_moment(self) -> None:
@@ -184,9 +207,8 @@ class FlowHandle:
         if self.field.steady or self._shown_time == self.scene.time:
             return
         self._shown_time = self.scene.time
-        self._layer.set_moment(*self.scene.moment)
-        if (name := self.scalars) is not None:
-            self._mesh.point_data[name] = self.scene.scalar(name).ravel()
+        self._surface.set_moment(*self.scene.moment)
+        self._surface.write_scalars()
 
     def _draw(self) -> None:
         if self._plotter is not None:

@@ -41,11 +41,26 @@ def look(
     zoom: float = 1.0,
     focus: tuple[float, ...] | None = None,
 ) -> None:
-    """Point a plotter's camera at a field; :meth:`Camera.fit` has the parameters."""
+    """Point a plotter's camera at a field; :meth:`Camera.fit` has the parameters.
+
+    PyVista leaves a camera that is set as it is, also where it cuts off what is added later; so
+    the clipping range follows the bounds of what is there, and is otherwise left alone.
+    """
     camera = Camera.fit(field.surface, subplot_aspect(plotter), zoom=zoom, focus=focus)
     apply_camera(camera, plotter.camera)
     plotter.camera_set = True
-    plotter.renderer.reset_camera_clipping_range()
+    renderer = plotter.renderer
+    bounds = renderer.ComputeVisiblePropBounds()
+
+    def follow_bounds(caller: Any, _: str) -> None:
+        nonlocal bounds
+        now = caller.ComputeVisiblePropBounds()
+        if now != bounds:
+            caller.ResetCameraClippingRange()
+        bounds = now
+
+    renderer.reset_camera_clipping_range()
+    renderer.AddObserver("StartEvent", follow_bounds)
 
 
 def subplot_aspect(plotter: Any) -> float:

@@ -8,9 +8,9 @@ from __future__ import annotations
 import numpy as np
 
 from flowtex.textures.paper import HALF_LEVELS
-from flowtex.textures.texture_set import MOST_LAGS
+from flowtex.textures.texture_set import AGREED, MOST_LAGS
 
-__all__ = ["HALF_LEVELS", "KERNELS", "MOST_LAGS"]
+__all__ = ["AGREED", "HALF_LEVELS", "KERNELS", "MOST_LAGS"]
 
 KERNELS = ("hann", "box", "ramp")
 KERNEL_HANN, KERNEL_BOX, KERNEL_RAMP = range(len(KERNELS))
@@ -18,6 +18,9 @@ PI = float(np.pi)
 LEAST_WEIGHT, LEAST_SPEED = 1e-3, 1e-6
 BELL, BELL_BEND, BELL_END = 1.19, 0.06, 3.0
 SHARED_TERMS = 24
+
+PARTING = 0.95
+NEAR_CELLS, FAR_CELLS = 1.0, 2.0
 
 LEAST_SQUARE, LEAST_TEXELS, LEAST_FACING = 1e-38, 1e-6, 0.05
 LEVELS_AROUND, HUE_SHIFT, LEVEL_DARKEST, LEVEL_STRENGTH = 6.0, 0.333, 0.35, 0.5

@@ -1,47 +1,53 @@
 """Triangles of a structured surface, as many as a view needs.
 
-A surface is cut into tiles of :data:`TILE_CELLS` cells a side. Each tile is drawn with every node,
-every second, every fourth, ..., up to one cell a tile: with as few as keep the error on the screen
-below :data:`MAX_ERROR_PIXELS`. Triangles smaller than a few pixels are shaded several times over,
-so the cost of a frame follows its pixels only without them.
+A surface is cut into blocks of :data:`BLOCK_CELLS` cells a side. Each block is drawn with every
+node, every second, every fourth, ..., up to one cell a block: with as few as keep the error on the
+screen below :data:`MAX_ERROR_PIXELS`. Triangles smaller than a few pixels are shaded several times
+over, so the cost of a frame follows its pixels only without them.
 
-Along the border of two tiles, the finer one moves its extra nodes to those of the coarser one, so
-that no crack opens. Where a coarse cell would cover blanked cells and others, its tile stays finer.
+Along the border of two blocks, the finer one moves its extra nodes to those of the coarser one, so
+that no crack opens, also where both belong to tiles of different levels. Where a coarse cell would
+cover blanked cells and others, its block stays finer.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from flowtex._util.array_types import Bools, Floats, Indices, Ints
+from flowtex.textures import TextureSet
+from flowtex.tiles import BLOCK_CELLS, block_places
 
-__all__ = ["MAX_ERROR_PIXELS", "MeshLevels", "mesh_limits"]
+__all__ = ["MAX_ERROR_PIXELS", "MeshLevels", "Region", "join", "mesh_limits"]
 
-#: Cells along a side of a tile, a power of two.
-TILE_CELLS = 64
 #: Distance on the screen between a node and the triangle that stands for it.
 MAX_ERROR_PIXELS = 0.05
+#: What counts of an error of the outline, a quarter of a pixel; and of one along the surface: noise
+#: is looked up where a point lies, and only paths belong to a place that is off by this error.
+OUTLINE_SHARE, SLIDE_SHARE = 0.2, 0.1
 #: Error of a colour, as a share of the range of the colour map.
 MAX_COLOUR_ERROR = 1 / 100
 #: Longest side of a triangle, in heights of the view: single precision interpolates across it.
 MAX_SIDE_HEIGHTS = 2.0
-#: Nearest that a tile is taken to be, as a share of its radius, when the eye is inside of it.
+#: Nearest that a block is taken to be, as a share of its radius, when the eye is inside of it.
 LEAST_DISTANCE = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
-class _Tiles:
-    """Along one axis: the first node of each tile, and the number of its cells."""
+class _Blocks:
+    """Along one axis: the first node of each block, and the number of its cells."""
 
     first: Ints
     cells: Ints
 
     @classmethod
-    def of(cls, nodes: int) -> _Tiles:
-        first = np.arange(0, max(nodes - 1, 1), TILE_CELLS, dtype=np.int64)
-        return cls(first, np.minimum(nodes - 1 - first, TILE_CELLS))
+    def of(cls, nodes: int) -> _Blocks:
+        first = np.arange(0, max(nodes - 1, 1), BLOCK_CELLS, dtype=np.int64)
+        return cls(first, np.minimum(nodes - 1 - first, BLOCK_CELLS))
 
 
 class MeshLevels:
@@ -59,11 +65,12 @@ class MeshLevels:
     Attributes
     ----------
     error
-        Greatest distance of a node from the triangles of each level, (L, tile rows, tile columns).
+        Greatest distance of a node from the triangles of each level, (L, rows, columns) of blocks;
+        of its outline, and along the surface, shares of it.
     colour_error
         The same of the colours, as shares of the range of the colour map.
-    tiles
-        Centre, radius, and longest side of a cell of each tile, (tile rows, tile columns, 5).
+    blocks
+        Centre, radius, and longest side of a cell of each block, (block rows, block columns, 5).
     """
 
     def __init__(
@@ -72,12 +79,18 @@ class MeshLevels:
         rows, columns = points.shape[:2]
         self._shape = (rows, columns)
         self._cells, self._periodic = cells, periodic
-        self._rows, self._columns = (_Tiles.of(n) for n in self._shape)
+        self._rows, self._columns = (_Blocks.of(n) for n in self._shape)
         points = np.where(np.isfinite(points), points, 0.0)
-        self.error = self._errors(points)
+        self.error = self._errors(points, _normals(points))
         self.error[self._mixed_levels()] = np.inf
         self.set_colours()
-        self.tiles = self._sizes(points)
+        self.blocks = block_places(points)
+
+    @classmethod
+    def of(cls, textures: TextureSet) -> MeshLevels:
+        """Return the levels of what a texture set draws."""
+        geometry = textures.geometry
+        return cls(geometry.points, geometry.cells, geometry.periodic)
 
     def set_colours(self, *colours: Floats) -> None:
         """Count the errors of values that are interpolated between the nodes as well.
@@ -95,12 +108,12 @@ class MeshLevels:
 
     @property
     def records(self) -> Floats:
-        """What levels are chosen by, for a client: errors, colour errors and place of each tile."""
+        """What levels are chosen by, for a client: errors, colour errors and places of blocks."""
         errors = np.moveaxis(np.concatenate([self.error, self.colour_error]), 0, -1)
-        return np.concatenate([errors, self.tiles], axis=-1)
+        return np.concatenate([errors, self.blocks], axis=-1)
 
     def levels(self, eye: Floats | None, half_height: float, pixels: int) -> Ints:
-        """Return the level of each tile, (tile rows, tile columns): 0 has every node.
+        """Return the level of each block, (block rows, block columns): 0 has every node.
 
         Parameters
         ----------
@@ -113,10 +126,10 @@ class MeshLevels:
         pixels
             Height of the picture in pixels.
         """
-        radius, cell_size = self.tiles[..., 3], self.tiles[..., 4]
+        radius, cell_size = self.blocks[..., 3], self.blocks[..., 4]
         distance = np.ones(radius.shape)
         if eye is not None:
-            distance = np.linalg.norm(self.tiles[..., :3] - eye, axis=-1) - radius
+            distance = np.linalg.norm(self.blocks[..., :3] - eye, axis=-1) - radius
             distance = np.maximum(distance, LEAST_DISTANCE * radius)
         with np.errstate(all="ignore"):  # where numbers end, every node is drawn
             scale = 0.5 * pixels / (half_height * distance)
@@ -130,32 +143,37 @@ class MeshLevels:
         levels: Ints = np.argmin(fits, axis=0) - 1 + len(fits) * fits.all(axis=0)
         return levels
 
-    def triangles(self, levels: Ints) -> Indices:
+    def triangles(self, levels: Ints, joins: Ints | None = None) -> Indices:
         """Return the nodes of the triangles, (N, 3), numbered row by row.
 
         Parameters
         ----------
         levels
-            Of each tile, as :meth:`levels` gives them.
+            Of each block, as :meth:`levels` gives them; -1 leaves a block out.
+        joins
+            Levels of the borders below, above, left and right of each block, (4, block rows, block
+            columns), no finer than its own; by default the coarser one of both its sides.
         """
-        border = _border_levels(levels, self._periodic)
+        if joins is None:
+            whole = Region(0, 0, 0, levels)
+            joins = join([whole], (levels.shape[0], levels.shape[1]), self._periodic)[0]
         parts = [
-            self._triangles_of(np.nonzero(levels == level), int(level), border)
-            for level in np.unique(levels)
+            self._triangles_of(np.nonzero(levels == level), int(level), joins)
+            for level in np.unique(levels[levels >= 0])
         ]
-        return np.concatenate(parts)
+        return np.concatenate(parts or [np.empty((0, 3), np.intp)])
 
-    def _triangles_of(self, tiles: tuple[Indices, ...], level: int, border: Ints) -> Indices:
-        """Triangles of the tiles of one level."""
-        step, (j, i) = 1 << level, tiles
-        places = np.arange(TILE_CELLS // step + 1) * step
+    def _triangles_of(self, blocks: tuple[Indices, ...], level: int, border: Ints) -> Indices:
+        """Triangles of the blocks of one level."""
+        step, (j, i) = 1 << level, blocks
+        places = np.arange(BLOCK_CELLS // step + 1) * step
         rows = np.minimum(places, self._rows.cells[j][:, None])
         columns = np.minimum(places, self._columns.cells[i][:, None])
         row, column = (
             np.broadcast_to(a, (len(j), len(places), len(places))).copy()
             for a in (rows[:, :, None], columns[:, None, :])
         )
-        below, above, left, right = (border[side][tiles] for side in range(4))
+        below, above, left, right = (border[side][blocks] for side in range(4))
         column[:, 0] = _snapped(columns, below)
         column[:, -1] = _snapped(columns, above)
         row[:, :, 0] = _snapped(rows, left)
@@ -175,57 +193,64 @@ class MeshLevels:
         triangles: Indices = flat[distinct & (flat[:, 0] != flat[:, 2])]
         return triangles
 
-    def _errors(self, values: Floats) -> Floats:
-        """Greatest error of the values (J, I, C) in each tile at each level, (L, ., .).
+    def _errors(self, values: Floats, normals: Floats | None = None) -> Floats:
+        """Greatest error of the values (J, I, C) in each block at each level, (L, ., .).
 
         A level leaves out every second line of the one before. Its error is at most that one's
-        and what the lines that are left out deviate from their neighbours.
+        and what the lines that are left out deviate from their neighbours. Where there are normals,
+        most counts what is along them.
         """
-        count = TILE_CELLS.bit_length()
+        count = BLOCK_CELLS.bit_length()
         errors = np.zeros((count, len(self._rows.first), len(self._columns.first)))
         rows, columns = (np.arange(n) for n in self._shape)
         for level in range(1, count):
             step = 1 << level
             next_rows, next_columns = (_lines(n, step) for n in self._shape)
-            along_rows = self._deviation(values[np.ix_(rows, columns)], rows, next_rows)
-            kept = values[np.ix_(next_rows, columns)]
-            along_columns = self._deviation(kept.swapaxes(0, 1), columns, next_columns).T
+            here, kept = np.ix_(rows, columns), values[np.ix_(next_rows, columns)]
+            along_rows = self._size(_deviation(values[here], rows, next_rows), normals, here)
+            here = np.ix_(next_rows, columns)
+            off = _deviation(kept.swapaxes(0, 1), columns, next_columns).swapaxes(0, 1)
+            along_columns = self._size(off, normals, here)
             twist = kept[:, np.searchsorted(columns, next_columns)]
             twist = twist[1:, 1:] + twist[:-1, :-1] - twist[1:, :-1] - twist[:-1, 1:]
+            here = np.ix_(next_rows[:-1], next_columns[:-1])
             errors[level] = errors[level - 1]
             errors[level] += self._greatest(along_rows, rows, columns)
             errors[level] += self._greatest(along_columns, next_rows, columns)
-            size = np.linalg.norm(twist, axis=-1) / 4
+            size = self._size(twist / 4, normals, here, border=False)
             errors[level] += self._greatest(size, next_rows[:-1], next_columns[:-1])
             rows, columns = next_rows, next_columns
         return errors
 
     @staticmethod
-    def _deviation(values: Floats, lines: Indices, kept: Indices) -> Floats:
-        """Distance of each line of values from those that are kept beside it, by axis 0."""
-        after = np.clip(np.searchsorted(kept, lines), 1, max(len(kept) - 1, 1))
-        if len(kept) == 1:
-            return np.zeros(values.shape[:2])
-        low, high = kept[after - 1], kept[after]
-        share = ((lines - low) / (high - low))[:, None, None]
-        at = np.searchsorted(lines, low), np.searchsorted(lines, high)
-        between = values[at[0]] * (1 - share) + values[at[1]] * share
-        return np.asarray(np.linalg.norm(values - between, axis=-1))
+    def _size(
+        off: Floats, normals: Floats | None, at: tuple[Indices, ...], *, border: bool = True
+    ) -> Floats:
+        """Size of errors (J, I, C) at some nodes, where those along the surface count less."""
+        size: Floats = np.linalg.norm(off, axis=-1)
+        if normals is None:
+            return size
+        across = np.abs(np.sum(off * normals[at], axis=-1))
+        less: Floats = np.maximum(across, SLIDE_SHARE * size)
+        if border:
+            for side in ((0,), (-1,), (slice(None), 0), (slice(None), -1)):
+                less[side] = np.maximum(less[side], OUTLINE_SHARE * size[side])
+        return less
 
     def _greatest(self, values: Floats, rows: Indices, columns: Indices) -> Floats:
-        """Greatest value in each tile, of values on lines of nodes; a border counts for both."""
+        """Greatest value in each block, of values on lines of nodes; a border counts for both."""
         if not values.size:
             return np.zeros((len(self._rows.first), len(self._columns.first)))
-        for axis, (lines, tiles) in enumerate(((rows, self._rows), (columns, self._columns))):
-            first = np.minimum(np.searchsorted(lines, tiles.first), len(lines) - 1)
+        for axis, (lines, blocks) in enumerate(((rows, self._rows), (columns, self._columns))):
+            first = np.minimum(np.searchsorted(lines, blocks.first), len(lines) - 1)
             inner = np.maximum.reduceat(values, first, axis=axis)
-            last = np.minimum(np.searchsorted(lines, tiles.first + tiles.cells), len(lines) - 1)
+            last = np.minimum(np.searchsorted(lines, blocks.first + blocks.cells), len(lines) - 1)
             values = np.maximum(inner, np.take(values, last, axis=axis))
         return values
 
     def _mixed_levels(self) -> Bools:
-        """Levels at which a cell of a tile would cover blanked cells and others."""
-        shape = (TILE_CELLS.bit_length(), len(self._rows.first), len(self._columns.first))
+        """Levels at which a cell of a block would cover blanked cells and others."""
+        shape = (BLOCK_CELLS.bit_length(), len(self._rows.first), len(self._columns.first))
         mixed = np.zeros(shape, dtype=bool)
         if self._cells.all() or not self._cells.size:
             return mixed
@@ -244,38 +269,11 @@ class MeshLevels:
             mixed[level] = mixed[level - 1] | (reduced > 0)
         return mixed
 
-    def _sizes(self, points: Floats) -> Floats:
-        """Centre and radius of each tile, and the longest side of its cells."""
-        rows, columns = self._rows, self._columns
-        corners = np.stack(
-            [
-                points[np.ix_(r, c)]
-                for r in (rows.first, rows.first + rows.cells)
-                for c in (columns.first, columns.first + columns.cells)
-            ]
-        )
-        center = corners.mean(axis=0)
-        lines = (np.arange(self._shape[0]), np.arange(self._shape[1]))
-        side = np.zeros(self._shape)
-        side[:-1] = np.linalg.norm(np.diff(points, axis=0), axis=-1)
-        across = np.linalg.norm(np.diff(points, axis=1), axis=-1)
-        side[:, :-1] = np.maximum(side[:, :-1], across)
-        size = self._greatest(side, *lines)
-        tile_of = (
-            np.repeat(np.arange(len(rows.first)), np.append(rows.cells[:-1], rows.cells[-1] + 1)),
-            np.repeat(
-                np.arange(len(columns.first)), np.append(columns.cells[:-1], columns.cells[-1] + 1)
-            ),
-        )
-        away = np.linalg.norm(points - center[np.ix_(*tile_of)], axis=-1)
-        radius = self._greatest(away, *lines) + size
-        return np.concatenate([center, radius[..., None], size[..., None]], axis=-1)
-
 
 def mesh_limits() -> dict[str, float]:
     """Numbers by which a client chooses the levels itself, for JSON."""
     return {
-        "tileCells": TILE_CELLS,
+        "tileCells": BLOCK_CELLS,
         "maxErrorPixels": MAX_ERROR_PIXELS,
         "maxColourError": MAX_COLOUR_ERROR,
         "maxSideHeights": MAX_SIDE_HEIGHTS,
@@ -283,24 +281,146 @@ def mesh_limits() -> dict[str, float]:
     }
 
 
+def _normals(points: Floats) -> Floats:
+    """Return unit normals at the nodes, (J, I, 3); zero where there is none."""
+    if min(points.shape[:2]) < 2:
+        return np.zeros_like(points)
+    # Only directions count, so no number is too large to be squared.
+    points = points / max(float(np.abs(points).max()), np.finfo(float).tiny)
+    normals = np.cross(np.gradient(points, axis=1), np.gradient(points, axis=0))
+    length = np.linalg.norm(normals, axis=-1, keepdims=True)
+    return np.asarray(normals / np.where(length > 0, length, 1.0))
+
+
+def _deviation(values: Floats, lines: Indices, kept: Indices) -> Floats:
+    """How each line of values differs from those that are kept beside it, by axis 0."""
+    if len(kept) == 1:
+        return np.zeros_like(values)
+    after = np.clip(np.searchsorted(kept, lines), 1, max(len(kept) - 1, 1))
+    low, high = kept[after - 1], kept[after]
+    share = ((lines - low) / (high - low))[:, None, None]
+    at = np.searchsorted(lines, low), np.searchsorted(lines, high)
+    return np.asarray(values - (values[at[0]] * (1 - share) + values[at[1]] * share))
+
+
 def _lines(nodes: int, step: int) -> Indices:
-    """Every so many lines of nodes in each tile, and the last one."""
+    """Every so many lines of nodes in each block, and the last one."""
     lines = np.arange(0, nodes, step)
     return lines if lines[-1] == nodes - 1 else np.append(lines, nodes - 1)
 
 
-def _border_levels(levels: Ints, periodic: tuple[bool, bool]) -> Ints:
-    """Levels of the borders below, above, left and right of each tile: the coarser of both."""
-    border = np.stack([levels] * 4)
-    border[0, 1:] = np.maximum(levels[1:], levels[:-1])
-    border[1, :-1] = border[0, 1:]
-    border[2, :, 1:] = np.maximum(levels[:, 1:], levels[:, :-1])
-    border[3, :, :-1] = border[2, :, 1:]
-    if periodic[0]:
-        border[0, 0] = border[1, -1] = np.maximum(levels[0], levels[-1])
-    if periodic[1]:
-        border[2, :, 0] = border[3, :, -1] = np.maximum(levels[:, 0], levels[:, -1])
-    return border
+#: More doublings than there are.
+NOT_DRAWN = 99
+
+
+class Region(NamedTuple):
+    """Where a part of a surface lies among the blocks of its finest nodes, and how it is drawn.
+
+    It begins at block (row, column), its nodes are every 2^step-th, and ``levels`` are those of its
+    own blocks, each of which covers 2^step blocks of the finest nodes along each side; -1 where
+    another part covers them.
+    """
+
+    step: int
+    row: int
+    column: int
+    levels: Ints
+
+
+def join(
+    parts: Sequence[Region], blocks: tuple[int, int], periodic: tuple[bool, bool] = (False, False)
+) -> list[Ints]:
+    """Return the levels of the borders of each part's blocks, so that no crack opens.
+
+    Levels of the parts are made finer in place, where a neighbour is so much finer that its corner
+    would lie inside of a side.
+
+    Parameters
+    ----------
+    parts
+        What is drawn.
+    blocks
+        Rows and columns of blocks of the finest nodes.
+    periodic
+        Whether the first line of blocks follows on the last one, along j and i.
+    """
+    # Doublings from the finest nodes to those here; what is not drawn is no neighbour.
+    nodes = np.full(blocks, NOT_DRAWN)
+    for part in parts:
+        _put(nodes, part, np.full_like(part.levels, part.step))
+    finest = nodes.copy()
+    for axis in (0, 1):
+        near = np.pad(nodes, [(int(a == axis),) * 2 for a in (0, 1)], mode="edge")
+        if periodic[axis]:
+            near = np.pad(nodes, [(int(a == axis),) * 2 for a in (0, 1)], mode="wrap")
+        for by in (0, 2):
+            beside = np.take(near, range(by, by + blocks[axis]), axis=axis)
+            finest = np.minimum(finest, beside)
+    strides = np.zeros(blocks, dtype=np.int64)  # doublings to the nodes that are drawn
+    for part in parts:
+        limit = _over(finest, part, np.minimum) + BLOCK_CELLS.bit_length() - 1 - part.step
+        np.minimum(part.levels, limit, out=part.levels)
+        _put(strides, part, part.levels + part.step)
+    # Lines between blocks, (2, rows + 1, columns + 1): below them, and left of them.
+    below = np.pad(strides, ((0, 1), (0, 0))), np.pad(strides, ((1, 0), (0, 0)))
+    left = np.pad(strides, ((0, 0), (0, 1))), np.pad(strides, ((0, 0), (1, 0)))
+    lines = [np.maximum(*below), np.maximum(*left)]
+    while True:
+        for axis in (0, 1):
+            ends = [lines[axis].take(k, axis=axis) for k in (0, -1)]
+            if periodic[axis]:
+                both = np.maximum(*ends)
+                lines[axis][(slice(None),) * axis + (0,)] = both
+                lines[axis][(slice(None),) * axis + (-1,)] = both
+        joins, before = [], [line.copy() for line in lines]
+        for part in parts:
+            joins.append(_joined(part, lines))
+        if all(np.array_equal(*pair) for pair in zip(before, lines, strict=True)):
+            return joins
+
+
+def _joined(part: Region, lines: list[Ints]) -> Ints:
+    """Give each side of a part's blocks one level, the coarsest along it, and return them."""
+    size, (rows, columns) = 1 << part.step, part.levels.shape
+    drawn = part.levels >= 0
+    result = np.empty((4, rows, columns), dtype=np.int64)
+    for side in range(4):
+        axis, far = divmod(side, 2)
+        line = lines[axis] if axis == 0 else lines[axis].T
+        counts = (rows, columns) if axis == 0 else (columns, rows)
+        first = (part.row, part.column) if axis == 0 else (part.column, part.row)
+        picks = np.minimum(first[0] + (np.arange(counts[0]) + far) * size, len(line) - 1)
+        width = line.shape[1]
+        along = first[1] + np.arange(counts[1] * size)
+        values = line[np.ix_(picks, np.minimum(along, width - 1))]
+        most = values.reshape(counts[0], counts[1], size).max(axis=2)
+        shown = drawn if axis == 0 else drawn.T
+        spread = np.where(np.repeat(shown, size, axis=1), np.repeat(most, size, axis=1), values)
+        inside = along < width
+        line[np.ix_(picks, along[inside])] = spread[:, inside]
+        result[side] = (most if axis == 0 else most.T) - part.step
+    return result
+
+
+def _put(blocks: Ints, part: Region, values: Ints) -> None:
+    """Write values of a part's own blocks to those that they cover, where they are drawn."""
+    size = 1 << part.step
+    spread, drawn = (
+        np.repeat(np.repeat(a, size, axis=0), size, axis=1) for a in (values, part.levels >= 0)
+    )
+    there = blocks[part.row : part.row + len(spread), part.column : part.column + spread.shape[1]]
+    rows, columns = there.shape
+    np.copyto(there, spread[:rows, :columns], where=drawn[:rows, :columns])
+
+
+def _over(blocks: Ints, part: Region, reduce: np.ufunc) -> Ints:
+    """Reduce values of blocks over those that a part's own ones cover."""
+    size, (rows, columns) = 1 << part.step, part.levels.shape
+    j = np.arange(part.row, min(part.row + rows * size, len(blocks)))
+    i = np.arange(part.column, min(part.column + columns * size, blocks.shape[1]))
+    some = reduce.reduceat(blocks[np.ix_(j, i)], np.arange(0, len(j), size), axis=0)
+    result: Ints = reduce.reduceat(some, np.arange(0, len(i), size), axis=1)
+    return result
 
 
 def _snapped(places: Ints, level: Ints) -> Ints:

@@ -27,6 +27,7 @@ _INCLUDE = re.compile(r"^[ \t]*//#include[ \t]+(\S+)[ \t]*$", re.MULTILINE)
 
 #: Names that the files ask for with ``#ifdef``.
 VARIANTS = (
+    "FLOWTEX_CELLS",
     "FLOWTEX_MOVING",
     "FLOWTEX_PAPER",
     "FLOWTEX_PICTURE",

@@ -12,11 +12,19 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import Floats, Ints
-from flowtex.rendering.constants import KERNELS
+from flowtex.rendering.constants import FAR_CELLS, KERNELS
 from flowtex.settings import Settings
 from flowtex.textures import PaperTextures, TextureSet
 
-__all__ = ["ANCHOR_RANGE", "ViewState", "client_constants", "is_moving", "uniforms", "variants"]
+__all__ = [
+    "ANCHOR_RANGE",
+    "ViewState",
+    "client_constants",
+    "is_moving",
+    "is_near",
+    "uniforms",
+    "variants",
+]
 
 #: Doublings from the finest cell of the noise to the extent of the surface.
 NOISE_DOUBLINGS = 30
@@ -54,6 +62,8 @@ class ViewState:
     density
         Pixels drawn, along a side, for one that the settings speak of: a picture of twice the
         density has grains of twice as many pixels, and shows the same.
+    pixel
+        Length that a pixel drawn covers at the focus; 0 stands for as near as can be.
     """
 
     focus: Floats = field(default_factory=lambda: np.zeros(3))
@@ -63,13 +73,21 @@ class ViewState:
     time: float = 0.0
     clock: float = 0.0
     density: float = 1.0
+    pixel: float = 0.0
 
 
-def variants(textures: TextureSet, *, unsteady: bool, moving: bool) -> frozenset[str]:
-    """Names of the shader's variant for a texture set, and whether the grains change in time."""
+def variants(
+    textures: TextureSet, *, unsteady: bool, moving: bool = False, near: bool = False
+) -> frozenset[str]:
+    """Names of the shader's variant for a texture set.
+
+    The grains may change in time, and the view may be so near that paths stay in their cells.
+    """
     chosen = set()
     if moving:
         chosen.add("FLOWTEX_MOVING")
+    if near:
+        chosen.add("FLOWTEX_CELLS")
     if textures.paper is not None:
         chosen.add("FLOWTEX_PAPER")
     if textures.paper is not None and textures.paper.picture:
@@ -92,13 +110,14 @@ def client_constants() -> dict[str, Any]:
         "clockStep": CLOCK_STEP,
         "kernels": list(KERNELS),
         "anchorRange": ANCHOR_RANGE,
+        "farCells": FAR_CELLS,
     }
 
 
 def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[str, Any]:
     """Values by name: bool, int, float, tuples of float, or lists for arrays.
 
-    ``moving`` is no uniform: shaders have a variant for it.
+    ``moving`` and ``near`` are no uniforms: shaders have variants for them.
     """
     geometry = textures.geometry
     # A power of two, so that it is exact.
@@ -115,6 +134,8 @@ def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[
         "u_deepest": float(geometry.levels),
         "u_lags": [float(lag) for lag in textures.lags],
         "u_lagCount": len(textures.lags),
+        "u_rateLayer": textures.count - 1,
+        "u_cell": textures.cell,
         "u_sides": sides,
         "u_unit": textures.unit,
         "u_samples": 2 * settings.samples - 1 if moving else settings.samples,
@@ -128,6 +149,7 @@ def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[
         "u_showLevel": settings.show_level,
         "u_fixed": settings.fixed_grain,
         "moving": moving,
+        "near": is_near(textures, settings, view),
         **_motion(textures, settings, view),
         **_noise_origin(even, finest, view.anchor),
         "u_noiseFinest": finest,
@@ -147,6 +169,23 @@ def is_moving(textures: TextureSet, settings: Settings) -> bool:
         return False
     streams = settings.motion != "off" and not textures.geometry.field.sign_free
     return textures.store.steps > 1 or streams
+
+
+def is_near(textures: TextureSet, settings: Settings, view: ViewState) -> bool:
+    """Tell whether a path may be so short that it stays in a cell where the flow turns.
+
+    In perspective the nearest point of the surface counts, or of the ball around it.
+    """
+    near = view.pixel
+    if view.eye[3]:
+        away, focus = view.eye[:3] - textures.geometry.center, view.eye[:3] - view.focus
+        gap = max(float(np.linalg.norm(away)) - 0.5 * textures.geometry.extent, 0.0)
+        near *= gap / float(np.linalg.norm(focus))
+    grain = near * settings.grain * view.density
+    if not settings.lod:
+        grain = textures.geometry.extent / settings.resolution
+    side = settings.samples // 2 * settings.spacing * grain
+    return side < FAR_CELLS * textures.critical_cell
 
 
 def _direction(textures: TextureSet, settings: Settings) -> tuple[int, str]:

@@ -18,18 +18,26 @@ LINEAR = 1e-9
 
 
 class NodeDisplacements:
-    """Map from displacements in index space to those in space, for all nodes of a surface.
+    """Map from displacements in index space to those in space, for some nodes of a surface.
 
-    The rows of ``frame`` (C, 3) take a vector to the frame of the results.
+    The rows of ``frame`` (C, 3) take a vector to the frame of the results; ``nodes`` are rows and
+    columns of the surface.
     """
 
-    def __init__(self, surface: Surface, frame: Floats) -> None:
-        self._shape = surface.shape
+    def __init__(
+        self,
+        surface: Surface,
+        frame: Floats,
+        nodes: tuple[slice, slice] = (slice(None), slice(None)),
+    ) -> None:
         self._map = CubicMap(surface, frame, surface.center)
+        rows, columns = (np.arange(n)[part] for n, part in zip(surface.shape, nodes, strict=True))
+        self._shape = len(rows), len(columns)
+        self._j, self._i = (a.ravel() for a in np.meshgrid(rows, columns, indexing="ij"))
         self._first = self._map.tangents[..., :1]
         spread = np.abs(self._map.tangents - self._first).max()
         self._linear = bool(spread <= LINEAR * np.abs(self._first).max())
-        local = (surface.points - surface.center) @ frame.T
+        local = (surface.points[nodes] - surface.center) @ frame.T
         self._points = np.ascontiguousarray(local.reshape(-1, len(frame)).T)
 
     def __call__(self, displacement: NDArray[np.floating]) -> Floats:
@@ -42,9 +50,6 @@ class NodeDisplacements:
         result = np.empty_like(self._points)
         for first in range(0, rows * columns, BLOCK):
             block = slice(first, first + BLOCK)
-            node = np.arange(rows * columns)[block]
-            j, i = np.divmod(node.astype(float), columns)
-            i += along_i[block]
-            j += along_j[block]
+            i, j = self._i[block] + along_i[block], self._j[block] + along_j[block]
             result[:, block] = self._map.at(i, j) - self._points[:, block]
         return result.reshape(-1, rows, columns)

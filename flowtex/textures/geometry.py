@@ -16,41 +16,69 @@ from typing import Any
 
 import numpy as np
 
-from flowtex._util.array_types import Floats, Floats32, Indices
+from flowtex._util.array_types import Bools, Floats, Floats32, Indices
 from flowtex.field import FlowField
 from flowtex.field.interpolation import nearest_known
+from flowtex.field.surface import Surface
 
 __all__ = ["SurfaceGeometry"]
 
 
-#: Mip levels of a texture beside its finest one, at most.
-DEEPEST = 5
+#: Mip levels of a texture beside its finest one, at most, and of a tile's.
+DEEPEST, TILE_LEVELS = 5, 3
 
 
 @dataclass(frozen=True)
 class Padding:
-    """Where the nodes of one axis lie in a texture."""
+    """Where the nodes of one axis lie in a texture.
+
+    Drawn are ``nodes`` of them from number ``first`` on, of the ``total`` that there are.
+    """
 
     nodes: int
     before: int
     size: int
     periodic: bool
+    first: int = 0
+    total: int = 0
 
     @classmethod
-    def of(cls, nodes: int, levels: int, *, periodic: bool) -> Padding:
-        """Pad to a multiple of the block of the coarsest level."""
+    def of(cls, total: int, levels: int, *, periodic: bool, drawn: slice | None = None) -> Padding:
+        """Pad to a multiple of the block of the coarsest level.
+
+        What is left out beside the nodes that are ``drawn`` continues them as a period does.
+        """
+        first, end, _ = (drawn or slice(None)).indices(total)
         block = 2**levels
-        before = block if periodic else 0
-        needed = nodes + 2 * before
-        return cls(nodes, before, -(-needed // block) * block, periodic)
+        before = block if periodic or drawn is not None else 0
+        needed = end - first + 2 * before
+        return cls(end - first, before, -(-needed // block) * block, periodic, first, total)
 
     @property
     def picks(self) -> Indices:
         """Node that each texel holds, (size,)."""
-        at = np.arange(self.size) - self.before
+        at = np.arange(self.size) - self.before + self.first
         if self.periodic:
-            return np.mod(at, self.nodes - 1)
-        return np.clip(at, 0, self.nodes - 1)
+            return np.mod(at, self.total - 1)
+        return np.clip(at, 0, self.total - 1)
+
+    @property
+    def drawn(self) -> slice:
+        """The nodes that are drawn."""
+        return slice(self.first, self.first + self.nodes)
+
+    @property
+    def texels(self) -> slice:
+        """The nodes that lie in the texture, once at least."""
+        if self.periodic:
+            return slice(0, self.total)
+        first = self.first - self.before
+        return slice(max(first, 0), min(first + self.size, self.total))
+
+    @property
+    def start(self) -> int:
+        """Texel that holds the first of them."""
+        return int(self.texels.start) - self.first + self.before
 
     @property
     def coordinates(self) -> Floats:
@@ -62,13 +90,18 @@ class Padding:
 class SurfaceGeometry:
     """A surface ready to be drawn, with ``levels`` mip levels in its textures beside the finest.
 
-    ``rows`` and ``columns`` say how the j and i axes lie in the slice textures.
+    ``rows`` and ``columns`` say how the j and i axes lie in the slice textures, and which nodes of
+    the field are drawn: in a tile, those around it only continue it. ``whole`` is the surface that
+    a tile is a part of, whose middle, size and frame it has; ``open_sides`` tells of its field
+    whether that goes on before and after its rows, and its columns.
     """
 
     field: FlowField
     levels: int
     rows: Padding
     columns: Padding
+    whole: Surface
+    open_sides: tuple[tuple[bool, bool], ...] = ((False, False), (False, False))
 
     @classmethod
     def of(cls, field: FlowField) -> SurfaceGeometry:
@@ -79,27 +112,72 @@ class SurfaceGeometry:
             Padding.of(n, levels, periodic=p)
             for n, p in zip(field.shape, field.periodic, strict=True)
         )
-        return cls(field, levels, rows, columns)
+        return cls(field, levels, rows, columns, field.surface)
+
+    @classmethod
+    def of_tile(
+        cls,
+        field: FlowField,
+        drawn: tuple[slice, slice],
+        whole: Surface,
+        open_sides: tuple[tuple[bool, bool], ...],
+    ) -> SurfaceGeometry:
+        """Lay out some of a field's rows and columns, as a part of a larger surface."""
+        rows, columns = (
+            Padding.of(n, TILE_LEVELS, periodic=False, drawn=part)
+            for n, part in zip(field.shape, drawn, strict=True)
+        )
+        return cls(field, TILE_LEVELS, rows, columns, whole, open_sides)
+
+    @property
+    def drawn(self) -> tuple[slice, slice]:
+        """The rows and columns of the field that are drawn."""
+        return self.rows.drawn, self.columns.drawn
+
+    @property
+    def texels(self) -> tuple[slice, slice]:
+        """The rows and columns of the field that lie in the textures."""
+        return self.rows.texels, self.columns.texels
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Number of nodes (J, I) that are drawn."""
+        return self.rows.nodes, self.columns.nodes
+
+    @property
+    def points(self) -> Floats:
+        """The nodes that are drawn, (J, I, 3), in the mesh's own coordinates."""
+        return self.field.surface.points[self.drawn]
+
+    @property
+    def cells(self) -> Bools:
+        """The cells that are drawn, (J - 1, I - 1)."""
+        return self.field.surface.cells[self.drawn][: self.rows.nodes - 1, : self.columns.nodes - 1]
+
+    @property
+    def periodic(self) -> tuple[bool, bool]:
+        """Whether what is drawn closes on itself, along j and i."""
+        return self.rows.periodic, self.columns.periodic
 
     @property
     def planar(self) -> bool:
         """Whether the surface is flat."""
-        return self.field.surface.frame is not None
+        return self.whole.frame is not None
 
     @property
     def center(self) -> Floats:
         """What was taken from the mesh's coordinates, (3,)."""
-        return self.field.surface.center
+        return self.whole.center
 
     @property
     def extent(self) -> float:
         """Diagonal of the bounding box."""
-        return self.field.surface.extent
+        return self.whole.extent
 
     @cached_property
     def frame(self) -> Floats:
         """Rows that take a vector of the mesh to the frame of ``position``, (3, 3)."""
-        flat = self.field.surface.frame
+        flat = self.whole.frame
         return np.eye(3) if flat is None else np.vstack([flat, np.cross(flat[0], flat[1])])
 
     @cached_property
@@ -112,7 +190,7 @@ class SurfaceGeometry:
 
         Close to the anchor single precision tells points apart that it would not from the middle.
         """
-        local = (self.field.surface.points - self.center) @ self.frame.T
+        local = (self.points - self.center) @ self.frame.T
         return np.asarray(local - anchor, dtype=np.float32)
 
     def local(self, point: Floats) -> Floats:
@@ -137,7 +215,8 @@ class SurfaceGeometry:
                 normal[bad, column] = normal[bad, beside]
             length = np.linalg.norm(normal, axis=-1, keepdims=True)
         safe = np.where(length > 0, length, 1.0)
-        return np.where(length > 0, normal / safe, [0.0, 0.0, 1.0]).astype(np.float32)
+        unit = np.where(length > 0, normal / safe, [0.0, 0.0, 1.0])
+        return unit[self.drawn].astype(np.float32)
 
     @cached_property
     def coordinate(self) -> Floats32:
@@ -146,28 +225,34 @@ class SurfaceGeometry:
         return np.stack([u, v], axis=-1).astype(np.float32)
 
     def write_texels(self, data: Floats32, texels: Floats32) -> None:
-        """Write nodal data (J, I, C) into texels (H, W, C), in the order of its rows and columns.
+        """Write data (J, I, C) of the nodes of :attr:`texels` into texels (H, W, C).
 
         Blanked nodes of ``data`` are filled in place.
         """
-        if not self.field.valid.all():
-            blank = ~self.field.valid
-            data[blank] = data[tuple(at[blank] for at in self._nearest)]
+        if self._nearest is not None:
+            blank, nearest = self._nearest
+            data[blank] = data[nearest]
         rows, columns = self.rows, self.columns
-        top, left = rows.before + rows.nodes, columns.before + columns.nodes
-        inner = texels[rows.before : top]
-        inner[:, columns.before : left] = data
-        inner[:, : columns.before] = data[:, columns.picks[: columns.before]]
-        inner[:, left:] = data[:, columns.picks[left:]]
+        above, before = rows.start, columns.start
+        top, left = above + data.shape[0], before + data.shape[1]
+        inner = texels[above:top]
+        inner[:, before:left] = data
+        inner[:, :before] = data[:, columns.picks[:before] - columns.texels.start]
+        inner[:, left:] = data[:, columns.picks[left:] - columns.texels.start]
         if columns.periodic:
             # The closing line is traced apart from the first; every repeat must be the same.
-            inner[:, left - 1] = inner[:, columns.before]
+            inner[:, left - 1] = inner[:, before]
         if rows.periodic:
             inner[-1] = inner[0]
         # Beyond the nodes whole rows are repeated.
-        texels[: rows.before] = inner[rows.picks[: rows.before]]
-        texels[top:] = inner[rows.picks[top:]]
+        texels[:above] = inner[rows.picks[:above] - rows.texels.start]
+        texels[top:] = inner[rows.picks[top:] - rows.texels.start]
 
     @cached_property
-    def _nearest(self) -> tuple[Any, ...]:
-        return nearest_known(self.field.valid)
+    def _nearest(self) -> tuple[Bools, tuple[Any, ...]] | None:
+        """Blanked nodes of :attr:`texels`, and the nodes that they take their data from."""
+        valid = self.field.valid[self.texels]
+        if valid.all() or not valid.any():
+            return None
+        blank = ~valid
+        return blank, tuple(at[blank] for at in nearest_known(valid))

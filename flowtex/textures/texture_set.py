@@ -11,6 +11,7 @@ layer                 first three channels                                   fou
 0                     slope at lag zero                                      unit of lag
 1 ... M               slopes of the backward slices                          1: reach; 2: speed
 M + 1 ... 2 M         slopes of the forward slices, where there are any      M + 1: reach
+the last              of a steady field: layer 0 in cells, two channels      speed
 ====================  =====================================================  =================
 
 Slopes are in space (the surface's own frame), lengths per unit of nominal length, for the
@@ -34,13 +35,15 @@ from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.textures.paper import PaperTextures
 from flowtex.trace import SliceStore, TraceSlices
 
-__all__ = ["MOST_LAGS", "TextureSet"]
+__all__ = ["AGREED", "MOST_LAGS", "TextureSet"]
 
 
 #: Slices on each side that a shader has room for.
 MOST_LAGS = 32
 #: Greatest number in half precision, in which texels are stored.
 HALF_MAX = 65504.0
+#: Nodes agree on the direction where their mean velocity is so long, over the mean of the lengths.
+AGREED = 0.99
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,6 +57,9 @@ class TextureSet:
     geometry: SurfaceGeometry
     store: SliceStore
     paper: PaperTextures | None = None
+    #: In a tile, the typical speed of the whole flow, and how long its paths have to be.
+    whole_speed: float | None = None
+    longest: float = np.inf
 
     @classmethod
     def build(
@@ -108,6 +114,8 @@ class TextureSet:
     @cached_property
     def typical_speed(self) -> float:
         """Root mean square of the speed in the field's own units; 1 in a flow at rest."""
+        if self.whole_speed is not None:
+            return self.whole_speed
         speed = self.geometry.field.speed[:, self.geometry.field.valid]
         return float(np.sqrt(np.mean(speed**2))) or 1.0
 
@@ -124,28 +132,75 @@ class TextureSet:
     @property
     def count(self) -> int:
         """Number of layers."""
-        return 1 + self.sides * len(self.store.lags)
+        return 1 + self.sides * len(self.store.lags) + self.in_cells
+
+    @property
+    def in_cells(self) -> bool:
+        """Whether there is the last layer, of the velocity in cells."""
+        return self.store.steps == 1 and self.paper is None and not self.geometry.field.sign_free
+
+    @cached_property
+    def cell(self) -> float:
+        """Length of a cell that the last layer's velocities are measured in."""
+        return float(np.median(self.geometry.field.surface.cell_size[self.geometry.field.valid]))
+
+    @cached_property
+    def critical_cell(self) -> float:
+        """Length of the longest cell whose nodes do not agree on the direction; 0 if all do."""
+        if not self.in_cells:
+            return 0.0
+        field = self.geometry.field
+        flow, tangents = field.index_velocity.components[0], field.surface.tangents
+        along = np.einsum("jic,cjik->jik", flow, tangents)
+        length = np.linalg.norm(along, axis=-1, keepdims=True)
+        along = np.divide(along, length, out=np.zeros_like(along), where=length > 0)
+        parts = (slice(None, -1), slice(1, None))
+        corners = [(j, i) for j in parts for i in parts]
+        mean: Floats = np.sum([along[at] for at in corners], axis=0)
+        mean /= np.maximum(np.linalg.norm(mean, axis=-1, keepdims=True), np.finfo(float).tiny)
+        # What stands still says nothing of the direction.
+        cosines = [
+            np.where(length[at][..., 0] > 0, (along[at] * mean).sum(-1), 1) for at in corners
+        ]
+        parting = (np.min(cosines, axis=0) < AGREED) & field.surface.cells
+        j, i = (np.linalg.norm(np.diff(field.surface.points, axis=k), axis=-1) for k in (0, 1))
+        longest = np.hypot(np.maximum(j[:, :-1], j[:, 1:]), np.maximum(i[:-1], i[1:]))
+        return float(longest[parting].max(initial=0.0))
+
+    def forget(self) -> None:
+        """Drop what only making the layers needs."""
+        self.store.forget()
+        self.geometry.field.forget()
+        for name in ("_displacements", "_length"):
+            self.__dict__.pop(name, None)
 
     def layers(self, step: int = 0) -> Floats32:
         """Texels of the slice texture for one destination time, (layers, H, W, 4)."""
-        slices = self.store.at(step)
+        whole = self.store.at(step)
+        slices, tangent = whole.part(*self.geometry.texels), self._tangent(whole)
         size = (self.geometry.rows.size, self.geometry.columns.size)
         result = np.empty((self.count, *size, 4), np.float32)
 
         def make(layer: int) -> None:
-            nodal = self._nodal(slices, layer)
+            nodal = self._nodal(slices, tangent, layer)
             self.geometry.write_texels(np.clip(nodal, -HALF_MAX, HALF_MAX, nodal), result[layer])
 
         with ThreadPoolExecutor(max_workers=min(os.cpu_count() or 1, 8)) as pool:
             list(pool.map(make, range(self.count)))
         return result
 
-    def _nodal(self, slices: TraceSlices, layer: int) -> Floats32:
+    def _nodal(self, slices: TraceSlices, tangent: AnyArray, layer: int) -> Floats32:
         """Give the four channels of one layer at the nodes, (J, I, 4)."""
         result = np.zeros((*slices.shape, 4), np.float32)
         if layer == 0:
-            result[..., :3] = self._tangent(slices)
+            result[..., :3] = tangent
             result[..., 3] = slices.unit * self.pace / self.unit
+            return result
+        if self.in_cells and layer == self.count - 1:
+            result[..., :2] = slices.rate[0] * (self.cell / self.unit)
+            # Tangents by arc length have no speed of their own.
+            timed = self.store.parameter == "time"
+            result[..., 3] = 1.0 if timed else self._speed(slices)
             return result
         side, m = divmod(layer - 1, len(slices.lags))
         sign, displacement, reach = -1.0, slices.displacement, slices.reach
@@ -169,10 +224,11 @@ class TextureSet:
         """Speed of the flow at the nodes in multiples of its typical speed, (J, I)."""
         field = self.geometry.field
         step = int(np.argmin(np.abs(field.times - slices.times[0])))
-        return np.asarray(field.speed[step] / self.typical_speed)
+        return np.asarray(field.speed[step][self.geometry.texels] / self.typical_speed)
 
     def _tangent(self, slices: TraceSlices) -> AnyArray:
-        rate = slices.rate[0]
+        """Slopes at lag zero of the nodes in the textures, from the slices of all nodes."""
+        rate, texels = slices.rate[0], self.geometry.texels
         if self.paper is not None:
             return three_components(rate * self.paper.by_cell())
         surface = self.geometry.field.surface
@@ -182,20 +238,22 @@ class TextureSet:
             # One point has one slope, of which its nodes hold a component each.
             across = pole.lines(rate)[pole.line, :, pole.component]
             pole.lines(along)[pole.line] = pole.vector(across) @ pole.plane
-        return np.asarray(along @ self.geometry.frame.T) / self._length
+        return np.asarray(along[texels] @ self.geometry.frame.T) / self._length
 
     @cached_property
     def _displacements(self) -> NodeDisplacements:
         """Takes displacements to space; a flat surface has no third component."""
         frame = self.geometry.frame
         return NodeDisplacements(
-            self.geometry.field.surface, frame[:2] if self.geometry.planar else frame
+            self.geometry.field.surface,
+            frame[:2] if self.geometry.planar else frame,
+            self.geometry.texels,
         )
 
     @cached_property
     def _length(self) -> Floats:
         """Nominal length of one unit of lag at each node, (J, I, 1)."""
-        return (self.store.unit * self.pace)[..., None]
+        return (self.store.unit * self.pace)[self.geometry.texels][..., None]
 
 
 def _usable_reach(reach: AnyArray, slices: TraceSlices) -> AnyArray:

@@ -23,15 +23,15 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex._util import compiled
+from flowtex._util.array_types import Bools, Floats, Floats32, Indices
+from flowtex.trace.node_grid import BORDER_ROUNDING_CELLS
 from flowtex.trace.sampler import Sampler
 
-__all__ = ["Paths", "integrate"]
+__all__ = ["MOST_CELLS", "Paths", "follow", "integrate"]
 
 Numbers = NDArray[np.int8]
 
-#: Longest step in cells: a path cannot jump over a blanked cell unseen.
-LONGEST_STEP_CELLS = 1.0
 #: A step may grow or shrink by these factors.
 STEP_SHRINK, STEP_GROWTH, STEP_SAFETY = 0.2, 4.0, 0.9
 #: Bisections that find where inside a step a path ends.
@@ -41,6 +41,10 @@ BISECTIONS = 20
 STEPS_PER_LINE, LEAST_STEPS, MOST_STEPS = 50, 1_000, 20_000
 #: Share of a step by which rounding may miss a lag.
 LAG_ROUNDING = 1e-9
+#: Displacement in cells that single precision holds, with what is computed of it.
+MOST_CELLS = 1e30
+#: Those of these that :mod:`flowtex._util.kernels` is given as numbers.
+RULES = (STEP_SHRINK, STEP_GROWTH, STEP_SAFETY, LAG_ROUNDING, BORDER_ROUNDING_CELLS, MOST_CELLS)
 
 
 @dataclass(frozen=True)
@@ -84,13 +88,55 @@ def integrate(
     elsewhere is interrupted.
     """
     run = _Run(sampler, np.ascontiguousarray(start.T), lags, unit, direction, tolerance, within)
-    for _ in range(int(np.clip(STEPS_PER_LINE * sampler.lines, LEAST_STEPS, MOST_STEPS))):
+    for _ in range(_most_steps(sampler)):
         run.end_resting()
         if not len(run.state.which):
             break
         run.advance()
     run.end_all()
     return Paths(np.moveaxis(run.out, 1, 2), run.reach / unit, run.polar, run.interrupted)
+
+
+def follow(
+    sampler: Sampler,
+    nodes: Indices,
+    lags: Floats,
+    unit: Floats,
+    moved: Floats32,
+    reach: Floats32,
+    *,
+    direction: float,
+    tolerance: float,
+) -> bool:
+    """Do the same for particles from nodes (N,), compiled, and tell whether that was possible.
+
+    Displacements are written to ``moved`` (2, M, J * I), and reaches to (J * I,).
+    """
+    kernels = compiled.kernels()
+    if kernels is None or not sampler.plain:
+        return False
+    grid = sampler.grid
+    kernels.follow(
+        (grid.rows, grid.columns, *grid.periodic),
+        grid.room,
+        (sampler.nodal, sampler.times, sampler.destination, direction, sampler.floor),
+        (tolerance, *RULES),
+        (_most_steps(sampler), BISECTIONS),
+        nodes,
+        np.array(lags),
+        unit,
+        sampler.rest(unit, float(lags[-1])),
+        (sampler.longest, sampler.span(direction)),
+        moved,
+        reach,
+    )
+    return True
+
+
+def _most_steps(sampler: Sampler) -> int:
+    """Return the number of rounds of steps after which paths are ended."""
+    lines = sampler.grid.rows + sampler.grid.columns
+    return int(np.clip(STEPS_PER_LINE * lines, LEAST_STEPS, MOST_STEPS))
 
 
 @dataclass
@@ -159,6 +205,7 @@ class _Run:
         count = start.shape[1]
         self.sampler, self.direction, self.tolerance = sampler, direction, tolerance
         self.charts, self.within = sampler.charts, within
+        self.span = sampler.span(direction)
         self.lags = lags
         #: The lags and one that is never reached, for particles that have them all.
         self.next_lags = np.append(lags, np.inf)
@@ -200,10 +247,13 @@ class _Run:
         """Try one step of every particle, and accept it where its error is small enough."""
         state = self.state
         rest = self.lags[-1] * state.unit - state.lag
-        longest = LONGEST_STEP_CELLS / np.maximum(_speed(state.rate), 1e-300)
+        # A path must not jump over a blanked cell unseen.
+        longest = self.sampler.room(state.y) / np.maximum(_speed(state.rate), 1e-300)
         h = np.minimum(np.minimum(state.step, longest), rest)
-        # Before the first time step nothing changes.
-        h = np.where(state.lag < self.sampler.span, np.minimum(h, self.sampler.longest), h)
+        if np.isfinite(self.sampler.longest):
+            # Before the first time step nothing changes.
+            changing = state.lag < self.span
+            h = np.where(changing, np.minimum(h, self.sampler.longest), h)
         step, error = self._try(h)
         size = np.maximum(error * (1 / self.tolerance), 1e-9)
         state.step = h * np.clip(STEP_SAFETY / np.cbrt(size), STEP_SHRINK, STEP_GROWTH)

@@ -32,11 +32,16 @@ def lag_unit(field: FlowField, parameter: str) -> Floats:
     return np.ones(field.shape)
 
 
-def choose_lags(field: FlowField, parameter: str) -> Floats:
-    """Lags from a quarter of a cell to a quarter of the surface, (M,), in lag units."""
-    size, extent = field.surface.cell_size[field.valid], field.surface.extent
+def choose_lags(field: FlowField, parameter: str, longest: float | None = None) -> Floats:
+    """Lags from a quarter of a cell to a quarter of the surface, (M,), in lag units.
+
+    The greatest length may be given instead, in the mesh's units.
+    """
+    size = field.surface.cell_size[field.valid]
+    if longest is None:
+        longest = LAST_EXTENTS * field.surface.extent
     if parameter == "arclength":
-        first, last = FIRST_CELLS, LAST_EXTENTS * extent / float(np.percentile(size, 5))
+        first, last = FIRST_CELLS, longest / float(np.percentile(size, 5))
     else:
         speed = field.speed[:, field.valid]
         moving = speed > 1e-6 * speed.max() if speed.any() else np.zeros_like(speed, dtype=bool)
@@ -44,7 +49,7 @@ def choose_lags(field: FlowField, parameter: str) -> Floats:
             return np.array([1.0, RATIO])
         crossing = np.broadcast_to(size, speed.shape)[moving] / speed[moving]
         first = FIRST_CELLS * float(np.percentile(crossing, 10))
-        last = LAST_EXTENTS * extent / float(np.sqrt(np.mean(speed[moving] ** 2)))
+        last = longest / float(np.sqrt(np.mean(speed[moving] ** 2)))
         if not field.steady:
             # Lags that reach other time steps are what long paths can be composed of.
             step = float(np.mean(np.diff(field.times)))

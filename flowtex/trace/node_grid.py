@@ -6,18 +6,22 @@ rows, and look-ups are most of what tracing does.
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
+from scipy import ndimage
 
-from flowtex._util.array_types import AnyArray, Bools, Indices
+from flowtex._util.array_types import AnyArray, Bools, Bytes, Indices
 from flowtex.field import FlowField
 from flowtex.field.poles import Poles
 
-__all__ = ["Corners", "NodeGrid"]
+__all__ = ["BORDER_ROUNDING_CELLS", "LEAST_ROOM_CELLS", "Corners", "NodeGrid"]
 
 #: Cells that rounding may carry a path over a border that it follows.
 BORDER_ROUNDING_CELLS = 1e-6
+#: Cells that a particle may move at once: where nothing is blanked, and next to a blanked cell.
+MOST_ROOM_CELLS, LEAST_ROOM_CELLS = 4, 1
 
 
 class Corners(NamedTuple):
@@ -68,6 +72,30 @@ class NodeGrid:
         j += i
         return Corners(j, s, t)
 
+    @cached_property
+    def room(self) -> Bytes:
+        """Cells that a particle may move at once from each cell, (J * I,), 0 if it is blanked.
+
+        Further it might jump over a blanked cell unseen.
+        """
+        shape = (self.rows, self.columns)
+        if self._open is None:
+            return np.full(self.size, MOST_ROOM_CELLS, np.uint8)
+        around = MOST_ROOM_CELLS
+        cells = self._open.reshape(shape)[:-1, :-1]
+        for axis, closed in enumerate(self.periodic):
+            width = [(around * (a == axis),) * 2 for a in range(2)]
+            cells = np.pad(cells, width, mode="wrap" if closed else "edge")
+        far = ndimage.distance_transform_cdt(cells, "chessboard")[around:-around, around:-around]
+        room = np.minimum(far, MOST_ROOM_CELLS)
+        return np.pad(room, ((0, 1), (0, 1))).astype(np.uint8).ravel()
+
+    def room_at(self, position: AnyArray) -> AnyArray | int:
+        """Cells that particles at positions (2, N) may move at once, the same for all or (N,)."""
+        if self._open is None:
+            return MOST_ROOM_CELLS
+        return np.maximum(self.room[self.corners(position).at], LEAST_ROOM_CELLS)
+
     def blend(self, data: AnyArray, corners: Corners, base: Indices | int = 0) -> AnyArray:
         """Interpolate nodal data, several sets behind each other, (sets * J * I,).
 
@@ -103,8 +131,8 @@ def _cell(x: AnyArray, cells: int, *, closed: bool) -> tuple[Indices, AnyArray]:
     """Return the number of the cell along one axis, and the fraction inside it."""
     if closed:
         inside = x - cells * np.floor(x * x.dtype.type(1 / cells))
-        # Rounding can leave the result a hair outside.
-        np.maximum(inside, 0, out=inside)
+        # Rounding can leave the result outside, by more the further away the position is.
+        np.clip(inside, 0, cells, out=inside)
     else:
         inside = np.clip(x, 0, cells)
     number = inside.astype(np.intp)

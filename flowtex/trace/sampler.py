@@ -14,11 +14,11 @@ from abc import ABC, abstractmethod
 import numpy as np
 from numpy.typing import NDArray
 
-from flowtex._util.array_types import Floats
+from flowtex._util.array_types import AnyArray, Floats
 from flowtex.field import FlowField
 from flowtex.field.interpolation import bracket, fill_blanked
 from flowtex.trace.charts import Charts, Patch, cap
-from flowtex.trace.node_grid import NodeGrid
+from flowtex.trace.node_grid import LEAST_ROOM_CELLS, NodeGrid
 
 __all__ = ["LengthSampler", "Sampler", "TimeSampler"]
 
@@ -38,21 +38,28 @@ class Sampler(ABC):
     data are components along i and j, and anything else that is interpolated, (T, J, I, C).
     """
 
-    #: Longest step in units of lag up to a lag, so that no change in time is jumped over.
-    longest: float
-    span: float
+    #: Longest step in units of lag, so that no change in time is jumped over.
+    longest = np.inf
+    #: Times of the data, and the one from which lags count.
+    times = np.zeros(1)
+    destination = 0.0
+    #: Speed up to which a particle has stopped.
+    floor = 0.0
 
     def __init__(self, field: FlowField, data: Floats) -> None:
         data = fill_blanked(data, field.valid, data.ndim - 3)
+        #: The data by node, (T * J * I, C).
+        self.nodal = np.ascontiguousarray(data).reshape(-1, data.shape[-1])
         parts = [np.ascontiguousarray(data[..., c]).ravel() for c in range(data.shape[-1])]
         grid = NodeGrid.of(field)
         self._poles = poles = field.surface.poles
         #: The charts of a surface that has poles.
         self.charts = None if poles is None else Charts(poles)
-        #: Number of lines of nodes along both axes.
-        self.lines = grid.rows + grid.columns
         #: Whether particles are inside the domain, in a cell that is not blanked.
         self.alive = grid.alive
+        self.grid = grid
+        #: Whether positions are (i, j) everywhere, and rates have a sign.
+        self.plain = poles is None and not field.sign_free
         self._patches = [Patch(grid, parts)]
         if poles is not None and self.charts is not None:
             self._patches += [cap(pole, grid, parts, self.charts.near) for pole in poles]
@@ -93,6 +100,14 @@ class Sampler(ABC):
             return result
         return np.negative(result, out=result) if direction < 0 else result
 
+    def room(self, position: Floats) -> AnyArray | int:
+        """Cells that particles may move at once, the same for all or (N,)."""
+        return self.grid.room_at(position) if self.charts is None else LEAST_ROOM_CELLS
+
+    def span(self, direction: float) -> float:
+        """Lag up to which the flow changes in time: to the first time step, or to the last."""
+        return float(direction * (self.times[0 if direction < 0 else -1] - self.destination))
+
     @abstractmethod
     def rest(self, unit: Floats, last: float) -> Floats:
         """Rate (N,) below which a particle stands still, for lags up to ``last * unit``."""
@@ -132,20 +147,18 @@ class LengthSampler(Sampler):
     comes to rest there instead of jumping across.
     """
 
-    longest = span = np.inf
-
     def __init__(self, field: FlowField) -> None:
         flow = field.index_velocity
         speed = flow.speed[..., None]
         super().__init__(field, np.concatenate([flow.components, speed], axis=-1))
-        self._floor = max(STOPPED_SPEED * float(speed.max()), np.finfo(float).tiny)
+        self.floor = max(STOPPED_SPEED * float(speed.max()), np.finfo(float).tiny)
 
     def _rate(self, patch: Patch, position: Floats, lag: Floats, direction: float) -> Floats:
         """Direction for one unit of length."""
         del lag, direction
         corners = patch.corners(position)
         speed = patch.blend(2, corners)
-        still = speed <= self._floor
+        still = speed <= self.floor
         speed[still] = np.inf
         result = np.empty_like(position)
         np.divide(patch.blend(0, corners), speed, out=result[0])
@@ -163,24 +176,22 @@ class TimeSampler(Sampler):
 
     def __init__(self, field: FlowField) -> None:
         super().__init__(field, field.index_velocity.components)
-        self._times = field.times
-        self._destination = float(field.times[-1])
+        self.times = field.times
+        self.destination = float(field.times[-1])
         self.longest = np.inf if field.steady else float(np.diff(field.times).max())
-        self.span = self._destination - float(field.times[0])
 
     def since(self, destination: float) -> TimeSampler:
         """Return this sampler with lags counted from another destination time."""
         other = object.__new__(TimeSampler)
-        span = destination - self._times[0]
-        other.__dict__.update(self.__dict__, _destination=destination, span=span)
+        other.__dict__.update(self.__dict__, destination=destination)
         return other
 
     def _rate(self, patch: Patch, position: Floats, lag: Floats, direction: float) -> Floats:
         """Velocity at time destination + direction * lag."""
         corners = patch.corners(position)
-        if len(self._times) == 1:
+        if len(self.times) == 1:
             return np.stack([patch.blend(0, corners), patch.blend(1, corners)])
-        step, late = bracket(self._times, self._destination + direction * lag, side="left")
+        step, late = bracket(self.times, self.destination + direction * lag, side="left")
         np.clip(late, 0, 1, out=late)
         result = np.empty((2, len(lag)))
         for component, row in enumerate(result):
@@ -193,4 +204,4 @@ class TimeSampler(Sampler):
 
     def rest(self, unit: Floats, last: float) -> Floats:
         """Rate at which a particle gets nowhere; in a flow that varies none stays at rest."""
-        return np.full(len(unit), 0.0 if len(self._times) > 1 else 1e-5) / (unit * last)
+        return np.full(len(unit), 0.0 if len(self.times) > 1 else 1e-5) / (unit * last)

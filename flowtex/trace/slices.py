@@ -99,6 +99,15 @@ class TraceSlices:
         }
         return replace(self, **parts)
 
+    def part(self, rows: slice, columns: slice) -> TraceSlices:
+        """Return the slices of some rows and columns of entries."""
+        parts: dict[str, Any] = {
+            name: data[(slice(None),) * axis + (rows, columns)]
+            for name, axis in NODE_AXES.items()
+            if (data := getattr(self, name)) is not None
+        }
+        return replace(self, **parts)
+
     def positions(self, lag: float, *, step: int = 0, forward: bool = False) -> Floats:
         """Positions of the particles at a lag.
 

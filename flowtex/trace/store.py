@@ -9,10 +9,11 @@ from __future__ import annotations
 
 import threading
 from functools import partial
+from typing import Any
 
 import numpy as np
 
-from flowtex._util.array_types import Floats
+from flowtex._util.array_types import Bools, Floats
 from flowtex._util.cache import ByteCache, WeakCache
 from flowtex.field import FlowField
 from flowtex.trace.compose import landings
@@ -32,7 +33,9 @@ class SliceStore:
     The parameter is that of :func:`flowtex.trace`. With slices of all steps that were traced
     already nothing is traced; in a field without a sign they have to lead to both sides.
     ``compose`` allows to compose all steps together, which is quicker than step by step, but slower
-    for one or two of them.
+    for one or two of them. ``longest`` is the greatest length that is traced, in the mesh's units,
+    a quarter of the surface by default, and ``nodes`` (J, I) are those that :func:`flowtex.trace`
+    is to follow.
     """
 
     def __init__(
@@ -42,6 +45,8 @@ class SliceStore:
         parameter: str = "arclength",
         slices: TraceSlices | None = None,
         compose: bool = True,
+        longest: float | None = None,
+        nodes: Bools | None = None,
     ) -> None:
         if field.sign_free and slices is not None and slices.forward is None:
             msg = "the slices lead backward only; expected both sides of a field without a sign"
@@ -49,11 +54,12 @@ class SliceStore:
         self.field = field
         self._whole = slices
         self._compose = compose
+        self._nodes = nodes
         self._cache: ByteCache[int, TraceSlices] = ByteCache(CACHE_BYTES, min_count=2)
         self._lock = threading.Lock()
         if slices is None:
             self.parameter = parameter if field.steady else "time"
-            self.lags: Floats = choose_lags(field, self.parameter)
+            self.lags: Floats = choose_lags(field, self.parameter, longest)
             self.unit: Floats = lag_unit(field, self.parameter)
             if self.parameter == "time":
                 # Half precision holds lags near one, whatever the field's unit of time is.
@@ -82,16 +88,16 @@ class SliceStore:
         with self._lock:
             return self._cache.get(step, partial(self._trace, step))
 
+    def forget(self) -> None:
+        """Drop the slices that can be traced again."""
+        self._cache.clear()
+
     def _trace(self, step: int) -> TraceSlices:
         if self._whole is not None:
             return self._whole.at_step(step)
         if self.field.steady:
-            return trace(
-                self.field,
-                lags=self.lags,
-                unit=self.unit,
-                parameter=self.parameter,
-                compose=not self.field.sign_free,
+            return self._trace_with(
+                parameter=self.parameter, compose=self._compose and not self.field.sign_free
             )
         size = self.steps * len(self.lags) * self.unit.size * 2 * np.float32().nbytes
         if (
@@ -100,9 +106,15 @@ class SliceStore:
             and landings(self.field, self.lags, self.unit) is not None
         ):
             # Composed, all steps together take about as long as four that are integrated.
-            self._whole = trace(self.field, lags=self.lags, unit=self.unit, compose=True)
+            self._whole = self._trace_with(compose=True)
             return self._whole.at_step(step)
-        return trace(self.field, lags=self.lags, unit=self.unit, steps=[step])
+        return self._trace_with(steps=[step])
+
+    def _trace_with(self, **options: Any) -> TraceSlices:
+        # A part of a surface is one of many, whose bars would tell nothing.
+        alone = self._nodes is None
+        parts: dict[str, Any] = {"nodes": self._nodes, "progress": alone}
+        return trace(self.field, lags=self.lags, unit=self.unit, **parts, **options)
 
 
 _stores: WeakCache[SliceStore] = WeakCache()

@@ -11,16 +11,18 @@ from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cached_property, partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flowtex._util.array_types import Floats, Floats32, Indices
+from flowtex._util import compiled
+from flowtex._util.array_types import Bools, Floats, Floats32, Indices
 from flowtex._util.progress import track
 from flowtex.field import FlowField
 from flowtex.field.interpolation import nearest_known
 from flowtex.trace.compose import SideSlices, Within, compose, landings
-from flowtex.trace.integrate import Paths, integrate
+from flowtex.trace.integrate import MOST_CELLS, Paths, follow, integrate
 from flowtex.trace.lags import choose_lags, lag_unit
 from flowtex.trace.sampler import LengthSampler, Sampler, TimeSampler
 from flowtex.trace.slices import TraceSlices
@@ -28,8 +30,8 @@ from flowtex.trace.slices import TraceSlices
 __all__ = ["paths", "trace"]
 
 
-#: Lags and cells that single precision holds, with what is computed of them.
-LEAST_LAG, MOST_LAG, MOST_CELLS = 1e-30, 1e30, 1e30
+#: Lags that single precision holds, with what is computed of them.
+LEAST_LAG, MOST_LAG = 1e-30, 1e30
 #: Error allowed in one step, in cells.
 TOLERANCE = 1e-3
 #: Particles followed together, and blocks of them followed at once.
@@ -48,6 +50,7 @@ def trace(
     tolerance: float = TOLERANCE,
     steps: Sequence[int] | None = None,
     compose: bool | None = None,
+    nodes: ArrayLike | None = None,
     progress: bool = True,
 ) -> TraceSlices:
     """Follow the path through every node, and return where it is at a handful of lags.
@@ -80,6 +83,9 @@ def trace(
         instead of being integrated. By default they are when the lags are chosen automatically.
         In a field that varies this takes equal time steps, of which all are traced; otherwise
         all lags are integrated, as they are in a field without a sign.
+    nodes
+        Nodes whose paths are wanted, (J, I), all by default. Where paths are integrated only these
+        are followed, and the others are treated as blanked ones; to compose takes all.
     progress
         Whether to show a progress bar when the work takes longer than a second.
 
@@ -91,9 +97,9 @@ def trace(
     ------
     ValueError
         When the lags are not positive and increasing, or too large for single precision,
-        ``parameter`` is unknown, or the unit or
-        the tolerance is not positive; or a field without a sign is to be followed to one side,
-        or composed.
+        ``parameter`` is unknown, the unit or the tolerance is not positive, or ``nodes`` has
+        another shape than the field; or a field without a sign is to be followed to one side, or
+        composed.
     IndexError
         When there is no such time step.
     """
@@ -117,10 +123,13 @@ def trace(
     step_numbers = _step_numbers(field, steps)
     directions = (-1.0, 1.0) if field.steady and two_sided else (-1.0,)
     samplers = _samplers(field, step_numbers, parameter)
-    tracing = _Tracing(field, samplers, lag_values, units, tolerance, progress)
     composed = lags is None if compose is None else compose
     whole = field.steady or step_numbers == list(range(len(field.times)))
     landing = landings(field, lag_values, units) if composed and whole else None
+    followed = field.valid
+    if nodes is not None and landing is None:
+        followed = followed & _checked_nodes(field, nodes)
+    tracing = _Tracing(field, samplers, lag_values, units, followed, tolerance, progress)
     paths_by_side = tracing.follow(directions, landing)
     backward = paths_by_side[-1.0]
     forward = paths_by_side.get(1.0)
@@ -229,6 +238,14 @@ def _checked_lags(lags: ArrayLike) -> Floats:
     return lag_values
 
 
+def _checked_nodes(field: FlowField, nodes: ArrayLike) -> Bools:
+    chosen = np.asarray(nodes, dtype=bool)
+    if chosen.shape != field.shape:
+        msg = f"nodes has shape {chosen.shape}; expected {field.shape} as the field has"
+        raise ValueError(msg)
+    return chosen
+
+
 @dataclass(frozen=True, eq=False)
 class _Tracing:
     """Everything that the paths of one call share."""
@@ -237,6 +254,7 @@ class _Tracing:
     samplers: list[Sampler]
     lags: Floats
     unit: Floats
+    followed: Bools  #: nodes whose paths are followed, (J, I)
     tolerance: float
     progress: bool
 
@@ -264,7 +282,7 @@ class _Tracing:
         shape = (len(self.samplers), self.field.valid.size)
         sides = {
             direction: SideSlices(
-                np.empty((2, len(self.lags) + 1, *shape), np.float32),
+                np.zeros((2, len(self.lags) + 1, *shape), np.float32),
                 np.zeros(shape, np.float32),
                 np.zeros(shape, bool),
             )
@@ -299,27 +317,27 @@ class _Tracing:
         self, sides: dict[float, SideSlices], known: int, pool: ThreadPoolExecutor
     ) -> None:
         """Fill the first ``known`` slices."""
-        at = np.flatnonzero(self.field.valid)
+        at = np.flatnonzero(self.followed)
+        compiled.prepare(len(at) * len(self.samplers) * len(sides))
         start, unit = self.nodes.reshape(-1, 2)[at], self.unit.ravel()[at]
 
         def work(job: tuple[int, float, slice]) -> None:
             step, direction, block = job
-            result = integrate(
-                self.samplers[step],
-                start[block],
-                self.lags[:known],
-                unit[block],
-                direction=direction,
-                tolerance=self.tolerance,
-            )
+            side, nodes = sides[direction], at[block]
+            slices, reach = side.slices[:, 1 : known + 1, step], side.reach[step]
+            options: dict[str, Any] = {"direction": direction, "tolerance": self.tolerance}
+            lags, units = self.lags[:known], unit[block]
+            if follow(self.samplers[step], nodes, lags, units, slices, reach, **options):
+                return
+            result = integrate(self.samplers[step], start[block], lags, units, **options)
             moved = np.moveaxis(_in_single(result.positions - start[block]), 2, 0)
-            nodes: Indices | slice = at[block]
-            if at[block][-1] - at[block][0] == len(at[block]) - 1:
+            some: Indices | slice = nodes
+            if nodes[-1] - nodes[0] == len(nodes) - 1:
                 # Writing to a slice is several times as fast as to a list of nodes.
-                nodes = slice(at[block][0], at[block][-1] + 1)
-            sides[direction].slices[:, 1 : known + 1, step, nodes] = moved
-            sides[direction].reach[step, nodes] = result.reach
-            sides[direction].polar[step, nodes] = result.polar
+                some = slice(nodes[0], nodes[-1] + 1)
+            slices[..., some] = moved
+            reach[some] = result.reach
+            side.polar[step, some] = result.polar
 
         jobs = [
             (step, direction, slice(first, first + BLOCK))
@@ -358,13 +376,13 @@ class _Tracing:
         return moved, covered, ends
 
     def _as_grids(self, flat: SideSlices, direction: float) -> SideSlices:
-        """Lay out by nodes, with the slope at lag zero; blanked nodes move as the nearest."""
+        """Lay out by nodes, with the slope at lag zero; nodes left out move as the nearest."""
         grid = self.field.shape
         slices = flat.slices.reshape(*flat.slices.shape[:3], *grid)
         slices[:, 0] = direction * np.moveaxis(_in_single(self.rate), -1, 0)
-        blank = ~self.field.valid
-        if blank.any():
+        blank = ~self.followed
+        if blank.any() and self.followed.any():
             # In place: the slices are large, and few of them are blank.
-            rows, columns = nearest_known(self.field.valid)
+            rows, columns = nearest_known(self.followed)
             slices[..., blank] = slices[..., rows[blank], columns[blank]]
         return SideSlices(slices, flat.reach.reshape(-1, *grid), flat.polar.reshape(-1, *grid))

@@ -115,10 +115,11 @@ M20 9V4h-5M4 15v5h5M20 15v5h-5",hide:"M6 9.5l6 6 6-6",show:"M6 14.5l6-6 6 6"};fu
 w3.org/2000/svg",svg=document.createElementNS(space,"svg");svg.setAttribute("viewBox","0 0 24 24"),svg.setAttribute("ari\
 a-hidden","true");let path=document.createElementNS(space,"path");return path.setAttribute("d",ICONS[name]),name==="play"&&
 path.setAttribute("class","solid"),svg.append(path),svg}function numberText(x){if(!Number.isFinite(x))return"–";let size=Math.
-abs(x);return size!==0&&(size>=1e5||size<.001)?x.toExponential(2).replace("e+","e"):String(Number(x.toPrecision(4)))}function pngOf(views){
-let canvases=views.map(({canvas})=>canvas),width=canvases.reduce((sum,canvas)=>sum+canvas.width,0),all=new OffscreenCanvas(
-width,canvases[0].height),pen=all.getContext("2d",{alpha:!1}),left=0;for(let canvas of canvases)pen?.drawImage(canvas,left,
-0),left+=canvas.width;return all.convertToBlob()}var Lifetime=class{controller=new AbortController;observers=new Set;timers=new Set;globalListeners=0;get isOver(){return this.
+abs(x);return size!==0&&(size>=1e5||size<.001)?x.toExponential(2).replace("e+","e"):String(Number(x.toPrecision(4)))}function pictureOf(views,size=1,format={}){
+let widths=views.map(({canvas})=>Math.max(Math.round(size*canvas.width),1)),height=Math.max(Math.round(size*views[0].canvas.
+height),1),all=new OffscreenCanvas(widths.reduce((sum,width)=>sum+width,0),height),pen=all.getContext("2d",{alpha:!1}),left=0;
+for(let[n,{canvas}]of views.entries())pen?.drawImage(canvas,left,0,widths[n],height),left+=widths[n];return all.convertToBlob(
+format)}var Lifetime=class{controller=new AbortController;observers=new Set;timers=new Set;globalListeners=0;get isOver(){return this.
 controller.signal.aborted}listen(target,kind,call,options={}){(target===document||target===window)&&(this.globalListeners+=
 1);let{signal}=this.controller;target.addEventListener(kind,call,{...options,signal})}later(call,delay){let timer=setTimeout(
 ()=>{this.timers.delete(timer),call()},delay);return this.timers.add(timer),timer}cancel(timer){timer!==null&&(clearTimeout(
@@ -251,7 +252,10 @@ return;let{low,high}=header.scalars;this.mark.style.left=`${100*clamp((value-low
     --shadow: 0 4px 18px rgb(0 0 0 / 0.35);
   }
 }
-:host(:focus-visible) { box-shadow: inset 0 0 0 2px var(--accent); }
+:host(:focus-visible)::after {
+  content: ""; position: absolute; inset: 0; z-index: 1; pointer-events: none;
+  box-shadow: inset 0 0 0 2px var(--accent);
+}
 :host(:fullscreen) { width: 100vw !important; height: 100vh !important; }
 * { box-sizing: border-box; }
 [hidden] { display: none !important; }
@@ -282,18 +286,21 @@ return;let{low,high}=header.scalars;this.mark.style.left=`${100*clamp((value-low
 .head:not(:has(.title:not([hidden]), .readout:not(:empty))) { display: none; }
 .readout b { color: var(--ink); font-weight: 500; }
 .legend {
-  position: absolute; right: 10px; top: 10px; width: 150px; padding: 5px 10px 6px;
+  position: absolute; right: 10px; top: 10px; min-width: 150px; max-width: 60%; padding: 5px 10px 6px;
   font-size: 11px; pointer-events: none;
 }
-.legend .name { overflow: hidden; text-overflow: ellipsis; white-space: nowrap; margin-bottom: 3px; }
+.legend .name { width: 0; min-width: 100%; overflow: hidden; text-overflow: ellipsis; white-space: nowrap; margin-bottom\
+: 3px; }
 .ramp { position: relative; height: 8px; border-radius: 4px; box-shadow: inset 0 0 0 1px var(--edge); }
 .ramp i {
   position: absolute; top: -2px; bottom: -2px; width: 2px; margin-left: -1px; border-radius: 1px;
   background: var(--ink); box-shadow: 0 0 0 1px var(--ground);
 }
-.ends { display: flex; justify-content: space-between; margin-top: 2px; }
+.ends { display: flex; justify-content: space-between; gap: 8px; margin-top: 2px; white-space: nowrap; }
+.head:has(~ .legend:not([hidden])) { max-width: calc(100% - 190px); }
 .bar {
   position: absolute; left: 10px; right: 10px; bottom: 10px; width: fit-content; margin: 0 auto;
+  max-width: calc(100% - 20px);
   display: flex; align-items: center; gap: 1px; padding: 3px;
 }
 button {
@@ -318,7 +325,8 @@ path.solid { fill: currentColor; }
 .handle:hover { background: var(--glass); }
 .track { display: flex; align-items: center; gap: 8px; min-width: 90px; width: 260px; flex: 0 1 auto; padding: 0 6px 0 4\
 px; }
-.time { flex: none; min-width: 44px; white-space: nowrap; }
+.time { flex: none; white-space: nowrap; }
+.track:has(input:disabled) { opacity: 0.45; }
 input[type="range"] {
   appearance: none; -webkit-appearance: none; flex: 1; min-width: 0; width: 100%; height: 18px;
   margin: 0; background: none; cursor: pointer; accent-color: var(--accent);
@@ -381,11 +389,13 @@ input[role="switch"]:checked::after { transform: translateX(12px); }
 @container (max-width: 460px) {
   .bar { flex-wrap: wrap; justify-content: center; }
   .track { order: -1; flex: 1 1 100%; width: auto; }
-  .legend { width: 104px; padding: 4px 8px; }
+  .track:has(input:disabled) { display: none; }
+  .legend { min-width: 104px; padding: 4px 8px; }
   .settings { bottom: 80px; max-height: calc(100% - 90px); }
   .title { max-width: 110px; }
   .readout { flex-direction: column; gap: 0; }
-  .head { flex-direction: column; gap: 0; max-width: calc(100% - 134px); }
+  .head { flex-direction: column; gap: 0; }
+  .head:has(~ .legend:not([hidden])) { max-width: calc(100% - 144px); }
 }
 @container (max-width: 220px) { .legend { display: none; } }
 @container (max-width: 330px) { button { width: 27px; height: 27px; } }
@@ -416,35 +426,36 @@ let{header,settings}=this.viewer,{playing,varies}=this.viewer.player;this.name()
 !!settings.show_level&&this.showLegend();for(let[name,button]of Object.entries(this.toggles))button.setAttribute("aria-p\
 ressed",String(!!settings[name]));let title=playing?"Pause (space)":"Play (space)";this.playButton.replaceChildren(icon(
 playing?"pause":"play")),this.playButton.title=title,this.playButton.setAttribute("aria-label",title);let streams=header!==
-null&&hasStreaming(header);this.playButton.hidden=!varies&&!streams,this.track.hidden=!varies&&!(streams&&settings.motion!==
-"off"),this.tick()}name(){let{header,settings,root}=this.viewer,title=(header?.differs??[]).filter(name=>name in settings).
-map(name=>{let label=header?.table.find(row=>row.name===name)?.label??name,value=settings[name];return`${label}: ${typeof value==
-"boolean"?value?"on":"off":value}`}).join(", ")||header?.name||"";this.title.textContent=title,this.title.hidden=!title,
-root.setAttribute("aria-label",title?`Flow texture: ${title}`:"Flow texture")}tick(){let{header,player,settings}=this.viewer;
-if(!header||this.track.hidden)return;let{first,last,now}=player.range(settings);this.slider.value=String((now-first)/(last-
-first||1));let unit2=header.slices.timeUnit,text=player.varies?`${numberText(now)} ${unit2}`:`${now.toFixed(1)} s`;this.
-timeText.textContent!==text&&(this.timeText.textContent=text)}showLegend(){let{header,settings,parts}=this.viewer;this.showsLevels=
-!!settings.show_level,header&&this.legend.show(header,settings,parts.get("cmap")?.data)}read(point){let{header}=this.viewer;
-if(this.readout.replaceChildren(),this.legend.point(null),!(!point||!header)){this.readout.append(dom("span",{},[this.positionText(
-point.position,header)]));for(let[name,value]of Object.entries(point.values)){let text=`${name} ${numberText(value)} ${header.
-scalars.unit}`;this.readout.append(dom("b",{},[text.trimEnd()])),this.legend.point(header,value)}}}positionText(position,{
-geometry}){let{extent,planar,center,frame}=geometry,zoom=Math.max(this.viewer.camera?.zoom??1,1),digits=Math.min(Math.ceil(
-FEWEST_DIGITS+Math.log10(zoom)),MOST_DIGITS),isInPlane=planar&&Math.abs(position[2]-center[2])<1e-12*extent&&Math.abs(frame[8])>
-.999;return`(${position.slice(0,isInPlane?2:3).map(x=>{let value=Math.abs(x)<1e-9*extent?0:x;return digits>5?String(Number(
-value.toPrecision(digits))):numberText(value)}).join(", ")})`}fold(open=!1){this.isOpen=open,this.arrange()}toggle(shown=!this.
-isShown){shown!==this.isShown&&(this.isShown=shown,this.arrange(),this.viewer.options.onControls?.(shown))}arrange(){let{
-header,options,root}=this.viewer,isReady=header!==null,follows=!!options.follows;this.bar.hidden=!this.isShown||!isReady,
-this.handle.hidden=this.isShown||!isReady||follows,this.head.hidden=!(this.isShown||follows)||!isReady,this.controls.element.
-hidden=!this.isShown||!this.isOpen||!isReady,root.classList.toggle("flowtex-open",!this.controls.element.hidden),this.gear.
-setAttribute("aria-pressed",String(this.isOpen))}wait(missing){this.busy.hidden=!missing.length;let{viewer}=this;!missing.
-length||viewer.options.onNeed||this.lateTimer||(this.lateTimer=viewer.lifetime.later(()=>{this.lateTimer=null;let names=viewer.
-lacking.join(", ");names&&this.fail("The scene is not complete.",`Missing: ${names}`)},LATE_MS))}hint(shown){let{lifetime}=this.
-viewer;lifetime.cancel(this.hintTimer),this.hintTimer=shown?lifetime.later(()=>this.hint(!1),HINT_MS):null,this.hintBox.
-hidden=!shown}clear(){this.note.hidden=!0,delete this.viewer.root.dataset.failed}fail(problem,detail){this.note.replaceChildren(
-dom("strong",{},[problem]),dom("pre",{},[detail])),this.note.hidden=!1,this.busy.hidden=!0,this.viewer.root.dataset.failed=
-"true"}fullscreen(){let{root}=this.viewer;toggleFullscreen(root.closest(".flowtex-pair")??root)}async save(){let{viewer}=this,
-href=URL.createObjectURL(await pngOf(viewer.together)),name=(viewer.header?.name||"flow").replace(FORBIDDEN," ").trim();
-dom("a",{href,download:`${name}.png`}).click(),viewer.lifetime.later(()=>URL.revokeObjectURL(href),SAVED_MS)}};function positions(data,anchor){return anchor.some(Boolean)?data.map((x,n)=>x-anchor[n%3]):data}function grid(us,vs){let result2=new Float32Array(
+null&&hasStreaming(header);this.playButton.hidden=this.track.hidden=!varies&&!streams,this.slider.disabled=!varies&&settings.
+motion==="off";let unit2=header?.slices.timeUnit??"";this.timeText.style.minWidth=`${varies?8+unit2.length:7}ch`,this.tick()}name(){
+let{header,settings,root}=this.viewer,title=(header?.differs??[]).filter(name=>name in settings).map(name=>{let label=header?.
+table.find(row=>row.name===name)?.label??name,value=settings[name];return`${label}: ${typeof value=="boolean"?value?"on":
+"off":value}`}).join(", ")||header?.name||"";this.title.textContent=title,this.title.hidden=!title,root.setAttribute("ar\
+ia-label",title?`Flow texture: ${title}`:"Flow texture")}tick(){let{header,player,settings}=this.viewer;if(!header||this.
+track.hidden)return;let{first,last,now}=player.range(settings);this.slider.value=String((now-first)/(last-first||1));let unit2=header.
+slices.timeUnit,text=player.varies?`${numberText(now)} ${unit2}`:`${now.toFixed(1)} s`;this.timeText.textContent!==text&&
+(this.timeText.textContent=text)}showLegend(){let{header,settings,parts}=this.viewer;this.showsLevels=!!settings.show_level,
+header&&this.legend.show(header,settings,parts.get("cmap")?.data)}read(point){let{header}=this.viewer;if(this.readout.replaceChildren(),
+this.legend.point(null),!(!point||!header)){this.readout.append(dom("span",{},[this.positionText(point.position,header)]));
+for(let[name,value]of Object.entries(point.values)){let text=`${name} ${numberText(value)} ${header.scalars.unit}`;this.
+readout.append(dom("b",{},[text.trimEnd()])),this.legend.point(header,value)}}}positionText(position,{geometry}){let{extent,
+planar,center,frame}=geometry,zoom=Math.max(this.viewer.camera?.zoom??1,1),digits=Math.min(Math.ceil(FEWEST_DIGITS+Math.
+log10(zoom)),MOST_DIGITS),isInPlane=planar&&Math.abs(position[2]-center[2])<1e-12*extent&&Math.abs(frame[8])>.999;return`\
+(${position.slice(0,isInPlane?2:3).map(x=>{let value=Math.abs(x)<1e-9*extent?0:x;return digits>5?String(Number(value.toPrecision(
+digits))):numberText(value)}).join(", ")})`}fold(open=!1){this.isOpen=open,this.arrange()}toggle(shown=!this.isShown){shown!==
+this.isShown&&(this.isShown=shown,this.arrange(),this.viewer.options.onControls?.(shown))}arrange(){let{header,options,root}=this.
+viewer,isReady=header!==null,follows=!!options.follows;this.bar.hidden=!this.isShown||!isReady,this.handle.hidden=this.isShown||
+!isReady||follows,this.head.hidden=!(this.isShown||follows)||!isReady,this.controls.element.hidden=!this.isShown||!this.
+isOpen||!isReady,root.classList.toggle("flowtex-open",!this.controls.element.hidden),this.gear.setAttribute("aria-presse\
+d",String(this.isOpen))}wait(missing){this.busy.hidden=!missing.length;let{viewer}=this;!missing.length||viewer.options.
+onNeed||this.lateTimer||(this.lateTimer=viewer.lifetime.later(()=>{this.lateTimer=null;let names=viewer.lacking.join(", ");
+names&&this.fail("The scene is not complete.",`Missing: ${names}`)},LATE_MS))}hint(shown){let{lifetime}=this.viewer;lifetime.
+cancel(this.hintTimer),this.hintTimer=shown?lifetime.later(()=>this.hint(!1),HINT_MS):null,this.hintBox.hidden=!shown}clear(){
+this.note.hidden=!0,delete this.viewer.root.dataset.failed}fail(problem,detail){this.note.replaceChildren(dom("strong",{},
+[problem]),dom("pre",{},[detail])),this.note.hidden=!1,this.busy.hidden=!0,this.viewer.root.dataset.failed="true"}fullscreen(){
+let{root}=this.viewer;toggleFullscreen(root.closest(".flowtex-pair")??root)}async save(){let{viewer}=this,href=URL.createObjectURL(
+await pictureOf(viewer.together)),name=(viewer.header?.name||"flow").replace(FORBIDDEN," ").trim();dom("a",{href,download:`${name}\
+.png`}).click(),viewer.lifetime.later(()=>URL.revokeObjectURL(href),SAVED_MS)}};function positions(data,anchor){return anchor.some(Boolean)?data.map((x,n)=>x-anchor[n%3]):data}function grid(us,vs){let result2=new Float32Array(
 2*us.length*vs.length),n=0;for(let v2 of vs)for(let u of us)result2[n++]=u,result2[n++]=v2;return result2}function coordinates({
 shape,rows,columns}){let middles=(count,{before,size})=>Array.from({length:count},(_,n)=>(n+before+.5)/size);return grid(
 middles(shape[1],columns),middles(shape[0],rows))}function noiseCoordinates({alongI,alongJ}){return grid(alongI,alongJ)}
@@ -468,11 +479,15 @@ header),finest=2**(Math.floor(Math.log2(geometry.extent))-constants.noiseDoublin
 subtract2(view.eye,scale2(geometry.center,w))),kernel=signFree&&s.kernel==="ramp"?"hann":s.kernel;return{u_eye:[...subtract2(
 eye,scale2(view.anchor,w)),w],u_between:view.between,u_slicesSize:[geometry.columns.size,geometry.rows.size],u_deepest:geometry.
 levels,u_lags:slices.lags,u_lagCount:slices.lags.length,u_sides:s.two_sided||signFree?slices.sides:1,u_unit:slices.unit,
-u_samples:isMoving(header,settings)?2*s.samples-1:s.samples,u_spacing:s.spacing,u_grain:s.grain*view.density,u_kernel:constants.
-kernels.indexOf(kernel),u_lod:s.lod,u_contrast:s.contrast,u_strength:s.strength,u_seed:s.seed,u_showLevel:s.show_level,u_fixed:s.
-fixed_grain,...motionUniforms(header,s,view),...noiseOrigin(header,view,finest),u_noiseFinest:finest,u_texel:geometry.extent/
-s.resolution,...header.paper&&noiseShape?paperUniforms(header.paper,s,noiseShape,view.density):{}}}function isMoving(header,settings){
-let streams=settings.motion!=="off"&&!isSignFree(header);return!header.paper&&(header.slices.steps>1||streams)}function motionUniforms(header,s,view){
+u_rateLayer:slices.count-1,u_cell:slices.cell,u_samples:isMoving(header,settings)?2*s.samples-1:s.samples,u_spacing:s.spacing,
+u_grain:s.grain*view.density,u_kernel:constants.kernels.indexOf(kernel),u_lod:s.lod,u_contrast:s.contrast,u_strength:s.strength,
+u_seed:s.seed,u_showLevel:s.show_level,u_fixed:s.fixed_grain,...motionUniforms(header,s,view),...noiseOrigin(header,view,
+finest),u_noiseFinest:finest,u_texel:geometry.extent/s.resolution,...header.paper&&noiseShape?paperUniforms(header.paper,
+s,noiseShape,view.density):{}}}function isMoving(header,settings){let streams=settings.motion!=="off"&&!isSignFree(header);
+return!header.paper&&(header.slices.steps>1||streams)}function isNear(header,settings,view){let{geometry,slices,constants}=header,
+s=settings,gap=Math.hypot(...subtract2(view.eye,geometry.center))-.5*geometry.extent,away=view.eye[3]?Math.max(gap,0)/Math.
+hypot(...subtract2(view.eye,view.focus)):1,grain=s.lod?view.pixel*away*s.grain*view.density:geometry.extent/s.resolution;
+return Math.floor(s.samples/2)*s.spacing*grain<constants.farCells*slices.critical}function motionUniforms(header,s,view){
 let{geometry,slices,constants}=header,varies=slices.steps>1,inPixels=!varies&&s.speed_in==="pixels",turns=varies?(view.time-
 slices.times[0])/(geometry.extent/slices.pace):(view.clock/s.period%1+1)%1,travel=varies?geometry.extent:s.speed*s.period,
 coarse=Math.floor(turns/constants.clockStep)*constants.clockStep;return{u_clock:[coarse,turns-coarse],u_travel:travel*(inPixels?
@@ -549,34 +564,35 @@ if(!(area>LEAST_GROWTH**2&&area<GREATEST_GROWTH**2))return null;let[a,b,c,d,e,f]
 abs((a*x+c*y+e)/w-1)<1+ROUNDING&&Math.abs((b*x+d*y+f)/h-1)<1+ROUNDING,covers=[[0,0],[width,0],[0,height],[width,height]].
 every(isInside),[xx,xy,yx,yy]=matrix,shifts=Math.abs(xx-1)+Math.abs(yy-1)+Math.abs(xy)+Math.abs(yx)<ROUNDING;if(shifts)for(let n of[
 4,5])matrix[n]=Math.round(matrix[n]);return{matrix,covers,shifts}}var MOVING_MS=55,MOVING_LEAST_MS=14,STRIP_MS=40,SMOOTH_ROWS=256,penOf=canvas=>canvas.getContext("2d",{alpha:!1}),ProgressiveRenderer=class{viewer;graphics;canvas;pen;back=document.
-createElement("canvas");backPen=penOf(this.back);last=document.createElement("canvas");lastPen=penOf(this.last);lastCamera=null;version=1;draftVersion=0;rowsDone=0;fixed=4;frames=0;constructor(viewer){
+createElement("canvas");backPen=penOf(this.back);last=document.createElement("canvas");lastPen=penOf(this.last);lastCamera=null;coarse=document.
+createElement("canvas");coarsePen=penOf(this.coarse);version=1;draftVersion=0;rowsDone=0;fixed=4;frames=0;constructor(viewer){
 this.viewer=viewer,this.graphics=viewer.graphics,this.canvas=viewer.canvas,this.pen=penOf(this.canvas)}restart(cameraOnly=!1){
 cameraOnly||(this.lastCamera=null),this.version+=1,this.rowsDone=0}resize(width,height){let{canvas,back,last}=this;back.
 width=canvas.width,back.height=canvas.height,this.backPen?.drawImage(canvas,0,0),canvas.width=last.width=width,canvas.height=
 last.height=height,back.width>1&&this.pen?.drawImage(back,0,0,width,height),back.width=width,back.height=height}dispose(){
-for(let canvas of[this.canvas,this.back,this.last])canvas.width=canvas.height=0}draw(program,shown,moving,until){if(this.
-draftVersion!==this.version)return this.draft(program,shown,moving);if(moving)return!1;let complete=!1;do complete=this.
-strip(program,shown);while(!complete&&performance.now()<until);return complete}draft(program,shown,moving){let{width,height}=this.
-canvas,samples=Number(this.viewer.settings.samples),crowd=moving?this.graphics.waiting.size+1:1,budget=Math.max(MOVING_MS/
-crowd,MOVING_LEAST_MS);this.warm(program,shown);let price=program.price*this.factor(samples),best=quality(price,this.fixed,
-width*height,samples,budget),w=Math.max(Math.round(width*best.scale),1),h=Math.max(Math.round(height*best.scale),1);this.
-draftVersion=this.version;let reuse=best.scale<1?this.reuse():null;if(!reuse?.covers){let region={width:w,height:h,top:0,
-rows:h};this.timed(program,region,best.samples,()=>{this.render(program,shown,region,best.samples),this.copy(this.pen,region,
-height,0)})}return reuse&&this.pen&&(this.pen.imageSmoothingEnabled=!reuse.shifts,this.pen.setTransform(...reuse.matrix),
-this.pen.drawImage(this.last,0,0),this.pen.setTransform(1,0,0,1,0,0)),best.scale<1||best.samples!==samples||this.viewer.
-smooth?!1:(this.complete(),!0)}strip(program,shown){let{width,height}=this.canvas,{smooth,settings}=this.viewer,samples=Number(
-settings.samples);this.warm(program,shown);let price=program.price*this.factor(samples),most=Math.min(height-this.rowsDone,
-smooth?SMOOTH_ROWS:height),rows=Math.min(rowsIn(STRIP_MS,price,this.fixed,width,samples),most),region={width,height,top:this.
-rowsDone,rows};return this.timed(program,region,samples,()=>{this.render(program,shown,region,samples,smooth);let drawn=smooth?
-{...region,height:rows,top:0}:region;this.copy(this.backPen,drawn,drawn.height,this.rowsDone)}),this.rowsDone+=rows,this.
-rowsDone<height?!1:(this.pen?.drawImage(this.back,0,0),this.complete(),!0)}complete(){let{camera,player}=this.viewer;this.
-rowsDone=this.canvas.height,this.frames+=1,this.draftVersion=this.version,this.lastPen?.drawImage(this.canvas,0,0),camera&&
-!player.playing&&(this.lastCamera=new Camera(camera.state,camera.limits,camera.flat,camera.aspect))}reuse(){let{lastCamera}=this,
-{scene,camera}=this.viewer;if(!scene?.header.geometry.planar||!camera||!lastCamera||!camera.state.parallel||!lastCamera.
-state.parallel)return null;let{geometry}=scene.header,focus=subtract2(camera.state.focal_point,geometry.center),anchor=toFrame(
-geometry.frame,focus),[before,now]=[lastCamera,camera].map(view=>projection(geometry,view,anchor));return reused(before,
-now,this.canvas.width,this.canvas.height)}factor(samples){let{settings,player}=this.viewer;return settings.motion!=="off"||
-player.varies?motionFactor(samples):1}timed(program,region,samples,draw){let started=performance.now();draw();let spent=performance.
+for(let canvas of[this.canvas,this.back,this.last,this.coarse])canvas.width=canvas.height=0}draw(program,shown,moving,until){
+if(this.draftVersion!==this.version)return this.draft(program,shown,moving);if(moving)return!1;let complete=!1;do complete=
+this.strip(program,shown);while(!complete&&performance.now()<until);return complete}draft(program,shown,moving){let{width,
+height}=this.canvas,samples=Number(this.viewer.settings.samples),crowd=moving?this.graphics.waiting.size+1:1,budget=Math.
+max(MOVING_MS/crowd,MOVING_LEAST_MS);this.warm(program,shown);let price=program.price*this.factor(samples),best=quality(
+price,this.fixed,width*height,samples,budget),w=Math.max(Math.round(width*best.scale),1),h=Math.max(Math.round(height*best.
+scale),1);this.draftVersion=this.version;let reuse=best.scale<1?this.reuse():null;if(!reuse?.covers){let region={width:w,
+height:h,top:0,rows:h};this.timed(program,region,best.samples,()=>{this.render(program,shown,region,best.samples),this.copy(
+this.pen,region,height,0)})}return reuse&&this.pen&&(this.pen.imageSmoothingEnabled=!reuse.shifts,this.pen.setTransform(
+...reuse.matrix),this.pen.drawImage(this.last,0,0),this.pen.setTransform(1,0,0,1,0,0)),best.scale<1||best.samples!==samples||
+this.viewer.smooth?!1:(this.complete(),!0)}strip(program,shown){let{width,height}=this.canvas,{smooth,settings}=this.viewer,
+samples=Number(settings.samples);this.warm(program,shown);let price=program.price*this.factor(samples),most=Math.min(height-
+this.rowsDone,smooth?SMOOTH_ROWS:height),rows=Math.min(rowsIn(STRIP_MS,price,this.fixed,width,samples),most),region={width,
+height,top:this.rowsDone,rows};return this.timed(program,region,samples,()=>{this.render(program,shown,region,samples,smooth);
+let drawn=smooth?{...region,height:rows,top:0}:region;this.copy(this.backPen,drawn,drawn.height,this.rowsDone)}),this.rowsDone+=
+rows,this.rowsDone<height?!1:(this.pen?.drawImage(this.back,0,0),this.complete(),!0)}complete(){let{camera,player}=this.
+viewer;this.rowsDone=this.canvas.height,this.frames+=1,this.draftVersion=this.version,this.lastPen?.drawImage(this.canvas,
+0,0),camera&&!player.playing&&(this.lastCamera=new Camera(camera.state,camera.limits,camera.flat,camera.aspect))}reuse(){
+let{lastCamera}=this,{scene,camera}=this.viewer;if(!scene?.header.geometry.planar||!camera||!lastCamera||!camera.state.parallel||
+!lastCamera.state.parallel)return null;let{geometry}=scene.header,focus=subtract2(camera.state.focal_point,geometry.center),
+anchor=toFrame(geometry.frame,focus),[before,now]=[lastCamera,camera].map(view=>projection(geometry,view,anchor));return reused(
+before,now,this.canvas.width,this.canvas.height)}factor(samples){let{settings,player}=this.viewer;return settings.motion!==
+"off"||player.varies?motionFactor(samples):1}timed(program,region,samples,draw){let started=performance.now();draw();let spent=performance.
 now()-started,pixels=region.width*region.rows,factor=this.factor(samples);program.price=learnedPrice(program.price,spent,
 this.fixed,pixels,samples,factor)}warm(program,shown){if(program.warm)return;let{width,height}=this.canvas,region={width,
 height,top:0,rows:1};this.render(program,shown,region,1);let started=performance.now();this.render(program,shown,region,
@@ -594,8 +610,9 @@ viewer,noise=parts.get("noise")?.shape??null;return{...uniforms(header,{...setti
 settings,samples,view.density):{},u_matrix:projection(header.geometry,camera,view.anchor),u_mapped:header.scalars.name!==
 null,u_colour:header.colour,u_lit:header.lighting,u_ground:header.background,u_opacity:header.opacity,u_toEye:toFrame(header.
 geometry.frame,scale2(camera.axes[2],-1))}}copy(pen,region,height,to){if(!pen)return;let{width:w,height:h,top,rows}=region,
-{width}=this.canvas,{canvas}=this.graphics;pen.imageSmoothingEnabled=w!==width||h!==height,pen.drawImage(canvas,0,canvas.
-height-h+top,w,rows,0,to,width,rows*height/h)}};function fromHalf(bits){let exponent=bits>>10&31,part=bits&1023,size;return exponent===0?size=part*2**-24:exponent===31?
+{width}=this.canvas,{canvas}=this.graphics,first=canvas.height-h+top;if(pen.imageSmoothingEnabled=w!==width||h!==height,
+pen.imageSmoothingEnabled){let{coarse,coarsePen}=this;coarse.width=w,coarse.height=rows,coarsePen?.drawImage(canvas,0,first,
+w,rows,0,0,w,rows),[canvas,first]=[coarse,0]}pen.drawImage(canvas,0,first,w,rows,0,to,width,rows*height/h)}};function fromHalf(bits){let exponent=bits>>10&31,part=bits&1023,size;return exponent===0?size=part*2**-24:exponent===31?
 size=part?NaN:1/0:size=(1024+part)*2**(exponent-25),bits&32768?-size:size}function toHalf(x){let sign=x<0?32768:0,size=Math.
 abs(x);if(!(size<65520))return sign|(size>=65520?31744:32256);let exponent=Math.max(Math.floor(Math.log2(size||1e-30)),-14),
 part=Math.round(size/2**(exponent-10));return sign|(part<1024?part:(exponent+14)*1024+part)}function halved(texels,width,height,channels){
@@ -757,22 +774,24 @@ steps)].filter(step=>this.scene?.missing(step,step).length);for(let step of lack
 get(step)??-1/0)<LOST_MS||(this.requests.set(step,now),this.options.onNeed(step));return!lacking.length}frame(now,until){
 if(!(this.lifetime.isOver||this.graphics.isLost||!this.graphics.gl||!this.isVisible)&&!(!this.header||!this.scene||this.
 canvas.width<2))try{this.advance(now),this.drawPicture(this.header,until)}catch(error){this.pause(),this.panel.fail("The\
- picture could not be drawn.",String(error))}}program(header){let{vertex,fragment}=header.shaders,defines=isMoving(header,
-this.settings)?["FLOWTEX_MOVING"]:[];return this.graphics.programs.get(vertex,fragment,...defines)}drawPicture(header,until){
-let shown=this.available();if(this.camera||this.place(),!shown||!this.camera)return;let{programs}=this.graphics,program=this.
-program(header);if(program.error){this.panel.fail("The shader does not compile with this graphics driver.",program.error);
-return}if(!program.ready)return this.request();!this.sharp&&this.renderer.draw(program,shown,this.isBusy,until)&&(this.panel.
-clear(),programs.get(header.shaders.vertex,header.shaders.pick),this.setSharp(!this.playing)),this.sharp||this.request()}advance(now){
-let{player,options}=this;!player.playing||!player.advance(now,steps=>this.ask(steps))||(player.varies?options.onTime?.(player.
-time):options.onClock?.(player.clock),this.panel.tick(),this.renderer.restart(),this.setSharp(!1))}view(shown,density){let{
-header,camera,scene,player}=this;if(!header||!camera)throw new Error("there is nothing to look at yet");let{geometry,constants}=header,
+ picture could not be drawn.",String(error))}}program(header,isClose=this.isClose(header)){let{vertex,fragment}=header.shaders,
+defines=isMoving(header,this.settings)?["FLOWTEX_MOVING"]:[];return isClose&&defines.push("FLOWTEX_CELLS"),this.graphics.
+programs.get(vertex,fragment,...defines)}isClose(header){return this.camera!==null&&isNear(header,this.settings,this.view(
+[0,0,0],this.ratio))}drawPicture(header,until){let shown=this.available();if(this.camera||this.place(),!shown||!this.camera)
+return;let{programs}=this.graphics,program=this.program(header);if(program.error){this.panel.fail("The shader does not c\
+ompile with this graphics driver.",program.error);return}if(!program.ready)return this.request();!this.sharp&&this.renderer.
+draw(program,shown,this.isBusy,until)&&(this.panel.clear(),programs.get(header.shaders.vertex,header.shaders.pick),header.
+slices.critical&&this.program(header,!0),this.setSharp(!this.playing)),this.sharp||this.request()}advance(now){let{player,
+options}=this;!player.playing||!player.advance(now,steps=>this.ask(steps))||(player.varies?options.onTime?.(player.time):
+options.onClock?.(player.clock),this.panel.tick(),this.renderer.restart(),this.setSharp(!1))}view(shown,density){let{header,
+camera,scene,player}=this;if(!header||!camera)throw new Error("there is nothing to look at yet");let{geometry,constants}=header,
 focus=camera.state.focal_point,local=toFrame(geometry.frame,subtract2(focus,geometry.center)),old=scene?.anchor??[0,0,0],
 range=constants.anchorRange*2*camera.height,isFar=v2=>v2.some(c=>Math.abs(c)>range),anchor=isFar(local)?local:[0,0,0];return{
 focus,anchor:isFar(subtract2(local,old))?anchor:old,eye:camera.eye,between:shown[2],time:player.timeOf(shown),clock:player.
-clock,density}}get canPick(){let{header,graphics}=this;return!header||graphics.isLost||!graphics.gl?!1:graphics.programs.
-get(header.shaders.vertex,header.shaders.pick).ready}point(x,y){let{scene,camera,shown,canvas}=this;if(!scene||!camera||
-!shown||!this.canPick)return null;let{anchor}=this.view(shown,1);return pickedPoint({scene,camera,moment:shown,anchor,canvas},
-x,y)}};function viewersIn(element,count,options,own=()=>({})){if(count<2)return[new Viewer(element,{...options,...own(0)})];let pair=dom(
+clock,density,pixel:2*camera.height/Math.max(this.root.clientHeight*density,1)}}get canPick(){let{header,graphics}=this;
+return!header||graphics.isLost||!graphics.gl?!1:graphics.programs.get(header.shaders.vertex,header.shaders.pick).ready}point(x,y){
+let{scene,camera,shown,canvas}=this;if(!scene||!camera||!shown||!this.canPick)return null;let{anchor}=this.view(shown,1);
+return pickedPoint({scene,camera,moment:shown,anchor,canvas},x,y)}};function viewersIn(element,count,options,own=()=>({})){if(count<2)return[new Viewer(element,{...options,...own(0)})];let pair=dom(
 "div",{class:"flowtex-pair"});pair.style.cssText="display: flex; gap: 2px; width: 100%; height: 100%",element.append(pair);
 let viewers=[];for(let n=0;n<count;n+=1){let cell=dom("div");cell.style.cssText="flex: 1 1 0; min-width: 0; height: 100%",
 pair.append(cell);let others=()=>viewers.filter((_,m)=>m!==n),follower=n?{controls:!1,follows:viewers[0]}:{};viewers.push(
@@ -782,44 +801,51 @@ follow(other,...values);report?.(...values)};return{onCamera:both((other,camera)
 onTime:both((other,time)=>other.setTime(time),options.onTime),onClock:both((other,clock)=>other.setClock(clock),options.
 onClock),onSetting:both((other,name,value)=>other.followSetting(name,value),options.onSetting)}}function mountPage(element,scenes,options={}){
 let viewers=viewersIn(element,scenes.length,options);return scenes.forEach(({header},n)=>viewers[n].setHeader(header)),scenes.
-forEach(({parts},n)=>parts.forEach(part=>viewers[n].setPart(part))),viewers[0]}var CAMERA_MS=100,TIME_MS=250,HEADERS=["_header","_header_beside"],HEIGHT_PX=480;function opened(message,buffers){let graphics=sharedGraphics(),
-{view=0,generation=0,parts:infos=[]}=message,delivery={view,generation,parts:[],lacking:[]};return infos.forEach((info,n)=>{
-let stock=graphics.stock.get(info.digest)?.part;if(stock||message.kind!=="offer"){let part=graphics.hold(stock??decoded(
-info,buffers[n]));delivery.parts.push({...part,name:info.name})}else delivery.lacking.push(info.name)}),delivery}function discard(deliveries){
-for(let{parts}of deliveries)for(let part of parts)sharedGraphics().release(part)}var hasParts=message=>message?.kind==="\
-parts"||message?.kind==="offer",mailbox=new Map;function initialize({model}){let key=model.get("_key");mailbox.set(key,[]);
-let receive=(message,buffers)=>{hasParts(message)&&mailbox.get(key)?.push(opened(message,buffers))};return model.on("msg\
-:custom",receive),()=>{model.off("msg:custom",receive),discard(mailbox.get(key)??[]),mailbox.delete(key)}}function render({
+forEach(({parts},n)=>parts.forEach(part=>viewers[n].setPart(part))),viewers[0]}var CAMERA_MS=100,TIME_MS=250,STILL_MS2=1500,STILL_FORMAT={type:"image/jpeg",quality:.9},HEADERS=["_header","_header_bes\
+ide"],ROOM=".flowtex-room { width: 100%; min-width: 160px; flex: 0 9999 auto }",HEIGHT_PX=480;function opened(message,buffers){
+let graphics=sharedGraphics(),{view=0,generation=0,parts:infos=[]}=message,delivery={view,generation,parts:[],lacking:[]};
+return infos.forEach((info,n)=>{let stock=graphics.stock.get(info.digest)?.part;if(stock||message.kind!=="offer"){let part=graphics.
+hold(stock??decoded(info,buffers[n]));delivery.parts.push({...part,name:info.name})}else delivery.lacking.push(info.name)}),
+delivery}function discard(deliveries){for(let{parts}of deliveries)for(let part of parts)sharedGraphics().release(part)}var hasParts=message=>message?.
+kind==="parts"||message?.kind==="offer",mailbox=new Map;function initialize({model}){let key=model.get("_key");mailbox.set(
+key,[]);let receive=(message,buffers)=>{hasParts(message)&&mailbox.get(key)?.push(opened(message,buffers))};return model.
+on("msg:custom",receive),()=>{model.off("msg:custom",receive),discard(mailbox.get(key)??[]),mailbox.delete(key)}}function render({
 model,el}){let view=new WidgetView(model,el);return()=>view.dispose()}function cameraOf(state){let camera=state;return camera&&
-Array.isArray(camera.position)?camera:null}var WidgetView=class{model;viewers;first;sent=new Map;handlers=[];early;hasSentFrame=!1;constructor(model,element){
+Array.isArray(camera.position)?camera:null}var WidgetView=class{model;viewers;first;sent=new Map;handlers=[];early;frameTimer=null;hasSentFrame=!1;sheet=new CSSStyleSheet;constructor(model,element){
 this.model=model;let beside=model.get("_header_beside");this.viewers=this.makeViewers(element,beside?.format?2:1),[this.
-first]=this.viewers;let key=model.get("_key");this.early=mailbox.get(key)??[],mailbox.delete(key),this.connect(),this.resize(),
-this.viewers.forEach((_,n)=>this.takeHeader(n)),model.get("playing")&&this.first.play(),this.viewers.every(({scene,lacking})=>scene&&
-!lacking.length)||model.send({kind:"ready"})}makeViewers(element,count){let{model}=this,slowly=(wait,call)=>throttled((later,delay)=>this.
-first.lifetime.later(later,delay),wait,call),options={rebuild:!0,guarded:!0,controls:model.get("bar")??!0,onCamera:slowly(
-CAMERA_MS,camera=>this.send("camera",camera)),onTime:slowly(TIME_MS,time=>this.send("time",time)),onClock:slowly(TIME_MS,
-clock=>this.send("clock",clock)),onPlaying:playing=>this.send("playing",playing),onPoint:point=>this.send("point",point),
-onSetting:(name,value)=>this.send(name,value),onControls:shown=>this.send("bar",shown)};return viewersIn(element,count,options,
-n=>({onNeed:step=>model.send({kind:"need",step,view:n}),onFrame:()=>{this.sendFrame()}}))}send(name,value){this.sent.set(
-name,JSON.stringify(value)),this.model.set(name,value),this.model.save_changes()}async sendFrame(){if(this.hasSentFrame||
-!this.viewers.every(({sharp})=>sharp))return;this.hasSentFrame=!0;let png=await(await pngOf(this.viewers)).arrayBuffer();
-this.first.lifetime.isOver||this.model.send({kind:"frame"},void 0,[png])}listen(event,call){this.handlers.some(([other])=>other===
-event)||(this.handlers.push([event,call]),this.model.on(event,call))}follow(name,take){this.listen(`change:${name}`,()=>{
-let value=this.model.get(name);this.sent.get(name)!==JSON.stringify(value)&&take(value),this.sent.delete(name)})}connect(){
-let{viewers,first}=this;this.listen("msg:custom",(message,buffers)=>{hasParts(message)&&this.take(opened(message,buffers)),
-message?.kind==="error"&&first.panel.fail("The kernel could not go on.",message.text??"")}),viewers.forEach((_,n)=>this.
-listen(`change:${HEADERS[n]}`,()=>this.takeHeader(n))),this.listen("change:size",()=>this.resize()),this.follow("camera",
-value=>{let camera=cameraOf(value);camera&&viewers.forEach(viewer=>viewer.setCamera(camera))}),this.follow("time",time=>viewers.
-forEach(viewer=>viewer.setTime(Number(time)))),this.follow("clock",clock=>viewers.forEach(viewer=>viewer.setClock(Number(
-clock)))),this.follow("playing",playing=>playing?first.play():first.pause()),this.follow("bar",shown=>first.panel.toggle(
-!!shown))}resize(){let[width,height]=this.model.get("size")??[0,0],{root}=this.first,frame=root.closest(".flowtex-pair")??
-root;frame.style.width=width?`${width}px`:"100%",frame.style.height=`${height||HEIGHT_PX}px`}takeHeader(n){let{model}=this,
-header=model.get(HEADERS[n]);if(!header?.format)return;let rows=header.table??[],values=rows.map(row=>[row.name,model.get(
-row.name)??row.default]);this.viewers[n].setHeader({...header,settings:Object.fromEntries(values),camera:cameraOf(model.
-get("camera")),time:model.get("time")??0,clock:model.get("clock")??0});for(let delivery of this.early.splice(0))this.take(
-delivery);for(let{name}of rows)this.follow(name,value=>{for(let viewer of this.viewers)viewer.followSetting(name,value)})}take(delivery){
+first]=this.viewers;let key=model.get("_key");this.early=mailbox.get(key)??[],mailbox.delete(key),this.sheet.replaceSync(
+ROOM),document.adoptedStyleSheets.push(this.sheet),this.connect(),this.resize(),this.viewers.forEach((_,n)=>this.takeHeader(
+n)),model.get("playing")&&this.first.play(),this.viewers.every(({scene,lacking})=>scene&&!lacking.length)||model.send({kind:"\
+ready"})}makeViewers(element,count){let{model}=this,slowly=(wait,call)=>throttled((later,delay)=>this.first.lifetime.later(
+later,delay),wait,call),options={rebuild:!0,guarded:!0,controls:model.get("bar")??!0,onCamera:slowly(CAMERA_MS,camera=>this.
+send("camera",camera)),onTime:slowly(TIME_MS,time=>this.send("time",time)),onClock:slowly(TIME_MS,clock=>this.send("cloc\
+k",clock)),onPlaying:playing=>this.send("playing",playing),onPoint:point=>this.send("point",point),onSetting:(name,value)=>this.
+send(name,value),onControls:shown=>this.send("bar",shown)};return viewersIn(element,count,options,n=>({onNeed:step=>model.
+send({kind:"need",step,view:n}),onFrame:()=>this.planFrame()}))}send(name,value){this.sent.set(name,JSON.stringify(value)),
+this.model.set(name,value),this.model.save_changes()}planFrame(){let{lifetime}=this.first;lifetime.cancel(this.frameTimer);
+let wait=this.hasSentFrame?STILL_MS2:0;this.frameTimer=lifetime.later(()=>{this.sendFrame()},wait)}async sendFrame(){let{
+first,viewers}=this;if(!viewers.every(({sharp})=>sharp))return;this.hasSentFrame=!0;let data=await(await pictureOf(viewers,
+1/first.ratio,STILL_FORMAT)).arrayBuffer();first.lifetime.isOver||this.model.send({kind:"frame"},void 0,[data])}becomeLive(){
+let{root}=this.first;if(root.dataset.live||root.dataset.failed)return;root.dataset.live="true";let still=`[data-flowtex~\
+="${String(this.model.get("_key"))}"]`;this.sheet.insertRule(`${still}, :is(.jp-OutputArea-child, .output_area):has(> * \
+> ${still}) { display: none !important }`)}listen(event,call){this.handlers.some(([other])=>other===event)||(this.handlers.
+push([event,call]),this.model.on(event,call))}follow(name,take){this.listen(`change:${name}`,()=>{let value=this.model.get(
+name);this.sent.get(name)!==JSON.stringify(value)&&take(value),this.sent.delete(name)})}connect(){let{viewers,first}=this;
+this.listen("msg:custom",(message,buffers)=>{hasParts(message)&&this.take(opened(message,buffers)),message?.kind==="erro\
+r"&&first.panel.fail("The kernel could not go on.",message.text??"")}),viewers.forEach((_,n)=>this.listen(`change:${HEADERS[n]}`,
+()=>this.takeHeader(n))),this.listen("change:size",()=>this.resize()),this.follow("camera",value=>{let camera=cameraOf(value);
+camera&&viewers.forEach(viewer=>viewer.setCamera(camera))}),this.follow("time",time=>viewers.forEach(viewer=>viewer.setTime(
+Number(time)))),this.follow("clock",clock=>viewers.forEach(viewer=>viewer.setClock(Number(clock)))),this.follow("playing",
+playing=>playing?first.play():first.pause()),this.follow("bar",shown=>first.panel.toggle(!!shown))}resize(){let[width,height]=this.
+model.get("size")??[0,0],{root}=this.first,frame=root.closest(".flowtex-pair")??root;frame.style.width=width?`${width}px`:
+"100%",frame.style.height=`${height||HEIGHT_PX}px`,frame.parentElement?.classList.toggle("flowtex-room",!width)}takeHeader(n){
+let{model}=this,header=model.get(HEADERS[n]);if(!header?.format)return;let rows=header.table??[],values=rows.map(row=>[row.
+name,model.get(row.name)??row.default]);this.viewers[n].setHeader({...header,settings:Object.fromEntries(values),camera:cameraOf(
+model.get("camera")),time:model.get("time")??0,clock:model.get("clock")??0});for(let delivery of this.early.splice(0))this.
+take(delivery);for(let{name}of rows)this.follow(name,value=>{for(let viewer of this.viewers)viewer.followSetting(name,value)})}take(delivery){
 let viewer=this.viewers[delivery.view];if(!viewer)return;let generation=viewer.header?viewer.header.generation??0:-1;if(delivery.
 generation>generation)return void this.early.push(delivery);let isOld=name=>delivery.generation!==generation&&name.includes(
 "/");for(let part of delivery.parts)isOld(part.name)||viewer.setPart(part);let names=delivery.lacking.filter(name=>!isOld(
-name));discard([delivery]),names.length&&this.model.send({kind:"want",names,view:delivery.view})}dispose(){for(let[event,
-call]of this.handlers)this.model.off(event,call);discard(this.early);for(let viewer of this.viewers)viewer.dispose()}};var client_default={initialize,render};export{Viewer,decoded,client_default as default,mountPage,partsOfFile};
+name));discard([delivery]),this.becomeLive(),names.length&&this.model.send({kind:"want",names,view:delivery.view})}dispose(){
+for(let[event,call]of this.handlers)this.model.off(event,call);discard(this.early),document.adoptedStyleSheets=document.
+adoptedStyleSheets.filter(s=>s!==this.sheet);for(let viewer of this.viewers)viewer.dispose()}};var client_default={initialize,render};export{Viewer,decoded,client_default as default,mountPage,partsOfFile};

@@ -162,15 +162,16 @@ def page_pieces(
 ) -> Iterator[str]:
     """Give the text of a page piece by piece; each array is packed when it is reached.
 
-    Camera, time and clock are those of :meth:`ClientData.header`; ``picture`` is a PNG that is
-    shown until the page has drawn, made here where there is none.
+    Camera, time and clock are those of :meth:`ClientData.header`; ``picture`` is a PNG or JPEG
+    that is shown until the page has drawn, made here where there is none.
     """
     headers = [
         scene.header(view.scene.settings, camera=camera, time=time, clock=clock)
         for view, scene in zip(views, scenes, strict=True)
     ]
-    if len(views) > 1:
-        for header in headers:
+    for header in headers:
+        header["name"] = title or header["name"]
+        if len(views) > 1:
             header["differs"] = list(views[1].own_settings)
     if picture is None:
         picture = preview.preview_png(
@@ -194,6 +195,7 @@ def _values(headers: Sequence[Header], title: str, picture: bytes) -> dict[str, 
         "version": __version__,
         "title": html.escape(title),
         "style": look,
+        # Browsers tell JPEG by itself.
         "preview": "data:image/png;base64," + base64.b64encode(picture).decode(),
         "headers": _json([headers[0], *(_different(h, headers[0]) for h in headers[1:])]),
         "script": script,

@@ -1,20 +1,38 @@
-"""How a widget gets into a cell, once, and what stands there where widgets do not run."""
+"""How a widget gets into a cell, once, and what stands there where widgets do not run.
+
+A cell gets two outputs: the widget, and below it a still, a picture of it, alone or among others
+in a box. JupyterLab takes no other form of an output whose widget is missing, and says so instead;
+so the style of the still hides the output above it until there is a view that is drawn, and such a
+view hides the still. Thus a notebook without a kernel shows stills, wherever it is read.
+"""
 
 from __future__ import annotations
 
 import base64
+import html
 import sys
 import time
+import uuid
+from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any, Self
 
 import anywidget
+import ipywidgets
 
 __all__ = ["Displayed"]
 
 #: Seconds that cells wait for small pictures, at most; how much comes back in a second.
-MAX_WAIT_S, WAIT_REGAINED = 1.0, 0.2
+MAX_WAIT_S, WAIT_REGAINED = 2.0, 0.2
+#: Stills of one cell: of more than fifty outputs JupyterLab hides the rest.
+MOST_STILLS = 20
+VIEW = "application/vnd.jupyter.widget-view+json"
+#: Hides the output above a still, where that has no view that is drawn.
+STYLE = (
+    ":is(.jp-OutputArea-child,.output_area):not(:has([data-live])):has(+ * > * > .flowtex-still)"
+    "{display:none !important}"
+)
 
 
 class WaitBudget:
@@ -36,6 +54,7 @@ class WaitBudget:
 
 
 _wait_budget = WaitBudget()
+_stills_of_cells: Counter[int | None] = Counter()
 
 
 class Displayed(anywidget.AnyWidget):
@@ -43,9 +62,24 @@ class Displayed(anywidget.AnyWidget):
 
     _shown_in: int | None = None
 
+    def __init__(self, **traits: Any) -> None:
+        self._stills: dict[str, Any] = {}  # widgets with this one in them, by the still's name
+        super().__init__(**traits)
+        if (shell := _kernel_shell()) is not None:
+            shell.display_formatter.ipython_display_formatter.for_type(ipywidgets.Box, _display_box)
+
     def _picture(self, timeout_s: float) -> bytes | None:
-        """Return a PNG of the widget, which may be waited for."""
+        """Return a PNG or JPEG of the widget, which may be waited for."""
         raise NotImplementedError
+
+    def _encoded_picture(self) -> tuple[str, str] | None:
+        """Return the format and the text of a picture, where there is time to make one."""
+        with _wait_budget.spend() as seconds:
+            picture = self._picture(seconds)
+        if not picture or self.comm is None:
+            return None
+        kind = "image/jpeg" if picture.startswith(b"\xff\xd8") else "image/png"
+        return kind, base64.b64encode(picture).decode()
 
     def _repr_mimebundle_(self, **kwargs: Any) -> Any:
         """Return the widget, and for where there are none a picture and a line of text."""
@@ -53,34 +87,108 @@ class Displayed(anywidget.AnyWidget):
         if not isinstance(bundle, tuple):
             return bundle
         data, metadata = bundle
-        with _wait_budget.spend() as seconds:
-            picture = self._picture(seconds)
-        encoded = {"image/png": base64.b64encode(picture).decode()} if picture else {}
-        return {**data, **encoded}, metadata
+        picture = self._encoded_picture()
+        return {**data, **dict([picture] if picture else [])}, metadata
 
     def _ipython_display_(self) -> None:
         """Display the widget, unless :func:`flowtex.show` has done so in this very cell."""
         number = _cell_number()
         shown, self._shown_in = self._shown_in, None
-        if shown is not None and shown == number:
-            return
-        self._display()
-
-    def _display(self) -> None:
-        from IPython.display import display
-
-        data, metadata = self._repr_mimebundle_()
-        display(data, metadata=metadata, raw=True)
+        if shown is None or shown != number:
+            _display(self)
 
     def show(self) -> Self:
         """Display the widget now, and not once more as the value of the same cell."""
-        self._display()
+        _display(self)
         self._shown_in = _cell_number()
         return self
+
+    def _update_stills(self) -> None:
+        """Show the present picture where widgets do not run."""
+        stills: dict[str, Any] = vars(self).get("_stills", {})  # none where its making failed
+        for name, shown in stills.items():
+            _display_still(shown, name, update=True)
+
+
+def _display(shown: Any) -> None:
+    """Display a widget or a box of widgets, and its still; a notebook of marimo's keeps none."""
+    if (marimo := sys.modules.get("marimo")) is not None and marimo.running_in_notebook():
+        marimo.output.append(shown)
+        return
+    from IPython.display import display
+
+    bundle = shown._repr_mimebundle_()
+    data, metadata = bundle if isinstance(bundle, tuple) else (bundle, {})
+    cell = _cell_number()
+    _stills_of_cells[cell] += 1
+    if _kernel_shell() is None or _stills_of_cells[cell] > MOST_STILLS:
+        display(data, metadata=metadata, raw=True)
+        return
+    # Empty texts, as some readers warn of an output of which they can show nothing.
+    display({VIEW: data[VIEW], "text/html": "", "text/plain": ""}, metadata=metadata, raw=True)
+    name = uuid.uuid4().hex
+    _display_still(shown, name)
+    for widget in _displayed_in(shown):
+        widget._stills[name] = shown
+
+
+def _display_still(shown: Any, name: str, *, update: bool = False) -> None:
+    from IPython.display import display
+
+    keys = " ".join(widget._key for widget in _displayed_in(shown) if widget.comm is not None)
+    data = {"text/plain": repr(shown), "text/html": ""}
+    if keys:
+        pictures = f'<div class="flowtex-still" data-flowtex="{keys}">{_pictures(shown)}</div>'
+        data["text/html"] = f"<style>{STYLE}</style>{pictures}"
+        if isinstance(shown, Displayed) and (picture := shown._encoded_picture()):
+            data |= [picture]
+    display(data, raw=True, display_id=name, update=update)
+
+
+def _pictures(shown: Any) -> str:
+    """Return the pictures in a widget as HTML, laid out as its boxes are."""
+    if isinstance(shown, ipywidgets.Box):
+        direction = "column" if isinstance(shown, ipywidgets.VBox) else "row"
+        style = f"display:flex;flex-direction:{direction};align-items:flex-start;gap:4px"
+        return f'<div style="{style}">{"".join(map(_pictures, shown.children))}</div>'
+    picture = shown._encoded_picture() if isinstance(shown, Displayed) else None
+    if picture is None:
+        return ""
+    source = f"data:{picture[0]};base64,{picture[1]}"
+    return (
+        f'<img alt="{html.escape(repr(shown))}" style="max-width:100%;min-width:0" src="{source}">'
+    )
+
+
+def _displayed_in(shown: Any) -> list[Displayed]:
+    """Return the widgets in a box, and of a widget itself."""
+    if isinstance(shown, ipywidgets.Box):
+        return [widget for child in shown.children for widget in _displayed_in(child)]
+    return [shown] if isinstance(shown, Displayed) else []
+
+
+def _display_box(box: Any) -> None:
+    """Display a box that has flows in it; IPython displays others as it does without this."""
+    if (own := getattr(box, "_ipython_display_", None)) is not None:
+        own()
+    elif not _displayed_in(box):
+        raise NotImplementedError
+    else:
+        _display(box)
+
+
+def _shell() -> Any:
+    ipython = sys.modules.get("IPython")
+    return ipython.get_ipython() if ipython is not None else None
+
+
+def _kernel_shell() -> Any:
+    """Return the shell of a notebook's kernel."""
+    shell = _shell()
+    return None if getattr(shell, "kernel", None) is None else shell
 
 
 def _cell_number() -> int | None:
     """Return the number of the cell that runs; ``None`` outside IPython."""
-    ipython = sys.modules.get("IPython")
-    shell = ipython.get_ipython() if ipython is not None else None
+    shell = _shell()
     return None if shell is None else int(shell.execution_count)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import threading
 import uuid
 from collections.abc import Callable
@@ -170,6 +171,8 @@ class FlowWidget(SettingTraits, Displayed):
             self._ends = []
             self._views.close()
         super().close()
+        if not sys.is_finalizing():  # a kernel that ends leaves its stills
+            self._update_stills()
 
     @traitlets.validate("noise")
     def _check_noise(self, proposal: Any) -> Any:
@@ -206,11 +209,13 @@ class FlowWidget(SettingTraits, Displayed):
     def _handle_message(self, _: Any, content: Any, buffers: list[Any]) -> None:
         """Answer the client."""
         if isinstance(content, dict):
-            self._frame = bytes(buffers[0]) if content.get("kind") == "frame" else self._frame
+            if content.get("kind") == "frame":
+                self._frame = bytes(buffers[0])
+                self._update_stills()
             self._views.handle_message(content)
 
     def _picture(self, timeout_s: float) -> bytes | None:
-        """Return the browser's own first frame, or the small picture that stands in for it."""
+        """Return the browser's own last frame, or the small picture that stands in for it."""
         if self._frame is not None:
             return self._frame
         return self._views.picture(PREVIEW, dict(self.camera), timeout_s)

@@ -17,6 +17,13 @@ const float FLOWTEX_BELL_BEND = 0.06;
 const float FLOWTEX_BELL_END = 3.0; // d^2 beyond which it counts as zero
 const int FLOWTEX_SHARED_TERMS = 24; // neighbours of a sample that may share its grain
 
+// Paths in a cell give way to the slices from one number to the other: of the length of the nodes'
+// mean velocity over the mean of their lengths, and of the cells that a side of the path goes over.
+const float FLOWTEX_PARTING = 0.95;
+const float FLOWTEX_AGREED = 0.99;
+const float FLOWTEX_NEAR_CELLS = 1.0;
+const float FLOWTEX_FAR_CELLS = 2.0;
+
 // Levels of detail.
 const float FLOWTEX_LEAST_SQUARE = 1e-38; // square of the longest side of a footprint
 const float FLOWTEX_LEAST_TEXELS = 1e-6;  // side of a footprint in texels

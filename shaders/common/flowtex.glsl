@@ -7,6 +7,7 @@ void flowtexMove(float slope, float speed);
 void flowtexGather(vec3 displacement, float weight);
 #endif
 //#include common/path.glsl
+//#include common/cell.glsl
 //#include common/texture.glsl
 //#include common/derivatives.glsl
 //#include common/levels.glsl

@@ -68,7 +68,8 @@ void flowtexAdd(inout FlowtexSums sums, vec3 displacement, float length_, float 
 //
 // The loop over the segments between two lags is outside, so that no sample fetches anything.
 void flowtexSide(inout FlowtexSums sums, vec2 coordinate, float level, vec3 before, vec3 after,
-                 int first, float side, float spacing, float reach, float scale, int count)
+                 int first, float side, float spacing, float reach, float scale, int count,
+                 bool inCell)
 {
   float last = min(reach, u_lags[u_lagCount - 1]);
   float per_speed = scale / spacing;
@@ -81,6 +82,7 @@ void flowtexSide(inout FlowtexSums sums, vec2 coordinate, float level, vec3 befo
   vec2 turn = vec2(cos(angle), sin(angle));
   vec2 turned = turn; // cosine and sine of pi * t, turned on from sample to sample
   float previous = kernel.x + kernel.y;
+  flowtexLeaveFragment();
   int k = 1;
   for (int segment = 1; k <= count; ++segment)
   {
@@ -89,11 +91,14 @@ void flowtexSide(inout FlowtexSums sums, vec2 coordinate, float level, vec3 befo
     for (; k <= count && (final || lag <= to); ++k)
     {
       float alive = clamp((last - lag) * rate + 1.0, 0.0, 1.0);
+      vec3 slope = before + bend * (lag - from);
+      vec3 displacement = slope * (lag * side * scale);
+      if (inCell)
+        flowtexGoOn(side * spacing, displacement, alive);
       if (alive <= 0.0)
         return;
-      vec3 slope = before + bend * (lag - from);
       float weight = alive * dot(kernel, vec3(1.0, turned.x, float(k) / float(count + 1)));
-      flowtexAdd(sums, slope * (lag * side * scale), side * lag * scale, weight, previous);
+      flowtexAdd(sums, displacement, side * lag * scale, weight, previous);
       previous = weight;
       turned = vec2(turned.x * turn.x - turned.y * turn.y, turned.y * turn.x + turned.x * turn.y);
 #ifndef FLOWTEX_PAPER
@@ -134,13 +139,18 @@ float flowtexTexture(vec2 coordinate, float sliceLevel, float spacing)
     float scale = base.w * u_unit;
 #endif
     int count = u_sides == 2 ? u_samples / 2 : u_samples - 1;
+    int inCell = flowtexEnterCell(coordinate, float(count) * spacing) ? count : 0;
     flowtexSide(sums, coordinate, sliceLevel, base.xyz, back.xyz, 0, -1.0, spacing, back.w, scale,
-                count);
+                count - inCell, false);
+    flowtexSide(sums, coordinate, sliceLevel, base.xyz, back.xyz, 0, -1.0, spacing, back.w, scale,
+                inCell, true);
     if (u_sides == 2)
     {
       vec4 ahead = flowtexLayer(coordinate, u_lagCount + 1, sliceLevel);
       flowtexSide(sums, coordinate, sliceLevel, base.xyz, ahead.xyz, u_lagCount, 1.0, spacing,
-                  ahead.w, scale, count);
+                  ahead.w, scale, count - inCell, false);
+      flowtexSide(sums, coordinate, sliceLevel, base.xyz, ahead.xyz, u_lagCount, 1.0, spacing,
+                  ahead.w, scale, inCell, true);
     }
   }
   return flowtexBlend(sums.noise * inversesqrt(sums.squares), sums.neighbours / sums.squares);

@@ -13,6 +13,10 @@ uniform float u_lags[FLOWTEX_MOST_LAGS];   // lags of the slices, in units of la
 uniform int u_lagCount;
 uniform int u_sides;        // 1 backward only, 2 forward too
 uniform float u_unit;       // length that the fourth channel of layer 0 is measured in
+#ifdef FLOWTEX_CELLS
+uniform int u_rateLayer;    // layer 0 in cells
+uniform float u_cell;       // of this length
+#endif
 
 uniform int u_samples;
 uniform float u_spacing;

@@ -135,6 +135,35 @@ def test_planes_and_arrays_can_be_chosen(page: Page) -> None:
     assert "16 × 6" in page.inner_text(".flowtex-about")
 
 
+@pytest.mark.parametrize("width", [1000, 700, 380])
+def test_the_play_button_stays_when_the_figures_grow(page: Page, width: int) -> None:
+    page.set_viewport_size({"width": width, "height": 600})
+    figures, play = page.locator(".flowtex-figures"), page.get_by_role("button", name="Play")
+    places = []
+    for text in (
+        "9 ms",
+        "12 fps · 1234 ms · limited by compression · 1600 × 1000 · zoom 1000000",
+    ):
+        figures.evaluate("(element, text) => void (element.textContent = text)", text)
+        places.append(play.bounding_box())
+        foot, whole = figures.bounding_box(), play.locator("..").bounding_box()
+        assert foot is not None and whole is not None
+        assert foot["x"] >= whole["x"] + whole["width"] or foot["y"] >= whole["y"] + whole["height"]
+    page.set_viewport_size(SIZE)  # type: ignore[arg-type]
+    assert places[0] == places[1] is not None
+
+
+def test_what_has_the_focus_has_a_ring(page: Page) -> None:
+    rings = """() => [...document.querySelectorAll(".flowtex *")].filter((element) =>
+      getComputedStyle(element).outline.startsWith("rgb(79, 209, 197) solid 2px")).length"""
+    page.get_by_role("button", name="Play").focus()
+    for _ in range(16):
+        page.keyboard.press("Tab")
+        focused = page.evaluate("() => !!document.activeElement.closest('.flowtex')")
+        assert page.evaluate(rings) == focused
+    page.evaluate("() => document.activeElement.blur()")
+
+
 def test_a_broken_file_is_told_and_the_view_stands(page: Page) -> None:
     still = WATCH.shot(page)
     open_file(page, "torn.vts")

@@ -231,6 +231,26 @@ def test_info_says_that_a_field_has_no_sign(run: Run, tmp_path: Path) -> None:
     assert words not in run("info", tmp_path / "axis.vti")[1]
 
 
+def test_a_port_out_of_range_is_told(run: Run) -> None:
+    code, _, err = run("demo", "--port", 80000)
+    assert code == 2
+    assert "--port" in err and "65536" in err
+
+
+def test_the_terminal_says_what_takes_long(
+    run: Run, gyre: Path, monkeypatch: pytest.MonkeyPatch, opengl: object
+) -> None:
+    app = pytest.importorskip("flowtex.app")
+    monkeypatch.setenv("FORCE_COLOR", "1")  # to rich a terminal
+    monkeypatch.delenv("DISPLAY", raising=False)
+    monkeypatch.setattr(app, "serve", lambda _, announce, **__: announce("http://here"))
+    code, out, err = run("show", gyre, "--no-browser")
+    assert code == 0
+    assert "Reading gyre" in err
+    assert "Tracing gyre" in err
+    assert "http://here" in out
+
+
 def test_the_console_script_runs_without_loading_vtk() -> None:
     code = (
         "import sys; from flowtex.cli import main; assert main(['--help']) == 0;"

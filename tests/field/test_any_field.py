@@ -79,6 +79,10 @@ def test_missing_data_is_not_computed_with(arguments: dict[str, Any]) -> None:
         ({"velocity": 1e-200 * WIND}, "velocity has values up to 1e-200; expected 1e-100"),
         ({"points": 1e40 * PLANE}, r"points has values up to 3e\+40; expected 1e-30 to 1e\+30: "),
         ({"times": [1e200]}, r"times go up to 1e\+200; expected 1e\+100 at most"),
+        ({"times": [[0.0], [1.0, 2.0]]}, "times is no array .*; expected real numbers"),
+        ({"times": np.ones(1, "m8[M]")}, "times holds timedelta64.M., which have no fixed length"),
+        ({"times": np.ma.masked_array(np.ones(1, "M8[s]"), [True])}, "times.0. is nan; expected"),
+        ({"scalars": PLANE}, "scalars is a ndarray; expected a mapping of arrays by name"),
         ({"times": [1 + 1j]}, "times holds complex128; expected real numbers"),
         ({"times": np.ma.masked_array([0.0], [True])}, "times.0. is nan; expected a finite"),
         ({"points": [[1, 2], [3]]}, "points is no array .*; expected real numbers, as many in"),
@@ -90,3 +94,24 @@ def test_missing_data_is_not_computed_with(arguments: dict[str, Any]) -> None:
 def test_numbers_that_cannot_be_drawn_are_named(arguments: dict[str, Any], text: str) -> None:
     with pytest.raises(FieldError, match=text):
         FlowField.from_arrays(**{"points": PLANE, "velocity": WIND, **arguments})
+
+
+def test_what_was_given_is_neither_changed_nor_kept() -> None:
+    given: dict[str, Any] = {
+        "points": damaged(PLANE, 1e20),
+        "velocity": damaged(np.stack([WIND, WIND]), np.nan, (0, 1, 1, 0)),
+        "times": np.array([0.0, 1.0]),
+        "scalars": {"p": damaged(PLANE[..., 0], 1e300, (1, 1))},
+    }
+    given["scalars"]["q"] = np.ma.masked_array(PLANE[..., 0], PLANE[..., 0] > 1)
+    before = {key: np.array(given[key]) for key in ("points", "velocity", "times")}
+    field = FlowField.from_arrays(**given)
+    for key, array in before.items():
+        np.testing.assert_array_equal(given[key], array)
+        assert not np.shares_memory(given[key], getattr(field, key))
+    assert given["scalars"]["p"][1, 1] == 1e300
+    assert np.isfinite(given["scalars"]["q"].data).all()
+    for key, values in field.scalars.items():
+        assert not np.shares_memory(given["scalars"][key], values)
+    assert np.isnan(field.scalars["p"][0, 1, 1])
+    assert np.isnan(field.scalars["q"][0]).sum() == 8

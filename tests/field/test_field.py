@@ -65,6 +65,24 @@ def test_a_series_keeps_its_times() -> None:
     assert not field.steady
 
 
+@pytest.mark.parametrize("unit", ["h", "ns"])
+def test_dates_are_seconds_since_the_first(unit: str) -> None:
+    dates = np.array(["2002-01-01T00", "2002-01-01T06"], dtype=f"datetime64[{unit}]")
+    points, velocity = np.moveaxis(np.indices((4, 5)), 0, -1), np.ones((2, 4, 5, 2))
+    for times in (dates, dates.tolist() if unit == "h" else dates, dates - dates[0]):
+        field = FlowField.from_arrays(points, velocity, times=times)
+        assert field.times.tolist() == [0.0, 21600.0]
+        assert field.time_unit == "s"
+    with pytest.raises(FieldError, match=r"^time_unit is 'd' and the times are dates"):
+        FlowField.from_arrays(points, velocity, times=dates, time_unit="d")
+    months = np.array(["2002-01", "2002-02"], dtype="datetime64[M]")
+    field = FlowField.from_arrays(points, velocity, times=months)
+    assert field.times.tolist() == [0.0, 31 * 86400.0]
+    dates[1] = np.datetime64("NaT")
+    with pytest.raises(FieldError, match=r"times\[1\] is nan; expected a finite number"):
+        FlowField.from_arrays(points, velocity, times=dates)
+
+
 def test_a_series_without_times_is_numbered() -> None:
     assert FlowField.from_arrays(flat(), ones(flat(), 3)).times.tolist() == [0.0, 1.0, 2.0]
 

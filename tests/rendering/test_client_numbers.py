@@ -83,6 +83,7 @@ def uniforms_of(name: str) -> dict[str, Any]:
         "view": plain(vars(view)),
         "noise": noise,
         "moving": values.pop("moving"),
+        "near": values.pop("near"),
         "uniforms": plain(values),
     }
 

@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 
 from flowtex._util.array_types import Floats, Indices
-from flowtex.rendering.mesh_levels import MAX_ERROR_PIXELS, TILE_CELLS, MeshLevels
+from flowtex.field import FlowField
+from flowtex.rendering.mesh_levels import MAX_ERROR_PIXELS, MeshLevels, Region, join
+from flowtex.tiles import BLOCK_CELLS, TILE_BLOCKS, Pyramid, TileKey
 
 SHAPES = [(2, 2), (65, 65), (66, 130), (64, 200), (3, 300), (100, 2)]
 
@@ -60,7 +62,7 @@ def test_the_finest_level_is_every_cell() -> None:
 
 
 def test_a_flat_uniform_grid_is_two_triangles_a_tile() -> None:
-    shape = (4 * TILE_CELLS + 1, 2 * TILE_CELLS + 1)
+    shape = (4 * BLOCK_CELLS + 1, 2 * BLOCK_CELLS + 1)
     mesh = MeshLevels(grid(shape), whole(shape))
     assert len(mesh.triangles(mesh.levels(None, 130.0, 600))) == 16
 
@@ -145,3 +147,68 @@ def test_any_size_of_a_surface_has_levels(size: float) -> None:
         assert ((levels >= 0) & (levels < len(mesh.error))).all()
     flat = MeshLevels(np.zeros((70, 90, 3)), whole(shape))
     assert len(flat.triangles(flat.levels(np.zeros(3), 0.3, 600)))
+
+
+def _mixed(pyramid: Pyramid, rng: np.random.Generator) -> list[tuple[Region, MeshLevels, Any]]:
+    """Cover a surface by the root of a pyramid and some tiles of each level, at any mesh levels."""
+    parts: list[tuple[Region, MeshLevels, Any]] = []
+
+    def add(key: TileKey | None) -> Region:
+        level = pyramid.depth if key is None else key.level
+        lines = [
+            np.minimum(np.arange(n) << level, full - 1)
+            for n, full in zip(pyramid.shape(level), pyramid.field.shape, strict=True)
+        ]
+        place = (0, 0) if key is None else (key.row * TILE_BLOCKS, key.column * TILE_BLOCKS)
+        if key is not None:
+            size = TILE_BLOCKS * BLOCK_CELLS
+            lines = [
+                some[size * at : size * (at + 1) + 1]
+                for some, at in zip(lines, key[1:], strict=True)
+            ]
+        mesh = MeshLevels(
+            pyramid.field.points[np.ix_(*lines)], whole([len(some) for some in lines])
+        )
+        levels = rng.integers(0, len(mesh.error), mesh.error.shape[1:])
+        region = Region(level, place[0] << level, place[1] << level, levels)
+        parts.append((region, mesh, lines))
+        return region
+
+    def refine(region: Region, key: TileKey | None) -> None:
+        for child in pyramid.children(key) if region.step else []:
+            if rng.random() < 0.6:
+                finer = add(child)
+                row, column = (
+                    (finer.row - region.row) >> region.step,
+                    (finer.column - region.column) >> region.step,
+                )
+                region.levels[row : row + 2, column : column + 2] = -1
+                refine(finer, child)
+
+    refine(add(None), None)
+    return parts
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_tiles_of_different_levels_join_without_cracks(seed: int, monkeypatch: Any) -> None:
+    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 5000)
+    rng = np.random.default_rng(seed)
+    shape = (int(rng.integers(200, 700)), int(rng.integers(200, 900)))
+    points = grid(shape)
+    field = FlowField.from_arrays(points, np.ones_like(points), periodic="")
+    pyramid = Pyramid(field)
+    parts = _mixed(pyramid, rng)
+    joins = join([region for region, _, _ in parts], pyramid.blocks)
+    triangles = []
+    for (region, mesh, lines), border in zip(parts, joins, strict=True):
+        local = mesh.triangles(region.levels, border)
+        j, i = np.divmod(local, len(lines[1]))
+        triangles.append(lines[0][j] * shape[1] + lines[1][i])
+    together = np.concatenate(triangles)
+    assert area(points, together) == pytest.approx((shape[0] - 1) * (shape[1] - 1))
+    for (a, b), count in edges(together).items():
+        j, i = np.divmod([a, b], shape[1])
+        outside = any(
+            (k == end).all() for k, n in ((j, shape[0]), (i, shape[1])) for end in (0, n - 1)
+        )
+        assert count == (1 if outside else 2)

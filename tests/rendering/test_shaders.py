@@ -34,7 +34,7 @@ def test_the_same_input_gives_the_same_text() -> None:
 def test_an_unknown_variant_is_refused() -> None:
     with pytest.raises(
         shaders.GLSLError,
-        match=r"^unknown variant FLOWTEX_PAPRE; there are FLOWTEX_MOVING, FLOWTEX_PAPER, ",
+        match=r"^unknown variant FLOWTEX_PAPRE; there are FLOWTEX_CELLS, FLOWTEX_MOVING, ",
     ):
         shaders.shader_text("vtk/vertex_dec.glsl", ["FLOWTEX_PAPRE"])
 

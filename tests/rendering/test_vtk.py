@@ -284,7 +284,7 @@ def test_a_frame_has_as_many_triangles_as_the_view_needs(plotter: Any) -> None:
     assert cells() == 2 * 256 * 512  # who looks at the mesh sees all of it
     handle.actor.prop.style = "Surface"
     assert cells() == 2 * 4 * 8
-    handle._layer._mesh_levels.error[1:] = np.inf
+    handle._surface._base.mesh_levels.error[1:] = np.inf
     assert cells() == 2 * 256 * 512
     every = np.asarray(plotter.screenshot(return_img=True), dtype=float)
     assert np.abs(every - plain).max() <= 2
@@ -371,7 +371,7 @@ def test_a_closed_plotter_lets_everything_go(opengl: Any) -> None:
     plotter: Any = pv.Plotter(off_screen=True, window_size=[100, 100])
     handle = plotter.flowtex.add(gyre_field())
     plotter.screenshot(return_img=True)
-    layer = weakref.ref(handle._layer)
+    layer = weakref.ref(handle._surface)
     plotter.close()
     assert handle.closed
     del handle, plotter

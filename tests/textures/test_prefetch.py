@@ -73,6 +73,6 @@ def test_playing_makes_the_next_step_ready_in_either_direction(
     handle.time = 1.5
     plotter.screenshot()
     prepared: list[int] = []
-    handle._layer._prefetch.prepare = prepared.append
+    handle._surface._base._prefetch.prepare = prepared.append
     handle.time = 1.6 if forward else 1.4
     assert prepared == [3 if forward else 0]

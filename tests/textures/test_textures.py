@@ -85,7 +85,7 @@ def test_fourth_channel_holds_unit_reach_and_speed() -> None:
     np.testing.assert_allclose(nodal(made, layers[0])[..., 3] * made.unit, slices.unit, rtol=1e-5)
     last = 2 * slices.lags[-1]
     count = len(slices.lags)
-    assert layers.shape[0] == made.count == 1 + 2 * count
+    assert layers.shape[0] == made.count == 2 + 2 * count
     np.testing.assert_allclose(nodal(made, layers[1])[..., 3], np.minimum(slices.reach[0], last))
     assert slices.forward_reach is not None
     np.testing.assert_allclose(
@@ -96,6 +96,15 @@ def test_fourth_channel_holds_unit_reach_and_speed() -> None:
     )
     assert not layers[3 : count + 1, ..., 3].any()
     assert np.isfinite(layers).all()
+
+
+def test_the_last_layer_is_the_velocity_in_cells() -> None:
+    field = stretched()
+    made = textures(field)
+    rate = nodal(made, made.layers()[-1])
+    in_cells = rate[..., :2] * rate[..., 3:] / nodal(made, made.layers()[0])[..., 3:] / made.cell
+    flow = field.index_velocity.components[0] / made.typical_speed
+    np.testing.assert_allclose(in_cells, flow, rtol=1e-5, atol=1e-6)
 
 
 def test_by_time_slopes_are_speeds_over_a_typical_speed() -> None:

@@ -85,6 +85,15 @@ def test_time_steps_of_any_length(step: float) -> None:
             np.testing.assert_allclose(found[inside], expected[inside], atol=0.05)
 
 
+def test_a_change_in_time_is_not_jumped_over_on_the_way_forward() -> None:
+    points, _ = turning(9)
+    gust = np.zeros((9, *points.shape))
+    gust[4] = [1.0, 0.0]
+    field = FlowField.from_arrays(points, gust)
+    found = paths(field, [[2.0, 4.0]], [8.0], step=0, forward=True)
+    np.testing.assert_allclose(found.positions[0], [[3.0, 4.0]], atol=0.02)
+
+
 def test_paths_that_go_round_among_cells_of_all_sizes_are_soon_there() -> None:
     u, v = np.meshgrid(np.linspace(0, 1, 4), np.linspace(0, 1, 8))
     points = np.stack([10.0 ** (-12 * u), v**4], axis=-1)

@@ -15,6 +15,7 @@ from flowtex._util import progress
 from flowtex._util.array_types import Floats
 from flowtex.examples import cylinder_field, double_gyre_field, vortex_field
 from flowtex.trace import SliceStore, paths
+from flowtex.trace.lags import choose_lags, lag_unit
 
 
 @pytest.fixture(scope="module")
@@ -278,6 +279,9 @@ def test_other_arguments_are_checked() -> None:
     message = "tolerance is 0; expected a positive number of cells, such as 1e-3"
     with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
         trace(field, tolerance=0)
+    message = "nodes has shape (2, 3); expected (6, 11) as the field has"
+    with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
+        trace(field, nodes=np.ones((2, 3), bool), compose=False)
     with pytest.raises(IndexError, match=r"^time step 1 does not exist: expected 0 to 0$"):
         trace(field, steps=[1])
 
@@ -349,3 +353,31 @@ def test_store_gives_each_step_once() -> None:
     assert store.at(5) is one
     assert one.times.tolist() == [field.times[5]]
     np.testing.assert_allclose(one.displacement, trace(field).at_step(5).displacement, atol=1e-6)
+
+
+def test_only_chosen_nodes_are_followed() -> None:
+    field = double_gyre_field(True, shape=(21, 41))
+    nodes = np.zeros(field.shape, bool)
+    nodes[5:12, 7:30] = True
+    store = SliceStore(field, compose=False, nodes=nodes, longest=0.2)
+    some = store.at(9)
+    all_ = trace(field, lags=store.lags, unit=store.unit, steps=[9], compose=False)
+    np.testing.assert_array_equal(some.displacement[:, :, nodes], all_.displacement[:, :, nodes])
+    np.testing.assert_array_equal(some.reach[:, nodes], all_.reach[:, nodes])
+    assert not some.reach[:, ~nodes].any()
+    # The others move as the nearest one does.
+    np.testing.assert_array_equal(some.displacement[:, :, 0, 10], some.displacement[:, :, 5, 10])
+
+
+@pytest.mark.parametrize("parameter", ["arclength", "time"])
+def test_the_greatest_length_decides_how_many_lags_there_are(parameter: str) -> None:
+    field = double_gyre_field(shape=(21, 41))
+    quarter = choose_lags(field, parameter)
+    np.testing.assert_array_equal(
+        quarter, choose_lags(field, parameter, longest=field.surface.extent / 4)
+    )
+    shorter = SliceStore(field, parameter=parameter, longest=field.surface.extent / 16)
+    # Lags by time are scaled by a power of two, and their unit with them.
+    scale = shorter.unit / lag_unit(field, parameter)
+    np.testing.assert_array_equal(shorter.lags * scale.flat[0], quarter[:-2])
+    assert shorter.at(0).displacement.shape[1] == len(quarter) - 2

@@ -224,6 +224,20 @@ def test_on_a_slow_machine_a_moved_picture_serves_until_the_next(client: ClientP
     assert beside < 0.9
 
 
+def test_a_coarse_picture_has_no_line_along_its_edges(client: ClientPage) -> None:
+    client.mount(scene(gyre, straight(8)), SIZE, **PLAIN)
+    client.sharp()
+    slow = "viewers[0].graphics.programs.entries.forEach((p) => { p.price = 1 })"
+    busy = "viewers[0].busyUntil = Infinity; viewers[0].setSettings({ contrast: 1.5 })"
+    number(client, f"{{ {slow}; {busy}; viewers[0].draw() }}")
+    assert not number(client, "viewers[0].sharp")
+    coarse = client.pixels().astype(float)
+    # Five pixels by one that was drawn: beyond the middle of the outermost there is nothing else.
+    for outer, inner in ((0, 1), (-1, -2)):
+        np.testing.assert_allclose(coarse[outer], coarse[inner], atol=3)
+        np.testing.assert_allclose(coarse[:, outer], coarse[:, inner], atol=3)
+
+
 def test_a_drag_turns_a_curved_surface_and_shift_pans_it(client: ClientPage) -> None:
     client.mount(scene(torus, ASIDE), SIZE, **PLAIN)
     client.sharp()

@@ -48,6 +48,18 @@ def middle(client: ClientPage, nth: int = 0) -> tuple[float, float]:
     return found["x"] + found["width"] / 2, found["y"] + found["height"] / 2
 
 
+def test_the_button_stays_when_playing_begins(client: ClientPage) -> None:
+    client.mount(scene(), (640, 300), smooth=False)
+    client.sharp()
+    button = client.page.locator("[data-name=play]")
+    at = [button.bounding_box()]
+    button.click()
+    at.append(button.bounding_box())
+    client.page.wait_for_timeout(300)
+    at.append(button.bounding_box())
+    assert at[0] == at[1] == at[2] is not None
+
+
 # --- fingers ----------------------------------------------------------------------------------
 
 

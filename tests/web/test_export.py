@@ -227,6 +227,52 @@ def test_a_page_is_played_from_a_file_without_a_network(
 
 
 @pytest.mark.browser
+def test_keys_and_title_are_the_pages_from_the_beginning(
+    offline: tuple[Page, list[str], list[str]], tmp_path: Path
+) -> None:
+    page, _, said = offline
+    export(gyre(3), tmp_path / "page.html", samples=5, title="Two gyres")
+    page.goto((tmp_path / "page.html").as_uri())
+    page.locator('[data-sharp="true"]').wait_for()
+    assert (page.title(), page.locator(".flowtex .title").inner_text()) == ("Two gyres",) * 2
+    for label in ("Pause (space)", "Play (space)"):
+        page.keyboard.press("Space")
+        page.locator(f'.flowtex [aria-label="{label}"]').wait_for()
+    assert said == []
+
+
+@pytest.mark.browser
+@pytest.mark.parametrize("width", [500, 300])
+def test_nothing_leaves_a_small_page(
+    width: int, offline: tuple[Page, list[str], list[str]], tmp_path: Path
+) -> None:
+    page, _, _ = offline
+    flow, name = gyre(3), "a scalar of a very long name"
+    scalars = {name: -1e-7 * flow.points[..., 0]}
+    flow = flowtex.FlowField.from_arrays(flow.points, flow.velocity, scalars=scalars)
+    export(flow, tmp_path / "page.html", samples=5, scalars=name)
+    page.set_viewport_size({"width": width, "height": 240})
+    page.goto((tmp_path / "page.html").as_uri())
+    page.locator('[data-sharp="true"]').wait_for()
+    page.mouse.move(140, 120)
+    page.mouse.move(150, 120)
+    page.locator(".flowtex .readout b").wait_for()
+    places = [page.locator(f".flowtex {name}").bounding_box() for name in (".head", ".legend")]
+    page.locator("[data-name=settings]").click()
+    for name in (".bar", ".settings", ".bar button:last-child", ".time"):
+        places.append(page.locator(f".flowtex {name}").bounding_box())
+    for place in places:
+        assert place is not None
+        assert place["x"] >= 5
+        assert place["x"] + place["width"] <= width - 5
+    head, legend = places[:2]
+    assert head is not None and legend is not None
+    assert head["x"] + head["width"] <= legend["x"]
+    ends = "element => [element.scrollWidth, element.clientWidth]"
+    assert len(set(page.locator(".flowtex .ends").evaluate(ends))) == 1
+
+
+@pytest.mark.browser
 def test_two_views_on_a_page_move_together(
     offline: tuple[Page, list[str], list[str]], tmp_path: Path
 ) -> None:

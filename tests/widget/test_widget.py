@@ -7,6 +7,7 @@ import subprocess
 import sys
 import threading
 import time
+import types
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -23,6 +24,7 @@ from flowtex.widget import feed
 pytest.importorskip("anywidget")
 
 import traitlets
+from IPython.core.formatters import DisplayFormatter
 
 from flowtex.widget import FlowWidget
 
@@ -291,6 +293,9 @@ def test_a_notebook_that_is_read_elsewhere_has_a_picture(make: Make) -> None:
     widget._handle_custom_msg({"kind": "frame"}, [memoryview(b"png")])
     data, _ = widget._repr_mimebundle_()
     assert base64.b64decode(data["image/png"]) == b"png"
+    widget._handle_custom_msg({"kind": "frame"}, [memoryview(b"\xff\xd8jpeg")])
+    data, _ = widget._repr_mimebundle_()
+    assert base64.b64decode(data["image/jpeg"]) == b"\xff\xd8jpeg"
 
 
 def test_nothing_is_left_after_closing(make: Make) -> None:
@@ -324,7 +329,9 @@ def test_a_missing_extra_is_named(missing: str) -> None:
 class Shell:
     """What IPython has in a notebook."""
 
-    kernel = object()
+    def __init__(self) -> None:
+        self.kernel, self.display_formatter = object(), DisplayFormatter()
+
     execution_count = 3
 
 
@@ -337,17 +344,61 @@ def test_show_displays_once_in_a_notebook(make: Make, monkeypatch: pytest.Monkey
     monkeypatch.setattr(displays, "display", lambda data, **_: shown.append(data))
     widget = flowtex.show(gyre(), samples=9)
     assert isinstance(widget, FlowWidget)
-    assert len(shown) == 1
+    assert len(shown) == 2  # the widget and its still
     widget._ipython_display_()  # as the value of the same cell
-    assert len(shown) == 1
-    widget._ipython_display_()
     assert len(shown) == 2
+    widget._ipython_display_()
+    assert len(shown) == 4
     monkeypatch.setattr(Shell, "execution_count", 4)
     widget._ipython_display_()
-    assert len(shown) == 3
+    assert len(shown) == 6
     with pytest.raises(TypeError, match=r"^scalar_bar_args is for windows"):
         flowtex.show(gyre(), scalar_bar_args={"title": "speed"})
     widget.close()
+
+
+def test_show_displays_a_widget_in_marimo(make: Make, monkeypatch: pytest.MonkeyPatch) -> None:
+    shown: list[Any] = []
+    marimo = types.SimpleNamespace(
+        running_in_notebook=lambda: True, output=types.SimpleNamespace(append=shown.append)
+    )
+    monkeypatch.setitem(sys.modules, "marimo", marimo)  # type: ignore[arg-type]
+    widget = flowtex.show(gyre(), samples=9)
+    assert shown == [widget]
+    assert isinstance(widget, FlowWidget)
+    widget.close()
+
+
+def test_boxes_have_the_pictures_of_what_is_in_them(
+    make: Make, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    import IPython
+    from IPython import display as displays
+    from ipywidgets import Button, HBox, VBox
+
+    shell, shown = Shell(), []
+    monkeypatch.setattr(IPython, "get_ipython", lambda: shell)
+    monkeypatch.setattr(
+        displays, "display", lambda data, display_id=None, **_: shown.append((display_id, data))
+    )
+    first, other = make(), make()
+    first._handle_custom_msg({"kind": "frame"}, [memoryview(b"\xff\xd8one")])
+    format_ = shell.display_formatter.format
+    assert format_(VBox([HBox([first, Button()]), other])) == ({}, {})
+    (_, view), (name, still) = shown
+    assert view["application/vnd.jupyter.widget-view+json"]["model_id"]
+    assert still["text/html"].count("data:image/jpeg;base64,/9hvbmU=") == 1
+    assert f'data-flowtex="{first._key} {other._key}"' in still["text/html"]
+    # The last picture of each takes the place of the one before.
+    other._handle_custom_msg({"kind": "frame"}, [memoryview(b"\xff\xd8two")])
+    assert shown[-1][0] == name
+    assert shown[-1][1]["text/html"].count("data:image/jpeg") == 2
+    other.close()
+    assert shown[-1][1]["text/html"].count("data:image/jpeg") == 1
+    # Other boxes are IPython's affair.
+    count = len(shown)
+    assert "application/vnd.jupyter.widget-view+json" in format_(HBox([Button()]))[0]
+    assert len(shown) == count
 
 
 def test_it_is_written_as_a_page_from_where_it_is(make: Make, tmp_path: Any) -> None:

@@ -130,7 +130,8 @@ class Appearance(Controller):
         low, high = (
             number(self.state.get(end), -GREATEST_VALUE, GREATEST_VALUE) for end in ("low", "high")
         )
-        if (low, high) == self._span():
+        # It may be called for what Python set, when another plane is shown already.
+        if (low, high) == self._shown_span:
             return
         if low is None or high is None or not low < high:
             span = f"{self.state.get('low')!r} to {self.state.get('high')!r}"
@@ -235,7 +236,7 @@ class Appearance(Controller):
         return float(f"{low:.4g}"), float(f"{high:.4g}")
 
     def _show_range(self) -> None:
-        low, high = self._span()
+        low, high = self._shown_span = self._span()
         self.state.set(bar=self._bar(), low=low, high=high)
 
     def _bar(self) -> dict[str, Any]:

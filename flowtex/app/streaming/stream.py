@@ -39,6 +39,8 @@ REST_S = 0.12
 MOST_RATE_HZ = 30.0
 #: Seconds between two sendings of an unfinished full picture.
 PARTIAL_INTERVAL_S = 0.2
+#: Seconds between two pictures that show more and more tiles.
+TILE_INTERVAL_S = 1.0
 #: Seconds between two checks whether anyone looks.
 WATCH_INTERVAL_S = 0.1
 #: Seconds that a picture waits for earlier ones that are still on their way, at most.
@@ -111,6 +113,7 @@ class FrameStream:
         self._sized = False
         self._closed = False
         self._fault = ""
+        self._tiled = 0.0
         self._recent: deque[float] = deque(maxlen=60)
 
     def set_streamer(self, streamer: Any) -> None:
@@ -177,8 +180,22 @@ class FrameStream:
         self._drawn.clear()
         await self._drawn.wait()
 
+    def _tile_ready(self) -> None:
+        """Ask for a picture when more of a large surface is there, now and then while it comes."""
+        now = time.perf_counter()
+        if not self._viewport.busy or now > self._tiled + TILE_INTERVAL_S:
+            self._tiled = now
+            self.changed()
+
     async def run(self) -> None:
         """Draw for as long as the task lives."""
+        loop = asyncio.get_running_loop()
+
+        def notify() -> None:
+            if not loop.is_closed():
+                loop.call_soon_threadsafe(self._tile_ready)
+
+        self._viewport.load_in_background(notify)
         # The shader is built for the first picture: better now, while a browser starts.
         with self._log_faults():
             self._viewport.draw(16, 16)

@@ -61,6 +61,7 @@ class Pane:
         """Draw this pane alone; :meth:`OffscreenWindow.draw` has the parameters."""
         for other in self._viewport.panes:
             other.handle.actor.SetVisibility(other is self)
+        self.handle.draw_for(self.size[1] if part is None else part[3])
         return self._viewport.window.draw(width, height, part)
 
     def colour_by(self, name: str, table: Any, span: tuple[float, float], plain: Any) -> None:
@@ -72,11 +73,7 @@ class Pane:
         self._mapper.SetLookupTable(table)
         self._mapper.scalar_range = span
         self._mapper.SelectColorArray(COLOUR_ARRAY)
-        self.write_colours(name)
-
-    def write_colours(self, name: str) -> None:
-        """Put the scalar's values at the time that is shown on the nodes."""
-        self.mesh.point_data[COLOUR_ARRAY] = self.handle.scene.scalar(name).ravel()
+        self.handle.set_scalars(COLOUR_ARRAY, name)
 
 
 class Viewport:
@@ -130,6 +127,7 @@ class Viewport:
         self._component = FlowtexComponent(self.window.plotter)
         self._beside: dict[str, Any] = {}
         self._stop_following: Callable[[], None] = lambda: None
+        self._tile_ready: Callable[[], None] | None = None
         self.panes: list[Pane] = [self._pane(field, options)]
         self.lighting = options.get("lighting")
         self.window.suppress_rendering()
@@ -154,7 +152,7 @@ class Viewport:
     @property
     def flat(self) -> bool:
         """Whether the surface lies in a plane."""
-        return self.field.surface.frame is not None
+        return self.handle.scene.whole.surface.frame is not None
 
     @property
     def size(self) -> tuple[int, int]:
@@ -183,7 +181,20 @@ class Viewport:
         if image is not None:
             handle.set_image(as_image(image))
             handle.settings.noise = options["noise"]
+        if self._tile_ready is not None:
+            handle.load_in_background(self._tile_ready)
         return Pane(handle, self)
+
+    def load_in_background(self, notify: Callable[[], None]) -> None:
+        """Draw large surfaces with what is there; as :meth:`FlowHandle.load_in_background`."""
+        self._tile_ready = notify
+        for pane in self.panes:
+            pane.handle.load_in_background(notify)
+
+    @property
+    def busy(self) -> bool:
+        """Whether more of a large surface is on its way."""
+        return any(pane.handle.busy for pane in self.panes)
 
     def _prepare(self) -> None:
         """Make ready for a field."""
@@ -356,8 +367,6 @@ class Viewport:
         """Show another time of a field that varies in time."""
         for pane in self.panes:
             pane.handle.time = time
-            if self.colour:
-                pane.write_colours(self.colour)
 
     def trace(self) -> None:
         """Trace what the time that is shown needs, so that drawing need not wait for it."""
@@ -400,7 +409,7 @@ class Viewport:
 
     def home(self, zoom: float = 1.0, focus: tuple[float, ...] | None = None) -> None:
         """Look at the whole surface, or closer at a point of it."""
-        surface, aspect = self.field.surface, self.aspect
+        surface, aspect = self.handle.scene.whole.surface, self.aspect
         self.whole = self._home = Camera.fit(surface, aspect)
         near = zoom != 1.0 or focus is not None
         self.camera = Camera.fit(surface, aspect, zoom=zoom, focus=focus) if near else self.whole
@@ -424,7 +433,8 @@ class Viewport:
     def look_from(self, toward: tuple[float, float, float], up: tuple[float, float, float]) -> None:
         """Look at the whole of a curved surface from a side."""
         self.home()
-        self.camera = self.whole = Camera.fit(self.field.surface, self.aspect, toward=toward, up=up)
+        surface = self.handle.scene.whole.surface
+        self.camera = self.whole = Camera.fit(surface, self.aspect, toward=toward, up=up)
 
     def pan(self, dx: float, dy: float) -> None:
         """Move what is seen by a part of the view."""
@@ -443,7 +453,7 @@ class Viewport:
 
     def plane_view(self) -> Floats | None:
         """Affine map from the surface's plane to the view, (3, 3); ``None`` when it has none."""
-        return plane_to_view(self.field.surface, self.camera, self.aspect)
+        return plane_to_view(self.handle.scene.whole.surface, self.camera, self.aspect)
 
     def surface_point(self, x: float, y: float) -> Floats | None:
         """Point of the surface at a place of the view, from -1 to 1; ``None`` beside it.
@@ -451,7 +461,7 @@ class Viewport:
         A flat surface has a point everywhere in its plane.
         """
         start, direction = self.camera.ray(x, y, self.aspect)
-        surface = self.field.surface
+        surface = self.handle.scene.whole.surface
         if surface.frame is None:
             reach = self.camera.distance + 2 * surface.extent
             points, _ = self.panes[0].mesh.ray_trace(

@@ -18,9 +18,11 @@ from flowtex.app.ui.panel import build_panel, panel_shown
 
 __all__ = ["THEMES", "build_page"]
 
+#: Hints are dark in both.
+HINT = {"surface-variant": "#2a3440", "on-surface-variant": "#e8edf2"}
 THEMES = {
-    "dark": {"dark": True, "colors": {"primary": "#4fd1c5", "surface": "#171c23"}},
-    "light": {"dark": False, "colors": {"primary": "#0f766e", "surface": "#ffffff"}},
+    "dark": {"dark": True, "colors": {"primary": "#4fd1c5", "surface": "#171c23", **HINT}},
+    "light": {"dark": False, "colors": {"primary": "#0f766e", "surface": "#ffffff", **HINT}},
 }
 
 #: Attributes that tell the page's state to whoever watches it, such as a test.

@@ -10,6 +10,7 @@ import numpy as np
 
 from flowtex._util.array_types import Floats
 from flowtex.rendering import constants as const
+from flowtex.rendering.cpu.cell import CellPath
 from flowtex.rendering.cpu.fragments import Fragments
 from flowtex.rendering.cpu.path import Path, Slices
 
@@ -152,9 +153,17 @@ class Summing:
         moving = values["moving"]
         lookup.move(speed, self._slices.layer(coordinate, 2, level)[:, 3] if moving else speed)
         sums = self._first(len(base))
+        cell = self.cell(coordinate)
         for side in self.sides(coordinate, level, base):
-            self._add(sums, side)
+            self._add(sums, side, cell)
         return lookup.blend(sums)
+
+    def cell(self, coordinate: Floats) -> CellPath | None:
+        """Paths in the cells of N fragments, where the view is so near."""
+        if not self._values["near"]:
+            return None
+        reach = self._count * self._lookup.spacing
+        return CellPath(self._slices, coordinate, reach, self._values)
 
     def sides(self, coordinate: Floats, level: Floats, base: Floats) -> Iterator[Side]:
         """Sides of the paths of N fragments, whose layer 0 is ``base``, (N, 4)."""
@@ -179,23 +188,35 @@ class Summing:
         values = self._lookup.lookup(np.zeros((count, 3)), np.zeros(count))
         return Sums(middle * values, np.full(count, middle**2), np.zeros(count))
 
-    def _add(self, sums: Sums, one: Side) -> None:
-        """Add one side of the paths."""
-        values, path, side, scale = self._values, one.path, one.sign, one.scale
-        count = values["u_samples"] // 2 if values["u_sides"] == 2 else values["u_samples"] - 1
+    @property
+    def _count(self) -> int:
+        """Number of samples on a side of a path."""
+        samples: int = self._values["u_samples"]
+        return samples // 2 if self._values["u_sides"] == 2 else samples - 1
+
+    def _add(self, sums: Sums, one: Side, cell: CellPath | None) -> None:
+        """Add one side of the paths, and where it stays in its cell."""
+        values, path, side, scale, count = self._values, one.path, one.sign, one.scale, self._count
         last = np.minimum(one.reach, self._lags[-1])
-        lag, live = np.zeros(len(scale)), np.ones(len(scale), dtype=bool)
+        lag, live = np.zeros(len(scale)), np.isfinite(one.reach)
+        if cell is not None:
+            cell.leave()
         step = one.step(lag)
         before = np.full(len(scale), weight(0.0, values))
         for k in range(1, count + 1):
             lag = np.where(live, lag + step, lag)
-            alive = live * np.clip((last - lag) / step + 1.0, 0.0, 1.0)
+            alive = np.clip((last - lag) / step + 1.0, 0.0, 1.0)
+            if cell is not None:
+                alive = cell.go_on(side * one.spacing, alive)
+            alive = live * alive
             live = alive > 0
             if not live.any():
                 break
             # What has ended stays at its end, where its weight is zero.
             lag = np.where(live, lag, np.maximum(last, 0.0))
             displacement = path.follow(lag) * (side * scale)[:, None]
+            if cell is not None:
+                displacement = cell.mixed(displacement)
             weights = alive * weight(side * k / (count + 1), values)
             sums.values += weights[:, None] * self._lookup.lookup(displacement, side * lag * scale)
             sums.squares += weights**2

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from flowtex.rendering.vtk.layer import FlowLayer
-from flowtex.rendering.vtk.mesh import set_attributes, surface_mesh, use_flow_mapper
+from flowtex.rendering.vtk.mesh import surface_mesh, use_flow_mapper
+from flowtex.rendering.vtk.surface import FlowSurface
 
-__all__ = ["FlowLayer", "set_attributes", "surface_mesh", "use_flow_mapper"]
+__all__ = ["FlowSurface", "surface_mesh", "use_flow_mapper"]

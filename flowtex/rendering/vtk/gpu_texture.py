@@ -34,7 +34,9 @@ class GPUTexture:
         levels: int | None = None,
         repeat: tuple[bool, bool] = (False, False),
     ) -> None:
-        self._texels: Floats32 | None = np.ascontiguousarray(texels, np.float32)
+        # Drivers may cut digits off instead of rounding, which moves a critical point.
+        with np.errstate(over="ignore"):
+            self._texels: Floats32 | None = texels.astype(np.float16).astype(np.float32)
         self._levels = levels
         self._repeat = repeat
         self._object: vtkTextureObject | None = None

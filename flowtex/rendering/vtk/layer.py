@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import weakref
 from collections.abc import Callable
-from functools import partial
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -24,10 +24,18 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.util.vtkConstants import VTK_OBJECT
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
-from flowtex._util.array_types import Ints
+from flowtex._util.array_types import Floats, Floats32, Indices, Ints
 from flowtex.rendering.mesh_levels import MeshLevels
 from flowtex.rendering.shaders import shader_text
-from flowtex.rendering.uniforms import ANCHOR_RANGE, ViewState, is_moving, uniforms, variants
+from flowtex.rendering.tile_choice import TileView
+from flowtex.rendering.uniforms import (
+    ANCHOR_RANGE,
+    ViewState,
+    is_moving,
+    is_near,
+    uniforms,
+    variants,
+)
 from flowtex.rendering.vtk.gpu_texture import GPUTexture
 from flowtex.rendering.vtk.mesh import (
     ATTRIBUTES,
@@ -67,24 +75,38 @@ class FlowLayer:
         What to draw.
     settings
         How to draw it; read before each frame.
+    layers
+        Gives the layers of a destination time, where the texture set is not to be asked.
+    mesh_levels
+        Those of the texture set, where they are there already.
+
+    Attributes
+    ----------
+    mesh_levels
+        The triangles of each level of the mesh.
     """
 
     def __init__(
-        self, actor: pv.Actor, renderer: Any, textures: TextureSet, settings: Settings
+        self,
+        actor: pv.Actor,
+        renderer: Any,
+        textures: TextureSet,
+        settings: Settings,
+        layers: Callable[[int], Floats32] | None = None,
+        mesh_levels: MeshLevels | None = None,
     ) -> None:
         self._actor = actor
+        self._mapper: Any = actor.mapper
         self._renderer = weakref.ref(renderer)
         self._textures = textures
         self._settings = settings
         self._prefetch = LayerPrefetch(textures)
+        self._take = layers
         self._steps = (0, 0)
+        self._height = 1.0
         self._drawn = False
         self._variant: frozenset[str] | None = None
-        surface = textures.geometry.field.surface
-        self._mesh_levels = MeshLevels(
-            surface.points, surface.cells, textures.geometry.field.periodic
-        )
-        self._levels: Ints | None = None
+        self.mesh_levels = mesh_levels or MeshLevels.of(textures)
         self._colours: tuple[Any, ...] | None = None
         self._gpu: dict[str, GPUTexture] = {}
         self._retired: list[GPUTexture] = []
@@ -93,11 +115,27 @@ class FlowLayer:
         self._write_text()
         update = self._observer("_before_draw")
         update.CallDataType = VTK_OBJECT
-        self._observed = [
-            (actor.mapper, actor.mapper.AddObserver("UpdateShaderEvent", update)),
-            (renderer, renderer.AddObserver("StartEvent", self._observer("_before_frame"))),
-            (renderer, renderer.AddObserver("EndEvent", self._observer("_after_draw"))),
-        ]
+        self._observed = self._mapper.AddObserver("UpdateShaderEvent", update)
+
+    @cached_property
+    def _corners(self) -> Indices:
+        """Nodes that touch the sides of the bounding box of all that is drawn."""
+        geometry = self._textures.geometry
+        used = np.zeros(geometry.shape, dtype=bool)
+        for j, i in ((0, 0), (0, 1), (1, 0), (1, 1)):
+            used[j : used.shape[0] - 1 + j, i : used.shape[1] - 1 + i] |= geometry.cells
+        at = np.flatnonzero(used)
+        points = geometry.points.reshape(-1, 3)[at]
+        return at[np.concatenate([points.argmin(axis=0), points.argmax(axis=0)])]
+
+    @property
+    def _mesh(self) -> Any:
+        return self._mapper.dataset
+
+    @property
+    def textures(self) -> TextureSet:
+        """What is drawn."""
+        return self._textures
 
     def set_textures(self, textures: TextureSet) -> None:
         """Draw another texture set of the same surface from now on."""
@@ -133,13 +171,11 @@ class FlowLayer:
 
     def close(self) -> None:
         """Take everything out of the actor again and free the graphics card's memory."""
-        for subject, tag in self._observed:
-            subject.RemoveObserver(tag)
-        self._observed = []
+        self._mapper.RemoveObserver(self._observed)
         self._prefetch.close()
         self._actor.clear_shader_replacements(_feature_name=OWNER)
         for attribute in ATTRIBUTES:
-            self._actor.mapper.RemoveVertexAttributeMapping(attribute)
+            self._mapper.RemoveVertexAttributeMapping(attribute)
         self._retire(*self._gpu)
         self._free(self._window())
 
@@ -155,14 +191,15 @@ class FlowLayer:
         return call
 
     def _map_attributes(self) -> None:
-        mapper, points = self._actor.mapper, vtkDataObject.FIELD_ASSOCIATION_POINTS
+        mapper, points = self._mapper, vtkDataObject.FIELD_ASSOCIATION_POINTS
         for attribute, array in vertex_attributes(self._textures).items():
             mapper.MapDataArrayToVertexAttribute(attribute, array, points, -1)
 
     def _write_text(self) -> None:
         unsteady = self._textures.store.steps > 1
         moving = is_moving(self._textures, self._settings)
-        variant = variants(self._textures, unsteady=unsteady, moving=moving)
+        near = is_near(self._textures, self._settings, self.view)
+        variant = variants(self._textures, unsteady=unsteady, moving=moving, near=near)
         if variant == self._variant:
             return
         self._variant = variant
@@ -187,8 +224,8 @@ class FlowLayer:
                     self._gpu[name] = load()
                 program.SetUniformi(name, self._gpu[name].bind(window))
 
-    def _after_draw(self, data: Any) -> None:
-        del data
+    def after_frame(self) -> None:
+        """Give the texture units back."""
         self._drawn = True
         for texture in self._gpu.values():
             texture.unbind()
@@ -208,16 +245,15 @@ class FlowLayer:
 
     def _slices(self, number: int) -> GPUTexture:
         """Slices of the first or the second of the two steps."""
-        layers = self._prefetch.take(self._steps[number])
+        take = self._take or self._prefetch.take
+        layers = take(self._steps[number])
         return GPUTexture(layers, levels=self._textures.geometry.levels)
 
-    def _before_frame(self, data: Any) -> None:
+    def look(self) -> None:
         """Choose the shader, and take the camera and the anchor into the mesh's own coordinates."""
-        del data
         renderer = self._renderer()
         if renderer is None:
             return
-        self._write_text()
         camera = renderer.GetActiveCamera()
         parallel = bool(camera.GetParallelProjection())
         eye = (
@@ -229,9 +265,10 @@ class FlowLayer:
         focus, self.view.eye = np.linalg.solve(placed, np.transpose(points)).T
         self.view.focus = focus[:3]
         scale = float(np.cbrt(abs(np.linalg.det(placed[:3, :3]))))
-        height = _window_height(camera) / scale
-        self._move_anchor(height)
-        self._choose_triangles(camera, height if parallel else None)
+        self._height = _window_height(camera) / scale
+        self.view.pixel = self._height / renderer.GetSize()[1]
+        self._write_text()
+        self._move_anchor(self._height)
 
     def _move_anchor(self, seen: float) -> None:
         """Count positions from near the focus once their digits do not do from elsewhere."""
@@ -241,41 +278,67 @@ class FlowLayer:
             return
         near_middle = np.abs(there).max() <= ANCHOR_RANGE * seen
         self.view.anchor = np.zeros(3) if near_middle else there
-        set_position(self._actor.mapper.dataset, geometry.position_from(self.view.anchor))
+        set_position(self._mesh, geometry.position_from(self.view.anchor))
 
-    def _choose_triangles(self, camera: Any, height: float | None) -> None:
-        """Draw as few triangles as the view needs; ``height`` is what a parallel view sees."""
-        renderer = self._renderer()
-        if renderer is None:
-            return
-        if height is None:
-            eye, half = self.view.eye[:3], float(np.tan(np.radians(camera.GetViewAngle() / 2)))
-        else:
-            eye, half = None, 0.5 * height
+    def eye_and_half_height(self, camera: Any) -> tuple[Floats | None, float]:
+        """Return the eye in the mesh's own coordinates, and half the height of what is seen.
+
+        Where rays are parallel there is no eye; else the height is that for a distance of one.
+        """
+        if camera.GetParallelProjection():
+            return None, 0.5 * self._height
+        return self.view.eye[:3], float(np.tan(np.radians(camera.GetViewAngle() / 2)))
+
+    def choose_levels(self, renderer: Any, view: TileView) -> Ints:
+        """Return the coarsest levels of the mesh that do for the view, (block rows, columns).
+
+        Blocks that are out of view have -1.
+        """
         self._follow_colours()
-        levels = self._mesh_levels.levels(eye, half, renderer.GetSize()[1])
-        if self._actor.prop.show_edges or self._actor.prop.style != "Surface":
+        prop = self._actor.prop
+        eye, half = self.eye_and_half_height(renderer.GetActiveCamera())
+        levels = self.mesh_levels.levels(eye, half, renderer.GetSize()[1])
+        if prop.show_edges or prop.style != "Surface":
             levels = np.zeros_like(levels)
-        if self._levels is None or not np.array_equal(levels, self._levels):
-            self._levels = levels
-            set_triangles(self._actor.mapper.dataset, self._mesh_levels.triangles(levels))
+        return np.where(view.sees(self.mesh_levels.blocks), levels, -1)
+
+    def set_triangles(self, levels: Ints, borders: Ints) -> None:
+        """Draw other triangles; :meth:`MeshLevels.triangles` has the parameters."""
+        triangles = self.mesh_levels.triangles(levels, borders)
+        if (levels < 0).any():
+            # The mesh is as large as ever to whoever asks for its bounds.
+            triangles = np.concatenate([triangles, np.repeat(self._corners[:, None], 3, axis=1)])
+        set_triangles(self._mesh, triangles)
+
+    def follow(self, mapper: Any) -> None:
+        """Take the colours of another mapper, by the same point array."""
+        mine = self._mapper
+        mine.SetScalarVisibility(mapper.GetScalarVisibility())
+        mine.SetLookupTable(mapper.GetLookupTable())
+        mine.SetScalarRange(*mapper.GetScalarRange())
+        mine.SetUseLookupTableScalarRange(mapper.GetUseLookupTableScalarRange())
+        mine.SetInterpolateScalarsBeforeMapping(mapper.GetInterpolateScalarsBeforeMapping())
+        mine.SetColorMode(mapper.GetColorMode())
+        mine.SetScalarMode(mapper.GetScalarMode())
+        if (name := mapper.GetArrayName()) is not None:
+            mine.SelectColorArray(name)
 
     def _follow_colours(self) -> None:
         """Let the triangles keep the colours of the nodes, whoever has changed them."""
-        mapper = self._actor.mapper
+        mapper = self._mapper
         name = mapper.GetArrayName() if mapper.GetScalarVisibility() else None
-        array = mapper.dataset.GetPointData().GetArray(name) if name else None
+        array = self._mesh.GetPointData().GetArray(name) if name else None
         low, high = mapper.GetScalarRange()
         state = None if array is None else (name, array.GetMTime(), low, high)
         if state == self._colours:
             return
         self._colours = state
         if array is None or not high > low:
-            self._mesh_levels.set_colours()
+            self.mesh_levels.set_colours()
             return
         shares = (vtk_to_numpy(array).astype(float) - low) / (high - low)
-        shape = self._textures.geometry.field.shape
-        self._mesh_levels.set_colours(np.clip(shares, 0, 1).reshape(shape))
+        shape = self._textures.geometry.shape
+        self.mesh_levels.set_colours(np.clip(shares, 0, 1).reshape(shape))
 
     def _window(self) -> Any:
         renderer = self._renderer()

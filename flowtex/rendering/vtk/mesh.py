@@ -40,16 +40,14 @@ ATTRIBUTES = {
 
 def surface_mesh(textures: TextureSet) -> pv.PolyData:
     """Return the visible cells of the surface, with normals and the shader's attributes."""
-    field = textures.geometry.field
-    rows, columns = field.shape
-    grid = pv.StructuredGrid()
-    grid.points = field.points.reshape(-1, 3)
-    grid.dimensions = (columns, rows, 1)
-    j, i = np.nonzero(field.surface.cells)
+    geometry = textures.geometry
+    points = np.ascontiguousarray(geometry.points).reshape(-1, 3)
+    columns = geometry.shape[1]
+    j, i = np.nonzero(geometry.cells)
     corner = j * columns + i
     quads = np.stack([corner, corner + 1, corner + columns + 1, corner + columns], axis=-1)
-    mesh = pv.PolyData.from_regular_faces(grid.points, quads)
-    mesh.point_data[NORMAL] = textures.geometry.normal.reshape(-1, 3)
+    mesh = pv.PolyData.from_regular_faces(points, quads)
+    mesh.point_data[NORMAL] = geometry.normal.reshape(-1, 3)
     mesh.point_data.active_normals_name = NORMAL
     set_attributes(mesh, textures)
     return mesh

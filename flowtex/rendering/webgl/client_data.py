@@ -135,7 +135,7 @@ class ClientData:
     def constants(self) -> Header:
         """Return what of the header changes only with the textures or the colours."""
         textures, colours = self.textures, self.colours
-        variant = sorted(variants(textures, unsteady=self.steps > 1, moving=False))
+        variant = sorted(variants(textures, unsteady=self.steps > 1))
         return {
             "format": FORMAT,
             "name": textures.geometry.field.name,
@@ -262,6 +262,8 @@ class ClientData:
             "sides": int(textures.sides),
             "unit": float(textures.unit),
             "pace": float(textures.pace),
+            "cell": float(textures.cell),
+            "critical": float(textures.critical_cell),
             "steps": int(self.steps),
             "times": _numbers(self.times),
             "timeUnit": textures.geometry.field.time_unit,

@@ -35,14 +35,15 @@ class Packing:
     """Packed slices of some textures; those asked for last are cached.
 
     A slope has so many ``channels``, two in a plane and in noise coordinates. ``extra`` are the
-    layers whose fourth channel says something: unit, reach, speed, and reach forward.
+    layers whose fourth channel says something: unit, reach, speed, reach forward, and speed again.
     """
 
     def __init__(self, textures: TextureSet) -> None:
         self._textures = textures
         self.channels = 2 if textures.geometry.planar or textures.paper is not None else 4
         ahead = [1 + len(textures.lags)] if textures.sides == 2 else []
-        self.extra = [0, 1, 2, *ahead]
+        last = [textures.count - 1] if textures.in_cells else []
+        self.extra = [0, 1, 2, *ahead, *last]
         self._steps: ByteCache[int, PackedStep] = ByteCache(CACHE_BYTES, min_count=LEAST_STEPS)
 
     def step(self, step: int) -> PackedStep:

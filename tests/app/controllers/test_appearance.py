@@ -5,9 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+import flowtex
+
 pytest.importorskip("trame_rca")
 
-from small_pages import difference, picture
+from small_pages import difference, picture, small
 
 from flowtex.app import FlowApp
 
@@ -45,6 +47,20 @@ def test_colours_and_their_bar_change(flat: FlowApp) -> None:
     flat.state.set(colour="speed")
     flat.controllers.appearance.take_colour()
     assert difference(picture(flat), speed) == 0
+
+
+def test_a_range_of_another_plane_does_not_stay(series: FlowApp) -> None:
+    slow = small(steps=4)
+    faster = flowtex.FlowField.from_arrays(slow.points, 3 * slow.velocity, times=slow.times)
+    series.area.show(faster, keep_range=True)
+    # The page comes to know the range of the plane before only now.
+    series.controllers.appearance.take_range()
+    assert series.viewport.chosen_range is None
+    series.controllers.appearance.show_field()
+    assert series.state.get("high") == pytest.approx(3 * 1.7, rel=0.01)
+    series.state.set(high=4.0)
+    series.controllers.appearance.take_range()
+    assert series.viewport.chosen_range == (series.state.get("low"), 4.0)
 
 
 def test_themes_change_the_background(flat: FlowApp) -> None:

@@ -1,0 +1,41 @@
+"""Compiled loops, used where they are ready, and never waited for.
+
+numba is optional, and takes seconds to compile, or half a second to load what it has compiled
+before. Both happen in a thread beside the first large work; until then, and where it fails, NumPy
+does the same. In a forked process the thread is gone, so that what was not ready stays so.
+"""
+
+from __future__ import annotations
+
+import threading
+from typing import Any
+
+__all__ = ["kernels", "prepare"]
+
+#: Paths or positions for which compiling is worth its time.
+LARGE_WORK = 100_000
+
+_loaded: list[Any] = []
+_begun = threading.Lock()
+
+
+def prepare(size: int) -> threading.Thread | None:
+    """Begin to compile, once a process, when there are many paths or positions to compute."""
+    if size < LARGE_WORK or not _begun.acquire(blocking=False):
+        return None
+    thread = threading.Thread(target=_load, name="flowtex-compile", daemon=True)
+    thread.start()
+    return thread
+
+
+def _load() -> None:
+    try:
+        from flowtex._util import kernels as module
+    except Exception:  # whatever numba or LLVM lack here, NumPy does the same
+        return
+    _loaded.append(module)
+
+
+def kernels() -> Any:
+    """Return the module :mod:`flowtex._util.kernels` once it is compiled, before that ``None``."""
+    return _loaded[0] if _loaded else None

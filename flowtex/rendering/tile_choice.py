@@ -1,0 +1,167 @@
+"""Which tiles a view asks for.
+
+From the root down, a block is replaced by finer ones where its cells cover too many pixels, and
+where it is in view.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from flowtex._util.array_types import Bools, Floats
+from flowtex.settings import Settings
+from flowtex.tiles import PATH_CELLS, TILE_BLOCKS, Pyramid, TileKey
+
+__all__ = [
+    "Choices",
+    "TileView",
+    "cell_pixels",
+    "choose_tiles",
+    "cover",
+    "finer_part",
+    "wanted_tiles",
+]
+
+#: Pixels of the longer side of a cell above which the next level is drawn.
+CELL_PIXELS = 2.0
+
+
+@dataclass(frozen=True)
+class TileView:
+    """What decides on tiles.
+
+    Attributes
+    ----------
+    eye
+        Where the camera is, (3,), in the coordinates of the mesh; ``None`` where rays are parallel.
+    half_height
+        Half the height of what is seen: a length where rays are parallel, else for a distance of 1.
+    pixels
+        Height of the picture in pixels, as the settings count them.
+    planes
+        Planes around what is seen, (N, 4): a point is inside where p . (x, y, z, 1) >= 0.
+    cell_pixels
+        Pixels of a cell above which the next level is drawn.
+    """
+
+    eye: Floats | None
+    half_height: float
+    pixels: float
+    planes: Floats
+    cell_pixels: float = CELL_PIXELS
+
+    def sees(self, blocks: Floats) -> Bools:
+        """Which blocks (J, I, 5) of a mesh may be in view."""
+        center, radius = blocks[..., :3], blocks[..., 3]
+        length = np.linalg.norm(self.planes[:, :3], axis=1)
+        inside = center @ self.planes[:, :3].T + self.planes[:, 3] >= -radius[..., None] * length
+        return np.asarray(inside.all(axis=-1))
+
+    def cell_sizes(self, blocks: Floats) -> Floats:
+        """Greatest size of the cells of blocks (J, I, 5) in pixels."""
+        center, radius, size = blocks[..., :3], blocks[..., 3], blocks[..., 4]
+        distance = np.ones(radius.shape)
+        if self.eye is not None:
+            distance = np.linalg.norm(center - self.eye, axis=-1) - radius
+            distance = np.maximum(distance, size)
+        return np.asarray(size * 0.5 * self.pixels / (self.half_height * distance))
+
+
+def cell_pixels(settings: Settings) -> float:
+    """Pixels of a cell above which the next level is drawn, where streaks are no longer cut."""
+    streak = 0.5 * settings.samples * settings.spacing * settings.grain
+    return CELL_PIXELS * max(1.0, 2 * streak / (CELL_PIXELS * PATH_CELLS))
+
+
+@dataclass
+class Choice:
+    """What a view asks of a tile, or of the root.
+
+    Attributes
+    ----------
+    needed
+        Whether some of its own cells are to be shown.
+    pixels
+        Size of the largest of those cells in pixels.
+    finer
+        The tiles that are to be shown in place of its larger cells.
+    """
+
+    needed: bool
+    pixels: float
+    finer: list[TileKey]
+
+
+#: By tile, coarse ones first; ``None`` is the root.
+Choices = dict[TileKey | None, Choice]
+
+
+def choose_tiles(pyramid: Pyramid, view: TileView) -> Choices:
+    """Return what a view asks of each tile of which it shows something."""
+    chosen: Choices = {}
+    waiting: list[TileKey | None] = [None]
+    while waiting:
+        key = waiting.pop(0)
+        level = pyramid.depth if key is None else key.level
+        rows, columns = pyramid.blocks_of(key)
+        places = pyramid.places(level)[rows, columns]
+        seen, pixels = view.sees(places), view.cell_sizes(places)
+        coarse = seen & (pixels > view.cell_pixels) if level else np.zeros_like(seen)
+        own = seen & ~coarse
+        finer = (
+            [child for child in pyramid.children(key) if coarse[finer_part(child, key)].any()]
+            if coarse.any()
+            else []
+        )
+        chosen[key] = Choice(bool(own.any()), float(pixels[own].max(initial=0.0)), finer)
+        waiting += finer
+    return chosen
+
+
+def finer_part(child: TileKey, above: TileKey | None) -> tuple[slice, slice]:
+    """Return the blocks of a tile, or of the root, that a tile of the next level covers."""
+    half = TILE_BLOCKS // 2
+    row, column = (
+        half * at - TILE_BLOCKS * place
+        for at, place in zip(child[1:], above[1:] if above else (0, 0), strict=True)
+    )
+    return slice(row, row + half), slice(column, column + half)
+
+
+def wanted_tiles(chosen: Choices) -> list[TileKey]:
+    """Return the tiles of which something is to be shown, those of the largest cells first."""
+    wanted = [key for key, choice in chosen.items() if key is not None and choice.needed]
+    return sorted(wanted, key=lambda key: -chosen[key].pixels)
+
+
+def cover(chosen: Choices, ready: Callable[[TileKey], bool]) -> dict[TileKey | None, list[TileKey]]:
+    """Return the tiles to show of those that are ready, and the parts of each that others cover.
+
+    A tile is replaced by finer ones where these cover all of it that is in view; until then what is
+    there of a coarser level is shown. The root is always ready.
+    """
+    shown: dict[TileKey | None, list[TileKey]] = {}
+
+    def covered(key: TileKey | None) -> bool:
+        """Have a tile shown, by itself or by finer ones, if it can be."""
+        choice = chosen[key]
+        done = [child for child in choice.finer if covered(child)]
+        if key is not None and not choice.needed and len(done) == len(choice.finer):
+            return True
+        if key is not None and not ready(key):
+            for child in done:
+                _hide(child)
+            return False
+        shown[key] = done
+        return True
+
+    def _hide(key: TileKey) -> None:
+        shown.pop(key, None)
+        for child in chosen[key].finer:
+            _hide(child)
+
+    covered(None)
+    return dict(sorted(shown.items(), key=lambda item: item[0] is not None and -item[0].level))

@@ -1,0 +1,338 @@
+"""One flow in a PyVista renderer: its surface, whole or in tiles, each an actor with a texture.
+
+The actor that PyVista knows draws the whole surface, or of a large one the coarsest level. Where a
+view asks for more, tiles are drawn in place of its triangles, with its properties, colours and
+position; they come and go with the view.
+"""
+
+from __future__ import annotations
+
+import weakref
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import pyvista as pv
+
+from flowtex._util.array_types import Floats
+from flowtex.field import FlowField
+from flowtex.rendering.mesh_levels import MeshLevels, Region, join
+from flowtex.rendering.tile_choice import (
+    TileView,
+    cell_pixels,
+    choose_tiles,
+    cover,
+    finer_part,
+    wanted_tiles,
+)
+from flowtex.rendering.uniforms import ViewState
+from flowtex.rendering.vtk.layer import FlowLayer
+from flowtex.rendering.vtk.mesh import FlowMapper, set_attributes, surface_mesh
+from flowtex.settings import Settings
+from flowtex.textures import TextureSet
+from flowtex.tiles import TILE_BLOCKS, Pyramid, Tile, TileKey, TileLoader
+
+__all__ = ["FlowSurface"]
+
+#: Time after which a window is drawn again while tiles are on their way.
+LOOK_INTERVAL_MS = 250
+
+
+@dataclass(eq=False)
+class _TileActor:
+    """A tile as it is drawn."""
+
+    tile: Tile
+    actor: pv.Actor
+    mesh: pv.PolyData
+    layer: FlowLayer
+
+
+class FlowSurface:
+    """Draws a flow by an actor whose mesh comes from :func:`surface_mesh`, and by tiles.
+
+    Parameters
+    ----------
+    actor
+        The actor; its mapper draws polygons.
+    renderer
+        The PyVista renderer that shows it.
+    textures
+        What to draw; of a pyramid, the textures of its root.
+    settings
+        How to draw it; read before each frame.
+    pyramid
+        The tiles of a large surface.
+
+    Attributes
+    ----------
+    view
+        Clock, density and time of the next frame.
+    full_height
+        Height in pixels for which tiles are chosen, where a frame is a draft of fewer.
+    """
+
+    def __init__(
+        self,
+        actor: pv.Actor,
+        renderer: Any,
+        textures: TextureSet,
+        settings: Settings,
+        pyramid: Pyramid | None = None,
+    ) -> None:
+        self._actor, self._renderer, self._settings = actor, weakref.ref(renderer), settings
+        self._base = FlowLayer(actor, renderer, textures, settings)
+        self._moment = (0, 0, 0.0)
+        self._scalars: tuple[str, Callable[[FlowField], Floats]] | None = None
+        self._drawn: tuple[Any, ...] = ()
+        self._tiles: dict[TileKey, _TileActor] = {}
+        self._loader = None if pyramid is None else self._loader_of(pyramid)
+        self.full_height: int | None = None
+        self._notify: Callable[[], None] | None = None
+        self._observed = [
+            (event, renderer.AddObserver(event, self._observer(name)))
+            for event, name in (("StartEvent", "_before_frame"), ("EndEvent", "_after_frame"))
+        ]
+
+    @property
+    def view(self) -> ViewState:
+        """Clock, density and time of the next frame."""
+        return self._base.view
+
+    def load_in_background(self, notify: Callable[[], None]) -> None:
+        """Draw frames with the tiles that are there, and tell, from a thread, when there are more.
+
+        Otherwise a frame waits for the tiles that it asks for, but in a window that somebody uses.
+        """
+        self._notify = notify
+
+    @property
+    def busy(self) -> bool:
+        """Whether tiles that the last frame has asked for are on their way."""
+        return self._loader is not None and self._loader.busy
+
+    def set_textures(self, textures: TextureSet, pyramid: Pyramid | None = None) -> None:
+        """Draw another texture set of the same flow from now on."""
+        self._drop(list(self._tiles))
+        if self._loader is not None:
+            self._loader.close()
+        self._loader = None if pyramid is None else self._loader_of(pyramid)
+        self._drawn = ()
+        if textures.geometry.shape == self._base.textures.geometry.shape:
+            set_attributes(self._actor.mapper.dataset, textures)
+            self._base.set_textures(textures)
+            return
+        # Another level is the whole surface now, with other nodes.
+        view = self._base.view
+        self._base.close()
+        self._actor.mapper.SetInputData(surface_mesh(textures))
+        self._base = FlowLayer(self._actor, self._renderer(), textures, self._settings)
+        self._base.view = replace(view, anchor=np.zeros(3))
+        self._base.set_moment(*self._moment)
+        self.write_scalars()
+
+    def set_moment(self, before: int, after: int, between: float) -> None:
+        """Show the time between two destination times of the slices."""
+        self._moment = (before, after, between)
+        self._base.set_moment(before, after, between)
+
+    def set_scalars(self, name: str, values: Callable[[FlowField], Floats]) -> None:
+        """Have the values that a function gives for a field (J, I) as a point array."""
+        self._scalars = (name, values)
+        self.write_scalars()
+
+    def write_scalars(self) -> None:
+        """Ask for the values anew, since they have changed."""
+        self._write_scalars(self._base, self._actor.mapper.dataset)
+        for drawn in self._tiles.values():
+            self._write_scalars(drawn.layer, drawn.mesh)
+
+    def close(self) -> None:
+        """Take everything out of the renderer again, and free the graphics card's memory."""
+        renderer = self._renderer()
+        if renderer is not None:
+            for _, tag in self._observed:
+                renderer.RemoveObserver(tag)
+        self._drop(list(self._tiles))
+        if self._loader is not None:
+            self._loader.close()
+        self._base.close()
+
+    def _observer(self, name: str) -> Any:
+        """Return a callback that does not keep this surface alive."""
+        this = weakref.WeakMethod(getattr(self, name))
+
+        def call(caller: Any, event: str) -> None:
+            del caller, event
+            method = this()
+            if method is not None:
+                method()
+
+        return call
+
+    def _write_scalars(self, layer: FlowLayer, mesh: pv.PolyData) -> None:
+        if self._scalars is not None:
+            name, values = self._scalars
+            geometry = layer.textures.geometry
+            mesh.point_data[name] = values(geometry.field)[geometry.drawn].ravel()
+
+    def _before_frame(self) -> None:
+        """Choose tiles, shaders and triangles for the camera of the frame."""
+        renderer = self._renderer()
+        if renderer is None or not self._actor.GetVisibility():
+            self._show([])
+            return
+        self._base.look()
+        view = self._tile_view(renderer)
+        shown = self._choose(view)
+        layers: dict[TileKey | None, FlowLayer] = {None: self._base}
+        layers |= {key: self._tiles[key].layer for key in shown if key in self._tiles}
+        self._show(list(layers))
+        for key, layer in layers.items():
+            if key is None:
+                continue
+            layer.view = replace(self._base.view, anchor=layer.view.anchor)
+            layer.set_moment(*self._moment)
+            layer.look()
+        self._set_triangles(layers, shown, view)
+
+    def _after_frame(self) -> None:
+        for layer in (self._base, *(drawn.layer for drawn in self._tiles.values())):
+            layer.after_frame()
+
+    def _choose(self, view: TileView) -> dict[TileKey | None, list[TileKey]]:
+        """Return the tiles to draw and what of them finer ones cover, and ask for others."""
+        loader = self._loader
+        if loader is None:
+            return {None: []}
+        steps = sorted({*self._moment[:2]})
+        choices = choose_tiles(loader.pyramid, view)
+        loader.request(wanted_tiles(choices), steps)
+        if not self._goes_on():
+            loader.wait()
+        self._drop([key for key in self._tiles if not loader.keeps(key)])
+        return cover(choices, lambda key: self._ready(key, steps))
+
+    def _goes_on(self) -> bool:
+        """Whether another frame follows by itself when tiles are ready."""
+        if self._notify is not None:
+            return True
+        renderer = self._renderer()
+        window = renderer.GetRenderWindow() if renderer is not None else None
+        if window is None:
+            return False
+        interactor = window.GetInteractor()
+        if window.GetOffScreenRendering() or interactor is None or not interactor.GetInitialized():
+            return False
+        if self.busy:
+            # VTK draws in the window's own thread, which looks again by and by.
+            observers: list[int] = []
+
+            def look(caller: Any, event: str) -> None:
+                del event
+                caller.RemoveObserver(observers[0])
+                caller.Render()
+
+            observers.append(interactor.AddObserver("TimerEvent", look))
+            interactor.CreateOneShotTimer(LOOK_INTERVAL_MS)
+        return True
+
+    def _tile_view(self, renderer: Any) -> TileView:
+        """Return what of the camera decides on tiles, in the mesh's coordinates."""
+        eye, half = self._base.eye_and_half_height(renderer.GetActiveCamera())
+        width, height = renderer.GetSize()
+        planes = [0.0] * 24
+        renderer.GetActiveCamera().GetFrustumPlanes(width / max(height, 1), planes)
+        matrix = self._actor.GetMatrix()
+        placed = np.array([[matrix.GetElement(r, c) for c in range(4)] for r in range(4)])
+        sides = np.reshape(planes, (6, 4))[:4] @ placed  # not those before and behind
+        pixels = (self.full_height or height) / self.view.density
+        return TileView(eye, half, pixels, sides, cell_pixels(self._settings))
+
+    def _ready(self, key: TileKey, steps: list[int]) -> bool:
+        """Whether a tile can be drawn, making its actor first."""
+        tile = None if self._loader is None else self._loader.get(key, steps)
+        if tile is None:
+            return False
+        if key not in self._tiles and tile.textures is not None:
+            self._tiles[key] = self._actor_of(tile, tile.textures)
+        return True
+
+    def _loader_of(self, pyramid: Pyramid) -> TileLoader:
+        """Return a loader that does not keep this surface alive."""
+        this = weakref.ref(self)
+
+        def prepare(textures: TextureSet) -> tuple[pv.PolyData, MeshLevels]:
+            surface = this()
+            if surface is not None and surface._scalars is not None:
+                surface._scalars[1](textures.geometry.field)  # which keeps the values at hand
+            _ = textures.unit, textures.cell, textures.critical_cell  # which are kept as well
+            return surface_mesh(textures), MeshLevels.of(textures)
+
+        def notify() -> None:
+            surface = this()
+            if surface is not None and surface._notify is not None:
+                surface._notify()
+
+        return TileLoader(pyramid, prepare=prepare, notify=notify)
+
+    def _actor_of(self, tile: Tile, textures: TextureSet) -> _TileActor:
+        """Make the actor of a tile, with the properties of the surface's own one."""
+        renderer = self._renderer()
+        mesh, mesh_levels = tile.prepared
+        actor = pv.Actor(mapper=FlowMapper(mesh))
+        actor.SetProperty(self._actor.prop)
+        actor.SetUserMatrix(self._actor.GetMatrix())
+        layer = FlowLayer(actor, renderer, textures, self._settings, tile.take, mesh_levels)
+        self._write_scalars(layer, mesh)
+        textures.geometry.field.forget()
+        return _TileActor(tile, actor, mesh, layer)
+
+    def _show(self, keys: list[TileKey | None]) -> None:
+        """Have these tiles in the renderer and no others."""
+        renderer, base = self._renderer(), self._actor
+        if renderer is None:
+            return
+        for key, drawn in self._tiles.items():
+            shown = renderer.HasViewProp(drawn.actor)
+            if (key in keys) != bool(shown):
+                (renderer.AddActor if key in keys else renderer.RemoveActor)(drawn.actor)
+            if key in keys:
+                drawn.layer.follow(base.mapper)
+                drawn.actor.SetPickable(base.GetPickable())
+
+    def _drop(self, keys: list[TileKey]) -> None:
+        renderer = self._renderer()
+        for key in keys:
+            drawn = self._tiles.pop(key)
+            if renderer is not None:
+                renderer.RemoveActor(drawn.actor)
+            drawn.layer.close()
+
+    def _set_triangles(
+        self,
+        layers: dict[TileKey | None, FlowLayer],
+        shown: dict[TileKey | None, list[TileKey]],
+        view: TileView,
+    ) -> None:
+        """Draw as few triangles as the view needs, without a crack between tiles."""
+        renderer, geometry = self._renderer(), self._base.textures.geometry
+        depth, blocks = 0, self._base.mesh_levels.blocks.shape[:2]
+        if self._loader is not None:
+            depth, blocks = self._loader.pyramid.depth, self._loader.pyramid.blocks
+        regions: dict[TileKey | None, Region] = {}
+        for key, layer in layers.items():
+            levels = layer.choose_levels(renderer, view)
+            for child in shown[key]:
+                levels[finer_part(child, key)] = -1
+            at = TileKey(depth, 0, 0) if key is None else key
+            row, column = (TILE_BLOCKS * place << at.level for place in at[1:])
+            regions[key] = Region(at.level, row, column, levels)
+        drawn = tuple((key, region.levels.tobytes()) for key, region in regions.items())
+        if drawn == self._drawn:
+            return
+        joins = join(list(regions.values()), (blocks[0], blocks[1]), geometry.periodic)
+        for (key, region), borders in zip(regions.items(), joins, strict=True):
+            layers[key].set_triangles(region.levels, borders)
+        self._drawn = drawn

@@ -1,0 +1,193 @@
+"""Tiles on their way: made in threads, coarse ones first, within a budget of memory.
+
+Whoever draws asks for the tiles of a view, in the order of their need, and draws those that are
+ready. What a view does not ask for any more is cancelled when it has not come to its end, and
+dropped last when memory is short.
+"""
+
+from __future__ import annotations
+
+import os
+import threading
+import time
+from collections.abc import Callable, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor, wait
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from flowtex._util.array_types import Floats32
+from flowtex._util.cache import ByteCache
+from flowtex._util.progress import Stopped, stoppable
+from flowtex.textures import TextureSet
+from flowtex.tiles.pyramid import Pyramid, TileKey, is_cut
+
+__all__ = ["Tile", "TileLoader"]
+
+#: Memory of the tiles that are kept, in bytes.
+BUDGET_BYTES = 1_000_000_000
+#: Memory of a texel, whose four numbers have single precision first and half of it later, and of a
+#: node beside it.
+TEXEL_BYTES, NODE_BYTES = 16, 200
+#: Tiles that are made at once, at most.
+MOST_THREADS = 4
+#: Widths of the halo that are tried one after the other, where paths are cut by it.
+SPARES = (1, 2, 4)
+#: Seconds before the last request within which a tile must have been asked for, not to be given up.
+GRACE_S = 2.0
+
+
+@dataclass(eq=False)
+class Tile:
+    """One tile with the layers of the destination times that were asked for.
+
+    ``textures`` are None where nothing of it is drawn; ``prepared`` is what whoever draws has made
+    of them.
+    """
+
+    key: TileKey
+    textures: TextureSet | None
+    prepared: Any = None
+    layers: dict[int, Floats32 | None] = field(default_factory=dict)
+
+    @property
+    def nbytes(self) -> int:
+        """Memory that it takes, on the graphics card or on its way there."""
+        if self.textures is None:
+            return 0
+        geometry = self.textures.geometry
+        texels = geometry.rows.size * geometry.columns.size * self.textures.count
+        nodes = geometry.field.valid.size
+        return texels * TEXEL_BYTES * max(len(self.layers), 1) + nodes * NODE_BYTES
+
+    def make(self, step: int) -> Floats32:
+        """Make the layers of a destination time."""
+        if self.textures is None:
+            return np.empty((0, 0, 0, 4), np.float32)
+        layers = self.textures.layers(step)
+        self.textures.forget()
+        return layers
+
+    def take(self, step: int) -> Floats32:
+        """Hand the layers of a destination time over; they are not kept."""
+        layers, self.layers[step] = self.layers.get(step), None
+        return self.make(step) if layers is None else layers
+
+
+class TileLoader:
+    """Makes tiles of a pyramid in threads.
+
+    ``prepare`` makes of textures, in a thread, what is needed to draw them beside their layers.
+    ``notify`` is called, in a thread, whenever a tile has become ready or has failed. Errors are
+    kept in ``errors`` by tile; a tile that failed is not tried again.
+    """
+
+    def __init__(
+        self,
+        pyramid: Pyramid,
+        *,
+        prepare: Callable[[TextureSet], Any] = lambda textures: None,
+        notify: Callable[[], None] = lambda: None,
+        budget: int = BUDGET_BYTES,
+    ) -> None:
+        self.pyramid = pyramid
+        self.errors: dict[TileKey, Exception] = {}
+        self._prepare, self._notify = prepare, notify
+        self._tiles: ByteCache[TileKey, Tile] = ByteCache(budget)
+        #: When each tile was asked for last, on a clock of requests.
+        self._wanted: dict[TileKey, float] = {}
+        self._asked = 0.0
+        self._running: dict[tuple[TileKey, int], Future[None]] = {}
+        self._lock = threading.Lock()
+        self._pool: ThreadPoolExecutor | None = None
+
+    def keeps(self, key: TileKey) -> bool:
+        """Whether a tile is in memory."""
+        return key in self._tiles
+
+    def get(self, key: TileKey, steps: Sequence[int]) -> Tile | None:
+        """Return a tile that has the layers of these destination times, or ``None``."""
+        tile = self._tiles.peek(key)
+        ready = tile is not None and all(step in tile.layers for step in steps)
+        return tile if ready else None
+
+    def request(self, keys: Sequence[TileKey], steps: Sequence[int]) -> None:
+        """Ask for tiles in this order, and give up those that nobody has asked for lately.
+
+        A picture may be drawn in several parts, each of which asks for its own.
+        """
+        self._asked = time.monotonic()
+        with self._lock:
+            for job, future in list(self._running.items()):
+                if not self._is_wanted(job[0]) and future.cancel():
+                    del self._running[job]
+            for key in keys:
+                self._wanted[key] = self._asked
+                tile = self._tiles.peek(key)
+                for step in steps:
+                    job = (key, step)
+                    made = tile is not None and step in tile.layers
+                    if made or job in self._running or key in self.errors:
+                        continue
+                    if self._pool is None:
+                        threads = min(os.cpu_count() or 1, MOST_THREADS)
+                        self._pool = ThreadPoolExecutor(threads, thread_name_prefix="flowtex-tile")
+                    self._running[job] = self._pool.submit(self._make, key, step)
+
+    @property
+    def busy(self) -> bool:
+        """Whether tiles that are wanted are on their way."""
+        with self._lock:
+            return any(self._is_wanted(key) for key, _ in self._running)
+
+    def wait(self) -> None:
+        """Wait for the tiles that were asked for.
+
+        Raises
+        ------
+        Exception
+            What went wrong with one of them.
+        """
+        with self._lock:
+            futures = [f for (key, _), f in self._running.items() if self._is_wanted(key)]
+        wait(futures)
+        for error in self.errors.values():
+            raise error
+
+    def close(self) -> None:
+        """Stop, without waiting for what is being made."""
+        self._wanted.clear()
+        if self._pool is not None:
+            self._pool.shutdown(wait=False, cancel_futures=True)
+        self._pool = None
+        self._tiles.clear()
+
+    def _is_wanted(self, key: TileKey) -> bool:
+        return self._wanted.get(key, -np.inf) > self._asked - GRACE_S
+
+    def _tile(self, key: TileKey, step: int) -> Tile:
+        """Return a tile without layers, with a halo that does for a destination time."""
+        for spare in SPARES:
+            textures = self.pyramid.textures(key, spare)
+            if textures is None:
+                return Tile(key, None)
+            if spare == SPARES[-1] or not is_cut(textures, step):
+                break
+        return Tile(key, textures, textures and self._prepare(textures))
+
+    def _make(self, key: TileKey, step: int) -> None:
+        """Make a tile with the layers of one destination time."""
+        try:
+            with stoppable(lambda: not self._is_wanted(key)):
+                tile = self._tiles.get(key, lambda: self._tile(key, step))
+                tile.layers[step] = tile.make(step)
+                self._tiles.put(key, tile)  # which has grown
+        except Stopped:
+            pass
+        except Exception as error:
+            self.errors[key] = error
+        finally:
+            with self._lock:
+                self._running.pop((key, step), None)
+            self._notify()

@@ -1,0 +1,410 @@
+"""A field at every level of detail, cut into tiles.
+
+Level 0 has all nodes, level l every 2^l-th line of them, with velocities averaged over what is
+left out. The coarsest level is a field of moderate size that is traced whole, the root; a tile of a
+finer level is traced in a window of its level, with a halo around the tile as wide as its paths are
+long. A streak is a fixed number of pixels, so that is the same number of cells at every level, and
+what a tile costs does not depend on the size of the surface.
+
+::
+
+    level 2  (root)      level 1                  level 0
+    ┌───────┐            ┌───────┬───────┐        ┌───┬───┬───┬───┐
+    │       │            │       │       │        │   │   │   │   │   a tile covers a quarter of one
+    └───────┘            └───────┴───────┘        └───┴───┴───┴───┘   tile of the level above it
+"""
+
+from __future__ import annotations
+
+import threading
+from dataclasses import replace
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex._util.cache import WeakCache
+from flowtex.field import FlowField
+from flowtex.textures import TextureSet
+from flowtex.textures.geometry import SurfaceGeometry
+from flowtex.trace import SliceStore
+
+__all__ = [
+    "BLOCK_CELLS",
+    "PATH_CELLS",
+    "TILE_BLOCKS",
+    "Pyramid",
+    "TileKey",
+    "block_places",
+    "is_cut",
+    "shared_pyramid",
+]
+
+#: Most nodes, of one time, of a field that is traced whole.
+ROOT_NODES = 150_000
+#: Cells along a side of a block, the smallest part of a tile that is drawn or left out by itself,
+#: and blocks along a side of a tile.
+BLOCK_CELLS, TILE_BLOCKS = 64, 4
+TILE_CELLS = BLOCK_CELLS * TILE_BLOCKS
+#: Length of the paths in cells, by their longer side.
+PATH_CELLS = 32
+#: Width of a halo in lengths of the paths, for cells that grow smaller beyond a tile; lines that it
+#: has more than that; and its greatest width.
+HALO_SHARE, HALO_SPARE, MOST_HALO = 1.2, 3, 512
+#: Nodes of a window around a pole from which on its paths are not composed: all are traced then.
+MOST_COMPOSED = 500_000
+#: Share of the paths of a tile that may end where its window does.
+MOST_CUT_SHARE = 5e-3
+#: Rows that are averaged together.
+ROWS = 256
+
+
+class TileKey(NamedTuple):
+    """Which tile: its level, and its row and column among the tiles of that level."""
+
+    level: int
+    row: int
+    column: int
+
+    @property
+    def parent(self) -> TileKey:
+        """The tile that this one refines; at the depth of the root it stands for the root."""
+        return TileKey(self.level + 1, self.row // 2, self.column // 2)
+
+
+class _Level(NamedTuple):
+    """Lines of nodes of a level, numbered as in the field, and the velocity at their nodes."""
+
+    rows: Indices
+    columns: Indices
+    velocity: Floats
+
+
+class Pyramid:
+    """The levels of a field and their tiles.
+
+    Parameters
+    ----------
+    field
+        The flow.
+    parameter
+        As for :func:`flowtex.trace`.
+
+    Attributes
+    ----------
+    depth
+        Level of the root; 0 where the whole field is one.
+    """
+
+    def __init__(self, field: FlowField, parameter: str = "arclength") -> None:
+        self.field, self.parameter = field, parameter
+        self.depth = 0
+        while np.prod([len(_lines(n, self.depth)) for n in field.shape]) > ROOT_NODES:
+            self.depth += 1
+        self._lock = threading.Lock()
+        self._places: dict[int, Floats] = {}
+        self._levels: list[_Level] = [
+            _Level(np.arange(field.shape[0]), np.arange(field.shape[1]), field.velocity)
+        ]
+
+    @cached_property
+    def root(self) -> FlowField:
+        """The field at the coarsest level."""
+        return self.at_level(self.depth)
+
+    def at_level(self, level: int) -> FlowField:
+        """Return the whole field at a level."""
+        rows, columns = (np.arange(n) for n in self.shape(level))
+        return self._part(level, rows, columns, self.field.periodic)
+
+    @property
+    def blocks(self) -> tuple[int, int]:
+        """Rows and columns of blocks at level 0."""
+        rows, columns = (max(-(-(n - 1) // BLOCK_CELLS), 1) for n in self.field.shape)
+        return rows, columns
+
+    def places(self, level: int) -> Floats:
+        """Return where the blocks of a level lie, as :func:`block_places` does, from the root.
+
+        What a tile is like is thus known before anything of it is read.
+        """
+        if level not in self._places:
+            finer = self.depth - level
+            places = block_places(self.root.surface.points, BLOCK_CELLS >> finer)
+            places[..., 4] /= 1 << finer
+            self._places[level] = places
+        return self._places[level]
+
+    def shape(self, level: int) -> tuple[int, int]:
+        """Return the number of nodes (J, I) of a level."""
+        rows, columns = (len(_lines(n, level)) for n in self.field.shape)
+        return rows, columns
+
+    def blocks_of(self, key: TileKey | None) -> tuple[slice, slice]:
+        """Return the rows and columns of blocks that a tile has among those of its level."""
+        if key is None:
+            return slice(0, None), slice(0, None)
+        row, column = (TILE_BLOCKS * at for at in key[1:])
+        return slice(row, row + TILE_BLOCKS), slice(column, column + TILE_BLOCKS)
+
+    def children(self, key: TileKey | None) -> list[TileKey]:
+        """Tiles of the next level that cover a tile, or the root for ``None``."""
+        if (self.depth if key is None else key.level) == 0:
+            return []
+        if key is None:
+            level = self.depth - 1
+            rows, columns = (range(-(-(n - 1) // TILE_CELLS)) for n in self.shape(level))
+        else:
+            level = key.level - 1
+            counts = (-(-(n - 1) // TILE_CELLS) for n in self.shape(level))
+            rows, columns = (
+                range(2 * at, min(2 * at + 2, count))
+                for at, count in zip(key[1:], counts, strict=True)
+            )
+        return [TileKey(level, j, i) for j in rows for i in columns]
+
+    def textures(self, key: TileKey, spare: int = 1) -> TextureSet | None:
+        """Return the textures of a tile, whose layers are traced when they are asked for.
+
+        ``None`` stands for a tile of which nothing is drawn. The halo is ``spare`` times as wide
+        as paths of even speed need; :func:`is_cut` tells whether that was enough.
+
+        Raises
+        ------
+        KeyError
+            When there is no such tile.
+        """
+        first = [at * TILE_CELLS for at in key[1:]]
+        shape = self.shape(key.level) if 0 <= key.level < self.depth else (0, 0)
+        if not all(0 <= at < n - 1 for at, n in zip(first, shape, strict=True)):
+            msg = f"there is no tile {tuple(key)}; levels are 0 to {self.depth - 1}"
+            raise KeyError(msg)
+        last = [min(at + TILE_CELLS, n - 1) for at, n in zip(first, shape, strict=True)]
+        at = np.ix_(
+            *(
+                _lines(n, key.level)[a : b + 1]
+                for n, a, b in zip(self.field.shape, first, last, strict=True)
+            )
+        )
+        valid = self.field.valid[at]
+        if not (valid[:-1, :-1] & valid[1:, :-1] & valid[:-1, 1:] & valid[1:, 1:]).any():
+            return None
+        longest, widths = _reach(self.field.points[at], valid)
+        halo = [min(spare * width, MOST_HALO) for width in widths]
+        lines = [np.arange(a - h, b + h + 1) for a, b, h in zip(first, last, halo, strict=True)]
+        around = self._around_pole(lines, shape)
+        closed = [False, False]
+        for axis, count in enumerate(shape):
+            if axis == around:
+                # Whoever passes a pole comes out on its far side: all of the ring is needed.
+                spare = max(count - 1 - (last[axis] - first[axis]), 0) // 2
+                lines[axis] = np.arange(count) + first[axis] - min(spare, BLOCK_CELLS)
+                closed[axis] = True
+            elif not self.field.periodic[axis]:
+                lines[axis] = lines[axis][(lines[axis] >= 0) & (lines[axis] < count)]
+        start = [a - int(some[0]) for a, some in zip(first, lines, strict=True)]
+        drawn = [slice(s, s + b - a + 1) for s, a, b in zip(start, first, last, strict=True)]
+        window = self._part(key.level, lines[0], lines[1], (closed[0], closed[1]))
+        sides = [
+            (not c and (p or int(some[0]) > 0), not c and (p or int(some[-1]) < n - 1))
+            for c, p, some, n in zip(closed, self.field.periodic, lines, shape, strict=True)
+        ]
+        geometry = SurfaceGeometry.of_tile(
+            window, (drawn[0], drawn[1]), self.root.surface, (sides[0], sides[1])
+        )
+        nodes = np.zeros(window.shape, dtype=bool)
+        nodes[geometry.texels] = True
+        store = SliceStore(
+            window,
+            parameter=self.parameter,
+            compose=self.field.steady and (around is None or nodes.size <= MOST_COMPOSED),
+            longest=longest,
+            nodes=nodes,
+        )
+        return TextureSet(geometry, store, whole_speed=self._typical_speed, longest=longest)
+
+    @cached_property
+    def _typical_speed(self) -> float:
+        speed = self.root.speed[:, self.root.valid]
+        return float(np.sqrt(np.mean(speed**2))) or 1.0
+
+    def _around_pole(self, lines: list[Indices], shape: tuple[int, int]) -> int | None:
+        """Return the axis that goes around a pole beyond which some lines lie."""
+        for pole in self.root.surface.poles or ():
+            axis = 1 - pole.component
+            if lines[axis][0] < 0 if pole.inward > 0 else lines[axis][-1] >= shape[axis]:
+                return pole.component
+        return None
+
+    def _part(
+        self, level: int, rows: Indices, columns: Indices, periodic: tuple[bool, bool]
+    ) -> FlowField:
+        """Return some lines of a level, by their numbers, which may lie beyond a period.
+
+        Axes that are ``periodic`` have one whole period.
+        """
+        this, field = self._level(level), self.field
+        (turns_j, rows), (turns_i, columns) = (
+            np.divmod(some, len(lines) - 1) if closed else (np.zeros_like(some), some)
+            for some, lines, closed in zip((rows, columns), this[:2], field.periodic, strict=True)
+        )
+        at = np.ix_(this.rows[rows], this.columns[columns])
+        here = np.ix_(rows, columns)
+        p = field.points
+        points = p[at]
+        for axis, turns in ((0, turns_j[:, None, None]), (1, turns_i[None, :, None])):
+            if turns.any():
+                offset = np.mean(np.take(p, -1, axis=axis) - np.take(p, 0, axis=axis), axis=0)
+                points = points + turns * offset
+        return replace(
+            field,
+            points=points,
+            velocity=np.where(field.valid[at][..., None], this.velocity[:, here[0], here[1]], 0.0),
+            valid=field.valid[at],
+            periodic=periodic,
+            has_position=None if field.has_position is None else field.has_position[at],
+            scalars={k: s[:, at[0], at[1]] for k, s in field.scalars.items()},
+        )
+
+    def _level(self, level: int) -> _Level:
+        """Return a level, making those before it first."""
+        with self._lock:
+            return self._made(level)
+
+    def _made(self, level: int) -> _Level:
+        while len(self._levels) <= level:
+            fine, depth = self._levels[-1], len(self._levels)
+            rows, columns = (_lines(n, depth) for n in self.field.shape)
+            valid = self.field.valid[np.ix_(fine.rows, fine.columns)]
+            picks = tuple(
+                np.searchsorted(lines, some)
+                for lines, some in ((fine.rows, rows), (fine.columns, columns))
+            )
+            velocity = np.stack(
+                [_averaged(step, valid, picks, self.field.periodic) for step in fine.velocity]
+            )
+            self._levels.append(_Level(rows, columns, velocity))
+        return self._levels[level]
+
+
+def is_cut(textures: TextureSet, step: int) -> bool:
+    """Whether paths of a tile end where its window does, though the surface goes on.
+
+    Slices may have longer lags than are needed: they double.
+    """
+    slices = textures.store.at(step).part(*textures.geometry.texels)
+    needed = textures.longest / (slices.unit * textures.pace)
+    for moved, reach in (
+        (slices.displacement, slices.reach),
+        (slices.forward, slices.forward_reach),
+    ):
+        if moved is None or reach is None:
+            continue
+        there = slices.nodes + moved[0, -1]
+        gone = np.zeros(reach[0].shape, dtype=bool)
+        for axis, (before, after) in enumerate(textures.geometry.open_sides):
+            at, last = there[..., 1 - axis], textures.geometry.field.shape[axis] - 1
+            gone |= (before & (at < 0)) | (after & (at > last))
+        if (gone & (reach[0] < needed)).mean() > MOST_CUT_SHARE:
+            return True
+    return False
+
+
+def block_places(points: Floats, cells: int = BLOCK_CELLS) -> Floats:
+    """Return centre, radius, and longest side of a cell of each block, (rows, columns, 5).
+
+    Blocks have so many cells a side of a surface with nodes (J, I, 3).
+    """
+    firsts = [np.arange(0, max(n - 1, 1), cells) for n in points.shape[:2]]
+    lasts = [np.minimum(f + cells, n - 1) for f, n in zip(firsts, points.shape, strict=False)]
+    center = np.zeros((len(firsts[0]), len(firsts[1]), 3))
+    for rows in (firsts[0], lasts[0]):
+        for columns in (firsts[1], lasts[1]):
+            center += 0.25 * points[np.ix_(rows, columns)]
+    side = np.zeros(points.shape[:2])
+    side[:-1] = np.linalg.norm(np.diff(points, axis=0), axis=-1)
+    across = np.linalg.norm(np.diff(points, axis=1), axis=-1)
+    side[:, :-1] = np.maximum(side[:, :-1], across)
+    size = _greatest(side, firsts, lasts)
+    at = [
+        np.minimum(np.arange(n) // cells, len(f) - 1)
+        for f, n in zip(firsts, points.shape[:2], strict=True)
+    ]
+    away = np.linalg.norm(points - center[np.ix_(*at)], axis=-1)
+    radius = _greatest(away, firsts, lasts) + size
+    return np.concatenate([center, radius[..., None], size[..., None]], axis=-1)
+
+
+def _greatest(values: Floats, firsts: list[Indices], lasts: list[Indices]) -> Floats:
+    """Greatest value (J, I) in each block; a border counts for both sides."""
+    for axis in (0, 1):
+        inner = np.maximum.reduceat(values, firsts[axis], axis=axis)
+        values = np.maximum(inner, np.take(values, lasts[axis], axis=axis))
+    return values
+
+
+_pyramids: WeakCache[Pyramid] = WeakCache()
+
+
+def shared_pyramid(field: FlowField, parameter: str) -> Pyramid:
+    """Return the pyramid of a field, one for all that show the field at the same time."""
+    # A pyramid keeps its field alive, so the number of the field is its own meanwhile.
+    return _pyramids.get((id(field), parameter), lambda: Pyramid(field, parameter))
+
+
+def _lines(count: int, level: int) -> Indices:
+    """Every 2^level-th of so many lines, and the last one."""
+    lines = np.arange(0, count, 1 << level)
+    return lines if lines[-1] == count - 1 else np.append(lines, count - 1)
+
+
+def _reach(points: Floats, valid: Bools) -> tuple[float, tuple[int, int]]:
+    """Length of the paths of a tile (J, I, 3), and how many rows and columns beyond it they go."""
+    sides = []
+    for axis in (0, 1):
+        both = np.moveaxis(valid, axis, 0)
+        size = np.linalg.norm(np.diff(points, axis=axis), axis=-1)
+        known = np.moveaxis(size, axis, 0)[both[1:] & both[:-1]]
+        sides.append(np.percentile(known[known > 0], (5, 95)) if known.any() else np.ones(2))
+    # A little less, so that rounding does not make even cells ask for twice as long a lag.
+    longest = 0.99 * PATH_CELLS * max(float(most) for _, most in sides)
+    rows, columns = (int(HALO_SHARE * longest / least) + HALO_SPARE for least, _ in sides)
+    return longest, (rows, columns)
+
+
+def _averaged(
+    velocity: Floats, valid: Bools, picks: tuple[Indices, ...], periodic: tuple[bool, bool]
+) -> Floats:
+    """Velocity (J, I, 3) at some rows and columns, averaged with the lines beside them.
+
+    Weights are a quarter, a half and a quarter along each axis, of the nodes that are valid.
+    """
+    result = np.empty((len(picks[0]), len(picks[1]), velocity.shape[2]))
+    whole = bool(valid.all())
+    for first in range(0, len(picks[0]), ROWS):
+        some = picks[0][first : first + ROWS]
+        weights = np.zeros((len(some), len(picks[1]), 1))
+        total = np.zeros((len(some), *result.shape[1:]))
+        for a in (-1, 0, 1):
+            rows = _beside(some, a, len(velocity), closed=periodic[0])
+            for b in (-1, 0, 1):
+                at = np.ix_(rows, _beside(picks[1], b, velocity.shape[1], closed=periodic[1]))
+                weight = (2 - abs(a)) * (2 - abs(b)) / 16
+                if whole:
+                    total += weight * velocity[at]
+                else:
+                    share = weight * valid[at][..., None]
+                    total += share * velocity[at]
+                    weights += share
+        if not whole:
+            total /= np.where(weights > 0, weights, 1.0)
+        result[first : first + ROWS] = total
+    return result
+
+
+def _beside(lines: Indices, by: int, count: int, *, closed: bool) -> Indices:
+    """Numbers of the lines beside some; a border repeats itself, or the next period begins."""
+    if closed:
+        return np.mod(lines + by, count - 1)
+    return np.clip(lines + by, 0, count - 1)

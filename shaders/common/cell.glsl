@@ -1,0 +1,92 @@
+// Paths that stay within a cell or two beside a critical point.
+//
+// A slice between the nodes is a mean over paths that begin cells apart. Beside a critical point
+// those part, and their mean vanishes elsewhere than the velocity does, which shows once a streak is
+// shorter than a cell. It then follows the velocity between the four nodes, where these do not agree
+// on the direction.
+
+#ifdef FLOWTEX_CELLS
+struct FlowtexCell
+{
+  mat4x3 velocity; // in space, by 1, x, y and x y for a point that lies x, y cells away
+  mat4x2 rate;     // the same in cells
+  float share;     // of the path in the cell in that of the fragment
+  vec2 at;         // where the path has come, in cells from the fragment
+  vec3 moved;      // and in space
+  float alive;     // 0 beyond the place where the flow ends
+};
+
+FlowtexCell flowtexCell;
+
+// Sets the cell of a fragment whose path is so long to each side; tells whether it has a share.
+bool flowtexEnterCell(vec2 coordinate, float reach)
+{
+  vec2 at = coordinate * u_slicesSize - 0.5;
+  vec2 f = at - floor(at);
+  vec2 g = 1.0 - f;
+  vec4 here = vec4(g.x, f.x, g.x, f.x) * vec4(g.y, g.y, f.y, f.y);
+  mat4x3 velocity;
+  mat4x2 rate;
+  vec2 lengths = vec2(0.0);
+  for (int n = 0; n < 4; ++n)
+  {
+    ivec2 node = clamp(ivec2(floor(at)) + ivec2(n & 1, n >> 1), ivec2(0), ivec2(u_slicesSize) - 1);
+    vec4 tangent = texelFetch(u_slices, ivec3(node, 0), 0);
+    vec4 turn = texelFetch(u_slices, ivec3(node, u_rateLayer), 0);
+    velocity[n] = tangent.xyz * turn.w;
+    rate[n] = turn.xy * (turn.w / (tangent.w * u_cell));
+    lengths += here[n] * vec2(length(velocity[n]), length(rate[n]));
+  }
+  lengths.x = max(lengths.x, FLOWTEX_LEAST_SPEED);
+  mat4 about = mat4(here, vec4(-g.y, g.y, -f.y, f.y), vec4(-g.x, -f.x, g.x, f.x),
+                    vec4(1.0, -1.0, -1.0, 1.0)) * (1.0 / lengths.x);
+  flowtexCell.velocity = velocity * about;
+  flowtexCell.rate = rate * about;
+  float agreed = length(flowtexCell.velocity[0]);
+  float cells = reach * lengths.y / lengths.x;
+  flowtexCell.share = (1.0 - smoothstep(FLOWTEX_PARTING, FLOWTEX_AGREED, agreed))
+    * (1.0 - smoothstep(FLOWTEX_NEAR_CELLS, FLOWTEX_FAR_CELLS, cells));
+  return flowtexCell.share > 0.0;
+}
+
+// Begins a side of the path.
+void flowtexLeaveFragment()
+{
+  flowtexCell.at = vec2(0.0);
+  flowtexCell.moved = vec3(0.0);
+  flowtexCell.alive = 1.0;
+}
+
+// Goes on by a length, by the midpoint rule, and mixes in where that leads.
+void flowtexGoOn(float length_, inout vec3 displacement, inout float alive)
+{
+  vec2 at = flowtexCell.at;
+  vec4 place = vec4(1.0, at, at.x * at.y);
+  vec3 first = flowtexCell.velocity * place;
+  float square = max(dot(first, first), FLOWTEX_LEAST_SQUARE);
+  at += 0.5 * length_ * inversesqrt(square) * (flowtexCell.rate * place);
+  place = vec4(1.0, at, at.x * at.y);
+  vec3 middle = flowtexCell.velocity * place;
+  float time = length_ * inversesqrt(max(dot(middle, middle), FLOWTEX_LEAST_SQUARE));
+  flowtexCell.at += time * (flowtexCell.rate * place);
+  flowtexCell.moved += time * middle;
+  // Share of the step before the velocity turns round, as it does where the flow ends in a node.
+  float lost = 2.0 * max(square - dot(first, middle), FLOWTEX_LEAST_SQUARE);
+  flowtexCell.alive = flowtexCell.alive < 1.0 ? 0.0 : min(square / lost, 1.0);
+  displacement = mix(displacement, flowtexCell.moved, flowtexCell.share);
+  alive = mix(alive, flowtexCell.alive, flowtexCell.share);
+}
+#else
+bool flowtexEnterCell(vec2 coordinate, float reach)
+{
+  return false;
+}
+
+void flowtexLeaveFragment()
+{
+}
+
+void flowtexGoOn(float length_, inout vec3 displacement, inout float alive)
+{
+}
+#endif

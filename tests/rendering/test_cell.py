@@ -1,0 +1,105 @@
+"""Paths beside critical points: exact solutions, and where the slices are left alone."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from flows import gyre, lines, swinging
+from matrix import SIZE, straight
+from scipy.linalg import expm
+
+from flowtex import FlowField
+from flowtex._util.array_types import Floats
+from flowtex.probe import probe
+from flowtex.rendering.cpu import render
+from flowtex.rendering.uniforms import ViewState, is_near
+from flowtex.scene import Scene
+from flowtex.settings import Settings
+
+#: In cells of a grid of 40 by 40 nodes; neither on a node nor in the middle of a cell.
+POINT = np.array([19.87, 19.29])
+CELL = 1 / 39
+FLOWS = {
+    "saddle": [[1.0, 0.3], [0.2, -1.0]],
+    "centre": [[0.1, -1.0], [1.3, -0.1]],
+    "node": [[-1.0, 0.3], [0.1, -0.6]],
+    "focus": [[-0.4, -1.0], [1.0, -0.3]],
+}
+
+
+def linear(name: str) -> FlowField:
+    y, x = np.mgrid[0:1:40j, 0:1:40j]
+    points = np.stack([x, y], -1)
+    return FlowField.from_arrays(points, (points - CELL * POINT) @ np.transpose(FLOWS[name]))
+
+
+def exact(name: str, start: Floats, length: float) -> Floats:
+    """Points of the path through ``start`` that are about a twentieth apart, (N, 2)."""
+    matrix, sides = np.array(FLOWS[name]), []
+    for side in (-1, 1):
+        points = [start]
+        for _ in range(int(20 * length)):
+            if np.linalg.norm(points[-1]) < 0.05:
+                break
+            time = 0.05 / np.linalg.norm(matrix @ points[-1])
+            points.append(expm(side * time * matrix) @ points[-1])
+        sides += points
+    return np.array(sides)
+
+
+@pytest.mark.parametrize("cells", [0.02, 4e-3, 1e-3])
+@pytest.mark.parametrize("parameter", ["arclength", "time"])
+@pytest.mark.parametrize("name", FLOWS)
+def test_a_path_beside_a_critical_point_is_exact(name: str, parameter: str, cells: float) -> None:
+    scene = Scene(linear(name), Settings(parameter=parameter))
+    # Far enough from a point where paths end, in pixels.
+    starts = [[3.0, 8.0], [-14.0, 5.0]] if name in ("saddle", "centre") else [[20.0, 30.0]]
+    for start in np.array(starts):
+        i, j = POINT + cells * start
+        found = probe(scene, (j, i), pixel=cells * CELL)
+        points = (found.points[:, :2] / CELL - POINT) / cells
+        off = np.linalg.norm(points[:, None] - exact(name, start, 30.0), axis=-1).min(axis=1)
+        # Half precision moves the critical point by some ten-thousandths of a cell.
+        assert off.max() < 0.1 + 4e-4 / cells
+        steps = np.linalg.norm(np.diff(points, axis=0), axis=-1)
+        np.testing.assert_allclose(steps, 1.05, rtol=0.05)
+        assert len(points) == 49
+
+
+def test_a_path_ends_in_a_node() -> None:
+    i, j = POINT + np.array([0.005, 0.0])
+    found = probe(Scene(linear("node")), (j, i), pixel=1e-3 * CELL)
+    # Five pixels from the node there is room for four samples, and a fifth that fades.
+    assert (found.weights[found.lags < 0] > 0).sum() == 5
+    assert len(found.lags) == 24 + 1 + 5
+
+
+@pytest.mark.parametrize(("zoom", "near"), [(0.5, False), (1.0, False), (2.5, False), (8.0, True)])
+def test_from_afar_the_slices_are_left_alone(zoom: float, near: bool) -> None:
+    scene, camera = Scene(gyre(), Settings()), straight(zoom, (0.5, 0.5))
+    view = ViewState(eye=camera.eye, pixel=2 * camera.parallel_scale / SIZE[1])
+    assert is_near(scene.textures, scene.settings, view) == near
+    plain, cells = (
+        render(scene.textures, scene.settings, camera, SIZE, view=v).value
+        for v in (replace(view, pixel=np.inf), ViewState())
+    )
+    assert np.array_equal(plain, cells, equal_nan=True) != near
+
+
+def test_where_the_flow_does_not_turn_no_view_is_near() -> None:
+    y, x = np.mgrid[0:1:20j, 0:1:20j]
+    wind = FlowField.from_arrays(np.stack([x, y], -1), np.stack([1 + x, 0.3 * y], -1))
+    assert not is_near(Scene(wind).textures, Settings(), ViewState())
+    for field in (swinging(), lines()):
+        assert not is_near(Scene(field).textures, Settings(), ViewState())
+
+
+def test_in_perspective_the_nearest_point_counts() -> None:
+    textures, settings = Scene(linear("saddle")).textures, Settings()
+    middle = textures.geometry.center
+    view = ViewState(focus=middle, pixel=4 * CELL / (24 * 1.05))
+    assert not is_near(textures, settings, view)
+    eye = np.append(middle + np.array([0.0, 0.0, 1.0]), 1.0)
+    assert is_near(textures, settings, replace(view, eye=eye))

@@ -1,0 +1,183 @@
+"""Which tiles are drawn, and that nobody sees where one ends."""
+
+from __future__ import annotations
+
+import threading
+from typing import Any
+
+import numpy as np
+import pytest
+
+import flowtex
+from flowtex._util.array_types import Floats
+from flowtex.field import FlowField
+from flowtex.rendering.tile_choice import TileView, choose_tiles, cover, finer_part, wanted_tiles
+from flowtex.tiles import BLOCK_CELLS, TILE_BLOCKS, Pyramid, TileKey
+from flowtex.tiles.pyramid import _pyramids
+
+SIZE = (320, 240)
+
+
+@pytest.fixture
+def _tiled(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 3000)
+
+
+def flat(rows: int = 300, columns: int = 420) -> FlowField:
+    x, y = np.meshgrid(np.linspace(0, 2, columns), np.linspace(0, 1, rows) ** 1.2)
+    velocity = [-np.sin(np.pi * x) * np.cos(np.pi * y), np.cos(np.pi * x) * np.sin(np.pi * y)]
+    return FlowField.from_arrays(np.stack([x, y], axis=-1), np.stack(velocity, axis=-1))
+
+
+def varying() -> FlowField:
+    x, y = np.meshgrid(np.linspace(0, 2, 300), np.linspace(0, 1, 280))
+    steps = [np.stack([np.cos(3 * y + t), 0.4 * np.sin(4 * x - t)], -1) for t in (0.0, 0.5, 1.0)]
+    return FlowField.from_arrays(np.stack([x, y], -1), np.stack(steps), times=[0.0, 0.1, 0.2])
+
+
+def sphere() -> FlowField:
+    a, b = np.meshgrid(np.linspace(0, 2 * np.pi, 301), np.linspace(-np.pi / 2, np.pi / 2, 151))
+    points = np.stack([np.cos(b) * np.cos(a), np.cos(b) * np.sin(a), np.sin(b)], axis=-1)
+    return FlowField.from_arrays(points, np.cross([0.5, 0.2, 1.0], points))
+
+
+def land() -> FlowField:
+    field = flat()
+    hole = np.hypot(field.points[..., 0] - 0.7, field.points[..., 1] - 0.4) < 0.1
+    return FlowField.from_arrays(field.points, field.velocity[0], valid=~hole)
+
+
+def picture(field: FlowField, root: int, monkeypatch: Any, **options: Any) -> Floats:
+    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", root)
+    _pyramids._values.clear()
+    return flowtex.render(field, size=SIZE, **options).astype(float)
+
+
+NEAR = {"zoom": 4.0, "focus": (0.63, 0.37)}
+#: A field, how it is drawn, and how far pictures may be apart (RMS, of 255). The middle of a curved
+#: surface is that of its root, and tiles of a flow that varies are integrated, not composed.
+CASES: dict[str, tuple[Any, dict[str, Any], float]] = {
+    "whole": (flat, {"scalars": False}, 1.2),
+    "near": (flat, {"scalars": False, **NEAR}, 0.5),
+    "by speed": (flat, NEAR, 0.6),
+    "far in": (flat, {"scalars": False, "zoom": 60.0, "focus": (0.63, 0.37)}, 0.5),
+    "land": (land, {"scalars": False, **NEAR}, 0.6),
+    "varying": (varying, {"scalars": False, "time": 0.13, **NEAR}, 5.0),
+    "pole": (sphere, {"camera": [(0.9, 0.2, 1.9), (0, 0, 1), (0, 1, 0)], "scalars": False}, 3.5),
+}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_tiles_draw_what_the_whole_draws(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    make, options, most = CASES[name]
+    field = make()
+    whole, tiles = (picture(field, root, monkeypatch, **options) for root in (10**9, 3000))
+    off = np.abs(whole - tiles).max(axis=-1)
+    assert np.ptp(whole) > 100
+    assert np.sqrt(np.mean(off**2)) < most
+    assert (off > 16).mean() < 1e-3 * most**2
+
+
+def test_tiles_in_the_background_come_after_a_coarse_picture(
+    _tiled: None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    import pyvista as pv
+
+    plotter = pv.Plotter(off_screen=True, window_size=list(SIZE))
+    handle = plotter.flowtex.add(flat(), scalars=False)
+    told: list[int] = []
+    go, textures = threading.Event(), Pyramid.textures
+
+    def slow(*arguments: Any) -> Any:
+        go.wait()
+        return textures(*arguments)
+
+    monkeypatch.setattr(Pyramid, "textures", slow)
+    handle.load_in_background(lambda: told.append(1))
+    first = plotter.screenshot(return_img=True)
+    assert handle.busy
+    go.set()
+    handle._surface._loader.wait()
+    assert told
+    plotter.render()
+    second = plotter.screenshot(return_img=True)
+    assert not handle.busy
+    assert np.abs(first.astype(float) - second).mean() > 0.1
+    actors = plotter.renderer.GetActors().GetNumberOfItems()
+    assert actors > 1
+    handle.actor.SetVisibility(False)
+    plotter.render()
+    assert plotter.renderer.GetActors().GetNumberOfItems() == 1
+    handle.remove()
+    assert plotter.renderer.GetActors().GetNumberOfItems() == 0
+    plotter.close()
+
+
+def test_another_noise_is_drawn_whole_and_back_in_tiles(_tiled: None) -> None:
+    import pyvista as pv
+
+    plotter = pv.Plotter(off_screen=True, window_size=list(SIZE))
+    field = flat()
+    handle = plotter.flowtex.add(field)
+    tiled = plotter.screenshot(return_img=True)
+    handle.settings.noise = "texture"
+    whole = plotter.screenshot(return_img=True)
+    assert handle.actor.mapper.dataset.n_points == field.valid.size
+    handle.settings.noise = "procedural"
+    again = plotter.screenshot(return_img=True)
+    assert handle.actor.mapper.dataset.n_points <= 3000
+    assert np.abs(whole.astype(float) - tiled).mean() > 5
+    assert np.abs(again.astype(float) - tiled).max() <= 2
+    plotter.close()
+
+
+def view(rng: np.random.Generator) -> TileView:
+    """Look straight at some part of a flat field."""
+    middle, half = rng.uniform([0, 0], [2, 1]), 0.6 * 10 ** rng.uniform(-2.5, 0)
+    sides = [(1, 0, half * 4 / 3 - middle[0]), (-1, 0, half * 4 / 3 + middle[0])]
+    sides += [(0, 1, half - middle[1]), (0, -1, half + middle[1])]
+    return TileView(None, half, 600, np.array([(x, y, 0, d) for x, y, d in sides], dtype=float))
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_what_is_in_view_is_covered_once(seed: int, _tiled: None) -> None:
+    rng = np.random.default_rng(seed)
+    pyramid, seen = Pyramid(flat(700, 900)), view(rng)
+    choices = choose_tiles(pyramid, seen)
+    ready = {key for key in choices if rng.random() < 0.6}
+    shown = cover(choices, lambda key: key in ready)
+    counts = np.zeros(pyramid.blocks, dtype=int)
+    for key, finer in shown.items():
+        level = pyramid.depth if key is None else key.level
+        rows, columns = pyramid.blocks_of(key)
+        own = np.ones(pyramid.places(level)[rows, columns].shape[:2], dtype=int)
+        assert key is None or key in ready
+        for child in finer:
+            own[finer_part(child, key)] = 0
+        spread = np.repeat(np.repeat(own, 1 << level, axis=0), 1 << level, axis=1)
+        row, column = (0, 0) if key is None else (TILE_BLOCKS * at << level for at in key[1:])
+        part = counts[row : row + len(spread), column : column + spread.shape[1]]
+        part += spread[: part.shape[0], : part.shape[1]]
+    assert (counts <= 1).all()
+    center = pyramid.places(0)[..., :3] @ seen.planes[:, :3].T + seen.planes[:, 3]
+    assert (counts[(center > 0).all(axis=-1)] == 1).all()
+
+
+def test_cells_are_as_fine_as_pixels_where_there_are_nodes(_tiled: None) -> None:
+    pyramid = Pyramid(flat(700, 900))
+    for seed in range(10):
+        seen = view(np.random.default_rng(seed))
+        for key in wanted_tiles(choose_tiles(pyramid, seen)):
+            rows, columns = pyramid.blocks_of(key)
+            places = pyramid.places(key.level)[rows, columns]
+            sizes = seen.cell_sizes(places)[seen.sees(places)]
+            assert key.level == 0 or sizes.min() <= seen.cell_pixels
+
+
+def test_nothing_is_asked_for_where_the_root_does(_tiled: None) -> None:
+    pyramid = Pyramid(flat())
+    far = TileView(None, 0.6, 20, np.zeros((0, 4)))
+    assert wanted_tiles(choose_tiles(pyramid, far)) == []
+    assert cover(choose_tiles(pyramid, far), lambda key: True) == {None: []}
+    assert BLOCK_CELLS * TILE_BLOCKS == 256
+    assert TileKey(0, 3, 5).parent == (1, 1, 2)

@@ -1,0 +1,117 @@
+"""Tiles on their way: in order, given up when nobody wants them, told when they fail."""
+
+from __future__ import annotations
+
+import threading
+import time
+from typing import Any
+
+import numpy as np
+import pytest
+
+from flowtex._util.progress import check
+from flowtex.tiles import TileKey, TileLoader
+
+KEYS = [TileKey(0, 0, n) for n in range(8)]
+
+
+class Textures:
+    """Textures that take as long as they are told."""
+
+    def __init__(self, key: TileKey, source: Source) -> None:
+        self.key, self.source = key, source
+        self.count, self.store = 1, self
+        self.geometry: Any = self
+        self.rows = self.columns = self.field = self
+        self.size, self.valid = 4, np.ones(4)
+
+    def forget(self) -> None:
+        """Nothing is kept."""
+
+    def layers(self, step: int) -> Any:
+        self.source.began.append((self.key, step))
+        while not self.source.go.wait(0.01):
+            check()
+        if self.key == self.source.broken:
+            msg = "no such data"
+            raise OSError(msg)
+        return np.full((1, 4, 4, 4), step, np.float32)
+
+
+class Source:
+    """A pyramid of such."""
+
+    def __init__(self, broken: TileKey | None = None) -> None:
+        self.broken, self.go, self.began = broken, threading.Event(), []
+
+    def textures(self, key: TileKey, spare: int = 1) -> Any:
+        del spare
+        return Textures(key, self)
+
+
+@pytest.fixture(autouse=True)
+def _no_halo(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("flowtex.tiles.loader.is_cut", lambda textures, step: False)
+
+
+def test_a_tile_is_there_once_it_is_made() -> None:
+    source: Any = Source()
+    told: list[int] = []
+    loader = TileLoader(
+        source, prepare=lambda textures: textures.key, notify=lambda: told.append(1)
+    )
+    loader.request(KEYS[:2], [0, 1])
+    assert loader.busy
+    assert loader.get(KEYS[0], [0]) is None
+    source.go.set()
+    loader.wait()
+    tile = loader.get(KEYS[0], [0, 1])
+    assert tile is not None
+    assert tile.prepared == KEYS[0]
+    assert (tile.take(1) == 1).all()
+    assert (tile.take(1) == 1).all()  # made again, since it was handed over
+    assert len(told) == 4
+    assert not loader.busy
+    loader.close()
+
+
+def test_what_nobody_wants_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("flowtex.tiles.loader.GRACE_S", 0.05)
+    source: Any = Source()
+    loader = TileLoader(source)
+    loader.request(KEYS, [0])
+    time.sleep(0.1)
+    loader.request(KEYS[-1:], [0])
+    source.go.set()
+    loader.wait()
+    assert loader.get(KEYS[-1], [0]) is not None
+    assert sum(loader.get(key, [0]) is not None for key in KEYS) <= 1 + 4
+    assert len(source.began) < len(KEYS)
+    loader.close()
+
+
+def test_a_failure_is_told_and_not_tried_again() -> None:
+    source: Any = Source(broken=KEYS[1])
+    source.go.set()
+    loader = TileLoader(source)
+    loader.request(KEYS[:3], [0])
+    with pytest.raises(OSError, match="no such data"):
+        loader.wait()
+    loader.request(KEYS[:3], [0])
+    assert not loader.busy
+    assert loader.get(KEYS[0], [0]) is not None
+    assert loader.get(KEYS[1], [0]) is None
+    assert isinstance(loader.errors[KEYS[1]], OSError)
+    loader.close()
+
+
+def test_tiles_fit_into_their_memory() -> None:
+    source: Any = Source()
+    source.go.set()
+    loader = TileLoader(source, budget=3000)
+    for key in KEYS:
+        loader.request([key], [0])
+        loader.wait()
+    kept = [key for key in KEYS if loader.keeps(key)]
+    assert kept == KEYS[-2:]
+    loader.close()
