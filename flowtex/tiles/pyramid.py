@@ -54,8 +54,8 @@ PATH_CELLS = 32
 HALO_SHARE, HALO_SPARE, MOST_HALO = 1.2, 3, 512
 #: Nodes of a window around a pole from which on its paths are not composed: all are traced then.
 MOST_COMPOSED = 500_000
-#: Share of the paths of a tile that may end where its window does.
-MOST_CUT_SHARE = 5e-3
+#: Share of its length up to which a path must not be cut, and of the paths of a tile that may be.
+NEEDED_SHARE, MOST_CUT_SHARE = 0.75, 5e-3
 #: Rows that are averaged together.
 ROWS = 256
 
@@ -291,10 +291,10 @@ class Pyramid:
 def is_cut(textures: TextureSet, step: int) -> bool:
     """Whether paths of a tile end where its window does, though the surface goes on.
 
-    Slices may have longer lags than are needed: they double.
+    Slices may have longer lags than are needed: they double. The last part of a path weighs little.
     """
     slices = textures.store.at(step).part(*textures.geometry.texels)
-    needed = textures.longest / (slices.unit * textures.pace)
+    needed = NEEDED_SHARE * textures.longest / (slices.unit * textures.pace)
     for moved, reach in (
         (slices.displacement, slices.reach),
         (slices.forward, slices.forward_reach),
