@@ -201,7 +201,12 @@ def _spread(p: Floats, ok: Bools) -> bool:
     if len(some) < 3:
         return False
     low, high = bounds(p if ok.all() else p[ok])
-    offsets = (some - some.mean(axis=0)) / max(float((high - low).max()), np.finfo(float).tiny)
+    offsets = some - some.mean(axis=0)
+    # Where all nodes are at one point, only rounding is left.
+    size = float(max((high - low).max(), np.abs(offsets).max()))
+    if not np.finfo(float).tiny < size:
+        return False
+    offsets /= size
     spans = np.linalg.svd(offsets.T @ offsets, compute_uv=False)
     return bool(spans[1] > 2 * LINE_WIDTH**2 * p.shape[-1] * ok.size)
 

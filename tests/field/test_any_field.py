@@ -88,6 +88,7 @@ def test_missing_data_is_not_computed_with(arguments: dict[str, Any]) -> None:
         ({"points": [[1, 2], [3]]}, "points is no array .*; expected real numbers, as many in"),
         ({"valid": np.full((4, 4), "yes")}, "valid holds <U3; expected real numbers"),
         ({"scalars": {"p": PLANE[..., 0] * 1j}}, r"scalars\['p'\] holds complex128; expected"),
+        ({"points": 0 * PLANE - [9.99999e-07, 1e-6]}, "all usable nodes lie"),
         ({"periodic": 3}, 'periodic is 3; expected "", "i", "j" or "ij"'),
     ],
 )
