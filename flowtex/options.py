@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import difflib
 import inspect
+import math
 import textwrap
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields
@@ -129,10 +130,11 @@ class Appearance:
         if self.clim is not None:
             try:
                 low, high = (float(value) for value in self.clim)
-            except (TypeError, ValueError):
+            except (TypeError, ValueError, OverflowError):
+                low = high = math.nan
+            if not math.isfinite(low + high):
                 faults.append(f"clim is {self.clim!r}; expected two numbers, (low, high)")
-            else:
-                object.__setattr__(self, "clim", (low, high))
+            object.__setattr__(self, "clim", (low, high))
         raise_faults(faults, ValueError)
 
     @property

@@ -79,7 +79,7 @@ class Setting:
         if self.kind is bool:
             fits = isinstance(value, bool) or type(value).__name__ == "bool"
         elif self.kind is str:
-            fits = value in self.choices
+            fits = isinstance(value, str) and value in self.choices
         else:
             fits = _is_number(value) and (self.kind is float or float(value).is_integer())
             fits = fits and (self.low is None or value >= self.low)
@@ -151,7 +151,7 @@ class Setting:
 def _is_number(value: Any) -> bool:
     try:
         return not isinstance(value, (bool, str, bytes)) and float(value) == float(value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):  # a whole number may have any size
         return False
 
 

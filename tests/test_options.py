@@ -8,6 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 from flows import gyre
+from hypothesis import example, given
+from hypothesis import strategies as st
+from strategies import junk, property_test
 
 import flowtex
 from flowtex.options import (
@@ -97,3 +100,20 @@ def test_a_view_beside_another_differs_in_what_it_is_told() -> None:
 def test_choices_of_a_mesh_are_refused_for_a_field() -> None:
     with pytest.raises(TypeError, match=r"^plane cannot be chosen any more for FlowField"):
         Scene.of(gyre(), plane="k=1")
+
+
+@property_test(60)
+@given(st.sampled_from(["opacity", "clim", "zoom", "focus", "camera"]), junk())
+@example("zoom", 10**400)
+@example("zoom", "near")
+@example("focus", {})
+@example("focus", [10**400, 0])
+@example("focus", [0.0, 0.0, 1e17])
+@example("clim", (float("nan"), 1.0))
+def test_any_value_of_an_argument_is_taken_or_named(name: str, value: Any) -> None:
+    try:
+        options = Options.split(**{name: value})
+        assert np.isfinite(options.view.first_camera(gyre().surface).position).all()
+    except ValueError as error:
+        # What is too far away to be looked at makes no camera.
+        assert str(error).startswith((f"{name} ", "camera")) and "expected" in str(error)

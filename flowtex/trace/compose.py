@@ -56,9 +56,7 @@ Map = Callable[[Callable[[Any], Any], Iterable[Any]], Iterable[Any]]
 Within = Callable[[Floats], Bools]
 #: Follows paths from positions (2, n), by lags (n,), from time steps (n,), as long as they are
 #: there: displacements (2, n), lags covered, and lags at which they end, infinite if they do not.
-Integrate = Callable[
-    [Floats32, Floats32, Indices, Within | None], tuple[Floats32, Floats32, Floats32]
-]
+Integrate = Callable[[Floats32, Floats, Indices, Within | None], tuple[Floats32, Floats, Floats]]
 
 
 def landings(field: FlowField, lags: Floats, unit: Floats) -> Indices | None:
@@ -82,6 +80,8 @@ def landings(field: FlowField, lags: Floats, unit: Floats) -> Indices | None:
     first = int(np.argmax(exact))
     if not exact[first:].all() or np.any(whole[first:] % whole[first]):
         return None
+    # Beyond the first time step there is nowhere to land.
+    whole = np.minimum(whole, len(field.times))
     return np.where(exact, whole, 0).astype(np.intp)
 
 
@@ -158,7 +158,9 @@ class _SliceLookup:
         # What is stored at lag zero is the slope itself.
         self._inverse = np.concatenate([[1.0], 1 / lags]).astype(np.float32)
         self.landing = np.concatenate([[0], landing])
-        self.unit = unit.ravel().astype(np.float32)
+        #: What units are counted in here, so that single precision holds them: a power of two.
+        self.scale = float(2.0 ** np.rint(np.log2(np.median(unit))))
+        self.unit = (unit.ravel() / self.scale).astype(np.float32)
         self._even = bool(np.ptp(self.unit) <= LAG_ROUNDING * self.unit[0])
         self.unsteady = not field.steady
         self.slices = slices.reshape(2, len(self.knots), -1)
@@ -356,7 +358,9 @@ class _Doubling:
             return which
         node, position = self._where(which)
         within = None if lookup.unsteady or final else lookup.stuck
-        moved, covered, ends = self._integrate(position, left, step, within)
+        scale = lookup.scale
+        moved, covered, ends = self._integrate(position, left.astype(float) * scale, step, within)
+        covered, ends = covered / scale, ends / scale
         self._moved[:, which] += moved
         self._left[which] = left - covered
         lookup.polar.reshape(-1)[which] = True

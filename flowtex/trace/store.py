@@ -61,6 +61,10 @@ class SliceStore:
             self.parameter = parameter if field.steady else "time"
             self.lags: Floats = choose_lags(field, self.parameter, longest)
             self.unit: Floats = lag_unit(field, self.parameter)
+            if self.parameter == "time":
+                # Half precision holds lags near one, whatever the field's unit of time is.
+                first = 2.0 ** np.rint(np.log2(self.lags[0]))
+                self.lags, self.unit = self.lags / first, self.unit * first
         else:
             self.parameter, self.lags, self.unit = slices.parameter, slices.lags, slices.unit
 

@@ -75,6 +75,9 @@ def test_dates_are_seconds_since_the_first(unit: str) -> None:
         assert field.time_unit == "s"
     with pytest.raises(FieldError, match=r"^time_unit is 'd' and the times are dates"):
         FlowField.from_arrays(points, velocity, times=dates, time_unit="d")
+    months = np.array(["2002-01", "2002-02"], dtype="datetime64[M]")
+    field = FlowField.from_arrays(points, velocity, times=months)
+    assert field.times.tolist() == [0.0, 31 * 86400.0]
     dates[1] = np.datetime64("NaT")
     with pytest.raises(FieldError, match=r"times\[1\] is nan; expected a finite number"):
         FlowField.from_arrays(points, velocity, times=dates)
@@ -413,8 +416,8 @@ def test_an_axis_that_does_not_exist() -> None:
 
 def test_complex_numbers() -> None:
     with says(
-        "an array of complex128 was given where real numbers were expected; convert it with "
-        "astype(float), or take its real part"
+        "velocity holds complex128; expected real numbers: convert it with astype(float), or take "
+        "its real part"
     ):
         FlowField.from_arrays(flat(), ones(flat()) * 1j)
 

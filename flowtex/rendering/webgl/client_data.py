@@ -41,6 +41,8 @@ SHADERS = {
 FIRST_ASPECT = 1.5
 #: Greatest value of a component of a normal in sixteen bits.
 NORMAL_MAX = 32767
+#: Greatest number in single precision.
+SINGLE_MAX = float(np.finfo(np.float32).max)
 
 
 @dataclass(frozen=True, eq=False)
@@ -203,7 +205,8 @@ class ClientData:
         values = self._values
         parts: Parts = {}
         if values is not None and step < len(values):
-            parts[f"scalars/{step}"] = np.ascontiguousarray(values[step], "<f4")
+            inside = np.clip(values[step], -SINGLE_MAX, SINGLE_MAX)
+            parts[f"scalars/{step}"] = np.ascontiguousarray(inside, "<f4")
         packed = self.packing.step(self.source(step))
         parts[f"extra/{step}"] = packed.extra
         parts[f"slices/{step}"] = packed.slopes
