@@ -345,7 +345,9 @@ class FlowField:
         step = self.step_number(step)
         data = {k: s[step : step + 1] if len(s) > 1 else s for k, s in self.scalars.items()}
         at = slice(step, step + 1)
-        return replace(self, velocity=self.velocity[at], times=self.times[at], scalars=data)
+        one = replace(self, velocity=self.velocity[at], times=self.times[at], scalars=data)
+        one.__dict__["surface"] = self.surface  # the same that the property would make again
+        return one
 
     def step_number(self, step: int) -> int:
         """Return the number of a time step from 0, where negative ones count from the end.

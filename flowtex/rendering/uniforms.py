@@ -206,7 +206,7 @@ def _motion(textures: TextureSet, settings: Settings, view: ViewState) -> dict[s
     store = textures.store
     if store.steps > 1:
         # The time in which the flow crosses the surface.
-        period = textures.geometry.extent / textures.pace
+        period = textures.geometry.extent / textures.typical_speed
         turns, travel = (view.time - float(store.field.times[0])) / period, textures.geometry.extent
         pixels, by_speed = False, True
     else:
