@@ -27,6 +27,7 @@ from flowtex.field.validation import (
     as_numbers,
     finite_nodes,
     node_faults,
+    node_positions,
     scalar_steps,
     shape_faults,
     three_components,
@@ -99,7 +100,9 @@ class FlowField:
         Parameters
         ----------
         points
-            Node positions, (J, I, 2) or (J, I, 3), in any unit of length.
+            Node positions, (J, I, 2) or (J, I, 3), in any unit of length. Or a tuple of
+            coordinates: ``(x, y)`` of a rectilinear grid, (I,) and (J,), or two or three arrays
+            (J, I).
         velocity
             Velocity at the nodes, (J, I, 2 or 3), or (T, J, I, 2 or 3) for a field that varies
             in time, in units of length per unit of time. NaN and masked entries blank a node.
@@ -140,7 +143,7 @@ class FlowField:
         -----
         The arrays are copied to float64 and never changed.
         """
-        p, masked_points = as_numbers(points)
+        p, masked_points = as_numbers(node_positions(points))
         v, masked_velocity = as_numbers(velocity)
         times, time_unit = as_seconds(times, time_unit)
         faults = shape_faults(p, v, times, valid, periodic, scalars)
