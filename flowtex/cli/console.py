@@ -33,9 +33,10 @@ def in_flags(text: str) -> str:
     def flag(match: re.Match[str]) -> str:
         return f"--{match['name'].replace('_', '-')} {match['value']}"
 
-    text = re.sub(rf"(?m)(?<=^)(?P<name>{names}) (?P<value>is )", flag, text)
-    text = re.sub(rf"(?<=: |\. )(?P<name>{names}) (?P<value>is )", flag, text)
-    quoted = rf"""\b(?P<name>{names})=(?P<quote>["']?)(?P<value>[^\s"';,)]+)(?P=quote)"""
+    text = re.sub(rf"(?:^|(?<=: |\. ))(?P<name>{names}) (?P<value>is )", flag, text)
+    quoted = (
+        rf"""(?<!--beside )\b(?P<name>{names})=(?P<quote>["']?)(?P<value>[^\s"';,)]+)(?P=quote)"""
+    )
     return re.sub(quoted, flag, text)
 
 
