@@ -17,6 +17,7 @@ import math
 import textwrap
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields
+from pathlib import Path
 from typing import Any, TypeVar
 
 from flowtex.camera import Camera
@@ -61,16 +62,21 @@ class FieldOptions:
     )
 
     def field(self, mesh: Any) -> FlowField:
-        """Return the field of a mesh, or a field as it is.
+        """Return the field of a mesh or of a file, or a field as it is.
 
         Raises
         ------
         FieldError
             When the mesh does not make a field.
         TypeError
-            When something is chosen of a field that is made already.
+            When something is chosen of a field that is made already, or the times of a file.
         """
         choices = {name: value for name, value in vars(self).items() if value is not None}
+        if isinstance(mesh, (str, Path)):
+            if "times" in choices:
+                msg = f"times is given, and {str(mesh)!r} has its own; leave it out"
+                raise TypeError(msg)
+            return FlowField.from_file(mesh, **choices)
         if not isinstance(mesh, FlowField):
             return FlowField.from_pyvista(mesh, **choices)
         if choices:

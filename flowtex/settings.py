@@ -28,7 +28,7 @@ GROUPS: dict[str, tuple[str, ...]] = {
     "": ("lod", "noise", "samples", "contrast"),
     "Texture": ("kernel", "two_sided", "grain", "fixed_grain", "spacing", "strength", "show_level"),
     "Noise": ("seed", "tiles", "noise_correction", "resolution"),
-    "Motion": ("motion", "speed", "speed_in", "period", "parameter"),
+    "Motion": ("motion", "speed", "speed_in", "period", "lines", "parameter"),
 }
 #: Settings that make a difference only where one of these others has, or has not, a value.
 _NEEDS_TEXTURE: Condition = ("noise", "!=", "procedural")
@@ -202,7 +202,7 @@ class Settings:
     two_sided: bool = _row(
         default=True,
         affects="uniform",
-        text="Follow steady flow forward as well as backward from each point.",
+        text="Follow the flow forward as well as backward from each point.",
     )
     lod: bool = _row(
         default=True,
@@ -281,10 +281,16 @@ class Settings:
         affects="uniform",
         text="Colour by the level of detail: one hue for each doubling of the grain.",
     )
+    lines: str = _row(
+        default="auto",
+        affects="trace",
+        text="What a flow that varies in time is drawn along; auto chooses from its time steps.",
+        choices=("auto", "pathlines", "streamlines"),
+    )
     parameter: str = _row(
         default="arclength",
         affects="trace",
-        text="What the lag along a steady path measures: length, or the field's own time.",
+        text="What the lag along a streamline measures: length, or the field's own time.",
         choices=("arclength", "time"),
     )
 

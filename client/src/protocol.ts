@@ -110,6 +110,7 @@ export interface Header {
     lags: number[];
     sides: number;
     unit: number;
+    /** Typical speed where there are several steps, by which the grains change in time. */
     pace: number;
     /** Lengths of a typical cell, and of the longest in which the flow turns. */
     cell: number;

@@ -27,6 +27,7 @@ from flowtex.field.validation import (
     as_numbers,
     finite_nodes,
     node_faults,
+    node_positions,
     range_faults,
     scalar_steps,
     shape_faults,
@@ -101,7 +102,9 @@ class FlowField:
         Parameters
         ----------
         points
-            Node positions, (J, I, 2) or (J, I, 3), in any unit of length.
+            Node positions, (J, I, 2) or (J, I, 3), in any unit of length. Or a tuple of
+            coordinates: ``(x, y)`` of a rectilinear grid, (I,) and (J,), or two or three arrays
+            (J, I).
         velocity
             Velocity at the nodes, (J, I, 2 or 3), or (T, J, I, 2 or 3) for a field that varies
             in time, in units of length per unit of time. NaN and masked entries blank a node.
@@ -143,7 +146,7 @@ class FlowField:
         -----
         The arrays are copied to float64 and never changed.
         """
-        p, masked_points = as_numbers("points", points)
+        p, masked_points = as_numbers("points", node_positions(points))
         v, masked_velocity = as_numbers("velocity", velocity)
         if scalars is not None and not isinstance(scalars, Mapping):
             msg = f"scalars is a {type(scalars).__name__}; expected a mapping of arrays by name"
@@ -359,7 +362,9 @@ class FlowField:
         step = self.step_number(step)
         data = {k: s[step : step + 1] if len(s) > 1 else s for k, s in self.scalars.items()}
         at = slice(step, step + 1)
-        return replace(self, velocity=self.velocity[at], times=self.times[at], scalars=data)
+        one = replace(self, velocity=self.velocity[at], times=self.times[at], scalars=data)
+        one.__dict__["surface"] = self.surface  # the same that the property would make again
+        return one
 
     def step_number(self, step: int) -> int:
         """Return the number of a time step from 0, where negative ones count from the end.

@@ -23,6 +23,7 @@ __all__ = [
     "finite_nodes",
     "largest",
     "node_faults",
+    "node_positions",
     "range_faults",
     "scalar_steps",
     "shape_faults",
@@ -36,6 +37,26 @@ LINE_WIDTH = 1e-7
 LENGTHS, MAGNITUDES = (1e-30, 1e30), (1e-100, 1e100)
 #: Lines of nodes along each axis that are looked at first.
 FEW_LINES = 100
+
+
+def node_positions(points: Any) -> Any:
+    """Return positions (J, I, 2 or 3) of the arrays x and y, and z, of a tuple; others as they are.
+
+    Two that are (I,) and (J,) are those of a rectilinear grid.
+    """
+    several = isinstance(points, (tuple, list)) and len(points) in (2, 3)
+    sizes = [np.ndim(part) for part in points] if several else []
+    if sizes == [1, 1]:
+        points = np.meshgrid(*points)
+    elif not isinstance(points, tuple) or set(sizes) != {2}:
+        return points
+    shapes = [np.shape(part) for part in points]
+    if len(set(shapes)) > 1:
+        msg = (
+            f"points are arrays of shapes {', '.join(map(str, shapes))}; expected one shape (J, I)"
+        )
+        raise FieldError(msg)
+    return np.ma.stack(points, axis=-1) if any(map(np.ma.isMA, points)) else np.stack(points, -1)
 
 
 def as_numbers(name: str, values: ArrayLike) -> tuple[Floats, Any]:

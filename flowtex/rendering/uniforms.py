@@ -207,7 +207,7 @@ def _motion(textures: TextureSet, settings: Settings, view: ViewState) -> dict[s
     store = textures.store
     if store.steps > 1:
         # The time in which the flow crosses the surface.
-        period = textures.geometry.extent / textures.pace
+        period = textures.geometry.extent / textures.typical_speed
         # Whole turns count for nothing, and single precision holds no more.
         turns = (view.time - float(store.field.times[0])) / period % MOST_TURNS
         travel = textures.geometry.extent

@@ -112,15 +112,16 @@ def compose(
     landing: Indices,
     run: Map,
     integrate: Integrate,
+    direction: float = -1.0,
 ) -> None:
     """Fill the long slices of one direction in place.
 
     The slices of the first ``known`` of all lags (M,) are filled, and ``reach`` is infinite for
     paths that did not end within these. ``landing`` comes from :func:`landings`, ``run`` maps a
     function over blocks of paths, and ``integrate`` follows paths right beside a pole, of which
-    more are marked.
+    more are marked. Direction -1 is backward, 1 forward.
     """
-    lookup = _SliceLookup(field, lags, unit, side, landing)
+    lookup = _SliceLookup(field, lags, unit, side, landing * int(direction))
     beside = None if field.surface.poles is None else integrate
     for m in range(known + 1, len(lags) + 1):
         lookup.judge(m - 1, always=m - 1 == known)
@@ -133,7 +134,7 @@ class _Piece(NamedTuple):
     moved: Floats32  #: displacement, (2, n)
     covered: Floats32  #: lag that they cover
     ends: Floats32 | None  #: lag at which they end, beyond ``covered`` where they do not
-    steps: Indices | int  #: time steps that they go back
+    steps: Indices | int  #: time steps that they go on, negative backward
 
 
 class _SliceLookup:
@@ -242,6 +243,10 @@ class _SliceLookup:
         self._mirror(moved, position)
         return moved
 
+    def clipped(self, step: Indices) -> Indices:
+        """Return the first or the last step for those beyond, where the flow stays as it is."""
+        return np.clip(step, 0, len(self._trust) - 1)
+
     def _base(self, step: Indices | int) -> Indices | int:
         """Return the number, among those of all steps, of the first node of a step."""
         return step * self.grid.size if self.unsteady else 0
@@ -295,7 +300,7 @@ class _Doubling:
         self._integrate = integrate
         self._stuck: list[Indices] = []
         self._suspects: list[tuple[AnyArray, ...]] = []
-        self._step = np.maximum(np.arange(count) // nodes - lookup.landing[m - 1], 0)
+        self._step = lookup.clipped(np.arange(count) // nodes + lookup.landing[m - 1])
 
     def run(self, run: Map) -> None:
         """Follow all paths to their end, piece by piece."""
@@ -333,7 +338,7 @@ class _Doubling:
         left -= piece.covered
         self._left[some] = left
         if lookup.unsteady:
-            self._step[some] = np.maximum(self._step[some] - piece.steps, 0)
+            self._step[some] = lookup.clipped(self._step[some] + piece.steps)
         return _numbers(some, np.flatnonzero(left > LAG_ROUNDING * whole))
 
     def _where(self, some: Some) -> tuple[Some, Floats32]:

@@ -57,8 +57,8 @@ def trace(
 
     Paper section 3.1: from every node a particle is followed backward from the destination time
     Td, and its positions at the release times Td - lag make the trace slices. A steady field is
-    followed along its streamlines, forward too; a time-varying one along pathlines, with
-    velocities interpolated linearly in time and held constant before the first step.
+    followed along its streamlines, a time-varying one along pathlines, with velocities
+    interpolated linearly in time and held constant before the first step and after the last.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ def trace(
     parameter
         ``"arclength"`` or ``"time"``; a time-varying field is always followed by time.
     two_sided
-        Whether a steady field is followed forward too. One without a sign always is.
+        Whether paths are followed forward too. In a field without a sign they always are.
     tolerance
         Error allowed in one step of the integration, in cells.
     steps
@@ -121,7 +121,7 @@ def trace(
         msg = f"tolerance is {tolerance!r}; expected a positive number of cells, such as 1e-3"
         raise ValueError(msg)
     step_numbers = _step_numbers(field, steps)
-    directions = (-1.0, 1.0) if field.steady and two_sided else (-1.0,)
+    directions = (-1.0, 1.0) if two_sided else (-1.0,)
     samplers = _samplers(field, step_numbers, parameter)
     composed = lags is None if compose is None else compose
     whole = field.steady or step_numbers == list(range(len(field.times)))
@@ -302,6 +302,7 @@ class _Tracing:
                         landing,
                         pool.map,
                         partial(self._piece, direction),
+                        direction,
                     )
         return sides
 

@@ -220,31 +220,31 @@ for(let timer of this.timers)clearTimeout(timer);this.timers.clear()}};var SLIDE
 var USES={motion:hasStreaming,speed:hasStreaming,speed_in:hasStreaming,period:hasStreaming,grain:({paper})=>!paper,fixed_grain:({
 paper})=>!paper,two_sided:({slices})=>slices.sides===2,seed:({paper},rebuild)=>!paper||rebuild&&!paper.picture,resolution:({
 paper},rebuild)=>!paper||rebuild,tiles:({paper,settings},rebuild)=>!!paper?.picture&&(settings.noise==="image"||rebuild),
-noise_correction:({paper},rebuild)=>!!paper&&rebuild,parameter:({slices},rebuild)=>slices.steps===1&&rebuild,lod:()=>!1,
-show_level:()=>!1};function isUseful({name,affects},header,rebuild){return USES[name]?.(header,rebuild)??(affects==="uni\
-form"||rebuild)}var Controls=class{element=dom("div",{class:"settings glass",hidden:"","aria-label":"Settings"});viewer;controls=new Map;constructor(viewer){
-this.viewer=viewer}build(header){this.controls.clear(),this.element.replaceChildren();let rebuild=this.viewer.options.rebuild??
-!1;for(let row of header.table.filter(each=>isUseful(each,header,rebuild))){let control=this.control(row);this.controls.
-set(row.name,control);let{input,output}=control,name=dom("span",{class:"name"},[row.label]),attributes={class:"row",title:row.
-text,"data-setting":row.name},line=dom("label",attributes,[name,...output?[output]:[],input]);line.classList.toggle("ran\
-ged",output!==void 0),this.element.append(line)}}update(){let{settings}=this.viewer;for(let[name,{show}]of this.controls)
-name in settings&&show(settings[name])}control(row){return row.control==="checkbox"?this.switch(row):row.control==="choi\
-ce"?this.menu(row):row.control==="number"?this.numberField(row):this.slider(row)}switch({name}){let input=dom("input",{type:"\
-checkbox",role:"switch"});return this.viewer.lifetime.listen(input,"change",()=>this.viewer.choose(name,input.checked)),
-{input,show:value=>{input.checked=!!value}}}menu({name,choices}){let options=choices.map(choice=>dom("option",{value:choice},
-[choice])),input=dom("select",{},options);return this.viewer.lifetime.listen(input,"change",()=>this.viewer.choose(name,
-input.value)),{input,show:value=>{input.value=String(value)}}}numberField({name,whole,low,high}){let[min,max]=[low??0,high??
-1],step=whole?"1":"any",input=dom("input",{type:"number",min:String(min),max:String(max),step});return this.viewer.lifetime.
-listen(input,"change",()=>{let{valueAsNumber:value}=input;Number.isFinite(value)&&this.viewer.choose(name,clamp(value,min,
-max))}),{input,show:value=>{input.value=String(value)}}}slider(row){let{toSlider,fromSlider,min,max,step}=scaleOf(row),range={
-min:String(min),max:String(max),step:String(step)},input=dom("input",{type:"range",...range}),output=dom("output"),value=()=>fromSlider(
-Number(input.value)),write=shown=>{output.textContent=numberText(Number(shown))};this.viewer.lifetime.listen(input,"inpu\
-t",()=>write(value()));let kind=row.affects==="uniform"?"input":"change";return this.viewer.lifetime.listen(input,kind,()=>this.
-viewer.choose(row.name,value())),{input,output,show:shown=>{input.value=String(toSlider(Number(shown))),write(shown)}}}};
-function scaleOf(row){let{low,high,whole,logarithmic}=row,[least,most]=[low??0,high??1],toSlider=value=>logarithmic?Math.
-log2(value):value,fromSlider=place=>{let value=logarithmic?2**place:place;return whole?Math.round(value):Number(clamp(value,
-least,most).toPrecision(3))},[min,max]=[least,most].map(toSlider),step=whole&&!logarithmic?1:(max-min)/SLIDER_STOPS;return{
-toSlider,fromSlider,min,max,step}}var CAMERA_KEYS={ArrowLeft:"left",ArrowRight:"right",ArrowUp:"up",ArrowDown:"down","+":"closer","=":"closer","-":"farthe\
+noise_correction:({paper},rebuild)=>!!paper&&rebuild,lines:({slices},rebuild)=>slices.steps>1&&rebuild,parameter:({slices,
+settings},rebuild)=>rebuild&&(slices.steps===1||settings.lines!=="pathlines"),lod:()=>!1,show_level:()=>!1};function isUseful({
+name,affects},header,rebuild){return USES[name]?.(header,rebuild)??(affects==="uniform"||rebuild)}var Controls=class{element=dom(
+"div",{class:"settings glass",hidden:"","aria-label":"Settings"});viewer;controls=new Map;constructor(viewer){this.viewer=
+viewer}build(header){this.controls.clear(),this.element.replaceChildren();let rebuild=this.viewer.options.rebuild??!1;for(let row of header.
+table.filter(each=>isUseful(each,header,rebuild))){let control=this.control(row);this.controls.set(row.name,control);let{
+input,output}=control,name=dom("span",{class:"name"},[row.label]),attributes={class:"row",title:row.text,"data-setting":row.
+name},line=dom("label",attributes,[name,...output?[output]:[],input]);line.classList.toggle("ranged",output!==void 0),this.
+element.append(line)}}update(){let{settings}=this.viewer;for(let[name,{show}]of this.controls)name in settings&&show(settings[name])}control(row){
+return row.control==="checkbox"?this.switch(row):row.control==="choice"?this.menu(row):row.control==="number"?this.numberField(
+row):this.slider(row)}switch({name}){let input=dom("input",{type:"checkbox",role:"switch"});return this.viewer.lifetime.
+listen(input,"change",()=>this.viewer.choose(name,input.checked)),{input,show:value=>{input.checked=!!value}}}menu({name,
+choices}){let options=choices.map(choice=>dom("option",{value:choice},[choice])),input=dom("select",{},options);return this.
+viewer.lifetime.listen(input,"change",()=>this.viewer.choose(name,input.value)),{input,show:value=>{input.value=String(value)}}}numberField({
+name,whole,low,high}){let[min,max]=[low??0,high??1],step=whole?"1":"any",input=dom("input",{type:"number",min:String(min),
+max:String(max),step});return this.viewer.lifetime.listen(input,"change",()=>{let{valueAsNumber:value}=input;Number.isFinite(
+value)&&this.viewer.choose(name,clamp(value,min,max))}),{input,show:value=>{input.value=String(value)}}}slider(row){let{
+toSlider,fromSlider,min,max,step}=scaleOf(row),range={min:String(min),max:String(max),step:String(step)},input=dom("inpu\
+t",{type:"range",...range}),output=dom("output"),value=()=>fromSlider(Number(input.value)),write=shown=>{output.textContent=
+numberText(Number(shown))};this.viewer.lifetime.listen(input,"input",()=>write(value()));let kind=row.affects==="uniform"?
+"input":"change";return this.viewer.lifetime.listen(input,kind,()=>this.viewer.choose(row.name,value())),{input,output,show:shown=>{
+input.value=String(toSlider(Number(shown))),write(shown)}}}};function scaleOf(row){let{low,high,whole,logarithmic}=row,[
+least,most]=[low??0,high??1],toSlider=value=>logarithmic?Math.log2(value):value,fromSlider=place=>{let value=logarithmic?
+2**place:place;return whole?Math.round(value):Number(clamp(value,least,most).toPrecision(3))},[min,max]=[least,most].map(
+toSlider),step=whole&&!logarithmic?1:(max-min)/SLIDER_STOPS;return{toSlider,fromSlider,min,max,step}}var CAMERA_KEYS={ArrowLeft:"left",ArrowRight:"right",ArrowUp:"up",ArrowDown:"down","+":"closer","=":"closer","-":"farthe\
 r",_:"farther",0:"whole"},PLAY_KEY=" ",FULLSCREEN_KEY="f",CLOSE_KEY="Escape",DIRECTIONS={left:[-1,0],right:[1,0],up:[0,1],
 down:[0,-1]};function hasModifier(event){return event.ctrlKey||event.metaKey||event.altKey}function toggleFullscreen(element){
 document.fullscreenElement?document.exitFullscreen():element.requestFullscreen?.().catch(()=>{})}var STOPS=33,COLOURS=256,Legend=class{element=dom("div",{class:"legend glass",hidden:""});mark=dom("i",{hidden:""});show(header,settings,map){

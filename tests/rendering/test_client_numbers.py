@@ -50,6 +50,7 @@ VIEWS: dict[str, tuple[Any, Any, float, dict[str, Any]]] = {
     "zoom 1e5": (gyre, straight(1e5), 1.0, {}),
     "curved": (torus, ASIDE, 1.0, {}),
     "between two steps": (swinging, straight(1, (0, 0)), 1.0, {}),
+    "streamlines": (swinging, straight(1, (0, 0)), 1.0, {"lines": "streamlines"}),
     "image": (gyre, WHOLE, 1.0, {"noise": "image", "tiles": 3}),
     "streaming": (gyre, WHOLE, 1.0, {"motion": "uniform", "period": 3.0}),
     "without a sign": (lines, WHOLE, 1.0, {"kernel": "ramp", "two_sided": False}),
@@ -65,7 +66,8 @@ def uniforms_of(name: str) -> dict[str, Any]:
     make, camera, density, options = VIEWS[name]
     settings = Settings(**{"samples": 11, **options})
     image = as_picture(IMAGE) if settings.noise == "image" else None
-    textures = TextureSet.build(SliceStore(make()), settings, image)
+    store = SliceStore(make(), lines=options.get("lines", "pathlines"))
+    textures = TextureSet.build(store, settings, image)
     view = ViewState(
         focus=np.asarray(camera.focal_point, dtype=float),
         anchor=np.array([0.1, 0.2, 0.0]),

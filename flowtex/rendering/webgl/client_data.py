@@ -281,7 +281,7 @@ class ClientData:
             "lags": _numbers(textures.lags),
             "sides": int(textures.sides),
             "unit": float(textures.unit),
-            "pace": float(textures.pace),
+            "pace": float(textures.typical_speed if self.steps > 1 else textures.pace),
             "cell": float(textures.cell),
             "critical": float(textures.critical_cell),
             "steps": int(self.steps),
