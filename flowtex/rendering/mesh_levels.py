@@ -26,8 +26,9 @@ __all__ = ["MAX_ERROR_PIXELS", "MeshLevels", "Region", "join", "mesh_limits"]
 
 #: Distance on the screen between a node and the triangle that stands for it.
 MAX_ERROR_PIXELS = 0.05
-#: What counts of an error of the outline, a quarter of a pixel; and of one along the surface: noise
-#: is looked up where a point lies, and only paths belong to a place that is off by this error.
+#: What counts of an error of the outline, a quarter of a pixel across it; and of one along the
+#: surface, half a pixel: noise is looked up where a point lies, and only paths belong to a
+#: place that is off by this error.
 OUTLINE_SHARE, SLIDE_SHARE = 0.2, 0.1
 #: Error of a colour, as a share of the range of the colour map.
 MAX_COLOUR_ERROR = 1 / 100
@@ -62,6 +63,9 @@ class MeshLevels:
     periodic
         Whether the first line of nodes lies where the last one does, along j and i.
 
+    slide
+        What counts of an error along the surface, from 0 to 1.
+
     Attributes
     ----------
     error
@@ -74,14 +78,19 @@ class MeshLevels:
     """
 
     def __init__(
-        self, points: Floats, cells: Bools, periodic: tuple[bool, bool] = (False, False)
+        self,
+        points: Floats,
+        cells: Bools,
+        periodic: tuple[bool, bool] = (False, False),
+        slide: float = SLIDE_SHARE,
     ) -> None:
         rows, columns = points.shape[:2]
+        self._slide = slide
         self._shape = (rows, columns)
         self._cells, self._periodic = cells, periodic
         self._rows, self._columns = (_Blocks.of(n) for n in self._shape)
         points = np.where(np.isfinite(points), points, 0.0)
-        self.error = self._errors(points, _normals(points))
+        self.error = self._errors(points, _directions(points))
         self.error[self._mixed_levels()] = np.inf
         self.set_colours()
         self.blocks = block_places(points)
@@ -90,7 +99,9 @@ class MeshLevels:
     def of(cls, textures: TextureSet) -> MeshLevels:
         """Return the levels of what a texture set draws."""
         geometry = textures.geometry
-        return cls(geometry.points, geometry.cells, geometry.periodic)
+        # A noise that lies on the nodes moves with them.
+        slide = SLIDE_SHARE if textures.paper is None else 1.0
+        return cls(geometry.points, geometry.cells, geometry.periodic, slide)
 
     def set_colours(self, *colours: Floats) -> None:
         """Count the errors of values that are interpolated between the nodes as well.
@@ -193,12 +204,12 @@ class MeshLevels:
         triangles: Indices = flat[distinct & (flat[:, 0] != flat[:, 2])]
         return triangles
 
-    def _errors(self, values: Floats, normals: Floats | None = None) -> Floats:
+    def _errors(self, values: Floats, directions: Floats | None = None) -> Floats:
         """Greatest error of the values (J, I, C) in each block at each level, (L, ., .).
 
         A level leaves out every second line of the one before. Its error is at most that one's
-        and what the lines that are left out deviate from their neighbours. Where there are normals,
-        most counts what is along them.
+        and what the lines that are left out deviate from their neighbours. Where there are
+        directions, most counts what is along the normals, and across the outline.
         """
         count = BLOCK_CELLS.bit_length()
         errors = np.zeros((count, len(self._rows.first), len(self._columns.first)))
@@ -207,34 +218,40 @@ class MeshLevels:
             step = 1 << level
             next_rows, next_columns = (_lines(n, step) for n in self._shape)
             here, kept = np.ix_(rows, columns), values[np.ix_(next_rows, columns)]
-            along_rows = self._size(_deviation(values[here], rows, next_rows), normals, here)
+            along_rows = self._size(_deviation(values[here], rows, next_rows), directions, here)
             here = np.ix_(next_rows, columns)
             off = _deviation(kept.swapaxes(0, 1), columns, next_columns).swapaxes(0, 1)
-            along_columns = self._size(off, normals, here)
+            along_columns = self._size(off, directions, here)
             twist = kept[:, np.searchsorted(columns, next_columns)]
             twist = twist[1:, 1:] + twist[:-1, :-1] - twist[1:, :-1] - twist[:-1, 1:]
             here = np.ix_(next_rows[:-1], next_columns[:-1])
             errors[level] = errors[level - 1]
             errors[level] += self._greatest(along_rows, rows, columns)
             errors[level] += self._greatest(along_columns, next_rows, columns)
-            size = self._size(twist / 4, normals, here, border=False)
+            size = self._size(twist / 4, directions, here, border=False)
             errors[level] += self._greatest(size, next_rows[:-1], next_columns[:-1])
             rows, columns = next_rows, next_columns
         return errors
 
-    @staticmethod
     def _size(
-        off: Floats, normals: Floats | None, at: tuple[Indices, ...], *, border: bool = True
+        self,
+        off: Floats,
+        directions: Floats | None,
+        at: tuple[Indices, ...],
+        *,
+        border: bool = True,
     ) -> Floats:
         """Size of errors (J, I, C) at some nodes, where those along the surface count less."""
         size: Floats = np.linalg.norm(off, axis=-1)
-        if normals is None:
+        if directions is None:
             return size
-        across = np.abs(np.sum(off * normals[at], axis=-1))
-        less: Floats = np.maximum(across, SLIDE_SHARE * size)
+        normal, *lines = (np.sum(off * direction[at], axis=-1) for direction in directions)
+        less: Floats = np.maximum(np.abs(normal), self._slide * size)
         if border:
-            for side in ((0,), (-1,), (slice(None), 0), (slice(None), -1)):
-                less[side] = np.maximum(less[side], OUTLINE_SHARE * size[side])
+            along_i, along_j = (np.sqrt(np.maximum(size**2 - line**2, 0)) for line in lines)
+            for side in (0, -1):
+                less[side] = np.maximum(less[side], OUTLINE_SHARE * along_i[side])
+                less[:, side] = np.maximum(less[:, side], OUTLINE_SHARE * along_j[:, side])
         return less
 
     def _greatest(self, values: Floats, rows: Indices, columns: Indices) -> Floats:
@@ -281,15 +298,19 @@ def mesh_limits() -> dict[str, float]:
     }
 
 
-def _normals(points: Floats) -> Floats:
-    """Return unit normals at the nodes, (J, I, 3); zero where there is none."""
+def _directions(points: Floats) -> Floats:
+    """Return unit normals at the nodes, and the directions of their lines along i and j.
+
+    The shape is (3, J, I, 3), and they are zero where there is none.
+    """
     if min(points.shape[:2]) < 2:
-        return np.zeros_like(points)
+        return np.zeros((3, *points.shape))
     # Only directions count, so no number is too large to be squared.
     points = points / max(float(np.abs(points).max()), np.finfo(float).tiny)
-    normals = np.cross(np.gradient(points, axis=1), np.gradient(points, axis=0))
-    length = np.linalg.norm(normals, axis=-1, keepdims=True)
-    return np.asarray(normals / np.where(length > 0, length, 1.0))
+    along_i, along_j = np.gradient(points, axis=1), np.gradient(points, axis=0)
+    found = np.stack([np.cross(along_i, along_j), along_i, along_j])
+    length = np.linalg.norm(found, axis=-1, keepdims=True)
+    return np.asarray(found / np.where(length > 0, length, 1.0))
 
 
 def _deviation(values: Floats, lines: Indices, kept: Indices) -> Floats:
