@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import replace
 from typing import Any
 
@@ -12,15 +13,15 @@ from flowtex.rendering.webgl import ClientData, Colours
 from flowtex.scene import Scene, share_field, steps_of
 from flowtex.settings import TABLE
 
-__all__ = ["WebView", "even_steps", "web_views"]
+__all__ = ["WebView", "colours_of", "even_steps", "web_views"]
 
 
 class WebView:
     """A scene for a client in a browser.
 
     Of the time steps so many are handed over, evenly chosen with the first and the last among
-    them; paths are traced through all of them all the same. ``own_settings`` are those of this
-    view alone, where it stands beside another.
+    them; paths are traced through all of them all the same. ``own`` names the settings and what of
+    the appearance are this view's alone, where it stands beside another.
 
     Raises
     ------
@@ -34,19 +35,13 @@ class WebView:
         *,
         background: Any = "white",
         steps: int | None = None,
-        own_settings: tuple[str, ...] = (),
+        own: Collection[str] = (),
     ) -> None:
-        appearance = scene.appearance
-        self.scene, self.own_settings = scene, own_settings
+        self.scene = scene
+        self.own_settings = tuple(name for name in own if name in TABLE)
+        self.own_appearance = tuple(name for name in own if name not in TABLE)
         self._times = even_steps(len(scene.field.times), steps)
-        self._colours = Colours(
-            table=colour_table(appearance.cmap),
-            plain=rgb(appearance.color),
-            background=rgb(background),
-            lighting=scene.is_lit,
-            opacity=float(appearance.opacity),
-            bar=appearance.has_bar,
-        )
+        self._background = rgb(background)
 
     @property
     def field(self) -> FlowField:
@@ -62,16 +57,45 @@ class WebView:
         return self._data(self.scene.coarsened(nodes))
 
     def _data(self, scene: Scene) -> ClientData:
-        colours, name = self._colours, scene.scalar_name
-        if name is not None:
-            low, high = scene.scalar_limits
-            values = steps_of(scene.field, name)
-            colours = replace(colours, name=name, values=values, low=low, high=high)
-        return ClientData(scene.textures, colours, self._times)
+        textures = scene.textures
+        colours = colours_of(self.scene, textures.geometry.field, self._background)
+        return ClientData(textures, colours, self._times)
+
+    def recoloured(self, data: ClientData) -> ClientData:
+        """Return what the client has been handed with the colours of this moment."""
+        return data.recoloured(colours_of(self.scene, data.field, self._background))
 
     def close(self) -> None:
         """Follow the settings no longer."""
         self.scene.close()
+
+
+def colours_of(scene: Scene, field: FlowField, background: tuple[float, float, float]) -> Colours:
+    """Return the colours of a scene on its field, or on a coarser form of it."""
+    look, name = scene.appearance, scene.scalar_name
+    low, high = scene.scalar_limits
+    return Colours(
+        name=name,
+        number=0 if name is None else scene.scalar_names.index(name),
+        choices=choices_of(scene),
+        cmap=look.cmap if isinstance(look.cmap, str) else "",
+        values=None if name is None else steps_of(field, name),
+        low=low,
+        high=high,
+        log_scale=look.log_scale,
+        table=colour_table(look.cmap),
+        plain=rgb(look.color),
+        background=background,
+        lighting=scene.is_lit,
+        opacity=float(look.opacity) if look.visible else 0.0,
+        bar=look.has_bar,
+    )
+
+
+def choices_of(scene: Scene) -> tuple[dict[str, Any], ...]:
+    """Return what can be coloured by, with the range that each has by itself."""
+    ranges = ((name, *scene.scalar_range(name)) for name in scene.scalar_names)
+    return tuple({"name": name, "low": low, "high": high} for name, low, high in ranges)
 
 
 def web_views(mesh: Any, options: Options, *, steps: int | None = None) -> tuple[WebView, ...]:
@@ -86,9 +110,8 @@ def web_views(mesh: Any, options: Options, *, steps: int | None = None) -> tuple
     first = Scene.from_options(field, chosen)
     views = [WebView(first, background=background, steps=steps)]
     if changes is not None:
-        own = tuple(name for name in changes if name in TABLE)
         second = first.beside(changes, chosen)
-        views.append(WebView(second, background=background, steps=steps, own_settings=own))
+        views.append(WebView(second, background=background, steps=steps, own=changes))
     return tuple(views)
 
 

@@ -10,16 +10,16 @@ from __future__ import annotations
 import asyncio
 from typing import Any
 
-from flowtex._util.colours import colour_table, rgb
+from flowtex._util.colours import rgb
 from flowtex.app.controllers.context import Context, Controller
 from flowtex.app.server.files import Content
 from flowtex.app.server.validation import number
 from flowtex.camera import Camera
-from flowtex.rendering.webgl import ClientData, Colours
+from flowtex.rendering.webgl import ClientData
 from flowtex.rendering.webgl.protocol import parts_file
-from flowtex.scene import steps_of
 from flowtex.settings import TABLE
 from flowtex.web.assets import asset
+from flowtex.web.view import colours_of
 
 __all__ = ["RENDERERS", "BrowserRendering"]
 
@@ -124,9 +124,7 @@ class BrowserRendering(Controller):
             *built,
             *baked,
             self.viewport.field,
-            self.viewport.colour,
-            self.viewport.cmap,
-            self.viewport.colour_range,
+            self.area.scene.appearance,
             self.viewport.background,
         )
 
@@ -134,7 +132,7 @@ class BrowserRendering(Controller):
         """Hand a scene over, in place of an earlier one."""
         self._withdraw()
         self._appearance = self._present_appearance()
-        self._scene = scene = ClientData(self.viewport.handle.scene.textures, self._colours())
+        self._scene = scene = self._data()
         self._generation += 1
         self._camera = self.viewport.camera
         self.stream.paused = True
@@ -181,19 +179,10 @@ class BrowserRendering(Controller):
             for step in range(self._scene.steps):
                 self._routes.withdraw(f"step-{step}-{self._generation}")
 
-    def _colours(self) -> Colours:
-        scene = self.viewport
-        low, high = scene.colour_range
-        return Colours(
-            name=scene.colour or None,
-            values=steps_of(scene.field, scene.colour) if scene.colour else None,
-            low=low,
-            high=high,
-            table=colour_table(scene.cmap),
-            plain=rgb(scene.plain),
-            background=rgb(scene.background),
-            lighting=not scene.flat if scene.lighting is None else scene.lighting,
-        )
+    def _data(self) -> ClientData:
+        scene = self.area.scene
+        textures, background = scene.textures, rgb(self.viewport.background)
+        return ClientData(textures, colours_of(scene, textures.geometry.field, background))
 
     def close(self) -> None:
         """End what goes on."""

@@ -9,14 +9,17 @@ Positions and scalars keep single precision.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, replace
+from dataclasses import field as data_field
 from functools import cache, cached_property
 from typing import Any
 
 import numpy as np
 
 from flowtex._util.array_types import Bytes, Floats, Floats32
+from flowtex._util.colours import CMAPS, colour_shares, colour_table
 from flowtex.camera import CAMERA_LIMITS, Camera
+from flowtex.field import FlowField
 from flowtex.field.interpolation import steps_around
 from flowtex.rendering.mesh_levels import MeshLevels, mesh_limits
 from flowtex.rendering.shaders import shader_text
@@ -48,10 +51,19 @@ class Colours:
     ----------
     name, unit
         What it is coloured by, for the legend; ``None`` for a plain surface.
+    number
+        Number of the scalar among those of the field.
+    choices
+        What a person may choose to colour by, each with name and automatic range; none where the
+        client cannot be handed others.
+    cmap
+        Name of the colour map; empty for one that has none.
     values
         Nodal values, (T or 1, J, I).
     low, high
         Values at the ends of the colour map.
+    log_scale
+        Whether the map goes by the logarithm.
     table
         Colour map, (256, 4) uint8.
     plain, background
@@ -66,15 +78,23 @@ class Colours:
 
     name: str | None = None
     unit: str = ""
+    number: int = 0
+    choices: tuple[Mapping[str, Any], ...] = ()
+    cmap: str = ""
     values: Floats | None = None
     low: float = 0.0
     high: float = 1.0
+    log_scale: bool = False
     table: Bytes | None = None
     plain: tuple[float, float, float] = (0.63, 0.63, 0.63)
     background: tuple[float, float, float] = (1.0, 1.0, 1.0)
     lighting: bool = False
     opacity: float = 1.0
     bar: bool = True
+
+    def shares(self, values: Floats) -> Floats:
+        """Places of values on the colour map, from 0 to 1."""
+        return colour_shares(values, self.low, self.high, log_scale=self.log_scale)
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,13 +106,25 @@ class ClientData:
     """
 
     textures: TextureSet
-    colours: Colours = field(default_factory=Colours)
+    colours: Colours = data_field(default_factory=Colours)
     chosen: tuple[int, ...] = ()
 
     @cached_property
     def packing(self) -> Packing:
         """The slices, packed."""
         return packing_of(self.textures)
+
+    def recoloured(self, colours: Colours) -> ClientData:
+        """Return the same in other colours."""
+        other = replace(self, colours=colours)
+        if "packing" in vars(self):
+            vars(other)["packing"] = self.packing
+        return other
+
+    @property
+    def field(self) -> FlowField:
+        """The flow that is drawn."""
+        return self.textures.geometry.field
 
     @property
     def steps(self) -> int:
@@ -145,8 +177,13 @@ class ClientData:
                 "name": colours.name,
                 "low": float(colours.low),
                 "high": float(colours.high),
+                "log": bool(colours.log_scale),
                 "steps": 1 if self._values is None else len(self._values),
                 "unit": colours.unit,
+                "number": colours.number,
+                "choices": list(map(dict, colours.choices)),
+                "cmap": colours.cmap,
+                "maps": list(CMAPS),
                 "bar": bool(colours.bar),
             },
             "colour": _numbers(colours.plain),
@@ -166,6 +203,8 @@ class ClientData:
         parts: Parts = {}
         if colours.name is not None and colours.table is not None:
             parts["cmap"] = np.ascontiguousarray(colours.table, np.uint8)
+        if colours.choices:
+            parts["maps"] = np.stack([colour_table(name)[:, :3] for name in CMAPS])
         if not geometry.field.surface.cells.all():
             parts["cells"] = geometry.field.surface.cells.astype(np.uint8)
         if not geometry.planar:
@@ -193,7 +232,8 @@ class ClientData:
         values = self._values
         parts: Parts = {}
         if values is not None and step < len(values):
-            parts[f"scalars/{step}"] = np.ascontiguousarray(values[step], "<f4")
+            name = scalar_part(step, self.colours.number)
+            parts[name] = np.ascontiguousarray(values[step], "<f4")
         packed = self.packing.step(self.source(step))
         parts[f"extra/{step}"] = packed.extra
         parts[f"slices/{step}"] = packed.slopes
@@ -230,9 +270,8 @@ class ClientData:
         """Return what the client chooses its triangles by, of each tile."""
         field = self.textures.geometry.field
         levels = MeshLevels(field.surface.points, field.surface.cells, field.periodic)
-        low, high = self.colours.low, self.colours.high
-        if self._values is not None and high > low:
-            levels.set_colours(*(np.clip((v - low) / (high - low), 0, 1) for v in self._values))
+        if self._values is not None:
+            levels.set_colours(*map(self.colours.shares, self._values))
         return levels.records.astype("<f4")
 
     def _geometry(self) -> dict[str, Any]:
@@ -265,6 +304,11 @@ class ClientData:
             "times": _numbers(self.times),
             "timeUnit": textures.geometry.field.time_unit,
         }
+
+
+def scalar_part(step: int, number: int) -> str:
+    """Return the name of the part with the values of a scalar at a step."""
+    return f"scalars/{step}/{number}" if number else f"scalars/{step}"
 
 
 def _paper(paper: PaperTextures) -> dict[str, Any]:

@@ -55,12 +55,12 @@ def test_a_range_of_another_plane_does_not_stay(series: FlowApp) -> None:
     series.area.show(faster, keep_range=True)
     # The page comes to know the range of the plane before only now.
     series.controllers.appearance.take_range()
-    assert series.viewport.chosen_range is None
+    assert series.area.clim is None
     series.controllers.appearance.show_field()
     assert series.state.get("high") == pytest.approx(3 * 1.7, rel=0.01)
     series.state.set(high=4.0)
     series.controllers.appearance.take_range()
-    assert series.viewport.chosen_range == (series.state.get("low"), 4.0)
+    assert series.area.clim == (series.state.get("low"), 4.0)
 
 
 def test_themes_change_the_background(flat: FlowApp) -> None:
