@@ -107,6 +107,16 @@ export interface Header {
     steps: number;
     unit: string;
     bar: boolean;
+    /** Number of the scalar among those of the field, and what can be chosen in its place. */
+    number: number;
+    choices: { name: string; unit: string; low: number; high: number; steps: number }[];
+    /** Whether the map goes by the logarithm, and whether nobody has chosen its range. */
+    log: boolean;
+    auto: boolean;
+    /** Name of the map, names of those in the part "maps", and of those with a middle. */
+    cmap: string;
+    maps: string[];
+    diverging: string[];
   };
   colour: number[];
   background: number[];
@@ -123,6 +133,8 @@ export interface Header {
     anchorRange: number;
     /** Cells that a side of a path goes over, beyond which it does not follow their own velocity. */
     farCells: number;
+    /** Oklab, and the lightness that black and white are drawn to. */
+    shading: { toCones: number[]; toLab: number[]; baseDark: number; baseLight: number };
   };
   mesh: MeshLimits;
   limits: CameraLimits;
@@ -147,6 +159,13 @@ const TYPES: Record<string, new (bytes: ArrayBuffer) => Data> = {
   int8: Int8Array,
   uint8: Uint8Array,
 };
+
+/** What gives the place of a value on the colour map, from 0 to 1. */
+export function shareOf({ low, high, log }: Header["scalars"]): (value: number) => number {
+  if (!log) return (value) => (value - low) / (high - low || 1);
+  const span = Math.log(high / low) || 1;
+  return (value) => Math.log(Math.max(value, low) / low) / span;
+}
 
 /** Whether the flow has no direction along its lines. */
 export function isSignFree(header: Pick<Header, "variant">): boolean {

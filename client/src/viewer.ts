@@ -4,6 +4,7 @@
 //                       |          uniforms() of header, settings and view
 //                     Camera, Player, Panel (what is seen around the picture), Pointers
 
+import { coloursOf, recoloured, type ColourChoice } from "./colours.ts";
 import { Camera, copyOf, fitted, isSamePlace, widened, type CameraState } from "./camera.ts";
 import { FRAME_MS, sharedGraphics, type Graphics, type User } from "./context.ts";
 import { Lifetime } from "./lifetime.ts";
@@ -129,6 +130,9 @@ export class Viewer implements User {
       return;
     }
     const old = this.header;
+    if (old && old.generation !== undefined && old.generation === header.generation) {
+      return this.recolour(coloursOf(header));
+    }
     this.header = header;
     this.settings = { ...header.settings, ...header.own };
     this.player.setHeader(header);
@@ -147,6 +151,26 @@ export class Viewer implements User {
     this.change();
   }
 
+  /** Draw the same arrays in other colours, of which a part of the header tells. */
+  recolour(colours: Partial<Header>): void {
+    if (!this.header) return;
+    Object.assign(this.header, colours);
+    for (const name of ["scalars", "mesh"]) this.scene?.forget(name);
+    this.panel.showLegend();
+    this.change();
+  }
+
+  /** Colour as a person chooses, or ask the host to. */
+  chooseColours(choice: ColourChoice): void {
+    if (this.options.onColours) return this.options.onColours(choice);
+    for (const viewer of this.together) {
+      if (!viewer.header) continue;
+      const { colours, part } = recoloured(viewer.header, choice, viewer.parts);
+      if (part) viewer.setPart(part);
+      viewer.recolour(colours);
+    }
+  }
+
   setPart(part: NamedPart): void {
     const { name, digest } = part;
     this.requests.delete(stepOf(name));
@@ -156,7 +180,7 @@ export class Viewer implements User {
     this.parts.set(name, held);
     this.scene?.forget(name);
     this.trim();
-    if (name === "cmap") this.panel.showLegend();
+    if (name === "cmap" || name === "maps") this.panel.showLegend();
     this.change();
   }
 

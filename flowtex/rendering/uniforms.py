@@ -12,7 +12,14 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import Floats, Ints
-from flowtex.rendering.constants import FAR_CELLS, KERNELS
+from flowtex.rendering.constants import (
+    BASE_DARK,
+    BASE_LIGHT,
+    FAR_CELLS,
+    KERNELS,
+    TO_CONES,
+    TO_LAB,
+)
 from flowtex.settings import Settings
 from flowtex.textures import PaperTextures, TextureSet
 
@@ -110,6 +117,12 @@ def client_constants() -> dict[str, Any]:
         "kernels": list(KERNELS),
         "anchorRange": ANCHOR_RANGE,
         "farCells": FAR_CELLS,
+        "shading": {
+            "toCones": TO_CONES.ravel().tolist(),
+            "toLab": TO_LAB.ravel().tolist(),
+            "baseDark": BASE_DARK,
+            "baseLight": BASE_LIGHT,
+        },
     }
 
 

@@ -125,7 +125,7 @@ def write_page(
     ``announce`` is that of :func:`export`, the options are those of :func:`page_pieces`.
     """
     path = Path(path)
-    scenes = [view.data() for view in views]
+    scenes = [view.page_data() for view in views]
     estimated = estimate(scenes)
     if announce is not None:
         announce(estimated, scenes[0].steps)
@@ -136,7 +136,7 @@ def write_page(
 
 def page_text(views: Sequence[WebView], **options: Any) -> str:
     """Return a view, or two, as the text of a page; the options are of :func:`page_pieces`."""
-    return "".join(page_pieces(views, [view.data() for view in views], **options))
+    return "".join(page_pieces(views, [view.page_data() for view in views], **options))
 
 
 def estimate(scenes: Sequence[ClientData]) -> int:

@@ -21,11 +21,12 @@ LIABILITY, WHETHER IN AN ACTION OF CONTRACT, TORT OR OTHERWISE, ARISING FROM,
 OUT OF OR IN CONNECTION WITH THE SOFTWARE OR THE USE OR OTHER DEALINGS IN
 THE SOFTWARE. */
 var TYPES={float32:Float32Array,float16:Uint16Array,uint16:Uint16Array,int16:Int16Array,int8:Int8Array,uint8:Uint8Array};
-function isSignFree(header){return header.variant.includes("FLOWTEX_SIGNFREE")}function stepOf(name){return Number(name.
-split("/")[1])}function decoded(info,bytes){let view=ArrayBuffer.isView(bytes)?new Uint8Array(bytes.buffer,bytes.byteOffset,
-bytes.byteLength):new Uint8Array(bytes),{name,dtype,shape,digest}=info,Type=TYPES[dtype];if(!Type)throw new Error(`a par\
-t has the type "${dtype}"; expected ${Object.keys(TYPES).join(", ")}`);return{name,shape,digest,data:new Type(view.slice().
-buffer)}}async function partOfText(info,text){let packed=Uint8Array.from(atob(text),letter=>letter.charCodeAt(0)),unpacked=new Blob(
+function shareOf({low,high,log}){if(!log)return value=>(value-low)/(high-low||1);let span=Math.log(high/low)||1;return value=>Math.
+log(Math.max(value,low)/low)/span}function isSignFree(header){return header.variant.includes("FLOWTEX_SIGNFREE")}function stepOf(name){
+return Number(name.split("/")[1])}function decoded(info,bytes){let view=ArrayBuffer.isView(bytes)?new Uint8Array(bytes.buffer,
+bytes.byteOffset,bytes.byteLength):new Uint8Array(bytes),{name,dtype,shape,digest}=info,Type=TYPES[dtype];if(!Type)throw new Error(
+`a part has the type "${dtype}"; expected ${Object.keys(TYPES).join(", ")}`);return{name,shape,digest,data:new Type(view.
+slice().buffer)}}async function partOfText(info,text){let packed=Uint8Array.from(atob(text),letter=>letter.charCodeAt(0)),unpacked=new Blob(
 [packed]).stream().pipeThrough(new DecompressionStream("gzip")),planes=new Uint8Array(await new Response(unpacked).arrayBuffer()),
 count=info.shape.reduce((product2,n)=>product2*n,1),width=count?planes.length/count:1,bytes=new Uint8Array(planes.length);
 for(let plane=0;plane<width;plane+=1)for(let n=0;n<count;n+=1)bytes[n*width+plane]=planes[plane*count+n];return decoded(
@@ -42,7 +43,25 @@ abs(x);return size!==0&&(size>=1e5||size<.001)?x.toExponential(2).replace("e+","
 let widths=views.map(({canvas})=>Math.max(Math.round(size*canvas.width),1)),height=Math.max(Math.round(size*views[0].canvas.
 height),1),all=new OffscreenCanvas(widths.reduce((sum,width)=>sum+width,0),height),pen=all.getContext("2d",{alpha:!1}),left=0;
 for(let[n,{canvas}]of views.entries())pen?.drawImage(canvas,left,0,widths[n],height),left+=widths[n];return all.convertToBlob(
-format)}var EPSILON=1e-6,ARRAY_TYPE=typeof Float32Array<"u"?Float32Array:Array;var degree=Math.PI/180,radian=180/Math.PI;function transpose(out,a){if(out===a){var a01=a[1],a02=a[2],a12=a[5];out[1]=a[3],out[2]=a[6],out[3]=a01,out[5]=a[7],out[6]=
+format)}var OWN="own cmap",SRGB={knee:.04045,slope:12.92,offset:.055,scale:1.055,power:2.4};function coloursOf(header){let{scalars,
+colour,background,lighting,opacity}=header;return{scalars,colour,background,lighting,opacity}}function mapOf(header,maps,name){
+let[first,count]=[header.scalars.maps.indexOf(name)*3*256,256],table=new Uint8Array(4*count).fill(255);for(let n=0;n<count;n+=
+1)for(let k=0;k<3;k+=1)table[4*n+k]=maps[first+3*n+k];return table}function recoloured(header,choice,parts){let scalars={
+...header.scalars};choice.scalars===!1&&(scalars.name=null);let number=scalars.choices.findIndex(({name})=>name===choice.
+scalars);if(number>=0){let{name,unit:unit2,steps}=scalars.choices[number];Object.assign(scalars,{name,unit:unit2,steps,number,
+auto:!0})}if(choice.cmap&&(scalars.cmap=choice.cmap),choice.clim&&([scalars.low,scalars.high]=choice.clim),choice.clim!==
+void 0&&(scalars.auto=!choice.clim),scalars.auto&&scalars.choices[scalars.number]){let{low,high}=scalars.choices[scalars.
+number],widest=low<0&&high>0&&scalars.diverging.includes(scalars.cmap),end=Math.max(-low,high);[scalars.low,scalars.high]=
+widest?[-end,end]:[low,high]}let narrower=(scalars.high-scalars.low)/(header.scalars.high-header.scalars.low||1),error=header.
+mesh.maxColourError*Math.min(narrower,1),mesh=number<0?{...header.mesh,maxColourError:error}:header.mesh,maps=parts.get(
+"maps");if(!choice.cmap||!maps)return{colours:{scalars,mesh},part:null};let part={name:"cmap",data:mapOf(header,maps.data,
+choice.cmap),shape:[256,4],digest:`${OWN} ${choice.cmap}`};return{colours:{scalars,mesh},part}}function meanColour(colour,strength,{
+toCones,toLab,baseDark,baseLight}){let linear=[0,1,2].map(k=>{let c=colour[k]/255,{knee,slope,offset,scale:scale3,power}=SRGB;
+return c<knee?c/slope:((c+offset)/scale3)**power}),times=(v2,m)=>[0,1,2].map(k=>v2[0]*m[k]+v2[1]*m[3+k]+v2[2]*m[6+k]),[light,
+a,b]=times(times(linear,toCones).map(Math.cbrt),toLab);return[light+strength*(baseDark+(baseLight-baseDark)*light-light),
+a,b]}function rampOf(map,header,strength,stops){let{shading}=header.constants;return`linear-gradient(90deg, ${Array.from(
+{length:stops},(_,n)=>{let first=4*Math.round(n/(stops-1)*255),shown=header.paper?.picture?0:strength;return`oklab(${meanColour(
+map.slice(first,first+3),shown,shading).map(x=>x.toFixed(4)).join(" ")})`}).join(", ")})`}var EPSILON=1e-6,ARRAY_TYPE=typeof Float32Array<"u"?Float32Array:Array;var degree=Math.PI/180,radian=180/Math.PI;function transpose(out,a){if(out===a){var a01=a[1],a02=a[2],a12=a[5];out[1]=a[3],out[2]=a[6],out[3]=a01,out[5]=a[7],out[6]=
 a02,out[7]=a12}else out[0]=a[0],out[1]=a[3],out[2]=a[6],out[3]=a[1],out[4]=a[4],out[5]=a[7],out[6]=a[2],out[7]=a[5],out[8]=
 a[8];return out}function fromRotation(out,rad,axis){var x=axis[0],y=axis[1],z=axis[2],len=Math.sqrt(x*x+y*y+z*z),s,c,t;return len<EPSILON?
 null:(len=1/len,x*=len,y*=len,z*=len,s=Math.sin(rad),c=Math.cos(rad),t=1-c,out[0]=x*x*t+c,out[1]=y*x*t+z*s,out[2]=z*x*t-
@@ -180,7 +199,25 @@ controller.signal.aborted}listen(target,kind,call,options={}){(target===document
 timer),this.timers.delete(timer))}observe(observer,element){observer.observe(element),this.observers.add(observer)}stats(){
 let{globalListeners:listeners,observers,timers}=this;return{listeners,observers:observers.size,timers:timers.size}}end(){
 this.controller.abort(),this.globalListeners=0;for(let observer of this.observers)observer.disconnect();this.observers.clear();
-for(let timer of this.timers)clearTimeout(timer);this.timers.clear()}};var SLIDER_STOPS=400;function hasStreaming({slices,paper,variant}){return slices.steps===1&&!paper&&!isSignFree({variant})}
+for(let timer of this.timers)clearTimeout(timer);this.timers.clear()}};var STOPS=9,PLAIN="none",ColourControls=class{element=dom("div",{class:"colours"});viewer;scalars=dom("select",{"aria-la\
+bel":"Colour by"});swatches=dom("div",{class:"swatches",role:"group"});ends=["Lowest value","Highest value"].map(name=>dom(
+"input",{type:"number",step:"any","aria-label":name}));auto=dom("button",{type:"button",class:"link"},["auto"]);mapRow;rangeRow;constructor(viewer){
+this.viewer=viewer;let{scalars,swatches,ends,auto}=this,{lifetime}=viewer;lifetime.listen(scalars,"change",()=>{viewer.chooseColours(
+{scalars:scalars.value===PLAIN?!1:scalars.value,clim:null})});for(let end of ends)lifetime.listen(end,"change",()=>this.
+takeRange());lifetime.listen(auto,"click",()=>viewer.chooseColours({clim:null})),lifetime.listen(swatches,"click",event=>{
+let name=event.target.dataset.cmap;name&&viewer.chooseColours({cmap:name})});let row=(name,...fields)=>dom("div",{class:"\
+row"},[dom("span",{class:"name"},[name]),...fields]);this.rangeRow=row("Range",dom("span",{class:"ends"},[...ends,auto])),
+this.mapRow=row("Colour map",swatches),this.mapRow.classList.add("ranged"),this.element.append(row("Colour by",scalars),
+this.mapRow,this.rangeRow)}update(){let{header,parts}=this.viewer,maps=parts.get("maps");if(this.element.hidden=!header?.
+scalars.choices.length||!maps,!header||!maps||this.element.hidden)return;let{choices,name,low,high,auto,cmap}=header.scalars,
+names=[...choices.map(each=>each.name),PLAIN];this.scalars.replaceChildren(...names.map(each=>dom("option",{value:each},
+[each]))),this.scalars.value=name??PLAIN,this.mapRow.hidden=this.rangeRow.hidden=name===null,[low,high].forEach((value,n)=>this.
+ends[n].value=String(Number(value.toPrecision(4)))),this.auto.setAttribute("aria-pressed",String(auto));let strength=Number(
+this.viewer.settings.strength);this.swatches.replaceChildren(...header.scalars.maps.map(each=>{let pressed=String(each===
+cmap),swatch=dom("button",{...{type:"button",title:each,"aria-label":each,"data-cmap":each},"aria-pressed":pressed});return swatch.
+style.background=rampOf(mapOf(header,maps.data,each),header,strength,STOPS),swatch}))}takeRange(){let[low,high]=this.ends.
+map(end=>end.valueAsNumber);this.rangeRow.title="",low<high?this.viewer.chooseColours({clim:[low,high]}):this.rangeRow.title=
+`${numberText(low)} is not below ${numberText(high)}`;for(let end of this.ends)end.setCustomValidity(this.rangeRow.title)}};var SLIDER_STOPS=400;function hasStreaming({slices,paper,variant}){return slices.steps===1&&!paper&&!isSignFree({variant})}
 var USES={motion:hasStreaming,speed:hasStreaming,speed_in:hasStreaming,period:hasStreaming,grain:({paper})=>!paper,fixed_grain:({
 paper})=>!paper,two_sided:({slices})=>slices.sides===2,seed:({paper},rebuild)=>!paper||rebuild&&!paper.picture,resolution:({
 paper},rebuild)=>!paper||rebuild,tiles:({paper,settings},rebuild)=>!!paper?.picture&&(settings.noise==="image"||rebuild),
@@ -211,14 +248,13 @@ least,most).toPrecision(3))},[min,max]=[least,most].map(toSlider),step=whole&&!l
 toSlider,fromSlider,min,max,step}}var CAMERA_KEYS={ArrowLeft:"left",ArrowRight:"right",ArrowUp:"up",ArrowDown:"down","+":"closer","=":"closer","-":"farthe\
 r",_:"farther",0:"whole"},PLAY_KEY=" ",FULLSCREEN_KEY="f",CLOSE_KEY="Escape",DIRECTIONS={left:[-1,0],right:[1,0],up:[0,1],
 down:[0,-1]};function hasModifier(event){return event.ctrlKey||event.metaKey||event.altKey}function toggleFullscreen(element){
-document.fullscreenElement?document.exitFullscreen():element.requestFullscreen?.().catch(()=>{})}var STOPS=33,COLOURS=256,Legend=class{element=dom("div",{class:"legend glass",hidden:""});mark=dom("i",{hidden:""});show(header,settings,map){
+document.fullscreenElement?document.exitFullscreen():element.requestFullscreen?.().catch(()=>{})}var STOPS2=33,Legend=class{element=dom("div",{class:"legend glass",hidden:""});mark=dom("i",{hidden:""});show(header,settings,map){
 let{name,low,high,unit:unit2,bar}=header.scalars;if(this.element.hidden=name===null||!bar||!map||!!settings.show_level,this.
-element.hidden||!map)return;let stops=Array.from({length:STOPS},(_,n)=>{let first=4*Math.round(n/(STOPS-1)*(COLOURS-1));
-return`rgb(${map[first]} ${map[first+1]} ${map[first+2]})`}),ramp=dom("div",{class:"ramp"},[this.mark]);ramp.style.background=
-`linear-gradient(90deg, ${stops.join(", ")})`,this.mark.hidden=!0;let ends=[low,high].map(value=>dom("span",{},[numberText(
-value)]));this.element.replaceChildren(dom("div",{class:"name"},[unit2?`${name} (${unit2})`:String(name)]),ramp,dom("div",
-{class:"ends"},ends))}point(header,value=NaN){if(this.mark.hidden=!header||!Number.isFinite(value),!header||this.mark.hidden)
-return;let{low,high}=header.scalars;this.mark.style.left=`${100*clamp((value-low)/(high-low||1),0,1)}%`}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */
+element.hidden||!map)return;let ramp=dom("div",{class:"ramp"},[this.mark]);ramp.style.background=rampOf(map,header,Number(
+settings.strength),STOPS2),this.mark.hidden=!0;let ends=[low,high].map(value=>dom("span",{},[numberText(value)]));this.element.
+replaceChildren(dom("div",{class:"name"},[unit2?`${name} (${unit2})`:String(name)]),ramp,dom("div",{class:"ends"},ends))}point(header,value=NaN){
+this.mark.hidden=!header||!Number.isFinite(value),!(!header||this.mark.hidden)&&(this.mark.style.left=`${100*clamp(shareOf(
+header.scalars)(value),0,1)}%`)}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */
 :host {
   --ink: var(--jp-ui-font-color1, #1b2430);
   --quiet: var(--jp-ui-font-color2, #566373);
@@ -353,6 +389,14 @@ input[type="range"]::-moz-range-thumb {
 }
 .row.ranged input { grid-column: 1 / -1; }
 .row + .row { border-top: 1px solid var(--edge); }
+.colours { border-bottom: 1px solid var(--edge); }
+.swatches { grid-column: 1 / -1; display: grid; grid-template-columns: repeat(3, 1fr); gap: 5px; padding: 3px 0 5px; }
+.swatches button { width: auto; height: 16px; border-radius: 4px; box-shadow: inset 0 0 0 1px var(--edge); }
+.swatches button[aria-pressed="true"] { box-shadow: 0 0 0 2px var(--ground), 0 0 0 4px var(--accent); }
+.row .ends { margin: 0; align-items: center; gap: 4px; }
+.row .ends input { width: 62px; appearance: textfield; -moz-appearance: textfield; }
+.row .ends input:invalid { outline: 2px solid #d43d3d; outline-offset: -1px; }
+button.link { width: auto; height: 24px; padding: 0 6px; font: inherit; }
 select, input[type="number"] {
   font: inherit; color: var(--ink); background: var(--hover); border: 0; border-radius: 6px;
   padding: 3px 6px; width: 110px; height: 24px;
@@ -402,28 +446,29 @@ input[role="switch"]:checked::after { transform: translateX(12px); }
 :host(.flowtex-bare) :is(.head, .legend, .settings, .bar, .handle) { display: none; }
 `;var HINT_MS=1600,LATE_MS=4e3,SAVED_MS=5e3,FEWEST_DIGITS=4,MOST_DIGITS=14,KEY=/Mac|iP(hone|ad)/.test(navigator.platform)?
 "⌘":"Ctrl",HINT=`Click, or hold ${KEY}, to zoom with the wheel`,TIME_RANGE={min:"0",max:"1",step:"any","aria-label":"T\
-ime"},FORBIDDEN=/[\\/:*?"<>|]+/g,styleSheet=new CSSStyleSheet;styleSheet.replaceSync(styles_default);var Panel=class{viewer;legend=new Legend;controls;isShown;isOpen=!1;showsLevels=!1;title=dom(
+ime"},FORBIDDEN=/[\\/:*?"<>|]+/g,styleSheet=new CSSStyleSheet;styleSheet.replaceSync(styles_default);var Panel=class{viewer;legend=new Legend;controls;colours;isShown;isOpen=!1;legendLook="";title=dom(
 "div",{class:"title"});readout=dom("div",{class:"readout",role:"status"});head=dom("div",{class:"head glass",hidden:""},
 [this.title,this.readout]);note=dom("div",{class:"note",hidden:"",role:"alert"});busy=dom("div",{class:"busy",hidden:""},
 ["waiting for data …"]);hintBox=dom("div",{class:"hint glass",hidden:""},[HINT]);bar;handle;playButton;toggles;gear;slider=dom(
 "input",{type:"range",...TIME_RANGE});timeText=dom("span",{class:"time"});track=dom("div",{class:"track"},[this.slider,this.
 timeText]);hintTimer=null;lateTimer=null;constructor(viewer){this.viewer=viewer;let{root,canvas,options}=viewer;this.isShown=
-options.controls??!0,this.controls=new Controls(viewer),this.handle=this.button("show","Show the bar (h)",()=>this.toggle()),
-this.handle.classList.add("handle","glass"),this.playButton=this.button("play","Play (space)",()=>viewer.togglePlaying()),
-viewer.lifetime.listen(this.slider,"input",()=>viewer.scrub(Number(this.slider.value)));let toggle=name=>()=>viewer.choose(
-name,!viewer.settings[name]);this.toggles={lod:this.button("lod","Level of detail",toggle("lod")),show_level:this.button(
-"levels","Show the levels of detail",toggle("show_level"))},this.gear=this.button("settings","Settings",()=>this.fold(!this.
-isOpen)),this.bar=this.makeBar(),canvas.className="picture",root.classList.toggle("flowtex-bare",options.bare??!1);let shadow=root.
-attachShadow({mode:"open"});shadow.adoptedStyleSheets=[styleSheet];let{legend,controls,head,bar,handle,busy,hintBox,note}=this;
-shadow.append(canvas,head,legend.element,controls.element),shadow.append(bar,handle,busy,hintBox,note),this.arrange()}button(name,title,press){
-let button=dom("button",{type:"button",title,"aria-label":title,"data-name":name},[icon(name)]);return this.viewer.lifetime.
-listen(button,"click",press),button}makeBar(){let{viewer}=this;return dom("div",{class:"bar glass",role:"toolbar","aria-\
-label":"Controls"},[this.playButton,this.track,this.button("home","Show everything (0)",()=>viewer.reset()),this.toggles.
-lod,this.toggles.show_level,this.gear,this.button("save","Save the picture",()=>{this.save()}),this.button("full","Fill \
-the screen (f)",()=>this.fullscreen()),this.button("hide","Hide the bar (h)",()=>this.toggle())])}build(){let{header}=this.
-viewer;header&&(this.note.hidden=!0,this.controls.build(header),this.showLegend(),this.update(),this.arrange())}update(){
-let{header,settings}=this.viewer,{playing,varies}=this.viewer.player;this.name(),this.controls.update(),this.showsLevels!==
-!!settings.show_level&&this.showLegend();for(let[name,button]of Object.entries(this.toggles))button.setAttribute("aria-p\
+options.controls??!0,this.controls=new Controls(viewer),this.colours=new ColourControls(viewer),this.handle=this.button(
+"show","Show the bar (h)",()=>this.toggle()),this.handle.classList.add("handle","glass"),this.playButton=this.button("pl\
+ay","Play (space)",()=>viewer.togglePlaying()),viewer.lifetime.listen(this.slider,"input",()=>viewer.scrub(Number(this.slider.
+value)));let toggle=name=>()=>viewer.choose(name,!viewer.settings[name]);this.toggles={lod:this.button("lod","Level of d\
+etail",toggle("lod")),show_level:this.button("levels","Show the levels of detail",toggle("show_level"))},this.gear=this.
+button("settings","Settings",()=>this.fold(!this.isOpen)),this.bar=this.makeBar(),canvas.className="picture",root.classList.
+toggle("flowtex-bare",options.bare??!1);let shadow=root.attachShadow({mode:"open"});shadow.adoptedStyleSheets=[styleSheet];
+let{legend,controls,head,bar,handle,busy,hintBox,note}=this;shadow.append(canvas,head,legend.element,controls.element),shadow.
+append(bar,handle,busy,hintBox,note),this.arrange()}button(name,title,press){let button=dom("button",{type:"button",title,
+"aria-label":title,"data-name":name},[icon(name)]);return this.viewer.lifetime.listen(button,"click",press),button}makeBar(){
+let{viewer}=this;return dom("div",{class:"bar glass",role:"toolbar","aria-label":"Controls"},[this.playButton,this.track,
+this.button("home","Show everything (0)",()=>viewer.reset()),this.toggles.lod,this.toggles.show_level,this.gear,this.button(
+"save","Save the picture",()=>{this.save()}),this.button("full","Fill the screen (f)",()=>this.fullscreen()),this.button(
+"hide","Hide the bar (h)",()=>this.toggle())])}build(){let{header}=this.viewer;header&&(this.note.hidden=!0,this.controls.
+build(header),this.controls.element.prepend(this.colours.element),this.showLegend(),this.update(),this.arrange())}update(){
+let{header,settings}=this.viewer,{playing,varies}=this.viewer.player;this.name(),this.controls.update(),this.legendLook!==
+this.lookOf(settings)&&this.showLegend();for(let[name,button]of Object.entries(this.toggles))button.setAttribute("aria-p\
 ressed",String(!!settings[name]));let title=playing?"Pause (space)":"Play (space)";this.playButton.replaceChildren(icon(
 playing?"pause":"play")),this.playButton.title=title,this.playButton.setAttribute("aria-label",title);let streams=header!==
 null&&hasStreaming(header);this.playButton.hidden=this.track.hidden=!varies&&!streams,this.slider.disabled=!varies&&settings.
@@ -434,36 +479,37 @@ table.find(row=>row.name===name)?.label??name,value=settings[name];return`${labe
 ia-label",title?`Flow texture: ${title}`:"Flow texture")}tick(){let{header,player,settings}=this.viewer;if(!header||this.
 track.hidden)return;let{first,last,now}=player.range(settings);this.slider.value=String((now-first)/(last-first||1));let unit2=header.
 slices.timeUnit,text=player.varies?`${numberText(now)} ${unit2}`:`${now.toFixed(1)} s`;this.timeText.textContent!==text&&
-(this.timeText.textContent=text)}showLegend(){let{header,settings,parts}=this.viewer;this.showsLevels=!!settings.show_level,
-header&&this.legend.show(header,settings,parts.get("cmap")?.data)}read(point){let{header}=this.viewer;if(this.readout.replaceChildren(),
-this.legend.point(null),!(!point||!header)){this.readout.append(dom("span",{},[this.positionText(point.position,header)]));
-for(let[name,value]of Object.entries(point.values)){let text=`${name} ${numberText(value)} ${header.scalars.unit}`;this.
-readout.append(dom("b",{},[text.trimEnd()])),this.legend.point(header,value)}}}positionText(position,{geometry}){let{extent,
-planar,center,frame}=geometry,zoom=Math.max(this.viewer.camera?.zoom??1,1),digits=Math.min(Math.ceil(FEWEST_DIGITS+Math.
-log10(zoom)),MOST_DIGITS),isInPlane=planar&&Math.abs(position[2]-center[2])<1e-12*extent&&Math.abs(frame[8])>.999;return`\
-(${position.slice(0,isInPlane?2:3).map(x=>{let value=Math.abs(x)<1e-9*extent?0:x;return digits>5?String(Number(value.toPrecision(
-digits))):numberText(value)}).join(", ")})`}fold(open=!1){this.isOpen=open,this.arrange()}toggle(shown=!this.isShown){shown!==
-this.isShown&&(this.isShown=shown,this.arrange(),this.viewer.options.onControls?.(shown))}arrange(){let{header,options,root}=this.
-viewer,isReady=header!==null,follows=!!options.follows;this.bar.hidden=!this.isShown||!isReady,this.handle.hidden=this.isShown||
-!isReady||follows,this.head.hidden=!(this.isShown||follows)||!isReady,this.controls.element.hidden=!this.isShown||!this.
-isOpen||!isReady,root.classList.toggle("flowtex-open",!this.controls.element.hidden),this.gear.setAttribute("aria-presse\
-d",String(this.isOpen))}wait(missing){this.busy.hidden=!missing.length;let{viewer}=this;!missing.length||viewer.options.
-onNeed||this.lateTimer||(this.lateTimer=viewer.lifetime.later(()=>{this.lateTimer=null;let names=viewer.lacking.join(", ");
-names&&this.fail("The scene is not complete.",`Missing: ${names}`)},LATE_MS))}hint(shown){let{lifetime}=this.viewer;lifetime.
-cancel(this.hintTimer),this.hintTimer=shown?lifetime.later(()=>this.hint(!1),HINT_MS):null,this.hintBox.hidden=!shown}clear(){
-this.note.hidden=!0,delete this.viewer.root.dataset.failed}fail(problem,detail){this.note.replaceChildren(dom("strong",{},
-[problem]),dom("pre",{},[detail])),this.note.hidden=!1,this.busy.hidden=!0,this.viewer.root.dataset.failed="true"}fullscreen(){
-let{root}=this.viewer;toggleFullscreen(root.closest(".flowtex-pair")??root)}async save(){let{viewer}=this,href=URL.createObjectURL(
-await pictureOf(viewer.together)),name=(viewer.header?.name||"flow").replace(FORBIDDEN," ").trim();dom("a",{href,download:`${name}\
-.png`}).click(),viewer.lifetime.later(()=>URL.revokeObjectURL(href),SAVED_MS)}};function positions(data,anchor){return anchor.some(Boolean)?data.map((x,n)=>x-anchor[n%3]):data}function grid(us,vs){let result2=new Float32Array(
-2*us.length*vs.length),n=0;for(let v2 of vs)for(let u of us)result2[n++]=u,result2[n++]=v2;return result2}function coordinates({
-shape,rows,columns}){let middles=(count,{before,size})=>Array.from({length:count},(_,n)=>(n+before+.5)/size);return grid(
-middles(shape[1],columns),middles(shape[0],rows))}function noiseCoordinates({alongI,alongJ}){return grid(alongI,alongJ)}
-function shares(steps,low,high,nodes){let result2=new Float32Array(2*nodes),span=high-low||1;return steps.forEach((values,k)=>{
-for(let n=0;n<nodes;n+=1){let share=(values[n]-low)/span;result2[2*n+k]=Number.isFinite(share)?share:-1e9}}),result2}function interpolated([
-rows,columns],i,j,value){let[left,low]=[Math.min(Math.floor(i),columns-2),Math.min(Math.floor(j),rows-2)],[a,b]=[i-left,
-j-low],corner=low*columns+left,[from,to]=[value(corner),value(corner+columns+1)],aside=value(corner+(a>=b?1:columns));return from+
-Math.max(a,b)*(aside-from)+Math.min(a,b)*(to-aside)}function pickedPoint(context,x,y){let{scene,camera,moment,anchor,canvas}=context,{graphics,header}=scene,program=graphics.
+(this.timeText.textContent=text)}lookOf({show_level,strength}){return`${show_level} ${strength}`}showLegend(){let{header,
+settings,parts}=this.viewer;this.legendLook=this.lookOf(settings),this.colours.update(),header&&this.legend.show(header,
+settings,parts.get("cmap")?.data)}read(point){let{header}=this.viewer;if(this.readout.replaceChildren(),this.legend.point(
+null),!(!point||!header)){this.readout.append(dom("span",{},[this.positionText(point.position,header)]));for(let[name,value]of Object.
+entries(point.values)){let text=`${name} ${numberText(value)} ${header.scalars.unit}`;this.readout.append(dom("b",{},[text.
+trimEnd()])),this.legend.point(header,value)}}}positionText(position,{geometry}){let{extent,planar,center,frame}=geometry,
+zoom=Math.max(this.viewer.camera?.zoom??1,1),digits=Math.min(Math.ceil(FEWEST_DIGITS+Math.log10(zoom)),MOST_DIGITS),isInPlane=planar&&
+Math.abs(position[2]-center[2])<1e-12*extent&&Math.abs(frame[8])>.999;return`(${position.slice(0,isInPlane?2:3).map(x=>{
+let value=Math.abs(x)<1e-9*extent?0:x;return digits>5?String(Number(value.toPrecision(digits))):numberText(value)}).join(
+", ")})`}fold(open=!1){this.isOpen=open,this.arrange()}toggle(shown=!this.isShown){shown!==this.isShown&&(this.isShown=shown,
+this.arrange(),this.viewer.options.onControls?.(shown))}arrange(){let{header,options,root}=this.viewer,isReady=header!==
+null,follows=!!options.follows;this.bar.hidden=!this.isShown||!isReady,this.handle.hidden=this.isShown||!isReady||follows,
+this.head.hidden=!(this.isShown||follows)||!isReady,this.controls.element.hidden=!this.isShown||!this.isOpen||!isReady,root.
+classList.toggle("flowtex-open",!this.controls.element.hidden),this.gear.setAttribute("aria-pressed",String(this.isOpen))}wait(missing){
+this.busy.hidden=!missing.length;let{viewer}=this;!missing.length||viewer.options.onNeed||this.lateTimer||(this.lateTimer=
+viewer.lifetime.later(()=>{this.lateTimer=null;let names=viewer.lacking.join(", ");names&&this.fail("The scene is not co\
+mplete.",`Missing: ${names}`)},LATE_MS))}hint(shown){let{lifetime}=this.viewer;lifetime.cancel(this.hintTimer),this.hintTimer=
+shown?lifetime.later(()=>this.hint(!1),HINT_MS):null,this.hintBox.hidden=!shown}clear(){this.note.hidden=!0,delete this.
+viewer.root.dataset.failed}fail(problem,detail){this.note.replaceChildren(dom("strong",{},[problem]),dom("pre",{},[detail])),
+this.note.hidden=!1,this.busy.hidden=!0,this.viewer.root.dataset.failed="true"}fullscreen(){let{root}=this.viewer;toggleFullscreen(
+root.closest(".flowtex-pair")??root)}async save(){let{viewer}=this,href=URL.createObjectURL(await pictureOf(viewer.together)),
+name=(viewer.header?.name||"flow").replace(FORBIDDEN," ").trim();dom("a",{href,download:`${name}.png`}).click(),viewer.lifetime.
+later(()=>URL.revokeObjectURL(href),SAVED_MS)}};var NO_VALUE=-1e9;function positions(data,anchor){return anchor.some(Boolean)?data.map((x,n)=>x-anchor[n%3]):data}function grid(us,vs){
+let result2=new Float32Array(2*us.length*vs.length),n=0;for(let v2 of vs)for(let u of us)result2[n++]=u,result2[n++]=v2;
+return result2}function coordinates({shape,rows,columns}){let middles=(count,{before,size})=>Array.from({length:count},(_,n)=>(n+
+before+.5)/size);return grid(middles(shape[1],columns),middles(shape[0],rows))}function noiseCoordinates({alongI,alongJ}){
+return grid(alongI,alongJ)}function shares(steps,scalars,nodes){let result2=new Float32Array(2*nodes),place=shareOf(scalars);
+return steps.forEach((values,k)=>{for(let n=0;n<nodes;n+=1){let share=place(values[n]);result2[2*n+k]=Number.isFinite(share)?
+share:NO_VALUE}}),result2}function interpolated([rows,columns],i,j,value){let[left,low]=[Math.min(Math.floor(i),columns-
+2),Math.min(Math.floor(j),rows-2)],[a,b]=[i-left,j-low],corner=low*columns+left,[from,to]=[value(corner),value(corner+columns+
+1)],aside=value(corner+(a>=b?1:columns));return from+Math.max(a,b)*(aside-from)+Math.min(a,b)*(to-aside)}function pickedPoint(context,x,y){let{scene,camera,moment,anchor,canvas}=context,{graphics,header}=scene,program=graphics.
 programs.get(header.shaders.vertex,header.shaders.pick),whole=projection(header.geometry,camera,anchor),matrix=atPixel(whole,
 [x,y],[canvas.width,canvas.height]),[before,after,between]=moment,bits=graphics.pixel(()=>{graphics.programs.use(program,
 {u_matrix:matrix,u_between:between}),scene.draw(before,after,anchor,!1)});if(!bits[3])return null;let[u,v2]=new Float32Array(
@@ -647,74 +693,74 @@ this.graphics=graphics,this.header=header,this.parts=parts}missing(before,after)
 header,names=["position","mesh",...geometry.planar?[]:["normal"]];for(let step of new Set([before,after]))names.push(`sl\
 ices/${step}`),slices.channels===2&&names.push(`extra/${step}`);return names.push(...this.scalarParts(before,after)),scalars.
 name!==null&&names.push("cmap"),paper&&names.push("noise","step"),[...new Set(names)].filter(name=>!this.fits(name))}scalarParts(before,after){
-let{name,steps}=this.header.scalars;return name===null?[]:(steps>1?[before,after]:[0,0]).map(step=>`scalars/${step}`)}fits(name){
-let part=this.parts.get(name);if(!part)return!1;let{geometry,slices,paper,mesh}=this.header,tiles=geometry.shape.map(n=>Math.
-max(Math.ceil((n-1)/mesh.tileCells),1)),shape={slices:[slices.count,geometry.rows.size,geometry.columns.size,slices.channels],
-position:[...geometry.shape,3],mesh:[...tiles,part.shape[2]],step:paper?[paper.size[1],paper.size[0]]:[]}[name.split("/")[0]];
-return!shape||String(shape)===String(part.shape)}part(name){let part=this.parts.get(name);if(!part)throw new Error(`the \
-part "${name}" of the scene is missing`);return part}forget(name){let[kind,step]=name.split("/");(kind==="mesh"||kind===
-"cells")&&(this.meshLevels=null);let sliced=kind==="slices"||kind==="extra";for(let user of sliced?[`slices/${step}`]:USERS[kind]??
-[])this.drop(user);this.drop("array")}drop(name){let resource=this.resources.get(name);this.resources.delete(name),resource&&
-(resource.users-=1,!resource.users&&(this.graphics.free(resource.kind,resource.object),this.graphics.common.delete(resource.
-key)))}dispose(){for(let name of[...this.resources.keys()])this.drop(name)}key(names,...rest){let digests=names.map(name=>this.
-parts.has(name)?this.part(name).digest:"none");return digests.every(Boolean)?JSON.stringify([digests,rest]):""}take(name,kind,key,make,fill){
-let own=this.resources.get(name);if(own)return own.object;let{graphics}=this,whole=key&&`${name.split("/")[0]} ${key}`,shared=whole?
-graphics.common.get(whole):void 0,object=shared?.object??graphics.counted(make()),resource=shared??{kind,object,count:0,
-key:whole,users:0};return resource.users+=1,this.resources.set(name,resource),shared||(resource.count=fill(object)||0),whole&&
-graphics.common.set(whole,resource),object}buffer(name,key,data,elements=!1){let gl=this.graphics.context,fill=buffer=>{
-let target=elements?gl.ELEMENT_ARRAY_BUFFER:gl.ARRAY_BUFFER,numbers=data();return gl.bindVertexArray(null),gl.bindBuffer(
-target,buffer),gl.bufferData(target,numbers,gl.STATIC_DRAW),numbers.length};return this.take(name,"Buffer",key,()=>gl.createBuffer(),
-fill)}mesh(){if(!this.meshLevels){let{geometry,mesh}=this.header,{shape,periodic}=geometry,parts={tiles:this.part("mesh").
-data,cells:this.parts.get("cells")?.data};this.meshLevels=new MeshLevels({shape,periodic,...parts},mesh)}return this.meshLevels}look(sight){
-let levels=this.mesh().levels(sight);String(levels)!==String(this.levels)&&(this.levels=levels,this.drop("index"),this.drop(
-"array"))}bindNodes(before,after,anchor){let gl=this.graphics.context,steps=String(this.scalarParts(before,after)),stale=steps!==
-this.scalarSteps?["scalar","array"]:[];anchor.some((x,k)=>x!==this.anchor[k])&&stale.push("position","array");for(let name of stale)
-this.drop(name);this.scalarSteps=steps,this.anchor=anchor;let fill=array=>this.fillArray(array,before,after),make=()=>gl.
-createVertexArray();gl.bindVertexArray(this.take("array","VertexArray","",make,fill))}fillArray(array,before,after){let gl=this.
-graphics.context,{geometry,scalars,paper}=this.header,{shape,rows,columns}=geometry,cells=()=>this.mesh().triangles(this.
-levels),index=this.buffer("index",this.key(["cells","mesh"],shape,[...this.levels]),cells,!0),nodes=()=>positions(this.part(
-"position").data,this.anchor),normal=geometry.planar?null:this.part("normal").data,painted=this.scalarParts(before,after),
-values=()=>{let steps=painted.map(name=>this.part(name).data);return shares(steps,scalars.low,scalars.high,shape[0]*shape[1])},
-colour=this.key([...new Set(painted)],shape,scalars.low,scalars.high),grid2=JSON.stringify([shape,rows,columns]),type=gl.
-FLOAT;normal instanceof Int8Array&&(type=gl.BYTE),normal instanceof Int16Array&&(type=gl.SHORT);let attributes=[[this.buffer(
-"position",this.key(["position"],this.anchor),nodes),3,gl.FLOAT],[this.buffer("coordinate",grid2,()=>coordinates(geometry)),
-2,gl.FLOAT],[normal&&this.buffer("normal",this.key(["normal"]),()=>normal),3,type],[paper&&this.buffer("along","",()=>noiseCoordinates(
-paper)),2,gl.FLOAT],[this.buffer("scalar",colour,values),2,gl.FLOAT]];gl.bindVertexArray(array),gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER,
-index),attributes.forEach(([buffer,size,kind],n)=>{buffer&&(gl.bindBuffer(gl.ARRAY_BUFFER,buffer),gl.enableVertexAttribArray(
-n),gl.vertexAttribPointer(n,size,kind,kind!==gl.FLOAT,0,0))})}texture(name,key,fill){let gl=this.graphics.context;return this.
-take(name,"Texture",key,()=>gl.createTexture(),fill)}slices(step){let{slices,geometry}=this.header,key=this.key([`slices\
-/${step}`,`extra/${step}`],geometry.levels,slices.extra);return this.texture(`slices/${step}`,key,texture=>{let part=this.
-part(`slices/${step}`),[layers,height,width,channels]=part.shape,data=part.data,extra=this.parts.get(`extra/${step}`)?.data,
-texels=height*width,layer=n=>{let own=data.subarray(n*texels*channels,(n+1)*texels*channels);if(channels===4)return own;
-let all=new Uint16Array(4*texels),place=slices.extra.indexOf(n),fourth=place<0?null:extra?.subarray(place*texels,(place+
-1)*texels);for(let k=0;k<texels;k+=1)all[4*k]=own[2*k],all[4*k+1]=own[2*k+1],fourth&&(all[4*k+3]=fourth[k]);return all};
-this.fill(texture,{width,height,layers,channels:4,levels:geometry.levels},layer)})}image(name,repeat){let gl=this.graphics.
-context;return this.texture(name,this.key([name],repeat),texture=>{let{data,shape}=this.part(name),[height,width,channels=1]=shape,
-levels=Math.floor(Math.log2(Math.max(width,height))),size={width,height,layers:1,channels,levels};this.fill(texture,size,
-()=>data);let wrap=n=>repeat[n]?gl.REPEAT:gl.CLAMP_TO_EDGE;gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_S,wrap(1)),
-gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_T,wrap(0))})}fill(texture,size,layer){let gl=this.graphics.context,
-{width,height,layers,channels,levels}=size,target=gl.TEXTURE_2D_ARRAY;this.checkSize(size);let[format,inner]=channels===
-1?[gl.RED,gl.R16F]:[gl.RGBA,gl.RGBA16F];gl.bindTexture(target,texture),gl.texStorage3D(target,levels+1,inner,width,height,
-layers),gl.texParameteri(target,gl.TEXTURE_MIN_FILTER,gl.LINEAR_MIPMAP_LINEAR),gl.texParameteri(target,gl.TEXTURE_MAG_FILTER,
-gl.LINEAR),gl.texParameteri(target,gl.TEXTURE_WRAP_S,gl.CLAMP_TO_EDGE),gl.texParameteri(target,gl.TEXTURE_WRAP_T,gl.CLAMP_TO_EDGE),
-gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);let{floats}=this.graphics;for(let n=0;n<layers;n+=1){let texels=layer(n),[w,h]=[width,
-height];gl.texSubImage3D(target,0,0,0,n,w,h,1,format,gl.HALF_FLOAT,texels);for(let level=1;level<=levels&&!floats;level+=
-1)[texels,w,h]=halved(texels,w,h,channels),gl.texSubImage3D(target,level,0,0,n,w,h,1,format,gl.HALF_FLOAT,texels)}floats&&
-levels&&gl.generateMipmap(target)}checkSize({width,height,layers}){let gl=this.graphics.context,most=gl.getParameter(gl.
-MAX_TEXTURE_SIZE),mostLayers=gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS);if(!(Math.max(width,height)<=most&&layers<=mostLayers))
-throw new Error(`a texture of ${width} x ${height} texels in ${layers} layers is asked for, and this graphics card has ${most}\
- x ${most} in ${mostLayers}; show fewer nodes`)}colourMap(){let gl=this.graphics.context;return this.texture("cmap",this.
-key(["cmap"]),texture=>{gl.bindTexture(gl.TEXTURE_2D,texture),gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);let data=this.parts.
-get("cmap")?.data??new Uint8Array(1024);gl.texImage2D(gl.TEXTURE_2D,0,gl.RGBA8,256,1,0,gl.RGBA,gl.UNSIGNED_BYTE,data),gl.
-texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST)})}dropSlices(before,after){
-let next=after+1<this.header.slices.steps?after+1:0;for(let name of[...this.resources.keys()])name.startsWith("slices/")&&
-([before,after,next,after+1].includes(stepOf(name))||this.drop(name))}bindTextures(before,after){let gl=this.graphics.context,
-{paper}=this.header,repeat=paper?.repeat??[!1,!1];[this.slices(before),after===before?null:this.slices(after),paper&&this.
-image("noise",paper.picture?[!0,!0]:repeat),paper&&this.image("step",repeat),this.colourMap()].forEach((texture,n)=>{gl.
-activeTexture(gl.TEXTURE0+n),gl.bindTexture(n<4?gl.TEXTURE_2D_ARRAY:gl.TEXTURE_2D,texture)}),gl.activeTexture(gl.TEXTURE0+
-SAMPLERS.length)}draw(before,after,anchor,textures){let gl=this.graphics.context;textures&&(this.dropSlices(before,after),
-this.bindTextures(before,after)),this.bindNodes(before,after,anchor),gl.drawElements(gl.TRIANGLES,this.resources.get("in\
-dex")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(null)}};var STILL_MS=160,LOST_MS=5e3,STEPS_HELD=12,isEqual=(a,b)=>JSON.stringify(a)===JSON.stringify(b),Viewer=class{options;graphics=sharedGraphics();lifetime=new Lifetime;player=new Player;root=document.
+let{name,steps,number}=this.header.scalars;if(name===null)return[];let end=number?`/${number}`:"";return(steps>1?[before,
+after]:[0,0]).map(step=>`scalars/${step}${end}`)}fits(name){let part=this.parts.get(name);if(!part)return!1;let{geometry,
+slices,paper,mesh}=this.header,tiles=geometry.shape.map(n=>Math.max(Math.ceil((n-1)/mesh.tileCells),1)),shape={slices:[slices.
+count,geometry.rows.size,geometry.columns.size,slices.channels],position:[...geometry.shape,3],mesh:[...tiles,part.shape[2]],
+step:paper?[paper.size[1],paper.size[0]]:[]}[name.split("/")[0]];return!shape||String(shape)===String(part.shape)}part(name){
+let part=this.parts.get(name);if(!part)throw new Error(`the part "${name}" of the scene is missing`);return part}forget(name){
+let[kind,step]=name.split("/");(kind==="mesh"||kind==="cells")&&(this.meshLevels=null);let sliced=kind==="slices"||kind===
+"extra";for(let user of sliced?[`slices/${step}`]:USERS[kind]??[])this.drop(user);this.drop("array")}drop(name){let resource=this.
+resources.get(name);this.resources.delete(name),resource&&(resource.users-=1,!resource.users&&(this.graphics.free(resource.
+kind,resource.object),this.graphics.common.delete(resource.key)))}dispose(){for(let name of[...this.resources.keys()])this.
+drop(name)}key(names,...rest){let digests=names.map(name=>this.parts.has(name)?this.part(name).digest:"none");return digests.
+every(Boolean)?JSON.stringify([digests,rest]):""}take(name,kind,key,make,fill){let own=this.resources.get(name);if(own)return own.
+object;let{graphics}=this,whole=key&&`${name.split("/")[0]} ${key}`,shared=whole?graphics.common.get(whole):void 0,object=shared?.
+object??graphics.counted(make()),resource=shared??{kind,object,count:0,key:whole,users:0};return resource.users+=1,this.
+resources.set(name,resource),shared||(resource.count=fill(object)||0),whole&&graphics.common.set(whole,resource),object}buffer(name,key,data,elements=!1){
+let gl=this.graphics.context,fill=buffer=>{let target=elements?gl.ELEMENT_ARRAY_BUFFER:gl.ARRAY_BUFFER,numbers=data();return gl.
+bindVertexArray(null),gl.bindBuffer(target,buffer),gl.bufferData(target,numbers,gl.STATIC_DRAW),numbers.length};return this.
+take(name,"Buffer",key,()=>gl.createBuffer(),fill)}mesh(){if(!this.meshLevels){let{geometry,mesh}=this.header,{shape,periodic}=geometry,
+parts={tiles:this.part("mesh").data,cells:this.parts.get("cells")?.data};this.meshLevels=new MeshLevels({shape,periodic,
+...parts},mesh)}return this.meshLevels}look(sight){let levels=this.mesh().levels(sight);String(levels)!==String(this.levels)&&
+(this.levels=levels,this.drop("index"),this.drop("array"))}bindNodes(before,after,anchor){let gl=this.graphics.context,steps=String(
+this.scalarParts(before,after)),stale=steps!==this.scalarSteps?["scalar","array"]:[];anchor.some((x,k)=>x!==this.anchor[k])&&
+stale.push("position","array");for(let name of stale)this.drop(name);this.scalarSteps=steps,this.anchor=anchor;let fill=array=>this.
+fillArray(array,before,after),make=()=>gl.createVertexArray();gl.bindVertexArray(this.take("array","VertexArray","",make,
+fill))}fillArray(array,before,after){let gl=this.graphics.context,{geometry,scalars,paper}=this.header,{shape,rows,columns}=geometry,
+cells=()=>this.mesh().triangles(this.levels),index=this.buffer("index",this.key(["cells","mesh"],shape,[...this.levels]),
+cells,!0),nodes=()=>positions(this.part("position").data,this.anchor),normal=geometry.planar?null:this.part("normal").data,
+painted=this.scalarParts(before,after),values=()=>{let steps=painted.map(name=>this.part(name).data);return shares(steps,
+scalars,shape[0]*shape[1])},colour=this.key([...new Set(painted)],shape,scalars.low,scalars.high,scalars.log),grid2=JSON.
+stringify([shape,rows,columns]),type=gl.FLOAT;normal instanceof Int8Array&&(type=gl.BYTE),normal instanceof Int16Array&&
+(type=gl.SHORT);let attributes=[[this.buffer("position",this.key(["position"],this.anchor),nodes),3,gl.FLOAT],[this.buffer(
+"coordinate",grid2,()=>coordinates(geometry)),2,gl.FLOAT],[normal&&this.buffer("normal",this.key(["normal"]),()=>normal),
+3,type],[paper&&this.buffer("along","",()=>noiseCoordinates(paper)),2,gl.FLOAT],[this.buffer("scalar",colour,values),2,gl.
+FLOAT]];gl.bindVertexArray(array),gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER,index),attributes.forEach(([buffer,size,kind],n)=>{
+buffer&&(gl.bindBuffer(gl.ARRAY_BUFFER,buffer),gl.enableVertexAttribArray(n),gl.vertexAttribPointer(n,size,kind,kind!==gl.
+FLOAT,0,0))})}texture(name,key,fill){let gl=this.graphics.context;return this.take(name,"Texture",key,()=>gl.createTexture(),
+fill)}slices(step){let{slices,geometry}=this.header,key=this.key([`slices/${step}`,`extra/${step}`],geometry.levels,slices.
+extra);return this.texture(`slices/${step}`,key,texture=>{let part=this.part(`slices/${step}`),[layers,height,width,channels]=part.
+shape,data=part.data,extra=this.parts.get(`extra/${step}`)?.data,texels=height*width,layer=n=>{let own=data.subarray(n*texels*
+channels,(n+1)*texels*channels);if(channels===4)return own;let all=new Uint16Array(4*texels),place=slices.extra.indexOf(
+n),fourth=place<0?null:extra?.subarray(place*texels,(place+1)*texels);for(let k=0;k<texels;k+=1)all[4*k]=own[2*k],all[4*
+k+1]=own[2*k+1],fourth&&(all[4*k+3]=fourth[k]);return all};this.fill(texture,{width,height,layers,channels:4,levels:geometry.
+levels},layer)})}image(name,repeat){let gl=this.graphics.context;return this.texture(name,this.key([name],repeat),texture=>{
+let{data,shape}=this.part(name),[height,width,channels=1]=shape,levels=Math.floor(Math.log2(Math.max(width,height))),size={
+width,height,layers:1,channels,levels};this.fill(texture,size,()=>data);let wrap=n=>repeat[n]?gl.REPEAT:gl.CLAMP_TO_EDGE;
+gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_S,wrap(1)),gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_T,wrap(
+0))})}fill(texture,size,layer){let gl=this.graphics.context,{width,height,layers,channels,levels}=size,target=gl.TEXTURE_2D_ARRAY;
+this.checkSize(size);let[format,inner]=channels===1?[gl.RED,gl.R16F]:[gl.RGBA,gl.RGBA16F];gl.bindTexture(target,texture),
+gl.texStorage3D(target,levels+1,inner,width,height,layers),gl.texParameteri(target,gl.TEXTURE_MIN_FILTER,gl.LINEAR_MIPMAP_LINEAR),
+gl.texParameteri(target,gl.TEXTURE_MAG_FILTER,gl.LINEAR),gl.texParameteri(target,gl.TEXTURE_WRAP_S,gl.CLAMP_TO_EDGE),gl.
+texParameteri(target,gl.TEXTURE_WRAP_T,gl.CLAMP_TO_EDGE),gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);let{floats}=this.graphics;
+for(let n=0;n<layers;n+=1){let texels=layer(n),[w,h]=[width,height];gl.texSubImage3D(target,0,0,0,n,w,h,1,format,gl.HALF_FLOAT,
+texels);for(let level=1;level<=levels&&!floats;level+=1)[texels,w,h]=halved(texels,w,h,channels),gl.texSubImage3D(target,
+level,0,0,n,w,h,1,format,gl.HALF_FLOAT,texels)}floats&&levels&&gl.generateMipmap(target)}checkSize({width,height,layers}){
+let gl=this.graphics.context,most=gl.getParameter(gl.MAX_TEXTURE_SIZE),mostLayers=gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS);
+if(!(Math.max(width,height)<=most&&layers<=mostLayers))throw new Error(`a texture of ${width} x ${height} texels in ${layers}\
+ layers is asked for, and this graphics card has ${most} x ${most} in ${mostLayers}; show fewer nodes`)}colourMap(){let gl=this.
+graphics.context;return this.texture("cmap",this.key(["cmap"]),texture=>{gl.bindTexture(gl.TEXTURE_2D,texture),gl.pixelStorei(
+gl.UNPACK_ALIGNMENT,1);let data=this.parts.get("cmap")?.data??new Uint8Array(1024);gl.texImage2D(gl.TEXTURE_2D,0,gl.RGBA8,
+256,1,0,gl.RGBA,gl.UNSIGNED_BYTE,data),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.texParameteri(
+gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST)})}dropSlices(before,after){let next=after+1<this.header.slices.steps?after+
+1:0;for(let name of[...this.resources.keys()])name.startsWith("slices/")&&([before,after,next,after+1].includes(stepOf(name))||
+this.drop(name))}bindTextures(before,after){let gl=this.graphics.context,{paper}=this.header,repeat=paper?.repeat??[!1,!1];
+[this.slices(before),after===before?null:this.slices(after),paper&&this.image("noise",paper.picture?[!0,!0]:repeat),paper&&
+this.image("step",repeat),this.colourMap()].forEach((texture,n)=>{gl.activeTexture(gl.TEXTURE0+n),gl.bindTexture(n<4?gl.
+TEXTURE_2D_ARRAY:gl.TEXTURE_2D,texture)}),gl.activeTexture(gl.TEXTURE0+SAMPLERS.length)}draw(before,after,anchor,textures){
+let gl=this.graphics.context;textures&&(this.dropSlices(before,after),this.bindTextures(before,after)),this.bindNodes(before,
+after,anchor),gl.drawElements(gl.TRIANGLES,this.resources.get("index")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(null)}};var STILL_MS=160,LOST_MS=5e3,STEPS_HELD=12,isEqual=(a,b)=>JSON.stringify(a)===JSON.stringify(b),Viewer=class{options;graphics=sharedGraphics();lifetime=new Lifetime;player=new Player;root=document.
 createElement("div");canvas=document.createElement("canvas");panel;pointers;parts=new Map;header=null;settings={};scene=null;camera=null;sharp=!1;isVisible=!0;shown=null;together=[
 this];renderer;busyUntil=0;firstCamera=null;requests=new Map;constructor(element,options={}){this.options=options;let{root}=this;
 root.className="flowtex",root.tabIndex=0,root.dataset.sharp="false",root.setAttribute("data-lm-suppress-shortcuts","true"),
@@ -729,69 +775,74 @@ stats(),objects,users:users.size,frames}}dispose(){if(!this.lifetime.isOver){thi
 this.scene?.dispose(),this.scene=null;for(let name of[...this.parts.keys()])this.remove(name);this.graphics.leave(this),
 this.renderer.dispose(),this.root.remove()}}setHeader(header){if(header.format!==2){this.panel.fail(`The scene has forma\
 t ${header.format}, and this client reads format ${2}.`,"Use the client of the flowtex that made the scene.");return}let old=this.
-header;if(this.header=header,this.settings={...header.settings,...header.own},this.player.setHeader(header),this.scene?.
-dispose(),this.scene=new Scene(this.graphics,header,this.parts),this.requests.clear(),(!old||!isSamePlace(old.geometry,header.
-geometry))&&(this.firstCamera=header.camera,this.camera=null),old&&old.generation!==header.generation)for(let name of[...this.
-parts.keys()])name.includes("/")&&this.remove(name);this.panel.build(),this.change()}setPart(part){let{name,digest}=part;
-if(this.requests.delete(stepOf(name)),digest&&this.parts.get(name)?.digest===digest)return;let held=this.graphics.hold(part);
-this.remove(name),this.parts.set(name,held),this.scene?.forget(name),this.trim(),name==="cmap"&&this.panel.showLegend(),
-this.change()}remove(name){this.graphics.release(this.parts.get(name)),this.parts.delete(name)}trim(){if(!this.options.onNeed||
-!this.header)return;let names=[...this.parts.keys()].filter(name=>name.startsWith("slices/")),[before,after]=this.player.
-moment;for(let name of names.slice(0,Math.max(names.length-STEPS_HELD,0))){let step=stepOf(name);if(!(step===before||step===
-after))for(let kind of["slices","extra"])this.remove(`${kind}/${step}`)}}setSettings(settings){Object.entries(settings).
-every(([name,value])=>this.settings[name]===value)||(Object.assign(this.settings,settings),this.panel.update(),this.change())}followSetting(name,value){
-name in(this.header?.own??{})||this.setSettings({[name]:value})}choose(name,value){this.holdDraft(),this.setSettings({[name]:value}),
-this.options.onSetting?.(name,value)}get cameraState(){let state=this.camera?.state??this.firstCamera;return state?copyOf(
-state):null}setCamera(state){if(!this.camera)this.firstCamera=copyOf(state);else{if(isEqual(this.camera.state,state))return;
-this.camera.state=copyOf(state)}this.change(!0)}reportCamera(){this.holdDraft(),this.change(!0),this.camera&&this.options.
-onCamera?.(copyOf(this.camera.state))}reset(){this.camera&&(this.place(),this.reportCamera())}place(){let{header,firstCamera:first,
-aspect}=this,nodes=this.parts.get("position")?.data;if(!header||!nodes)return;let{geometry,limits}=header,state=first?widened(
-geometry,limits,first,nodes,aspect):fitted(geometry,limits,nodes,aspect);this.camera=new Camera(state,limits,geometry.planar,
-aspect),this.camera.pick=(x,y)=>this.point(x,y)?.position??null,(!first||!isEqual(first,state))&&this.options.onCamera?.(
-copyOf(state))}get aspect(){return Math.max(this.root.clientWidth,1)/Math.max(this.root.clientHeight,1)}get playing(){return this.
-player.playing}setTime(time){this.player.seek(time),this.panel.tick(),this.change()}scrub(share){let{player,options}=this,
-{first,last}=player.range(this.settings),value=first+share*(last-first);this.holdDraft(),player.varies?(this.setTime(value),
-options.onTime?.(player.time)):(this.setClock(value),options.onClock?.(player.clock))}setClock(clock){this.player.clock=
-clock,this.panel.tick(),this.change()}play(){if(this.options.follows)return this.options.follows.play();this.playing||!this.
-header||(!this.player.varies&&this.settings.motion==="off"&&this.choose("motion","speed"),this.player.start(),this.panel.
-update(),this.request(),this.options.onPlaying?.(!0))}pause(){if(this.options.follows)return this.options.follows.pause();
-this.playing&&(this.player.playing=!1,this.panel.update(),this.change(),this.options.onPlaying?.(!1))}togglePlaying(){let leader=this.
-options.follows??this;leader.playing?leader.pause():leader.play()}holdDraft(){this.busyUntil=performance.now()+STILL_MS}get isBusy(){
-return this.playing||performance.now()<this.busyUntil}change(cameraOnly=!1){this.renderer.restart(cameraOnly),this.setSharp(
-!1),this.request()}draw(){this.frame(performance.now(),performance.now()+FRAME_MS)}setSharp(sharp){sharp!==this.sharp&&(this.
-sharp=sharp,this.root.dataset.sharp=String(sharp),sharp&&this.options.onFrame?.())}request(){!this.lifetime.isOver&&this.
-isVisible&&this.graphics.request(this)}resize(){let ratio=Math.max(window.devicePixelRatio||1,.1),width=Math.max(Math.round(
-this.root.clientWidth*ratio),1),height=Math.max(Math.round(this.root.clientHeight*ratio),1);width===this.canvas.width&&height===
-this.canvas.height||(this.renderer.resize(width,height),this.camera&&(this.camera.aspect=this.aspect,isEqual(this.camera.
-state,this.camera.start)&&this.place()),this.change())}get smooth(){let{header}=this;return this.options.smooth!==void 0||
-!header?this.options.smooth??!1:this.program(header).price<CARD_PRICE_MS}get ratio(){return this.canvas.height/Math.max(
-this.root.clientHeight,1)}lost(){this.scene=this.header&&new Scene(this.graphics,this.header,this.parts),this.setSharp(!1)}get lacking(){
-let[before,after]=this.player.moment;return this.scene?.missing(before,after)??[]}available(){let{header,scene,player,shown}=this;
-if(!header||!scene)return null;let moment=player.moment,count=header.slices.steps,ahead=player.playing?[1,2].map(n=>(moment[1]+
-n)%count):[];this.ask([moment[0],moment[1],...ahead]);let{lacking}=this;return this.panel.wait(lacking),lacking.length?shown&&
-!scene.missing(shown[0],shown[1]).length?shown:null:this.shown=moment}ask(steps){let now=performance.now(),lacking=[...new Set(
-steps)].filter(step=>this.scene?.missing(step,step).length);for(let step of lacking)!this.options.onNeed||now-(this.requests.
-get(step)??-1/0)<LOST_MS||(this.requests.set(step,now),this.options.onNeed(step));return!lacking.length}frame(now,until){
-if(!(this.lifetime.isOver||this.graphics.isLost||!this.graphics.gl||!this.isVisible)&&!(!this.header||!this.scene||this.
-canvas.width<2))try{this.advance(now),this.drawPicture(this.header,until)}catch(error){this.pause(),this.panel.fail("The\
- picture could not be drawn.",String(error))}}program(header,isClose=this.isClose(header)){let{vertex,fragment}=header.shaders,
-defines=isMoving(header,this.settings)?["FLOWTEX_MOVING"]:[];return isClose&&defines.push("FLOWTEX_CELLS"),this.graphics.
-programs.get(vertex,fragment,...defines)}isClose(header){return this.camera!==null&&isNear(header,this.settings,this.view(
-[0,0,0],this.ratio))}drawPicture(header,until){let shown=this.available();if(this.camera||this.place(),!shown||!this.camera)
-return;let{programs}=this.graphics,program=this.program(header);if(program.error){this.panel.fail("The shader does not c\
-ompile with this graphics driver.",program.error);return}if(!program.ready)return this.request();!this.sharp&&this.renderer.
-draw(program,shown,this.isBusy,until)&&(this.panel.clear(),programs.get(header.shaders.vertex,header.shaders.pick),header.
-slices.critical&&this.program(header,!0),this.setSharp(!this.playing)),this.sharp||this.request()}advance(now){let{player,
-options}=this;!player.playing||!player.advance(now,steps=>this.ask(steps))||(player.varies?options.onTime?.(player.time):
-options.onClock?.(player.clock),this.panel.tick(),this.renderer.restart(),this.setSharp(!1))}view(shown,density){let{header,
-camera,scene,player}=this;if(!header||!camera)throw new Error("there is nothing to look at yet");let{geometry,constants}=header,
-focus=camera.state.focal_point,local=toFrame(geometry.frame,subtract2(focus,geometry.center)),old=scene?.anchor??[0,0,0],
-range=constants.anchorRange*2*camera.height,isFar=v2=>v2.some(c=>Math.abs(c)>range),anchor=isFar(local)?local:[0,0,0];return{
-focus,anchor:isFar(subtract2(local,old))?anchor:old,eye:camera.eye,between:shown[2],time:player.timeOf(shown),clock:player.
-clock,density,pixel:2*camera.height/Math.max(this.root.clientHeight*density,1)}}get canPick(){let{header,graphics}=this;
-return!header||graphics.isLost||!graphics.gl?!1:graphics.programs.get(header.shaders.vertex,header.shaders.pick).ready}point(x,y){
-let{scene,camera,shown,canvas}=this;if(!scene||!camera||!shown||!this.canPick)return null;let{anchor}=this.view(shown,1);
-return pickedPoint({scene,camera,moment:shown,anchor,canvas},x,y)}};function viewersIn(element,count,options,own=()=>({})){if(count<2)return[new Viewer(element,{...options,...own(0)})];let pair=dom(
+header;if(old&&old.generation!==void 0&&old.generation===header.generation)return this.recolour(coloursOf(header));if(this.
+header=header,this.settings={...header.settings,...header.own},this.player.setHeader(header),this.scene?.dispose(),this.
+scene=new Scene(this.graphics,header,this.parts),this.requests.clear(),(!old||!isSamePlace(old.geometry,header.geometry))&&
+(this.firstCamera=header.camera,this.camera=null),old&&old.generation!==header.generation)for(let name of[...this.parts.
+keys()])name.includes("/")&&this.remove(name);this.panel.build(),this.change()}recolour(colours){if(this.header){Object.
+assign(this.header,colours);for(let name of["scalars","mesh"])this.scene?.forget(name);this.panel.showLegend(),this.change()}}chooseColours(choice){
+if(this.options.onColours)return this.options.onColours(choice);for(let viewer of this.together){if(!viewer.header)continue;
+let{colours,part}=recoloured(viewer.header,choice,viewer.parts);part&&viewer.setPart(part),viewer.recolour(colours)}}setPart(part){
+let{name,digest}=part;if(this.requests.delete(stepOf(name)),digest&&this.parts.get(name)?.digest===digest)return;let held=this.
+graphics.hold(part);this.remove(name),this.parts.set(name,held),this.scene?.forget(name),this.trim(),(name==="cmap"||name===
+"maps")&&this.panel.showLegend(),this.change()}remove(name){this.graphics.release(this.parts.get(name)),this.parts.delete(
+name)}trim(){if(!this.options.onNeed||!this.header)return;let names=[...this.parts.keys()].filter(name=>name.startsWith(
+"slices/")),[before,after]=this.player.moment;for(let name of names.slice(0,Math.max(names.length-STEPS_HELD,0))){let step=stepOf(
+name);if(!(step===before||step===after))for(let kind of["slices","extra"])this.remove(`${kind}/${step}`)}}setSettings(settings){
+Object.entries(settings).every(([name,value])=>this.settings[name]===value)||(Object.assign(this.settings,settings),this.
+panel.update(),this.change())}followSetting(name,value){name in(this.header?.own??{})||this.setSettings({[name]:value})}choose(name,value){
+this.holdDraft(),this.setSettings({[name]:value}),this.options.onSetting?.(name,value)}get cameraState(){let state=this.
+camera?.state??this.firstCamera;return state?copyOf(state):null}setCamera(state){if(!this.camera)this.firstCamera=copyOf(
+state);else{if(isEqual(this.camera.state,state))return;this.camera.state=copyOf(state)}this.change(!0)}reportCamera(){this.
+holdDraft(),this.change(!0),this.camera&&this.options.onCamera?.(copyOf(this.camera.state))}reset(){this.camera&&(this.place(),
+this.reportCamera())}place(){let{header,firstCamera:first,aspect}=this,nodes=this.parts.get("position")?.data;if(!header||
+!nodes)return;let{geometry,limits}=header,state=first?widened(geometry,limits,first,nodes,aspect):fitted(geometry,limits,
+nodes,aspect);this.camera=new Camera(state,limits,geometry.planar,aspect),this.camera.pick=(x,y)=>this.point(x,y)?.position??
+null,(!first||!isEqual(first,state))&&this.options.onCamera?.(copyOf(state))}get aspect(){return Math.max(this.root.clientWidth,
+1)/Math.max(this.root.clientHeight,1)}get playing(){return this.player.playing}setTime(time){this.player.seek(time),this.
+panel.tick(),this.change()}scrub(share){let{player,options}=this,{first,last}=player.range(this.settings),value=first+share*
+(last-first);this.holdDraft(),player.varies?(this.setTime(value),options.onTime?.(player.time)):(this.setClock(value),options.
+onClock?.(player.clock))}setClock(clock){this.player.clock=clock,this.panel.tick(),this.change()}play(){if(this.options.
+follows)return this.options.follows.play();this.playing||!this.header||(!this.player.varies&&this.settings.motion==="off"&&
+this.choose("motion","speed"),this.player.start(),this.panel.update(),this.request(),this.options.onPlaying?.(!0))}pause(){
+if(this.options.follows)return this.options.follows.pause();this.playing&&(this.player.playing=!1,this.panel.update(),this.
+change(),this.options.onPlaying?.(!1))}togglePlaying(){let leader=this.options.follows??this;leader.playing?leader.pause():
+leader.play()}holdDraft(){this.busyUntil=performance.now()+STILL_MS}get isBusy(){return this.playing||performance.now()<
+this.busyUntil}change(cameraOnly=!1){this.renderer.restart(cameraOnly),this.setSharp(!1),this.request()}draw(){this.frame(
+performance.now(),performance.now()+FRAME_MS)}setSharp(sharp){sharp!==this.sharp&&(this.sharp=sharp,this.root.dataset.sharp=
+String(sharp),sharp&&this.options.onFrame?.())}request(){!this.lifetime.isOver&&this.isVisible&&this.graphics.request(this)}resize(){
+let ratio=Math.max(window.devicePixelRatio||1,.1),width=Math.max(Math.round(this.root.clientWidth*ratio),1),height=Math.
+max(Math.round(this.root.clientHeight*ratio),1);width===this.canvas.width&&height===this.canvas.height||(this.renderer.resize(
+width,height),this.camera&&(this.camera.aspect=this.aspect,isEqual(this.camera.state,this.camera.start)&&this.place()),this.
+change())}get smooth(){let{header}=this;return this.options.smooth!==void 0||!header?this.options.smooth??!1:this.program(
+header).price<CARD_PRICE_MS}get ratio(){return this.canvas.height/Math.max(this.root.clientHeight,1)}lost(){this.scene=this.
+header&&new Scene(this.graphics,this.header,this.parts),this.setSharp(!1)}get lacking(){let[before,after]=this.player.moment;
+return this.scene?.missing(before,after)??[]}available(){let{header,scene,player,shown}=this;if(!header||!scene)return null;
+let moment=player.moment,count=header.slices.steps,ahead=player.playing?[1,2].map(n=>(moment[1]+n)%count):[];this.ask([moment[0],
+moment[1],...ahead]);let{lacking}=this;return this.panel.wait(lacking),lacking.length?shown&&!scene.missing(shown[0],shown[1]).
+length?shown:null:this.shown=moment}ask(steps){let now=performance.now(),lacking=[...new Set(steps)].filter(step=>this.scene?.
+missing(step,step).length);for(let step of lacking)!this.options.onNeed||now-(this.requests.get(step)??-1/0)<LOST_MS||(this.
+requests.set(step,now),this.options.onNeed(step));return!lacking.length}frame(now,until){if(!(this.lifetime.isOver||this.
+graphics.isLost||!this.graphics.gl||!this.isVisible)&&!(!this.header||!this.scene||this.canvas.width<2))try{this.advance(
+now),this.drawPicture(this.header,until)}catch(error){this.pause(),this.panel.fail("The picture could not be drawn.",String(
+error))}}program(header,isClose=this.isClose(header)){let{vertex,fragment}=header.shaders,defines=isMoving(header,this.settings)?
+["FLOWTEX_MOVING"]:[];return isClose&&defines.push("FLOWTEX_CELLS"),this.graphics.programs.get(vertex,fragment,...defines)}isClose(header){
+return this.camera!==null&&isNear(header,this.settings,this.view([0,0,0],this.ratio))}drawPicture(header,until){let shown=this.
+available();if(this.camera||this.place(),!shown||!this.camera)return;let{programs}=this.graphics,program=this.program(header);
+if(program.error){this.panel.fail("The shader does not compile with this graphics driver.",program.error);return}if(!program.
+ready)return this.request();!this.sharp&&this.renderer.draw(program,shown,this.isBusy,until)&&(this.panel.clear(),programs.
+get(header.shaders.vertex,header.shaders.pick),header.slices.critical&&this.program(header,!0),this.setSharp(!this.playing)),
+this.sharp||this.request()}advance(now){let{player,options}=this;!player.playing||!player.advance(now,steps=>this.ask(steps))||
+(player.varies?options.onTime?.(player.time):options.onClock?.(player.clock),this.panel.tick(),this.renderer.restart(),this.
+setSharp(!1))}view(shown,density){let{header,camera,scene,player}=this;if(!header||!camera)throw new Error("there is not\
+hing to look at yet");let{geometry,constants}=header,focus=camera.state.focal_point,local=toFrame(geometry.frame,subtract2(
+focus,geometry.center)),old=scene?.anchor??[0,0,0],range=constants.anchorRange*2*camera.height,isFar=v2=>v2.some(c=>Math.
+abs(c)>range),anchor=isFar(local)?local:[0,0,0];return{focus,anchor:isFar(subtract2(local,old))?anchor:old,eye:camera.eye,
+between:shown[2],time:player.timeOf(shown),clock:player.clock,density,pixel:2*camera.height/Math.max(this.root.clientHeight*
+density,1)}}get canPick(){let{header,graphics}=this;return!header||graphics.isLost||!graphics.gl?!1:graphics.programs.get(
+header.shaders.vertex,header.shaders.pick).ready}point(x,y){let{scene,camera,shown,canvas}=this;if(!scene||!camera||!shown||
+!this.canPick)return null;let{anchor}=this.view(shown,1);return pickedPoint({scene,camera,moment:shown,anchor,canvas},x,
+y)}};function viewersIn(element,count,options,own=()=>({})){if(count<2)return[new Viewer(element,{...options,...own(0)})];let pair=dom(
 "div",{class:"flowtex-pair"});pair.style.cssText="display: flex; gap: 2px; width: 100%; height: 100%",element.append(pair);
 let viewers=[];for(let n=0;n<count;n+=1){let cell=dom("div");cell.style.cssText="flex: 1 1 0; min-width: 0; height: 100%",
 pair.append(cell);let others=()=>viewers.filter((_,m)=>m!==n),follower=n?{controls:!1,follows:viewers[0]}:{};viewers.push(

@@ -52,6 +52,16 @@ class WebView:
         """Return what the client is handed; makes noise textures, and traces nothing."""
         return self._data(self.scene)
 
+    def page_data(self) -> ClientData:
+        """Return the same with the values of all scalars, where nobody can be asked for them."""
+        data, names = self.data(), self.scene.scalar_names
+        others = tuple(
+            (n, steps_of(data.field, name))
+            for n, name in enumerate(names)
+            if name != self.scene.scalar_name
+        )
+        return data.recoloured(replace(data.colours, others=others))
+
     def coarse_data(self, nodes: int) -> ClientData:
         """Return the same with so many nodes at most, for a first picture."""
         return self._data(self.scene.coarsened(nodes))
@@ -79,6 +89,7 @@ def colours_of(scene: Scene, field: FlowField, background: tuple[float, float, f
         number=0 if name is None else scene.scalar_names.index(name),
         choices=choices_of(scene),
         cmap=look.cmap if isinstance(look.cmap, str) else "",
+        auto=look.clim is None,
         values=None if name is None else steps_of(field, name),
         low=low,
         high=high,
@@ -94,8 +105,12 @@ def colours_of(scene: Scene, field: FlowField, background: tuple[float, float, f
 
 def choices_of(scene: Scene) -> tuple[dict[str, Any], ...]:
     """Return what can be coloured by, with the range that each has by itself."""
-    ranges = ((name, *scene.scalar_range(name)) for name in scene.scalar_names)
-    return tuple({"name": name, "low": low, "high": high} for name, low, high in ranges)
+    choices = []
+    for name in scene.scalar_names:
+        low, high = scene.scalar_range(name)
+        steps = len(steps_of(scene.field, name))
+        choices.append({"name": name, "unit": "", "low": low, "high": high, "steps": steps})
+    return tuple(choices)
 
 
 def web_views(mesh: Any, options: Options, *, steps: int | None = None) -> tuple[WebView, ...]:

@@ -126,7 +126,18 @@ class Streamer:
     "name",
     [
         *(f"set_{name}" for name in TABLE),
-        *("colour", "cmap", "log_scale", "opacity", "low", "high", "theme", "background", "compare", "image_file"),
+        *(
+            "colour",
+            "cmap",
+            "log_scale",
+            "opacity",
+            "low",
+            "high",
+            "theme",
+            "background",
+            "compare",
+            "image_file",
+        ),
         *("time", "playing", "pace", "rendering"),
     ],
 )

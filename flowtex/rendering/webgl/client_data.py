@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import Bytes, Floats, Floats32
-from flowtex._util.colours import CMAPS, colour_shares, colour_table
+from flowtex._util.colours import CMAPS, colour_shares, colour_table, is_diverging
 from flowtex.camera import CAMERA_LIMITS, Camera
 from flowtex.field import FlowField
 from flowtex.field.interpolation import steps_around
@@ -54,12 +54,14 @@ class Colours:
     number
         Number of the scalar among those of the field.
     choices
-        What a person may choose to colour by, each with name and automatic range; none where the
-        client cannot be handed others.
-    cmap
-        Name of the colour map; empty for one that has none.
+        What a person may choose to colour by: name, unit, automatic range, and whether it varies.
+    cmap, auto
+        Name of the colour map, empty for one that has none, and whether nobody has chosen its
+        range.
     values
         Nodal values, (T or 1, J, I).
+    others
+        Numbers and values of other scalars, handed over as well where nobody can be asked later.
     low, high
         Values at the ends of the colour map.
     log_scale
@@ -81,7 +83,9 @@ class Colours:
     number: int = 0
     choices: tuple[Mapping[str, Any], ...] = ()
     cmap: str = ""
+    auto: bool = True
     values: Floats | None = None
+    others: tuple[tuple[int, Floats], ...] = ()
     low: float = 0.0
     high: float = 1.0
     log_scale: bool = False
@@ -178,12 +182,17 @@ class ClientData:
                 "low": float(colours.low),
                 "high": float(colours.high),
                 "log": bool(colours.log_scale),
-                "steps": 1 if self._values is None else len(self._values),
+                "steps": 1 if colours.values is None or len(colours.values) == 1 else self.steps,
                 "unit": colours.unit,
                 "number": colours.number,
-                "choices": list(map(dict, colours.choices)),
+                "choices": [
+                    {**choice, "steps": self.steps if choice["steps"] > 1 else 1}
+                    for choice in colours.choices
+                ],
                 "cmap": colours.cmap,
+                "auto": bool(colours.auto),
                 "maps": list(CMAPS),
+                "diverging": list(filter(is_diverging, CMAPS)),
                 "bar": bool(colours.bar),
             },
             "colour": _numbers(colours.plain),
@@ -201,7 +210,7 @@ class ClientData:
         """Return the arrays that are the same at all times, the smallest first."""
         geometry, colours = self.textures.geometry, self.colours
         parts: Parts = {}
-        if colours.name is not None and colours.table is not None:
+        if colours.table is not None and (colours.choices or colours.name is not None):
             parts["cmap"] = np.ascontiguousarray(colours.table, np.uint8)
         if colours.choices:
             parts["maps"] = np.stack([colour_table(name)[:, :3] for name in CMAPS])
@@ -229,11 +238,11 @@ class ClientData:
         if not 0 <= step < self.steps:
             msg = f"time step {step} does not exist: expected 0 to {self.steps - 1}"
             raise IndexError(msg)
-        values = self._values
         parts: Parts = {}
-        if values is not None and step < len(values):
-            name = scalar_part(step, self.colours.number)
-            parts[name] = np.ascontiguousarray(values[step], "<f4")
+        for number, values in self._values.items():
+            if step < len(values):
+                name = f"scalars/{step}/{number}" if number else f"scalars/{step}"
+                parts[name] = np.ascontiguousarray(values[step], "<f4")
         packed = self.packing.step(self.source(step))
         parts[f"extra/{step}"] = packed.extra
         parts[f"slices/{step}"] = packed.slopes
@@ -255,23 +264,33 @@ class ClientData:
         texels = geometry.rows.size * geometry.columns.size
         nodes = geometry.field.valid.size
         numbers = self.textures.count * self.packing.channels + len(self.packing.extra)
-        return 2 * texels * numbers + (4 * nodes if self.colours.values is not None else 0)
+        return 2 * texels * numbers + 4 * nodes * len(self._values)
 
     @property
-    def _values(self) -> Floats | None:
-        """Nodal values of the colours at the times that are handed over, (steps or 1, J, I)."""
-        values = self.colours.values
-        if values is None or not self.chosen or len(values) == 1:
+    def _values(self) -> dict[int, Floats]:
+        """Nodal values at the times that are handed over, (steps or 1, J, I), by scalar."""
+        colours = self.colours
+        values = dict(colours.others)
+        if colours.values is not None:
+            values[colours.number] = colours.values
+        if not self.chosen:
             return values
-        return values[list(self.chosen)]
+        chosen = list(self.chosen)
+        return {n: v if len(v) == 1 else v[chosen] for n, v in values.items()}
 
     @cached_property
     def _mesh(self) -> Floats32:
         """Return what the client chooses its triangles by, of each tile."""
         field = self.textures.geometry.field
         levels = MeshLevels(field.surface.points, field.surface.cells, field.periodic)
-        if self._values is not None:
-            levels.set_colours(*map(self.colours.shares, self._values))
+        shares: list[Floats] = []
+        for number, values in self._values.items():
+            if number == self.colours.number:
+                shares += map(self.colours.shares, values)
+            else:
+                choice = self.colours.choices[number]
+                shares += [colour_shares(v, choice["low"], choice["high"]) for v in values]
+        levels.set_colours(*shares)
         return levels.records.astype("<f4")
 
     def _geometry(self) -> dict[str, Any]:
@@ -304,11 +323,6 @@ class ClientData:
             "times": _numbers(self.times),
             "timeUnit": textures.geometry.field.time_unit,
         }
-
-
-def scalar_part(step: int, number: int) -> str:
-    """Return the name of the part with the values of a scalar at a step."""
-    return f"scalars/{step}/{number}" if number else f"scalars/{step}"
 
 
 def _paper(paper: PaperTextures) -> dict[str, Any]:
