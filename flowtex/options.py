@@ -142,6 +142,8 @@ class Appearance:
         faults = []
         if self.scalars is None or self.scalars is True:
             object.__setattr__(self, "scalars", SPEED)
+        elif self.scalars is not False and not isinstance(self.scalars, str):
+            faults.append(f"scalars is {self.scalars!r}; expected the name of an array, or False")
         if self.cmap is None:
             object.__setattr__(self, "cmap", DEFAULT_CMAP)
         if not _is_between(self.opacity, 0, 1):

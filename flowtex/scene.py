@@ -462,9 +462,12 @@ def share_field(field: FlowField) -> FlowField:
     A notebook shows one mesh many times over, and makes it a field each time.
     """
     words = (field.periodic, field.name, field.length_unit, field.time_unit, field.sign_free)
+    units = tuple(field.units.items())
     positions = () if field.has_position is None else (field.has_position,)
     arrays = (field.points, field.velocity, field.times, field.valid, *positions)
-    key = digest(*arrays, *field.scalars.values(), words=(words, len(positions), *field.scalars))
+    key = digest(
+        *arrays, *field.scalars.values(), words=(words, units, len(positions), *field.scalars)
+    )
     return _fields.get(key, lambda: field)
 
 

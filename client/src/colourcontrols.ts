@@ -45,7 +45,7 @@ export class ColourControls {
     });
     const row = (name: string, ...fields: HTMLElement[]) =>
       dom("div", { class: "row" }, [dom("span", { class: "name" }, [name]), ...fields]);
-    this.rangeRow = row("Range", dom("span", { class: "ends" }, [...ends, auto]));
+    this.rangeRow = row("Range", dom("span", { class: "between" }, [...ends, auto]));
     this.mapRow = row("Colour map", swatches);
     this.mapRow.classList.add("ranged");
     this.element.append(row("Colour by", scalars), this.mapRow, this.rangeRow);
@@ -64,13 +64,13 @@ export class ColourControls {
     this.mapRow.hidden = this.rangeRow.hidden = name === null;
     [low, high].forEach((value, n) => (this.ends[n].value = String(Number(value.toPrecision(4)))));
     this.auto.setAttribute("aria-pressed", String(auto));
-    const strength = Number(this.viewer.settings.strength);
+    const { settings } = this.viewer;
     this.swatches.replaceChildren(
       ...header.scalars.maps.map((each) => {
         const pressed = String(each === cmap);
         const attributes = { type: "button", title: each, "aria-label": each, "data-cmap": each };
         const swatch = dom("button", { ...attributes, "aria-pressed": pressed });
-        swatch.style.background = rampOf(mapOf(header, maps.data, each), header, strength, STOPS);
+        swatch.style.background = rampOf(mapOf(header, maps.data, each), header, settings, STOPS);
         return swatch;
       }),
     );

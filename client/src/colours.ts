@@ -1,6 +1,7 @@
 // Colours of the surface: what is chosen of them, and the colours that the picture then has.
 
-import type { Data, Header, NamedPart, Part } from "./protocol.ts";
+import type { Data, Header, NamedPart, Part, Settings, Shading } from "./protocol.ts";
+import { clamp } from "./vectors.ts";
 
 /** What a person chooses; a range of null is that of the values. */
 export interface ColourChoice {
@@ -62,35 +63,50 @@ export function recoloured(
   return { colours: { scalars, mesh }, part };
 }
 
+const toLinear = (c: number) =>
+  c < SRGB.knee ? c / SRGB.slope : ((c + SRGB.offset) / SRGB.scale) ** SRGB.power;
+
+function fromLinear(x: number): number {
+  const c = clamp(x, 0, 1);
+  if (c < SRGB.knee / SRGB.slope) return c * SRGB.slope;
+  return SRGB.scale * c ** (1 / SRGB.power) - SRGB.offset;
+}
+
+const times = (v: number[], m: number[]) =>
+  [0, 1, 2].map((k) => v[0] * m[k] + v[1] * m[3 + k] + v[2] * m[6 + k]);
+
 /**
- * The mean colour of the picture where the map has a colour, from 0 to 255: the shading of
- * flowtex/rendering/cpu/shade.py for a texture of value 0.
+ * The mean colour of the picture, from 0 to 255, where the map has a colour: mean_colours in
+ * flowtex/rendering/cpu/shade.py.
  */
-export function meanColour(
-  colour: ArrayLike<number>,
-  strength: number,
-  { toCones, toLab, baseDark, baseLight }: Header["constants"]["shading"],
-): [number, number, number] {
-  const linear = [0, 1, 2].map((k) => {
-    const c = colour[k] / 255;
-    const { knee, slope, offset, scale, power } = SRGB;
-    return c < knee ? c / slope : ((c + offset) / scale) ** power;
+export function meanColour(colour: number[], settings: Settings, shading: Shading): number[] {
+  const { values } = shading;
+  const [[dark, light], [range, slope]] = [shading.base, shading.tone];
+  const [strength, contrast] = [Number(settings.strength), Number(settings.contrast)];
+  const cones = times(colour.map((c) => toLinear(c / 255)), shading.toCones).map(Math.cbrt);
+  const [lightness, a, b] = times(cones, shading.toLab);
+  const base = lightness + strength * (dark + (light - dark) * lightness - lightness);
+  const mean = [0, 0, 0];
+  values.forEach((value) => {
+    const tone = 2 / (1 + Math.exp(-slope * contrast * value)) - 1;
+    const shown = clamp(base + range * strength * tone, 0, 1);
+    const room = shown < base ? shown / base : (1 - shown) / Math.max(1 - base, 1e-6);
+    const roots = times([shown, a * room, b * room], shading.fromLab);
+    const linear = times(roots.map((x) => x ** 3), shading.fromCones);
+    linear.forEach((x, k) => (mean[k] += (255 * fromLinear(x)) / values.length));
   });
-  const times = (v: number[], m: number[]) =>
-    [0, 1, 2].map((k) => v[0] * m[k] + v[1] * m[3 + k] + v[2] * m[6 + k]);
-  const [light, a, b] = times(times(linear, toCones).map(Math.cbrt), toLab);
-  return [light + strength * (baseDark + (baseLight - baseDark) * light - light), a, b];
+  return mean;
 }
 
 /** A ramp of the mean colours that the picture has with a map, (256, 4), as a background. */
-export function rampOf(map: Data, header: Header, strength: number, stops: number): string {
-  const { shading } = header.constants;
+export function rampOf(map: Data, header: Header, settings: Settings, stops: number): string {
   const colours = Array.from({ length: stops }, (_, n) => {
     const first = 4 * Math.round((n / (stops - 1)) * 255);
-    // A picture on the surface has colours of its own.
-    const shown = header.paper?.picture ? 0 : strength;
-    const lab = meanColour(map.slice(first, first + 3), shown, shading);
-    return `oklab(${lab.map((x) => x.toFixed(4)).join(" ")})`;
+    const colour = [...map.slice(first, first + 3)];
+    // An image on the surface has colours of its own.
+    const own = header.paper?.picture ?? false;
+    const shown = own ? colour : meanColour(colour, settings, header.constants.shading);
+    return `rgb(${shown.map(Math.round).join(" ")})`;
   });
   return `linear-gradient(90deg, ${colours.join(", ")})`;
 }

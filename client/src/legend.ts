@@ -18,7 +18,7 @@ export class Legend {
     this.element.hidden = name === null || !bar || !map || Boolean(settings.show_level);
     if (this.element.hidden || !map) return;
     const ramp = dom("div", { class: "ramp" }, [this.mark]);
-    ramp.style.background = rampOf(map, header, Number(settings.strength), STOPS);
+    ramp.style.background = rampOf(map, header, settings, STOPS);
     this.mark.hidden = true;
     const ends = [low, high].map((value) => dom("span", {}, [numberText(value)]));
     this.element.replaceChildren(

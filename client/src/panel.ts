@@ -176,8 +176,8 @@ export class Panel {
   }
 
   /** The settings that the legend shows. */
-  private lookOf({ show_level, strength }: Settings): string {
-    return `${show_level} ${strength}`;
+  private lookOf({ show_level, strength, contrast }: Settings): string {
+    return `${show_level} ${strength} ${contrast}`;
   }
 
   showLegend(): void {

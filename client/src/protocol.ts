@@ -78,6 +78,19 @@ export interface MeshLimits {
   leastDistance: number;
 }
 
+/** Numbers of the shading: those of flowtex/rendering/constants.py. */
+export interface Shading {
+  toCones: number[];
+  toLab: number[];
+  fromLab: number[];
+  fromCones: number[];
+  /** The lightness that black and white are drawn to; range and slope of the tones. */
+  base: [number, number];
+  tone: [number, number];
+  /** Values of the texture that stand for all. */
+  values: number[];
+}
+
 export interface Header {
   format: number;
   name: string;
@@ -133,8 +146,7 @@ export interface Header {
     anchorRange: number;
     /** Cells that a side of a path goes over, beyond which it does not follow their own velocity. */
     farCells: number;
-    /** Oklab, and the lightness that black and white are drawn to. */
-    shading: { toCones: number[]; toLab: number[]; baseDark: number; baseLight: number };
+    shading: Shading;
   };
   mesh: MeshLimits;
   limits: CameraLimits;

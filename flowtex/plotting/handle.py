@@ -13,6 +13,7 @@ from flowtex._util.colours import colour_table
 from flowtex.field import FlowField
 from flowtex.options import NO_VALUE_COLOR, Appearance
 from flowtex.rendering.constants import AMBIENT_LIGHT, DIFFUSE_LIGHT
+from flowtex.rendering.cpu.shade import mean_colours
 from flowtex.rendering.vtk import FlowSurface, surface_mesh, use_flow_mapper
 from flowtex.scene import AppearanceAttributes, Change, Scene
 from flowtex.settings import Settings
@@ -84,6 +85,7 @@ class FlowHandle(AppearanceAttributes):
         self._place = plotter.renderers.active_index
         self._bar_title: str | None = None
         self._bar_options = scalar_bar_args or {}
+        self._bar_look = self._settings_of_bar
         self._surface = FlowSurface(
             self.actor, plotter.renderer, scene.textures, scene.settings, scene.pyramid
         )
@@ -184,6 +186,9 @@ class FlowHandle(AppearanceAttributes):
             plotter.render()
 
     def _changed(self, affects: Change) -> None:
+        if self._bar_look != (look := self._settings_of_bar):
+            self._bar_look = look
+            self._show_bar_colours()
         if affects == "uniform":
             self._show_moment()
         elif affects == "appearance":
@@ -237,8 +242,7 @@ class FlowHandle(AppearanceAttributes):
         mapper.lookup_table = table
         mapper.SelectColorArray(name)
         self._surface.set_scalars(name, lambda field: self.scene.scalar(name, field))
-        if self._bar_title is not None:
-            self._plotter.scalar_bars[self._bar_title].SetLookupTable(table)
+        self._show_bar_colours()
 
     def _show_bar(self) -> None:
         """Have a legend of the present colours, or none."""
@@ -246,13 +250,29 @@ class FlowHandle(AppearanceAttributes):
         self._remove_bar(plotter)
         if name is None or not self.scene.appearance.has_bar:
             return
-        bar = {"title": name, **SCALAR_BAR, **self._bar_options}
+        unit = self.field.unit_of(name)
+        title = f"{name} ({unit})" if unit else name
+        bar = {"title": title, **SCALAR_BAR, **self._bar_options}
         renderers = plotter.renderers
         active = renderers.active_index
         renderers.set_active_renderer(*np.atleast_1d(renderers.index_to_loc(self._place)))
         plotter.add_scalar_bar(mapper=self.actor.mapper, render=False, **bar)
         renderers.set_active_renderer(*np.atleast_1d(renderers.index_to_loc(active)))
         self._bar_title = bar["title"]
+        self._show_bar_colours()
+
+    @property
+    def _settings_of_bar(self) -> tuple[Any, ...]:
+        return self.settings.strength, self.settings.contrast, self.settings.noise
+
+    def _show_bar_colours(self) -> None:
+        """Give the bar the colours of the picture, which the texture draws towards the middle."""
+        if self._bar_title is None or self._bar_title not in self._plotter.scalar_bars:
+            return
+        shown = self.actor.mapper.lookup_table
+        table = pv.LookupTable(values=mean_colours(np.asarray(shown.values), self.settings))
+        table.scalar_range, table.log_scale = shown.scalar_range, shown.log_scale
+        self._plotter.scalar_bars[self._bar_title].SetLookupTable(table)
 
     def _remove_bar(self, plotter: Any) -> None:
         if self._bar_title is not None and self._bar_title in plotter.scalar_bars:

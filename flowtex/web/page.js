@@ -43,25 +43,7 @@ abs(x);return size!==0&&(size>=1e5||size<.001)?x.toExponential(2).replace("e+","
 let widths=views.map(({canvas})=>Math.max(Math.round(size*canvas.width),1)),height=Math.max(Math.round(size*views[0].canvas.
 height),1),all=new OffscreenCanvas(widths.reduce((sum,width)=>sum+width,0),height),pen=all.getContext("2d",{alpha:!1}),left=0;
 for(let[n,{canvas}]of views.entries())pen?.drawImage(canvas,left,0,widths[n],height),left+=widths[n];return all.convertToBlob(
-format)}var OWN="own cmap",SRGB={knee:.04045,slope:12.92,offset:.055,scale:1.055,power:2.4};function coloursOf(header){let{scalars,
-colour,background,lighting,opacity}=header;return{scalars,colour,background,lighting,opacity}}function mapOf(header,maps,name){
-let[first,count]=[header.scalars.maps.indexOf(name)*3*256,256],table=new Uint8Array(4*count).fill(255);for(let n=0;n<count;n+=
-1)for(let k=0;k<3;k+=1)table[4*n+k]=maps[first+3*n+k];return table}function recoloured(header,choice,parts){let scalars={
-...header.scalars};choice.scalars===!1&&(scalars.name=null);let number=scalars.choices.findIndex(({name})=>name===choice.
-scalars);if(number>=0){let{name,unit:unit2,steps}=scalars.choices[number];Object.assign(scalars,{name,unit:unit2,steps,number,
-auto:!0})}if(choice.cmap&&(scalars.cmap=choice.cmap),choice.clim&&([scalars.low,scalars.high]=choice.clim),choice.clim!==
-void 0&&(scalars.auto=!choice.clim),scalars.auto&&scalars.choices[scalars.number]){let{low,high}=scalars.choices[scalars.
-number],widest=low<0&&high>0&&scalars.diverging.includes(scalars.cmap),end=Math.max(-low,high);[scalars.low,scalars.high]=
-widest?[-end,end]:[low,high]}let narrower=(scalars.high-scalars.low)/(header.scalars.high-header.scalars.low||1),error=header.
-mesh.maxColourError*Math.min(narrower,1),mesh=number<0?{...header.mesh,maxColourError:error}:header.mesh,maps=parts.get(
-"maps");if(!choice.cmap||!maps)return{colours:{scalars,mesh},part:null};let part={name:"cmap",data:mapOf(header,maps.data,
-choice.cmap),shape:[256,4],digest:`${OWN} ${choice.cmap}`};return{colours:{scalars,mesh},part}}function meanColour(colour,strength,{
-toCones,toLab,baseDark,baseLight}){let linear=[0,1,2].map(k=>{let c=colour[k]/255,{knee,slope,offset,scale:scale3,power}=SRGB;
-return c<knee?c/slope:((c+offset)/scale3)**power}),times=(v2,m)=>[0,1,2].map(k=>v2[0]*m[k]+v2[1]*m[3+k]+v2[2]*m[6+k]),[light,
-a,b]=times(times(linear,toCones).map(Math.cbrt),toLab);return[light+strength*(baseDark+(baseLight-baseDark)*light-light),
-a,b]}function rampOf(map,header,strength,stops){let{shading}=header.constants;return`linear-gradient(90deg, ${Array.from(
-{length:stops},(_,n)=>{let first=4*Math.round(n/(stops-1)*255),shown=header.paper?.picture?0:strength;return`oklab(${meanColour(
-map.slice(first,first+3),shown,shading).map(x=>x.toFixed(4)).join(" ")})`}).join(", ")})`}var EPSILON=1e-6,ARRAY_TYPE=typeof Float32Array<"u"?Float32Array:Array;var degree=Math.PI/180,radian=180/Math.PI;function transpose(out,a){if(out===a){var a01=a[1],a02=a[2],a12=a[5];out[1]=a[3],out[2]=a[6],out[3]=a01,out[5]=a[7],out[6]=
+format)}var EPSILON=1e-6,ARRAY_TYPE=typeof Float32Array<"u"?Float32Array:Array;var degree=Math.PI/180,radian=180/Math.PI;function transpose(out,a){if(out===a){var a01=a[1],a02=a[2],a12=a[5];out[1]=a[3],out[2]=a[6],out[3]=a01,out[5]=a[7],out[6]=
 a02,out[7]=a12}else out[0]=a[0],out[1]=a[3],out[2]=a[6],out[3]=a[1],out[4]=a[4],out[5]=a[7],out[6]=a[2],out[7]=a[5],out[8]=
 a[8];return out}function fromRotation(out,rad,axis){var x=axis[0],y=axis[1],z=axis[2],len=Math.sqrt(x*x+y*y+z*z),s,c,t;return len<EPSILON?
 null:(len=1/len,x*=len,y*=len,z*=len,s=Math.sin(rad),c=Math.cos(rad),t=1-c,out[0]=x*x*t+c,out[1]=y*x*t+z*s,out[2]=z*x*t-
@@ -78,7 +60,30 @@ result(),v(a),v(b)),scale2=(a,by)=>scale(result(),v(a),by),cross2=(a,b)=>cross(r
 v(a)),add=(a,b,t=1)=>scaleAndAdd(result(),v(a),v(b),t);function rotated(a,axis,degrees){let turn=fromRotation(zeros(16),
 degrees*Math.PI/180,v(axis));return turn===null?result():transformMat4(result(),v(a),turn)}function toFrame(frame,a){let columns=transpose(
 zeros(9),frame);return transformMat3(result(),v(a),columns)}function fromFrame(frame,a){return transformMat3(result(),v(
-a),frame)}function clamp(x,low,high){return Math.min(Math.max(x,low),high)}var tangent=degrees=>Math.tan(degrees*Math.PI/360),Camera=class{flat;limits;aspect;state;start;pick=null;homeHeight;nearest;constructor(state,limits,flat,aspect=1){
+a),frame)}function clamp(x,low,high){return Math.min(Math.max(x,low),high)}var OWN="own cmap",SRGB={knee:.04045,slope:12.92,offset:.055,scale:1.055,power:2.4};function coloursOf(header){let{scalars,
+colour,background,lighting,opacity}=header;return{scalars,colour,background,lighting,opacity}}function mapOf(header,maps,name){
+let[first,count]=[header.scalars.maps.indexOf(name)*3*256,256],table=new Uint8Array(4*count).fill(255);for(let n=0;n<count;n+=
+1)for(let k=0;k<3;k+=1)table[4*n+k]=maps[first+3*n+k];return table}function recoloured(header,choice,parts){let scalars={
+...header.scalars};choice.scalars===!1&&(scalars.name=null);let number=scalars.choices.findIndex(({name})=>name===choice.
+scalars);if(number>=0){let{name,unit:unit2,steps}=scalars.choices[number];Object.assign(scalars,{name,unit:unit2,steps,number,
+auto:!0})}if(choice.cmap&&(scalars.cmap=choice.cmap),choice.clim&&([scalars.low,scalars.high]=choice.clim),choice.clim!==
+void 0&&(scalars.auto=!choice.clim),scalars.auto&&scalars.choices[scalars.number]){let{low,high}=scalars.choices[scalars.
+number],widest=low<0&&high>0&&scalars.diverging.includes(scalars.cmap),end=Math.max(-low,high);[scalars.low,scalars.high]=
+widest?[-end,end]:[low,high]}let narrower=(scalars.high-scalars.low)/(header.scalars.high-header.scalars.low||1),error=header.
+mesh.maxColourError*Math.min(narrower,1),mesh=number<0?{...header.mesh,maxColourError:error}:header.mesh,maps=parts.get(
+"maps");if(!choice.cmap||!maps)return{colours:{scalars,mesh},part:null};let part={name:"cmap",data:mapOf(header,maps.data,
+choice.cmap),shape:[256,4],digest:`${OWN} ${choice.cmap}`};return{colours:{scalars,mesh},part}}var toLinear=c=>c<SRGB.knee?
+c/SRGB.slope:((c+SRGB.offset)/SRGB.scale)**SRGB.power;function fromLinear(x){let c=clamp(x,0,1);return c<SRGB.knee/SRGB.
+slope?c*SRGB.slope:SRGB.scale*c**(1/SRGB.power)-SRGB.offset}var times=(v2,m)=>[0,1,2].map(k=>v2[0]*m[k]+v2[1]*m[3+k]+v2[2]*
+m[6+k]);function meanColour(colour,settings,shading){let{values}=shading,[[dark,light],[range,slope]]=[shading.base,shading.
+tone],[strength,contrast]=[Number(settings.strength),Number(settings.contrast)],cones=times(colour.map(c=>toLinear(c/255)),
+shading.toCones).map(Math.cbrt),[lightness,a,b]=times(cones,shading.toLab),base=lightness+strength*(dark+(light-dark)*lightness-
+lightness),mean=[0,0,0];return values.forEach(value=>{let tone=2/(1+Math.exp(-slope*contrast*value))-1,shown=clamp(base+
+range*strength*tone,0,1),room=shown<base?shown/base:(1-shown)/Math.max(1-base,1e-6),roots=times([shown,a*room,b*room],shading.
+fromLab);times(roots.map(x=>x**3),shading.fromCones).forEach((x,k)=>mean[k]+=255*fromLinear(x)/values.length)}),mean}function rampOf(map,header,settings,stops){
+return`linear-gradient(90deg, ${Array.from({length:stops},(_,n)=>{let first=4*Math.round(n/(stops-1)*255),colour=[...map.
+slice(first,first+3)];return`rgb(${(header.paper?.picture??!1?colour:meanColour(colour,settings,header.constants.shading)).
+map(Math.round).join(" ")})`}).join(", ")})`}var tangent=degrees=>Math.tan(degrees*Math.PI/360),Camera=class{flat;limits;aspect;state;start;pick=null;homeHeight;nearest;constructor(state,limits,flat,aspect=1){
 this.state=copyOf(state),this.start=copyOf(state),this.limits=limits,this.flat=flat,this.aspect=aspect,this.homeHeight=this.
 height,this.nearest=this.distance/limits.closest}get height(){let{parallel,parallel_scale:half,view_angle:angle}=this.state;
 return parallel?half:this.distance*tangent(angle)}get distance(){return length2(subtract2(this.state.focal_point,this.state.
@@ -206,18 +211,18 @@ this.viewer=viewer;let{scalars,swatches,ends,auto}=this,{lifetime}=viewer;lifeti
 {scalars:scalars.value===PLAIN?!1:scalars.value,clim:null})});for(let end of ends)lifetime.listen(end,"change",()=>this.
 takeRange());lifetime.listen(auto,"click",()=>viewer.chooseColours({clim:null})),lifetime.listen(swatches,"click",event=>{
 let name=event.target.dataset.cmap;name&&viewer.chooseColours({cmap:name})});let row=(name,...fields)=>dom("div",{class:"\
-row"},[dom("span",{class:"name"},[name]),...fields]);this.rangeRow=row("Range",dom("span",{class:"ends"},[...ends,auto])),
+row"},[dom("span",{class:"name"},[name]),...fields]);this.rangeRow=row("Range",dom("span",{class:"between"},[...ends,auto])),
 this.mapRow=row("Colour map",swatches),this.mapRow.classList.add("ranged"),this.element.append(row("Colour by",scalars),
 this.mapRow,this.rangeRow)}update(){let{header,parts}=this.viewer,maps=parts.get("maps");if(this.element.hidden=!header?.
 scalars.choices.length||!maps,!header||!maps||this.element.hidden)return;let{choices,name,low,high,auto,cmap}=header.scalars,
 names=[...choices.map(each=>each.name),PLAIN];this.scalars.replaceChildren(...names.map(each=>dom("option",{value:each},
 [each]))),this.scalars.value=name??PLAIN,this.mapRow.hidden=this.rangeRow.hidden=name===null,[low,high].forEach((value,n)=>this.
-ends[n].value=String(Number(value.toPrecision(4)))),this.auto.setAttribute("aria-pressed",String(auto));let strength=Number(
-this.viewer.settings.strength);this.swatches.replaceChildren(...header.scalars.maps.map(each=>{let pressed=String(each===
-cmap),swatch=dom("button",{...{type:"button",title:each,"aria-label":each,"data-cmap":each},"aria-pressed":pressed});return swatch.
-style.background=rampOf(mapOf(header,maps.data,each),header,strength,STOPS),swatch}))}takeRange(){let[low,high]=this.ends.
-map(end=>end.valueAsNumber);this.rangeRow.title="",low<high?this.viewer.chooseColours({clim:[low,high]}):this.rangeRow.title=
-`${numberText(low)} is not below ${numberText(high)}`;for(let end of this.ends)end.setCustomValidity(this.rangeRow.title)}};var SLIDER_STOPS=400;function hasStreaming({slices,paper,variant}){return slices.steps===1&&!paper&&!isSignFree({variant})}
+ends[n].value=String(Number(value.toPrecision(4)))),this.auto.setAttribute("aria-pressed",String(auto));let{settings}=this.
+viewer;this.swatches.replaceChildren(...header.scalars.maps.map(each=>{let pressed=String(each===cmap),swatch=dom("butto\
+n",{...{type:"button",title:each,"aria-label":each,"data-cmap":each},"aria-pressed":pressed});return swatch.style.background=
+rampOf(mapOf(header,maps.data,each),header,settings,STOPS),swatch}))}takeRange(){let[low,high]=this.ends.map(end=>end.valueAsNumber);
+this.rangeRow.title="",low<high?this.viewer.chooseColours({clim:[low,high]}):this.rangeRow.title=`${numberText(low)} is \
+not below ${numberText(high)}`;for(let end of this.ends)end.setCustomValidity(this.rangeRow.title)}};var SLIDER_STOPS=400;function hasStreaming({slices,paper,variant}){return slices.steps===1&&!paper&&!isSignFree({variant})}
 var USES={motion:hasStreaming,speed:hasStreaming,speed_in:hasStreaming,period:hasStreaming,grain:({paper})=>!paper,fixed_grain:({
 paper})=>!paper,two_sided:({slices})=>slices.sides===2,seed:({paper},rebuild)=>!paper||rebuild&&!paper.picture,resolution:({
 paper},rebuild)=>!paper||rebuild,tiles:({paper,settings},rebuild)=>!!paper?.picture&&(settings.noise==="image"||rebuild),
@@ -250,9 +255,9 @@ r",_:"farther",0:"whole"},PLAY_KEY=" ",FULLSCREEN_KEY="f",CLOSE_KEY="Escape",DIR
 down:[0,-1]};function hasModifier(event){return event.ctrlKey||event.metaKey||event.altKey}function toggleFullscreen(element){
 document.fullscreenElement?document.exitFullscreen():element.requestFullscreen?.().catch(()=>{})}var STOPS2=33,Legend=class{element=dom("div",{class:"legend glass",hidden:""});mark=dom("i",{hidden:""});show(header,settings,map){
 let{name,low,high,unit:unit2,bar}=header.scalars;if(this.element.hidden=name===null||!bar||!map||!!settings.show_level,this.
-element.hidden||!map)return;let ramp=dom("div",{class:"ramp"},[this.mark]);ramp.style.background=rampOf(map,header,Number(
-settings.strength),STOPS2),this.mark.hidden=!0;let ends=[low,high].map(value=>dom("span",{},[numberText(value)]));this.element.
-replaceChildren(dom("div",{class:"name"},[unit2?`${name} (${unit2})`:String(name)]),ramp,dom("div",{class:"ends"},ends))}point(header,value=NaN){
+element.hidden||!map)return;let ramp=dom("div",{class:"ramp"},[this.mark]);ramp.style.background=rampOf(map,header,settings,
+STOPS2),this.mark.hidden=!0;let ends=[low,high].map(value=>dom("span",{},[numberText(value)]));this.element.replaceChildren(
+dom("div",{class:"name"},[unit2?`${name} (${unit2})`:String(name)]),ramp,dom("div",{class:"ends"},ends))}point(header,value=NaN){
 this.mark.hidden=!header||!Number.isFinite(value),!(!header||this.mark.hidden)&&(this.mark.style.left=`${100*clamp(shareOf(
 header.scalars)(value),0,1)}%`)}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */
 :host {
@@ -393,9 +398,9 @@ input[type="range"]::-moz-range-thumb {
 .swatches { grid-column: 1 / -1; display: grid; grid-template-columns: repeat(3, 1fr); gap: 5px; padding: 3px 0 5px; }
 .swatches button { width: auto; height: 16px; border-radius: 4px; box-shadow: inset 0 0 0 1px var(--edge); }
 .swatches button[aria-pressed="true"] { box-shadow: 0 0 0 2px var(--ground), 0 0 0 4px var(--accent); }
-.row .ends { margin: 0; align-items: center; gap: 4px; }
-.row .ends input { width: 62px; appearance: textfield; -moz-appearance: textfield; }
-.row .ends input:invalid { outline: 2px solid #d43d3d; outline-offset: -1px; }
+.between { display: flex; align-items: center; gap: 4px; }
+.between input { width: 62px; appearance: textfield; -moz-appearance: textfield; }
+.between input:invalid { outline: 2px solid #d43d3d; outline-offset: -1px; }
 button.link { width: auto; height: 24px; padding: 0 6px; font: inherit; }
 select, input[type="number"] {
   font: inherit; color: var(--ink); background: var(--hover); border: 0; border-radius: 6px;
@@ -479,17 +484,17 @@ table.find(row=>row.name===name)?.label??name,value=settings[name];return`${labe
 ia-label",title?`Flow texture: ${title}`:"Flow texture")}tick(){let{header,player,settings}=this.viewer;if(!header||this.
 track.hidden)return;let{first,last,now}=player.range(settings);this.slider.value=String((now-first)/(last-first||1));let unit2=header.
 slices.timeUnit,text=player.varies?`${numberText(now)} ${unit2}`:`${now.toFixed(1)} s`;this.timeText.textContent!==text&&
-(this.timeText.textContent=text)}lookOf({show_level,strength}){return`${show_level} ${strength}`}showLegend(){let{header,
-settings,parts}=this.viewer;this.legendLook=this.lookOf(settings),this.colours.update(),header&&this.legend.show(header,
-settings,parts.get("cmap")?.data)}read(point){let{header}=this.viewer;if(this.readout.replaceChildren(),this.legend.point(
-null),!(!point||!header)){this.readout.append(dom("span",{},[this.positionText(point.position,header)]));for(let[name,value]of Object.
-entries(point.values)){let text=`${name} ${numberText(value)} ${header.scalars.unit}`;this.readout.append(dom("b",{},[text.
-trimEnd()])),this.legend.point(header,value)}}}positionText(position,{geometry}){let{extent,planar,center,frame}=geometry,
-zoom=Math.max(this.viewer.camera?.zoom??1,1),digits=Math.min(Math.ceil(FEWEST_DIGITS+Math.log10(zoom)),MOST_DIGITS),isInPlane=planar&&
-Math.abs(position[2]-center[2])<1e-12*extent&&Math.abs(frame[8])>.999;return`(${position.slice(0,isInPlane?2:3).map(x=>{
-let value=Math.abs(x)<1e-9*extent?0:x;return digits>5?String(Number(value.toPrecision(digits))):numberText(value)}).join(
-", ")})`}fold(open=!1){this.isOpen=open,this.arrange()}toggle(shown=!this.isShown){shown!==this.isShown&&(this.isShown=shown,
-this.arrange(),this.viewer.options.onControls?.(shown))}arrange(){let{header,options,root}=this.viewer,isReady=header!==
+(this.timeText.textContent=text)}lookOf({show_level,strength,contrast}){return`${show_level} ${strength} ${contrast}`}showLegend(){
+let{header,settings,parts}=this.viewer;this.legendLook=this.lookOf(settings),this.colours.update(),header&&this.legend.show(
+header,settings,parts.get("cmap")?.data)}read(point){let{header}=this.viewer;if(this.readout.replaceChildren(),this.legend.
+point(null),!(!point||!header)){this.readout.append(dom("span",{},[this.positionText(point.position,header)]));for(let[name,
+value]of Object.entries(point.values)){let text=`${name} ${numberText(value)} ${header.scalars.unit}`;this.readout.append(
+dom("b",{},[text.trimEnd()])),this.legend.point(header,value)}}}positionText(position,{geometry}){let{extent,planar,center,
+frame}=geometry,zoom=Math.max(this.viewer.camera?.zoom??1,1),digits=Math.min(Math.ceil(FEWEST_DIGITS+Math.log10(zoom)),MOST_DIGITS),
+isInPlane=planar&&Math.abs(position[2]-center[2])<1e-12*extent&&Math.abs(frame[8])>.999;return`(${position.slice(0,isInPlane?
+2:3).map(x=>{let value=Math.abs(x)<1e-9*extent?0:x;return digits>5?String(Number(value.toPrecision(digits))):numberText(
+value)}).join(", ")})`}fold(open=!1){this.isOpen=open,this.arrange()}toggle(shown=!this.isShown){shown!==this.isShown&&(this.
+isShown=shown,this.arrange(),this.viewer.options.onControls?.(shown))}arrange(){let{header,options,root}=this.viewer,isReady=header!==
 null,follows=!!options.follows;this.bar.hidden=!this.isShown||!isReady,this.handle.hidden=this.isShown||!isReady||follows,
 this.head.hidden=!(this.isShown||follows)||!isReady,this.controls.element.hidden=!this.isShown||!this.isOpen||!isReady,root.
 classList.toggle("flowtex-open",!this.controls.element.hidden),this.gear.setAttribute("aria-pressed",String(this.isOpen))}wait(missing){
@@ -545,11 +550,11 @@ cells)*cells);return{u_noiseOrigin:even.map((x,k)=>x*finest-view.anchor[k]),u_no
 u_noiseRestOdd:odd.map((x,k)=>x-whole[k])}}function paperUniforms(paper,s,noiseShape,density){let tiles=s.noise==="image"?
 s.tiles:1,[rows,columns]=noiseShape;return{u_noiseSize:paper.size.map(n=>n*density),u_noiseGrain:paper.grain,u_noiseDeviation:paper.
 deviations,u_noiseCorrected:paper.corrected,u_pictureSize:[columns*density*tiles,rows*density*tiles],u_pictureRound:[Number(
-paper.repeat[1]),Number(paper.repeat[0])],u_pictureGrey:noiseShape.length===2,u_tiles:tiles}}function momentOf(times,time){
-if(times.length<2)return[0,0,0];let step=0;for(;step<times.length-2&&times[step+1]<=time;)step+=1;let late=(time-times[step])/
-(times[step+1]-times[step]);return[step,step+1,clamp(late,0,1)]}var SERIES_STEP_S=.5,SERIES_LEAST_S=6,SERIES_MOST_S=60,LONGEST_GAP_S=.5,Player=class{time=0;clock=0;playing=!1;times=[0];lastFrame=0;hasHeader=!1;setHeader(header){
-let{times}=header.slices;(!(times.length===this.times.length&&times.every((t,n)=>t===this.times[n]))||!this.hasHeader)&&
-(this.time=header.time,this.clock=header.clock),this.hasHeader=!0,this.times=times}get varies(){return this.times.length>
+paper.repeat[1]),Number(paper.repeat[0])],u_pictureGrey:noiseShape.length===2,u_tiles:tiles}}function momentOf(times2,time){
+if(times2.length<2)return[0,0,0];let step=0;for(;step<times2.length-2&&times2[step+1]<=time;)step+=1;let late=(time-times2[step])/
+(times2[step+1]-times2[step]);return[step,step+1,clamp(late,0,1)]}var SERIES_STEP_S=.5,SERIES_LEAST_S=6,SERIES_MOST_S=60,LONGEST_GAP_S=.5,Player=class{time=0;clock=0;playing=!1;times=[0];lastFrame=0;hasHeader=!1;setHeader(header){
+let{times:times2}=header.slices;(!(times2.length===this.times.length&&times2.every((t,n)=>t===this.times[n]))||!this.hasHeader)&&
+(this.time=header.time,this.clock=header.clock),this.hasHeader=!0,this.times=times2}get varies(){return this.times.length>
 1}get span(){return[this.times[0],this.times[this.times.length-1]]}get moment(){return momentOf(this.times,this.time)}timeOf([
 before,after,between]){return this.times[before]+between*(this.times[after]-this.times[before])}seek(time){this.time=clamp(
 time,...this.span)}start(){this.playing=!0,this.lastFrame=0}range(settings){if(this.varies)return{first:this.span[0],last:this.

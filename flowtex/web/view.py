@@ -86,6 +86,7 @@ def colours_of(scene: Scene, field: FlowField, background: tuple[float, float, f
     low, high = scene.scalar_limits
     return Colours(
         name=name,
+        unit="" if name is None else scene.field.unit_of(name),
         number=0 if name is None else scene.scalar_names.index(name),
         choices=choices_of(scene),
         cmap=look.cmap if isinstance(look.cmap, str) else "",
@@ -105,11 +106,19 @@ def colours_of(scene: Scene, field: FlowField, background: tuple[float, float, f
 
 def choices_of(scene: Scene) -> tuple[dict[str, Any], ...]:
     """Return what can be coloured by, with the range that each has by itself."""
-    choices = []
+    choices: list[dict[str, Any]] = []
     for name in scene.scalar_names:
         low, high = scene.scalar_range(name)
         steps = len(steps_of(scene.field, name))
-        choices.append({"name": name, "unit": "", "low": low, "high": high, "steps": steps})
+        choices.append(
+            {
+                "name": name,
+                "unit": scene.field.unit_of(name),
+                "low": low,
+                "high": high,
+                "steps": steps,
+            }
+        )
     return tuple(choices)
 
 

@@ -102,6 +102,8 @@ class Appearance(Controller):
                 continue
             # A whole number comes back from the page as it was sent, not as the type it has here.
             self.state.set(**{f"set_{name}": getattr(settings, name)})
+            if name in ("strength", "contrast", "noise"):
+                self.state.set(bar=self._bar())
 
     def take_setting(self, pair: Any) -> None:
         """Set what the browser's client has set by itself."""
@@ -248,8 +250,9 @@ class Appearance(Controller):
         if not self.area.scalars:
             return {"name": "", "low": "", "high": "", "stops": []}
         low, high = self.area.scene.scalar_limits
+        name, unit = self.area.scalars, self.area.scene.field.unit_of(self.area.scalars)
         return {
-            "name": self.area.scalars,
+            "name": f"{name} ({unit})" if unit else name,
             "low": f"{low:.3g}",
             "high": f"{high:.3g}",
             "stops": self.viewport.colour_stops(),

@@ -19,6 +19,7 @@ from flowtex.camera import Camera
 from flowtex.field import FlowField
 from flowtex.options import SPEED, Appearance, Options
 from flowtex.plotting.handle import FlowHandle
+from flowtex.rendering.cpu.shade import mean_colours
 from flowtex.scene import Change, Scene
 from flowtex.settings import Settings
 from flowtex.textures.images import as_image
@@ -276,8 +277,8 @@ class Viewport:
         return tuple(dict.fromkeys(("speed", *self.field.scalars)))
 
     def colour_stops(self, count: int = 17) -> list[str]:
-        """Colours along the bar, from low to high, as ``#rrggbb``."""
-        table = colour_table(self.scene.appearance.cmap)
+        """Mean colours of the picture along the bar, from low to high, as ``#rrggbb``."""
+        table = mean_colours(colour_table(self.scene.appearance.cmap), self.settings)
         stops = table[np.linspace(0, len(table) - 1, count).round().astype(int)]
         return ["#" + bytes(colour[:3]).hex() for colour in stops]
 
