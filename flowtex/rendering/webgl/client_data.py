@@ -80,21 +80,21 @@ class Colours:
 
     name: str | None = None
     unit: str = ""
-    number: int = 0
-    choices: tuple[Mapping[str, Any], ...] = ()
-    cmap: str = ""
-    auto: bool = True
     values: Floats | None = None
-    others: tuple[tuple[int, Floats], ...] = ()
     low: float = 0.0
     high: float = 1.0
-    log_scale: bool = False
     table: Bytes | None = None
     plain: tuple[float, float, float] = (0.63, 0.63, 0.63)
     background: tuple[float, float, float] = (1.0, 1.0, 1.0)
     lighting: bool = False
     opacity: float = 1.0
     bar: bool = True
+    log_scale: bool = False
+    others: tuple[tuple[int, Floats], ...] = ()
+    number: int = 0
+    choices: tuple[Mapping[str, Any], ...] = ()
+    cmap: str = ""
+    auto: bool = True
 
     def shares(self, values: Floats) -> Floats:
         """Places of values on the colour map, from 0 to 1."""
