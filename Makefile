@@ -6,12 +6,13 @@ PYTHON ?= python3
 VENV   ?= .venv
 PYTEST_ARGS ?=
 PAPER ?= out/paper
+FUZZ ?= 8
 
 BIN := $(VENV)/bin
 SETUP := pyproject.toml tools/setup.sh tools/common.sh
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint format docs gallery client paper paper-quick wheel clean
+.PHONY: help demo test fuzz lint format docs gallery client paper paper-quick wheel clean
 
 help: ## list what can be made
 	@echo "flowtex. Choose an interpreter with PYTHON=python3.12, tests with PYTEST_ARGS='-k trace'."
@@ -25,6 +26,9 @@ test: $(VENV)/.ready-test ## set up if need be, then run every check and every t
 	@sh tools/opengl.sh $(BIN)/python
 	@sh tools/chromium.sh $(BIN)/python
 	@sh tools/check.sh $(BIN) $(PYTEST_ARGS)
+
+fuzz: $(VENV)/.ready-test ## try ten thousand random fields, settings, links, files and messages
+	FLOWTEX_FUZZ=$(FUZZ) $(BIN)/pytest -n auto --maxprocesses 4 -m hypothesis $(PYTEST_ARGS)
 
 lint: $(VENV)/.ready-test ## style, format and types, without the tests
 	$(BIN)/ruff check

@@ -3,7 +3,8 @@
 Frames of the WebGL2 client against pixels, samples and nodes, measured in Chromium: from a
 change of the view until the full picture is there. On a graphics card start with ``--gpu``,
 which takes Chromium's own choice of driver; without one Mesa's software driver is taken.
-``--first`` measures from a mesh of 500 x 500 nodes to the first textures that a notebook is sent.
+``--first`` measures from a mesh of 500 x 500 nodes to the first textures that a notebook is sent,
+``--large`` compares 4000 x 2000 nodes, drawn in tiles, with 120 x 70.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ import argparse
 import shutil
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +22,10 @@ from rich.table import Table
 
 import flowtex
 from flowtex.options import Options
+from flowtex.rendering.webgl import ClientData
+from flowtex.rendering.webgl.protocol import Parts
+from flowtex.tiles import TileKey
+from flowtex.web.tiles import packed_tile, tile_loader
 from flowtex.web.view import web_views
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
@@ -83,6 +89,56 @@ def frames(*, gpu: bool, repeats: int) -> tuple[str, Table]:
     return drawn_by, table
 
 
+def large(*, gpu: bool, repeats: int) -> Table:
+    """Least time of a full picture of many nodes and of few, whole and close up."""
+    from playwright.sync_api import sync_playwright
+
+    table = Table("nodes", "zoom", "tiles", "s until complete", "ms a frame", "over few nodes")
+    few: dict[float, float] = {}
+    with sync_playwright() as driver:
+        browser = driver.chromium.launch(
+            executable_path=shutil.which("chromium") or shutil.which("google-chrome"),
+            args=[] if gpu else MESA,
+        )
+        page = ClientPage(browser.new_page(viewport={"width": 1320, "height": 1000}))
+        for shape in ((70, 120), (2000, 4000)):
+            field = flowtex.examples.double_gyre_field(shape=shape)
+            view = web_views(field, Options.split(samples=25))[0]
+            whole = view.data()
+            page.tile = _tiles(whole)
+            for zoom in (1.0, 8.0, 40.0):
+                first = whole.first_camera(4 / 3)
+                camera = first.zoom_by(zoom, 0.3, 0.2, aspect=4 / 3, whole=first)
+                given = packed(whole, whole.header(view.scene.settings, camera=camera.to_dict()))
+                start = time.perf_counter()
+                viewer = page.mount(given, size=(1280, 960), controls=False, smooth=False)
+                page.complete(viewer)
+                waited = time.perf_counter() - start
+                times = [page.page.evaluate(FRAME, [viewer, 1.01]) for _ in range(repeats)]
+                few.setdefault(zoom, min(times))
+                tiles = page.page.evaluate("(n) => viewers[n].tiles.layers.length - 1", viewer)
+                cells = (f"{shape[1]} x {shape[0]}", f"{zoom:g}", str(tiles), f"{waited:.1f}")
+                table.add_row(*cells, f"{min(times):.0f}", f"{min(times) / few[zoom]:.2f}")
+                page.clear()
+        browser.close()
+    return table
+
+
+def _tiles(whole: ClientData) -> Callable[[Any, Any], Parts]:
+    """Return what gives the page the tiles of a scene."""
+    if whole.pyramid is None:
+        return lambda key, steps: {}
+    loader = tile_loader(whole, whole.pyramid)
+
+    def made(key: Any, steps: Any) -> Parts:
+        loader.request([TileKey(*key)], steps)
+        loader.wait()
+        tile = loader.get(TileKey(*key), steps)
+        return {} if tile is None else packed_tile(whole, tile, steps)
+
+    return made
+
+
 def first_parts() -> float:
     """Seconds from a mesh of 500 x 500 nodes to the first textures for a notebook."""
     field = flowtex.examples.double_gyre_field(shape=(500, 500))
@@ -98,9 +154,13 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--gpu", action="store_true", help="Chromium's own choice of driver")
     parser.add_argument("--first", action="store_true", help="time to the first textures")
+    parser.add_argument("--large", action="store_true", help="many nodes against few")
     parser.add_argument("--repeats", type=int, default=3)
     arguments = parser.parse_args()
     console = Console()
+    if arguments.large:
+        console.print(large(gpu=arguments.gpu, repeats=arguments.repeats))
+        return
     if arguments.first:
         console.print(f"500 x 500 nodes, mesh to first textures: {first_parts():.2f} s")
         return

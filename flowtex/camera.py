@@ -9,6 +9,7 @@ browser in the header, so that both sides move the camera alike.
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields, replace
 from typing import Any, Self
@@ -109,7 +110,7 @@ class Camera:
             else:
                 faults.append(f"camera.{name} is {value!r}; expected three finite numbers")
         for name, greatest, expected in (
-            ("parallel_scale", math.inf, "a positive length"),
+            ("parallel_scale", sys.float_info.max, "a positive length"),
             ("view_angle", 180.0, "0 to 180 degrees"),
         ):
             value = getattr(self, name)
@@ -162,15 +163,18 @@ class Camera:
         ValueError
             When ``zoom`` is not positive, or ``focus`` is no point.
         """
-        if not zoom > 0:
-            msg = f"zoom is {zoom!r}; expected a positive number, 1 for the whole surface"
+        if not (_is_number(zoom) and NEAREST_REACH <= zoom <= FARTHEST_REACH):
+            msg = (
+                f"zoom is {zoom!r}; expected a positive number, 1 for the whole surface, from "
+                f"{NEAREST_REACH:g} to {FARTHEST_REACH:g}"
+            )
             raise ValueError(msg)
         center = surface.center.copy()
         if focus is not None:
-            point = np.asarray(focus, dtype=float)
-            if point.shape not in ((2,), (3,)) or not np.isfinite(point).all():
+            if not (_is_point(focus, 2) or _is_point(focus, 3)):
                 msg = f"focus is {focus!r}; expected two or three coordinates in the mesh's units"
                 raise ValueError(msg)
+            point = np.asarray(focus, dtype=float)
             center[: len(point)] = point
         if surface.frame is not None:
             return cls._fit_flat(surface, surface.frame, center, aspect, zoom)
@@ -459,12 +463,12 @@ def _is_number(value: Any) -> bool:
     return isinstance(value, (int, float, np.integer, np.floating)) and not isinstance(value, bool)
 
 
-def _is_point(value: Any) -> bool:
+def _is_point(value: Any, coordinates: int = 3) -> bool:
     try:
         numbers = np.asarray(value, dtype=float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         return False
-    return numbers.shape == (3,) and bool(np.isfinite(numbers).all())
+    return numbers.shape == (coordinates,) and bool(np.isfinite(numbers).all())
 
 
 def _point(values: ArrayLike) -> Point:

@@ -12,9 +12,11 @@ the docstring of a function, so that ``help`` and an editor show them there.
 from __future__ import annotations
 
 import inspect
+import math
 import textwrap
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields
+from pathlib import Path
 from typing import Any, TypeVar
 
 from flowtex._util.colours import DEFAULT_CMAP, colour_table, rgb
@@ -69,16 +71,21 @@ class FieldOptions:
     )
 
     def field(self, mesh: Any) -> FlowField:
-        """Return the field of a mesh, or a field as it is.
+        """Return the field of a mesh or of a file, or a field as it is.
 
         Raises
         ------
         FieldError
             When the mesh does not make a field.
         TypeError
-            When something is chosen of a field that is made already.
+            When something is chosen of a field that is made already, or the times of a file.
         """
         choices = {name: value for name, value in vars(self).items() if value is not None}
+        if isinstance(mesh, (str, Path)):
+            if "times" in choices:
+                msg = f"times is given, and {str(mesh)!r} has its own; leave it out"
+                raise TypeError(msg)
+            return FlowField.from_file(mesh, **choices)
         if not isinstance(mesh, FlowField):
             return FlowField.from_pyvista(mesh, **choices)
         if choices:
@@ -148,19 +155,18 @@ class Appearance:
             object.__setattr__(self, "cmap", DEFAULT_CMAP)
         if not _is_between(self.opacity, 0, 1):
             faults.append(f"opacity is {self.opacity!r}; expected a number from 0 to 1")
-        if self.clim is not None and self.clim != ROBUST:
+        if self.clim is not None and not (isinstance(self.clim, str) and self.clim == ROBUST):
             try:
                 low, high = (float(value) for value in self.clim)
-                if not low < high:
-                    raise ValueError
-            except (TypeError, ValueError):
+            except (TypeError, ValueError, OverflowError):
+                low = high = math.nan
+            if not (low < high and math.isfinite(low + high)):
                 faults.append(
                     f"clim is {self.clim!r}; expected two numbers, (low, high), the lower one "
                     f'first, or "{ROBUST}"'
                 )
-            else:
-                if not (isinstance(self.clim, tuple) and self.clim == (low, high)):
-                    object.__setattr__(self, "clim", (low, high))
+            elif not (isinstance(self.clim, tuple) and self.clim == (low, high)):
+                object.__setattr__(self, "clim", (low, high))
         checks = ((colour_table, self.cmap, DEFAULT_CMAP), (rgb, self.color, PLAIN_COLOR))
         for check, value, default in checks:
             if value is not default:  # which loads nothing

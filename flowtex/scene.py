@@ -25,7 +25,7 @@ from flowtex.settings import TABLE, Affects, Settings, SettingsError
 from flowtex.textures import TextureSet
 from flowtex.textures.images import as_picture, load_image
 from flowtex.tiles import Pyramid, shared_pyramid
-from flowtex.trace import SliceStore, TraceSlices, shared_store
+from flowtex.trace import SliceStore, TraceSlices, chosen_lines, shared_store
 
 __all__ = ["NO_IMAGE", "AppearanceAttributes", "Change", "Scene", "share_field", "steps_of"]
 
@@ -189,6 +189,11 @@ class Scene:
         return self._limits(self.appearance)
 
     @property
+    def lines(self) -> str:
+        """What the texture is drawn along: ``"pathlines"`` or ``"streamlines"``."""
+        return chosen_lines(self.field, self.settings.lines)
+
+    @property
     def pyramid(self) -> Pyramid | None:
         """The tiles of a large field; ``None`` where all of it is traced together.
 
@@ -197,7 +202,7 @@ class Scene:
         if self._sliced or self.settings.noise != "procedural" or self.field.sign_free:
             return None
         if self._pyramid is None:
-            self._pyramid = shared_pyramid(self.field, self.settings.parameter)
+            self._pyramid = shared_pyramid(self.field, self.settings.parameter, self.lines)
         return self._pyramid if self._pyramid.depth else None
 
     @property
@@ -209,7 +214,7 @@ class Scene:
     def store(self) -> SliceStore:
         """Traces of :attr:`whole`, made step by step when asked for, shared by all its scenes."""
         if self._store is None:
-            self._store = shared_store(self.whole, self.settings.parameter)
+            self._store = shared_store(self.whole, self.settings.parameter, self.lines)
         return self._store
 
     @property
@@ -347,9 +352,11 @@ class Scene:
         scene._appearance = replace(self.appearance, clim=limits)
         scene.settings, scene.image = self.settings.copy(), self.image
         scene._noise, scene._time = self._noise, self._time
+        parameter, lines = self.settings.parameter, self.lines
+        compose = field.steady or lines == "streamlines"
         scene._store = _coarse_stores.get(
-            (id(field), self.settings.parameter),  # a store keeps its field alive
-            lambda: SliceStore(field, parameter=self.settings.parameter, compose=field.steady),
+            (id(field), parameter, lines),  # a store keeps its field alive
+            lambda: SliceStore(field, parameter=parameter, lines=lines, compose=compose),
         )
         return scene
 

@@ -30,7 +30,7 @@ GROUPS: dict[str, tuple[str, ...]] = {
     "": ("lod", "noise", "samples", "contrast"),
     "Texture": ("kernel", "two_sided", "grain", "fixed_grain", "spacing", "strength", "show_level"),
     "Noise": ("seed", "tiles", "noise_correction", "resolution"),
-    "Motion": ("motion", "speed", "speed_in", "period", "parameter"),
+    "Motion": ("motion", "speed", "speed_in", "period", "lines", "parameter"),
 }
 #: Settings that make a difference only where one of these others has, or has not, a value.
 _NEEDS_TEXTURE: Condition = ("noise", "!=", "procedural")
@@ -81,7 +81,7 @@ class Setting:
         if self.kind is bool:
             fits = isinstance(value, bool) or type(value).__name__ == "bool"
         elif self.kind is str:
-            fits = value in self.choices
+            fits = isinstance(value, str) and value in self.choices
         else:
             fits = _is_number(value) and (self.kind is float or float(value).is_integer())
             fits = fits and (self.low is None or value >= self.low)
@@ -153,7 +153,7 @@ class Setting:
 def _is_number(value: Any) -> bool:
     try:
         return not isinstance(value, (bool, str, bytes)) and float(value) == float(value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):  # a whole number may have any size
         return False
 
 
@@ -204,7 +204,7 @@ class Settings:
     two_sided: bool = _row(
         default=True,
         affects="uniform",
-        text="Follow steady flow forward as well as backward from each point.",
+        text="Follow the flow forward as well as backward from each point.",
     )
     lod: bool = _row(
         default=True,
@@ -283,10 +283,16 @@ class Settings:
         affects="uniform",
         text="Colour by the level of detail: one hue for each doubling of the grain.",
     )
+    lines: str = _row(
+        default="auto",
+        affects="trace",
+        text="What a flow that varies in time is drawn along; auto chooses from its time steps.",
+        choices=("auto", "pathlines", "streamlines"),
+    )
     parameter: str = _row(
         default="arclength",
         affects="trace",
-        text="What the lag along a steady path measures: length, or the field's own time.",
+        text="What the lag along a streamline measures: length, or the field's own time.",
         choices=("arclength", "time"),
     )
 

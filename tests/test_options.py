@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 import inspect
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+import pyvista as pv
 from flows import gyre
+from hypothesis import example, given
+from hypothesis import strategies as st
+from strategies import junk, property_test
 
 import flowtex
+from flowtex.errors import FieldError
 from flowtex.options import (
     Appearance,
     FieldOptions,
@@ -101,3 +107,58 @@ def test_a_view_beside_another_differs_in_what_it_is_told() -> None:
 def test_choices_of_a_mesh_are_refused_for_a_field() -> None:
     with pytest.raises(TypeError, match=r"^plane cannot be chosen any more for FlowField"):
         Scene.of(gyre(), plane="k=1")
+
+
+@property_test(60)
+@given(st.sampled_from(["opacity", "clim", "zoom", "focus", "camera"]), junk())
+@example("zoom", 10**400)
+@example("zoom", "near")
+@example("focus", {})
+@example("focus", [10**400, 0])
+@example("focus", [0.0, 0.0, 1e17])
+@example("clim", (float("nan"), 1.0))
+def test_any_value_of_an_argument_is_taken_or_named(name: str, value: Any) -> None:
+    try:
+        options = Options.split(**{name: value})
+        assert np.isfinite(options.view.first_camera(gyre().surface).position).all()
+    except ValueError as error:
+        # What is too far away to be looked at makes no camera.
+        assert str(error).startswith((f"{name} ", "camera")) and "expected" in str(error)
+
+
+def test_a_path_stands_for_its_file(tmp_path: Path) -> None:
+    path = tmp_path / "gyre.vts"
+    flowtex.examples.double_gyre(2.5).save(path)
+    for file in (path, str(path)):
+        field = FieldOptions().field(file)
+        assert field.name == "gyre"
+        assert field.shape == (101, 201)
+    with pytest.raises(TypeError, match=r"^times is given, and '.*gyre.vts' has its own"):
+        FieldOptions(times=[1.0]).field(path)
+    with pytest.raises(FieldError, match=r"none\.vts: no such file"):
+        FieldOptions().field(str(tmp_path / "none.vts"))
+
+
+def test_every_front_end_takes_a_path(tmp_path: Path) -> None:
+    path = tmp_path / "gyre.vts"
+    flowtex.examples.double_gyre(2.5).save(path)
+    plotter = pv.Plotter(off_screen=True, window_size=[80, 60])
+    handle = plotter.flowtex.add(str(path))
+    assert handle.field.name == "gyre"
+    plotter.close()
+    assert flowtex.render(str(path), size=(80, 60), samples=5).std() > 0
+    assert flowtex.export(path, tmp_path / "page.html").steps == 1
+    assert flowtex.movie(path, tmp_path / "a.gif", size=(80, 60), seconds=0.1, fps=20).frames == 2
+    assert flowtex.FlowWidget(str(path)).field.name == "gyre"
+
+
+@pytest.mark.parametrize("view", [{"focus": (50.0, 50.0), "zoom": 8}, {"focus": (3.0, 0.5, 0)}])
+def test_a_view_of_nothing_is_warned_of(view: dict[str, Any]) -> None:
+    zoom = {"zoom": 20.0, **view}
+    with pytest.warns(UserWarning, match="^Nothing of the surface is in the picture"):
+        flowtex.render(gyre(), size=(60, 40), samples=3, **zoom)
+
+
+def test_a_picture_full_of_surface_is_none_of_nothing() -> None:
+    options: dict[str, Any] = {"zoom": 50, "scalars": False, "color": "black", "strength": 0.0}
+    assert np.ptp(flowtex.render(gyre(), size=(60, 40), **options)) == 0

@@ -6,6 +6,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
+from strategies import junk, property_test, setting_values
 
 from flowtex.settings import GROUPS, NEEDS, TABLE, Setting, Settings, SettingsError
 
@@ -114,3 +117,29 @@ def test_panels_show_every_setting_once_and_know_what_it_needs() -> None:
     assert controls["lod"] == "checkbox" and controls["noise"] == "choice"
     assert controls["samples"] == "slider" and controls["seed"] == "number"
     assert TABLE["lod"].label == "Level of detail" and TABLE["speed_in"].label == "Speed in"
+
+
+@property_test(60)
+@given(st.data())
+def test_any_value_of_a_setting_comes_back_from_its_text(data: st.DataObject) -> None:
+    values = data.draw(setting_values(resolution=8192, samples=200))
+    for name, value in values.items():
+        row = TABLE[name]
+        back = row.parse(row.format(value))
+        assert back == value == getattr(Settings(**{name: value}), name)
+        assert type(back) is row.kind
+
+
+@property_test(60)
+@given(st.sampled_from(list(TABLE)), junk() | st.just(np.ones(2)) | st.just(np.array(["box"])))
+@example("samples", 10**400)
+@example("kernel", np.array(["box", "hann"]))
+def test_anything_is_a_value_or_is_refused_clearly(name: str, value: Any) -> None:
+    row = TABLE[name]
+    for take, given_ in ((row.check, value), (row.parse, str(value))):
+        try:
+            taken = take(given_)
+        except SettingsError as error:
+            assert str(error).startswith(f"{name} is ") and "; expected " in str(error)
+        else:
+            assert type(taken) is row.kind and row.check(taken) == taken

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import base64
 import io
-from collections.abc import Mapping
+import json
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
+from urllib.parse import unquote
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,11 +16,11 @@ from PIL import Image
 
 from flowtex.camera import Camera
 from flowtex.rendering.webgl import ClientData
-from flowtex.rendering.webgl.protocol import part_info
+from flowtex.rendering.webgl.protocol import Parts, part_info, parts_file
 from flowtex.web.assets import asset
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Page
+    from playwright.sync_api import Page, Route
 
 __all__ = ["ClientPage", "packed", "state"]
 
@@ -43,7 +45,13 @@ MOUNT = """([scenes, options, size]) => {
   document.body.append(element);
   const heard = {};
   for (const name of options.hear ?? []) heard[name] = (value) => events.push([name, value]);
-  const unpacked = [scenes].flat().map(({ header, parts }) => ({ header, parts: unpack(parts) }));
+  const loadTile = async (key, steps) => {
+    const answer = await fetch(`http://tiles.test/${JSON.stringify([key, steps])}`);
+    return client.partsOfFile(await answer.arrayBuffer());
+  };
+  const unpacked = [scenes].flat().map(({ header, parts }) => ({
+    header, parts: unpack(parts), loadTile,
+  }));
   const viewer = client.mountPage(element, unpacked, { ...options, ...heard });
   viewers.push(viewer);
   return viewers.length - 1;
@@ -81,14 +89,24 @@ class ClientPage:
     page: Page
     errors: list[str] = field(default_factory=list)
     asked: list[str] = field(default_factory=list)
+    #: Gives the parts of a tile, by its key and time steps.
+    tile: Callable[[Any, Any], Parts] = lambda key, steps: {}
+    tiles: list[Any] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         """Load the client."""
         self.page.on("console", lambda m: self._heard(m.text) if m.type == "error" else None)
         self.page.on("pageerror", lambda error: self._heard(str(error)))
         self.page.on("request", lambda request: self.asked.append(request.url))
+        self.page.route("http://tiles.test/*", self._send_tile)
         self.page.set_content(HTML)
         self.page.evaluate(LOAD, asset("client.js").read_text(encoding="utf-8"))
+
+    def _send_tile(self, route: Route) -> None:
+        key, steps = json.loads(unquote(route.request.url.rsplit("/", 1)[1]))
+        self.tiles.append(tuple(key))
+        allowed = {"Access-Control-Allow-Origin": "*"}
+        route.fulfill(body=parts_file(self.tile(key, steps)), headers=allowed)
 
     def _heard(self, text: str) -> None:
         self.errors.append(text)
@@ -105,6 +123,14 @@ class ClientPage:
         failed = self.page.evaluate("(n) => viewers[n].root.dataset.failed", viewer)
         assert not failed, self.page.evaluate(
             "(n) => viewers[n].root.shadowRoot.querySelector('.note').textContent", viewer
+        )
+
+    def complete(self, viewer: int = 0) -> None:
+        """Wait for all tiles that the view asks for, and the full picture."""
+        self.page.wait_for_function(
+            "(n) => viewers[n].sharp && !viewers[n].tiles.missing.length",
+            arg=viewer,
+            timeout=60_000,
         )
 
     def picture(self, viewer: int = 0) -> Pixels:

@@ -107,6 +107,20 @@ export class Camera {
     return { eye: position as Vector, halfHeight: tangent(angle), pixels };
   }
 
+  /** Planes at the sides of what is seen; a point is inside where p . (x, y, z, 1) >= 0. */
+  get planes(): number[][] {
+    const [right, up, ahead] = this.axes;
+    const { parallel, parallel_scale: half, view_angle: angle } = this.state;
+    const { position, focal_point: focus } = this.state;
+    const tall = parallel ? half : tangent(angle);
+    return [right, scale(right, -1), up, scale(up, -1)].map((side, n) => {
+      const size = n < 2 ? tall * this.aspect : tall;
+      if (parallel) return [...side, size - dot(side, focus)];
+      const normal = add(side, ahead, size);
+      return [...normal, -dot(normal, position)];
+    });
+  }
+
   /** The eye and 1, or the way to it and 0 where all rays are parallel. */
   get eye(): number[] {
     if (!this.state.parallel) return [...this.state.position, 1];

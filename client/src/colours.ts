@@ -1,6 +1,6 @@
 // Colours of the surface: what is chosen of them, and the colours that the picture then has.
 
-import type { Data, Header, NamedPart, Part, Settings, Shading } from "./protocol.ts";
+import type { Data, Header, MeshLimits, NamedPart, Part, Settings, Shading } from "./protocol.ts";
 import { clamp } from "./vectors.ts";
 
 /** What a person chooses; a range of null is that of the values. */
@@ -10,6 +10,8 @@ export interface ColourChoice {
   clim?: [number, number] | null;
 }
 
+type Scalars = Header["scalars"];
+
 /** Name of a part that a client has made: no other one has its digest. */
 const OWN = "own cmap";
 const SRGB = { knee: 0.04045, slope: 12.92, offset: 0.055, scale: 1.055, power: 2.4 };
@@ -18,6 +20,12 @@ const SRGB = { knee: 0.04045, slope: 12.92, offset: 0.055, scale: 1.055, power: 
 export function coloursOf(header: Header): Partial<Header> {
   const { scalars, colour, background, lighting, opacity } = header;
   return { scalars, colour, background, lighting, opacity };
+}
+
+/** Limits of triangles that were chosen for a range, where a narrower one shows smaller differences. */
+export function narrowed(mesh: MeshLimits, from: Scalars, to: Scalars): MeshLimits {
+  const share = to.name === from.name ? (to.high - to.low) / (from.high - from.low || 1) : 1;
+  return { ...mesh, maxColourError: mesh.maxColourError * Math.min(share, 1) };
 }
 
 /** The table of a map to choose from, (256, 4), of the part that has all of them. */
@@ -52,10 +60,7 @@ export function recoloured(
     const end = Math.max(-low, high);
     [scalars.low, scalars.high] = widest ? [-end, end] : [low, high];
   }
-  // Triangles were chosen for the first range: a narrower one shows smaller differences.
-  const narrower = (scalars.high - scalars.low) / (header.scalars.high - header.scalars.low || 1);
-  const error = header.mesh.maxColourError * Math.min(narrower, 1);
-  const mesh = number < 0 ? { ...header.mesh, maxColourError: error } : header.mesh;
+  const mesh = narrowed(header.mesh, header.scalars, scalars);
   const maps = parts.get("maps");
   if (!choice.cmap || !maps) return { colours: { scalars, mesh }, part: null };
   const data = mapOf(header, maps.data, choice.cmap);

@@ -27,7 +27,9 @@ const USES: Record<string, (header: Header, rebuild: boolean) => boolean> = {
   tiles: ({ paper, settings }, rebuild) =>
     Boolean(paper?.picture) && (settings.noise === "image" || rebuild),
   noise_correction: ({ paper }, rebuild) => Boolean(paper) && rebuild,
-  parameter: ({ slices }, rebuild) => slices.steps === 1 && rebuild,
+  lines: ({ slices }, rebuild) => slices.steps > 1 && rebuild,
+  parameter: ({ slices, settings }, rebuild) =>
+    rebuild && (slices.steps === 1 || settings.lines !== "pathlines"),
   // These have a button in the bar.
   lod: () => false,
   show_level: () => false,

@@ -4,6 +4,7 @@ import type { CameraState } from "./camera.ts";
 import type { ColourChoice } from "./colours.ts";
 import type { Point } from "./picking.ts";
 import type { Value } from "./protocol.ts";
+import type { TileKey } from "./tilechoice.ts";
 
 /** A view that has the bar for another one as well. */
 interface Leader {
@@ -21,6 +22,8 @@ export interface Options {
   onPoint?: (point: Point) => void;
   /** The parts of a time step are lacking. */
   onNeed?: (step: number) => void;
+  /** Tiles are lacking, in the order of need; no others that were asked for before are needed. */
+  onTiles?: (keys: TileKey[], steps: number[]) => void;
   /** A picture is complete. */
   onFrame?: () => void;
   onSetting?: (name: string, value: Value) => void;

@@ -1,20 +1,62 @@
 // The script of an exported page: flowtex/web/export.py writes the page around it.
 
-import { partOfText, type Header, type NamedPart, type PartInfo } from "./protocol.ts";
+import {
+  partOfText,
+  stepOf,
+  tilePart,
+  type Header,
+  type NamedPart,
+  type PartInfo,
+} from "./protocol.ts";
+import { nameOf } from "./tilechoice.ts";
 import { mountPage, type SceneData } from "./views.ts";
 
-/** Parts of one of the views; what lies in the page already is in `known` by its digest. */
-async function partsOf(view: string, known: Map<string, NamedPart>): Promise<NamedPart[]> {
-  const parts: NamedPart[] = [];
+/** A part with its text as the page has it; what lies in the page already has none. */
+type Packed = [info: PartInfo, text: string];
+
+/** What lies in the page of one of the views: its parts, and those of each tile by its name. */
+function packedOf(view: string): { parts: Packed[]; tiles: Map<string, Packed[]> } {
+  const [parts, tiles]: [Packed[], Map<string, Packed[]>] = [[], new Map()];
   for (const element of document.querySelectorAll<HTMLElement>(`script[data-view="${view}"]`)) {
     const info: PartInfo = JSON.parse(element.dataset.part ?? "");
-    const text = element.textContent ?? "";
-    const part = known.get(info.digest) ?? (await partOfText(info, text));
-    known.set(info.digest, part);
-    parts.push({ ...part, name: info.name });
+    const packed: Packed = [info, element.textContent ?? ""];
+    const tile = tilePart(info.name)?.[0];
+    if (tile) tiles.set(tile, [...(tiles.get(tile) ?? []), packed]);
+    else parts.push(packed);
     element.remove();
   }
-  return parts;
+  return { parts, tiles };
+}
+
+/** A view as it lies in the page; `known` has what is unpacked, and `texts` what is not, by digests. */
+async function sceneOf(
+  header: Header,
+  view: string,
+  known: Map<string, NamedPart>,
+  texts: Map<string, string>,
+): Promise<SceneData> {
+  const { parts, tiles } = packedOf(view);
+  for (const [{ digest }, text] of [...tiles.values()].flat()) if (text) texts.set(digest, text);
+  const unpacked: NamedPart[] = [];
+  for (const [info, text] of parts) {
+    const part = known.get(info.digest) ?? (await partOfText(info, text));
+    known.set(info.digest, part);
+    unpacked.push({ ...part, name: info.name });
+  }
+  const loadTile: SceneData["loadTile"] = (key, steps) => {
+    const needed = (tiles.get(nameOf(key)) ?? []).filter(([{ name }]) => {
+      const step = stepOf(tilePart(name)?.[1] ?? "");
+      return Number.isNaN(step) || steps.includes(step);
+    });
+    return Promise.all(
+      needed.map(async ([info, text]) => {
+        const part = known.get(info.digest);
+        if (part) return { ...part, name: info.name };
+        return partOfText(info, text || (texts.get(info.digest) ?? ""));
+      }),
+    );
+  };
+  return { header, parts: unpacked, loadTile };
 }
 
 /** Unpack the page, and take the preview away once the client has drawn. */
@@ -25,9 +67,10 @@ async function openPage(): Promise<void> {
     // Of a second header there is what differs from the first.
     const headers: Header[] = JSON.parse(document.getElementById("headers")?.textContent ?? "");
     const known = new Map<string, NamedPart>();
+    const texts = new Map<string, string>();
     const scenes: SceneData[] = [];
     for (const [n, header] of headers.entries()) {
-      scenes.push({ header: { ...headers[0], ...header }, parts: await partsOf(String(n), known) });
+      scenes.push(await sceneOf({ ...headers[0], ...header }, String(n), known, texts));
     }
     const look = () => {
       // The client says why in its own place, which the preview covers.

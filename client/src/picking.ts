@@ -3,19 +3,22 @@
 import { atPixel, projection, type Camera } from "./camera.ts";
 import { interpolated } from "./mesh.ts";
 import type { Scene } from "./scene.ts";
+import { fullIndex } from "./tilechoice.ts";
+import type { Layer } from "./tiles.ts";
 import type { Moment } from "./uniforms.ts";
 import { add, clamp, dot, fromFrame, subtract, type Vector } from "./vectors.ts";
 
 export interface Point {
   position: number[];
-  /** Place between the nodes, (i, j). */
+  /** Place between the nodes of the whole surface, (i, j). */
   index: [number, number];
   values: Record<string, number>;
 }
 
 /** The view in which a point is looked for. */
 export interface PickContext {
-  scene: Scene;
+  /** What is drawn; the whole, or the root and the tiles of a large surface. */
+  layers: Layer[];
   camera: Camera;
   moment: Moment;
   anchor: Vector;
@@ -24,27 +27,36 @@ export interface PickContext {
 
 /** Point at (x, y), from -1 to 1, right and up; null beside the surface. */
 export function pickedPoint(context: PickContext, x: number, y: number): Point | null {
-  const { scene, camera, moment, anchor, canvas } = context;
-  const { graphics, header } = scene;
+  const { layers, camera, moment, anchor, canvas } = context;
+  const { graphics, header } = layers[0].scene;
   const program = graphics.programs.get(header.shaders.vertex, header.shaders.pick);
   const whole = projection(header.geometry, camera, anchor);
   const matrix = atPixel(whole, [x, y], [canvas.width, canvas.height]);
   const [before, after, between] = moment;
   const bits = graphics.pixel(() => {
-    graphics.programs.use(program, { u_matrix: matrix, u_between: between });
-    scene.draw(before, after, anchor, false);
+    layers.forEach(({ scene }, n) => {
+      graphics.programs.use(program, { u_matrix: matrix, u_between: between, u_part: n });
+      scene.draw(before, after, anchor, false);
+    });
   });
   if (!bits[3]) return null;
   const [u, v] = new Float32Array(bits.buffer, 0, 2);
-  const { rows, columns, shape } = header.geometry;
+  const { scene, key } = layers[bits[2]];
+  const { rows, columns, shape } = scene.header.geometry;
   const i = clamp(u * columns.size - 0.5 - columns.before, 0, shape[1] - 1);
   const j = clamp(v * rows.size - 0.5 - rows.before, 0, shape[0] - 1);
-  const position = positionAt(context, i, j, x, y);
-  return { position, index: [i, j], values: valuesAt(context, i, j) };
+  const position = positionAt(scene, camera, [i, j], x, y);
+  const full = header.pyramid?.shapes[0] ?? shape;
+  const side = header.mesh.tileCells * (header.pyramid?.tileBlocks ?? 0);
+  const [level, row, column] = key;
+  const place = (n: number, tile: number, axis: number) =>
+    fullIndex(n + tile * side, level, full[axis]);
+  const index: [number, number] = [place(i, column, 1), place(j, row, 0)];
+  return { position, index, values: valuesAt(scene, moment, i, j) };
 }
 
 /** Single precision finds the depth; the place itself is on the ray through the pointer. */
-function positionAt({ scene, camera }: PickContext, i: number, j: number, x: number, y: number) {
+function positionAt(scene: Scene, camera: Camera, [i, j]: number[], x: number, y: number) {
   const { data } = scene.part("position");
   const { shape, frame, center } = scene.header.geometry;
   const local = [0, 1, 2].map((k) => interpolated(shape, i, j, (n) => data[3 * n + k]));
@@ -55,7 +67,7 @@ function positionAt({ scene, camera }: PickContext, i: number, j: number, x: num
   return add(start, along, depth);
 }
 
-function valuesAt({ scene, moment }: PickContext, i: number, j: number) {
+function valuesAt(scene: Scene, moment: Moment, i: number, j: number) {
   const { header, parts } = scene;
   const { name } = header.scalars;
   const [from, to, between] = moment;

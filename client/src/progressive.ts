@@ -27,6 +27,8 @@ export interface DrawContext {
   readonly canvas: HTMLCanvasElement;
   readonly settings: Settings;
   readonly scene: Scene | null;
+  /** Choose what is drawn at a moment: the whole, or the root and the tiles of a large surface. */
+  arrange(shown: Moment): Scene[];
   readonly camera: Camera | null;
   readonly player: { varies: boolean; playing: boolean };
   /** Whether outlines are smoothed. */
@@ -64,6 +66,9 @@ export class ProgressiveRenderer {
   private version = 1;
   private draftVersion = 0;
   private rowsDone = 0;
+  /** What is drawn of it, and whether there is more by now. */
+  private layers: Scene[] = [];
+  private isRefined = false;
   /** Milliseconds that each drawing takes, however few its pixels. */
   private fixed = 4;
   /** Number of full pictures. */
@@ -81,6 +86,12 @@ export class ProgressiveRenderer {
     if (!cameraOnly) this.lastCamera = null;
     this.version += 1;
     this.rowsDone = 0;
+  }
+
+  /** Draw the same picture once more when it is complete: more of the surface is there. */
+  refine(): void {
+    if (this.rowsDone >= this.canvas.height) this.rowsDone = 0;
+    else this.isRefined = true;
   }
 
   /** Change the size; what is on show stays, stretched, until there is something better. */
@@ -105,9 +116,14 @@ export class ProgressiveRenderer {
     if (this.draftVersion !== this.version) return this.draft(program, shown, moving);
     if (moving) return false;
     let complete = false;
-    do complete = this.strip(program, shown);
+    do complete = this.strip(program, shown) && !this.isRefined;
     while (!complete && performance.now() < until);
     return complete;
+  }
+
+  private arrange(shown: Moment): void {
+    this.isRefined = false;
+    this.layers = this.viewer.arrange(shown);
   }
 
   /** A picture in the time that there is. */
@@ -117,6 +133,7 @@ export class ProgressiveRenderer {
     // Views that move share the time; at rest one after the other gets its whole picture.
     const crowd = moving ? this.graphics.waiting.size + 1 : 1;
     const budget = Math.max(MOVING_MS / crowd, MOVING_LEAST_MS);
+    this.arrange(shown);
     this.warm(program, shown);
     const price = program.price * this.factor(samples);
     const best = quality(price, this.fixed, width * height, samples, budget);
@@ -139,7 +156,7 @@ export class ProgressiveRenderer {
     }
     if (best.scale < 1 || best.samples !== samples || this.viewer.smooth) return false;
     this.complete();
-    return true;
+    return !this.isRefined;
   }
 
   /** One more strip of the full picture, which is shown when it is complete. */
@@ -147,6 +164,8 @@ export class ProgressiveRenderer {
     const { width, height } = this.canvas;
     const { smooth, settings } = this.viewer;
     const samples = Number(settings.samples);
+    if (this.rowsDone >= height) this.rowsDone = 0;
+    if (this.rowsDone === 0) this.arrange(shown);
     this.warm(program, shown);
     const price = program.price * this.factor(samples);
     const most = Math.min(height - this.rowsDone, smooth ? SMOOTH_ROWS : height);
@@ -242,9 +261,10 @@ export class ProgressiveRenderer {
     gl.clearColor(r, g, b, 1);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     const draft = samples !== viewer.settings.samples || height !== this.canvas.height;
-    graphics.programs.use(program, this.values(scene, camera, view, samples, draft));
-    scene.look(camera.sight(this.canvas.height));
-    scene.draw(shown[0], shown[1], view.anchor, true);
+    for (const layer of this.layers) {
+      graphics.programs.use(program, this.values(layer, camera, view, samples, draft));
+      layer.draw(shown[0], shown[1], view.anchor, true);
+    }
     if (smooth) graphics.copySmooth(width, rows);
     // Reading a pixel waits until everything is drawn.
     gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));

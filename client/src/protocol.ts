@@ -5,7 +5,7 @@
 import type { CameraLimits, CameraState, Surface } from "./camera.ts";
 
 /** Form of header and parts that this client reads. */
-export const FORMAT = 2;
+export const FORMAT = 3;
 
 export type Value = boolean | number | string;
 export type Settings = Record<string, Value>;
@@ -69,7 +69,7 @@ export interface Geometry extends Surface {
   levels: number;
 }
 
-/** Cells along a side of a tile, and limits of the errors: those of flowtex/rendering/mesh_levels.py. */
+/** Cells along a side of a block, and limits of the errors: those of flowtex/rendering/mesh_levels.py. */
 export interface MeshLimits {
   tileCells: number;
   maxErrorPixels: number;
@@ -91,6 +91,24 @@ export interface Shading {
   values: number[];
 }
 
+/** The tiles of a large surface, which has been handed over at its coarsest level, the root. */
+export interface PyramidHeader {
+  /** Level of the root, and the finest level of which there are tiles. */
+  depth: number;
+  finest: number;
+  /** Rows and columns of blocks at level 0, and of nodes at each level. */
+  blocks: [number, number];
+  shapes: [number, number][];
+  /** Blocks along a side of a tile. */
+  tileBlocks: number;
+  /** Pixels of a cell above which the next level is drawn, and cells that a path is long. */
+  cellPixels: number;
+  pathCells: number;
+}
+
+/** What of the header of a tile differs from that of the root. */
+export type TileHeader = Pick<Header, "geometry" | "slices">;
+
 export interface Header {
   format: number;
   name: string;
@@ -105,6 +123,7 @@ export interface Header {
     lags: number[];
     sides: number;
     unit: number;
+    /** Typical speed where there are several steps, by which the grains change in time. */
     pace: number;
     /** Lengths of a typical cell, and of the longest in which the flow turns. */
     cell: number;
@@ -149,6 +168,8 @@ export interface Header {
     shading: Shading;
   };
   mesh: MeshLimits;
+  /** Null where the whole surface is here. */
+  pyramid: PyramidHeader | null;
   limits: CameraLimits;
   table: Row[];
   settings: Settings;
@@ -187,6 +208,12 @@ export function isSignFree(header: Pick<Header, "variant">): boolean {
 /** Time step in the name of a part, such as 3 of "slices/3"; NaN where there is none. */
 export function stepOf(name: string): number {
   return Number(name.split("/")[1]);
+}
+
+/** Name of a tile and of its part, such as 0/3/4 and "slices/3" of "tile/0/3/4/slices/3". */
+export function tilePart(name: string): [tile: string, part: string] | null {
+  const [kind, level, row, column, ...rest] = name.split("/");
+  return kind === "tile" ? [[level, row, column].join("/"), rest.join("/")] : null;
 }
 
 /** A part of its bytes, in memory of its own: what comes over a wire need not be aligned. */

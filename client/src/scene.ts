@@ -35,8 +35,8 @@ export class Scene {
   anchor: Vector = [0, 0, 0];
   private readonly resources = new Map<string, Resource>();
   private scalarSteps = "";
-  /** Level of each tile of the mesh; without a view that of every node. */
-  private levels: Uint8Array = new Uint8Array();
+  /** Levels of the mesh's blocks, and of their borders. */
+  private drawn: { levels: Int8Array; joins: Int8Array } | null = null;
   private meshLevels: MeshLevels | null = null;
 
   constructor(graphics: Graphics, header: Header, parts: Map<string, Part>) {
@@ -47,8 +47,9 @@ export class Scene {
 
   /** Names of the parts that a moment needs and that are not there. */
   missing(before: number, after: number): string[] {
-    const { geometry, slices, scalars, paper } = this.header;
+    const { geometry, slices, scalars, paper, pyramid } = this.header;
     const names = ["position", "mesh", ...(geometry.planar ? [] : ["normal"])];
+    if (pyramid) names.push("places");
     for (const step of new Set([before, after])) {
       names.push(`slices/${step}`);
       if (slices.channels === 2) names.push(`extra/${step}`);
@@ -72,11 +73,11 @@ export class Scene {
     const part = this.parts.get(name);
     if (!part) return false;
     const { geometry, slices, paper, mesh } = this.header;
-    const tiles = geometry.shape.map((n) => Math.max(Math.ceil((n - 1) / mesh.tileCells), 1));
+    const blocks = geometry.shape.map((n) => Math.max(Math.ceil((n - 1) / mesh.tileCells), 1));
     const shapes: Record<string, number[]> = {
       slices: [slices.count, geometry.rows.size, geometry.columns.size, slices.channels],
       position: [...geometry.shape, 3],
-      mesh: [...tiles, part.shape[2]],
+      mesh: [...blocks, part.shape[2]],
       step: paper ? [paper.size[1], paper.size[0]] : [],
     };
     const shape = shapes[name.split("/")[0]];
@@ -92,7 +93,7 @@ export class Scene {
   /** Drop the objects of a part that has changed. */
   forget(name: string): void {
     const [kind, step] = name.split("/");
-    if (kind === "mesh" || kind === "cells") this.meshLevels = null;
+    if (kind === "mesh" || kind === "cells") this.meshLevels = this.drawn = null;
     const sliced = kind === "slices" || kind === "extra";
     for (const user of sliced ? [`slices/${step}`] : (USERS[kind] ?? [])) this.drop(user);
     this.drop("array");
@@ -160,19 +161,37 @@ export class Scene {
     if (!this.meshLevels) {
       const { geometry, mesh } = this.header;
       const { shape, periodic } = geometry;
-      const parts = { tiles: this.part("mesh").data, cells: this.parts.get("cells")?.data };
+      const parts = { blocks: this.part("mesh").data, cells: this.parts.get("cells")?.data };
       this.meshLevels = new MeshLevels({ shape, periodic, ...parts }, mesh);
     }
     return this.meshLevels;
   }
 
-  /** Choose the triangles for a view. */
-  look(sight: Sight): void {
-    const levels = this.mesh().levels(sight);
-    if (String(levels) === String(this.levels)) return;
-    this.levels = levels;
+  /** Levels of the mesh's blocks for a view, and their rows and columns. */
+  levels(sight: Sight): { levels: Int8Array; shape: [number, number] } {
+    return { levels: this.mesh().levels(sight), shape: this.mesh().shape };
+  }
+
+  get hasTriangles(): boolean {
+    return this.drawn !== null;
+  }
+
+  /** Draw other triangles: those of some levels of the blocks and of their borders. */
+  setTriangles(levels: Int8Array, joins: Int8Array): void {
+    const { drawn } = this;
+    if (drawn && String([levels, joins]) === String([drawn.levels, drawn.joins])) return;
+    this.drawn = { levels, joins };
     this.drop("index");
     this.drop("array");
+  }
+
+  /** Whether the slices of some steps are on the graphics card. */
+  isLoaded(steps: number[]): boolean {
+    return steps.every((step) => this.resources.has(`slices/${step}`));
+  }
+
+  load(steps: number[]): void {
+    for (const step of steps) this.slices(step);
   }
 
   private bindNodes(before: number, after: number, anchor: Vector): void {
@@ -192,8 +211,10 @@ export class Scene {
     const gl = this.graphics.context;
     const { geometry, scalars, paper } = this.header;
     const { shape, rows, columns } = geometry;
-    const cells = () => this.mesh().triangles(this.levels);
-    const index = this.buffer("index", this.key(["cells", "mesh"], shape, [...this.levels]), cells, true);
+    const { levels, joins } = this.drawn ?? { levels: new Int8Array(), joins: new Int8Array() };
+    const cells = () => this.mesh().triangles(levels, joins);
+    const drawn = this.key(["cells", "mesh"], shape, [...levels], [...joins]);
+    const index = this.buffer("index", drawn, cells, true);
     const nodes = () => positions(this.part("position").data as Float32Array, this.anchor);
     const normal = geometry.planar ? null : this.part("normal").data;
     const painted = this.scalarParts(before, after);

@@ -17,6 +17,7 @@ import { ProgressiveRenderer } from "./progressive.ts";
 import {
   FORMAT,
   stepOf,
+  tilePart,
   type Header,
   type NamedPart,
   type Part,
@@ -25,6 +26,7 @@ import {
 } from "./protocol.ts";
 import { CARD_PRICE_MS } from "./quality.ts";
 import { Scene } from "./scene.ts";
+import { Tiles } from "./tiles.ts";
 import type { Program } from "./programs.ts";
 import { isMoving, isNear, type Moment, type ViewState } from "./uniforms.ts";
 import { subtract, toFrame, type Vector } from "./vectors.ts";
@@ -51,6 +53,7 @@ export class Viewer implements User {
   header: Header | null = null;
   settings: Settings = {};
   scene: Scene | null = null;
+  tiles: Tiles | null = null;
   camera: Camera | null = null;
   /** Whether the full picture is shown. */
   sharp = false;
@@ -111,6 +114,8 @@ export class Viewer implements User {
     if (this.lifetime.isOver) return;
     this.player.playing = false;
     this.lifetime.end();
+    this.tiles?.dispose();
+    this.tiles = null;
     this.scene?.dispose();
     this.scene = null;
     for (const name of [...this.parts.keys()]) this.remove(name);
@@ -136,8 +141,9 @@ export class Viewer implements User {
     this.header = header;
     this.settings = { ...header.settings, ...header.own };
     this.player.setHeader(header);
+    this.tiles?.dispose();
     this.scene?.dispose();
-    this.scene = new Scene(this.graphics, header, this.parts);
+    this.makeScene(header);
     this.requests.clear();
     if (!old || !isSamePlace(old.geometry, header.geometry)) {
       this.firstCamera = header.camera;
@@ -156,6 +162,7 @@ export class Viewer implements User {
     if (!this.header) return;
     Object.assign(this.header, colours);
     for (const name of ["scalars", "mesh"]) this.scene?.forget(name);
+    this.tiles?.recolour(colours);
     this.panel.showLegend();
     this.change();
   }
@@ -171,8 +178,15 @@ export class Viewer implements User {
     }
   }
 
+  private makeScene(header: Header): void {
+    this.scene = new Scene(this.graphics, header, this.parts);
+    this.tiles = new Tiles(this, this.scene);
+  }
+
   setPart(part: NamedPart): void {
     const { name, digest } = part;
+    const tile = tilePart(name);
+    if (tile) return void this.tiles?.setPart(tile[0], { ...part, name: tile[1] });
     this.requests.delete(stepOf(name));
     if (digest && this.parts.get(name)?.digest === digest) return;
     const held = this.graphics.hold(part);
@@ -180,6 +194,7 @@ export class Viewer implements User {
     this.parts.set(name, held);
     this.scene?.forget(name);
     this.trim();
+    if (name === "cmap") this.tiles?.recolour();
     if (name === "cmap" || name === "maps") this.panel.showLegend();
     this.change();
   }
@@ -344,6 +359,20 @@ export class Viewer implements User {
     this.request();
   }
 
+  /** Draw the picture once more, as more of the surface is there. */
+  refine(): void {
+    this.renderer.refine();
+    this.setSharp(false);
+    this.request();
+  }
+
+  /** Choose what is drawn at a moment: the whole, or the root and the tiles of a large surface. */
+  arrange(shown: Moment): Scene[] {
+    const scenes = this.tiles?.arrange(shown) ?? [];
+    this.root.dataset.tiles = String(this.tiles?.missing.length ?? 0);
+    return scenes;
+  }
+
   /** Draw at once, as far as there is time. */
   draw(): void {
     this.frame(performance.now(), performance.now() + FRAME_MS);
@@ -387,7 +416,8 @@ export class Viewer implements User {
 
   lost(): void {
     // Buffers and textures are lost with the context.
-    this.scene = this.header && new Scene(this.graphics, this.header, this.parts);
+    this.tiles?.dispose();
+    if (this.header) this.makeScene(this.header);
     this.setSharp(false);
   }
 
@@ -445,7 +475,11 @@ export class Viewer implements User {
   }
 
   private isClose(header: Header): boolean {
-    return this.camera !== null && isNear(header, this.settings, this.view([0, 0, 0], this.ratio));
+    if (!this.camera) return false;
+    const view = this.view([0, 0, 0], this.ratio);
+    // Where there are tiles hardly anything of the root is seen.
+    const tiles = this.tiles?.layers.slice(1).map(({ scene }) => scene.header) ?? [];
+    return (tiles.length ? tiles : [header]).some((part) => isNear(part, this.settings, view));
   }
 
   /** Go on with the picture until a time. */
@@ -514,9 +548,9 @@ export class Viewer implements User {
 
   /** Point of the surface at (x, y), from -1 to 1, right and up. */
   point(x: number, y: number): Point | null {
-    const { scene, camera, shown, canvas } = this;
-    if (!scene || !camera || !shown || !this.canPick) return null;
+    const { tiles, camera, shown, canvas } = this;
+    if (!tiles?.layers.length || !camera || !shown || !this.canPick) return null;
     const { anchor } = this.view(shown, 1);
-    return pickedPoint({ scene, camera, moment: shown, anchor, canvas }, x, y);
+    return pickedPoint({ layers: tiles.layers, camera, moment: shown, anchor, canvas }, x, y);
   }
 }

@@ -3,12 +3,15 @@
 import { dom } from "./dom.ts";
 import type { Header, NamedPart } from "./protocol.ts";
 import type { Options } from "./options.ts";
+import { TileQueue, type LoadTile } from "./tilequeue.ts";
 import { Viewer } from "./viewer.ts";
 
 /** A scene that is there as a whole. */
 export interface SceneData {
   header: Header;
   parts: NamedPart[];
+  /** Gives the tiles of a large surface. */
+  loadTile?: LoadTile;
 }
 
 /** Viewers in an element; `own` gives what each has for itself, and the first has the bar. */
@@ -60,7 +63,12 @@ export function mountPage(
   scenes: SceneData[],
   options: Options = {},
 ): Viewer {
-  const viewers = viewersIn(element, scenes.length, options);
+  const tiles = scenes.map(
+    ({ loadTile }, n) => loadTile && new TileQueue(loadTile, (part) => viewers[n].setPart(part)),
+  );
+  const viewers = viewersIn(element, scenes.length, options, (n) => ({
+    onTiles: (keys, steps) => tiles[n]?.request(keys, steps),
+  }));
   scenes.forEach(({ header }, n) => viewers[n].setHeader(header));
   scenes.forEach(({ parts }, n) => parts.forEach((part) => viewers[n].setPart(part)));
   return viewers[0];

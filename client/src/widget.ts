@@ -33,12 +33,16 @@ export interface Model {
   send(content: unknown, callbacks?: unknown, buffers?: ArrayBuffer[]): void;
 }
 
-/** A message of the kernel: `parts` come with it, an `offer` names those that may be there already. */
+/**
+ * A message of the kernel: `parts` come with it, an `offer` names those that may be there already, and
+ * `tiles` tells how many have been sent.
+ */
 interface Message {
-  kind: "parts" | "offer" | "error";
+  kind: "parts" | "offer" | "tiles" | "error";
   view?: number;
   generation?: number;
   parts?: PartInfo[];
+  seen?: number;
   text?: string;
 }
 
@@ -115,6 +119,8 @@ class WidgetView {
   private readonly sent = new Map<string, string>();
   private readonly handlers: [string, Handler][] = [];
   private early: Delivery[];
+  /** Number of the tile that came last, of each view. */
+  private readonly seen: number[] = [0, 0];
   private frameTimer: Timer | null = null;
   private hasSentFrame = false;
   /** Style of the page around: the element's own is the widget's layout's. */
@@ -159,6 +165,8 @@ class WidgetView {
     };
     return viewersIn(element, count, options, (n) => ({
       onNeed: (step) => model.send({ kind: "need", step, view: n }),
+      onTiles: (keys, steps) =>
+        model.send({ kind: "tiles", keys, steps, seen: this.seen[n], view: n }),
       onFrame: () => this.planFrame(),
     }));
   }
@@ -217,6 +225,7 @@ class WidgetView {
     const { viewers, first } = this;
     this.listen("msg:custom", (message: Message, buffers: ArrayBufferView[]) => {
       if (hasParts(message)) this.take(opened(message, buffers));
+      if (message?.kind === "tiles") this.seen[message.view ?? 0] = message.seen ?? 0;
       if (message?.kind === "error") {
         first.panel.fail("The kernel could not go on.", message.text ?? "");
       }

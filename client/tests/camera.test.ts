@@ -134,3 +134,16 @@ test("a coarse form lies in the place of the whole, another surface does not", (
   assert.ok(!isSamePlace(geometry, { ...geometry, extent: 2 * geometry.extent }));
   assert.ok(!isSamePlace(geometry, cases.curved.geometry));
 });
+
+for (const [name, example] of Object.entries(cases)) {
+  test(`planes are the sides of what is seen: ${name}`, () => {
+    const camera = cameraOf(example);
+    const isInside = (x: number, y: number) => {
+      const [start, along] = camera.ray(x, y);
+      const point = [...add(start, along, camera.distance), 1];
+      return camera.planes.every((p) => p.reduce((sum, c, n) => sum + c * point[n], 0) >= 0);
+    };
+    assert.ok([[0.99, 0], [-0.99, 0.99], [0.5, -0.99]].every(([x, y]) => isInside(x, y)));
+    assert.ok(![[1.01, 0], [-1.01, 0], [0, 1.01], [0.5, -1.01]].some(([x, y]) => isInside(x, y)));
+  });
+}

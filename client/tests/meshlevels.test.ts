@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
-import { MeshLevels, type Sight } from "../src/meshlevels.ts";
+import { join, MeshLevels, type Sight } from "../src/meshlevels.ts";
 import type { MeshLimits } from "../src/protocol.ts";
 
 interface Mesh {
@@ -23,15 +23,18 @@ function mesh(): MeshLevels {
   for (let j = hole[0]; j < hole[1]; j += 1) {
     cells.fill(0, j * (shape[1] - 1) + hole[2], j * (shape[1] - 1) + hole[3]);
   }
-  const tiles = Float32Array.from(data.tiles, (value) => (value >= 1e30 ? Infinity : value));
-  return new MeshLevels({ ...data, tiles, cells }, limits);
+  const blocks = Float32Array.from(data.tiles, (value) => (value >= 1e30 ? Infinity : value));
+  return new MeshLevels({ ...data, blocks, cells }, limits);
 }
 
 for (const [n, { sight, levels, triangles, checksum }] of data.views.entries()) {
   test(`levels and triangles are those of Python: view ${n}`, () => {
     const found = mesh().levels(sight);
     assert.deepEqual(Array.from(found), levels);
-    const index = mesh().triangles(found);
+    const { shape } = mesh();
+    const region = { step: 0, row: 0, column: 0, shape, levels: found };
+    const [joins] = join([region], shape, data.periodic, Math.log2(data.limits.tileCells));
+    const index = mesh().triangles(found, joins);
     const nodes = Array.from({ length: index.length / 3 }, (_, k) =>
       Array.from(index.slice(3 * k, 3 * k + 3)).sort((a, b) => a - b),
     );

@@ -39,7 +39,10 @@ _INNER: dict[str, Any] = {"forceinline": True, **_OPTIONS}
 @njit(types.Tuple((int64, float64))(float64, int64, boolean), **_INNER)
 def _cell(x: float, cells: int, closed: bool) -> tuple[int, float]:  # noqa: FBT001
     """Return the number of the cell along one axis, and the fraction inside it."""
-    x = max(x - cells * np.floor(x * (1.0 / cells)), 0.0) if closed else min(max(x, 0.0), cells)
+    if closed:
+        x -= cells * np.floor(x * (1.0 / cells))
+    # Written so that NaN, too, does not lead out of the array.
+    x = min(x if x > 0.0 else 0.0, float(cells))
     number = min(int(x), cells - 1)
     return number, x - number
 
@@ -101,18 +104,24 @@ def _dense(s: float, h: float, y0: float, k0: float, y1: float, k1: float) -> fl
     return r * r * (y0 + s * (2 * y0 + h * k0)) + s * s * (y1 + r * (2 * y1 - h * k1))
 
 
+@njit(float64(float64, float64), **_INNER)
+def _limited(x: float, most: float) -> float:
+    """Return a number within -most and most."""
+    return min(max(x, -most), most)
+
+
 @njit(
     void(
         _SHAPE,
         types.uint8[::1],
         _FLOW,
-        types.UniTuple(float64, 6),
+        types.UniTuple(float64, 7),
         types.UniTuple(int64, 2),
         int64[::1],
         float64[::1],
         float64[::1],
         float64[::1],
-        float64,
+        _PAIR,
         float32[:, :, :],
         float32[:],
     ),
@@ -128,18 +137,20 @@ def follow(
     lags: Floats,
     units: Floats,
     rests: Floats,
-    longest: float,
+    limit: tuple[float, float],
     moved: Floats32,
     reach: Floats32,
 ) -> None:
     """Follow particles from some nodes, (N,), with units of lag and rates at rest (N,) each.
 
     Displacements are written to ``moved`` (2, M, J * I), and reaches, in units, to (J * I,).
-    ``rules`` and ``most`` are those of :data:`flowtex.trace.integrate.RULES`: numba's cache would
-    not notice if they changed there.
+    ``limit`` has the longest step, and the lag up to which there is one. ``rules`` are a tolerance
+    and those of :data:`flowtex.trace.integrate.RULES`, and ``most`` counts steps and bisections:
+    numba's cache would not notice if they changed there.
     """
-    tolerance, shrink, growth, safety, rounding, edge = rules
+    tolerance, shrink, growth, safety, rounding, edge, farthest = rules
     most_steps, bisections = most
+    longest, span = limit
     small = (safety / growth) ** 3
     width, count = shape[1], len(lags)
     for n in range(len(nodes)):
@@ -156,7 +167,9 @@ def follow(
                 end = lag
                 break
             h = min(step, max(free, 1.0) / max(speed, 1e-300))
-            h = min(h, lags[-1] * unit - lag, longest)
+            h = min(h, lags[-1] * unit - lag)
+            if lag < span:
+                h = min(h, longest)
             a2, b2 = _rate(shape, flow, i + 0.5 * h * a, j + 0.5 * h * b, lag + 0.5 * h)
             a3, b3 = _rate(shape, flow, i + 0.75 * h * a2, j + 0.75 * h * b2, lag + 0.75 * h)
             i1 = i + h * (2 / 9 * a + 1 / 3 * a2 + 4 / 9 * a3)
@@ -184,8 +197,8 @@ def follow(
                 s = (lags[m] * unit - lag) / h
                 if s > share + rounding:
                     break
-                moved[0, m, node] = _dense(s, h, i, a, i1, a4) - i0
-                moved[1, m, node] = _dense(s, h, j, b, j1, b4) - j0
+                moved[0, m, node] = _limited(_dense(s, h, i, a, i1, a4) - i0, farthest)
+                moved[1, m, node] = _limited(_dense(s, h, j, b, j1, b4) - j0, farthest)
                 m += 1
             if free == 0:
                 i, j = _dense(share, h, i, a, i1, a4), _dense(share, h, j, b, j1, b4)
@@ -197,8 +210,8 @@ def follow(
                 break
         for later in range(m, count):
             further = lags[later] * unit - lag
-            moved[0, later, node] = i + further * a - i0
-            moved[1, later, node] = j + further * b - j0
+            moved[0, later, node] = _limited(i + further * a - i0, farthest)
+            moved[1, later, node] = _limited(j + further * b - j0, farthest)
         reach[node] = end / unit
 
 

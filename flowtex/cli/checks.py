@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from flowtex._util.extras import install_extra
-from flowtex.cli.options import UsageError
+from flowtex.cli.options import FieldFlags, UsageError
 
 if TYPE_CHECKING:
     from flowtex.field import FlowField
@@ -15,9 +15,11 @@ if TYPE_CHECKING:
 __all__ = [
     "check_colours",
     "check_image",
+    "check_lines",
     "check_movie_file",
     "check_page_file",
     "check_picture_file",
+    "check_time",
     "require_app",
     "require_opengl",
 ]
@@ -76,16 +78,36 @@ def check_image(options: dict[str, Any]) -> None:
     options["image"] = load_image(options["image"])
 
 
+def check_lines(flow: FieldFlags | None, options: dict[str, Any]) -> None:
+    """Refuse pathlines of one time that is read alone."""
+    if flow is not None and flow.time is not None and options.get("lines") == "pathlines":
+        msg = "--lines is pathlines, which need all times; leave out --time, or use flowtex render"
+        raise UsageError(msg)
+
+
+def check_time(field: FlowField, time: float | None) -> None:
+    """Refuse a time that the file has not."""
+    first, last = field.times[0], field.times[-1]
+    if time is not None and not first <= time <= last:
+        msg = f"--time is {time:g}; expected {first:g} to {last:g}, the times of the file"
+        raise UsageError(msg)
+
+
 def check_colours(field: FlowField, options: dict[str, Any]) -> None:
     """Refuse a scalar or a colour map that there is not."""
     names = dict.fromkeys(("speed", *field.scalars))
     if options["scalars"] is not False and options["scalars"] not in names:
         msg = f"--scalars is {options['scalars']!r}; there are {', '.join(names)} and none"
         raise UsageError(msg)
+    from flowtex._util.colours import colour_table, rgb
+
+    try:
+        rgb(options.get("background", "white"))
+    except ValueError as error:
+        msg = f"--background is {options['background']!r}; expected a colour, such as black"
+        raise UsageError(msg) from error
     if options["cmap"] is None:
         return
-    from flowtex._util.colours import colour_table
-
     try:
         colour_table(options["cmap"])
     except (ValueError, KeyError, ImportError) as error:

@@ -8,7 +8,9 @@ there is no OpenGL to draw with.
 from __future__ import annotations
 
 import sys
+import warnings
 from collections.abc import Sequence
+from typing import Any
 
 from cyclopts import App, CycloptsError
 
@@ -54,6 +56,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     words = list(sys.argv[1:] if arguments is None else arguments)
     debug = "--debug" in words
     words = [word for word in words if word != "--debug"]
+    print_warning = warnings.showwarning
+    warnings.showwarning = _warn  # type: ignore[assignment]
     try:
         result = app(words, exit_on_error=False, print_error=False, result_action="return_value")
     except KeyboardInterrupt:
@@ -64,7 +68,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
             raise
         complain(error)
         return code
+    finally:
+        warnings.showwarning = print_warning
     return result if isinstance(result, int) else 0
+
+
+def _warn(message: Warning | str, *_: Any) -> None:
+    """Print a warning without the line of code that it came from."""
+    complain(message if isinstance(message, Warning) else UserWarning(message), "yellow")
 
 
 def _exit_code(error: Exception) -> int | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Callable
 from typing import TYPE_CHECKING
@@ -9,17 +10,34 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from flowtex.field import FlowField
 
-__all__ = ["announcer", "complain", "describe", "say"]
+__all__ = ["announcer", "complain", "describe", "in_flags", "say"]
 
 
-def complain(error: Exception) -> None:
-    """Print an error in one paragraph on stderr."""
+def complain(error: Exception, colour: str = "red") -> None:
+    """Print an error, or a warning, in one paragraph on stderr."""
     from rich.console import Console
 
-    text = str(error).strip() or type(error).__name__
+    text = in_flags(str(error).strip()) or type(error).__name__
     console = Console(stderr=True, highlight=False)
-    console.print("[bold red]flowtex:[/] ", end="")
+    console.print(f"[bold {colour}]flowtex:[/] ", end="")
     console.print(text, markup=False, soft_wrap=True)
+
+
+def in_flags(text: str) -> str:
+    """Return a message with Python's arguments as flags: ``plane="k=20"`` is ``--plane k=20``."""
+    from flowtex.cli.options import FieldFlags, FrameFlags
+    from flowtex.settings import TABLE
+
+    names = "|".join([*vars(FieldFlags()), *vars(FrameFlags()), *TABLE])
+
+    def flag(match: re.Match[str]) -> str:
+        return f"--{match['name'].replace('_', '-')} {match['value']}"
+
+    text = re.sub(rf"(?:^|(?<=: |\. ))(?P<name>{names}) (?P<value>is )", flag, text)
+    quoted = (
+        rf"""(?<!--beside )\b(?P<name>{names})=(?P<quote>["']?)(?P<value>[^\s"';,)]+)(?P=quote)"""
+    )
+    return re.sub(quoted, flag, text)
 
 
 def say(text: str) -> None:

@@ -90,6 +90,8 @@ def _field_table(field: FlowField) -> Table:
     steady = "one, steady"
     ends = f"{field.times[0]:g} to {field.times[-1]:g} {field.time_unit}".rstrip()
     table.add_row("times", steady if field.steady else f"{len(field.times)}, {ends}")
+    if not field.steady:
+        table.add_row("lines", _lines(field))
     closed = [a for a, is_closed in zip("ji", field.periodic, strict=True) if is_closed]
     table.add_row("periodic", " and ".join(sorted(closed)) or "no")
     table.add_row("blanked", f"{int((~field.valid).sum()):,} nodes")
@@ -106,10 +108,19 @@ def _field_table(field: FlowField) -> Table:
     return table
 
 
+def _lines(field: FlowField) -> str:
+    """Tell what it is drawn along, and why."""
+    from flowtex.trace import changing_share, chosen_lines
+
+    share = f"{changing_share(field):.0%} of the flow changes while a particle goes along a streak"
+    return f"{chosen_lines(field)} ({share})"
+
+
 def _megabytes(field: FlowField) -> float:
-    """Size of the slices of one time: half precision, two numbers, both sides where steady."""
+    """Size of the slices of one time: single precision, two numbers, both sides."""
+    from flowtex.trace import chosen_lines
     from flowtex.trace.lags import choose_lags
 
-    lags = len(choose_lags(field, "arclength" if field.steady else "time"))
-    sides = 2 if field.steady else 1
-    return field.valid.size * lags * sides * 2 * 4 / 1e6
+    by_length = field.steady or chosen_lines(field) == "streamlines"
+    lags = len(choose_lags(field, "arclength" if by_length else "time"))
+    return field.valid.size * lags * 2 * 2 * 4 / 1e6

@@ -42,6 +42,8 @@ PAGE, SETTINGS = Group("The page", sort_key=3), Group("Settings", sort_key=4)
 PORT = Number(gte=0, lt=65536)
 FILE = Annotated[Path, Parameter(help="A structured mesh: any file that PyVista reads, or PLOT3D.")]
 FLAT = Parameter(name="*")
+#: What a flag of several numbers expects.
+POINT, RANGE = "two or three coordinates", "two numbers"
 
 
 class UsageError(ValueError):
@@ -64,7 +66,8 @@ class FieldFlags:
     plane: Annotated[str | None, _flag(FieldOptions, "plane")] = None
     vectors: Annotated[str | None, _flag(FieldOptions, "vectors")] = None
     time: Annotated[
-        float | None, Parameter(group=FLOW, help="One time of a series; all of them by default.")
+        float | None,
+        Parameter(group=FLOW, help="One time of a series, by its streamlines; all by default."),
     ] = None
     periodic: Annotated[
         str | None,
@@ -97,6 +100,17 @@ class LookFlags:
     cmap: Annotated[str | None, _flag(Appearance, "cmap", "Colour map, by matplotlib's name.")] = (
         Appearance.cmap
     )
+    clim: Annotated[
+        str | None,
+        _flag(
+            Appearance,
+            "clim",
+            "Values at the ends of the colour map, as low,high; by default the range over all "
+            "times.",
+            allow_leading_hyphen=True,
+        ),
+    ] = None
+    background: Annotated[str, _flag(ViewOptions, "background")] = ViewOptions.background
     zoom: Annotated[float, _flag(ViewOptions, "zoom")] = ViewOptions.zoom
     focus: Annotated[
         str | None,
@@ -120,8 +134,10 @@ class LookFlags:
         return {
             "scalars": False if self.scalars == "none" else self.scalars,
             "cmap": self.cmap,
+            "clim": None if self.clim is None else _numbers("--clim", self.clim, RANGE),
+            "background": self.background,
             "zoom": self.zoom,
-            "focus": None if self.focus is None else _numbers("--focus", self.focus),
+            "focus": None if self.focus is None else _numbers("--focus", self.focus, POINT),
             "image": self.image,
         }
 
@@ -190,13 +206,13 @@ class ServeFlags:
     browser: Annotated[bool, Parameter(group=PAGE, help="Open the page in the browser.")] = True
 
 
-def _numbers(flag: str, text: str) -> tuple[float, ...]:
+def _numbers(flag: str, text: str, expected: str) -> tuple[float, ...]:
     try:
         values = tuple(float(word) for word in text.split(","))
     except ValueError:
         values = ()
-    if len(values) not in (2, 3):
-        msg = f"{flag} is {text!r}; expected two or three coordinates, as in {flag} 1.5,0"
+    if len(values) not in ((2,) if expected == RANGE else (2, 3)):
+        msg = f"{flag} is {text!r}; expected {expected}, as in {flag} 1.5,0"
         raise UsageError(msg)
     return values
 

@@ -9,12 +9,13 @@ from cyclopts import Parameter
 
 from flowtex import examples
 from flowtex._util.progress import waiting
-from flowtex.cli.checks import check_colours, check_image, require_app, require_opengl
+from flowtex.cli.checks import check_colours, check_image, check_lines, require_app, require_opengl
 from flowtex.cli.console import announcer, describe
 from flowtex.cli.options import (
     FLAT,
     DrawFlags,
     FieldFlags,
+    LookFlags,
     ServeFlags,
     SettingFlags,
     UsageError,
@@ -89,6 +90,7 @@ def show(
     options = {**draw.arguments(), **settings_from(settings)}
     size = draw.pixels()
     check_image(options)
+    check_lines(flow, options)
     require_opengl()
     from flowtex import diagnostics
 
@@ -114,6 +116,9 @@ def _show_page(
 
     if not files:
         msg = "there is no file to show; name one, or a folder, or try `flowtex demo`"
+        raise UsageError(msg)
+    if options.pop("background") != LookFlags.background:
+        msg = "--background is for pictures and windows; the page has its own, under Colours"
         raise UsageError(msg)
     choice = (flow or FieldFlags()).arguments()
     if len(files) == 1 and files[0].is_file() and any(name in choice for name in FIELD_OPTIONS):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -13,9 +14,11 @@ from cyclopts import Parameter
 from flowtex.cli.checks import (
     check_colours,
     check_image,
+    check_lines,
     check_movie_file,
     check_page_file,
     check_picture_file,
+    check_time,
     require_opengl,
 )
 from flowtex.cli.console import describe, say
@@ -60,13 +63,18 @@ def render(
     check_picture_file(output)
     check_image(options)
     require_opengl()
+    time_shown = None
+    if options.get("lines") == "pathlines" and flow is not None:
+        # Pathlines of a moment go through the times around it.
+        flow, time_shown = replace(flow, time=None), flow.time
     field = load_field(file, flow)
     check_colours(field, options)
+    check_time(field, time_shown)
     from PIL import Image
 
     from flowtex import render as draw
 
-    pixels = draw(field, size=size, **options)
+    pixels = draw(field, size=size, time=time_shown, **options)
     with _writing(output):
         Image.fromarray(pixels).save(output)
     lost = (
@@ -109,6 +117,7 @@ def movie(
     options, size = {**frame.arguments(), **settings_from(settings)}, frame.pixels()
     check_movie_file(output, size, fps, quality)
     check_image(options)
+    check_lines(flow, options)
     require_opengl()
     field = load_field(file, flow)
     check_colours(field, options)
@@ -150,6 +159,7 @@ def export(
     options = {**(look or LookFlags()).arguments(), **settings_from(settings)}
     check_page_file(output)
     check_image(options)
+    check_lines(flow, options)
     field = load_field(file, flow)
     check_colours(field, options)
     if steps is not None and steps < 1:

@@ -17,19 +17,22 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import Bools, Floats, Indices
-from flowtex.errors import raise_faults
+from flowtex.errors import FieldError, raise_faults
 from flowtex.field.dates import as_seconds
 from flowtex.field.metric import IndexVelocity, to_index_space
 from flowtex.field.periodic import NodalArrays, close_axes
 from flowtex.field.signs import oriented, sign_free_faults, with_equal_ends
-from flowtex.field.surface import Surface
+from flowtex.field.surface import Surface, known_positions
 from flowtex.field.validation import (
     as_numbers,
     finite_nodes,
     node_faults,
+    node_positions,
+    range_faults,
     scalar_steps,
     shape_faults,
     three_components,
+    with_gaps,
 )
 
 __all__ = ["FlowField", "speed_unit"]
@@ -103,7 +106,9 @@ class FlowField:
         Parameters
         ----------
         points
-            Node positions, (J, I, 2) or (J, I, 3), in any unit of length.
+            Node positions, (J, I, 2) or (J, I, 3), in any unit of length. Or a tuple of
+            coordinates: ``(x, y)`` of a rectilinear grid, (I,) and (J,), or two or three arrays
+            (J, I).
         velocity
             Velocity at the nodes, (J, I, 2 or 3), or (T, J, I, 2 or 3) for a field that varies
             in time, in units of length per unit of time. NaN and masked entries blank a node.
@@ -118,7 +123,8 @@ class FlowField:
             is detected: coinciding first and last lines of nodes, a ring that stops one cell
             short, and global longitude on a flat map.
         scalars
-            Further nodal arrays, name to (J, I) or (T, J, I), to colour by.
+            Further nodal arrays, name to (J, I) or (T, J, I), to colour by. What is beyond 1e100
+            becomes NaN, as nothing is known there.
         name, length_unit, time_unit
             Words for captions.
         sign_free
@@ -147,22 +153,33 @@ class FlowField:
         -----
         The arrays are copied to float64 and never changed.
         """
-        p, masked_points = as_numbers(points)
-        v, masked_velocity = as_numbers(velocity)
+        p, masked_points = as_numbers("points", node_positions(points))
+        v, masked_velocity = as_numbers("velocity", velocity)
+        if scalars is not None and not isinstance(scalars, Mapping):
+            msg = f"scalars is a {type(scalars).__name__}; expected a mapping of arrays by name"
+            raise FieldError(msg)
+        given = {key: with_gaps(f"scalars[{key!r}]", s) for key, s in (scalars or {}).items()}
         times, time_unit = as_seconds(times, time_unit)
-        faults = shape_faults(p, v, times, valid, periodic, scalars)
+        t, shown = (
+            None if values is None else with_gaps(name, values)
+            for name, values in (("times", times), ("valid", valid))
+        )
+        faults = shape_faults(p, v, t, shown, periodic, given)
         raise_faults(faults + (sign_free_faults(v) if sign_free else []))
         v = v[None] if v.ndim == 3 else v
         # What was given is not changed, and copied once.
         p, v = (three_components(a) if a.shape[-1] == 2 else a.copy("C") for a in (p, v))
-        v = with_equal_ends(v) if sign_free else v
-        t = np.arange(len(v), dtype=float) if times is None else np.array(times, dtype=float)
+        t = np.arange(len(v), dtype=float) if t is None else t.copy()
         ok = finite_nodes(p) & ~masked_points
         ok &= finite_nodes(v) & ~masked_velocity
-        if valid is not None:
-            ok &= np.asarray(valid, dtype=bool)
-        raise_faults(node_faults(p, ok))
-        data = {key: scalar_steps(value) for key, value in (scalars or {}).items()}
+        if shown is not None:
+            ok &= np.nan_to_num(shown) != 0
+        # What stands for missing data must not be computed with.
+        v[:, ~ok] = np.nan
+        raise_faults(range_faults(p, v, ok) or node_faults(p, ok))
+        p[~known_positions(p, ok)] = np.nan
+        v = with_equal_ends(v) if sign_free else v
+        data = {key: scalar_steps(values, p.shape[:2]) for key, values in given.items()}
         nodal, closed = close_axes(NodalArrays(p, v, ok, data), periodic)
         v, ok = nodal.velocity, nodal.valid
         surface = Surface(nodal.points, ok, closed)
@@ -359,7 +376,9 @@ class FlowField:
         step = self.step_number(step)
         data = {k: s[step : step + 1] if len(s) > 1 else s for k, s in self.scalars.items()}
         at = slice(step, step + 1)
-        return replace(self, velocity=self.velocity[at], times=self.times[at], scalars=data)
+        one = replace(self, velocity=self.velocity[at], times=self.times[at], scalars=data)
+        one.__dict__["surface"] = self.surface  # the same that the property would make again
+        return one
 
     def step_number(self, step: int) -> int:
         """Return the number of a time step from 0, where negative ones count from the end.

@@ -17,7 +17,7 @@ import numpy as np
 
 from flowtex._util.array_types import AnyArray, Bools, Floats
 from flowtex._util.blocks import bounds
-from flowtex.field.validation import finite_nodes
+from flowtex.field.validation import LENGTHS, finite_nodes, largest
 
 __all__ = ["NodalArrays", "close_axes", "find_closure"]
 
@@ -83,6 +83,9 @@ def close_axes(nodal: NodalArrays, periodic: str | None) -> tuple[NodalArrays, t
 
 def find_closure(points: Floats) -> Closure:
     """Decide from the geometry whether the first axis of (N, M, 3) nodes closes."""
+    # Numbers that are no lengths stand for missing data.
+    if largest(points) > LENGTHS[1]:
+        points = np.where(np.abs(points) <= LENGTHS[1], points, np.nan)
     extent = _extent(points)
     if extent == 0.0 or len(points) < 3:
         return Closure(periodic=False)

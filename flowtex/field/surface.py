@@ -21,7 +21,7 @@ from flowtex.field.interpolation import cell_of, cubic_weights, fill_blanked
 from flowtex.field.poles import Pole, Poles, find_poles
 from flowtex.field.validation import finite_nodes
 
-__all__ = ["CubicMap", "Surface"]
+__all__ = ["CubicMap", "Surface", "known_positions"]
 
 #: Lines from a pole over which the size of the cells comes to be their length alone.
 POLE_LINES = 8
@@ -38,7 +38,7 @@ class Surface:
         self.valid = valid
         self.periodic = periodic
         #: Nodes with a position of their own, (J, I); the others have that of the nearest one.
-        self.has_position = _has_position(points, valid)
+        self.has_position = known_positions(points, valid)
         self.points = fill_blanked(points, self.has_position)
         #: What to add to a position when index j, or i, grows by one period, (2, 3).
         self.offset = np.stack(
@@ -224,7 +224,7 @@ class CubicMap:
         return result
 
 
-def _has_position(points: Floats, valid: Bools) -> Bools:
+def known_positions(points: Floats, valid: Bools) -> Bools:
     """Nodes whose coordinates can be trusted: blanked ones often hold a fill value."""
     finite = finite_nodes(points)
     # Where all nodes with coordinates are valid, or none, there is nothing to tell apart.

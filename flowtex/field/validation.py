@@ -17,31 +17,63 @@ from flowtex._util.blocks import bounds
 from flowtex.errors import FieldError
 
 __all__ = [
+    "LENGTHS",
+    "MAGNITUDES",
     "as_numbers",
     "finite_nodes",
+    "largest",
     "node_faults",
+    "node_positions",
+    "range_faults",
     "scalar_steps",
     "shape_faults",
     "three_components",
+    "with_gaps",
 ]
 
 #: A surface narrower than this share of its length is a line.
 LINE_WIDTH = 1e-7
+#: Ends of lengths, for single precision, and of speeds and times, whose squares must be numbers.
+LENGTHS, MAGNITUDES = (1e-30, 1e30), (1e-100, 1e100)
 #: Lines of nodes along each axis that are looked at first.
 FEW_LINES = 100
 
 
-def as_numbers(values: ArrayLike) -> tuple[Floats, Any]:
+def node_positions(points: Any) -> Any:
+    """Return positions (J, I, 2 or 3) of the arrays x and y, and z, of a tuple; others as they are.
+
+    Two that are (I,) and (J,) are those of a rectilinear grid.
+    """
+    several = isinstance(points, (tuple, list)) and len(points) in (2, 3)
+    sizes = [np.ndim(part) for part in points] if several else []
+    if sizes == [1, 1]:
+        points = np.meshgrid(*points)
+    elif not isinstance(points, tuple) or set(sizes) != {2}:
+        return points
+    shapes = [np.shape(part) for part in points]
+    if len(set(shapes)) > 1:
+        msg = (
+            f"points are arrays of shapes {', '.join(map(str, shapes))}; expected one shape (J, I)"
+        )
+        raise FieldError(msg)
+    return np.ma.stack(points, axis=-1) if any(map(np.ma.isMA, points)) else np.stack(points, -1)
+
+
+def as_numbers(name: str, values: ArrayLike) -> tuple[Floats, Any]:
     """Return values as float64, and which nodes a masked array hides: (J, I), or false.
 
     Those that are float64 are not copied.
     """
     mask = np.ma.getmaskarray(values) if np.ma.isMaskedArray(values) else None
-    array = np.asarray(np.ma.getdata(values))
+    try:
+        array = np.asarray(np.ma.getdata(values))
+    except (TypeError, ValueError) as error:
+        msg = f"{name} is no array ({error}); expected real numbers, as many in every row"
+        raise FieldError(msg) from error
     if array.dtype.kind not in "fiub":
         msg = (
-            f"an array of {array.dtype} was given where real numbers were expected; convert it "
-            "with astype(float), or take its real part"
+            f"{name} holds {array.dtype}; expected real numbers: convert it with astype(float), "
+            "or take its real part"
         )
         raise FieldError(msg)
     array = np.asarray(array, np.float64)
@@ -53,13 +85,24 @@ def as_numbers(values: ArrayLike) -> tuple[Floats, Any]:
     return array, hidden
 
 
+def with_gaps(name: str, values: ArrayLike) -> Floats:
+    """Return values as float64, NaN where a masked array hides them.
+
+    Those that are float64, with nothing hidden, are not copied.
+    """
+    array, _ = as_numbers(name, values)
+    if isinstance(values, np.ma.MaskedArray) and np.ma.is_masked(values):
+        array = np.where(np.ma.getmaskarray(values), np.nan, array)
+    return array
+
+
 def shape_faults(
     p: Floats,
     v: Floats,
-    times: ArrayLike | None,
-    valid: ArrayLike | None,
-    periodic: str | None,
-    scalars: Mapping[str, ArrayLike] | None,
+    times: Floats | None,
+    valid: Floats | None,
+    periodic: Any,
+    scalars: Mapping[str, Floats],
 ) -> list[str]:
     """Return faults in the shapes of the arguments of :meth:`FlowField.from_arrays`."""
     if p.ndim != 3 or p.shape[-1] not in (2, 3):
@@ -80,13 +123,13 @@ def shape_faults(
     if valid is not None and np.shape(valid) != grid:
         faults.append(f"valid has shape {np.shape(valid)}; expected {grid} as points has")
     allowed = [grid, (len(v) if v.ndim == 4 else 1, *grid)]
-    for name, array in (scalars or {}).items():
+    for name, array in scalars.items():
         if np.shape(array) not in allowed:
             faults.append(
                 f"scalars[{name!r}] has shape {np.shape(array)}; expected {allowed[0]} or "
                 f"{allowed[1]}, as points and velocity have"
             )
-    if periodic is not None and not set(periodic) <= {"i", "j"}:
+    if periodic is not None and not (isinstance(periodic, str) and set(periodic) <= {"i", "j"}):
         faults.append(
             f'periodic is {periodic!r}; expected "", "i", "j" or "ij", or None to find out'
         )
@@ -109,16 +152,17 @@ def _velocity_faults(v: Floats, grid: tuple[int, ...]) -> list[str]:
     ]
 
 
-def _time_faults(times: ArrayLike | None, count: int) -> list[str]:
-    if times is None:
+def _time_faults(t: Floats | None, count: int) -> list[str]:
+    if t is None:
         return []
-    t = np.asarray(times, dtype=float)
     if t.shape != (count,):
         return [f"times has shape {t.shape}; expected ({count},), one for each step of velocity"]
     if not np.isfinite(t).all():
         bad = int(np.flatnonzero(~np.isfinite(t))[0])
         return [f"times[{bad}] is {t[bad]}; expected a finite number"]
-    falls = np.flatnonzero(np.diff(t) <= 0)
+    if np.abs(t).max() > MAGNITUDES[1]:
+        return [f"times go up to {np.abs(t).max():.3g}; expected {MAGNITUDES[1]:g} at most"]
+    falls = np.flatnonzero(np.diff(t) < MAGNITUDES[0])
     if len(falls):
         n = int(falls[0])
         return [
@@ -126,6 +170,22 @@ def _time_faults(times: ArrayLike | None, count: int) -> list[str]:
             "strictly increasing times: sort the steps, and drop those that repeat"
         ]
     return []
+
+
+def range_faults(p: Floats, v: Floats, ok: Bools) -> list[str]:
+    """Return faults in the size of positions and velocities of the nodes that are valid.
+
+    Velocities of the others are NaN.
+    """
+    faults = []
+    of_nodes = largest(p) if ok.all() else largest(p, ok[..., None])
+    for name, most, ends in (("points", of_nodes, LENGTHS), ("velocity", largest(v), MAGNITUDES)):
+        if most and not ends[0] <= most <= ends[1]:
+            faults.append(
+                f"{name} has values up to {most:.3g}; expected {ends[0]:g} to {ends[1]:g}: take "
+                "another unit, or NaN for what is missing"
+            )
+    return faults
 
 
 def node_faults(p: Floats, ok: Bools) -> list[str]:
@@ -162,7 +222,12 @@ def _spread(p: Floats, ok: Bools) -> bool:
     if len(some) < 3:
         return False
     low, high = bounds(p if ok.all() else p[ok])
-    offsets = (some - some.mean(axis=0)) / max(float((high - low).max()), np.finfo(float).tiny)
+    offsets = some - some.mean(axis=0)
+    # Where all nodes are at one point, only rounding is left.
+    size = float(max((high - low).max(), np.abs(offsets).max()))
+    if not np.finfo(float).tiny < size:
+        return False
+    offsets /= size
     spans = np.linalg.svd(offsets.T @ offsets, compute_uv=False)
     return bool(spans[1] > 2 * LINE_WIDTH**2 * p.shape[-1] * ok.size)
 
@@ -175,6 +240,15 @@ def finite_nodes(a: Floats) -> Bools:
     return np.asarray(finite.all(axis=(*range(a.ndim - 3), -1)))
 
 
+def largest(a: Floats, where: Bools | bool = True) -> float:  # noqa: FBT001, FBT002
+    """Greatest size of the numbers in an array, and 0 where all are NaN.
+
+    Nothing is copied: a velocity may fill much of the memory.
+    """
+    options: dict[str, Any] = {"axis": None, "initial": 0.0, "where": where}
+    return float(max(-np.fmin.reduce(a, **options), np.fmax.reduce(a, **options)))
+
+
 def three_components(a: Floats) -> Floats:
     """Give two-dimensional vectors a third component of zero."""
     if a.shape[-1] == 3:
@@ -182,7 +256,12 @@ def three_components(a: Floats) -> Floats:
     return np.concatenate([a, np.zeros_like(a[..., :1])], axis=-1)
 
 
-def scalar_steps(values: ArrayLike) -> Floats:
-    """Return a nodal array with a leading axis of time, (T or 1, J, I); hidden entries are NaN."""
-    array = np.ma.filled(np.ma.asarray(values).astype(np.float64), np.nan)
-    return np.asarray(array[None] if array.ndim == 2 else array)
+def scalar_steps(values: Floats, grid: tuple[int, ...]) -> Floats:
+    """Copy a nodal array, (J, I) or (T, J, I), with an axis of time, and NaN for what is no number.
+
+    Nothing is known where a number is beyond :data:`MAGNITUDES`.
+    """
+    result = values.reshape(-1, *grid).copy("C")
+    if largest(result) > MAGNITUDES[1]:
+        result[np.abs(result) > MAGNITUDES[1]] = np.nan
+    return result

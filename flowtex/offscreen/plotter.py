@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
@@ -26,6 +27,11 @@ LONGEST_SIDE = 16_384
 MAX_SUPERSAMPLING = 8
 #: Samples of a pixel for smooth outlines, where the picture is not supersampled.
 OUTLINE_SAMPLES = 4
+
+NOTHING_SEEN = (
+    "Nothing of the surface is in the picture; check zoom, focus and camera, which are in the "
+    "mesh's own units."
+)
 
 
 class OffscreenPlotter:
@@ -79,8 +85,12 @@ class OffscreenPlotter:
             handle.clock = clock
         self._plotter.suppress_rendering = False
         self._plotter.render()
-        pixels: Any = self._plotter.screenshot(return_img=True)
-        return averaged(np.asarray(pixels[..., :3], dtype=np.uint8), self._supersampling)
+        shot: Any = self._plotter.screenshot(return_img=True)
+        pixels = np.asarray(shot[..., :3], dtype=np.uint8)
+        visible = any(handle.scene.appearance.opacity > 0 for handle in self.handles)
+        if visible and (pixels == self._plotter.background_color.int_rgb).all():
+            warnings.warn(NOTHING_SEEN, stacklevel=3)
+        return averaged(pixels, self._supersampling)
 
     def close(self) -> None:
         """Free the graphics card."""

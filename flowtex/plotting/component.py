@@ -44,8 +44,8 @@ class FlowtexComponent:
         Parameters
         ----------
         mesh
-            A structured mesh with one flat index direction, a list of such meshes in time, or
-            a :class:`~flowtex.FlowField`.
+            A structured mesh with one flat index direction, a list of such meshes in time, the
+            path of a file of one, or a :class:`~flowtex.FlowField`.
         {options}
         scalar_bar_args
             As for ``plotter.add_mesh``.

@@ -155,6 +155,11 @@ class FlowHandle(AppearanceAttributes):
         """
         self._surface.load_in_background(notify)
 
+    @property
+    def meshes(self) -> list[Any]:
+        """PyVista's meshes of the last picture, one but for large surfaces."""
+        return self._surface.meshes
+
     def draw_for(self, height: int | None) -> None:
         """Choose tiles as for a picture of so many pixels, of which the next ones are drafts."""
         self._surface.full_height = height

@@ -33,8 +33,9 @@ NOISE_DOUBLINGS = 30
 CLEAR_DOUBLINGS = 9
 #: Pixels that the flow goes while a grain in motion takes one turn; up to twice as many.
 WAVE_PIXELS = 96.0
-#: Step of the coarse part of the clock, in base periods: times a power of two it stays exact.
-CLOCK_STEP = 2.0**-12
+#: Step of the coarse part of the clock, in base periods, and its end: times a power of two it
+#: stays exact.
+CLOCK_STEP, MOST_TURNS = 2.0**-12, 2.0**12
 
 #: Heights of the view within which positions may be counted from another point than its middle.
 ANCHOR_RANGE = 8.0
@@ -224,8 +225,10 @@ def _motion(textures: TextureSet, settings: Settings, view: ViewState) -> dict[s
     store = textures.store
     if store.steps > 1:
         # The time in which the flow crosses the surface.
-        period = textures.geometry.extent / textures.pace
-        turns, travel = (view.time - float(store.field.times[0])) / period, textures.geometry.extent
+        period = textures.geometry.extent / textures.typical_speed
+        # Whole turns count for nothing, and single precision holds no more.
+        turns = (view.time - float(store.field.times[0])) / period % MOST_TURNS
+        travel = textures.geometry.extent
         pixels, by_speed = False, True
     else:
         turns, travel = view.clock / settings.period % 1.0, settings.speed * settings.period

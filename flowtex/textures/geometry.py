@@ -208,7 +208,8 @@ class SurfaceGeometry:
         small = length[..., 0] <= 1e-9 * max(float(np.median(length)), 1e-300)
         if small.any() and not small.all():
             for row, beside in ((0, 1), (-1, -2)):
-                normal[row][small[row]] = normal[beside][small[row]].mean(axis=0)
+                if small[row].any():
+                    normal[row][small[row]] = normal[beside][small[row]].mean(axis=0)
             for column, beside in ((0, 1), (-1, -2)):
                 bad = small[:, column]
                 normal[bad, column] = normal[bad, beside]

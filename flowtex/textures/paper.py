@@ -154,7 +154,9 @@ def _coordinates(field: FlowField, *, correction: bool) -> tuple[Floats, Floats]
     p_i, p_j = (np.linalg.norm(t, axis=-1) for t in field.surface.tangents)
     lines = []
     for lengths in (p_i.mean(axis=0), p_j.mean(axis=1)):
-        steps = (lengths[1:] + lengths[:-1]) / 2 if correction else np.ones(len(lengths) - 1)
+        steps = (lengths[1:] + lengths[:-1]) / 2
+        if not (correction and steps.any()):
+            steps = np.ones(len(steps))
         ends = np.concatenate([[0.0], np.cumsum(np.maximum(steps, 1e-9 * steps.max()))])
         lines.append(ends / ends[-1])
     return lines[0], lines[1]
@@ -250,7 +252,7 @@ def _deviations(noise: Floats32) -> list[float]:
     result.append(float(values.std()))
     while len(result) < HALF_LEVELS:
         result.append(result[-1] / np.sqrt(2.0))
-    return [max(value, 1e-6) for value in result[:HALF_LEVELS]]
+    return [float(max(value, 1e-6)) for value in result[:HALF_LEVELS]]
 
 
 def _bilinear(level: Floats, at: Floats) -> Floats:

@@ -40,6 +40,8 @@ __all__ = ["AGREED", "MOST_LAGS", "TextureSet"]
 
 #: Slices on each side that a shader has room for.
 MOST_LAGS = 32
+#: Greatest number in half precision, in which texels are stored.
+HALF_MAX = 65504.0
 #: Nodes agree on the direction where their mean velocity is so long, over the mean of the lengths.
 AGREED = 0.99
 
@@ -180,7 +182,8 @@ class TextureSet:
         result = np.empty((self.count, *size, 4), np.float32)
 
         def make(layer: int) -> None:
-            self.geometry.write_texels(self._nodal(slices, tangent, layer), result[layer])
+            nodal = self._nodal(slices, tangent, layer)
+            self.geometry.write_texels(np.clip(nodal, -HALF_MAX, HALF_MAX, nodal), result[layer])
 
         with ThreadPoolExecutor(max_workers=min(os.cpu_count() or 1, 8)) as pool:
             list(pool.map(make, range(self.count)))

@@ -142,18 +142,10 @@ class TileLoader:
             return any(self._is_wanted(key) for key, _ in self._running)
 
     def wait(self) -> None:
-        """Wait for the tiles that were asked for.
-
-        Raises
-        ------
-        Exception
-            What went wrong with one of them.
-        """
+        """Wait for the tiles that were asked for."""
         with self._lock:
             futures = [f for (key, _), f in self._running.items() if self._is_wanted(key)]
         wait(futures)
-        for error in self.errors.values():
-            raise error
 
     def close(self) -> None:
         """Stop, without waiting for what is being made."""

@@ -90,6 +90,8 @@ class Pyramid:
         The flow.
     parameter
         As for :func:`flowtex.trace`.
+    lines
+        ``"pathlines"`` or ``"streamlines"``.
 
     Attributes
     ----------
@@ -97,8 +99,10 @@ class Pyramid:
         Level of the root; 0 where the whole field is one.
     """
 
-    def __init__(self, field: FlowField, parameter: str = "arclength") -> None:
-        self.field, self.parameter = field, parameter
+    def __init__(
+        self, field: FlowField, parameter: str = "arclength", lines: str = "pathlines"
+    ) -> None:
+        self.field, self.parameter, self.lines = field, parameter, lines
         self.depth = 0
         while np.prod([len(_lines(n, self.depth)) for n in field.shape]) > ROOT_NODES:
             self.depth += 1
@@ -218,7 +222,9 @@ class Pyramid:
         store = SliceStore(
             window,
             parameter=self.parameter,
-            compose=self.field.steady and (around is None or nodes.size <= MOST_COMPOSED),
+            lines=self.lines,
+            compose=(self.field.steady or self.lines == "streamlines")
+            and (around is None or nodes.size <= MOST_COMPOSED),
             longest=longest,
             nodes=nodes,
         )
@@ -347,10 +353,11 @@ def _greatest(values: Floats, firsts: list[Indices], lasts: list[Indices]) -> Fl
 _pyramids: WeakCache[Pyramid] = WeakCache()
 
 
-def shared_pyramid(field: FlowField, parameter: str) -> Pyramid:
+def shared_pyramid(field: FlowField, parameter: str, lines: str = "pathlines") -> Pyramid:
     """Return the pyramid of a field, one for all that show the field at the same time."""
     # A pyramid keeps its field alive, so the number of the field is its own meanwhile.
-    return _pyramids.get((id(field), parameter), lambda: Pyramid(field, parameter))
+    key = (id(field), parameter, lines)
+    return _pyramids.get(key, lambda: Pyramid(field, parameter, lines))
 
 
 def _lines(count: int, level: int) -> Indices:

@@ -1,9 +1,18 @@
-"""FlowField to TraceSlices: where the particle now at a node was at earlier times."""
+"""FlowField to TraceSlices: where the particle now at a node was at earlier times, and will be."""
 
 from __future__ import annotations
 
+from flowtex.trace.lines import changing_share, chosen_lines
 from flowtex.trace.slices import TraceSlices
 from flowtex.trace.store import SliceStore, shared_store
 from flowtex.trace.trace import paths, trace
 
-__all__ = ["SliceStore", "TraceSlices", "paths", "shared_store", "trace"]
+__all__ = [
+    "SliceStore",
+    "TraceSlices",
+    "changing_share",
+    "chosen_lines",
+    "paths",
+    "shared_store",
+    "trace",
+]

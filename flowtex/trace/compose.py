@@ -56,9 +56,7 @@ Map = Callable[[Callable[[Any], Any], Iterable[Any]], Iterable[Any]]
 Within = Callable[[Floats], Bools]
 #: Follows paths from positions (2, n), by lags (n,), from time steps (n,), as long as they are
 #: there: displacements (2, n), lags covered, and lags at which they end, infinite if they do not.
-Integrate = Callable[
-    [Floats32, Floats32, Indices, Within | None], tuple[Floats32, Floats32, Floats32]
-]
+Integrate = Callable[[Floats32, Floats, Indices, Within | None], tuple[Floats32, Floats, Floats]]
 
 
 def landings(field: FlowField, lags: Floats, unit: Floats) -> Indices | None:
@@ -82,6 +80,8 @@ def landings(field: FlowField, lags: Floats, unit: Floats) -> Indices | None:
     first = int(np.argmax(exact))
     if not exact[first:].all() or np.any(whole[first:] % whole[first]):
         return None
+    # Beyond the first time step there is nowhere to land.
+    whole = np.minimum(whole, len(field.times))
     return np.where(exact, whole, 0).astype(np.intp)
 
 
@@ -112,15 +112,16 @@ def compose(
     landing: Indices,
     run: Map,
     integrate: Integrate,
+    direction: float = -1.0,
 ) -> None:
     """Fill the long slices of one direction in place.
 
     The slices of the first ``known`` of all lags (M,) are filled, and ``reach`` is infinite for
     paths that did not end within these. ``landing`` comes from :func:`landings`, ``run`` maps a
     function over blocks of paths, and ``integrate`` follows paths right beside a pole, of which
-    more are marked.
+    more are marked. Direction -1 is backward, 1 forward.
     """
-    lookup = _SliceLookup(field, lags, unit, side, landing)
+    lookup = _SliceLookup(field, lags, unit, side, landing * int(direction))
     beside = None if field.surface.poles is None else integrate
     for m in range(known + 1, len(lags) + 1):
         lookup.judge(m - 1, always=m - 1 == known)
@@ -133,7 +134,7 @@ class _Piece(NamedTuple):
     moved: Floats32  #: displacement, (2, n)
     covered: Floats32  #: lag that they cover
     ends: Floats32 | None  #: lag at which they end, beyond ``covered`` where they do not
-    steps: Indices | int  #: time steps that they go back
+    steps: Indices | int  #: time steps that they go on, negative backward
 
 
 class _SliceLookup:
@@ -158,7 +159,9 @@ class _SliceLookup:
         # What is stored at lag zero is the slope itself.
         self._inverse = np.concatenate([[1.0], 1 / lags]).astype(np.float32)
         self.landing = np.concatenate([[0], landing])
-        self.unit = unit.ravel().astype(np.float32)
+        #: What units are counted in here, so that single precision holds them: a power of two.
+        self.scale = float(2.0 ** np.rint(np.log2(np.median(unit))))
+        self.unit = (unit.ravel() / self.scale).astype(np.float32)
         self._even = bool(np.ptp(self.unit) <= LAG_ROUNDING * self.unit[0])
         self.unsteady = not field.steady
         self.slices = slices.reshape(2, len(self.knots), -1)
@@ -240,6 +243,10 @@ class _SliceLookup:
         self._mirror(moved, position)
         return moved
 
+    def clipped(self, step: Indices) -> Indices:
+        """Return the first or the last step for those beyond, where the flow stays as it is."""
+        return np.clip(step, 0, len(self._trust) - 1)
+
     def _base(self, step: Indices | int) -> Indices | int:
         """Return the number, among those of all steps, of the first node of a step."""
         return step * self.grid.size if self.unsteady else 0
@@ -293,7 +300,7 @@ class _Doubling:
         self._integrate = integrate
         self._stuck: list[Indices] = []
         self._suspects: list[tuple[AnyArray, ...]] = []
-        self._step = np.maximum(np.arange(count) // nodes - lookup.landing[m - 1], 0)
+        self._step = lookup.clipped(np.arange(count) // nodes + lookup.landing[m - 1])
 
     def run(self, run: Map) -> None:
         """Follow all paths to their end, piece by piece."""
@@ -331,7 +338,7 @@ class _Doubling:
         left -= piece.covered
         self._left[some] = left
         if lookup.unsteady:
-            self._step[some] = np.maximum(self._step[some] - piece.steps, 0)
+            self._step[some] = lookup.clipped(self._step[some] + piece.steps)
         return _numbers(some, np.flatnonzero(left > LAG_ROUNDING * whole))
 
     def _where(self, some: Some) -> tuple[Some, Floats32]:
@@ -356,7 +363,9 @@ class _Doubling:
             return which
         node, position = self._where(which)
         within = None if lookup.unsteady or final else lookup.stuck
-        moved, covered, ends = self._integrate(position, left, step, within)
+        scale = lookup.scale
+        moved, covered, ends = self._integrate(position, left.astype(float) * scale, step, within)
+        covered, ends = covered / scale, ends / scale
         self._moved[:, which] += moved
         self._left[which] = left - covered
         lookup.polar.reshape(-1)[which] = True

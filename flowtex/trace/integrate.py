@@ -28,7 +28,7 @@ from flowtex._util.array_types import Bools, Floats, Floats32, Indices
 from flowtex.trace.node_grid import BORDER_ROUNDING_CELLS
 from flowtex.trace.sampler import Sampler
 
-__all__ = ["Paths", "follow", "integrate"]
+__all__ = ["MOST_CELLS", "Paths", "follow", "integrate"]
 
 Numbers = NDArray[np.int8]
 
@@ -36,13 +36,15 @@ Numbers = NDArray[np.int8]
 STEP_SHRINK, STEP_GROWTH, STEP_SAFETY = 0.2, 4.0, 0.9
 #: Bisections that find where inside a step a path ends.
 BISECTIONS = 20
-#: Rounds of steps after which the paths that still go on are ended where they are.
-MOST_STEPS = 20_000
+#: Rounds of steps after which the paths that still go on are ended where they are: so many for
+#: each line of nodes, as a path in few cells goes round and round, and between these ends.
+STEPS_PER_LINE, LEAST_STEPS, MOST_STEPS = 50, 1_000, 20_000
 #: Share of a step by which rounding may miss a lag.
 LAG_ROUNDING = 1e-9
-#: All of these for :mod:`flowtex._util.kernels`: numbers, and greatest counts.
-RULES = (STEP_SHRINK, STEP_GROWTH, STEP_SAFETY, LAG_ROUNDING, BORDER_ROUNDING_CELLS)
-MOST = (MOST_STEPS, BISECTIONS)
+#: Displacement in cells that single precision holds, with what is computed of it.
+MOST_CELLS = 1e30
+#: Those of these that :mod:`flowtex._util.kernels` is given as numbers.
+RULES = (STEP_SHRINK, STEP_GROWTH, STEP_SAFETY, LAG_ROUNDING, BORDER_ROUNDING_CELLS, MOST_CELLS)
 
 
 @dataclass(frozen=True)
@@ -86,7 +88,7 @@ def integrate(
     elsewhere is interrupted.
     """
     run = _Run(sampler, np.ascontiguousarray(start.T), lags, unit, direction, tolerance, within)
-    for _ in range(MOST_STEPS):
+    for _ in range(_most_steps(sampler)):
         run.end_resting()
         if not len(run.state.which):
             break
@@ -119,16 +121,22 @@ def follow(
         grid.room,
         (sampler.nodal, sampler.times, sampler.destination, direction, sampler.floor),
         (tolerance, *RULES),
-        MOST,
+        (_most_steps(sampler), BISECTIONS),
         nodes,
         np.array(lags),
         unit,
         sampler.rest(unit, float(lags[-1])),
-        sampler.longest,
+        (sampler.longest, sampler.span(direction)),
         moved,
         reach,
     )
     return True
+
+
+def _most_steps(sampler: Sampler) -> int:
+    """Return the number of rounds of steps after which paths are ended."""
+    lines = sampler.grid.rows + sampler.grid.columns
+    return int(np.clip(STEPS_PER_LINE * lines, LEAST_STEPS, MOST_STEPS))
 
 
 @dataclass
@@ -197,6 +205,7 @@ class _Run:
         count = start.shape[1]
         self.sampler, self.direction, self.tolerance = sampler, direction, tolerance
         self.charts, self.within = sampler.charts, within
+        self.span = sampler.span(direction)
         self.lags = lags
         #: The lags and one that is never reached, for particles that have them all.
         self.next_lags = np.append(lags, np.inf)
@@ -240,7 +249,11 @@ class _Run:
         rest = self.lags[-1] * state.unit - state.lag
         # A path must not jump over a blanked cell unseen.
         longest = self.sampler.room(state.y) / np.maximum(_speed(state.rate), 1e-300)
-        h = np.minimum(np.minimum(state.step, longest), np.minimum(rest, self.sampler.longest))
+        h = np.minimum(np.minimum(state.step, longest), rest)
+        if np.isfinite(self.sampler.longest):
+            # Before the first time step nothing changes.
+            changing = state.lag < self.span
+            h = np.where(changing, np.minimum(h, self.sampler.longest), h)
         step, error = self._try(h)
         size = np.maximum(error * (1 / self.tolerance), 1e-9)
         state.step = h * np.clip(STEP_SAFETY / np.cbrt(size), STEP_SHRINK, STEP_GROWTH)

@@ -46,7 +46,7 @@ def choose_lags(field: FlowField, parameter: str, longest: float | None = None) 
         speed = field.speed[:, field.valid]
         moving = speed > 1e-6 * speed.max() if speed.any() else np.zeros_like(speed, dtype=bool)
         if not moving.any():
-            return np.array([1.0])
+            return np.array([1.0, RATIO])
         crossing = np.broadcast_to(size, speed.shape)[moving] / speed[moving]
         first = FIRST_CELLS * float(np.percentile(crossing, 10))
         last = longest / float(np.sqrt(np.mean(speed[moving] ** 2)))

@@ -131,8 +131,8 @@ def _cell(x: AnyArray, cells: int, *, closed: bool) -> tuple[Indices, AnyArray]:
     """Return the number of the cell along one axis, and the fraction inside it."""
     if closed:
         inside = x - cells * np.floor(x * x.dtype.type(1 / cells))
-        # Rounding can leave the result a hair outside.
-        np.maximum(inside, 0, out=inside)
+        # Rounding can leave the result outside, by more the further away the position is.
+        np.clip(inside, 0, cells, out=inside)
     else:
         inside = np.clip(x, 0, cells)
     number = inside.astype(np.intp)

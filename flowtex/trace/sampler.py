@@ -104,6 +104,10 @@ class Sampler(ABC):
         """Cells that particles may move at once, the same for all or (N,)."""
         return self.grid.room_at(position) if self.charts is None else LEAST_ROOM_CELLS
 
+    def span(self, direction: float) -> float:
+        """Lag up to which the flow changes in time: to the first time step, or to the last."""
+        return float(direction * (self.times[0 if direction < 0 else -1] - self.destination))
+
     @abstractmethod
     def rest(self, unit: Floats, last: float) -> Floats:
         """Rate (N,) below which a particle stands still, for lags up to ``last * unit``."""

@@ -53,7 +53,7 @@ class TraceSlices:
         Backward slices, (T, M, J, I, 2), components (a - i, b - j) in cells, one set for each
         destination time. Beyond a path's reach they go on straight.
     forward
-        Forward slices of a steady field, the same shape, or ``None``.
+        Forward slices, the same shape, or ``None``.
     rate, forward_rate
         Derivative of the displacement by lag at lag zero, (T, J, I, 2), in cells per ``unit``.
     reach, forward_reach
@@ -139,7 +139,7 @@ class TraceSlices:
         sign, data, reach = -1.0, self.displacement, self.reach
         if forward:
             if self.forward is None or self.forward_reach is None:
-                msg = "there are no forward slices: trace a steady field with two_sided=True"
+                msg = "there are no forward slices: trace with two_sided=True"
                 raise ValueError(msg)
             sign, data, reach = 1.0, self.forward, self.forward_reach
         held = np.minimum(lag, reach[step].astype(float))

@@ -18,6 +18,7 @@ from flowtex._util.cache import ByteCache, WeakCache
 from flowtex.field import FlowField
 from flowtex.trace.compose import landings
 from flowtex.trace.lags import choose_lags, lag_unit
+from flowtex.trace.lines import chosen_lines
 from flowtex.trace.slices import TraceSlices
 from flowtex.trace.trace import trace
 
@@ -30,8 +31,9 @@ CACHE_BYTES = 512_000_000
 class SliceStore:
     """Slices of one field, one destination time at a time.
 
-    The parameter is that of :func:`flowtex.trace`. With slices of all steps that were traced
-    already nothing is traced; in a field without a sign they have to lead to both sides.
+    With ``lines="streamlines"`` each destination time of a field that varies is traced as a steady
+    field; the parameter, that of :func:`flowtex.trace`, counts then. With slices of all steps that
+    were traced already nothing is traced; in a field without a sign they lead to both sides.
     ``compose`` allows to compose all steps together, which is quicker than step by step, but slower
     for one or two of them. ``longest`` is the greatest length that is traced, in the mesh's units,
     a quarter of the surface by default, and ``nodes`` (J, I) are those that :func:`flowtex.trace`
@@ -43,6 +45,7 @@ class SliceStore:
         field: FlowField,
         *,
         parameter: str = "arclength",
+        lines: str = "pathlines",
         slices: TraceSlices | None = None,
         compose: bool = True,
         longest: float | None = None,
@@ -52,15 +55,21 @@ class SliceStore:
             msg = "the slices lead backward only; expected both sides of a field without a sign"
             raise ValueError(msg)
         self.field = field
+        #: Whether each destination time is traced as a steady field.
+        self.streamlines = field.steady or chosen_lines(field, lines) == "streamlines"
         self._whole = slices
         self._compose = compose
         self._nodes = nodes
         self._cache: ByteCache[int, TraceSlices] = ByteCache(CACHE_BYTES, min_count=2)
         self._lock = threading.Lock()
         if slices is None:
-            self.parameter = parameter if field.steady else "time"
+            self.parameter = parameter if self.streamlines else "time"
             self.lags: Floats = choose_lags(field, self.parameter, longest)
             self.unit: Floats = lag_unit(field, self.parameter)
+            if self.parameter == "time":
+                # Half precision holds lags near one, whatever the field's unit of time is.
+                first = 2.0 ** np.rint(np.log2(self.lags[0]))
+                self.lags, self.unit = self.lags / first, self.unit * first
         else:
             self.parameter, self.lags, self.unit = slices.parameter, slices.lags, slices.unit
 
@@ -77,7 +86,7 @@ class SliceStore:
     @property
     def two_sided(self) -> bool:
         """Whether paths lead forward too."""
-        return self.field.steady if self._whole is None else self._whole.forward is not None
+        return self._whole is None or self._whole.forward is not None
 
     def at(self, step: int) -> TraceSlices:
         """Slices of one destination time, T = 1."""
@@ -91,32 +100,34 @@ class SliceStore:
     def _trace(self, step: int) -> TraceSlices:
         if self._whole is not None:
             return self._whole.at_step(step)
-        if self.field.steady:
-            return self._trace_with(
-                parameter=self.parameter, compose=self._compose and not self.field.sign_free
-            )
-        size = self.steps * len(self.lags) * self.unit.size * 2 * np.float32().nbytes
+        if self.streamlines:
+            compose = self._compose and not self.field.sign_free
+            moment = self.field.at_step(step)
+            return self._trace_with(moment, parameter=self.parameter, compose=compose)
+        size = self.steps * len(self.lags) * self.unit.size * 4 * np.float32().nbytes
         if (
             self._compose
             and size < CACHE_BYTES
             and landings(self.field, self.lags, self.unit) is not None
         ):
             # Composed, all steps together take about as long as four that are integrated.
-            self._whole = self._trace_with(compose=True)
+            self._whole = self._trace_with(self.field, compose=True)
             return self._whole.at_step(step)
-        return self._trace_with(steps=[step])
+        return self._trace_with(self.field, steps=[step])
 
-    def _trace_with(self, **options: Any) -> TraceSlices:
+    def _trace_with(self, field: FlowField, **options: Any) -> TraceSlices:
         # A part of a surface is one of many, whose bars would tell nothing.
         alone = self._nodes is None
         parts: dict[str, Any] = {"nodes": self._nodes, "progress": alone}
-        return trace(self.field, lags=self.lags, unit=self.unit, **parts, **options)
+        return trace(field, lags=self.lags, unit=self.unit, **parts, **options)
 
 
 _stores: WeakCache[SliceStore] = WeakCache()
 
 
-def shared_store(field: FlowField, parameter: str) -> SliceStore:
+def shared_store(field: FlowField, parameter: str, lines: str = "pathlines") -> SliceStore:
     """Return the store of a field, one for all that show the field at the same time."""
     # A store keeps its field alive, so the number of the field is its own while the store lives.
-    return _stores.get((id(field), parameter), partial(SliceStore, field, parameter=parameter))
+    lines = chosen_lines(field, lines)
+    make = partial(SliceStore, field, parameter=parameter, lines=lines)
+    return _stores.get((id(field), parameter, lines), make)

@@ -22,7 +22,7 @@ from flowtex._util.progress import track
 from flowtex.field import FlowField
 from flowtex.field.interpolation import nearest_known
 from flowtex.trace.compose import SideSlices, Within, compose, landings
-from flowtex.trace.integrate import Paths, follow, integrate
+from flowtex.trace.integrate import MOST_CELLS, Paths, follow, integrate
 from flowtex.trace.lags import choose_lags, lag_unit
 from flowtex.trace.sampler import LengthSampler, Sampler, TimeSampler
 from flowtex.trace.slices import TraceSlices
@@ -30,6 +30,8 @@ from flowtex.trace.slices import TraceSlices
 __all__ = ["paths", "trace"]
 
 
+#: Lags that single precision holds, with what is computed of them.
+LEAST_LAG, MOST_LAG = 1e-30, 1e30
 #: Error allowed in one step, in cells.
 TOLERANCE = 1e-3
 #: Particles followed together, and blocks of them followed at once.
@@ -55,8 +57,8 @@ def trace(
 
     Paper section 3.1: from every node a particle is followed backward from the destination time
     Td, and its positions at the release times Td - lag make the trace slices. A steady field is
-    followed along its streamlines, forward too; a time-varying one along pathlines, with
-    velocities interpolated linearly in time and held constant before the first step.
+    followed along its streamlines, a time-varying one along pathlines, with velocities
+    interpolated linearly in time and held constant before the first step and after the last.
 
     Parameters
     ----------
@@ -71,7 +73,7 @@ def trace(
     parameter
         ``"arclength"`` or ``"time"``; a time-varying field is always followed by time.
     two_sided
-        Whether a steady field is followed forward too. One without a sign always is.
+        Whether paths are followed forward too. In a field without a sign they always are.
     tolerance
         Error allowed in one step of the integration, in cells.
     steps
@@ -94,9 +96,10 @@ def trace(
     Raises
     ------
     ValueError
-        When the lags are not positive and increasing, ``parameter`` is unknown, the unit or the
-        tolerance is not positive, or ``nodes`` has another shape than the field; or a field without
-        a sign is to be followed to one side, or composed.
+        When the lags are not positive and increasing, or too large for single precision,
+        ``parameter`` is unknown, the unit or the tolerance is not positive, or ``nodes`` has
+        another shape than the field; or a field without a sign is to be followed to one side, or
+        composed.
     IndexError
         When there is no such time step.
     """
@@ -108,11 +111,17 @@ def trace(
     if not (np.isfinite(units).all() and (units > 0).all()):
         msg = f"unit has values from {units.min():g} to {units.max():g}; expected positive numbers"
         raise ValueError(msg)
+    if not LEAST_LAG <= lag_values[0] <= lag_values[-1] <= MOST_LAG:
+        msg = (
+            f"lags go from {lag_values[0]:g} to {lag_values[-1]:g}; expected {LEAST_LAG:g} to "
+            f"{MOST_LAG:g}, for single precision: give a unit of their size"
+        )
+        raise ValueError(msg)
     if not tolerance > 0:
         msg = f"tolerance is {tolerance!r}; expected a positive number of cells, such as 1e-3"
         raise ValueError(msg)
     step_numbers = _step_numbers(field, steps)
-    directions = (-1.0, 1.0) if field.steady and two_sided else (-1.0,)
+    directions = (-1.0, 1.0) if two_sided else (-1.0,)
     samplers = _samplers(field, step_numbers, parameter)
     composed = lags is None if compose is None else compose
     whole = field.steady or step_numbers == list(range(len(field.times)))
@@ -215,6 +224,11 @@ def _parameter(field: FlowField, parameter: str) -> str:
     return parameter if field.steady else "time"
 
 
+def _in_single(cells: Floats) -> Floats:
+    """Limit displacements: a path that has ended goes on straight, however fast it was."""
+    return np.asarray(np.clip(cells, -MOST_CELLS, MOST_CELLS))
+
+
 def _checked_lags(lags: ArrayLike) -> Floats:
     lag_values = np.atleast_1d(np.asarray(lags, dtype=float))
     good = np.isfinite(lag_values) & (np.diff(lag_values, prepend=0.0) > 0)
@@ -288,6 +302,7 @@ class _Tracing:
                         landing,
                         pool.map,
                         partial(self._piece, direction),
+                        direction,
                     )
         return sides
 
@@ -316,7 +331,7 @@ class _Tracing:
             if follow(self.samplers[step], nodes, lags, units, slices, reach, **options):
                 return
             result = integrate(self.samplers[step], start[block], lags, units, **options)
-            moved = np.moveaxis(result.positions - start[block], 2, 0)
+            moved = np.moveaxis(_in_single(result.positions - start[block]), 2, 0)
             some: Indices | slice = nodes
             if nodes[-1] - nodes[0] == len(nodes) - 1:
                 # Writing to a slice is several times as fast as to a list of nodes.
@@ -338,15 +353,15 @@ class _Tracing:
         self,
         direction: float,
         position: Floats32,
-        lag: Floats32,
+        lag: Floats,
         step: Indices,
         within: Within | None,
-    ) -> tuple[Floats32, Floats32, Floats32]:
+    ) -> tuple[Floats32, Floats, Floats]:
         """Follow some paths, as :data:`flowtex.trace.compose.Integrate` says."""
         moved, covered, ends = np.empty_like(position), lag.copy(), np.empty_like(lag)
         for number in np.unique(step) if len(self.samplers) > 1 else [0]:
             some = step == number if len(self.samplers) > 1 else slice(None)
-            start, unit = position[:, some].T.astype(float), lag[some].astype(float)
+            start, unit = position[:, some].T.astype(float), lag[some]
             paths = integrate(
                 self.samplers[number],
                 start,
@@ -365,7 +380,7 @@ class _Tracing:
         """Lay out by nodes, with the slope at lag zero; nodes left out move as the nearest."""
         grid = self.field.shape
         slices = flat.slices.reshape(*flat.slices.shape[:3], *grid)
-        slices[:, 0] = direction * np.moveaxis(self.rate, -1, 0)
+        slices[:, 0] = direction * np.moveaxis(_in_single(self.rate), -1, 0)
         blank = ~self.followed
         if blank.any() and self.followed.any():
             # In place: the slices are large, and few of them are blank.

@@ -14,10 +14,12 @@ import html
 import json
 import string
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import chain
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from flowtex._util.progress import track
 from flowtex._util.whole_file import whole_file
@@ -25,8 +27,10 @@ from flowtex._version import __version__
 from flowtex.options import Appearance, FieldOptions, Options, ViewOptions, accepts_options
 from flowtex.rendering.webgl import ClientData
 from flowtex.rendering.webgl.protocol import Header, part_info, part_text
+from flowtex.tiles import Pyramid
 from flowtex.web import preview
 from flowtex.web.assets import asset
+from flowtex.web.tiles import all_tiles
 from flowtex.web.view import WebView, web_views
 
 __all__ = ["Page", "estimate", "export", "page_pieces", "page_text", "write_page"]
@@ -35,6 +39,8 @@ __all__ = ["Page", "estimate", "export", "page_pieces", "page_text", "write_page
 PACKED_SHARE = 0.62
 #: Bytes of the client, its shaders and the header, about.
 CLIENT_BYTES = 160_000
+#: Bytes of the tiles of a large surface, at most; all of a level are in a page, or none.
+TILE_BYTES = 40_000_000
 #: Size of the preview picture.
 PREVIEW = (480, 300)
 
@@ -125,7 +131,7 @@ def write_page(
     ``announce`` is that of :func:`export`, the options are those of :func:`page_pieces`.
     """
     path = Path(path)
-    scenes = [view.page_data() for view in views]
+    scenes = _page_data(views)
     estimated = estimate(scenes)
     if announce is not None:
         announce(estimated, scenes[0].steps)
@@ -136,7 +142,33 @@ def write_page(
 
 def page_text(views: Sequence[WebView], **options: Any) -> str:
     """Return a view, or two, as the text of a page; the options are of :func:`page_pieces`."""
-    return "".join(page_pieces(views, [view.page_data() for view in views], **options))
+    return "".join(page_pieces(views, _page_data(views), **options))
+
+
+def _page_data(views: Sequence[WebView]) -> list[ClientData]:
+    """Return what a page holds of its views, with as many levels of tiles as there is room for."""
+    scenes = []
+    for scene in (view.page_data() for view in views):
+        pyramid, finest = scene.pyramid, 0
+        if pyramid is not None:
+            finest, room = pyramid.depth, TILE_BYTES
+            while finest and (room := room - _level_bytes(scene, pyramid, finest - 1)) >= 0:
+                finest -= 1
+            pyramid = pyramid if finest < pyramid.depth else None
+        scenes.append(replace(scene, pyramid=pyramid, finest=finest))
+    return scenes
+
+
+def _level_bytes(scene: ClientData, pyramid: Pyramid, level: int) -> int:
+    """Bytes of the tiles of a level in a page, about."""
+    more = np.prod(pyramid.shape(level)) / np.prod(pyramid.shape(pyramid.depth))
+    return int(PACKED_SHARE * more * _arrays_bytes(scene))
+
+
+def _arrays_bytes(scene: ClientData) -> int:
+    """Bytes of the arrays of a scene without tiles."""
+    surface = sum(part.nbytes for part in scene.surface().values())
+    return surface + scene.steps * scene.nbytes_of_step
 
 
 def estimate(scenes: Sequence[ClientData]) -> int:
@@ -145,9 +177,11 @@ def estimate(scenes: Sequence[ClientData]) -> int:
     for n, scene in enumerate(scenes):
         if n and scene.textures is scenes[0].textures:
             break
-        arrays = sum(part.nbytes for part in scene.surface().values())
-        size += arrays + scene.steps * scene.nbytes_of_step
-    return CLIENT_BYTES + int(PACKED_SHARE * size)
+        size += int(PACKED_SHARE * _arrays_bytes(scene))
+        if (pyramid := scene.pyramid) is not None:
+            levels = range(scene.finest, pyramid.depth)
+            size += sum(_level_bytes(scene, pyramid, level) for level in levels)
+    return CLIENT_BYTES + size
 
 
 def page_pieces(
@@ -228,7 +262,9 @@ def _elements(scenes: Sequence[ClientData]) -> Iterator[str]:
     for n, scene in enumerate(scenes):
         steps = track(range(scene.steps), scene.steps, "Packing time steps")
         for name, array in chain(
-            scene.surface().items(), (part for step in steps for part in scene.step(step).items())
+            scene.surface().items(),
+            (part for step in steps for part in scene.step(step).items()),
+            (part for tile in all_tiles(scene) for part in tile.items()),
         ):
             info = part_info(name, array)
             text = "" if info["digest"] in written else part_text(array)

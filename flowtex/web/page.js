@@ -23,27 +23,15 @@ THE SOFTWARE. */
 var TYPES={float32:Float32Array,float16:Uint16Array,uint16:Uint16Array,int16:Int16Array,int8:Int8Array,uint8:Uint8Array};
 function shareOf({low,high,log}){if(!log)return value=>(value-low)/(high-low||1);let span=Math.log(high/low)||1;return value=>Math.
 log(Math.max(value,low)/low)/span}function isSignFree(header){return header.variant.includes("FLOWTEX_SIGNFREE")}function stepOf(name){
-return Number(name.split("/")[1])}function decoded(info,bytes){let view=ArrayBuffer.isView(bytes)?new Uint8Array(bytes.buffer,
-bytes.byteOffset,bytes.byteLength):new Uint8Array(bytes),{name,dtype,shape,digest}=info,Type=TYPES[dtype];if(!Type)throw new Error(
-`a part has the type "${dtype}"; expected ${Object.keys(TYPES).join(", ")}`);return{name,shape,digest,data:new Type(view.
-slice().buffer)}}async function partOfText(info,text){let packed=Uint8Array.from(atob(text),letter=>letter.charCodeAt(0)),unpacked=new Blob(
+return Number(name.split("/")[1])}function tilePart(name){let[kind,level,row,column,...rest]=name.split("/");return kind===
+"tile"?[[level,row,column].join("/"),rest.join("/")]:null}function decoded(info,bytes){let view=ArrayBuffer.isView(bytes)?
+new Uint8Array(bytes.buffer,bytes.byteOffset,bytes.byteLength):new Uint8Array(bytes),{name,dtype,shape,digest}=info,Type=TYPES[dtype];
+if(!Type)throw new Error(`a part has the type "${dtype}"; expected ${Object.keys(TYPES).join(", ")}`);return{name,shape,
+digest,data:new Type(view.slice().buffer)}}async function partOfText(info,text){let packed=Uint8Array.from(atob(text),letter=>letter.charCodeAt(0)),unpacked=new Blob(
 [packed]).stream().pipeThrough(new DecompressionStream("gzip")),planes=new Uint8Array(await new Response(unpacked).arrayBuffer()),
 count=info.shape.reduce((product2,n)=>product2*n,1),width=count?planes.length/count:1,bytes=new Uint8Array(planes.length);
 for(let plane=0;plane<width;plane+=1)for(let n=0;n<count;n+=1)bytes[n*width+plane]=planes[plane*count+n];return decoded(
-info,bytes)}function dom(kind,attributes={},children=[]){let element=document.createElement(kind);for(let[name,value]of Object.entries(
-attributes))element.setAttribute(name,value);return element.append(...children),element}var ICONS={play:"M8 5.2v13.6L19 \
-12z",pause:"M8.5 6v12M15.5 6v12",home:"M4 11.5 12 5l8 6.5M6.5 10v9h11v-9",lod:"M12 3.8l8 4.1-8 4.1-8-4.1zM4 12.2l8 4.1 8\
--4.1M4 16.3l8 4.1 8-4.1",levels:"M3.5 18a8.5 8.5 0 0 1 17 0M7 18a5 5 0 0 1 10 0M10.3 18a1.7 1.7 0 0 1 3.4 0",settings:"M\
-4 7h8M17 7h3M4 17h3M12 17h8M14.5 4.8v4.4M9.5 14.8v4.4",save:"M12 4v11M7.5 10.8 12 15.3l4.5-4.5M5 19.5h14",full:"M4 9V4h5\
-M20 9V4h-5M4 15v5h5M20 15v5h-5",hide:"M6 9.5l6 6 6-6",show:"M6 14.5l6-6 6 6"};function icon(name){let space="http://www.\
-w3.org/2000/svg",svg=document.createElementNS(space,"svg");svg.setAttribute("viewBox","0 0 24 24"),svg.setAttribute("ari\
-a-hidden","true");let path=document.createElementNS(space,"path");return path.setAttribute("d",ICONS[name]),name==="play"&&
-path.setAttribute("class","solid"),svg.append(path),svg}function numberText(x){if(!Number.isFinite(x))return"–";let size=Math.
-abs(x);return size!==0&&(size>=1e5||size<.001)?x.toExponential(2).replace("e+","e"):String(Number(x.toPrecision(4)))}function pictureOf(views,size=1,format={}){
-let widths=views.map(({canvas})=>Math.max(Math.round(size*canvas.width),1)),height=Math.max(Math.round(size*views[0].canvas.
-height),1),all=new OffscreenCanvas(widths.reduce((sum,width)=>sum+width,0),height),pen=all.getContext("2d",{alpha:!1}),left=0;
-for(let[n,{canvas}]of views.entries())pen?.drawImage(canvas,left,0,widths[n],height),left+=widths[n];return all.convertToBlob(
-format)}var EPSILON=1e-6,ARRAY_TYPE=typeof Float32Array<"u"?Float32Array:Array;var degree=Math.PI/180,radian=180/Math.PI;function transpose(out,a){if(out===a){var a01=a[1],a02=a[2],a12=a[5];out[1]=a[3],out[2]=a[6],out[3]=a01,out[5]=a[7],out[6]=
+info,bytes)}var EPSILON=1e-6,ARRAY_TYPE=typeof Float32Array<"u"?Float32Array:Array;var degree=Math.PI/180,radian=180/Math.PI;function transpose(out,a){if(out===a){var a01=a[1],a02=a[2],a12=a[5];out[1]=a[3],out[2]=a[6],out[3]=a01,out[5]=a[7],out[6]=
 a02,out[7]=a12}else out[0]=a[0],out[1]=a[3],out[2]=a[6],out[3]=a[1],out[4]=a[4],out[5]=a[7],out[6]=a[2],out[7]=a[5],out[8]=
 a[8];return out}function fromRotation(out,rad,axis){var x=axis[0],y=axis[1],z=axis[2],len=Math.sqrt(x*x+y*y+z*z),s,c,t;return len<EPSILON?
 null:(len=1/len,x*=len,y*=len,z*=len,s=Math.sin(rad),c=Math.cos(rad),t=1-c,out[0]=x*x*t+c,out[1]=y*x*t+z*s,out[2]=z*x*t-
@@ -60,39 +48,87 @@ result(),v(a),v(b)),scale2=(a,by)=>scale(result(),v(a),by),cross2=(a,b)=>cross(r
 v(a)),add=(a,b,t=1)=>scaleAndAdd(result(),v(a),v(b),t);function rotated(a,axis,degrees){let turn=fromRotation(zeros(16),
 degrees*Math.PI/180,v(axis));return turn===null?result():transformMat4(result(),v(a),turn)}function toFrame(frame,a){let columns=transpose(
 zeros(9),frame);return transformMat3(result(),v(a),columns)}function fromFrame(frame,a){return transformMat3(result(),v(
-a),frame)}function clamp(x,low,high){return Math.min(Math.max(x,low),high)}var OWN="own cmap",SRGB={knee:.04045,slope:12.92,offset:.055,scale:1.055,power:2.4};function coloursOf(header){let{scalars,
-colour,background,lighting,opacity}=header;return{scalars,colour,background,lighting,opacity}}function mapOf(header,maps,name){
-let[first,count]=[header.scalars.maps.indexOf(name)*3*256,256],table=new Uint8Array(4*count).fill(255);for(let n=0;n<count;n+=
-1)for(let k=0;k<3;k+=1)table[4*n+k]=maps[first+3*n+k];return table}function recoloured(header,choice,parts){let scalars={
-...header.scalars};choice.scalars===!1&&(scalars.name=null);let number=scalars.choices.findIndex(({name})=>name===choice.
-scalars);if(number>=0){let{name,unit:unit2,steps}=scalars.choices[number];Object.assign(scalars,{name,unit:unit2,steps,number,
-auto:!0})}if(choice.cmap&&(scalars.cmap=choice.cmap),choice.clim&&([scalars.low,scalars.high]=choice.clim),choice.clim!==
-void 0&&(scalars.auto=!choice.clim),scalars.auto&&scalars.choices[scalars.number]){let{low,high}=scalars.choices[scalars.
+a),frame)}function clamp(x,low,high){return Math.min(Math.max(x,low),high)}var ROOT="",PLACE=5,nameOf=key=>key.join("/"),keyOf=name=>name.split("/").map(Number);function cellPixels(pyramid,settings){
+let[samples,spacing,grain]=["samples","spacing","grain"].map(s=>Number(settings[s])),streak=.5*samples*spacing*grain;return pyramid.
+cellPixels*Math.max(1,2*streak/(pyramid.cellPixels*pyramid.pathCells))}var Pyramid=class{header;blockCells;places=[];constructor(header,{
+tileCells:blockCells},places){this.header=header,this.blockCells=blockCells;let start=0;for(let[level]of header.shapes.entries()){
+let[rows,columns]=this.blocks(level),end=start+PLACE*rows*columns;this.places.push(places.subarray(start,end)),start=end}}blocks(level){
+return this.header.shapes[level].map(n=>Math.max(Math.ceil((n-1)/this.blockCells),1))}blocksOf(name,[level,row,column]){
+let[rows,columns]=this.blocks(level);if(name===ROOT)return[0,0,rows,columns];let{tileBlocks:size}=this.header,ends=[Math.
+min(size*(row+1),rows),Math.min(size*(column+1),columns)];return[size*row,size*column,...ends]}children(name,[level,row,
+column]){let counts=this.blocks(level-1).map(n=>Math.ceil(n/this.header.tileBlocks)),[from,to]=name===ROOT?[[0,0],counts]:
+[[2*row,2*column],[row,column].map((n,k)=>Math.min(2*n+2,counts[k]))],keys=[];for(let j=from[0];j<to[0];j+=1)for(let i=from[1];i<
+to[1];i+=1)keys.push([level-1,j,i]);return keys}finerPart([,row,column],above){let{tileBlocks}=this.header,half=tileBlocks/
+2,[,j,i]=above===ROOT?[0,0,0]:keyOf(above);return[half*row-tileBlocks*j,half*column-tileBlocks*i,half]}choose(view){let chosen=new Map,
+{depth,finest}=this.header,waiting=[ROOT];for(let name of waiting){let key=name===ROOT?[depth,0,0]:keyOf(name),choice={key,
+needed:!1,pixels:0,finer:[]},[top,left,bottom,right]=this.blocksOf(name,key),width=this.blocks(key[0])[1],coarse=new Set;
+for(let j=top;j<bottom;j+=1)for(let i=left;i<right;i+=1){let at=PLACE*(j*width+i),place=this.places[key[0]].subarray(at,
+at+PLACE);if(!isSeen(view,place))continue;let pixels=cellSize(view,place);key[0]>finest&&pixels>view.cellPixels?coarse.add(
+j*width+i):choice.needed=!0,coarse.has(j*width+i)||(choice.pixels=Math.max(choice.pixels,pixels))}coarse.size&&(choice.finer=
+this.children(name,key).filter(child=>{let[row,column,size]=this.finerPart(child,ROOT);return[...coarse].some(block=>{let[
+j,i]=[Math.floor(block/width)-row,block%width-column];return j>=0&&j<size&&i>=0&&i<size})}).map(nameOf)),chosen.set(name,
+choice),waiting.push(...choice.finer)}return chosen}};function isSeen({planes},[x,y,z,radius]){return planes.every(p=>dot2(
+p,[x,y,z])+p[3]>=-radius*length2(p.slice(0,3)))}function cellSize({eye,halfHeight,pixels},[x,y,z,radius,size]){let away=eye?
+Math.max(length2(subtract2([x,y,z],eye))-radius,size):1;return size*.5*pixels/(halfHeight*away)}function wantedTiles(chosen){
+return[...chosen].filter(([name,{needed}])=>name!==ROOT&&needed).sort(([,a],[,b])=>b.pixels-a.pixels).map(([name])=>name)}
+function cover(chosen,ready){let shown=new Map,hide=name=>{shown.delete(name),chosen.get(name)?.finer.forEach(hide)},covered=name=>{
+let{needed=!1,finer=[]}=chosen.get(name)??{},done=finer.filter(covered);return name!==ROOT&&!needed&&done.length===finer.
+length?!0:name!==ROOT&&!ready(name)?(done.forEach(hide),!1):(shown.set(name,done),!0)};return covered(ROOT),shown}function fullIndex(place,level,nodes){
+let line=n=>Math.min(n*2**level,nodes-1),low=Math.floor(place);return line(low)+(place-low)*(line(low+1)-line(low))}function dom(kind,attributes={},children=[]){let element=document.createElement(kind);for(let[name,value]of Object.entries(
+attributes))element.setAttribute(name,value);return element.append(...children),element}var ICONS={play:"M8 5.2v13.6L19 \
+12z",pause:"M8.5 6v12M15.5 6v12",home:"M4 11.5 12 5l8 6.5M6.5 10v9h11v-9",lod:"M12 3.8l8 4.1-8 4.1-8-4.1zM4 12.2l8 4.1 8\
+-4.1M4 16.3l8 4.1 8-4.1",levels:"M3.5 18a8.5 8.5 0 0 1 17 0M7 18a5 5 0 0 1 10 0M10.3 18a1.7 1.7 0 0 1 3.4 0",settings:"M\
+4 7h8M17 7h3M4 17h3M12 17h8M14.5 4.8v4.4M9.5 14.8v4.4",save:"M12 4v11M7.5 10.8 12 15.3l4.5-4.5M5 19.5h14",full:"M4 9V4h5\
+M20 9V4h-5M4 15v5h5M20 15v5h-5",hide:"M6 9.5l6 6 6-6",show:"M6 14.5l6-6 6 6"};function icon(name){let space="http://www.\
+w3.org/2000/svg",svg=document.createElementNS(space,"svg");svg.setAttribute("viewBox","0 0 24 24"),svg.setAttribute("ari\
+a-hidden","true");let path=document.createElementNS(space,"path");return path.setAttribute("d",ICONS[name]),name==="play"&&
+path.setAttribute("class","solid"),svg.append(path),svg}function numberText(x){if(!Number.isFinite(x))return"–";let size=Math.
+abs(x);return size!==0&&(size>=1e5||size<.001)?x.toExponential(2).replace("e+","e"):String(Number(x.toPrecision(4)))}function pictureOf(views,size=1,format={}){
+let widths=views.map(({canvas})=>Math.max(Math.round(size*canvas.width),1)),height=Math.max(Math.round(size*views[0].canvas.
+height),1),all=new OffscreenCanvas(widths.reduce((sum,width)=>sum+width,0),height),pen=all.getContext("2d",{alpha:!1}),left=0;
+for(let[n,{canvas}]of views.entries())pen?.drawImage(canvas,left,0,widths[n],height),left+=widths[n];return all.convertToBlob(
+format)}var TileQueue=class{load;give;most;running=new Map;wanted=[];constructor(load,give,most=1){this.load=load,this.give=give,
+this.most=most}request(keys,steps){this.wanted=keys.map(key=>[key,steps]);let names=new Set(keys.map(key=>`${nameOf(key)}\
+ ${steps}`));for(let[name,controller]of this.running)names.has(name)||controller.abort();this.next()}next(){for(;this.wanted.
+length&&this.running.size<this.most;){let[key,steps]=this.wanted[0];this.wanted.shift();let name=`${nameOf(key)} ${steps}`;
+this.running.has(name)||this.run(name,key,steps)}}async run(name,key,steps){let controller=new AbortController;this.running.
+set(name,controller);try{let parts=await this.load(key,steps,controller.signal);controller.signal.aborted||parts.forEach(
+this.give)}catch(error){if(!controller.signal.aborted)throw error}finally{this.running.delete(name),this.next()}}};var OWN="own cmap",SRGB={knee:.04045,slope:12.92,offset:.055,scale:1.055,power:2.4};function coloursOf(header){let{scalars,
+colour,background,lighting,opacity}=header;return{scalars,colour,background,lighting,opacity}}function narrowed(mesh,from,to){
+let share=to.name===from.name?(to.high-to.low)/(from.high-from.low||1):1;return{...mesh,maxColourError:mesh.maxColourError*
+Math.min(share,1)}}function mapOf(header,maps,name){let[first,count]=[header.scalars.maps.indexOf(name)*3*256,256],table=new Uint8Array(
+4*count).fill(255);for(let n=0;n<count;n+=1)for(let k=0;k<3;k+=1)table[4*n+k]=maps[first+3*n+k];return table}function recoloured(header,choice,parts){
+let scalars={...header.scalars};choice.scalars===!1&&(scalars.name=null);let number=scalars.choices.findIndex(({name})=>name===
+choice.scalars);if(number>=0){let{name,unit:unit2,steps}=scalars.choices[number];Object.assign(scalars,{name,unit:unit2,
+steps,number,auto:!0})}if(choice.cmap&&(scalars.cmap=choice.cmap),choice.clim&&([scalars.low,scalars.high]=choice.clim),
+choice.clim!==void 0&&(scalars.auto=!choice.clim),scalars.auto&&scalars.choices[scalars.number]){let{low,high}=scalars.choices[scalars.
 number],widest=low<0&&high>0&&scalars.diverging.includes(scalars.cmap),end=Math.max(-low,high);[scalars.low,scalars.high]=
-widest?[-end,end]:[low,high]}let narrower=(scalars.high-scalars.low)/(header.scalars.high-header.scalars.low||1),error=header.
-mesh.maxColourError*Math.min(narrower,1),mesh=number<0?{...header.mesh,maxColourError:error}:header.mesh,maps=parts.get(
-"maps");if(!choice.cmap||!maps)return{colours:{scalars,mesh},part:null};let part={name:"cmap",data:mapOf(header,maps.data,
-choice.cmap),shape:[256,4],digest:`${OWN} ${choice.cmap}`};return{colours:{scalars,mesh},part}}var toLinear=c=>c<SRGB.knee?
-c/SRGB.slope:((c+SRGB.offset)/SRGB.scale)**SRGB.power;function fromLinear(x){let c=clamp(x,0,1);return c<SRGB.knee/SRGB.
-slope?c*SRGB.slope:SRGB.scale*c**(1/SRGB.power)-SRGB.offset}var times=(v2,m)=>[0,1,2].map(k=>v2[0]*m[k]+v2[1]*m[3+k]+v2[2]*
-m[6+k]);function meanColour(colour,settings,shading){let{values}=shading,[[dark,light],[range,slope]]=[shading.base,shading.
-tone],[strength,contrast]=[Number(settings.strength),Number(settings.contrast)],cones=times(colour.map(c=>toLinear(c/255)),
-shading.toCones).map(Math.cbrt),[lightness,a,b]=times(cones,shading.toLab),base=lightness+strength*(dark+(light-dark)*lightness-
-lightness),mean=[0,0,0];return values.forEach(value=>{let tone=2/(1+Math.exp(-slope*contrast*value))-1,shown=clamp(base+
-range*strength*tone,0,1),room=shown<base?shown/base:(1-shown)/Math.max(1-base,1e-6),roots=times([shown,a*room,b*room],shading.
-fromLab);times(roots.map(x=>x**3),shading.fromCones).forEach((x,k)=>mean[k]+=255*fromLinear(x)/values.length)}),mean}function rampOf(map,header,settings,stops){
-return`linear-gradient(90deg, ${Array.from({length:stops},(_,n)=>{let first=4*Math.round(n/(stops-1)*255),colour=[...map.
-slice(first,first+3)];return`rgb(${(header.paper?.picture??!1?colour:meanColour(colour,settings,header.constants.shading)).
-map(Math.round).join(" ")})`}).join(", ")})`}var tangent=degrees=>Math.tan(degrees*Math.PI/360),Camera=class{flat;limits;aspect;state;start;pick=null;homeHeight;nearest;constructor(state,limits,flat,aspect=1){
+widest?[-end,end]:[low,high]}let mesh=narrowed(header.mesh,header.scalars,scalars),maps=parts.get("maps");if(!choice.cmap||
+!maps)return{colours:{scalars,mesh},part:null};let part={name:"cmap",data:mapOf(header,maps.data,choice.cmap),shape:[256,
+4],digest:`${OWN} ${choice.cmap}`};return{colours:{scalars,mesh},part}}var toLinear=c=>c<SRGB.knee?c/SRGB.slope:((c+SRGB.
+offset)/SRGB.scale)**SRGB.power;function fromLinear(x){let c=clamp(x,0,1);return c<SRGB.knee/SRGB.slope?c*SRGB.slope:SRGB.
+scale*c**(1/SRGB.power)-SRGB.offset}var times=(v2,m)=>[0,1,2].map(k=>v2[0]*m[k]+v2[1]*m[3+k]+v2[2]*m[6+k]);function meanColour(colour,settings,shading){
+let{values}=shading,[[dark,light],[range,slope]]=[shading.base,shading.tone],[strength,contrast]=[Number(settings.strength),
+Number(settings.contrast)],cones=times(colour.map(c=>toLinear(c/255)),shading.toCones).map(Math.cbrt),[lightness,a,b]=times(
+cones,shading.toLab),base=lightness+strength*(dark+(light-dark)*lightness-lightness),mean=[0,0,0];return values.forEach(
+value=>{let tone=2/(1+Math.exp(-slope*contrast*value))-1,shown=clamp(base+range*strength*tone,0,1),room=shown<base?shown/
+base:(1-shown)/Math.max(1-base,1e-6),roots=times([shown,a*room,b*room],shading.fromLab);times(roots.map(x=>x**3),shading.
+fromCones).forEach((x,k)=>mean[k]+=255*fromLinear(x)/values.length)}),mean}function rampOf(map,header,settings,stops){return`\
+linear-gradient(90deg, ${Array.from({length:stops},(_,n)=>{let first=4*Math.round(n/(stops-1)*255),colour=[...map.slice(
+first,first+3)];return`rgb(${(header.paper?.picture??!1?colour:meanColour(colour,settings,header.constants.shading)).map(
+Math.round).join(" ")})`}).join(", ")})`}var tangent=degrees=>Math.tan(degrees*Math.PI/360),Camera=class{flat;limits;aspect;state;start;pick=null;homeHeight;nearest;constructor(state,limits,flat,aspect=1){
 this.state=copyOf(state),this.start=copyOf(state),this.limits=limits,this.flat=flat,this.aspect=aspect,this.homeHeight=this.
 height,this.nearest=this.distance/limits.closest}get height(){let{parallel,parallel_scale:half,view_angle:angle}=this.state;
 return parallel?half:this.distance*tangent(angle)}get distance(){return length2(subtract2(this.state.focal_point,this.state.
 position))}get zoom(){return this.homeHeight/this.height}get axes(){let ahead=unit(subtract2(this.state.focal_point,this.
 state.position)),right=unit(cross2(ahead,this.state.up));return[right,cross2(right,ahead),ahead]}sight(pixels){let{parallel,
 position,view_angle:angle}=this.state;return parallel?{eye:null,halfHeight:this.height,pixels}:{eye:position,halfHeight:tangent(
-angle),pixels}}get eye(){return this.state.parallel?[...scale2(this.axes[2],-1),0]:[...this.state.position,1]}pan(dx,dy){
-let[right,up]=this.axes,{height}=this;this.shift(add(scale2(right,dx*this.aspect*height),up,dy*height))}rotate(dx,dy){let{
-state,limits}=this,up=unit(state.up),back=subtract2(state.position,state.focal_point);back=rotated(back,up,-limits.turn*
+angle),pixels}}get planes(){let[right,up,ahead]=this.axes,{parallel,parallel_scale:half,view_angle:angle}=this.state,{position,
+focal_point:focus}=this.state,tall=parallel?half:tangent(angle);return[right,scale2(right,-1),up,scale2(up,-1)].map((side,n)=>{
+let size=n<2?tall*this.aspect:tall;if(parallel)return[...side,size-dot2(side,focus)];let normal=add(side,ahead,size);return[
+...normal,-dot2(normal,position)]})}get eye(){return this.state.parallel?[...scale2(this.axes[2],-1),0]:[...this.state.position,
+1]}pan(dx,dy){let[right,up]=this.axes,{height}=this;this.shift(add(scale2(right,dx*this.aspect*height),up,dy*height))}rotate(dx,dy){
+let{state,limits}=this,up=unit(state.up),back=subtract2(state.position,state.focal_point);back=rotated(back,up,-limits.turn*
 dx*Math.min(this.aspect,limits.widest_turn));let right=unit(cross2(up,back));back=rotated(back,right,limits.turn*dy),state.
 position=add(state.focal_point,back),state.up=unit(cross2(back,right))}zoomBy(factor,x=0,y=0){if(!Number.isFinite(factor)||
 factor<=0)return;this.flat||this.focusAt(x,y);let{farthest_zoom:farthest,deepest_zoom:deepest}=this.limits,by=clamp(factor,
@@ -226,31 +262,31 @@ not below ${numberText(high)}`;for(let end of this.ends)end.setCustomValidity(th
 var USES={motion:hasStreaming,speed:hasStreaming,speed_in:hasStreaming,period:hasStreaming,grain:({paper})=>!paper,fixed_grain:({
 paper})=>!paper,two_sided:({slices})=>slices.sides===2,seed:({paper},rebuild)=>!paper||rebuild&&!paper.picture,resolution:({
 paper},rebuild)=>!paper||rebuild,tiles:({paper,settings},rebuild)=>!!paper?.picture&&(settings.noise==="image"||rebuild),
-noise_correction:({paper},rebuild)=>!!paper&&rebuild,parameter:({slices},rebuild)=>slices.steps===1&&rebuild,lod:()=>!1,
-show_level:()=>!1};function isUseful({name,affects},header,rebuild){return USES[name]?.(header,rebuild)??(affects==="uni\
-form"||rebuild)}var Controls=class{element=dom("div",{class:"settings glass",hidden:"","aria-label":"Settings"});viewer;controls=new Map;constructor(viewer){
-this.viewer=viewer}build(header){this.controls.clear(),this.element.replaceChildren();let rebuild=this.viewer.options.rebuild??
-!1;for(let row of header.table.filter(each=>isUseful(each,header,rebuild))){let control=this.control(row);this.controls.
-set(row.name,control);let{input,output}=control,name=dom("span",{class:"name"},[row.label]),attributes={class:"row",title:row.
-text,"data-setting":row.name},line=dom("label",attributes,[name,...output?[output]:[],input]);line.classList.toggle("ran\
-ged",output!==void 0),this.element.append(line)}}update(){let{settings}=this.viewer;for(let[name,{show}]of this.controls)
-name in settings&&show(settings[name])}control(row){return row.control==="checkbox"?this.switch(row):row.control==="choi\
-ce"?this.menu(row):row.control==="number"?this.numberField(row):this.slider(row)}switch({name}){let input=dom("input",{type:"\
-checkbox",role:"switch"});return this.viewer.lifetime.listen(input,"change",()=>this.viewer.choose(name,input.checked)),
-{input,show:value=>{input.checked=!!value}}}menu({name,choices}){let options=choices.map(choice=>dom("option",{value:choice},
-[choice])),input=dom("select",{},options);return this.viewer.lifetime.listen(input,"change",()=>this.viewer.choose(name,
-input.value)),{input,show:value=>{input.value=String(value)}}}numberField({name,whole,low,high}){let[min,max]=[low??0,high??
-1],step=whole?"1":"any",input=dom("input",{type:"number",min:String(min),max:String(max),step});return this.viewer.lifetime.
-listen(input,"change",()=>{let{valueAsNumber:value}=input;Number.isFinite(value)&&this.viewer.choose(name,clamp(value,min,
-max))}),{input,show:value=>{input.value=String(value)}}}slider(row){let{toSlider,fromSlider,min,max,step}=scaleOf(row),range={
-min:String(min),max:String(max),step:String(step)},input=dom("input",{type:"range",...range}),output=dom("output"),value=()=>fromSlider(
-Number(input.value)),write=shown=>{output.textContent=numberText(Number(shown))};this.viewer.lifetime.listen(input,"inpu\
-t",()=>write(value()));let kind=row.affects==="uniform"?"input":"change";return this.viewer.lifetime.listen(input,kind,()=>this.
-viewer.choose(row.name,value())),{input,output,show:shown=>{input.value=String(toSlider(Number(shown))),write(shown)}}}};
-function scaleOf(row){let{low,high,whole,logarithmic}=row,[least,most]=[low??0,high??1],toSlider=value=>logarithmic?Math.
-log2(value):value,fromSlider=place=>{let value=logarithmic?2**place:place;return whole?Math.round(value):Number(clamp(value,
-least,most).toPrecision(3))},[min,max]=[least,most].map(toSlider),step=whole&&!logarithmic?1:(max-min)/SLIDER_STOPS;return{
-toSlider,fromSlider,min,max,step}}var CAMERA_KEYS={ArrowLeft:"left",ArrowRight:"right",ArrowUp:"up",ArrowDown:"down","+":"closer","=":"closer","-":"farthe\
+noise_correction:({paper},rebuild)=>!!paper&&rebuild,lines:({slices},rebuild)=>slices.steps>1&&rebuild,parameter:({slices,
+settings},rebuild)=>rebuild&&(slices.steps===1||settings.lines!=="pathlines"),lod:()=>!1,show_level:()=>!1};function isUseful({
+name,affects},header,rebuild){return USES[name]?.(header,rebuild)??(affects==="uniform"||rebuild)}var Controls=class{element=dom(
+"div",{class:"settings glass",hidden:"","aria-label":"Settings"});viewer;controls=new Map;constructor(viewer){this.viewer=
+viewer}build(header){this.controls.clear(),this.element.replaceChildren();let rebuild=this.viewer.options.rebuild??!1;for(let row of header.
+table.filter(each=>isUseful(each,header,rebuild))){let control=this.control(row);this.controls.set(row.name,control);let{
+input,output}=control,name=dom("span",{class:"name"},[row.label]),attributes={class:"row",title:row.text,"data-setting":row.
+name},line=dom("label",attributes,[name,...output?[output]:[],input]);line.classList.toggle("ranged",output!==void 0),this.
+element.append(line)}}update(){let{settings}=this.viewer;for(let[name,{show}]of this.controls)name in settings&&show(settings[name])}control(row){
+return row.control==="checkbox"?this.switch(row):row.control==="choice"?this.menu(row):row.control==="number"?this.numberField(
+row):this.slider(row)}switch({name}){let input=dom("input",{type:"checkbox",role:"switch"});return this.viewer.lifetime.
+listen(input,"change",()=>this.viewer.choose(name,input.checked)),{input,show:value=>{input.checked=!!value}}}menu({name,
+choices}){let options=choices.map(choice=>dom("option",{value:choice},[choice])),input=dom("select",{},options);return this.
+viewer.lifetime.listen(input,"change",()=>this.viewer.choose(name,input.value)),{input,show:value=>{input.value=String(value)}}}numberField({
+name,whole,low,high}){let[min,max]=[low??0,high??1],step=whole?"1":"any",input=dom("input",{type:"number",min:String(min),
+max:String(max),step});return this.viewer.lifetime.listen(input,"change",()=>{let{valueAsNumber:value}=input;Number.isFinite(
+value)&&this.viewer.choose(name,clamp(value,min,max))}),{input,show:value=>{input.value=String(value)}}}slider(row){let{
+toSlider,fromSlider,min,max,step}=scaleOf(row),range={min:String(min),max:String(max),step:String(step)},input=dom("inpu\
+t",{type:"range",...range}),output=dom("output"),value=()=>fromSlider(Number(input.value)),write=shown=>{output.textContent=
+numberText(Number(shown))};this.viewer.lifetime.listen(input,"input",()=>write(value()));let kind=row.affects==="uniform"?
+"input":"change";return this.viewer.lifetime.listen(input,kind,()=>this.viewer.choose(row.name,value())),{input,output,show:shown=>{
+input.value=String(toSlider(Number(shown))),write(shown)}}}};function scaleOf(row){let{low,high,whole,logarithmic}=row,[
+least,most]=[low??0,high??1],toSlider=value=>logarithmic?Math.log2(value):value,fromSlider=place=>{let value=logarithmic?
+2**place:place;return whole?Math.round(value):Number(clamp(value,least,most).toPrecision(3))},[min,max]=[least,most].map(
+toSlider),step=whole&&!logarithmic?1:(max-min)/SLIDER_STOPS;return{toSlider,fromSlider,min,max,step}}var CAMERA_KEYS={ArrowLeft:"left",ArrowRight:"right",ArrowUp:"up",ArrowDown:"down","+":"closer","=":"closer","-":"farthe\
 r",_:"farther",0:"whole"},PLAY_KEY=" ",FULLSCREEN_KEY="f",CLOSE_KEY="Escape",DIRECTIONS={left:[-1,0],right:[1,0],up:[0,1],
 down:[0,-1]};function hasModifier(event){return event.ctrlKey||event.metaKey||event.altKey}function toggleFullscreen(element){
 document.fullscreenElement?document.exitFullscreen():element.requestFullscreen?.().catch(()=>{})}var STOPS2=33,Legend=class{element=dom("div",{class:"legend glass",hidden:""});mark=dom("i",{hidden:""});show(header,settings,map){
@@ -514,18 +550,21 @@ return grid(alongI,alongJ)}function shares(steps,scalars,nodes){let result2=new 
 return steps.forEach((values,k)=>{for(let n=0;n<nodes;n+=1){let share=place(values[n]);result2[2*n+k]=Number.isFinite(share)?
 share:NO_VALUE}}),result2}function interpolated([rows,columns],i,j,value){let[left,low]=[Math.min(Math.floor(i),columns-
 2),Math.min(Math.floor(j),rows-2)],[a,b]=[i-left,j-low],corner=low*columns+left,[from,to]=[value(corner),value(corner+columns+
-1)],aside=value(corner+(a>=b?1:columns));return from+Math.max(a,b)*(aside-from)+Math.min(a,b)*(to-aside)}function pickedPoint(context,x,y){let{scene,camera,moment,anchor,canvas}=context,{graphics,header}=scene,program=graphics.
+1)],aside=value(corner+(a>=b?1:columns));return from+Math.max(a,b)*(aside-from)+Math.min(a,b)*(to-aside)}function pickedPoint(context,x,y){let{layers,camera,moment,anchor,canvas}=context,{graphics,header}=layers[0].scene,program=graphics.
 programs.get(header.shaders.vertex,header.shaders.pick),whole=projection(header.geometry,camera,anchor),matrix=atPixel(whole,
-[x,y],[canvas.width,canvas.height]),[before,after,between]=moment,bits=graphics.pixel(()=>{graphics.programs.use(program,
-{u_matrix:matrix,u_between:between}),scene.draw(before,after,anchor,!1)});if(!bits[3])return null;let[u,v2]=new Float32Array(
-bits.buffer,0,2),{rows,columns,shape}=header.geometry,i=clamp(u*columns.size-.5-columns.before,0,shape[1]-1),j=clamp(v2*
-rows.size-.5-rows.before,0,shape[0]-1);return{position:positionAt(context,i,j,x,y),index:[i,j],values:valuesAt(context,i,
-j)}}function positionAt({scene,camera},i,j,x,y){let{data}=scene.part("position"),{shape,frame,center}=scene.header.geometry,
-local=[0,1,2].map(k=>interpolated(shape,i,j,n=>data[3*n+k])),about=add(fromFrame(frame,local),center),[start,along]=camera.
-ray(x,y),ahead=camera.axes[2],depth=dot2(subtract2(about,start),ahead)/dot2(along,ahead);return add(start,along,depth)}function valuesAt({
-scene,moment},i,j){let{header,parts}=scene,{name}=header.scalars,[from,to,between]=moment,[before,after]=scene.scalarParts(
-from,to).map(part=>parts.get(part)?.data);if(name===null||!before||!after)return{};let value=n=>before[n]+between*(after[n]-
-before[n]);return{[name]:interpolated(header.geometry.shape,i,j,value)}}function uniforms(header,settings,view,noiseShape=null){let{geometry,slices,constants}=header,s=settings,signFree=isSignFree(
+[x,y],[canvas.width,canvas.height]),[before,after,between]=moment,bits=graphics.pixel(()=>{layers.forEach(({scene:scene2},n)=>{
+graphics.programs.use(program,{u_matrix:matrix,u_between:between,u_part:n}),scene2.draw(before,after,anchor,!1)})});if(!bits[3])
+return null;let[u,v2]=new Float32Array(bits.buffer,0,2),{scene,key}=layers[bits[2]],{rows,columns,shape}=scene.header.geometry,
+i=clamp(u*columns.size-.5-columns.before,0,shape[1]-1),j=clamp(v2*rows.size-.5-rows.before,0,shape[0]-1),position=positionAt(
+scene,camera,[i,j],x,y),full=header.pyramid?.shapes[0]??shape,side=header.mesh.tileCells*(header.pyramid?.tileBlocks??0),
+[level,row,column]=key,place=(n,tile,axis)=>fullIndex(n+tile*side,level,full[axis]),index=[place(i,column,1),place(j,row,
+0)];return{position,index,values:valuesAt(scene,moment,i,j)}}function positionAt(scene,camera,[i,j],x,y){let{data}=scene.
+part("position"),{shape,frame,center}=scene.header.geometry,local=[0,1,2].map(k=>interpolated(shape,i,j,n=>data[3*n+k])),
+about=add(fromFrame(frame,local),center),[start,along]=camera.ray(x,y),ahead=camera.axes[2],depth=dot2(subtract2(about,start),
+ahead)/dot2(along,ahead);return add(start,along,depth)}function valuesAt(scene,moment,i,j){let{header,parts}=scene,{name}=header.
+scalars,[from,to,between]=moment,[before,after]=scene.scalarParts(from,to).map(part=>parts.get(part)?.data);if(name===null||
+!before||!after)return{};let value=n=>before[n]+between*(after[n]-before[n]);return{[name]:interpolated(header.geometry.
+shape,i,j,value)}}function uniforms(header,settings,view,noiseShape=null){let{geometry,slices,constants}=header,s=settings,signFree=isSignFree(
 header),finest=2**(Math.floor(Math.log2(geometry.extent))-constants.noiseDoublings),w=view.eye[3],eye=toFrame(geometry.frame,
 subtract2(view.eye,scale2(geometry.center,w))),kernel=signFree&&s.kernel==="ramp"?"hann":s.kernel;return{u_eye:[...subtract2(
 eye,scale2(view.anchor,w)),w],u_between:view.between,u_slicesSize:[geometry.columns.size,geometry.rows.size],u_deepest:geometry.
@@ -616,54 +655,56 @@ abs((a*x+c*y+e)/w-1)<1+ROUNDING&&Math.abs((b*x+d*y+f)/h-1)<1+ROUNDING,covers=[[0
 every(isInside),[xx,xy,yx,yy]=matrix,shifts=Math.abs(xx-1)+Math.abs(yy-1)+Math.abs(xy)+Math.abs(yx)<ROUNDING;if(shifts)for(let n of[
 4,5])matrix[n]=Math.round(matrix[n]);return{matrix,covers,shifts}}var MOVING_MS=55,MOVING_LEAST_MS=14,STRIP_MS=40,SMOOTH_ROWS=256,penOf=canvas=>canvas.getContext("2d",{alpha:!1}),ProgressiveRenderer=class{viewer;graphics;canvas;pen;back=document.
 createElement("canvas");backPen=penOf(this.back);last=document.createElement("canvas");lastPen=penOf(this.last);lastCamera=null;coarse=document.
-createElement("canvas");coarsePen=penOf(this.coarse);version=1;draftVersion=0;rowsDone=0;fixed=4;frames=0;constructor(viewer){
+createElement("canvas");coarsePen=penOf(this.coarse);version=1;draftVersion=0;rowsDone=0;layers=[];isRefined=!1;fixed=4;frames=0;constructor(viewer){
 this.viewer=viewer,this.graphics=viewer.graphics,this.canvas=viewer.canvas,this.pen=penOf(this.canvas)}restart(cameraOnly=!1){
-cameraOnly||(this.lastCamera=null),this.version+=1,this.rowsDone=0}resize(width,height){let{canvas,back,last}=this;back.
-width=canvas.width,back.height=canvas.height,this.backPen?.drawImage(canvas,0,0),canvas.width=last.width=width,canvas.height=
-last.height=height,back.width>1&&this.pen?.drawImage(back,0,0,width,height),back.width=width,back.height=height}dispose(){
-for(let canvas of[this.canvas,this.back,this.last,this.coarse])canvas.width=canvas.height=0}draw(program,shown,moving,until){
-if(this.draftVersion!==this.version)return this.draft(program,shown,moving);if(moving)return!1;let complete=!1;do complete=
-this.strip(program,shown);while(!complete&&performance.now()<until);return complete}draft(program,shown,moving){let{width,
-height}=this.canvas,samples=Number(this.viewer.settings.samples),crowd=moving?this.graphics.waiting.size+1:1,budget=Math.
-max(MOVING_MS/crowd,MOVING_LEAST_MS);this.warm(program,shown);let price=program.price*this.factor(samples),best=quality(
-price,this.fixed,width*height,samples,budget),w=Math.max(Math.round(width*best.scale),1),h=Math.max(Math.round(height*best.
-scale),1);this.draftVersion=this.version;let reuse=best.scale<1?this.reuse():null;if(!reuse?.covers){let region={width:w,
-height:h,top:0,rows:h};this.timed(program,region,best.samples,()=>{this.render(program,shown,region,best.samples),this.copy(
-this.pen,region,height,0)})}return reuse&&this.pen&&(this.pen.imageSmoothingEnabled=!reuse.shifts,this.pen.setTransform(
+cameraOnly||(this.lastCamera=null),this.version+=1,this.rowsDone=0}refine(){this.rowsDone>=this.canvas.height?this.rowsDone=
+0:this.isRefined=!0}resize(width,height){let{canvas,back,last}=this;back.width=canvas.width,back.height=canvas.height,this.
+backPen?.drawImage(canvas,0,0),canvas.width=last.width=width,canvas.height=last.height=height,back.width>1&&this.pen?.drawImage(
+back,0,0,width,height),back.width=width,back.height=height}dispose(){for(let canvas of[this.canvas,this.back,this.last,this.
+coarse])canvas.width=canvas.height=0}draw(program,shown,moving,until){if(this.draftVersion!==this.version)return this.draft(
+program,shown,moving);if(moving)return!1;let complete=!1;do complete=this.strip(program,shown)&&!this.isRefined;while(!complete&&
+performance.now()<until);return complete}arrange(shown){this.isRefined=!1,this.layers=this.viewer.arrange(shown)}draft(program,shown,moving){
+let{width,height}=this.canvas,samples=Number(this.viewer.settings.samples),crowd=moving?this.graphics.waiting.size+1:1,budget=Math.
+max(MOVING_MS/crowd,MOVING_LEAST_MS);this.arrange(shown),this.warm(program,shown);let price=program.price*this.factor(samples),
+best=quality(price,this.fixed,width*height,samples,budget),w=Math.max(Math.round(width*best.scale),1),h=Math.max(Math.round(
+height*best.scale),1);this.draftVersion=this.version;let reuse=best.scale<1?this.reuse():null;if(!reuse?.covers){let region={
+width:w,height:h,top:0,rows:h};this.timed(program,region,best.samples,()=>{this.render(program,shown,region,best.samples),
+this.copy(this.pen,region,height,0)})}return reuse&&this.pen&&(this.pen.imageSmoothingEnabled=!reuse.shifts,this.pen.setTransform(
 ...reuse.matrix),this.pen.drawImage(this.last,0,0),this.pen.setTransform(1,0,0,1,0,0)),best.scale<1||best.samples!==samples||
-this.viewer.smooth?!1:(this.complete(),!0)}strip(program,shown){let{width,height}=this.canvas,{smooth,settings}=this.viewer,
-samples=Number(settings.samples);this.warm(program,shown);let price=program.price*this.factor(samples),most=Math.min(height-
-this.rowsDone,smooth?SMOOTH_ROWS:height),rows=Math.min(rowsIn(STRIP_MS,price,this.fixed,width,samples),most),region={width,
-height,top:this.rowsDone,rows};return this.timed(program,region,samples,()=>{this.render(program,shown,region,samples,smooth);
-let drawn=smooth?{...region,height:rows,top:0}:region;this.copy(this.backPen,drawn,drawn.height,this.rowsDone)}),this.rowsDone+=
-rows,this.rowsDone<height?!1:(this.pen?.drawImage(this.back,0,0),this.complete(),!0)}complete(){let{camera,player}=this.
-viewer;this.rowsDone=this.canvas.height,this.frames+=1,this.draftVersion=this.version,this.lastPen?.drawImage(this.canvas,
-0,0),camera&&!player.playing&&(this.lastCamera=new Camera(camera.state,camera.limits,camera.flat,camera.aspect))}reuse(){
-let{lastCamera}=this,{scene,camera}=this.viewer;if(!scene?.header.geometry.planar||!camera||!lastCamera||!camera.state.parallel||
-!lastCamera.state.parallel)return null;let{geometry}=scene.header,focus=subtract2(camera.state.focal_point,geometry.center),
-anchor=toFrame(geometry.frame,focus),[before,now]=[lastCamera,camera].map(view=>projection(geometry,view,anchor));return reused(
-before,now,this.canvas.width,this.canvas.height)}factor(samples){let{settings,player}=this.viewer;return settings.motion!==
-"off"||player.varies?motionFactor(samples):1}timed(program,region,samples,draw){let started=performance.now();draw();let spent=performance.
-now()-started,pixels=region.width*region.rows,factor=this.factor(samples);program.price=learnedPrice(program.price,spent,
-this.fixed,pixels,samples,factor)}warm(program,shown){if(program.warm)return;let{width,height}=this.canvas,region={width,
-height,top:0,rows:1};this.render(program,shown,region,1);let started=performance.now();this.render(program,shown,region,
-1),this.fixed=clamp(performance.now()-started,.5,200),program.warm=!0}render(program,shown,region,samples,smooth=!1){let{
-graphics,viewer}=this,{camera,scene}=viewer;if(!camera||!scene)return;let gl=graphics.context,{width,height,top,rows}=region,
-view=viewer.view(shown,viewer.ratio*height/this.canvas.height),{canvas}=graphics;canvas.width<width&&(canvas.width=width),
-canvas.height<height&&(canvas.height=height);let bottom=height-top-rows;smooth?graphics.bindSmooth(width,rows):gl.bindFramebuffer(
-gl.FRAMEBUFFER,null),gl.viewport(0,smooth?-bottom:0,width,height),gl.enable(gl.SCISSOR_TEST),gl.scissor(0,smooth?0:bottom,
-width,rows),gl.enable(gl.DEPTH_TEST),gl.depthFunc(gl.LESS),gl.disable(gl.BLEND),gl.disable(gl.CULL_FACE);let[r,g,b]=scene.
-header.background;gl.clearColor(r,g,b,1),gl.clear(gl.COLOR_BUFFER_BIT|gl.DEPTH_BUFFER_BIT);let draft=samples!==viewer.settings.
-samples||height!==this.canvas.height;graphics.programs.use(program,this.values(scene,camera,view,samples,draft)),scene.look(
-camera.sight(this.canvas.height)),scene.draw(shown[0],shown[1],view.anchor,!0),smooth&&graphics.copySmooth(width,rows),gl.
-readPixels(0,0,1,1,gl.RGBA,gl.UNSIGNED_BYTE,new Uint8Array(4))}values({header,parts},camera,view,samples,draft){let{settings}=this.
-viewer,noise=parts.get("noise")?.shape??null;return{...uniforms(header,{...settings,samples},view,noise),...draft?draftUniforms(
-settings,samples,view.density):{},u_matrix:projection(header.geometry,camera,view.anchor),u_mapped:header.scalars.name!==
-null,u_colour:header.colour,u_lit:header.lighting,u_ground:header.background,u_opacity:header.opacity,u_toEye:toFrame(header.
-geometry.frame,scale2(camera.axes[2],-1))}}copy(pen,region,height,to){if(!pen)return;let{width:w,height:h,top,rows}=region,
-{width}=this.canvas,{canvas}=this.graphics,first=canvas.height-h+top;if(pen.imageSmoothingEnabled=w!==width||h!==height,
-pen.imageSmoothingEnabled){let{coarse,coarsePen}=this;coarse.width=w,coarse.height=rows,coarsePen?.drawImage(canvas,0,first,
-w,rows,0,0,w,rows),[canvas,first]=[coarse,0]}pen.drawImage(canvas,0,first,w,rows,0,to,width,rows*height/h)}};function fromHalf(bits){let exponent=bits>>10&31,part=bits&1023,size;return exponent===0?size=part*2**-24:exponent===31?
+this.viewer.smooth?!1:(this.complete(),!this.isRefined)}strip(program,shown){let{width,height}=this.canvas,{smooth,settings}=this.
+viewer,samples=Number(settings.samples);this.rowsDone>=height&&(this.rowsDone=0),this.rowsDone===0&&this.arrange(shown),
+this.warm(program,shown);let price=program.price*this.factor(samples),most=Math.min(height-this.rowsDone,smooth?SMOOTH_ROWS:
+height),rows=Math.min(rowsIn(STRIP_MS,price,this.fixed,width,samples),most),region={width,height,top:this.rowsDone,rows};
+return this.timed(program,region,samples,()=>{this.render(program,shown,region,samples,smooth);let drawn=smooth?{...region,
+height:rows,top:0}:region;this.copy(this.backPen,drawn,drawn.height,this.rowsDone)}),this.rowsDone+=rows,this.rowsDone<height?
+!1:(this.pen?.drawImage(this.back,0,0),this.complete(),!0)}complete(){let{camera,player}=this.viewer;this.rowsDone=this.
+canvas.height,this.frames+=1,this.draftVersion=this.version,this.lastPen?.drawImage(this.canvas,0,0),camera&&!player.playing&&
+(this.lastCamera=new Camera(camera.state,camera.limits,camera.flat,camera.aspect))}reuse(){let{lastCamera}=this,{scene,camera}=this.
+viewer;if(!scene?.header.geometry.planar||!camera||!lastCamera||!camera.state.parallel||!lastCamera.state.parallel)return null;
+let{geometry}=scene.header,focus=subtract2(camera.state.focal_point,geometry.center),anchor=toFrame(geometry.frame,focus),
+[before,now]=[lastCamera,camera].map(view=>projection(geometry,view,anchor));return reused(before,now,this.canvas.width,
+this.canvas.height)}factor(samples){let{settings,player}=this.viewer;return settings.motion!=="off"||player.varies?motionFactor(
+samples):1}timed(program,region,samples,draw){let started=performance.now();draw();let spent=performance.now()-started,pixels=region.
+width*region.rows,factor=this.factor(samples);program.price=learnedPrice(program.price,spent,this.fixed,pixels,samples,factor)}warm(program,shown){
+if(program.warm)return;let{width,height}=this.canvas,region={width,height,top:0,rows:1};this.render(program,shown,region,
+1);let started=performance.now();this.render(program,shown,region,1),this.fixed=clamp(performance.now()-started,.5,200),
+program.warm=!0}render(program,shown,region,samples,smooth=!1){let{graphics,viewer}=this,{camera,scene}=viewer;if(!camera||
+!scene)return;let gl=graphics.context,{width,height,top,rows}=region,view=viewer.view(shown,viewer.ratio*height/this.canvas.
+height),{canvas}=graphics;canvas.width<width&&(canvas.width=width),canvas.height<height&&(canvas.height=height);let bottom=height-
+top-rows;smooth?graphics.bindSmooth(width,rows):gl.bindFramebuffer(gl.FRAMEBUFFER,null),gl.viewport(0,smooth?-bottom:0,width,
+height),gl.enable(gl.SCISSOR_TEST),gl.scissor(0,smooth?0:bottom,width,rows),gl.enable(gl.DEPTH_TEST),gl.depthFunc(gl.LESS),
+gl.disable(gl.BLEND),gl.disable(gl.CULL_FACE);let[r,g,b]=scene.header.background;gl.clearColor(r,g,b,1),gl.clear(gl.COLOR_BUFFER_BIT|
+gl.DEPTH_BUFFER_BIT);let draft=samples!==viewer.settings.samples||height!==this.canvas.height;for(let layer of this.layers)
+graphics.programs.use(program,this.values(layer,camera,view,samples,draft)),layer.draw(shown[0],shown[1],view.anchor,!0);
+smooth&&graphics.copySmooth(width,rows),gl.readPixels(0,0,1,1,gl.RGBA,gl.UNSIGNED_BYTE,new Uint8Array(4))}values({header,
+parts},camera,view,samples,draft){let{settings}=this.viewer,noise=parts.get("noise")?.shape??null;return{...uniforms(header,
+{...settings,samples},view,noise),...draft?draftUniforms(settings,samples,view.density):{},u_matrix:projection(header.geometry,
+camera,view.anchor),u_mapped:header.scalars.name!==null,u_colour:header.colour,u_lit:header.lighting,u_ground:header.background,
+u_opacity:header.opacity,u_toEye:toFrame(header.geometry.frame,scale2(camera.axes[2],-1))}}copy(pen,region,height,to){if(!pen)
+return;let{width:w,height:h,top,rows}=region,{width}=this.canvas,{canvas}=this.graphics,first=canvas.height-h+top;if(pen.
+imageSmoothingEnabled=w!==width||h!==height,pen.imageSmoothingEnabled){let{coarse,coarsePen}=this;coarse.width=w,coarse.
+height=rows,coarsePen?.drawImage(canvas,0,first,w,rows,0,0,w,rows),[canvas,first]=[coarse,0]}pen.drawImage(canvas,0,first,
+w,rows,0,to,width,rows*height/h)}};function fromHalf(bits){let exponent=bits>>10&31,part=bits&1023,size;return exponent===0?size=part*2**-24:exponent===31?
 size=part?NaN:1/0:size=(1024+part)*2**(exponent-25),bits&32768?-size:size}function toHalf(x){let sign=x<0?32768:0,size=Math.
 abs(x);if(!(size<65520))return sign|(size>=65520?31744:32256);let exponent=Math.max(Math.floor(Math.log2(size||1e-30)),-14),
 part=Math.round(size/2**(exponent-10));return sign|(part<1024?part:(exponent+14)*1024+part)}function halved(texels,width,height,channels){
@@ -671,102 +712,177 @@ let[w,h]=[Math.max(width>>1,1),Math.max(height>>1,1)],result2=new Uint16Array(w*
 .5)*(many/few)-.5,base=Math.floor(x);return[base,Math.min(base+1,many-1),x-base]};for(let j=0,n=0;j<h;j+=1){let[low,high,
 v2]=between(j,h,height);for(let i=0;i<w;i+=1){let[left,right,u]=between(i,w,width);for(let c=0;c<channels;c+=1){let at=(y,x)=>fromHalf(
 texels[(y*width+x)*channels+c]),below=at(low,left)*(1-u)+at(low,right)*u,above=at(high,left)*(1-u)+at(high,right)*u;result2[n++]=
-toHalf(below*(1-v2)+above*v2)}}}return[result2,w,h]}var PLACE=5;function tilesOf(nodes,size){let count=Math.max(Math.ceil((nodes-1)/size),1);return Array.from({length:count},
+toHalf(below*(1-v2)+above*v2)}}}return[result2,w,h]}var PLACE2=5;function blocksOf(nodes,size){let count=Math.max(Math.ceil((nodes-1)/size),1);return Array.from({length:count},
 (_,n)=>({first:n*size,cells:Math.min(nodes-1-n*size,size)}))}var MeshLevels=class{mesh;limits;rows;columns;constructor(mesh,limits){
-this.mesh=mesh,this.limits=limits,this.rows=tilesOf(mesh.shape[0],limits.tileCells),this.columns=tilesOf(mesh.shape[1],limits.
-tileCells)}levels({eye,halfHeight,pixels}){let{limits}=this,{tiles}=this.mesh,count=this.rows.length*this.columns.length,
-size=tiles.length/count,last=(size-PLACE)/2-1;return Uint8Array.from({length:count},(_,tile)=>{let record=tiles.subarray(
-size*tile,size*(tile+1)),[x,y,z,radius,cell]=record.subarray(size-PLACE),near=limits.leastDistance*radius,away=eye?Math.
-max(length2(subtract2(eye,[x,y,z]))-radius,near):1,scale3=.5*pixels/(halfHeight*Math.max(away,Number.MIN_VALUE)),level=0;
-for(;level<last;level+=1){let error=record[level+1],colourError=record[last+2+level],side=cell*scale3*2**(level+1);if(!(error*
-scale3<=limits.maxErrorPixels&&colourError<=limits.maxColourError||Number.isFinite(error)&&side<=1)||side>limits.maxSideHeights*
-pixels)break}return level})}triangles(levels){let index=[];return this.rows.forEach((_,j)=>this.columns.forEach((__,i)=>this.
-add(index,levels,j,i))),Uint32Array.from(index)}add(index,levels,j,i){let{rows,columns,limits}=this,{shape,cells}=this.mesh,
-step=1<<levels[j*columns.length+i],count=limits.tileCells/step+1,[row,column]=[rows[j],columns[i]],along=length3=>Array.
-from({length:count},(_,n)=>Math.min(n*step,length3)),[y,x]=[along(row.cells),along(column.cells)],border=(dj,di)=>1<<this.
-coarser(levels,j,i,dj,di),snapped=(place,length3,coarse)=>place===length3?place:Math.floor(place/coarse)*coarse,[below,above,
-left,right]=[border(-1,0),border(1,0),border(0,-1),border(0,1)],node=(b,a)=>{let[inX,inY]=[a>0&&a<count-1,b>0&&b<count-1],
-px=inY?x[a]:snapped(x[a],column.cells,b===0?below:above),py=inX?y[b]:snapped(y[b],row.cells,a===0?left:right);return(row.
-first+py)*shape[1]+column.first+px};for(let b=0;b<count-1;b+=1){let cellRow=Math.min(row.first+y[b],shape[0]-2)*(shape[1]-
-1);for(let a=0;a<count-1;a+=1){if(cells&&!cells[cellRow+Math.min(column.first+x[a],shape[1]-2)])continue;let[p,q,r,s]=[node(
-b,a),node(b,a+1),node(b+1,a+1),node(b+1,a)];p!==q&&q!==r&&p!==r&&index.push(p,q,r),p!==r&&r!==s&&p!==s&&index.push(p,r,s)}}}coarser(levels,j,i,dj,di){
-let{rows,columns}=this,{periodic}=this.mesh,own=levels[j*columns.length+i],[row,column]=[j+dj,i+di];return periodic[0]&&
-(row=(row+rows.length)%rows.length),periodic[1]&&(column=(column+columns.length)%columns.length),row<0||row>=rows.length||
-column<0||column>=columns.length?own:Math.max(own,levels[row*columns.length+column])}};var USERS={position:["position","coordinate"],normal:["normal"],cells:["index"],mesh:["index"],cmap:["cmap"],noise:["noi\
-se"],step:["step"],scalars:["scalar"]},Scene=class{graphics;header;parts;anchor=[0,0,0];resources=new Map;scalarSteps="";levels=new Uint8Array;meshLevels=null;constructor(graphics,header,parts){
-this.graphics=graphics,this.header=header,this.parts=parts}missing(before,after){let{geometry,slices,scalars,paper}=this.
-header,names=["position","mesh",...geometry.planar?[]:["normal"]];for(let step of new Set([before,after]))names.push(`sl\
-ices/${step}`),slices.channels===2&&names.push(`extra/${step}`);return names.push(...this.scalarParts(before,after)),scalars.
-name!==null&&names.push("cmap"),paper&&names.push("noise","step"),[...new Set(names)].filter(name=>!this.fits(name))}scalarParts(before,after){
-let{name,steps,number}=this.header.scalars;if(name===null)return[];let end=number?`/${number}`:"";return(steps>1?[before,
-after]:[0,0]).map(step=>`scalars/${step}${end}`)}fits(name){let part=this.parts.get(name);if(!part)return!1;let{geometry,
-slices,paper,mesh}=this.header,tiles=geometry.shape.map(n=>Math.max(Math.ceil((n-1)/mesh.tileCells),1)),shape={slices:[slices.
-count,geometry.rows.size,geometry.columns.size,slices.channels],position:[...geometry.shape,3],mesh:[...tiles,part.shape[2]],
-step:paper?[paper.size[1],paper.size[0]]:[]}[name.split("/")[0]];return!shape||String(shape)===String(part.shape)}part(name){
-let part=this.parts.get(name);if(!part)throw new Error(`the part "${name}" of the scene is missing`);return part}forget(name){
-let[kind,step]=name.split("/");(kind==="mesh"||kind==="cells")&&(this.meshLevels=null);let sliced=kind==="slices"||kind===
-"extra";for(let user of sliced?[`slices/${step}`]:USERS[kind]??[])this.drop(user);this.drop("array")}drop(name){let resource=this.
-resources.get(name);this.resources.delete(name),resource&&(resource.users-=1,!resource.users&&(this.graphics.free(resource.
-kind,resource.object),this.graphics.common.delete(resource.key)))}dispose(){for(let name of[...this.resources.keys()])this.
-drop(name)}key(names,...rest){let digests=names.map(name=>this.parts.has(name)?this.part(name).digest:"none");return digests.
-every(Boolean)?JSON.stringify([digests,rest]):""}take(name,kind,key,make,fill){let own=this.resources.get(name);if(own)return own.
-object;let{graphics}=this,whole=key&&`${name.split("/")[0]} ${key}`,shared=whole?graphics.common.get(whole):void 0,object=shared?.
-object??graphics.counted(make()),resource=shared??{kind,object,count:0,key:whole,users:0};return resource.users+=1,this.
-resources.set(name,resource),shared||(resource.count=fill(object)||0),whole&&graphics.common.set(whole,resource),object}buffer(name,key,data,elements=!1){
-let gl=this.graphics.context,fill=buffer=>{let target=elements?gl.ELEMENT_ARRAY_BUFFER:gl.ARRAY_BUFFER,numbers=data();return gl.
-bindVertexArray(null),gl.bindBuffer(target,buffer),gl.bufferData(target,numbers,gl.STATIC_DRAW),numbers.length};return this.
-take(name,"Buffer",key,()=>gl.createBuffer(),fill)}mesh(){if(!this.meshLevels){let{geometry,mesh}=this.header,{shape,periodic}=geometry,
-parts={tiles:this.part("mesh").data,cells:this.parts.get("cells")?.data};this.meshLevels=new MeshLevels({shape,periodic,
-...parts},mesh)}return this.meshLevels}look(sight){let levels=this.mesh().levels(sight);String(levels)!==String(this.levels)&&
-(this.levels=levels,this.drop("index"),this.drop("array"))}bindNodes(before,after,anchor){let gl=this.graphics.context,steps=String(
-this.scalarParts(before,after)),stale=steps!==this.scalarSteps?["scalar","array"]:[];anchor.some((x,k)=>x!==this.anchor[k])&&
-stale.push("position","array");for(let name of stale)this.drop(name);this.scalarSteps=steps,this.anchor=anchor;let fill=array=>this.
+this.mesh=mesh,this.limits=limits,this.rows=blocksOf(mesh.shape[0],limits.tileCells),this.columns=blocksOf(mesh.shape[1],
+limits.tileCells)}get shape(){return[this.rows.length,this.columns.length]}levels({eye,halfHeight,pixels}){let{limits}=this,
+{blocks}=this.mesh,count=this.rows.length*this.columns.length,size=blocks.length/count,last=(size-PLACE2)/2-1;return Int8Array.
+from({length:count},(_,block)=>{let record=blocks.subarray(size*block,size*(block+1)),[x,y,z,radius,cell]=record.subarray(
+size-PLACE2),near=limits.leastDistance*radius,away=eye?Math.max(length2(subtract2(eye,[x,y,z]))-radius,near):1,scale3=.5*
+pixels/(halfHeight*Math.max(away,Number.MIN_VALUE)),level=0;for(;level<last;level+=1){let error=record[level+1],colourError=record[last+
+2+level],side=cell*scale3*2**(level+1);if(!(error*scale3<=limits.maxErrorPixels&&colourError<=limits.maxColourError||Number.
+isFinite(error)&&side<=1)||side>limits.maxSideHeights*pixels)break}return level})}triangles(levels,joins){let sizes=Array.
+from(levels,level=>level<0?0:this.limits.tileCells>>level),index=new Uint32Array(6*sizes.reduce((sum,size)=>sum+size*size,
+0)),end=0;return levels.forEach((level,block)=>{level>=0&&(end=this.add(index,end,level,joins,block))}),index.slice(0,end)}add(index,start,level,joins,block){
+let{rows,columns,limits}=this,{shape,cells}=this.mesh,step=1<<level,count=limits.tileCells/step+1,row=rows[Math.floor(block/
+columns.length)],column=columns[block%columns.length],[below,above,left,right]=[0,1,2,3].map(side=>joins[4*block+side]),
+snapped=(place,size,border)=>place===size?place:place>>border<<border,nodes=new Uint32Array(count*count);for(let b=0;b<count;b+=
+1){let y=Math.min(b*step,row.cells);for(let a=0;a<count;a+=1){let[px,py]=[Math.min(a*step,column.cells),y];(b===0||b===count-
+1)&&(px=snapped(px,column.cells,b?above:below)),(a===0||a===count-1)&&(py=snapped(py,row.cells,a?right:left)),nodes[b*count+
+a]=(row.first+py)*shape[1]+column.first+px}}let end=start,put=(p,q,r)=>{p===q||q===r||p===r||(index[end++]=p,index[end++]=
+q,index[end++]=r)};for(let b=0;b<count-1;b+=1){let y=Math.min(row.first+Math.min(b*step,row.cells),shape[0]-2);for(let a=0;a<
+count-1;a+=1){let x=Math.min(column.first+Math.min(a*step,column.cells),shape[1]-2);if(cells&&!cells[y*(shape[1]-1)+x])continue;
+let at=b*count+a,[p,q,r,s]=[nodes[at],nodes[at+1],nodes[at+count+1],nodes[at+count]];put(p,q,r),put(p,r,s)}}return end}},
+NOT_DRAWN=99,Lines=class{values;strides;count;width;constructor([rows,columns],axis){[this.count,this.width]=axis?[columns+
+1,rows]:[rows+1,columns],this.strides=axis?[1,columns+1]:[columns,1],this.values=new Int16Array(this.count*this.width)}at(line,along){
+return line*this.strides[0]+along*this.strides[1]}close(){for(let n=0;n<this.width;n+=1){let[first,last]=[this.at(0,n),this.
+at(this.count-1,n)],most=Math.max(this.values[first],this.values[last]);this.values[first]=this.values[last]=most}}};function eachBlock({
+step,row,column,shape},[rows,columns],call){let bottom=Math.min(row+(shape[0]<<step),rows),right=Math.min(column+(shape[1]<<
+step),columns);for(let j=row;j<bottom;j+=1){let own=(j-row>>step)*shape[1];for(let i=column;i<right;i+=1)call(j*columns+
+i,own+(i-column>>step))}}function finestAround(nodes,[rows,columns],periodic){let around=(n,by,count,closed)=>closed?(n+
+by+count)%count:clamp(n+by,0,count-1);return nodes.map((own,block)=>{let[j,i]=[Math.floor(block/columns),block%columns],
+least=own;for(let by of[-1,1]){let row=around(j,by,rows,periodic[0]),column=around(i,by,columns,periodic[1]);least=Math.
+min(least,nodes[row*columns+i],nodes[j*columns+column])}return least})}function join(parts,blocks,periodic,most){let nodes=new Int16Array(
+blocks[0]*blocks[1]).fill(NOT_DRAWN),put=(target,part,value)=>eachBlock(part,blocks,(block,own)=>{part.levels[own]>=0&&(target[block]=
+value(part.levels[own]))});for(let part of parts)put(nodes,part,()=>part.step);let finest=finestAround(nodes,blocks,periodic),
+strides=new Int16Array(nodes.length);for(let part of parts){let{levels,step}=part;eachBlock(part,blocks,(block,own)=>{levels[own]=
+Math.min(levels[own],finest[block]+most-step)}),put(strides,part,level=>level+step)}let lines=[new Lines(blocks,0),new Lines(
+blocks,1)];for(strides.forEach((stride,block)=>{let[j,i]=[Math.floor(block/blocks[1]),block%blocks[1]];[[j,i],[i,j]].forEach(
+([line,along],axis)=>{let{values}=lines[axis];for(let far of[0,1]){let at=lines[axis].at(line+far,along);values[at]=Math.
+max(values[at],stride)}})});;){lines.forEach((line,axis)=>periodic[axis]&&line.close());let joined=parts.map(part=>bordersOf(
+part,lines));if(!joined.some(([,changed])=>changed))return joined.map(([borders])=>borders)}}function bordersOf({step,row,
+column,shape,levels},lines){let size=1<<step,borders=new Int8Array(4*levels.length),changed=!1;for(let side of[0,1,2,3]){
+let[axis,far]=[side>>1,side&1],line=lines[axis],{values}=line;levels.forEach((level,own)=>{let place=[Math.floor(own/shape[1]),
+own%shape[1]],[first,start]=axis?[column,row]:[row,column],pick=Math.min(first+(place[axis]+far)*size,line.count-1),from=start+
+place[1-axis]*size,end=Math.max(Math.min(from+size,line.width),from+1),coarsest=0;for(let n=from;n<end;n+=1)coarsest=Math.
+max(coarsest,values[line.at(pick,n)]);if(borders[4*own+side]=coarsest-step,!(level<0))for(let n=from;n<end;n+=1)changed||=
+values[line.at(pick,n)]!==coarsest,values[line.at(pick,n)]=coarsest})}return[borders,changed]}var USERS={position:["position","coordinate"],normal:["normal"],cells:["index"],mesh:["index"],cmap:["cmap"],noise:["noi\
+se"],step:["step"],scalars:["scalar"]},Scene=class{graphics;header;parts;anchor=[0,0,0];resources=new Map;scalarSteps="";drawn=null;meshLevels=null;constructor(graphics,header,parts){
+this.graphics=graphics,this.header=header,this.parts=parts}missing(before,after){let{geometry,slices,scalars,paper,pyramid}=this.
+header,names=["position","mesh",...geometry.planar?[]:["normal"]];pyramid&&names.push("places");for(let step of new Set(
+[before,after]))names.push(`slices/${step}`),slices.channels===2&&names.push(`extra/${step}`);return names.push(...this.
+scalarParts(before,after)),scalars.name!==null&&names.push("cmap"),paper&&names.push("noise","step"),[...new Set(names)].
+filter(name=>!this.fits(name))}scalarParts(before,after){let{name,steps,number}=this.header.scalars;if(name===null)return[];
+let end=number?`/${number}`:"";return(steps>1?[before,after]:[0,0]).map(step=>`scalars/${step}${end}`)}fits(name){let part=this.
+parts.get(name);if(!part)return!1;let{geometry,slices,paper,mesh}=this.header,blocks=geometry.shape.map(n=>Math.max(Math.
+ceil((n-1)/mesh.tileCells),1)),shape={slices:[slices.count,geometry.rows.size,geometry.columns.size,slices.channels],position:[
+...geometry.shape,3],mesh:[...blocks,part.shape[2]],step:paper?[paper.size[1],paper.size[0]]:[]}[name.split("/")[0]];return!shape||
+String(shape)===String(part.shape)}part(name){let part=this.parts.get(name);if(!part)throw new Error(`the part "${name}"\
+ of the scene is missing`);return part}forget(name){let[kind,step]=name.split("/");(kind==="mesh"||kind==="cells")&&(this.
+meshLevels=this.drawn=null);let sliced=kind==="slices"||kind==="extra";for(let user of sliced?[`slices/${step}`]:USERS[kind]??
+[])this.drop(user);this.drop("array")}drop(name){let resource=this.resources.get(name);this.resources.delete(name),resource&&
+(resource.users-=1,!resource.users&&(this.graphics.free(resource.kind,resource.object),this.graphics.common.delete(resource.
+key)))}dispose(){for(let name of[...this.resources.keys()])this.drop(name)}key(names,...rest){let digests=names.map(name=>this.
+parts.has(name)?this.part(name).digest:"none");return digests.every(Boolean)?JSON.stringify([digests,rest]):""}take(name,kind,key,make,fill){
+let own=this.resources.get(name);if(own)return own.object;let{graphics}=this,whole=key&&`${name.split("/")[0]} ${key}`,shared=whole?
+graphics.common.get(whole):void 0,object=shared?.object??graphics.counted(make()),resource=shared??{kind,object,count:0,
+key:whole,users:0};return resource.users+=1,this.resources.set(name,resource),shared||(resource.count=fill(object)||0),whole&&
+graphics.common.set(whole,resource),object}buffer(name,key,data,elements=!1){let gl=this.graphics.context,fill=buffer=>{
+let target=elements?gl.ELEMENT_ARRAY_BUFFER:gl.ARRAY_BUFFER,numbers=data();return gl.bindVertexArray(null),gl.bindBuffer(
+target,buffer),gl.bufferData(target,numbers,gl.STATIC_DRAW),numbers.length};return this.take(name,"Buffer",key,()=>gl.createBuffer(),
+fill)}mesh(){if(!this.meshLevels){let{geometry,mesh}=this.header,{shape,periodic}=geometry,parts={blocks:this.part("mesh").
+data,cells:this.parts.get("cells")?.data};this.meshLevels=new MeshLevels({shape,periodic,...parts},mesh)}return this.meshLevels}levels(sight){
+return{levels:this.mesh().levels(sight),shape:this.mesh().shape}}get hasTriangles(){return this.drawn!==null}setTriangles(levels,joins){
+let{drawn}=this;drawn&&String([levels,joins])===String([drawn.levels,drawn.joins])||(this.drawn={levels,joins},this.drop(
+"index"),this.drop("array"))}isLoaded(steps){return steps.every(step=>this.resources.has(`slices/${step}`))}load(steps){
+for(let step of steps)this.slices(step)}bindNodes(before,after,anchor){let gl=this.graphics.context,steps=String(this.scalarParts(
+before,after)),stale=steps!==this.scalarSteps?["scalar","array"]:[];anchor.some((x,k)=>x!==this.anchor[k])&&stale.push("\
+position","array");for(let name of stale)this.drop(name);this.scalarSteps=steps,this.anchor=anchor;let fill=array=>this.
 fillArray(array,before,after),make=()=>gl.createVertexArray();gl.bindVertexArray(this.take("array","VertexArray","",make,
 fill))}fillArray(array,before,after){let gl=this.graphics.context,{geometry,scalars,paper}=this.header,{shape,rows,columns}=geometry,
-cells=()=>this.mesh().triangles(this.levels),index=this.buffer("index",this.key(["cells","mesh"],shape,[...this.levels]),
-cells,!0),nodes=()=>positions(this.part("position").data,this.anchor),normal=geometry.planar?null:this.part("normal").data,
-painted=this.scalarParts(before,after),values=()=>{let steps=painted.map(name=>this.part(name).data);return shares(steps,
-scalars,shape[0]*shape[1])},colour=this.key([...new Set(painted)],shape,scalars.low,scalars.high,scalars.log),grid2=JSON.
-stringify([shape,rows,columns]),type=gl.FLOAT;normal instanceof Int8Array&&(type=gl.BYTE),normal instanceof Int16Array&&
-(type=gl.SHORT);let attributes=[[this.buffer("position",this.key(["position"],this.anchor),nodes),3,gl.FLOAT],[this.buffer(
-"coordinate",grid2,()=>coordinates(geometry)),2,gl.FLOAT],[normal&&this.buffer("normal",this.key(["normal"]),()=>normal),
-3,type],[paper&&this.buffer("along","",()=>noiseCoordinates(paper)),2,gl.FLOAT],[this.buffer("scalar",colour,values),2,gl.
-FLOAT]];gl.bindVertexArray(array),gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER,index),attributes.forEach(([buffer,size,kind],n)=>{
-buffer&&(gl.bindBuffer(gl.ARRAY_BUFFER,buffer),gl.enableVertexAttribArray(n),gl.vertexAttribPointer(n,size,kind,kind!==gl.
-FLOAT,0,0))})}texture(name,key,fill){let gl=this.graphics.context;return this.take(name,"Texture",key,()=>gl.createTexture(),
-fill)}slices(step){let{slices,geometry}=this.header,key=this.key([`slices/${step}`,`extra/${step}`],geometry.levels,slices.
-extra);return this.texture(`slices/${step}`,key,texture=>{let part=this.part(`slices/${step}`),[layers,height,width,channels]=part.
-shape,data=part.data,extra=this.parts.get(`extra/${step}`)?.data,texels=height*width,layer=n=>{let own=data.subarray(n*texels*
-channels,(n+1)*texels*channels);if(channels===4)return own;let all=new Uint16Array(4*texels),place=slices.extra.indexOf(
-n),fourth=place<0?null:extra?.subarray(place*texels,(place+1)*texels);for(let k=0;k<texels;k+=1)all[4*k]=own[2*k],all[4*
-k+1]=own[2*k+1],fourth&&(all[4*k+3]=fourth[k]);return all};this.fill(texture,{width,height,layers,channels:4,levels:geometry.
-levels},layer)})}image(name,repeat){let gl=this.graphics.context;return this.texture(name,this.key([name],repeat),texture=>{
-let{data,shape}=this.part(name),[height,width,channels=1]=shape,levels=Math.floor(Math.log2(Math.max(width,height))),size={
-width,height,layers:1,channels,levels};this.fill(texture,size,()=>data);let wrap=n=>repeat[n]?gl.REPEAT:gl.CLAMP_TO_EDGE;
-gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_S,wrap(1)),gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_T,wrap(
-0))})}fill(texture,size,layer){let gl=this.graphics.context,{width,height,layers,channels,levels}=size,target=gl.TEXTURE_2D_ARRAY;
-this.checkSize(size);let[format,inner]=channels===1?[gl.RED,gl.R16F]:[gl.RGBA,gl.RGBA16F];gl.bindTexture(target,texture),
-gl.texStorage3D(target,levels+1,inner,width,height,layers),gl.texParameteri(target,gl.TEXTURE_MIN_FILTER,gl.LINEAR_MIPMAP_LINEAR),
-gl.texParameteri(target,gl.TEXTURE_MAG_FILTER,gl.LINEAR),gl.texParameteri(target,gl.TEXTURE_WRAP_S,gl.CLAMP_TO_EDGE),gl.
-texParameteri(target,gl.TEXTURE_WRAP_T,gl.CLAMP_TO_EDGE),gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);let{floats}=this.graphics;
-for(let n=0;n<layers;n+=1){let texels=layer(n),[w,h]=[width,height];gl.texSubImage3D(target,0,0,0,n,w,h,1,format,gl.HALF_FLOAT,
-texels);for(let level=1;level<=levels&&!floats;level+=1)[texels,w,h]=halved(texels,w,h,channels),gl.texSubImage3D(target,
-level,0,0,n,w,h,1,format,gl.HALF_FLOAT,texels)}floats&&levels&&gl.generateMipmap(target)}checkSize({width,height,layers}){
-let gl=this.graphics.context,most=gl.getParameter(gl.MAX_TEXTURE_SIZE),mostLayers=gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS);
-if(!(Math.max(width,height)<=most&&layers<=mostLayers))throw new Error(`a texture of ${width} x ${height} texels in ${layers}\
- layers is asked for, and this graphics card has ${most} x ${most} in ${mostLayers}; show fewer nodes`)}colourMap(){let gl=this.
-graphics.context;return this.texture("cmap",this.key(["cmap"]),texture=>{gl.bindTexture(gl.TEXTURE_2D,texture),gl.pixelStorei(
-gl.UNPACK_ALIGNMENT,1);let data=this.parts.get("cmap")?.data??new Uint8Array(1024);gl.texImage2D(gl.TEXTURE_2D,0,gl.RGBA8,
-256,1,0,gl.RGBA,gl.UNSIGNED_BYTE,data),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.texParameteri(
-gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST)})}dropSlices(before,after){let next=after+1<this.header.slices.steps?after+
-1:0;for(let name of[...this.resources.keys()])name.startsWith("slices/")&&([before,after,next,after+1].includes(stepOf(name))||
-this.drop(name))}bindTextures(before,after){let gl=this.graphics.context,{paper}=this.header,repeat=paper?.repeat??[!1,!1];
-[this.slices(before),after===before?null:this.slices(after),paper&&this.image("noise",paper.picture?[!0,!0]:repeat),paper&&
-this.image("step",repeat),this.colourMap()].forEach((texture,n)=>{gl.activeTexture(gl.TEXTURE0+n),gl.bindTexture(n<4?gl.
-TEXTURE_2D_ARRAY:gl.TEXTURE_2D,texture)}),gl.activeTexture(gl.TEXTURE0+SAMPLERS.length)}draw(before,after,anchor,textures){
-let gl=this.graphics.context;textures&&(this.dropSlices(before,after),this.bindTextures(before,after)),this.bindNodes(before,
-after,anchor),gl.drawElements(gl.TRIANGLES,this.resources.get("index")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(null)}};var STILL_MS=160,LOST_MS=5e3,STEPS_HELD=12,isEqual=(a,b)=>JSON.stringify(a)===JSON.stringify(b),Viewer=class{options;graphics=sharedGraphics();lifetime=new Lifetime;player=new Player;root=document.
-createElement("div");canvas=document.createElement("canvas");panel;pointers;parts=new Map;header=null;settings={};scene=null;camera=null;sharp=!1;isVisible=!0;shown=null;together=[
+{levels,joins}=this.drawn??{levels:new Int8Array,joins:new Int8Array},cells=()=>this.mesh().triangles(levels,joins),drawn=this.
+key(["cells","mesh"],shape,[...levels],[...joins]),index=this.buffer("index",drawn,cells,!0),nodes=()=>positions(this.part(
+"position").data,this.anchor),normal=geometry.planar?null:this.part("normal").data,painted=this.scalarParts(before,after),
+values=()=>{let steps=painted.map(name=>this.part(name).data);return shares(steps,scalars,shape[0]*shape[1])},colour=this.
+key([...new Set(painted)],shape,scalars.low,scalars.high,scalars.log),grid2=JSON.stringify([shape,rows,columns]),type=gl.
+FLOAT;normal instanceof Int8Array&&(type=gl.BYTE),normal instanceof Int16Array&&(type=gl.SHORT);let attributes=[[this.buffer(
+"position",this.key(["position"],this.anchor),nodes),3,gl.FLOAT],[this.buffer("coordinate",grid2,()=>coordinates(geometry)),
+2,gl.FLOAT],[normal&&this.buffer("normal",this.key(["normal"]),()=>normal),3,type],[paper&&this.buffer("along","",()=>noiseCoordinates(
+paper)),2,gl.FLOAT],[this.buffer("scalar",colour,values),2,gl.FLOAT]];gl.bindVertexArray(array),gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER,
+index),attributes.forEach(([buffer,size,kind],n)=>{buffer&&(gl.bindBuffer(gl.ARRAY_BUFFER,buffer),gl.enableVertexAttribArray(
+n),gl.vertexAttribPointer(n,size,kind,kind!==gl.FLOAT,0,0))})}texture(name,key,fill){let gl=this.graphics.context;return this.
+take(name,"Texture",key,()=>gl.createTexture(),fill)}slices(step){let{slices,geometry}=this.header,key=this.key([`slices\
+/${step}`,`extra/${step}`],geometry.levels,slices.extra);return this.texture(`slices/${step}`,key,texture=>{let part=this.
+part(`slices/${step}`),[layers,height,width,channels]=part.shape,data=part.data,extra=this.parts.get(`extra/${step}`)?.data,
+texels=height*width,layer=n=>{let own=data.subarray(n*texels*channels,(n+1)*texels*channels);if(channels===4)return own;
+let all=new Uint16Array(4*texels),place=slices.extra.indexOf(n),fourth=place<0?null:extra?.subarray(place*texels,(place+
+1)*texels);for(let k=0;k<texels;k+=1)all[4*k]=own[2*k],all[4*k+1]=own[2*k+1],fourth&&(all[4*k+3]=fourth[k]);return all};
+this.fill(texture,{width,height,layers,channels:4,levels:geometry.levels},layer)})}image(name,repeat){let gl=this.graphics.
+context;return this.texture(name,this.key([name],repeat),texture=>{let{data,shape}=this.part(name),[height,width,channels=1]=shape,
+levels=Math.floor(Math.log2(Math.max(width,height))),size={width,height,layers:1,channels,levels};this.fill(texture,size,
+()=>data);let wrap=n=>repeat[n]?gl.REPEAT:gl.CLAMP_TO_EDGE;gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_S,wrap(1)),
+gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_T,wrap(0))})}fill(texture,size,layer){let gl=this.graphics.context,
+{width,height,layers,channels,levels}=size,target=gl.TEXTURE_2D_ARRAY;this.checkSize(size);let[format,inner]=channels===
+1?[gl.RED,gl.R16F]:[gl.RGBA,gl.RGBA16F];gl.bindTexture(target,texture),gl.texStorage3D(target,levels+1,inner,width,height,
+layers),gl.texParameteri(target,gl.TEXTURE_MIN_FILTER,gl.LINEAR_MIPMAP_LINEAR),gl.texParameteri(target,gl.TEXTURE_MAG_FILTER,
+gl.LINEAR),gl.texParameteri(target,gl.TEXTURE_WRAP_S,gl.CLAMP_TO_EDGE),gl.texParameteri(target,gl.TEXTURE_WRAP_T,gl.CLAMP_TO_EDGE),
+gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);let{floats}=this.graphics;for(let n=0;n<layers;n+=1){let texels=layer(n),[w,h]=[width,
+height];gl.texSubImage3D(target,0,0,0,n,w,h,1,format,gl.HALF_FLOAT,texels);for(let level=1;level<=levels&&!floats;level+=
+1)[texels,w,h]=halved(texels,w,h,channels),gl.texSubImage3D(target,level,0,0,n,w,h,1,format,gl.HALF_FLOAT,texels)}floats&&
+levels&&gl.generateMipmap(target)}checkSize({width,height,layers}){let gl=this.graphics.context,most=gl.getParameter(gl.
+MAX_TEXTURE_SIZE),mostLayers=gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS);if(!(Math.max(width,height)<=most&&layers<=mostLayers))
+throw new Error(`a texture of ${width} x ${height} texels in ${layers} layers is asked for, and this graphics card has ${most}\
+ x ${most} in ${mostLayers}; show fewer nodes`)}colourMap(){let gl=this.graphics.context;return this.texture("cmap",this.
+key(["cmap"]),texture=>{gl.bindTexture(gl.TEXTURE_2D,texture),gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);let data=this.parts.
+get("cmap")?.data??new Uint8Array(1024);gl.texImage2D(gl.TEXTURE_2D,0,gl.RGBA8,256,1,0,gl.RGBA,gl.UNSIGNED_BYTE,data),gl.
+texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST)})}dropSlices(before,after){
+let next=after+1<this.header.slices.steps?after+1:0;for(let name of[...this.resources.keys()])name.startsWith("slices/")&&
+([before,after,next,after+1].includes(stepOf(name))||this.drop(name))}bindTextures(before,after){let gl=this.graphics.context,
+{paper}=this.header,repeat=paper?.repeat??[!1,!1];[this.slices(before),after===before?null:this.slices(after),paper&&this.
+image("noise",paper.picture?[!0,!0]:repeat),paper&&this.image("step",repeat),this.colourMap()].forEach((texture,n)=>{gl.
+activeTexture(gl.TEXTURE0+n),gl.bindTexture(n<4?gl.TEXTURE_2D_ARRAY:gl.TEXTURE_2D,texture)}),gl.activeTexture(gl.TEXTURE0+
+SAMPLERS.length)}draw(before,after,anchor,textures){let gl=this.graphics.context;textures&&(this.dropSlices(before,after),
+this.bindTextures(before,after)),this.bindNodes(before,after,anchor),gl.drawElements(gl.TRIANGLES,this.resources.get("in\
+dex")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(null)}};var REQUEST_MS=60,LOST_MS=8e3,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD=4,Tiles=class{layers=[];missing=[];host;root;tiles=new Map;pyramid=null;chosen={
+choices:new Map,steps:[],names:""};drawn="";asked={names:[],steps:[]};count=0;isWaiting=!1;isOver=!1;lastCame=0;constructor(host,root){
+this.host=host,this.root=root}dispose(){this.isOver=!0;for(let name of[...this.tiles.keys()])this.drop(name)}setPart(name,part){
+let{graphics,header}=this.root,tile=this.tiles.get(name)??this.emptyTile();if(this.tiles.set(name,tile),part.digest&&tile.
+parts.get(part.name)?.digest===part.digest)return;if(graphics.release(tile.parts.get(part.name)),tile.parts.set(part.name,
+graphics.hold(part)),part.name==="header"){let own=JSON.parse(new TextDecoder().decode(part.data));tile.scene?.dispose(),
+tile.scene=own&&new Scene(graphics,{...header,...own,pyramid:null},tile.parts),this.giveMap(tile),this.giveLimits(tile)}else
+part.name==="mesh"&&this.giveLimits(tile),tile.scene?.forget(part.name);this.lastCame=performance.now();let{names,steps}=this.
+chosen;this.missing=this.missing.filter(missing=>!this.isHere(missing,steps));let shown=cover(this.chosen.choices,other=>this.
+isHere(other,steps));String([...shown.keys()])!==names&&this.host.refine()}recolour(colours={}){this.asked={names:[],steps:[]};
+let{mesh,scalars}=this.root.header,{steps}=this.chosen;for(let tile of this.tiles.values()){let{scene,parts}=tile;if(!scene)
+continue;let{header}=scene;Object.assign(header,{mesh:narrowed(mesh,tile.scalars,scalars)},colours),this.giveMap(tile);for(let name of[
+"scalars","mesh"])scene.forget(name);if((steps.length?scene.scalarParts(steps[0],steps[steps.length-1]):[]).every(name=>parts.
+has(name))&&(scalars.log===tile.scalars.log||scalars.name===null))continue;let others=[...parts.keys()].filter(name=>name.
+startsWith("scalars/"));for(let name of others)this.release(tile,name)}}emptyTile(){let{scalars}=this.root.header;return{
+parts:new Map,scene:void 0,scalars,used:this.count}}giveLimits(tile){let{mesh,scalars}=this.root.header;tile.scalars=scalars,
+tile.scene&&(tile.scene.header.mesh=mesh)}giveMap({scene,parts}){let map=this.root.parts.get("cmap");map&&parts.set("cma\
+p",map),scene?.forget("cmap")}arrange([before,after]){let{camera,canvas}=this.host;if(!camera)return[];let steps=[...new Set(
+[before,after])],shown=this.choose(camera,steps),layers=[{scene:this.root,key:[this.root.header.pyramid?.depth??0,0,0]}],
+names=[ROOT];for(let name of shown.keys()){let scene=this.tiles.get(name)?.scene;scene&&(names.push(name),layers.push({scene,
+key:keyOf(name)}))}let sight=camera.sight(canvas.height),parts=layers.map(({scene,key},n)=>{let{levels,shape}=scene.levels(
+sight);for(let finer of shown.get(names[n])??[])this.hide(levels,shape[1],finer,names[n]);let{pyramid}=this.root.header,
+[row,column]=key.slice(1).map(at=>at*(pyramid?.tileBlocks??0)<<key[0]);return{step:key[0],row,column,shape,levels}});return this.
+layers=layers,this.setTriangles(names,parts),layers.map(({scene})=>scene)}hide(levels,columns,finer,above){let[row,column,
+size]=this.pyramid?.finerPart(keyOf(finer),above)??[0,0,0];for(let j=row;j<Math.min(row+size,levels.length/columns);j+=1)
+levels.fill(-1,j*columns+column,j*columns+Math.min(column+size,columns))}setTriangles(names,parts){let drawn=String(parts.
+map(({levels},n)=>[names[n],levels]));if(drawn===this.drawn&&this.layers.every(({scene})=>scene.hasTriangles))return;this.
+drawn=drawn;let{geometry,mesh,pyramid}=this.root.header,most=Math.log2(mesh.tileCells),joins=join(parts,pyramid?.blocks??
+parts[0].shape,geometry.periodic,most);parts.forEach(({levels},n)=>this.layers[n].scene.setTriangles(levels,joins[n]))}choose(camera,steps){
+let{header}=this.root,{settings,canvas,ratio}=this.host;if(!header.pyramid)return new Map;this.pyramid??=new Pyramid(header.
+pyramid,header.mesh,this.root.part("places").data);let choices=this.pyramid.choose({...camera.sight(canvas.height/ratio),
+planes:camera.planes,cellPixels:cellPixels(header.pyramid,settings)});this.count+=1;for(let name of choices.keys()){let tile=this.
+tiles.get(name);tile&&(tile.used=this.count)}let until=performance.now()+LOAD_MS,wanted=wantedTiles(choices);this.missing=
+wanted.filter(name=>!this.isHere(name,steps)),this.ask(steps),this.trim(steps);let shown=cover(choices,name=>this.isHere(
+name,steps)&&this.load(name,steps,until));return this.chosen={choices,steps,names:String([...shown.keys()])},shown}isHere(name,steps){
+let scene=this.tiles.get(name)?.scene;return scene===null||scene?.missing(steps[0],steps[steps.length-1]).length===0}load(name,steps,until){
+let scene=this.tiles.get(name)?.scene;return!scene||scene.isLoaded(steps)?!0:performance.now()>until?(this.host.refine(),
+!1):(scene.load(steps),!0)}ask(all){let{options,lifetime}=this.host,isLacking=step=>this.missing.some(name=>!this.isHere(
+name,[step])),steps=all.filter(isLacking),open=this.asked.names.filter(name=>!this.isHere(name,this.asked.steps));performance.
+now()-this.lastCame<LOST_MS&&String(open.sort())===String([...this.missing].sort())&&(!open.length||String(steps)===String(
+this.asked.steps))||this.isWaiting||!options.onTiles||(this.isWaiting=!0,lifetime.later(()=>{this.isWaiting=!1,!this.isOver&&
+(this.lastCame=performance.now(),this.asked={names:this.missing,steps},options.onTiles?.(this.missing.map(keyOf),steps),
+this.missing.length&&lifetime.later(()=>this.isOver||this.ask(all),LOST_MS))},REQUEST_MS))}trim(steps){let bytes=0;for(let[
+name,tile]of[...this.tiles].sort(([,a],[,b])=>b.used-a.used)){let{parts,used}=tile,slices=[...parts.keys()].filter(part=>part.
+startsWith("slices/"));for(let part of slices.slice(0,Math.max(slices.length-STEPS_HELD,0))){let step=stepOf(part);if(!steps.
+includes(step))for(let kind of["slices","extra"])this.release(tile,`${kind}/${step}`)}for(let{data}of parts.values())bytes+=
+BYTES_HELD*data.byteLength;bytes>BUDGET_BYTES&&used<this.count&&this.drop(name)}}drop(name){let tile=this.tiles.get(name);
+tile?.scene?.dispose();for(let part of[...tile?.parts.keys()??[]])this.release(tile,part);this.tiles.delete(name)}release(tile,part){
+part!=="cmap"&&this.root.graphics.release(tile?.parts.get(part)),tile?.parts.delete(part)}};var STILL_MS=160,LOST_MS2=5e3,STEPS_HELD2=12,isEqual=(a,b)=>JSON.stringify(a)===JSON.stringify(b),Viewer=class{options;graphics=sharedGraphics();lifetime=new Lifetime;player=new Player;root=document.
+createElement("div");canvas=document.createElement("canvas");panel;pointers;parts=new Map;header=null;settings={};scene=null;tiles=null;camera=null;sharp=!1;isVisible=!0;shown=null;together=[
 this];renderer;busyUntil=0;firstCamera=null;requests=new Map;constructor(element,options={}){this.options=options;let{root}=this;
 root.className="flowtex",root.tabIndex=0,root.dataset.sharp="false",root.setAttribute("data-lm-suppress-shortcuts","true"),
 root.setAttribute("role","application"),this.renderer=new ProgressiveRenderer(this),this.panel=new Panel(this),element.append(
@@ -777,77 +893,81 @@ root);let seen=new IntersectionObserver(entries=>{this.isVisible=entries[entries
 this.request()});lifetime.observe(seen,root),lifetime.listen(document,"visibilitychange",()=>this.request()),lifetime.listen(
 window,"resize",()=>this.resize())}stats(){let{objects,users}=this.graphics,{frames}=this.renderer;return{...this.lifetime.
 stats(),objects,users:users.size,frames}}dispose(){if(!this.lifetime.isOver){this.player.playing=!1,this.lifetime.end(),
-this.scene?.dispose(),this.scene=null;for(let name of[...this.parts.keys()])this.remove(name);this.graphics.leave(this),
-this.renderer.dispose(),this.root.remove()}}setHeader(header){if(header.format!==2){this.panel.fail(`The scene has forma\
-t ${header.format}, and this client reads format ${2}.`,"Use the client of the flowtex that made the scene.");return}let old=this.
-header;if(old&&old.generation!==void 0&&old.generation===header.generation)return this.recolour(coloursOf(header));if(this.
-header=header,this.settings={...header.settings,...header.own},this.player.setHeader(header),this.scene?.dispose(),this.
-scene=new Scene(this.graphics,header,this.parts),this.requests.clear(),(!old||!isSamePlace(old.geometry,header.geometry))&&
-(this.firstCamera=header.camera,this.camera=null),old&&old.generation!==header.generation)for(let name of[...this.parts.
-keys()])name.includes("/")&&this.remove(name);this.panel.build(),this.change()}recolour(colours){if(this.header){Object.
-assign(this.header,colours);for(let name of["scalars","mesh"])this.scene?.forget(name);this.panel.showLegend(),this.change()}}chooseColours(choice){
-if(this.options.onColours)return this.options.onColours(choice);for(let viewer of this.together){if(!viewer.header)continue;
-let{colours,part}=recoloured(viewer.header,choice,viewer.parts);part&&viewer.setPart(part),viewer.recolour(colours)}}setPart(part){
-let{name,digest}=part;if(this.requests.delete(stepOf(name)),digest&&this.parts.get(name)?.digest===digest)return;let held=this.
-graphics.hold(part);this.remove(name),this.parts.set(name,held),this.scene?.forget(name),this.trim(),(name==="cmap"||name===
-"maps")&&this.panel.showLegend(),this.change()}remove(name){this.graphics.release(this.parts.get(name)),this.parts.delete(
-name)}trim(){if(!this.options.onNeed||!this.header)return;let names=[...this.parts.keys()].filter(name=>name.startsWith(
-"slices/")),[before,after]=this.player.moment;for(let name of names.slice(0,Math.max(names.length-STEPS_HELD,0))){let step=stepOf(
-name);if(!(step===before||step===after))for(let kind of["slices","extra"])this.remove(`${kind}/${step}`)}}setSettings(settings){
-Object.entries(settings).every(([name,value])=>this.settings[name]===value)||(Object.assign(this.settings,settings),this.
-panel.update(),this.change())}followSetting(name,value){name in(this.header?.own??{})||this.setSettings({[name]:value})}choose(name,value){
-this.holdDraft(),this.setSettings({[name]:value}),this.options.onSetting?.(name,value)}get cameraState(){let state=this.
-camera?.state??this.firstCamera;return state?copyOf(state):null}setCamera(state){if(!this.camera)this.firstCamera=copyOf(
-state);else{if(isEqual(this.camera.state,state))return;this.camera.state=copyOf(state)}this.change(!0)}reportCamera(){this.
-holdDraft(),this.change(!0),this.camera&&this.options.onCamera?.(copyOf(this.camera.state))}reset(){this.camera&&(this.place(),
-this.reportCamera())}place(){let{header,firstCamera:first,aspect}=this,nodes=this.parts.get("position")?.data;if(!header||
-!nodes)return;let{geometry,limits}=header,state=first?widened(geometry,limits,first,nodes,aspect):fitted(geometry,limits,
-nodes,aspect);this.camera=new Camera(state,limits,geometry.planar,aspect),this.camera.pick=(x,y)=>this.point(x,y)?.position??
-null,(!first||!isEqual(first,state))&&this.options.onCamera?.(copyOf(state))}get aspect(){return Math.max(this.root.clientWidth,
-1)/Math.max(this.root.clientHeight,1)}get playing(){return this.player.playing}setTime(time){this.player.seek(time),this.
-panel.tick(),this.change()}scrub(share){let{player,options}=this,{first,last}=player.range(this.settings),value=first+share*
-(last-first);this.holdDraft(),player.varies?(this.setTime(value),options.onTime?.(player.time)):(this.setClock(value),options.
-onClock?.(player.clock))}setClock(clock){this.player.clock=clock,this.panel.tick(),this.change()}play(){if(this.options.
-follows)return this.options.follows.play();this.playing||!this.header||(!this.player.varies&&this.settings.motion==="off"&&
-this.choose("motion","speed"),this.player.start(),this.panel.update(),this.request(),this.options.onPlaying?.(!0))}pause(){
-if(this.options.follows)return this.options.follows.pause();this.playing&&(this.player.playing=!1,this.panel.update(),this.
-change(),this.options.onPlaying?.(!1))}togglePlaying(){let leader=this.options.follows??this;leader.playing?leader.pause():
-leader.play()}holdDraft(){this.busyUntil=performance.now()+STILL_MS}get isBusy(){return this.playing||performance.now()<
-this.busyUntil}change(cameraOnly=!1){this.renderer.restart(cameraOnly),this.setSharp(!1),this.request()}draw(){this.frame(
-performance.now(),performance.now()+FRAME_MS)}setSharp(sharp){sharp!==this.sharp&&(this.sharp=sharp,this.root.dataset.sharp=
-String(sharp),sharp&&this.options.onFrame?.())}request(){!this.lifetime.isOver&&this.isVisible&&this.graphics.request(this)}resize(){
-let ratio=Math.max(window.devicePixelRatio||1,.1),width=Math.max(Math.round(this.root.clientWidth*ratio),1),height=Math.
-max(Math.round(this.root.clientHeight*ratio),1);width===this.canvas.width&&height===this.canvas.height||(this.renderer.resize(
-width,height),this.camera&&(this.camera.aspect=this.aspect,isEqual(this.camera.state,this.camera.start)&&this.place()),this.
-change())}get smooth(){let{header}=this;return this.options.smooth!==void 0||!header?this.options.smooth??!1:this.program(
-header).price<CARD_PRICE_MS}get ratio(){return this.canvas.height/Math.max(this.root.clientHeight,1)}lost(){this.scene=this.
-header&&new Scene(this.graphics,this.header,this.parts),this.setSharp(!1)}get lacking(){let[before,after]=this.player.moment;
-return this.scene?.missing(before,after)??[]}available(){let{header,scene,player,shown}=this;if(!header||!scene)return null;
-let moment=player.moment,count=header.slices.steps,ahead=player.playing?[1,2].map(n=>(moment[1]+n)%count):[];this.ask([moment[0],
-moment[1],...ahead]);let{lacking}=this;return this.panel.wait(lacking),lacking.length?shown&&!scene.missing(shown[0],shown[1]).
-length?shown:null:this.shown=moment}ask(steps){let now=performance.now(),lacking=[...new Set(steps)].filter(step=>this.scene?.
-missing(step,step).length);for(let step of lacking)!this.options.onNeed||now-(this.requests.get(step)??-1/0)<LOST_MS||(this.
-requests.set(step,now),this.options.onNeed(step));return!lacking.length}frame(now,until){if(!(this.lifetime.isOver||this.
-graphics.isLost||!this.graphics.gl||!this.isVisible)&&!(!this.header||!this.scene||this.canvas.width<2))try{this.advance(
-now),this.drawPicture(this.header,until)}catch(error){this.pause(),this.panel.fail("The picture could not be drawn.",String(
-error))}}program(header,isClose=this.isClose(header)){let{vertex,fragment}=header.shaders,defines=isMoving(header,this.settings)?
-["FLOWTEX_MOVING"]:[];return isClose&&defines.push("FLOWTEX_CELLS"),this.graphics.programs.get(vertex,fragment,...defines)}isClose(header){
-return this.camera!==null&&isNear(header,this.settings,this.view([0,0,0],this.ratio))}drawPicture(header,until){let shown=this.
-available();if(this.camera||this.place(),!shown||!this.camera)return;let{programs}=this.graphics,program=this.program(header);
-if(program.error){this.panel.fail("The shader does not compile with this graphics driver.",program.error);return}if(!program.
-ready)return this.request();!this.sharp&&this.renderer.draw(program,shown,this.isBusy,until)&&(this.panel.clear(),programs.
-get(header.shaders.vertex,header.shaders.pick),header.slices.critical&&this.program(header,!0),this.setSharp(!this.playing)),
-this.sharp||this.request()}advance(now){let{player,options}=this;!player.playing||!player.advance(now,steps=>this.ask(steps))||
-(player.varies?options.onTime?.(player.time):options.onClock?.(player.clock),this.panel.tick(),this.renderer.restart(),this.
-setSharp(!1))}view(shown,density){let{header,camera,scene,player}=this;if(!header||!camera)throw new Error("there is not\
-hing to look at yet");let{geometry,constants}=header,focus=camera.state.focal_point,local=toFrame(geometry.frame,subtract2(
-focus,geometry.center)),old=scene?.anchor??[0,0,0],range=constants.anchorRange*2*camera.height,isFar=v2=>v2.some(c=>Math.
-abs(c)>range),anchor=isFar(local)?local:[0,0,0];return{focus,anchor:isFar(subtract2(local,old))?anchor:old,eye:camera.eye,
-between:shown[2],time:player.timeOf(shown),clock:player.clock,density,pixel:2*camera.height/Math.max(this.root.clientHeight*
-density,1)}}get canPick(){let{header,graphics}=this;return!header||graphics.isLost||!graphics.gl?!1:graphics.programs.get(
-header.shaders.vertex,header.shaders.pick).ready}point(x,y){let{scene,camera,shown,canvas}=this;if(!scene||!camera||!shown||
-!this.canPick)return null;let{anchor}=this.view(shown,1);return pickedPoint({scene,camera,moment:shown,anchor,canvas},x,
-y)}};function viewersIn(element,count,options,own=()=>({})){if(count<2)return[new Viewer(element,{...options,...own(0)})];let pair=dom(
+this.tiles?.dispose(),this.tiles=null,this.scene?.dispose(),this.scene=null;for(let name of[...this.parts.keys()])this.remove(
+name);this.graphics.leave(this),this.renderer.dispose(),this.root.remove()}}setHeader(header){if(header.format!==3){this.
+panel.fail(`The scene has format ${header.format}, and this client reads format ${3}.`,"Use the client of the flowtex th\
+at made the scene.");return}let old=this.header;if(old&&old.generation!==void 0&&old.generation===header.generation)return this.
+recolour(coloursOf(header));if(this.header=header,this.settings={...header.settings,...header.own},this.player.setHeader(
+header),this.tiles?.dispose(),this.scene?.dispose(),this.makeScene(header),this.requests.clear(),(!old||!isSamePlace(old.
+geometry,header.geometry))&&(this.firstCamera=header.camera,this.camera=null),old&&old.generation!==header.generation)for(let name of[
+...this.parts.keys()])name.includes("/")&&this.remove(name);this.panel.build(),this.change()}recolour(colours){if(this.header){
+Object.assign(this.header,colours);for(let name of["scalars","mesh"])this.scene?.forget(name);this.tiles?.recolour(colours),
+this.panel.showLegend(),this.change()}}chooseColours(choice){if(this.options.onColours)return this.options.onColours(choice);
+for(let viewer of this.together){if(!viewer.header)continue;let{colours,part}=recoloured(viewer.header,choice,viewer.parts);
+part&&viewer.setPart(part),viewer.recolour(colours)}}makeScene(header){this.scene=new Scene(this.graphics,header,this.parts),
+this.tiles=new Tiles(this,this.scene)}setPart(part){let{name,digest}=part,tile=tilePart(name);if(tile)return void this.tiles?.
+setPart(tile[0],{...part,name:tile[1]});if(this.requests.delete(stepOf(name)),digest&&this.parts.get(name)?.digest===digest)
+return;let held=this.graphics.hold(part);this.remove(name),this.parts.set(name,held),this.scene?.forget(name),this.trim(),
+name==="cmap"&&this.tiles?.recolour(),(name==="cmap"||name==="maps")&&this.panel.showLegend(),this.change()}remove(name){
+this.graphics.release(this.parts.get(name)),this.parts.delete(name)}trim(){if(!this.options.onNeed||!this.header)return;
+let names=[...this.parts.keys()].filter(name=>name.startsWith("slices/")),[before,after]=this.player.moment;for(let name of names.
+slice(0,Math.max(names.length-STEPS_HELD2,0))){let step=stepOf(name);if(!(step===before||step===after))for(let kind of["\
+slices","extra"])this.remove(`${kind}/${step}`)}}setSettings(settings){Object.entries(settings).every(([name,value])=>this.
+settings[name]===value)||(Object.assign(this.settings,settings),this.panel.update(),this.change())}followSetting(name,value){
+name in(this.header?.own??{})||this.setSettings({[name]:value})}choose(name,value){this.holdDraft(),this.setSettings({[name]:value}),
+this.options.onSetting?.(name,value)}get cameraState(){let state=this.camera?.state??this.firstCamera;return state?copyOf(
+state):null}setCamera(state){if(!this.camera)this.firstCamera=copyOf(state);else{if(isEqual(this.camera.state,state))return;
+this.camera.state=copyOf(state)}this.change(!0)}reportCamera(){this.holdDraft(),this.change(!0),this.camera&&this.options.
+onCamera?.(copyOf(this.camera.state))}reset(){this.camera&&(this.place(),this.reportCamera())}place(){let{header,firstCamera:first,
+aspect}=this,nodes=this.parts.get("position")?.data;if(!header||!nodes)return;let{geometry,limits}=header,state=first?widened(
+geometry,limits,first,nodes,aspect):fitted(geometry,limits,nodes,aspect);this.camera=new Camera(state,limits,geometry.planar,
+aspect),this.camera.pick=(x,y)=>this.point(x,y)?.position??null,(!first||!isEqual(first,state))&&this.options.onCamera?.(
+copyOf(state))}get aspect(){return Math.max(this.root.clientWidth,1)/Math.max(this.root.clientHeight,1)}get playing(){return this.
+player.playing}setTime(time){this.player.seek(time),this.panel.tick(),this.change()}scrub(share){let{player,options}=this,
+{first,last}=player.range(this.settings),value=first+share*(last-first);this.holdDraft(),player.varies?(this.setTime(value),
+options.onTime?.(player.time)):(this.setClock(value),options.onClock?.(player.clock))}setClock(clock){this.player.clock=
+clock,this.panel.tick(),this.change()}play(){if(this.options.follows)return this.options.follows.play();this.playing||!this.
+header||(!this.player.varies&&this.settings.motion==="off"&&this.choose("motion","speed"),this.player.start(),this.panel.
+update(),this.request(),this.options.onPlaying?.(!0))}pause(){if(this.options.follows)return this.options.follows.pause();
+this.playing&&(this.player.playing=!1,this.panel.update(),this.change(),this.options.onPlaying?.(!1))}togglePlaying(){let leader=this.
+options.follows??this;leader.playing?leader.pause():leader.play()}holdDraft(){this.busyUntil=performance.now()+STILL_MS}get isBusy(){
+return this.playing||performance.now()<this.busyUntil}change(cameraOnly=!1){this.renderer.restart(cameraOnly),this.setSharp(
+!1),this.request()}refine(){this.renderer.refine(),this.setSharp(!1),this.request()}arrange(shown){let scenes=this.tiles?.
+arrange(shown)??[];return this.root.dataset.tiles=String(this.tiles?.missing.length??0),scenes}draw(){this.frame(performance.
+now(),performance.now()+FRAME_MS)}setSharp(sharp){sharp!==this.sharp&&(this.sharp=sharp,this.root.dataset.sharp=String(sharp),
+sharp&&this.options.onFrame?.())}request(){!this.lifetime.isOver&&this.isVisible&&this.graphics.request(this)}resize(){let ratio=Math.
+max(window.devicePixelRatio||1,.1),width=Math.max(Math.round(this.root.clientWidth*ratio),1),height=Math.max(Math.round(
+this.root.clientHeight*ratio),1);width===this.canvas.width&&height===this.canvas.height||(this.renderer.resize(width,height),
+this.camera&&(this.camera.aspect=this.aspect,isEqual(this.camera.state,this.camera.start)&&this.place()),this.change())}get smooth(){
+let{header}=this;return this.options.smooth!==void 0||!header?this.options.smooth??!1:this.program(header).price<CARD_PRICE_MS}get ratio(){
+return this.canvas.height/Math.max(this.root.clientHeight,1)}lost(){this.tiles?.dispose(),this.header&&this.makeScene(this.
+header),this.setSharp(!1)}get lacking(){let[before,after]=this.player.moment;return this.scene?.missing(before,after)??[]}available(){
+let{header,scene,player,shown}=this;if(!header||!scene)return null;let moment=player.moment,count=header.slices.steps,ahead=player.
+playing?[1,2].map(n=>(moment[1]+n)%count):[];this.ask([moment[0],moment[1],...ahead]);let{lacking}=this;return this.panel.
+wait(lacking),lacking.length?shown&&!scene.missing(shown[0],shown[1]).length?shown:null:this.shown=moment}ask(steps){let now=performance.
+now(),lacking=[...new Set(steps)].filter(step=>this.scene?.missing(step,step).length);for(let step of lacking)!this.options.
+onNeed||now-(this.requests.get(step)??-1/0)<LOST_MS2||(this.requests.set(step,now),this.options.onNeed(step));return!lacking.
+length}frame(now,until){if(!(this.lifetime.isOver||this.graphics.isLost||!this.graphics.gl||!this.isVisible)&&!(!this.header||
+!this.scene||this.canvas.width<2))try{this.advance(now),this.drawPicture(this.header,until)}catch(error){this.pause(),this.
+panel.fail("The picture could not be drawn.",String(error))}}program(header,isClose=this.isClose(header)){let{vertex,fragment}=header.
+shaders,defines=isMoving(header,this.settings)?["FLOWTEX_MOVING"]:[];return isClose&&defines.push("FLOWTEX_CELLS"),this.
+graphics.programs.get(vertex,fragment,...defines)}isClose(header){if(!this.camera)return!1;let view=this.view([0,0,0],this.
+ratio),tiles=this.tiles?.layers.slice(1).map(({scene})=>scene.header)??[];return(tiles.length?tiles:[header]).some(part=>isNear(
+part,this.settings,view))}drawPicture(header,until){let shown=this.available();if(this.camera||this.place(),!shown||!this.
+camera)return;let{programs}=this.graphics,program=this.program(header);if(program.error){this.panel.fail("The shader doe\
+s not compile with this graphics driver.",program.error);return}if(!program.ready)return this.request();!this.sharp&&this.
+renderer.draw(program,shown,this.isBusy,until)&&(this.panel.clear(),programs.get(header.shaders.vertex,header.shaders.pick),
+header.slices.critical&&this.program(header,!0),this.setSharp(!this.playing)),this.sharp||this.request()}advance(now){let{
+player,options}=this;!player.playing||!player.advance(now,steps=>this.ask(steps))||(player.varies?options.onTime?.(player.
+time):options.onClock?.(player.clock),this.panel.tick(),this.renderer.restart(),this.setSharp(!1))}view(shown,density){let{
+header,camera,scene,player}=this;if(!header||!camera)throw new Error("there is nothing to look at yet");let{geometry,constants}=header,
+focus=camera.state.focal_point,local=toFrame(geometry.frame,subtract2(focus,geometry.center)),old=scene?.anchor??[0,0,0],
+range=constants.anchorRange*2*camera.height,isFar=v2=>v2.some(c=>Math.abs(c)>range),anchor=isFar(local)?local:[0,0,0];return{
+focus,anchor:isFar(subtract2(local,old))?anchor:old,eye:camera.eye,between:shown[2],time:player.timeOf(shown),clock:player.
+clock,density,pixel:2*camera.height/Math.max(this.root.clientHeight*density,1)}}get canPick(){let{header,graphics}=this;
+return!header||graphics.isLost||!graphics.gl?!1:graphics.programs.get(header.shaders.vertex,header.shaders.pick).ready}point(x,y){
+let{tiles,camera,shown,canvas}=this;if(!tiles?.layers.length||!camera||!shown||!this.canPick)return null;let{anchor}=this.
+view(shown,1);return pickedPoint({layers:tiles.layers,camera,moment:shown,anchor,canvas},x,y)}};function viewersIn(element,count,options,own=()=>({})){if(count<2)return[new Viewer(element,{...options,...own(0)})];let pair=dom(
 "div",{class:"flowtex-pair"});pair.style.cssText="display: flex; gap: 2px; width: 100%; height: 100%",element.append(pair);
 let viewers=[];for(let n=0;n<count;n+=1){let cell=dom("div");cell.style.cssText="flex: 1 1 0; min-width: 0; height: 100%",
 pair.append(cell);let others=()=>viewers.filter((_,m)=>m!==n),follower=n?{controls:!1,follows:viewers[0]}:{};viewers.push(
@@ -856,16 +976,23 @@ viewers;return viewers}function linked(options,others){let both=(follow,report)=
 follow(other,...values);report?.(...values)};return{onCamera:both((other,camera)=>other.setCamera(camera),options.onCamera),
 onTime:both((other,time)=>other.setTime(time),options.onTime),onClock:both((other,clock)=>other.setClock(clock),options.
 onClock),onSetting:both((other,name,value)=>other.followSetting(name,value),options.onSetting)}}function mountPage(element,scenes,options={}){
-let viewers=viewersIn(element,scenes.length,options);return scenes.forEach(({header},n)=>viewers[n].setHeader(header)),scenes.
-forEach(({parts},n)=>parts.forEach(part=>viewers[n].setPart(part))),viewers[0]}async function partsOf(view,known){let parts=[];for(let element of document.querySelectorAll(`script[data-view="${view}"\
-]`)){let info=JSON.parse(element.dataset.part??""),text=element.textContent??"",part=known.get(info.digest)??await partOfText(
-info,text);known.set(info.digest,part),parts.push({...part,name:info.name}),element.remove()}return parts}async function openPage(){
-let place=document.getElementById("flowtex"),status=document.getElementById("status");try{let headers=JSON.parse(document.
-getElementById("headers")?.textContent??""),known=new Map,scenes=[];for(let[n,header]of headers.entries())scenes.push({header:{
-...headers[0],...header},parts:await partsOf(String(n),known)});let look=()=>{status.hidden=!place.querySelector('[data-\
-failed="true"]'),status.textContent="This browser cannot draw the flow, for want of WebGL2; here is a picture of it.",!place.
-querySelector('[data-sharp="false"]')&&(watch.disconnect(),document.getElementById("preview")?.remove())},watch=new MutationObserver(
-look),attributeFilter=["data-sharp","data-failed"];watch.observe(place,{subtree:!0,childList:!0,attributeFilter});let{root}=mountPage(
-place,scenes);document.addEventListener("keydown",event=>{event.target===document.body&&!root.dispatchEvent(new KeyboardEvent(
-"keydown",event))&&event.preventDefault()})}catch(error){status.hidden=!1;let reason=error instanceof Error?error.message:
-String(error);throw status.textContent=`The flow cannot be drawn here: ${reason}`,error}}openPage();
+let tiles=scenes.map(({loadTile},n)=>loadTile&&new TileQueue(loadTile,part=>viewers[n].setPart(part))),viewers=viewersIn(
+element,scenes.length,options,n=>({onTiles:(keys,steps)=>tiles[n]?.request(keys,steps)}));return scenes.forEach(({header},n)=>viewers[n].
+setHeader(header)),scenes.forEach(({parts},n)=>parts.forEach(part=>viewers[n].setPart(part))),viewers[0]}function packedOf(view){let[parts,tiles]=[[],new Map];for(let element of document.querySelectorAll(`script[data-view="${view}\
+"]`)){let info=JSON.parse(element.dataset.part??""),packed=[info,element.textContent??""],tile=tilePart(info.name)?.[0];
+tile?tiles.set(tile,[...tiles.get(tile)??[],packed]):parts.push(packed),element.remove()}return{parts,tiles}}async function sceneOf(header,view,known,texts){
+let{parts,tiles}=packedOf(view);for(let[{digest},text]of[...tiles.values()].flat())text&&texts.set(digest,text);let unpacked=[];
+for(let[info,text]of parts){let part=known.get(info.digest)??await partOfText(info,text);known.set(info.digest,part),unpacked.
+push({...part,name:info.name})}return{header,parts:unpacked,loadTile:(key,steps)=>{let needed=(tiles.get(nameOf(key))??[]).
+filter(([{name}])=>{let step=stepOf(tilePart(name)?.[1]??"");return Number.isNaN(step)||steps.includes(step)});return Promise.
+all(needed.map(async([info,text])=>{let part=known.get(info.digest);return part?{...part,name:info.name}:partOfText(info,
+text||(texts.get(info.digest)??""))}))}}}async function openPage(){let place=document.getElementById("flowtex"),status=document.
+getElementById("status");try{let headers=JSON.parse(document.getElementById("headers")?.textContent??""),known=new Map,texts=new Map,
+scenes=[];for(let[n,header]of headers.entries())scenes.push(await sceneOf({...headers[0],...header},String(n),known,texts));
+let look=()=>{status.hidden=!place.querySelector('[data-failed="true"]'),status.textContent="This browser cannot draw th\
+e flow, for want of WebGL2; here is a picture of it.",!place.querySelector('[data-sharp="false"]')&&(watch.disconnect(),
+document.getElementById("preview")?.remove())},watch=new MutationObserver(look),attributeFilter=["data-sharp","data-fail\
+ed"];watch.observe(place,{subtree:!0,childList:!0,attributeFilter});let{root}=mountPage(place,scenes);document.addEventListener(
+"keydown",event=>{event.target===document.body&&!root.dispatchEvent(new KeyboardEvent("keydown",event))&&event.preventDefault()})}catch(error){
+status.hidden=!1;let reason=error instanceof Error?error.message:String(error);throw status.textContent=`The flow cannot\
+ be drawn here: ${reason}`,error}}openPage();

@@ -12,6 +12,7 @@ from flowtex.options import Options
 from flowtex.rendering.webgl import ClientData, Colours
 from flowtex.scene import Scene, share_field, steps_of
 from flowtex.settings import TABLE
+from flowtex.tiles import Pyramid
 
 __all__ = ["WebView", "colours_of", "even_steps", "web_views"]
 
@@ -50,7 +51,14 @@ class WebView:
 
     def data(self) -> ClientData:
         """Return what the client is handed; makes noise textures, and traces nothing."""
-        return self._data(self.scene)
+        scene = self.scene
+        return self._data(scene, scene.pyramid)
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Rows and columns of nodes of what is handed over."""
+        pyramid = self.scene.pyramid
+        return self.field.shape if pyramid is None else pyramid.shape(pyramid.depth)
 
     def page_data(self) -> ClientData:
         """Return the same with the values of all scalars, where nobody can be asked for them."""
@@ -66,10 +74,10 @@ class WebView:
         """Return the same with so many nodes at most, for a first picture."""
         return self._data(self.scene.coarsened(nodes))
 
-    def _data(self, scene: Scene) -> ClientData:
+    def _data(self, scene: Scene, pyramid: Pyramid | None = None) -> ClientData:
         textures = scene.textures
         colours = colours_of(self.scene, textures.geometry.field, self._background)
-        return ClientData(textures, colours, self._times)
+        return ClientData(textures, colours, self._times, pyramid)
 
     def recoloured(self, data: ClientData) -> ClientData:
         """Return what the client has been handed with the colours of this moment."""
@@ -109,7 +117,7 @@ def choices_of(scene: Scene) -> tuple[dict[str, Any], ...]:
     choices: list[dict[str, Any]] = []
     for name in scene.scalar_names:
         low, high = scene.scalar_range(name)
-        steps = len(steps_of(scene.field, name))
+        steps = len(scene.field.scalars.get(name, scene.field.velocity))
         choices.append(
             {
                 "name": name,

@@ -11,6 +11,7 @@ shows the same mesh many times holds it once, and asks for what it lacks.
 from __future__ import annotations
 
 import threading
+import time
 import traceback
 from collections import OrderedDict
 from collections.abc import Callable, Sequence
@@ -18,12 +19,16 @@ from contextlib import suppress
 from functools import partial
 from typing import Any
 
+import numpy as np
+
 from flowtex._util.array_types import AnyArray
 from flowtex.rendering.webgl import ClientData
 from flowtex.rendering.webgl.protocol import Header, Parts, part_buffer, part_info
 from flowtex.scene import Change
+from flowtex.tiles import TileKey
 from flowtex.web import preview
 from flowtex.web.view import WebView
+from flowtex.widget.tile_feed import TileFeed
 from flowtex.widget.worker import Worker, WorkerPool
 
 __all__ = ["Feed"]
@@ -40,6 +45,8 @@ BETWEEN_STEADY, BETWEEN_VARYING = 100_000, 16_000
 MESSAGE_BYTES = 2_000_000
 #: Seconds between the times at which what nobody has acknowledged is sent once more.
 RESEND_WAITS_S = (2.5, 4.0, 8.0, 16.0)
+#: Seconds in which a client asks for what it has just been sent, as the header comes first.
+COMING_S = 2.0
 #: Bytes from which an array is offered before it is sent again.
 LEAST_OFFERED_BYTES = 50_000
 
@@ -73,6 +80,8 @@ class Feed:
         self._generation = self._order = 0
         self._live = self._closed = self._drawing = False
         self._asked: set[int] = set()
+        #: Steps that come with a new header, and until when they are not sent to who asks.
+        self._coming: tuple[float, tuple[int, ...]] = (0.0, ())
         self._sent: dict[str, str] = {}
         self.picture: bytes | None = None
         self.pictured, self.settled = threading.Event(), threading.Event()
@@ -81,6 +90,8 @@ class Feed:
         self._timer = self._resend_timer(RESEND_WAITS_S)
         self._answers = Worker(ANSWER_POOL, self._failed)
         self._builds = Worker(BUILD_POOL, self._failed)
+        # Apart from the answers, which may be tracing for long.
+        self._tiles = TileFeed(Worker(ANSWER_POOL, self._failed), self._send_tile, self.scene)
         view.scene.observe(self._scene_changed)
 
     @property
@@ -105,14 +116,26 @@ class Feed:
 
     def ready(self) -> None:
         """Answer a client that has nothing yet."""
+        self._tiles.forget()
         self._answers.do(lambda: self._send_parts(self._first_parts), urgency=1)
 
     def need(self, step: int) -> None:
         """Answer a client that needs a step."""
-        if step in self._asked or not 0 <= step < self.scene.steps:
+        is_coming = step in self._coming[1] and time.monotonic() < self._coming[0]
+        if step in self._asked or is_coming or not 0 <= step < self.scene.steps:
             return
         self._asked.add(step)
         self._answers.do(lambda: self._send_step(step), urgency=1)
+
+    def need_tiles(self, keys: Sequence[TileKey], steps: Sequence[int], seen: int) -> None:
+        """Answer a client that needs tiles; :meth:`TileFeed.request` has the parameters."""
+        self._tiles.request(keys, steps, seen)
+
+    def _send_tile(self, scene: ClientData, parts: Parts, number: int) -> None:
+        with self._lock:
+            if scene.textures is self.scene.textures and not self._closed:
+                self._deliver(parts, again=True, offer=False)
+                self._send({"kind": "tiles", "seen": number}, [])
 
     def _resend_timer(self, waits: tuple[float, ...]) -> threading.Timer:
         timer = threading.Timer(waits[0], self._send_again, [waits[1:]])
@@ -160,6 +183,7 @@ class Feed:
         self._closed = True
         self._timer.cancel()
         self._answers.close()
+        self._tiles.close()
         self._builds.close()
         for event in (self.pictured, self.settled):
             event.set()
@@ -167,9 +191,14 @@ class Feed:
     def _first(self) -> ClientData:
         """Return the scene to begin with: a coarse one of a large field."""
         field = self._view.field
-        if field.valid.size * len(field.times) <= LARGE_NODES:
+        if self._view.scene.pyramid is None and self._nodes <= LARGE_NODES:
             return self._view.data()
         return self._view.coarse_data(COARSE_STEADY if field.steady else COARSE_VARYING)
+
+    @property
+    def _nodes(self) -> int:
+        """Nodes of the whole, at all times together."""
+        return int(np.prod(self._view.shape)) * len(self._view.field.times)
 
     def _refine(self) -> None:
         """Replace a coarse scene by one between, where the whole takes long, and by the whole."""
@@ -181,15 +210,15 @@ class Feed:
             if order == self._order:
                 self.settled.set()
 
-        if field.valid.size * len(field.times) >= VERY_LARGE_NODES:
+        if self._nodes >= VERY_LARGE_NODES:
             between = partial(self._refine_to, partial(self._view.coarse_data, nodes), order)
             self._builds.do(between, urgency=1)
         self._builds.do(complete)
 
     def _refine_to(self, make: Callable[[], ClientData], order: int) -> None:
         """Replace a scene that is still coarse and wanted."""
-        shape = self.scene.textures.geometry.field.shape
-        if order == self._order and shape != self._view.field.shape:
+        shape = self.scene.textures.geometry.shape
+        if order == self._order and shape != self._view.shape:
             self._replace(make())
 
     def _replace(self, scene: ClientData) -> None:
@@ -200,9 +229,11 @@ class Feed:
             if order != self._order or self._closed:
                 return
             self.scene = scene
+            self._tiles.show(scene)
             self._generation += 1
             self._announce(self.header)
             if self._live:
+                self._coming = (time.monotonic() + COMING_S, scene.moment(self._moment()))
                 self._deliver(parts, again=False)
 
     def _recolour(self) -> None:
@@ -214,6 +245,7 @@ class Feed:
                 return
             self.scene = scene
             self._announce(self.header)
+            self._tiles.recolour(scene)
             if self._live:
                 kept = ("slices/", "extra/")
                 colours = {n: part for n, part in parts.items() if not n.startswith(kept)}

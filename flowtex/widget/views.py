@@ -10,12 +10,13 @@ import io
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import replace
-from typing import Any
+from typing import Any, TypeGuard
 
 import numpy as np
 
 from flowtex.rendering.webgl.protocol import Header
 from flowtex.scene import Change
+from flowtex.tiles import TileKey
 from flowtex.web.view import WebView
 from flowtex.widget.feed import Feed
 
@@ -89,6 +90,8 @@ class Views:
             self.feeds[number].need(step)
         if kind == "want" and isinstance(names, list) and all(isinstance(n, str) for n in names):
             self.feeds[number].want(names)
+        if kind == "tiles":
+            self.feeds[number].need_tiles(*_tiles_of(message))
 
     def _take_appearance(self, changes: dict[str, Any]) -> None:
         """Take colours that were chosen in the browser; what does not fit changes nothing there."""
@@ -135,6 +138,18 @@ class Views:
         for feed, view in zip(self.feeds, self.views, strict=True):
             feed.close()
             view.close()
+
+
+def _tiles_of(message: dict[str, Any]) -> tuple[list[TileKey], list[int], int]:
+    """Return what a client asks for: tiles, time steps, and the last number that it has seen."""
+    keys, steps, seen = (message.get(name) for name in ("keys", "steps", "seen"))
+    if not _are_whole(steps) or not isinstance(keys, list) or not isinstance(seen, int):
+        return [], [], 0
+    return [TileKey(*key) for key in keys if _are_whole(key) and len(key) == 3], steps, seen
+
+
+def _are_whole(values: Any) -> TypeGuard[list[int]]:
+    return isinstance(values, list) and all(isinstance(value, int) for value in values)
 
 
 def _side_by_side(pictures: Sequence[bytes]) -> bytes:

@@ -43,11 +43,10 @@ const float FLOWTEX_MANY_PHASES = 64.0;     // rounds of phases of every other r
 const uvec3 FLOWTEX_AXIS_PRIMES = uvec3(0x8da6b343u, 0xd8163841u, 0xcb1ab31fu);
 const uint FLOWTEX_OCTAVE_PRIME = 0x9e3779b9u;
 const uint FLOWTEX_SEED_PRIME = 0x85ebca6bu;
-const uvec2 FLOWTEX_HASH_SHIFTS = uvec2(15u, 13u);
+const uint FLOWTEX_HASH_SHIFT = 15u;
 const uvec2 FLOWTEX_HASH_FACTORS = uvec2(0x2c1b3c6du, 0x297a2d39u);
-const uint FLOWTEX_PHASE_SHIFT = 8u;
-const float FLOWTEX_PHASES = 16777216.0;    // number of different phases, 2^24
-const float FLOWTEX_GRAIN_PRECISION = 3.0;  // one over the variance of uniform numbers, -1 to 1
+const float FLOWTEX_MOST_GRAIN = 2147483648.0; // 2^31, the largest value of a grain
+const float FLOWTEX_GRAIN_VARIANCE = 1.537228672809129e18; // a third of its square
 
 // Shading: the lightness that black and white are drawn to, and how far the texture goes from it.
 const float FLOWTEX_BASE_DARK = 0.36;

@@ -28,7 +28,7 @@ vec2 flowtexLookup(vec3 displacement, float length_)
 
 float flowtexBlend(vec2 sums, float near)
 {
-  return sums.x * inversesqrt(flowtexShared(u_spacing * flowtexGrains, near));
+  return sums.x * inversesqrt(flowtexShared(vec2(u_spacing * flowtexGrains), near).x);
 }
 
 // The noise of a texture stands.

@@ -21,9 +21,8 @@ vec2 flowtexLookup(vec3 displacement, float length_)
 float flowtexBlend(vec2 sums, float near)
 {
   vec2 w = vec2(1.0 - flowtexLate, flowtexLate);
-  float apart = u_spacing * exp2(0.5 * flowtexLate);
-  vec2 shared = vec2(flowtexShared(apart, near), flowtexShared(apart * FLOWTEX_SQRT_HALF, near));
-  return dot(sums, w) * inversesqrt(dot(w * w, shared));
+  vec2 apart = u_spacing * exp2(0.5 * flowtexLate) * vec2(1.0, FLOWTEX_SQRT_HALF);
+  return dot(sums, w) * inversesqrt(dot(w * w, flowtexShared(apart, near)));
 }
 
 // Rates of the motion at a fragment. The value of a grain comes back after one turn, so a turn
@@ -39,9 +38,10 @@ void flowtexMove(float slope, float speed)
   flowtexMotion.clock = fract(turns * u_clock.x) + turns * u_clock.y;
   flowtexMotion.turns = turns * slope / max(travel, FLOWTEX_LEAST_TRAVEL);
   // A rate keeps its phases, whether it is the slower one or the faster one.
-  vec2 phases = vec2(1.0, FLOWTEX_MANY_PHASES);
+  vec2 phases = vec2(1.0, FLOWTEX_MANY_PHASES) / (2.0 * FLOWTEX_MOST_GRAIN);
   flowtexMotion.phases = mod(rates.x, 2.0) < 0.5 ? phases : phases.yx;
-  flowtexMotion.late = rate - rates.x;
+  vec2 shares = vec2(1.0 - rate + rates.x, rate - rates.x);
+  flowtexMotion.shares = shares * (FLOWTEX_MOST_GRAIN * inversesqrt(dot(shares, shares)));
 }
 
 // Texture at a position with the footprint given by its derivatives.

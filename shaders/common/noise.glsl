@@ -36,46 +36,52 @@ struct FlowtexMotion
 {
   vec2 clock;  // the moment in turns
   vec2 turns;  // turns by length of path
-  vec2 phases; // which phases of a grain belong to the rates
-  float late;
+  vec2 phases; // turns by the values of grains that stand, which say where those in motion begin
+  vec2 shares; // of the two rates in a grain
 };
 
 FlowtexMotion flowtexMotion;
 
-// Values of four lattice points from their keys, uniform in -1 ... 1 at every moment. In motion
-// each is a mixture of two triangle waves with phases of their own.
-vec4 flowtexGrains(uvec4 h, vec2 turns)
+// Scatters the keys of an axis.
+uvec3 flowtexScatter(uvec3 key)
 {
-  h = (h ^ (h >> FLOWTEX_HASH_SHIFTS.x)) * FLOWTEX_HASH_FACTORS.x;
-  h = (h ^ (h >> FLOWTEX_HASH_SHIFTS.y)) * FLOWTEX_HASH_FACTORS.y;
-  vec4 phase = vec4(h >> FLOWTEX_PHASE_SHIFT) * (1.0 / FLOWTEX_PHASES);
-#ifndef FLOWTEX_MOVING
-  return phase * 2.0 - 1.0;
-#else
-  vec4 slow = abs(fract(phase * flowtexMotion.phases.x + turns.x) * 4.0 - 2.0) - 1.0;
-  vec4 fast = abs(fract(phase * flowtexMotion.phases.y + turns.y) * 4.0 - 2.0) - 1.0;
-  float late = flowtexMotion.late;
-  return mix(slow, fast, late) * inversesqrt(1.0 - 2.0 * late * (1.0 - late));
+  return (key ^ (key >> FLOWTEX_HASH_SHIFT)) * FLOWTEX_HASH_FACTORS.x;
+}
+
+// Values of four lattice points from their scattered keys, even over all whole numbers with a sign
+// at every moment. In motion each is a mixture of two triangle waves with phases of their own.
+vec4 flowtexGrains(uvec4 key, vec2 turns)
+{
+  vec4 grains = vec4(ivec4(key * FLOWTEX_HASH_FACTORS.y));
+#ifdef FLOWTEX_MOVING
+  vec4 slow = abs(fract(grains * flowtexMotion.phases.x + turns.x) * 4.0 - 2.0) - 1.0;
+  vec4 fast = abs(fract(grains * flowtexMotion.phases.y + turns.y) * 4.0 - 2.0) - 1.0;
+  grains = slow * flowtexMotion.shares.x + fast * flowtexMotion.shares.y;
 #endif
+  return grains;
 }
 
 // One octave at a displacement, with the variance of 1 everywhere between the lattice points.
+//
+// What can be is done by axis: it is shared by the points of a cell. In a plane nothing depends on
+// the third one.
 float flowtexOctave(FlowtexLattice lattice, vec3 displacement, vec2 turns)
 {
   vec3 q = lattice.here + displacement * lattice.inverse;
   vec3 base = floor(q);
   vec3 w = q - base;
   vec3 spread = 1.0 - 2.0 * w * (1.0 - w);
-  uvec3 k = lattice.key + uvec3(ivec3(base)) * FLOWTEX_AXIS_PRIMES;
-  uvec4 corners = uvec4(k.x + k.y + k.z);
-  corners.yw += FLOWTEX_AXIS_PRIMES.x;
-  corners.zw += FLOWTEX_AXIS_PRIMES.y;
+  uvec3 key = lattice.key + uvec3(ivec3(base)) * FLOWTEX_AXIS_PRIMES;
+  uvec3 low = flowtexScatter(key);
+  uvec3 high = flowtexScatter(key + FLOWTEX_AXIS_PRIMES);
+  uvec4 corners = uvec4(low.x, high.x, low.x, high.x) ^ uvec4(low.yy, high.yy);
+#ifdef FLOWTEX_PLANAR
   vec4 grains = flowtexGrains(corners, turns);
   float variance = spread.x * spread.y;
-#ifndef FLOWTEX_PLANAR
-  grains = mix(grains, flowtexGrains(corners + FLOWTEX_AXIS_PRIMES.z, turns), w.z);
-  variance *= spread.z;
+#else
+  vec4 grains = mix(flowtexGrains(corners ^ low.z, turns), flowtexGrains(corners ^ high.z, turns), w.z);
+  float variance = spread.x * spread.y * spread.z;
 #endif
   vec2 rows = mix(grains.xz, grains.yw, w.x);
-  return mix(rows.x, rows.y, w.y) * inversesqrt(variance * (1.0 / FLOWTEX_GRAIN_PRECISION));
+  return mix(rows.x, rows.y, w.y) * inversesqrt(variance * FLOWTEX_GRAIN_VARIANCE);
 }

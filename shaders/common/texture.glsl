@@ -9,17 +9,22 @@
 // Variance of a sum of samples over that of independent ones, for samples that lie a number of
 // grains apart: neighbours share a grain when they are close. ``near`` is the correlation of the
 // weights with those of the next sample; m samples on it is about near^(m * m). That of the noise
-// itself, over all directions, is a bell.
-float flowtexShared(float apart, float near)
+// itself, over all directions, is a bell. For two kinds of grains.
+vec2 flowtexShared(vec2 apart, float near)
 {
-  float total = 1.0;
-  for (int m = 1; m <= FLOWTEX_SHARED_TERMS; ++m)
+  vec2 total = vec2(1.0);
+  float decay = log(max(near, FLOWTEX_LEAST_SQUARE));
+  vec2 square = apart * apart;
+  float least = min(square.x, square.y);
+  int m = 1;
+  do
   {
-    float d = float(m * m) * apart * apart;
-    if (d > FLOWTEX_BELL_END)
-      break;
-    total += 2.0 * pow(near, float(m * m)) * exp(-d * (FLOWTEX_BELL + FLOWTEX_BELL_BEND * d));
+    vec2 d = float(m * m) * square;
+    vec2 terms = exp(float(m * m) * decay - d * (FLOWTEX_BELL + FLOWTEX_BELL_BEND * d));
+    total += 2.0 * terms * step(d, vec2(FLOWTEX_BELL_END));
+    ++m;
   }
+  while (m <= FLOWTEX_SHARED_TERMS && float(m * m) * least <= FLOWTEX_BELL_END);
   return total;
 }
 
@@ -63,58 +68,85 @@ void flowtexAdd(inout FlowtexSums sums, vec3 displacement, float length_, float 
   sums.neighbours += weight * before;
 }
 
-// Adds one side of the path, ``count`` points ``spacing`` apart in nominal length. ``before`` and
-// ``after`` are the slopes at lag zero and at the first lag, ``first`` the layer before the first slice.
+// Adds one side of the path, ``count`` points ``spacing`` apart in nominal length. ``after`` is the
+// slope at lag zero, ``layer`` that before the side's first slice.
 //
-// The loop over the segments between two lags is outside, so that no sample fetches anything.
-void flowtexSide(inout FlowtexSums sums, vec2 coordinate, float level, vec3 before, vec3 after,
-                 int first, float side, float spacing, float reach, float scale, int count,
-                 bool inCell)
+// The loop over the segments between two lags is outside, so that no sample fetches anything. Both
+// end with their conditions: without a graphics card the body of any other loop is run once more
+// for nothing.
+void flowtexSide(inout FlowtexSums sums, vec2 coordinate, float level, vec3 after, int layer,
+                 float side, float spacing, float scale, int count, bool inCell)
 {
-  float last = min(reach, u_lags[u_lagCount - 1]);
   float per_speed = scale / spacing;
-  float rate = per_speed * max(length(before), FLOWTEX_LEAST_SPEED); // samples in a unit of lag
+  float rate = per_speed * max(length(after), FLOWTEX_LEAST_SPEED); // samples in a unit of lag
   float lag = 1.0 / rate;
-  float from = 0.0;
-  float to = u_lags[0];
+  float was = 0.0;  // the lag of the sample before
+  float to = 0.0;
+  float last = 0.0; // lag at which the path ends
   vec3 kernel = flowtexKernel(side);
-  float angle = FLOWTEX_PI / float(count + 1);
-  vec2 turn = vec2(cos(angle), sin(angle));
-  vec2 turned = turn; // cosine and sine of pi * t, turned on from sample to sample
+  float slant = kernel.z / float(count + 1);
+  // The cosine goes on by its change, and this by a change that is in proportion to the cosine.
+  float half_ = sin(0.5 * FLOWTEX_PI / float(count + 1));
+  float turn = 4.0 * half_ * half_;
+  float change = -0.5 * turn * kernel.y;
+  float cosine = kernel.y + change;
+  float line = kernel.x + slant;
   float previous = kernel.x + kernel.y;
   flowtexLeaveFragment();
   int k = 1;
-  for (int segment = 1; k <= count; ++segment)
+  int slice = 0;
+  do
   {
-    bool final = segment >= u_lagCount;
+    float from = to;
+    vec3 before = after;
+    vec4 next = flowtexLayer(coordinate, layer + slice + 1, level);
+    if (slice == 0)
+      last = min(next.w, u_lags[u_lagCount - 1]);
+    after = next.xyz;
+    to = u_lags[slice];
+    ++slice;
+    bool final = slice == u_lagCount;
     vec3 bend = (after - before) / (to - from);
-    for (; k <= count && (final || lag <= to); ++k)
+    before -= bend * from;
+    do
     {
-      float alive = clamp((last - lag) * rate + 1.0, 0.0, 1.0);
-      vec3 slope = before + bend * (lag - from);
-      vec3 displacement = slope * (lag * side * scale);
-      if (inCell)
-        flowtexGoOn(side * spacing, displacement, alive);
-      if (alive <= 0.0)
-        return;
-      float weight = alive * dot(kernel, vec3(1.0, turned.x, float(k) / float(count + 1)));
-      flowtexAdd(sums, displacement, side * lag * scale, weight, previous);
-      previous = weight;
-      turned = vec2(turned.x * turn.x - turned.y * turn.y, turned.y * turn.x + turned.x * turn.y);
+      if (final || lag <= to)
+      {
+        float alive = clamp((last - lag) * rate + 1.0, 0.0, 1.0);
+        vec3 bent = bend * lag;
+        vec3 slope = before + bent;
+        vec3 displacement = slope * (lag * side * scale);
+        if (inCell)
+          flowtexGoOn(side * spacing, displacement, alive);
+        float weight = alive * (line + cosine);
+        flowtexAdd(sums, displacement, side * lag * scale, weight, previous);
+        previous = weight;
+        line += slant;
+        change -= turn * cosine;
+        cosine += change;
 #ifndef FLOWTEX_PAPER
-      // Points stay evenly spaced along the path where the particle is faster or slower there
-      // than it is here: equation 3 at every point of the path, with the derivative of lag * slope.
-      rate = per_speed * max(length(slope + bend * lag), FLOWTEX_LEAST_SPEED);
+        // Points stay evenly spaced along the path where the particle is faster or slower there
+        // than it is here: equation 3 at every point of the path, with the derivative of
+        // lag * slope.
+        rate = per_speed * max(length(slope + bent), FLOWTEX_LEAST_SPEED);
 #endif
-      lag += 1.0 / rate;
+        was = lag;
+        lag += 1.0 / rate;
+        ++k;
+      }
     }
-    if (final)
-      return;
-    before = after;
-    after = flowtexLayer(coordinate, first + segment + 1, level).xyz;
-    from = to;
-    to = u_lags[segment];
+    while (k <= count && (was < last || inCell) && (final || lag <= to));
   }
+  while (k <= count && (was < last || inCell));
+}
+
+// Adds both sides, or the only one.
+void flowtexSides(inout FlowtexSums sums, vec2 coordinate, float level, vec3 slope, float spacing,
+                  float scale, int count, bool inCell)
+{
+  flowtexSide(sums, coordinate, level, slope, 0, -1.0, spacing, scale, count, inCell);
+  if (u_sides == 2)
+    flowtexSide(sums, coordinate, level, slope, u_lagCount, 1.0, spacing, scale, count, inCell);
 }
 
 // Texture of a fragment, of zero mean and about unit variance. ``spacing`` is that of the points
@@ -122,7 +154,6 @@ void flowtexSide(inout FlowtexSums sums, vec2 coordinate, float level, vec3 befo
 float flowtexTexture(vec2 coordinate, float sliceLevel, float spacing)
 {
   vec4 base = flowtexLayer(coordinate, 0, sliceLevel);
-  vec4 back = flowtexLayer(coordinate, 1, sliceLevel);
   FlowtexSums sums = FlowtexSums(vec2(0.0), 0.0, 0.0);
   float speed = length(base.xyz);
 #ifdef FLOWTEX_MOVING
@@ -130,7 +161,8 @@ float flowtexTexture(vec2 coordinate, float sliceLevel, float spacing)
 #endif
   vec3 kernel = flowtexKernel(-1.0);
   flowtexAdd(sums, vec3(0.0), 0.0, max(kernel.x + kernel.y, FLOWTEX_LEAST_WEIGHT), 0.0);
-  if (speed > FLOWTEX_LEAST_SPEED)
+  int count = u_sides == 2 ? u_samples / 2 : u_samples - 1;
+  if (speed > FLOWTEX_LEAST_SPEED && count > 0)
   {
 #ifdef FLOWTEX_PAPER
     float scale = 1.0;
@@ -138,20 +170,10 @@ float flowtexTexture(vec2 coordinate, float sliceLevel, float spacing)
 #else
     float scale = base.w * u_unit;
 #endif
-    int count = u_sides == 2 ? u_samples / 2 : u_samples - 1;
-    int inCell = flowtexEnterCell(coordinate, float(count) * spacing) ? count : 0;
-    flowtexSide(sums, coordinate, sliceLevel, base.xyz, back.xyz, 0, -1.0, spacing, back.w, scale,
-                count - inCell, false);
-    flowtexSide(sums, coordinate, sliceLevel, base.xyz, back.xyz, 0, -1.0, spacing, back.w, scale,
-                inCell, true);
-    if (u_sides == 2)
-    {
-      vec4 ahead = flowtexLayer(coordinate, u_lagCount + 1, sliceLevel);
-      flowtexSide(sums, coordinate, sliceLevel, base.xyz, ahead.xyz, u_lagCount, 1.0, spacing,
-                  ahead.w, scale, count - inCell, false);
-      flowtexSide(sums, coordinate, sliceLevel, base.xyz, ahead.xyz, u_lagCount, 1.0, spacing,
-                  ahead.w, scale, inCell, true);
-    }
+    if (flowtexEnterCell(coordinate, float(count) * spacing))
+      flowtexSides(sums, coordinate, sliceLevel, base.xyz, spacing, scale, count, true);
+    else
+      flowtexSides(sums, coordinate, sliceLevel, base.xyz, spacing, scale, count, false);
   }
   return flowtexBlend(sums.noise * inversesqrt(sums.squares), sums.neighbours / sums.squares);
 }

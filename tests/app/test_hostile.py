@@ -38,6 +38,7 @@ pytestmark = pytest.mark.usefixtures("opengl")
 
 #: What a page may send in the place of anything.
 JUNK: list[Any] = [
+    *(10**400, -(10**400)),
     *(None, True, -1, 0, 10**18, 2.5, -1e308, 1e308, math.nan, math.inf, -math.inf),
     *("", "x" * 50_000, "1", b"1", b"\xff" * 9, [], {}, [1, 2], [math.nan, {}], [[], []]),
     *({"x": "y"}, {"content": 3}, [{"name": [], "content": []}]),

@@ -12,6 +12,7 @@ from PIL import Image
 
 from flowtex import diagnostics, examples
 from flowtex.cli import commands, main
+from flowtex.cli.console import in_flags
 from flowtex.settings import TABLE
 
 Run = Callable[..., tuple[int, str, str]]
@@ -316,3 +317,60 @@ def test_export_refuses_what_it_cannot_do(
     assert code == 2
     assert message in err
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("said", "told"),
+    [
+        (
+            'choose a plane, as in plane="k=2"; there are',
+            "choose a plane, as in --plane k=2; there are",
+        ),
+        ("a.vts: 2 things:\n  1. plane is 'q'", "a.vts: 2 things:\n  1. --plane is 'q'"),
+        ("sign_free is 3", "--sign-free is 3"),
+        ("mesh[0], or block=0 for a file", "mesh[0], or --block 0 for a file"),
+        ("--zoom is 0; expected", "--zoom is 0; expected"),
+        ("as in --beside lod=false", "as in --beside lod=false"),
+    ],
+)
+def test_messages_are_in_the_words_of_the_shell(said: str, told: str) -> None:
+    assert in_flags(said) == told
+
+
+def test_the_plane_is_asked_for_as_a_flag(run: Run, block: Path, tmp_path: Path) -> None:
+    code, _, err = run("render", block, "-o", tmp_path / "a.png", "--vectors", "wind")
+    assert code == 2
+    assert "as in --plane k=2" in err
+    assert 'plane="' not in err
+
+
+def test_range_and_background_are_flags(run: Run, gyre: Path, tmp_path: Path) -> None:
+    words = ["render", gyre, "-o", tmp_path / "a.png", "--size", "80x60"]
+    assert run(*words, "--background", "black", "--clim", "0,0.1")[0] == 0
+    with Image.open(tmp_path / "a.png") as picture:
+        assert picture.getpixel((0, 0)) == (0, 0, 0)
+    assert "--clim is '1'; expected two numbers" in run(*words, "--clim", "1")[2]
+    assert "expected a colour" in run(*words, "--background", "blurple")[2]
+
+
+@pytest.mark.filterwarnings("default:Nothing of the surface")
+def test_a_picture_of_nothing_is_warned_of(run: Run, gyre: Path, tmp_path: Path) -> None:
+    words = ["-o", tmp_path / "a.png", "--size", "80x60", "--zoom", "9", "--focus", "50,50"]
+    code, _, err = run("render", gyre, *words)
+    assert code == 0
+    assert err.startswith("flowtex: Nothing of the surface is in the picture")
+
+
+def test_lines_of_a_series(run: Run, tmp_path: Path) -> None:
+    for n, mesh in enumerate(examples.double_gyre_series()[:9:4]):
+        mesh.save(tmp_path / f"gyre{n}.vts")
+    steps = [f'<DataSet timestep="{n}" part="0" file="gyre{n}.vts"/>' for n in range(3)]
+    series = tmp_path / "gyre.pvd"
+    collection = f"<Collection>{''.join(steps)}</Collection>"
+    series.write_text(f'<VTKFile type="Collection" version="0.1">{collection}</VTKFile>')
+    assert "lines streamlines (" in run("info", series)[1]
+    words = [series, "--size", "80x60", "--lines", "pathlines", "--time"]
+    # A moment between the times of the file.
+    assert run("render", *words, 1.5, "-o", tmp_path / "a.png")[0] == 0
+    assert "--time is 9; expected 0 to 2" in run("render", *words, 9, "-o", tmp_path / "a.png")[2]
+    assert "need all times" in run("movie", *words, 1, "-o", tmp_path / "a.gif")[2]

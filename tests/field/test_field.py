@@ -75,6 +75,9 @@ def test_dates_are_seconds_since_the_first(unit: str) -> None:
         assert field.time_unit == "s"
     with pytest.raises(FieldError, match=r"^time_unit is 'd' and the times are dates"):
         FlowField.from_arrays(points, velocity, times=dates, time_unit="d")
+    months = np.array(["2002-01", "2002-02"], dtype="datetime64[M]")
+    field = FlowField.from_arrays(points, velocity, times=months)
+    assert field.times.tolist() == [0.0, 31 * 86400.0]
     dates[1] = np.datetime64("NaT")
     with pytest.raises(FieldError, match=r"times\[1\] is nan; expected a finite number"):
         FlowField.from_arrays(points, velocity, times=dates)
@@ -413,8 +416,8 @@ def test_an_axis_that_does_not_exist() -> None:
 
 def test_complex_numbers() -> None:
     with says(
-        "an array of complex128 was given where real numbers were expected; convert it with "
-        "astype(float), or take its real part"
+        "velocity holds complex128; expected real numbers: convert it with astype(float), or take "
+        "its real part"
     ):
         FlowField.from_arrays(flat(), ones(flat()) * 1j)
 
@@ -538,3 +541,32 @@ def test_positions_that_were_filled_in_stay_marked() -> None:
         size = part.points[0, 1, 0]
         u = part.index_velocity.components[:, part.valid]
         np.testing.assert_allclose(u, np.full_like(u, 1 / size))
+
+
+def test_x_and_y_of_a_rectilinear_grid_make_its_nodes() -> None:
+    x, y = np.array([0.0, 1.0, 3.0, 4.0]), np.array([0.0, 2.0, 5.0])
+    whole = np.stack(np.meshgrid(x, y), axis=-1)
+    velocity = np.ones((3, 4, 2))
+    expected = FlowField.from_arrays(whole, velocity).points
+    for points in ((x, y), [x, y], [list(x), list(y)], tuple(np.meshgrid(x, y))):
+        assert np.array_equal(FlowField.from_arrays(points, velocity).points, expected)
+    lifted = (*np.meshgrid(x, y), np.full((3, 4), 7.0))
+    assert (FlowField.from_arrays(lifted, velocity).points[..., 2] == 7).all()
+
+
+def test_hidden_coordinates_blank_a_node() -> None:
+    x, y = np.meshgrid(np.arange(5.0), np.arange(4.0))
+    hidden = np.zeros((4, 5), dtype=bool)
+    hidden[2, 3] = True
+    field = FlowField.from_arrays((np.ma.array(x, mask=hidden), y), np.ones((4, 5, 2)))
+    assert np.array_equal(~field.valid, hidden)
+
+
+def test_rows_of_positions_are_no_coordinates() -> None:
+    points = flat(2, 3)
+    assert np.array_equal(FlowField.from_arrays(points.tolist(), ones(points)).points, points)
+
+
+def test_coordinates_of_unlike_shapes_are_refused() -> None:
+    with says("points are arrays of shapes (4, 5), (5, 4); expected one shape (J, I)"):
+        FlowField.from_arrays((np.ones((4, 5)), np.ones((5, 4))), np.ones((4, 5, 2)))

@@ -27,8 +27,9 @@ def agree(theirs: Bytes, name: str, more: float = 1.0) -> None:
     assert (ours != np.rint(255 * np.array(GROUND))).any(axis=-1).mean() > 0.1
     assert root < more * ROOT
     assert share < more * SHARE
-    # Where an edge of the surface passes through the middle of a pixel, either may cover it.
-    assert only_one <= 3
+    # Where an edge of the surface passes through the middle of a pixel, either may cover it;
+    # a coarser mesh moves the outline by up to a quarter of a pixel.
+    assert only_one <= 8
 
 
 def drawn_by_vtk(plotter: Any, view: View) -> Bytes:

@@ -21,12 +21,14 @@ from flowtex._util.array_types import Indices
 from flowtex._util.colours import colour_table
 from flowtex.camera import CAMERA_LIMITS, Camera
 from flowtex.rendering.cpu.shade import mean_colours
-from flowtex.rendering.mesh_levels import MeshLevels, mesh_limits
+from flowtex.rendering.mesh_levels import MeshLevels, Region, join, mesh_limits
+from flowtex.rendering.tile_choice import TileView, choose_tiles, cover, finer_part, wanted_tiles
 from flowtex.rendering.uniforms import ViewState, uniforms
 from flowtex.rendering.webgl import ClientData
 from flowtex.scene import Scene
 from flowtex.settings import Settings
 from flowtex.textures import TextureSet, as_picture
+from flowtex.tiles import TILE_BLOCKS, Pyramid, TileKey
 from flowtex.trace import SliceStore
 
 FOLDER = Path(__file__).resolve().parents[2] / "client" / "tests"
@@ -50,6 +52,7 @@ VIEWS: dict[str, tuple[Any, Any, float, dict[str, Any]]] = {
     "zoom 1e5": (gyre, straight(1e5), 1.0, {}),
     "curved": (torus, ASIDE, 1.0, {}),
     "between two steps": (swinging, straight(1, (0, 0)), 1.0, {}),
+    "streamlines": (swinging, straight(1, (0, 0)), 1.0, {"lines": "streamlines"}),
     "image": (gyre, WHOLE, 1.0, {"noise": "image", "tiles": 3}),
     "streaming": (gyre, WHOLE, 1.0, {"motion": "uniform", "period": 3.0}),
     "without a sign": (lines, WHOLE, 1.0, {"kernel": "ramp", "two_sided": False}),
@@ -65,7 +68,8 @@ def uniforms_of(name: str) -> dict[str, Any]:
     make, camera, density, options = VIEWS[name]
     settings = Settings(**{"samples": 11, **options})
     image = as_picture(IMAGE) if settings.noise == "image" else None
-    textures = TextureSet.build(SliceStore(make()), settings, image)
+    store = SliceStore(make(), lines=options.get("lines", "pathlines"))
+    textures = TextureSet.build(store, settings, image)
     view = ViewState(
         focus=np.asarray(camera.focal_point, dtype=float),
         anchor=np.array([0.1, 0.2, 0.0]),
@@ -240,3 +244,78 @@ def bumpy(seed: int) -> dict[str, Any]:
 
 def test_mesh_levels_for_the_client() -> None:
     check("mesh.json", bumpy(1))
+
+
+def name_of(key: TileKey | None) -> str:
+    """Name of a tile in the client."""
+    return "" if key is None else "/".join(map(str, key))
+
+
+#: Where the eye is, half the height of what is seen, and the sides of it as (axis, sign, limit).
+LOOKS: list[tuple[Any, float, list[tuple[int, int, float]]]] = [
+    (None, 0.6, []),
+    (None, 0.05, [(0, 1, 0.4), (0, -1, 0.55), (1, 1, 0.3), (1, -1, 0.4)]),
+    (np.array([0.7, -0.2, 0.15]), 0.27, [(1, 1, 0.05)]),
+]
+
+
+def tiled(seed: int) -> dict[str, Any]:
+    """Tiles of a surface that some views ask for, that are shown in part, and how they join."""
+    rng = np.random.default_rng(seed)
+    y, x = np.mgrid[0:1:260j, 0:1.6:401j]
+    points = np.stack([x, y, 0.1 * np.sin(4 * x)], axis=-1)
+    field = FlowField.from_arrays(points, np.ones((260, 401, 3)), periodic="i")
+    pyramid = Pyramid(field)
+    data = ClientData(Scene(field).textures, pyramid=pyramid)
+    views = []
+    for eye, half, sides in LOOKS:
+        planes = np.array([[s * (k == a) for k in range(3)] + [-s * at] for a, s, at in sides])
+        view = TileView(eye, half, 500.0, planes.reshape(-1, 4), 2.0)
+        chosen = choose_tiles(pyramid, view)
+        ready = {key for key in chosen if key is None or rng.random() < 0.7}
+        shown = cover(chosen, ready.__contains__)
+        regions = []
+        for key, finer in shown.items():
+            level = pyramid.depth if key is None else key.level
+            places = pyramid.places(level)[pyramid.blocks_of(key)]
+            levels = rng.integers(0, 7, places.shape[:2])
+            for child in finer:
+                levels[finer_part(child, key)] = -1
+            row, column = ((TILE_BLOCKS * at) << level for at in (key or (0, 0, 0))[1:])
+            regions.append(Region(level, row, column, levels))
+        given = [plain(region.levels.ravel()) for region in regions]
+        joins = join(regions, pyramid.blocks, field.periodic)
+        views.append(
+            {
+                "view": {"eye": plain(eye), "halfHeight": half, "pixels": 500.0}
+                | {"planes": plain(view.planes), "cellPixels": 2.0},
+                "chosen": {
+                    name_of(key): [c.needed, [name_of(child) for child in c.finer]]
+                    for key, c in chosen.items()
+                },
+                "wanted": [name_of(key) for key in wanted_tiles(chosen)],
+                "ready": sorted(map(name_of, ready)),
+                "shown": {name_of(key): list(map(name_of, some)) for key, some in shown.items()},
+                "regions": [
+                    {"step": r.step, "row": int(r.row), "column": int(r.column)}
+                    | {"shape": list(r.levels.shape), "levels": levels}
+                    | {"joined": plain(r.levels.ravel())}
+                    | {"borders": plain(np.moveaxis(borders, 0, -1).ravel())}
+                    for r, levels, borders in zip(regions, given, joins, strict=True)
+                ],
+            }
+        )
+    return {
+        "pyramid": data.constants()["pyramid"],
+        "places": plain(data.surface()["places"].astype(float).ravel()),
+        "periodic": [False, True],
+        "limits": mesh_limits(),
+        "views": views,
+    }
+
+
+def test_tiles_for_the_client(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 5000)
+    expected = tiled(1)
+    assert all(len(view["shown"]) > 1 for view in expected["views"])
+    check("tiles.json", expected)

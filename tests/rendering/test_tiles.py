@@ -113,6 +113,19 @@ def test_tiles_in_the_background_come_after_a_coarse_picture(
     plotter.close()
 
 
+def test_a_tile_that_fails_is_told_and_shown_coarse(
+    _tiled: None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken(*arguments: Any) -> Any:
+        msg = "the disk is gone"
+        raise OSError(msg)
+
+    monkeypatch.setattr(Pyramid, "textures", broken)
+    with pytest.warns(UserWarning, match="shown coarse.*the disk is gone"):
+        shown = flowtex.render(flat(), size=SIZE, scalars=False)
+    assert np.ptp(shown) > 100
+
+
 def test_another_noise_is_drawn_whole_and_back_in_tiles(_tiled: None) -> None:
     import pyvista as pv
 

@@ -35,7 +35,9 @@ def waves(rows: int = 290, columns: int = 330, **options: Any) -> FlowField:
 
 def whole_layers(field: FlowField, like: TextureSet, step: int = 0) -> Floats:
     """Layers of all nodes, at the lags of a tile, (layers, J, I, 4)."""
-    slices = trace(field, lags=like.store.lags, compose=field.steady, progress=False)
+    # By time all nodes have the same unit of lag; by length each has its own.
+    unit = like.store.unit.flat[0] if like.store.parameter == "time" else None
+    slices = trace(field, lags=like.store.lags, unit=unit, compose=field.steady, progress=False)
     textures = TextureSet(
         SurfaceGeometry.of(field),
         SliceStore(field, slices=slices),
@@ -187,3 +189,22 @@ def test_places_of_blocks_are_known_from_the_root(level: int) -> None:
     apart = np.linalg.norm(guess[..., :3] - exact[..., :3], axis=-1)
     assert (apart + exact[..., 3] < guess[..., 3] + 3 * exact[..., 4] * 8).all()
     np.testing.assert_allclose(guess[..., 4], exact[..., 4], rtol=0.1)
+
+
+@pytest.mark.parametrize("speed", [1e-40, 1e-6, 1e40])
+def test_a_tile_does_not_depend_on_the_unit_of_time(speed: float) -> None:
+    x, y = grid(290, 900)
+    fast = 1 + 20 * np.exp(-(((y - 1) / 0.1) ** 2))
+    points, velocity = np.stack([x, y], axis=-1), np.stack([fast, 0 * x], axis=-1)
+    cut, layers = [], []
+    for s in (1.0, speed):
+        pyramid = Pyramid(FlowField.from_arrays(points, s * velocity, periodic=""), "time")
+        for spare in (1, 8):
+            tile = pyramid.textures(TileKey(0, 0, 1), spare)
+            assert tile is not None
+            cut.append(is_cut(tile, 0))
+            product = tile.store.lags[:, None, None] * tile.store.unit * tile.pace
+            assert tile.longest <= product[-1].max() < 8 * tile.longest
+        layers.append(nodal(tile))
+    assert cut == [True, False] * 2
+    np.testing.assert_allclose(layers[1][..., :3], layers[0][..., :3], rtol=1e-2, atol=1e-2)

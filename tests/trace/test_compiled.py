@@ -113,6 +113,49 @@ def test_a_path_ends_at_the_border(kernels: Any) -> None:
         np.testing.assert_allclose(slices.displacement[0, 1, ..., 0], -30.0, rtol=1e-6)
 
 
+def test_paths_that_go_round_and_round_are_ended(kernels: Any) -> None:
+    """After as many steps, compiled as by NumPy, though not at the same last step of all."""
+    p = plane(4, 4) - 1.5
+    field = FlowField.from_arrays(p, p[..., ::-1] * [-1, 1])
+    one, two = both(kernels, field, lags=[1.0, 1e6], parameter="time")
+    inside = np.hypot(p[..., 0], p[..., 1]) < 1
+    assert (one.reach[0][inside] < 1e4).all()
+    np.testing.assert_allclose(two.reach[0], one.reach[0], rtol=1e-3)
+
+
+@pytest.mark.parametrize("step", [1e-6, 1.0])
+def test_before_the_first_time_step_steps_are_long(kernels: Any, step: float) -> None:
+    """A path that had to keep to the time steps would be ended after a thousand of them."""
+    p = plane(9, 9) - 4
+    steps = np.stack([p[..., ::-1] * [-1, 1]] * 3)
+    field = FlowField.from_arrays(p, steps, times=step * np.arange(3.0))
+    inside = np.hypot(p[..., 0], p[..., 1]) < 3.5
+    turned = np.stack([p[..., 1], -p[..., 0]], axis=-1)  # by a quarter, backward
+    for slices in both(kernels, field, lags=[np.pi / 2], steps=[2]):
+        assert np.isinf(slices.reach[0][inside]).all()
+        error = np.abs(slices.displacement[0, 0] - (turned - p))[inside]
+        assert error.max() < 0.02
+
+
+def test_a_path_goes_no_further_than_single_precision(kernels: Any) -> None:
+    p = plane(4, 4) - 1.5
+    field = FlowField.from_arrays(p, p[..., ::-1] * [-1, 1] + 1e40)
+    one, two = both(kernels, field, lags=[1.0, 2.0], parameter="time")
+    assert np.isfinite(one.displacement).all()
+    np.testing.assert_allclose(two.displacement, one.displacement, rtol=1e-3)
+
+
+@pytest.mark.parametrize("spread", [1.0, 1e100])
+def test_no_rate_leads_out_of_the_nodes(kernels: Any, spread: float) -> None:
+    """On a torus with rates of all sizes every position is in some cell."""
+    rng = np.random.default_rng(1)
+    p = plane(8, 8) * 1e-30
+    v = rng.normal(size=(3, 8, 8, 2)) * spread ** rng.uniform(-1, 1, (3, 8, 8, 1))
+    field = FlowField.from_arrays(p, v, times=[0.0, 1e-60, 1.0], periodic="ij")
+    for slices in both(kernels, field, lags=[1.0, 1e30], steps=[1, 2]):
+        assert np.isfinite(slices.displacement).all()
+
+
 @pytest.mark.parametrize("name", ["gyre by length", "cylinder", "hole", "O-grid"])
 def test_composed_paths_and_their_places_are_those_of_numpy(kernels: Any, name: str) -> None:
     field = FIELDS[name][0]()

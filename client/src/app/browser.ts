@@ -6,12 +6,15 @@ import type * as Client from "../client.ts";
 import { throttled } from "../lifetime.ts";
 import type { Options } from "../options.ts";
 import { placeIn } from "../pointers.ts";
-import type { Header, Settings } from "../protocol.ts";
+import type { Header, NamedPart, Settings } from "../protocol.ts";
+import { TileQueue } from "../tilequeue.ts";
 import type { Viewer } from "../viewer.ts";
 import { vue, type Emit } from "./vue.ts";
 
 /** Milliseconds between two messages to the server. */
 const MESSAGE_MS = 100;
+/** Tiles that the server makes at a time. */
+const MOST_TILES = 3;
 
 /** Where the client and the parts of a scene are found, and the scene's header. */
 interface Source {
@@ -19,6 +22,8 @@ interface Source {
   header: Header;
   surface: string;
   steps: string[];
+  /** Address of the tiles, before their names. */
+  tiles: string;
 }
 
 interface Props {
@@ -44,6 +49,12 @@ class BrowserView {
   private lastTime = NaN;
   private isDisposed = false;
   private started = 0;
+  private readonly tiles = new TileQueue(
+    (key, steps, signal) =>
+      this.parts(`${this.props.source.tiles}${[...key, ...steps].join(".")}`, signal),
+    (part) => this.viewer?.setPart(part),
+    MOST_TILES,
+  );
   private readonly watcher = new MutationObserver(() => this.look());
 
   constructor(props: Props, emit: Emit) {
@@ -76,23 +87,28 @@ class BrowserView {
       onPoint: (point) => emit("point", [...point.index]),
       onSetting: (name, value) => emit("setting", [name, value]),
       onNeed: (step) => void this.load(this.props.source.steps[step]),
+      onTiles: (keys, steps) => this.tiles.request(keys, steps),
     };
   }
 
   async show(): Promise<void> {
     const { source, playing } = this.props;
     this.started = performance.now();
+    this.tiles.request([], []); // what is on its way is of the scene before
     this.viewer?.setHeader(source.header);
     await this.load(source.surface);
     if (playing) this.viewer?.play();
   }
 
   private async load(address: string): Promise<void> {
-    const answer = await fetch(address);
+    const parts = await this.parts(address);
+    if (!this.isDisposed) for (const part of parts) this.viewer?.setPart(part);
+  }
+
+  private async parts(address: string, signal?: AbortSignal): Promise<NamedPart[]> {
+    const answer = await fetch(address, { signal });
     if (!answer.ok) throw new Error(`${address}: ${answer.status}`);
-    const file = await answer.arrayBuffer();
-    if (this.isDisposed) return;
-    for (const part of this.client?.partsOfFile(file) ?? []) this.viewer?.setPart(part);
+    return this.client?.partsOfFile(await answer.arrayBuffer()) ?? [];
   }
 
   /** Tell how long the full picture took. */

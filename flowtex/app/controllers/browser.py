@@ -12,19 +12,23 @@ from typing import Any
 
 from flowtex._util.colours import rgb
 from flowtex.app.controllers.context import Context, Controller
-from flowtex.app.server.files import Content
+from flowtex.app.server.files import Content, Give
 from flowtex.app.server.validation import number
 from flowtex.camera import Camera
 from flowtex.rendering.webgl import ClientData
 from flowtex.rendering.webgl.protocol import parts_file
 from flowtex.settings import TABLE
+from flowtex.tiles import TileKey, TileLoader
 from flowtex.web.assets import asset
+from flowtex.web.tiles import packed_tile, tile_loader
 from flowtex.web.view import colours_of
 
 __all__ = ["RENDERERS", "BrowserRendering"]
 
 #: Where the picture is drawn.
 RENDERERS = ("server", "browser")
+#: Seconds between looks at whether a tile is there that a page waits for.
+TILE_WAIT_S = 0.05
 
 
 class BrowserRendering(Controller):
@@ -33,7 +37,9 @@ class BrowserRendering(Controller):
     def __init__(self, context: Context) -> None:
         super().__init__(context)
         self._scene: ClientData | None = None
-        self._generation = 0
+        self._loader: TileLoader | None = None
+        #: Numbers of the scene, and of the files in which it is handed over.
+        self._generation = self._published = 0
         self._routes = context.routes
         self._appearance: tuple[Any, ...] = ()
         self._camera: Camera | None = None
@@ -129,27 +135,38 @@ class BrowserRendering(Controller):
         )
 
     def _begin(self) -> None:
-        """Hand a scene over, in place of an earlier one."""
+        """Hand a scene over in place of an earlier one, or that one in other colours."""
         self._withdraw()
         self._appearance = self._present_appearance()
-        self._scene = scene = self._data()
-        self._generation += 1
+        old, scene = self._scene, self._data()
+        if old is not None and old.textures is scene.textures:
+            scene = old.recoloured(scene.colours)
+        else:
+            self._generation += 1
+            self._close_loader()
+            self._loader = None if scene.pyramid is None else tile_loader(scene, scene.pyramid)
+        self._scene = scene
         self._camera = self.viewport.camera
         self.stream.paused = True
         header = scene.header(
             self.settings, camera=self._camera.to_dict(), time=self.viewport.handle.time
         )
+        self._published += 1
         surface = self._publish("surface", lambda: parts_file(scene.surface()))
         steps = [
             self._publish(f"step-{step}", lambda step=step: parts_file(scene.step(step)))
             for step in range(scene.steps)
         ]
+        tiles = self._routes.give_each(
+            f"tile-{self._published}", lambda name: self._tile(scene, name)
+        )
         self.state.send(
             client_source={
                 "client": self._client,
                 "header": {**header, "generation": self._generation},
                 "surface": surface,
                 "steps": steps,
+                "tiles": tiles,
             },
             client_settings=dict(self.settings),
             client_camera=self._camera.to_dict(),
@@ -160,6 +177,7 @@ class BrowserRendering(Controller):
 
     def _end(self) -> None:
         self._withdraw()
+        self._close_loader()
         self._scene = None
         self.stream.paused = False
         self.state.set(client_source=None)
@@ -171,20 +189,50 @@ class BrowserRendering(Controller):
             body = await asyncio.get_running_loop().run_in_executor(None, make)
             return body, "application/octet-stream", None
 
-        return self._routes.give(f"{name}-{self._generation}", content)
+        return self._routes.give(f"{name}-{self._published}", content)
+
+    def _tile(self, scene: ClientData, name: str) -> Give:
+        """Return how the tile of a name, its key and time steps, becomes a file."""
+        level, row, column, *steps = (int(number) for number in name.split("."))
+        key, loader = TileKey(level, row, column), self._loader
+        sources = [scene.source(step) for step in steps]
+        if loader is None or not all(0 <= step < scene.steps for step in steps):
+            raise LookupError(name)
+
+        async def content() -> Content:
+            while (tile := loader.get(key, sources)) is None:
+                if key in loader.errors:
+                    raise loader.errors[key]
+                if loader is not self._loader:
+                    return parts_file({}), "application/octet-stream", None
+                # Asked for again, as tiles are given up that nobody asks for.
+                loader.request([key], sources)
+                await asyncio.sleep(TILE_WAIT_S)
+            run = asyncio.get_running_loop().run_in_executor
+            body = await run(None, lambda: parts_file(packed_tile(scene, tile, steps)))
+            return body, "application/octet-stream", None
+
+        return content
+
+    def _close_loader(self) -> None:
+        if self._loader is not None:
+            self._loader.close()
+        self._loader = None
 
     def _withdraw(self) -> None:
         if self._scene is not None:
-            self._routes.withdraw(f"surface-{self._generation}")
-            for step in range(self._scene.steps):
-                self._routes.withdraw(f"step-{step}-{self._generation}")
+            names = ("tile", "surface", *(f"step-{step}" for step in range(self._scene.steps)))
+            for name in names:
+                self._routes.withdraw(f"{name}-{self._published}")
 
     def _data(self) -> ClientData:
         scene = self.area.scene
         textures, background = scene.textures, rgb(self.viewport.background)
-        return ClientData(textures, colours_of(scene, textures.geometry.field, background))
+        colours = colours_of(scene, textures.geometry.field, background)
+        return ClientData(textures, colours, pyramid=scene.pyramid)
 
     def close(self) -> None:
         """End what goes on."""
         self._withdraw()
+        self._close_loader()
         self._scene = None

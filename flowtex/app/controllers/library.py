@@ -210,7 +210,7 @@ class Library:
         """
         flow = self._flows.peek((name, choice))
         if flow is None or flow.field is not field:
-            store = shared_store(field, settings.parameter)
+            store = shared_store(field, settings.parameter, settings.lines)
             store.at(len(field.times) - 1)
             flow = TracedFlow(field, store)
             self._flows.put((name, choice), flow)

@@ -46,6 +46,7 @@ class Routes:
     def __init__(self) -> None:
         self.token = new_secret()
         self._content: dict[str, Give] = {}
+        self._families: dict[str, Callable[[str], Give]] = {}
 
     @classmethod
     def of(cls, server: Any) -> Routes:
@@ -82,17 +83,39 @@ class Routes:
         self._content[name] = content
         return f"flowtex/{self.token}/{quote(name)}"
 
+    def give_each(self, stem: str, content: Callable[[str], Give]) -> str:
+        """Hand out files of many names; return the address before what tells them apart.
+
+        ``content`` is called with that part of a name, and raises a ``LookupError`` or a
+        ``ValueError`` where there is no such file. The stem is as the name of :meth:`give`, without
+        a full stop.
+        """
+        self._families[stem] = content
+        return f"flowtex/{self.token}/{quote(stem)}."
+
     def withdraw(self, name: str) -> None:
-        """Hand a file out no more."""
+        """Hand a file, or those of a stem, out no more."""
         self._content.pop(name, None)
+        self._families.pop(name, None)
 
     def close(self) -> None:
         """Hand nothing out any more."""
         self._content.clear()
+        self._families.clear()
+
+    def _find(self, name: str) -> Give | None:
+        """Return what is handed out under a name."""
+        stem, _, rest = name.partition(".")
+        if name in self._content or stem not in self._families:
+            return self._content.get(name)
+        try:
+            return self._families[stem](rest)
+        except (LookupError, ValueError):
+            return None
 
     async def answer(self, name: str) -> web.StreamResponse:
         """Return what is asked for; ``HTTPNotFound`` where there is nothing of that name."""
-        give = self._content.get(name)
+        give = self._find(name)
         if give is None:
             raise web.HTTPNotFound
         content = give()

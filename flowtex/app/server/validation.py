@@ -10,6 +10,7 @@ import io
 import math
 import warnings
 from collections.abc import Container, Mapping
+from contextlib import suppress
 from typing import Any
 
 from flowtex._util.array_types import AnyArray
@@ -32,7 +33,10 @@ def number(value: Any, low: float = -math.inf, high: float = math.inf) -> float 
     """Return a finite number within limits; ``None`` for anything else, a boolean too."""
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         return None
-    return float(value) if math.isfinite(value) and low <= value <= high else None
+    with suppress(OverflowError):  # a whole number may have any size
+        if math.isfinite(value) and low <= value <= high:
+            return float(value)
+    return None
 
 
 def clipped(value: Any, default: float, low: float, high: float) -> float:

@@ -47,11 +47,6 @@ class Pane:
         """Width and height of a whole picture, in pixels."""
         return self._viewport.pane_size
 
-    @property
-    def mesh(self) -> Any:
-        """The surface, as PyVista's mesh."""
-        return self._mapper.dataset
-
     def plane_view(self) -> Floats | None:
         """Affine map from the surface's plane to the view, (3, 3); ``None`` when it has none."""
         return self._viewport.plane_view()
@@ -391,10 +386,12 @@ class Viewport:
         surface = self.handle.scene.whole.surface
         if surface.frame is None:
             reach = self.camera.distance + 2 * surface.extent
-            points, _ = self.panes[0].mesh.ray_trace(
-                start, start + direction * reach, first_point=True
-            )
-            return np.asarray(points, dtype=float) if len(points) else None
+            hits = [
+                mesh.ray_trace(start, start + direction * reach, first_point=True)[0]
+                for mesh in self.handle.meshes
+            ]
+            points = [np.asarray(hit, dtype=float) for hit in hits if len(hit)]
+            return min(points, key=lambda p: float((p - start) @ direction), default=None)
         normal = np.cross(*surface.frame)
         slope = float(direction @ normal)
         if abs(slope) < 1e-9:

@@ -19,12 +19,6 @@ __all__ = ["Motion", "NoiseLattice", "SpaceNoise", "mix", "noise_lattice", "octa
 
 Hashes = NDArray[np.uint32]
 
-#: Keys of the corners of a cell that differ in their first two coordinates, (4,).
-CORNERS = (
-    np.array([0, 1, 0, 1], np.uint32) * const.AXIS_PRIMES[0]
-    + np.array([0, 0, 1, 1], np.uint32) * const.AXIS_PRIMES[1]
-)
-
 
 @dataclass(frozen=True, eq=False)
 class NoiseLattice:
@@ -56,20 +50,20 @@ class Motion:
     turns
         Turns by length of path, (N, 2).
     phases
-        Which phases of a grain belong to the rates, (N, 2).
-    late
-        From 0, the first rate, to 1, the second, (N,).
+        Turns by the values of grains that stand, which say where those in motion begin, (N, 2).
+    shares
+        Of the two rates in a grain, (N, 2).
     """
 
     clock: Floats
     turns: Floats
     phases: Floats
-    late: Floats
+    shares: Floats
 
     def after(self, length: Floats) -> Motion:
         """Return the motion a length (N,) along the paths."""
         clock = self.clock + self.turns * length[:, None]
-        return Motion(clock, self.turns, self.phases, self.late)
+        return Motion(clock, self.turns, self.phases, self.shares)
 
 
 def noise_lattice(position: Floats, octave: Ints, values: Mapping[str, Any]) -> NoiseLattice:
@@ -86,18 +80,22 @@ def noise_lattice(position: Floats, octave: Ints, values: Mapping[str, Any]) -> 
     return NoiseLattice(position * inverse + rest, inverse[:, 0], key)
 
 
-def grains(h: Hashes, motion: Motion | None) -> Floats:
-    """Values of lattice points from their keys (N, 4), uniform in -1 ... 1."""
-    h = (h ^ (h >> const.HASH_SHIFTS[0])) * const.HASH_FACTORS[0]
-    h = (h ^ (h >> const.HASH_SHIFTS[1])) * const.HASH_FACTORS[1]
-    phase = (h >> const.PHASE_SHIFT) * (1.0 / const.PHASES)
+def scatter(key: Hashes) -> Hashes:
+    """Scatter the keys of an axis."""
+    return np.asarray((key ^ (key >> const.HASH_SHIFT)) * const.HASH_FACTORS[0], np.uint32)
+
+
+def grains(key: Hashes, motion: Motion | None) -> Floats:
+    """Values of lattice points from their scattered keys (N, 4), even over all signed numbers."""
+    values = (key * const.HASH_FACTORS[1]).view(np.int32).astype(float)
     if motion is None:
-        return np.asarray(phase * 2.0 - 1.0)
+        return np.asarray(values)
     slow, fast = (
-        _triangle(phase * motion.phases[:, k, None] + motion.clock[:, k, None]) for k in range(2)
+        motion.shares[:, k, None]
+        * _triangle(values * motion.phases[:, k, None] + motion.clock[:, k, None])
+        for k in range(2)
     )
-    late = motion.late[:, None]
-    return np.asarray(mix(slow, fast, late) / np.sqrt(1.0 - 2.0 * late * (1.0 - late)))
+    return np.asarray(slow + fast)
 
 
 def _triangle(turn: Floats) -> Floats:
@@ -112,16 +110,18 @@ def octave(
     base = np.floor(q)
     w = q - base
     spread = 1.0 - 2.0 * w * (1.0 - w)
-    k = lattice.key + base.astype(np.int64).astype(np.uint32) * const.AXIS_PRIMES
-    corners = (k[:, 0] + k[:, 1] + k[:, 2])[:, None] + CORNERS
-    values = grains(corners, motion)
-    variance = spread[:, 0] * spread[:, 1]
-    if not planar:
-        values = mix(values, grains(corners + const.AXIS_PRIMES[2], motion), w[:, 2:])
-        variance = variance * spread[:, 2]
+    key = lattice.key + base.astype(np.int64).astype(np.uint32) * const.AXIS_PRIMES
+    low, high = scatter(key), scatter(key + const.AXIS_PRIMES)
+    x, y = (np.stack([low[:, n], high[:, n]], axis=-1) for n in range(2))
+    corners = (x[:, None, :] ^ y[:, :, None]).reshape(-1, 4)
+    if planar:
+        values, variance = grains(corners, motion), spread[:, :2].prod(axis=-1)
+    else:
+        below, above = (grains(corners ^ z[:, 2:], motion) for z in (low, high))
+        values, variance = mix(below, above, w[:, 2:]), spread.prod(axis=-1)
     rows = mix(values[:, 0::2], values[:, 1::2], w[:, :1])
     return np.asarray(
-        mix(rows[:, 0], rows[:, 1], w[:, 1]) / np.sqrt(variance / const.GRAIN_PRECISION)
+        mix(rows[:, 0], rows[:, 1], w[:, 1]) / np.sqrt(variance * const.GRAIN_VARIANCE)
     )
 
 
@@ -167,11 +167,15 @@ class SpaceNoise(Lookup):
         turns = np.exp2(rates) * (rates >= 0)
         coarse, rest = values["u_clock"]
         even = np.mod(rates[:, :1], 2.0) < 0.5
+        many = const.MANY_PHASES
+        late = rate - rates[:, 0]
+        shares = np.stack([1.0 - late, late], axis=-1)
+        shares *= const.MOST_GRAIN / np.linalg.norm(shares, axis=-1, keepdims=True)
         self._motion = Motion(
             clock=np.mod(turns * coarse, 1.0) + turns * rest,
             turns=turns * (slope / np.maximum(travel, const.LEAST_TRAVEL))[:, None],
-            phases=np.where(even, [1.0, const.MANY_PHASES], [const.MANY_PHASES, 1.0]),
-            late=rate - rates[:, 0],
+            phases=np.where(even, [1.0, many], [many, 1.0]) / (2.0 * const.MOST_GRAIN),
+            shares=shares,
         )
 
     def lookup(self, displacement: Floats, length: Floats) -> Floats:

@@ -7,8 +7,9 @@ position; they come and go with the view.
 
 from __future__ import annotations
 
+import warnings
 import weakref
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -90,6 +91,7 @@ class FlowSurface:
         self._loader = None if pyramid is None else self._loader_of(pyramid)
         self.full_height: int | None = None
         self._notify: Callable[[], None] | None = None
+        self._told: set[TileKey] = set()
         self._observed = [
             (event, renderer.AddObserver(event, self._observer(name)))
             for event, name in (("StartEvent", "_before_frame"), ("EndEvent", "_after_frame"))
@@ -106,6 +108,12 @@ class FlowSurface:
         Otherwise a frame waits for the tiles that it asks for, but in a window that somebody uses.
         """
         self._notify = notify
+
+    @property
+    def meshes(self) -> list[Any]:
+        """What the last frame has drawn: the surface's own mesh, and those of tiles."""
+        shown = [drawn.mesh for drawn in self._tiles.values() if drawn.actor.GetNumberOfConsumers()]
+        return [self._actor.mapper.dataset, *shown]
 
     @property
     def busy(self) -> bool:
@@ -211,8 +219,20 @@ class FlowSurface:
         loader.request(wanted_tiles(choices), steps)
         if not self._goes_on():
             loader.wait()
+        self._tell(loader.errors)
         self._drop([key for key in self._tiles if not loader.keeps(key)])
         return cover(choices, lambda key: self._ready(key, steps))
+
+    def _tell(self, errors: Mapping[TileKey, Exception]) -> None:
+        """Warn, once each, of tiles that could not be made; coarser ones are in their place."""
+        for key in errors.keys() - self._told:
+            self._told.add(key)
+            error = errors[key]
+            warnings.warn(
+                f"a part of the surface is shown coarse, for tile {tuple(key)} could not be made: "
+                f"{type(error).__name__}: {error}",
+                stacklevel=2,
+            )
 
     def _goes_on(self) -> bool:
         """Whether another frame follows by itself when tiles are ready."""

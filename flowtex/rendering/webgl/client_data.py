@@ -8,7 +8,8 @@ Positions and scalars keep single precision.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import json
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, replace
 from dataclasses import field as data_field
 from functools import cache, cached_property
@@ -23,13 +24,15 @@ from flowtex.field import FlowField
 from flowtex.field.interpolation import steps_around
 from flowtex.rendering.mesh_levels import MeshLevels, mesh_limits
 from flowtex.rendering.shaders import shader_text
+from flowtex.rendering.tile_choice import CELL_PIXELS
 from flowtex.rendering.uniforms import client_constants, variants
 from flowtex.rendering.webgl.packing import Packing, half, packing_of
 from flowtex.rendering.webgl.protocol import FORMAT, Header, Parts
 from flowtex.settings import TABLE, Settings
 from flowtex.textures import PaperTextures, TextureSet
+from flowtex.tiles import PATH_CELLS, TILE_BLOCKS, Pyramid, TileKey
 
-__all__ = ["ClientData", "Colours"]
+__all__ = ["ClientData", "Colours", "tile_parts"]
 
 #: Shaders of the client, by the name under which the header has their text.
 SHADERS = {
@@ -41,6 +44,8 @@ SHADERS = {
 FIRST_ASPECT = 1.5
 #: Greatest value of a component of a normal in sixteen bits.
 NORMAL_MAX = 32767
+#: Greatest number in single precision.
+SINGLE_MAX = float(np.finfo(np.float32).max)
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +64,7 @@ class Colours:
         Name of the colour map, empty for one that has none, and whether nobody has chosen its
         range.
     values
-        Nodal values, (T or 1, J, I).
+        Values at all nodes of the field, (T or 1, J, I).
     others
         Numbers and values of other scalars, handed over as well where nobody can be asked later.
     low, high
@@ -106,12 +111,15 @@ class ClientData:
     """A flow and its colours, ready to be handed over.
 
     ``chosen`` are the numbers of the destination times that are handed over, increasing; all are
-    where it is empty.
+    where it is empty. ``pyramid`` has the tiles of a large flow, of which this is the root, and
+    ``finest`` is the finest level of those that are handed over.
     """
 
     textures: TextureSet
     colours: Colours = data_field(default_factory=Colours)
     chosen: tuple[int, ...] = ()
+    pyramid: Pyramid | None = None
+    finest: int = 0
 
     @cached_property
     def packing(self) -> Packing:
@@ -202,6 +210,7 @@ class ClientData:
             "paper": None if textures.paper is None else _paper(textures.paper),
             "constants": client_constants(),
             "mesh": mesh_limits(),
+            "pyramid": None if self.pyramid is None else _pyramid(self.pyramid, self.finest),
             "limits": {**asdict(CAMERA_LIMITS), "aspect": FIRST_ASPECT},
             "table": _table(),
         }
@@ -214,10 +223,13 @@ class ClientData:
             parts["cmap"] = np.ascontiguousarray(colours.table, np.uint8)
         if colours.choices:
             parts["maps"] = np.stack([colour_table(name)[:, :3] for name in CMAPS])
-        if not geometry.field.surface.cells.all():
-            parts["cells"] = geometry.field.surface.cells.astype(np.uint8)
+        if not geometry.cells.all():
+            parts["cells"] = geometry.cells.astype(np.uint8)
         if not geometry.planar:
             parts["normal"] = np.rint(geometry.normal * NORMAL_MAX).astype("<i2")
+        if self.pyramid is not None:
+            places = [self.pyramid.places(level) for level in range(self.pyramid.depth + 1)]
+            parts["places"] = np.concatenate([p.reshape(-1, 5) for p in places]).astype("<f4")
         parts["mesh"] = self._mesh
         parts["position"] = np.ascontiguousarray(geometry.position, "<f4")
         if self.textures.paper is not None:
@@ -242,11 +254,30 @@ class ClientData:
         for number, values in self._values.items():
             if step < len(values):
                 name = f"scalars/{step}/{number}" if number else f"scalars/{step}"
-                parts[name] = np.ascontiguousarray(values[step], "<f4")
+                inside = np.clip(values[step], -SINGLE_MAX, SINGLE_MAX)
+                parts[name] = np.ascontiguousarray(inside, "<f4")
         packed = self.packing.step(self.source(step))
         parts[f"extra/{step}"] = packed.extra
         parts[f"slices/{step}"] = packed.slopes
         return parts
+
+    def tile(self, textures: TextureSet, values: Callable[[str], Floats]) -> ClientData:
+        """Return what is handed over of a tile; ``values`` gives those of a scalar at its nodes."""
+        return ClientData(textures, self.tile_colours(values), self.chosen)
+
+    def tile_colours(self, values: Callable[[str], Floats]) -> Colours:
+        """Return the colours of a tile; ``values`` gives those of a scalar at its nodes."""
+        colours = self.colours
+        return replace(
+            colours,
+            values=None if colours.name is None else values(colours.name),
+            others=tuple((n, values(colours.choices[n]["name"])) for n, _ in colours.others),
+        )
+
+    @property
+    def tile_header(self) -> Header:
+        """What of the header of a tile differs from that of the root."""
+        return {"geometry": self._geometry(), "slices": self._slices()}
 
     def source(self, step: int) -> int:
         """Return the field's own number of a step that is handed over."""
@@ -262,7 +293,7 @@ class ClientData:
         """Bytes of the arrays of one destination time, known before anything is traced."""
         geometry = self.textures.geometry
         texels = geometry.rows.size * geometry.columns.size
-        nodes = geometry.field.valid.size
+        nodes = int(np.prod(geometry.shape))
         numbers = self.textures.count * self.packing.channels + len(self.packing.extra)
         return 2 * texels * numbers + 4 * nodes * len(self._values)
 
@@ -273,16 +304,17 @@ class ClientData:
         values = dict(colours.others)
         if colours.values is not None:
             values[colours.number] = colours.values
-        if not self.chosen:
-            return values
-        chosen = list(self.chosen)
-        return {n: v if len(v) == 1 else v[chosen] for n, v in values.items()}
+        rows, columns = self.textures.geometry.drawn
+        steps = list(self.chosen) or slice(None)
+        return {
+            number: each[steps if len(each) > 1 else slice(None)][:, rows, columns]
+            for number, each in values.items()
+        }
 
     @cached_property
     def _mesh(self) -> Floats32:
         """Return what the client chooses its triangles by, of each tile."""
-        field = self.textures.geometry.field
-        levels = MeshLevels(field.surface.points, field.surface.cells, field.periodic)
+        levels = MeshLevels.of(self.textures)
         shares: list[Floats] = []
         for number, values in self._values.items():
             if number == self.colours.number:
@@ -296,11 +328,11 @@ class ClientData:
     def _geometry(self) -> dict[str, Any]:
         geometry = self.textures.geometry
         return {
-            "shape": [int(n) for n in geometry.field.shape],
+            "shape": [int(n) for n in geometry.shape],
             "rows": {"before": int(geometry.rows.before), "size": int(geometry.rows.size)},
             "columns": {"before": int(geometry.columns.before), "size": int(geometry.columns.size)},
             "levels": int(geometry.levels),
-            "periodic": [bool(p) for p in geometry.field.periodic],
+            "periodic": [bool(p) for p in geometry.periodic],
             "planar": geometry.planar,
             "extent": float(geometry.extent),
             "center": _numbers(geometry.center),
@@ -316,13 +348,43 @@ class ClientData:
             "lags": _numbers(textures.lags),
             "sides": int(textures.sides),
             "unit": float(textures.unit),
-            "pace": float(textures.pace),
+            "pace": float(textures.typical_speed if self.steps > 1 else textures.pace),
             "cell": float(textures.cell),
             "critical": float(textures.critical_cell),
             "steps": int(self.steps),
             "times": _numbers(self.times),
             "timeUnit": textures.geometry.field.time_unit,
         }
+
+
+def tile_parts(key: TileKey, tile: ClientData | None, *steps: int) -> Parts:
+    """Return the arrays of a tile for some times, or of one of which nothing is drawn.
+
+    Its own header is among them, as JSON.
+    """
+    text = json.dumps(None if tile is None else tile.tile_header)
+    parts: Parts = {"header": np.frombuffer(text.encode(), np.uint8)}
+    if tile is not None:
+        parts |= tile.surface()
+        for name in ("cmap", "maps"):  # those of the root
+            parts.pop(name, None)
+        for step in steps:
+            parts |= tile.step(step)
+    prefix = f"tile/{key.level}/{key.row}/{key.column}"
+    return {f"{prefix}/{name}": part for name, part in parts.items()}
+
+
+def _pyramid(pyramid: Pyramid, finest: int) -> dict[str, Any]:
+    """Return what a client chooses the tiles by, beside the places of their blocks."""
+    return {
+        "depth": pyramid.depth,
+        "finest": finest,
+        "blocks": list(pyramid.blocks),
+        "shapes": [list(pyramid.shape(level)) for level in range(pyramid.depth + 1)],
+        "tileBlocks": TILE_BLOCKS,
+        "cellPixels": CELL_PIXELS,
+        "pathCells": PATH_CELLS,
+    }
 
 
 def _paper(paper: PaperTextures) -> dict[str, Any]:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flowtex._util.array_types import AnyArray, Halves
+from flowtex._util.array_types import AnyArray, Floats32, Halves
 from flowtex._util.cache import ByteCache, WeakCache
 from flowtex.textures import TextureSet
 
@@ -50,8 +50,14 @@ class Packing:
         """Return a step; what is not yet traced is traced."""
         return self._steps.get(step, lambda: self._packed(step))
 
+    def take(self, step: int, layers: Floats32) -> None:
+        """Pack layers that somebody else has made."""
+        self._steps.put(step, self._halved(layers))
+
     def _packed(self, step: int) -> PackedStep:
-        layers = self._textures.layers(step)
+        return self._halved(self._textures.layers(step))
+
+    def _halved(self, layers: Floats32) -> PackedStep:
         return PackedStep(half(layers[..., : self.channels]), half(layers[self.extra, :, :, 3]))
 
 

@@ -27,7 +27,7 @@ from flowtex._util.cache import digest
 __all__ = ["FORMAT", "Header", "Parts", "part_buffer", "part_info", "part_text", "parts_file"]
 
 #: Number of the form of header and parts; a client refuses one that it does not know.
-FORMAT = 2
+FORMAT = 3
 
 Header: TypeAlias = dict[str, Any]
 Parts: TypeAlias = dict[str, AnyArray]

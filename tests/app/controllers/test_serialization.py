@@ -7,7 +7,10 @@ from urllib.parse import unquote
 
 import numpy as np
 import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
 from PIL import Image
+from strategies import links, property_test, setting_values
 
 pytest.importorskip("trame_rca")
 
@@ -119,14 +122,48 @@ def test_what_is_of_no_use_is_left_out_and_told(link: str, told: str) -> None:
     assert len(faults) == 1 and told in faults[0] and len(faults[0]) < 300
 
 
-def test_whatever_comes_is_taken_without_an_error(rng: np.random.Generator) -> None:
-    link = to_link(STATE)
-    for _ in range(300):
-        text = list(link)
-        for at in rng.integers(0, len(text), 5):
-            text[at] = chr(rng.integers(1, 0x250))
-        state = from_link("".join(text))
-        assert from_link(to_link(state)) == state
+@property_test(200)
+@given(links())
+@example("file=\ud800")
+@example("camera=parallel," + ",".join(["1e308"] * 11))
+def test_whatever_comes_is_taken_without_an_error(link: str) -> None:
+    faults: list[str] = []
+    state = from_link(link, faults)
+    assert all(len(fault) < 400 for fault in faults)
+    assert to_link(from_link(to_link(state))) == to_link(state)
+    compile(to_python(state, source="None"), "lines", "exec", flags=1024)
+
+
+@property_test(200)
+@given(st.lists(st.tuples(st.integers(0, 10_000), st.characters()), max_size=5))
+def test_a_link_that_was_changed_is_taken_without_an_error(changes: list[tuple[int, str]]) -> None:
+    text = list(to_link(STATE))
+    for at, letter in changes:
+        text[at % len(text)] = letter
+    state = from_link("".join(text))
+    assert to_link(from_link(to_link(state))) == to_link(state)
+
+
+@property_test(60)
+@given(
+    setting_values(resolution=8192, samples=200),
+    st.fixed_dictionaries(
+        {},
+        optional={
+            "file": st.text("aü/&=#?+% ", min_size=1),
+            "time": st.floats(allow_nan=False, allow_infinity=False),
+            "clim": st.tuples(st.floats(-1e30, 0), st.floats(1e-30, 1e30)),
+            "split": st.sampled_from(list(COMPARISONS)[1:]),
+        },
+    ),
+)
+def test_any_state_comes_back_from_its_link(
+    settings: dict[str, Any], state: dict[str, Any]
+) -> None:
+    changed = {k: v for k, v in settings.items() if v != TABLE[k].default}
+    whole = {**state, "settings": changed} if changed else state
+    faults: list[str] = []
+    assert from_link("http://host/#" + to_link(whole), faults) == whole and not faults
 
 
 @pytest.fixture(scope="module")

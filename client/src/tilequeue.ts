@@ -1,0 +1,53 @@
+// Tiles from a host that gives them one by one: a page that holds them, or a server.
+
+import type { NamedPart } from "./protocol.ts";
+import { nameOf, type TileKey } from "./tilechoice.ts";
+
+/** Gives the parts of a tile for some time steps. */
+export type LoadTile = (key: TileKey, steps: number[], signal: AbortSignal) => Promise<NamedPart[]>;
+
+export class TileQueue {
+  private readonly load: LoadTile;
+  private readonly give: (part: NamedPart) => void;
+  private readonly most: number;
+  private readonly running = new Map<string, AbortController>();
+  private wanted: [key: TileKey, steps: number[]][] = [];
+
+  /** So many tiles at most are loaded at a time. */
+  constructor(load: LoadTile, give: (part: NamedPart) => void, most = 1) {
+    this.load = load;
+    this.give = give;
+    this.most = most;
+  }
+
+  /** Load tiles in this order, and none that was asked for before and is not among them. */
+  request(keys: TileKey[], steps: number[]): void {
+    this.wanted = keys.map((key) => [key, steps]);
+    const names = new Set(keys.map((key) => `${nameOf(key)} ${steps}`));
+    for (const [name, controller] of this.running) if (!names.has(name)) controller.abort();
+    this.next();
+  }
+
+  private next(): void {
+    while (this.wanted.length && this.running.size < this.most) {
+      const [key, steps] = this.wanted[0];
+      this.wanted.shift();
+      const name = `${nameOf(key)} ${steps}`;
+      if (!this.running.has(name)) void this.run(name, key, steps);
+    }
+  }
+
+  private async run(name: string, key: TileKey, steps: number[]): Promise<void> {
+    const controller = new AbortController();
+    this.running.set(name, controller);
+    try {
+      const parts = await this.load(key, steps, controller.signal);
+      if (!controller.signal.aborted) parts.forEach(this.give);
+    } catch (error) {
+      if (!controller.signal.aborted) throw error;
+    } finally {
+      this.running.delete(name);
+      this.next();
+    }
+  }
+}

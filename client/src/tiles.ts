@@ -1,0 +1,309 @@
+// What a view shows of a surface: all of it, or of a large one the root and the tiles that are there.
+//
+//   camera --> Pyramid.choose --> wanted tiles --> onTiles --> host
+//                     |                                          |
+//                     +--> cover (those that are there) <-- setPart, and the levels of all meshes
+
+import type { Camera } from "./camera.ts";
+import { narrowed } from "./colours.ts";
+import { join, type Region } from "./meshlevels.ts";
+import {
+  stepOf,
+  type Header,
+  type NamedPart,
+  type Part,
+  type Settings,
+  type TileHeader,
+} from "./protocol.ts";
+import { Scene } from "./scene.ts";
+import {
+  cellPixels,
+  cover,
+  keyOf,
+  Pyramid,
+  ROOT,
+  wantedTiles,
+  type Choices,
+  type TileKey,
+} from "./tilechoice.ts";
+import type { Moment } from "./uniforms.ts";
+
+/** Milliseconds from a change of what is wanted to the request, and after which a request counts as lost. */
+const REQUEST_MS = 60;
+const LOST_MS = 8000;
+/** Milliseconds that tiles may take of a picture on their way to the graphics card. */
+const LOAD_MS = 25;
+/** Memory of the tiles that are held, in bytes, and of a byte that came, here and on the graphics card. */
+const BUDGET_BYTES = 900e6;
+const BYTES_HELD = 3.5;
+/** Time steps of a tile that are held. */
+const STEPS_HELD = 4;
+
+/** Asks for tiles in the order of need; what was asked for before is not needed any more. */
+export type AskTiles = (keys: TileKey[], steps: number[]) => void;
+
+/** A part of the surface that is drawn, with the tile that it is. */
+export interface Layer {
+  scene: Scene;
+  key: TileKey;
+}
+
+interface Tile {
+  parts: Map<string, Part>;
+  /** Null where nothing of it is drawn; not known before it has come. */
+  scene: Scene | null | undefined;
+  /** Colours that its triangles are chosen for. */
+  scalars: Header["scalars"];
+  /** When it was wanted last. */
+  used: number;
+}
+
+/** What is drawn for whom. */
+export interface TileHost {
+  readonly camera: Camera | null;
+  readonly settings: Settings;
+  readonly canvas: HTMLCanvasElement;
+  readonly ratio: number;
+  readonly options: { onTiles?: AskTiles };
+  readonly lifetime: { later(call: () => void, delay: number): unknown };
+  /** Draw the picture once more, with what has come. */
+  refine(): void;
+}
+
+export class Tiles {
+  /** What was drawn last. */
+  layers: Layer[] = [];
+  /** Names of the tiles that are wanted and not there. */
+  missing: string[] = [];
+  private readonly host: TileHost;
+  private readonly root: Scene;
+  private readonly tiles = new Map<string, Tile>();
+  private pyramid: Pyramid | null = null;
+  /** What the last picture has asked for and shown. */
+  private chosen: { choices: Choices; steps: number[]; names: string } = {
+    choices: new Map(),
+    steps: [],
+    names: "",
+  };
+  private drawn = "";
+  private asked: { names: string[]; steps: number[] } = { names: [], steps: [] };
+  private count = 0;
+  private isWaiting = false;
+  private isOver = false;
+  private lastCame = 0;
+
+  constructor(host: TileHost, root: Scene) {
+    this.host = host;
+    this.root = root;
+  }
+
+  dispose(): void {
+    this.isOver = true;
+    for (const name of [...this.tiles.keys()]) this.drop(name);
+  }
+
+  /** Take a part of a tile. */
+  setPart(name: string, part: NamedPart): void {
+    const { graphics, header } = this.root;
+    const tile = this.tiles.get(name) ?? this.emptyTile();
+    this.tiles.set(name, tile);
+    if (part.digest && tile.parts.get(part.name)?.digest === part.digest) return;
+    graphics.release(tile.parts.get(part.name));
+    tile.parts.set(part.name, graphics.hold(part));
+    if (part.name === "header") {
+      const own = JSON.parse(new TextDecoder().decode(part.data)) as TileHeader | null;
+      tile.scene?.dispose();
+      tile.scene = own && new Scene(graphics, { ...header, ...own, pyramid: null }, tile.parts);
+      this.giveMap(tile);
+      this.giveLimits(tile);
+    } else {
+      if (part.name === "mesh") this.giveLimits(tile);
+      tile.scene?.forget(part.name);
+    }
+    this.lastCame = performance.now();
+    const { names, steps } = this.chosen;
+    this.missing = this.missing.filter((missing) => !this.isHere(missing, steps));
+    const shown = cover(this.chosen.choices, (other) => this.isHere(other, steps));
+    if (String([...shown.keys()]) !== names) this.host.refine();
+  }
+
+  /** Draw in other colours, of which a part of the header tells; what they need is asked for. */
+  recolour(colours: Partial<Header> = {}): void {
+    this.asked = { names: [], steps: [] };
+    const { mesh, scalars } = this.root.header;
+    const { steps } = this.chosen;
+    for (const tile of this.tiles.values()) {
+      const { scene, parts } = tile;
+      if (!scene) continue;
+      const { header } = scene;
+      Object.assign(header, { mesh: narrowed(mesh, tile.scalars, scalars) }, colours);
+      this.giveMap(tile);
+      for (const name of ["scalars", "mesh"]) scene.forget(name);
+      const painted = steps.length ? scene.scalarParts(steps[0], steps[steps.length - 1]) : [];
+      const isWhole = painted.every((name) => parts.has(name));
+      if (isWhole && (scalars.log === tile.scalars.log || scalars.name === null)) continue;
+      // What the triangles are chosen by comes anew with the values.
+      const others = [...parts.keys()].filter((name) => name.startsWith("scalars/"));
+      for (const name of others) this.release(tile, name);
+    }
+  }
+
+  private emptyTile(): Tile {
+    const { scalars } = this.root.header;
+    return { parts: new Map(), scene: undefined, scalars, used: this.count };
+  }
+
+  /** Choose triangles by what has come for the present colours. */
+  private giveLimits(tile: Tile): void {
+    const { mesh, scalars } = this.root.header;
+    tile.scalars = scalars;
+    if (tile.scene) tile.scene.header.mesh = mesh;
+  }
+
+  /** Colour by the map of the root. */
+  private giveMap({ scene, parts }: Tile): void {
+    const map = this.root.parts.get("cmap");
+    if (map) parts.set("cmap", map);
+    scene?.forget("cmap");
+  }
+
+  /** Choose what is drawn at a moment, and its triangles. */
+  arrange([before, after]: Moment): Scene[] {
+    const { camera, canvas } = this.host;
+    if (!camera) return [];
+    const steps = [...new Set([before, after])];
+    const shown = this.choose(camera, steps);
+    const layers: Layer[] = [{ scene: this.root, key: [this.root.header.pyramid?.depth ?? 0, 0, 0] }];
+    const names = [ROOT];
+    for (const name of shown.keys()) {
+      const scene = this.tiles.get(name)?.scene;
+      if (!scene) continue;
+      names.push(name);
+      layers.push({ scene, key: keyOf(name) });
+    }
+    const sight = camera.sight(canvas.height);
+    const parts = layers.map(({ scene, key }, n): Region => {
+      const { levels, shape } = scene.levels(sight);
+      for (const finer of shown.get(names[n]) ?? []) this.hide(levels, shape[1], finer, names[n]);
+      const { pyramid } = this.root.header;
+      const [row, column] = key.slice(1).map((at) => (at * (pyramid?.tileBlocks ?? 0)) << key[0]);
+      return { step: key[0], row, column, shape, levels };
+    });
+    this.layers = layers;
+    this.setTriangles(names, parts);
+    return layers.map(({ scene }) => scene);
+  }
+
+  /** Leave out the blocks that a finer tile covers. */
+  private hide(levels: Int8Array, columns: number, finer: string, above: string): void {
+    const [row, column, size] = this.pyramid?.finerPart(keyOf(finer), above) ?? [0, 0, 0];
+    for (let j = row; j < Math.min(row + size, levels.length / columns); j += 1) {
+      levels.fill(-1, j * columns + column, j * columns + Math.min(column + size, columns));
+    }
+  }
+
+  /** Draw as few triangles as the view needs, without a crack between tiles. */
+  private setTriangles(names: string[], parts: Region[]): void {
+    const drawn = String(parts.map(({ levels }, n) => [names[n], levels]));
+    if (drawn === this.drawn && this.layers.every(({ scene }) => scene.hasTriangles)) return;
+    this.drawn = drawn;
+    const { geometry, mesh, pyramid } = this.root.header;
+    const most = Math.log2(mesh.tileCells);
+    const joins = join(parts, pyramid?.blocks ?? parts[0].shape, geometry.periodic, most);
+    parts.forEach(({ levels }, n) => this.layers[n].scene.setTriangles(levels, joins[n]));
+  }
+
+  /** The tiles to show, with those that cover parts of them; asks for others. */
+  private choose(camera: Camera, steps: number[]): Map<string, string[]> {
+    const { header } = this.root;
+    const { settings, canvas, ratio } = this.host;
+    if (!header.pyramid) return new Map();
+    this.pyramid ??= new Pyramid(header.pyramid, header.mesh, this.root.part("places").data);
+    const choices = this.pyramid.choose({
+      ...camera.sight(canvas.height / ratio),
+      planes: camera.planes,
+      cellPixels: cellPixels(header.pyramid, settings),
+    });
+    this.count += 1;
+    for (const name of choices.keys()) {
+      const tile = this.tiles.get(name);
+      if (tile) tile.used = this.count;
+    }
+    const until = performance.now() + LOAD_MS;
+    const wanted = wantedTiles(choices);
+    this.missing = wanted.filter((name) => !this.isHere(name, steps));
+    this.ask(steps);
+    this.trim(steps);
+    const shown = cover(choices, (name) => this.isHere(name, steps) && this.load(name, steps, until));
+    this.chosen = { choices, steps, names: String([...shown.keys()]) };
+    return shown;
+  }
+
+  /** Whether all of a tile has come that these steps need. */
+  private isHere(name: string, steps: number[]): boolean {
+    const scene = this.tiles.get(name)?.scene;
+    return scene === null || (scene?.missing(steps[0], steps[steps.length - 1]).length === 0);
+  }
+
+  /** Have a tile on the graphics card; the others of many come with the next picture. */
+  private load(name: string, steps: number[], until: number): boolean {
+    const scene = this.tiles.get(name)?.scene;
+    if (!scene || scene.isLoaded(steps)) return true;
+    if (performance.now() > until) {
+      this.host.refine();
+      return false;
+    }
+    scene.load(steps);
+    return true;
+  }
+
+  /** Ask for what is missing, once the view has come to rest a little, and again where nothing comes. */
+  private ask(all: number[]): void {
+    const { options, lifetime } = this.host;
+    const isLacking = (step: number) => this.missing.some((name) => !this.isHere(name, [step]));
+    const steps = all.filter(isLacking);
+    const open = this.asked.names.filter((name) => !this.isHere(name, this.asked.steps));
+    const isAsked =
+      performance.now() - this.lastCame < LOST_MS &&
+      String(open.sort()) === String([...this.missing].sort()) &&
+      (!open.length || String(steps) === String(this.asked.steps));
+    if (isAsked || this.isWaiting || !options.onTiles) return;
+    this.isWaiting = true;
+    lifetime.later(() => {
+      this.isWaiting = false;
+      if (this.isOver) return;
+      this.lastCame = performance.now();
+      this.asked = { names: this.missing, steps };
+      options.onTiles?.(this.missing.map(keyOf), steps);
+      if (this.missing.length) lifetime.later(() => this.isOver || this.ask(all), LOST_MS);
+    }, REQUEST_MS);
+  }
+
+  /** Drop the tiles that were wanted longest ago where all take too much memory, and steps of long ago. */
+  private trim(steps: number[]): void {
+    let bytes = 0;
+    for (const [name, tile] of [...this.tiles].sort(([, a], [, b]) => b.used - a.used)) {
+      const { parts, used } = tile;
+      const slices = [...parts.keys()].filter((part) => part.startsWith("slices/"));
+      for (const part of slices.slice(0, Math.max(slices.length - STEPS_HELD, 0))) {
+        const step = stepOf(part);
+        if (steps.includes(step)) continue;
+        for (const kind of ["slices", "extra"]) this.release(tile, `${kind}/${step}`);
+      }
+      for (const { data } of parts.values()) bytes += BYTES_HELD * data.byteLength;
+      if (bytes > BUDGET_BYTES && used < this.count) this.drop(name);
+    }
+  }
+
+  private drop(name: string): void {
+    const tile = this.tiles.get(name);
+    tile?.scene?.dispose();
+    for (const part of [...(tile?.parts.keys() ?? [])]) this.release(tile, part);
+    this.tiles.delete(name);
+  }
+
+  private release(tile: Tile | undefined, part: string): void {
+    if (part !== "cmap") this.root.graphics.release(tile?.parts.get(part)); // that of the root
+    tile?.parts.delete(part);
+  }
+}

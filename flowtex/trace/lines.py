@@ -1,0 +1,49 @@
+"""Which lines the texture of a field that varies in time follows.
+
+Pathlines are where particles went, and go; streamlines are those of the flow at one moment, as
+if it stood still. Both are the same in a steady field. Where the flow turns while a particle goes
+the length of a streak, pathlines through points beside each other cross, and what is drawn is
+speckle.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flowtex.field import FlowField
+
+__all__ = ["changing_share", "chosen_lines"]
+
+#: Length of a streak as a share of the surface, and of the velocity that may change meanwhile.
+STREAK_EXTENTS, MOST_CHANGE = 0.05, 0.5
+#: Share of the nodes where it may change by more, along pathlines.
+MOST_CHANGING = 0.05
+#: Nodes along each axis, and pairs of steps, by which a field is judged.
+MOST_JUDGED = 100
+
+
+def chosen_lines(field: FlowField, lines: str = "auto") -> str:
+    """Return ``"pathlines"`` or ``"streamlines"``, which ``"auto"`` leaves to the data."""
+    if lines != "auto":
+        return lines
+    return "streamlines" if changing_share(field) > MOST_CHANGING else "pathlines"
+
+
+def changing_share(field: FlowField) -> float:
+    """Share of nodes and times where the flow changes by half within a streak, 0 to 1.
+
+    That is within the time in which a particle goes a twentieth of the surface. Of a large field
+    some of the lines of nodes, and of the steps, are judged.
+    """
+    if field.steady:
+        return 0.0
+    j, i, t = (np.arange(0, n, -(-n // MOST_JUDGED)) for n in (*field.shape, len(field.times) - 1))
+    valid = field.valid[np.ix_(j, i)]
+    if not valid.any():
+        return 0.0
+    before, after = (field.velocity[np.ix_(steps, j, i)][:, valid] for steps in (t, t + 1))
+    spans = (field.times[t + 1] - field.times[t])[:, None]
+    change = np.linalg.norm(after - before, axis=-1) / spans
+    square = np.sum((0.5 * (before + after)) ** 2, axis=-1)
+    extent = float(np.linalg.norm(np.ptp(field.points[np.ix_(j, i)][valid], axis=0)))
+    return float(np.mean(STREAK_EXTENTS * extent * change > MOST_CHANGE * square))

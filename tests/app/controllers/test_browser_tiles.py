@@ -1,0 +1,58 @@
+"""Tiles that the application hands to a browser that draws."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import struct
+from typing import Any
+
+import numpy as np
+import pytest
+
+pytest.importorskip("trame_rca")
+
+from aiohttp import web
+
+import flowtex
+from flowtex.app import FlowApp
+
+pytestmark = pytest.mark.usefixtures("opengl")
+
+
+def parts_of(answer: web.StreamResponse) -> dict[str, list[int]]:
+    """Names and shapes of the arrays in a file."""
+    assert isinstance(answer, web.Response)
+    body = answer.body
+    assert isinstance(body, bytes)
+    (length,) = struct.unpack("<I", body[:4])
+    return {info["name"]: info["shape"] for info in json.loads(body[4 : 4 + length])}
+
+
+def test_a_tile_is_made_when_it_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 10_000)
+    y, x = np.mgrid[-1:1:200j, -1:1:300j]
+    field = flowtex.FlowField.from_arrays(np.stack([x, y], -1), np.stack([-y, x], -1))
+    app = FlowApp(field, samples=3)
+    app.stream.update_size("test", {"w": 96, "h": 64, "p": 1})
+    app.state.set(rendering="browser")
+    app.controllers.browser.take_renderer()
+    source: Any = app.state.get("client_source")
+    assert source["header"]["pyramid"]["shapes"] == [[200, 300], [101, 151], [51, 76]]
+    stem = source["tiles"].rsplit("/", 1)[1]
+
+    async def ask(name: str) -> dict[str, list[int]]:
+        return parts_of(await app.controllers.browser._routes.answer(stem + name))
+
+    found = asyncio.run(ask("0.0.1.0"))
+    assert found["tile/0/0/1/position"] == [200, 44, 3]
+    assert {"tile/0/0/1/header", "tile/0/0/1/slices/0", "tile/0/0/1/scalars/0"} <= set(found)
+    for name in ("", "0.0", "0.0.1.7", "0.0.x.0"):
+        with pytest.raises(web.HTTPNotFound):
+            asyncio.run(ask(name))
+    with pytest.raises(KeyError, match=r"there is no tile \(0, 5, 5\)"):
+        asyncio.run(ask("0.5.5.0"))
+    app.controllers.browser.leave()
+    with pytest.raises(web.HTTPNotFound):
+        asyncio.run(ask("0.0.1.0"))
+    app.close()

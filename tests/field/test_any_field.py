@@ -1,0 +1,118 @@
+"""Whatever is given as a field becomes one of finite numbers, or an error of ours."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from strategies import field_arguments, field_of, property_test, within
+
+from flowtex import FlowField
+from flowtex.errors import FieldError
+from flowtex.field.locate import locate
+from flowtex.field.point_values import values_at
+
+PLANE = np.stack(np.meshgrid(np.arange(4.0), np.arange(4.0)), axis=-1)
+WIND = np.ones((4, 4, 2))
+
+
+def check(field: FlowField) -> None:
+    """Everything that is computed of a field is finite, and its places are found again."""
+    surface = field.surface
+    assert np.isfinite([*field.velocity.flat, *field.speed.flat, *surface.tangents.flat]).all()
+    assert 0 <= field.normal_share <= 1
+    assert np.isfinite(surface.cell_size).all() and (surface.cell_size > 0).all()
+    j, i = np.argwhere(surface.cells)[0] + [0.25, 0.5]
+    values = values_at(field, (j, i))
+    assert np.isfinite([*values.position, *values.velocity, values.speed]).all()
+    found = locate(field, values.position)
+    assert found is None or np.isfinite(found).all()
+    assert field.at_step(-1).steady
+
+
+@property_test(100)
+@given(field_arguments(wild=True))
+def test_any_arguments_make_a_field_or_an_error(arguments: dict[str, Any]) -> None:
+    with within(2.0):
+        field = field_of(arguments)
+        if field is not None:
+            check(field)
+
+
+@property_test(100)
+@given(field_arguments())
+def test_a_field_is_made_of_finite_numbers(arguments: dict[str, Any]) -> None:
+    with within(2.0):
+        field = field_of(arguments)
+        if field is not None:
+            check(field)
+
+
+def damaged(array: Any, value: float, at: tuple[int, ...] = (1, 1, 0)) -> Any:
+    result = np.array(array, dtype=float)
+    result[at] = value
+    return result
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        # Squares of what stands for missing data.
+        {"velocity": damaged(WIND, np.inf, (0, 0, 0)), "sign_free": True},
+        {"velocity": damaged(WIND, np.inf), "periodic": "i"},
+        {"points": damaged(PLANE, 1e300), "velocity": damaged(WIND, np.nan), "periodic": "i"},
+        {"scalars": {"pressure": damaged(PLANE[..., 0], 1e300, (1, 1))}},
+        {"valid": damaged(np.ones((4, 4)), np.nan, (1, 1))},
+        {"velocity": 1e99 * WIND, "points": 1e-29 * PLANE},
+    ],
+)
+def test_missing_data_is_not_computed_with(arguments: dict[str, Any]) -> None:
+    check(FlowField.from_arrays(**{"points": PLANE, "velocity": WIND, **arguments}))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "text"),
+    [
+        ({"velocity": 1e300 * WIND}, r"velocity has values up to 1e\+300; expected 1e-100 to 1e"),
+        ({"velocity": 1e-200 * WIND}, "velocity has values up to 1e-200; expected 1e-100"),
+        ({"points": 1e40 * PLANE}, r"points has values up to 3e\+40; expected 1e-30 to 1e\+30: "),
+        ({"times": [1e200]}, r"times go up to 1e\+200; expected 1e\+100 at most"),
+        ({"times": [[0.0], [1.0, 2.0]]}, "times is no array .*; expected real numbers"),
+        ({"times": np.ones(1, "m8[M]")}, "times holds timedelta64.M., which have no fixed length"),
+        ({"times": np.ma.masked_array(np.ones(1, "M8[s]"), [True])}, "times.0. is nan; expected"),
+        ({"scalars": PLANE}, "scalars is a ndarray; expected a mapping of arrays by name"),
+        ({"times": [1 + 1j]}, "times holds complex128; expected real numbers"),
+        ({"times": np.ma.masked_array([0.0], [True])}, "times.0. is nan; expected a finite"),
+        ({"points": [[1, 2], [3]]}, "points is no array .*; expected real numbers, as many in"),
+        ({"valid": np.full((4, 4), "yes")}, "valid holds <U3; expected real numbers"),
+        ({"scalars": {"p": PLANE[..., 0] * 1j}}, r"scalars\['p'\] holds complex128; expected"),
+        ({"points": 0 * PLANE - [9.99999e-07, 1e-6]}, "all usable nodes lie"),
+        ({"periodic": 3}, 'periodic is 3; expected "", "i", "j" or "ij"'),
+    ],
+)
+def test_numbers_that_cannot_be_drawn_are_named(arguments: dict[str, Any], text: str) -> None:
+    with pytest.raises(FieldError, match=text):
+        FlowField.from_arrays(**{"points": PLANE, "velocity": WIND, **arguments})
+
+
+def test_what_was_given_is_neither_changed_nor_kept() -> None:
+    given: dict[str, Any] = {
+        "points": damaged(PLANE, 1e20),
+        "velocity": damaged(np.stack([WIND, WIND]), np.nan, (0, 1, 1, 0)),
+        "times": np.array([0.0, 1.0]),
+        "scalars": {"p": damaged(PLANE[..., 0], 1e300, (1, 1))},
+    }
+    given["scalars"]["q"] = np.ma.masked_array(PLANE[..., 0], PLANE[..., 0] > 1)
+    before = {key: np.array(given[key]) for key in ("points", "velocity", "times")}
+    field = FlowField.from_arrays(**given)
+    for key, array in before.items():
+        np.testing.assert_array_equal(given[key], array)
+        assert not np.shares_memory(given[key], getattr(field, key))
+    assert given["scalars"]["p"][1, 1] == 1e300
+    assert np.isfinite(given["scalars"]["q"].data).all()
+    for key, values in field.scalars.items():
+        assert not np.shares_memory(given["scalars"][key], values)
+    assert np.isnan(field.scalars["p"][0, 1, 1])
+    assert np.isnan(field.scalars["q"][0]).sum() == 8

@@ -1,0 +1,139 @@
+"""Slices of any field are finite and soon there."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from strategies import field_arguments, field_of, property_test, within
+
+from flowtex import FlowField
+from flowtex._util.array_types import Floats
+from flowtex.trace import SliceStore, TraceSlices, paths, trace
+
+WAYS = st.sampled_from(["arclength", "time"])
+
+
+def check(slices: TraceSlices) -> None:
+    """No slice has a number that is not finite, and no reach is negative."""
+    for data in (slices.lags, slices.unit, slices.rate, slices.displacement, slices.forward):
+        assert data is None or np.isfinite(data).all()
+    for reach in (slices.reach, slices.forward_reach):
+        assert reach is None or (reach >= 0).all()
+
+
+@property_test(80)
+@given(field_arguments(), WAYS)
+def test_slices_of_any_field(arguments: dict[str, Any], parameter: str) -> None:
+    field = field_of(arguments)
+    if field is None:
+        return
+    with within(2.0):
+        store = SliceStore(field, parameter=parameter)
+        for step in range(store.steps):
+            check(store.at(step))
+
+
+@property_test(25)
+@given(field_arguments(), WAYS, st.lists(st.floats(), min_size=1, max_size=3), st.booleans())
+def test_any_lags(
+    arguments: dict[str, Any], parameter: str, lags: list[float], compose: bool
+) -> None:
+    field = field_of(arguments)
+    if field is None:
+        return
+    with within(2.0):
+        try:
+            check(trace(field, lags=lags, parameter=parameter, compose=compose, steps=[-1]))
+            found = paths(field, [[0.5, 0.5]], lags, parameter=parameter)
+            assert np.isfinite(found.positions).all()
+        except ValueError as error:
+            assert "expected" in str(error)
+
+
+def plane(rows: int, columns: int) -> Floats:
+    return np.stack(np.meshgrid(np.arange(columns), np.arange(rows)), axis=-1).astype(float)
+
+
+def turning(size: int = 4) -> tuple[Floats, Floats]:
+    """A vortex, in which paths do not end."""
+    points = plane(size, size) - (size - 1) / 2
+    return points, points[..., ::-1] * [-1, 1]
+
+
+@pytest.mark.parametrize("step", [1e-60, 1e-6, 1e6, 1e60])
+def test_time_steps_of_any_length(step: float) -> None:
+    points, velocity = turning()
+    times = step * np.array([0.0, 1.0, 2.0, 2.5])
+    for even in (True, False):
+        t = times[:3] if even else times
+        field = FlowField.from_arrays(points, np.stack([velocity] * len(t)), times=t)
+        steady = SliceStore(field.at_step(0), parameter="time").at(0)
+        with within(2.0):
+            store = SliceStore(field)
+            slices = store.at(0)
+            check(slices)
+        # Before the first time step nothing changes, however short the steps are.
+        lag = 0.4 * float(steady.lags[-1] * steady.unit[0, 0])
+        expected = steady.positions(lag / steady.unit[0, 0])
+        if lag < slices.lags[-1] * slices.unit[0, 0]:
+            found = slices.positions(lag / slices.unit[0, 0])
+            inside = (slices.reach[0] == np.inf) & (steady.reach[0] == np.inf)
+            np.testing.assert_allclose(found[inside], expected[inside], atol=0.05)
+
+
+def test_a_change_in_time_is_not_jumped_over_on_the_way_forward() -> None:
+    points, _ = turning(9)
+    gust = np.zeros((9, *points.shape))
+    gust[4] = [1.0, 0.0]
+    field = FlowField.from_arrays(points, gust)
+    found = paths(field, [[2.0, 4.0]], [8.0], step=0, forward=True)
+    np.testing.assert_allclose(found.positions[0], [[3.0, 4.0]], atol=0.02)
+
+
+def test_paths_that_go_round_among_cells_of_all_sizes_are_soon_there() -> None:
+    u, v = np.meshgrid(np.linspace(0, 1, 4), np.linspace(0, 1, 8))
+    points = np.stack([10.0 ** (-12 * u), v**4], axis=-1)
+    velocity = np.stack([-v + 0.5, u - 0.5], axis=-1)
+    field = FlowField.from_arrays(points, velocity, sign_free=True, periodic="ij")
+    with within(2.0):
+        check(SliceStore(field).at(0))
+
+
+@pytest.mark.parametrize("speed", [1e-90, 1e-41, 1e-20, 1e20, 1e41, 1e90])
+@pytest.mark.parametrize("steps", [1, 3])
+def test_slices_do_not_depend_on_the_unit_of_time(speed: float, steps: int) -> None:
+    points, velocity = turning(6)
+    times = np.arange(3.0)[:steps]
+    one, other = (
+        SliceStore(
+            FlowField.from_arrays(points, np.stack([velocity * s] * steps), times=times / s),
+            parameter="time",
+        ).at(0)
+        for s in (1.0, speed)
+    )
+    np.testing.assert_allclose(other.displacement, one.displacement, rtol=1e-2, atol=1e-2)
+    # Half precision holds the reach.
+    assert 0.1 < other.lags[0] < other.lags[-1] < 1e4
+
+
+def test_lags_that_single_precision_does_not_hold_are_refused() -> None:
+    field = FlowField.from_arrays(*turning())
+    with pytest.raises(ValueError, match="lags go from 1e-40 to 1; expected 1e-30 to 1e"):
+        trace(field, lags=[1e-40, 1.0])
+
+
+def test_a_path_of_more_cells_than_single_precision_holds_ends_before() -> None:
+    points, velocity = turning()
+    field = FlowField.from_arrays(points, velocity + 1e40)
+    for compose in (False, True):
+        check(trace(field, lags=[1.0, 2.0], parameter="time", compose=compose))
+
+
+def test_a_field_at_rest_has_lags_to_draw_with() -> None:
+    with pytest.warns(UserWarning, match="plain noise"):
+        field = FlowField.from_arrays(plane(3, 3), np.zeros((3, 3, 2)))
+    assert len(SliceStore(field, parameter="time").lags) == 2

@@ -1,0 +1,243 @@
+"""Tiles of a large surface in the browser: the picture of VTK, without a line where tiles meet."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+from matrix import COLOUR, GROUND, ROOT, SHARE, SIZE, TILTED, difference, straight
+from webgl_page import ClientPage, packed, state
+
+import flowtex
+from flowtex._util.array_types import Bytes
+from flowtex.camera import Camera
+from flowtex.options import Options
+from flowtex.plotting.vtk_camera import apply_camera
+from flowtex.rendering.webgl import ClientData
+from flowtex.tiles import TileKey, TileLoader
+from flowtex.web.export import export, page_text
+from flowtex.web.tiles import packed_tile, tile_loader
+from flowtex.web.view import WebView, web_views
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
+
+LOOK: dict[str, Any] = {"scalars": False, "lighting": False, "color": COLOUR, "samples": 11}
+CAMERAS = {"whole": straight(1.8, (1.0, 0.5)), "near": straight(10, (0.6, 0.2)), "tilted": TILTED}
+
+
+@pytest.fixture(autouse=True)
+def small_root(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let a field of moderate size be a pyramid of four levels."""
+    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 10_000)
+
+
+@cache
+def field() -> flowtex.FlowField:
+    """Two vortices on a bent grid, with a hole."""
+    s, t = np.meshgrid(np.linspace(0, 1, 900), np.linspace(0, 1, 500))
+    x = 2 * (s + 0.06 * np.sin(2 * np.pi * s)) + 0.12 * np.sin(np.pi * t)
+    a, b = np.pi * x, np.pi * t
+    velocity = np.stack([-np.sin(a) * np.cos(b), np.cos(a) * np.sin(b)], axis=-1)
+    velocity[300:340, 250:330] = np.nan
+    return flowtex.FlowField.from_arrays(np.stack([x, t], axis=-1), velocity)
+
+
+@cache
+def viewed(
+    make: Callable[[], flowtex.FlowField] = field, **options: Any
+) -> tuple[WebView, ClientData, TileLoader]:
+    view = web_views(make(), Options.split(background=GROUND, **{**LOOK, **options}))[0]
+    data = view.data()
+    assert data.pyramid is not None
+    return view, data, tile_loader(data, data.pyramid)
+
+
+def mounted(
+    client: ClientPage,
+    camera: Camera,
+    make: Callable[[], flowtex.FlowField] = field,
+    *,
+    tiles: Callable[[TileKey], bool] = lambda key: True,
+    time: float | None = None,
+    **options: Any,
+) -> int:
+    """Show a view whose tiles, or some of them, are made when the client asks for them."""
+    view, data, loader = viewed(make, **options)
+
+    def tile(key: Any, steps: Any) -> Any:
+        if not tiles(TileKey(*key)):
+            return {}
+        loader.request([TileKey(*key)], steps)
+        loader.wait()
+        made = loader.get(TileKey(*key), steps)
+        assert made is not None
+        return packed_tile(data, made, steps)
+
+    client.tile = tile
+    client.tiles.clear()
+    header = data.header(view.scene.settings, camera=state(camera), time=time)
+    given = packed(data, header, tuple(range(data.steps)))
+    return client.mount(given, SIZE, controls=False, smooth=False)
+
+
+def drawn_by_vtk(
+    plotter: Any,
+    camera: Camera,
+    make: Callable[[], flowtex.FlowField] = field,
+    time: float | None = None,
+    **options: Any,
+) -> Bytes:
+    plotter.window_size = list(SIZE)
+    plotter.set_background(GROUND)
+    handle = plotter.flowtex.add(make(), **{**LOOK, **options})
+    if time is not None:
+        handle.time = time
+    apply_camera(camera, plotter.camera)
+    plotter.camera_set = True
+    plotter.renderer.reset_camera_clipping_range()
+    return np.asarray(plotter.screenshot(return_img=True))[..., :3]
+
+
+def layers(client: ClientPage, viewer: int) -> list[str]:
+    """Names of what is drawn, the root as that of its level."""
+    found = "(n) => viewers[n].tiles.layers.map(({ key }) => key.join('/'))"
+    return list(client.page.evaluate(found, viewer))
+
+
+@pytest.mark.browser
+@pytest.mark.parametrize("name", CAMERAS)
+def test_the_picture_is_that_of_vtk(client: ClientPage, plotter: Any, name: str) -> None:
+    camera = CAMERAS[name]
+    viewer = mounted(client, camera)
+    client.complete(viewer)
+    theirs, ours = client.pixels(viewer), drawn_by_vtk(plotter, camera)
+    assert len(layers(client, viewer)) > 1
+    root, share, only_one = difference(theirs, ours)
+    # A line where tiles meet would be some of the pixels, and many steps of 8 bits.
+    assert root < ROOT
+    assert share < SHARE
+    assert only_one <= 3
+
+
+@pytest.mark.browser
+def test_colours_and_places_are_those_of_the_tiles(client: ClientPage, plotter: Any) -> None:
+    options = {"scalars": "speed", "cmap": "viridis", "strength": 0.0}
+    viewer = mounted(client, CAMERAS["near"], **options)
+    client.complete(viewer)
+    theirs = client.pixels(viewer)
+    ours = drawn_by_vtk(plotter, CAMERAS["near"], **options, show_scalar_bar=False)
+    off = np.abs(theirs.astype(int) - ours).max(axis=-1)
+    assert (off > 3).mean() < 0.01
+    client.page.wait_for_function("(n) => viewers[n].canPick", arg=viewer)
+    point = client.page.evaluate("(n) => viewers[n].point(0.3, -0.2)", viewer)
+    i, j = point["index"]
+    near = field().points[round(j), round(i)]
+    assert np.abs(near - point["position"]).max() < 0.005
+    speed = field().speed[0, round(j), round(i)]
+    assert point["values"]["speed"] == pytest.approx(speed, abs=0.01)
+
+
+@pytest.mark.browser
+def test_coarse_first_and_finer_where_the_view_goes(client: ClientPage) -> None:
+    viewer = mounted(client, CAMERAS["near"], tiles=lambda key: False)
+    client.sharp(viewer)
+    coarse = client.pixels(viewer)
+    assert layers(client, viewer) == ["3/0/0"]
+    client.page.wait_for_function("(n) => viewers[n].tiles.missing.length", arg=viewer)
+    client.clear()
+    viewer = mounted(client, CAMERAS["near"])
+    client.complete(viewer)
+    first = client.tiles.copy()
+    assert {key[0] for key in first} == {0}
+    assert set(layers(client, viewer)) == {"3/0/0", "0/0/0", "0/0/1"}
+    # Noise goes on from level to level: where a flow is smooth nothing jumps.
+    assert np.abs(client.pixels(viewer).astype(int) - coarse).mean() < 1
+    # Aside other tiles are asked for, and those that are there are not.
+    aside = state(straight(10, (1.6, 0.2)))
+    client.page.evaluate("([n, camera]) => viewers[n].setCamera(camera)", [viewer, aside])
+    client.page.wait_for_function("(n) => viewers[n].tiles.missing.length", arg=viewer)
+    client.complete(viewer)
+    later = client.tiles[len(first) :]
+    assert later
+    assert not set(later) & set(first)
+
+
+@pytest.mark.browser
+def test_a_page_holds_the_tiles_that_fit(
+    webgl_browser: Browser, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("flowtex.web.export.TILE_BYTES", 3_500_000)
+    made = export(field(), tmp_path / "page.html", zoom=10, focus=(0.6, 0.2), **LOOK)
+    assert made.nbytes == pytest.approx(made.estimated, rel=0.5)
+    page = webgl_browser.new_page(viewport={"width": 300, "height": 200})
+    asked: list[str] = []
+    page.on("request", lambda request: asked.append(request.url))
+    page.goto(made.path.as_uri())
+    page.wait_for_selector('[data-tiles="0"][data-sharp="true"]')
+    text = made.path.read_text("utf-8")
+    assert "tile/2/0/0/slices/0" in text
+    assert "tile/1/" not in text
+    assert not [address for address in asked if not address.startswith(("file:", "blob:", "data:"))]
+    page.close()
+
+
+def test_a_page_without_room_has_no_tiles(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("flowtex.web.export.TILE_BYTES", 0)
+    text = page_text([viewed()[0]])
+    assert "tile/2/0/0" not in text
+    assert '"pyramid":null' in text
+
+
+@cache
+def swinging() -> flowtex.FlowField:
+    """A vortex that wanders, at three times."""
+    y, x = np.mgrid[-1:1:200j, -1:1:260j]
+    steps = [np.stack([-(y - 0.2 * t), x - 0.1 * t * t], axis=-1) for t in (0.0, 1.0, 2.0)]
+    return flowtex.FlowField.from_arrays(np.stack([x, y], -1), np.stack(steps), times=[0, 0.4, 0.8])
+
+
+@pytest.mark.browser
+def test_tiles_of_the_times_around_that_of_the_view(client: ClientPage, plotter: Any) -> None:
+    camera = straight(6, (-0.3, 0.1))
+    viewer = mounted(client, camera, swinging, time=0.55)
+    client.complete(viewer)
+    assert len(layers(client, viewer)) > 1
+    root, share, _ = difference(
+        client.pixels(viewer), drawn_by_vtk(plotter, camera, swinging, time=0.55)
+    )
+    assert root < ROOT
+    assert share < SHARE
+    # Of the next moment one step is there already, and only the other is asked for.
+    client.page.evaluate("(n) => viewers[n].setTime(0.2)", viewer)
+    client.page.wait_for_function("(n) => viewers[n].tiles.missing.length", arg=viewer)
+    client.complete(viewer)
+    asked = [address for address in client.asked if "tiles.test" in address]
+    assert asked[-1].endswith(",[0]]")
+
+
+@cache
+def ball() -> flowtex.FlowField:
+    """Most of a sphere, over which everything turns."""
+    a, b = np.meshgrid(np.linspace(0, 2 * np.pi, 801), np.linspace(-1.3, 1.3, 500))
+    points = np.stack([np.cos(a) * np.cos(b), np.sin(a) * np.cos(b), np.sin(b)], axis=-1)
+    velocity = np.stack([-np.sin(a), np.cos(a), 0.3 * np.cos(b)], axis=-1)
+    return flowtex.FlowField.from_arrays(points, velocity)
+
+
+@pytest.mark.browser
+def test_no_crack_opens_where_some_tiles_are_there(client: ClientPage) -> None:
+    camera = Camera((1.6, -1.0, 0.7), (0.0, 0.0, 0.0), (0, 0, 1))
+    viewer = mounted(client, camera, ball, tiles=lambda key: sum(key) % 3 > 0)
+    client.page.wait_for_function("(n) => viewers[n].tiles.layers.length > 3", arg=viewer)
+    client.sharp(viewer)
+    ground = (client.pixels(viewer) == np.rint(255 * np.array(GROUND))).all(axis=-1)
+    assert {name[0] for name in layers(client, viewer)} >= {"3", "1"}
+    # From the first to the last pixel of the ball in each row there is no ground.
+    for row in ground[~ground.all(axis=1)]:
+        inside = np.flatnonzero(~row)
+        assert not row[inside[0] : inside[-1]].any()

@@ -1,0 +1,146 @@
+"""Tiles that a client asks the kernel for."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+
+from flowtex.options import Options
+from flowtex.rendering.webgl.protocol import Header
+from flowtex.tiles import Pyramid
+from flowtex.web.view import web_views
+from flowtex.widget.views import Views
+
+PATIENCE_S = 60.0
+
+
+def swirl(times: int = 1) -> Any:
+    """A vortex that wanders, and nothing in a corner."""
+    import flowtex
+
+    y, x = np.mgrid[-1:1:300j, -1:1:600j]
+    steps = [np.stack([-(y - 0.1 * t), x], axis=-1) for t in range(times)]
+    steps[0][:290, :290] = np.nan
+    return flowtex.FlowField.from_arrays(np.stack([x, y], axis=-1), np.stack(steps))
+
+
+class Client:
+    """What a client would have received."""
+
+    def __init__(self, field: Any, **options: Any) -> None:
+        self.header: Header = {}
+        self.arrays: dict[str, Any] = {}
+        self.order: list[str] = []
+        self.seen, self.errors = 0, []
+        views = web_views(field, Options.split(samples=9, **options))
+        self.views = Views(views, lambda number, header: self._take(header), self._receive)
+        self.header = self.views.headers[0]
+        self.views.start()
+        self.views.handle_message({"kind": "ready"})
+        self.wait(lambda: bool(self.header["pyramid"]))
+
+    def _take(self, header: Header) -> None:
+        self.header = header
+
+    def _receive(self, message: dict[str, Any], buffers: list[Any]) -> None:
+        if message["kind"] == "error":
+            self.errors.append(message["text"])
+        if message["kind"] == "tiles":
+            self.seen = message["seen"]
+        for info, data in zip(message.get("parts", ()), buffers, strict=False):
+            array = np.frombuffer(data, info["dtype"]).reshape(info["shape"])
+            self.arrays[info["name"]] = array
+            self.order.append(info["name"])
+
+    def ask(self, *keys: tuple[int, int, int], steps: tuple[int, ...] = (0,)) -> None:
+        self.views.handle_message(
+            {"kind": "tiles", "keys": list(map(list, keys)), "steps": list(steps)}
+            | {"seen": self.seen, "view": 0}
+        )
+
+    def wait(self, ready: Callable[[], bool]) -> None:
+        end = time.monotonic() + PATIENCE_S
+        while not ready():
+            assert time.monotonic() < end, self.order
+            time.sleep(0.01)
+
+
+@pytest.fixture
+def make(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[..., Client]]:
+    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 20_000)
+    made: list[Client] = []
+
+    def call(*arguments: Any, **options: Any) -> Client:
+        made.append(Client(*arguments, **options))
+        return made[-1]
+
+    yield call
+    for client in made:
+        client.views.close()
+
+
+def test_tiles_come_with_all_that_draws_them(make: Callable[..., Client]) -> None:
+    client = make(swirl(2), scalars="speed", clim=(0.0, 1.0))
+    pyramid = client.header["pyramid"]
+    assert pyramid["depth"] == 2
+    assert pyramid["shapes"] == [[300, 600], [151, 301], [76, 151]]
+    client.ask((0, 0, 1), (0, 0, 0), steps=(0, 1))
+    client.wait(lambda: client.seen == 4)
+    own = json.loads(client.arrays["tile/0/0/1/header"].tobytes())
+    rows, columns = own["geometry"]["shape"]
+    assert (rows, columns) == (257, 257)
+    slices = client.arrays["tile/0/0/1/slices/1"]
+    assert slices.shape[0] == own["slices"]["count"]
+    assert slices.shape[1] == own["geometry"]["rows"]["size"]
+    assert client.arrays["tile/0/0/1/position"].shape == (257, 257, 3)
+    speed = swirl(2).speed[1, :257, 256:513]
+    np.testing.assert_allclose(client.arrays["tile/0/0/1/scalars/1"], speed, rtol=1e-6)
+    # Of a tile without cells there is nothing to draw.
+    assert client.arrays["tile/0/0/0/header"].tobytes() == b"null"
+    assert "tile/0/0/0/position" not in client.arrays
+
+
+def test_what_was_dropped_is_sent_again_and_what_is_on_its_way_is_not(
+    make: Callable[..., Client],
+) -> None:
+    client = make(swirl())
+    client.ask((1, 0, 1))
+    client.wait(lambda: client.seen == 1)
+    sent = client.order.count("tile/1/0/1/header")
+    client.ask((1, 0, 1))  # it has seen the tile, and so it has dropped it
+    client.wait(lambda: client.seen == 2)
+    assert client.order.count("tile/1/0/1/header") == sent + 1
+    client.seen = 1  # as if the second had not come yet
+    client.ask((1, 0, 1), (1, 0, 0))
+    client.wait(lambda: client.seen == 3)
+    assert client.order.count("tile/1/0/1/header") == sent + 1
+
+
+def test_errors_are_told_once(make: Callable[..., Client], monkeypatch: pytest.MonkeyPatch) -> None:
+    client = make(swirl())
+
+    def fail(*arguments: Any) -> None:
+        msg = "the disk is gone"
+        raise OSError(msg)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Pyramid, "textures", fail)
+        client.ask((1, 0, 1))
+        client.wait(lambda: bool(client.errors))
+    client.ask((1, 0, 1), (1, 0, 0))
+    client.wait(lambda: client.seen > 0)
+    assert client.errors == ["OSError: the disk is gone"]
+
+
+@pytest.mark.parametrize("keys", [None, [1], [[0, "a", 0]], [[0, 0]]])
+def test_what_cannot_be_meant_is_not_answered(make: Callable[..., Client], keys: Any) -> None:
+    client = make(swirl())
+    client.views.handle_message({"kind": "tiles", "keys": keys, "steps": [0], "seen": 0})
+    client.ask((1, 0, 1))
+    client.wait(lambda: client.seen == 1)
+    assert client.errors == []
