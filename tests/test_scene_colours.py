@@ -52,7 +52,8 @@ def test_a_logarithm_is_refused_for_what_has_none() -> None:
 
 
 def test_a_change_is_told_and_a_wrong_one_changes_nothing() -> None:
-    scene, told = Scene.of(field(SIGNED)), []
+    scene = Scene.of(field(SIGNED))
+    told: list[str] = []
     scene.observe(told.append)
     scene.appearance = replace(scene.appearance, scalars="p", cmap="magma")
     assert told == ["appearance"] and scene.scalar_limits == (-1.0, 3.0)

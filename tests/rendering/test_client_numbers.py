@@ -171,7 +171,7 @@ def test_uniforms_for_the_client() -> None:
 
 
 #: Settings on which the mean colours of a picture depend.
-SHADINGS: list[dict[str, float]] = [{}, {"strength": 1.0}, {"contrast": 3.0}, {"strength": 0.0}]
+SHADINGS: list[dict[str, Any]] = [{}, {"strength": 1.0}, {"contrast": 3.0}, {"strength": 0.0}]
 
 
 def test_mean_colours_for_the_client() -> None:

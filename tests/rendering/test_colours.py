@@ -59,7 +59,7 @@ def test_more_contrast_is_more_contrast(values: Floats) -> None:
 @pytest.mark.parametrize("options", [{}, {"strength": 0.4}, {"contrast": 2.0}])
 @pytest.mark.parametrize("name", ["viridis", "coolwarm"])
 def test_a_legend_has_the_mean_colours_of_shaded_noise(
-    name: str, options: dict[str, float], values: Floats
+    name: str, options: dict[str, Any], values: Floats
 ) -> None:
     settings, table = Settings(**options), colour_table(name)[::15]
     even = (values - values.mean()) / values.std()
