@@ -167,7 +167,7 @@ def _mixed(pyramid: Pyramid, rng: np.random.Generator) -> list[tuple[Region, Mes
                 for some, at in zip(lines, key[1:], strict=True)
             ]
         mesh = MeshLevels(
-            pyramid.field.points[np.ix_(*lines)], whole([len(some) for some in lines])
+            pyramid.field.points[np.ix_(*lines)], whole((len(lines[0]), len(lines[1])))
         )
         levels = rng.integers(0, len(mesh.error), mesh.error.shape[1:])
         region = Region(level, place[0] << level, place[1] << level, levels)

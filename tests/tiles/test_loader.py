@@ -42,7 +42,8 @@ class Source:
     """A pyramid of such."""
 
     def __init__(self, broken: TileKey | None = None) -> None:
-        self.broken, self.go, self.began = broken, threading.Event(), []
+        self.broken, self.go = broken, threading.Event()
+        self.began: list[tuple[TileKey, int]] = []
 
     def textures(self, key: TileKey, spare: int = 1) -> Any:
         del spare
@@ -58,7 +59,7 @@ def test_a_tile_is_there_once_it_is_made() -> None:
     source: Any = Source()
     told: list[int] = []
     loader = TileLoader(
-        source, prepare=lambda textures: textures.key, notify=lambda: told.append(1)
+        source, prepare=lambda textures: vars(textures)["key"], notify=lambda: told.append(1)
     )
     loader.request(KEYS[:2], [0, 1])
     assert loader.busy

@@ -43,7 +43,7 @@ def whole_layers(field: FlowField, like: TextureSet, step: int = 0) -> Floats:
         SliceStore(field, slices=slices),
         whole_speed=like.whole_speed,
     )
-    layers = textures.layers(step) * 1.0
+    layers = textures.layers(step).astype(np.float64)
     layers[0, ..., 3] *= textures.unit / like.unit
     rows, columns = textures.geometry.rows, textures.geometry.columns
     return layers[
@@ -205,6 +205,7 @@ def test_a_tile_does_not_depend_on_the_unit_of_time(speed: float) -> None:
             cut.append(is_cut(tile, 0))
             product = tile.store.lags[:, None, None] * tile.store.unit * tile.pace
             assert tile.longest <= product[-1].max() < 8 * tile.longest
+        assert tile is not None
         layers.append(nodal(tile))
     assert cut == [True, False] * 2
     np.testing.assert_allclose(layers[1][..., :3], layers[0][..., :3], rtol=1e-2, atol=1e-2)

@@ -126,7 +126,7 @@ def test_the_picture_is_that_of_vtk(client: ClientPage, plotter: Any, name: str)
 
 @pytest.mark.browser
 def test_colours_and_places_are_those_of_the_tiles(client: ClientPage, plotter: Any) -> None:
-    options = {"scalars": "speed", "cmap": "viridis", "strength": 0.0}
+    options: dict[str, Any] = {"scalars": "speed", "cmap": "viridis", "strength": 0.0}
     viewer = mounted(client, CAMERAS["near"], **options)
     client.complete(viewer)
     theirs = client.pixels(viewer)

@@ -36,7 +36,8 @@ class Client:
         self.header: Header = {}
         self.arrays: dict[str, Any] = {}
         self.order: list[str] = []
-        self.seen, self.errors = 0, []
+        self.seen = 0
+        self.errors: list[Any] = []
         views = web_views(field, Options.split(samples=9, **options))
         self.views = Views(views, lambda number, header: self._take(header), self._receive)
         self.header = self.views.headers[0]

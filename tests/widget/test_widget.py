@@ -363,7 +363,7 @@ def test_show_displays_a_widget_in_marimo(make: Make, monkeypatch: pytest.Monkey
     marimo = types.SimpleNamespace(
         running_in_notebook=lambda: True, output=types.SimpleNamespace(append=shown.append)
     )
-    monkeypatch.setitem(sys.modules, "marimo", marimo)  # type: ignore[arg-type]
+    monkeypatch.setitem(sys.modules, "marimo", marimo)
     widget = flowtex.show(gyre(), samples=9)
     assert shown == [widget]
     assert isinstance(widget, FlowWidget)
@@ -384,7 +384,7 @@ def test_boxes_have_the_pictures_of_what_is_in_them(
     )
     first, other = make(), make()
     first._handle_custom_msg({"kind": "frame"}, [memoryview(b"\xff\xd8one")])
-    format_ = shell.display_formatter.format
+    format_: Any = shell.display_formatter.format
     assert format_(VBox([HBox([first, Button()]), other])) == ({}, {})
     (_, view), (name, still) = shown
     assert view["application/vnd.jupyter.widget-view+json"]["model_id"]

@@ -72,7 +72,7 @@ class Seen(Viewport):
 
     @property
     def handle(self) -> Any:
-        return SimpleNamespace(time=self.field.times[0])
+        return SimpleNamespace(time=self.field.times[0], scene=SimpleNamespace(whole=self.field))
 
 
 def view_of(field: FlowField, **settings: object) -> Scene:
