@@ -435,7 +435,8 @@ input[type="range"]::-moz-range-thumb {
 .swatches button { width: auto; height: 16px; border-radius: 4px; box-shadow: inset 0 0 0 1px var(--edge); }
 .swatches button[aria-pressed="true"] { box-shadow: 0 0 0 2px var(--ground), 0 0 0 4px var(--accent); }
 .between { display: flex; align-items: center; gap: 4px; }
-.between input { width: 62px; appearance: textfield; -moz-appearance: textfield; }
+.between input[type="number"] { width: 64px; padding-inline: 4px; appearance: textfield; }
+.between input::-webkit-inner-spin-button { appearance: none; }
 .between input:invalid { outline: 2px solid #d43d3d; outline-offset: -1px; }
 button.link { width: auto; height: 24px; padding: 0 6px; font: inherit; }
 select, input[type="number"] {

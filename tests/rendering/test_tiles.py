@@ -164,7 +164,7 @@ def test_tiles_have_the_colours_of_this_moment(_tiled: None) -> None:
             plotter.render()
             pictures[-1] = plotter.screenshot(return_img=True)
         plotter.close()
-    changed, made = (picture.astype(int) for picture in pictures)
+    changed, made = (np.asarray(picture).astype(int) for picture in pictures)
     assert np.abs(changed - made).max() <= 2
 
 
