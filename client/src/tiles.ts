@@ -107,6 +107,7 @@ export class Tiles {
     const { graphics, header } = this.root;
     const tile = this.tiles.get(name) ?? this.emptyTile();
     this.tiles.set(name, tile);
+    if (part.name === "mesh") this.giveLimits(tile);
     if (part.digest && tile.parts.get(part.name)?.digest === part.digest) return;
     graphics.release(tile.parts.get(part.name));
     tile.parts.set(part.name, graphics.hold(part));
@@ -116,10 +117,7 @@ export class Tiles {
       tile.scene = own && new Scene(graphics, { ...header, ...own, pyramid: null }, tile.parts);
       this.giveMap(tile);
       this.giveLimits(tile);
-    } else {
-      if (part.name === "mesh") this.giveLimits(tile);
-      tile.scene?.forget(part.name);
-    }
+    } else tile.scene?.forget(part.name);
     this.lastCame = performance.now();
     const { names, steps } = this.chosen;
     this.missing = this.missing.filter((missing) => !this.isHere(missing, steps));

@@ -837,11 +837,11 @@ this.bindTextures(before,after)),this.bindNodes(before,after,anchor),gl.drawElem
 dex")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(null)}};var REQUEST_MS=60,LOST_MS=8e3,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD=4,Tiles=class{layers=[];missing=[];host;root;tiles=new Map;pyramid=null;chosen={
 choices:new Map,steps:[],names:""};drawn="";asked={names:[],steps:[]};count=0;isWaiting=!1;isOver=!1;lastCame=0;constructor(host,root){
 this.host=host,this.root=root}dispose(){this.isOver=!0;for(let name of[...this.tiles.keys()])this.drop(name)}setPart(name,part){
-let{graphics,header}=this.root,tile=this.tiles.get(name)??this.emptyTile();if(this.tiles.set(name,tile),part.digest&&tile.
-parts.get(part.name)?.digest===part.digest)return;if(graphics.release(tile.parts.get(part.name)),tile.parts.set(part.name,
-graphics.hold(part)),part.name==="header"){let own=JSON.parse(new TextDecoder().decode(part.data));tile.scene?.dispose(),
-tile.scene=own&&new Scene(graphics,{...header,...own,pyramid:null},tile.parts),this.giveMap(tile),this.giveLimits(tile)}else
-part.name==="mesh"&&this.giveLimits(tile),tile.scene?.forget(part.name);this.lastCame=performance.now();let{names,steps}=this.
+let{graphics,header}=this.root,tile=this.tiles.get(name)??this.emptyTile();if(this.tiles.set(name,tile),part.name==="mes\
+h"&&this.giveLimits(tile),part.digest&&tile.parts.get(part.name)?.digest===part.digest)return;if(graphics.release(tile.parts.
+get(part.name)),tile.parts.set(part.name,graphics.hold(part)),part.name==="header"){let own=JSON.parse(new TextDecoder().
+decode(part.data));tile.scene?.dispose(),tile.scene=own&&new Scene(graphics,{...header,...own,pyramid:null},tile.parts),
+this.giveMap(tile),this.giveLimits(tile)}else tile.scene?.forget(part.name);this.lastCame=performance.now();let{names,steps}=this.
 chosen;this.missing=this.missing.filter(missing=>!this.isHere(missing,steps));let shown=cover(this.chosen.choices,other=>this.
 isHere(other,steps));String([...shown.keys()])!==names&&this.host.refine()}recolour(colours={}){this.asked={names:[],steps:[]};
 let{mesh,scalars}=this.root.header,{steps}=this.chosen;for(let tile of this.tiles.values()){let{scene,parts}=tile;if(!scene)

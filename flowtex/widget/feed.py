@@ -133,7 +133,7 @@ class Feed:
 
     def _send_tile(self, scene: ClientData, parts: Parts, number: int) -> None:
         with self._lock:
-            if scene.textures is self.scene.textures and not self._closed:
+            if scene is self.scene and not self._closed:
                 self._deliver(parts, again=True, offer=False)
                 self._send({"kind": "tiles", "seen": number}, [])
 

@@ -54,8 +54,10 @@ class TileFeed:
                 )
 
     def recolour(self, scene: ClientData) -> None:
-        """Send the same tiles in other colours from now on."""
-        self._scene = scene
+        """Send the same tiles in other colours from now on; what is on its way has the old ones."""
+        with self._lock:
+            self._scene, self._sent = scene, {}
+        self._worker.do(self._send_ready, urgency=1)
 
     def forget(self) -> None:
         """Begin anew with a client that has nothing."""
@@ -94,7 +96,7 @@ class TileFeed:
             if tile is None and failed is None:
                 continue
             with self._lock:
-                if job not in self._wanted:
+                if job not in self._wanted or scene is not self._scene:
                     continue
                 self._wanted.remove(job)
                 self._count += 1

@@ -137,6 +137,7 @@ def test_tiles_in_other_colours_are_not_traced_again(
     scene = client.views.first
     scene.appearance = replace(scene.appearance, scalars="depth", clim=(0.0, 3.0))
     client.wait(lambda: "scalars/0/1" in client.arrays)
+    client.seen = 0  # what is on its way has other colours
     client.ask((0, 0, 1))
     client.wait(lambda: client.seen == 2)
     assert (client.header["scalars"]["name"], client.header["generation"]) == ("depth", generation)
