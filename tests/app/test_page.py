@@ -210,7 +210,7 @@ def test_colours_and_their_range(page: Page) -> None:
     assert settled(page, before).mean() < 0.7 * magma.mean()
     assert "100" in page.inner_text(".flowtex-bar")
     before = count(page)
-    page.get_by_text("auto", exact=True).click()
+    page.locator("button.flowtex-link").get_by_text("auto", exact=True).click()
     assert difference(settled(page, before), magma) < 1
 
 

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -28,10 +29,12 @@ def some_times(field: FlowField, count: int) -> FlowField:
     return replace(field, velocity=field.velocity[:count], times=field.times[:count])
 
 
+#: As the paper follows those of a flow that varies in time.
+PATHLINES: dict[str, Any] = {"two_sided": False, "progress": False}
 FLOWS: dict[str, Callable[[], TraceSlices]] = {
     "steady gyre": lambda: trace(double_gyre_field(shape=(31, 61)), progress=False),
-    "gyre": lambda: trace(some_times(double_gyre_field(True, shape=(21, 41)), 9), progress=False),
-    "cylinder": lambda: trace(some_times(cylinder_field().downsample(4), 6), progress=False),
+    "gyre": lambda: trace(some_times(double_gyre_field(True, shape=(21, 41)), 9), **PATHLINES),
+    "cylinder": lambda: trace(some_times(cylinder_field().downsample(4), 6), **PATHLINES),
     "airfoil, ended paths": lambda: trace(airfoil_field((25, 65)), progress=False),
 }
 
