@@ -244,8 +244,8 @@ class Feed:
             if self._closed:
                 return
             self.scene = scene
-            self._announce(self.header)
             self._tiles.recolour(scene)
+            self._announce(self.header)
             if self._live:
                 kept = ("slices/", "extra/")
                 colours = {n: part for n, part in parts.items() if not n.startswith(kept)}

@@ -258,7 +258,8 @@ def test_an_error_while_tracing_is_told(
     monkeypatch.setattr(widget._views.views[0], "data", fail)
     widget.noise = "spots"
     heard.wait(lambda: any(m["kind"] == "error" for m in heard.messages))
-    assert heard.messages[-1]["text"] == "MemoryError: out of memory"
+    told = [m["text"] for m in heard.messages if m["kind"] == "error"]
+    assert told == ["MemoryError: out of memory"]
     assert "out of memory" in capsys.readouterr().err
 
 
