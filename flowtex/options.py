@@ -11,7 +11,6 @@ the docstring of a function, so that ``help`` and an editor show them there.
 
 from __future__ import annotations
 
-import difflib
 import inspect
 import math
 import textwrap
@@ -20,12 +19,17 @@ from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any, TypeVar
 
+from flowtex._util.colours import DEFAULT_CMAP, colour_table, rgb
+from flowtex._util.names import near_names
 from flowtex.camera import Camera
 from flowtex.errors import raise_faults
 from flowtex.field import FlowField, Surface
 from flowtex.settings import TABLE, Settings, SettingsError
 
 __all__ = [
+    "NO_VALUE_COLOR",
+    "ROBUST",
+    "SPEED",
     "Appearance",
     "FieldOptions",
     "Options",
@@ -36,6 +40,11 @@ __all__ = [
 
 #: Colour of a surface that is coloured by nothing: a grey that can go darker and lighter.
 PLAIN_COLOR = "#a0a0a0"
+#: Colour where there is no value, as in PyVista.
+NO_VALUE_COLOR = "darkgray"
+
+#: The scalar that every flow has, and the range of colours without outliers.
+SPEED, ROBUST = "speed", "robust"
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -88,14 +97,14 @@ class FieldOptions:
         return mesh
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False)  # arrays are not compared
 class Appearance:
     """How the surface looks under the texture.
 
     Raises
     ------
     ValueError
-        When the opacity or the range is none.
+        When there is no such colour map or colour, or the opacity or the range is none.
     """
 
     scalars: str | bool | None = _option(
@@ -108,11 +117,18 @@ class Appearance:
         "Colour map: a name, a map of matplotlib's, a table of PyVista's, or an array (N, 3 or "
         "4), uint8 or from 0 to 1; viridis by default.",
     )
-    clim: tuple[float, float] | None = _option(
-        None, "Values at the ends of the colour map; by default the range over all times."
+    clim: tuple[float, float] | str | None = _option(
+        None,
+        "Values at the ends of the colour map; by default the range over all times, with zero in "
+        "the middle where the map diverges, such as coolwarm, and the values have both signs. "
+        '``"robust"`` leaves 2 % out at either end.',
+    )
+    log_scale: bool = _option(
+        default=False, text="Whether colours go by the logarithm, for values above 0."
     )
     color: Any = _option(PLAIN_COLOR, "Colour of a plain surface, as PyVista takes it.")
     opacity: float = _option(1.0, "1 is opaque, 0 invisible.")
+    visible: bool = _option(default=True, text="Whether the surface is drawn.")
     lighting: bool | None = _option(
         None, "Whether the surface is lit; by default a curved one is and a flat one is not."
     )
@@ -129,31 +145,47 @@ class Appearance:
     )
 
     def __post_init__(self) -> None:
-        """Check the values."""
+        """Check the values, and have those that stand for others as these."""
         faults = []
+        if self.scalars is None or self.scalars is True:
+            object.__setattr__(self, "scalars", SPEED)
+        elif self.scalars is not False and not isinstance(self.scalars, str):
+            faults.append(f"scalars is {self.scalars!r}; expected the name of an array, or False")
+        if self.cmap is None:
+            object.__setattr__(self, "cmap", DEFAULT_CMAP)
         if not _is_between(self.opacity, 0, 1):
             faults.append(f"opacity is {self.opacity!r}; expected a number from 0 to 1")
-        if self.clim is not None:
+        if self.clim is not None and not (isinstance(self.clim, str) and self.clim == ROBUST):
             try:
                 low, high = (float(value) for value in self.clim)
             except (TypeError, ValueError, OverflowError):
                 low = high = math.nan
-            if not math.isfinite(low + high):
-                faults.append(f"clim is {self.clim!r}; expected two numbers, (low, high)")
-            object.__setattr__(self, "clim", (low, high))
+            if not (low < high and math.isfinite(low + high)):
+                faults.append(
+                    f"clim is {self.clim!r}; expected two numbers, (low, high), the lower one "
+                    f'first, or "{ROBUST}"'
+                )
+            elif not (isinstance(self.clim, tuple) and self.clim == (low, high)):
+                object.__setattr__(self, "clim", (low, high))
+        checks = ((colour_table, self.cmap, DEFAULT_CMAP), (rgb, self.color, PLAIN_COLOR))
+        for check, value, default in checks:
+            if value is not default:  # which loads nothing
+                try:
+                    check(value)
+                except ValueError as error:
+                    faults.append(str(error))
         raise_faults(faults, ValueError)
 
     @property
     def scalar_name(self) -> str | None:
         """Name of what the surface is coloured by; ``None`` for a plain one."""
-        if self.scalars is False:
-            return None
-        return self.scalars if isinstance(self.scalars, str) else "speed"
+        return self.scalars if isinstance(self.scalars, str) else None
 
     @property
     def has_bar(self) -> bool:
         """Whether there is a legend."""
-        return self.image is None if self.show_scalar_bar is None else self.show_scalar_bar
+        shown = self.image is None if self.show_scalar_bar is None else self.show_scalar_bar
+        return shown and self.visible
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -241,9 +273,7 @@ class Options:
         known = (*TABLE, *(name for names in accepted.values() for name in names))
         for name in values:
             if name not in TABLE:
-                close = difflib.get_close_matches(name, known, n=1)
-                hint = f"did you mean {close[0]!r}?" if close else f"there are: {', '.join(known)}"
-                msg = f"there is no setting or argument {name!r}; {hint}"
+                msg = f"there is no setting or argument {name!r}; {near_names(name, known)}"
                 raise SettingsError(msg)
         return cls(**parts, settings=values)
 

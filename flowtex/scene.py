@@ -10,24 +10,28 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
 from flowtex._util.array_types import Floats, Floats32
 from flowtex._util.cache import WeakCache, digest
+from flowtex._util.colours import is_diverging
+from flowtex._util.names import near_names
 from flowtex.field import FlowField
 from flowtex.field.interpolation import steps_around
-from flowtex.options import Appearance, FieldOptions, Options
+from flowtex.options import ROBUST, SPEED, Appearance, FieldOptions, Options, option_text
 from flowtex.settings import TABLE, Affects, Settings, SettingsError
 from flowtex.textures import TextureSet
 from flowtex.textures.images import as_picture, load_image
 from flowtex.tiles import Pyramid, shared_pyramid
 from flowtex.trace import SliceStore, TraceSlices, chosen_lines, shared_store
 
-__all__ = ["NO_IMAGE", "Scene", "share_field", "steps_of"]
+__all__ = ["NO_IMAGE", "AppearanceAttributes", "Change", "Scene", "share_field", "steps_of"]
 
-Notice = Callable[[Affects], None]
+#: What has changed: what a setting affects, or the appearance.
+Change = Affects | Literal["appearance"]
+Notice = Callable[[Change], None]
 
 #: Settings that lie in the textures of some kinds of noise, and elsewhere only in uniforms.
 SETTINGS_IN_TEXTURES = {
@@ -40,6 +44,8 @@ SETTINGS_IN_TEXTURES = {
 SAME_VALUE_SHARE = 1e-9
 #: Share of such a value by which its range is widened.
 WIDENED_SHARE = 0.05
+#: Percentiles at the ends of a range without outliers.
+ROBUST_PERCENTILES = (2, 98)
 
 NO_IMAGE = (
     "noise is 'image' and there is no image; give one as image=, or later with set_image(image)"
@@ -83,18 +89,18 @@ class Scene:
     ) -> None:
         self.field = field
         self.settings = settings or Settings()
-        self.appearance = appearance or Appearance()
+        self._appearance = appearance or Appearance()
         self.image: Floats32 | None = None
         if self.appearance.image is not None:
             self.image = as_picture(load_image(self.appearance.image))
         if self.settings.noise == "image" and self.image is None:
             raise SettingsError(NO_IMAGE)
-        if self.scalar_name is not None:
-            steps_of(field, self.scalar_name)
-        self._noise = self.settings.noise
-        self._store: SliceStore | None = None
+        self._ranges: dict[tuple[str, bool, bool], tuple[float, float]] = {}
         self._pyramid: Pyramid | None = None
         self._sliced = slices is not None
+        self._check_colours(self._appearance)
+        self._noise = self.settings.noise
+        self._store: SliceStore | None = None
         if slices is not None:
             self._store = SliceStore(field, slices=slices)
         self._textures: TextureSet | None = None
@@ -145,6 +151,23 @@ class Scene:
         return Scene.from_options(self.field, Options.split("appearance", **values))
 
     @property
+    def appearance(self) -> Appearance:
+        """How the surface looks; set another one to change it, and observers are told.
+
+        An error, as of making a scene, leaves it as it was.
+        """
+        return self._appearance
+
+    @appearance.setter
+    def appearance(self, value: Appearance) -> None:
+        self._check_colours(value)
+        image = None if value.image is self._appearance.image else value.image
+        self._appearance = value
+        if image is not None:
+            self.set_image(image)
+        self._notify("appearance")
+
+    @property
     def is_lit(self) -> bool:
         """Whether the surface is lit; by default a curved one is."""
         lighting = self.appearance.lighting
@@ -156,11 +179,14 @@ class Scene:
         return self.appearance.scalar_name
 
     @property
+    def scalar_names(self) -> tuple[str, ...]:
+        """Names of what the surface can be coloured by."""
+        return tuple(dict.fromkeys((SPEED, *self.field.scalars)))
+
+    @property
     def scalar_limits(self) -> tuple[float, float]:
         """Values at the ends of the colour map."""
-        if self.appearance.clim is not None:
-            return self.appearance.clim
-        return (0.0, 1.0) if self.scalar_name is None else self.scalar_range(self.scalar_name)
+        return self._limits(self.appearance)
 
     @property
     def lines(self) -> str:
@@ -249,17 +275,48 @@ class Scene:
             return np.asarray(steps[0])
         return np.asarray(steps[before] * (1 - share) + steps[after] * share)
 
-    def scalar_range(self, name: str) -> tuple[float, float]:
+    def _limits(self, appearance: Appearance) -> tuple[float, float]:
+        name, chosen = appearance.scalar_name, appearance.clim
+        if isinstance(chosen, tuple):
+            return chosen
+        if name is None:
+            return 0.0, 1.0
+        low, high = self.scalar_range(name, robust=chosen == ROBUST)
+        if low < 0 < high and is_diverging(appearance.cmap):
+            return -max(-low, high), max(-low, high)
+        return low, high
+
+    def _check_colours(self, appearance: Appearance) -> None:
+        """Raise where the field has no such scalar, or none that has a logarithm."""
+        if (name := appearance.scalar_name) is None:
+            return
+        steps_of(self.field, name)
+        low, high = self._limits(appearance) if appearance.log_scale else (1.0, 1.0)
+        if low <= 0:
+            msg = (
+                f"log_scale is for values above 0, and the colours of {name!r} go from {low:g} to "
+                f"{high:g}; give clim=(low, high) with a low above 0, or leave log_scale out"
+            )
+            raise ValueError(msg)
+
+    def scalar_range(self, name: str, *, robust: bool = False) -> tuple[float, float]:
         """Least and greatest value over the valid nodes and all times.
 
-        Where all are the same but for rounding, the range is widened, so that colours do not tell
-        of differences that are none.
+        A robust range leaves 2 % of the values out at either end. Where all are the same but for
+        rounding, the range is widened, so that colours do not tell of differences that are none.
         """
+        key = (name, robust, self.pyramid is None)
+        if key not in self._ranges:
+            self._ranges[key] = self._range_of(name, robust=robust)
+        return self._ranges[key]
+
+    def _range_of(self, name: str, *, robust: bool) -> tuple[float, float]:
         values = self._range_values(name)
         values = values[np.isfinite(values)]
         if not values.size:
             return 0.0, 1.0
-        low, high = float(values.min()), float(values.max())
+        ends = np.percentile(values, ROBUST_PERCENTILES) if robust else (values.min(), values.max())
+        low, high = map(float, ends)
         size = max(abs(low), abs(high))
         if high - low > SAME_VALUE_SHARE * size:
             return low, high
@@ -278,7 +335,7 @@ class Scene:
         A thread can read it while this one goes on.
         """
         scene = Scene(self.field)
-        scene.settings, scene.appearance = self.settings.copy(), self.appearance
+        scene.settings, scene._appearance = self.settings.copy(), self.appearance
         scene.image, scene._noise, scene._time = self.image, self._noise, self._time
         scene._sliced, scene._pyramid = self._sliced, self._pyramid
         scene._store, scene._textures = self.store, self.textures
@@ -292,7 +349,7 @@ class Scene:
         field = share_field(coarsened_field(self.field, nodes))
         scene = Scene(field)
         limits = None if self.scalar_name is None else self.scalar_limits
-        scene.appearance = replace(self.appearance, clim=limits)
+        scene._appearance = replace(self.appearance, clim=limits)
         scene.settings, scene.image = self.settings.copy(), self.image
         scene._noise, scene._time = self._noise, self._time
         parameter, lines = self.settings.parameter, self.lines
@@ -336,9 +393,52 @@ class Scene:
             self._textures = None
         self._notify(affects)
 
-    def _notify(self, affects: Affects) -> None:
+    def _notify(self, affects: Change) -> None:
         for notice in list(self._notices):
             notice(affects)
+
+
+def _attribute(name: str) -> Any:
+    def get(self: AppearanceAttributes) -> Any:
+        return getattr(self.scene.appearance, name)
+
+    def change(self: AppearanceAttributes, value: Any) -> None:
+        self.scene.appearance = replace(self.scene.appearance, **{name: value})
+
+    return property(get, change, doc=option_text(Appearance, name))
+
+
+class AppearanceAttributes:
+    """The appearance of a scene as attributes of what shows it, each to be set at any time.
+
+    Once it is made, other attributes cannot be set, so that a slip of the pen is no silent one.
+    """
+
+    scene: Any
+    _is_made = False
+
+    scalars = _attribute("scalars")
+    cmap = _attribute("cmap")
+    clim = _attribute("clim")
+    log_scale = _attribute("log_scale")
+    color = _attribute("color")
+    opacity = _attribute("opacity")
+    visible = _attribute("visible")
+    lighting = _attribute("lighting")
+    show_scalar_bar = _attribute("show_scalar_bar")
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        """Set an attribute that there is; the error for another one names those that are near."""
+        is_known = name.startswith("_") or hasattr(type(self), name) or name in vars(self)
+        if self._is_made and not is_known:
+            own = [n for n in dir(type(self)) if not n.startswith("_")]
+            msg = f"{type(self).__name__} has no attribute {name!r}"
+            if name in TABLE:
+                msg += f" of its own; it is a setting: settings.{name}"
+            else:
+                msg += f"; {near_names(name, own)}"
+            raise AttributeError(msg)
+        super().__setattr__(name, value)
 
 
 def steps_of(field: FlowField, name: str) -> Floats:
@@ -369,9 +469,12 @@ def share_field(field: FlowField) -> FlowField:
     A notebook shows one mesh many times over, and makes it a field each time.
     """
     words = (field.periodic, field.name, field.length_unit, field.time_unit, field.sign_free)
+    units = tuple(field.units.items())
     positions = () if field.has_position is None else (field.has_position,)
     arrays = (field.points, field.velocity, field.times, field.valid, *positions)
-    key = digest(*arrays, *field.scalars.values(), words=(words, len(positions), *field.scalars))
+    key = digest(
+        *arrays, *field.scalars.values(), words=(words, units, len(positions), *field.scalars)
+    )
     return _fields.get(key, lambda: field)
 
 

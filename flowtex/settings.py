@@ -15,6 +15,8 @@ from contextlib import suppress
 from dataclasses import dataclass, field, fields
 from typing import Any, Literal
 
+from flowtex._util.names import near_names
+
 __all__ = ["GROUPS", "NEEDS", "TABLE", "Affects", "Control", "Setting", "Settings", "SettingsError"]
 
 Affects = Literal["uniform", "shader", "textures", "trace"]
@@ -340,11 +342,7 @@ def setting(name: str) -> Setting:
     """
     if name in TABLE:
         return TABLE[name]
-    import difflib
-
-    close = difflib.get_close_matches(name, TABLE, n=1)
-    hint = f"did you mean {close[0]!r}?" if close else f"there are: {', '.join(TABLE)}"
-    msg = f"there is no setting {name!r}; {hint}"
+    msg = f"there is no setting {name!r}; {near_names(name, TABLE)}"
     raise SettingsError(msg)
 
 

@@ -31,7 +31,7 @@ from flowtex.settings import SettingsError
 def test_each_argument_goes_where_it_belongs() -> None:
     options = Options.split(plane="k=2", cmap="magma", zoom=3, samples=7)
     assert options.field == FieldOptions(plane="k=2")
-    assert options.appearance == Appearance(cmap="magma")
+    assert vars(options.appearance) == vars(Appearance(cmap="magma"))
     assert options.view == ViewOptions(zoom=3)
     assert options.settings == {"samples": 7}
 
@@ -44,8 +44,12 @@ def test_each_argument_goes_where_it_belongs() -> None:
         ({"qqqq": 2}, r"^there is no setting or argument 'qqqq'; there are: samples, "),
         ({"opacity": 2}, r"^opacity is 2; expected a number from 0 to 1$"),
         ({"opacity": None}, r"^opacity is None; expected a number from 0 to 1$"),
-        ({"clim": (1, 2, 3)}, r"^clim is \(1, 2, 3\); expected two numbers, \(low, high\)$"),
-        ({"clim": "ab"}, r"^clim is 'ab'; expected two numbers, \(low, high\)$"),
+        ({"clim": (1, 2, 3)}, r"^clim is \(1, 2, 3\); expected two numbers, \(low, high\), "),
+        ({"clim": "ab"}, r"^clim is 'ab'; expected two numbers, \(low, high\), the lower one fir"),
+        ({"clim": (2, 1)}, r"^clim is \(2, 1\); expected .* the lower one first, or \"robust\"$"),
+        ({"cmap": "virdis"}, r"^there is no colour map 'virdis'; did you mean 'viridis'"),
+        ({"cmap": 3}, r"^there is no colour map 3; expected a name"),
+        ({"color": "greyy"}, r"greyy"),
         ({"opacity": -1, "clim": 3}, r"(?s)^2 things are wrong:.*opacity is -1;.*clim is 3;"),
     ],
 )

@@ -1,12 +1,12 @@
 // The legend of the colours, with a mark at the value under the pointer.
 
+import { rampOf } from "./colours.ts";
 import { dom, numberText } from "./dom.ts";
-import type { Data, Header, Settings } from "./protocol.ts";
+import { shareOf, type Data, type Header, type Settings } from "./protocol.ts";
 import { clamp } from "./vectors.ts";
 
-/** Colours of which the ramp is made, and those of the map. */
+/** Colours of which the ramp is made. */
 const STOPS = 33;
-const COLOURS = 256;
 
 export class Legend {
   readonly element = dom("div", { class: "legend glass", hidden: "" });
@@ -17,12 +17,8 @@ export class Legend {
     const { name, low, high, unit, bar } = header.scalars;
     this.element.hidden = name === null || !bar || !map || Boolean(settings.show_level);
     if (this.element.hidden || !map) return;
-    const stops = Array.from({ length: STOPS }, (_, n) => {
-      const first = 4 * Math.round((n / (STOPS - 1)) * (COLOURS - 1));
-      return `rgb(${map[first]} ${map[first + 1]} ${map[first + 2]})`;
-    });
     const ramp = dom("div", { class: "ramp" }, [this.mark]);
-    ramp.style.background = `linear-gradient(90deg, ${stops.join(", ")})`;
+    ramp.style.background = rampOf(map, header, settings, STOPS);
     this.mark.hidden = true;
     const ends = [low, high].map((value) => dom("span", {}, [numberText(value)]));
     this.element.replaceChildren(
@@ -35,7 +31,6 @@ export class Legend {
   point(header: Header | null, value = NaN): void {
     this.mark.hidden = !header || !Number.isFinite(value);
     if (!header || this.mark.hidden) return;
-    const { low, high } = header.scalars;
-    this.mark.style.left = `${100 * clamp((value - low) / (high - low || 1), 0, 1)}%`;
+    this.mark.style.left = `${100 * clamp(shareOf(header.scalars)(value), 0, 1)}%`;
   }
 }

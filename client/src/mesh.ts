@@ -1,6 +1,6 @@
 // The nodes of a surface as the arrays of a draw call, and values between nodes.
 
-import type { Data, Geometry, Padding, Paper } from "./protocol.ts";
+import { shareOf, type Data, type Geometry, type Header, type Padding, type Paper } from "./protocol.ts";
 import type { Vector } from "./vectors.ts";
 
 /** What a node without a value has, far below every colour map. */
@@ -36,12 +36,12 @@ export function noiseCoordinates({ alongI, alongJ }: Paper): Float32Array {
 }
 
 /** Values before and after, for each node, as shares of the colour map's range. */
-export function shares(steps: Data[], low: number, high: number, nodes: number): Float32Array {
+export function shares(steps: Data[], scalars: Header["scalars"], nodes: number): Float32Array {
   const result = new Float32Array(2 * nodes);
-  const span = high - low || 1;
+  const place = shareOf(scalars);
   steps.forEach((values, k) => {
     for (let n = 0; n < nodes; n += 1) {
-      const share = (values[n] - low) / span;
+      const share = place(values[n]);
       result[2 * n + k] = Number.isFinite(share) ? share : NO_VALUE;
     }
   });

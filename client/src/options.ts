@@ -1,6 +1,7 @@
 // What a host sets of a view, and what a view reports to its host.
 
 import type { CameraState } from "./camera.ts";
+import type { ColourChoice } from "./colours.ts";
 import type { Point } from "./picking.ts";
 import type { Value } from "./protocol.ts";
 import type { TileKey } from "./tilechoice.ts";
@@ -26,6 +27,8 @@ export interface Options {
   /** A picture is complete. */
   onFrame?: () => void;
   onSetting?: (name: string, value: Value) => void;
+  /** Colours are chosen, which the host changes. */
+  onColours?: (choice: ColourChoice) => void;
   onControls?: (shown: boolean) => void;
   /** Whether nothing but the picture is shown. */
   bare?: boolean;

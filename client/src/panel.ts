@@ -1,6 +1,7 @@
 // What is seen around the picture: the bar, the legend, the settings, the readout and messages.
 
 import type { Camera } from "./camera.ts";
+import { ColourControls, type ColoursHost } from "./colourcontrols.ts";
 import { Controls, hasStreaming, type ControlsHost } from "./controls.ts";
 import { dom, icon, numberText, pictureOf, type IconName } from "./dom.ts";
 import { toggleFullscreen } from "./keyboard.ts";
@@ -9,7 +10,7 @@ import type { Timer } from "./lifetime.ts";
 import type { Options } from "./options.ts";
 import type { Point } from "./picking.ts";
 import type { Player } from "./player.ts";
-import type { Header, Part } from "./protocol.ts";
+import type { Header, Settings } from "./protocol.ts";
 import STYLE from "./styles.css";
 
 /** Milliseconds for which a hint is shown; until lacking parts are named; in which a picture is saved. */
@@ -25,12 +26,11 @@ const TIME_RANGE = { min: "0", max: "1", step: "any", "aria-label": "Time" };
 /** What the name of a file cannot have. */
 const FORBIDDEN = /[\\/:*?"<>|]+/g;
 
-export interface PanelHost extends ControlsHost {
+export interface PanelHost extends ControlsHost, ColoursHost {
   readonly options: Options;
+  readonly settings: Settings;
   readonly root: HTMLElement;
   readonly canvas: HTMLCanvasElement;
-  readonly header: Header | null;
-  readonly parts: ReadonlyMap<string, Part>;
   readonly camera: Camera | null;
   readonly player: Player;
   readonly lacking: string[];
@@ -47,9 +47,10 @@ export class Panel {
   private readonly viewer: PanelHost;
   private readonly legend = new Legend();
   private readonly controls: Controls;
+  private readonly colours: ColourControls;
   private isShown: boolean;
   private isOpen = false;
-  private showsLevels = false;
+  private legendLook = "";
   private readonly title = dom("div", { class: "title" });
   private readonly readout = dom("div", { class: "readout", role: "status" });
   private readonly head = dom("div", { class: "head glass", hidden: "" }, [this.title, this.readout]);
@@ -72,6 +73,7 @@ export class Panel {
     const { root, canvas, options } = viewer;
     this.isShown = options.controls ?? true;
     this.controls = new Controls(viewer);
+    this.colours = new ColourControls(viewer);
     this.handle = this.button("show", "Show the bar (h)", () => this.toggle());
     this.handle.classList.add("handle", "glass");
     this.playButton = this.button("play", "Play (space)", () => viewer.togglePlaying());
@@ -120,6 +122,7 @@ export class Panel {
     if (!header) return;
     this.note.hidden = true;
     this.controls.build(header);
+    this.controls.element.prepend(this.colours.element);
     this.showLegend();
     this.update();
     this.arrange();
@@ -130,7 +133,7 @@ export class Panel {
     const { playing, varies } = this.viewer.player;
     this.name();
     this.controls.update();
-    if (this.showsLevels !== Boolean(settings.show_level)) this.showLegend();
+    if (this.legendLook !== this.lookOf(settings)) this.showLegend();
     for (const [name, button] of Object.entries(this.toggles)) {
       button.setAttribute("aria-pressed", String(Boolean(settings[name])));
     }
@@ -172,9 +175,15 @@ export class Panel {
     if (this.timeText.textContent !== text) this.timeText.textContent = text;
   }
 
+  /** The settings that the legend shows. */
+  private lookOf({ show_level, strength, contrast }: Settings): string {
+    return `${show_level} ${strength} ${contrast}`;
+  }
+
   showLegend(): void {
     const { header, settings, parts } = this.viewer;
-    this.showsLevels = Boolean(settings.show_level);
+    this.legendLook = this.lookOf(settings);
+    this.colours.update();
     if (header) this.legend.show(header, settings, parts.get("cmap")?.data);
   }
 

@@ -78,6 +78,19 @@ export interface MeshLimits {
   leastDistance: number;
 }
 
+/** Numbers of the shading: those of flowtex/rendering/constants.py. */
+export interface Shading {
+  toCones: number[];
+  toLab: number[];
+  fromLab: number[];
+  fromCones: number[];
+  /** The lightness that black and white are drawn to; range and slope of the tones. */
+  base: [number, number];
+  tone: [number, number];
+  /** Values of the texture that stand for all. */
+  values: number[];
+}
+
 /** The tiles of a large surface, which has been handed over at its coarsest level, the root. */
 export interface PyramidHeader {
   /** Level of the root, and the finest level of which there are tiles. */
@@ -126,6 +139,16 @@ export interface Header {
     steps: number;
     unit: string;
     bar: boolean;
+    /** Number of the scalar among those of the field, and what can be chosen in its place. */
+    number: number;
+    choices: { name: string; unit: string; low: number; high: number; steps: number }[];
+    /** Whether the map goes by the logarithm, and whether nobody has chosen its range. */
+    log: boolean;
+    auto: boolean;
+    /** Name of the map, names of those in the part "maps", and of those with a middle. */
+    cmap: string;
+    maps: string[];
+    diverging: string[];
   };
   colour: number[];
   background: number[];
@@ -142,6 +165,7 @@ export interface Header {
     anchorRange: number;
     /** Cells that a side of a path goes over, beyond which it does not follow their own velocity. */
     farCells: number;
+    shading: Shading;
   };
   mesh: MeshLimits;
   /** Null where the whole surface is here. */
@@ -168,6 +192,13 @@ const TYPES: Record<string, new (bytes: ArrayBuffer) => Data> = {
   int8: Int8Array,
   uint8: Uint8Array,
 };
+
+/** What gives the place of a value on the colour map, from 0 to 1. */
+export function shareOf({ low, high, log }: Header["scalars"]): (value: number) => number {
+  if (!log) return (value) => (value - low) / (high - low || 1);
+  const span = Math.log(high / low) || 1;
+  return (value) => Math.log(Math.max(value, low) / low) / span;
+}
 
 /** Whether the flow has no direction along its lines. */
 export function isSignFree(header: Pick<Header, "variant">): boolean {

@@ -62,9 +62,10 @@ export class Scene {
 
   /** Names of the parts with the nodal values of a moment. */
   scalarParts(before: number, after: number): string[] {
-    const { name, steps } = this.header.scalars;
+    const { name, steps, number } = this.header.scalars;
     if (name === null) return [];
-    return (steps > 1 ? [before, after] : [0, 0]).map((step) => `scalars/${step}`);
+    const end = number ? `/${number}` : "";
+    return (steps > 1 ? [before, after] : [0, 0]).map((step) => `scalars/${step}${end}`);
   }
 
   /** Whether a part is there and of this scene: while one is built anew those of the last come first. */
@@ -219,9 +220,9 @@ export class Scene {
     const painted = this.scalarParts(before, after);
     const values = () => {
       const steps = painted.map((name) => this.part(name).data);
-      return shares(steps, scalars.low, scalars.high, shape[0] * shape[1]);
+      return shares(steps, scalars, shape[0] * shape[1]);
     };
-    const colour = this.key([...new Set(painted)], shape, scalars.low, scalars.high);
+    const colour = this.key([...new Set(painted)], shape, scalars.low, scalars.high, scalars.log);
     const grid = JSON.stringify([shape, rows, columns]);
     let type: number = gl.FLOAT;
     if (normal instanceof Int8Array) type = gl.BYTE;

@@ -5,8 +5,16 @@
 //                     +--> cover (those that are there) <-- setPart, and the levels of all meshes
 
 import type { Camera } from "./camera.ts";
+import { narrowed } from "./colours.ts";
 import { join, type Region } from "./meshlevels.ts";
-import { stepOf, type NamedPart, type Part, type Settings, type TileHeader } from "./protocol.ts";
+import {
+  stepOf,
+  type Header,
+  type NamedPart,
+  type Part,
+  type Settings,
+  type TileHeader,
+} from "./protocol.ts";
 import { Scene } from "./scene.ts";
 import {
   cellPixels,
@@ -44,6 +52,8 @@ interface Tile {
   parts: Map<string, Part>;
   /** Null where nothing of it is drawn; not known before it has come. */
   scene: Scene | null | undefined;
+  /** Colours that its triangles are chosen for. */
+  scalars: Header["scalars"];
   /** When it was wanted last. */
   used: number;
 }
@@ -95,8 +105,9 @@ export class Tiles {
   /** Take a part of a tile. */
   setPart(name: string, part: NamedPart): void {
     const { graphics, header } = this.root;
-    const tile = this.tiles.get(name) ?? { parts: new Map(), scene: undefined, used: this.count };
+    const tile = this.tiles.get(name) ?? this.emptyTile();
     this.tiles.set(name, tile);
+    if (part.name === "mesh") this.giveLimits(tile);
     if (part.digest && tile.parts.get(part.name)?.digest === part.digest) return;
     graphics.release(tile.parts.get(part.name));
     tile.parts.set(part.name, graphics.hold(part));
@@ -104,14 +115,54 @@ export class Tiles {
       const own = JSON.parse(new TextDecoder().decode(part.data)) as TileHeader | null;
       tile.scene?.dispose();
       tile.scene = own && new Scene(graphics, { ...header, ...own, pyramid: null }, tile.parts);
-      const map = this.root.parts.get("cmap");
-      if (map) tile.parts.set("cmap", map);
+      this.giveMap(tile);
+      this.giveLimits(tile);
     } else tile.scene?.forget(part.name);
     this.lastCame = performance.now();
     const { names, steps } = this.chosen;
     this.missing = this.missing.filter((missing) => !this.isHere(missing, steps));
     const shown = cover(this.chosen.choices, (other) => this.isHere(other, steps));
     if (String([...shown.keys()]) !== names) this.host.refine();
+  }
+
+  /** Draw in other colours, of which a part of the header tells; what they need is asked for. */
+  recolour(colours: Partial<Header> = {}): void {
+    this.asked = { names: [], steps: [] };
+    const { mesh, scalars } = this.root.header;
+    const { steps } = this.chosen;
+    for (const tile of this.tiles.values()) {
+      const { scene, parts } = tile;
+      if (!scene) continue;
+      const { header } = scene;
+      Object.assign(header, { mesh: narrowed(mesh, tile.scalars, scalars) }, colours);
+      this.giveMap(tile);
+      for (const name of ["scalars", "mesh"]) scene.forget(name);
+      const painted = steps.length ? scene.scalarParts(steps[0], steps[steps.length - 1]) : [];
+      const isWhole = painted.every((name) => parts.has(name));
+      if (isWhole && (scalars.log === tile.scalars.log || scalars.name === null)) continue;
+      // What the triangles are chosen by comes anew with the values.
+      const others = [...parts.keys()].filter((name) => name.startsWith("scalars/"));
+      for (const name of others) this.release(tile, name);
+    }
+  }
+
+  private emptyTile(): Tile {
+    const { scalars } = this.root.header;
+    return { parts: new Map(), scene: undefined, scalars, used: this.count };
+  }
+
+  /** Choose triangles by what has come for the present colours. */
+  private giveLimits(tile: Tile): void {
+    const { mesh, scalars } = this.root.header;
+    tile.scalars = scalars;
+    if (tile.scene) tile.scene.header.mesh = mesh;
+  }
+
+  /** Colour by the map of the root. */
+  private giveMap({ scene, parts }: Tile): void {
+    const map = this.root.parts.get("cmap");
+    if (map) parts.set("cmap", map);
+    scene?.forget("cmap");
   }
 
   /** Choose what is drawn at a moment, and its triangles. */
@@ -235,7 +286,7 @@ export class Tiles {
       for (const part of slices.slice(0, Math.max(slices.length - STEPS_HELD, 0))) {
         const step = stepOf(part);
         if (steps.includes(step)) continue;
-        for (const kind of ["slices", "extra", "scalars"]) this.release(tile, `${kind}/${step}`);
+        for (const kind of ["slices", "extra"]) this.release(tile, `${kind}/${step}`);
       }
       for (const { data } of parts.values()) bytes += BYTES_HELD * data.byteLength;
       if (bytes > BUDGET_BYTES && used < this.count) this.drop(name);

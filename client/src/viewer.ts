@@ -4,6 +4,7 @@
 //                       |          uniforms() of header, settings and view
 //                     Camera, Player, Panel (what is seen around the picture), Pointers
 
+import { coloursOf, recoloured, type ColourChoice } from "./colours.ts";
 import { Camera, copyOf, fitted, isSamePlace, widened, type CameraState } from "./camera.ts";
 import { FRAME_MS, sharedGraphics, type Graphics, type User } from "./context.ts";
 import { Lifetime } from "./lifetime.ts";
@@ -134,6 +135,9 @@ export class Viewer implements User {
       return;
     }
     const old = this.header;
+    if (old && old.generation !== undefined && old.generation === header.generation) {
+      return this.recolour(coloursOf(header));
+    }
     this.header = header;
     this.settings = { ...header.settings, ...header.own };
     this.player.setHeader(header);
@@ -153,6 +157,27 @@ export class Viewer implements User {
     this.change();
   }
 
+  /** Draw the same arrays in other colours, of which a part of the header tells. */
+  recolour(colours: Partial<Header>): void {
+    if (!this.header) return;
+    Object.assign(this.header, colours);
+    for (const name of ["scalars", "mesh"]) this.scene?.forget(name);
+    this.tiles?.recolour(colours);
+    this.panel.showLegend();
+    this.change();
+  }
+
+  /** Colour as a person chooses, or ask the host to. */
+  chooseColours(choice: ColourChoice): void {
+    if (this.options.onColours) return this.options.onColours(choice);
+    for (const viewer of this.together) {
+      if (!viewer.header) continue;
+      const { colours, part } = recoloured(viewer.header, choice, viewer.parts);
+      if (part) viewer.setPart(part);
+      viewer.recolour(colours);
+    }
+  }
+
   private makeScene(header: Header): void {
     this.scene = new Scene(this.graphics, header, this.parts);
     this.tiles = new Tiles(this, this.scene);
@@ -169,7 +194,8 @@ export class Viewer implements User {
     this.parts.set(name, held);
     this.scene?.forget(name);
     this.trim();
-    if (name === "cmap") this.panel.showLegend();
+    if (name === "cmap") this.tiles?.recolour();
+    if (name === "cmap" || name === "maps") this.panel.showLegend();
     this.change();
   }
 

@@ -160,6 +160,7 @@ class WidgetView {
       onPlaying: (playing: boolean) => this.send("playing", playing),
       onPoint: (point: unknown) => this.send("point", point),
       onSetting: (name: string, value: Value) => this.send(name, value),
+      onColours: (changes: unknown) => model.send({ kind: "appearance", changes }),
       onControls: (shown: boolean) => this.send("bar", shown),
     };
     return viewersIn(element, count, options, (n) => ({

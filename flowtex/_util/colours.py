@@ -6,13 +6,28 @@ from typing import Any
 
 import numpy as np
 
-from flowtex._util.array_types import AnyArray, Bytes
+from flowtex._util.array_types import AnyArray, Bytes, Floats
+from flowtex._util.names import near_names
 
-__all__ = ["DEFAULT_CMAP", "colour_table", "rgb"]
+__all__ = ["CMAPS", "DEFAULT_CMAP", "colour_shares", "colour_table", "is_diverging", "rgb"]
 
 DEFAULT_CMAP = "viridis"
 #: Entries of a colour map.
 ENTRIES = 256
+#: Colour maps to choose from: even steps of lightness first, those that diverge after them.
+CMAPS = (
+    *("viridis", "cividis", "magma", "inferno", "plasma", "gray", "Blues_r", "YlGnBu_r", "turbo"),
+    *("coolwarm", "RdBu_r", "twilight"),
+)
+#: Maps with a middle, by the names of matplotlib, cmocean and cmcrameri.
+DIVERGING = frozenset(
+    (
+        *("PiYG", "PRGn", "BrBG", "PuOr", "RdGy", "RdBu", "RdYlBu", "RdYlGn", "Spectral"),
+        *("coolwarm", "bwr", "seismic", "berlin", "managua", "vanimo"),
+        *("balance", "delta", "curl", "diff", "tarn"),
+        *("broc", "cork", "vik", "lisbon", "tofino", "roma", "bam"),
+    )
+)
 
 
 def rgb(colour: Any) -> tuple[float, float, float]:
@@ -36,7 +51,8 @@ def colour_table(cmap: Any | None) -> Bytes:
     """Return a colour map as (256, 4).
 
     It may be a name, a map of matplotlib's or a table as PyVista takes them, or an array
-    (N, 3 or 4), uint8 or from 0 to 1. Anything else raises a ValueError.
+    (N, 3 or 4), uint8 or from 0 to 1. Anything else raises a ValueError; of a name that there
+    is not, it has the near ones.
     """
     if isinstance(cmap, np.ndarray):
         return _resampled(cmap)
@@ -52,7 +68,27 @@ def colour_table(cmap: Any | None) -> Bytes:
         return np.asarray(np.asarray(known(np.linspace(0, 1, ENTRIES))) * 255, dtype=np.uint8)
     import pyvista as pv
 
-    return _resampled(np.asarray(pv.LookupTable(name, n_values=ENTRIES).values))
+    try:
+        return _resampled(np.asarray(pv.LookupTable(name, n_values=ENTRIES).values))
+    except (TypeError, ValueError, ModuleNotFoundError) as error:
+        hint = near_names(name, sorted(colormaps)) if isinstance(name, str) else "expected a name"
+        msg = f"there is no colour map {name!r}; {hint}"
+        raise ValueError(msg) from error
+
+
+def is_diverging(cmap: Any) -> bool:
+    """Whether a colour map, or the one of a name, has a middle."""
+    name = str(getattr(cmap, "name", cmap))
+    return name.rpartition(".")[2].removesuffix("_r") in DIVERGING
+
+
+def colour_shares(values: AnyArray, low: float, high: float, *, log_scale: bool = False) -> Floats:
+    """Places of values on the colour map, from 0 to 1; NaN stays."""
+    numbers = np.asarray(values, dtype=float)
+    if log_scale:
+        numbers = np.log(np.maximum(numbers, low))
+        low, high = np.log([low, high])
+    return np.asarray(np.clip((numbers - low) / ((high - low) or 1.0), 0, 1))
 
 
 def _resampled(colours: AnyArray) -> Bytes:

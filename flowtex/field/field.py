@@ -35,7 +35,7 @@ from flowtex.field.validation import (
     with_gaps,
 )
 
-__all__ = ["FlowField"]
+__all__ = ["FlowField", "speed_unit"]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -68,6 +68,8 @@ class FlowField:
         of the nearest node. ``None`` stands for all.
     sign_free
         Whether v and -v mean the same, as in a field of polarisation or principal directions.
+    units
+        Unit of each scalar, where it is known.
     """
 
     points: Floats
@@ -81,6 +83,7 @@ class FlowField:
     time_unit: str = ""
     has_position: Bools | None = None
     sign_free: bool = False
+    units: Mapping[str, str] = field(default_factory=dict)
 
     @classmethod
     def from_arrays(
@@ -96,6 +99,7 @@ class FlowField:
         length_unit: str = "",
         time_unit: str = "",
         sign_free: bool = False,
+        units: Mapping[str, str] | None = None,
     ) -> FlowField:
         """Make a field from arrays.
 
@@ -127,6 +131,9 @@ class FlowField:
             Whether v and -v mean the same. Such a field is steady; it is drawn to both sides,
             with no kernel and no motion that tells forward from backward. Vectors are turned
             over where that makes neighbours agree.
+        units
+            Unit of each scalar by its name, for legends; that of the speed follows from those of
+            length and time.
 
         Returns
         -------
@@ -192,6 +199,7 @@ class FlowField:
             time_unit=time_unit,
             has_position=surface.has_position,
             sign_free=sign_free,
+            units=dict(units or {}),
         )
         flow.__dict__["surface"] = surface  # the same that the property would make again
         if not flow.velocity.any():
@@ -352,6 +360,12 @@ class FlowField:
         """Share of the flow that is normal to the surface and cannot be drawn on it, 0 to 1."""
         return self.index_velocity.normal_share
 
+    def unit_of(self, name: str) -> str:
+        """Return the unit of a scalar, or of the speed; empty when it is not known."""
+        if name in self.units or name != "speed" or name in self.scalars:
+            return self.units.get(name, "")
+        return speed_unit(self.length_unit, self.time_unit)
+
     def forget(self) -> None:
         """Drop what was derived from the arrays and can be computed again."""
         for name in ("surface", "index_velocity"):
@@ -436,3 +450,12 @@ def _every(count: int, factor: int, *, closed: bool) -> Indices:
         )
         raise ValueError(msg)
     return np.array(picks)
+
+
+def speed_unit(length: str, time: str) -> str:
+    """Return the word for the unit of speed; empty when one of the units is not known."""
+    if not length or not time:
+        return ""
+    if time.startswith(f"{length} / "):
+        return time.removeprefix(f"{length} / ")
+    return f"{length} / ({time})" if "/" in time else f"{length}/{time}"

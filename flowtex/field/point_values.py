@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import Floats
-from flowtex.field.field import FlowField
+from flowtex.field.field import FlowField, speed_unit
 from flowtex.field.interpolation import steps_around
 from flowtex.field.locate import surface_point
 from flowtex.field.signs import weighted_axis
@@ -38,12 +38,7 @@ class PointValues:
     @property
     def speed_unit(self) -> str:
         """Word for the unit of speed; empty when one of the units is unknown."""
-        length, time = self.length_unit, self.time_unit
-        if not length or not time:
-            return ""
-        if time.startswith(f"{length} / "):
-            return time.removeprefix(f"{length} / ")
-        return f"{length} / ({time})" if "/" in time else f"{length}/{time}"
+        return speed_unit(self.length_unit, self.time_unit)
 
 
 def values_at(field: FlowField, index: ArrayLike, time: float | None = None) -> PointValues:

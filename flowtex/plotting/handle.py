@@ -6,12 +6,17 @@ import itertools
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from flowtex._util.colours import DEFAULT_CMAP
+import numpy as np
+import pyvista as pv
+
+from flowtex._util.colours import colour_table
 from flowtex.field import FlowField
+from flowtex.options import NO_VALUE_COLOR, Appearance
 from flowtex.rendering.constants import AMBIENT_LIGHT, DIFFUSE_LIGHT
+from flowtex.rendering.cpu.shade import mean_colours
 from flowtex.rendering.vtk import FlowSurface, surface_mesh, use_flow_mapper
-from flowtex.scene import Scene
-from flowtex.settings import Affects, Settings
+from flowtex.scene import AppearanceAttributes, Change, Scene
+from flowtex.settings import Settings
 
 __all__ = ["FlowHandle"]
 
@@ -38,17 +43,22 @@ SCALAR_BAR: dict[str, Any] = {
 _count = itertools.count(1)
 
 
-class FlowHandle:
-    """One flow texture on a plotter; change it through :attr:`settings` and :attr:`time`.
+class FlowHandle(AppearanceAttributes):
+    """One flow texture on a plotter.
+
+    Its appearance can be changed at any time, as can :attr:`settings` and :attr:`time`:
+    ``handle.cmap = "magma"``, ``handle.scalars = "pressure"``, ``handle.settings.lod = False``.
 
     Attributes
     ----------
     field
         The flow.
     settings
-        Every setting, live: ``handle.settings.lod = False``.
+        Every setting, live.
+    scalars, cmap, clim, log_scale, color, opacity, visible, lighting, show_scalar_bar
+        Arguments of ``plotter.flowtex.add``, live.
     actor
-        PyVista's actor, for opacity, lighting, position and the like.
+        PyVista's actor, for its position and the like.
     scene
         The arrays behind the picture.
     """
@@ -64,37 +74,27 @@ class FlowHandle:
         self._forget = forget
         self.scene = scene
         mesh = surface_mesh(scene.textures)
-        name, appearance = scene.scalar_name, scene.appearance
-        lit = scene.is_lit
-        options: dict[str, Any] = {"opacity": appearance.opacity, "lighting": lit}
-        options |= LIGHT if lit else {}
-        if name is None:
-            options["color"] = appearance.color
-        else:
-            mesh.point_data[name] = scene.scalar(name, scene.textures.geometry.field).ravel()
-            options |= {"scalars": name, "cmap": appearance.cmap or DEFAULT_CMAP}
-            options["clim"] = scene.scalar_limits
         self.actor = plotter.add_mesh(
             mesh,
             name=f"flowtex {next(_count)}",
+            color=scene.appearance.color,
             show_scalar_bar=False,
             reset_camera=False,
-            **options,
         )
-        mapper = use_flow_mapper(self.actor, mesh, name)
+        use_flow_mapper(self.actor, mesh)
+        self._place = plotter.renderers.active_index
         self._bar_title: str | None = None
-        if name is not None and appearance.has_bar:
-            bar = {"title": name, **SCALAR_BAR, **(scalar_bar_args or {})}
-            plotter.add_scalar_bar(mapper=mapper, **bar)
-            self._bar_title = bar["title"]
+        self._bar_options = scalar_bar_args or {}
+        self._bar_look = self._settings_of_bar
         self._surface = FlowSurface(
             self.actor, plotter.renderer, scene.textures, scene.settings, scene.pyramid
         )
         self._surface.set_moment(*scene.moment)
-        if name is not None:
-            self.set_scalars(name, name)
+        self._shown: Appearance | None = None
+        self._show_appearance()
         self._shown_time = scene.time
         self._end = scene.observe(self._changed)
+        self._is_made = True
 
     @property
     def field(self) -> FlowField:
@@ -105,11 +105,6 @@ class FlowHandle:
     def settings(self) -> Settings:
         """Every setting, live."""
         return self.scene.settings
-
-    @property
-    def scalars(self) -> str | None:
-        """Name of what the texture is coloured by; ``None`` for a plain one."""
-        return self.scene.scalar_name
 
     @property
     def time(self) -> float:
@@ -174,10 +169,6 @@ class FlowHandle:
         """Whether tiles of the last picture are on their way."""
         return self._surface.busy
 
-    def set_scalars(self, array: str, name: str) -> None:
-        """Write a scalar of the scene to a point array of what is drawn, at all times shown."""
-        self._surface.set_scalars(array, lambda field: self.scene.scalar(name, field))
-
     def set_image(self, image: Any) -> None:
         """Advect another image; as :meth:`Scene.set_image <flowtex.scene.Scene.set_image>`."""
         self.scene.set_image(image)
@@ -193,16 +184,20 @@ class FlowHandle:
         self._end()
         self.scene.close()
         self._surface.close()
-        if self._bar_title is not None and self._bar_title in plotter.scalar_bars:
-            plotter.remove_scalar_bar(self._bar_title, render=False)
+        self._remove_bar(plotter)
         plotter.remove_actor(self.actor, render=False)
         self._forget(self)
         if render:
             plotter.render()
 
-    def _changed(self, affects: Affects) -> None:
+    def _changed(self, affects: Change) -> None:
+        if self._bar_look != (look := self._settings_of_bar):
+            self._bar_look = look
+            self._show_bar_colours()
         if affects == "uniform":
             self._show_moment()
+        elif affects == "appearance":
+            self._show_appearance()
         else:
             self._surface.set_textures(self.scene.textures, self.scene.pyramid)
         self._draw()
@@ -214,6 +209,80 @@ class FlowHandle:
         self._shown_time = self.scene.time
         self._surface.set_moment(*self.scene.moment)
         self._surface.write_scalars()
+
+    def _show_appearance(self) -> None:
+        """Follow the appearance; what of the actor was changed by hand and not here stays."""
+        old, new = self._shown, self.scene.appearance
+        self._shown = new
+
+        def differs(*names: str) -> bool:
+            return any(old is None or getattr(old, n) is not getattr(new, n) for n in names)
+
+        prop = self.actor.prop
+        if differs("opacity"):
+            prop.opacity = new.opacity
+        if differs("visible"):
+            self.actor.SetVisibility(new.visible)
+        if differs("lighting"):
+            prop.lighting = lit = self.scene.is_lit
+            usual = pv.global_theme.lighting_params
+            for name, value in LIGHT.items():
+                setattr(prop, name, value if lit else getattr(usual, name))
+        if differs("color"):
+            prop.color = new.color
+        if differs("scalars", "cmap", "clim", "log_scale"):
+            self._show_colours()
+        if differs("scalars", "visible", "show_scalar_bar"):
+            self._show_bar()
+
+    def _show_colours(self) -> None:
+        mapper, name, appearance = self.actor.mapper, self.scene.scalar_name, self.scene.appearance
+        mapper.scalar_visibility = name is not None
+        if name is None:
+            return
+        table = pv.LookupTable(values=colour_table(appearance.cmap))
+        table.nan_color = NO_VALUE_COLOR
+        table.log_scale = appearance.log_scale
+        table.scalar_range = mapper.scalar_range = self.scene.scalar_limits
+        mapper.lookup_table = table
+        mapper.SelectColorArray(name)
+        self._surface.set_scalars(name, lambda field: self.scene.scalar(name, field))
+        self._show_bar_colours()
+
+    def _show_bar(self) -> None:
+        """Have a legend of the present colours, or none."""
+        plotter, name = self._plotter, self.scene.scalar_name
+        self._remove_bar(plotter)
+        if name is None or not self.scene.appearance.has_bar:
+            return
+        unit = self.field.unit_of(name)
+        title = f"{name} ({unit})" if unit else name
+        bar = {"title": title, **SCALAR_BAR, **self._bar_options}
+        renderers = plotter.renderers
+        active = renderers.active_index
+        renderers.set_active_renderer(*np.atleast_1d(renderers.index_to_loc(self._place)))
+        plotter.add_scalar_bar(mapper=self.actor.mapper, render=False, **bar)
+        renderers.set_active_renderer(*np.atleast_1d(renderers.index_to_loc(active)))
+        self._bar_title = bar["title"]
+        self._show_bar_colours()
+
+    @property
+    def _settings_of_bar(self) -> tuple[Any, ...]:
+        return self.settings.strength, self.settings.contrast, self.settings.noise
+
+    def _show_bar_colours(self) -> None:
+        """Give the bar the colours of the picture, which the texture draws towards the middle."""
+        if self._bar_title is None or self._bar_title not in self._plotter.scalar_bars:
+            return
+        shown = self.actor.mapper.lookup_table
+        table = pv.LookupTable(values=mean_colours(np.asarray(shown.values), self.settings))
+        table.scalar_range, table.log_scale = shown.scalar_range, shown.log_scale
+        self._plotter.scalar_bars[self._bar_title].SetLookupTable(table)
+
+    def _remove_bar(self, plotter: Any) -> None:
+        if self._bar_title is not None and self._bar_title in plotter.scalar_bars:
+            plotter.remove_scalar_bar(self._bar_title, render=False)
+        self._bar_title = None
 
     def _draw(self) -> None:
         if self._plotter is not None:

@@ -64,7 +64,7 @@ def _look_of(plotter: Any, handle: FlowHandle) -> dict[str, Any]:
     """Return the arguments of a widget that looks the same."""
     mapper = handle.actor.mapper
     width, height = plotter.window_size
-    name = handle.scalars
+    name = handle.scene.scalar_name
     colours: dict[str, Any] = {"scalars": False, "color": handle.actor.prop.color}
     if name is not None:
         table = np.asarray(mapper.lookup_table.values)

@@ -5,6 +5,8 @@ What each is for stands there.
 
 from __future__ import annotations
 
+from statistics import NormalDist
+
 import numpy as np
 
 from flowtex.textures.paper import HALF_LEVELS
@@ -38,6 +40,8 @@ GRAIN_VARIANCE = MOST_GRAIN**2 / 3
 BASE_DARK, BASE_LIGHT = 0.36, 0.80
 TONE_RANGE, TONE_SLOPE = 0.34, 1.1
 LEAST_LIGHTNESS = 1e-6
+#: Values of a texture that stand for all, which are spread as a normal distribution.
+MEAN_VALUES = np.array([NormalDist().inv_cdf((n + 0.5) / 16) for n in range(16)])
 AMBIENT_LIGHT, DIFFUSE_LIGHT = 0.3, 0.8
 
 SRGB_SLOPE, SRGB_OFFSET, SRGB_SCALE, SRGB_POWER = 12.92, 0.055, 1.055, 2.4

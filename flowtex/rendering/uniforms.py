@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import Floats, Ints
+from flowtex.rendering import constants as const
 from flowtex.rendering.constants import FAR_CELLS, KERNELS
 from flowtex.settings import Settings
 from flowtex.textures import PaperTextures, TextureSet
@@ -111,6 +112,23 @@ def client_constants() -> dict[str, Any]:
         "kernels": list(KERNELS),
         "anchorRange": ANCHOR_RANGE,
         "farCells": FAR_CELLS,
+        "shading": _shading(),
+    }
+
+
+def _shading() -> dict[str, Any]:
+    """Numbers by which a client computes the mean colours of a picture."""
+    matrices = {
+        "toCones": const.TO_CONES,
+        "toLab": const.TO_LAB,
+        "fromLab": const.FROM_LAB,
+        "fromCones": const.FROM_CONES,
+    }
+    return {
+        **{name: matrix.ravel().tolist() for name, matrix in matrices.items()},
+        "base": [const.BASE_DARK, const.BASE_LIGHT],
+        "tone": [const.TONE_RANGE, const.TONE_SLOPE],
+        "values": const.MEAN_VALUES.tolist(),
     }
 
 

@@ -129,14 +129,15 @@ this.controller.abort(),this.globalListeners=0;for(let observer of this.observer
 for(let timer of this.timers)clearTimeout(timer);this.timers.clear()}};function throttled(later,wait,call){let next=null,
 running=!1,run=()=>{if(running=next!==null,!next)return;let{value}=next;next=null,call(value),later(run,wait)};return value=>{
 next={value},running||run()}}var TYPES={float32:Float32Array,float16:Uint16Array,uint16:Uint16Array,int16:Int16Array,int8:Int8Array,uint8:Uint8Array};
-function isSignFree(header){return header.variant.includes("FLOWTEX_SIGNFREE")}function stepOf(name){return Number(name.
-split("/")[1])}function tilePart(name){let[kind,level,row,column,...rest]=name.split("/");return kind==="tile"?[[level,row,
-column].join("/"),rest.join("/")]:null}function decoded(info,bytes){let view=ArrayBuffer.isView(bytes)?new Uint8Array(bytes.
-buffer,bytes.byteOffset,bytes.byteLength):new Uint8Array(bytes),{name,dtype,shape,digest}=info,Type=TYPES[dtype];if(!Type)
-throw new Error(`a part has the type "${dtype}"; expected ${Object.keys(TYPES).join(", ")}`);return{name,shape,digest,data:new Type(
-view.slice().buffer)}}function partsOfFile(file){let length3=new DataView(file).getUint32(0,!0),infos=JSON.parse(new TextDecoder().
-decode(new Uint8Array(file,4,length3))),start=4+length3;return infos.map(info=>{let bytes=new Uint8Array(file,start,info.
-bytes);return start+=info.bytes,decoded(info,bytes)})}var ROOT="",PLACE=5,nameOf=key=>key.join("/"),keyOf=name=>name.split("/").map(Number);function cellPixels(pyramid,settings){
+function shareOf({low,high,log}){if(!log)return value=>(value-low)/(high-low||1);let span=Math.log(high/low)||1;return value=>Math.
+log(Math.max(value,low)/low)/span}function isSignFree(header){return header.variant.includes("FLOWTEX_SIGNFREE")}function stepOf(name){
+return Number(name.split("/")[1])}function tilePart(name){let[kind,level,row,column,...rest]=name.split("/");return kind===
+"tile"?[[level,row,column].join("/"),rest.join("/")]:null}function decoded(info,bytes){let view=ArrayBuffer.isView(bytes)?
+new Uint8Array(bytes.buffer,bytes.byteOffset,bytes.byteLength):new Uint8Array(bytes),{name,dtype,shape,digest}=info,Type=TYPES[dtype];
+if(!Type)throw new Error(`a part has the type "${dtype}"; expected ${Object.keys(TYPES).join(", ")}`);return{name,shape,
+digest,data:new Type(view.slice().buffer)}}function partsOfFile(file){let length3=new DataView(file).getUint32(0,!0),infos=JSON.
+parse(new TextDecoder().decode(new Uint8Array(file,4,length3))),start=4+length3;return infos.map(info=>{let bytes=new Uint8Array(
+file,start,info.bytes);return start+=info.bytes,decoded(info,bytes)})}var ROOT="",PLACE=5,nameOf=key=>key.join("/"),keyOf=name=>name.split("/").map(Number);function cellPixels(pyramid,settings){
 let[samples,spacing,grain]=["samples","spacing","grain"].map(s=>Number(settings[s])),streak=.5*samples*spacing*grain;return pyramid.
 cellPixels*Math.max(1,2*streak/(pyramid.cellPixels*pyramid.pathCells))}var Pyramid=class{header;blockCells;places=[];constructor(header,{
 tileCells:blockCells},places){this.header=header,this.blockCells=blockCells;let start=0;for(let[level]of header.shapes.entries()){
@@ -168,7 +169,30 @@ this.most=most}request(keys,steps){this.wanted=keys.map(key=>[key,steps]);let na
 length&&this.running.size<this.most;){let[key,steps]=this.wanted[0];this.wanted.shift();let name=`${nameOf(key)} ${steps}`;
 this.running.has(name)||this.run(name,key,steps)}}async run(name,key,steps){let controller=new AbortController;this.running.
 set(name,controller);try{let parts=await this.load(key,steps,controller.signal);controller.signal.aborted||parts.forEach(
-this.give)}catch(error){if(!controller.signal.aborted)throw error}finally{this.running.delete(name),this.next()}}};var tangent=degrees=>Math.tan(degrees*Math.PI/360),Camera=class{flat;limits;aspect;state;start;pick=null;homeHeight;nearest;constructor(state,limits,flat,aspect=1){
+this.give)}catch(error){if(!controller.signal.aborted)throw error}finally{this.running.delete(name),this.next()}}};var OWN="own cmap",SRGB={knee:.04045,slope:12.92,offset:.055,scale:1.055,power:2.4};function coloursOf(header){let{scalars,
+colour,background,lighting,opacity}=header;return{scalars,colour,background,lighting,opacity}}function narrowed(mesh,from,to){
+let share=to.name===from.name?(to.high-to.low)/(from.high-from.low||1):1;return{...mesh,maxColourError:mesh.maxColourError*
+Math.min(share,1)}}function mapOf(header,maps,name){let[first,count]=[header.scalars.maps.indexOf(name)*3*256,256],table=new Uint8Array(
+4*count).fill(255);for(let n=0;n<count;n+=1)for(let k=0;k<3;k+=1)table[4*n+k]=maps[first+3*n+k];return table}function recoloured(header,choice,parts){
+let scalars={...header.scalars};choice.scalars===!1&&(scalars.name=null);let number=scalars.choices.findIndex(({name})=>name===
+choice.scalars);if(number>=0){let{name,unit:unit2,steps}=scalars.choices[number];Object.assign(scalars,{name,unit:unit2,
+steps,number,auto:!0})}if(choice.cmap&&(scalars.cmap=choice.cmap),choice.clim&&([scalars.low,scalars.high]=choice.clim),
+choice.clim!==void 0&&(scalars.auto=!choice.clim),scalars.auto&&scalars.choices[scalars.number]){let{low,high}=scalars.choices[scalars.
+number],widest=low<0&&high>0&&scalars.diverging.includes(scalars.cmap),end=Math.max(-low,high);[scalars.low,scalars.high]=
+widest?[-end,end]:[low,high]}let mesh=narrowed(header.mesh,header.scalars,scalars),maps=parts.get("maps");if(!choice.cmap||
+!maps)return{colours:{scalars,mesh},part:null};let part={name:"cmap",data:mapOf(header,maps.data,choice.cmap),shape:[256,
+4],digest:`${OWN} ${choice.cmap}`};return{colours:{scalars,mesh},part}}var toLinear=c=>c<SRGB.knee?c/SRGB.slope:((c+SRGB.
+offset)/SRGB.scale)**SRGB.power;function fromLinear(x){let c=clamp(x,0,1);return c<SRGB.knee/SRGB.slope?c*SRGB.slope:SRGB.
+scale*c**(1/SRGB.power)-SRGB.offset}var times=(v2,m)=>[0,1,2].map(k=>v2[0]*m[k]+v2[1]*m[3+k]+v2[2]*m[6+k]);function meanColour(colour,settings,shading){
+let{values}=shading,[[dark,light],[range,slope]]=[shading.base,shading.tone],[strength,contrast]=[Number(settings.strength),
+Number(settings.contrast)],cones=times(colour.map(c=>toLinear(c/255)),shading.toCones).map(Math.cbrt),[lightness,a,b]=times(
+cones,shading.toLab),base=lightness+strength*(dark+(light-dark)*lightness-lightness),mean=[0,0,0];return values.forEach(
+value=>{let tone=2/(1+Math.exp(-slope*contrast*value))-1,shown=clamp(base+range*strength*tone,0,1),room=shown<base?shown/
+base:(1-shown)/Math.max(1-base,1e-6),roots=times([shown,a*room,b*room],shading.fromLab);times(roots.map(x=>x**3),shading.
+fromCones).forEach((x,k)=>mean[k]+=255*fromLinear(x)/values.length)}),mean}function rampOf(map,header,settings,stops){return`\
+linear-gradient(90deg, ${Array.from({length:stops},(_,n)=>{let first=4*Math.round(n/(stops-1)*255),colour=[...map.slice(
+first,first+3)];return`rgb(${(header.paper?.picture??!1?colour:meanColour(colour,settings,header.constants.shading)).map(
+Math.round).join(" ")})`}).join(", ")})`}var tangent=degrees=>Math.tan(degrees*Math.PI/360),Camera=class{flat;limits;aspect;state;start;pick=null;homeHeight;nearest;constructor(state,limits,flat,aspect=1){
 this.state=copyOf(state),this.start=copyOf(state),this.limits=limits,this.flat=flat,this.aspect=aspect,this.homeHeight=this.
 height,this.nearest=this.distance/limits.closest}get height(){let{parallel,parallel_scale:half,view_angle:angle}=this.state;
 return parallel?half:this.distance*tangent(angle)}get distance(){return length2(subtract2(this.state.focal_point,this.state.
@@ -216,7 +240,25 @@ parallel_scale:tangent(state.view_angle);if([right.map(c=>c/half/aspect),up.map(
 depth+radius,.001*radius),near=Math.max(depth-radius,.001*far),a=(far+near)/(far-near),b=-2*far*near/(far-near);for(let n=0;n<
 3;n+=1)m[4*n+2]=ahead[n]*a,m[4*n+3]=ahead[n];return m[15]=-dot2(ahead,eye),m[14]=m[15]*a+b,m}function atPixel(matrix,[x,
 y],[width,height]){let m=[...matrix];for(let n=0;n<4;n+=1)m[4*n]=(m[4*n]-x*m[4*n+3])*width,m[4*n+1]=(m[4*n+1]-y*m[4*n+3])*
-height;return m}var SLIDER_STOPS=400;function hasStreaming({slices,paper,variant}){return slices.steps===1&&!paper&&!isSignFree({variant})}
+height;return m}var STOPS=9,PLAIN="none",ColourControls=class{element=dom("div",{class:"colours"});viewer;scalars=dom("select",{"aria-la\
+bel":"Colour by"});swatches=dom("div",{class:"swatches",role:"group"});ends=["Lowest value","Highest value"].map(name=>dom(
+"input",{type:"number",step:"any","aria-label":name}));auto=dom("button",{type:"button",class:"link"},["auto"]);mapRow;rangeRow;constructor(viewer){
+this.viewer=viewer;let{scalars,swatches,ends,auto}=this,{lifetime}=viewer;lifetime.listen(scalars,"change",()=>{viewer.chooseColours(
+{scalars:scalars.value===PLAIN?!1:scalars.value,clim:null})});for(let end of ends)lifetime.listen(end,"change",()=>this.
+takeRange());lifetime.listen(auto,"click",()=>viewer.chooseColours({clim:null})),lifetime.listen(swatches,"click",event=>{
+let name=event.target.dataset.cmap;name&&viewer.chooseColours({cmap:name})});let row=(name,...fields)=>dom("div",{class:"\
+row"},[dom("span",{class:"name"},[name]),...fields]);this.rangeRow=row("Range",dom("span",{class:"between"},[...ends,auto])),
+this.mapRow=row("Colour map",swatches),this.mapRow.classList.add("ranged"),this.element.append(row("Colour by",scalars),
+this.mapRow,this.rangeRow)}update(){let{header,parts}=this.viewer,maps=parts.get("maps");if(this.element.hidden=!header?.
+scalars.choices.length||!maps,!header||!maps||this.element.hidden)return;let{choices,name,low,high,auto,cmap}=header.scalars,
+names=[...choices.map(each=>each.name),PLAIN];this.scalars.replaceChildren(...names.map(each=>dom("option",{value:each},
+[each]))),this.scalars.value=name??PLAIN,this.mapRow.hidden=this.rangeRow.hidden=name===null,[low,high].forEach((value,n)=>this.
+ends[n].value=String(Number(value.toPrecision(4)))),this.auto.setAttribute("aria-pressed",String(auto));let{settings}=this.
+viewer;this.swatches.replaceChildren(...header.scalars.maps.map(each=>{let pressed=String(each===cmap),swatch=dom("butto\
+n",{...{type:"button",title:each,"aria-label":each,"data-cmap":each},"aria-pressed":pressed});return swatch.style.background=
+rampOf(mapOf(header,maps.data,each),header,settings,STOPS),swatch}))}takeRange(){let[low,high]=this.ends.map(end=>end.valueAsNumber);
+this.rangeRow.title="",low<high?this.viewer.chooseColours({clim:[low,high]}):this.rangeRow.title=`${numberText(low)} is \
+not below ${numberText(high)}`;for(let end of this.ends)end.setCustomValidity(this.rangeRow.title)}};var SLIDER_STOPS=400;function hasStreaming({slices,paper,variant}){return slices.steps===1&&!paper&&!isSignFree({variant})}
 var USES={motion:hasStreaming,speed:hasStreaming,speed_in:hasStreaming,period:hasStreaming,grain:({paper})=>!paper,fixed_grain:({
 paper})=>!paper,two_sided:({slices})=>slices.sides===2,seed:({paper},rebuild)=>!paper||rebuild&&!paper.picture,resolution:({
 paper},rebuild)=>!paper||rebuild,tiles:({paper,settings},rebuild)=>!!paper?.picture&&(settings.noise==="image"||rebuild),
@@ -247,14 +289,13 @@ least,most]=[low??0,high??1],toSlider=value=>logarithmic?Math.log2(value):value,
 toSlider),step=whole&&!logarithmic?1:(max-min)/SLIDER_STOPS;return{toSlider,fromSlider,min,max,step}}var CAMERA_KEYS={ArrowLeft:"left",ArrowRight:"right",ArrowUp:"up",ArrowDown:"down","+":"closer","=":"closer","-":"farthe\
 r",_:"farther",0:"whole"},PLAY_KEY=" ",FULLSCREEN_KEY="f",CLOSE_KEY="Escape",DIRECTIONS={left:[-1,0],right:[1,0],up:[0,1],
 down:[0,-1]};function hasModifier(event){return event.ctrlKey||event.metaKey||event.altKey}function toggleFullscreen(element){
-document.fullscreenElement?document.exitFullscreen():element.requestFullscreen?.().catch(()=>{})}var STOPS=33,COLOURS=256,Legend=class{element=dom("div",{class:"legend glass",hidden:""});mark=dom("i",{hidden:""});show(header,settings,map){
+document.fullscreenElement?document.exitFullscreen():element.requestFullscreen?.().catch(()=>{})}var STOPS2=33,Legend=class{element=dom("div",{class:"legend glass",hidden:""});mark=dom("i",{hidden:""});show(header,settings,map){
 let{name,low,high,unit:unit2,bar}=header.scalars;if(this.element.hidden=name===null||!bar||!map||!!settings.show_level,this.
-element.hidden||!map)return;let stops=Array.from({length:STOPS},(_,n)=>{let first=4*Math.round(n/(STOPS-1)*(COLOURS-1));
-return`rgb(${map[first]} ${map[first+1]} ${map[first+2]})`}),ramp=dom("div",{class:"ramp"},[this.mark]);ramp.style.background=
-`linear-gradient(90deg, ${stops.join(", ")})`,this.mark.hidden=!0;let ends=[low,high].map(value=>dom("span",{},[numberText(
-value)]));this.element.replaceChildren(dom("div",{class:"name"},[unit2?`${name} (${unit2})`:String(name)]),ramp,dom("div",
-{class:"ends"},ends))}point(header,value=NaN){if(this.mark.hidden=!header||!Number.isFinite(value),!header||this.mark.hidden)
-return;let{low,high}=header.scalars;this.mark.style.left=`${100*clamp((value-low)/(high-low||1),0,1)}%`}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */
+element.hidden||!map)return;let ramp=dom("div",{class:"ramp"},[this.mark]);ramp.style.background=rampOf(map,header,settings,
+STOPS2),this.mark.hidden=!0;let ends=[low,high].map(value=>dom("span",{},[numberText(value)]));this.element.replaceChildren(
+dom("div",{class:"name"},[unit2?`${name} (${unit2})`:String(name)]),ramp,dom("div",{class:"ends"},ends))}point(header,value=NaN){
+this.mark.hidden=!header||!Number.isFinite(value),!(!header||this.mark.hidden)&&(this.mark.style.left=`${100*clamp(shareOf(
+header.scalars)(value),0,1)}%`)}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */
 :host {
   --ink: var(--jp-ui-font-color1, #1b2430);
   --quiet: var(--jp-ui-font-color2, #566373);
@@ -389,6 +430,15 @@ input[type="range"]::-moz-range-thumb {
 }
 .row.ranged input { grid-column: 1 / -1; }
 .row + .row { border-top: 1px solid var(--edge); }
+.colours { border-bottom: 1px solid var(--edge); }
+.swatches { grid-column: 1 / -1; display: grid; grid-template-columns: repeat(3, 1fr); gap: 5px; padding: 3px 0 5px; }
+.swatches button { width: auto; height: 16px; border-radius: 4px; box-shadow: inset 0 0 0 1px var(--edge); }
+.swatches button[aria-pressed="true"] { box-shadow: 0 0 0 2px var(--ground), 0 0 0 4px var(--accent); }
+.between { display: flex; align-items: center; gap: 4px; }
+.between input[type="number"] { width: 64px; padding-inline: 4px; appearance: textfield; }
+.between input::-webkit-inner-spin-button { appearance: none; }
+.between input:invalid { outline: 2px solid #d43d3d; outline-offset: -1px; }
+button.link { width: auto; height: 24px; padding: 0 6px; font: inherit; }
 select, input[type="number"] {
   font: inherit; color: var(--ink); background: var(--hover); border: 0; border-radius: 6px;
   padding: 3px 6px; width: 110px; height: 24px;
@@ -438,28 +488,29 @@ input[role="switch"]:checked::after { transform: translateX(12px); }
 :host(.flowtex-bare) :is(.head, .legend, .settings, .bar, .handle) { display: none; }
 `;var HINT_MS=1600,LATE_MS=4e3,SAVED_MS=5e3,FEWEST_DIGITS=4,MOST_DIGITS=14,KEY=/Mac|iP(hone|ad)/.test(navigator.platform)?
 "⌘":"Ctrl",HINT=`Click, or hold ${KEY}, to zoom with the wheel`,TIME_RANGE={min:"0",max:"1",step:"any","aria-label":"T\
-ime"},FORBIDDEN=/[\\/:*?"<>|]+/g,styleSheet=new CSSStyleSheet;styleSheet.replaceSync(styles_default);var Panel=class{viewer;legend=new Legend;controls;isShown;isOpen=!1;showsLevels=!1;title=dom(
+ime"},FORBIDDEN=/[\\/:*?"<>|]+/g,styleSheet=new CSSStyleSheet;styleSheet.replaceSync(styles_default);var Panel=class{viewer;legend=new Legend;controls;colours;isShown;isOpen=!1;legendLook="";title=dom(
 "div",{class:"title"});readout=dom("div",{class:"readout",role:"status"});head=dom("div",{class:"head glass",hidden:""},
 [this.title,this.readout]);note=dom("div",{class:"note",hidden:"",role:"alert"});busy=dom("div",{class:"busy",hidden:""},
 ["waiting for data …"]);hintBox=dom("div",{class:"hint glass",hidden:""},[HINT]);bar;handle;playButton;toggles;gear;slider=dom(
 "input",{type:"range",...TIME_RANGE});timeText=dom("span",{class:"time"});track=dom("div",{class:"track"},[this.slider,this.
 timeText]);hintTimer=null;lateTimer=null;constructor(viewer){this.viewer=viewer;let{root,canvas,options}=viewer;this.isShown=
-options.controls??!0,this.controls=new Controls(viewer),this.handle=this.button("show","Show the bar (h)",()=>this.toggle()),
-this.handle.classList.add("handle","glass"),this.playButton=this.button("play","Play (space)",()=>viewer.togglePlaying()),
-viewer.lifetime.listen(this.slider,"input",()=>viewer.scrub(Number(this.slider.value)));let toggle=name=>()=>viewer.choose(
-name,!viewer.settings[name]);this.toggles={lod:this.button("lod","Level of detail",toggle("lod")),show_level:this.button(
-"levels","Show the levels of detail",toggle("show_level"))},this.gear=this.button("settings","Settings",()=>this.fold(!this.
-isOpen)),this.bar=this.makeBar(),canvas.className="picture",root.classList.toggle("flowtex-bare",options.bare??!1);let shadow=root.
-attachShadow({mode:"open"});shadow.adoptedStyleSheets=[styleSheet];let{legend,controls,head,bar,handle,busy,hintBox,note}=this;
-shadow.append(canvas,head,legend.element,controls.element),shadow.append(bar,handle,busy,hintBox,note),this.arrange()}button(name,title,press){
-let button=dom("button",{type:"button",title,"aria-label":title,"data-name":name},[icon(name)]);return this.viewer.lifetime.
-listen(button,"click",press),button}makeBar(){let{viewer}=this;return dom("div",{class:"bar glass",role:"toolbar","aria-\
-label":"Controls"},[this.playButton,this.track,this.button("home","Show everything (0)",()=>viewer.reset()),this.toggles.
-lod,this.toggles.show_level,this.gear,this.button("save","Save the picture",()=>{this.save()}),this.button("full","Fill \
-the screen (f)",()=>this.fullscreen()),this.button("hide","Hide the bar (h)",()=>this.toggle())])}build(){let{header}=this.
-viewer;header&&(this.note.hidden=!0,this.controls.build(header),this.showLegend(),this.update(),this.arrange())}update(){
-let{header,settings}=this.viewer,{playing,varies}=this.viewer.player;this.name(),this.controls.update(),this.showsLevels!==
-!!settings.show_level&&this.showLegend();for(let[name,button]of Object.entries(this.toggles))button.setAttribute("aria-p\
+options.controls??!0,this.controls=new Controls(viewer),this.colours=new ColourControls(viewer),this.handle=this.button(
+"show","Show the bar (h)",()=>this.toggle()),this.handle.classList.add("handle","glass"),this.playButton=this.button("pl\
+ay","Play (space)",()=>viewer.togglePlaying()),viewer.lifetime.listen(this.slider,"input",()=>viewer.scrub(Number(this.slider.
+value)));let toggle=name=>()=>viewer.choose(name,!viewer.settings[name]);this.toggles={lod:this.button("lod","Level of d\
+etail",toggle("lod")),show_level:this.button("levels","Show the levels of detail",toggle("show_level"))},this.gear=this.
+button("settings","Settings",()=>this.fold(!this.isOpen)),this.bar=this.makeBar(),canvas.className="picture",root.classList.
+toggle("flowtex-bare",options.bare??!1);let shadow=root.attachShadow({mode:"open"});shadow.adoptedStyleSheets=[styleSheet];
+let{legend,controls,head,bar,handle,busy,hintBox,note}=this;shadow.append(canvas,head,legend.element,controls.element),shadow.
+append(bar,handle,busy,hintBox,note),this.arrange()}button(name,title,press){let button=dom("button",{type:"button",title,
+"aria-label":title,"data-name":name},[icon(name)]);return this.viewer.lifetime.listen(button,"click",press),button}makeBar(){
+let{viewer}=this;return dom("div",{class:"bar glass",role:"toolbar","aria-label":"Controls"},[this.playButton,this.track,
+this.button("home","Show everything (0)",()=>viewer.reset()),this.toggles.lod,this.toggles.show_level,this.gear,this.button(
+"save","Save the picture",()=>{this.save()}),this.button("full","Fill the screen (f)",()=>this.fullscreen()),this.button(
+"hide","Hide the bar (h)",()=>this.toggle())])}build(){let{header}=this.viewer;header&&(this.note.hidden=!0,this.controls.
+build(header),this.controls.element.prepend(this.colours.element),this.showLegend(),this.update(),this.arrange())}update(){
+let{header,settings}=this.viewer,{playing,varies}=this.viewer.player;this.name(),this.controls.update(),this.legendLook!==
+this.lookOf(settings)&&this.showLegend();for(let[name,button]of Object.entries(this.toggles))button.setAttribute("aria-p\
 ressed",String(!!settings[name]));let title=playing?"Pause (space)":"Play (space)";this.playButton.replaceChildren(icon(
 playing?"pause":"play")),this.playButton.title=title,this.playButton.setAttribute("aria-label",title);let streams=header!==
 null&&hasStreaming(header);this.playButton.hidden=this.track.hidden=!varies&&!streams,this.slider.disabled=!varies&&settings.
@@ -470,36 +521,37 @@ table.find(row=>row.name===name)?.label??name,value=settings[name];return`${labe
 ia-label",title?`Flow texture: ${title}`:"Flow texture")}tick(){let{header,player,settings}=this.viewer;if(!header||this.
 track.hidden)return;let{first,last,now}=player.range(settings);this.slider.value=String((now-first)/(last-first||1));let unit2=header.
 slices.timeUnit,text=player.varies?`${numberText(now)} ${unit2}`:`${now.toFixed(1)} s`;this.timeText.textContent!==text&&
-(this.timeText.textContent=text)}showLegend(){let{header,settings,parts}=this.viewer;this.showsLevels=!!settings.show_level,
-header&&this.legend.show(header,settings,parts.get("cmap")?.data)}read(point){let{header}=this.viewer;if(this.readout.replaceChildren(),
-this.legend.point(null),!(!point||!header)){this.readout.append(dom("span",{},[this.positionText(point.position,header)]));
-for(let[name,value]of Object.entries(point.values)){let text=`${name} ${numberText(value)} ${header.scalars.unit}`;this.
-readout.append(dom("b",{},[text.trimEnd()])),this.legend.point(header,value)}}}positionText(position,{geometry}){let{extent,
-planar,center,frame}=geometry,zoom=Math.max(this.viewer.camera?.zoom??1,1),digits=Math.min(Math.ceil(FEWEST_DIGITS+Math.
-log10(zoom)),MOST_DIGITS),isInPlane=planar&&Math.abs(position[2]-center[2])<1e-12*extent&&Math.abs(frame[8])>.999;return`\
-(${position.slice(0,isInPlane?2:3).map(x=>{let value=Math.abs(x)<1e-9*extent?0:x;return digits>5?String(Number(value.toPrecision(
-digits))):numberText(value)}).join(", ")})`}fold(open=!1){this.isOpen=open,this.arrange()}toggle(shown=!this.isShown){shown!==
-this.isShown&&(this.isShown=shown,this.arrange(),this.viewer.options.onControls?.(shown))}arrange(){let{header,options,root}=this.
-viewer,isReady=header!==null,follows=!!options.follows;this.bar.hidden=!this.isShown||!isReady,this.handle.hidden=this.isShown||
-!isReady||follows,this.head.hidden=!(this.isShown||follows)||!isReady,this.controls.element.hidden=!this.isShown||!this.
-isOpen||!isReady,root.classList.toggle("flowtex-open",!this.controls.element.hidden),this.gear.setAttribute("aria-presse\
-d",String(this.isOpen))}wait(missing){this.busy.hidden=!missing.length;let{viewer}=this;!missing.length||viewer.options.
-onNeed||this.lateTimer||(this.lateTimer=viewer.lifetime.later(()=>{this.lateTimer=null;let names=viewer.lacking.join(", ");
-names&&this.fail("The scene is not complete.",`Missing: ${names}`)},LATE_MS))}hint(shown){let{lifetime}=this.viewer;lifetime.
-cancel(this.hintTimer),this.hintTimer=shown?lifetime.later(()=>this.hint(!1),HINT_MS):null,this.hintBox.hidden=!shown}clear(){
-this.note.hidden=!0,delete this.viewer.root.dataset.failed}fail(problem,detail){this.note.replaceChildren(dom("strong",{},
-[problem]),dom("pre",{},[detail])),this.note.hidden=!1,this.busy.hidden=!0,this.viewer.root.dataset.failed="true"}fullscreen(){
-let{root}=this.viewer;toggleFullscreen(root.closest(".flowtex-pair")??root)}async save(){let{viewer}=this,href=URL.createObjectURL(
-await pictureOf(viewer.together)),name=(viewer.header?.name||"flow").replace(FORBIDDEN," ").trim();dom("a",{href,download:`${name}\
-.png`}).click(),viewer.lifetime.later(()=>URL.revokeObjectURL(href),SAVED_MS)}};function positions(data,anchor){return anchor.some(Boolean)?data.map((x,n)=>x-anchor[n%3]):data}function grid(us,vs){let result2=new Float32Array(
-2*us.length*vs.length),n=0;for(let v2 of vs)for(let u of us)result2[n++]=u,result2[n++]=v2;return result2}function coordinates({
-shape,rows,columns}){let middles=(count,{before,size})=>Array.from({length:count},(_,n)=>(n+before+.5)/size);return grid(
-middles(shape[1],columns),middles(shape[0],rows))}function noiseCoordinates({alongI,alongJ}){return grid(alongI,alongJ)}
-function shares(steps,low,high,nodes){let result2=new Float32Array(2*nodes),span=high-low||1;return steps.forEach((values,k)=>{
-for(let n=0;n<nodes;n+=1){let share=(values[n]-low)/span;result2[2*n+k]=Number.isFinite(share)?share:-1e9}}),result2}function interpolated([
-rows,columns],i,j,value){let[left,low]=[Math.min(Math.floor(i),columns-2),Math.min(Math.floor(j),rows-2)],[a,b]=[i-left,
-j-low],corner=low*columns+left,[from,to]=[value(corner),value(corner+columns+1)],aside=value(corner+(a>=b?1:columns));return from+
-Math.max(a,b)*(aside-from)+Math.min(a,b)*(to-aside)}function pickedPoint(context,x,y){let{layers,camera,moment,anchor,canvas}=context,{graphics,header}=layers[0].scene,program=graphics.
+(this.timeText.textContent=text)}lookOf({show_level,strength,contrast}){return`${show_level} ${strength} ${contrast}`}showLegend(){
+let{header,settings,parts}=this.viewer;this.legendLook=this.lookOf(settings),this.colours.update(),header&&this.legend.show(
+header,settings,parts.get("cmap")?.data)}read(point){let{header}=this.viewer;if(this.readout.replaceChildren(),this.legend.
+point(null),!(!point||!header)){this.readout.append(dom("span",{},[this.positionText(point.position,header)]));for(let[name,
+value]of Object.entries(point.values)){let text=`${name} ${numberText(value)} ${header.scalars.unit}`;this.readout.append(
+dom("b",{},[text.trimEnd()])),this.legend.point(header,value)}}}positionText(position,{geometry}){let{extent,planar,center,
+frame}=geometry,zoom=Math.max(this.viewer.camera?.zoom??1,1),digits=Math.min(Math.ceil(FEWEST_DIGITS+Math.log10(zoom)),MOST_DIGITS),
+isInPlane=planar&&Math.abs(position[2]-center[2])<1e-12*extent&&Math.abs(frame[8])>.999;return`(${position.slice(0,isInPlane?
+2:3).map(x=>{let value=Math.abs(x)<1e-9*extent?0:x;return digits>5?String(Number(value.toPrecision(digits))):numberText(
+value)}).join(", ")})`}fold(open=!1){this.isOpen=open,this.arrange()}toggle(shown=!this.isShown){shown!==this.isShown&&(this.
+isShown=shown,this.arrange(),this.viewer.options.onControls?.(shown))}arrange(){let{header,options,root}=this.viewer,isReady=header!==
+null,follows=!!options.follows;this.bar.hidden=!this.isShown||!isReady,this.handle.hidden=this.isShown||!isReady||follows,
+this.head.hidden=!(this.isShown||follows)||!isReady,this.controls.element.hidden=!this.isShown||!this.isOpen||!isReady,root.
+classList.toggle("flowtex-open",!this.controls.element.hidden),this.gear.setAttribute("aria-pressed",String(this.isOpen))}wait(missing){
+this.busy.hidden=!missing.length;let{viewer}=this;!missing.length||viewer.options.onNeed||this.lateTimer||(this.lateTimer=
+viewer.lifetime.later(()=>{this.lateTimer=null;let names=viewer.lacking.join(", ");names&&this.fail("The scene is not co\
+mplete.",`Missing: ${names}`)},LATE_MS))}hint(shown){let{lifetime}=this.viewer;lifetime.cancel(this.hintTimer),this.hintTimer=
+shown?lifetime.later(()=>this.hint(!1),HINT_MS):null,this.hintBox.hidden=!shown}clear(){this.note.hidden=!0,delete this.
+viewer.root.dataset.failed}fail(problem,detail){this.note.replaceChildren(dom("strong",{},[problem]),dom("pre",{},[detail])),
+this.note.hidden=!1,this.busy.hidden=!0,this.viewer.root.dataset.failed="true"}fullscreen(){let{root}=this.viewer;toggleFullscreen(
+root.closest(".flowtex-pair")??root)}async save(){let{viewer}=this,href=URL.createObjectURL(await pictureOf(viewer.together)),
+name=(viewer.header?.name||"flow").replace(FORBIDDEN," ").trim();dom("a",{href,download:`${name}.png`}).click(),viewer.lifetime.
+later(()=>URL.revokeObjectURL(href),SAVED_MS)}};var NO_VALUE=-1e9;function positions(data,anchor){return anchor.some(Boolean)?data.map((x,n)=>x-anchor[n%3]):data}function grid(us,vs){
+let result2=new Float32Array(2*us.length*vs.length),n=0;for(let v2 of vs)for(let u of us)result2[n++]=u,result2[n++]=v2;
+return result2}function coordinates({shape,rows,columns}){let middles=(count,{before,size})=>Array.from({length:count},(_,n)=>(n+
+before+.5)/size);return grid(middles(shape[1],columns),middles(shape[0],rows))}function noiseCoordinates({alongI,alongJ}){
+return grid(alongI,alongJ)}function shares(steps,scalars,nodes){let result2=new Float32Array(2*nodes),place=shareOf(scalars);
+return steps.forEach((values,k)=>{for(let n=0;n<nodes;n+=1){let share=place(values[n]);result2[2*n+k]=Number.isFinite(share)?
+share:NO_VALUE}}),result2}function interpolated([rows,columns],i,j,value){let[left,low]=[Math.min(Math.floor(i),columns-
+2),Math.min(Math.floor(j),rows-2)],[a,b]=[i-left,j-low],corner=low*columns+left,[from,to]=[value(corner),value(corner+columns+
+1)],aside=value(corner+(a>=b?1:columns));return from+Math.max(a,b)*(aside-from)+Math.min(a,b)*(to-aside)}function pickedPoint(context,x,y){let{layers,camera,moment,anchor,canvas}=context,{graphics,header}=layers[0].scene,program=graphics.
 programs.get(header.shaders.vertex,header.shaders.pick),whole=projection(header.geometry,camera,anchor),matrix=atPixel(whole,
 [x,y],[canvas.width,canvas.height]),[before,after,between]=moment,bits=graphics.pixel(()=>{layers.forEach(({scene:scene2},n)=>{
 graphics.programs.use(program,{u_matrix:matrix,u_between:between,u_part:n}),scene2.draw(before,after,anchor,!1)})});if(!bits[3])
@@ -538,11 +590,11 @@ cells)*cells);return{u_noiseOrigin:even.map((x,k)=>x*finest-view.anchor[k]),u_no
 u_noiseRestOdd:odd.map((x,k)=>x-whole[k])}}function paperUniforms(paper,s,noiseShape,density){let tiles=s.noise==="image"?
 s.tiles:1,[rows,columns]=noiseShape;return{u_noiseSize:paper.size.map(n=>n*density),u_noiseGrain:paper.grain,u_noiseDeviation:paper.
 deviations,u_noiseCorrected:paper.corrected,u_pictureSize:[columns*density*tiles,rows*density*tiles],u_pictureRound:[Number(
-paper.repeat[1]),Number(paper.repeat[0])],u_pictureGrey:noiseShape.length===2,u_tiles:tiles}}function momentOf(times,time){
-if(times.length<2)return[0,0,0];let step=0;for(;step<times.length-2&&times[step+1]<=time;)step+=1;let late=(time-times[step])/
-(times[step+1]-times[step]);return[step,step+1,clamp(late,0,1)]}var SERIES_STEP_S=.5,SERIES_LEAST_S=6,SERIES_MOST_S=60,LONGEST_GAP_S=.5,Player=class{time=0;clock=0;playing=!1;times=[0];lastFrame=0;hasHeader=!1;setHeader(header){
-let{times}=header.slices;(!(times.length===this.times.length&&times.every((t,n)=>t===this.times[n]))||!this.hasHeader)&&
-(this.time=header.time,this.clock=header.clock),this.hasHeader=!0,this.times=times}get varies(){return this.times.length>
+paper.repeat[1]),Number(paper.repeat[0])],u_pictureGrey:noiseShape.length===2,u_tiles:tiles}}function momentOf(times2,time){
+if(times2.length<2)return[0,0,0];let step=0;for(;step<times2.length-2&&times2[step+1]<=time;)step+=1;let late=(time-times2[step])/
+(times2[step+1]-times2[step]);return[step,step+1,clamp(late,0,1)]}var SERIES_STEP_S=.5,SERIES_LEAST_S=6,SERIES_MOST_S=60,LONGEST_GAP_S=.5,Player=class{time=0;clock=0;playing=!1;times=[0];lastFrame=0;hasHeader=!1;setHeader(header){
+let{times:times2}=header.slices;(!(times2.length===this.times.length&&times2.every((t,n)=>t===this.times[n]))||!this.hasHeader)&&
+(this.time=header.time,this.clock=header.clock),this.hasHeader=!0,this.times=times2}get varies(){return this.times.length>
 1}get span(){return[this.times[0],this.times[this.times.length-1]]}get moment(){return momentOf(this.times,this.time)}timeOf([
 before,after,between]){return this.times[before]+between*(this.times[after]-this.times[before])}seek(time){this.time=clamp(
 time,...this.span)}start(){this.playing=!0,this.lastFrame=0}range(settings){if(this.varies)return{first:this.span[0],last:this.
@@ -711,26 +763,26 @@ this.graphics=graphics,this.header=header,this.parts=parts}missing(before,after)
 header,names=["position","mesh",...geometry.planar?[]:["normal"]];pyramid&&names.push("places");for(let step of new Set(
 [before,after]))names.push(`slices/${step}`),slices.channels===2&&names.push(`extra/${step}`);return names.push(...this.
 scalarParts(before,after)),scalars.name!==null&&names.push("cmap"),paper&&names.push("noise","step"),[...new Set(names)].
-filter(name=>!this.fits(name))}scalarParts(before,after){let{name,steps}=this.header.scalars;return name===null?[]:(steps>
-1?[before,after]:[0,0]).map(step=>`scalars/${step}`)}fits(name){let part=this.parts.get(name);if(!part)return!1;let{geometry,
-slices,paper,mesh}=this.header,blocks=geometry.shape.map(n=>Math.max(Math.ceil((n-1)/mesh.tileCells),1)),shape={slices:[
-slices.count,geometry.rows.size,geometry.columns.size,slices.channels],position:[...geometry.shape,3],mesh:[...blocks,part.
-shape[2]],step:paper?[paper.size[1],paper.size[0]]:[]}[name.split("/")[0]];return!shape||String(shape)===String(part.shape)}part(name){
-let part=this.parts.get(name);if(!part)throw new Error(`the part "${name}" of the scene is missing`);return part}forget(name){
-let[kind,step]=name.split("/");(kind==="mesh"||kind==="cells")&&(this.meshLevels=this.drawn=null);let sliced=kind==="sli\
-ces"||kind==="extra";for(let user of sliced?[`slices/${step}`]:USERS[kind]??[])this.drop(user);this.drop("array")}drop(name){
-let resource=this.resources.get(name);this.resources.delete(name),resource&&(resource.users-=1,!resource.users&&(this.graphics.
-free(resource.kind,resource.object),this.graphics.common.delete(resource.key)))}dispose(){for(let name of[...this.resources.
-keys()])this.drop(name)}key(names,...rest){let digests=names.map(name=>this.parts.has(name)?this.part(name).digest:"none");
-return digests.every(Boolean)?JSON.stringify([digests,rest]):""}take(name,kind,key,make,fill){let own=this.resources.get(
-name);if(own)return own.object;let{graphics}=this,whole=key&&`${name.split("/")[0]} ${key}`,shared=whole?graphics.common.
-get(whole):void 0,object=shared?.object??graphics.counted(make()),resource=shared??{kind,object,count:0,key:whole,users:0};
-return resource.users+=1,this.resources.set(name,resource),shared||(resource.count=fill(object)||0),whole&&graphics.common.
-set(whole,resource),object}buffer(name,key,data,elements=!1){let gl=this.graphics.context,fill=buffer=>{let target=elements?
-gl.ELEMENT_ARRAY_BUFFER:gl.ARRAY_BUFFER,numbers=data();return gl.bindVertexArray(null),gl.bindBuffer(target,buffer),gl.bufferData(
-target,numbers,gl.STATIC_DRAW),numbers.length};return this.take(name,"Buffer",key,()=>gl.createBuffer(),fill)}mesh(){if(!this.
-meshLevels){let{geometry,mesh}=this.header,{shape,periodic}=geometry,parts={blocks:this.part("mesh").data,cells:this.parts.
-get("cells")?.data};this.meshLevels=new MeshLevels({shape,periodic,...parts},mesh)}return this.meshLevels}levels(sight){
+filter(name=>!this.fits(name))}scalarParts(before,after){let{name,steps,number}=this.header.scalars;if(name===null)return[];
+let end=number?`/${number}`:"";return(steps>1?[before,after]:[0,0]).map(step=>`scalars/${step}${end}`)}fits(name){let part=this.
+parts.get(name);if(!part)return!1;let{geometry,slices,paper,mesh}=this.header,blocks=geometry.shape.map(n=>Math.max(Math.
+ceil((n-1)/mesh.tileCells),1)),shape={slices:[slices.count,geometry.rows.size,geometry.columns.size,slices.channels],position:[
+...geometry.shape,3],mesh:[...blocks,part.shape[2]],step:paper?[paper.size[1],paper.size[0]]:[]}[name.split("/")[0]];return!shape||
+String(shape)===String(part.shape)}part(name){let part=this.parts.get(name);if(!part)throw new Error(`the part "${name}"\
+ of the scene is missing`);return part}forget(name){let[kind,step]=name.split("/");(kind==="mesh"||kind==="cells")&&(this.
+meshLevels=this.drawn=null);let sliced=kind==="slices"||kind==="extra";for(let user of sliced?[`slices/${step}`]:USERS[kind]??
+[])this.drop(user);this.drop("array")}drop(name){let resource=this.resources.get(name);this.resources.delete(name),resource&&
+(resource.users-=1,!resource.users&&(this.graphics.free(resource.kind,resource.object),this.graphics.common.delete(resource.
+key)))}dispose(){for(let name of[...this.resources.keys()])this.drop(name)}key(names,...rest){let digests=names.map(name=>this.
+parts.has(name)?this.part(name).digest:"none");return digests.every(Boolean)?JSON.stringify([digests,rest]):""}take(name,kind,key,make,fill){
+let own=this.resources.get(name);if(own)return own.object;let{graphics}=this,whole=key&&`${name.split("/")[0]} ${key}`,shared=whole?
+graphics.common.get(whole):void 0,object=shared?.object??graphics.counted(make()),resource=shared??{kind,object,count:0,
+key:whole,users:0};return resource.users+=1,this.resources.set(name,resource),shared||(resource.count=fill(object)||0),whole&&
+graphics.common.set(whole,resource),object}buffer(name,key,data,elements=!1){let gl=this.graphics.context,fill=buffer=>{
+let target=elements?gl.ELEMENT_ARRAY_BUFFER:gl.ARRAY_BUFFER,numbers=data();return gl.bindVertexArray(null),gl.bindBuffer(
+target,buffer),gl.bufferData(target,numbers,gl.STATIC_DRAW),numbers.length};return this.take(name,"Buffer",key,()=>gl.createBuffer(),
+fill)}mesh(){if(!this.meshLevels){let{geometry,mesh}=this.header,{shape,periodic}=geometry,parts={blocks:this.part("mesh").
+data,cells:this.parts.get("cells")?.data};this.meshLevels=new MeshLevels({shape,periodic,...parts},mesh)}return this.meshLevels}levels(sight){
 return{levels:this.mesh().levels(sight),shape:this.mesh().shape}}get hasTriangles(){return this.drawn!==null}setTriangles(levels,joins){
 let{drawn}=this;drawn&&String([levels,joins])===String([drawn.levels,drawn.joins])||(this.drawn={levels,joins},this.drop(
 "index"),this.drop("array"))}isLoaded(steps){return steps.every(step=>this.resources.has(`slices/${step}`))}load(steps){
@@ -742,8 +794,8 @@ fill))}fillArray(array,before,after){let gl=this.graphics.context,{geometry,scal
 {levels,joins}=this.drawn??{levels:new Int8Array,joins:new Int8Array},cells=()=>this.mesh().triangles(levels,joins),drawn=this.
 key(["cells","mesh"],shape,[...levels],[...joins]),index=this.buffer("index",drawn,cells,!0),nodes=()=>positions(this.part(
 "position").data,this.anchor),normal=geometry.planar?null:this.part("normal").data,painted=this.scalarParts(before,after),
-values=()=>{let steps=painted.map(name=>this.part(name).data);return shares(steps,scalars.low,scalars.high,shape[0]*shape[1])},
-colour=this.key([...new Set(painted)],shape,scalars.low,scalars.high),grid2=JSON.stringify([shape,rows,columns]),type=gl.
+values=()=>{let steps=painted.map(name=>this.part(name).data);return shares(steps,scalars,shape[0]*shape[1])},colour=this.
+key([...new Set(painted)],shape,scalars.low,scalars.high,scalars.log),grid2=JSON.stringify([shape,rows,columns]),type=gl.
 FLOAT;normal instanceof Int8Array&&(type=gl.BYTE),normal instanceof Int16Array&&(type=gl.SHORT);let attributes=[[this.buffer(
 "position",this.key(["position"],this.anchor),nodes),3,gl.FLOAT],[this.buffer("coordinate",grid2,()=>coordinates(geometry)),
 2,gl.FLOAT],[normal&&this.buffer("normal",this.key(["normal"]),()=>normal),3,type],[paper&&this.buffer("along","",()=>noiseCoordinates(
@@ -785,23 +837,31 @@ this.bindTextures(before,after)),this.bindNodes(before,after,anchor),gl.drawElem
 dex")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(null)}};var REQUEST_MS=60,LOST_MS=8e3,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD=4,Tiles=class{layers=[];missing=[];host;root;tiles=new Map;pyramid=null;chosen={
 choices:new Map,steps:[],names:""};drawn="";asked={names:[],steps:[]};count=0;isWaiting=!1;isOver=!1;lastCame=0;constructor(host,root){
 this.host=host,this.root=root}dispose(){this.isOver=!0;for(let name of[...this.tiles.keys()])this.drop(name)}setPart(name,part){
-let{graphics,header}=this.root,tile=this.tiles.get(name)??{parts:new Map,scene:void 0,used:this.count};if(this.tiles.set(
-name,tile),part.digest&&tile.parts.get(part.name)?.digest===part.digest)return;if(graphics.release(tile.parts.get(part.name)),
-tile.parts.set(part.name,graphics.hold(part)),part.name==="header"){let own=JSON.parse(new TextDecoder().decode(part.data));
-tile.scene?.dispose(),tile.scene=own&&new Scene(graphics,{...header,...own,pyramid:null},tile.parts);let map=this.root.parts.
-get("cmap");map&&tile.parts.set("cmap",map)}else tile.scene?.forget(part.name);this.lastCame=performance.now();let{names,
-steps}=this.chosen;this.missing=this.missing.filter(missing=>!this.isHere(missing,steps));let shown=cover(this.chosen.choices,
-other=>this.isHere(other,steps));String([...shown.keys()])!==names&&this.host.refine()}arrange([before,after]){let{camera,
-canvas}=this.host;if(!camera)return[];let steps=[...new Set([before,after])],shown=this.choose(camera,steps),layers=[{scene:this.
-root,key:[this.root.header.pyramid?.depth??0,0,0]}],names=[ROOT];for(let name of shown.keys()){let scene=this.tiles.get(
-name)?.scene;scene&&(names.push(name),layers.push({scene,key:keyOf(name)}))}let sight=camera.sight(canvas.height),parts=layers.
-map(({scene,key},n)=>{let{levels,shape}=scene.levels(sight);for(let finer of shown.get(names[n])??[])this.hide(levels,shape[1],
-finer,names[n]);let{pyramid}=this.root.header,[row,column]=key.slice(1).map(at=>at*(pyramid?.tileBlocks??0)<<key[0]);return{
-step:key[0],row,column,shape,levels}});return this.layers=layers,this.setTriangles(names,parts),layers.map(({scene})=>scene)}hide(levels,columns,finer,above){
-let[row,column,size]=this.pyramid?.finerPart(keyOf(finer),above)??[0,0,0];for(let j=row;j<Math.min(row+size,levels.length/
-columns);j+=1)levels.fill(-1,j*columns+column,j*columns+Math.min(column+size,columns))}setTriangles(names,parts){let drawn=String(
-parts.map(({levels},n)=>[names[n],levels]));if(drawn===this.drawn&&this.layers.every(({scene})=>scene.hasTriangles))return;
-this.drawn=drawn;let{geometry,mesh,pyramid}=this.root.header,most=Math.log2(mesh.tileCells),joins=join(parts,pyramid?.blocks??
+let{graphics,header}=this.root,tile=this.tiles.get(name)??this.emptyTile();if(this.tiles.set(name,tile),part.name==="mes\
+h"&&this.giveLimits(tile),part.digest&&tile.parts.get(part.name)?.digest===part.digest)return;if(graphics.release(tile.parts.
+get(part.name)),tile.parts.set(part.name,graphics.hold(part)),part.name==="header"){let own=JSON.parse(new TextDecoder().
+decode(part.data));tile.scene?.dispose(),tile.scene=own&&new Scene(graphics,{...header,...own,pyramid:null},tile.parts),
+this.giveMap(tile),this.giveLimits(tile)}else tile.scene?.forget(part.name);this.lastCame=performance.now();let{names,steps}=this.
+chosen;this.missing=this.missing.filter(missing=>!this.isHere(missing,steps));let shown=cover(this.chosen.choices,other=>this.
+isHere(other,steps));String([...shown.keys()])!==names&&this.host.refine()}recolour(colours={}){this.asked={names:[],steps:[]};
+let{mesh,scalars}=this.root.header,{steps}=this.chosen;for(let tile of this.tiles.values()){let{scene,parts}=tile;if(!scene)
+continue;let{header}=scene;Object.assign(header,{mesh:narrowed(mesh,tile.scalars,scalars)},colours),this.giveMap(tile);for(let name of[
+"scalars","mesh"])scene.forget(name);if((steps.length?scene.scalarParts(steps[0],steps[steps.length-1]):[]).every(name=>parts.
+has(name))&&(scalars.log===tile.scalars.log||scalars.name===null))continue;let others=[...parts.keys()].filter(name=>name.
+startsWith("scalars/"));for(let name of others)this.release(tile,name)}}emptyTile(){let{scalars}=this.root.header;return{
+parts:new Map,scene:void 0,scalars,used:this.count}}giveLimits(tile){let{mesh,scalars}=this.root.header;tile.scalars=scalars,
+tile.scene&&(tile.scene.header.mesh=mesh)}giveMap({scene,parts}){let map=this.root.parts.get("cmap");map&&parts.set("cma\
+p",map),scene?.forget("cmap")}arrange([before,after]){let{camera,canvas}=this.host;if(!camera)return[];let steps=[...new Set(
+[before,after])],shown=this.choose(camera,steps),layers=[{scene:this.root,key:[this.root.header.pyramid?.depth??0,0,0]}],
+names=[ROOT];for(let name of shown.keys()){let scene=this.tiles.get(name)?.scene;scene&&(names.push(name),layers.push({scene,
+key:keyOf(name)}))}let sight=camera.sight(canvas.height),parts=layers.map(({scene,key},n)=>{let{levels,shape}=scene.levels(
+sight);for(let finer of shown.get(names[n])??[])this.hide(levels,shape[1],finer,names[n]);let{pyramid}=this.root.header,
+[row,column]=key.slice(1).map(at=>at*(pyramid?.tileBlocks??0)<<key[0]);return{step:key[0],row,column,shape,levels}});return this.
+layers=layers,this.setTriangles(names,parts),layers.map(({scene})=>scene)}hide(levels,columns,finer,above){let[row,column,
+size]=this.pyramid?.finerPart(keyOf(finer),above)??[0,0,0];for(let j=row;j<Math.min(row+size,levels.length/columns);j+=1)
+levels.fill(-1,j*columns+column,j*columns+Math.min(column+size,columns))}setTriangles(names,parts){let drawn=String(parts.
+map(({levels},n)=>[names[n],levels]));if(drawn===this.drawn&&this.layers.every(({scene})=>scene.hasTriangles))return;this.
+drawn=drawn;let{geometry,mesh,pyramid}=this.root.header,most=Math.log2(mesh.tileCells),joins=join(parts,pyramid?.blocks??
 parts[0].shape,geometry.periodic,most);parts.forEach(({levels},n)=>this.layers[n].scene.setTriangles(levels,joins[n]))}choose(camera,steps){
 let{header}=this.root,{settings,canvas,ratio}=this.host;if(!header.pyramid)return new Map;this.pyramid??=new Pyramid(header.
 pyramid,header.mesh,this.root.part("places").data);let choices=this.pyramid.choose({...camera.sight(canvas.height/ratio),
@@ -819,9 +879,9 @@ this.asked.steps))||this.isWaiting||!options.onTiles||(this.isWaiting=!0,lifetim
 this.missing.length&&lifetime.later(()=>this.isOver||this.ask(all),LOST_MS))},REQUEST_MS))}trim(steps){let bytes=0;for(let[
 name,tile]of[...this.tiles].sort(([,a],[,b])=>b.used-a.used)){let{parts,used}=tile,slices=[...parts.keys()].filter(part=>part.
 startsWith("slices/"));for(let part of slices.slice(0,Math.max(slices.length-STEPS_HELD,0))){let step=stepOf(part);if(!steps.
-includes(step))for(let kind of["slices","extra","scalars"])this.release(tile,`${kind}/${step}`)}for(let{data}of parts.values())
-bytes+=BYTES_HELD*data.byteLength;bytes>BUDGET_BYTES&&used<this.count&&this.drop(name)}}drop(name){let tile=this.tiles.get(
-name);tile?.scene?.dispose();for(let part of[...tile?.parts.keys()??[]])this.release(tile,part);this.tiles.delete(name)}release(tile,part){
+includes(step))for(let kind of["slices","extra"])this.release(tile,`${kind}/${step}`)}for(let{data}of parts.values())bytes+=
+BYTES_HELD*data.byteLength;bytes>BUDGET_BYTES&&used<this.count&&this.drop(name)}}drop(name){let tile=this.tiles.get(name);
+tile?.scene?.dispose();for(let part of[...tile?.parts.keys()??[]])this.release(tile,part);this.tiles.delete(name)}release(tile,part){
 part!=="cmap"&&this.root.graphics.release(tile?.parts.get(part)),tile?.parts.delete(part)}};var STILL_MS=160,LOST_MS2=5e3,STEPS_HELD2=12,isEqual=(a,b)=>JSON.stringify(a)===JSON.stringify(b),Viewer=class{options;graphics=sharedGraphics();lifetime=new Lifetime;player=new Player;root=document.
 createElement("div");canvas=document.createElement("canvas");panel;pointers;parts=new Map;header=null;settings={};scene=null;tiles=null;camera=null;sharp=!1;isVisible=!0;shown=null;together=[
 this];renderer;busyUntil=0;firstCamera=null;requests=new Map;constructor(element,options={}){this.options=options;let{root}=this;
@@ -837,20 +897,25 @@ stats(),objects,users:users.size,frames}}dispose(){if(!this.lifetime.isOver){thi
 this.tiles?.dispose(),this.tiles=null,this.scene?.dispose(),this.scene=null;for(let name of[...this.parts.keys()])this.remove(
 name);this.graphics.leave(this),this.renderer.dispose(),this.root.remove()}}setHeader(header){if(header.format!==3){this.
 panel.fail(`The scene has format ${header.format}, and this client reads format ${3}.`,"Use the client of the flowtex th\
-at made the scene.");return}let old=this.header;if(this.header=header,this.settings={...header.settings,...header.own},this.
-player.setHeader(header),this.tiles?.dispose(),this.scene?.dispose(),this.makeScene(header),this.requests.clear(),(!old||
-!isSamePlace(old.geometry,header.geometry))&&(this.firstCamera=header.camera,this.camera=null),old&&old.generation!==header.
-generation)for(let name of[...this.parts.keys()])name.includes("/")&&this.remove(name);this.panel.build(),this.change()}makeScene(header){
-this.scene=new Scene(this.graphics,header,this.parts),this.tiles=new Tiles(this,this.scene)}setPart(part){let{name,digest}=part,
-tile=tilePart(name);if(tile)return void this.tiles?.setPart(tile[0],{...part,name:tile[1]});if(this.requests.delete(stepOf(
-name)),digest&&this.parts.get(name)?.digest===digest)return;let held=this.graphics.hold(part);this.remove(name),this.parts.
-set(name,held),this.scene?.forget(name),this.trim(),name==="cmap"&&this.panel.showLegend(),this.change()}remove(name){this.
-graphics.release(this.parts.get(name)),this.parts.delete(name)}trim(){if(!this.options.onNeed||!this.header)return;let names=[
-...this.parts.keys()].filter(name=>name.startsWith("slices/")),[before,after]=this.player.moment;for(let name of names.slice(
-0,Math.max(names.length-STEPS_HELD2,0))){let step=stepOf(name);if(!(step===before||step===after))for(let kind of["slices",
-"extra"])this.remove(`${kind}/${step}`)}}setSettings(settings){Object.entries(settings).every(([name,value])=>this.settings[name]===
-value)||(Object.assign(this.settings,settings),this.panel.update(),this.change())}followSetting(name,value){name in(this.
-header?.own??{})||this.setSettings({[name]:value})}choose(name,value){this.holdDraft(),this.setSettings({[name]:value}),
+at made the scene.");return}let old=this.header;if(old&&old.generation!==void 0&&old.generation===header.generation)return this.
+recolour(coloursOf(header));if(this.header=header,this.settings={...header.settings,...header.own},this.player.setHeader(
+header),this.tiles?.dispose(),this.scene?.dispose(),this.makeScene(header),this.requests.clear(),(!old||!isSamePlace(old.
+geometry,header.geometry))&&(this.firstCamera=header.camera,this.camera=null),old&&old.generation!==header.generation)for(let name of[
+...this.parts.keys()])name.includes("/")&&this.remove(name);this.panel.build(),this.change()}recolour(colours){if(this.header){
+Object.assign(this.header,colours);for(let name of["scalars","mesh"])this.scene?.forget(name);this.tiles?.recolour(colours),
+this.panel.showLegend(),this.change()}}chooseColours(choice){if(this.options.onColours)return this.options.onColours(choice);
+for(let viewer of this.together){if(!viewer.header)continue;let{colours,part}=recoloured(viewer.header,choice,viewer.parts);
+part&&viewer.setPart(part),viewer.recolour(colours)}}makeScene(header){this.scene=new Scene(this.graphics,header,this.parts),
+this.tiles=new Tiles(this,this.scene)}setPart(part){let{name,digest}=part,tile=tilePart(name);if(tile)return void this.tiles?.
+setPart(tile[0],{...part,name:tile[1]});if(this.requests.delete(stepOf(name)),digest&&this.parts.get(name)?.digest===digest)
+return;let held=this.graphics.hold(part);this.remove(name),this.parts.set(name,held),this.scene?.forget(name),this.trim(),
+name==="cmap"&&this.tiles?.recolour(),(name==="cmap"||name==="maps")&&this.panel.showLegend(),this.change()}remove(name){
+this.graphics.release(this.parts.get(name)),this.parts.delete(name)}trim(){if(!this.options.onNeed||!this.header)return;
+let names=[...this.parts.keys()].filter(name=>name.startsWith("slices/")),[before,after]=this.player.moment;for(let name of names.
+slice(0,Math.max(names.length-STEPS_HELD2,0))){let step=stepOf(name);if(!(step===before||step===after))for(let kind of["\
+slices","extra"])this.remove(`${kind}/${step}`)}}setSettings(settings){Object.entries(settings).every(([name,value])=>this.
+settings[name]===value)||(Object.assign(this.settings,settings),this.panel.update(),this.change())}followSetting(name,value){
+name in(this.header?.own??{})||this.setSettings({[name]:value})}choose(name,value){this.holdDraft(),this.setSettings({[name]:value}),
 this.options.onSetting?.(name,value)}get cameraState(){let state=this.camera?.state??this.firstCamera;return state?copyOf(
 state):null}setCamera(state){if(!this.camera)this.firstCamera=copyOf(state);else{if(isEqual(this.camera.state,state))return;
 this.camera.state=copyOf(state)}this.change(!0)}reportCamera(){this.holdDraft(),this.change(!0),this.camera&&this.options.
@@ -933,34 +998,34 @@ first.play(),this.viewers.every(({scene,lacking})=>scene&&!lacking.length)||mode
 let{model}=this,slowly=(wait,call)=>throttled((later,delay)=>this.first.lifetime.later(later,delay),wait,call),options={
 rebuild:!0,guarded:!0,controls:model.get("bar")??!0,onCamera:slowly(CAMERA_MS,camera=>this.send("camera",camera)),onTime:slowly(
 TIME_MS,time=>this.send("time",time)),onClock:slowly(TIME_MS,clock=>this.send("clock",clock)),onPlaying:playing=>this.send(
-"playing",playing),onPoint:point=>this.send("point",point),onSetting:(name,value)=>this.send(name,value),onControls:shown=>this.
-send("bar",shown)};return viewersIn(element,count,options,n=>({onNeed:step=>model.send({kind:"need",step,view:n}),onTiles:(keys,steps)=>model.
-send({kind:"tiles",keys,steps,seen:this.seen[n],view:n}),onFrame:()=>this.planFrame()}))}send(name,value){this.sent.set(
-name,JSON.stringify(value)),this.model.set(name,value),this.model.save_changes()}planFrame(){let{lifetime}=this.first;lifetime.
-cancel(this.frameTimer);let wait=this.hasSentFrame?STILL_MS2:0;this.frameTimer=lifetime.later(()=>{this.sendFrame()},wait)}async sendFrame(){
-let{first,viewers}=this;if(!viewers.every(({sharp})=>sharp))return;this.hasSentFrame=!0;let data=await(await pictureOf(viewers,
-1/first.ratio,STILL_FORMAT)).arrayBuffer();first.lifetime.isOver||this.model.send({kind:"frame"},void 0,[data])}becomeLive(){
-let{root}=this.first;if(root.dataset.live||root.dataset.failed)return;root.dataset.live="true";let still=`[data-flowtex~\
-="${String(this.model.get("_key"))}"]`;this.sheet.insertRule(`${still}, :is(.jp-OutputArea-child, .output_area):has(> * \
-> ${still}) { display: none !important }`)}listen(event,call){this.handlers.some(([other])=>other===event)||(this.handlers.
-push([event,call]),this.model.on(event,call))}follow(name,take){this.listen(`change:${name}`,()=>{let value=this.model.get(
-name);this.sent.get(name)!==JSON.stringify(value)&&take(value),this.sent.delete(name)})}connect(){let{viewers,first}=this;
-this.listen("msg:custom",(message,buffers)=>{hasParts(message)&&this.take(opened(message,buffers)),message?.kind==="tile\
-s"&&(this.seen[message.view??0]=message.seen??0),message?.kind==="error"&&first.panel.fail("The kernel could not go on.",
-message.text??"")}),viewers.forEach((_,n)=>this.listen(`change:${HEADERS[n]}`,()=>this.takeHeader(n))),this.listen("chan\
-ge:size",()=>this.resize()),this.follow("camera",value=>{let camera=cameraOf(value);camera&&viewers.forEach(viewer=>viewer.
-setCamera(camera))}),this.follow("time",time=>viewers.forEach(viewer=>viewer.setTime(Number(time)))),this.follow("clock",
-clock=>viewers.forEach(viewer=>viewer.setClock(Number(clock)))),this.follow("playing",playing=>playing?first.play():first.
-pause()),this.follow("bar",shown=>first.panel.toggle(!!shown))}resize(){let[width,height]=this.model.get("size")??[0,0],
-{root}=this.first,frame=root.closest(".flowtex-pair")??root;frame.style.width=width?`${width}px`:"100%",frame.style.height=
-`${height||HEIGHT_PX}px`,frame.parentElement?.classList.toggle("flowtex-room",!width)}takeHeader(n){let{model}=this,header=model.
-get(HEADERS[n]);if(!header?.format)return;let rows=header.table??[],values=rows.map(row=>[row.name,model.get(row.name)??
-row.default]);this.viewers[n].setHeader({...header,settings:Object.fromEntries(values),camera:cameraOf(model.get("camera")),
-time:model.get("time")??0,clock:model.get("clock")??0});for(let delivery of this.early.splice(0))this.take(delivery);for(let{
-name}of rows)this.follow(name,value=>{for(let viewer of this.viewers)viewer.followSetting(name,value)})}take(delivery){let viewer=this.
-viewers[delivery.view];if(!viewer)return;let generation=viewer.header?viewer.header.generation??0:-1;if(delivery.generation>
-generation)return void this.early.push(delivery);let isOld=name=>delivery.generation!==generation&&name.includes("/");for(let part of delivery.
-parts)isOld(part.name)||viewer.setPart(part);let names=delivery.lacking.filter(name=>!isOld(name));discard([delivery]),this.
-becomeLive(),names.length&&this.model.send({kind:"want",names,view:delivery.view})}dispose(){for(let[event,call]of this.
-handlers)this.model.off(event,call);discard(this.early),document.adoptedStyleSheets=document.adoptedStyleSheets.filter(s=>s!==
-this.sheet);for(let viewer of this.viewers)viewer.dispose()}};var client_default={initialize,render};export{Viewer,decoded,client_default as default,mountPage,partsOfFile};
+"playing",playing),onPoint:point=>this.send("point",point),onSetting:(name,value)=>this.send(name,value),onColours:changes=>model.
+send({kind:"appearance",changes}),onControls:shown=>this.send("bar",shown)};return viewersIn(element,count,options,n=>({
+onNeed:step=>model.send({kind:"need",step,view:n}),onTiles:(keys,steps)=>model.send({kind:"tiles",keys,steps,seen:this.seen[n],
+view:n}),onFrame:()=>this.planFrame()}))}send(name,value){this.sent.set(name,JSON.stringify(value)),this.model.set(name,
+value),this.model.save_changes()}planFrame(){let{lifetime}=this.first;lifetime.cancel(this.frameTimer);let wait=this.hasSentFrame?
+STILL_MS2:0;this.frameTimer=lifetime.later(()=>{this.sendFrame()},wait)}async sendFrame(){let{first,viewers}=this;if(!viewers.
+every(({sharp})=>sharp))return;this.hasSentFrame=!0;let data=await(await pictureOf(viewers,1/first.ratio,STILL_FORMAT)).
+arrayBuffer();first.lifetime.isOver||this.model.send({kind:"frame"},void 0,[data])}becomeLive(){let{root}=this.first;if(root.
+dataset.live||root.dataset.failed)return;root.dataset.live="true";let still=`[data-flowtex~="${String(this.model.get("_k\
+ey"))}"]`;this.sheet.insertRule(`${still}, :is(.jp-OutputArea-child, .output_area):has(> * > ${still}) { display: none !\
+important }`)}listen(event,call){this.handlers.some(([other])=>other===event)||(this.handlers.push([event,call]),this.model.
+on(event,call))}follow(name,take){this.listen(`change:${name}`,()=>{let value=this.model.get(name);this.sent.get(name)!==
+JSON.stringify(value)&&take(value),this.sent.delete(name)})}connect(){let{viewers,first}=this;this.listen("msg:custom",(message,buffers)=>{
+hasParts(message)&&this.take(opened(message,buffers)),message?.kind==="tiles"&&(this.seen[message.view??0]=message.seen??
+0),message?.kind==="error"&&first.panel.fail("The kernel could not go on.",message.text??"")}),viewers.forEach((_,n)=>this.
+listen(`change:${HEADERS[n]}`,()=>this.takeHeader(n))),this.listen("change:size",()=>this.resize()),this.follow("camera",
+value=>{let camera=cameraOf(value);camera&&viewers.forEach(viewer=>viewer.setCamera(camera))}),this.follow("time",time=>viewers.
+forEach(viewer=>viewer.setTime(Number(time)))),this.follow("clock",clock=>viewers.forEach(viewer=>viewer.setClock(Number(
+clock)))),this.follow("playing",playing=>playing?first.play():first.pause()),this.follow("bar",shown=>first.panel.toggle(
+!!shown))}resize(){let[width,height]=this.model.get("size")??[0,0],{root}=this.first,frame=root.closest(".flowtex-pair")??
+root;frame.style.width=width?`${width}px`:"100%",frame.style.height=`${height||HEIGHT_PX}px`,frame.parentElement?.classList.
+toggle("flowtex-room",!width)}takeHeader(n){let{model}=this,header=model.get(HEADERS[n]);if(!header?.format)return;let rows=header.
+table??[],values=rows.map(row=>[row.name,model.get(row.name)??row.default]);this.viewers[n].setHeader({...header,settings:Object.
+fromEntries(values),camera:cameraOf(model.get("camera")),time:model.get("time")??0,clock:model.get("clock")??0});for(let delivery of this.
+early.splice(0))this.take(delivery);for(let{name}of rows)this.follow(name,value=>{for(let viewer of this.viewers)viewer.
+followSetting(name,value)})}take(delivery){let viewer=this.viewers[delivery.view];if(!viewer)return;let generation=viewer.
+header?viewer.header.generation??0:-1;if(delivery.generation>generation)return void this.early.push(delivery);let isOld=name=>delivery.
+generation!==generation&&name.includes("/");for(let part of delivery.parts)isOld(part.name)||viewer.setPart(part);let names=delivery.
+lacking.filter(name=>!isOld(name));discard([delivery]),this.becomeLive(),names.length&&this.model.send({kind:"want",names,
+view:delivery.view})}dispose(){for(let[event,call]of this.handlers)this.model.off(event,call);discard(this.early),document.
+adoptedStyleSheets=document.adoptedStyleSheets.filter(s=>s!==this.sheet);for(let viewer of this.viewers)viewer.dispose()}};var client_default={initialize,render};export{Viewer,decoded,client_default as default,mountPage,partsOfFile};

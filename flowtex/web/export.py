@@ -148,7 +148,7 @@ def page_text(views: Sequence[WebView], **options: Any) -> str:
 def _page_data(views: Sequence[WebView]) -> list[ClientData]:
     """Return what a page holds of its views, with as many levels of tiles as there is room for."""
     scenes = []
-    for scene in (view.data() for view in views):
+    for scene in (view.page_data() for view in views):
         pyramid, finest = scene.pyramid, 0
         if pyramid is not None:
             finest, room = pyramid.depth, TILE_BYTES

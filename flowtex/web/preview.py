@@ -13,8 +13,10 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import Bytes, Floats
+from flowtex._util.colours import rgb
 from flowtex.camera import Camera
 from flowtex.field.interpolation import steps_around
+from flowtex.options import NO_VALUE_COLOR
 from flowtex.rendering.cpu import Picture, render
 from flowtex.rendering.uniforms import ViewState
 from flowtex.rendering.webgl import ClientData
@@ -103,11 +105,14 @@ def _colour(scene: ClientData, picture: Picture, steps: tuple[int, int], between
     if colours.values is None or colours.table is None:
         return np.asarray(colours.plain)
     before, after = (colours.values[min(step, len(colours.values) - 1)] for step in steps)
-    values = np.nan_to_num(before * (1 - between) + after * between, nan=colours.low)
+    values = before * (1 - between) + after * between
     rows, columns = geometry.rows, geometry.columns
     at = np.nan_to_num(picture.coordinate, nan=0.0)
     j = np.rint(at[..., 1] * rows.size - rows.before - 0.5).astype(int).clip(0, rows.nodes - 1)
     i = np.rint(at[..., 0] * columns.size - columns.before - 0.5).astype(int)
     nearest = values[j, i.clip(0, columns.nodes - 1)]
-    share = (nearest - colours.low) / ((colours.high - colours.low) or 1.0)
-    return np.asarray(colours.table[(share * 256).clip(0, 255).astype(int), :3] / 255.0)
+    share = colours.shares(nearest)
+    entry = (np.nan_to_num(share) * 256).clip(0, 255).astype(int)
+    return np.where(
+        np.isnan(share)[..., None], rgb(NO_VALUE_COLOR), colours.table[entry, :3] / 255.0
+    )

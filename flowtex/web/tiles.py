@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import partial
 from typing import Any
 
 from flowtex._util.progress import track
-from flowtex.rendering.webgl import ClientData, tile_parts
+from flowtex.rendering.webgl import ClientData, Colours, tile_parts
 from flowtex.rendering.webgl.protocol import Parts
 from flowtex.scene import steps_of
 from flowtex.textures import TextureSet
@@ -14,24 +15,30 @@ from flowtex.tiles import Pyramid, Tile, TileKey, TileLoader
 
 __all__ = ["all_tiles", "packed_tile", "tile_loader"]
 
+#: Colours of the whole, and what is handed over of a tile in them.
+Prepared = tuple[Colours, ClientData]
+
 #: Tiles that are made together where all of them are.
 TOGETHER = 4
 
 
 def tile_loader(whole: ClientData, pyramid: Pyramid, **options: Any) -> TileLoader:
     """Return what makes the tiles of a flow; the options are those of :class:`TileLoader`."""
-    name = whole.colours.name
 
-    def prepare(textures: TextureSet) -> ClientData:
-        field = textures.geometry.field
-        return whole.tile(textures, None if name is None else steps_of(field, name))
+    def prepare(textures: TextureSet) -> Prepared:
+        return whole.colours, whole.tile(textures, partial(steps_of, textures.geometry.field))
 
     return TileLoader(pyramid, prepare=prepare, **options)
 
 
 def packed_tile(whole: ClientData, tile: Tile, steps: Sequence[int]) -> Parts:
-    """Return the arrays of a tile that has been made for these steps."""
-    data: ClientData | None = tile.prepared
+    """Return the arrays of a tile that has been made for these steps, in colours of the whole."""
+    data = None
+    if tile.prepared is not None:
+        colours, data = tile.prepared
+        if colours is not whole.colours:
+            data = data.recoloured(whole.tile_colours(partial(steps_of, data.field)))
+            tile.prepared = whole.colours, data
     for source in map(whole.source, steps):
         if data is not None and tile.layers[source] is not None:
             data.packing.take(source, tile.take(source))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import replace
 from typing import Any
 
@@ -13,15 +14,15 @@ from flowtex.scene import Scene, share_field, steps_of
 from flowtex.settings import TABLE
 from flowtex.tiles import Pyramid
 
-__all__ = ["WebView", "even_steps", "web_views"]
+__all__ = ["WebView", "colours_of", "even_steps", "web_views"]
 
 
 class WebView:
     """A scene for a client in a browser.
 
     Of the time steps so many are handed over, evenly chosen with the first and the last among
-    them; paths are traced through all of them all the same. ``own_settings`` are those of this
-    view alone, where it stands beside another.
+    them; paths are traced through all of them all the same. ``own`` names the settings and what of
+    the appearance are this view's alone, where it stands beside another.
 
     Raises
     ------
@@ -35,19 +36,13 @@ class WebView:
         *,
         background: Any = "white",
         steps: int | None = None,
-        own_settings: tuple[str, ...] = (),
+        own: Collection[str] = (),
     ) -> None:
-        appearance = scene.appearance
-        self.scene, self.own_settings = scene, own_settings
+        self.scene = scene
+        self.own_settings = tuple(name for name in own if name in TABLE)
+        self.own_appearance = tuple(name for name in own if name not in TABLE)
         self._times = even_steps(len(scene.field.times), steps)
-        self._colours = Colours(
-            table=colour_table(appearance.cmap),
-            plain=rgb(appearance.color),
-            background=rgb(background),
-            lighting=scene.is_lit,
-            opacity=float(appearance.opacity),
-            bar=appearance.has_bar,
-        )
+        self._background = rgb(background)
 
     @property
     def field(self) -> FlowField:
@@ -65,21 +60,74 @@ class WebView:
         pyramid = self.scene.pyramid
         return self.field.shape if pyramid is None else pyramid.shape(pyramid.depth)
 
+    def page_data(self) -> ClientData:
+        """Return the same with the values of all scalars, where nobody can be asked for them."""
+        data, names = self.data(), self.scene.scalar_names
+        others = tuple(
+            (n, steps_of(data.field, name))
+            for n, name in enumerate(names)
+            if name != self.scene.scalar_name
+        )
+        return data.recoloured(replace(data.colours, others=others))
+
     def coarse_data(self, nodes: int) -> ClientData:
         """Return the same with so many nodes at most, for a first picture."""
         return self._data(self.scene.coarsened(nodes))
 
     def _data(self, scene: Scene, pyramid: Pyramid | None = None) -> ClientData:
-        colours, name = self._colours, scene.scalar_name
-        if name is not None:
-            low, high = scene.scalar_limits
-            values = steps_of(scene.textures.geometry.field, name)
-            colours = replace(colours, name=name, values=values, low=low, high=high)
-        return ClientData(scene.textures, colours, self._times, pyramid)
+        textures = scene.textures
+        colours = colours_of(self.scene, textures.geometry.field, self._background)
+        return ClientData(textures, colours, self._times, pyramid)
+
+    def recoloured(self, data: ClientData) -> ClientData:
+        """Return what the client has been handed with the colours of this moment."""
+        return data.recoloured(colours_of(self.scene, data.field, self._background))
 
     def close(self) -> None:
         """Follow the settings no longer."""
         self.scene.close()
+
+
+def colours_of(scene: Scene, field: FlowField, background: tuple[float, float, float]) -> Colours:
+    """Return the colours of a scene on its field, or on a coarser form of it."""
+    look, name = scene.appearance, scene.scalar_name
+    low, high = scene.scalar_limits
+    return Colours(
+        name=name,
+        unit="" if name is None else scene.field.unit_of(name),
+        number=0 if name is None else scene.scalar_names.index(name),
+        choices=choices_of(scene),
+        cmap=look.cmap if isinstance(look.cmap, str) else "",
+        auto=look.clim is None,
+        values=None if name is None else steps_of(field, name),
+        low=low,
+        high=high,
+        log_scale=look.log_scale,
+        table=colour_table(look.cmap),
+        plain=rgb(look.color),
+        background=background,
+        lighting=scene.is_lit,
+        opacity=float(look.opacity) if look.visible else 0.0,
+        bar=look.has_bar,
+    )
+
+
+def choices_of(scene: Scene) -> tuple[dict[str, Any], ...]:
+    """Return what can be coloured by, with the range that each has by itself."""
+    choices: list[dict[str, Any]] = []
+    for name in scene.scalar_names:
+        low, high = scene.scalar_range(name)
+        steps = len(scene.field.scalars.get(name, scene.field.velocity))
+        choices.append(
+            {
+                "name": name,
+                "unit": scene.field.unit_of(name),
+                "low": low,
+                "high": high,
+                "steps": steps,
+            }
+        )
+    return tuple(choices)
 
 
 def web_views(mesh: Any, options: Options, *, steps: int | None = None) -> tuple[WebView, ...]:
@@ -94,9 +142,8 @@ def web_views(mesh: Any, options: Options, *, steps: int | None = None) -> tuple
     first = Scene.from_options(field, chosen)
     views = [WebView(first, background=background, steps=steps)]
     if changes is not None:
-        own = tuple(name for name in changes if name in TABLE)
         second = first.beside(changes, chosen)
-        views.append(WebView(second, background=background, steps=steps, own_settings=own))
+        views.append(WebView(second, background=background, steps=steps, own=changes))
     return tuple(views)
 
 

@@ -24,7 +24,7 @@ import numpy as np
 from flowtex._util.array_types import AnyArray
 from flowtex.rendering.webgl import ClientData
 from flowtex.rendering.webgl.protocol import Header, Parts, part_buffer, part_info
-from flowtex.settings import Affects
+from flowtex.scene import Change
 from flowtex.tiles import TileKey
 from flowtex.web import preview
 from flowtex.web.view import WebView
@@ -159,9 +159,12 @@ class Feed:
         """Answer a client that lacks arrays that it was offered."""
         self._answers.do(lambda: self._send_named(names), urgency=1)
 
-    def _scene_changed(self, affects: Affects) -> None:
+    def _scene_changed(self, affects: Change) -> None:
         """Make the textures again, and the traces if need be."""
         if affects == "uniform":
+            return
+        if affects == "appearance":
+            self._builds.do(self._recolour, urgency=2)
             return
         with self._lock:
             self._order += 1
@@ -232,6 +235,21 @@ class Feed:
             if self._live:
                 self._coming = (time.monotonic() + COMING_S, scene.moment(self._moment()))
                 self._deliver(parts, again=False)
+
+    def _recolour(self) -> None:
+        """Send the colours of this moment: the header, and what of the arrays differs."""
+        scene = self._view.recoloured(self.scene)
+        parts = self._first_parts(scene)
+        with self._lock:
+            if self._closed:
+                return
+            self.scene = scene
+            self._tiles.recolour(scene)
+            self._announce(self.header)
+            if self._live:
+                kept = ("slices/", "extra/")
+                colours = {n: part for n, part in parts.items() if not n.startswith(kept)}
+                self._deliver(colours, again=False)
 
     def _first_parts(self, scene: ClientData) -> Parts:
         """Return what shows the present moment of a scene."""

@@ -13,8 +13,8 @@ import traitlets
 
 from flowtex.field import FlowField
 from flowtex.options import Appearance, FieldOptions, Options, ViewOptions, accepts_options
-from flowtex.scene import NO_IMAGE, Scene
-from flowtex.settings import TABLE, Affects, Settings, SettingsError
+from flowtex.scene import NO_IMAGE, AppearanceAttributes, Change, Scene
+from flowtex.settings import TABLE, Settings, SettingsError
 from flowtex.textures.images import load_image
 from flowtex.web.assets import asset
 from flowtex.web.export import PREVIEW, page_text, write_page
@@ -29,14 +29,17 @@ __all__ = ["FlowWidget"]
 SLACK = 1e-9  #: Share of the duration by which a time may lie outside it, for rounding's sake.
 
 
-class FlowWidget(SettingTraits, Displayed):
+class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
     """A flow in a notebook, drawn by the browser.
 
     Every setting of :class:`~flowtex.Settings` is a trait of the same name, shared with the
-    browser: ``widget.samples = 25``.
+    browser: ``widget.samples = 25``. The appearance can be changed as well, at any time:
+    ``widget.cmap = "magma"``, ``widget.scalars = "pressure"``.
 
     Attributes
     ----------
+    scalars, cmap, clim, log_scale, color, opacity, visible, lighting, show_scalar_bar
+        Arguments that the widget was made with, live.
     camera
         Where it is seen from: ``position``, ``focal_point``, ``up`` (three numbers each, in the
         mesh's own coordinates), ``parallel``, ``parallel_scale`` and ``view_angle`` (degrees).
@@ -120,6 +123,7 @@ class FlowWidget(SettingTraits, Displayed):
         self.observe(self._to_time, "time")
         self._ends = [self.settings.observe(self._set), self.scene.observe(self._scene_changed)]
         self._views.start()
+        self._is_made = True
 
     @property
     def field(self) -> FlowField:
@@ -232,7 +236,7 @@ class FlowWidget(SettingTraits, Displayed):
         if getattr(self, name) != value:
             setattr(self, name, value)
 
-    def _scene_changed(self, affects: Affects) -> None:
+    def _scene_changed(self, affects: Change) -> None:
         if affects == "uniform":
             self._set("time", self.scene.time)
 

@@ -53,6 +53,12 @@ class TileFeed:
                     budget=BUDGET_BYTES,
                 )
 
+    def recolour(self, scene: ClientData) -> None:
+        """Send the same tiles in other colours from now on; what is on its way has the old ones."""
+        with self._lock:
+            self._scene, self._sent = scene, {}
+        self._worker.do(self._send_ready, urgency=1)
+
     def forget(self) -> None:
         """Begin anew with a client that has nothing."""
         self._wanted, self._sent = [], {}
@@ -90,7 +96,7 @@ class TileFeed:
             if tile is None and failed is None:
                 continue
             with self._lock:
-                if job not in self._wanted:
+                if job not in self._wanted or scene is not self._scene:
                     continue
                 self._wanted.remove(job)
                 self._count += 1

@@ -8,11 +8,14 @@ from __future__ import annotations
 
 import io
 from collections.abc import Callable, Sequence
+from contextlib import suppress
+from dataclasses import replace
 from typing import Any, TypeGuard
 
 import numpy as np
 
 from flowtex.rendering.webgl.protocol import Header
+from flowtex.scene import Change
 from flowtex.tiles import TileKey
 from flowtex.web.view import WebView
 from flowtex.widget.feed import Feed
@@ -21,6 +24,9 @@ __all__ = ["HEADERS", "Views"]
 
 #: Traits of the widget with the headers of the views, from left to right.
 HEADERS = ("_header", "_header_beside")
+
+#: What of the appearance is chosen in the browser.
+CHOSEN = ("scalars", "cmap", "clim")
 
 Send = Callable[[dict[str, Any], list[memoryview]], None]
 
@@ -37,6 +43,7 @@ class Views:
     ) -> None:
         self.views = tuple(views)
         self.first = self.views[0].scene
+        self.first.observe(self._share_appearance)
         self.feeds = [self._feed(n, view, announce, send) for n, view in enumerate(self.views)]
 
     def _feed(
@@ -77,12 +84,27 @@ class Views:
         if not (isinstance(number, int) and 0 <= number < len(self.feeds)):
             return
         step, names = message.get("step"), message.get("names")
+        if kind == "appearance" and isinstance(message.get("changes"), dict):
+            self._take_appearance(message["changes"])
         if kind == "need" and isinstance(step, int):
             self.feeds[number].need(step)
         if kind == "want" and isinstance(names, list) and all(isinstance(n, str) for n in names):
             self.feeds[number].want(names)
         if kind == "tiles":
             self.feeds[number].need_tiles(*_tiles_of(message))
+
+    def _take_appearance(self, changes: dict[str, Any]) -> None:
+        """Take colours that were chosen in the browser; what does not fit changes nothing there."""
+        known = {name: value for name, value in changes.items() if name in CHOSEN}
+        with suppress(ValueError, KeyError, TypeError):
+            self.first.appearance = replace(self.first.appearance, **known)
+
+    def _share_appearance(self, affects: Change) -> None:
+        """Hand the appearance of the first view on to the other, but for what is its own."""
+        for view in self.views[1:] if affects == "appearance" else ():
+            mine = view.scene.appearance
+            kept = {name: getattr(mine, name) for name in (*view.own_appearance, "image")}
+            view.scene.appearance = replace(self.first.appearance, **kept)
 
     def share_setting(self, name: str, value: Any) -> None:
         """Hand a setting of the first view on to the other."""

@@ -127,14 +127,25 @@ class Streamer:
     "name",
     [
         *(f"set_{name}" for name in TABLE),
-        *("colour", "cmap", "low", "high", "theme", "background", "compare", "image_file"),
+        *(
+            "colour",
+            "cmap",
+            "log_scale",
+            "opacity",
+            "low",
+            "high",
+            "theme",
+            "background",
+            "compare",
+            "image_file",
+        ),
         *("time", "playing", "pace", "rendering"),
     ],
 )
 def test_a_value_of_any_kind_is_taken_or_set_back(app: FlowApp, name: str) -> None:
     look, clockwork = app.controllers.appearance, app.controllers.playback
     handlers: dict[str, Callable[[], None]] = {
-        **dict.fromkeys(("colour", "cmap"), look.take_colour),
+        **dict.fromkeys(("colour", "cmap", "log_scale", "opacity"), look.take_colour),
         **dict.fromkeys(("low", "high"), look.take_range),
         **dict.fromkeys(("theme", "background"), look.take_background),
         "compare": look.take_comparison,
@@ -578,11 +589,11 @@ def test_a_plane_keeps_time_range_and_camera_and_another_file_does_not() -> None
         app.state.send(index=5)
         await until(lambda: app.controllers.data.choice.plane == "k=5")
         assert app.viewport.handle.time == app.state.get("time") == 1.0
-        assert app.viewport.colour_range == (-1.0, 99.0) and app.state.get("high") == 99.0
+        assert app.area.scene.scalar_limits == (-1.0, 99.0) and app.state.get("high") == 99.0
         assert app.viewport.camera == camera
         app.state.send(file="other")
         await until(lambda: app.controllers.data.name == "other" and app.state.get("steady"))
-        assert app.viewport.colour == "speed" and app.viewport.chosen_range is None
+        assert app.area.scalars == "speed" and app.area.clim is None
 
     played(app, story)
 

@@ -18,7 +18,9 @@ from matrix import ASIDE, IMAGE, WHOLE, straight
 
 from flowtex import FlowField
 from flowtex._util.array_types import Indices
+from flowtex._util.colours import colour_table
 from flowtex.camera import CAMERA_LIMITS, Camera
+from flowtex.rendering.cpu.shade import mean_colours
 from flowtex.rendering.mesh_levels import MeshLevels, Region, join, mesh_limits
 from flowtex.rendering.tile_choice import TileView, choose_tiles, cover, finer_part, wanted_tiles
 from flowtex.rendering.uniforms import ViewState, uniforms
@@ -166,6 +168,24 @@ def assert_near(found: Any, expected: Any, where: str = "") -> None:
 
 def test_uniforms_for_the_client() -> None:
     check("uniforms.json", {name: uniforms_of(name) for name in VIEWS})
+
+
+#: Settings on which the mean colours of a picture depend.
+SHADINGS: list[dict[str, Any]] = [{}, {"strength": 1.0}, {"contrast": 3.0}, {"strength": 0.0}]
+
+
+def test_mean_colours_for_the_client() -> None:
+    table = colour_table("viridis")[::51]
+    shading = ClientData(Scene(gyre()).textures).constants()["constants"]["shading"]
+    cases = [
+        {
+            "settings": dict(settings := Settings(**options)),
+            "colours": table[:, :3].tolist(),
+            "means": mean_colours(table, settings)[:, :3].tolist(),
+        }
+        for options in SHADINGS
+    ]
+    check("colours.json", {"shading": shading, "cases": cases})
 
 
 def test_cameras_for_the_client() -> None:

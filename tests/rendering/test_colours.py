@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import matplotlib
 import numpy as np
 import pytest
 
+import flowtex
 from flowtex._util.array_types import Floats
-from flowtex.rendering.cpu.shade import shade
+from flowtex._util.colours import colour_shares, colour_table, is_diverging
+from flowtex.rendering.cpu.shade import mean_colours, shade
 from flowtex.settings import Settings
 
 
@@ -52,3 +56,45 @@ def test_more_contrast_is_more_contrast(values: Floats) -> None:
     spread = [shade(grey, values, Settings(contrast=c)).std() for c in (0.0, 0.5, 1.0, 2.0)]
     assert spread[0] < 1e-6
     assert (np.diff(spread) > 0).all()
+
+
+@pytest.mark.parametrize("options", [{}, {"strength": 0.4}, {"contrast": 2.0}])
+@pytest.mark.parametrize("name", ["viridis", "coolwarm"])
+def test_a_legend_has_the_mean_colours_of_shaded_noise(
+    name: str, options: dict[str, Any], values: Floats
+) -> None:
+    settings, table = Settings(**options), colour_table(name)[::15]
+    even = (values - values.mean()) / values.std()
+    means = [255 * shade(colour, even, settings).mean(axis=0) for colour in table[:, :3] / 255]
+    np.testing.assert_allclose(mean_colours(table, settings)[:, :3], means, atol=4)
+
+
+def test_a_legend_has_the_mean_colours_of_a_picture(opengl: None) -> None:
+    table = colour_table("viridis")[[0, 80, 160, 250]]
+    for colour, mean in zip(table, mean_colours(table, Settings()), strict=True):
+        picture = flowtex.render(
+            flowtex.examples.double_gyre_field(),
+            color=tuple(colour[:3] / 255),
+            scalars=False,
+            lighting=False,
+            size=(300, 200),
+            zoom=3,
+        )
+        np.testing.assert_allclose(picture.mean(axis=(0, 1)), mean[:3], atol=8)
+
+
+def test_an_image_keeps_the_colours_of_the_map() -> None:
+    table = colour_table("viridis")
+    np.testing.assert_array_equal(mean_colours(table, Settings(noise="image")), table)
+
+
+def test_places_on_a_map() -> None:
+    numbers = [-1, 0, 1, 10, 100, 1000, np.nan]
+    shares = colour_shares(np.array(numbers), 1, 100, log_scale=True)
+    np.testing.assert_allclose(shares, [0, 0, 0, 0.5, 1, 1, np.nan])
+    assert list(colour_shares(np.array([0.0, 1.0, 9.0]), 0, 2)) == [0, 0.5, 1]
+
+
+def test_maps_with_a_middle_are_known() -> None:
+    assert is_diverging("RdBu_r") and is_diverging("cmo.balance")
+    assert is_diverging(matplotlib.colormaps["coolwarm"]) and not is_diverging("viridis")

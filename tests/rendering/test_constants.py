@@ -20,8 +20,8 @@ GLSL = {
     )
     for numbers in [re.findall(r"0x[0-9a-f]+u|-?[\d.]+(?:e-?\d+)?u?", re.sub(r"\w+\(", "", value))]
 }
-#: Kernels by name, in Python alone.
-PYTHON_ONLY = {"KERNELS"}
+#: Kernels by name, and what legends are made by, in Python alone.
+PYTHON_ONLY = {"KERNELS", "MEAN_VALUES"}
 
 
 @pytest.mark.parametrize("name", GLSL)

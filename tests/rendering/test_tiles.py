@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -142,6 +143,29 @@ def test_another_noise_is_drawn_whole_and_back_in_tiles(_tiled: None) -> None:
     assert np.abs(whole - tiled).mean() > 5
     assert np.abs(again - tiled).max() <= 2
     plotter.close()
+
+
+def test_tiles_have_the_colours_of_this_moment(_tiled: None) -> None:
+    import pyvista as pv
+
+    first: dict[str, Any] = {"scalars": "speed", "cmap": "viridis"}
+    then: dict[str, Any] = {"scalars": "depth", "cmap": "magma", "clim": (0.2, 1.5), "opacity": 0.7}
+    depth = flat().points[..., 0]
+    pictures = []
+    for options, changes in ((first, then), (then, {})):
+        plotter = pv.Plotter(off_screen=True, window_size=list(SIZE))
+        field = replace(flat(), scalars={"depth": depth[None]})
+        handle = plotter.flowtex.add(field, show_scalar_bar=False, **options)
+        pictures.append(plotter.screenshot(return_img=True))
+        assert len(handle.meshes) > 1
+        for name, value in changes.items():
+            setattr(handle, name, value)
+        if changes:
+            plotter.render()
+            pictures[-1] = plotter.screenshot(return_img=True)
+        plotter.close()
+    changed, made = (np.asarray(picture).astype(int) for picture in pictures)
+    assert np.abs(changed - made).max() <= 2
 
 
 def view(rng: np.random.Generator) -> TileView:

@@ -103,7 +103,7 @@ def test_a_page_holds_the_scene_and_nothing_from_outside(tmp_path: Path) -> None
     assert "http" not in read.policy
     assert read.tags.count("noscript") == 1
     view = web_views(gyre(4), Options.split(scalars=WICKED))[0]
-    scene = view.data()
+    scene = view.page_data()
     header = read.header()
     header["camera"], expected = None, {**scene.header(view.scene.settings), "camera": None}
     assert header == json.loads(json.dumps(expected))
@@ -238,6 +238,49 @@ def test_keys_and_title_are_the_pages_from_the_beginning(
     for label in ("Pause (space)", "Play (space)"):
         page.keyboard.press("Space")
         page.locator(f'.flowtex [aria-label="{label}"]').wait_for()
+    assert said == []
+
+
+@pytest.mark.browser
+def test_colours_are_chosen_on_a_page(
+    offline: tuple[Page, list[str], list[str]], tmp_path: Path
+) -> None:
+    page, _, said = offline
+    export(gyre(), tmp_path / "page.html", samples=5, strength=0.0)
+    page.set_viewport_size({"width": 640, "height": 420})
+    page.goto((tmp_path / "page.html").as_uri())
+    page.locator('[data-sharp="true"]').wait_for()
+    ramp = "() => document.querySelector('.flowtex').shadowRoot.querySelector('.ramp').style"
+    drawn, colours = [pixels(page)], [page.evaluate(f"{ramp}.background")]
+
+    def shown() -> None:
+        page.wait_for_timeout(200)  # until the picture has begun anew
+        page.locator('[data-sharp="true"]').wait_for()
+        drawn.append(pixels(page))
+        colours.append(page.evaluate(f"{ramp}.background"))
+
+    page.locator("[data-name=settings]").click()
+    page.locator("[data-cmap=magma]").click()
+    shown()
+    page.get_by_label("Highest value").fill("0.1")
+    page.keyboard.press("Tab")
+    shown()
+    page.get_by_text("auto", exact=True).click()
+    page.locator("[data-cmap=viridis]").click()
+    shown()
+    inside = (slice(120, 300), slice(60, 300))
+    assert np.abs(drawn[1] - drawn[0])[inside].mean() > 20
+    assert np.abs(drawn[2] - drawn[1])[inside].mean() > 20
+    assert np.abs(drawn[3] - drawn[0])[inside].mean() < 1
+    assert colours[0] == colours[3] != colours[1] == colours[2]
+    page.get_by_label("Colour by").select_option("none")
+    shown()
+    grey = drawn[-1][inside]
+    assert np.ptp(grey, axis=-1).max() <= 1 and np.ptp(grey.mean(axis=-1)) <= 1
+    assert page.locator(".flowtex .legend").is_hidden()
+    page.get_by_label("Colour by").select_option(index=1)
+    shown()
+    assert np.ptp(drawn[-1][inside].mean(axis=-1)) > 5 or np.ptp(drawn[-1][inside]) > 5
     assert said == []
 
 

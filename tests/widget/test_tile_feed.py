@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ import pytest
 
 from flowtex.options import Options
 from flowtex.rendering.webgl.protocol import Header
+from flowtex.textures import TextureSet
 from flowtex.tiles import Pyramid
 from flowtex.web.view import web_views
 from flowtex.widget.views import Views
@@ -26,7 +28,8 @@ def swirl(times: int = 1) -> Any:
     y, x = np.mgrid[-1:1:300j, -1:1:600j]
     steps = [np.stack([-(y - 0.1 * t), x], axis=-1) for t in range(times)]
     steps[0][:290, :290] = np.nan
-    return flowtex.FlowField.from_arrays(np.stack([x, y], axis=-1), np.stack(steps))
+    points = np.stack([x, y], axis=-1)
+    return flowtex.FlowField.from_arrays(points, np.stack(steps), scalars={"depth": x * x + y})
 
 
 class Client:
@@ -120,6 +123,31 @@ def test_what_was_dropped_is_sent_again_and_what_is_on_its_way_is_not(
     client.ask((1, 0, 1), (1, 0, 0))
     client.wait(lambda: client.seen == 3)
     assert client.order.count("tile/1/0/1/header") == sent + 1
+
+
+def test_tiles_in_other_colours_are_not_traced_again(
+    make: Callable[..., Client], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    client = make(swirl(), cmap="magma")
+    client.ask((0, 0, 1))
+    client.wait(lambda: client.seen == 1)
+    before, generation = client.arrays.copy(), client.header["generation"]
+    tile = "tile/0/0/1"
+    monkeypatch.setattr(TextureSet, "layers", None)
+    scene = client.views.first
+    scene.appearance = replace(scene.appearance, scalars="depth", clim=(0.0, 3.0))
+    client.wait(lambda: "scalars/0/1" in client.arrays)
+    client.seen = 0  # what is on its way has other colours
+    client.ask((0, 0, 1))
+    client.wait(lambda: client.seen == 2)
+    assert (client.header["scalars"]["name"], client.header["generation"]) == ("depth", generation)
+    depth = swirl().scalars["depth"][0, :257, 256:513]
+    np.testing.assert_allclose(client.arrays[f"{tile}/scalars/0/1"], depth, rtol=1e-6)
+    assert client.arrays["scalars/0/1"].shape == before["scalars/0"].shape
+    same = (client.arrays[f"{tile}/slices/0"], before[f"{tile}/slices/0"])
+    np.testing.assert_array_equal(*same)
+    assert (client.arrays[f"{tile}/mesh"] != before[f"{tile}/mesh"]).any()
+    assert client.errors == []
 
 
 def test_errors_are_told_once(make: Callable[..., Client], monkeypatch: pytest.MonkeyPatch) -> None:

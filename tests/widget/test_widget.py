@@ -17,6 +17,7 @@ from PIL import Image
 
 import flowtex
 from flowtex import examples
+from flowtex._util.colours import colour_table
 from flowtex.examples._double_gyre import nodes as nodes_of
 from flowtex.settings import TABLE, SettingsError
 from flowtex.widget import feed
@@ -257,7 +258,8 @@ def test_an_error_while_tracing_is_told(
     monkeypatch.setattr(widget._views.views[0], "data", fail)
     widget.noise = "spots"
     heard.wait(lambda: any(m["kind"] == "error" for m in heard.messages))
-    assert heard.messages[-1]["text"] == "MemoryError: out of memory"
+    told = [m["text"] for m in heard.messages if m["kind"] == "error"]
+    assert told == ["MemoryError: out of memory"]
     assert "out of memory" in capsys.readouterr().err
 
 
@@ -474,3 +476,85 @@ def test_opacity_and_legend(make: Make) -> None:
     assert widget._header["scalars"]["bar"] is False
     with pytest.raises(ValueError, match=r"^opacity is 2; expected a number from 0 to 1"):
         make(opacity=2)
+
+
+def settle(widget: FlowWidget, heard: Heard) -> None:
+    """Wait until the widget has sent all that it sends by itself."""
+    heard.say(kind="ready")
+    assert widget._views.feeds[0].settled.wait(20)
+    count = -1
+    while count != len(heard.messages):
+        count = len(heard.messages)
+        time.sleep(0.3)
+    heard.messages.clear()
+
+
+def coloured(times: int = 1) -> flowtex.FlowField:
+    field = gyre(times)
+    heights = field.points[..., 1] - 0.4
+    return flowtex.FlowField.from_arrays(
+        field.points, field.velocity, times=field.times, scalars={"height": heights}
+    )
+
+
+def test_an_appearance_is_sent_without_the_slices(
+    make: Make, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    widget = make(coloured())
+    heard = Heard(widget, monkeypatch)
+    settle(widget, heard)
+    generation = widget._header["generation"]
+    widget.scalars = "height"
+    heard.wait(lambda: "scalars/0/1" in heard.arrays)
+    np.testing.assert_allclose(heard.arrays["scalars/0/1"], widget.field.scalars["height"][0])
+    widget.cmap = "coolwarm"
+    heard.wait(lambda: (heard.arrays["cmap"] == colour_table("coolwarm")).all())
+    names = {name for message in heard.messages for name in names_of(message)}
+    assert names <= {"cmap", "mesh", "scalars/0/1"}
+    scalars = widget._header["scalars"]
+    assert (scalars["name"], scalars["number"], scalars["cmap"]) == ("height", 1, "coolwarm")
+    assert scalars["low"] == -scalars["high"]  # zero is in the middle
+    assert widget._header["generation"] == generation
+    headers: list[Any] = []
+    widget.observe(lambda change: headers.append(change["new"]), "_header")
+    widget.clim, widget.opacity, widget.visible = (0, 1), 0.5, False
+    for _ in range(100):
+        if headers and headers[-1]["opacity"] == 0:
+            break
+        time.sleep(0.05)
+    assert (headers[-1]["scalars"]["low"], headers[-1]["scalars"]["high"]) == (0, 1)
+    assert headers[-1]["opacity"] == 0 and not headers[-1]["scalars"]["bar"]
+
+
+def test_colours_that_are_chosen_in_the_browser_are_taken(
+    make: Make, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    widget = make(coloured(), beside={"cmap": "gray"})
+    heard = Heard(widget, monkeypatch)
+    heard.say(kind="appearance", changes={"scalars": "height", "cmap": "magma", "clim": [0, 1]})
+    assert (widget.scalars, widget.cmap, widget.clim) == ("height", "magma", (0.0, 1.0))
+    second = widget._views.views[1].scene.appearance
+    assert (second.scalars, second.cmap) == ("height", "gray")  # its own stays
+    for wrong in ({"cmap": "nix"}, {"scalars": ["x"]}, {"clim": "ab"}, {"opacity": 0.1}, 3, None):
+        heard.say(kind="appearance", changes=wrong)
+    assert (widget.scalars, widget.cmap, widget.clim) == ("height", "magma", (0.0, 1.0))
+    assert widget.opacity == 1.0
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "said"),
+    [
+        ("scalars", "hight", "there is no scalar 'hight' on this field; there are 'speed', 'hei"),
+        ("cmap", "virids", "there is no colour map 'virids'; did you mean 'viridis'"),
+        ("clim", (1, 0), "the lower one first"),
+        ("opacity", 3, "opacity is 3; expected a number from 0 to 1"),
+        ("colour_map", "magma", "FlowWidget has no attribute 'colour_map'; "),
+        ("sampels", 3, "FlowWidget has no attribute 'sampels'; did you mean 'samples'"),
+    ],
+)
+def test_an_appearance_that_does_not_fit_is_refused(
+    make: Make, name: str, value: Any, said: str
+) -> None:
+    widget = make(coloured())
+    with pytest.raises((AttributeError, ValueError, KeyError), match=said):
+        setattr(widget, name, value)

@@ -94,6 +94,7 @@ class BrowserView {
   async show(): Promise<void> {
     const { source, playing } = this.props;
     this.started = performance.now();
+    this.tiles.request([], []); // what is on its way is of the scene before
     this.viewer?.setHeader(source.header);
     await this.load(source.surface);
     if (playing) this.viewer?.play();

@@ -3,33 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
+from flowtex._util.colours import CMAPS
 from flowtex.app.controllers.context import Context, Controller
 from flowtex.app.server.validation import decode_picture, name_among, number
 from flowtex.app.streaming.viewport import BACKGROUNDS as THEMES
 from flowtex.errors import FieldError
+from flowtex.options import ROBUST
 from flowtex.settings import TABLE, SettingsError
 
-__all__ = ["BACKGROUNDS", "CMAPS", "COMPARISONS", "PLAIN", "Appearance"]
+__all__ = ["BACKGROUNDS", "COMPARISONS", "PLAIN", "Appearance"]
 
 #: The choice of no colours.
 PLAIN = "none"
-#: Colour maps to choose from: even steps of lightness first, those that diverge after them.
-CMAPS = (
-    "viridis",
-    "cividis",
-    "magma",
-    "inferno",
-    "plasma",
-    "gray",
-    "Blues_r",
-    "YlGnBu_r",
-    "turbo",
-    "coolwarm",
-    "RdBu_r",
-    "twilight",
-)
 #: What lies behind the surface.
 BACKGROUNDS = ("theme", "black", "white", "gray")
 #: What a second pane shows, by what it is called.
@@ -63,28 +51,41 @@ class Appearance(Controller):
             background=self.background,
             compare=self.compared,
             comparisons=list(COMPARISONS),
-            cmap=self._cmap(),
             image_file=None,
             set_noise_choices=self._noise_choices(),
         )
         self.show_field()
         on = self.state.on
         on(*(f"set_{name}" for name in TABLE))(self.take_settings)
-        on("colour", "cmap")(self.take_colour)
+        on("colour", "cmap", "log_scale", "opacity")(self.take_colour)
         on("low", "high")(self.take_range)
         on("theme", "background")(self.take_background)
         on("compare")(self.take_comparison)
         on("image_file")(self.take_image)
         context.field_changed.connect(self.show_field)
+        context.area.appearance_changed.connect(self.show_colours)
         context.client_started.connect(self.end_comparison)
         self.take_background()
 
     def show_field(self) -> None:
         """Let the page show settings and colours of the flow that is shown."""
-        viewport = self.viewport
-        self.state.set(colours=[*viewport.colours, PLAIN], colour=viewport.colour or PLAIN)
+        self.state.set(colours=[*self.area.scene.scalar_names, PLAIN])
         self.show_settings()
-        self._show_range()
+        self.show_colours()
+
+    def show_colours(self) -> None:
+        """Let the page show the colours as they are."""
+        area = self.area
+        low, high = self._shown_span = self._span()
+        self.state.set(
+            colour=area.scalars or PLAIN,
+            cmap=self._cmap(),
+            log_scale=area.log_scale,
+            opacity=area.opacity,
+            bar=self._bar(),
+            low=low,
+            high=high,
+        )
 
     def take_settings(self) -> None:
         """Set what the page asks for, and tell it what is not possible."""
@@ -101,6 +102,8 @@ class Appearance(Controller):
                 continue
             # A whole number comes back from the page as it was sent, not as the type it has here.
             self.state.set(**{f"set_{name}": getattr(settings, name)})
+            if name in ("strength", "contrast", "noise"):
+                self.state.set(bar=self._bar())
 
     def take_setting(self, pair: Any) -> None:
         """Set what the browser's client has set by itself."""
@@ -114,16 +117,22 @@ class Appearance(Controller):
 
     def take_colour(self) -> None:
         """Colour by what the page asks for."""
-        choice, cmap = self.state.get("colour"), self.state.get("cmap")
-        valid = name_among(choice, (PLAIN, *self.viewport.colours))
-        if not valid or not name_among(cmap, (*CMAPS, self._cmap())):
-            self.state.set(colour=self.viewport.colour or PLAIN, cmap=self._cmap())
-            return
-        name = "" if choice == PLAIN else choice
-        if (name, cmap) != (self.viewport.colour, self._cmap()):
-            self.viewport.colour_by(name, cmap=None if cmap == self._cmap() else cmap)
-            self._show_range()
-            self.stream.changed()
+        area, get = self.area, self.state.get
+        name, cmap, log_scale = get("colour"), get("cmap"), get("log_scale")
+        opacity = number(get("opacity"), 0, 1)
+        changes: dict[str, Any] = {}
+        if name_among(name, (PLAIN, *area.scene.scalar_names)) and name != (area.scalars or PLAIN):
+            # A range is that of one scalar.
+            changes |= {"scalars": False if name == PLAIN else name, "clim": None}
+        if name_among(cmap, CMAPS) and cmap != area.cmap:
+            changes["cmap"] = cmap
+        if isinstance(log_scale, bool) and log_scale != area.log_scale:
+            changes["log_scale"] = log_scale
+        if opacity is not None and opacity != area.opacity:
+            changes["opacity"] = opacity
+        if changes:
+            self._change(**changes)
+        self.show_colours()
 
     def take_range(self) -> None:
         """Let the colours go from and to what the page asks for."""
@@ -136,18 +145,20 @@ class Appearance(Controller):
         if low is None or high is None or not low < high:
             span = f"{self.state.get('low')!r} to {self.state.get('high')!r}"
             self.context.complain(f"the colours go from {span}; expected a lower number first")
-        if low is None or high is None or not low < high or not self.viewport.colour:
-            self._show_range()
-            return
-        self.viewport.colour_by(self.viewport.colour, clim=(low, high))
-        self._show_range()
-        self.stream.changed()
+        elif self.area.scalars:
+            self._change(clim=(low, high))
+        self.show_colours()
 
-    def forget_range(self) -> None:
-        """Let the colours go from the least to the greatest value again."""
-        self.viewport.forget_range()
-        self._show_range()
-        self.stream.changed()
+    def choose_range(self, clim: Any = None) -> None:
+        """Let the colours go from the least to the greatest value again, or leave some out."""
+        self._change(clim=ROBUST if clim == ROBUST else None)
+
+    def _change(self, **changes: Any) -> None:
+        """Change the appearance, or tell why that cannot be."""
+        try:
+            self.area.scene.appearance = replace(self.area.scene.appearance, **changes)
+        except (ValueError, KeyError) as error:
+            self.context.complain(error)
 
     def take_background(self) -> None:
         """Take the colour behind the surface that the page asks for."""
@@ -197,9 +208,9 @@ class Appearance(Controller):
         """Return settings, colours, background and comparison."""
         return {
             "settings": dict(self.settings),
-            "colour": self.viewport.colour or PLAIN,
+            "colour": self.area.scalars or PLAIN,
             "cmap": self._cmap(),
-            "clim": self.viewport.chosen_range,
+            "clim": None if self.area.clim is None else self.area.scene.scalar_limits,
             "theme": self.theme,
             "background": self.background,
             "split": self.compared,
@@ -223,7 +234,7 @@ class Appearance(Controller):
 
     def _cmap(self) -> str:
         """Name of the colour map; the first one for a map that has no name here."""
-        return self.viewport.cmap if isinstance(self.viewport.cmap, str) else CMAPS[0]
+        return self.area.cmap if isinstance(self.area.cmap, str) else CMAPS[0]
 
     def _noise_choices(self) -> list[str]:
         """Kinds of noise to choose from; an image only where there is one."""
@@ -232,19 +243,16 @@ class Appearance(Controller):
 
     def _span(self) -> tuple[float, float]:
         """Return the ends of the range as the page shows them, with four digits."""
-        low, high = self.viewport.colour_range
+        low, high = self.area.scene.scalar_limits
         return float(f"{low:.4g}"), float(f"{high:.4g}")
 
-    def _show_range(self) -> None:
-        low, high = self._shown_span = self._span()
-        self.state.set(bar=self._bar(), low=low, high=high)
-
     def _bar(self) -> dict[str, Any]:
-        if not self.viewport.colour:
+        if not self.area.scalars:
             return {"name": "", "low": "", "high": "", "stops": []}
-        low, high = self.viewport.colour_range
+        low, high = self.area.scene.scalar_limits
+        name, unit = self.area.scalars, self.area.scene.field.unit_of(self.area.scalars)
         return {
-            "name": self.viewport.colour,
+            "name": f"{name} ({unit})" if unit else name,
             "low": f"{low:.3g}",
             "high": f"{high:.3g}",
             "stops": self.viewport.colour_stops(),

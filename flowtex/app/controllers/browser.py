@@ -10,18 +10,18 @@ from __future__ import annotations
 import asyncio
 from typing import Any
 
-from flowtex._util.colours import colour_table, rgb
+from flowtex._util.colours import rgb
 from flowtex.app.controllers.context import Context, Controller
 from flowtex.app.server.files import Content, Give
 from flowtex.app.server.validation import number
 from flowtex.camera import Camera
-from flowtex.rendering.webgl import ClientData, Colours
+from flowtex.rendering.webgl import ClientData
 from flowtex.rendering.webgl.protocol import parts_file
-from flowtex.scene import steps_of
 from flowtex.settings import TABLE
 from flowtex.tiles import TileKey, TileLoader
 from flowtex.web.assets import asset
 from flowtex.web.tiles import packed_tile, tile_loader
+from flowtex.web.view import colours_of
 
 __all__ = ["RENDERERS", "BrowserRendering"]
 
@@ -38,7 +38,8 @@ class BrowserRendering(Controller):
         super().__init__(context)
         self._scene: ClientData | None = None
         self._loader: TileLoader | None = None
-        self._generation = 0
+        #: Numbers of the scene, and of the files in which it is handed over.
+        self._generation = self._published = 0
         self._routes = context.routes
         self._appearance: tuple[Any, ...] = ()
         self._camera: Camera | None = None
@@ -129,33 +130,35 @@ class BrowserRendering(Controller):
             *built,
             *baked,
             self.viewport.field,
-            self.viewport.colour,
-            self.viewport.cmap,
-            self.viewport.colour_range,
+            self.area.scene.appearance,
             self.viewport.background,
         )
 
     def _begin(self) -> None:
-        """Hand a scene over, in place of an earlier one."""
+        """Hand a scene over in place of an earlier one, or that one in other colours."""
         self._withdraw()
         self._appearance = self._present_appearance()
-        shown = self.viewport.handle.scene
-        scene = ClientData(shown.textures, self._colours(), pyramid=shown.pyramid)
+        old, scene = self._scene, self._data()
+        if old is not None and old.textures is scene.textures:
+            scene = old.recoloured(scene.colours)
+        else:
+            self._generation += 1
+            self._close_loader()
+            self._loader = None if scene.pyramid is None else tile_loader(scene, scene.pyramid)
         self._scene = scene
-        self._loader = None if shown.pyramid is None else tile_loader(scene, shown.pyramid)
-        self._generation += 1
         self._camera = self.viewport.camera
         self.stream.paused = True
         header = scene.header(
             self.settings, camera=self._camera.to_dict(), time=self.viewport.handle.time
         )
+        self._published += 1
         surface = self._publish("surface", lambda: parts_file(scene.surface()))
         steps = [
             self._publish(f"step-{step}", lambda step=step: parts_file(scene.step(step)))
             for step in range(scene.steps)
         ]
         tiles = self._routes.give_each(
-            f"tile-{self._generation}", lambda name: self._tile(scene, name)
+            f"tile-{self._published}", lambda name: self._tile(scene, name)
         )
         self.state.send(
             client_source={
@@ -174,6 +177,7 @@ class BrowserRendering(Controller):
 
     def _end(self) -> None:
         self._withdraw()
+        self._close_loader()
         self._scene = None
         self.stream.paused = False
         self.state.set(client_source=None)
@@ -185,7 +189,7 @@ class BrowserRendering(Controller):
             body = await asyncio.get_running_loop().run_in_executor(None, make)
             return body, "application/octet-stream", None
 
-        return self._routes.give(f"{name}-{self._generation}", content)
+        return self._routes.give(f"{name}-{self._published}", content)
 
     def _tile(self, scene: ClientData, name: str) -> Give:
         """Return how the tile of a name, its key and time steps, becomes a file."""
@@ -210,31 +214,25 @@ class BrowserRendering(Controller):
 
         return content
 
-    def _withdraw(self) -> None:
+    def _close_loader(self) -> None:
         if self._loader is not None:
             self._loader.close()
-            self._loader = None
-        if self._scene is not None:
-            self._routes.withdraw(f"tile-{self._generation}")
-            self._routes.withdraw(f"surface-{self._generation}")
-            for step in range(self._scene.steps):
-                self._routes.withdraw(f"step-{step}-{self._generation}")
+        self._loader = None
 
-    def _colours(self) -> Colours:
-        scene = self.viewport
-        low, high = scene.colour_range
-        return Colours(
-            name=scene.colour or None,
-            values=steps_of(scene.handle.scene.whole, scene.colour) if scene.colour else None,
-            low=low,
-            high=high,
-            table=colour_table(scene.cmap),
-            plain=rgb(scene.plain),
-            background=rgb(scene.background),
-            lighting=not scene.flat if scene.lighting is None else scene.lighting,
-        )
+    def _withdraw(self) -> None:
+        if self._scene is not None:
+            names = ("tile", "surface", *(f"step-{step}" for step in range(self._scene.steps)))
+            for name in names:
+                self._routes.withdraw(f"{name}-{self._published}")
+
+    def _data(self) -> ClientData:
+        scene = self.area.scene
+        textures, background = scene.textures, rgb(self.viewport.background)
+        colours = colours_of(scene, textures.geometry.field, background)
+        return ClientData(textures, colours, pyramid=scene.pyramid)
 
     def close(self) -> None:
         """End what goes on."""
         self._withdraw()
+        self._close_loader()
         self._scene = None

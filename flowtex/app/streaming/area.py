@@ -10,28 +10,31 @@
     area.settings.lod = False
 
 It draws on the server and streams pictures; a drag pans a flat surface and turns a curved one, the
-wheel zooms. Whatever is changed through :attr:`FlowArea.settings` is drawn at once.
+wheel zooms. Whatever is changed through :attr:`FlowArea.settings`, or of the appearance, such as
+``area.cmap = "magma"``, is drawn at once.
 """
 
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Callable
 from typing import Any
 
 from trame.widgets import html, rca
 
-from flowtex.app.server.page import PageState, start_task
+from flowtex.app.server.page import PageState, Signal, start_task
 from flowtex.app.streaming.player import Player
 from flowtex.app.streaming.stream import FrameStream
 from flowtex.app.streaming.viewport import Viewport
 from flowtex.field import FlowField
 from flowtex.options import FieldOptions
+from flowtex.scene import AppearanceAttributes, Change, Scene
 from flowtex.settings import Settings
 
 __all__ = ["FlowArea"]
 
 
-class FlowArea:
+class FlowArea(AppearanceAttributes):
     """A flow drawn on the server, as a part of a page.
 
     Parameters
@@ -50,6 +53,10 @@ class FlowArea:
     ----------
     viewport, stream, player
         What is drawn, the pictures that go to the page, and what lets time go by.
+    scalars, cmap, clim, log_scale, color, opacity, visible, lighting
+        Arguments of ``plotter.flowtex.add``, live.
+    appearance_changed
+        Signal after a change of these.
 
     Raises
     ------
@@ -72,13 +79,20 @@ class FlowArea:
         self.viewport = Viewport(field, **options)
         self.stream = FrameStream(self.state.key("view"), self.viewport)
         self.player = Player(self.viewport, self.stream)
+        self.appearance_changed = Signal()
         self._tasks: list[asyncio.Task[None]] = []
-        self._stop_watching = lambda: None
+        self._watching: tuple[Callable[[], None], ...] = ()
         self._watch()
+        self._is_made = True
         if server.running:
             self._on_ready()
         else:
             server.controller.on_server_ready.add(self._on_ready)
+
+    @property
+    def scene(self) -> Scene:
+        """The arrays behind the picture."""
+        return self.viewport.scene
 
     @property
     def settings(self) -> Settings:
@@ -125,10 +139,20 @@ class FlowArea:
         self._stop_watching()
         self.viewport.close()
 
+    def _stop_watching(self) -> None:
+        for end in self._watching:
+            end()
+
     def _watch(self) -> None:
-        """Draw when a setting changes."""
+        """Draw when a setting or the appearance changes."""
         self._stop_watching()
-        self._stop_watching = self.settings.observe(lambda name, value: self._changed())
+        settings = self.settings.observe(lambda name, value: self._changed())
+        self._watching = (settings, self.scene.observe(self._scene_changed))
+
+    def _scene_changed(self, affects: Change) -> None:
+        if affects == "appearance":
+            self.appearance_changed.emit()
+            self._changed()
 
     def _changed(self) -> None:
         if not self.stream.painter.drafting:

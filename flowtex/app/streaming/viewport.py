@@ -6,18 +6,21 @@ Two panes show the same flow from the same camera with other settings.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from flowtex._util.array_types import Bytes, Floats
-from flowtex._util.colours import DEFAULT_CMAP
+from flowtex._util.colours import colour_table
 from flowtex.app.streaming.reprojection import plane_to_view
 from flowtex.app.streaming.window import OffscreenWindow, Rect
 from flowtex.camera import Camera
 from flowtex.field import FlowField
-from flowtex.options import PLAIN_COLOR
+from flowtex.options import SPEED, Appearance, Options
 from flowtex.plotting.handle import FlowHandle
+from flowtex.rendering.cpu.shade import mean_colours
+from flowtex.scene import Change, Scene
 from flowtex.settings import Settings
 from flowtex.textures.images import as_image
 
@@ -27,10 +30,6 @@ __all__ = ["BACKGROUNDS", "GAP_PX", "Pane", "Rect", "Viewport"]
 BACKGROUNDS = {"dark": "#12161c", "light": "#eef1f4"}
 #: Pixels between two panes.
 GAP_PX = 2
-#: Entries of a colour map.
-COLOUR_ENTRIES = 256
-#: Point array that holds the colours.
-COLOUR_ARRAY = "flowtex colour"
 #: Zoom and focus of the whole surface.
 WHOLE: tuple[float, tuple[float, ...] | None] = (1.0, None)
 
@@ -55,20 +54,9 @@ class Pane:
     def draw(self, width: int, height: int, part: Rect | None = None) -> Bytes:
         """Draw this pane alone; :meth:`OffscreenWindow.draw` has the parameters."""
         for other in self._viewport.panes:
-            other.handle.actor.SetVisibility(other is self)
+            other.handle.actor.SetVisibility(other is self and other.handle.visible)
         self.handle.draw_for(self.size[1] if part is None else part[3])
         return self._viewport.window.draw(width, height, part)
-
-    def colour_by(self, name: str, table: Any, span: tuple[float, float], plain: Any) -> None:
-        """Colour by a scalar with a lookup table, or plainly for an empty name."""
-        self._mapper.scalar_visibility = bool(name)
-        if not name:
-            self.handle.actor.prop.color = plain
-            return
-        self._mapper.SetLookupTable(table)
-        self._mapper.scalar_range = span
-        self._mapper.SelectColorArray(COLOUR_ARRAY)
-        self.handle.set_scalars(COLOUR_ARRAY, name)
 
 
 class Viewport:
@@ -87,12 +75,8 @@ class Viewport:
     ----------
     window, panes
         Where it is drawn, and the views beside each other, one or two.
-    colour, cmap
-        Name of what the surface is coloured by, empty for nothing, and of the colour map.
-    plain
-        Colour of the surface where it is coloured by nothing.
-    lighting, background
-        Whether the surface is lit, ``None`` for curved ones only, and the colour behind it.
+    background
+        The colour behind the surface.
     whole
         The camera that shows the whole surface, from which zoom counts.
     """
@@ -110,23 +94,17 @@ class Viewport:
         from flowtex.plotting.component import FlowtexComponent
 
         self.window = OffscreenWindow(640, 400)
-        scalars = options.pop("scalars", None)
-        self.colour = "" if scalars is False else ("speed" if scalars in (None, True) else scalars)
-        self.cmap = options.pop("cmap", None) or DEFAULT_CMAP
-        self.plain = options.pop("color", PLAIN_COLOR)
-        clim = options.pop("clim", None)
-        self._clims = {} if clim is None else {self.colour: (float(clim[0]), float(clim[1]))}
         self.background: Any = self.window.plotter.background_color
         self._first = (zoom, focus)
         self._size = self.window.size
         self._component = FlowtexComponent(self.window.plotter)
         self._beside: dict[str, Any] = {}
-        self._stop_following: Callable[[], None] = lambda: None
+        self._stop_following: Callable[[], Any] = lambda: None
         self._tile_ready: Callable[[], None] | None = None
-        self.panes: list[Pane] = [self._pane(field, options)]
-        self.lighting = options.get("lighting")
+        first = Options.split("appearance", **{**options, "show_scalar_bar": False})
+        self.panes: list[Pane] = [self._pane(Scene.from_options(field, first))]
         self.window.suppress_rendering()
-        self._prepare()
+        self.resize(*self._size)
         self.first_look()
 
     @property
@@ -165,17 +143,14 @@ class Viewport:
         """Width of a pane over its height."""
         return self.pane_size[0] / max(self.pane_size[1], 1)
 
-    def _pane(self, field: FlowField, options: Mapping[str, Any], image: Any | None = None) -> Pane:
-        """Add a pane; with the texels of an image, when there is one, whatever its noise is."""
-        arguments = dict(options)
-        if image is not None:
-            arguments["noise"] = "procedural"
-        handle = self._component.add(
-            field, scalars="speed", show_scalar_bar=False, reset_camera=False, **arguments
-        )
-        if image is not None:
-            handle.set_image(as_image(image))
-            handle.settings.noise = options["noise"]
+    @property
+    def scene(self) -> Scene:
+        """What the first pane shows; its appearance is that of all."""
+        return self.handle.scene
+
+    def _pane(self, scene: Scene) -> Pane:
+        """Add a pane."""
+        handle = self._component.add_scene(scene, reset_camera=False)
         if self._tile_ready is not None:
             handle.load_in_background(self._tile_ready)
         return Pane(handle, self)
@@ -191,13 +166,6 @@ class Viewport:
         """Whether more of a large surface is on its way."""
         return any(pane.handle.busy for pane in self.panes)
 
-    def _prepare(self) -> None:
-        """Make ready for a field."""
-        if self.colour not in ("", *self.colours):
-            self.colour = "speed"
-        self.colour_by(self.colour)
-        self.resize(*self._size)
-
     def close(self) -> None:
         """Free the graphics card."""
         self._stop_following()
@@ -207,19 +175,10 @@ class Viewport:
 
     def copy(self) -> Viewport:
         """Return a viewport with a window of its own that shows the same."""
-        options: dict[str, Any] = dict(self.settings)
-        image = self.handle.scene.image
-        if image is not None and self.settings.noise == "image":
-            options["image"] = as_image(image)
-        other = Viewport(
-            self.field,
-            scalars=self.colour or False,
-            cmap=self.cmap,
-            clim=self.chosen_range,
-            color=self.plain,
-            lighting=self.handle.actor.prop.lighting,
-            **options,
-        )
+        image = self.scene.image if self.settings.noise == "image" else None
+        options = {**vars(self.scene.appearance), **dict(self.settings)}
+        options["image"] = None if image is None else as_image(image)
+        other = Viewport(self.field, **options)
         if self._beside:
             other.compare(self._beside)
         other.camera = self.camera
@@ -241,17 +200,17 @@ class Viewport:
             Whether the ends of the colour map that somebody chose stay, and the time that is
             shown where the flow has the same times: it is another part of the same data.
         """
-        settings, image, beside = dict(self.settings), self.handle.scene.image, self._beside
+        beside, appearance = self._beside, self.scene.appearance
+        if not keep_range:
+            appearance = replace(appearance, clim=None)
         self._first = WHOLE
         camera, clock, flat = self.camera, self.clock, self.flat
         times, time = self.field.times, self.handle.time
         self.compare(None)
         old = self.handle
-        self.panes[0] = self._pane(field, {**settings, "lighting": self.lighting}, image)
+        self.panes[0] = self._pane(_like(self.scene, field, dict(self.settings), appearance))
         old.remove(render=False)
-        if not keep_range:
-            self._clims.clear()
-        self._prepare()
+        self.resize(*self._size)
         if keep_range and np.array_equal(times, field.times):
             self.set_time(time)
         self.home()
@@ -275,18 +234,24 @@ class Viewport:
         del self.panes[1:]
         self._beside = dict(changes or {})
         if changes:
-            options = {**settings, "lighting": self.lighting}
-            self.panes.append(self._pane(self.field, options, self.handle.scene.image))
-            self._stop_following = self.settings.observe(self._follow)
+            first = self.scene
+            self.panes.append(self._pane(_like(first, self.field, settings, first.appearance)))
+            ends = (self.settings.observe(self._follow), first.observe(self._follow_scene))
+            self._stop_following = lambda: [end() for end in ends]
             self.set_time(self.handle.time)
             self.clock = self.handle.clock
-        self.colour_by(self.colour)
         self.resize(*self._size)
 
     def _follow(self, name: str, value: Any) -> None:
         """Change a setting of the second pane as that of the first one changes."""
         if name not in self._beside:
             self.panes[1].handle.settings.update(**{name: value})
+
+    def _follow_scene(self, affects: Change) -> None:
+        """Change the appearance of the second pane as that of the first one changes."""
+        if affects == "appearance":
+            second = self.panes[1].handle.scene
+            second.appearance = replace(self.scene.appearance, image=second.appearance.image)
 
     def lay_image(self, image: Any) -> None:
         """Lay an image on the surface in place of the noise, except where panes differ in noise.
@@ -306,49 +271,11 @@ class Viewport:
         """Names of what the surface can be coloured by."""
         return tuple(dict.fromkeys(("speed", *self.field.scalars)))
 
-    def colour_by(
-        self,
-        name: str,
-        *,
-        cmap: str | None = None,
-        clim: tuple[float, float] | None = None,
-    ) -> None:
-        """Colour by one of :attr:`colours`, or plainly for an empty name.
-
-        ``clim``, the values at the ends of the colour map, stays with this scalar.
-        """
-        import pyvista as pv
-
-        self.colour = name
-        self.cmap = cmap or self.cmap
-        if clim is not None:
-            self._clims[name] = (float(clim[0]), float(clim[1]))
-        self._table = pv.LookupTable(self.cmap, n_values=COLOUR_ENTRIES)
-        self._table.scalar_range = self.colour_range
-        for pane in self.panes:
-            pane.colour_by(name, self._table, self.colour_range, self.plain)
-
-    def forget_range(self) -> None:
-        """Let the colours go from the least value to the greatest again."""
-        self._clims.pop(self.colour, None)
-        self.colour_by(self.colour)
-
-    @property
-    def colour_range(self) -> tuple[float, float]:
-        """Values at the ends of the colour bar."""
-        if not self.colour:
-            return 0.0, 1.0
-        return self._clims.get(self.colour) or self.handle.scene.scalar_range(self.colour)
-
-    @property
-    def chosen_range(self) -> tuple[float, float] | None:
-        """The same, where somebody has chosen them."""
-        return self._clims.get(self.colour)
-
     def colour_stops(self, count: int = 17) -> list[str]:
-        """Colours along the bar, from low to high, as ``#rrggbb``."""
-        colours = [self._table.map_value(v) for v in np.linspace(*self.colour_range, count)]
-        return ["#" + "".join(f"{round(255 * c):02x}" for c in rgb[:3]) for rgb in colours]
+        """Mean colours of the picture along the bar, from low to high, as ``#rrggbb``."""
+        table = mean_colours(colour_table(self.scene.appearance.cmap), self.settings)
+        stops = table[np.linspace(0, len(table) - 1, count).round().astype(int)]
+        return ["#" + bytes(colour[:3]).hex() for colour in stops]
 
     def set_background(self, colour: Any) -> None:
         """Take the colour behind the surface: a theme's, or any that PyVista knows."""
@@ -475,3 +402,31 @@ class Viewport:
     def draw(self, width: int, height: int, part: Rect | None = None) -> Bytes:
         """Draw the first pane; :meth:`OffscreenWindow.draw` has the parameters."""
         return self.panes[0].draw(width, height, part)
+
+
+def _like(
+    scene: Scene, field: FlowField, settings: Mapping[str, Any], appearance: Appearance
+) -> Scene:
+    """Return a scene of a field with the image of another one, whatever its noise is.
+
+    Colours that the field has not are those of the speed.
+    """
+    if appearance.scalar_name not in (None, SPEED, *field.scalars):
+        appearance = replace(appearance, scalars=SPEED)
+    appearance = replace(appearance, image=None)
+    if scene.image is None:
+        return _scene(field, Settings(**settings), appearance)
+    made = _scene(field, Settings(**{**settings, "noise": "procedural"}), appearance)
+    made.set_image(as_image(scene.image))
+    made.settings.noise = settings["noise"]
+    return made
+
+
+def _scene(field: FlowField, settings: Settings, appearance: Appearance) -> Scene:
+    """Return a scene, without a logarithm where the field has values that have none."""
+    try:
+        return Scene(field, settings, appearance)
+    except ValueError:
+        if not appearance.log_scale:
+            raise
+        return Scene(field, settings, replace(appearance, log_scale=False, clim=None))

@@ -8,11 +8,22 @@ from functools import partial
 from trame.widgets import html
 from trame.widgets import vuetify3 as v3
 
+from flowtex._util.colours import CMAPS
 from flowtex.app.controllers import Controllers
-from flowtex.app.controllers.appearance import BACKGROUNDS, CMAPS
+from flowtex.app.controllers.appearance import BACKGROUNDS
 from flowtex.app.controllers.browser import RENDERERS
 from flowtex.app.controllers.sharing import FORMATS
-from flowtex.app.ui.controls import ARIA, buttons, control, number, row, select, switch
+from flowtex.app.ui.controls import (
+    ARIA,
+    buttons,
+    control,
+    number,
+    row,
+    select,
+    slider,
+    switch,
+)
+from flowtex.options import ROBUST, Appearance, option_text
 from flowtex.settings import GROUPS, TABLE
 
 __all__ = ["build_panel", "panel_shown"]
@@ -89,7 +100,15 @@ def _colours(controllers: Controllers) -> None:
         with html.Span(classes="flowtex-range"):
             number("Lowest value", key("low"))
             number("Highest value", key("high"))
-            html.Button("auto", click=controllers.appearance.forget_range, classes="flowtex-link")
+            choose = controllers.appearance.choose_range
+            html.Button("auto", click=choose, classes="flowtex-link")
+            html.Button("robust", click=(choose, f"['{ROBUST}']"), classes="flowtex-link")
+    with row("log_scale", option_text(Appearance, "log_scale")):
+        html.Span("Log scale", classes="flowtex-label")
+        switch("Log scale", key("log_scale"))
+    with row("opacity", option_text(Appearance, "opacity")):
+        html.Span("Opacity", classes="flowtex-label")
+        slider("Opacity", key("opacity"), 0, 1, 0.05)
     with row("background", "What lies behind the surface."):
         select("Background", key("background"), (f"{list(BACKGROUNDS)}",))
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flowtex._util.array_types import Floats
+from flowtex._util.array_types import Bytes, Floats
 from flowtex.rendering import constants as const
 from flowtex.settings import Settings
 
-__all__ = ["paint", "shade", "tone"]
+__all__ = ["mean_colours", "paint", "shade", "tone"]
 
 
 def shade(colour: ArrayLike, value: Floats, settings: Settings) -> Floats:
@@ -24,6 +24,21 @@ def shade(colour: ArrayLike, value: Floats, settings: Settings) -> Floats:
     up = (1.0 - light) / np.maximum(1.0 - base, const.LEAST_LIGHTNESS)
     room = np.where(light < base, light / np.maximum(base, const.LEAST_LIGHTNESS), up)
     return _from_oklab(np.concatenate([light[..., None], lab[..., 1:] * room[..., None]], axis=-1))
+
+
+def mean_colours(table: Bytes, settings: Settings) -> Bytes:
+    """Colours that a picture has on average where a map has those of a table, (N, 4), for a legend.
+
+    They are the mean over the values of a texture: chroma shrinks where it is dark and where it is
+    light. An image on the surface has colours of its own.
+    """
+    if settings.noise == "image":
+        return table
+    shaded = table.copy()
+    values = np.broadcast_to(const.MEAN_VALUES, (len(table), len(const.MEAN_VALUES)))
+    colours = shade(table[:, None, :3] / 255.0, values, settings)
+    shaded[:, :3] = np.rint(255 * colours.mean(axis=1))
+    return shaded
 
 
 def tone(value: Floats, contrast: float) -> Floats:

@@ -96,17 +96,15 @@ class FlowMapper(_BaseDataSetMapper, vtkPolyDataMapper):
         self.SetInputData(dataset)
 
 
-def use_flow_mapper(actor: pv.Actor, mesh: pv.PolyData, scalars: str | None) -> FlowMapper:
-    """Give an actor a polygon mapper with the colours of its present one.
+def use_flow_mapper(actor: pv.Actor, mesh: pv.PolyData) -> FlowMapper:
+    """Give an actor a polygon mapper that is coloured by a point array of its mesh by name.
 
-    ``scalars`` names the point array to colour by; PyVista's mapper relies on the active array
-    of a mesh of its own instead.
+    PyVista's mapper relies on the active array of a mesh of its own instead.
     """
     mapper = FlowMapper(mesh)
     mapper.ShallowCopy(actor.mapper)
     mapper.SetInputData(mesh)
-    if scalars is not None:
-        mapper.SetScalarModeToUsePointFieldData()
-        mapper.SelectColorArray(scalars)
+    mapper.SetScalarModeToUsePointFieldData()
+    mapper.SetInterpolateScalarsBeforeMapping(True)
     actor.SetMapper(mapper)
     return mapper

@@ -9,15 +9,18 @@ Positions and scalars keep single precision.
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field, replace
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass, replace
+from dataclasses import field as data_field
 from functools import cache, cached_property
 from typing import Any
 
 import numpy as np
 
 from flowtex._util.array_types import Bytes, Floats, Floats32
+from flowtex._util.colours import CMAPS, colour_shares, colour_table, is_diverging
 from flowtex.camera import CAMERA_LIMITS, Camera
+from flowtex.field import FlowField
 from flowtex.field.interpolation import steps_around
 from flowtex.rendering.mesh_levels import MeshLevels, mesh_limits
 from flowtex.rendering.shaders import shader_text
@@ -53,10 +56,21 @@ class Colours:
     ----------
     name, unit
         What it is coloured by, for the legend; ``None`` for a plain surface.
+    number
+        Number of the scalar among those of the field.
+    choices
+        What a person may choose to colour by: name, unit, automatic range, and whether it varies.
+    cmap, auto
+        Name of the colour map, empty for one that has none, and whether nobody has chosen its
+        range.
     values
         Values at all nodes of the field, (T or 1, J, I).
+    others
+        Numbers and values of other scalars, handed over as well where nobody can be asked later.
     low, high
         Values at the ends of the colour map.
+    log_scale
+        Whether the map goes by the logarithm.
     table
         Colour map, (256, 4) uint8.
     plain, background
@@ -80,6 +94,16 @@ class Colours:
     lighting: bool = False
     opacity: float = 1.0
     bar: bool = True
+    log_scale: bool = False
+    others: tuple[tuple[int, Floats], ...] = ()
+    number: int = 0
+    choices: tuple[Mapping[str, Any], ...] = ()
+    cmap: str = ""
+    auto: bool = True
+
+    def shares(self, values: Floats) -> Floats:
+        """Places of values on the colour map, from 0 to 1."""
+        return colour_shares(values, self.low, self.high, log_scale=self.log_scale)
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,7 +116,7 @@ class ClientData:
     """
 
     textures: TextureSet
-    colours: Colours = field(default_factory=Colours)
+    colours: Colours = data_field(default_factory=Colours)
     chosen: tuple[int, ...] = ()
     pyramid: Pyramid | None = None
     finest: int = 0
@@ -101,6 +125,18 @@ class ClientData:
     def packing(self) -> Packing:
         """The slices, packed."""
         return packing_of(self.textures)
+
+    def recoloured(self, colours: Colours) -> ClientData:
+        """Return the same in other colours."""
+        other = replace(self, colours=colours)
+        if "packing" in vars(self):
+            vars(other)["packing"] = self.packing
+        return other
+
+    @property
+    def field(self) -> FlowField:
+        """The flow that is drawn."""
+        return self.textures.geometry.field
 
     @property
     def steps(self) -> int:
@@ -153,8 +189,18 @@ class ClientData:
                 "name": colours.name,
                 "low": float(colours.low),
                 "high": float(colours.high),
-                "steps": 1 if self._values is None else len(self._values),
+                "log": bool(colours.log_scale),
+                "steps": 1 if colours.values is None or len(colours.values) == 1 else self.steps,
                 "unit": colours.unit,
+                "number": colours.number,
+                "choices": [
+                    {**choice, "steps": self.steps if choice["steps"] > 1 else 1}
+                    for choice in colours.choices
+                ],
+                "cmap": colours.cmap,
+                "auto": bool(colours.auto),
+                "maps": list(CMAPS),
+                "diverging": list(filter(is_diverging, CMAPS)),
                 "bar": bool(colours.bar),
             },
             "colour": _numbers(colours.plain),
@@ -173,8 +219,10 @@ class ClientData:
         """Return the arrays that are the same at all times, the smallest first."""
         geometry, colours = self.textures.geometry, self.colours
         parts: Parts = {}
-        if colours.name is not None and colours.table is not None:
+        if colours.table is not None and (colours.choices or colours.name is not None):
             parts["cmap"] = np.ascontiguousarray(colours.table, np.uint8)
+        if colours.choices:
+            parts["maps"] = np.stack([colour_table(name)[:, :3] for name in CMAPS])
         if not geometry.cells.all():
             parts["cells"] = geometry.cells.astype(np.uint8)
         if not geometry.planar:
@@ -202,19 +250,29 @@ class ClientData:
         if not 0 <= step < self.steps:
             msg = f"time step {step} does not exist: expected 0 to {self.steps - 1}"
             raise IndexError(msg)
-        values = self._values
         parts: Parts = {}
-        if values is not None and step < len(values):
-            inside = np.clip(values[step], -SINGLE_MAX, SINGLE_MAX)
-            parts[f"scalars/{step}"] = np.ascontiguousarray(inside, "<f4")
+        for number, values in self._values.items():
+            if step < len(values):
+                name = f"scalars/{step}/{number}" if number else f"scalars/{step}"
+                inside = np.clip(values[step], -SINGLE_MAX, SINGLE_MAX)
+                parts[name] = np.ascontiguousarray(inside, "<f4")
         packed = self.packing.step(self.source(step))
         parts[f"extra/{step}"] = packed.extra
         parts[f"slices/{step}"] = packed.slopes
         return parts
 
-    def tile(self, textures: TextureSet, values: Floats | None) -> ClientData:
-        """Return what is handed over of a tile, with the values at the nodes of its field."""
-        return ClientData(textures, replace(self.colours, values=values), self.chosen)
+    def tile(self, textures: TextureSet, values: Callable[[str], Floats]) -> ClientData:
+        """Return what is handed over of a tile; ``values`` gives those of a scalar at its nodes."""
+        return ClientData(textures, self.tile_colours(values), self.chosen)
+
+    def tile_colours(self, values: Callable[[str], Floats]) -> Colours:
+        """Return the colours of a tile; ``values`` gives those of a scalar at its nodes."""
+        colours = self.colours
+        return replace(
+            colours,
+            values=None if colours.name is None else values(colours.name),
+            others=tuple((n, values(colours.choices[n]["name"])) for n, _ in colours.others),
+        )
 
     @property
     def tile_header(self) -> Header:
@@ -237,25 +295,34 @@ class ClientData:
         texels = geometry.rows.size * geometry.columns.size
         nodes = int(np.prod(geometry.shape))
         numbers = self.textures.count * self.packing.channels + len(self.packing.extra)
-        return 2 * texels * numbers + (4 * nodes if self.colours.values is not None else 0)
+        return 2 * texels * numbers + 4 * nodes * len(self._values)
 
     @property
-    def _values(self) -> Floats | None:
-        """Nodal values of the colours at the times that are handed over, (steps or 1, J, I)."""
-        values = self.colours.values
-        if values is None:
-            return None
+    def _values(self) -> dict[int, Floats]:
+        """Nodal values at the times that are handed over, (steps or 1, J, I), by scalar."""
+        colours = self.colours
+        values = dict(colours.others)
+        if colours.values is not None:
+            values[colours.number] = colours.values
         rows, columns = self.textures.geometry.drawn
-        values = values[:, rows, columns]
-        return values if not self.chosen or len(values) == 1 else values[list(self.chosen)]
+        steps = list(self.chosen) or slice(None)
+        return {
+            number: each[steps if len(each) > 1 else slice(None)][:, rows, columns]
+            for number, each in values.items()
+        }
 
     @cached_property
     def _mesh(self) -> Floats32:
         """Return what the client chooses its triangles by, of each tile."""
         levels = MeshLevels.of(self.textures)
-        low, high = self.colours.low, self.colours.high
-        if self._values is not None and high > low:
-            levels.set_colours(*(np.clip((v - low) / (high - low), 0, 1) for v in self._values))
+        shares: list[Floats] = []
+        for number, values in self._values.items():
+            if number == self.colours.number:
+                shares += map(self.colours.shares, values)
+            else:
+                choice = self.colours.choices[number]
+                shares += [colour_shares(v, choice["low"], choice["high"]) for v in values]
+        levels.set_colours(*shares)
         return levels.records.astype("<f4")
 
     def _geometry(self) -> dict[str, Any]:
@@ -299,7 +366,8 @@ def tile_parts(key: TileKey, tile: ClientData | None, *steps: int) -> Parts:
     parts: Parts = {"header": np.frombuffer(text.encode(), np.uint8)}
     if tile is not None:
         parts |= tile.surface()
-        parts.pop("cmap", None)  # that of the root
+        for name in ("cmap", "maps"):  # those of the root
+            parts.pop(name, None)
         for step in steps:
             parts |= tile.step(step)
     prefix = f"tile/{key.level}/{key.row}/{key.column}"

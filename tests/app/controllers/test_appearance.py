@@ -55,12 +55,12 @@ def test_a_range_of_another_plane_does_not_stay(series: FlowApp) -> None:
     series.area.show(faster, keep_range=True)
     # The page comes to know the range of the plane before only now.
     series.controllers.appearance.take_range()
-    assert series.viewport.chosen_range is None
+    assert series.area.clim is None
     series.controllers.appearance.show_field()
     assert series.state.get("high") == pytest.approx(3 * 1.7, rel=0.01)
     series.state.set(high=4.0)
     series.controllers.appearance.take_range()
-    assert series.viewport.chosen_range == (series.state.get("low"), 4.0)
+    assert series.area.clim == (series.state.get("low"), 4.0)
 
 
 def test_themes_change_the_background(flat: FlowApp) -> None:
@@ -70,3 +70,46 @@ def test_themes_change_the_background(flat: FlowApp) -> None:
     assert picture(flat)[0, 0].min() > 200 > dark.max()
     flat.state.set(theme="dark")
     flat.controllers.appearance.take_background()
+
+
+def test_what_is_changed_in_python_is_shown_on_the_page(flat: FlowApp) -> None:
+    speed, area = picture(flat), flat.area
+    area.scalars, area.cmap, area.opacity = "height", "magma", 0.5
+    for name, value in (("colour", "height"), ("cmap", "magma"), ("opacity", 0.5)):
+        assert flat.state.get(name) == value
+    assert flat.state.get("bar")["name"] == "height"
+    assert difference(picture(flat), speed) > 3
+    with pytest.raises(AttributeError, match=r"^FlowArea has no attribute 'cmaps'; did you mean"):
+        area.cmaps = "magma"
+    flat.state.set(opacity=1.0, log_scale=True)
+    flat.controllers.appearance.take_colour()
+    assert area.opacity == 0.5 and "log_scale is for values above 0" in flat.state.get("problem")
+    flat.state.set(problem="", log_scale=False)
+    area.scalars, area.cmap, area.opacity, area.log_scale = "speed", "viridis", 1.0, False
+    assert difference(picture(flat), speed) == 0
+
+
+def test_the_bar_has_the_colours_of_the_picture(flat: FlowApp) -> None:
+    stops = flat.state.get("bar")["stops"]
+    flat.state.set(set_strength=0.0)
+    flat.controllers.appearance.take_settings()
+    plain = flat.state.get("bar")["stops"]
+    assert plain[-1] == "#fde724" != stops[-1]
+    flat.state.set(set_strength=0.8)
+    flat.controllers.appearance.take_settings()
+    assert flat.state.get("bar")["stops"] == stops
+
+
+def test_a_second_pane_has_the_colours_of_the_first(flat: FlowApp) -> None:
+    flat.viewport.compare({"lod": False})
+    flat.area.cmap = "magma"
+    assert flat.viewport.panes[1].handle.cmap == "magma"
+    flat.viewport.compare(None)
+    flat.area.cmap = "viridis"
+
+
+def test_a_robust_range_and_back(flat: FlowApp) -> None:
+    flat.controllers.appearance.choose_range("robust")
+    assert flat.area.clim == "robust"
+    flat.controllers.appearance.choose_range()
+    assert flat.area.clim is None

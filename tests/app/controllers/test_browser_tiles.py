@@ -56,3 +56,32 @@ def test_a_tile_is_made_when_it_is_asked_for(monkeypatch: pytest.MonkeyPatch) ->
     with pytest.raises(web.HTTPNotFound):
         asyncio.run(ask("0.0.1.0"))
     app.close()
+
+
+def test_tiles_in_other_colours_are_not_traced_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 10_000)
+    y, x = np.mgrid[-1:1:200j, -1:1:300j]
+    points, velocity = np.stack([x, y], -1), np.stack([-y, x], -1)
+    app = FlowApp(flowtex.FlowField.from_arrays(points, velocity, scalars={"p": x}), samples=3)
+    app.stream.update_size("test", {"w": 96, "h": 64, "p": 1})
+    app.state.set(rendering="browser")
+    app.controllers.browser.take_renderer()
+    routes = app.controllers.browser._routes
+
+    def ask() -> dict[str, list[int]]:
+        stem = source()["tiles"].rsplit("/", 1)[1]
+        return parts_of(asyncio.run(routes.answer(stem + "0.0.1.0")))
+
+    def source() -> Any:
+        return app.state.get("client_source")
+
+    assert "tile/0/0/1/scalars/0" in ask()
+    first = source()
+    monkeypatch.setattr(flowtex.textures.TextureSet, "layers", None)
+    app.area.scalars = "p"
+    app.controllers.browser.follow()
+    assert source()["tiles"] != first["tiles"]
+    assert source()["header"]["generation"] == first["header"]["generation"]
+    assert source()["header"]["scalars"]["name"] == "p"
+    assert "tile/0/0/1/scalars/0/1" in ask()
+    app.close()

@@ -20,20 +20,21 @@ camera=>emit("update:camera",camera)),sendTime=slowly(time=>emit("update:time",t
 onCamera:camera=>sendCamera(this.lastCamera=camera),onTime:time=>sendTime(this.lastTime=time),onPlaying:playing=>emit("u\
 pdate:playing",playing),onPoint:point=>emit("point",[...point.index]),onSetting:(name,value)=>emit("setting",[name,value]),
 onNeed:step=>{this.load(this.props.source.steps[step])},onTiles:(keys2,steps)=>this.tiles.request(keys2,steps)}}async show(){
-let{source,playing}=this.props;this.started=performance.now(),this.viewer?.setHeader(source.header),await this.load(source.
-surface),playing&&this.viewer?.play()}async load(address){let parts=await this.parts(address);if(!this.isDisposed)for(let part of parts)
-this.viewer?.setPart(part)}async parts(address,signal){let answer=await fetch(address,{signal});if(!answer.ok)throw new Error(
-`${address}: ${answer.status}`);return this.client?.partsOfFile(await answer.arrayBuffer())??[]}look(){let now=performance.
-now();this.viewer?.sharp?this.emit("sharp",now-this.started):this.started=now}take(name){let{viewer,lastCamera,lastTime}=this,
-{settings,camera,time,playing}=this.props;viewer&&(name==="source"?this.show():name==="settings"?viewer.setSettings(settings):
-name==="camera"&&camera&&!isEqual(camera,lastCamera)?viewer.setCamera(camera):name==="time"&&time!==lastTime&&!viewer.playing?
-viewer.setTime(time):name==="playing"&&playing?viewer.play():name==="playing"&&viewer.pause())}dispose(){this.isDisposed=
-!0,this.watcher.disconnect(),this.viewer?.dispose()}},browser={name:"flowtex-client",props:PROPS,emits:["update:camera",
-"update:time","update:playing","setting","sharp","point","hover"],setup(props,{emit}){let{h,ref,watch,onMounted,onBeforeUnmount}=vue(),
-place=ref(null),view=new BrowserView(props,emit);onMounted(()=>place.value&&void view.begin(place.value)),onBeforeUnmount(
-()=>view.dispose());let follow=name=>watch(()=>props[name],()=>view.take(name));PROPS.forEach(follow);let sendHover=slowly(
-at=>emit("hover",at)),onPointermove=event=>{if(!place.value)return;let{x,y}=placeIn(place.value,event);sendHover(event.buttons?
-null:[x,y])},onPointerleave=()=>sendHover(null);return()=>h("div",{ref:place,onPointermove,onPointerleave})}};var COMMANDS={...CAMERA_KEYS,d:"detail",".":"next",",":"previous"},TOGGLES={[PLAY_KEY]:"play",[CLOSE_KEY]:"close",t:"the\
+let{source,playing}=this.props;this.started=performance.now(),this.tiles.request([],[]),this.viewer?.setHeader(source.header),
+await this.load(source.surface),playing&&this.viewer?.play()}async load(address){let parts=await this.parts(address);if(!this.
+isDisposed)for(let part of parts)this.viewer?.setPart(part)}async parts(address,signal){let answer=await fetch(address,{
+signal});if(!answer.ok)throw new Error(`${address}: ${answer.status}`);return this.client?.partsOfFile(await answer.arrayBuffer())??
+[]}look(){let now=performance.now();this.viewer?.sharp?this.emit("sharp",now-this.started):this.started=now}take(name){let{
+viewer,lastCamera,lastTime}=this,{settings,camera,time,playing}=this.props;viewer&&(name==="source"?this.show():name==="\
+settings"?viewer.setSettings(settings):name==="camera"&&camera&&!isEqual(camera,lastCamera)?viewer.setCamera(camera):name===
+"time"&&time!==lastTime&&!viewer.playing?viewer.setTime(time):name==="playing"&&playing?viewer.play():name==="playing"&&
+viewer.pause())}dispose(){this.isDisposed=!0,this.watcher.disconnect(),this.viewer?.dispose()}},browser={name:"flowtex-c\
+lient",props:PROPS,emits:["update:camera","update:time","update:playing","setting","sharp","point","hover"],setup(props,{
+emit}){let{h,ref,watch,onMounted,onBeforeUnmount}=vue(),place=ref(null),view=new BrowserView(props,emit);onMounted(()=>place.
+value&&void view.begin(place.value)),onBeforeUnmount(()=>view.dispose());let follow=name=>watch(()=>props[name],()=>view.
+take(name));PROPS.forEach(follow);let sendHover=slowly(at=>emit("hover",at)),onPointermove=event=>{if(!place.value)return;
+let{x,y}=placeIn(place.value,event);sendHover(event.buttons?null:[x,y])},onPointerleave=()=>sendHover(null);return()=>h(
+"div",{ref:place,onPointermove,onPointerleave})}};var COMMANDS={...CAMERA_KEYS,d:"detail",".":"next",",":"previous"},TOGGLES={[PLAY_KEY]:"play",[CLOSE_KEY]:"close",t:"the\
 me","?":"help"},OWNERS="input, textarea, select, [contenteditable], [role=slider], .v-overlay--active";function press(event,emit){
 let{target,key}=event,isClose=key===CLOSE_KEY;if(!hasModifier(event)&&!(!isClose&&target instanceof Element&&target.closest(
 OWNERS))&&!(key===PLAY_KEY&&target instanceof HTMLButtonElement)){if(key===FULLSCREEN_KEY)toggleFullscreen(document.documentElement);else if(key in

@@ -1,0 +1,86 @@
+// Controls of the colours: what the surface is coloured by, the map, and its range.
+
+import { rampOf, mapOf, type ColourChoice } from "./colours.ts";
+import { dom, numberText } from "./dom.ts";
+import type { Lifetime } from "./lifetime.ts";
+import type { Header, Part, Settings } from "./protocol.ts";
+
+/** Colours of a swatch, and the choice of none. */
+const STOPS = 9;
+const PLAIN = "none";
+
+/** The view whose colours are chosen. */
+export interface ColoursHost {
+  readonly lifetime: Lifetime;
+  readonly header: Header | null;
+  readonly settings: Settings;
+  readonly parts: ReadonlyMap<string, Part>;
+  chooseColours(choice: ColourChoice): void;
+}
+
+export class ColourControls {
+  readonly element = dom("div", { class: "colours" });
+  private readonly viewer: ColoursHost;
+  private readonly scalars = dom("select", { "aria-label": "Colour by" });
+  private readonly swatches = dom("div", { class: "swatches", role: "group" });
+  private readonly ends = ["Lowest value", "Highest value"].map((name) =>
+    dom("input", { type: "number", step: "any", "aria-label": name }),
+  );
+  private readonly auto = dom("button", { type: "button", class: "link" }, ["auto"]);
+  private readonly mapRow: HTMLElement;
+  private readonly rangeRow: HTMLElement;
+
+  constructor(viewer: ColoursHost) {
+    this.viewer = viewer;
+    const { scalars, swatches, ends, auto } = this;
+    const { lifetime } = viewer;
+    lifetime.listen(scalars, "change", () => {
+      viewer.chooseColours({ scalars: scalars.value === PLAIN ? false : scalars.value, clim: null });
+    });
+    for (const end of ends) lifetime.listen(end, "change", () => this.takeRange());
+    lifetime.listen(auto, "click", () => viewer.chooseColours({ clim: null }));
+    lifetime.listen(swatches, "click", (event: MouseEvent) => {
+      const name = (event.target as HTMLElement).dataset.cmap;
+      if (name) viewer.chooseColours({ cmap: name });
+    });
+    const row = (name: string, ...fields: HTMLElement[]) =>
+      dom("div", { class: "row" }, [dom("span", { class: "name" }, [name]), ...fields]);
+    this.rangeRow = row("Range", dom("span", { class: "between" }, [...ends, auto]));
+    this.mapRow = row("Colour map", swatches);
+    this.mapRow.classList.add("ranged");
+    this.element.append(row("Colour by", scalars), this.mapRow, this.rangeRow);
+  }
+
+  /** Show the colours as they are, where others can be chosen. */
+  update(): void {
+    const { header, parts } = this.viewer;
+    const maps = parts.get("maps");
+    this.element.hidden = !header?.scalars.choices.length || !maps;
+    if (!header || !maps || this.element.hidden) return;
+    const { choices, name, low, high, auto, cmap } = header.scalars;
+    const names = [...choices.map((each) => each.name), PLAIN];
+    this.scalars.replaceChildren(...names.map((each) => dom("option", { value: each }, [each])));
+    this.scalars.value = name ?? PLAIN;
+    this.mapRow.hidden = this.rangeRow.hidden = name === null;
+    [low, high].forEach((value, n) => (this.ends[n].value = String(Number(value.toPrecision(4)))));
+    this.auto.setAttribute("aria-pressed", String(auto));
+    const { settings } = this.viewer;
+    this.swatches.replaceChildren(
+      ...header.scalars.maps.map((each) => {
+        const pressed = String(each === cmap);
+        const attributes = { type: "button", title: each, "aria-label": each, "data-cmap": each };
+        const swatch = dom("button", { ...attributes, "aria-pressed": pressed });
+        swatch.style.background = rampOf(mapOf(header, maps.data, each), header, settings, STOPS);
+        return swatch;
+      }),
+    );
+  }
+
+  private takeRange(): void {
+    const [low, high] = this.ends.map((end) => end.valueAsNumber);
+    this.rangeRow.title = "";
+    if (low < high) this.viewer.chooseColours({ clim: [low, high] });
+    else this.rangeRow.title = `${numberText(low)} is not below ${numberText(high)}`;
+    for (const end of this.ends) end.setCustomValidity(this.rangeRow.title);
+  }
+}

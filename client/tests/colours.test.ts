@@ -1,0 +1,59 @@
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { test } from "node:test";
+import { meanColour, recoloured } from "../src/colours.ts";
+import { shareOf, type Header, type Settings, type Shading } from "../src/protocol.ts";
+
+interface Case {
+  settings: Settings;
+  colours: number[][];
+  means: number[][];
+}
+
+// What Python computes: tests/rendering/test_client_numbers.py.
+const file = new URL("colours.json", import.meta.url);
+const { shading, cases }: { shading: Shading; cases: Case[] } = JSON.parse(readFileSync(file, "utf8"));
+
+test("mean colours are those of Python", () => {
+  for (const { settings, colours, means } of cases) {
+    const found = colours.map((colour) => meanColour(colour, settings, shading).map(Math.round));
+    assert.deepEqual(found, means);
+  }
+});
+
+const header = {
+  mesh: { maxColourError: 0.01 },
+  scalars: {
+    ...{ name: "speed", unit: "m/s", number: 0, low: 0, high: 2, auto: true, cmap: "viridis" },
+    choices: [
+      { name: "speed", unit: "m/s", low: 0, high: 2, steps: 1 },
+      { name: "p", unit: "Pa", low: -1, high: 3, steps: 4 },
+    ],
+    ...{ maps: ["viridis", "coolwarm"], diverging: ["coolwarm"], log: false, bar: true, steps: 1 },
+  },
+} as unknown as Header;
+
+test("what is chosen is what the surface is coloured by", () => {
+  const changed = (choice: Parameters<typeof recoloured>[1]) => {
+    const { colours } = recoloured(header, choice, new Map());
+    return colours.scalars as Header["scalars"];
+  };
+  const pressure = changed({ scalars: "p" });
+  assert.deepEqual([pressure.name, pressure.unit, pressure.number, pressure.steps], ["p", "Pa", 1, 4]);
+  assert.deepEqual([pressure.low, pressure.high], [-1, 3]);
+  assert.deepEqual([changed({ clim: [1, 1.5] }).low, changed({ clim: [1, 1.5] }).auto], [1, false]);
+  assert.equal(changed({ scalars: false }).name, null);
+  const centred = changed({ scalars: "p", cmap: "coolwarm" });
+  assert.deepEqual([centred.low, centred.high], [-3, 3]);
+  assert.deepEqual(header.scalars.name, "speed"); // the header itself stays
+});
+
+test("a narrower range asks for smaller differences", () => {
+  const { colours } = recoloured(header, { clim: [1, 1.5] }, new Map());
+  assert.equal(colours.mesh?.maxColourError, 0.0025);
+});
+
+test("places on the map go by the logarithm where that is asked for", () => {
+  const share = shareOf({ low: 1, high: 100, log: true } as Header["scalars"]);
+  assert.deepEqual([-1, 1, 10, 100].map(share), [0, 0, 0.5, 1]);
+});

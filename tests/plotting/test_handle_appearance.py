@@ -1,0 +1,122 @@
+"""The appearance of a flow on a plotter, changed while it is shown."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+import pyvista as pv
+from flows import gyre
+
+import flowtex
+from flowtex.options import NO_VALUE_COLOR
+from flowtex.plotting import component  # noqa: F401  which PyVista finds by its entry point
+
+pytestmark = pytest.mark.usefixtures("opengl")
+
+
+def heights() -> flowtex.FlowField:
+    field = gyre()
+    height = field.points[..., 1] - 0.4
+    return flowtex.FlowField.from_arrays(field.points, field.velocity, scalars={"height": height})
+
+
+def shot(plotter: Any) -> Any:
+    plotter.render()
+    return plotter.screenshot(return_img=True).astype(float)
+
+
+@pytest.fixture
+def plotter() -> Any:
+    made: Any = pv.Plotter(off_screen=True, window_size=[240, 160])
+    made.disable_anti_aliasing()
+    yield made
+    made.close()
+
+
+CHANGES: list[dict[str, Any]] = [
+    {"cmap": "magma"},
+    {"clim": (0.1, 0.2)},
+    {"clim": "robust"},
+    {"scalars": "height"},
+    {"scalars": "height", "cmap": "coolwarm"},
+    {"scalars": False, "color": "tomato"},
+    {"opacity": 0.4},
+    {"visible": False},
+    {"clim": (0.01, 0.3), "log_scale": True},
+    {"lighting": True},
+    {"show_scalar_bar": False},
+]
+
+
+@pytest.mark.parametrize("changes", CHANGES, ids=str)
+def test_a_change_gives_what_was_asked_for_at_first(plotter: Any, changes: dict[str, Any]) -> None:
+    handle = plotter.flowtex.add(heights())
+    before = shot(plotter)
+    for name, value in changes.items():
+        setattr(handle, name, value)
+        assert getattr(handle, name) == value
+    changed = shot(plotter)
+    handle.remove()
+    plotter.flowtex.add(heights(), **changes)
+    np.testing.assert_allclose(changed, shot(plotter), atol=1)
+    assert np.abs(changed - before).max() > 8
+
+
+def test_a_change_and_back_is_no_change(plotter: Any) -> None:
+    handle = plotter.flowtex.add(heights())
+    before = shot(plotter)
+    for name, value in (("scalars", "height"), ("cmap", "magma"), ("visible", False)):
+        was = getattr(handle, name)
+        setattr(handle, name, value)
+        setattr(handle, name, was)
+    np.testing.assert_allclose(shot(plotter), before, atol=1)
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "said"),
+    [
+        ("scalars", "hight", r"there is no scalar 'hight' on this field; there are 'speed', 'hei"),
+        ("cmap", "virids", r"there is no colour map 'virids'; did you mean 'viridis'"),
+        ("clim", (2, 1), r"clim is \(2, 1\); expected two numbers, \(low, high\), the lower one"),
+        ("opacity", 2, r"opacity is 2; expected a number from 0 to 1"),
+        ("log_scale", True, r"log_scale is for values above 0, and the colours of 'speed' go from"),
+        ("colours", "magma", r"FlowHandle has no attribute 'colours'; did you mean 'color'"),
+        ("contrast", 2, r"has no attribute 'contrast' of its own; it is a setting: settings\.con"),
+    ],
+)
+def test_what_does_not_fit_is_refused(plotter: Any, name: str, value: Any, said: str) -> None:
+    handle = plotter.flowtex.add(heights())
+    before = shot(plotter)
+    with pytest.raises((AttributeError, ValueError, KeyError), match=said):
+        setattr(handle, name, value)
+    np.testing.assert_array_equal(shot(plotter), before)
+
+
+def test_what_was_done_to_the_actor_stays(plotter: Any) -> None:
+    handle = plotter.flowtex.add(heights())
+    handle.actor.prop.opacity = 0.5
+    handle.cmap = "magma"
+    assert handle.actor.prop.opacity == 0.5
+
+
+def test_the_bar_stays_in_its_subplot() -> None:
+    made: Any = pv.Plotter(off_screen=True, window_size=[300, 120], shape=(1, 2))
+    handle = made.flowtex.add(heights())
+    made.subplot(0, 1)
+    handle.scalars = "height"
+    assert list(made.scalar_bars.keys()) == ["height"]
+    bar = made.scalar_bars["height"]
+    assert [bool(r.HasViewProp(bar)) for r in made.renderers] == [True, False]
+    assert made.renderers.active_index == 1
+    made.close()
+
+
+def test_a_node_without_a_value_is_grey(plotter: Any) -> None:
+    field = heights()
+    values = np.where(field.points[..., 0] < 1, np.nan, field.points[..., 0])
+    nan = flowtex.FlowField.from_arrays(field.points, field.velocity, scalars={"gap": values})
+    plotter.flowtex.add(nan, scalars="gap", strength=0.0, show_scalar_bar=False)
+    grey = np.rint(255 * np.array(pv.Color(NO_VALUE_COLOR).float_rgb))
+    assert (shot(plotter) == grey).all(axis=-1).mean() > 0.2

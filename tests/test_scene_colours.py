@@ -1,0 +1,69 @@
+"""The ranges of colours, and what notifies of them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from flows import gyre
+
+import flowtex
+from flowtex.scene import Scene
+
+
+def field(values: Any, **options: Any) -> flowtex.FlowField:
+    flow = gyre()
+    return flowtex.FlowField.from_arrays(
+        flow.points, flow.velocity, scalars={"p": values}, **options
+    )
+
+
+SIGNED = np.linspace(-1.0, 3.0, 31 * 61).reshape(31, 61)
+
+
+def limits(values: Any, **options: Any) -> tuple[float, float]:
+    return Scene.of(field(values), scalars="p", **options).scalar_limits
+
+
+def test_zero_is_in_the_middle_of_a_diverging_map() -> None:
+    assert limits(SIGNED) == (-1.0, 3.0)
+    assert limits(SIGNED, cmap="coolwarm") == (-3.0, 3.0)
+    assert limits(SIGNED, cmap="RdBu_r") == (-3.0, 3.0)
+    assert limits(SIGNED, cmap="coolwarm", clim=(-1, 2)) == (-1.0, 2.0)
+    assert limits(SIGNED + 2, cmap="coolwarm") == (1.0, 5.0)
+
+
+def test_a_robust_range_leaves_outliers_out() -> None:
+    values = SIGNED.copy()
+    values[0, 0], values[-1, -1] = -1e6, 1e6
+    low, high = limits(values, clim="robust")
+    assert (low, high) == pytest.approx((-0.92, 2.92), abs=0.01)
+    assert limits(values, clim="robust", cmap="coolwarm") == (-high, high)
+
+
+def test_a_logarithm_is_refused_for_what_has_none() -> None:
+    assert limits(SIGNED + 2, log_scale=True) == (1.0, 5.0)
+    assert limits(SIGNED, log_scale=True, clim=(0.1, 3)) == (0.1, 3)
+    for clim in (None, (0, 3)):
+        with pytest.raises(ValueError, match=r"^log_scale is for values above 0, and the colours "):
+            limits(SIGNED, log_scale=True, clim=clim)
+
+
+def test_a_change_is_told_and_a_wrong_one_changes_nothing() -> None:
+    scene = Scene.of(field(SIGNED))
+    told: list[str] = []
+    scene.observe(told.append)
+    scene.appearance = replace(scene.appearance, scalars="p", cmap="magma")
+    assert told == ["appearance"] and scene.scalar_limits == (-1.0, 3.0)
+    for wrong in ({"scalars": "q"}, {"log_scale": True}):
+        with pytest.raises((KeyError, ValueError)):
+            scene.appearance = replace(scene.appearance, **wrong)
+    assert told == ["appearance"] and scene.appearance.scalars == "p"
+
+
+def test_units_of_scalars_and_of_the_speed() -> None:
+    flow = field(SIGNED, units={"p": "Pa"}, length_unit="m", time_unit="s")
+    assert [flow.unit_of(name) for name in ("speed", "p", "q")] == ["m/s", "Pa", ""]
+    assert field(SIGNED).unit_of("speed") == ""
