@@ -337,7 +337,8 @@ def test_a_click_tells_the_point(client: ClientPage) -> None:
     assert name == "onPoint"
     x, y = 1.0 + 10 * 0.015, 0.5 + 10 * 0.015
     np.testing.assert_allclose(point["position"], [x, y, 0], atol=1e-6)
-    np.testing.assert_allclose(point["values"]["sum"], x + 2 * y, atol=1e-5)
+    # Within half a pixel, as what is drawn.
+    np.testing.assert_allclose(point["values"]["sum"], x + 2 * y, atol=0.015)
     i, j = point["index"]
     near = gyre().points[round(j), round(i)]
     assert np.abs(near[:2] - [x, y]).max() < 0.04
