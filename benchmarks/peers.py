@@ -29,7 +29,7 @@ from rich.table import Table
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 
 #: Rows and columns of nodes.
-MESHES = ("70x120", "250x500", "500x1000")
+MESHES = ("70x120", "250x500", "500x1000", "2000x4000")
 FRAMES = 4
 #: Seeds of streamlines, and the separation of evenly spaced ones as a share of the height.
 SEEDS, SEPARATION = 2000, 0.01

@@ -32,7 +32,7 @@ half() {
     [ $code -eq 0 ] || [ $code -eq 5 ] || failed="$failed, $check_name"
 }
 
-# A browser wants the machine for itself: its tests wait for what a person would see.
+# Tests with a browser wait for what a person would see, so few of them share the machine.
 half tests pytest -n auto --maxprocesses 4 --dist loadfile -m "not browser" "$@"
-half "tests with a browser" pytest -m browser "$@"
+half "tests with a browser" pytest -n auto --maxprocesses 2 --dist loadfile -m browser "$@"
 [ -z "$failed" ] || fail "not in order: ${failed#, }"

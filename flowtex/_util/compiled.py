@@ -1,8 +1,8 @@
 """Compiled loops, used where they are ready, and never waited for.
 
 numba is optional, and takes seconds to compile, or half a second to load what it has compiled
-before. Both happen in a thread beside the first large work; until then, and where it fails, NumPy
-does the same. In a forked process the thread is gone, so that what was not ready stays so.
+before. Both happen in a thread once there has been much work, and slow what runs beside them; until
+then, and where it fails, NumPy does the same. In a forked process the thread is gone, so that what was not ready stays so.
 """
 
 from __future__ import annotations
@@ -12,16 +12,18 @@ from typing import Any
 
 __all__ = ["kernels", "prepare"]
 
-#: Paths or positions for which compiling is worth its time.
-LARGE_WORK = 100_000
+#: Paths that a process has followed when compiling is worth its time.
+LARGE_WORK = 400_000
 
 _loaded: list[Any] = []
+_paths = [0]
 _begun = threading.Lock()
 
 
 def prepare(size: int) -> threading.Thread | None:
-    """Begin to compile, once a process, when there are many paths or positions to compute."""
-    if size < LARGE_WORK or not _begun.acquire(blocking=False):
+    """Begin to compile, once a process, when so many paths make its work large."""
+    _paths[0] += size
+    if _paths[0] < LARGE_WORK or not _begun.acquire(blocking=False):
         return None
     thread = threading.Thread(target=_load, name="flowtex-compile", daemon=True)
     thread.start()
