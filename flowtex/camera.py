@@ -187,7 +187,7 @@ class Camera:
     ) -> Self:
         """Look straight on, without perspective, the surface's own axes to the right and up."""
         right, up = frame
-        width, height = np.ptp((surface.points[surface.valid] - surface.center) @ frame.T, axis=0)
+        width, height = surface.plane_size
         share = 1 - 2 * CAMERA_LIMITS.margin
         return cls(
             position=_point(center + np.cross(right, up) * surface.extent),

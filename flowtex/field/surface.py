@@ -168,6 +168,14 @@ class Surface:
         return self._positions.at(i, j).T.reshape(*index.shape[:-1], 3)
 
     @cached_property
+    def plane_size(self) -> Floats:
+        """Width and height along the frame of a flat surface, (2,)."""
+        assert self.frame is not None
+        nodes = self.points.reshape(-1, 3) if self.valid.all() else self.points[self.valid]
+        # Column by column, which needs no memory for the differences to the middle.
+        return np.array([np.ptp(nodes @ axis) for axis in self.frame])
+
+    @cached_property
     def _positions(self) -> CubicMap:
         return CubicMap(self, np.eye(3), np.zeros(3))
 
