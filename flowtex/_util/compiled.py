@@ -1,8 +1,9 @@
 """Compiled loops, used where they are ready, and never waited for.
 
 numba is optional, and takes seconds to compile, or half a second to load what it has compiled
-before. Both happen in a thread once there has been much work, and slow what runs beside them; until
-then, and where it fails, NumPy does the same. In a forked process the thread is gone, so that what was not ready stays so.
+before. Both happen in a thread once there has been much work, for they slow what runs beside them;
+until then, and where it fails, NumPy does the same. In a forked process the thread is gone, so that
+what was not ready stays so.
 """
 
 from __future__ import annotations
