@@ -24,7 +24,7 @@ demo: $(VENV)/.ready-demo ## set up if need be, and show flow on a surface
 
 test: $(VENV)/.ready-test ## set up if need be, then run every check and every test
 	@sh tools/opengl.sh $(BIN)/python
-	@sh tools/chromium.sh $(BIN)/python
+	@sh tools/browsers.sh $(BIN)/python
 	@sh tools/check.sh $(BIN) $(PYTEST_ARGS)
 
 fuzz: $(VENV)/.ready-test ## try ten thousand random fields, settings, links, files and messages

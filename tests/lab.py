@@ -30,6 +30,11 @@ OPTIONS = (
     "--LabApp.expose_app_in_browser=True",
 )
 QUIET = {"fetchNews": "false", "checkForUpdates": False, "doNotDisturbMode": True}
+#: A window without the focus has no current widget until it is told of one.
+SHOWN = """() => {
+  document.querySelector(".jp-Notebook")?.dispatchEvent(new FocusEvent("focus"));
+  return Boolean(window.jupyterapp?.shell?.currentWidget?.sessionContext);
+}"""
 READY = """async () => {
   await jupyterapp.restored;
   const context = jupyterapp.shell.currentWidget.sessionContext;
@@ -52,7 +57,7 @@ class Lab:
         self.page = page
         self._count = 0
         page.goto(f"{address}/doc/tree/{name}?token={TOKEN}")
-        page.wait_for_function("() => window.jupyterapp?.shell?.currentWidget?.sessionContext")
+        page.wait_for_function(SHOWN)
         page.evaluate(READY)
 
     def run(self, code: str) -> None:

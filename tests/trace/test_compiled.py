@@ -32,6 +32,7 @@ def kernels() -> Any:
 def nothing_ready(monkeypatch: pytest.MonkeyPatch) -> None:
     """Begin each test in a process that has not compiled anything."""
     monkeypatch.setattr(compiled, "_loaded", [])
+    monkeypatch.setattr(compiled, "_paths", [0])
     monkeypatch.setattr(compiled, "_begun", threading.Lock())
 
 

@@ -1,0 +1,67 @@
+"""What people see in Firefox: the page, the widget, and an exported page."""
+
+from __future__ import annotations
+
+import signal
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from firefox import Firefox, firefox
+from lab import Lab, lab
+from served import start
+
+import flowtex
+from flowtex._util.array_types import Bytes
+
+pytestmark = [pytest.mark.slow, pytest.mark.browser]
+
+SHARP = "() => document.querySelector('.flowtex[data-sharp=\"true\"]')?.clientWidth"
+CELL = """import flowtex
+flowtex.show(flowtex.examples.double_gyre(), samples=9, size=(600, 300))"""
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Firefox]:
+    """Yield the one page of a Firefox."""
+    with firefox(tmp_path_factory.mktemp("firefox")) as opened:
+        yield opened
+
+
+def is_textured(pixels: Bytes) -> bool:
+    """Whether a good part of the picture changes from pixel to pixel, in many colours."""
+    grey = pixels.astype(float).mean(axis=-1)
+    changes = np.abs(np.diff(grey, axis=0))[:, 1:] + np.abs(np.diff(grey, axis=1))[1:]
+    return bool((changes > 10).mean() > 0.1 and len(np.unique(pixels.reshape(-1, 3), axis=0)) > 999)
+
+
+def test_an_exported_page_draws(page: Firefox, tmp_path: Path) -> None:
+    file = tmp_path / "gyre.html"
+    flowtex.export(flowtex.examples.double_gyre(), file)
+    page.goto(file.as_uri())
+    page.wait_for_function(SHARP)
+    assert is_textured(page.screenshot())
+
+
+def test_the_page_draws(page: Firefox) -> None:
+    served = start("demo")
+    try:
+        page.goto(served.address)
+        end = time.monotonic() + 60
+        while not is_textured(page.screenshot()):
+            assert time.monotonic() < end
+            time.sleep(0.5)
+    finally:
+        served.end(signal.SIGINT)
+
+
+def test_the_widget_draws_in_jupyterlab(page: Any, tmp_path: Path) -> None:
+    pytest.importorskip("jupyterlab")
+    with lab(tmp_path) as address:
+        notebook = Lab(page, address)
+        notebook.run(CELL)
+        page.wait_for_function(SHARP)
+        assert is_textured(page.screenshot())
