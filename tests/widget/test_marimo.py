@@ -1,0 +1,60 @@
+"""The widget in a real marimo, driven by Chromium."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+pytest.importorskip("marimo")
+
+pytestmark = [pytest.mark.slow, pytest.mark.browser]
+
+NOTEBOOK = """import marimo
+app = marimo.App()
+
+@app.cell
+def _():
+    import flowtex
+    flowtex.show(flowtex.examples.double_gyre(), samples=9, size=(600, 300))
+    return (flowtex,)
+
+@app.cell
+def _(flowtex):
+    widget = flowtex.FlowWidget(flowtex.examples.double_gyre(), samples=9, size=(500, 250))
+    widget
+    return
+"""
+SHARP = """() => {
+  const inside = (root) => [...root.querySelectorAll("*")]
+    .flatMap((part) => [part, ...(part.shadowRoot ? inside(part.shadowRoot) : [])]);
+  return inside(document).filter((part) => part.matches('.flowtex[data-sharp="true"]')).length;
+}"""
+
+
+@pytest.fixture
+def address(tmp_path: Path) -> Iterator[str]:
+    """Yield the address of a marimo that runs the notebook."""
+    file = tmp_path / "notebook.py"
+    file.write_text(NOTEBOOK)
+    words = [sys.executable, "-m", "marimo", "run", str(file), "--headless", "--no-token"]
+    process = subprocess.Popen(
+        words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, cwd=tmp_path
+    )
+    assert process.stdout is not None
+    said = next((line for line in process.stdout if "http://" in line), "")
+    yield said[said.find("http://") :].strip().replace("localhost", "127.0.0.1")
+    process.terminate()
+    process.communicate(timeout=20)
+
+
+def test_a_widget_and_what_show_displays_are_drawn(page: Page, address: str) -> None:
+    page.goto(address)
+    page.wait_for_function(f"() => ({SHARP})() === 2", timeout=60_000)
