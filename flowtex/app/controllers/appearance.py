@@ -250,9 +250,8 @@ class Appearance(Controller):
         if not self.area.scalars:
             return {"name": "", "low": "", "high": "", "stops": []}
         low, high = self.area.scene.scalar_limits
-        name, unit = self.area.scalars, self.area.scene.field.unit_of(self.area.scalars)
         return {
-            "name": f"{name} ({unit})" if unit else name,
+            "name": self.area.scene.title_of(self.area.scalars),
             "low": f"{low:.3g}",
             "high": f"{high:.3g}",
             "stops": self.viewport.colour_stops(),

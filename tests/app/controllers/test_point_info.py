@@ -149,7 +149,7 @@ def test_the_tip_of_a_flat_surface() -> None:
     hover = PointText(viewport)
     got = dict(hover(0.5, -0.5) or ())
     assert got == {
-        "position": "(0.8, -0.5)",
+        "position": "(0.8, -0.5) m",
         "velocity": "(1, 0.2) m/s",
         "speed": "1.02 m/s",
         "warmth": "8",
