@@ -2,6 +2,7 @@
 
 import type { Camera } from "./camera.ts";
 import { dom, numberText } from "./dom.ts";
+import type { Lifetime, Timer } from "./lifetime.ts";
 import type { Options } from "./options.ts";
 import { pathShapes, type Line, type Place } from "./pathlines.ts";
 import { valuesAt, type Found, type Point } from "./picking.ts";
@@ -16,6 +17,11 @@ const SVG = "http://www.w3.org/2000/svg";
 /** Digits of a coordinate, at first and at most: more are shown the closer the view is. */
 const FEWEST_DIGITS = 4;
 const MOST_DIGITS = 14;
+/** Those of a velocity, which comes from numbers in half precision. */
+const VELOCITY_DIGITS = 3;
+/** Milliseconds for which a click waits until points can be found, and between two looks. */
+const PATIENCE_MS = 5000;
+const RETRY_MS = 40;
 /** Units longer than this are left out. */
 const UNIT_LENGTH = 12;
 
@@ -28,7 +34,7 @@ export function withUnit(text: string, unit: string): string {
 function vectorText(vector: readonly number[], size: number, digits: number, flat: boolean): string {
   const texts = vector.slice(0, flat ? 2 : 3).map((x) => {
     const value = Math.abs(x) < 1e-9 * size ? 0 : x;
-    return digits > 5 ? String(Number(value.toPrecision(digits))) : numberText(value);
+    return digits > 5 ? String(Number(value.toPrecision(digits))) : numberText(value, digits);
   });
   return `(${texts.join(", ")})`;
 }
@@ -55,6 +61,8 @@ export interface CardHost {
   readonly tiles: { readonly layers: Layer[] } | null;
   /** The views beside each other, which show the path as well. */
   readonly together: readonly { readonly card: PointCard }[];
+  readonly lifetime: Lifetime;
+  readonly canPick: boolean;
   find(x: number, y: number): Found | null;
 }
 
@@ -64,6 +72,7 @@ export class PointCard {
   private readonly host: CardHost;
   private readonly list = dom("dl");
   private chosen: Found | null = null;
+  private later: Timer | null = null;
   /** The path that is drawn, and its point. */
   private drawn: { path: PointPath; point: Vector } | null = null;
 
@@ -77,7 +86,14 @@ export class PointCard {
   }
 
   /** Show the path through what is at (x, y), from -1 to 1, right and up, or none. */
-  choose(x: number, y: number): Point | null {
+  choose(x: number, y: number, until = performance.now() + PATIENCE_MS): Point | null {
+    const { lifetime, canPick } = this.host;
+    lifetime.cancel(this.later);
+    if (!canPick && performance.now() < until) {
+      // The program that finds points is still being compiled.
+      this.later = lifetime.later(() => this.choose(x, y, until), RETRY_MS);
+      return null;
+    }
     const found = this.host.find(x, y);
     if (found) this.host.options.onPoint?.(found.point);
     this.close();
@@ -92,6 +108,7 @@ export class PointCard {
   }
 
   private clear(): void {
+    this.host.lifetime.cancel(this.later);
     this.chosen = this.drawn = null;
     this.element.hidden = true;
     this.overlay.replaceChildren();
@@ -118,11 +135,11 @@ export class PointCard {
   private tell(point: Point, { velocity }: PointPath, header: Header, camera: Camera): void {
     const { label, unit } = header.speed;
     const size = Math.hypot(...velocity);
-    const text = vectorText(velocity, size, FEWEST_DIGITS, liesAcross(header.geometry));
+    const text = vectorText(velocity, size, VELOCITY_DIGITS, liesAcross(header.geometry));
     const lines = new Map([
       ["position", withUnit(positionText(point.position, header, camera), header.lengthUnit)],
       [label.replace("speed", "velocity"), withUnit(text, unit)],
-      [label, withUnit(numberText(size), unit)],
+      [label, withUnit(numberText(size, VELOCITY_DIGITS), unit)],
     ]);
     for (const [name, value] of Object.entries(point.values)) {
       const named = header.scalars.choices.find((each) => each.name === name) ?? header.scalars;

@@ -155,21 +155,31 @@ function indexOf(values: number[], value: number): number {
   return n - 1 + (value - values[n - 1]) / (values[n] - values[n - 1]);
 }
 
-/** Length of a grain at a point: the pixel's longer side, as it lies on the surface. */
+/**
+ * Length of a grain at a point: of the pixel's longer side as it lies on the surface, or of a texel of
+ * the noise's level, which is that of the pixel unless its own texels are larger.
+ */
 function grainAt({ scene, place, position }: PathPlace, settings: Settings, camera: Camera, rows: number) {
-  const { geometry } = scene.header;
-  const [grain, resolution] = [Number(settings.grain), Number(settings.resolution)];
-  const texel = geometry.extent / resolution;
-  if (!settings.lod) return texel;
+  const { geometry, paper } = scene.header;
   const nodes = scene.part("position").data;
   const [i, j] = place.map((n, axis) => clamp(n, 0.5, geometry.shape[1 - axis] - 1.5));
   const at = (di: number, dj: number) => nodeAt(geometry, nodes, [i + di, j + dj]);
-  const along = subtract(at(0.5, 0), at(-0.5, 0));
-  const normal = unit(cross(along, subtract(at(0, 0.5), at(0, -0.5))));
+  const normal = cross(subtract(at(0.5, 0), at(-0.5, 0)), subtract(at(0, 0.5), at(0, -0.5)));
   const { height, ray } = camera.at(position);
-  const facing = Math.max(Math.abs(dot(normal, ray)), LEAST_FACING);
-  const pixel = ((2 * height) / rows / facing) * grain;
-  return settings.fixed_grain ? Math.max(pixel, texel) : pixel;
+  const facing = Math.max(Math.abs(dot(unit(normal), ray)), LEAST_FACING);
+  const pixel = (2 * height) / rows;
+  if (paper) {
+    const [across, up] = [paper.alongI, paper.alongJ].map((along, axis) => {
+      const n = Math.floor([i, j][axis]);
+      return (along[n + 1] - along[n]) * paper.size[axis];
+    });
+    const texel = Math.sqrt(length(normal) / (across * up));
+    return paper.grain * (settings.lod ? Math.max(pixel / Math.sqrt(facing), texel) : texel);
+  }
+  const texel = geometry.extent / Number(settings.resolution);
+  const grain = (pixel / facing) * Number(settings.grain);
+  if (!settings.lod) return texel;
+  return settings.fixed_grain ? Math.max(grain, texel) : grain;
 }
 
 /** The first points of a side, up to a length. */

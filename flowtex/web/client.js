@@ -114,12 +114,12 @@ attributes))element.setAttribute(name,value);return element.append(...children),
 M20 9V4h-5M4 15v5h5M20 15v5h-5",hide:"M6 9.5l6 6 6-6",show:"M6 14.5l6-6 6 6"};function icon(name){let space="http://www.\
 w3.org/2000/svg",svg=document.createElementNS(space,"svg");svg.setAttribute("viewBox","0 0 24 24"),svg.setAttribute("ari\
 a-hidden","true");let path=document.createElementNS(space,"path");return path.setAttribute("d",ICONS[name]),name==="play"&&
-path.setAttribute("class","solid"),svg.append(path),svg}function numberText(x){if(!Number.isFinite(x))return"–";let size=Math.
-abs(x);return size!==0&&(size>=1e5||size<.001)?x.toExponential(2).replace("e+","e"):String(Number(x.toPrecision(4)))}function pictureOf(views,size=1,format={}){
-let widths=views.map(({canvas})=>Math.max(Math.round(size*canvas.width),1)),height=Math.max(Math.round(size*views[0].canvas.
-height),1),all=new OffscreenCanvas(widths.reduce((sum,width)=>sum+width,0),height),pen=all.getContext("2d",{alpha:!1}),left=0;
-for(let[n,{canvas}]of views.entries())pen?.drawImage(canvas,left,0,widths[n],height),left+=widths[n];return all.convertToBlob(
-format)}var Lifetime=class{controller=new AbortController;observers=new Set;timers=new Set;globalListeners=0;get isOver(){return this.
+path.setAttribute("class","solid"),svg.append(path),svg}function numberText(x,digits=4){if(!Number.isFinite(x))return"–";
+let size=Math.abs(x);return size!==0&&(size>=1e5||size<.001)?x.toExponential(2).replace("e+","e"):String(Number(x.toPrecision(
+digits)))}function pictureOf(views,size=1,format={}){let widths=views.map(({canvas})=>Math.max(Math.round(size*canvas.width),
+1)),height=Math.max(Math.round(size*views[0].canvas.height),1),all=new OffscreenCanvas(widths.reduce((sum,width)=>sum+width,
+0),height),pen=all.getContext("2d",{alpha:!1}),left=0;for(let[n,{canvas}]of views.entries())pen?.drawImage(canvas,left,0,
+widths[n],height),left+=widths[n];return all.convertToBlob(format)}var Lifetime=class{controller=new AbortController;observers=new Set;timers=new Set;globalListeners=0;get isOver(){return this.
 controller.signal.aborted}listen(target,kind,call,options={}){(target===document||target===window)&&(this.globalListeners+=
 1);let{signal}=this.controller;target.addEventListener(kind,call,{...options,signal})}later(call,delay){let timer=setTimeout(
 ()=>{this.timers.delete(timer),call()},delay);return this.timers.add(timer),timer}cancel(timer){timer!==null&&(clearTimeout(
@@ -389,12 +389,14 @@ some(Number.isNaN)?null:add(position,subtract2(nodeAt(geometry,nodes,at),start))
 j]){let local=[0,1,2].map(c=>interpolated(shape,i,j,n=>nodes[3*n+c]));return fromFrame(frame,local)}function between(values,at){
 let n=Math.min(Math.floor(at),values.length-2);return values[n]+(at-n)*(values[n+1]-values[n])}function indexOf(values,value){
 let n=values.findIndex(other=>other>=value);return n<0||value<values[0]?NaN:n===0?0:n-1+(value-values[n-1])/(values[n]-values[n-
-1])}function grainAt({scene,place,position},settings,camera,rows){let{geometry}=scene.header,[grain,resolution]=[Number(
-settings.grain),Number(settings.resolution)],texel=geometry.extent/resolution;if(!settings.lod)return texel;let nodes=scene.
-part("position").data,[i,j]=place.map((n,axis)=>clamp(n,.5,geometry.shape[1-axis]-1.5)),at=(di,dj)=>nodeAt(geometry,nodes,
-[i+di,j+dj]),along=subtract2(at(.5,0),at(-.5,0)),normal=unit(cross2(along,subtract2(at(0,.5),at(0,-.5)))),{height,ray}=camera.
-at(position),facing=Math.max(Math.abs(dot2(normal,ray)),LEAST_FACING),pixel=2*height/rows/facing*grain;return settings.fixed_grain?
-Math.max(pixel,texel):pixel}function upTo(start,side,most){let result2=[],[from,left]=[start,most];for(let point of side){
+1])}function grainAt({scene,place,position},settings,camera,rows){let{geometry,paper}=scene.header,nodes=scene.part("pos\
+ition").data,[i,j]=place.map((n,axis)=>clamp(n,.5,geometry.shape[1-axis]-1.5)),at=(di,dj)=>nodeAt(geometry,nodes,[i+di,j+
+dj]),normal=cross2(subtract2(at(.5,0),at(-.5,0)),subtract2(at(0,.5),at(0,-.5))),{height,ray}=camera.at(position),facing=Math.
+max(Math.abs(dot2(unit(normal),ray)),LEAST_FACING),pixel=2*height/rows;if(paper){let[across,up]=[paper.alongI,paper.alongJ].
+map((along,axis)=>{let n=Math.floor([i,j][axis]);return(along[n+1]-along[n])*paper.size[axis]}),texel2=Math.sqrt(length2(
+normal)/(across*up));return paper.grain*(settings.lod?Math.max(pixel/Math.sqrt(facing),texel2):texel2)}let texel=geometry.
+extent/Number(settings.resolution),grain=pixel/facing*Number(settings.grain);return settings.lod?settings.fixed_grain?Math.
+max(grain,texel):grain:texel}function upTo(start,side,most){let result2=[],[from,left]=[start,most];for(let point of side){
 let step=length2(subtract2(point,from));if(step>=left){left>0&&result2.push(add(from,subtract2(point,from),left/(step||1)));
 break}result2.push(point),left-=step,from=point}return result2}function pathThrough(at,settings,camera,rows){let{scene,position}=at,
 {slices,paper,speed}=scene.header,layers=layersAt(at),directed=!isSignFree(scene.header),base=layers(0),slope=[base[0],base[1],
@@ -405,35 +407,38 @@ whole=[],sides=settings.two_sided||!directed?slices.sides:1;for(let side=0;side<
 end=points.findIndex(point=>point===null);whole.push(points.slice(0,end<0?void 0:end))}let set=Number(settings.samples),
 samples=isMoving(scene.header,settings)?2*set-1:set,most=(sides===2?Math.floor(samples/2):samples-1)*Number(settings.spacing)*
 grainAt(at,settings,camera,rows),joined=reach=>{let[back=[],ahead=[]]=whole.map(side=>upTo(position,side,reach));return[
-...back.reverse(),position,...ahead]};return{path:joined(PATH_LENGTH*most),sampled:joined(most),directed,velocity}}var TITLE="Path through this point",SVG="http://www.w3.org/2000/svg",FEWEST_DIGITS=4,MOST_DIGITS=14,UNIT_LENGTH=12;function withUnit(text,unit2){
-return unit2&&unit2.length<=UNIT_LENGTH?`${text} ${unit2}`:text}function vectorText(vector,size,digits,flat){return`(${vector.
-slice(0,flat?2:3).map(x=>{let value=Math.abs(x)<1e-9*size?0:x;return digits>5?String(Number(value.toPrecision(digits))):
-numberText(value)}).join(", ")})`}var liesAcross=({planar,frame})=>planar&&Math.abs(frame[8])>.999;function positionText(position,header,camera){
-let{geometry}=header,zoom=Math.max(camera?.zoom??1,1),digits=Math.min(Math.ceil(FEWEST_DIGITS+Math.log10(zoom)),MOST_DIGITS),
-isInPlane=liesAcross(geometry)&&Math.abs(position[2]-geometry.center[2])<1e-12*geometry.extent;return vectorText(position,
-geometry.extent,digits,isInPlane)}var PointCard=class{element=dom("div",{class:"card glass",role:"region",hidden:""});overlay=document.
-createElementNS(SVG,"svg");host;list=dom("dl");chosen=null;drawn=null;constructor(host){this.host=host,this.element.setAttribute(
+...back.reverse(),position,...ahead]};return{path:joined(PATH_LENGTH*most),sampled:joined(most),directed,velocity}}var TITLE="Path through this point",SVG="http://www.w3.org/2000/svg",FEWEST_DIGITS=4,MOST_DIGITS=14,VELOCITY_DIGITS=3,PATIENCE_MS=5e3,
+RETRY_MS=40,UNIT_LENGTH=12;function withUnit(text,unit2){return unit2&&unit2.length<=UNIT_LENGTH?`${text} ${unit2}`:text}
+function vectorText(vector,size,digits,flat){return`(${vector.slice(0,flat?2:3).map(x=>{let value=Math.abs(x)<1e-9*size?
+0:x;return digits>5?String(Number(value.toPrecision(digits))):numberText(value,digits)}).join(", ")})`}var liesAcross=({
+planar,frame})=>planar&&Math.abs(frame[8])>.999;function positionText(position,header,camera){let{geometry}=header,zoom=Math.
+max(camera?.zoom??1,1),digits=Math.min(Math.ceil(FEWEST_DIGITS+Math.log10(zoom)),MOST_DIGITS),isInPlane=liesAcross(geometry)&&
+Math.abs(position[2]-geometry.center[2])<1e-12*geometry.extent;return vectorText(position,geometry.extent,digits,isInPlane)}
+var PointCard=class{element=dom("div",{class:"card glass",role:"region",hidden:""});overlay=document.createElementNS(SVG,
+"svg");host;list=dom("dl");chosen=null;later=null;drawn=null;constructor(host){this.host=host,this.element.setAttribute(
 "aria-label",TITLE),this.overlay.setAttribute("class","path");let button=dom("button",{type:"button",class:"link"},["Clo\
 se"]);button.addEventListener("click",()=>this.close()),this.element.append(dom("div",{class:"first"},[dom("span",{},[TITLE]),
-button]),this.list)}choose(x,y){let found=this.host.find(x,y);return found&&this.host.options.onPoint?.(found.point),this.
-close(),this.chosen=found,this.update(),found?.point??null}close(){for(let{card}of this.host.together)card.clear()}clear(){
-this.chosen=this.drawn=null,this.element.hidden=!0,this.overlay.replaceChildren()}update(){let{chosen}=this,{options,camera,
-shown,header,tiles,settings,root,together}=this.host;if(!chosen||options.bare||!camera||!shown||!header)return;let{point,
-layer,place}=chosen,scene=tiles?.layers.find(({key})=>String(key)===String(layer.key))?.scene;if(!scene||scene.missing(shown[0],
-shown[1]).length)return;let position=point.position,path=pathThrough({scene,moment:shown,place,position},settings,camera,
-root.clientHeight);this.tell({...point,values:valuesAt(scene,shown,place)},path,header,camera);for(let{card}of together)
-card.drawn={path,point:position},card.draw()}tell(point,{velocity},header,camera){let{label,unit:unit2}=header.speed,size=Math.
-hypot(...velocity),text=vectorText(velocity,size,FEWEST_DIGITS,liesAcross(header.geometry)),lines=new Map([["position",withUnit(
-positionText(point.position,header,camera),header.lengthUnit)],[label.replace("speed","velocity"),withUnit(text,unit2)],
-[label,withUnit(numberText(size),unit2)]]);for(let[name,value]of Object.entries(point.values)){let named=header.scalars.
-choices.find(each=>each.name===name)??header.scalars;lines.set(named.label,withUnit(numberText(value),named.unit))}this.
-list.replaceChildren(...[...lines].flatMap(([word,value])=>[dom("dt",{},[word]),dom("dd",{},[value])])),this.element.hidden=
-!1}draw(){let{drawn}=this,{camera,root}=this.host;if(!drawn||!camera)return;let{clientWidth:width,clientHeight:height}=root,
-placeOf=point2=>{let place=camera.project(point2);return place&&[(place[0]+1)/2*width,(1-place[1])/2*height]},linesOf=points=>{
-let lines=[[]];for(let place of points.map(placeOf))place?lines[lines.length-1].push(place):lines.push([]);return lines.
-filter(line=>line.length>1)},{path,sampled,directed}=drawn.path,point=placeOf(drawn.point),shapes=pathShapes({path:linesOf(
-path),sampled:linesOf(sampled),point,directed});this.overlay.replaceChildren(...shapes.map(([tag,attributes])=>{let shape=document.
-createElementNS(SVG,tag);for(let[name,value]of Object.entries(attributes))shape.setAttribute(name,`${value}`);return shape}))}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */
+button]),this.list)}choose(x,y,until=performance.now()+PATIENCE_MS){let{lifetime,canPick}=this.host;if(lifetime.cancel(this.
+later),!canPick&&performance.now()<until)return this.later=lifetime.later(()=>this.choose(x,y,until),RETRY_MS),null;let found=this.
+host.find(x,y);return found&&this.host.options.onPoint?.(found.point),this.close(),this.chosen=found,this.update(),found?.
+point??null}close(){for(let{card}of this.host.together)card.clear()}clear(){this.host.lifetime.cancel(this.later),this.chosen=
+this.drawn=null,this.element.hidden=!0,this.overlay.replaceChildren()}update(){let{chosen}=this,{options,camera,shown,header,
+tiles,settings,root,together}=this.host;if(!chosen||options.bare||!camera||!shown||!header)return;let{point,layer,place}=chosen,
+scene=tiles?.layers.find(({key})=>String(key)===String(layer.key))?.scene;if(!scene||scene.missing(shown[0],shown[1]).length)
+return;let position=point.position,path=pathThrough({scene,moment:shown,place,position},settings,camera,root.clientHeight);
+this.tell({...point,values:valuesAt(scene,shown,place)},path,header,camera);for(let{card}of together)card.drawn={path,point:position},
+card.draw()}tell(point,{velocity},header,camera){let{label,unit:unit2}=header.speed,size=Math.hypot(...velocity),text=vectorText(
+velocity,size,VELOCITY_DIGITS,liesAcross(header.geometry)),lines=new Map([["position",withUnit(positionText(point.position,
+header,camera),header.lengthUnit)],[label.replace("speed","velocity"),withUnit(text,unit2)],[label,withUnit(numberText(size,
+VELOCITY_DIGITS),unit2)]]);for(let[name,value]of Object.entries(point.values)){let named=header.scalars.choices.find(each=>each.
+name===name)??header.scalars;lines.set(named.label,withUnit(numberText(value),named.unit))}this.list.replaceChildren(...[
+...lines].flatMap(([word,value])=>[dom("dt",{},[word]),dom("dd",{},[value])])),this.element.hidden=!1}draw(){let{drawn}=this,
+{camera,root}=this.host;if(!drawn||!camera)return;let{clientWidth:width,clientHeight:height}=root,placeOf=point2=>{let place=camera.
+project(point2);return place&&[(place[0]+1)/2*width,(1-place[1])/2*height]},linesOf=points=>{let lines=[[]];for(let place of points.
+map(placeOf))place?lines[lines.length-1].push(place):lines.push([]);return lines.filter(line=>line.length>1)},{path,sampled,
+directed}=drawn.path,point=placeOf(drawn.point),shapes=pathShapes({path:linesOf(path),sampled:linesOf(sampled),point,directed});
+this.overlay.replaceChildren(...shapes.map(([tag,attributes])=>{let shape=document.createElementNS(SVG,tag);for(let[name,
+value]of Object.entries(attributes))shape.setAttribute(name,`${value}`);return shape}))}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */
 :host {
   --ink: var(--jp-ui-font-color1, #1b2430);
   --quiet: var(--jp-ui-font-color2, #566373);
@@ -489,7 +494,7 @@ createElementNS(SVG,tag);for(let[name,value]of Object.entries(attributes))shape.
   -webkit-backdrop-filter: blur(12px) saturate(1.3);
 }
 .left {
-  position: absolute; left: 10px; top: 10px; max-width: calc(100% - 20px); max-height: calc(100% - 20px);
+  position: absolute; left: 10px; right: 10px; top: 10px; max-height: calc(100% - 20px);
   display: flex; flex-direction: column; align-items: flex-start; gap: 6px; pointer-events: none;
 }
 .head {
@@ -508,15 +513,17 @@ createElementNS(SVG,tag);for(let[name,value]of Object.entries(attributes))shape.
   position: absolute; right: 10px; top: 10px; min-width: 150px; max-width: 60%; padding: 5px 10px 6px;
   font-size: 11px; pointer-events: none;
 }
-.legend .name { width: 0; min-width: 100%; overflow: hidden; text-overflow: ellipsis; white-space: nowrap; margin-bottom\
-: 3px; }
+.legend .name {
+  width: 0; min-width: 100%; margin-bottom: 3px; overflow: hidden; overflow-wrap: anywhere;
+  display: -webkit-box; -webkit-box-orient: vertical; -webkit-line-clamp: 2;
+}
 .ramp { position: relative; height: 8px; border-radius: 4px; box-shadow: inset 0 0 0 1px var(--edge); }
 .ramp i {
   position: absolute; top: -2px; bottom: -2px; width: 2px; margin-left: -1px; border-radius: 1px;
   background: var(--ink); box-shadow: 0 0 0 1px var(--ground);
 }
 .ends { display: flex; justify-content: space-between; gap: 8px; margin-top: 2px; white-space: nowrap; }
-.left:has(~ .legend:not([hidden])) { max-width: calc(100% - 190px); }
+.left:has(~ .legend:not([hidden])) > * { max-width: calc(100% - 170px); }
 .card { max-width: 100%; min-height: 0; padding: 5px 6px 7px 10px; overflow: auto; pointer-events: auto; }
 .card .first { display: flex; align-items: center; justify-content: space-between; gap: 10px; }
 dl {
@@ -524,12 +531,12 @@ dl {
   font-variant-numeric: tabular-nums;
 }
 dt { color: var(--quiet); }
-dd { margin: 0; text-align: right; }
+dd { margin: 0; text-align: right; white-space: nowrap; }
 .path { position: absolute; inset: 0; width: 100%; height: 100%; pointer-events: none; }
 .path * { fill: none; stroke: #000; stroke-linejoin: round; }
 .path :is(.casing, .sampled) { stroke-linecap: round; }
-.path .whole-casing { stroke-opacity: 0.35; stroke-width: 3.5; }
-.path .whole { stroke: #fff; stroke-width: 1.3; stroke-dasharray: 5 4; }
+.path .whole-casing { stroke-opacity: 0.55; stroke-width: 4; }
+.path .whole { stroke: #fff; stroke-width: 1.6; stroke-dasharray: 5 4; }
 .path .casing { stroke-opacity: 0.75; stroke-width: 6; }
 .path .sampled { stroke: #fff; stroke-width: 2.6; }
 .path .arrow { fill: #fff; stroke-width: 1.5; }
@@ -641,7 +648,9 @@ input[role="switch"]:checked::after { transform: translateX(12px); }
   .title { max-width: 110px; }
   .readout { flex-direction: column; gap: 0; }
   .head { flex-direction: column; gap: 0; }
-  .left:has(~ .legend:not([hidden])) { max-width: calc(100% - 144px); }
+  .left:has(~ .legend:not([hidden])) .head { max-width: calc(100% - 124px); }
+  /* Below the legend there is the whole width. */
+  .left:has(~ .legend:not([hidden])) .card { max-width: 100%; margin-top: 22px; }
 }
 @container (max-width: 220px) { .legend { display: none; } }
 @container (max-width: 330px) { button { width: 27px; height: 27px; } }
