@@ -15,9 +15,11 @@ export interface PathLines {
   directed: boolean;
 }
 
-/** Pixels from one head of an arrow to the next, length and half the width of one, and a radius. */
-const HEAD = { apart: 80, length: 11, half: 5.5 };
+/** Pixels from one head of an arrow to the next, and length and half the width of one. */
+const HEAD = { apart: 90, length: 14, half: 5 };
+/** Radius of the point, and around it that where there are no heads. */
 const POINT_RADIUS = 6;
+const FREE_RADIUS = 20;
 
 const textOf = (line: Line) => line.map((place) => place.map((v) => v.toFixed(1)).join()).join(" ");
 
@@ -45,7 +47,10 @@ export function arrowHeads(line: Line, apart = HEAD.apart): Line[] {
 export function pathShapes({ path, sampled, point, directed }: PathLines): Shape[] {
   const lines = (all: Line[], kind: string) =>
     all.map((line): Shape => ["polyline", { class: kind, points: textOf(line) }]);
-  const heads = directed ? sampled.flatMap((line) => arrowHeads(line)) : [];
+  const isFree = ([[x, y]]: Line) =>
+    !point || Math.hypot(x - point[0], y - point[1]) > FREE_RADIUS;
+  // The part that is summed may be too short for one.
+  const heads = directed ? path.flatMap((line) => arrowHeads(line)).filter(isFree) : [];
   const ring = (kind: string): Shape[] => {
     return point ? [["circle", { class: kind, cx: point[0], cy: point[1], r: POINT_RADIUS }]] : [];
   };

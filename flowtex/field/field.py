@@ -38,7 +38,7 @@ from flowtex.field.validation import (
 __all__ = ["FlowField", "speed_unit"]
 
 #: Share of the flow normal to the surface from which on the speed in it has a name of its own. The
-#: cells of a curved mesh alone give a per cent or two; at five the two speeds differ by a thousandth.
+#: cells of a curved mesh alone give a per cent or two; at five the speeds differ by a thousandth.
 NOTABLE_SHARE = 0.05
 
 

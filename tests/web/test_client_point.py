@@ -44,7 +44,9 @@ DRAWN = "() => { const { path, point } = viewers[0].card.drawn; return { ...path
 
 def card(page: Page) -> dict[str, str]:
     """Words and numbers of the card."""
-    words, numbers = (page.locator(f".card:visible {kind}").all_inner_texts() for kind in ("dt", "dd"))
+    words, numbers = (
+        page.locator(f".card:visible {kind}").all_inner_texts() for kind in ("dt", "dd")
+    )
     return dict(zip(words, numbers, strict=True))
 
 
@@ -101,7 +103,9 @@ def leaving(*, share: float = 0.6) -> FlowField:
 def mount(client: ClientPage, field: FlowField, **options: Any) -> None:
     view = web_views(field, Options.split(samples=9))[0]
     data = view.page_data()
-    client.mount(packed(data, data.header(view.scene.settings)), (600, 300), smooth=False, **options)
+    client.mount(
+        packed(data, data.header(view.scene.settings)), (600, 300), smooth=False, **options
+    )
     client.sharp()
 
 
@@ -117,7 +121,9 @@ def test_a_click_shows_card_and_path(client: ClientPage) -> None:
     assert float(got["warmth"]) == pytest.approx(0, abs=0.2)
     ((_, point),) = page.evaluate("events")
     assert set(point["values"]) == {"speed", "warmth"}
-    shapes = page.locator("svg.path > *").evaluate_all("all => all.map((e) => e.getAttribute('class'))")
+    shapes = page.locator("svg.path > *").evaluate_all(
+        "all => all.map((e) => e.getAttribute('class'))"
+    )
     assert {"whole", "sampled", "casing", "arrow", "point"} <= set(shapes)
     # The head of the arrow is downstream of the point, up and to the right.
     tip = page.locator("svg.path .arrow").first.get_attribute("points") or ""

@@ -104,9 +104,7 @@ class PointText:
         zoom = max(self._viewport.zoom, 1.0)
         return int(min(np.ceil(DIGITS + np.log10(zoom)), MOST_DIGITS))
 
-    def _vector(
-        self, vector: Floats, size: float, digits: int, *, whole: bool = False
-    ) -> str:
+    def _vector(self, vector: Floats, size: float, digits: int, *, whole: bool = False) -> str:
         """Write a vector; what lies in a surface across z has no third component."""
         surface = self._viewport.field.surface
         across = surface.frame is not None and not np.abs(surface.frame[:, 2]).any()

@@ -41,15 +41,16 @@ OWNERS))&&!(key===PLAY_KEY&&target instanceof HTMLButtonElement)){if(key===FULLS
 COMMANDS)emit("command",COMMANDS[key]);else if(key in TOGGLES)emit("toggle",TOGGLES[key]);else return;isClose||event.preventDefault()}}
 var keys={name:"flowtex-keys",emits:["command","toggle","linked"],setup(_,{emit}){let onKeyDown=event=>press(event,emit);
 return vue().onMounted(()=>{window.addEventListener("keydown",onKeyDown),window.location.hash.length>1&&emit("linked",window.
-location.hash)}),vue().onBeforeUnmount(()=>window.removeEventListener("keydown",onKeyDown)),()=>null}};var HEAD={apart:80,length:11,half:5.5},POINT_RADIUS=6,textOf=line=>line.map(place=>place.map(v=>v.toFixed(1)).join()).join(
-" ");function arrowHeads(line,apart=HEAD.apart){let heads=[],due=0;for(let n=line.length-1;n>0;n-=1){let[[ax,ay],[bx,by]]=[
-line[n-1],line[n]],size=Math.hypot(bx-ax,by-ay);if(!size)continue;let[ux,uy]=[(bx-ax)/size,(by-ay)/size];for(;due<size;due+=
-apart){let[x,y]=[bx-due*ux,by-due*uy],[left,low]=[x-HEAD.length*ux,y-HEAD.length*uy],[wide,tall]=[-HEAD.half*uy,HEAD.half*
-ux];heads.push([[x,y],[left+wide,low+tall],[left-wide,low-tall]])}due-=size}return heads}function pathShapes({path:path2,
-sampled,point,directed}){let lines=(all,kind)=>all.map(line=>["polyline",{class:kind,points:textOf(line)}]),heads=directed?
-sampled.flatMap(line=>arrowHeads(line)):[],ring=kind=>point?[["circle",{class:kind,cx:point[0],cy:point[1],r:POINT_RADIUS}]]:
-[];return[...lines(path2,"whole-casing"),...lines(path2,"whole"),...lines(sampled,"casing"),...lines(sampled,"sampled"),
-...heads.map(head=>["polygon",{class:"arrow",points:textOf(head)}]),...ring("point-casing"),...ring("point")]}var INSET={width:232,height:112,margin:9},DOT={least:1.5,most:4.5},POINT_RADIUS2=6;function polyline(line,kind,mapping){
+location.hash)}),vue().onBeforeUnmount(()=>window.removeEventListener("keydown",onKeyDown)),()=>null}};var HEAD={apart:90,length:14,half:5},POINT_RADIUS=6,FREE_RADIUS=20,textOf=line=>line.map(place=>place.map(v=>v.toFixed(1)).
+join()).join(" ");function arrowHeads(line,apart=HEAD.apart){let heads=[],due=0;for(let n=line.length-1;n>0;n-=1){let[[ax,
+ay],[bx,by]]=[line[n-1],line[n]],size=Math.hypot(bx-ax,by-ay);if(!size)continue;let[ux,uy]=[(bx-ax)/size,(by-ay)/size];for(;due<
+size;due+=apart){let[x,y]=[bx-due*ux,by-due*uy],[left,low]=[x-HEAD.length*ux,y-HEAD.length*uy],[wide,tall]=[-HEAD.half*uy,
+HEAD.half*ux];heads.push([[x,y],[left+wide,low+tall],[left-wide,low-tall]])}due-=size}return heads}function pathShapes({
+path:path2,sampled,point,directed}){let lines=(all,kind)=>all.map(line=>["polyline",{class:kind,points:textOf(line)}]),isFree=([
+[x,y]])=>!point||Math.hypot(x-point[0],y-point[1])>FREE_RADIUS,heads=directed?path2.flatMap(line=>arrowHeads(line)).filter(
+isFree):[],ring=kind=>point?[["circle",{class:kind,cx:point[0],cy:point[1],r:POINT_RADIUS}]]:[];return[...lines(path2,"w\
+hole-casing"),...lines(path2,"whole"),...lines(sampled,"casing"),...lines(sampled,"sampled"),...heads.map(head=>["polygo\
+n",{class:"arrow",points:textOf(head)}]),...ring("point-casing"),...ring("point")]}var INSET={width:232,height:112,margin:9},DOT={least:1.5,most:4.5},POINT_RADIUS2=6;function polyline(line,kind,mapping){
 let points=line.map(place=>mapping(place).map(v=>v.toFixed(1)).join(",")).join(" ");return vue().h("polyline",{class:kind,
 points})}function circle([cx,cy],r,attributes){return vue().h("circle",{cx,cy,r,...attributes})}function pane(over,number,width,height){
 let{h}=vue(),mapping=([x,y])=>[(number+(x+1)/2)*width,(1-y)/2*height],lines=all=>all.map(line=>line.map(mapping)),{path:whole,
