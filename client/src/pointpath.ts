@@ -13,6 +13,8 @@ import { add, clamp, cross, dot, fromFrame, length, scale, subtract, unit, type 
 const POINTS_BETWEEN_SLICES = 8;
 /** How many times as long as the part that is summed the path is that is shown. */
 const PATH_LENGTH = 4;
+/** Samples on a side as which fewer count, so that there is something to see. */
+const FEWEST_SAMPLES = 10;
 /** Cosine between the surface and the ray to the eye, at least: that of the shaders. */
 const LEAST_FACING = 0.05;
 /** Slope below which nothing moves. */
@@ -223,10 +225,11 @@ export function pathThrough(at: PathPlace, settings: Settings, camera: Camera, r
   const set = Number(settings.samples);
   const samples = isMoving(scene.header, settings) ? 2 * set - 1 : set;
   const count = sides === 2 ? Math.floor(samples / 2) : samples - 1;
-  const most = count * Number(settings.spacing) * grainAt(at, settings, camera, rows);
+  const step = Number(settings.spacing) * grainAt(at, settings, camera, rows);
   const joined = (reach: number) => {
     const [back = [], ahead = []] = whole.map((side) => upTo(position, side, reach));
     return [...back.reverse(), position, ...ahead];
   };
-  return { path: joined(PATH_LENGTH * most), sampled: joined(most), directed, velocity };
+  const path = joined(PATH_LENGTH * Math.max(count, FEWEST_SAMPLES) * step);
+  return { path, sampled: joined(count * step), directed, velocity };
 }

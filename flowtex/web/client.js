@@ -366,8 +366,8 @@ s.tiles:1,[rows,columns]=noiseShape;return{u_noiseSize:paper.size.map(n=>n*densi
 deviations,u_noiseCorrected:paper.corrected,u_pictureSize:[columns*density*tiles,rows*density*tiles],u_pictureRound:[Number(
 paper.repeat[1]),Number(paper.repeat[0])],u_pictureGrey:noiseShape.length===2,u_tiles:tiles}}function momentOf(times2,time){
 if(times2.length<2)return[0,0,0];let step=0;for(;step<times2.length-2&&times2[step+1]<=time;)step+=1;let late=(time-times2[step])/
-(times2[step+1]-times2[step]);return[step,step+1,clamp(late,0,1)]}var POINTS_BETWEEN_SLICES=8,PATH_LENGTH=4,LEAST_FACING=.05,LEAST_SLOPE=1e-6,SMALL=.001;function texelOf(scene,step){let{
-slices,geometry}=scene.header,data=scene.part(`slices/${step}`).data,extra=scene.parts.get(`extra/${step}`)?.data,count=geometry.
+(times2[step+1]-times2[step]);return[step,step+1,clamp(late,0,1)]}var POINTS_BETWEEN_SLICES=8,PATH_LENGTH=4,FEWEST_SAMPLES=10,LEAST_FACING=.05,LEAST_SLOPE=1e-6,SMALL=.001;function texelOf(scene,step){
+let{slices,geometry}=scene.header,data=scene.part(`slices/${step}`).data,extra=scene.parts.get(`extra/${step}`)?.data,count=geometry.
 rows.size*geometry.columns.size,{channels}=slices;return(layer,texel)=>{let first=(layer*count+texel)*channels,at=n=>n<channels?
 fromHalf(data[first+n]):0,place=slices.extra.indexOf(layer),fourth=channels===4||!extra||place<0?at(3):fromHalf(extra[place*
 count+texel]);return[at(0),at(1),at(2),fourth]}}function layersAt({scene,moment,place:[i,j]}){let{geometry,slices}=scene.
@@ -406,9 +406,10 @@ slope)>LEAST_SLOPE?subtract2(moved(small)??position,position):slope,velocity=sca
 whole=[],sides=settings.two_sided||!directed?slices.sides:1;for(let side=0;side<sides&&length2(slope)>LEAST_SLOPE;side+=
 1){let by=paper?1:base[3]*slices.unit,points=sideOf(layers,slices.lags,side*slices.lags.length,side?1:-1,by).map(moved),
 end=points.findIndex(point=>point===null);whole.push(points.slice(0,end<0?void 0:end))}let set=Number(settings.samples),
-samples=isMoving(scene.header,settings)?2*set-1:set,most=(sides===2?Math.floor(samples/2):samples-1)*Number(settings.spacing)*
-grainAt(at,settings,camera,rows),joined=reach=>{let[back=[],ahead=[]]=whole.map(side=>upTo(position,side,reach));return[
-...back.reverse(),position,...ahead]};return{path:joined(PATH_LENGTH*most),sampled:joined(most),directed,velocity}}var TITLE="Path through this point",SVG="http://www.w3.org/2000/svg",FEWEST_DIGITS=4,MOST_DIGITS=14,VELOCITY_DIGITS=3,PATIENCE_MS=5e3,
+samples=isMoving(scene.header,settings)?2*set-1:set,count=sides===2?Math.floor(samples/2):samples-1,step=Number(settings.
+spacing)*grainAt(at,settings,camera,rows),joined=reach=>{let[back=[],ahead=[]]=whole.map(side=>upTo(position,side,reach));
+return[...back.reverse(),position,...ahead]};return{path:joined(PATH_LENGTH*Math.max(count,FEWEST_SAMPLES)*step),sampled:joined(
+count*step),directed,velocity}}var TITLE="Path through this point",SVG="http://www.w3.org/2000/svg",FEWEST_DIGITS=4,MOST_DIGITS=14,VELOCITY_DIGITS=3,PATIENCE_MS=5e3,
 RETRY_MS=40,UNIT_LENGTH=12;function withUnit(text,unit2){return unit2&&unit2.length<=UNIT_LENGTH?`${text} ${unit2}`:text}
 function vectorText(vector,size,digits,flat){return`(${vector.slice(0,flat?2:3).map(x=>{let value=Math.abs(x)<1e-9*size?
 0:x;return digits>5?String(Number(value.toPrecision(digits))):numberText(value,digits)}).join(", ")})`}var liesAcross=({
@@ -525,7 +526,8 @@ value]of Object.entries(attributes))shape.setAttribute(name,`${value}`);return s
 }
 .ends { display: flex; justify-content: space-between; gap: 8px; margin-top: 2px; white-space: nowrap; }
 .left:has(~ .legend:not([hidden])) > * { max-width: calc(100% - 170px); }
-.card { max-width: 100%; min-height: 0; padding: 5px 6px 7px 10px; overflow: auto; pointer-events: auto; }
+.card { max-width: 100%; min-height: 0; padding: 5px 6px 7px 10px; overflow: hidden; }
+.card button { pointer-events: auto; }
 .card .first { display: flex; align-items: center; justify-content: space-between; gap: 10px; }
 dl {
   display: grid; grid-template-columns: auto auto; gap: 1px 12px; margin: 2px 4px 0 0;

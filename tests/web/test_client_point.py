@@ -173,7 +173,10 @@ def test_the_path_follows_the_camera_and_the_settings(client: ClientPage) -> Non
     page.evaluate("() => { viewers[0].camera.pan(0.2, 0); viewers[0].reportCamera(); }")
     assert float(ring.get_attribute("cx") or 0) == pytest.approx(240, abs=1)
     client.sharp()
-    count = "() => { const p = viewers[0].card.drawn.path.sampled; return p[p.length - 1][0] - p[0][0]; }"
+    count = """() => {
+      const { sampled } = viewers[0].card.drawn.path;
+      return sampled[sampled.length - 1][0] - sampled[0][0];
+    }"""
     before = page.evaluate(count)
     page.evaluate("() => viewers[0].choose('samples', 17)")
     client.sharp()
@@ -193,6 +196,7 @@ def test_both_of_two_views_show_the_path(client: ClientPage) -> None:
     assert client.page.locator(".card:visible").count() == 1
     client.page.keyboard.press("Escape")
     assert client.page.locator("svg.path .point").count() == 0
+    client.page.evaluate("() => viewers[0].together.forEach((viewer) => viewer.dispose())")
 
 
 def test_an_exported_page_shows_card_and_path(webgl_browser: Any, tmp_path: Path) -> None:

@@ -34,6 +34,8 @@ HOVER_INTERVAL_S = 0.06
 DIGITS, MOST_DIGITS = 4, 14
 #: How many times as long as the part with samples the path is that is shown.
 PATH_LENGTH = 4.0
+#: Samples on a side as which fewer count, so that there is something to see.
+FEWEST_SAMPLES = 10
 #: Units longer than this are left out.
 UNIT_LENGTH = 12
 #: How far from the middle of the view a line is drawn, in halves of the view.
@@ -128,12 +130,14 @@ class PathCard:
         """Return what lies over the picture as the camera now stands.
 
         ``path`` and ``sampled`` are stretches of places [x, y] of the whole path and of the part
-        with samples, downstream where it is ``directed``; ``samples`` are dicts of ``x``, ``y``, ``weight`` and ``grey``; ``point`` is
-        [x, y] or ``None``. Places go from -1 to 1, right and up.
+        with samples, downstream where it is ``directed``; ``samples`` are dicts of ``x``, ``y``,
+        ``weight`` and ``grey``; ``point`` is [x, y] or ``None``. Places go from -1 to 1, right
+        and up.
         """
         probe = self.probe
         # Far beyond the samples the slices are too coarse to look at, and no picture needs them.
-        near = np.abs(probe.path_lags) <= PATH_LENGTH * float(np.abs(probe.lags).max())
+        reach = float(np.fmax(np.abs(probe.lags).max(), FEWEST_SAMPLES * abs(probe.step)))
+        near = np.abs(probe.path_lags) <= PATH_LENGTH * reach
         camera, aspect = viewport.camera, viewport.aspect
         path, path_lags = camera.project(probe.path[near], aspect), probe.path_lags[near]
         inside = (path_lags <= probe.lags[0]) & (path_lags >= probe.lags[-1])
