@@ -51,8 +51,11 @@ class Probe:
         Position, velocity and speed at the point, with units.
     parameter
         What a lag measures: ``"arclength"`` or ``"time"``.
+    setting
+        Samples that the setting asks for.
     asked
-        Samples of a path that does not end.
+        Samples of a path that does not end: as many on both sides of the point, and about twice as
+        many where the grains move.
     lags
         Lags of the samples, (K,), decreasing.
     points
@@ -100,6 +103,7 @@ class Probe:
 
     field_values: PointValues
     parameter: str
+    setting: int
     asked: int
     lags: Floats
     points: Floats
@@ -179,7 +183,8 @@ def probe(
     values = uniforms(view.textures, view.settings, state)
     fragments = Fragments.of(view.textures, cover_place(surface, place, camera, size))
     field_values = values_at(view.field, place.index, view.time)
-    return _Pixel(view.textures, (before, after), fragments, values, field_values).probe()
+    setting = view.settings.samples
+    return _Pixel(view.textures, (before, after), fragments, values, field_values, setting).probe()
 
 
 class _Pixel:
@@ -192,9 +197,10 @@ class _Pixel:
         fragments: Fragments,
         values: Mapping[str, Any],
         field_values: PointValues,
+        setting: int,
     ) -> None:
         loaded = LoadedTextures.of(textures)
-        self._field_values = field_values
+        self._field_values, self._setting = field_values, setting
         self._textures, self._values, self._fragments = textures, values, fragments
         self._level = slice_level(fragments.coordinate, values)
         self._slices = slices_at(textures, steps, values, loaded.mips)
@@ -225,6 +231,7 @@ class _Pixel:
         return Probe(
             field_values=self._field_values,
             parameter=self._textures.store.parameter,
+            setting=self._setting,
             asked=2 * (samples // 2) + 1 if values["u_sides"] == 2 else samples,
             lags=lags * self._unit,
             points=points,

@@ -183,6 +183,15 @@ class Scene:
         """Names of what the surface can be coloured by."""
         return tuple(dict.fromkeys((SPEED, *self.field.scalars)))
 
+    def label_of(self, name: str) -> str:
+        """Return the words for a scalar; they are those of what is drawn."""
+        return self.whole.label_of(name)
+
+    def title_of(self, name: str) -> str:
+        """Return the title of a legend: words and unit."""
+        unit, label = self.field.unit_of(name), self.label_of(name)
+        return f"{label} ({unit})" if unit else label
+
     @property
     def scalar_limits(self) -> tuple[float, float]:
         """Values at the ends of the colour map."""

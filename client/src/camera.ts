@@ -127,6 +127,25 @@ export class Camera {
     return [...scale(this.axes[2], -1), 0];
   }
 
+  /** Half the height of the view at the depth of a point, and the unit vector from the eye to it. */
+  at(point: Vector): { height: number; ray: Vector } {
+    const ahead = this.axes[2];
+    if (this.state.parallel) return { height: this.height, ray: ahead };
+    const way = subtract(point, this.state.position);
+    return { height: dot(way, ahead) * tangent(this.state.view_angle), ray: unit(way) };
+  }
+
+  /** Place of a point in the view; null behind the eye. */
+  project(point: Vector): [number, number] | null {
+    const [right, up] = this.axes;
+    const { height } = this.at(point);
+    if (!(height > 0)) return null;
+    // From the focal point, which keeps the digits of a close view.
+    const { parallel, position, focal_point: focus } = this.state;
+    const way = subtract(point, parallel ? focus : position);
+    return [dot(right, way) / height / this.aspect, dot(up, way) / height];
+  }
+
   /** Move what is seen by parts of the view. */
   pan(dx: number, dy: number): void {
     const [right, up] = this.axes;

@@ -58,8 +58,10 @@ export class ColourControls {
     this.element.hidden = !header?.scalars.choices.length || !maps;
     if (!header || !maps || this.element.hidden) return;
     const { choices, name, low, high, auto, cmap } = header.scalars;
-    const names = [...choices.map((each) => each.name), PLAIN];
-    this.scalars.replaceChildren(...names.map((each) => dom("option", { value: each }, [each])));
+    const options = [...choices, { name: PLAIN, label: PLAIN }];
+    this.scalars.replaceChildren(
+      ...options.map((each) => dom("option", { value: each.name }, [each.label])),
+    );
     this.scalars.value = name ?? PLAIN;
     this.mapRow.hidden = this.rangeRow.hidden = name === null;
     [low, high].forEach((value, n) => (this.ends[n].value = String(Number(value.toPrecision(4)))));

@@ -48,8 +48,8 @@ export function recoloured(
   if (choice.scalars === false) scalars.name = null;
   const number = scalars.choices.findIndex(({ name }) => name === choice.scalars);
   if (number >= 0) {
-    const { name, unit, steps } = scalars.choices[number];
-    Object.assign(scalars, { name, unit, steps, number, auto: true });
+    const { name, label, unit, steps } = scalars.choices[number];
+    Object.assign(scalars, { name, label, unit, steps, number, auto: true });
   }
   if (choice.cmap) scalars.cmap = choice.cmap;
   if (choice.clim) [scalars.low, scalars.high] = choice.clim;

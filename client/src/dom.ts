@@ -40,11 +40,11 @@ export function icon(name: IconName): SVGSVGElement {
 }
 
 /** A number as people read it. */
-export function numberText(x: number): string {
+export function numberText(x: number, digits = 4): string {
   if (!Number.isFinite(x)) return "–";
   const size = Math.abs(x);
   if (size !== 0 && (size >= 1e5 || size < 1e-3)) return x.toExponential(2).replace("e+", "e");
-  return String(Number(x.toPrecision(4)));
+  return String(Number(x.toPrecision(digits)));
 }
 
 /** Pictures of views beside each other, as PNG and in full size where nothing else is said. */

@@ -14,7 +14,7 @@ export class Legend {
 
   /** Show a colour map, where colours say anything. */
   show(header: Header, settings: Settings, map: Data | undefined): void {
-    const { name, low, high, unit, bar } = header.scalars;
+    const { name, label, low, high, unit, bar } = header.scalars;
     this.element.hidden = name === null || !bar || !map || Boolean(settings.show_level);
     if (this.element.hidden || !map) return;
     const ramp = dom("div", { class: "ramp" }, [this.mark]);
@@ -22,7 +22,7 @@ export class Legend {
     this.mark.hidden = true;
     const ends = [low, high].map((value) => dom("span", {}, [numberText(value)]));
     this.element.replaceChildren(
-      dom("div", { class: "name" }, [unit ? `${name} (${unit})` : String(name)]),
+      dom("div", { class: "name" }, [unit ? `${label} (${unit})` : label]),
       ramp,
       dom("div", { class: "ends" }, ends),
     );

@@ -10,16 +10,14 @@ import type { Timer } from "./lifetime.ts";
 import type { Options } from "./options.ts";
 import type { Point } from "./picking.ts";
 import type { Player } from "./player.ts";
-import type { Header, Settings } from "./protocol.ts";
+import { positionText, withUnit, type PointCard } from "./pointcard.ts";
+import type { Settings } from "./protocol.ts";
 import STYLE from "./styles.css";
 
 /** Milliseconds for which a hint is shown; until lacking parts are named; in which a picture is saved. */
 const HINT_MS = 1600;
 const LATE_MS = 4000;
 const SAVED_MS = 5000;
-/** Digits of a coordinate, at first and at most: more are shown the closer the view is. */
-const FEWEST_DIGITS = 4;
-const MOST_DIGITS = 14;
 const KEY = /Mac|iP(hone|ad)/.test(navigator.platform) ? "⌘" : "Ctrl";
 const HINT = `Click, or hold ${KEY}, to zoom with the wheel`;
 const TIME_RANGE = { min: "0", max: "1", step: "any", "aria-label": "Time" };
@@ -33,6 +31,7 @@ export interface PanelHost extends ControlsHost, ColoursHost {
   readonly canvas: HTMLCanvasElement;
   readonly camera: Camera | null;
   readonly player: Player;
+  readonly card: PointCard;
   readonly lacking: string[];
   readonly together: readonly { canvas: HTMLCanvasElement }[];
   togglePlaying(): void;
@@ -90,7 +89,8 @@ export class Panel {
     const shadow = root.attachShadow({ mode: "open" });
     shadow.adoptedStyleSheets = [styleSheet];
     const { legend, controls, head, bar, handle, busy, hintBox, note } = this;
-    shadow.append(canvas, head, legend.element, controls.element);
+    const left = dom("div", { class: "left" }, [head, viewer.card.element]);
+    shadow.append(canvas, viewer.card.overlay, left, legend.element, controls.element);
     shadow.append(bar, handle, busy, hintBox, note);
     this.arrange();
   }
@@ -193,25 +193,12 @@ export class Panel {
     this.readout.replaceChildren();
     this.legend.point(null);
     if (!point || !header) return;
-    this.readout.append(dom("span", {}, [this.positionText(point.position, header)]));
-    for (const [name, value] of Object.entries(point.values)) {
-      const text = `${name} ${numberText(value)} ${header.scalars.unit}`;
-      this.readout.append(dom("b", {}, [text.trimEnd()]));
-      this.legend.point(header, value);
-    }
-  }
-
-  private positionText(position: number[], { geometry }: Header): string {
-    const { extent, planar, center, frame } = geometry;
-    const zoom = Math.max(this.viewer.camera?.zoom ?? 1, 1);
-    const digits = Math.min(Math.ceil(FEWEST_DIGITS + Math.log10(zoom)), MOST_DIGITS);
-    const isInPlane =
-      planar && Math.abs(position[2] - center[2]) < 1e-12 * extent && Math.abs(frame[8]) > 0.999;
-    const texts = position.slice(0, isInPlane ? 2 : 3).map((x) => {
-      const value = Math.abs(x) < 1e-9 * extent ? 0 : x;
-      return digits > 5 ? String(Number(value.toPrecision(digits))) : numberText(value);
-    });
-    return `(${texts.join(", ")})`;
+    this.readout.append(dom("span", {}, [positionText(point.position, header, this.viewer.camera)]));
+    const { name, label, unit } = header.scalars;
+    const value = point.values[name ?? ""];
+    if (value === undefined) return;
+    this.readout.append(dom("b", {}, [withUnit(`${label} ${numberText(value)}`, unit)]));
+    this.legend.point(header, value);
   }
 
   /** Fold or unfold the settings. */

@@ -15,6 +15,14 @@ export interface Point {
   values: Record<string, number>;
 }
 
+/** A point, and where it was found. */
+export interface Found {
+  point: Point;
+  layer: Layer;
+  /** Place between the nodes of the layer, (i, j). */
+  place: [number, number];
+}
+
 /** The view in which a point is looked for. */
 export interface PickContext {
   /** What is drawn; the whole, or the root and the tiles of a large surface. */
@@ -26,7 +34,7 @@ export interface PickContext {
 }
 
 /** Point at (x, y), from -1 to 1, right and up; null beside the surface. */
-export function pickedPoint(context: PickContext, x: number, y: number): Point | null {
+export function pickedPoint(context: PickContext, x: number, y: number): Found | null {
   const { layers, camera, moment, anchor, canvas } = context;
   const { graphics, header } = layers[0].scene;
   const program = graphics.programs.get(header.shaders.vertex, header.shaders.pick);
@@ -41,7 +49,8 @@ export function pickedPoint(context: PickContext, x: number, y: number): Point |
   });
   if (!bits[3]) return null;
   const [u, v] = new Float32Array(bits.buffer, 0, 2);
-  const { scene, key } = layers[bits[2]];
+  const layer = layers[bits[2]];
+  const { scene, key } = layer;
   const { rows, columns, shape } = scene.header.geometry;
   const i = clamp(u * columns.size - 0.5 - columns.before, 0, shape[1] - 1);
   const j = clamp(v * rows.size - 0.5 - rows.before, 0, shape[0] - 1);
@@ -52,7 +61,8 @@ export function pickedPoint(context: PickContext, x: number, y: number): Point |
   const place = (n: number, tile: number, axis: number) =>
     fullIndex(n + tile * side, level, full[axis]);
   const index: [number, number] = [place(i, column, 1), place(j, row, 0)];
-  return { position, index, values: valuesAt(scene, moment, i, j) };
+  const point = { position, index, values: valuesAt(scene, moment, [i, j]) };
+  return { point, layer, place: [i, j] };
 }
 
 /** Single precision finds the depth; the place itself is on the ray through the pointer. */
@@ -67,12 +77,23 @@ function positionAt(scene: Scene, camera: Camera, [i, j]: number[], x: number, y
   return add(start, along, depth);
 }
 
-function valuesAt(scene: Scene, moment: Moment, i: number, j: number) {
+/** Values of the scalars that are here, that of the colours first. */
+export function valuesAt(
+  scene: Scene,
+  moment: Moment,
+  [i, j]: [number, number],
+): Record<string, number> {
   const { header, parts } = scene;
-  const { name } = header.scalars;
+  const { scalars, geometry } = header;
   const [from, to, between] = moment;
-  const [before, after] = scene.scalarParts(from, to).map((part) => parts.get(part)?.data);
-  if (name === null || !before || !after) return {};
-  const value = (n: number) => before[n] + between * (after[n] - before[n]);
-  return { [name]: interpolated(header.geometry.shape, i, j, value) };
+  const values: Record<string, number> = {};
+  const others = scalars.choices.map(({ name, steps }, number) => ({ name, steps, number }));
+  for (const each of [scalars, ...others]) {
+    const names = scene.scalarParts(from, to, each);
+    const [before, after] = names.map((part) => parts.get(part)?.data);
+    if (each.name === null || each.name in values || !before || !after) continue;
+    const value = (n: number) => before[n] + between * (after[n] - before[n]);
+    values[each.name] = interpolated(geometry.shape, i, j, value);
+  }
+  return values;
 }

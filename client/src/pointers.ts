@@ -75,7 +75,10 @@ export class Pointers {
     listen("pointerleave", () => viewer.panel.read(null));
     listen("contextmenu", (event) => event.preventDefault());
     listen("wheel", (event: WheelEvent) => this.onWheel(event));
-    listen("dblclick", (event: MouseEvent) => this.zoom(2, event));
+    listen("dblclick", (event: MouseEvent) => {
+      viewer.card.close();
+      this.zoom(2, event);
+    });
     lifetime.listen(root, "keydown", (event: KeyboardEvent) => this.onKey(event));
   }
 
@@ -164,9 +167,7 @@ export class Pointers {
     this.hold(true);
     const isQuick = event.timeStamp - this.press.time < CLICK_MS;
     if (!place || this.press.isDrag || !isQuick || event.button !== 0) return;
-    const point = this.viewer.point(place.x, place.y);
-    if (point) this.viewer.options.onPoint?.(point);
-    this.viewer.panel.read(point);
+    this.viewer.panel.read(this.viewer.card.choose(place.x, place.y));
   }
 
   private onWheel(event: WheelEvent): void {
@@ -234,6 +235,7 @@ export class Pointers {
     else if (key === "h") (options.follows?.panel ?? panel).toggle();
     else if (key === CLOSE_KEY) {
       panel.fold();
+      viewer.card.close();
       this.hold(false);
     } else return false;
     return true;

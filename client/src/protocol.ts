@@ -132,8 +132,12 @@ export interface Header {
     times: number[];
     timeUnit: string;
   };
+  lengthUnit: string;
+  /** Words and unit of the speed in the surface, and a typical one. */
+  speed: { label: string; unit: string; typical: number };
   scalars: {
     name: string | null;
+    label: string;
     low: number;
     high: number;
     steps: number;
@@ -141,7 +145,7 @@ export interface Header {
     bar: boolean;
     /** Number of the scalar among those of the field, and what can be chosen in its place. */
     number: number;
-    choices: { name: string; unit: string; low: number; high: number; steps: number }[];
+    choices: { name: string; label: string; unit: string; low: number; high: number; steps: number }[];
     /** Whether the map goes by the logarithm, and whether nobody has chosen its range. */
     log: boolean;
     auto: boolean;

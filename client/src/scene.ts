@@ -20,6 +20,8 @@ const USERS: Record<string, string[]> = {
   scalars: ["scalar"],
 };
 
+type Scalar = Pick<Header["scalars"], "name" | "steps" | "number">;
+
 interface TextureSize {
   width: number;
   height: number;
@@ -60,9 +62,9 @@ export class Scene {
     return [...new Set(names)].filter((name) => !this.fits(name));
   }
 
-  /** Names of the parts with the nodal values of a moment. */
-  scalarParts(before: number, after: number): string[] {
-    const { name, steps, number } = this.header.scalars;
+  /** Names of the parts with the nodal values of a moment, of what colours say or of another scalar. */
+  scalarParts(before: number, after: number, of: Scalar = this.header.scalars): string[] {
+    const { name, steps, number } = of;
     if (name === null) return [];
     const end = number ? `/${number}` : "";
     return (steps > 1 ? [before, after] : [0, 0]).map((step) => `scalars/${step}${end}`);

@@ -10,8 +10,9 @@ import { FRAME_MS, sharedGraphics, type Graphics, type User } from "./context.ts
 import { Lifetime } from "./lifetime.ts";
 import type { Options } from "./options.ts";
 import { Panel } from "./panel.ts";
-import { pickedPoint, type Point } from "./picking.ts";
+import { pickedPoint, type Found, type Point } from "./picking.ts";
 import { Player } from "./player.ts";
+import { PointCard } from "./pointcard.ts";
 import { Pointers } from "./pointers.ts";
 import { ProgressiveRenderer } from "./progressive.ts";
 import {
@@ -47,6 +48,7 @@ export class Viewer implements User {
   readonly player = new Player();
   readonly root = document.createElement("div");
   readonly canvas = document.createElement("canvas");
+  readonly card: PointCard = new PointCard(this);
   readonly panel: Panel;
   readonly pointers: Pointers;
   readonly parts = new Map<string, Part>();
@@ -355,6 +357,7 @@ export class Viewer implements User {
   /** Draw another picture when its turn comes. */
   change(cameraOnly = false): void {
     this.renderer.restart(cameraOnly);
+    this.card.draw();
     this.setSharp(false);
     this.request();
   }
@@ -382,7 +385,9 @@ export class Viewer implements User {
     if (sharp === this.sharp) return;
     this.sharp = sharp;
     this.root.dataset.sharp = String(sharp);
-    if (sharp) this.options.onFrame?.();
+    if (!sharp) return;
+    this.card.update();
+    this.options.onFrame?.();
   }
 
   private request(): void {
@@ -548,6 +553,11 @@ export class Viewer implements User {
 
   /** Point of the surface at (x, y), from -1 to 1, right and up. */
   point(x: number, y: number): Point | null {
+    return this.find(x, y)?.point ?? null;
+  }
+
+  /** The same, and where in what is drawn. */
+  find(x: number, y: number): Found | null {
     const { tiles, camera, shown, canvas } = this;
     if (!tiles?.layers.length || !camera || !shown || !this.canPick) return null;
     const { anchor } = this.view(shown, 1);

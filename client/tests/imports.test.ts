@@ -8,7 +8,7 @@ import { test } from "node:test";
 const FOLDER = new URL("../src/", import.meta.url);
 /** Layers, the lowest first. */
 const LAYERS = [
-  "vectors half dom keyboard lifetime reuse modules.d app/vue",
+  "vectors half dom keyboard lifetime pathlines reuse modules.d app/vue",
   "camera",
   "protocol",
   "uniforms quality",
@@ -16,8 +16,8 @@ const LAYERS = [
   "context tilequeue",
   "scene",
   "tiles",
-  "picking progressive options",
-  "controls colourcontrols panel pointers",
+  "picking pointpath progressive options",
+  "controls colourcontrols pointcard panel pointers",
   "viewer",
   "views",
   "widget",

@@ -39,7 +39,7 @@ test("values between nodes are those of the triangles", () => {
 });
 
 test("numbers are short", () => {
-  const texts = [0, 1.23456, 123456, 1e-4, -2, NaN].map(numberText);
+  const texts = [0, 1.23456, 123456, 1e-4, -2, NaN].map((x) => numberText(x));
   assert.deepEqual(texts, ["0", "1.235", "1.23e5", "1.00e-4", "-2", "–"]);
 });
 

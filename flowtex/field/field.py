@@ -37,6 +37,10 @@ from flowtex.field.validation import (
 
 __all__ = ["FlowField", "speed_unit"]
 
+#: Share of the flow normal to the surface from which on the speed in it has a name of its own. The
+#: cells of a curved mesh alone give a per cent or two; at five the speeds differ by a thousandth.
+NOTABLE_SHARE = 0.05
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class FlowField:
@@ -359,6 +363,21 @@ class FlowField:
     def normal_share(self) -> float:
         """Share of the flow that is normal to the surface and cannot be drawn on it, 0 to 1."""
         return self.index_velocity.normal_share
+
+    @property
+    def leaves_surface(self) -> bool:
+        """Whether so much of the flow is normal to the surface that the speed is told apart."""
+        return self.normal_share > NOTABLE_SHARE
+
+    @property
+    def speed_label(self) -> str:
+        """Words for :attr:`speed`; the array of a file may have the short one."""
+        apart = self.leaves_surface or "speed" in self.scalars
+        return "speed in the surface" if apart else "speed"
+
+    def label_of(self, name: str) -> str:
+        """Return the words for a scalar, or for the speed, in a legend."""
+        return self.speed_label if name == "speed" and name not in self.scalars else name
 
     def unit_of(self, name: str) -> str:
         """Return the unit of a scalar, or of the speed; empty when it is not known."""

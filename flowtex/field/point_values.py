@@ -23,7 +23,7 @@ class PointValues:
 
     ``index`` is (j, i) in cells, ``position`` (3,) in the mesh's units, ``velocity`` (3,) in the
     mesh's units per unit of time, and ``speed`` its length along the surface, which is what colours
-    show.
+    show, and ``speed_label`` words for it.
     """
 
     index: tuple[float, float]
@@ -34,6 +34,7 @@ class PointValues:
     time: float
     length_unit: str = ""
     time_unit: str = ""
+    speed_label: str = "speed"
 
     @property
     def speed_unit(self) -> str:
@@ -88,4 +89,5 @@ def values_at(field: FlowField, index: ArrayLike, time: float | None = None) -> 
         time=at,
         length_unit=field.length_unit,
         time_unit=field.time_unit,
+        speed_label=field.speed_label,
     )

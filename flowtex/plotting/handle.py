@@ -255,8 +255,7 @@ class FlowHandle(AppearanceAttributes):
         self._remove_bar(plotter)
         if name is None or not self.scene.appearance.has_bar:
             return
-        unit = self.field.unit_of(name)
-        title = f"{name} ({unit})" if unit else name
+        title = self.scene.title_of(name)
         bar = {"title": title, **SCALAR_BAR, **self._bar_options}
         renderers = plotter.renderers
         active = renderers.active_index

@@ -82,12 +82,12 @@ attributes))element.setAttribute(name,value);return element.append(...children),
 M20 9V4h-5M4 15v5h5M20 15v5h-5",hide:"M6 9.5l6 6 6-6",show:"M6 14.5l6-6 6 6"};function icon(name){let space="http://www.\
 w3.org/2000/svg",svg=document.createElementNS(space,"svg");svg.setAttribute("viewBox","0 0 24 24"),svg.setAttribute("ari\
 a-hidden","true");let path=document.createElementNS(space,"path");return path.setAttribute("d",ICONS[name]),name==="play"&&
-path.setAttribute("class","solid"),svg.append(path),svg}function numberText(x){if(!Number.isFinite(x))return"–";let size=Math.
-abs(x);return size!==0&&(size>=1e5||size<.001)?x.toExponential(2).replace("e+","e"):String(Number(x.toPrecision(4)))}function pictureOf(views,size=1,format={}){
-let widths=views.map(({canvas})=>Math.max(Math.round(size*canvas.width),1)),height=Math.max(Math.round(size*views[0].canvas.
-height),1),all=new OffscreenCanvas(widths.reduce((sum,width)=>sum+width,0),height),pen=all.getContext("2d",{alpha:!1}),left=0;
-for(let[n,{canvas}]of views.entries())pen?.drawImage(canvas,left,0,widths[n],height),left+=widths[n];return all.convertToBlob(
-format)}var TileQueue=class{load;give;most;running=new Map;wanted=[];constructor(load,give,most=1){this.load=load,this.give=give,
+path.setAttribute("class","solid"),svg.append(path),svg}function numberText(x,digits=4){if(!Number.isFinite(x))return"–";
+let size=Math.abs(x);return size!==0&&(size>=1e5||size<.001)?x.toExponential(2).replace("e+","e"):String(Number(x.toPrecision(
+digits)))}function pictureOf(views,size=1,format={}){let widths=views.map(({canvas})=>Math.max(Math.round(size*canvas.width),
+1)),height=Math.max(Math.round(size*views[0].canvas.height),1),all=new OffscreenCanvas(widths.reduce((sum,width)=>sum+width,
+0),height),pen=all.getContext("2d",{alpha:!1}),left=0;for(let[n,{canvas}]of views.entries())pen?.drawImage(canvas,left,0,
+widths[n],height),left+=widths[n];return all.convertToBlob(format)}var TileQueue=class{load;give;most;running=new Map;wanted=[];constructor(load,give,most=1){this.load=load,this.give=give,
 this.most=most}request(keys,steps){this.wanted=keys.map(key=>[key,steps]);let names=new Set(keys.map(key=>`${nameOf(key)}\
  ${steps}`));for(let[name,controller]of this.running)names.has(name)||controller.abort();this.next()}next(){for(;this.wanted.
 length&&this.running.size<this.most;){let[key,steps]=this.wanted[0];this.wanted.shift();let name=`${nameOf(key)} ${steps}`;
@@ -99,24 +99,24 @@ let share=to.name===from.name?(to.high-to.low)/(from.high-from.low||1):1;return{
 Math.min(share,1)}}function mapOf(header,maps,name){let[first,count]=[header.scalars.maps.indexOf(name)*3*256,256],table=new Uint8Array(
 4*count).fill(255);for(let n=0;n<count;n+=1)for(let k=0;k<3;k+=1)table[4*n+k]=maps[first+3*n+k];return table}function recoloured(header,choice,parts){
 let scalars={...header.scalars};choice.scalars===!1&&(scalars.name=null);let number=scalars.choices.findIndex(({name})=>name===
-choice.scalars);if(number>=0){let{name,unit:unit2,steps}=scalars.choices[number];Object.assign(scalars,{name,unit:unit2,
-steps,number,auto:!0})}if(choice.cmap&&(scalars.cmap=choice.cmap),choice.clim&&([scalars.low,scalars.high]=choice.clim),
-choice.clim!==void 0&&(scalars.auto=!choice.clim),scalars.auto&&scalars.choices[scalars.number]){let{low,high}=scalars.choices[scalars.
-number],widest=low<0&&high>0&&scalars.diverging.includes(scalars.cmap),end=Math.max(-low,high);[scalars.low,scalars.high]=
-widest?[-end,end]:[low,high]}let mesh=narrowed(header.mesh,header.scalars,scalars),maps=parts.get("maps");if(!choice.cmap||
-!maps)return{colours:{scalars,mesh},part:null};let part={name:"cmap",data:mapOf(header,maps.data,choice.cmap),shape:[256,
-4],digest:`${OWN} ${choice.cmap}`};return{colours:{scalars,mesh},part}}var toLinear=c=>c<SRGB.knee?c/SRGB.slope:((c+SRGB.
-offset)/SRGB.scale)**SRGB.power;function fromLinear(x){let c=clamp(x,0,1);return c<SRGB.knee/SRGB.slope?c*SRGB.slope:SRGB.
-scale*c**(1/SRGB.power)-SRGB.offset}var times=(v2,m)=>[0,1,2].map(k=>v2[0]*m[k]+v2[1]*m[3+k]+v2[2]*m[6+k]);function meanColour(colour,settings,shading){
-let{values}=shading,[[dark,light],[range,slope]]=[shading.base,shading.tone],[strength,contrast]=[Number(settings.strength),
-Number(settings.contrast)],cones=times(colour.map(c=>toLinear(c/255)),shading.toCones).map(Math.cbrt),[lightness,a,b]=times(
-cones,shading.toLab),base=lightness+strength*(dark+(light-dark)*lightness-lightness),mean=[0,0,0];return values.forEach(
-value=>{let tone=2/(1+Math.exp(-slope*contrast*value))-1,shown=clamp(base+range*strength*tone,0,1),room=shown<base?shown/
-base:(1-shown)/Math.max(1-base,1e-6),roots=times([shown,a*room,b*room],shading.fromLab);times(roots.map(x=>x**3),shading.
-fromCones).forEach((x,k)=>mean[k]+=255*fromLinear(x)/values.length)}),mean}function rampOf(map,header,settings,stops){return`\
-linear-gradient(90deg, ${Array.from({length:stops},(_,n)=>{let first=4*Math.round(n/(stops-1)*255),colour=[...map.slice(
-first,first+3)];return`rgb(${(header.paper?.picture??!1?colour:meanColour(colour,settings,header.constants.shading)).map(
-Math.round).join(" ")})`}).join(", ")})`}var tangent=degrees=>Math.tan(degrees*Math.PI/360),Camera=class{flat;limits;aspect;state;start;pick=null;homeHeight;nearest;constructor(state,limits,flat,aspect=1){
+choice.scalars);if(number>=0){let{name,label,unit:unit2,steps}=scalars.choices[number];Object.assign(scalars,{name,label,
+unit:unit2,steps,number,auto:!0})}if(choice.cmap&&(scalars.cmap=choice.cmap),choice.clim&&([scalars.low,scalars.high]=choice.
+clim),choice.clim!==void 0&&(scalars.auto=!choice.clim),scalars.auto&&scalars.choices[scalars.number]){let{low,high}=scalars.
+choices[scalars.number],widest=low<0&&high>0&&scalars.diverging.includes(scalars.cmap),end=Math.max(-low,high);[scalars.
+low,scalars.high]=widest?[-end,end]:[low,high]}let mesh=narrowed(header.mesh,header.scalars,scalars),maps=parts.get("map\
+s");if(!choice.cmap||!maps)return{colours:{scalars,mesh},part:null};let part={name:"cmap",data:mapOf(header,maps.data,choice.
+cmap),shape:[256,4],digest:`${OWN} ${choice.cmap}`};return{colours:{scalars,mesh},part}}var toLinear=c=>c<SRGB.knee?c/SRGB.
+slope:((c+SRGB.offset)/SRGB.scale)**SRGB.power;function fromLinear(x){let c=clamp(x,0,1);return c<SRGB.knee/SRGB.slope?c*
+SRGB.slope:SRGB.scale*c**(1/SRGB.power)-SRGB.offset}var times=(v2,m)=>[0,1,2].map(k=>v2[0]*m[k]+v2[1]*m[3+k]+v2[2]*m[6+k]);
+function meanColour(colour,settings,shading){let{values}=shading,[[dark,light],[range,slope]]=[shading.base,shading.tone],
+[strength,contrast]=[Number(settings.strength),Number(settings.contrast)],cones=times(colour.map(c=>toLinear(c/255)),shading.
+toCones).map(Math.cbrt),[lightness,a,b]=times(cones,shading.toLab),base=lightness+strength*(dark+(light-dark)*lightness-
+lightness),mean=[0,0,0];return values.forEach(value=>{let tone=2/(1+Math.exp(-slope*contrast*value))-1,shown=clamp(base+
+range*strength*tone,0,1),room=shown<base?shown/base:(1-shown)/Math.max(1-base,1e-6),roots=times([shown,a*room,b*room],shading.
+fromLab);times(roots.map(x=>x**3),shading.fromCones).forEach((x,k)=>mean[k]+=255*fromLinear(x)/values.length)}),mean}function rampOf(map,header,settings,stops){
+return`linear-gradient(90deg, ${Array.from({length:stops},(_,n)=>{let first=4*Math.round(n/(stops-1)*255),colour=[...map.
+slice(first,first+3)];return`rgb(${(header.paper?.picture??!1?colour:meanColour(colour,settings,header.constants.shading)).
+map(Math.round).join(" ")})`}).join(", ")})`}var tangent=degrees=>Math.tan(degrees*Math.PI/360),Camera=class{flat;limits;aspect;state;start;pick=null;homeHeight;nearest;constructor(state,limits,flat,aspect=1){
 this.state=copyOf(state),this.start=copyOf(state),this.limits=limits,this.flat=flat,this.aspect=aspect,this.homeHeight=this.
 height,this.nearest=this.distance/limits.closest}get height(){let{parallel,parallel_scale:half,view_angle:angle}=this.state;
 return parallel?half:this.distance*tangent(angle)}get distance(){return length2(subtract2(this.state.focal_point,this.state.
@@ -127,15 +127,19 @@ angle),pixels}}get planes(){let[right,up,ahead]=this.axes,{parallel,parallel_sca
 focal_point:focus}=this.state,tall=parallel?half:tangent(angle);return[right,scale2(right,-1),up,scale2(up,-1)].map((side,n)=>{
 let size=n<2?tall*this.aspect:tall;if(parallel)return[...side,size-dot2(side,focus)];let normal=add(side,ahead,size);return[
 ...normal,-dot2(normal,position)]})}get eye(){return this.state.parallel?[...scale2(this.axes[2],-1),0]:[...this.state.position,
-1]}pan(dx,dy){let[right,up]=this.axes,{height}=this;this.shift(add(scale2(right,dx*this.aspect*height),up,dy*height))}rotate(dx,dy){
-let{state,limits}=this,up=unit(state.up),back=subtract2(state.position,state.focal_point);back=rotated(back,up,-limits.turn*
-dx*Math.min(this.aspect,limits.widest_turn));let right=unit(cross2(up,back));back=rotated(back,right,limits.turn*dy),state.
-position=add(state.focal_point,back),state.up=unit(cross2(back,right))}zoomBy(factor,x=0,y=0){if(!Number.isFinite(factor)||
-factor<=0)return;this.flat||this.focusAt(x,y);let{farthest_zoom:farthest,deepest_zoom:deepest}=this.limits,by=clamp(factor,
-farthest/this.zoom,deepest/this.zoom),[right,up,ahead]=this.axes,height=this.height*(1-1/by);this.shift(add(scale2(right,
-x*this.aspect*height),up,y*height)),this.state.parallel?this.state.parallel_scale/=by:this.approach(this.height/by,ahead)}ray(x,y){
-let[right,up,ahead]=this.axes,{height,state}=this,there=add(add(state.focal_point,right,x*this.aspect*height),up,y*height);
-return state.parallel?[add(there,ahead,-this.distance),ahead]:[add(state.position,[0,0,0]),unit(subtract2(there,state.position))]}approach(height,ahead){
+1]}at(point){let ahead=this.axes[2];if(this.state.parallel)return{height:this.height,ray:ahead};let way=subtract2(point,
+this.state.position);return{height:dot2(way,ahead)*tangent(this.state.view_angle),ray:unit(way)}}project(point){let[right,
+up]=this.axes,{height}=this.at(point);if(!(height>0))return null;let{parallel,position,focal_point:focus}=this.state,way=subtract2(
+point,parallel?focus:position);return[dot2(right,way)/height/this.aspect,dot2(up,way)/height]}pan(dx,dy){let[right,up]=this.
+axes,{height}=this;this.shift(add(scale2(right,dx*this.aspect*height),up,dy*height))}rotate(dx,dy){let{state,limits}=this,
+up=unit(state.up),back=subtract2(state.position,state.focal_point);back=rotated(back,up,-limits.turn*dx*Math.min(this.aspect,
+limits.widest_turn));let right=unit(cross2(up,back));back=rotated(back,right,limits.turn*dy),state.position=add(state.focal_point,
+back),state.up=unit(cross2(back,right))}zoomBy(factor,x=0,y=0){if(!Number.isFinite(factor)||factor<=0)return;this.flat||
+this.focusAt(x,y);let{farthest_zoom:farthest,deepest_zoom:deepest}=this.limits,by=clamp(factor,farthest/this.zoom,deepest/
+this.zoom),[right,up,ahead]=this.axes,height=this.height*(1-1/by);this.shift(add(scale2(right,x*this.aspect*height),up,y*
+height)),this.state.parallel?this.state.parallel_scale/=by:this.approach(this.height/by,ahead)}ray(x,y){let[right,up,ahead]=this.
+axes,{height,state}=this,there=add(add(state.focal_point,right,x*this.aspect*height),up,y*height);return state.parallel?
+[add(there,ahead,-this.distance),ahead]:[add(state.position,[0,0,0]),unit(subtract2(there,state.position))]}approach(height,ahead){
 let distance=Math.max(height/tangent(this.limits.view_angle),this.nearest);this.state.position=add(this.state.focal_point,
 ahead,-distance),this.state.view_angle=Math.atan(height/distance)*360/Math.PI}focusAt(x,y){let point=this.pick?.(x,y);if(!point)
 return;let ahead=this.axes[2],depth=dot2(subtract2(point,this.state.position),ahead);depth>0&&(this.state.focal_point=add(
@@ -251,14 +255,14 @@ row"},[dom("span",{class:"name"},[name]),...fields]);this.rangeRow=row("Range",d
 this.mapRow=row("Colour map",swatches),this.mapRow.classList.add("ranged"),this.element.append(row("Colour by",scalars),
 this.mapRow,this.rangeRow)}update(){let{header,parts}=this.viewer,maps=parts.get("maps");if(this.element.hidden=!header?.
 scalars.choices.length||!maps,!header||!maps||this.element.hidden)return;let{choices,name,low,high,auto,cmap}=header.scalars,
-names=[...choices.map(each=>each.name),PLAIN];this.scalars.replaceChildren(...names.map(each=>dom("option",{value:each},
-[each]))),this.scalars.value=name??PLAIN,this.mapRow.hidden=this.rangeRow.hidden=name===null,[low,high].forEach((value,n)=>this.
-ends[n].value=String(Number(value.toPrecision(4)))),this.auto.setAttribute("aria-pressed",String(auto));let{settings}=this.
-viewer;this.swatches.replaceChildren(...header.scalars.maps.map(each=>{let pressed=String(each===cmap),swatch=dom("butto\
-n",{...{type:"button",title:each,"aria-label":each,"data-cmap":each},"aria-pressed":pressed});return swatch.style.background=
-rampOf(mapOf(header,maps.data,each),header,settings,STOPS),swatch}))}takeRange(){let[low,high]=this.ends.map(end=>end.valueAsNumber);
-this.rangeRow.title="",low<high?this.viewer.chooseColours({clim:[low,high]}):this.rangeRow.title=`${numberText(low)} is \
-not below ${numberText(high)}`;for(let end of this.ends)end.setCustomValidity(this.rangeRow.title)}};var SLIDER_STOPS=400;function hasStreaming({slices,paper,variant}){return slices.steps===1&&!paper&&!isSignFree({variant})}
+options=[...choices,{name:PLAIN,label:PLAIN}];this.scalars.replaceChildren(...options.map(each=>dom("option",{value:each.
+name},[each.label]))),this.scalars.value=name??PLAIN,this.mapRow.hidden=this.rangeRow.hidden=name===null,[low,high].forEach(
+(value,n)=>this.ends[n].value=String(Number(value.toPrecision(4)))),this.auto.setAttribute("aria-pressed",String(auto));
+let{settings}=this.viewer;this.swatches.replaceChildren(...header.scalars.maps.map(each=>{let pressed=String(each===cmap),
+swatch=dom("button",{...{type:"button",title:each,"aria-label":each,"data-cmap":each},"aria-pressed":pressed});return swatch.
+style.background=rampOf(mapOf(header,maps.data,each),header,settings,STOPS),swatch}))}takeRange(){let[low,high]=this.ends.
+map(end=>end.valueAsNumber);this.rangeRow.title="",low<high?this.viewer.chooseColours({clim:[low,high]}):this.rangeRow.title=
+`${numberText(low)} is not below ${numberText(high)}`;for(let end of this.ends)end.setCustomValidity(this.rangeRow.title)}};var SLIDER_STOPS=400;function hasStreaming({slices,paper,variant}){return slices.steps===1&&!paper&&!isSignFree({variant})}
 var USES={motion:hasStreaming,speed:hasStreaming,speed_in:hasStreaming,period:hasStreaming,grain:({paper})=>!paper,fixed_grain:({
 paper})=>!paper,two_sided:({slices})=>slices.sides===2,seed:({paper},rebuild)=>!paper||rebuild&&!paper.picture,resolution:({
 paper},rebuild)=>!paper||rebuild,tiles:({paper,settings},rebuild)=>!!paper?.picture&&(settings.noise==="image"||rebuild),
@@ -290,12 +294,153 @@ toSlider),step=whole&&!logarithmic?1:(max-min)/SLIDER_STOPS;return{toSlider,from
 r",_:"farther",0:"whole"},PLAY_KEY=" ",FULLSCREEN_KEY="f",CLOSE_KEY="Escape",DIRECTIONS={left:[-1,0],right:[1,0],up:[0,1],
 down:[0,-1]};function hasModifier(event){return event.ctrlKey||event.metaKey||event.altKey}function toggleFullscreen(element){
 document.fullscreenElement?document.exitFullscreen():element.requestFullscreen?.().catch(()=>{})}var STOPS2=33,Legend=class{element=dom("div",{class:"legend glass",hidden:""});mark=dom("i",{hidden:""});show(header,settings,map){
-let{name,low,high,unit:unit2,bar}=header.scalars;if(this.element.hidden=name===null||!bar||!map||!!settings.show_level,this.
-element.hidden||!map)return;let ramp=dom("div",{class:"ramp"},[this.mark]);ramp.style.background=rampOf(map,header,settings,
-STOPS2),this.mark.hidden=!0;let ends=[low,high].map(value=>dom("span",{},[numberText(value)]));this.element.replaceChildren(
-dom("div",{class:"name"},[unit2?`${name} (${unit2})`:String(name)]),ramp,dom("div",{class:"ends"},ends))}point(header,value=NaN){
+let{name,label,low,high,unit:unit2,bar}=header.scalars;if(this.element.hidden=name===null||!bar||!map||!!settings.show_level,
+this.element.hidden||!map)return;let ramp=dom("div",{class:"ramp"},[this.mark]);ramp.style.background=rampOf(map,header,
+settings,STOPS2),this.mark.hidden=!0;let ends=[low,high].map(value=>dom("span",{},[numberText(value)]));this.element.replaceChildren(
+dom("div",{class:"name"},[unit2?`${label} (${unit2})`:label]),ramp,dom("div",{class:"ends"},ends))}point(header,value=NaN){
 this.mark.hidden=!header||!Number.isFinite(value),!(!header||this.mark.hidden)&&(this.mark.style.left=`${100*clamp(shareOf(
-header.scalars)(value),0,1)}%`)}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */
+header.scalars)(value),0,1)}%`)}};var HEAD={apart:90,length:14,half:5},POINT_RADIUS=6,FREE_RADIUS=20,textOf=line=>line.map(place=>place.map(v2=>v2.toFixed(
+1)).join()).join(" ");function arrowHeads(line,apart=HEAD.apart){let heads=[],due=0;for(let n=line.length-1;n>0;n-=1){let[
+[ax,ay],[bx,by]]=[line[n-1],line[n]],size=Math.hypot(bx-ax,by-ay);if(!size)continue;let[ux,uy]=[(bx-ax)/size,(by-ay)/size];
+for(;due<size;due+=apart){let[x,y]=[bx-due*ux,by-due*uy],[left,low]=[x-HEAD.length*ux,y-HEAD.length*uy],[wide,tall]=[-HEAD.
+half*uy,HEAD.half*ux];heads.push([[x,y],[left+wide,low+tall],[left-wide,low-tall]])}due-=size}return heads}function pathShapes({
+path,sampled,point,directed}){let lines=(all,kind)=>all.map(line=>["polyline",{class:kind,points:textOf(line)}]),isFree=([
+[x,y]])=>!point||Math.hypot(x-point[0],y-point[1])>FREE_RADIUS,heads=directed?path.flatMap(line=>arrowHeads(line)).filter(
+isFree):[],ring=kind=>point?[["circle",{class:kind,cx:point[0],cy:point[1],r:POINT_RADIUS}]]:[];return[...lines(path,"wh\
+ole-casing"),...lines(path,"whole"),...lines(sampled,"casing"),...lines(sampled,"sampled"),...heads.map(head=>["polygon",
+{class:"arrow",points:textOf(head)}]),...ring("point-casing"),...ring("point")]}var NO_VALUE=-1e9;function positions(data,anchor){return anchor.some(Boolean)?data.map((x,n)=>x-anchor[n%3]):data}function grid(us,vs){
+let result2=new Float32Array(2*us.length*vs.length),n=0;for(let v2 of vs)for(let u of us)result2[n++]=u,result2[n++]=v2;
+return result2}function coordinates({shape,rows,columns}){let middles=(count,{before,size})=>Array.from({length:count},(_,n)=>(n+
+before+.5)/size);return grid(middles(shape[1],columns),middles(shape[0],rows))}function noiseCoordinates({alongI,alongJ}){
+return grid(alongI,alongJ)}function shares(steps,scalars,nodes){let result2=new Float32Array(2*nodes),place=shareOf(scalars);
+return steps.forEach((values,k)=>{for(let n=0;n<nodes;n+=1){let share=place(values[n]);result2[2*n+k]=Number.isFinite(share)?
+share:NO_VALUE}}),result2}function interpolated([rows,columns],i,j,value){let[left,low]=[Math.min(Math.floor(i),columns-
+2),Math.min(Math.floor(j),rows-2)],[a,b]=[i-left,j-low],corner=low*columns+left,[from,to]=[value(corner),value(corner+columns+
+1)],aside=value(corner+(a>=b?1:columns));return from+Math.max(a,b)*(aside-from)+Math.min(a,b)*(to-aside)}function pickedPoint(context,x,y){let{layers,camera,moment,anchor,canvas}=context,{graphics,header}=layers[0].scene,program=graphics.
+programs.get(header.shaders.vertex,header.shaders.pick),whole=projection(header.geometry,camera,anchor),matrix=atPixel(whole,
+[x,y],[canvas.width,canvas.height]),[before,after,between2]=moment,bits=graphics.pixel(()=>{layers.forEach(({scene:scene2},n)=>{
+graphics.programs.use(program,{u_matrix:matrix,u_between:between2,u_part:n}),scene2.draw(before,after,anchor,!1)})});if(!bits[3])
+return null;let[u,v2]=new Float32Array(bits.buffer,0,2),layer=layers[bits[2]],{scene,key}=layer,{rows,columns,shape}=scene.
+header.geometry,i=clamp(u*columns.size-.5-columns.before,0,shape[1]-1),j=clamp(v2*rows.size-.5-rows.before,0,shape[0]-1),
+position=positionAt(scene,camera,[i,j],x,y),full=header.pyramid?.shapes[0]??shape,side=header.mesh.tileCells*(header.pyramid?.
+tileBlocks??0),[level,row,column]=key,place=(n,tile,axis)=>fullIndex(n+tile*side,level,full[axis]),index=[place(i,column,
+1),place(j,row,0)];return{point:{position,index,values:valuesAt(scene,moment,[i,j])},layer,place:[i,j]}}function positionAt(scene,camera,[
+i,j],x,y){let{data}=scene.part("position"),{shape,frame,center}=scene.header.geometry,local=[0,1,2].map(k=>interpolated(
+shape,i,j,n=>data[3*n+k])),about=add(fromFrame(frame,local),center),[start,along]=camera.ray(x,y),ahead=camera.axes[2],depth=dot2(
+subtract2(about,start),ahead)/dot2(along,ahead);return add(start,along,depth)}function valuesAt(scene,moment,[i,j]){let{
+header,parts}=scene,{scalars,geometry}=header,[from,to,between2]=moment,values={},others=scalars.choices.map(({name,steps},number)=>({
+name,steps,number}));for(let each of[scalars,...others]){let names=scene.scalarParts(from,to,each),[before,after]=names.
+map(part=>parts.get(part)?.data);if(each.name===null||each.name in values||!before||!after)continue;let value=n=>before[n]+
+between2*(after[n]-before[n]);values[each.name]=interpolated(geometry.shape,i,j,value)}return values}function fromHalf(bits){let exponent=bits>>10&31,part=bits&1023,size;return exponent===0?size=part*2**-24:exponent===31?
+size=part?NaN:1/0:size=(1024+part)*2**(exponent-25),bits&32768?-size:size}function toHalf(x){let sign=x<0?32768:0,size=Math.
+abs(x);if(!(size<65520))return sign|(size>=65520?31744:32256);let exponent=Math.max(Math.floor(Math.log2(size||1e-30)),-14),
+part=Math.round(size/2**(exponent-10));return sign|(part<1024?part:(exponent+14)*1024+part)}function halved(texels,width,height,channels){
+let[w,h]=[Math.max(width>>1,1),Math.max(height>>1,1)],result2=new Uint16Array(w*h*channels),between2=(n,few,many)=>{let x=(n+
+.5)*(many/few)-.5,base=Math.floor(x);return[base,Math.min(base+1,many-1),x-base]};for(let j=0,n=0;j<h;j+=1){let[low,high,
+v2]=between2(j,h,height);for(let i=0;i<w;i+=1){let[left,right,u]=between2(i,w,width);for(let c=0;c<channels;c+=1){let at=(y,x)=>fromHalf(
+texels[(y*width+x)*channels+c]),below=at(low,left)*(1-u)+at(low,right)*u,above=at(high,left)*(1-u)+at(high,right)*u;result2[n++]=
+toHalf(below*(1-v2)+above*v2)}}}return[result2,w,h]}function uniforms(header,settings,view,noiseShape=null){let{geometry,slices,constants}=header,s=settings,signFree=isSignFree(
+header),finest=2**(Math.floor(Math.log2(geometry.extent))-constants.noiseDoublings),w=view.eye[3],eye=toFrame(geometry.frame,
+subtract2(view.eye,scale2(geometry.center,w))),kernel=signFree&&s.kernel==="ramp"?"hann":s.kernel;return{u_eye:[...subtract2(
+eye,scale2(view.anchor,w)),w],u_between:view.between,u_slicesSize:[geometry.columns.size,geometry.rows.size],u_deepest:geometry.
+levels,u_lags:slices.lags,u_lagCount:slices.lags.length,u_sides:s.two_sided||signFree?slices.sides:1,u_unit:slices.unit,
+u_rateLayer:slices.count-1,u_cell:slices.cell,u_samples:isMoving(header,settings)?2*s.samples-1:s.samples,u_spacing:s.spacing,
+u_grain:s.grain*view.density,u_kernel:constants.kernels.indexOf(kernel),u_lod:s.lod,u_contrast:s.contrast,u_strength:s.strength,
+u_seed:s.seed,u_showLevel:s.show_level,u_fixed:s.fixed_grain,...motionUniforms(header,s,view),...noiseOrigin(header,view,
+finest),u_noiseFinest:finest,u_texel:geometry.extent/s.resolution,...header.paper&&noiseShape?paperUniforms(header.paper,
+s,noiseShape,view.density):{}}}function isMoving(header,settings){let streams=settings.motion!=="off"&&!isSignFree(header);
+return!header.paper&&(header.slices.steps>1||streams)}function isNear(header,settings,view){let{geometry,slices,constants}=header,
+s=settings,gap=Math.hypot(...subtract2(view.eye,geometry.center))-.5*geometry.extent,away=view.eye[3]?Math.max(gap,0)/Math.
+hypot(...subtract2(view.eye,view.focus)):1,grain=s.lod?view.pixel*away*s.grain*view.density:geometry.extent/s.resolution;
+return Math.floor(s.samples/2)*s.spacing*grain<constants.farCells*slices.critical}function motionUniforms(header,s,view){
+let{geometry,slices,constants}=header,varies=slices.steps>1,inPixels=!varies&&s.speed_in==="pixels",turns=varies?(view.time-
+slices.times[0])/(geometry.extent/slices.pace):(view.clock/s.period%1+1)%1,travel=varies?geometry.extent:s.speed*s.period,
+coarse=Math.floor(turns/constants.clockStep)*constants.clockStep;return{u_clock:[coarse,turns-coarse],u_travel:travel*(inPixels?
+view.density:1),u_travelInPixels:inPixels,u_travelBySpeed:varies||s.motion==="speed",u_wave:constants.wavePixels*view.density}}
+function noiseOrigin(header,view,finest){let{noiseDoublings,clearDoublings}=header.constants,{frame,center}=header.geometry,
+focus=toFrame(frame,subtract2(view.focus,center)),limit=2**(noiseDoublings-clearDoublings)-1,cells=2**clearDoublings,even=focus.
+map(x=>clamp(Math.round(x/finest/cells),-limit,limit)*cells),odd=even.map(x=>x/Math.SQRT2),whole=odd.map(x=>Math.floor(x/
+cells)*cells);return{u_noiseOrigin:even.map((x,k)=>x*finest-view.anchor[k]),u_noiseOriginEven:even,u_noiseOriginOdd:whole,
+u_noiseRestOdd:odd.map((x,k)=>x-whole[k])}}function paperUniforms(paper,s,noiseShape,density){let tiles=s.noise==="image"?
+s.tiles:1,[rows,columns]=noiseShape;return{u_noiseSize:paper.size.map(n=>n*density),u_noiseGrain:paper.grain,u_noiseDeviation:paper.
+deviations,u_noiseCorrected:paper.corrected,u_pictureSize:[columns*density*tiles,rows*density*tiles],u_pictureRound:[Number(
+paper.repeat[1]),Number(paper.repeat[0])],u_pictureGrey:noiseShape.length===2,u_tiles:tiles}}function momentOf(times2,time){
+if(times2.length<2)return[0,0,0];let step=0;for(;step<times2.length-2&&times2[step+1]<=time;)step+=1;let late=(time-times2[step])/
+(times2[step+1]-times2[step]);return[step,step+1,clamp(late,0,1)]}var POINTS_BETWEEN_SLICES=8,PATH_LENGTH=4,FEWEST_SAMPLES=10,LEAST_FACING=.05,LEAST_SLOPE=1e-6,SMALL=.001;function texelOf(scene,step){
+let{slices,geometry}=scene.header,data=scene.part(`slices/${step}`).data,extra=scene.parts.get(`extra/${step}`)?.data,count=geometry.
+rows.size*geometry.columns.size,{channels}=slices;return(layer,texel)=>{let first=(layer*count+texel)*channels,at=n=>n<channels?
+fromHalf(data[first+n]):0,place=slices.extra.indexOf(layer),fourth=channels===4||!extra||place<0?at(3):fromHalf(extra[place*
+count+texel]);return[at(0),at(1),at(2),fourth]}}function layersAt({scene,moment,place:[i,j]}){let{geometry,slices}=scene.
+header,{rows,columns}=geometry,[x,y]=[i+columns.before,j+rows.before],[left,low]=[Math.floor(x),Math.floor(y)],[s,t]=[x-
+left,y-low],texels=[0,1,2,3].map(n=>{let column=clamp(left+(n&1),0,columns.size-1);return clamp(low+(n>>1),0,rows.size-1)*
+columns.size+column}),weights=[(1-s)*(1-t),s*(1-t),(1-s)*t,s*t],[before,after,late]=moment,steps=[before,after].map(step=>texelOf(
+scene,step)),shares2=[1-late,late],signs=isSignFree(scene.header)?signsOf(texels.map(n=>steps[0](0,n))):[1,1,1,1];return layer=>{
+let sum=[0,0,0,0];return texels.forEach((texel,n)=>{let other=layer+(layer>slices.lags.length?-1:1)*slices.lags.length,from=signs[n]<
+0&&layer>0?other:layer;steps.forEach((step,k)=>{shares2[k]&&step(from,texel).forEach((value,c)=>{sum[c]+=weights[n]*shares2[k]*
+value*(c<3?signs[n]:1)})})}),sum}}function signsOf(tangents){let together=[0,0,0];return tangents.map(([x,y,z])=>{let sign=dot2(
+together,[x,y,z])<0?-1:1;return together=add(together,[x,y,z],sign),sign})}function sideOf(layers,lags,first,sign,by){let[
+before,from]=[layers(0).slice(0,3),0],reach=layers(first+1)[3],end=Math.min(reach,lags[lags.length-1]),result2=[];for(let m=0;m<
+lags.length&&from<end;m+=1){let after=layers(first+m+1).slice(0,3);for(let n=1;n<=POINTS_BETWEEN_SLICES;n+=1){let share=n/
+POINTS_BETWEEN_SLICES,lag=Math.min(from+share*(lags[m]-from),end),late=(lag-from)/(lags[m]-from),slope=before.map((x,c)=>x+
+late*(after[c]-x));if(result2.push(scale2(slope,sign*lag*by)),lag===end)break}[before,from]=[after,lags[m]]}return result2}
+function mover({scene,place,position}){let{paper,geometry}=scene.header;if(!paper)return moved=>add(position,fromFrame(geometry.
+frame,moved));let{alongI,alongJ}=paper,nodes=scene.part("position").data,here=[between(alongI,place[0]),between(alongJ,place[1])],
+start=nodeAt(geometry,nodes,place);return([u,v2])=>{let at=[indexOf(alongI,here[0]+u),indexOf(alongJ,here[1]+v2)];return at.
+some(Number.isNaN)?null:add(position,subtract2(nodeAt(geometry,nodes,at),start))}}function nodeAt({shape,frame},nodes,[i,
+j]){let local=[0,1,2].map(c=>interpolated(shape,i,j,n=>nodes[3*n+c]));return fromFrame(frame,local)}function between(values,at){
+let n=Math.min(Math.floor(at),values.length-2);return values[n]+(at-n)*(values[n+1]-values[n])}function indexOf(values,value){
+let n=values.findIndex(other=>other>=value);return n<0||value<values[0]?NaN:n===0?0:n-1+(value-values[n-1])/(values[n]-values[n-
+1])}function grainAt({scene,place,position},settings,camera,rows){let{geometry,paper}=scene.header,nodes=scene.part("pos\
+ition").data,[i,j]=place.map((n,axis)=>clamp(n,.5,geometry.shape[1-axis]-1.5)),at=(di,dj)=>nodeAt(geometry,nodes,[i+di,j+
+dj]),normal=cross2(subtract2(at(.5,0),at(-.5,0)),subtract2(at(0,.5),at(0,-.5))),{height,ray}=camera.at(position),facing=Math.
+max(Math.abs(dot2(unit(normal),ray)),LEAST_FACING),pixel=2*height/rows;if(paper){let[across,up]=[paper.alongI,paper.alongJ].
+map((along,axis)=>{let n=Math.floor([i,j][axis]);return(along[n+1]-along[n])*paper.size[axis]}),texel2=Math.sqrt(length2(
+normal)/(across*up));return paper.grain*(settings.lod?Math.max(pixel/Math.sqrt(facing),texel2):texel2)}let texel=geometry.
+extent/Number(settings.resolution),grain=pixel/facing*Number(settings.grain);return settings.lod?settings.fixed_grain?Math.
+max(grain,texel):grain:texel}function upTo(start,side,most){let result2=[],[from,left]=[start,most];for(let point of side){
+let step=length2(subtract2(point,from));if(step>=left){left>0&&result2.push(add(from,subtract2(point,from),left/(step||1)));
+break}result2.push(point),left-=step,from=point}return result2}function pathThrough(at,settings,camera,rows){let{scene,position}=at,
+{slices,paper,speed}=scene.header,layers=layersAt(at),directed=!isSignFree(scene.header),base=layers(0),slope=[base[0],base[1],
+base[2]],moved=mover(at),small=scale2(slope,SMALL*(paper?1/paper.size[0]:slices.cell)/(length2(slope)||1)),along=length2(
+slope)>LEAST_SLOPE?subtract2(moved(small)??position,position):slope,velocity=scale2(unit(along),layers(2)[3]*speed.typical),
+whole=[],sides=settings.two_sided||!directed?slices.sides:1;for(let side=0;side<sides&&length2(slope)>LEAST_SLOPE;side+=
+1){let by=paper?1:base[3]*slices.unit,points=sideOf(layers,slices.lags,side*slices.lags.length,side?1:-1,by).map(moved),
+end=points.findIndex(point=>point===null);whole.push(points.slice(0,end<0?void 0:end))}let set=Number(settings.samples),
+samples=isMoving(scene.header,settings)?2*set-1:set,count=sides===2?Math.floor(samples/2):samples-1,step=Number(settings.
+spacing)*grainAt(at,settings,camera,rows),joined=reach=>{let[back=[],ahead=[]]=whole.map(side=>upTo(position,side,reach));
+return[...back.reverse(),position,...ahead]};return{path:joined(PATH_LENGTH*Math.max(count,FEWEST_SAMPLES)*step),sampled:joined(
+count*step),directed,velocity}}var TITLE="Path through this point",SVG="http://www.w3.org/2000/svg",FEWEST_DIGITS=4,MOST_DIGITS=14,VELOCITY_DIGITS=3,PATIENCE_MS=5e3,
+RETRY_MS=40,UNIT_LENGTH=12;function withUnit(text,unit2){return unit2&&unit2.length<=UNIT_LENGTH?`${text} ${unit2}`:text}
+function vectorText(vector,size,digits,flat){return`(${vector.slice(0,flat?2:3).map(x=>{let value=Math.abs(x)<1e-9*size?
+0:x;return digits>5?String(Number(value.toPrecision(digits))):numberText(value,digits)}).join(", ")})`}var liesAcross=({
+planar,frame})=>planar&&Math.abs(frame[8])>.999;function positionText(position,header,camera){let{geometry}=header,zoom=Math.
+max(camera?.zoom??1,1),digits=Math.min(Math.ceil(FEWEST_DIGITS+Math.log10(zoom)),MOST_DIGITS),isInPlane=liesAcross(geometry)&&
+Math.abs(position[2]-geometry.center[2])<1e-12*geometry.extent;return vectorText(position,geometry.extent,digits,isInPlane)}
+var PointCard=class{element=dom("div",{class:"card glass",role:"region",hidden:""});overlay=document.createElementNS(SVG,
+"svg");host;list=dom("dl");chosen=null;later=null;drawn=null;constructor(host){this.host=host,this.element.setAttribute(
+"aria-label",TITLE),this.overlay.setAttribute("class","path");let button=dom("button",{type:"button",class:"link"},["Clo\
+se"]);button.addEventListener("click",()=>this.close()),this.element.append(dom("div",{class:"first"},[dom("span",{},[TITLE]),
+button]),this.list)}choose(x,y,until=performance.now()+PATIENCE_MS){let{lifetime,canPick}=this.host;if(lifetime.cancel(this.
+later),!canPick&&performance.now()<until)return this.later=lifetime.later(()=>this.choose(x,y,until),RETRY_MS),null;let found=this.
+host.find(x,y);return found&&this.host.options.onPoint?.(found.point),this.close(),this.chosen=found,this.update(),found?.
+point??null}close(){for(let{card}of this.host.together)card.clear()}clear(){this.host.lifetime.cancel(this.later),this.chosen=
+this.drawn=null,this.element.hidden=!0,this.overlay.replaceChildren()}update(){let{chosen}=this,{options,camera,shown,header,
+tiles,settings,root,together}=this.host;if(!chosen||options.bare||!camera||!shown||!header)return;let{point,layer,place}=chosen,
+scene=tiles?.layers.find(({key})=>String(key)===String(layer.key))?.scene;if(!scene||scene.missing(shown[0],shown[1]).length)
+return;let position=point.position,path=pathThrough({scene,moment:shown,place,position},settings,camera,root.clientHeight);
+this.tell({...point,values:valuesAt(scene,shown,place)},path,header,camera);for(let{card}of together)card.drawn={path,point:position},
+card.draw()}tell(point,{velocity},header,camera){let{label,unit:unit2}=header.speed,size=Math.hypot(...velocity),text=vectorText(
+velocity,size,VELOCITY_DIGITS,liesAcross(header.geometry)),lines=new Map([["position",withUnit(positionText(point.position,
+header,camera),header.lengthUnit)],[label.replace("speed","velocity"),withUnit(text,unit2)],[label,withUnit(numberText(size,
+VELOCITY_DIGITS),unit2)]]);for(let[name,value]of Object.entries(point.values)){let named=header.scalars.choices.find(each=>each.
+name===name)??header.scalars;lines.set(named.label,withUnit(numberText(value),named.unit))}this.list.replaceChildren(...[
+...lines].flatMap(([word,value])=>[dom("dt",{},[word]),dom("dd",{},[value])])),this.element.hidden=!1}draw(){let{drawn}=this,
+{camera,root}=this.host;if(!drawn||!camera)return;let{clientWidth:width,clientHeight:height}=root,placeOf=point2=>{let place=camera.
+project(point2);return place&&[(place[0]+1)/2*width,(1-place[1])/2*height]},linesOf=points=>{let lines=[[]];for(let place of points.
+map(placeOf))place?lines[lines.length-1].push(place):lines.push([]);return lines.filter(line=>line.length>1)},{path,sampled,
+directed}=drawn.path,point=placeOf(drawn.point),shapes=pathShapes({path:linesOf(path),sampled:linesOf(sampled),point,directed});
+this.overlay.replaceChildren(...shapes.map(([tag,attributes])=>{let shape=document.createElementNS(SVG,tag);for(let[name,
+value]of Object.entries(attributes))shape.setAttribute(name,`${value}`);return shape}))}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */
 :host {
   --ink: var(--jp-ui-font-color1, #1b2430);
   --quiet: var(--jp-ui-font-color2, #566373);
@@ -350,8 +495,12 @@ header.scalars)(value),0,1)}%`)}};var styles_default=`/* What is seen around the
   backdrop-filter: blur(12px) saturate(1.3);
   -webkit-backdrop-filter: blur(12px) saturate(1.3);
 }
+.left {
+  position: absolute; left: 10px; right: 10px; top: 10px; max-height: calc(100% - 20px);
+  display: flex; flex-direction: column; align-items: flex-start; gap: 6px; pointer-events: none;
+}
 .head {
-  position: absolute; left: 10px; top: 10px; max-width: calc(100% - 20px);
+  max-width: 100%; flex: none;
   padding: 5px 10px; display: flex; gap: 10px; align-items: baseline;
   pointer-events: none; white-space: nowrap; overflow: hidden;
 }
@@ -366,15 +515,36 @@ header.scalars)(value),0,1)}%`)}};var styles_default=`/* What is seen around the
   position: absolute; right: 10px; top: 10px; min-width: 150px; max-width: 60%; padding: 5px 10px 6px;
   font-size: 11px; pointer-events: none;
 }
-.legend .name { width: 0; min-width: 100%; overflow: hidden; text-overflow: ellipsis; white-space: nowrap; margin-bottom\
-: 3px; }
+.legend .name {
+  width: 0; min-width: 100%; margin-bottom: 3px; overflow: hidden; overflow-wrap: anywhere;
+  display: -webkit-box; -webkit-box-orient: vertical; -webkit-line-clamp: 2;
+}
 .ramp { position: relative; height: 8px; border-radius: 4px; box-shadow: inset 0 0 0 1px var(--edge); }
 .ramp i {
   position: absolute; top: -2px; bottom: -2px; width: 2px; margin-left: -1px; border-radius: 1px;
   background: var(--ink); box-shadow: 0 0 0 1px var(--ground);
 }
 .ends { display: flex; justify-content: space-between; gap: 8px; margin-top: 2px; white-space: nowrap; }
-.head:has(~ .legend:not([hidden])) { max-width: calc(100% - 190px); }
+.left:has(~ .legend:not([hidden])) > * { max-width: calc(100% - 170px); }
+.card { max-width: 100%; min-height: 0; padding: 5px 6px 7px 10px; overflow: hidden; }
+.card button { pointer-events: auto; }
+.card .first { display: flex; align-items: center; justify-content: space-between; gap: 10px; }
+dl {
+  display: grid; grid-template-columns: auto auto; gap: 1px 12px; margin: 2px 4px 0 0;
+  font-variant-numeric: tabular-nums;
+}
+dt { color: var(--quiet); }
+dd { margin: 0; text-align: right; white-space: nowrap; }
+.path { position: absolute; inset: 0; width: 100%; height: 100%; pointer-events: none; }
+.path * { fill: none; stroke: #000; stroke-linejoin: round; }
+.path :is(.casing, .sampled) { stroke-linecap: round; }
+.path .whole-casing { stroke-opacity: 0.55; stroke-width: 4; }
+.path .whole { stroke: #fff; stroke-width: 1.6; stroke-dasharray: 5 4; }
+.path .casing { stroke-opacity: 0.75; stroke-width: 6; }
+.path .sampled { stroke: #fff; stroke-width: 2.6; }
+.path .arrow { fill: #fff; stroke-width: 1.5; }
+.path .point-casing { stroke-width: 5; }
+.path .point { stroke: #fff; stroke-width: 2.4; }
 .bar {
   position: absolute; left: 10px; right: 10px; bottom: 10px; width: fit-content; margin: 0 auto;
   max-width: calc(100% - 20px);
@@ -481,14 +651,16 @@ input[role="switch"]:checked::after { transform: translateX(12px); }
   .title { max-width: 110px; }
   .readout { flex-direction: column; gap: 0; }
   .head { flex-direction: column; gap: 0; }
-  .head:has(~ .legend:not([hidden])) { max-width: calc(100% - 144px); }
+  .left:has(~ .legend:not([hidden])) .head { max-width: calc(100% - 124px); }
+  /* Below the legend there is the whole width. */
+  .left:has(~ .legend:not([hidden])) .card { max-width: 100%; margin-top: 22px; }
 }
 @container (max-width: 220px) { .legend { display: none; } }
 @container (max-width: 330px) { button { width: 27px; height: 27px; } }
-:host(.flowtex-bare) :is(.head, .legend, .settings, .bar, .handle) { display: none; }
-`;var HINT_MS=1600,LATE_MS=4e3,SAVED_MS=5e3,FEWEST_DIGITS=4,MOST_DIGITS=14,KEY=/Mac|iP(hone|ad)/.test(navigator.platform)?
-"⌘":"Ctrl",HINT=`Click, or hold ${KEY}, to zoom with the wheel`,TIME_RANGE={min:"0",max:"1",step:"any","aria-label":"T\
-ime"},FORBIDDEN=/[\\/:*?"<>|]+/g,styleSheet=new CSSStyleSheet;styleSheet.replaceSync(styles_default);var Panel=class{viewer;legend=new Legend;controls;colours;isShown;isOpen=!1;legendLook="";title=dom(
+:host(.flowtex-bare) :is(.left, .path, .legend, .settings, .bar, .handle) { display: none; }
+`;var HINT_MS=1600,LATE_MS=4e3,SAVED_MS=5e3,KEY=/Mac|iP(hone|ad)/.test(navigator.platform)?"⌘":"Ctrl",HINT=`Click, or ho\
+ld ${KEY}, to zoom with the wheel`,TIME_RANGE={min:"0",max:"1",step:"any","aria-label":"Time"},FORBIDDEN=/[\\/:*?"<>|]+/g,
+styleSheet=new CSSStyleSheet;styleSheet.replaceSync(styles_default);var Panel=class{viewer;legend=new Legend;controls;colours;isShown;isOpen=!1;legendLook="";title=dom(
 "div",{class:"title"});readout=dom("div",{class:"readout",role:"status"});head=dom("div",{class:"head glass",hidden:""},
 [this.title,this.readout]);note=dom("div",{class:"note",hidden:"",role:"alert"});busy=dom("div",{class:"busy",hidden:""},
 ["waiting for data …"]);hintBox=dom("div",{class:"hint glass",hidden:""},[HINT]);bar;handle;playButton;toggles;gear;slider=dom(
@@ -501,102 +673,50 @@ value)));let toggle=name=>()=>viewer.choose(name,!viewer.settings[name]);this.to
 etail",toggle("lod")),show_level:this.button("levels","Show the levels of detail",toggle("show_level"))},this.gear=this.
 button("settings","Settings",()=>this.fold(!this.isOpen)),this.bar=this.makeBar(),canvas.className="picture",root.classList.
 toggle("flowtex-bare",options.bare??!1);let shadow=root.attachShadow({mode:"open"});shadow.adoptedStyleSheets=[styleSheet];
-let{legend,controls,head,bar,handle,busy,hintBox,note}=this;shadow.append(canvas,head,legend.element,controls.element),shadow.
-append(bar,handle,busy,hintBox,note),this.arrange()}button(name,title,press){let button=dom("button",{type:"button",title,
-"aria-label":title,"data-name":name},[icon(name)]);return this.viewer.lifetime.listen(button,"click",press),button}makeBar(){
-let{viewer}=this;return dom("div",{class:"bar glass",role:"toolbar","aria-label":"Controls"},[this.playButton,this.track,
-this.button("home","Show everything (0)",()=>viewer.reset()),this.toggles.lod,this.toggles.show_level,this.gear,this.button(
-"save","Save the picture",()=>{this.save()}),this.button("full","Fill the screen (f)",()=>this.fullscreen()),this.button(
-"hide","Hide the bar (h)",()=>this.toggle())])}build(){let{header}=this.viewer;header&&(this.note.hidden=!0,this.controls.
-build(header),this.controls.element.prepend(this.colours.element),this.showLegend(),this.update(),this.arrange())}update(){
-let{header,settings}=this.viewer,{playing,varies}=this.viewer.player;this.name(),this.controls.update(),this.legendLook!==
-this.lookOf(settings)&&this.showLegend();for(let[name,button]of Object.entries(this.toggles))button.setAttribute("aria-p\
-ressed",String(!!settings[name]));let title=playing?"Pause (space)":"Play (space)";this.playButton.replaceChildren(icon(
-playing?"pause":"play")),this.playButton.title=title,this.playButton.setAttribute("aria-label",title);let streams=header!==
-null&&hasStreaming(header);this.playButton.hidden=this.track.hidden=!varies&&!streams,this.slider.disabled=!varies&&settings.
-motion==="off";let unit2=header?.slices.timeUnit??"";this.timeText.style.minWidth=`${varies?8+unit2.length:7}ch`,this.tick()}name(){
-let{header,settings,root}=this.viewer,title=(header?.differs??[]).filter(name=>name in settings).map(name=>{let label=header?.
-table.find(row=>row.name===name)?.label??name,value=settings[name];return`${label}: ${typeof value=="boolean"?value?"on":
-"off":value}`}).join(", ")||header?.name||"";this.title.textContent=title,this.title.hidden=!title,root.setAttribute("ar\
-ia-label",title?`Flow texture: ${title}`:"Flow texture")}tick(){let{header,player,settings}=this.viewer;if(!header||this.
-track.hidden)return;let{first,last,now}=player.range(settings);this.slider.value=String((now-first)/(last-first||1));let unit2=header.
-slices.timeUnit,text=player.varies?`${numberText(now)} ${unit2}`:`${now.toFixed(1)} s`;this.timeText.textContent!==text&&
-(this.timeText.textContent=text)}lookOf({show_level,strength,contrast}){return`${show_level} ${strength} ${contrast}`}showLegend(){
-let{header,settings,parts}=this.viewer;this.legendLook=this.lookOf(settings),this.colours.update(),header&&this.legend.show(
-header,settings,parts.get("cmap")?.data)}read(point){let{header}=this.viewer;if(this.readout.replaceChildren(),this.legend.
-point(null),!(!point||!header)){this.readout.append(dom("span",{},[this.positionText(point.position,header)]));for(let[name,
-value]of Object.entries(point.values)){let text=`${name} ${numberText(value)} ${header.scalars.unit}`;this.readout.append(
-dom("b",{},[text.trimEnd()])),this.legend.point(header,value)}}}positionText(position,{geometry}){let{extent,planar,center,
-frame}=geometry,zoom=Math.max(this.viewer.camera?.zoom??1,1),digits=Math.min(Math.ceil(FEWEST_DIGITS+Math.log10(zoom)),MOST_DIGITS),
-isInPlane=planar&&Math.abs(position[2]-center[2])<1e-12*extent&&Math.abs(frame[8])>.999;return`(${position.slice(0,isInPlane?
-2:3).map(x=>{let value=Math.abs(x)<1e-9*extent?0:x;return digits>5?String(Number(value.toPrecision(digits))):numberText(
-value)}).join(", ")})`}fold(open=!1){this.isOpen=open,this.arrange()}toggle(shown=!this.isShown){shown!==this.isShown&&(this.
-isShown=shown,this.arrange(),this.viewer.options.onControls?.(shown))}arrange(){let{header,options,root}=this.viewer,isReady=header!==
-null,follows=!!options.follows;this.bar.hidden=!this.isShown||!isReady,this.handle.hidden=this.isShown||!isReady||follows,
-this.head.hidden=!(this.isShown||follows)||!isReady,this.controls.element.hidden=!this.isShown||!this.isOpen||!isReady,root.
-classList.toggle("flowtex-open",!this.controls.element.hidden),this.gear.setAttribute("aria-pressed",String(this.isOpen))}wait(missing){
-this.busy.hidden=!missing.length;let{viewer}=this;!missing.length||viewer.options.onNeed||this.lateTimer||(this.lateTimer=
-viewer.lifetime.later(()=>{this.lateTimer=null;let names=viewer.lacking.join(", ");names&&this.fail("The scene is not co\
-mplete.",`Missing: ${names}`)},LATE_MS))}hint(shown){let{lifetime}=this.viewer;lifetime.cancel(this.hintTimer),this.hintTimer=
-shown?lifetime.later(()=>this.hint(!1),HINT_MS):null,this.hintBox.hidden=!shown}clear(){this.note.hidden=!0,delete this.
-viewer.root.dataset.failed}fail(problem,detail){this.note.replaceChildren(dom("strong",{},[problem]),dom("pre",{},[detail])),
-this.note.hidden=!1,this.busy.hidden=!0,this.viewer.root.dataset.failed="true"}fullscreen(){let{root}=this.viewer;toggleFullscreen(
-root.closest(".flowtex-pair")??root)}async save(){let{viewer}=this,href=URL.createObjectURL(await pictureOf(viewer.together)),
-name=(viewer.header?.name||"flow").replace(FORBIDDEN," ").trim();dom("a",{href,download:`${name}.png`}).click(),viewer.lifetime.
-later(()=>URL.revokeObjectURL(href),SAVED_MS)}};var NO_VALUE=-1e9;function positions(data,anchor){return anchor.some(Boolean)?data.map((x,n)=>x-anchor[n%3]):data}function grid(us,vs){
-let result2=new Float32Array(2*us.length*vs.length),n=0;for(let v2 of vs)for(let u of us)result2[n++]=u,result2[n++]=v2;
-return result2}function coordinates({shape,rows,columns}){let middles=(count,{before,size})=>Array.from({length:count},(_,n)=>(n+
-before+.5)/size);return grid(middles(shape[1],columns),middles(shape[0],rows))}function noiseCoordinates({alongI,alongJ}){
-return grid(alongI,alongJ)}function shares(steps,scalars,nodes){let result2=new Float32Array(2*nodes),place=shareOf(scalars);
-return steps.forEach((values,k)=>{for(let n=0;n<nodes;n+=1){let share=place(values[n]);result2[2*n+k]=Number.isFinite(share)?
-share:NO_VALUE}}),result2}function interpolated([rows,columns],i,j,value){let[left,low]=[Math.min(Math.floor(i),columns-
-2),Math.min(Math.floor(j),rows-2)],[a,b]=[i-left,j-low],corner=low*columns+left,[from,to]=[value(corner),value(corner+columns+
-1)],aside=value(corner+(a>=b?1:columns));return from+Math.max(a,b)*(aside-from)+Math.min(a,b)*(to-aside)}function pickedPoint(context,x,y){let{layers,camera,moment,anchor,canvas}=context,{graphics,header}=layers[0].scene,program=graphics.
-programs.get(header.shaders.vertex,header.shaders.pick),whole=projection(header.geometry,camera,anchor),matrix=atPixel(whole,
-[x,y],[canvas.width,canvas.height]),[before,after,between]=moment,bits=graphics.pixel(()=>{layers.forEach(({scene:scene2},n)=>{
-graphics.programs.use(program,{u_matrix:matrix,u_between:between,u_part:n}),scene2.draw(before,after,anchor,!1)})});if(!bits[3])
-return null;let[u,v2]=new Float32Array(bits.buffer,0,2),{scene,key}=layers[bits[2]],{rows,columns,shape}=scene.header.geometry,
-i=clamp(u*columns.size-.5-columns.before,0,shape[1]-1),j=clamp(v2*rows.size-.5-rows.before,0,shape[0]-1),position=positionAt(
-scene,camera,[i,j],x,y),full=header.pyramid?.shapes[0]??shape,side=header.mesh.tileCells*(header.pyramid?.tileBlocks??0),
-[level,row,column]=key,place=(n,tile,axis)=>fullIndex(n+tile*side,level,full[axis]),index=[place(i,column,1),place(j,row,
-0)];return{position,index,values:valuesAt(scene,moment,i,j)}}function positionAt(scene,camera,[i,j],x,y){let{data}=scene.
-part("position"),{shape,frame,center}=scene.header.geometry,local=[0,1,2].map(k=>interpolated(shape,i,j,n=>data[3*n+k])),
-about=add(fromFrame(frame,local),center),[start,along]=camera.ray(x,y),ahead=camera.axes[2],depth=dot2(subtract2(about,start),
-ahead)/dot2(along,ahead);return add(start,along,depth)}function valuesAt(scene,moment,i,j){let{header,parts}=scene,{name}=header.
-scalars,[from,to,between]=moment,[before,after]=scene.scalarParts(from,to).map(part=>parts.get(part)?.data);if(name===null||
-!before||!after)return{};let value=n=>before[n]+between*(after[n]-before[n]);return{[name]:interpolated(header.geometry.
-shape,i,j,value)}}function uniforms(header,settings,view,noiseShape=null){let{geometry,slices,constants}=header,s=settings,signFree=isSignFree(
-header),finest=2**(Math.floor(Math.log2(geometry.extent))-constants.noiseDoublings),w=view.eye[3],eye=toFrame(geometry.frame,
-subtract2(view.eye,scale2(geometry.center,w))),kernel=signFree&&s.kernel==="ramp"?"hann":s.kernel;return{u_eye:[...subtract2(
-eye,scale2(view.anchor,w)),w],u_between:view.between,u_slicesSize:[geometry.columns.size,geometry.rows.size],u_deepest:geometry.
-levels,u_lags:slices.lags,u_lagCount:slices.lags.length,u_sides:s.two_sided||signFree?slices.sides:1,u_unit:slices.unit,
-u_rateLayer:slices.count-1,u_cell:slices.cell,u_samples:isMoving(header,settings)?2*s.samples-1:s.samples,u_spacing:s.spacing,
-u_grain:s.grain*view.density,u_kernel:constants.kernels.indexOf(kernel),u_lod:s.lod,u_contrast:s.contrast,u_strength:s.strength,
-u_seed:s.seed,u_showLevel:s.show_level,u_fixed:s.fixed_grain,...motionUniforms(header,s,view),...noiseOrigin(header,view,
-finest),u_noiseFinest:finest,u_texel:geometry.extent/s.resolution,...header.paper&&noiseShape?paperUniforms(header.paper,
-s,noiseShape,view.density):{}}}function isMoving(header,settings){let streams=settings.motion!=="off"&&!isSignFree(header);
-return!header.paper&&(header.slices.steps>1||streams)}function isNear(header,settings,view){let{geometry,slices,constants}=header,
-s=settings,gap=Math.hypot(...subtract2(view.eye,geometry.center))-.5*geometry.extent,away=view.eye[3]?Math.max(gap,0)/Math.
-hypot(...subtract2(view.eye,view.focus)):1,grain=s.lod?view.pixel*away*s.grain*view.density:geometry.extent/s.resolution;
-return Math.floor(s.samples/2)*s.spacing*grain<constants.farCells*slices.critical}function motionUniforms(header,s,view){
-let{geometry,slices,constants}=header,varies=slices.steps>1,inPixels=!varies&&s.speed_in==="pixels",turns=varies?(view.time-
-slices.times[0])/(geometry.extent/slices.pace):(view.clock/s.period%1+1)%1,travel=varies?geometry.extent:s.speed*s.period,
-coarse=Math.floor(turns/constants.clockStep)*constants.clockStep;return{u_clock:[coarse,turns-coarse],u_travel:travel*(inPixels?
-view.density:1),u_travelInPixels:inPixels,u_travelBySpeed:varies||s.motion==="speed",u_wave:constants.wavePixels*view.density}}
-function noiseOrigin(header,view,finest){let{noiseDoublings,clearDoublings}=header.constants,{frame,center}=header.geometry,
-focus=toFrame(frame,subtract2(view.focus,center)),limit=2**(noiseDoublings-clearDoublings)-1,cells=2**clearDoublings,even=focus.
-map(x=>clamp(Math.round(x/finest/cells),-limit,limit)*cells),odd=even.map(x=>x/Math.SQRT2),whole=odd.map(x=>Math.floor(x/
-cells)*cells);return{u_noiseOrigin:even.map((x,k)=>x*finest-view.anchor[k]),u_noiseOriginEven:even,u_noiseOriginOdd:whole,
-u_noiseRestOdd:odd.map((x,k)=>x-whole[k])}}function paperUniforms(paper,s,noiseShape,density){let tiles=s.noise==="image"?
-s.tiles:1,[rows,columns]=noiseShape;return{u_noiseSize:paper.size.map(n=>n*density),u_noiseGrain:paper.grain,u_noiseDeviation:paper.
-deviations,u_noiseCorrected:paper.corrected,u_pictureSize:[columns*density*tiles,rows*density*tiles],u_pictureRound:[Number(
-paper.repeat[1]),Number(paper.repeat[0])],u_pictureGrey:noiseShape.length===2,u_tiles:tiles}}function momentOf(times2,time){
-if(times2.length<2)return[0,0,0];let step=0;for(;step<times2.length-2&&times2[step+1]<=time;)step+=1;let late=(time-times2[step])/
-(times2[step+1]-times2[step]);return[step,step+1,clamp(late,0,1)]}var SERIES_STEP_S=.5,SERIES_LEAST_S=6,SERIES_MOST_S=60,LONGEST_GAP_S=.5,Player=class{time=0;clock=0;playing=!1;times=[0];lastFrame=0;hasHeader=!1;setHeader(header){
+let{legend,controls,head,bar,handle,busy,hintBox,note}=this,left=dom("div",{class:"left"},[head,viewer.card.element]);shadow.
+append(canvas,viewer.card.overlay,left,legend.element,controls.element),shadow.append(bar,handle,busy,hintBox,note),this.
+arrange()}button(name,title,press){let button=dom("button",{type:"button",title,"aria-label":title,"data-name":name},[icon(
+name)]);return this.viewer.lifetime.listen(button,"click",press),button}makeBar(){let{viewer}=this;return dom("div",{class:"\
+bar glass",role:"toolbar","aria-label":"Controls"},[this.playButton,this.track,this.button("home","Show everything (0)",
+()=>viewer.reset()),this.toggles.lod,this.toggles.show_level,this.gear,this.button("save","Save the picture",()=>{this.save()}),
+this.button("full","Fill the screen (f)",()=>this.fullscreen()),this.button("hide","Hide the bar (h)",()=>this.toggle())])}build(){
+let{header}=this.viewer;header&&(this.note.hidden=!0,this.controls.build(header),this.controls.element.prepend(this.colours.
+element),this.showLegend(),this.update(),this.arrange())}update(){let{header,settings}=this.viewer,{playing,varies}=this.
+viewer.player;this.name(),this.controls.update(),this.legendLook!==this.lookOf(settings)&&this.showLegend();for(let[name,
+button]of Object.entries(this.toggles))button.setAttribute("aria-pressed",String(!!settings[name]));let title=playing?"P\
+ause (space)":"Play (space)";this.playButton.replaceChildren(icon(playing?"pause":"play")),this.playButton.title=title,this.
+playButton.setAttribute("aria-label",title);let streams=header!==null&&hasStreaming(header);this.playButton.hidden=this.
+track.hidden=!varies&&!streams,this.slider.disabled=!varies&&settings.motion==="off";let unit2=header?.slices.timeUnit??
+"";this.timeText.style.minWidth=`${varies?8+unit2.length:7}ch`,this.tick()}name(){let{header,settings,root}=this.viewer,
+title=(header?.differs??[]).filter(name=>name in settings).map(name=>{let label=header?.table.find(row=>row.name===name)?.
+label??name,value=settings[name];return`${label}: ${typeof value=="boolean"?value?"on":"off":value}`}).join(", ")||header?.
+name||"";this.title.textContent=title,this.title.hidden=!title,root.setAttribute("aria-label",title?`Flow texture: ${title}`:
+"Flow texture")}tick(){let{header,player,settings}=this.viewer;if(!header||this.track.hidden)return;let{first,last,now}=player.
+range(settings);this.slider.value=String((now-first)/(last-first||1));let unit2=header.slices.timeUnit,text=player.varies?
+`${numberText(now)} ${unit2}`:`${now.toFixed(1)} s`;this.timeText.textContent!==text&&(this.timeText.textContent=text)}lookOf({
+show_level,strength,contrast}){return`${show_level} ${strength} ${contrast}`}showLegend(){let{header,settings,parts}=this.
+viewer;this.legendLook=this.lookOf(settings),this.colours.update(),header&&this.legend.show(header,settings,parts.get("c\
+map")?.data)}read(point){let{header}=this.viewer;if(this.readout.replaceChildren(),this.legend.point(null),!point||!header)
+return;this.readout.append(dom("span",{},[positionText(point.position,header,this.viewer.camera)]));let{name,label,unit:unit2}=header.
+scalars,value=point.values[name??""];value!==void 0&&(this.readout.append(dom("b",{},[withUnit(`${label} ${numberText(value)}`,
+unit2)])),this.legend.point(header,value))}fold(open=!1){this.isOpen=open,this.arrange()}toggle(shown=!this.isShown){shown!==
+this.isShown&&(this.isShown=shown,this.arrange(),this.viewer.options.onControls?.(shown))}arrange(){let{header,options,root}=this.
+viewer,isReady=header!==null,follows=!!options.follows;this.bar.hidden=!this.isShown||!isReady,this.handle.hidden=this.isShown||
+!isReady||follows,this.head.hidden=!(this.isShown||follows)||!isReady,this.controls.element.hidden=!this.isShown||!this.
+isOpen||!isReady,root.classList.toggle("flowtex-open",!this.controls.element.hidden),this.gear.setAttribute("aria-presse\
+d",String(this.isOpen))}wait(missing){this.busy.hidden=!missing.length;let{viewer}=this;!missing.length||viewer.options.
+onNeed||this.lateTimer||(this.lateTimer=viewer.lifetime.later(()=>{this.lateTimer=null;let names=viewer.lacking.join(", ");
+names&&this.fail("The scene is not complete.",`Missing: ${names}`)},LATE_MS))}hint(shown){let{lifetime}=this.viewer;lifetime.
+cancel(this.hintTimer),this.hintTimer=shown?lifetime.later(()=>this.hint(!1),HINT_MS):null,this.hintBox.hidden=!shown}clear(){
+this.note.hidden=!0,delete this.viewer.root.dataset.failed}fail(problem,detail){this.note.replaceChildren(dom("strong",{},
+[problem]),dom("pre",{},[detail])),this.note.hidden=!1,this.busy.hidden=!0,this.viewer.root.dataset.failed="true"}fullscreen(){
+let{root}=this.viewer;toggleFullscreen(root.closest(".flowtex-pair")??root)}async save(){let{viewer}=this,href=URL.createObjectURL(
+await pictureOf(viewer.together)),name=(viewer.header?.name||"flow").replace(FORBIDDEN," ").trim();dom("a",{href,download:`${name}\
+.png`}).click(),viewer.lifetime.later(()=>URL.revokeObjectURL(href),SAVED_MS)}};var SERIES_STEP_S=.5,SERIES_LEAST_S=6,SERIES_MOST_S=60,LONGEST_GAP_S=.5,Player=class{time=0;clock=0;playing=!1;times=[0];lastFrame=0;hasHeader=!1;setHeader(header){
 let{times:times2}=header.slices;(!(times2.length===this.times.length&&times2.every((t,n)=>t===this.times[n]))||!this.hasHeader)&&
 (this.time=header.time,this.clock=header.clock),this.hasHeader=!0,this.times=times2}get varies(){return this.times.length>
 1}get span(){return[this.times[0],this.times[this.times.length-1]]}get moment(){return momentOf(this.times,this.time)}timeOf([
-before,after,between]){return this.times[before]+between*(this.times[after]-this.times[before])}seek(time){this.time=clamp(
+before,after,between2]){return this.times[before]+between2*(this.times[after]-this.times[before])}seek(time){this.time=clamp(
 time,...this.span)}start(){this.playing=!0,this.lastFrame=0}range(settings){if(this.varies)return{first:this.span[0],last:this.
 span[1],now:this.time};let period=Number(settings.period);return{first:0,last:period,now:this.clock%period}}advance(now,ready){
 let passed=this.lastFrame?Math.min((now-this.lastFrame)/1e3,LONGEST_GAP_S):0;if(this.lastFrame=now,!this.varies)return this.
@@ -609,12 +729,12 @@ this.viewer=viewer;let{canvas,root,options,lifetime}=viewer;root.classList.toggl
 options.guarded&&this.guard();let listen=(kind,call)=>lifetime.listen(canvas,kind,call,{passive:!1});listen("pointerdown",
 event=>this.onDown(event)),listen("pointermove",event=>this.onMove(event)),listen("pointerup",event=>this.onUp(event)),listen(
 "pointercancel",event=>this.onUp(event)),listen("pointerleave",()=>viewer.panel.read(null)),listen("contextmenu",event=>event.
-preventDefault()),listen("wheel",event=>this.onWheel(event)),listen("dblclick",event=>this.zoom(2,event)),lifetime.listen(
-root,"keydown",event=>this.onKey(event))}guard(){let{root,lifetime}=this.viewer,release=event=>{event.composedPath().includes(
-root)||this.hold(!1)};lifetime.listen(document,"pointerdown",release,{capture:!0}),lifetime.listen(document,"wheel",release,
-{capture:!0,passive:!0}),lifetime.listen(root,"focus",()=>{root.matches(":focus-visible")&&this.hold(!0)})}hold(held){this.
-viewer.root.classList.toggle("flowtex-held",held),held&&this.viewer.panel.hint(!1)}get isHeld(){let{root,options}=this.viewer;
-return!options.guarded||root.classList.contains("flowtex-held")?!0:document.fullscreenElement?.contains(root)??!1}place(event){
+preventDefault()),listen("wheel",event=>this.onWheel(event)),listen("dblclick",event=>{viewer.card.close(),this.zoom(2,event)}),
+lifetime.listen(root,"keydown",event=>this.onKey(event))}guard(){let{root,lifetime}=this.viewer,release=event=>{event.composedPath().
+includes(root)||this.hold(!1)};lifetime.listen(document,"pointerdown",release,{capture:!0}),lifetime.listen(document,"wh\
+eel",release,{capture:!0,passive:!0}),lifetime.listen(root,"focus",()=>{root.matches(":focus-visible")&&this.hold(!0)})}hold(held){
+this.viewer.root.classList.toggle("flowtex-held",held),held&&this.viewer.panel.hint(!1)}get isHeld(){let{root,options}=this.
+viewer;return!options.guarded||root.classList.contains("flowtex-held")?!0:document.fullscreenElement?.contains(root)??!1}place(event){
 return placeIn(this.viewer.canvas,event)}onDown(event){if(event.button>2)return;let{root,canvas}=this.viewer;root.focus(
 {preventScroll:!0}),event.pointerType!=="touch"&&this.hold(!0),canvas.setPointerCapture(event.pointerId),this.down.set(event.
 pointerId,this.place(event)),this.isOther=event.button===2||event.shiftKey;let{clientX:x,clientY:y,timeStamp:time}=event;
@@ -628,23 +748,22 @@ place.x,old.y-place.y),panel.read(null),this.viewer.reportCamera()}middle(){let[
 viewer.camera?.aspect??1,apart=Math.hypot((a.x-b.x)*aspect,a.y-b.y);return{x:(a.x+b.x)/2,y:(a.y+b.y)/2,apart}}onUp(event){
 let place=this.down.get(event.pointerId);if(this.down.delete(event.pointerId),this.down.size||(this.viewer.root.classList.
 remove("flowtex-grabbing"),event.type!=="pointerup"))return;this.hold(!0);let isQuick=event.timeStamp-this.press.time<CLICK_MS;
-if(!place||this.press.isDrag||!isQuick||event.button!==0)return;let point=this.viewer.point(place.x,place.y);point&&this.
-viewer.options.onPoint?.(point),this.viewer.panel.read(point)}onWheel(event){if(!this.isHeld&&!event.ctrlKey&&!event.metaKey){
-performance.now()-this.lastPointed<POINTED_MS&&this.viewer.panel.hint(!0);return}event.preventDefault();let size=event.ctrlKey&&
-event.deltaMode===0?PINCH_PX:NOTCH_SIZES[event.deltaMode],notches=clamp(-event.deltaY/size,-MOST_NOTCHES,MOST_NOTCHES);this.
-zoom((this.viewer.camera?.limits.wheel_zoom??1)**notches,event)}zoom(factor,event){let{x,y}=this.place(event);this.viewer.
-camera?.zoomBy(factor,x,y),this.viewer.reportCamera()}hover(place){let{viewer}=this;viewer.lifetime.cancel(this.look);let rest=HOVER_MS-
-(performance.now()-this.lastLook),look=()=>{this.look=null,this.lastLook=performance.now(),viewer.sharp&&viewer.canPick?
-viewer.panel.read(viewer.point(place.x,place.y)):viewer.player.playing||this.hover(place)};this.look=viewer.lifetime.later(
-look,Math.max(rest,viewer.sharp?0:HOVER_MS))}onKey(event){let{root}=this.viewer,[target]=event.composedPath(),inside=target instanceof
-Element&&target!==root?target.tagName:"",isControl=/^(INPUT|SELECT)$/.test(inside)||inside==="BUTTON"&&event.key===PLAY_KEY;
-hasModifier(event)||isControl||!this.command(event)||(event.preventDefault(),event.stopPropagation())}command({key,shiftKey}){
-let{viewer}=this,{camera,panel,options}=viewer;if(!camera)return!1;let command=CAMERA_KEYS[key];if(command in DIRECTIONS){
-let[x,y]=DIRECTIONS[command].map(way=>way*KEY_STEP);camera.flat===shiftKey?camera.rotate(-x,-y):camera.pan(x,y),viewer.reportCamera()}else if(command===
-"closer"||command==="farther"){let{wheel_zoom:notch}=camera.limits;camera.zoomBy(command==="closer"?notch:1/notch),viewer.
-reportCamera()}else if(command==="whole")viewer.reset();else if(key===PLAY_KEY)viewer.togglePlaying();else if(key===FULLSCREEN_KEY)
-panel.fullscreen();else if(key==="h")(options.follows?.panel??panel).toggle();else if(key===CLOSE_KEY)panel.fold(),this.
-hold(!1);else return!1;return!0}};function invert(out,a){var aa=a[0],ab=a[1],ac=a[2],ad=a[3],atx=a[4],aty=a[5],det=aa*ad-ab*ac;return det?(det=1/det,out[0]=
+!place||this.press.isDrag||!isQuick||event.button!==0||this.viewer.panel.read(this.viewer.card.choose(place.x,place.y))}onWheel(event){
+if(!this.isHeld&&!event.ctrlKey&&!event.metaKey){performance.now()-this.lastPointed<POINTED_MS&&this.viewer.panel.hint(!0);
+return}event.preventDefault();let size=event.ctrlKey&&event.deltaMode===0?PINCH_PX:NOTCH_SIZES[event.deltaMode],notches=clamp(
+-event.deltaY/size,-MOST_NOTCHES,MOST_NOTCHES);this.zoom((this.viewer.camera?.limits.wheel_zoom??1)**notches,event)}zoom(factor,event){
+let{x,y}=this.place(event);this.viewer.camera?.zoomBy(factor,x,y),this.viewer.reportCamera()}hover(place){let{viewer}=this;
+viewer.lifetime.cancel(this.look);let rest=HOVER_MS-(performance.now()-this.lastLook),look=()=>{this.look=null,this.lastLook=
+performance.now(),viewer.sharp&&viewer.canPick?viewer.panel.read(viewer.point(place.x,place.y)):viewer.player.playing||this.
+hover(place)};this.look=viewer.lifetime.later(look,Math.max(rest,viewer.sharp?0:HOVER_MS))}onKey(event){let{root}=this.viewer,
+[target]=event.composedPath(),inside=target instanceof Element&&target!==root?target.tagName:"",isControl=/^(INPUT|SELECT)$/.
+test(inside)||inside==="BUTTON"&&event.key===PLAY_KEY;hasModifier(event)||isControl||!this.command(event)||(event.preventDefault(),
+event.stopPropagation())}command({key,shiftKey}){let{viewer}=this,{camera,panel,options}=viewer;if(!camera)return!1;let command=CAMERA_KEYS[key];
+if(command in DIRECTIONS){let[x,y]=DIRECTIONS[command].map(way=>way*KEY_STEP);camera.flat===shiftKey?camera.rotate(-x,-y):
+camera.pan(x,y),viewer.reportCamera()}else if(command==="closer"||command==="farther"){let{wheel_zoom:notch}=camera.limits;
+camera.zoomBy(command==="closer"?notch:1/notch),viewer.reportCamera()}else if(command==="whole")viewer.reset();else if(key===
+PLAY_KEY)viewer.togglePlaying();else if(key===FULLSCREEN_KEY)panel.fullscreen();else if(key==="h")(options.follows?.panel??
+panel).toggle();else if(key===CLOSE_KEY)panel.fold(),viewer.card.close(),this.hold(!1);else return!1;return!0}};function invert(out,a){var aa=a[0],ab=a[1],ac=a[2],ad=a[3],atx=a[4],aty=a[5],det=aa*ad-ab*ac;return det?(det=1/det,out[0]=
 ad*det,out[1]=-ab*det,out[2]=-ac*det,out[3]=aa*det,out[4]=(ac*aty-ad*atx)*det,out[5]=(ab*atx-aa*aty)*det,out):null}function determinant(a){
 return a[0]*a[3]-a[1]*a[2]}function multiply(out,a,b){var a0=a[0],a1=a[1],a2=a[2],a3=a[3],a4=a[4],a5=a[5],b0=b[0],b1=b[1],
 b2=b[2],b3=b[3],b4=b[4],b5=b[5];return out[0]=a0*b0+a2*b1,out[1]=a1*b0+a3*b1,out[2]=a0*b2+a2*b3,out[3]=a1*b2+a3*b3,out[4]=
@@ -705,15 +824,7 @@ u_opacity:header.opacity,u_toEye:toFrame(header.geometry.frame,scale2(camera.axe
 return;let{width:w,height:h,top,rows}=region,{width}=this.canvas,{canvas}=this.graphics,first=canvas.height-h+top;if(pen.
 imageSmoothingEnabled=w!==width||h!==height,pen.imageSmoothingEnabled){let{coarse,coarsePen}=this;coarse.width=w,coarse.
 height=rows,coarsePen?.drawImage(canvas,0,first,w,rows,0,0,w,rows),[canvas,first]=[coarse,0]}pen.drawImage(canvas,0,first,
-w,rows,0,to,width,rows*height/h)}};function fromHalf(bits){let exponent=bits>>10&31,part=bits&1023,size;return exponent===0?size=part*2**-24:exponent===31?
-size=part?NaN:1/0:size=(1024+part)*2**(exponent-25),bits&32768?-size:size}function toHalf(x){let sign=x<0?32768:0,size=Math.
-abs(x);if(!(size<65520))return sign|(size>=65520?31744:32256);let exponent=Math.max(Math.floor(Math.log2(size||1e-30)),-14),
-part=Math.round(size/2**(exponent-10));return sign|(part<1024?part:(exponent+14)*1024+part)}function halved(texels,width,height,channels){
-let[w,h]=[Math.max(width>>1,1),Math.max(height>>1,1)],result2=new Uint16Array(w*h*channels),between=(n,few,many)=>{let x=(n+
-.5)*(many/few)-.5,base=Math.floor(x);return[base,Math.min(base+1,many-1),x-base]};for(let j=0,n=0;j<h;j+=1){let[low,high,
-v2]=between(j,h,height);for(let i=0;i<w;i+=1){let[left,right,u]=between(i,w,width);for(let c=0;c<channels;c+=1){let at=(y,x)=>fromHalf(
-texels[(y*width+x)*channels+c]),below=at(low,left)*(1-u)+at(low,right)*u,above=at(high,left)*(1-u)+at(high,right)*u;result2[n++]=
-toHalf(below*(1-v2)+above*v2)}}}return[result2,w,h]}var PLACE2=5;function blocksOf(nodes,size){let count=Math.max(Math.ceil((nodes-1)/size),1);return Array.from({length:count},
+w,rows,0,to,width,rows*height/h)}};var PLACE2=5;function blocksOf(nodes,size){let count=Math.max(Math.ceil((nodes-1)/size),1);return Array.from({length:count},
 (_,n)=>({first:n*size,cells:Math.min(nodes-1-n*size,size)}))}var MeshLevels=class{mesh;limits;rows;columns;constructor(mesh,limits){
 this.mesh=mesh,this.limits=limits,this.rows=blocksOf(mesh.shape[0],limits.tileCells),this.columns=blocksOf(mesh.shape[1],
 limits.tileCells)}get shape(){return[this.rows.length,this.columns.length]}levels({eye,halfHeight,pixels}){let{limits}=this,
@@ -763,78 +874,78 @@ this.graphics=graphics,this.header=header,this.parts=parts}missing(before,after)
 header,names=["position","mesh",...geometry.planar?[]:["normal"]];pyramid&&names.push("places");for(let step of new Set(
 [before,after]))names.push(`slices/${step}`),slices.channels===2&&names.push(`extra/${step}`);return names.push(...this.
 scalarParts(before,after)),scalars.name!==null&&names.push("cmap"),paper&&names.push("noise","step"),[...new Set(names)].
-filter(name=>!this.fits(name))}scalarParts(before,after){let{name,steps,number}=this.header.scalars;if(name===null)return[];
-let end=number?`/${number}`:"";return(steps>1?[before,after]:[0,0]).map(step=>`scalars/${step}${end}`)}fits(name){let part=this.
-parts.get(name);if(!part)return!1;let{geometry,slices,paper,mesh}=this.header,blocks=geometry.shape.map(n=>Math.max(Math.
-ceil((n-1)/mesh.tileCells),1)),shape={slices:[slices.count,geometry.rows.size,geometry.columns.size,slices.channels],position:[
-...geometry.shape,3],mesh:[...blocks,part.shape[2]],step:paper?[paper.size[1],paper.size[0]]:[]}[name.split("/")[0]];return!shape||
-String(shape)===String(part.shape)}part(name){let part=this.parts.get(name);if(!part)throw new Error(`the part "${name}"\
- of the scene is missing`);return part}forget(name){let[kind,step]=name.split("/");(kind==="mesh"||kind==="cells")&&(this.
-meshLevels=this.drawn=null);let sliced=kind==="slices"||kind==="extra";for(let user of sliced?[`slices/${step}`]:USERS[kind]??
-[])this.drop(user);this.drop("array")}drop(name){let resource=this.resources.get(name);this.resources.delete(name),resource&&
-(resource.users-=1,!resource.users&&(this.graphics.free(resource.kind,resource.object),this.graphics.common.delete(resource.
-key)))}dispose(){for(let name of[...this.resources.keys()])this.drop(name)}key(names,...rest){let digests=names.map(name=>this.
-parts.has(name)?this.part(name).digest:"none");return digests.every(Boolean)?JSON.stringify([digests,rest]):""}take(name,kind,key,make,fill){
-let own=this.resources.get(name);if(own)return own.object;let{graphics}=this,whole=key&&`${name.split("/")[0]} ${key}`,shared=whole?
-graphics.common.get(whole):void 0,object=shared?.object??graphics.counted(make()),resource=shared??{kind,object,count:0,
-key:whole,users:0};return resource.users+=1,this.resources.set(name,resource),shared||(resource.count=fill(object)||0),whole&&
-graphics.common.set(whole,resource),object}buffer(name,key,data,elements=!1){let gl=this.graphics.context,fill=buffer=>{
-let target=elements?gl.ELEMENT_ARRAY_BUFFER:gl.ARRAY_BUFFER,numbers=data();return gl.bindVertexArray(null),gl.bindBuffer(
-target,buffer),gl.bufferData(target,numbers,gl.STATIC_DRAW),numbers.length};return this.take(name,"Buffer",key,()=>gl.createBuffer(),
-fill)}mesh(){if(!this.meshLevels){let{geometry,mesh}=this.header,{shape,periodic}=geometry,parts={blocks:this.part("mesh").
-data,cells:this.parts.get("cells")?.data};this.meshLevels=new MeshLevels({shape,periodic,...parts},mesh)}return this.meshLevels}levels(sight){
-return{levels:this.mesh().levels(sight),shape:this.mesh().shape}}get hasTriangles(){return this.drawn!==null}setTriangles(levels,joins){
-let{drawn}=this;drawn&&String([levels,joins])===String([drawn.levels,drawn.joins])||(this.drawn={levels,joins},this.drop(
-"index"),this.drop("array"))}isLoaded(steps){return steps.every(step=>this.resources.has(`slices/${step}`))}load(steps){
-for(let step of steps)this.slices(step)}bindNodes(before,after,anchor){let gl=this.graphics.context,steps=String(this.scalarParts(
-before,after)),stale=steps!==this.scalarSteps?["scalar","array"]:[];anchor.some((x,k)=>x!==this.anchor[k])&&stale.push("\
-position","array");for(let name of stale)this.drop(name);this.scalarSteps=steps,this.anchor=anchor;let fill=array=>this.
-fillArray(array,before,after),make=()=>gl.createVertexArray();gl.bindVertexArray(this.take("array","VertexArray","",make,
-fill))}fillArray(array,before,after){let gl=this.graphics.context,{geometry,scalars,paper}=this.header,{shape,rows,columns}=geometry,
-{levels,joins}=this.drawn??{levels:new Int8Array,joins:new Int8Array},cells=()=>this.mesh().triangles(levels,joins),drawn=this.
-key(["cells","mesh"],shape,[...levels],[...joins]),index=this.buffer("index",drawn,cells,!0),nodes=()=>positions(this.part(
-"position").data,this.anchor),normal=geometry.planar?null:this.part("normal").data,painted=this.scalarParts(before,after),
-values=()=>{let steps=painted.map(name=>this.part(name).data);return shares(steps,scalars,shape[0]*shape[1])},colour=this.
-key([...new Set(painted)],shape,scalars.low,scalars.high,scalars.log),grid2=JSON.stringify([shape,rows,columns]),type=gl.
-FLOAT;normal instanceof Int8Array&&(type=gl.BYTE),normal instanceof Int16Array&&(type=gl.SHORT);let attributes=[[this.buffer(
-"position",this.key(["position"],this.anchor),nodes),3,gl.FLOAT],[this.buffer("coordinate",grid2,()=>coordinates(geometry)),
-2,gl.FLOAT],[normal&&this.buffer("normal",this.key(["normal"]),()=>normal),3,type],[paper&&this.buffer("along","",()=>noiseCoordinates(
-paper)),2,gl.FLOAT],[this.buffer("scalar",colour,values),2,gl.FLOAT]];gl.bindVertexArray(array),gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER,
-index),attributes.forEach(([buffer,size,kind],n)=>{buffer&&(gl.bindBuffer(gl.ARRAY_BUFFER,buffer),gl.enableVertexAttribArray(
-n),gl.vertexAttribPointer(n,size,kind,kind!==gl.FLOAT,0,0))})}texture(name,key,fill){let gl=this.graphics.context;return this.
-take(name,"Texture",key,()=>gl.createTexture(),fill)}slices(step){let{slices,geometry}=this.header,key=this.key([`slices\
-/${step}`,`extra/${step}`],geometry.levels,slices.extra);return this.texture(`slices/${step}`,key,texture=>{let part=this.
-part(`slices/${step}`),[layers,height,width,channels]=part.shape,data=part.data,extra=this.parts.get(`extra/${step}`)?.data,
-texels=height*width,layer=n=>{let own=data.subarray(n*texels*channels,(n+1)*texels*channels);if(channels===4)return own;
-let all=new Uint16Array(4*texels),place=slices.extra.indexOf(n),fourth=place<0?null:extra?.subarray(place*texels,(place+
-1)*texels);for(let k=0;k<texels;k+=1)all[4*k]=own[2*k],all[4*k+1]=own[2*k+1],fourth&&(all[4*k+3]=fourth[k]);return all};
-this.fill(texture,{width,height,layers,channels:4,levels:geometry.levels},layer)})}image(name,repeat){let gl=this.graphics.
-context;return this.texture(name,this.key([name],repeat),texture=>{let{data,shape}=this.part(name),[height,width,channels=1]=shape,
-levels=Math.floor(Math.log2(Math.max(width,height))),size={width,height,layers:1,channels,levels};this.fill(texture,size,
-()=>data);let wrap=n=>repeat[n]?gl.REPEAT:gl.CLAMP_TO_EDGE;gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_S,wrap(1)),
-gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_T,wrap(0))})}fill(texture,size,layer){let gl=this.graphics.context,
-{width,height,layers,channels,levels}=size,target=gl.TEXTURE_2D_ARRAY;this.checkSize(size);let[format,inner]=channels===
-1?[gl.RED,gl.R16F]:[gl.RGBA,gl.RGBA16F];gl.bindTexture(target,texture),gl.texStorage3D(target,levels+1,inner,width,height,
-layers),gl.texParameteri(target,gl.TEXTURE_MIN_FILTER,gl.LINEAR_MIPMAP_LINEAR),gl.texParameteri(target,gl.TEXTURE_MAG_FILTER,
-gl.LINEAR),gl.texParameteri(target,gl.TEXTURE_WRAP_S,gl.CLAMP_TO_EDGE),gl.texParameteri(target,gl.TEXTURE_WRAP_T,gl.CLAMP_TO_EDGE),
-gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);let{floats}=this.graphics;for(let n=0;n<layers;n+=1){let texels=layer(n),[w,h]=[width,
-height];gl.texSubImage3D(target,0,0,0,n,w,h,1,format,gl.HALF_FLOAT,texels);for(let level=1;level<=levels&&!floats;level+=
-1)[texels,w,h]=halved(texels,w,h,channels),gl.texSubImage3D(target,level,0,0,n,w,h,1,format,gl.HALF_FLOAT,texels)}floats&&
-levels&&gl.generateMipmap(target)}checkSize({width,height,layers}){let gl=this.graphics.context,most=gl.getParameter(gl.
-MAX_TEXTURE_SIZE),mostLayers=gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS);if(!(Math.max(width,height)<=most&&layers<=mostLayers))
-throw new Error(`a texture of ${width} x ${height} texels in ${layers} layers is asked for, and this graphics card has ${most}\
- x ${most} in ${mostLayers}; show fewer nodes`)}colourMap(){let gl=this.graphics.context;return this.texture("cmap",this.
-key(["cmap"]),texture=>{gl.bindTexture(gl.TEXTURE_2D,texture),gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);let data=this.parts.
-get("cmap")?.data??new Uint8Array(1024);gl.texImage2D(gl.TEXTURE_2D,0,gl.RGBA8,256,1,0,gl.RGBA,gl.UNSIGNED_BYTE,data),gl.
-texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST)})}dropSlices(before,after){
-let next=after+1<this.header.slices.steps?after+1:0;for(let name of[...this.resources.keys()])name.startsWith("slices/")&&
-([before,after,next,after+1].includes(stepOf(name))||this.drop(name))}bindTextures(before,after){let gl=this.graphics.context,
-{paper}=this.header,repeat=paper?.repeat??[!1,!1];[this.slices(before),after===before?null:this.slices(after),paper&&this.
-image("noise",paper.picture?[!0,!0]:repeat),paper&&this.image("step",repeat),this.colourMap()].forEach((texture,n)=>{gl.
-activeTexture(gl.TEXTURE0+n),gl.bindTexture(n<4?gl.TEXTURE_2D_ARRAY:gl.TEXTURE_2D,texture)}),gl.activeTexture(gl.TEXTURE0+
-SAMPLERS.length)}draw(before,after,anchor,textures){let gl=this.graphics.context;textures&&(this.dropSlices(before,after),
-this.bindTextures(before,after)),this.bindNodes(before,after,anchor),gl.drawElements(gl.TRIANGLES,this.resources.get("in\
-dex")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(null)}};var REQUEST_MS=60,LOST_MS=8e3,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD=4,Tiles=class{layers=[];missing=[];host;root;tiles=new Map;pyramid=null;chosen={
+filter(name=>!this.fits(name))}scalarParts(before,after,of=this.header.scalars){let{name,steps,number}=of;if(name===null)
+return[];let end=number?`/${number}`:"";return(steps>1?[before,after]:[0,0]).map(step=>`scalars/${step}${end}`)}fits(name){
+let part=this.parts.get(name);if(!part)return!1;let{geometry,slices,paper,mesh}=this.header,blocks=geometry.shape.map(n=>Math.
+max(Math.ceil((n-1)/mesh.tileCells),1)),shape={slices:[slices.count,geometry.rows.size,geometry.columns.size,slices.channels],
+position:[...geometry.shape,3],mesh:[...blocks,part.shape[2]],step:paper?[paper.size[1],paper.size[0]]:[]}[name.split("/")[0]];
+return!shape||String(shape)===String(part.shape)}part(name){let part=this.parts.get(name);if(!part)throw new Error(`the \
+part "${name}" of the scene is missing`);return part}forget(name){let[kind,step]=name.split("/");(kind==="mesh"||kind===
+"cells")&&(this.meshLevels=this.drawn=null);let sliced=kind==="slices"||kind==="extra";for(let user of sliced?[`slices/${step}`]:
+USERS[kind]??[])this.drop(user);this.drop("array")}drop(name){let resource=this.resources.get(name);this.resources.delete(
+name),resource&&(resource.users-=1,!resource.users&&(this.graphics.free(resource.kind,resource.object),this.graphics.common.
+delete(resource.key)))}dispose(){for(let name of[...this.resources.keys()])this.drop(name)}key(names,...rest){let digests=names.
+map(name=>this.parts.has(name)?this.part(name).digest:"none");return digests.every(Boolean)?JSON.stringify([digests,rest]):
+""}take(name,kind,key,make,fill){let own=this.resources.get(name);if(own)return own.object;let{graphics}=this,whole=key&&
+`${name.split("/")[0]} ${key}`,shared=whole?graphics.common.get(whole):void 0,object=shared?.object??graphics.counted(make()),
+resource=shared??{kind,object,count:0,key:whole,users:0};return resource.users+=1,this.resources.set(name,resource),shared||
+(resource.count=fill(object)||0),whole&&graphics.common.set(whole,resource),object}buffer(name,key,data,elements=!1){let gl=this.
+graphics.context,fill=buffer=>{let target=elements?gl.ELEMENT_ARRAY_BUFFER:gl.ARRAY_BUFFER,numbers=data();return gl.bindVertexArray(
+null),gl.bindBuffer(target,buffer),gl.bufferData(target,numbers,gl.STATIC_DRAW),numbers.length};return this.take(name,"B\
+uffer",key,()=>gl.createBuffer(),fill)}mesh(){if(!this.meshLevels){let{geometry,mesh}=this.header,{shape,periodic}=geometry,
+parts={blocks:this.part("mesh").data,cells:this.parts.get("cells")?.data};this.meshLevels=new MeshLevels({shape,periodic,
+...parts},mesh)}return this.meshLevels}levels(sight){return{levels:this.mesh().levels(sight),shape:this.mesh().shape}}get hasTriangles(){
+return this.drawn!==null}setTriangles(levels,joins){let{drawn}=this;drawn&&String([levels,joins])===String([drawn.levels,
+drawn.joins])||(this.drawn={levels,joins},this.drop("index"),this.drop("array"))}isLoaded(steps){return steps.every(step=>this.
+resources.has(`slices/${step}`))}load(steps){for(let step of steps)this.slices(step)}bindNodes(before,after,anchor){let gl=this.
+graphics.context,steps=String(this.scalarParts(before,after)),stale=steps!==this.scalarSteps?["scalar","array"]:[];anchor.
+some((x,k)=>x!==this.anchor[k])&&stale.push("position","array");for(let name of stale)this.drop(name);this.scalarSteps=steps,
+this.anchor=anchor;let fill=array=>this.fillArray(array,before,after),make=()=>gl.createVertexArray();gl.bindVertexArray(
+this.take("array","VertexArray","",make,fill))}fillArray(array,before,after){let gl=this.graphics.context,{geometry,scalars,
+paper}=this.header,{shape,rows,columns}=geometry,{levels,joins}=this.drawn??{levels:new Int8Array,joins:new Int8Array},cells=()=>this.
+mesh().triangles(levels,joins),drawn=this.key(["cells","mesh"],shape,[...levels],[...joins]),index=this.buffer("index",drawn,
+cells,!0),nodes=()=>positions(this.part("position").data,this.anchor),normal=geometry.planar?null:this.part("normal").data,
+painted=this.scalarParts(before,after),values=()=>{let steps=painted.map(name=>this.part(name).data);return shares(steps,
+scalars,shape[0]*shape[1])},colour=this.key([...new Set(painted)],shape,scalars.low,scalars.high,scalars.log),grid2=JSON.
+stringify([shape,rows,columns]),type=gl.FLOAT;normal instanceof Int8Array&&(type=gl.BYTE),normal instanceof Int16Array&&
+(type=gl.SHORT);let attributes=[[this.buffer("position",this.key(["position"],this.anchor),nodes),3,gl.FLOAT],[this.buffer(
+"coordinate",grid2,()=>coordinates(geometry)),2,gl.FLOAT],[normal&&this.buffer("normal",this.key(["normal"]),()=>normal),
+3,type],[paper&&this.buffer("along","",()=>noiseCoordinates(paper)),2,gl.FLOAT],[this.buffer("scalar",colour,values),2,gl.
+FLOAT]];gl.bindVertexArray(array),gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER,index),attributes.forEach(([buffer,size,kind],n)=>{
+buffer&&(gl.bindBuffer(gl.ARRAY_BUFFER,buffer),gl.enableVertexAttribArray(n),gl.vertexAttribPointer(n,size,kind,kind!==gl.
+FLOAT,0,0))})}texture(name,key,fill){let gl=this.graphics.context;return this.take(name,"Texture",key,()=>gl.createTexture(),
+fill)}slices(step){let{slices,geometry}=this.header,key=this.key([`slices/${step}`,`extra/${step}`],geometry.levels,slices.
+extra);return this.texture(`slices/${step}`,key,texture=>{let part=this.part(`slices/${step}`),[layers,height,width,channels]=part.
+shape,data=part.data,extra=this.parts.get(`extra/${step}`)?.data,texels=height*width,layer=n=>{let own=data.subarray(n*texels*
+channels,(n+1)*texels*channels);if(channels===4)return own;let all=new Uint16Array(4*texels),place=slices.extra.indexOf(
+n),fourth=place<0?null:extra?.subarray(place*texels,(place+1)*texels);for(let k=0;k<texels;k+=1)all[4*k]=own[2*k],all[4*
+k+1]=own[2*k+1],fourth&&(all[4*k+3]=fourth[k]);return all};this.fill(texture,{width,height,layers,channels:4,levels:geometry.
+levels},layer)})}image(name,repeat){let gl=this.graphics.context;return this.texture(name,this.key([name],repeat),texture=>{
+let{data,shape}=this.part(name),[height,width,channels=1]=shape,levels=Math.floor(Math.log2(Math.max(width,height))),size={
+width,height,layers:1,channels,levels};this.fill(texture,size,()=>data);let wrap=n=>repeat[n]?gl.REPEAT:gl.CLAMP_TO_EDGE;
+gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_S,wrap(1)),gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_T,wrap(
+0))})}fill(texture,size,layer){let gl=this.graphics.context,{width,height,layers,channels,levels}=size,target=gl.TEXTURE_2D_ARRAY;
+this.checkSize(size);let[format,inner]=channels===1?[gl.RED,gl.R16F]:[gl.RGBA,gl.RGBA16F];gl.bindTexture(target,texture),
+gl.texStorage3D(target,levels+1,inner,width,height,layers),gl.texParameteri(target,gl.TEXTURE_MIN_FILTER,gl.LINEAR_MIPMAP_LINEAR),
+gl.texParameteri(target,gl.TEXTURE_MAG_FILTER,gl.LINEAR),gl.texParameteri(target,gl.TEXTURE_WRAP_S,gl.CLAMP_TO_EDGE),gl.
+texParameteri(target,gl.TEXTURE_WRAP_T,gl.CLAMP_TO_EDGE),gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);let{floats}=this.graphics;
+for(let n=0;n<layers;n+=1){let texels=layer(n),[w,h]=[width,height];gl.texSubImage3D(target,0,0,0,n,w,h,1,format,gl.HALF_FLOAT,
+texels);for(let level=1;level<=levels&&!floats;level+=1)[texels,w,h]=halved(texels,w,h,channels),gl.texSubImage3D(target,
+level,0,0,n,w,h,1,format,gl.HALF_FLOAT,texels)}floats&&levels&&gl.generateMipmap(target)}checkSize({width,height,layers}){
+let gl=this.graphics.context,most=gl.getParameter(gl.MAX_TEXTURE_SIZE),mostLayers=gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS);
+if(!(Math.max(width,height)<=most&&layers<=mostLayers))throw new Error(`a texture of ${width} x ${height} texels in ${layers}\
+ layers is asked for, and this graphics card has ${most} x ${most} in ${mostLayers}; show fewer nodes`)}colourMap(){let gl=this.
+graphics.context;return this.texture("cmap",this.key(["cmap"]),texture=>{gl.bindTexture(gl.TEXTURE_2D,texture),gl.pixelStorei(
+gl.UNPACK_ALIGNMENT,1);let data=this.parts.get("cmap")?.data??new Uint8Array(1024);gl.texImage2D(gl.TEXTURE_2D,0,gl.RGBA8,
+256,1,0,gl.RGBA,gl.UNSIGNED_BYTE,data),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.texParameteri(
+gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST)})}dropSlices(before,after){let next=after+1<this.header.slices.steps?after+
+1:0;for(let name of[...this.resources.keys()])name.startsWith("slices/")&&([before,after,next,after+1].includes(stepOf(name))||
+this.drop(name))}bindTextures(before,after){let gl=this.graphics.context,{paper}=this.header,repeat=paper?.repeat??[!1,!1];
+[this.slices(before),after===before?null:this.slices(after),paper&&this.image("noise",paper.picture?[!0,!0]:repeat),paper&&
+this.image("step",repeat),this.colourMap()].forEach((texture,n)=>{gl.activeTexture(gl.TEXTURE0+n),gl.bindTexture(n<4?gl.
+TEXTURE_2D_ARRAY:gl.TEXTURE_2D,texture)}),gl.activeTexture(gl.TEXTURE0+SAMPLERS.length)}draw(before,after,anchor,textures){
+let gl=this.graphics.context;textures&&(this.dropSlices(before,after),this.bindTextures(before,after)),this.bindNodes(before,
+after,anchor),gl.drawElements(gl.TRIANGLES,this.resources.get("index")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(null)}};var REQUEST_MS=60,LOST_MS=8e3,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD=4,Tiles=class{layers=[];missing=[];host;root;tiles=new Map;pyramid=null;chosen={
 choices:new Map,steps:[],names:""};drawn="";asked={names:[],steps:[]};count=0;isWaiting=!1;isOver=!1;lastCame=0;constructor(host,root){
 this.host=host,this.root=root}dispose(){this.isOver=!0;for(let name of[...this.tiles.keys()])this.drop(name)}setPart(name,part){
 let{graphics,header}=this.root,tile=this.tiles.get(name)??this.emptyTile();if(this.tiles.set(name,tile),part.name==="mes\
@@ -883,7 +994,7 @@ includes(step))for(let kind of["slices","extra"])this.release(tile,`${kind}/${st
 BYTES_HELD*data.byteLength;bytes>BUDGET_BYTES&&used<this.count&&this.drop(name)}}drop(name){let tile=this.tiles.get(name);
 tile?.scene?.dispose();for(let part of[...tile?.parts.keys()??[]])this.release(tile,part);this.tiles.delete(name)}release(tile,part){
 part!=="cmap"&&this.root.graphics.release(tile?.parts.get(part)),tile?.parts.delete(part)}};var STILL_MS=160,LOST_MS2=5e3,STEPS_HELD2=12,isEqual=(a,b)=>JSON.stringify(a)===JSON.stringify(b),Viewer=class{options;graphics=sharedGraphics();lifetime=new Lifetime;player=new Player;root=document.
-createElement("div");canvas=document.createElement("canvas");panel;pointers;parts=new Map;header=null;settings={};scene=null;tiles=null;camera=null;sharp=!1;isVisible=!0;shown=null;together=[
+createElement("div");canvas=document.createElement("canvas");card=new PointCard(this);panel;pointers;parts=new Map;header=null;settings={};scene=null;tiles=null;camera=null;sharp=!1;isVisible=!0;shown=null;together=[
 this];renderer;busyUntil=0;firstCamera=null;requests=new Map;constructor(element,options={}){this.options=options;let{root}=this;
 root.className="flowtex",root.tabIndex=0,root.dataset.sharp="false",root.setAttribute("data-lm-suppress-shortcuts","true"),
 root.setAttribute("role","application"),this.renderer=new ProgressiveRenderer(this),this.panel=new Panel(this),element.append(
@@ -932,28 +1043,29 @@ header||(!this.player.varies&&this.settings.motion==="off"&&this.choose("motion"
 update(),this.request(),this.options.onPlaying?.(!0))}pause(){if(this.options.follows)return this.options.follows.pause();
 this.playing&&(this.player.playing=!1,this.panel.update(),this.change(),this.options.onPlaying?.(!1))}togglePlaying(){let leader=this.
 options.follows??this;leader.playing?leader.pause():leader.play()}holdDraft(){this.busyUntil=performance.now()+STILL_MS}get isBusy(){
-return this.playing||performance.now()<this.busyUntil}change(cameraOnly=!1){this.renderer.restart(cameraOnly),this.setSharp(
-!1),this.request()}refine(){this.renderer.refine(),this.setSharp(!1),this.request()}arrange(shown){let scenes=this.tiles?.
-arrange(shown)??[];return this.root.dataset.tiles=String(this.tiles?.missing.length??0),scenes}draw(){this.frame(performance.
-now(),performance.now()+FRAME_MS)}setSharp(sharp){sharp!==this.sharp&&(this.sharp=sharp,this.root.dataset.sharp=String(sharp),
-sharp&&this.options.onFrame?.())}request(){!this.lifetime.isOver&&this.isVisible&&this.graphics.request(this)}resize(){let ratio=Math.
-max(window.devicePixelRatio||1,.1),width=Math.max(Math.round(this.root.clientWidth*ratio),1),height=Math.max(Math.round(
-this.root.clientHeight*ratio),1);width===this.canvas.width&&height===this.canvas.height||(this.renderer.resize(width,height),
-this.camera&&(this.camera.aspect=this.aspect,isEqual(this.camera.state,this.camera.start)&&this.place()),this.change())}get smooth(){
-let{header}=this;return this.options.smooth!==void 0||!header?this.options.smooth??!1:this.program(header).price<CARD_PRICE_MS}get ratio(){
-return this.canvas.height/Math.max(this.root.clientHeight,1)}lost(){this.tiles?.dispose(),this.header&&this.makeScene(this.
-header),this.setSharp(!1)}get lacking(){let[before,after]=this.player.moment;return this.scene?.missing(before,after)??[]}available(){
-let{header,scene,player,shown}=this;if(!header||!scene)return null;let moment=player.moment,count=header.slices.steps,ahead=player.
-playing?[1,2].map(n=>(moment[1]+n)%count):[];this.ask([moment[0],moment[1],...ahead]);let{lacking}=this;return this.panel.
-wait(lacking),lacking.length?shown&&!scene.missing(shown[0],shown[1]).length?shown:null:this.shown=moment}ask(steps){let now=performance.
-now(),lacking=[...new Set(steps)].filter(step=>this.scene?.missing(step,step).length);for(let step of lacking)!this.options.
-onNeed||now-(this.requests.get(step)??-1/0)<LOST_MS2||(this.requests.set(step,now),this.options.onNeed(step));return!lacking.
-length}frame(now,until){if(!(this.lifetime.isOver||this.graphics.isLost||!this.graphics.gl||!this.isVisible)&&!(!this.header||
-!this.scene||this.canvas.width<2))try{this.advance(now),this.drawPicture(this.header,until)}catch(error){this.pause(),this.
-panel.fail("The picture could not be drawn.",String(error))}}program(header,isClose=this.isClose(header)){let{vertex,fragment}=header.
-shaders,defines=isMoving(header,this.settings)?["FLOWTEX_MOVING"]:[];return isClose&&defines.push("FLOWTEX_CELLS"),this.
-graphics.programs.get(vertex,fragment,...defines)}isClose(header){if(!this.camera)return!1;let view=this.view([0,0,0],this.
-ratio),tiles=this.tiles?.layers.slice(1).map(({scene})=>scene.header)??[];return(tiles.length?tiles:[header]).some(part=>isNear(
+return this.playing||performance.now()<this.busyUntil}change(cameraOnly=!1){this.renderer.restart(cameraOnly),this.card.
+draw(),this.setSharp(!1),this.request()}refine(){this.renderer.refine(),this.setSharp(!1),this.request()}arrange(shown){
+let scenes=this.tiles?.arrange(shown)??[];return this.root.dataset.tiles=String(this.tiles?.missing.length??0),scenes}draw(){
+this.frame(performance.now(),performance.now()+FRAME_MS)}setSharp(sharp){sharp!==this.sharp&&(this.sharp=sharp,this.root.
+dataset.sharp=String(sharp),sharp&&(this.card.update(),this.options.onFrame?.()))}request(){!this.lifetime.isOver&&this.
+isVisible&&this.graphics.request(this)}resize(){let ratio=Math.max(window.devicePixelRatio||1,.1),width=Math.max(Math.round(
+this.root.clientWidth*ratio),1),height=Math.max(Math.round(this.root.clientHeight*ratio),1);width===this.canvas.width&&height===
+this.canvas.height||(this.renderer.resize(width,height),this.camera&&(this.camera.aspect=this.aspect,isEqual(this.camera.
+state,this.camera.start)&&this.place()),this.change())}get smooth(){let{header}=this;return this.options.smooth!==void 0||
+!header?this.options.smooth??!1:this.program(header).price<CARD_PRICE_MS}get ratio(){return this.canvas.height/Math.max(
+this.root.clientHeight,1)}lost(){this.tiles?.dispose(),this.header&&this.makeScene(this.header),this.setSharp(!1)}get lacking(){
+let[before,after]=this.player.moment;return this.scene?.missing(before,after)??[]}available(){let{header,scene,player,shown}=this;
+if(!header||!scene)return null;let moment=player.moment,count=header.slices.steps,ahead=player.playing?[1,2].map(n=>(moment[1]+
+n)%count):[];this.ask([moment[0],moment[1],...ahead]);let{lacking}=this;return this.panel.wait(lacking),lacking.length?shown&&
+!scene.missing(shown[0],shown[1]).length?shown:null:this.shown=moment}ask(steps){let now=performance.now(),lacking=[...new Set(
+steps)].filter(step=>this.scene?.missing(step,step).length);for(let step of lacking)!this.options.onNeed||now-(this.requests.
+get(step)??-1/0)<LOST_MS2||(this.requests.set(step,now),this.options.onNeed(step));return!lacking.length}frame(now,until){
+if(!(this.lifetime.isOver||this.graphics.isLost||!this.graphics.gl||!this.isVisible)&&!(!this.header||!this.scene||this.
+canvas.width<2))try{this.advance(now),this.drawPicture(this.header,until)}catch(error){this.pause(),this.panel.fail("The\
+ picture could not be drawn.",String(error))}}program(header,isClose=this.isClose(header)){let{vertex,fragment}=header.shaders,
+defines=isMoving(header,this.settings)?["FLOWTEX_MOVING"]:[];return isClose&&defines.push("FLOWTEX_CELLS"),this.graphics.
+programs.get(vertex,fragment,...defines)}isClose(header){if(!this.camera)return!1;let view=this.view([0,0,0],this.ratio),
+tiles=this.tiles?.layers.slice(1).map(({scene})=>scene.header)??[];return(tiles.length?tiles:[header]).some(part=>isNear(
 part,this.settings,view))}drawPicture(header,until){let shown=this.available();if(this.camera||this.place(),!shown||!this.
 camera)return;let{programs}=this.graphics,program=this.program(header);if(program.error){this.panel.fail("The shader doe\
 s not compile with this graphics driver.",program.error);return}if(!program.ready)return this.request();!this.sharp&&this.
@@ -967,8 +1079,9 @@ range=constants.anchorRange*2*camera.height,isFar=v2=>v2.some(c=>Math.abs(c)>ran
 focus,anchor:isFar(subtract2(local,old))?anchor:old,eye:camera.eye,between:shown[2],time:player.timeOf(shown),clock:player.
 clock,density,pixel:2*camera.height/Math.max(this.root.clientHeight*density,1)}}get canPick(){let{header,graphics}=this;
 return!header||graphics.isLost||!graphics.gl?!1:graphics.programs.get(header.shaders.vertex,header.shaders.pick).ready}point(x,y){
-let{tiles,camera,shown,canvas}=this;if(!tiles?.layers.length||!camera||!shown||!this.canPick)return null;let{anchor}=this.
-view(shown,1);return pickedPoint({layers:tiles.layers,camera,moment:shown,anchor,canvas},x,y)}};function viewersIn(element,count,options,own=()=>({})){if(count<2)return[new Viewer(element,{...options,...own(0)})];let pair=dom(
+return this.find(x,y)?.point??null}find(x,y){let{tiles,camera,shown,canvas}=this;if(!tiles?.layers.length||!camera||!shown||
+!this.canPick)return null;let{anchor}=this.view(shown,1);return pickedPoint({layers:tiles.layers,camera,moment:shown,anchor,
+canvas},x,y)}};function viewersIn(element,count,options,own=()=>({})){if(count<2)return[new Viewer(element,{...options,...own(0)})];let pair=dom(
 "div",{class:"flowtex-pair"});pair.style.cssText="display: flex; gap: 2px; width: 100%; height: 100%",element.append(pair);
 let viewers=[];for(let n=0;n<count;n+=1){let cell=dom("div");cell.style.cssText="flex: 1 1 0; min-width: 0; height: 100%",
 pair.append(cell);let others=()=>viewers.filter((_,m)=>m!==n),follower=n?{controls:!1,follows:viewers[0]}:{};viewers.push(

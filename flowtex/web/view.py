@@ -109,6 +109,7 @@ def colours_of(scene: Scene, field: FlowField, background: tuple[float, float, f
         lighting=scene.is_lit,
         opacity=float(look.opacity) if look.visible else 0.0,
         bar=look.has_bar,
+        label="" if name is None else scene.label_of(name),
     )
 
 
@@ -121,6 +122,7 @@ def choices_of(scene: Scene) -> tuple[dict[str, Any], ...]:
         choices.append(
             {
                 "name": name,
+                "label": scene.label_of(name),
                 "unit": scene.field.unit_of(name),
                 "low": low,
                 "high": high,

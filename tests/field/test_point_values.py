@@ -61,3 +61,28 @@ def test_a_vector_without_a_sign_does_not_cancel() -> None:
     for j in np.linspace(0.1, 3.9, 7):
         got = values_at(field, (j, 0.3))
         assert np.linalg.norm(got.velocity) > 0.65
+
+
+def stream(normal: float, **options: object) -> FlowField:
+    y, x = np.mgrid[0:4.0, 0:5.0]
+    velocity = np.stack([3 + 0 * x, 4 + 0 * x, normal + 0 * x], axis=-1)
+    return FlowField.from_arrays(np.stack([x, y], axis=-1), velocity, **options)  # type: ignore[arg-type]
+
+
+def test_the_speed_says_whether_a_part_of_the_flow_is_left_out() -> None:
+    lies, leaves = stream(0.0), stream(12.0)
+    assert values_at(lies, (1, 1)).speed_label == lies.label_of("speed") == "speed"
+    assert values_at(leaves, (1, 1)).speed_label == "speed in the surface"
+    assert leaves.label_of("speed") == "speed in the surface"
+    # What is left out is less than a thousandth of the speed.
+    assert stream(0.2).label_of("speed") == "speed"
+    assert values_at(leaves, (1, 1)).speed == pytest.approx(5)
+
+
+def test_a_speed_of_the_file_keeps_its_name() -> None:
+    y = np.mgrid[0:4.0, 0:5.0][0]
+    field = stream(12.0, scalars={"speed": 13 + 0 * y, "height": y})
+    assert field.label_of("speed") == "speed"
+    assert field.label_of("height") == "height"
+    got = values_at(field, (1, 1))
+    assert (got.speed_label, got.scalars["speed"]) == ("speed in the surface", 13)

@@ -120,3 +120,10 @@ def test_a_node_without_a_value_is_grey(plotter: Any) -> None:
     plotter.flowtex.add(nan, scalars="gap", strength=0.0, show_scalar_bar=False)
     grey = np.rint(255 * np.array(pv.Color(NO_VALUE_COLOR).float_rgb))
     assert (shot(plotter) == grey).all(axis=-1).mean() > 0.2
+
+
+def test_the_bar_says_which_speed_it_is(plotter: Any) -> None:
+    flow = gyre()
+    velocity = flow.velocity[0] + np.array([0.0, 0.0, 1.0])
+    plotter.flowtex.add(flowtex.FlowField.from_arrays(flow.points, velocity))
+    assert list(plotter.scalar_bars.keys()) == ["speed in the surface"]

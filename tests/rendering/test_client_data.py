@@ -214,3 +214,19 @@ def test_slopes_beyond_half_precision_stay_finite(monkeypatch: pytest.MonkeyPatc
     layers = scene.textures.layers(0) * 1e9
     monkeypatch.setattr(TextureSet, "layers", lambda self, step: layers)
     assert np.isfinite(scene.step(0)["slices/0"]).all()
+
+
+@pytest.mark.parametrize(("normal", "label"), [(0.0, "speed"), (1.0, "speed in the surface")])
+def test_the_header_has_the_words_of_the_legend(normal: float, label: str) -> None:
+    flow = plane()
+    velocity = flow.velocity[0] + np.array([0.0, 0.0, normal])
+    words = {"length_unit": "m", "time_unit": "s"}
+    field = flowtex.FlowField.from_arrays(flow.points, velocity, **words)  # type: ignore[arg-type]
+    view, data = staged(field)
+    header = data.header(view.scene.settings)
+    assert header["scalars"]["name"] == header["scalars"]["choices"][0]["name"] == "speed"
+    assert header["scalars"]["label"] == header["scalars"]["choices"][0]["label"] == label
+    typical = data.textures.typical_speed
+    assert header["speed"] == {"label": label, "unit": "m/s", "typical": typical}
+    assert header["lengthUnit"] == "m"
+    assert view.scene.title_of("speed") == f"{label} (m/s)"

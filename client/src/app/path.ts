@@ -1,10 +1,8 @@
 // The path through a point: over the picture, and enlarged with its samples.
 
+import { pathShapes, type Line, type PathLines, type Place } from "../pathlines.ts";
 import { clamp } from "../vectors.ts";
 import { vue, type Node } from "./vue.ts";
-
-type Place = [number, number];
-type Line = Place[];
 
 interface Sample {
   x: number;
@@ -13,11 +11,9 @@ interface Sample {
   grey: string;
 }
 
-interface Over {
-  path: Line[];
-  sampled: Line[];
+/** Places go from -1 to 1, right and up. */
+interface Over extends PathLines {
   samples: Sample[];
-  point: Place | null;
   panes: number;
   aspect: number;
 }
@@ -27,7 +23,7 @@ type Mapping = (place: Place) => Place;
 /** Width and height of the enlarged path, what is left free around it, and radii, in pixels. */
 const INSET = { width: 232, height: 112, margin: 9 };
 const DOT = { least: 1.5, most: 4.5 };
-const POINT_RADIUS = { picture: 7, inset: 6 };
+const POINT_RADIUS = 6;
 
 function polyline(line: Line, kind: string, mapping: Mapping): Node {
   const points = line.map((place) => mapping(place).map((v) => v.toFixed(1)).join(",")).join(" ");
@@ -42,13 +38,11 @@ function circle([cx, cy]: Place, r: number, attributes: object): Node {
 function pane(over: Over, number: number, width: number, height: number): Node {
   const { h } = vue();
   const mapping: Mapping = ([x, y]) => [(number + (x + 1) / 2) * width, ((1 - y) / 2) * height];
-  const lines = (all: Line[], kind: string) => all.map((line) => polyline(line, kind, mapping));
-  const marks = [
-    ...lines(over.path, "whole"),
-    ...lines(over.sampled, "under"),
-    ...lines(over.sampled, "sampled"),
-  ];
-  if (over.point) marks.push(circle(mapping(over.point), POINT_RADIUS.picture, { class: "point" }));
+  const lines = (all: Line[]) => all.map((line) => line.map(mapping));
+  const { path: whole, sampled, directed } = over;
+  const point = over.point && mapping(over.point);
+  const shapes = pathShapes({ path: lines(whole), sampled: lines(sampled), point, directed });
+  const marks = shapes.map(([tag, attributes]) => h(tag, attributes));
   const id = `flowtex-pane-${number}`;
   const clip = h("clipPath", { id }, h("rect", { x: number * width, y: 0, width, height }));
   return h("g", { "clip-path": `url(#${id})` }, [clip, ...marks]);
@@ -106,7 +100,7 @@ function enlarged({ samples, sampled, point, aspect }: Over): Node {
     const most = clamp(0.75 * Math.hypot(nx - cx, ny - cy), DOT.least, DOT.most);
     return circle([cx, cy], most * (0.35 + 0.65 * weight), { fill: grey });
   });
-  if (point) dots.push(circle(mapping(point), POINT_RADIUS.inset, { class: "point" }));
+  if (point) dots.push(circle(mapping(point), POINT_RADIUS, { class: "point" }));
   const { width, height } = INSET;
   return h("svg", { viewBox: `0 0 ${width} ${height}`, width, height }, [...lines, ...dots]);
 }

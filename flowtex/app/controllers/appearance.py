@@ -69,7 +69,10 @@ class Appearance(Controller):
 
     def show_field(self) -> None:
         """Let the page show settings and colours of the flow that is shown."""
-        self.state.set(colours=[*self.area.scene.scalar_names, PLAIN])
+        scene = self.area.scene
+        names = [(name, scene.label_of(name)) for name in scene.scalar_names]
+        choices = [{"value": name, "title": label} for name, label in (*names, (PLAIN, PLAIN))]
+        self.state.set(colours=choices)
         self.show_settings()
         self.show_colours()
 
@@ -250,9 +253,8 @@ class Appearance(Controller):
         if not self.area.scalars:
             return {"name": "", "low": "", "high": "", "stops": []}
         low, high = self.area.scene.scalar_limits
-        name, unit = self.area.scalars, self.area.scene.field.unit_of(self.area.scalars)
         return {
-            "name": f"{name} ({unit})" if unit else name,
+            "name": self.area.scene.title_of(self.area.scalars),
             "low": f"{low:.3g}",
             "high": f"{high:.3g}",
             "stops": self.viewport.colour_stops(),

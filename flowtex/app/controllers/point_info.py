@@ -34,6 +34,8 @@ HOVER_INTERVAL_S = 0.06
 DIGITS, MOST_DIGITS = 4, 14
 #: How many times as long as the part with samples the path is that is shown.
 PATH_LENGTH = 4.0
+#: Samples on a side as which fewer count, so that there is something to see.
+FEWEST_SAMPLES = 10
 #: Units longer than this are left out.
 UNIT_LENGTH = 12
 #: How far from the middle of the view a line is drawn, in halves of the view.
@@ -53,9 +55,14 @@ def number_text(x: float, digits: int = DIGITS) -> str:
     return np.format_float_positional(float(f"{x:.{digits}g}"), trim="-")
 
 
+def suffix(unit: str) -> str:
+    """Write a unit behind a number, where it is short enough."""
+    return f" {unit}" if 0 < len(unit) <= UNIT_LENGTH else ""
+
+
 def with_unit(x: float, unit: str) -> str:
-    """Write a number with its unit, where that is short enough."""
-    return f"{number_text(x)} {unit}" if 0 < len(unit) <= UNIT_LENGTH else number_text(x)
+    """Write a number with its unit."""
+    return number_text(x) + suffix(unit)
 
 
 class PointText:
@@ -70,12 +77,22 @@ class PointText:
         if index is None:
             return None
         point = values_at(self._viewport.field, index, self._viewport.handle.time)
-        lines = [("position", self._vector(point.position, point, digits=self._digits))]
-        unit = point.speed_unit
-        suffix = f" {unit}" if 0 < len(unit) <= UNIT_LENGTH else ""
-        lines.append(("velocity", self._vector(point.velocity, point, digits=DIGITS) + suffix))
-        lines.append(("speed", with_unit(point.speed, unit)))
-        return lines + [(name, number_text(value)) for name, value in point.scalars.items()]
+        return self.lines(point)
+
+    def lines(self, point: PointValues) -> Lines:
+        """Return words and numbers of a point of the surface."""
+        field, unit = self._viewport.field, point.speed_unit
+        position = self._vector(point.position, field.surface.extent, self._digits)
+        velocity = self._vector(point.velocity, 0.0, DIGITS, whole=field.leaves_surface)
+        return [
+            ("position", position + suffix(point.length_unit)),
+            ("velocity", velocity + suffix(unit)),
+            (point.speed_label, with_unit(point.speed, unit)),
+            *(
+                (name, with_unit(value, field.unit_of(name)))
+                for name, value in point.scalars.items()
+            ),
+        ]
 
     def index(self, x: float, y: float) -> tuple[float, float] | None:
         """Place on the surface (j, i) at a place of the view; ``None`` beside it."""
@@ -89,32 +106,38 @@ class PointText:
         zoom = max(self._viewport.zoom, 1.0)
         return int(min(np.ceil(DIGITS + np.log10(zoom)), MOST_DIGITS))
 
-    def _vector(self, vector: Floats, point: PointValues, *, digits: int) -> str:
-        """Write a vector; a surface that lies across z has no third component."""
+    def _vector(self, vector: Floats, size: float, digits: int, *, whole: bool = False) -> str:
+        """Write a vector; what lies in a surface across z has no third component."""
         surface = self._viewport.field.surface
         across = surface.frame is not None and not np.abs(surface.frame[:, 2]).any()
-        size = float(np.abs(vector).max())
-        smallest = 1e-9 * max(size, surface.extent if vector is point.position else size)
-        components = [0.0 if abs(v) < smallest else float(v) for v in vector[: 2 if across else 3]]
+        smallest = 1e-9 * max(float(np.abs(vector).max()), size)
+        count = 2 if across and not whole else 3
+        components = [0.0 if abs(v) < smallest else float(v) for v in vector[:count]]
         return f"({', '.join(number_text(v, digits) for v in components)})"
 
 
 class PathCard:
-    """A probe as the page shows it: a path over the picture, and a card beside it."""
+    """A probe as the page shows it: a path over the picture, and a card beside it.
 
-    def __init__(self, probe: Probe) -> None:
-        self.probe = probe
+    ``about`` are the lines on the point itself, which come first; a flow without a sign is not
+    ``directed``.
+    """
+
+    def __init__(self, probe: Probe, about: Lines | None = None, *, directed: bool = True) -> None:
+        self.probe, self._about, self._directed = probe, about or [], directed
 
     def over(self, viewport: Viewport) -> dict[str, Any]:
         """Return what lies over the picture as the camera now stands.
 
         ``path`` and ``sampled`` are stretches of places [x, y] of the whole path and of the part
-        with samples; ``samples`` are dicts of ``x``, ``y``, ``weight`` and ``grey``; ``point`` is
-        [x, y] or ``None``. Places go from -1 to 1, right and up.
+        with samples, downstream where it is ``directed``; ``samples`` are dicts of ``x``, ``y``,
+        ``weight`` and ``grey``; ``point`` is [x, y] or ``None``. Places go from -1 to 1, right
+        and up.
         """
         probe = self.probe
         # Far beyond the samples the slices are too coarse to look at, and no picture needs them.
-        near = np.abs(probe.path_lags) <= PATH_LENGTH * float(np.abs(probe.lags).max())
+        reach = float(np.fmax(np.abs(probe.lags).max(), FEWEST_SAMPLES * abs(probe.step)))
+        near = np.abs(probe.path_lags) <= PATH_LENGTH * reach
         camera, aspect = viewport.camera, viewport.aspect
         path, path_lags = camera.project(probe.path[near], aspect), probe.path_lags[near]
         inside = (path_lags <= probe.lags[0]) & (path_lags >= probe.lags[-1])
@@ -132,6 +155,7 @@ class PathCard:
                 if np.isfinite([x, y]).all() and max(abs(x), abs(y)) <= LINE_REACH
             ],
             "point": point.tolist() if np.isfinite(point).all() else None,
+            "directed": self._directed,
             "panes": len(viewport.panes),
             "aspect": aspect,
         }
@@ -172,11 +196,10 @@ class PathCard:
         probe = self.probe
         length = probe.field_values.length_unit
         unit = length if probe.parameter == "arclength" else probe.field_values.time_unit
-        count = len(probe.lags)
-        ended = f" of {probe.asked}: the path ends" if count < probe.asked else ""
         pixels = f"{number_text(probe.grain / probe.pixel, 3)} pixels"
         lines = [
-            ("samples", f"{count}{ended}"),
+            *self._about,
+            ("samples", self._samples()),
             ("level of detail", f"{probe.level:.2f}"),
             ("grain", f"{with_unit(probe.grain, length)}, {pixels}"),
             ("step", with_unit(probe.step, unit)),
@@ -190,6 +213,19 @@ class PathCard:
             *lines,
             ("value", f"{mean:+.2f} × {probe.gain:.2f} = {probe.value:+.2f}"),
         ]
+
+    def _samples(self) -> str:
+        """How many samples there are, and why not as many as the setting says."""
+        probe, count = self.probe, len(self.probe.lags)
+        reasons = []
+        if probe.asked > probe.setting + 1:
+            reasons.append(f"{probe.setting} are set, in motion it takes twice as many")
+        elif probe.asked > probe.setting:
+            reasons.append(f"{probe.setting} are set, and the point itself is one more")
+        if count < probe.asked:
+            reasons.append("the path ends")
+        number = f"{count} of {probe.asked}" if count < probe.asked else f"{count}"
+        return f"{number}: {'; '.join(reasons)}" if reasons else number
 
 
 def clip_line(places: Floats, reach: float = LINE_REACH) -> list[list[list[float]]]:
@@ -341,7 +377,8 @@ class PointInfo(Controller):
         if path is None:
             self.close_card()
             return
-        self._card = PathCard(path)
+        about = self._text.lines(path.field_values)
+        self._card = PathCard(path, about, directed=not self.viewport.field.sign_free)
         lines = [list(line) for line in self._card.lines()]
         card = {"lines": lines, "bars": self._card.bars()}
         self.state.send(card=card, over=self._card.over(self.viewport))

@@ -21,6 +21,7 @@ from flowtex._util.array_types import Bytes, Floats, Floats32
 from flowtex._util.colours import CMAPS, colour_shares, colour_table, is_diverging
 from flowtex.camera import CAMERA_LIMITS, Camera
 from flowtex.field import FlowField
+from flowtex.field.field import speed_unit
 from flowtex.field.interpolation import steps_around
 from flowtex.rendering.mesh_levels import MeshLevels, mesh_limits
 from flowtex.rendering.shaders import shader_text
@@ -54,12 +55,13 @@ class Colours:
 
     Attributes
     ----------
-    name, unit
-        What it is coloured by, for the legend; ``None`` for a plain surface.
+    name, label, unit
+        What it is coloured by, ``None`` for a plain surface, and words for the legend.
     number
         Number of the scalar among those of the field.
     choices
-        What a person may choose to colour by: name, unit, automatic range, and whether it varies.
+        What a person may choose to colour by: name, label, unit, automatic range, and whether it
+        varies.
     cmap, auto
         Name of the colour map, empty for one that has none, and whether nobody has chosen its
         range.
@@ -100,6 +102,7 @@ class Colours:
     choices: tuple[Mapping[str, Any], ...] = ()
     cmap: str = ""
     auto: bool = True
+    label: str = ""
 
     def shares(self, values: Floats) -> Floats:
         """Places of values on the colour map, from 0 to 1."""
@@ -185,8 +188,11 @@ class ClientData:
             "shaders": dict(_shaders(tuple(variant))),
             "geometry": self._geometry(),
             "slices": self._slices(),
+            "lengthUnit": self.field.length_unit,
+            "speed": self._speed(),
             "scalars": {
                 "name": colours.name,
+                "label": colours.label or colours.name or "",
                 "low": float(colours.low),
                 "high": float(colours.high),
                 "log": bool(colours.log_scale),
@@ -337,6 +343,14 @@ class ClientData:
             "extent": float(geometry.extent),
             "center": _numbers(geometry.center),
             "frame": _numbers(geometry.frame),
+        }
+
+    def _speed(self) -> dict[str, Any]:
+        field = self.field
+        return {
+            "label": field.speed_label,
+            "unit": speed_unit(field.length_unit, field.time_unit),
+            "typical": float(self.textures.typical_speed),
         }
 
     def _slices(self) -> dict[str, Any]:

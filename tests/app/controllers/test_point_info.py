@@ -149,13 +149,26 @@ def test_the_tip_of_a_flat_surface() -> None:
     hover = PointText(viewport)
     got = dict(hover(0.5, -0.5) or ())
     assert got == {
-        "position": "(0.8, -0.5)",
+        "position": "(0.8, -0.5) m",
         "velocity": "(1, 0.2) m/s",
         "speed": "1.02 m/s",
         "warmth": "8",
     }
     assert hover(0.5, 1.01) is None
     assert viewport.surface_point(0.5, 1.5) == pytest.approx([0.8, 1.5, 0.0])
+
+
+def test_a_flow_that_leaves_the_surface_has_all_its_velocity() -> None:
+    inside = flat()
+    velocity = inside.velocity + np.array([0.0, 0.0, 0.6])
+    field = FlowField.from_arrays(inside.points, velocity[0], periodic="")
+    viewport = Seen((0.0, 0.0, 5.0), (0.0, 0.0, 0.0), scale=1.0, field=field)
+    got = dict(PointText(viewport)(0.5, -0.5) or ())
+    assert got == {
+        "position": "(0.8, -0.5)",
+        "velocity": "(1, 0.2, 0.6)",
+        "speed in the surface": "1.02",
+    }
 
 
 def test_a_tilted_plane_has_three_coordinates() -> None:
@@ -233,6 +246,33 @@ def test_the_card_says_it_in_words(card: PathCard) -> None:
     assert lines["grain"] == "0.015 m, 1.5 pixels"
     assert lines["step"] == "0.0105 m"
     assert lines["value"].endswith(f"= {card.probe.value:+.2f}")
+
+
+def test_the_card_begins_with_the_point() -> None:
+    viewport = Seen((0.0, 0.0, 5.0), (0.0, 0.0, 0.0), scale=1.0, field=flat())
+    got = probe(view_of(flat(), samples=21), (10.0, 20.0), pixel=0.01)
+    lines = PathCard(got, PointText(viewport).lines(got.field_values)).lines()
+    words = [word for word, _ in lines]
+    assert words[:5] == ["position", "velocity", "speed", "warmth", "samples"]
+
+
+def test_a_number_of_samples_that_is_not_the_one_set_has_a_reason() -> None:
+    def said(**settings: object) -> str:
+        got = probe(view_of(flat(), **settings), (10.0, 20.0), pixel=0.01)
+        return dict(PathCard(got).lines())["samples"]
+
+    assert said(samples=21) == said(samples=21, two_sided=False) == "21"
+    assert said(samples=20) == "21: 20 are set, and the point itself is one more"
+    assert said(samples=20, two_sided=False) == "20"
+    assert said(samples=20, motion="speed") == "39: 20 are set, in motion it takes twice as many"
+    assert said(samples=1, motion="speed") == "1"
+
+
+def test_a_path_without_a_sign_is_not_directed() -> None:
+    viewport = Seen((0.0, 0.0, 5.0), (0.0, 0.0, 0.0), scale=1.0)
+    got = probe(view_of(flat()), (10.0, 20.0), pixel=0.01)
+    assert PathCard(got).over(viewport)["directed"]
+    assert not PathCard(got, directed=False).over(viewport)["directed"]
 
 
 def test_a_path_that_ends_says_so() -> None:

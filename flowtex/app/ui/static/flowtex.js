@@ -41,28 +41,37 @@ OWNERS))&&!(key===PLAY_KEY&&target instanceof HTMLButtonElement)){if(key===FULLS
 COMMANDS)emit("command",COMMANDS[key]);else if(key in TOGGLES)emit("toggle",TOGGLES[key]);else return;isClose||event.preventDefault()}}
 var keys={name:"flowtex-keys",emits:["command","toggle","linked"],setup(_,{emit}){let onKeyDown=event=>press(event,emit);
 return vue().onMounted(()=>{window.addEventListener("keydown",onKeyDown),window.location.hash.length>1&&emit("linked",window.
-location.hash)}),vue().onBeforeUnmount(()=>window.removeEventListener("keydown",onKeyDown)),()=>null}};var INSET={width:232,height:112,margin:9},DOT={least:1.5,most:4.5},POINT_RADIUS={picture:7,inset:6};function polyline(line,kind,mapping){
+location.hash)}),vue().onBeforeUnmount(()=>window.removeEventListener("keydown",onKeyDown)),()=>null}};var HEAD={apart:90,length:14,half:5},POINT_RADIUS=6,FREE_RADIUS=20,textOf=line=>line.map(place=>place.map(v=>v.toFixed(1)).
+join()).join(" ");function arrowHeads(line,apart=HEAD.apart){let heads=[],due=0;for(let n=line.length-1;n>0;n-=1){let[[ax,
+ay],[bx,by]]=[line[n-1],line[n]],size=Math.hypot(bx-ax,by-ay);if(!size)continue;let[ux,uy]=[(bx-ax)/size,(by-ay)/size];for(;due<
+size;due+=apart){let[x,y]=[bx-due*ux,by-due*uy],[left,low]=[x-HEAD.length*ux,y-HEAD.length*uy],[wide,tall]=[-HEAD.half*uy,
+HEAD.half*ux];heads.push([[x,y],[left+wide,low+tall],[left-wide,low-tall]])}due-=size}return heads}function pathShapes({
+path:path2,sampled,point,directed}){let lines=(all,kind)=>all.map(line=>["polyline",{class:kind,points:textOf(line)}]),isFree=([
+[x,y]])=>!point||Math.hypot(x-point[0],y-point[1])>FREE_RADIUS,heads=directed?path2.flatMap(line=>arrowHeads(line)).filter(
+isFree):[],ring=kind=>point?[["circle",{class:kind,cx:point[0],cy:point[1],r:POINT_RADIUS}]]:[];return[...lines(path2,"w\
+hole-casing"),...lines(path2,"whole"),...lines(sampled,"casing"),...lines(sampled,"sampled"),...heads.map(head=>["polygo\
+n",{class:"arrow",points:textOf(head)}]),...ring("point-casing"),...ring("point")]}var INSET={width:232,height:112,margin:9},DOT={least:1.5,most:4.5},POINT_RADIUS2=6;function polyline(line,kind,mapping){
 let points=line.map(place=>mapping(place).map(v=>v.toFixed(1)).join(",")).join(" ");return vue().h("polyline",{class:kind,
 points})}function circle([cx,cy],r,attributes){return vue().h("circle",{cx,cy,r,...attributes})}function pane(over,number,width,height){
-let{h}=vue(),mapping=([x,y])=>[(number+(x+1)/2)*width,(1-y)/2*height],lines=(all,kind)=>all.map(line=>polyline(line,kind,
-mapping)),marks=[...lines(over.path,"whole"),...lines(over.sampled,"under"),...lines(over.sampled,"sampled")];over.point&&
-marks.push(circle(mapping(over.point),POINT_RADIUS.picture,{class:"point"}));let id=`flowtex-pane-${number}`,clip=h("cli\
-pPath",{id},h("rect",{x:number*width,y:0,width,height}));return h("g",{"clip-path":`url(#${id})`},[clip,...marks])}var path={
-name:"flowtex-path",props:["over"],setup(props){let{h,ref,onMounted,onBeforeUnmount}=vue(),place=ref(null),size=ref([1,1]),
-watcher=new ResizeObserver(([{contentRect}])=>{size.value=[contentRect.width,contentRect.height]});return onMounted(()=>place.
-value&&watcher.observe(place.value)),onBeforeUnmount(()=>watcher.disconnect()),()=>{let{over}=props;if(!over)return h("d\
-iv",{ref:place});let[width,height]=size.value,wide=width/over.panes,panes=Array.from({length:over.panes},(_,n)=>pane(over,
-n,wide,height));return h("div",{ref:place},h("svg",panes))}}};function fitting(places,aspect){let{width:wide,height:high,
-margin}=INSET,flat=([x,y])=>[x*aspect,-y],flattened=places.map(flat),[xs,ys]=[0,1].map(k=>flattened.map(place=>place[k])),
-[left,top]=[Math.min(...xs),Math.min(...ys)],[width,height]=[Math.max(...xs)-left,Math.max(...ys)-top],ratios=[(wide-2*margin)/
-(width||1e-9),(high-2*margin)/(height||1e-9)],scale=Math.min(...ratios);return place=>{let[x,y]=flat(place);return[wide/
-2+(x-left-width/2)*scale,high/2+(y-top-height/2)*scale]}}function enlarged({samples,sampled,point,aspect}){let{h}=vue(),
-places=samples.map(({x,y})=>[x,y]),mapping=fitting(places,aspect),centres=places.map(mapping),lines=sampled.map(line=>polyline(
-line,"sampled",mapping)),dots=samples.map(({weight,grey},n)=>{let[cx,cy]=centres[n],[nx,ny]=centres[n>0?n-1:1]??[cx+DOT.
-most,cy+DOT.most],most=clamp(.75*Math.hypot(nx-cx,ny-cy),DOT.least,DOT.most);return circle([cx,cy],most*(.35+.65*weight),
-{fill:grey})});point&&dots.push(circle(mapping(point),POINT_RADIUS.inset,{class:"point"}));let{width,height}=INSET;return h(
-"svg",{viewBox:`0 0 ${width} ${height}`,width,height},[...lines,...dots])}var inset={name:"flowtex-inset",props:["over"],
-setup(props){return()=>vue().h("div",props.over?.samples.length?[enlarged(props.over)]:[])}};function linked(hash){let folder=new URL(".",document.baseURI),secret=sessionStorage.getItem(`flowtex ${folder.pathname}\
+let{h}=vue(),mapping=([x,y])=>[(number+(x+1)/2)*width,(1-y)/2*height],lines=all=>all.map(line=>line.map(mapping)),{path:whole,
+sampled,directed}=over,point=over.point&&mapping(over.point),marks=pathShapes({path:lines(whole),sampled:lines(sampled),
+point,directed}).map(([tag,attributes])=>h(tag,attributes)),id=`flowtex-pane-${number}`,clip=h("clipPath",{id},h("rect",
+{x:number*width,y:0,width,height}));return h("g",{"clip-path":`url(#${id})`},[clip,...marks])}var path={name:"flowtex-pa\
+th",props:["over"],setup(props){let{h,ref,onMounted,onBeforeUnmount}=vue(),place=ref(null),size=ref([1,1]),watcher=new ResizeObserver(
+([{contentRect}])=>{size.value=[contentRect.width,contentRect.height]});return onMounted(()=>place.value&&watcher.observe(
+place.value)),onBeforeUnmount(()=>watcher.disconnect()),()=>{let{over}=props;if(!over)return h("div",{ref:place});let[width,
+height]=size.value,wide=width/over.panes,panes=Array.from({length:over.panes},(_,n)=>pane(over,n,wide,height));return h(
+"div",{ref:place},h("svg",panes))}}};function fitting(places,aspect){let{width:wide,height:high,margin}=INSET,flat=([x,y])=>[
+x*aspect,-y],flattened=places.map(flat),[xs,ys]=[0,1].map(k=>flattened.map(place=>place[k])),[left,top]=[Math.min(...xs),
+Math.min(...ys)],[width,height]=[Math.max(...xs)-left,Math.max(...ys)-top],ratios=[(wide-2*margin)/(width||1e-9),(high-2*
+margin)/(height||1e-9)],scale=Math.min(...ratios);return place=>{let[x,y]=flat(place);return[wide/2+(x-left-width/2)*scale,
+high/2+(y-top-height/2)*scale]}}function enlarged({samples,sampled,point,aspect}){let{h}=vue(),places=samples.map(({x,y})=>[
+x,y]),mapping=fitting(places,aspect),centres=places.map(mapping),lines=sampled.map(line=>polyline(line,"sampled",mapping)),
+dots=samples.map(({weight,grey},n)=>{let[cx,cy]=centres[n],[nx,ny]=centres[n>0?n-1:1]??[cx+DOT.most,cy+DOT.most],most=clamp(
+.75*Math.hypot(nx-cx,ny-cy),DOT.least,DOT.most);return circle([cx,cy],most*(.35+.65*weight),{fill:grey})});point&&dots.push(
+circle(mapping(point),POINT_RADIUS2,{class:"point"}));let{width,height}=INSET;return h("svg",{viewBox:`0 0 ${width} ${height}`,
+width,height},[...lines,...dots])}var inset={name:"flowtex-inset",props:["over"],setup(props){return()=>vue().h("div",props.
+over?.samples.length?[enlarged(props.over)]:[])}};function linked(hash){let folder=new URL(".",document.baseURI),secret=sessionStorage.getItem(`flowtex ${folder.pathname}\
  secret`);return secret&&(folder.search=new URLSearchParams({secret}).toString()),folder.href+hash}Object.assign(window,
 {flowtex_page:{install(app){for(let component of[keys,path,inset,browser])app.component(component.name,component);Object.
 assign(app.config.globalProperties,{flowtex_fullscreen:()=>toggleFullscreen(document.documentElement),flowtex_address:linked,

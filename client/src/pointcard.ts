@@ -1,0 +1,183 @@
+// What a click shows: the path through the point, over the picture, and a card of its numbers.
+
+import type { Camera } from "./camera.ts";
+import { dom, numberText } from "./dom.ts";
+import type { Lifetime, Timer } from "./lifetime.ts";
+import type { Options } from "./options.ts";
+import { pathShapes, type Line, type Place } from "./pathlines.ts";
+import { valuesAt, type Found, type Point } from "./picking.ts";
+import { pathThrough, type PointPath } from "./pointpath.ts";
+import type { Header, Settings } from "./protocol.ts";
+import type { Layer } from "./tiles.ts";
+import type { Moment } from "./uniforms.ts";
+import type { Vector } from "./vectors.ts";
+
+const TITLE = "Path through this point";
+const SVG = "http://www.w3.org/2000/svg";
+/** Digits of a coordinate, at first and at most: more are shown the closer the view is. */
+const FEWEST_DIGITS = 4;
+const MOST_DIGITS = 14;
+/** Those of a velocity, which comes from numbers in half precision. */
+const VELOCITY_DIGITS = 3;
+/** Milliseconds for which a click waits until points can be found, and between two looks. */
+const PATIENCE_MS = 5000;
+const RETRY_MS = 40;
+/** Units longer than this are left out. */
+const UNIT_LENGTH = 12;
+
+/** A number with its unit. */
+export function withUnit(text: string, unit: string): string {
+  return unit && unit.length <= UNIT_LENGTH ? `${text} ${unit}` : text;
+}
+
+/** Two components of a vector in a surface that lies across z, else three. */
+function vectorText(vector: readonly number[], size: number, digits: number, flat: boolean): string {
+  const texts = vector.slice(0, flat ? 2 : 3).map((x) => {
+    const value = Math.abs(x) < 1e-9 * size ? 0 : x;
+    return digits > 5 ? String(Number(value.toPrecision(digits))) : numberText(value, digits);
+  });
+  return `(${texts.join(", ")})`;
+}
+
+const liesAcross = ({ planar, frame }: Header["geometry"]) => planar && Math.abs(frame[8]) > 0.999;
+
+export function positionText(position: readonly number[], header: Header, camera: Camera | null): string {
+  const { geometry } = header;
+  const zoom = Math.max(camera?.zoom ?? 1, 1);
+  const digits = Math.min(Math.ceil(FEWEST_DIGITS + Math.log10(zoom)), MOST_DIGITS);
+  const isInPlane =
+    liesAcross(geometry) && Math.abs(position[2] - geometry.center[2]) < 1e-12 * geometry.extent;
+  return vectorText(position, geometry.extent, digits, isInPlane);
+}
+
+/** The view in which a point is chosen. */
+export interface CardHost {
+  readonly header: Header | null;
+  readonly settings: Settings;
+  readonly options: Options;
+  readonly root: HTMLElement;
+  readonly camera: Camera | null;
+  readonly shown: Moment | null;
+  readonly tiles: { readonly layers: Layer[] } | null;
+  /** The views beside each other, which show the path as well. */
+  readonly together: readonly { readonly card: PointCard }[];
+  readonly lifetime: Lifetime;
+  readonly canPick: boolean;
+  find(x: number, y: number): Found | null;
+}
+
+export class PointCard {
+  readonly element = dom("div", { class: "card glass", role: "region", hidden: "" });
+  readonly overlay = document.createElementNS(SVG, "svg");
+  private readonly host: CardHost;
+  private readonly list = dom("dl");
+  private chosen: Found | null = null;
+  private later: Timer | null = null;
+  /** The path that is drawn, and its point. */
+  private drawn: { path: PointPath; point: Vector } | null = null;
+
+  constructor(host: CardHost) {
+    this.host = host;
+    this.element.setAttribute("aria-label", TITLE);
+    this.overlay.setAttribute("class", "path");
+    const button = dom("button", { type: "button", class: "link" }, ["Close"]);
+    button.addEventListener("click", () => this.close());
+    this.element.append(dom("div", { class: "first" }, [dom("span", {}, [TITLE]), button]), this.list);
+  }
+
+  /** Show the path through what is at (x, y), from -1 to 1, right and up, or none. */
+  choose(x: number, y: number, until = performance.now() + PATIENCE_MS): Point | null {
+    const { lifetime, canPick } = this.host;
+    lifetime.cancel(this.later);
+    if (!canPick && performance.now() < until) {
+      // The program that finds points is still being compiled.
+      this.later = lifetime.later(() => this.choose(x, y, until), RETRY_MS);
+      return null;
+    }
+    const found = this.host.find(x, y);
+    if (found) this.host.options.onPoint?.(found.point);
+    this.close();
+    this.chosen = found;
+    this.update();
+    return found?.point ?? null;
+  }
+
+  /** Show no path, in no view. */
+  close(): void {
+    for (const { card } of this.host.together) card.clear();
+  }
+
+  private clear(): void {
+    this.host.lifetime.cancel(this.later);
+    this.chosen = this.drawn = null;
+    this.element.hidden = true;
+    this.overlay.replaceChildren();
+  }
+
+  /** Show the path as things are now; where the point's tile has gone it stays as it was. */
+  update(): void {
+    const { chosen } = this;
+    const { options, camera, shown, header, tiles, settings, root, together } = this.host;
+    if (!chosen || options.bare || !camera || !shown || !header) return;
+    const { point, layer, place } = chosen;
+    const scene = tiles?.layers.find(({ key }) => String(key) === String(layer.key))?.scene;
+    if (!scene || scene.missing(shown[0], shown[1]).length) return;
+    const position = point.position as Vector;
+    const at = { scene, moment: shown, place, position };
+    const path = pathThrough(at, settings, camera, root.clientHeight);
+    this.tell({ ...point, values: valuesAt(scene, shown, place) }, path, header, camera);
+    for (const { card } of together) {
+      card.drawn = { path, point: position };
+      card.draw();
+    }
+  }
+
+  private tell(point: Point, { velocity }: PointPath, header: Header, camera: Camera): void {
+    const { label, unit } = header.speed;
+    const size = Math.hypot(...velocity);
+    const text = vectorText(velocity, size, VELOCITY_DIGITS, liesAcross(header.geometry));
+    const lines = new Map([
+      ["position", withUnit(positionText(point.position, header, camera), header.lengthUnit)],
+      [label.replace("speed", "velocity"), withUnit(text, unit)],
+      [label, withUnit(numberText(size, VELOCITY_DIGITS), unit)],
+    ]);
+    for (const [name, value] of Object.entries(point.values)) {
+      const named = header.scalars.choices.find((each) => each.name === name) ?? header.scalars;
+      lines.set(named.label, withUnit(numberText(value), named.unit));
+    }
+    this.list.replaceChildren(
+      ...[...lines].flatMap(([word, value]) => [dom("dt", {}, [word]), dom("dd", {}, [value])]),
+    );
+    this.element.hidden = false;
+  }
+
+  /** Draw the path where the camera sees it. */
+  draw(): void {
+    const { drawn } = this;
+    const { camera, root } = this.host;
+    if (!drawn || !camera) return;
+    const { clientWidth: width, clientHeight: height } = root;
+    const placeOf = (point: Vector): Place | null => {
+      const place = camera.project(point);
+      return place && [((place[0] + 1) / 2) * width, ((1 - place[1]) / 2) * height];
+    };
+    const linesOf = (points: Vector[]) => {
+      const lines: Line[] = [[]];
+      for (const place of points.map(placeOf)) {
+        if (place) lines[lines.length - 1].push(place);
+        else lines.push([]);
+      }
+      return lines.filter((line) => line.length > 1);
+    };
+    const { path, sampled, directed } = drawn.path;
+    const point = placeOf(drawn.point);
+    const shapes = pathShapes({ path: linesOf(path), sampled: linesOf(sampled), point, directed });
+    this.overlay.replaceChildren(
+      ...shapes.map(([tag, attributes]) => {
+        const shape = document.createElementNS(SVG, tag);
+        for (const [name, value] of Object.entries(attributes)) shape.setAttribute(name, `${value}`);
+        return shape;
+      }),
+    );
+  }
+}

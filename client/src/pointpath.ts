@@ -1,0 +1,235 @@
+// The path through a point, and the velocity there, from the slices that the picture is drawn with.
+// It is what shaders/common/path.glsl does at the finest level, in double precision.
+
+import type { Camera } from "./camera.ts";
+import { fromHalf } from "./half.ts";
+import { interpolated } from "./mesh.ts";
+import { isSignFree, type Data, type Geometry, type Settings } from "./protocol.ts";
+import type { Scene } from "./scene.ts";
+import { isMoving, type Moment } from "./uniforms.ts";
+import { add, clamp, cross, dot, fromFrame, length, scale, subtract, unit, type Vector } from "./vectors.ts";
+
+/** Points of a path between two slices, where it is a parabola. */
+const POINTS_BETWEEN_SLICES = 8;
+/** How many times as long as the part that is summed the path is that is shown. */
+const PATH_LENGTH = 4;
+/** Samples on a side as which fewer count, so that there is something to see. */
+const FEWEST_SAMPLES = 10;
+/** Cosine between the surface and the ray to the eye, at least: that of the shaders. */
+const LEAST_FACING = 0.05;
+/** Slope below which nothing moves. */
+const LEAST_SLOPE = 1e-6;
+/** Part of a cell over which a direction in the noise's coordinates is one in space. */
+const SMALL = 1e-3;
+
+/** A path in the mesh's coordinates, downstream. */
+export interface PointPath {
+  path: Vector[];
+  /** The part that is summed. */
+  sampled: Vector[];
+  /** Whether the flow has a direction along the path. */
+  directed: boolean;
+  /** Velocity in the surface. */
+  velocity: Vector;
+}
+
+/** Where a path is looked for: a scene, and a place (i, j) between its nodes. */
+export interface PathPlace {
+  scene: Scene;
+  moment: Moment;
+  place: [number, number];
+  position: Vector;
+}
+
+type Four = [number, number, number, number];
+type Layers = (layer: number) => Four;
+
+/** Channels of a layer at a texel, as the graphics card has them. */
+function texelOf(scene: Scene, step: number): (layer: number, texel: number) => Four {
+  const { slices, geometry } = scene.header;
+  const data = scene.part(`slices/${step}`).data;
+  const extra = scene.parts.get(`extra/${step}`)?.data;
+  const count = geometry.rows.size * geometry.columns.size;
+  const { channels } = slices;
+  return (layer, texel) => {
+    const first = (layer * count + texel) * channels;
+    const at = (n: number) => (n < channels ? fromHalf(data[first + n]) : 0);
+    const place = slices.extra.indexOf(layer);
+    const fourth = channels === 4 || !extra || place < 0 ? at(3) : fromHalf(extra[place * count + texel]);
+    return [at(0), at(1), at(2), fourth];
+  };
+}
+
+/** Layers between the nodes and the time steps. */
+function layersAt({ scene, moment, place: [i, j] }: PathPlace): Layers {
+  const { geometry, slices } = scene.header;
+  const { rows, columns } = geometry;
+  const [x, y] = [i + columns.before, j + rows.before];
+  const [left, low] = [Math.floor(x), Math.floor(y)];
+  const [s, t] = [x - left, y - low];
+  const texels = [0, 1, 2, 3].map((n) => {
+    const column = clamp(left + (n & 1), 0, columns.size - 1);
+    return clamp(low + (n >> 1), 0, rows.size - 1) * columns.size + column;
+  });
+  const weights = [(1 - s) * (1 - t), s * (1 - t), (1 - s) * t, s * t];
+  const [before, after, late] = moment;
+  const steps = [before, after].map((step) => texelOf(scene, step));
+  const shares = [1 - late, late];
+  const signs = isSignFree(scene.header) ? signsOf(texels.map((n) => steps[0](0, n))) : [1, 1, 1, 1];
+  return (layer) => {
+    const sum: Four = [0, 0, 0, 0];
+    texels.forEach((texel, n) => {
+      // Of a node that is turned over the two sides change places.
+      const other = layer + (layer > slices.lags.length ? -1 : 1) * slices.lags.length;
+      const from = signs[n] < 0 && layer > 0 ? other : layer;
+      steps.forEach((step, k) => {
+        if (!shares[k]) return;
+        step(from, texel).forEach((value, c) => {
+          sum[c] += weights[n] * shares[k] * value * (c < 3 ? signs[n] : 1);
+        });
+      });
+    });
+    return sum;
+  };
+}
+
+/** -1 for the nodes that point against the others, in a field without a sign. */
+function signsOf(tangents: Four[]): number[] {
+  let together: Vector = [0, 0, 0];
+  return tangents.map(([x, y, z]) => {
+    const sign = dot(together, [x, y, z]) < 0 ? -1 : 1;
+    together = add(together, [x, y, z], sign);
+    return sign;
+  });
+}
+
+/** Displacements of one side of the path, from the point to its end. */
+function sideOf(layers: Layers, lags: number[], first: number, sign: number, by: number): Vector[] {
+  let [before, from] = [layers(0).slice(0, 3), 0];
+  const reach = layers(first + 1)[3];
+  const end = Math.min(reach, lags[lags.length - 1]);
+  const result: Vector[] = [];
+  for (let m = 0; m < lags.length && from < end; m += 1) {
+    const after = layers(first + m + 1).slice(0, 3);
+    for (let n = 1; n <= POINTS_BETWEEN_SLICES; n += 1) {
+      const share = n / POINTS_BETWEEN_SLICES;
+      const lag = Math.min(from + share * (lags[m] - from), end);
+      const late = (lag - from) / (lags[m] - from);
+      const slope = before.map((x, c) => x + late * (after[c] - x));
+      result.push(scale(slope, sign * lag * by));
+      if (lag === end) break;
+    }
+    [before, from] = [after, lags[m]];
+  }
+  return result;
+}
+
+/** What takes displacements to space; null beyond the border of the noise. */
+function mover({ scene, place, position }: PathPlace): (moved: Vector) => Vector | null {
+  const { paper, geometry } = scene.header;
+  if (!paper) return (moved) => add(position, fromFrame(geometry.frame, moved));
+  const { alongI, alongJ } = paper;
+  const nodes = scene.part("position").data;
+  const here = [between(alongI, place[0]), between(alongJ, place[1])];
+  const start = nodeAt(geometry, nodes, place);
+  return ([u, v]) => {
+    const at = [indexOf(alongI, here[0] + u), indexOf(alongJ, here[1] + v)];
+    if (at.some(Number.isNaN)) return null;
+    return add(position, subtract(nodeAt(geometry, nodes, at as [number, number]), start));
+  };
+}
+
+function nodeAt({ shape, frame }: Geometry, nodes: Data, [i, j]: [number, number]): Vector {
+  const local = [0, 1, 2].map((c) => interpolated(shape, i, j, (n) => nodes[3 * n + c]));
+  return fromFrame(frame, local);
+}
+
+function between(values: number[], at: number): number {
+  const n = Math.min(Math.floor(at), values.length - 2);
+  return values[n] + (at - n) * (values[n + 1] - values[n]);
+}
+
+/** Place of a value among increasing ones; NaN beside them. */
+function indexOf(values: number[], value: number): number {
+  const n = values.findIndex((other) => other >= value);
+  if (n < 0 || value < values[0]) return NaN;
+  if (n === 0) return 0;
+  return n - 1 + (value - values[n - 1]) / (values[n] - values[n - 1]);
+}
+
+/**
+ * Length of a grain at a point: of the pixel's longer side as it lies on the surface, or of a texel of
+ * the noise's level, which is that of the pixel unless its own texels are larger.
+ */
+function grainAt({ scene, place, position }: PathPlace, settings: Settings, camera: Camera, rows: number) {
+  const { geometry, paper } = scene.header;
+  const nodes = scene.part("position").data;
+  const [i, j] = place.map((n, axis) => clamp(n, 0.5, geometry.shape[1 - axis] - 1.5));
+  const at = (di: number, dj: number) => nodeAt(geometry, nodes, [i + di, j + dj]);
+  const normal = cross(subtract(at(0.5, 0), at(-0.5, 0)), subtract(at(0, 0.5), at(0, -0.5)));
+  const { height, ray } = camera.at(position);
+  const facing = Math.max(Math.abs(dot(unit(normal), ray)), LEAST_FACING);
+  const pixel = (2 * height) / rows;
+  if (paper) {
+    const [across, up] = [paper.alongI, paper.alongJ].map((along, axis) => {
+      const n = Math.floor([i, j][axis]);
+      return (along[n + 1] - along[n]) * paper.size[axis];
+    });
+    const texel = Math.sqrt(length(normal) / (across * up));
+    return paper.grain * (settings.lod ? Math.max(pixel / Math.sqrt(facing), texel) : texel);
+  }
+  const texel = geometry.extent / Number(settings.resolution);
+  const grain = (pixel / facing) * Number(settings.grain);
+  if (!settings.lod) return texel;
+  return settings.fixed_grain ? Math.max(grain, texel) : grain;
+}
+
+/** The first points of a side, up to a length. */
+function upTo(start: Vector, side: Vector[], most: number): Vector[] {
+  const result: Vector[] = [];
+  let [from, left] = [start, most];
+  for (const point of side) {
+    const step = length(subtract(point, from));
+    if (step >= left) {
+      if (left > 0) result.push(add(from, subtract(point, from), left / (step || 1)));
+      break;
+    }
+    result.push(point);
+    left -= step;
+    from = point;
+  }
+  return result;
+}
+
+/** The path through a point as the picture has it that is so many of the page's pixels high. */
+export function pathThrough(at: PathPlace, settings: Settings, camera: Camera, rows: number): PointPath {
+  const { scene, position } = at;
+  const { slices, paper, speed } = scene.header;
+  const layers = layersAt(at);
+  const directed = !isSignFree(scene.header);
+  const base = layers(0);
+  const slope: Vector = [base[0], base[1], base[2]];
+  const moved = mover(at);
+  const small = scale(slope, (SMALL * (paper ? 1 / paper.size[0] : slices.cell)) / (length(slope) || 1));
+  const along = length(slope) > LEAST_SLOPE ? subtract(moved(small) ?? position, position) : slope;
+  const velocity = scale(unit(along), layers(2)[3] * speed.typical);
+  const whole: Vector[][] = [];
+  const sides = settings.two_sided || !directed ? slices.sides : 1;
+  for (let side = 0; side < sides && length(slope) > LEAST_SLOPE; side += 1) {
+    const by = paper ? 1 : base[3] * slices.unit;
+    const ways = sideOf(layers, slices.lags, side * slices.lags.length, side ? 1 : -1, by);
+    const points = ways.map(moved);
+    const end = points.findIndex((point) => point === null);
+    whole.push(points.slice(0, end < 0 ? undefined : end) as Vector[]);
+  }
+  const set = Number(settings.samples);
+  const samples = isMoving(scene.header, settings) ? 2 * set - 1 : set;
+  const count = sides === 2 ? Math.floor(samples / 2) : samples - 1;
+  const step = Number(settings.spacing) * grainAt(at, settings, camera, rows);
+  const joined = (reach: number) => {
+    const [back = [], ahead = []] = whole.map((side) => upTo(position, side, reach));
+    return [...back.reverse(), position, ...ahead];
+  };
+  const path = joined(PATH_LENGTH * Math.max(count, FEWEST_SAMPLES) * step);
+  return { path, sampled: joined(count * step), directed, velocity };
+}

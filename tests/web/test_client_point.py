@@ -1,0 +1,225 @@
+"""A click on the browser client: the path through the point, and the card of its numbers."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+from flows import gyre, lines, swinging, torus
+from matrix import ASIDE, MIDDLE, SIZE, TEXTURE, TILTED, WHOLE
+from webgl_page import ClientPage, packed, state
+
+from flowtex import FlowField
+from flowtex.camera import Camera
+from flowtex.options import Options
+from flowtex.probe import probe
+from flowtex.rendering.webgl import ClientData, Colours
+from flowtex.scene import Scene
+from flowtex.settings import Settings
+from flowtex.web.export import export
+from flowtex.web.view import web_views
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+pytestmark = pytest.mark.browser
+
+#: Flows, cameras and settings whose paths are compared with those of the NumPy renderer.
+PATHS: dict[str, tuple[FlowField, Camera, dict[str, Any]]] = {
+    "flat": (gyre(), WHOLE, {}),
+    "one side": (gyre(), WHOLE, {"two_sided": False, "samples": 12}),
+    "fixed grain": (gyre(), WHOLE, {"lod": False}),
+    "by time": (gyre(), WHOLE, {"parameter": "time"}),
+    "moving": (gyre(), WHOLE, {"motion": "speed"}),
+    "texture": (gyre(), WHOLE, TEXTURE),
+    "tilted": (gyre(), TILTED, {}),
+    "curved": (torus(), ASIDE, {}),
+    "varying": (swinging(), MIDDLE, {}),
+    "no sign": (lines(), MIDDLE, {}),
+}
+DRAWN = "() => { const { path, point } = viewers[0].card.drawn; return { ...path, point }; }"
+
+
+def card(page: Page) -> dict[str, str]:
+    """Words and numbers of the card."""
+    words, numbers = (
+        page.locator(f".card:visible {kind}").all_inner_texts() for kind in ("dt", "dd")
+    )
+    return dict(zip(words, numbers, strict=True))
+
+
+@pytest.mark.parametrize("name", PATHS)
+def test_the_path_is_that_of_the_renderer(client: ClientPage, name: str) -> None:
+    field, camera, chosen = PATHS[name]
+    scene = Scene(field, Settings(samples=21))
+    scene.settings.update(**chosen)
+    data = ClientData(scene.textures, Colours(plain=(0.6, 0.6, 0.6)))
+    header = data.header(scene.settings, camera=state(camera))
+    client.mount(packed(data, header, tuple(range(data.steps))), SIZE, smooth=False)
+    client.sharp()
+    client.page.wait_for_function("() => viewers[0].canPick")
+    point = client.page.evaluate("() => viewers[0].card.choose(0.2, -0.24)")
+    drawn = client.page.evaluate(DRAWN)
+    i, j = point["index"]
+    judge = probe(scene, (j, i), pixel=camera, size=SIZE)
+    np.testing.assert_allclose(drawn["point"], judge.field_values.position, atol=2e-3)
+    length = float(np.linalg.norm(np.diff(judge.points, axis=0), axis=1).sum())
+    assert length > 0
+    # The sides are as long as the samples reach, to a part of the grain that is not followed.
+    loose = 0.1 if name == "texture" else 0.06
+    ends = np.array([drawn["sampled"][0], drawn["sampled"][-1]])
+    if drawn["directed"]:
+        np.testing.assert_allclose(ends, judge.points[[0, -1]], atol=loose * length)
+    else:
+        gap = np.linalg.norm(ends[:, None] - judge.points[[0, -1]], axis=-1).min(axis=1)
+        assert gap.max() < loose * length
+    # It goes through all samples.
+    path = np.array(drawn["path"])
+    gap = np.linalg.norm(judge.points[:, None] - path, axis=-1).min(axis=1)
+    assert gap.max() < 0.1 * length
+    speed = judge.field_values.speed
+    assert np.linalg.norm(drawn["velocity"]) == pytest.approx(speed, rel=0.01)
+    if drawn["directed"]:
+        along = np.asarray(judge.field_values.velocity)
+        np.testing.assert_allclose(drawn["velocity"], along, atol=0.03 * speed)
+    assert drawn["directed"] == (name != "no sign")
+
+
+def leaving(*, share: float = 0.6) -> FlowField:
+    """A stream with a part that leaves the surface."""
+    y, x = np.mgrid[-1:1:21j, -2:2:41j]
+    velocity = np.stack([1 + 0 * x, 0.75 + 0 * x, share + 0 * x], axis=-1)
+    return FlowField.from_arrays(
+        np.stack([x, y, 0 * x], axis=-1),
+        velocity,
+        scalars={"warmth": 10 * x},
+        length_unit="m",
+        time_unit="s",
+    )
+
+
+def mount(client: ClientPage, field: FlowField, **options: Any) -> None:
+    view = web_views(field, Options.split(samples=9))[0]
+    data = view.page_data()
+    client.mount(
+        packed(data, data.header(view.scene.settings)), (600, 300), smooth=False, **options
+    )
+    client.sharp()
+
+
+def test_a_click_shows_card_and_path(client: ClientPage) -> None:
+    mount(client, leaving(share=0.0), hear=["onPoint"])
+    page = client.page
+    page.mouse.click(300, 150)
+    page.locator(".card").wait_for()
+    got = card(page)
+    assert list(got) == ["position", "velocity", "speed", "warmth"]
+    assert got["position"].endswith(" m") and got["position"].count(",") == 1
+    assert got["speed"] == "1.25 m/s"
+    assert float(got["warmth"]) == pytest.approx(0, abs=0.2)
+    ((_, point),) = page.evaluate("events")
+    assert set(point["values"]) == {"speed", "warmth"}
+    shapes = page.locator("svg.path > *").evaluate_all(
+        "all => all.map((e) => e.getAttribute('class'))"
+    )
+    assert {"whole", "sampled", "casing", "arrow", "point"} <= set(shapes)
+    # The head of the arrow is downstream of the point, up and to the right.
+    tip = page.locator("svg.path .arrow").first.get_attribute("points") or ""
+    x, y = map(float, tip.split()[0].split(","))
+    assert x > 300 and y < 150
+
+
+def test_what_leaves_the_surface_is_told(client: ClientPage) -> None:
+    mount(client, leaving())
+    client.page.mouse.click(300, 150)
+    client.page.locator(".card").wait_for()
+    got = card(client.page)
+    assert got["speed in the surface"] == "1.25 m/s"
+    assert got["velocity in the surface"] == "(1, 0.75) m/s"
+    assert client.page.inner_text(".legend .name") == "speed in the surface (m/s)"
+    client.page.mouse.move(310, 150)
+    client.page.mouse.move(320, 150)
+    client.page.locator(".readout b").wait_for()
+    assert client.page.inner_text(".readout b") == "speed in the surface 1.25 m/s"
+
+
+@pytest.mark.parametrize("close", ["Escape", "beside", "Close", "twice"])
+def test_the_card_closes(client: ClientPage, close: str) -> None:
+    mount(client, leaving())
+    page = client.page
+    page.mouse.click(300, 150)
+    page.locator(".card").wait_for()
+    if close == "Escape":
+        page.keyboard.press("Escape")
+    elif close == "beside":
+        page.mouse.click(560, 20)
+    elif close == "Close":
+        page.locator(".card button").click()
+    else:
+        page.mouse.dblclick(320, 160)
+    page.locator(".card").wait_for(state="hidden")
+    assert page.locator("svg.path > *").count() == 0
+
+
+def test_the_path_follows_the_camera_and_the_settings(client: ClientPage) -> None:
+    mount(client, leaving())
+    page = client.page
+    page.mouse.click(300, 150)
+    page.locator(".card").wait_for()
+    ring = page.locator("svg.path .point")
+    assert float(ring.get_attribute("cx") or 0) == pytest.approx(300, abs=1)
+    page.evaluate("() => { viewers[0].camera.pan(0.2, 0); viewers[0].reportCamera(); }")
+    assert float(ring.get_attribute("cx") or 0) == pytest.approx(240, abs=1)
+    client.sharp()
+    count = """() => {
+      const { sampled } = viewers[0].card.drawn.path;
+      return sampled[sampled.length - 1][0] - sampled[0][0];
+    }"""
+    before = page.evaluate(count)
+    page.evaluate("() => viewers[0].choose('samples', 17)")
+    client.sharp()
+    assert page.evaluate(count) == pytest.approx(2 * before, rel=0.01)
+
+
+def test_both_of_two_views_show_the_path(client: ClientPage) -> None:
+    view = web_views(leaving(), Options.split(samples=9))[0]
+    data = view.page_data()
+    scene = packed(data, data.header(view.scene.settings))
+    client.mount([scene, scene], (700, 300), smooth=False)
+    for n in (0, 1):
+        client.page.wait_for_function(f"() => viewers[0].together[{n}].sharp")
+    client.page.mouse.click(175, 150)
+    client.page.locator(".card:visible").wait_for()
+    assert client.page.locator("svg.path .point").count() == 2
+    assert client.page.locator(".card:visible").count() == 1
+    client.page.keyboard.press("Escape")
+    assert client.page.locator("svg.path .point").count() == 0
+    client.page.evaluate("() => viewers[0].together.forEach((viewer) => viewer.dispose())")
+
+
+def test_an_exported_page_shows_card_and_path(webgl_browser: Any, tmp_path: Path) -> None:
+    export(leaving(), tmp_path / "page.html", samples=9)
+    context = webgl_browser.new_context(viewport={"width": 390, "height": 500})
+    page = context.new_page()
+    wrong: list[str] = []
+    page.on("pageerror", lambda error: wrong.append(str(error)))
+    page.goto((tmp_path / "page.html").as_uri())
+    page.locator('[data-sharp="true"]').wait_for()
+    page.mouse.click(195, 250)
+    page.locator(".card").wait_for()
+    got = card(page)
+    assert list(got) == [
+        "position",
+        "velocity in the surface",
+        "speed in the surface",
+        "warmth",
+    ]
+    box = page.locator(".card").bounding_box()
+    assert box is not None and box["x"] >= 5 and box["x"] + box["width"] <= 385
+    assert page.locator("svg.path .arrow").count() > 0
+    page.keyboard.press("Escape")
+    page.locator(".card").wait_for(state="hidden")
+    context.close()
+    assert wrong == []
