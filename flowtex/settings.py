@@ -209,7 +209,8 @@ class Settings:
     lod: bool = _row(
         default=True,
         affects="uniform",
-        text="Choose grain and step for each pixel from the view (level of detail).",
+        text="Choose grain and step for each pixel from the view (level of detail); off, grains have "
+        "one size on the surface: blobs from near, specks that flicker from far out.",
     )
     noise: str = _row(
         default="procedural",

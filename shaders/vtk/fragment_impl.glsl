@@ -8,6 +8,8 @@
   // VTK has set ambientColor and diffuseColor from the property or the scalars by now, each times
   // its share of the light, and lights them next.
   vec3 flowtexColour = (ambientColor + diffuseColor) / max(ambientIntensity + diffuseIntensity, FLOWTEX_LEAST_LIGHTNESS);
+  if (u_mapped)
+    flowtexColour = flowtexMapped(flowtexCoordinateVSOutput);
   if (u_showLevel)
     flowtexColour = flowtexLevelColour(flowtexNoiseLevel);
 #ifdef FLOWTEX_PICTURE

@@ -321,6 +321,37 @@ def test_scalars_keep_their_colours_and_their_bar(plotter: Any) -> None:
     assert np.abs(plain[inner].astype(float) - expected[inner]).mean() < 2.0
 
 
+def test_colours_need_no_triangles_of_their_own(plotter: Any) -> None:
+    handle = plotter.flowtex.add(gyre_field(), scalars="speed", strength=0.0, lighting=False)
+    coarse = plotter.screenshot(return_img=True).astype(float)
+    few = handle.actor.mapper.dataset.n_cells
+    handle.actor.prop.show_edges, handle.actor.prop.edge_opacity = True, 0.0  # every triangle
+    plotter.render()
+    fine = plotter.screenshot(return_img=True).astype(float)
+    assert few < 100 < 1000 < handle.actor.mapper.dataset.n_cells
+    assert np.abs(coarse - fine).mean() < 0.1
+
+
+def test_colours_outside_of_the_range_and_of_no_value(plotter: Any) -> None:
+    handle = plotter.flowtex.add(
+        gyre_field(), scalars="speed", clim=(0.1, 0.2), strength=0.0, lighting=False
+    )
+    table = handle.actor.mapper.lookup_table
+    table.below_range_color, table.above_range_color = "red", "blue"
+    table.nan_color = "lime"
+    mesh = handle.actor.mapper.dataset
+    values = np.array(mesh.point_data["speed"]).reshape(50, 100)
+    values[:, :50] = np.nan
+    mesh.point_data["speed"] = values.ravel()
+    picture = plotter.screenshot(return_img=True).astype(int)
+    right = picture[:, picture.shape[1] // 2 + 2 :]
+    for colour in ([255, 0, 0], [0, 0, 255]):
+        assert (right == colour).all(axis=-1).mean() > 0.02
+        assert not (picture[:, : picture.shape[1] // 2 - 2] == colour).all(axis=-1).any()
+    left = picture[:, : picture.shape[1] // 2 - 2]
+    assert (left == [0, 255, 0]).all(axis=-1).mean() > 0.4
+
+
 @pytest.mark.parametrize("noise", ["procedural", "texture"])
 def test_edges_do_not_take_the_texture_away(plotter: Any, noise: str) -> None:
     handle = plotter.flowtex.add(gyre_field(9, 5), scalars=False, noise=noise)

@@ -15,15 +15,15 @@ from flowtex._util.array_types import Floats32
 
 __all__ = ["GPUTexture"]
 
-#: OpenGL's numbers of internal formats, in half precision.
-GL_RGBA16F, GL_R16F = 0x881A, 0x822D
+#: OpenGL's numbers of internal formats, in half precision, by channels.
+FORMATS = {1: 0x822D, 2: 0x822F, 4: 0x881A}
 
 
 class GPUTexture:
     """One texture array with its mip levels; an image is an array of one layer.
 
     Of VTK's textures from memory the arrays alone get mip levels. The texels (layers, H, W,
-    channels), with one channel or four, are stored in half precision. There are so many mip levels
+    channels), with 1, 2 or 4 channels, are stored in half precision. There are so many mip levels
     beside the finest, or all of them; ``repeat`` says whether the texture goes around along (v, u).
     """
 
@@ -79,6 +79,6 @@ class GPUTexture:
         whole = max(height, width).bit_length() - 1
         # Left as it is, VTK's greatest level is 0, and there is no other level.
         target.SetMaxLevel(whole if self._levels is None else self._levels)
-        target.SetInternalFormat(GL_R16F if channels == 1 else GL_RGBA16F)
+        target.SetInternalFormat(FORMATS[channels])
         target.Create2DArrayFromRaw(width, height, channels, VTK_FLOAT, layers, texels)
         return target

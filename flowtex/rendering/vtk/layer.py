@@ -20,7 +20,6 @@ from typing import Any
 
 import numpy as np
 import pyvista as pv
-from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.util.vtkConstants import VTK_OBJECT
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
@@ -36,6 +35,7 @@ from flowtex.rendering.uniforms import (
     uniforms,
     variants,
 )
+from flowtex.rendering.vtk.colours import MappedColours
 from flowtex.rendering.vtk.gpu_texture import GPUTexture
 from flowtex.rendering.vtk.mesh import (
     ATTRIBUTES,
@@ -107,7 +107,7 @@ class FlowLayer:
         self._drawn = False
         self._variant: frozenset[str] | None = None
         self.mesh_levels = mesh_levels or MeshLevels.of(textures)
-        self._colours: tuple[Any, ...] | None = None
+        self._colours: MappedColours | None = None
         self._gpu: dict[str, GPUTexture] = {}
         self._retired: list[GPUTexture] = []
         self.view = ViewState()
@@ -215,6 +215,9 @@ class FlowLayer:
             return
         self._free(window)
         values = uniforms(self._textures, self._settings, self.view)
+        rows, columns = self._textures.geometry.rows, self._textures.geometry.columns
+        values["u_padding"] = (float(columns.before), float(rows.before))
+        values["u_mapped"] = self._colours is not None
         for name, value in values.items():
             if program.IsUniformUsed(name) or isinstance(value, list):
                 _write(program, name, value)
@@ -236,6 +239,13 @@ class FlowLayer:
         loaders: dict[str, Callable[[], GPUTexture]] = {"u_slices": partial(self._slices, 0)}
         if self._textures.store.steps > 1:
             loaders["u_slicesNext"] = partial(self._slices, 1)
+        colours, shape = self._colours, self._textures.geometry.shape
+        # Also where nothing is mapped: no sampler may share a unit with one of another kind.
+        none = np.zeros((1, 1, 1, 1), dtype=np.float32)
+        loaders |= {
+            "u_shares": lambda: GPUTexture(colours.shares(shape) if colours else none, levels=0),
+            "u_colours": lambda: GPUTexture(colours.colours() if colours else none, levels=0),
+        }
         if paper is not None:
             loaders["u_noiseImage"] = partial(
                 GPUTexture, paper.noise_texels, repeat=paper.noise_repeat
@@ -324,21 +334,10 @@ class FlowLayer:
             mine.SelectColorArray(name)
 
     def _follow_colours(self) -> None:
-        """Let the triangles keep the colours of the nodes, whoever has changed them."""
-        mapper = self._mapper
-        name = mapper.GetArrayName() if mapper.GetScalarVisibility() else None
-        array = self._mesh.GetPointData().GetArray(name) if name else None
-        low, high = mapper.GetScalarRange()
-        state = None if array is None else (name, array.GetMTime(), low, high)
-        if state == self._colours:
-            return
-        self._colours = state
-        if array is None or not high > low:
-            self.mesh_levels.set_colours()
-            return
-        shares = (vtk_to_numpy(array).astype(float) - low) / (high - low)
-        shape = self._textures.geometry.shape
-        self.mesh_levels.set_colours(np.clip(shares, 0, 1).reshape(shape))
+        """Take the colours of the mapper, whoever has changed them."""
+        before, self._colours = self._colours, MappedColours.of(self._mapper, self._mesh)
+        if (before and before.state) != (self._colours and self._colours.state):
+            self._retire("u_shares", "u_colours")
 
     def _window(self) -> Any:
         renderer = self._renderer()
