@@ -107,7 +107,7 @@ def plates(
     """
     width, height = size
     writer = _Writer(size, background)
-    title = ", ".join(text for text in (scene.field.name, label) if text)
+    title = _printable(", ".join(text for text in (scene.field.name, label) if text))
     parts: tuple[tuple[str, bool, bool, Iterator[Image.Image]], ...] = (
         ("legend", True, True, writer.legends(scene) if legend else iter(())),
         ("time", True, False, writer.times(scene)),
@@ -157,7 +157,7 @@ class _Writer:
             return
         for longest in (len(field.time_unit), UNIT_LENGTH):
             times = (scene.time, *map(float, field.times[[0, -1]]))
-            text, *ends = (time_text(field, time, longest) for time in times)
+            text, *ends = (_printable(time_text(field, time, longest)) for time in times)
             for image in self.texts(text, tuple(ends)):
                 if longest <= UNIT_LENGTH or image.width <= TIME_WIDTH * self._size[0]:
                     yield image
@@ -171,7 +171,7 @@ class _Writer:
             return
         unit_px = self._size[1] / (2 * camera.height)
         length = round_length(SCALE_BAR_WIDTH * self._size[0] / unit_px)
-        unit, across = scene.field.length_unit, round(length * unit_px)
+        unit, across = _printable(scene.field.length_unit), round(length * unit_px)
         if not across:
             return
         text = f"{length:.12g} {singular(unit) if length == 1 else unit}".strip()
@@ -193,7 +193,7 @@ class _Writer:
             return
         table = mean_colours(colour_table(appearance.cmap), settings)[:, :3]
         unit = scene.field.unit_of(name)
-        title = f"{name} ({unit})" if unit else name
+        title = _printable(f"{name} ({unit})" if unit else name)
         values = _value_texts(*scene.scalar_limits, log_scale=appearance.log_scale)
         for numbers in (values, values[::2]):
             yield self._legend(title, table, numbers)
@@ -244,7 +244,14 @@ def _font(height: int) -> ImageFont.FreeTypeFont:
     """Return matplotlib's own font, which has the letters of units, in so many pixels."""
     from matplotlib import get_data_path
 
-    return ImageFont.truetype(Path(get_data_path(), "fonts", "ttf", "DejaVuSans.ttf"), height)
+    path = Path(get_data_path(), "fonts", "ttf", "DejaVuSans.ttf")
+    # The layout that every Pillow has.
+    return ImageFont.truetype(path, height, layout_engine=ImageFont.Layout.BASIC)
+
+
+def _printable(text: str) -> str:
+    """Return a text in one line, without what cannot be drawn."""
+    return "".join(letter if letter.isprintable() else " " for letter in text).strip()
 
 
 def _apart(one: Plate, other: Plate, gap: int) -> bool:

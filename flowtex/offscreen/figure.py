@@ -136,7 +136,7 @@ def axes(
     ValueError
         When the surface is curved.
     """
-    if not isinstance(ax, Axes) or ax.name != "rectilinear":
+    if getattr(ax, "name", "") != "rectilinear":
         msg = f"ax is {ax!r}; expected rectilinear axes of matplotlib's, as plt.subplots() makes"
         raise TypeError(msg)
     if (scales := (ax.get_xscale(), ax.get_yscale())) != ("linear", "linear"):
@@ -170,7 +170,9 @@ class FlowImage(AxesImage):
         x, y = self._frame @ surface.center
         width, height = surface.plane_size / 2
         super().__init__(ax, extent=(x - width, x + width, y - height, y + height))
-        self.set_data(self._picture)
+        # Pixels have no values, but a colour bar asks for some.
+        self.set_data([[scene.scalar_limits[0] if scene.scalar_name else 0.0]])
+        self.mouseover = False
         look = scene.appearance
         if scene.scalar_name is not None:
             colours = mean_colours(colour_table(look.cmap), scene.settings)[:, :3] / 255
@@ -208,7 +210,9 @@ class FlowImage(AxesImage):
         box = self.axes.bbox
         # Whole pixels, of which matplotlib cuts those at the border.
         low, high = np.floor(box.min * magnification), np.ceil(box.max * magnification)
-        corners = self.axes.transData.inverted().transform(np.stack([low, high]) / magnification)
+        corners: Floats = self.axes.transData.inverted().transform(
+            np.stack([low, high]) / magnification
+        )
         width, height = (int(n) for n in np.maximum(high - low, 1))
         density = self.axes.figure.dpi * magnification / USUAL_DPI
         shown = (*corners.ravel(), width, height, density, self.time, self.clock)
