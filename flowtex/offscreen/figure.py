@@ -209,7 +209,8 @@ class FlowImage(AxesImage):
         del renderer, unsampled
         box = self.axes.bbox
         # Whole pixels, of which matplotlib cuts those at the border.
-        low, high = np.floor(box.min * magnification), np.ceil(box.max * magnification)
+        low = np.floor(np.multiply(box.min, magnification))
+        high = np.ceil(np.multiply(box.max, magnification))
         corners: Floats = self.axes.transData.inverted().transform(
             np.stack([low, high]) / magnification
         )

@@ -16,10 +16,10 @@ from strategies import property_test
 
 import flowtex
 from flowtex import FlowField
+from flowtex._util.colours import colour_table
 from flowtex.camera import Camera
 from flowtex.cli import main
-from flowtex.offscreen import annotations
-from flowtex.offscreen.annotations import plates, time_text
+from flowtex.offscreen.annotations import Plate, _font, _Writer, plates, time_text
 from flowtex.offscreen.movie import frames
 from flowtex.rendering.cpu.shade import mean_colours
 from flowtex.scene import Scene
@@ -46,7 +46,7 @@ def patch(
 
 def written(
     scene: Scene, size: tuple[int, int] = (640, 400), camera: Camera | None = None, **options: Any
-) -> dict[str, annotations.Plate]:
+) -> dict[str, Plate]:
     camera = camera or Camera.fit(scene.field.surface, size[0] / size[1])
     return {plate.name: plate for plate in plates(scene, size, camera, **options)}
 
@@ -55,13 +55,13 @@ def written(
 def texts(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[str]]:
     """Texts in the order in which they are written."""
     seen: list[str] = []
-    write = annotations._Writer._write
+    write = _Writer._write
 
     def record(self: Any, draw: Any, x: int, y: int, text: str) -> None:
         seen.append(text)
         write(self, draw, x, y, text)
 
-    monkeypatch.setattr(annotations._Writer, "_write", record)
+    monkeypatch.setattr(_Writer, "_write", record)
     yield seen
 
 
@@ -167,7 +167,7 @@ def test_a_legend_has_name_unit_and_digits_that_tell_its_ends_apart(texts: list[
 
 def test_a_legend_has_the_colours_of_the_picture() -> None:
     scene = Scene.of(patch(), cmap="magma", strength=0.4)
-    table = mean_colours(flowtex._util.colours.colour_table("magma"), scene.settings)
+    table = mean_colours(colour_table("magma"), scene.settings)
     image = np.asarray(written(scene, (1600, 1000))["legend"].image)
     line = image[image.shape[0] // 2, :, :3]
     for colour in table[[0, 100, 255], :3]:
@@ -192,14 +192,15 @@ def test_a_time_tells_the_steps_apart(step: float, unit: str, text: str) -> None
 
 
 def test_the_font_has_the_letters_of_units() -> None:
-    font = annotations._font(20)
+    font = _font(20)
     assert isinstance(font, ImageFont.FreeTypeFont)
     box = bytes(font.getmask("\uffff"))
     assert all(bytes(font.getmask(letter)) != box for letter in "µ²³°·Ωωθ−/")
 
 
 def test_a_picture_has_them_only_when_asked(opengl: None) -> None:
-    field, options = patch(), {"size": (300, 200), "samples": 3}
+    field = patch()
+    options: dict[str, Any] = {"size": (300, 200), "samples": 3}
     plain = flowtex.render(field, **options)
     with_text = flowtex.render(field, **options, annotations=True, show_scalar_bar=True)
     changed = np.zeros(plain.shape[:2], bool)
