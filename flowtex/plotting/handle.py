@@ -69,6 +69,7 @@ class FlowHandle(AppearanceAttributes):
         self._place = plotter.renderers.active_index
         self._bar_title: str | None = None
         self._bar_options = scalar_bar_args or {}
+        self._end_arranging: Callable[[], None] = lambda: None
         self._bar_look = self._settings_of_bar
         self._surface = FlowSurface(
             self.actor, plotter.renderer, scene.textures, scene.settings, scene.pyramid
@@ -247,7 +248,7 @@ class FlowHandle(AppearanceAttributes):
         renderers.set_active_renderer(*np.atleast_1d(renderers.index_to_loc(self._place)))
         made = plotter.add_scalar_bar(mapper=self.actor.mapper, render=False, **bar)
         if made is not None:  # there was one of this title
-            arrange_with(made, plotter.renderer, self._bar_options)
+            self._end_arranging = arrange_with(made, plotter.renderer, self._bar_options)
         renderers.set_active_renderer(*np.atleast_1d(renderers.index_to_loc(active)))
         self._bar_title = bar["title"]
         self._show_bar_colours()
@@ -266,6 +267,8 @@ class FlowHandle(AppearanceAttributes):
         self._plotter.scalar_bars[self._bar_title].SetLookupTable(table)
 
     def _remove_bar(self, plotter: Any) -> None:
+        self._end_arranging()
+        self._end_arranging = lambda: None
         if self._bar_title is not None and self._bar_title in plotter.scalar_bars:
             plotter.remove_scalar_bar(self._bar_title, render=False)
         self._bar_title = None

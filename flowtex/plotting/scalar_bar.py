@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
-from weakref import WeakSet
 
 from vtkmodules.vtkRenderingCore import vtkTextRenderer
 
@@ -16,7 +15,7 @@ SCALAR_BAR: dict[str, Any] = {
     "n_labels": 3,
     "vertical": True,  # labels of a level bar would hang over its ends
     "width": 0.08,
-    "height": 0.32,
+    "height": 0.28,
     "position_x": 0.02,
     "position_y": 0.04,
     "color": "black",
@@ -35,28 +34,29 @@ BEHIND, PLATE, OPACITY = ("fill", "background_color", "color"), (1.0, 1.0, 1.0),
 #: Height of the text: a share of the view's, within limits in points; a title's is larger.
 TEXT_SHARE, LEAST_TEXT, MOST_TEXT, TITLE_SHARE = 1 / 34, 10, 14, 1.15
 #: Height of a bar without its title: a share of the view's, and at least so many lines.
-HEIGHT_SHARE, LEAST_LINES = 0.32, 5
+HEIGHT_SHARE, LEAST_LINES = 0.28, 5
 #: Lengths in heights of the text: the width of the colours, and the room around texts.
 THICKNESS, PAD = 1.1, 0.4
 #: Points in an inch.
 POINTS = 72
-#: Name of the bars that are arranged, and the renderers that arrange theirs.
+#: Name of the bars that are arranged.
 NAME = "flowtex"
-_arranging: WeakSet[Any] = WeakSet()
 
 
-def arrange_with(bar: Any, renderer: Any, options: Mapping[str, Any]) -> None:
-    """Place a bar beside the others of a renderer whenever it draws, unless options place it."""
+def arrange_with(bar: Any, renderer: Any, options: Mapping[str, Any]) -> Callable[[], None]:
+    """Place a bar beside the others of a renderer whenever it draws, unless options place it.
+
+    Returns what ends it.
+    """
     if not any(name in options for name in BEHIND):
         for text in (bar.GetTitleTextProperty(), bar.GetLabelTextProperty()):
             text.SetBackgroundColor(*PLATE)
             text.SetBackgroundOpacity(OPACITY)
     if any(name in options for name in BY_HAND):
-        return
+        return lambda: None
     bar.SetObjectName(NAME)
-    if renderer not in _arranging:
-        _arranging.add(renderer)
-        renderer.AddObserver("StartEvent", lambda caller, _: _arrange(caller))
+    observer = renderer.AddObserver("StartEvent", lambda caller, _: _arrange(caller))
+    return lambda: renderer.RemoveObserver(observer)
 
 
 def _arrange(renderer: Any) -> None:
@@ -64,19 +64,21 @@ def _arrange(renderer: Any) -> None:
     width, height = renderer.GetSize()
     dpi = renderer.GetRenderWindow().GetDPI()
     x = y = row = 0.0
-    for bar in renderer.GetActors2D():
+    for bar in renderer.GetViewProps():
         if bar.GetObjectName() != NAME:
             continue
         points = min(max(height * TEXT_SHARE * POINTS / dpi, LEAST_TEXT), MOST_TEXT)
         wide, high, title = _fit(bar, points, (width, height), dpi)
-        gap = PAD * points * dpi / POINTS
+        line = points * dpi / POINTS
+        gap = PAD * line
         if x and x + wide + 2 * gap > width:
             x, y, row = 0.0, y + row + gap, 0.0
-        bar.SetPosition((x + gap) / width, (y + gap) / height)
+        # The lowest label hangs over the end of the bar.
+        bar.SetPosition((x + gap) / width, (y + gap + line / 2) / height)
         bar.SetWidth(wide / width)
         bar.SetHeight((high + title) / height)
         # VTK keeps room for the title in the bar, and yet writes it above.
-        x, row = x + gap + wide, max(row, high + 2 * title)
+        x, row = x + gap + wide, max(row, high + 2 * title + line / 2)
 
 
 def _fit(bar: Any, points: float, view: tuple[int, int], dpi: int) -> tuple[float, float, float]:
