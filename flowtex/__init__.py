@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from flowtex import examples
     from flowtex.camera import Camera
     from flowtex.display import show
+    from flowtex.offscreen.figure import axes, extent
     from flowtex.offscreen.movie import movie
     from flowtex.offscreen.render import render
     from flowtex.web.export import export
@@ -29,8 +30,10 @@ __all__ = [
     "FlowField",
     "Settings",
     "TraceSlices",
+    "axes",
     "examples",
     "export",
+    "extent",
     "movie",
     "render",
     "show",
@@ -41,7 +44,9 @@ __all__ = [
 _LAZY = {
     "Camera": "camera",
     "FlowWidget": "widget",
+    "axes": "offscreen.figure",
     "export": "web.export",
+    "extent": "offscreen.figure",
     "movie": "offscreen.movie",
     "render": "offscreen.render",
     "show": "display",

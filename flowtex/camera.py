@@ -142,6 +142,7 @@ class Camera:
         focus: ArrayLike | None = None,
         toward: Point = ASIDE,
         up: Point = UP,
+        margin: float = CAMERA_LIMITS.margin,
     ) -> Self:
         """Return the camera that shows a surface.
 
@@ -157,12 +158,18 @@ class Camera:
             Point of the mesh to look at, two or three coordinates; the middle by default.
         toward, up
             The way from a curved surface to the camera, and what is up there: no parallels.
+        margin
+            Share of the picture that is left empty at each side, from 0 to less than a half.
 
         Raises
         ------
         ValueError
-            When ``zoom`` is not positive, or ``focus`` is no point.
+            When ``zoom`` is not positive, ``focus`` is no point, or ``margin`` is out of range.
         """
+        if not (_is_number(margin) and 0 <= margin < 0.5):
+            msg = f"margin is {margin!r}; expected a number from 0 to less than 0.5, such as 0.04"
+            raise ValueError(msg)
+        share = 1 - 2 * margin
         if not (_is_number(zoom) and NEAREST_REACH <= zoom <= FARTHEST_REACH):
             msg = (
                 f"zoom is {zoom!r}; expected a positive number, 1 for the whole surface, from "
@@ -177,18 +184,23 @@ class Camera:
             point = np.asarray(focus, dtype=float)
             center[: len(point)] = point
         if surface.frame is not None:
-            return cls._fit_flat(surface, surface.frame, center, aspect, zoom)
+            return cls._fit_flat(surface, surface.frame, center, aspect, zoom, share)
         closest = CAMERA_LIMITS.closest if focus is not None else 1.0
-        return cls._fit_curved(surface, center, aspect, zoom, closest, toward, up)
+        return cls._fit_curved(surface, center, aspect, zoom, closest, toward, up, share)
 
     @classmethod
     def _fit_flat(
-        cls, surface: Surface, frame: Floats, center: Floats, aspect: float, zoom: float
+        cls,
+        surface: Surface,
+        frame: Floats,
+        center: Floats,
+        aspect: float,
+        zoom: float,
+        share: float,
     ) -> Self:
         """Look straight on, without perspective, the surface's own axes to the right and up."""
         right, up = frame
         width, height = surface.plane_size
-        share = 1 - 2 * CAMERA_LIMITS.margin
         return cls(
             position=_point(center + np.cross(right, up) * surface.extent),
             focal_point=_point(center),
@@ -207,6 +219,7 @@ class Camera:
         closest: float,
         toward: Point,
         up: Point,
+        share: float,
     ) -> Self:
         """Look from a side, so far away that the whole surface just fits.
 
@@ -221,7 +234,6 @@ class Camera:
         half = np.tan(np.radians(CAMERA_LIMITS.view_angle / 2))
         axes = np.stack([right, np.cross(ahead, right), ahead])
         x, y, z = axes @ (surface.points[surface.valid] - surface.center).T
-        share = 1 - 2 * CAMERA_LIMITS.margin
         reach = np.maximum(np.abs(x) / aspect, np.abs(y))
         distance = float(np.max(z + reach / half / share))
         closer = min(zoom, closest)

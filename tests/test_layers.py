@@ -70,7 +70,11 @@ VTK = Library(
 )
 LIBRARIES = (
     VTK,
-    Library(("matplotlib",), in_functions=("_util.colours",)),
+    Library(
+        ("matplotlib",),
+        on_load=("offscreen.figure",),
+        in_functions=("_util.colours", "offscreen.annotations"),
+    ),
     Library(
         (
             "trame",

@@ -164,6 +164,10 @@ class FrameFlags(DrawFlags):
     supersampling: Annotated[
         int, Parameter(group=PICTURE, help="Draw larger by as much along each side, and average.")
     ] = 1
+    annotations: Annotated[
+        bool,
+        Parameter(group=PICTURE, help="Write legend, scale bar, time and name on it.", negative=""),
+    ] = False
     beside: Annotated[
         tuple[str, ...],
         _flag(
@@ -177,7 +181,11 @@ class FrameFlags(DrawFlags):
 
     def arguments(self) -> dict[str, Any]:
         """Return what :meth:`LookFlags.arguments` does, and these."""
-        own = {"beside": _parsed_settings(self.beside), "supersampling": self.supersampling}
+        own = {
+            "beside": _parsed_settings(self.beside),
+            "supersampling": self.supersampling,
+            "annotations": self.annotations,
+        }
         return {**super().arguments(), **own}
 
 

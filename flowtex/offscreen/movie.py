@@ -175,6 +175,7 @@ def movie(
     fps: float | None = None,
     quality: int = DEFAULT_QUALITY,
     supersampling: int = 1,
+    annotations: bool = False,
     progress: bool = True,
     cancelled: Callable[[], bool] = lambda: False,
     **options: Any,
@@ -198,7 +199,7 @@ def movie(
         Pictures in a second; 30 by default, and 20 in a GIF.
     quality
         1 to 100: the more, the truer and the larger the file.
-    supersampling
+    supersampling, annotations
         As for :func:`flowtex.render`.
     progress
         Whether to show a progress bar when it takes longer than a second.
@@ -228,7 +229,8 @@ def movie(
     fps = default_fps(path) if fps is None else fps
     check_movie(path, size, fps, quality)
     field, chosen, shown = _prepare(mesh, Options.split(**options), fps, seconds)
-    pictures = _draw(field, chosen, shown, size=size, supersampling=supersampling)
+    drawn = {"size": size, "supersampling": supersampling, "annotations": annotations}
+    pictures = _draw(field, chosen, shown, **drawn)
     try:
         tracked = track(pictures, len(shown), "Drawing the movie", show=progress)
         write_movie(path, tracked, fps, quality, cancelled=cancelled)
@@ -246,6 +248,7 @@ def frames(
     seconds: float | None = None,
     fps: float = 30.0,
     supersampling: int = 1,
+    annotations: bool = False,
     **options: Any,
 ) -> Iterator[Bytes]:
     """Give the pictures of a movie, (height, width, 3) uint8, each drawn when it is asked for.
@@ -253,7 +256,8 @@ def frames(
     Parameters and errors are those of :func:`movie`.
     """
     field, chosen, shown = _prepare(mesh, Options.split(**options), fps, seconds)
-    return _draw(field, chosen, shown, size=size, supersampling=supersampling)
+    drawn = {"size": size, "supersampling": supersampling, "annotations": annotations}
+    return _draw(field, chosen, shown, **drawn)
 
 
 def _prepare(

@@ -10,12 +10,13 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import Bytes
-from flowtex.camera import Camera
+from flowtex.camera import CAMERA_LIMITS, Camera
 from flowtex.diagnostics import require_opengl
+from flowtex.offscreen.annotations import annotate, difference_text
 from flowtex.options import Options, ViewOptions
 from flowtex.plotting.component import FlowtexComponent
 from flowtex.plotting.handle import FlowHandle
-from flowtex.plotting.vtk_camera import apply_camera, look
+from flowtex.plotting.vtk_camera import apply_camera, look, read_camera
 from flowtex.scene import Scene
 from flowtex.textures.images import averaged
 
@@ -37,8 +38,8 @@ NOTHING_SEEN = (
 class OffscreenPlotter:
     """A plotter without a window that draws pictures of a flow.
 
-    Parameters and errors are those of :func:`flowtex.render`; ``handles`` are the textures of
-    its views.
+    Parameters and errors are those of :func:`flowtex.render`; ``density`` is that of the handles,
+    which are the textures of the views.
     """
 
     def __init__(
@@ -48,14 +49,19 @@ class OffscreenPlotter:
         *,
         size: tuple[int, int],
         supersampling: int = 1,
+        margin: float = CAMERA_LIMITS.margin,
+        density: float = 1.0,
+        annotations: bool = False,
         scalar_bar_args: Mapping[str, Any] | None = None,
     ) -> None:
         require_opengl()
         _check_size(size, supersampling)
         appearance = options.appearance
-        if appearance.show_scalar_bar is None:
+        self._legend = appearance.has_bar
+        if annotations or appearance.show_scalar_bar is None:
             options = replace(options, appearance=replace(appearance, show_scalar_bar=False))
         self._supersampling = supersampling
+        self._view, self._annotations = options.view, annotations
         large = (size[0] * supersampling, size[1] * supersampling)
         two = options.view.beside is not None
         self._plotter = new_plotter(large, two_views=two, off_screen=True, lighting="light kit")
@@ -65,12 +71,14 @@ class OffscreenPlotter:
             else:
                 self._plotter.disable_anti_aliasing()
             self._plotter.set_background(options.view.background)
-            self.handles = add_scenes(self._plotter, mesh, options, scalar_bar_args)
+            self.handles = add_scenes(
+                self._plotter, mesh, options, scalar_bar_args, labels=not annotations
+            )
             window = self._plotter.render_window
             window.SetDPI(window.GetDPI() * supersampling)
             for handle in self.handles:
-                handle.density = supersampling
-            point_camera(self._plotter, self.handles[0].scene, options.view)
+                handle.density = supersampling * density
+            point_camera(self._plotter, self.handles[0].scene, options.view, margin)
         except BaseException:
             self._plotter.close()
             raise
@@ -90,7 +98,24 @@ class OffscreenPlotter:
         visible = any(handle.scene.appearance.opacity > 0 for handle in self.handles)
         if visible and (pixels == self._plotter.background_color.int_rgb).all():
             warnings.warn(NOTHING_SEEN, stacklevel=3)
-        return averaged(pixels, self._supersampling)
+        picture = averaged(pixels, self._supersampling)
+        return self._annotated(picture) if self._annotations else picture
+
+    def _annotated(self, picture: Bytes) -> Bytes:
+        """Return a picture with what is written on each of its views."""
+        picture = picture.copy()
+        changes = self._view.beside or {}
+        views = np.array_split(picture, len(self.handles), axis=1)
+        for view, handle in zip(views, self.handles, strict=True):
+            annotate(
+                view,
+                handle.scene,
+                read_camera(self._plotter.camera),
+                background=self._view.background,
+                label=difference_text(handle.scene, changes),
+                legend=self._legend,
+            )
+        return picture
 
     def close(self) -> None:
         """Free the graphics card."""
@@ -118,8 +143,10 @@ def add_scenes(
     mesh: Any,
     options: Options,
     scalar_bar_args: Mapping[str, Any] | None = None,
+    *,
+    labels: bool = True,
 ) -> list[FlowHandle]:
-    """Add a flow to one view, or to two that share a camera and say how they differ."""
+    """Add a flow to one view, or to two that share a camera; labels say how they differ."""
     component, changes = FlowtexComponent(plotter), options.view.beside
     scenes = [Scene.from_options(mesh, options)]
     if changes is not None:
@@ -129,24 +156,26 @@ def add_scenes(
         if changes is not None:
             plotter.subplot(0, column)
         handles.append(component.add_scene(scene, scalar_bar_args=scalar_bar_args))
-        if changes is not None:
-            _label(plotter, scene, changes)
+        if changes is not None and labels:
+            _label(plotter, difference_text(scene, changes))
     if changes is not None:
         plotter.link_views()
         plotter.subplot(0, 0)
     return handles
 
 
-def point_camera(plotter: Any, scene: Scene, view: ViewOptions) -> None:
+def point_camera(
+    plotter: Any, scene: Scene, view: ViewOptions, margin: float = CAMERA_LIMITS.margin
+) -> None:
     """Point a plotter's camera where a view asks for.
 
     Raises
     ------
     ValueError
-        When the view's camera, zoom or focus is none.
+        When the view's camera, zoom or focus is none, or the margin.
     """
     if view.camera is None:
-        look(plotter, scene.whole, zoom=view.zoom, focus=view.focus)
+        look(plotter, scene.whole, zoom=view.zoom, focus=view.focus, margin=margin)
     elif isinstance(view.camera, (Camera, Mapping)):
         apply_camera(view.first_camera(scene.whole.surface), plotter.camera)
         plotter.camera_set = True
@@ -156,10 +185,8 @@ def point_camera(plotter: Any, scene: Scene, view: ViewOptions) -> None:
         plotter.camera_position = view.camera
 
 
-def _label(plotter: Any, scene: Scene, changes: Mapping[str, Any]) -> None:
-    """Write the settings by which one of two views differs from the other."""
-    settings = dict(scene.settings)
-    text = ", ".join(f"{name} = {settings[name]}" for name in changes if name in settings)
+def _label(plotter: Any, text: str) -> None:
+    """Write what one of two views shows."""
     label = plotter.add_text(text, font_size=9, color="black")
     label.prop.background_color, label.prop.background_opacity = "white", 0.8
 

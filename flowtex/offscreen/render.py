@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from flowtex._util.array_types import Bytes
+from flowtex.camera import CAMERA_LIMITS
 from flowtex.offscreen.plotter import OffscreenPlotter
 from flowtex.options import Appearance, FieldOptions, Options, ViewOptions, accepts_options
 
@@ -19,6 +20,8 @@ def render(
     time: float | None = None,
     clock: float = 0.0,
     supersampling: int = 1,
+    margin: float = CAMERA_LIMITS.margin,
+    annotations: bool = False,
     scalar_bar_args: dict[str, Any] | None = None,
     **options: Any,
 ) -> Bytes:
@@ -37,8 +40,15 @@ def render(
     supersampling
         Times that the picture is drawn larger along each side and averaged, 1 to 8: 2 takes four
         times as long and smooths what is finer than a pixel. Grains keep their size.
+    margin
+        Share of the picture that is left empty at each side of the whole surface, from 0 to less
+        than a half. :func:`flowtex.extent` tells what rectangle a flat picture shows.
+    annotations
+        Whether legend, scale bar, time and the field's name are written on the picture, each where
+        it makes sense and has room.
     scalar_bar_args
-        As for ``plotter.add_mesh``. There is a legend only with ``show_scalar_bar=True``.
+        As for ``plotter.add_mesh``. There is such a bar only with ``show_scalar_bar=True``,
+        and with annotations there is none.
     {options}
     **settings
         Any setting of :class:`~flowtex.Settings`, such as ``samples=25``.
@@ -55,13 +65,15 @@ def render(
     OpenGLMissingError
         When nothing can draw; the text names the command that installs what is missing.
     ValueError
-        When the picture would be too large to draw.
+        When the picture would be too large to draw, or the margin is out of range.
     """
     with OffscreenPlotter(
         mesh,
         Options.split(**options),
         size=size,
         supersampling=supersampling,
+        margin=margin,
+        annotations=annotations,
         scalar_bar_args=scalar_bar_args,
     ) as plotter:
         return plotter.picture(time=time, clock=clock)

@@ -12,6 +12,7 @@ import pyvista as pv
 from flowtex._util.colours import colour_table
 from flowtex.field import FlowField
 from flowtex.options import NO_VALUE_COLOR, Appearance
+from flowtex.plotting.scalar_bar import SCALAR_BAR, arrange_with
 from flowtex.rendering.constants import AMBIENT_LIGHT, DIFFUSE_LIGHT
 from flowtex.rendering.cpu.shade import mean_colours
 from flowtex.rendering.vtk import FlowSurface, surface_mesh, use_flow_mapper
@@ -22,23 +23,6 @@ __all__ = ["FlowHandle"]
 
 #: A lit surface: dark sides stay bright enough to read the texture there.
 LIGHT: dict[str, Any] = {"ambient": AMBIENT_LIGHT, "diffuse": DIFFUSE_LIGHT}
-
-#: A scalar bar that keeps out of the picture's way.
-SCALAR_BAR: dict[str, Any] = {
-    "fmt": "%.3g",
-    "n_labels": 3,
-    "vertical": True,  # labels of a level bar would hang over its ends
-    "width": 0.08,
-    "height": 0.36,
-    "position_x": 0.02,
-    "position_y": 0.04,
-    "fill": True,
-    "background_color": "white",
-    "color": "black",
-    "title_font_size": 16,
-    "label_font_size": 14,
-    "unconstrained_font_size": True,
-}
 
 _count = itertools.count(1)
 
@@ -85,6 +69,7 @@ class FlowHandle(AppearanceAttributes):
         self._place = plotter.renderers.active_index
         self._bar_title: str | None = None
         self._bar_options = scalar_bar_args or {}
+        self._end_arranging: Callable[[], None] = lambda: None
         self._bar_look = self._settings_of_bar
         self._surface = FlowSurface(
             self.actor, plotter.renderer, scene.textures, scene.settings, scene.pyramid
@@ -260,7 +245,9 @@ class FlowHandle(AppearanceAttributes):
         renderers = plotter.renderers
         active = renderers.active_index
         renderers.set_active_renderer(*np.atleast_1d(renderers.index_to_loc(self._place)))
-        plotter.add_scalar_bar(mapper=self.actor.mapper, render=False, **bar)
+        made = plotter.add_scalar_bar(mapper=self.actor.mapper, render=False, **bar)
+        if made is not None:  # there was one of this title
+            self._end_arranging = arrange_with(made, plotter.renderer, self._bar_options)
         renderers.set_active_renderer(*np.atleast_1d(renderers.index_to_loc(active)))
         self._bar_title = bar["title"]
         self._show_bar_colours()
@@ -279,6 +266,8 @@ class FlowHandle(AppearanceAttributes):
         self._plotter.scalar_bars[self._bar_title].SetLookupTable(table)
 
     def _remove_bar(self, plotter: Any) -> None:
+        self._end_arranging()
+        self._end_arranging = lambda: None
         if self._bar_title is not None and self._bar_title in plotter.scalar_bars:
             plotter.remove_scalar_bar(self._bar_title, render=False)
         self._bar_title = None

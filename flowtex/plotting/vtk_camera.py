@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from flowtex.camera import Camera
+from flowtex.camera import CAMERA_LIMITS, Camera
 from flowtex.field import FlowField
 
 __all__ = ["apply_camera", "look", "read_camera"]
@@ -40,13 +40,15 @@ def look(
     *,
     zoom: float = 1.0,
     focus: tuple[float, ...] | None = None,
+    margin: float = CAMERA_LIMITS.margin,
 ) -> None:
     """Point a plotter's camera at a field; :meth:`Camera.fit` has the parameters.
 
     PyVista leaves a camera that is set as it is, also where it cuts off what is added later; so
     the clipping range follows the bounds of what is there, and is otherwise left alone.
     """
-    camera = Camera.fit(field.surface, subplot_aspect(plotter), zoom=zoom, focus=focus)
+    aspect = subplot_aspect(plotter)
+    camera = Camera.fit(field.surface, aspect, zoom=zoom, focus=focus, margin=margin)
     apply_camera(camera, plotter.camera)
     plotter.camera_set = True
     renderer = plotter.renderer

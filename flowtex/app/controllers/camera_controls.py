@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Mapping
 from typing import Any
@@ -10,6 +9,7 @@ from typing import Any
 from flowtex.app.controllers.context import Context, Controller
 from flowtex.app.server.validation import name_among
 from flowtex.app.streaming.stream import Figures
+from flowtex.offscreen.annotations import round_length, singular
 
 __all__ = ["KEYS", "VIEWS", "CameraControls"]
 
@@ -150,17 +150,3 @@ class CameraControls(Controller):
             "text": f"{length:.12g} {singular(unit) if length == 1 else unit}".strip(),
             "width": round(100 * length / across, 3) if across > 0 else 0,
         }
-
-
-def singular(unit: str) -> str:
-    """Return the name of one unit where it is a whole word in the plural, such as metres."""
-    plural = len(unit) > 4 and unit.endswith("s") and not unit.endswith(("ss", "ches"))
-    return unit[:-1] if plural else unit
-
-
-def round_length(greatest: float) -> float:
-    """Return the greatest of 1, 2, 5, 10, 20, ... that is not above a length."""
-    if not (greatest > 0 and math.isfinite(greatest)):
-        return 0.0
-    power = 10.0 ** math.floor(math.log10(greatest))
-    return max(step * power for step in (1, 2, 5) if step * power <= greatest * (1 + 1e-12))

@@ -27,6 +27,7 @@ from flowtex._util.whole_file import whole_file
 from flowtex.app.streaming.painter import LINE_GREY, Cost
 from flowtex.app.streaming.viewport import GAP_PX, Pane, Rect, Viewport
 from flowtex.field import FlowField
+from flowtex.offscreen.annotations import annotate, difference_text
 from flowtex.offscreen.encoders import (
     DEFAULT_QUALITY,
     MovieError,
@@ -97,6 +98,20 @@ class TiledPicture:
                 done += tile.shape[0] * tile.shape[1]
                 yield canvas, done / (width * height)
 
+    def annotate(self, picture: Bytes) -> None:
+        """Write legend, scale bar, time and name on each view of a picture, in place."""
+        viewport, count = self._viewport, len(self._viewport.panes)
+        for view, pane in zip(np.array_split(picture, count, axis=1), viewport.panes, strict=True):
+            scene = pane.handle.scene
+            annotate(
+                view,
+                scene,
+                viewport.camera,
+                background=viewport.background,
+                label=difference_text(scene, viewport.differences),
+                legend=scene.settings.noise != "image",
+            )
+
     def _tiles(self, width: int, height: int) -> Iterator[tuple[slice, slice]]:
         """Rows of tiles that are as large as the time allows by then."""
         top = 0
@@ -150,6 +165,8 @@ class Job:
     density
         Pixels of the result for one that the settings speak of: 2 has grains of twice as many
         pixels, as fine screens and print want it.
+    annotations
+        Whether legend, scale bar, time and name are written on it.
     busy
         Tells whether the view needs the time more; nothing is drawn meanwhile.
 
@@ -172,12 +189,14 @@ class Job:
         *,
         supersampling: int = 1,
         density: float = 1.0,
+        annotations: bool = False,
         busy: Callable[[], bool] = lambda: False,
     ) -> None:
         _check(size, supersampling, density)
         self.path, self.progress, self.done = Path(path), 0.0, False
         self._viewport, self._size, self._busy = viewport, size, busy
         self._supersampling, self._density = supersampling, density
+        self._annotations = annotations
         self._cancelled = False
         self._pool = ThreadPoolExecutor(1, "flowtex-export")
 
@@ -227,6 +246,8 @@ class Job:
         if picture is None:
             msg = "there was nothing to draw; expected a size of at least one pixel"
             raise ExportError(msg)
+        if self._annotations:
+            tiled.annotate(picture)
         return picture
 
     async def _in_thread(self, work: Callable[..., T], *arguments: Any) -> T:

@@ -7,6 +7,7 @@ from typing import Any
 
 from flowtex.app.controllers.context import Context, Controller
 from flowtex.app.server.validation import number
+from flowtex.offscreen.annotations import time_text
 
 __all__ = ["PACES", "Playback"]
 
@@ -14,8 +15,6 @@ __all__ = ["PACES", "Playback"]
 PACES = (0.25, 0.5, 1.0, 2.0, 4.0)
 #: Stops of the time slider between two steps of the field.
 STOPS_PER_STEP = 8
-#: A unit of time with more letters than this is left out beside the slider.
-UNIT_LENGTH = 8
 
 
 class Playback(Controller):
@@ -87,6 +86,4 @@ class Playback(Controller):
             self.player.go_to(float(saved["time"]))
 
     def _time_text(self) -> str:
-        unit = self.viewport.field.time_unit
-        suffix = f" {unit}" if 0 < len(unit) <= UNIT_LENGTH else ""
-        return f"t = {self.viewport.handle.time:.2f}{suffix}"
+        return time_text(self.viewport.field, self.viewport.handle.time)

@@ -63,6 +63,7 @@ class Sharing(Controller):
             out_height=1080,
             out_density=1.0,
             out_smooth=True,
+            out_annotations=False,
             out_seconds=4.0,
             out_fps=30.0,
             out_progress=None,
@@ -109,6 +110,7 @@ class Sharing(Controller):
         options: dict[str, Any] = {
             "supersampling": 2 if self.state.get("out_smooth") else 1,
             "density": self._number("out_density"),
+            "annotations": bool(self.state.get("out_annotations")),
             "busy": self._busy,
         }
         if kind == "PNG":

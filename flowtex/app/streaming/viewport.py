@@ -108,6 +108,11 @@ class Viewport:
         self.first_look()
 
     @property
+    def differences(self) -> Mapping[str, Any]:
+        """Settings in which a second pane differs; none where there is one pane."""
+        return self._beside
+
+    @property
     def handle(self) -> FlowHandle:
         """The texture of the first pane."""
         return self.panes[0].handle

@@ -138,6 +138,9 @@ def _save(controllers: Controllers) -> None:
     with row("smooth", "Draw at twice the size and average: smoother edges, four times as long."):
         html.Span("Smooth edges", classes="flowtex-label")
         switch("Smooth edges", key("out_smooth"))
+    with row("annotations", "Legend, scale bar, time and name, written on it."):
+        html.Span("Annotations", classes="flowtex-label")
+        switch("Annotations", key("out_annotations"))
     with row("seconds", "How long the movie is, and its pictures in a second.", v_if=(movie,)):
         html.Span("Seconds, rate", classes="flowtex-label")
         with html.Span(classes="flowtex-range"):

@@ -6,7 +6,7 @@ import pytest
 
 pytest.importorskip("trame_rca")
 
-from flowtex.app.controllers.camera_controls import round_length, singular
+from flowtex.offscreen.annotations import round_length, singular
 
 
 @pytest.mark.parametrize(

@@ -251,3 +251,31 @@ def test_what_cannot_be_made_is_told(
     with pytest.raises((ExportError, MovieError)) as error:
         made(plain, path, **{"size": (20, 20), **options})
     assert said in str(error.value)
+
+
+@pytest.mark.parametrize("steps", [1, 3])
+@pytest.mark.parametrize("split", [None, {"kernel": "box"}])
+def test_annotations_are_written_on_what_is_saved(
+    tmp_path: Path, steps: int, split: dict[str, Any] | None
+) -> None:
+    view = Viewport(patch(steps=steps), samples=5)
+    view.resize(120, 80)
+    view.home()
+    view.compare(split)
+    shots = []
+    for written in (False, True):
+        job = PictureJob(view, tmp_path / "a.png", (640, 200), annotations=written)
+        shots.append(pixels(run(job)))
+    movie = MovieJob(view, tmp_path / "a.gif", (320, 200), seconds=0.2, fps=10, annotations=True)
+    with Image.open(run(movie)) as file:
+        assert file.size == (320, 200)
+    view.close()
+    differs = (np.abs(shots[0] - shots[1]) > 20).any(axis=-1)
+    halves = [differs] if split is None else np.array_split(differs, 2, axis=1)
+    for half in halves:
+        wide = half.shape[1]
+        assert half[100:, wide // 2 :].any()  # the legend
+        assert half[100:, : wide // 2].any()  # the scale bar
+        assert half[:50, wide // 2 :].any() == (steps > 1)  # the time
+        assert half[:50, : wide // 2].any() == (split is not None)  # what differs
+        assert not half[60:100].any()

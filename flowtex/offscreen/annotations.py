@@ -1,0 +1,309 @@
+"""Legend, time, scale bar and title, written on pictures that are drawn already.
+
+Each stands on a plate of its own in a corner. What has no room is left out, the title first and
+the legend last. Text grows with the picture, so that small and large ones look alike.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from PIL import Image, ImageDraw, ImageFont
+
+from flowtex._util.array_types import Bytes
+from flowtex._util.colours import colour_table, rgb
+from flowtex.camera import Camera
+from flowtex.field import FlowField
+from flowtex.rendering.cpu.shade import mean_colours
+from flowtex.scene import Scene
+
+__all__ = [
+    "Plate",
+    "annotate",
+    "difference_text",
+    "plates",
+    "round_length",
+    "singular",
+    "time_text",
+]
+
+#: Height of the text: a share of the picture's height, or of a width that goes with it.
+TEXT_SHARE, WIDEST_ASPECT = 1 / 30, 1.6
+#: Height below which text cannot be read, in pixels.
+SMALLEST_TEXT_PX = 11
+#: Share of the picture that a plate covers at most.
+MOST_COVER = 0.12
+#: Greatest share of the picture's width that a scale bar has.
+SCALE_BAR_WIDTH = 0.2
+#: Lengths in heights of the text: around it, between plates, of the ramp, of thin lines.
+PADDING, GAP, RAMP_WIDTH, RAMP_HEIGHT, LINE = 0.4, 0.6, 9.0, 0.65, 0.1
+#: How opaque a plate is, and the lightness from which a background counts as light.
+OPACITY, LIGHT_FROM = 0.8, 0.5
+#: Digits of the ends of a legend: as many as tell them apart.
+DIGITS = range(3, 9)
+#: A unit of time with more letters than this is left out where room is scarce, which it is where
+#: the time would have more than this share of the picture's width.
+UNIT_LENGTH, TIME_WIDTH = 8, 0.4
+#: Decimals of a time, and times, beyond which it is written with an exponent.
+MOST_DECIMALS, LONGEST_TIME = 6, 1e9
+
+
+@dataclass(frozen=True)
+class Plate:
+    """One annotation: its name, its place in pixels from the top left, and its pixels (RGBA)."""
+
+    name: str
+    left: int
+    top: int
+    image: Image.Image
+
+    @property
+    def box(self) -> tuple[int, int, int, int]:
+        """Left, top, right and bottom, in pixels."""
+        return self.left, self.top, self.left + self.image.width, self.top + self.image.height
+
+
+def annotate(picture: Bytes, scene: Scene, camera: Camera, **options: Any) -> None:
+    """Write on a picture, (H, W, 3) uint8, in place; :func:`plates` has the parameters."""
+    height, width = picture.shape[:2]
+    for plate in plates(scene, (width, height), camera, **options):
+        left, top, right, bottom = plate.box
+        below, above = picture[top:bottom, left:right], np.asarray(plate.image, dtype=float)
+        share = above[..., 3:] / 255
+        below[:] = np.rint(below * (1 - share) + above[..., :3] * share)
+
+
+def plates(
+    scene: Scene,
+    size: tuple[int, int],
+    camera: Camera,
+    *,
+    background: Any = "white",
+    label: str = "",
+    legend: bool = True,
+) -> list[Plate]:
+    """Return what is written on a picture, the most important first.
+
+    Parameters
+    ----------
+    scene
+        What the picture shows.
+    size
+        Its width and height in pixels.
+    camera
+        Where it was taken from.
+    background
+        Colour behind the surface: plates are light on a light one.
+    label
+        What the title says beside the name of the field.
+    legend
+        Whether there may be one; there is none where the colours tell nothing.
+    """
+    width, height = size
+    writer = _Writer(size, background)
+    title = _printable(", ".join(text for text in (scene.field.name, label) if text))
+    parts: tuple[tuple[str, bool, bool, Iterator[Image.Image]], ...] = (
+        ("legend", True, True, writer.legends(scene) if legend else iter(())),
+        ("time", True, False, writer.times(scene)),
+        ("scale bar", False, True, writer.scale_bars(scene, camera)),
+        ("title", False, False, writer.texts(title)),
+    )
+    gap, placed = writer.gap, list[Plate]()
+    for name, right, low, images in parts:
+        for image in images:
+            left = width - gap - image.width if right else gap
+            top = height - gap - image.height if low else gap
+            plate = Plate(name, left, top, image)
+            fits = gap <= left <= width - gap - image.width
+            fits &= gap <= top <= height - gap - image.height
+            fits &= image.width * image.height <= MOST_COVER * width * height
+            if fits and all(_apart(plate, other, gap) for other in placed):
+                placed.append(plate)
+                break
+    return placed
+
+
+class _Writer:
+    """Makes the plates of pictures of one size and background, the largest form of each first."""
+
+    def __init__(self, size: tuple[int, int], background: Any) -> None:
+        self._size = size
+        height = min(size[1], size[0] / WIDEST_ASPECT)
+        self._em = max(round(height * TEXT_SHARE), SMALLEST_TEXT_PX)
+        self._font = _font(self._em)
+        self._line = sum(self._font.getmetrics())
+        self._thin, self.gap = self._px(LINE), self._px(GAP)
+        is_light = float(np.dot(rgb(background), (0.299, 0.587, 0.114))) >= LIGHT_FROM
+        self._plate, self._ink = ("white", "black") if is_light else ("black", "white")
+
+    def texts(self, text: str, room: tuple[str, ...] = ()) -> Iterator[Image.Image]:
+        """Yield a plate with one line, as wide as the widest that may stand there."""
+        if text:
+            width = max(map(self._width, (text, *room)))
+            image, draw = self._blank(width, self._line)
+            self._write(draw, 0, 0, text)
+            yield image
+
+    def times(self, scene: Scene) -> Iterator[Image.Image]:
+        """Yield the time of a field that varies in time, with a long unit and without it."""
+        field = scene.field
+        if field.steady:
+            return
+        for longest in (len(field.time_unit), UNIT_LENGTH):
+            times = (scene.time, *map(float, field.times[[0, -1]]))
+            text, *ends = (_printable(time_text(field, time, longest)) for time in times)
+            for image in self.texts(text, tuple(ends)):
+                if longest <= UNIT_LENGTH or image.width <= TIME_WIDTH * self._size[0]:
+                    yield image
+
+    def scale_bars(self, scene: Scene, camera: Camera) -> Iterator[Image.Image]:
+        """Yield a round length, where it is the same all over the picture."""
+        frame = scene.whole.surface.frame
+        if frame is None or not camera.parallel:
+            return
+        if abs(float(np.cross(*frame) @ camera.axes[2])) < 1 - 1e-6:  # seen aslant
+            return
+        unit_px = self._size[1] / (2 * camera.height)
+        length = round_length(SCALE_BAR_WIDTH * self._size[0] / unit_px)
+        unit, across = _printable(scene.field.length_unit), round(length * unit_px)
+        if not across:
+            return
+        text = f"{length:.12g} {singular(unit) if length == 1 else unit}".strip()
+        tick = self._px(PADDING)
+        width = max(self._width(text), across)
+        image, draw = self._blank(width, self._line + tick)
+        self._write(draw, (width - self._width(text)) // 2, 0, text)
+        left, low = self._pad + (width - across) // 2, self._pad + self._line + tick - 1
+        right = left + across - 1
+        draw.rectangle((left, low - self._thin + 1, right, low), self._ink)
+        for x in (left, right - self._thin + 1):
+            draw.rectangle((x, low - tick + 1, x + self._thin - 1, low), self._ink)
+        yield image
+
+    def legends(self, scene: Scene) -> Iterator[Image.Image]:
+        """Yield name, colours and values: low, middle and high, and without the middle."""
+        name, settings, appearance = scene.scalar_name, scene.settings, scene.appearance
+        if name is None or settings.show_level or not appearance.visible:
+            return
+        table = mean_colours(colour_table(appearance.cmap), settings)[:, :3]
+        unit = scene.field.unit_of(name)
+        title = _printable(f"{name} ({unit})" if unit else name)
+        values = _value_texts(*scene.scalar_limits, log_scale=appearance.log_scale)
+        for numbers in (values, values[::2]):
+            yield self._legend(title, table, numbers)
+
+    def _legend(self, title: str, table: Bytes, numbers: list[str]) -> Image.Image:
+        widths, space = [self._width(n) for n in numbers], self._px(GAP)
+        # The one in the middle keeps off the longer of the others.
+        needed = 2 * max(widths[0], widths[-1]) + sum(space + w for w in widths[1:-1]) + space
+        width = max(self._width(title), needed, self._px(RAMP_WIDTH))
+        high = self._px(RAMP_HEIGHT)
+        image, draw = self._blank(width, 2 * self._line + high)
+        self._write(draw, 0, 0, title)
+        stops = np.linspace(0, len(table) - 1, width).round().astype(int)
+        ramp = np.broadcast_to(table[stops], (high, width, 3))
+        image.paste(
+            Image.fromarray(np.ascontiguousarray(ramp)), (self._pad, self._pad + self._line)
+        )
+        shares = np.linspace(0, 1, len(numbers))
+        for text, share, wide in zip(numbers, shares, widths, strict=True):
+            self._write(draw, round(share * (width - wide)), self._line + high, text)
+        return image
+
+    @property
+    def _pad(self) -> int:
+        return self._px(PADDING)
+
+    def _px(self, heights: float) -> int:
+        return max(round(heights * self._em), 1)
+
+    def _blank(self, width: int, height: int) -> tuple[Image.Image, Any]:
+        """Return a plate with so much room, and what draws on it."""
+        size = (width + 2 * self._pad, height + 2 * self._pad)
+        image = Image.new("RGBA", size, self._plate)
+        image.putalpha(round(255 * OPACITY))
+        return image, ImageDraw.Draw(image)
+
+    def _width(self, text: str) -> int:
+        left, _, right, _ = self._font.getbbox(text)
+        return math.ceil(right - left)
+
+    def _write(self, draw: Any, x: int, y: int, text: str) -> None:
+        left = self._font.getbbox(text)[0]  # a letter may begin beside its place
+        draw.text((self._pad + x - left, self._pad + y), text, self._ink, self._font)
+
+
+@lru_cache(8)
+def _font(height: int) -> ImageFont.FreeTypeFont:
+    """Return matplotlib's own font, which has the letters of units, in so many pixels."""
+    from matplotlib import get_data_path
+
+    path = Path(get_data_path(), "fonts", "ttf", "DejaVuSans.ttf")
+    # The layout that every Pillow has.
+    return ImageFont.truetype(path, height, layout_engine=ImageFont.Layout.BASIC)
+
+
+def _printable(text: str) -> str:
+    """Return a text in one line, without what cannot be drawn."""
+    return "".join(letter if letter.isprintable() else " " for letter in text).strip()
+
+
+def _apart(one: Plate, other: Plate, gap: int) -> bool:
+    """Tell whether there is a gap between two plates."""
+    (left, top, right, bottom), (to_left, above, to_right, below) = one.box, other.box
+    return (
+        right + gap <= to_left
+        or to_right + gap <= left
+        or bottom + gap <= above
+        or below + gap <= top
+    )
+
+
+def _value_texts(low: float, high: float, *, log_scale: bool) -> list[str]:
+    """Return the ends of a range and what is in its middle, with the digits that tell them."""
+    middle = math.sqrt(low) * math.sqrt(high) if log_scale else 0.5 * low + 0.5 * high
+    if abs(middle) < 1e-9 * (high - low):
+        middle = 0.0
+    texts = [str(value) for value in (low, middle, high)]
+    for digits in DIGITS:
+        texts = [f"{value:.{digits}g}" for value in (low, middle, high)]
+        if len(set(texts)) == 3:
+            break
+    return texts
+
+
+def time_text(field: FlowField, time: float, longest_unit: int = UNIT_LENGTH) -> str:
+    """Return a time of a field, with decimals that tell its steps apart and a unit so long."""
+    step = float(np.diff(field.times).min()) if len(field.times) > 1 else 1.0
+    power = math.floor(math.log10(step))
+    decimals = max(2 - power, 0) if power >= 0 else 1 - power
+    short = decimals <= MOST_DECIMALS and abs(time) < LONGEST_TIME
+    number = f"{time:.{decimals}f}" if short else f"{time:.{MOST_DECIMALS}g}"
+    unit = field.time_unit if len(field.time_unit) <= longest_unit else ""
+    return f"t = {number} {unit}".strip()
+
+
+def difference_text(scene: Scene, changes: Mapping[str, Any]) -> str:
+    """Return the settings by which one of two views differs from the other."""
+    settings = dict(scene.settings)
+    return ", ".join(f"{name} = {settings[name]}" for name in changes if name in settings)
+
+
+def singular(unit: str) -> str:
+    """Return the name of one unit where it is a whole word in the plural, such as metres."""
+    plural = len(unit) > 4 and unit.endswith("s") and not unit.endswith(("ss", "ches"))
+    return unit[:-1] if plural else unit
+
+
+def round_length(greatest: float) -> float:
+    """Return the greatest of 1, 2, 5, 10, 20, ... that is not above a length."""
+    if not (greatest > 0 and math.isfinite(greatest)):
+        return 0.0
+    power = 10.0 ** math.floor(math.log10(greatest))
+    return max(step * power for step in (1, 2, 5) if step * power <= greatest * (1 + 1e-12))

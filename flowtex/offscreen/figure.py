@@ -1,0 +1,270 @@
+"""Flat flows in data coordinates: what a picture shows, and matplotlib axes that draw a flow."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import ListedColormap, LogNorm, Normalize
+from matplotlib.image import AxesImage
+from PIL import Image
+
+from flowtex._util.array_types import Bytes, Floats
+from flowtex._util.colours import colour_table
+from flowtex.camera import CAMERA_LIMITS, Camera
+from flowtex.field import Surface
+from flowtex.offscreen.plotter import NOTHING_SEEN, OffscreenPlotter
+from flowtex.options import (
+    Appearance,
+    FieldOptions,
+    Options,
+    ViewOptions,
+    accepts_options,
+)
+from flowtex.rendering.cpu.shade import mean_colours
+from flowtex.scene import Scene
+
+__all__ = ["FlowImage", "axes", "extent"]
+
+#: Left, right, bottom and top.
+Extent = tuple[float, float, float, float]
+
+#: Dots per inch at which a grain has the pixels that the settings speak of.
+USUAL_DPI = 100.0
+#: Longest side of what is drawn where the scales of the axes differ, in pixels.
+LONGEST_SIDE_PX = 8192
+
+
+@accepts_options(FieldOptions, Appearance, ViewOptions)
+def extent(
+    mesh: Any,
+    *,
+    size: tuple[int, int] = (1024, 768),
+    margin: float = CAMERA_LIMITS.margin,
+    **options: Any,
+) -> Extent:
+    """Return the rectangle that :func:`flowtex.render` shows with the same arguments.
+
+    With it ``plt.imshow(picture, extent=...)`` puts each pixel where it lies in the data.
+
+    Parameters
+    ----------
+    mesh
+        What ``plotter.flowtex.add`` takes; its surface is flat.
+    size, margin
+        As for :func:`flowtex.render`.
+    {options}
+    **settings
+        Any setting of :class:`~flowtex.Settings`; they make no difference.
+
+    Returns
+    -------
+    tuple of float
+        Left, right, bottom and top in the mesh's units: x and y of a plane of constant z, x and z
+        of one of constant y, y and z of one of constant x. Of another plane, lengths along the
+        picture's sides from where the mesh has its origin.
+
+    Raises
+    ------
+    FieldError, SettingsError
+        When the mesh or a setting does not fit.
+    ValueError
+        When the surface is curved, the camera does not look straight on, or there are two views.
+    """
+    chosen = Options.split(**options)
+    if chosen.view.beside is not None:
+        msg = "beside makes two views, which have no one extent; leave it out"
+        raise ValueError(msg)
+    surface = Scene.from_options(mesh, chosen).whole.surface
+    frame, view, aspect = _frame(surface), chosen.view, size[0] / size[1]
+    camera = view.first_camera(surface, aspect)
+    if view.camera is None:
+        camera = Camera.fit(surface, aspect, zoom=view.zoom, focus=view.focus, margin=margin)
+    if not (camera.parallel and np.allclose(camera.axes[:2], frame, atol=1e-9)):
+        msg = (
+            f"camera is {view.camera!r}, which does not look straight on without perspective; "
+            "leave it out, and choose by zoom and focus"
+        )
+        raise ValueError(msg)
+    x, y = frame @ camera.focal_point
+    half = camera.parallel_scale
+    return float(x - half * aspect), float(x + half * aspect), float(y - half), float(y + half)
+
+
+@accepts_options(FieldOptions, Appearance)
+def axes(
+    ax: Axes,
+    mesh: Any,
+    *,
+    time: float | None = None,
+    clock: float = 0.0,
+    supersampling: int = 1,
+    **options: Any,
+) -> FlowImage:
+    """Draw a flat flow into matplotlib axes, in data coordinates.
+
+    It is drawn anew for each look at it, in the pixels that the axes have by then, so the texture
+    is as sharp after a zoom, in a larger window, and in a file of more dots per inch.
+
+    Parameters
+    ----------
+    ax
+        The axes: rectilinear ones, with linear scales. Their limits become those of the surface
+        and their aspect ``"equal"``.
+    mesh
+        What ``plotter.flowtex.add`` takes; its surface is flat.
+    time, clock, supersampling
+        As for :func:`flowtex.render`.
+    {options}
+    **settings
+        Any setting of :class:`~flowtex.Settings`, such as ``samples=25``.
+
+    Returns
+    -------
+    FlowImage
+        The image on the axes; ``plt.colorbar`` takes it.
+
+    Raises
+    ------
+    FieldError, SettingsError, OpenGLMissingError
+        As for :func:`flowtex.render`.
+    TypeError
+        When ``ax`` are no such axes.
+    ValueError
+        When the surface is curved.
+    """
+    if getattr(ax, "name", "") != "rectilinear":
+        msg = f"ax is {ax!r}; expected rectilinear axes of matplotlib's, as plt.subplots() makes"
+        raise TypeError(msg)
+    if (scales := (ax.get_xscale(), ax.get_yscale())) != ("linear", "linear"):
+        msg = f"ax has scales {scales}; expected linear ones, as ax.set_xscale('linear') makes"
+        raise TypeError(msg)
+    chosen = Options.split("field", "appearance", **options)
+    image = FlowImage(ax, mesh, chosen, supersampling)
+    image.time, image.clock = image.time if time is None else time, clock
+    image.set_clip_path(ax.patch)
+    ax.add_image(image)
+    left, right, bottom, top = image.get_extent()
+    ax.set(xlim=(left, right), ylim=(bottom, top), aspect="equal")
+    return image
+
+
+class FlowImage(AxesImage):
+    """A flow on matplotlib axes, drawn anew for what they show; :func:`axes` makes it.
+
+    Its colour map and its norm are those of the picture, for a colour bar.
+    """
+
+    def __init__(self, ax: Axes, mesh: Any, options: Options, supersampling: int) -> None:
+        self._scene = scene = Scene.from_options(mesh, options)
+        surface = scene.whole.surface
+        self._frame = _frame(surface)
+        # The scene keeps alive what each drawing shares with it.
+        self._options = replace(options, field=FieldOptions())
+        self._supersampling, self._clock = supersampling, 0.0
+        self._shown: tuple[Any, ...] = ()
+        self._picture = np.zeros((1, 1, 4), np.uint8)
+        x, y = self._frame @ surface.center
+        width, height = surface.plane_size / 2
+        super().__init__(ax, extent=(x - width, x + width, y - height, y + height))
+        # Pixels have no values, but a colour bar asks for some.
+        self.set_data([[scene.scalar_limits[0] if scene.scalar_name else 0.0]])
+        self.mouseover = False
+        look = scene.appearance
+        if scene.scalar_name is not None:
+            colours = mean_colours(colour_table(look.cmap), scene.settings)[:, :3] / 255
+            self.set_cmap(ListedColormap(colours))
+            self.set_norm((LogNorm if look.log_scale else Normalize)(*scene.scalar_limits))
+
+    @property
+    def time(self) -> float:
+        """Time that is shown, in the field's own unit; set it to show another one."""
+        return self._scene.time
+
+    @time.setter
+    def time(self, value: float) -> None:
+        self._scene.time = value
+        self.stale = True
+
+    @property
+    def clock(self) -> float:
+        """Clock of the streaming of a steady flow, in seconds."""
+        return self._clock
+
+    @clock.setter
+    def clock(self, value: float) -> None:
+        self._clock = float(value)
+        self.stale = True
+
+    def make_image(
+        self,
+        renderer: Any,
+        magnification: float = 1.0,
+        unsampled: bool = False,  # noqa: FBT001, FBT002
+    ) -> tuple[Any, float, float, Any]:
+        """Return the pixels of the axes and where they begin, for matplotlib."""
+        del renderer, unsampled
+        box = self.axes.bbox
+        # Whole pixels, of which matplotlib cuts those at the border.
+        low = np.floor(np.multiply(box.min, magnification))
+        high = np.ceil(np.multiply(box.max, magnification))
+        corners: Floats = self.axes.transData.inverted().transform(
+            np.stack([low, high]) / magnification
+        )
+        width, height = (int(n) for n in np.maximum(high - low, 1))
+        density = self.axes.figure.dpi * magnification / USUAL_DPI
+        shown = (*corners.ravel(), width, height, density, self.time, self.clock)
+        shown += (self.axes.get_facecolor(),)
+        if shown != self._shown:
+            self._picture = self._draw(corners, (width, height), density)
+            self._shown = shown
+        left, bottom = low / magnification
+        return self._picture, float(left), float(bottom), None
+
+    def _draw(self, corners: Floats, size: tuple[int, int], density: float) -> Bytes:
+        """Draw what lies between two corners, (2, 2), opaque, row 0 at the bottom."""
+        spans = np.abs(corners[1] - corners[0])
+        scale = min(float(np.max(size / spans)), LONGEST_SIDE_PX / float(spans.max()))
+        width, height = (max(round(float(n)), 1) for n in spans * scale)
+        view = ViewOptions(
+            camera=self._camera(corners.mean(axis=0), float(spans[1])),
+            background=self.axes.get_facecolor(),
+        )
+        with (
+            OffscreenPlotter(
+                self._scene.field,
+                replace(self._options, view=view),
+                size=(width, height),
+                supersampling=self._supersampling,
+                density=density,
+            ) as plotter,
+            warnings.catch_warnings(),
+        ):
+            warnings.filterwarnings("ignore", NOTHING_SEEN)  # axes may be elsewhere
+            picture = plotter.picture(time=self.time, clock=self.clock)
+        across, up = np.sign(corners[1] - corners[0]).astype(int)
+        shot = Image.fromarray(picture[::-up, ::across]).convert("RGBA").resize(size)
+        return np.array(shot)  # matplotlib wants one that can be written
+
+    def _camera(self, middle: Floats, height: float) -> Camera:
+        surface = self._scene.whole.surface
+        right, up = self._frame
+        moved = middle - self._frame @ surface.center
+        center = surface.center + moved @ self._frame
+        position = center + np.cross(right, up) * surface.extent
+        return Camera(
+            tuple(position), tuple(center), tuple(up), parallel=True, parallel_scale=height / 2
+        )
+
+
+def _frame(surface: Surface) -> Floats:
+    if surface.frame is None:
+        msg = (
+            "the surface is curved, and a picture of it has no axes in data coordinates; draw it "
+            "with flowtex.render, or give a flat plane of the mesh"
+        )
+        raise ValueError(msg)
+    return surface.frame

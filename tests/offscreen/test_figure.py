@@ -1,0 +1,201 @@
+"""Pictures in data coordinates: extents, and matplotlib axes that draw a flow."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+import flowtex
+from flowtex import FlowField
+
+pytestmark = pytest.mark.usefixtures("opengl")
+
+#: Where a scalar goes from 0 to 1, between two columns of nodes, and between two rows.
+EDGE_X, EDGE_Y = 0.525, 10.975
+#: Colours alone, without the texture.
+PLAIN: dict[str, Any] = {"scalars": "edge", "cmap": "gray", "strength": 0.0, "lighting": False}
+AXES = np.eye(3)
+
+
+def edge(right: int = 0, up: int = 1) -> FlowField:
+    """A sheet of 4 x 2 from (-1, 10) along two axes of space, light to the right and above."""
+    x, y = np.meshgrid(np.linspace(-1, 3, 81), np.linspace(10, 12, 41))
+    points = x[..., None] * AXES[right] + y[..., None] * AXES[up]
+    velocity = np.broadcast_to(AXES[right] + 0.5 * AXES[up], points.shape)
+    light = ((x > EDGE_X) & (y > EDGE_Y)).astype(float)
+    return FlowField.from_arrays(points, velocity, scalars={"edge": light})
+
+
+def edge_of(line: Any, low: float, high: float, crossing: int = 0) -> float:
+    """Where a row of pixels goes through the middle, in the coordinates of its ends."""
+    values = np.asarray(line, dtype=float)
+    above = values > 127.5
+    n = int(np.flatnonzero(above[:-1] != above[1:])[crossing])
+    share = (127.5 - values[n]) / (values[n + 1] - values[n])
+    return float(low + (n + 0.5 + share) * (high - low) / len(values))
+
+
+@pytest.mark.parametrize("axes", [(0, 1), (0, 2), (1, 2)])
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"margin": 0, "size": (400, 200)},
+        {"size": (333, 251)},
+        {"zoom": 5.0, "focus": None, "size": (300, 300)},
+        {"margin": 0.2, "size": (200, 400)},
+    ],
+)
+def test_an_extent_puts_an_edge_where_it_is(axes: tuple[int, int], options: dict[str, Any]) -> None:
+    field = edge(*axes)
+    if "focus" in options:
+        options = {**options, "focus": tuple(0.6 * AXES[axes[0]] + 11.05 * AXES[axes[1]])}
+    left, right, bottom, top = flowtex.extent(field, **options)
+    picture = flowtex.render(field, **options, **PLAIN, background="black")[..., 0]
+    height, width = picture.shape
+    assert (right - left) / width == pytest.approx((top - bottom) / height)
+    row = int((top - 11.1) / (top - bottom) * height)
+    column = int((0.7 - left) / (right - left) * width)
+    pixel = (right - left) / width
+    assert edge_of(picture[row], left, right) == pytest.approx(EDGE_X, abs=0.5 * pixel)
+    assert edge_of(picture[:, column], top, bottom, -1) == pytest.approx(EDGE_Y, abs=0.5 * pixel)
+
+
+def test_without_a_margin_the_surface_fills_the_picture() -> None:
+    field = edge()
+    assert flowtex.extent(field, margin=0, size=(400, 200)) == pytest.approx((-1, 3, 10, 12))
+    picture = flowtex.render(field, margin=0, size=(400, 200), background="red", **PLAIN)
+    assert (picture[..., 0] == picture[..., 1]).all()
+
+
+@pytest.mark.parametrize("margin", [-0.1, 0.5, "wide", float("nan")])
+def test_a_margin_out_of_range_is_refused(margin: Any) -> None:
+    for function in (flowtex.render, flowtex.extent):
+        with pytest.raises(ValueError, match=r"^margin is .*; expected a number from 0 to less th"):
+            function(edge(), margin=margin)
+
+
+def test_what_has_no_extent_is_refused() -> None:
+    with pytest.raises(ValueError, match=r"^the surface is curved.* with flowtex\.render"):
+        flowtex.extent(flowtex.examples.delta_wing_field())
+    with pytest.raises(ValueError, match=r"^beside makes two views.*leave it out"):
+        flowtex.extent(edge(), beside={"lod": False})
+    with pytest.raises(ValueError, match=r"^camera is .*; leave it out, and choose by zoom"):
+        flowtex.extent(edge(), camera=[(0, 0, 9), (0, 0, 0), (0, 1, 0)])
+
+
+# --- axes ---------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def figure() -> Figure:
+    made = Figure(figsize=(4, 3), dpi=100)
+    FigureCanvasAgg(made)
+    return made
+
+
+def pixels(figure: Figure) -> Any:
+    figure.canvas.draw()
+    return np.asarray(figure.canvas.buffer_rgba())[..., :3]  # type: ignore[attr-defined]
+
+
+def data_edge(figure: Figure, ax: Any) -> tuple[float, float]:
+    """Where the edge lies in data coordinates, read from the pixels of a figure."""
+    shot = pixels(figure)[..., 0]
+    height = len(shot)
+
+    def line(along: int, start: tuple[float, float], end: tuple[float, float]) -> float:
+        (x0, y0), (x1, y1) = ax.transData.transform([start, end])
+        if along == 0:
+            a, b = round(min(x0, x1)), round(max(x0, x1))
+            at = edge_of(shot[int(height - y0), a:b], a, b)
+            return float(ax.transData.inverted().transform((at, y0))[0])
+        a, b = round(min(y0, y1)), round(max(y0, y1))
+        at = edge_of(shot[height - b : height - a, int(x0)], b, a)
+        return float(ax.transData.inverted().transform((x0, at))[1])
+
+    return line(0, (0.3, 11.1), (0.8, 11.1)), line(1, (0.7, 10.8), (0.7, 11.15))
+
+
+def test_axes_show_a_flow_where_it_is_at_every_zoom(figure: Figure) -> None:
+    ax = figure.add_subplot()
+    image = flowtex.axes(ax, edge(), **PLAIN)
+    assert ax.get_xlim() == pytest.approx((-1, 3)) and ax.get_ylim() == pytest.approx((10, 12))
+    seen = []
+    for limits in (((-1, 3), (10, 12)), ((0.2, 0.9), (10.7, 11.2)), ((0.9, 0.2), (11.2, 10.7))):
+        ax.set(xlim=limits[0], ylim=limits[1])
+        x, y = data_edge(figure, ax)
+        (x0, _), (x1, _) = ax.transData.inverted().transform([(0, 0), (1, 0)])
+        assert x == pytest.approx(EDGE_X, abs=abs(x1 - x0))
+        assert y == pytest.approx(EDGE_Y, abs=abs(x1 - x0))
+        seen.append(image.make_image(None)[0].shape)
+    box = ax.get_window_extent()
+    assert seen[-1][1] == pytest.approx(box.width, abs=2)
+    assert seen[-1][0] == pytest.approx(box.height, abs=2)
+
+
+def test_axes_draw_once_for_one_look(figure: Figure, monkeypatch: pytest.MonkeyPatch) -> None:
+    ax = figure.add_subplot()
+    image = flowtex.axes(ax, edge(), samples=3)
+    drawn: list[Any] = []
+    draw = image._draw
+
+    def record(corners: Any, size: tuple[int, int], density: float) -> Any:
+        drawn.append(size)
+        return draw(corners, size, density)
+
+    monkeypatch.setattr(image, "_draw", record)
+    first, again = pixels(figure).copy(), pixels(figure)
+    np.testing.assert_array_equal(first, again)
+    assert len(drawn) == 1
+    figure.set_dpi(200)  # as many pixels as there are
+    pixels(figure)
+    assert drawn[1] == pytest.approx(tuple(2 * n for n in drawn[0]), abs=2)
+
+
+def test_axes_follow_time(figure: Figure) -> None:
+    field = flowtex.examples.double_gyre_field(time_varying=True, shape=(11, 21))
+    image = flowtex.axes(figure.add_subplot(), field, time=float(field.times[0]), samples=3)
+    first = pixels(figure).copy()
+    image.time = float(field.times[3])
+    assert (pixels(figure) != first).any()
+    with pytest.raises(ValueError, match=r"^time is -1; expected 0 to "):
+        image.time = -1
+
+
+def test_axes_elsewhere_are_empty_and_other_scales_are_stretched(figure: Figure) -> None:
+    ax = figure.add_subplot()
+    ax.set_facecolor("#ff0000")
+    image = flowtex.axes(ax, edge(), **PLAIN)
+    ax.set(xlim=(50, 54), ylim=(10, 12))
+    pixels(figure)
+    assert (image.make_image(None)[0] == (255, 0, 0, 255)).all()
+    ax.set(xlim=(0.3, 0.8), ylim=(10, 12), aspect="auto")
+    x, y = data_edge(figure, ax)
+    assert x == pytest.approx(EDGE_X, abs=0.01) and y == pytest.approx(EDGE_Y, abs=0.02)
+
+
+def test_a_colour_bar_has_the_range_and_the_colours(figure: Figure) -> None:
+    ax = figure.add_subplot()
+    image = flowtex.axes(ax, edge(), scalars="edge", clim=(1, 100), log_scale=True)
+    bar = figure.colorbar(image)
+    assert (image.norm.vmin, image.norm.vmax) == pytest.approx((1, 100))
+    assert bar.ax.get_yscale() == "log"
+    assert image.cmap.N == 256
+    pixels(figure)
+
+
+@pytest.mark.parametrize("options", [{"projection": "polar"}, {"xscale": "log"}])
+def test_axes_of_another_kind_are_refused(figure: Figure, options: dict[str, Any]) -> None:
+    with pytest.raises(TypeError, match=r"^ax .*; expected (rectilinear axes|linear ones)"):
+        flowtex.axes(figure.add_subplot(**options), edge())
+
+
+def test_a_curved_surface_has_no_axes(figure: Figure) -> None:
+    with pytest.raises(ValueError, match=r"^the surface is curved"):
+        flowtex.axes(figure.add_subplot(), flowtex.examples.delta_wing_field())
+    with pytest.raises(TypeError, match=r"^ax is None; expected rectilinear axes"):
+        flowtex.axes(None, edge())  # type: ignore[arg-type]

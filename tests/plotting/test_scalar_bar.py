@@ -1,0 +1,94 @@
+"""Where scalar bars stand: inside the view, and none over another."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+import flowtex
+from flowtex import FlowField
+
+pytestmark = pytest.mark.usefixtures("opengl")
+
+LONG = "a rather long name of a pressure"
+SIZES = [(300, 200), (640, 400), (1600, 1000)]
+
+
+def sheet(height: float = 0.0) -> FlowField:
+    x, y = np.meshgrid(np.linspace(0, 4, 24), np.linspace(0, 2, 16))
+    points = np.stack([x, y, np.full_like(x, height)], axis=-1)
+    velocity = np.stack([1 + 0 * x, 0.2 * np.sin(x)], axis=-1)
+    values = {"height": x, LONG: -1e-4 * y, "width": y}
+    return FlowField.from_arrays(points, velocity, scalars=values, units={LONG: "kg/(m s²)"})
+
+
+def pixels(size: tuple[int, int], names: tuple[str, ...], **options: Any) -> Any:
+    """A grey picture with the bars of these scalars; the surface has one colour, grey."""
+    made: Any = pv.Plotter(off_screen=True, window_size=list(size))
+    made.set_background("gray")
+    for number, name in enumerate(names):
+        look = {"cmap": np.full((2, 3), 128, np.uint8), "strength": 0.0, "samples": 1}
+        made.flowtex.add(sheet(0.1 * number), scalars=name, opacity=0.0, **look, **options)
+    shot = made.screenshot(return_img=True)
+    bars = list(made.scalar_bars.values())
+    boxes = [(*bar.GetPosition(), bar.GetWidth(), bar.GetHeight()) for bar in bars]
+    made.close()
+    return shot.astype(int), boxes
+
+
+@pytest.mark.parametrize("size", SIZES)
+@pytest.mark.parametrize("names", [("speed",), (LONG,), ("speed", LONG), ("speed", "height")])
+def test_bars_are_inside_and_apart(size: tuple[int, int], names: tuple[str, ...]) -> None:
+    shot, boxes = pixels(size, names)
+    ink = (np.abs(shot - shot[0, -1]) > 8).any(axis=-1)
+    assert ink.any()
+    for line in (ink[0], ink[-1], ink[:, 0], ink[:, -1]):
+        assert not line.any()
+    for n, (x, y, width, height) in enumerate(boxes):
+        for x2, y2, width2, height2 in boxes[:n]:
+            aside = x >= x2 + width2 or x2 >= x + width
+            assert aside or y >= y2 + height2 or y2 >= y + height
+
+
+def test_text_lies_on_a_plate_and_keeps_its_size_on_a_large_view() -> None:
+    shots = [pixels(size, ("speed",))[0] for size in SIZES[1:]]
+    widths = [(shot.max(axis=-1) > 200).any(axis=0).sum() for shot in shots]
+    assert 40 < widths[0] < 120
+    assert widths[1] == pytest.approx(widths[0], abs=6)
+
+
+def test_bars_move_when_the_view_changes_its_size() -> None:
+    made: Any = pv.Plotter(off_screen=True, window_size=[600, 400])
+    made.flowtex.add(sheet())
+    made.screenshot(return_img=True)
+    bar = made.scalar_bars["speed"]
+    before = bar.GetWidth()
+    made.window_size = [300, 400]
+    made.screenshot(return_img=True)
+    assert bar.GetWidth() == pytest.approx(2 * before, rel=0.1)
+    made.close()
+
+
+@pytest.mark.parametrize("options", [{"position_x": 0.5}, {"title_font_size": 30}, {"width": 0.2}])
+def test_a_bar_that_is_placed_by_hand_stays(options: dict[str, Any]) -> None:
+    made: Any = pv.Plotter(off_screen=True, window_size=[600, 400])
+    made.flowtex.add(sheet(), scalar_bar_args=options)
+    made.screenshot(return_img=True)
+    bar = made.scalar_bars["speed"]
+    assert bar.GetPosition()[0] == options.get("position_x", 0.02)
+    assert bar.GetWidth() == options.get("width", 0.08)
+    assert bar.GetTitleTextProperty().GetFontSize() == options.get("title_font_size", 16)
+    made.close()
+
+
+def test_one_title_has_one_bar() -> None:
+    made: Any = pv.Plotter(off_screen=True, window_size=[300, 200])
+    for number in range(2):
+        made.flowtex.add(sheet(0.1 * number), scalars="height")
+    made.screenshot(return_img=True)
+    assert list(made.scalar_bars.keys()) == ["height"]
+    made.close()
+    assert flowtex.render(sheet(), size=(64, 48), samples=1, show_scalar_bar=True).std() > 0
