@@ -498,12 +498,12 @@ options.controls??!0,this.controls=new Controls(viewer),this.colours=new ColourC
 "show","Show the bar (h)",()=>this.toggle()),this.handle.classList.add("handle","glass"),this.playButton=this.button("pl\
 ay","Play (space)",()=>viewer.togglePlaying()),viewer.lifetime.listen(this.slider,"input",()=>viewer.scrub(Number(this.slider.
 value)));let toggle=name=>()=>viewer.choose(name,!viewer.settings[name]);this.toggles={lod:this.button("lod","Level of d\
-etail",toggle("lod")),show_level:this.button("levels","Show the levels of detail",toggle("show_level"))},this.gear=this.
-button("settings","Settings",()=>this.fold(!this.isOpen)),this.bar=this.makeBar(),canvas.className="picture",root.classList.
-toggle("flowtex-bare",options.bare??!1);let shadow=root.attachShadow({mode:"open"});shadow.adoptedStyleSheets=[styleSheet];
-let{legend,controls,head,bar,handle,busy,hintBox,note}=this;shadow.append(canvas,head,legend.element,controls.element),shadow.
-append(bar,handle,busy,hintBox,note),this.arrange()}button(name,title,press){let button=dom("button",{type:"button",title,
-"aria-label":title,"data-name":name},[icon(name)]);return this.viewer.lifetime.listen(button,"click",press),button}makeBar(){
+etail",toggle("lod")),show_level:this.button("levels","Show level",toggle("show_level"))},this.gear=this.button("setting\
+s","Settings",()=>this.fold(!this.isOpen)),this.bar=this.makeBar(),canvas.className="picture",root.classList.toggle("flo\
+wtex-bare",options.bare??!1);let shadow=root.attachShadow({mode:"open"});shadow.adoptedStyleSheets=[styleSheet];let{legend,
+controls,head,bar,handle,busy,hintBox,note}=this;shadow.append(canvas,head,legend.element,controls.element),shadow.append(
+bar,handle,busy,hintBox,note),this.arrange()}button(name,title,press){let button=dom("button",{type:"button",title,"aria\
+-label":title,"data-name":name},[icon(name)]);return this.viewer.lifetime.listen(button,"click",press),button}makeBar(){
 let{viewer}=this;return dom("div",{class:"bar glass",role:"toolbar","aria-label":"Controls"},[this.playButton,this.track,
 this.button("home","Show everything (0)",()=>viewer.reset()),this.toggles.lod,this.toggles.show_level,this.gear,this.button(
 "save","Save the picture",()=>{this.save()}),this.button("full","Fill the screen (f)",()=>this.fullscreen()),this.button(

@@ -303,7 +303,7 @@ def test_two_panes_move_together(page: Page) -> None:
     settled(page, before)
     group(page, "View")
     before = count(page)
-    choose(page, page.locator("[data-setting=compare]"), "levels in colour")
+    choose(page, page.locator("[data-setting=compare]"), "Show level: on")
     both = settled(page, before)
     middle = SIZE["width"] // 2 - WATCH.left
     left, right = both[:, : middle - 4], both[:, middle + 4 :]

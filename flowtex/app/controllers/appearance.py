@@ -12,7 +12,7 @@ from flowtex.app.server.validation import decode_picture, name_among, number
 from flowtex.app.streaming.viewport import BACKGROUNDS as THEMES
 from flowtex.errors import FieldError
 from flowtex.options import ROBUST
-from flowtex.settings import TABLE, SettingsError
+from flowtex.settings import TABLE, SettingsError, named_values
 
 __all__ = ["BACKGROUNDS", "COMPARISONS", "PLAIN", "Appearance"]
 
@@ -23,12 +23,18 @@ BACKGROUNDS = ("theme", "black", "white", "gray")
 #: What a second pane shows, by what it is called.
 COMPARISONS: dict[str, dict[str, Any]] = {
     "nothing": {},
-    "level of detail off": {"lod": False},
-    "the paper's noise": {"noise": "texture"},
-    "the paper's kernel": {"kernel": "box", "two_sided": False, "samples": 12},
-    "grain fixed on the surface": {"fixed_grain": True},
-    "10 samples": {"samples": 10},
-    "levels in colour": {"show_level": True},
+    **{
+        named_values(changes): changes
+        for changes in (
+            {"lod": False},
+            {"noise": "texture"},
+            {"kernel": "box"},
+            {"two_sided": False},
+            {"fixed_grain": True},
+            {"samples": 10},
+            {"show_level": True},
+        )
+    },
 }
 #: Greatest value at an end of the colour map: the distance of two is a number, too.
 GREATEST_VALUE = 1e300

@@ -252,7 +252,8 @@ class Data(Controller):
         try:
             self.context.show(flow.shown, keep_view=keep, keep_range=same)
             if not keep:
-                self.viewport.home(*self.library.look(flow.name))
+                zoom, focus = self.library.look(flow.name)
+                self.viewport.home(zoom=zoom, focus=focus)
                 self.stream.moved()
         except BaseException:
             self._current, self._goal = before

@@ -13,9 +13,10 @@ import numpy as np
 
 from flowtex._util.array_types import Bytes, Floats
 from flowtex._util.colours import colour_table
+from flowtex.app.streaming.free_part import Cover, covers_of_pane, free_part
 from flowtex.app.streaming.reprojection import plane_to_view
 from flowtex.app.streaming.window import OffscreenWindow, Rect
-from flowtex.camera import Camera
+from flowtex.camera import Camera, ViewPart
 from flowtex.field import FlowField
 from flowtex.options import SPEED, Appearance, Options
 from flowtex.plotting.handle import FlowHandle
@@ -30,8 +31,8 @@ __all__ = ["BACKGROUNDS", "GAP_PX", "Pane", "Rect", "Viewport"]
 BACKGROUNDS = {"dark": "#12161c", "light": "#eef1f4"}
 #: Pixels between two panes.
 GAP_PX = 2
-#: Zoom and focus of the whole surface.
-WHOLE: tuple[float, tuple[float, ...] | None] = (1.0, None)
+#: Zoom below which the surface is seen as a whole.
+WHOLE_ZOOM = 1.5
 
 
 class Pane:
@@ -79,6 +80,8 @@ class Viewport:
         The colour behind the surface.
     whole
         The camera that shows the whole surface, from which zoom counts.
+    covers
+        What lies on the whole view; surfaces are fitted to what it leaves free.
     """
 
     whole: Camera
@@ -95,8 +98,8 @@ class Viewport:
 
         self.window = OffscreenWindow(640, 400)
         self.background: Any = self.window.plotter.background_color
-        self._first = (zoom, focus)
         self._size = self.window.size
+        self.covers: tuple[Cover, ...] = ()
         self._component = FlowtexComponent(self.window.plotter)
         self._beside: dict[str, Any] = {}
         self._stop_following: Callable[[], Any] = lambda: None
@@ -105,7 +108,7 @@ class Viewport:
         self.panes: list[Pane] = [self._pane(Scene.from_options(field, first))]
         self.window.suppress_rendering()
         self.resize(*self._size)
-        self.first_look()
+        self.home(zoom=zoom, focus=focus)
 
     @property
     def handle(self) -> FlowHandle:
@@ -181,7 +184,11 @@ class Viewport:
         other = Viewport(self.field, **options)
         if self._beside:
             other.compare(self._beside)
-        other.camera = self.camera
+        if self.at_home:  # a picture that is saved has no panels
+            other.resize(*self.size)
+            other.home(**self._look)
+        else:
+            other.camera = self.camera
         other.set_background(self.background)
         other.set_time(self.handle.time)
         other.clock = self.clock
@@ -203,7 +210,6 @@ class Viewport:
         beside, appearance = self._beside, self.scene.appearance
         if not keep_range:
             appearance = replace(appearance, clim=None)
-        self._first = WHOLE
         camera, clock, flat = self.camera, self.clock, self.flat
         times, time = self.field.times, self.handle.time
         self.compare(None)
@@ -329,42 +335,40 @@ class Viewport:
         self._size = (width, height)
         self.window.size = self.pane_size
 
-    def home(self, zoom: float = 1.0, focus: tuple[float, ...] | None = None) -> None:
-        """Look at the whole surface, or closer at a point of it."""
-        surface, aspect = self.handle.scene.whole.surface, self.aspect
-        self.whole = self._home = Camera.fit(surface, aspect)
-        near = zoom != 1.0 or focus is not None
-        self.camera = Camera.fit(surface, aspect, zoom=zoom, focus=focus) if near else self.whole
+    @property
+    def free(self) -> ViewPart:
+        """The part of a pane that :attr:`covers` leave free."""
+        surface = self.handle.scene.whole.surface
+        width, height = surface.plane_size if self.flat else (1.0, 1.0)
+        covers = covers_of_pane(self.covers, len(self.panes))
+        return free_part(covers, width / height / self.aspect)
+
+    def home(self, **look: Any) -> None:
+        """Look at the whole surface; ``look`` are arguments of :meth:`Camera.fit`."""
+        surface, free = self.handle.scene.whole.surface, self.free
+        from_side = {name: look[name] for name in ("toward", "up") if name in look}
+        self.whole = Camera.fit(surface, self.aspect, free=free, **from_side)
+        self._home = Camera.fit(surface, self.aspect, free=free, **look)
+        self._look, self.camera = look, self._home
+
+    def refit(self) -> None:
+        """Look again as :meth:`home` was asked to, in a view of another size."""
+        self.home(**self._look)
 
     @property
     def at_home(self) -> bool:
         """Whether the camera stands where :meth:`home` has put it."""
         return self.camera == self._home
 
-    def first_look(self) -> None:
-        """Look at what was asked for when the viewport was made."""
-        self.home(*self._first)
-        if self._first[0] == 1.0:
-            self._home = self.camera
-
-    def look(self, camera: Camera) -> None:
-        """Look from a camera, and not from where was asked for when the viewport was made."""
-        self._first = WHOLE
-        self.camera = camera
-
-    def look_from(self, toward: tuple[float, float, float], up: tuple[float, float, float]) -> None:
-        """Look at the whole of a curved surface from a side."""
-        self.home()
-        surface = self.handle.scene.whole.surface
-        self.camera = self.whole = Camera.fit(surface, self.aspect, toward=toward, up=up)
-
     def pan(self, dx: float, dy: float) -> None:
         """Move what is seen by a part of the view."""
         self.camera = self.camera.pan(dx, dy, self.aspect)
 
     def rotate(self, dx: float, dy: float) -> None:
-        """Go around the focal point, as a drag by a part of the view asks."""
-        self.camera = self.camera.rotate(dx, dy, self.aspect)
+        """Go around what is seen, as a drag by a part of the view asks."""
+        # The whole surface need not lie in the middle of the view, but turns about its own.
+        pivot = self.handle.scene.whole.surface.center if self.zoom < WHOLE_ZOOM else None
+        self.camera = self.camera.rotate(dx, dy, self.aspect, pivot)
 
     def zoom_by(self, factor: float, x: float = 0.0, y: float = 0.0) -> None:
         """Zoom in by a factor; the point at (x, y) of the view stays where it is."""

@@ -18,11 +18,11 @@ from flowtex.app.ui.panel import build_panel, panel_shown
 
 __all__ = ["THEMES", "build_page"]
 
-#: Hints are dark in both.
-HINT = {"surface-variant": "#2a3440", "on-surface-variant": "#e8edf2"}
+#: What complains is dark in both.
+COMPLAINT = {"surface-variant": "#2a3440", "on-surface-variant": "#e8edf2"}
 THEMES = {
-    "dark": {"dark": True, "colors": {"primary": "#4fd1c5", "surface": "#171c23", **HINT}},
-    "light": {"dark": False, "colors": {"primary": "#0f766e", "surface": "#ffffff", **HINT}},
+    "dark": {"dark": True, "colors": {"primary": "#4fd1c5", "surface": "#171c23", **COMPLAINT}},
+    "light": {"dark": False, "colors": {"primary": "#0f766e", "surface": "#ffffff", **COMPLAINT}},
 }
 
 #: Attributes that tell the page's state to whoever watches it, such as a test.
@@ -64,6 +64,9 @@ def build_page(controllers: Controllers) -> Any:
             over = (key("over"),)
             PageElement("path", ["over"], over=over, classes="flowtex-path flowtex-path-lines")
             _keys(controllers)
+            PageElement(
+                "covers", [], ["change"], change=(controllers.camera.take_covers, "[$event]")
+            )
             _pane_labels(controllers)
             with html.Div(classes="flowtex-left"):
                 _title(controllers)
@@ -79,6 +82,7 @@ def build_page(controllers: Controllers) -> Any:
             _tip(controllers)
             _help_text(controllers)
             _complaint(controllers)
+            PageElement("hints", [])
     return layout
 
 
@@ -158,14 +162,18 @@ def _planes(controllers: Controllers) -> None:
             ("block", "blocks", "Which of the grids in the file is drawn."),
             ("vectors", "vectors_choices", "Which array is taken for the velocity."),
         ):
-            with html.Div(classes="flowtex-row", v_if=(f"{key(choices)}.length",)):
-                hint(text, "end")
+            with html.Div(
+                classes="flowtex-row",
+                v_if=(f"{key(choices)}.length",),
+                __properties=ARIA,
+                **hint(text, "end"),
+            ):
                 select("Grid" if name == "block" else "Velocity", key(name), (key(choices),))
         with html.Div(classes="flowtex-stack", v_if=(f"{key('axes')}.length",)):
             with html.Div(classes="flowtex-line"):
                 html.Span("Plane", classes="flowtex-label")
-                with toggle("Axis across the plane", key("axis")):
-                    hint("Draw planes of constant i, j or k.", "end")
+                across = hint("Draw planes of constant i, j or k.", "end")
+                with toggle("Axis across the plane", key("axis"), **across):
                     one = f"one in {key('axes')}"
                     v3.VBtn("{{ one }}", v_for=one, key="one", value=("one",), size="small")
                 html.Span(
@@ -196,11 +204,11 @@ def _button(icon: str, text: str, click: Any, **attributes: Any) -> Any:
         click=click,
         aria_label=text,
         __properties=ARIA,
+        **hint(text, "bottom"),
         **attributes,
     )
     with button:
         v3.VIcon(icon, size=20)
-        v3.VTooltip(text=text, activator="parent", location="bottom", open_delay=400)
     return button
 
 
@@ -275,8 +283,8 @@ def _player(controllers: Controllers) -> None:
             classes="flowtex-link flowtex-pace",
             aria_label="How fast time goes by",
             __properties=ARIA,
+            **hint("How fast time goes by.", "top"),
         ):
-            hint("How fast time goes by.", "top")
             _menu(str(list(PACES)), f"{key('pace')} = item", title="item + '×'")
 
 
@@ -297,8 +305,8 @@ def _card(controllers: Controllers) -> None:
             html.Button("Close", click=controllers.point_info.close_card, classes="flowtex-link")
         over = (controllers.context.state.key("over"),)
         PageElement("inset", ["over"], over=over, classes="flowtex-inset flowtex-path-lines")
-        with html.Div(classes="flowtex-bars"):
-            hint("Each bar is a sample: its height the weight, its grey the noise it meets.", "end")
+        samples = "Each bar is a sample: its height the weight, its grey the noise it meets."
+        with html.Div(classes="flowtex-bars", __properties=ARIA, **hint(samples, "end")):
             html.I(
                 v_for=f"bar in {name}.bars",
                 style=("{ height: 100 * bar.weight + '%', background: bar.grey }",),

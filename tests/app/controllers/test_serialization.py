@@ -40,7 +40,7 @@ STATE: dict[str, Any] = {
     "clim": (-1e-20, 1e20 / 3),
     "theme": "light",
     "background": "black",
-    "split": "the paper's kernel",
+    "split": "Kernel: box",
     "camera": CAMERA,
     "settings": {"lod": False, "samples": 25, "grain": 1 / 3, "kernel": "ramp", "speed": 1e7},
 }
@@ -173,7 +173,7 @@ def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-@pytest.mark.parametrize("split", ["nothing", "grain fixed on the surface"])
+@pytest.mark.parametrize("split", ["nothing", "Fixed grain: on"])
 def test_the_python_lines_draw_the_same_picture(
     file: Path, monkeypatch: pytest.MonkeyPatch, split: str, opengl: object
 ) -> None:
@@ -184,7 +184,7 @@ def test_the_python_lines_draw_the_same_picture(
     scene.compare(COMPARISONS[split] or None)
     count = len(scene.panes)
     scene.resize(count * 160 + 2 * (count - 1), 120)
-    scene.first_look()
+    scene.refit()
     scene.clock = 0.7
     scene.set_background("light")
     state = {
