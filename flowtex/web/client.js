@@ -130,14 +130,15 @@ for(let timer of this.timers)clearTimeout(timer);this.timers.clear()}};function 
 running=!1,run=()=>{if(running=next!==null,!next)return;let{value}=next;next=null,call(value),later(run,wait)};return value=>{
 next={value},running||run()}}var TYPES={float32:Float32Array,float16:Uint16Array,uint16:Uint16Array,int16:Int16Array,int8:Int8Array,uint8:Uint8Array};
 function shareOf({low,high,log}){if(!log)return value=>(value-low)/(high-low||1);let span=Math.log(high/low)||1;return value=>Math.
-log(Math.max(value,low)/low)/span}function isSignFree(header){return header.variant.includes("FLOWTEX_SIGNFREE")}function stepOf(name){
-return Number(name.split("/")[1])}function tilePart(name){let[kind,level,row,column,...rest]=name.split("/");return kind===
-"tile"?[[level,row,column].join("/"),rest.join("/")]:null}function decoded(info,bytes){let view=ArrayBuffer.isView(bytes)?
-new Uint8Array(bytes.buffer,bytes.byteOffset,bytes.byteLength):new Uint8Array(bytes),{name,dtype,shape,digest}=info,Type=TYPES[dtype];
-if(!Type)throw new Error(`a part has the type "${dtype}"; expected ${Object.keys(TYPES).join(", ")}`);return{name,shape,
-digest,data:new Type(view.slice().buffer)}}function partsOfFile(file){let length3=new DataView(file).getUint32(0,!0),infos=JSON.
-parse(new TextDecoder().decode(new Uint8Array(file,4,length3))),start=4+length3;return infos.map(info=>{let bytes=new Uint8Array(
-file,start,info.bytes);return start+=info.bytes,decoded(info,bytes)})}var ROOT="",PLACE=5,nameOf=key=>key.join("/"),keyOf=name=>name.split("/").map(Number);function cellPixels(pyramid,settings){
+log(Math.max(value,low)/low)/span}function legendLimits({low,high,log}){let least=log?0:1e-5*Math.max(Math.abs(low),Math.
+abs(high)),told=value=>Math.abs(value)<least?0:value;return[told(low),told(high)]}function isSignFree(header){return header.
+variant.includes("FLOWTEX_SIGNFREE")}function stepOf(name){return Number(name.split("/")[1])}function tilePart(name){let[
+kind,level,row,column,...rest]=name.split("/");return kind==="tile"?[[level,row,column].join("/"),rest.join("/")]:null}function decoded(info,bytes){
+let view=ArrayBuffer.isView(bytes)?new Uint8Array(bytes.buffer,bytes.byteOffset,bytes.byteLength):new Uint8Array(bytes),
+{name,dtype,shape,digest}=info,Type=TYPES[dtype];if(!Type)throw new Error(`a part has the type "${dtype}"; expected ${Object.
+keys(TYPES).join(", ")}`);return{name,shape,digest,data:new Type(view.slice().buffer)}}function partsOfFile(file){let length3=new DataView(
+file).getUint32(0,!0),infos=JSON.parse(new TextDecoder().decode(new Uint8Array(file,4,length3))),start=4+length3;return infos.
+map(info=>{let bytes=new Uint8Array(file,start,info.bytes);return start+=info.bytes,decoded(info,bytes)})}var ROOT="",PLACE=5,nameOf=key=>key.join("/"),keyOf=name=>name.split("/").map(Number);function cellPixels(pyramid,settings){
 let[samples,spacing,grain]=["samples","spacing","grain"].map(s=>Number(settings[s])),streak=.5*samples*spacing*grain;return pyramid.
 cellPixels*Math.max(1,2*streak/(pyramid.cellPixels*pyramid.pathCells))}var Pyramid=class{header;blockCells;places=[];constructor(header,{
 tileCells:blockCells},places){this.header=header,this.blockCells=blockCells;let start=0;for(let[level]of header.shapes.entries()){
@@ -250,15 +251,15 @@ let name=event.target.dataset.cmap;name&&viewer.chooseColours({cmap:name})});let
 row"},[dom("span",{class:"name"},[name]),...fields]);this.rangeRow=row("Range",dom("span",{class:"between"},[...ends,auto])),
 this.mapRow=row("Colour map",swatches),this.mapRow.classList.add("ranged"),this.element.append(row("Colour by",scalars),
 this.mapRow,this.rangeRow)}update(){let{header,parts}=this.viewer,maps=parts.get("maps");if(this.element.hidden=!header?.
-scalars.choices.length||!maps,!header||!maps||this.element.hidden)return;let{choices,name,low,high,auto,cmap}=header.scalars,
-names=[...choices.map(each=>each.name),PLAIN];this.scalars.replaceChildren(...names.map(each=>dom("option",{value:each},
-[each]))),this.scalars.value=name??PLAIN,this.mapRow.hidden=this.rangeRow.hidden=name===null,[low,high].forEach((value,n)=>this.
-ends[n].value=String(Number(value.toPrecision(4)))),this.auto.setAttribute("aria-pressed",String(auto));let{settings}=this.
-viewer;this.swatches.replaceChildren(...header.scalars.maps.map(each=>{let pressed=String(each===cmap),swatch=dom("butto\
-n",{...{type:"button",title:each,"aria-label":each,"data-cmap":each},"aria-pressed":pressed});return swatch.style.background=
-rampOf(mapOf(header,maps.data,each),header,settings,STOPS),swatch}))}takeRange(){let[low,high]=this.ends.map(end=>end.valueAsNumber);
-this.rangeRow.title="",low<high?this.viewer.chooseColours({clim:[low,high]}):this.rangeRow.title=`${numberText(low)} is \
-not below ${numberText(high)}`;for(let end of this.ends)end.setCustomValidity(this.rangeRow.title)}};var SLIDER_STOPS=400;function hasStreaming({slices,paper,variant}){return slices.steps===1&&!paper&&!isSignFree({variant})}
+scalars.choices.length||!maps,!header||!maps||this.element.hidden)return;let{choices,name,auto,cmap}=header.scalars,names=[
+...choices.map(each=>each.name),PLAIN];this.scalars.replaceChildren(...names.map(each=>dom("option",{value:each},[each]))),
+this.scalars.value=name??PLAIN,this.mapRow.hidden=this.rangeRow.hidden=name===null,legendLimits(header.scalars).forEach(
+(value,n)=>{this.ends[n].value=String(Number(value.toPrecision(4)))}),this.auto.setAttribute("aria-pressed",String(auto));
+let{settings}=this.viewer;this.swatches.replaceChildren(...header.scalars.maps.map(each=>{let pressed=String(each===cmap),
+swatch=dom("button",{...{type:"button",title:each,"aria-label":each,"data-cmap":each},"aria-pressed":pressed});return swatch.
+style.background=rampOf(mapOf(header,maps.data,each),header,settings,STOPS),swatch}))}takeRange(){let[low,high]=this.ends.
+map(end=>end.valueAsNumber);this.rangeRow.title="",low<high?this.viewer.chooseColours({clim:[low,high]}):this.rangeRow.title=
+`${numberText(low)} is not below ${numberText(high)}`;for(let end of this.ends)end.setCustomValidity(this.rangeRow.title)}};var SLIDER_STOPS=400;function hasStreaming({slices,paper,variant}){return slices.steps===1&&!paper&&!isSignFree({variant})}
 var USES={motion:hasStreaming,speed:hasStreaming,speed_in:hasStreaming,period:hasStreaming,grain:({paper})=>!paper,fixed_grain:({
 paper})=>!paper,two_sided:({slices})=>slices.sides===2,seed:({paper},rebuild)=>!paper||rebuild&&!paper.picture,resolution:({
 paper},rebuild)=>!paper||rebuild,tiles:({paper,settings},rebuild)=>!!paper?.picture&&(settings.noise==="image"||rebuild),
@@ -290,9 +291,9 @@ toSlider),step=whole&&!logarithmic?1:(max-min)/SLIDER_STOPS;return{toSlider,from
 r",_:"farther",0:"whole"},PLAY_KEY=" ",FULLSCREEN_KEY="f",CLOSE_KEY="Escape",DIRECTIONS={left:[-1,0],right:[1,0],up:[0,1],
 down:[0,-1]};function hasModifier(event){return event.ctrlKey||event.metaKey||event.altKey}function toggleFullscreen(element){
 document.fullscreenElement?document.exitFullscreen():element.requestFullscreen?.().catch(()=>{})}var STOPS2=33,Legend=class{element=dom("div",{class:"legend glass",hidden:""});mark=dom("i",{hidden:""});show(header,settings,map){
-let{name,low,high,unit:unit2,bar}=header.scalars;if(this.element.hidden=name===null||!bar||!map||!!settings.show_level,this.
-element.hidden||!map)return;let ramp=dom("div",{class:"ramp"},[this.mark]);ramp.style.background=rampOf(map,header,settings,
-STOPS2),this.mark.hidden=!0;let ends=[low,high].map(value=>dom("span",{},[numberText(value)]));this.element.replaceChildren(
+let{name,unit:unit2,bar}=header.scalars;if(this.element.hidden=name===null||!bar||!map||!!settings.show_level,this.element.
+hidden||!map)return;let ramp=dom("div",{class:"ramp"},[this.mark]);ramp.style.background=rampOf(map,header,settings,STOPS2),
+this.mark.hidden=!0;let ends=legendLimits(header.scalars).map(value=>dom("span",{},[numberText(value)]));this.element.replaceChildren(
 dom("div",{class:"name"},[unit2?`${name} (${unit2})`:String(name)]),ramp,dom("div",{class:"ends"},ends))}point(header,value=NaN){
 this.mark.hidden=!header||!Number.isFinite(value),!(!header||this.mark.hidden)&&(this.mark.style.left=`${100*clamp(shareOf(
 header.scalars)(value),0,1)}%`)}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */

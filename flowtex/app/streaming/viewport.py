@@ -31,6 +31,8 @@ __all__ = ["BACKGROUNDS", "GAP_PX", "Pane", "Rect", "Viewport"]
 BACKGROUNDS = {"dark": "#12161c", "light": "#eef1f4"}
 #: Pixels between two panes.
 GAP_PX = 2
+#: What may differ in a second pane besides settings.
+PANE_ARGUMENTS = ("scalars", "time")
 #: Zoom below which the surface is seen as a whole.
 WHOLE_ZOOM = 1.5
 
@@ -184,7 +186,7 @@ class Viewport:
         other = Viewport(self.field, **options)
         if self._beside:
             other.compare(self._beside)
-        if self.at_home:  # a picture that is saved has no panels
+        if self.covers and self.at_home:  # a picture that is saved has no panels
             other.resize(*self.size)
             other.home(**self._look)
         else:
@@ -227,21 +229,28 @@ class Viewport:
             self.compare(beside)
 
     def compare(self, changes: Mapping[str, Any] | None) -> None:
-        """Show a second pane in which some settings differ, or one pane again for ``None``.
+        """Show a second pane that differs, or one pane again for ``None``.
 
-        The panes stay as they are when a setting is unknown or out of range.
+        ``changes`` are settings, and of ``scalars`` and ``time``: what the second pane is coloured
+        by, and the time that it shows. The panes stay as they are when a setting is unknown or out
+        of range.
         """
-        settings = {**dict(self.settings), **(changes or {})}
+        changes = dict(changes or {})
+        own = {name: changes[name] for name in PANE_ARGUMENTS if name in changes}
+        settings = {**dict(self.settings), **changes}
+        for name in own:
+            del settings[name]
         Settings().update(**settings)
+        appearance = self._appearance_beside(own)
         self._stop_following()
         self._stop_following = lambda: None
         for pane in self.panes[1:]:
             pane.handle.remove(render=False)
         del self.panes[1:]
-        self._beside = dict(changes or {})
+        self._beside = changes
         if changes:
             first = self.scene
-            self.panes.append(self._pane(_like(first, self.field, settings, first.appearance)))
+            self.panes.append(self._pane(_like(first, self.field, settings, appearance)))
             ends = (self.settings.observe(self._follow), first.observe(self._follow_scene))
             self._stop_following = lambda: [end() for end in ends]
             self.set_time(self.handle.time)
@@ -257,7 +266,16 @@ class Viewport:
         """Change the appearance of the second pane as that of the first one changes."""
         if affects == "appearance":
             second = self.panes[1].handle.scene
-            second.appearance = replace(self.scene.appearance, image=second.appearance.image)
+            appearance = self._appearance_beside(self._beside)
+            if "scalars" in self._beside:
+                appearance = replace(appearance, clim=second.appearance.clim)
+            second.appearance = replace(appearance, image=second.appearance.image)
+
+    def _appearance_beside(self, changes: Mapping[str, Any]) -> Appearance:
+        """Appearance of a second pane; a range is that of one scalar."""
+        if "scalars" not in changes:
+            return self.scene.appearance
+        return replace(self.scene.appearance, scalars=changes["scalars"], clim=None)
 
     def lay_image(self, image: Any) -> None:
         """Lay an image on the surface in place of the noise, except where panes differ in noise.
@@ -277,9 +295,9 @@ class Viewport:
         """Names of what the surface can be coloured by."""
         return tuple(dict.fromkeys(("speed", *self.field.scalars)))
 
-    def colour_stops(self, count: int = 17) -> list[str]:
-        """Mean colours of the picture along the bar, from low to high, as ``#rrggbb``."""
-        table = mean_colours(colour_table(self.scene.appearance.cmap), self.settings)
+    def colour_stops(self, scene: Scene, count: int = 17) -> list[str]:
+        """Mean colours of a pane along its bar, from low to high, as ``#rrggbb``."""
+        table = mean_colours(colour_table(scene.appearance.cmap), scene.settings)
         stops = table[np.linspace(0, len(table) - 1, count).round().astype(int)]
         return ["#" + bytes(colour[:3]).hex() for colour in stops]
 
@@ -293,8 +311,20 @@ class Viewport:
 
     def set_time(self, time: float) -> None:
         """Show another time of a field that varies in time."""
-        for pane in self.panes:
-            pane.handle.time = time
+        self.handle.time = time
+        for pane in self.panes[1:]:
+            pane.handle.time = self.time_beside
+
+    @property
+    def time_beside(self) -> float:
+        """Time of the second pane: its own where that is what differs."""
+        first, last = self.field.times[[0, -1]]
+        return float(np.clip(self._beside.get("time", self.handle.time), first, last))
+
+    @time_beside.setter
+    def time_beside(self, time: float) -> None:
+        self._beside["time"] = time
+        self.set_time(self.handle.time)
 
     def trace(self) -> None:
         """Trace what the time that is shown needs, so that drawing need not wait for it."""

@@ -11,6 +11,7 @@ from trame.widgets import vuetify3 as v3
 from trame_client.widgets.core import AbstractElement
 
 from flowtex.app.controllers import Controllers
+from flowtex.app.controllers.appearance import ANOTHER_TIME
 from flowtex.app.controllers.camera_controls import KEYS
 from flowtex.app.controllers.playback import PACES
 from flowtex.app.ui.controls import ARIA, hint, select, slider, toggle
@@ -239,13 +240,17 @@ def _bar(controllers: Controllers) -> None:
         with html.Div(classes="flowtex-scale", v_show=(f"{scale}.width",)):
             html.Span(f"{{{{ {scale}.text }}}}")
             html.Div(classes="flowtex-ruler", style=(f"{{ width: {scale}.width + 'vw' }}",))
-        with html.Div(classes="flowtex-bar flowtex-glass", v_show=(f"{bar}.name",)):
-            html.Div(f"{{{{ {bar}.name }}}}", classes="flowtex-label")
-            ramp = f"{{ background: 'linear-gradient(to right, ' + {bar}.stops.join(',') + ')' }}"
-            html.Div(classes="flowtex-ramp", style=(ramp,))
-            with html.Div(classes="flowtex-line"):
-                html.Span(f"{{{{ {bar}.low }}}}", classes="flowtex-value")
-                html.Span(f"{{{{ {bar}.high }}}}", classes="flowtex-value")
+        _colour_bar(bar, v_show=(f"{bar}.name",))
+
+
+def _colour_bar(bar: str, **attributes: Any) -> None:
+    with html.Div(classes="flowtex-bar flowtex-glass", **attributes):
+        html.Div(f"{{{{ {bar}.name }}}}", classes="flowtex-label")
+        ramp = f"{{ background: 'linear-gradient(to right, ' + {bar}.stops.join(',') + ')' }}"
+        html.Div(classes="flowtex-ramp", style=(ramp,))
+        with html.Div(classes="flowtex-line"):
+            html.Span(f"{{{{ {bar}.low }}}}", classes="flowtex-value")
+            html.Span(f"{{{{ {bar}.high }}}}", classes="flowtex-value")
 
 
 def _player(controllers: Controllers) -> None:
@@ -290,10 +295,16 @@ def _player(controllers: Controllers) -> None:
 
 def _pane_labels(controllers: Controllers) -> None:
     """Say in which of two panes what is shown."""
-    compare = controllers.context.state.key("compare")
+    names = ("compare", "bar_beside", "moment", "time_beside")
+    compare, bar, moment, time = map(controllers.context.state.key, names)
+    other_time = f"{compare} === '{ANOTHER_TIME}'"
+    first = f"{other_time} ? {moment} : 'as set'"
+    second = f"{other_time} ? 't = ' + {time}.toFixed(2) : {compare}"
     with html.Div(classes="flowtex-panes", v_if=(f"{compare} !== 'nothing'",)):
-        html.Span("as set", classes="flowtex-chip")
-        html.Span(f"{{{{ {compare} }}}}", classes="flowtex-chip")
+        html.Span(f"{{{{ {first} }}}}", classes="flowtex-chip")
+        with html.Div(classes="flowtex-beside"):
+            _colour_bar(bar, v_if=(bar,))
+            html.Span(f"{{{{ {second} }}}}", classes="flowtex-chip")
 
 
 def _card(controllers: Controllers) -> None:

@@ -10,7 +10,7 @@ from trame.widgets import vuetify3 as v3
 
 from flowtex._util.colours import CMAPS
 from flowtex.app.controllers import Controllers
-from flowtex.app.controllers.appearance import BACKGROUNDS, PLAIN
+from flowtex.app.controllers.appearance import ANOTHER_TIME, BACKGROUNDS, PLAIN
 from flowtex.app.controllers.browser import RENDERERS
 from flowtex.app.controllers.sharing import FORMATS
 from flowtex.app.ui.controls import (
@@ -120,6 +120,13 @@ def _view(controllers: Controllers) -> None:
     key = controllers.context.state.key
     with row("compare", "A second view beside the first, which moves with it."):
         select("Beside it", key("compare"), (key("comparisons"),))
+    with row(
+        "time_beside",
+        "The time in the second view.",
+        v_if=(f"{key('compare')} === '{ANOTHER_TIME}'",),
+    ):
+        html.Span("Time beside", classes="flowtex-label")
+        slider("Time beside", key("time_beside"), (key("first"),), (key("last"),), (key("tick"),))
     with row("rendering", "The server sends pictures; the browser draws with its own graphics."):
         buttons("Drawn by", key("rendering"), RENDERERS)
 
