@@ -7,6 +7,7 @@ import { covers } from "./covers.ts";
 import { hints } from "./hints.ts";
 import { keys } from "./keys.ts";
 import { inset, path } from "./path.ts";
+import { upload } from "./upload.ts";
 
 interface VueApp {
   component(name: string, component: object): void;
@@ -24,7 +25,7 @@ function linked(hash: string): string {
 Object.assign(window, {
   flowtex_page: {
     install(app: VueApp) {
-      for (const component of [browser, covers, hints, inset, keys, path]) app.component(component.name, component);
+      for (const component of [browser, covers, hints, inset, keys, path, upload]) app.component(component.name, component);
       Object.assign(app.config.globalProperties, {
         flowtex_fullscreen: () => toggleFullscreen(document.documentElement),
         flowtex_address: linked,

@@ -14,6 +14,7 @@ from flowtex.app.controllers import Controllers
 from flowtex.app.controllers.appearance import ANOTHER_TIME
 from flowtex.app.controllers.camera_controls import KEYS
 from flowtex.app.controllers.playback import PACES
+from flowtex.app.server.uploads import UPLOAD_SUFFIXES
 from flowtex.app.ui.controls import ARIA, hint, select, slider, toggle
 from flowtex.app.ui.panel import build_panel, panel_shown
 
@@ -138,7 +139,9 @@ def _title(controllers: Controllers) -> None:
     key = controllers.context.state.key
     with html.Div(classes="flowtex-title flowtex-glass"):
         html.Div("flowtex", classes="flowtex-mark")
-        with html.Div(classes="flowtex-name", v_if=(f"{key('files')}.length < 2",)):
+        with html.Div(
+            classes="flowtex-name", v_if=(f"{key('files')}.length + {key('unshown')}.length < 2",)
+        ):
             html.Span(f"{{{{ {key('name')} }}}}")
         with html.Button(
             classes="flowtex-name flowtex-open",
@@ -150,8 +153,23 @@ def _title(controllers: Controllers) -> None:
             html.Span(f"{{{{ {key('name')} }}}}")
             v3.VIcon("mdi-chevron-down", size=18)
             current = (f"item === {key('file')}",)
-            _menu(key("files"), f"{key('file')} = item", active=current, max_height=360)
+            _menu(
+                key("files"),
+                f"{key('file')} = item",
+                active=current,
+                max_height=360,
+                unshown=key("unshown"),
+            )
         html.Div(f"{{{{ {key('about')} }}}}", classes="flowtex-about")
+        PageElement(
+            "upload",
+            ["address", "accept"],
+            ["problem", "busy"],
+            address=(key("upload"),),
+            accept=",".join(UPLOAD_SUFFIXES),
+            problem=f"{key('problem')} = $event",
+            busy=f"{key('busy')} = $event",
+        )
 
 
 def _planes(controllers: Controllers) -> None:
@@ -184,9 +202,18 @@ def _planes(controllers: Controllers) -> None:
 
 
 def _menu(
-    items: str, click: Any, *, title: str = "item", max_height: Any = None, **attributes: Any
+    items: str,
+    click: Any,
+    *,
+    title: str = "item",
+    max_height: Any = None,
+    unshown: str = "[]",
+    **attributes: Any,
 ) -> None:
-    """Open a list of items at the widget that is open; ``item`` is the one that is clicked."""
+    """Open a list of items at the widget that is open; ``item`` is the one that is clicked.
+
+    ``unshown`` are those that cannot be chosen, with ``name`` and ``why``.
+    """
     height = {} if max_height is None else {"max_height": max_height}
     with (
         v3.VMenu(activator="parent", **height),
@@ -195,6 +222,14 @@ def _menu(
         v3.VListItem(
             v_for=f"item in {items}", key="item", title=(title,), click=click, **attributes
         )
+        if unshown != "[]":
+            v3.VListItem(
+                v_for=f"file in {unshown}",
+                key="file.name",
+                title=("file.name",),
+                subtitle=("file.why",),
+                disabled=True,
+            )
 
 
 def _button(icon: str, text: str, click: Any, **attributes: Any) -> Any:

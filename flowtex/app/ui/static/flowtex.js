@@ -89,8 +89,20 @@ line,"sampled",mapping)),dots=samples.map(({weight,grey},n)=>{let[cx,cy]=centres
 most,cy+DOT.most],most=clamp(.75*Math.hypot(nx-cx,ny-cy),DOT.least,DOT.most);return circle([cx,cy],most*(.35+.65*weight),
 {fill:grey})});point&&dots.push(circle(mapping(point),POINT_RADIUS.inset,{class:"point"}));let{width,height}=INSET;return h(
 "svg",{viewBox:`0 0 ${width} ${height}`,width,height},[...lines,...dots])}var inset={name:"flowtex-inset",props:["over"],
-setup(props){return()=>vue().h("div",props.over?.samples.length?[enlarged(props.over)]:[])}};function linked(hash){let folder=new URL(".",document.baseURI),secret=sessionStorage.getItem(`flowtex ${folder.pathname}\
+setup(props){return()=>vue().h("div",props.over?.samples.length?[enlarged(props.over)]:[])}};async function send(file,address){let query=new URLSearchParams({name:file.name});try{let answer=await fetch(`${address}\
+?${query.toString()}`,{method:"POST",body:file});return answer.ok?"":await answer.text()}catch{return`${file.name}: coul\
+d not be sent`}}var upload={name:"flowtex-upload",props:["address","accept"],emits:["problem","busy"],setup(props,{emit}){
+let{h,ref,onMounted,onBeforeUnmount}=vue(),isOver=ref(!1),input=ref(null),ended=new AbortController,take=async files=>{for(let file of files??
+[]){emit("busy",`Sending ${file.name}`);let problem=await send(file,props.address);emit("busy",""),problem&&emit("proble\
+m",problem)}},hasFiles=({dataTransfer})=>dataTransfer?.types.includes("Files")??!1,over=event=>{hasFiles(event)&&(event.
+preventDefault(),isOver.value=!0)},leave=event=>{event.relatedTarget||(isOver.value=!1)},drop=event=>{isOver.value=!1,hasFiles(
+event)&&(event.preventDefault(),take(event.dataTransfer?.files))};onMounted(()=>{let options={signal:ended.signal};window.
+addEventListener("dragover",over,options),window.addEventListener("dragleave",leave,options),window.addEventListener("dr\
+op",drop,options)}),onBeforeUnmount(()=>ended.abort());let change=()=>{take(input.value?.files).then(()=>input.value&&(input.
+value.value=""))},choose={ref:input,type:"file",accept:props.accept,onChange:change,hidden:!0};return()=>h("div",{class:"\
+flowtex-upload"},[h("input",{...choose,"aria-label":"A file of yours"}),h("button",{class:"flowtex-link",onClick:()=>input.
+value?.click()},"Open a file of yours"),h("div",{class:"flowtex-drop",hidden:!isOver.value},`Drop it here: ${props.accept}`)])}};function linked(hash){let folder=new URL(".",document.baseURI),secret=sessionStorage.getItem(`flowtex ${folder.pathname}\
  secret`);return secret&&(folder.search=new URLSearchParams({secret}).toString()),folder.href+hash}Object.assign(window,
-{flowtex_page:{install(app){for(let component of[browser,covers,hints,inset,keys,path])app.component(component.name,component);
-Object.assign(app.config.globalProperties,{flowtex_fullscreen:()=>toggleFullscreen(document.documentElement),flowtex_address:linked,
-flowtex_copy:text=>navigator.clipboard?.writeText(text)})}}});})();
+{flowtex_page:{install(app){for(let component of[browser,covers,hints,inset,keys,path,upload])app.component(component.name,
+component);Object.assign(app.config.globalProperties,{flowtex_fullscreen:()=>toggleFullscreen(document.documentElement),
+flowtex_address:linked,flowtex_copy:text=>navigator.clipboard?.writeText(text)})}}});})();
