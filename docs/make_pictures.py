@@ -287,7 +287,7 @@ def app() -> None:
         compared = opened((1200, 700), "double gyre", address)
         compared.locator(".flowtex-more", has_text="View").click()
         compared.locator("[data-setting=compare] .v-field").click()
-        compared.get_by_text("the paper's kernel").last.click()
+        compared.get_by_text("Kernel: box").last.click()
         settle(compared)
         compared.get_by_label("Controls").click()
         compared.mouse.move(700, 650)

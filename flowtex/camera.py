@@ -20,12 +20,15 @@ from numpy.typing import ArrayLike
 from flowtex._util.array_types import Floats
 from flowtex.field import Surface
 
-__all__ = ["CAMERA_LIMITS", "Camera", "CameraError", "CameraLimits"]
+__all__ = ["CAMERA_LIMITS", "WHOLE_VIEW", "Camera", "CameraError", "CameraLimits", "ViewPart"]
 
 Point = tuple[float, float, float]
+#: Left, bottom, right and top of a part of the view.
+ViewPart = tuple[float, float, float, float]
 
 #: The way from a curved surface to the camera, and what is up there.
 ASIDE, UP = (1.0, 1.0, 1.0), (0.0, 0.0, 1.0)
+WHOLE_VIEW: ViewPart = (-1.0, -1.0, 1.0, 1.0)
 #: Farthest and nearest that a camera may be, in extents of the surface: beyond, numbers end.
 FARTHEST_REACH, NEAREST_REACH = 1e9, 1e-9
 
@@ -143,6 +146,7 @@ class Camera:
         toward: Point = ASIDE,
         up: Point = UP,
         margin: float = CAMERA_LIMITS.margin,
+        free: ViewPart = WHOLE_VIEW,
     ) -> Self:
         """Return the camera that shows a surface.
 
@@ -160,6 +164,8 @@ class Camera:
             The way from a curved surface to the camera, and what is up there: no parallels.
         margin
             Share of the picture that is left empty at each side, from 0 to less than a half.
+        free
+            Part of the view that the surface is fitted to, where something lies on the rest.
 
         Raises
         ------
@@ -184,9 +190,14 @@ class Camera:
             point = np.asarray(focus, dtype=float)
             center[: len(point)] = point
         if surface.frame is not None:
-            return cls._fit_flat(surface, surface.frame, center, aspect, zoom, share)
-        closest = CAMERA_LIMITS.closest if focus is not None else 1.0
-        return cls._fit_curved(surface, center, aspect, zoom, closest, toward, up, share)
+            camera = cls._fit_flat(surface, surface.frame, center, aspect, zoom, share, free)
+        else:
+            closest = CAMERA_LIMITS.closest if focus is not None else 1.0
+            camera = cls._fit_curved(
+                surface, center, aspect, zoom, closest, toward, up, share, free
+            )
+        (x, y), _ = _middle_and_half(free)
+        return camera.pan(-x, -y, aspect)
 
     @classmethod
     def _fit_flat(
@@ -197,16 +208,18 @@ class Camera:
         aspect: float,
         zoom: float,
         share: float,
+        free: ViewPart,
     ) -> Self:
         """Look straight on, without perspective, the surface's own axes to the right and up."""
         right, up = frame
         width, height = surface.plane_size
+        _, (wide, high) = _middle_and_half(free)
         return cls(
             position=_point(center + np.cross(right, up) * surface.extent),
             focal_point=_point(center),
             up=_point(up),
             parallel=True,
-            parallel_scale=float(0.5 * max(height, width / aspect) / share / zoom),
+            parallel_scale=float(0.5 * max(height / high, width / (aspect * wide)) / share / zoom),
         )
 
     @classmethod
@@ -220,6 +233,7 @@ class Camera:
         toward: Point,
         up: Point,
         share: float,
+        free: ViewPart,
     ) -> Self:
         """Look from a side, so far away that the whole surface just fits.
 
@@ -234,8 +248,17 @@ class Camera:
         half = np.tan(np.radians(CAMERA_LIMITS.view_angle / 2))
         axes = np.stack([right, np.cross(ahead, right), ahead])
         x, y, z = axes @ (surface.points[surface.valid] - surface.center).T
-        reach = np.maximum(np.abs(x) / aspect, np.abs(y))
-        distance = float(np.max(z + reach / half / share))
+        _, (wide, high) = _middle_and_half(free)
+        left, bottom, right_end, top = free
+        # Each side of the free part keeps the camera at a distance; what is near is seen larger.
+        across, upward = x / (half * aspect * share), y / (half * share)
+        sides = (
+            (right_end * z + across) / wide,
+            (-left * z - across) / wide,
+            (top * z + upward) / high,
+            (-bottom * z - upward) / high,
+        )
+        distance = float(np.max(sides))
         closer = min(zoom, closest)
         return cls(
             position=_point(center + ahead * (distance / closer)),
@@ -384,20 +407,27 @@ class Camera:
         right, up, _ = self.axes
         return self.shift((right * dx * aspect + up * dy) * self.height)
 
-    def rotate(self, dx: float, dy: float, aspect: float) -> Self:
-        """Return the camera after a turn around the focal point, as a drag by (dx, dy) asks."""
-        turn = CAMERA_LIMITS.turn
-        aside = _turned(
-            np.subtract(self.position, self.focal_point),
-            np.asarray(self.up),
-            -turn * dx * min(aspect, CAMERA_LIMITS.widest_turn),
+    def rotate(self, dx: float, dy: float, aspect: float, pivot: ArrayLike | None = None) -> Self:
+        """Return the camera after a turn, as a drag by (dx, dy) asks.
+
+        It goes around ``pivot``, (3,), by default the focal point.
+        """
+        around = np.asarray(self.focal_point if pivot is None else pivot, dtype=float)
+        aside = -CAMERA_LIMITS.turn * dx * min(aspect, CAMERA_LIMITS.widest_turn)
+        up = np.asarray(self.up)
+        right = _turned(self.axes[0], up, aside)
+
+        def turned(vector: ArrayLike) -> Floats:
+            level = _turned(np.asarray(vector, dtype=float), up, aside)
+            return _turned(level, -right, -CAMERA_LIMITS.turn * dy)
+
+        return replace(
+            self,
+            position=_point(around + turned(self.position - around)),
+            focal_point=_point(around + turned(self.focal_point - around)),
+            # The old up need not be off the new line of sight, so the axes turn along with it.
+            up=_point(turned(self.axes[1])),
         )
-        camera = replace(self, position=_point(aside + self.focal_point))
-        right = camera.axes[0]
-        above = _turned(aside, -right, -turn * dy)
-        # The old up need not be off the new line of sight, so the axes turn along with it.
-        up = _turned(camera.axes[1], -right, -turn * dy)
-        return replace(camera, position=_point(above + self.focal_point), up=_point(up))
 
     def zoom_by(
         self,
@@ -469,6 +499,12 @@ def _turned(vector: Floats, axis: Floats, degrees: float) -> Floats:
     along = axis * (axis @ vector)
     across = vector - along
     return np.asarray(along + across * math.cos(angle) + np.cross(axis, vector) * math.sin(angle))
+
+
+def _middle_and_half(part: ViewPart) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Return the middle of a part of the view, and half its width and height."""
+    left, bottom, right, top = part
+    return ((left + right) / 2, (bottom + top) / 2), ((right - left) / 2, (top - bottom) / 2)
 
 
 def _is_number(value: Any) -> bool:

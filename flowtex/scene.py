@@ -40,6 +40,8 @@ SETTINGS_IN_TEXTURES = {
     "resolution": ("texture", "spots", "checkerboard", "image"),
 }
 
+#: Share of the larger end of a range below which the other one is told as 0.
+ZERO_SHARE = 1e-5
 #: Values that differ by less than this share of the greatest are the same.
 SAME_VALUE_SHARE = 1e-9
 #: Share of such a value by which its range is widened.
@@ -196,6 +198,15 @@ class Scene:
     def scalar_limits(self) -> tuple[float, float]:
         """Values at the ends of the colour map."""
         return self._limits(self.appearance)
+
+    @property
+    def legend_limits(self) -> tuple[float, float]:
+        """The same as a legend tells them: an end that is 0 but for rounding is 0."""
+        low, high = self.scalar_limits
+        if self.appearance.log_scale:
+            return low, high
+        least = ZERO_SHARE * max(abs(low), abs(high))
+        return (low if abs(low) >= least else 0.0), (high if abs(high) >= least else 0.0)
 
     @property
     def lines(self) -> str:

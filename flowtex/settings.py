@@ -10,14 +10,25 @@ shader build, ``"textures"`` new textures, ``"trace"`` new traces.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field, fields
 from typing import Any, Literal
 
 from flowtex._util.names import near_names
 
-__all__ = ["GROUPS", "NEEDS", "TABLE", "Affects", "Control", "Setting", "Settings", "SettingsError"]
+__all__ = [
+    "GROUPS",
+    "NEEDS",
+    "STEADINESS",
+    "TABLE",
+    "Affects",
+    "Control",
+    "Setting",
+    "Settings",
+    "SettingsError",
+    "named_values",
+]
 
 Affects = Literal["uniform", "shader", "textures", "trace"]
 #: How a panel lets a setting be changed; a "number" is typed.
@@ -43,8 +54,10 @@ NEEDS: dict[str, tuple[Condition, ...]] = {
     "speed_in": _NEEDS_MOTION,
     "period": _NEEDS_MOTION,
 }
+#: Settings that make a difference only for flows that are steady (True), or that are not.
+STEADINESS = {"motion": True, "speed": True, "speed_in": True, "period": True, "lines": False}
 #: Labels that are not the name.
-LABELS = {"lod": "Level of detail", "show_level": "Show levels", "two_sided": "Both directions"}
+LABELS = {"lod": "Level of detail"}
 #: Widest range of a slider, and steps of one, at most.
 SLIDER_RANGE, SLIDER_STEPS = 500, 400
 #: Ratio of the ends of a range beyond which a slider that can goes by the logarithm.
@@ -112,6 +125,15 @@ class Setting:
     def label(self) -> str:
         """The name as a panel shows it."""
         return LABELS.get(self.name, self.name.replace("_", " ").capitalize())
+
+    @property
+    def condition(self) -> str:
+        """Where it makes a difference, as a sentence; empty where it always does."""
+        needs = [
+            f"{TABLE[name].label} is {'not ' if sign == '!=' else ''}{TABLE[name].format(value)}"
+            for name, sign, value in NEEDS.get(self.name, ())
+        ]
+        return f"Only where {' or '.join(needs)}." if needs else ""
 
     @property
     def control(self) -> Control:
@@ -209,8 +231,8 @@ class Settings:
     lod: bool = _row(
         default=True,
         affects="uniform",
-        text="Choose grain and step for each pixel from the view (level of detail); off, grains have "
-        "one size on the surface: blobs from near, specks that flicker from far out.",
+        text="Choose grain and step for each pixel from the view (level of detail); off, grains "
+        "have one size on the surface: blobs from near, specks that flicker from far out.",
     )
     noise: str = _row(
         default="procedural",
@@ -345,6 +367,11 @@ def setting(name: str) -> Setting:
         return TABLE[name]
     msg = f"there is no setting {name!r}; {near_names(name, TABLE)}"
     raise SettingsError(msg)
+
+
+def named_values(values: Mapping[str, Any]) -> str:
+    """Return values of settings as people read them, such as ``"Samples: 10"``."""
+    return ", ".join(f"{TABLE[name].label}: {TABLE[name].format(v)}" for name, v in values.items())
 
 
 _KINDS: dict[str, type] = {"int": int, "float": float, "bool": bool, "str": str}

@@ -35,6 +35,16 @@ def test_zero_is_in_the_middle_of_a_diverging_map() -> None:
     assert limits(SIGNED + 2, cmap="coolwarm") == (1.0, 5.0)
 
 
+def test_an_end_that_is_zero_but_for_rounding_is_told_as_zero() -> None:
+    values = np.linspace(1.94e-7, 10.3, SIGNED.size).reshape(SIGNED.shape)
+    scene = Scene.of(field(values), scalars="p")
+    assert scene.scalar_limits[0] > 0 and scene.legend_limits == (0.0, 10.3)
+    assert Scene.of(field(-values), scalars="p").legend_limits == (-10.3, 0.0)
+    assert Scene.of(field(values), scalars="p", log_scale=True).legend_limits[0] > 0
+    small = Scene.of(field(1e-9 * values), scalars="p", clim=(1e-9, 1e-8))
+    assert small.legend_limits == (1e-9, 1e-8)
+
+
 def test_a_robust_range_leaves_outliers_out() -> None:
     values = SIGNED.copy()
     values[0, 0], values[-1, -1] = -1e6, 1e6

@@ -3,7 +3,7 @@
 import { rampOf, mapOf, type ColourChoice } from "./colours.ts";
 import { dom, numberText } from "./dom.ts";
 import type { Lifetime } from "./lifetime.ts";
-import type { Header, Part, Settings } from "./protocol.ts";
+import { legendLimits, type Header, type Part, type Settings } from "./protocol.ts";
 
 /** Colours of a swatch, and the choice of none. */
 const STOPS = 9;
@@ -57,14 +57,16 @@ export class ColourControls {
     const maps = parts.get("maps");
     this.element.hidden = !header?.scalars.choices.length || !maps;
     if (!header || !maps || this.element.hidden) return;
-    const { choices, name, low, high, auto, cmap } = header.scalars;
+    const { choices, name, auto, cmap } = header.scalars;
     const options = [...choices, { name: PLAIN, label: PLAIN }];
     this.scalars.replaceChildren(
       ...options.map((each) => dom("option", { value: each.name }, [each.label])),
     );
     this.scalars.value = name ?? PLAIN;
     this.mapRow.hidden = this.rangeRow.hidden = name === null;
-    [low, high].forEach((value, n) => (this.ends[n].value = String(Number(value.toPrecision(4)))));
+    legendLimits(header.scalars).forEach((value, n) => {
+      this.ends[n].value = String(Number(value.toPrecision(4)));
+    });
     this.auto.setAttribute("aria-pressed", String(auto));
     const { settings } = this.viewer;
     this.swatches.replaceChildren(

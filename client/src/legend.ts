@@ -2,7 +2,7 @@
 
 import { rampOf } from "./colours.ts";
 import { dom, numberText } from "./dom.ts";
-import { shareOf, type Data, type Header, type Settings } from "./protocol.ts";
+import { legendLimits, shareOf, type Data, type Header, type Settings } from "./protocol.ts";
 import { clamp } from "./vectors.ts";
 
 /** Colours of which the ramp is made. */
@@ -14,13 +14,13 @@ export class Legend {
 
   /** Show a colour map, where colours say anything. */
   show(header: Header, settings: Settings, map: Data | undefined): void {
-    const { name, label, low, high, unit, bar } = header.scalars;
+    const { name, label, unit, bar } = header.scalars;
     this.element.hidden = name === null || !bar || !map || Boolean(settings.show_level);
     if (this.element.hidden || !map) return;
     const ramp = dom("div", { class: "ramp" }, [this.mark]);
     ramp.style.background = rampOf(map, header, settings, STOPS);
     this.mark.hidden = true;
-    const ends = [low, high].map((value) => dom("span", {}, [numberText(value)]));
+    const ends = legendLimits(header.scalars).map((value) => dom("span", {}, [numberText(value)]));
     this.element.replaceChildren(
       dom("div", { class: "name" }, [unit ? `${label} (${unit})` : label]),
       ramp,

@@ -80,7 +80,7 @@ export class Panel {
     const toggle = (name: string) => () => viewer.choose(name, !viewer.settings[name]);
     this.toggles = {
       lod: this.button("lod", "Level of detail", toggle("lod")),
-      show_level: this.button("levels", "Show the levels of detail", toggle("show_level")),
+      show_level: this.button("levels", "Show level", toggle("show_level")),
     };
     this.gear = this.button("settings", "Settings", () => this.fold(!this.isOpen));
     this.bar = this.makeBar();

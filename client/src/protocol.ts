@@ -6,6 +6,8 @@ import type { CameraLimits, CameraState, Surface } from "./camera.ts";
 
 /** Form of header and parts that this client reads. */
 export const FORMAT = 3;
+/** Share of the larger end of a range below which a legend tells the other one as 0. */
+const ZERO_SHARE = 1e-5;
 
 export type Value = boolean | number | string;
 export type Settings = Record<string, Value>;
@@ -202,6 +204,13 @@ export function shareOf({ low, high, log }: Header["scalars"]): (value: number) 
   if (!log) return (value) => (value - low) / (high - low || 1);
   const span = Math.log(high / low) || 1;
   return (value) => Math.log(Math.max(value, low) / low) / span;
+}
+
+/** The ends of the colours as a legend tells them: an end that is 0 but for rounding is 0. */
+export function legendLimits({ low, high, log }: Header["scalars"]): [number, number] {
+  const least = log ? 0 : ZERO_SHARE * Math.max(Math.abs(low), Math.abs(high));
+  const told = (value: number) => (Math.abs(value) < least ? 0 : value);
+  return [told(low), told(high)];
 }
 
 /** Whether the flow has no direction along its lines. */

@@ -22,7 +22,7 @@ const LAYERS = [
   "views",
   "widget",
   "client page",
-  "app/browser app/keys app/path",
+  "app/browser app/covers app/hints app/keys app/path app/upload",
   "app/app",
 ].map((names) => names.split(" "));
 

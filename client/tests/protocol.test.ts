@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { gzipSync } from "node:zlib";
-import { decoded, isSignFree, partOfText, partsOfFile, stepOf } from "../src/protocol.ts";
+import { decoded, isSignFree, legendLimits, partOfText, partsOfFile, stepOf } from "../src/protocol.ts";
 
 const INFO = { name: "position", dtype: "float32", shape: [1, 2], digest: "d" };
 
@@ -14,6 +14,13 @@ test("bytes that begin anywhere become a part in memory of its own", () => {
   assert.deepEqual([part.name, part.shape, part.digest], ["position", [1, 2], "d"]);
   shifted.fill(0);
   assert.deepEqual([...part.data], [1.5, -2]);
+});
+
+test("an end of the colours that is 0 but for rounding is told as 0", () => {
+  const scalars = { low: 1.94e-7, high: 10.3, log: false } as Parameters<typeof legendLimits>[0];
+  assert.deepEqual(legendLimits(scalars), [0, 10.3]);
+  assert.deepEqual(legendLimits({ ...scalars, log: true }), [1.94e-7, 10.3]);
+  assert.deepEqual(legendLimits({ ...scalars, low: -3e-8, high: 2e-7 }), [-3e-8, 2e-7]);
 });
 
 test("half precision stays bits", () => {

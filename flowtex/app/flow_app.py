@@ -74,7 +74,7 @@ class FlowApp(NotebookPage):
         options = {k: v for k, v in options.items() if k not in CHOICE_ARGUMENTS}
         field = library.field(name, choice)
         self.area = FlowArea(field, server=self.server, state=self.state, **options)
-        self.context = Context(self.state, self.area, library)
+        self.context = Context(self.state, self.area, library.branch())
         self.server.state.trame__favicon = None
         self.state.set(panel=None, group=None, help=False, problem="")
         self.controllers = Controllers(self.context, name, choice, self.restore)

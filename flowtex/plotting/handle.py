@@ -262,7 +262,7 @@ class FlowHandle(AppearanceAttributes):
             return
         shown = self.actor.mapper.lookup_table
         table = pv.LookupTable(values=mean_colours(np.asarray(shown.values), self.settings))
-        table.scalar_range, table.log_scale = shown.scalar_range, shown.log_scale
+        table.scalar_range, table.log_scale = self.scene.legend_limits, shown.log_scale
         self._plotter.scalar_bars[self._bar_title].SetLookupTable(table)
 
     def _remove_bar(self, plotter: Any) -> None:

@@ -22,12 +22,13 @@ OUT OF OR IN CONNECTION WITH THE SOFTWARE OR THE USE OR OTHER DEALINGS IN
 THE SOFTWARE. */
 var TYPES={float32:Float32Array,float16:Uint16Array,uint16:Uint16Array,int16:Int16Array,int8:Int8Array,uint8:Uint8Array};
 function shareOf({low,high,log}){if(!log)return value=>(value-low)/(high-low||1);let span=Math.log(high/low)||1;return value=>Math.
-log(Math.max(value,low)/low)/span}function isSignFree(header){return header.variant.includes("FLOWTEX_SIGNFREE")}function stepOf(name){
-return Number(name.split("/")[1])}function tilePart(name){let[kind,level,row,column,...rest]=name.split("/");return kind===
-"tile"?[[level,row,column].join("/"),rest.join("/")]:null}function decoded(info,bytes){let view=ArrayBuffer.isView(bytes)?
-new Uint8Array(bytes.buffer,bytes.byteOffset,bytes.byteLength):new Uint8Array(bytes),{name,dtype,shape,digest}=info,Type=TYPES[dtype];
-if(!Type)throw new Error(`a part has the type "${dtype}"; expected ${Object.keys(TYPES).join(", ")}`);return{name,shape,
-digest,data:new Type(view.slice().buffer)}}async function partOfText(info,text){let packed=Uint8Array.from(atob(text),letter=>letter.charCodeAt(0)),unpacked=new Blob(
+log(Math.max(value,low)/low)/span}function legendLimits({low,high,log}){let least=log?0:1e-5*Math.max(Math.abs(low),Math.
+abs(high)),told=value=>Math.abs(value)<least?0:value;return[told(low),told(high)]}function isSignFree(header){return header.
+variant.includes("FLOWTEX_SIGNFREE")}function stepOf(name){return Number(name.split("/")[1])}function tilePart(name){let[
+kind,level,row,column,...rest]=name.split("/");return kind==="tile"?[[level,row,column].join("/"),rest.join("/")]:null}function decoded(info,bytes){
+let view=ArrayBuffer.isView(bytes)?new Uint8Array(bytes.buffer,bytes.byteOffset,bytes.byteLength):new Uint8Array(bytes),
+{name,dtype,shape,digest}=info,Type=TYPES[dtype];if(!Type)throw new Error(`a part has the type "${dtype}"; expected ${Object.
+keys(TYPES).join(", ")}`);return{name,shape,digest,data:new Type(view.slice().buffer)}}async function partOfText(info,text){let packed=Uint8Array.from(atob(text),letter=>letter.charCodeAt(0)),unpacked=new Blob(
 [packed]).stream().pipeThrough(new DecompressionStream("gzip")),planes=new Uint8Array(await new Response(unpacked).arrayBuffer()),
 count=info.shape.reduce((product2,n)=>product2*n,1),width=count?planes.length/count:1,bytes=new Uint8Array(planes.length);
 for(let plane=0;plane<width;plane+=1)for(let n=0;n<count;n+=1)bytes[n*width+plane]=planes[plane*count+n];return decoded(
@@ -254,12 +255,12 @@ let name=event.target.dataset.cmap;name&&viewer.chooseColours({cmap:name})});let
 row"},[dom("span",{class:"name"},[name]),...fields]);this.rangeRow=row("Range",dom("span",{class:"between"},[...ends,auto])),
 this.mapRow=row("Colour map",swatches),this.mapRow.classList.add("ranged"),this.element.append(row("Colour by",scalars),
 this.mapRow,this.rangeRow)}update(){let{header,parts}=this.viewer,maps=parts.get("maps");if(this.element.hidden=!header?.
-scalars.choices.length||!maps,!header||!maps||this.element.hidden)return;let{choices,name,low,high,auto,cmap}=header.scalars,
-options=[...choices,{name:PLAIN,label:PLAIN}];this.scalars.replaceChildren(...options.map(each=>dom("option",{value:each.
-name},[each.label]))),this.scalars.value=name??PLAIN,this.mapRow.hidden=this.rangeRow.hidden=name===null,[low,high].forEach(
-(value,n)=>this.ends[n].value=String(Number(value.toPrecision(4)))),this.auto.setAttribute("aria-pressed",String(auto));
-let{settings}=this.viewer;this.swatches.replaceChildren(...header.scalars.maps.map(each=>{let pressed=String(each===cmap),
-swatch=dom("button",{...{type:"button",title:each,"aria-label":each,"data-cmap":each},"aria-pressed":pressed});return swatch.
+scalars.choices.length||!maps,!header||!maps||this.element.hidden)return;let{choices,name,auto,cmap}=header.scalars,options=[
+...choices,{name:PLAIN,label:PLAIN}];this.scalars.replaceChildren(...options.map(each=>dom("option",{value:each.name},[each.
+label]))),this.scalars.value=name??PLAIN,this.mapRow.hidden=this.rangeRow.hidden=name===null,legendLimits(header.scalars).
+forEach((value,n)=>{this.ends[n].value=String(Number(value.toPrecision(4)))}),this.auto.setAttribute("aria-pressed",String(
+auto));let{settings}=this.viewer;this.swatches.replaceChildren(...header.scalars.maps.map(each=>{let pressed=String(each===
+cmap),swatch=dom("button",{...{type:"button",title:each,"aria-label":each,"data-cmap":each},"aria-pressed":pressed});return swatch.
 style.background=rampOf(mapOf(header,maps.data,each),header,settings,STOPS),swatch}))}takeRange(){let[low,high]=this.ends.
 map(end=>end.valueAsNumber);this.rangeRow.title="",low<high?this.viewer.chooseColours({clim:[low,high]}):this.rangeRow.title=
 `${numberText(low)} is not below ${numberText(high)}`;for(let end of this.ends)end.setCustomValidity(this.rangeRow.title)}};var SLIDER_STOPS=400;function hasStreaming({slices,paper,variant}){return slices.steps===1&&!paper&&!isSignFree({variant})}
@@ -294,10 +295,10 @@ toSlider),step=whole&&!logarithmic?1:(max-min)/SLIDER_STOPS;return{toSlider,from
 r",_:"farther",0:"whole"},PLAY_KEY=" ",FULLSCREEN_KEY="f",CLOSE_KEY="Escape",DIRECTIONS={left:[-1,0],right:[1,0],up:[0,1],
 down:[0,-1]};function hasModifier(event){return event.ctrlKey||event.metaKey||event.altKey}function toggleFullscreen(element){
 document.fullscreenElement?document.exitFullscreen():element.requestFullscreen?.().catch(()=>{})}var STOPS2=33,Legend=class{element=dom("div",{class:"legend glass",hidden:""});mark=dom("i",{hidden:""});show(header,settings,map){
-let{name,label,low,high,unit:unit2,bar}=header.scalars;if(this.element.hidden=name===null||!bar||!map||!!settings.show_level,
-this.element.hidden||!map)return;let ramp=dom("div",{class:"ramp"},[this.mark]);ramp.style.background=rampOf(map,header,
-settings,STOPS2),this.mark.hidden=!0;let ends=[low,high].map(value=>dom("span",{},[numberText(value)]));this.element.replaceChildren(
-dom("div",{class:"name"},[unit2?`${label} (${unit2})`:label]),ramp,dom("div",{class:"ends"},ends))}point(header,value=NaN){
+let{name,label,unit:unit2,bar}=header.scalars;if(this.element.hidden=name===null||!bar||!map||!!settings.show_level,this.
+element.hidden||!map)return;let ramp=dom("div",{class:"ramp"},[this.mark]);ramp.style.background=rampOf(map,header,settings,
+STOPS2),this.mark.hidden=!0;let ends=legendLimits(header.scalars).map(value=>dom("span",{},[numberText(value)]));this.element.
+replaceChildren(dom("div",{class:"name"},[unit2?`${label} (${unit2})`:label]),ramp,dom("div",{class:"ends"},ends))}point(header,value=NaN){
 this.mark.hidden=!header||!Number.isFinite(value),!(!header||this.mark.hidden)&&(this.mark.style.left=`${100*clamp(shareOf(
 header.scalars)(value),0,1)}%`)}};var HEAD={apart:90,length:14,half:5},POINT_RADIUS=6,FREE_RADIUS=20,textOf=line=>line.map(place=>place.map(v2=>v2.toFixed(
 1)).join()).join(" ");function arrowHeads(line,apart=HEAD.apart){let heads=[],due=0;for(let n=line.length-1;n>0;n-=1){let[
@@ -670,38 +671,38 @@ options.controls??!0,this.controls=new Controls(viewer),this.colours=new ColourC
 "show","Show the bar (h)",()=>this.toggle()),this.handle.classList.add("handle","glass"),this.playButton=this.button("pl\
 ay","Play (space)",()=>viewer.togglePlaying()),viewer.lifetime.listen(this.slider,"input",()=>viewer.scrub(Number(this.slider.
 value)));let toggle=name=>()=>viewer.choose(name,!viewer.settings[name]);this.toggles={lod:this.button("lod","Level of d\
-etail",toggle("lod")),show_level:this.button("levels","Show the levels of detail",toggle("show_level"))},this.gear=this.
-button("settings","Settings",()=>this.fold(!this.isOpen)),this.bar=this.makeBar(),canvas.className="picture",root.classList.
-toggle("flowtex-bare",options.bare??!1);let shadow=root.attachShadow({mode:"open"});shadow.adoptedStyleSheets=[styleSheet];
-let{legend,controls,head,bar,handle,busy,hintBox,note}=this,left=dom("div",{class:"left"},[head,viewer.card.element]);shadow.
-append(canvas,viewer.card.overlay,left,legend.element,controls.element),shadow.append(bar,handle,busy,hintBox,note),this.
-arrange()}button(name,title,press){let button=dom("button",{type:"button",title,"aria-label":title,"data-name":name},[icon(
-name)]);return this.viewer.lifetime.listen(button,"click",press),button}makeBar(){let{viewer}=this;return dom("div",{class:"\
-bar glass",role:"toolbar","aria-label":"Controls"},[this.playButton,this.track,this.button("home","Show everything (0)",
-()=>viewer.reset()),this.toggles.lod,this.toggles.show_level,this.gear,this.button("save","Save the picture",()=>{this.save()}),
-this.button("full","Fill the screen (f)",()=>this.fullscreen()),this.button("hide","Hide the bar (h)",()=>this.toggle())])}build(){
-let{header}=this.viewer;header&&(this.note.hidden=!0,this.controls.build(header),this.controls.element.prepend(this.colours.
-element),this.showLegend(),this.update(),this.arrange())}update(){let{header,settings}=this.viewer,{playing,varies}=this.
-viewer.player;this.name(),this.controls.update(),this.legendLook!==this.lookOf(settings)&&this.showLegend();for(let[name,
-button]of Object.entries(this.toggles))button.setAttribute("aria-pressed",String(!!settings[name]));let title=playing?"P\
-ause (space)":"Play (space)";this.playButton.replaceChildren(icon(playing?"pause":"play")),this.playButton.title=title,this.
-playButton.setAttribute("aria-label",title);let streams=header!==null&&hasStreaming(header);this.playButton.hidden=this.
-track.hidden=!varies&&!streams,this.slider.disabled=!varies&&settings.motion==="off";let unit2=header?.slices.timeUnit??
-"";this.timeText.style.minWidth=`${varies?8+unit2.length:7}ch`,this.tick()}name(){let{header,settings,root}=this.viewer,
-title=(header?.differs??[]).filter(name=>name in settings).map(name=>{let label=header?.table.find(row=>row.name===name)?.
-label??name,value=settings[name];return`${label}: ${typeof value=="boolean"?value?"on":"off":value}`}).join(", ")||header?.
-name||"";this.title.textContent=title,this.title.hidden=!title,root.setAttribute("aria-label",title?`Flow texture: ${title}`:
-"Flow texture")}tick(){let{header,player,settings}=this.viewer;if(!header||this.track.hidden)return;let{first,last,now}=player.
-range(settings);this.slider.value=String((now-first)/(last-first||1));let unit2=header.slices.timeUnit,text=player.varies?
-`${numberText(now)} ${unit2}`:`${now.toFixed(1)} s`;this.timeText.textContent!==text&&(this.timeText.textContent=text)}lookOf({
-show_level,strength,contrast}){return`${show_level} ${strength} ${contrast}`}showLegend(){let{header,settings,parts}=this.
-viewer;this.legendLook=this.lookOf(settings),this.colours.update(),header&&this.legend.show(header,settings,parts.get("c\
-map")?.data)}read(point){let{header}=this.viewer;if(this.readout.replaceChildren(),this.legend.point(null),!point||!header)
-return;this.readout.append(dom("span",{},[positionText(point.position,header,this.viewer.camera)]));let{name,label,unit:unit2}=header.
-scalars,value=point.values[name??""];value!==void 0&&(this.readout.append(dom("b",{},[withUnit(`${label} ${numberText(value)}`,
-unit2)])),this.legend.point(header,value))}fold(open=!1){this.isOpen=open,this.arrange()}toggle(shown=!this.isShown){shown!==
-this.isShown&&(this.isShown=shown,this.arrange(),this.viewer.options.onControls?.(shown))}arrange(){let{header,options,root}=this.
-viewer,isReady=header!==null,follows=!!options.follows;this.bar.hidden=!this.isShown||!isReady,this.handle.hidden=this.isShown||
+etail",toggle("lod")),show_level:this.button("levels","Show level",toggle("show_level"))},this.gear=this.button("setting\
+s","Settings",()=>this.fold(!this.isOpen)),this.bar=this.makeBar(),canvas.className="picture",root.classList.toggle("flo\
+wtex-bare",options.bare??!1);let shadow=root.attachShadow({mode:"open"});shadow.adoptedStyleSheets=[styleSheet];let{legend,
+controls,head,bar,handle,busy,hintBox,note}=this,left=dom("div",{class:"left"},[head,viewer.card.element]);shadow.append(
+canvas,viewer.card.overlay,left,legend.element,controls.element),shadow.append(bar,handle,busy,hintBox,note),this.arrange()}button(name,title,press){
+let button=dom("button",{type:"button",title,"aria-label":title,"data-name":name},[icon(name)]);return this.viewer.lifetime.
+listen(button,"click",press),button}makeBar(){let{viewer}=this;return dom("div",{class:"bar glass",role:"toolbar","aria-\
+label":"Controls"},[this.playButton,this.track,this.button("home","Show everything (0)",()=>viewer.reset()),this.toggles.
+lod,this.toggles.show_level,this.gear,this.button("save","Save the picture",()=>{this.save()}),this.button("full","Fill \
+the screen (f)",()=>this.fullscreen()),this.button("hide","Hide the bar (h)",()=>this.toggle())])}build(){let{header}=this.
+viewer;header&&(this.note.hidden=!0,this.controls.build(header),this.controls.element.prepend(this.colours.element),this.
+showLegend(),this.update(),this.arrange())}update(){let{header,settings}=this.viewer,{playing,varies}=this.viewer.player;
+this.name(),this.controls.update(),this.legendLook!==this.lookOf(settings)&&this.showLegend();for(let[name,button]of Object.
+entries(this.toggles))button.setAttribute("aria-pressed",String(!!settings[name]));let title=playing?"Pause (space)":"Pl\
+ay (space)";this.playButton.replaceChildren(icon(playing?"pause":"play")),this.playButton.title=title,this.playButton.setAttribute(
+"aria-label",title);let streams=header!==null&&hasStreaming(header);this.playButton.hidden=this.track.hidden=!varies&&!streams,
+this.slider.disabled=!varies&&settings.motion==="off";let unit2=header?.slices.timeUnit??"";this.timeText.style.minWidth=
+`${varies?8+unit2.length:7}ch`,this.tick()}name(){let{header,settings,root}=this.viewer,title=(header?.differs??[]).filter(
+name=>name in settings).map(name=>{let label=header?.table.find(row=>row.name===name)?.label??name,value=settings[name];
+return`${label}: ${typeof value=="boolean"?value?"on":"off":value}`}).join(", ")||header?.name||"";this.title.textContent=
+title,this.title.hidden=!title,root.setAttribute("aria-label",title?`Flow texture: ${title}`:"Flow texture")}tick(){let{
+header,player,settings}=this.viewer;if(!header||this.track.hidden)return;let{first,last,now}=player.range(settings);this.
+slider.value=String((now-first)/(last-first||1));let unit2=header.slices.timeUnit,text=player.varies?`${numberText(now)}\
+ ${unit2}`:`${now.toFixed(1)} s`;this.timeText.textContent!==text&&(this.timeText.textContent=text)}lookOf({show_level,strength,
+contrast}){return`${show_level} ${strength} ${contrast}`}showLegend(){let{header,settings,parts}=this.viewer;this.legendLook=
+this.lookOf(settings),this.colours.update(),header&&this.legend.show(header,settings,parts.get("cmap")?.data)}read(point){
+let{header}=this.viewer;if(this.readout.replaceChildren(),this.legend.point(null),!point||!header)return;this.readout.append(
+dom("span",{},[positionText(point.position,header,this.viewer.camera)]));let{name,label,unit:unit2}=header.scalars,value=point.
+values[name??""];value!==void 0&&(this.readout.append(dom("b",{},[withUnit(`${label} ${numberText(value)}`,unit2)])),this.
+legend.point(header,value))}fold(open=!1){this.isOpen=open,this.arrange()}toggle(shown=!this.isShown){shown!==this.isShown&&
+(this.isShown=shown,this.arrange(),this.viewer.options.onControls?.(shown))}arrange(){let{header,options,root}=this.viewer,
+isReady=header!==null,follows=!!options.follows;this.bar.hidden=!this.isShown||!isReady,this.handle.hidden=this.isShown||
 !isReady||follows,this.head.hidden=!(this.isShown||follows)||!isReady,this.controls.element.hidden=!this.isShown||!this.
 isOpen||!isReady,root.classList.toggle("flowtex-open",!this.controls.element.hidden),this.gear.setAttribute("aria-presse\
 d",String(this.isOpen))}wait(missing){this.busy.hidden=!missing.length;let{viewer}=this;!missing.length||viewer.options.

@@ -38,7 +38,7 @@ def test_the_page_has_a_control_with_a_hint_for_each_setting(flat: FlowApp) -> N
     html = unescape(flat.layout.html)
     for row in TABLE.values():
         assert f'data-setting="{row.name}"' in html
-        assert row.text in html
+        assert row.text.replace("'", r"\'") in html
 
 
 def test_examples_make_an_app() -> None:

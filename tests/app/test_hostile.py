@@ -350,7 +350,7 @@ def test_an_image_takes_no_more_room_than_it_may() -> None:
     app.close()
 
 
-@pytest.mark.parametrize("compared", ["level of detail off", "the paper's noise"])
+@pytest.mark.parametrize("compared", ["Level of detail: off", "Noise: texture"])
 def test_an_image_is_laid_in_both_panes_where_noise_is_no_difference(compared: str) -> None:
     app = page(field(), resolution=64)
     app.state.set(compare=compared)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import base64
+import io
 import re
 import signal
 import subprocess
@@ -59,6 +61,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     head = '<?xml version="1.0"?><VTKFile type="Collection" version="0.1"><Collection>'
     (inside / "series.pvd").write_text(head + "".join(lines) + "</Collection></VTKFile>")
     (inside / "torn.vts").write_text("<VTKFile")
+    pv.Sphere().cast_to_unstructured_grid().save(inside / "cells.vtu")
     block(1.0).save(outside / "private.vts")
     (inside / "link.vts").symlink_to(outside / "private.vts")
     return inside
@@ -111,7 +114,8 @@ def test_a_folder_offers_its_files_and_nothing_beside_them(page: Page) -> None:
     items = page.locator(".v-overlay--active .v-list-item")
     items.first.wait_for()  # a menu that is still opening has no text
     names = items.all_inner_texts()
-    assert names == ["block.vts", "series.pvd", "torn.vts"]
+    assert names[:3] == ["block.vts", "series.pvd", "torn.vts"]
+    assert len(names) == 4 and names[3].startswith("cells.vtu") and "unstructured" in names[3]
     page.keyboard.press("Escape")
     page.wait_for_selector(".v-overlay--active", state="hidden")
 
@@ -171,6 +175,90 @@ def test_a_broken_file_is_told_and_the_view_stands(page: Page) -> None:
     assert "block" in page.inner_text(".flowtex-title").lower()
     page.get_by_text(re.compile("torn.vts.*broken")).wait_for(state="hidden", timeout=PATIENCE)
     WATCH.comes_to(page, still)
+
+
+def test_a_file_is_sent_and_shown(page: Page, folder: Path, tmp_path: Path) -> None:
+    chosen = page.get_by_label("A file of yours")
+    chosen.set_input_files(folder / "series.pvd")
+    page.get_by_text(re.compile("series.pvd: expected one file")).wait_for()
+    page.get_by_role("button", name="Close").click()
+    mine = tmp_path / "mine.vts"
+    block(3.0).save(mine)
+    before = count(page)
+    page.evaluate(
+        """text => {
+          const sent = new DataTransfer();
+          sent.items.add(new File([Uint8Array.from(atob(text), c => c.charCodeAt(0))], "mine.vts"));
+          for (const name of ["dragover", "drop"]) {
+            const event = new DragEvent(name, { dataTransfer: sent, bubbles: true });
+            document.body.dispatchEvent(event);
+          }
+        }""",
+        base64.b64encode(mine.read_bytes()).decode(),
+    )
+    page.locator(".flowtex-name", has_text="mine").wait_for()
+    settled(page, before)
+    page.get_by_label("Open another file").click()
+    page.locator(".v-overlay--active .v-list-item", has_text="mine.vts").wait_for()
+    page.keyboard.press("Escape")
+    page.wait_for_selector(".v-overlay--active", state="hidden")
+
+
+def test_a_hint_goes_with_the_pointer_and_with_a_click(page: Page) -> None:
+    hint = page.get_by_role("tooltip")
+    theme = page.get_by_role("button", name="Light or dark")
+    theme.hover()
+    hint.get_by_text("Light or dark").wait_for()
+    page.mouse.move(5, 500)
+    hint.wait_for(state="hidden")
+    theme.hover()
+    hint.get_by_text("Light or dark").wait_for()
+    before = count(page)
+    theme.click()
+    page.wait_for_timeout(800)
+    assert not hint.is_visible()
+    theme.click()
+    settled(page, before)
+    page.keyboard.press("Tab")
+    hint.wait_for()
+    page.evaluate("document.activeElement.blur()")
+    hint.wait_for(state="hidden")
+
+
+def test_what_makes_no_difference_says_where_it_would(page: Page) -> None:
+    group(page, "Noise")
+    row = page.locator("[data-setting=tiles]")
+    assert float(row.evaluate("row => getComputedStyle(row).opacity")) < 1
+    assert "Only where Noise is not procedural" in str(row.get_attribute("data-hint"))
+    group(page, "View")
+
+
+def test_the_whole_surface_lies_beside_the_panel(page: Page) -> None:
+    page.evaluate("document.activeElement.blur()")
+    before = count(page)
+    page.keyboard.press("0")
+    settled(page, before)
+    with Image.open(io.BytesIO(page.screenshot())) as picture:
+        seen = np.asarray(picture.convert("RGB"), dtype=int)
+    ground = np.array([0x12, 0x16, 0x1C])
+    drawn = np.abs(seen - ground).max(axis=2) > 60
+    panel = page.locator(".flowtex-panel").bounding_box()
+    assert panel is not None
+    end = int(panel["y"] + panel["height"]) + 4
+    below = drawn[end:480, int(panel["x"]) : int(panel["x"] + panel["width"])]
+    assert below.mean() < 0.02 and drawn[150:400, 200:600].mean() > 0.5
+
+
+@pytest.mark.parametrize("height", [500, 844])
+def test_the_panel_of_a_narrow_page_ends_above_the_player(page: Page, height: int) -> None:
+    page.set_viewport_size({"width": 390, "height": height})
+    group(page, "Texture")
+    panel, player = (
+        page.locator(name).bounding_box() for name in (".flowtex-panel", ".flowtex-player")
+    )
+    assert panel is not None and player is not None
+    assert panel["y"] + panel["height"] <= player["y"]
+    page.set_viewport_size(SIZE)  # type: ignore[arg-type]
 
 
 def test_a_series_plays_and_steps(page: Page) -> None:
@@ -303,7 +391,7 @@ def test_two_panes_move_together(page: Page) -> None:
     settled(page, before)
     group(page, "View")
     before = count(page)
-    choose(page, page.locator("[data-setting=compare]"), "levels in colour")
+    choose(page, page.locator("[data-setting=compare]"), "Show level: on")
     both = settled(page, before)
     middle = SIZE["width"] // 2 - WATCH.left
     left, right = both[:, : middle - 4], both[:, middle + 4 :]

@@ -12,9 +12,18 @@ from flowtex.app.server.validation import decode_picture, name_among, number
 from flowtex.app.streaming.viewport import BACKGROUNDS as THEMES
 from flowtex.errors import FieldError
 from flowtex.options import ROBUST
-from flowtex.settings import TABLE, SettingsError
+from flowtex.scene import Scene
+from flowtex.settings import TABLE, SettingsError, named_values
 
-__all__ = ["BACKGROUNDS", "COMPARISONS", "PLAIN", "Appearance"]
+__all__ = [
+    "ANOTHER_TIME",
+    "BACKGROUNDS",
+    "COLOUR_BY",
+    "COMPARISONS",
+    "PLAIN",
+    "Appearance",
+    "comparison",
+]
 
 #: The choice of no colours.
 PLAIN = "none"
@@ -23,15 +32,32 @@ BACKGROUNDS = ("theme", "black", "white", "gray")
 #: What a second pane shows, by what it is called.
 COMPARISONS: dict[str, dict[str, Any]] = {
     "nothing": {},
-    "level of detail off": {"lod": False},
-    "the paper's noise": {"noise": "texture"},
-    "the paper's kernel": {"kernel": "box", "two_sided": False, "samples": 12},
-    "grain fixed on the surface": {"fixed_grain": True},
-    "10 samples": {"samples": 10},
-    "levels in colour": {"show_level": True},
+    **{
+        named_values(changes): changes
+        for changes in (
+            {"lod": False},
+            {"noise": "texture"},
+            {"kernel": "box"},
+            {"two_sided": False},
+            {"fixed_grain": True},
+            {"samples": 10},
+            {"show_level": True},
+        )
+    },
 }
+#: The same for what is not a setting: another time, and another scalar by its name.
+ANOTHER_TIME, COLOUR_BY = "Another time", "Colour by: "
 #: Greatest value at an end of the colour map: the distance of two is a number, too.
 GREATEST_VALUE = 1e300
+
+
+def comparison(name: str, time: float) -> dict[str, Any]:
+    """Return what differs in a second pane of a name, at ``time`` for another time."""
+    if name == ANOTHER_TIME:
+        return {"time": time}
+    if name.startswith(COLOUR_BY):
+        return {"scalars": name.removeprefix(COLOUR_BY)}
+    return COMPARISONS[name]
 
 
 class Appearance(Controller):
@@ -50,7 +76,8 @@ class Appearance(Controller):
             theme=self.theme,
             background=self.background,
             compare=self.compared,
-            comparisons=list(COMPARISONS),
+            time_beside=0.0,
+            bar_beside=None,
             image_file=None,
             set_noise_choices=self._noise_choices(),
         )
@@ -61,6 +88,7 @@ class Appearance(Controller):
         on("low", "high")(self.take_range)
         on("theme", "background")(self.take_background)
         on("compare")(self.take_comparison)
+        on("time_beside")(self.take_time_beside)
         on("image_file")(self.take_image)
         context.field_changed.connect(self.show_field)
         context.area.appearance_changed.connect(self.show_colours)
@@ -69,10 +97,12 @@ class Appearance(Controller):
 
     def show_field(self) -> None:
         """Let the page show settings and colours of the flow that is shown."""
-        scene = self.area.scene
+        scene, comparisons = self.area.scene, self._comparisons()
         names = [(name, scene.label_of(name)) for name in scene.scalar_names]
         choices = [{"value": name, "title": label} for name, label in (*names, (PLAIN, PLAIN))]
-        self.state.set(colours=choices)
+        self.state.set(colours=choices, comparisons=comparisons)
+        if self.compared not in comparisons:
+            self.end_comparison()
         self.show_settings()
         self.show_colours()
 
@@ -85,7 +115,8 @@ class Appearance(Controller):
             cmap=self._cmap(),
             log_scale=area.log_scale,
             opacity=area.opacity,
-            bar=self._bar(),
+            bar=self._bar(self.area.scene),
+            bar_beside=self._bar_beside(),
             low=low,
             high=high,
         )
@@ -106,7 +137,7 @@ class Appearance(Controller):
             # A whole number comes back from the page as it was sent, not as the type it has here.
             self.state.set(**{f"set_{name}": getattr(settings, name)})
             if name in ("strength", "contrast", "noise"):
-                self.state.set(bar=self._bar())
+                self.state.set(bar=self._bar(self.area.scene), bar_beside=self._bar_beside())
 
     def take_setting(self, pair: Any) -> None:
         """Set what the browser's client has set by itself."""
@@ -176,13 +207,22 @@ class Appearance(Controller):
     def take_comparison(self) -> None:
         """Show a second pane, or one again."""
         choice = self.state.get("compare")
-        if not name_among(choice, COMPARISONS):
+        if not name_among(choice, self._comparisons()):
             self.state.set(compare=self.compared)
         elif choice != self.compared:
             self.compared = choice
             if choice != "nothing":
                 self.context.comparison_started.emit()
-            self.area.compare(COMPARISONS[choice] or None)
+            self.area.compare(comparison(choice, self._first_time) or None)
+            self.state.set(bar_beside=self._bar_beside(), time_beside=self.viewport.time_beside)
+
+    def take_time_beside(self) -> None:
+        """Show another time in the second pane."""
+        time = number(self.state.get("time_beside"))
+        if self.compared == ANOTHER_TIME and time not in (None, self.viewport.time_beside):
+            self.viewport.time_beside = time
+            self.stream.changed()
+        self.state.set(time_beside=self.viewport.time_beside)
 
     def end_comparison(self) -> None:
         """Show one pane again."""
@@ -217,6 +257,7 @@ class Appearance(Controller):
             "theme": self.theme,
             "background": self.background,
             "split": self.compared,
+            "time_beside": self.viewport.time_beside if self.compared == ANOTHER_TIME else None,
         }
 
     def restore(self, saved: Mapping[str, Any]) -> None:
@@ -234,6 +275,24 @@ class Appearance(Controller):
             self.take_range()
         self.take_background()
         self.take_comparison()
+        if saved.get("time_beside") is not None:
+            self.state.set(time_beside=saved["time_beside"])
+            self.take_time_beside()
+
+    @property
+    def _first_time(self) -> float:
+        return float(self.viewport.field.times[0])
+
+    def _comparisons(self) -> list[str]:
+        """Return what a second pane can show of the present flow."""
+        times = [] if self.viewport.field.steady else [ANOTHER_TIME]
+        return [*COMPARISONS, *times, *(COLOUR_BY + name for name in self.area.scene.scalar_names)]
+
+    def _bar_beside(self) -> dict[str, Any] | None:
+        """Return the colour bar of a second pane that has one of its own."""
+        second = [pane.handle.scene for pane in self.viewport.panes[1:]]
+        differs = second and second[0].scalar_name != self.area.scene.scalar_name
+        return self._bar(second[0]) if differs else None
 
     def _cmap(self) -> str:
         """Name of the colour map; the first one for a map that has no name here."""
@@ -246,16 +305,17 @@ class Appearance(Controller):
 
     def _span(self) -> tuple[float, float]:
         """Return the ends of the range as the page shows them, with four digits."""
-        low, high = self.area.scene.scalar_limits
+        low, high = self.area.scene.legend_limits
         return float(f"{low:.4g}"), float(f"{high:.4g}")
 
-    def _bar(self) -> dict[str, Any]:
-        if not self.area.scalars:
+    def _bar(self, scene: Scene) -> dict[str, Any]:
+        name = scene.scalar_name
+        if name is None:
             return {"name": "", "low": "", "high": "", "stops": []}
-        low, high = self.area.scene.scalar_limits
+        low, high = scene.legend_limits
         return {
-            "name": self.area.scene.title_of(self.area.scalars),
+            "name": scene.title_of(name),
             "low": f"{low:.3g}",
             "high": f"{high:.3g}",
-            "stops": self.viewport.colour_stops(),
+            "stops": self.viewport.colour_stops(scene),
         }

@@ -7,9 +7,11 @@ from collections.abc import Mapping
 from typing import Any
 
 from flowtex.app.controllers.context import Context, Controller
-from flowtex.app.server.validation import name_among
+from flowtex.app.server.validation import name_among, number
+from flowtex.app.streaming.free_part import Cover
 from flowtex.app.streaming.stream import Figures
 from flowtex.offscreen.annotations import round_length, singular
+from flowtex.settings import TABLE
 
 __all__ = ["KEYS", "VIEWS", "CameraControls"]
 
@@ -29,7 +31,7 @@ KEYS = {
     "space": "play or pause",
     ", and .": "a step back or on",
     "0": "the whole surface",
-    "d": "level of detail on or off",
+    "d": f"{TABLE['lod'].label.lower()} on or off",
     "t": "light or dark",
     "f": "full screen",
     "Esc": "close what is open",
@@ -42,6 +44,8 @@ PANS = {"left": (-1, 0), "right": (1, 0), "up": (0, 1), "down": (0, -1)}
 FIGURES_INTERVAL_S = 0.5
 #: Greatest share of the view's width that a scale bar may have.
 SCALE_BAR_WIDTH = 0.125
+#: Panels that a page may tell of, at most.
+MOST_COVERS = 12
 #: What the page says that limits the rate of pictures.
 LIMITS = {
     "drawing": "limited by drawing",
@@ -74,7 +78,20 @@ class CameraControls(Controller):
     def look_from(self, name: Any) -> None:
         """Look at the whole of a curved surface from a side."""
         if name_among(name, VIEWS):
-            self.viewport.look_from(*VIEWS[name])
+            toward, up = VIEWS[name]
+            self.viewport.home(toward=toward, up=up)
+            self.stream.moved()
+
+    def take_covers(self, covers: Any) -> None:
+        """Fit the surface to what the page's panels leave free, while nobody has moved it."""
+        edges = [_edges(cover) for cover in covers] if isinstance(covers, list) else []
+        checked = tuple(cover for cover in edges[:MOST_COVERS] if cover is not None)
+        if checked == self.viewport.covers:
+            return
+        at_home = self.viewport.at_home
+        self.viewport.covers = checked
+        if at_home:
+            self.viewport.refit()
             self.stream.moved()
 
     def command(self, name: Any) -> None:
@@ -150,3 +167,13 @@ class CameraControls(Controller):
             "text": f"{length:.12g} {singular(unit) if length == 1 else unit}".strip(),
             "width": round(100 * length / across, 3) if across > 0 else 0,
         }
+
+
+def _edges(sent: Any) -> Cover | None:
+    """Return the edges of a panel that a page has sent; ``None`` where they are none."""
+    if not isinstance(sent, list) or len(sent) != 4:
+        return None
+    left, top, right, bottom = (number(edge, 0, 1) for edge in sent)
+    if left is None or top is None or right is None or bottom is None:
+        return None
+    return left, top, right, bottom

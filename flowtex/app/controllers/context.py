@@ -78,7 +78,7 @@ class Context:
             return False
         near = camera.is_near(viewport.field.surface)
         if near:
-            viewport.look(camera)
+            viewport.camera = camera
         return near
 
 

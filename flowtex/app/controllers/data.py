@@ -13,6 +13,7 @@ from collections.abc import Callable
 from concurrent.futures import Executor, ThreadPoolExecutor
 from dataclasses import asdict, dataclass, replace
 from functools import partial
+from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
@@ -20,6 +21,7 @@ import numpy as np
 from flowtex._util.progress import Stopped, stoppable
 from flowtex.app.controllers.context import Context, Controller
 from flowtex.app.controllers.library import Choice
+from flowtex.app.server.uploads import Uploads
 from flowtex.app.server.validation import clipped, name_among, shortened
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
@@ -119,7 +121,9 @@ class Data(Controller):
         self._request = LoadRequest(name, choice)
         self._worker = ThreadPoolExecutor(1, thread_name_prefix="flowtex opening")
         self._opening: asyncio.Task[None] | None = None
-        self.state.set(busy="", files=list(self.library.names), file=name, **self._options())
+        self.uploads = Uploads(context.routes, self.take_upload)
+        self.state.set(busy="", file=name, upload=self.uploads.address, **self._options())
+        self.list_files()
         self.state.on("file")(self.take_file)
         self.state.on("vectors", "block", "axis", "index")(self.take_choice)
         context.field_changed.connect(self._show_choice)
@@ -165,7 +169,15 @@ class Data(Controller):
 
     def list_files(self) -> None:
         """Look through the folder for files that have come or gone."""
-        self.state.set(files=list(self.library.names))
+        names = list(self.library.names)
+        unshown = [{"name": name, "why": why} for name, why in self.library.unshown.items()]
+        self.state.set(files=names, unshown=unshown)
+
+    def take_upload(self, name: str, path: Path) -> None:
+        """Open a file that the page has sent."""
+        name = self.library.add(name, path)
+        self.list_files()
+        self.open(name, Choice())
 
     def cancel(self) -> None:
         """Stop what is being opened; the old view stands."""
@@ -252,7 +264,8 @@ class Data(Controller):
         try:
             self.context.show(flow.shown, keep_view=keep, keep_range=same)
             if not keep:
-                self.viewport.home(*self.library.look(flow.name))
+                zoom, focus = self.library.look(flow.name)
+                self.viewport.home(zoom=zoom, focus=focus)
                 self.stream.moved()
         except BaseException:
             self._current, self._goal = before
@@ -319,6 +332,7 @@ class Data(Controller):
     def close(self) -> None:
         """End what goes on."""
         self._request.cancelled = True
+        self.uploads.close()
         if self._opening is not None:
             self._opening.cancel()
         self._worker.shutdown(wait=False, cancel_futures=True)

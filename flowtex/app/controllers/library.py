@@ -7,6 +7,7 @@ Files that are open, and the flows made from them, are shared by all pages of a 
 
 from __future__ import annotations
 
+import re
 import threading
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
@@ -29,6 +30,21 @@ SUFFIXES = frozenset(
         *(".vts", ".vtr", ".vti", ".vtk", ".vtm", ".pvd", ".pvts", ".pvtr", ".pvti"),
         *(".xyz", ".x", ".g", ".foam", ".case", ".cgns", ".ex2"),
     ]
+)
+#: Endings that are listed though nothing of them is drawn, and why.
+UNSHOWN = {
+    **dict.fromkeys((".vtu", ".pvtu"), "unstructured; flow is drawn on structured meshes"),
+    **dict.fromkeys(
+        (".vtp", ".pvtp", ".stl", ".ply", ".obj"), "triangles; structured meshes are drawn"
+    ),
+    **dict.fromkeys((".nc", ".nc4", ".zarr"), "open it with xarray, in Python"),
+    **dict.fromkeys((".pkl", ".pickle", ".joblib"), "a pickle can run any program, and is refused"),
+}
+#: Endings of files that list others, how, and bytes of such a list that are read.
+LISTS, MEMBER, LIST_BYTES = (
+    (".pvd", ".vtm", ".pvts", ".pvtr", ".pvti"),
+    re.compile(r'(?:file|Source)\s*=\s*"([^"]+)"'),
+    4_000_000,
 )
 #: Folders below the one that was given that are searched, and files that are listed, at most.
 FOLDER_DEPTH, MOST_FILES = 4, 500
@@ -103,10 +119,24 @@ class Library:
             FLOW_BYTES, max_count=MOST_FLOWS
         )
         self._locks: dict[str, threading.Lock] = {}
+        self._unshown: dict[str, str] = {}
         if not self.names:
             endings = " ".join(sorted(SUFFIXES))
             msg = f"{folder}: there is no file in it that can be opened; expected {endings}"
             raise FieldError(msg)
+
+    def branch(self) -> Library:
+        """Return a library of the same flows, to which a page adds others for itself."""
+        return _Branch(self)
+
+    def add(self, name: str, path: Path) -> str:
+        """Add a file; return the name under which it can be opened.
+
+        A library is shared by all pages, its branches are not.
+        """
+        name = _free(name, self.names)
+        self._named[name], self._files = _opener(path), self._files | {name}
+        return name
 
     @classmethod
     def of(cls, *flows: Any, folder: str | Path | None = None, **options: Any) -> Library:
@@ -139,9 +169,16 @@ class Library:
         """Names of all that can be opened; a folder is searched anew."""
         openers = dict(self._named)
         if self._folder is not None:
-            openers |= {name: _opener(path) for name, path in find_files(self._folder)}
+            found = find_files(self._folder)
+            openers |= {n: _opener(path) for n, path in found if not _reason(path)}
+            self._unshown = {name: why for name, path in found if (why := _reason(path))}
         self._openers = openers
         return tuple(openers)
+
+    @property
+    def unshown(self) -> Mapping[str, str]:
+        """Files that were found and cannot be shown, and why."""
+        return self._unshown
 
     def source(self, name: str) -> FlowSource:
         """Open one, or return it when it is open.
@@ -217,6 +254,59 @@ class Library:
         return flow
 
 
+class _Branch(Library):
+    """The flows of a library, whose sources and traces are shared, and some of a page's own."""
+
+    def __init__(self, shared: Library) -> None:
+        self._shared = shared
+        super().__init__({})
+
+    def _home(self, name: str) -> Library | None:
+        """Return the shared library for what is not this page's own."""
+        return None if name in self._named else self._shared
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of all that can be opened; a folder is searched anew."""
+        self._openers = dict(self._named)
+        return (*self._shared.names, *self._named)
+
+    @property
+    def unshown(self) -> Mapping[str, str]:
+        """Files that were found and cannot be shown, and why."""
+        return self._shared.unshown
+
+    def source(self, name: str) -> FlowSource:
+        """Open one, or return it when it is open."""
+        home = self._home(name)
+        return super().source(name) if home is None else home.source(name)
+
+    def is_file(self, name: str) -> bool:
+        """Whether a name is that of a file."""
+        home = self._home(name)
+        return home is None or home.is_file(name)
+
+    def look(self, name: str) -> Look:
+        """Return how far in, and on what point of the mesh, a flow is first seen."""
+        return self._shared.look(name)
+
+    def python(self, name: str) -> str | None:
+        """Return the expression that makes a flow, or ``None`` for what comes from a file."""
+        return self._shared.python(name) if name not in self._named else None
+
+    def field(self, name: str, choice: Choice) -> FlowField:
+        """Make a flow, or return it when it is at hand; nothing is traced."""
+        home = self._home(name)
+        return super().field(name, choice) if home is None else home.field(name, choice)
+
+    def trace(self, name: str, choice: Choice, field: FlowField, settings: Settings) -> TracedFlow:
+        """Trace what the first picture of a flow needs, and let it stay open."""
+        home = self._home(name)
+        if home is None:
+            return super().trace(name, choice, field, settings)
+        return home.trace(name, choice, field, settings)
+
+
 def _source_of(flow: Any, options: dict[str, Any]) -> FlowSource:
     """Take a mesh as it is where nothing is chosen about it, else the field that is meant."""
     options = {key: value for key, value in options.items() if value is not None}
@@ -257,9 +347,27 @@ def find_files(folder: Path) -> list[tuple[str, Path]]:
                 continue
             if path.is_dir() and not path.is_symlink() and depth < FOLDER_DEPTH:
                 waiting.append((path, depth + 1))
-            elif path.is_file() and path.suffix.lower() in SUFFIXES | {".bin"}:
+            elif path.is_file() and path.suffix.lower() in SUFFIXES | {".bin"} | set(UNSHOWN):
                 files.append((path.relative_to(folder).as_posix(), path))
-    return [(name, path) for name, path in files[:MOST_FILES] if not _is_solution(path)]
+    files = files[:MOST_FILES]
+    members = {member for _, path in files for member in _members(path)}
+    return [(n, path) for n, path in files if path not in members and not _is_solution(path)]
+
+
+def _reason(path: Path) -> str:
+    """Return why nothing of a file is drawn, by its ending; empty where something may be."""
+    return UNSHOWN.get(path.suffix.lower(), "")
+
+
+def _members(path: Path) -> set[Path]:
+    """Return the files that a series or a collection is made of."""
+    if path.suffix.lower() not in LISTS:
+        return set()
+    try:
+        with path.open(encoding="utf-8", errors="replace") as file:
+            return {path.parent / member for member in MEMBER.findall(file.read(LIST_BYTES))}
+    except OSError:
+        return set()
 
 
 def _is_solution(path: Path) -> bool:

@@ -22,7 +22,14 @@ from contextlib import suppress
 from typing import Any
 from urllib.parse import parse_qsl, quote, urlencode
 
-from flowtex.app.controllers.appearance import BACKGROUNDS, COMPARISONS, PLAIN
+from flowtex.app.controllers.appearance import (
+    ANOTHER_TIME,
+    BACKGROUNDS,
+    COLOUR_BY,
+    COMPARISONS,
+    PLAIN,
+    comparison,
+)
 from flowtex.app.streaming.viewport import BACKGROUNDS as THEMES
 from flowtex.camera import Camera, CameraError
 from flowtex.settings import TABLE, SettingsError
@@ -138,6 +145,12 @@ def _one_of(*choices: str) -> Callable[[str], str]:
     return _matching(pattern, " or ".join(map(repr, choices)))
 
 
+def _comparison(text: str) -> str:
+    if text.startswith(COLOUR_BY):
+        return _name(text)
+    return _one_of(*COMPARISONS, ANOTHER_TIME)(text)
+
+
 def _number(text: str) -> float:
     try:
         value = float(text)
@@ -201,12 +214,14 @@ _READ: dict[str, Callable[[str], Any]] = {
     "clim": _span,
     "theme": _one_of("dark", "light"),
     "background": _one_of(*BACKGROUNDS),
-    "split": _one_of(*COMPARISONS),
+    "split": _comparison,
+    "time_beside": _number,
     "camera": _camera,
 }
 _WRITE: dict[str, Callable[[Any], str]] = {
     "time": lambda value: repr(float(value)),
     "clock": lambda value: repr(float(value)),
+    "time_beside": lambda value: repr(float(value)),
     "clim": _span_text,
     "camera": _camera_text,
 }
@@ -234,8 +249,8 @@ def to_python(
         File to write a picture to; left out, a window is opened.
     """
     panes: list[Mapping[str, Any]] = [{}]
-    if changes := COMPARISONS.get(str(state.get("split"))):
-        panes.append(changes)
+    if (split := state.get("split") or "nothing") != "nothing":
+        panes.append(comparison(split, state.get("time_beside") or 0.0))
     window = [f"window_size={list(size)!r}"]
     window += ["off_screen=True"] if picture is not None else []
     window += ["shape=(1, 2)", "border=False"] if len(panes) > 1 else []
@@ -282,7 +297,12 @@ def _add_lines(state: Mapping[str, Any], different: Mapping[str, Any]) -> list[s
     appearance = {"scalars": False if colour == PLAIN else colour}
     if colour != PLAIN:
         appearance |= {name: state[name] for name in ("cmap", "clim") if state.get(name)}
+    if "scalars" in different:  # with a range of its own
+        appearance = {**appearance, "scalars": different["scalars"]}
+        appearance.pop("clim", None)
     settings = {**(state.get("settings") or {}), **different}
+    state = {**state, "time": settings.pop("time", state.get("time"))}
+    settings.pop("scalars", None)
     if settings.get("noise") == "image":  # which is a person's own, and not in the state
         del settings["noise"]
     changed = {k: v for k, v in settings.items() if v != TABLE[k].default}

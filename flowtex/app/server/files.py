@@ -14,7 +14,7 @@ import shutil
 import tempfile
 import time
 import weakref
-from collections.abc import Awaitable, Callable
+from collections.abc import AsyncIterable, Awaitable, Callable
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -23,18 +23,23 @@ from urllib.parse import quote
 from aiohttp import web
 
 from flowtex.app.server.security import new_secret
+from flowtex.errors import FieldError
 
-__all__ = ["Content", "Downloads", "Give", "Routes", "add_route"]
+__all__ = ["Content", "Downloads", "Give", "Routes", "Take", "add_route", "plain_name"]
 
 #: Seconds that a download waits to be fetched, and bytes of all of them together, at most.
 LIFETIME_S, DOWNLOAD_BYTES = 1800.0, 2_000_000_000
-#: Characters of a download's name, at most.
+#: Bytes of a file that is sent which are written at once.
+CHUNK_BYTES = 1 << 18
+#: Characters of a file's name, at most.
 NAME_LENGTH = 120
 
 #: What a file is: its bytes, or where they lie; its media type; and the name that it is saved
 #: under, or ``None`` for what the page uses itself.
 Content = tuple[bytes | Path, str, str | None]
 Give = Callable[[], Content | Awaitable[Content]]
+#: What takes a file: its name, which may be anything, and its bytes.
+Take = Callable[[str, AsyncIterable[bytes]], Awaitable[None]]
 
 #: Where trame keeps a session's routes: in what only the server's side sees.
 KEY = "flowtex_routes"
@@ -47,6 +52,7 @@ class Routes:
         self.token = new_secret()
         self._content: dict[str, Give] = {}
         self._families: dict[str, Callable[[str], Give]] = {}
+        self._takers: dict[str, Take] = {}
 
     @classmethod
     def of(cls, server: Any) -> Routes:
@@ -93,6 +99,14 @@ class Routes:
         self._families[stem] = content
         return f"flowtex/{self.token}/{quote(stem)}."
 
+    def take(self, name: str, taker: Take) -> str:
+        """Take files that the page sends; return the address, which gets ``?name=`` as well.
+
+        The taker raises a FieldError, which the page is told, for what is of no use.
+        """
+        self._takers[name] = taker
+        return f"flowtex/{self.token}/{quote(name)}"
+
     def withdraw(self, name: str) -> None:
         """Hand a file, or those of a stem, out no more."""
         self._content.pop(name, None)
@@ -102,6 +116,19 @@ class Routes:
         """Hand nothing out any more."""
         self._content.clear()
         self._families.clear()
+        self._takers.clear()
+
+    async def receive(self, name: str, request: web.Request) -> web.StreamResponse:
+        """Take what is sent; ``HTTPNotFound`` where nothing is taken under that name."""
+        taker = self._takers.get(name)
+        if taker is None:
+            raise web.HTTPNotFound
+        try:
+            await taker(request.query.get("name", ""), request.content.iter_chunked(CHUNK_BYTES))
+        except FieldError as error:
+            # What is left of the body is not read.
+            return web.Response(status=400, text=str(error), headers={"Connection": "close"})
+        return web.Response(text="")
 
     def _find(self, name: str) -> Give | None:
         """Return what is handed out under a name."""
@@ -147,7 +174,14 @@ def add_route(application: web.Application, find: Callable[[str], Routes | None]
             raise web.HTTPNotFound
         return await routes.answer(request.match_info["name"])
 
+    async def receiver(request: web.Request) -> web.StreamResponse:
+        routes = find(request.match_info["token"])
+        if routes is None:
+            raise web.HTTPNotFound
+        return await routes.receive(request.match_info["name"], request)
+
     application.router.add_get("/flowtex/{token}/{name}", handler)
+    application.router.add_post("/flowtex/{token}/{name}", receiver)
 
 
 class Downloads:
@@ -186,7 +220,7 @@ class Downloads:
 
     def reserve(self, name: str) -> Path:
         """Return where a file of this name can be written, in a folder of its own."""
-        return Path(tempfile.mkdtemp(dir=self.folder)) / _plain(name)
+        return Path(tempfile.mkdtemp(dir=self.folder)) / plain_name(name)
 
     def add(self, path: Path) -> str:
         """Hand out a file from :meth:`reserve`; return its address, relative to the page."""
@@ -242,7 +276,7 @@ def _size(path: Path) -> int:
     return path.stat().st_size if path.is_file() else 0
 
 
-def _plain(name: str) -> str:
+def plain_name(name: str) -> str:
     """Return a name with which no folder can be left, and which every system takes."""
     plain = "".join(c if c.isalnum() or c in " ._-" else "_" for c in name).strip(" .")
     stem, dot, suffix = plain.rpartition(".")

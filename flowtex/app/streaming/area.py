@@ -122,7 +122,7 @@ class FlowArea(AppearanceAttributes):
         at_home = self.viewport.at_home
         self.viewport.compare(changes)
         if at_home:  # a pane is half as wide as the whole view
-            self.viewport.home()
+            self.viewport.refit()
         self.stream.changed()
 
     def reset_camera(self) -> None:

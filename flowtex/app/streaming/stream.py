@@ -129,10 +129,8 @@ class FrameStream:
         if new != self._viewport.size:
             at_home = self._viewport.at_home
             self._viewport.resize(*new)
-            if not self._sized and at_home:
-                self._viewport.first_look()
-            elif at_home:
-                self._viewport.home()
+            if at_home:
+                self._viewport.refit()
             self.painter.forget()
         self._sized = True
         self.moved()

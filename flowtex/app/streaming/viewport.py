@@ -13,9 +13,10 @@ import numpy as np
 
 from flowtex._util.array_types import Bytes, Floats
 from flowtex._util.colours import colour_table
+from flowtex.app.streaming.free_part import Cover, covers_of_pane, free_part
 from flowtex.app.streaming.reprojection import plane_to_view
 from flowtex.app.streaming.window import OffscreenWindow, Rect
-from flowtex.camera import Camera
+from flowtex.camera import Camera, ViewPart
 from flowtex.field import FlowField
 from flowtex.options import SPEED, Appearance, Options
 from flowtex.plotting.handle import FlowHandle
@@ -30,8 +31,10 @@ __all__ = ["BACKGROUNDS", "GAP_PX", "Pane", "Rect", "Viewport"]
 BACKGROUNDS = {"dark": "#12161c", "light": "#eef1f4"}
 #: Pixels between two panes.
 GAP_PX = 2
-#: Zoom and focus of the whole surface.
-WHOLE: tuple[float, tuple[float, ...] | None] = (1.0, None)
+#: What may differ in a second pane besides settings.
+PANE_ARGUMENTS = ("scalars", "time")
+#: Zoom below which the surface is seen as a whole.
+WHOLE_ZOOM = 1.5
 
 
 class Pane:
@@ -79,6 +82,8 @@ class Viewport:
         The colour behind the surface.
     whole
         The camera that shows the whole surface, from which zoom counts.
+    covers
+        What lies on the whole view; surfaces are fitted to what it leaves free.
     """
 
     whole: Camera
@@ -95,8 +100,8 @@ class Viewport:
 
         self.window = OffscreenWindow(640, 400)
         self.background: Any = self.window.plotter.background_color
-        self._first = (zoom, focus)
         self._size = self.window.size
+        self.covers: tuple[Cover, ...] = ()
         self._component = FlowtexComponent(self.window.plotter)
         self._beside: dict[str, Any] = {}
         self._stop_following: Callable[[], Any] = lambda: None
@@ -105,7 +110,7 @@ class Viewport:
         self.panes: list[Pane] = [self._pane(Scene.from_options(field, first))]
         self.window.suppress_rendering()
         self.resize(*self._size)
-        self.first_look()
+        self.home(zoom=zoom, focus=focus)
 
     @property
     def differences(self) -> Mapping[str, Any]:
@@ -186,7 +191,11 @@ class Viewport:
         other = Viewport(self.field, **options)
         if self._beside:
             other.compare(self._beside)
-        other.camera = self.camera
+        if self.covers and self.at_home:  # a picture that is saved has no panels
+            other.resize(*self.size)
+            other.home(**self._look)
+        else:
+            other.camera = self.camera
         other.set_background(self.background)
         other.set_time(self.handle.time)
         other.clock = self.clock
@@ -208,7 +217,6 @@ class Viewport:
         beside, appearance = self._beside, self.scene.appearance
         if not keep_range:
             appearance = replace(appearance, clim=None)
-        self._first = WHOLE
         camera, clock, flat = self.camera, self.clock, self.flat
         times, time = self.field.times, self.handle.time
         self.compare(None)
@@ -226,21 +234,28 @@ class Viewport:
             self.compare(beside)
 
     def compare(self, changes: Mapping[str, Any] | None) -> None:
-        """Show a second pane in which some settings differ, or one pane again for ``None``.
+        """Show a second pane that differs, or one pane again for ``None``.
 
-        The panes stay as they are when a setting is unknown or out of range.
+        ``changes`` are settings, and of ``scalars`` and ``time``: what the second pane is coloured
+        by, and the time that it shows. The panes stay as they are when a setting is unknown or out
+        of range.
         """
-        settings = {**dict(self.settings), **(changes or {})}
+        changes = dict(changes or {})
+        own = {name: changes[name] for name in PANE_ARGUMENTS if name in changes}
+        settings = {**dict(self.settings), **changes}
+        for name in own:
+            del settings[name]
         Settings().update(**settings)
+        appearance = self._appearance_beside(own)
         self._stop_following()
         self._stop_following = lambda: None
         for pane in self.panes[1:]:
             pane.handle.remove(render=False)
         del self.panes[1:]
-        self._beside = dict(changes or {})
+        self._beside = changes
         if changes:
             first = self.scene
-            self.panes.append(self._pane(_like(first, self.field, settings, first.appearance)))
+            self.panes.append(self._pane(_like(first, self.field, settings, appearance)))
             ends = (self.settings.observe(self._follow), first.observe(self._follow_scene))
             self._stop_following = lambda: [end() for end in ends]
             self.set_time(self.handle.time)
@@ -256,7 +271,16 @@ class Viewport:
         """Change the appearance of the second pane as that of the first one changes."""
         if affects == "appearance":
             second = self.panes[1].handle.scene
-            second.appearance = replace(self.scene.appearance, image=second.appearance.image)
+            appearance = self._appearance_beside(self._beside)
+            if "scalars" in self._beside:
+                appearance = replace(appearance, clim=second.appearance.clim)
+            second.appearance = replace(appearance, image=second.appearance.image)
+
+    def _appearance_beside(self, changes: Mapping[str, Any]) -> Appearance:
+        """Appearance of a second pane; a range is that of one scalar."""
+        if "scalars" not in changes:
+            return self.scene.appearance
+        return replace(self.scene.appearance, scalars=changes["scalars"], clim=None)
 
     def lay_image(self, image: Any) -> None:
         """Lay an image on the surface in place of the noise, except where panes differ in noise.
@@ -276,9 +300,9 @@ class Viewport:
         """Names of what the surface can be coloured by."""
         return tuple(dict.fromkeys(("speed", *self.field.scalars)))
 
-    def colour_stops(self, count: int = 17) -> list[str]:
-        """Mean colours of the picture along the bar, from low to high, as ``#rrggbb``."""
-        table = mean_colours(colour_table(self.scene.appearance.cmap), self.settings)
+    def colour_stops(self, scene: Scene, count: int = 17) -> list[str]:
+        """Mean colours of a pane along its bar, from low to high, as ``#rrggbb``."""
+        table = mean_colours(colour_table(scene.appearance.cmap), scene.settings)
         stops = table[np.linspace(0, len(table) - 1, count).round().astype(int)]
         return ["#" + bytes(colour[:3]).hex() for colour in stops]
 
@@ -292,8 +316,20 @@ class Viewport:
 
     def set_time(self, time: float) -> None:
         """Show another time of a field that varies in time."""
-        for pane in self.panes:
-            pane.handle.time = time
+        self.handle.time = time
+        for pane in self.panes[1:]:
+            pane.handle.time = self.time_beside
+
+    @property
+    def time_beside(self) -> float:
+        """Time of the second pane: its own where that is what differs."""
+        first, last = self.field.times[[0, -1]]
+        return float(np.clip(self._beside.get("time", self.handle.time), first, last))
+
+    @time_beside.setter
+    def time_beside(self, time: float) -> None:
+        self._beside["time"] = time
+        self.set_time(self.handle.time)
 
     def trace(self) -> None:
         """Trace what the time that is shown needs, so that drawing need not wait for it."""
@@ -334,42 +370,40 @@ class Viewport:
         self._size = (width, height)
         self.window.size = self.pane_size
 
-    def home(self, zoom: float = 1.0, focus: tuple[float, ...] | None = None) -> None:
-        """Look at the whole surface, or closer at a point of it."""
-        surface, aspect = self.handle.scene.whole.surface, self.aspect
-        self.whole = self._home = Camera.fit(surface, aspect)
-        near = zoom != 1.0 or focus is not None
-        self.camera = Camera.fit(surface, aspect, zoom=zoom, focus=focus) if near else self.whole
+    @property
+    def free(self) -> ViewPart:
+        """The part of a pane that :attr:`covers` leave free."""
+        surface = self.handle.scene.whole.surface
+        width, height = surface.plane_size if self.flat else (1.0, 1.0)
+        covers = covers_of_pane(self.covers, len(self.panes))
+        return free_part(covers, width / height / self.aspect)
+
+    def home(self, **look: Any) -> None:
+        """Look at the whole surface; ``look`` are arguments of :meth:`Camera.fit`."""
+        surface, free = self.handle.scene.whole.surface, self.free
+        from_side = {name: look[name] for name in ("toward", "up") if name in look}
+        self.whole = Camera.fit(surface, self.aspect, free=free, **from_side)
+        self._home = Camera.fit(surface, self.aspect, free=free, **look)
+        self._look, self.camera = look, self._home
+
+    def refit(self) -> None:
+        """Look again as :meth:`home` was asked to, in a view of another size."""
+        self.home(**self._look)
 
     @property
     def at_home(self) -> bool:
         """Whether the camera stands where :meth:`home` has put it."""
         return self.camera == self._home
 
-    def first_look(self) -> None:
-        """Look at what was asked for when the viewport was made."""
-        self.home(*self._first)
-        if self._first[0] == 1.0:
-            self._home = self.camera
-
-    def look(self, camera: Camera) -> None:
-        """Look from a camera, and not from where was asked for when the viewport was made."""
-        self._first = WHOLE
-        self.camera = camera
-
-    def look_from(self, toward: tuple[float, float, float], up: tuple[float, float, float]) -> None:
-        """Look at the whole of a curved surface from a side."""
-        self.home()
-        surface = self.handle.scene.whole.surface
-        self.camera = self.whole = Camera.fit(surface, self.aspect, toward=toward, up=up)
-
     def pan(self, dx: float, dy: float) -> None:
         """Move what is seen by a part of the view."""
         self.camera = self.camera.pan(dx, dy, self.aspect)
 
     def rotate(self, dx: float, dy: float) -> None:
-        """Go around the focal point, as a drag by a part of the view asks."""
-        self.camera = self.camera.rotate(dx, dy, self.aspect)
+        """Go around what is seen, as a drag by a part of the view asks."""
+        # The whole surface need not lie in the middle of the view, but turns about its own.
+        pivot = self.handle.scene.whole.surface.center if self.zoom < WHOLE_ZOOM else None
+        self.camera = self.camera.rotate(dx, dy, self.aspect, pivot)
 
     def zoom_by(self, factor: float, x: float = 0.0, y: float = 0.0) -> None:
         """Zoom in by a factor; the point at (x, y) of the view stays where it is."""

@@ -9,7 +9,7 @@ from typing import Any
 from trame.widgets import html
 from trame.widgets import vuetify3 as v3
 
-from flowtex.settings import NEEDS, Setting
+from flowtex.settings import NEEDS, STEADINESS, Setting
 
 __all__ = [
     "ARIA",
@@ -27,39 +27,51 @@ __all__ = [
 #: More choices than this are a menu.
 MOST_BUTTONS = 3
 #: Attributes that trame's widgets do not know by themselves.
-ARIA = [("aria_label", "aria-label"), ("aria_expanded", "aria-expanded")]
-DATA = [("data_setting", "data-setting")]
+ARIA = [
+    ("aria_label", "aria-label"),
+    ("aria_expanded", "aria-expanded"),
+    ("data_hint", "data-hint"),
+    ("data_side", "data-side"),
+]
+DATA = [*ARIA, ("data_setting", "data-setting")]
 
 
 def control(setting: Setting, key: str) -> None:
     """Put a control for a setting, with the state of this key, into the widget that is open."""
     prefix = key.removesuffix(setting.name)
-    needs = [
-        f"{prefix}{name} {sign}= {_literal(to)}" for name, sign, to in NEEDS.get(setting.name, ())
-    ]
-    idle = f"!({' || '.join(needs)})" if needs else "false"
-    with row(
-        setting.name,
-        setting.text,
-        classes=(f"{{ 'flowtex-row': true, 'flowtex-idle': {idle} }}",),
-    ):
+    needs = " || ".join(
+        f"{prefix}{name} {sign} {_literal(to)}" for name, sign, to in NEEDS.get(setting.name, ())
+    )
+    idle = [(f"!({needs})", setting.condition)] if needs else []
+    if setting.name in STEADINESS:
+        steady = prefix.removesuffix("set_") + "steady"
+        is_steady = STEADINESS[setting.name]
+        reason = f"Only for a flow that {'does not vary' if is_steady else 'varies'} in time."
+        idle.insert(0, (f"{steady} !== {_literal(is_steady)}", reason))
+    with row(setting.name, setting.text, idle):
         _widget(setting)(setting, key)
 
 
-def row(name: str, text: str, **attributes: Any) -> Any:
-    """Return a row of the panel, with a hint, to be filled."""
-    attributes.setdefault("classes", "flowtex-row")
-    line = html.Div(data_setting=name, __properties=DATA, **attributes)
-    with line:
-        hint(text)
-    return line
+def row(name: str, text: str, idle: Sequence[tuple[str, str]] = (), **attributes: Any) -> Any:
+    """Return a row of the panel, with a hint, to be filled.
 
-
-def hint(text: str, location: str = "start") -> None:
-    """Say what the widget that is open is for, when the pointer rests on it."""
-    v3.VTooltip(
-        text=text, activator="parent", location=location, max_width=240, open_delay=400, offset=18
+    ``idle`` has conditions in JavaScript under which the row makes no difference, and why.
+    """
+    reasons = "".join(f"{condition} ? {_literal(why + ' ')} : " for condition, why in idle)
+    dim = " || ".join(condition for condition, _ in idle) or "false"
+    return html.Div(
+        data_setting=name,
+        data_hint=(f"({reasons}'') + {_literal(text)}",),
+        data_side="start",
+        classes=(f"{{ 'flowtex-row': true, 'flowtex-idle': {dim} }}",),
+        __properties=DATA,
+        **attributes,
     )
+
+
+def hint(text: str, side: str) -> dict[str, str]:
+    """Return the attributes of a widget that says what it is for, when the pointer rests on it."""
+    return {"data_hint": text, "data_side": side}
 
 
 def select(name: str, key: str, items: Any, **attributes: Any) -> None:
@@ -88,7 +100,9 @@ def _widget(setting: Setting) -> Callable[[Setting, str], None]:
 
 def _literal(value: Any) -> str:
     """Return a value as JavaScript has it."""
-    return json.dumps(value).replace('"', "'")
+    if isinstance(value, str):
+        return "'" + value.replace("\\", "\\\\").replace("'", "\\'") + "'"
+    return json.dumps(value)
 
 
 def _name(setting: Setting) -> None:
@@ -126,7 +140,7 @@ def buttons(name: str, key: str, choices: Sequence[str]) -> None:
             v3.VBtn(choice, value=choice, size="small")
 
 
-def toggle(name: str, key: str) -> Any:
+def toggle(name: str, key: str, **attributes: Any) -> Any:
     """Return a group of buttons of which one is pressed, to be filled."""
     return v3.VBtnToggle(
         v_model=(key,),
@@ -137,6 +151,7 @@ def toggle(name: str, key: str) -> Any:
         classes="flowtex-toggle",
         aria_label=name,
         __properties=ARIA,
+        **attributes,
     )
 
 

@@ -11,18 +11,20 @@ from trame.widgets import vuetify3 as v3
 from trame_client.widgets.core import AbstractElement
 
 from flowtex.app.controllers import Controllers
+from flowtex.app.controllers.appearance import ANOTHER_TIME
 from flowtex.app.controllers.camera_controls import KEYS
 from flowtex.app.controllers.playback import PACES
+from flowtex.app.server.uploads import UPLOAD_SUFFIXES
 from flowtex.app.ui.controls import ARIA, hint, select, slider, toggle
 from flowtex.app.ui.panel import build_panel, panel_shown
 
 __all__ = ["THEMES", "build_page"]
 
-#: Hints are dark in both.
-HINT = {"surface-variant": "#2a3440", "on-surface-variant": "#e8edf2"}
+#: What complains is dark in both.
+COMPLAINT = {"surface-variant": "#2a3440", "on-surface-variant": "#e8edf2"}
 THEMES = {
-    "dark": {"dark": True, "colors": {"primary": "#4fd1c5", "surface": "#171c23", **HINT}},
-    "light": {"dark": False, "colors": {"primary": "#0f766e", "surface": "#ffffff", **HINT}},
+    "dark": {"dark": True, "colors": {"primary": "#4fd1c5", "surface": "#171c23", **COMPLAINT}},
+    "light": {"dark": False, "colors": {"primary": "#0f766e", "surface": "#ffffff", **COMPLAINT}},
 }
 
 #: Attributes that tell the page's state to whoever watches it, such as a test.
@@ -64,6 +66,9 @@ def build_page(controllers: Controllers) -> Any:
             over = (key("over"),)
             PageElement("path", ["over"], over=over, classes="flowtex-path flowtex-path-lines")
             _keys(controllers)
+            PageElement(
+                "covers", [], ["change"], change=(controllers.camera.take_covers, "[$event]")
+            )
             _pane_labels(controllers)
             with html.Div(classes="flowtex-left"):
                 _title(controllers)
@@ -79,6 +84,7 @@ def build_page(controllers: Controllers) -> Any:
             _tip(controllers)
             _help_text(controllers)
             _complaint(controllers)
+            PageElement("hints", [])
     return layout
 
 
@@ -133,7 +139,9 @@ def _title(controllers: Controllers) -> None:
     key = controllers.context.state.key
     with html.Div(classes="flowtex-title flowtex-glass"):
         html.Div("flowtex", classes="flowtex-mark")
-        with html.Div(classes="flowtex-name", v_if=(f"{key('files')}.length < 2",)):
+        with html.Div(
+            classes="flowtex-name", v_if=(f"{key('files')}.length + {key('unshown')}.length < 2",)
+        ):
             html.Span(f"{{{{ {key('name')} }}}}")
         with html.Button(
             classes="flowtex-name flowtex-open",
@@ -145,8 +153,23 @@ def _title(controllers: Controllers) -> None:
             html.Span(f"{{{{ {key('name')} }}}}")
             v3.VIcon("mdi-chevron-down", size=18)
             current = (f"item === {key('file')}",)
-            _menu(key("files"), f"{key('file')} = item", active=current, max_height=360)
+            _menu(
+                key("files"),
+                f"{key('file')} = item",
+                active=current,
+                max_height=360,
+                unshown=key("unshown"),
+            )
         html.Div(f"{{{{ {key('about')} }}}}", classes="flowtex-about")
+        PageElement(
+            "upload",
+            ["address", "accept"],
+            ["problem", "busy"],
+            address=(key("upload"),),
+            accept=",".join(UPLOAD_SUFFIXES),
+            problem=f"{key('problem')} = $event",
+            busy=f"{key('busy')} = $event",
+        )
 
 
 def _planes(controllers: Controllers) -> None:
@@ -158,14 +181,18 @@ def _planes(controllers: Controllers) -> None:
             ("block", "blocks", "Which of the grids in the file is drawn."),
             ("vectors", "vectors_choices", "Which array is taken for the velocity."),
         ):
-            with html.Div(classes="flowtex-row", v_if=(f"{key(choices)}.length",)):
-                hint(text, "end")
+            with html.Div(
+                classes="flowtex-row",
+                v_if=(f"{key(choices)}.length",),
+                __properties=ARIA,
+                **hint(text, "end"),
+            ):
                 select("Grid" if name == "block" else "Velocity", key(name), (key(choices),))
         with html.Div(classes="flowtex-stack", v_if=(f"{key('axes')}.length",)):
             with html.Div(classes="flowtex-line"):
                 html.Span("Plane", classes="flowtex-label")
-                with toggle("Axis across the plane", key("axis")):
-                    hint("Draw planes of constant i, j or k.", "end")
+                across = hint("Draw planes of constant i, j or k.", "end")
+                with toggle("Axis across the plane", key("axis"), **across):
                     one = f"one in {key('axes')}"
                     v3.VBtn("{{ one }}", v_for=one, key="one", value=("one",), size="small")
                 html.Span(
@@ -175,9 +202,18 @@ def _planes(controllers: Controllers) -> None:
 
 
 def _menu(
-    items: str, click: Any, *, title: str = "item", max_height: Any = None, **attributes: Any
+    items: str,
+    click: Any,
+    *,
+    title: str = "item",
+    max_height: Any = None,
+    unshown: str = "[]",
+    **attributes: Any,
 ) -> None:
-    """Open a list of items at the widget that is open; ``item`` is the one that is clicked."""
+    """Open a list of items at the widget that is open; ``item`` is the one that is clicked.
+
+    ``unshown`` are those that cannot be chosen, with ``name`` and ``why``.
+    """
     height = {} if max_height is None else {"max_height": max_height}
     with (
         v3.VMenu(activator="parent", **height),
@@ -186,6 +222,14 @@ def _menu(
         v3.VListItem(
             v_for=f"item in {items}", key="item", title=(title,), click=click, **attributes
         )
+        if unshown != "[]":
+            v3.VListItem(
+                v_for=f"file in {unshown}",
+                key="file.name",
+                title=("file.name",),
+                subtitle=("file.why",),
+                disabled=True,
+            )
 
 
 def _button(icon: str, text: str, click: Any, **attributes: Any) -> Any:
@@ -196,11 +240,11 @@ def _button(icon: str, text: str, click: Any, **attributes: Any) -> Any:
         click=click,
         aria_label=text,
         __properties=ARIA,
+        **hint(text, "bottom"),
         **attributes,
     )
     with button:
         v3.VIcon(icon, size=20)
-        v3.VTooltip(text=text, activator="parent", location="bottom", open_delay=400)
     return button
 
 
@@ -231,13 +275,17 @@ def _bar(controllers: Controllers) -> None:
         with html.Div(classes="flowtex-scale", v_show=(f"{scale}.width",)):
             html.Span(f"{{{{ {scale}.text }}}}")
             html.Div(classes="flowtex-ruler", style=(f"{{ width: {scale}.width + 'vw' }}",))
-        with html.Div(classes="flowtex-bar flowtex-glass", v_show=(f"{bar}.name",)):
-            html.Div(f"{{{{ {bar}.name }}}}", classes="flowtex-label")
-            ramp = f"{{ background: 'linear-gradient(to right, ' + {bar}.stops.join(',') + ')' }}"
-            html.Div(classes="flowtex-ramp", style=(ramp,))
-            with html.Div(classes="flowtex-line"):
-                html.Span(f"{{{{ {bar}.low }}}}", classes="flowtex-value")
-                html.Span(f"{{{{ {bar}.high }}}}", classes="flowtex-value")
+        _colour_bar(bar, v_show=(f"{bar}.name",))
+
+
+def _colour_bar(bar: str, **attributes: Any) -> None:
+    with html.Div(classes="flowtex-bar flowtex-glass", **attributes):
+        html.Div(f"{{{{ {bar}.name }}}}", classes="flowtex-label")
+        ramp = f"{{ background: 'linear-gradient(to right, ' + {bar}.stops.join(',') + ')' }}"
+        html.Div(classes="flowtex-ramp", style=(ramp,))
+        with html.Div(classes="flowtex-line"):
+            html.Span(f"{{{{ {bar}.low }}}}", classes="flowtex-value")
+            html.Span(f"{{{{ {bar}.high }}}}", classes="flowtex-value")
 
 
 def _player(controllers: Controllers) -> None:
@@ -275,17 +323,23 @@ def _player(controllers: Controllers) -> None:
             classes="flowtex-link flowtex-pace",
             aria_label="How fast time goes by",
             __properties=ARIA,
+            **hint("How fast time goes by.", "top"),
         ):
-            hint("How fast time goes by.", "top")
             _menu(str(list(PACES)), f"{key('pace')} = item", title="item + '×'")
 
 
 def _pane_labels(controllers: Controllers) -> None:
     """Say in which of two panes what is shown."""
-    compare = controllers.context.state.key("compare")
+    names = ("compare", "bar_beside", "moment", "time_beside")
+    compare, bar, moment, time = map(controllers.context.state.key, names)
+    other_time = f"{compare} === '{ANOTHER_TIME}'"
+    first = f"{other_time} ? {moment} : 'as set'"
+    second = f"{other_time} ? 't = ' + {time}.toFixed(2) : {compare}"
     with html.Div(classes="flowtex-panes", v_if=(f"{compare} !== 'nothing'",)):
-        html.Span("as set", classes="flowtex-chip")
-        html.Span(f"{{{{ {compare} }}}}", classes="flowtex-chip")
+        html.Span(f"{{{{ {first} }}}}", classes="flowtex-chip")
+        with html.Div(classes="flowtex-beside"):
+            _colour_bar(bar, v_if=(bar,))
+            html.Span(f"{{{{ {second} }}}}", classes="flowtex-chip")
 
 
 def _card(controllers: Controllers) -> None:
@@ -297,8 +351,8 @@ def _card(controllers: Controllers) -> None:
             html.Button("Close", click=controllers.point_info.close_card, classes="flowtex-link")
         over = (controllers.context.state.key("over"),)
         PageElement("inset", ["over"], over=over, classes="flowtex-inset flowtex-path-lines")
-        with html.Div(classes="flowtex-bars"):
-            hint("Each bar is a sample: its height the weight, its grey the noise it meets.", "end")
+        samples = "Each bar is a sample: its height the weight, its grey the noise it meets."
+        with html.Div(classes="flowtex-bars", __properties=ARIA, **hint(samples, "end")):
             html.I(
                 v_for=f"bar in {name}.bars",
                 style=("{ height: 100 * bar.weight + '%', background: bar.grey }",),

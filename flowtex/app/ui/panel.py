@@ -10,7 +10,7 @@ from trame.widgets import vuetify3 as v3
 
 from flowtex._util.colours import CMAPS
 from flowtex.app.controllers import Controllers
-from flowtex.app.controllers.appearance import BACKGROUNDS
+from flowtex.app.controllers.appearance import ANOTHER_TIME, BACKGROUNDS, PLAIN
 from flowtex.app.controllers.browser import RENDERERS
 from flowtex.app.controllers.sharing import FORMATS
 from flowtex.app.ui.controls import (
@@ -93,9 +93,12 @@ def _image(controllers: Controllers) -> None:
 
 def _colours(controllers: Controllers) -> None:
     key = controllers.context.state.key
-    with row("cmap", "From low to high: even steps of lightness first, then maps with a middle."):
+    plain = [(f"{key('colour')} === '{PLAIN}'", "Only where the surface is coloured by something.")]
+    with row(
+        "cmap", "From low to high: even steps of lightness first, then maps with a middle.", plain
+    ):
         select("Colour map", key("cmap"), (f"{list(CMAPS)}",))
-    with row("range", "Values at the ends of the colour map."):
+    with row("range", "Values at the ends of the colour map.", plain):
         html.Span("Range", classes="flowtex-label")
         with html.Span(classes="flowtex-range"):
             number("Lowest value", key("low"))
@@ -103,7 +106,7 @@ def _colours(controllers: Controllers) -> None:
             choose = controllers.appearance.choose_range
             html.Button("auto", click=choose, classes="flowtex-link")
             html.Button("robust", click=(choose, f"['{ROBUST}']"), classes="flowtex-link")
-    with row("log_scale", option_text(Appearance, "log_scale")):
+    with row("log_scale", option_text(Appearance, "log_scale"), plain):
         html.Span("Log scale", classes="flowtex-label")
         switch("Log scale", key("log_scale"))
     with row("opacity", option_text(Appearance, "opacity")):
@@ -117,6 +120,13 @@ def _view(controllers: Controllers) -> None:
     key = controllers.context.state.key
     with row("compare", "A second view beside the first, which moves with it."):
         select("Beside it", key("compare"), (key("comparisons"),))
+    with row(
+        "time_beside",
+        "The time in the second view.",
+        v_if=(f"{key('compare')} === '{ANOTHER_TIME}'",),
+    ):
+        html.Span("Time beside", classes="flowtex-label")
+        slider("Time beside", key("time_beside"), (key("first"),), (key("last"),), (key("tick"),))
     with row("rendering", "The server sends pictures; the browser draws with its own graphics."):
         buttons("Drawn by", key("rendering"), RENDERERS)
 

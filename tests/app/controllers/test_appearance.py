@@ -49,6 +49,42 @@ def test_colours_and_their_bar_change(flat: FlowApp) -> None:
     assert difference(picture(flat), speed) == 0
 
 
+def test_a_legend_tells_a_residue_as_zero(flat: FlowApp) -> None:
+    flat.area.clim = (1.94e-7, 10.3)
+    bar = flat.state.get("bar")
+    assert (bar["low"], bar["high"]) == ("0", "10.3") and flat.state.get("low") == 0
+    flat.area.clim = None
+
+
+def test_two_arrays_and_two_times_stand_beside_each_other(series: FlowApp, flat: FlowApp) -> None:
+    flat.state.set(compare="Colour by: height")
+    flat.controllers.appearance.take_comparison()
+    first, second = (pane.handle.scene for pane in flat.viewport.panes)
+    assert (first.scalar_name, second.scalar_name) == ("speed", "height")
+    flat.area.clim, flat.area.cmap = (0.0, 1.0), "magma"
+    assert second.appearance.cmap == "magma" and second.scalar_limits == (0.0, 3.0)
+    assert flat.state.get("bar")["high"] == "1" and flat.state.get("bar_beside")["high"] == "3"
+    flat.area.clim, flat.area.cmap = None, "viridis"
+    flat.controllers.appearance.end_comparison()
+    assert flat.state.get("bar_beside") is None
+
+    appearance, viewport = series.controllers.appearance, series.viewport
+    now = viewport.handle.time
+    series.state.set(compare="Another time")
+    appearance.take_comparison()
+    assert [pane.handle.time for pane in viewport.panes] == [now, 0.0]
+    series.state.set(time_beside=1.5)
+    appearance.take_time_beside()
+    viewport.set_time(2.0)
+    assert [pane.handle.time for pane in viewport.panes] == [2.0, 1.5]
+    assert appearance.describe()["time_beside"] == 1.5
+    series.state.set(time_beside="late")
+    appearance.take_time_beside()
+    assert series.state.get("time_beside") == 1.5
+    appearance.end_comparison()
+    viewport.set_time(now)
+
+
 def test_a_range_of_another_plane_does_not_stay(series: FlowApp) -> None:
     slow = small(steps=4)
     faster = flowtex.FlowField.from_arrays(slow.points, 3 * slow.velocity, times=slow.times)

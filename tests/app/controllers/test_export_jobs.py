@@ -40,7 +40,7 @@ def scene(request: pytest.FixtureRequest) -> Iterator[Viewport]:
         patch(curved=request.param == "bent"), zoom=2.0, samples=9, scalars="height", cmap="magma"
     )
     made.resize(240, 160)
-    made.first_look()
+    made.refit()
     made.pan(0.1, -0.2)
     made.set_background("light")
     yield made

@@ -15,7 +15,7 @@ from strategies import links, property_test, setting_values
 pytest.importorskip("trame_rca")
 
 import flowtex
-from flowtex.app.controllers.appearance import COMPARISONS
+from flowtex.app.controllers.appearance import COMPARISONS, comparison
 from flowtex.app.controllers.serialization import DEFAULTS, from_link, to_link, to_python
 from flowtex.app.streaming.viewport import Viewport
 from flowtex.settings import TABLE, SettingsError
@@ -40,7 +40,8 @@ STATE: dict[str, Any] = {
     "clim": (-1e-20, 1e20 / 3),
     "theme": "light",
     "background": "black",
-    "split": "the paper's kernel",
+    "split": "Colour by: p & q",
+    "time_beside": 0.1,
     "camera": CAMERA,
     "settings": {"lod": False, "samples": 25, "grain": 1 / 3, "kernel": "ramp", "speed": 1e7},
 }
@@ -173,7 +174,7 @@ def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-@pytest.mark.parametrize("split", ["nothing", "grain fixed on the surface"])
+@pytest.mark.parametrize("split", ["nothing", "Fixed grain: on", "Colour by: speed"])
 def test_the_python_lines_draw_the_same_picture(
     file: Path, monkeypatch: pytest.MonkeyPatch, split: str, opengl: object
 ) -> None:
@@ -181,10 +182,10 @@ def test_the_python_lines_draw_the_same_picture(
     field = flowtex.FlowField.from_file(file.name)
     changed: dict[str, Any] = {"samples": 15, "seed": 3, "motion": "speed"}
     scene = Viewport(field, zoom=3.0, scalars="vorticity", cmap="magma", clim=(-1, 2.0), **changed)
-    scene.compare(COMPARISONS[split] or None)
+    scene.compare(comparison(split, 0.0) or None)
     count = len(scene.panes)
     scene.resize(count * 160 + 2 * (count - 1), 120)
-    scene.first_look()
+    scene.refit()
     scene.clock = 0.7
     scene.set_background("light")
     state = {

@@ -34,7 +34,34 @@ emit}){let{h,ref,watch,onMounted,onBeforeUnmount}=vue(),place=ref(null),view=new
 value&&void view.begin(place.value)),onBeforeUnmount(()=>view.dispose());let follow=name=>watch(()=>props[name],()=>view.
 take(name));PROPS.forEach(follow);let sendHover=slowly(at=>emit("hover",at)),onPointermove=event=>{if(!place.value)return;
 let{x,y}=placeIn(place.value,event);sendHover(event.buttons?null:[x,y])},onPointerleave=()=>sendHover(null);return()=>h(
-"div",{ref:place,onPointermove,onPointerleave})}};var COMMANDS={...CAMERA_KEYS,d:"detail",".":"next",",":"previous"},TOGGLES={[PLAY_KEY]:"play",[CLOSE_KEY]:"close",t:"the\
+"div",{ref:place,onPointermove,onPointerleave})}};var PANELS=".flowtex-title, .flowtex-buttons, .flowtex-panel, .flowtex-corner, .flowtex-player",CORNER_PX=200,GAP_PX=4;function coverOf(panel,whole){
+let{left,top,right,bottom,width}=panel.getBoundingClientRect();if(!width)return null;let end=panel.matches(".flowtex-cor\
+ner")?Math.min(right,left+CORNER_PX):right,foot=panel.matches(".flowtex-panel")?whole.bottom:bottom,share=(edge,start,size)=>Number(
+clamp((edge-start)/size,0,1).toFixed(4));return[share(left-GAP_PX,whole.left,whole.width),share(top-GAP_PX,whole.top,whole.
+height),share(end+GAP_PX,whole.left,whole.width),share(foot+GAP_PX,whole.top,whole.height)]}var covers={name:"flowtex-co\
+vers",emits:["change"],setup(_,{emit}){let{h,ref,onMounted,onBeforeUnmount}=vue(),place=ref(null),last="",look=()=>{let page=place.
+value?.parentElement;if(!page?.clientWidth||!page.clientHeight)return;let whole=page.getBoundingClientRect(),player=page.
+querySelector(".flowtex-player")?.getBoundingClientRect();player&&page.style.setProperty("--foot",`${whole.bottom-player.
+top}px`);let present=[...page.querySelectorAll(PANELS)].map(panel=>coverOf(panel,whole)).filter(cover=>cover!==null);JSON.
+stringify(present)!==last&&(last=JSON.stringify(present),emit("change",present))},watcher=new ResizeObserver(look);return onMounted(
+()=>{let page=place.value?.parentElement;if(page)for(let element of[page,...page.querySelectorAll(PANELS)])watcher.observe(
+element)}),onBeforeUnmount(()=>watcher.disconnect()),()=>h("div",{ref:place,hidden:!0})}};var DELAY_MS=400,GAP_PX2=10;function put(box,owner){let at=owner.getBoundingClientRect(),{offsetWidth:width,offsetHeight:height}=box,
+middle=[at.left+(at.width-width)/2,at.top+(at.height-height)/2],below=[middle[0],at.bottom+GAP_PX2],above=[middle[0],at.
+top-height-GAP_PX2],places={start:[at.left-width-2*GAP_PX2,middle[1]],end:[at.right+2*GAP_PX2,middle[1]],top:above},[left,
+top]=places[owner.dataset.side??""]??below;(left<0||left+width>innerWidth)&&([left,top]=below),top+height>innerHeight&&([
+left,top]=above),box.style.left=`${clamp(left,4,innerWidth-width-4)}px`,box.style.top=`${Math.max(top,4)}px`}var Hint=class{box;owner=null;timer=0;byKeyboard=!1;constructor(box){
+this.box=box}show(owner){this.box.textContent=owner.dataset.hint??"",this.box.hidden=!this.box.textContent,put(this.box,
+owner)}hide=event=>{event&&(this.byKeyboard=event.type==="keydown"),clearTimeout(this.timer),this.box.hidden=!0};leave=()=>{
+this.hide(),this.owner=null};take(target,delay){let owner=target instanceof Element?target.closest("[data-hint]"):null;owner===
+this.owner&&owner||(this.leave(),this.owner=owner,owner&&(this.timer=window.setTimeout(()=>this.show(owner),delay)))}point=event=>{
+event.pointerType!=="touch"&&this.take(event.target,DELAY_MS)};focus=event=>{this.byKeyboard&&this.take(event.target,0)}},
+hints={name:"flowtex-hints",setup(){let{h,ref,onMounted,onBeforeUnmount}=vue(),place=ref(null),ended=new AbortController;
+return onMounted(()=>{if(!place.value)return;let hint=new Hint(place.value),options={signal:ended.signal,capture:!0};window.
+addEventListener("pointerover",hint.point,options),window.addEventListener("focusin",hint.focus,options);for(let name of[
+"focusout","blur"])window.addEventListener(name,hint.leave,options);for(let name of["pointerdown","keydown","wheel","scr\
+oll"])window.addEventListener(name,hint.hide,options);document.documentElement.addEventListener("pointerleave",hint.leave,
+{signal:ended.signal})}),onBeforeUnmount(()=>ended.abort()),()=>h("div",{ref:place,role:"tooltip",class:"flowtex-tooltip",
+hidden:!0})}};var COMMANDS={...CAMERA_KEYS,d:"detail",".":"next",",":"previous"},TOGGLES={[PLAY_KEY]:"play",[CLOSE_KEY]:"close",t:"the\
 me","?":"help"},OWNERS="input, textarea, select, [contenteditable], [role=slider], .v-overlay--active";function press(event,emit){
 let{target,key}=event,isClose=key===CLOSE_KEY;if(!hasModifier(event)&&!(!isClose&&target instanceof Element&&target.closest(
 OWNERS))&&!(key===PLAY_KEY&&target instanceof HTMLButtonElement)){if(key===FULLSCREEN_KEY)toggleFullscreen(document.documentElement);else if(key in
@@ -71,8 +98,20 @@ dots=samples.map(({weight,grey},n)=>{let[cx,cy]=centres[n],[nx,ny]=centres[n>0?n
 .75*Math.hypot(nx-cx,ny-cy),DOT.least,DOT.most);return circle([cx,cy],most*(.35+.65*weight),{fill:grey})});point&&dots.push(
 circle(mapping(point),POINT_RADIUS2,{class:"point"}));let{width,height}=INSET;return h("svg",{viewBox:`0 0 ${width} ${height}`,
 width,height},[...lines,...dots])}var inset={name:"flowtex-inset",props:["over"],setup(props){return()=>vue().h("div",props.
-over?.samples.length?[enlarged(props.over)]:[])}};function linked(hash){let folder=new URL(".",document.baseURI),secret=sessionStorage.getItem(`flowtex ${folder.pathname}\
+over?.samples.length?[enlarged(props.over)]:[])}};async function send(file,address){let query=new URLSearchParams({name:file.name});try{let answer=await fetch(`${address}\
+?${query.toString()}`,{method:"POST",body:file});return answer.ok?"":await answer.text()}catch{return`${file.name}: coul\
+d not be sent`}}var upload={name:"flowtex-upload",props:["address","accept"],emits:["problem","busy"],setup(props,{emit}){
+let{h,ref,onMounted,onBeforeUnmount}=vue(),isOver=ref(!1),input=ref(null),ended=new AbortController,take=async files=>{for(let file of files??
+[]){emit("busy",`Sending ${file.name}`);let problem=await send(file,props.address);emit("busy",""),problem&&emit("proble\
+m",problem)}},hasFiles=({dataTransfer})=>dataTransfer?.types.includes("Files")??!1,over=event=>{hasFiles(event)&&(event.
+preventDefault(),isOver.value=!0)},leave=event=>{event.relatedTarget||(isOver.value=!1)},drop=event=>{isOver.value=!1,hasFiles(
+event)&&(event.preventDefault(),take(event.dataTransfer?.files))};onMounted(()=>{let options={signal:ended.signal};window.
+addEventListener("dragover",over,options),window.addEventListener("dragleave",leave,options),window.addEventListener("dr\
+op",drop,options)}),onBeforeUnmount(()=>ended.abort());let change=()=>{take(input.value?.files).then(()=>input.value&&(input.
+value.value=""))},choose={ref:input,type:"file",accept:props.accept,onChange:change,hidden:!0};return()=>h("div",{class:"\
+flowtex-upload"},[h("input",{...choose,"aria-label":"A file of yours"}),h("button",{class:"flowtex-link",onClick:()=>input.
+value?.click()},"Open a file of yours"),h("div",{class:"flowtex-drop",hidden:!isOver.value},`Drop it here: ${props.accept}`)])}};function linked(hash){let folder=new URL(".",document.baseURI),secret=sessionStorage.getItem(`flowtex ${folder.pathname}\
  secret`);return secret&&(folder.search=new URLSearchParams({secret}).toString()),folder.href+hash}Object.assign(window,
-{flowtex_page:{install(app){for(let component of[keys,path,inset,browser])app.component(component.name,component);Object.
-assign(app.config.globalProperties,{flowtex_fullscreen:()=>toggleFullscreen(document.documentElement),flowtex_address:linked,
-flowtex_copy:text=>navigator.clipboard?.writeText(text)})}}});})();
+{flowtex_page:{install(app){for(let component of[browser,covers,hints,inset,keys,path,upload])app.component(component.name,
+component);Object.assign(app.config.globalProperties,{flowtex_fullscreen:()=>toggleFullscreen(document.documentElement),
+flowtex_address:linked,flowtex_copy:text=>navigator.clipboard?.writeText(text)})}}});})();

@@ -1,0 +1,52 @@
+"""What a page may open: which files of a folder are listed, and those that it brings itself."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+import pyvista as pv
+from small_pages import small
+
+from flowtex import examples
+from flowtex.app import Choice, Library
+from flowtex.errors import FieldError
+from flowtex.field.source import FlowSource
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A series with its steps in a folder, an unstructured mesh, and a mesh."""
+    (tmp_path / "steps").mkdir()
+    for n in range(2):
+        examples.double_gyre(float(n)).save(tmp_path / "steps" / f"{n}.vts")
+    lines = [f'<DataSet timestep="{n}" file="steps/{n}.vts"/>' for n in range(2)]
+    text = f'<VTKFile type="Collection"><Collection>{"".join(lines)}</Collection></VTKFile>'
+    (tmp_path / "series.pvd").write_text(text)
+    pv.Sphere().cast_to_unstructured_grid().save(tmp_path / "cells.vtu")
+    (tmp_path / "notes.txt").write_text("nothing")
+    return tmp_path
+
+
+def test_members_of_a_series_are_folded_and_what_cannot_be_shown_says_why(folder: Path) -> None:
+    library = Library.of(folder)
+    assert library.names == ("series.pvd",)
+    assert list(library.unshown) == ["cells.vtu"] and "unstructured" in library.unshown["cells.vtu"]
+    with pytest.raises(FieldError, match=r"no file .* among those that may be opened"):
+        library.source("cells.vtu")
+
+
+def test_a_page_has_what_it_brought_for_itself(tmp_path: Path) -> None:
+    source = FlowSource(small())
+    shared = Library({"flow.vts": lambda: source})
+    one, other = shared.branch(), shared.branch()
+    examples.double_gyre(1.0).save(tmp_path / "flow.vts")
+    name = one.add("flow.vts", tmp_path / "flow.vts")
+    assert name == "flow.vts (1)" and one.names == ("flow.vts", name)
+    assert other.names == shared.names == ("flow.vts",)
+    assert one.field(name, Choice()).shape != one.field("flow.vts", Choice()).shape
+    assert one.source("flow.vts") is other.source("flow.vts") is source
+    assert one.is_file(name) and one.python(name) is None
+    for library in (other, shared):
+        with pytest.raises(FieldError, match="no file"):
+            library.source(name)
