@@ -231,8 +231,7 @@ class Settings:
     lod: bool = _row(
         default=True,
         affects="uniform",
-        text="Choose grain and step for each pixel from the view (level of detail); off, grains "
-        "have one size on the surface: blobs from near, specks that flicker from far out.",
+        text="Fit the grain to each pixel; off, it is blobs from near and flickers from afar.",
     )
     noise: str = _row(
         default="procedural",

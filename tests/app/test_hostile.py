@@ -745,7 +745,7 @@ def test_playing_goes_over_from_times_to_streaming_and_back() -> None:
 
 def test_the_browser_draws_one_view_and_is_handed_a_flow_once() -> None:
     app = page(field())
-    app.state.set(compare="10 samples")
+    app.state.set(compare="Samples: 10")
     app.controllers.appearance.take_comparison()
     app.state.set(rendering="browser")
     app.controllers.browser.take_renderer()
@@ -754,7 +754,7 @@ def test_the_browser_draws_one_view_and_is_handed_a_flow_once() -> None:
     before = app.controllers.browser._generation
     app.show(field(curved=True))
     assert app.controllers.browser._generation == before + 1
-    app.state.set(compare="10 samples")
+    app.state.set(compare="Samples: 10")
     app.controllers.appearance.take_comparison()
     assert not app.controllers.browser.active and app.state.get("rendering") == "server"
     assert len(app.viewport.panes) == 2 and not app.stream.paused

@@ -49,6 +49,11 @@ class Hint {
     this.box.hidden = true;
   };
 
+  /** Hide one that does not move along; one that is about to be shown is put where it belongs. */
+  readonly scroll = () => {
+    this.box.hidden = true;
+  };
+
   readonly leave = () => {
     this.hide();
     this.owner = null;
@@ -84,9 +89,8 @@ export const hints = {
       window.addEventListener("pointerover", hint.point, options);
       window.addEventListener("focusin", hint.focus, options);
       for (const name of ["focusout", "blur"]) window.addEventListener(name, hint.leave, options);
-      for (const name of ["pointerdown", "keydown", "wheel", "scroll"]) {
-        window.addEventListener(name, hint.hide, options);
-      }
+      for (const name of ["pointerdown", "keydown"]) window.addEventListener(name, hint.hide, options);
+      window.addEventListener("scroll", hint.scroll, options);
       document.documentElement.addEventListener("pointerleave", hint.leave, { signal: ended.signal });
     });
     onBeforeUnmount(() => ended.abort());

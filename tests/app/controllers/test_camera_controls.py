@@ -6,6 +6,7 @@ import pytest
 
 pytest.importorskip("trame_rca")
 
+from flowtex.app import FlowApp
 from flowtex.offscreen.annotations import round_length, singular
 
 
@@ -23,3 +24,24 @@ def test_one_is_said_in_the_singular(unit: str, one: str) -> None:
 )
 def test_a_scale_bar_has_a_round_length(greatest: float, length: float) -> None:
     assert round_length(greatest) == pytest.approx(length)
+
+
+@pytest.mark.usefixtures("opengl")
+def test_panels_move_a_surface_that_nobody_has_moved(flat: FlowApp) -> None:
+    camera, viewport = flat.controllers.camera, flat.viewport
+    viewport.home()
+    whole = viewport.camera
+    for junk in (None, 3, [None], [[0, 0, 1]], [[0, 0, 2, 1]], ["abcd"], {"a": 1}):
+        camera.take_covers(junk)
+        assert viewport.camera == whole and viewport.covers == ()
+    camera.take_covers([[0.7, 0, 1, 1]])
+    assert viewport.camera != whole and viewport.at_home
+    copy = viewport.copy()  # a picture that is saved has no panels
+    assert copy.camera == whole
+    copy.close()
+    viewport.pan(0.1, 0.0)
+    moved = viewport.camera
+    camera.take_covers([])
+    assert viewport.camera == moved
+    viewport.home()
+    assert viewport.camera == whole

@@ -32,7 +32,7 @@ def test_members_of_a_series_are_folded_and_what_cannot_be_shown_says_why(folder
     library = Library.of(folder)
     assert library.names == ("series.pvd",)
     assert list(library.unshown) == ["cells.vtu"] and "unstructured" in library.unshown["cells.vtu"]
-    with pytest.raises(FieldError, match=r"no file .* among those that may be opened"):
+    with pytest.raises(FieldError, match="there is no file"):
         library.source("cells.vtu")
 
 
@@ -42,7 +42,7 @@ def test_a_page_has_what_it_brought_for_itself(tmp_path: Path) -> None:
     one, other = shared.branch(), shared.branch()
     examples.double_gyre(1.0).save(tmp_path / "flow.vts")
     name = one.add("flow.vts", tmp_path / "flow.vts")
-    assert name == "flow.vts (1)" and one.names == ("flow.vts", name)
+    assert name == "flow.vts (2)" and one.names == ("flow.vts", name)
     assert other.names == shared.names == ("flow.vts",)
     assert one.field(name, Choice()).shape != one.field("flow.vts", Choice()).shape
     assert one.source("flow.vts") is other.source("flow.vts") is source

@@ -51,17 +51,17 @@ top-height-GAP_PX2],places={start:[at.left-width-2*GAP_PX2,middle[1]],end:[at.ri
 top]=places[owner.dataset.side??""]??below;(left<0||left+width>innerWidth)&&([left,top]=below),top+height>innerHeight&&([
 left,top]=above),box.style.left=`${clamp(left,4,innerWidth-width-4)}px`,box.style.top=`${Math.max(top,4)}px`}var Hint=class{box;owner=null;timer=0;byKeyboard=!1;constructor(box){
 this.box=box}show(owner){this.box.textContent=owner.dataset.hint??"",this.box.hidden=!this.box.textContent,put(this.box,
-owner)}hide=event=>{event&&(this.byKeyboard=event.type==="keydown"),clearTimeout(this.timer),this.box.hidden=!0};leave=()=>{
-this.hide(),this.owner=null};take(target,delay){let owner=target instanceof Element?target.closest("[data-hint]"):null;owner===
-this.owner&&owner||(this.leave(),this.owner=owner,owner&&(this.timer=window.setTimeout(()=>this.show(owner),delay)))}point=event=>{
-event.pointerType!=="touch"&&this.take(event.target,DELAY_MS)};focus=event=>{this.byKeyboard&&this.take(event.target,0)}},
-hints={name:"flowtex-hints",setup(){let{h,ref,onMounted,onBeforeUnmount}=vue(),place=ref(null),ended=new AbortController;
-return onMounted(()=>{if(!place.value)return;let hint=new Hint(place.value),options={signal:ended.signal,capture:!0};window.
-addEventListener("pointerover",hint.point,options),window.addEventListener("focusin",hint.focus,options);for(let name of[
-"focusout","blur"])window.addEventListener(name,hint.leave,options);for(let name of["pointerdown","keydown","wheel","scr\
-oll"])window.addEventListener(name,hint.hide,options);document.documentElement.addEventListener("pointerleave",hint.leave,
-{signal:ended.signal})}),onBeforeUnmount(()=>ended.abort()),()=>h("div",{ref:place,role:"tooltip",class:"flowtex-tooltip",
-hidden:!0})}};var COMMANDS={...CAMERA_KEYS,d:"detail",".":"next",",":"previous"},TOGGLES={[PLAY_KEY]:"play",[CLOSE_KEY]:"close",t:"the\
+owner)}hide=event=>{event&&(this.byKeyboard=event.type==="keydown"),clearTimeout(this.timer),this.box.hidden=!0};scroll=()=>{
+this.box.hidden=!0};leave=()=>{this.hide(),this.owner=null};take(target,delay){let owner=target instanceof Element?target.
+closest("[data-hint]"):null;owner===this.owner&&owner||(this.leave(),this.owner=owner,owner&&(this.timer=window.setTimeout(
+()=>this.show(owner),delay)))}point=event=>{event.pointerType!=="touch"&&this.take(event.target,DELAY_MS)};focus=event=>{
+this.byKeyboard&&this.take(event.target,0)}},hints={name:"flowtex-hints",setup(){let{h,ref,onMounted,onBeforeUnmount}=vue(),
+place=ref(null),ended=new AbortController;return onMounted(()=>{if(!place.value)return;let hint=new Hint(place.value),options={
+signal:ended.signal,capture:!0};window.addEventListener("pointerover",hint.point,options),window.addEventListener("focus\
+in",hint.focus,options);for(let name of["focusout","blur"])window.addEventListener(name,hint.leave,options);for(let name of[
+"pointerdown","keydown"])window.addEventListener(name,hint.hide,options);window.addEventListener("scroll",hint.scroll,options),
+document.documentElement.addEventListener("pointerleave",hint.leave,{signal:ended.signal})}),onBeforeUnmount(()=>ended.abort()),
+()=>h("div",{ref:place,role:"tooltip",class:"flowtex-tooltip",hidden:!0})}};var COMMANDS={...CAMERA_KEYS,d:"detail",".":"next",",":"previous"},TOGGLES={[PLAY_KEY]:"play",[CLOSE_KEY]:"close",t:"the\
 me","?":"help"},OWNERS="input, textarea, select, [contenteditable], [role=slider], .v-overlay--active";function press(event,emit){
 let{target,key}=event,isClose=key===CLOSE_KEY;if(!hasModifier(event)&&!(!isClose&&target instanceof Element&&target.closest(
 OWNERS))&&!(key===PLAY_KEY&&target instanceof HTMLButtonElement)){if(key===FULLSCREEN_KEY)toggleFullscreen(document.documentElement);else if(key in
