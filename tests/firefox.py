@@ -11,10 +11,11 @@ import re
 import shutil
 import subprocess
 import time
-from collections.abc import Iterator
+from collections.abc import Coroutine, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import aiohttp
 import numpy as np
@@ -24,6 +25,8 @@ from PIL import Image
 from flowtex._util.array_types import Bytes
 
 __all__ = ["Firefox", "firefox"]
+
+T = TypeVar("T")
 
 PREFERENCES = 'user_pref("webgl.force-enabled", true);\n'
 CALL = "async (words) => JSON.stringify(await (%s)(...JSON.parse(words)) ?? null)"
@@ -36,8 +39,10 @@ class Firefox:
 
     def __init__(self, address: str) -> None:
         self._address, self._count = address, 0
+        # Of its own thread, for Playwright has a loop in this one.
+        self._thread = ThreadPoolExecutor(1)
         self._runner = asyncio.Runner()
-        self._stack = self._runner.run(self._connect())
+        self._session = self._run(self._connect())
         self._call("session.new", capabilities={})
         self._page = self._call("browsingContext.getTree")["contexts"][0]["context"]
         self._call("browsingContext.setViewport", context=self._page, viewport=SIZE)
@@ -47,8 +52,11 @@ class Firefox:
         self._socket = await session.ws_connect(f"{self._address}/session", max_msg_size=0)
         return session
 
+    def _run(self, work: Coroutine[Any, Any, T]) -> T:
+        return self._thread.submit(self._runner.run, work).result()
+
     def _call(self, method: str, **parameters: Any) -> Any:
-        return self._runner.run(self._ask(method, parameters))
+        return self._run(self._ask(method, parameters))
 
     async def _ask(self, method: str, parameters: dict[str, Any]) -> Any:
         self._count += 1
@@ -90,8 +98,9 @@ class Firefox:
 
     def close(self) -> None:
         """End the connection."""
-        self._runner.run(self._stack.close())
-        self._runner.close()
+        self._run(self._session.close())
+        self._thread.submit(self._runner.close).result()
+        self._thread.shutdown()
 
 
 @contextmanager

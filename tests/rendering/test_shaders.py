@@ -56,9 +56,8 @@ def test_no_line_of_shader_text_stands_in_python() -> None:
 
 
 def test_every_uniform_that_is_declared_is_set() -> None:
-    declared = set(
-        re.findall(r"^uniform .*?(u_\w+)", shaders.shader_source("common/uniforms.glsl"), re.M)
-    )
+    texts = map(shaders.shader_source, ("common/uniforms.glsl", "vtk/fragment_dec.glsl"))
+    declared = set(re.findall(r"^uniform .*?(u_\w+)", "\n".join(texts), re.M))
     package = Path(shaders.__file__).parent
     written = set()
     for path in package.rglob("*.py"):

@@ -66,7 +66,7 @@ def home(page: Page) -> Any:
 
 def zoom(page: Page, notches: int) -> Any:
     before = count(page)
-    page.mouse.move(150, 220)
+    page.mouse.move(420, 200)
     for _ in range(abs(notches)):
         page.mouse.wheel(0, -100 if notches > 0 else 100)
     return WATCH.settled(page, before)
