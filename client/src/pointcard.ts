@@ -33,7 +33,7 @@ export function withUnit(text: string, unit: string): string {
 /** Two components of a vector in a surface that lies across z, else three. */
 function vectorText(vector: readonly number[], size: number, digits: number, flat: boolean): string {
   const texts = vector.slice(0, flat ? 2 : 3).map((x) => {
-    const value = Math.abs(x) < 1e-9 * size ? 0 : x;
+    const value = Math.abs(x) < 10 ** (-1 - digits) * size ? 0 : x; // a residue
     return digits > 5 ? String(Number(value.toPrecision(digits))) : numberText(value, digits);
   });
   return `(${texts.join(", ")})`;

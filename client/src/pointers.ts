@@ -114,7 +114,8 @@ export class Pointers {
   private onDown(event: PointerEvent): void {
     if (event.button > 2) return;
     const { root, canvas } = this.viewer;
-    root.focus({ preventScroll: true });
+    // The ring is for those who come by keys.
+    root.focus({ preventScroll: true, focusVisible: false } as FocusOptions);
     if (event.pointerType !== "touch") this.hold(true);
     canvas.setPointerCapture(event.pointerId);
     this.down.set(event.pointerId, this.place(event));

@@ -412,8 +412,8 @@ spacing)*grainAt(at,settings,camera,rows),joined=reach=>{let[back=[],ahead=[]]=w
 return[...back.reverse(),position,...ahead]};return{path:joined(PATH_LENGTH*Math.max(count,FEWEST_SAMPLES)*step),sampled:joined(
 count*step),directed,velocity}}var TITLE="Path through this point",SVG="http://www.w3.org/2000/svg",FEWEST_DIGITS=4,MOST_DIGITS=14,VELOCITY_DIGITS=3,PATIENCE_MS=5e3,
 RETRY_MS=40,UNIT_LENGTH=12;function withUnit(text,unit2){return unit2&&unit2.length<=UNIT_LENGTH?`${text} ${unit2}`:text}
-function vectorText(vector,size,digits,flat){return`(${vector.slice(0,flat?2:3).map(x=>{let value=Math.abs(x)<1e-9*size?
-0:x;return digits>5?String(Number(value.toPrecision(digits))):numberText(value,digits)}).join(", ")})`}var liesAcross=({
+function vectorText(vector,size,digits,flat){return`(${vector.slice(0,flat?2:3).map(x=>{let value=Math.abs(x)<10**(-1-digits)*
+size?0:x;return digits>5?String(Number(value.toPrecision(digits))):numberText(value,digits)}).join(", ")})`}var liesAcross=({
 planar,frame})=>planar&&Math.abs(frame[8])>.999;function positionText(position,header,camera){let{geometry}=header,zoom=Math.
 max(camera?.zoom??1,1),digits=Math.min(Math.ceil(FEWEST_DIGITS+Math.log10(zoom)),MOST_DIGITS),isInPlane=liesAcross(geometry)&&
 Math.abs(position[2]-geometry.center[2])<1e-12*geometry.extent;return vectorText(position,geometry.extent,digits,isInPlane)}
@@ -737,8 +737,8 @@ eel",release,{capture:!0,passive:!0}),lifetime.listen(root,"focus",()=>{root.mat
 this.viewer.root.classList.toggle("flowtex-held",held),held&&this.viewer.panel.hint(!1)}get isHeld(){let{root,options}=this.
 viewer;return!options.guarded||root.classList.contains("flowtex-held")?!0:document.fullscreenElement?.contains(root)??!1}place(event){
 return placeIn(this.viewer.canvas,event)}onDown(event){if(event.button>2)return;let{root,canvas}=this.viewer;root.focus(
-{preventScroll:!0}),event.pointerType!=="touch"&&this.hold(!0),canvas.setPointerCapture(event.pointerId),this.down.set(event.
-pointerId,this.place(event)),this.isOther=event.button===2||event.shiftKey;let{clientX:x,clientY:y,timeStamp:time}=event;
+{preventScroll:!0,focusVisible:!1}),event.pointerType!=="touch"&&this.hold(!0),canvas.setPointerCapture(event.pointerId),
+this.down.set(event.pointerId,this.place(event)),this.isOther=event.button===2||event.shiftKey;let{clientX:x,clientY:y,timeStamp:time}=event;
 this.press={x,y,time,isDrag:this.down.size>1},root.classList.add("flowtex-grabbing")}onMove(event){let{camera,panel}=this.
 viewer;if(!camera)return;let place=this.place(event),old=this.down.get(event.pointerId);if((event.movementX||event.movementY)&&
 (this.lastPointed=performance.now()),!old)return this.hover(place);if(Math.hypot(event.clientX-this.press.x,event.clientY-
