@@ -14,13 +14,14 @@ from typing import Any, Literal
 
 import numpy as np
 
-from flowtex._util.array_types import Floats, Floats32
+from flowtex._util.array_types import Bytes, Floats, Floats32
 from flowtex._util.cache import WeakCache, digest
-from flowtex._util.colours import is_diverging
+from flowtex._util.colours import colour_table, is_diverging
 from flowtex._util.names import near_names
 from flowtex.field import FlowField
 from flowtex.field.interpolation import steps_around
 from flowtex.options import ROBUST, SPEED, Appearance, FieldOptions, Options, option_text
+from flowtex.rendering.cpu.shade import mean_colours
 from flowtex.settings import TABLE, Affects, Settings, SettingsError
 from flowtex.textures import TextureSet
 from flowtex.textures.images import as_picture, load_image
@@ -198,6 +199,11 @@ class Scene:
     def scalar_limits(self) -> tuple[float, float]:
         """Values at the ends of the colour map."""
         return self._limits(self.appearance)
+
+    @property
+    def legend_colours(self) -> Bytes:
+        """The colour map as a legend shows it, (256, 4): as the picture does on average."""
+        return mean_colours(colour_table(self.appearance.cmap), self.settings)
 
     @property
     def legend_limits(self) -> tuple[float, float]:

@@ -60,7 +60,8 @@ class Watch:
     def comes_to(self, page: Page, wanted: Any) -> None:
         """Wait until the page shows what it showed before."""
         for _ in range(100):
-            if difference(self.shot(page), wanted) < 2:
+            apart = difference(self.shot(page), wanted)
+            if apart < 2:
                 return
             page.wait_for_timeout(100)
-        pytest.fail("the page shows something else")
+        pytest.fail(f"the page shows something else, by {apart:.1f} steps of 8 bits")

@@ -17,19 +17,18 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from flowtex._util.array_types import Bytes
-from flowtex._util.colours import colour_table, rgb
+from flowtex._util.colours import rgb
 from flowtex.camera import Camera
 from flowtex.field import FlowField
-from flowtex.rendering.cpu.shade import mean_colours
 from flowtex.scene import Scene
 
 __all__ = [
     "Plate",
     "annotate",
     "difference_text",
+    "length_text",
     "plates",
     "round_length",
-    "singular",
     "time_text",
 ]
 
@@ -174,7 +173,7 @@ class _Writer:
         unit, across = _printable(scene.field.length_unit), round(length * unit_px)
         if not across:
             return
-        text = f"{length:.12g} {singular(unit) if length == 1 else unit}".strip()
+        text = length_text(length, unit)
         tick = self._px(PADDING)
         width = max(self._width(text), across)
         image, draw = self._blank(width, self._line + tick)
@@ -191,10 +190,8 @@ class _Writer:
         name, settings, appearance = scene.scalar_name, scene.settings, scene.appearance
         if name is None or settings.show_level or not appearance.visible:
             return
-        table = mean_colours(colour_table(appearance.cmap), settings)[:, :3]
-        unit = scene.field.unit_of(name)
-        title = _printable(f"{name} ({unit})" if unit else name)
-        values = _value_texts(*scene.scalar_limits, log_scale=appearance.log_scale)
+        table, title = scene.legend_colours[:, :3], _printable(scene.title_of(name))
+        values = _value_texts(*scene.legend_limits, log_scale=appearance.log_scale)
         for numbers in (values, values[::2]):
             yield self._legend(title, table, numbers)
 
@@ -295,10 +292,10 @@ def difference_text(scene: Scene, changes: Mapping[str, Any]) -> str:
     return ", ".join(f"{name} = {settings[name]}" for name in changes if name in settings)
 
 
-def singular(unit: str) -> str:
-    """Return the name of one unit where it is a whole word in the plural, such as metres."""
+def length_text(length: float, unit: str) -> str:
+    """Return a length with its unit, without the plural of a whole word, such as metres, for 1."""
     plural = len(unit) > 4 and unit.endswith("s") and not unit.endswith(("ss", "ches"))
-    return unit[:-1] if plural else unit
+    return f"{length:.12g} {unit[:-1] if plural and length == 1 else unit}".strip()
 
 
 def round_length(greatest: float) -> float:

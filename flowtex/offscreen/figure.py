@@ -13,7 +13,6 @@ from matplotlib.image import AxesImage
 from PIL import Image
 
 from flowtex._util.array_types import Bytes, Floats
-from flowtex._util.colours import colour_table
 from flowtex.camera import CAMERA_LIMITS, Camera
 from flowtex.field import Surface
 from flowtex.offscreen.plotter import NOTHING_SEEN, OffscreenPlotter
@@ -24,7 +23,6 @@ from flowtex.options import (
     ViewOptions,
     accepts_options,
 )
-from flowtex.rendering.cpu.shade import mean_colours
 from flowtex.scene import Scene
 
 __all__ = ["FlowImage", "axes", "extent"]
@@ -175,9 +173,8 @@ class FlowImage(AxesImage):
         self.mouseover = False
         look = scene.appearance
         if scene.scalar_name is not None:
-            colours = mean_colours(colour_table(look.cmap), scene.settings)[:, :3] / 255
-            self.set_cmap(ListedColormap(colours))
-            self.set_norm((LogNorm if look.log_scale else Normalize)(*scene.scalar_limits))
+            self.set_cmap(ListedColormap(scene.legend_colours[:, :3] / 255))
+            self.set_norm((LogNorm if look.log_scale else Normalize)(*scene.legend_limits))
 
     @property
     def time(self) -> float:

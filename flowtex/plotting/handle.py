@@ -14,7 +14,6 @@ from flowtex.field import FlowField
 from flowtex.options import NO_VALUE_COLOR, Appearance
 from flowtex.plotting.scalar_bar import SCALAR_BAR, arrange_with
 from flowtex.rendering.constants import AMBIENT_LIGHT, DIFFUSE_LIGHT
-from flowtex.rendering.cpu.shade import mean_colours
 from flowtex.rendering.vtk import FlowSurface, surface_mesh, use_flow_mapper
 from flowtex.scene import AppearanceAttributes, Change, Scene
 from flowtex.settings import Settings
@@ -261,7 +260,7 @@ class FlowHandle(AppearanceAttributes):
         if self._bar_title is None or self._bar_title not in self._plotter.scalar_bars:
             return
         shown = self.actor.mapper.lookup_table
-        table = pv.LookupTable(values=mean_colours(np.asarray(shown.values), self.settings))
+        table = pv.LookupTable(values=self.scene.legend_colours)
         table.scalar_range, table.log_scale = self.scene.legend_limits, shown.log_scale
         self._plotter.scalar_bars[self._bar_title].SetLookupTable(table)
 

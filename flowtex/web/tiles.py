@@ -63,6 +63,9 @@ def all_tiles(whole: ClientData) -> Iterator[Parts]:
         some = keys[n : n + TOGETHER]
         loader.request(some, sources)
         loader.wait()
+        # A page has nobody to ask again.
+        for error in loader.errors.values():
+            raise error
         for key in some:
             tile = loader.get(key, sources)
             if tile is not None:

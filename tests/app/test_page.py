@@ -384,6 +384,7 @@ def test_two_fingers_zoom(page: Page) -> None:
     assert difference(settled(page, before), whole) > 3
     found = re.search(r"zoom ([\d.]+)", page.inner_text(".flowtex-figures"))
     assert found and 1.5 < float(found[1]) < 3
+    assert not page.locator(".flowtex-card").is_visible()
 
 
 def test_two_panes_move_together(page: Page) -> None:

@@ -27,6 +27,8 @@ from flowtex.web.view import WebView, web_views
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
 
+    from flowtex.rendering.webgl.protocol import Parts
+
 LOOK: dict[str, Any] = {"scalars": False, "lighting": False, "color": COLOUR, "samples": 11}
 CAMERAS = {"whole": straight(1.8, (1.0, 0.5)), "near": straight(10, (0.6, 0.2)), "tilted": TILTED}
 
@@ -58,6 +60,15 @@ def viewed(
     return view, data, tile_loader(data, data.pyramid)
 
 
+def made_tile(data: ClientData, loader: TileLoader, key: Any, steps: Any) -> Parts:
+    """Return the arrays of a tile, made now."""
+    loader.request([TileKey(*key)], steps)
+    loader.wait()
+    made = loader.get(TileKey(*key), steps)
+    assert made is not None
+    return packed_tile(data, made, steps)
+
+
 def mounted(
     client: ClientPage,
     camera: Camera,
@@ -73,11 +84,7 @@ def mounted(
     def tile(key: Any, steps: Any) -> Any:
         if not tiles(TileKey(*key)):
             return {}
-        loader.request([TileKey(*key)], steps)
-        loader.wait()
-        made = loader.get(TileKey(*key), steps)
-        assert made is not None
-        return packed_tile(data, made, steps)
+        return made_tile(data, loader, key, steps)
 
     client.tile = tile
     client.tiles.clear()
@@ -194,6 +201,18 @@ def test_a_page_without_room_has_no_tiles(monkeypatch: pytest.MonkeyPatch) -> No
     assert '"pyramid":null' in text
 
 
+def test_a_tile_that_fails_fails_the_page(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Rather than be missing in it without a word."""
+
+    def fail(*args: object, **kwargs: object) -> None:
+        msg = "the disk is gone"
+        raise OSError(msg)
+
+    monkeypatch.setattr("flowtex.tiles.pyramid.Pyramid.textures", fail)
+    with pytest.raises(OSError, match="the disk is gone"):
+        page_text([viewed()[0]])
+
+
 @cache
 def swinging() -> flowtex.FlowField:
     """A vortex that wanders, at three times."""
@@ -244,11 +263,7 @@ def test_other_colours_of_tiles_are_those_of_new_ones(client: ClientPage, host: 
         now = data[shown[0]]
         assert now.pyramid is not None
         loader = tile_loader(now, now.pyramid)
-        loader.request([TileKey(*key)], steps)
-        loader.wait()
-        made = loader.get(TileKey(*key), steps)
-        assert made is not None
-        return packed_tile(now, made, steps)
+        return made_tile(now, loader, key, steps)
 
     client.tile = tile
     headers = [

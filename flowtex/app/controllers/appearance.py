@@ -11,6 +11,7 @@ from flowtex.app.controllers.context import Context, Controller
 from flowtex.app.server.validation import decode_picture, name_among, number
 from flowtex.app.streaming.viewport import BACKGROUNDS as THEMES
 from flowtex.errors import FieldError
+from flowtex.offscreen.annotations import time_text
 from flowtex.options import ROBUST
 from flowtex.scene import Scene
 from flowtex.settings import TABLE, SettingsError, named_values
@@ -77,6 +78,7 @@ class Appearance(Controller):
             background=self.background,
             compare=self.compared,
             time_beside=0.0,
+            moment_beside="",
             bar_beside=None,
             image_file=None,
             set_noise_choices=self._noise_choices(),
@@ -214,7 +216,8 @@ class Appearance(Controller):
             if choice != "nothing":
                 self.context.comparison_started.emit()
             self.area.compare(comparison(choice, self._first_time) or None)
-            self.state.set(bar_beside=self._bar_beside(), time_beside=self.viewport.time_beside)
+            self.state.set(bar_beside=self._bar_beside())
+            self._show_time_beside()
 
     def take_time_beside(self) -> None:
         """Show another time in the second pane."""
@@ -222,7 +225,11 @@ class Appearance(Controller):
         if self.compared == ANOTHER_TIME and time not in (None, self.viewport.time_beside):
             self.viewport.time_beside = time
             self.stream.changed()
-        self.state.set(time_beside=self.viewport.time_beside)
+        self._show_time_beside()
+
+    def _show_time_beside(self) -> None:
+        time = self.viewport.time_beside
+        self.state.set(time_beside=time, moment_beside=time_text(self.viewport.field, time))
 
     def end_comparison(self) -> None:
         """Show one pane again."""

@@ -10,7 +10,7 @@ from flowtex.app.controllers.context import Context, Controller
 from flowtex.app.server.validation import name_among, number
 from flowtex.app.streaming.free_part import Cover
 from flowtex.app.streaming.stream import Figures
-from flowtex.offscreen.annotations import round_length, singular
+from flowtex.offscreen.annotations import length_text, round_length
 from flowtex.settings import TABLE
 
 __all__ = ["KEYS", "VIEWS", "CameraControls"]
@@ -162,9 +162,8 @@ class CameraControls(Controller):
         viewport = self.viewport
         across = 2 * viewport.camera.height * viewport.aspect * len(viewport.panes)
         length = round_length(SCALE_BAR_WIDTH * across)
-        unit = viewport.field.length_unit
         return {
-            "text": f"{length:.12g} {singular(unit) if length == 1 else unit}".strip(),
+            "text": length_text(length, viewport.field.length_unit),
             "width": round(100 * length / across, 3) if across > 0 else 0,
         }
 

@@ -27,7 +27,7 @@ from flowtex._util.whole_file import whole_file
 from flowtex.app.streaming.painter import LINE_GREY, Cost
 from flowtex.app.streaming.viewport import GAP_PX, Pane, Rect, Viewport
 from flowtex.field import FlowField
-from flowtex.offscreen.annotations import annotate, difference_text
+from flowtex.offscreen.annotations import annotate
 from flowtex.offscreen.encoders import (
     DEFAULT_QUALITY,
     MovieError,
@@ -36,7 +36,7 @@ from flowtex.offscreen.encoders import (
     default_fps,
 )
 from flowtex.offscreen.movie import FrameTimes, frame_times
-from flowtex.settings import Settings
+from flowtex.settings import Settings, named_values
 from flowtex.textures.images import averaged
 
 __all__ = ["MOST_PIXELS", "ExportError", "Job", "MovieJob", "PictureJob", "TiledPicture"]
@@ -103,12 +103,13 @@ class TiledPicture:
         viewport, count = self._viewport, len(self._viewport.panes)
         for view, pane in zip(np.array_split(picture, count, axis=1), viewport.panes, strict=True):
             scene = pane.handle.scene
+            values = dict(scene.settings)
             annotate(
                 view,
                 scene,
                 viewport.camera,
                 background=viewport.background,
-                label=difference_text(scene, viewport.differences),
+                label=named_values({name: values[name] for name in viewport.differences}),
                 legend=scene.settings.noise != "image",
             )
 

@@ -318,9 +318,9 @@ class PointInfo(Controller):
         if self.state.get("tip") is not None:
             self.state.send(tip=None)
 
-    def click(self, place: Place) -> None:
+    def click(self, place: Place | None) -> None:
         """Show the path through what was clicked; beside the surface, none."""
-        self.show_path(self._text.index(*place))
+        self.show_path(None if place is None else self._text.index(*place))
 
     def take_place(self, place: Any) -> None:
         """Tell what is under the pointer of the browser's client, (x, y) from -1 to 1."""

@@ -7,6 +7,7 @@ it does the other of the two.
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Mapping
 from typing import Any
@@ -24,6 +25,8 @@ MOST_NOTCHES = 5.0
 FARTHEST_PX, MOST_SPREAD = 1e5, 1e3
 #: A button that is released within so many seconds and pixels is a click.
 CLICK_S, CLICK_PX = 0.4, 4.0
+#: So many seconds before and after two fingers move, the page tells clicks that are none.
+TOUCH_S = 0.5
 
 Place = tuple[float, float]
 
@@ -39,7 +42,7 @@ class Pointer:
         Signal with the place within a pane when the pointer rests or moves with no button
         pressed, and with ``None`` when something else is done.
     clicked
-        Signal with the place of a click.
+        Signal with the place of a click, and with ``None`` when it turns out to be none.
     pane
         Number of the pane that the pointer is over.
     """
@@ -53,6 +56,7 @@ class Pointer:
         #: Whether the drag turns, and where it is.
         self._drag: tuple[bool, Place] | None = None
         self._pressed = (0.0, 0.0, 0.0)
+        self._touched = self._clicked = -math.inf
 
     def __call__(self, event: Any) -> bool:
         """Follow one event; tells whether the view changed."""
@@ -76,13 +80,15 @@ class Pointer:
         elif kind.endswith("ButtonRelease"):
             self._drag = None
             if kind.startswith("Left") and self._is_click(event):
+                self._clicked = time.monotonic()
                 self.clicked.emit(self._place(event))
         return False
 
     def _is_click(self, event: dict[str, Any]) -> bool:
         pressed, x, y = self._pressed
         near = abs(event["x"] - x) + abs(event["y"] - y) <= CLICK_PX
-        return near and time.monotonic() - pressed <= CLICK_S
+        now = time.monotonic()
+        return near and now - pressed <= CLICK_S and now - self._touched > TOUCH_S
 
     def _within_pane(self, event: dict[str, Any]) -> dict[str, Any]:
         """Count from the pane under the pointer; a drag stays with the one in which it began."""
@@ -122,12 +128,16 @@ class Pointer:
         return True
 
     def _on_touch(self, event: dict[str, Any]) -> bool:
+        """Begin with two fingers; the first of them came as a click."""
         del event
+        self._touched = time.monotonic()
+        if self._touched - self._clicked <= TOUCH_S:
+            self.clicked.emit(None)
         self._spread, self._slide = 1.0, (0.0, 0.0)
         return False
 
     def _on_pinch(self, event: dict[str, Any]) -> bool:
-        factor = event["factor"]
+        factor, self._touched = event["factor"], time.monotonic()
         self._viewport.zoom_by(factor / self._spread, *self._middle(event))
         self._spread = factor
         return True
@@ -135,6 +145,7 @@ class Pointer:
     def _on_slide(self, event: dict[str, Any]) -> bool:
         """Follow two fingers that move together."""
         (x, y), width, height = event["translation"], event["w"], event["h"]
+        self._touched = time.monotonic()
         self._viewport.pan(-2 * (x - self._slide[0]) / width, -2 * (y - self._slide[1]) / height)
         self._slide = (x, y)
         return True

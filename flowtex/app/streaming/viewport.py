@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import Bytes, Floats
-from flowtex._util.colours import colour_table
 from flowtex.app.streaming.free_part import Cover, covers_of_pane, free_part
 from flowtex.app.streaming.reprojection import plane_to_view
 from flowtex.app.streaming.window import OffscreenWindow, Rect
@@ -20,7 +19,6 @@ from flowtex.camera import Camera, ViewPart
 from flowtex.field import FlowField
 from flowtex.options import SPEED, Appearance, Options
 from flowtex.plotting.handle import FlowHandle
-from flowtex.rendering.cpu.shade import mean_colours
 from flowtex.scene import Change, Scene
 from flowtex.settings import Settings
 from flowtex.textures.images import as_image
@@ -302,7 +300,7 @@ class Viewport:
 
     def colour_stops(self, scene: Scene, count: int = 17) -> list[str]:
         """Mean colours of a pane along its bar, from low to high, as ``#rrggbb``."""
-        table = mean_colours(colour_table(scene.appearance.cmap), scene.settings)
+        table = scene.legend_colours
         stops = table[np.linspace(0, len(table) - 1, count).round().astype(int)]
         return ["#" + bytes(colour[:3]).hex() for colour in stops]
 
@@ -383,7 +381,8 @@ class Viewport:
         surface, free = self.handle.scene.whole.surface, self.free
         from_side = {name: look[name] for name in ("toward", "up") if name in look}
         self.whole = Camera.fit(surface, self.aspect, free=free, **from_side)
-        self._home = Camera.fit(surface, self.aspect, free=free, **look)
+        is_near = look != from_side
+        self._home = Camera.fit(surface, self.aspect, free=free, **look) if is_near else self.whole
         self._look, self.camera = look, self._home
 
     def refit(self) -> None:

@@ -330,11 +330,11 @@ def _player(controllers: Controllers) -> None:
 
 def _pane_labels(controllers: Controllers) -> None:
     """Say in which of two panes what is shown."""
-    names = ("compare", "bar_beside", "moment", "time_beside")
-    compare, bar, moment, time = map(controllers.context.state.key, names)
+    names = ("compare", "bar_beside", "moment", "moment_beside")
+    compare, bar, moment, beside = map(controllers.context.state.key, names)
     other_time = f"{compare} === '{ANOTHER_TIME}'"
     first = f"{other_time} ? {moment} : 'as set'"
-    second = f"{other_time} ? 't = ' + {time}.toFixed(2) : {compare}"
+    second = f"{other_time} ? {beside} : {compare}"
     with html.Div(classes="flowtex-panes", v_if=(f"{compare} !== 'nothing'",)):
         html.Span(f"{{{{ {first} }}}}", classes="flowtex-chip")
         with html.Div(classes="flowtex-beside"):

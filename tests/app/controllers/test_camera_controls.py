@@ -7,7 +7,7 @@ import pytest
 pytest.importorskip("trame_rca")
 
 from flowtex.app import FlowApp
-from flowtex.offscreen.annotations import round_length, singular
+from flowtex.offscreen.annotations import length_text, round_length
 
 
 @pytest.mark.parametrize(
@@ -15,7 +15,8 @@ from flowtex.offscreen.annotations import round_length, singular
     [("diameters", "diameter"), ("body lengths", "body length"), ("ms", "ms"), ("metre", "metre")],
 )
 def test_one_is_said_in_the_singular(unit: str, one: str) -> None:
-    assert singular(unit) == one
+    assert length_text(1.0, unit) == f"1 {one}"
+    assert length_text(20.0, unit) == f"20 {unit}"
 
 
 @pytest.mark.parametrize(

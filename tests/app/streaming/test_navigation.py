@@ -12,6 +12,7 @@ pytest.importorskip("trame_rca")
 from small_pages import difference, picture
 
 from flowtex.app import FlowApp
+from flowtex.app.streaming.navigation import Place
 
 pytestmark = pytest.mark.usefixtures("opengl")
 
@@ -75,6 +76,27 @@ def test_a_zoom_into_a_curved_surface_stops_before_it(bent: FlowApp) -> None:
     assert bent.viewport.surface_point(0.1, 0.1) is not None
     assert bent.viewport.zoom > 1000
     bent.area.reset_camera()
+
+
+def test_fingers_that_pinch_click_nothing(flat: FlowApp) -> None:
+    """The page tells the first finger down, and the last one up, as clicks of a mouse."""
+    flat.area.reset_camera()
+    send = flat.stream.on_interaction
+    places: list[Place | None] = []
+    flat.stream.pointer.clicked.connect(places.append)
+    size = {"w": 240, "h": 160}
+
+    def click(x: float) -> None:
+        for kind in ("LeftButtonPress", "LeftButtonRelease"):
+            send("test", {"type": kind, "x": x, "y": 80, **size})
+
+    click(60)
+    send("test", {"type": "StartPinch", "factor": 1, **size})
+    assert places == [(-0.5, 0.0), None]
+    send("test", {"type": "Pinch", "factor": 2, **size})
+    click(180)
+    assert len(places) == 2
+    flat.area.reset_camera()
 
 
 def test_pinching_zooms_between_the_fingers(flat: FlowApp) -> None:
