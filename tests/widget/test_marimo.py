@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import subprocess
 import sys
+import time
+import urllib.request
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -50,7 +53,13 @@ def address(tmp_path: Path) -> Iterator[str]:
     )
     assert process.stdout is not None
     said = next((line for line in process.stdout if "http://" in line), "")
-    yield said[said.find("http://") :].strip().replace("localhost", "127.0.0.1")
+    address = said[said.find("http://") :].strip().replace("localhost", "127.0.0.1")
+    # The address is told before anyone listens there.
+    for _ in range(300):
+        with contextlib.suppress(OSError), urllib.request.urlopen(address, timeout=5):
+            break
+        time.sleep(0.1)
+    yield address
     process.terminate()
     process.communicate(timeout=20)
 
