@@ -494,7 +494,8 @@ def share_field(field: FlowField) -> FlowField:
 
     A notebook shows one mesh many times over, and makes it a field each time.
     """
-    words = (field.periodic, field.name, field.length_unit, field.time_unit, field.sign_free)
+    names = (field.name, field.length_unit, field.time_unit)
+    words = (*names, field.periodic, field.sign_free, str(field.start), field.projection)
     units = tuple(field.units.items())
     positions = () if field.has_position is None else (field.has_position,)
     arrays = (field.points, field.velocity, field.times, field.valid, *positions)

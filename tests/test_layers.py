@@ -26,6 +26,7 @@ PACKAGE = ROOT / "flowtex"
 LAYERS: tuple[tuple[str, ...], ...] = (
     ("errors", "_version", "_util"),
     ("settings",),
+    ("earth",),
     ("field",),
     ("trace",),
     ("camera",),
@@ -51,7 +52,7 @@ RENDERERS = ("rendering.cpu", "rendering.vtk", "rendering.webgl")
 OUTSIDE = ("benchmarks", "docs", "paper", "tests", "tools")
 
 #: Most entries at the top of the package, modules in a folder, and lines in a source file.
-MAX_ENTRIES, MAX_MODULES, MAX_LINES = 24, 15, 600
+MAX_ENTRIES, MAX_MODULES, MAX_LINES = 26, 15, 600
 
 
 @dataclass(frozen=True)

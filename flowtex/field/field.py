@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex.earth import Projection
 from flowtex.errors import FieldError, raise_faults
 from flowtex.field.dates import as_seconds
 from flowtex.field.metric import IndexVelocity, to_index_space
@@ -74,6 +75,10 @@ class FlowField:
         Whether v and -v mean the same, as in a field of polarisation or principal directions.
     units
         Unit of each scalar, where it is known.
+    start
+        The date at time 0, a ``datetime`` or one of cftime's, where times count from one.
+    projection
+        How positions follow from longitude and latitude, for a field of the Earth.
     """
 
     points: Floats
@@ -88,6 +93,8 @@ class FlowField:
     has_position: Bools | None = None
     sign_free: bool = False
     units: Mapping[str, str] = field(default_factory=dict)
+    start: Any = None
+    projection: Projection | None = None
 
     @classmethod
     def from_arrays(
@@ -104,6 +111,7 @@ class FlowField:
         time_unit: str = "",
         sign_free: bool = False,
         units: Mapping[str, str] | None = None,
+        projection: Projection | None = None,
     ) -> FlowField:
         """Make a field from arrays.
 
@@ -118,8 +126,8 @@ class FlowField:
             in time, in units of length per unit of time. NaN and masked entries blank a node.
         times
             Time of each step, (T,), strictly increasing, in any unit of time. Steps are
-            numbered 0, 1, 2, ... when it is left out. Dates (``datetime64``) become seconds
-            since the first, and the unit of time ``"s"``.
+            numbered 0, 1, 2, ... when it is left out. Dates (``datetime64``, or cftime's) become
+            seconds since the first, and the unit of time ``"s"``; they are told as dates.
         valid
             Nodes that carry data, (J, I). All of them by default.
         periodic
@@ -138,6 +146,9 @@ class FlowField:
         units
             Unit of each scalar by its name, for legends; that of the speed follows from those of
             length and time.
+        projection
+            How points followed from longitude and latitude, for a field of the Earth: what tells
+            the place of a point, and draws coastlines.
 
         Returns
         -------
@@ -163,7 +174,7 @@ class FlowField:
             msg = f"scalars is a {type(scalars).__name__}; expected a mapping of arrays by name"
             raise FieldError(msg)
         given = {key: with_gaps(f"scalars[{key!r}]", s) for key, s in (scalars or {}).items()}
-        times, time_unit = as_seconds(times, time_unit)
+        times, time_unit, start = as_seconds(times, time_unit)
         t, shown = (
             None if values is None else with_gaps(name, values)
             for name, values in (("times", times), ("valid", valid))
@@ -204,6 +215,8 @@ class FlowField:
             has_position=surface.has_position,
             sign_free=sign_free,
             units=dict(units or {}),
+            start=start,
+            projection=projection,
         )
         flow.__dict__["surface"] = surface  # the same that the property would make again
         if not flow.velocity.any():

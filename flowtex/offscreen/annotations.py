@@ -20,6 +20,7 @@ from flowtex._util.array_types import Bytes
 from flowtex._util.colours import rgb
 from flowtex.camera import Camera
 from flowtex.field import FlowField
+from flowtex.field.dates import date_text
 from flowtex.scene import Scene
 
 __all__ = [
@@ -276,8 +277,13 @@ def _value_texts(low: float, high: float, *, log_scale: bool) -> list[str]:
 
 
 def time_text(field: FlowField, time: float, longest_unit: int = UNIT_LENGTH) -> str:
-    """Return a time of a field, with decimals that tell its steps apart and a unit so long."""
+    """Return a time of a field: its date, or with decimals that tell its steps apart.
+
+    A unit is told up to a length.
+    """
     step = float(np.diff(field.times).min()) if len(field.times) > 1 else 1.0
+    if field.start is not None:
+        return date_text(field.start, time, step)
     power = math.floor(math.log10(step))
     decimals = max(2 - power, 0) if power >= 0 else 1 - power
     short = decimals <= MOST_DECIMALS and abs(time) < LONGEST_TIME
