@@ -1,5 +1,7 @@
 """The Earth: from longitude and latitude to a globe or a flat map, and back."""
 
+from __future__ import annotations
+
 from flowtex.earth.projection import EARTH_RADIUS, GLOBE, Projection, ProjectionError
 
 __all__ = ["EARTH_RADIUS", "GLOBE", "Projection", "ProjectionError"]
