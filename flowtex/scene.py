@@ -20,6 +20,7 @@ from flowtex._util.colours import colour_table, is_diverging
 from flowtex._util.names import near_names
 from flowtex.field import FlowField
 from flowtex.field.interpolation import steps_around
+from flowtex.field.steps import LazySteps
 from flowtex.options import ROBUST, SPEED, Appearance, FieldOptions, Options, option_text
 from flowtex.rendering.cpu.shade import mean_colours
 from flowtex.settings import TABLE, Affects, Settings, SettingsError
@@ -350,10 +351,10 @@ class Scene:
 
     def _range_values(self, name: str) -> Floats:
         """Values of the valid nodes at all times; the speed of a large field is that in space."""
-        valid = self.field.valid
+        some, valid = self.field.typical, self.field.valid
         if self.pyramid is None or name in self.field.scalars:
-            return steps_of(self.field, name)[:, valid]
-        return np.asarray(np.linalg.norm(self.field.velocity, axis=-1)[:, valid])
+            return np.asarray(np.asarray(steps_of(some, name))[:, valid])
+        return np.asarray(np.linalg.norm(some.velocity, axis=-1)[:, valid])
 
     def copy(self) -> Scene:
         """Return a scene that shows the same, and that no later change of this one reaches.
@@ -498,10 +499,12 @@ def share_field(field: FlowField) -> FlowField:
     words = (*names, field.periodic, field.sign_free, str(field.start), field.projection)
     units = tuple(field.units.items())
     positions = () if field.has_position is None else (field.has_position,)
-    arrays = (field.points, field.velocity, field.times, field.valid, *positions)
-    key = digest(
-        *arrays, *field.scalars.values(), words=(words, units, len(positions), *field.scalars)
-    )
+    given = (field.points, field.velocity, field.times, field.valid, *positions)
+    given += tuple(field.scalars.values())
+    # What is read late is known by the object, which a field keeps alive.
+    late = tuple(id(a) for a in given if isinstance(a, LazySteps))
+    arrays = (a for a in given if not isinstance(a, LazySteps))
+    key = digest(*arrays, words=(words, units, len(positions), late, *field.scalars))
     return _fields.get(key, lambda: field)
 
 

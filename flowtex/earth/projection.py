@@ -34,7 +34,7 @@ NAMES = {
     "equalearth": "+proj=eqearth",
 }
 #: Steps in degrees by which derivatives are taken, and how near to a pole.
-STEP, NEAREST_POLE = 1e-4, 1e-2
+STEP, NEAREST_POLE = 1e-4, 0.5
 
 
 class ProjectionError(FieldError):
@@ -84,7 +84,7 @@ class Projection:
         text = self.name
         if text in NAMES:
             (lon, lat), half = self.center, self.half_height
-            text = f"{NAMES[text]} +lon_0={lon:.12g} +R={EARTH_RADIUS:.12g} +units=m"
+            text = f"{NAMES[text]} +lon_0={lon:.12g} +R={EARTH_RADIUS:.12g} +units=m +over"
             if self.name == "platecarree":
                 text += f" +lat_ts={lat:.12g}"
             elif self.name == "lambert":
@@ -142,14 +142,15 @@ class Projection:
             north = np.stack([-np.sin(b) * np.cos(a), -np.sin(b) * np.sin(a), np.cos(b)], axis=-1)
             return east, north
         lat = np.clip(lat, NEAREST_POLE - 90, 90 - NEAREST_POLE)
-        degree = math.radians(EARTH_RADIUS)
-        sides = [
-            self.positions(lon + dx * STEP, lat + dy * STEP)
-            for dx, dy in ((-1, 0), (1, 0), (0, -1), (0, 1))
-        ]
-        over = 2 * STEP * degree
-        east = (sides[1] - sides[0]) / (over * np.cos(np.radians(lat)))[..., None]
-        north = (sides[3] - sides[2]) / over
+        here, metre = self.positions(lon, lat), math.radians(EARTH_RADIUS) * STEP
+        east = _shorter(
+            self.positions(lon + STEP, lat) - here, here - self.positions(lon - STEP, lat)
+        )
+        north = _shorter(
+            self.positions(lon, lat + STEP) - here, here - self.positions(lon, lat - STEP)
+        )
+        east /= (metre * np.cos(np.radians(lat)))[..., None]
+        north /= metre
         return east, north
 
     def lonlat(self, positions: Floats) -> tuple[Floats, Floats]:
@@ -161,10 +162,15 @@ class Projection:
         known = np.isfinite(lon) & np.isfinite(lat)
         return np.where(known, lon, np.nan), np.where(known, lat, np.nan)
 
-    def scale(self, position: Floats) -> float:
-        """Return metres of the map for a metre on the Earth, the mean of both ways, at a place."""
-        if self.is_globe:
-            return 1.0
-        lon, lat = self.lonlat(position)
-        east, north = self._directions(lon, lat)
-        return float(np.sqrt(np.linalg.norm(np.cross(east, north))))
+    def scale(self, lon: Floats, lat: Floats) -> Floats:
+        """Return metres of the map for a metre on the Earth, the mean of both ways, (...)."""
+        east, north = self._directions(np.asarray(lon, dtype=float), np.asarray(lat, dtype=float))
+        return np.asarray(np.sqrt(np.linalg.norm(np.cross(east, north), axis=-1)))
+
+
+def _shorter(one: Floats, other: Floats) -> Floats:
+    """Return the shorter of two vectors, (..., 3): the other may lead across a tear of the map."""
+    lengths = [np.linalg.norm(v, axis=-1) for v in (one, other)]
+    with np.errstate(invalid="ignore"):
+        first = ~(lengths[0] > lengths[1])
+    return np.where(first[..., None], one, other)

@@ -7,11 +7,11 @@ package relies on it.
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -23,6 +23,7 @@ from flowtex.field.dates import as_seconds
 from flowtex.field.metric import IndexVelocity, to_index_space
 from flowtex.field.periodic import NodalArrays, close_axes
 from flowtex.field.signs import oriented, sign_free_faults, with_equal_ends
+from flowtex.field.steps import LazySteps, Steps
 from flowtex.field.surface import Surface, known_positions
 from flowtex.field.validation import (
     as_numbers,
@@ -35,6 +36,9 @@ from flowtex.field.validation import (
     three_components,
     with_gaps,
 )
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 __all__ = ["FlowField", "speed_unit"]
 
@@ -57,7 +61,7 @@ class FlowField:
         Node positions, (J, I, 3), in the mesh's own units.
     velocity
         Velocity, (T, J, I, 3) with T = 1 when steady, in the mesh's units per unit of time;
-        zero at nodes that are not valid.
+        zero at nodes that are not valid. Long series of data sets are read step by step.
     times
         Time of each step, (T,), strictly increasing.
     valid
@@ -82,11 +86,11 @@ class FlowField:
     """
 
     points: Floats
-    velocity: Floats
+    velocity: Steps
     times: Floats
     valid: Bools
     periodic: tuple[bool, bool]
-    scalars: Mapping[str, Floats] = field(default_factory=dict)
+    scalars: Mapping[str, Steps] = field(default_factory=dict)
     name: str = ""
     length_unit: str = ""
     time_unit: str = ""
@@ -337,6 +341,75 @@ class FlowField:
             )
             return cls.from_arrays(**arguments, name=Path(path).stem, **options)
 
+    @classmethod
+    def from_xarray(
+        cls,
+        data: xr.Dataset | Sequence[xr.Dataset],
+        u: str | None = None,
+        v: str | None = None,
+        *,
+        projection: str | None = None,
+        globe: bool = False,
+        name: str = "",
+        sel: Mapping[str, Any] | None = None,
+        isel: Mapping[str, Any] | None = None,
+        **selection: Any,
+    ) -> FlowField:
+        """Make a field from a dataset of xarray's, as ocean and weather models write them.
+
+        Parameters
+        ----------
+        data
+            A Dataset, or several that belong together, such as NEMO's files of U, of V and of
+            coordinates. Nothing but coordinates and one step is read at once; further steps are
+            read when they are drawn.
+        u, v
+            Names of the components. By default the only pair that is likely to be the velocity,
+            by CF's standard names, long names and names.
+        projection
+            A flat map, or ``"globe"``; see :class:`flowtex.earth.Projection`. By default plate
+            carree around the middle of the data, and a polar one near a pole.
+        globe
+            Whether it is put on a sphere: the same as ``projection="globe"``.
+        name
+            A word for captions.
+        sel, isel
+            What to draw along axes, by value and by number, such as ``sel={"level": 500}``.
+        **selection
+            The same as ``sel``, such as ``level=500`` or ``time="2000-01-02"``. ``time`` and
+            ``level`` stand for those axes whatever their names. All times by default, the level
+            nearest to the surface, and the first along any other axis.
+
+        Returns
+        -------
+        FlowField
+            On longitude and latitude its positions are metres on the map, and its velocity in m/s
+            is mapped along; else they are those of the x and y coordinates. Components on the
+            sides of cells (Arakawa C) become means in the middle. Other variables at the same
+            nodes are ``scalars``; on a flat map ``"speed"`` is that on the Earth.
+
+        Raises
+        ------
+        FieldError
+            When the components, the coordinates or what is chosen cannot be told.
+        ModuleNotFoundError
+            When xarray, cf_xarray or pyproj is missing.
+
+        Warns
+        -----
+        DatasetNotice
+            When something was chosen without being asked for, such as a level.
+        """
+        from flowtex.field.datasets.read import field_of
+
+        if globe and projection not in (None, "globe"):
+            msg = f"globe=True and projection={projection!r} are given; leave out one of them"
+            raise FieldError(msg)
+        options: dict[str, Any] = {"sel": {**(sel or {}), **selection}, "isel": isel}
+        return field_of(
+            data, u, v, projection="globe" if globe else projection, name=name, **options
+        )
+
     @property
     def shape(self) -> tuple[int, int]:
         """Number of nodes (J, I)."""
@@ -365,10 +438,21 @@ class FlowField:
     @cached_property
     def index_velocity(self) -> IndexVelocity:
         """The velocity in index space, in cells per unit of time, with its speed."""
-        return to_index_space(self.surface, self.velocity)
+        if not isinstance(self.velocity, LazySteps):
+            return to_index_space(self.surface, self.velocity)
+
+        def both(velocity: Floats) -> Floats:
+            step = to_index_space(self.surface, velocity[None])
+            return np.concatenate([step.components[0], step.speed[0, ..., None]], axis=-1)
+
+        steps = self.velocity.map(both)
+        share = to_index_space(self.surface, self.velocity[0][None]).normal_share
+        return IndexVelocity(
+            steps.map(lambda step: step[..., :2]), steps.map(lambda step: step[..., 2]), share
+        )
 
     @property
-    def speed(self) -> Floats:
+    def speed(self) -> Steps:
         """Speed along the surface, (T, J, I)."""
         return self.index_velocity.speed
 
@@ -400,17 +484,32 @@ class FlowField:
 
     def forget(self) -> None:
         """Drop what was derived from the arrays and can be computed again."""
-        for name in ("surface", "index_velocity"):
+        for name in ("surface", "index_velocity", "typical"):
             self.__dict__.pop(name, None)
 
     def at_step(self, step: int) -> FlowField:
         """Return one time step, as for :meth:`step_number`, as a steady field."""
         step = self.step_number(step)
-        data = {k: s[step : step + 1] if len(s) > 1 else s for k, s in self.scalars.items()}
-        at = slice(step, step + 1)
-        one = replace(self, velocity=self.velocity[at], times=self.times[at], scalars=data)
-        one.__dict__["surface"] = self.surface  # the same that the property would make again
-        return one
+        return self.at_steps([step])
+
+    def at_steps(self, steps: Sequence[int]) -> FlowField:
+        """Return some of the time steps, by increasing numbers from 0, in memory."""
+        first, last = steps[0], steps[-1] + 1
+        some: Any = list(steps) if len(steps) < last - first else slice(first, last)
+        data = {k: s[some] if len(s) > 1 else s for k, s in self.scalars.items()}
+        part = replace(
+            self, velocity=np.asarray(self.velocity[some]), times=self.times[some], scalars=data
+        )
+        part.__dict__["surface"] = self.surface  # the same that the property would make again
+        return part
+
+    @cached_property
+    def typical(self) -> FlowField:
+        """The steps from which ranges and lengths are taken: some of those that are read late."""
+        if not isinstance(self.velocity, LazySteps):
+            return self
+        last = len(self.times) - 1
+        return self.at_steps(sorted({0, last // 2, last}))
 
     def step_number(self, step: int) -> int:
         """Return the number of a time step from 0, where negative ones count from the end.
