@@ -65,12 +65,15 @@ def _file_table(summary: FileSummary) -> Table:
 
 def _array_table(summary: FileSummary) -> Table:
     from rich.table import Table
+    from rich.text import Text
 
     table = Table(box=None, header_style="dim")
     for title in ("array", "on", "numbers", "from", "to"):
         table.add_column(title, justify="left" if title in ("array", "on") else "right")
     for array in summary.arrays:
-        table.add_row(array.name, array.where, str(array.components), *_span(array))
+        made = f" = {', '.join(array.parts)}" if array.parts else ""
+        name = Text(f"{array.name}{made}")
+        table.add_row(name, array.where, str(array.components), *_span(array))
     return table
 
 

@@ -12,7 +12,8 @@ from typing import Any
 from flowtex.errors import FieldError
 from flowtex.field.field import FlowField
 from flowtex.field.io.files import errors_of_file, open_file
-from flowtex.field.io.meshes import TimeStep, candidates, is_structured, leaves, time_steps
+from flowtex.field.io.meshes import TimeStep, is_structured, leaves, time_steps
+from flowtex.field.io.vectors import candidates
 
 __all__ = ["FlowSource"]
 

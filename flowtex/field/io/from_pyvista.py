@@ -15,17 +15,7 @@ from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import Bools, Floats
 from flowtex.errors import FieldError, raise_faults
-from flowtex.field.io.meshes import (
-    MeshArray,
-    TimeStep,
-    catalogue,
-    choose_vectors,
-    hidden_nodes,
-    time_steps,
-    values_of,
-    vector_faults,
-    visible_cells,
-)
+from flowtex.field.io.meshes import TimeStep, hidden_nodes, time_steps, visible_cells
 from flowtex.field.io.planes import (
     Plane,
     choose_plane,
@@ -33,6 +23,14 @@ from flowtex.field.io.planes import (
     nodes_to_keep,
     plane_faults,
     spread,
+)
+from flowtex.field.io.vectors import (
+    MeshArray,
+    catalogue,
+    choose_vectors,
+    missing_arrays,
+    values_of,
+    vector_faults,
 )
 from flowtex.field.periodic import find_closure
 from flowtex.field.signs import axes, products
@@ -131,11 +129,12 @@ def _check_step(step: TimeStep, plane: Plane, vectors: MeshArray) -> None:
             "for a file"
         )
         raise FieldError(msg)
-    arrays = [str(array) for array in catalogue(step.grid)]
-    if str(vectors) not in arrays:
+    missing = missing_arrays(step.grid, vectors)
+    if missing:
+        arrays = [str(array) for array in catalogue(step.grid)]
         msg = (
-            f"{step.label} has no array {vectors}, which the first step has; expected it in every "
-            f"step. Its arrays, with their components: {', '.join(arrays) or 'none'}"
+            f"{step.label} has no array {missing[0]}, which the first step has; expected it in "
+            f"every step. Its arrays, with their components: {', '.join(arrays) or 'none'}"
         )
         raise FieldError(msg)
 

@@ -1,4 +1,4 @@
-"""What a PyVista object holds: structured grids, their times, their arrays, and what they hide.
+"""What a PyVista object holds: structured grids, their times, and what they hide.
 
 A grid, a block of a MultiBlock, a list of grids and a reader of a time series all come down to a
 sequence of :class:`TimeStep`. Grids are handed out one at a time, so that a long series is never
@@ -10,44 +10,30 @@ Meshes hide nodes and cells in several ways: VTK's ghost arrays on points and on
 
 from __future__ import annotations
 
-import difflib
-import re
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
-from flowtex._util.array_types import AnyArray, Bools
+from flowtex._util.array_types import Bools
 from flowtex.errors import FieldError
 from flowtex.field.io.planes import count_nodes
 
 __all__ = [
-    "MeshArray",
     "TimeStep",
-    "candidates",
-    "catalogue",
-    "choose_vectors",
     "hidden_nodes",
     "is_reader",
     "is_structured",
     "leaves",
     "time_steps",
     "times_of",
-    "values_of",
-    "vector_faults",
     "visible_cells",
 ]
 
-#: Arrays that say what is hidden and nothing about the flow.
-_BLANKING = {"vtkGhostType", "IBlank", "vtkValidPointMask"}
 #: Flags of VTK's ghost arrays that hide: a hidden point; a refined or a hidden cell. Points and
 #: cells that are duplicates of a neighbouring piece carry data and count as visible.
 _HIDDEN_POINT, _HIDDEN_CELL = 2, 8 | 32
-
-_NO_VELOCITY = re.compile(
-    r".*normals?|.*texture.?coord.*|t_?coords?|coord(inate)?s?|points?|positions?", re.IGNORECASE
-)
 
 
 @dataclass(frozen=True)
@@ -210,118 +196,6 @@ def _unstructured(mesh: Any, label: str) -> str:
         "1), spacing=..., origin=...).sample(mesh), or draw it with ParaView's Surface LIC, which "
         "takes any mesh"
     )
-
-
-@dataclass(frozen=True)
-class MeshArray:
-    """An array of a mesh: its name, where its values are, and how many there are at each."""
-
-    name: str
-    where: Literal["points", "cells"]
-    components: int
-    numeric: bool
-    real: bool
-
-    def __str__(self) -> str:
-        return f"{self.name} ({self.where}, {self.components})"
-
-
-def catalogue(mesh: Any) -> list[MeshArray]:
-    """List the arrays on the points and cells of a mesh, without those that only hide."""
-    arrays = []
-    for where, data in (("points", mesh.point_data), ("cells", mesh.cell_data)):
-        for name in data:
-            if name in _BLANKING:
-                continue
-            array = np.asarray(data[name])
-            arrays.append(
-                MeshArray(
-                    name=name,
-                    where="points" if where == "points" else "cells",
-                    components=int(np.prod(array.shape[1:], dtype=int)),
-                    numeric=array.dtype.kind in "fiub",
-                    real=array.dtype.kind == "f",
-                )
-            )
-    return arrays
-
-
-def values_of(mesh: Any, array: MeshArray) -> AnyArray:
-    """Return the values of an array, (N,) or (N, C)."""
-    data = mesh.point_data if array.where == "points" else mesh.cell_data
-    return np.asarray(data[array.name])
-
-
-def candidates(mesh: Any) -> list[MeshArray]:
-    """Arrays that may be the velocity: real, two or three components, no normals or positions."""
-    named = set()
-    for data in (mesh.GetPointData(), mesh.GetCellData()):
-        named |= {a.GetName() for a in (data.GetNormals(), data.GetTCoords()) if a is not None}
-    return [
-        array
-        for array in catalogue(mesh)
-        if array.real
-        and array.components in (2, 3)
-        and array.name not in named
-        and not _NO_VELOCITY.fullmatch(array.name)
-    ]
-
-
-def vector_faults(mesh: Any, vectors: Any) -> list[str]:
-    """Faults in a choice of vectors; ``None`` stands for the only ones there are."""
-    arrays = catalogue(mesh)
-    listed = ", ".join(map(str, arrays)) or "none"
-    if vectors is None:
-        return _search_faults(mesh, listed)
-    named = [a for a in arrays if a.name == vectors]
-    if not named:
-        close = difflib.get_close_matches(str(vectors), [a.name for a in arrays], n=1)
-        hint = f'. Did you mean "{close[0]}"?' if close else "."
-        return [
-            f"vectors is {vectors!r}, and the mesh has no such array{hint} Its arrays, with their "
-            f"components: {listed}"
-        ]
-    if not any(a.numeric and a.components in (2, 3) for a in named):
-        return [
-            f"vectors is {vectors!r}, an array of {named[0].components} component(s); expected 2 "
-            f"or 3 numbers at each point or cell. The arrays of the mesh, with their components: "
-            f"{listed}"
-        ]
-    return []
-
-
-def choose_vectors(mesh: Any, vectors: str | None) -> MeshArray:
-    """Return the vectors that are meant; :func:`vector_faults` returned none before."""
-    if vectors is None:
-        return _preferred(mesh)[0]
-    fits = [a for a in catalogue(mesh) if a.name == vectors and a.components in (2, 3)]
-    return next(a for a in fits if a.numeric)
-
-
-def _preferred(mesh: Any) -> list[MeshArray]:
-    """Candidates, or the single one that the mesh itself marks as its vectors."""
-    arrays = candidates(mesh)
-    active = mesh.active_vectors_name
-    # VTK's PLOT3D reader marks the momentum by itself: that is no one's choice.
-    if active == "Momentum" and any(a.name == "Velocity" for a in arrays):
-        active = None
-    return [a for a in arrays if a.name == active][:1] or arrays
-
-
-def _search_faults(mesh: Any, listed: str) -> list[str]:
-    arrays = _preferred(mesh)
-    if not arrays:
-        return [
-            "the mesh has no vectors that could be the velocity; expected a point or cell array "
-            f"of real numbers with 2 or 3 components. Its arrays, with their components: {listed}. "
-            'Join single components with mesh["velocity"] = numpy.column_stack((u, v, w))'
-        ]
-    if len(arrays) > 1:
-        return [
-            f"the mesh has {len(arrays)} arrays that could be the velocity: "
-            f'{", ".join(map(str, arrays))}; choose one, as in vectors="{arrays[-1].name}"'
-        ]
-    return []
 
 
 def hidden_nodes(mesh: Any) -> Bools:

@@ -11,19 +11,21 @@ import numpy as np
 from flowtex.errors import FieldError
 from flowtex.field.io.files import OpenFile, errors_of_file, open_file
 from flowtex.field.io.meshes import (
-    MeshArray,
-    candidates,
-    catalogue,
     hidden_nodes,
     is_reader,
     is_structured,
     leaves,
     time_steps,
     times_of,
+)
+from flowtex.field.io.planes import plane_faults
+from flowtex.field.io.vectors import (
+    MeshArray,
+    candidates,
+    catalogue,
     values_of,
     vector_faults,
 )
-from flowtex.field.io.planes import plane_faults
 
 __all__ = ["ArraySummary", "FileSummary", "describe"]
 
@@ -34,7 +36,7 @@ class ArraySummary:
 
     ``components`` is the count of numbers at each point or cell; ``low`` and ``high`` are the range
     of the finite values, of the lengths where there are several components, NaN where there are
-    none.
+    none. ``parts`` are the names of the arrays that make a vector together.
     """
 
     name: str
@@ -42,6 +44,7 @@ class ArraySummary:
     components: int
     low: float
     high: float
+    parts: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -93,15 +96,16 @@ def _summary(file: OpenFile, mesh: Any) -> FileSummary:
     part = next((p for _, p in parts if is_structured(p)), parts[0][1] if parts else mesh)
     structured = is_structured(part)
     data = hasattr(part, "point_data")
-    names = [a.name for a in candidates(part)] if data else []
+    arrays = catalogue(part) if data else []
+    found = candidates(part) if data else []
     vectors = file.velocity
     return FileSummary(
         path=file.path,
         grid=type(part).__name__,
         dimensions=tuple(part.dimensions) if structured else None,
         blocks=tuple(name for name, _ in parts) if len(parts) > 1 else (),
-        arrays=tuple(_array(part, a) for a in catalogue(part)) if data else (),
-        candidates=(vectors,) if vectors is not None else tuple(names),
+        arrays=tuple(_array(part, a) for a in (*arrays, *(a for a in found if a.parts))),
+        candidates=(vectors,) if vectors is not None else tuple(a.name for a in found),
         times=tuple(times_of(file.source)),
         blanked=int(hidden_nodes(part).sum()) if structured else 0,
         problem=_problem(mesh, vectors),
@@ -132,4 +136,4 @@ def _array(mesh: Any, array: MeshArray) -> ArraySummary:
         values = values[np.isfinite(values)]
         if len(values):
             low, high = float(values.min()), float(values.max())
-    return ArraySummary(array.name, array.where, array.components, low, high)
+    return ArraySummary(array.name, array.where, array.components, low, high, array.parts)

@@ -258,7 +258,7 @@ def test_no_candidate() -> None:
     with says(
         "the mesh has no vectors that could be the velocity; expected a point or cell array of "
         "real numbers with 2 or 3 components. Its arrays, with their components: p (points, 1). "
-        'Join single components with mesh["velocity"] = numpy.column_stack((u, v, w))'
+        'Name single components with commas between, as in vectors="u,v,w"'
     ):
         FlowField.from_pyvista(grid)
 
@@ -283,7 +283,8 @@ def test_a_name_of_something_else() -> None:
     grid["p"] = np.ones(12)
     with says(
         "vectors is 'p', an array of 1 component(s); expected 2 or 3 numbers at each point or "
-        "cell. The arrays of the mesh, with their components: v (points, 3), p (points, 1)"
+        "cell, or the names of as many arrays of one, with commas between. The arrays of the "
+        "mesh, with their components: v (points, 3), p (points, 1)"
     ):
         FlowField.from_pyvista(grid, vectors="p")
 
