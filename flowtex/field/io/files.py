@@ -21,12 +21,13 @@ from flowtex.errors import FieldError
 from flowtex.field.io import plot3d
 from flowtex.field.io.from_pyvista import FieldArguments, read_meshes
 from flowtex.field.io.meshes import times_of
+from flowtex.field.io.readers import open_reader
 
 __all__ = ["OpenFile", "errors_of_file", "open_file", "read_file"]
 
 _KNOWN_FORMATS = (
-    "a structured mesh that PyVista reads (.vts, .vtr, .vti, .vtk, .vtm, .pvd and more), or "
-    "PLOT3D (.xyz with .q beside it)"
+    "a structured mesh that PyVista reads (.vts, .vtr, .vti, .vtk, .vtm, .pvd, .cgns, .case and "
+    "more), or PLOT3D (.xyz with .q beside it)"
 )
 
 
@@ -69,8 +70,6 @@ def open_file(path: str | Path) -> OpenFile:
     The FieldError for one that is missing, empty, or of an unknown format is to be named by
     :func:`errors_of_file`.
     """
-    import pyvista as pv
-
     file = Path(path).expanduser()
     _check_path(file)
     grid = plot3d.find_grid(file) or file
@@ -81,7 +80,7 @@ def open_file(path: str | Path) -> OpenFile:
         mesh = plot3d.read_plot3d(grid, layout, plot3d.find_solution(grid))
         return OpenFile(file, mesh, "Velocity")
     try:
-        return OpenFile(file, pv.get_reader(str(file)), None)
+        return OpenFile(file, open_reader(file), None)
     except ValueError as error:
         if "does not support a file" not in str(error):
             raise

@@ -18,14 +18,17 @@ import numpy as np
 
 from flowtex._util.array_types import Bools
 from flowtex.errors import FieldError
-from flowtex.field.io.planes import count_nodes
 
 __all__ = [
+    "SAME_NODE_SHARE",
     "TimeStep",
     "hidden_nodes",
     "is_reader",
     "is_structured",
     "leaves",
+    "pick",
+    "several_fault",
+    "several_grids",
     "time_steps",
     "times_of",
     "visible_cells",
@@ -34,6 +37,10 @@ __all__ = [
 #: Flags of VTK's ghost arrays that hide: a hidden point; a refined or a hidden cell. Points and
 #: cells that are duplicates of a neighbouring piece carry data and count as visible.
 _HIDDEN_POINT, _HIDDEN_CELL = 2, 8 | 32
+#: Nodes of two steps closer than this share of the extent of the mesh are the same.
+SAME_NODE_SHARE = 1e-6
+#: Blocks that a message lists at most.
+MOST_LISTED = 12
 
 
 @dataclass(frozen=True)
@@ -58,7 +65,7 @@ def time_steps(source: Any, block: int | str | None = None) -> Iterator[TimeStep
             msg = "the list of meshes is empty; expected one structured mesh for each time step"
             raise FieldError(msg)
         for n, item in enumerate(source):
-            yield item if isinstance(item, TimeStep) else _single(item, f"step {n}")
+            yield item if isinstance(item, TimeStep) else _single(item, f"step {n}", block)
     else:
         yield from _blocks(_wrapped(source, "the mesh"), block)
 
@@ -81,7 +88,10 @@ def times_of(source: Any) -> list[float]:
 
 
 def leaves(mesh: Any, name: str = "") -> Iterator[tuple[str, Any]]:
-    """Go through the meshes in a tree of blocks, with their paths; empty blocks are left out."""
+    """Go through the meshes in a tree of blocks, with their paths; empty blocks are left out.
+
+    A block without a name is named after its number, and so are those of one name.
+    """
     import pyvista as pv
 
     if not isinstance(mesh, pv.MultiBlock):
@@ -91,7 +101,50 @@ def leaves(mesh: Any, name: str = "") -> Iterator[tuple[str, Any]]:
     for number, (key, block) in enumerate(zip(keys, mesh, strict=True)):
         if block is not None:
             own = str(number) if key is None else key
+            own = own if keys.count(key) == 1 or key is None else f"{own} {number}"
             yield from leaves(block, f"{name}/{own}" if name else own)
+
+
+def several_grids(mesh: Any, *, series: bool = False) -> dict[str, Any]:
+    """Return the structured blocks of a mesh by their paths, where one has to be chosen.
+
+    That is not so where there is only one, and where all have the same nodes: those are time steps,
+    unless the mesh is itself one step of a ``series``.
+    """
+    grids = _grids(mesh)
+    usable = [grid for grid in grids.values() if _is_surface(grid)] or list(grids.values())
+    if len(usable) < 2 or (not series and _same_nodes(usable)):
+        return {}
+    return grids
+
+
+def _grids(mesh: Any) -> dict[str, Any]:
+    return {name: grid for name, grid in leaves(mesh) if is_structured(grid)}
+
+
+def _same_nodes(grids: list[Any]) -> bool:
+    """Whether grids have the same nodes, as far as their sizes and bounds tell."""
+    first = np.asarray(grids[0].bounds)
+    near = SAME_NODE_SHARE * max(float(np.ptp(first.reshape(3, 2), axis=1).max()), 0.0)
+    return all(
+        tuple(grid.dimensions) == tuple(grids[0].dimensions)
+        and bool(np.all(np.abs(np.asarray(grid.bounds) - first) <= near))
+        for grid in grids
+    )
+
+
+def several_fault(grids: dict[str, Any], label: str) -> str:
+    """Return words about a choice of several blocks."""
+    listed = [
+        f"{number} ({name}, {' x '.join(map(str, grid.dimensions))} nodes)"
+        for number, (name, grid) in enumerate(grids.items())
+    ]
+    more = ", ..." if len(listed) > MOST_LISTED else ""
+    return (
+        f"{label} has {len(grids)} structured blocks, and no time steps of one: "
+        f"{', '.join(listed[:MOST_LISTED])}{more}; choose one, as in "
+        f'block="{next(iter(grids))}"'
+    )
 
 
 def _read(reader: Any, block: int | str | None) -> Iterator[TimeStep]:
@@ -106,53 +159,59 @@ def _read(reader: Any, block: int | str | None) -> Iterator[TimeStep]:
     try:
         for n, time in enumerate(times):
             reader.set_active_time_value(time)
-            mesh = reader.read()
-            step = _single(mesh if block is None else _pick(mesh, block), f"step {n}")
+            step = _single(reader.read(), f"step {n}", block)
             yield TimeStep(step.grid, time, step.label)
     finally:
         reader.set_active_time_value(before)
 
 
-def _pick(mesh: Any, block: int | str) -> Any:
-    """Pick one of several structured grids, by number or by name."""
-    grids = [(name, grid) for name, grid in leaves(mesh) if is_structured(grid)]
-    for number, (name, grid) in enumerate(grids):
+def pick(mesh: Any, block: int | str) -> Any:
+    """Return one of the structured grids in a mesh, by number or by name.
+
+    Raises a FieldError when there is none.
+    """
+    grids = _grids(mesh)
+    for number, (name, grid) in enumerate(grids.items()):
         if block in (number, name):
             return grid
-    listed = ", ".join(f"{number} ({name})" for number, (name, _) in enumerate(grids)) or "none"
+    for name, other in leaves(mesh):
+        if block == name or not grids:
+            label = f"block {name!r}" if block == name else "the mesh"
+            raise FieldError(_unstructured(other if block == name else mesh, label))
+    listed = ", ".join(f"{number} ({name})" for number, name in enumerate(grids)) or "none"
     msg = f"block is {block!r}; the structured blocks of the file are: {listed}"
     raise FieldError(msg)
 
 
 def _blocks(mesh: Any, block: int | str | None) -> Iterator[TimeStep]:
-    """Take a mesh for one step, and a MultiBlock of several grids for a series."""
+    """Take a mesh for one step, and a MultiBlock of grids with the same nodes for a series."""
     if block is not None:
-        mesh = _pick(mesh, block)
-    grids = [(name, block) for name, block in leaves(mesh) if is_structured(block)]
+        mesh = pick(mesh, block)
+    if several := several_grids(mesh):
+        raise FieldError(several_fault(several, "the mesh"))
+    grids = list(_grids(mesh).items())
     usable = [(name, block) for name, block in grids if _is_surface(block)] or grids
     if len(usable) < 2:
         yield _single(mesh, "the mesh")
         return
-    for name, block in usable:
-        yield TimeStep(block, _time(block), f"block {name!r}")
+    for name, grid in usable:
+        yield TimeStep(grid, _time(grid), f"block {name!r}")
 
 
-def _single(item: Any, label: str) -> TimeStep:
-    """Return the only structured grid in a mesh or a MultiBlock."""
+def _single(item: Any, label: str, block: int | str | None = None) -> TimeStep:
+    """Return the only structured grid in a mesh or a MultiBlock, or the block of that name."""
     mesh = _wrapped(item, label)
-    grids = [block for _, block in leaves(mesh) if is_structured(block)]
-    usable = [block for block in grids if _is_surface(block)] or grids
-    if len(usable) == 1:
-        time = _time(usable[0])
-        return TimeStep(usable[0], _time(mesh) if time is None else time, label)
-    if usable:
-        sizes = "; ".join(count_nodes(block.dimensions) for block in usable)
-        msg = (
-            f"{label} has {len(usable)} structured blocks: {sizes}; give the one to draw: "
-            "mesh[0], or block=0 for a file"
-        )
-        raise FieldError(msg)
-    raise FieldError(_unstructured(mesh, label))
+    if block is not None:
+        grid, time = pick(mesh, block), _time(mesh)
+        return TimeStep(grid, _time(grid) if time is None else time, label)
+    if several := several_grids(mesh, series=True):
+        raise FieldError(several_fault(several, label))
+    grids = list(_grids(mesh).values())
+    usable = [grid for grid in grids if _is_surface(grid)] or grids
+    if not usable:
+        raise FieldError(_unstructured(mesh, label))
+    time = _time(usable[0])
+    return TimeStep(usable[0], _time(mesh) if time is None else time, label)
 
 
 def _is_surface(grid: Any) -> bool:
@@ -191,10 +250,10 @@ def _unstructured(mesh: Any, label: str) -> str:
     if kinds != [type(mesh).__name__]:
         what += f" of {', '.join(kinds)}"
     return (
-        f"{label} is {what}, and no structured grid: its nodes have no order along i and j, which "
-        "the method needs. Sample it onto a grid, as in pyvista.ImageData(dimensions=(400, 300, "
-        "1), spacing=..., origin=...).sample(mesh), or draw it with ParaView's Surface LIC, which "
-        "takes any mesh"
+        f"{label} is {what}, and no structured grid: its nodes have no order along i and j, "
+        "which the method needs, and unstructured surfaces are not drawn yet. Sample it onto a "
+        "grid, as in pyvista.create_grid(mesh, (200, 150, 50)).sample(mesh), with 1 along what "
+        "is flat, or draw it with ParaView's Surface LIC, which takes any mesh"
     )
 
 
