@@ -175,10 +175,11 @@ def pick(mesh: Any, block: int | str) -> Any:
         if block in (number, name):
             return grid
     for name, other in leaves(mesh):
-        if block == name or not grids:
-            label = f"block {name!r}" if block == name else "the mesh"
-            raise FieldError(_unstructured(other if block == name else mesh, label))
-    listed = ", ".join(f"{number} ({name})" for number, name in enumerate(grids)) or "none"
+        if block == name:
+            raise FieldError(_unstructured(other, f"block {name!r}"))
+    if not grids:
+        raise FieldError(_unstructured(mesh, "the mesh"))
+    listed = ", ".join(f"{number} ({name})" for number, name in enumerate(grids))
     msg = f"block is {block!r}; the structured blocks of the file are: {listed}"
     raise FieldError(msg)
 
