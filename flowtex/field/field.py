@@ -337,7 +337,8 @@ class FlowField:
             When the file is missing, empty, not readable, of an unknown or broken format, or does
             not hold a structured flow; the text starts with the path.
         """
-        from flowtex.field.io.files import errors_of_file, read_file
+        from flowtex.field.io.files import read_file
+        from flowtex.field.io.reader_errors import errors_of_file
 
         with errors_of_file(path):
             options: dict[str, Any] = {"periodic": periodic, "sign_free": sign_free}

@@ -13,7 +13,7 @@ from typing import Any
 
 from flowtex.errors import FieldError
 from flowtex.field.field import FlowField
-from flowtex.field.io.files import errors_of_file, open_file
+from flowtex.field.io.files import open_file
 from flowtex.field.io.meshes import (
     TimeStep,
     is_reader,
@@ -21,6 +21,7 @@ from flowtex.field.io.meshes import (
     time_steps,
     times_of,
 )
+from flowtex.field.io.reader_errors import errors_of_file
 from flowtex.field.io.vectors import candidates
 
 __all__ = ["FlowSource"]

@@ -10,7 +10,7 @@ from typing import Any, Literal
 import numpy as np
 
 from flowtex.errors import FieldError
-from flowtex.field.io.files import OpenFile, errors_of_file, open_file
+from flowtex.field.io.files import OpenFile, open_file
 from flowtex.field.io.meshes import (
     hidden_nodes,
     is_reader,
@@ -23,6 +23,7 @@ from flowtex.field.io.meshes import (
     times_of,
 )
 from flowtex.field.io.planes import plane_faults
+from flowtex.field.io.reader_errors import errors_of_file
 from flowtex.field.io.vectors import (
     MeshArray,
     candidates,

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from flowtex import FlowField
 from flowtex.errors import FieldError
-from flowtex.field.io import files
 from flowtex.field.io.plot3d import find_grid, find_layout, find_solution
+from flowtex.field.io.reader_errors import errors_of_file
 from flowtex.field.io.summary import BlockSummary, describe
 
 pv = pytest.importorskip("pyvista")
@@ -499,7 +499,7 @@ def test_logging_is_left_as_it_was(tmp_path: Path) -> None:
 def test_what_vtk_only_warns_of_is_passed_on(tmp_path: Path) -> None:
     with (
         pytest.warns(UserWarning, match=r"^a\.vts: VTK says: odd$"),
-        files.errors_of_file(Path("a.vts")),
+        errors_of_file(Path("a.vts")),
     ):
         from vtkmodules.vtkCommonCore import vtkOutputWindow
 
