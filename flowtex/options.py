@@ -59,9 +59,14 @@ class FieldOptions:
     """What of a mesh makes the field; the names are those of :meth:`FlowField.from_pyvista`."""
 
     vectors: str | None = _option(
-        None, "Name of the velocity; found when there is only one candidate."
+        None,
+        "Name of the velocity, or of its two or three components with commas between, such as "
+        "``u,v,w``; found when there is only one candidate.",
     )
     plane: str | None = _option(None, 'Plane of a 3D mesh, such as ``"k=20"``.')
+    block: int | str | None = _option(
+        None, "Number or path of the block to draw, where there are several."
+    )
     times: Any | None = _option(None, "Times of a list of meshes; their positions by default.")
     periodic: str | None = _option(
         None, 'Axes that close on themselves: ``"i"``, ``"j"``, ``"ij"`` or ``""``.'

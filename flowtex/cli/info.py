@@ -15,6 +15,9 @@ if TYPE_CHECKING:
 
 __all__ = ["info"]
 
+#: Times and blocks that are listed one by one at most.
+MOST_TIMES, MOST_BLOCKS = 8, 40
+
 
 def info(file: FILE, /, *, flow: Annotated[FieldFlags | None, FLAT] = None) -> int:
     """Tell what a file holds, and what would be drawn."""
@@ -25,10 +28,12 @@ def info(file: FILE, /, *, flow: Annotated[FieldFlags | None, FLAT] = None) -> i
     from flowtex.field.io.summary import describe
 
     options = (flow or FieldFlags()).arguments()
-    summary = describe(file)
+    summary = describe(file, options.get("block"))
     console = Console(highlight=False)
     console.print(Text(str(file), "bold"), soft_wrap=True)
     console.print(_file_table(summary))
+    if summary.blocks:
+        console.print(_block_table(summary))
     if summary.arrays:
         console.print(_array_table(summary))
     if summary.problem and not options:
@@ -55,22 +60,43 @@ def _file_table(summary: FileSummary) -> Table:
     if summary.blanked:
         table.add_row("blanked", f"{summary.blanked:,} nodes")
     if summary.blocks:
-        table.add_row("blocks", ", ".join(summary.blocks))
+        table.add_row("blocks", str(len(summary.blocks)))
     if summary.times:
+        few = len(summary.times) <= MOST_TIMES
         ends = f"{summary.times[0]:g} to {summary.times[-1]:g}"
-        table.add_row("times", f"{len(summary.times)}, {ends}")
+        listed = ", ".join(f"{time:g}" for time in summary.times) if few else ends
+        table.add_row("times", f"{len(summary.times)}: {listed}")
     table.add_row("velocity", ", ".join(summary.candidates) or "none found")
+    return table
+
+
+def _block_table(summary: FileSummary) -> Table:
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(box=None, header_style="dim")
+    for title in ("block", "name", "grid", "nodes"):
+        table.add_column(title)
+    for block in summary.blocks[:MOST_BLOCKS]:
+        number = "" if block.number is None else str(block.number)
+        nodes = " × ".join(str(n) for n in block.dimensions or ())
+        table.add_row(number, Text(block.name), block.grid, nodes)
+    if len(summary.blocks) > MOST_BLOCKS:
+        table.add_row("", f"and {len(summary.blocks) - MOST_BLOCKS} more", "", "")
     return table
 
 
 def _array_table(summary: FileSummary) -> Table:
     from rich.table import Table
+    from rich.text import Text
 
     table = Table(box=None, header_style="dim")
     for title in ("array", "on", "numbers", "from", "to"):
         table.add_column(title, justify="left" if title in ("array", "on") else "right")
     for array in summary.arrays:
-        table.add_row(array.name, array.where, str(array.components), *_span(array))
+        made = f" = {', '.join(array.parts)}" if array.parts else ""
+        name = Text(f"{array.name}{made}")
+        table.add_row(name, array.where, str(array.components), *_span(array))
     return table
 
 

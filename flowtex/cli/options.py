@@ -75,9 +75,7 @@ class FieldFlags:
             FieldOptions, "periodic", "Axes that close on themselves: ``i``, ``j``, ``ij`` or none."
         ),
     ] = None
-    block: Annotated[
-        str | None, Parameter(group=FLOW, help="Number or name of the block to draw.")
-    ] = None
+    block: Annotated[str | None, _flag(FieldOptions, "block")] = None
     sign_free: Annotated[bool | None, _flag(FieldOptions, "sign_free", negative="")] = None
 
     def arguments(self) -> dict[str, Any]:

@@ -242,6 +242,7 @@ class FlowField:
         periodic: str | None = None,
         name: str = "",
         sign_free: bool = False,
+        block: int | str | None = None,
     ) -> FlowField:
         """Make a field from a structured PyVista mesh, or from a series of them.
 
@@ -254,6 +255,9 @@ class FlowField:
         vectors
             Name of the velocity on points or cells, with 2 or 3 components. By default the only
             array that can be the velocity, or the one that the mesh marks as its active vectors.
+            Two or three arrays of one component are named with commas between, as in
+            ``"u,v,w"``, and found where there is no array of vectors, if their names differ in the
+            component alone, such as ``X Velocity``, ``Y Velocity`` and ``Z Velocity``.
         plane
             Surface to draw from a mesh of three dimensions: ``"k=20"``, ``"j=0"`` or ``"i=-1"``,
             counted from the end when negative. On a k-plane the surface's (i, j) are the mesh's
@@ -264,6 +268,9 @@ class FlowField:
             field data of every step, or 0, 1, 2, ...
         periodic, name, sign_free
             As for :meth:`from_arrays`.
+        block
+            Number or path of the block to draw of a MultiBlock, such as ``"Base/Zone 1"``. Numbers
+            count the structured grids from 0.
 
         Returns
         -------
@@ -287,7 +294,9 @@ class FlowField:
         from flowtex.field.io.from_pyvista import read_meshes
 
         options: dict[str, Any] = {"periodic": periodic, "sign_free": sign_free}
-        arguments = read_meshes(mesh, vectors=vectors, plane=plane, times=times, **options)
+        arguments = read_meshes(
+            mesh, vectors=vectors, plane=plane, times=times, block=block, **options
+        )
         return cls.from_arrays(**arguments, name=name, **options)
 
     @classmethod
@@ -318,8 +327,8 @@ class FlowField:
         time
             Draw this one of the times in the file, as a steady field. All of them by default.
         block
-            Number or name of the block to draw, where the file has several grids. Numbers count
-            the structured grids from 0.
+            Number or path of the block to draw, such as ``"Base/Zone 1"``, where the file has
+            several grids. Numbers count the structured grids from 0.
 
         Returns
         -------
@@ -332,7 +341,8 @@ class FlowField:
             When the file is missing, empty, not readable, of an unknown or broken format, or does
             not hold a structured flow; the text starts with the path.
         """
-        from flowtex.field.io.files import errors_of_file, read_file
+        from flowtex.field.io.files import read_file
+        from flowtex.field.io.reader_errors import errors_of_file
 
         with errors_of_file(path):
             options: dict[str, Any] = {"periodic": periodic, "sign_free": sign_free}

@@ -292,7 +292,7 @@ class Data(Controller):
             for one, all_ in (("block", "blocks"), ("vectors", "vectors_choices"), ("axis", "axes"))
         )
         if block != options["block"]:  # its planes, and its arrays, are others
-            arrays = self._current.source.part(block).vectors
+            arrays = self._current.source.block_vectors[block]
             return Choice(vectors if vectors in arrays else "", "", block)
         plane = ""
         if axis:
