@@ -20,7 +20,7 @@ from flowtex._util.colours import colour_table, is_diverging
 from flowtex._util.names import near_names
 from flowtex.field import FlowField
 from flowtex.field.interpolation import steps_around
-from flowtex.field.steps import LazySteps
+from flowtex.field.steps import LazySteps, Steps
 from flowtex.options import ROBUST, SPEED, Appearance, FieldOptions, Options, option_text
 from flowtex.rendering.cpu.shade import mean_colours
 from flowtex.settings import TABLE, Affects, Settings, SettingsError
@@ -468,7 +468,7 @@ class AppearanceAttributes:
         super().__setattr__(name, value)
 
 
-def steps_of(field: FlowField, name: str) -> Floats:
+def steps_of(field: FlowField, name: str) -> Steps:
     """Return nodal values at all times, (T or 1, J, I); ``"speed"`` is always there.
 
     Raises

@@ -302,23 +302,30 @@ class FlowField:
     @classmethod
     def from_file(
         cls,
-        path: str | Path,
+        path: str | Path | Sequence[str | Path],
         *,
         vectors: str | None = None,
         plane: str | None = None,
         periodic: str | None = None,
-        time: float | None = None,
+        time: float | str | None = None,
         block: int | str | None = None,
         sign_free: bool = False,
+        projection: str | None = None,
+        globe: bool = False,
+        level: float | str | None = None,
+        sel: Mapping[str, Any] | None = None,
+        isel: Mapping[str, Any] | None = None,
     ) -> FlowField:
-        """Make a field from a file.
+        """Make a field from a file, or from several that belong together.
 
         Parameters
         ----------
         path
             A structured mesh in any format that PyVista reads, or a PLOT3D grid or solution. The
             other one of the two is found beside it by its name: ``postxyz.bin`` and
-            ``postq.bin``, ``wing.xyz`` (or ``.x``, ``.g``) and ``wing.q``.
+            ``postq.bin``, ``wing.xyz`` (or ``.x``, ``.g``) and ``wing.q``. Or data of the Earth:
+            NetCDF, a Zarr store, GRIB, or the JSON of wind maps; of these several at once, as the
+            parts of a model's output or the steps of a series.
         vectors
             Name of the velocity, as for :meth:`from_pyvista`. A PLOT3D solution gives
             ``Velocity``, made from its density and momentum.
@@ -329,6 +336,8 @@ class FlowField:
         block
             Number or path of the block to draw, such as ``"Base/Zone 1"``, where the file has
             several grids. Numbers count the structured grids from 0.
+        projection, globe, level, sel, isel
+            As for :meth:`from_xarray`, for data of the Earth.
 
         Returns
         -------
@@ -341,15 +350,12 @@ class FlowField:
             When the file is missing, empty, not readable, of an unknown or broken format, or does
             not hold a structured flow; the text starts with the path.
         """
-        from flowtex.field.io.files import read_file
-        from flowtex.field.io.reader_errors import errors_of_file
+        from flowtex.field.io.file_fields import field_of_file
 
-        with errors_of_file(path):
-            options: dict[str, Any] = {"periodic": periodic, "sign_free": sign_free}
-            arguments = read_file(
-                path, time=time, block=block, vectors=vectors, plane=plane, **options
-            )
-            return cls.from_arrays(**arguments, name=Path(path).stem, **options)
+        of_meshes = {"plane": plane, "block": block, "periodic": periodic, "sign_free": sign_free}
+        of_earth: dict[str, Any] = {"projection": projection, "globe": globe, "level": level}
+        of_earth |= {"sel": sel, "isel": isel}
+        return field_of_file(path, vectors, time, of_meshes, of_earth)
 
     @classmethod
     def from_xarray(

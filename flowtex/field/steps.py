@@ -84,7 +84,7 @@ class LazySteps:
             lambda n: self.step(int(numbers[n]))[rest] if rest else self.step(int(numbers[n])),
         )
 
-    def __array__(self, dtype: Any = None, copy: bool | None = None) -> AnyArray:
+    def __array__(self, dtype: Any = None, copy: Any = None) -> AnyArray:
         """Read all steps."""
         del copy
         return np.stack(list(self)).astype(dtype or float, copy=False)

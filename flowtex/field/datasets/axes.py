@@ -178,7 +178,7 @@ def _is_dates(coordinate: xr.DataArray) -> bool:
 
 
 def _values(array: xr.DataArray, dim: str) -> AnyArray | None:
-    """Return the values along an axis: dates, seconds where the unit of a time is known, numbers."""
+    """Return the values along an axis: its dates, where it has them, or numbers."""
     dates = _dates(array, dim)
     if dates is not None:
         return dates

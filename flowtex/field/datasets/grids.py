@@ -100,7 +100,7 @@ def _moved(places: Places, sides: Sides) -> Places:
         x, y, z = np.moveaxis(middle, -1, 0)
         found = np.degrees(np.arctan2(y, x)), np.degrees(np.arctan2(z, np.hypot(x, y)))
     else:
-        found = tuple(centred(p, 1, sides) for p in (places.a, places.b))
+        found = centred(places.a, 1, sides), centred(places.b, 1, sides)
     a, b = np.full(shape, np.nan), np.full(shape, np.nan)
     a[:, sides.known], b[:, sides.known] = found
     return replace(places, a=a, b=b, is_line=False, why=f"{places.why}, between the sides")

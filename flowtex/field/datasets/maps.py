@@ -1,4 +1,4 @@
-"""Nodes of longitude and latitude on a globe or a flat map, and the order of their columns there."""
+"""Nodes of longitude and latitude on a globe or a flat map, and their order there."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ def on_map(places: Places, name: str | None) -> MapNodes:
             points[~(scale <= LARGEST * np.nanmin(scale))] = np.nan
     if not places.is_line or name not in (*CYLINDERS, "north", "south"):
         points[_torn(points, lon, lat)] = np.nan
-    rows = np.isfinite(points).all(axis=-1).any(axis=1)
+    rows = np.asarray(np.isfinite(points[..., 0]).any(axis=1))
     first, last = np.flatnonzero(rows)[[0, -1]] if rows.any() else (0, len(rows) - 1)
     kept = slice(int(first), int(last) + 1)
     return MapNodes(projection, points[kept], (kept, columns), periodic, lon[kept], lat[kept])

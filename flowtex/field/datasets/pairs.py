@@ -16,7 +16,7 @@ from flowtex.errors import FieldError
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["Pair", "choose_pair", "find_pairs", "to_metres_per_second"]
+__all__ = ["Pair", "choose_pair", "find_pairs", "to_metres_per_second", "two_names"]
 
 #: Words for the first component, and those for the second one.
 PARTNERS = {
@@ -113,6 +113,23 @@ def choose_pair(datasets: Sequence[xr.Dataset], u: str | None, v: str | None) ->
         )
         raise FieldError(msg)
     return best[0]
+
+
+def two_names(vectors: str | None) -> dict[str, str]:
+    """Return the arguments u and v for names with a comma between, as ``"uo,vo"``.
+
+    Raises
+    ------
+    FieldError
+        When these are not two names.
+    """
+    if vectors is None:
+        return {}
+    names = [word.strip() for word in vectors.split(",")]
+    if len(names) != 2 or not all(names):
+        msg = f'vectors is {vectors!r}; expected the names of two components, as in "uo,vo"'
+        raise FieldError(msg)
+    return dict(zip("uv", names, strict=True))
 
 
 def find_pairs(datasets: Sequence[xr.Dataset]) -> list[Pair]:
@@ -255,7 +272,7 @@ def _no_pair(datasets: Sequence[xr.Dataset]) -> str:
 
 
 def _reversed(text: str, source: str) -> Iterator[tuple[str, str, str]]:
-    """The same from the second component."""
+    """Give the same from the second component."""
     for first, second in PARTNERS.items():
         glued = source == "name"
         pattern = rf"{second}" if glued else rf"(?<![a-z0-9]){second}(?![a-z0-9])"

@@ -82,7 +82,11 @@ def find_places(
         if nowhere.sum() > 1:  # as where a model leaves out land
             a, b = np.where(nowhere, np.nan, a), np.where(nowhere, np.nan, b)
         return Places(
-            _longitudes(a, str(lon.name)), b, True, lon.ndim == 1, f"{lon.name} and {lat.name}"
+            _longitudes(a, str(lon.name)),
+            b,
+            is_earth=True,
+            is_line=lon.ndim == 1,
+            why=f"{lon.name} and {lat.name}",
         )
     for x, y in _pairs(array, dims, datasets, (ACROSS, UPWARD), ("X", "Y")):
         a, b = _spread(x, y, dims, shape)
@@ -253,11 +257,11 @@ def _plane(
             lon, lat = change.transform(a, b)
         bad = ~(np.isfinite(lon) & np.isfinite(lat))
         places = np.where(bad, np.nan, lon), np.where(bad, np.nan, lat)
-        return Places(*places, True, False, f"{why} by {crs.get('grid_mapping_name', 'its CRS')}")
-    factor = LENGTHS.get(units[0].lower())
-    unit = "m" if factor is not None else units[0]
-    factor = factor or 1.0
-    return Places(a * factor, b * factor, False, x.ndim == 1, why, unit)
+        words = f"{why} by {crs.get('grid_mapping_name', 'its CRS')}"
+        return Places(*places, is_earth=True, is_line=False, why=words)
+    unit = "m" if units[0].lower() in LENGTHS else units[0]
+    factor = LENGTHS.get(units[0].lower(), 1.0)
+    return Places(a * factor, b * factor, is_earth=False, is_line=x.ndim == 1, why=why, unit=unit)
 
 
 def _mapping(array: xr.DataArray, datasets: Sequence[xr.Dataset]) -> dict[str, Any] | None:

@@ -17,9 +17,9 @@ from flowtex._util.array_types import Bools, Floats
 from flowtex._util.extras import import_extra
 from flowtex.errors import FieldError
 from flowtex.field.datasets.axes import Choice, Section, horizontal_dims, seconds_in, sections
+from flowtex.field.datasets.grids import find_grid, sea_mask, unrepeated
 from flowtex.field.datasets.maps import on_map
 from flowtex.field.datasets.pairs import Pair, choose_pair, to_metres_per_second
-from flowtex.field.datasets.grids import find_grid, sea_mask, unrepeated
 from flowtex.field.datasets.places import Places, over_sphere
 from flowtex.field.datasets.staggered import centred
 from flowtex.field.field import FlowField
@@ -28,7 +28,7 @@ from flowtex.field.steps import LazySteps
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["DatasetNotice", "Recognised", "field_of", "is_dataset", "recognise"]
+__all__ = ["DatasetNotice", "Recognised", "field_of", "recognise"]
 
 #: Share of the nodes of a staggered grid at rest from which on they count as land.
 LAND_SHARE = 0.01
@@ -70,15 +70,6 @@ class Recognised:
     cells: tuple[str, str]
     kept: tuple[slice, slice]
     trimmed: tuple[slice, slice]
-
-
-def is_dataset(thing: Any) -> bool:
-    """Whether something is a dataset of xarray's, or several of them; xarray is not loaded."""
-    several = thing if isinstance(thing, (list, tuple)) else [thing]
-    return bool(several) and all(
-        type(one).__name__ == "Dataset" and type(one).__module__.startswith("xarray.")
-        for one in several
-    )
 
 
 def field_of(
@@ -136,10 +127,12 @@ def field_of(
 
     first = velocity(numbers[0])
     base = FlowField.from_arrays(points, first, name=name, **options)
-    extra = {key: partial(on_lines, read) for key, (read, _) in scalars.items()}
+    extra: dict[str, Callable[[int], Floats]] = {}
+    for key, (read, _) in scalars.items():
+        extra[key] = partial(on_lines, read)
     units = {key: unit for key, (_, unit) in scalars.items() if unit}
     if speeds:
-        extra = {**extra, "speed": speed}
+        extra["speed"] = speed
         units["speed"] = "m/s"
     return _with_steps(base, first, velocity, extra, times, numbers, units)
 
