@@ -197,8 +197,8 @@ def write_ensight(
             rows = [name]
             for number, (_, points) in enumerate(blocks, 1):
                 u, v, w = np.moveaxis(turning(points, n + 1.0), -1, 0)
-                arrays = {"u": u, "v": v, "w": w, "p": points[..., 0], "velocity": [u, v, w]}
-                rows += ["part", f"{number:10d}", "block", *_column(np.asarray(arrays[name]))]
+                all_ = {"u": u, "v": v, "w": w, "p": points[..., 0], "velocity": [u, v, w]}
+                rows += ["part", f"{number:10d}", "block", *_column(np.asarray(all_[name]))]
             file = path.with_name(f"{path.stem}.{name}{n:03d}")
             file.write_text("\n".join(rows) + "\n", encoding="ascii")
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Annotated
 
+from flowtex.cli.console import in_flags
 from flowtex.cli.options import FILE, FLAT, FieldFlags
 
 if TYPE_CHECKING:
@@ -37,7 +38,7 @@ def info(file: FILE, /, *, flow: Annotated[FieldFlags | None, FLAT] = None) -> i
     if summary.arrays:
         console.print(_array_table(summary))
     if summary.problem and not options:
-        console.print(Text(f"To draw it: {summary.problem}", "yellow"))
+        console.print(Text(f"To draw it: {in_flags(summary.problem)}", "yellow"))
         return 0
     console.print(_field_table(FlowField.from_file(file, **options)))
     return 0

@@ -27,13 +27,16 @@ __all__ = ["Choice", "Library", "TracedFlow"]
 #: Endings of files that a folder is searched for.
 SUFFIXES = frozenset(
     [
-        *(".vts", ".vtr", ".vti", ".vtk", ".vtm", ".pvd", ".pvts", ".pvtr", ".pvti"),
-        *(".xyz", ".x", ".g", ".foam", ".case", ".cgns", ".ex2"),
+        *(".vts", ".vtr", ".vti", ".vtk", ".vtm", ".vtmb", ".pvd", ".pvts", ".pvtr"),
+        *(".pvti", ".xyz", ".x", ".g", ".case", ".cgns"),
     ]
 )
 #: Endings that are listed though nothing of them is drawn, and why.
 UNSHOWN = {
-    **dict.fromkeys((".vtu", ".pvtu"), "unstructured; flow is drawn on structured meshes"),
+    **dict.fromkeys(
+        (".vtu", ".pvtu", ".foam", ".e", ".ex2", ".exii", ".exo"),
+        "unstructured; flow is drawn on structured meshes",
+    ),
     **dict.fromkeys(
         (".vtp", ".pvtp", ".stl", ".ply", ".obj"), "triangles; structured meshes are drawn"
     ),
@@ -42,7 +45,7 @@ UNSHOWN = {
 }
 #: Endings of files that list others, how, and bytes of such a list that are read.
 LISTS, MEMBER, LIST_BYTES = (
-    (".pvd", ".vtm", ".pvts", ".pvtr", ".pvti"),
+    (".pvd", ".vtm", ".vtmb", ".pvts", ".pvtr", ".pvti"),
     re.compile(r'(?:file|Source)\s*=\s*"([^"]+)"'),
     4_000_000,
 )

@@ -121,6 +121,7 @@ def _summary(file: OpenFile, mesh: Any, block: int | str | None) -> FileSummary:
     arrays = catalogue(part) if data else []
     found = candidates(part) if data else []
     vectors = file.velocity
+    names = dict.fromkeys(array.name for array in found) if vectors is None else [vectors]
     times = times_of(file.source)
     return FileSummary(
         path=file.path,
@@ -128,7 +129,7 @@ def _summary(file: OpenFile, mesh: Any, block: int | str | None) -> FileSummary:
         dimensions=tuple(part.dimensions) if structured else None,
         blocks=tuple(_blocks(parts)) if len(parts) > 1 else (),
         arrays=tuple(_array(part, a) for a in (*arrays, *(a for a in found if a.parts))),
-        candidates=(vectors,) if vectors is not None else tuple(a.name for a in found),
+        candidates=tuple(names),
         times=tuple(times),
         blanked=int(hidden_nodes(part).sum()) if structured else 0,
         problem=_problem(mesh if block is None else part, vectors, series=len(times) > 1),

@@ -136,8 +136,9 @@ def test_nested_blocks(tmp_path: Path) -> None:
     left, right = (pv.ImageData(dimensions=(n, 3, 1)).cast_to_structured_grid() for n in (4, 6))
     for grid in (left, right):
         grid["v"] = np.asarray(grid.points) + 1
-    tree = pv.MultiBlock({"Base": pv.MultiBlock({"a/b": left, "hull": pv.Sphere()}), "c": right})
-    tree["Base"].append(right, "a/b")
+    base = pv.MultiBlock({"a/b": left, "hull": pv.Sphere()})
+    base.append(right, "a/b")
+    tree = pv.MultiBlock({"Base": base, "c": right})
     tree.save(tmp_path / "flow.vtm")
     path = tmp_path / "flow.vtm"
     assert [b.name for b in describe(path).blocks] == [
@@ -203,3 +204,41 @@ def test_hexahedra_of_cgns(tmp_path: Path) -> None:
     assert "Velocity" in describe(path).candidates
     with pytest.raises(FieldError, match=re.escape(f"is a MultiBlock of UnstructuredGrid{ADVICE}")):
         FlowField.from_file(path)
+
+
+# --- broken ones ----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("end", [50, 343, 776])
+def test_a_reader_that_crashes_takes_nobody_along(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str], end: int
+) -> None:
+    path = ensight(tmp_path / "flow.case")
+    geometry = tmp_path / "flow.geo"
+    geometry.write_bytes(geometry.read_bytes()[:end])
+    for act in (FlowField.from_file, FlowSource.from_file, describe):
+        with pytest.raises(FieldError, match=f"^{re.escape(str(path))}: the file is broken or inc"):
+            act(path)
+    assert "".join(capfd.readouterr()) == ""
+
+
+def test_a_reader_that_does_not_end(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("flowtex.field.io.trial.TRIAL_TIMEOUT_S", 0.0)
+    path = ensight(tmp_path / "flow.case")
+    with says(f"{path}: the file is broken or incomplete: its reader did not end within 0 s"):
+        FlowField.from_file(path)
+
+
+@pytest.mark.parametrize("name", ["flow.case", "flow.cgns", "flow.ex2"])
+def test_a_file_that_is_cut_off(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str], name: str
+) -> None:
+    path = tmp_path / name
+    {".case": ensight, ".cgns": cgns, ".ex2": lambda p: write_exodus(p, TIP)}[path.suffix](path)
+    whole = path.read_bytes()
+    capfd.readouterr()
+    for share in (0.1, 0.6):
+        path.write_bytes(whole[: int(share * len(whole))])
+        with pytest.raises(FieldError, match=f"^{re.escape(str(path))}: "):
+            FlowField.from_file(path)
+    assert "".join(capfd.readouterr()) == ""
