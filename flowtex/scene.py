@@ -19,6 +19,7 @@ from flowtex._util.cache import WeakCache, digest
 from flowtex._util.colours import colour_table, is_diverging
 from flowtex._util.names import near_names
 from flowtex.field import FlowField
+from flowtex.field.dates import seconds_since
 from flowtex.field.interpolation import steps_around
 from flowtex.field.steps import LazySteps, Steps
 from flowtex.options import ROBUST, SPEED, Appearance, FieldOptions, Options, option_text
@@ -274,11 +275,15 @@ class Scene:
 
     @property
     def time(self) -> float:
-        """Time that is shown, in the field's own unit, within its first and last step."""
+        """Time that is shown, in the field's own unit, within its first and last step.
+
+        Where the field's times count from a date it may be set to a date, or to the text of one.
+        """
         return self._time
 
     @time.setter
-    def time(self, value: float) -> None:
+    def time(self, value: Any) -> None:
+        value = seconds_since(self.field.start, value)
         first, last = float(self.field.times[0]), float(self.field.times[-1])
         if not first <= value <= last:
             msg = f"time is {value!r}; expected {first:g} to {last:g}, the times of the field"

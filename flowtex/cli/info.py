@@ -6,9 +6,11 @@ import math
 from typing import TYPE_CHECKING, Annotated
 
 from flowtex.cli.console import in_flags
-from flowtex.cli.options import FILE, FLAT, FieldFlags
+from flowtex.cli.options import FILE, FLAT, FieldFlags, UsageError, load_field
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from rich.table import Table
 
     from flowtex.field import FlowField
@@ -20,17 +22,26 @@ __all__ = ["info"]
 MOST_TIMES, MOST_BLOCKS = 8, 40
 
 
-def info(file: FILE, /, *, flow: Annotated[FieldFlags | None, FLAT] = None) -> int:
+def info(*files: FILE, flow: Annotated[FieldFlags | None, FLAT] = None) -> int:
     """Tell what a file holds, and what would be drawn."""
     from rich.console import Console
     from rich.text import Text
 
     from flowtex.field import FlowField
+    from flowtex.field.datasets.files import dataset_paths
     from flowtex.field.io.summary import describe
 
-    options = (flow or FieldFlags()).arguments()
-    summary = describe(file, options.get("block"))
     console = Console(highlight=False)
+    if paths := dataset_paths(files):
+        console.print(Text(" ".join(map(str, files)), "bold"), soft_wrap=True)
+        console.print(_recognised_table(paths))
+        console.print(_field_table(load_field(files, flow)))
+        return 0
+    if len(files) != 1:
+        msg = f"there are {len(files)} files; name one, or several of data of the Earth"
+        raise UsageError(msg)
+    file, options = files[0], (flow or FieldFlags()).arguments()
+    summary = describe(file, options.get("block"))
     console.print(Text(str(file), "bold"), soft_wrap=True)
     console.print(_file_table(summary))
     if summary.blocks:
@@ -51,6 +62,36 @@ def _pairs(title: str) -> Table:
     table.show_header = False
     table.add_column(style="dim")
     table.add_column()
+    return table
+
+
+def _recognised_table(paths: list[Path]) -> Table:
+    """Tell which velocity, grid and coordinates were recognised, and why."""
+    from flowtex.field.datasets.axes import axis_values
+    from flowtex.field.datasets.files import open_datasets
+    from flowtex.field.datasets.pairs import find_pairs
+    from flowtex.field.datasets.read import as_datasets, recognise
+    from flowtex.field.io.reader_errors import errors_of_file
+
+    table = _pairs("")
+    with errors_of_file(paths[0]):
+        datasets = as_datasets(open_datasets(paths))
+        pairs = find_pairs(datasets)
+        likely = pairs[0] if pairs else None
+        known = recognise(datasets, *((likely.u.name, likely.v.name) if likely else ()))
+    table.add_row("velocity", str(known.pair))
+    others = [pair for pair in pairs if pair.u.name != known.pair.u.name]
+    if others:
+        table.add_row("also", "; ".join(map(str, others)))
+    directions = {"earth": "eastward and northward", "grid": "along the grid"}
+    table.add_row(
+        "directions", directions.get(known.pair.along, "along the grid, as nothing tells")
+    )
+    table.add_row("grid", known.grid)
+    table.add_row("coordinates", known.coordinates)
+    for name, words in axis_values(known.pair.u).items():
+        few = ", ".join(words[:MOST_TIMES]) + (", ..." if len(words) > MOST_TIMES else "")
+        table.add_row(name, f"{len(words)}: {few}")
     return table
 
 

@@ -6,6 +6,9 @@ Their help comes from the fields of the option classes of :mod:`flowtex.options`
 
 from __future__ import annotations
 
+import warnings
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass, make_dataclass
 from dataclasses import field as data_field
 from pathlib import Path
@@ -33,6 +36,7 @@ __all__ = [
     "SettingFlags",
     "UsageError",
     "load_field",
+    "number_or_text",
     "settings_from",
 ]
 
@@ -40,7 +44,13 @@ FLOW, PICTURE = Group("The flow", sort_key=1), Group("The picture", sort_key=2)
 PAGE, SETTINGS = Group("The page", sort_key=3), Group("Settings", sort_key=4)
 
 PORT = Number(gte=0, lt=65536)
-FILE = Annotated[Path, Parameter(help="A structured mesh: any file that PyVista reads, or PLOT3D.")]
+FILE = Annotated[
+    Path,
+    Parameter(
+        help="A structured mesh: any file that PyVista reads, or PLOT3D; or data of the Earth: "
+        "NetCDF, Zarr, GRIB or the JSON of wind maps, several files where they belong together."
+    ),
+]
 FLAT = Parameter(name="*")
 #: What a flag of several numbers expects.
 POINT, RANGE = "two or three coordinates", "two numbers"
@@ -66,9 +76,19 @@ class FieldFlags:
     plane: Annotated[str | None, _flag(FieldOptions, "plane")] = None
     vectors: Annotated[str | None, _flag(FieldOptions, "vectors")] = None
     time: Annotated[
-        float | None,
-        Parameter(group=FLOW, help="One time of a series, by its streamlines; all by default."),
+        str | None,
+        Parameter(
+            group=FLOW,
+            help="One time of a series, a number or a date, by its streamlines; all by default.",
+        ),
     ] = None
+    projection: Annotated[str | None, _flag(FieldOptions, "projection")] = None
+    globe: Annotated[bool | None, _flag(FieldOptions, "globe", negative="")] = None
+    level: Annotated[str | None, _flag(FieldOptions, "level", allow_leading_hyphen=True)] = None
+    select: Annotated[
+        tuple[str, ...],
+        _flag(FieldOptions, "sel", "What to draw along another axis of a data set, as number=3."),
+    ] = ()
     periodic: Annotated[
         str | None,
         _flag(
@@ -80,7 +100,16 @@ class FieldFlags:
 
     def arguments(self) -> dict[str, Any]:
         """Return the flags that were set, as arguments of ``FlowField.from_file``."""
-        values = {name: value for name, value in asdict(self).items() if value is not None}
+        values = {name: value for name, value in asdict(self).items() if value not in (None, ())}
+        for name in ("time", "level"):
+            if name in values:
+                values[name] = number_or_text(values[name])
+        if chosen := values.pop("select", ()):
+            pairs = [text.partition("=") for text in chosen]
+            if not all(name and value for name, _, value in pairs):
+                msg = f"--select is {' '.join(chosen)}; expected an axis and a value, as number=3"
+                raise UsageError(msg)
+            values["sel"] = {name: number_or_text(value) for name, _, value in pairs}
         if values.get("periodic") == "none":
             values["periodic"] = ""
         if str(values.get("block", "")).isdecimal():
@@ -212,6 +241,14 @@ class ServeFlags:
     browser: Annotated[bool, Parameter(group=PAGE, help="Open the page in the browser.")] = True
 
 
+def number_or_text(text: str) -> float | str:
+    """Return a number where a text is one."""
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
 def _numbers(flag: str, text: str, expected: str) -> tuple[float, ...]:
     try:
         values = tuple(float(word) for word in text.split(","))
@@ -223,12 +260,34 @@ def _numbers(flag: str, text: str, expected: str) -> tuple[float, ...]:
     return values
 
 
-def load_field(file: Path, flow: FieldFlags | None) -> FlowField:
-    """Return the flow of a file."""
+def load_field(files: Sequence[Path], flow: FieldFlags | None) -> FlowField:
+    """Return the flow of a file, or of several that belong together."""
     from flowtex.field import FlowField
 
-    with waiting(f"Reading {file.name}"):
-        return FlowField.from_file(file, **(flow or FieldFlags()).arguments())
+    if not files:
+        msg = "there is no file; name one"
+        raise UsageError(msg)
+    with waiting(f"Reading {files[0].name}"), notices():
+        whole: Any = files[0] if len(files) == 1 else files
+        return FlowField.from_file(whole, **(flow or FieldFlags()).arguments())
+
+
+@contextmanager
+def notices() -> Iterator[None]:
+    """Say what was chosen of a data set in plain words, and pass on all other warnings."""
+    from flowtex.cli.console import say
+    from flowtex.field.datasets.notices import DatasetNotice
+
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", DatasetNotice)
+        yield
+    for warning in caught:
+        if issubclass(warning.category, DatasetNotice):
+            say(f"[dim]{warning.message}[/]")
+        else:
+            warnings.warn_explicit(
+                warning.message, warning.category, warning.filename, warning.lineno
+            )
 
 
 def settings_from(flags: SettingFlags | None) -> dict[str, Any]:

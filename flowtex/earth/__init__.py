@@ -2,6 +2,6 @@
 
 from __future__ import annotations
 
-from flowtex.earth.projection import EARTH_RADIUS, GLOBE, Projection, ProjectionError
+from flowtex.earth.projection import EARTH_RADIUS, GLOBE, NAMES, Projection, ProjectionError
 
-__all__ = ["EARTH_RADIUS", "GLOBE", "Projection", "ProjectionError"]
+__all__ = ["EARTH_RADIUS", "GLOBE", "NAMES", "Projection", "ProjectionError"]

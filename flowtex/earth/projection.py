@@ -17,7 +17,7 @@ from flowtex._util.array_types import Floats
 from flowtex._util.extras import import_extra
 from flowtex.errors import FieldError
 
-__all__ = ["EARTH_RADIUS", "GLOBE", "Projection", "ProjectionError"]
+__all__ = ["EARTH_RADIUS", "GLOBE", "NAMES", "Projection", "ProjectionError"]
 
 #: Mean radius of the Earth in metres.
 EARTH_RADIUS = 6_371_000.0

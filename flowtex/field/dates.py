@@ -12,7 +12,7 @@ from flowtex.errors import FieldError
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-__all__ = ["as_seconds", "date_text"]
+__all__ = ["as_seconds", "date_text", "seconds_since"]
 
 DAY_S = 86_400.0
 
@@ -70,6 +70,33 @@ def date_text(start: Any, time: float, step: float) -> str:
     whole_days = step % DAY_S == 0 and time % DAY_S == 0 and _at_midnight(start)
     form = "%Y-%m-%d" if whole_days else "%Y-%m-%d %H:%M" if step >= 60 else "%Y-%m-%d %H:%M:%S"
     return str((start + timedelta(seconds=time)).strftime(form))
+
+
+def seconds_since(start: Any, date: Any) -> float:
+    """Return a time in seconds since ``start``, from a number, a date, or a text such as a date.
+
+    Raises
+    ------
+    ValueError
+        When it is none.
+    """
+    if isinstance(date, (int, float, np.number)):
+        return float(date)
+    if start is None:
+        msg = f"time is {date!r}; expected a number, for the times of the field are no dates"
+        raise ValueError(msg)
+    try:
+        if isinstance(date, np.datetime64):
+            date = date.astype("datetime64[us]").item()
+        elif isinstance(date, str):
+            whole = np.datetime64(date).astype("datetime64[us]").item()
+            numbers = (*whole.timetuple()[:6], whole.microsecond)
+            calendar = {"calendar": start.calendar} if hasattr(start, "calendar") else {}
+            date = type(start)(*numbers, **calendar)
+        return float((date - start).total_seconds())
+    except (TypeError, ValueError, AttributeError) as error:
+        msg = f"time is {date!r}; expected a number, or a date such as {start:%Y-%m-%d %H:%M}"
+        raise ValueError(msg) from error
 
 
 def _at_midnight(date: Any) -> bool:

@@ -52,6 +52,9 @@ class FlowSource:
         When nothing in it can be drawn.
     """
 
+    #: What a person calls one of the blocks.
+    block_word = "Grid"
+
     def __init__(
         self,
         mesh: Any,
@@ -80,7 +83,8 @@ class FlowSource:
         if isinstance(mesh, FlowField):
             self.name, self.nbytes = name or mesh.name, mesh.nbytes
             return
-        self._describe(self._series(mesh)[0].grid)
+        if mesh is not None:
+            self._describe(self._series(mesh)[0].grid)
 
     @classmethod
     def from_file(cls, path: str | Path) -> FlowSource:
@@ -101,6 +105,15 @@ class FlowSource:
         if self.dimensions is None or min(self.dimensions) == 1:
             return {}
         return dict(zip("ijk", self.dimensions, strict=True))
+
+    @property
+    def default_plane(self) -> str:
+        """The plane that is drawn where none is chosen; empty for a surface."""
+        return f"k={self.planes['k'] // 2}" if self.planes else ""
+
+    def plane_text(self, plane: str) -> str:
+        """Return words for a plane, such as ``"k = 20"``."""
+        return plane.replace("=", " = ")
 
     def field(
         self,
@@ -132,8 +145,7 @@ class FlowSource:
             return self._mesh
         if self.blocks:
             return self.part(block).field(vectors=vectors, plane=plane, **options)
-        if plane is None and self.planes:
-            plane = f"k={self.planes['k'] // 2}"
+        plane = plane or self.default_plane or None
         chosen = vectors or (self.vectors[0] if self.vectors else None)
         if self._block is not None:
             options = {**options, "block": self._block}

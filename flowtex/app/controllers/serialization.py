@@ -19,6 +19,7 @@ import math
 import re
 from collections.abc import Callable, Mapping
 from contextlib import suppress
+from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qsl, quote, urlencode
 
@@ -32,6 +33,7 @@ from flowtex.app.controllers.appearance import (
 )
 from flowtex.app.streaming.viewport import BACKGROUNDS as THEMES
 from flowtex.camera import Camera, CameraError
+from flowtex.field.datasets.files import is_dataset_file
 from flowtex.settings import TABLE, SettingsError
 
 __all__ = ["DEFAULTS", "from_link", "to_link", "to_python"]
@@ -56,7 +58,12 @@ CAMERA_NUMBERS = 11
 LINE_LENGTH = 88
 #: Arguments of ``FlowField.from_file``.
 FILE_ARGUMENTS = ("vectors", "plane", "block")
-PLANE, CMAP = re.compile(r"[ijk]=\d{1,9}"), re.compile(r"[A-Za-z]\w{0,59}", re.ASCII)
+#: What they are called for data of the Earth.
+OF_DATASETS = {"block": "projection"}
+PLANE, CMAP = (
+    re.compile(r"[A-Za-z]\w{0,59}=\d{1,9}", re.ASCII),
+    re.compile(r"[A-Za-z]\w{0,59}", re.ASCII),
+)
 
 
 class _ValueError(ValueError):
@@ -272,7 +279,12 @@ def _from_file(state: Mapping[str, Any]) -> str:
     if not state.get("file"):
         msg = "the state names no file; give the expression that makes its field as source"
         raise ValueError(msg)
-    choices = [f"{name}={_literal(state[name])}" for name in FILE_ARGUMENTS if state.get(name)]
+    values = {name: state[name] for name in FILE_ARGUMENTS if state.get(name)}
+    if is_dataset_file(Path(str(state["file"]))):
+        axis, _, number = values.pop("plane", "").partition("=")
+        values = {OF_DATASETS.get(name, name): value for name, value in values.items()}
+        values |= {"isel": {axis: int(number)}} if axis else {}
+    choices = [f"{name}={_literal(value)}" for name, value in values.items()]
     return _call("flowtex.FlowField.from_file", [_literal(state["file"]), *choices])
 
 

@@ -16,7 +16,7 @@ from flowtex.errors import FieldError
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["Choice", "Section", "horizontal_dims", "seconds_in", "sections"]
+__all__ = ["Choice", "Section", "axis_values", "horizontal_dims", "seconds_in", "sections"]
 
 #: Names of axes that are vertical, and horizontal, where no attribute says so.
 LEVELS = re.compile(
@@ -64,12 +64,15 @@ class Section:
         Sentences about what was chosen without being asked for.
     level
         Words for the level that is shown; empty where there is none.
+    numbers
+        What is drawn along axes where there is a choice, by name.
     """
 
     array: xr.DataArray
     times: AnyArray | None
     notes: tuple[str, ...]
     level: str
+    numbers: Mapping[str, int]
 
     @property
     def is_series(self) -> bool:
@@ -117,6 +120,7 @@ def sections(arrays: list[xr.DataArray], choice: Choice) -> list[Section]:
         msg = f"the components lie along different axes: {listed}. Choose along them before"
         raise FieldError(msg)
     done, notes, level = list(arrays), [], ""
+    numbers: dict[str, int] = {}
     times: AnyArray | None = None
     for kind in kinds[0]:
         dims = [k[kind] for k in kinds]
@@ -128,6 +132,8 @@ def sections(arrays: list[xr.DataArray], choice: Choice) -> list[Section]:
             level = _words(lines[0][picks[0]], arrays[0], dims[0])
         if note:
             notes.append(note)
+        if np.ndim(picks[0]) == 0 and picks[0] != slice(None) and arrays[0].sizes[dims[0]] > 1:
+            numbers[dims[0] if kind == TIME else kind] = int(picks[0])
         done = [array.isel({d: p}) for array, d, p in zip(done, dims, picks, strict=True)]
     order = [
         (kind[TIME],) if kind.get(TIME) in a.dims else ()
@@ -138,7 +144,21 @@ def sections(arrays: list[xr.DataArray], choice: Choice) -> list[Section]:
     choice.check(names)
     if times is None:
         times = _time_beside(arrays[0])
-    return [Section(array, times, tuple(notes), level) for array in done]
+    return [Section(array, times, tuple(notes), level, numbers) for array in done]
+
+
+def axis_values(array: xr.DataArray) -> dict[str, tuple[str, ...]]:
+    """Return words for the values along axes other than time where there is a choice, by name."""
+    found: dict[str, tuple[str, ...]] = {}
+    surface = horizontal_dims(array)
+    for dim in map(str, array.dims):
+        kind = _kind(array, dim)
+        line = _values(array, dim)
+        if dim in surface or array.sizes[dim] < 2 or (kind == TIME and _is_time(array, dim, line)):
+            continue
+        values = range(array.sizes[dim]) if line is None else line
+        found[dim if kind == TIME else kind] = tuple(_words(value, array, dim) for value in values)
+    return found
 
 
 def seconds_in(unit: str) -> float | None:
@@ -221,7 +241,7 @@ def _picks(
             return [_alike(line[number], number, other) for other in lines], ""
     if count == 1:
         return [0 if kind != TIME else [0]] * len(dims), ""
-    if kind == TIME and line is not None and (_in_seconds(first, dim) or line.dtype.kind in "MmO"):
+    if kind == TIME and _is_time(first, dim, line):
         return [slice(None)] * len(dims), ""
     if kind == LEVEL and line is not None and line.dtype.kind in "fiu":
         number = _at_surface(lines, first.coords.get(dim))
@@ -241,9 +261,13 @@ def _picks(
     return [_alike(value, number, other) for other in lines], note
 
 
-def _in_seconds(array: xr.DataArray, dim: str) -> bool:
+def _is_time(array: xr.DataArray, dim: str, line: AnyArray | None) -> bool:
+    """Whether the values of an axis of time are dates, or spans of a known unit."""
     coordinate = array.coords.get(dim)
-    return coordinate is not None and seconds_in(str(coordinate.attrs.get("units", ""))) is not None
+    if line is None or line.dtype.kind in "MmO":
+        return line is not None
+    unit = "" if coordinate is None else str(coordinate.attrs.get("units", ""))
+    return seconds_in(unit) is not None
 
 
 def _alike(value: Any, number: int, line: AnyArray | None) -> int:

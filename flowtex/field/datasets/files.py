@@ -15,7 +15,14 @@ from flowtex.field.datasets.wind_json import read_winds
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["SUFFIXES", "dataset_paths", "is_dataset_file", "open_datasets", "open_files"]
+__all__ = [
+    "SUFFIXES",
+    "belong_together",
+    "dataset_paths",
+    "is_dataset_file",
+    "open_datasets",
+    "open_files",
+]
 
 NETCDF = (".nc", ".nc4", ".nc3", ".cdf", ".netcdf")
 GRIB = (".grib", ".grb", ".grib2", ".grb2")
@@ -36,6 +43,13 @@ def dataset_paths(path: Any) -> list[Path]:
     several = [path] if isinstance(path, (str, Path)) else list(path)
     paths = [Path(one).expanduser() for one in several]
     return paths if paths and all(map(is_dataset_file, paths)) else []
+
+
+def belong_together(paths: Sequence[Path]) -> bool:
+    """Whether several files are to be read together: steps of a series, or parts without a pair."""
+    several = [open_files(path) for path in paths]
+    series = all(len(one) == 1 and _alike(one[0], several[0][0]) for one in several)
+    return series or not all(find_pairs(one) for one in several)
 
 
 def open_datasets(paths: Sequence[Path]) -> list[xr.Dataset]:
@@ -90,6 +104,7 @@ def _alike(one: xr.Dataset, other: xr.Dataset) -> bool:
 def _joined(datasets: list[Any], paths: Sequence[Path]) -> Any:
     """Join steps of a series in the order of their times."""
     xarray = import_extra("xarray", "xarray")
+    import_extra("cf_xarray", "xarray")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         axes = [ds.cf.guess_coord_axis().cf.axes.get("T", []) for ds in datasets]

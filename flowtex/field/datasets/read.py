@@ -19,6 +19,7 @@ from flowtex.errors import FieldError
 from flowtex.field.datasets.axes import Choice, Section, horizontal_dims, seconds_in, sections
 from flowtex.field.datasets.grids import find_grid, sea_mask, unrepeated
 from flowtex.field.datasets.maps import on_map
+from flowtex.field.datasets.notices import notify
 from flowtex.field.datasets.pairs import Pair, choose_pair, to_metres_per_second
 from flowtex.field.datasets.places import Places, over_sphere
 from flowtex.field.datasets.staggered import centred
@@ -28,14 +29,10 @@ from flowtex.field.steps import LazySteps
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["DatasetNotice", "Recognised", "field_of", "recognise"]
+__all__ = ["Recognised", "as_datasets", "field_of", "recognise"]
 
 #: Share of the nodes of a staggered grid at rest from which on they count as land.
 LAND_SHARE = 0.01
-
-
-class DatasetNotice(UserWarning):
-    """Something of a dataset was chosen without being asked for."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,6 +68,11 @@ class Recognised:
     kept: tuple[slice, slice]
     trimmed: tuple[slice, slice]
 
+    @property
+    def map_name(self) -> str:
+        """The flat map that suits the places."""
+        return on_map(self.places, None).projection.name
+
 
 def field_of(
     data: xr.Dataset | Sequence[xr.Dataset],
@@ -85,7 +87,7 @@ def field_of(
     """Make a field; :meth:`FlowField.from_xarray` has the parameters."""
     known = recognise(data, u, v, sel=sel, isel=isel)
     for note in known.notes:
-        warnings.warn(note, DatasetNotice, stacklevel=4)
+        notify(note)
     places = known.places
     if not places.is_earth and projection is not None:
         msg = (
@@ -94,7 +96,7 @@ def field_of(
         )
         raise FieldError(msg)
     times, numbers = _times(known)
-    scalars = _scalars(known, _datasets(data), Choice(dict(sel or {}), dict(isel or {})))
+    scalars = _scalars(known, as_datasets(data), Choice(dict(sel or {}), dict(isel or {})))
     if not places.is_earth:
         points = np.stack([places.a, places.b], axis=-1)
 
@@ -152,7 +154,7 @@ def recognise(
     FieldError
         When they cannot be told; the text has the remedy.
     """
-    datasets = _datasets(data)
+    datasets = as_datasets(data)
     pair = choose_pair(datasets, u, v)
     factors = [to_metres_per_second(array) for array in (pair.u, pair.v)]
     if len(set(factors)) > 1:
@@ -220,7 +222,7 @@ def recognise(
     )
 
 
-def _datasets(data: Any) -> list[Any]:
+def as_datasets(data: Any) -> list[Any]:
     """Return datasets whose axes cf_xarray can tell, with times as dates."""
     xarray = import_extra("xarray", "xarray")
     import_extra("cf_xarray", "xarray")
