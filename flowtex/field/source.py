@@ -175,12 +175,13 @@ class FlowSource:
         return self._parts[block]
 
     def _open_part(self, block: str) -> FlowSource:
-        source = self._grids.get(block, self._mesh)
         options: dict[str, Any] = {"name": self.name, "velocity": self._velocity}
-        if block not in self._grids:
-            options |= {"path": self._path, "block": block}
+        if block in self._grids:
+            return FlowSource(self._grids[block], **options)
         with self._errors():
-            return FlowSource(source, **options)
+            part = FlowSource(self._mesh, **options, path=self._path, block=block)
+        self.nbytes += part.nbytes
+        return part
 
     def _errors(self) -> AbstractContextManager[None]:
         """Name the file, where there is one and it is read again."""

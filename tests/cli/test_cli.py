@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from cfd_files import CGNS, TIMES, box
 from PIL import Image
 
 from flowtex import diagnostics, examples
@@ -219,6 +220,33 @@ def test_info_says_what_is_needed(run: Run, block: Path) -> None:
     assert code == 0 and "To draw it:" in out and "What would be drawn" not in out
     code, out, _ = run("info", block, "--plane", "k=1", "--vectors", "wind")
     assert code == 0 and "6 × 5 (i × j)" in out
+
+
+def test_info_lists_blocks_and_times(run: Run, tmp_path: Path) -> None:
+    with CGNS.write(tmp_path / "wing.cgns") as file:
+        file.base("Base", [("Tip 1", box(4, 3, 2)), ("Body", box(6, 3, 2, 3.0))], times=TIMES)
+    code, out, _ = run("info", tmp_path / "wing.cgns")
+    assert code == 0
+    for words in ("blocks 2", "times 2: 0.5, 1", "0 Base/Tip 1 StructuredGrid 4 × 3 × 2"):
+        assert words in out
+    assert 'choose one, as in --block "Base/Tip 1"' in out
+    code, out, _ = run("info", tmp_path / "wing.cgns", "--block", "Base/Body", "--plane", "k=0")
+    assert "6 × 3 (i × j)" in out and "times 2, 0.5 to 1" in out
+    assert run("info", tmp_path / "wing.cgns", "--block", "1", "--plane", "k=0") == (code, out, "")
+
+
+def test_components_are_named_with_commas(run: Run, tmp_path: Path) -> None:
+    import pyvista as pv
+
+    mesh = pv.ImageData(dimensions=(4, 3, 1))
+    for name in ("X Velocity", "Y Velocity", "u", "v"):
+        mesh[name] = np.ones(12)
+    mesh.save(tmp_path / "flow.vti")
+    code, out, _ = run("info", tmp_path / "flow.vti")
+    assert "velocity Velocity, u,v" in out and "Velocity = X Velocity, Y Velocity" in out
+    assert "choose one, as in --vectors u,v" in out
+    code, out, _ = run("info", tmp_path / "flow.vti", "--vectors", "Y Velocity, u")
+    assert code == 0 and "What would be drawn" in out
 
 
 def test_info_says_that_a_field_has_no_sign(run: Run, tmp_path: Path) -> None:
