@@ -284,7 +284,7 @@ def notices() -> Iterator[None]:
     for warning in caught:
         if issubclass(warning.category, DatasetNotice):
             say(f"[dim]{warning.message}[/]")
-        else:
+        elif not warning.category.__module__.startswith("xarray."):  # how a file was written
             warnings.warn_explicit(
                 warning.message, warning.category, warning.filename, warning.lineno
             )

@@ -78,13 +78,18 @@ class Projection:
         """Whether this is the sphere."""
         return self.name == GLOBE
 
+    @property
+    def _origin(self) -> float:
+        return self.center[0] if self.name in NAMES else 0.0
+
     @cached_property
     def _transform(self) -> Any:
         pyproj = import_extra("pyproj", "xarray")
         text = self.name
         if text in NAMES:
-            (lon, lat), half = self.center, self.half_height
-            text = f"{NAMES[text]} +lon_0={lon:.12g} +R={EARTH_RADIUS:.12g} +units=m +over"
+            # Longitudes are counted from the middle: PROJ would turn some of them around.
+            lat, half = self.center[1], self.half_height
+            text = f"{NAMES[text]} +lon_0=0 +R={EARTH_RADIUS:.12g} +units=m +over"
             if self.name == "platecarree":
                 text += f" +lat_ts={lat:.12g}"
             elif self.name == "lambert":
@@ -120,7 +125,7 @@ class Projection:
             parts = (np.cos(b) * np.cos(a), np.cos(b) * np.sin(a), np.sin(b))
             return np.asarray(EARTH_RADIUS * np.stack(np.broadcast_arrays(*parts), axis=-1))
         lon, lat = np.broadcast_arrays(lon, lat)
-        x, y = self._transform.transform(lon, lat, errcheck=False)
+        x, y = self._transform.transform(lon - self._origin, lat, errcheck=False)
         points = np.stack([x, y, np.zeros(np.shape(x))], axis=-1)
         points[~np.isfinite(points).all(axis=-1)] = np.nan
         return points
@@ -160,6 +165,7 @@ class Projection:
             return np.degrees(np.arctan2(y, x)), np.degrees(np.arctan2(z, np.hypot(x, y)))
         lon, lat = self._transform.transform(x, y, direction="INVERSE", errcheck=False)
         known = np.isfinite(lon) & np.isfinite(lat)
+        lon = (lon + self._origin + 180.0) % 360.0 - 180.0
         return np.where(known, lon, np.nan), np.where(known, lat, np.nan)
 
     def scale(self, lon: Floats, lat: Floats) -> Floats:

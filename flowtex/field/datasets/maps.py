@@ -71,16 +71,12 @@ def on_map(places: Places, name: str | None) -> MapNodes:
     lon = center[0] + (lon - center[0] + 180.0) % 360.0 - 180.0
     if places.is_line:
         columns = np.argsort(lon[0], kind="stable")
-        if places.a[0, 0] > places.a[0, -1]:
-            columns = columns[::-1]
         lon = lon[:, columns]
         if around:
             # The last column is the first one again, a turn further.
-            same = abs(abs(lon[0, -1] - lon[0, 0]) - 360.0) < 1e-3
-            if not same and abs(lon[0, -1] - lon[0, 0]) < 360.0:
+            if lon[0, -1] - lon[0, 0] < 360.0 - 1e-3:
                 columns = np.append(columns, columns[0])
-                turn = 360.0 if lon[0, -1] > lon[0, 0] else -360.0
-                lon = np.concatenate([lon, lon[:, :1] + turn], axis=1)
+                lon = np.concatenate([lon, lon[:, :1] + 360.0], axis=1)
             periodic = "i" if name in CYLINDERS else None if name in ("north", "south") else ""
     lat = lat[:, columns]
     points = projection.positions(lon, lat)
