@@ -2,6 +2,15 @@
 
 from __future__ import annotations
 
+from flowtex.earth.lines import MapLines, coastlines, graticule
 from flowtex.earth.projection import EARTH_RADIUS, GLOBE, Projection, ProjectionError
 
-__all__ = ["EARTH_RADIUS", "GLOBE", "Projection", "ProjectionError"]
+__all__ = [
+    "EARTH_RADIUS",
+    "GLOBE",
+    "MapLines",
+    "Projection",
+    "ProjectionError",
+    "coastlines",
+    "graticule",
+]
