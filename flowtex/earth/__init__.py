@@ -2,6 +2,24 @@
 
 from __future__ import annotations
 
-from flowtex.earth.projection import EARTH_RADIUS, GLOBE, NAMES, Projection, ProjectionError
+from flowtex.earth.lines import MapLines, coastlines, graticule
+from flowtex.earth.projection import (
+    EARTH_RADIUS,
+    GLOBE,
+    NAMES,
+    Projection,
+    ProjectionError,
+    place_text,
+)
 
-__all__ = ["EARTH_RADIUS", "GLOBE", "NAMES", "Projection", "ProjectionError"]
+__all__ = [
+    "EARTH_RADIUS",
+    "GLOBE",
+    "NAMES",
+    "MapLines",
+    "Projection",
+    "ProjectionError",
+    "coastlines",
+    "graticule",
+    "place_text",
+]

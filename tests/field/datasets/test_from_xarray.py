@@ -6,11 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-
-xr = pytest.importorskip("xarray")
-pytest.importorskip("cf_xarray")
-pytest.importorskip("pyproj")
-
+import xarray as xr
 from earth_data import RATE, c_grid, components, on_sphere, turning, winds
 
 from flowtex import FlowField

@@ -14,10 +14,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-pytest.importorskip("xarray")
-pytest.importorskip("cf_xarray")
-pytest.importorskip("pyproj")
-
 from flowtex import FlowField
 from flowtex.errors import FieldError
 from flowtex.field.datasets.notices import DatasetNotice

@@ -9,12 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-
-xr = pytest.importorskip("xarray")
-pytest.importorskip("cf_xarray")
-pytest.importorskip("pyproj")
-pytest.importorskip("netCDF4")
-
+import xarray as xr
 from earth_data import components, east_and_north, winds
 
 from flowtex import FlowField
@@ -54,9 +49,8 @@ def test_netcdf_zarr_and_json_are_the_same_field(tmp_path: Path) -> None:
     wanted = FlowField.from_xarray(ds, globe=True)
     ds.to_netcdf(tmp_path / "a.nc")
     paths = [tmp_path / "a.nc"]
-    if pytest.importorskip("zarr"):
-        ds.to_zarr(tmp_path / "a.zarr", consolidated=False)
-        paths.append(tmp_path / "a.zarr")
+    ds.to_zarr(tmp_path / "a.zarr", consolidated=False)
+    paths.append(tmp_path / "a.zarr")
     (tmp_path / "a.json").write_text(json.dumps(wind_json(ds)))
     paths.append(tmp_path / "a.json")
     for path in paths:
