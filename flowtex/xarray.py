@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 __all__ = ["FlowtexAccessor"]
 
 
-@xr.register_dataset_accessor("flowtex")
+@xr.register_dataset_accessor("flowtex")  # type: ignore[no-untyped-call]
 class FlowtexAccessor:
     """The calls of flowtex on a dataset; each takes the arguments of the function of its name."""
 

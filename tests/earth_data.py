@@ -81,7 +81,8 @@ def rotated(i: Floats, j: Floats, turn: float) -> tuple[Floats, Floats]:
 def along(lon: Floats, lat: Floats, ahead: tuple[Floats, Floats]) -> Floats:
     """Component of the rotation toward places a little ahead."""
     way = on_sphere(*ahead) - on_sphere(lon, lat)
-    return np.sum(turning(on_sphere(lon, lat)) * way, axis=-1) / np.linalg.norm(way, axis=-1)
+    share = np.sum(turning(on_sphere(lon, lat)) * way, axis=-1)
+    return np.asarray(share / np.linalg.norm(way, axis=-1))
 
 
 def c_grid(kind: str, turn: float = 0.0, count: int = 40) -> list[xr.Dataset]:

@@ -6,7 +6,8 @@ import math
 from typing import TYPE_CHECKING, Annotated
 
 from flowtex.cli.console import in_flags
-from flowtex.cli.options import FILE, FLAT, FieldFlags, UsageError, load_field
+from flowtex.cli.load import load_field
+from flowtex.cli.options import FILE, FLAT, FieldFlags, UsageError
 
 if TYPE_CHECKING:
     from pathlib import Path

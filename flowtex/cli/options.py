@@ -6,9 +6,6 @@ Their help comes from the fields of the option classes of :mod:`flowtex.options`
 
 from __future__ import annotations
 
-import warnings
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
 from dataclasses import asdict, dataclass, make_dataclass
 from dataclasses import field as data_field
 from pathlib import Path
@@ -17,12 +14,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from cyclopts import Group, Parameter
 from cyclopts.validators import Number
 
-from flowtex._util.progress import waiting
 from flowtex.options import Appearance, FieldOptions, ViewOptions, option_text
 from flowtex.settings import TABLE, Setting, Settings, setting
-
-if TYPE_CHECKING:
-    from flowtex.field import FlowField
 
 __all__ = [
     "FILE",
@@ -35,7 +28,6 @@ __all__ = [
     "ServeFlags",
     "SettingFlags",
     "UsageError",
-    "load_field",
     "number_or_text",
     "settings_from",
 ]
@@ -271,36 +263,6 @@ def _numbers(flag: str, text: str, expected: str) -> tuple[float, ...]:
         msg = f"{flag} is {text!r}; expected {expected}, as in {flag} 1.5,0"
         raise UsageError(msg)
     return values
-
-
-def load_field(files: Sequence[Path], flow: FieldFlags | None) -> FlowField:
-    """Return the flow of a file, or of several that belong together."""
-    from flowtex.field import FlowField
-
-    if not files:
-        msg = "there is no file; name one"
-        raise UsageError(msg)
-    with waiting(f"Reading {files[0].name}"), notices():
-        whole: Any = files[0] if len(files) == 1 else files
-        return FlowField.from_file(whole, **(flow or FieldFlags()).arguments())
-
-
-@contextmanager
-def notices() -> Iterator[None]:
-    """Say what was chosen of a data set in plain words, and pass on all other warnings."""
-    from flowtex.cli.console import say
-    from flowtex.field.datasets.notices import DatasetNotice
-
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always", DatasetNotice)
-        yield
-    for warning in caught:
-        if issubclass(warning.category, DatasetNotice):
-            say(f"[dim]{warning.message}[/]")
-        elif not warning.category.__module__.startswith("xarray."):  # how a file was written
-            warnings.warn_explicit(
-                warning.message, warning.category, warning.filename, warning.lineno
-            )
 
 
 def settings_from(flags: SettingFlags | None) -> dict[str, Any]:

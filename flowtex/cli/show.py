@@ -12,6 +12,7 @@ from flowtex import examples
 from flowtex._util.progress import waiting
 from flowtex.cli.checks import check_colours, check_image, check_lines, require_app, require_opengl
 from flowtex.cli.console import announcer, describe
+from flowtex.cli.load import load_field
 from flowtex.cli.options import (
     FLAT,
     DrawFlags,
@@ -20,7 +21,6 @@ from flowtex.cli.options import (
     ServeFlags,
     SettingFlags,
     UsageError,
-    load_field,
     settings_from,
 )
 from flowtex.examples import NAMES

@@ -22,6 +22,7 @@ from flowtex.cli.checks import (
     require_opengl,
 )
 from flowtex.cli.console import describe, say
+from flowtex.cli.load import load_field
 from flowtex.cli.options import (
     FILE,
     FLAT,
@@ -31,7 +32,6 @@ from flowtex.cli.options import (
     LookFlags,
     SettingFlags,
     UsageError,
-    load_field,
     settings_from,
 )
 

@@ -35,6 +35,8 @@ NAMES = {
 }
 #: Steps in degrees by which derivatives are taken, and how near to a pole.
 STEP, NEAREST_POLE = 1e-4, 0.5
+#: A step to one side that is longer by this factor than that to the other leads across a tear.
+TORN = 100.0
 
 
 def place_text(lon: float, lat: float, decimals: int = 2) -> str:
@@ -169,10 +171,8 @@ class Projection:
             return east, north
         lat = np.clip(lat, NEAREST_POLE - 90, 90 - NEAREST_POLE)
         here, metre = self.positions(lon, lat), math.radians(EARTH_RADIUS) * STEP
-        east = _shorter(
-            self.positions(lon + STEP, lat) - here, here - self.positions(lon - STEP, lat)
-        )
-        north = _shorter(
+        east = _mean(self.positions(lon + STEP, lat) - here, here - self.positions(lon - STEP, lat))
+        north = _mean(
             self.positions(lon, lat + STEP) - here, here - self.positions(lon, lat - STEP)
         )
         east /= (metre * np.cos(np.radians(lat)))[..., None]
@@ -186,18 +186,23 @@ class Projection:
             return np.degrees(np.arctan2(y, x)), np.degrees(np.arctan2(z, np.hypot(x, y)))
         lon, lat = self._transform.transform(x, y, direction="INVERSE", errcheck=False)
         known = np.isfinite(lon) & np.isfinite(lat)
-        lon = (lon + self._origin + 180.0) % 360.0 - 180.0
-        return np.where(known, lon, np.nan), np.where(known, lat, np.nan)
+        lon, lat = np.where(known, lon, np.nan), np.where(known, lat, np.nan)
+        return (lon + self._origin + 180.0) % 360.0 - 180.0, lat
 
-    def scale(self, lon: Floats, lat: Floats) -> Floats:
-        """Return metres of the map for a metre on the Earth, the mean of both ways, (...)."""
+    def scale(self, position: Floats) -> float:
+        """Return metres of the map for a metre on the Earth at a position, (3,)."""
+        return 1.0 if self.is_globe else float(self.scales(*self.lonlat(position)))
+
+    def scales(self, lon: Floats, lat: Floats) -> Floats:
+        """Return the same, the mean of both ways, at longitudes and latitudes in degrees, (...)."""
         east, north = self._directions(np.asarray(lon, dtype=float), np.asarray(lat, dtype=float))
         return np.asarray(np.sqrt(np.linalg.norm(np.cross(east, north), axis=-1)))
 
 
-def _shorter(one: Floats, other: Floats) -> Floats:
-    """Return the shorter of two vectors, (..., 3): the other may lead across a tear of the map."""
-    lengths = [np.linalg.norm(v, axis=-1) for v in (one, other)]
+def _mean(one: Floats, other: Floats) -> Floats:
+    """Return the mean of two vectors, (..., 3), or one where the other leads across a tear."""
+    a, b = (np.linalg.norm(v, axis=-1)[..., None] for v in (one, other))
     with np.errstate(invalid="ignore"):
-        first = ~(lengths[0] > lengths[1])
-    return np.where(first[..., None], one, other)
+        alone = np.where(a > TORN * b, other, one)
+        torn = (a > TORN * b) | (b > TORN * a)
+    return np.where(torn, alone, (one + other) / 2)

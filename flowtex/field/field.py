@@ -20,6 +20,7 @@ from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.earth import Projection
 from flowtex.errors import FieldError, raise_faults
 from flowtex.field.dates import as_seconds
+from flowtex.field.interpolation import every_line
 from flowtex.field.metric import IndexVelocity, to_index_space
 from flowtex.field.periodic import NodalArrays, close_axes
 from flowtex.field.signs import oriented, sign_free_faults, with_equal_ends
@@ -356,7 +357,8 @@ class FlowField:
         of_meshes = {"plane": plane, "block": block, "periodic": periodic, "sign_free": sign_free}
         of_earth: dict[str, Any] = {"projection": projection, "globe": globe, "level": level}
         of_earth |= {"sel": sel, "isel": isel}
-        return field_of_file(path, vectors, time, of_meshes, of_earth)
+        field: FlowField = field_of_file(cls, path, vectors, time, of_meshes, of_earth)
+        return field
 
     @classmethod
     def from_xarray(
@@ -424,7 +426,13 @@ class FlowField:
             raise FieldError(msg)
         options: dict[str, Any] = {"sel": {**(sel or {}), **selection}, "isel": isel}
         return field_of(
-            data, u, v, projection="globe" if globe else projection, name=name, **options
+            cls.from_arrays,
+            data,
+            u,
+            v,
+            projection="globe" if globe else projection,
+            name=name,
+            **options,
         )
 
     @property
@@ -552,7 +560,7 @@ class FlowField:
             When fewer than two lines would be left.
         """
         rows, columns = (
-            _every(count, factor, closed=closed)
+            every_line(count, factor, closed=closed)
             for count, closed in zip(self.shape, self.periodic, strict=True)
         )
         return self.at_lines(rows, columns)
@@ -581,24 +589,6 @@ class FlowField:
             f"{f', periodic {closed}' if closed else ''}{', sign-free' if self.sign_free else ''}, "
             f"{int((~self.valid).sum())} blanked)"
         )
-
-
-def _every(count: int, factor: int, *, closed: bool) -> Indices:
-    """Return every ``factor``-th line, and the last one where the axis is closed."""
-    if factor < 1:
-        msg = f"factor is {factor}; expected 1 or more"
-        raise ValueError(msg)
-    picks = list(range(0, count, factor))
-    if closed and picks[-1] != count - 1:
-        picks.append(count - 1)
-    fewest = 4 if closed else 2
-    if len(picks) < fewest:
-        msg = (
-            f"factor is {factor}, which leaves {len(picks)} of {count} lines; expected a smaller "
-            f"one that leaves at least {fewest}"
-        )
-        raise ValueError(msg)
-    return np.array(picks)
 
 
 def speed_unit(length: str, time: str) -> str:

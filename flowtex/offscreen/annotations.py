@@ -320,8 +320,7 @@ def map_scale(field: FlowField, position: ArrayLike) -> float:
     """
     if field.projection is None:
         return 1.0
-    place = field.projection.lonlat(np.asarray(position, dtype=float))
-    scale = float(field.projection.scale(*place))
+    scale = field.projection.scale(np.asarray(position, dtype=float))
     return scale if scale > 0 and math.isfinite(scale) else 1.0
 
 

@@ -102,7 +102,7 @@ def test_land_has_its_colour_or_none(plotter: Any) -> None:
     camera = read_camera(plotter.camera)
 
     def colour() -> Floats:
-        return at(shot(plotter), field, camera, 16.0, -12.0)[1, 1]
+        return np.asarray(at(shot(plotter), field, camera, 16.0, -12.0)[1, 1])
 
     assert colour() == pytest.approx(255 * np.array(rgb(LAND_COLOR)), abs=2)
     handle.land = "tomato"
@@ -142,9 +142,9 @@ def test_the_camera_and_the_bounds_are_those_of_the_flow(name: str) -> None:
         plotter.flowtex.add(ocean(name), show_scalar_bar=False, **options)
         plotter.render()
         bounds = tuple(plotter.renderer.bounds)
-        found.append((read_camera(plotter.camera), bounds))
+        first = read_camera(plotter.camera)
         plotter.reset_camera()
-        found[-1] += (read_camera(plotter.camera),)
+        found.append((first, bounds, read_camera(plotter.camera)))
         plotter.close()
     assert found[0] == found[1]
 

@@ -42,7 +42,8 @@ def dataset_paths(path: Any) -> list[Path]:
     """Return the paths of data of the Earth, of one or of several; nothing for anything else."""
     several = [path] if isinstance(path, (str, Path)) else list(path)
     paths = [Path(one).expanduser() for one in several]
-    return paths if paths and all(map(is_dataset_file, paths)) else []
+    known = paths and all(map(is_dataset_file, paths)) and all(one.exists() for one in paths)
+    return paths if known else []
 
 
 def belong_together(paths: Sequence[Path]) -> bool:

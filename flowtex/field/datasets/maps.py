@@ -84,7 +84,7 @@ def on_map(places: Places, name: str | None) -> MapNodes:
     with np.errstate(invalid="ignore"):
         points[(lat < least) | (lat > most)] = np.nan
     if name not in ("robinson", "equalearth", *CYLINDERS):
-        scale = projection.scale(lon, lat)
+        scale = projection.scales(lon, lat)
         with np.errstate(invalid="ignore"):
             points[~(scale <= LARGEST * np.nanmin(scale))] = np.nan
     if not places.is_line or name not in (*CYLINDERS, "north", "south"):

@@ -9,7 +9,7 @@ import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
@@ -23,13 +23,14 @@ from flowtex.field.datasets.notices import notify
 from flowtex.field.datasets.pairs import Pair, choose_pair, to_metres_per_second
 from flowtex.field.datasets.places import Places, over_sphere
 from flowtex.field.datasets.staggered import centred
-from flowtex.field.field import FlowField
 from flowtex.field.steps import LazySteps
 
 if TYPE_CHECKING:
     import xarray as xr
 
 __all__ = ["Recognised", "as_datasets", "field_of", "recognise"]
+
+F = TypeVar("F")
 
 #: Share of the nodes of a staggered grid at rest from which on they count as land.
 LAND_SHARE = 0.01
@@ -75,6 +76,7 @@ class Recognised:
 
 
 def field_of(
+    make: Callable[..., F],
     data: xr.Dataset | Sequence[xr.Dataset],
     u: str | None = None,
     v: str | None = None,
@@ -83,8 +85,8 @@ def field_of(
     name: str = "",
     sel: Mapping[str, Any] | None = None,
     isel: Mapping[str, Any] | None = None,
-) -> FlowField:
-    """Make a field; :meth:`FlowField.from_xarray` has the parameters."""
+) -> F:
+    """Make a field by ``FlowField.from_arrays``; :meth:`FlowField.from_xarray` has the rest."""
     known = recognise(data, u, v, sel=sel, isel=isel)
     for note in known.notes:
         notify(note)
@@ -128,7 +130,7 @@ def field_of(
         return np.asarray(np.hypot(*known.steps(number))[lines])
 
     first = velocity(numbers[0])
-    base = FlowField.from_arrays(points, first, name=name, **options)
+    base = make(points, first, name=name, **options)
     extra: dict[str, Callable[[int], Floats]] = {}
     for key, (read, _) in scalars.items():
         extra[key] = partial(on_lines, read)
@@ -136,7 +138,8 @@ def field_of(
     if speeds:
         extra["speed"] = speed
         units["speed"] = "m/s"
-    return _with_steps(base, first, velocity, extra, times, numbers, units)
+    field: F = _with_steps(base, first, velocity, extra, times, numbers, units)
+    return field
 
 
 def recognise(
@@ -348,14 +351,14 @@ def _scalars(
 
 
 def _with_steps(
-    base: FlowField,
+    base: Any,
     first: Floats,
     velocity: Callable[[int], Floats],
     scalars: Mapping[str, Callable[[int], Floats]],
     times: Any,
     numbers: list[int],
     units: Mapping[str, str],
-) -> FlowField:
+) -> Any:
     """Return a field with all its steps, read as they are needed, and closed as its first one."""
     from flowtex.field.dates import as_seconds
 

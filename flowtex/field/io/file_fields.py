@@ -9,7 +9,6 @@ from typing import Any
 from flowtex.errors import FieldError
 from flowtex.field.datasets.files import dataset_paths, open_datasets
 from flowtex.field.datasets.pairs import two_names
-from flowtex.field.field import FlowField
 from flowtex.field.io.files import read_file
 from flowtex.field.io.reader_errors import errors_of_file
 
@@ -17,13 +16,17 @@ __all__ = ["field_of_file"]
 
 
 def field_of_file(
+    kind: Any,
     path: str | Path | Sequence[str | Path],
     vectors: str | None,
     time: float | str | None,
     of_meshes: Mapping[str, Any],
     of_earth: Mapping[str, Any],
-) -> FlowField:
-    """Make a field; :meth:`FlowField.from_file` has the parameters, here sorted by their kind."""
+) -> Any:
+    """Make a field; :meth:`FlowField.from_file` has the parameters, here sorted by their kind.
+
+    ``kind`` is that class.
+    """
     paths = dataset_paths(path)
     first = paths[0] if paths else path
     with errors_of_file(first if isinstance(first, (str, Path)) else "several files"):
@@ -34,7 +37,7 @@ def field_of_file(
                 choices["sel"] = {**choices.get("sel", {}), "time": time}
             names: dict[str, Any] = two_names(vectors)
             name = paths[0].stem
-            return FlowField.from_xarray(open_datasets(paths), **names, **choices, name=name)
+            return kind.from_xarray(open_datasets(paths), **names, **choices, name=name)
         _refuse(of_earth, "data of the Earth, and this is a mesh")
         if not isinstance(path, (str, Path)):
             msg = f"{len(path)} files are given, and a mesh is read from one; name one of them"
@@ -44,7 +47,7 @@ def field_of_file(
             raise FieldError(msg)
         options = {name: of_meshes[name] for name in ("periodic", "sign_free")}
         arguments = read_file(path, time=time, vectors=vectors, **of_meshes)
-        return FlowField.from_arrays(**arguments, name=Path(path).stem, **options)
+        return kind.from_arrays(**arguments, name=Path(path).stem, **options)
 
 
 def _refuse(choices: Mapping[str, Any], what: str) -> None:

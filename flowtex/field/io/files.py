@@ -115,10 +115,7 @@ def _unknown_format(file: Path) -> str:
     what = repr(file.suffix) if file.suffix else "no suffix"
     if file.suffix.lower() in {*plot3d.GRID_SUFFIXES, ".q"}:
         what = "no PLOT3D grid of any layout"
-    msg = f"the format is not known ({what}); expected {_KNOWN_FORMATS}"
-    if file.suffix.lower() in {".nc", ".nc4", ".zarr", ".grib", ".grb"}:
-        msg += ". Open it with xarray; FlowField.from_arrays takes its arrays"
-    return msg
+    return f"the format is not known ({what}); expected {_KNOWN_FORMATS}"
 
 
 def _at_time(source: Any, time: float) -> Any:

@@ -129,8 +129,9 @@ def test_era_interim_on_the_globe(level: int) -> None:
     with xr.open_dataset(DATA / "eraint_uvz.nc") as ds:
         one = ds.isel(month=0).sel(level=level)
         wanted = reference(one.longitude, one.latitude, one.u.values, one.v.values)
-    assert np.allclose(field.velocity[0][1:-1, :480], wanted[1:-1], atol=1e-9)
-    assert field.periodic == (False, True) and len(field.surface.poles or ()) == 2
+    assert np.allclose(field.velocity[0][1:-1, :480], wanted[1:-1], atol=1e-5)
+    assert field.periodic == (False, True)
+    assert len(list(field.surface.poles or ())) == 2
     assert set(field.scalars) == {"z"} and field.unit_of("z") == "m**2 s**-2"
 
 

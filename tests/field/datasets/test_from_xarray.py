@@ -155,14 +155,16 @@ def test_the_level_nearest_the_surface_is_said() -> None:
     assert np.allclose(
         field.velocity, 3 * FlowField.from_xarray(levels(), globe=True, isel={"level": 0}).velocity
     )
-    with pytest.raises(FieldError, match="level is 20; there are 200.0, 500.0, 850.0"):
+    with pytest.raises(FieldError, match=r"level is 20; there are 200\.0, 500\.0, 850\.0"):
         FlowField.from_xarray(levels(), level=20)
     with pytest.raises(FieldError, match="no axis 'lvel'"):
         FlowField.from_xarray(levels(), lvel=500)
 
 
 def _nameless(ds: Any) -> Any:
-    return xr.Dataset({n: (ds.u.dims, ds[m].values) for n, m in zip("ab", "uv")}, ds.coords)
+    return xr.Dataset(
+        {n: (ds.u.dims, ds[m].values) for n, m in (("a", "u"), ("b", "v"))}, ds.coords
+    )
 
 
 @pytest.mark.parametrize(
