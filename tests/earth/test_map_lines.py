@@ -54,7 +54,7 @@ def test_land_is_within_coasts(lon: float, lat: float, is_land: bool) -> None:
     a, b = a[crosses], b[crosses]
     at = a[:, 0] - a[:, 1] * (b[:, 0] - a[:, 0]) / (b[:, 1] - a[:, 1])
     # Up to a quarter of the way around: there the map is whole, and each of these ways ends at sea.
-    assert bool(((at > 0) & (at < END[lon] * DEGREE)).sum() % 2) == is_land
+    assert bool(((at > 0) & (at < END[int(lon)] * DEGREE)).sum() % 2) == is_land
 
 
 #: Degrees eastward from each place along its great circle to one that is at sea.

@@ -60,8 +60,11 @@ def test_a_vector_is_how_a_particle_moves_on_the_map(
 
     moved = (after(1) - after(-1)) / (2 * seconds)
     vector = projection.vectors(lon, lat, np.array(east), np.array(north))
-    # Robinson's has kinks, by some per cent, at every fifth degree.
-    assert vector == pytest.approx(moved, rel=0.03, abs=0.01 * projection.scale(after(0)))
+    # Robinson's has kinks, by up to a tenth, at every fifth degree.
+    share = 0.1 if name == "robinson" else 0.03
+    far = np.hypot(east, north)
+    tolerance = share * far + 0.01
+    assert vector == pytest.approx(moved, abs=tolerance * projection.scale(after(0)))
 
 
 @given(names, offsets, shares, st.floats(-30, 30), st.floats(-30, 30))
