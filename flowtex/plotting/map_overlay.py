@@ -42,6 +42,8 @@ LINES_NEARER, LAND_FARTHER = 1e-2, 2e-4
 SPACINGS, SPACING_PX = (80e3, 20e3, 0.0), 2.0
 #: Nearest that the front of the globe is drawn, as a share of the farthest.
 NEAREST = 1e-3
+#: Height of a picture in which lines have their width, and how it changes with that at most.
+USUAL_HEIGHT_PX, WIDTH_RANGE = 600, (0.6, 2.0)
 #: Cells along a meridian of the globe below the surface.
 GLOBE_CELLS = 180
 #: Observers of a frame run by falling priority: this one after those that set the clipping range.
@@ -190,9 +192,11 @@ class MapOverlay:
             self._include_globe(renderer.GetActiveCamera())
         nearer = _depth_of_share(renderer.GetActiveCamera())
         viewport = [*map(float, renderer.GetOrigin()), *map(float, renderer.GetSize())]
-        pixel = self._surface.view.density
-        if self._surface.full_height:
-            pixel *= renderer.GetSize()[1] / self._surface.full_height
+        height, density = renderer.GetSize()[1], self._surface.view.density
+        full_height = self._surface.full_height or height
+        # Lines of a large picture are wider, not by as much as it is larger.
+        width = np.clip(np.sqrt(full_height / density / USUAL_HEIGHT_PX), *WIDTH_RANGE)
+        pixel = float(width) * density * height / full_height
         finest = SPACING_PX * self._surface.view.pixel * self._surface.view.density
         for part in self._parts:
             part.actor.SetVisibility(is_visible)

@@ -136,7 +136,7 @@ def test_lines_end_where_a_map_does() -> None:
 
 @pytest.mark.parametrize("name", ["globe", "lambert"])
 def test_the_camera_and_the_bounds_are_those_of_the_flow(name: str) -> None:
-    found = []
+    found: list[tuple[Any, ...]] = []
     for options in ({}, OFF):
         plotter: Any = pv.Plotter(off_screen=True, window_size=list(SIZE))
         plotter.flowtex.add(ocean(name), show_scalar_bar=False, **options)
