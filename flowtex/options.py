@@ -27,6 +27,7 @@ from flowtex.field import FlowField, Surface
 from flowtex.settings import TABLE, Settings, SettingsError
 
 __all__ = [
+    "LAND_COLOR",
     "NO_VALUE_COLOR",
     "ROBUST",
     "SPEED",
@@ -42,6 +43,8 @@ __all__ = [
 PLAIN_COLOR = "#a0a0a0"
 #: Colour where there is no value, as in PyVista.
 NO_VALUE_COLOR = "darkgray"
+#: Colour of land: calm before a light and a dark background.
+LAND_COLOR = "#8f8b82"
 
 #: The scalar that every flow has, and the range of colours without outliers.
 SPEED, ROBUST = "speed", "robust"
@@ -143,6 +146,18 @@ class Appearance:
         "repeats it. Where it is transparent the surface's colour shows. It sets "
         '``noise="image"``, and ``strength=1`` unless that is given.',
     )
+    coastlines: bool | None = _option(
+        None, "Whether coasts are drawn; by default where the field has a projection."
+    )
+    graticule: bool | None = _option(
+        None,
+        "Whether meridians and parallels are drawn; by default where the field has a projection.",
+    )
+    land: Any = _option(
+        LAND_COLOR,
+        "Colour of the Earth where a field with a projection has no data, such as land in an ocean; "
+        "``None`` for none.",
+    )
 
     def __post_init__(self) -> None:
         """Check the values, and have those that stand for others as these."""
@@ -167,7 +182,13 @@ class Appearance:
                 )
             elif not (isinstance(self.clim, tuple) and self.clim == (low, high)):
                 object.__setattr__(self, "clim", (low, high))
-        checks = ((colour_table, self.cmap, DEFAULT_CMAP), (rgb, self.color, PLAIN_COLOR))
+        if self.land is False:
+            object.__setattr__(self, "land", None)
+        checks = (
+            (colour_table, self.cmap, DEFAULT_CMAP),
+            (rgb, self.color, PLAIN_COLOR),
+            (rgb, LAND_COLOR if self.land is None else self.land, LAND_COLOR),
+        )
         for check, value, default in checks:
             if value is not default:  # which loads nothing
                 try:

@@ -452,6 +452,9 @@ class AppearanceAttributes:
     visible = _attribute("visible")
     lighting = _attribute("lighting")
     show_scalar_bar = _attribute("show_scalar_bar")
+    coastlines = _attribute("coastlines")
+    graticule = _attribute("graticule")
+    land = _attribute("land")
 
     def __setattr__(self, name: str, value: Any) -> None:
         """Set an attribute that there is; the error for another one names those that are near."""

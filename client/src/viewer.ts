@@ -16,6 +16,7 @@ import { PointCard } from "./pointcard.ts";
 import { Pointers } from "./pointers.ts";
 import { ProgressiveRenderer } from "./progressive.ts";
 import {
+  EARTH_LINES,
   FORMAT,
   stepOf,
   tilePart,
@@ -197,7 +198,7 @@ export class Viewer implements User {
     this.scene?.forget(name);
     this.trim();
     if (name === "cmap") this.tiles?.recolour();
-    if (name === "cmap" || name === "maps") this.panel.showLegend();
+    if (["cmap", "maps", ...EARTH_LINES].includes(name)) this.panel.showLegend();
     this.change();
   }
 
@@ -498,7 +499,7 @@ export class Viewer implements User {
       this.panel.fail("The shader does not compile with this graphics driver.", program.error);
       return;
     }
-    if (!program.ready) return this.request();
+    if (!program.ready || !this.scene?.earth.isReady) return this.request();
     if (!this.sharp && this.renderer.draw(program, shown, this.isBusy, until)) {
       this.panel.clear();
       programs.get(header.shaders.vertex, header.shaders.pick); // the pointer asks for it next,

@@ -1,0 +1,84 @@
+"""What is drawn of the Earth with a field that has a projection: lines, land and the globe below."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from flowtex._util.array_types import Bools, Floats
+from flowtex._util.blocks import bounds
+from flowtex.earth import EARTH_RADIUS, MapLines, coastlines, graticule
+from flowtex.field import FlowField
+
+__all__ = ["STROKES", "Stroke", "globe_radius", "land_cells", "map_box", "map_lines"]
+
+
+class Stroke(NamedTuple):
+    """A line: the option that it is for, its colour, opacity, and width in pixels."""
+
+    option: str
+    color: str
+    opacity: float
+    width: float
+
+
+#: From below to above. A light rim tells a coast from dark colours.
+STROKES = (
+    Stroke("graticule", "white", 0.22, 1.0),
+    Stroke("graticule", "black", 0.22, 1.0),
+    Stroke("coastlines", "white", 0.35, 3.0),
+    Stroke("coastlines", "black", 0.9, 1.5),
+)
+
+#: Share of the extent by which the box of a map is wider than its surface.
+WIDER = 1e-3
+#: How much lower than the surface the globe lies, in radii, beside what its cells are flatter.
+LOWER = 1e-5
+
+
+def map_box(field: FlowField) -> Floats | None:
+    """Return the box in which lines are drawn, (2, 3); ``None`` for all of the Earth, on a globe.
+
+    It holds all nodes that have a position, also those on land.
+    """
+    if field.projection is None or field.projection.is_globe:
+        return None
+    surface = field.surface
+    box = bounds(surface.points[surface.has_position])
+    margin = WIDER * np.ptp(box, axis=0).max()
+    return np.asarray(box + np.array([[-margin], [margin]]))
+
+
+def map_lines(field: FlowField) -> dict[str, MapLines]:
+    """Return the coasts and the graticule of a field that has a projection, by their options."""
+    if field.projection is None:
+        return {}
+    box = map_box(field)
+    makers = {"coastlines": coastlines, "graticule": graticule}
+    return {name: make(field.projection, box) for name, make in makers.items()}
+
+
+def land_cells(field: FlowField) -> Bools:
+    """Tell which cells of a field have their positions and are not drawn, (J - 1, I - 1)."""
+    surface = field.surface
+    known = surface.has_position
+    known = known[:-1, :-1] & known[1:, :-1] & known[:-1, 1:] & known[1:, 1:]
+    return np.asarray(known & ~surface.cells)
+
+
+def globe_radius(field: FlowField) -> float | None:
+    """Return the radius of the sphere below a globe, which no cell reaches.
+
+    It is ``None`` for a map, and where the field covers all of the Earth.
+    """
+    surface = field.surface
+    if field.projection is None or not field.projection.is_globe:
+        return None
+    if surface.has_position.all() and len(tuple(surface.poles or ())) == 2:
+        return None
+    p = surface.points
+    middles = (p[:-1, :-1] + p[1:, :-1] + p[:-1, 1:] + p[1:, 1:]) / 4
+    drawn = surface.cells | land_cells(field)
+    lowest = float(np.linalg.norm(middles[drawn], axis=-1).min(initial=EARTH_RADIUS))
+    return lowest - LOWER * EARTH_RADIUS
