@@ -8,8 +8,7 @@ import { EARTH_LINES, type EarthLines, type Header, type Part } from "./protocol
 import { add, cross, dot, length, scale, subtract, toFrame, unit, type Vector } from "./vectors.ts";
 
 const POINT_BYTES = 12;
-/** Points that a piece of a line is drawn from: the one before, its own two, and the one after. */
-const PIECE_POINTS = 4;
+const PIECE_ENDS = 2;
 
 /** Objects of the graphics card, and from where their positions are counted. */
 interface Drawn {
@@ -68,8 +67,8 @@ export class EarthLayer {
     return earth ? EARTH_LINES.filter((name) => earth[name] && this.parts.has(name)) : [];
   }
 
-  /** Draw the lines into a picture that is clear as yet. */
-  drawLines(view: EarthView): void {
+  /** Draw the lines one above the other, each into a picture of its own that `take` is called for. */
+  drawLines(view: EarthView, take: () => void): void {
     const { header, graphics } = this;
     const { earth, shaders } = header;
     const program = graphics.programs.get(shaders.lineVertex, shaders.lineFragment);
@@ -82,14 +81,14 @@ export class EarthLayer {
     gl.scissor(0, 0, width, height);
     gl.disable(gl.DEPTH_TEST);
     gl.enable(gl.BLEND);
-    gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
+    gl.blendEquation(gl.MAX);
     gl.clearColor(0, 0, 0, 0);
-    gl.clear(gl.COLOR_BUFFER_BIT);
     const horizon = this.horizon(camera);
     const planes = [...camera.planes, ...(horizon ? [horizon] : [])];
     const local = planes.map((plane) => this.localPlane(plane, anchor));
     for (const { option, color, opacity, width: thickness } of earth.strokes) {
       if (!this.lines.includes(option)) continue;
+      gl.clear(gl.COLOR_BUFFER_BIT);
       const drawn = this.take(option, anchor, () => this.linesOf(option, anchor));
       graphics.programs.use(program, {
         u_matrix: projection(header.geometry, camera, anchor),
@@ -101,13 +100,15 @@ export class EarthLayer {
       gl.bindVertexArray(drawn.array);
       gl.bindBuffer(gl.ARRAY_BUFFER, drawn.buffers[0]);
       for (const [first, count] of visibleRuns(drawn.groups, local)) {
-        for (let n = 0; n < PIECE_POINTS; n += 1) {
+        for (let n = 0; n < PIECE_ENDS; n += 1) {
           gl.vertexAttribPointer(n, 3, gl.FLOAT, false, POINT_BYTES, (first + n) * POINT_BYTES);
         }
         gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, count);
       }
+      take();
     }
     gl.bindVertexArray(null);
+    gl.blendEquation(gl.FUNC_ADD);
     gl.disable(gl.BLEND);
   }
 
@@ -217,7 +218,7 @@ export class EarthLayer {
     const drawn = { ...this.emptyArray(), anchor, groups: pieceGroups(points) };
     gl.bindVertexArray(drawn.array);
     drawn.buffers = [this.buffer(gl.ARRAY_BUFFER, points as AllowSharedBufferSource)];
-    for (let n = 0; n < PIECE_POINTS; n += 1) {
+    for (let n = 0; n < PIECE_ENDS; n += 1) {
       gl.enableVertexAttribArray(n);
       gl.vertexAttribDivisor(n, 1);
     }

@@ -48,6 +48,14 @@ export function lonLatOf(
   return lonLat.every(Number.isFinite) ? [lonLat[0] * DEGREES, lonLat[1] * DEGREES] : null;
 }
 
+/** Components of a vector on a globe, to the east and to the north. */
+export function eastNorth([x, y, z]: readonly number[], vector: readonly number[]): [number, number] {
+  const [across, away] = [Math.hypot(x, y) || 1, Math.hypot(x, y, z) || 1];
+  const east = (x * vector[1] - y * vector[0]) / across;
+  const inward = (x * vector[0] + y * vector[1]) / across;
+  return [east, (across * vector[2] - z * inward) / away];
+}
+
 /** Such as 12.35° E, 45.20° N, with as many decimals as tell places apart that are so many degrees apart. */
 export function lonLatText([lon, lat]: [number, number], apart: number): string {
   const decimals = clamp(Math.ceil(-Math.log10(apart)), FEWEST_DECIMALS, MOST_DECIMALS);

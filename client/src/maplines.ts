@@ -3,7 +3,7 @@
 import type { Earth } from "./protocol.ts";
 import type { Vector } from "./vectors.ts";
 
-/** What stands for no point, before, between and after lines. */
+/** What stands for no point, before each line. */
 export const BREAK = 1e30;
 /** Steps that a side of the box has. */
 const STEPS = 65535;
@@ -36,18 +36,17 @@ export function linePoints(
       points.push(low[k] + (place[k] / STEPS) * size[k] - anchor[k]);
     }
   }
-  points.push(BREAK, BREAK, BREAK);
   return new Float32Array(points);
 }
 
-/** Balls around groups of pieces; piece n goes from point n + 1 to point n + 2. */
+/** Balls around groups of pieces; piece n goes from point n to the next. */
 export function pieceGroups(points: Float32Array): PieceGroup[] {
   const groups: PieceGroup[] = [];
-  const pieces = points.length / 3 - 3;
+  const pieces = points.length / 3 - 1;
   for (let first = 0; first < pieces; first += GROUP) {
     const count = Math.min(GROUP, pieces - first);
     const [low, high] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
-    for (let n = 3 * (first + 1); n < 3 * (first + count + 2); n += 1) {
+    for (let n = 3 * first; n < 3 * (first + count + 1); n += 1) {
       if (points[n] === Math.fround(BREAK)) continue;
       low[n % 3] = Math.min(low[n % 3], points[n]);
       high[n % 3] = Math.max(high[n % 3], points[n]);

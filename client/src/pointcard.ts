@@ -3,7 +3,7 @@
 import type { Camera } from "./camera.ts";
 import { dom, numberText } from "./dom.ts";
 import type { Lifetime, Timer } from "./lifetime.ts";
-import { lonLatOf, lonLatText } from "./lonlat.ts";
+import { eastNorth, lonLatOf, lonLatText } from "./lonlat.ts";
 import type { Options } from "./options.ts";
 import { pathShapes, type Line, type Place } from "./pathlines.ts";
 import { valuesAt, type Found, type Point } from "./picking.ts";
@@ -155,10 +155,13 @@ export class PointCard {
   private tell(point: Point, { velocity }: PointPath, header: Header, camera: Camera): void {
     const { label, unit } = header.speed;
     const size = Math.hypot(...velocity);
-    const text = vectorText(velocity, size, VELOCITY_DIGITS, liesAcross(header.geometry));
+    const isGlobe = Boolean(header.earth?.radius);
+    const shown = isGlobe ? eastNorth(point.position, velocity) : velocity;
+    const text = vectorText(shown, size, VELOCITY_DIGITS, isGlobe || liesAcross(header.geometry));
+    const vectorName = label.replace("speed", "velocity");
     const lines = new Map([
       ["position", placeText(point.position, header, this.host.parts, camera, true)],
-      [label.replace("speed", "velocity"), withUnit(text, unit)],
+      [isGlobe ? `${vectorName} east, north` : vectorName, withUnit(text, unit)],
       [label, withUnit(numberText(size, VELOCITY_DIGITS), unit)],
     ]);
     for (const [name, value] of Object.entries(point.values)) {

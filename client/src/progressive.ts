@@ -205,11 +205,12 @@ export class ProgressiveRenderer {
       const { canvas } = graphics;
       if (canvas.width < width) canvas.width = width;
       if (canvas.height < height) canvas.height = height;
-      earth.drawLines({ camera, anchor, width, height, ratio });
-      if (front.width !== width) front.width = width;
-      if (front.height !== height) front.height = height;
-      frontPen.clearRect(0, 0, width, height);
-      frontPen.drawImage(canvas, 0, canvas.height - height, width, height, 0, 0, width, height);
+      front.width = width; // which clears it
+      front.height = height;
+      earth.drawLines({ camera, anchor, width, height, ratio }, () => {
+        const top = canvas.height - height;
+        frontPen.drawImage(canvas, 0, top, width, height, 0, 0, width, height);
+      });
       this.frontLook = look;
     }
     this.pen?.drawImage(front, 0, 0);

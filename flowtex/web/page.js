@@ -314,13 +314,15 @@ header.scalars)(value),0,1)}%`)}};var DEGREES=180/Math.PI,FEWEST_DECIMALS=2,MOST
 i,across]=around((position[0]-x0)/(x1-x0),columns),[j,upward]=around((position[1]-y0)/(y1-y0),rows),way=[0,0,0];return upward.
 forEach((v2,n)=>{across.forEach((u,m)=>{for(let k=0;k<3;k+=1)way[k]+=u*v2*data[3*((j+n)*columns+i+m)+k]})}),way}function lonLatOf(earth,position,places){
 if(earth.map&&!places)return null;let[x,y,z]=earth.map&&places?wayOn(earth.map,places,position):position,lonLat=[Math.atan2(
-y,x),Math.atan2(z,Math.hypot(x,y))];return lonLat.every(Number.isFinite)?[lonLat[0]*DEGREES,lonLat[1]*DEGREES]:null}function lonLatText([
-lon,lat],apart){let decimals=clamp(Math.ceil(-Math.log10(apart)),FEWEST_DECIMALS,MOST_DECIMALS),told=(degrees,[before,after])=>{
-let size=Math.abs(degrees).toFixed(decimals),isEdge=Number(size)===0||Number(size)===180;return`${size}°${isEdge?"":` ${degrees<
-0?before:after}`}`};return`${told(lon,"WE")}, ${told(lat,"SN")}`}function dateText({start,dates,step},times2,time){if(start===
-null){if(!dates.length)return null;let apart=times2.map(each=>Math.abs(each-time));return dates[apart.indexOf(Math.min(...apart))]}
-let first=Date.parse(`${start}Z`),isMidnight=first%(1e3*DAY_S)===0,text=new Date(first+1e3*time).toISOString();return isMidnight&&
-step%DAY_S===0&&time%DAY_S===0?text.slice(0,10):text.slice(0,step>=60?16:19).replace("T"," ")}var HEAD={apart:90,length:14,half:5},POINT_RADIUS=6,FREE_RADIUS=20,textOf=line=>line.map(place=>place.map(v2=>v2.toFixed(
+y,x),Math.atan2(z,Math.hypot(x,y))];return lonLat.every(Number.isFinite)?[lonLat[0]*DEGREES,lonLat[1]*DEGREES]:null}function eastNorth([
+x,y,z],vector){let[across,away]=[Math.hypot(x,y)||1,Math.hypot(x,y,z)||1],east=(x*vector[1]-y*vector[0])/across,inward=(x*
+vector[0]+y*vector[1])/across;return[east,(across*vector[2]-z*inward)/away]}function lonLatText([lon,lat],apart){let decimals=clamp(
+Math.ceil(-Math.log10(apart)),FEWEST_DECIMALS,MOST_DECIMALS),told=(degrees,[before,after])=>{let size=Math.abs(degrees).
+toFixed(decimals),isEdge=Number(size)===0||Number(size)===180;return`${size}°${isEdge?"":` ${degrees<0?before:after}`}`};
+return`${told(lon,"WE")}, ${told(lat,"SN")}`}function dateText({start,dates,step},times2,time){if(start===null){if(!dates.
+length)return null;let apart=times2.map(each=>Math.abs(each-time));return dates[apart.indexOf(Math.min(...apart))]}let first=Date.
+parse(`${start}Z`),isMidnight=first%(1e3*DAY_S)===0,text=new Date(first+1e3*time).toISOString();return isMidnight&&step%
+DAY_S===0&&time%DAY_S===0?text.slice(0,10):text.slice(0,step>=60?16:19).replace("T"," ")}var HEAD={apart:90,length:14,half:5},POINT_RADIUS=6,FREE_RADIUS=20,textOf=line=>line.map(place=>place.map(v2=>v2.toFixed(
 1)).join()).join(" ");function arrowHeads(line,apart=HEAD.apart){let heads=[],due=0;for(let n=line.length-1;n>0;n-=1){let[
 [ax,ay],[bx,by]]=[line[n-1],line[n]],size=Math.hypot(bx-ax,by-ay);if(!size)continue;let[ux,uy]=[(bx-ax)/size,(by-ay)/size];
 for(;due<size;due+=apart){let[x,y]=[bx-due*ux,by-due*uy],[left,low]=[x-HEAD.length*ux,y-HEAD.length*uy],[wide,tall]=[-HEAD.
@@ -453,17 +455,19 @@ let{chosen}=this,{options,camera,shown,header,tiles,settings,root,together}=this
 scene;if(!scene||scene.missing(shown[0],shown[1]).length)return;let position=point.position,path=pathThrough({scene,moment:shown,
 place,position},settings,camera,root.clientHeight);this.tell({...point,values:valuesAt(scene,shown,place)},path,header,camera);
 for(let{card}of together)card.drawn={path,point:position},card.draw()}tell(point,{velocity},header,camera){let{label,unit:unit2}=header.
-speed,size=Math.hypot(...velocity),text=vectorText(velocity,size,VELOCITY_DIGITS,liesAcross(header.geometry)),lines=new Map(
-[["position",placeText(point.position,header,this.host.parts,camera,!0)],[label.replace("speed","velocity"),withUnit(text,
-unit2)],[label,withUnit(numberText(size,VELOCITY_DIGITS),unit2)]]);for(let[name,value]of Object.entries(point.values)){let named=header.
-scalars.choices.find(each=>each.name===name)??header.scalars;lines.set(named.label,withUnit(numberText(value),named.unit))}
-this.list.replaceChildren(...[...lines].flatMap(([word,value])=>[dom("dt",{},[word]),dom("dd",{},[value])])),this.element.
-hidden=!1}draw(){let{drawn}=this,{camera,root}=this.host;if(!drawn||!camera)return;let{clientWidth:width,clientHeight:height}=root,
-placeOf=point2=>{let place=camera.project(point2);return place&&[(place[0]+1)/2*width,(1-place[1])/2*height]},linesOf=points=>{
-let lines=[[]];for(let place of points.map(placeOf))place?lines[lines.length-1].push(place):lines.push([]);return lines.
-filter(line=>line.length>1)},{path,sampled,directed}=drawn.path,point=placeOf(drawn.point),shapes=pathShapes({path:linesOf(
-path),sampled:linesOf(sampled),point,directed});this.overlay.replaceChildren(...shapes.map(([tag,attributes])=>{let shape=document.
-createElementNS(SVG,tag);for(let[name,value]of Object.entries(attributes))shape.setAttribute(name,`${value}`);return shape}))}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */
+speed,size=Math.hypot(...velocity),isGlobe=!!header.earth?.radius,shown=isGlobe?eastNorth(point.position,velocity):velocity,
+text=vectorText(shown,size,VELOCITY_DIGITS,isGlobe||liesAcross(header.geometry)),word=label.replace("speed","velocity"),
+lines=new Map([["position",placeText(point.position,header,this.host.parts,camera,!0)],[isGlobe?`${word} east, north`:word,
+withUnit(text,unit2)],[label,withUnit(numberText(size,VELOCITY_DIGITS),unit2)]]);for(let[name,value]of Object.entries(point.
+values)){let named=header.scalars.choices.find(each=>each.name===name)??header.scalars;lines.set(named.label,withUnit(numberText(
+value),named.unit))}this.list.replaceChildren(...[...lines].flatMap(([word2,value])=>[dom("dt",{},[word2]),dom("dd",{},[
+value])])),this.element.hidden=!1}draw(){let{drawn}=this,{camera,root}=this.host;if(!drawn||!camera)return;let{clientWidth:width,
+clientHeight:height}=root,placeOf=point2=>{let place=camera.project(point2);return place&&[(place[0]+1)/2*width,(1-place[1])/
+2*height]},linesOf=points=>{let lines=[[]];for(let place of points.map(placeOf))place?lines[lines.length-1].push(place):
+lines.push([]);return lines.filter(line=>line.length>1)},{path,sampled,directed}=drawn.path,point=placeOf(drawn.point),shapes=pathShapes(
+{path:linesOf(path),sampled:linesOf(sampled),point,directed});this.overlay.replaceChildren(...shapes.map(([tag,attributes])=>{
+let shape=document.createElementNS(SVG,tag);for(let[name,value]of Object.entries(attributes))shape.setAttribute(name,`${value}`);
+return shape}))}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */
 :host {
   --ink: var(--jp-ui-font-color1, #1b2430);
   --quiet: var(--jp-ui-font-color2, #566373);
@@ -826,21 +830,21 @@ rowsDone)}),this.rowsDone+=rows,this.rowsDone<height?!1:(this.pen?.drawImage(thi
 shown),!0)}drawLines(shown){let{front,frontPen,graphics}=this,{scene,camera,ratio}=this.viewer,{width,height}=this.canvas;
 if(!scene?.earth.lines.length||!camera||!frontPen)return;let{earth}=scene,{state,aspect}=camera,look=JSON.stringify([state,
 aspect,width,height,earth.lines,earth.version]);if(look!==this.frontLook){let{anchor}=this.viewer.view(shown,ratio),{canvas}=graphics;
-canvas.width<width&&(canvas.width=width),canvas.height<height&&(canvas.height=height),earth.drawLines({camera,anchor,width,
-height,ratio}),front.width!==width&&(front.width=width),front.height!==height&&(front.height=height),frontPen.clearRect(
-0,0,width,height),frontPen.drawImage(canvas,0,canvas.height-height,width,height,0,0,width,height),this.frontLook=look}this.
-pen?.drawImage(front,0,0)}complete(){let{camera,player}=this.viewer;this.rowsDone=this.canvas.height,this.frames+=1,this.
-draftVersion=this.version,this.lastPen?.drawImage(this.canvas,0,0),camera&&!player.playing&&(this.lastCamera=new Camera(
-camera.state,camera.limits,camera.flat,camera.aspect))}reuse(){let{lastCamera}=this,{scene,camera}=this.viewer;if(!scene?.
-header.geometry.planar||!camera||!lastCamera||!camera.state.parallel||!lastCamera.state.parallel)return null;let{geometry}=scene.
-header,focus=subtract2(camera.state.focal_point,geometry.center),anchor=toFrame(geometry.frame,focus),[before,now]=[lastCamera,
-camera].map(view=>projection(geometry,view,anchor));return reused(before,now,this.canvas.width,this.canvas.height)}factor(samples){
-let{settings,player}=this.viewer;return settings.motion!=="off"||player.varies?motionFactor(samples):1}timed(program,region,samples,draw){
-let started=performance.now();draw();let spent=performance.now()-started,pixels=region.width*region.rows,factor=this.factor(
-samples);program.price=learnedPrice(program.price,spent,this.fixed,pixels,samples,factor)}warm(program,shown){if(program.
-warm)return;let{width,height}=this.canvas,region={width,height,top:0,rows:1};this.render(program,shown,region,1);let started=performance.
-now();this.render(program,shown,region,1),this.fixed=clamp(performance.now()-started,.5,200),program.warm=!0}render(program,shown,region,samples,smooth=!1){
-let{graphics,viewer}=this,{camera,scene}=viewer;if(!camera||!scene)return;let gl=graphics.context,{width,height,top,rows}=region,
+canvas.width<width&&(canvas.width=width),canvas.height<height&&(canvas.height=height),front.width=width,front.height=height,
+earth.drawLines({camera,anchor,width,height,ratio},()=>{let top=canvas.height-height;frontPen.drawImage(canvas,0,top,width,
+height,0,0,width,height)}),this.frontLook=look}this.pen?.drawImage(front,0,0)}complete(){let{camera,player}=this.viewer;
+this.rowsDone=this.canvas.height,this.frames+=1,this.draftVersion=this.version,this.lastPen?.drawImage(this.canvas,0,0),
+camera&&!player.playing&&(this.lastCamera=new Camera(camera.state,camera.limits,camera.flat,camera.aspect))}reuse(){let{
+lastCamera}=this,{scene,camera}=this.viewer;if(!scene?.header.geometry.planar||!camera||!lastCamera||!camera.state.parallel||
+!lastCamera.state.parallel)return null;let{geometry}=scene.header,focus=subtract2(camera.state.focal_point,geometry.center),
+anchor=toFrame(geometry.frame,focus),[before,now]=[lastCamera,camera].map(view=>projection(geometry,view,anchor));return reused(
+before,now,this.canvas.width,this.canvas.height)}factor(samples){let{settings,player}=this.viewer;return settings.motion!==
+"off"||player.varies?motionFactor(samples):1}timed(program,region,samples,draw){let started=performance.now();draw();let spent=performance.
+now()-started,pixels=region.width*region.rows,factor=this.factor(samples);program.price=learnedPrice(program.price,spent,
+this.fixed,pixels,samples,factor)}warm(program,shown){if(program.warm)return;let{width,height}=this.canvas,region={width,
+height,top:0,rows:1};this.render(program,shown,region,1);let started=performance.now();this.render(program,shown,region,
+1),this.fixed=clamp(performance.now()-started,.5,200),program.warm=!0}render(program,shown,region,samples,smooth=!1){let{
+graphics,viewer}=this,{camera,scene}=viewer;if(!camera||!scene)return;let gl=graphics.context,{width,height,top,rows}=region,
 view=viewer.view(shown,viewer.ratio*height/this.canvas.height),{canvas}=graphics;canvas.width<width&&(canvas.width=width),
 canvas.height<height&&(canvas.height=height);let bottom=height-top-rows;smooth?graphics.bindSmooth(width,rows):gl.bindFramebuffer(
 gl.FRAMEBUFFER,null),gl.viewport(0,smooth?-bottom:0,width,height),gl.enable(gl.SCISSOR_TEST),gl.scissor(0,smooth?0:bottom,
@@ -858,32 +862,32 @@ graphics,first=canvas.height-h+top;if(pen.imageSmoothingEnabled=w!==width||h!==h
 coarsePen}=this;coarse.width=w,coarse.height=rows,coarsePen?.drawImage(canvas,0,first,w,rows,0,0,w,rows),[canvas,first]=
 [coarse,0]}pen.drawImage(canvas,0,first,w,rows,0,to,width,rows*height/h)}};function linePoints(steps,{low,size},anchor){let points=[],place=[0,0,0];for(let n=0;n<steps.length;n+=4){steps[n+3]&&points.
 push(1e30,1e30,1e30);for(let k=0;k<3;k+=1)place[k]=place[k]+steps[n+k]&65535,points.push(low[k]+place[k]/65535*size[k]-anchor[k])}
-return points.push(1e30,1e30,1e30),new Float32Array(points)}function pieceGroups(points){let groups=[],pieces=points.length/
-3-3;for(let first=0;first<pieces;first+=256){let count=Math.min(256,pieces-first),[low,high]=[[1/0,1/0,1/0],[-1/0,-1/0,-1/0]];
-for(let n=3*(first+1);n<3*(first+count+2);n+=1)points[n]!==Math.fround(1e30)&&(low[n%3]=Math.min(low[n%3],points[n]),high[n%
-3]=Math.max(high[n%3],points[n]));let middle=low.map((least,k)=>(least+high[k])/2),radius=Math.hypot(...low.map((least,k)=>(high[k]-
-least)/2));groups.push({first,count,middle,radius})}return groups}function visibleRuns(groups,planes){let runs=[];for(let{
-first,count,middle:[x,y,z],radius}of groups){let isOut=([a,b,c,d])=>a*x+b*y+c*z+d<-radius*Math.hypot(a,b,c);if(planes.some(
-isOut))continue;let last=runs[runs.length-1];last&&last[0]+last[1]===first?last[1]+=count:runs.push([first,count])}return runs}var POINT_BYTES=12,PIECE_POINTS=4,EarthLayer=class{version=0;graphics;header;parts;drawn=new Map;constructor(graphics,header,parts){
+return new Float32Array(points)}function pieceGroups(points){let groups=[],pieces=points.length/3-1;for(let first=0;first<
+pieces;first+=256){let count=Math.min(256,pieces-first),[low,high]=[[1/0,1/0,1/0],[-1/0,-1/0,-1/0]];for(let n=3*first;n<
+3*(first+count+1);n+=1)points[n]!==Math.fround(1e30)&&(low[n%3]=Math.min(low[n%3],points[n]),high[n%3]=Math.max(high[n%3],
+points[n]));let middle=low.map((least,k)=>(least+high[k])/2),radius=Math.hypot(...low.map((least,k)=>(high[k]-least)/2));
+groups.push({first,count,middle,radius})}return groups}function visibleRuns(groups,planes){let runs=[];for(let{first,count,
+middle:[x,y,z],radius}of groups){let isOut=([a,b,c,d])=>a*x+b*y+c*z+d<-radius*Math.hypot(a,b,c);if(planes.some(isOut))continue;
+let last=runs[runs.length-1];last&&last[0]+last[1]===first?last[1]+=count:runs.push([first,count])}return runs}var POINT_BYTES=12,PIECE_ENDS=2,EarthLayer=class{version=0;graphics;header;parts;drawn=new Map;constructor(graphics,header,parts){
 this.graphics=graphics,this.header=header,this.parts=parts}forget(name){this.version+=1;for(let kind of name==="position"?
 ["land"]:[name])this.drop(kind)}dispose(){for(let name of[...this.drawn.keys()])this.drop(name)}drop(name){let drawn=this.
 drawn.get(name);if(drawn){for(let buffer of drawn.buffers)this.graphics.free("Buffer",buffer);this.graphics.free("Vertex\
 Array",drawn.array),this.drawn.delete(name)}}get lines(){let{earth}=this.header;return earth?EARTH_LINES.filter(name=>earth[name]&&
-this.parts.has(name)):[]}drawLines(view){let{header,graphics}=this,{earth,shaders}=header,program=graphics.programs.get(
-shaders.lineVertex,shaders.lineFragment);if(!earth||!program.ready)return;let gl=graphics.context,{camera,anchor,width,height,
-ratio}=view;gl.bindFramebuffer(gl.FRAMEBUFFER,null),gl.viewport(0,0,width,height),gl.enable(gl.SCISSOR_TEST),gl.scissor(
-0,0,width,height),gl.disable(gl.DEPTH_TEST),gl.enable(gl.BLEND),gl.blendFunc(gl.ONE,gl.ONE_MINUS_SRC_ALPHA),gl.clearColor(
-0,0,0,0),gl.clear(gl.COLOR_BUFFER_BIT);let horizon=this.horizon(camera),local=[...camera.planes,...horizon?[horizon]:[]].
-map(plane=>this.localPlane(plane,anchor));for(let{option,color,opacity,width:thickness}of earth.strokes){if(!this.lines.
-includes(option))continue;let drawn=this.take(option,anchor,()=>this.linesOf(option,anchor));graphics.programs.use(program,
-{u_matrix:projection(header.geometry,camera,anchor),u_picture:[width,height],u_width:thickness*ratio,u_lineColour:[...color,
-opacity],u_horizon:horizon?local[local.length-1]:[0,0,0,1]}),gl.bindVertexArray(drawn.array),gl.bindBuffer(gl.ARRAY_BUFFER,
-drawn.buffers[0]);for(let[first,count]of visibleRuns(drawn.groups,local)){for(let n=0;n<PIECE_POINTS;n+=1)gl.vertexAttribPointer(
-n,3,gl.FLOAT,!1,POINT_BYTES,(first+n)*POINT_BYTES);gl.drawArraysInstanced(gl.TRIANGLE_STRIP,0,4,count)}}gl.bindVertexArray(
-null),gl.disable(gl.BLEND)}get isReady(){let{lineVertex,lineFragment}=this.header.shaders;return!this.lines.length||this.
-graphics.programs.get(lineVertex,lineFragment).ready}drawGround({camera,anchor}){let{header,graphics}=this,{earth,shaders,
-geometry}=header;if(!earth?.land)return;let globe=earth.radius>0;if(!(globe?earth.below:this.parts.has("land")))return;let gl=graphics.
-context,defines=globe?["FLOWTEX_GLOBE"]:[],program=graphics.programs.get(shaders.groundVertex,shaders.groundFragment,...defines);
+this.parts.has(name)):[]}drawLines(view,take){let{header,graphics}=this,{earth,shaders}=header,program=graphics.programs.
+get(shaders.lineVertex,shaders.lineFragment);if(!earth||!program.ready)return;let gl=graphics.context,{camera,anchor,width,
+height,ratio}=view;gl.bindFramebuffer(gl.FRAMEBUFFER,null),gl.viewport(0,0,width,height),gl.enable(gl.SCISSOR_TEST),gl.scissor(
+0,0,width,height),gl.disable(gl.DEPTH_TEST),gl.enable(gl.BLEND),gl.blendEquation(gl.MAX),gl.clearColor(0,0,0,0);let horizon=this.
+horizon(camera),local=[...camera.planes,...horizon?[horizon]:[]].map(plane=>this.localPlane(plane,anchor));for(let{option,
+color,opacity,width:thickness}of earth.strokes){if(!this.lines.includes(option))continue;gl.clear(gl.COLOR_BUFFER_BIT);let drawn=this.
+take(option,anchor,()=>this.linesOf(option,anchor));graphics.programs.use(program,{u_matrix:projection(header.geometry,camera,
+anchor),u_picture:[width,height],u_width:thickness*ratio,u_lineColour:[...color,opacity],u_horizon:horizon?local[local.length-
+1]:[0,0,0,1]}),gl.bindVertexArray(drawn.array),gl.bindBuffer(gl.ARRAY_BUFFER,drawn.buffers[0]);for(let[first,count]of visibleRuns(
+drawn.groups,local)){for(let n=0;n<PIECE_ENDS;n+=1)gl.vertexAttribPointer(n,3,gl.FLOAT,!1,POINT_BYTES,(first+n)*POINT_BYTES);
+gl.drawArraysInstanced(gl.TRIANGLE_STRIP,0,4,count)}take()}gl.bindVertexArray(null),gl.blendEquation(gl.FUNC_ADD),gl.disable(
+gl.BLEND)}get isReady(){let{lineVertex,lineFragment}=this.header.shaders;return!this.lines.length||this.graphics.programs.
+get(lineVertex,lineFragment).ready}drawGround({camera,anchor}){let{header,graphics}=this,{earth,shaders,geometry}=header;
+if(!earth?.land)return;let globe=earth.radius>0;if(!(globe?earth.below:this.parts.has("land")))return;let gl=graphics.context,
+defines=globe?["FLOWTEX_GLOBE"]:[],program=graphics.programs.get(shaders.groundVertex,shaders.groundFragment,...defines);
 if(program.ready){if(graphics.programs.use(program,{u_matrix:projection(geometry,camera,anchor),u_colour:earth.land,u_ground:header.
 background,u_lit:header.lighting,u_toEye:toFrame(geometry.frame,scale2(camera.axes[2],-1)),...globe?this.disc(camera,earth.
 radius,anchor):{}}),globe){let drawn=this.take("disc",anchor,()=>this.emptyArray());gl.bindVertexArray(drawn.array),gl.drawArrays(
@@ -902,7 +906,7 @@ buffers:[],anchor:[0,0,0],count:0,groups:[]}}buffer(target,data){let{graphics}=t
 counted(gl.createBuffer());return gl.bindBuffer(target,buffer),gl.bufferData(target,data,gl.STATIC_DRAW),buffer}linesOf(name,anchor){
 let gl=this.graphics.context,{earth}=this.header,steps=this.parts.get(name)?.data??[],points=linePoints(steps,earth??{low:[],
 size:[]},anchor),drawn={...this.emptyArray(),anchor,groups:pieceGroups(points)};gl.bindVertexArray(drawn.array),drawn.buffers=
-[this.buffer(gl.ARRAY_BUFFER,points)];for(let n=0;n<PIECE_POINTS;n+=1)gl.enableVertexAttribArray(n),gl.vertexAttribDivisor(
+[this.buffer(gl.ARRAY_BUFFER,points)];for(let n=0;n<PIECE_ENDS;n+=1)gl.enableVertexAttribArray(n),gl.vertexAttribDivisor(
 n,1);return drawn}landOf(anchor){let gl=this.graphics.context,cells=this.parts.get("land"),nodes=this.parts.get("positio\
 n"),drawn={...this.emptyArray(),anchor};if(!cells||!nodes)return drawn;let[rows,columns]=cells.shape,corners=[];for(let n=0;n<
 rows*columns;n+=1){if(!cells.data[n])continue;let low=n+Math.floor(n/columns),high=low+columns+1;corners.push(low,low+1,

@@ -11,6 +11,8 @@ uniform vec3 u_upward;
 uniform vec3 u_ground;
 uniform float u_away; // distance of the eye in radii; 0 without perspective
 in vec2 flowtexPlaceOut;
+in vec2 flowtexDepthOut;
+const float FLOWTEX_FARTHEST = 0.999999; // depth that is still drawn
 #endif
 
 out vec4 flowtexOut;
@@ -42,6 +44,7 @@ void main()
     colour *= min(FLOWTEX_AMBIENT_LIGHT + FLOWTEX_DIFFUSE_LIGHT * facing, 1.0);
   }
   colour = mix(u_ground, colour, covered);
+  gl_FragDepth = clamp(0.5 + 0.5 * flowtexDepthOut.x / flowtexDepthOut.y, 0.0, FLOWTEX_FARTHEST);
 #endif
   flowtexOut = vec4(colour, 1.0);
 }

@@ -6,6 +6,7 @@ uniform vec3 u_middle;   // of the disc
 uniform vec3 u_aside;    // its half axes
 uniform vec3 u_upward;
 out vec2 flowtexPlaceOut;
+out vec2 flowtexDepthOut; // as z and w
 #else
 layout(location = 0) in vec3 flowtexPosition;
 #endif
@@ -20,4 +21,9 @@ void main()
   vec3 position = flowtexPosition;
 #endif
   gl_Position = u_matrix * vec4(position, 1.0);
+#ifdef FLOWTEX_GLOBE
+  // A globe may be larger than the flow, by which the nearest and the farthest depth are chosen.
+  flowtexDepthOut = gl_Position.zw;
+  gl_Position.z = 0.0;
+#endif
 }

@@ -1,6 +1,8 @@
-// A line with smooth sides, in premultiplied colours.
+// A piece of a line with round ends and smooth sides. Of pieces that overlap the client keeps what
+// covers most, so that a line has one opacity.
 
-in float flowtexAcross;
+in vec2 flowtexPlace;
+in float flowtexSize;
 in float flowtexSeen;
 
 uniform float u_width;
@@ -12,7 +14,8 @@ void main()
 {
   if (flowtexSeen < 0.0)
     discard;
-  float covered = clamp(0.5 * u_width + 0.5 - abs(flowtexAcross), 0.0, min(u_width, 1.0));
-  float share = covered * u_lineColour.a;
+  float beyond = max(max(-flowtexPlace.x, flowtexPlace.x - flowtexSize), 0.0);
+  float away = length(vec2(beyond, flowtexPlace.y));
+  float share = clamp(0.5 * u_width + 0.5 - away, 0.0, min(u_width, 1.0)) * u_lineColour.a;
   flowtexOut = vec4(u_lineColour.rgb * share, share);
 }
