@@ -53,6 +53,22 @@ class MapLines:
     points: Floats
     starts: Indices
 
+    def thinned(self, spacing: float) -> MapLines:
+        """Return the lines with a point about every ``spacing`` metres, without shorter ones."""
+        lines = np.repeat(np.arange(len(self.starts) - 1), np.diff(self.starts))
+        steps = np.linalg.norm(np.diff(self.points, axis=0, prepend=self.points[:1]), axis=1)
+        first = np.zeros(len(self.points), dtype=bool)
+        first[self.starts[:-1]] = True
+        along = np.cumsum(np.where(first, 0.0, steps))
+        along -= along[self.starts[lines]]
+        lengths = along[self.starts[1:] - 1]
+        places = np.floor(along / spacing)
+        keep = first | (np.diff(places, prepend=0.0) > 0)
+        keep[self.starts[1:] - 1] = True
+        keep &= lengths[lines] >= spacing
+        counts = np.bincount(lines[keep], minlength=len(lengths))
+        return MapLines(self.points[keep], np.append(0, np.cumsum(counts[counts > 0])))
+
 
 def coastlines(projection: Projection, box: Floats | None = None) -> MapLines:
     """Return the coasts of all land, the larger islands and lakes.

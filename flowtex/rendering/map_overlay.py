@@ -15,22 +15,18 @@ __all__ = ["STROKES", "Stroke", "globe_radius", "land_cells", "map_box", "map_li
 
 
 class Stroke(NamedTuple):
-    """A line: the option that it is for, its colour, opacity, and width in pixels."""
+    """How a line is drawn: its colour, opacity, and width in pixels."""
 
-    option: str
     color: str
     opacity: float
     width: float
 
 
-#: From below to above. A light rim tells a coast from dark colours.
-STROKES = (
-    Stroke("graticule", "white", 0.22, 1.0),
-    Stroke("graticule", "black", 0.22, 1.0),
-    Stroke("coastlines", "white", 0.35, 3.0),
-    Stroke("coastlines", "black", 0.9, 1.5),
-)
-
+#: Lines by their options, from below to above.
+STROKES = {
+    "graticule": Stroke("black", 0.3, 1.0),
+    "coastlines": Stroke("black", 0.9, 1.5),
+}
 #: Share of the extent by which the box of a map is wider than its surface.
 WIDER = 1e-3
 #: How much lower than the surface the globe lies, in radii, beside what its cells are flatter.

@@ -49,7 +49,10 @@ def earth_header(geometry: SurfaceGeometry) -> Header | None:
         "low": lines.low.tolist(),
         "size": lines.size.tolist(),
         "map": None if box is None else box[:, :2].ravel().tolist(),
-        "strokes": [{**stroke._asdict(), "color": rgb(stroke.color)} for stroke in STROKES],
+        "strokes": [
+            {"option": option, **stroke._asdict(), "color": rgb(stroke.color)}
+            for option, stroke in STROKES.items()
+        ],
     }
 
 
