@@ -2,7 +2,7 @@
 
 import { projection, type Camera } from "./camera.ts";
 import type { Graphics } from "./context.ts";
-import { linePoints, pieceGroups, visibleRuns, type PieceGroup } from "./maplines.ts";
+import { linePoints, linesOf, pieceGroups, thinned, visibleRuns, type PieceGroup } from "./maplines.ts";
 import { positions } from "./mesh.ts";
 import { EARTH_LINES, type EarthLines, type Header, type Part } from "./protocol.ts";
 import { add, cross, dot, length, scale, subtract, toFrame, unit, type Vector } from "./vectors.ts";
@@ -15,6 +15,7 @@ interface Drawn {
   array: WebGLVertexArrayObject;
   buffers: WebGLBuffer[];
   anchor: Vector;
+  spacing: number;
   count: number;
   groups: PieceGroup[];
 }
@@ -46,7 +47,7 @@ export class EarthLayer {
   /** Drop what was made of a part that has changed. */
   forget(name: string): void {
     this.version += 1;
-    for (const kind of name === "position" ? ["land"] : [name]) this.drop(kind);
+    this.drop(name === "position" ? "land" : name);
   }
 
   dispose(): void {
@@ -86,10 +87,13 @@ export class EarthLayer {
     const horizon = this.horizon(camera);
     const planes = [...camera.planes, ...(horizon ? [horizon] : [])];
     const local = planes.map((plane) => this.localPlane(plane, anchor));
+    const pixel = (2 * camera.height * ratio) / height;
+    const most = earth.spacingPixels * pixel;
+    const spacing = earth.spacings.find((each) => each <= most) ?? 0;
     for (const { option, color, opacity, width: thickness } of earth.strokes) {
       if (!this.lines.includes(option)) continue;
       gl.clear(gl.COLOR_BUFFER_BIT);
-      const drawn = this.take(option, anchor, () => this.linesOf(option, anchor));
+      const drawn = this.take(option, anchor, () => this.linesOf(option, anchor, spacing), spacing);
       graphics.programs.use(program, {
         u_matrix: projection(header.geometry, camera, anchor),
         u_picture: [width, height],
@@ -186,11 +190,11 @@ export class EarthLayer {
     };
   }
 
-  private take(name: string, anchor: Vector, make: () => Drawn): Drawn {
+  private take(name: string, anchor: Vector, make: () => Drawn, spacing = 0): Drawn {
     const old = this.drawn.get(name);
-    if (old && String(old.anchor) === String(anchor)) return old;
+    if (old && String([old.anchor, old.spacing]) === String([anchor, spacing])) return old;
     this.drop(name);
-    const drawn = make();
+    const drawn = { ...make(), anchor, spacing };
     this.drawn.set(name, drawn);
     return drawn;
   }
@@ -198,7 +202,7 @@ export class EarthLayer {
   private emptyArray(): Drawn {
     const { graphics } = this;
     const array = graphics.counted(graphics.context.createVertexArray());
-    return { array, buffers: [], anchor: [0, 0, 0], count: 0, groups: [] };
+    return { array, buffers: [], anchor: [0, 0, 0], spacing: 0, count: 0, groups: [] };
   }
 
   private buffer(target: number, data: AllowSharedBufferSource): WebGLBuffer {
@@ -210,12 +214,13 @@ export class EarthLayer {
     return buffer;
   }
 
-  private linesOf(name: EarthLines, anchor: Vector): Drawn {
+  private linesOf(name: EarthLines, anchor: Vector, spacing: number): Drawn {
     const gl = this.graphics.context;
     const { earth } = this.header;
     const steps = this.parts.get(name)?.data ?? [];
-    const points = linePoints(steps, earth ?? { low: [], size: [] }, anchor);
-    const drawn = { ...this.emptyArray(), anchor, groups: pieceGroups(points) };
+    const lines = earth ? linesOf(steps, earth) : [];
+    const points = linePoints(thinned(lines, spacing), anchor);
+    const drawn = { ...this.emptyArray(), groups: pieceGroups(points) };
     gl.bindVertexArray(drawn.array);
     drawn.buffers = [this.buffer(gl.ARRAY_BUFFER, points as AllowSharedBufferSource)];
     for (let n = 0; n < PIECE_ENDS; n += 1) {
@@ -229,7 +234,7 @@ export class EarthLayer {
     const gl = this.graphics.context;
     const cells = this.parts.get("land");
     const nodes = this.parts.get("position");
-    const drawn = { ...this.emptyArray(), anchor };
+    const drawn = this.emptyArray();
     if (!cells || !nodes) return drawn;
     const [rows, columns] = cells.shape;
     const corners: number[] = [];

@@ -19,24 +19,53 @@ export interface PieceGroup {
 }
 
 /**
- * Points in the surface's frame, counted from an anchor. The part has the steps from each point to the
- * next, which go around at their greatest number, and whether a line begins there.
+ * Lines in the surface's frame. The part has the steps from each point to the next, which go around at
+ * their greatest number, and whether a line begins there.
  */
-export function linePoints(
+export function linesOf(
   steps: ArrayLike<number>,
   { low, size }: Pick<Earth, "low" | "size">,
-  anchor: Vector,
-): Float32Array {
-  const points: number[] = [];
+): Vector[][] {
+  const lines: Vector[][] = [];
   const place = [0, 0, 0];
   for (let n = 0; n < steps.length; n += 4) {
-    if (steps[n + 3]) points.push(BREAK, BREAK, BREAK);
-    for (let k = 0; k < 3; k += 1) {
+    if (steps[n + 3]) lines.push([]);
+    const point = place.map((_, k) => {
       place[k] = (place[k] + steps[n + k]) & STEPS;
-      points.push(low[k] + (place[k] / STEPS) * size[k] - anchor[k]);
+      return low[k] + (place[k] / STEPS) * size[k];
+    });
+    lines[lines.length - 1].push(point as Vector);
+  }
+  return lines;
+}
+
+/** Lines with a point about every `spacing` metres, without shorter ones: MapLines.thinned in Python. */
+export function thinned(lines: Vector[][], spacing: number): Vector[][] {
+  if (!spacing) return lines;
+  return lines.flatMap((line) => {
+    let along = 0;
+    const kept = line.filter((point, n) => {
+      const before = along;
+      if (n) along += Math.hypot(...point.map((x, k) => x - line[n - 1][k]));
+      const isNext = Math.floor(along / spacing) > Math.floor(before / spacing);
+      return isNext || n === 0 || n === line.length - 1;
+    });
+    return along < spacing ? [] : [kept];
+  });
+}
+
+/** Points of lines, counted from an anchor, with a break before each line. */
+export function linePoints(lines: Vector[][], anchor: Vector): Float32Array {
+  const size = lines.reduce((count, line) => count + line.length + 1, 0);
+  const points = new Float32Array(3 * size).fill(BREAK);
+  let n = 0;
+  for (const line of lines) {
+    n += 3;
+    for (const point of line) {
+      for (let k = 0; k < 3; k += 1) points[n++] = point[k] - anchor[k];
     }
   }
-  return new Float32Array(points);
+  return points;
 }
 
 /** Balls around groups of pieces; piece n goes from point n to the next. */

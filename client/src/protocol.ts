@@ -117,6 +117,9 @@ export interface Earth extends Record<EarthLines, boolean> {
   /** Least x and y of a flat map and the greatest, between which the part "lonlat" is spread. */
   map: number[] | null;
   land: number[] | null;
+  /** Metres between points of lines, the greatest first, and pixels of the page that they may have. */
+  spacings: number[];
+  spacingPixels: number;
   /** From below to above. */
   strokes: Stroke[];
 }

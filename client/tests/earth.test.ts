@@ -5,13 +5,15 @@ import { readFileSync } from "node:fs";
 import { test } from "node:test";
 
 import { dateText, eastNorth, lonLatOf, lonLatText } from "../src/lonlat.ts";
-import { BREAK, linePoints, pieceGroups, visibleRuns } from "../src/maplines.ts";
+import { BREAK, linePoints, linesOf, pieceGroups, thinned, visibleRuns } from "../src/maplines.ts";
 import type { Earth } from "../src/protocol.ts";
 
 interface Map {
   earth: Earth;
   steps: number[];
   points: number[][];
+  /** Points that are left with one about every 5 km, of the lines that are that long. */
+  thinned: number[][];
   starts: number[];
   lonlat: { shape: number[]; data: number[] } | null;
   positions: number[][];
@@ -35,7 +37,7 @@ const isBreak = (points: Float32Array, n: number) => points[3 * n] === Math.frou
 for (const [name, map] of Object.entries(maps)) {
   test(`lines are where they are in Python, on ${name}`, () => {
     const anchor: [number, number, number] = [1000, -2000, 500];
-    const points = linePoints(map.steps, map.earth, anchor);
+    const points = linePoints(linesOf(map.steps, map.earth), anchor);
     const nodes = points.length / 3;
     const places = Array.from({ length: nodes }, (_, n) => n).filter((n) => !isBreak(points, n));
     assert.equal(places.length, map.points.length);
@@ -48,6 +50,12 @@ for (const [name, map] of Object.entries(maps)) {
     // A break stands before each line.
     const breaks = Array.from({ length: nodes }, (_, n) => n).filter((n) => isBreak(points, n));
     assert.deepEqual(breaks.map((n, line) => n - line), map.starts);
+  });
+
+  test(`lines are thinned as in Python, on ${name}`, () => {
+    const cuts = [...map.starts.slice(1), map.points.length];
+    const lines = cuts.map((end, n) => map.points.slice(map.starts[n], end));
+    assert.deepEqual(thinned(lines as [number, number, number][][], 5000).flat(), map.thinned);
   });
 
   test(`places have their longitude and latitude, on ${name}`, () => {
@@ -103,5 +111,5 @@ test("only groups of pieces that are seen are drawn, those in a row together", (
   assert.deepEqual(visibleRuns(groups, []), [[0, 1000]]);
   assert.deepEqual(visibleRuns(groups, [[1, 0, 0, -300]]), [[256, 744]]);
   assert.deepEqual(visibleRuns(groups, [[1, 0, 0, -300], [-1, 0, 0, 500]]), [[256, 256]]);
-  assert.deepEqual(visibleRuns(groups, [[0, 1, 0, -1]]), []);
+  assert.deepEqual(visibleRuns(groups, [[0, 1, 0, -1000]]), []);
 });

@@ -18,7 +18,14 @@ from flowtex._util.array_types import Bools, Floats
 from flowtex.earth import MapLines
 from flowtex.plotting.vtk_camera import read_camera
 from flowtex.rendering.constants import AMBIENT_LIGHT, DIFFUSE_LIGHT
-from flowtex.rendering.map_overlay import STROKES, globe_radius, land_cells, map_lines
+from flowtex.rendering.map_overlay import (
+    SPACING_PX,
+    SPACINGS,
+    STROKES,
+    globe_radius,
+    land_cells,
+    map_lines,
+)
 from flowtex.rendering.shaders import shader_text
 from flowtex.rendering.vtk import FlowSurface
 from flowtex.rendering.vtk.mesh import FlowMapper
@@ -39,8 +46,6 @@ class Part(NamedTuple):
 #: How much nearer than the surface lines are, and how much farther land, as a share of the
 #: distance: more than what the pieces of a line cut off of the Earth.
 LINES_NEARER, LAND_FARTHER = 5e-4, 2e-4
-#: Distances of the points of lines in metres, and how many pixels they may have.
-SPACINGS, SPACING_PX = (80e3, 20e3, 0.0), 2.0
 #: Nearest that the front of the globe is drawn, as a share of the farthest.
 NEAREST = 1e-3
 #: Cells along a meridian of the globe below the surface.

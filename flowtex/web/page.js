@@ -456,18 +456,18 @@ scene;if(!scene||scene.missing(shown[0],shown[1]).length)return;let position=poi
 place,position},settings,camera,root.clientHeight);this.tell({...point,values:valuesAt(scene,shown,place)},path,header,camera);
 for(let{card}of together)card.drawn={path,point:position},card.draw()}tell(point,{velocity},header,camera){let{label,unit:unit2}=header.
 speed,size=Math.hypot(...velocity),isGlobe=!!header.earth?.radius,shown=isGlobe?eastNorth(point.position,velocity):velocity,
-text=vectorText(shown,size,VELOCITY_DIGITS,isGlobe||liesAcross(header.geometry)),word=label.replace("speed","velocity"),
-lines=new Map([["position",placeText(point.position,header,this.host.parts,camera,!0)],[isGlobe?`${word} east, north`:word,
-withUnit(text,unit2)],[label,withUnit(numberText(size,VELOCITY_DIGITS),unit2)]]);for(let[name,value]of Object.entries(point.
-values)){let named=header.scalars.choices.find(each=>each.name===name)??header.scalars;lines.set(named.label,withUnit(numberText(
-value),named.unit))}this.list.replaceChildren(...[...lines].flatMap(([word2,value])=>[dom("dt",{},[word2]),dom("dd",{},[
-value])])),this.element.hidden=!1}draw(){let{drawn}=this,{camera,root}=this.host;if(!drawn||!camera)return;let{clientWidth:width,
-clientHeight:height}=root,placeOf=point2=>{let place=camera.project(point2);return place&&[(place[0]+1)/2*width,(1-place[1])/
-2*height]},linesOf=points=>{let lines=[[]];for(let place of points.map(placeOf))place?lines[lines.length-1].push(place):
-lines.push([]);return lines.filter(line=>line.length>1)},{path,sampled,directed}=drawn.path,point=placeOf(drawn.point),shapes=pathShapes(
-{path:linesOf(path),sampled:linesOf(sampled),point,directed});this.overlay.replaceChildren(...shapes.map(([tag,attributes])=>{
-let shape=document.createElementNS(SVG,tag);for(let[name,value]of Object.entries(attributes))shape.setAttribute(name,`${value}`);
-return shape}))}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */
+text=vectorText(shown,size,VELOCITY_DIGITS,isGlobe||liesAcross(header.geometry)),vectorName=label.replace("speed","veloc\
+ity"),lines=new Map([["position",placeText(point.position,header,this.host.parts,camera,!0)],[isGlobe?`${vectorName} eas\
+t, north`:vectorName,withUnit(text,unit2)],[label,withUnit(numberText(size,VELOCITY_DIGITS),unit2)]]);for(let[name,value]of Object.
+entries(point.values)){let named=header.scalars.choices.find(each=>each.name===name)??header.scalars;lines.set(named.label,
+withUnit(numberText(value),named.unit))}this.list.replaceChildren(...[...lines].flatMap(([word,value])=>[dom("dt",{},[word]),
+dom("dd",{},[value])])),this.element.hidden=!1}draw(){let{drawn}=this,{camera,root}=this.host;if(!drawn||!camera)return;
+let{clientWidth:width,clientHeight:height}=root,placeOf=point2=>{let place=camera.project(point2);return place&&[(place[0]+
+1)/2*width,(1-place[1])/2*height]},linesOf2=points=>{let lines=[[]];for(let place of points.map(placeOf))place?lines[lines.
+length-1].push(place):lines.push([]);return lines.filter(line=>line.length>1)},{path,sampled,directed}=drawn.path,point=placeOf(
+drawn.point),shapes=pathShapes({path:linesOf2(path),sampled:linesOf2(sampled),point,directed});this.overlay.replaceChildren(
+...shapes.map(([tag,attributes])=>{let shape=document.createElementNS(SVG,tag);for(let[name,value]of Object.entries(attributes))
+shape.setAttribute(name,`${value}`);return shape}))}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */
 :host {
   --ink: var(--jp-ui-font-color1, #1b2430);
   --quiet: var(--jp-ui-font-color2, #566373);
@@ -860,28 +860,33 @@ lighting,u_ground:header.background,u_opacity:header.opacity,u_toEye:toFrame(hea
 -1))}}copy(pen,region,height,to){if(!pen)return;let{width:w,height:h,top,rows}=region,{width}=this.canvas,{canvas}=this.
 graphics,first=canvas.height-h+top;if(pen.imageSmoothingEnabled=w!==width||h!==height,pen.imageSmoothingEnabled){let{coarse,
 coarsePen}=this;coarse.width=w,coarse.height=rows,coarsePen?.drawImage(canvas,0,first,w,rows,0,0,w,rows),[canvas,first]=
-[coarse,0]}pen.drawImage(canvas,0,first,w,rows,0,to,width,rows*height/h)}};function linePoints(steps,{low,size},anchor){let points=[],place=[0,0,0];for(let n=0;n<steps.length;n+=4){steps[n+3]&&points.
-push(1e30,1e30,1e30);for(let k=0;k<3;k+=1)place[k]=place[k]+steps[n+k]&65535,points.push(low[k]+place[k]/65535*size[k]-anchor[k])}
-return new Float32Array(points)}function pieceGroups(points){let groups=[],pieces=points.length/3-1;for(let first=0;first<
-pieces;first+=256){let count=Math.min(256,pieces-first),[low,high]=[[1/0,1/0,1/0],[-1/0,-1/0,-1/0]];for(let n=3*first;n<
-3*(first+count+1);n+=1)points[n]!==Math.fround(1e30)&&(low[n%3]=Math.min(low[n%3],points[n]),high[n%3]=Math.max(high[n%3],
-points[n]));let middle=low.map((least,k)=>(least+high[k])/2),radius=Math.hypot(...low.map((least,k)=>(high[k]-least)/2));
-groups.push({first,count,middle,radius})}return groups}function visibleRuns(groups,planes){let runs=[];for(let{first,count,
-middle:[x,y,z],radius}of groups){let isOut=([a,b,c,d])=>a*x+b*y+c*z+d<-radius*Math.hypot(a,b,c);if(planes.some(isOut))continue;
-let last=runs[runs.length-1];last&&last[0]+last[1]===first?last[1]+=count:runs.push([first,count])}return runs}var POINT_BYTES=12,PIECE_ENDS=2,EarthLayer=class{version=0;graphics;header;parts;drawn=new Map;constructor(graphics,header,parts){
-this.graphics=graphics,this.header=header,this.parts=parts}forget(name){this.version+=1;for(let kind of name==="position"?
-["land"]:[name])this.drop(kind)}dispose(){for(let name of[...this.drawn.keys()])this.drop(name)}drop(name){let drawn=this.
-drawn.get(name);if(drawn){for(let buffer of drawn.buffers)this.graphics.free("Buffer",buffer);this.graphics.free("Vertex\
-Array",drawn.array),this.drawn.delete(name)}}get lines(){let{earth}=this.header;return earth?EARTH_LINES.filter(name=>earth[name]&&
-this.parts.has(name)):[]}drawLines(view,take){let{header,graphics}=this,{earth,shaders}=header,program=graphics.programs.
-get(shaders.lineVertex,shaders.lineFragment);if(!earth||!program.ready)return;let gl=graphics.context,{camera,anchor,width,
-height,ratio}=view;gl.bindFramebuffer(gl.FRAMEBUFFER,null),gl.viewport(0,0,width,height),gl.enable(gl.SCISSOR_TEST),gl.scissor(
-0,0,width,height),gl.disable(gl.DEPTH_TEST),gl.enable(gl.BLEND),gl.blendEquation(gl.MAX),gl.clearColor(0,0,0,0);let horizon=this.
-horizon(camera),local=[...camera.planes,...horizon?[horizon]:[]].map(plane=>this.localPlane(plane,anchor));for(let{option,
-color,opacity,width:thickness}of earth.strokes){if(!this.lines.includes(option))continue;gl.clear(gl.COLOR_BUFFER_BIT);let drawn=this.
-take(option,anchor,()=>this.linesOf(option,anchor));graphics.programs.use(program,{u_matrix:projection(header.geometry,camera,
-anchor),u_picture:[width,height],u_width:thickness*ratio,u_lineColour:[...color,opacity],u_horizon:horizon?local[local.length-
-1]:[0,0,0,1]}),gl.bindVertexArray(drawn.array),gl.bindBuffer(gl.ARRAY_BUFFER,drawn.buffers[0]);for(let[first,count]of visibleRuns(
+[coarse,0]}pen.drawImage(canvas,0,first,w,rows,0,to,width,rows*height/h)}};function linesOf(steps,{low,size}){let lines=[],place=[0,0,0];for(let n=0;n<steps.length;n+=4){steps[n+3]&&lines.push([]);
+let point=place.map((_,k)=>(place[k]=place[k]+steps[n+k]&65535,low[k]+place[k]/65535*size[k]));lines[lines.length-1].push(
+point)}return lines}function thinned(lines,spacing){return spacing?lines.flatMap(line=>{let along=0,kept=line.filter((point,n)=>{
+let before=along;return n&&(along+=Math.hypot(...point.map((x,k)=>x-line[n-1][k]))),Math.floor(along/spacing)>Math.floor(
+before/spacing)||n===0||n===line.length-1});return along<spacing?[]:[kept]}):lines}function linePoints(lines,anchor){let size=lines.
+reduce((count,line)=>count+line.length+1,0),points=new Float32Array(3*size).fill(1e30),n=0;for(let line of lines){n+=3;for(let point of line)
+for(let k=0;k<3;k+=1)points[n++]=point[k]-anchor[k]}return points}function pieceGroups(points){let groups=[],pieces=points.
+length/3-1;for(let first=0;first<pieces;first+=256){let count=Math.min(256,pieces-first),[low,high]=[[1/0,1/0,1/0],[-1/0,
+-1/0,-1/0]];for(let n=3*first;n<3*(first+count+1);n+=1)points[n]!==Math.fround(1e30)&&(low[n%3]=Math.min(low[n%3],points[n]),
+high[n%3]=Math.max(high[n%3],points[n]));let middle=low.map((least,k)=>(least+high[k])/2),radius=Math.hypot(...low.map((least,k)=>(high[k]-
+least)/2));groups.push({first,count,middle,radius})}return groups}function visibleRuns(groups,planes){let runs=[];for(let{
+first,count,middle:[x,y,z],radius}of groups){let isOut=([a,b,c,d])=>a*x+b*y+c*z+d<-radius*Math.hypot(a,b,c);if(planes.some(
+isOut))continue;let last=runs[runs.length-1];last&&last[0]+last[1]===first?last[1]+=count:runs.push([first,count])}return runs}var POINT_BYTES=12,PIECE_ENDS=2,EarthLayer=class{version=0;graphics;header;parts;drawn=new Map;constructor(graphics,header,parts){
+this.graphics=graphics,this.header=header,this.parts=parts}forget(name){this.version+=1,this.drop(name==="position"?"lan\
+d":name)}dispose(){for(let name of[...this.drawn.keys()])this.drop(name)}drop(name){let drawn=this.drawn.get(name);if(drawn){
+for(let buffer of drawn.buffers)this.graphics.free("Buffer",buffer);this.graphics.free("VertexArray",drawn.array),this.drawn.
+delete(name)}}get lines(){let{earth}=this.header;return earth?EARTH_LINES.filter(name=>earth[name]&&this.parts.has(name)):
+[]}drawLines(view,take){let{header,graphics}=this,{earth,shaders}=header,program=graphics.programs.get(shaders.lineVertex,
+shaders.lineFragment);if(!earth||!program.ready)return;let gl=graphics.context,{camera,anchor,width,height,ratio}=view;gl.
+bindFramebuffer(gl.FRAMEBUFFER,null),gl.viewport(0,0,width,height),gl.enable(gl.SCISSOR_TEST),gl.scissor(0,0,width,height),
+gl.disable(gl.DEPTH_TEST),gl.enable(gl.BLEND),gl.blendEquation(gl.MAX),gl.clearColor(0,0,0,0);let horizon=this.horizon(camera),
+local=[...camera.planes,...horizon?[horizon]:[]].map(plane=>this.localPlane(plane,anchor)),pixel=2*camera.height*ratio/height,
+most=earth.spacingPixels*pixel,spacing=earth.spacings.find(each=>each<=most)??0;for(let{option,color,opacity,width:thickness}of earth.
+strokes){if(!this.lines.includes(option))continue;gl.clear(gl.COLOR_BUFFER_BIT);let drawn=this.take(option,anchor,()=>this.
+linesOf(option,anchor,spacing),spacing);graphics.programs.use(program,{u_matrix:projection(header.geometry,camera,anchor),
+u_picture:[width,height],u_width:thickness*ratio,u_lineColour:[...color,opacity],u_horizon:horizon?local[local.length-1]:
+[0,0,0,1]}),gl.bindVertexArray(drawn.array),gl.bindBuffer(gl.ARRAY_BUFFER,drawn.buffers[0]);for(let[first,count]of visibleRuns(
 drawn.groups,local)){for(let n=0;n<PIECE_ENDS;n+=1)gl.vertexAttribPointer(n,3,gl.FLOAT,!1,POINT_BYTES,(first+n)*POINT_BYTES);
 gl.drawArraysInstanced(gl.TRIANGLE_STRIP,0,4,count)}take()}gl.bindVertexArray(null),gl.blendEquation(gl.FUNC_ADD),gl.disable(
 gl.BLEND)}get isReady(){let{lineVertex,lineFragment}=this.header.shaders;return!this.lines.length||this.graphics.programs.
@@ -899,20 +904,21 @@ let radius=this.header.earth?.radius??0;if(!radius)return null;let[x,y,z,w]=came
 let{frame,center}=this.header.geometry,[a,b,c,offset]=this.horizon(camera)??[0,0,1,0],toEye=[a,b,c],size=Math.sqrt(Math.
 max(radius**2-offset**2,0)),aside=unit(cross2(camera.axes[1],toEye)),upward=cross2(toEye,aside),middle=add(scale2(toEye,
 -offset),center,-1);return{u_middle:subtract2(toFrame(frame,middle),anchor),u_aside:scale2(toFrame(frame,aside),size),u_upward:scale2(
-toFrame(frame,upward),size),u_away:camera.state.parallel?0:length2(camera.state.position)/radius}}take(name,anchor,make){
-let old=this.drawn.get(name);if(old&&String(old.anchor)===String(anchor))return old;this.drop(name);let drawn=make();return this.
-drawn.set(name,drawn),drawn}emptyArray(){let{graphics}=this;return{array:graphics.counted(graphics.context.createVertexArray()),
-buffers:[],anchor:[0,0,0],count:0,groups:[]}}buffer(target,data){let{graphics}=this,gl=graphics.context,buffer=graphics.
-counted(gl.createBuffer());return gl.bindBuffer(target,buffer),gl.bufferData(target,data,gl.STATIC_DRAW),buffer}linesOf(name,anchor){
-let gl=this.graphics.context,{earth}=this.header,steps=this.parts.get(name)?.data??[],points=linePoints(steps,earth??{low:[],
-size:[]},anchor),drawn={...this.emptyArray(),anchor,groups:pieceGroups(points)};gl.bindVertexArray(drawn.array),drawn.buffers=
-[this.buffer(gl.ARRAY_BUFFER,points)];for(let n=0;n<PIECE_ENDS;n+=1)gl.enableVertexAttribArray(n),gl.vertexAttribDivisor(
-n,1);return drawn}landOf(anchor){let gl=this.graphics.context,cells=this.parts.get("land"),nodes=this.parts.get("positio\
-n"),drawn={...this.emptyArray(),anchor};if(!cells||!nodes)return drawn;let[rows,columns]=cells.shape,corners=[];for(let n=0;n<
-rows*columns;n+=1){if(!cells.data[n])continue;let low=n+Math.floor(n/columns),high=low+columns+1;corners.push(low,low+1,
-high+1,low,high+1,high)}gl.bindVertexArray(drawn.array);let points=positions(nodes.data,anchor);return drawn.buffers=[this.
-buffer(gl.ARRAY_BUFFER,points),this.buffer(gl.ELEMENT_ARRAY_BUFFER,new Uint32Array(corners))],drawn.count=corners.length,
-gl.enableVertexAttribArray(0),gl.vertexAttribPointer(0,3,gl.FLOAT,!1,0,0),drawn}};var PLACE2=5;function blocksOf(nodes,size){let count=Math.max(Math.ceil((nodes-1)/size),1);return Array.from({length:count},
+toFrame(frame,upward),size),u_away:camera.state.parallel?0:length2(camera.state.position)/radius}}take(name,anchor,make,spacing=0){
+let old=this.drawn.get(name);if(old&&String([old.anchor,old.spacing])===String([anchor,spacing]))return old;this.drop(name);
+let drawn={...make(),anchor,spacing};return this.drawn.set(name,drawn),drawn}emptyArray(){let{graphics}=this;return{array:graphics.
+counted(graphics.context.createVertexArray()),buffers:[],anchor:[0,0,0],spacing:0,count:0,groups:[]}}buffer(target,data){
+let{graphics}=this,gl=graphics.context,buffer=graphics.counted(gl.createBuffer());return gl.bindBuffer(target,buffer),gl.
+bufferData(target,data,gl.STATIC_DRAW),buffer}linesOf(name,anchor,spacing){let gl=this.graphics.context,{earth}=this.header,
+steps=this.parts.get(name)?.data??[],lines=earth?linesOf(steps,earth):[],points=linePoints(thinned(lines,spacing),anchor),
+drawn={...this.emptyArray(),groups:pieceGroups(points)};gl.bindVertexArray(drawn.array),drawn.buffers=[this.buffer(gl.ARRAY_BUFFER,
+points)];for(let n=0;n<PIECE_ENDS;n+=1)gl.enableVertexAttribArray(n),gl.vertexAttribDivisor(n,1);return drawn}landOf(anchor){
+let gl=this.graphics.context,cells=this.parts.get("land"),nodes=this.parts.get("position"),drawn=this.emptyArray();if(!cells||
+!nodes)return drawn;let[rows,columns]=cells.shape,corners=[];for(let n=0;n<rows*columns;n+=1){if(!cells.data[n])continue;
+let low=n+Math.floor(n/columns),high=low+columns+1;corners.push(low,low+1,high+1,low,high+1,high)}gl.bindVertexArray(drawn.
+array);let points=positions(nodes.data,anchor);return drawn.buffers=[this.buffer(gl.ARRAY_BUFFER,points),this.buffer(gl.
+ELEMENT_ARRAY_BUFFER,new Uint32Array(corners))],drawn.count=corners.length,gl.enableVertexAttribArray(0),gl.vertexAttribPointer(
+0,3,gl.FLOAT,!1,0,0),drawn}};var PLACE2=5;function blocksOf(nodes,size){let count=Math.max(Math.ceil((nodes-1)/size),1);return Array.from({length:count},
 (_,n)=>({first:n*size,cells:Math.min(nodes-1-n*size,size)}))}var MeshLevels=class{mesh;limits;rows;columns;constructor(mesh,limits){
 this.mesh=mesh,this.limits=limits,this.rows=blocksOf(mesh.shape[0],limits.tileCells),this.columns=blocksOf(mesh.shape[1],
 limits.tileCells)}get shape(){return[this.rows.length,this.columns.length]}levels({eye,halfHeight,pixels}){let{limits}=this,

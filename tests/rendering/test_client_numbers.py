@@ -21,7 +21,7 @@ from flowtex import FlowField
 from flowtex._util.array_types import Indices
 from flowtex._util.colours import colour_table
 from flowtex.camera import CAMERA_LIMITS, Camera
-from flowtex.earth import Projection
+from flowtex.earth import MapLines, Projection
 from flowtex.field.dates import date_text
 from flowtex.rendering.cpu.shade import mean_colours
 from flowtex.rendering.map_overlay import map_lines
@@ -202,13 +202,17 @@ def earth_of(name: str) -> dict[str, Any]:
     geometry, parts = data.textures.geometry, data.surface()
     lines = map_lines(data.field)["coastlines"]
     part = parts["coastlines"][:40]
+    starts = lines.starts[:-1][lines.starts[:-1] < len(part)]
+    local = (lines.points[: len(part)] - geometry.center) @ geometry.frame.T
+    few = MapLines(local, np.append(starts, len(part)))
     places = [points[1, 2] * 0.6 + points[2, 3] * 0.4, points[6, 1]]
     grid = parts.get("lonlat")
     return {
         "earth": data.constants()["earth"],
         "steps": part.ravel().tolist(),
-        "points": plain((lines.points[: len(part)] - geometry.center) @ geometry.frame.T),
-        "starts": [int(n) for n in lines.starts[:-1] if n < len(part)],
+        "points": plain(few.points),
+        "thinned": plain(few.thinned(5000.0).points),
+        "starts": starts.tolist(),
         "lonlat": None if grid is None else {"shape": grid.shape, "data": plain(grid.ravel())},
         "positions": plain(np.array(places)),
         "expected": plain(np.stack(projection.lonlat(np.array(places)), axis=-1)),

@@ -14,7 +14,15 @@ from flowtex._util.colours import rgb
 from flowtex.earth import EARTH_RADIUS, MapLines, Projection
 from flowtex.field import FlowField
 from flowtex.field.dates import date_text
-from flowtex.rendering.map_overlay import STROKES, globe_radius, land_cells, map_box, map_lines
+from flowtex.rendering.map_overlay import (
+    SPACING_PX,
+    SPACINGS,
+    STROKES,
+    globe_radius,
+    land_cells,
+    map_box,
+    map_lines,
+)
 from flowtex.rendering.webgl.protocol import Header, Parts
 from flowtex.textures.geometry import SurfaceGeometry
 
@@ -49,6 +57,8 @@ def earth_header(geometry: SurfaceGeometry) -> Header | None:
         "low": lines.low.tolist(),
         "size": lines.size.tolist(),
         "map": None if box is None else box[:, :2].ravel().tolist(),
+        "spacings": SPACINGS,
+        "spacingPixels": SPACING_PX,
         "strokes": [
             {"option": option, **stroke._asdict(), "color": rgb(stroke.color)}
             for option, stroke in STROKES.items()
