@@ -197,7 +197,8 @@ class FlowField:
         data = {key: scalar_steps(values, p.shape[:2]) for key, values in given.items()}
         nodal, closed = close_axes(NodalArrays(p, v, ok, data), periodic)
         v, ok = nodal.velocity, nodal.valid
-        surface = Surface(nodal.points, ok, closed)
+        on_globe = projection is not None and projection.is_globe
+        surface = Surface(nodal.points, ok, closed, on_globe=on_globe)
         if sign_free:
             v = oriented(np.where(ok[..., None], v[0], 0.0), ok, closed)
             v = with_equal_ends(v[None], closed, surface.poles)
@@ -360,7 +361,8 @@ class FlowField:
         if known is not None and not known.all():
             # Positions that were filled in must not pass for known ones: tangents would bend.
             points = np.where(known[..., None], points, np.nan)
-        return Surface(points, self.valid, self.periodic)
+        on_globe = self.projection is not None and self.projection.is_globe
+        return Surface(points, self.valid, self.periodic, on_globe=on_globe)
 
     @cached_property
     def index_velocity(self) -> IndexVelocity:

@@ -90,7 +90,7 @@ class MapOverlay:
         self._actor, self._renderer = actor, weakref.ref(renderer)
         self._scene, self._surface = scene, surface
         self._field = scene.whole
-        self._lines: dict[str, tuple[tuple[float, pv.PolyData], ...]] = {}
+        self._lines: dict[tuple[str, bool], tuple[tuple[float, pv.PolyData], ...]] = {}
         self._parts: list[Part] = []
         self._radius: float | None = None
         this = weakref.WeakMethod(self._before_frame)
@@ -125,15 +125,16 @@ class MapOverlay:
 
     def _forms_of(self, option: str) -> tuple[tuple[float, pv.PolyData], ...]:
         """The lines of an option, from coarse to fine; all are made together, once."""
-        if not self._lines:
-            for name, lines in map_lines(self._field).items():
+        has_globe = self._radius is not None
+        if (option, has_globe) not in self._lines:
+            for name, lines in map_lines(self._field, has_globe=has_globe).items():
                 forms = ((s, lines.thinned(s) if s else lines) for s in SPACINGS)
-                self._lines[name] = tuple((s, _line_mesh(form)) for s, form in forms)
-        return self._lines[option]
+                self._lines[name, has_globe] = tuple((s, _line_mesh(form)) for s, form in forms)
+        return self._lines[option, has_globe]
 
     def _add_land(self, color: Any) -> None:
         """Draw cells without data, and the globe where the field does not cover it."""
-        is_lit, projection = self._scene.is_lit, self._field.projection
+        is_lit = self._scene.is_lit
         meshes = [(_cell_mesh(self._field.surface.points, land), -LAND_FARTHER)] if (
             land := land_cells(self._field)
         ).any() else []
@@ -142,7 +143,7 @@ class MapOverlay:
             cells = {"theta_resolution": 2 * GLOBE_CELLS, "phi_resolution": GLOBE_CELLS}
             meshes.append((pv.Sphere(radius=self._radius, **cells), 0.0))
         for mesh, nearer in meshes:
-            if projection is not None and projection.is_globe:
+            if self._field.surface.on_globe:
                 mesh.point_data.active_normals = mesh.points / np.linalg.norm(
                     mesh.points, axis=1, keepdims=True
                 )

@@ -24,7 +24,7 @@ class Stroke(NamedTuple):
 
 #: Lines by their options, from below to above.
 STROKES = {
-    "graticule": Stroke("black", 0.3, 1.0),
+    "graticule": Stroke("black", 0.4, 1.0),
     "coastlines": Stroke("black", 0.9, 1.5),
 }
 #: Distances of the points of lines in metres, and how many pixels they may have.
@@ -35,24 +35,22 @@ WIDER = 1e-3
 LOWER = 1e-5
 
 
-def map_box(field: FlowField) -> Floats | None:
-    """Return the box in which lines are drawn, (2, 3); ``None`` for all of the Earth, on a globe.
-
-    It holds all nodes that have a position, also those on land.
-    """
-    if field.projection is None or field.projection.is_globe:
-        return None
+def map_box(field: FlowField) -> Floats:
+    """Return the least and the greatest position of nodes, also of those on land, a bit widened."""
     surface = field.surface
     box = bounds(surface.points[surface.has_position])
     margin = WIDER * np.ptp(box, axis=0).max()
     return np.asarray(box + np.array([[-margin], [margin]]))
 
 
-def map_lines(field: FlowField) -> dict[str, MapLines]:
-    """Return the coasts and the graticule of a field that has a projection, by their options."""
+def map_lines(field: FlowField, *, has_globe: bool) -> dict[str, MapLines]:
+    """Return the coasts and the graticule of a field that has a projection, by their options.
+
+    They are those of all of the Earth where there is a globe below the field.
+    """
     if field.projection is None:
         return {}
-    box = map_box(field)
+    box = None if has_globe else map_box(field)
     makers = {"coastlines": coastlines, "graticule": graticule}
     return {name: make(field.projection, box) for name, make in makers.items()}
 
@@ -71,7 +69,7 @@ def globe_radius(field: FlowField) -> float | None:
     It is ``None`` for a map, and where the field covers all of the Earth.
     """
     surface = field.surface
-    if field.projection is None or not field.projection.is_globe:
+    if not surface.on_globe:
         return None
     if surface.has_position.all() and len(tuple(surface.poles or ())) == 2:
         return None
