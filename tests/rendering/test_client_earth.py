@@ -59,7 +59,7 @@ def test_lines_are_handed_over_to_a_step_of_their_box(name: str) -> None:
     _, data = view_of(field)
     header, parts = header_of(field)["earth"], data.surface()
     geometry = data.textures.geometry
-    for option, lines in map_lines(field).items():
+    for option, lines in map_lines(field, has_globe=name == "globe").items():
         points, starts = read_lines(parts[option], header)
         expected = (lines.points - geometry.center) @ geometry.frame.T
         step = np.array(header["size"]) / LINE_STEPS

@@ -200,7 +200,7 @@ def earth_of(name: str) -> dict[str, Any]:
     velocity = projection.vectors(lon, lat, 0 * lon + 2, 0 * lon - 1)
     data = ClientData(Scene(FlowField.from_arrays(points, velocity, projection=projection)).textures)
     geometry, parts = data.textures.geometry, data.surface()
-    lines = map_lines(data.field)["coastlines"]
+    lines = map_lines(data.field, has_globe=False)["coastlines"]
     part = parts["coastlines"][:40]
     starts = lines.starts[:-1][lines.starts[:-1] < len(part)]
     local = (lines.points[: len(part)] - geometry.center) @ geometry.frame.T

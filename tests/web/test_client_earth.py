@@ -63,7 +63,9 @@ def scene(field: FlowField, camera: Camera, **options: Any) -> Any:
 
 def camera_of(field: FlowField, zoom: float) -> Camera:
     whole = Camera.fit(field.surface, SIZE[0] / SIZE[1])
-    return whole if zoom == 1 else whole.zoom_by(zoom, aspect=SIZE[0] / SIZE[1])
+    return whole if zoom == 1 else whole.zoom_by(
+        zoom, aspect=SIZE[0] / SIZE[1], whole=whole
+    )
 
 
 def shown(client: ClientPage, field: FlowField, camera: Camera, **options: Any) -> Pixels:

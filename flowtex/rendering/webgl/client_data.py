@@ -254,7 +254,8 @@ class ClientData:
         if self.textures.paper is not None:
             parts["step"] = half(self.textures.paper.step)
             parts["noise"] = half(self.textures.paper.noise)
-        return {**parts, **earth_parts(geometry, tiled=self.pyramid is not None)}
+        land, tiled = colours.land is not None, self.pyramid is not None
+        return {**parts, **earth_parts(geometry, has_land=land, tiled=tiled)}
 
     def step(self, step: int) -> Parts:
         """Return the arrays of one destination time, the smallest first.
@@ -367,7 +368,8 @@ class ClientData:
         }
 
     def _earth(self) -> Header | None:
-        earth, colours = earth_header(self.textures.geometry), self.colours
+        colours = self.colours
+        earth = earth_header(self.textures.geometry, has_land=colours.land is not None)
         if earth is None:
             return None
         return {

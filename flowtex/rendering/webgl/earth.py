@@ -45,18 +45,18 @@ class _Lines:
     parts: dict[str, AnyArray]
 
 
-def earth_header(geometry: SurfaceGeometry) -> Header | None:
+def earth_header(geometry: SurfaceGeometry, *, has_land: bool) -> Header | None:
     """Return what of the header tells of the Earth; ``None`` for a flow that is elsewhere."""
     field = geometry.field
     if field.projection is None:
         return None
-    lines, box = _lines_of(geometry), map_box(field)
+    is_globe, lines = field.projection.is_globe, _lines_of(geometry, has_land=has_land)
     return {
-        "radius": EARTH_RADIUS if box is None else 0.0,
+        "radius": EARTH_RADIUS if is_globe else 0.0,
         "below": globe_radius(field) is not None,
         "low": lines.low.tolist(),
         "size": lines.size.tolist(),
-        "map": None if box is None else box[:, :2].ravel().tolist(),
+        "map": None if is_globe else map_box(field)[:, :2].ravel().tolist(),
         "spacings": SPACINGS,
         "spacingPixels": SPACING_PX,
         "strokes": [
@@ -66,17 +66,17 @@ def earth_header(geometry: SurfaceGeometry) -> Header | None:
     }
 
 
-def earth_parts(geometry: SurfaceGeometry, *, tiled: bool) -> Parts:
-    """Return the arrays of the Earth; of a surface in tiles all cells may be seen as land.
+def earth_parts(geometry: SurfaceGeometry, *, has_land: bool, tiled: bool) -> Parts:
+    """Return the arrays of the Earth, of which a tile has none of its own.
 
-    A tile has none of its own.
+    Of a surface in tiles all cells may be seen as land, where finer ones have no data.
     """
     field = geometry.field
     if field.projection is None or geometry.whole is not field.surface:
         return {}
-    parts: Parts = dict(_lines_of(geometry).parts)
-    if (box := map_box(field)) is not None:
-        parts["lonlat"] = _lonlat(field.projection, box.tobytes())
+    parts: Parts = dict(_lines_of(geometry, has_land=has_land).parts)
+    if not field.projection.is_globe:
+        parts["lonlat"] = _lonlat(field.projection, map_box(field).tobytes())
         land = land_cells(field)
         if tiled:
             land = land | geometry.cells
@@ -103,12 +103,13 @@ def dates_of(field: FlowField, times: Floats) -> Header:
 _lines: WeakCache[_Lines] = WeakCache()
 
 
-def _lines_of(geometry: SurfaceGeometry) -> _Lines:
+def _lines_of(geometry: SurfaceGeometry, *, has_land: bool) -> _Lines:
     """Return the lines of a field, made once for all who ask."""
     field = geometry.field
+    has_globe = has_land and globe_radius(field) is not None
 
     def make() -> _Lines:
-        both = map_lines(field)
+        both = map_lines(field, has_globe=has_globe)
         local = {k: (v.points - geometry.center) @ geometry.frame.T for k, v in both.items()}
         every = np.concatenate([*local.values(), np.zeros((1, 3))])
         low, size = every.min(axis=0), np.ptp(every, axis=0)
@@ -119,7 +120,7 @@ def _lines_of(geometry: SurfaceGeometry) -> _Lines:
         }
         return _Lines(low, size, parts)
 
-    return _lines.get("lines", make, owner=field)
+    return _lines.get(has_globe, make, owner=field)
 
 
 def _packed(lines: MapLines, shares: Floats) -> AnyArray:
