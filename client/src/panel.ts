@@ -194,14 +194,16 @@ export class Panel {
     if (header) this.legend.show(header, settings, parts.get("cmap")?.data);
   }
 
-  /** Show the point under the pointer. */
-  read(point: Point | null): void {
+  /** Show the point under the pointer, or the place of the Earth where there are no data. */
+  read(point: Point | null, ground: readonly number[] | null = null): void {
     const { header } = this.viewer;
     this.readout.replaceChildren();
     this.legend.point(null);
-    if (!point || !header) return;
+    const position = point?.position ?? ground;
+    if (!position || !header) return;
     const { parts, camera } = this.viewer;
-    this.readout.append(dom("span", {}, [placeText(point.position, header, parts, camera)]));
+    this.readout.append(dom("span", {}, [placeText(position, header, parts, camera)]));
+    if (!point) return;
     const { name, label, unit } = header.scalars;
     const value = point.values[name ?? ""];
     if (value === undefined) return;

@@ -11,7 +11,16 @@ from flowtex._util.blocks import bounds
 from flowtex.earth import EARTH_RADIUS, MapLines, coastlines, graticule
 from flowtex.field import FlowField
 
-__all__ = ["SPACINGS", "SPACING_PX", "STROKES", "Stroke", "globe_radius", "land_cells", "map_box", "map_lines"]
+__all__ = [
+    "SPACINGS",
+    "SPACING_PX",
+    "STROKES",
+    "Stroke",
+    "globe_radius",
+    "land_cells",
+    "map_box",
+    "map_lines",
+]
 
 
 class Stroke(NamedTuple):

@@ -118,13 +118,13 @@ base+range*strength*tone,0,1),room=shown<base?shown/base:(1-shown)/Math.max(1-ba
 shading.fromLab);times(roots.map(x=>x**3),shading.fromCones).forEach((x,k)=>mean[k]+=255*fromLinear(x)/values.length)}),
 mean}function rampOf(map,header,settings,stops){return`linear-gradient(90deg, ${Array.from({length:stops},(_,n)=>{let first=4*
 Math.round(n/(stops-1)*255),colour=[...map.slice(first,first+3)];return`rgb(${(header.paper?.picture??!1?colour:meanColour(
-colour,settings,header.constants.shading)).map(Math.round).join(" ")})`}).join(", ")})`}var tangent=degrees=>Math.tan(degrees*Math.PI/360),Camera=class{flat;limits;aspect;state;start;pick=null;homeHeight;nearest;constructor(state,limits,flat,aspect=1){
-this.state=copyOf(state),this.start=copyOf(state),this.limits=limits,this.flat=flat,this.aspect=aspect,this.homeHeight=this.
-height,this.nearest=this.distance/limits.closest}get height(){let{parallel,parallel_scale:half,view_angle:angle}=this.state;
-return parallel?half:this.distance*tangent(angle)}get distance(){return length2(subtract2(this.state.focal_point,this.state.
-position))}get zoom(){return this.homeHeight/this.height}get axes(){let ahead=unit(subtract2(this.state.focal_point,this.
-state.position)),right=unit(cross2(ahead,this.state.up));return[right,cross2(right,ahead),ahead]}sight(pixels){let{parallel,
-position,view_angle:angle}=this.state;return parallel?{eye:null,halfHeight:this.height,pixels}:{eye:position,halfHeight:tangent(
+colour,settings,header.constants.shading)).map(Math.round).join(" ")})`}).join(", ")})`}var NORTH=[0,0,1],STEEPEST=Math.sin(89*Math.PI/180),LEAST_COSINE=.2,tangent=degrees=>Math.tan(degrees*Math.PI/360),Camera=class{flat;limits;aspect;state;start;pick=null;globe;homeHeight;nearest;constructor(state,limits,flat,aspect=1,globe=0){
+this.state=copyOf(state),this.start=copyOf(state),this.limits=limits,this.flat=flat,this.globe=globe,this.aspect=aspect,
+this.homeHeight=this.height,this.nearest=this.distance/limits.closest}get height(){let{parallel,parallel_scale:half,view_angle:angle}=this.
+state;return parallel?half:this.distance*tangent(angle)}get distance(){return length2(subtract2(this.state.focal_point,this.
+state.position))}get zoom(){return this.homeHeight/this.height}get axes(){let ahead=unit(subtract2(this.state.focal_point,
+this.state.position)),right=unit(cross2(ahead,this.state.up));return[right,cross2(right,ahead),ahead]}sight(pixels){let{
+parallel,position,view_angle:angle}=this.state;return parallel?{eye:null,halfHeight:this.height,pixels}:{eye:position,halfHeight:tangent(
 angle),pixels}}get planes(){let[right,up,ahead]=this.axes,{parallel,parallel_scale:half,view_angle:angle}=this.state,{position,
 focal_point:focus}=this.state,tall=parallel?half:tangent(angle);return[right,scale2(right,-1),up,scale2(up,-1)].map((side,n)=>{
 let size=n<2?tall*this.aspect:tall;if(parallel)return[...side,size-dot2(side,focus)];let normal=add(side,ahead,size);return[
@@ -133,15 +133,22 @@ let size=n<2?tall*this.aspect:tall;if(parallel)return[...side,size-dot2(side,foc
 this.state.position);return{height:dot2(way,ahead)*tangent(this.state.view_angle),ray:unit(way)}}project(point){let[right,
 up]=this.axes,{height}=this.at(point);if(!(height>0))return null;let{parallel,position,focal_point:focus}=this.state,way=subtract2(
 point,parallel?focus:position);return[dot2(right,way)/height/this.aspect,dot2(up,way)/height]}pan(dx,dy){let[right,up]=this.
-axes,{height}=this;this.shift(add(scale2(right,dx*this.aspect*height),up,dy*height))}rotate(dx,dy){let{state,limits}=this,
-up=unit(state.up),back=subtract2(state.position,state.focal_point);back=rotated(back,up,-limits.turn*dx*Math.min(this.aspect,
-limits.widest_turn));let right=unit(cross2(up,back));back=rotated(back,right,limits.turn*dy),state.position=add(state.focal_point,
-back),state.up=unit(cross2(back,right))}zoomBy(factor,x=0,y=0){if(!Number.isFinite(factor)||factor<=0)return;this.flat||
-this.focusAt(x,y);let{farthest_zoom:farthest,deepest_zoom:deepest}=this.limits,by=clamp(factor,farthest/this.zoom,deepest/
-this.zoom),[right,up,ahead]=this.axes,height=this.height*(1-1/by);this.shift(add(scale2(right,x*this.aspect*height),up,y*
-height)),this.state.parallel?this.state.parallel_scale/=by:this.approach(this.height/by,ahead)}ray(x,y){let[right,up,ahead]=this.
-axes,{height,state}=this,there=add(add(state.focal_point,right,x*this.aspect*height),up,y*height);return state.parallel?
-[add(there,ahead,-this.distance),ahead]:[add(state.position,[0,0,0]),unit(subtract2(there,state.position))]}approach(height,ahead){
+axes,{height}=this;this.shift(add(scale2(right,dx*this.aspect*height),up,dy*height))}rotate(dx,dy){if(this.globe)return this.
+roam(dx,dy);let{state,limits}=this,up=unit(state.up),back=subtract2(state.position,state.focal_point);back=rotated(back,
+up,-limits.turn*dx*Math.min(this.aspect,limits.widest_turn));let right=unit(cross2(up,back));back=rotated(back,right,limits.
+turn*dy),state.position=add(state.focal_point,back),state.up=unit(cross2(back,right))}roam(dx,dy){let{state,limits,globe}=this,
+away=length2(state.position),above=Math.max(away-globe,0)*tangent(state.view_angle),height=state.parallel?state.parallel_scale:
+above,degrees=Math.min(height/globe*180/Math.PI,limits.turn),cosine=Math.hypot(state.position[0],state.position[1])/away,
+aside=Math.min(degrees*this.aspect/Math.max(cosine,LEAST_COSINE),limits.turn);this.turn(NORTH,-aside*dx);let[right]=this.
+axes,steep=Math.abs(state.position[2])/away,before=copyOf(state);this.turn(right,degrees*dy),Math.abs(state.position[2])/
+away>Math.max(STEEPEST,steep)&&(this.state=before);let[,,ahead]=this.axes,upward=add(NORTH,ahead,-dot2(NORTH,ahead));length2(
+upward)>1-STEEPEST&&(this.state.up=unit(upward))}turn(axis,degrees){let{state}=this;for(let name of["position","focal_po\
+int","up"])state[name]=rotated(state[name],axis,degrees)}zoomBy(factor,x=0,y=0){if(!Number.isFinite(factor)||factor<=0)return;
+this.flat||this.focusAt(x,y);let{farthest_zoom:farthest,deepest_zoom:deepest}=this.limits,by=clamp(factor,farthest/this.
+zoom,deepest/this.zoom),[right,up,ahead]=this.axes,height=this.height*(1-1/by);this.shift(add(scale2(right,x*this.aspect*
+height),up,y*height)),this.state.parallel?this.state.parallel_scale/=by:this.approach(this.height/by,ahead)}ray(x,y){let[
+right,up,ahead]=this.axes,{height,state}=this,there=add(add(state.focal_point,right,x*this.aspect*height),up,y*height);return state.
+parallel?[add(there,ahead,-this.distance),ahead]:[add(state.position,[0,0,0]),unit(subtract2(there,state.position))]}approach(height,ahead){
 let distance=Math.max(height/tangent(this.limits.view_angle),this.nearest);this.state.position=add(this.state.focal_point,
 ahead,-distance),this.state.view_angle=Math.atan(height/distance)*360/Math.PI}focusAt(x,y){let point=this.pick?.(x,y);if(!point)
 return;let ahead=this.axes[2],depth=dot2(subtract2(point,this.state.position),ahead);depth>0&&(this.state.focal_point=add(
@@ -239,7 +246,77 @@ FRAMEBUFFER,null)}pixel(draw){let gl=this.context;this.picker??=this.target(gl.R
 this.picker.frame),gl.viewport(0,0,1,1),gl.disable(gl.SCISSOR_TEST),gl.enable(gl.DEPTH_TEST),gl.clearBufferuiv(gl.COLOR,
 0,[0,0,0,0]),gl.clear(gl.DEPTH_BUFFER_BIT),draw();let bits=new Uint32Array(4);return gl.readPixels(0,0,1,1,gl.RGBA_INTEGER,
 gl.UNSIGNED_INT,bits),gl.bindFramebuffer(gl.FRAMEBUFFER,null),bits}};function sharedGraphics(){let page=globalThis;return page[SHARED]??=
-new Graphics}var Lifetime=class{controller=new AbortController;observers=new Set;timers=new Set;globalListeners=0;get isOver(){return this.
+new Graphics}function linesOf(steps,{low,size}){let lines=[],place=[0,0,0];for(let n=0;n<steps.length;n+=4){steps[n+3]&&lines.push([]);
+let point=place.map((_,k)=>(place[k]=place[k]+steps[n+k]&65535,low[k]+place[k]/65535*size[k]));lines[lines.length-1].push(
+point)}return lines}function thinned(lines,spacing){return spacing?lines.flatMap(line=>{let along=0,kept=line.filter((point,n)=>{
+let before=along;return n&&(along+=Math.hypot(...point.map((x,k)=>x-line[n-1][k]))),Math.floor(along/spacing)>Math.floor(
+before/spacing)||n===0||n===line.length-1});return along<spacing?[]:[kept]}):lines}function linePoints(lines,anchor){let size=lines.
+reduce((count,line)=>count+line.length+1,0),points=new Float32Array(3*size).fill(1e30),n=0;for(let line of lines){n+=3;for(let point of line)
+for(let k=0;k<3;k+=1)points[n++]=point[k]-anchor[k]}return points}function pieceGroups(points){let groups=[],pieces=points.
+length/3-1;for(let first=0;first<pieces;first+=256){let count=Math.min(256,pieces-first),[low,high]=[[1/0,1/0,1/0],[-1/0,
+-1/0,-1/0]];for(let n=3*first;n<3*(first+count+1);n+=1)points[n]!==Math.fround(1e30)&&(low[n%3]=Math.min(low[n%3],points[n]),
+high[n%3]=Math.max(high[n%3],points[n]));let middle=low.map((least,k)=>(least+high[k])/2),radius=Math.hypot(...low.map((least,k)=>(high[k]-
+least)/2));groups.push({first,count,middle,radius})}return groups}function visibleRuns(groups,planes){let runs=[];for(let{
+first,count,middle:[x,y,z],radius}of groups){let isOut=([a,b,c,d])=>a*x+b*y+c*z+d<-radius*Math.hypot(a,b,c);if(planes.some(
+isOut))continue;let last=runs[runs.length-1];last&&last[0]+last[1]===first?last[1]+=count:runs.push([first,count])}return runs}var NO_VALUE=-1e9;function positions(data,anchor){return anchor.some(Boolean)?data.map((x,n)=>x-anchor[n%3]):data}function grid(us,vs){
+let result2=new Float32Array(2*us.length*vs.length),n=0;for(let v2 of vs)for(let u of us)result2[n++]=u,result2[n++]=v2;
+return result2}function coordinates({shape,rows,columns}){let middles=(count,{before,size})=>Array.from({length:count},(_,n)=>(n+
+before+.5)/size);return grid(middles(shape[1],columns),middles(shape[0],rows))}function noiseCoordinates({alongI,alongJ}){
+return grid(alongI,alongJ)}function shares(steps,scalars,nodes){let result2=new Float32Array(2*nodes),place=shareOf(scalars);
+return steps.forEach((values,k)=>{for(let n=0;n<nodes;n+=1){let share=place(values[n]);result2[2*n+k]=Number.isFinite(share)?
+share:NO_VALUE}}),result2}function interpolated([rows,columns],i,j,value){let[left,low]=[Math.min(Math.floor(i),columns-
+2),Math.min(Math.floor(j),rows-2)],[a,b]=[i-left,j-low],corner=low*columns+left,[from,to]=[value(corner),value(corner+columns+
+1)],aside=value(corner+(a>=b?1:columns));return from+Math.max(a,b)*(aside-from)+Math.min(a,b)*(to-aside)}var POINT_BYTES=12,PIECE_ENDS=2;function groundAt({earth,geometry},camera,x,y){if(!earth)return null;let[start,along]=camera.
+ray(x,y);if(earth.map){let across=fromFrame(geometry.frame,[0,0,1]),depth2=dot2(subtract2(geometry.center,start),across)/
+dot2(along,across),place=add(start,along,depth2),[x0,y0,x1,y1]=earth.map;return place[0]>=x0&&place[0]<=x1&&place[1]>=y0&&
+place[1]<=y1?place:null}let nearest=dot2(start,along),square=nearest**2-dot2(start,start)+earth.radius**2,depth=-nearest-
+Math.sqrt(square);return depth>0?add(start,along,depth):null}var EarthLayer=class{version=0;graphics;header;parts;drawn=new Map;constructor(graphics,header,parts){
+this.graphics=graphics,this.header=header,this.parts=parts}forget(name){this.version+=1,this.drop(name==="position"?"lan\
+d":name)}dispose(){for(let name of[...this.drawn.keys()])this.drop(name)}drop(name){let drawn=this.drawn.get(name);if(drawn){
+for(let buffer of drawn.buffers)this.graphics.free("Buffer",buffer);this.graphics.free("VertexArray",drawn.array),this.drawn.
+delete(name)}}get lines(){let{earth}=this.header;return earth?EARTH_LINES.filter(name=>earth[name]&&this.parts.has(name)):
+[]}drawLines(view,take){let{header,graphics}=this,{earth,shaders}=header,program=graphics.programs.get(shaders.lineVertex,
+shaders.lineFragment);if(!earth||!program.ready)return;let gl=graphics.context,{camera,anchor,width,height,ratio}=view;gl.
+bindFramebuffer(gl.FRAMEBUFFER,null),gl.viewport(0,0,width,height),gl.enable(gl.SCISSOR_TEST),gl.scissor(0,0,width,height),
+gl.disable(gl.DEPTH_TEST),gl.enable(gl.BLEND),gl.blendEquation(gl.MAX),gl.clearColor(0,0,0,0);let horizon=this.horizon(camera),
+local=[...camera.planes,...horizon?[horizon]:[]].map(plane=>this.localPlane(plane,anchor)),pixel=2*camera.height*ratio/height,
+most=earth.spacingPixels*pixel,spacing=earth.spacings.find(each=>each<=most)??0;for(let{option,color,opacity,width:thickness}of earth.
+strokes){if(!this.lines.includes(option))continue;gl.clear(gl.COLOR_BUFFER_BIT);let drawn=this.take(option,anchor,()=>this.
+linesOf(option,anchor,spacing),spacing);graphics.programs.use(program,{u_matrix:projection(header.geometry,camera,anchor),
+u_picture:[width,height],u_width:thickness*ratio,u_lineColour:[...color,opacity],u_horizon:horizon?local[local.length-1]:
+[0,0,0,1]}),gl.bindVertexArray(drawn.array),gl.bindBuffer(gl.ARRAY_BUFFER,drawn.buffers[0]);for(let[first,count]of visibleRuns(
+drawn.groups,local)){for(let n=0;n<PIECE_ENDS;n+=1)gl.vertexAttribPointer(n,3,gl.FLOAT,!1,POINT_BYTES,(first+n)*POINT_BYTES);
+gl.drawArraysInstanced(gl.TRIANGLE_STRIP,0,4,count)}take()}gl.bindVertexArray(null),gl.blendEquation(gl.FUNC_ADD),gl.disable(
+gl.BLEND)}get isReady(){let{lineVertex,lineFragment}=this.header.shaders;return!this.lines.length||this.graphics.programs.
+get(lineVertex,lineFragment).ready}drawGround({camera,anchor}){let{header,graphics}=this,{earth,shaders,geometry}=header;
+if(!earth?.land)return;let globe=earth.radius>0;if(!(globe?earth.below:this.parts.has("land")))return;let gl=graphics.context,
+defines=globe?["FLOWTEX_GLOBE"]:[],program=graphics.programs.get(shaders.groundVertex,shaders.groundFragment,...defines);
+if(program.ready){if(graphics.programs.use(program,{u_matrix:projection(geometry,camera,anchor),u_colour:earth.land,u_ground:header.
+background,u_lit:header.lighting,u_toEye:toFrame(geometry.frame,scale2(camera.axes[2],-1)),...globe?this.disc(camera,earth.
+radius,anchor):{}}),globe){let drawn=this.take("disc",anchor,()=>this.emptyArray());gl.bindVertexArray(drawn.array),gl.drawArrays(
+gl.TRIANGLE_STRIP,0,4)}else{let drawn=this.take("land",anchor,()=>this.landOf(anchor));gl.bindVertexArray(drawn.array),gl.
+depthMask(!1),gl.drawElements(gl.TRIANGLES,drawn.count,gl.UNSIGNED_INT,0),gl.depthMask(!0)}gl.bindVertexArray(null)}}horizon(camera){
+let radius=this.header.earth?.radius??0;if(!radius)return null;let[x,y,z,w]=camera.eye,away=w*Math.hypot(x,y,z);return[...unit(
+[x,y,z]),away?-(radius**2)/away:0]}localPlane(plane,anchor){let{frame,center}=this.header.geometry,normal=plane.slice(0,
+3),local=toFrame(frame,normal);return[...local,dot2(local,anchor)+dot2(normal,center)+plane[3]]}disc(camera,radius,anchor){
+let{frame,center}=this.header.geometry,[a,b,c,offset]=this.horizon(camera)??[0,0,1,0],toEye=[a,b,c],size=Math.sqrt(Math.
+max(radius**2-offset**2,0)),aside=unit(cross2(camera.axes[1],toEye)),upward=cross2(toEye,aside),middle=add(scale2(toEye,
+-offset),center,-1);return{u_middle:subtract2(toFrame(frame,middle),anchor),u_aside:scale2(toFrame(frame,aside),size),u_upward:scale2(
+toFrame(frame,upward),size),u_away:camera.state.parallel?0:length2(camera.state.position)/radius}}take(name,anchor,make,spacing=0){
+let old=this.drawn.get(name);if(old&&String([old.anchor,old.spacing])===String([anchor,spacing]))return old;this.drop(name);
+let drawn={...make(),anchor,spacing};return this.drawn.set(name,drawn),drawn}emptyArray(){let{graphics}=this;return{array:graphics.
+counted(graphics.context.createVertexArray()),buffers:[],anchor:[0,0,0],spacing:0,count:0,groups:[]}}buffer(target,data){
+let{graphics}=this,gl=graphics.context,buffer=graphics.counted(gl.createBuffer());return gl.bindBuffer(target,buffer),gl.
+bufferData(target,data,gl.STATIC_DRAW),buffer}linesOf(name,anchor,spacing){let gl=this.graphics.context,{earth}=this.header,
+steps=this.parts.get(name)?.data??[],lines=earth?linesOf(steps,earth):[],points=linePoints(thinned(lines,spacing),anchor),
+drawn={...this.emptyArray(),groups:pieceGroups(points)};gl.bindVertexArray(drawn.array),drawn.buffers=[this.buffer(gl.ARRAY_BUFFER,
+points)];for(let n=0;n<PIECE_ENDS;n+=1)gl.enableVertexAttribArray(n),gl.vertexAttribDivisor(n,1);return drawn}landOf(anchor){
+let gl=this.graphics.context,cells=this.parts.get("land"),nodes=this.parts.get("position"),drawn=this.emptyArray();if(!cells||
+!nodes)return drawn;let[rows,columns]=cells.shape,corners=[];for(let n=0;n<rows*columns;n+=1){if(!cells.data[n])continue;
+let low=n+Math.floor(n/columns),high=low+columns+1;corners.push(low,low+1,high+1,low,high+1,high)}gl.bindVertexArray(drawn.
+array);let points=positions(nodes.data,anchor);return drawn.buffers=[this.buffer(gl.ARRAY_BUFFER,points),this.buffer(gl.
+ELEMENT_ARRAY_BUFFER,new Uint32Array(corners))],drawn.count=corners.length,gl.enableVertexAttribArray(0),gl.vertexAttribPointer(
+0,3,gl.FLOAT,!1,0,0),drawn}};var Lifetime=class{controller=new AbortController;observers=new Set;timers=new Set;globalListeners=0;get isOver(){return this.
 controller.signal.aborted}listen(target,kind,call,options={}){(target===document||target===window)&&(this.globalListeners+=
 1);let{signal}=this.controller;target.addEventListener(kind,call,{...options,signal})}later(call,delay){let timer=setTimeout(
 ()=>{this.timers.delete(timer),call()},delay);return this.timers.add(timer),timer}cancel(timer){timer!==null&&(clearTimeout(
@@ -331,15 +408,7 @@ path,sampled,point,directed}){let lines=(all,kind)=>all.map(line=>["polyline",{c
 [x,y]])=>!point||Math.hypot(x-point[0],y-point[1])>FREE_RADIUS,heads=directed?path.flatMap(line=>arrowHeads(line)).filter(
 isFree):[],ring=kind=>point?[["circle",{class:kind,cx:point[0],cy:point[1],r:POINT_RADIUS}]]:[];return[...lines(path,"wh\
 ole-casing"),...lines(path,"whole"),...lines(sampled,"casing"),...lines(sampled,"sampled"),...heads.map(head=>["polygon",
-{class:"arrow",points:textOf(head)}]),...ring("point-casing"),...ring("point")]}var NO_VALUE=-1e9;function positions(data,anchor){return anchor.some(Boolean)?data.map((x,n)=>x-anchor[n%3]):data}function grid(us,vs){
-let result2=new Float32Array(2*us.length*vs.length),n=0;for(let v2 of vs)for(let u of us)result2[n++]=u,result2[n++]=v2;
-return result2}function coordinates({shape,rows,columns}){let middles=(count,{before,size})=>Array.from({length:count},(_,n)=>(n+
-before+.5)/size);return grid(middles(shape[1],columns),middles(shape[0],rows))}function noiseCoordinates({alongI,alongJ}){
-return grid(alongI,alongJ)}function shares(steps,scalars,nodes){let result2=new Float32Array(2*nodes),place=shareOf(scalars);
-return steps.forEach((values,k)=>{for(let n=0;n<nodes;n+=1){let share=place(values[n]);result2[2*n+k]=Number.isFinite(share)?
-share:NO_VALUE}}),result2}function interpolated([rows,columns],i,j,value){let[left,low]=[Math.min(Math.floor(i),columns-
-2),Math.min(Math.floor(j),rows-2)],[a,b]=[i-left,j-low],corner=low*columns+left,[from,to]=[value(corner),value(corner+columns+
-1)],aside=value(corner+(a>=b?1:columns));return from+Math.max(a,b)*(aside-from)+Math.min(a,b)*(to-aside)}function pickedPoint(context,x,y){let{layers,camera,moment,anchor,canvas}=context,{graphics,header}=layers[0].scene,program=graphics.
+{class:"arrow",points:textOf(head)}]),...ring("point-casing"),...ring("point")]}function pickedPoint(context,x,y){let{layers,camera,moment,anchor,canvas}=context,{graphics,header}=layers[0].scene,program=graphics.
 programs.get(header.shaders.vertex,header.shaders.pick),whole=projection(header.geometry,camera,anchor),matrix=atPixel(whole,
 [x,y],[canvas.width,canvas.height]),[before,after,between2]=moment,bits=graphics.pixel(()=>{layers.forEach(({scene:scene2},n)=>{
 graphics.programs.use(program,{u_matrix:matrix,u_between:between2,u_part:n}),scene2.draw(before,after,anchor,!1)})});if(!bits[3])
@@ -723,24 +792,24 @@ slider.value=String((now-first)/(last-first||1));let unit2=header.slices.timeUni
 now)} ${unit2}`,text=player.varies?moment:`${now.toFixed(1)} s`;this.timeText.textContent!==text&&(this.timeText.textContent=
 text)}date({slices}){return dateText(slices.dates,slices.times,this.viewer.player.time)}lookOf({show_level,strength,contrast}){
 return`${show_level} ${strength} ${contrast}`}showLegend(){let{header,settings,parts}=this.viewer;this.legendLook=this.lookOf(
-settings),this.colours.update(),header&&this.legend.show(header,settings,parts.get("cmap")?.data)}read(point){let{header}=this.
-viewer;if(this.readout.replaceChildren(),this.legend.point(null),!point||!header)return;let{parts,camera}=this.viewer;this.
-readout.append(dom("span",{},[placeText(point.position,header,parts,camera)]));let{name,label,unit:unit2}=header.scalars,
-value=point.values[name??""];value!==void 0&&(this.readout.append(dom("b",{},[withUnit(`${label} ${numberText(value)}`,unit2)])),
-this.legend.point(header,value))}fold(open=!1){this.isOpen=open,this.arrange()}toggle(shown=!this.isShown){shown!==this.
-isShown&&(this.isShown=shown,this.arrange(),this.viewer.options.onControls?.(shown))}arrange(){let{header,options,root}=this.
-viewer,isReady=header!==null,follows=!!options.follows;this.bar.hidden=!this.isShown||!isReady,this.handle.hidden=this.isShown||
-!isReady||follows,this.head.hidden=!(this.isShown||follows)||!isReady,this.controls.element.hidden=!this.isShown||!this.
-isOpen||!isReady,root.classList.toggle("flowtex-open",!this.controls.element.hidden),this.gear.setAttribute("aria-presse\
-d",String(this.isOpen))}wait(missing){this.busy.hidden=!missing.length;let{viewer}=this;!missing.length||viewer.options.
-onNeed||this.lateTimer||(this.lateTimer=viewer.lifetime.later(()=>{this.lateTimer=null;let names=viewer.lacking.join(", ");
-names&&this.fail("The scene is not complete.",`Missing: ${names}`)},LATE_MS))}hint(shown){let{lifetime}=this.viewer;lifetime.
-cancel(this.hintTimer),this.hintTimer=shown?lifetime.later(()=>this.hint(!1),HINT_MS):null,this.hintBox.hidden=!shown}clear(){
-this.note.hidden=!0,delete this.viewer.root.dataset.failed}fail(problem,detail){this.note.replaceChildren(dom("strong",{},
-[problem]),dom("pre",{},[detail])),this.note.hidden=!1,this.busy.hidden=!0,this.viewer.root.dataset.failed="true"}fullscreen(){
-let{root}=this.viewer;toggleFullscreen(root.closest(".flowtex-pair")??root)}async save(){let{viewer}=this,href=URL.createObjectURL(
-await pictureOf(viewer.together)),name=(viewer.header?.name||"flow").replace(FORBIDDEN," ").trim();dom("a",{href,download:`${name}\
-.png`}).click(),viewer.lifetime.later(()=>URL.revokeObjectURL(href),SAVED_MS)}};var SERIES_STEP_S=.5,SERIES_LEAST_S=6,SERIES_MOST_S=60,LONGEST_GAP_S=.5,Player=class{time=0;clock=0;playing=!1;times=[0];lastFrame=0;hasHeader=!1;setHeader(header){
+settings),this.colours.update(),header&&this.legend.show(header,settings,parts.get("cmap")?.data)}read(point,ground=null){
+let{header}=this.viewer;this.readout.replaceChildren(),this.legend.point(null);let position=point?.position??ground;if(!position||
+!header)return;let{parts,camera}=this.viewer;if(this.readout.append(dom("span",{},[placeText(position,header,parts,camera)])),
+!point)return;let{name,label,unit:unit2}=header.scalars,value=point.values[name??""];value!==void 0&&(this.readout.append(
+dom("b",{},[withUnit(`${label} ${numberText(value)}`,unit2)])),this.legend.point(header,value))}fold(open=!1){this.isOpen=
+open,this.arrange()}toggle(shown=!this.isShown){shown!==this.isShown&&(this.isShown=shown,this.arrange(),this.viewer.options.
+onControls?.(shown))}arrange(){let{header,options,root}=this.viewer,isReady=header!==null,follows=!!options.follows;this.
+bar.hidden=!this.isShown||!isReady,this.handle.hidden=this.isShown||!isReady||follows,this.head.hidden=!(this.isShown||follows)||
+!isReady,this.controls.element.hidden=!this.isShown||!this.isOpen||!isReady,root.classList.toggle("flowtex-open",!this.controls.
+element.hidden),this.gear.setAttribute("aria-pressed",String(this.isOpen))}wait(missing){this.busy.hidden=!missing.length;
+let{viewer}=this;!missing.length||viewer.options.onNeed||this.lateTimer||(this.lateTimer=viewer.lifetime.later(()=>{this.
+lateTimer=null;let names=viewer.lacking.join(", ");names&&this.fail("The scene is not complete.",`Missing: ${names}`)},LATE_MS))}hint(shown){
+let{lifetime}=this.viewer;lifetime.cancel(this.hintTimer),this.hintTimer=shown?lifetime.later(()=>this.hint(!1),HINT_MS):
+null,this.hintBox.hidden=!shown}clear(){this.note.hidden=!0,delete this.viewer.root.dataset.failed}fail(problem,detail){
+this.note.replaceChildren(dom("strong",{},[problem]),dom("pre",{},[detail])),this.note.hidden=!1,this.busy.hidden=!0,this.
+viewer.root.dataset.failed="true"}fullscreen(){let{root}=this.viewer;toggleFullscreen(root.closest(".flowtex-pair")??root)}async save(){
+let{viewer}=this,href=URL.createObjectURL(await pictureOf(viewer.together)),name=(viewer.header?.name||"flow").replace(FORBIDDEN,
+" ").trim();dom("a",{href,download:`${name}.png`}).click(),viewer.lifetime.later(()=>URL.revokeObjectURL(href),SAVED_MS)}};var SERIES_STEP_S=.5,SERIES_LEAST_S=6,SERIES_MOST_S=60,LONGEST_GAP_S=.5,Player=class{time=0;clock=0;playing=!1;times=[0];lastFrame=0;hasHeader=!1;setHeader(header){
 let{times:times2}=header.slices;(!(times2.length===this.times.length&&times2.every((t,n)=>t===this.times[n]))||!this.hasHeader)&&
 (this.time=header.time,this.clock=header.clock),this.hasHeader=!0,this.times=times2}get varies(){return this.times.length>
 1}get span(){return[this.times[0],this.times[this.times.length-1]]}get moment(){return momentOf(this.times,this.time)}timeOf([
@@ -782,9 +851,9 @@ return}event.preventDefault();let size=event.ctrlKey&&event.deltaMode===0?PINCH_
 -event.deltaY/size,-MOST_NOTCHES,MOST_NOTCHES);this.zoom((this.viewer.camera?.limits.wheel_zoom??1)**notches,event)}zoom(factor,event){
 let{x,y}=this.place(event);this.viewer.camera?.zoomBy(factor,x,y),this.viewer.reportCamera()}hover(place){let{viewer}=this;
 viewer.lifetime.cancel(this.look);let rest=HOVER_MS-(performance.now()-this.lastLook),look=()=>{this.look=null,this.lastLook=
-performance.now(),viewer.sharp&&viewer.canPick?viewer.panel.read(viewer.point(place.x,place.y)):viewer.player.playing||this.
-hover(place)};this.look=viewer.lifetime.later(look,Math.max(rest,viewer.sharp?0:HOVER_MS))}onKey(event){let{root}=this.viewer,
-[target]=event.composedPath(),inside=target instanceof Element&&target!==root?target.tagName:"",isControl=/^(INPUT|SELECT)$/.
+performance.now();let{x,y}=place;viewer.sharp&&viewer.canPick?viewer.panel.read(viewer.point(x,y),viewer.ground(x,y)):viewer.
+player.playing||this.hover(place)};this.look=viewer.lifetime.later(look,Math.max(rest,viewer.sharp?0:HOVER_MS))}onKey(event){
+let{root}=this.viewer,[target]=event.composedPath(),inside=target instanceof Element&&target!==root?target.tagName:"",isControl=/^(INPUT|SELECT)$/.
 test(inside)||inside==="BUTTON"&&event.key===PLAY_KEY;hasModifier(event)||isControl||!this.command(event)||(event.preventDefault(),
 event.stopPropagation())}command({key,shiftKey}){let{viewer}=this,{camera,panel,options}=viewer;if(!camera)return!1;let command=CAMERA_KEYS[key];
 if(command in DIRECTIONS){let[x,y]=DIRECTIONS[command].map(way=>way*KEY_STEP);camera.flat===shiftKey?camera.rotate(-x,-y):
@@ -860,65 +929,7 @@ lighting,u_ground:header.background,u_opacity:header.opacity,u_toEye:toFrame(hea
 -1))}}copy(pen,region,height,to){if(!pen)return;let{width:w,height:h,top,rows}=region,{width}=this.canvas,{canvas}=this.
 graphics,first=canvas.height-h+top;if(pen.imageSmoothingEnabled=w!==width||h!==height,pen.imageSmoothingEnabled){let{coarse,
 coarsePen}=this;coarse.width=w,coarse.height=rows,coarsePen?.drawImage(canvas,0,first,w,rows,0,0,w,rows),[canvas,first]=
-[coarse,0]}pen.drawImage(canvas,0,first,w,rows,0,to,width,rows*height/h)}};function linesOf(steps,{low,size}){let lines=[],place=[0,0,0];for(let n=0;n<steps.length;n+=4){steps[n+3]&&lines.push([]);
-let point=place.map((_,k)=>(place[k]=place[k]+steps[n+k]&65535,low[k]+place[k]/65535*size[k]));lines[lines.length-1].push(
-point)}return lines}function thinned(lines,spacing){return spacing?lines.flatMap(line=>{let along=0,kept=line.filter((point,n)=>{
-let before=along;return n&&(along+=Math.hypot(...point.map((x,k)=>x-line[n-1][k]))),Math.floor(along/spacing)>Math.floor(
-before/spacing)||n===0||n===line.length-1});return along<spacing?[]:[kept]}):lines}function linePoints(lines,anchor){let size=lines.
-reduce((count,line)=>count+line.length+1,0),points=new Float32Array(3*size).fill(1e30),n=0;for(let line of lines){n+=3;for(let point of line)
-for(let k=0;k<3;k+=1)points[n++]=point[k]-anchor[k]}return points}function pieceGroups(points){let groups=[],pieces=points.
-length/3-1;for(let first=0;first<pieces;first+=256){let count=Math.min(256,pieces-first),[low,high]=[[1/0,1/0,1/0],[-1/0,
--1/0,-1/0]];for(let n=3*first;n<3*(first+count+1);n+=1)points[n]!==Math.fround(1e30)&&(low[n%3]=Math.min(low[n%3],points[n]),
-high[n%3]=Math.max(high[n%3],points[n]));let middle=low.map((least,k)=>(least+high[k])/2),radius=Math.hypot(...low.map((least,k)=>(high[k]-
-least)/2));groups.push({first,count,middle,radius})}return groups}function visibleRuns(groups,planes){let runs=[];for(let{
-first,count,middle:[x,y,z],radius}of groups){let isOut=([a,b,c,d])=>a*x+b*y+c*z+d<-radius*Math.hypot(a,b,c);if(planes.some(
-isOut))continue;let last=runs[runs.length-1];last&&last[0]+last[1]===first?last[1]+=count:runs.push([first,count])}return runs}var POINT_BYTES=12,PIECE_ENDS=2,EarthLayer=class{version=0;graphics;header;parts;drawn=new Map;constructor(graphics,header,parts){
-this.graphics=graphics,this.header=header,this.parts=parts}forget(name){this.version+=1,this.drop(name==="position"?"lan\
-d":name)}dispose(){for(let name of[...this.drawn.keys()])this.drop(name)}drop(name){let drawn=this.drawn.get(name);if(drawn){
-for(let buffer of drawn.buffers)this.graphics.free("Buffer",buffer);this.graphics.free("VertexArray",drawn.array),this.drawn.
-delete(name)}}get lines(){let{earth}=this.header;return earth?EARTH_LINES.filter(name=>earth[name]&&this.parts.has(name)):
-[]}drawLines(view,take){let{header,graphics}=this,{earth,shaders}=header,program=graphics.programs.get(shaders.lineVertex,
-shaders.lineFragment);if(!earth||!program.ready)return;let gl=graphics.context,{camera,anchor,width,height,ratio}=view;gl.
-bindFramebuffer(gl.FRAMEBUFFER,null),gl.viewport(0,0,width,height),gl.enable(gl.SCISSOR_TEST),gl.scissor(0,0,width,height),
-gl.disable(gl.DEPTH_TEST),gl.enable(gl.BLEND),gl.blendEquation(gl.MAX),gl.clearColor(0,0,0,0);let horizon=this.horizon(camera),
-local=[...camera.planes,...horizon?[horizon]:[]].map(plane=>this.localPlane(plane,anchor)),pixel=2*camera.height*ratio/height,
-most=earth.spacingPixels*pixel,spacing=earth.spacings.find(each=>each<=most)??0;for(let{option,color,opacity,width:thickness}of earth.
-strokes){if(!this.lines.includes(option))continue;gl.clear(gl.COLOR_BUFFER_BIT);let drawn=this.take(option,anchor,()=>this.
-linesOf(option,anchor,spacing),spacing);graphics.programs.use(program,{u_matrix:projection(header.geometry,camera,anchor),
-u_picture:[width,height],u_width:thickness*ratio,u_lineColour:[...color,opacity],u_horizon:horizon?local[local.length-1]:
-[0,0,0,1]}),gl.bindVertexArray(drawn.array),gl.bindBuffer(gl.ARRAY_BUFFER,drawn.buffers[0]);for(let[first,count]of visibleRuns(
-drawn.groups,local)){for(let n=0;n<PIECE_ENDS;n+=1)gl.vertexAttribPointer(n,3,gl.FLOAT,!1,POINT_BYTES,(first+n)*POINT_BYTES);
-gl.drawArraysInstanced(gl.TRIANGLE_STRIP,0,4,count)}take()}gl.bindVertexArray(null),gl.blendEquation(gl.FUNC_ADD),gl.disable(
-gl.BLEND)}get isReady(){let{lineVertex,lineFragment}=this.header.shaders;return!this.lines.length||this.graphics.programs.
-get(lineVertex,lineFragment).ready}drawGround({camera,anchor}){let{header,graphics}=this,{earth,shaders,geometry}=header;
-if(!earth?.land)return;let globe=earth.radius>0;if(!(globe?earth.below:this.parts.has("land")))return;let gl=graphics.context,
-defines=globe?["FLOWTEX_GLOBE"]:[],program=graphics.programs.get(shaders.groundVertex,shaders.groundFragment,...defines);
-if(program.ready){if(graphics.programs.use(program,{u_matrix:projection(geometry,camera,anchor),u_colour:earth.land,u_ground:header.
-background,u_lit:header.lighting,u_toEye:toFrame(geometry.frame,scale2(camera.axes[2],-1)),...globe?this.disc(camera,earth.
-radius,anchor):{}}),globe){let drawn=this.take("disc",anchor,()=>this.emptyArray());gl.bindVertexArray(drawn.array),gl.drawArrays(
-gl.TRIANGLE_STRIP,0,4)}else{let drawn=this.take("land",anchor,()=>this.landOf(anchor));gl.bindVertexArray(drawn.array),gl.
-depthMask(!1),gl.drawElements(gl.TRIANGLES,drawn.count,gl.UNSIGNED_INT,0),gl.depthMask(!0)}gl.bindVertexArray(null)}}horizon(camera){
-let radius=this.header.earth?.radius??0;if(!radius)return null;let[x,y,z,w]=camera.eye,away=w*Math.hypot(x,y,z);return[...unit(
-[x,y,z]),away?-(radius**2)/away:0]}localPlane(plane,anchor){let{frame,center}=this.header.geometry,normal=plane.slice(0,
-3),local=toFrame(frame,normal);return[...local,dot2(local,anchor)+dot2(normal,center)+plane[3]]}disc(camera,radius,anchor){
-let{frame,center}=this.header.geometry,[a,b,c,offset]=this.horizon(camera)??[0,0,1,0],toEye=[a,b,c],size=Math.sqrt(Math.
-max(radius**2-offset**2,0)),aside=unit(cross2(camera.axes[1],toEye)),upward=cross2(toEye,aside),middle=add(scale2(toEye,
--offset),center,-1);return{u_middle:subtract2(toFrame(frame,middle),anchor),u_aside:scale2(toFrame(frame,aside),size),u_upward:scale2(
-toFrame(frame,upward),size),u_away:camera.state.parallel?0:length2(camera.state.position)/radius}}take(name,anchor,make,spacing=0){
-let old=this.drawn.get(name);if(old&&String([old.anchor,old.spacing])===String([anchor,spacing]))return old;this.drop(name);
-let drawn={...make(),anchor,spacing};return this.drawn.set(name,drawn),drawn}emptyArray(){let{graphics}=this;return{array:graphics.
-counted(graphics.context.createVertexArray()),buffers:[],anchor:[0,0,0],spacing:0,count:0,groups:[]}}buffer(target,data){
-let{graphics}=this,gl=graphics.context,buffer=graphics.counted(gl.createBuffer());return gl.bindBuffer(target,buffer),gl.
-bufferData(target,data,gl.STATIC_DRAW),buffer}linesOf(name,anchor,spacing){let gl=this.graphics.context,{earth}=this.header,
-steps=this.parts.get(name)?.data??[],lines=earth?linesOf(steps,earth):[],points=linePoints(thinned(lines,spacing),anchor),
-drawn={...this.emptyArray(),groups:pieceGroups(points)};gl.bindVertexArray(drawn.array),drawn.buffers=[this.buffer(gl.ARRAY_BUFFER,
-points)];for(let n=0;n<PIECE_ENDS;n+=1)gl.enableVertexAttribArray(n),gl.vertexAttribDivisor(n,1);return drawn}landOf(anchor){
-let gl=this.graphics.context,cells=this.parts.get("land"),nodes=this.parts.get("position"),drawn=this.emptyArray();if(!cells||
-!nodes)return drawn;let[rows,columns]=cells.shape,corners=[];for(let n=0;n<rows*columns;n+=1){if(!cells.data[n])continue;
-let low=n+Math.floor(n/columns),high=low+columns+1;corners.push(low,low+1,high+1,low,high+1,high)}gl.bindVertexArray(drawn.
-array);let points=positions(nodes.data,anchor);return drawn.buffers=[this.buffer(gl.ARRAY_BUFFER,points),this.buffer(gl.
-ELEMENT_ARRAY_BUFFER,new Uint32Array(corners))],drawn.count=corners.length,gl.enableVertexAttribArray(0),gl.vertexAttribPointer(
-0,3,gl.FLOAT,!1,0,0),drawn}};var PLACE2=5;function blocksOf(nodes,size){let count=Math.max(Math.ceil((nodes-1)/size),1);return Array.from({length:count},
+[coarse,0]}pen.drawImage(canvas,0,first,w,rows,0,to,width,rows*height/h)}};var PLACE2=5;function blocksOf(nodes,size){let count=Math.max(Math.ceil((nodes-1)/size),1);return Array.from({length:count},
 (_,n)=>({first:n*size,cells:Math.min(nodes-1-n*size,size)}))}var MeshLevels=class{mesh;limits;rows;columns;constructor(mesh,limits){
 this.mesh=mesh,this.limits=limits,this.rows=blocksOf(mesh.shape[0],limits.tileCells),this.columns=blocksOf(mesh.shape[1],
 limits.tileCells)}get shape(){return[this.rows.length,this.columns.length]}levels({eye,halfHeight,pixels}){let{limits}=this,
@@ -1127,40 +1138,40 @@ state):null}setCamera(state){if(!this.camera)this.firstCamera=copyOf(state);else
 this.camera.state=copyOf(state)}this.change(!0)}reportCamera(){this.holdDraft(),this.change(!0),this.camera&&this.options.
 onCamera?.(copyOf(this.camera.state))}reset(){this.camera&&(this.place(),this.reportCamera())}place(){let{header,firstCamera:first,
 aspect}=this,nodes=this.parts.get("position")?.data;if(!header||!nodes)return;let{geometry,limits}=header,state=first?widened(
-geometry,limits,first,nodes,aspect):fitted(geometry,limits,nodes,aspect);this.camera=new Camera(state,limits,geometry.planar,
-aspect),this.camera.pick=(x,y)=>this.point(x,y)?.position??null,(!first||!isEqual(first,state))&&this.options.onCamera?.(
-copyOf(state))}get aspect(){return Math.max(this.root.clientWidth,1)/Math.max(this.root.clientHeight,1)}get playing(){return this.
-player.playing}setTime(time){this.player.seek(time),this.panel.tick(),this.change()}scrub(share){let{player,options}=this,
-{first,last}=player.range(this.settings),value=first+share*(last-first);this.holdDraft(),player.varies?(this.setTime(value),
-options.onTime?.(player.time)):(this.setClock(value),options.onClock?.(player.clock))}setClock(clock){this.player.clock=
-clock,this.panel.tick(),this.change()}play(){if(this.options.follows)return this.options.follows.play();this.playing||!this.
-header||(!this.player.varies&&this.settings.motion==="off"&&this.choose("motion","speed"),this.player.start(),this.panel.
-update(),this.request(),this.options.onPlaying?.(!0))}pause(){if(this.options.follows)return this.options.follows.pause();
-this.playing&&(this.player.playing=!1,this.panel.update(),this.change(),this.options.onPlaying?.(!1))}togglePlaying(){let leader=this.
-options.follows??this;leader.playing?leader.pause():leader.play()}holdDraft(){this.busyUntil=performance.now()+STILL_MS}get isBusy(){
-return this.playing||performance.now()<this.busyUntil}change(cameraOnly=!1){this.renderer.restart(cameraOnly),this.card.
-draw(),this.setSharp(!1),this.request()}refine(){this.renderer.refine(),this.setSharp(!1),this.request()}arrange(shown){
-let scenes=this.tiles?.arrange(shown)??[];return this.root.dataset.tiles=String(this.tiles?.missing.length??0),scenes}draw(){
-this.frame(performance.now(),performance.now()+FRAME_MS)}setSharp(sharp){sharp!==this.sharp&&(this.sharp=sharp,this.root.
-dataset.sharp=String(sharp),sharp&&(this.card.update(),this.options.onFrame?.()))}request(){!this.lifetime.isOver&&this.
-isVisible&&this.graphics.request(this)}resize(){let ratio=Math.max(window.devicePixelRatio||1,.1),width=Math.max(Math.round(
-this.root.clientWidth*ratio),1),height=Math.max(Math.round(this.root.clientHeight*ratio),1);width===this.canvas.width&&height===
-this.canvas.height||(this.renderer.resize(width,height),this.camera&&(this.camera.aspect=this.aspect,isEqual(this.camera.
-state,this.camera.start)&&this.place()),this.change())}get smooth(){let{header}=this;return this.options.smooth!==void 0||
-!header?this.options.smooth??!1:this.program(header).price<CARD_PRICE_MS}get ratio(){return this.canvas.height/Math.max(
-this.root.clientHeight,1)}lost(){this.tiles?.dispose(),this.header&&this.makeScene(this.header),this.setSharp(!1)}get lacking(){
-let[before,after]=this.player.moment;return this.scene?.missing(before,after)??[]}available(){let{header,scene,player,shown}=this;
-if(!header||!scene)return null;let moment=player.moment,count=header.slices.steps,ahead=player.playing?[1,2].map(n=>(moment[1]+
-n)%count):[];this.ask([moment[0],moment[1],...ahead]);let{lacking}=this;return this.panel.wait(lacking),lacking.length?shown&&
-!scene.missing(shown[0],shown[1]).length?shown:null:this.shown=moment}ask(steps){let now=performance.now(),lacking=[...new Set(
-steps)].filter(step=>this.scene?.missing(step,step).length);for(let step of lacking)!this.options.onNeed||now-(this.requests.
-get(step)??-1/0)<LOST_MS2||(this.requests.set(step,now),this.options.onNeed(step));return!lacking.length}frame(now,until){
-if(!(this.lifetime.isOver||this.graphics.isLost||!this.graphics.gl||!this.isVisible)&&!(!this.header||!this.scene||this.
-canvas.width<2))try{this.advance(now),this.drawPicture(this.header,until)}catch(error){this.pause(),this.panel.fail("The\
- picture could not be drawn.",String(error))}}program(header,isClose=this.isClose(header)){let{vertex,fragment}=header.shaders,
-defines=isMoving(header,this.settings)?["FLOWTEX_MOVING"]:[];return isClose&&defines.push("FLOWTEX_CELLS"),this.graphics.
-programs.get(vertex,fragment,...defines)}isClose(header){if(!this.camera)return!1;let view=this.view([0,0,0],this.ratio),
-tiles=this.tiles?.layers.slice(1).map(({scene})=>scene.header)??[];return(tiles.length?tiles:[header]).some(part=>isNear(
+geometry,limits,first,nodes,aspect):fitted(geometry,limits,nodes,aspect),globe=header.earth?.radius??0;this.camera=new Camera(
+state,limits,geometry.planar,aspect,globe),this.camera.pick=(x,y)=>this.point(x,y)?.position??this.ground(x,y),(!first||
+!isEqual(first,state))&&this.options.onCamera?.(copyOf(state))}get aspect(){return Math.max(this.root.clientWidth,1)/Math.
+max(this.root.clientHeight,1)}get playing(){return this.player.playing}setTime(time){this.player.seek(time),this.panel.tick(),
+this.change()}scrub(share){let{player,options}=this,{first,last}=player.range(this.settings),value=first+share*(last-first);
+this.holdDraft(),player.varies?(this.setTime(value),options.onTime?.(player.time)):(this.setClock(value),options.onClock?.(
+player.clock))}setClock(clock){this.player.clock=clock,this.panel.tick(),this.change()}play(){if(this.options.follows)return this.
+options.follows.play();this.playing||!this.header||(!this.player.varies&&this.settings.motion==="off"&&this.choose("moti\
+on","speed"),this.player.start(),this.panel.update(),this.request(),this.options.onPlaying?.(!0))}pause(){if(this.options.
+follows)return this.options.follows.pause();this.playing&&(this.player.playing=!1,this.panel.update(),this.change(),this.
+options.onPlaying?.(!1))}togglePlaying(){let leader=this.options.follows??this;leader.playing?leader.pause():leader.play()}holdDraft(){
+this.busyUntil=performance.now()+STILL_MS}get isBusy(){return this.playing||performance.now()<this.busyUntil}change(cameraOnly=!1){
+this.renderer.restart(cameraOnly),this.card.draw(),this.setSharp(!1),this.request()}refine(){this.renderer.refine(),this.
+setSharp(!1),this.request()}arrange(shown){let scenes=this.tiles?.arrange(shown)??[];return this.root.dataset.tiles=String(
+this.tiles?.missing.length??0),scenes}draw(){this.frame(performance.now(),performance.now()+FRAME_MS)}setSharp(sharp){sharp!==
+this.sharp&&(this.sharp=sharp,this.root.dataset.sharp=String(sharp),sharp&&(this.card.update(),this.options.onFrame?.()))}request(){
+!this.lifetime.isOver&&this.isVisible&&this.graphics.request(this)}resize(){let ratio=Math.max(window.devicePixelRatio||
+1,.1),width=Math.max(Math.round(this.root.clientWidth*ratio),1),height=Math.max(Math.round(this.root.clientHeight*ratio),
+1);width===this.canvas.width&&height===this.canvas.height||(this.renderer.resize(width,height),this.camera&&(this.camera.
+aspect=this.aspect,isEqual(this.camera.state,this.camera.start)&&this.place()),this.change())}get smooth(){let{header}=this;
+return this.options.smooth!==void 0||!header?this.options.smooth??!1:this.program(header).price<CARD_PRICE_MS}get ratio(){
+return this.canvas.height/Math.max(this.root.clientHeight,1)}lost(){this.tiles?.dispose(),this.header&&this.makeScene(this.
+header),this.setSharp(!1)}get lacking(){let[before,after]=this.player.moment;return this.scene?.missing(before,after)??[]}available(){
+let{header,scene,player,shown}=this;if(!header||!scene)return null;let moment=player.moment,count=header.slices.steps,ahead=player.
+playing?[1,2].map(n=>(moment[1]+n)%count):[];this.ask([moment[0],moment[1],...ahead]);let{lacking}=this;return this.panel.
+wait(lacking),lacking.length?shown&&!scene.missing(shown[0],shown[1]).length?shown:null:this.shown=moment}ask(steps){let now=performance.
+now(),lacking=[...new Set(steps)].filter(step=>this.scene?.missing(step,step).length);for(let step of lacking)!this.options.
+onNeed||now-(this.requests.get(step)??-1/0)<LOST_MS2||(this.requests.set(step,now),this.options.onNeed(step));return!lacking.
+length}frame(now,until){if(!(this.lifetime.isOver||this.graphics.isLost||!this.graphics.gl||!this.isVisible)&&!(!this.header||
+!this.scene||this.canvas.width<2))try{this.advance(now),this.drawPicture(this.header,until)}catch(error){this.pause(),this.
+panel.fail("The picture could not be drawn.",String(error))}}program(header,isClose=this.isClose(header)){let{vertex,fragment}=header.
+shaders,defines=isMoving(header,this.settings)?["FLOWTEX_MOVING"]:[];return isClose&&defines.push("FLOWTEX_CELLS"),this.
+graphics.programs.get(vertex,fragment,...defines)}isClose(header){if(!this.camera)return!1;let view=this.view([0,0,0],this.
+ratio),tiles=this.tiles?.layers.slice(1).map(({scene})=>scene.header)??[];return(tiles.length?tiles:[header]).some(part=>isNear(
 part,this.settings,view))}drawPicture(header,until){let shown=this.available();if(this.camera||this.place(),!shown||!this.
 camera)return;let{programs}=this.graphics,program=this.program(header);if(program.error){this.panel.fail("The shader doe\
 s not compile with this graphics driver.",program.error);return}if(!program.ready||!this.scene?.earth.isReady)return this.
@@ -1174,9 +1185,10 @@ anchor??[0,0,0],range=constants.anchorRange*2*camera.height,isFar=v2=>v2.some(c=
 local:[0,0,0];return{focus,anchor:isFar(subtract2(local,old))?anchor:old,eye:camera.eye,between:shown[2],time:player.timeOf(
 shown),clock:player.clock,density,pixel:2*camera.height/Math.max(this.root.clientHeight*density,1)}}get canPick(){let{header,
 graphics}=this;return!header||graphics.isLost||!graphics.gl?!1:graphics.programs.get(header.shaders.vertex,header.shaders.
-pick).ready}point(x,y){return this.find(x,y)?.point??null}find(x,y){let{tiles,camera,shown,canvas}=this;if(!tiles?.layers.
-length||!camera||!shown||!this.canPick)return null;let{anchor}=this.view(shown,1);return pickedPoint({layers:tiles.layers,
-camera,moment:shown,anchor,canvas},x,y)}};function viewersIn(element,count,options,own=()=>({})){if(count<2)return[new Viewer(element,{...options,...own(0)})];let pair=dom(
+pick).ready}point(x,y){return this.find(x,y)?.point??null}ground(x,y){let{header,camera}=this;return header&&camera&&groundAt(
+header,camera,x,y)}find(x,y){let{tiles,camera,shown,canvas}=this;if(!tiles?.layers.length||!camera||!shown||!this.canPick)
+return null;let{anchor}=this.view(shown,1);return pickedPoint({layers:tiles.layers,camera,moment:shown,anchor,canvas},x,
+y)}};function viewersIn(element,count,options,own=()=>({})){if(count<2)return[new Viewer(element,{...options,...own(0)})];let pair=dom(
 "div",{class:"flowtex-pair"});pair.style.cssText="display: flex; gap: 2px; width: 100%; height: 100%",element.append(pair);
 let viewers=[];for(let n=0;n<count;n+=1){let cell=dom("div");cell.style.cssText="flex: 1 1 0; min-width: 0; height: 100%",
 pair.append(cell);let others=()=>viewers.filter((_,m)=>m!==n),follower=n?{controls:!1,follows:viewers[0]}:{};viewers.push(

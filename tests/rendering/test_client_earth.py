@@ -115,9 +115,7 @@ def cubic(values: Floats, at: Floats) -> Floats:
     """Values (M, C) along an axis at places between them, as the client interpolates."""
     first = np.clip(np.floor(at).astype(int) - 1, 0, len(values) - 4)
     t = at - first
-    weights = [
-        np.prod([(t - m) / (n - m) for m in range(4) if m != n], axis=0) for n in range(4)
-    ]
+    weights = [np.prod([(t - m) / (n - m) for m in range(4) if m != n], axis=0) for n in range(4)]
     return np.asarray(sum(w[:, None] * values[first + n] for n, w in enumerate(weights)))
 
 

@@ -198,7 +198,9 @@ def earth_of(name: str) -> dict[str, Any]:
     lon, lat = np.meshgrid(np.linspace(168, 188, 9), np.linspace(-47, -33, 8))
     points = projection.positions(lon, lat)
     velocity = projection.vectors(lon, lat, 0 * lon + 2, 0 * lon - 1)
-    data = ClientData(Scene(FlowField.from_arrays(points, velocity, projection=projection)).textures)
+    data = ClientData(
+        Scene(FlowField.from_arrays(points, velocity, projection=projection)).textures
+    )
     geometry, parts = data.textures.geometry, data.surface()
     lines = map_lines(data.field, has_globe=False)["coastlines"]
     part = parts["coastlines"][:40]
@@ -234,7 +236,12 @@ MOMENTS = [
 def test_the_earth_for_the_client(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("flowtex.rendering.webgl.earth.LONLAT_PLACES", 9)
     dates = [
-        {"start": start.isoformat(), "step": step, "time": time, "text": date_text(start, time, step)}
+        {
+            "start": start.isoformat(),
+            "step": step,
+            "time": time,
+            "text": date_text(start, time, step),
+        }
         for start, step, time in MOMENTS
     ]
     maps = {name: earth_of(name) for name in ("globe", "platecarree")}

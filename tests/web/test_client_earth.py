@@ -1,4 +1,4 @@
-"""Maps of the Earth in the browser: lines, land and the globe below as VTK draws them, and readouts."""
+"""Maps of the Earth in the browser: lines, land and the globe as VTK draws them, and readouts."""
 
 from __future__ import annotations
 
@@ -29,10 +29,16 @@ Pixels = NDArray[np.uint8]
 
 SIZE = (450, 300)
 #: A plain surface, so that what is dark is a line.
-PLAIN: dict[str, Any] = {"scalars": False, "color": "white", "strength": 0.0, "samples": 3}
-#: Root mean square difference from VTK in steps of 8 bits: lines are smoothed alike, yet VTK's
-#: spheres are made of triangles.
-ROOT = 8.0
+PLAIN: dict[str, Any] = {
+    "scalars": False,
+    "color": "white",
+    "strength": 0.0,
+    "samples": 3,
+    "lighting": False,
+}
+#: Greatest difference from VTK, root mean square, relative to that of a picture without lines:
+#: pieces that overlap are darker there, and its globe is made of triangles.
+SHARE = 0.5
 
 
 @cache
@@ -49,9 +55,7 @@ def earth(name: str, times: int = 1) -> FlowField:
     if times > 1:
         dates = {"times": np.array([datetime(2002, 1, n + 1) for n in range(times)])}
     points = projection.positions(lon, lat)
-    return FlowField.from_arrays(
-        points, velocity, length_unit="m", projection=projection, **dates
-    )
+    return FlowField.from_arrays(points, velocity, length_unit="m", projection=projection, **dates)
 
 
 def scene(field: FlowField, camera: Camera, **options: Any) -> Any:
@@ -62,10 +66,10 @@ def scene(field: FlowField, camera: Camera, **options: Any) -> Any:
 
 
 def camera_of(field: FlowField, zoom: float) -> Camera:
-    whole = Camera.fit(field.surface, SIZE[0] / SIZE[1])
-    return whole if zoom == 1 else whole.zoom_by(
-        zoom, aspect=SIZE[0] / SIZE[1], whole=whole
-    )
+    """See all of a flow, or its middle from near, where there are coasts."""
+    assert field.projection is not None
+    focus = field.projection.positions(np.array(-9.45), np.array(38.8)) if zoom > 1 else None
+    return Camera.fit(field.surface, SIZE[0] / SIZE[1], zoom=zoom, focus=focus)
 
 
 def shown(client: ClientPage, field: FlowField, camera: Camera, **options: Any) -> Pixels:
@@ -80,8 +84,9 @@ def test_the_picture_is_that_of_vtk(client: ClientPage, name: str, zoom: float) 
     camera = camera_of(field, zoom)
     ours = shown(client, field, camera).astype(float)
     theirs = flowtex.render(field, camera=camera, size=SIZE, **PLAIN).astype(float)
-    assert np.sqrt(np.mean((ours - theirs) ** 2)) < ROOT
     without = shown(client, field, camera, coastlines=False, graticule=False).astype(float)
+    near, far = (np.sqrt(np.mean((p - theirs) ** 2)) for p in (ours, without))
+    assert near < SHARE * far
     # Lines are at the same pixels: what they darken is dark in the other picture too.
     drawn = (without - ours).mean(axis=-1)
     assert (drawn > 60).sum() > 100
@@ -93,7 +98,7 @@ def test_the_far_side_of_a_globe_is_hidden(client: ClientPage) -> None:
     # From the other side there are no data, and the globe below hides them.
     whole = camera_of(field, 1)
     away = Camera(tuple(-2.2 * np.array(whole.position)), (0, 0, 0), (0, 0, 1))
-    options = {"coastlines": False, "graticule": False, "color": "red", "lighting": False}
+    options = {"coastlines": False, "graticule": False, "color": "red"}
     picture = shown(client, field, away, land="blue", **options)
     assert (picture == [0, 0, 255]).all(axis=-1).sum() > 5000
     assert not (picture[..., 0].astype(int) - picture[..., 1] > 100).any()
@@ -103,26 +108,18 @@ def test_the_far_side_of_a_globe_is_hidden(client: ClientPage) -> None:
 def test_land_is_where_there_are_no_data(client: ClientPage, name: str) -> None:
     field = earth(name)
     camera = camera_of(field, 1)
-    options: dict[str, Any] = {"coastlines": False, "graticule": False, "lighting": False}
+    options: dict[str, Any] = {"coastlines": False, "graticule": False}
     picture = shown(client, field, camera, land="blue", **options)
     theirs = flowtex.render(field, camera=camera, size=SIZE, land="blue", **PLAIN, **options)
     ours, expected = ((p == [0, 0, 255]).all(axis=-1) for p in (picture, theirs))
     assert expected.sum() > 200
-    assert (ours ^ expected).mean() < 0.005
+    assert (ours ^ expected).mean() < 0.01
 
 
 def test_lines_are_as_wide_in_every_draft_and_at_every_zoom(client: ClientPage) -> None:
     field = earth("mercator")
     for zoom in (10.0, 1000.0):
-        camera = camera_of(field, 1)
-        coast = field.projection.positions(np.array(-9.45), np.array(38.8))
-        camera = Camera(
-            (*coast[:2], camera.position[2]),
-            tuple(coast),
-            camera.up,
-            parallel=True,
-            parallel_scale=camera.parallel_scale / zoom,
-        )
+        camera = camera_of(field, zoom)
         with_lines = shown(client, field, camera, graticule=False).astype(float)
         without = shown(client, field, camera, graticule=False, coastlines=False)
         darker = (without - with_lines).mean(axis=-1) / without.mean(axis=-1)
@@ -148,6 +145,37 @@ def test_switches_show_and_hide_lines(client: ClientPage) -> None:
     field = earth("globe")
     hidden = shown(client, field, camera_of(field, 1), coastlines=False, graticule=False)
     assert np.abs(after.astype(int) - hidden).mean() < 0.5
+
+
+def test_a_drag_keeps_north_up_and_a_zoom_stays_outside(client: ClientPage) -> None:
+    field = earth("globe")
+    number = client.mount(scene(field, camera_of(field, 1)), SIZE)
+    client.sharp(number)
+    client.page.wait_for_function("(n) => viewers[n].canPick", arg=number)
+    turned = client.page.evaluate(
+        """(n) => {
+          const { camera } = viewers[n];
+          const away = () => Math.hypot(...camera.state.position);
+          const before = away();
+          for (let k = 0; k < 40; k += 1) camera.rotate(0.3, -0.4);
+          for (let k = 0; k < 40; k += 1) camera.rotate(0.2, 0.1);
+          return [camera.axes[0][2], away() / before, camera.axes[1][2]];
+        }""",
+        number,
+    )
+    assert turned[0] == pytest.approx(0, abs=1e-9)
+    assert turned[1] == pytest.approx(1)
+    assert turned[2] > 0
+    # Also above land without data, on the far side.
+    nearest = client.page.evaluate(
+        """(n) => {
+          const { camera } = viewers[n];
+          for (let k = 0; k < 60; k += 1) camera.zoomBy(1.25, 0.1, 0.2);
+          return Math.hypot(...camera.state.position) / 6371000;
+        }""",
+        number,
+    )
+    assert 1 < nearest < 2
 
 
 def test_the_readout_tells_longitude_and_latitude(client: ClientPage) -> None:
