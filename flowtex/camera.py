@@ -201,7 +201,15 @@ class Camera:
             closest = CAMERA_LIMITS.closest if focus is not None else 1.0
             side = _side(center) if surface.on_globe else (ASIDE, UP)
             camera = cls._fit_curved(
-                surface, center, aspect, zoom, closest, toward or side[0], up or side[1], share, free
+                surface,
+                center,
+                aspect,
+                zoom,
+                closest,
+                toward or side[0],
+                up or side[1],
+                share,
+                free,
             )
         (x, y), _ = _middle_and_half(free)
         return camera.pan(-x, -y, aspect)

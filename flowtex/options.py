@@ -155,8 +155,8 @@ class Appearance:
     )
     land: Any = _option(
         LAND_COLOR,
-        "Colour of the Earth where a field with a projection has no data, such as land in an ocean; "
-        "``None`` for none.",
+        "Colour of the Earth where a field with a projection has no data, such as land in an "
+        "ocean; ``None`` for none.",
     )
 
     def __post_init__(self) -> None:

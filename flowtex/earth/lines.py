@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex.earth.projection import EARTH_RADIUS, Projection
 
 __all__ = ["MapLines", "coastlines", "graticule"]
@@ -52,6 +52,12 @@ class MapLines:
 
     points: Floats
     starts: Indices
+
+    def within(self, inside: Bools) -> MapLines:
+        """Return the pieces that have one end among some of the points, (N,), at least."""
+        first = np.delete(np.arange(len(self.points)), self.starts[1:] - 1)
+        first = first[inside[first] | inside[first + 1]]
+        return _assembled(self.points[first], self.points[first + 1], first, first + 1)
 
     def thinned(self, spacing: float) -> MapLines:
         """Return the lines with a point about every ``spacing`` metres, without shorter ones."""
@@ -145,7 +151,7 @@ def _places(projection: Projection, box: Floats | None) -> tuple[Floats, Floats]
         lon, lat = np.meshgrid(np.arange(-180.0, 180.0), np.arange(-89.5, 90.0))
         return lon.ravel(), lat.ravel()
     count = LOOKS[projection.is_globe]
-    axes = (np.linspace(*box[:, k], count if np.ptp(box[:, k]) > 0 else 1) for k in range(3))
+    axes = [np.linspace(a, b, count if b > a else 1) for a, b in box.T]
     points = np.stack(np.meshgrid(*axes), axis=-1).reshape(-1, 3)
     lon, lat = projection.lonlat(points)
     known = np.isfinite(lon) & np.isfinite(lat)
@@ -157,7 +163,8 @@ def _grid_lines(
 ) -> tuple[Floats, Bools]:
     """Meridians (0) or parallels (1) that places lie between: points, and which are joined."""
     order = slice(None, None, 1 - 2 * kind)
-    (of, along), (step, length) = (lon, lat)[order], apart[order]
+    of, along = (lon, lat)[order]
+    step, length = (apart[kind], apart[1 - kind])
     cells = np.unique(np.floor(of / step).astype(int))
     values = np.union1d(cells, cells + 1) * step
     values = values[(values < 180) if kind == 0 else (np.abs(values) < 90)]
@@ -168,8 +175,8 @@ def _grid_lines(
     if kind == 0:
         places = np.clip(places, -90, 90)
     joined = np.append(np.diff(marks) == 1, False)
-    grids = np.meshgrid(values, places, indexing="ij")[order]
-    return np.stack(grids, axis=-1).reshape(-1, 2), np.tile(joined, len(values))
+    grid = np.stack(np.meshgrid(values, places, indexing="ij"), axis=-1)[..., order]
+    return grid.reshape(-1, 2), np.tile(joined, len(values))
 
 
 def _mapped(projection: Projection, lonlat: Floats, joined: Bools, box: Floats | None) -> MapLines:
@@ -222,7 +229,8 @@ def _is_torn(projection: Projection, first: Floats, last: Floats) -> Bools:
     start, middle, stop = (projection.positions(*p.T) for p in (first, (first + last) / 2, last))
     bend = np.linalg.norm(middle - (start + stop) / 2, axis=1)
     beside = np.isnan(start[:, 0]) != np.isnan(stop[:, 0])
-    return beside | (bend > MOST_BENT * np.linalg.norm(stop - start, axis=1))
+    bent = bend > MOST_BENT * np.linalg.norm(stop - start, axis=1)
+    return np.asarray(beside | bent)
 
 
 def _tear(projection: Projection, first: Floats, last: Floats) -> tuple[Floats, Floats]:
@@ -238,7 +246,7 @@ def _tear(projection: Projection, first: Floats, last: Floats) -> tuple[Floats, 
     return low, high
 
 
-def _assembled(starts: Floats, stops: Floats, left: Floats, right: Floats) -> MapLines:
+def _assembled(starts: Floats, stops: Floats, left: AnyArray, right: AnyArray) -> MapLines:
     """Put pieces together that follow each other: ``right`` of one is ``left`` of the next."""
     new = np.append(True, right[:-1] != left[1:])[: len(starts)]
     at = np.arange(len(starts)) + np.cumsum(new) - 1

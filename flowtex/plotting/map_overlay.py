@@ -11,7 +11,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pyvista as pv
-
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 from flowtex._util.array_types import Bools, Floats
@@ -44,8 +43,8 @@ class Part(NamedTuple):
 
 
 #: How much nearer than the surface lines are, and how much farther land, as a share of the
-#: distance: more than what the pieces of a line cut off of the Earth.
-LINES_NEARER, LAND_FARTHER = 5e-4, 2e-4
+#: distance: more than what a surface comes nearer over the width of a line when seen aslant.
+LINES_NEARER, LAND_FARTHER = 1e-2, 2e-4
 #: Nearest that the front of the globe is drawn, as a share of the farthest.
 NEAREST = 1e-3
 #: Cells along a meridian of the globe below the surface.
@@ -56,12 +55,14 @@ OWNER = "flowtex map"
 POINTS = vtkDataObject.FIELD_ASSOCIATION_POINTS
 Replacements = tuple[tuple[str, str, tuple[str, ...]], ...]
 #: Shader, the mark of VTK after which our text is inserted, and our files, of land and of lines.
-REPLACEMENTS: Replacements = (
-    ("vertex", "//VTK::PositionVC::Impl", ("vtk/map_vertex_impl.glsl",)),
-)
+REPLACEMENTS: Replacements = (("vertex", "//VTK::PositionVC::Impl", ("vtk/map_vertex_impl.glsl",)),)
 LINE_REPLACEMENTS: Replacements = (
     ("vertex", "//VTK::PositionVC::Dec", ("vtk/line_vertex_dec.glsl",)),
-    ("vertex", "//VTK::PositionVC::Impl", ("vtk/map_vertex_impl.glsl", "vtk/line_vertex_impl.glsl")),
+    (
+        "vertex",
+        "//VTK::PositionVC::Impl",
+        ("vtk/map_vertex_impl.glsl", "vtk/line_vertex_impl.glsl"),
+    ),
     ("fragment", "//VTK::PositionVC::Dec", ("vtk/line_fragment_dec.glsl",)),
     ("fragment", "//VTK::Light::Impl", ("vtk/line_fragment_impl.glsl",)),
 )
@@ -84,9 +85,7 @@ class MapOverlay:
         Tells how many pixels there are for one of the settings'.
     """
 
-    def __init__(
-        self, actor: pv.Actor, renderer: Any, scene: Scene, surface: FlowSurface
-    ) -> None:
+    def __init__(self, actor: pv.Actor, renderer: Any, scene: Scene, surface: FlowSurface) -> None:
         self._actor, self._renderer = actor, weakref.ref(renderer)
         self._scene, self._surface = scene, surface
         self._field = scene.whole
@@ -124,7 +123,7 @@ class MapOverlay:
             renderer.RemoveObserver(self._observed)
 
     def _forms_of(self, option: str) -> tuple[tuple[float, pv.PolyData], ...]:
-        """The lines of an option, from coarse to fine; all are made together, once."""
+        """Return the lines of an option, from coarse to fine; all are made together, once."""
         has_globe = self._radius is not None
         if (option, has_globe) not in self._lines:
             for name, lines in map_lines(self._field, has_globe=has_globe).items():
@@ -135,13 +134,14 @@ class MapOverlay:
     def _add_land(self, color: Any) -> None:
         """Draw cells without data, and the globe where the field does not cover it."""
         is_lit = self._scene.is_lit
-        meshes = [(_cell_mesh(self._field.surface.points, land), -LAND_FARTHER)] if (
-            land := land_cells(self._field)
-        ).any() else []
+        meshes = []
+        if (land := land_cells(self._field)).any():
+            meshes.append((_cell_mesh(self._field.surface.points, land), -LAND_FARTHER))
         self._radius = globe_radius(self._field)
         if self._radius is not None:
-            cells = {"theta_resolution": 2 * GLOBE_CELLS, "phi_resolution": GLOBE_CELLS}
-            meshes.append((pv.Sphere(radius=self._radius, **cells), 0.0))
+            around, along = 2 * GLOBE_CELLS, GLOBE_CELLS
+            globe = pv.Sphere(radius=self._radius, theta_resolution=around, phi_resolution=along)
+            meshes.append((globe, 0.0))
         for mesh, nearer in meshes:
             if self._field.surface.on_globe:
                 mesh.point_data.active_normals = mesh.points / np.linalg.norm(
@@ -164,10 +164,10 @@ class MapOverlay:
     ) -> pv.Actor:
         mapper = FlowMapper(mesh)
         mapper.scalar_visibility = False
-        mapper.SetVBOShiftScaleMethod(False)  # which would not apply to the other ends
+        mapper.SetVBOShiftScaleMethod(0)  # which would not apply to the other ends
         actor = pv.Actor(mapper=mapper)
-        actor.SetPickable(False)
-        actor.SetUseBounds(False)
+        actor.PickableOff()
+        actor.UseBoundsOff()
         actor.SetUserMatrix(self._actor.GetMatrix())
         for shader, mark, names in replacements:
             text = "\n".join((mark, *map(shader_text, names)))
@@ -239,7 +239,8 @@ def _line_mesh(lines: MapLines) -> pv.PolyData:
     first = np.flatnonzero(joined)
     points = lines.points[np.stack([first, first, first + 1, first + 1], axis=1).ravel()]
     other = lines.points[np.stack([first + 1, first + 1, first, first], axis=1).ravel()]
-    mesh = pv.PolyData.from_regular_faces(points, np.arange(len(points)).reshape(-1, 4))
+    faces: Any = np.arange(len(points)).reshape(-1, 4)
+    mesh = pv.PolyData.from_regular_faces(points, faces)
     mesh.point_data[OTHER] = other.astype(np.float32)
     # What is to the left on the way there is to the right on the way back.
     mesh.point_data[SIDE] = np.tile(np.array([1, -1, 1, -1], dtype=np.float32), len(first))
@@ -252,5 +253,6 @@ def _cell_mesh(points: Floats, cells: Bools) -> pv.PolyData:
     j, i = np.nonzero(cells)
     corner = j * columns + i
     quads = np.stack([corner, corner + 1, corner + columns + 1, corner + columns], axis=-1)
-    used, faces = np.unique(quads, return_inverse=True)
-    return pv.PolyData.from_regular_faces(points.reshape(-1, 3)[used], faces.reshape(-1, 4))
+    used, numbers = np.unique(quads, return_inverse=True)
+    faces: Any = numbers.reshape(-1, 4)
+    return pv.PolyData.from_regular_faces(points.reshape(-1, 3)[used], faces)

@@ -1,10 +1,11 @@
-"""What is drawn of the Earth with a field that has a projection: lines, land and the globe below."""
+"""What is drawn of the Earth with a field that has a projection: lines, land, the globe below."""
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from flowtex._util.array_types import Bools, Floats
 from flowtex._util.blocks import bounds
@@ -55,13 +56,22 @@ def map_box(field: FlowField) -> Floats:
 def map_lines(field: FlowField, *, has_globe: bool) -> dict[str, MapLines]:
     """Return the coasts and the graticule of a field that has a projection, by their options.
 
-    They are those of all of the Earth where there is a globe below the field.
+    They are those of all of the Earth where there is a globe below the field, and else what of
+    them lies on its cells and on land.
     """
     if field.projection is None:
         return {}
     box = None if has_globe else map_box(field)
     makers = {"coastlines": coastlines, "graticule": graticule}
-    return {name: make(field.projection, box) for name, make in makers.items()}
+    lines = {name: make(field.projection, box) for name, make in makers.items()}
+    if has_globe:
+        return lines
+    middles, reach = _cells(field)
+    tree = cKDTree(middles)
+    for name, some in lines.items():
+        distances, nearest = tree.query(some.points)
+        lines[name] = some.within(distances <= reach[nearest])
+    return lines
 
 
 def land_cells(field: FlowField) -> Bools:
@@ -82,8 +92,14 @@ def globe_radius(field: FlowField) -> float | None:
         return None
     if surface.has_position.all() and len(tuple(surface.poles or ())) == 2:
         return None
-    p = surface.points
-    middles = (p[:-1, :-1] + p[1:, :-1] + p[:-1, 1:] + p[1:, 1:]) / 4
-    drawn = surface.cells | land_cells(field)
-    lowest = float(np.linalg.norm(middles[drawn], axis=-1).min(initial=EARTH_RADIUS))
+    lowest = float(np.linalg.norm(_cells(field)[0], axis=-1).min(initial=EARTH_RADIUS))
     return lowest - LOWER * EARTH_RADIUS
+
+
+def _cells(field: FlowField) -> tuple[Floats, Floats]:
+    """Middles (N, 3) of the cells that are drawn and of those on land, and half their diagonals."""
+    p = field.surface.points
+    shown = field.surface.cells | land_cells(field)
+    corners = np.stack([p[:-1, :-1], p[1:, 1:], p[1:, :-1], p[:-1, 1:]])[:, shown]
+    diagonals = np.linalg.norm(corners[::2] - corners[1::2], axis=-1)
+    return corners.mean(axis=0), np.asarray(diagonals.max(axis=0) / 2)
