@@ -110,6 +110,16 @@ class LookFlags:
             allow_leading_hyphen=True,
         ),
     ] = None
+    coastlines: Annotated[bool | None, _flag(Appearance, "coastlines")] = None
+    graticule: Annotated[bool | None, _flag(Appearance, "graticule")] = None
+    land: Annotated[
+        str,
+        _flag(
+            Appearance,
+            "land",
+            "Colour of the Earth where a field with a projection has no data, or none.",
+        ),
+    ] = Appearance.land
     background: Annotated[str, _flag(ViewOptions, "background")] = ViewOptions.background
     zoom: Annotated[float, _flag(ViewOptions, "zoom")] = ViewOptions.zoom
     focus: Annotated[
@@ -135,6 +145,9 @@ class LookFlags:
             "scalars": False if self.scalars == "none" else self.scalars,
             "cmap": self.cmap,
             "clim": None if self.clim is None else _numbers("--clim", self.clim, RANGE),
+            "coastlines": self.coastlines,
+            "graticule": self.graticule,
+            "land": None if self.land == "none" else self.land,
             "background": self.background,
             "zoom": self.zoom,
             "focus": None if self.focus is None else _numbers("--focus", self.focus, POINT),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from flowtex.earth.lines import MapLines, coastlines, graticule
-from flowtex.earth.projection import EARTH_RADIUS, GLOBE, Projection, ProjectionError
+from flowtex.earth.projection import EARTH_RADIUS, GLOBE, Projection, ProjectionError, place_text
 
 __all__ = [
     "EARTH_RADIUS",
@@ -13,4 +13,5 @@ __all__ = [
     "ProjectionError",
     "coastlines",
     "graticule",
+    "place_text",
 ]

@@ -17,7 +17,7 @@ from flowtex._util.array_types import Floats
 from flowtex._util.extras import import_extra
 from flowtex.errors import FieldError
 
-__all__ = ["EARTH_RADIUS", "GLOBE", "Projection", "ProjectionError"]
+__all__ = ["EARTH_RADIUS", "GLOBE", "Projection", "ProjectionError", "place_text"]
 
 #: Mean radius of the Earth in metres.
 EARTH_RADIUS = 6_371_000.0
@@ -35,6 +35,12 @@ NAMES = {
 }
 #: Steps in degrees by which derivatives are taken, and how near to a pole.
 STEP, NEAREST_POLE = 1e-4, 1e-2
+
+
+def place_text(lon: float, lat: float, decimals: int = 2) -> str:
+    """Return a place in words, such as ``"12.35° E, 45.20° N"``."""
+    parts = ((lon, "E", "W"), (lat, "N", "S"))
+    return ", ".join(f"{abs(x):.{decimals}f}° {low if x < 0 else high}" for x, high, low in parts)
 
 
 class ProjectionError(FieldError):
@@ -132,6 +138,21 @@ class Projection:
         """
         to_east, to_north = self._directions(lon, lat)
         return np.asarray(east[..., None] * to_east + north[..., None] * to_north)
+
+    def components(self, lon: Floats, lat: Floats, vectors: Floats) -> tuple[Floats, Floats]:
+        """Return the components eastward and northward of vectors (..., 3), in m/s.
+
+        They are the inverse of :meth:`vectors`.
+        """
+        to_east, to_north = self._directions(lon, lat)
+
+        def times(a: Floats, b: Floats) -> Floats:
+            return np.asarray(np.sum(a * b, axis=-1))
+
+        east, north = times(vectors, to_east), times(vectors, to_north)
+        ee, en, nn = times(to_east, to_east), times(to_east, to_north), times(to_north, to_north)
+        area = ee * nn - en * en
+        return (east * nn - north * en) / area, (north * ee - east * en) / area
 
     def _directions(self, lon: Floats, lat: Floats) -> tuple[Floats, Floats]:
         """Change of position for a metre eastward and a metre northward."""

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 from PIL import Image, ImageDraw, ImageFont
 
 from flowtex._util.array_types import Bytes
@@ -28,6 +29,7 @@ __all__ = [
     "annotate",
     "difference_text",
     "length_text",
+    "map_scale",
     "plates",
     "round_length",
     "time_text",
@@ -52,6 +54,7 @@ DIGITS = range(3, 9)
 UNIT_LENGTH, TIME_WIDTH = 8, 0.4
 #: Decimals of a time, and times, beyond which it is written with an exponent.
 MOST_DECIMALS, LONGEST_TIME = 6, 1e9
+METRES_PER_KM = 1000
 
 
 @dataclass(frozen=True)
@@ -169,7 +172,8 @@ class _Writer:
             return
         if abs(float(np.cross(*frame) @ camera.axes[2])) < 1 - 1e-6:  # seen aslant
             return
-        unit_px = self._size[1] / (2 * camera.height)
+        scale = map_scale(scene.field, camera.focal_point)
+        unit_px = scale * self._size[1] / (2 * camera.height)
         length = round_length(SCALE_BAR_WIDTH * self._size[0] / unit_px)
         unit, across = _printable(scene.field.length_unit), round(length * unit_px)
         if not across:
@@ -299,9 +303,25 @@ def difference_text(scene: Scene, changes: Mapping[str, Any]) -> str:
 
 
 def length_text(length: float, unit: str) -> str:
-    """Return a length with its unit, without the plural of a whole word, such as metres, for 1."""
+    """Return a length with its unit, without the plural of a whole word, such as metres, for 1.
+
+    Thousands of metres are kilometres.
+    """
+    if unit == "m" and length >= METRES_PER_KM:
+        length, unit = length / METRES_PER_KM, "km"
     plural = len(unit) > 4 and unit.endswith("s") and not unit.endswith(("ss", "ches"))
     return f"{length:.12g} {unit[:-1] if plural and length == 1 else unit}".strip()
+
+
+def map_scale(field: FlowField, position: ArrayLike) -> float:
+    """Return lengths of the map for one of the Earth, at a place of a field with a projection.
+
+    It is 1 for another field, and beside the map.
+    """
+    if field.projection is None:
+        return 1.0
+    scale = field.projection.scale(np.asarray(position, dtype=float))
+    return scale if scale > 0 and math.isfinite(scale) else 1.0
 
 
 def round_length(greatest: float) -> float:

@@ -5,6 +5,7 @@ What a page shows is a mapping with the names below, each of which may be missin
     file vectors plane block   which flow: names as a library has them, and a plane such as k=20
     time clock                 the field's own time; seconds of the streaming
     colour cmap clim           scalar, colour map, and the values at its ends
+    coastlines graticule       whether these lines of a map are drawn
     settings                   a mapping of settings by name
     camera                     as :meth:`flowtex.camera.Camera.to_dict` has it
     theme background split     as the page names them
@@ -27,6 +28,7 @@ from flowtex.app.controllers.appearance import (
     BACKGROUNDS,
     COLOUR_BY,
     COMPARISONS,
+    MAP_LINES,
     PLAIN,
     comparison,
 )
@@ -41,6 +43,8 @@ DEFAULTS: dict[str, Any] = {
     "clock": 0.0,
     "colour": "speed",
     "cmap": "viridis",
+    "coastlines": True,
+    "graticule": True,
     "theme": "dark",
     "background": BACKGROUNDS[0],
     "split": "nothing",
@@ -182,6 +186,14 @@ def _span_text(span: Any) -> str:
     return ",".join(repr(float(end)) for end in span)
 
 
+def _switch(text: str) -> bool:
+    return _one_of("on", "off")(text) == "on"
+
+
+def _switch_text(value: Any) -> str:
+    return "on" if value else "off"
+
+
 def _camera(text: str) -> dict[str, Any]:
     kind, _, rest = text.partition(",")
     numbers = _numbers(rest, CAMERA_NUMBERS)
@@ -212,6 +224,8 @@ _READ: dict[str, Callable[[str], Any]] = {
     "colour": _name,
     "cmap": _matching(CMAP, "the name of a colour map, such as viridis"),
     "clim": _span,
+    "coastlines": _switch,
+    "graticule": _switch,
     "theme": _one_of("dark", "light"),
     "background": _one_of(*BACKGROUNDS),
     "split": _comparison,
@@ -223,6 +237,8 @@ _WRITE: dict[str, Callable[[Any], str]] = {
     "clock": lambda value: repr(float(value)),
     "time_beside": lambda value: repr(float(value)),
     "clim": _span_text,
+    "coastlines": _switch_text,
+    "graticule": _switch_text,
     "camera": _camera_text,
 }
 
@@ -297,6 +313,7 @@ def _add_lines(state: Mapping[str, Any], different: Mapping[str, Any]) -> list[s
     appearance = {"scalars": False if colour == PLAIN else colour}
     if colour != PLAIN:
         appearance |= {name: state[name] for name in ("cmap", "clim") if state.get(name)}
+    appearance |= {name: False for name in MAP_LINES if state.get(name) is False}
     if "scalars" in different:  # with a range of its own
         appearance = {**appearance, "scalars": different["scalars"]}
         appearance.pop("clim", None)
