@@ -145,7 +145,7 @@ export class EarthLayer {
     const { header, graphics } = this;
     const { earth, shaders, geometry } = header;
     if (!earth?.land) return;
-    const globe = earth.radius > 0;
+    const globe = earth.map === null;
     if (!(globe ? earth.below : this.parts.has("land"))) return;
     const gl = graphics.context;
     const defines = globe ? ["FLOWTEX_GLOBE"] : [];
@@ -176,8 +176,9 @@ export class EarthLayer {
 
   /** Plane of what is seen of a globe, which lies where p . (x, y, z, 1) >= 0; null of a flat map. */
   private horizon(camera: Camera): number[] | null {
-    const radius = this.header.earth?.radius ?? 0;
-    if (!radius) return null;
+    const { earth } = this.header;
+    if (!earth || earth.map) return null;
+    const { radius } = earth;
     const [x, y, z, w] = camera.eye;
     const away = w * Math.hypot(x, y, z);
     return [...unit([x, y, z]), away ? -(radius ** 2) / away : 0];

@@ -7,6 +7,8 @@ const DEGREES = 180 / Math.PI;
 /** Decimals of a degree: at least, and at most, which is some 10 m. */
 const FEWEST_DECIMALS = 2;
 const MOST_DECIMALS = 4;
+/** Share of a map's width over which directions are taken. */
+const NEAR = 1e-4;
 const DAY_S = 86_400;
 
 /** Weights of four places in a row, at 0 to 3, at a place between them: those of a cubic. */
@@ -48,21 +50,36 @@ export function lonLatOf(
   return lonLat.every(Number.isFinite) ? [lonLat[0] * DEGREES, lonLat[1] * DEGREES] : null;
 }
 
-/** Components of a vector on a globe, to the east and to the north. */
-export function eastNorth([x, y, z]: readonly number[], vector: readonly number[]): [number, number] {
+/** Components on the Earth, to the east and to the north, of a velocity at a position. */
+export function eastNorth(
+  earth: Earth,
+  position: readonly number[],
+  velocity: readonly number[],
+  places: Part | undefined,
+): [number, number] {
+  let [from, change] = [position, velocity];
+  if (earth.map && places) {
+    // What moves on the map moves on the Earth: the change of the way there, in a short time.
+    const { map, radius } = earth;
+    const time = (NEAR * (map[2] - map[0])) / (Math.hypot(...velocity) || 1);
+    const [before, after] = [-time, time].map((t) =>
+      wayOn(map, places, position.map((p, k) => p + t * velocity[k])),
+    );
+    from = wayOn(map, places, position);
+    change = after.map((way, k) => (radius * (way - before[k])) / (2 * time));
+  }
+  const [x, y, z] = from;
   const [across, away] = [Math.hypot(x, y) || 1, Math.hypot(x, y, z) || 1];
-  const east = (x * vector[1] - y * vector[0]) / across;
-  const inward = (x * vector[0] + y * vector[1]) / across;
-  return [east, (across * vector[2] - z * inward) / away];
+  const east = (x * change[1] - y * change[0]) / across;
+  const outward = (x * change[0] + y * change[1]) / across;
+  return [east, (across * change[2] - z * outward) / away];
 }
 
 /** Such as 12.35° E, 45.20° N, with as many decimals as tell places apart that are so many degrees apart. */
 export function lonLatText([lon, lat]: [number, number], apart: number): string {
   const decimals = clamp(Math.ceil(-Math.log10(apart)), FEWEST_DECIMALS, MOST_DECIMALS);
   const told = (degrees: number, [before, after]: string) => {
-    const size = Math.abs(degrees).toFixed(decimals);
-    const isEdge = Number(size) === 0 || Number(size) === 180;
-    return `${size}°${isEdge ? "" : ` ${degrees < 0 ? before : after}`}`;
+    return `${Math.abs(degrees).toFixed(decimals)}° ${degrees < 0 ? before : after}`;
   };
   return `${told(lon, "WE")}, ${told(lat, "SN")}`;
 }

@@ -155,15 +155,21 @@ export class PointCard {
   private tell(point: Point, { velocity }: PointPath, header: Header, camera: Camera): void {
     const { label, unit } = header.speed;
     const size = Math.hypot(...velocity);
-    const isGlobe = Boolean(header.earth?.radius);
-    const shown = isGlobe ? eastNorth(point.position, velocity) : velocity;
-    const text = vectorText(shown, size, VELOCITY_DIGITS, isGlobe || liesAcross(header.geometry));
-    const vectorName = label.replace("speed", "velocity");
-    const lines = new Map([
-      ["position", placeText(point.position, header, this.host.parts, camera, true)],
-      [isGlobe ? `${vectorName} east, north` : vectorName, withUnit(text, unit)],
-      [label, withUnit(numberText(size, VELOCITY_DIGITS), unit)],
-    ]);
+    const lines = new Map<string, string>();
+    const { earth } = header;
+    const { parts } = this.host;
+    const where = placeText(point.position, header, parts, camera, true);
+    if (earth && lonLatOf(earth, point.position, parts.get("lonlat"))) {
+      const [east, north] = eastNorth(earth, point.position, velocity, parts.get("lonlat"));
+      lines.set("place", where);
+      lines.set("eastward", withUnit(numberText(east, VELOCITY_DIGITS), unit));
+      lines.set("northward", withUnit(numberText(north, VELOCITY_DIGITS), unit));
+    } else {
+      const text = vectorText(velocity, size, VELOCITY_DIGITS, liesAcross(header.geometry));
+      lines.set("position", where);
+      lines.set(label.replace("speed", "velocity"), withUnit(text, unit));
+    }
+    lines.set(label, withUnit(numberText(size, VELOCITY_DIGITS), unit));
     for (const [name, value] of Object.entries(point.values)) {
       const named = header.scalars.choices.find((each) => each.name === name) ?? header.scalars;
       lines.set(named.label, withUnit(numberText(value), named.unit));

@@ -107,14 +107,17 @@ export interface Stroke {
 
 /** The Earth below a flow; which of the lines are shown, and in which colour land is. */
 export interface Earth extends Record<EarthLines, boolean> {
-  /** Of a globe around the origin; 0 for a flat map. */
+  /** In metres; a globe lies around the origin. */
   radius: number;
   /** Whether there is a globe below the flow, which does not cover it. */
   below: boolean;
   /** The box in the surface's own frame that the lines' steps divide. */
   low: number[];
   size: number[];
-  /** Least x and y of a flat map and the greatest, between which the part "lonlat" is spread. */
+  /**
+   * Least x and y of a flat map and the greatest, between which the part "lonlat" is spread; null for a
+   * globe.
+   */
   map: number[] | null;
   land: number[] | null;
   /** Metres between points of lines, the greatest first, and pixels of the page that they may have. */

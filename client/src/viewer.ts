@@ -275,7 +275,7 @@ export class Viewer implements User {
     const state = first
       ? widened(geometry, limits, first, nodes, aspect)
       : fitted(geometry, limits, nodes, aspect);
-    const globe = header.earth?.radius ?? 0;
+    const globe = header.earth && !header.earth.map ? header.earth.radius : 0;
     this.camera = new Camera(state, limits, geometry.planar, aspect, globe);
     this.camera.pick = (x, y) =>
       (this.point(x, y)?.position as Vector | undefined) ?? this.ground(x, y);

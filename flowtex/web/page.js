@@ -289,16 +289,16 @@ drawn.groups,local)){for(let n=0;n<PIECE_ENDS;n+=1)gl.vertexAttribPointer(n,3,gl
 gl.drawArraysInstanced(gl.TRIANGLE_STRIP,0,4,count)}take()}gl.bindVertexArray(null),gl.blendEquation(gl.FUNC_ADD),gl.disable(
 gl.BLEND)}get isReady(){let{lineVertex,lineFragment}=this.header.shaders;return!this.lines.length||this.graphics.programs.
 get(lineVertex,lineFragment).ready}drawGround({camera,anchor}){let{header,graphics}=this,{earth,shaders,geometry}=header;
-if(!earth?.land)return;let globe=earth.radius>0;if(!(globe?earth.below:this.parts.has("land")))return;let gl=graphics.context,
-defines=globe?["FLOWTEX_GLOBE"]:[],program=graphics.programs.get(shaders.groundVertex,shaders.groundFragment,...defines);
+if(!earth?.land)return;let globe=earth.map===null;if(!(globe?earth.below:this.parts.has("land")))return;let gl=graphics.
+context,defines=globe?["FLOWTEX_GLOBE"]:[],program=graphics.programs.get(shaders.groundVertex,shaders.groundFragment,...defines);
 if(program.ready){if(graphics.programs.use(program,{u_matrix:projection(geometry,camera,anchor),u_colour:earth.land,u_ground:header.
 background,u_lit:header.lighting,u_toEye:toFrame(geometry.frame,scale2(camera.axes[2],-1)),...globe?this.disc(camera,earth.
 radius,anchor):{}}),globe){let drawn=this.take("disc",anchor,()=>this.emptyArray());gl.bindVertexArray(drawn.array),gl.drawArrays(
 gl.TRIANGLE_STRIP,0,4)}else{let drawn=this.take("land",anchor,()=>this.landOf(anchor));gl.bindVertexArray(drawn.array),gl.
 depthMask(!1),gl.drawElements(gl.TRIANGLES,drawn.count,gl.UNSIGNED_INT,0),gl.depthMask(!0)}gl.bindVertexArray(null)}}horizon(camera){
-let radius=this.header.earth?.radius??0;if(!radius)return null;let[x,y,z,w]=camera.eye,away=w*Math.hypot(x,y,z);return[...unit(
-[x,y,z]),away?-(radius**2)/away:0]}localPlane(plane,anchor){let{frame,center}=this.header.geometry,normal=plane.slice(0,
-3),local=toFrame(frame,normal);return[...local,dot2(local,anchor)+dot2(normal,center)+plane[3]]}disc(camera,radius,anchor){
+let{earth}=this.header;if(!earth||earth.map)return null;let{radius}=earth,[x,y,z,w]=camera.eye,away=w*Math.hypot(x,y,z);
+return[...unit([x,y,z]),away?-(radius**2)/away:0]}localPlane(plane,anchor){let{frame,center}=this.header.geometry,normal=plane.
+slice(0,3),local=toFrame(frame,normal);return[...local,dot2(local,anchor)+dot2(normal,center)+plane[3]]}disc(camera,radius,anchor){
 let{frame,center}=this.header.geometry,[a,b,c,offset]=this.horizon(camera)??[0,0,1,0],toEye=[a,b,c],size=Math.sqrt(Math.
 max(radius**2-offset**2,0)),aside=unit(cross2(camera.axes[1],toEye)),upward=cross2(toEye,aside),middle=add(scale2(toEye,
 -offset),center,-1);return{u_middle:subtract2(toFrame(frame,middle),anchor),u_aside:scale2(toFrame(frame,aside),size),u_upward:scale2(
@@ -385,21 +385,23 @@ element.hidden||!map)return;let ramp=dom("div",{class:"ramp"},[this.mark]);ramp.
 STOPS2),this.mark.hidden=!0;let ends=legendLimits(header.scalars).map(value=>dom("span",{},[numberText(value)]));this.element.
 replaceChildren(dom("div",{class:"name"},[unit2?`${label} (${unit2})`:label]),ramp,dom("div",{class:"ends"},ends))}point(header,value=NaN){
 this.mark.hidden=!header||!Number.isFinite(value),!(!header||this.mark.hidden)&&(this.mark.style.left=`${100*clamp(shareOf(
-header.scalars)(value),0,1)}%`)}};var DEGREES=180/Math.PI,FEWEST_DECIMALS=2,MOST_DECIMALS=4,DAY_S=86400;function weights(t){let[a,b,c]=[t-1,t-2,t-3];return[
--(a*b*c)/6,t*b*c/2,-(t*a*c)/2,t*a*b/6]}function around(share,count){let at=share*(count-1),first=clamp(Math.floor(at)-1,
-0,count-4);return[first,weights(at-first)]}function wayOn([x0,y0,x1,y1],{data,shape},position){let[rows,columns]=shape,[
-i,across]=around((position[0]-x0)/(x1-x0),columns),[j,upward]=around((position[1]-y0)/(y1-y0),rows),way=[0,0,0];return upward.
+header.scalars)(value),0,1)}%`)}};var DEGREES=180/Math.PI,FEWEST_DECIMALS=2,MOST_DECIMALS=4,NEAR=1e-4,DAY_S=86400;function weights(t){let[a,b,c]=[t-1,t-2,
+t-3];return[-(a*b*c)/6,t*b*c/2,-(t*a*c)/2,t*a*b/6]}function around(share,count){let at=share*(count-1),first=clamp(Math.
+floor(at)-1,0,count-4);return[first,weights(at-first)]}function wayOn([x0,y0,x1,y1],{data,shape},position){let[rows,columns]=shape,
+[i,across]=around((position[0]-x0)/(x1-x0),columns),[j,upward]=around((position[1]-y0)/(y1-y0),rows),way=[0,0,0];return upward.
 forEach((v2,n)=>{across.forEach((u,m)=>{for(let k=0;k<3;k+=1)way[k]+=u*v2*data[3*((j+n)*columns+i+m)+k]})}),way}function lonLatOf(earth,position,places){
 if(earth.map&&!places)return null;let[x,y,z]=earth.map&&places?wayOn(earth.map,places,position):position,lonLat=[Math.atan2(
-y,x),Math.atan2(z,Math.hypot(x,y))];return lonLat.every(Number.isFinite)?[lonLat[0]*DEGREES,lonLat[1]*DEGREES]:null}function eastNorth([
-x,y,z],vector){let[across,away]=[Math.hypot(x,y)||1,Math.hypot(x,y,z)||1],east=(x*vector[1]-y*vector[0])/across,inward=(x*
-vector[0]+y*vector[1])/across;return[east,(across*vector[2]-z*inward)/away]}function lonLatText([lon,lat],apart){let decimals=clamp(
-Math.ceil(-Math.log10(apart)),FEWEST_DECIMALS,MOST_DECIMALS),told=(degrees,[before,after])=>{let size=Math.abs(degrees).
-toFixed(decimals),isEdge=Number(size)===0||Number(size)===180;return`${size}°${isEdge?"":` ${degrees<0?before:after}`}`};
-return`${told(lon,"WE")}, ${told(lat,"SN")}`}function dateText({start,dates,step},times2,time){if(start===null){if(!dates.
-length)return null;let apart=times2.map(each=>Math.abs(each-time));return dates[apart.indexOf(Math.min(...apart))]}let first=Date.
-parse(`${start}Z`),isMidnight=first%(1e3*DAY_S)===0,text=new Date(first+1e3*time).toISOString();return isMidnight&&step%
-DAY_S===0&&time%DAY_S===0?text.slice(0,10):text.slice(0,step>=60?16:19).replace("T"," ")}var HEAD={apart:90,length:14,half:5},POINT_RADIUS=6,FREE_RADIUS=20,textOf=line=>line.map(place=>place.map(v2=>v2.toFixed(
+y,x),Math.atan2(z,Math.hypot(x,y))];return lonLat.every(Number.isFinite)?[lonLat[0]*DEGREES,lonLat[1]*DEGREES]:null}function eastNorth(earth,position,velocity,places){
+let[from,change]=[position,velocity];if(earth.map&&places){let{map,radius}=earth,time=NEAR*(map[2]-map[0])/(Math.hypot(...velocity)||
+1),[before,after]=[-time,time].map(t=>wayOn(map,places,position.map((p,k)=>p+t*velocity[k])));from=wayOn(map,places,position),
+change=after.map((way,k)=>radius*(way-before[k])/(2*time))}let[x,y,z]=from,[across,away]=[Math.hypot(x,y)||1,Math.hypot(
+x,y,z)||1],east=(x*change[1]-y*change[0])/across,outward=(x*change[0]+y*change[1])/across;return[east,(across*change[2]-
+z*outward)/away]}function lonLatText([lon,lat],apart){let decimals=clamp(Math.ceil(-Math.log10(apart)),FEWEST_DECIMALS,MOST_DECIMALS),
+told=(degrees,[before,after])=>`${Math.abs(degrees).toFixed(decimals)}° ${degrees<0?before:after}`;return`${told(lon,"W\
+E")}, ${told(lat,"SN")}`}function dateText({start,dates,step},times2,time){if(start===null){if(!dates.length)return null;
+let apart=times2.map(each=>Math.abs(each-time));return dates[apart.indexOf(Math.min(...apart))]}let first=Date.parse(`${start}\
+Z`),isMidnight=first%(1e3*DAY_S)===0,text=new Date(first+1e3*time).toISOString();return isMidnight&&step%DAY_S===0&&time%
+DAY_S===0?text.slice(0,10):text.slice(0,step>=60?16:19).replace("T"," ")}var HEAD={apart:90,length:14,half:5},POINT_RADIUS=6,FREE_RADIUS=20,textOf=line=>line.map(place=>place.map(v2=>v2.toFixed(
 1)).join()).join(" ");function arrowHeads(line,apart=HEAD.apart){let heads=[],due=0;for(let n=line.length-1;n>0;n-=1){let[
 [ax,ay],[bx,by]]=[line[n-1],line[n]],size=Math.hypot(bx-ax,by-ay);if(!size)continue;let[ux,uy]=[(bx-ax)/size,(by-ay)/size];
 for(;due<size;due+=apart){let[x,y]=[bx-due*ux,by-due*uy],[left,low]=[x-HEAD.length*ux,y-HEAD.length*uy],[wide,tall]=[-HEAD.
@@ -524,19 +526,20 @@ let{chosen}=this,{options,camera,shown,header,tiles,settings,root,together}=this
 scene;if(!scene||scene.missing(shown[0],shown[1]).length)return;let position=point.position,path=pathThrough({scene,moment:shown,
 place,position},settings,camera,root.clientHeight);this.tell({...point,values:valuesAt(scene,shown,place)},path,header,camera);
 for(let{card}of together)card.drawn={path,point:position},card.draw()}tell(point,{velocity},header,camera){let{label,unit:unit2}=header.
-speed,size=Math.hypot(...velocity),isGlobe=!!header.earth?.radius,shown=isGlobe?eastNorth(point.position,velocity):velocity,
-text=vectorText(shown,size,VELOCITY_DIGITS,isGlobe||liesAcross(header.geometry)),vectorName=label.replace("speed","veloc\
-ity"),lines=new Map([["position",placeText(point.position,header,this.host.parts,camera,!0)],[isGlobe?`${vectorName} eas\
-t, north`:vectorName,withUnit(text,unit2)],[label,withUnit(numberText(size,VELOCITY_DIGITS),unit2)]]);for(let[name,value]of Object.
-entries(point.values)){let named=header.scalars.choices.find(each=>each.name===name)??header.scalars;lines.set(named.label,
-withUnit(numberText(value),named.unit))}this.list.replaceChildren(...[...lines].flatMap(([word,value])=>[dom("dt",{},[word]),
-dom("dd",{},[value])])),this.element.hidden=!1}draw(){let{drawn}=this,{camera,root}=this.host;if(!drawn||!camera)return;
-let{clientWidth:width,clientHeight:height}=root,placeOf=point2=>{let place=camera.project(point2);return place&&[(place[0]+
-1)/2*width,(1-place[1])/2*height]},linesOf2=points=>{let lines=[[]];for(let place of points.map(placeOf))place?lines[lines.
-length-1].push(place):lines.push([]);return lines.filter(line=>line.length>1)},{path,sampled,directed}=drawn.path,point=placeOf(
-drawn.point),shapes=pathShapes({path:linesOf2(path),sampled:linesOf2(sampled),point,directed});this.overlay.replaceChildren(
-...shapes.map(([tag,attributes])=>{let shape=document.createElementNS(SVG,tag);for(let[name,value]of Object.entries(attributes))
-shape.setAttribute(name,`${value}`);return shape}))}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */
+speed,size=Math.hypot(...velocity),lines=new Map,{earth}=header,{parts}=this.host,where=placeText(point.position,header,
+parts,camera,!0);if(earth&&lonLatOf(earth,point.position,parts.get("lonlat"))){let[east,north]=eastNorth(earth,point.position,
+velocity,parts.get("lonlat"));lines.set("place",where),lines.set("eastward",withUnit(numberText(east,VELOCITY_DIGITS),unit2)),
+lines.set("northward",withUnit(numberText(north,VELOCITY_DIGITS),unit2))}else{let text=vectorText(velocity,size,VELOCITY_DIGITS,
+liesAcross(header.geometry));lines.set("position",where),lines.set(label.replace("speed","velocity"),withUnit(text,unit2))}
+lines.set(label,withUnit(numberText(size,VELOCITY_DIGITS),unit2));for(let[name,value]of Object.entries(point.values)){let named=header.
+scalars.choices.find(each=>each.name===name)??header.scalars;lines.set(named.label,withUnit(numberText(value),named.unit))}
+this.list.replaceChildren(...[...lines].flatMap(([word,value])=>[dom("dt",{},[word]),dom("dd",{},[value])])),this.element.
+hidden=!1}draw(){let{drawn}=this,{camera,root}=this.host;if(!drawn||!camera)return;let{clientWidth:width,clientHeight:height}=root,
+placeOf=point2=>{let place=camera.project(point2);return place&&[(place[0]+1)/2*width,(1-place[1])/2*height]},linesOf2=points=>{
+let lines=[[]];for(let place of points.map(placeOf))place?lines[lines.length-1].push(place):lines.push([]);return lines.
+filter(line=>line.length>1)},{path,sampled,directed}=drawn.path,point=placeOf(drawn.point),shapes=pathShapes({path:linesOf2(
+path),sampled:linesOf2(sampled),point,directed});this.overlay.replaceChildren(...shapes.map(([tag,attributes])=>{let shape=document.
+createElementNS(SVG,tag);for(let[name,value]of Object.entries(attributes))shape.setAttribute(name,`${value}`);return shape}))}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */
 :host {
   --ink: var(--jp-ui-font-color1, #1b2430);
   --quiet: var(--jp-ui-font-color2, #566373);
@@ -1138,22 +1141,22 @@ state):null}setCamera(state){if(!this.camera)this.firstCamera=copyOf(state);else
 this.camera.state=copyOf(state)}this.change(!0)}reportCamera(){this.holdDraft(),this.change(!0),this.camera&&this.options.
 onCamera?.(copyOf(this.camera.state))}reset(){this.camera&&(this.place(),this.reportCamera())}place(){let{header,firstCamera:first,
 aspect}=this,nodes=this.parts.get("position")?.data;if(!header||!nodes)return;let{geometry,limits}=header,state=first?widened(
-geometry,limits,first,nodes,aspect):fitted(geometry,limits,nodes,aspect),globe=header.earth?.radius??0;this.camera=new Camera(
-state,limits,geometry.planar,aspect,globe),this.camera.pick=(x,y)=>this.point(x,y)?.position??this.ground(x,y),(!first||
-!isEqual(first,state))&&this.options.onCamera?.(copyOf(state))}get aspect(){return Math.max(this.root.clientWidth,1)/Math.
-max(this.root.clientHeight,1)}get playing(){return this.player.playing}setTime(time){this.player.seek(time),this.panel.tick(),
-this.change()}scrub(share){let{player,options}=this,{first,last}=player.range(this.settings),value=first+share*(last-first);
-this.holdDraft(),player.varies?(this.setTime(value),options.onTime?.(player.time)):(this.setClock(value),options.onClock?.(
-player.clock))}setClock(clock){this.player.clock=clock,this.panel.tick(),this.change()}play(){if(this.options.follows)return this.
-options.follows.play();this.playing||!this.header||(!this.player.varies&&this.settings.motion==="off"&&this.choose("moti\
-on","speed"),this.player.start(),this.panel.update(),this.request(),this.options.onPlaying?.(!0))}pause(){if(this.options.
-follows)return this.options.follows.pause();this.playing&&(this.player.playing=!1,this.panel.update(),this.change(),this.
-options.onPlaying?.(!1))}togglePlaying(){let leader=this.options.follows??this;leader.playing?leader.pause():leader.play()}holdDraft(){
-this.busyUntil=performance.now()+STILL_MS}get isBusy(){return this.playing||performance.now()<this.busyUntil}change(cameraOnly=!1){
-this.renderer.restart(cameraOnly),this.card.draw(),this.setSharp(!1),this.request()}refine(){this.renderer.refine(),this.
-setSharp(!1),this.request()}arrange(shown){let scenes=this.tiles?.arrange(shown)??[];return this.root.dataset.tiles=String(
-this.tiles?.missing.length??0),scenes}draw(){this.frame(performance.now(),performance.now()+FRAME_MS)}setSharp(sharp){sharp!==
-this.sharp&&(this.sharp=sharp,this.root.dataset.sharp=String(sharp),sharp&&(this.card.update(),this.options.onFrame?.()))}request(){
+geometry,limits,first,nodes,aspect):fitted(geometry,limits,nodes,aspect),globe=header.earth&&!header.earth.map?header.earth.
+radius:0;this.camera=new Camera(state,limits,geometry.planar,aspect,globe),this.camera.pick=(x,y)=>this.point(x,y)?.position??
+this.ground(x,y),(!first||!isEqual(first,state))&&this.options.onCamera?.(copyOf(state))}get aspect(){return Math.max(this.
+root.clientWidth,1)/Math.max(this.root.clientHeight,1)}get playing(){return this.player.playing}setTime(time){this.player.
+seek(time),this.panel.tick(),this.change()}scrub(share){let{player,options}=this,{first,last}=player.range(this.settings),
+value=first+share*(last-first);this.holdDraft(),player.varies?(this.setTime(value),options.onTime?.(player.time)):(this.
+setClock(value),options.onClock?.(player.clock))}setClock(clock){this.player.clock=clock,this.panel.tick(),this.change()}play(){
+if(this.options.follows)return this.options.follows.play();this.playing||!this.header||(!this.player.varies&&this.settings.
+motion==="off"&&this.choose("motion","speed"),this.player.start(),this.panel.update(),this.request(),this.options.onPlaying?.(
+!0))}pause(){if(this.options.follows)return this.options.follows.pause();this.playing&&(this.player.playing=!1,this.panel.
+update(),this.change(),this.options.onPlaying?.(!1))}togglePlaying(){let leader=this.options.follows??this;leader.playing?
+leader.pause():leader.play()}holdDraft(){this.busyUntil=performance.now()+STILL_MS}get isBusy(){return this.playing||performance.
+now()<this.busyUntil}change(cameraOnly=!1){this.renderer.restart(cameraOnly),this.card.draw(),this.setSharp(!1),this.request()}refine(){
+this.renderer.refine(),this.setSharp(!1),this.request()}arrange(shown){let scenes=this.tiles?.arrange(shown)??[];return this.
+root.dataset.tiles=String(this.tiles?.missing.length??0),scenes}draw(){this.frame(performance.now(),performance.now()+FRAME_MS)}setSharp(sharp){
+sharp!==this.sharp&&(this.sharp=sharp,this.root.dataset.sharp=String(sharp),sharp&&(this.card.update(),this.options.onFrame?.()))}request(){
 !this.lifetime.isOver&&this.isVisible&&this.graphics.request(this)}resize(){let ratio=Math.max(window.devicePixelRatio||
 1,.1),width=Math.max(Math.round(this.root.clientWidth*ratio),1),height=Math.max(Math.round(this.root.clientHeight*ratio),
 1);width===this.canvas.width&&height===this.canvas.height||(this.renderer.resize(width,height),this.camera&&(this.camera.

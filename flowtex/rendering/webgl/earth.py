@@ -29,8 +29,9 @@ __all__ = ["dates_of", "earth_header", "earth_parts"]
 
 #: Greatest number of a place on a line, of those that a side of the lines' box is divided into.
 LINE_STEPS = 65535
-#: Places along the longer side of a map at which longitude and latitude are handed over.
-LONLAT_PLACES = 65
+#: Places along the longer side of a map at which longitude and latitude are handed over, at most,
+#: their least distance in metres, and their fewest along a side: a cubic goes through so many.
+LONLAT_PLACES, NEAREST_PLACES_M, FEWEST_PLACES = 65, 5e4, 4
 #: Weights by which four places in a row go on to the next, and lines of places that do so.
 ONWARD, MOST_ONWARD = (4.0, -6.0, 4.0, -1.0), 3
 
@@ -51,7 +52,7 @@ def earth_header(geometry: SurfaceGeometry, *, has_land: bool) -> Header | None:
         return None
     is_globe, lines = field.projection.is_globe, _lines_of(geometry, has_land=has_land)
     return {
-        "radius": EARTH_RADIUS if is_globe else 0.0,
+        "radius": EARTH_RADIUS,
         "below": globe_radius(field) is not None,
         "low": lines.low.tolist(),
         "size": lines.size.tolist(),
@@ -138,8 +139,8 @@ def _lonlat(projection: Projection, box: bytes) -> Floats32:
     The places are spread evenly over the box. Beside the map the places around it are continued.
     """
     low, high = np.frombuffer(box).reshape(2, 3)[:, :2]
-    share = (high - low) / (high - low).max()
-    counts = np.maximum(np.rint(share * (LONLAT_PLACES - 1)).astype(int) + 1, 4)
+    apart = max(float((high - low).max()) / (LONLAT_PLACES - 1), NEAREST_PLACES_M)
+    counts = np.maximum(np.rint((high - low) / apart).astype(int) + 1, FEWEST_PLACES)
     x, y = (np.linspace(low[k], high[k], counts[k]) for k in range(2))
     points = np.stack([*np.meshgrid(x, y), np.zeros((counts[1], counts[0]))], axis=-1)
     a, b = np.radians(projection.lonlat(points))
