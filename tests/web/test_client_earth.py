@@ -193,6 +193,7 @@ def test_the_readout_tells_longitude_and_latitude(client: ClientPage) -> None:
             }""",
             number,
         )
+        assert field.projection is not None
         lon, lat = field.projection.lonlat(np.array(point))
         assert text == (
             f"{abs(lon):.2f}° {'W' if lon < 0 else 'E'}, {abs(lat):.2f}° {'S' if lat < 0 else 'N'}"

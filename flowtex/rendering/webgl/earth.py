@@ -155,6 +155,7 @@ def _lonlat(projection: Projection, box: bytes) -> Floats32:
 def _continue(ways: Floats, axis: int, side: int) -> None:
     """Fill places that are not known beside four in a row that are."""
     lines = np.moveaxis(ways, axis, 0)[::side]
-    onward = sum(w * lines[3 - n : len(lines) - 1 - n] for n, w in enumerate(ONWARD))
+    before = [lines[3 - n : len(lines) - 1 - n] for n in range(len(ONWARD))]
+    onward = np.tensordot(ONWARD, before, axes=1)
     empty = np.isnan(lines[4:]) & np.isfinite(onward)
     lines[4:][empty] = onward[empty]
