@@ -53,6 +53,11 @@ class MapLines:
     points: Floats
     starts: Indices
 
+    def and_(self, other: MapLines) -> MapLines:
+        """Return these lines and others."""
+        starts = np.append(self.starts[:-1], other.starts + len(self.points))
+        return MapLines(np.concatenate([self.points, other.points]), starts)
+
     def within(self, inside: Bools) -> MapLines:
         """Return the pieces that have one end among some of the points, (N,), at least."""
         first = np.delete(np.arange(len(self.points)), self.starts[1:] - 1)

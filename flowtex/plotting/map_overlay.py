@@ -149,7 +149,8 @@ class MapOverlay:
                 )
             actor = self._add(mesh, nearer)
             actor.prop.color, actor.prop.lighting = color, is_lit
-            actor.prop.ambient, actor.prop.diffuse = AMBIENT_LIGHT, DIFFUSE_LIGHT
+            if is_lit:
+                actor.prop.ambient, actor.prop.diffuse = AMBIENT_LIGHT, DIFFUSE_LIGHT
 
     def _add_lines(self, forms: tuple[tuple[float, pv.PolyData], ...], width: float) -> pv.Actor:
         actor = self._add(forms[-1][1], LINES_NEARER, LINE_REPLACEMENTS)

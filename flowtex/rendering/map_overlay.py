@@ -56,22 +56,23 @@ def map_box(field: FlowField) -> Floats:
 def map_lines(field: FlowField, *, has_globe: bool) -> dict[str, MapLines]:
     """Return the coasts and the graticule of a field that has a projection, by their options.
 
-    They are those of all of the Earth where there is a globe below the field, and else what of
-    them lies on its cells and on land.
+    They end where its cells and land do. Where there is a globe below the field, coasts and wide
+    meshes of the graticule are on all of it.
     """
-    if field.projection is None:
+    projection, box = field.projection, map_box(field)
+    if projection is None:
         return {}
-    box = None if has_globe else map_box(field)
-    makers = {"coastlines": coastlines, "graticule": graticule}
-    lines = {name: make(field.projection, box) for name, make in makers.items()}
-    if has_globe:
-        return lines
     middles, reach = _cells(field)
     tree = cKDTree(middles)
-    for name, some in lines.items():
-        distances, nearest = tree.query(some.points)
-        lines[name] = some.within(distances <= reach[nearest])
-    return lines
+
+    def there(lines: MapLines) -> MapLines:
+        distances, nearest = tree.query(lines.points)
+        return lines.within(distances <= reach[nearest])
+
+    meshes = there(graticule(projection, box))
+    if not has_globe:
+        return {"coastlines": there(coastlines(projection, box)), "graticule": meshes}
+    return {"coastlines": coastlines(projection), "graticule": graticule(projection).and_(meshes)}
 
 
 def land_cells(field: FlowField) -> Bools:
