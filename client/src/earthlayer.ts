@@ -5,7 +5,7 @@ import type { Graphics } from "./context.ts";
 import { linePoints, linesOf, pieceGroups, thinned, visibleRuns, type PieceGroup } from "./maplines.ts";
 import { positions } from "./mesh.ts";
 import { EARTH_LINES, type EarthLines, type Header, type Part } from "./protocol.ts";
-import { add, cross, dot, fromFrame, length, scale, subtract, toFrame, unit, type Vector } from "./vectors.ts";
+import { add, clamp, cross, dot, fromFrame, length, scale, subtract, toFrame, unit, type Vector } from "./vectors.ts";
 
 const POINT_BYTES = 12;
 const PIECE_ENDS = 2;
@@ -106,6 +106,8 @@ export class EarthLayer {
     const planes = [...camera.planes, ...(horizon ? [horizon] : [])];
     const local = planes.map((plane) => this.localPlane(plane, anchor));
     const pixel = (2 * camera.height * ratio) / height;
+    // Lines of a large view are wider, not by as much as it is larger.
+    const wider = clamp(Math.sqrt(height / ratio / earth.usualHeight), ...earth.widthRange);
     const most = earth.spacingPixels * pixel;
     const spacing = earth.spacings.find((each) => each <= most) ?? 0;
     for (const { option, color, opacity, width: thickness } of earth.strokes) {
@@ -115,7 +117,7 @@ export class EarthLayer {
       graphics.programs.use(program, {
         u_matrix: projection(header.geometry, camera, anchor),
         u_picture: [width, height],
-        u_width: thickness * ratio,
+        u_width: thickness * wider * ratio,
         u_lineColour: [...color, opacity],
         u_horizon: horizon ? local[local.length - 1] : [0, 0, 0, 1],
       });

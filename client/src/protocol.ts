@@ -120,6 +120,9 @@ export interface Earth extends Record<EarthLines, boolean> {
    */
   map: number[] | null;
   land: number[] | null;
+  /** Height of a view in which lines have their width, and how that changes with it at most. */
+  usualHeight: number;
+  widthRange: [number, number];
   /** Metres between points of lines, the greatest first, and pixels of the page that they may have. */
   spacings: number[];
   spacingPixels: number;

@@ -21,6 +21,8 @@ from flowtex.rendering.map_overlay import (
     SPACING_PX,
     SPACINGS,
     STROKES,
+    USUAL_HEIGHT_PX,
+    WIDTH_RANGE,
     globe_radius,
     land_cells,
     map_lines,
@@ -195,9 +197,11 @@ class MapOverlay:
             self._include_globe(renderer.GetActiveCamera())
         nearer = _depth_of_share(renderer.GetActiveCamera())
         viewport = [*map(float, renderer.GetOrigin()), *map(float, renderer.GetSize())]
-        pixel = self._surface.view.density
-        if self._surface.full_height:
-            pixel *= renderer.GetSize()[1] / self._surface.full_height
+        height, density = renderer.GetSize()[1], self._surface.view.density
+        full_height = self._surface.full_height or height
+        # Lines of a large picture are wider, not by as much as it is larger.
+        width = np.clip(np.sqrt(full_height / density / USUAL_HEIGHT_PX), *WIDTH_RANGE)
+        pixel = float(width) * density * height / full_height
         finest = SPACING_PX * self._surface.view.pixel * self._surface.view.density
         for part in self._parts:
             part.actor.SetVisibility(is_visible)

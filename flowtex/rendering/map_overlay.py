@@ -16,6 +16,8 @@ __all__ = [
     "SPACINGS",
     "SPACING_PX",
     "STROKES",
+    "USUAL_HEIGHT_PX",
+    "WIDTH_RANGE",
     "Stroke",
     "globe_radius",
     "land_cells",
@@ -37,6 +39,8 @@ STROKES = {
     "graticule": Stroke("black", 0.4, 1.0),
     "coastlines": Stroke("black", 0.9, 1.5),
 }
+#: Height of a picture in which lines have their width, and how it changes with that at most.
+USUAL_HEIGHT_PX, WIDTH_RANGE = 600, (0.6, 2.0)
 #: Distances of the points of lines in metres, and how many pixels they may have.
 SPACINGS, SPACING_PX = (80e3, 20e3, 0.0), 2.0
 #: Share of the extent by which the box of a map is wider than its surface.

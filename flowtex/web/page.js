@@ -280,43 +280,43 @@ shaders.lineFragment);if(!earth||!program.ready)return;let gl=graphics.context,{
 bindFramebuffer(gl.FRAMEBUFFER,null),gl.viewport(0,0,width,height),gl.enable(gl.SCISSOR_TEST),gl.scissor(0,0,width,height),
 gl.disable(gl.DEPTH_TEST),gl.enable(gl.BLEND),gl.blendEquation(gl.MAX),gl.clearColor(0,0,0,0);let horizon=this.horizon(camera),
 local=[...camera.planes,...horizon?[horizon]:[]].map(plane=>this.localPlane(plane,anchor)),pixel=2*camera.height*ratio/height,
-most=earth.spacingPixels*pixel,spacing=earth.spacings.find(each=>each<=most)??0;for(let{option,color,opacity,width:thickness}of earth.
-strokes){if(!this.lines.includes(option))continue;gl.clear(gl.COLOR_BUFFER_BIT);let drawn=this.take(option,anchor,()=>this.
-linesOf(option,anchor,spacing),spacing);graphics.programs.use(program,{u_matrix:projection(header.geometry,camera,anchor),
-u_picture:[width,height],u_width:thickness*ratio,u_lineColour:[...color,opacity],u_horizon:horizon?local[local.length-1]:
-[0,0,0,1]}),gl.bindVertexArray(drawn.array),gl.bindBuffer(gl.ARRAY_BUFFER,drawn.buffers[0]);for(let[first,count]of visibleRuns(
-drawn.groups,local)){for(let n=0;n<PIECE_ENDS;n+=1)gl.vertexAttribPointer(n,3,gl.FLOAT,!1,POINT_BYTES,(first+n)*POINT_BYTES);
-gl.drawArraysInstanced(gl.TRIANGLE_STRIP,0,4,count)}take()}gl.bindVertexArray(null),gl.blendEquation(gl.FUNC_ADD),gl.disable(
-gl.BLEND)}get isReady(){let{lineVertex,lineFragment}=this.header.shaders;return!this.lines.length||this.graphics.programs.
-get(lineVertex,lineFragment).ready}drawGround({camera,anchor}){let{header,graphics}=this,{earth,shaders,geometry}=header;
-if(!earth?.land)return;let globe=earth.map===null;if(!(globe?earth.below:this.parts.has("land")))return;let gl=graphics.
-context,defines=globe?["FLOWTEX_GLOBE"]:[],program=graphics.programs.get(shaders.groundVertex,shaders.groundFragment,...defines);
-if(program.ready){if(graphics.programs.use(program,{u_matrix:projection(geometry,camera,anchor),u_colour:earth.land,u_ground:header.
-background,u_lit:header.lighting,u_toEye:toFrame(geometry.frame,scale2(camera.axes[2],-1)),...globe?this.disc(camera,earth.
-radius,anchor):{}}),globe){let drawn=this.take("disc",anchor,()=>this.emptyArray());gl.bindVertexArray(drawn.array),gl.drawArrays(
-gl.TRIANGLE_STRIP,0,4)}else{let drawn=this.take("land",anchor,()=>this.landOf(anchor));gl.bindVertexArray(drawn.array),gl.
-depthMask(!1),gl.drawElements(gl.TRIANGLES,drawn.count,gl.UNSIGNED_INT,0),gl.depthMask(!0)}gl.bindVertexArray(null)}}horizon(camera){
-let{earth}=this.header;if(!earth||earth.map)return null;let{radius}=earth,[x,y,z,w]=camera.eye,away=w*Math.hypot(x,y,z);
-return[...unit([x,y,z]),away?-(radius**2)/away:0]}localPlane(plane,anchor){let{frame,center}=this.header.geometry,normal=plane.
-slice(0,3),local=toFrame(frame,normal);return[...local,dot2(local,anchor)+dot2(normal,center)+plane[3]]}disc(camera,radius,anchor){
-let{frame,center}=this.header.geometry,[a,b,c,offset]=this.horizon(camera)??[0,0,1,0],toEye=[a,b,c],size=Math.sqrt(Math.
-max(radius**2-offset**2,0)),aside=unit(cross2(camera.axes[1],toEye)),upward=cross2(toEye,aside),middle=add(scale2(toEye,
--offset),center,-1);return{u_middle:subtract2(toFrame(frame,middle),anchor),u_aside:scale2(toFrame(frame,aside),size),u_upward:scale2(
-toFrame(frame,upward),size),u_away:camera.state.parallel?0:length2(camera.state.position)/radius}}take(name,anchor,make,spacing=0){
-let old=this.drawn.get(name);if(old&&String([old.anchor,old.spacing])===String([anchor,spacing]))return old;this.drop(name);
-let drawn={...make(),anchor,spacing};return this.drawn.set(name,drawn),drawn}emptyArray(){let{graphics}=this;return{array:graphics.
-counted(graphics.context.createVertexArray()),buffers:[],anchor:[0,0,0],spacing:0,count:0,groups:[]}}buffer(target,data){
-let{graphics}=this,gl=graphics.context,buffer=graphics.counted(gl.createBuffer());return gl.bindBuffer(target,buffer),gl.
-bufferData(target,data,gl.STATIC_DRAW),buffer}linesOf(name,anchor,spacing){let gl=this.graphics.context,{earth}=this.header,
-steps=this.parts.get(name)?.data??[],lines=earth?linesOf(steps,earth):[],points=linePoints(thinned(lines,spacing),anchor),
-drawn={...this.emptyArray(),groups:pieceGroups(points)};gl.bindVertexArray(drawn.array),drawn.buffers=[this.buffer(gl.ARRAY_BUFFER,
-points)];for(let n=0;n<PIECE_ENDS;n+=1)gl.enableVertexAttribArray(n),gl.vertexAttribDivisor(n,1);return drawn}landOf(anchor){
-let gl=this.graphics.context,cells=this.parts.get("land"),nodes=this.parts.get("position"),drawn=this.emptyArray();if(!cells||
-!nodes)return drawn;let[rows,columns]=cells.shape,corners=[];for(let n=0;n<rows*columns;n+=1){if(!cells.data[n])continue;
-let low=n+Math.floor(n/columns),high=low+columns+1;corners.push(low,low+1,high+1,low,high+1,high)}gl.bindVertexArray(drawn.
-array);let points=positions(nodes.data,anchor);return drawn.buffers=[this.buffer(gl.ARRAY_BUFFER,points),this.buffer(gl.
-ELEMENT_ARRAY_BUFFER,new Uint32Array(corners))],drawn.count=corners.length,gl.enableVertexAttribArray(0),gl.vertexAttribPointer(
-0,3,gl.FLOAT,!1,0,0),drawn}};var Lifetime=class{controller=new AbortController;observers=new Set;timers=new Set;globalListeners=0;get isOver(){return this.
+wider=clamp(Math.sqrt(height/ratio/earth.usualHeight),...earth.widthRange),most=earth.spacingPixels*pixel,spacing=earth.
+spacings.find(each=>each<=most)??0;for(let{option,color,opacity,width:thickness}of earth.strokes){if(!this.lines.includes(
+option))continue;gl.clear(gl.COLOR_BUFFER_BIT);let drawn=this.take(option,anchor,()=>this.linesOf(option,anchor,spacing),
+spacing);graphics.programs.use(program,{u_matrix:projection(header.geometry,camera,anchor),u_picture:[width,height],u_width:thickness*
+wider*ratio,u_lineColour:[...color,opacity],u_horizon:horizon?local[local.length-1]:[0,0,0,1]}),gl.bindVertexArray(drawn.
+array),gl.bindBuffer(gl.ARRAY_BUFFER,drawn.buffers[0]);for(let[first,count]of visibleRuns(drawn.groups,local)){for(let n=0;n<
+PIECE_ENDS;n+=1)gl.vertexAttribPointer(n,3,gl.FLOAT,!1,POINT_BYTES,(first+n)*POINT_BYTES);gl.drawArraysInstanced(gl.TRIANGLE_STRIP,
+0,4,count)}take()}gl.bindVertexArray(null),gl.blendEquation(gl.FUNC_ADD),gl.disable(gl.BLEND)}get isReady(){let{lineVertex,
+lineFragment}=this.header.shaders;return!this.lines.length||this.graphics.programs.get(lineVertex,lineFragment).ready}drawGround({
+camera,anchor}){let{header,graphics}=this,{earth,shaders,geometry}=header;if(!earth?.land)return;let globe=earth.map===null;
+if(!(globe?earth.below:this.parts.has("land")))return;let gl=graphics.context,defines=globe?["FLOWTEX_GLOBE"]:[],program=graphics.
+programs.get(shaders.groundVertex,shaders.groundFragment,...defines);if(program.ready){if(graphics.programs.use(program,
+{u_matrix:projection(geometry,camera,anchor),u_colour:earth.land,u_ground:header.background,u_lit:header.lighting,u_toEye:toFrame(
+geometry.frame,scale2(camera.axes[2],-1)),...globe?this.disc(camera,earth.radius,anchor):{}}),globe){let drawn=this.take(
+"disc",anchor,()=>this.emptyArray());gl.bindVertexArray(drawn.array),gl.drawArrays(gl.TRIANGLE_STRIP,0,4)}else{let drawn=this.
+take("land",anchor,()=>this.landOf(anchor));gl.bindVertexArray(drawn.array),gl.depthMask(!1),gl.drawElements(gl.TRIANGLES,
+drawn.count,gl.UNSIGNED_INT,0),gl.depthMask(!0)}gl.bindVertexArray(null)}}horizon(camera){let{earth}=this.header;if(!earth||
+earth.map)return null;let{radius}=earth,[x,y,z,w]=camera.eye,away=w*Math.hypot(x,y,z);return[...unit([x,y,z]),away?-(radius**
+2)/away:0]}localPlane(plane,anchor){let{frame,center}=this.header.geometry,normal=plane.slice(0,3),local=toFrame(frame,normal);
+return[...local,dot2(local,anchor)+dot2(normal,center)+plane[3]]}disc(camera,radius,anchor){let{frame,center}=this.header.
+geometry,[a,b,c,offset]=this.horizon(camera)??[0,0,1,0],toEye=[a,b,c],size=Math.sqrt(Math.max(radius**2-offset**2,0)),aside=unit(
+cross2(camera.axes[1],toEye)),upward=cross2(toEye,aside),middle=add(scale2(toEye,-offset),center,-1);return{u_middle:subtract2(
+toFrame(frame,middle),anchor),u_aside:scale2(toFrame(frame,aside),size),u_upward:scale2(toFrame(frame,upward),size),u_away:camera.
+state.parallel?0:length2(camera.state.position)/radius}}take(name,anchor,make,spacing=0){let old=this.drawn.get(name);if(old&&
+String([old.anchor,old.spacing])===String([anchor,spacing]))return old;this.drop(name);let drawn={...make(),anchor,spacing};
+return this.drawn.set(name,drawn),drawn}emptyArray(){let{graphics}=this;return{array:graphics.counted(graphics.context.createVertexArray()),
+buffers:[],anchor:[0,0,0],spacing:0,count:0,groups:[]}}buffer(target,data){let{graphics}=this,gl=graphics.context,buffer=graphics.
+counted(gl.createBuffer());return gl.bindBuffer(target,buffer),gl.bufferData(target,data,gl.STATIC_DRAW),buffer}linesOf(name,anchor,spacing){
+let gl=this.graphics.context,{earth}=this.header,steps=this.parts.get(name)?.data??[],lines=earth?linesOf(steps,earth):[],
+points=linePoints(thinned(lines,spacing),anchor),drawn={...this.emptyArray(),groups:pieceGroups(points)};gl.bindVertexArray(
+drawn.array),drawn.buffers=[this.buffer(gl.ARRAY_BUFFER,points)];for(let n=0;n<PIECE_ENDS;n+=1)gl.enableVertexAttribArray(
+n),gl.vertexAttribDivisor(n,1);return drawn}landOf(anchor){let gl=this.graphics.context,cells=this.parts.get("land"),nodes=this.
+parts.get("position"),drawn=this.emptyArray();if(!cells||!nodes)return drawn;let[rows,columns]=cells.shape,corners=[];for(let n=0;n<
+rows*columns;n+=1){if(!cells.data[n])continue;let low=n+Math.floor(n/columns),high=low+columns+1;corners.push(low,low+1,
+high+1,low,high+1,high)}gl.bindVertexArray(drawn.array);let points=positions(nodes.data,anchor);return drawn.buffers=[this.
+buffer(gl.ARRAY_BUFFER,points),this.buffer(gl.ELEMENT_ARRAY_BUFFER,new Uint32Array(corners))],drawn.count=corners.length,
+gl.enableVertexAttribArray(0),gl.vertexAttribPointer(0,3,gl.FLOAT,!1,0,0),drawn}};var Lifetime=class{controller=new AbortController;observers=new Set;timers=new Set;globalListeners=0;get isOver(){return this.
 controller.signal.aborted}listen(target,kind,call,options={}){(target===document||target===window)&&(this.globalListeners+=
 1);let{signal}=this.controller;target.addEventListener(kind,call,{...options,signal})}later(call,delay){let timer=setTimeout(
 ()=>{this.timers.delete(timer),call()},delay);return this.timers.add(timer),timer}cancel(timer){timer!==null&&(clearTimeout(

@@ -89,8 +89,7 @@ class Appearance(Controller):
         self.show_field()
         on = self.state.on
         on(*(f"set_{name}" for name in TABLE))(self.take_settings)
-        on("colour", "cmap", "log_scale", "opacity")(self.take_colour)
-        on(*MAP_LINES)(self.take_map_lines)
+        on("colour", "cmap", "log_scale", "opacity", *MAP_LINES)(self.take_colour)
         on("low", "high")(self.take_range)
         on("theme", "background")(self.take_background)
         on("compare")(self.take_comparison)
@@ -158,7 +157,7 @@ class Appearance(Controller):
         self.state.set(**{f"set_{name}": value for name, value in self.settings})
 
     def take_colour(self) -> None:
-        """Colour by what the page asks for."""
+        """Colour by what the page asks for, and draw lines of a map."""
         area, get = self.area, self.state.get
         name, cmap, log_scale = get("colour"), get("cmap"), get("log_scale")
         opacity = number(get("opacity"), 0, 1)
@@ -172,16 +171,10 @@ class Appearance(Controller):
             changes["log_scale"] = log_scale
         if opacity is not None and opacity != area.opacity:
             changes["opacity"] = opacity
+        lines = self._map_lines()
+        changes |= {n: get(n) for n in lines if get(n) is not lines[n] and isinstance(get(n), bool)}
         if changes:
             self._change(**changes)
-        self.show_colours()
-
-    def take_map_lines(self) -> None:
-        """Draw those lines of the map that the page asks for."""
-        choices = {name: self.state.get(name) for name in MAP_LINES}
-        valid = all(isinstance(choice, bool) for choice in choices.values())
-        if valid and choices != self._map_lines():
-            self._change(**choices)
         self.show_colours()
 
     def take_range(self) -> None:
@@ -291,7 +284,6 @@ class Appearance(Controller):
         names |= {name: name for name in ("background", *MAP_LINES)}
         self.state.set(**{ours: saved[name] for name, ours in names.items() if name in saved})
         self.take_colour()
-        self.take_map_lines()
         if saved.get("clim"):
             low, high = saved["clim"]
             self.state.set(low=low, high=high)

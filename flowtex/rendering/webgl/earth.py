@@ -17,6 +17,8 @@ from flowtex.rendering.map_overlay import (
     SPACING_PX,
     SPACINGS,
     STROKES,
+    USUAL_HEIGHT_PX,
+    WIDTH_RANGE,
     globe_radius,
     land_cells,
     map_box,
@@ -57,6 +59,8 @@ def earth_header(geometry: SurfaceGeometry, *, has_land: bool) -> Header | None:
         "low": lines.low.tolist(),
         "size": lines.size.tolist(),
         "map": None if is_globe else map_box(field)[:, :2].ravel().tolist(),
+        "usualHeight": USUAL_HEIGHT_PX,
+        "widthRange": WIDTH_RANGE,
         "spacings": SPACINGS,
         "spacingPixels": SPACING_PX,
         "strokes": [
