@@ -58,7 +58,18 @@ def test_land_is_within_coasts(lon: float, lat: float, is_land: bool) -> None:
 
 
 #: Degrees eastward from each place along its great circle to one that is at sea.
-END = {20: 17, 10: 75, 90: 65, -100: 45, -50: 25, 135: 30, 60: 90, -30: 15, -140: 10, 5: 1}
+END: dict[float, float] = {
+    20: 17,
+    10: 75,
+    90: 65,
+    -100: 45,
+    -50: 25,
+    135: 30,
+    60: 90,
+    -30: 15,
+    -140: 10,
+    5: 1,
+}
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -96,5 +96,6 @@ def test_a_field_of_the_earth_tells_place_and_velocity_there(name: str) -> None:
     assert got.lonlat == pytest.approx((20, lat), abs=0.01)
     assert got.eastward == pytest.approx(10 * np.cos(np.radians(lat)), abs=0.05)
     assert got.northward == pytest.approx(0, abs=0.05)
-    still = np.stack(np.mgrid[0:3.0, 0:3.0], axis=-1)
-    assert values_at(FlowField.from_arrays(still, still), (1, 1)).lonlat is None
+    y, x = np.mgrid[0:3.0, 0:3.0]
+    plain = FlowField.from_arrays(np.stack([x, y], axis=-1), np.stack([x, y], axis=-1))
+    assert values_at(plain, (1, 1)).lonlat is None

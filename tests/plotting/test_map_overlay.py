@@ -102,7 +102,7 @@ def test_land_has_its_colour_or_none(plotter: Any) -> None:
     camera = read_camera(plotter.camera)
 
     def colour() -> Floats:
-        return at(shot(plotter), field, camera, 16.0, -12.0)[1, 1]
+        return np.asarray(at(shot(plotter), field, camera, 16.0, -12.0)[1, 1])
 
     assert colour() == pytest.approx(255 * np.array(rgb(LAND_COLOR)), abs=2)
     handle.land = "tomato"
@@ -136,7 +136,7 @@ def test_lines_end_where_a_map_does() -> None:
 
 @pytest.mark.parametrize("name", ["globe", "lambert"])
 def test_the_camera_and_the_bounds_are_those_of_the_flow(name: str) -> None:
-    found = []
+    found: list[tuple[Any, ...]] = []
     for options in ({}, OFF):
         plotter: Any = pv.Plotter(off_screen=True, window_size=list(SIZE))
         plotter.flowtex.add(ocean(name), show_scalar_bar=False, **options)
