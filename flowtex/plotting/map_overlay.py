@@ -17,7 +17,16 @@ from flowtex._util.array_types import Bools, Floats
 from flowtex.earth import MapLines
 from flowtex.plotting.vtk_camera import read_camera
 from flowtex.rendering.constants import AMBIENT_LIGHT, DIFFUSE_LIGHT
-from flowtex.rendering.map_overlay import STROKES, globe_radius, land_cells, map_lines
+from flowtex.rendering.map_overlay import (
+    SPACING_PX,
+    SPACINGS,
+    STROKES,
+    USUAL_HEIGHT_PX,
+    WIDTH_RANGE,
+    globe_radius,
+    land_cells,
+    map_lines,
+)
 from flowtex.rendering.shaders import shader_text
 from flowtex.rendering.vtk import FlowSurface
 from flowtex.rendering.vtk.mesh import FlowMapper
@@ -38,12 +47,8 @@ class Part(NamedTuple):
 #: How much nearer than the surface lines are, and how much farther land, as a share of the
 #: distance: more than what a surface comes nearer over the width of a line when seen aslant.
 LINES_NEARER, LAND_FARTHER = 1e-2, 2e-4
-#: Distances of the points of lines in metres, and how many pixels they may have.
-SPACINGS, SPACING_PX = (80e3, 20e3, 0.0), 2.0
 #: Nearest that the front of the globe is drawn, as a share of the farthest.
 NEAREST = 1e-3
-#: Height of a picture in which lines have their width, and how it changes with that at most.
-USUAL_HEIGHT_PX, WIDTH_RANGE = 600, (0.6, 2.0)
 #: Cells along a meridian of the globe below the surface.
 GLOBE_CELLS = 180
 #: Observers of a frame run by falling priority: this one after those that set the clipping range.

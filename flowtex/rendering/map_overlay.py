@@ -12,7 +12,18 @@ from flowtex._util.blocks import bounds
 from flowtex.earth import EARTH_RADIUS, MapLines, coastlines, graticule
 from flowtex.field import FlowField
 
-__all__ = ["STROKES", "Stroke", "globe_radius", "land_cells", "map_box", "map_lines"]
+__all__ = [
+    "SPACINGS",
+    "SPACING_PX",
+    "STROKES",
+    "USUAL_HEIGHT_PX",
+    "WIDTH_RANGE",
+    "Stroke",
+    "globe_radius",
+    "land_cells",
+    "map_box",
+    "map_lines",
+]
 
 
 class Stroke(NamedTuple):
@@ -28,6 +39,10 @@ STROKES = {
     "graticule": Stroke("black", 0.4, 1.0),
     "coastlines": Stroke("black", 0.9, 1.5),
 }
+#: Height of a picture in which lines have their width, and how it changes with that at most.
+USUAL_HEIGHT_PX, WIDTH_RANGE = 600, (0.6, 2.0)
+#: Distances of the points of lines in metres, and how many pixels they may have.
+SPACINGS, SPACING_PX = (80e3, 20e3, 0.0), 2.0
 #: Share of the extent by which the box of a map is wider than its surface.
 WIDER = 1e-3
 #: How much lower than the surface the globe lies, in radii, beside what its cells are flatter.
