@@ -12,7 +12,7 @@ from flowtex import examples
 from flowtex._util.progress import waiting
 from flowtex.cli.checks import check_colours, check_image, check_lines, require_app, require_opengl
 from flowtex.cli.console import announcer, describe
-from flowtex.cli.load import load_field
+from flowtex.cli.load import load_field, notices
 from flowtex.cli.options import (
     FLAT,
     DrawFlags,
@@ -124,17 +124,43 @@ def _show_page(
         raise UsageError(msg)
     choice = (flow or FieldFlags()).arguments()
     one = _belong_together(files) or (len(files) == 1 and not _is_folder(files[0]))
+    if one and (library := _earth_library(files, choice)) is not None:
+        return _serve(library, page, {**options, **choice})
     if one and any(name in choice for name in FIELD_OPTIONS):
         return _serve(Library.of(load_field(files, flow)), page, options)
     if misplaced := [name for name in FIELD_OPTIONS if name in choice]:
         msg = f"--{misplaced[0].replace('_', '-')} goes with one file, not with several or a folder"
         raise UsageError(msg)
-    if one and len(files) > 1:
-        from flowtex.field.datasets.source import open_source
-
-        with waiting(f"Reading {files[0].name}"):
-            return _serve(Library.of(open_source(files)), page, {**options, **choice})
     return _serve(Library.of(*files), page, {**options, **choice})
+
+
+def _earth_library(files: Sequence[Path], choice: dict[str, Any]) -> Library | None:
+    """Return a library of data of the Earth, whose map and level may be chosen on the page.
+
+    These are put into the choice as the page has them. ``None`` is for anything else, and where
+    more is chosen than the page can choose.
+    """
+    from flowtex.app import Library
+    from flowtex.earth import GLOBE, NAMES
+    from flowtex.field.datasets.files import dataset_paths
+    from flowtex.field.datasets.source import DatasetSource, open_source
+
+    known = {"vectors", "projection", "globe", "level"}
+    if not dataset_paths(files) or set(choice) - known:
+        return None
+    block = GLOBE if choice.get("globe") else choice.get("projection", "")
+    if block not in ("", GLOBE, *NAMES):
+        return None
+    with waiting(f"Reading {files[0].name}"), notices():
+        source = open_source(files)
+    level = choice.pop("level", None)
+    for name in ("projection", "globe"):
+        choice.pop(name, None)
+    if level is not None and isinstance(source, DatasetSource):
+        choice["plane"] = source.plane_of(level)
+    if block:
+        choice["block"] = block
+    return Library.of(source)
 
 
 def _is_folder(path: Path) -> bool:

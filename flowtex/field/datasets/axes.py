@@ -16,7 +16,7 @@ from flowtex.errors import FieldError
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["Choice", "Section", "axis_values", "horizontal_dims", "seconds_in", "sections"]
+__all__ = ["LEVEL", "Choice", "Section", "axis_values", "horizontal_dims", "seconds_in", "sections"]
 
 #: Names of axes that are vertical, and horizontal, where no attribute says so.
 LEVELS = re.compile(
@@ -148,7 +148,10 @@ def sections(arrays: list[xr.DataArray], choice: Choice) -> list[Section]:
 
 
 def axis_values(array: xr.DataArray) -> dict[str, tuple[str, ...]]:
-    """Return words for the values along axes other than time where there is a choice, by name."""
+    """Return words for the values along axes other than time where there is a choice.
+
+    They are by name, that of the level first.
+    """
     found: dict[str, tuple[str, ...]] = {}
     surface = horizontal_dims(array)
     for dim in map(str, array.dims):
@@ -158,7 +161,7 @@ def axis_values(array: xr.DataArray) -> dict[str, tuple[str, ...]]:
             continue
         values = range(array.sizes[dim]) if line is None else line
         found[dim if kind == TIME else kind] = tuple(_words(value, array, dim) for value in values)
-    return found
+    return dict(sorted(found.items(), key=lambda item: item[0] != LEVEL))
 
 
 def seconds_in(unit: str) -> float | None:

@@ -9,7 +9,7 @@ from typing import Any
 
 from flowtex.earth import GLOBE, NAMES
 from flowtex.errors import FieldError
-from flowtex.field.datasets.axes import axis_values
+from flowtex.field.datasets.axes import LEVEL, Choice, axis_values, sections
 from flowtex.field.datasets.files import dataset_paths, open_datasets
 from flowtex.field.datasets.notices import DatasetNotice
 from flowtex.field.datasets.pairs import find_pairs, two_names
@@ -65,6 +65,19 @@ class DatasetSource(FlowSource):
         name, _, number = plane.partition("=")
         words = self._axes.get(name, ())
         return words[int(number)] if number.isdecimal() and int(number) < len(words) else plane
+
+    def plane_of(self, level: float | str) -> str:
+        """Return the plane of a level, as :attr:`default_plane` has it.
+
+        Raises
+        ------
+        FieldError
+            When there is no such level.
+        """
+        names = two_names(self.vectors[0])
+        array = next(ds[names["u"]] for ds in self._datasets if names["u"] in ds)
+        (section,) = sections([array], Choice({LEVEL: level}))
+        return f"{LEVEL}={section.numbers.get(LEVEL, 0)}"
 
     def part(self, block: str | None = None) -> FlowSource:
         """Return this source, which draws on any of the maps."""
