@@ -503,7 +503,7 @@ def share_field(field: FlowField) -> FlowField:
 
     A notebook shows one mesh many times over, and makes it a field each time.
     """
-    names = (field.name, field.length_unit, field.time_unit)
+    names = (field.name, field.length_unit, field.time_unit, *field.long_names.items())
     words = (*names, field.periodic, field.sign_free, str(field.start), field.projection)
     units = tuple(field.units.items())
     positions = () if field.has_position is None else (field.has_position,)

@@ -80,6 +80,8 @@ class FlowField:
         Whether v and -v mean the same, as in a field of polarisation or principal directions.
     units
         Unit of each scalar, where it is known.
+    long_names
+        Words for scalars, where there are other ones than their names.
     start
         The date at time 0, a ``datetime`` or one of cftime's, where times count from one.
     projection
@@ -98,6 +100,7 @@ class FlowField:
     has_position: Bools | None = None
     sign_free: bool = False
     units: Mapping[str, str] = field(default_factory=dict)
+    long_names: Mapping[str, str] = field(default_factory=dict)
     start: Any = None
     projection: Projection | None = None
 
@@ -500,7 +503,9 @@ class FlowField:
 
     def label_of(self, name: str) -> str:
         """Return the words for a scalar, or for the speed, in a legend."""
-        return self.speed_label if name == "speed" and name not in self.scalars else name
+        if name == "speed" and name not in self.scalars:
+            return self.speed_label
+        return self.long_names.get(name, name)
 
     def unit_of(self, name: str) -> str:
         """Return the unit of a scalar, or of the speed; empty when it is not known."""

@@ -101,7 +101,7 @@ class FlowHandle(AppearanceAttributes):
         return self.scene.time
 
     @time.setter
-    def time(self, value: float) -> None:
+    def time(self, value: float | str) -> None:
         self.scene.time = value
 
     @property

@@ -402,3 +402,28 @@ def test_lines_of_a_series(run: Run, tmp_path: Path) -> None:
     assert run("render", *words, 1.5, "-o", tmp_path / "a.png")[0] == 0
     assert "--time is 9; expected 0 to 2" in run("render", *words, 9, "-o", tmp_path / "a.png")[2]
     assert "need all times" in run("movie", *words, 1, "-o", tmp_path / "a.gif")[2]
+
+
+def test_data_of_the_earth_are_told_and_drawn(run: Run, tmp_path: Path) -> None:
+    pytest.importorskip("xarray")
+    from earth_data import c_grid
+
+    files = [tmp_path / "U.nc", tmp_path / "V.nc"]
+    for ds, file in zip(c_grid("nemo"), files, strict=True):
+        ds.to_netcdf(file)
+    code, out, _ = run("info", *files)
+    assert code == 0
+    for words in ("uo, vo", "along the grid", "Arakawa C", "nav_lon and nav_lat", "39 × 39"):
+        assert words in out, words
+    code, _, err = run("info", files[0])
+    assert code != 0 and "one component of a velocity, 'uo'" in err
+    picture = tmp_path / "a.png"
+    assert run("render", *files, "-o", picture, "--globe", "--size", "80x60")[0] == 0
+    assert picture.is_file()
+    for flags, words in (
+        (("--projection", "flat"), "'flat' is not known"),
+        (("--level", "3"), "no axis 'level'"),
+        (("--select", "number"), "expected an axis and a value"),
+    ):
+        code, _, err = run("render", *files, "-o", picture, *flags, "--size", "80x60")
+        assert code != 0 and words in err, err

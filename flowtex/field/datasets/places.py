@@ -159,6 +159,13 @@ def _spread(
 ) -> tuple[Floats | None, Floats | None]:
     """Return two coordinates at all nodes, or nothing where they belong to other nodes."""
     if a.ndim == 1 and b.ndim == 1:
+        if a.dims == b.dims:
+            msg = (
+                f"{a.name} and {b.name} both lie along {a.dims[0]}: the values are those of an "
+                "unstructured mesh, or of stations, and flow is drawn on rows and columns; "
+                "put them on a grid of longitude and latitude before"
+            )
+            raise FieldError(msg)
         if a.dims != (dims[1],) or b.dims != (dims[0],):
             return None, None
         x, y = np.meshgrid(_numbers(a), _numbers(b))

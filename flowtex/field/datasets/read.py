@@ -32,6 +32,9 @@ __all__ = ["Recognised", "as_datasets", "field_of", "recognise"]
 
 F = TypeVar("F")
 
+#: Longest name that a legend has room for.
+LONGEST_NAME = 40
+
 #: Share of the nodes of a staggered grid at rest from which on they count as land.
 LAND_SHARE = 0.01
 
@@ -130,15 +133,21 @@ def field_of(
         return np.asarray(np.hypot(*known.steps(number))[lines])
 
     first = velocity(numbers[0])
-    base = make(points, first, name=name, **options)
+    base = make(points, first, name=", ".join(filter(None, (name, known.level))), **options)
     extra: dict[str, Callable[[int], Floats]] = {}
     for key, (read, _) in scalars.items():
         extra[key] = partial(on_lines, read)
-    units = {key: unit for key, (_, unit) in scalars.items() if unit}
+    attributes = {key: attrs for key, (_, attrs) in scalars.items()}
+    words = {
+        ours: {key: str(a[theirs]) for key, a in attributes.items() if a.get(theirs)}
+        for ours, theirs in (("units", "units"), ("long_names", "long_name"))
+    }
+    long_names = words["long_names"].items()
+    words["long_names"] = {key: text for key, text in long_names if len(text) <= LONGEST_NAME}
     if speeds:
         extra["speed"] = speed
-        units["speed"] = "m/s"
-    field: F = _with_steps(base, first, velocity, extra, times, numbers, units)
+        words["units"]["speed"] = "m/s"
+    field: F = _with_steps(base, first, velocity, extra, times, numbers, words)
     return field
 
 
@@ -326,9 +335,9 @@ def _times(known: Recognised) -> tuple[Any, list[int]]:
 
 def _scalars(
     known: Recognised, datasets: Sequence[Any], choice: Choice
-) -> dict[str, tuple[Callable[[int], Floats], str]]:
-    """Return readers and units of the other variables that lie at the nodes, by name."""
-    found: dict[str, tuple[Callable[[int], Floats], str]] = {}
+) -> dict[str, tuple[Callable[[int], Floats], Any]]:
+    """Return readers and attributes of the other variables that lie at the nodes, by name."""
+    found: dict[str, tuple[Callable[[int], Floats], Any]] = {}
     rows, columns = known.cells
     used = (known.pair.u.name, known.pair.v.name)
     steps = known.u.array.shape[0] if known.u.is_series else 1
@@ -346,7 +355,7 @@ def _scalars(
         def read(number: int, section: Section = section) -> Floats:
             return np.asarray(_values(section, number)[known.kept][known.trimmed])
 
-        found[str(name)] = read, str(array.attrs.get("units", ""))
+        found[str(name)] = read, array.attrs
     return found
 
 
@@ -357,7 +366,7 @@ def _with_steps(
     scalars: Mapping[str, Callable[[int], Floats]],
     times: Any,
     numbers: list[int],
-    units: Mapping[str, str],
+    words: Mapping[str, Mapping[str, str]],
 ) -> Any:
     """Return a field with all its steps, read as they are needed, and closed as its first one."""
     from flowtex.field.dates import as_seconds
@@ -389,6 +398,6 @@ def _with_steps(
         velocity=LazySteps(len(numbers), moving) if series else base.velocity,
         times=base.times if seconds is None else np.asarray(seconds, dtype=float),
         scalars=data,
-        units=dict(units),
+        **words,
         start=start,
     )
