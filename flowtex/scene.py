@@ -283,12 +283,12 @@ class Scene:
 
     @time.setter
     def time(self, value: Any) -> None:
-        value = seconds_since(self.field.start, value)
+        moment = seconds_since(self.field.start, value)
         first, last = float(self.field.times[0]), float(self.field.times[-1])
-        if not first <= value <= last:
+        if not first <= moment <= last:
             msg = f"time is {value!r}; expected {first:g} to {last:g}, the times of the field"
             raise ValueError(msg)
-        self._time = float(value)
+        self._time = moment
         self._notify("uniform")
 
     @property

@@ -170,7 +170,7 @@ def unrepeated(places: Places) -> tuple[slice, slice]:
         for shift in (0, 1, 2):
             mirrored = np.roll(inside[rows - 1 - below, ::-1], shift, axis=0)
             if rows > 4 and same(inside[rows - 1], mirrored):
-                top = min(top, rows - below // 2 - (below == 1))
+                top = rows - 1
     return slice(0, max(top, 2)), slice(0, last)
 
 
