@@ -85,9 +85,7 @@ def _recognised_table(paths: list[Path]) -> Table:
     if others:
         table.add_row("also", "; ".join(map(str, others)))
     directions = {"earth": "eastward and northward", "grid": "along the grid"}
-    table.add_row(
-        "directions", directions.get(known.pair.along, "along the grid, as nothing tells")
-    )
+    table.add_row("directions", directions[known.along])
     table.add_row("grid", known.grid)
     table.add_row("coordinates", known.coordinates)
     for name, words in axis_values(known.pair.u).items():

@@ -16,7 +16,16 @@ from flowtex.errors import FieldError
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["LEVEL", "Choice", "Section", "axis_values", "horizontal_dims", "seconds_in", "sections"]
+__all__ = [
+    "LEVEL",
+    "Choice",
+    "Section",
+    "axis_values",
+    "horizontal_dims",
+    "seconds_in",
+    "sections",
+    "way_ahead",
+]
 
 #: Names of axes that are vertical, and horizontal, where no attribute says so.
 LEVELS = re.compile(
@@ -119,6 +128,10 @@ def sections(arrays: list[xr.DataArray], choice: Choice) -> list[Section]:
         listed = "; ".join(f"{a.name} has {', '.join(map(str, a.dims))}" for a in arrays)
         msg = f"the components lie along different axes: {listed}. Choose along them before"
         raise FieldError(msg)
+    for array in arrays:
+        if empty := [str(d) for d, count in array.sizes.items() if count == 0]:
+            msg = f"{array.name} has no values along {', '.join(empty)}; expected one at least"
+            raise FieldError(msg)
     done, notes, level = list(arrays), [], ""
     numbers: dict[str, int] = {}
     times: AnyArray | None = None
@@ -162,6 +175,18 @@ def axis_values(array: xr.DataArray) -> dict[str, tuple[str, ...]]:
         values = range(array.sizes[dim]) if line is None else line
         found[dim if kind == TIME else kind] = tuple(_words(value, array, dim) for value in values)
     return dict(sorted(found.items(), key=lambda item: item[0] != LEVEL))
+
+
+def way_ahead(array: xr.DataArray, dim: str) -> int:
+    """Return the way in which the coordinate of a dimension grows: 1, or -1 against its numbers.
+
+    A component along y, say, leads to greater y.
+    """
+    coordinate = array.coords.get(dim)
+    if coordinate is None or coordinate.dtype.kind not in "fiu" or coordinate.size < 2:
+        return 1
+    first, last = (float(coordinate.values[n]) for n in (0, -1))
+    return -1 if last < first else 1
 
 
 def seconds_in(unit: str) -> float | None:

@@ -16,7 +16,14 @@ import numpy as np
 from flowtex._util.array_types import Bools, Floats
 from flowtex._util.extras import import_extra
 from flowtex.errors import FieldError
-from flowtex.field.datasets.axes import Choice, Section, horizontal_dims, seconds_in, sections
+from flowtex.field.datasets.axes import (
+    Choice,
+    Section,
+    horizontal_dims,
+    seconds_in,
+    sections,
+    way_ahead,
+)
 from flowtex.field.datasets.grids import find_grid, sea_mask, unrepeated
 from flowtex.field.datasets.maps import on_map
 from flowtex.field.datasets.notices import notify
@@ -47,6 +54,9 @@ class Recognised:
     ----------
     pair
         The two variables of the velocity.
+    along
+        Along what the components are: ``"earth"``, or ``"grid"`` where ``ahead`` tells the ways of
+        rows and columns, 1 or -1.
     grid
         Words for the kind of grid.
     coordinates
@@ -60,6 +70,8 @@ class Recognised:
     """
 
     pair: Pair
+    along: str
+    ahead: tuple[int, int]
     grid: str
     coordinates: str
     places: Places
@@ -189,6 +201,8 @@ def recognise(
     trimmed = unrepeated(places)
     places = replace(places, a=places.a[trimmed], b=places.b[trimmed])
     staggered = sides[0] is not None or sides[1] is not None
+    # Sides of cells have components across them, whatever a long name calls these.
+    by_words = "standard_name" not in pair.u.attrs
     land: list[Bools] = []
 
     def steps(number: int) -> tuple[Floats, Floats]:
@@ -220,6 +234,8 @@ def recognise(
     grid = f"{words}, {'rows and columns' if places.is_line else 'curvilinear'}"
     return Recognised(
         pair=pair,
+        along="earth" if pair.along == "earth" and not (staggered and by_words) else "grid",
+        ahead=(way_ahead(pair.u, rows[0]), way_ahead(pair.v, columns[1])),
         grid=grid,
         coordinates=places.why,
         places=places,
@@ -271,7 +287,7 @@ def _turned(
 ) -> tuple[Floats, Floats]:
     """Return components eastward and northward, or along x and y."""
     places = known.places
-    if known.pair.along == "earth" or places.is_line:
+    if known.along == "earth" or places.is_line:
         return u, v
     if plane:
         p = np.stack([places.a, places.b], axis=-1)
@@ -286,7 +302,8 @@ def _turned(
                 [-np.sin(lat) * np.cos(lon), -np.sin(lat) * np.sin(lon), np.cos(lat)], axis=-1
             ),
         ]
-    along_i, along_j = (_unit(_along(p, axis)) for axis in (1, 0))
+    ahead_j, ahead_i = known.ahead
+    along_i, along_j = ahead_i * _unit(_along(p, 1)), ahead_j * _unit(_along(p, 0))
     vector = u[..., None] * along_i + v[..., None] * along_j
     east, north = (
         np.einsum("jic,...c->ji" if b.ndim == 1 else "jic,jic->ji", vector, b) for b in basis

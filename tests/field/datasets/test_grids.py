@@ -32,7 +32,7 @@ def curvilinear(lon: Floats, lat: Floats, **more: Any) -> xr.Dataset:
 
 
 def folded(rows: int = 30, columns: int = 40, pivot: int = 0) -> tuple[Floats, Floats]:
-    """A grid that is folded onto itself at its end, between two rows or at one, and a row beyond."""
+    """A grid that is folded onto itself at its end, and a row beyond the fold."""
     i, j = np.meshgrid(np.arange(columns) + 0.5, np.arange(rows + 1.0))
     beyond = j > rows - 1
     # Beyond the seam the nodes are those below it, from the other end.
