@@ -26,6 +26,7 @@ from flowtex.field.periodic import NodalArrays, close_axes
 from flowtex.field.signs import oriented, sign_free_faults, with_equal_ends
 from flowtex.field.steps import LazySteps, Steps
 from flowtex.field.surface import Surface, known_positions
+from flowtex.field.units import speed_unit
 from flowtex.field.validation import (
     as_numbers,
     finite_nodes,
@@ -41,7 +42,7 @@ from flowtex.field.validation import (
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["FlowField", "speed_unit"]
+__all__ = ["FlowField"]
 
 #: Share of the flow normal to the surface from which on the speed in it has a name of its own. The
 #: cells of a curved mesh alone give a per cent or two; at five the speeds differ by a thousandth.
@@ -594,12 +595,3 @@ class FlowField:
             f"{f', periodic {closed}' if closed else ''}{', sign-free' if self.sign_free else ''}, "
             f"{int((~self.valid).sum())} blanked)"
         )
-
-
-def speed_unit(length: str, time: str) -> str:
-    """Return the word for the unit of speed; empty when one of the units is not known."""
-    if not length or not time:
-        return ""
-    if time.startswith(f"{length} / "):
-        return time.removeprefix(f"{length} / ")
-    return f"{length} / ({time})" if "/" in time else f"{length}/{time}"
