@@ -359,5 +359,5 @@ def _nearest(wanted: Any, line: AnyArray, name: str) -> int:
 def _words(value: Any, array: xr.DataArray, dim: str) -> str:
     coordinate = array.coords.get(dim)
     unit = "" if coordinate is None else str(coordinate.attrs.get("units", ""))
-    number = f"{value:g}" if isinstance(value, (int, float, np.number)) else str(value)
+    number = f"{value:.5g}" if isinstance(value, (int, float, np.number)) else str(value)
     return f"{number} {unit}".strip()

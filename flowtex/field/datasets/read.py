@@ -8,7 +8,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import lru_cache, partial
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
@@ -41,6 +41,9 @@ F = TypeVar("F")
 
 #: Longest name that a legend has room for.
 LONGEST_NAME = 40
+
+#: Steps whose components are kept, for velocity and speed are made of the same.
+MOST_READ = 4
 
 #: Share of the nodes of a staggered grid at rest from which on they count as land.
 LAND_SHARE = 0.01
@@ -243,7 +246,7 @@ def recognise(
         level=one.level,
         u=one,
         v=two,
-        steps=steps,
+        steps=lru_cache(MOST_READ)(steps),
         cells=(rows[0], columns[1]),
         kept=kept,
         trimmed=trimmed,
