@@ -29,8 +29,10 @@ TURNING, GRAVITY, DAY, DEGREE = 7.2921e-5, 9.81, 86400.0, np.radians(EARTH_RADIU
 #: Nodes of the ocean, (first, last, count) in degrees.
 OCEAN = {"longitude": (-82.0, -46.0, 217), "latitude": (28.0, 46.0, 109)}
 #: Middle of the Gulf Stream before it meanders, longitude and latitude.
-STREAM = ((-79.6, 24), (-79.4, 29), (-77.6, 32.4), (-74.2, 35.6), (-70, 37.6), (-64, 38.9))
-STREAM = (*STREAM, (-58, 39.8), (-52, 40.6), (-46, 42), (-38, 44))
+STREAM = (
+    *((-79.6, 24.0), (-79.4, 29.0), (-77.6, 32.4), (-74.2, 35.6), (-70.0, 37.6)),
+    *((-64.0, 38.9), (-58.0, 39.8), (-52.0, 40.6), (-46.0, 42.0), (-38.0, 44.0)),
+)
 #: Half the difference of the sea's height across it, and half its width, in metres.
 HEIGHT, WIDTH = 0.48, 48e3
 #: Length over which eddies and the stream end before the coast, in metres.
@@ -49,9 +51,11 @@ EDDIES, ROSSBY_RADIUS = 120, 52e3
 #: Levels of the air in hPa, and for each the speed of the jets, of the trade winds and the waves.
 LEVELS = {850.0: (9.0, 7.0, 0.55), 500.0: (22.0, 2.5, 0.85), 250.0: (40.0, -3.0, 1.0)}
 #: Planetary waves: how many around the Earth, sine of the latitude, its width, m/s and phase.
-WAVES = ((1, 0.80, 0.45, 6.0, 0.6), (2, 0.76, 0.40, 8.0, 2.1), (3, 0.72, 0.30, 9.0, 4.0))
-WAVES = (*WAVES, (5, 0.66, 0.22, 11.0, 1.2), (7, 0.62, 0.20, 7.0, 5.0))
-WAVES = (*WAVES, (1, -0.80, 0.45, 4.0, 3.0), (4, -0.74, 0.24, 10.0, 0.3), (6, -0.68, 0.2, 7.0, 2.7))
+WAVES = (
+    *((1, 0.80, 0.45, 6.0, 0.6), (2, 0.76, 0.40, 8.0, 2.1), (3, 0.72, 0.30, 9.0, 4.0)),
+    *((5, 0.66, 0.22, 11.0, 1.2), (7, 0.62, 0.20, 7.0, 5.0), (1, -0.80, 0.45, 4.0, 3.0)),
+    *((4, -0.74, 0.24, 10.0, 0.3), (6, -0.68, 0.20, 7.0, 2.7)),
+)
 #: Lows and highs: longitude, latitude, radius in degrees, m/s around it, anticlockwise.
 VORTICES = (
     *((-32, 58, 11, 17), (175, 52, 12, 18), (95, 64, 10, 9), (-82, 47, 8, 11), (18, 45, 7, 8)),

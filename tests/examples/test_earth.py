@@ -36,20 +36,18 @@ def test_every_variable_says_what_it_is(ocean: Dataset, weather: Dataset) -> Non
         for name, variable in ds.variables.items():
             assert {"standard_name"} <= set(variable.attrs), name
             assert "units" in variable.attrs or name == "time"
-        for variable in ds.data_vars.values():
-            assert variable.attrs["long_name"]
+        for array in ds.data_vars.values():
+            assert array.attrs["long_name"]
 
 
 def test_both_come_back_from_a_file(ocean: Dataset, weather: Dataset, tmp_path: Any) -> None:
     pytest.importorskip("netCDF4")
-    for name, ds in (("ocean", ocean), ("weather", weather)):
+    for name, ds, level in (("ocean", ocean, None), ("weather", weather, 500)):
         ds.to_netcdf(tmp_path / f"{name}.nc")
-        again = FlowField.from_file(tmp_path / f"{name}.nc", level=500 if name[0] == "w" else None)
-        level = {"level": 500} if name[0] == "w" else {}
-        np.testing.assert_array_equal(
-            np.asarray(again.velocity[0]),
-            np.asarray(FlowField.from_xarray(ds, **level).velocity[0]),
-        )
+        again = FlowField.from_file(tmp_path / f"{name}.nc", level=level)
+        here = FlowField.from_xarray(ds, sel={} if level is None else {"level": level})
+        np.testing.assert_array_equal(np.asarray(again.velocity[0]), np.asarray(here.velocity[0]))
+        assert again.start == here.start
 
 
 def test_land_is_where_it_is_on_the_earth(ocean: Dataset) -> None:
