@@ -71,7 +71,8 @@ def map_lines(field: FlowField, *, has_globe: bool) -> dict[str, MapLines]:
 
     def there(lines: MapLines) -> MapLines:
         distances, nearest = tree.query(lines.points)
-        return lines.within(distances <= reach[nearest])
+        # A point of the graticule may be a node, which is as far as that but for rounding.
+        return lines.within(distances <= (1 + 1e-6) * reach[nearest])
 
     meshes = there(graticule(projection, box))
     if not has_globe:

@@ -14,7 +14,7 @@ import flowtex
 from flowtex._util.array_types import Floats
 from flowtex._util.colours import rgb
 from flowtex.camera import Camera
-from flowtex.earth import EARTH_RADIUS
+from flowtex.earth import EARTH_RADIUS, Projection
 from flowtex.options import LAND_COLOR
 from flowtex.plotting import component  # noqa: F401  which PyVista finds by its entry point
 from flowtex.plotting.vtk_camera import read_camera
@@ -182,3 +182,18 @@ def test_lines_are_as_wide_on_a_fine_screen() -> None:
     drawn: dict[str, Any] = {"size": SIZE, "scalars": False, "color": "white", "strength": 0}
     once, twice = (flowtex.render(field, **drawn, supersampling=n).astype(float) for n in (1, 2))
     assert once.mean() == pytest.approx(twice.mean(), rel=0.02)
+
+
+def test_a_line_along_nodes_is_not_torn() -> None:
+    # Its points lie on corners of cells, exactly as far from their middles as they reach.
+    pytest.importorskip("pyproj")
+    lon, lat = np.meshgrid(np.linspace(-82, -46, 217), np.linspace(28, 46, 109))
+    projection = Projection("platecarree", (-64.0, 37.0))
+    east = np.ones(lon.shape)
+    field = flowtex.FlowField.from_arrays(
+        projection.positions(lon, lat),
+        projection.vectors(lon, lat, east, east),
+        projection=projection,
+    )
+    lines = map_lines(field, has_globe=False)["graticule"]
+    assert len(lines.starts) - 1 == 8  # four meridians and four parallels
