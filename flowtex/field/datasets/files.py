@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import warnings
 from collections.abc import Sequence
 from pathlib import Path
@@ -44,6 +45,13 @@ def dataset_paths(path: Any) -> list[Path]:
     paths = [Path(one).expanduser() for one in several]
     known = paths and all(map(is_dataset_file, paths)) and all(one.exists() for one in paths)
     return paths if known else []
+
+
+def common_name(paths: Sequence[Path]) -> str:
+    """Return a word for captions: what the names of the files begin with."""
+    stems = [path.stem for path in paths]
+    shared = os.path.commonprefix(stems) if len(stems) > 1 else stems[0]
+    return shared.rstrip("_-. 0123456789") if len(stems) > 1 and len(shared) > 2 else stems[0]
 
 
 def belong_together(paths: Sequence[Path]) -> bool:

@@ -23,7 +23,7 @@ LATITUDES = {"mercator": (-85.0, 85.0), "north": (0.0, 90.0), "south": (-90.0, 0
 POLAR = 66.0
 #: Longitudes from here on are all around the Earth.
 AROUND = 359.0
-#: Where a map is larger by this factor than where it is smallest, it ends.
+#: Where a map is larger by this factor than it mostly is, it ends.
 LARGEST = 4.0
 #: Edges between nodes are torn where they are longer by this factor than on the Earth.
 TORN = 8.0
@@ -85,8 +85,9 @@ def on_map(places: Places, name: str | None) -> MapNodes:
         points[(lat < least) | (lat > most)] = np.nan
     if name not in ("robinson", "equalearth", *CYLINDERS):
         scale = projection.scales(lon, lat)
+        known = scale[np.isfinite(scale)]
         with np.errstate(invalid="ignore"):
-            points[~(scale <= LARGEST * np.nanmin(scale))] = np.nan
+            points[~(scale <= LARGEST * (np.median(known) if known.size else 0))] = np.nan
     if not places.is_line or name not in (*CYLINDERS, "north", "south"):
         points[_torn(points, lon, lat)] = np.nan
     rows = np.asarray(np.isfinite(points[..., 0]).any(axis=1))

@@ -10,7 +10,7 @@ from typing import Any
 from flowtex.earth import GLOBE, NAMES
 from flowtex.errors import FieldError
 from flowtex.field.datasets.axes import LEVEL, Choice, axis_values, sections
-from flowtex.field.datasets.files import dataset_paths, open_datasets
+from flowtex.field.datasets.files import common_name, dataset_paths, open_datasets
 from flowtex.field.datasets.notices import DatasetNotice
 from flowtex.field.datasets.pairs import find_pairs, two_names
 from flowtex.field.datasets.read import as_datasets, recognise
@@ -123,4 +123,4 @@ def open_source(path: str | Path | Sequence[str | Path]) -> FlowSource:
             raise FieldError(msg)
         return FlowSource.from_file(path)
     with errors_of_file(paths[0]):
-        return DatasetSource(open_datasets(paths), name=paths[0].stem, path=paths[0])
+        return DatasetSource(open_datasets(paths), name=common_name(paths), path=paths[0])

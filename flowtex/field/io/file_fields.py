@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from flowtex.errors import FieldError
-from flowtex.field.datasets.files import dataset_paths, open_datasets
+from flowtex.field.datasets.files import common_name, dataset_paths, open_datasets
 from flowtex.field.datasets.pairs import two_names
 from flowtex.field.io.files import read_file
 from flowtex.field.io.reader_errors import errors_of_file
@@ -36,7 +36,7 @@ def field_of_file(
             if time is not None:
                 choices["sel"] = {**choices.get("sel", {}), "time": time}
             names: dict[str, Any] = two_names(vectors)
-            name = paths[0].stem
+            name = common_name(paths)
             return kind.from_xarray(open_datasets(paths), **names, **choices, name=name)
         _refuse(of_earth, "data of the Earth, and this is a mesh")
         if not isinstance(path, (str, Path)):

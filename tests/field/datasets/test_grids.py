@@ -84,3 +84,9 @@ def test_the_same_winds_are_the_same_picture_across_the_date_line(opengl: Any) -
         one, other = (flowtex.render(d, **view, **options).astype(float) for d in (ds, shifted))
         assert one.std() > 10
         assert np.abs(one - other).mean() < 2, view
+
+
+def test_an_orthographic_map_is_half_of_the_earth() -> None:
+    ds = winds(np.arange(-180.0, 180.0, 4.0), np.arange(-88.0, 88.1, 4.0))
+    field = FlowField.from_xarray(ds, projection="+proj=ortho +lat_0=30")
+    assert 0.35 < field.valid.mean() < 0.65
