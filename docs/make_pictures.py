@@ -112,6 +112,23 @@ def sphere() -> Picture:
     )
 
 
+def globe() -> Picture:
+    """Draw the jets on the globe, over the Atlantic and over the Pacific."""
+    winds = flowtex.FlowField.from_xarray(flowtex.examples.weather(), level=250, globe=True)
+    common: dict[str, Any] = {"size": (596, 560), "zoom": 1.3, "background": DARK}
+    positions = winds.projection.positions(np.array([-40.0, 150.0]), np.array([35.0, 50.0]))
+    return _row([flowtex.render(winds, **common, cmap="turbo", focus=tuple(p)) for p in positions])
+
+
+def ocean() -> Picture:
+    """Draw the Gulf Stream and its rings, with the land and the scale."""
+    currents = flowtex.FlowField.from_xarray(flowtex.examples.ocean())
+    middle = tuple(currents.projection.positions(-64.0, 37.2)[:2])
+    return flowtex.render(
+        currents, size=(1200, 600), zoom=1.4, focus=middle, cmap="magma", annotations=True, time=0.0
+    )
+
+
 def level_of_detail() -> Picture:
     """Draw the airfoil with level of detail, and without it."""
     return flowtex.render(
@@ -325,8 +342,8 @@ def _page_picture(page: Any, name: str) -> None:
 
 
 STILLS = (
-    *(wake, zooms, critical, vortices, sphere, torus, level_of_detail, grain, levels, correction),
-    *(kernels, patterns, half_turns, gyre),
+    *(wake, globe, ocean, zooms, critical, vortices, sphere, torus, level_of_detail, grain, levels),
+    *(correction, kernels, patterns, half_turns, gyre),
 )
 PICTURES: dict[str, Callable[[], Picture]] = {f.__name__: f for f in STILLS}
 

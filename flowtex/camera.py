@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import Floats
+from flowtex.earth import EARTH_RADIUS
 from flowtex.field import Surface
 
 __all__ = ["CAMERA_LIMITS", "WHOLE_VIEW", "Camera", "CameraError", "CameraLimits", "ViewPart"]
@@ -28,6 +29,10 @@ ViewPart = tuple[float, float, float, float]
 
 #: The way from a curved surface to the camera, and what is up there.
 ASIDE, UP = (1.0, 1.0, 1.0), (0.0, 0.0, 1.0)
+#: The same for all of a globe: above longitude 0 and 20 degrees north.
+WHOLE_GLOBE = (math.cos(math.radians(20)), 0.0, math.sin(math.radians(20)))
+#: Share of the radius from the middle of the globe, or its axis, from which a direction counts.
+LEAST_ASIDE = 0.2
 WHOLE_VIEW: ViewPart = (-1.0, -1.0, 1.0, 1.0)
 #: Farthest and nearest that a camera may be, in extents of the surface: beyond, numbers end.
 FARTHEST_REACH, NEAREST_REACH = 1e9, 1e-9
@@ -143,8 +148,8 @@ class Camera:
         *,
         zoom: float = 1.0,
         focus: ArrayLike | None = None,
-        toward: Point = ASIDE,
-        up: Point = UP,
+        toward: Point | None = None,
+        up: Point | None = None,
         margin: float = CAMERA_LIMITS.margin,
         free: ViewPart = WHOLE_VIEW,
     ) -> Self:
@@ -161,7 +166,8 @@ class Camera:
         focus
             Point of the mesh to look at, two or three coordinates; the middle by default.
         toward, up
-            The way from a curved surface to the camera, and what is up there: no parallels.
+            The way from a curved surface to the camera, and what is up there: no parallels. By
+            default a globe is seen from above its data, or the point to look at, with north up.
         margin
             Share of the picture that is left empty at each side, from 0 to less than a half.
         free
@@ -193,8 +199,17 @@ class Camera:
             camera = cls._fit_flat(surface, surface.frame, center, aspect, zoom, share, free)
         else:
             closest = CAMERA_LIMITS.closest if focus is not None else 1.0
+            side = _side(center) if surface.on_globe else (ASIDE, UP)
             camera = cls._fit_curved(
-                surface, center, aspect, zoom, closest, toward, up, share, free
+                surface,
+                center,
+                aspect,
+                zoom,
+                closest,
+                toward or side[0],
+                up or side[1],
+                share,
+                free,
             )
         (x, y), _ = _middle_and_half(free)
         return camera.pan(-x, -y, aspect)
@@ -490,6 +505,16 @@ class Camera:
         return bool(offsets.max() <= FARTHEST_REACH * surface.extent) and all(
             NEAREST_REACH <= size / surface.extent <= FARTHEST_REACH for size in sizes
         )
+
+
+def _side(center: Floats) -> tuple[Point, Point]:
+    """From where a point of a globe is seen from above, and the way northward there."""
+    if float(np.linalg.norm(center)) < LEAST_ASIDE * EARTH_RADIUS:
+        return WHOLE_GLOBE, UP
+    ahead = center / np.linalg.norm(center)
+    if math.hypot(ahead[0], ahead[1]) < LEAST_ASIDE:  # at a pole, with longitude 0 below it
+        return _point(ahead), (-math.copysign(1.0, ahead[2]), 0.0, 0.0)
+    return _point(ahead), UP
 
 
 def _turned(vector: Floats, axis: Floats, degrees: float) -> Floats:

@@ -24,9 +24,12 @@ from flowtex._util.names import near_names
 from flowtex.camera import Camera
 from flowtex.errors import raise_faults
 from flowtex.field import FlowField, Surface
+from flowtex.field.datasets.detect import is_dataset
+from flowtex.field.datasets.pairs import two_names
 from flowtex.settings import TABLE, Settings, SettingsError
 
 __all__ = [
+    "LAND_COLOR",
     "NO_VALUE_COLOR",
     "ROBUST",
     "SPEED",
@@ -42,7 +45,12 @@ __all__ = [
 PLAIN_COLOR = "#a0a0a0"
 #: Colour where there is no value, as in PyVista.
 NO_VALUE_COLOR = "darkgray"
+#: Colour of land: calm before a light and a dark background.
+LAND_COLOR = "#8f8b82"
 
+#: Arguments that only data of the Earth have, and those that only meshes have.
+OF_EARTH = ("projection", "globe", "level", "sel", "isel")
+OF_MESHES = ("plane", "block", "times", "periodic", "sign_free")
 #: The scalar that every flow has, and the range of colours without outliers.
 SPEED, ROBUST = "speed", "robust"
 
@@ -59,9 +67,14 @@ class FieldOptions:
     """What of a mesh makes the field; the names are those of :meth:`FlowField.from_pyvista`."""
 
     vectors: str | None = _option(
-        None, "Name of the velocity; found when there is only one candidate."
+        None,
+        "Name of the velocity, or of its two or three components with commas between, such as "
+        "``u,v,w``; found when there is only one candidate.",
     )
     plane: str | None = _option(None, 'Plane of a 3D mesh, such as ``"k=20"``.')
+    block: int | str | None = _option(
+        None, "Number or path of the block to draw, where there are several."
+    )
     times: Any | None = _option(None, "Times of a list of meshes; their positions by default.")
     periodic: str | None = _option(
         None, 'Axes that close on themselves: ``"i"``, ``"j"``, ``"ij"`` or ``""``.'
@@ -69,6 +82,20 @@ class FieldOptions:
     sign_free: bool | None = _option(
         None, "Whether the vectors have no sign, so that v and -v mean the same."
     )
+    projection: str | None = _option(
+        None,
+        "Map of data of the Earth: ``platecarree``, ``mercator``, ``north``, ``south``, "
+        "``lambert``, ``robinson``, ``equalearth``, ``globe``, or what PROJ takes; by default one "
+        "that suits the region.",
+    )
+    globe: bool | None = _option(None, "Whether data of the Earth are put on a sphere.")
+    level: float | str | None = _option(
+        None, "Level of a data set, such as ``500``; the one nearest to the surface by default."
+    )
+    sel: Mapping[str, Any] | None = _option(
+        None, 'What to draw along other axes of a data set, by value: ``{"number": 3}``.'
+    )
+    isel: Mapping[str, Any] | None = _option(None, "The same by number.")
 
     def field(self, mesh: Any) -> FlowField:
         """Return the field of a mesh or of a file, or a field as it is.
@@ -81,12 +108,15 @@ class FieldOptions:
             When something is chosen of a field that is made already, or the times of a file.
         """
         choices = {name: value for name, value in vars(self).items() if value is not None}
-        if isinstance(mesh, (str, Path)):
+        if is_dataset(mesh):
+            return FlowField.from_xarray(mesh, **self._of_dataset(choices))
+        if isinstance(mesh, (str, Path)) or _are_paths(mesh):
             if "times" in choices:
                 msg = f"times is given, and {str(mesh)!r} has its own; leave it out"
                 raise TypeError(msg)
             return FlowField.from_file(mesh, **choices)
         if not isinstance(mesh, FlowField):
+            self._refuse(choices, OF_EARTH, "data of the Earth, and this is a mesh")
             return FlowField.from_pyvista(mesh, **choices)
         if choices:
             msg = (
@@ -95,6 +125,22 @@ class FieldOptions:
             )
             raise TypeError(msg)
         return mesh
+
+    def _of_dataset(self, choices: dict[str, Any]) -> dict[str, Any]:
+        """Return the arguments of :meth:`FlowField.from_xarray`."""
+        self._refuse(choices, OF_MESHES, "meshes, and this is a data set")
+        return {**two_names(choices.pop("vectors", None)), **choices}
+
+    @staticmethod
+    def _refuse(choices: Mapping[str, Any], names: tuple[str, ...], what: str) -> None:
+        if given := [name for name in names if name in choices]:
+            msg = f"{', '.join(given)} is for {what}; leave it out"
+            raise TypeError(msg)
+
+
+def _are_paths(mesh: Any) -> bool:
+    several = isinstance(mesh, (list, tuple)) and bool(mesh)
+    return several and all(isinstance(one, (str, Path)) for one in mesh)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)  # arrays are not compared
@@ -143,6 +189,18 @@ class Appearance:
         "repeats it. Where it is transparent the surface's colour shows. It sets "
         '``noise="image"``, and ``strength=1`` unless that is given.',
     )
+    coastlines: bool | None = _option(
+        None, "Whether coasts are drawn; by default where the field has a projection."
+    )
+    graticule: bool | None = _option(
+        None,
+        "Whether meridians and parallels are drawn; by default where the field has a projection.",
+    )
+    land: Any = _option(
+        LAND_COLOR,
+        "Colour of the Earth where a field with a projection has no data, such as land in an "
+        "ocean; ``None`` for none.",
+    )
 
     def __post_init__(self) -> None:
         """Check the values, and have those that stand for others as these."""
@@ -167,7 +225,13 @@ class Appearance:
                 )
             elif not (isinstance(self.clim, tuple) and self.clim == (low, high)):
                 object.__setattr__(self, "clim", (low, high))
-        checks = ((colour_table, self.cmap, DEFAULT_CMAP), (rgb, self.color, PLAIN_COLOR))
+        if self.land is False:
+            object.__setattr__(self, "land", None)
+        checks = (
+            (colour_table, self.cmap, DEFAULT_CMAP),
+            (rgb, self.color, PLAIN_COLOR),
+            (rgb, LAND_COLOR if self.land is None else self.land, LAND_COLOR),
+        )
         for check, value, default in checks:
             if value is not default:  # which loads nothing
                 try:

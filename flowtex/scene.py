@@ -19,7 +19,9 @@ from flowtex._util.cache import WeakCache, digest
 from flowtex._util.colours import colour_table, is_diverging
 from flowtex._util.names import near_names
 from flowtex.field import FlowField
+from flowtex.field.dates import seconds_since
 from flowtex.field.interpolation import steps_around
+from flowtex.field.steps import LazySteps, Steps
 from flowtex.options import ROBUST, SPEED, Appearance, FieldOptions, Options, option_text
 from flowtex.rendering.cpu.shade import mean_colours
 from flowtex.settings import TABLE, Affects, Settings, SettingsError
@@ -273,16 +275,20 @@ class Scene:
 
     @property
     def time(self) -> float:
-        """Time that is shown, in the field's own unit, within its first and last step."""
+        """Time that is shown, in the field's own unit, within its first and last step.
+
+        Where the field's times count from a date it may be set to a date, or to the text of one.
+        """
         return self._time
 
     @time.setter
-    def time(self, value: float) -> None:
+    def time(self, value: Any) -> None:
+        moment = seconds_since(self.field.start, value)
         first, last = float(self.field.times[0]), float(self.field.times[-1])
-        if not first <= value <= last:
+        if not first <= moment <= last:
             msg = f"time is {value!r}; expected {first:g} to {last:g}, the times of the field"
             raise ValueError(msg)
-        self._time = float(value)
+        self._time = moment
         self._notify("uniform")
 
     @property
@@ -350,10 +356,10 @@ class Scene:
 
     def _range_values(self, name: str) -> Floats:
         """Values of the valid nodes at all times; the speed of a large field is that in space."""
-        valid = self.field.valid
+        some, valid = self.field.typical, self.field.valid
         if self.pyramid is None or name in self.field.scalars:
-            return steps_of(self.field, name)[:, valid]
-        return np.asarray(np.linalg.norm(self.field.velocity, axis=-1)[:, valid])
+            return np.asarray(np.asarray(steps_of(some, name))[:, valid])
+        return np.asarray(np.linalg.norm(some.velocity, axis=-1)[:, valid])
 
     def copy(self) -> Scene:
         """Return a scene that shows the same, and that no later change of this one reaches.
@@ -452,6 +458,9 @@ class AppearanceAttributes:
     visible = _attribute("visible")
     lighting = _attribute("lighting")
     show_scalar_bar = _attribute("show_scalar_bar")
+    coastlines = _attribute("coastlines")
+    graticule = _attribute("graticule")
+    land = _attribute("land")
 
     def __setattr__(self, name: str, value: Any) -> None:
         """Set an attribute that there is; the error for another one names those that are near."""
@@ -467,7 +476,7 @@ class AppearanceAttributes:
         super().__setattr__(name, value)
 
 
-def steps_of(field: FlowField, name: str) -> Floats:
+def steps_of(field: FlowField, name: str) -> Steps:
     """Return nodal values at all times, (T or 1, J, I); ``"speed"`` is always there.
 
     Raises
@@ -494,13 +503,16 @@ def share_field(field: FlowField) -> FlowField:
 
     A notebook shows one mesh many times over, and makes it a field each time.
     """
-    words = (field.periodic, field.name, field.length_unit, field.time_unit, field.sign_free)
+    names = (field.name, field.length_unit, field.time_unit, *field.long_names.items())
+    words = (*names, field.periodic, field.sign_free, str(field.start), field.projection)
     units = tuple(field.units.items())
     positions = () if field.has_position is None else (field.has_position,)
-    arrays = (field.points, field.velocity, field.times, field.valid, *positions)
-    key = digest(
-        *arrays, *field.scalars.values(), words=(words, units, len(positions), *field.scalars)
-    )
+    given = (field.points, field.velocity, field.times, field.valid, *positions)
+    given += tuple(field.scalars.values())
+    # What is read late is known by the object, which a field keeps alive.
+    late = tuple(id(a) for a in given if isinstance(a, LazySteps))
+    arrays = (a for a in given if not isinstance(a, LazySteps))
+    key = digest(*arrays, words=(words, units, len(positions), late, *field.scalars))
     return _fields.get(key, lambda: field)
 
 

@@ -7,9 +7,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from earth_fields import ocean, winds
 from flows import gyre, torus
 
 from flowtex.camera import CAMERA_LIMITS, Camera, CameraError
+from flowtex.earth import Projection
 
 ASPECT = 1.6
 ASIDE = Camera((2.4, -1.9, 1.5), (0.1, 0.2, -0.1), (0.0, 0.6, 0.8), view_angle=25.0)
@@ -24,6 +26,28 @@ def vtk_camera(camera: Camera) -> Any:
     result = vtkCamera()
     apply_camera(camera, result)
     return result
+
+
+def test_a_globe_is_seen_from_above_its_data_with_north_up() -> None:
+    projection = Projection("globe")
+
+    def seen(camera: Camera) -> tuple[float, float]:
+        lon, lat = projection.lonlat(np.array(camera.position))
+        return float(lon), float(lat)
+
+    whole = Camera.fit(winds().surface, ASPECT)
+    assert seen(whole) == pytest.approx((0, 20))
+    assert whole.up == (0, 0, 1)
+    part = Camera.fit(ocean().surface, ASPECT)
+    assert seen(part) == pytest.approx((6, -20), abs=1.5)  # the middle of what is no land
+    assert part.axes[1][2] > 0.9
+    for lat in (90.0, -90.0):
+        pole = projection.positions(np.array(0.0), np.array(lat))
+        camera = Camera.fit(winds().surface, ASPECT, focus=pole)
+        below = camera.project(projection.positions(np.array(0.0), np.array(0.7 * lat)), ASPECT)
+        assert below == pytest.approx([0, -abs(below[1]) if lat > 0 else abs(below[1])], abs=1e-9)
+    aside = Camera.fit(winds().surface, ASPECT, toward=(0, 1, 0), up=(1, 0, 0))
+    assert aside.position[1] > 0 and aside.up == (1, 0, 0)
 
 
 @pytest.mark.parametrize("camera", [ASIDE, STRAIGHT])

@@ -53,6 +53,11 @@ export interface CameraLimits {
   aspect: number;
 }
 
+const NORTH: Vector = [0, 0, 1];
+/** Sine of the latitude beyond which the eye does not go over a globe, and cosine of it that counts. */
+const STEEPEST = Math.sin((89 * Math.PI) / 180);
+const LEAST_COSINE = 0.2;
+
 const tangent = (degrees: number) => Math.tan((degrees * Math.PI) / 360);
 
 /** A camera that is moved. Places in the view are (x, y) from -1 to 1, right and up. */
@@ -64,15 +69,18 @@ export class Camera {
   readonly start: CameraState;
   /** Point of the surface at a place of the view. */
   pick: ((x: number, y: number) => Vector | null) | null = null;
+  /** Radius of the globe around the origin that is seen; 0 elsewhere. */
+  readonly globe: number;
   private readonly homeHeight: number;
   private readonly nearest: number;
 
   /** `flat` tells whether a drag pans; otherwise it rotates. */
-  constructor(state: CameraState, limits: CameraLimits, flat: boolean, aspect = 1) {
+  constructor(state: CameraState, limits: CameraLimits, flat: boolean, aspect = 1, globe = 0) {
     this.state = copyOf(state);
     this.start = copyOf(state);
     this.limits = limits;
     this.flat = flat;
+    this.globe = globe;
     this.aspect = aspect;
     this.homeHeight = this.height;
     this.nearest = this.distance / limits.closest;
@@ -155,6 +163,7 @@ export class Camera {
 
   /** Go around the focal point, as a drag by (dx, dy) asks. */
   rotate(dx: number, dy: number): void {
+    if (this.globe) return this.roam(dx, dy);
     const { state, limits } = this;
     const up = unit(state.up);
     let back = subtract(state.position, state.focal_point);
@@ -163,6 +172,35 @@ export class Camera {
     back = rotated(back, right, limits.turn * dy);
     state.position = add(state.focal_point, back);
     state.up = unit(cross(back, right));
+  }
+
+  /** Go around a globe with north up, as far as the place under the pointer asks. */
+  private roam(dx: number, dy: number): void {
+    const { state, limits, globe } = this;
+    const away = length(state.position as Vector);
+    const above = Math.max(away - globe, 0) * tangent(state.view_angle);
+    const height = state.parallel ? state.parallel_scale : above;
+    const degrees = Math.min(((height / globe) * 180) / Math.PI, limits.turn);
+    const cosine = Math.hypot(state.position[0], state.position[1]) / away;
+    const aside = Math.min((degrees * this.aspect) / Math.max(cosine, LEAST_COSINE), limits.turn);
+    this.turn(NORTH, -aside * dx);
+    const [right] = this.axes;
+    const steep = Math.abs(state.position[2]) / away;
+    const before = copyOf(state);
+    this.turn(right, degrees * dy);
+    const steeper = Math.abs(state.position[2]) / away;
+    if (steeper > Math.max(STEEPEST, steep)) this.state = before;
+    const [, , ahead] = this.axes;
+    const upward = add(NORTH, ahead, -dot(NORTH, ahead));
+    if (length(upward) > 1 - STEEPEST) this.state.up = unit(upward);
+  }
+
+  /** Go around the middle of a globe. */
+  private turn(axis: Vector, degrees: number): void {
+    const { state } = this;
+    for (const name of ["position", "focal_point", "up"] as const) {
+      state[name] = rotated(state[name], axis, degrees);
+    }
   }
 
   /** Zoom in; the point at (x, y) stays where it is. */

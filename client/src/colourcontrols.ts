@@ -1,13 +1,21 @@
-// Controls of the colours: what the surface is coloured by, the map, and its range.
+// Controls of the appearance: what the surface is coloured by, the map, its range, and lines of the Earth.
 
 import { rampOf, mapOf, type ColourChoice } from "./colours.ts";
 import { dom, numberText } from "./dom.ts";
 import type { Lifetime } from "./lifetime.ts";
-import { legendLimits, type Header, type Part, type Settings } from "./protocol.ts";
+import {
+  EARTH_LINES,
+  legendLimits,
+  type EarthLines,
+  type Header,
+  type Part,
+  type Settings,
+} from "./protocol.ts";
 
 /** Colours of a swatch, and the choice of none. */
 const STOPS = 9;
 const PLAIN = "none";
+const LINE_NAMES: Record<EarthLines, string> = { coastlines: "Coastlines", graticule: "Graticule" };
 
 /** The view whose colours are chosen. */
 export interface ColoursHost {
@@ -29,6 +37,7 @@ export class ColourControls {
   private readonly auto = dom("button", { type: "button", class: "link" }, ["auto"]);
   private readonly mapRow: HTMLElement;
   private readonly rangeRow: HTMLElement;
+  private readonly lines = dom("div", { class: "colours" });
 
   constructor(viewer: ColoursHost) {
     this.viewer = viewer;
@@ -51,9 +60,38 @@ export class ColourControls {
     this.element.append(row("Colour by", scalars), this.mapRow, this.rangeRow);
   }
 
+  /** Rows of all controls, from the topmost. */
+  get rows(): HTMLElement[] {
+    return [this.element, this.lines];
+  }
+
+  /** Switches of the lines of the Earth that the scene has. */
+  private updateLines(): void {
+    const { header, parts, lifetime } = this.viewer;
+    const names = EARTH_LINES.filter((name) => header?.earth && parts.has(name));
+    this.lines.hidden = !names.length;
+    if (this.lines.children.length !== names.length) {
+      this.lines.replaceChildren(
+        ...names.map((name) => {
+          const input = dom("input", { type: "checkbox", role: "switch" });
+          lifetime.listen(input, "change", () =>
+            this.viewer.chooseColours({ [name]: input.checked }),
+          );
+          const label = dom("span", { class: "name" }, [LINE_NAMES[name]]);
+          return dom("label", { class: "row", "data-lines": name }, [label, input]);
+        }),
+      );
+    }
+    names.forEach((name, n) => {
+      const input = this.lines.children[n].querySelector("input");
+      if (input) input.checked = header?.earth?.[name] ?? false;
+    });
+  }
+
   /** Show the colours as they are, where others can be chosen. */
   update(): void {
     const { header, parts } = this.viewer;
+    this.updateLines();
     const maps = parts.get("maps");
     this.element.hidden = !header?.scalars.choices.length || !maps;
     if (!header || !maps || this.element.hidden) return;

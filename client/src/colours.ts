@@ -8,6 +8,8 @@ export interface ColourChoice {
   scalars?: string | false;
   cmap?: string;
   clim?: [number, number] | null;
+  coastlines?: boolean;
+  graticule?: boolean;
 }
 
 type Scalars = Header["scalars"];
@@ -18,8 +20,8 @@ const SRGB = { knee: 0.04045, slope: 12.92, offset: 0.055, scale: 1.055, power: 
 
 /** What of a header says how the surface is coloured. */
 export function coloursOf(header: Header): Partial<Header> {
-  const { scalars, colour, background, lighting, opacity } = header;
-  return { scalars, colour, background, lighting, opacity };
+  const { scalars, colour, background, lighting, opacity, earth } = header;
+  return { scalars, colour, background, lighting, opacity, earth };
 }
 
 /** Limits of triangles that were chosen for a range, where a narrower one shows smaller differences. */
@@ -61,11 +63,14 @@ export function recoloured(
     [scalars.low, scalars.high] = widest ? [-end, end] : [low, high];
   }
   const mesh = narrowed(header.mesh, header.scalars, scalars);
+  const { coastlines = header.earth?.coastlines, graticule = header.earth?.graticule } = choice;
+  const earth = header.earth && { ...header.earth, coastlines, graticule };
+  const colours = { scalars, mesh, earth } as Partial<Header>;
   const maps = parts.get("maps");
-  if (!choice.cmap || !maps) return { colours: { scalars, mesh }, part: null };
+  if (!choice.cmap || !maps) return { colours, part: null };
   const data = mapOf(header, maps.data, choice.cmap);
   const part = { name: "cmap", data, shape: [256, 4], digest: `${OWN} ${choice.cmap}` };
-  return { colours: { scalars, mesh }, part };
+  return { colours, part };
 }
 
 const toLinear = (c: number) =>

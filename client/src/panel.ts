@@ -7,11 +7,12 @@ import { dom, icon, numberText, pictureOf, type IconName } from "./dom.ts";
 import { toggleFullscreen } from "./keyboard.ts";
 import { Legend } from "./legend.ts";
 import type { Timer } from "./lifetime.ts";
+import { dateText } from "./lonlat.ts";
 import type { Options } from "./options.ts";
 import type { Point } from "./picking.ts";
 import type { Player } from "./player.ts";
-import { positionText, withUnit, type PointCard } from "./pointcard.ts";
-import type { Settings } from "./protocol.ts";
+import { placeText, withUnit, type PointCard } from "./pointcard.ts";
+import type { Header, Settings } from "./protocol.ts";
 import STYLE from "./styles.css";
 
 /** Milliseconds for which a hint is shown; until lacking parts are named; in which a picture is saved. */
@@ -122,7 +123,7 @@ export class Panel {
     if (!header) return;
     this.note.hidden = true;
     this.controls.build(header);
-    this.controls.element.prepend(this.colours.element);
+    this.controls.element.prepend(...this.colours.rows);
     this.showLegend();
     this.update();
     this.arrange();
@@ -145,8 +146,8 @@ export class Panel {
     // The bar keeps its width when playing begins, and the button its place.
     this.playButton.hidden = this.track.hidden = !varies && !streams;
     this.slider.disabled = !varies && settings.motion === "off";
-    const unit = header?.slices.timeUnit ?? "";
-    this.timeText.style.minWidth = `${varies ? 8 + unit.length : 7}ch`;
+    const width = (header && this.date(header)?.length) || 8 + (header?.slices.timeUnit ?? "").length;
+    this.timeText.style.minWidth = `${varies ? width : 7}ch`;
     this.tick();
   }
 
@@ -171,8 +172,14 @@ export class Panel {
     const { first, last, now } = player.range(settings);
     this.slider.value = String((now - first) / (last - first || 1));
     const unit = header.slices.timeUnit;
-    const text = player.varies ? `${numberText(now)} ${unit}` : `${now.toFixed(1)} s`;
+    const moment = this.date(header) ?? `${numberText(now)} ${unit}`;
+    const text = player.varies ? moment : `${now.toFixed(1)} s`;
     if (this.timeText.textContent !== text) this.timeText.textContent = text;
+  }
+
+  /** The date that is shown, where times are dates. */
+  private date({ slices }: Header): string | null {
+    return dateText(slices.dates, slices.times, this.viewer.player.time);
   }
 
   /** The settings that the legend shows. */
@@ -187,13 +194,16 @@ export class Panel {
     if (header) this.legend.show(header, settings, parts.get("cmap")?.data);
   }
 
-  /** Show the point under the pointer. */
-  read(point: Point | null): void {
+  /** Show the point under the pointer, or the place of the Earth where there are no data. */
+  read(point: Point | null, ground: readonly number[] | null = null): void {
     const { header } = this.viewer;
     this.readout.replaceChildren();
     this.legend.point(null);
-    if (!point || !header) return;
-    this.readout.append(dom("span", {}, [positionText(point.position, header, this.viewer.camera)]));
+    const position = point?.position ?? ground;
+    if (!position || !header) return;
+    const { parts, camera } = this.viewer;
+    this.readout.append(dom("span", {}, [placeText(position, header, parts, camera)]));
+    if (!point) return;
     const { name, label, unit } = header.scalars;
     const value = point.values[name ?? ""];
     if (value === undefined) return;

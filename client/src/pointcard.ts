@@ -3,11 +3,12 @@
 import type { Camera } from "./camera.ts";
 import { dom, numberText } from "./dom.ts";
 import type { Lifetime, Timer } from "./lifetime.ts";
+import { eastNorth, lonLatOf, lonLatText } from "./lonlat.ts";
 import type { Options } from "./options.ts";
 import { pathShapes, type Line, type Place } from "./pathlines.ts";
 import { valuesAt, type Found, type Point } from "./picking.ts";
 import { pathThrough, type PointPath } from "./pointpath.ts";
-import type { Header, Settings } from "./protocol.ts";
+import type { Header, Part, Settings } from "./protocol.ts";
 import type { Layer } from "./tiles.ts";
 import type { Moment } from "./uniforms.ts";
 import type { Vector } from "./vectors.ts";
@@ -22,6 +23,9 @@ const VELOCITY_DIGITS = 3;
 /** Milliseconds for which a click waits until points can be found, and between two looks. */
 const PATIENCE_MS = 5000;
 const RETRY_MS = 40;
+/** Places that are told apart in half the height of a view, and metres of a degree on the Earth. */
+const PLACES_IN_VIEW = 200;
+const DEGREE_M = 111_195;
 /** Units longer than this are left out. */
 const UNIT_LENGTH = 12;
 
@@ -41,7 +45,22 @@ function vectorText(vector: readonly number[], size: number, digits: number, fla
 
 const liesAcross = ({ planar, frame }: Header["geometry"]) => planar && Math.abs(frame[8]) > 0.999;
 
-export function positionText(position: readonly number[], header: Header, camera: Camera | null): string {
+/** Where a point is: longitude and latitude on the Earth, else its position with the unit. */
+export function placeText(
+  position: readonly number[],
+  header: Header,
+  parts: ReadonlyMap<string, Part>,
+  camera: Camera | null,
+  isWithUnit = false,
+): string {
+  const { earth } = header;
+  const lonLat = earth && lonLatOf(earth, position, parts.get("lonlat"));
+  if (lonLat) return lonLatText(lonLat, (camera?.height ?? 0) / PLACES_IN_VIEW / DEGREE_M);
+  const text = positionText(position, header, camera);
+  return isWithUnit ? withUnit(text, header.lengthUnit) : text;
+}
+
+function positionText(position: readonly number[], header: Header, camera: Camera | null): string {
   const { geometry } = header;
   const zoom = Math.max(camera?.zoom ?? 1, 1);
   const digits = Math.min(Math.ceil(FEWEST_DIGITS + Math.log10(zoom)), MOST_DIGITS);
@@ -55,6 +74,7 @@ export interface CardHost {
   readonly header: Header | null;
   readonly settings: Settings;
   readonly options: Options;
+  readonly parts: ReadonlyMap<string, Part>;
   readonly root: HTMLElement;
   readonly camera: Camera | null;
   readonly shown: Moment | null;
@@ -135,12 +155,21 @@ export class PointCard {
   private tell(point: Point, { velocity }: PointPath, header: Header, camera: Camera): void {
     const { label, unit } = header.speed;
     const size = Math.hypot(...velocity);
-    const text = vectorText(velocity, size, VELOCITY_DIGITS, liesAcross(header.geometry));
-    const lines = new Map([
-      ["position", withUnit(positionText(point.position, header, camera), header.lengthUnit)],
-      [label.replace("speed", "velocity"), withUnit(text, unit)],
-      [label, withUnit(numberText(size, VELOCITY_DIGITS), unit)],
-    ]);
+    const lines = new Map<string, string>();
+    const { earth } = header;
+    const { parts } = this.host;
+    const where = placeText(point.position, header, parts, camera, true);
+    if (earth && lonLatOf(earth, point.position, parts.get("lonlat"))) {
+      const [east, north] = eastNorth(earth, point.position, velocity, parts.get("lonlat"));
+      lines.set("place", where);
+      lines.set("eastward", withUnit(numberText(east, VELOCITY_DIGITS), unit));
+      lines.set("northward", withUnit(numberText(north, VELOCITY_DIGITS), unit));
+    } else {
+      const text = vectorText(velocity, size, VELOCITY_DIGITS, liesAcross(header.geometry));
+      lines.set("position", where);
+      lines.set(label.replace("speed", "velocity"), withUnit(text, unit));
+    }
+    lines.set(label, withUnit(numberText(size, VELOCITY_DIGITS), unit));
     for (const [name, value] of Object.entries(point.values)) {
       const named = header.scalars.choices.find((each) => each.name === name) ?? header.scalars;
       lines.set(named.label, withUnit(numberText(value), named.unit));

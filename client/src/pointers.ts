@@ -11,7 +11,7 @@ import {
 import type { Timer } from "./lifetime.ts";
 import type { Panel, PanelHost } from "./panel.ts";
 import type { Point } from "./picking.ts";
-import { clamp } from "./vectors.ts";
+import { clamp, type Vector } from "./vectors.ts";
 
 /** Within these a press is a click. */
 const CLICK_PX = 4;
@@ -48,6 +48,7 @@ export interface PointerHost extends PanelHost {
   readonly sharp: boolean;
   readonly canPick: boolean;
   point(x: number, y: number): Point | null;
+  ground(x: number, y: number): Vector | null;
   /** Draw and report a camera that was moved by hand. */
   reportCamera(): void;
 }
@@ -198,7 +199,8 @@ export class Pointers {
     const look = () => {
       this.look = null;
       this.lastLook = performance.now();
-      if (viewer.sharp && viewer.canPick) viewer.panel.read(viewer.point(place.x, place.y));
+      const { x, y } = place;
+      if (viewer.sharp && viewer.canPick) viewer.panel.read(viewer.point(x, y), viewer.ground(x, y));
       else if (!viewer.player.playing) this.hover(place);
     };
     this.look = viewer.lifetime.later(look, Math.max(rest, viewer.sharp ? 0 : HOVER_MS));

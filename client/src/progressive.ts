@@ -2,6 +2,7 @@
 
 import { Camera, projection } from "./camera.ts";
 import type { Graphics } from "./context.ts";
+import type { EarthView } from "./earthlayer.ts";
 import type { Program } from "./programs.ts";
 import type { Settings } from "./protocol.ts";
 import { draftUniforms, learnedPrice, motionFactor, quality, rowsIn } from "./quality.ts";
@@ -62,6 +63,10 @@ export class ProgressiveRenderer {
   /** A picture of few pixels. */
   private readonly coarse = document.createElement("canvas");
   private readonly coarsePen = penOf(this.coarse);
+  /** Lines above the flow, what they show, and the pixels of the page's for the picture's. */
+  private readonly front = document.createElement("canvas");
+  private readonly frontPen = this.front.getContext("2d");
+  private frontLook = "";
   /** Number of the picture, and of the last draft; rows of the full picture that are drawn. */
   private version = 1;
   private draftVersion = 0;
@@ -108,7 +113,7 @@ export class ProgressiveRenderer {
   }
 
   dispose(): void {
-    for (const canvas of [this.canvas, this.back, this.last, this.coarse]) canvas.width = canvas.height = 0;
+    for (const canvas of [this.canvas, this.back, this.last, this.coarse, this.front]) canvas.width = canvas.height = 0;
   }
 
   /** Go on with the picture until a time; tells whether it is complete. */
@@ -154,9 +159,10 @@ export class ProgressiveRenderer {
       this.pen.drawImage(this.last, 0, 0);
       this.pen.setTransform(1, 0, 0, 1, 0, 0);
     }
-    if (best.scale < 1 || best.samples !== samples || this.viewer.smooth) return false;
-    this.complete();
-    return !this.isRefined;
+    const isWhole = best.scale === 1 && best.samples === samples && !this.viewer.smooth;
+    if (isWhole) this.complete();
+    this.drawLines(shown);
+    return isWhole && !this.isRefined;
   }
 
   /** One more strip of the full picture, which is shown when it is complete. */
@@ -181,7 +187,33 @@ export class ProgressiveRenderer {
     if (this.rowsDone < height) return false;
     this.pen?.drawImage(this.back, 0, 0);
     this.complete();
+    this.drawLines(shown);
     return true;
+  }
+
+  /** Put the lines of a map on the picture: all its pixels are theirs, in drafts as well. */
+  private drawLines(shown: Moment): void {
+    const { front, frontPen, graphics } = this;
+    const { scene, camera, ratio } = this.viewer;
+    const { width, height } = this.canvas;
+    if (!scene?.earth.lines.length || !camera || !frontPen) return;
+    const { earth } = scene;
+    const { state, aspect } = camera;
+    const look = JSON.stringify([state, aspect, width, height, earth.lines, earth.version]);
+    if (look !== this.frontLook) {
+      const { anchor } = this.viewer.view(shown, ratio);
+      const { canvas } = graphics;
+      if (canvas.width < width) canvas.width = width;
+      if (canvas.height < height) canvas.height = height;
+      front.width = width; // which clears it
+      front.height = height;
+      earth.drawLines({ camera, anchor, width, height, ratio }, () => {
+        const top = canvas.height - height;
+        frontPen.drawImage(canvas, 0, top, width, height, 0, 0, width, height);
+      });
+      this.frontLook = look;
+    }
+    this.pen?.drawImage(front, 0, 0);
   }
 
   private complete(): void {
@@ -261,6 +293,8 @@ export class ProgressiveRenderer {
     gl.clearColor(r, g, b, 1);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     const draft = samples !== viewer.settings.samples || height !== this.canvas.height;
+    const around: EarthView = { camera, anchor: view.anchor, width, height, ratio: viewer.ratio };
+    scene.earth.drawGround(around);
     for (const layer of this.layers) {
       graphics.programs.use(program, this.values(layer, camera, view, samples, draft));
       layer.draw(shown[0], shown[1], view.anchor, true);

@@ -93,6 +93,51 @@ export interface Shading {
   values: number[];
 }
 
+/** Lines of the Earth, by the names of their parts. */
+export const EARTH_LINES = ["coastlines", "graticule"] as const;
+export type EarthLines = (typeof EARTH_LINES)[number];
+
+/** How a line of the Earth looks; the width is in pixels of the page. */
+export interface Stroke {
+  option: EarthLines;
+  color: number[];
+  opacity: number;
+  width: number;
+}
+
+/** The Earth below a flow; which of the lines are shown, and in which colour land is. */
+export interface Earth extends Record<EarthLines, boolean> {
+  /** In metres; a globe lies around the origin. */
+  radius: number;
+  /** Whether there is a globe below the flow, which does not cover it. */
+  below: boolean;
+  /** The box in the surface's own frame that the lines' steps divide. */
+  low: number[];
+  size: number[];
+  /**
+   * Least x and y of a flat map and the greatest, between which the part "lonlat" is spread; null for a
+   * globe.
+   */
+  map: number[] | null;
+  land: number[] | null;
+  /** Height of a view in which lines have their width, and how that changes with it at most. */
+  usualHeight: number;
+  widthRange: [number, number];
+  /** Metres between points of lines, the greatest first, and pixels of the page that they may have. */
+  spacings: number[];
+  spacingPixels: number;
+  /** From below to above. */
+  strokes: Stroke[];
+}
+
+/** The date at time 0 in ISO 8601, or the dates of all steps in a calendar of its own. */
+export interface Dates {
+  start: string | null;
+  dates: string[];
+  /** Shortest time between two steps, in seconds. */
+  step: number;
+}
+
 /** The tiles of a large surface, which has been handed over at its coarsest level, the root. */
 export interface PyramidHeader {
   /** Level of the root, and the finest level of which there are tiles. */
@@ -111,12 +156,15 @@ export interface PyramidHeader {
 /** What of the header of a tile differs from that of the root. */
 export type TileHeader = Pick<Header, "geometry" | "slices">;
 
+type ShaderName =
+  "vertex" | "fragment" | "pick" | "lineVertex" | "lineFragment" | "groundVertex" | "groundFragment";
+
 export interface Header {
   format: number;
   name: string;
   /** Names of the shaders' variant, such as FLOWTEX_PLANAR. */
   variant: string[];
-  shaders: { vertex: string; fragment: string; pick: string };
+  shaders: Record<ShaderName, string>;
   geometry: Geometry;
   slices: {
     count: number;
@@ -133,6 +181,7 @@ export interface Header {
     steps: number;
     times: number[];
     timeUnit: string;
+    dates: Dates;
   };
   lengthUnit: string;
   /** Words and unit of the speed in the surface, and a typical one. */
@@ -174,6 +223,8 @@ export interface Header {
     shading: Shading;
   };
   mesh: MeshLimits;
+  /** Null for a flow that is elsewhere. */
+  earth: Earth | null;
   /** Null where the whole surface is here. */
   pyramid: PyramidHeader | null;
   limits: CameraLimits;

@@ -1,6 +1,7 @@
 // The buffers and textures of one scene, made of its parts when they are first drawn.
 
 import type { Graphics, Resource } from "./context.ts";
+import { EarthLayer } from "./earthlayer.ts";
 import { halved } from "./half.ts";
 import { coordinates, noiseCoordinates, positions, shares } from "./mesh.ts";
 import { MeshLevels, type Sight } from "./meshlevels.ts";
@@ -34,6 +35,7 @@ export class Scene {
   readonly graphics: Graphics;
   readonly header: Header;
   readonly parts: Map<string, Part>;
+  readonly earth: EarthLayer;
   anchor: Vector = [0, 0, 0];
   private readonly resources = new Map<string, Resource>();
   private scalarSteps = "";
@@ -45,6 +47,7 @@ export class Scene {
     this.graphics = graphics;
     this.header = header;
     this.parts = parts;
+    this.earth = new EarthLayer(graphics, header, parts);
   }
 
   /** Names of the parts that a moment needs and that are not there. */
@@ -97,6 +100,7 @@ export class Scene {
     const [kind, step] = name.split("/");
     if (kind === "mesh" || kind === "cells") this.meshLevels = this.drawn = null;
     const sliced = kind === "slices" || kind === "extra";
+    if (!sliced && kind !== "scalars") this.earth.forget(name);
     for (const user of sliced ? [`slices/${step}`] : (USERS[kind] ?? [])) this.drop(user);
     this.drop("array");
   }
@@ -113,6 +117,7 @@ export class Scene {
 
   dispose(): void {
     for (const name of [...this.resources.keys()]) this.drop(name);
+    this.earth.dispose();
   }
 
   /** What some parts are known by on the whole page; nothing where one of them has no digest. */

@@ -7,6 +7,7 @@
 import { coloursOf, recoloured, type ColourChoice } from "./colours.ts";
 import { Camera, copyOf, fitted, isSamePlace, widened, type CameraState } from "./camera.ts";
 import { FRAME_MS, sharedGraphics, type Graphics, type User } from "./context.ts";
+import { groundAt } from "./earthlayer.ts";
 import { Lifetime } from "./lifetime.ts";
 import type { Options } from "./options.ts";
 import { Panel } from "./panel.ts";
@@ -16,6 +17,7 @@ import { PointCard } from "./pointcard.ts";
 import { Pointers } from "./pointers.ts";
 import { ProgressiveRenderer } from "./progressive.ts";
 import {
+  EARTH_LINES,
   FORMAT,
   stepOf,
   tilePart,
@@ -197,7 +199,7 @@ export class Viewer implements User {
     this.scene?.forget(name);
     this.trim();
     if (name === "cmap") this.tiles?.recolour();
-    if (name === "cmap" || name === "maps") this.panel.showLegend();
+    if (["cmap", "maps", ...EARTH_LINES].includes(name)) this.panel.showLegend();
     this.change();
   }
 
@@ -273,8 +275,10 @@ export class Viewer implements User {
     const state = first
       ? widened(geometry, limits, first, nodes, aspect)
       : fitted(geometry, limits, nodes, aspect);
-    this.camera = new Camera(state, limits, geometry.planar, aspect);
-    this.camera.pick = (x, y) => (this.point(x, y)?.position as Vector | undefined) ?? null;
+    const globe = header.earth && !header.earth.map ? header.earth.radius : 0;
+    this.camera = new Camera(state, limits, geometry.planar, aspect, globe);
+    this.camera.pick = (x, y) =>
+      (this.point(x, y)?.position as Vector | undefined) ?? this.ground(x, y);
     // A host holds the camera that is shown.
     if (!first || !isEqual(first, state)) this.options.onCamera?.(copyOf(state));
   }
@@ -498,7 +502,7 @@ export class Viewer implements User {
       this.panel.fail("The shader does not compile with this graphics driver.", program.error);
       return;
     }
-    if (!program.ready) return this.request();
+    if (!program.ready || !this.scene?.earth.isReady) return this.request();
     if (!this.sharp && this.renderer.draw(program, shown, this.isBusy, until)) {
       this.panel.clear();
       programs.get(header.shaders.vertex, header.shaders.pick); // the pointer asks for it next,
@@ -554,6 +558,12 @@ export class Viewer implements User {
   /** Point of the surface at (x, y), from -1 to 1, right and up. */
   point(x: number, y: number): Point | null {
     return this.find(x, y)?.point ?? null;
+  }
+
+  /** Place of the Earth at (x, y), also where there are no data. */
+  ground(x: number, y: number): Vector | null {
+    const { header, camera } = this;
+    return header && camera && groundAt(header, camera, x, y);
   }
 
   /** The same, and where in what is drawn. */

@@ -2,11 +2,22 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 from pathlib import Path
+from typing import Any
 
-__all__ = ["install_extra"]
+__all__ = ["import_extra", "install_extra"]
 
 _CHECKOUT = Path(__file__).resolve().parents[2]
+
+
+def import_extra(module: str, extra: str) -> Any:
+    """Import an optional library; the error names the command that installs it."""
+    try:
+        return import_module(module)
+    except ModuleNotFoundError as error:
+        msg = f"{module} is missing; install it with {install_extra(extra)}"
+        raise ModuleNotFoundError(msg, name=module) from error
 
 
 def install_extra(extra: str) -> str:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from flowtex._util.extras import install_extra
-from flowtex.cli.options import FieldFlags, UsageError
+from flowtex.cli.options import FieldFlags, UsageError, number_or_text
 
 if TYPE_CHECKING:
     from flowtex.field import FlowField
@@ -85,12 +85,22 @@ def check_lines(flow: FieldFlags | None, options: dict[str, Any]) -> None:
         raise UsageError(msg)
 
 
-def check_time(field: FlowField, time: float | None) -> None:
-    """Refuse a time that the file has not."""
+def check_time(field: FlowField, time: str | None) -> float | None:
+    """Return a time in the field's own unit; refuse one that the file has not."""
+    if time is None:
+        return None
+    from flowtex.field.dates import seconds_since
+
     first, last = field.times[0], field.times[-1]
-    if time is not None and not first <= time <= last:
-        msg = f"--time is {time:g}; expected {first:g} to {last:g}, the times of the file"
+    try:
+        value = seconds_since(field.start, number_or_text(time))
+    except ValueError as error:
+        msg = f"--{error}"
+        raise UsageError(msg) from error
+    if not first <= value <= last:
+        msg = f"--time is {time}; expected {first:g} to {last:g}, the times of the file"
         raise UsageError(msg)
+    return value
 
 
 def check_colours(field: FlowField, options: dict[str, Any]) -> None:

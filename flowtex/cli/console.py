@@ -24,7 +24,10 @@ def complain(error: Exception, colour: str = "red") -> None:
 
 
 def in_flags(text: str) -> str:
-    """Return a message with Python's arguments as flags: ``plane="k=20"`` is ``--plane k=20``."""
+    """Return a message with Python's arguments as flags: ``plane="k=20"`` is ``--plane k=20``.
+
+    A value with blanks keeps its quotes.
+    """
     from flowtex.cli.options import FieldFlags, FrameFlags
     from flowtex.settings import TABLE
 
@@ -33,11 +36,14 @@ def in_flags(text: str) -> str:
     def flag(match: re.Match[str]) -> str:
         return f"--{match['name'].replace('_', '-')} {match['value']}"
 
+    def quoted_flag(match: re.Match[str]) -> str:
+        quote = match["quote"] if " " in match["value"] else ""
+        return f"--{match['name'].replace('_', '-')} {quote}{match['value']}{quote}"
+
     text = re.sub(rf"(?:^|(?<=: |\. ))(?P<name>{names}) (?P<value>is )", flag, text)
-    quoted = (
-        rf"""(?<!--beside )\b(?P<name>{names})=(?P<quote>["']?)(?P<value>[^\s"';,)]+)(?P=quote)"""
-    )
-    return re.sub(quoted, flag, text)
+    start = rf"(?<!--beside )\b(?P<name>{names})="
+    text = re.sub(rf"""{start}(?P<quote>["'])(?P<value>[^"']+)(?P=quote)""", quoted_flag, text)
+    return re.sub(rf"""{start}(?P<value>[^\s"';,)]+)""", flag, text)
 
 
 def say(text: str) -> None:

@@ -5,9 +5,13 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Annotated
 
-from flowtex.cli.options import FILE, FLAT, FieldFlags
+from flowtex.cli.console import in_flags
+from flowtex.cli.load import load_field
+from flowtex.cli.options import FILE, FLAT, FieldFlags, UsageError
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from rich.table import Table
 
     from flowtex.field import FlowField
@@ -15,24 +19,38 @@ if TYPE_CHECKING:
 
 __all__ = ["info"]
 
+#: Times and blocks that are listed one by one at most.
+MOST_TIMES, MOST_BLOCKS = 8, 40
 
-def info(file: FILE, /, *, flow: Annotated[FieldFlags | None, FLAT] = None) -> int:
+
+def info(*files: FILE, flow: Annotated[FieldFlags | None, FLAT] = None) -> int:
     """Tell what a file holds, and what would be drawn."""
     from rich.console import Console
     from rich.text import Text
 
     from flowtex.field import FlowField
+    from flowtex.field.datasets.files import dataset_paths
     from flowtex.field.io.summary import describe
 
-    options = (flow or FieldFlags()).arguments()
-    summary = describe(file)
     console = Console(highlight=False)
+    if paths := dataset_paths(files):
+        console.print(Text(" ".join(map(str, files)), "bold"), soft_wrap=True)
+        console.print(_recognised_table(paths))
+        console.print(_field_table(load_field(files, flow)))
+        return 0
+    if len(files) != 1:
+        msg = f"there are {len(files)} files; name one, or several of data of the Earth"
+        raise UsageError(msg)
+    file, options = files[0], (flow or FieldFlags()).arguments()
+    summary = describe(file, options.get("block"))
     console.print(Text(str(file), "bold"), soft_wrap=True)
     console.print(_file_table(summary))
+    if summary.blocks:
+        console.print(_block_table(summary))
     if summary.arrays:
         console.print(_array_table(summary))
     if summary.problem and not options:
-        console.print(Text(f"To draw it: {summary.problem}", "yellow"))
+        console.print(Text(f"To draw it: {in_flags(summary.problem)}", "yellow"))
         return 0
     console.print(_field_table(FlowField.from_file(file, **options)))
     return 0
@@ -48,6 +66,34 @@ def _pairs(title: str) -> Table:
     return table
 
 
+def _recognised_table(paths: list[Path]) -> Table:
+    """Tell which velocity, grid and coordinates were recognised, and why."""
+    from flowtex.field.datasets.axes import axis_values
+    from flowtex.field.datasets.files import open_datasets
+    from flowtex.field.datasets.pairs import find_pairs
+    from flowtex.field.datasets.read import as_datasets, recognise
+    from flowtex.field.io.reader_errors import errors_of_file
+
+    table = _pairs("")
+    with errors_of_file(paths[0]):
+        datasets = as_datasets(open_datasets(paths))
+        pairs = find_pairs(datasets)
+        likely = pairs[0] if pairs else None
+        known = recognise(datasets, *((likely.u.name, likely.v.name) if likely else ()))
+    table.add_row("velocity", str(known.pair))
+    others = [pair for pair in pairs if pair.u.name != known.pair.u.name]
+    if others:
+        table.add_row("also", "; ".join(map(str, others)))
+    directions = {"earth": "eastward and northward", "grid": "along the grid"}
+    table.add_row("directions", directions[known.along])
+    table.add_row("grid", known.grid)
+    table.add_row("coordinates", known.coordinates)
+    for name, words in axis_values(known.pair.u).items():
+        few = ", ".join(words[:MOST_TIMES]) + (", ..." if len(words) > MOST_TIMES else "")
+        table.add_row(name, f"{len(words)}: {few}")
+    return table
+
+
 def _file_table(summary: FileSummary) -> Table:
     table = _pairs("")
     nodes = " × ".join(str(n) for n in summary.dimensions or ())
@@ -55,22 +101,43 @@ def _file_table(summary: FileSummary) -> Table:
     if summary.blanked:
         table.add_row("blanked", f"{summary.blanked:,} nodes")
     if summary.blocks:
-        table.add_row("blocks", ", ".join(summary.blocks))
+        table.add_row("blocks", str(len(summary.blocks)))
     if summary.times:
+        few = len(summary.times) <= MOST_TIMES
         ends = f"{summary.times[0]:g} to {summary.times[-1]:g}"
-        table.add_row("times", f"{len(summary.times)}, {ends}")
+        listed = ", ".join(f"{time:g}" for time in summary.times) if few else ends
+        table.add_row("times", f"{len(summary.times)}: {listed}")
     table.add_row("velocity", ", ".join(summary.candidates) or "none found")
+    return table
+
+
+def _block_table(summary: FileSummary) -> Table:
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(box=None, header_style="dim")
+    for title in ("block", "name", "grid", "nodes"):
+        table.add_column(title)
+    for block in summary.blocks[:MOST_BLOCKS]:
+        number = "" if block.number is None else str(block.number)
+        nodes = " × ".join(str(n) for n in block.dimensions or ())
+        table.add_row(number, Text(block.name), block.grid, nodes)
+    if len(summary.blocks) > MOST_BLOCKS:
+        table.add_row("", f"and {len(summary.blocks) - MOST_BLOCKS} more", "", "")
     return table
 
 
 def _array_table(summary: FileSummary) -> Table:
     from rich.table import Table
+    from rich.text import Text
 
     table = Table(box=None, header_style="dim")
     for title in ("array", "on", "numbers", "from", "to"):
         table.add_column(title, justify="left" if title in ("array", "on") else "right")
     for array in summary.arrays:
-        table.add_row(array.name, array.where, str(array.components), *_span(array))
+        made = f" = {', '.join(array.parts)}" if array.parts else ""
+        name = Text(f"{array.name}{made}")
+        table.add_row(name, array.where, str(array.components), *_span(array))
     return table
 
 

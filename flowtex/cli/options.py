@@ -14,12 +14,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from cyclopts import Group, Parameter
 from cyclopts.validators import Number
 
-from flowtex._util.progress import waiting
 from flowtex.options import Appearance, FieldOptions, ViewOptions, option_text
 from flowtex.settings import TABLE, Setting, Settings, setting
-
-if TYPE_CHECKING:
-    from flowtex.field import FlowField
 
 __all__ = [
     "FILE",
@@ -32,7 +28,7 @@ __all__ = [
     "ServeFlags",
     "SettingFlags",
     "UsageError",
-    "load_field",
+    "number_or_text",
     "settings_from",
 ]
 
@@ -40,7 +36,13 @@ FLOW, PICTURE = Group("The flow", sort_key=1), Group("The picture", sort_key=2)
 PAGE, SETTINGS = Group("The page", sort_key=3), Group("Settings", sort_key=4)
 
 PORT = Number(gte=0, lt=65536)
-FILE = Annotated[Path, Parameter(help="A structured mesh: any file that PyVista reads, or PLOT3D.")]
+FILE = Annotated[
+    Path,
+    Parameter(
+        help="A structured mesh: any file that PyVista reads, or PLOT3D; or data of the Earth: "
+        "NetCDF, Zarr, GRIB or the JSON of wind maps, several files where they belong together."
+    ),
+]
 FLAT = Parameter(name="*")
 #: What a flag of several numbers expects.
 POINT, RANGE = "two or three coordinates", "two numbers"
@@ -66,23 +68,40 @@ class FieldFlags:
     plane: Annotated[str | None, _flag(FieldOptions, "plane")] = None
     vectors: Annotated[str | None, _flag(FieldOptions, "vectors")] = None
     time: Annotated[
-        float | None,
-        Parameter(group=FLOW, help="One time of a series, by its streamlines; all by default."),
+        str | None,
+        Parameter(
+            group=FLOW,
+            help="One time of a series, a number or a date, by its streamlines; all by default.",
+        ),
     ] = None
+    projection: Annotated[str | None, _flag(FieldOptions, "projection")] = None
+    globe: Annotated[bool | None, _flag(FieldOptions, "globe", negative="")] = None
+    level: Annotated[str | None, _flag(FieldOptions, "level", allow_leading_hyphen=True)] = None
+    select: Annotated[
+        tuple[str, ...],
+        _flag(FieldOptions, "sel", "What to draw along another axis of a data set, as number=3."),
+    ] = ()
     periodic: Annotated[
         str | None,
         _flag(
             FieldOptions, "periodic", "Axes that close on themselves: ``i``, ``j``, ``ij`` or none."
         ),
     ] = None
-    block: Annotated[
-        str | None, Parameter(group=FLOW, help="Number or name of the block to draw.")
-    ] = None
+    block: Annotated[str | None, _flag(FieldOptions, "block")] = None
     sign_free: Annotated[bool | None, _flag(FieldOptions, "sign_free", negative="")] = None
 
     def arguments(self) -> dict[str, Any]:
         """Return the flags that were set, as arguments of ``FlowField.from_file``."""
-        values = {name: value for name, value in asdict(self).items() if value is not None}
+        values = {name: value for name, value in asdict(self).items() if value not in (None, ())}
+        for name in ("time", "level"):
+            if name in values:
+                values[name] = number_or_text(values[name])
+        if chosen := values.pop("select", ()):
+            pairs = [text.partition("=") for text in chosen]
+            if not all(name and value for name, _, value in pairs):
+                msg = f"--select is {' '.join(chosen)}; expected an axis and a value, as number=3"
+                raise UsageError(msg)
+            values["sel"] = {name: number_or_text(value) for name, _, value in pairs}
         if values.get("periodic") == "none":
             values["periodic"] = ""
         if str(values.get("block", "")).isdecimal():
@@ -110,6 +129,16 @@ class LookFlags:
             allow_leading_hyphen=True,
         ),
     ] = None
+    coastlines: Annotated[bool | None, _flag(Appearance, "coastlines")] = None
+    graticule: Annotated[bool | None, _flag(Appearance, "graticule")] = None
+    land: Annotated[
+        str,
+        _flag(
+            Appearance,
+            "land",
+            "Colour of the Earth where a field with a projection has no data, or none.",
+        ),
+    ] = Appearance.land
     background: Annotated[str, _flag(ViewOptions, "background")] = ViewOptions.background
     zoom: Annotated[float, _flag(ViewOptions, "zoom")] = ViewOptions.zoom
     focus: Annotated[
@@ -135,6 +164,9 @@ class LookFlags:
             "scalars": False if self.scalars == "none" else self.scalars,
             "cmap": self.cmap,
             "clim": None if self.clim is None else _numbers("--clim", self.clim, RANGE),
+            "coastlines": self.coastlines,
+            "graticule": self.graticule,
+            "land": None if self.land == "none" else self.land,
             "background": self.background,
             "zoom": self.zoom,
             "focus": None if self.focus is None else _numbers("--focus", self.focus, POINT),
@@ -214,6 +246,14 @@ class ServeFlags:
     browser: Annotated[bool, Parameter(group=PAGE, help="Open the page in the browser.")] = True
 
 
+def number_or_text(text: str) -> float | str:
+    """Return a number where a text is one."""
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
 def _numbers(flag: str, text: str, expected: str) -> tuple[float, ...]:
     try:
         values = tuple(float(word) for word in text.split(","))
@@ -223,14 +263,6 @@ def _numbers(flag: str, text: str, expected: str) -> tuple[float, ...]:
         msg = f"{flag} is {text!r}; expected {expected}, as in {flag} 1.5,0"
         raise UsageError(msg)
     return values
-
-
-def load_field(file: Path, flow: FieldFlags | None) -> FlowField:
-    """Return the flow of a file."""
-    from flowtex.field import FlowField
-
-    with waiting(f"Reading {file.name}"):
-        return FlowField.from_file(file, **(flow or FieldFlags()).arguments())
 
 
 def settings_from(flags: SettingFlags | None) -> dict[str, Any]:

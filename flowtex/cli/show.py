@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -11,6 +12,7 @@ from flowtex import examples
 from flowtex._util.progress import waiting
 from flowtex.cli.checks import check_colours, check_image, check_lines, require_app, require_opengl
 from flowtex.cli.console import announcer, describe
+from flowtex.cli.load import load_field, notices
 from flowtex.cli.options import (
     FLAT,
     DrawFlags,
@@ -19,7 +21,6 @@ from flowtex.cli.options import (
     ServeFlags,
     SettingFlags,
     UsageError,
-    load_field,
     settings_from,
 )
 from flowtex.examples import NAMES
@@ -35,7 +36,7 @@ FIRST_LOOKS: dict[str, tuple[float, tuple[float, ...] | None]] = {
     "airfoil": (6.0, (0.5, 0.0)),
 }
 #: Options that change the field of a file; the others choose a part of it.
-FIELD_OPTIONS = ("periodic", "time", "sign_free")
+FIELD_OPTIONS = ("periodic", "time", "sign_free", "projection", "globe", "level", "sel")
 
 FILE = Annotated[
     Path,
@@ -95,9 +96,10 @@ def show(
     from flowtex import diagnostics
 
     on_page = page is not None or not diagnostics.has_display()
-    if on_page or len(files) != 1 or files[0].is_dir():
+    together = _belong_together(files)
+    if on_page or not (together or len(files) == 1) or _is_folder(files[0]):
         return _show_page(files, flow, page, options)
-    field = load_field(files[0], flow)
+    field = load_field(files, flow)
     check_colours(field, options)
     from flowtex import show as show_window
 
@@ -121,12 +123,57 @@ def _show_page(
         msg = "--background is for pictures and windows; the page has its own, under Colours"
         raise UsageError(msg)
     choice = (flow or FieldFlags()).arguments()
-    if len(files) == 1 and files[0].is_file() and any(name in choice for name in FIELD_OPTIONS):
-        return _serve(Library.of(load_field(files[0], flow)), page, options)
+    one = _belong_together(files) or (len(files) == 1 and not _is_folder(files[0]))
+    if one and (library := _earth_library(files, choice)) is not None:
+        return _serve(library, page, {**options, **choice})
+    if one and any(name in choice for name in FIELD_OPTIONS):
+        return _serve(Library.of(load_field(files, flow)), page, options)
     if misplaced := [name for name in FIELD_OPTIONS if name in choice]:
         msg = f"--{misplaced[0].replace('_', '-')} goes with one file, not with several or a folder"
         raise UsageError(msg)
     return _serve(Library.of(*files), page, {**options, **choice})
+
+
+def _earth_library(files: Sequence[Path], choice: dict[str, Any]) -> Library | None:
+    """Return a library of data of the Earth, whose map and level may be chosen on the page.
+
+    These are put into the choice as the page has them. ``None`` is for anything else, and where
+    more is chosen than the page can choose.
+    """
+    from flowtex.app import Library
+    from flowtex.earth import GLOBE, NAMES
+    from flowtex.field.datasets.files import dataset_paths
+    from flowtex.field.datasets.source import DatasetSource, open_source
+
+    known = {"vectors", "projection", "globe", "level"}
+    if not dataset_paths(files) or set(choice) - known:
+        return None
+    block = GLOBE if choice.get("globe") else choice.get("projection", "")
+    if block not in ("", GLOBE, *NAMES):
+        return None
+    with waiting(f"Reading {files[0].name}"), notices():
+        source = open_source(files)
+    level = choice.pop("level", None)
+    for name in ("projection", "globe"):
+        choice.pop(name, None)
+    if level is not None and isinstance(source, DatasetSource):
+        choice["plane"] = source.plane_of(level)
+    if block:
+        choice["block"] = block
+    return Library.of(source)
+
+
+def _is_folder(path: Path) -> bool:
+    from flowtex.field.datasets.files import is_dataset_file
+
+    return path.is_dir() and not is_dataset_file(path)
+
+
+def _belong_together(files: Sequence[Path]) -> bool:
+    """Whether several files are parts of one model's output, or steps of a series."""
+    from flowtex.field.datasets.files import belong_together, dataset_paths
+
+    return len(files) > 1 and bool(dataset_paths(files)) and belong_together(files)
 
 
 def _serve(library: Library, page: ServeFlags | None, options: dict[str, Any]) -> int:

@@ -22,6 +22,7 @@ from flowtex.cli.checks import (
     require_opengl,
 )
 from flowtex.cli.console import describe, say
+from flowtex.cli.load import load_field
 from flowtex.cli.options import (
     FILE,
     FLAT,
@@ -31,7 +32,6 @@ from flowtex.cli.options import (
     LookFlags,
     SettingFlags,
     UsageError,
-    load_field,
     settings_from,
 )
 
@@ -42,9 +42,7 @@ NOTABLE_LOSS = 0.01
 
 
 def render(
-    file: FILE,
-    /,
-    *,
+    *files: FILE,
     output: Annotated[
         Path,
         Parameter(name=["--output", "-o"], help="Picture to write; its suffix is its format."),
@@ -67,14 +65,14 @@ def render(
     if options.get("lines") == "pathlines" and flow is not None:
         # Pathlines of a moment go through the times around it.
         flow, time_shown = replace(flow, time=None), flow.time
-    field = load_field(file, flow)
+    field = load_field(files, flow)
     check_colours(field, options)
-    check_time(field, time_shown)
+    moment = check_time(field, time_shown)
     from PIL import Image
 
     from flowtex import render as draw
 
-    pixels = draw(field, size=size, time=time_shown, **options)
+    pixels = draw(field, size=size, time=moment, **options)
     with _writing(output):
         Image.fromarray(pixels).save(output)
     lost = (
@@ -90,9 +88,7 @@ def render(
 
 
 def movie(
-    file: FILE,
-    /,
-    *,
+    *files: FILE,
     output: Annotated[
         Path, Parameter(name=["--output", "-o"], help="File to write: .mp4, .gif or .webp.")
     ],
@@ -119,7 +115,7 @@ def movie(
     check_image(options)
     check_lines(flow, options)
     require_opengl()
-    field = load_field(file, flow)
+    field = load_field(files, flow)
     check_colours(field, options)
     from flowtex import movie as write_movie
 
@@ -137,9 +133,7 @@ def movie(
 
 
 def export(
-    file: FILE,
-    /,
-    *,
+    *files: FILE,
     output: Annotated[
         Path, Parameter(name=["--output", "-o"], help="Page to write, such as page.html.")
     ],
@@ -160,7 +154,7 @@ def export(
     check_page_file(output)
     check_image(options)
     check_lines(flow, options)
-    field = load_field(file, flow)
+    field = load_field(files, flow)
     check_colours(field, options)
     if steps is not None and steps < 1:
         msg = f"--steps is {steps}; expected 1 to {len(field.times)}, the steps of the file"

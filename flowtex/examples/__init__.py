@@ -11,6 +11,9 @@ Each comes three ways: ``name()`` is one ``pyvista.StructuredGrid`` with the poi
     delta_wing   steady         curved surface  a winged body, 52 x 62 nodes
     liquid_oxygen_post  steady  plane of a 3D grid   a file of NASA's, not shipped
 
+Two datasets of xarray's are like those that models write, and need the extra ``xarray``:
+``ocean()`` has eight days of currents with a coast, ``weather()`` winds all over the Earth.
+
 What takes long to compute is shipped as a file; in a checkout ``tools/example_data/build.py``
 computes those files again.
 """
@@ -18,6 +21,7 @@ computes those files again.
 from __future__ import annotations
 
 from flowtex.examples._double_gyre import double_gyre_velocity
+from flowtex.examples._earth import ocean, weather
 from flowtex.examples._fields import (
     NAMES,
     airfoil_field,
@@ -56,9 +60,11 @@ __all__ = [
     "double_gyre_velocity",
     "liquid_oxygen_post",
     "liquid_oxygen_post_field",
+    "ocean",
     "to_grid",
     "to_series",
     "vortex",
     "vortex_field",
     "vortex_series",
+    "weather",
 ]

@@ -1,7 +1,8 @@
-"""Times that are dates, as seconds."""
+"""Times that are dates: as seconds since the first, and back as text."""
 
 from __future__ import annotations
 
+from datetime import timedelta
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,27 +12,33 @@ from flowtex.errors import FieldError
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-__all__ = ["as_seconds"]
+__all__ = ["as_seconds", "date_text", "seconds_since"]
+
+DAY_S = 86_400.0
 
 
-def as_seconds(times: Any, time_unit: str) -> tuple[ArrayLike | None, str]:
-    """Return times and their unit: dates as seconds since the first, and spans of time as seconds.
+def as_seconds(times: Any, time_unit: str) -> tuple[ArrayLike | None, str, Any]:
+    """Return times, their unit, and the date at time 0.
 
-    Numbers are returned as they are.
+    Dates become seconds since the first, and spans of time seconds. Numbers are returned as they
+    are; they have no date, and spans have none.
 
     Raises
     ------
     FieldError
         When the unit of dates or spans is said to be another one, or spans are of months or years.
     """
+    start = None
     try:
         given = np.asarray(times)
         if given.dtype.kind == "O" and given.size and hasattr(given.flat[0], "isoformat"):
-            given = given.astype("datetime64[us]")
+            start = given.flat[0]
+            # Other calendars have days that datetime64 has not; their differences are spans.
+            given = (given - start).astype("timedelta64[us]")
     except (TypeError, ValueError):  # what is no array is refused later, by its name
-        return times, time_unit
+        return times, time_unit, None
     if given.dtype.kind not in "mM":
-        return times, time_unit
+        return times, time_unit, None
     if time_unit not in ("", "s"):
         msg = (
             f"time_unit is {time_unit!r} and the times are dates, which become seconds; leave it "
@@ -45,5 +52,52 @@ def as_seconds(times: Any, time_unit: str) -> tuple[ArrayLike | None, str]:
             )
             raise FieldError(msg)
         given = given.astype("datetime64[D]")
-    spans = given - given.flat[:1] if given.dtype.kind == "M" else given
-    return np.ma.masked_array(spans / np.timedelta64(1, "s"), np.ma.getmask(times)), "s"
+    if given.dtype.kind == "M":
+        first = given.flat[:1]
+        if len(first) and not np.isnat(first[0]):
+            start = first.astype("datetime64[us]").item(0)
+            start = start if hasattr(start, "isoformat") else None  # a year that datetime lacks
+        given = given - first
+    seconds = np.ma.masked_array(given / np.timedelta64(1, "s"), np.ma.getmask(times))
+    return seconds, "s", start
+
+
+def date_text(start: Any, time: float, step: float) -> str:
+    """Return a time in seconds since ``start`` as a date, to tell steps of so many seconds apart.
+
+    It is the day, or the minute, or the second.
+    """
+    whole_days = step % DAY_S == 0 and time % DAY_S == 0 and _at_midnight(start)
+    form = "%Y-%m-%d" if whole_days else "%Y-%m-%d %H:%M" if step >= 60 else "%Y-%m-%d %H:%M:%S"
+    return str((start + timedelta(seconds=time)).strftime(form))
+
+
+def seconds_since(start: Any, date: Any) -> float:
+    """Return a time in seconds since ``start``, from a number, a date, or a text such as a date.
+
+    Raises
+    ------
+    ValueError
+        When it is none.
+    """
+    if isinstance(date, (int, float, np.number)):
+        return float(date)
+    if start is None:
+        msg = f"time is {date!r}; expected a number, for the times of the field are no dates"
+        raise ValueError(msg)
+    try:
+        if isinstance(date, np.datetime64):
+            date = date.astype("datetime64[us]").item()
+        elif isinstance(date, str):
+            whole = np.datetime64(date).astype("datetime64[us]").item()
+            numbers = (*whole.timetuple()[:6], whole.microsecond)
+            calendar = {"calendar": start.calendar} if hasattr(start, "calendar") else {}
+            date = type(start)(*numbers, **calendar)
+        return float((date - start).total_seconds())
+    except (TypeError, ValueError, AttributeError) as error:
+        msg = f"time is {date!r}; expected a number, or a date such as {start:%Y-%m-%d %H:%M}"
+        raise ValueError(msg) from error
+
+
+def _at_midnight(date: Any) -> bool:
+    return not (date.hour or date.minute or date.second or date.microsecond)

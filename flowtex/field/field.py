@@ -7,22 +7,26 @@ package relies on it.
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex.earth import Projection
 from flowtex.errors import FieldError, raise_faults
 from flowtex.field.dates import as_seconds
+from flowtex.field.interpolation import every_line
 from flowtex.field.metric import IndexVelocity, to_index_space
 from flowtex.field.periodic import NodalArrays, close_axes
 from flowtex.field.signs import oriented, sign_free_faults, with_equal_ends
+from flowtex.field.steps import LazySteps, Steps
 from flowtex.field.surface import Surface, known_positions
+from flowtex.field.units import speed_unit
 from flowtex.field.validation import (
     as_numbers,
     finite_nodes,
@@ -35,7 +39,10 @@ from flowtex.field.validation import (
     with_gaps,
 )
 
-__all__ = ["FlowField", "speed_unit"]
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["FlowField"]
 
 #: Share of the flow normal to the surface from which on the speed in it has a name of its own. The
 #: cells of a curved mesh alone give a per cent or two; at five the speeds differ by a thousandth.
@@ -56,7 +63,7 @@ class FlowField:
         Node positions, (J, I, 3), in the mesh's own units.
     velocity
         Velocity, (T, J, I, 3) with T = 1 when steady, in the mesh's units per unit of time;
-        zero at nodes that are not valid.
+        zero at nodes that are not valid. Long series of data sets are read step by step.
     times
         Time of each step, (T,), strictly increasing.
     valid
@@ -74,20 +81,29 @@ class FlowField:
         Whether v and -v mean the same, as in a field of polarisation or principal directions.
     units
         Unit of each scalar, where it is known.
+    long_names
+        Words for scalars, where there are other ones than their names.
+    start
+        The date at time 0, a ``datetime`` or one of cftime's, where times count from one.
+    projection
+        How positions follow from longitude and latitude, for a field of the Earth.
     """
 
     points: Floats
-    velocity: Floats
+    velocity: Steps
     times: Floats
     valid: Bools
     periodic: tuple[bool, bool]
-    scalars: Mapping[str, Floats] = field(default_factory=dict)
+    scalars: Mapping[str, Steps] = field(default_factory=dict)
     name: str = ""
     length_unit: str = ""
     time_unit: str = ""
     has_position: Bools | None = None
     sign_free: bool = False
     units: Mapping[str, str] = field(default_factory=dict)
+    long_names: Mapping[str, str] = field(default_factory=dict)
+    start: Any = None
+    projection: Projection | None = None
 
     @classmethod
     def from_arrays(
@@ -104,6 +120,7 @@ class FlowField:
         time_unit: str = "",
         sign_free: bool = False,
         units: Mapping[str, str] | None = None,
+        projection: Projection | None = None,
     ) -> FlowField:
         """Make a field from arrays.
 
@@ -118,8 +135,8 @@ class FlowField:
             in time, in units of length per unit of time. NaN and masked entries blank a node.
         times
             Time of each step, (T,), strictly increasing, in any unit of time. Steps are
-            numbered 0, 1, 2, ... when it is left out. Dates (``datetime64``) become seconds
-            since the first, and the unit of time ``"s"``.
+            numbered 0, 1, 2, ... when it is left out. Dates (``datetime64``, or cftime's) become
+            seconds since the first, and the unit of time ``"s"``; they are told as dates.
         valid
             Nodes that carry data, (J, I). All of them by default.
         periodic
@@ -138,6 +155,9 @@ class FlowField:
         units
             Unit of each scalar by its name, for legends; that of the speed follows from those of
             length and time.
+        projection
+            How points followed from longitude and latitude, for a field of the Earth: what tells
+            the place of a point, and draws coastlines.
 
         Returns
         -------
@@ -163,7 +183,7 @@ class FlowField:
             msg = f"scalars is a {type(scalars).__name__}; expected a mapping of arrays by name"
             raise FieldError(msg)
         given = {key: with_gaps(f"scalars[{key!r}]", s) for key, s in (scalars or {}).items()}
-        times, time_unit = as_seconds(times, time_unit)
+        times, time_unit, start = as_seconds(times, time_unit)
         t, shown = (
             None if values is None else with_gaps(name, values)
             for name, values in (("times", times), ("valid", valid))
@@ -186,7 +206,8 @@ class FlowField:
         data = {key: scalar_steps(values, p.shape[:2]) for key, values in given.items()}
         nodal, closed = close_axes(NodalArrays(p, v, ok, data), periodic)
         v, ok = nodal.velocity, nodal.valid
-        surface = Surface(nodal.points, ok, closed)
+        on_globe = projection is not None and projection.is_globe
+        surface = Surface(nodal.points, ok, closed, on_globe=on_globe)
         if sign_free:
             v = oriented(np.where(ok[..., None], v[0], 0.0), ok, closed)
             v = with_equal_ends(v[None], closed, surface.poles)
@@ -204,6 +225,8 @@ class FlowField:
             has_position=surface.has_position,
             sign_free=sign_free,
             units=dict(units or {}),
+            start=start,
+            projection=projection,
         )
         flow.__dict__["surface"] = surface  # the same that the property would make again
         if not flow.velocity.any():
@@ -225,6 +248,7 @@ class FlowField:
         periodic: str | None = None,
         name: str = "",
         sign_free: bool = False,
+        block: int | str | None = None,
     ) -> FlowField:
         """Make a field from a structured PyVista mesh, or from a series of them.
 
@@ -237,6 +261,9 @@ class FlowField:
         vectors
             Name of the velocity on points or cells, with 2 or 3 components. By default the only
             array that can be the velocity, or the one that the mesh marks as its active vectors.
+            Two or three arrays of one component are named with commas between, as in
+            ``"u,v,w"``, and found where there is no array of vectors, if their names differ in the
+            component alone, such as ``X Velocity``, ``Y Velocity`` and ``Z Velocity``.
         plane
             Surface to draw from a mesh of three dimensions: ``"k=20"``, ``"j=0"`` or ``"i=-1"``,
             counted from the end when negative. On a k-plane the surface's (i, j) are the mesh's
@@ -247,6 +274,9 @@ class FlowField:
             field data of every step, or 0, 1, 2, ...
         periodic, name, sign_free
             As for :meth:`from_arrays`.
+        block
+            Number or path of the block to draw of a MultiBlock, such as ``"Base/Zone 1"``. Numbers
+            count the structured grids from 0.
 
         Returns
         -------
@@ -270,29 +300,38 @@ class FlowField:
         from flowtex.field.io.from_pyvista import read_meshes
 
         options: dict[str, Any] = {"periodic": periodic, "sign_free": sign_free}
-        arguments = read_meshes(mesh, vectors=vectors, plane=plane, times=times, **options)
+        arguments = read_meshes(
+            mesh, vectors=vectors, plane=plane, times=times, block=block, **options
+        )
         return cls.from_arrays(**arguments, name=name, **options)
 
     @classmethod
     def from_file(
         cls,
-        path: str | Path,
+        path: str | Path | Sequence[str | Path],
         *,
         vectors: str | None = None,
         plane: str | None = None,
         periodic: str | None = None,
-        time: float | None = None,
+        time: float | str | None = None,
         block: int | str | None = None,
         sign_free: bool = False,
+        projection: str | None = None,
+        globe: bool = False,
+        level: float | str | None = None,
+        sel: Mapping[str, Any] | None = None,
+        isel: Mapping[str, Any] | None = None,
     ) -> FlowField:
-        """Make a field from a file.
+        """Make a field from a file, or from several that belong together.
 
         Parameters
         ----------
         path
             A structured mesh in any format that PyVista reads, or a PLOT3D grid or solution. The
             other one of the two is found beside it by its name: ``postxyz.bin`` and
-            ``postq.bin``, ``wing.xyz`` (or ``.x``, ``.g``) and ``wing.q``.
+            ``postq.bin``, ``wing.xyz`` (or ``.x``, ``.g``) and ``wing.q``. Or data of the Earth:
+            NetCDF, a Zarr store, GRIB, or the JSON of wind maps; of these several at once, as the
+            parts of a model's output or the steps of a series.
         vectors
             Name of the velocity, as for :meth:`from_pyvista`. A PLOT3D solution gives
             ``Velocity``, made from its density and momentum.
@@ -301,8 +340,10 @@ class FlowField:
         time
             Draw this one of the times in the file, as a steady field. All of them by default.
         block
-            Number or name of the block to draw, where the file has several grids. Numbers count
-            the structured grids from 0.
+            Number or path of the block to draw, such as ``"Base/Zone 1"``, where the file has
+            several grids. Numbers count the structured grids from 0.
+        projection, globe, level, sel, isel
+            As for :meth:`from_xarray`, for data of the Earth.
 
         Returns
         -------
@@ -315,14 +356,88 @@ class FlowField:
             When the file is missing, empty, not readable, of an unknown or broken format, or does
             not hold a structured flow; the text starts with the path.
         """
-        from flowtex.field.io.files import errors_of_file, read_file
+        from flowtex.field.io.file_fields import field_of_file
 
-        with errors_of_file(path):
-            options: dict[str, Any] = {"periodic": periodic, "sign_free": sign_free}
-            arguments = read_file(
-                path, time=time, block=block, vectors=vectors, plane=plane, **options
-            )
-            return cls.from_arrays(**arguments, name=Path(path).stem, **options)
+        of_meshes = {"plane": plane, "block": block, "periodic": periodic, "sign_free": sign_free}
+        of_earth: dict[str, Any] = {"projection": projection, "globe": globe, "level": level}
+        of_earth |= {"sel": sel, "isel": isel}
+        field: FlowField = field_of_file(cls, path, vectors, time, of_meshes, of_earth)
+        return field
+
+    @classmethod
+    def from_xarray(
+        cls,
+        data: xr.Dataset | Sequence[xr.Dataset],
+        u: str | None = None,
+        v: str | None = None,
+        *,
+        projection: str | None = None,
+        globe: bool = False,
+        name: str = "",
+        sel: Mapping[str, Any] | None = None,
+        isel: Mapping[str, Any] | None = None,
+        **selection: Any,
+    ) -> FlowField:
+        """Make a field from a dataset of xarray's, as ocean and weather models write them.
+
+        Parameters
+        ----------
+        data
+            A Dataset, or several that belong together, such as NEMO's files of U, of V and of
+            coordinates. Nothing but coordinates and one step is read at once; further steps are
+            read when they are drawn.
+        u, v
+            Names of the components. By default the only pair that is likely to be the velocity,
+            by CF's standard names, long names and names.
+        projection
+            A flat map, or ``"globe"``; see :class:`flowtex.earth.Projection`. By default plate
+            carree around the middle of the data, and a polar one near a pole.
+        globe
+            Whether it is put on a sphere: the same as ``projection="globe"``.
+        name
+            A word for captions.
+        sel, isel
+            What to draw along axes, by value and by number, such as ``sel={"level": 500}``.
+        **selection
+            The same as ``sel``, such as ``level=500`` or ``time="2000-01-02"``. ``time`` and
+            ``level`` stand for those axes whatever their names. All times by default, the level
+            nearest to the surface, and the first along any other axis.
+
+        Returns
+        -------
+        FlowField
+            On longitude and latitude its positions are metres on the map, and its velocity in m/s
+            is mapped along; else they are those of the x and y coordinates. Components on the
+            sides of cells (Arakawa C) become means in the middle. Other variables at the same
+            nodes are ``scalars``; on a flat map ``"speed"`` is that on the Earth.
+
+        Raises
+        ------
+        FieldError
+            When the components, the coordinates or what is chosen cannot be told.
+        ModuleNotFoundError
+            When xarray, cf_xarray or pyproj is missing.
+
+        Warns
+        -----
+        DatasetNotice
+            When something was chosen without being asked for, such as a level.
+        """
+        from flowtex.field.datasets.read import field_of
+
+        if globe and projection not in (None, "globe"):
+            msg = f"globe=True and projection={projection!r} are given; leave out one of them"
+            raise FieldError(msg)
+        options: dict[str, Any] = {"sel": {**(sel or {}), **selection}, "isel": isel}
+        return field_of(
+            cls.from_arrays,
+            data,
+            u,
+            v,
+            projection="globe" if globe else projection,
+            name=name,
+            **options,
+        )
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -347,15 +462,27 @@ class FlowField:
         if known is not None and not known.all():
             # Positions that were filled in must not pass for known ones: tangents would bend.
             points = np.where(known[..., None], points, np.nan)
-        return Surface(points, self.valid, self.periodic)
+        on_globe = self.projection is not None and self.projection.is_globe
+        return Surface(points, self.valid, self.periodic, on_globe=on_globe)
 
     @cached_property
     def index_velocity(self) -> IndexVelocity:
         """The velocity in index space, in cells per unit of time, with its speed."""
-        return to_index_space(self.surface, self.velocity)
+        if not isinstance(self.velocity, LazySteps):
+            return to_index_space(self.surface, self.velocity)
+
+        def both(velocity: Floats) -> Floats:
+            step = to_index_space(self.surface, velocity[None])
+            return np.concatenate([step.components[0], step.speed[0, ..., None]], axis=-1)
+
+        steps = self.velocity.map(both)
+        share = to_index_space(self.surface, self.velocity[0][None]).normal_share
+        return IndexVelocity(
+            steps.map(lambda step: step[..., :2]), steps.map(lambda step: step[..., 2]), share
+        )
 
     @property
-    def speed(self) -> Floats:
+    def speed(self) -> Steps:
         """Speed along the surface, (T, J, I)."""
         return self.index_velocity.speed
 
@@ -377,7 +504,9 @@ class FlowField:
 
     def label_of(self, name: str) -> str:
         """Return the words for a scalar, or for the speed, in a legend."""
-        return self.speed_label if name == "speed" and name not in self.scalars else name
+        if name == "speed" and name not in self.scalars:
+            return self.speed_label
+        return self.long_names.get(name, name)
 
     def unit_of(self, name: str) -> str:
         """Return the unit of a scalar, or of the speed; empty when it is not known."""
@@ -387,17 +516,32 @@ class FlowField:
 
     def forget(self) -> None:
         """Drop what was derived from the arrays and can be computed again."""
-        for name in ("surface", "index_velocity"):
+        for name in ("surface", "index_velocity", "typical"):
             self.__dict__.pop(name, None)
 
     def at_step(self, step: int) -> FlowField:
         """Return one time step, as for :meth:`step_number`, as a steady field."""
         step = self.step_number(step)
-        data = {k: s[step : step + 1] if len(s) > 1 else s for k, s in self.scalars.items()}
-        at = slice(step, step + 1)
-        one = replace(self, velocity=self.velocity[at], times=self.times[at], scalars=data)
-        one.__dict__["surface"] = self.surface  # the same that the property would make again
-        return one
+        return self.at_steps([step])
+
+    def at_steps(self, steps: Sequence[int]) -> FlowField:
+        """Return some of the time steps, by increasing numbers from 0, in memory."""
+        first, last = steps[0], steps[-1] + 1
+        some: Any = list(steps) if len(steps) < last - first else slice(first, last)
+        data = {k: s[some] if len(s) > 1 else s for k, s in self.scalars.items()}
+        part = replace(
+            self, velocity=np.asarray(self.velocity[some]), times=self.times[some], scalars=data
+        )
+        part.__dict__["surface"] = self.surface  # the same that the property would make again
+        return part
+
+    @cached_property
+    def typical(self) -> FlowField:
+        """The steps from which ranges and lengths are taken: some of those that are read late."""
+        if not isinstance(self.velocity, LazySteps):
+            return self
+        last = len(self.times) - 1
+        return self.at_steps(sorted({0, last // 2, last}))
 
     def step_number(self, step: int) -> int:
         """Return the number of a time step from 0, where negative ones count from the end.
@@ -422,7 +566,7 @@ class FlowField:
             When fewer than two lines would be left.
         """
         rows, columns = (
-            _every(count, factor, closed=closed)
+            every_line(count, factor, closed=closed)
             for count, closed in zip(self.shape, self.periodic, strict=True)
         )
         return self.at_lines(rows, columns)
@@ -451,30 +595,3 @@ class FlowField:
             f"{f', periodic {closed}' if closed else ''}{', sign-free' if self.sign_free else ''}, "
             f"{int((~self.valid).sum())} blanked)"
         )
-
-
-def _every(count: int, factor: int, *, closed: bool) -> Indices:
-    """Return every ``factor``-th line, and the last one where the axis is closed."""
-    if factor < 1:
-        msg = f"factor is {factor}; expected 1 or more"
-        raise ValueError(msg)
-    picks = list(range(0, count, factor))
-    if closed and picks[-1] != count - 1:
-        picks.append(count - 1)
-    fewest = 4 if closed else 2
-    if len(picks) < fewest:
-        msg = (
-            f"factor is {factor}, which leaves {len(picks)} of {count} lines; expected a smaller "
-            f"one that leaves at least {fewest}"
-        )
-        raise ValueError(msg)
-    return np.array(picks)
-
-
-def speed_unit(length: str, time: str) -> str:
-    """Return the word for the unit of speed; empty when one of the units is not known."""
-    if not length or not time:
-        return ""
-    if time.startswith(f"{length} / "):
-        return time.removeprefix(f"{length} / ")
-    return f"{length} / ({time})" if "/" in time else f"{length}/{time}"

@@ -15,6 +15,7 @@ __all__ = [
     "bracket",
     "cell_of",
     "cubic_weights",
+    "every_line",
     "fill_blanked",
     "inverse_along_line",
     "nearest_known",
@@ -130,3 +131,21 @@ def inverse_along_line(line: Floats, values: Floats, *, periodic: bool) -> Float
     before = np.minimum(values, 0) / (line[1] - line[0])
     after = np.maximum(values - line[-1], 0) / (line[-1] - line[-2])
     return np.asarray(inside + before + after)
+
+
+def every_line(count: int, factor: int, *, closed: bool) -> Indices:
+    """Return every ``factor``-th line, and the last one where the axis is closed."""
+    if factor < 1:
+        msg = f"factor is {factor}; expected 1 or more"
+        raise ValueError(msg)
+    picks = list(range(0, count, factor))
+    if closed and picks[-1] != count - 1:
+        picks.append(count - 1)
+    fewest = 4 if closed else 2
+    if len(picks) < fewest:
+        msg = (
+            f"factor is {factor}, which leaves {len(picks)} of {count} lines; expected a smaller "
+            f"one that leaves at least {fewest}"
+        )
+        raise ValueError(msg)
+    return np.array(picks)

@@ -22,6 +22,7 @@ import numpy as np
 from flowtex._util.array_types import Bools, Floats
 from flowtex._util.blocks import row_blocks
 from flowtex.field.poles import Pole
+from flowtex.field.steps import Steps
 from flowtex.field.surface import Surface
 
 __all__ = ["IndexVelocity", "to_index_space"]
@@ -40,8 +41,8 @@ class IndexVelocity:
     the whole, 0 to 1.
     """
 
-    components: Floats
-    speed: Floats
+    components: Steps
+    speed: Steps
     normal_share: float
 
 

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import Floats
-from flowtex.field.field import FlowField, speed_unit
+from flowtex.field.field import FlowField
 from flowtex.field.interpolation import steps_around
 from flowtex.field.locate import surface_point
 from flowtex.field.signs import weighted_axis
+from flowtex.field.units import speed_unit
 
 __all__ = ["PointValues", "values_at"]
 
@@ -23,7 +25,8 @@ class PointValues:
 
     ``index`` is (j, i) in cells, ``position`` (3,) in the mesh's units, ``velocity`` (3,) in the
     mesh's units per unit of time, and ``speed`` its length along the surface, which is what colours
-    show, and ``speed_label`` words for it.
+    show, and ``speed_label`` words for it. ``lonlat`` are longitude and latitude in degrees, and
+    ``eastward`` and ``northward`` the velocity on the Earth, of a field with a projection.
     """
 
     index: tuple[float, float]
@@ -35,6 +38,9 @@ class PointValues:
     length_unit: str = ""
     time_unit: str = ""
     speed_label: str = "speed"
+    lonlat: tuple[float, float] | None = None
+    eastward: float = 0.0
+    northward: float = 0.0
 
     @property
     def speed_unit(self) -> str:
@@ -80,9 +86,10 @@ def values_at(field: FlowField, index: ArrayLike, time: float | None = None) -> 
         velocity = weighted_axis(point.corners(field.velocity[0]), point.weights)
     else:
         velocity = value(field.velocity)
+    position = point.interpolate(field.surface.points)
     return PointValues(
         index=point.index,
-        position=point.interpolate(field.surface.points),
+        position=position,
         velocity=velocity,
         speed=float(value(field.speed)),
         scalars={name: float(value(steps)) for name, steps in field.scalars.items()},
@@ -90,4 +97,18 @@ def values_at(field: FlowField, index: ArrayLike, time: float | None = None) -> 
         length_unit=field.length_unit,
         time_unit=field.time_unit,
         speed_label=field.speed_label,
+        **_on_earth(field, position, velocity),
     )
+
+
+def _on_earth(field: FlowField, position: Floats, velocity: Floats) -> dict[str, Any]:
+    """Return place and velocity on the Earth, where the field has a projection."""
+    if field.projection is None:
+        return {}
+    lon, lat = field.projection.lonlat(position)
+    east, north = field.projection.components(lon, lat, velocity)
+    return {
+        "lonlat": (float(lon), float(lat)),
+        "eastward": float(east),
+        "northward": float(north),
+    }

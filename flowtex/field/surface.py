@@ -31,12 +31,21 @@ class Surface:
     """Nodes of a structured surface, (J, I, 3), in the mesh's own units.
 
     ``valid`` (J, I) marks nodes that carry data. Where the (j, i) axis is ``periodic``, its last
-    line of nodes is the first one again, displaced by ``offset`` on a flat map.
+    line of nodes is the first one again, displaced by ``offset`` on a flat map. ``on_globe`` tells
+    that it lies on a globe around the origin, with north at +z.
     """
 
-    def __init__(self, points: Floats, valid: Bools, periodic: tuple[bool, bool]) -> None:
+    def __init__(
+        self,
+        points: Floats,
+        valid: Bools,
+        periodic: tuple[bool, bool],
+        *,
+        on_globe: bool = False,
+    ) -> None:
         self.valid = valid
         self.periodic = periodic
+        self.on_globe = on_globe
         #: Nodes with a position of their own, (J, I); the others have that of the nearest one.
         self.has_position = known_positions(points, valid)
         self.points = fill_blanked(points, self.has_position)

@@ -14,12 +14,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 from PIL import Image, ImageDraw, ImageFont
 
 from flowtex._util.array_types import Bytes
 from flowtex._util.colours import rgb
 from flowtex.camera import Camera
 from flowtex.field import FlowField
+from flowtex.field.dates import date_text
 from flowtex.scene import Scene
 
 __all__ = [
@@ -27,6 +29,7 @@ __all__ = [
     "annotate",
     "difference_text",
     "length_text",
+    "map_scale",
     "plates",
     "round_length",
     "time_text",
@@ -51,6 +54,7 @@ DIGITS = range(3, 9)
 UNIT_LENGTH, TIME_WIDTH = 8, 0.4
 #: Decimals of a time, and times, beyond which it is written with an exponent.
 MOST_DECIMALS, LONGEST_TIME = 6, 1e9
+METRES_PER_KM = 1000
 
 
 @dataclass(frozen=True)
@@ -168,7 +172,8 @@ class _Writer:
             return
         if abs(float(np.cross(*frame) @ camera.axes[2])) < 1 - 1e-6:  # seen aslant
             return
-        unit_px = self._size[1] / (2 * camera.height)
+        scale = map_scale(scene.field, camera.focal_point)
+        unit_px = scale * self._size[1] / (2 * camera.height)
         length = round_length(SCALE_BAR_WIDTH * self._size[0] / unit_px)
         unit, across = _printable(scene.field.length_unit), round(length * unit_px)
         if not across:
@@ -276,8 +281,13 @@ def _value_texts(low: float, high: float, *, log_scale: bool) -> list[str]:
 
 
 def time_text(field: FlowField, time: float, longest_unit: int = UNIT_LENGTH) -> str:
-    """Return a time of a field, with decimals that tell its steps apart and a unit so long."""
+    """Return a time of a field: its date, or with decimals that tell its steps apart.
+
+    A unit is told up to a length.
+    """
     step = float(np.diff(field.times).min()) if len(field.times) > 1 else 1.0
+    if field.start is not None:
+        return date_text(field.start, time, step)
     power = math.floor(math.log10(step))
     decimals = max(2 - power, 0) if power >= 0 else 1 - power
     short = decimals <= MOST_DECIMALS and abs(time) < LONGEST_TIME
@@ -293,9 +303,25 @@ def difference_text(scene: Scene, changes: Mapping[str, Any]) -> str:
 
 
 def length_text(length: float, unit: str) -> str:
-    """Return a length with its unit, without the plural of a whole word, such as metres, for 1."""
+    """Return a length with its unit, without the plural of a whole word, such as metres, for 1.
+
+    Thousands of metres are kilometres.
+    """
+    if unit == "m" and length >= METRES_PER_KM:
+        length, unit = length / METRES_PER_KM, "km"
     plural = len(unit) > 4 and unit.endswith("s") and not unit.endswith(("ss", "ches"))
     return f"{length:.12g} {unit[:-1] if plural and length == 1 else unit}".strip()
+
+
+def map_scale(field: FlowField, position: ArrayLike) -> float:
+    """Return lengths of the map for one of the Earth, at a place of a field with a projection.
+
+    It is 1 for another field, and beside the map.
+    """
+    if field.projection is None:
+        return 1.0
+    scale = field.projection.scale(np.asarray(position, dtype=float))
+    return scale if scale > 0 and math.isfinite(scale) else 1.0
 
 
 def round_length(greatest: float) -> float:

@@ -97,7 +97,7 @@ def axes(
     ax: Axes,
     mesh: Any,
     *,
-    time: float | None = None,
+    time: float | str | None = None,
     clock: float = 0.0,
     supersampling: int = 1,
     **options: Any,
@@ -182,7 +182,7 @@ class FlowImage(AxesImage):
         return self._scene.time
 
     @time.setter
-    def time(self, value: float) -> None:
+    def time(self, value: float | str) -> None:
         self._scene.time = value
         self.stale = True
 

@@ -83,7 +83,7 @@ class OffscreenPlotter:
             self._plotter.close()
             raise
 
-    def picture(self, *, time: float | None = None, clock: float = 0.0) -> Bytes:
+    def picture(self, *, time: float | str | None = None, clock: float = 0.0) -> Bytes:
         """Return a picture (height, width, 3), row 0 at the top; by default of the present time."""
         # One picture for all that changes.
         self._plotter.suppress_rendering = True

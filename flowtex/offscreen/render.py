@@ -17,7 +17,7 @@ def render(
     mesh: Any,
     *,
     size: tuple[int, int] = (1024, 768),
-    time: float | None = None,
+    time: float | str | None = None,
     clock: float = 0.0,
     supersampling: int = 1,
     margin: float = CAMERA_LIMITS.margin,
@@ -34,7 +34,8 @@ def render(
     size
         Width and height in pixels; each of two views has half the width.
     time
-        Time to show of a field that varies in time; its last step by default.
+        Time to show of a field that varies in time, or a date such as ``"2000-01-02 12:00"`` where
+        its times are dates; its last step by default.
     clock
         Moment of the streaming of a steady flow, in seconds (see the setting ``motion``).
     supersampling

@@ -12,6 +12,7 @@ import pyvista as pv
 from flowtex._util.colours import colour_table
 from flowtex.field import FlowField
 from flowtex.options import NO_VALUE_COLOR, Appearance
+from flowtex.plotting.map_overlay import MapOverlay
 from flowtex.plotting.scalar_bar import SCALAR_BAR, arrange_with
 from flowtex.rendering.constants import AMBIENT_LIGHT, DIFFUSE_LIGHT
 from flowtex.rendering.vtk import FlowSurface, surface_mesh, use_flow_mapper
@@ -38,7 +39,8 @@ class FlowHandle(AppearanceAttributes):
         The flow.
     settings
         Every setting, live.
-    scalars, cmap, clim, log_scale, color, opacity, visible, lighting, show_scalar_bar
+    scalars, cmap, clim, log_scale, color, opacity, visible, lighting, show_scalar_bar, \
+    coastlines, graticule, land
         Arguments of ``plotter.flowtex.add``, live.
     actor
         PyVista's actor, for its position and the like.
@@ -74,6 +76,9 @@ class FlowHandle(AppearanceAttributes):
             self.actor, plotter.renderer, scene.textures, scene.settings, scene.pyramid
         )
         self._surface.set_moment(*scene.moment)
+        self._map = None
+        if scene.field.projection is not None:
+            self._map = MapOverlay(self.actor, plotter.renderer, scene, self._surface)
         self._shown: Appearance | None = None
         self._show_appearance()
         self._shown_time = scene.time
@@ -96,7 +101,7 @@ class FlowHandle(AppearanceAttributes):
         return self.scene.time
 
     @time.setter
-    def time(self, value: float) -> None:
+    def time(self, value: float | str) -> None:
         self.scene.time = value
 
     @property
@@ -167,6 +172,8 @@ class FlowHandle(AppearanceAttributes):
         plotter, self._plotter = self._plotter, None
         self._end()
         self.scene.close()
+        if self._map is not None:
+            self._map.close()
         self._surface.close()
         self._remove_bar(plotter)
         plotter.remove_actor(self.actor, render=False)
@@ -184,6 +191,8 @@ class FlowHandle(AppearanceAttributes):
             self._show_appearance()
         else:
             self._surface.set_textures(self.scene.textures, self.scene.pyramid)
+            if self._map is not None:
+                self._map.show()
         self._draw()
 
     def _show_moment(self) -> None:
@@ -212,6 +221,8 @@ class FlowHandle(AppearanceAttributes):
             usual = pv.global_theme.lighting_params
             for name, value in LIGHT.items():
                 setattr(prop, name, value if lit else getattr(usual, name))
+        if self._map is not None and differs("coastlines", "graticule", "land", "lighting"):
+            self._map.show()
         if differs("color"):
             prop.color = new.color
         if differs("scalars", "cmap", "clim", "log_scale"):

@@ -116,7 +116,7 @@ class TextureSet:
         """Root mean square of the speed in the field's own units; 1 in a flow at rest."""
         if self.whole_speed is not None:
             return self.whole_speed
-        speed = self.geometry.field.speed[:, self.geometry.field.valid]
+        speed = self.geometry.field.typical.speed[:, self.geometry.field.valid]
         return float(np.sqrt(np.mean(speed**2))) or 1.0
 
     @cached_property

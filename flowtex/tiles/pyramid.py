@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import threading
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import NamedTuple
 
 import numpy as np
@@ -26,6 +26,7 @@ import numpy as np
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex._util.cache import WeakCache
 from flowtex.field import FlowField
+from flowtex.field.steps import Steps, map_steps
 from flowtex.textures import TextureSet
 from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.trace import SliceStore
@@ -78,7 +79,7 @@ class _Level(NamedTuple):
 
     rows: Indices
     columns: Indices
-    velocity: Floats
+    velocity: Steps
 
 
 class Pyramid:
@@ -232,7 +233,7 @@ class Pyramid:
 
     @cached_property
     def _typical_speed(self) -> float:
-        speed = self.root.speed[:, self.root.valid]
+        speed = self.root.typical.speed[:, self.root.valid]
         return float(np.sqrt(np.mean(speed**2))) or 1.0
 
     def _around_pole(self, lines: list[Indices], shape: tuple[int, int]) -> int | None:
@@ -266,7 +267,10 @@ class Pyramid:
         return replace(
             field,
             points=points,
-            velocity=np.where(field.valid[at][..., None], this.velocity[:, here[0], here[1]], 0.0),
+            velocity=map_steps(
+                this.velocity[:, here[0], here[1]],
+                lambda v: np.where(field.valid[at][..., None], v, 0.0),
+            ),
             valid=field.valid[at],
             periodic=periodic,
             has_position=None if field.has_position is None else field.has_position[at],
@@ -287,8 +291,9 @@ class Pyramid:
                 np.searchsorted(lines, some)
                 for lines, some in ((fine.rows, rows), (fine.columns, columns))
             )
-            velocity = np.stack(
-                [_averaged(step, valid, picks, self.field.periodic) for step in fine.velocity]
+            velocity = map_steps(
+                fine.velocity,
+                partial(_averaged, valid=valid, picks=picks, periodic=self.field.periodic),
             )
             self._levels.append(_Level(rows, columns, velocity))
         return self._levels[level]

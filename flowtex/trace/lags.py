@@ -43,7 +43,7 @@ def choose_lags(field: FlowField, parameter: str, longest: float | None = None) 
     if parameter == "arclength":
         first, last = FIRST_CELLS, longest / float(np.percentile(size, 5))
     else:
-        speed = field.speed[:, field.valid]
+        speed = field.typical.speed[:, field.valid]
         moving = speed > 1e-6 * speed.max() if speed.any() else np.zeros_like(speed, dtype=bool)
         if not moving.any():
             return np.array([1.0, RATIO])

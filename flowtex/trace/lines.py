@@ -11,6 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from flowtex.field import FlowField
+from flowtex.field.steps import LazySteps
 
 __all__ = ["changing_share", "chosen_lines"]
 
@@ -38,10 +39,13 @@ def changing_share(field: FlowField) -> float:
     if field.steady:
         return 0.0
     j, i, t = (np.arange(0, n, -(-n // MOST_JUDGED)) for n in (*field.shape, len(field.times) - 1))
+    if isinstance(field.velocity, LazySteps):
+        t = t[:1]
     valid = field.valid[np.ix_(j, i)]
     if not valid.any():
         return 0.0
-    before, after = (field.velocity[np.ix_(steps, j, i)][:, valid] for steps in (t, t + 1))
+    velocity = field.velocity[:, j[:, None], i]
+    before, after = (np.asarray(velocity[steps])[:, valid] for steps in (t, t + 1))
     spans = (field.times[t + 1] - field.times[t])[:, None]
     change = np.linalg.norm(after - before, axis=-1) / spans
     square = np.sum((0.5 * (before + after)) ** 2, axis=-1)

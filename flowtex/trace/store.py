@@ -16,6 +16,7 @@ import numpy as np
 from flowtex._util.array_types import Bools, Floats
 from flowtex._util.cache import ByteCache, WeakCache
 from flowtex.field import FlowField
+from flowtex.field.steps import LazySteps
 from flowtex.trace.compose import landings
 from flowtex.trace.lags import choose_lags, lag_unit
 from flowtex.trace.lines import chosen_lines
@@ -104,6 +105,13 @@ class SliceStore:
             compose = self._compose and not self.field.sign_free
             moment = self.field.at_step(step)
             return self._trace_with(moment, parameter=self.parameter, compose=compose)
+        if isinstance(self.field.velocity, LazySteps):
+            # Only what paths to this time can meet is read.
+            reach = float(self.lags[-1] * self.unit.max())
+            near = np.flatnonzero(np.abs(self.field.times - self.field.times[step]) <= reach)
+            first, last = max(int(near[0]) - 1, 0), min(int(near[-1]) + 2, self.steps)
+            around = self.field.at_steps(range(first, last))
+            return self._trace_with(around, steps=[step - first])
         size = self.steps * len(self.lags) * self.unit.size * 4 * np.float32().nbytes
         if (
             self._compose

@@ -20,15 +20,15 @@ AUTHORS OR COPYRIGHT HOLDERS BE LIABLE FOR ANY CLAIM, DAMAGES OR OTHER
 LIABILITY, WHETHER IN AN ACTION OF CONTRACT, TORT OR OTHERWISE, ARISING FROM,
 OUT OF OR IN CONNECTION WITH THE SOFTWARE OR THE USE OR OTHER DEALINGS IN
 THE SOFTWARE. */
-var TYPES={float32:Float32Array,float16:Uint16Array,uint16:Uint16Array,int16:Int16Array,int8:Int8Array,uint8:Uint8Array};
-function shareOf({low,high,log}){if(!log)return value=>(value-low)/(high-low||1);let span=Math.log(high/low)||1;return value=>Math.
-log(Math.max(value,low)/low)/span}function legendLimits({low,high,log}){let least=log?0:1e-5*Math.max(Math.abs(low),Math.
-abs(high)),told=value=>Math.abs(value)<least?0:value;return[told(low),told(high)]}function isSignFree(header){return header.
-variant.includes("FLOWTEX_SIGNFREE")}function stepOf(name){return Number(name.split("/")[1])}function tilePart(name){let[
-kind,level,row,column,...rest]=name.split("/");return kind==="tile"?[[level,row,column].join("/"),rest.join("/")]:null}function decoded(info,bytes){
-let view=ArrayBuffer.isView(bytes)?new Uint8Array(bytes.buffer,bytes.byteOffset,bytes.byteLength):new Uint8Array(bytes),
-{name,dtype,shape,digest}=info,Type=TYPES[dtype];if(!Type)throw new Error(`a part has the type "${dtype}"; expected ${Object.
-keys(TYPES).join(", ")}`);return{name,shape,digest,data:new Type(view.slice().buffer)}}async function partOfText(info,text){let packed=Uint8Array.from(atob(text),letter=>letter.charCodeAt(0)),unpacked=new Blob(
+var EARTH_LINES=["coastlines","graticule"],TYPES={float32:Float32Array,float16:Uint16Array,uint16:Uint16Array,int16:Int16Array,
+int8:Int8Array,uint8:Uint8Array};function shareOf({low,high,log}){if(!log)return value=>(value-low)/(high-low||1);let span=Math.
+log(high/low)||1;return value=>Math.log(Math.max(value,low)/low)/span}function legendLimits({low,high,log}){let least=log?
+0:1e-5*Math.max(Math.abs(low),Math.abs(high)),told=value=>Math.abs(value)<least?0:value;return[told(low),told(high)]}function isSignFree(header){
+return header.variant.includes("FLOWTEX_SIGNFREE")}function stepOf(name){return Number(name.split("/")[1])}function tilePart(name){
+let[kind,level,row,column,...rest]=name.split("/");return kind==="tile"?[[level,row,column].join("/"),rest.join("/")]:null}
+function decoded(info,bytes){let view=ArrayBuffer.isView(bytes)?new Uint8Array(bytes.buffer,bytes.byteOffset,bytes.byteLength):
+new Uint8Array(bytes),{name,dtype,shape,digest}=info,Type=TYPES[dtype];if(!Type)throw new Error(`a part has the type "${dtype}\
+"; expected ${Object.keys(TYPES).join(", ")}`);return{name,shape,digest,data:new Type(view.slice().buffer)}}async function partOfText(info,text){let packed=Uint8Array.from(atob(text),letter=>letter.charCodeAt(0)),unpacked=new Blob(
 [packed]).stream().pipeThrough(new DecompressionStream("gzip")),planes=new Uint8Array(await new Response(unpacked).arrayBuffer()),
 count=info.shape.reduce((product2,n)=>product2*n,1),width=count?planes.length/count:1,bytes=new Uint8Array(planes.length);
 for(let plane=0;plane<width;plane+=1)for(let n=0;n<count;n+=1)bytes[n*width+plane]=planes[plane*count+n];return decoded(
@@ -95,7 +95,7 @@ length&&this.running.size<this.most;){let[key,steps]=this.wanted[0];this.wanted.
 this.running.has(name)||this.run(name,key,steps)}}async run(name,key,steps){let controller=new AbortController;this.running.
 set(name,controller);try{let parts=await this.load(key,steps,controller.signal);controller.signal.aborted||parts.forEach(
 this.give)}catch(error){if(!controller.signal.aborted)throw error}finally{this.running.delete(name),this.next()}}};var OWN="own cmap",SRGB={knee:.04045,slope:12.92,offset:.055,scale:1.055,power:2.4};function coloursOf(header){let{scalars,
-colour,background,lighting,opacity}=header;return{scalars,colour,background,lighting,opacity}}function narrowed(mesh,from,to){
+colour,background,lighting,opacity,earth}=header;return{scalars,colour,background,lighting,opacity,earth}}function narrowed(mesh,from,to){
 let share=to.name===from.name?(to.high-to.low)/(from.high-from.low||1):1;return{...mesh,maxColourError:mesh.maxColourError*
 Math.min(share,1)}}function mapOf(header,maps,name){let[first,count]=[header.scalars.maps.indexOf(name)*3*256,256],table=new Uint8Array(
 4*count).fill(255);for(let n=0;n<count;n+=1)for(let k=0;k<3;k+=1)table[4*n+k]=maps[first+3*n+k];return table}function recoloured(header,choice,parts){
@@ -104,26 +104,27 @@ choice.scalars);if(number>=0){let{name,label,unit:unit2,steps}=scalars.choices[n
 unit:unit2,steps,number,auto:!0})}if(choice.cmap&&(scalars.cmap=choice.cmap),choice.clim&&([scalars.low,scalars.high]=choice.
 clim),choice.clim!==void 0&&(scalars.auto=!choice.clim),scalars.auto&&scalars.choices[scalars.number]){let{low,high}=scalars.
 choices[scalars.number],widest=low<0&&high>0&&scalars.diverging.includes(scalars.cmap),end=Math.max(-low,high);[scalars.
-low,scalars.high]=widest?[-end,end]:[low,high]}let mesh=narrowed(header.mesh,header.scalars,scalars),maps=parts.get("map\
-s");if(!choice.cmap||!maps)return{colours:{scalars,mesh},part:null};let part={name:"cmap",data:mapOf(header,maps.data,choice.
-cmap),shape:[256,4],digest:`${OWN} ${choice.cmap}`};return{colours:{scalars,mesh},part}}var toLinear=c=>c<SRGB.knee?c/SRGB.
-slope:((c+SRGB.offset)/SRGB.scale)**SRGB.power;function fromLinear(x){let c=clamp(x,0,1);return c<SRGB.knee/SRGB.slope?c*
-SRGB.slope:SRGB.scale*c**(1/SRGB.power)-SRGB.offset}var times=(v2,m)=>[0,1,2].map(k=>v2[0]*m[k]+v2[1]*m[3+k]+v2[2]*m[6+k]);
-function meanColour(colour,settings,shading){let{values}=shading,[[dark,light],[range,slope]]=[shading.base,shading.tone],
-[strength,contrast]=[Number(settings.strength),Number(settings.contrast)],cones=times(colour.map(c=>toLinear(c/255)),shading.
-toCones).map(Math.cbrt),[lightness,a,b]=times(cones,shading.toLab),base=lightness+strength*(dark+(light-dark)*lightness-
-lightness),mean=[0,0,0];return values.forEach(value=>{let tone=2/(1+Math.exp(-slope*contrast*value))-1,shown=clamp(base+
-range*strength*tone,0,1),room=shown<base?shown/base:(1-shown)/Math.max(1-base,1e-6),roots=times([shown,a*room,b*room],shading.
-fromLab);times(roots.map(x=>x**3),shading.fromCones).forEach((x,k)=>mean[k]+=255*fromLinear(x)/values.length)}),mean}function rampOf(map,header,settings,stops){
-return`linear-gradient(90deg, ${Array.from({length:stops},(_,n)=>{let first=4*Math.round(n/(stops-1)*255),colour=[...map.
-slice(first,first+3)];return`rgb(${(header.paper?.picture??!1?colour:meanColour(colour,settings,header.constants.shading)).
-map(Math.round).join(" ")})`}).join(", ")})`}var tangent=degrees=>Math.tan(degrees*Math.PI/360),Camera=class{flat;limits;aspect;state;start;pick=null;homeHeight;nearest;constructor(state,limits,flat,aspect=1){
-this.state=copyOf(state),this.start=copyOf(state),this.limits=limits,this.flat=flat,this.aspect=aspect,this.homeHeight=this.
-height,this.nearest=this.distance/limits.closest}get height(){let{parallel,parallel_scale:half,view_angle:angle}=this.state;
-return parallel?half:this.distance*tangent(angle)}get distance(){return length2(subtract2(this.state.focal_point,this.state.
-position))}get zoom(){return this.homeHeight/this.height}get axes(){let ahead=unit(subtract2(this.state.focal_point,this.
-state.position)),right=unit(cross2(ahead,this.state.up));return[right,cross2(right,ahead),ahead]}sight(pixels){let{parallel,
-position,view_angle:angle}=this.state;return parallel?{eye:null,halfHeight:this.height,pixels}:{eye:position,halfHeight:tangent(
+low,scalars.high]=widest?[-end,end]:[low,high]}let mesh=narrowed(header.mesh,header.scalars,scalars),{coastlines=header.
+earth?.coastlines,graticule=header.earth?.graticule}=choice,earth=header.earth&&{...header.earth,coastlines,graticule},colours={
+scalars,mesh,earth},maps=parts.get("maps");if(!choice.cmap||!maps)return{colours,part:null};let part={name:"cmap",data:mapOf(
+header,maps.data,choice.cmap),shape:[256,4],digest:`${OWN} ${choice.cmap}`};return{colours,part}}var toLinear=c=>c<SRGB.
+knee?c/SRGB.slope:((c+SRGB.offset)/SRGB.scale)**SRGB.power;function fromLinear(x){let c=clamp(x,0,1);return c<SRGB.knee/
+SRGB.slope?c*SRGB.slope:SRGB.scale*c**(1/SRGB.power)-SRGB.offset}var times=(v2,m)=>[0,1,2].map(k=>v2[0]*m[k]+v2[1]*m[3+k]+
+v2[2]*m[6+k]);function meanColour(colour,settings,shading){let{values}=shading,[[dark,light],[range,slope]]=[shading.base,
+shading.tone],[strength,contrast]=[Number(settings.strength),Number(settings.contrast)],cones=times(colour.map(c=>toLinear(
+c/255)),shading.toCones).map(Math.cbrt),[lightness,a,b]=times(cones,shading.toLab),base=lightness+strength*(dark+(light-
+dark)*lightness-lightness),mean=[0,0,0];return values.forEach(value=>{let tone=2/(1+Math.exp(-slope*contrast*value))-1,shown=clamp(
+base+range*strength*tone,0,1),room=shown<base?shown/base:(1-shown)/Math.max(1-base,1e-6),roots=times([shown,a*room,b*room],
+shading.fromLab);times(roots.map(x=>x**3),shading.fromCones).forEach((x,k)=>mean[k]+=255*fromLinear(x)/values.length)}),
+mean}function rampOf(map,header,settings,stops){return`linear-gradient(90deg, ${Array.from({length:stops},(_,n)=>{let first=4*
+Math.round(n/(stops-1)*255),colour=[...map.slice(first,first+3)];return`rgb(${(header.paper?.picture??!1?colour:meanColour(
+colour,settings,header.constants.shading)).map(Math.round).join(" ")})`}).join(", ")})`}var NORTH=[0,0,1],STEEPEST=Math.sin(89*Math.PI/180),LEAST_COSINE=.2,tangent=degrees=>Math.tan(degrees*Math.PI/360),Camera=class{flat;limits;aspect;state;start;pick=null;globe;homeHeight;nearest;constructor(state,limits,flat,aspect=1,globe=0){
+this.state=copyOf(state),this.start=copyOf(state),this.limits=limits,this.flat=flat,this.globe=globe,this.aspect=aspect,
+this.homeHeight=this.height,this.nearest=this.distance/limits.closest}get height(){let{parallel,parallel_scale:half,view_angle:angle}=this.
+state;return parallel?half:this.distance*tangent(angle)}get distance(){return length2(subtract2(this.state.focal_point,this.
+state.position))}get zoom(){return this.homeHeight/this.height}get axes(){let ahead=unit(subtract2(this.state.focal_point,
+this.state.position)),right=unit(cross2(ahead,this.state.up));return[right,cross2(right,ahead),ahead]}sight(pixels){let{
+parallel,position,view_angle:angle}=this.state;return parallel?{eye:null,halfHeight:this.height,pixels}:{eye:position,halfHeight:tangent(
 angle),pixels}}get planes(){let[right,up,ahead]=this.axes,{parallel,parallel_scale:half,view_angle:angle}=this.state,{position,
 focal_point:focus}=this.state,tall=parallel?half:tangent(angle);return[right,scale2(right,-1),up,scale2(up,-1)].map((side,n)=>{
 let size=n<2?tall*this.aspect:tall;if(parallel)return[...side,size-dot2(side,focus)];let normal=add(side,ahead,size);return[
@@ -132,15 +133,22 @@ let size=n<2?tall*this.aspect:tall;if(parallel)return[...side,size-dot2(side,foc
 this.state.position);return{height:dot2(way,ahead)*tangent(this.state.view_angle),ray:unit(way)}}project(point){let[right,
 up]=this.axes,{height}=this.at(point);if(!(height>0))return null;let{parallel,position,focal_point:focus}=this.state,way=subtract2(
 point,parallel?focus:position);return[dot2(right,way)/height/this.aspect,dot2(up,way)/height]}pan(dx,dy){let[right,up]=this.
-axes,{height}=this;this.shift(add(scale2(right,dx*this.aspect*height),up,dy*height))}rotate(dx,dy){let{state,limits}=this,
-up=unit(state.up),back=subtract2(state.position,state.focal_point);back=rotated(back,up,-limits.turn*dx*Math.min(this.aspect,
-limits.widest_turn));let right=unit(cross2(up,back));back=rotated(back,right,limits.turn*dy),state.position=add(state.focal_point,
-back),state.up=unit(cross2(back,right))}zoomBy(factor,x=0,y=0){if(!Number.isFinite(factor)||factor<=0)return;this.flat||
-this.focusAt(x,y);let{farthest_zoom:farthest,deepest_zoom:deepest}=this.limits,by=clamp(factor,farthest/this.zoom,deepest/
-this.zoom),[right,up,ahead]=this.axes,height=this.height*(1-1/by);this.shift(add(scale2(right,x*this.aspect*height),up,y*
-height)),this.state.parallel?this.state.parallel_scale/=by:this.approach(this.height/by,ahead)}ray(x,y){let[right,up,ahead]=this.
-axes,{height,state}=this,there=add(add(state.focal_point,right,x*this.aspect*height),up,y*height);return state.parallel?
-[add(there,ahead,-this.distance),ahead]:[add(state.position,[0,0,0]),unit(subtract2(there,state.position))]}approach(height,ahead){
+axes,{height}=this;this.shift(add(scale2(right,dx*this.aspect*height),up,dy*height))}rotate(dx,dy){if(this.globe)return this.
+roam(dx,dy);let{state,limits}=this,up=unit(state.up),back=subtract2(state.position,state.focal_point);back=rotated(back,
+up,-limits.turn*dx*Math.min(this.aspect,limits.widest_turn));let right=unit(cross2(up,back));back=rotated(back,right,limits.
+turn*dy),state.position=add(state.focal_point,back),state.up=unit(cross2(back,right))}roam(dx,dy){let{state,limits,globe}=this,
+away=length2(state.position),above=Math.max(away-globe,0)*tangent(state.view_angle),height=state.parallel?state.parallel_scale:
+above,degrees=Math.min(height/globe*180/Math.PI,limits.turn),cosine=Math.hypot(state.position[0],state.position[1])/away,
+aside=Math.min(degrees*this.aspect/Math.max(cosine,LEAST_COSINE),limits.turn);this.turn(NORTH,-aside*dx);let[right]=this.
+axes,steep=Math.abs(state.position[2])/away,before=copyOf(state);this.turn(right,degrees*dy),Math.abs(state.position[2])/
+away>Math.max(STEEPEST,steep)&&(this.state=before);let[,,ahead]=this.axes,upward=add(NORTH,ahead,-dot2(NORTH,ahead));length2(
+upward)>1-STEEPEST&&(this.state.up=unit(upward))}turn(axis,degrees){let{state}=this;for(let name of["position","focal_po\
+int","up"])state[name]=rotated(state[name],axis,degrees)}zoomBy(factor,x=0,y=0){if(!Number.isFinite(factor)||factor<=0)return;
+this.flat||this.focusAt(x,y);let{farthest_zoom:farthest,deepest_zoom:deepest}=this.limits,by=clamp(factor,farthest/this.
+zoom,deepest/this.zoom),[right,up,ahead]=this.axes,height=this.height*(1-1/by);this.shift(add(scale2(right,x*this.aspect*
+height),up,y*height)),this.state.parallel?this.state.parallel_scale/=by:this.approach(this.height/by,ahead)}ray(x,y){let[
+right,up,ahead]=this.axes,{height,state}=this,there=add(add(state.focal_point,right,x*this.aspect*height),up,y*height);return state.
+parallel?[add(there,ahead,-this.distance),ahead]:[add(state.position,[0,0,0]),unit(subtract2(there,state.position))]}approach(height,ahead){
 let distance=Math.max(height/tangent(this.limits.view_angle),this.nearest);this.state.position=add(this.state.focal_point,
 ahead,-distance),this.state.view_angle=Math.atan(height/distance)*360/Math.PI}focusAt(x,y){let point=this.pick?.(x,y);if(!point)
 return;let ahead=this.axes[2],depth=dot2(subtract2(point,this.state.position),ahead);depth>0&&(this.state.focal_point=add(
@@ -238,32 +246,109 @@ FRAMEBUFFER,null)}pixel(draw){let gl=this.context;this.picker??=this.target(gl.R
 this.picker.frame),gl.viewport(0,0,1,1),gl.disable(gl.SCISSOR_TEST),gl.enable(gl.DEPTH_TEST),gl.clearBufferuiv(gl.COLOR,
 0,[0,0,0,0]),gl.clear(gl.DEPTH_BUFFER_BIT),draw();let bits=new Uint32Array(4);return gl.readPixels(0,0,1,1,gl.RGBA_INTEGER,
 gl.UNSIGNED_INT,bits),gl.bindFramebuffer(gl.FRAMEBUFFER,null),bits}};function sharedGraphics(){let page=globalThis;return page[SHARED]??=
-new Graphics}var Lifetime=class{controller=new AbortController;observers=new Set;timers=new Set;globalListeners=0;get isOver(){return this.
+new Graphics}function linesOf(steps,{low,size}){let lines=[],place=[0,0,0];for(let n=0;n<steps.length;n+=4){steps[n+3]&&lines.push([]);
+let point=place.map((_,k)=>(place[k]=place[k]+steps[n+k]&65535,low[k]+place[k]/65535*size[k]));lines[lines.length-1].push(
+point)}return lines}function thinned(lines,spacing){return spacing?lines.flatMap(line=>{let along=0,kept=line.filter((point,n)=>{
+let before=along;return n&&(along+=Math.hypot(...point.map((x,k)=>x-line[n-1][k]))),Math.floor(along/spacing)>Math.floor(
+before/spacing)||n===0||n===line.length-1});return along<spacing?[]:[kept]}):lines}function linePoints(lines,anchor){let size=lines.
+reduce((count,line)=>count+line.length+1,0),points=new Float32Array(3*size).fill(1e30),n=0;for(let line of lines){n+=3;for(let point of line)
+for(let k=0;k<3;k+=1)points[n++]=point[k]-anchor[k]}return points}function pieceGroups(points){let groups=[],pieces=points.
+length/3-1;for(let first=0;first<pieces;first+=256){let count=Math.min(256,pieces-first),[low,high]=[[1/0,1/0,1/0],[-1/0,
+-1/0,-1/0]];for(let n=3*first;n<3*(first+count+1);n+=1)points[n]!==Math.fround(1e30)&&(low[n%3]=Math.min(low[n%3],points[n]),
+high[n%3]=Math.max(high[n%3],points[n]));let middle=low.map((least,k)=>(least+high[k])/2),radius=Math.hypot(...low.map((least,k)=>(high[k]-
+least)/2));groups.push({first,count,middle,radius})}return groups}function visibleRuns(groups,planes){let runs=[];for(let{
+first,count,middle:[x,y,z],radius}of groups){let isOut=([a,b,c,d])=>a*x+b*y+c*z+d<-radius*Math.hypot(a,b,c);if(planes.some(
+isOut))continue;let last=runs[runs.length-1];last&&last[0]+last[1]===first?last[1]+=count:runs.push([first,count])}return runs}var NO_VALUE=-1e9;function positions(data,anchor){return anchor.some(Boolean)?data.map((x,n)=>x-anchor[n%3]):data}function grid(us,vs){
+let result2=new Float32Array(2*us.length*vs.length),n=0;for(let v2 of vs)for(let u of us)result2[n++]=u,result2[n++]=v2;
+return result2}function coordinates({shape,rows,columns}){let middles=(count,{before,size})=>Array.from({length:count},(_,n)=>(n+
+before+.5)/size);return grid(middles(shape[1],columns),middles(shape[0],rows))}function noiseCoordinates({alongI,alongJ}){
+return grid(alongI,alongJ)}function shares(steps,scalars,nodes){let result2=new Float32Array(2*nodes),place=shareOf(scalars);
+return steps.forEach((values,k)=>{for(let n=0;n<nodes;n+=1){let share=place(values[n]);result2[2*n+k]=Number.isFinite(share)?
+share:NO_VALUE}}),result2}function interpolated([rows,columns],i,j,value){let[left,low]=[Math.min(Math.floor(i),columns-
+2),Math.min(Math.floor(j),rows-2)],[a,b]=[i-left,j-low],corner=low*columns+left,[from,to]=[value(corner),value(corner+columns+
+1)],aside=value(corner+(a>=b?1:columns));return from+Math.max(a,b)*(aside-from)+Math.min(a,b)*(to-aside)}var POINT_BYTES=12,PIECE_ENDS=2;function groundAt({earth,geometry},camera,x,y){if(!earth)return null;let[start,along]=camera.
+ray(x,y);if(earth.map){let across=fromFrame(geometry.frame,[0,0,1]),depth2=dot2(subtract2(geometry.center,start),across)/
+dot2(along,across),place=add(start,along,depth2),[x0,y0,x1,y1]=earth.map;return place[0]>=x0&&place[0]<=x1&&place[1]>=y0&&
+place[1]<=y1?place:null}let nearest=dot2(start,along),square=nearest**2-dot2(start,start)+earth.radius**2,depth=-nearest-
+Math.sqrt(square);return depth>0?add(start,along,depth):null}var EarthLayer=class{version=0;graphics;header;parts;drawn=new Map;constructor(graphics,header,parts){
+this.graphics=graphics,this.header=header,this.parts=parts}forget(name){this.version+=1,this.drop(name==="position"?"lan\
+d":name)}dispose(){for(let name of[...this.drawn.keys()])this.drop(name)}drop(name){let drawn=this.drawn.get(name);if(drawn){
+for(let buffer of drawn.buffers)this.graphics.free("Buffer",buffer);this.graphics.free("VertexArray",drawn.array),this.drawn.
+delete(name)}}get lines(){let{earth}=this.header;return earth?EARTH_LINES.filter(name=>earth[name]&&this.parts.has(name)):
+[]}drawLines(view,take){let{header,graphics}=this,{earth,shaders}=header,program=graphics.programs.get(shaders.lineVertex,
+shaders.lineFragment);if(!earth||!program.ready)return;let gl=graphics.context,{camera,anchor,width,height,ratio}=view;gl.
+bindFramebuffer(gl.FRAMEBUFFER,null),gl.viewport(0,0,width,height),gl.enable(gl.SCISSOR_TEST),gl.scissor(0,0,width,height),
+gl.disable(gl.DEPTH_TEST),gl.enable(gl.BLEND),gl.blendEquation(gl.MAX),gl.clearColor(0,0,0,0);let horizon=this.horizon(camera),
+local=[...camera.planes,...horizon?[horizon]:[]].map(plane=>this.localPlane(plane,anchor)),pixel=2*camera.height*ratio/height,
+wider=clamp(Math.sqrt(height/ratio/earth.usualHeight),...earth.widthRange),most=earth.spacingPixels*pixel,spacing=earth.
+spacings.find(each=>each<=most)??0;for(let{option,color,opacity,width:thickness}of earth.strokes){if(!this.lines.includes(
+option))continue;gl.clear(gl.COLOR_BUFFER_BIT);let drawn=this.take(option,anchor,()=>this.linesOf(option,anchor,spacing),
+spacing);graphics.programs.use(program,{u_matrix:projection(header.geometry,camera,anchor),u_picture:[width,height],u_width:thickness*
+wider*ratio,u_lineColour:[...color,opacity],u_horizon:horizon?local[local.length-1]:[0,0,0,1]}),gl.bindVertexArray(drawn.
+array),gl.bindBuffer(gl.ARRAY_BUFFER,drawn.buffers[0]);for(let[first,count]of visibleRuns(drawn.groups,local)){for(let n=0;n<
+PIECE_ENDS;n+=1)gl.vertexAttribPointer(n,3,gl.FLOAT,!1,POINT_BYTES,(first+n)*POINT_BYTES);gl.drawArraysInstanced(gl.TRIANGLE_STRIP,
+0,4,count)}take()}gl.bindVertexArray(null),gl.blendEquation(gl.FUNC_ADD),gl.disable(gl.BLEND)}get isReady(){let{lineVertex,
+lineFragment}=this.header.shaders;return!this.lines.length||this.graphics.programs.get(lineVertex,lineFragment).ready}drawGround({
+camera,anchor}){let{header,graphics}=this,{earth,shaders,geometry}=header;if(!earth?.land)return;let globe=earth.map===null;
+if(!(globe?earth.below:this.parts.has("land")))return;let gl=graphics.context,defines=globe?["FLOWTEX_GLOBE"]:[],program=graphics.
+programs.get(shaders.groundVertex,shaders.groundFragment,...defines);if(program.ready){if(graphics.programs.use(program,
+{u_matrix:projection(geometry,camera,anchor),u_colour:earth.land,u_ground:header.background,u_lit:header.lighting,u_toEye:toFrame(
+geometry.frame,scale2(camera.axes[2],-1)),...globe?this.disc(camera,earth.radius,anchor):{}}),globe){let drawn=this.take(
+"disc",anchor,()=>this.emptyArray());gl.bindVertexArray(drawn.array),gl.drawArrays(gl.TRIANGLE_STRIP,0,4)}else{let drawn=this.
+take("land",anchor,()=>this.landOf(anchor));gl.bindVertexArray(drawn.array),gl.depthMask(!1),gl.drawElements(gl.TRIANGLES,
+drawn.count,gl.UNSIGNED_INT,0),gl.depthMask(!0)}gl.bindVertexArray(null)}}horizon(camera){let{earth}=this.header;if(!earth||
+earth.map)return null;let{radius}=earth,[x,y,z,w]=camera.eye,away=w*Math.hypot(x,y,z);return[...unit([x,y,z]),away?-(radius**
+2)/away:0]}localPlane(plane,anchor){let{frame,center}=this.header.geometry,normal=plane.slice(0,3),local=toFrame(frame,normal);
+return[...local,dot2(local,anchor)+dot2(normal,center)+plane[3]]}disc(camera,radius,anchor){let{frame,center}=this.header.
+geometry,[a,b,c,offset]=this.horizon(camera)??[0,0,1,0],toEye=[a,b,c],size=Math.sqrt(Math.max(radius**2-offset**2,0)),aside=unit(
+cross2(camera.axes[1],toEye)),upward=cross2(toEye,aside),middle=add(scale2(toEye,-offset),center,-1);return{u_middle:subtract2(
+toFrame(frame,middle),anchor),u_aside:scale2(toFrame(frame,aside),size),u_upward:scale2(toFrame(frame,upward),size),u_away:camera.
+state.parallel?0:length2(camera.state.position)/radius}}take(name,anchor,make,spacing=0){let old=this.drawn.get(name);if(old&&
+String([old.anchor,old.spacing])===String([anchor,spacing]))return old;this.drop(name);let drawn={...make(),anchor,spacing};
+return this.drawn.set(name,drawn),drawn}emptyArray(){let{graphics}=this;return{array:graphics.counted(graphics.context.createVertexArray()),
+buffers:[],anchor:[0,0,0],spacing:0,count:0,groups:[]}}buffer(target,data){let{graphics}=this,gl=graphics.context,buffer=graphics.
+counted(gl.createBuffer());return gl.bindBuffer(target,buffer),gl.bufferData(target,data,gl.STATIC_DRAW),buffer}linesOf(name,anchor,spacing){
+let gl=this.graphics.context,{earth}=this.header,steps=this.parts.get(name)?.data??[],lines=earth?linesOf(steps,earth):[],
+points=linePoints(thinned(lines,spacing),anchor),drawn={...this.emptyArray(),groups:pieceGroups(points)};gl.bindVertexArray(
+drawn.array),drawn.buffers=[this.buffer(gl.ARRAY_BUFFER,points)];for(let n=0;n<PIECE_ENDS;n+=1)gl.enableVertexAttribArray(
+n),gl.vertexAttribDivisor(n,1);return drawn}landOf(anchor){let gl=this.graphics.context,cells=this.parts.get("land"),nodes=this.
+parts.get("position"),drawn=this.emptyArray();if(!cells||!nodes)return drawn;let[rows,columns]=cells.shape,corners=[];for(let n=0;n<
+rows*columns;n+=1){if(!cells.data[n])continue;let low=n+Math.floor(n/columns),high=low+columns+1;corners.push(low,low+1,
+high+1,low,high+1,high)}gl.bindVertexArray(drawn.array);let points=positions(nodes.data,anchor);return drawn.buffers=[this.
+buffer(gl.ARRAY_BUFFER,points),this.buffer(gl.ELEMENT_ARRAY_BUFFER,new Uint32Array(corners))],drawn.count=corners.length,
+gl.enableVertexAttribArray(0),gl.vertexAttribPointer(0,3,gl.FLOAT,!1,0,0),drawn}};var Lifetime=class{controller=new AbortController;observers=new Set;timers=new Set;globalListeners=0;get isOver(){return this.
 controller.signal.aborted}listen(target,kind,call,options={}){(target===document||target===window)&&(this.globalListeners+=
 1);let{signal}=this.controller;target.addEventListener(kind,call,{...options,signal})}later(call,delay){let timer=setTimeout(
 ()=>{this.timers.delete(timer),call()},delay);return this.timers.add(timer),timer}cancel(timer){timer!==null&&(clearTimeout(
 timer),this.timers.delete(timer))}observe(observer,element){observer.observe(element),this.observers.add(observer)}stats(){
 let{globalListeners:listeners,observers,timers}=this;return{listeners,observers:observers.size,timers:timers.size}}end(){
 this.controller.abort(),this.globalListeners=0;for(let observer of this.observers)observer.disconnect();this.observers.clear();
-for(let timer of this.timers)clearTimeout(timer);this.timers.clear()}};var STOPS=9,PLAIN="none",ColourControls=class{element=dom("div",{class:"colours"});viewer;scalars=dom("select",{"aria-la\
-bel":"Colour by"});swatches=dom("div",{class:"swatches",role:"group"});ends=["Lowest value","Highest value"].map(name=>dom(
-"input",{type:"number",step:"any","aria-label":name}));auto=dom("button",{type:"button",class:"link"},["auto"]);mapRow;rangeRow;constructor(viewer){
-this.viewer=viewer;let{scalars,swatches,ends,auto}=this,{lifetime}=viewer;lifetime.listen(scalars,"change",()=>{viewer.chooseColours(
+for(let timer of this.timers)clearTimeout(timer);this.timers.clear()}};var STOPS=9,PLAIN="none",LINE_NAMES={coastlines:"Coastlines",graticule:"Graticule"},ColourControls=class{element=dom("di\
+v",{class:"colours"});viewer;scalars=dom("select",{"aria-label":"Colour by"});swatches=dom("div",{class:"swatches",role:"\
+group"});ends=["Lowest value","Highest value"].map(name=>dom("input",{type:"number",step:"any","aria-label":name}));auto=dom(
+"button",{type:"button",class:"link"},["auto"]);mapRow;rangeRow;lines=dom("div",{class:"colours"});constructor(viewer){this.
+viewer=viewer;let{scalars,swatches,ends,auto}=this,{lifetime}=viewer;lifetime.listen(scalars,"change",()=>{viewer.chooseColours(
 {scalars:scalars.value===PLAIN?!1:scalars.value,clim:null})});for(let end of ends)lifetime.listen(end,"change",()=>this.
 takeRange());lifetime.listen(auto,"click",()=>viewer.chooseColours({clim:null})),lifetime.listen(swatches,"click",event=>{
 let name=event.target.dataset.cmap;name&&viewer.chooseColours({cmap:name})});let row=(name,...fields)=>dom("div",{class:"\
 row"},[dom("span",{class:"name"},[name]),...fields]);this.rangeRow=row("Range",dom("span",{class:"between"},[...ends,auto])),
 this.mapRow=row("Colour map",swatches),this.mapRow.classList.add("ranged"),this.element.append(row("Colour by",scalars),
-this.mapRow,this.rangeRow)}update(){let{header,parts}=this.viewer,maps=parts.get("maps");if(this.element.hidden=!header?.
-scalars.choices.length||!maps,!header||!maps||this.element.hidden)return;let{choices,name,auto,cmap}=header.scalars,options=[
-...choices,{name:PLAIN,label:PLAIN}];this.scalars.replaceChildren(...options.map(each=>dom("option",{value:each.name},[each.
-label]))),this.scalars.value=name??PLAIN,this.mapRow.hidden=this.rangeRow.hidden=name===null,legendLimits(header.scalars).
-forEach((value,n)=>{this.ends[n].value=String(Number(value.toPrecision(4)))}),this.auto.setAttribute("aria-pressed",String(
-auto));let{settings}=this.viewer;this.swatches.replaceChildren(...header.scalars.maps.map(each=>{let pressed=String(each===
-cmap),swatch=dom("button",{...{type:"button",title:each,"aria-label":each,"data-cmap":each},"aria-pressed":pressed});return swatch.
-style.background=rampOf(mapOf(header,maps.data,each),header,settings,STOPS),swatch}))}takeRange(){let[low,high]=this.ends.
-map(end=>end.valueAsNumber);this.rangeRow.title="",low<high?this.viewer.chooseColours({clim:[low,high]}):this.rangeRow.title=
-`${numberText(low)} is not below ${numberText(high)}`;for(let end of this.ends)end.setCustomValidity(this.rangeRow.title)}};var SLIDER_STOPS=400;function hasStreaming({slices,paper,variant}){return slices.steps===1&&!paper&&!isSignFree({variant})}
+this.mapRow,this.rangeRow)}get rows(){return[this.element,this.lines]}updateLines(){let{header,parts,lifetime}=this.viewer,
+names=EARTH_LINES.filter(name=>header?.earth&&parts.has(name));this.lines.hidden=!names.length,this.lines.children.length!==
+names.length&&this.lines.replaceChildren(...names.map(name=>{let input=dom("input",{type:"checkbox",role:"switch"});lifetime.
+listen(input,"change",()=>this.viewer.chooseColours({[name]:input.checked}));let label=dom("span",{class:"name"},[LINE_NAMES[name]]);
+return dom("label",{class:"row","data-lines":name},[label,input])})),names.forEach((name,n)=>{let input=this.lines.children[n].
+querySelector("input");input&&(input.checked=header?.earth?.[name]??!1)})}update(){let{header,parts}=this.viewer;this.updateLines();
+let maps=parts.get("maps");if(this.element.hidden=!header?.scalars.choices.length||!maps,!header||!maps||this.element.hidden)
+return;let{choices,name,auto,cmap}=header.scalars,options=[...choices,{name:PLAIN,label:PLAIN}];this.scalars.replaceChildren(
+...options.map(each=>dom("option",{value:each.name},[each.label]))),this.scalars.value=name??PLAIN,this.mapRow.hidden=this.
+rangeRow.hidden=name===null,legendLimits(header.scalars).forEach((value,n)=>{this.ends[n].value=String(Number(value.toPrecision(
+4)))}),this.auto.setAttribute("aria-pressed",String(auto));let{settings}=this.viewer;this.swatches.replaceChildren(...header.
+scalars.maps.map(each=>{let pressed=String(each===cmap),swatch=dom("button",{...{type:"button",title:each,"aria-label":each,
+"data-cmap":each},"aria-pressed":pressed});return swatch.style.background=rampOf(mapOf(header,maps.data,each),header,settings,
+STOPS),swatch}))}takeRange(){let[low,high]=this.ends.map(end=>end.valueAsNumber);this.rangeRow.title="",low<high?this.viewer.
+chooseColours({clim:[low,high]}):this.rangeRow.title=`${numberText(low)} is not below ${numberText(high)}`;for(let end of this.
+ends)end.setCustomValidity(this.rangeRow.title)}};var SLIDER_STOPS=400;function hasStreaming({slices,paper,variant}){return slices.steps===1&&!paper&&!isSignFree({variant})}
 var USES={motion:hasStreaming,speed:hasStreaming,speed_in:hasStreaming,period:hasStreaming,grain:({paper})=>!paper,fixed_grain:({
 paper})=>!paper,two_sided:({slices})=>slices.sides===2,seed:({paper},rebuild)=>!paper||rebuild&&!paper.picture,resolution:({
 paper},rebuild)=>!paper||rebuild,tiles:({paper,settings},rebuild)=>!!paper?.picture&&(settings.noise==="image"||rebuild),
@@ -300,7 +385,23 @@ element.hidden||!map)return;let ramp=dom("div",{class:"ramp"},[this.mark]);ramp.
 STOPS2),this.mark.hidden=!0;let ends=legendLimits(header.scalars).map(value=>dom("span",{},[numberText(value)]));this.element.
 replaceChildren(dom("div",{class:"name"},[unit2?`${label} (${unit2})`:label]),ramp,dom("div",{class:"ends"},ends))}point(header,value=NaN){
 this.mark.hidden=!header||!Number.isFinite(value),!(!header||this.mark.hidden)&&(this.mark.style.left=`${100*clamp(shareOf(
-header.scalars)(value),0,1)}%`)}};var HEAD={apart:90,length:14,half:5},POINT_RADIUS=6,FREE_RADIUS=20,textOf=line=>line.map(place=>place.map(v2=>v2.toFixed(
+header.scalars)(value),0,1)}%`)}};var DEGREES=180/Math.PI,FEWEST_DECIMALS=2,MOST_DECIMALS=4,NEAR=1e-4,DAY_S=86400;function weights(t){let[a,b,c]=[t-1,t-2,
+t-3];return[-(a*b*c)/6,t*b*c/2,-(t*a*c)/2,t*a*b/6]}function around(share,count){let at=share*(count-1),first=clamp(Math.
+floor(at)-1,0,count-4);return[first,weights(at-first)]}function wayOn([x0,y0,x1,y1],{data,shape},position){let[rows,columns]=shape,
+[i,across]=around((position[0]-x0)/(x1-x0),columns),[j,upward]=around((position[1]-y0)/(y1-y0),rows),way=[0,0,0];return upward.
+forEach((v2,n)=>{across.forEach((u,m)=>{for(let k=0;k<3;k+=1)way[k]+=u*v2*data[3*((j+n)*columns+i+m)+k]})}),way}function lonLatOf(earth,position,places){
+if(earth.map&&!places)return null;let[x,y,z]=earth.map&&places?wayOn(earth.map,places,position):position,lonLat=[Math.atan2(
+y,x),Math.atan2(z,Math.hypot(x,y))];return lonLat.every(Number.isFinite)?[lonLat[0]*DEGREES,lonLat[1]*DEGREES]:null}function eastNorth(earth,position,velocity,places){
+let[from,change]=[position,velocity];if(earth.map&&places){let{map,radius}=earth,time=NEAR*(map[2]-map[0])/(Math.hypot(...velocity)||
+1),[before,after]=[-time,time].map(t=>wayOn(map,places,position.map((p,k)=>p+t*velocity[k])));from=wayOn(map,places,position),
+change=after.map((way,k)=>radius*(way-before[k])/(2*time))}let[x,y,z]=from,[across,away]=[Math.hypot(x,y)||1,Math.hypot(
+x,y,z)||1],east=(x*change[1]-y*change[0])/across,outward=(x*change[0]+y*change[1])/across;return[east,(across*change[2]-
+z*outward)/away]}function lonLatText([lon,lat],apart){let decimals=clamp(Math.ceil(-Math.log10(apart)),FEWEST_DECIMALS,MOST_DECIMALS),
+told=(degrees,[before,after])=>`${Math.abs(degrees).toFixed(decimals)}° ${degrees<0?before:after}`;return`${told(lon,"W\
+E")}, ${told(lat,"SN")}`}function dateText({start,dates,step},times2,time){if(start===null){if(!dates.length)return null;
+let apart=times2.map(each=>Math.abs(each-time));return dates[apart.indexOf(Math.min(...apart))]}let first=Date.parse(`${start}\
+Z`),isMidnight=first%(1e3*DAY_S)===0,text=new Date(first+1e3*time).toISOString();return isMidnight&&step%DAY_S===0&&time%
+DAY_S===0?text.slice(0,10):text.slice(0,step>=60?16:19).replace("T"," ")}var HEAD={apart:90,length:14,half:5},POINT_RADIUS=6,FREE_RADIUS=20,textOf=line=>line.map(place=>place.map(v2=>v2.toFixed(
 1)).join()).join(" ");function arrowHeads(line,apart=HEAD.apart){let heads=[],due=0;for(let n=line.length-1;n>0;n-=1){let[
 [ax,ay],[bx,by]]=[line[n-1],line[n]],size=Math.hypot(bx-ax,by-ay);if(!size)continue;let[ux,uy]=[(bx-ax)/size,(by-ay)/size];
 for(;due<size;due+=apart){let[x,y]=[bx-due*ux,by-due*uy],[left,low]=[x-HEAD.length*ux,y-HEAD.length*uy],[wide,tall]=[-HEAD.
@@ -309,15 +410,7 @@ path,sampled,point,directed}){let lines=(all,kind)=>all.map(line=>["polyline",{c
 [x,y]])=>!point||Math.hypot(x-point[0],y-point[1])>FREE_RADIUS,heads=directed?path.flatMap(line=>arrowHeads(line)).filter(
 isFree):[],ring=kind=>point?[["circle",{class:kind,cx:point[0],cy:point[1],r:POINT_RADIUS}]]:[];return[...lines(path,"wh\
 ole-casing"),...lines(path,"whole"),...lines(sampled,"casing"),...lines(sampled,"sampled"),...heads.map(head=>["polygon",
-{class:"arrow",points:textOf(head)}]),...ring("point-casing"),...ring("point")]}var NO_VALUE=-1e9;function positions(data,anchor){return anchor.some(Boolean)?data.map((x,n)=>x-anchor[n%3]):data}function grid(us,vs){
-let result2=new Float32Array(2*us.length*vs.length),n=0;for(let v2 of vs)for(let u of us)result2[n++]=u,result2[n++]=v2;
-return result2}function coordinates({shape,rows,columns}){let middles=(count,{before,size})=>Array.from({length:count},(_,n)=>(n+
-before+.5)/size);return grid(middles(shape[1],columns),middles(shape[0],rows))}function noiseCoordinates({alongI,alongJ}){
-return grid(alongI,alongJ)}function shares(steps,scalars,nodes){let result2=new Float32Array(2*nodes),place=shareOf(scalars);
-return steps.forEach((values,k)=>{for(let n=0;n<nodes;n+=1){let share=place(values[n]);result2[2*n+k]=Number.isFinite(share)?
-share:NO_VALUE}}),result2}function interpolated([rows,columns],i,j,value){let[left,low]=[Math.min(Math.floor(i),columns-
-2),Math.min(Math.floor(j),rows-2)],[a,b]=[i-left,j-low],corner=low*columns+left,[from,to]=[value(corner),value(corner+columns+
-1)],aside=value(corner+(a>=b?1:columns));return from+Math.max(a,b)*(aside-from)+Math.min(a,b)*(to-aside)}function pickedPoint(context,x,y){let{layers,camera,moment,anchor,canvas}=context,{graphics,header}=layers[0].scene,program=graphics.
+{class:"arrow",points:textOf(head)}]),...ring("point-casing"),...ring("point")]}function pickedPoint(context,x,y){let{layers,camera,moment,anchor,canvas}=context,{graphics,header}=layers[0].scene,program=graphics.
 programs.get(header.shaders.vertex,header.shaders.pick),whole=projection(header.geometry,camera,anchor),matrix=atPixel(whole,
 [x,y],[canvas.width,canvas.height]),[before,after,between2]=moment,bits=graphics.pixel(()=>{layers.forEach(({scene:scene2},n)=>{
 graphics.programs.use(program,{u_matrix:matrix,u_between:between2,u_part:n}),scene2.draw(before,after,anchor,!1)})});if(!bits[3])
@@ -374,10 +467,10 @@ fromHalf(data[first+n]):0,place=slices.extra.indexOf(layer),fourth=channels===4|
 count+texel]);return[at(0),at(1),at(2),fourth]}}function layersAt({scene,moment,place:[i,j]}){let{geometry,slices}=scene.
 header,{rows,columns}=geometry,[x,y]=[i+columns.before,j+rows.before],[left,low]=[Math.floor(x),Math.floor(y)],[s,t]=[x-
 left,y-low],texels=[0,1,2,3].map(n=>{let column=clamp(left+(n&1),0,columns.size-1);return clamp(low+(n>>1),0,rows.size-1)*
-columns.size+column}),weights=[(1-s)*(1-t),s*(1-t),(1-s)*t,s*t],[before,after,late]=moment,steps=[before,after].map(step=>texelOf(
+columns.size+column}),weights2=[(1-s)*(1-t),s*(1-t),(1-s)*t,s*t],[before,after,late]=moment,steps=[before,after].map(step=>texelOf(
 scene,step)),shares2=[1-late,late],signs=isSignFree(scene.header)?signsOf(texels.map(n=>steps[0](0,n))):[1,1,1,1];return layer=>{
 let sum=[0,0,0,0];return texels.forEach((texel,n)=>{let other=layer+(layer>slices.lags.length?-1:1)*slices.lags.length,from=signs[n]<
-0&&layer>0?other:layer;steps.forEach((step,k)=>{shares2[k]&&step(from,texel).forEach((value,c)=>{sum[c]+=weights[n]*shares2[k]*
+0&&layer>0?other:layer;steps.forEach((step,k)=>{shares2[k]&&step(from,texel).forEach((value,c)=>{sum[c]+=weights2[n]*shares2[k]*
 value*(c<3?signs[n]:1)})})}),sum}}function signsOf(tangents){let together=[0,0,0];return tangents.map(([x,y,z])=>{let sign=dot2(
 together,[x,y,z])<0?-1:1;return together=add(together,[x,y,z],sign),sign})}function sideOf(layers,lags,first,sign,by){let[
 before,from]=[layers(0).slice(0,3),0],reach=layers(first+1)[3],end=Math.min(reach,lags[lags.length-1]),result2=[];for(let m=0;m<
@@ -411,37 +504,42 @@ samples=isMoving(scene.header,settings)?2*set-1:set,count=sides===2?Math.floor(s
 spacing)*grainAt(at,settings,camera,rows),joined=reach=>{let[back=[],ahead=[]]=whole.map(side=>upTo(position,side,reach));
 return[...back.reverse(),position,...ahead]};return{path:joined(PATH_LENGTH*Math.max(count,FEWEST_SAMPLES)*step),sampled:joined(
 count*step),directed,velocity}}var TITLE="Path through this point",SVG="http://www.w3.org/2000/svg",FEWEST_DIGITS=4,MOST_DIGITS=14,VELOCITY_DIGITS=3,PATIENCE_MS=5e3,
-RETRY_MS=40,UNIT_LENGTH=12;function withUnit(text,unit2){return unit2&&unit2.length<=UNIT_LENGTH?`${text} ${unit2}`:text}
-function vectorText(vector,size,digits,flat){return`(${vector.slice(0,flat?2:3).map(x=>{let value=Math.abs(x)<10**(-1-digits)*
-size?0:x;return digits>5?String(Number(value.toPrecision(digits))):numberText(value,digits)}).join(", ")})`}var liesAcross=({
-planar,frame})=>planar&&Math.abs(frame[8])>.999;function positionText(position,header,camera){let{geometry}=header,zoom=Math.
-max(camera?.zoom??1,1),digits=Math.min(Math.ceil(FEWEST_DIGITS+Math.log10(zoom)),MOST_DIGITS),isInPlane=liesAcross(geometry)&&
-Math.abs(position[2]-geometry.center[2])<1e-12*geometry.extent;return vectorText(position,geometry.extent,digits,isInPlane)}
-var PointCard=class{element=dom("div",{class:"card glass",role:"region",hidden:""});overlay=document.createElementNS(SVG,
-"svg");host;list=dom("dl");chosen=null;later=null;drawn=null;constructor(host){this.host=host,this.element.setAttribute(
-"aria-label",TITLE),this.overlay.setAttribute("class","path");let button=dom("button",{type:"button",class:"link"},["Clo\
-se"]);button.addEventListener("click",()=>this.close()),this.element.append(dom("div",{class:"first"},[dom("span",{},[TITLE]),
-button]),this.list)}choose(x,y,until=performance.now()+PATIENCE_MS){let{lifetime,canPick}=this.host;if(lifetime.cancel(this.
-later),!canPick&&performance.now()<until)return this.later=lifetime.later(()=>this.choose(x,y,until),RETRY_MS),null;let found=this.
-host.find(x,y);return found&&this.host.options.onPoint?.(found.point),this.close(),this.chosen=found,this.update(),found?.
-point??null}close(){for(let{card}of this.host.together)card.clear()}clear(){this.host.lifetime.cancel(this.later),this.chosen=
-this.drawn=null,this.element.hidden=!0,this.overlay.replaceChildren()}update(){let{chosen}=this,{options,camera,shown,header,
-tiles,settings,root,together}=this.host;if(!chosen||options.bare||!camera||!shown||!header)return;let{point,layer,place}=chosen,
-scene=tiles?.layers.find(({key})=>String(key)===String(layer.key))?.scene;if(!scene||scene.missing(shown[0],shown[1]).length)
-return;let position=point.position,path=pathThrough({scene,moment:shown,place,position},settings,camera,root.clientHeight);
-this.tell({...point,values:valuesAt(scene,shown,place)},path,header,camera);for(let{card}of together)card.drawn={path,point:position},
-card.draw()}tell(point,{velocity},header,camera){let{label,unit:unit2}=header.speed,size=Math.hypot(...velocity),text=vectorText(
-velocity,size,VELOCITY_DIGITS,liesAcross(header.geometry)),lines=new Map([["position",withUnit(positionText(point.position,
-header,camera),header.lengthUnit)],[label.replace("speed","velocity"),withUnit(text,unit2)],[label,withUnit(numberText(size,
-VELOCITY_DIGITS),unit2)]]);for(let[name,value]of Object.entries(point.values)){let named=header.scalars.choices.find(each=>each.
-name===name)??header.scalars;lines.set(named.label,withUnit(numberText(value),named.unit))}this.list.replaceChildren(...[
-...lines].flatMap(([word,value])=>[dom("dt",{},[word]),dom("dd",{},[value])])),this.element.hidden=!1}draw(){let{drawn}=this,
-{camera,root}=this.host;if(!drawn||!camera)return;let{clientWidth:width,clientHeight:height}=root,placeOf=point2=>{let place=camera.
-project(point2);return place&&[(place[0]+1)/2*width,(1-place[1])/2*height]},linesOf=points=>{let lines=[[]];for(let place of points.
-map(placeOf))place?lines[lines.length-1].push(place):lines.push([]);return lines.filter(line=>line.length>1)},{path,sampled,
-directed}=drawn.path,point=placeOf(drawn.point),shapes=pathShapes({path:linesOf(path),sampled:linesOf(sampled),point,directed});
-this.overlay.replaceChildren(...shapes.map(([tag,attributes])=>{let shape=document.createElementNS(SVG,tag);for(let[name,
-value]of Object.entries(attributes))shape.setAttribute(name,`${value}`);return shape}))}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */
+RETRY_MS=40,PLACES_IN_VIEW=200,DEGREE_M=111195,UNIT_LENGTH=12;function withUnit(text,unit2){return unit2&&unit2.length<=
+UNIT_LENGTH?`${text} ${unit2}`:text}function vectorText(vector,size,digits,flat){return`(${vector.slice(0,flat?2:3).map(
+x=>{let value=Math.abs(x)<10**(-1-digits)*size?0:x;return digits>5?String(Number(value.toPrecision(digits))):numberText(
+value,digits)}).join(", ")})`}var liesAcross=({planar,frame})=>planar&&Math.abs(frame[8])>.999;function placeText(position,header,parts,camera,isWithUnit=!1){
+let{earth}=header,lonLat=earth&&lonLatOf(earth,position,parts.get("lonlat"));if(lonLat)return lonLatText(lonLat,(camera?.
+height??0)/PLACES_IN_VIEW/DEGREE_M);let text=positionText(position,header,camera);return isWithUnit?withUnit(text,header.
+lengthUnit):text}function positionText(position,header,camera){let{geometry}=header,zoom=Math.max(camera?.zoom??1,1),digits=Math.
+min(Math.ceil(FEWEST_DIGITS+Math.log10(zoom)),MOST_DIGITS),isInPlane=liesAcross(geometry)&&Math.abs(position[2]-geometry.
+center[2])<1e-12*geometry.extent;return vectorText(position,geometry.extent,digits,isInPlane)}var PointCard=class{element=dom(
+"div",{class:"card glass",role:"region",hidden:""});overlay=document.createElementNS(SVG,"svg");host;list=dom("dl");chosen=null;later=null;drawn=null;constructor(host){
+this.host=host,this.element.setAttribute("aria-label",TITLE),this.overlay.setAttribute("class","path");let button=dom("b\
+utton",{type:"button",class:"link"},["Close"]);button.addEventListener("click",()=>this.close()),this.element.append(dom(
+"div",{class:"first"},[dom("span",{},[TITLE]),button]),this.list)}choose(x,y,until=performance.now()+PATIENCE_MS){let{lifetime,
+canPick}=this.host;if(lifetime.cancel(this.later),!canPick&&performance.now()<until)return this.later=lifetime.later(()=>this.
+choose(x,y,until),RETRY_MS),null;let found=this.host.find(x,y);return found&&this.host.options.onPoint?.(found.point),this.
+close(),this.chosen=found,this.update(),found?.point??null}close(){for(let{card}of this.host.together)card.clear()}clear(){
+this.host.lifetime.cancel(this.later),this.chosen=this.drawn=null,this.element.hidden=!0,this.overlay.replaceChildren()}update(){
+let{chosen}=this,{options,camera,shown,header,tiles,settings,root,together}=this.host;if(!chosen||options.bare||!camera||
+!shown||!header)return;let{point,layer,place}=chosen,scene=tiles?.layers.find(({key})=>String(key)===String(layer.key))?.
+scene;if(!scene||scene.missing(shown[0],shown[1]).length)return;let position=point.position,path=pathThrough({scene,moment:shown,
+place,position},settings,camera,root.clientHeight);this.tell({...point,values:valuesAt(scene,shown,place)},path,header,camera);
+for(let{card}of together)card.drawn={path,point:position},card.draw()}tell(point,{velocity},header,camera){let{label,unit:unit2}=header.
+speed,size=Math.hypot(...velocity),lines=new Map,{earth}=header,{parts}=this.host,where=placeText(point.position,header,
+parts,camera,!0);if(earth&&lonLatOf(earth,point.position,parts.get("lonlat"))){let[east,north]=eastNorth(earth,point.position,
+velocity,parts.get("lonlat"));lines.set("place",where),lines.set("eastward",withUnit(numberText(east,VELOCITY_DIGITS),unit2)),
+lines.set("northward",withUnit(numberText(north,VELOCITY_DIGITS),unit2))}else{let text=vectorText(velocity,size,VELOCITY_DIGITS,
+liesAcross(header.geometry));lines.set("position",where),lines.set(label.replace("speed","velocity"),withUnit(text,unit2))}
+lines.set(label,withUnit(numberText(size,VELOCITY_DIGITS),unit2));for(let[name,value]of Object.entries(point.values)){let named=header.
+scalars.choices.find(each=>each.name===name)??header.scalars;lines.set(named.label,withUnit(numberText(value),named.unit))}
+this.list.replaceChildren(...[...lines].flatMap(([word,value])=>[dom("dt",{},[word]),dom("dd",{},[value])])),this.element.
+hidden=!1}draw(){let{drawn}=this,{camera,root}=this.host;if(!drawn||!camera)return;let{clientWidth:width,clientHeight:height}=root,
+placeOf=point2=>{let place=camera.project(point2);return place&&[(place[0]+1)/2*width,(1-place[1])/2*height]},linesOf2=points=>{
+let lines=[[]];for(let place of points.map(placeOf))place?lines[lines.length-1].push(place):lines.push([]);return lines.
+filter(line=>line.length>1)},{path,sampled,directed}=drawn.path,point=placeOf(drawn.point),shapes=pathShapes({path:linesOf2(
+path),sampled:linesOf2(sampled),point,directed});this.overlay.replaceChildren(...shapes.map(([tag,attributes])=>{let shape=document.
+createElementNS(SVG,tag);for(let[name,value]of Object.entries(attributes))shape.setAttribute(name,`${value}`);return shape}))}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */
 :host {
   --ink: var(--jp-ui-font-color1, #1b2430);
   --quiet: var(--jp-ui-font-color2, #566373);
@@ -681,39 +779,40 @@ listen(button,"click",press),button}makeBar(){let{viewer}=this;return dom("div",
 label":"Controls"},[this.playButton,this.track,this.button("home","Show everything (0)",()=>viewer.reset()),this.toggles.
 lod,this.toggles.show_level,this.gear,this.button("save","Save the picture",()=>{this.save()}),this.button("full","Fill \
 the screen (f)",()=>this.fullscreen()),this.button("hide","Hide the bar (h)",()=>this.toggle())])}build(){let{header}=this.
-viewer;header&&(this.note.hidden=!0,this.controls.build(header),this.controls.element.prepend(this.colours.element),this.
+viewer;header&&(this.note.hidden=!0,this.controls.build(header),this.controls.element.prepend(...this.colours.rows),this.
 showLegend(),this.update(),this.arrange())}update(){let{header,settings}=this.viewer,{playing,varies}=this.viewer.player;
 this.name(),this.controls.update(),this.legendLook!==this.lookOf(settings)&&this.showLegend();for(let[name,button]of Object.
 entries(this.toggles))button.setAttribute("aria-pressed",String(!!settings[name]));let title=playing?"Pause (space)":"Pl\
 ay (space)";this.playButton.replaceChildren(icon(playing?"pause":"play")),this.playButton.title=title,this.playButton.setAttribute(
 "aria-label",title);let streams=header!==null&&hasStreaming(header);this.playButton.hidden=this.track.hidden=!varies&&!streams,
-this.slider.disabled=!varies&&settings.motion==="off";let unit2=header?.slices.timeUnit??"";this.timeText.style.minWidth=
-`${varies?8+unit2.length:7}ch`,this.tick()}name(){let{header,settings,root}=this.viewer,title=(header?.differs??[]).filter(
-name=>name in settings).map(name=>{let label=header?.table.find(row=>row.name===name)?.label??name,value=settings[name];
+this.slider.disabled=!varies&&settings.motion==="off";let width=header&&this.date(header)?.length||8+(header?.slices.timeUnit??
+"").length;this.timeText.style.minWidth=`${varies?width:7}ch`,this.tick()}name(){let{header,settings,root}=this.viewer,title=(header?.
+differs??[]).filter(name=>name in settings).map(name=>{let label=header?.table.find(row=>row.name===name)?.label??name,value=settings[name];
 return`${label}: ${typeof value=="boolean"?value?"on":"off":value}`}).join(", ")||header?.name||"";this.title.textContent=
 title,this.title.hidden=!title,root.setAttribute("aria-label",title?`Flow texture: ${title}`:"Flow texture")}tick(){let{
 header,player,settings}=this.viewer;if(!header||this.track.hidden)return;let{first,last,now}=player.range(settings);this.
-slider.value=String((now-first)/(last-first||1));let unit2=header.slices.timeUnit,text=player.varies?`${numberText(now)}\
- ${unit2}`:`${now.toFixed(1)} s`;this.timeText.textContent!==text&&(this.timeText.textContent=text)}lookOf({show_level,strength,
-contrast}){return`${show_level} ${strength} ${contrast}`}showLegend(){let{header,settings,parts}=this.viewer;this.legendLook=
-this.lookOf(settings),this.colours.update(),header&&this.legend.show(header,settings,parts.get("cmap")?.data)}read(point){
-let{header}=this.viewer;if(this.readout.replaceChildren(),this.legend.point(null),!point||!header)return;this.readout.append(
-dom("span",{},[positionText(point.position,header,this.viewer.camera)]));let{name,label,unit:unit2}=header.scalars,value=point.
-values[name??""];value!==void 0&&(this.readout.append(dom("b",{},[withUnit(`${label} ${numberText(value)}`,unit2)])),this.
-legend.point(header,value))}fold(open=!1){this.isOpen=open,this.arrange()}toggle(shown=!this.isShown){shown!==this.isShown&&
-(this.isShown=shown,this.arrange(),this.viewer.options.onControls?.(shown))}arrange(){let{header,options,root}=this.viewer,
-isReady=header!==null,follows=!!options.follows;this.bar.hidden=!this.isShown||!isReady,this.handle.hidden=this.isShown||
-!isReady||follows,this.head.hidden=!(this.isShown||follows)||!isReady,this.controls.element.hidden=!this.isShown||!this.
-isOpen||!isReady,root.classList.toggle("flowtex-open",!this.controls.element.hidden),this.gear.setAttribute("aria-presse\
-d",String(this.isOpen))}wait(missing){this.busy.hidden=!missing.length;let{viewer}=this;!missing.length||viewer.options.
-onNeed||this.lateTimer||(this.lateTimer=viewer.lifetime.later(()=>{this.lateTimer=null;let names=viewer.lacking.join(", ");
-names&&this.fail("The scene is not complete.",`Missing: ${names}`)},LATE_MS))}hint(shown){let{lifetime}=this.viewer;lifetime.
-cancel(this.hintTimer),this.hintTimer=shown?lifetime.later(()=>this.hint(!1),HINT_MS):null,this.hintBox.hidden=!shown}clear(){
-this.note.hidden=!0,delete this.viewer.root.dataset.failed}fail(problem,detail){this.note.replaceChildren(dom("strong",{},
-[problem]),dom("pre",{},[detail])),this.note.hidden=!1,this.busy.hidden=!0,this.viewer.root.dataset.failed="true"}fullscreen(){
-let{root}=this.viewer;toggleFullscreen(root.closest(".flowtex-pair")??root)}async save(){let{viewer}=this,href=URL.createObjectURL(
-await pictureOf(viewer.together)),name=(viewer.header?.name||"flow").replace(FORBIDDEN," ").trim();dom("a",{href,download:`${name}\
-.png`}).click(),viewer.lifetime.later(()=>URL.revokeObjectURL(href),SAVED_MS)}};var SERIES_STEP_S=.5,SERIES_LEAST_S=6,SERIES_MOST_S=60,LONGEST_GAP_S=.5,Player=class{time=0;clock=0;playing=!1;times=[0];lastFrame=0;hasHeader=!1;setHeader(header){
+slider.value=String((now-first)/(last-first||1));let unit2=header.slices.timeUnit,moment=this.date(header)??`${numberText(
+now)} ${unit2}`,text=player.varies?moment:`${now.toFixed(1)} s`;this.timeText.textContent!==text&&(this.timeText.textContent=
+text)}date({slices}){return dateText(slices.dates,slices.times,this.viewer.player.time)}lookOf({show_level,strength,contrast}){
+return`${show_level} ${strength} ${contrast}`}showLegend(){let{header,settings,parts}=this.viewer;this.legendLook=this.lookOf(
+settings),this.colours.update(),header&&this.legend.show(header,settings,parts.get("cmap")?.data)}read(point,ground=null){
+let{header}=this.viewer;this.readout.replaceChildren(),this.legend.point(null);let position=point?.position??ground;if(!position||
+!header)return;let{parts,camera}=this.viewer;if(this.readout.append(dom("span",{},[placeText(position,header,parts,camera)])),
+!point)return;let{name,label,unit:unit2}=header.scalars,value=point.values[name??""];value!==void 0&&(this.readout.append(
+dom("b",{},[withUnit(`${label} ${numberText(value)}`,unit2)])),this.legend.point(header,value))}fold(open=!1){this.isOpen=
+open,this.arrange()}toggle(shown=!this.isShown){shown!==this.isShown&&(this.isShown=shown,this.arrange(),this.viewer.options.
+onControls?.(shown))}arrange(){let{header,options,root}=this.viewer,isReady=header!==null,follows=!!options.follows;this.
+bar.hidden=!this.isShown||!isReady,this.handle.hidden=this.isShown||!isReady||follows,this.head.hidden=!(this.isShown||follows)||
+!isReady,this.controls.element.hidden=!this.isShown||!this.isOpen||!isReady,root.classList.toggle("flowtex-open",!this.controls.
+element.hidden),this.gear.setAttribute("aria-pressed",String(this.isOpen))}wait(missing){this.busy.hidden=!missing.length;
+let{viewer}=this;!missing.length||viewer.options.onNeed||this.lateTimer||(this.lateTimer=viewer.lifetime.later(()=>{this.
+lateTimer=null;let names=viewer.lacking.join(", ");names&&this.fail("The scene is not complete.",`Missing: ${names}`)},LATE_MS))}hint(shown){
+let{lifetime}=this.viewer;lifetime.cancel(this.hintTimer),this.hintTimer=shown?lifetime.later(()=>this.hint(!1),HINT_MS):
+null,this.hintBox.hidden=!shown}clear(){this.note.hidden=!0,delete this.viewer.root.dataset.failed}fail(problem,detail){
+this.note.replaceChildren(dom("strong",{},[problem]),dom("pre",{},[detail])),this.note.hidden=!1,this.busy.hidden=!0,this.
+viewer.root.dataset.failed="true"}fullscreen(){let{root}=this.viewer;toggleFullscreen(root.closest(".flowtex-pair")??root)}async save(){
+let{viewer}=this,href=URL.createObjectURL(await pictureOf(viewer.together)),name=(viewer.header?.name||"flow").replace(FORBIDDEN,
+" ").trim();dom("a",{href,download:`${name}.png`}).click(),viewer.lifetime.later(()=>URL.revokeObjectURL(href),SAVED_MS)}};var SERIES_STEP_S=.5,SERIES_LEAST_S=6,SERIES_MOST_S=60,LONGEST_GAP_S=.5,Player=class{time=0;clock=0;playing=!1;times=[0];lastFrame=0;hasHeader=!1;setHeader(header){
 let{times:times2}=header.slices;(!(times2.length===this.times.length&&times2.every((t,n)=>t===this.times[n]))||!this.hasHeader)&&
 (this.time=header.time,this.clock=header.clock),this.hasHeader=!0,this.times=times2}get varies(){return this.times.length>
 1}get span(){return[this.times[0],this.times[this.times.length-1]]}get moment(){return momentOf(this.times,this.time)}timeOf([
@@ -755,9 +854,9 @@ return}event.preventDefault();let size=event.ctrlKey&&event.deltaMode===0?PINCH_
 -event.deltaY/size,-MOST_NOTCHES,MOST_NOTCHES);this.zoom((this.viewer.camera?.limits.wheel_zoom??1)**notches,event)}zoom(factor,event){
 let{x,y}=this.place(event);this.viewer.camera?.zoomBy(factor,x,y),this.viewer.reportCamera()}hover(place){let{viewer}=this;
 viewer.lifetime.cancel(this.look);let rest=HOVER_MS-(performance.now()-this.lastLook),look=()=>{this.look=null,this.lastLook=
-performance.now(),viewer.sharp&&viewer.canPick?viewer.panel.read(viewer.point(place.x,place.y)):viewer.player.playing||this.
-hover(place)};this.look=viewer.lifetime.later(look,Math.max(rest,viewer.sharp?0:HOVER_MS))}onKey(event){let{root}=this.viewer,
-[target]=event.composedPath(),inside=target instanceof Element&&target!==root?target.tagName:"",isControl=/^(INPUT|SELECT)$/.
+performance.now();let{x,y}=place;viewer.sharp&&viewer.canPick?viewer.panel.read(viewer.point(x,y),viewer.ground(x,y)):viewer.
+player.playing||this.hover(place)};this.look=viewer.lifetime.later(look,Math.max(rest,viewer.sharp?0:HOVER_MS))}onKey(event){
+let{root}=this.viewer,[target]=event.composedPath(),inside=target instanceof Element&&target!==root?target.tagName:"",isControl=/^(INPUT|SELECT)$/.
 test(inside)||inside==="BUTTON"&&event.key===PLAY_KEY;hasModifier(event)||isControl||!this.command(event)||(event.preventDefault(),
 event.stopPropagation())}command({key,shiftKey}){let{viewer}=this,{camera,panel,options}=viewer;if(!camera)return!1;let command=CAMERA_KEYS[key];
 if(command in DIRECTIONS){let[x,y]=DIRECTIONS[command].map(way=>way*KEY_STEP);camera.flat===shiftKey?camera.rotate(-x,-y):
@@ -776,56 +875,64 @@ abs((a*x+c*y+e)/w-1)<1+ROUNDING&&Math.abs((b*x+d*y+f)/h-1)<1+ROUNDING,covers=[[0
 every(isInside),[xx,xy,yx,yy]=matrix,shifts=Math.abs(xx-1)+Math.abs(yy-1)+Math.abs(xy)+Math.abs(yx)<ROUNDING;if(shifts)for(let n of[
 4,5])matrix[n]=Math.round(matrix[n]);return{matrix,covers,shifts}}var MOVING_MS=55,MOVING_LEAST_MS=14,STRIP_MS=40,SMOOTH_ROWS=256,penOf=canvas=>canvas.getContext("2d",{alpha:!1}),ProgressiveRenderer=class{viewer;graphics;canvas;pen;back=document.
 createElement("canvas");backPen=penOf(this.back);last=document.createElement("canvas");lastPen=penOf(this.last);lastCamera=null;coarse=document.
-createElement("canvas");coarsePen=penOf(this.coarse);version=1;draftVersion=0;rowsDone=0;layers=[];isRefined=!1;fixed=4;frames=0;constructor(viewer){
-this.viewer=viewer,this.graphics=viewer.graphics,this.canvas=viewer.canvas,this.pen=penOf(this.canvas)}restart(cameraOnly=!1){
+createElement("canvas");coarsePen=penOf(this.coarse);front=document.createElement("canvas");frontPen=this.front.getContext(
+"2d");frontLook="";version=1;draftVersion=0;rowsDone=0;layers=[];isRefined=!1;fixed=4;frames=0;constructor(viewer){this.
+viewer=viewer,this.graphics=viewer.graphics,this.canvas=viewer.canvas,this.pen=penOf(this.canvas)}restart(cameraOnly=!1){
 cameraOnly||(this.lastCamera=null),this.version+=1,this.rowsDone=0}refine(){this.rowsDone>=this.canvas.height?this.rowsDone=
 0:this.isRefined=!0}resize(width,height){let{canvas,back,last}=this;back.width=canvas.width,back.height=canvas.height,this.
 backPen?.drawImage(canvas,0,0),canvas.width=last.width=width,canvas.height=last.height=height,back.width>1&&this.pen?.drawImage(
 back,0,0,width,height),back.width=width,back.height=height}dispose(){for(let canvas of[this.canvas,this.back,this.last,this.
-coarse])canvas.width=canvas.height=0}draw(program,shown,moving,until){if(this.draftVersion!==this.version)return this.draft(
-program,shown,moving);if(moving)return!1;let complete=!1;do complete=this.strip(program,shown)&&!this.isRefined;while(!complete&&
+coarse,this.front])canvas.width=canvas.height=0}draw(program,shown,moving,until){if(this.draftVersion!==this.version)return this.
+draft(program,shown,moving);if(moving)return!1;let complete=!1;do complete=this.strip(program,shown)&&!this.isRefined;while(!complete&&
 performance.now()<until);return complete}arrange(shown){this.isRefined=!1,this.layers=this.viewer.arrange(shown)}draft(program,shown,moving){
 let{width,height}=this.canvas,samples=Number(this.viewer.settings.samples),crowd=moving?this.graphics.waiting.size+1:1,budget=Math.
 max(MOVING_MS/crowd,MOVING_LEAST_MS);this.arrange(shown),this.warm(program,shown);let price=program.price*this.factor(samples),
 best=quality(price,this.fixed,width*height,samples,budget),w=Math.max(Math.round(width*best.scale),1),h=Math.max(Math.round(
 height*best.scale),1);this.draftVersion=this.version;let reuse=best.scale<1?this.reuse():null;if(!reuse?.covers){let region={
 width:w,height:h,top:0,rows:h};this.timed(program,region,best.samples,()=>{this.render(program,shown,region,best.samples),
-this.copy(this.pen,region,height,0)})}return reuse&&this.pen&&(this.pen.imageSmoothingEnabled=!reuse.shifts,this.pen.setTransform(
-...reuse.matrix),this.pen.drawImage(this.last,0,0),this.pen.setTransform(1,0,0,1,0,0)),best.scale<1||best.samples!==samples||
-this.viewer.smooth?!1:(this.complete(),!this.isRefined)}strip(program,shown){let{width,height}=this.canvas,{smooth,settings}=this.
-viewer,samples=Number(settings.samples);this.rowsDone>=height&&(this.rowsDone=0),this.rowsDone===0&&this.arrange(shown),
-this.warm(program,shown);let price=program.price*this.factor(samples),most=Math.min(height-this.rowsDone,smooth?SMOOTH_ROWS:
-height),rows=Math.min(rowsIn(STRIP_MS,price,this.fixed,width,samples),most),region={width,height,top:this.rowsDone,rows};
-return this.timed(program,region,samples,()=>{this.render(program,shown,region,samples,smooth);let drawn=smooth?{...region,
-height:rows,top:0}:region;this.copy(this.backPen,drawn,drawn.height,this.rowsDone)}),this.rowsDone+=rows,this.rowsDone<height?
-!1:(this.pen?.drawImage(this.back,0,0),this.complete(),!0)}complete(){let{camera,player}=this.viewer;this.rowsDone=this.
-canvas.height,this.frames+=1,this.draftVersion=this.version,this.lastPen?.drawImage(this.canvas,0,0),camera&&!player.playing&&
-(this.lastCamera=new Camera(camera.state,camera.limits,camera.flat,camera.aspect))}reuse(){let{lastCamera}=this,{scene,camera}=this.
-viewer;if(!scene?.header.geometry.planar||!camera||!lastCamera||!camera.state.parallel||!lastCamera.state.parallel)return null;
-let{geometry}=scene.header,focus=subtract2(camera.state.focal_point,geometry.center),anchor=toFrame(geometry.frame,focus),
-[before,now]=[lastCamera,camera].map(view=>projection(geometry,view,anchor));return reused(before,now,this.canvas.width,
-this.canvas.height)}factor(samples){let{settings,player}=this.viewer;return settings.motion!=="off"||player.varies?motionFactor(
-samples):1}timed(program,region,samples,draw){let started=performance.now();draw();let spent=performance.now()-started,pixels=region.
-width*region.rows,factor=this.factor(samples);program.price=learnedPrice(program.price,spent,this.fixed,pixels,samples,factor)}warm(program,shown){
-if(program.warm)return;let{width,height}=this.canvas,region={width,height,top:0,rows:1};this.render(program,shown,region,
-1);let started=performance.now();this.render(program,shown,region,1),this.fixed=clamp(performance.now()-started,.5,200),
-program.warm=!0}render(program,shown,region,samples,smooth=!1){let{graphics,viewer}=this,{camera,scene}=viewer;if(!camera||
-!scene)return;let gl=graphics.context,{width,height,top,rows}=region,view=viewer.view(shown,viewer.ratio*height/this.canvas.
-height),{canvas}=graphics;canvas.width<width&&(canvas.width=width),canvas.height<height&&(canvas.height=height);let bottom=height-
-top-rows;smooth?graphics.bindSmooth(width,rows):gl.bindFramebuffer(gl.FRAMEBUFFER,null),gl.viewport(0,smooth?-bottom:0,width,
-height),gl.enable(gl.SCISSOR_TEST),gl.scissor(0,smooth?0:bottom,width,rows),gl.enable(gl.DEPTH_TEST),gl.depthFunc(gl.LESS),
-gl.disable(gl.BLEND),gl.disable(gl.CULL_FACE);let[r,g,b]=scene.header.background;gl.clearColor(r,g,b,1),gl.clear(gl.COLOR_BUFFER_BIT|
-gl.DEPTH_BUFFER_BIT);let draft=samples!==viewer.settings.samples||height!==this.canvas.height;for(let layer of this.layers)
-graphics.programs.use(program,this.values(layer,camera,view,samples,draft)),layer.draw(shown[0],shown[1],view.anchor,!0);
-smooth&&graphics.copySmooth(width,rows),gl.readPixels(0,0,1,1,gl.RGBA,gl.UNSIGNED_BYTE,new Uint8Array(4))}values({header,
-parts},camera,view,samples,draft){let{settings}=this.viewer,noise=parts.get("noise")?.shape??null;return{...uniforms(header,
-{...settings,samples},view,noise),...draft?draftUniforms(settings,samples,view.density):{},u_matrix:projection(header.geometry,
-camera,view.anchor),u_mapped:header.scalars.name!==null,u_colour:header.colour,u_lit:header.lighting,u_ground:header.background,
-u_opacity:header.opacity,u_toEye:toFrame(header.geometry.frame,scale2(camera.axes[2],-1))}}copy(pen,region,height,to){if(!pen)
-return;let{width:w,height:h,top,rows}=region,{width}=this.canvas,{canvas}=this.graphics,first=canvas.height-h+top;if(pen.
-imageSmoothingEnabled=w!==width||h!==height,pen.imageSmoothingEnabled){let{coarse,coarsePen}=this;coarse.width=w,coarse.
-height=rows,coarsePen?.drawImage(canvas,0,first,w,rows,0,0,w,rows),[canvas,first]=[coarse,0]}pen.drawImage(canvas,0,first,
-w,rows,0,to,width,rows*height/h)}};var PLACE2=5;function blocksOf(nodes,size){let count=Math.max(Math.ceil((nodes-1)/size),1);return Array.from({length:count},
+this.copy(this.pen,region,height,0)})}reuse&&this.pen&&(this.pen.imageSmoothingEnabled=!reuse.shifts,this.pen.setTransform(
+...reuse.matrix),this.pen.drawImage(this.last,0,0),this.pen.setTransform(1,0,0,1,0,0));let isWhole=best.scale===1&&best.
+samples===samples&&!this.viewer.smooth;return isWhole&&this.complete(),this.drawLines(shown),isWhole&&!this.isRefined}strip(program,shown){
+let{width,height}=this.canvas,{smooth,settings}=this.viewer,samples=Number(settings.samples);this.rowsDone>=height&&(this.
+rowsDone=0),this.rowsDone===0&&this.arrange(shown),this.warm(program,shown);let price=program.price*this.factor(samples),
+most=Math.min(height-this.rowsDone,smooth?SMOOTH_ROWS:height),rows=Math.min(rowsIn(STRIP_MS,price,this.fixed,width,samples),
+most),region={width,height,top:this.rowsDone,rows};return this.timed(program,region,samples,()=>{this.render(program,shown,
+region,samples,smooth);let drawn=smooth?{...region,height:rows,top:0}:region;this.copy(this.backPen,drawn,drawn.height,this.
+rowsDone)}),this.rowsDone+=rows,this.rowsDone<height?!1:(this.pen?.drawImage(this.back,0,0),this.complete(),this.drawLines(
+shown),!0)}drawLines(shown){let{front,frontPen,graphics}=this,{scene,camera,ratio}=this.viewer,{width,height}=this.canvas;
+if(!scene?.earth.lines.length||!camera||!frontPen)return;let{earth}=scene,{state,aspect}=camera,look=JSON.stringify([state,
+aspect,width,height,earth.lines,earth.version]);if(look!==this.frontLook){let{anchor}=this.viewer.view(shown,ratio),{canvas}=graphics;
+canvas.width<width&&(canvas.width=width),canvas.height<height&&(canvas.height=height),front.width=width,front.height=height,
+earth.drawLines({camera,anchor,width,height,ratio},()=>{let top=canvas.height-height;frontPen.drawImage(canvas,0,top,width,
+height,0,0,width,height)}),this.frontLook=look}this.pen?.drawImage(front,0,0)}complete(){let{camera,player}=this.viewer;
+this.rowsDone=this.canvas.height,this.frames+=1,this.draftVersion=this.version,this.lastPen?.drawImage(this.canvas,0,0),
+camera&&!player.playing&&(this.lastCamera=new Camera(camera.state,camera.limits,camera.flat,camera.aspect))}reuse(){let{
+lastCamera}=this,{scene,camera}=this.viewer;if(!scene?.header.geometry.planar||!camera||!lastCamera||!camera.state.parallel||
+!lastCamera.state.parallel)return null;let{geometry}=scene.header,focus=subtract2(camera.state.focal_point,geometry.center),
+anchor=toFrame(geometry.frame,focus),[before,now]=[lastCamera,camera].map(view=>projection(geometry,view,anchor));return reused(
+before,now,this.canvas.width,this.canvas.height)}factor(samples){let{settings,player}=this.viewer;return settings.motion!==
+"off"||player.varies?motionFactor(samples):1}timed(program,region,samples,draw){let started=performance.now();draw();let spent=performance.
+now()-started,pixels=region.width*region.rows,factor=this.factor(samples);program.price=learnedPrice(program.price,spent,
+this.fixed,pixels,samples,factor)}warm(program,shown){if(program.warm)return;let{width,height}=this.canvas,region={width,
+height,top:0,rows:1};this.render(program,shown,region,1);let started=performance.now();this.render(program,shown,region,
+1),this.fixed=clamp(performance.now()-started,.5,200),program.warm=!0}render(program,shown,region,samples,smooth=!1){let{
+graphics,viewer}=this,{camera,scene}=viewer;if(!camera||!scene)return;let gl=graphics.context,{width,height,top,rows}=region,
+view=viewer.view(shown,viewer.ratio*height/this.canvas.height),{canvas}=graphics;canvas.width<width&&(canvas.width=width),
+canvas.height<height&&(canvas.height=height);let bottom=height-top-rows;smooth?graphics.bindSmooth(width,rows):gl.bindFramebuffer(
+gl.FRAMEBUFFER,null),gl.viewport(0,smooth?-bottom:0,width,height),gl.enable(gl.SCISSOR_TEST),gl.scissor(0,smooth?0:bottom,
+width,rows),gl.enable(gl.DEPTH_TEST),gl.depthFunc(gl.LESS),gl.disable(gl.BLEND),gl.disable(gl.CULL_FACE);let[r,g,b]=scene.
+header.background;gl.clearColor(r,g,b,1),gl.clear(gl.COLOR_BUFFER_BIT|gl.DEPTH_BUFFER_BIT);let draft=samples!==viewer.settings.
+samples||height!==this.canvas.height,around2={camera,anchor:view.anchor,width,height,ratio:viewer.ratio};scene.earth.drawGround(
+around2);for(let layer of this.layers)graphics.programs.use(program,this.values(layer,camera,view,samples,draft)),layer.
+draw(shown[0],shown[1],view.anchor,!0);smooth&&graphics.copySmooth(width,rows),gl.readPixels(0,0,1,1,gl.RGBA,gl.UNSIGNED_BYTE,
+new Uint8Array(4))}values({header,parts},camera,view,samples,draft){let{settings}=this.viewer,noise=parts.get("noise")?.
+shape??null;return{...uniforms(header,{...settings,samples},view,noise),...draft?draftUniforms(settings,samples,view.density):
+{},u_matrix:projection(header.geometry,camera,view.anchor),u_mapped:header.scalars.name!==null,u_colour:header.colour,u_lit:header.
+lighting,u_ground:header.background,u_opacity:header.opacity,u_toEye:toFrame(header.geometry.frame,scale2(camera.axes[2],
+-1))}}copy(pen,region,height,to){if(!pen)return;let{width:w,height:h,top,rows}=region,{width}=this.canvas,{canvas}=this.
+graphics,first=canvas.height-h+top;if(pen.imageSmoothingEnabled=w!==width||h!==height,pen.imageSmoothingEnabled){let{coarse,
+coarsePen}=this;coarse.width=w,coarse.height=rows,coarsePen?.drawImage(canvas,0,first,w,rows,0,0,w,rows),[canvas,first]=
+[coarse,0]}pen.drawImage(canvas,0,first,w,rows,0,to,width,rows*height/h)}};var PLACE2=5;function blocksOf(nodes,size){let count=Math.max(Math.ceil((nodes-1)/size),1);return Array.from({length:count},
 (_,n)=>({first:n*size,cells:Math.min(nodes-1-n*size,size)}))}var MeshLevels=class{mesh;limits;rows;columns;constructor(mesh,limits){
 this.mesh=mesh,this.limits=limits,this.rows=blocksOf(mesh.shape[0],limits.tileCells),this.columns=blocksOf(mesh.shape[1],
 limits.tileCells)}get shape(){return[this.rows.length,this.columns.length]}levels({eye,halfHeight,pixels}){let{limits}=this,
@@ -852,9 +959,9 @@ return line*this.strides[0]+along*this.strides[1]}close(){for(let n=0;n<this.wid
 at(this.count-1,n)],most=Math.max(this.values[first],this.values[last]);this.values[first]=this.values[last]=most}}};function eachBlock({
 step,row,column,shape},[rows,columns],call){let bottom=Math.min(row+(shape[0]<<step),rows),right=Math.min(column+(shape[1]<<
 step),columns);for(let j=row;j<bottom;j+=1){let own=(j-row>>step)*shape[1];for(let i=column;i<right;i+=1)call(j*columns+
-i,own+(i-column>>step))}}function finestAround(nodes,[rows,columns],periodic){let around=(n,by,count,closed)=>closed?(n+
+i,own+(i-column>>step))}}function finestAround(nodes,[rows,columns],periodic){let around2=(n,by,count,closed)=>closed?(n+
 by+count)%count:clamp(n+by,0,count-1);return nodes.map((own,block)=>{let[j,i]=[Math.floor(block/columns),block%columns],
-least=own;for(let by of[-1,1]){let row=around(j,by,rows,periodic[0]),column=around(i,by,columns,periodic[1]);least=Math.
+least=own;for(let by of[-1,1]){let row=around2(j,by,rows,periodic[0]),column=around2(i,by,columns,periodic[1]);least=Math.
 min(least,nodes[row*columns+i],nodes[j*columns+column])}return least})}function join(parts,blocks,periodic,most){let nodes=new Int16Array(
 blocks[0]*blocks[1]).fill(NOT_DRAWN),put=(target,part,value)=>eachBlock(part,blocks,(block,own)=>{part.levels[own]>=0&&(target[block]=
 value(part.levels[own]))});for(let part of parts)put(nodes,part,()=>part.step);let finest=finestAround(nodes,blocks,periodic),
@@ -870,83 +977,84 @@ own%shape[1]],[first,start]=axis?[column,row]:[row,column],pick=Math.min(first+(
 place[1-axis]*size,end=Math.max(Math.min(from+size,line.width),from+1),coarsest=0;for(let n=from;n<end;n+=1)coarsest=Math.
 max(coarsest,values[line.at(pick,n)]);if(borders[4*own+side]=coarsest-step,!(level<0))for(let n=from;n<end;n+=1)changed||=
 values[line.at(pick,n)]!==coarsest,values[line.at(pick,n)]=coarsest})}return[borders,changed]}var USERS={position:["position","coordinate"],normal:["normal"],cells:["index"],mesh:["index"],cmap:["cmap"],noise:["noi\
-se"],step:["step"],scalars:["scalar"]},Scene=class{graphics;header;parts;anchor=[0,0,0];resources=new Map;scalarSteps="";drawn=null;meshLevels=null;constructor(graphics,header,parts){
-this.graphics=graphics,this.header=header,this.parts=parts}missing(before,after){let{geometry,slices,scalars,paper,pyramid}=this.
-header,names=["position","mesh",...geometry.planar?[]:["normal"]];pyramid&&names.push("places");for(let step of new Set(
-[before,after]))names.push(`slices/${step}`),slices.channels===2&&names.push(`extra/${step}`);return names.push(...this.
-scalarParts(before,after)),scalars.name!==null&&names.push("cmap"),paper&&names.push("noise","step"),[...new Set(names)].
-filter(name=>!this.fits(name))}scalarParts(before,after,of=this.header.scalars){let{name,steps,number}=of;if(name===null)
-return[];let end=number?`/${number}`:"";return(steps>1?[before,after]:[0,0]).map(step=>`scalars/${step}${end}`)}fits(name){
-let part=this.parts.get(name);if(!part)return!1;let{geometry,slices,paper,mesh}=this.header,blocks=geometry.shape.map(n=>Math.
-max(Math.ceil((n-1)/mesh.tileCells),1)),shape={slices:[slices.count,geometry.rows.size,geometry.columns.size,slices.channels],
-position:[...geometry.shape,3],mesh:[...blocks,part.shape[2]],step:paper?[paper.size[1],paper.size[0]]:[]}[name.split("/")[0]];
-return!shape||String(shape)===String(part.shape)}part(name){let part=this.parts.get(name);if(!part)throw new Error(`the \
-part "${name}" of the scene is missing`);return part}forget(name){let[kind,step]=name.split("/");(kind==="mesh"||kind===
-"cells")&&(this.meshLevels=this.drawn=null);let sliced=kind==="slices"||kind==="extra";for(let user of sliced?[`slices/${step}`]:
-USERS[kind]??[])this.drop(user);this.drop("array")}drop(name){let resource=this.resources.get(name);this.resources.delete(
-name),resource&&(resource.users-=1,!resource.users&&(this.graphics.free(resource.kind,resource.object),this.graphics.common.
-delete(resource.key)))}dispose(){for(let name of[...this.resources.keys()])this.drop(name)}key(names,...rest){let digests=names.
-map(name=>this.parts.has(name)?this.part(name).digest:"none");return digests.every(Boolean)?JSON.stringify([digests,rest]):
-""}take(name,kind,key,make,fill){let own=this.resources.get(name);if(own)return own.object;let{graphics}=this,whole=key&&
-`${name.split("/")[0]} ${key}`,shared=whole?graphics.common.get(whole):void 0,object=shared?.object??graphics.counted(make()),
-resource=shared??{kind,object,count:0,key:whole,users:0};return resource.users+=1,this.resources.set(name,resource),shared||
-(resource.count=fill(object)||0),whole&&graphics.common.set(whole,resource),object}buffer(name,key,data,elements=!1){let gl=this.
-graphics.context,fill=buffer=>{let target=elements?gl.ELEMENT_ARRAY_BUFFER:gl.ARRAY_BUFFER,numbers=data();return gl.bindVertexArray(
-null),gl.bindBuffer(target,buffer),gl.bufferData(target,numbers,gl.STATIC_DRAW),numbers.length};return this.take(name,"B\
-uffer",key,()=>gl.createBuffer(),fill)}mesh(){if(!this.meshLevels){let{geometry,mesh}=this.header,{shape,periodic}=geometry,
-parts={blocks:this.part("mesh").data,cells:this.parts.get("cells")?.data};this.meshLevels=new MeshLevels({shape,periodic,
-...parts},mesh)}return this.meshLevels}levels(sight){return{levels:this.mesh().levels(sight),shape:this.mesh().shape}}get hasTriangles(){
-return this.drawn!==null}setTriangles(levels,joins){let{drawn}=this;drawn&&String([levels,joins])===String([drawn.levels,
-drawn.joins])||(this.drawn={levels,joins},this.drop("index"),this.drop("array"))}isLoaded(steps){return steps.every(step=>this.
-resources.has(`slices/${step}`))}load(steps){for(let step of steps)this.slices(step)}bindNodes(before,after,anchor){let gl=this.
-graphics.context,steps=String(this.scalarParts(before,after)),stale=steps!==this.scalarSteps?["scalar","array"]:[];anchor.
-some((x,k)=>x!==this.anchor[k])&&stale.push("position","array");for(let name of stale)this.drop(name);this.scalarSteps=steps,
-this.anchor=anchor;let fill=array=>this.fillArray(array,before,after),make=()=>gl.createVertexArray();gl.bindVertexArray(
-this.take("array","VertexArray","",make,fill))}fillArray(array,before,after){let gl=this.graphics.context,{geometry,scalars,
-paper}=this.header,{shape,rows,columns}=geometry,{levels,joins}=this.drawn??{levels:new Int8Array,joins:new Int8Array},cells=()=>this.
-mesh().triangles(levels,joins),drawn=this.key(["cells","mesh"],shape,[...levels],[...joins]),index=this.buffer("index",drawn,
-cells,!0),nodes=()=>positions(this.part("position").data,this.anchor),normal=geometry.planar?null:this.part("normal").data,
-painted=this.scalarParts(before,after),values=()=>{let steps=painted.map(name=>this.part(name).data);return shares(steps,
-scalars,shape[0]*shape[1])},colour=this.key([...new Set(painted)],shape,scalars.low,scalars.high,scalars.log),grid2=JSON.
-stringify([shape,rows,columns]),type=gl.FLOAT;normal instanceof Int8Array&&(type=gl.BYTE),normal instanceof Int16Array&&
-(type=gl.SHORT);let attributes=[[this.buffer("position",this.key(["position"],this.anchor),nodes),3,gl.FLOAT],[this.buffer(
-"coordinate",grid2,()=>coordinates(geometry)),2,gl.FLOAT],[normal&&this.buffer("normal",this.key(["normal"]),()=>normal),
-3,type],[paper&&this.buffer("along","",()=>noiseCoordinates(paper)),2,gl.FLOAT],[this.buffer("scalar",colour,values),2,gl.
-FLOAT]];gl.bindVertexArray(array),gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER,index),attributes.forEach(([buffer,size,kind],n)=>{
-buffer&&(gl.bindBuffer(gl.ARRAY_BUFFER,buffer),gl.enableVertexAttribArray(n),gl.vertexAttribPointer(n,size,kind,kind!==gl.
-FLOAT,0,0))})}texture(name,key,fill){let gl=this.graphics.context;return this.take(name,"Texture",key,()=>gl.createTexture(),
-fill)}slices(step){let{slices,geometry}=this.header,key=this.key([`slices/${step}`,`extra/${step}`],geometry.levels,slices.
-extra);return this.texture(`slices/${step}`,key,texture=>{let part=this.part(`slices/${step}`),[layers,height,width,channels]=part.
-shape,data=part.data,extra=this.parts.get(`extra/${step}`)?.data,texels=height*width,layer=n=>{let own=data.subarray(n*texels*
-channels,(n+1)*texels*channels);if(channels===4)return own;let all=new Uint16Array(4*texels),place=slices.extra.indexOf(
-n),fourth=place<0?null:extra?.subarray(place*texels,(place+1)*texels);for(let k=0;k<texels;k+=1)all[4*k]=own[2*k],all[4*
-k+1]=own[2*k+1],fourth&&(all[4*k+3]=fourth[k]);return all};this.fill(texture,{width,height,layers,channels:4,levels:geometry.
-levels},layer)})}image(name,repeat){let gl=this.graphics.context;return this.texture(name,this.key([name],repeat),texture=>{
-let{data,shape}=this.part(name),[height,width,channels=1]=shape,levels=Math.floor(Math.log2(Math.max(width,height))),size={
-width,height,layers:1,channels,levels};this.fill(texture,size,()=>data);let wrap=n=>repeat[n]?gl.REPEAT:gl.CLAMP_TO_EDGE;
-gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_S,wrap(1)),gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_T,wrap(
-0))})}fill(texture,size,layer){let gl=this.graphics.context,{width,height,layers,channels,levels}=size,target=gl.TEXTURE_2D_ARRAY;
-this.checkSize(size);let[format,inner]=channels===1?[gl.RED,gl.R16F]:[gl.RGBA,gl.RGBA16F];gl.bindTexture(target,texture),
-gl.texStorage3D(target,levels+1,inner,width,height,layers),gl.texParameteri(target,gl.TEXTURE_MIN_FILTER,gl.LINEAR_MIPMAP_LINEAR),
-gl.texParameteri(target,gl.TEXTURE_MAG_FILTER,gl.LINEAR),gl.texParameteri(target,gl.TEXTURE_WRAP_S,gl.CLAMP_TO_EDGE),gl.
-texParameteri(target,gl.TEXTURE_WRAP_T,gl.CLAMP_TO_EDGE),gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);let{floats}=this.graphics;
-for(let n=0;n<layers;n+=1){let texels=layer(n),[w,h]=[width,height];gl.texSubImage3D(target,0,0,0,n,w,h,1,format,gl.HALF_FLOAT,
-texels);for(let level=1;level<=levels&&!floats;level+=1)[texels,w,h]=halved(texels,w,h,channels),gl.texSubImage3D(target,
-level,0,0,n,w,h,1,format,gl.HALF_FLOAT,texels)}floats&&levels&&gl.generateMipmap(target)}checkSize({width,height,layers}){
-let gl=this.graphics.context,most=gl.getParameter(gl.MAX_TEXTURE_SIZE),mostLayers=gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS);
-if(!(Math.max(width,height)<=most&&layers<=mostLayers))throw new Error(`a texture of ${width} x ${height} texels in ${layers}\
- layers is asked for, and this graphics card has ${most} x ${most} in ${mostLayers}; show fewer nodes`)}colourMap(){let gl=this.
-graphics.context;return this.texture("cmap",this.key(["cmap"]),texture=>{gl.bindTexture(gl.TEXTURE_2D,texture),gl.pixelStorei(
-gl.UNPACK_ALIGNMENT,1);let data=this.parts.get("cmap")?.data??new Uint8Array(1024);gl.texImage2D(gl.TEXTURE_2D,0,gl.RGBA8,
-256,1,0,gl.RGBA,gl.UNSIGNED_BYTE,data),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.texParameteri(
-gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST)})}dropSlices(before,after){let next=after+1<this.header.slices.steps?after+
-1:0;for(let name of[...this.resources.keys()])name.startsWith("slices/")&&([before,after,next,after+1].includes(stepOf(name))||
-this.drop(name))}bindTextures(before,after){let gl=this.graphics.context,{paper}=this.header,repeat=paper?.repeat??[!1,!1];
-[this.slices(before),after===before?null:this.slices(after),paper&&this.image("noise",paper.picture?[!0,!0]:repeat),paper&&
-this.image("step",repeat),this.colourMap()].forEach((texture,n)=>{gl.activeTexture(gl.TEXTURE0+n),gl.bindTexture(n<4?gl.
-TEXTURE_2D_ARRAY:gl.TEXTURE_2D,texture)}),gl.activeTexture(gl.TEXTURE0+SAMPLERS.length)}draw(before,after,anchor,textures){
-let gl=this.graphics.context;textures&&(this.dropSlices(before,after),this.bindTextures(before,after)),this.bindNodes(before,
-after,anchor),gl.drawElements(gl.TRIANGLES,this.resources.get("index")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(null)}};var REQUEST_MS=60,LOST_MS=8e3,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD=4,Tiles=class{layers=[];missing=[];host;root;tiles=new Map;pyramid=null;chosen={
+se"],step:["step"],scalars:["scalar"]},Scene=class{graphics;header;parts;earth;anchor=[0,0,0];resources=new Map;scalarSteps="";drawn=null;meshLevels=null;constructor(graphics,header,parts){
+this.graphics=graphics,this.header=header,this.parts=parts,this.earth=new EarthLayer(graphics,header,parts)}missing(before,after){
+let{geometry,slices,scalars,paper,pyramid}=this.header,names=["position","mesh",...geometry.planar?[]:["normal"]];pyramid&&
+names.push("places");for(let step of new Set([before,after]))names.push(`slices/${step}`),slices.channels===2&&names.push(
+`extra/${step}`);return names.push(...this.scalarParts(before,after)),scalars.name!==null&&names.push("cmap"),paper&&names.
+push("noise","step"),[...new Set(names)].filter(name=>!this.fits(name))}scalarParts(before,after,of=this.header.scalars){
+let{name,steps,number}=of;if(name===null)return[];let end=number?`/${number}`:"";return(steps>1?[before,after]:[0,0]).map(
+step=>`scalars/${step}${end}`)}fits(name){let part=this.parts.get(name);if(!part)return!1;let{geometry,slices,paper,mesh}=this.
+header,blocks=geometry.shape.map(n=>Math.max(Math.ceil((n-1)/mesh.tileCells),1)),shape={slices:[slices.count,geometry.rows.
+size,geometry.columns.size,slices.channels],position:[...geometry.shape,3],mesh:[...blocks,part.shape[2]],step:paper?[paper.
+size[1],paper.size[0]]:[]}[name.split("/")[0]];return!shape||String(shape)===String(part.shape)}part(name){let part=this.
+parts.get(name);if(!part)throw new Error(`the part "${name}" of the scene is missing`);return part}forget(name){let[kind,
+step]=name.split("/");(kind==="mesh"||kind==="cells")&&(this.meshLevels=this.drawn=null);let sliced=kind==="slices"||kind===
+"extra";!sliced&&kind!=="scalars"&&this.earth.forget(name);for(let user of sliced?[`slices/${step}`]:USERS[kind]??[])this.
+drop(user);this.drop("array")}drop(name){let resource=this.resources.get(name);this.resources.delete(name),resource&&(resource.
+users-=1,!resource.users&&(this.graphics.free(resource.kind,resource.object),this.graphics.common.delete(resource.key)))}dispose(){
+for(let name of[...this.resources.keys()])this.drop(name);this.earth.dispose()}key(names,...rest){let digests=names.map(
+name=>this.parts.has(name)?this.part(name).digest:"none");return digests.every(Boolean)?JSON.stringify([digests,rest]):""}take(name,kind,key,make,fill){
+let own=this.resources.get(name);if(own)return own.object;let{graphics}=this,whole=key&&`${name.split("/")[0]} ${key}`,shared=whole?
+graphics.common.get(whole):void 0,object=shared?.object??graphics.counted(make()),resource=shared??{kind,object,count:0,
+key:whole,users:0};return resource.users+=1,this.resources.set(name,resource),shared||(resource.count=fill(object)||0),whole&&
+graphics.common.set(whole,resource),object}buffer(name,key,data,elements=!1){let gl=this.graphics.context,fill=buffer=>{
+let target=elements?gl.ELEMENT_ARRAY_BUFFER:gl.ARRAY_BUFFER,numbers=data();return gl.bindVertexArray(null),gl.bindBuffer(
+target,buffer),gl.bufferData(target,numbers,gl.STATIC_DRAW),numbers.length};return this.take(name,"Buffer",key,()=>gl.createBuffer(),
+fill)}mesh(){if(!this.meshLevels){let{geometry,mesh}=this.header,{shape,periodic}=geometry,parts={blocks:this.part("mesh").
+data,cells:this.parts.get("cells")?.data};this.meshLevels=new MeshLevels({shape,periodic,...parts},mesh)}return this.meshLevels}levels(sight){
+return{levels:this.mesh().levels(sight),shape:this.mesh().shape}}get hasTriangles(){return this.drawn!==null}setTriangles(levels,joins){
+let{drawn}=this;drawn&&String([levels,joins])===String([drawn.levels,drawn.joins])||(this.drawn={levels,joins},this.drop(
+"index"),this.drop("array"))}isLoaded(steps){return steps.every(step=>this.resources.has(`slices/${step}`))}load(steps){
+for(let step of steps)this.slices(step)}bindNodes(before,after,anchor){let gl=this.graphics.context,steps=String(this.scalarParts(
+before,after)),stale=steps!==this.scalarSteps?["scalar","array"]:[];anchor.some((x,k)=>x!==this.anchor[k])&&stale.push("\
+position","array");for(let name of stale)this.drop(name);this.scalarSteps=steps,this.anchor=anchor;let fill=array=>this.
+fillArray(array,before,after),make=()=>gl.createVertexArray();gl.bindVertexArray(this.take("array","VertexArray","",make,
+fill))}fillArray(array,before,after){let gl=this.graphics.context,{geometry,scalars,paper}=this.header,{shape,rows,columns}=geometry,
+{levels,joins}=this.drawn??{levels:new Int8Array,joins:new Int8Array},cells=()=>this.mesh().triangles(levels,joins),drawn=this.
+key(["cells","mesh"],shape,[...levels],[...joins]),index=this.buffer("index",drawn,cells,!0),nodes=()=>positions(this.part(
+"position").data,this.anchor),normal=geometry.planar?null:this.part("normal").data,painted=this.scalarParts(before,after),
+values=()=>{let steps=painted.map(name=>this.part(name).data);return shares(steps,scalars,shape[0]*shape[1])},colour=this.
+key([...new Set(painted)],shape,scalars.low,scalars.high,scalars.log),grid2=JSON.stringify([shape,rows,columns]),type=gl.
+FLOAT;normal instanceof Int8Array&&(type=gl.BYTE),normal instanceof Int16Array&&(type=gl.SHORT);let attributes=[[this.buffer(
+"position",this.key(["position"],this.anchor),nodes),3,gl.FLOAT],[this.buffer("coordinate",grid2,()=>coordinates(geometry)),
+2,gl.FLOAT],[normal&&this.buffer("normal",this.key(["normal"]),()=>normal),3,type],[paper&&this.buffer("along","",()=>noiseCoordinates(
+paper)),2,gl.FLOAT],[this.buffer("scalar",colour,values),2,gl.FLOAT]];gl.bindVertexArray(array),gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER,
+index),attributes.forEach(([buffer,size,kind],n)=>{buffer&&(gl.bindBuffer(gl.ARRAY_BUFFER,buffer),gl.enableVertexAttribArray(
+n),gl.vertexAttribPointer(n,size,kind,kind!==gl.FLOAT,0,0))})}texture(name,key,fill){let gl=this.graphics.context;return this.
+take(name,"Texture",key,()=>gl.createTexture(),fill)}slices(step){let{slices,geometry}=this.header,key=this.key([`slices\
+/${step}`,`extra/${step}`],geometry.levels,slices.extra);return this.texture(`slices/${step}`,key,texture=>{let part=this.
+part(`slices/${step}`),[layers,height,width,channels]=part.shape,data=part.data,extra=this.parts.get(`extra/${step}`)?.data,
+texels=height*width,layer=n=>{let own=data.subarray(n*texels*channels,(n+1)*texels*channels);if(channels===4)return own;
+let all=new Uint16Array(4*texels),place=slices.extra.indexOf(n),fourth=place<0?null:extra?.subarray(place*texels,(place+
+1)*texels);for(let k=0;k<texels;k+=1)all[4*k]=own[2*k],all[4*k+1]=own[2*k+1],fourth&&(all[4*k+3]=fourth[k]);return all};
+this.fill(texture,{width,height,layers,channels:4,levels:geometry.levels},layer)})}image(name,repeat){let gl=this.graphics.
+context;return this.texture(name,this.key([name],repeat),texture=>{let{data,shape}=this.part(name),[height,width,channels=1]=shape,
+levels=Math.floor(Math.log2(Math.max(width,height))),size={width,height,layers:1,channels,levels};this.fill(texture,size,
+()=>data);let wrap=n=>repeat[n]?gl.REPEAT:gl.CLAMP_TO_EDGE;gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_S,wrap(1)),
+gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_T,wrap(0))})}fill(texture,size,layer){let gl=this.graphics.context,
+{width,height,layers,channels,levels}=size,target=gl.TEXTURE_2D_ARRAY;this.checkSize(size);let[format,inner]=channels===
+1?[gl.RED,gl.R16F]:[gl.RGBA,gl.RGBA16F];gl.bindTexture(target,texture),gl.texStorage3D(target,levels+1,inner,width,height,
+layers),gl.texParameteri(target,gl.TEXTURE_MIN_FILTER,gl.LINEAR_MIPMAP_LINEAR),gl.texParameteri(target,gl.TEXTURE_MAG_FILTER,
+gl.LINEAR),gl.texParameteri(target,gl.TEXTURE_WRAP_S,gl.CLAMP_TO_EDGE),gl.texParameteri(target,gl.TEXTURE_WRAP_T,gl.CLAMP_TO_EDGE),
+gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);let{floats}=this.graphics;for(let n=0;n<layers;n+=1){let texels=layer(n),[w,h]=[width,
+height];gl.texSubImage3D(target,0,0,0,n,w,h,1,format,gl.HALF_FLOAT,texels);for(let level=1;level<=levels&&!floats;level+=
+1)[texels,w,h]=halved(texels,w,h,channels),gl.texSubImage3D(target,level,0,0,n,w,h,1,format,gl.HALF_FLOAT,texels)}floats&&
+levels&&gl.generateMipmap(target)}checkSize({width,height,layers}){let gl=this.graphics.context,most=gl.getParameter(gl.
+MAX_TEXTURE_SIZE),mostLayers=gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS);if(!(Math.max(width,height)<=most&&layers<=mostLayers))
+throw new Error(`a texture of ${width} x ${height} texels in ${layers} layers is asked for, and this graphics card has ${most}\
+ x ${most} in ${mostLayers}; show fewer nodes`)}colourMap(){let gl=this.graphics.context;return this.texture("cmap",this.
+key(["cmap"]),texture=>{gl.bindTexture(gl.TEXTURE_2D,texture),gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);let data=this.parts.
+get("cmap")?.data??new Uint8Array(1024);gl.texImage2D(gl.TEXTURE_2D,0,gl.RGBA8,256,1,0,gl.RGBA,gl.UNSIGNED_BYTE,data),gl.
+texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST)})}dropSlices(before,after){
+let next=after+1<this.header.slices.steps?after+1:0;for(let name of[...this.resources.keys()])name.startsWith("slices/")&&
+([before,after,next,after+1].includes(stepOf(name))||this.drop(name))}bindTextures(before,after){let gl=this.graphics.context,
+{paper}=this.header,repeat=paper?.repeat??[!1,!1];[this.slices(before),after===before?null:this.slices(after),paper&&this.
+image("noise",paper.picture?[!0,!0]:repeat),paper&&this.image("step",repeat),this.colourMap()].forEach((texture,n)=>{gl.
+activeTexture(gl.TEXTURE0+n),gl.bindTexture(n<4?gl.TEXTURE_2D_ARRAY:gl.TEXTURE_2D,texture)}),gl.activeTexture(gl.TEXTURE0+
+SAMPLERS.length)}draw(before,after,anchor,textures){let gl=this.graphics.context;textures&&(this.dropSlices(before,after),
+this.bindTextures(before,after)),this.bindNodes(before,after,anchor),gl.drawElements(gl.TRIANGLES,this.resources.get("in\
+dex")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(null)}};var REQUEST_MS=60,LOST_MS=8e3,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD=4,Tiles=class{layers=[];missing=[];host;root;tiles=new Map;pyramid=null;chosen={
 choices:new Map,steps:[],names:""};drawn="";asked={names:[],steps:[]};count=0;isWaiting=!1;isOver=!1;lastCame=0;constructor(host,root){
 this.host=host,this.root=root}dispose(){this.isOver=!0;for(let name of[...this.tiles.keys()])this.drop(name)}setPart(name,part){
 let{graphics,header}=this.root,tile=this.tiles.get(name)??this.emptyTile();if(this.tiles.set(name,tile),part.name==="mes\
@@ -1021,7 +1129,7 @@ part&&viewer.setPart(part),viewer.recolour(colours)}}makeScene(header){this.scen
 this.tiles=new Tiles(this,this.scene)}setPart(part){let{name,digest}=part,tile=tilePart(name);if(tile)return void this.tiles?.
 setPart(tile[0],{...part,name:tile[1]});if(this.requests.delete(stepOf(name)),digest&&this.parts.get(name)?.digest===digest)
 return;let held=this.graphics.hold(part);this.remove(name),this.parts.set(name,held),this.scene?.forget(name),this.trim(),
-name==="cmap"&&this.tiles?.recolour(),(name==="cmap"||name==="maps")&&this.panel.showLegend(),this.change()}remove(name){
+name==="cmap"&&this.tiles?.recolour(),["cmap","maps",...EARTH_LINES].includes(name)&&this.panel.showLegend(),this.change()}remove(name){
 this.graphics.release(this.parts.get(name)),this.parts.delete(name)}trim(){if(!this.options.onNeed||!this.header)return;
 let names=[...this.parts.keys()].filter(name=>name.startsWith("slices/")),[before,after]=this.player.moment;for(let name of names.
 slice(0,Math.max(names.length-STEPS_HELD2,0))){let step=stepOf(name);if(!(step===before||step===after))for(let kind of["\
@@ -1033,56 +1141,57 @@ state):null}setCamera(state){if(!this.camera)this.firstCamera=copyOf(state);else
 this.camera.state=copyOf(state)}this.change(!0)}reportCamera(){this.holdDraft(),this.change(!0),this.camera&&this.options.
 onCamera?.(copyOf(this.camera.state))}reset(){this.camera&&(this.place(),this.reportCamera())}place(){let{header,firstCamera:first,
 aspect}=this,nodes=this.parts.get("position")?.data;if(!header||!nodes)return;let{geometry,limits}=header,state=first?widened(
-geometry,limits,first,nodes,aspect):fitted(geometry,limits,nodes,aspect);this.camera=new Camera(state,limits,geometry.planar,
-aspect),this.camera.pick=(x,y)=>this.point(x,y)?.position??null,(!first||!isEqual(first,state))&&this.options.onCamera?.(
-copyOf(state))}get aspect(){return Math.max(this.root.clientWidth,1)/Math.max(this.root.clientHeight,1)}get playing(){return this.
-player.playing}setTime(time){this.player.seek(time),this.panel.tick(),this.change()}scrub(share){let{player,options}=this,
-{first,last}=player.range(this.settings),value=first+share*(last-first);this.holdDraft(),player.varies?(this.setTime(value),
-options.onTime?.(player.time)):(this.setClock(value),options.onClock?.(player.clock))}setClock(clock){this.player.clock=
-clock,this.panel.tick(),this.change()}play(){if(this.options.follows)return this.options.follows.play();this.playing||!this.
-header||(!this.player.varies&&this.settings.motion==="off"&&this.choose("motion","speed"),this.player.start(),this.panel.
-update(),this.request(),this.options.onPlaying?.(!0))}pause(){if(this.options.follows)return this.options.follows.pause();
-this.playing&&(this.player.playing=!1,this.panel.update(),this.change(),this.options.onPlaying?.(!1))}togglePlaying(){let leader=this.
-options.follows??this;leader.playing?leader.pause():leader.play()}holdDraft(){this.busyUntil=performance.now()+STILL_MS}get isBusy(){
-return this.playing||performance.now()<this.busyUntil}change(cameraOnly=!1){this.renderer.restart(cameraOnly),this.card.
-draw(),this.setSharp(!1),this.request()}refine(){this.renderer.refine(),this.setSharp(!1),this.request()}arrange(shown){
-let scenes=this.tiles?.arrange(shown)??[];return this.root.dataset.tiles=String(this.tiles?.missing.length??0),scenes}draw(){
-this.frame(performance.now(),performance.now()+FRAME_MS)}setSharp(sharp){sharp!==this.sharp&&(this.sharp=sharp,this.root.
-dataset.sharp=String(sharp),sharp&&(this.card.update(),this.options.onFrame?.()))}request(){!this.lifetime.isOver&&this.
-isVisible&&this.graphics.request(this)}resize(){let ratio=Math.max(window.devicePixelRatio||1,.1),width=Math.max(Math.round(
-this.root.clientWidth*ratio),1),height=Math.max(Math.round(this.root.clientHeight*ratio),1);width===this.canvas.width&&height===
-this.canvas.height||(this.renderer.resize(width,height),this.camera&&(this.camera.aspect=this.aspect,isEqual(this.camera.
-state,this.camera.start)&&this.place()),this.change())}get smooth(){let{header}=this;return this.options.smooth!==void 0||
-!header?this.options.smooth??!1:this.program(header).price<CARD_PRICE_MS}get ratio(){return this.canvas.height/Math.max(
-this.root.clientHeight,1)}lost(){this.tiles?.dispose(),this.header&&this.makeScene(this.header),this.setSharp(!1)}get lacking(){
-let[before,after]=this.player.moment;return this.scene?.missing(before,after)??[]}available(){let{header,scene,player,shown}=this;
-if(!header||!scene)return null;let moment=player.moment,count=header.slices.steps,ahead=player.playing?[1,2].map(n=>(moment[1]+
-n)%count):[];this.ask([moment[0],moment[1],...ahead]);let{lacking}=this;return this.panel.wait(lacking),lacking.length?shown&&
-!scene.missing(shown[0],shown[1]).length?shown:null:this.shown=moment}ask(steps){let now=performance.now(),lacking=[...new Set(
-steps)].filter(step=>this.scene?.missing(step,step).length);for(let step of lacking)!this.options.onNeed||now-(this.requests.
-get(step)??-1/0)<LOST_MS2||(this.requests.set(step,now),this.options.onNeed(step));return!lacking.length}frame(now,until){
-if(!(this.lifetime.isOver||this.graphics.isLost||!this.graphics.gl||!this.isVisible)&&!(!this.header||!this.scene||this.
-canvas.width<2))try{this.advance(now),this.drawPicture(this.header,until)}catch(error){this.pause(),this.panel.fail("The\
- picture could not be drawn.",String(error))}}program(header,isClose=this.isClose(header)){let{vertex,fragment}=header.shaders,
-defines=isMoving(header,this.settings)?["FLOWTEX_MOVING"]:[];return isClose&&defines.push("FLOWTEX_CELLS"),this.graphics.
-programs.get(vertex,fragment,...defines)}isClose(header){if(!this.camera)return!1;let view=this.view([0,0,0],this.ratio),
-tiles=this.tiles?.layers.slice(1).map(({scene})=>scene.header)??[];return(tiles.length?tiles:[header]).some(part=>isNear(
+geometry,limits,first,nodes,aspect):fitted(geometry,limits,nodes,aspect),globe=header.earth&&!header.earth.map?header.earth.
+radius:0;this.camera=new Camera(state,limits,geometry.planar,aspect,globe),this.camera.pick=(x,y)=>this.point(x,y)?.position??
+this.ground(x,y),(!first||!isEqual(first,state))&&this.options.onCamera?.(copyOf(state))}get aspect(){return Math.max(this.
+root.clientWidth,1)/Math.max(this.root.clientHeight,1)}get playing(){return this.player.playing}setTime(time){this.player.
+seek(time),this.panel.tick(),this.change()}scrub(share){let{player,options}=this,{first,last}=player.range(this.settings),
+value=first+share*(last-first);this.holdDraft(),player.varies?(this.setTime(value),options.onTime?.(player.time)):(this.
+setClock(value),options.onClock?.(player.clock))}setClock(clock){this.player.clock=clock,this.panel.tick(),this.change()}play(){
+if(this.options.follows)return this.options.follows.play();this.playing||!this.header||(!this.player.varies&&this.settings.
+motion==="off"&&this.choose("motion","speed"),this.player.start(),this.panel.update(),this.request(),this.options.onPlaying?.(
+!0))}pause(){if(this.options.follows)return this.options.follows.pause();this.playing&&(this.player.playing=!1,this.panel.
+update(),this.change(),this.options.onPlaying?.(!1))}togglePlaying(){let leader=this.options.follows??this;leader.playing?
+leader.pause():leader.play()}holdDraft(){this.busyUntil=performance.now()+STILL_MS}get isBusy(){return this.playing||performance.
+now()<this.busyUntil}change(cameraOnly=!1){this.renderer.restart(cameraOnly),this.card.draw(),this.setSharp(!1),this.request()}refine(){
+this.renderer.refine(),this.setSharp(!1),this.request()}arrange(shown){let scenes=this.tiles?.arrange(shown)??[];return this.
+root.dataset.tiles=String(this.tiles?.missing.length??0),scenes}draw(){this.frame(performance.now(),performance.now()+FRAME_MS)}setSharp(sharp){
+sharp!==this.sharp&&(this.sharp=sharp,this.root.dataset.sharp=String(sharp),sharp&&(this.card.update(),this.options.onFrame?.()))}request(){
+!this.lifetime.isOver&&this.isVisible&&this.graphics.request(this)}resize(){let ratio=Math.max(window.devicePixelRatio||
+1,.1),width=Math.max(Math.round(this.root.clientWidth*ratio),1),height=Math.max(Math.round(this.root.clientHeight*ratio),
+1);width===this.canvas.width&&height===this.canvas.height||(this.renderer.resize(width,height),this.camera&&(this.camera.
+aspect=this.aspect,isEqual(this.camera.state,this.camera.start)&&this.place()),this.change())}get smooth(){let{header}=this;
+return this.options.smooth!==void 0||!header?this.options.smooth??!1:this.program(header).price<CARD_PRICE_MS}get ratio(){
+return this.canvas.height/Math.max(this.root.clientHeight,1)}lost(){this.tiles?.dispose(),this.header&&this.makeScene(this.
+header),this.setSharp(!1)}get lacking(){let[before,after]=this.player.moment;return this.scene?.missing(before,after)??[]}available(){
+let{header,scene,player,shown}=this;if(!header||!scene)return null;let moment=player.moment,count=header.slices.steps,ahead=player.
+playing?[1,2].map(n=>(moment[1]+n)%count):[];this.ask([moment[0],moment[1],...ahead]);let{lacking}=this;return this.panel.
+wait(lacking),lacking.length?shown&&!scene.missing(shown[0],shown[1]).length?shown:null:this.shown=moment}ask(steps){let now=performance.
+now(),lacking=[...new Set(steps)].filter(step=>this.scene?.missing(step,step).length);for(let step of lacking)!this.options.
+onNeed||now-(this.requests.get(step)??-1/0)<LOST_MS2||(this.requests.set(step,now),this.options.onNeed(step));return!lacking.
+length}frame(now,until){if(!(this.lifetime.isOver||this.graphics.isLost||!this.graphics.gl||!this.isVisible)&&!(!this.header||
+!this.scene||this.canvas.width<2))try{this.advance(now),this.drawPicture(this.header,until)}catch(error){this.pause(),this.
+panel.fail("The picture could not be drawn.",String(error))}}program(header,isClose=this.isClose(header)){let{vertex,fragment}=header.
+shaders,defines=isMoving(header,this.settings)?["FLOWTEX_MOVING"]:[];return isClose&&defines.push("FLOWTEX_CELLS"),this.
+graphics.programs.get(vertex,fragment,...defines)}isClose(header){if(!this.camera)return!1;let view=this.view([0,0,0],this.
+ratio),tiles=this.tiles?.layers.slice(1).map(({scene})=>scene.header)??[];return(tiles.length?tiles:[header]).some(part=>isNear(
 part,this.settings,view))}drawPicture(header,until){let shown=this.available();if(this.camera||this.place(),!shown||!this.
 camera)return;let{programs}=this.graphics,program=this.program(header);if(program.error){this.panel.fail("The shader doe\
-s not compile with this graphics driver.",program.error);return}if(!program.ready)return this.request();!this.sharp&&this.
-renderer.draw(program,shown,this.isBusy,until)&&(this.panel.clear(),programs.get(header.shaders.vertex,header.shaders.pick),
-header.slices.critical&&this.program(header,!0),this.setSharp(!this.playing)),this.sharp||this.request()}advance(now){let{
-player,options}=this;!player.playing||!player.advance(now,steps=>this.ask(steps))||(player.varies?options.onTime?.(player.
-time):options.onClock?.(player.clock),this.panel.tick(),this.renderer.restart(),this.setSharp(!1))}view(shown,density){let{
-header,camera,scene,player}=this;if(!header||!camera)throw new Error("there is nothing to look at yet");let{geometry,constants}=header,
-focus=camera.state.focal_point,local=toFrame(geometry.frame,subtract2(focus,geometry.center)),old=scene?.anchor??[0,0,0],
-range=constants.anchorRange*2*camera.height,isFar=v2=>v2.some(c=>Math.abs(c)>range),anchor=isFar(local)?local:[0,0,0];return{
-focus,anchor:isFar(subtract2(local,old))?anchor:old,eye:camera.eye,between:shown[2],time:player.timeOf(shown),clock:player.
-clock,density,pixel:2*camera.height/Math.max(this.root.clientHeight*density,1)}}get canPick(){let{header,graphics}=this;
-return!header||graphics.isLost||!graphics.gl?!1:graphics.programs.get(header.shaders.vertex,header.shaders.pick).ready}point(x,y){
-return this.find(x,y)?.point??null}find(x,y){let{tiles,camera,shown,canvas}=this;if(!tiles?.layers.length||!camera||!shown||
-!this.canPick)return null;let{anchor}=this.view(shown,1);return pickedPoint({layers:tiles.layers,camera,moment:shown,anchor,
-canvas},x,y)}};function viewersIn(element,count,options,own=()=>({})){if(count<2)return[new Viewer(element,{...options,...own(0)})];let pair=dom(
+s not compile with this graphics driver.",program.error);return}if(!program.ready||!this.scene?.earth.isReady)return this.
+request();!this.sharp&&this.renderer.draw(program,shown,this.isBusy,until)&&(this.panel.clear(),programs.get(header.shaders.
+vertex,header.shaders.pick),header.slices.critical&&this.program(header,!0),this.setSharp(!this.playing)),this.sharp||this.
+request()}advance(now){let{player,options}=this;!player.playing||!player.advance(now,steps=>this.ask(steps))||(player.varies?
+options.onTime?.(player.time):options.onClock?.(player.clock),this.panel.tick(),this.renderer.restart(),this.setSharp(!1))}view(shown,density){
+let{header,camera,scene,player}=this;if(!header||!camera)throw new Error("there is nothing to look at yet");let{geometry,
+constants}=header,focus=camera.state.focal_point,local=toFrame(geometry.frame,subtract2(focus,geometry.center)),old=scene?.
+anchor??[0,0,0],range=constants.anchorRange*2*camera.height,isFar=v2=>v2.some(c=>Math.abs(c)>range),anchor=isFar(local)?
+local:[0,0,0];return{focus,anchor:isFar(subtract2(local,old))?anchor:old,eye:camera.eye,between:shown[2],time:player.timeOf(
+shown),clock:player.clock,density,pixel:2*camera.height/Math.max(this.root.clientHeight*density,1)}}get canPick(){let{header,
+graphics}=this;return!header||graphics.isLost||!graphics.gl?!1:graphics.programs.get(header.shaders.vertex,header.shaders.
+pick).ready}point(x,y){return this.find(x,y)?.point??null}ground(x,y){let{header,camera}=this;return header&&camera&&groundAt(
+header,camera,x,y)}find(x,y){let{tiles,camera,shown,canvas}=this;if(!tiles?.layers.length||!camera||!shown||!this.canPick)
+return null;let{anchor}=this.view(shown,1);return pickedPoint({layers:tiles.layers,camera,moment:shown,anchor,canvas},x,
+y)}};function viewersIn(element,count,options,own=()=>({})){if(count<2)return[new Viewer(element,{...options,...own(0)})];let pair=dom(
 "div",{class:"flowtex-pair"});pair.style.cssText="display: flex; gap: 2px; width: 100%; height: 100%",element.append(pair);
 let viewers=[];for(let n=0;n<count;n+=1){let cell=dom("div");cell.style.cssText="flex: 1 1 0; min-width: 0; height: 100%",
 pair.append(cell);let others=()=>viewers.filter((_,m)=>m!==n),follower=n?{controls:!1,follows:viewers[0]}:{};viewers.push(

@@ -110,6 +110,9 @@ def colours_of(scene: Scene, field: FlowField, background: tuple[float, float, f
         opacity=float(look.opacity) if look.visible else 0.0,
         bar=look.has_bar,
         label="" if name is None else scene.label_of(name),
+        coastlines=look.coastlines is not False,
+        graticule=look.graticule is not False,
+        land=None if look.land is None else rgb(look.land),
     )
 
 

@@ -26,7 +26,7 @@ __all__ = ["HEADERS", "Views"]
 HEADERS = ("_header", "_header_beside")
 
 #: What of the appearance is chosen in the browser.
-CHOSEN = ("scalars", "cmap", "clim")
+CHOSEN = ("scalars", "cmap", "clim", "coastlines", "graticule")
 
 Send = Callable[[dict[str, Any], list[memoryview]], None]
 

@@ -8,6 +8,7 @@ import logging
 import math
 import threading
 from collections.abc import Awaitable, Callable, Iterator
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -15,6 +16,7 @@ import msgpack
 import numpy as np
 import pytest
 import pyvista as pv
+from cfd_files import CGNS, TIMES, box
 from PIL import Image
 
 pytest.importorskip("trame_rca")
@@ -546,6 +548,26 @@ def test_a_file_that_fails_in_any_way_says_so_and_the_old_view_stands(
             app.state.send(problem="")
         app.state.send(file="other")
         await until(lambda: app.controllers.data.name == "other" and app.state.get("axes") == [])
+
+    played(app, story)
+
+
+def test_blocks_of_a_file_with_times(tmp_path: Path) -> None:
+    path = tmp_path / "wing.cgns"
+    with CGNS.write(path) as file:
+        zones = [("Tip", box(4, 3, 2)), ("Body", box(6, 5, 9, 3.0))]
+        file.base("Base", zones, times=TIMES)
+    app = page(Library.of(path))
+
+    async def story() -> None:
+        assert app.state.get("blocks") == ["Base/Tip", "Base/Body"]
+        assert len(app.field.times) == 2
+        app.state.send(block="Base/Body")
+        shown = Choice("Velocity", "k=4", "Base/Body")
+        await until(lambda: app.controllers.data.choice == shown)
+        await until(lambda: app.state.get("planes") == 8)
+        assert app.field.shape == (5, 6) and tuple(app.field.times) == TIMES
+        assert app.state.get("problem") == ""
 
     played(app, story)
 

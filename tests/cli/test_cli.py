@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from cfd_files import CGNS, TIMES, box
 from PIL import Image
 
 from flowtex import diagnostics, examples
@@ -221,6 +222,33 @@ def test_info_says_what_is_needed(run: Run, block: Path) -> None:
     assert code == 0 and "6 × 5 (i × j)" in out
 
 
+def test_info_lists_blocks_and_times(run: Run, tmp_path: Path) -> None:
+    with CGNS.write(tmp_path / "wing.cgns") as file:
+        file.base("Base", [("Tip 1", box(4, 3, 2)), ("Body", box(6, 3, 2, 3.0))], times=TIMES)
+    code, out, _ = run("info", tmp_path / "wing.cgns")
+    assert code == 0
+    for words in ("blocks 2", "times 2: 0.5, 1", "0 Base/Tip 1 StructuredGrid 4 × 3 × 2"):
+        assert words in out
+    assert 'choose one, as in --block "Base/Tip 1"' in out
+    code, out, _ = run("info", tmp_path / "wing.cgns", "--block", "Base/Body", "--plane", "k=0")
+    assert "6 × 3 (i × j)" in out and "times 2, 0.5 to 1" in out
+    assert run("info", tmp_path / "wing.cgns", "--block", "1", "--plane", "k=0") == (code, out, "")
+
+
+def test_components_are_named_with_commas(run: Run, tmp_path: Path) -> None:
+    import pyvista as pv
+
+    mesh = pv.ImageData(dimensions=(4, 3, 1))
+    for name in ("X Velocity", "Y Velocity", "u", "v"):
+        mesh[name] = np.ones(12)
+    mesh.save(tmp_path / "flow.vti")
+    code, out, _ = run("info", tmp_path / "flow.vti")
+    assert "velocity Velocity, u,v" in out and "Velocity = X Velocity, Y Velocity" in out
+    assert "choose one, as in --vectors u,v" in out
+    code, out, _ = run("info", tmp_path / "flow.vti", "--vectors", "Y Velocity, u")
+    assert code == 0 and "What would be drawn" in out
+
+
 def test_info_says_that_a_field_has_no_sign(run: Run, tmp_path: Path) -> None:
     import pyvista as pv
 
@@ -374,3 +402,28 @@ def test_lines_of_a_series(run: Run, tmp_path: Path) -> None:
     assert run("render", *words, 1.5, "-o", tmp_path / "a.png")[0] == 0
     assert "--time is 9; expected 0 to 2" in run("render", *words, 9, "-o", tmp_path / "a.png")[2]
     assert "need all times" in run("movie", *words, 1, "-o", tmp_path / "a.gif")[2]
+
+
+def test_data_of_the_earth_are_told_and_drawn(run: Run, tmp_path: Path) -> None:
+    pytest.importorskip("xarray")
+    from earth_data import c_grid
+
+    files = [tmp_path / "U.nc", tmp_path / "V.nc"]
+    for ds, file in zip(c_grid("nemo"), files, strict=True):
+        ds.to_netcdf(file)
+    code, out, _ = run("info", *files)
+    assert code == 0
+    for words in ("uo, vo", "along the grid", "Arakawa C", "nav_lon and nav_lat", "39 × 39"):
+        assert words in out, words
+    code, _, err = run("info", files[0])
+    assert code != 0 and "one component of a velocity, 'uo'" in err
+    picture = tmp_path / "a.png"
+    assert run("render", *files, "-o", picture, "--globe", "--size", "80x60")[0] == 0
+    assert picture.is_file()
+    for flags, words in (
+        (("--projection", "flat"), "'flat' is not known"),
+        (("--level", "3"), "no axis 'level'"),
+        (("--select", "number"), "expected an axis and a value"),
+    ):
+        code, _, err = run("render", *files, "-o", picture, *flags, "--size", "80x60")
+        assert code != 0 and words in err, err

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from earth_fields import winds
 from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image, ImageFont
@@ -152,6 +153,21 @@ def test_a_scale_bar_is_as_long_as_it_says(texts: list[str]) -> None:
     row = np.asarray(plate.image.convert("L"))[-8:].min(axis=0)
     length = 0.5 / 4 * 640 * 0.92
     assert (row < 100).sum() == pytest.approx(length, abs=1)
+
+
+@pytest.mark.parametrize("lat", [0.0, 40.0, 75.0])
+def test_a_scale_bar_of_a_map_is_true_in_the_middle_of_the_view(
+    texts: list[str], lat: float
+) -> None:
+    field = winds("mercator")
+    assert field.projection is not None
+    focus = field.projection.positions(np.array(0.0), np.array(lat))
+    camera = Camera.fit(field.surface, 1.6, zoom=2.5, focus=focus)
+    plate = written(Scene(field), (640, 400), camera)["scale bar"]
+    (text,) = (text for text in texts if text.endswith(" km"))
+    row = np.asarray(plate.image.convert("L"))[-8:].min(axis=0)
+    on_map = 1000 * float(text.removesuffix(" km")) / np.cos(np.radians(lat))
+    assert (row < 100).sum() == pytest.approx(on_map * 400 / (2 * camera.height), abs=1)
 
 
 def test_a_legend_has_name_unit_and_digits_that_tell_its_ends_apart(texts: list[str]) -> None:

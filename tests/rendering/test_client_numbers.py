@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 import os
+from datetime import datetime
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -20,7 +21,10 @@ from flowtex import FlowField
 from flowtex._util.array_types import Indices
 from flowtex._util.colours import colour_table
 from flowtex.camera import CAMERA_LIMITS, Camera
+from flowtex.earth import MapLines, Projection
+from flowtex.field.dates import date_text
 from flowtex.rendering.cpu.shade import mean_colours
+from flowtex.rendering.map_overlay import map_lines
 from flowtex.rendering.mesh_levels import MeshLevels, Region, join, mesh_limits
 from flowtex.rendering.tile_choice import TileView, choose_tiles, cover, finer_part, wanted_tiles
 from flowtex.rendering.uniforms import ViewState, uniforms
@@ -186,6 +190,62 @@ def test_mean_colours_for_the_client() -> None:
         for options in SHADINGS
     ]
     check("colours.json", {"shading": shading, "cases": cases})
+
+
+def earth_of(name: str) -> dict[str, Any]:
+    """A flow on a map of the Earth: coasts, and places with their longitude and latitude."""
+    projection = Projection(name, center=(178.0, -40.0))
+    lon, lat = np.meshgrid(np.linspace(168, 188, 9), np.linspace(-47, -33, 8))
+    points = projection.positions(lon, lat)
+    velocity = projection.vectors(lon, lat, 0 * lon + 2, 0 * lon - 1)
+    data = ClientData(
+        Scene(FlowField.from_arrays(points, velocity, projection=projection)).textures
+    )
+    geometry, parts = data.textures.geometry, data.surface()
+    lines = map_lines(data.field, has_globe=False)["coastlines"]
+    part = parts["coastlines"][:40]
+    starts = lines.starts[:-1][lines.starts[:-1] < len(part)]
+    local = (lines.points[: len(part)] - geometry.center) @ geometry.frame.T
+    few = MapLines(local, np.append(starts, len(part)))
+    places = [points[1, 2] * 0.6 + points[2, 3] * 0.4, points[6, 1]]
+    grid = parts.get("lonlat")
+    return {
+        "earth": data.constants()["earth"],
+        "steps": part.ravel().tolist(),
+        "points": plain(few.points),
+        "thinned": plain(few.thinned(5000.0).points),
+        "starts": starts.tolist(),
+        "lonlat": None if grid is None else {"shape": grid.shape, "data": plain(grid.ravel())},
+        "positions": plain(np.array(places)),
+        "expected": plain(np.stack(projection.lonlat(np.array(places)), axis=-1)),
+        "vector": plain(velocity[1, 2]),
+        "at": plain(points[1, 2]),
+    }
+
+
+#: Date at time 0, seconds between two steps, and a time.
+MOMENTS = [
+    (datetime(2002, 1, 1), 86400.0, 172800.0),
+    (datetime(2002, 1, 1), 86400.0, 100000.0),
+    (datetime(2002, 1, 1, 6), 86400.0, 86400.0),
+    (datetime(1999, 12, 31, 23, 59, 30), 10.0, 45.0),
+    (datetime(1582, 10, 4), 3600.0, 7200.0),
+]
+
+
+def test_the_earth_for_the_client(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("flowtex.rendering.webgl.earth.LONLAT_PLACES", 9)
+    dates = [
+        {
+            "start": start.isoformat(),
+            "step": step,
+            "time": time,
+            "text": date_text(start, time, step),
+        }
+        for start, step, time in MOMENTS
+    ]
+    maps = {name: earth_of(name) for name in ("globe", "platecarree")}
+    check("earth.json", {"maps": maps, "dates": dates})
 
 
 def test_cameras_for_the_client() -> None:

@@ -18,6 +18,7 @@ from PIL import Image
 import flowtex
 from flowtex import examples
 from flowtex._util.colours import colour_table
+from flowtex.earth import Projection
 from flowtex.examples._double_gyre import nodes as nodes_of
 from flowtex.settings import TABLE, SettingsError
 from flowtex.widget import feed
@@ -539,6 +540,31 @@ def test_colours_that_are_chosen_in_the_browser_are_taken(
         heard.say(kind="appearance", changes=wrong)
     assert (widget.scalars, widget.cmap, widget.clim) == ("height", "magma", (0.0, 1.0))
     assert widget.opacity == 1.0
+
+
+def test_lines_of_the_earth_are_switched_from_both_sides(
+    make: Make, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    projection = Projection("globe")
+    lon, lat = np.meshgrid(np.linspace(0, 60, 13), np.linspace(10, 50, 9))
+    velocity = projection.vectors(lon, lat, 0 * lon + 1, 0 * lon)
+    field = flowtex.FlowField.from_arrays(
+        projection.positions(lon, lat), velocity, projection=projection
+    )
+    widget = make(field)
+    heard = Heard(widget, monkeypatch)
+    settle(widget, heard)
+    headers: list[Any] = []
+    widget.observe(lambda change: headers.append(change["new"]["earth"]), "_header")
+    widget.coastlines, widget.land = False, "red"
+    heard.say(kind="appearance", changes={"graticule": False})
+    assert widget.graticule is False
+    for _ in range(100):
+        if headers and not headers[-1]["graticule"]:
+            break
+        time.sleep(0.05)
+    assert headers[-1]["land"] == [1, 0, 0]
+    assert not headers[-1]["coastlines"] and not headers[-1]["graticule"]
 
 
 @pytest.mark.parametrize(

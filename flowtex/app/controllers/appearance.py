@@ -21,6 +21,7 @@ __all__ = [
     "BACKGROUNDS",
     "COLOUR_BY",
     "COMPARISONS",
+    "MAP_LINES",
     "PLAIN",
     "Appearance",
     "comparison",
@@ -28,6 +29,8 @@ __all__ = [
 
 #: The choice of no colours.
 PLAIN = "none"
+#: Lines of a map, where the field has a projection.
+MAP_LINES = ("coastlines", "graticule")
 #: What lies behind the surface.
 BACKGROUNDS = ("theme", "black", "white", "gray")
 #: What a second pane shows, by what it is called.
@@ -86,7 +89,7 @@ class Appearance(Controller):
         self.show_field()
         on = self.state.on
         on(*(f"set_{name}" for name in TABLE))(self.take_settings)
-        on("colour", "cmap", "log_scale", "opacity")(self.take_colour)
+        on("colour", "cmap", "log_scale", "opacity", *MAP_LINES)(self.take_colour)
         on("low", "high")(self.take_range)
         on("theme", "background")(self.take_background)
         on("compare")(self.take_comparison)
@@ -117,6 +120,8 @@ class Appearance(Controller):
             cmap=self._cmap(),
             log_scale=area.log_scale,
             opacity=area.opacity,
+            has_map=area.scene.field.projection is not None,
+            **self._map_lines(),
             bar=self._bar(self.area.scene),
             bar_beside=self._bar_beside(),
             low=low,
@@ -152,7 +157,7 @@ class Appearance(Controller):
         self.state.set(**{f"set_{name}": value for name, value in self.settings})
 
     def take_colour(self) -> None:
-        """Colour by what the page asks for."""
+        """Colour by what the page asks for, and draw lines of a map."""
         area, get = self.area, self.state.get
         name, cmap, log_scale = get("colour"), get("cmap"), get("log_scale")
         opacity = number(get("opacity"), 0, 1)
@@ -166,6 +171,8 @@ class Appearance(Controller):
             changes["log_scale"] = log_scale
         if opacity is not None and opacity != area.opacity:
             changes["opacity"] = opacity
+        lines = self._map_lines()
+        changes |= {n: get(n) for n in lines if get(n) is not lines[n] and isinstance(get(n), bool)}
         if changes:
             self._change(**changes)
         self.show_colours()
@@ -261,6 +268,7 @@ class Appearance(Controller):
             "colour": self.area.scalars or PLAIN,
             "cmap": self._cmap(),
             "clim": None if self.area.clim is None else self.area.scene.scalar_limits,
+            **self._map_lines(),
             "theme": self.theme,
             "background": self.background,
             "split": self.compared,
@@ -273,7 +281,7 @@ class Appearance(Controller):
         self.settings.update(**settings)
         self.show_settings()
         names = {"colour": "colour", "cmap": "cmap", "theme": "theme", "split": "compare"}
-        names["background"] = "background"
+        names |= {name: name for name in ("background", *MAP_LINES)}
         self.state.set(**{ours: saved[name] for name, ours in names.items() if name in saved})
         self.take_colour()
         if saved.get("clim"):
@@ -300,6 +308,10 @@ class Appearance(Controller):
         second = [pane.handle.scene for pane in self.viewport.panes[1:]]
         differs = second and second[0].scalar_name != self.area.scene.scalar_name
         return self._bar(second[0]) if differs else None
+
+    def _map_lines(self) -> dict[str, bool]:
+        """Return which lines of a map are drawn, where there is one."""
+        return {name: getattr(self.area, name) is not False for name in MAP_LINES}
 
     def _cmap(self) -> str:
         """Name of the colour map; the first one for a map that has no name here."""

@@ -10,7 +10,7 @@ from flowtex.app.controllers.context import Context, Controller
 from flowtex.app.server.validation import name_among, number
 from flowtex.app.streaming.free_part import Cover
 from flowtex.app.streaming.stream import Figures
-from flowtex.offscreen.annotations import length_text, round_length
+from flowtex.offscreen.annotations import length_text, map_scale, round_length
 from flowtex.settings import TABLE
 
 __all__ = ["KEYS", "VIEWS", "CameraControls"]
@@ -160,7 +160,9 @@ class CameraControls(Controller):
     def _scale(self) -> dict[str, Any]:
         """Length of a scale bar: its text, and its share of the view's width in percent."""
         viewport = self.viewport
-        across = 2 * viewport.camera.height * viewport.aspect * len(viewport.panes)
+        camera = viewport.camera
+        across = 2 * camera.height * viewport.aspect * len(viewport.panes)
+        across /= map_scale(viewport.field, camera.focal_point)
         length = round_length(SCALE_BAR_WIDTH * across)
         return {
             "text": length_text(length, viewport.field.length_unit),

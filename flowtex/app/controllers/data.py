@@ -257,7 +257,7 @@ class Data(Controller):
         before = self._current, self._goal
         new, old = flow.choice, self.choice
         same = (flow.name, new.block, new.vectors) == (self.name, old.block, old.vectors)
-        keep = same and new.plane[:1] == old.plane[:1]
+        keep = same and _axis(new.plane) == _axis(old.plane)
         self._current = flow
         if not request.superseded:
             self._goal = (flow.name, new)
@@ -292,7 +292,7 @@ class Data(Controller):
             for one, all_ in (("block", "blocks"), ("vectors", "vectors_choices"), ("axis", "axes"))
         )
         if block != options["block"]:  # its planes, and its arrays, are others
-            arrays = self._current.source.part(block).vectors
+            arrays = self._current.source.block_vectors[block]
             return Choice(vectors if vectors in arrays else "", "", block)
         plane = ""
         if axis:
@@ -309,7 +309,7 @@ class Data(Controller):
     def _options(self) -> dict[str, Any]:
         """Return what there is to choose from in the present file, and what is chosen."""
         source, part = self._current.source, self._part
-        axis = self.choice.plane[:1] if part.planes else ""
+        axis = _axis(self.choice.plane) if part.planes else ""
         count = part.planes.get(axis, 0)
         field = self.viewport.field
         return {
@@ -321,7 +321,9 @@ class Data(Controller):
             "block": self.choice.block or (source.blocks[0] if source.blocks else ""),
             "axes": list(part.planes),
             "axis": axis,
-            "index": int(self.choice.plane[2:] or 0) if count else 0,
+            "index": int(self.choice.plane.partition("=")[2] or 0) if count else 0,
+            "plane_text": part.plane_text(self.choice.plane),
+            "block_word": source.block_word,
             "planes": max(count - 1, 0),
         }
 
@@ -336,6 +338,10 @@ class Data(Controller):
         if self._opening is not None:
             self._opening.cancel()
         self._worker.shutdown(wait=False, cancel_futures=True)
+
+
+def _axis(plane: str) -> str:
+    return plane.partition("=")[0]
 
 
 def _without_folder(problem: str, name: str) -> str:

@@ -18,7 +18,12 @@ from flowtex._util.cache import ByteCache
 from flowtex.app.server.validation import shortened
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
+from flowtex.field.datasets.detect import is_dataset
+from flowtex.field.datasets.files import SUFFIXES as EARTH_SUFFIXES
+from flowtex.field.datasets.files import is_dataset_file
+from flowtex.field.datasets.source import DatasetSource, open_source
 from flowtex.field.source import FlowSource
+from flowtex.options import FieldOptions
 from flowtex.settings import Settings
 from flowtex.trace import SliceStore, shared_store
 
@@ -27,22 +32,25 @@ __all__ = ["Choice", "Library", "TracedFlow"]
 #: Endings of files that a folder is searched for.
 SUFFIXES = frozenset(
     [
-        *(".vts", ".vtr", ".vti", ".vtk", ".vtm", ".pvd", ".pvts", ".pvtr", ".pvti"),
-        *(".xyz", ".x", ".g", ".foam", ".case", ".cgns", ".ex2"),
+        *(".vts", ".vtr", ".vti", ".vtk", ".vtm", ".vtmb", ".pvd", ".pvts", ".pvtr"),
+        *(".pvti", ".xyz", ".x", ".g", ".case", ".cgns"),
+        *EARTH_SUFFIXES,
     ]
 )
 #: Endings that are listed though nothing of them is drawn, and why.
 UNSHOWN = {
-    **dict.fromkeys((".vtu", ".pvtu"), "unstructured; flow is drawn on structured meshes"),
+    **dict.fromkeys(
+        (".vtu", ".pvtu", ".foam", ".e", ".ex2", ".exii", ".exo"),
+        "unstructured; flow is drawn on structured meshes",
+    ),
     **dict.fromkeys(
         (".vtp", ".pvtp", ".stl", ".ply", ".obj"), "triangles; structured meshes are drawn"
     ),
-    **dict.fromkeys((".nc", ".nc4", ".zarr"), "open it with xarray, in Python"),
     **dict.fromkeys((".pkl", ".pickle", ".joblib"), "a pickle can run any program, and is refused"),
 }
 #: Endings of files that list others, how, and bytes of such a list that are read.
 LISTS, MEMBER, LIST_BYTES = (
-    (".pvd", ".vtm", ".pvts", ".pvtr", ".pvti"),
+    (".pvd", ".vtm", ".vtmb", ".pvts", ".pvtr", ".pvti"),
     re.compile(r'(?:file|Source)\s*=\s*"([^"]+)"'),
     4_000_000,
 )
@@ -151,7 +159,7 @@ class Library:
         """
         if len(flows) == 1 and isinstance(flows[0], Library):
             return flows[0]
-        if len(flows) == 1 and isinstance(flows[0], (str, Path)) and Path(flows[0]).is_dir():
+        if len(flows) == 1 and isinstance(flows[0], (str, Path)) and _is_folder(flows[0]):
             return cls({}, Path(flows[0]))
         openers: dict[str, Opener] = {}
         files: list[str] = []
@@ -213,9 +221,7 @@ class Library:
         source = self.source(name)
         block = choice.block or (source.blocks[0] if source.blocks else "")
         part = source.part(block or None)
-        plane = choice.plane
-        if not plane and part.planes:
-            plane = f"k={part.planes['k'] // 2}"
+        plane = choice.plane or part.default_plane
         vectors = choice.vectors or (part.vectors[0] if part.vectors else "")
         return Choice(vectors, plane, block)
 
@@ -307,12 +313,18 @@ class _Branch(Library):
         return home.trace(name, choice, field, settings)
 
 
+def _is_folder(path: str | Path) -> bool:
+    return Path(path).is_dir() and not is_dataset_file(Path(path))
+
+
 def _source_of(flow: Any, options: dict[str, Any]) -> FlowSource:
     """Take a mesh as it is where nothing is chosen about it, else the field that is meant."""
     options = {key: value for key, value in options.items() if value is not None}
+    if is_dataset(flow) and not options:
+        return DatasetSource(flow)
     if isinstance(flow, FlowField) or not options:
         return FlowSource(flow)
-    return FlowSource(FlowField.from_pyvista(flow, **options))
+    return FlowSource(FieldOptions(**options).field(flow))
 
 
 def _constant(source: FlowSource) -> Opener:
@@ -320,7 +332,7 @@ def _constant(source: FlowSource) -> Opener:
 
 
 def _opener(path: Path) -> Opener:
-    return lambda: FlowSource.from_file(path)
+    return lambda: open_source(path)
 
 
 def _free(name: str, taken: Iterable[str]) -> str:
@@ -345,7 +357,9 @@ def find_files(folder: Path) -> list[tuple[str, Path]]:
         for path in inside:
             if path.name.startswith(".") or not path.resolve().is_relative_to(folder):
                 continue
-            if path.is_dir() and not path.is_symlink() and depth < FOLDER_DEPTH:
+            if path.is_dir() and not path.is_symlink() and is_dataset_file(path):
+                files.append((path.relative_to(folder).as_posix(), path))
+            elif path.is_dir() and not path.is_symlink() and depth < FOLDER_DEPTH:
                 waiting.append((path, depth + 1))
             elif path.is_file() and path.suffix.lower() in SUFFIXES | {".bin"} | set(UNSHOWN):
                 files.append((path.relative_to(folder).as_posix(), path))

@@ -22,6 +22,7 @@ from flowtex.app.server.validation import number
 from flowtex.app.streaming.navigation import Place
 from flowtex.app.streaming.stream import Figures
 from flowtex.app.streaming.viewport import Viewport
+from flowtex.earth import place_text
 from flowtex.probe import PointValues, Probe, locate, probe, values_at
 
 __all__ = ["Lines", "PathCard", "PointInfo", "PointText", "clip_line", "number_text", "with_unit"]
@@ -32,6 +33,8 @@ Lines = list[tuple[str, str]]
 HOVER_INTERVAL_S = 0.06
 #: Digits of a position at zoom 1, and at most.
 DIGITS, MOST_DIGITS = 4, 14
+#: Decimals of longitude and latitude at zoom 1.
+PLACE_DECIMALS = 2
 #: How many times as long as the part with samples the path is that is shown.
 PATH_LENGTH = 4.0
 #: Samples on a side as which fewer count, so that there is something to see.
@@ -82,16 +85,30 @@ class PointText:
     def lines(self, point: PointValues) -> Lines:
         """Return words and numbers of a point of the surface."""
         field, unit = self._viewport.field, point.speed_unit
-        position = self._vector(point.position, field.surface.extent, self._digits)
-        velocity = self._vector(point.velocity, 0.0, DIGITS, whole=field.leaves_surface)
         return [
-            ("position", position + suffix(point.length_unit)),
-            ("velocity", velocity + suffix(unit)),
+            *self._place(point),
             (point.speed_label, with_unit(point.speed, unit)),
             *(
                 (name, with_unit(value, field.unit_of(name)))
                 for name, value in point.scalars.items()
             ),
+        ]
+
+    def _place(self, point: PointValues) -> Lines:
+        """Return place and velocity, on the Earth where the field has a projection."""
+        field, unit = self._viewport.field, point.speed_unit
+        if point.lonlat is not None and np.isfinite(point.lonlat).all():
+            decimals = max(self._digits - DIGITS, 0) + PLACE_DECIMALS
+            return [
+                ("place", place_text(*point.lonlat, decimals)),
+                ("eastward", with_unit(point.eastward, unit)),
+                ("northward", with_unit(point.northward, unit)),
+            ]
+        position = self._vector(point.position, field.surface.extent, self._digits)
+        velocity = self._vector(point.velocity, 0.0, DIGITS, whole=field.leaves_surface)
+        return [
+            ("position", position + suffix(point.length_unit)),
+            ("velocity", velocity + suffix(unit)),
         ]
 
     def index(self, x: float, y: float) -> tuple[float, float] | None:

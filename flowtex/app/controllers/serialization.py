@@ -5,6 +5,7 @@ What a page shows is a mapping with the names below, each of which may be missin
     file vectors plane block   which flow: names as a library has them, and a plane such as k=20
     time clock                 the field's own time; seconds of the streaming
     colour cmap clim           scalar, colour map, and the values at its ends
+    coastlines graticule       whether these lines of a map are drawn
     settings                   a mapping of settings by name
     camera                     as :meth:`flowtex.camera.Camera.to_dict` has it
     theme background split     as the page names them
@@ -19,6 +20,7 @@ import math
 import re
 from collections.abc import Callable, Mapping
 from contextlib import suppress
+from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qsl, quote, urlencode
 
@@ -27,11 +29,13 @@ from flowtex.app.controllers.appearance import (
     BACKGROUNDS,
     COLOUR_BY,
     COMPARISONS,
+    MAP_LINES,
     PLAIN,
     comparison,
 )
 from flowtex.app.streaming.viewport import BACKGROUNDS as THEMES
 from flowtex.camera import Camera, CameraError
+from flowtex.field.datasets.files import is_dataset_file
 from flowtex.settings import TABLE, SettingsError
 
 __all__ = ["DEFAULTS", "from_link", "to_link", "to_python"]
@@ -41,6 +45,8 @@ DEFAULTS: dict[str, Any] = {
     "clock": 0.0,
     "colour": "speed",
     "cmap": "viridis",
+    "coastlines": True,
+    "graticule": True,
     "theme": "dark",
     "background": BACKGROUNDS[0],
     "split": "nothing",
@@ -56,7 +62,12 @@ CAMERA_NUMBERS = 11
 LINE_LENGTH = 88
 #: Arguments of ``FlowField.from_file``.
 FILE_ARGUMENTS = ("vectors", "plane", "block")
-PLANE, CMAP = re.compile(r"[ijk]=\d{1,9}"), re.compile(r"[A-Za-z]\w{0,59}", re.ASCII)
+#: What they are called for data of the Earth.
+OF_DATASETS = {"block": "projection"}
+PLANE, CMAP = (
+    re.compile(r"[A-Za-z]\w{0,59}=\d{1,9}", re.ASCII),
+    re.compile(r"[A-Za-z]\w{0,59}", re.ASCII),
+)
 
 
 class _ValueError(ValueError):
@@ -182,6 +193,14 @@ def _span_text(span: Any) -> str:
     return ",".join(repr(float(end)) for end in span)
 
 
+def _switch(text: str) -> bool:
+    return _one_of("on", "off")(text) == "on"
+
+
+def _switch_text(value: Any) -> str:
+    return "on" if value else "off"
+
+
 def _camera(text: str) -> dict[str, Any]:
     kind, _, rest = text.partition(",")
     numbers = _numbers(rest, CAMERA_NUMBERS)
@@ -212,6 +231,8 @@ _READ: dict[str, Callable[[str], Any]] = {
     "colour": _name,
     "cmap": _matching(CMAP, "the name of a colour map, such as viridis"),
     "clim": _span,
+    "coastlines": _switch,
+    "graticule": _switch,
     "theme": _one_of("dark", "light"),
     "background": _one_of(*BACKGROUNDS),
     "split": _comparison,
@@ -223,6 +244,8 @@ _WRITE: dict[str, Callable[[Any], str]] = {
     "clock": lambda value: repr(float(value)),
     "time_beside": lambda value: repr(float(value)),
     "clim": _span_text,
+    "coastlines": _switch_text,
+    "graticule": _switch_text,
     "camera": _camera_text,
 }
 
@@ -272,7 +295,12 @@ def _from_file(state: Mapping[str, Any]) -> str:
     if not state.get("file"):
         msg = "the state names no file; give the expression that makes its field as source"
         raise ValueError(msg)
-    choices = [f"{name}={_literal(state[name])}" for name in FILE_ARGUMENTS if state.get(name)]
+    values = {name: state[name] for name in FILE_ARGUMENTS if state.get(name)}
+    if is_dataset_file(Path(str(state["file"]))):
+        axis, _, number = values.pop("plane", "").partition("=")
+        values = {OF_DATASETS.get(name, name): value for name, value in values.items()}
+        values |= {"isel": {axis: int(number)}} if axis else {}
+    choices = [f"{name}={_literal(value)}" for name, value in values.items()]
     return _call("flowtex.FlowField.from_file", [_literal(state["file"]), *choices])
 
 
@@ -297,6 +325,7 @@ def _add_lines(state: Mapping[str, Any], different: Mapping[str, Any]) -> list[s
     appearance = {"scalars": False if colour == PLAIN else colour}
     if colour != PLAIN:
         appearance |= {name: state[name] for name in ("cmap", "clim") if state.get(name)}
+    appearance |= {name: False for name in MAP_LINES if state.get(name) is False}
     if "scalars" in different:  # with a range of its own
         appearance = {**appearance, "scalars": different["scalars"]}
         appearance.pop("clim", None)

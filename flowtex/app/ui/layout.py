@@ -177,27 +177,27 @@ def _planes(controllers: Controllers) -> None:
     key = controllers.context.state.key
     some = " || ".join(f"{key(name)}.length" for name in ("vectors_choices", "axes", "blocks"))
     with html.Div(classes="flowtex-planes flowtex-glass", v_if=(some,)):
-        for name, choices, text in (
-            ("block", "blocks", "Which of the grids in the file is drawn."),
-            ("vectors", "vectors_choices", "Which array is taken for the velocity."),
+        word = key("block_word")
+        for label, name, choices, more, text in (
+            ("Grid", "block", "blocks", f" && {word} === 'Grid'", "Which of the grids is drawn."),
+            ("Map", "block", "blocks", f" && {word} === 'Map'", "On which map it is drawn."),
+            ("Velocity", "vectors", "vectors_choices", "", "What is taken for the velocity."),
         ):
             with html.Div(
                 classes="flowtex-row",
-                v_if=(f"{key(choices)}.length",),
+                v_if=(f"{key(choices)}.length{more}",),
                 __properties=ARIA,
                 **hint(text, "end"),
             ):
-                select("Grid" if name == "block" else "Velocity", key(name), (key(choices),))
+                select(label, key(name), (key(choices),))
         with html.Div(classes="flowtex-stack", v_if=(f"{key('axes')}.length",)):
             with html.Div(classes="flowtex-line"):
                 html.Span("Plane", classes="flowtex-label")
-                across = hint("Draw planes of constant i, j or k.", "end")
+                across = hint("Along which axis a plane, or a level, is chosen.", "end")
                 with toggle("Axis across the plane", key("axis"), **across):
                     one = f"one in {key('axes')}"
                     v3.VBtn("{{ one }}", v_for=one, key="one", value=("one",), size="small")
-                html.Span(
-                    f"{{{{ {key('axis')} }}}} = {{{{ {key('index')} }}}}", classes="flowtex-value"
-                )
+                html.Span(f"{{{{ {key('plane_text')} }}}}", classes="flowtex-value")
             slider("Plane", key("index"), 0, (key("planes"),), 1)
 
 

@@ -10,7 +10,7 @@ from trame.widgets import vuetify3 as v3
 
 from flowtex._util.colours import CMAPS
 from flowtex.app.controllers import Controllers
-from flowtex.app.controllers.appearance import ANOTHER_TIME, BACKGROUNDS, PLAIN
+from flowtex.app.controllers.appearance import ANOTHER_TIME, BACKGROUNDS, MAP_LINES, PLAIN
 from flowtex.app.controllers.browser import RENDERERS
 from flowtex.app.controllers.sharing import FORMATS
 from flowtex.app.ui.controls import (
@@ -112,6 +112,10 @@ def _colours(controllers: Controllers) -> None:
     with row("opacity", option_text(Appearance, "opacity")):
         html.Span("Opacity", classes="flowtex-label")
         slider("Opacity", key("opacity"), 0, 1, 0.05)
+    for name in MAP_LINES:
+        with row(name, option_text(Appearance, name), v_if=(key("has_map"),)):
+            html.Span(name.capitalize(), classes="flowtex-label")
+            switch(name.capitalize(), key(name))
     with row("background", "What lies behind the surface."):
         select("Background", key("background"), (f"{list(BACKGROUNDS)}",))
 

@@ -1,32 +1,28 @@
 """From files to the arrays of a field.
 
 PyVista's readers open most files; PLOT3D, which says little about itself, goes through
-:mod:`flowtex.field.io.plot3d`. Whatever a reader raises, and whatever VTK logs, becomes one
-:class:`~flowtex.field.FieldError` that starts with the name of the file.
+:mod:`flowtex.field.io.plot3d`.
 """
 
 from __future__ import annotations
 
-import logging
 import math
-import warnings
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
-from xml.etree.ElementTree import ParseError
 
 from flowtex.errors import FieldError
 from flowtex.field.io import plot3d
 from flowtex.field.io.from_pyvista import FieldArguments, read_meshes
 from flowtex.field.io.meshes import times_of
+from flowtex.field.io.readers import open_reader
+from flowtex.field.io.trial import try_reading
 
-__all__ = ["OpenFile", "errors_of_file", "open_file", "read_file"]
+__all__ = ["OpenFile", "open_file", "read_file"]
 
 _KNOWN_FORMATS = (
-    "a structured mesh that PyVista reads (.vts, .vtr, .vti, .vtk, .vtm, .pvd and more), or "
-    "PLOT3D (.xyz with .q beside it)"
+    "a structured mesh that PyVista reads (.vts, .vtr, .vti, .vtk, .vtm, .pvd, .cgns, .case and "
+    "more), or PLOT3D (.xyz with .q beside it)"
 )
 
 
@@ -53,7 +49,7 @@ def read_file(
 ) -> FieldArguments:
     """Read what a field needs from a file, with the parameters of :meth:`FlowField.from_file`.
 
-    Whatever this raises is to be named by :func:`errors_of_file`.
+    Whatever this raises is to be named by :func:`~flowtex.field.io.reader_errors.errors_of_file`.
     """
     file = open_file(path)
     source = file.source
@@ -67,10 +63,8 @@ def open_file(path: str | Path) -> OpenFile:
     """Open a file, as for :meth:`FlowField.from_file`.
 
     The FieldError for one that is missing, empty, or of an unknown format is to be named by
-    :func:`errors_of_file`.
+    :func:`~flowtex.field.io.reader_errors.errors_of_file`.
     """
-    import pyvista as pv
-
     file = Path(path).expanduser()
     _check_path(file)
     grid = plot3d.find_grid(file) or file
@@ -80,8 +74,9 @@ def open_file(path: str | Path) -> OpenFile:
     if layout is not None:
         mesh = plot3d.read_plot3d(grid, layout, plot3d.find_solution(grid))
         return OpenFile(file, mesh, "Velocity")
+    try_reading(file)
     try:
-        return OpenFile(file, pv.get_reader(str(file)), None)
+        return OpenFile(file, open_reader(file), None)
     except ValueError as error:
         if "does not support a file" not in str(error):
             raise
@@ -120,10 +115,7 @@ def _unknown_format(file: Path) -> str:
     what = repr(file.suffix) if file.suffix else "no suffix"
     if file.suffix.lower() in {*plot3d.GRID_SUFFIXES, ".q"}:
         what = "no PLOT3D grid of any layout"
-    msg = f"the format is not known ({what}); expected {_KNOWN_FORMATS}"
-    if file.suffix.lower() in {".nc", ".nc4", ".zarr", ".grib", ".grb"}:
-        msg += ". Open it with xarray; FlowField.from_arrays takes its arrays"
-    return msg
+    return f"the format is not known ({what}); expected {_KNOWN_FORMATS}"
 
 
 def _at_time(source: Any, time: float) -> Any:
@@ -136,75 +128,3 @@ def _at_time(source: Any, time: float) -> Any:
     listed = ", ".join(f"{t:g}" for t in times[:8]) + (", ..." if len(times) > 8 else "")
     msg = f"time is {time!r}; the file has {f'the times {listed}' if times else 'no times'}"
     raise FieldError(msg)
-
-
-@contextmanager
-def errors_of_file(path: str | Path) -> Iterator[None]:
-    """Turn what readers raise, and errors that VTK logs, into one FieldError with the path first.
-
-    What VTK warns of becomes a UserWarning.
-    """
-    file = Path(path).expanduser()
-    cause: Exception | None = None
-    with _vtk_log() as catcher:
-        try:
-            yield
-        except (ValueError, RuntimeError, OSError, KeyError, ImportError, ParseError) as error:
-            cause = error
-        except (AttributeError, IndexError, TypeError, EOFError) as error:
-            # Readers of broken files trip over what is missing in them.
-            cause = RuntimeError(f"its content is not as expected ({error})")
-    if catcher.error_events:
-        # VTK goes on after an error and gives a part of the data, or none: the cause is here.
-        first = _first_line(catcher.error_events[0].alert)
-        msg = f"{file}: the file is broken or incomplete. VTK says: {first}"
-        raise FieldError(msg) from cause
-    if isinstance(cause, FieldError):
-        msg = f"{file}: {cause}"
-        raise FieldError(msg) from cause
-    if cause is not None:
-        reason = str(cause) or type(cause).__name__
-        msg = f"{file}: cannot be read: {reason}"
-        raise FieldError(msg) from cause
-    for warning in dict.fromkeys(_first_line(event.alert) for event in catcher.warning_events):
-        warnings.warn(f"{file}: VTK says: {warning}", stacklevel=4)
-
-
-@contextmanager
-def _vtk_log() -> Iterator[Any]:
-    """Collect VTK's errors and warnings while the block runs, and print none.
-
-    VTK sends errors to an output window and, apart from it, to a logger that writes to standard
-    error; PyVista repeats some of them through Python's root logger. All three are held, and put
-    back as they were. Yields PyVista's catcher, which has the events once the block ends.
-    """
-    import pyvista as pv
-    from vtkmodules.vtkCommonCore import vtkLogger
-
-    verbosity = vtkLogger.GetCurrentVerbosityCutoff()
-    root = logging.getLogger()
-    quiet = logging.NullHandler()
-    catcher = pv.VtkErrorCatcher(send_to_logging=False)
-    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
-    # Without a handler the first message would make Python set up logging to standard error.
-    root.addHandler(quiet)
-    root.addFilter(_not_from_vtk)
-    try:
-        with catcher:
-            yield catcher
-    finally:
-        root.removeFilter(_not_from_vtk)
-        root.removeHandler(quiet)
-        vtkLogger.SetStderrVerbosity(verbosity)
-
-
-def _not_from_vtk(record: logging.LogRecord) -> bool:
-    """Drop what PyVista's observer of VTK passes on to the root logger."""
-    return not (record.module == "observers" and "pyvista" in record.pathname)
-
-
-def _first_line(alert: str) -> str:
-    lines = [line for line in alert.splitlines() if line.strip()]
-    # Messages that come without an object start with a line about the source file.
-    texts = [line for line in lines if not line.startswith(("ERROR: In ", "Warning: In "))]
-    return (texts or lines or [""])[0].removeprefix("(nullptr): ").strip()

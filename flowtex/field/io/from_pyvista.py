@@ -16,14 +16,10 @@ from numpy.typing import ArrayLike
 from flowtex._util.array_types import Bools, Floats
 from flowtex.errors import FieldError, raise_faults
 from flowtex.field.io.meshes import (
-    MeshArray,
+    SAME_NODE_SHARE,
     TimeStep,
-    catalogue,
-    choose_vectors,
     hidden_nodes,
     time_steps,
-    values_of,
-    vector_faults,
     visible_cells,
 )
 from flowtex.field.io.planes import (
@@ -34,13 +30,18 @@ from flowtex.field.io.planes import (
     plane_faults,
     spread,
 )
+from flowtex.field.io.vectors import (
+    MeshArray,
+    catalogue,
+    choose_vectors,
+    missing_arrays,
+    values_of,
+    vector_faults,
+)
 from flowtex.field.periodic import find_closure
 from flowtex.field.signs import axes, products
 
 __all__ = ["FieldArguments", "read_meshes"]
-
-#: Nodes of two steps closer than this share of the extent of the mesh are the same.
-SAME_NODE_SHARE = 1e-6
 
 
 class FieldArguments(TypedDict):
@@ -127,15 +128,15 @@ def _check_step(step: TimeStep, plane: Plane, vectors: MeshArray) -> None:
         msg = (
             f"{step.label} has {count_nodes(dimensions)} and the first step has "
             f"{count_nodes(plane.dimensions)}; expected the same nodes in every step. If these "
-            "are parts of one mesh and not time steps, give one of them: mesh[0], or block=0 "
-            "for a file"
+            "are parts of one mesh and not time steps, give one of them, as in block=0"
         )
         raise FieldError(msg)
-    arrays = [str(array) for array in catalogue(step.grid)]
-    if str(vectors) not in arrays:
+    missing = missing_arrays(step.grid, vectors)
+    if missing:
+        arrays = [str(array) for array in catalogue(step.grid)]
         msg = (
-            f"{step.label} has no array {vectors}, which the first step has; expected it in every "
-            f"step. Its arrays, with their components: {', '.join(arrays) or 'none'}"
+            f"{step.label} has no array {missing[0]}, which the first step has; expected it in "
+            f"every step. Its arrays, with their components: {', '.join(arrays) or 'none'}"
         )
         raise FieldError(msg)
 
@@ -149,8 +150,7 @@ def _check_nodes(first: _PlaneStep, sheet: _PlaneStep, label: str) -> None:
         msg = (
             f"the nodes of {label} are up to {moved:.3g} away from those of the first step; moving "
             "meshes are not supported: sample all steps onto one mesh with mesh.sample(step). If "
-            "these are parts of one mesh and not time steps, give one of them: mesh[0], or "
-            "block=0 for a file"
+            "these are parts of one mesh and not time steps, give one of them, as in block=0"
         )
         raise FieldError(msg)
     sheet.points = first.points

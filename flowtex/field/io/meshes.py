@@ -1,4 +1,4 @@
-"""What a PyVista object holds: structured grids, their times, their arrays, and what they hide.
+"""What a PyVista object holds: structured grids, their times, and what they hide.
 
 A grid, a block of a MultiBlock, a list of grids and a reader of a time series all come down to a
 sequence of :class:`TimeStep`. Grids are handed out one at a time, so that a long series is never
@@ -10,44 +10,37 @@ Meshes hide nodes and cells in several ways: VTK's ghost arrays on points and on
 
 from __future__ import annotations
 
-import difflib
-import re
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
-from flowtex._util.array_types import AnyArray, Bools
+from flowtex._util.array_types import Bools
 from flowtex.errors import FieldError
-from flowtex.field.io.planes import count_nodes
 
 __all__ = [
-    "MeshArray",
+    "SAME_NODE_SHARE",
     "TimeStep",
-    "candidates",
-    "catalogue",
-    "choose_vectors",
     "hidden_nodes",
     "is_reader",
     "is_structured",
     "leaves",
+    "pick",
+    "several_fault",
+    "several_grids",
     "time_steps",
     "times_of",
-    "values_of",
-    "vector_faults",
     "visible_cells",
 ]
 
-#: Arrays that say what is hidden and nothing about the flow.
-_BLANKING = {"vtkGhostType", "IBlank", "vtkValidPointMask"}
 #: Flags of VTK's ghost arrays that hide: a hidden point; a refined or a hidden cell. Points and
 #: cells that are duplicates of a neighbouring piece carry data and count as visible.
 _HIDDEN_POINT, _HIDDEN_CELL = 2, 8 | 32
-
-_NO_VELOCITY = re.compile(
-    r".*normals?|.*texture.?coord.*|t_?coords?|coord(inate)?s?|points?|positions?", re.IGNORECASE
-)
+#: Nodes of two steps closer than this share of the extent of the mesh are the same.
+SAME_NODE_SHARE = 1e-6
+#: Blocks that a message lists at most.
+MOST_LISTED = 12
 
 
 @dataclass(frozen=True)
@@ -72,7 +65,7 @@ def time_steps(source: Any, block: int | str | None = None) -> Iterator[TimeStep
             msg = "the list of meshes is empty; expected one structured mesh for each time step"
             raise FieldError(msg)
         for n, item in enumerate(source):
-            yield item if isinstance(item, TimeStep) else _single(item, f"step {n}")
+            yield item if isinstance(item, TimeStep) else _single(item, f"step {n}", block)
     else:
         yield from _blocks(_wrapped(source, "the mesh"), block)
 
@@ -95,7 +88,10 @@ def times_of(source: Any) -> list[float]:
 
 
 def leaves(mesh: Any, name: str = "") -> Iterator[tuple[str, Any]]:
-    """Go through the meshes in a tree of blocks, with their paths; empty blocks are left out."""
+    """Go through the meshes in a tree of blocks, with their paths; empty blocks are left out.
+
+    A block without a name is named after its number, and so are those of one name.
+    """
     import pyvista as pv
 
     if not isinstance(mesh, pv.MultiBlock):
@@ -105,7 +101,50 @@ def leaves(mesh: Any, name: str = "") -> Iterator[tuple[str, Any]]:
     for number, (key, block) in enumerate(zip(keys, mesh, strict=True)):
         if block is not None:
             own = str(number) if key is None else key
+            own = own if keys.count(key) == 1 or key is None else f"{own} {number}"
             yield from leaves(block, f"{name}/{own}" if name else own)
+
+
+def several_grids(mesh: Any, *, series: bool = False) -> dict[str, Any]:
+    """Return the structured blocks of a mesh by their paths, where one has to be chosen.
+
+    That is not so where there is only one, and where all have the same nodes: those are time steps,
+    unless the mesh is itself one step of a ``series``.
+    """
+    grids = _grids(mesh)
+    usable = [grid for grid in grids.values() if _is_surface(grid)] or list(grids.values())
+    if len(usable) < 2 or (not series and _same_nodes(usable)):
+        return {}
+    return grids
+
+
+def _grids(mesh: Any) -> dict[str, Any]:
+    return {name: grid for name, grid in leaves(mesh) if is_structured(grid)}
+
+
+def _same_nodes(grids: list[Any]) -> bool:
+    """Whether grids have the same nodes, as far as their sizes and bounds tell."""
+    first = np.asarray(grids[0].bounds)
+    near = SAME_NODE_SHARE * max(float(np.ptp(first.reshape(3, 2), axis=1).max()), 0.0)
+    return all(
+        tuple(grid.dimensions) == tuple(grids[0].dimensions)
+        and bool(np.all(np.abs(np.asarray(grid.bounds) - first) <= near))
+        for grid in grids
+    )
+
+
+def several_fault(grids: dict[str, Any], label: str) -> str:
+    """Return words about a choice of several blocks."""
+    listed = [
+        f"{number} ({name}, {' x '.join(map(str, grid.dimensions))} nodes)"
+        for number, (name, grid) in enumerate(grids.items())
+    ]
+    more = ", ..." if len(listed) > MOST_LISTED else ""
+    return (
+        f"{label} has {len(grids)} structured blocks, and no time steps of one: "
+        f"{', '.join(listed[:MOST_LISTED])}{more}; choose one, as in "
+        f'block="{next(iter(grids))}"'
+    )
 
 
 def _read(reader: Any, block: int | str | None) -> Iterator[TimeStep]:
@@ -120,53 +159,60 @@ def _read(reader: Any, block: int | str | None) -> Iterator[TimeStep]:
     try:
         for n, time in enumerate(times):
             reader.set_active_time_value(time)
-            mesh = reader.read()
-            step = _single(mesh if block is None else _pick(mesh, block), f"step {n}")
+            step = _single(reader.read(), f"step {n}", block)
             yield TimeStep(step.grid, time, step.label)
     finally:
         reader.set_active_time_value(before)
 
 
-def _pick(mesh: Any, block: int | str) -> Any:
-    """Pick one of several structured grids, by number or by name."""
-    grids = [(name, grid) for name, grid in leaves(mesh) if is_structured(grid)]
-    for number, (name, grid) in enumerate(grids):
+def pick(mesh: Any, block: int | str) -> Any:
+    """Return one of the structured grids in a mesh, by number or by name.
+
+    Raises a FieldError when there is none.
+    """
+    grids = _grids(mesh)
+    for number, (name, grid) in enumerate(grids.items()):
         if block in (number, name):
             return grid
-    listed = ", ".join(f"{number} ({name})" for number, (name, _) in enumerate(grids)) or "none"
+    for name, other in leaves(mesh):
+        if block == name:
+            raise FieldError(_unstructured(other, f"block {name!r}"))
+    if not grids:
+        raise FieldError(_unstructured(mesh, "the mesh"))
+    listed = ", ".join(f"{number} ({name})" for number, name in enumerate(grids))
     msg = f"block is {block!r}; the structured blocks of the file are: {listed}"
     raise FieldError(msg)
 
 
 def _blocks(mesh: Any, block: int | str | None) -> Iterator[TimeStep]:
-    """Take a mesh for one step, and a MultiBlock of several grids for a series."""
+    """Take a mesh for one step, and a MultiBlock of grids with the same nodes for a series."""
     if block is not None:
-        mesh = _pick(mesh, block)
-    grids = [(name, block) for name, block in leaves(mesh) if is_structured(block)]
+        mesh = pick(mesh, block)
+    if several := several_grids(mesh):
+        raise FieldError(several_fault(several, "the mesh"))
+    grids = list(_grids(mesh).items())
     usable = [(name, block) for name, block in grids if _is_surface(block)] or grids
     if len(usable) < 2:
         yield _single(mesh, "the mesh")
         return
-    for name, block in usable:
-        yield TimeStep(block, _time(block), f"block {name!r}")
+    for name, grid in usable:
+        yield TimeStep(grid, _time(grid), f"block {name!r}")
 
 
-def _single(item: Any, label: str) -> TimeStep:
-    """Return the only structured grid in a mesh or a MultiBlock."""
+def _single(item: Any, label: str, block: int | str | None = None) -> TimeStep:
+    """Return the only structured grid in a mesh or a MultiBlock, or the block of that name."""
     mesh = _wrapped(item, label)
-    grids = [block for _, block in leaves(mesh) if is_structured(block)]
-    usable = [block for block in grids if _is_surface(block)] or grids
-    if len(usable) == 1:
-        time = _time(usable[0])
-        return TimeStep(usable[0], _time(mesh) if time is None else time, label)
-    if usable:
-        sizes = "; ".join(count_nodes(block.dimensions) for block in usable)
-        msg = (
-            f"{label} has {len(usable)} structured blocks: {sizes}; give the one to draw: "
-            "mesh[0], or block=0 for a file"
-        )
-        raise FieldError(msg)
-    raise FieldError(_unstructured(mesh, label))
+    if block is not None:
+        grid, time = pick(mesh, block), _time(mesh)
+        return TimeStep(grid, _time(grid) if time is None else time, label)
+    if several := several_grids(mesh, series=True):
+        raise FieldError(several_fault(several, label))
+    grids = list(_grids(mesh).values())
+    usable = [grid for grid in grids if _is_surface(grid)] or grids
+    if not usable:
+        raise FieldError(_unstructured(mesh, label))
+    time = _time(usable[0])
+    return TimeStep(usable[0], _time(mesh) if time is None else time, label)
 
 
 def _is_surface(grid: Any) -> bool:
@@ -205,123 +251,11 @@ def _unstructured(mesh: Any, label: str) -> str:
     if kinds != [type(mesh).__name__]:
         what += f" of {', '.join(kinds)}"
     return (
-        f"{label} is {what}, and no structured grid: its nodes have no order along i and j, which "
-        "the method needs. Sample it onto a grid, as in pyvista.ImageData(dimensions=(400, 300, "
-        "1), spacing=..., origin=...).sample(mesh), or draw it with ParaView's Surface LIC, which "
-        "takes any mesh"
+        f"{label} is {what}, and no structured grid: its nodes have no order along i and j, "
+        "which the method needs, and unstructured surfaces are not drawn yet. Sample it onto a "
+        "grid, as in pyvista.create_grid(mesh, (200, 150, 50)).sample(mesh), with 1 along what "
+        "is flat, or draw it with ParaView's Surface LIC, which takes any mesh"
     )
-
-
-@dataclass(frozen=True)
-class MeshArray:
-    """An array of a mesh: its name, where its values are, and how many there are at each."""
-
-    name: str
-    where: Literal["points", "cells"]
-    components: int
-    numeric: bool
-    real: bool
-
-    def __str__(self) -> str:
-        return f"{self.name} ({self.where}, {self.components})"
-
-
-def catalogue(mesh: Any) -> list[MeshArray]:
-    """List the arrays on the points and cells of a mesh, without those that only hide."""
-    arrays = []
-    for where, data in (("points", mesh.point_data), ("cells", mesh.cell_data)):
-        for name in data:
-            if name in _BLANKING:
-                continue
-            array = np.asarray(data[name])
-            arrays.append(
-                MeshArray(
-                    name=name,
-                    where="points" if where == "points" else "cells",
-                    components=int(np.prod(array.shape[1:], dtype=int)),
-                    numeric=array.dtype.kind in "fiub",
-                    real=array.dtype.kind == "f",
-                )
-            )
-    return arrays
-
-
-def values_of(mesh: Any, array: MeshArray) -> AnyArray:
-    """Return the values of an array, (N,) or (N, C)."""
-    data = mesh.point_data if array.where == "points" else mesh.cell_data
-    return np.asarray(data[array.name])
-
-
-def candidates(mesh: Any) -> list[MeshArray]:
-    """Arrays that may be the velocity: real, two or three components, no normals or positions."""
-    named = set()
-    for data in (mesh.GetPointData(), mesh.GetCellData()):
-        named |= {a.GetName() for a in (data.GetNormals(), data.GetTCoords()) if a is not None}
-    return [
-        array
-        for array in catalogue(mesh)
-        if array.real
-        and array.components in (2, 3)
-        and array.name not in named
-        and not _NO_VELOCITY.fullmatch(array.name)
-    ]
-
-
-def vector_faults(mesh: Any, vectors: Any) -> list[str]:
-    """Faults in a choice of vectors; ``None`` stands for the only ones there are."""
-    arrays = catalogue(mesh)
-    listed = ", ".join(map(str, arrays)) or "none"
-    if vectors is None:
-        return _search_faults(mesh, listed)
-    named = [a for a in arrays if a.name == vectors]
-    if not named:
-        close = difflib.get_close_matches(str(vectors), [a.name for a in arrays], n=1)
-        hint = f'. Did you mean "{close[0]}"?' if close else "."
-        return [
-            f"vectors is {vectors!r}, and the mesh has no such array{hint} Its arrays, with their "
-            f"components: {listed}"
-        ]
-    if not any(a.numeric and a.components in (2, 3) for a in named):
-        return [
-            f"vectors is {vectors!r}, an array of {named[0].components} component(s); expected 2 "
-            f"or 3 numbers at each point or cell. The arrays of the mesh, with their components: "
-            f"{listed}"
-        ]
-    return []
-
-
-def choose_vectors(mesh: Any, vectors: str | None) -> MeshArray:
-    """Return the vectors that are meant; :func:`vector_faults` returned none before."""
-    if vectors is None:
-        return _preferred(mesh)[0]
-    fits = [a for a in catalogue(mesh) if a.name == vectors and a.components in (2, 3)]
-    return next(a for a in fits if a.numeric)
-
-
-def _preferred(mesh: Any) -> list[MeshArray]:
-    """Candidates, or the single one that the mesh itself marks as its vectors."""
-    arrays = candidates(mesh)
-    active = mesh.active_vectors_name
-    # VTK's PLOT3D reader marks the momentum by itself: that is no one's choice.
-    if active == "Momentum" and any(a.name == "Velocity" for a in arrays):
-        active = None
-    return [a for a in arrays if a.name == active][:1] or arrays
-
-
-def _search_faults(mesh: Any, listed: str) -> list[str]:
-    arrays = _preferred(mesh)
-    if not arrays:
-        return [
-            "the mesh has no vectors that could be the velocity; expected a point or cell array "
-            f"of real numbers with 2 or 3 components. Its arrays, with their components: {listed}. "
-            'Join single components with mesh["velocity"] = numpy.column_stack((u, v, w))'
-        ]
-    if len(arrays) > 1:
-        return [
-            f"the mesh has {len(arrays)} arrays that could be the velocity: "
-            f'{", ".join(map(str, arrays))}; choose one, as in vectors="{arrays[-1].name}"'
-        ]
-    return []
 
 
 def hidden_nodes(mesh: Any) -> Bools:

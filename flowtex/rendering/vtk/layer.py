@@ -214,6 +214,10 @@ class FlowLayer:
         if program is None or window is None:
             return
         self._free(window)
+        # What was drawn just before is done with its texture units, of which there are few.
+        if (last := _last.get(window)) is not None and (layer := last()) not in (None, self):
+            layer.after_frame()
+        _last[window] = weakref.ref(self)
         values = uniforms(self._textures, self._settings, self.view)
         rows, columns = self._textures.geometry.rows, self._textures.geometry.columns
         values["u_padding"] = (float(columns.before), float(rows.before))
@@ -351,6 +355,10 @@ class FlowLayer:
         for texture in self._retired:
             texture.release(window)
         self._retired.clear()
+
+
+#: The layer that each window has drawn last.
+_last: weakref.WeakKeyDictionary[Any, weakref.ref[FlowLayer]] = weakref.WeakKeyDictionary()
 
 
 def _window_height(camera: Any) -> float:

@@ -21,12 +21,13 @@ from flowtex._util.array_types import Bytes, Floats, Floats32
 from flowtex._util.colours import CMAPS, colour_shares, colour_table, is_diverging
 from flowtex.camera import CAMERA_LIMITS, Camera
 from flowtex.field import FlowField
-from flowtex.field.field import speed_unit
 from flowtex.field.interpolation import steps_around
+from flowtex.field.units import speed_unit
 from flowtex.rendering.mesh_levels import MeshLevels, mesh_limits
 from flowtex.rendering.shaders import shader_text
 from flowtex.rendering.tile_choice import CELL_PIXELS
 from flowtex.rendering.uniforms import client_constants, variants
+from flowtex.rendering.webgl.earth import dates_of, earth_header, earth_parts
 from flowtex.rendering.webgl.packing import Packing, half, packing_of
 from flowtex.rendering.webgl.protocol import FORMAT, Header, Parts
 from flowtex.settings import TABLE, Settings
@@ -40,6 +41,10 @@ SHADERS = {
     "vertex": "webgl2/vertex.glsl",
     "fragment": "webgl2/fragment.glsl",
     "pick": "webgl2/pick.glsl",
+    "lineVertex": "webgl2/line_vertex.glsl",
+    "lineFragment": "webgl2/line_fragment.glsl",
+    "groundVertex": "webgl2/ground_vertex.glsl",
+    "groundFragment": "webgl2/ground_fragment.glsl",
 }
 #: Width over height of the picture that a first camera is made for; clients widen it for others.
 FIRST_ASPECT = 1.5
@@ -83,6 +88,10 @@ class Colours:
         How much of the background it hides, 0 to 1.
     bar
         Whether there is a legend.
+    coastlines, graticule
+        Whether these lines are drawn on a map of the Earth.
+    land
+        Colour from 0 to 1 of what there are no data of on a map; ``None`` where it is not drawn.
     """
 
     name: str | None = None
@@ -103,6 +112,9 @@ class Colours:
     cmap: str = ""
     auto: bool = True
     label: str = ""
+    coastlines: bool = False
+    graticule: bool = False
+    land: tuple[float, float, float] | None = None
 
     def shares(self, values: Floats) -> Floats:
         """Places of values on the colour map, from 0 to 1."""
@@ -216,6 +228,7 @@ class ClientData:
             "paper": None if textures.paper is None else _paper(textures.paper),
             "constants": client_constants(),
             "mesh": mesh_limits(),
+            "earth": self._earth(),
             "pyramid": None if self.pyramid is None else _pyramid(self.pyramid, self.finest),
             "limits": {**asdict(CAMERA_LIMITS), "aspect": FIRST_ASPECT},
             "table": _table(),
@@ -241,7 +254,8 @@ class ClientData:
         if self.textures.paper is not None:
             parts["step"] = half(self.textures.paper.step)
             parts["noise"] = half(self.textures.paper.noise)
-        return parts
+        land, tiled = colours.land is not None, self.pyramid is not None
+        return {**parts, **earth_parts(geometry, has_land=land, tiled=tiled)}
 
     def step(self, step: int) -> Parts:
         """Return the arrays of one destination time, the smallest first.
@@ -353,6 +367,18 @@ class ClientData:
             "typical": float(self.textures.typical_speed),
         }
 
+    def _earth(self) -> Header | None:
+        colours = self.colours
+        earth = earth_header(self.textures.geometry, has_land=colours.land is not None)
+        if earth is None:
+            return None
+        return {
+            **earth,
+            "coastlines": colours.coastlines,
+            "graticule": colours.graticule,
+            "land": None if colours.land is None else _numbers(colours.land),
+        }
+
     def _slices(self) -> dict[str, Any]:
         textures = self.textures
         return {
@@ -368,6 +394,7 @@ class ClientData:
             "steps": int(self.steps),
             "times": _numbers(self.times),
             "timeUnit": textures.geometry.field.time_unit,
+            "dates": dates_of(self.field, self.times),
         }
 
 

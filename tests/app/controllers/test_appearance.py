@@ -9,7 +9,8 @@ import flowtex
 
 pytest.importorskip("trame_rca")
 
-from small_pages import difference, picture, small
+from earth_fields import winds
+from small_pages import difference, picture, small, small_page
 
 from flowtex.app import FlowApp
 
@@ -149,3 +150,26 @@ def test_a_robust_range_and_back(flat: FlowApp) -> None:
     assert flat.area.clim == "robust"
     flat.controllers.appearance.choose_range()
     assert flat.area.clim is None
+
+
+def test_lines_of_a_map_are_switched_where_there_is_one(flat: FlowApp) -> None:
+    assert flat.state.get("has_map") is False
+    app = small_page(winds("platecarree"), 5, 240, 160)
+    try:
+        assert app.state.get("has_map") is True
+        assert app.state.get("coastlines") is app.state.get("graticule") is True
+        with_lines = picture(app)
+        app.state.set(coastlines=False)
+        app.controllers.appearance.take_colour()
+        assert app.area.coastlines is False and app.area.graticule is not False
+        without = picture(app)
+        assert difference(with_lines, without) > 0.2
+        saved = app.controllers.appearance.describe()
+        assert (saved["coastlines"], saved["graticule"]) == (False, True)
+        app.state.set(graticule=7)
+        app.controllers.appearance.take_colour()
+        assert app.state.get("graticule") is True
+        app.controllers.appearance.restore({"coastlines": True})
+        assert difference(picture(app), with_lines) == 0
+    finally:
+        app.close()

@@ -19,6 +19,13 @@ def test_one_is_said_in_the_singular(unit: str, one: str) -> None:
     assert length_text(20.0, unit) == f"20 {unit}"
 
 
+def test_thousands_of_metres_are_kilometres() -> None:
+    assert length_text(500.0, "m") == "500 m"
+    assert length_text(1000.0, "m") == "1 km"
+    assert length_text(2e6, "m") == "2000 km"
+    assert length_text(2000.0, "mm") == "2000 mm"
+
+
 @pytest.mark.parametrize(
     ("greatest", "length"),
     [(7.3, 5), (0.019, 0.01), (20, 20), (999, 500), (0, 0), (float("inf"), 0)],

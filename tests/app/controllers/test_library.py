@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 import pyvista as pv
+from cfd_files import CGNS, TIMES, box, write_ensight, write_exodus, write_foam
 from small_pages import small
 
 from flowtex import examples
@@ -50,3 +51,27 @@ def test_a_page_has_what_it_brought_for_itself(tmp_path: Path) -> None:
     for library in (other, shared):
         with pytest.raises(FieldError, match="no file"):
             library.source(name)
+
+
+def test_files_of_solvers_offer_blocks_arrays_and_times(tmp_path: Path) -> None:
+    with CGNS.write(tmp_path / "wing.cgns") as file:
+        file.base("Base", [("Tip", box(4, 3, 2)), ("Body", box(6, 5, 4, 3.0))], times=TIMES)
+    write_ensight(tmp_path / "wing.case", [("tip", box(4, 3, 2)), ("body", box(6, 5, 4, 3.0))])
+    write_foam(tmp_path / "run.foam")
+    write_exodus(tmp_path / "wing.ex2", box(4, 3, 2))
+    library = Library.of(tmp_path)
+    assert library.names == ("wing.case", "wing.cgns")
+    assert set(library.unshown) == {"run.foam", "wing.ex2"}
+    assert all("unstructured" in why for why in library.unshown.values())
+    for name, blocks in (("wing.case", ("tip", "body")), ("wing.cgns", ("Base/Tip", "Base/Body"))):
+        assert library.source(name).blocks == blocks
+        choice = library.complete(name, Choice(block=blocks[1]))
+        assert (choice.vectors.lower(), choice.plane) == ("velocity", "k=2")
+        field = library.field(name, choice)
+        assert field.shape == (5, 6)
+        assert tuple(field.times) == TIMES
+        assert library.complete(name, Choice()).block == blocks[0]
+    (tmp_path / "torn.case").write_text((tmp_path / "wing.case").read_text()[:30])
+    assert "torn.case" in library.names
+    with pytest.raises(FieldError, match=r"torn\.case: "):
+        library.source("torn.case")

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from earth_fields import winds
 
 from flowtex import FlowField
 from flowtex._util.array_types import Floats
@@ -22,7 +23,7 @@ from flowtex.app.controllers.point_info import (
 from flowtex.app.streaming.viewport import Viewport
 from flowtex.camera import Camera
 from flowtex.options import Appearance
-from flowtex.probe import locate, probe
+from flowtex.probe import locate, probe, values_at
 from flowtex.scene import Scene
 from flowtex.settings import Settings
 
@@ -319,3 +320,13 @@ def test_the_path_follows_the_camera(card: PathCard, move: Callable[[Viewport], 
     if np.abs(ends).max() <= 2:
         assert [line[0], line[-1]] == [pytest.approx(end) for end in ends]
     assert np.abs(np.asarray(line)).max() <= 2
+
+
+def test_a_place_on_the_earth_is_told_by_longitude_and_latitude() -> None:
+    field = winds("globe", cells=36)
+    for zoom, place in ((1.0, "20.00° E, 45.00° N"), (100.0, "20.0000° E, 45.0000° N")):
+        viewport: Any = SimpleNamespace(field=field, zoom=zoom)
+        lines = dict(PointText(viewport).lines(values_at(field, (27, 40))))
+        assert lines["place"] == place
+        assert lines["eastward"] == "7.068 m/s" or lines["eastward"].startswith("7.0")
+        assert {"northward", "speed"} <= set(lines) and "position" not in lines

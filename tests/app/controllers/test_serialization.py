@@ -38,6 +38,8 @@ STATE: dict[str, Any] = {
     "colour": "Geschwindigkeit ü",
     "cmap": "RdBu_r",
     "clim": (-1e-20, 1e20 / 3),
+    "coastlines": False,
+    "graticule": False,
     "theme": "light",
     "background": "black",
     "split": "Colour by: p & q",
@@ -225,6 +227,8 @@ def test_the_python_lines_are_plain() -> None:
     assert "handle.time = 0.0\n" in to_python({"file": "a.pvd", "time": 0.0})
     own = to_python({"colour": "none"}, source="flowtex.examples.cylinder_field()")
     assert "field = flowtex.examples.cylinder_field()\n" in own and "scalars=False" in own
+    bare = to_python({"file": "winds.nc", "coastlines": False, "graticule": True})
+    assert "coastlines=False" in bare and "graticule" not in bare
     with pytest.raises(ValueError, match="names no file"):
         to_python({})
 

@@ -14,17 +14,17 @@ from numpy.typing import NDArray
 
 from flowtex import FlowField
 from flowtex.errors import FieldError
-from flowtex.field.io import files
 from flowtex.field.io.plot3d import find_grid, find_layout, find_solution
-from flowtex.field.io.summary import describe
+from flowtex.field.io.reader_errors import errors_of_file
+from flowtex.field.io.summary import BlockSummary, describe
 
 pv = pytest.importorskip("pyvista")
 
 Floats = NDArray[np.float64]
 
 KNOWN = (
-    "a structured mesh that PyVista reads (.vts, .vtr, .vti, .vtk, .vtm, .pvd and more), or "
-    "PLOT3D (.xyz with .q beside it)"
+    "a structured mesh that PyVista reads (.vts, .vtr, .vti, .vtk, .vtm, .pvd, .cgns, .case and "
+    "more), or PLOT3D (.xyz with .q beside it)"
 )
 
 
@@ -258,14 +258,15 @@ def test_plot3d_of_several_grids(tmp_path: Path) -> None:
     Plot3D(several=True, sizes=sizes).save(tmp_path / "a.g", tmp_path / "a.q")
     assert FlowField.from_file(tmp_path / "a.g", plane="k=0", block=1).shape == (6, 3)
     with says(
-        f"{tmp_path / 'a.g'}: block '1' has 3 x 6 x 2 nodes (I x J x K) and the first step "
-        "has 5 x 4 x 3 nodes (I x J x K); expected the same nodes in every step. If these are "
-        "parts of one mesh and not time steps, give one of them: mesh[0], or block=0 for a file"
+        f"{tmp_path / 'a.g'}: the mesh has 2 structured blocks, and no time steps of one: 0 (0, "
+        '5 x 4 x 3 nodes), 1 (1, 3 x 6 x 2 nodes); choose one, as in block="0"'
     ):
         FlowField.from_file(tmp_path / "a.g", plane="k=0")
     assert describe(tmp_path / "a.g").problem == (
-        "the file has several grids: choose one of the blocks, as in block=0"
+        "the file has 2 structured blocks, and no time steps of one: 0 (0, 5 x 4 x 3 nodes), "
+        '1 (1, 3 x 6 x 2 nodes); choose one, as in block="0"'
     )
+    assert describe(tmp_path / "a.g", block=1).dimensions == (3, 6, 2)
 
 
 @pytest.mark.parametrize(
@@ -418,13 +419,10 @@ def test_a_format_that_is_not_known(tmp_path: Path) -> None:
         FlowField.from_file(tmp_path / "flow")
 
 
-def test_netcdf_is_for_xarray(tmp_path: Path) -> None:
+def test_broken_netcdf_is_told(tmp_path: Path) -> None:
     path = tmp_path / "flow.nc"
     path.write_bytes(b"CDF\x01")
-    with says(
-        f"{path}: the format is not known ('.nc'); expected {KNOWN}. Open it with xarray; "
-        "FlowField.from_arrays takes its arrays"
-    ):
+    with pytest.raises(FieldError, match=r"flow\.nc: cannot be read"):
         FlowField.from_file(path)
 
 
@@ -498,7 +496,7 @@ def test_logging_is_left_as_it_was(tmp_path: Path) -> None:
 def test_what_vtk_only_warns_of_is_passed_on(tmp_path: Path) -> None:
     with (
         pytest.warns(UserWarning, match=r"^a\.vts: VTK says: odd$"),
-        files.errors_of_file(Path("a.vts")),
+        errors_of_file(Path("a.vts")),
     ):
         from vtkmodules.vtkCommonCore import vtkOutputWindow
 
@@ -569,7 +567,10 @@ def test_blocks_are_listed(tmp_path: Path) -> None:
     path = tmp_path / "flow.vtm"
     pv.MultiBlock({"hull": pv.Sphere(), "sea": flowing()}).save(path)
     summary = describe(path)
-    assert summary.blocks == ("hull", "sea")
+    assert summary.blocks == (
+        BlockSummary("hull", None, "PolyData", None),
+        BlockSummary("sea", 0, "StructuredGrid", (4, 3, 1)),
+    )
     assert summary.dimensions == (4, 3, 1)
     assert summary.problem == ""
 

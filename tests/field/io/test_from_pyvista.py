@@ -21,9 +21,10 @@ Floats = NDArray[np.float64]
 HIDDEN_POINT, HIDDEN_CELL = 2, 32
 SHIFT = np.array([0.5, 0.25, 0.125])
 UNSTRUCTURED = (
-    ", and no structured grid: its nodes have no order along i and j, which the method needs. "
-    "Sample it onto a grid, as in pyvista.ImageData(dimensions=(400, 300, 1), spacing=..., "
-    "origin=...).sample(mesh), or draw it with ParaView's Surface LIC, which takes any mesh"
+    ", and no structured grid: its nodes have no order along i and j, which the method needs, "
+    "and unstructured surfaces are not drawn yet. "
+    "Sample it onto a grid, as in pyvista.create_grid(mesh, (200, 150, 50)).sample(mesh), with 1 "
+    "along what is flat, or draw it with ParaView's Surface LIC, which takes any mesh"
 )
 
 
@@ -258,7 +259,7 @@ def test_no_candidate() -> None:
     with says(
         "the mesh has no vectors that could be the velocity; expected a point or cell array of "
         "real numbers with 2 or 3 components. Its arrays, with their components: p (points, 1). "
-        'Join single components with mesh["velocity"] = numpy.column_stack((u, v, w))'
+        'Name single components with commas between, as in vectors="u,v,w"'
     ):
         FlowField.from_pyvista(grid)
 
@@ -283,7 +284,8 @@ def test_a_name_of_something_else() -> None:
     grid["p"] = np.ones(12)
     with says(
         "vectors is 'p', an array of 1 component(s); expected 2 or 3 numbers at each point or "
-        "cell. The arrays of the mesh, with their components: v (points, 3), p (points, 1)"
+        "cell, or the names of as many arrays of one, with commas between. The arrays of the "
+        "mesh, with their components: v (points, 3), p (points, 1)"
     ):
         FlowField.from_pyvista(grid, vectors="p")
 
@@ -596,10 +598,7 @@ def test_times_of_another_number() -> None:
         FlowField.from_pyvista([at_time(0.0), at_time(1.0)], times=[0, 1, 2])
 
 
-PARTS = (
-    " If these are parts of one mesh and not time steps, give one of them: mesh[0], or block=0 "
-    "for a file"
-)
+PARTS = " If these are parts of one mesh and not time steps, give one of them, as in block=0"
 
 
 def test_steps_of_another_size() -> None:
@@ -614,10 +613,22 @@ def test_parts_of_one_mesh_are_no_steps() -> None:
     left, right = flowing(), flowing()
     right.points = np.asarray(right.points) + np.array([3.0, 0, 0])
     with says(
-        "the nodes of block 'right' are up to 3 away from those of the first step; moving meshes "
-        "are not supported: sample all steps onto one mesh with mesh.sample(step)." + PARTS
+        "the mesh has 2 structured blocks, and no time steps of one: 0 (left, 4 x 3 x 1 nodes), "
+        '1 (right, 4 x 3 x 1 nodes); choose one, as in block="left"'
     ):
         FlowField.from_pyvista(pv.MultiBlock({"left": left, "right": right}))
+    field = FlowField.from_pyvista(pv.MultiBlock({"left": left, "right": right}), block="right")
+    assert field.points[..., 0].min() == 3
+
+
+def test_nodes_that_move() -> None:
+    moved = flowing()
+    moved.points = np.asarray(moved.points) + np.array([3.0, 0, 0])
+    with says(
+        "the nodes of step 1 are up to 3 away from those of the first step; moving meshes are not "
+        "supported: sample all steps onto one mesh with mesh.sample(step)." + PARTS
+    ):
+        FlowField.from_pyvista([flowing(), moved])
 
 
 def test_rounded_nodes_have_not_moved() -> None:
@@ -649,10 +660,11 @@ def test_an_empty_list() -> None:
 
 def test_a_step_of_several_blocks() -> None:
     with says(
-        "step 0 has 2 structured blocks: 4 x 3 x 1 nodes (I x J x K); 5 x 3 x 1 nodes "
-        "(I x J x K); give the one to draw: mesh[0], or block=0 for a file"
+        "step 0 has 2 structured blocks, and no time steps of one: 0 (Block-00, 4 x 3 x 1 nodes), "
+        '1 (Block-01, 5 x 3 x 1 nodes); choose one, as in block="Block-00"'
     ):
         FlowField.from_pyvista([pv.MultiBlock([flowing(), flowing(5)])])
+    assert FlowField.from_pyvista([pv.MultiBlock([flowing(), flowing(5)])], block=1).shape == (3, 5)
 
 
 # --- what is no structured mesh -------------------------------------------------------------
@@ -690,10 +702,15 @@ def test_no_mesh_at_all(thing: Any) -> None:
 def test_the_advice_for_unstructured_meshes_works() -> None:
     mesh = pv.Plane(i_size=4, j_size=4, i_resolution=8, j_resolution=8).triangulate()
     mesh["v"] = np.ones((mesh.n_points, 3))
-    grid = pv.ImageData(dimensions=(21, 21, 1), spacing=(0.25, 0.25, 1), origin=(-2.5, -2.5, 0))
-    field = FlowField.from_pyvista(grid.sample(mesh), vectors="v")
-    assert field.shape == (21, 21)
-    assert 0 < field.valid.sum() < field.valid.size
+    field = FlowField.from_pyvista(pv.create_grid(mesh, (21, 11, 1)).sample(mesh))
+    assert field.shape == (11, 21)
+    assert field.valid.any()
+    solid = pv.ImageData(dimensions=(5, 5, 5)).to_tetrahedra()
+    solid["v"] = np.ones((solid.n_points, 3))
+    blocks = pv.MultiBlock([solid])
+    field = FlowField.from_pyvista(pv.create_grid(blocks, (9, 8, 7)).sample(blocks), plane="k=3")
+    assert field.shape == (8, 9)
+    assert field.valid.all()
 
 
 # --- manners --------------------------------------------------------------------------------

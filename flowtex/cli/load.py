@@ -1,0 +1,47 @@
+"""Files as flows, and what was chosen of them said in plain words."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from flowtex._util.progress import waiting
+from flowtex.cli.console import say
+from flowtex.cli.options import FieldFlags, UsageError
+
+if TYPE_CHECKING:
+    from flowtex.field import FlowField
+
+__all__ = ["load_field", "notices"]
+
+
+def load_field(files: Sequence[Path], flow: FieldFlags | None) -> FlowField:
+    """Return the flow of a file, or of several that belong together."""
+    from flowtex.field import FlowField
+
+    if not files:
+        msg = "there is no file; name one"
+        raise UsageError(msg)
+    with waiting(f"Reading {files[0].name}"), notices():
+        whole: Any = files[0] if len(files) == 1 else files
+        return FlowField.from_file(whole, **(flow or FieldFlags()).arguments())
+
+
+@contextmanager
+def notices() -> Iterator[None]:
+    """Say what was chosen of a data set in plain words, and pass on all other warnings."""
+    from flowtex.field.datasets.notices import DatasetNotice
+
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", DatasetNotice)
+        yield
+    for warning in caught:
+        if issubclass(warning.category, DatasetNotice):
+            say(f"[dim]{warning.message}[/]")
+        elif not warning.category.__module__.startswith("xarray."):  # how a file was written
+            warnings.warn_explicit(
+                warning.message, warning.category, warning.filename, warning.lineno
+            )

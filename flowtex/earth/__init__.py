@@ -1,0 +1,25 @@
+"""The Earth: from longitude and latitude to a globe or a flat map, and back."""
+
+from __future__ import annotations
+
+from flowtex.earth.lines import MapLines, coastlines, graticule
+from flowtex.earth.projection import (
+    EARTH_RADIUS,
+    GLOBE,
+    NAMES,
+    Projection,
+    ProjectionError,
+    place_text,
+)
+
+__all__ = [
+    "EARTH_RADIUS",
+    "GLOBE",
+    "NAMES",
+    "MapLines",
+    "Projection",
+    "ProjectionError",
+    "coastlines",
+    "graticule",
+    "place_text",
+]

@@ -1,0 +1,208 @@
+"""A globe, and flat maps: positions from longitude and latitude, and vectors from east and north.
+
+A vector is mapped by the derivatives of the projection, so that a particle which moves on the
+Earth moves along the map of its path; on a globe directions and lengths are those of the Earth.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from flowtex._util.array_types import Floats
+from flowtex._util.extras import import_extra
+from flowtex.errors import FieldError
+
+__all__ = ["EARTH_RADIUS", "GLOBE", "NAMES", "Projection", "ProjectionError", "place_text"]
+
+#: Mean radius of the Earth in metres.
+EARTH_RADIUS = 6_371_000.0
+#: The name of the sphere among the projections.
+GLOBE = "globe"
+#: Projections by the names that people know, as PROJ has them.
+NAMES = {
+    "platecarree": "+proj=eqc",
+    "mercator": "+proj=merc",
+    "north": "+proj=stere +lat_0=90",
+    "south": "+proj=stere +lat_0=-90",
+    "lambert": "+proj=lcc",
+    "robinson": "+proj=robin",
+    "equalearth": "+proj=eqearth",
+}
+#: Steps in degrees by which derivatives are taken, and how near to a pole.
+STEP, NEAREST_POLE = 1e-4, 0.5
+#: A step to one side that is longer by this factor than that to the other leads across a tear.
+TORN = 100.0
+
+
+def place_text(lon: float, lat: float, decimals: int = 2) -> str:
+    """Return a place in words, such as ``"12.35° E, 45.20° N"``."""
+    parts = ((lon, "E", "W"), (lat, "N", "S"))
+    return ", ".join(f"{abs(x):.{decimals}f}° {low if x < 0 else high}" for x, high, low in parts)
+
+
+class ProjectionError(FieldError):
+    """There is no such projection, or a place cannot be mapped by it."""
+
+
+@dataclass(frozen=True)
+class Projection:
+    """A map of the Earth in metres.
+
+    Attributes
+    ----------
+    name
+        ``"globe"``, one of the names ``"platecarree"``, ``"mercator"``, ``"north"`` and
+        ``"south"`` (polar stereographic), ``"lambert"``, ``"robinson"`` and ``"equalearth"``, or
+        what PROJ takes, such as ``"EPSG:3413"`` or ``"+proj=laea +lat_0=52 +lon_0=10"``.
+    center
+        Longitude and latitude, in degrees, in the middle of the map where ``name`` is one of the
+        names.
+    half_height
+        Degrees of latitude from the middle to the edge of what is to be mapped, from which a
+        Lambert projection has its parallels.
+
+    Raises
+    ------
+    ProjectionError
+        When PROJ does not know the projection.
+    """
+
+    name: str
+    center: tuple[float, float] = (0.0, 0.0)
+    half_height: float = 10.0
+
+    def __post_init__(self) -> None:
+        """Check the name."""
+        if not self.is_globe:
+            _ = self._transform
+
+    @property
+    def is_globe(self) -> bool:
+        """Whether this is the sphere."""
+        return self.name == GLOBE
+
+    @property
+    def _origin(self) -> float:
+        return self.center[0] if self.name in NAMES else 0.0
+
+    @cached_property
+    def _transform(self) -> Any:
+        pyproj = import_extra("pyproj", "xarray")
+        text = self.name
+        if text in NAMES:
+            # Longitudes are counted from the middle: PROJ would turn some of them around.
+            lat, half = self.center[1], self.half_height
+            text = f"{NAMES[text]} +lon_0=0 +R={EARTH_RADIUS:.12g} +units=m +over"
+            if self.name == "platecarree":
+                text += f" +lat_ts={lat:.12g}"
+            elif self.name == "lambert":
+                near = math.copysign(max(abs(lat), 1.0), lat)
+                parallels = (near - half / 3, near + half / 3)
+                if parallels[0] * parallels[1] <= 0:
+                    parallels = (near, near)
+                text += f" +lat_0={near:.12g} +lat_1={parallels[0]:.12g} +lat_2={parallels[1]:.12g}"
+        try:
+            crs = pyproj.CRS.from_user_input(text)
+            if not crs.is_projected:
+                msg = (
+                    f"the projection {self.name!r} is in degrees and not in metres; choose one of "
+                    f"{', '.join((GLOBE, *NAMES))}, or another that PROJ knows"
+                )
+                raise ProjectionError(msg)
+            return pyproj.Transformer.from_crs(crs.geodetic_crs, crs, always_xy=True)
+        except pyproj.exceptions.ProjError as error:
+            msg = (
+                f"the projection {self.name!r} is not known; expected one of "
+                f"{', '.join((GLOBE, *NAMES))}, or what PROJ takes, such as 'EPSG:3413' or "
+                "'+proj=laea +lat_0=52 +lon_0=10'"
+            )
+            raise ProjectionError(msg) from error
+
+    def positions(self, lon: Floats, lat: Floats) -> Floats:
+        """Return positions in metres, (..., 3), of longitudes and latitudes in degrees.
+
+        They are NaN where the projection has none.
+        """
+        if self.is_globe:
+            a, b = np.radians(lon), np.radians(lat)
+            parts = (np.cos(b) * np.cos(a), np.cos(b) * np.sin(a), np.sin(b))
+            return np.asarray(EARTH_RADIUS * np.stack(np.broadcast_arrays(*parts), axis=-1))
+        lon, lat = np.broadcast_arrays(lon, lat)
+        x, y = self._transform.transform(lon - self._origin, lat, errcheck=False)
+        points = np.stack([x, y, np.zeros(np.shape(x))], axis=-1)
+        points[~np.isfinite(points).all(axis=-1)] = np.nan
+        return points
+
+    def vectors(self, lon: Floats, lat: Floats, east: Floats, north: Floats) -> Floats:
+        """Return vectors (..., 3) of components eastward and northward, (..., J, I), in m/s.
+
+        ``lon`` and ``lat`` are (J, I), in degrees.
+        """
+        to_east, to_north = self._directions(lon, lat)
+        return np.asarray(east[..., None] * to_east + north[..., None] * to_north)
+
+    def components(self, lon: Floats, lat: Floats, vectors: Floats) -> tuple[Floats, Floats]:
+        """Return the components eastward and northward of vectors (..., 3), in m/s.
+
+        They are the inverse of :meth:`vectors`.
+        """
+        to_east, to_north = self._directions(lon, lat)
+
+        def times(a: Floats, b: Floats) -> Floats:
+            return np.asarray(np.sum(a * b, axis=-1))
+
+        east, north = times(vectors, to_east), times(vectors, to_north)
+        ee, en, nn = times(to_east, to_east), times(to_east, to_north), times(to_north, to_north)
+        area = ee * nn - en * en
+        return (east * nn - north * en) / area, (north * ee - east * en) / area
+
+    def _directions(self, lon: Floats, lat: Floats) -> tuple[Floats, Floats]:
+        """Change of position for a metre eastward and a metre northward."""
+        if self.is_globe:
+            a, b = np.radians(lon), np.radians(lat)
+            zero = np.zeros_like(a)
+            east = np.stack([-np.sin(a), np.cos(a), zero], axis=-1)
+            north = np.stack([-np.sin(b) * np.cos(a), -np.sin(b) * np.sin(a), np.cos(b)], axis=-1)
+            return east, north
+        lat = np.clip(lat, NEAREST_POLE - 90, 90 - NEAREST_POLE)
+        here, metre = self.positions(lon, lat), math.radians(EARTH_RADIUS) * STEP
+        east = _mean(self.positions(lon + STEP, lat) - here, here - self.positions(lon - STEP, lat))
+        north = _mean(
+            self.positions(lon, lat + STEP) - here, here - self.positions(lon, lat - STEP)
+        )
+        east /= (metre * np.cos(np.radians(lat)))[..., None]
+        north /= metre
+        return east, north
+
+    def lonlat(self, positions: Floats) -> tuple[Floats, Floats]:
+        """Return longitude and latitude in degrees of positions (..., 3); NaN beside the map."""
+        x, y, z = np.moveaxis(np.asarray(positions, dtype=float), -1, 0)
+        if self.is_globe:
+            return np.degrees(np.arctan2(y, x)), np.degrees(np.arctan2(z, np.hypot(x, y)))
+        lon, lat = self._transform.transform(x, y, direction="INVERSE", errcheck=False)
+        known = np.isfinite(lon) & np.isfinite(lat)
+        lon, lat = np.where(known, lon, np.nan), np.where(known, lat, np.nan)
+        return (lon + self._origin + 180.0) % 360.0 - 180.0, lat
+
+    def scale(self, position: Floats) -> float:
+        """Return metres of the map for a metre on the Earth at a position, (3,)."""
+        return 1.0 if self.is_globe else float(self.scales(*self.lonlat(position)))
+
+    def scales(self, lon: Floats, lat: Floats) -> Floats:
+        """Return the same, the mean of both ways, at longitudes and latitudes in degrees, (...)."""
+        east, north = self._directions(np.asarray(lon, dtype=float), np.asarray(lat, dtype=float))
+        return np.asarray(np.sqrt(np.linalg.norm(np.cross(east, north), axis=-1)))
+
+
+def _mean(one: Floats, other: Floats) -> Floats:
+    """Return the mean of two vectors, (..., 3), or one where the other leads across a tear."""
+    a, b = (np.linalg.norm(v, axis=-1)[..., None] for v in (one, other))
+    with np.errstate(invalid="ignore"):
+        alone = np.where(a > TORN * b, other, one)
+        torn = (a > TORN * b) | (b > TORN * a)
+    return np.where(torn, alone, (one + other) / 2)

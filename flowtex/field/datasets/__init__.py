@@ -1,0 +1,1 @@
+"""From xarray's datasets of ocean and weather models to fields."""

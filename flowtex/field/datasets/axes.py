@@ -1,0 +1,363 @@
+"""The axes of a variable: which two are the surface, and what is chosen along the others."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from flowtex._util.array_types import AnyArray
+from flowtex._util.names import near_names
+from flowtex.errors import FieldError
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = [
+    "LEVEL",
+    "Choice",
+    "Section",
+    "axis_values",
+    "horizontal_dims",
+    "seconds_in",
+    "sections",
+    "way_ahead",
+]
+
+#: Names of axes that are vertical, and horizontal, where no attribute says so.
+LEVELS = re.compile(
+    r"^(s_rho|s_w|sc_r|nav_lev|k|k_\w|lev\w*|depth\w*|z|z_\w+|zl|height\w*|altitude|"
+    r"level\w*|plev\w*|isobaric\w*|pressure\w*|sigma\w*|hybrid\w*|bottom_top\w*|rc|zc)$",
+    re.IGNORECASE,
+)
+ROWS = re.compile(r"^(y\w*|j\w*|lat\w*|nlat|eta\w*|south_north\w*|rlat)$", re.IGNORECASE)
+COLUMNS = re.compile(r"^(x\w*|i\w*|lon\w*|nlon|xi\w*|west_east\w*|rlon)$", re.IGNORECASE)
+#: Units of pressure, which is greatest at the surface.
+PRESSURES = re.compile(r"^(h?pa|pascals?|mbar|mb|millibars?|bar)$", re.IGNORECASE)
+#: Lengths of the units of time in seconds.
+SECONDS = {"s": 1.0, "sec": 1.0, "second": 1.0, "min": 60.0, "minute": 60.0, "h": 3600.0}
+SECONDS |= {"hr": 3600.0, "hour": 3600.0, "d": 86400.0, "day": 86400.0}
+#: Words by which a person may choose along an axis whose own name is another.
+LEVEL, TIME = "level", "time"
+
+
+@dataclass
+class Choice:
+    """What a person chose along the axes, by value and by number; both by name."""
+
+    sel: Mapping[str, Any] = field(default_factory=dict)
+    isel: Mapping[str, Any] = field(default_factory=dict)
+    used: set[str] = field(default_factory=set)
+
+    def check(self, known: set[str]) -> None:
+        """Raise for a name that no axis has."""
+        for name in {*self.sel, *self.isel} - self.used:
+            msg = f"there is no axis {name!r} to choose along; {near_names(name, sorted(known))}"
+            raise FieldError(msg)
+
+
+@dataclass(frozen=True)
+class Section:
+    """Part of a variable that is drawn: two axes, and time where it has several steps.
+
+    Attributes
+    ----------
+    array
+        The variable, ([time,] rows, columns); nothing of it is read yet.
+    times
+        Dates, or seconds, one for each step, or ``None`` where no time is known.
+    notes
+        Sentences about what was chosen without being asked for.
+    level
+        Words for the level that is shown; empty where there is none.
+    numbers
+        What is drawn along axes where there is a choice, by name.
+    """
+
+    array: xr.DataArray
+    times: AnyArray | None
+    notes: tuple[str, ...]
+    level: str
+    numbers: Mapping[str, int]
+
+    @property
+    def is_series(self) -> bool:
+        """Whether there are several time steps."""
+        return bool(self.array.ndim == 3)
+
+
+def horizontal_dims(array: xr.DataArray) -> tuple[str, str]:
+    """Return the dimensions of rows and columns.
+
+    Raises
+    ------
+    FieldError
+        When they cannot be told.
+    """
+    axes = array.cf.axes
+    found = []
+    for kind, pattern, spare in (("Y", ROWS, -2), ("X", COLUMNS, -1)):
+        named = [str(d) for d in array.dims if d in axes.get(kind, ())]
+        alike = [str(d) for d in array.dims if pattern.match(str(d))]
+        found.append((named or alike or [str(array.dims[spare])])[-1])
+    if found[0] == found[1]:
+        found = [str(d) for d in array.dims[-2:]]
+    return found[0], found[1]
+
+
+def sections(arrays: list[xr.DataArray], choice: Choice) -> list[Section]:
+    """Choose along the axes of variables that belong together, alike in all of them.
+
+    Raises
+    ------
+    FieldError
+        When something is chosen that is not there, or the variables have nothing in common.
+    """
+    rows = [horizontal_dims(array) for array in arrays]
+    others = [
+        [str(d) for d in array.dims if d not in pair]
+        for array, pair in zip(arrays, rows, strict=True)
+    ]
+    kinds = [{_kind(array, d): d for d in dims} for array, dims in zip(arrays, others, strict=True)]
+    if len({tuple(k) for k in kinds}) > 1 or any(
+        len(k) < len(d) for k, d in zip(kinds, others, strict=True)
+    ):
+        listed = "; ".join(f"{a.name} has {', '.join(map(str, a.dims))}" for a in arrays)
+        msg = f"the components lie along different axes: {listed}. Choose along them before"
+        raise FieldError(msg)
+    for array in arrays:
+        if empty := [str(d) for d, count in array.sizes.items() if count == 0]:
+            msg = f"{array.name} has no values along {', '.join(empty)}; expected one at least"
+            raise FieldError(msg)
+    done, notes, level = list(arrays), [], ""
+    numbers: dict[str, int] = {}
+    times: AnyArray | None = None
+    for kind in kinds[0]:
+        dims = [k[kind] for k in kinds]
+        lines = [_values(array, d) for array, d in zip(arrays, dims, strict=True)]
+        picks, note = _picks(kind, dims, lines, arrays[0], choice)
+        if kind == TIME:
+            times = None if lines[0] is None else np.atleast_1d(np.asarray(lines[0])[picks[0]])
+        elif kind == LEVEL and lines[0] is not None and np.ndim(picks[0]) == 0:
+            level = _words(lines[0][picks[0]], arrays[0], dims[0])
+        if note:
+            notes.append(note)
+        if np.ndim(picks[0]) == 0 and picks[0] != slice(None) and arrays[0].sizes[dims[0]] > 1:
+            numbers[dims[0] if kind == TIME else kind] = int(picks[0])
+        done = [array.isel({d: p}) for array, d, p in zip(done, dims, picks, strict=True)]
+    order = [
+        (kind[TIME],) if kind.get(TIME) in a.dims else ()
+        for kind, a in zip(kinds, done, strict=True)
+    ]
+    done = [a.transpose(*t, *pair) for a, t, pair in zip(done, order, rows, strict=True)]
+    names = {str(d) for dims in others for d in dims} | set(kinds[0])
+    choice.check(names)
+    if times is None:
+        times = _time_beside(arrays[0])
+    return [Section(array, times, tuple(notes), level, numbers) for array in done]
+
+
+def axis_values(array: xr.DataArray) -> dict[str, tuple[str, ...]]:
+    """Return words for the values along axes other than time where there is a choice.
+
+    They are by name, that of the level first.
+    """
+    found: dict[str, tuple[str, ...]] = {}
+    surface = horizontal_dims(array)
+    for dim in map(str, array.dims):
+        kind = _kind(array, dim)
+        line = _values(array, dim)
+        if dim in surface or array.sizes[dim] < 2 or (kind == TIME and _is_time(array, dim, line)):
+            continue
+        values = range(array.sizes[dim]) if line is None else line
+        found[dim if kind == TIME else kind] = tuple(_words(value, array, dim) for value in values)
+    return dict(sorted(found.items(), key=lambda item: item[0] != LEVEL))
+
+
+def way_ahead(array: xr.DataArray, dim: str) -> int:
+    """Return the way in which the coordinate of a dimension grows: 1, or -1 against its numbers.
+
+    A component along y, say, leads to greater y.
+    """
+    coordinate = array.coords.get(dim)
+    if coordinate is None or coordinate.dtype.kind not in "fiu" or coordinate.size < 2:
+        return 1
+    first, last = (float(coordinate.values[n]) for n in (0, -1))
+    return -1 if last < first else 1
+
+
+def seconds_in(unit: str) -> float | None:
+    """Return the length of a unit of time in seconds, or ``None`` where it is not known."""
+    word = unit.strip().lower()
+    return SECONDS.get(word, SECONDS.get(word.removesuffix("s")))
+
+
+def _kind(array: xr.DataArray, dim: str) -> str:
+    """Return ``"time"``, ``"level"``, or the name of another axis."""
+    axes = array.cf.axes
+    if dim in axes.get("T", ()) or _dates(array, dim) is not None:
+        return TIME
+    vertical = (*axes.get("Z", ()), *array.cf.coordinates.get("vertical", ()))
+    if dim in vertical or LEVELS.match(dim):
+        return LEVEL
+    on_axis = [name for name in vertical if array.coords[name].dims == (dim,)]
+    return LEVEL if on_axis else dim
+
+
+def _dates(array: xr.DataArray, dim: str) -> AnyArray | None:
+    """Return the dates along an axis, if a coordinate has them."""
+    for name, coordinate in array.coords.items():
+        if coordinate.dims == (dim,) and _is_dates(coordinate):
+            # Other dates, such as those of forecasts, may run along the same axis.
+            named = name == dim or coordinate.attrs.get("standard_name") in ("time", None)
+            if named:
+                return np.asarray(coordinate.values)
+    return None
+
+
+def _is_dates(coordinate: xr.DataArray) -> bool:
+    kind = coordinate.dtype.kind
+    return kind == "M" or (
+        kind == "O" and coordinate.size > 0 and hasattr(coordinate.values.flat[0], "isoformat")
+    )
+
+
+def _values(array: xr.DataArray, dim: str) -> AnyArray | None:
+    """Return the values along an axis: its dates, where it has them, or numbers."""
+    dates = _dates(array, dim)
+    if dates is not None:
+        return dates
+    coordinate = array.coords.get(dim)
+    if coordinate is None:
+        alike = [c for c in array.coords.values() if c.dims == (dim,)]
+        coordinate = alike[0] if len(alike) == 1 else None
+    return None if coordinate is None else np.asarray(coordinate.values)
+
+
+def _time_beside(array: xr.DataArray) -> AnyArray | None:
+    """Return the one date that is told beside a variable that has no axis of time."""
+    found = [c for c in array.coords.values() if c.ndim == 0 and _is_dates(c)]
+    named = [c for c in found if c.attrs.get("standard_name") == "time"] or found
+    return np.atleast_1d(named[0].values) if named else None
+
+
+def _picks(
+    kind: str, dims: list[str], lines: list[Any], first: xr.DataArray, choice: Choice
+) -> tuple[list[Any], str]:
+    """Return what is drawn along one axis, for each variable, and a note for what was not asked."""
+    count, dim, line = first.sizes[dims[0]], dims[0], lines[0]
+    names = dict.fromkeys((*dims, kind))
+    for name in names:
+        if name in choice.isel:
+            choice.used.add(name)
+            number = choice.isel[name]
+            if not isinstance(number, (int, np.integer)) or not -count <= number < count:
+                msg = f"{name} is number {number!r} of {count}; expected 0 to {count - 1}"
+                raise FieldError(msg)
+            value = None if line is None else line[number]
+            return [_alike(value, int(number) % count, other) for other in lines], ""
+        if name in choice.sel:
+            choice.used.add(name)
+            wanted = choice.sel[name]
+            if line is None:
+                msg = f"{name} has no values; choose by number, as in isel={{{name!r}: 0}}"
+                raise FieldError(msg)
+            number = _nearest(wanted, line, name)
+            return [_alike(line[number], number, other) for other in lines], ""
+    if count == 1:
+        return [0 if kind != TIME else [0]] * len(dims), ""
+    if kind == TIME and _is_time(first, dim, line):
+        return [slice(None)] * len(dims), ""
+    if kind == LEVEL and line is not None and line.dtype.kind in "fiu":
+        number = _at_surface(lines, first.coords.get(dim))
+        why = "nearest to the surface"
+    else:
+        number, why = 0, "the first"
+    value = None if line is None else line[number]
+    said = f"number {number}" if value is None else _words(value, first, dim)
+    other_one = 0 if number else count - 1
+    if line is None:
+        how = f"isel={{{dim!r}: {other_one}}}"
+    else:
+        other_value = line[other_one]
+        text = f"{other_value:g}" if line.dtype.kind in "fiu" else repr(str(other_value))
+        how = f"{LEVEL if kind == LEVEL else dim}={text}"
+    note = f"{dim} is {said}, {why} of {count}; choose another, as in {how}"
+    return [_alike(value, number, other) for other in lines], note
+
+
+def _is_time(array: xr.DataArray, dim: str, line: AnyArray | None) -> bool:
+    """Whether the values of an axis of time are dates, or spans of a known unit."""
+    coordinate = array.coords.get(dim)
+    if line is None or line.dtype.kind in "MmO":
+        return line is not None
+    unit = "" if coordinate is None else str(coordinate.attrs.get("units", ""))
+    return seconds_in(unit) is not None
+
+
+def _alike(value: Any, number: int, line: AnyArray | None) -> int:
+    """Return the number of a value along the axis of another variable."""
+    if value is None or line is None or line.dtype.kind not in "fiuM":
+        return number
+    if number < len(line) and line[number] == value:
+        return number
+    near = np.flatnonzero(line == value)
+    if not len(near) and line.dtype.kind in "fiu":
+        near = np.flatnonzero(np.isclose(line.astype(float), float(value), rtol=1e-4))
+    if not len(near):
+        msg = f"only one of the components has the level or time {value}; choose one that both have"
+        raise FieldError(msg)
+    return int(near[0])
+
+
+def _at_surface(lines: list[Any], coordinate: Any) -> int:
+    """Return the number of the level nearest to the surface that all variables have."""
+    line = lines[0].astype(float)
+    unit = "" if coordinate is None else str(coordinate.attrs.get("units", ""))
+    height = -line if PRESSURES.match(unit) else np.abs(line)
+    for number in np.argsort(height, kind="stable"):
+        try:
+            [_alike(lines[0][number], int(number), other) for other in lines[1:]]
+        except FieldError:
+            continue
+        return int(number)
+    msg = "the components have no level in common"
+    raise FieldError(msg)
+
+
+def _nearest(wanted: Any, line: AnyArray, name: str) -> int:
+    """Return the number of the value nearest to what is wanted, within the ends of the axis."""
+    listed = ", ".join(map(str, line[:8])) + (", ..." if len(line) > 8 else "")
+    msg = f"{name} is {wanted!r}; there are {listed}"
+    try:
+        if line.dtype.kind == "M":
+            at = (line - np.datetime64(wanted)) / np.timedelta64(1, "s")
+        elif line.dtype.kind == "O":
+            dates = [
+                type(d).fromisoformat(wanted) if isinstance(wanted, str) else wanted
+                for d in line[:1]
+            ]
+            at = np.array([(d - dates[0]).total_seconds() for d in line])
+        elif line.dtype.kind == "m":
+            at = line / np.timedelta64(1, "s") - float(wanted)
+        elif line.dtype.kind in "fiu":
+            at = line.astype(float) - float(wanted)
+        else:
+            at = np.where(line == wanted, 0.0, np.inf)
+    except (TypeError, ValueError) as error:
+        raise FieldError(msg) from error
+    number = int(np.argmin(np.abs(at)))
+    widest = float(np.abs(np.diff(at)).max()) if len(at) > 1 and np.isfinite(at).all() else 0.0
+    if not abs(at[number]) <= max(widest / 2, 1e-6 * np.abs(at).max()):
+        raise FieldError(msg)
+    return number
+
+
+def _words(value: Any, array: xr.DataArray, dim: str) -> str:
+    coordinate = array.coords.get(dim)
+    unit = "" if coordinate is None else str(coordinate.attrs.get("units", ""))
+    number = f"{value:.5g}" if isinstance(value, (int, float, np.number)) else str(value)
+    return f"{number} {unit}".strip()

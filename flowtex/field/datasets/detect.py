@@ -1,0 +1,16 @@
+"""Telling datasets from meshes, without loading what reads either."""
+
+from __future__ import annotations
+
+from typing import Any
+
+__all__ = ["is_dataset"]
+
+
+def is_dataset(thing: Any) -> bool:
+    """Whether something is a dataset of xarray's, or several of them; xarray is not loaded."""
+    several = thing if isinstance(thing, (list, tuple)) else [thing]
+    return bool(several) and all(
+        type(one).__name__ == "Dataset" and type(one).__module__.startswith("xarray.")
+        for one in several
+    )

@@ -1,0 +1,192 @@
+"""The grid that two components lie on: staggered or not, and the places of its nodes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from flowtex._util.array_types import Bools, Floats
+from flowtex.errors import FieldError
+from flowtex.field.datasets.axes import horizontal_dims
+from flowtex.field.datasets.pairs import Pair
+from flowtex.field.datasets.places import Places, find_places, over_sphere
+from flowtex.field.datasets.staggered import Sides, centred, first_side
+
+__all__ = ["find_grid", "sea_mask", "unrepeated"]
+
+#: Names of masks in the middle of cells, 1 at sea.
+MASKS = ("mask_rho", "mask_t", "tmask", "tmaskutil", "wet", "wet_c")
+#: Lines of a grid that repeat others are as near to them as this share of a cell.
+REPEATED = 0.01
+
+
+def find_grid(
+    pair: Pair,
+    cells: tuple[str, str],
+    dims: tuple[tuple[str, str], tuple[str, str]],
+    datasets: Sequence[Any],
+) -> tuple[tuple[Sides | None, Sides | None], Places, str]:
+    """Return the sides along (rows, columns) of a staggered grid, the places, and words."""
+    (row_u, row_v), (column_u, column_v) = dims
+    u, v = pair.u, pair.v
+    if row_u == row_v and column_u == column_v:
+        if u.sizes[row_u] != v.sizes[row_u] or u.sizes[column_u] != v.sizes[column_u]:
+            msg = (
+                f"{u.name} and {v.name} differ in size, {_sizes(u)} and {_sizes(v)}; expected "
+                "components of one grid"
+            )
+            raise FieldError(msg)
+        places = _nemo_places(pair, cells, datasets)
+        if places is None:
+            return (
+                (None, None),
+                find_places(u, cells, [_own(u, datasets), *datasets]),
+                "one place for both components",
+            )
+        rows = Sides(-1, v.sizes[row_v], v.sizes[row_v])
+        columns = Sides(-1, u.sizes[column_u], u.sizes[column_u], _wraps(places))
+        return (rows, columns), places, "Arakawa C, sides after the middle"
+    counts = {
+        "row": (v.sizes[row_v], u.sizes[row_u]),
+        "column": (u.sizes[column_u], v.sizes[column_v]),
+    }
+    for name, (sides, middle) in counts.items():
+        if abs(sides - middle) > 1:
+            msg = (
+                f"{u.name} has {_sizes(u)} and {v.name} {_sizes(v)}; along a {name} they differ by "
+                "more than one, so they are no components of one staggered grid"
+            )
+            raise FieldError(msg)
+    firsts = [
+        first_side(row_v, row_u, counts["row"], datasets),
+        first_side(column_u, column_v, counts["column"], datasets),
+    ]
+    places = _middle_places(pair, cells, firsts, datasets)
+    rows = Sides(firsts[0], *counts["row"])
+    wraps = counts["column"][0] == counts["column"][1] and _wraps(places)
+    columns = Sides(firsts[1], *counts["column"], wraps)
+    where = {0: "before", -1: "after"}[firsts[1]]
+    return (rows, columns), places, f"Arakawa C, sides {where} the middle"
+
+
+def _own(array: Any, datasets: Sequence[Any]) -> Any:
+    """Return the dataset that holds a variable."""
+    return next((ds for ds in datasets if array.name in ds.variables), datasets[0])
+
+
+def _middle_places(pair: Pair, cells: tuple[str, str], firsts: list[int], datasets: Any) -> Places:
+    """Return places in the middle of the cells: their own, or means of those on the sides."""
+    inside = pair.u.isel({d: 0 for d in pair.u.dims if d not in cells})
+    try:
+        return find_places(inside, cells, datasets)
+    except FieldError as error:
+        try:
+            on_sides = find_places(pair.u, horizontal_dims(pair.u), datasets)
+        except FieldError:
+            raise error from None
+    count = pair.v.sizes[cells[1]]
+    sides = Sides(firsts[1], on_sides.a.shape[1], count)
+    return _moved(on_sides, sides)
+
+
+def _moved(places: Places, sides: Sides) -> Places:
+    """Return places between sides along a row; those that are not known are NaN."""
+    shape = (places.a.shape[0], sides.cells)
+    if places.is_earth:
+        middle = centred(over_sphere(places), 1, sides)
+        x, y, z = np.moveaxis(middle, -1, 0)
+        found = np.degrees(np.arctan2(y, x)), np.degrees(np.arctan2(z, np.hypot(x, y)))
+    else:
+        found = centred(places.a, 1, sides), centred(places.b, 1, sides)
+    a, b = np.full(shape, np.nan), np.full(shape, np.nan)
+    a[:, sides.known], b[:, sides.known] = found
+    return replace(places, a=a, b=b, is_line=False, why=f"{places.why}, between the sides")
+
+
+def _nemo_places(pair: Pair, cells: tuple[str, str], datasets: Sequence[Any]) -> Places | None:
+    """Return the places of NEMO's T points, where the components lie on the sides of its cells.
+
+    Its variables have dimensions of the same names, whose coordinates differ.
+    """
+    own = [_own(array, datasets) for array in (pair.u, pair.v)]
+    names = {str(n) for ds in datasets for n in ds.variables}
+    if "glamt" in names and "gphit" in names and "glamu" in names:
+        of_t = next(ds for ds in datasets if "glamt" in ds.variables)
+        return find_places(of_t["glamt"], cells, [of_t[["glamt", "gphit"]]])
+    if own[0] is own[1] and pair.u.name != "vozocrtx":
+        return None
+    try:
+        at_u, at_v = (
+            find_places(array, cells, [ds]) for array, ds in zip((pair.u, pair.v), own, strict=True)
+        )
+    except FieldError:
+        return None
+    if not at_u.is_earth or pair.along == "earth":
+        return None
+    if not np.allclose(at_u.a, at_v.a, atol=1e-6, equal_nan=True):
+        return _moved(at_u, Sides(-1, at_u.a.shape[1], at_u.a.shape[1]))
+    return at_u if pair.u.name == "vozocrtx" else None
+
+
+def _wraps(places: Places) -> bool:
+    """Whether the last column is followed by the first one."""
+    if not places.is_earth:
+        return False
+    p = over_sphere(places)
+    step, gap = (np.linalg.norm(a, axis=-1) for a in (p[:, 1] - p[:, 0], p[:, 0] - p[:, -1]))
+    with np.errstate(invalid="ignore"):
+        near = gap <= 1.5 * step
+    known = np.isfinite(gap) & np.isfinite(step) & (step > 0)
+    return bool(known.any() and near[known].all())
+
+
+def unrepeated(places: Places) -> tuple[slice, slice]:
+    """Return the lines without those that repeat others: a halo beyond the date line, and a fold.
+
+    One repeated column is kept, so that the axis closes.
+    """
+    if not places.is_earth or places.is_line:
+        return slice(None), slice(None)
+    p = over_sphere(places)
+    rows, columns = p.shape[:2]
+
+    def same(one: Floats, other: Floats) -> bool:
+        gap = np.linalg.norm(one - other, axis=-1)
+        cell = np.nanmedian(np.linalg.norm(np.diff(p, axis=1), axis=-1))
+        known = np.isfinite(gap)
+        return bool(known.any() and (gap[known] <= REPEATED * cell).all())
+
+    last = columns
+    for halo in range(min(4, columns // 4), 1, -1):
+        if all(same(p[:, columns - halo + k], p[:, k]) for k in range(halo)):
+            last = columns - halo + 1
+            break
+    top = rows
+    for below in (1, 2):
+        inside = p[:, : last if last < columns else columns]
+        for shift in (0, 1, 2):
+            mirrored = np.roll(inside[rows - 1 - below, ::-1], shift, axis=0)
+            if rows > 4 and same(inside[rows - 1], mirrored):
+                top = rows - 1
+    return slice(0, max(top, 2)), slice(0, last)
+
+
+def sea_mask(
+    shape: tuple[int, ...], dims: tuple[str, str], datasets: Sequence[Any]
+) -> Bools | None:
+    """Return where a mask says that there is data, (J, I)."""
+    for ds in datasets:
+        for name in MASKS:
+            if name in ds.variables:
+                mask = ds[name]
+                mask = mask.isel({d: 0 for d in mask.dims[:-2]})
+                if mask.shape == tuple(shape):
+                    return np.asarray(mask.values) > 0
+    return None
+
+
+def _sizes(array: Any) -> str:
+    return " x ".join(f"{n} {d}" for d, n in array.sizes.items())

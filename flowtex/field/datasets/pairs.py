@@ -1,0 +1,281 @@
+"""Which two variables of a dataset are the components of a velocity.
+
+They are found by CF's standard names, then by long names, then by names: one word of the first
+says x, u, eastward or zonal, and the second is the variable whose name has the other word there.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from flowtex.errors import FieldError
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["Pair", "choose_pair", "find_pairs", "to_metres_per_second", "two_names"]
+
+#: Words for the first component, and those for the second one.
+PARTNERS = {
+    "eastward": "northward",
+    "zonal": "meridional",
+    "east": "north",
+    "x": "y",
+    "u": "v",
+}
+#: First words that speak of the Earth's directions, and not of those of a grid.
+EARTH = ("eastward", "zonal", "east")
+#: What is looked at first when a dataset has several velocities.
+MAIN = ("sea_water_velocity", "sea_water_x_velocity", "wind", "x_wind")
+#: Words of velocities.
+MOVING = re.compile(r"velocity|wind|current|drift|momentum_component")
+#: Names that are a velocity even where nothing else says so, without what tells the component.
+BARE = re.compile(
+    r"^(|o|a|bar|vel|velocity|wind|wnd|cur|curr|current|grd|as|gos|water|component|"
+    r"eulerian_current_velocity|.*(velocity|wind|current).*)\d*m?$"
+)
+#: Names that models have given to the components, and that nothing in them tells.
+KNOWN_NAMES = {"vozocrtx": "vomecrty", "sozocrtx": "somecrty"}
+#: Metres per second in the units of velocities, as they are left when written plainly.
+UNITS = {
+    "m/s": 1.0,
+    "cm/s": 0.01,
+    "mm/s": 0.001,
+    "km/h": 1 / 3.6,
+    "km/s": 1000.0,
+    "m/day": 1 / 86400,
+    "km/day": 1000 / 86400,
+    "knot": 1852 / 3600,
+    "ft/s": 0.3048,
+}
+WORDS = (
+    (r"\bmet(?:er|re)s?\b", "m"),
+    (r"\bcentimet(?:er|re)s?\b", "cm"),
+    (r"\bkilomet(?:er|re)s?\b", "km"),
+    (r"\bseconds?\b|\bsec\b", "s"),
+    (r"\bhours?\b|\bhr?\b", "h"),
+    (r"\bdays?\b|\bd\b", "day"),
+    (r"\bknots?\b|\bkts?\b|\bkn\b", "knot"),
+    (r"\bfeet\b|\bfoot\b", "ft"),
+    (r"\s*\bper\b\s*", "/"),
+    (r"\s*[\s.*]\s*(s|h|day)\s*\**\^?-1\b", r"/\1"),
+    (r"\s", ""),
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Pair:
+    """Two variables that are the components of a velocity.
+
+    ``along`` tells the directions: ``"earth"`` for eastward and northward, ``"grid"`` for those of
+    the grid, and ``""`` where nothing tells. ``why`` says how the two were found, and ``rank`` how
+    likely they are the velocity that is meant, 0 the most.
+    """
+
+    u: xr.DataArray
+    v: xr.DataArray
+    along: str
+    why: str
+    rank: int = 0
+
+    def __str__(self) -> str:
+        return f"{self.u.name}, {self.v.name} ({self.why})"
+
+
+def choose_pair(datasets: Sequence[xr.Dataset], u: str | None, v: str | None) -> Pair:
+    """Return the velocity that is named, or the only one that is likely.
+
+    Raises
+    ------
+    FieldError
+        When there is none, several are as likely, or what is named is not there.
+    """
+    if (u is None) != (v is None):
+        msg = f"u is {u!r} and v is {v!r}; name both components, or none"
+        raise FieldError(msg)
+    pairs = find_pairs(datasets)
+    if u is not None and v is not None:
+        one, other = (_named(datasets, name) for name in (u, v))
+        found = next((p for p in pairs if (p.u.name, p.v.name) == (u, v)), None)
+        return found or Pair(one, other, _directions(one), "as named")
+    if not pairs:
+        raise FieldError(_no_pair(datasets))
+    best = [pair for pair in pairs if pair.rank == pairs[0].rank]
+    if len(best) > 1:
+        listed = "; ".join(map(str, pairs))
+        first = best[0]
+        msg = (
+            f"several pairs of variables may be the velocity: {listed}. Name one of them, as in "
+            f'u="{first.u.name}", v="{first.v.name}"'
+        )
+        raise FieldError(msg)
+    return best[0]
+
+
+def two_names(vectors: str | None) -> dict[str, str]:
+    """Return the arguments u and v for names with a comma between, as ``"uo,vo"``.
+
+    Raises
+    ------
+    FieldError
+        When these are not two names.
+    """
+    if vectors is None:
+        return {}
+    names = [word.strip() for word in vectors.split(",")]
+    if len(names) != 2 or not all(names):
+        msg = f'vectors is {vectors!r}; expected the names of two components, as in "uo,vo"'
+        raise FieldError(msg)
+    return dict(zip("uv", names, strict=True))
+
+
+def find_pairs(datasets: Sequence[xr.Dataset]) -> list[Pair]:
+    """Return the pairs that may be a velocity, the likely ones first."""
+    arrays = [
+        array for ds in datasets for array in ds.data_vars.values() if _may_be_component(array)
+    ]
+    pairs: dict[tuple[Any, Any], Pair] = {}
+    for u in arrays:
+        for source in ("standard_name", "long_name", "name"):
+            for word, rest, wanted in _partners(_text(u, source), source):
+                for v in arrays:
+                    key = (u.name, v.name)
+                    if _text(v, source) != wanted or key in pairs or not _match(u, v):
+                        continue
+                    rank = _rank(u, source, rest)
+                    if rank is not None:
+                        why = f"{source.replace('_', ' ')} with {word!r} and {PARTNERS[word]!r}"
+                        pairs[key] = Pair(u, v, _directions(u), why, rank)
+    return sorted(pairs.values(), key=lambda pair: pair.rank)
+
+
+def to_metres_per_second(array: xr.DataArray) -> float | None:
+    """Return how many metres per second the unit of a variable is; ``None`` where it has none.
+
+    Raises
+    ------
+    FieldError
+        When the unit is none of a velocity.
+    """
+    unit = str(array.attrs.get("units", "")).strip()
+    if unit in ("", "1", "-", "None", "unknown"):
+        return None
+    plain = unit.lower()
+    for pattern, word in WORDS:
+        plain = re.sub(pattern, word, plain)
+    if plain not in UNITS:
+        msg = (
+            f"the unit of {array.name!r} is {unit!r}, which is none of a velocity; expected "
+            f"{', '.join(UNITS)}. Set {array.name}.attrs['units'] if it is wrong"
+        )
+        raise FieldError(msg)
+    return UNITS[plain]
+
+
+def _may_be_component(array: xr.DataArray) -> bool:
+    return array.ndim >= 2 and array.dtype.kind in "fiu" and "bounds" not in str(array.name)
+
+
+def _text(array: xr.DataArray, source: str) -> str:
+    """Return a name of a variable in small letters, its words parted by underscores."""
+    text = str(array.name if source == "name" else array.attrs.get(source, ""))
+    text = re.sub(r"[^0-9a-z]+", "_", text.lower()).strip("_")
+    return re.sub(r"_at_\w+_location$", "", text) if source == "standard_name" else text
+
+
+def _partners(text: str, source: str) -> Iterator[tuple[str, str, str]]:
+    """Give the word that tells the component, the text without it, and that of the partner."""
+    if not text:
+        return
+    if source == "name" and text in KNOWN_NAMES:
+        yield "x", "velocity", KNOWN_NAMES[text]
+    for word, other in PARTNERS.items():
+        # A letter may be part of a name, as in uo, u10, UVEL or VSDX; in a text it is a word.
+        glued = source == "name"
+        pattern = rf"{word}" if glued else rf"(?<![a-z0-9]){word}(?![a-z0-9])"
+        for found in re.finditer(pattern, text):
+            a, b = found.span()
+            yield word, f"{text[:a]}_{text[b:]}".strip("_"), text[:a] + other + text[b:]
+
+
+def _match(u: xr.DataArray, v: xr.DataArray) -> bool:
+    """Whether two variables can be parts of one: with as many axes, and one unit."""
+    units = (a.attrs.get("units", "") for a in (u, v))
+    return u.name != v.name and u.ndim == v.ndim and len(set(units)) == 1
+
+
+def _rank(u: xr.DataArray, source: str, rest: str) -> int | None:
+    """Return how likely a pair is the velocity that is meant; ``None`` for what is none."""
+    try:
+        is_velocity = to_metres_per_second(u) is not None
+    except FieldError:
+        return 6 if source == "standard_name" else None
+    text = _text(u, source)
+    if source != "name":
+        plain = re.sub(r"_*(eastward|zonal)_*", "_", text).strip("_")
+        if plain in MAIN:
+            return 0
+        return 1 if MOVING.search(text) else (4 if is_velocity else None)
+    bare = BARE.match(rest) is not None
+    if not bare and not is_velocity:
+        return None
+    return 2 if not rest and bare else 3 if bare else 5
+
+
+def _directions(u: xr.DataArray) -> str:
+    """Return along what a first component is: what the standard name says counts most."""
+    relative = u.attrs.get("GRIB_uvRelativeToGrid")
+    if relative is not None:
+        return "grid" if int(relative) else "earth"
+    for source in ("standard_name", "long_name", "name"):
+        words = _text(u, source).split("_")
+        if "grid" in words or ("x" in words and source != "name"):
+            return "grid"
+        if any(word in words for word in EARTH):
+            return "earth"
+    return ""
+
+
+def _named(datasets: Sequence[xr.Dataset], name: str) -> xr.DataArray:
+    for ds in datasets:
+        if name in ds.data_vars:
+            return ds[name]
+    names = ", ".join(str(n) for ds in datasets for n, a in ds.data_vars.items() if a.ndim >= 2)
+    msg = f"there is no variable {name!r}; there are {names or 'none with two axes'}"
+    raise FieldError(msg)
+
+
+def _no_pair(datasets: Sequence[xr.Dataset]) -> str:
+    """Return the fault of a dataset without a pair, and what it has instead."""
+    arrays = [a for ds in datasets for a in ds.data_vars.values() if _may_be_component(a)]
+    for u in arrays:
+        for source in ("standard_name", "long_name", "name"):
+            parted = [*_partners(_text(u, source), source), *_reversed(_text(u, source), source)]
+            alone = [
+                wanted for _, rest, wanted in parted if _rank(u, source, rest) not in (None, 5, 6)
+            ]
+            if alone:
+                return (
+                    f"there is one component of a velocity, {u.name!r} "
+                    f"({u.attrs.get('long_name', source)}), and not the other one, whose "
+                    f"{source.replace('_', ' ')} would be {alone[0]!r}; open the file that has it "
+                    "together with this one, or name both, as in u=..., v=..."
+                )
+    names = ", ".join(str(a.name) for a in arrays)
+    return (
+        "no two variables are known as the components of a velocity; there are "
+        f"{names or 'none with two axes'}. Name them, as in u=..., v=..."
+    )
+
+
+def _reversed(text: str, source: str) -> Iterator[tuple[str, str, str]]:
+    """Give the same from the second component."""
+    for first, second in PARTNERS.items():
+        glued = source == "name"
+        pattern = rf"{second}" if glued else rf"(?<![a-z0-9]){second}(?![a-z0-9])"
+        for found in re.finditer(pattern, text):
+            a, b = found.span()
+            yield second, f"{text[:a]}_{text[b:]}".strip("_"), text[:a] + first + text[b:]

@@ -1,0 +1,281 @@
+"""Where the values of a variable lie: longitude and latitude, or positions in a plane."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from flowtex._util.array_types import Floats
+from flowtex._util.extras import import_extra
+from flowtex.errors import FieldError
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["Places", "find_places", "over_sphere"]
+
+LONGITUDE = re.compile(
+    r"^(nav_lon|(.*_)?lon(gitude)?(_\w+)?|lon[a-z]?|xlong.*|glam\w?|geolon\w*|[tu]long|xc|xg)$",
+    re.I,
+)
+LATITUDE = re.compile(
+    r"^(nav_lat|(.*_)?lat(itude)?(_\w+)?|lat[a-z]?|xlat.*|gphi\w?|geolat\w*|[tu]lat|yc|yg)$", re.I
+)
+ACROSS = re.compile(r"^(x|x_?c|x_?g|x_\w+|xp1|rlon|projection_x_coordinate)$", re.I)
+UPWARD = re.compile(r"^(y|y_?c|y_?g|y_\w+|yp1|rlat|projection_y_coordinate)$", re.I)
+DEGREES = re.compile(r"^degrees?(_?[NSEW]|_?(north|east))?$", re.I)
+#: Units of length, in metres.
+LENGTHS = {"m": 1.0, "meter": 1.0, "metre": 1.0, "meters": 1.0, "metres": 1.0, "km": 1000.0}
+LENGTHS |= {"kilometer": 1000.0, "kilometre": 1000.0, "kilometers": 1000.0, "kilometres": 1000.0}
+#: Letters for the place in a cell of a staggered grid: its middle first.
+MIDDLES = ("rho", "t", "c", "r", "")
+
+
+@dataclass(frozen=True)
+class Places:
+    """Positions of nodes, (J, I) each.
+
+    ``a`` and ``b`` are longitude and latitude in degrees where ``is_earth``, else x and y in units
+    of ``unit``. ``is_line`` tells that a follows from the column alone and b from the row, and
+    ``why`` names the coordinates.
+    """
+
+    a: Floats
+    b: Floats
+    is_earth: bool
+    is_line: bool
+    why: str
+    unit: str = ""
+
+
+def find_places(
+    array: xr.DataArray, dims: tuple[str, str], datasets: Sequence[xr.Dataset]
+) -> Places:
+    """Return where values on some rows and columns lie.
+
+    Parameters
+    ----------
+    array
+        A variable whose own coordinates are looked at first.
+    dims
+        Names of the dimensions of rows and columns.
+    datasets
+        Where other coordinates may be.
+
+    Raises
+    ------
+    FieldError
+        When there are none; the text lists what there is.
+    """
+    shape = tuple(_size(d, array, datasets) for d in dims)
+    for lon, lat in _pairs(array, dims, datasets, (LONGITUDE, LATITUDE), ("longitude", "latitude")):
+        a, b = _spread(lon, lat, dims, shape)
+        if a is None or b is None:
+            continue
+        if not _is_lonlat(a, b, lon, lat):
+            continue
+        nowhere = (a == 0) & (b == 0)
+        if nowhere.sum() > 1:  # as where a model leaves out land
+            a, b = np.where(nowhere, np.nan, a), np.where(nowhere, np.nan, b)
+        return Places(
+            _longitudes(a, str(lon.name)),
+            b,
+            is_earth=True,
+            is_line=lon.ndim == 1,
+            why=f"{lon.name} and {lat.name}",
+        )
+    for x, y in _pairs(array, dims, datasets, (ACROSS, UPWARD), ("X", "Y")):
+        a, b = _spread(x, y, dims, shape)
+        if a is None or b is None:
+            continue
+        return _plane(array, x, y, a, b, datasets)
+    names = sorted({str(n) for n in array.coords} | {str(n) for ds in datasets for n in ds.coords})
+    msg = (
+        f"no longitude and latitude, and no x and y, are known for {array.name!r} with the "
+        f"dimensions {', '.join(dims)}; the coordinates are {', '.join(names) or 'none'}. Add "
+        f"them, as in ds.assign_coords(lon=({dims!r}, ...), lat=({dims!r}, ...)), or give the file "
+        "that has them too"
+    )
+    raise FieldError(msg)
+
+
+def over_sphere(a: Places) -> Floats:
+    """Return unit vectors, (J, I, 3), of longitudes and latitudes."""
+    lon, lat = np.radians(a.a), np.radians(a.b)
+    return np.stack([np.cos(lat) * np.cos(lon), np.cos(lat) * np.sin(lon), np.sin(lat)], axis=-1)
+
+
+def _size(dim: str, array: xr.DataArray, datasets: Sequence[xr.Dataset]) -> int:
+    if dim in array.sizes:
+        return int(array.sizes[dim])
+    return int(next(ds.sizes[dim] for ds in datasets if dim in ds.sizes))
+
+
+def _pairs(
+    array: xr.DataArray,
+    dims: tuple[str, str],
+    datasets: Sequence[xr.Dataset],
+    patterns: tuple[re.Pattern[str], re.Pattern[str]],
+    words: tuple[str, str],
+) -> Iterator[tuple[Any, Any]]:
+    """Give variables that may be the two coordinates, the likely ones first."""
+    found: list[list[Any]] = [[], []]
+    for names, pattern, word in zip(found, patterns, words, strict=True):
+        told = (*array.cf.coordinates.get(word, ()), *array.cf.axes.get(word, ()))
+        names += [array.coords[name] for name in told if name in array.coords]
+        names += [c for c in array.coords.values() if pattern.match(str(c.name))]
+        for ds in datasets:
+            of_set = (*ds.cf.coordinates.get(word, ()), *ds.cf.standard_names.get(word, ()))
+            names += [ds[name] for name in of_set if name in ds.variables]
+            names += [ds[n] for n in ds.variables if pattern.match(str(n))]
+    # Those in the middle of cells come before those on their sides.
+    firsts = {id(c): n for n, c in enumerate(found[0])}
+
+    def order(c: Any) -> tuple[int, int]:
+        letter = re.sub(r".*(lon|long|lam|x)_?", "", str(c.name).lower())
+        middle = MIDDLES.index(letter) if letter in MIDDLES else len(MIDDLES)
+        return (0 if set(c.dims) <= set(dims) else 1, middle if c.ndim > 1 else -1)
+
+    for a in sorted(found[0], key=lambda c: (order(c), firsts[id(c)])):
+        wanted = _partner(str(a.name))
+        for b in sorted(found[1], key=lambda c: str(c.name).lower() not in wanted):
+            if a.ndim == b.ndim and str(b.name).lower() in wanted:
+                yield a, b
+
+
+def _partner(name: str) -> set[str]:
+    """Return the names that the second coordinate may have, by that of the first."""
+    low = name.lower()
+    swaps = (("lon", "lat"), ("long", "lat"), ("lam", "phi"), ("x", "y"), ("xi", "eta"))
+    return {low.replace(a, b) for a, b in swaps if a in low}
+
+
+def _spread(
+    a: Any, b: Any, dims: tuple[str, str], shape: tuple[int, ...]
+) -> tuple[Floats | None, Floats | None]:
+    """Return two coordinates at all nodes, or nothing where they belong to other nodes."""
+    if a.ndim == 1 and b.ndim == 1:
+        if a.dims == b.dims:
+            msg = (
+                f"{a.name} and {b.name} both lie along {a.dims[0]}: the values are those of an "
+                "unstructured mesh, or of stations, and flow is drawn on rows and columns; "
+                "put them on a grid of longitude and latitude before"
+            )
+            raise FieldError(msg)
+        if a.dims != (dims[1],) or b.dims != (dims[0],):
+            return None, None
+        x, y = np.meshgrid(_numbers(a), _numbers(b))
+        return x, y
+    flat = []
+    for c in (a, b):
+        # Some files repeat them for every time.
+        other = {d: 0 for d in c.dims if c.sizes[d] == 1 or str(d).lower().startswith("t")}
+        other = {d: n for d, n in other.items() if d not in dims}
+        c = c.isel(other)
+        if c.ndim != 2:
+            return None, None
+        if set(c.dims) == set(dims):
+            c = c.transpose(*dims)
+        if c.shape != shape:
+            return None, None
+        flat.append(_numbers(c))
+    return flat[0], flat[1]
+
+
+def _numbers(c: Any) -> Floats:
+    if c.dtype.kind not in "fiu":
+        msg = f"the coordinate {c.name!r} holds {c.dtype}; expected numbers"
+        raise FieldError(msg)
+    return np.asarray(c.values, dtype=float)
+
+
+def _is_lonlat(a: Floats, b: Floats, lon: Any, lat: Any) -> bool:
+    """Whether coordinates are degrees; a name such as XC alone does not tell."""
+    units = [str(c.attrs.get("units", "")) for c in (lon, lat)]
+    told = all(DEGREES.match(u) for u in units) or all(
+        "lon" in str(c.attrs.get("standard_name", c.name)).lower()
+        or "lat" in str(c.attrs.get("standard_name", c.name)).lower()
+        or re.match("glam|gphi", str(c.name))
+        for c in (lon, lat)
+    )
+    if not told:
+        return False
+    with np.errstate(invalid="ignore"):
+        far = np.nanmax(np.abs(b), initial=0.0)
+        wide = np.nanmax(np.abs(a), initial=0.0)
+    known = np.isfinite(a) & np.isfinite(b)
+    if not known.any():
+        msg = f"{lon.name} and {lat.name} are NaN everywhere, so nothing has a place"
+        raise FieldError(msg)
+    if far > 90.001 or wide > 720:
+        if all(DEGREES.match(u) for u in units):
+            msg = (
+                f"{lat.name} reaches {far:g} and {lon.name} {wide:g} in size; expected degrees, up "
+                "to 90 and 360"
+            )
+            raise FieldError(msg)
+        return False
+    return True
+
+
+def _longitudes(lon: Floats, name: str) -> Floats:
+    """Return longitudes that go on along a row without a jump.
+
+    Raises
+    ------
+    FieldError
+        When those of a line are in no order.
+    """
+    if not (np.ptp(lon, axis=0) == 0).all():  # as on a curvilinear grid
+        return lon
+    line = np.unwrap(lon[0], period=360.0)
+    steps = np.diff(line)
+    if not ((steps > 0).all() or (steps < 0).all()):
+        msg = (
+            f"{name} goes back and forth along its axis; expected longitudes in one direction. "
+            f"Sort them, as in ds.sortby({name!r})"
+        )
+        raise FieldError(msg)
+    return np.broadcast_to(line, lon.shape)
+
+
+def _plane(
+    array: xr.DataArray, x: Any, y: Any, a: Floats, b: Floats, datasets: Sequence[xr.Dataset]
+) -> Places:
+    """Return places in a plane, or on the Earth where the grid mapping tells which."""
+    units = [str(c.attrs.get("units", "")).strip() for c in (x, y)]
+    why = f"{x.name} and {y.name}"
+    crs = _mapping(array, datasets)
+    if crs is not None:
+        pyproj = import_extra("pyproj", "xarray")
+        known = pyproj.CRS.from_cf(crs)
+        geodetic = pyproj.CRS.from_user_input(known.geodetic_crs or 4326)
+        if known.is_projected:
+            factor = LENGTHS.get(units[0].lower(), 1.0)
+            change = pyproj.Transformer.from_crs(known, geodetic, always_xy=True)
+            lon, lat = change.transform(a * factor, b * factor, errcheck=False)
+        else:
+            base = pyproj.CRS.from_user_input("+proj=longlat +R=6371000 +type=crs")
+            change = pyproj.Transformer.from_crs(known, base, always_xy=True)
+            lon, lat = change.transform(a, b)
+        bad = ~(np.isfinite(lon) & np.isfinite(lat))
+        places = np.where(bad, np.nan, lon), np.where(bad, np.nan, lat)
+        words = f"{why} by {crs.get('grid_mapping_name', 'its CRS')}"
+        return Places(*places, is_earth=True, is_line=False, why=words)
+    unit = "m" if units[0].lower() in LENGTHS else units[0]
+    factor = LENGTHS.get(units[0].lower(), 1.0)
+    return Places(a * factor, b * factor, is_earth=False, is_line=x.ndim == 1, why=why, unit=unit)
+
+
+def _mapping(array: xr.DataArray, datasets: Sequence[xr.Dataset]) -> dict[str, Any] | None:
+    """Return the attributes of the grid mapping of a variable."""
+    name = array.attrs.get("grid_mapping", array.encoding.get("grid_mapping"))
+    for ds in datasets:
+        if name in ds.variables:
+            attrs = dict(ds[name].attrs)
+            return attrs if {"grid_mapping_name", "crs_wkt"} & set(attrs) else None
+    return None

@@ -1,0 +1,423 @@
+"""From xarray's datasets to fields: the pair, its axes, its places, and the steps of time.
+
+Nothing but coordinates and one step is read here; other steps are read when they are drawn.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache, partial
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import numpy as np
+
+from flowtex._util.array_types import Bools, Floats
+from flowtex._util.extras import import_extra
+from flowtex.errors import FieldError
+from flowtex.field.datasets.axes import (
+    Choice,
+    Section,
+    horizontal_dims,
+    seconds_in,
+    sections,
+    way_ahead,
+)
+from flowtex.field.datasets.grids import find_grid, sea_mask, unrepeated
+from flowtex.field.datasets.maps import on_map
+from flowtex.field.datasets.notices import notify
+from flowtex.field.datasets.pairs import Pair, choose_pair, to_metres_per_second
+from flowtex.field.datasets.places import Places, over_sphere
+from flowtex.field.datasets.staggered import centred
+from flowtex.field.steps import LazySteps
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["Recognised", "as_datasets", "field_of", "recognise"]
+
+F = TypeVar("F")
+
+#: Longest name that a legend has room for.
+LONGEST_NAME = 40
+
+#: Steps whose components are kept, for velocity and speed are made of the same.
+MOST_READ = 4
+
+#: Share of the nodes of a staggered grid at rest from which on they count as land.
+LAND_SHARE = 0.01
+
+
+@dataclass(frozen=True, eq=False)
+class Recognised:
+    """What was recognised in a dataset, and why.
+
+    Attributes
+    ----------
+    pair
+        The two variables of the velocity.
+    along
+        Along what the components are: ``"earth"``, or ``"grid"`` where ``ahead`` tells the ways of
+        rows and columns, 1 or -1.
+    grid
+        Words for the kind of grid.
+    coordinates
+        Names of the coordinates that give positions.
+    places
+        Positions of the nodes in the middle of cells, and what lies there.
+    notes
+        Sentences about what was chosen without being asked for.
+    level
+        Words for the level; empty where there is none.
+    """
+
+    pair: Pair
+    along: str
+    ahead: tuple[int, int]
+    grid: str
+    coordinates: str
+    places: Places
+    notes: tuple[str, ...]
+    level: str
+    u: Section
+    v: Section
+    steps: Callable[[int], tuple[Floats, Floats]]
+    cells: tuple[str, str]
+    kept: tuple[slice, slice]
+    trimmed: tuple[slice, slice]
+
+    @property
+    def map_name(self) -> str:
+        """The flat map that suits the places."""
+        return on_map(self.places, None).projection.name
+
+
+def field_of(
+    make: Callable[..., F],
+    data: xr.Dataset | Sequence[xr.Dataset],
+    u: str | None = None,
+    v: str | None = None,
+    *,
+    projection: str | None = None,
+    name: str = "",
+    sel: Mapping[str, Any] | None = None,
+    isel: Mapping[str, Any] | None = None,
+) -> F:
+    """Make a field by ``FlowField.from_arrays``; :meth:`FlowField.from_xarray` has the rest."""
+    known = recognise(data, u, v, sel=sel, isel=isel)
+    for note in known.notes:
+        notify(note)
+    places = known.places
+    if not places.is_earth and projection is not None:
+        msg = (
+            f"projection is {projection!r}, and the positions are {known.coordinates}, which are "
+            "no longitude and latitude; leave it out"
+        )
+        raise FieldError(msg)
+    times, numbers = _times(known)
+    scalars = _scalars(known, as_datasets(data), Choice(dict(sel or {}), dict(isel or {})))
+    if not places.is_earth:
+        points = np.stack([places.a, places.b], axis=-1)
+
+        def vectors(u: Floats, v: Floats) -> Floats:
+            east, north = _turned(known, u, v, plane=True)
+            return np.stack([east, north, np.zeros_like(east)], axis=-1)
+
+        lines: Any = (slice(None), slice(None))
+        options: dict[str, Any] = {"length_unit": places.unit, "time_unit": "s"}
+        speeds = False
+    else:
+        drawn = on_map(places, projection)
+        points, lines = drawn.points, drawn.lines
+        options = {"length_unit": "m", "time_unit": "s", "projection": drawn.projection}
+        options["periodic"] = drawn.periodic
+        speeds = not drawn.projection.is_globe
+
+        def vectors(u: Floats, v: Floats) -> Floats:
+            east, north = _turned(known, u, v)
+            return drawn.vectors(east[lines], north[lines])
+
+    def velocity(number: int) -> Floats:
+        return vectors(*known.steps(number))
+
+    def on_lines(read: Callable[[int], Floats], number: int) -> Floats:
+        return np.asarray(read(number)[lines])
+
+    def speed(number: int) -> Floats:
+        return np.asarray(np.hypot(*known.steps(number))[lines])
+
+    first = velocity(numbers[0])
+    base = make(points, first, name=", ".join(filter(None, (name, known.level))), **options)
+    extra: dict[str, Callable[[int], Floats]] = {}
+    for key, (read, _) in scalars.items():
+        extra[key] = partial(on_lines, read)
+    attributes = {key: attrs for key, (_, attrs) in scalars.items()}
+    words = {
+        ours: {key: str(a[theirs]) for key, a in attributes.items() if a.get(theirs)}
+        for ours, theirs in (("units", "units"), ("long_names", "long_name"))
+    }
+    long_names = words["long_names"].items()
+    words["long_names"] = {key: text for key, text in long_names if len(text) <= LONGEST_NAME}
+    if speeds:
+        extra["speed"] = speed
+        words["units"]["speed"] = "m/s"
+    field: F = _with_steps(base, first, velocity, extra, times, numbers, words)
+    return field
+
+
+def recognise(
+    data: xr.Dataset | Sequence[xr.Dataset],
+    u: str | None = None,
+    v: str | None = None,
+    *,
+    sel: Mapping[str, Any] | None = None,
+    isel: Mapping[str, Any] | None = None,
+) -> Recognised:
+    """Find the velocity of a dataset, its grid and its places.
+
+    Raises
+    ------
+    FieldError
+        When they cannot be told; the text has the remedy.
+    """
+    datasets = as_datasets(data)
+    pair = choose_pair(datasets, u, v)
+    factors = [to_metres_per_second(array) for array in (pair.u, pair.v)]
+    if len(set(factors)) > 1:
+        units = " and ".join(repr(str(a.attrs.get("units", ""))) for a in (pair.u, pair.v))
+        msg = f"the units of {pair.u.name!r} and {pair.v.name!r} are {units}; expected the same"
+        raise FieldError(msg)
+    factor = factors[0] if factors[0] is not None else 1.0
+    choice = Choice(dict(sel or {}), dict(isel or {}))
+    one, two = sections([pair.u, pair.v], choice)
+    rows, columns = zip(horizontal_dims(pair.u), horizontal_dims(pair.v), strict=True)
+    notes = list(one.notes)
+    sides, places, words = find_grid(pair, (rows[0], columns[1]), (rows, columns), datasets)
+    kept = (
+        sides[0].known if sides[0] else slice(None),
+        sides[1].known if sides[1] else slice(None),
+    )
+    mask = sea_mask(places.a.shape, (rows[0], columns[1]), datasets)
+    places = replace(places, a=places.a[kept], b=places.b[kept])
+    mask = None if mask is None else mask[kept]
+    trimmed = unrepeated(places)
+    places = replace(places, a=places.a[trimmed], b=places.b[trimmed])
+    staggered = sides[0] is not None or sides[1] is not None
+    # Sides of cells have components across them, whatever a long name calls these.
+    by_words = "standard_name" not in pair.u.attrs
+    land: list[Bools] = []
+
+    def steps(number: int) -> tuple[Floats, Floats]:
+        parts = []
+        for section, side, axis in ((one, sides[1], 1), (two, sides[0], 0)):
+            values = _values(section, number) * factor
+            other = sides[0] if axis == 1 else sides[1]
+            if side is not None:
+                values = centred(values, axis, side)
+            if other is not None:
+                values = values[
+                    (other.known, slice(None)) if axis == 1 else (slice(None), other.known)
+                ]
+            parts.append(values)
+        a, b = parts
+        if staggered:  # beside a wall one of them may be known alone
+            nowhere = np.isnan(a) & np.isnan(b)
+            a, b = (np.where(nowhere, np.nan, np.nan_to_num(p)) for p in (a, b))
+            if not land:
+                still = (a == 0) & (b == 0)
+                land.append(still if still.mean() > LAND_SHARE else np.zeros_like(still))
+            a, b = (np.where(land[0], np.nan, p) for p in (a, b))
+        if mask is not None:
+            a, b = (np.where(mask, p, np.nan) for p in (a, b))
+        return a[trimmed], b[trimmed]
+
+    if factors[0] is None:
+        notes.append(f"{pair.u.name} and {pair.v.name} have no unit, and count as m/s")
+    grid = f"{words}, {'rows and columns' if places.is_line else 'curvilinear'}"
+    return Recognised(
+        pair=pair,
+        along="earth" if pair.along == "earth" and not (staggered and by_words) else "grid",
+        ahead=(way_ahead(pair.u, rows[0]), way_ahead(pair.v, columns[1])),
+        grid=grid,
+        coordinates=places.why,
+        places=places,
+        notes=tuple(notes),
+        level=one.level,
+        u=one,
+        v=two,
+        steps=lru_cache(MOST_READ)(steps),
+        cells=(rows[0], columns[1]),
+        kept=kept,
+        trimmed=trimmed,
+    )
+
+
+def as_datasets(data: Any) -> list[Any]:
+    """Return datasets whose axes cf_xarray can tell, with times as dates."""
+    xarray = import_extra("xarray", "xarray")
+    import_extra("cf_xarray", "xarray")
+    several = data if isinstance(data, (list, tuple)) else [data]
+    result = []
+    for ds in several:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            try:
+                decoded = xarray.decode_cf(ds, decode_timedelta=False)
+            except (ValueError, OverflowError, TypeError):
+                decoded = ds  # its times are those of no calendar
+            result.append(decoded.cf.guess_coord_axis())
+    return result
+
+
+def _values(section: Section, number: int) -> Floats:
+    """Read one step of a component, (J, I); what stands for missing data is NaN."""
+    array = (
+        section.array.isel({section.array.dims[0]: number}) if section.is_series else section.array
+    )
+    values = np.asarray(array.values)
+    if values.dtype.kind not in "fiu":
+        msg = f"{array.name!r} holds {values.dtype}; expected numbers"
+        raise FieldError(msg)
+    values = values.astype(float)
+    # Fill values that no attribute tells.
+    values[np.abs(values) > 1e15] = np.nan
+    return values
+
+
+def _turned(
+    known: Recognised, u: Floats, v: Floats, *, plane: bool = False
+) -> tuple[Floats, Floats]:
+    """Return components eastward and northward, or along x and y."""
+    places = known.places
+    if known.along == "earth" or places.is_line:
+        return u, v
+    if plane:
+        p = np.stack([places.a, places.b], axis=-1)
+        basis = [np.array([1.0, 0.0]), np.array([0.0, 1.0])]
+    else:
+        p = over_sphere(places)
+        lon, lat = np.radians(places.a), np.radians(places.b)
+        zero = np.zeros_like(lon)
+        basis = [
+            np.stack([-np.sin(lon), np.cos(lon), zero], axis=-1),
+            np.stack(
+                [-np.sin(lat) * np.cos(lon), -np.sin(lat) * np.sin(lon), np.cos(lat)], axis=-1
+            ),
+        ]
+    ahead_j, ahead_i = known.ahead
+    along_i, along_j = ahead_i * _unit(_along(p, 1)), ahead_j * _unit(_along(p, 0))
+    vector = u[..., None] * along_i + v[..., None] * along_j
+    east, north = (
+        np.einsum("jic,...c->ji" if b.ndim == 1 else "jic,jic->ji", vector, b) for b in basis
+    )
+    return east, north
+
+
+def _along(p: Floats, axis: int) -> Floats:
+    """Return differences of positions along an axis, one-sided where a neighbour is not known."""
+    p = np.swapaxes(p, 0, axis)
+    ahead = np.full_like(p, np.nan)
+    ahead[:-1] = p[1:] - p[:-1]
+    behind = np.full_like(p, np.nan)
+    behind[1:] = ahead[:-1]
+    both = np.where(np.isnan(ahead), behind, np.where(np.isnan(behind), ahead, ahead + behind))
+    return np.swapaxes(both, 0, axis)
+
+
+def _unit(vectors: Floats) -> Floats:
+    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return np.asarray(vectors / np.where(length > 0, length, 1.0))
+
+
+def _times(known: Recognised) -> tuple[Any, list[int]]:
+    """Return dates or seconds of the steps that are drawn, and their numbers in the section."""
+    times = known.u.times
+    count = known.u.array.shape[0] if known.u.is_series else 1
+    numbers = list(range(count))
+    if times is None:
+        return None, numbers[:1]
+    times = np.asarray(times)
+    if times.dtype.kind in "fiu":
+        coordinate = known.pair.u.coords.get(known.u.array.dims[0]) if known.u.is_series else None
+        unit = "" if coordinate is None else str(coordinate.attrs.get("units", ""))
+        seconds = seconds_in(unit)
+        if seconds is None:
+            return None, numbers[:1]
+        times = times * seconds
+    if count > 1:
+        order = np.argsort(times, kind="stable")
+        times = times[order]
+        keep = np.concatenate([[True], times[1:] > times[:-1]])
+        return times[keep], [int(n) for n in order[keep]]
+    return times, numbers
+
+
+def _scalars(
+    known: Recognised, datasets: Sequence[Any], choice: Choice
+) -> dict[str, tuple[Callable[[int], Floats], Any]]:
+    """Return readers and attributes of the other variables that lie at the nodes, by name."""
+    found: dict[str, tuple[Callable[[int], Floats], Any]] = {}
+    rows, columns = known.cells
+    used = (known.pair.u.name, known.pair.v.name)
+    steps = known.u.array.shape[0] if known.u.is_series else 1
+    for name, array in ((n, a) for ds in datasets for n, a in ds.data_vars.items()):
+        at_nodes = {rows, columns} <= set(array.dims) and array.ndim <= known.pair.u.ndim
+        if name in used or name in found or not at_nodes or array.dtype.kind not in "fiu":
+            continue
+        try:
+            section = sections([array.transpose(..., rows, columns)], choice)[0]
+        except FieldError:
+            continue  # along its axes there is no such choice
+        if section.is_series and section.array.shape[0] != steps:
+            continue
+
+        def read(number: int, section: Section = section) -> Floats:
+            return np.asarray(_values(section, number)[known.kept][known.trimmed])
+
+        found[str(name)] = read, array.attrs
+    return found
+
+
+def _with_steps(
+    base: Any,
+    first: Floats,
+    velocity: Callable[[int], Floats],
+    scalars: Mapping[str, Callable[[int], Floats]],
+    times: Any,
+    numbers: list[int],
+    words: Mapping[str, Mapping[str, str]],
+) -> Any:
+    """Return a field with all its steps, read as they are needed, and closed as its first one."""
+    from flowtex.field.dates import as_seconds
+
+    more = [n - m for n, m in zip(base.shape, first.shape[:2], strict=True)]
+
+    def closed(values: Floats) -> Floats:
+        for axis, count in enumerate(more):
+            if count:
+                values = np.concatenate([values, np.take(values, [0], axis=axis)], axis=axis)
+        return values
+
+    def moving(number: int) -> Floats:
+        v = closed(velocity(numbers[number]))
+        v[~base.valid] = 0.0
+        return np.nan_to_num(v)
+
+    def value(read: Callable[[int], Floats], number: int) -> Floats:
+        return closed(read(numbers[number]))
+
+    seconds, _, start = as_seconds(times, "s" if times is None else "")
+    data: dict[str, Any] = {}
+    for name, read in scalars.items():
+        steps = LazySteps(len(numbers), partial(value, read))
+        data[name] = steps if len(numbers) > 1 else np.asarray(steps)
+    series = len(numbers) > 1
+    return replace(
+        base,
+        velocity=LazySteps(len(numbers), moving) if series else base.velocity,
+        times=base.times if seconds is None else np.asarray(seconds, dtype=float),
+        scalars=data,
+        **words,
+        start=start,
+    )

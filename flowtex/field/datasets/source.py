@@ -1,0 +1,126 @@
+"""Data of the Earth that stay open: what can be chosen of them, and one field after another."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from flowtex.earth import GLOBE, NAMES
+from flowtex.errors import FieldError
+from flowtex.field.datasets.axes import LEVEL, Choice, axis_values, sections
+from flowtex.field.datasets.files import common_name, dataset_paths, open_datasets
+from flowtex.field.datasets.notices import DatasetNotice
+from flowtex.field.datasets.pairs import find_pairs, two_names
+from flowtex.field.datasets.read import as_datasets, recognise
+from flowtex.field.field import FlowField
+from flowtex.field.io.reader_errors import errors_of_file
+from flowtex.field.source import FlowSource
+
+__all__ = ["DatasetSource", "open_source"]
+
+
+class DatasetSource(FlowSource):
+    """Datasets of xarray's that belong together; blocks are the maps they can be drawn on.
+
+    Raises
+    ------
+    FieldError
+        When no velocity is found in them.
+    """
+
+    block_word = "Map"
+
+    def __init__(self, datasets: Any, *, name: str = "", path: Path | None = None) -> None:
+        super().__init__(None, name=name, path=path)
+        self._datasets = as_datasets(datasets)
+        pairs = find_pairs(self._datasets)
+        likely = [pair for pair in pairs if pair.rank == pairs[0].rank]
+        first = likely[0] if pairs else None
+        u, v = (None, None) if first is None else (str(first.u.name), str(first.v.name))
+        known = recognise(self._datasets, u, v)
+        found = (f"{pair.u.name},{pair.v.name}" for pair in (known.pair, *pairs))
+        self.vectors = tuple(dict.fromkeys(found))
+        if known.places.is_earth:
+            flat = known.map_name
+            self.blocks = tuple(dict.fromkeys((flat, GLOBE, *NAMES)))
+            self.block_vectors = dict.fromkeys(self.blocks, self.vectors)
+        self._axes = axis_values(known.pair.u)
+        self._shown = dict(known.u.numbers)
+
+    @property
+    def planes(self) -> dict[str, int]:
+        """Axes along which there is a choice, and how many there are."""
+        return {name: len(words) for name, words in self._axes.items()}
+
+    @property
+    def default_plane(self) -> str:
+        """What is drawn along the first of the axes; empty where there is none."""
+        name = next(iter(self._axes), "")
+        return f"{name}={self._shown.get(name, 0)}" if name else ""
+
+    def plane_text(self, plane: str) -> str:
+        """Return words for a plane, such as ``"500 hPa"``."""
+        name, _, number = plane.partition("=")
+        words = self._axes.get(name, ())
+        return words[int(number)] if number.isdecimal() and int(number) < len(words) else plane
+
+    def plane_of(self, level: float | str) -> str:
+        """Return the plane of a level, as :attr:`default_plane` has it.
+
+        Raises
+        ------
+        FieldError
+            When there is no such level.
+        """
+        names = two_names(self.vectors[0])
+        array = next(ds[names["u"]] for ds in self._datasets if names["u"] in ds)
+        (section,) = sections([array], Choice({LEVEL: level}))
+        return f"{LEVEL}={section.numbers.get(LEVEL, 0)}"
+
+    def part(self, block: str | None = None) -> FlowSource:
+        """Return this source, which draws on any of the maps."""
+        if block is not None and block not in self.blocks:
+            msg = f"block is {block!r}; there are {', '.join(self.blocks)}"
+            raise FieldError(msg)
+        return self
+
+    def field(
+        self,
+        *,
+        vectors: str | None = None,
+        plane: str | None = None,
+        block: str | None = None,
+        **options: Any,
+    ) -> FlowField:
+        """Make a field, as :meth:`FlowSource.field` does; a plane is such as ``"level=2"``."""
+        names: dict[str, Any] = two_names(vectors or self.vectors[0])
+        axis, _, number = (plane or self.default_plane).partition("=")
+        array = next(ds[names["u"]] for ds in self._datasets if names["u"] in ds)
+        if axis in axis_values(array):
+            options["isel"] = {**(options.get("isel") or {}), axis: int(number)}
+        with warnings.catch_warnings(), self._errors():
+            # The page shows what is chosen.
+            warnings.simplefilter("ignore", DatasetNotice)
+            return FlowField.from_xarray(
+                self._datasets, **names, projection=block or None, name=self.name, **options
+            )
+
+
+def open_source(path: str | Path | Sequence[str | Path]) -> FlowSource:
+    """Open a file, or several files of data of the Earth.
+
+    Raises
+    ------
+    FieldError
+        When it cannot be read; the text starts with the path.
+    """
+    paths = dataset_paths(path)
+    if not paths:
+        if not isinstance(path, (str, Path)):
+            msg = f"{len(path)} files are given, and a mesh is read from one; name one of them"
+            raise FieldError(msg)
+        return FlowSource.from_file(path)
+    with errors_of_file(paths[0]):
+        return DatasetSource(open_datasets(paths), name=common_name(paths), path=paths[0])

@@ -1,0 +1,91 @@
+"""What goes wrong while a file is read, as one sentence.
+
+Whatever a reader raises, and whatever VTK logs, becomes one :class:`~flowtex.field.FieldError` that
+starts with the name of the file.
+"""
+
+from __future__ import annotations
+
+import logging
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+from xml.etree.ElementTree import ParseError
+
+from flowtex.errors import FieldError
+
+__all__ = ["errors_of_file"]
+
+
+@contextmanager
+def errors_of_file(path: str | Path) -> Iterator[None]:
+    """Turn what readers raise, and errors that VTK logs, into one FieldError with the path first.
+
+    What VTK warns of becomes a UserWarning.
+    """
+    file = Path(path).expanduser()
+    cause: Exception | None = None
+    with _vtk_log() as catcher:
+        try:
+            yield
+        except (ValueError, RuntimeError, OSError, KeyError, ImportError, ParseError) as error:
+            cause = error
+        except (AttributeError, IndexError, TypeError, EOFError) as error:
+            # Readers of broken files trip over what is missing in them.
+            cause = RuntimeError(f"its content is not as expected ({error})")
+    if catcher.error_events:
+        # VTK goes on after an error and gives a part of the data, or none: the cause is here.
+        first = _first_line(catcher.error_events[0].alert)
+        msg = f"{file}: the file is broken or incomplete. VTK says: {first}"
+        raise FieldError(msg) from cause
+    if isinstance(cause, FieldError):
+        msg = f"{file}: {cause}"
+        raise FieldError(msg) from cause
+    if cause is not None:
+        reason = str(cause) or type(cause).__name__
+        msg = f"{file}: cannot be read: {reason}"
+        raise FieldError(msg) from cause
+    for warning in dict.fromkeys(_first_line(event.alert) for event in catcher.warning_events):
+        warnings.warn(f"{file}: VTK says: {warning}", stacklevel=4)
+
+
+@contextmanager
+def _vtk_log() -> Iterator[Any]:
+    """Collect VTK's errors and warnings while the block runs, and print none.
+
+    VTK sends errors to an output window and, apart from it, to a logger that writes to standard
+    error; PyVista repeats some of them through Python's root logger. All three are held, and put
+    back as they were. Yields PyVista's catcher, which has the events once the block ends.
+    """
+    import pyvista as pv
+    from vtkmodules.vtkCommonCore import vtkLogger
+
+    verbosity = vtkLogger.GetCurrentVerbosityCutoff()
+    root = logging.getLogger()
+    quiet = logging.NullHandler()
+    catcher = pv.VtkErrorCatcher(send_to_logging=False)
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
+    # Without a handler the first message would make Python set up logging to standard error.
+    root.addHandler(quiet)
+    root.addFilter(_not_from_vtk)
+    try:
+        with catcher:
+            yield catcher
+    finally:
+        root.removeFilter(_not_from_vtk)
+        root.removeHandler(quiet)
+        vtkLogger.SetStderrVerbosity(verbosity)
+
+
+def _not_from_vtk(record: logging.LogRecord) -> bool:
+    """Drop what PyVista's observer of VTK passes on to the root logger."""
+    return not (record.module == "observers" and "pyvista" in record.pathname)
+
+
+def _first_line(alert: str) -> str:
+    lines = [line for line in alert.splitlines() if line.strip()]
+    # Messages that come without an object start with a line about the source file.
+    texts = [line for line in lines if not line.startswith(("ERROR: In ", "Warning: In "))]
+    return (texts or lines or [""])[0].removeprefix("(nullptr): ").strip()

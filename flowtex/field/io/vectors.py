@@ -1,0 +1,225 @@
+"""The arrays of a mesh, and which of them are the velocity.
+
+A velocity is an array of two or three components, or as many arrays of one: those that are named,
+or whose names tell that they belong together (:mod:`flowtex.field.io.components`).
+"""
+
+from __future__ import annotations
+
+import difflib
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+
+from flowtex._util.array_types import AnyArray
+from flowtex.field.io.components import NO_VELOCITY, find_vectors
+
+__all__ = [
+    "MeshArray",
+    "candidates",
+    "catalogue",
+    "choose_vectors",
+    "missing_arrays",
+    "values_of",
+    "vector_faults",
+]
+
+#: Arrays that say what is hidden and nothing about the flow.
+_BLANKING = {"vtkGhostType", "IBlank", "vtkValidPointMask"}
+_PLACES: tuple[Literal["points"], Literal["cells"]] = ("points", "cells")
+
+
+@dataclass(frozen=True)
+class MeshArray:
+    """An array of a mesh: its name, where its values are, and how many there are at each.
+
+    ``parts`` are the names of the arrays of one component that it is made of; none for one that
+    the mesh itself has.
+    """
+
+    name: str
+    where: Literal["points", "cells"]
+    components: int
+    numeric: bool
+    real: bool
+    parts: tuple[str, ...] = ()
+
+    def __str__(self) -> str:
+        made = f" from {', '.join(self.parts)}" if self.parts else ""
+        return f"{self.name} ({self.where}, {self.components}{made})"
+
+
+def catalogue(mesh: Any) -> list[MeshArray]:
+    """List the arrays on the points and cells of a mesh, without those that only hide."""
+    arrays = []
+    for where in _PLACES:
+        data = mesh.point_data if where == "points" else mesh.cell_data
+        for name in data:
+            if name in _BLANKING:
+                continue
+            array = np.asarray(data[name])
+            arrays.append(
+                MeshArray(
+                    name=name,
+                    where=where,
+                    components=int(np.prod(array.shape[1:], dtype=int)),
+                    numeric=array.dtype.kind in "fiub",
+                    real=array.dtype.kind == "f",
+                )
+            )
+    return arrays
+
+
+def values_of(mesh: Any, array: MeshArray) -> AnyArray:
+    """Return the values of an array, (N,) or (N, C)."""
+    data = mesh.point_data if array.where == "points" else mesh.cell_data
+    if array.parts:
+        return np.column_stack([np.asarray(data[name]) for name in array.parts])
+    return np.asarray(data[array.name])
+
+
+def candidates(mesh: Any) -> list[MeshArray]:
+    """Arrays that may be the velocity: real, two or three components, no normals or positions.
+
+    Where there are none, those that single components make by their names.
+    """
+    named = set()
+    for data in (mesh.GetPointData(), mesh.GetCellData()):
+        named |= {a.GetName() for a in (data.GetNormals(), data.GetTCoords()) if a is not None}
+    arrays = [
+        array
+        for array in catalogue(mesh)
+        if array.real
+        and array.components in (2, 3)
+        and array.name not in named
+        and not NO_VELOCITY.fullmatch(array.name)
+    ]
+    return arrays or _found(mesh)
+
+
+def _found(mesh: Any) -> list[MeshArray]:
+    """Return the vectors that single components make by their names; pairs on flat meshes."""
+    arrays = catalogue(mesh)
+    low, high = mesh.bounds[4:]
+    found = []
+    for where in _PLACES:
+        names = [a.name for a in arrays if a.where == where and a.real and a.components == 1]
+        for name, parts in find_vectors(names, pairs=low == high).items():
+            found.append(_joined(name, where, parts))
+    return found
+
+
+def _joined(name: str, where: Literal["points", "cells"], parts: tuple[str, ...]) -> MeshArray:
+    return MeshArray(name, where, len(parts), numeric=True, real=True, parts=parts)
+
+
+def missing_arrays(mesh: Any, vectors: MeshArray) -> list[str]:
+    """Return what a mesh lacks of the vectors of another one."""
+    needed = [f"{part} ({vectors.where}, 1)" for part in vectors.parts] or [str(vectors)]
+    known = {str(array) for array in catalogue(mesh)}
+    return [array for array in needed if array not in known]
+
+
+def choose_vectors(mesh: Any, vectors: str | None) -> MeshArray:
+    """Return the vectors that are meant; :func:`vector_faults` returned none before."""
+    if vectors is None:
+        return _preferred(mesh)[0]
+    return next(a for a in _meant(mesh, vectors) if _is_vector(a))
+
+
+def vector_faults(mesh: Any, vectors: Any) -> list[str]:
+    """Faults in a choice of vectors; ``None`` stands for the only ones there are."""
+    arrays = catalogue(mesh)
+    listed = ", ".join(map(str, arrays)) or "none"
+    if vectors is None:
+        return _search_faults(mesh, listed)
+    meant = _meant(mesh, vectors)
+    if any(_is_vector(a) for a in meant):
+        return []
+    if meant:
+        return [
+            f"vectors is {vectors!r}, an array of {meant[0].components} component(s); expected 2 "
+            "or 3 numbers at each point or cell, or the names of as many arrays of one, with "
+            f"commas between. The arrays of the mesh, with their components: {listed}"
+        ]
+    words = _words(vectors)
+    if len(words) > 1:
+        return [_component_fault(vectors, words, arrays, listed)]
+    return [
+        f"vectors is {vectors!r}, and the mesh has no such array{_hint(vectors, arrays)} Its "
+        f"arrays, with their components: {listed}"
+    ]
+
+
+def _meant(mesh: Any, vectors: Any) -> list[MeshArray]:
+    """Return the arrays of a name, or what is made of the components that it lists."""
+    arrays = catalogue(mesh)
+    if named := [a for a in arrays if a.name == vectors]:
+        return named
+    if found := [a for a in _found(mesh) if a.name == vectors]:
+        return found
+    words = _words(vectors)
+    if len(words) not in (2, 3):
+        return []
+    scalars = {(a.where, a.name) for a in arrays if a.numeric and a.components == 1}
+    return [
+        _joined(",".join(words), where, words)
+        for where in _PLACES
+        if scalars.issuperset((where, word) for word in words)
+    ]
+
+
+def _words(vectors: Any) -> tuple[str, ...]:
+    """Return the names between commas."""
+    return tuple(word.strip() for word in str(vectors).split(","))
+
+
+def _is_vector(array: MeshArray) -> bool:
+    return array.numeric and array.components in (2, 3)
+
+
+def _component_fault(
+    vectors: Any, words: tuple[str, ...], arrays: list[MeshArray], listed: str
+) -> str:
+    """Return what is wrong with a list of components."""
+    end = f"The arrays of the mesh, with their components: {listed}"
+    missing = next((w for w in words if not any(a.name == w for a in arrays)), None)
+    if missing is not None:
+        hint = _hint(missing, arrays)
+        return f"vectors is {vectors!r}, and the mesh has no array {missing!r}{hint} {end}"
+    return (
+        f"vectors is {vectors!r}; expected two or three arrays of one component each, all on "
+        f"points or all on cells. {end}"
+    )
+
+
+def _hint(name: Any, arrays: list[MeshArray]) -> str:
+    close = difflib.get_close_matches(str(name), [a.name for a in arrays], n=1)
+    return f'. Did you mean "{close[0]}"?' if close else "."
+
+
+def _preferred(mesh: Any) -> list[MeshArray]:
+    """Candidates, or the single one that the mesh itself marks as its vectors."""
+    arrays = candidates(mesh)
+    active = mesh.active_vectors_name
+    # VTK's PLOT3D reader marks the momentum by itself: that is no one's choice.
+    if active == "Momentum" and any(a.name == "Velocity" for a in arrays):
+        active = None
+    return [a for a in arrays if a.name == active][:1] or arrays
+
+
+def _search_faults(mesh: Any, listed: str) -> list[str]:
+    arrays = _preferred(mesh)
+    if not arrays:
+        return [
+            "the mesh has no vectors that could be the velocity; expected a point or cell array "
+            f"of real numbers with 2 or 3 components. Its arrays, with their components: {listed}. "
+            'Name single components with commas between, as in vectors="u,v,w"'
+        ]
+    if len(arrays) > 1:
+        return [
+            f"the mesh has {len(arrays)} arrays that could be the velocity: "
+            f'{", ".join(map(str, arrays))}; choose one, as in vectors="{arrays[-1].name}"'
+        ]
+    return []

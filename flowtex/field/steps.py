@@ -1,0 +1,108 @@
+"""Nodal values of many time steps, each of which is read when it is asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from flowtex._util.array_types import AnyArray, Floats
+from flowtex._util.cache import ByteCache
+
+__all__ = ["LazySteps", "Steps", "map_steps"]
+
+#: Bytes of steps that are kept once they have been read, and their number.
+KEPT_BYTES, MOST_KEPT = 256_000_000, 8
+
+
+class LazySteps:
+    """An array (T, J, I, ...) of which a step is read when it is indexed.
+
+    It takes an index of NumPy's whose first part chooses steps: a number gives an array, a slice or
+    a list of numbers another array of steps, read later. ``np.asarray`` reads all.
+
+    Parameters
+    ----------
+    count
+        Number of steps.
+    read
+        Returns a step, (J, I, ...), by its number from 0. It may be called by several threads.
+    """
+
+    def __init__(self, count: int, read: Callable[[int], Floats]) -> None:
+        self._count, self._read = count, read
+        self._kept: ByteCache[int, _Step] = ByteCache(KEPT_BYTES, max_count=MOST_KEPT)
+        self._shape: tuple[int, ...] | None = None
+
+    def __len__(self) -> int:
+        return self._count
+
+    def __iter__(self) -> Iterator[Floats]:
+        return (self.step(n) for n in range(self._count))
+
+    def step(self, number: int) -> Floats:
+        """Return one step, (J, I, ...)."""
+        if not -self._count <= number < self._count:
+            msg = f"step {number} does not exist: expected 0 to {self._count - 1}"
+            raise IndexError(msg)
+        number %= self._count
+        return self._kept.get(number, lambda: _Step(self._read(number))).values
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Shape of the whole; the first step is read to know it."""
+        if self._shape is None:
+            self._shape = (self._count, *self.step(0).shape)
+        return self._shape
+
+    @property
+    def ndim(self) -> int:
+        """Number of axes."""
+        return len(self.shape)
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of the steps that are in memory."""
+        return self._kept.nbytes
+
+    def map(self, function: Callable[[Floats], Floats]) -> LazySteps:
+        """Return steps that are made from these by a function, when they are read."""
+        return LazySteps(self._count, lambda number: function(self.step(number)))
+
+    def __getitem__(self, key: Any) -> Any:
+        first, rest = (key[0], key[1:]) if isinstance(key, tuple) else (key, ())
+        if isinstance(first, (int, np.integer)):
+            return self.step(int(first))[rest] if rest else self.step(int(first))
+        numbers = np.arange(self._count)[first]
+        if numbers.ndim != 1:
+            return np.asarray(self)[key]
+        if isinstance(first, slice) and not rest and len(numbers) == self._count:
+            return self
+        return LazySteps(
+            len(numbers),
+            lambda n: self.step(int(numbers[n]))[rest] if rest else self.step(int(numbers[n])),
+        )
+
+    def __array__(self, dtype: Any = None, copy: Any = None) -> AnyArray:
+        """Read all steps."""
+        del copy
+        return np.stack(list(self)).astype(dtype or float, copy=False)
+
+
+#: Nodal values at all time steps, (T, J, I, ...), in memory or read late.
+Steps: TypeAlias = Any
+
+
+class _Step:
+    """One step in the memory of steps."""
+
+    def __init__(self, values: Floats) -> None:
+        self.values, self.nbytes = values, values.nbytes
+
+
+def map_steps(steps: Any, function: Callable[[Floats], Floats]) -> Any:
+    """Apply a function to each step (J, I, ...) of an array, or later to those of a lazy one."""
+    if isinstance(steps, LazySteps):
+        return steps.map(function)
+    return np.stack([function(step) for step in steps])

@@ -1,0 +1,111 @@
+"""What is drawn of the Earth with a field that has a projection: lines, land, the globe below."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from flowtex._util.array_types import Bools, Floats
+from flowtex._util.blocks import bounds
+from flowtex.earth import EARTH_RADIUS, MapLines, coastlines, graticule
+from flowtex.field import FlowField
+
+__all__ = [
+    "SPACINGS",
+    "SPACING_PX",
+    "STROKES",
+    "USUAL_HEIGHT_PX",
+    "WIDTH_RANGE",
+    "Stroke",
+    "globe_radius",
+    "land_cells",
+    "map_box",
+    "map_lines",
+]
+
+
+class Stroke(NamedTuple):
+    """How a line is drawn: its colour, opacity, and width in pixels."""
+
+    color: str
+    opacity: float
+    width: float
+
+
+#: Lines by their options, from below to above.
+STROKES = {
+    "graticule": Stroke("black", 0.4, 1.0),
+    "coastlines": Stroke("black", 0.9, 1.5),
+}
+#: Height of a picture in which lines have their width, and how it changes with that at most.
+USUAL_HEIGHT_PX, WIDTH_RANGE = 600, (0.6, 2.0)
+#: Distances of the points of lines in metres, and how many pixels they may have.
+SPACINGS, SPACING_PX = (80e3, 20e3, 0.0), 2.0
+#: Share of the extent by which the box of a map is wider than its surface.
+WIDER = 1e-3
+#: How much lower than the surface the globe lies, in radii, beside what its cells are flatter.
+LOWER = 1e-5
+
+
+def map_box(field: FlowField) -> Floats:
+    """Return the least and the greatest position of nodes, also of those on land, a bit widened."""
+    surface = field.surface
+    box = bounds(surface.points[surface.has_position])
+    margin = WIDER * np.ptp(box, axis=0).max()
+    return np.asarray(box + np.array([[-margin], [margin]]))
+
+
+def map_lines(field: FlowField, *, has_globe: bool) -> dict[str, MapLines]:
+    """Return the coasts and the graticule of a field that has a projection, by their options.
+
+    They end where its cells and land do. Where there is a globe below the field, coasts and wide
+    meshes of the graticule are on all of it.
+    """
+    projection, box = field.projection, map_box(field)
+    if projection is None:
+        return {}
+    middles, reach = _cells(field)
+    tree = cKDTree(middles)
+
+    def there(lines: MapLines) -> MapLines:
+        distances, nearest = tree.query(lines.points)
+        # A point of the graticule may be a node, which is as far as that but for rounding.
+        return lines.within(distances <= (1 + 1e-6) * reach[nearest])
+
+    meshes = there(graticule(projection, box))
+    if not has_globe:
+        return {"coastlines": there(coastlines(projection, box)), "graticule": meshes}
+    return {"coastlines": coastlines(projection), "graticule": graticule(projection).and_(meshes)}
+
+
+def land_cells(field: FlowField) -> Bools:
+    """Tell which cells of a field have their positions and are not drawn, (J - 1, I - 1)."""
+    surface = field.surface
+    known = surface.has_position
+    known = known[:-1, :-1] & known[1:, :-1] & known[:-1, 1:] & known[1:, 1:]
+    return np.asarray(known & ~surface.cells)
+
+
+def globe_radius(field: FlowField) -> float | None:
+    """Return the radius of the sphere below a globe, which no cell reaches.
+
+    It is ``None`` for a map, and where the field covers all of the Earth.
+    """
+    surface = field.surface
+    if not surface.on_globe:
+        return None
+    if surface.has_position.all() and len(tuple(surface.poles or ())) == 2:
+        return None
+    lowest = float(np.linalg.norm(_cells(field)[0], axis=-1).min(initial=EARTH_RADIUS))
+    return lowest - LOWER * EARTH_RADIUS
+
+
+def _cells(field: FlowField) -> tuple[Floats, Floats]:
+    """Middles (N, 3) of the cells that are drawn and of those on land, and half their diagonals."""
+    p = field.surface.points
+    shown = field.surface.cells | land_cells(field)
+    corners = np.stack([p[:-1, :-1], p[1:, 1:], p[1:, :-1], p[:-1, 1:]])[:, shown]
+    diagonals = np.linalg.norm(corners[::2] - corners[1::2], axis=-1)
+    return corners.mean(axis=0), np.asarray(diagonals.max(axis=0) / 2)

@@ -1,0 +1,165 @@
+"""What a client needs of the Earth below a flow: lines, land, longitude and latitude, and dates."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from flowtex._util.array_types import AnyArray, Floats, Floats32
+from flowtex._util.cache import WeakCache
+from flowtex._util.colours import rgb
+from flowtex.earth import EARTH_RADIUS, MapLines, Projection
+from flowtex.field import FlowField
+from flowtex.field.dates import date_text
+from flowtex.rendering.map_overlay import (
+    SPACING_PX,
+    SPACINGS,
+    STROKES,
+    USUAL_HEIGHT_PX,
+    WIDTH_RANGE,
+    globe_radius,
+    land_cells,
+    map_box,
+    map_lines,
+)
+from flowtex.rendering.webgl.protocol import Header, Parts
+from flowtex.textures.geometry import SurfaceGeometry
+
+__all__ = ["dates_of", "earth_header", "earth_parts"]
+
+#: Greatest number of a place on a line, of those that a side of the lines' box is divided into.
+LINE_STEPS = 65535
+#: Places along the longer side of a map at which longitude and latitude are handed over, at most,
+#: their least distance in metres, and their fewest along a side: a cubic goes through so many.
+LONLAT_PLACES, NEAREST_PLACES_M, FEWEST_PLACES = 65, 5e4, 4
+#: Weights by which four places in a row go on to the next, and lines of places that do so.
+ONWARD, MOST_ONWARD = (4.0, -6.0, 4.0, -1.0), 3
+
+
+@dataclass(frozen=True, eq=False)
+class _Lines:
+    """Lines of a field as whole numbers of steps in a box, each point counted from the last."""
+
+    low: Floats
+    size: Floats
+    parts: dict[str, AnyArray]
+
+
+def earth_header(geometry: SurfaceGeometry, *, has_land: bool) -> Header | None:
+    """Return what of the header tells of the Earth; ``None`` for a flow that is elsewhere."""
+    field = geometry.field
+    if field.projection is None:
+        return None
+    is_globe, lines = field.projection.is_globe, _lines_of(geometry, has_land=has_land)
+    return {
+        "radius": EARTH_RADIUS,
+        "below": globe_radius(field) is not None,
+        "low": lines.low.tolist(),
+        "size": lines.size.tolist(),
+        "map": None if is_globe else map_box(field)[:, :2].ravel().tolist(),
+        "usualHeight": USUAL_HEIGHT_PX,
+        "widthRange": WIDTH_RANGE,
+        "spacings": SPACINGS,
+        "spacingPixels": SPACING_PX,
+        "strokes": [
+            {"option": option, **stroke._asdict(), "color": rgb(stroke.color)}
+            for option, stroke in STROKES.items()
+        ],
+    }
+
+
+def earth_parts(geometry: SurfaceGeometry, *, has_land: bool, tiled: bool) -> Parts:
+    """Return the arrays of the Earth, of which a tile has none of its own.
+
+    Of a surface in tiles all cells may be seen as land, where finer ones have no data.
+    """
+    field = geometry.field
+    if field.projection is None or geometry.whole is not field.surface:
+        return {}
+    parts: Parts = dict(_lines_of(geometry, has_land=has_land).parts)
+    if not field.projection.is_globe:
+        parts["lonlat"] = _lonlat(field.projection, map_box(field).tobytes())
+        land = land_cells(field)
+        if tiled:
+            land = land | geometry.cells
+        if land.any():
+            parts["land"] = land.astype(np.uint8)
+    return parts
+
+
+def dates_of(field: FlowField, times: Floats) -> Header:
+    """Return the date at time 0 as ISO text, or those of all times in a calendar of its own.
+
+    ``step`` tells how exactly dates are told: the shortest time between two of them.
+    """
+    start = field.start
+    if start is None:
+        return {"start": None, "dates": [], "step": 0.0}
+    step = float(np.diff(field.times).min()) if len(field.times) > 1 else 1.0
+    if getattr(start, "calendar", "proleptic_gregorian") in ("proleptic_gregorian", "standard"):
+        return {"start": start.isoformat()[:23], "dates": [], "step": step}
+    dates = [date_text(start, float(time), step) for time in times]
+    return {"start": None, "dates": dates, "step": step}
+
+
+_lines: WeakCache[_Lines] = WeakCache()
+
+
+def _lines_of(geometry: SurfaceGeometry, *, has_land: bool) -> _Lines:
+    """Return the lines of a field, made once for all who ask."""
+    field = geometry.field
+    has_globe = has_land and globe_radius(field) is not None
+
+    def make() -> _Lines:
+        both = map_lines(field, has_globe=has_globe)
+        local = {k: (v.points - geometry.center) @ geometry.frame.T for k, v in both.items()}
+        every = np.concatenate([*local.values(), np.zeros((1, 3))])
+        low, size = every.min(axis=0), np.ptp(every, axis=0)
+        parts = {
+            name: _packed(lines, (local[name] - low) / np.where(size > 0, size, 1.0))
+            for name, lines in both.items()
+            if len(lines.points)
+        }
+        return _Lines(low, size, parts)
+
+    return _lines.get(has_globe, make, owner=field)
+
+
+def _packed(lines: MapLines, shares: Floats) -> AnyArray:
+    """Return steps from each point to the next, and whether a line begins there, (N, 4) uint16."""
+    steps = np.zeros((len(shares), 4), dtype=np.uint16)
+    places = np.rint(shares * LINE_STEPS).astype(np.int64)
+    steps[:, :3] = np.diff(places, axis=0, prepend=0) % (LINE_STEPS + 1)
+    steps[lines.starts[:-1], 3] = 1
+    return steps
+
+
+@lru_cache(maxsize=8)
+def _lonlat(projection: Projection, box: bytes) -> Floats32:
+    """Return the way to places of a map from the middle of the Earth, unit vectors (M, N, 3).
+
+    The places are spread evenly over the box. Beside the map the places around it are continued.
+    """
+    low, high = np.frombuffer(box).reshape(2, 3)[:, :2]
+    apart = max(float((high - low).max()) / (LONLAT_PLACES - 1), NEAREST_PLACES_M)
+    counts = np.maximum(np.rint((high - low) / apart).astype(int) + 1, FEWEST_PLACES)
+    x, y = (np.linspace(low[k], high[k], counts[k]) for k in range(2))
+    points = np.stack([*np.meshgrid(x, y), np.zeros((counts[1], counts[0]))], axis=-1)
+    a, b = np.radians(projection.lonlat(points))
+    ways = np.stack([np.cos(b) * np.cos(a), np.cos(b) * np.sin(a), np.sin(b)], axis=-1)
+    for _ in range(MOST_ONWARD):
+        for axis in (1, 0):
+            for side in (1, -1):
+                _continue(ways, axis, side)
+    return ways.astype("<f4")
+
+
+def _continue(ways: Floats, axis: int, side: int) -> None:
+    """Fill places that are not known beside four in a row that are."""
+    lines = np.moveaxis(ways, axis, 0)[::side]
+    before = [lines[3 - n : len(lines) - 1 - n] for n in range(len(ONWARD))]
+    onward = np.tensordot(ONWARD, before, axes=1)
+    empty = np.isnan(lines[4:]) & np.isfinite(onward)
+    lines[4:][empty] = onward[empty]

@@ -1,0 +1,2 @@
+flat in vec4 flowtexEndsVSOutput;
+flat in float flowtexRadiusVSOutput;

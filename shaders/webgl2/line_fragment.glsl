@@ -1,0 +1,21 @@
+// A piece of a line with round ends and smooth sides. Of pieces that overlap the client keeps what
+// covers most, so that a line has one opacity.
+
+in vec2 flowtexPlace;
+in float flowtexSize;
+in float flowtexSeen;
+
+uniform float u_width;
+uniform vec4 u_lineColour;
+
+out vec4 flowtexOut;
+
+void main()
+{
+  if (flowtexSeen < 0.0)
+    discard;
+  float beyond = max(max(-flowtexPlace.x, flowtexPlace.x - flowtexSize), 0.0);
+  float away = length(vec2(beyond, flowtexPlace.y));
+  float share = clamp(0.5 * u_width + 0.5 - away, 0.0, min(u_width, 1.0)) * u_lineColour.a;
+  flowtexOut = vec4(u_lineColour.rgb * share, share);
+}

@@ -1,0 +1,36 @@
+// A piece of a line on the surface, as a strip of four corners around it.
+
+layout(location = 0) in vec3 flowtexFrom; // in the surface's own frame, from u_anchor of the client
+layout(location = 1) in vec3 flowtexTo;
+
+uniform mat4 u_matrix;
+uniform vec2 u_picture; // width and height in pixels
+uniform float u_width;  // of the line, in pixels
+uniform vec4 u_horizon; // plane before which a globe is seen; on flat maps it is positive
+
+out vec2 flowtexPlace;  // pixels along the piece and across
+out float flowtexSize;  // its length
+out float flowtexSeen;
+
+const float FLOWTEX_BREAK = 1e29; // coordinates above are no point: a line begins or ends
+
+void main()
+{
+  bool isEnd = gl_VertexID > 1;
+  vec4 from = u_matrix * vec4(flowtexFrom, 1.0), to = u_matrix * vec4(flowtexTo, 1.0);
+  gl_Position = vec4(2.0, 2.0, 2.0, 1.0); // outside
+  flowtexPlace = vec2(0.0);
+  flowtexSize = flowtexSeen = 0.0;
+  if (max(abs(flowtexFrom.x), abs(flowtexTo.x)) > FLOWTEX_BREAK || min(from.w, to.w) <= 0.0)
+    return;
+  vec2 start = 0.5 * u_picture * from.xy / from.w, way = 0.5 * u_picture * to.xy / to.w - start;
+  flowtexSize = length(way);
+  vec2 along = flowtexSize > 0.0 ? way / flowtexSize : vec2(1.0, 0.0);
+  // Half a pixel more, on which it fades.
+  float reach = 0.5 * u_width + 0.5;
+  float side = float(gl_VertexID & 1) * 2.0 - 1.0;
+  flowtexPlace = vec2(isEnd ? flowtexSize + reach : -reach, side * reach);
+  vec2 corner = start + along * flowtexPlace.x + vec2(-along.y, along.x) * flowtexPlace.y;
+  gl_Position = vec4(corner / (0.5 * u_picture), 0.0, 1.0);
+  flowtexSeen = dot(u_horizon.xyz, isEnd ? flowtexTo : flowtexFrom) + u_horizon.w;
+}

@@ -1,0 +1,133 @@
+"""The example datasets: honest metadata, balance, drift, and no seam and no pole in the winds."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+
+from flowtex import FlowField, examples
+from flowtex.earth import EARTH_RADIUS
+
+xr = pytest.importorskip("xarray")
+pytest.importorskip("pyproj")
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+
+@pytest.fixture(scope="module")
+def ocean() -> Dataset:
+    return examples.ocean()
+
+
+@pytest.fixture(scope="module")
+def weather() -> Dataset:
+    return examples.weather()
+
+
+def test_every_variable_says_what_it_is(ocean: Dataset, weather: Dataset) -> None:
+    for ds in (ocean, weather):
+        assert ds.attrs["Conventions"] == "CF-1.8"
+        assert "neither observed nor forecast" in ds.attrs["source"]
+        for name, variable in ds.variables.items():
+            assert {"standard_name"} <= set(variable.attrs), name
+            assert "units" in variable.attrs or name == "time"
+        for array in ds.data_vars.values():
+            assert array.attrs["long_name"]
+
+
+def test_both_come_back_from_a_file(ocean: Dataset, weather: Dataset, tmp_path: Any) -> None:
+    pytest.importorskip("netCDF4")
+    for name, ds, level in (("ocean", ocean, None), ("weather", weather, 500)):
+        ds.to_netcdf(tmp_path / f"{name}.nc")
+        again = FlowField.from_file(tmp_path / f"{name}.nc", level=level)
+        here = FlowField.from_xarray(ds, sel={} if level is None else {"level": level})
+        np.testing.assert_array_equal(np.asarray(again.velocity[0]), np.asarray(here.velocity[0]))
+        assert again.start == here.start
+
+
+def test_land_is_where_it_is_on_the_earth(ocean: Dataset) -> None:
+    def is_land(lon: float, lat: float) -> bool:
+        at = ocean.uo.isel(time=0).sel(longitude=lon, latitude=lat, method="nearest")
+        return bool(np.isnan(at))
+
+    assert all(is_land(*place) for place in ((-79.0, 37.5), (-76.0, 42.0), (-63.5, 45.2)))
+    assert not any(is_land(*place) for place in ((-72.0, 36.0), (-60.0, 30.0), (-67.0, 42.0)))
+    assert 0.1 < np.isnan(ocean.uo).mean() < 0.3
+    assert (np.isnan(ocean.uo) == np.isnan(ocean.uo.isel(time=0))).all()
+
+
+def test_the_stream_is_fast_narrow_and_leads_to_the_north(ocean: Dataset) -> None:
+    section = ocean.isel(time=0).sel(latitude=33.0, method="nearest")
+    fast = section.vo.fillna(0.0)
+    assert 1.0 < float(fast.max()) < 2.0
+    assert -78.5 < float(fast.idxmax()) < -75.0
+    assert float((fast > 0.5).sum()) * (36 / 216) < 2.0
+
+
+def test_the_currents_are_in_balance_with_the_height(ocean: Dataset) -> None:
+    # The current goes along the lines of equal height.
+    z = ocean.zos.isel(time=3)
+    north, east = np.gradient(z.values, axis=(0, 1))
+    east /= np.cos(np.radians(z.latitude.values))[:, None]
+    u, v = (ocean[name].isel(time=3).values for name in ("uo", "vo"))
+    across = (u * east + v * north) / (np.hypot(u, v) * np.hypot(east, north))
+    known = np.isfinite(across)
+    assert known.mean() > 0.7
+    assert np.median(np.abs(across[known])) < 1e-6
+
+
+def test_eddies_go_west_day_by_day(ocean: Dataset) -> None:
+    # Where the sea is lowest in the ring at 60.6 degrees west, south of the stream.
+    ring = ocean.zos.sel(longitude=slice(-62.6, -58.8), latitude=slice(35, 37.4))
+    weights = (ring.max(("latitude", "longitude")) - ring).values ** 6
+    lon = (weights * ring.longitude.values).sum((1, 2)) / weights.sum((1, 2))
+    km_a_day = np.polyfit(np.arange(8), lon, 1)[0] * 111.2 * np.cos(np.radians(36.2))
+    assert -8.0 < km_a_day < -2.0
+    assert (np.diff(lon) < 0).all()
+
+
+def test_the_winds_have_no_divergence_and_no_seam(weather: Dataset) -> None:
+    lat = np.radians(weather.latitude.values)[1:-1]
+    u, v = (weather[name].values for name in ("u", "v"))
+    along = (np.roll(u, -1, axis=2) - np.roll(u, 1, axis=2))[:, 1:-1]  # over the date line too
+    flow = v * np.cos(np.radians(weather.latitude.values))[:, None]
+    across = flow[:, :-2] - flow[:, 2:]
+    step = 2 * np.radians(2.0)
+    divergence = (along + across) / (step * EARTH_RADIUS * np.cos(lat)[:, None])
+    around = (np.abs(u).max() / (5 * np.radians(1) * EARTH_RADIUS)) * 0.05
+    assert np.abs(divergence[:, 5:-5]).max() < around
+
+
+@pytest.mark.parametrize("pole", [0, -1])
+def test_the_wind_at_a_pole_is_one_vector(weather: Dataset, pole: int) -> None:
+    field = FlowField.from_xarray(weather, level=250, globe=True)
+    lon = np.radians(weather.longitude.values)
+    for level in (850, 500, 250):
+        at = weather.sel(level=level).isel(latitude=pole)
+        up = np.sign(float(at.latitude))
+        x = -np.sin(lon) * at.u.values - up * np.cos(lon) * at.v.values
+        y = np.cos(lon) * at.u.values - up * np.sin(lon) * at.v.values
+        assert np.ptp(x) < 1e-9
+        assert np.ptp(y) < 1e-9
+        assert np.hypot(x, y).max() > 0.2
+    assert field.valid.all()
+    assert field.periodic == (False, True)
+
+
+def test_jets_grow_with_height_and_trade_winds_are_below(weather: Dataset) -> None:
+    u = weather.u.mean("longitude")
+    assert 30 < float(u.sel(level=250).max()) < 70
+    fastest = [float(u.sel(level=level).max()) for level in (850, 500, 250)]
+    assert fastest == sorted(fastest)
+    assert float(u.sel(level=850, latitude=0)) < -2
+    assert 25 < float(u.sel(level=250, latitude=slice(90, 0)).idxmax()) < 55
+
+
+def test_the_examples_load_xarray_only_when_they_are_called() -> None:
+    code = "import sys, flowtex.examples; assert 'xarray' not in sys.modules"
+    subprocess.run([sys.executable, "-c", code], check=True, env=os.environ)

@@ -1,0 +1,199 @@
+"""Coasts, meridians, land and the globe with a flow: drawn, changed, hidden and taken away."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+import pyvista as pv
+from earth_fields import ocean, winds
+from flows import gyre
+
+import flowtex
+from flowtex._util.array_types import Floats
+from flowtex._util.colours import rgb
+from flowtex.camera import Camera
+from flowtex.earth import EARTH_RADIUS, Projection
+from flowtex.options import LAND_COLOR
+from flowtex.plotting import component  # noqa: F401  which PyVista finds by its entry point
+from flowtex.plotting.vtk_camera import read_camera
+from flowtex.rendering.map_overlay import globe_radius, land_cells, map_lines
+
+pytestmark = pytest.mark.usefixtures("opengl")
+
+SIZE = (240, 200)
+OFF: dict[str, Any] = {"coastlines": False, "graticule": False, "land": None}
+
+
+@pytest.fixture
+def plotter() -> Any:
+    made: Any = pv.Plotter(off_screen=True, window_size=list(SIZE))
+    made.disable_anti_aliasing()
+    yield made
+    made.close()
+
+
+def shot(plotter: Any) -> Any:
+    plotter.render()
+    return plotter.screenshot(return_img=True).astype(float)
+
+
+def at(picture: Any, field: flowtex.FlowField, camera: Camera, lon: float, lat: float) -> Floats:
+    """Colours of the pixels around a place, (3, 3, 3)."""
+    assert field.projection is not None
+    height, width = picture.shape[:2]
+    place = field.projection.positions(np.array(lon), np.array(lat))
+    x, y = camera.project(place, width / height)
+    column, row = int((x + 1) / 2 * width), int((1 - y) / 2 * height)
+    return np.asarray(picture[row - 1 : row + 2, column - 1 : column + 2], dtype=float)
+
+
+@pytest.mark.parametrize("option", ["coastlines", "graticule"])
+@pytest.mark.parametrize("name", ["globe", "robinson"])
+def test_lines_are_drawn_unless_they_are_off(plotter: Any, name: str, option: str) -> None:
+    field = winds(name)
+    # Meridian 30 is no coast there, and the coast of the gulf of Guinea no line of the graticule.
+    places = {"graticule": (30.0, 20.0), "coastlines": (9.45, 1.1)}
+    handle = plotter.flowtex.add(field, scalars=False, color="white", show_scalar_bar=False)
+    camera = read_camera(plotter.camera)
+    with_lines = at(shot(plotter), field, camera, *places[option])
+    setattr(handle, option, False)
+    without = at(shot(plotter), field, camera, *places[option])
+    darker = 60 if option == "coastlines" else 15
+    assert (without - with_lines).max() > darker
+    setattr(handle, option, True)
+    assert at(shot(plotter), field, camera, *places[option]) == pytest.approx(with_lines)
+
+
+@pytest.mark.parametrize("zoom", [1.0, 20.0, 300.0])
+@pytest.mark.parametrize("name", ["globe", "lambert", "platecarree"])
+def test_no_surface_hides_its_lines(name: str, zoom: float) -> None:
+    field = ocean(name)
+    assert field.projection is not None
+    focus = field.projection.positions(np.array(10.0), np.array(-20.0))
+    drawn: dict[str, Any] = {"size": SIZE, "zoom": zoom, "focus": tuple(focus), "scalars": False}
+    off = flowtex.render(field, **drawn, **{**OFF, "land": LAND_COLOR}).astype(float)
+    on = flowtex.render(field, **drawn, coastlines=False).astype(float)
+    # Meridian 10 goes through the middle, from the lower border to the upper one, unbroken.
+    middle = slice(SIZE[0] // 2 - 2, SIZE[0] // 2 + 2)
+    rows = (np.abs(on - off).max(axis=-1) > 8)[:, middle].any(axis=1)
+    assert rows[SIZE[1] // 4 : -SIZE[1] // 4].mean() > 0.97
+
+
+def test_what_is_behind_the_globe_is_hidden() -> None:
+    field = ocean("globe")
+    camera = Camera((2e7, 0, 0), (0, 0, 0), (0, 0, 1))
+    near = flowtex.render(field, size=SIZE, camera=camera).astype(float)
+    behind = flowtex.render(
+        field, size=SIZE, camera=Camera((-2e7, 0, 0), (0, 0, 0), (0, 0, 1))
+    ).astype(float)
+    # The far side of these data is the Pacific: calm land colour, and few lines in it.
+    middle = behind[80:120, 100:140].reshape(-1, 3)
+    assert np.median(np.ptp(middle, axis=0)) < 160
+    assert np.abs(near - behind).max() > 50
+
+
+def test_land_has_its_colour_or_none(plotter: Any) -> None:
+    field = ocean("lambert")
+    assert land_cells(field).any() and not land_cells(winds("robinson")).any()
+    plotter.set_background("blue")
+    handle = plotter.flowtex.add(field, show_scalar_bar=False, graticule=False)
+    camera = read_camera(plotter.camera)
+
+    def colour() -> Floats:
+        return np.asarray(at(shot(plotter), field, camera, 16.0, -12.0)[1, 1])
+
+    assert colour() == pytest.approx(255 * np.array(rgb(LAND_COLOR)), abs=2)
+    handle.land = "tomato"
+    assert colour() == pytest.approx(255 * np.array(rgb("tomato")), abs=2)
+    handle.land = None
+    assert colour() == pytest.approx([0, 0, 255], abs=2)
+    with pytest.raises(ValueError, match="tomatoe"):
+        handle.land = "tomatoe"
+
+
+def test_a_globe_is_below_what_does_not_cover_the_earth() -> None:
+    assert globe_radius(winds()) is None
+    assert globe_radius(ocean("lambert")) is None
+    radius = globe_radius(ocean("globe"))
+    assert radius is not None and 0.999 * EARTH_RADIUS < radius < EARTH_RADIUS
+
+
+def test_lines_end_where_a_map_does() -> None:
+    field = ocean("lambert")
+    low, high = (
+        field.surface.points.reshape(-1, 3).min(0),
+        field.surface.points.reshape(-1, 3).max(0),
+    )
+    for lines in map_lines(field, has_globe=False).values():
+        margin = 2e5
+        assert ((lines.points > low - margin) & (lines.points < high + margin)).all()
+    everywhere = map_lines(ocean("globe"), has_globe=True)["coastlines"]
+    near = map_lines(ocean("globe"), has_globe=False)["coastlines"]
+    assert len(near.points) < 0.1 * len(everywhere.points)
+
+
+@pytest.mark.parametrize("name", ["globe", "lambert"])
+def test_the_camera_and_the_bounds_are_those_of_the_flow(name: str) -> None:
+    found: list[tuple[Any, ...]] = []
+    for options in ({}, OFF):
+        plotter: Any = pv.Plotter(off_screen=True, window_size=list(SIZE))
+        plotter.flowtex.add(ocean(name), show_scalar_bar=False, **options)
+        plotter.render()
+        bounds = tuple(plotter.renderer.bounds)
+        first = read_camera(plotter.camera)
+        plotter.reset_camera()
+        found.append((first, bounds, read_camera(plotter.camera)))
+        plotter.close()
+    assert found[0] == found[1]
+
+
+def test_all_goes_with_the_flow(plotter: Any) -> None:
+    plain = plotter.flowtex.add(gyre(), show_scalar_bar=False)
+    count = plotter.renderer.GetActors().GetNumberOfItems()
+    plain.coastlines = plain.graticule = True  # of a field that has no projection there are none
+    assert plotter.renderer.GetActors().GetNumberOfItems() == count
+    plain.remove()
+    empty = shot(plotter)
+    handle = plotter.flowtex.add(ocean("globe"), show_scalar_bar=False, reset_camera=True)
+    shown = shot(plotter)
+    assert np.abs(shown - empty).max() > 50
+    assert plotter.renderer.GetActors().GetNumberOfItems() > 3
+    handle.visible = False
+    assert shot(plotter) == pytest.approx(empty)
+    handle.visible = True
+    assert shot(plotter) == pytest.approx(shown)
+    handle.remove()
+    assert plotter.renderer.GetActors().GetNumberOfItems() == 0
+    assert shot(plotter) == pytest.approx(empty)
+
+
+def test_nothing_of_it_can_be_picked(plotter: Any) -> None:
+    plotter.flowtex.add(ocean("globe"), show_scalar_bar=False)
+    actors = [a for a in plotter.renderer.GetActors() if not a.GetUseBounds()]
+    assert len(actors) == 4
+    assert not any(a.GetPickable() for a in actors)
+
+
+def test_lines_are_as_wide_on_a_fine_screen() -> None:
+    """Twice the density has lines of twice as many pixels, which supersampling averages again."""
+    field = winds("platecarree")
+    drawn: dict[str, Any] = {"size": SIZE, "scalars": False, "color": "white", "strength": 0}
+    once, twice = (flowtex.render(field, **drawn, supersampling=n).astype(float) for n in (1, 2))
+    assert once.mean() == pytest.approx(twice.mean(), rel=0.02)
+
+
+def test_a_line_along_nodes_is_not_torn() -> None:
+    # Its points lie on corners of cells, exactly as far from their middles as they reach.
+    pytest.importorskip("pyproj")
+    lon, lat = np.meshgrid(np.linspace(-82, -46, 217), np.linspace(28, 46, 109))
+    projection = Projection("platecarree", (-64.0, 37.0))
+    east = np.ones(lon.shape)
+    field = flowtex.FlowField.from_arrays(
+        projection.positions(lon, lat),
+        projection.vectors(lon, lat, east, east),
+        projection=projection,
+    )
+    lines = map_lines(field, has_globe=False)["graticule"]
+    assert len(lines.starts) - 1 == 8  # four meridians and four parallels

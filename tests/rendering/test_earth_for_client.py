@@ -1,0 +1,165 @@
+"""What the client gets of the Earth, read back as it reads it."""
+
+from __future__ import annotations
+
+import json
+from datetime import datetime
+from typing import Any
+
+import numpy as np
+import pytest
+
+from flowtex import FlowField
+from flowtex._util.array_types import AnyArray, Floats
+from flowtex.earth import Projection
+from flowtex.options import Options
+from flowtex.rendering.map_overlay import map_lines
+from flowtex.rendering.webgl import ClientData
+from flowtex.rendering.webgl.earth import LINE_STEPS, dates_of
+from flowtex.web.view import WebView, web_views
+
+
+def earth(name: str, *, hole: bool = False, **options: Any) -> FlowField:
+    """A flow to the east around the Atlantic, with land in the middle if asked for."""
+    if name != "globe":
+        pytest.importorskip("pyproj")
+    projection = Projection(name, **options)
+    center, _ = projection.center
+    lon, lat = np.meshgrid(np.linspace(-40, 30, 29) + center, np.linspace(20, 70, 21))
+    east = np.ones(lon.shape)
+    if hole:
+        east[8:12, 10:15] = np.nan
+    velocity = projection.vectors(lon, lat, east, 0 * lon)
+    points = projection.positions(lon, lat)
+    return FlowField.from_arrays(
+        points, velocity, length_unit="m", time_unit="s", projection=projection
+    )
+
+
+def view_of(field: FlowField, **options: Any) -> tuple[WebView, ClientData]:
+    view = web_views(field, Options.split(**options))[0]
+    return view, view.data()
+
+
+def header_of(field: FlowField, **options: Any) -> Any:
+    view, data = view_of(field, **options)
+    return json.loads(json.dumps(data.header(view.scene.settings), allow_nan=False))
+
+
+def read_lines(part: AnyArray, header: Any) -> tuple[Floats, AnyArray]:
+    """Points in the surface's frame, and where lines begin."""
+    places = np.cumsum(part[:, :3].astype(np.int64), axis=0) % (LINE_STEPS + 1)
+    points = np.array(header["low"]) + places / LINE_STEPS * np.array(header["size"])
+    return points, np.flatnonzero(part[:, 3])
+
+
+@pytest.mark.parametrize("name", ["globe", "platecarree", "lambert"])
+def test_lines_are_handed_over_to_a_step_of_their_box(name: str) -> None:
+    field = earth(name)
+    _, data = view_of(field)
+    header, parts = header_of(field)["earth"], data.surface()
+    geometry = data.textures.geometry
+    for option, lines in map_lines(field, has_globe=name == "globe").items():
+        points, starts = read_lines(parts[option], header)
+        expected = (lines.points - geometry.center) @ geometry.frame.T
+        step = np.array(header["size"]) / LINE_STEPS
+        assert (np.abs(points - expected) <= 0.51 * step + 1e-6).all()
+        np.testing.assert_array_equal(starts, lines.starts[:-1])
+
+
+def test_a_flow_elsewhere_has_nothing_of_the_earth() -> None:
+    points = np.stack(np.meshgrid(np.arange(9.0), np.arange(7.0)), axis=-1)
+    _, data = view_of(FlowField.from_arrays(points, np.ones((7, 9, 2))))
+    assert data.constants()["earth"] is None
+    assert not {"coastlines", "graticule", "land", "lonlat"} & set(data.surface())
+
+
+def test_lines_and_land_follow_the_appearance() -> None:
+    field = earth("platecarree", hole=True)
+    header = header_of(field)["earth"]
+    assert header["coastlines"]
+    assert header["graticule"]
+    assert len(header["land"]) == 3
+    view, data = view_of(field, coastlines=False, graticule=False, land=None)
+    header = data.constants()["earth"]
+    assert not header["coastlines"]
+    assert not header["graticule"]
+    assert header["land"] is None
+    # A page has the lines all the same, which are shown by its switch.
+    assert {"coastlines", "graticule", "land"} <= set(data.surface())
+    view.scene.appearance = Options.split("appearance", land="red").appearance
+    header = view.recoloured(data).constants()["earth"]
+    assert header["coastlines"]
+    assert header["land"] == [1, 0, 0]
+
+
+def test_land_is_where_there_are_no_data() -> None:
+    _, data = view_of(earth("platecarree", hole=True))
+    parts = data.surface()
+    np.testing.assert_array_equal(parts["land"], 1 - parts["cells"])
+    assert "land" not in view_of(earth("platecarree"))[1].surface()
+    assert "land" not in view_of(earth("globe", hole=True))[1].surface()
+
+
+def test_a_globe_lies_below_what_does_not_cover_it() -> None:
+    header = header_of(earth("globe"))["earth"]
+    assert header["below"]
+    assert header["radius"] == pytest.approx(6_371_000)
+    assert header["map"] is None
+    header = header_of(earth("platecarree"))["earth"]
+    assert not header["below"]
+    assert len(header["map"]) == 4
+
+
+def cubic(values: Floats, at: Floats) -> Floats:
+    """Values (M, C) along an axis at places between them, as the client interpolates."""
+    first = np.clip(np.floor(at).astype(int) - 1, 0, len(values) - 4)
+    t = at - first
+    weights = [np.prod([(t - m) / (n - m) for m in range(4) if m != n], axis=0) for n in range(4)]
+    return np.asarray(sum(w[:, None] * values[first + n] for n, w in enumerate(weights)))
+
+
+@pytest.mark.parametrize(
+    "name", ["platecarree", "mercator", "lambert", "north", "robinson", "equalearth"]
+)
+def test_longitude_and_latitude_between_places(name: str) -> None:
+    center = (-20.0, 45.0) if name == "lambert" else (150.0, 0.0)
+    field = earth(name, center=center)
+    header, parts = header_of(field)["earth"], view_of(field)[1].surface()
+    grid, (x0, y0, x1, y1) = parts["lonlat"].astype(float), header["map"]
+    assert np.isfinite(grid).all()
+    projection = field.projection
+    assert projection is not None
+    for point in field.points[::4, ::4].reshape(-1, 3):
+        share = (point[:2] - [x0, y0]) / [x1 - x0, y1 - y0]
+        at = share * (np.array(grid.shape[1::-1]) - 1)
+        row = np.stack([cubic(line, at[:1])[0] for line in grid])
+        x, y, z = cubic(row, at[1:])[0]
+        lon, lat = np.degrees([np.arctan2(y, x), np.arctan2(z, np.hypot(x, y))])
+        expected = projection.lonlat(point)
+        assert (lon - expected[0] + 180) % 360 - 180 == pytest.approx(0, abs=5e-3)
+        assert lat == pytest.approx(float(expected[1]), abs=5e-3)
+
+
+def test_dates_of_a_calendar_of_its_own_are_told_one_by_one() -> None:
+    cftime = pytest.importorskip("cftime")
+    points = np.stack(np.meshgrid(np.arange(9.0), np.arange(7.0)), axis=-1)
+
+    def dated(*times: Any) -> FlowField:
+        velocity = np.ones((len(times), 7, 9, 2))
+        return FlowField.from_arrays(points, velocity, times=np.array(times))
+
+    days = [cftime.Datetime360Day(2000, 2, n) for n in (28, 29, 30)]
+    field = dated(*days)
+    assert dates_of(field, field.times) == {
+        "start": None,
+        "dates": ["2000-02-28", "2000-02-29", "2000-02-30"],
+        "step": 86400.0,
+    }
+    field = dated(datetime(2000, 2, 28, 6), datetime(2000, 2, 28, 12))
+    assert dates_of(field, field.times) == {
+        "start": "2000-02-28T06:00:00",
+        "dates": [],
+        "step": 21600.0,
+    }
+    assert dates_of(earth("globe"), np.zeros(1))["start"] is None

@@ -1,0 +1,224 @@
+"""Maps of the Earth in the browser: lines, land and the globe as VTK draws them, and readouts."""
+
+from __future__ import annotations
+
+from datetime import datetime
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from webgl_page import ClientPage, packed, state
+
+import flowtex
+from flowtex import FlowField
+from flowtex.camera import Camera
+from flowtex.earth import Projection
+from flowtex.options import Options
+from flowtex.web.export import export
+from flowtex.web.view import web_views
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+pytestmark = pytest.mark.browser
+
+Pixels = NDArray[np.uint8]
+
+SIZE = (450, 300)
+#: A plain surface, so that what is dark is a line.
+PLAIN: dict[str, Any] = {
+    "scalars": False,
+    "color": "white",
+    "strength": 0.0,
+    "samples": 3,
+    "lighting": False,
+}
+#: Greatest difference from VTK, root mean square, relative to that of a picture without lines:
+#: pieces that overlap are darker there, and its globe is made of triangles.
+SHARE = 0.5
+
+
+@cache
+def earth(name: str, times: int = 1) -> FlowField:
+    """A flow to the east around the Atlantic, with land in the middle."""
+    if name != "globe":
+        pytest.importorskip("pyproj")
+    projection = Projection(name)
+    lon, lat = np.meshgrid(np.linspace(-60, 30, 61), np.linspace(-30, 60, 61))
+    east = np.full((times, *lon.shape), 10.0)
+    east[:, 20:30, 40:50] = np.nan
+    velocity = np.stack([projection.vectors(lon, lat, each, 0 * lon) for each in east])
+    dates: dict[str, Any] = {"time_unit": "s"}
+    if times > 1:
+        dates = {"times": np.array([datetime(2002, 1, n + 1) for n in range(times)])}
+    points = projection.positions(lon, lat)
+    return FlowField.from_arrays(points, velocity, length_unit="m", projection=projection, **dates)
+
+
+def scene(field: FlowField, camera: Camera, **options: Any) -> Any:
+    view = web_views(field, Options.split(**PLAIN | options))[0]
+    data = view.data()
+    header = data.header(view.scene.settings, camera=state(camera))
+    return packed(data, header | {"camera": state(camera)}, tuple(range(data.steps)))
+
+
+def camera_of(field: FlowField, zoom: float) -> Camera:
+    """See all of a flow, or its middle from near, where there are coasts."""
+    assert field.projection is not None
+    focus = field.projection.positions(np.array(-9.45), np.array(38.8)) if zoom > 1 else None
+    return Camera.fit(field.surface, SIZE[0] / SIZE[1], zoom=zoom, focus=focus)
+
+
+def shown(client: ClientPage, field: FlowField, camera: Camera, **options: Any) -> Pixels:
+    number = client.mount(scene(field, camera, **options), SIZE, controls=False, smooth=True)
+    return client.picture(number)
+
+
+@pytest.mark.parametrize("name", ["globe", "mercator"])
+@pytest.mark.parametrize("zoom", [1.0, 30.0])
+def test_the_picture_is_that_of_vtk(client: ClientPage, name: str, zoom: float) -> None:
+    field = earth(name)
+    camera = camera_of(field, zoom)
+    ours = shown(client, field, camera).astype(float)
+    theirs = flowtex.render(field, camera=camera, size=SIZE, **PLAIN).astype(float)
+    without = shown(client, field, camera, coastlines=False, graticule=False).astype(float)
+    near, far = (np.sqrt(np.mean((p - theirs) ** 2)) for p in (ours, without))
+    assert near < SHARE * far
+    # Lines are at the same pixels: what they darken is dark in the other picture too.
+    drawn = (without - ours).mean(axis=-1)
+    assert (drawn > 60).sum() > 100
+    assert np.mean((without - theirs).mean(axis=-1)[drawn > 60] > 30) > 0.98
+
+
+def test_the_far_side_of_a_globe_is_hidden(client: ClientPage) -> None:
+    field = earth("globe")
+    # From the other side there are no data, and the globe below hides them.
+    whole = camera_of(field, 1)
+    away = Camera(tuple(-2.2 * np.array(whole.position)), (0, 0, 0), (0, 0, 1))
+    options = {"coastlines": False, "graticule": False, "color": "red"}
+    picture = shown(client, field, away, land="blue", **options)
+    assert (picture == [0, 0, 255]).all(axis=-1).sum() > 5000
+    assert not (picture[..., 0].astype(int) - picture[..., 1] > 100).any()
+
+
+@pytest.mark.parametrize("name", ["globe", "mercator"])
+def test_land_is_where_there_are_no_data(client: ClientPage, name: str) -> None:
+    field = earth(name)
+    camera = camera_of(field, 1)
+    options: dict[str, Any] = {"coastlines": False, "graticule": False}
+    picture = shown(client, field, camera, land="blue", **options)
+    theirs = flowtex.render(field, camera=camera, size=SIZE, land="blue", **PLAIN, **options)
+    ours, expected = ((p == [0, 0, 255]).all(axis=-1) for p in (picture, theirs))
+    assert expected.sum() > 200
+    assert (ours ^ expected).mean() < 0.01
+
+
+def test_lines_are_as_wide_in_every_draft_and_at_every_zoom(client: ClientPage) -> None:
+    field = earth("mercator")
+    for zoom in (10.0, 1000.0):
+        camera = camera_of(field, zoom)
+        with_lines = shown(client, field, camera, graticule=False).astype(float)
+        without = shown(client, field, camera, graticule=False, coastlines=False)
+        darker = (without - with_lines).mean(axis=-1) / without.mean(axis=-1)
+        across = darker[(darker.max(axis=1) > 0.5)].sum(axis=1)
+        assert len(across) > 20
+        # A line that goes down at an angle is wider along a row.
+        assert 0.9 < np.min(across) < 2.5
+
+
+def test_switches_show_and_hide_lines(client: ClientPage) -> None:
+    field = earth("globe")
+    number = client.mount(scene(field, camera_of(field, 1)), SIZE)
+    before = client.picture(number)
+    page = client.page
+    page.evaluate("(n) => viewers[n].panel.fold(true)", number)
+    for name in ("coastlines", "graticule"):
+        switch = page.locator(f'[data-lines="{name}"] input')
+        assert switch.is_checked()
+        switch.evaluate("(input) => input.click()")
+    client.sharp(number)
+    after = client.picture(number)
+    assert (before.astype(int) - after).min() < -60
+    field = earth("globe")
+    hidden = shown(client, field, camera_of(field, 1), coastlines=False, graticule=False)
+    assert np.abs(after.astype(int) - hidden).mean() < 0.5
+
+
+def test_a_drag_keeps_north_up_and_a_zoom_stays_outside(client: ClientPage) -> None:
+    field = earth("globe")
+    number = client.mount(scene(field, camera_of(field, 1)), SIZE)
+    client.sharp(number)
+    client.page.wait_for_function("(n) => viewers[n].canPick", arg=number)
+    turned = client.page.evaluate(
+        """(n) => {
+          const { camera } = viewers[n];
+          const away = () => Math.hypot(...camera.state.position);
+          const before = away();
+          for (let k = 0; k < 40; k += 1) camera.rotate(0.3, -0.4);
+          for (let k = 0; k < 40; k += 1) camera.rotate(0.2, 0.1);
+          return [camera.axes[0][2], away() / before, camera.axes[1][2]];
+        }""",
+        number,
+    )
+    assert turned[0] == pytest.approx(0, abs=1e-9)
+    assert turned[1] == pytest.approx(1)
+    assert turned[2] > 0
+    # Also above land without data, on the far side.
+    nearest = client.page.evaluate(
+        """(n) => {
+          const { camera } = viewers[n];
+          for (let k = 0; k < 60; k += 1) camera.zoomBy(1.25, 0.1, 0.2);
+          return Math.hypot(...camera.state.position) / 6371000;
+        }""",
+        number,
+    )
+    assert 1 < nearest < 2
+
+
+def test_the_readout_tells_longitude_and_latitude(client: ClientPage) -> None:
+    for name in ("globe", "mercator"):
+        field = earth(name)
+        number = client.mount(scene(field, camera_of(field, 1)), SIZE)
+        client.sharp(number)
+        client.page.wait_for_function("(n) => viewers[n].canPick", arg=number)
+        point, text = client.page.evaluate(
+            """(n) => {
+              const point = viewers[n].point(0.1, 0.2);
+              viewers[n].panel.read(point);
+              return [point.position,
+                viewers[n].root.shadowRoot.querySelector(".readout").textContent];
+            }""",
+            number,
+        )
+        assert field.projection is not None
+        lon, lat = field.projection.lonlat(np.array(point))
+        assert text == (
+            f"{abs(lon):.2f}° {'W' if lon < 0 else 'E'}, {abs(lat):.2f}° {'S' if lat < 0 else 'N'}"
+        )
+        client.clear()
+
+
+def test_the_bar_tells_dates(client: ClientPage) -> None:
+    field = earth("globe", times=3)
+    number = client.mount(scene(field, camera_of(field, 1)), SIZE)
+    client.sharp(number)
+    text = "(n) => viewers[n].root.shadowRoot.querySelector('.time').textContent"
+    assert client.page.evaluate(text, number) == "2002-01-03"
+    client.page.evaluate("(n) => viewers[n].setTime(43200)", number)
+    assert client.page.evaluate(text, number) == "2002-01-01 12:00"
+
+
+@pytest.mark.parametrize("name", ["globe", "mercator"])
+def test_a_page_is_exported_with_its_lines(name: str, page: Page, tmp_path: Path) -> None:
+    path = tmp_path / "page.html"
+    export(earth(name), path, **PLAIN)
+    page.goto(path.as_uri())
+    page.wait_for_selector('[data-sharp="true"]', timeout=60_000)
+    switches = page.evaluate(
+        """() => [...document.querySelector(".flowtex").shadowRoot.querySelectorAll("[data-lines]")]
+          .map((row) => row.dataset.lines)"""
+    )
+    assert switches == ["coastlines", "graticule"]
