@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import os
 import warnings
 from collections.abc import Sequence
+from itertools import takewhile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -50,7 +50,8 @@ def dataset_paths(path: Any) -> list[Path]:
 def common_name(paths: Sequence[Path]) -> str:
     """Return a word for captions: what the names of the files begin with."""
     stems = [path.stem for path in paths]
-    shared = os.path.commonprefix(stems) if len(stems) > 1 else stems[0]
+    alike = takewhile(lambda letters: len(set(letters)) == 1, zip(*stems, strict=False))
+    shared = "".join(letters[0] for letters in alike)
     return shared.rstrip("_-. 0123456789") if len(stems) > 1 and len(shared) > 2 else stems[0]
 
 
