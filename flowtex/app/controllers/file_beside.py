@@ -74,12 +74,10 @@ class FileBeside(Controller):
 
     def take_file(self) -> None:
         """Show the file that the page asks for."""
-        if not self._active:
-            return
         name, goal = self._chosen(), self._goal
         if not name:
             self.state.set(file_beside=goal)
-        elif name != goal:
+        elif self._active and name != goal:
             self.open(name)
 
     def open(self, name: str) -> None:
