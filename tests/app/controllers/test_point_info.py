@@ -330,7 +330,8 @@ def test_the_path_follows_the_camera(card: PathCard, move: Callable[[Viewport], 
 def test_a_place_on_the_earth_is_told_by_longitude_and_latitude() -> None:
     field = winds("globe", cells=36)
     for zoom, place in ((1.0, "20.00° E, 45.00° N"), (100.0, "20.0000° E, 45.0000° N")):
-        viewport: Any = SimpleNamespace(field=field, zoom=zoom)
+        panes = [SimpleNamespace(handle=SimpleNamespace(field=field))]
+        viewport: Any = SimpleNamespace(panes=panes, zoom=zoom)
         lines = dict(PointText(viewport).lines(values_at(field, (27, 40))))
         assert lines["place"] == place
         assert lines["eastward"] == "7.068 m/s" or lines["eastward"].startswith("7.0")
