@@ -77,7 +77,7 @@ class Seen(Viewport):
         return SimpleNamespace(time=self.field.times[0], scene=scene, field=self.field)
 
     @property
-    def panes(self) -> Any:
+    def panes(self) -> Any:  # type: ignore[override]
         return [self]
 
 
