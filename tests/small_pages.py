@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import asyncio
+from collections.abc import Awaitable, Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,7 +14,7 @@ from flowtex import FlowField
 if TYPE_CHECKING:
     from flowtex.app import FlowApp
 
-__all__ = ["difference", "picture"]
+__all__ = ["difference", "picture", "played", "until"]
 
 
 def small(*, curved: bool = False, steps: int = 1) -> FlowField:
@@ -69,3 +70,22 @@ def picture(app: Any) -> Any:
 
 def difference(one: Any, other: Any) -> float:
     return float(np.abs(np.asarray(one, int) - np.asarray(other, int)).mean())
+
+
+async def until(true: Callable[[], Any], seconds: float = 10.0) -> None:
+    async with asyncio.timeout(seconds):
+        while not true():
+            await asyncio.sleep(0.005)
+
+
+def played(app: FlowApp, story: Callable[[], Awaitable[None]]) -> None:
+    """Let something happen in an event loop, and close the application in it."""
+
+    async def run() -> None:
+        app.server.state.ready()
+        try:
+            await story()
+        finally:
+            app.close()
+
+    asyncio.run(run())

@@ -7,7 +7,7 @@ import io
 import logging
 import math
 import threading
-from collections.abc import Awaitable, Callable, Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -18,6 +18,7 @@ import pytest
 import pyvista as pv
 from cfd_files import CGNS, TIMES, box
 from PIL import Image
+from small_pages import played, until
 
 pytest.importorskip("trame_rca")
 
@@ -85,25 +86,6 @@ def opened(app: FlowApp) -> bool:
     return app.controllers.data._opening is None or app.controllers.data._opening.done()
 
 
-async def until(true: Callable[[], Any], seconds: float = 10.0) -> None:
-    async with asyncio.timeout(seconds):
-        while not true():
-            await asyncio.sleep(0.005)
-
-
-def played(app: FlowApp, story: Callable[[], Awaitable[None]]) -> None:
-    """Let something happen in an event loop, and close the application in it."""
-
-    async def run() -> None:
-        app.server.state.ready()
-        try:
-            await story()
-        finally:
-            app.close()
-
-    asyncio.run(run())
-
-
 @pytest.fixture(scope="module")
 def app() -> Iterator[FlowApp]:
     made = page(field(steps=3))
@@ -139,6 +121,7 @@ class Streamer:
             "theme",
             "background",
             "compare",
+            "file_beside",
             "image_file",
         ),
         *("time", "playing", "pace", "rendering"),
@@ -151,6 +134,7 @@ def test_a_value_of_any_kind_is_taken_or_set_back(app: FlowApp, name: str) -> No
         **dict.fromkeys(("low", "high"), look.take_range),
         **dict.fromkeys(("theme", "background"), look.take_background),
         "compare": look.take_comparison,
+        "file_beside": app.controllers.beside.take_file,
         "image_file": look.take_image,
         "time": clockwork.take_time,
         "playing": clockwork.take_playing,

@@ -410,6 +410,38 @@ def test_two_panes_move_together(page: Page) -> None:
     settled(page, before)
 
 
+def test_two_files_stand_beside_each_other(page: Page) -> None:
+    if "series" not in page.inner_text(".flowtex-title"):
+        before = count(page)
+        open_file(page, "series.pvd")
+        settled(page, before)
+    group(page, "View")
+    before = count(page)
+    choose(page, page.locator("[data-setting=compare]"), "Another file")
+    # The next file of the folder is a broken one.
+    page.get_by_text(re.compile(r"torn\.vts: ")).wait_for()
+    page.locator(".flowtex-complaint").get_by_role("button", name="Close").click()
+    assert not page.locator(".flowtex-panes").is_visible()
+    one = settled(page, before)
+    before = count(page)
+    choose(page, page.locator("[data-setting=file_beside]"), "block.vts")
+    page.locator(".flowtex-chip", has_text="block.vts").wait_for()
+    both = settled(page, before)
+    assert page.locator(".flowtex-chip").first.inner_text().startswith("series.pvd · t = ")
+    middle = SIZE["width"] // 2 - WATCH.left
+    assert difference(both[:, : middle - 4].mean(axis=(0, 1)), one.mean(axis=(0, 1))) < 40
+    before = count(page)
+    page.mouse.move(650, 300)
+    page.mouse.wheel(0, -500)
+    moved = settled(page, before)
+    for half in (slice(0, middle - 4), slice(middle + 4, None)):
+        assert difference(moved[:, half], both[:, half]) > 3
+    before = count(page)
+    choose(page, page.locator("[data-setting=compare]"), "nothing")
+    settled(page, before)
+    assert page.locator("[data-setting=file_beside]").count() == 0
+
+
 def test_the_browser_draws_the_same_from_the_same_camera(page: Page) -> None:
     page.evaluate("document.activeElement.blur()")  # a menu would take the key
     before = count(page)

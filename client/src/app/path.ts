@@ -15,6 +15,8 @@ interface Sample {
 interface Over extends PathLines {
   samples: Sample[];
   panes: number;
+  /** Numbers of the panes that it lies in. */
+  shown: number[];
   aspect: number;
 }
 
@@ -65,7 +67,7 @@ export const path = {
       if (!over) return h("div", { ref: place });
       const [width, height] = size.value;
       const wide = width / over.panes;
-      const panes = Array.from({ length: over.panes }, (_, n) => pane(over, n, wide, height));
+      const panes = over.shown.map((n) => pane(over, n, wide, height));
       return h("div", { ref: place }, h("svg", panes));
     };
   },

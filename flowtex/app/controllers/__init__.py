@@ -10,6 +10,7 @@ from flowtex.app.controllers.browser import BrowserRendering
 from flowtex.app.controllers.camera_controls import CameraControls
 from flowtex.app.controllers.context import Context
 from flowtex.app.controllers.data import Data
+from flowtex.app.controllers.file_beside import FileBeside
 from flowtex.app.controllers.library import Choice
 from flowtex.app.controllers.playback import Playback
 from flowtex.app.controllers.point_info import PointInfo
@@ -33,11 +34,20 @@ class Controllers:
     ) -> None:
         self.context = context
         self.data = Data(context, name, choice)
-        self.appearance = Appearance(context)
+        self.beside = FileBeside(context, self.data)
+        self.appearance = Appearance(context, self.beside)
         self.playback = Playback(context)
         self.camera = CameraControls(context)
         self.browser = BrowserRendering(context)
         self.point_info = PointInfo(context)
         self.sharing = Sharing(
-            context, source=lambda: self.data.python, restore_state=restore_state
+            context,
+            source=lambda: self.data.python,
+            source_beside=lambda: self.beside.python,
+            restore_state=restore_state,
         )
+
+    def cancel_opening(self) -> None:
+        """Stop what is being opened, in either pane."""
+        self.data.cancel()
+        self.beside.cancel()

@@ -8,6 +8,7 @@ from typing import Any
 
 from flowtex._util.colours import CMAPS
 from flowtex.app.controllers.context import Context, Controller
+from flowtex.app.controllers.file_beside import FileBeside
 from flowtex.app.server.validation import decode_picture, name_among, number
 from flowtex.app.streaming.viewport import BACKGROUNDS as THEMES
 from flowtex.errors import FieldError
@@ -17,6 +18,7 @@ from flowtex.scene import Scene
 from flowtex.settings import TABLE, SettingsError, named_values
 
 __all__ = [
+    "ANOTHER_FILE",
     "ANOTHER_TIME",
     "BACKGROUNDS",
     "COLOUR_BY",
@@ -49,23 +51,28 @@ COMPARISONS: dict[str, dict[str, Any]] = {
         )
     },
 }
-#: The same for what is not a setting: another time, and another scalar by its name.
-ANOTHER_TIME, COLOUR_BY = "Another time", "Colour by: "
+#: The same for what is not a setting: another time, another file, and another scalar by its name.
+ANOTHER_TIME, ANOTHER_FILE, COLOUR_BY = "Another time", "Another file", "Colour by: "
 #: Greatest value at an end of the colour map: the distance of two is a number, too.
 GREATEST_VALUE = 1e300
 
 
 def comparison(name: str, time: float) -> dict[str, Any]:
-    """Return what differs in a second pane of a name, at ``time`` for another time."""
+    """Return what differs in a second pane of a name, at ``time`` for another time.
+
+    It is nothing for another file, which has to be opened first.
+    """
     if name == ANOTHER_TIME:
         return {"time": time}
     if name.startswith(COLOUR_BY):
         return {"scalars": name.removeprefix(COLOUR_BY)}
+    if name == ANOTHER_FILE:
+        return {}
     return COMPARISONS[name]
 
 
 class Appearance(Controller):
-    """How the flow is drawn.
+    """How the flow is drawn, and in a second pane with ``beside`` that of another file.
 
     Attributes
     ----------
@@ -73,8 +80,9 @@ class Appearance(Controller):
         What was chosen last of what the page may choose: a page may send anything.
     """
 
-    def __init__(self, context: Context) -> None:
+    def __init__(self, context: Context, beside: FileBeside) -> None:
         super().__init__(context)
+        self.beside = beside
         self.theme, self.background, self.compared = "dark", BACKGROUNDS[0], "nothing"
         self.state.set(
             theme=self.theme,
@@ -98,6 +106,7 @@ class Appearance(Controller):
         context.field_changed.connect(self.show_field)
         context.area.appearance_changed.connect(self.show_colours)
         context.client_started.connect(self.end_comparison)
+        context.beside_changed.connect(self.show_colours)
         self.take_background()
 
     def show_field(self) -> None:
@@ -222,7 +231,10 @@ class Appearance(Controller):
             self.compared = choice
             if choice != "nothing":
                 self.context.comparison_started.emit()
+            self.beside.end()
             self.area.compare(comparison(choice, self._first_time) or None)
+            if choice == ANOTHER_FILE:
+                self.beside.begin()
             self.state.set(bar_beside=self._bar_beside())
             self._show_time_beside()
 
@@ -300,14 +312,15 @@ class Appearance(Controller):
 
     def _comparisons(self) -> list[str]:
         """Return what a second pane can show of the present flow."""
-        times = [] if self.viewport.field.steady else [ANOTHER_TIME]
-        return [*COMPARISONS, *times, *(COLOUR_BY + name for name in self.area.scene.scalar_names)]
+        others = [] if self.viewport.field.steady else [ANOTHER_TIME]
+        others += [ANOTHER_FILE] if self.beside.possible else []
+        return [*COMPARISONS, *others, *(COLOUR_BY + name for name in self.area.scene.scalar_names)]
 
     def _bar_beside(self) -> dict[str, Any] | None:
         """Return the colour bar of a second pane that has one of its own."""
-        second = [pane.handle.scene for pane in self.viewport.panes[1:]]
-        differs = second and second[0].scalar_name != self.area.scene.scalar_name
-        return self._bar(second[0]) if differs else None
+        first, *others = (pane.handle.scene for pane in self.viewport.panes)
+        tells = [(s.scalar_name, s.scalar_name and s.legend_limits) for s in (first, *others)]
+        return self._bar(others[0]) if len(set(tells)) > 1 else None
 
     def _map_lines(self) -> dict[str, bool]:
         """Return which lines of a map are drawn, where there is one."""

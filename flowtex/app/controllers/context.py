@@ -41,6 +41,8 @@ class Context:
         Signal after a change of the time that is shown.
     step_requested
         Signal with 1 or -1, to go to the next step of the field or to the one before.
+    beside_changed
+        Signal after the flow of another file came into the second pane, or went.
     comparison_started, client_started
         Signals when a second pane is shown, and when the browser's client, which draws one pane,
         begins to draw.
@@ -56,6 +58,7 @@ class Context:
         self.frame_drawn_in_browser = Signal()
         self.time_changed = area.player.time_changed
         self.step_requested = Signal()
+        self.beside_changed = Signal()
         self.comparison_started, self.client_started = Signal(), Signal()
 
     def complain(self, problem: object) -> None:

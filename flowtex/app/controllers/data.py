@@ -8,22 +8,20 @@ place.
 from __future__ import annotations
 
 import asyncio
-import logging
 from collections.abc import Callable
-from concurrent.futures import Executor, ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 
-from flowtex._util.progress import Stopped, stoppable
 from flowtex.app.controllers.context import Context, Controller
 from flowtex.app.controllers.library import Choice
+from flowtex.app.controllers.loading import LoadRequest, announced
 from flowtex.app.server.uploads import Uploads
-from flowtex.app.server.validation import clipped, name_among, shortened
-from flowtex.errors import FieldError
+from flowtex.app.server.validation import clipped, name_among
 from flowtex.field import FlowField
 from flowtex.field.interpolation import steps_around
 from flowtex.field.source import FlowSource
@@ -32,63 +30,10 @@ from flowtex.trace import SliceStore
 
 __all__ = ["Data"]
 
-_log = logging.getLogger(__name__)
-
-T = TypeVar("T")
-
 #: Nodes of another file above which it is first shown coarser, and how many it then has.
 FILE_PREVIEW = 40_000, 8_000
 #: The same for another part of the data that is shown: a slider redraws while it moves.
 PART_PREVIEW = 5_000, 2_500
-#: Seconds after which the page says that something is being opened.
-BUSY_DELAY_S = 0.3
-#: Characters of a name in a message.
-NAME_LENGTH = 80
-
-
-@dataclass(eq=False)
-class LoadRequest:
-    """Something that is to be opened, after which ``then`` is called.
-
-    Attributes
-    ----------
-    cancelled
-        Whether nothing of it is to be shown any more.
-    superseded
-        Whether something else was requested since. While a slider moves that is always so: what
-        is quick to load is shown all the same, or nothing would be seen on the way.
-    """
-
-    name: str
-    choice: Choice
-    then: Callable[[], None] | None = None
-    cancelled: bool = False
-    superseded: bool = False
-
-    @property
-    def over(self) -> bool:
-        """Whether it is not the latest request."""
-        return self.cancelled or self.superseded
-
-    async def in_thread(self, worker: Executor, work: Callable[[], T], *, quick: bool) -> T:
-        """Do some work for it off the event loop; ``Stopped`` where nobody wants the result.
-
-        Quick work is finished, once it has begun, though something else was requested.
-        """
-
-        def unwanted() -> bool:
-            return self.cancelled if quick else self.over
-
-        def guarded() -> T:
-            if self.over:
-                raise Stopped
-            with stoppable(unwanted):
-                return work()
-
-        result = await asyncio.get_running_loop().run_in_executor(worker, guarded)
-        if unwanted():
-            raise Stopped
-        return result
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,7 +54,15 @@ class LoadedFlow:
 
 
 class Data(Controller):
-    """Which flow is shown; ``name`` and ``choice`` at first."""
+    """Which flow is shown; ``name`` and ``choice`` at first.
+
+    Attributes
+    ----------
+    library, names
+        What may be opened, and the names of it when they were last listed.
+    """
+
+    names: tuple[str, ...]
 
     def __init__(self, context: Context, name: str, choice: Choice) -> None:
         super().__init__(context)
@@ -169,9 +122,9 @@ class Data(Controller):
 
     def list_files(self) -> None:
         """Look through the folder for files that have come or gone."""
-        names = list(self.library.names)
+        self.names = self.library.names
         unshown = [{"name": name, "why": why} for name, why in self.library.unshown.items()]
-        self.state.set(files=names, unshown=unshown)
+        self.state.set(files=list(self.names), unshown=unshown)
 
     def take_upload(self, name: str, path: Path) -> None:
         """Open a file that the page has sent."""
@@ -195,8 +148,7 @@ class Data(Controller):
         self._opening = asyncio.ensure_future(self._open(self._request))
 
     async def _open(self, request: LoadRequest) -> None:
-        announcement = asyncio.create_task(self._show_busy(request))
-        try:
+        async with announced(self.context, request, self._fail):
             flow = await request.in_thread(self._worker, lambda: self._preview(request), quick=True)
             self._show(flow, request)
             if not flow.whole:
@@ -204,27 +156,13 @@ class Data(Controller):
                 self._show(await request.in_thread(self._worker, complete, quick=False), request)
             if request.then is not None and not request.over:
                 request.then()
-        except Stopped:
-            pass
-        except (FieldError, OSError) as error:
-            self._fail(error, request)
-        except Exception as error:
-            _log.exception("%s could not be opened", shortened(request.name, NAME_LENGTH))
-            words = f"{shortened(request.name, NAME_LENGTH)} could not be opened"
-            self._fail(f"{words}: {str(error) or type(error).__name__}", request)
-        finally:
-            announcement.cancel()
-            if not request.over:
-                self.state.send(busy="")
 
-    def _fail(self, problem: Any, request: LoadRequest) -> None:
-        """Say why there is nothing else to show; the old view stands."""
-        if not request.over:
-            self.context.complain(_without_folder(str(problem), request.name))
-            self._goal = (self.name, self.choice)
-            self._show_choice()
-            if not self._current.whole:  # only a quick look at it was there, on the way
-                self.open(self.name, self.choice)
+    def _fail(self) -> None:
+        """Let the old view stand."""
+        self._goal = (self.name, self.choice)
+        self._show_choice()
+        if not self._current.whole:  # only a quick look at it was there, on the way
+            self.open(self.name, self.choice)
 
     def _preview(self, request: LoadRequest) -> LoadedFlow:
         """Read a flow, and trace what there is time for."""
@@ -270,12 +208,6 @@ class Data(Controller):
         except BaseException:
             self._current, self._goal = before
             raise
-
-    async def _show_busy(self, request: LoadRequest) -> None:
-        """Tell the page what goes on, once it has gone on for a moment."""
-        await asyncio.sleep(BUSY_DELAY_S)
-        if not request.over:
-            self.state.send(busy=f"Opening {shortened(request.name, NAME_LENGTH)}")
 
     def _show_choice(self) -> None:
         """Let the page show what is chosen; not while it has gone on to something else."""
@@ -342,13 +274,6 @@ class Data(Controller):
 
 def _axis(plane: str) -> str:
     return plane.partition("=")[0]
-
-
-def _without_folder(problem: str, name: str) -> str:
-    """Leave out where the file lies: that is the server's own affair."""
-    last = name.rsplit("/", 1)[-1]
-    at = problem.find(f"/{last}:")
-    return problem if at < 0 or ":" in problem[:at] else problem[at + 1 :]
 
 
 def about(field: FlowField) -> str:

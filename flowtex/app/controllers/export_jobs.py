@@ -109,7 +109,7 @@ class TiledPicture:
                 scene,
                 viewport.camera,
                 background=viewport.background,
-                label=named_values({name: values[name] for name in viewport.differences}),
+                label=named_values({n: values[n] for n in viewport.differences if n in values}),
                 legend=scene.settings.noise != "image",
             )
 

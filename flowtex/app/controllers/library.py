@@ -225,6 +225,16 @@ class Library:
         vectors = choice.vectors or (part.vectors[0] if part.vectors else "")
         return Choice(vectors, plane, block)
 
+    def nearest(self, name: str, choice: Choice) -> Choice:
+        """Fill in a choice, of which a file takes what it has."""
+        source = self.source(name)
+        block = choice.block if choice.block in source.blocks else ""
+        part = source.part(block or (source.blocks[0] if source.blocks else None))
+        vectors = choice.vectors if choice.vectors in part.vectors else ""
+        axis, _, index = choice.plane.partition("=")
+        plane = choice.plane if axis and int(index) < part.planes.get(axis, 0) else ""
+        return self.complete(name, Choice(vectors, plane, block))
+
     def field(self, name: str, choice: Choice) -> FlowField:
         """Make a flow, or return it when it is at hand; nothing is traced.
 

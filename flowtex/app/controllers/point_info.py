@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import asyncio
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
@@ -23,6 +23,8 @@ from flowtex.app.streaming.navigation import Place
 from flowtex.app.streaming.stream import Figures
 from flowtex.app.streaming.viewport import Viewport
 from flowtex.earth import place_text
+from flowtex.field import FlowField
+from flowtex.plotting.handle import FlowHandle
 from flowtex.probe import PointValues, Probe, locate, probe, values_at
 
 __all__ = ["Lines", "PathCard", "PointInfo", "PointText", "clip_line", "number_text", "with_unit"]
@@ -69,22 +71,22 @@ def with_unit(x: float, unit: str) -> str:
 
 
 class PointText:
-    """What the page says about the point under the pointer of a viewport."""
+    """What the page says about the point under the pointer of a viewport, in one of its panes."""
 
-    def __init__(self, viewport: Viewport) -> None:
-        self._viewport = viewport
+    def __init__(self, viewport: Viewport, pane: int = 0) -> None:
+        self._viewport, self._pane = viewport, pane
 
     def __call__(self, x: float, y: float) -> Lines | None:
         """Return words and numbers for a place of the view; ``None`` beside the surface."""
         index = self.index(x, y)
         if index is None:
             return None
-        point = values_at(self._viewport.field, index, self._viewport.handle.time)
+        point = values_at(self._field, index, self._handle.time)
         return self.lines(point)
 
     def lines(self, point: PointValues) -> Lines:
         """Return words and numbers of a point of the surface."""
-        field, unit = self._viewport.field, point.speed_unit
+        field, unit = self._field, point.speed_unit
         return [
             *self._place(point),
             (point.speed_label, with_unit(point.speed, unit)),
@@ -96,7 +98,7 @@ class PointText:
 
     def _place(self, point: PointValues) -> Lines:
         """Return place and velocity, on the Earth where the field has a projection."""
-        field, unit = self._viewport.field, point.speed_unit
+        field, unit = self._field, point.speed_unit
         if point.lonlat is not None and np.isfinite(point.lonlat).all():
             decimals = max(self._digits - DIGITS, 0) + PLACE_DECIMALS
             return [
@@ -113,10 +115,19 @@ class PointText:
 
     def index(self, x: float, y: float) -> tuple[float, float] | None:
         """Place on the surface (j, i) at a place of the view; ``None`` beside it."""
-        point, field = self._viewport.surface_point(x, y), self._viewport.field
+        point, field = self._viewport.surface_point(x, y, self._pane), self._field
         # A flat surface is met exactly: its border is where it is drawn.
-        tolerance = FLAT_TOLERANCE if self._viewport.flat else CURVED_TOLERANCE
+        flat = self._handle.scene.whole.surface.frame is not None
+        tolerance = FLAT_TOLERANCE if flat else CURVED_TOLERANCE
         return None if point is None else locate(field, point, tolerance=tolerance)
+
+    @property
+    def _handle(self) -> FlowHandle:
+        return self._viewport.panes[self._pane].handle
+
+    @property
+    def _field(self) -> FlowField:
+        return self._handle.field
 
     @property
     def _digits(self) -> int:
@@ -125,7 +136,7 @@ class PointText:
 
     def _vector(self, vector: Floats, size: float, digits: int, *, whole: bool = False) -> str:
         """Write a vector; what lies in a surface across z has no third component."""
-        surface = self._viewport.field.surface
+        surface = self._field.surface
         across = surface.frame is not None and not np.abs(surface.frame[:, 2]).any()
         smallest = 1e-9 * max(float(np.abs(vector).max()), size)
         count = 2 if across and not whole else 3
@@ -143,8 +154,8 @@ class PathCard:
     def __init__(self, probe: Probe, about: Lines | None = None, *, directed: bool = True) -> None:
         self.probe, self._about, self._directed = probe, about or [], directed
 
-    def over(self, viewport: Viewport) -> dict[str, Any]:
-        """Return what lies over the picture as the camera now stands.
+    def over(self, viewport: Viewport, shown: Sequence[int] | None = None) -> dict[str, Any]:
+        """Return what lies over the picture as the camera now stands, in all panes or in some.
 
         ``path`` and ``sampled`` are stretches of places [x, y] of the whole path and of the part
         with samples, downstream where it is ``directed``; ``samples`` are dicts of ``x``, ``y``,
@@ -174,6 +185,7 @@ class PathCard:
             "point": point.tolist() if np.isfinite(point).all() else None,
             "directed": self._directed,
             "panes": len(viewport.panes),
+            "shown": list(range(len(viewport.panes)) if shown is None else shown),
             "aspect": aspect,
         }
 
@@ -280,7 +292,7 @@ class PointInfo(Controller):
 
     def __init__(self, context: Context) -> None:
         super().__init__(context)
-        self._text = PointText(self.viewport)
+        self._pane = 0  # of the path
         self._at: tuple[float, float] | None = None
         self._card: PathCard | None = None
         self._hovered_at = 0.0
@@ -294,6 +306,7 @@ class PointInfo(Controller):
         context.frame_drawn.connect(self.follow)
         context.camera_changed.connect(self.follow_camera)
         context.field_changed.connect(self._reset)
+        context.beside_changed.connect(lambda: self._reset() if self._pane else None)
 
     def _reset(self) -> None:
         self.leave()
@@ -322,10 +335,15 @@ class PointInfo(Controller):
             self._timer.cancel()
             self._timer = None
 
+    @property
+    def _pane_below(self) -> int:
+        """Number of the pane under the pointer."""
+        return min(self.stream.pointer.pane, len(self.viewport.panes) - 1)
+
     def _show_tip(self, place: Place) -> None:
         self._hovered_at = time.monotonic()
-        lines, panes = self._text(*place), len(self.viewport.panes)
-        x = (self.stream.pointer.pane + (place[0] + 1) / 2) / panes
+        lines = PointText(self.viewport, self._pane_below)(*place)
+        x = (self._pane_below + (place[0] + 1) / 2) / len(self.viewport.panes)
         tip = {"lines": lines, "x": 100 * x, "y": 50 - 50 * place[1]}
         self.state.send(tip=tip if lines else None)
 
@@ -337,7 +355,15 @@ class PointInfo(Controller):
 
     def click(self, place: Place | None) -> None:
         """Show the path through what was clicked; beside the surface, none."""
-        self.show_path(None if place is None else self._text.index(*place))
+        # Two panes of one flow show its path in both, as the first one draws it.
+        self._pane = self._pane_below if self._differ else 0
+        text = PointText(self.viewport, self._pane_below)
+        self.show_path(None if place is None else text.index(*place))
+
+    @property
+    def _differ(self) -> bool:
+        """Whether the panes show two flows."""
+        return "field" in self.viewport.differences
 
     def take_place(self, place: Any) -> None:
         """Tell what is under the pointer of the browser's client, (x, y) from -1 to 1."""
@@ -379,7 +405,7 @@ class PointInfo(Controller):
 
     def _reader(self, at: tuple[float, float]) -> Callable[[], Probe | None]:
         """Return what reads the path through a point as things are now, if it is in view."""
-        scene, clock = self.viewport.handle.scene.copy(), self.viewport.clock
+        scene, clock = self.viewport.panes[self._pane].handle.scene.copy(), self.viewport.clock
         camera, size = self.viewport.camera, self.viewport.pane_size
 
         def read() -> Probe | None:
@@ -394,11 +420,16 @@ class PointInfo(Controller):
         if path is None:
             self.close_card()
             return
-        about = self._text.lines(path.field_values)
-        self._card = PathCard(path, about, directed=not self.viewport.field.sign_free)
+        about = PointText(self.viewport, self._pane).lines(path.field_values)
+        field = self.viewport.panes[self._pane].handle.field
+        self._card = PathCard(path, about, directed=not field.sign_free)
         lines = [list(line) for line in self._card.lines()]
         card = {"lines": lines, "bars": self._card.bars()}
-        self.state.send(card=card, over=self._card.over(self.viewport))
+        self.state.send(card=card, over=self._over(self._card))
+
+    def _over(self, card: PathCard) -> dict[str, Any]:
+        """Return the path over the picture, in the panes whose flow it is of."""
+        return card.over(self.viewport, [self._pane] if self._differ else None)
 
     def close_card(self) -> None:
         """Show no path."""
@@ -419,7 +450,7 @@ class PointInfo(Controller):
     def follow_camera(self) -> None:
         """Keep the path where it belongs as the camera moves."""
         if self._card is not None:
-            self.state.send(over=self._card.over(self.viewport))
+            self.state.send(over=self._over(self._card))
 
     def close(self) -> None:
         """End what goes on."""

@@ -9,6 +9,9 @@ What a page shows is a mapping with the names below, each of which may be missin
     settings                   a mapping of settings by name
     camera                     as :meth:`flowtex.camera.Camera.to_dict` has it
     theme background split     as the page names them
+    time_beside beside_file    what the second view shows, by what split says
+    beside                     of another file: vectors, plane, block, time and scalars; no link
+                               has it, for it follows from the rest
 
 A link holds what differs from the defaults, as a query that people can read. Numbers come back
 exactly. A link may come from anybody: what is unknown or out of range is left out, and reported.
@@ -25,6 +28,7 @@ from typing import Any
 from urllib.parse import parse_qsl, quote, urlencode
 
 from flowtex.app.controllers.appearance import (
+    ANOTHER_FILE,
     ANOTHER_TIME,
     BACKGROUNDS,
     COLOUR_BY,
@@ -159,7 +163,7 @@ def _one_of(*choices: str) -> Callable[[str], str]:
 def _comparison(text: str) -> str:
     if text.startswith(COLOUR_BY):
         return _name(text)
-    return _one_of(*COMPARISONS, ANOTHER_TIME)(text)
+    return _one_of(*COMPARISONS, ANOTHER_TIME, ANOTHER_FILE)(text)
 
 
 def _number(text: str) -> float:
@@ -237,6 +241,7 @@ _READ: dict[str, Callable[[str], Any]] = {
     "background": _one_of(*BACKGROUNDS),
     "split": _comparison,
     "time_beside": _number,
+    "beside_file": _name,
     "camera": _camera,
 }
 _WRITE: dict[str, Callable[[Any], str]] = {
@@ -254,6 +259,7 @@ def to_python(
     state: Mapping[str, Any],
     *,
     source: str | None = None,
+    source_beside: str | None = None,
     size: tuple[int, int] = (1024, 768),
     picture: str | None = None,
 ) -> str:
@@ -263,22 +269,30 @@ def to_python(
     ----------
     state
         What a page shows.
-    source
-        Expression that makes the field where it is not that of a file, such as
-        ``"flowtex.examples.cylinder_field()"``.
+    source, source_beside
+        Expressions that make the fields of the two views where they are not those of files, such
+        as ``"flowtex.examples.cylinder_field()"``.
     size
         Width and height of the window in pixels.
     picture
         File to write a picture to; left out, a window is opened.
     """
+    fields = {"field": source or _from_file(state)}
     panes: list[Mapping[str, Any]] = [{}]
-    if (split := state.get("split") or "nothing") != "nothing":
+    if (split := state.get("split") or "nothing") == ANOTHER_FILE:
+        if name := state.get("beside_file"):
+            beside = {"time": None, **(state.get("beside") or {})}
+            fields["field_beside"] = source_beside or _from_file({**beside, "file": name})
+            own = {n: beside[n] for n in ("time", "scalars") if n in beside}
+            panes.append({**own, "field": "field_beside"})
+    elif split != "nothing":
         panes.append(comparison(split, state.get("time_beside") or 0.0))
     window = [f"window_size={list(size)!r}"]
     window += ["off_screen=True"] if picture is not None else []
     window += ["shape=(1, 2)", "border=False"] if len(panes) > 1 else []
     lines = ["import pyvista as pv", "", "import flowtex", ""]
-    lines += [f"field = {source or _from_file(state)}", _call("pl = pv.Plotter", window)]
+    lines += [f"{name} = {made}" for name, made in fields.items()]
+    lines += [_call("pl = pv.Plotter", window)]
     for column, different in enumerate(panes):
         lines += [f"pl.subplot(0, {column})"] if len(panes) > 1 else []
         lines += _add_lines(state, different)
@@ -332,11 +346,12 @@ def _add_lines(state: Mapping[str, Any], different: Mapping[str, Any]) -> list[s
     settings = {**(state.get("settings") or {}), **different}
     state = {**state, "time": settings.pop("time", state.get("time"))}
     settings.pop("scalars", None)
+    field = settings.pop("field", "field")
     if settings.get("noise") == "image":  # which is a person's own, and not in the state
         del settings["noise"]
     changed = {k: v for k, v in settings.items() if v != TABLE[k].default}
     arguments = [f"{name}={_literal(value)}" for name, value in {**appearance, **changed}.items()]
-    lines = [_call("handle = pl.flowtex.add", ["field", *arguments])]
+    lines = [_call("handle = pl.flowtex.add", [field, *arguments])]
     instants = [(name, state.get(name)) for name in ("time", "clock")]
     changes = [(n, v) for n, v in instants if v is not None and v != DEFAULTS.get(n)]
     return lines + [f"handle.{name} = {value!r}" for name, value in changes]

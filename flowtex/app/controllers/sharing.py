@@ -41,8 +41,9 @@ _log = logging.getLogger(__name__)
 class Sharing(Controller):
     """What leaves the page.
 
-    ``source`` returns the expression of Python that makes the field, if it is not that of a file;
-    ``restore_state`` is called with the state that a link holds.
+    ``source`` and ``source_beside`` return the expressions of Python that make the fields of the
+    two panes, if they are not those of files; ``restore_state`` is called with the state that a
+    link holds.
     """
 
     def __init__(
@@ -50,11 +51,12 @@ class Sharing(Controller):
         context: Context,
         *,
         source: Callable[[], str | None],
+        source_beside: Callable[[], str | None],
         restore_state: Callable[[Mapping[str, Any]], None],
     ) -> None:
         super().__init__(context)
         self.downloads = Downloads(context.routes)
-        self._source, self._restore_state = source, restore_state
+        self._sources, self._restore_state = (source, source_beside), restore_state
         self._job: Job | None = None
         self._task: asyncio.Task[None] | None = None
         self.state.set(
@@ -177,7 +179,12 @@ class Sharing(Controller):
         state = self.present_state()
         self.state.set(
             link="#" + to_link(state),
-            python=to_python(state, source=self._source(), size=self.viewport.size),
+            python=to_python(
+                state,
+                source=self._sources[0](),
+                source_beside=self._sources[1](),
+                size=self.viewport.size,
+            ),
         )
 
     def take_link(self, text: Any) -> None:

@@ -94,6 +94,7 @@ class Pointer:
         """Count from the pane under the pointer; a drag stays with the one in which it began."""
         viewport = self._viewport
         if len(viewport.panes) == 1:
+            self.pane = 0
             return event
         width, x = event["w"], event["x"]
         share = viewport.pane_size[0] / max(viewport.size[0], 1)

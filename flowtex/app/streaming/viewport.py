@@ -1,11 +1,13 @@
 """A flow, its camera and its colours, in one pane or in two beside each other.
 
-Two panes show the same flow from the same camera with other settings.
+Two panes are seen from the same camera. They show the same flow with other settings, or two flows
+with the same.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
@@ -30,7 +32,7 @@ BACKGROUNDS = {"dark": "#12161c", "light": "#eef1f4"}
 #: Pixels between two panes.
 GAP_PX = 2
 #: What may differ in a second pane besides settings.
-PANE_ARGUMENTS = ("scalars", "time")
+PANE_ARGUMENTS = ("scalars", "time", "field")
 #: Zoom below which the surface is seen as a whole.
 WHOLE_ZOOM = 1.5
 
@@ -50,7 +52,8 @@ class Pane:
 
     def plane_view(self) -> Floats | None:
         """Affine map from the surface's plane to the view, (3, 3); ``None`` when it has none."""
-        return self._viewport.plane_view()
+        surface = self.handle.scene.whole.surface
+        return plane_to_view(surface, self._viewport.camera, self._viewport.aspect)
 
     def draw(self, width: int, height: int, part: Rect | None = None) -> Bytes:
         """Draw this pane alone; :meth:`OffscreenWindow.draw` has the parameters."""
@@ -112,7 +115,7 @@ class Viewport:
 
     @property
     def differences(self) -> Mapping[str, Any]:
-        """Settings in which a second pane differs; none where there is one pane."""
+        """In what a second pane differs, as :meth:`compare` has it; nothing where there is one."""
         return self._beside
 
     @property
@@ -234,9 +237,9 @@ class Viewport:
     def compare(self, changes: Mapping[str, Any] | None) -> None:
         """Show a second pane that differs, or one pane again for ``None``.
 
-        ``changes`` are settings, and of ``scalars`` and ``time``: what the second pane is coloured
-        by, and the time that it shows. The panes stay as they are when a setting is unknown or out
-        of range.
+        ``changes`` are settings, and of ``scalars``, ``time`` and ``field``: what the second pane
+        is coloured by, the time that it shows, and another flow. The panes stay as they are when a
+        setting is unknown or out of range.
         """
         changes = dict(changes or {})
         own = {name: changes[name] for name in PANE_ARGUMENTS if name in changes}
@@ -253,7 +256,8 @@ class Viewport:
         self._beside = changes
         if changes:
             first = self.scene
-            self.panes.append(self._pane(_like(first, self.field, settings, appearance)))
+            field = own.get("field", self.field)
+            self.panes.append(self._pane(_like(first, field, settings, appearance)))
             ends = (self.settings.observe(self._follow), first.observe(self._follow_scene))
             self._stop_following = lambda: [end() for end in ends]
             self.set_time(self.handle.time)
@@ -272,13 +276,21 @@ class Viewport:
             appearance = self._appearance_beside(self._beside)
             if "scalars" in self._beside:
                 appearance = replace(appearance, clim=second.appearance.clim)
-            second.appearance = replace(appearance, image=second.appearance.image)
+            appearance = replace(appearance, image=second.appearance.image)
+            try:
+                second.appearance = appearance
+            except ValueError:  # its values have no logarithm, as those of the first one have
+                second.appearance = replace(appearance, log_scale=False, clim=None)
 
     def _appearance_beside(self, changes: Mapping[str, Any]) -> Appearance:
         """Appearance of a second pane; a range is that of one scalar."""
+        appearance, field = self.scene.appearance, changes.get("field", self.field)
+        scalars = changes.get("scalars", appearance.scalars)
         if "scalars" not in changes:
-            return self.scene.appearance
-        return replace(self.scene.appearance, scalars=changes["scalars"], clim=None)
+            if appearance.scalar_name in (None, SPEED, *field.scalars):
+                return appearance
+            scalars = SPEED
+        return replace(appearance, scalars=scalars, clim=None)
 
     def lay_image(self, image: Any) -> None:
         """Lay an image on the surface in place of the noise, except where panes differ in noise.
@@ -321,6 +333,8 @@ class Viewport:
     @property
     def time_beside(self) -> float:
         """Time of the second pane: its own where that is what differs."""
+        if "field" in self._beside:
+            return self.time_in(self._beside["field"])
         first, last = self.field.times[[0, -1]]
         return float(np.clip(self._beside.get("time", self.handle.time), first, last))
 
@@ -328,6 +342,13 @@ class Viewport:
     def time_beside(self, time: float) -> None:
         self._beside["time"] = time
         self.set_time(self.handle.time)
+
+    def time_in(self, field: FlowField) -> float:
+        """Return the time of another flow that is now; its last where it has no such time."""
+        time, (first, last) = self.handle.time, map(float, field.times[[0, -1]])
+        with suppress(TypeError, ValueError):  # no dates, or of two calendars
+            time += (self.field.start - field.start).total_seconds()
+        return time if first <= time <= last and not self.field.steady else last
 
     def trace(self) -> None:
         """Trace what the time that is shown needs, so that drawing need not wait for it."""
@@ -411,22 +432,19 @@ class Viewport:
             factor, x, y, aspect=self.aspect, whole=self.whole, target=target
         )
 
-    def plane_view(self) -> Floats | None:
-        """Affine map from the surface's plane to the view, (3, 3); ``None`` when it has none."""
-        return plane_to_view(self.handle.scene.whole.surface, self.camera, self.aspect)
-
-    def surface_point(self, x: float, y: float) -> Floats | None:
-        """Point of the surface at a place of the view, from -1 to 1; ``None`` beside it.
+    def surface_point(self, x: float, y: float, pane: int = 0) -> Floats | None:
+        """Point of a pane's surface at a place of it, from -1 to 1; ``None`` beside it.
 
         A flat surface has a point everywhere in its plane.
         """
         start, direction = self.camera.ray(x, y, self.aspect)
-        surface = self.handle.scene.whole.surface
+        handle = self.panes[pane].handle
+        surface = handle.scene.whole.surface
         if surface.frame is None:
             reach = self.camera.distance + 2 * surface.extent
             hits = [
                 mesh.ray_trace(start, start + direction * reach, first_point=True)[0]
-                for mesh in self.handle.meshes
+                for mesh in handle.meshes
             ]
             points = [np.asarray(hit, dtype=float) for hit in hits if len(hit)]
             return min(points, key=lambda p: float((p - start) @ direction), default=None)

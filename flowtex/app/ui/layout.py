@@ -11,7 +11,7 @@ from trame.widgets import vuetify3 as v3
 from trame_client.widgets.core import AbstractElement
 
 from flowtex.app.controllers import Controllers
-from flowtex.app.controllers.appearance import ANOTHER_TIME
+from flowtex.app.controllers.appearance import ANOTHER_FILE, ANOTHER_TIME
 from flowtex.app.controllers.camera_controls import KEYS
 from flowtex.app.controllers.playback import PACES
 from flowtex.app.server.uploads import UPLOAD_SUFFIXES
@@ -330,12 +330,13 @@ def _player(controllers: Controllers) -> None:
 
 def _pane_labels(controllers: Controllers) -> None:
     """Say in which of two panes what is shown."""
-    names = ("compare", "bar_beside", "moment", "moment_beside")
-    compare, bar, moment, beside = map(controllers.context.state.key, names)
+    names = ("compare", "bar_beside", "moment", "moment_beside", "pane_names")
+    compare, bar, moment, beside, files = map(controllers.context.state.key, names)
     other_time = f"{compare} === '{ANOTHER_TIME}'"
-    first = f"{other_time} ? {moment} : 'as set'"
-    second = f"{other_time} ? {beside} : {compare}"
-    with html.Div(classes="flowtex-panes", v_if=(f"{compare} !== 'nothing'",)):
+    first = f"{files}[0] ?? ({other_time} ? {moment} : 'as set')"
+    second = f"{files}[1] ?? ({other_time} ? {beside} : {compare})"
+    two = f"{compare} === '{ANOTHER_FILE}' ? {files}.length : {compare} !== 'nothing'"
+    with html.Div(classes="flowtex-panes", v_if=(two,)):
         html.Span(f"{{{{ {first} }}}}", classes="flowtex-chip")
         with html.Div(classes="flowtex-beside"):
             _colour_bar(bar, v_if=(bar,))
@@ -388,7 +389,7 @@ def _busy(controllers: Controllers) -> None:
     with html.Div(classes="flowtex-busy flowtex-glass", v_if=(name,), role="status"):
         v3.VProgressCircular(indeterminate=True, size=18, width=2, color="primary")
         html.Span(f"{{{{ {name} }}}}")
-        html.Button("Cancel", click=controllers.data.cancel, classes="flowtex-link")
+        html.Button("Cancel", click=controllers.cancel_opening, classes="flowtex-link")
 
 
 def _help_text(controllers: Controllers) -> None:

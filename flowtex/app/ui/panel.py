@@ -10,7 +10,13 @@ from trame.widgets import vuetify3 as v3
 
 from flowtex._util.colours import CMAPS
 from flowtex.app.controllers import Controllers
-from flowtex.app.controllers.appearance import ANOTHER_TIME, BACKGROUNDS, MAP_LINES, PLAIN
+from flowtex.app.controllers.appearance import (
+    ANOTHER_FILE,
+    ANOTHER_TIME,
+    BACKGROUNDS,
+    MAP_LINES,
+    PLAIN,
+)
 from flowtex.app.controllers.browser import RENDERERS
 from flowtex.app.controllers.sharing import FORMATS
 from flowtex.app.ui.controls import (
@@ -131,6 +137,13 @@ def _view(controllers: Controllers) -> None:
     ):
         html.Span("Time beside", classes="flowtex-label")
         slider("Time beside", key("time_beside"), (key("first"),), (key("last"),), (key("tick"),))
+    with row(
+        "file_beside",
+        "The file in the second view.",
+        v_if=(f"{key('compare')} === '{ANOTHER_FILE}'",),
+    ):
+        others = f"{key('files')}.filter(name => name !== {key('file')})"
+        select("File beside", key("file_beside"), (others,))
     with row("rendering", "The server sends pictures; the browser draws with its own graphics."):
         buttons("Drawn by", key("rendering"), RENDERERS)
 

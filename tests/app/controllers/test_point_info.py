@@ -51,7 +51,7 @@ def ball() -> FlowField:
 class Seen(Viewport):
     """A viewport without a window: a field, and a camera with z or y upwards."""
 
-    aspect, pane_size, panes = 1.6, (320, 200), [None]  # type: ignore[list-item]
+    aspect, pane_size = 1.6, (320, 200)
 
     def __init__(
         self,
@@ -73,7 +73,12 @@ class Seen(Viewport):
 
     @property
     def handle(self) -> Any:
-        return SimpleNamespace(time=self.field.times[0], scene=SimpleNamespace(whole=self.field))
+        scene = SimpleNamespace(whole=self.field)
+        return SimpleNamespace(time=self.field.times[0], scene=scene, field=self.field)
+
+    @property
+    def panes(self) -> Any:  # type: ignore[override]
+        return [self]
 
 
 def view_of(field: FlowField, **settings: object) -> Scene:
@@ -194,7 +199,7 @@ def test_the_tip_of_a_curved_surface_asks_what_is_hit() -> None:
     viewport = Seen((5.0, 0.0, 0.0), (0.0, 0.0, 0.0), field=ball())
     asked: list[tuple[float, float]] = []
 
-    def hit(x: float, y: float) -> Floats | None:
+    def hit(x: float, y: float, pane: int = 0) -> Floats | None:
         asked.append((x, y))
         return np.array([0.999, 0.01, 0.01]) if y < 0.5 else None
 
@@ -325,7 +330,8 @@ def test_the_path_follows_the_camera(card: PathCard, move: Callable[[Viewport], 
 def test_a_place_on_the_earth_is_told_by_longitude_and_latitude() -> None:
     field = winds("globe", cells=36)
     for zoom, place in ((1.0, "20.00° E, 45.00° N"), (100.0, "20.0000° E, 45.0000° N")):
-        viewport: Any = SimpleNamespace(field=field, zoom=zoom)
+        panes = [SimpleNamespace(handle=SimpleNamespace(field=field))]
+        viewport: Any = SimpleNamespace(panes=panes, zoom=zoom)
         lines = dict(PointText(viewport).lines(values_at(field, (27, 40))))
         assert lines["place"] == place
         assert lines["eastward"] == "7.068 m/s" or lines["eastward"].startswith("7.0")

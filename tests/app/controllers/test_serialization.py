@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import math
+import re
 from pathlib import Path
 from typing import Any
 from urllib.parse import unquote
@@ -44,6 +45,7 @@ STATE: dict[str, Any] = {
     "background": "black",
     "split": "Colour by: p & q",
     "time_beside": 0.1,
+    "beside_file": "runs of June/post + wake.vtk",
     "camera": CAMERA,
     "settings": {"lod": False, "samples": 25, "grain": 1 / 3, "kernel": "ramp", "speed": 1e7},
 }
@@ -176,7 +178,9 @@ def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-@pytest.mark.parametrize("split", ["nothing", "Fixed grain: on", "Colour by: speed"])
+@pytest.mark.parametrize(
+    "split", ["nothing", "Fixed grain: on", "Colour by: speed", "Another file"]
+)
 def test_the_python_lines_draw_the_same_picture(
     file: Path, monkeypatch: pytest.MonkeyPatch, split: str, opengl: object
 ) -> None:
@@ -184,7 +188,9 @@ def test_the_python_lines_draw_the_same_picture(
     field = flowtex.FlowField.from_file(file.name)
     changed: dict[str, Any] = {"samples": 15, "seed": 3, "motion": "speed"}
     scene = Viewport(field, zoom=3.0, scalars="vorticity", cmap="magma", clim=(-1, 2.0), **changed)
-    scene.compare(comparison(split, 0.0) or None)
+    flowtex.examples.double_gyre(7.0).save(file.parent / "later.vts")
+    later = {"field": flowtex.FlowField.from_file("later.vts")}
+    scene.compare(later if split == "Another file" else comparison(split, 0.0) or None)
     count = len(scene.panes)
     scene.resize(count * 160 + 2 * (count - 1), 120)
     scene.refit()
@@ -198,6 +204,7 @@ def test_the_python_lines_draw_the_same_picture(
         "clock": 0.7,
         "theme": "light",
         "split": split,
+        "beside_file": "later.vts",
         "camera": scene.camera.to_dict(),
         "settings": dict(scene.handle.settings),
     }
@@ -205,7 +212,7 @@ def test_the_python_lines_draw_the_same_picture(
     scene.close()
     lines = to_python(from_link(to_link(state)), size=(count * 160, 120), picture="same.png")
     # The scalar bar is what a window has and a page draws by itself.
-    lines = lines.replace("    field,\n", "    field,\n    show_scalar_bar=False,\n")
+    lines = re.sub("    (field|field_beside),\n", r"\g<0>    show_scalar_bar=False,\n", lines)
     exec(compile(lines, "lines", "exec"), {})
     with Image.open("same.png") as picture:
         shown = np.asarray(picture.convert("RGB")).astype(int)

@@ -71,11 +71,11 @@ def test_after_a_drag_only_what_came_into_view_is_drawn(
 def test_a_moved_picture_is_the_one_that_would_be_drawn(flat: FlowApp) -> None:
     flat.area.reset_camera()
     scene = flat.viewport
-    view = scene.plane_view()
+    view = scene.panes[0].plane_view()
     assert view is not None
     shot = Snapshot(scene.draw(240, 160), view)
     scene.pan(0.2, -0.1)
-    moved = scene.plane_view()
+    moved = scene.panes[0].plane_view()
     assert moved is not None
     share, stretch = coverage(shot, moved)
     assert 0.5 < share < 1 and stretch == pytest.approx(1)
@@ -83,7 +83,7 @@ def test_a_moved_picture_is_the_one_that_would_be_drawn(flat: FlowApp) -> None:
     drawn = scene.draw(240, 160)
     assert difference(shifted[20:140, 40:190], drawn[20:140, 40:190]) < 1.5
     scene.zoom_by(2.0)
-    closer = scene.plane_view()
+    closer = scene.panes[0].plane_view()
     assert closer is not None and coverage(shot, closer)[1] == pytest.approx(2)
     flat.area.reset_camera()
 

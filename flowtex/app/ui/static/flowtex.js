@@ -87,18 +87,18 @@ point,directed}).map(([tag,attributes])=>h(tag,attributes)),id=`flowtex-pane-${n
 th",props:["over"],setup(props){let{h,ref,onMounted,onBeforeUnmount}=vue(),place=ref(null),size=ref([1,1]),watcher=new ResizeObserver(
 ([{contentRect}])=>{size.value=[contentRect.width,contentRect.height]});return onMounted(()=>place.value&&watcher.observe(
 place.value)),onBeforeUnmount(()=>watcher.disconnect()),()=>{let{over}=props;if(!over)return h("div",{ref:place});let[width,
-height]=size.value,wide=width/over.panes,panes=Array.from({length:over.panes},(_,n)=>pane(over,n,wide,height));return h(
-"div",{ref:place},h("svg",panes))}}};function fitting(places,aspect){let{width:wide,height:high,margin}=INSET,flat=([x,y])=>[
-x*aspect,-y],flattened=places.map(flat),[xs,ys]=[0,1].map(k=>flattened.map(place=>place[k])),[left,top]=[Math.min(...xs),
-Math.min(...ys)],[width,height]=[Math.max(...xs)-left,Math.max(...ys)-top],ratios=[(wide-2*margin)/(width||1e-9),(high-2*
-margin)/(height||1e-9)],scale=Math.min(...ratios);return place=>{let[x,y]=flat(place);return[wide/2+(x-left-width/2)*scale,
-high/2+(y-top-height/2)*scale]}}function enlarged({samples,sampled,point,aspect}){let{h}=vue(),places=samples.map(({x,y})=>[
-x,y]),mapping=fitting(places,aspect),centres=places.map(mapping),lines=sampled.map(line=>polyline(line,"sampled",mapping)),
-dots=samples.map(({weight,grey},n)=>{let[cx,cy]=centres[n],[nx,ny]=centres[n>0?n-1:1]??[cx+DOT.most,cy+DOT.most],most=clamp(
-.75*Math.hypot(nx-cx,ny-cy),DOT.least,DOT.most);return circle([cx,cy],most*(.35+.65*weight),{fill:grey})});point&&dots.push(
-circle(mapping(point),POINT_RADIUS2,{class:"point"}));let{width,height}=INSET;return h("svg",{viewBox:`0 0 ${width} ${height}`,
-width,height},[...lines,...dots])}var inset={name:"flowtex-inset",props:["over"],setup(props){return()=>vue().h("div",props.
-over?.samples.length?[enlarged(props.over)]:[])}};async function send(file,address){let query=new URLSearchParams({name:file.name});try{let answer=await fetch(`${address}\
+height]=size.value,wide=width/over.panes,panes=over.shown.map(n=>pane(over,n,wide,height));return h("div",{ref:place},h(
+"svg",panes))}}};function fitting(places,aspect){let{width:wide,height:high,margin}=INSET,flat=([x,y])=>[x*aspect,-y],flattened=places.
+map(flat),[xs,ys]=[0,1].map(k=>flattened.map(place=>place[k])),[left,top]=[Math.min(...xs),Math.min(...ys)],[width,height]=[
+Math.max(...xs)-left,Math.max(...ys)-top],ratios=[(wide-2*margin)/(width||1e-9),(high-2*margin)/(height||1e-9)],scale=Math.
+min(...ratios);return place=>{let[x,y]=flat(place);return[wide/2+(x-left-width/2)*scale,high/2+(y-top-height/2)*scale]}}
+function enlarged({samples,sampled,point,aspect}){let{h}=vue(),places=samples.map(({x,y})=>[x,y]),mapping=fitting(places,
+aspect),centres=places.map(mapping),lines=sampled.map(line=>polyline(line,"sampled",mapping)),dots=samples.map(({weight,
+grey},n)=>{let[cx,cy]=centres[n],[nx,ny]=centres[n>0?n-1:1]??[cx+DOT.most,cy+DOT.most],most=clamp(.75*Math.hypot(nx-cx,ny-
+cy),DOT.least,DOT.most);return circle([cx,cy],most*(.35+.65*weight),{fill:grey})});point&&dots.push(circle(mapping(point),
+POINT_RADIUS2,{class:"point"}));let{width,height}=INSET;return h("svg",{viewBox:`0 0 ${width} ${height}`,width,height},[
+...lines,...dots])}var inset={name:"flowtex-inset",props:["over"],setup(props){return()=>vue().h("div",props.over?.samples.
+length?[enlarged(props.over)]:[])}};async function send(file,address){let query=new URLSearchParams({name:file.name});try{let answer=await fetch(`${address}\
 ?${query.toString()}`,{method:"POST",body:file});return answer.ok?"":await answer.text()}catch{return`${file.name}: coul\
 d not be sent`}}var upload={name:"flowtex-upload",props:["address","accept"],emits:["problem","busy"],setup(props,{emit}){
 let{h,ref,onMounted,onBeforeUnmount}=vue(),isOver=ref(!1),input=ref(null),ended=new AbortController,take=async files=>{for(let file of files??

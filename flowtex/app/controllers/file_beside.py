@@ -1,0 +1,203 @@
+"""Another file in a second pane: opened aside, and followed as the first pane changes."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import asdict, astuple
+from typing import Any
+
+from flowtex.app.controllers.context import Context, Controller
+from flowtex.app.controllers.data import Data
+from flowtex.app.controllers.library import Choice, TracedFlow
+from flowtex.app.controllers.loading import LoadRequest, announced
+from flowtex.errors import FieldError
+from flowtex.field.interpolation import steps_around
+from flowtex.offscreen.annotations import time_text
+from flowtex.plotting.handle import FlowHandle
+
+__all__ = ["FileBeside"]
+
+
+class FileBeside(Controller):
+    """The flow of another file than ``data`` shows, in a second pane.
+
+    Of the file that is chosen it is what the first pane shows of its own, as far as there is that.
+    """
+
+    def __init__(self, context: Context, data: Data) -> None:
+        super().__init__(context)
+        self._data = data
+        self._name, self._choice = "", Choice()
+        self._active = False
+        #: What was asked for last, and the flow that is shown, whose traces stay with it.
+        self._request: LoadRequest | None = None
+        self._flow: TracedFlow | None = None
+        self._opening: asyncio.Task[None] | None = None
+        self._worker = ThreadPoolExecutor(1, thread_name_prefix="flowtex opening beside")
+        self.state.set(file_beside="", pane_names=[])
+        self.state.on("file_beside")(self.take_file)
+        context.field_changed.connect(self.follow)
+        context.time_changed.connect(self.show_names)
+
+    @property
+    def name(self) -> str:
+        """Name of the file in the second pane; empty while there is none."""
+        return self._name if "field" in self.viewport.differences else ""
+
+    @property
+    def possible(self) -> bool:
+        """Whether there is another file."""
+        return len(self._data.names) > 1
+
+    @property
+    def python(self) -> str | None:
+        """Expression that makes what is shown, unless that comes from a file."""
+        return self.context.library.python(self.name) if self.name else None
+
+    def begin(self) -> None:
+        """Show the file that was chosen last, or the next one of the list."""
+        self._active = True
+        self.open(self._chosen() or self._next())
+
+    def end(self) -> None:
+        """Show no file any more, once another second pane or none is shown in its place."""
+        self._active = False
+        self._forget()
+        self.context.beside_changed.emit()
+
+    def cancel(self) -> None:
+        """Stop what is being opened; there is one pane until a file is chosen."""
+        if self._opening is not None and not self._opening.done():
+            self._fail()
+
+    def take_file(self) -> None:
+        """Show the file that the page asks for."""
+        name, goal = self._chosen(), self._goal
+        if not name:
+            self.state.set(file_beside=goal)
+        elif self._active and name != goal:
+            self.open(name)
+
+    def open(self, name: str) -> None:
+        """Open a file in place of what is being opened for the second pane."""
+        if self._request is not None and name == self._request.name:
+            self._request.superseded = True
+        elif self._request is not None:
+            self._request.cancelled = True
+        self._request = LoadRequest(name, self._data.choice)
+        self.state.set(file_beside=name)
+        self._opening = asyncio.ensure_future(self._open(self._request))
+
+    def follow(self) -> None:
+        """Follow the first pane to another plane, array or file."""
+        if self._goal and self._goal == self._data.name:  # which is in the first pane now
+            self.open(self._next())
+        elif self._request is not None and self._request.choice != self._data.choice:
+            self.open(self._goal)
+        self.show_names()
+
+    def show_names(self) -> None:
+        """Let the page name the two files, with the times that are shown of them."""
+        if self.name:
+            handles = (pane.handle for pane in self.viewport.panes)
+            aside = zip(astuple(self._choice), astuple(self._data.choice), strict=True)
+            other = [own for own, first in aside if own != first]
+            names = ([self._data.name], [self.name, *filter(None, other)])
+            texts = [
+                " · ".join([*words, *_time(handle)])
+                for words, handle in zip(names, handles, strict=True)
+            ]
+            self.state.send(pane_names=texts)
+
+    def describe(self) -> dict[str, Any]:
+        """Return which file it is, and what is shown of it."""
+        if not self.name:
+            return {"beside_file": self._goal} if self._goal else {}
+        handle = self.viewport.panes[1].handle
+        beside: dict[str, Any] = {**asdict(self._choice), "time": None}
+        if not handle.field.steady:
+            beside["time"] = handle.time
+        if handle.scene.scalar_name != self.area.scene.scalar_name:
+            beside["scalars"] = handle.scene.scalar_name
+        return {"beside_file": self.name, "beside": beside}
+
+    def restore(self, saved: Mapping[str, Any]) -> None:
+        """Choose the file of a saved state."""
+        if saved.get("beside_file"):
+            self.state.set(file_beside=saved["beside_file"])
+            self.take_file()
+
+    def close(self) -> None:
+        """End what goes on."""
+        self._forget()
+        if self._opening is not None:
+            self._opening.cancel()
+        self._worker.shutdown(wait=False, cancel_futures=True)
+
+    @property
+    def _goal(self) -> str:
+        """Name of what is to be shown."""
+        return "" if self._request is None else self._request.name
+
+    def _chosen(self) -> str:
+        """Return what the page asks for, which need not be there; empty for what is of no use."""
+        name = self.state.get("file_beside")
+        return name if isinstance(name, str) and name != self._data.name else ""
+
+    def _next(self) -> str:
+        """Return the name behind that of the first pane, round and round."""
+        names = self._data.names
+        at = names.index(self._data.name) if self._data.name in names else -1
+        return names[(at + 1) % len(names)]
+
+    async def _open(self, request: LoadRequest) -> None:
+        async with announced(self.context, request, self._fail):
+            choice, flow = await request.in_thread(
+                self._worker, lambda: self._read(request), quick=True
+            )
+            self._show(request, choice, flow)
+
+    def _read(self, request: LoadRequest) -> tuple[Choice, TracedFlow]:
+        """Read a flow, and trace what the first picture of it needs."""
+        library, name = self.context.library, request.name
+        choice = library.nearest(name, request.choice)
+        field = library.field(name, choice)
+        flow = library.trace(name, choice, field, self.settings)
+        for step in sorted(set(steps_around(field.times, self.viewport.time_in(field))[:2])):
+            flow.store.at(step)
+        return choice, flow
+
+    def _show(self, request: LoadRequest, choice: Choice, flow: TracedFlow) -> None:
+        """Put a flow into the second pane."""
+        units = [field.length_unit for field in (self.viewport.field, flow.field)]
+        if all(units) and units[0] != units[1]:
+            msg = (
+                f"{request.name} is in {units[1]} and {self._data.name} in {units[0]}; expected "
+                "one unit of length for two files that one camera sees"
+            )
+            raise FieldError(msg)
+        if self.viewport.differences.get("field") is not flow.field:
+            self.area.compare({"field": flow.field})
+        self._name, self._choice, self._flow = request.name, choice, flow
+        self.context.beside_changed.emit()
+        self.show_names()
+
+    def _fail(self) -> None:
+        """Show one pane, until another file is chosen."""
+        self._forget()
+        self.area.compare(None)
+        self.context.beside_changed.emit()
+        self.state.send(file_beside="", busy="")
+
+    def _forget(self) -> None:
+        if self._request is not None:
+            self._request.cancelled = True
+        self._request = self._flow = None
+        self._name = ""
+        self.state.set(pane_names=[])
+
+
+def _time(handle: FlowHandle) -> list[str]:
+    return [] if handle.field.steady else [time_text(handle.field, handle.time)]

@@ -1,0 +1,112 @@
+"""Opening flows in a thread: requests, and what the page hears of them."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import AsyncIterator, Callable
+from concurrent.futures import Executor
+from contextlib import asynccontextmanager
+from dataclasses import dataclass
+from typing import TypeVar
+
+from flowtex._util.progress import Stopped, stoppable
+from flowtex.app.controllers.context import Context
+from flowtex.app.controllers.library import Choice
+from flowtex.app.server.validation import shortened
+from flowtex.errors import FieldError
+
+__all__ = ["LoadRequest", "announced", "without_folder"]
+
+_log = logging.getLogger(__name__)
+
+T = TypeVar("T")
+
+#: Seconds after which the page says that something is being opened.
+BUSY_DELAY_S = 0.3
+#: Characters of a name in a message.
+NAME_LENGTH = 80
+
+
+@dataclass(eq=False)
+class LoadRequest:
+    """Something that is to be opened, after which ``then`` is called.
+
+    Attributes
+    ----------
+    cancelled
+        Whether nothing of it is to be shown any more.
+    superseded
+        Whether something else was requested since. While a slider moves that is always so: what
+        is quick to load is shown all the same, or nothing would be seen on the way.
+    """
+
+    name: str
+    choice: Choice
+    then: Callable[[], None] | None = None
+    cancelled: bool = False
+    superseded: bool = False
+
+    @property
+    def over(self) -> bool:
+        """Whether it is not the latest request."""
+        return self.cancelled or self.superseded
+
+    async def in_thread(self, worker: Executor, work: Callable[[], T], *, quick: bool) -> T:
+        """Do some work for it off the event loop; ``Stopped`` where nobody wants the result.
+
+        Quick work is finished, once it has begun, though something else was requested.
+        """
+
+        def unwanted() -> bool:
+            return self.cancelled if quick else self.over
+
+        def guarded() -> T:
+            if self.over:
+                raise Stopped
+            with stoppable(unwanted):
+                return work()
+
+        result = await asyncio.get_running_loop().run_in_executor(worker, guarded)
+        if unwanted():
+            raise Stopped
+        return result
+
+
+@asynccontextmanager
+async def announced(
+    context: Context, request: LoadRequest, fail: Callable[[], None]
+) -> AsyncIterator[None]:
+    """Tell the page what goes on, and why something cannot be opened; then call ``fail``."""
+    announcement = asyncio.create_task(_show_busy(context, request))
+    name, problem = shortened(request.name, NAME_LENGTH), ""
+    try:
+        yield
+    except Stopped:
+        pass
+    except (FieldError, OSError) as error:
+        problem = without_folder(str(error), request.name) or type(error).__name__
+    except Exception as error:
+        _log.exception("%s could not be opened", name)
+        problem = f"{name} could not be opened: {str(error) or type(error).__name__}"
+    finally:
+        announcement.cancel()
+        if not request.over:
+            context.state.send(busy="")
+    if problem and not request.over:
+        context.complain(problem)
+        fail()
+
+
+async def _show_busy(context: Context, request: LoadRequest) -> None:
+    """Tell the page what goes on, once it has gone on for a moment."""
+    await asyncio.sleep(BUSY_DELAY_S)
+    if not request.over:
+        context.state.send(busy=f"Opening {shortened(request.name, NAME_LENGTH)}")
+
+
+def without_folder(problem: str, name: str) -> str:
+    """Leave out where the file lies: that is the server's own affair."""
+    last = name.rsplit("/", 1)[-1]
+    at = problem.find(f"/{last}:")
+    return problem if at < 0 or ":" in problem[:at] else problem[at + 1 :]

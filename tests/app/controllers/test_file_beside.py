@@ -1,0 +1,344 @@
+"""Two files beside each other: opened aside, followed, told, and linked."""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+from datetime import datetime, timedelta
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import pyvista as pv
+from PIL import Image
+
+pytest.importorskip("trame_rca")
+
+from small_pages import difference, played, small, until
+
+from flowtex import FlowField
+from flowtex.app import FlowApp, Library
+from flowtex.app.controllers.export_jobs import PictureJob
+from flowtex.app.controllers.library import Choice
+from flowtex.app.controllers.serialization import from_link, to_link
+from flowtex.field.source import FlowSource
+
+pytestmark = pytest.mark.usefixtures("opengl")
+
+FILE = "Another file"
+
+
+def other(*, steps: int = 1, **options: Any) -> FlowField:
+    """A patch that is as large as that of ``small``, and turned: everything moves along y."""
+    x, y = np.meshgrid(np.linspace(0, 3, 20), np.linspace(0, 2, 14))
+    velocity = np.stack([0 * x, 3 + x, 0 * x], axis=-1)
+    if steps > 1:
+        velocity = velocity * (1 + np.arange(steps))[:, None, None, None]
+        options.setdefault("times", np.arange(steps) / 2)
+    return FlowField.from_arrays(np.stack([x, y, 0 * x], axis=-1), velocity, **options)
+
+
+def page(*flows: Any, **named: Any) -> FlowApp:
+    openers = {name: (lambda flow=flow: FlowSource(flow)) for name, flow in named.items()}
+    app = FlowApp(Library(openers) if openers else Library.of(*flows), samples=5)
+    app.stream.update_size("test", {"w": 240, "h": 80, "p": 1})
+    return app
+
+
+async def beside(app: FlowApp, name: str | None = None) -> None:
+    """Choose another file beside the first, and wait until it is there."""
+    if app.state.get("compare") != FILE:
+        app.state.send(compare=FILE)
+    if name is not None:
+        app.state.send(file_beside=name)
+    await until(lambda: app.controllers.beside.name == app.state.get("file_beside") != "")
+
+
+def test_another_file_has_the_settings_and_a_range_of_its_own() -> None:
+    app = page(one=small(), two=other())
+
+    async def story() -> None:
+        assert FILE in app.state.get("comparisons")
+        app.state.send(cmap="magma", set_contrast=2.0)
+        await beside(app)
+        first, second = (pane.handle for pane in app.viewport.panes)
+        assert (app.state.get("file_beside"), second.field.shape) == ("two", (14, 20))
+        assert second.settings.contrast == 2.0 and second.cmap == "magma"
+        assert second.scene.scalar_limits == pytest.approx((3, 6))
+        assert first.scene.scalar_limits[1] < 2
+        assert app.state.get("bar_beside")["high"] == "6"
+        assert app.state.get("pane_names") == ["one", "two"]
+        app.state.send(low=0.0, high=4.0)
+        assert second.scene.scalar_limits == first.scene.scalar_limits == (0, 4)
+        assert app.state.get("bar_beside") is None
+        app.state.send(set_contrast=1.0, opacity=0.5)
+        assert second.settings.contrast == 1.0 and second.opacity == 0.5
+        # The second one has no such array.
+        app.state.send(colour="height")
+        assert second.scalars == "speed" and second.clim is None
+        assert app.state.get("bar_beside")["name"] == "speed"
+        app.state.send(compare="nothing")
+        assert len(app.viewport.panes) == 1 and app.state.get("pane_names") == []
+        assert "beside_file" not in app.controllers.sharing.present_state()
+
+    played(app, story)
+
+
+def test_colours_with_a_logarithm_where_the_other_file_has_none() -> None:
+    still = other()
+    halting = FlowField.from_arrays(still.points, still.velocity[0] - np.array([0, 3.0, 0]))
+    app = page(one=small(), two=halting)
+
+    async def story() -> None:
+        await beside(app)
+        app.state.send(log_scale=True)
+        first, second = (pane.handle for pane in app.viewport.panes)
+        assert first.log_scale is True and second.log_scale is False
+        assert app.state.get("problem") == ""
+
+    played(app, story)
+
+
+def test_one_file_alone_has_none_beside_it() -> None:
+    app = page(one=small())
+    assert FILE not in app.state.get("comparisons")
+    app.state.set(compare=FILE)
+    app.controllers.appearance.take_comparison()
+    assert app.state.get("compare") == "nothing"
+    app.close()
+
+
+def test_the_time_is_that_of_the_first_or_the_last() -> None:
+    app = page(one=small(steps=4), two=other(steps=4), three=other())
+
+    async def story() -> None:
+        await beside(app)
+        second = app.viewport.panes[1].handle
+        app.state.send(time=0.25)
+        assert second.time == 0.25
+        assert app.state.get("pane_names") == ["one · t = 0.25", "two · t = 0.25"]
+        app.state.send(time=3.0)
+        assert second.time == 1.5
+        assert app.state.get("pane_names") == ["one · t = 3.00", "two · t = 1.50"]
+        await beside(app, "three")
+        assert app.state.get("pane_names") == ["one · t = 3.00", "three"]
+        app.state.send(file="three")
+        # The file beside is the first one now, and the next one comes beside it.
+        await until(lambda: app.controllers.beside.name == "one")
+        assert app.state.get("pane_names") == ["three", "one · t = 3.00"]
+
+    played(app, story)
+
+
+def test_dates_are_those_of_the_first() -> None:
+    begin = datetime(2020, 1, 1)
+    days = [np.datetime64(begin + timedelta(days=n)) for n in range(6)]
+    early, late = other(steps=4, times=days[:4]), other(steps=4, times=days[2:])
+    app = page(one=early, two=late)
+
+    async def story() -> None:
+        await beside(app)
+        second = app.viewport.panes[1].handle
+        app.state.send(time=2.5 * 86400)
+        assert second.time == 0.5 * 86400
+        app.state.send(time=86400.0)
+        assert second.time == late.times[-1]
+
+    played(app, story)
+
+
+def block(turn: float, nodes: int) -> pv.StructuredGrid:
+    x, y, z = np.meshgrid(
+        np.linspace(-2, 2, 9), np.linspace(-1, 1, 8), np.linspace(0, 1, nodes), indexing="ij"
+    )
+    mesh = pv.StructuredGrid(x, y, z)
+    px, py, pz = mesh.points.T
+    mesh["wind"] = np.stack([1 - turn * py * pz, turn * px, 0 * px], axis=-1)
+    return mesh
+
+
+@pytest.mark.vtk_log_allowed("one of the files is broken")
+def test_a_slider_moves_the_plane_of_both(tmp_path: Path) -> None:
+    for name, turn, nodes in (("a", 1.0, 6), ("b", 2.0, 6), ("c", 1.0, 3)):
+        block(turn, nodes).save(tmp_path / f"{name}.vts")
+    (tmp_path / "torn.vts").write_text("<VTKFile")
+    app = page(tmp_path)
+
+    def height() -> float:
+        return float(app.viewport.panes[1].handle.field.points[0, 0, 2])
+
+    async def story() -> None:
+        shown = app.controllers.beside
+        app.state.send(index=4)
+        await until(lambda: app.controllers.data.choice.plane == "k=4")
+        await beside(app)
+        assert shown.name == "b.vts" and height() == pytest.approx(0.8)
+        app.state.send(index=1)
+        await until(lambda: app.controllers.data.choice.plane == "k=1")
+        await until(lambda: height() == pytest.approx(0.2))
+        app.state.send(index=5)
+        await until(lambda: app.controllers.data.choice.plane == "k=5")
+        await beside(app, "c.vts")
+        # It has no such plane, and says which one it is.
+        assert app.state.get("pane_names") == ["a.vts", "c.vts · k=1"]
+        assert height() == pytest.approx(0.5)
+        app.state.send(file_beside="torn.vts")
+        await until(lambda: app.state.get("problem"))
+        assert app.state.get("problem").startswith("torn.vts: ")
+        assert str(tmp_path) not in app.state.get("problem")
+        assert len(app.viewport.panes) == 1 and app.state.get("pane_names") == []
+        assert (app.state.get("compare"), app.state.get("file_beside")) == (FILE, "")
+        app.state.send(index=2)  # nothing is beside it that would follow
+        await until(lambda: app.controllers.data.choice.plane == "k=2")
+        await beside(app, "b.vts")
+        assert height() == pytest.approx(0.4)
+        before = app.viewport.panes[1]
+        for junk in (None, 3, "", [1], {"x": "y"}, "a.vts"):
+            app.state.send(file_beside=junk)
+            assert app.state.get("file_beside") == "b.vts"
+        assert app.viewport.panes[1] is before
+        app.state.send(problem="", file_beside="../secret.vts")
+        await until(lambda: app.state.get("problem"))
+        assert "there is no file '../secret.vts'" in app.state.get("problem")
+
+    played(app, story)
+
+
+def test_what_takes_long_can_be_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    app = page(one=small(), two=other(), three=other(steps=3))
+    held = threading.Event()
+    read = app.controllers.beside._read
+
+    def slowly(request: Any) -> Any:
+        assert held.wait(10)
+        return read(request)
+
+    monkeypatch.setattr(app.controllers.beside, "_read", slowly)
+
+    async def story() -> None:
+        app.state.send(compare=FILE)
+        await until(lambda: app.state.get("busy") == "Opening two")
+        app.controllers.cancel_opening()
+        assert (app.state.get("busy"), app.state.get("file_beside")) == ("", "")
+        app.state.send(file_beside="three")
+        app.state.send(file_beside="two")
+        app.state.send(file_beside="three")
+        held.set()
+        await until(lambda: app.controllers.beside.name)
+        assert app.controllers.beside.name == "three"
+        assert len(app.viewport.panes[1].handle.field.times) == 3
+        app.state.send(file_beside="two")
+        app.state.send(compare="nothing")
+        await asyncio.sleep(0.1)
+        assert len(app.viewport.panes) == 1
+
+    played(app, story)
+
+
+def test_two_units_of_length_are_refused() -> None:
+    kilometres = other(length_unit="km")
+    metres = FlowField.from_arrays(kilometres.points, kilometres.velocity[0], length_unit="m")
+    app = page(one=metres, two=kilometres)
+
+    async def story() -> None:
+        app.state.send(compare=FILE)
+        await until(lambda: app.state.get("problem"))
+        assert app.state.get("problem").startswith("two is in km and one in m; expected one unit")
+        assert len(app.viewport.panes) == 1
+
+    played(app, story)
+
+
+def test_tips_and_paths_are_of_the_pane_under_the_pointer() -> None:
+    app = page(one=small(), two=other())
+
+    async def story() -> None:
+        await beside(app)
+        send = app.stream.on_interaction
+        event = {"w": 240, "h": 80, "y": 40}
+
+        def click(x: float) -> None:
+            send("test", {"type": "LeftButtonPress", **event, "x": x})
+            send("test", {"type": "LeftButtonRelease", **event, "x": x})
+
+        click(180)
+        await until(lambda: app.state.get("card"))
+        told = dict(map(tuple, app.state.get("card")["lines"]))
+        assert told["velocity"].startswith("(0, 4.") and "height" not in told
+        assert app.state.get("over")["shown"] == [1] and app.state.get("over")["panes"] == 2
+        app.controllers.point_info._hovered_at = 0.0
+        send("test", {"type": "MouseMove", **event, "x": 180})
+        assert dict(app.state.get("tip")["lines"])["velocity"].startswith("(0, 4.")
+        click(60)
+        await until(lambda: app.state.get("over")["shown"] == [0])
+        assert "height" in dict(map(tuple, app.state.get("card")["lines"]))
+        click(180)
+        await until(lambda: app.state.get("over")["shown"] == [1])
+        app.state.send(compare="Samples: 10")
+        assert app.state.get("card") is None and len(app.viewport.panes) == 2
+        click(180)
+        await until(lambda: app.state.get("card"))
+        assert app.state.get("over")["shown"] == [0, 1]
+
+    played(app, story)
+
+
+def test_a_link_and_the_lines_of_python_name_both() -> None:
+    app = page(one=small(steps=4), two=other(steps=4), three=other())
+
+    async def story() -> None:
+        await beside(app, "two")
+        app.state.send(colour="height")
+        sharing = app.controllers.sharing
+        state = sharing.present_state()
+        assert state["beside"]["scalars"] == "speed" and state["beside"]["time"] == 1.5
+        link = to_link(state)
+        assert "split=Another%20file" in link and "beside_file=two" in link
+        sharing.show_state()
+        lines = app.state.get("python")
+        assert "field_beside = ..." in lines
+        assert 'pl.flowtex.add(field_beside, scalars="speed", cmap="viridis", samples=5)' in lines
+        assert lines.count("handle.time = ") == 2 and "handle.time = 1.5" in lines
+        app.state.send(compare="nothing", colour="speed")
+        app.restore(from_link(link))
+        await until(lambda: app.controllers.beside.name == "two")
+        app.restore(from_link(link.replace("beside_file=two", "beside_file=three")))
+        await until(lambda: app.controllers.beside.name == "three")
+        app.restore(from_link(link.replace("beside_file=two", "beside_file=../four")))
+        await until(lambda: app.state.get("problem"))
+        assert "there is no file '../four'" in app.state.get("problem")
+        assert len(app.viewport.panes) == 1
+
+    played(app, story)
+
+
+@pytest.mark.parametrize("compared", [FILE, "Another time"])
+def test_a_picture_shows_both_with_what_is_written_on_them(compared: str, tmp_path: Path) -> None:
+    app = page(one=small(steps=4), two=other(steps=4))
+
+    async def story() -> None:
+        if compared == FILE:
+            await beside(app)
+        app.state.send(compare=compared)
+        path = await PictureJob(app.viewport, tmp_path / "both.png", (482, 160)).run()
+        job = PictureJob(app.viewport, tmp_path / "told.png", (482, 160), annotations=True)
+        with Image.open(path) as plain, Image.open(await job.run()) as written:
+            one, told = np.asarray(plain).astype(int), np.asarray(written).astype(int)
+        assert difference(one[:, :240], one[:, 242:]) > 3
+        for half in (slice(0, 240), slice(242, 482)):
+            assert difference(one[:, half], told[:, half]) > 1
+
+    played(app, story)
+
+
+def test_a_choice_is_taken_as_far_as_a_file_has_it() -> None:
+    parts = pv.MultiBlock({"large": block(1.0, 6), "small": block(1.0, 3)})
+    library = Library({"blocks": lambda: FlowSource(parts), "one": lambda: FlowSource(small())})
+    wanted = Choice("wind", "k=2", "small")
+    assert library.nearest("blocks", wanted) == wanted
+    assert library.nearest("blocks", Choice("wind", "k=5", "small")) == Choice(
+        "wind", "k=1", "small"
+    )
+    assert library.nearest("blocks", Choice("swirl", "k=5")) == Choice("wind", "k=5", "large")
+    assert library.nearest("one", wanted) == library.complete("one", Choice())
