@@ -10,6 +10,8 @@ import pytest
 
 FOLDER = Path(__file__).parents[1] / "notebooks"
 NOTEBOOKS = sorted(FOLDER.glob("*.ipynb"))
+#: Those that run in a file of tests of their own, beside the others.
+OF_EARTH = ("ocean", "weather")
 
 
 def read(path: Path) -> Any:
@@ -51,8 +53,13 @@ def test_the_dye_can_be_seen(opengl: Any) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("path", NOTEBOOKS, ids=name)
+@pytest.mark.parametrize("path", [p for p in NOTEBOOKS if p.stem not in OF_EARTH], ids=name)
 def test_a_notebook_runs(path: Path, opengl: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    run(path, monkeypatch)
+
+
+def run(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Run a notebook from top to bottom; it shows a widget, and no warning."""
     nbclient = pytest.importorskip("nbclient")
     pytest.importorskip("anywidget")
     monkeypatch.setenv("MPLBACKEND", "module://matplotlib_inline.backend_inline")
