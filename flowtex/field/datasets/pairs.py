@@ -7,7 +7,7 @@ says x, u, eastward or zonal, and the second is the variable whose name has the 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -26,6 +26,7 @@ PARTNERS = {
     "x": "y",
     "u": "v",
 }
+FIRST_OF = {second: first for first, second in PARTNERS.items()}
 #: First words that speak of the Earth's directions, and not of those of a grid.
 EARTH = ("eastward", "zonal", "east")
 #: What is looked at first when a dataset has several velocities.
@@ -186,16 +187,15 @@ def _text(array: xr.DataArray, source: str) -> str:
     return re.sub(r"_at_\w+_location$", "", text) if source == "standard_name" else text
 
 
-def _partners(text: str, source: str) -> Iterator[tuple[str, str, str]]:
+def _partners(
+    text: str, source: str, partners: Mapping[str, str] = PARTNERS
+) -> Iterator[tuple[str, str, str]]:
     """Give the word that tells the component, the text without it, and that of the partner."""
-    if not text:
-        return
-    if source == "name" and text in KNOWN_NAMES:
+    if source == "name" and text in KNOWN_NAMES and partners is PARTNERS:
         yield "x", "velocity", KNOWN_NAMES[text]
-    for word, other in PARTNERS.items():
+    for word, other in partners.items():
         # A letter may be part of a name, as in uo, u10, UVEL or VSDX; in a text it is a word.
-        glued = source == "name"
-        pattern = rf"{word}" if glued else rf"(?<![a-z0-9]){word}(?![a-z0-9])"
+        pattern = word if source == "name" else rf"(?<![a-z0-9]){word}(?![a-z0-9])"
         for found in re.finditer(pattern, text):
             a, b = found.span()
             yield word, f"{text[:a]}_{text[b:]}".strip("_"), text[:a] + other + text[b:]
@@ -253,7 +253,8 @@ def _no_pair(datasets: Sequence[xr.Dataset]) -> str:
     arrays = [a for ds in datasets for a in ds.data_vars.values() if _may_be_component(a)]
     for u in arrays:
         for source in ("standard_name", "long_name", "name"):
-            parted = [*_partners(_text(u, source), source), *_reversed(_text(u, source), source)]
+            text = _text(u, source)
+            parted = [*_partners(text, source), *_partners(text, source, FIRST_OF)]
             alone = [
                 wanted for _, rest, wanted in parted if _rank(u, source, rest) not in (None, 5, 6)
             ]
@@ -269,13 +270,3 @@ def _no_pair(datasets: Sequence[xr.Dataset]) -> str:
         "no two variables are known as the components of a velocity; there are "
         f"{names or 'none with two axes'}. Name them, as in u=..., v=..."
     )
-
-
-def _reversed(text: str, source: str) -> Iterator[tuple[str, str, str]]:
-    """Give the same from the second component."""
-    for first, second in PARTNERS.items():
-        glued = source == "name"
-        pattern = rf"{second}" if glued else rf"(?<![a-z0-9]){second}(?![a-z0-9])"
-        for found in re.finditer(pattern, text):
-            a, b = found.span()
-            yield second, f"{text[:a]}_{text[b:]}".strip("_"), text[:a] + first + text[b:]

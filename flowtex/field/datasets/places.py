@@ -16,7 +16,7 @@ from flowtex.errors import FieldError
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["Places", "find_places", "over_sphere"]
+__all__ = ["LATITUDE", "LONGITUDE", "Places", "find_places", "over_sphere"]
 
 LONGITUDE = re.compile(
     r"^(nav_lon|(.*_)?lon(gitude)?(_\w+)?|lon[a-z]?|xlong.*|glam\w?|geolon\w*|[tu]long|xc|xg)$",

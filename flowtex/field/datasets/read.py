@@ -5,6 +5,7 @@ Nothing but coordinates and one step is read here; other steps are read when the
 
 from __future__ import annotations
 
+import re
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -28,7 +29,7 @@ from flowtex.field.datasets.grids import find_grid, sea_mask, unrepeated
 from flowtex.field.datasets.maps import on_map
 from flowtex.field.datasets.notices import notify
 from flowtex.field.datasets.pairs import Pair, choose_pair, to_metres_per_second
-from flowtex.field.datasets.places import Places, over_sphere
+from flowtex.field.datasets.places import LATITUDE, LONGITUDE, Places, over_sphere
 from flowtex.field.datasets.staggered import centred
 from flowtex.field.steps import LazySteps
 
@@ -41,6 +42,11 @@ F = TypeVar("F")
 
 #: Longest name that a legend has room for.
 LONGEST_NAME = 40
+
+#: Variables that belong to the grid itself: places, sizes of cells, masks.
+OF_GRIDS = re.compile(
+    rf"{LONGITUDE.pattern}|{LATITUDE.pattern}|^(e[12][tuvf]|d[xy][tuvcg]?|[tuvf]?mask\w*)$", re.I
+)
 
 #: Steps whose components are kept, for velocity and speed are made of the same.
 MOST_READ = 4
@@ -60,6 +66,8 @@ class Recognised:
     along
         Along what the components are: ``"earth"``, or ``"grid"`` where ``ahead`` tells the ways of
         rows and columns, 1 or -1.
+    staggered
+        Whether the components lie on the sides of cells.
     grid
         Words for the kind of grid.
     coordinates
@@ -75,6 +83,7 @@ class Recognised:
     pair: Pair
     along: str
     ahead: tuple[int, int]
+    staggered: bool
     grid: str
     coordinates: str
     places: Places
@@ -239,6 +248,7 @@ def recognise(
         pair=pair,
         along="earth" if pair.along == "earth" and not (staggered and by_words) else "grid",
         ahead=(way_ahead(pair.u, rows[0]), way_ahead(pair.v, columns[1])),
+        staggered=staggered,
         grid=grid,
         coordinates=places.why,
         places=places,
@@ -361,22 +371,32 @@ def _scalars(
     rows, columns = known.cells
     used = (known.pair.u.name, known.pair.v.name)
     steps = known.u.array.shape[0] if known.u.is_series else 1
-    for name, array in ((n, a) for ds in datasets for n, a in ds.data_vars.items()):
-        at_nodes = {rows, columns} <= set(array.dims) and array.ndim <= known.pair.u.ndim
-        if name in used or name in found or not at_nodes or array.dtype.kind not in "fiu":
+    # Dimensions of one name do not tell the sides of cells from their middle.
+    aside = known.staggered and set(known.pair.u.dims) & set(known.pair.v.dims) >= {rows, columns}
+    for ds in datasets:
+        if aside and any(name in ds for name in used):
             continue
-        try:
-            section = sections([array.transpose(..., rows, columns)], choice)[0]
-        except FieldError:
-            continue  # along its axes there is no such choice
-        if section.is_series and section.array.shape[0] != steps:
-            continue
-
-        def read(number: int, section: Section = section) -> Floats:
-            return np.asarray(_values(section, number)[known.kept][known.trimmed])
-
-        found[str(name)] = read, array.attrs
+        for name, array in ds.data_vars.items():
+            at_nodes = {rows, columns} <= set(array.dims) and array.ndim <= known.pair.u.ndim
+            numbers = array.dtype.kind in "fiu" and not OF_GRIDS.match(str(name))
+            if name not in (*used, *found) and at_nodes and numbers:
+                read = _reader(known, array.transpose(..., rows, columns), steps, choice)
+                if read is not None:
+                    found[str(name)] = read, array.attrs
     return found
+
+
+def _reader(
+    known: Recognised, array: Any, steps: int, choice: Choice
+) -> Callable[[int], Floats] | None:
+    """Return what reads a step of a variable; ``None`` where it has no such steps or choice."""
+    try:
+        (section,) = sections([array], choice)
+    except FieldError:
+        return None
+    if section.is_series and section.array.shape[0] != steps:
+        return None
+    return lambda number: np.asarray(_values(section, number)[known.kept][known.trimmed])
 
 
 def _with_steps(
@@ -410,8 +430,7 @@ def _with_steps(
     seconds, _, start = as_seconds(times, "s" if times is None else "")
     data: dict[str, Any] = {}
     for name, read in scalars.items():
-        steps = LazySteps(len(numbers), partial(value, read))
-        data[name] = steps if len(numbers) > 1 else np.asarray(steps)
+        data[name] = LazySteps(len(numbers), partial(value, read))
     series = len(numbers) > 1
     return replace(
         base,

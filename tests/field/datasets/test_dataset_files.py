@@ -151,6 +151,8 @@ def test_nemo_in_three_files_and_in_two() -> None:
     field = FlowField.from_file(paths, globe=True)
     with xr.open_dataset(paths[2], decode_times=False) as places:
         lon, lat = (places[n].values[0] for n in ("glamt", "gphit"))
+    # What lies on the sides of cells, or belongs to the grid, is nothing to colour by.
+    assert not field.scalars
     assert field.projection is not None
     a, b = field.projection.lonlat(field.points)
     ok = field.valid

@@ -130,7 +130,9 @@ def test_all_times_are_there_and_read_when_they_are_shown() -> None:
         {n: (("time", "lat", "lon"), values, {"units": "cm/s"}) for n in ("uo", "vo")},
         {"time": times, "lon": lon, "lat": lat},
     )
+    ds["temperature"] = ds.uo.rename("temperature")
     field = FlowField.from_xarray(ds, globe=True)
+    assert set(field.scalars) == {"temperature"}
     assert len(field.times) == 9 and field.times[1] == 86400.0
     assert set(read) == {0}
     speed = field.at_step(4).speed
@@ -141,6 +143,21 @@ def test_all_times_are_there_and_read_when_they_are_shown() -> None:
     assert one.steady and str(one.start)[:10] == "2000-01-03"
     with pytest.raises(FieldError, match="time is '2001-01-01'; there are 2000-01-01"):
         FlowField.from_xarray(ds, time="2001-01-01")
+
+
+def test_scalars_of_one_time_are_read_when_they_are_asked_for() -> None:
+    dask = pytest.importorskip("dask.array")
+    read: list[int] = []
+
+    def block(block_info: Any) -> Any:
+        read.append(len(block_info))
+        return np.ones((30, 40))
+
+    ds = winds(np.linspace(0, 20, 40), np.linspace(0, 15, 30))
+    ds["heat"] = ("lat", "lon"), dask.map_blocks(block, chunks=(30, 40), meta=np.empty(()))
+    field = FlowField.from_xarray(ds, globe=True)
+    assert field.steady and not read
+    assert np.asarray(field.scalars["heat"]).mean() == 1 and read
 
 
 def levels() -> Any:
