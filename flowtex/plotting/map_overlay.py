@@ -47,6 +47,8 @@ class Part(NamedTuple):
 #: How much nearer than the surface lines are, and how much farther land, as a share of the
 #: distance: more than what a surface comes nearer over the width of a line when seen aslant.
 LINES_NEARER, LAND_FARTHER = 1e-2, 2e-4
+#: How much farther the globe is: coarse triangles of the surface sink by up to a quarter of a pixel.
+GLOBE_FARTHER = 5e-3
 #: Nearest that the front of the globe is drawn, as a share of the farthest.
 NEAREST = 1e-3
 #: Cells along a meridian of the globe below the surface.
@@ -143,7 +145,7 @@ class MapOverlay:
         if self._radius is not None:
             around, along = 2 * GLOBE_CELLS, GLOBE_CELLS
             globe = pv.Sphere(radius=self._radius, theta_resolution=around, phi_resolution=along)
-            meshes.append((globe, 0.0))
+            meshes.append((globe, -GLOBE_FARTHER))
         for mesh, nearer in meshes:
             if self._field.surface.on_globe:
                 mesh.point_data.active_normals = mesh.points / np.linalg.norm(

@@ -197,3 +197,23 @@ def test_a_line_along_nodes_is_not_torn() -> None:
     )
     lines = map_lines(field, has_globe=False)["graticule"]
     assert len(lines.starts) - 1 == 8  # four meridians and four parallels
+
+
+@pytest.mark.parametrize("zoom", [1.0, 4.0, 30.0])
+def test_the_globe_below_comes_through_nowhere(opengl: Any, zoom: float) -> None:
+    """However coarse the triangles are that a view takes of a fine mesh."""
+    del opengl
+    projection = Projection("globe")
+    lon, lat = np.meshgrid(np.arange(-180.0, 180.0, 0.75), np.arange(-80.0, 80.1, 0.75))
+    u, v = 10 * np.cos(np.radians(lat)), 3 * np.sin(np.radians(3 * lon))
+    field = flowtex.FlowField.from_arrays(
+        projection.positions(lon, lat), projection.vectors(lon, lat, u, v), projection=projection
+    )
+    options: dict[str, Any] = {"coastlines": False, "graticule": False, "zoom": zoom}
+    options |= {"size": (240, 180), "focus": tuple(projection.positions(20.0, 45.0))}
+    with_globe, without = (
+        flowtex.render(field, land=land, **options).astype(int) for land in ("red", None)
+    )
+    # Only beyond the last parallel is there anything of it.
+    inside = np.s_[60:150, 70:170]
+    assert np.abs(with_globe - without)[inside].max() == 0
