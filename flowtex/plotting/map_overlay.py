@@ -47,7 +47,7 @@ class Part(NamedTuple):
 #: How much nearer than the surface lines are, and how much farther land, as a share of the
 #: distance: more than what a surface comes nearer over the width of a line when seen aslant.
 LINES_NEARER, LAND_FARTHER = 1e-2, 2e-4
-#: How much farther the globe is: coarse triangles of the surface sink by up to a quarter of a pixel.
+#: How much farther the globe is: coarse triangles sink by up to a quarter of a pixel.
 GLOBE_FARTHER = 5e-3
 #: Nearest that the front of the globe is drawn, as a share of the farthest.
 NEAREST = 1e-3

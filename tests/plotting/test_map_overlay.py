@@ -210,7 +210,10 @@ def test_the_globe_below_comes_through_nowhere(opengl: Any, zoom: float) -> None
         projection.positions(lon, lat), projection.vectors(lon, lat, u, v), projection=projection
     )
     options: dict[str, Any] = {"coastlines": False, "graticule": False, "zoom": zoom}
-    options |= {"size": (240, 180), "focus": tuple(projection.positions(20.0, 45.0))}
+    options |= {
+        "size": (240, 180),
+        "focus": tuple(projection.positions(np.array(20.0), np.array(45.0))),
+    }
     with_globe, without = (
         flowtex.render(field, land=land, **options).astype(int) for land in ("red", None)
     )
