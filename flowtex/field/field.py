@@ -1,4 +1,4 @@
-"""The flow on a structured surface: nodes, velocity, times, and which nodes carry data.
+"""The flow on a surface: nodes, velocity, times, and which nodes carry data.
 
 Data are checked when a :class:`FlowField` is made, with all faults in one error; the rest of the
 package relies on it.
@@ -10,8 +10,7 @@ import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -21,11 +20,14 @@ from flowtex.earth import Projection
 from flowtex.errors import FieldError, raise_faults
 from flowtex.field.dates import as_seconds
 from flowtex.field.interpolation import every_line
+from flowtex.field.io.constructors import FieldConstructors
 from flowtex.field.metric import IndexVelocity, to_index_space
 from flowtex.field.periodic import NodalArrays, close_axes
 from flowtex.field.signs import oriented, sign_free_faults, with_equal_ends
 from flowtex.field.steps import LazySteps, Steps
 from flowtex.field.surface import Surface, known_positions
+from flowtex.field.triangles.arrays import triangle_arrays
+from flowtex.field.triangles.surface import TriangleSurface
 from flowtex.field.units import speed_unit
 from flowtex.field.validation import (
     as_numbers,
@@ -39,21 +41,24 @@ from flowtex.field.validation import (
     with_gaps,
 )
 
-if TYPE_CHECKING:
-    import xarray as xr
-
 __all__ = ["FlowField"]
 
 #: Share of the flow normal to the surface from which on the speed in it has a name of its own. The
 #: cells of a curved mesh alone give a per cent or two; at five the speeds differ by a thousandth.
 NOTABLE_SHARE = 0.05
+ALL_AT_REST = (
+    "The velocity is zero at every node, so the picture is plain noise; check the array that was "
+    "chosen and the region it covers."
+)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class FlowField:
-    """Velocity on a structured surface, steady or time-varying.
+class FlowField(FieldConstructors):
+    """Velocity on a surface, steady or time-varying.
 
-    Make one with :meth:`from_arrays`, :meth:`from_pyvista` or :meth:`from_file`. Where an axis
+    Make one with :meth:`from_arrays`, :meth:`from_triangles`, :meth:`from_pyvista`,
+    :meth:`from_xarray` or :meth:`from_file`. The nodes of a structured surface are (J, I); those
+    of triangles are one row, (1, N). Where an axis
     is periodic, the last line of nodes is the first one again; a mesh that stops one cell short
     of that gets the line appended, in every array.
 
@@ -87,6 +92,8 @@ class FlowField:
         The date at time 0, a ``datetime`` or one of cftime's, where times count from one.
     projection
         How positions follow from longitude and latitude, for a field of the Earth.
+    triangles
+        Numbers of the nodes at the corners of triangles, (M, 3); ``None`` on a structured surface.
     """
 
     points: Floats
@@ -104,6 +111,7 @@ class FlowField:
     long_names: Mapping[str, str] = field(default_factory=dict)
     start: Any = None
     projection: Projection | None = None
+    triangles: Indices | None = None
 
     @classmethod
     def from_arrays(
@@ -230,219 +238,96 @@ class FlowField:
         )
         flow.__dict__["surface"] = surface  # the same that the property would make again
         if not flow.velocity.any():
-            warnings.warn(
-                "The velocity is zero at every node, so the picture is plain noise; check the "
-                "array that was chosen and the region it covers.",
-                stacklevel=2,
-            )
+            warnings.warn(ALL_AT_REST, stacklevel=2)
         return flow
 
     @classmethod
-    def from_pyvista(
+    def from_triangles(
         cls,
-        mesh: Any,
+        points: ArrayLike,
+        triangles: ArrayLike,
+        velocity: Any,
         *,
-        vectors: str | None = None,
-        plane: str | None = None,
         times: ArrayLike | None = None,
-        periodic: str | None = None,
+        valid: ArrayLike | None = None,
+        scalars: Mapping[str, Any] | None = None,
         name: str = "",
-        sign_free: bool = False,
-        block: int | str | None = None,
+        length_unit: str = "",
+        time_unit: str = "",
+        units: Mapping[str, str] | None = None,
+        projection: Projection | None = None,
     ) -> FlowField:
-        """Make a field from a structured PyVista mesh, or from a series of them.
+        """Make a field on a surface of triangles from arrays.
 
         Parameters
         ----------
-        mesh
-            A StructuredGrid, RectilinearGrid or ImageData. A MultiBlock with one structured block
-            stands for that block. A list or tuple of meshes, a MultiBlock of several grids with
-            the same nodes, and a PyVista reader with time values are time steps.
-        vectors
-            Name of the velocity on points or cells, with 2 or 3 components. By default the only
-            array that can be the velocity, or the one that the mesh marks as its active vectors.
-            Two or three arrays of one component are named with commas between, as in
-            ``"u,v,w"``, and found where there is no array of vectors, if their names differ in the
-            component alone, such as ``X Velocity``, ``Y Velocity`` and ``Z Velocity``.
-        plane
-            Surface to draw from a mesh of three dimensions: ``"k=20"``, ``"j=0"`` or ``"i=-1"``,
-            counted from the end when negative. On a k-plane the surface's (i, j) are the mesh's
-            (i, j), on a j-plane (i, k), on an i-plane (j, k). A mesh with one flat index
-            direction needs none, and follows the same table.
-        times
-            Time of each step, (T,). By default the reader's time values, or ``TimeValue`` in the
-            field data of every step, or 0, 1, 2, ...
-        periodic, name, sign_free
+        points
+            Node positions, (N, 2) or (N, 3), in any unit of length.
+        triangles
+            Numbers of the nodes at the corners of each triangle, (M, 3). They may face either way,
+            have borders, come in several parts, and share an edge with more than one other.
+        velocity
+            Velocity at the nodes, (N, 2 or 3), or (T, N, 2 or 3) for a field that varies in time,
+            in units of length per unit of time. NaN and masked entries blank a node. What of it
+            is normal to the surface is not drawn (:attr:`normal_share`).
+        times, name, length_unit, time_unit, units, projection
             As for :meth:`from_arrays`.
-        block
-            Number or path of the block to draw of a MultiBlock, such as ``"Base/Zone 1"``. Numbers
-            count the structured grids from 0.
+        valid
+            Nodes that carry data, (N,). All of them by default.
+        scalars
+            Further nodal arrays, name to (N,) or (T, N), to colour by.
 
         Returns
         -------
         FlowField
-            Positions in the mesh's units. Arrays with one component become ``scalars``; those on
-            cells, and vectors on cells, become means of the visible cells around each node.
+            Its nodes are those that triangles use; nodes of borders that lie at one place are one,
+            with the mean of what they have.
 
         Raises
         ------
         FieldError
-            When the mesh is not structured, when the plane or the vectors have to be chosen or do
-            not exist, when the steps of a series differ in their nodes, and for what
-            :meth:`from_arrays` refuses.
-
-        Notes
-        -----
-        Hidden are points and cells that VTK's ghost arrays hide, points with ``IBlank`` 0
-        (PLOT3D), and points that a sampling filter marked in ``vtkValidPointMask``. The mesh is
-        not changed.
-        """
-        from flowtex.field.io.from_pyvista import read_meshes
-
-        options: dict[str, Any] = {"periodic": periodic, "sign_free": sign_free}
-        arguments = read_meshes(
-            mesh, vectors=vectors, plane=plane, times=times, block=block, **options
-        )
-        return cls.from_arrays(**arguments, name=name, **options)
-
-    @classmethod
-    def from_file(
-        cls,
-        path: str | Path | Sequence[str | Path],
-        *,
-        vectors: str | None = None,
-        plane: str | None = None,
-        periodic: str | None = None,
-        time: float | str | None = None,
-        block: int | str | None = None,
-        sign_free: bool = False,
-        projection: str | None = None,
-        globe: bool = False,
-        level: float | str | None = None,
-        sel: Mapping[str, Any] | None = None,
-        isel: Mapping[str, Any] | None = None,
-    ) -> FlowField:
-        """Make a field from a file, or from several that belong together.
-
-        Parameters
-        ----------
-        path
-            A structured mesh in any format that PyVista reads, or a PLOT3D grid or solution. The
-            other one of the two is found beside it by its name: ``postxyz.bin`` and
-            ``postq.bin``, ``wing.xyz`` (or ``.x``, ``.g``) and ``wing.q``. Or data of the Earth:
-            NetCDF, a Zarr store, GRIB, or the JSON of wind maps; of these several at once, as the
-            parts of a model's output or the steps of a series.
-        vectors
-            Name of the velocity, as for :meth:`from_pyvista`. A PLOT3D solution gives
-            ``Velocity``, made from its density and momentum.
-        plane, periodic, sign_free
-            As for :meth:`from_pyvista`.
-        time
-            Draw this one of the times in the file, as a steady field. All of them by default.
-        block
-            Number or path of the block to draw, such as ``"Base/Zone 1"``, where the file has
-            several grids. Numbers count the structured grids from 0.
-        projection, globe, level, sel, isel
-            As for :meth:`from_xarray`, for data of the Earth.
-
-        Returns
-        -------
-        FlowField
-            Its ``name`` is the file's, without folder and suffix.
-
-        Raises
-        ------
-        FieldError
-            When the file is missing, empty, not readable, of an unknown or broken format, or does
-            not hold a structured flow; the text starts with the path.
-        """
-        from flowtex.field.io.file_fields import field_of_file
-
-        of_meshes = {"plane": plane, "block": block, "periodic": periodic, "sign_free": sign_free}
-        of_earth: dict[str, Any] = {"projection": projection, "globe": globe, "level": level}
-        of_earth |= {"sel": sel, "isel": isel}
-        field: FlowField = field_of_file(cls, path, vectors, time, of_meshes, of_earth)
-        return field
-
-    @classmethod
-    def from_xarray(
-        cls,
-        data: xr.Dataset | Sequence[xr.Dataset],
-        u: str | None = None,
-        v: str | None = None,
-        *,
-        projection: str | None = None,
-        globe: bool = False,
-        name: str = "",
-        sel: Mapping[str, Any] | None = None,
-        isel: Mapping[str, Any] | None = None,
-        **selection: Any,
-    ) -> FlowField:
-        """Make a field from a dataset of xarray's, as ocean and weather models write them.
-
-        Parameters
-        ----------
-        data
-            A Dataset, or several that belong together, such as NEMO's files of U, of V and of
-            coordinates. Nothing but coordinates and one step is read at once; further steps are
-            read when they are drawn.
-        u, v
-            Names of the components. By default the only pair that is likely to be the velocity,
-            by CF's standard names, long names and names.
-        projection
-            A flat map, or ``"globe"``; see :class:`flowtex.earth.Projection`. By default plate
-            carree around the middle of the data, and a polar one near a pole.
-        globe
-            Whether it is put on a sphere: the same as ``projection="globe"``.
-        name
-            A word for captions.
-        sel, isel
-            What to draw along axes, by value and by number, such as ``sel={"level": 500}``.
-        **selection
-            The same as ``sel``, such as ``level=500`` or ``time="2000-01-02"``. ``time`` and
-            ``level`` stand for those axes whatever their names. All times by default, the level
-            nearest to the surface, and the first along any other axis.
-
-        Returns
-        -------
-        FlowField
-            On longitude and latitude its positions are metres on the map, and its velocity in m/s
-            is mapped along; else they are those of the x and y coordinates. Components on the
-            sides of cells (Arakawa C) become means in the middle. Other variables at the same
-            nodes are ``scalars``; on a flat map ``"speed"`` is that on the Earth.
-
-        Raises
-        ------
-        FieldError
-            When the components, the coordinates or what is chosen cannot be told.
-        ModuleNotFoundError
-            When xarray, cf_xarray or pyproj is missing.
+            When the arrays do not make a field. The error lists all faults.
 
         Warns
         -----
-        DatasetNotice
-            When something was chosen without being asked for, such as a level.
+        UserWarning
+            When triangles without area, or there twice, are left out, or the velocity is zero
+            everywhere.
         """
-        from flowtex.field.datasets.read import field_of
-
-        if globe and projection not in (None, "globe"):
-            msg = f"globe=True and projection={projection!r} are given; leave out one of them"
-            raise FieldError(msg)
-        options: dict[str, Any] = {"sel": {**(sel or {}), **selection}, "isel": isel}
-        return field_of(
-            cls.from_arrays,
-            data,
-            u,
-            v,
-            projection="globe" if globe else projection,
+        times, time_unit, start = as_seconds(times, time_unit)
+        t = None if times is None else with_gaps("times", times)
+        arrays = triangle_arrays(points, triangles, velocity, t, valid, scalars or {})
+        count = len(arrays.velocity)
+        flow = cls(
+            points=arrays.points,
+            velocity=arrays.velocity,
+            times=np.arange(count, dtype=float) if t is None else t.copy(),
+            valid=arrays.valid,
+            periodic=(False, False),
+            scalars=arrays.scalars,
             name=name,
-            **options,
+            length_unit=length_unit,
+            time_unit=time_unit,
+            units=dict(units or {}),
+            start=start,
+            projection=projection,
+            triangles=arrays.triangles,
         )
+        if not flow.velocity.any():
+            warnings.warn(ALL_AT_REST, stacklevel=2)
+        return flow
 
     @property
     def shape(self) -> tuple[int, int]:
         """Number of nodes (J, I)."""
         return self.valid.shape[0], self.valid.shape[1]
+
+    @property
+    def size_text(self) -> str:
+        """How many nodes there are, in words, such as ``"120 x 70 nodes (I x J)"``."""
+        if self.triangles is not None:
+            return f"{self.shape[1]:,} nodes, {len(self.triangles):,} triangles"
+        return f"{self.shape[1]} x {self.shape[0]} nodes (I x J)"
 
     @property
     def nbytes(self) -> int:
@@ -463,6 +348,8 @@ class FlowField:
             # Positions that were filled in must not pass for known ones: tangents would bend.
             points = np.where(known[..., None], points, np.nan)
         on_globe = self.projection is not None and self.projection.is_globe
+        if self.triangles is not None:
+            return TriangleSurface(self.points, self.triangles, self.valid, on_globe=on_globe)
         return Surface(points, self.valid, self.periodic, on_globe=on_globe)
 
     @cached_property
@@ -587,11 +474,10 @@ class FlowField:
         )
 
     def __repr__(self) -> str:
-        rows, columns = self.shape
         steps = "steady" if self.steady else f"{len(self.times)} steps"
         closed = "".join(a for a, p in zip("ji", self.periodic, strict=True) if p)[::-1]
         return (
-            f"FlowField({self.name or 'unnamed'}: {columns} x {rows} nodes (I x J), {steps}"
+            f"FlowField({self.name or 'unnamed'}: {self.size_text}, {steps}"
             f"{f', periodic {closed}' if closed else ''}{', sign-free' if self.sign_free else ''}, "
             f"{int((~self.valid).sum())} blanked)"
         )

@@ -28,6 +28,7 @@ __all__ = [
     "scalar_steps",
     "shape_faults",
     "three_components",
+    "time_faults",
     "with_gaps",
 ]
 
@@ -119,7 +120,7 @@ def shape_faults(
         )
     faults += _velocity_faults(v, grid)
     if not faults:
-        faults += _time_faults(times, len(v) if v.ndim == 4 else 1)
+        faults += time_faults(times, len(v) if v.ndim == 4 else 1)
     if valid is not None and np.shape(valid) != grid:
         faults.append(f"valid has shape {np.shape(valid)}; expected {grid} as points has")
     allowed = [grid, (len(v) if v.ndim == 4 else 1, *grid)]
@@ -152,7 +153,8 @@ def _velocity_faults(v: Floats, grid: tuple[int, ...]) -> list[str]:
     ]
 
 
-def _time_faults(t: Floats | None, count: int) -> list[str]:
+def time_faults(t: Floats | None, count: int) -> list[str]:
+    """Return faults in the times of so many steps, where they are given."""
     if t is None:
         return []
     if t.shape != (count,):

@@ -1,0 +1,201 @@
+"""From what a caller has of triangles to arrays that make a field, and what had to be left out."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.sparse import csr_array
+
+from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex.errors import FieldError, raise_faults
+from flowtex.field.steps import Steps, map_steps
+from flowtex.field.triangles.topology import merged_nodes, triangle_normals
+from flowtex.field.validation import (
+    as_numbers,
+    finite_nodes,
+    range_faults,
+    scalar_steps,
+    three_components,
+    time_faults,
+    with_gaps,
+)
+
+__all__ = ["TriangleArrays", "nodal_means", "triangle_arrays"]
+
+#: Twice the area of a triangle over the square of its longest side, below which it has none.
+FLAT_TRIANGLE = 1e-12
+
+
+@dataclass
+class TriangleArrays:
+    """Arrays of a field: nodes are a row, (1, N), as :mod:`flowtex.field.triangles` says."""
+
+    points: Floats
+    triangles: Indices
+    velocity: Steps
+    valid: Bools
+    scalars: dict[str, Steps]
+
+
+def triangle_arrays(
+    points: ArrayLike,
+    triangles: ArrayLike,
+    velocity: Any,
+    times: Floats | None,
+    valid: ArrayLike | None,
+    scalars: Mapping[str, Any],
+) -> TriangleArrays:
+    """Check arrays, join what lies at one place, and leave out what cannot be drawn, with a word.
+
+    Parameters and errors are those of :meth:`FlowField.from_triangles`.
+    """
+    p, masked_points = as_numbers("points", points)
+    v, masked = as_numbers("velocity", velocity)
+    corners = np.asarray(triangles)
+    shown = None if valid is None else np.nan_to_num(with_gaps("valid", valid)) != 0
+    given = {name: with_gaps(f"scalars[{name!r}]", s) for name, s in scalars.items()}
+    raise_faults(_faults(p, corners, v, times, shown, given))
+    p = three_components(p)
+    v = three_components(v)
+    v = (v[None] if v.ndim == 2 else v)[:, None]  # (T, 1, N, 3)
+    data = {name: scalar_steps(s, (1, len(p))) for name, s in given.items()}
+    known = finite_nodes(p[None])[0] & ~masked_points & finite_nodes(v)[0] & ~masked
+    ok: Bools = np.asarray(known if shown is None else known & shown)
+    v = np.asarray(np.where(ok[:, None], v, np.nan))
+    raise_faults(range_faults(p[None], v, ok[None]))
+    corners = _usable(p, corners.astype(np.intp))
+    if not (ok[corners].all(axis=1)).any():
+        msg = (
+            f"{int(ok.sum())} of {ok.size} nodes are usable, and none of the triangles has three "
+            "of them; check the triangles and what is masked"
+        )
+        raise FieldError(msg)
+    # What is not known about a place must not be computed with.
+    p = np.where(finite_nodes(p[None])[0][:, None], p, np.mean(p[ok], axis=0))
+    same = merged_nodes(p, corners)
+    corners = same[corners]
+    corners = corners[_solid(p, corners)]
+    used = np.unique(corners)
+    number = np.full(len(p), -1, dtype=np.intp)
+    number[used] = np.arange(len(used))
+    if len(used) < len(p):
+        ok, v, data = _joined(number[same], len(used), ok, v, data)
+        p = p[used]
+    v = np.where(ok[:, None], v, 0.0)
+    return TriangleArrays(p[None].copy("C"), number[corners], v, ok[None], data)
+
+
+def _faults(
+    p: Floats,
+    corners: Any,
+    v: Floats,
+    times: Floats | None,
+    valid: Any,
+    scalars: Mapping[str, Floats],
+) -> list[str]:
+    if p.ndim != 2 or p.shape[-1] not in (2, 3) or not len(p):
+        return [f"points has shape {p.shape}; expected (N, 2) or (N, 3), one row for each node"]
+    faults, count = [], len(p)
+    if corners.ndim != 2 or corners.shape[-1] != 3 or corners.dtype.kind not in "iu":
+        faults.append(
+            f"triangles has shape {corners.shape} of {corners.dtype}; expected (M, 3) whole "
+            "numbers, those of the nodes at the corners of each triangle"
+        )
+    elif not len(corners):
+        faults.append("triangles is empty; expected (M, 3) numbers of nodes")
+    elif corners.min() < 0 or corners.max() >= count:
+        wrong = int(corners.min() if corners.min() < 0 else corners.max())
+        faults.append(f"triangles has node {wrong}; expected 0 to {count - 1}, as points has rows")
+    if v.ndim not in (2, 3) or v.shape[-2] != count or v.shape[-1] not in (2, 3) or not len(v):
+        faults.append(
+            f"velocity has shape {v.shape}; expected ({count}, 3) for a steady field or "
+            f"(T, {count}, 3) for one that varies in time, with points {p.shape}"
+        )
+    else:
+        faults += time_faults(times, len(v) if v.ndim == 3 else 1)
+    steps = len(v) if v.ndim == 3 else 1
+    if valid is not None and valid.shape != (count,):
+        faults.append(f"valid has shape {valid.shape}; expected ({count},) as points has rows")
+    for name, array in scalars.items():
+        if array.shape not in ((count,), (steps, count)):
+            faults.append(
+                f"scalars[{name!r}] has shape {array.shape}; expected ({count},) or "
+                f"({steps}, {count}), as points and velocity have"
+            )
+    return faults
+
+
+def _solid(p: Floats, corners: Indices) -> Bools:
+    """Which triangles have an area."""
+    a, b, c = (p[corners[:, k]] for k in range(3))
+    longest = np.max([np.sum((x - y) ** 2, axis=-1) for x, y in ((a, b), (b, c), (c, a))], axis=0)
+    area = np.linalg.norm(triangle_normals(p, corners), axis=-1)
+    return np.asarray(area > FLAT_TRIANGLE * longest)
+
+
+def _usable(p: Floats, corners: Indices) -> Indices:
+    """Triangles with an area, each once; what is left out is told."""
+    known = np.asarray(finite_nodes(p[None])[0][corners].all(axis=1))
+    good = known.copy()
+    good[known] = _solid(p, corners[known])
+    nodes = np.sort(corners, axis=1)
+    order = np.lexsort(nodes.T)
+    once = np.ones(len(corners), dtype=bool)
+    once[order[1:]] = (nodes[order[1:]] != nodes[order[:-1]]).any(axis=1)
+    words = [
+        (int((known & ~good).sum()), "without area"),
+        (int((good & ~once).sum()), "there twice"),
+        (int((~known).sum()), "at points that are not finite"),
+    ]
+    told = ", ".join(f"{count:,} {what}" for count, what in words if count)
+    if told:
+        warnings.warn(f"triangles are left out: {told}", stacklevel=4)
+    return corners[good & once]
+
+
+def nodal_means(
+    values: Steps, triangles: Indices, areas: Floats, nodes: int, known: Bools | None = None
+) -> Steps:
+    """Means at the nodes, (T, N, ...), of values at triangles (T, M, ...), by area.
+
+    Those that are not ``known`` (M,) count for nothing; a node without any has NaN.
+    """
+    weights = areas if known is None else np.where(known, areas, 0.0)
+    columns = np.repeat(np.arange(len(triangles)), 3)
+    matrix = csr_array(
+        (np.repeat(weights, 3), (triangles.ravel(), columns)), shape=(nodes, len(triangles))
+    )
+    total = matrix.sum(axis=1)
+    share = np.divide(1.0, total, out=np.full(nodes, np.nan), where=total > 0)
+
+    def means(step: Floats) -> Floats:
+        flat = step.reshape(len(step), -1)
+        if known is not None:
+            flat = np.where(known[:, None], flat, 0.0)
+        return np.asarray((matrix @ flat) * share[:, None]).reshape(nodes, *step.shape[1:])
+
+    return map_steps(values, means)
+
+
+def _joined(
+    number: Indices, count: int, ok: Bools, v: Floats, data: Mapping[str, Floats]
+) -> tuple[Bools, Floats, dict[str, Steps]]:
+    """Average what nodes at one place have; nodes with the number -1 are left out."""
+    kept = np.flatnonzero(number >= 0)
+
+    def mean(step: Floats) -> Floats:
+        flat = step[0].reshape(step.shape[1], -1)
+        known = np.isfinite(flat).all(axis=1)[kept]
+        matrix = csr_array((known.astype(float), (number[kept], kept)), shape=(count, len(number)))
+        total = matrix.sum(axis=1)[:, None]
+        sums = matrix @ np.where(np.isfinite(flat), flat, 0.0)
+        means = np.divide(sums, total, out=np.full_like(sums, np.nan), where=total > 0)
+        return np.asarray(means.reshape(1, count, *step.shape[2:]))
+
+    some = np.bincount(number[kept], ok[kept], count) > 0
+    return some, map_steps(v, mean), {name: map_steps(s, mean) for name, s in data.items()}

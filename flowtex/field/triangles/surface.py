@@ -1,0 +1,125 @@
+"""A surface of triangles in space: its nodes, normals, sizes of cells, and points on it.
+
+Its tangents at the nodes are two orthonormal vectors of the tangent plane, so that components of a
+velocity "along i and j" are lengths there, and what is computed with tangents holds for both kinds
+of surfaces.
+
+A point of the surface is told by two numbers as (i, j), as on a structured surface: j is the number
+of the triangle plus the share of its second corner, i the share of its third.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+
+from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex.field.surface import Surface
+from flowtex.field.triangles.topology import flipped, neighbours, triangle_normals
+
+__all__ = ["TriangleSurface"]
+
+#: Greatest share of a second corner, by which no next triangle is meant.
+MOST_SHARE = 1 - 1e-7
+
+
+class TriangleSurface(Surface):
+    """Nodes of a surface of triangles, (1, N, 3), in the mesh's own units.
+
+    ``triangles`` (M, 3) are numbers of nodes, and ``valid`` (1, N) marks nodes that carry data.
+    """
+
+    poles = None
+
+    def __init__(
+        self, points: Floats, triangles: Indices, valid: Bools, *, on_globe: bool = False
+    ) -> None:
+        self.points, self.triangles, self.valid = points, triangles, valid
+        self.on_globe = on_globe
+        self.periodic = (False, False)
+        self.has_position = np.ones(valid.shape, dtype=bool)
+        self.offset = np.zeros((2, 3))
+
+    @cached_property
+    def cells(self) -> Bools:
+        """Triangles whose three nodes are valid, (M,)."""
+        return np.asarray(self.valid[0][self.triangles].all(axis=1))
+
+    @cached_property
+    def neighbours(self) -> Indices:
+        """The triangle across the edge opposite to each corner, (M, 3), -1 at a border."""
+        return neighbours(self.points[0], self.triangles)
+
+    @cached_property
+    def crosses(self) -> Floats:
+        """Normals of the triangles, (M, 3), as long as twice their areas; neighbours face alike."""
+        crosses = triangle_normals(self.points[0], self.triangles)
+        crosses[flipped(self.triangles, self.neighbours)] *= -1
+        return crosses
+
+    @cached_property
+    def normals(self) -> Floats:
+        """Unit normals at the nodes, (1, N, 3): means by the angles of the triangles there."""
+        total = np.zeros(self.points.shape[1:])
+        length = np.linalg.norm(self.crosses, axis=1, keepdims=True)
+        unit = np.divide(self.crosses, length, out=np.zeros_like(self.crosses), where=length > 0)
+        corners = self.points[0][self.triangles]
+        for k in range(3):
+            one = corners[:, (k + 1) % 3] - corners[:, k]
+            two = corners[:, (k + 2) % 3] - corners[:, k]
+            angle = np.arctan2(length[:, 0], np.einsum("mc,mc->m", one, two))
+            for axis in range(3):
+                weights = angle * unit[:, axis]
+                total[:, axis] += np.bincount(self.triangles[:, k], weights, len(total))
+        size = np.linalg.norm(total, axis=1, keepdims=True)
+        away = np.divide(total, size, out=np.zeros_like(total), where=size > 1e-12)
+        away[size[:, 0] <= 1e-12] = (0.0, 0.0, 1.0)
+        return np.asarray(away[None])
+
+    @cached_property
+    def tangents(self) -> Floats:
+        """Two orthonormal vectors of the tangent plane at each node, (2, 1, N, 3)."""
+        n = self.normals[0]
+        # Duff et al. 2017, Building an orthonormal basis, revisited.
+        sign = np.where(n[:, 2] < 0, -1.0, 1.0)
+        a = -1.0 / (sign + n[:, 2])
+        b = n[:, 0] * n[:, 1] * a
+        one = np.stack([1 + sign * n[:, 0] ** 2 * a, sign * b, -sign * n[:, 0]], axis=-1)
+        two = np.stack([b, sign + n[:, 1] ** 2 * a, -n[:, 1]], axis=-1)
+        return np.asarray(np.stack([one, two])[:, None])
+
+    @cached_property
+    def cell_size(self) -> Floats:
+        """Mean length of the edges at each node, (1, N)."""
+        corners = self.points[0][self.triangles]
+        total, count = np.zeros((2, self.shape[1]))
+        for k in range(3):
+            start, end = self.triangles[:, k], self.triangles[:, (k + 1) % 3]
+            length = np.linalg.norm(corners[:, (k + 1) % 3] - corners[:, k], axis=1)
+            for at in (start, end):
+                total += np.bincount(at, length, len(total))
+                count += np.bincount(at, minlength=len(total))
+        size = total / np.maximum(count, 1)
+        typical = float(np.median(size[self.valid[0]])) or 1.0
+        return np.asarray(np.maximum(size, 1e-4 * typical)[None])
+
+    def wrap(self, index: Floats) -> Floats:
+        """Return positions (..., 2) as (i, j) as they are: nothing repeats."""
+        return index
+
+    def corners_at(self, index: Floats) -> tuple[Indices, Floats]:
+        """Nodes (..., 3) and their shares (..., 3) at positions (..., 2) as (i, j)."""
+        number = np.clip(np.floor(index[..., 1]).astype(np.intp), 0, len(self.triangles) - 1)
+        second, third = index[..., 1] - number, index[..., 0]
+        return self.triangles[number], np.stack([1 - second - third, second, third], axis=-1)
+
+    def index_of(self, number: Indices, weights: Floats) -> Floats:
+        """Positions (..., 2) as (i, j) of shares (..., 3) of the corners of triangles (...)."""
+        second = np.clip(weights[..., 1], 0, MOST_SHARE)
+        return np.stack([np.clip(weights[..., 2], 0, 1), number + second], axis=-1)
+
+    def at(self, index: Floats) -> Floats:
+        """Return positions in space (..., 3) of positions (..., 2) as (i, j)."""
+        nodes, weights = self.corners_at(index)
+        return np.asarray(np.einsum("...k,...kc->...c", weights, self.points[0][nodes]))

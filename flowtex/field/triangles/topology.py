@@ -1,0 +1,136 @@
+"""How triangles are joined: shared points, neighbours across edges, and which way they face."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from flowtex._util.array_types import Bools, Floats, Indices
+
+__all__ = ["edges_of", "flipped", "merged_nodes", "neighbours", "triangle_normals"]
+
+#: Nodes on borders closer than this share of the surface's extent are one.
+SAME_NODE_SHARE = 1e-9
+
+
+def edges_of(triangles: Indices) -> Indices:
+    """Return the edge opposite to each corner, (M, 3, 2): its nodes, the lower number first."""
+    pairs = np.stack([np.roll(triangles, -1, axis=1), np.roll(triangles, 1, axis=1)], axis=-1)
+    return np.sort(pairs, axis=-1)
+
+
+def _edge_keys(triangles: Indices) -> Indices:
+    """Return a number for each edge, (3 M,), the same for the same nodes."""
+    low, high = edges_of(triangles.astype(np.int64)).reshape(-1, 2).T
+    return np.asarray(low * (int(triangles.max(initial=0)) + 1) + high)
+
+
+def merged_nodes(points: Floats, triangles: Indices) -> Indices:
+    """Return for each node (N,) the one that it is the same as: the first at its place.
+
+    Only nodes on borders are compared: others are joined to their surroundings already.
+    """
+    same = np.arange(len(points))
+    _, inverse, counts = np.unique(_edge_keys(triangles), return_inverse=True, return_counts=True)
+    lone = counts[inverse.reshape(-1, 3)] == 1
+    border = np.unique(edges_of(triangles)[lone])
+    if not len(border):
+        return same
+    near = SAME_NODE_SHARE * float(np.ptp(points[border], axis=0).max(initial=0.0))
+    # Exact twins first, which are what most files have: few are left for the tree.
+    _, first, at = np.unique(points[border], axis=0, return_index=True, return_inverse=True)
+    same[border] = border[first[at.ravel()]]
+    left = np.unique(same[border])
+    pairs: Indices = cKDTree(points[left]).query_pairs(near, output_type="ndarray")
+    for one, other in left[np.sort(pairs, axis=1)]:
+        same[same == same[other]] = same[one]
+    return same
+
+
+def triangle_normals(points: Floats, triangles: Indices) -> Floats:
+    """Return the cross product of two sides, (M, 3): the normal, as long as twice the area."""
+    a, b, c = (points[triangles[:, k]] for k in range(3))
+    return np.cross(b - a, c - a)
+
+
+def neighbours(points: Floats, triangles: Indices) -> Indices:
+    """Return the triangle across the edge opposite to each corner, (M, 3), -1 at a border.
+
+    Where more than two share an edge, the one that goes on most nearly straight is taken.
+    """
+    keys = _edge_keys(triangles)
+    order = np.argsort(keys, kind="stable")
+    ordered = keys[order]
+    starts = np.flatnonzero(np.diff(ordered, prepend=-1))
+    counts = np.diff(np.append(starts, len(ordered)))
+    result = np.full(len(keys), -1, dtype=np.intp)
+    two = starts[counts == 2]
+    one, other = order[two], order[two + 1]
+    result[one], result[other] = other // 3, one // 3
+    crowded = counts > 2
+    if crowded.any():
+        _straightest(points, triangles, order, starts[crowded], counts[crowded], result)
+    return result.reshape(-1, 3)
+
+
+def _straightest(
+    points: Floats,
+    triangles: Indices,
+    order: Indices,
+    starts: Indices,
+    counts: Indices,
+    result: Indices,
+) -> None:
+    """Write the neighbours across edges that more than two triangles share."""
+    for first, count in zip(starts, counts, strict=True):
+        sides = order[first : first + count]
+        tips = points[triangles.reshape(-1)[sides]]
+        ends = points[edges_of(triangles[sides[:1] // 3])[0, sides[0] % 3]]
+        along = ends[1] - ends[0]
+        away = tips - ends[0]
+        away -= np.outer(away @ along, along) / max(float(along @ along), np.finfo(float).tiny)
+        away /= np.maximum(np.linalg.norm(away, axis=1, keepdims=True), np.finfo(float).tiny)
+        straight = away @ away.T
+        np.fill_diagonal(straight, np.inf)
+        result[sides] = sides[np.argmin(straight, axis=1)] // 3
+
+
+def flipped(triangles: Indices, beside: Indices) -> Bools:
+    """Return which triangles (M,) face the other way than the first one of their part.
+
+    ``beside`` is from :func:`neighbours`. On a surface with one side only some are left that do.
+    """
+    ahead = np.roll(triangles, -1, axis=1)  # of the edge opposite to a corner
+    rows, corners = np.nonzero(beside >= 0)
+    other = beside[rows, corners]
+    begins = ahead[rows, corners]
+    back = np.argmax(beside[other] == rows[:, None], axis=1)
+    mutual = beside[other, back] == rows
+    # Neighbours that face alike go through their common edge in opposite directions.
+    turned = mutual & (ahead[other, back] == begins)
+    result = np.zeros(len(triangles), dtype=bool)
+    if not turned.any():
+        return result
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    # Triangles that face alike are one patch; patches are few and are walked one by one.
+    size = (len(triangles), len(triangles))
+    alike = mutual & ~turned
+    graph = coo_array((np.ones(alike.sum()), (rows[alike], other[alike])), shape=size)
+    count, patch = connected_components(graph, directed=False)
+    near: dict[int, set[int]] = {}
+    for one, two in np.unique(np.stack([patch[rows[turned]], patch[other[turned]]], -1), axis=0):
+        near.setdefault(int(one), set()).add(int(two))
+    side = np.full(count, -1)
+    for start in range(count):
+        if side[start] >= 0:
+            continue
+        side[start], waiting = 0, [start]
+        while waiting:
+            here = waiting.pop()
+            for there in near.get(here, ()):
+                if side[there] < 0:
+                    side[there] = 1 - side[here]
+                    waiting.append(there)
+    return np.asarray(side[patch] == 1)
