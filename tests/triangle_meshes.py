@@ -5,9 +5,11 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import Delaunay
 
+from flowtex import FlowField
 from flowtex._util.array_types import Floats, Indices
+from flowtex.field.triangles.surface import TriangleSurface
 
-__all__ = ["cube", "random_plane", "soup", "sphere"]
+__all__ = ["cube", "random_plane", "soup", "sphere", "surface_of"]
 
 Mesh = tuple[Floats, Indices]
 
@@ -49,3 +51,9 @@ def soup(rng: np.random.Generator, mesh: Mesh) -> Mesh:
     turned = rng.random(len(triangles)) < 0.5
     mixed = np.where(turned[:, None], triangles[:, ::-1], triangles)
     return points[mixed].reshape(-1, 3), np.arange(mixed.size).reshape(-1, 3)
+
+
+def surface_of(field: FlowField) -> TriangleSurface:
+    """Return the surface of a field of triangles."""
+    assert isinstance(field.surface, TriangleSurface)
+    return field.surface

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from triangle_meshes import cube, random_plane, soup, sphere
+from triangle_meshes import cube, random_plane, soup, sphere, surface_of
 
 from flowtex import FlowField
 from flowtex.field.locate import locate, locator, surface_point
@@ -21,7 +21,7 @@ def rotating(mesh: tuple[np.ndarray, np.ndarray]) -> FlowField:
 def test_a_sphere_is_known(rng: np.random.Generator) -> None:
     for mesh in (sphere(4), soup(rng, sphere(4))):
         field = rotating(mesh)
-        surface = field.surface
+        surface = surface_of(field)
         outward = np.einsum("jic,jic->ji", surface.normals, surface.points)
         np.testing.assert_allclose(np.abs(outward), 1, atol=1e-5)
         assert (np.sign(outward) == np.sign(outward[0, 0])).all()
@@ -47,7 +47,7 @@ def test_a_plane_is_flat_wherever_it_lies(rng: np.random.Generator) -> None:
     turn, _ = np.linalg.qr(rng.normal(size=(3, 3)))
     field = FlowField.from_triangles(points @ turn + [3.0, 1, 7], triangles, points)
     assert field.surface.frame is not None
-    assert np.linalg.norm(field.surface.crosses, axis=1).sum() == pytest.approx(2)
+    assert np.linalg.norm(surface_of(field).crosses, axis=1).sum() == pytest.approx(2)
     sizes = field.surface.cell_size
     assert sizes.max() > 30 * sizes.min()
 
@@ -57,7 +57,7 @@ def test_a_point_of_the_surface_is_found_again(seed: int) -> None:
     rng = np.random.default_rng(seed)
     meshes = (sphere(3), cube(5), random_plane(rng, 100, grading=300))
     field = rotating(meshes[seed % 3])
-    surface = field.surface
+    surface = surface_of(field)
     count = len(surface.triangles)
     shares = rng.dirichlet([0.5, 0.5, 0.5], 50)
     index = surface.index_of(rng.integers(0, count, 50), shares)
