@@ -371,11 +371,19 @@ class PointInfo(Controller):
         x, y = numbers
         self.hover(None if x is None or y is None else (x, y))
 
-    def take_point(self, index: Any) -> None:
-        """Show the path through a point that the browser's client tells, (i, j)."""
-        rows, columns = self.viewport.field.shape
-        if _is_pair(index):
-            i, j = number(index[0], 0, columns - 1), number(index[1], 0, rows - 1)
+    def take_point(self, point: Any) -> None:
+        """Show the path through a point that the browser's client tells.
+
+        It is told as (i, j), and on a surface of triangles as (x, y, z).
+        """
+        field = self.viewport.field
+        if field.triangles is not None:
+            place = [number(x) for x in point] if isinstance(point, list) else []
+            if len(place) == 3 and None not in place:
+                self.show_path(locate(field, place, tolerance=np.inf))
+        elif _is_pair(point):
+            rows, columns = field.shape
+            i, j = number(point[0], 0, columns - 1), number(point[1], 0, rows - 1)
             if i is not None and j is not None:
                 self.show_path((j, i))
 

@@ -31,7 +31,7 @@ from flowtex.rendering.webgl.earth import dates_of, earth_header, earth_parts
 from flowtex.rendering.webgl.packing import Packing, half, packing_of
 from flowtex.rendering.webgl.protocol import FORMAT, Header, Parts
 from flowtex.settings import TABLE, Settings
-from flowtex.textures import PaperTextures, TextureSet
+from flowtex.textures import PaperTextures, TextureSet, TriangleGeometry
 from flowtex.tiles import PATH_CELLS, TILE_BLOCKS, Pyramid, TileKey
 
 __all__ = ["ClientData", "Colours", "tile_parts"]
@@ -242,7 +242,10 @@ class ClientData:
             parts["cmap"] = np.ascontiguousarray(colours.table, np.uint8)
         if colours.choices:
             parts["maps"] = np.stack([colour_table(name)[:, :3] for name in CMAPS])
-        if not geometry.cells.all():
+        if isinstance(geometry, TriangleGeometry):
+            parts["blocks"] = geometry.blocks.astype("<u2")
+            parts["triangles"] = geometry.triangles.astype("<u4")
+        elif not geometry.cells.all():
             parts["cells"] = geometry.cells.astype(np.uint8)
         if not geometry.planar:
             parts["normal"] = np.rint(geometry.normal * NORMAL_MAX).astype("<i2")
@@ -312,7 +315,7 @@ class ClientData:
     def nbytes_of_step(self) -> int:
         """Bytes of the arrays of one destination time, known before anything is traced."""
         geometry = self.textures.geometry
-        texels = geometry.rows.size * geometry.columns.size
+        texels = int(np.prod(geometry.size))
         nodes = int(np.prod(geometry.shape))
         numbers = self.textures.count * self.packing.channels + len(self.packing.extra)
         return 2 * texels * numbers + 4 * nodes * len(self._values)
@@ -334,6 +337,9 @@ class ClientData:
     @cached_property
     def _mesh(self) -> Floats32:
         """Return what the client chooses its triangles by, of each tile."""
+        geometry = self.textures.geometry
+        if isinstance(geometry, TriangleGeometry):
+            return geometry.block_places.astype("<f4")  # of one level, which has no errors
         levels = MeshLevels.of(self.textures)
         shares: list[Floats] = []
         for number, values in self._values.items():
@@ -347,10 +353,16 @@ class ClientData:
 
     def _geometry(self) -> dict[str, Any]:
         geometry = self.textures.geometry
+        has_triangles = isinstance(geometry, TriangleGeometry)
+        before = (0, 0) if has_triangles else (geometry.rows.before, geometry.columns.before)
+        rows, columns = (
+            {"before": int(b), "size": int(n)} for b, n in zip(before, geometry.size, strict=True)
+        )
         return {
+            "triangles": has_triangles,
             "shape": [int(n) for n in geometry.shape],
-            "rows": {"before": int(geometry.rows.before), "size": int(geometry.rows.size)},
-            "columns": {"before": int(geometry.columns.before), "size": int(geometry.columns.size)},
+            "rows": rows,
+            "columns": columns,
             "levels": int(geometry.levels),
             "periodic": [bool(p) for p in geometry.periodic],
             "planar": geometry.planar,
@@ -417,11 +429,12 @@ def tile_parts(key: TileKey, tile: ClientData | None, *steps: int) -> Parts:
 
 def _pyramid(pyramid: Pyramid, finest: int) -> dict[str, Any]:
     """Return what a client chooses the tiles by, beside the places of their blocks."""
+    levels = range(pyramid.depth + 1)
     return {
         "depth": pyramid.depth,
         "finest": finest,
-        "blocks": list(pyramid.blocks),
-        "shapes": [list(pyramid.shape(level)) for level in range(pyramid.depth + 1)],
+        "blocks": [list(pyramid.places(level).shape[:2]) for level in levels],
+        "shapes": [list(pyramid.shape(level)) for level in levels],
         "tileBlocks": TILE_BLOCKS,
         "cellPixels": CELL_PIXELS,
         "pathCells": PATH_CELLS,
