@@ -178,8 +178,7 @@ class TextureSet:
         """Texels of the slice texture for one destination time, (layers, H, W, 4)."""
         whole = self.store.at(step)
         slices, tangent = whole.part(*self.geometry.texels), self._tangent(whole)
-        size = (self.geometry.rows.size, self.geometry.columns.size)
-        result = np.empty((self.count, *size, 4), np.float32)
+        result = np.empty((self.count, *self.geometry.size, 4), np.float32)
 
         def make(layer: int) -> None:
             nodal = self._nodal(slices, tangent, layer)
