@@ -379,8 +379,9 @@ class PointInfo(Controller):
         field = self.viewport.field
         if field.triangles is not None:
             place = [number(x) for x in point] if isinstance(point, list) else []
-            if len(place) == 3 and None not in place:
-                self.show_path(locate(field, place, tolerance=np.inf))
+            known = [x for x in place if x is not None]
+            if len(known) == len(place) == 3:
+                self.show_path(locate(field, known, tolerance=np.inf))
         elif _is_pair(point):
             rows, columns = field.shape
             i, j = number(point[0], 0, columns - 1), number(point[1], 0, rows - 1)
