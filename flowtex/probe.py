@@ -181,10 +181,15 @@ def probe(
     state = ViewState(between=between, clock=clock, density=density)
     state = view_state(view.textures, camera, state, (before, after))
     values = uniforms(view.textures, view.settings, state)
-    fragments = Fragments.of(view.textures, cover_place(surface, place, camera, size))
     field_values = values_at(view.field, place.index, view.time)
+    textures = view.textures
+    if (drawn := textures.geometry.field) is not view.field:
+        # Of a large field a coarser form is at hand, on which the point has another place.
+        nearest, _ = locator(drawn).nearest(field_values.position[None])
+        surface, place = drawn.surface, surface_point(drawn.surface, nearest[0])
+    fragments = Fragments.of(textures, cover_place(surface, place, camera, size))
     setting = view.settings.samples
-    return _Pixel(view.textures, (before, after), fragments, values, field_values, setting).probe()
+    return _Pixel(textures, (before, after), fragments, values, field_values, setting).probe()
 
 
 class _Pixel:

@@ -378,7 +378,8 @@ class Scene:
 
         Its colours have the range of this one.
         """
-        field = share_field(coarsened_field(self.field, nodes))
+        whole = self.field if self.field.triangles is None else self.whole
+        field = share_field(coarsened_field(whole, nodes))
         scene = Scene(field)
         limits = None if self.scalar_name is None else self.scalar_limits
         scene._appearance = replace(self.appearance, clim=limits)
@@ -507,12 +508,14 @@ def share_field(field: FlowField) -> FlowField:
     words = (*names, field.periodic, field.sign_free, str(field.start), field.projection)
     units = tuple(field.units.items())
     positions = () if field.has_position is None else (field.has_position,)
-    given = (field.points, field.velocity, field.times, field.valid, *positions)
+    joined = () if field.triangles is None else (field.triangles,)
+    given = (field.points, field.velocity, field.times, field.valid, *positions, *joined)
     given += tuple(field.scalars.values())
     # What is read late is known by the object, which a field keeps alive.
     late = tuple(id(a) for a in given if isinstance(a, LazySteps))
     arrays = (a for a in given if not isinstance(a, LazySteps))
-    key = digest(*arrays, words=(words, units, len(positions), late, *field.scalars))
+    kind = (field.has_position is None, field.triangles is None)
+    key = digest(*arrays, words=(words, units, kind, late, *field.scalars))
     return _fields.get(key, lambda: field)
 
 
@@ -530,9 +533,9 @@ def _shared_textures(store: SliceStore, settings: Settings, image: Floats32 | No
 def coarsened_field(field: FlowField, nodes: int) -> FlowField:
     """Keep lines of nodes, the first and the last among them, so that so many nodes are left.
 
-    A smaller field is returned as it is.
+    A smaller field is returned as it is, and one of triangles, of which levels are the coarse form.
     """
-    if field.valid.size <= nodes:
+    if field.valid.size <= nodes or field.triangles is not None:
         return field
     share = np.sqrt(nodes / field.valid.size)
     rows, columns = (

@@ -383,8 +383,8 @@ class PointInfo(Controller):
             if len(known) == len(place) == 3:
                 self.show_path(locate(field, known, tolerance=np.inf))
         elif _is_pair(point):
-            rows, columns = field.shape
-            i, j = number(point[0], 0, columns - 1), number(point[1], 0, rows - 1)
+            last_j, last_i = field.surface.last_index
+            i, j = number(point[0], 0, last_i), number(point[1], 0, last_j)
             if i is not None and j is not None:
                 self.show_path((j, i))
 
