@@ -15,7 +15,7 @@ __all__ = ["Boxes"]
 
 
 class Boxes:
-    """Boxes of so many ``steps``, each of which makes 2 x 2 of one, by the medians of points (N, 3).
+    """Boxes of so many ``steps``, each of which makes 2 x 2 of one, by medians of points (N, 3).
 
     Boxes of a depth are numbered as their cuts follow: a number's last two bits are row and column
     in the box around it, the two before those of that one.

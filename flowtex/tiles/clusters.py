@@ -1,4 +1,4 @@
-"""A field on triangles with fewer nodes: those in one bin are one, with the means of what they have.
+"""A field on triangles with fewer nodes: those in one bin are one, with means of what they have.
 
 Bins are cubes whose side is about twice the edges where they lie, and twice as long at each
 next level, so that a mesh of very different cells loses three nodes of four everywhere. Nodes on
@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.sparse import csr_array
 
-from flowtex._util.array_types import Bools, Floats, Indices, Ints
+from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.field import FlowField
 from flowtex.field.steps import Steps, map_steps
 from flowtex.field.triangles.surface import TriangleSurface
@@ -127,7 +127,7 @@ class Clusters:
         return replace(self, field=level)
 
     def _bins(self) -> Indices:
-        """Number of the cluster of each node, (n,); -1 where nothing is drawn."""
+        """Return the cluster of each node, (n,); -1 where nothing is drawn."""
         used = np.zeros(len(self.sides), dtype=bool)
         used[self.triangles] = True
         points, sides = self.field.points[0][used], self.sides[used]

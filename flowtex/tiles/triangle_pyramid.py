@@ -48,8 +48,9 @@ class TrianglePyramid(Pyramid):
     ) -> None:
         self.field, self.parameter, self.lines = field, parameter, lines
         self._lock = threading.Lock()
-        self._clusters = _levels(field)
-        self.depth = len(self._clusters) - 1
+        small = field.shape[1] <= ROOT_NODES
+        self._clusters = [] if small else _levels(field)
+        self.depth = max(len(self._clusters) - 1, 0)
         self._parts: dict[int, list[Indices]] = {}
 
     def at_level(self, level: int) -> FlowField:
@@ -149,14 +150,15 @@ class TrianglePyramid(Pyramid):
         return TextureSet(geometry, store, whole_speed=self._typical_speed, longest=longest)
 
     def _steps(self, level: int) -> int:
-        """Steps of the k-d tree to the blocks of a level."""
+        """Return the steps of the k-d tree to the blocks of a level."""
         return self.depth - level + 1
 
     @cached_property
     def _boxes(self) -> Boxes:
-        points = self.field.points[0]
-        step = -(-len(points) // MOST_MEASURED)
-        return Boxes(points[np.unique(self._clusters[0].triangles)][::step], self._steps(0))
+        used = np.zeros(self.field.shape[1], dtype=bool)
+        used[self._clusters[0].triangles] = True
+        points = self.field.points[0][used]
+        return Boxes(points[:: -(-len(points) // MOST_MEASURED)], self._steps(0))
 
     def _members(self, level: int) -> list[Indices]:
         """Triangles of a level by block."""
@@ -224,9 +226,7 @@ class TrianglePyramid(Pyramid):
 
 
 def _levels(field: FlowField) -> list[Clusters]:
-    """The levels of a field, the finest first."""
-    if field.shape[1] <= ROOT_NODES:
-        return [Clusters.of(field)]
+    """Return the levels of a field, the finest first."""
     levels = [Clusters.of(field)]
     while len(levels[-1].sides) > ROOT_NODES:
         coarser = levels[-1].coarser()
