@@ -32,7 +32,7 @@ from flowtex.rendering.webgl.packing import Packing, half, packing_of
 from flowtex.rendering.webgl.protocol import FORMAT, Header, Parts
 from flowtex.settings import TABLE, Settings
 from flowtex.textures import PaperTextures, TextureSet, TriangleGeometry
-from flowtex.tiles import PATH_CELLS, TILE_BLOCKS, Pyramid, TileKey
+from flowtex.tiles import PATH_CELLS, Pyramid, TileKey
 
 __all__ = ["ClientData", "Colours", "tile_parts"]
 
@@ -435,7 +435,7 @@ def _pyramid(pyramid: Pyramid, finest: int) -> dict[str, Any]:
         "finest": finest,
         "blocks": [list(pyramid.places(level).shape[:2]) for level in levels],
         "shapes": [list(pyramid.shape(level)) for level in levels],
-        "tileBlocks": TILE_BLOCKS,
+        "tileBlocks": pyramid.tile_blocks,
         "cellPixels": CELL_PIXELS,
         "pathCells": PATH_CELLS,
     }
