@@ -23,15 +23,16 @@ from flowtex.camera import CAMERA_LIMITS, Camera
 from flowtex.field import FlowField
 from flowtex.field.interpolation import steps_around
 from flowtex.field.units import speed_unit
-from flowtex.rendering.mesh_levels import MeshLevels, mesh_limits
+from flowtex.rendering.mesh_levels import mesh_limits
 from flowtex.rendering.shaders import shader_text
 from flowtex.rendering.tile_choice import CELL_PIXELS
+from flowtex.rendering.triangle_blocks import mesh_levels_of
 from flowtex.rendering.uniforms import client_constants, variants
 from flowtex.rendering.webgl.earth import dates_of, earth_header, earth_parts
 from flowtex.rendering.webgl.packing import Packing, half, packing_of
 from flowtex.rendering.webgl.protocol import FORMAT, Header, Parts
 from flowtex.settings import TABLE, Settings
-from flowtex.textures import PaperTextures, TextureSet, TriangleGeometry
+from flowtex.textures import PaperTextures, SurfaceGeometry, TextureSet, TriangleGeometry
 from flowtex.tiles import PATH_CELLS, Pyramid, TileKey
 
 __all__ = ["ClientData", "Colours", "tile_parts"]
@@ -337,10 +338,7 @@ class ClientData:
     @cached_property
     def _mesh(self) -> Floats32:
         """Return what the client chooses its triangles by, of each tile."""
-        geometry = self.textures.geometry
-        if isinstance(geometry, TriangleGeometry):
-            return geometry.block_places.astype("<f4")  # of one level, which has no errors
-        levels = MeshLevels.of(self.textures)
+        levels = mesh_levels_of(self.textures)
         shares: list[Floats] = []
         for number, values in self._values.items():
             if number == self.colours.number:
@@ -353,13 +351,14 @@ class ClientData:
 
     def _geometry(self) -> dict[str, Any]:
         geometry = self.textures.geometry
-        has_triangles = isinstance(geometry, TriangleGeometry)
-        before = (0, 0) if has_triangles else (geometry.rows.before, geometry.columns.before)
+        before = (0, 0)
+        if isinstance(geometry, SurfaceGeometry):
+            before = geometry.rows.before, geometry.columns.before
         rows, columns = (
             {"before": int(b), "size": int(n)} for b, n in zip(before, geometry.size, strict=True)
         )
         return {
-            "triangles": has_triangles,
+            "triangles": isinstance(geometry, TriangleGeometry),
             "shape": [int(n) for n in geometry.shape],
             "rows": rows,
             "columns": columns,
