@@ -25,7 +25,7 @@ from flowtex.field.steps import LazySteps, Steps
 from flowtex.options import ROBUST, SPEED, Appearance, FieldOptions, Options, option_text
 from flowtex.rendering.cpu.shade import mean_colours
 from flowtex.settings import TABLE, Affects, Settings, SettingsError
-from flowtex.textures import TextureSet
+from flowtex.textures import TextureSet, check_noise
 from flowtex.textures.images import as_picture, load_image
 from flowtex.tiles import Pyramid, shared_pyramid
 from flowtex.trace import SliceStore, TraceSlices, chosen_lines, shared_store
@@ -100,6 +100,7 @@ class Scene:
             self.image = as_picture(load_image(self.appearance.image))
         if self.settings.noise == "image" and self.image is None:
             raise SettingsError(NO_IMAGE)
+        check_noise(field, self.settings.noise)
         self._ranges: dict[tuple[str, bool, bool], tuple[float, float]] = {}
         self._pyramid: Pyramid | None = None
         self._sliced = slices is not None
@@ -264,7 +265,10 @@ class Scene:
         ------
         ImageError
             When it cannot be used; nothing is changed then.
+        SettingsError
+            When the surface is one of triangles, which images are not laid over.
         """
+        check_noise(self.field, "image")
         self.image = as_picture(load_image(image))
         if self.settings.noise != "image":
             self.settings.noise = "image"
@@ -407,10 +411,14 @@ class Scene:
         if name == "noise":
             if value == self._noise:
                 return
-            if value == "image" and self.image is None:
+            try:
+                check_noise(self.field, value)
+                if value == "image" and self.image is None:
+                    raise SettingsError(NO_IMAGE)
+            except SettingsError:
                 # Observers are called once a setting is set; what cannot be drawn is set back.
                 self.settings.noise = self._noise
-                raise SettingsError(NO_IMAGE)
+                raise
             self._noise = value
         affects = TABLE[name].affects
         if name in SETTINGS_IN_TEXTURES:

@@ -6,7 +6,7 @@ from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.textures.images import ImageError, as_picture
 from flowtex.textures.paper import PaperTextures
 from flowtex.textures.prefetch import LayerPrefetch
-from flowtex.textures.texture_set import TextureSet
+from flowtex.textures.texture_set import TextureSet, check_noise
 from flowtex.textures.triangle_geometry import TriangleGeometry
 
 __all__ = [
@@ -17,4 +17,5 @@ __all__ = [
     "TextureSet",
     "TriangleGeometry",
     "as_picture",
+    "check_noise",
 ]

@@ -102,6 +102,22 @@ class DrawnSurface:
         """The nodes that are drawn, (J, I, 3), in the mesh's own coordinates."""
         raise NotImplementedError
 
+    def at_vertices(self, nodal: NDArray[Any]) -> NDArray[Any]:
+        """Return what the vertices of a mesh have, (V, ...), of what the nodes have (J, I, ...)."""
+        raise NotImplementedError
+
+    @property
+    def drawn_vertices(self) -> Bools:
+        """Which vertices belong to something that is drawn, (V,)."""
+        raise NotImplementedError
+
+    @cached_property
+    def outermost(self) -> Indices:
+        """Vertices that touch the sides of the bounding box of all that is drawn, (6,)."""
+        at = np.flatnonzero(self.drawn_vertices)
+        points = self.at_vertices(self.points)[at]
+        return np.asarray(at[np.concatenate([points.argmin(axis=0), points.argmax(axis=0)])])
+
     @property
     def planar(self) -> bool:
         """Whether the surface is flat."""
@@ -215,6 +231,14 @@ class SurfaceGeometry(DrawnSurface):
         return self.field.surface.cells[self.drawn][: self.rows.nodes - 1, : self.columns.nodes - 1]
 
     @property
+    def drawn_vertices(self) -> Bools:
+        """Which vertices belong to a cell that is drawn, (V,)."""
+        used = np.zeros(self.shape, dtype=bool)
+        for j, i in ((0, 0), (0, 1), (1, 0), (1, 1)):
+            used[j : used.shape[0] - 1 + j, i : used.shape[1] - 1 + i] |= self.cells
+        return used.ravel()
+
+    @property
     def periodic(self) -> tuple[bool, bool]:
         """Whether what is drawn closes on itself, along j and i."""
         return self.rows.periodic, self.columns.periodic
@@ -249,6 +273,10 @@ class SurfaceGeometry(DrawnSurface):
     def at_vertices(self, nodal: NDArray[Any]) -> NDArray[Any]:
         """Return what the vertices of a mesh have, (V, ...), of what the nodes have (J, I, ...)."""
         return nodal.reshape(-1, *nodal.shape[2:])
+
+    def as_image(self, values: NDArray[Any]) -> NDArray[Any]:
+        """Return values at the vertices (V,) as an image of the nodes, here (J, I)."""
+        return values.reshape(self.shape)
 
     def write_texels(self, data: Floats32, texels: Floats32) -> None:
         """Write data (J, I, C) of the nodes of :attr:`texels` into texels (H, W, C).

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from flowtex._util.array_types import Floats, Floats32, Indices
+from flowtex._util.array_types import Bools, Floats, Floats32, Indices
 from flowtex._util.blocks import bounds
 from flowtex.field import FlowField
 from flowtex.field.surface import Surface
@@ -131,7 +131,18 @@ class TriangleGeometry(DrawnSurface):
 
     def at_vertices(self, nodal: NDArray[Any]) -> NDArray[Any]:
         """Return what the vertices have, (3 m, ...), of what the nodes have, (1, n, ...)."""
-        return nodal[0][self.triangles.ravel()]
+        return np.asarray(nodal[0][self.triangles.ravel()])
+
+    @property
+    def drawn_vertices(self) -> Bools:
+        """Which vertices belong to a triangle, (3 m,): all."""
+        return np.ones(self.triangles.size, dtype=bool)
+
+    def as_image(self, values: NDArray[Any]) -> NDArray[Any]:
+        """Return values at the vertices (3 m,) as an image of the nodes (H, W), as in textures."""
+        image = np.zeros(self.size, values.dtype)
+        image.reshape(-1)[self.triangles.ravel()] = values
+        return image
 
     def write_texels(self, data: Floats32, texels: Floats32) -> None:
         """Write data (1, n, C) of the nodes into texels (H, W, C)."""
