@@ -278,8 +278,7 @@ def _axis(plane: str) -> str:
 
 def about(field: FlowField) -> str:
     """Say in a few words what a field is."""
-    rows, columns = field.shape
-    words = [f"{columns} × {rows} nodes"]
+    words = [field.short_size]
     words.append("steady" if field.steady else f"{len(field.times)} times")
     closed = [axis for axis, is_closed in zip("ji", field.periodic, strict=True) if is_closed]
     if closed:

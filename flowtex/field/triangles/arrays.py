@@ -25,7 +25,7 @@ from flowtex.field.validation import (
     with_gaps,
 )
 
-__all__ = ["TriangleArrays", "nodal_means", "triangle_arrays"]
+__all__ = ["TriangleArrays", "nodal_means", "solid_triangles", "triangle_arrays"]
 
 #: Twice the area of a triangle over the square of its longest side, below which it has none.
 FLAT_TRIANGLE = 1e-12
@@ -79,7 +79,7 @@ def triangle_arrays(
     p = np.where(finite_nodes(p[None])[0][:, None], p, np.mean(p[ok], axis=0))
     same = merged_nodes(p, corners)
     corners = same[corners]
-    corners = corners[_solid(p, corners)]
+    corners = corners[solid_triangles(p, corners)]
     used = np.unique(corners)
     number = np.full(len(p), -1, dtype=np.intp)
     number[used] = np.arange(len(used))
@@ -130,8 +130,8 @@ def _faults(
     return faults
 
 
-def _solid(p: Floats, corners: Indices) -> Bools:
-    """Which triangles have an area."""
+def solid_triangles(p: Floats, corners: Indices) -> Bools:
+    """Return which triangles (M,) have an area."""
     a, b, c = (p[corners[:, k]] for k in range(3))
     longest = np.max([np.sum((x - y) ** 2, axis=-1) for x, y in ((a, b), (b, c), (c, a))], axis=0)
     area = np.linalg.norm(triangle_normals(p, corners), axis=-1)
@@ -142,7 +142,7 @@ def _usable(p: Floats, corners: Indices) -> Indices:
     """Triangles with an area, each once; what is left out is told."""
     known = np.asarray(finite_nodes(p[None])[0][corners].all(axis=1))
     good = known.copy()
-    good[known] = _solid(p, corners[known])
+    good[known] = solid_triangles(p, corners[known])
     nodes = np.sort(corners, axis=1)
     order = np.lexsort(nodes.T)
     once = np.ones(len(corners), dtype=bool)
