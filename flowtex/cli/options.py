@@ -72,7 +72,7 @@ class FieldFlags:
             FieldOptions,
             "slice",
             "Plane through any volume: ``x=0.5``, or a normal and a point, "
-            "``\"1,1,0 through 0,0,2\"``; the point is the middle by default.",
+            '``"1,1,0 through 0,0,2"``; the point is the middle by default.',
             allow_leading_hyphen=True,
         ),
     ] = None

@@ -173,7 +173,9 @@ def cut_faults(mesh: Any, cut: Cut | None) -> list[str]:
     return cut.faults(mesh)
 
 
-def surface_of(mesh: Any, cut: Cut | None, vectors: MeshArray, *, tell: bool) -> tuple[Any, Indices]:
+def surface_of(
+    mesh: Any, cut: Cut | None, vectors: MeshArray, *, tell: bool
+) -> tuple[Any, Indices]:
     """Return a PolyData with the data of the mesh, and the triangles of its surface, (M, 3).
 
     Arrays on the cells of a volume that is cut come to its points before. :data:`HIDDEN` is above
@@ -192,7 +194,7 @@ def surface_of(mesh: Any, cut: Cut | None, vectors: MeshArray, *, tell: bool) ->
         drawn = dimensions == (2 if flat else 3)
         mesh = mesh if drawn.all() else mesh.extract_cells(drawn, pass_cell_ids=False)
     if cut is not None:
-        mesh = cut.of(_on_points(mesh, vectors))
+        mesh = cut.of(_exact(_on_points(mesh, vectors)))
     elif not isinstance(mesh, pv.PolyData):
         mesh = mesh.extract_surface(
             pass_pointid=False, pass_cellid=False, algorithm="dataset_surface"
@@ -212,8 +214,8 @@ def _examples(mesh: Any) -> str:
     bounds = np.reshape(mesh.bounds, (3, 2))
     axis = int(np.argmin(np.ptp(bounds, axis=1)))
     cut = f'slice="{"xyz"[axis]}={bounds[axis].mean():.4g}"'
-    names = [a.name for a in catalogue(mesh) if a.numeric and a.components == 1]
-    names = [name for name in names if name != HIDDEN]
+    scalars = (a for a in catalogue(mesh) if a.real and a.components == 1)
+    names = [a.name for a in scalars if a.name != HIDDEN]
     return f'{cut} or contour="{names[0]}=VALUE"' if names else cut
 
 
@@ -234,6 +236,20 @@ def _shown_cells(mesh: Any) -> Any:
         msg = "all cells of the mesh are hidden; show some of them"
         raise FieldError(msg)
     return mesh.extract_cells(shown, pass_cell_ids=False, pass_point_ids=False)
+
+
+def _exact(mesh: Any) -> Any:
+    """Return a volume with positions in double precision, of which VTK's filters give theirs.
+
+    A plane cuts slivers off the corners of cells; in single precision they face anywhere.
+    """
+    import pyvista as pv
+
+    if isinstance(mesh, (pv.ImageData, pv.RectilinearGrid)):
+        mesh = mesh.cast_to_structured_grid()
+    if np.asarray(mesh.points).dtype != np.float64:
+        mesh.points = np.asarray(mesh.points, dtype=np.float64)
+    return mesh
 
 
 def _on_points(mesh: Any, vectors: MeshArray) -> Any:

@@ -106,9 +106,7 @@ def _size(sheet: _SurfaceStep) -> str:
     return f"{len(sheet.points):,} nodes and {len(sheet.triangles):,} triangles"
 
 
-def _surface_step(
-    mesh: Any, vectors: MeshArray, cut: Cut | None, *, tell: bool
-) -> _SurfaceStep:
+def _surface_step(mesh: Any, vectors: MeshArray, cut: Cut | None, *, tell: bool) -> _SurfaceStep:
     """Take the surface out of one mesh."""
     surface, triangles = surface_of(mesh, cut, vectors, tell=tell)
     if cut is not None:
