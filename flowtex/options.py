@@ -50,7 +50,7 @@ LAND_COLOR = "#8f8b82"
 
 #: Arguments that only data of the Earth have, and those that only meshes have.
 OF_EARTH = ("projection", "globe", "level", "sel", "isel")
-OF_MESHES = ("plane", "block", "times", "periodic", "sign_free")
+OF_MESHES = ("plane", "slice", "contour", "block", "times", "periodic", "sign_free")
 #: The scalar that every flow has, and the range of colours without outliers.
 SPEED, ROBUST = "speed", "robust"
 
@@ -71,7 +71,15 @@ class FieldOptions:
         "Name of the velocity, or of its two or three components with commas between, such as "
         "``u,v,w``; found when there is only one candidate.",
     )
-    plane: str | None = _option(None, 'Plane of a 3D mesh, such as ``"k=20"``.')
+    plane: str | None = _option(None, 'Plane of a structured 3D mesh, such as ``"k=20"``.')
+    slice: Any | None = _option(
+        None,
+        'Plane through any volume: ``"x=0.5"``, or a normal and a point, ``"1,1,0 through 0,0,2"``; '
+        "the point is the middle by default.",
+    )
+    contour: Any | None = _option(
+        None, 'Surface in a volume where an array has a value: ``"pressure=101325"``.'
+    )
     block: int | str | None = _option(
         None, "Number or path of the block to draw, where there are several."
     )

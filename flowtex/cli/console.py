@@ -73,6 +73,5 @@ def announcer(field: FlowField, host: str) -> Callable[[str], None]:
 
 def describe(field: FlowField) -> str:
     """Return name and size of a field in words."""
-    rows, columns = field.shape
     times = "" if field.steady else f", {len(field.times)} times"
-    return f"{field.name or 'flow'}, {columns} × {rows} nodes{times}"
+    return f"{field.name or 'flow'}, {field.short_size}{times}"

@@ -28,7 +28,6 @@ def info(*files: FILE, flow: Annotated[FieldFlags | None, FLAT] = None) -> int:
     from rich.console import Console
     from rich.text import Text
 
-    from flowtex.field import FlowField
     from flowtex.field.datasets.files import dataset_paths
     from flowtex.field.io.summary import describe
 
@@ -52,7 +51,7 @@ def info(*files: FILE, flow: Annotated[FieldFlags | None, FLAT] = None) -> int:
     if summary.problem and not options:
         console.print(Text(f"To draw it: {in_flags(summary.problem)}", "yellow"))
         return 0
-    console.print(_field_table(FlowField.from_file(file, **options)))
+    console.print(_field_table(load_field(files, flow)))
     return 0
 
 
@@ -96,8 +95,17 @@ def _recognised_table(paths: list[Path]) -> Table:
 
 def _file_table(summary: FileSummary) -> Table:
     table = _pairs("")
-    nodes = " × ".join(str(n) for n in summary.dimensions or ())
-    table.add_row("grid", f"{summary.grid}{f', {nodes} nodes' if nodes else ''}")
+    size = summary.size.replace(" x ", " × ")
+    table.add_row("grid", f"{summary.grid}{f', {size}' if size else ''}")
+    if summary.cells:
+        table.add_row("cells", ", ".join(f"{n:,} × {name}" for name, n in summary.cells.items()))
+    if summary.bounds:
+        spans = zip("xyz", summary.bounds, strict=True)
+        ends = "; ".join(f"{axis} {low:.4g} to {high:.4g}" for axis, (low, high) in spans)
+        table.add_row("ends", ends)
+    if summary.volume:
+        low, high = summary.bounds[2]
+        table.add_row("cut by", f"--slice z={(low + high) / 2:.4g}, --contour NAME=VALUE")
     if summary.blanked:
         table.add_row("blanked", f"{summary.blanked:,} nodes")
     if summary.blocks:
@@ -116,12 +124,12 @@ def _block_table(summary: FileSummary) -> Table:
     from rich.text import Text
 
     table = Table(box=None, header_style="dim")
-    for title in ("block", "name", "grid", "nodes"):
+    for title in ("block", "name", "grid", "size"):
         table.add_column(title)
     for block in summary.blocks[:MOST_BLOCKS]:
         number = "" if block.number is None else str(block.number)
-        nodes = " × ".join(str(n) for n in block.dimensions or ())
-        table.add_row(number, Text(block.name), block.grid, nodes)
+        size = block.size.removesuffix(" nodes").replace(" x ", " × ")
+        table.add_row(number, Text(block.name), block.grid, size)
     if len(summary.blocks) > MOST_BLOCKS:
         table.add_row("", f"and {len(summary.blocks) - MOST_BLOCKS} more", "", "")
     return table
@@ -151,16 +159,21 @@ def _span(array: ArraySummary) -> tuple[str, str]:
 def _field_table(field: FlowField) -> Table:
     import numpy as np
 
-    rows, columns = field.shape
     table = _pairs("What would be drawn")
-    table.add_row("nodes", f"{columns} × {rows} (i × j)")
+    if field.triangles is None:
+        rows, columns = field.shape
+        table.add_row("nodes", f"{columns} × {rows} (i × j)")
+    else:
+        table.add_row("nodes", f"{field.valid.size:,}")
+        table.add_row("triangles", f"{len(field.triangles):,}")
     steady = "one, steady"
     ends = f"{field.times[0]:g} to {field.times[-1]:g} {field.time_unit}".rstrip()
     table.add_row("times", steady if field.steady else f"{len(field.times)}, {ends}")
     if not field.steady:
         table.add_row("lines", _lines(field))
-    closed = [a for a, is_closed in zip("ji", field.periodic, strict=True) if is_closed]
-    table.add_row("periodic", " and ".join(sorted(closed)) or "no")
+    if field.triangles is None:
+        closed = [a for a, is_closed in zip("ji", field.periodic, strict=True) if is_closed]
+        table.add_row("periodic", " and ".join(sorted(closed)) or "no")
     table.add_row("blanked", f"{int((~field.valid).sum()):,} nodes")
     if field.sign_free:
         table.add_row("signs", "none: v and -v mean the same")

@@ -32,14 +32,14 @@ def load_field(files: Sequence[Path], flow: FieldFlags | None) -> FlowField:
 
 @contextmanager
 def notices() -> Iterator[None]:
-    """Say what was chosen of a data set in plain words, and pass on all other warnings."""
-    from flowtex.field.datasets.notices import DatasetNotice
+    """Say what was chosen of the data in plain words, and pass on all other warnings."""
+    from flowtex._util.notices import Notice
 
     with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always", DatasetNotice)
+        warnings.simplefilter("always", Notice)
         yield
     for warning in caught:
-        if issubclass(warning.category, DatasetNotice):
+        if issubclass(warning.category, Notice):
             say(f"[dim]{warning.message}[/]")
         elif not warning.category.__module__.startswith("xarray."):  # how a file was written
             warnings.warn_explicit(

@@ -39,7 +39,7 @@ PORT = Number(gte=0, lt=65536)
 FILE = Annotated[
     Path,
     Parameter(
-        help="A structured mesh: any file that PyVista reads, or PLOT3D; or data of the Earth: "
+        help="A mesh: any file that PyVista reads, or PLOT3D; or data of the Earth: "
         "NetCDF, Zarr, GRIB or the JSON of wind maps, several files where they belong together."
     ),
 ]
@@ -66,6 +66,24 @@ class FieldFlags:
     """What of a file makes the flow."""
 
     plane: Annotated[str | None, _flag(FieldOptions, "plane")] = None
+    slice: Annotated[
+        str | None,
+        _flag(
+            FieldOptions,
+            "slice",
+            "Plane through any volume: ``x=0.5``, or a normal and a point, "
+            '``"1,1,0 through 0,0,2"``; the point is the middle by default.',
+            allow_leading_hyphen=True,
+        ),
+    ] = None
+    contour: Annotated[
+        str | None,
+        _flag(
+            FieldOptions,
+            "contour",
+            "Surface in a volume where an array has a value: ``pressure=101325``.",
+        ),
+    ] = None
     vectors: Annotated[str | None, _flag(FieldOptions, "vectors")] = None
     time: Annotated[
         str | None,

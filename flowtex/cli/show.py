@@ -36,12 +36,15 @@ FIRST_LOOKS: dict[str, tuple[float, tuple[float, ...] | None]] = {
     "airfoil": (6.0, (0.5, 0.0)),
 }
 #: Options that change the field of a file; the others choose a part of it.
-FIELD_OPTIONS = ("periodic", "time", "sign_free", "projection", "globe", "level", "sel")
+FIELD_OPTIONS = (
+    *("slice", "contour", "periodic", "time", "sign_free"),
+    *("projection", "globe", "level", "sel"),
+)
 
 FILE = Annotated[
     Path,
     Parameter(
-        help="Structured meshes, any files that PyVista reads or PLOT3D; or one folder of them.",
+        help="Meshes, any files that PyVista reads or PLOT3D; or one folder of them.",
     ),
 ]
 

@@ -330,6 +330,13 @@ class FlowField(FieldConstructors):
         return f"{self.shape[1]} x {self.shape[0]} nodes (I x J)"
 
     @property
+    def short_size(self) -> str:
+        """The same for captions, such as ``"120 × 70 nodes"``."""
+        if self.triangles is not None:
+            return f"{len(self.triangles):,} triangles"
+        return f"{self.shape[1]} × {self.shape[0]} nodes"
+
+    @property
     def nbytes(self) -> int:
         """Size of the arrays in memory."""
         arrays = (self.points, self.velocity, self.valid, *self.scalars.values())

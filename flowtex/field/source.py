@@ -7,17 +7,24 @@ from memory. Only a series too large for that is read again.
 from __future__ import annotations
 
 import threading
+import warnings
 from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from flowtex._util.notices import Notice
 from flowtex.errors import FieldError
 from flowtex.field.field import FlowField
 from flowtex.field.io.files import open_file
 from flowtex.field.io.meshes import (
     TimeStep,
+    cell_dimension,
+    drawn_parts,
     is_reader,
-    several_grids,
+    is_structured,
+    parts_of,
     time_steps,
     times_of,
 )
@@ -28,6 +35,10 @@ __all__ = ["FlowSource"]
 
 #: Size of a series that is held in memory; a larger one is read again for each field.
 MAX_SERIES_BYTES = 2_000_000_000
+#: Places of a plane that cuts a volume, evenly spaced along an axis; one of them in the middle.
+CUTS = 101
+#: The surface around a volume, among its planes.
+OUTER = "outer"
 
 
 class FlowSource:
@@ -67,12 +78,15 @@ class FlowSource:
         self.name = name
         #: Names of the arrays that may be the velocity; empty where there is no choice.
         self.vectors: tuple[str, ...] = ()
-        #: Number of nodes (I, J, K); ``None`` for a field.
+        #: Number of nodes (I, J, K) of a structured mesh; ``None`` for others, and for a field.
         self.dimensions: tuple[int, int, int] | None = None
-        #: Names of the structured grids, where there are several that are no time steps.
+        #: Names of the meshes, where there are several that are no time steps.
         self.blocks: tuple[str, ...] = ()
         #: Size in memory.
         self.nbytes = 0
+        #: Ends of a volume along the axes across which it can be cut.
+        self._ends: dict[str, tuple[float, float]] = {}
+        self._default_plane = ""
         self._grids: dict[str, Any] = {}
         self._parts: dict[str, FlowSource] = {}
         self._lock = threading.Lock()
@@ -97,23 +111,49 @@ class FlowSource:
         """
         with errors_of_file(path):
             file = open_file(path)
+            if file.problem:
+                raise FieldError(file.problem)
             return cls(file.source, name=file.path.stem, velocity=file.velocity, path=file.path)
 
     @property
     def planes(self) -> dict[str, int]:
-        """Axes across which planes can be chosen, and how many there are; empty for a surface."""
-        if self.dimensions is None or min(self.dimensions) == 1:
+        """Axes across which planes can be chosen, and how many there are; empty for a surface.
+
+        Those of the index come before those in space, which cut any volume.
+        """
+        if not self._ends:
             return {}
-        return dict(zip("ijk", self.dimensions, strict=True))
+        own = {OUTER: 1} if self.dimensions is None else zip("ijk", self.dimensions, strict=True)
+        return {**dict(own), **dict.fromkeys(self._ends, CUTS)}
 
     @property
     def default_plane(self) -> str:
         """The plane that is drawn where none is chosen; empty for a surface."""
-        return f"k={self.planes['k'] // 2}" if self.planes else ""
+        return self._default_plane
+
+    def plane_at(self, axis: str, number: int) -> str:
+        """Return the plane of an axis by its number from 0, such as ``"k=20"`` or ``"x=0.25"``."""
+        if axis not in self._ends:
+            return f"{axis}={number}"
+        low, high = self._ends[axis]
+        return f"{axis}={low + (high - low) * (number + 0.5) / CUTS:.6g}"
+
+    def plane_number(self, plane: str) -> int | None:
+        """Return the number of a plane, or of the nearest; ``None`` for what is no plane of this."""
+        axis, _, text = plane.partition("=")
+        try:
+            value = float(text)
+            if axis in self._ends:
+                low, high = self._ends[axis]
+                value = min(max((value - low) / (high - low) * CUTS - 0.5, 0), CUTS - 1)
+            number = round(value)
+        except (ValueError, OverflowError):
+            return None
+        return number if 0 <= number < self.planes.get(axis, 0) else None
 
     def plane_text(self, plane: str) -> str:
         """Return words for a plane, such as ``"k = 20"``."""
-        return plane.replace("=", " = ")
+        return "outer surface" if plane.startswith(OUTER) else plane.replace("=", " = ")
 
     def field(
         self,
@@ -130,7 +170,8 @@ class FlowSource:
         vectors
             Name of the velocity; the first of :attr:`vectors` by default.
         plane
-            Such as ``"k=20"``; the middle of the last axis by default, where there is a choice.
+            Such as ``"k=20"``, ``"x=0.25"`` or ``"outer=0"``; the middle of the last axis by
+            default, or of the shortest one, where there is a choice.
         block
             As for :meth:`part`.
         **options
@@ -145,14 +186,15 @@ class FlowSource:
             return self._mesh
         if self.blocks:
             return self.part(block).field(vectors=vectors, plane=plane, **options)
-        plane = plane or self.default_plane or None
+        if not {"slice", "contour"} & set(options):
+            options |= _plane_options(plane or self.default_plane)
         chosen = vectors or (self.vectors[0] if self.vectors else None)
         if self._block is not None:
             options = {**options, "block": self._block}
-        with self._errors():
-            return FlowField.from_pyvista(
-                self._mesh, vectors=chosen, plane=plane, name=self.name, **options
-            )
+        with warnings.catch_warnings(), self._errors():
+            # The page shows what is chosen.
+            warnings.simplefilter("ignore", Notice)
+            return FlowField.from_pyvista(self._mesh, vectors=chosen, name=self.name, **options)
 
     def part(self, block: str | None = None) -> FlowSource:
         """Return the source of one of the :attr:`blocks`; this one itself where there are none.
@@ -187,11 +229,25 @@ class FlowSource:
         """Name the file, where there is one and it is read again."""
         return errors_of_file(self._path) if is_reader(self._mesh) and self._path else nullcontext()
 
-    def _describe(self, grid: Any) -> None:
-        """Set the dimensions and the names of the vectors."""
-        dimensions = tuple(int(n) for n in grid.dimensions)
-        self.dimensions = (dimensions[0], dimensions[1], dimensions[2])
-        self.vectors = self._names(grid)
+    def _describe(self, mesh: Any) -> None:
+        """Set the dimensions, the planes and the names of the vectors."""
+        self.vectors = self._names(mesh)
+        if is_structured(mesh):
+            dimensions = tuple(int(n) for n in mesh.dimensions)
+            self.dimensions = (dimensions[0], dimensions[1], dimensions[2])
+        if cell_dimension(mesh) < 3:
+            return
+        ends = np.reshape(mesh.bounds, (3, 2)).tolist()
+        self._ends = {axis: (low, high) for axis, (low, high) in zip("xyz", ends) if low < high}
+        if self.dimensions is not None:
+            self._default_plane = f"k={self.dimensions[2] // 2}"
+            return
+        # Walls, where nothing flows, say less than what is inside.
+        self._default_plane = f"{OUTER}=0"
+        if self._ends:
+            shortest = min(self._ends, key=lambda axis: np.ptp(self._ends[axis]))
+            if mesh.slice(normal=shortest).n_cells:
+                self._default_plane = self.plane_at(shortest, CUTS // 2)
 
     def _names(self, grid: Any) -> tuple[str, ...]:
         """Return the names of what may be the velocity of a grid, the preferred one first."""
@@ -208,7 +264,7 @@ class FlowSource:
         """
         series = len(times_of(mesh)) > 1
         first = mesh.read() if is_reader(mesh) else mesh
-        several = {} if self._block is not None else several_grids(first, series=series)
+        several = {} if self._block is not None else _choices(first, series=series)
         if several:
             self.blocks = tuple(several)
             self.block_vectors = {name: self._names(grid) for name, grid in several.items()}
@@ -217,14 +273,36 @@ class FlowSource:
                 self.nbytes = sum(_bytes(grid) for grid in several.values())
             return [TimeStep(next(iter(several.values())), None, "the mesh")]
         steps: list[TimeStep] = []
-        for step in time_steps(mesh if series else first, self._block):
-            steps.append(step)
-            self.nbytes += _bytes(step.grid)
-            if self.nbytes > MAX_SERIES_BYTES:
-                return steps[:1]
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", Notice)
+            for step in time_steps(mesh if series else first, self._block):
+                steps.append(step)
+                self.nbytes += _bytes(step.grid)
+                if self.nbytes > MAX_SERIES_BYTES:
+                    return steps[:1]
         self._mesh = steps[0].grid if len(steps) == 1 else steps
         self._block = None
         return steps
+
+
+def _plane_options(plane: str) -> dict[str, str]:
+    """Return the arguments of :meth:`FlowField.from_pyvista` for a plane."""
+    axis = plane.partition("=")[0].strip().lower()
+    if not axis or axis == OUTER:
+        return {}
+    return {"slice" if axis in "xyz" else "plane": plane}
+
+
+def _choices(mesh: Any, *, series: bool) -> dict[str, Any]:
+    """Return the blocks that may be chosen, those that are meant first; none for a single one."""
+    if isinstance(mesh, (list, tuple)):
+        return {}
+    meant, how = drawn_parts(mesh, series=series)
+    if how == "together" or (how == "steps" and len(meant) > 1):
+        return {}
+    others = {name: part for name, part in parts_of(mesh).items() if candidates(part)}
+    parts = {**meant, **others}
+    return parts if len(parts) > 1 else {}
 
 
 def _bytes(grid: Any) -> int:

@@ -26,7 +26,8 @@ def block(steps: int = 1) -> pv.StructuredGrid:
 
 def test_a_block_offers_its_planes_and_vectors() -> None:
     source = FlowSource(block(), name="block")
-    assert source.dimensions == (7, 6, 5) and source.planes == {"i": 7, "j": 6, "k": 5}
+    assert source.dimensions == (7, 6, 5)
+    assert source.planes == {"i": 7, "j": 6, "k": 5, "x": 101, "y": 101, "z": 101}
     assert source.vectors == ("wind", "water") and not source.blocks
     field = source.field()
     assert field.name == "block" and np.all(field.scalars["height"] == 2)
@@ -79,7 +80,14 @@ def test_a_broken_file_is_told(tmp_path: Path) -> None:
 @pytest.mark.skipif(not os.environ.get("FLOWTEX_DATA"), reason="FLOWTEX_DATA is not set")
 def test_planes_of_the_post_are_quick() -> None:
     source = FlowSource.from_file(Path(os.environ["FLOWTEX_DATA"]) / "postxyz.bin")
-    assert source.vectors[0] == "Velocity" and source.planes == {"i": 38, "j": 76, "k": 38}
+    assert source.vectors[0] == "Velocity" and list(source.planes.values()) == [
+        38,
+        76,
+        38,
+        101,
+        101,
+        101,
+    ]
     assert source.field(plane="k=20").shape == (76, 38)
 
 

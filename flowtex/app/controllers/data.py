@@ -230,7 +230,10 @@ class Data(Controller):
         if axis:
             last = self._part.planes[axis] - 1
             at = int(clipped(self.state.get("index"), options["index"], 0, last))
-            plane = f"{axis}={at if axis == options['axis'] else (last + 1) // 2}"
+            plane = self._part.plane_at(axis, at if axis == options["axis"] else (last + 1) // 2)
+            # A plane between the places of the slider stays until that is moved.
+            if axis == options["axis"] and at == options["index"]:
+                plane = self.choice.plane
         return Choice(vectors, plane, block)
 
     @property
@@ -253,7 +256,7 @@ class Data(Controller):
             "block": self.choice.block or (source.blocks[0] if source.blocks else ""),
             "axes": list(part.planes),
             "axis": axis,
-            "index": int(self.choice.plane.partition("=")[2] or 0) if count else 0,
+            "index": (part.plane_number(self.choice.plane) or 0) if count else 0,
             "plane_text": part.plane_text(self.choice.plane),
             "block_word": source.block_word,
             "planes": max(count - 1, 0),
@@ -278,8 +281,7 @@ def _axis(plane: str) -> str:
 
 def about(field: FlowField) -> str:
     """Say in a few words what a field is."""
-    rows, columns = field.shape
-    words = [f"{columns} × {rows} nodes"]
+    words = [field.short_size]
     words.append("steady" if field.steady else f"{len(field.times)} times")
     closed = [axis for axis, is_closed in zip("ji", field.periodic, strict=True) if is_closed]
     if closed:

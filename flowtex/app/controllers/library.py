@@ -32,25 +32,19 @@ __all__ = ["Choice", "Library", "TracedFlow"]
 #: Endings of files that a folder is searched for.
 SUFFIXES = frozenset(
     [
-        *(".vts", ".vtr", ".vti", ".vtk", ".vtm", ".vtmb", ".pvd", ".pvts", ".pvtr"),
-        *(".pvti", ".xyz", ".x", ".g", ".case", ".cgns"),
+        *(".vts", ".vtr", ".vti", ".vtk", ".vtu", ".vtp", ".vtm", ".vtmb", ".pvd", ".pvts"),
+        *(".pvtr", ".pvti", ".pvtu", ".pvtp", ".xyz", ".x", ".g", ".case", ".cgns", ".foam"),
+        *(".e", ".ex2", ".exii", ".exo", ".stl", ".ply", ".obj"),
         *EARTH_SUFFIXES,
     ]
 )
 #: Endings that are listed though nothing of them is drawn, and why.
-UNSHOWN = {
-    **dict.fromkeys(
-        (".vtu", ".pvtu", ".foam", ".e", ".ex2", ".exii", ".exo"),
-        "unstructured; flow is drawn on structured meshes",
-    ),
-    **dict.fromkeys(
-        (".vtp", ".pvtp", ".stl", ".ply", ".obj"), "triangles; structured meshes are drawn"
-    ),
-    **dict.fromkeys((".pkl", ".pickle", ".joblib"), "a pickle can run any program, and is refused"),
-}
+UNSHOWN = dict.fromkeys(
+    (".pkl", ".pickle", ".joblib"), "a pickle can run any program, and is refused"
+)
 #: Endings of files that list others, how, and bytes of such a list that are read.
 LISTS, MEMBER, LIST_BYTES = (
-    (".pvd", ".vtm", ".vtmb", ".pvts", ".pvtr", ".pvti"),
+    (".pvd", ".vtm", ".vtmb", ".pvts", ".pvtr", ".pvti", ".pvtu", ".pvtp"),
     re.compile(r'(?:file|Source)\s*=\s*"([^"]+)"'),
     4_000_000,
 )
@@ -231,8 +225,7 @@ class Library:
         block = choice.block if choice.block in source.blocks else ""
         part = source.part(block or (source.blocks[0] if source.blocks else None))
         vectors = choice.vectors if choice.vectors in part.vectors else ""
-        axis, _, index = choice.plane.partition("=")
-        plane = choice.plane if axis and int(index) < part.planes.get(axis, 0) else ""
+        plane = "" if part.plane_number(choice.plane) is None else choice.plane
         return self.complete(name, Choice(vectors, plane, block))
 
     def field(self, name: str, choice: Choice) -> FlowField:

@@ -2,7 +2,7 @@
 
 What a page shows is a mapping with the names below, each of which may be missing::
 
-    file vectors plane block   which flow: names as a library has them, and a plane such as k=20
+    file vectors plane block   which flow: names as a library has them, and a plane such as k=20 or x=0.5
     time clock                 the field's own time; seconds of the streaming
     colour cmap clim           scalar, colour map, and the values at its ends
     coastlines graticule       whether these lines of a map are drawn
@@ -40,6 +40,7 @@ from flowtex.app.controllers.appearance import (
 from flowtex.app.streaming.viewport import BACKGROUNDS as THEMES
 from flowtex.camera import Camera, CameraError
 from flowtex.field.datasets.files import is_dataset_file
+from flowtex.field.source import OUTER
 from flowtex.settings import TABLE, SettingsError
 
 __all__ = ["DEFAULTS", "from_link", "to_link", "to_python"]
@@ -69,7 +70,7 @@ FILE_ARGUMENTS = ("vectors", "plane", "block")
 #: What they are called for data of the Earth.
 OF_DATASETS = {"block": "projection"}
 PLANE, CMAP = (
-    re.compile(r"[A-Za-z]\w{0,59}=\d{1,9}", re.ASCII),
+    re.compile(r"[A-Za-z]\w{0,59}=(\d{1,9}|-?[\d.]{1,12}(e[-+]?\d{1,3})?)", re.ASCII),
     re.compile(r"[A-Za-z]\w{0,59}", re.ASCII),
 )
 
@@ -229,7 +230,7 @@ _READ: dict[str, Callable[[str], Any]] = {
     "file": _name,
     "block": _name,
     "vectors": _name,
-    "plane": _matching(PLANE, "an axis and a number, such as k=20"),
+    "plane": _matching(PLANE, "an axis and a number, such as k=20 or x=0.5"),
     "time": _number,
     "clock": _number,
     "colour": _name,
@@ -310,10 +311,14 @@ def _from_file(state: Mapping[str, Any]) -> str:
         msg = "the state names no file; give the expression that makes its field as source"
         raise ValueError(msg)
     values = {name: state[name] for name in FILE_ARGUMENTS if state.get(name)}
+    axis, _, number = values.get("plane", "").partition("=")
     if is_dataset_file(Path(str(state["file"]))):
-        axis, _, number = values.pop("plane", "").partition("=")
+        values.pop("plane", None)
         values = {OF_DATASETS.get(name, name): value for name, value in values.items()}
-        values |= {"isel": {axis: int(number)}} if axis else {}
+        values |= {"isel": {axis: int(number)}} if number.isdecimal() else {}
+    elif axis in ("x", "y", "z", OUTER):
+        plane = values.pop("plane")
+        values |= {} if axis == OUTER else {"slice": plane}
     choices = [f"{name}={_literal(value)}" for name, value in values.items()]
     return _call("flowtex.FlowField.from_file", [_literal(state["file"]), *choices])
 

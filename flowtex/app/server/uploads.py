@@ -18,7 +18,10 @@ from flowtex.errors import FieldError
 __all__ = ["UPLOAD_SUFFIXES", "Uploads"]
 
 #: Endings of files that are taken.
-UPLOAD_SUFFIXES = (".vts", ".vtr", ".vti", ".vtk", ".nc", ".grib", ".grb", ".json")
+UPLOAD_SUFFIXES = (
+    *(".vts", ".vtr", ".vti", ".vtk", ".vtu", ".vtp"),
+    *(".nc", ".grib", ".grb", ".json"),
+)
 #: Bytes of a file, and files of a page, at most.
 UPLOAD_BYTES, MOST_UPLOADS = 200_000_000, 8
 
@@ -53,7 +56,7 @@ class Uploads:
         name = plain_name(name.replace("\\", "/").rsplit("/", 1)[-1])
         if Path(name).suffix.lower() not in UPLOAD_SUFFIXES:
             endings = ", ".join(UPLOAD_SUFFIXES)
-            msg = f"{name}: expected one file of a structured mesh or of the Earth, {endings}"
+            msg = f"{name}: expected one file of a mesh or of the Earth, {endings}"
             raise FieldError(msg)
         if self._count >= MOST_UPLOADS:
             msg = f"{name}: {MOST_UPLOADS} files were sent already; open the page anew for more"

@@ -2,22 +2,15 @@
 
 from __future__ import annotations
 
-import sys
-import warnings
-from pathlib import Path
+from flowtex._util import notices
 
 __all__ = ["DatasetNotice", "notify"]
 
-_PACKAGE = str(Path(__file__).resolve().parents[2])
 
-
-class DatasetNotice(UserWarning):
+class DatasetNotice(notices.Notice):
     """Something of a dataset was chosen without being asked for."""
 
 
 def notify(text: str) -> None:
-    """Warn at the line that called the package, however deep it has come since."""
-    level, frame = 2, sys._getframe(1)
-    while frame.f_back is not None and frame.f_code.co_filename.startswith(_PACKAGE):
-        level, frame = level + 1, frame.f_back
-    warnings.warn(text, DatasetNotice, stacklevel=level)
+    """Warn at the line that called the package."""
+    notices.notify(text, DatasetNotice)

@@ -8,12 +8,16 @@ from typing import TYPE_CHECKING, Any, Self
 
 from numpy.typing import ArrayLike
 
+from flowtex._util.notices import notify
 from flowtex.errors import FieldError
 
 if TYPE_CHECKING:
     import xarray as xr
 
 __all__ = ["FieldConstructors"]
+
+#: Share of the flow that may be normal to a surface before it is told.
+MOST_LOST = 0.5
 
 
 class FieldConstructors:
@@ -30,20 +34,25 @@ class FieldConstructors:
         *,
         vectors: str | None = None,
         plane: str | None = None,
+        slice: Any = None,  # noqa: A002 - the word that PyVista has for it
+        contour: Any = None,
         times: ArrayLike | None = None,
         periodic: str | None = None,
         name: str = "",
         sign_free: bool = False,
         block: int | str | None = None,
     ) -> Self:
-        """Make a field from a structured PyVista mesh, or from a series of them.
+        """Make a field from a PyVista mesh, or from a series of them.
 
         Parameters
         ----------
         mesh
-            A StructuredGrid, RectilinearGrid or ImageData. A MultiBlock with one structured block
-            stands for that block. A list or tuple of meshes, a MultiBlock of several grids with
-            the same nodes, and a PyVista reader with time values are time steps.
+            A StructuredGrid, RectilinearGrid or ImageData, drawn in rows and columns; or a
+            PolyData or an UnstructuredGrid, whose surface is drawn as triangles. Of a volume that
+            is the outer surface, unless it is cut. A MultiBlock with one structured block, or one
+            volume, stands for that block; the surfaces of others are drawn together. A list or
+            tuple of meshes, a MultiBlock of several with the same nodes, and a PyVista reader with
+            time values are time steps.
         vectors
             Name of the velocity on points or cells, with 2 or 3 components. By default the only
             array that can be the velocity, or the one that the mesh marks as its active vectors.
@@ -55,27 +64,41 @@ class FieldConstructors:
             counted from the end when negative. On a k-plane the surface's (i, j) are the mesh's
             (i, j), on a j-plane (i, k), on an i-plane (j, k). A mesh with one flat index
             direction needs none, and follows the same table.
+        slice
+            Plane through a volume of any kind, drawn as triangles: ``"x=0.5"``, a normal such as
+            ``"1,1,0"``, one with a point as in ``"1,1,0 through 0.5,0.5,0.2"``, or a pair of both.
+            It goes through the middle of the mesh where there is no point, and through all volumes
+            of a MultiBlock where no block is chosen.
+        contour
+            An array and its value, ``"pressure=101325"``: the surface in a volume where it has it.
         times
             Time of each step, (T,). By default the reader's time values, or ``TimeValue`` in the
             field data of every step, or 0, 1, 2, ...
         periodic, name, sign_free
-            As for :meth:`from_arrays`.
+            As for :meth:`from_arrays`, of structured meshes alone.
         block
             Number or path of the block to draw of a MultiBlock, such as ``"Base/Zone 1"``. Numbers
-            count the structured grids from 0.
+            count the meshes with cells from 0.
 
         Returns
         -------
         FlowField
             Positions in the mesh's units. Arrays with one component become ``scalars``; those on
-            cells, and vectors on cells, become means of the visible cells around each node.
+            cells, and vectors on cells, become means of the visible cells around each node, on
+            triangles by their areas. In a volume that is cut they are interpolated.
 
         Raises
         ------
         FieldError
-            When the mesh is not structured, when the plane or the vectors have to be chosen or do
-            not exist, when the steps of a series differ in their nodes, and for what
-            :meth:`from_arrays` refuses.
+            When the mesh has no surface, when the plane or the vectors have to be chosen or do not
+            exist, when the steps of a series differ in their nodes, and for what
+            :meth:`from_arrays` and :meth:`from_triangles` refuse.
+
+        Warns
+        -----
+        Notice
+            When something was taken without being asked for, such as the outer surface of a
+            volume, and when most of the flow points out of a surface of triangles.
 
         Notes
         -----
@@ -86,10 +109,21 @@ class FieldConstructors:
         from flowtex.field.io.from_pyvista import read_meshes
 
         options: dict[str, Any] = {"periodic": periodic, "sign_free": sign_free}
+        chosen: dict[str, Any] = {"plane": plane, "slice": slice, "contour": contour}
         arguments = read_meshes(
-            mesh, vectors=vectors, plane=plane, times=times, block=block, **options
+            mesh, vectors=vectors, times=times, block=block, **chosen, **options
         )
-        made: Self = cls.from_arrays(**arguments, name=name, **options)
+        return cls._of_mesh(arguments, name, options)
+
+    @classmethod
+    def _of_mesh(cls, arguments: Any, name: str, options: Mapping[str, Any]) -> Self:
+        """Make a field of what was read of a mesh; ``options`` are for structured ones."""
+        if "triangles" not in arguments:
+            made: Self = cls.from_arrays(**arguments, name=name, **options)
+            return made
+        made = cls.from_triangles(**arguments, name=name)
+        if (lost := made.normal_share) > MOST_LOST:
+            notify(f"{lost:.0%} of the flow points out of the surface and is not drawn")
         return made
 
     @classmethod
@@ -99,6 +133,8 @@ class FieldConstructors:
         *,
         vectors: str | None = None,
         plane: str | None = None,
+        slice: Any = None,  # noqa: A002 - the word that PyVista has for it
+        contour: Any = None,
         periodic: str | None = None,
         time: float | str | None = None,
         block: int | str | None = None,
@@ -114,21 +150,23 @@ class FieldConstructors:
         Parameters
         ----------
         path
-            A structured mesh in any format that PyVista reads, or a PLOT3D grid or solution. The
+            A mesh in any format that PyVista reads, or a PLOT3D grid or solution. The
             other one of the two is found beside it by its name: ``postxyz.bin`` and
-            ``postq.bin``, ``wing.xyz`` (or ``.x``, ``.g``) and ``wing.q``. Or data of the Earth:
+            ``postq.bin``, ``wing.xyz`` (or ``.x``, ``.g``) and ``wing.q``. An OBJ, PLY or STL has
+            its vectors beside it as well: ``hull.npy`` for ``hull.stl``, (N, 3) for its points or
+            triangles, or (T, N, 3), in the order of the file. Or data of the Earth:
             NetCDF, a Zarr store, GRIB, or the JSON of wind maps; of these several at once, as the
             parts of a model's output or the steps of a series.
         vectors
             Name of the velocity, as for :meth:`from_pyvista`. A PLOT3D solution gives
             ``Velocity``, made from its density and momentum.
-        plane, periodic, sign_free
+        plane, slice, contour, periodic, sign_free
             As for :meth:`from_pyvista`.
         time
             Draw this one of the times in the file, as a steady field. All of them by default.
         block
             Number or path of the block to draw, such as ``"Base/Zone 1"``, where the file has
-            several grids. Numbers count the structured grids from 0.
+            several meshes. Numbers count those with cells from 0.
         projection, globe, level, sel, isel
             As for :meth:`from_xarray`, for data of the Earth.
 
@@ -141,11 +179,12 @@ class FieldConstructors:
         ------
         FieldError
             When the file is missing, empty, not readable, of an unknown or broken format, or does
-            not hold a structured flow; the text starts with the path.
+            not hold a flow; the text starts with the path.
         """
         from flowtex.field.io.file_fields import field_of_file
 
-        of_meshes = {"plane": plane, "block": block, "periodic": periodic, "sign_free": sign_free}
+        of_meshes = {"plane": plane, "slice": slice, "contour": contour, "block": block}
+        of_meshes |= {"periodic": periodic, "sign_free": sign_free}
         of_earth: dict[str, Any] = {"projection": projection, "globe": globe, "level": level}
         of_earth |= {"sel": sel, "isel": isel}
         field: Self = field_of_file(cls, path, vectors, time, of_meshes, of_earth)

@@ -47,7 +47,7 @@ def field_of_file(
             raise FieldError(msg)
         options = {name: of_meshes[name] for name in ("periodic", "sign_free")}
         arguments = read_file(path, time=time, vectors=vectors, **of_meshes)
-        return kind.from_arrays(**arguments, name=Path(path).stem, **options)
+        return kind._of_mesh(arguments, Path(path).stem, options)
 
 
 def _refuse(choices: Mapping[str, Any], what: str) -> None:

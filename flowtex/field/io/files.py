@@ -14,15 +14,17 @@ from typing import Any
 from flowtex.errors import FieldError
 from flowtex.field.io import plot3d
 from flowtex.field.io.from_pyvista import FieldArguments, read_meshes
-from flowtex.field.io.meshes import times_of
+from flowtex.field.io.meshes import time_steps, times_of
 from flowtex.field.io.readers import open_reader
+from flowtex.field.io.surfaces import beside
+from flowtex.field.io.surfaces.steps import SurfaceArguments
 from flowtex.field.io.trial import try_reading
 
 __all__ = ["OpenFile", "open_file", "read_file"]
 
 _KNOWN_FORMATS = (
-    "a structured mesh that PyVista reads (.vts, .vtr, .vti, .vtk, .vtm, .pvd, .cgns, .case and "
-    "more), or PLOT3D (.xyz with .q beside it)"
+    "a mesh that PyVista reads (.vts, .vtr, .vti, .vtk, .vtu, .vtp, .vtm, .pvd, .cgns, .case, "
+    ".foam and more), or PLOT3D (.xyz with .q beside it)"
 )
 
 
@@ -30,13 +32,14 @@ _KNOWN_FORMATS = (
 class OpenFile:
     """A file that was opened, of which no more is read than its format asks for.
 
-    ``source`` is one of PyVista's readers or a mesh; ``velocity`` is the name of the velocity where
-    the format fixes it.
+    ``source`` is one of PyVista's readers, a mesh, or a list of time steps; ``velocity`` is the
+    name of the velocity where the format fixes it; ``problem`` tells why nothing can be drawn.
     """
 
     path: Path
     source: Any
     velocity: str | None
+    problem: str = ""
 
 
 def read_file(
@@ -46,12 +49,14 @@ def read_file(
     block: int | str | None = None,
     vectors: str | None = None,
     **options: Any,
-) -> FieldArguments:
+) -> FieldArguments | SurfaceArguments:
     """Read what a field needs from a file, with the parameters of :meth:`FlowField.from_file`.
 
     Whatever this raises is to be named by :func:`~flowtex.field.io.reader_errors.errors_of_file`.
     """
     file = open_file(path)
+    if file.problem:
+        raise FieldError(file.problem)
     source = file.source
     if time is not None:
         source = _at_time(source, time)
@@ -76,6 +81,8 @@ def open_file(path: str | Path) -> OpenFile:
         return OpenFile(file, mesh, "Velocity")
     try_reading(file)
     try:
+        if file.suffix.lower() in beside.SUFFIXES:
+            return OpenFile(file, *beside.read_with_vectors(file))
         return OpenFile(file, open_reader(file), None)
     except ValueError as error:
         if "does not support a file" not in str(error):
@@ -120,11 +127,17 @@ def _unknown_format(file: Path) -> str:
 
 def _at_time(source: Any, time: float) -> Any:
     """Read the one step of a series that is asked for."""
-    times = times_of(source)
-    for value in times:
-        if math.isclose(value, time, rel_tol=1e-6, abs_tol=1e-12):
-            source.set_active_time_value(value)
-            return source.read()
+    if isinstance(source, list):
+        for step in time_steps(source):
+            if step.time == time:
+                return step.grid
+        times = [float(n) for n in range(len(source))]
+    else:
+        times = times_of(source)
+        for value in times:
+            if math.isclose(value, time, rel_tol=1e-6, abs_tol=1e-12):
+                source.set_active_time_value(value)
+                return source.read()
     listed = ", ".join(f"{t:g}" for t in times[:8]) + (", ..." if len(times) > 8 else "")
     msg = f"time is {time!r}; the file has {f'the times {listed}' if times else 'no times'}"
     raise FieldError(msg)

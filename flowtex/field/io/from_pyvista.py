@@ -1,13 +1,16 @@
 """From PyVista's meshes to the arrays of a field.
 
-Each time step gives one plane of nodes (:mod:`flowtex.field.io.planes`): positions, vectors, other
+Of structured meshes each time step gives one plane of nodes (:mod:`flowtex.field.io.planes`): positions, vectors, other
 single-component arrays, and what is hidden. Vectors on cells become vectors on nodes. The steps
-are then stacked into the arguments of :meth:`FlowField.from_arrays`, which checks the rest.
+are then stacked into the arguments of :meth:`FlowField.from_arrays`, which checks the rest. All
+other meshes, and cuts, go through :mod:`flowtex.field.io.surfaces`.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
+from itertools import chain
 from typing import Any, TypedDict
 
 import numpy as np
@@ -16,9 +19,12 @@ from numpy.typing import ArrayLike
 from flowtex._util.array_types import Bools, Floats
 from flowtex.errors import FieldError, raise_faults
 from flowtex.field.io.meshes import (
-    SAME_NODE_SHARE,
     TimeStep,
+    check_arrays,
+    check_nodes,
     hidden_nodes,
+    is_structured,
+    part_size,
     time_steps,
     visible_cells,
 )
@@ -30,11 +36,12 @@ from flowtex.field.io.planes import (
     plane_faults,
     spread,
 )
+from flowtex.field.io.surfaces.cuts import find_cut
+from flowtex.field.io.surfaces.steps import SurfaceArguments, read_surfaces
 from flowtex.field.io.vectors import (
     MeshArray,
     catalogue,
     choose_vectors,
-    missing_arrays,
     values_of,
     vector_faults,
 )
@@ -76,26 +83,60 @@ def read_meshes(
     *,
     vectors: str | None = None,
     plane: str | None = None,
+    slice: Any = None,  # noqa: A002 - as the user calls it
+    contour: Any = None,
     times: ArrayLike | None = None,
     periodic: str | None = None,
     sign_free: bool = False,
     block: int | str | None = None,
-) -> FieldArguments:
+) -> FieldArguments | SurfaceArguments:
     """Read what a field needs from a mesh or a series of them.
 
     Parameters and errors are those of :meth:`FlowField.from_pyvista`; the block is picked from
     each step.
     """
+    cut = find_cut(slice, contour)
+    steps = time_steps(mesh, block, cut=cut is not None)
+    first = next(steps)
+    if is_structured(first.grid) and cut is None:
+        return _read_planes(
+            chain([first], steps), vectors, plane, times, periodic, sign_free=sign_free
+        )
+    given = {"plane": plane, "periodic": periodic, "sign_free": sign_free or None}
+    if wrong := [f"{name}={value!r}" for name, value in given.items() if value not in (None, "")]:
+        msg = (
+            f"{', '.join(wrong)} is for structured meshes, and this is a surface of triangles; "
+            "leave it out, or sample the mesh onto a structured one, as in "
+            "pyvista.create_grid(mesh, (200, 150, 50)).sample(mesh), with 1 along what is flat"
+        )
+        if plane is not None:
+            msg += '. A volume is cut by slice="x=0.5"'
+        raise FieldError(msg)
+    return read_surfaces(chain([first], steps), vectors, cut, times)
+
+
+def _read_planes(
+    steps: Iterable[TimeStep],
+    vectors: str | None,
+    plane: str | None,
+    times: ArrayLike | None,
+    periodic: str | None,
+    *,
+    sign_free: bool,
+) -> FieldArguments:
+    """Read planes of structured meshes."""
     sheets: list[_PlaneStep] = []
     own_times: list[float | None] = []
     choice: tuple[Plane, MeshArray] | None = None
-    for step in time_steps(mesh, block):
+    for step in steps:
         if choice is None:
             choice = _choose(step.grid, plane, vectors)
         _check_step(step, *choice)
         sheets.append(_plane_step(step.grid, *choice, periodic, sign_free=sign_free))
         own_times.append(step.time)
-        _check_nodes(sheets[0], sheets[-1], step.label)
+        start, sheet = sheets[0], sheets[-1]
+        check_nodes(start.points, sheet.points, start.shown & sheet.shown, step.label)
+        sheet.points = start.points
     known = [t for t in own_times if t is not None]
     if times is None and len(known) == len(sheets):
         times = known
@@ -123,37 +164,16 @@ def _choose(grid: Any, plane: str | None, vectors: str | None) -> tuple[Plane, M
 
 def _check_step(step: TimeStep, plane: Plane, vectors: MeshArray) -> None:
     """Refuse a step that is shaped otherwise than the first, or lacks its vectors."""
-    dimensions = tuple(step.grid.dimensions)
-    if dimensions != plane.dimensions:
+    grid = step.grid
+    if not is_structured(grid) or tuple(grid.dimensions) != plane.dimensions:
+        size = count_nodes(tuple(grid.dimensions)) if is_structured(grid) else part_size(grid)
         msg = (
-            f"{step.label} has {count_nodes(dimensions)} and the first step has "
+            f"{step.label} has {size} and the first step has "
             f"{count_nodes(plane.dimensions)}; expected the same nodes in every step. If these "
             "are parts of one mesh and not time steps, give one of them, as in block=0"
         )
         raise FieldError(msg)
-    missing = missing_arrays(step.grid, vectors)
-    if missing:
-        arrays = [str(array) for array in catalogue(step.grid)]
-        msg = (
-            f"{step.label} has no array {missing[0]}, which the first step has; expected it in "
-            f"every step. Its arrays, with their components: {', '.join(arrays) or 'none'}"
-        )
-        raise FieldError(msg)
-
-
-def _check_nodes(first: _PlaneStep, sheet: _PlaneStep, label: str) -> None:
-    """Refuse a mesh that moves."""
-    before, after = first.points, sheet.points
-    known = first.shown & sheet.shown & np.isfinite(before).all(-1) & np.isfinite(after).all(-1)
-    moved = float(np.max(np.abs(after[known] - before[known]), initial=0.0))
-    if moved > 0 and moved > SAME_NODE_SHARE * float(np.ptp(before[known], axis=0).max()):
-        msg = (
-            f"the nodes of {label} are up to {moved:.3g} away from those of the first step; moving "
-            "meshes are not supported: sample all steps onto one mesh with mesh.sample(step). If "
-            "these are parts of one mesh and not time steps, give one of them, as in block=0"
-        )
-        raise FieldError(msg)
-    sheet.points = first.points
+    check_arrays(step, vectors)
 
 
 def _plane_step(

@@ -1,7 +1,7 @@
-"""What a PyVista object holds: structured grids, their times, and what they hide.
+"""What a PyVista object holds: meshes, their times, and what they hide.
 
-A grid, a block of a MultiBlock, a list of grids and a reader of a time series all come down to a
-sequence of :class:`TimeStep`. Grids are handed out one at a time, so that a long series is never
+A mesh, a block of a MultiBlock, a list of meshes and a reader of a time series all come down to a
+sequence of :class:`TimeStep`. Meshes are handed out one at a time, so that a long series is never
 in memory as a whole.
 
 Meshes hide nodes and cells in several ways: VTK's ghost arrays on points and on cells, PLOT3D's
@@ -11,24 +11,33 @@ Meshes hide nodes and cells in several ways: VTK's ghost arrays on points and on
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import Any, Literal
 
 import numpy as np
 
-from flowtex._util.array_types import Bools
+from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex._util.notices import notify
 from flowtex.errors import FieldError
+from flowtex.field.io.vectors import BLANKING, MeshArray, candidates, catalogue, missing_arrays
 
 __all__ = [
     "SAME_NODE_SHARE",
     "TimeStep",
+    "cell_dimension",
+    "cell_dimensions",
+    "check_arrays",
+    "check_nodes",
+    "drawn_parts",
     "hidden_nodes",
     "is_reader",
     "is_structured",
     "leaves",
+    "part_size",
+    "parts_of",
     "pick",
     "several_fault",
-    "several_grids",
+    "several_parts",
     "time_steps",
     "times_of",
     "visible_cells",
@@ -45,29 +54,34 @@ MOST_LISTED = 12
 
 @dataclass(frozen=True)
 class TimeStep:
-    """One structured grid and its time, or ``None`` when no time is given with it."""
+    """One mesh and its time, or ``None`` when no time is given with it."""
 
     grid: Any
     time: float | None
     label: str
 
 
-def time_steps(source: Any, block: int | str | None = None) -> Iterator[TimeStep]:
-    """Go through the time steps of a grid, a MultiBlock, a list of either, or a reader.
+def time_steps(
+    source: Any, block: int | str | None = None, *, cut: bool = False
+) -> Iterator[TimeStep]:
+    """Go through the time steps of a mesh, a MultiBlock, a list of either, or a reader.
 
-    With a block, by its name or number, only of that one. Raises a FieldError when something is
-    met that is no structured grid.
+    With a block, by its name or number, only of that one; with a ``cut`` of all volumes together.
+    Raises a FieldError when something is met that is no mesh.
     """
     if is_reader(source):
-        yield from _read(source, block)
+        yield from _read(source, block, cut=cut)
     elif isinstance(source, (list, tuple)):
         if not source:
-            msg = "the list of meshes is empty; expected one structured mesh for each time step"
+            msg = "the list of meshes is empty; expected one mesh for each time step"
             raise FieldError(msg)
         for n, item in enumerate(source):
-            yield item if isinstance(item, TimeStep) else _single(item, f"step {n}", block)
+            if isinstance(item, TimeStep):
+                yield item if block is None else replace(item, grid=pick(item.grid, block))
+            else:
+                yield _single(item, f"step {n}", block, cut=cut)
     else:
-        yield from _blocks(_wrapped(source, "the mesh"), block)
+        yield from _blocks(_wrapped(source, "the mesh"), block, cut=cut)
 
 
 def is_reader(source: Any) -> bool:
@@ -105,53 +119,83 @@ def leaves(mesh: Any, name: str = "") -> Iterator[tuple[str, Any]]:
             yield from leaves(block, f"{name}/{own}" if name else own)
 
 
-def several_grids(mesh: Any, *, series: bool = False) -> dict[str, Any]:
-    """Return the structured blocks of a mesh by their paths, where one has to be chosen.
+def parts_of(mesh: Any) -> dict[str, Any]:
+    """Return the meshes in a tree of blocks by their paths; those without cells are left out."""
+    import pyvista as pv
 
-    That is not so where there is only one, and where all have the same nodes: those are time steps,
-    unless the mesh is itself one step of a ``series``.
+    meshes = {name: part for name, part in leaves(mesh) if isinstance(part, pv.DataSet)}
+    return {name: part for name, part in meshes.items() if part.n_cells} or meshes
+
+
+def drawn_parts(
+    mesh: Any, *, series: bool = False, cut: bool = False
+) -> tuple[dict[str, Any], Literal["steps", "together", "choose"]]:
+    """Return the blocks of a mesh that are meant where none is named, and how they belong together.
+
+    Volumes are cut ``together``, and surfaces are drawn so. Structured grids come before what is
+    around them. Those with the same nodes are time ``steps``, unless the mesh is itself one step
+    of a ``series``. Of others one has to be chosen, where there are several.
     """
-    grids = _grids(mesh)
-    usable = [grid for grid in grids.values() if _is_surface(grid)] or list(grids.values())
-    if len(usable) < 2 or (not series and _same_nodes(usable)):
-        return {}
-    return grids
+    parts = parts_of(mesh)
+    grids = {name: part for name, part in parts.items() if is_structured(part)}
+    flat = {name: part for name, part in parts.items() if cell_dimension(part) == 2}
+    solid = {name: part for name, part in parts.items() if cell_dimension(part) == 3}
+    usable = {name: grid for name, grid in grids.items() if cell_dimension(grid) > 1}
+    meant = usable or grids or solid or flat or parts
+    if cut and solid:
+        meant = solid
+    if not series and _same_nodes(list(meant.values())):
+        return meant, "steps"
+    if len(meant) > 1 and (meant is flat or meant is solid and cut):
+        return meant, "together"
+    return meant, "choose"
 
 
-def _grids(mesh: Any) -> dict[str, Any]:
-    return {name: grid for name, grid in leaves(mesh) if is_structured(grid)}
+def several_parts(mesh: Any, *, series: bool = False, cut: bool = False) -> dict[str, Any]:
+    """Return the blocks of a mesh by their paths, where one has to be chosen; else none."""
+    meant, how = drawn_parts(mesh, series=series, cut=cut)
+    return parts_of(mesh) if how == "choose" and len(meant) > 1 else {}
 
 
-def _same_nodes(grids: list[Any]) -> bool:
-    """Whether grids have the same nodes, as far as their sizes and bounds tell."""
-    first = np.asarray(grids[0].bounds)
+def _same_nodes(meshes: list[Any]) -> bool:
+    """Whether meshes have the same nodes, as far as their sizes and bounds tell."""
+    if not meshes:
+        return False
+    first = np.asarray(meshes[0].bounds)
     near = SAME_NODE_SHARE * max(float(np.ptp(first.reshape(3, 2), axis=1).max()), 0.0)
     return all(
-        tuple(grid.dimensions) == tuple(grids[0].dimensions)
-        and bool(np.all(np.abs(np.asarray(grid.bounds) - first) <= near))
-        for grid in grids
+        part_size(mesh) == part_size(meshes[0])
+        and bool(np.all(np.abs(np.asarray(mesh.bounds) - first) <= near))
+        for mesh in meshes
     )
 
 
-def several_fault(grids: dict[str, Any], label: str) -> str:
+def part_size(mesh: Any) -> str:
+    """Return words for the size of a mesh."""
+    if is_structured(mesh):
+        return " x ".join(map(str, mesh.dimensions)) + " nodes"
+    return f"{mesh.n_points:,} points, {mesh.n_cells:,} cells"
+
+
+def several_fault(parts: dict[str, Any], label: str) -> str:
     """Return words about a choice of several blocks."""
     listed = [
-        f"{number} ({name}, {' x '.join(map(str, grid.dimensions))} nodes)"
-        for number, (name, grid) in enumerate(grids.items())
+        f"{number} ({name}, {part_size(part)})" for number, (name, part) in enumerate(parts.items())
     ]
     more = ", ..." if len(listed) > MOST_LISTED else ""
+    solid = any(cell_dimension(part) == 3 for part in parts.values())
     return (
-        f"{label} has {len(grids)} structured blocks, and no time steps of one: "
-        f"{', '.join(listed[:MOST_LISTED])}{more}; choose one, as in "
-        f'block="{next(iter(grids))}"'
+        f"{label} has {len(parts)} blocks, and no time steps of one: "
+        f"{', '.join(listed[:MOST_LISTED])}{more}; choose one, as in block="
+        f'"{next(iter(parts))}"' + (', or cut all volumes, as in slice="z"' if solid else "")
     )
 
 
-def _read(reader: Any, block: int | str | None) -> Iterator[TimeStep]:
+def _read(reader: Any, block: int | str | None, *, cut: bool) -> Iterator[TimeStep]:
     """Read one time after the other, and leave the reader at the time it was set to."""
     times = times_of(reader)
     if len(times) < 2 or not hasattr(reader, "set_active_time_value"):
-        for step in _blocks(_wrapped(reader.read(), "the mesh"), block):
+        for step in _blocks(_wrapped(reader.read(), "the mesh"), block, cut=cut):
             time = step.time if len(times) != 1 else times[0]
             yield TimeStep(step.grid, time, step.label)
         return
@@ -159,64 +203,113 @@ def _read(reader: Any, block: int | str | None) -> Iterator[TimeStep]:
     try:
         for n, time in enumerate(times):
             reader.set_active_time_value(time)
-            step = _single(reader.read(), f"step {n}", block)
+            step = _single(reader.read(), f"step {n}", block, cut=cut)
             yield TimeStep(step.grid, time, step.label)
     finally:
         reader.set_active_time_value(before)
 
 
 def pick(mesh: Any, block: int | str) -> Any:
-    """Return one of the structured grids in a mesh, by number or by name.
+    """Return one of the meshes in a mesh, by number or by name.
 
     Raises a FieldError when there is none.
     """
-    grids = _grids(mesh)
-    for number, (name, grid) in enumerate(grids.items()):
+    parts = parts_of(mesh)
+    for number, (name, part) in enumerate(parts.items()):
         if block in (number, name):
-            return grid
-    for name, other in leaves(mesh):
-        if block == name:
-            raise FieldError(_unstructured(other, f"block {name!r}"))
-    if not grids:
-        raise FieldError(_unstructured(mesh, "the mesh"))
-    listed = ", ".join(f"{number} ({name})" for number, name in enumerate(grids))
-    msg = f"block is {block!r}; the structured blocks of the file are: {listed}"
+            return part
+    if not parts:
+        raise FieldError(_no_mesh(mesh, "the mesh"))
+    listed = ", ".join(f"{number} ({name})" for number, name in enumerate(parts))
+    msg = f"block is {block!r}; the blocks of the file are: {listed}"
     raise FieldError(msg)
 
 
-def _blocks(mesh: Any, block: int | str | None) -> Iterator[TimeStep]:
-    """Take a mesh for one step, and a MultiBlock of grids with the same nodes for a series."""
+def _blocks(mesh: Any, block: int | str | None, *, cut: bool) -> Iterator[TimeStep]:
+    """Take a mesh for one step, and a MultiBlock of meshes with the same nodes for a series."""
     if block is not None:
         mesh = pick(mesh, block)
-    if several := several_grids(mesh):
-        raise FieldError(several_fault(several, "the mesh"))
-    grids = list(_grids(mesh).items())
-    usable = [(name, block) for name, block in grids if _is_surface(block)] or grids
-    if len(usable) < 2:
-        yield _single(mesh, "the mesh")
+    meant, how = drawn_parts(mesh, cut=cut)
+    if how != "steps" or len(meant) < 2:
+        yield _single(mesh, "the mesh", cut=cut)
         return
-    for name, grid in usable:
-        yield TimeStep(grid, _time(grid), f"block {name!r}")
+    for name, part in meant.items():
+        yield TimeStep(part, _time(part), f"block {name!r}")
 
 
-def _single(item: Any, label: str, block: int | str | None = None) -> TimeStep:
-    """Return the only structured grid in a mesh or a MultiBlock, or the block of that name."""
+def _single(
+    item: Any, label: str, block: int | str | None = None, *, cut: bool = False
+) -> TimeStep:
+    """Return the mesh that is meant by a mesh or a MultiBlock, or the block of that name."""
     mesh = _wrapped(item, label)
     if block is not None:
-        grid, time = pick(mesh, block), _time(mesh)
-        return TimeStep(grid, _time(grid) if time is None else time, label)
-    if several := several_grids(mesh, series=True):
+        part, time = pick(mesh, block), _time(mesh)
+        return TimeStep(part, _time(part) if time is None else time, label)
+    if several := several_parts(mesh, series=True, cut=cut):
         raise FieldError(several_fault(several, label))
-    grids = list(_grids(mesh).values())
-    usable = [grid for grid in grids if _is_surface(grid)] or grids
-    if not usable:
-        raise FieldError(_unstructured(mesh, label))
-    time = _time(usable[0])
-    return TimeStep(usable[0], _time(mesh) if time is None else time, label)
+    meant, _ = drawn_parts(mesh, series=True, cut=cut)
+    if not meant:
+        raise FieldError(_no_mesh(mesh, label))
+    part, time = next(iter(meant.values())), _time(mesh)
+    time = _time(part) if time is None else time
+    return TimeStep(part if len(meant) == 1 else _together(meant), time, label)
 
 
-def _is_surface(grid: Any) -> bool:
-    return bool(sum(n > 1 for n in grid.dimensions) > 1)
+def _together(parts: dict[str, Any]) -> Any:
+    """Return several blocks as one mesh, of those that have vectors."""
+    import pyvista as pv
+
+    with_flow = {name: part for name, part in parts.items() if candidates(part)} or parts
+    notify(f"{len(with_flow)} blocks are drawn together: {', '.join(with_flow)}")
+    return pv.MultiBlock(list(with_flow.values())).combine()
+
+
+def cell_dimension(mesh: Any) -> int:
+    """Return the dimension of the cells of a mesh: 3 where there is any volume, 0 for points."""
+    import pyvista as pv
+
+    if isinstance(mesh, pv.UnstructuredGrid):
+        return int(cell_dimensions(mesh).max(initial=0))
+    if isinstance(mesh, pv.PolyData):
+        return 2 if mesh.GetNumberOfPolys() or mesh.n_strips else int(mesh.n_lines > 0)
+    return sum(n > 1 for n in mesh.dimensions) if is_structured(mesh) else 0
+
+
+def cell_dimensions(mesh: Any) -> Indices:
+    """Return the dimension of each cell of an unstructured mesh, (M,)."""
+    from vtkmodules.vtkCommonDataModel import vtkGenericCell
+
+    types, numbers = np.unique(np.asarray(mesh.celltypes), return_inverse=True)
+    cell, found = vtkGenericCell(), []
+    for kind in types:
+        cell.SetCellType(int(kind))
+        found.append(cell.GetCellDimension())
+    return np.asarray(found, dtype=np.intp)[numbers.ravel()]
+
+
+def check_arrays(step: TimeStep, vectors: MeshArray) -> None:
+    """Refuse a step that lacks the vectors of the first one."""
+    missing = missing_arrays(step.grid, vectors)
+    if missing:
+        arrays = [str(array) for array in catalogue(step.grid)]
+        msg = (
+            f"{step.label} has no array {missing[0]}, which the first step has; expected it in "
+            f"every step. Its arrays, with their components: {', '.join(arrays) or 'none'}"
+        )
+        raise FieldError(msg)
+
+
+def check_nodes(before: Floats, after: Floats, shown: Bools, label: str) -> None:
+    """Refuse a mesh that moves."""
+    known = shown & np.isfinite(before).all(-1) & np.isfinite(after).all(-1)
+    moved = float(np.max(np.abs(after[known] - before[known]), initial=0.0))
+    if moved > 0 and moved > SAME_NODE_SHARE * float(np.ptp(before[known], axis=0).max()):
+        msg = (
+            f"the nodes of {label} are up to {moved:.3g} away from those of the first step; moving "
+            "meshes are not supported: sample all steps onto one mesh with mesh.sample(step). If "
+            "these are parts of one mesh and not time steps, give one of them, as in block=0"
+        )
+        raise FieldError(msg)
 
 
 def _wrapped(source: Any, label: str) -> Any:
@@ -228,9 +321,9 @@ def _wrapped(source: Any, label: str) -> Any:
     if hasattr(source, "IsA") and source.IsA("vtkDataObject"):
         return pv.wrap(source)
     msg = (
-        f"{label} is of type {type(source).__name__}; expected a PyVista StructuredGrid, "
-        "RectilinearGrid, ImageData or MultiBlock, a list of them, or a reader. Arrays go to "
-        "FlowField.from_arrays(points, velocity)"
+        f"{label} is of type {type(source).__name__}; expected a mesh of PyVista's or a "
+        "MultiBlock, a list of them, or a reader. Arrays go to FlowField.from_arrays(points, "
+        "velocity) and FlowField.from_triangles(points, triangles, velocity)"
     )
     raise FieldError(msg)
 
@@ -243,19 +336,11 @@ def _time(mesh: Any) -> float | None:
     return float(values[0]) if len(values) else None
 
 
-def _unstructured(mesh: Any, label: str) -> str:
+def _no_mesh(mesh: Any, label: str) -> str:
     kinds = sorted({type(block).__name__ for _, block in leaves(mesh)})
     if not kinds:
         return f"{label} has no blocks; check the file or the filter that made it"
-    what = f"a {type(mesh).__name__}"
-    if kinds != [type(mesh).__name__]:
-        what += f" of {', '.join(kinds)}"
-    return (
-        f"{label} is {what}, and no structured grid: its nodes have no order along i and j, "
-        "which the method needs, and unstructured surfaces are not drawn yet. Sample it onto a "
-        "grid, as in pyvista.create_grid(mesh, (200, 150, 50)).sample(mesh), with 1 along what "
-        "is flat, or draw it with ParaView's Surface LIC, which takes any mesh"
-    )
+    return f"{label} is a {', '.join(kinds)}; expected a mesh, with points and cells"
 
 
 def hidden_nodes(mesh: Any) -> Bools:

@@ -114,7 +114,8 @@ def _choose(dimensions: tuple[int, int, int]) -> str:
     ranges = ", ".join(f"{a}=0 to {n - 1}" for a, n in zip("ijk", dimensions, strict=True))
     return (
         f"the mesh has {count_nodes(dimensions)}, and a flow is drawn on one surface: choose a "
-        f'plane, as in plane="{_example(dimensions)}"; there are {ranges}, and -1 is the last one'
+        f'plane, as in plane="{_example(dimensions)}"; there are {ranges}, and -1 is the last one; '
+        'or cut it anywhere, as in slice="z"'
     )
 
 

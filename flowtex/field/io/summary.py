@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,21 +10,27 @@ from typing import Any, Literal
 
 import numpy as np
 
+from flowtex._util.notices import Notice
 from flowtex.errors import FieldError
 from flowtex.field.io.files import OpenFile, open_file
 from flowtex.field.io.meshes import (
+    cell_dimension,
+    drawn_parts,
     hidden_nodes,
     is_reader,
     is_structured,
     leaves,
+    part_size,
+    parts_of,
     pick,
     several_fault,
-    several_grids,
+    several_parts,
     time_steps,
     times_of,
 )
 from flowtex.field.io.planes import plane_faults
 from flowtex.field.io.reader_errors import errors_of_file
+from flowtex.field.io.surfaces.cuts import cut_faults
 from flowtex.field.io.vectors import (
     MeshArray,
     candidates,
@@ -56,14 +63,16 @@ class ArraySummary:
 class BlockSummary:
     """One block of a file.
 
-    ``name`` is its path, ``number`` what counts the structured ones, ``None`` for the others,
-    ``dimensions`` the nodes along I, J and K.
+    ``name`` is its path, ``number`` what counts those with cells, ``None`` for the others,
+    ``dimensions`` the nodes along I, J and K of a structured one, ``size`` words for how large it
+    is.
     """
 
     name: str
     number: int | None
     grid: str
     dimensions: tuple[int, ...] | None
+    size: str = ""
 
 
 @dataclass(frozen=True)
@@ -73,9 +82,17 @@ class FileSummary:
     Attributes
     ----------
     grid
-        Type of its mesh: of the first structured block where it has several.
+        Type of its mesh: of the block that is meant where it has several.
     dimensions
         Number of nodes (I, J, K), or ``None`` for an unstructured mesh.
+    size
+        Words for how large it is.
+    cells
+        How many cells an unstructured mesh has of each kind.
+    bounds
+        Its ends, ((x, x), (y, y), (z, z)).
+    volume
+        Whether there is a volume to cut.
     blocks
         The blocks that hold something, when there are several.
     candidates
@@ -91,6 +108,10 @@ class FileSummary:
     path: Path
     grid: str
     dimensions: tuple[int, int, int] | None
+    size: str
+    cells: dict[str, int]
+    bounds: tuple[tuple[float, float], ...]
+    volume: bool
     blocks: tuple[BlockSummary, ...]
     arrays: tuple[ArraySummary, ...]
     candidates: tuple[str, ...]
@@ -102,20 +123,20 @@ class FileSummary:
 def describe(path: str | Path, block: int | str | None = None) -> FileSummary:
     """Summarize a file, whether or not a flow can be drawn from it; the first step of a series.
 
-    The arrays are those of the block, by its name or number, or of the first structured one.
+    The arrays are those of the block, by its name or number, or of the one that is meant.
     Raises a FieldError when the file cannot be read at all, or has no such block.
     """
     with errors_of_file(path):
         file = open_file(path)
         mesh = file.source.read() if is_reader(file.source) else file.source
+        mesh = mesh[0].grid if isinstance(mesh, list) else mesh
         return _summary(file, mesh, block)
 
 
 def _summary(file: OpenFile, mesh: Any, block: int | str | None) -> FileSummary:
     parts = list(leaves(mesh))
-    part = next((p for _, p in parts if is_structured(p)), parts[0][1] if parts else mesh)
-    if block is not None:
-        part = pick(mesh, block)
+    meant = list(drawn_parts(mesh)[0].values())
+    part = (meant or [p for _, p in parts] or [mesh])[0] if block is None else pick(mesh, block)
     structured = is_structured(part)
     data = hasattr(part, "point_data")
     arrays = catalogue(part) if data else []
@@ -123,40 +144,69 @@ def _summary(file: OpenFile, mesh: Any, block: int | str | None) -> FileSummary:
     vectors = file.velocity
     names = dict.fromkeys(array.name for array in found) if vectors is None else [vectors]
     times = times_of(file.source)
+    if isinstance(file.source, list):
+        times = [float(step.time) for step in file.source]
+    whole = mesh if block is None else part
     return FileSummary(
         path=file.path,
         grid=type(part).__name__,
         dimensions=tuple(part.dimensions) if structured else None,
-        blocks=tuple(_blocks(parts)) if len(parts) > 1 else (),
+        size=part_size(part) if data else "",
+        cells=_cells(part),
+        bounds=tuple(zip(part.bounds[::2], part.bounds[1::2], strict=True)) if data else (),
+        volume=data and cell_dimension(part) == 3,
+        blocks=tuple(_blocks(parts, parts_of(mesh))) if len(parts) > 1 else (),
         arrays=tuple(_array(part, a) for a in (*arrays, *(a for a in found if a.parts))),
         candidates=tuple(names),
         times=tuple(times),
-        blanked=int(hidden_nodes(part).sum()) if structured else 0,
-        problem=_problem(mesh if block is None else part, vectors, series=len(times) > 1),
+        blanked=int(hidden_nodes(part).sum()) if data else 0,
+        problem=file.problem or _problem(whole, vectors, series=len(times) > 1),
     )
 
 
-def _blocks(parts: list[tuple[str, Any]]) -> Iterator[BlockSummary]:
-    number = 0
+def _cells(mesh: Any) -> dict[str, int]:
+    """Count the cells of each kind of an unstructured mesh, by names such as ``"tetra"``."""
+    import pyvista as pv
+
+    if isinstance(mesh, pv.UnstructuredGrid):
+        types, counts = np.unique(np.asarray(mesh.celltypes), return_counts=True)
+        names = [pv.CellType(int(kind)).name.lower().replace("_", " ") for kind in types]
+        return {name: int(count) for name, count in zip(names, counts, strict=True)}
+    if not isinstance(mesh, pv.PolyData):
+        return {}
+    kinds = (
+        ("triangle" if mesh.is_all_triangles else "polygon", mesh.GetNumberOfPolys()),
+        ("triangle strip", mesh.GetNumberOfStrips()),
+        ("line", mesh.GetNumberOfLines()),
+        ("vertex", mesh.GetNumberOfVerts()),
+    )
+    return {name: int(count) for name, count in kinds if count}
+
+
+def _blocks(parts: list[tuple[str, Any]], meshes: dict[str, Any]) -> Iterator[BlockSummary]:
+    numbers = {name: number for number, name in enumerate(meshes)}
     for name, part in parts:
-        structured = is_structured(part)
-        dimensions = tuple(part.dimensions) if structured else None
-        yield BlockSummary(name, number if structured else None, type(part).__name__, dimensions)
-        number += structured
+        dimensions = tuple(part.dimensions) if is_structured(part) else None
+        size = part_size(part) if name in meshes else ""
+        yield BlockSummary(name, numbers.get(name), type(part).__name__, dimensions, size)
 
 
 def _problem(mesh: Any, vectors: str | None, *, series: bool) -> str:
     """Return what has to be chosen to make a field, or why none can be made."""
-    if several := several_grids(mesh, series=series):
+    if several := several_parts(mesh, series=series):
         return several_fault(several, "the file")
-    try:
-        first = next(time_steps(mesh))
-    except FieldError as error:
-        return str(error)
-    dimensions = tuple(first.grid.dimensions)
-    faults = plane_faults(dimensions, None)
-    if min(dimensions) > 0:
-        faults += vector_faults(first.grid, vectors)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", Notice)  # it is told when the field is made
+        try:
+            grid = next(time_steps(mesh)).grid
+        except FieldError as error:
+            return str(error)
+    if not is_structured(grid):
+        faults = cut_faults(grid, None)
+        return "; ".join(faults or vector_faults(grid, vectors))
+    faults = plane_faults(tuple(grid.dimensions), None)
+    if min(grid.dimensions) > 0:
+        faults += vector_faults(grid, vectors)
     return "; ".join(faults)
 
 

@@ -16,6 +16,7 @@ from flowtex._util.array_types import AnyArray
 from flowtex.field.io.components import NO_VELOCITY, find_vectors
 
 __all__ = [
+    "BLANKING",
     "MeshArray",
     "candidates",
     "catalogue",
@@ -26,7 +27,7 @@ __all__ = [
 ]
 
 #: Arrays that say what is hidden and nothing about the flow.
-_BLANKING = {"vtkGhostType", "IBlank", "vtkValidPointMask"}
+BLANKING = ("vtkGhostType", "IBlank", "vtkValidPointMask")
 _PLACES: tuple[Literal["points"], Literal["cells"]] = ("points", "cells")
 
 
@@ -56,7 +57,7 @@ def catalogue(mesh: Any) -> list[MeshArray]:
     for where in _PLACES:
         data = mesh.point_data if where == "points" else mesh.cell_data
         for name in data:
-            if name in _BLANKING:
+            if name in BLANKING:
                 continue
             array = np.asarray(data[name])
             arrays.append(

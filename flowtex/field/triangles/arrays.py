@@ -25,7 +25,7 @@ from flowtex.field.validation import (
     with_gaps,
 )
 
-__all__ = ["TriangleArrays", "nodal_means", "triangle_arrays"]
+__all__ = ["TriangleArrays", "nodal_means", "solid_triangles", "triangle_arrays"]
 
 #: Twice the area of a triangle over the square of its longest side, below which it has none.
 FLAT_TRIANGLE = 1e-12
@@ -82,7 +82,7 @@ def triangle_arrays(
     if joined.any():
         moved = joined[corners].any(axis=1)
         corners = same[corners]
-        moved[moved] = ~_solid(p, corners[moved])
+        moved[moved] = ~solid_triangles(p, corners[moved])
         corners = corners[~moved]
     is_used = np.zeros(len(p), dtype=bool)
     is_used[corners] = True
@@ -135,8 +135,8 @@ def _faults(
     return faults
 
 
-def _solid(p: Floats, corners: Indices) -> Bools:
-    """Which triangles have an area."""
+def solid_triangles(p: Floats, corners: Indices) -> Bools:
+    """Return which triangles (M,) have an area."""
     a, b, c = (p[corners[:, k]] for k in range(3))
     sides = b - a, c - a, c - b
     longest = np.max([np.einsum("mc,mc->m", side, side) for side in sides], axis=0)
@@ -149,7 +149,7 @@ def _usable(p: Floats, corners: Indices) -> Indices:
     finite = finite_nodes(p[None])[0]
     known = np.ones(len(corners), bool) if finite.all() else finite[corners].all(axis=1)
     good = known.copy()
-    good[known] = _solid(p, corners[known])
+    good[known] = solid_triangles(p, corners[known])
     once = ~repeated(corners)
     words = [
         (int((known & ~good).sum()), "without area"),

@@ -23,8 +23,8 @@ pv = pytest.importorskip("pyvista")
 Floats = NDArray[np.float64]
 
 KNOWN = (
-    "a structured mesh that PyVista reads (.vts, .vtr, .vti, .vtk, .vtm, .pvd, .cgns, .case and "
-    "more), or PLOT3D (.xyz with .q beside it)"
+    "a mesh that PyVista reads (.vts, .vtr, .vti, .vtk, .vtu, .vtp, .vtm, .pvd, .cgns, .case, "
+    ".foam and more), or PLOT3D (.xyz with .q beside it)"
 )
 
 
@@ -122,10 +122,10 @@ def test_one_of_several_blocks(tmp_path: Path) -> None:
     path = tmp_path / "flow.vtm"
     pv.MultiBlock({"left": flowing(), "hull": pv.Sphere(), "right": flowing(6)}).save(path)
     assert FlowField.from_file(path, block=0).shape == (3, 4)
-    assert FlowField.from_file(path, block=1).shape == (3, 6)
+    assert FlowField.from_file(path, block=2).shape == (3, 6)
     assert FlowField.from_file(path, block="right").shape == (3, 6)
-    with says(f"{path}: block is 2; the structured blocks of the file are: 0 (left), 1 (right)"):
-        FlowField.from_file(path, block=2)
+    with says(f"{path}: block is 3; the blocks of the file are: 0 (left), 1 (hull), 2 (right)"):
+        FlowField.from_file(path, block=3)
 
 
 def test_one_block_of_a_series(tmp_path: Path) -> None:
@@ -258,13 +258,15 @@ def test_plot3d_of_several_grids(tmp_path: Path) -> None:
     Plot3D(several=True, sizes=sizes).save(tmp_path / "a.g", tmp_path / "a.q")
     assert FlowField.from_file(tmp_path / "a.g", plane="k=0", block=1).shape == (6, 3)
     with says(
-        f"{tmp_path / 'a.g'}: the mesh has 2 structured blocks, and no time steps of one: 0 (0, "
-        '5 x 4 x 3 nodes), 1 (1, 3 x 6 x 2 nodes); choose one, as in block="0"'
+        f"{tmp_path / 'a.g'}: the mesh has 2 blocks, and no time steps of one: 0 (0, "
+        '5 x 4 x 3 nodes), 1 (1, 3 x 6 x 2 nodes); choose one, as in block="0", or cut all '
+        'volumes, as in slice="z"'
     ):
         FlowField.from_file(tmp_path / "a.g", plane="k=0")
     assert describe(tmp_path / "a.g").problem == (
-        "the file has 2 structured blocks, and no time steps of one: 0 (0, 5 x 4 x 3 nodes), "
-        '1 (1, 3 x 6 x 2 nodes); choose one, as in block="0"'
+        "the file has 2 blocks, and no time steps of one: 0 (0, 5 x 4 x 3 nodes), "
+        '1 (1, 3 x 6 x 2 nodes); choose one, as in block="0", or cut all '
+        'volumes, as in slice="z"'
     )
     assert describe(tmp_path / "a.g", block=1).dimensions == (3, 6, 2)
 
@@ -503,12 +505,12 @@ def test_what_vtk_only_warns_of_is_passed_on(tmp_path: Path) -> None:
         vtkOutputWindow.GetInstance().DisplayWarningText("odd")
 
 
-def test_an_unstructured_file(tmp_path: Path) -> None:
+def test_a_surface_without_vectors(tmp_path: Path) -> None:
     path = tmp_path / "hull.vtp"
     pv.Sphere().save(path)
     with pytest.raises(FieldError) as caught:
         FlowField.from_file(path)
-    assert str(caught.value).startswith(f"{path}: the mesh is a PolyData, and no structured grid: ")
+    assert str(caught.value).startswith(f"{path}: the mesh has no vectors that could be the")
 
 
 def test_faults_of_the_field_start_with_the_path(tmp_path: Path) -> None:
@@ -546,7 +548,8 @@ def test_a_file_tells_what_it_holds(tmp_path: Path) -> None:
     assert np.isnan(found["empty"][2:]).all()
     assert summary.problem == (
         "the mesh has 4 x 3 x 2 nodes (I x J x K), and a flow is drawn on one surface: choose a "
-        'plane, as in plane="k=1"; there are i=0 to 3, j=0 to 2, k=0 to 1, and -1 is the last one'
+        'plane, as in plane="k=1"; there are i=0 to 3, j=0 to 2, k=0 to 1, and -1 is the last one; '
+        'or cut it anywhere, as in slice="z"'
     )
 
 
@@ -568,8 +571,8 @@ def test_blocks_are_listed(tmp_path: Path) -> None:
     pv.MultiBlock({"hull": pv.Sphere(), "sea": flowing()}).save(path)
     summary = describe(path)
     assert summary.blocks == (
-        BlockSummary("hull", None, "PolyData", None),
-        BlockSummary("sea", 0, "StructuredGrid", (4, 3, 1)),
+        BlockSummary("hull", 0, "PolyData", None, "842 points, 1,680 cells"),
+        BlockSummary("sea", 1, "StructuredGrid", (4, 3, 1), "4 x 3 x 1 nodes"),
     )
     assert summary.dimensions == (4, 3, 1)
     assert summary.problem == ""
@@ -580,4 +583,5 @@ def test_an_unstructured_file_tells_what_it_is(tmp_path: Path) -> None:
     summary = describe(tmp_path / "hull.vtp")
     assert summary.grid == "PolyData"
     assert summary.dimensions is None
-    assert summary.problem.startswith("the mesh is a PolyData, and no structured grid")
+    assert summary.cells == {"triangle": 1680} and not summary.volume
+    assert summary.problem.startswith("the mesh has no vectors")

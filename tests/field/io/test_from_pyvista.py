@@ -20,12 +20,6 @@ Floats = NDArray[np.float64]
 
 HIDDEN_POINT, HIDDEN_CELL = 2, 32
 SHIFT = np.array([0.5, 0.25, 0.125])
-UNSTRUCTURED = (
-    ", and no structured grid: its nodes have no order along i and j, which the method needs, "
-    "and unstructured surfaces are not drawn yet. "
-    "Sample it onto a grid, as in pyvista.create_grid(mesh, (200, 150, 50)).sample(mesh), with 1 "
-    "along what is flat, or draw it with ParaView's Surface LIC, which takes any mesh"
-)
 
 
 def says(text: str) -> pytest.RaisesExc[FieldError]:
@@ -145,7 +139,7 @@ def test_a_bare_vtk_mesh_is_a_mesh() -> None:
             None,
             "the mesh has 5 x 4 x 3 nodes (I x J x K), and a flow is drawn on one surface: choose "
             'a plane, as in plane="k=1"; there are i=0 to 4, j=0 to 3, k=0 to 2, and -1 is the '
-            "last one",
+            'last one; or cut it anywhere, as in slice="z"',
         ),
         (
             "k=3",
@@ -613,7 +607,7 @@ def test_parts_of_one_mesh_are_no_steps() -> None:
     left, right = flowing(), flowing()
     right.points = np.asarray(right.points) + np.array([3.0, 0, 0])
     with says(
-        "the mesh has 2 structured blocks, and no time steps of one: 0 (left, 4 x 3 x 1 nodes), "
+        "the mesh has 2 blocks, and no time steps of one: 0 (left, 4 x 3 x 1 nodes), "
         '1 (right, 4 x 3 x 1 nodes); choose one, as in block="left"'
     ):
         FlowField.from_pyvista(pv.MultiBlock({"left": left, "right": right}))
@@ -654,34 +648,20 @@ def test_a_scalar_that_a_step_lacks_is_left_out() -> None:
 
 
 def test_an_empty_list() -> None:
-    with says("the list of meshes is empty; expected one structured mesh for each time step"):
+    with says("the list of meshes is empty; expected one mesh for each time step"):
         FlowField.from_pyvista([])
 
 
 def test_a_step_of_several_blocks() -> None:
     with says(
-        "step 0 has 2 structured blocks, and no time steps of one: 0 (Block-00, 4 x 3 x 1 nodes), "
+        "step 0 has 2 blocks, and no time steps of one: 0 (Block-00, 4 x 3 x 1 nodes), "
         '1 (Block-01, 5 x 3 x 1 nodes); choose one, as in block="Block-00"'
     ):
         FlowField.from_pyvista([pv.MultiBlock([flowing(), flowing(5)])])
     assert FlowField.from_pyvista([pv.MultiBlock([flowing(), flowing(5)])], block=1).shape == (3, 5)
 
 
-# --- what is no structured mesh -------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    ("mesh", "what"),
-    [
-        (pv.Sphere(), "the mesh is a PolyData"),
-        (pv.Sphere().cast_to_unstructured_grid(), "the mesh is a UnstructuredGrid"),
-        (pv.MultiBlock([pv.Sphere(), None]), "the mesh is a MultiBlock of PolyData"),
-        ([pv.Sphere()], "step 0 is a PolyData"),
-    ],
-)
-def test_an_unstructured_mesh(mesh: Any, what: str) -> None:
-    with says(what + UNSTRUCTURED):
-        FlowField.from_pyvista(mesh)
+# --- what is no mesh ------------------------------------------------------------------------
 
 
 def test_a_multiblock_without_blocks() -> None:
@@ -692,14 +672,14 @@ def test_a_multiblock_without_blocks() -> None:
 @pytest.mark.parametrize("thing", [np.ones((3, 4, 3)), "flow.vts", None])
 def test_no_mesh_at_all(thing: Any) -> None:
     with says(
-        f"the mesh is of type {type(thing).__name__}; expected a PyVista StructuredGrid, "
-        "RectilinearGrid, ImageData or MultiBlock, a list of them, or a reader. Arrays go to "
-        "FlowField.from_arrays(points, velocity)"
+        f"the mesh is of type {type(thing).__name__}; expected a mesh of PyVista's or a "
+        "MultiBlock, a list of them, or a reader. Arrays go to FlowField.from_arrays(points, "
+        "velocity) and FlowField.from_triangles(points, triangles, velocity)"
     ):
         FlowField.from_pyvista(thing)
 
 
-def test_the_advice_for_unstructured_meshes_works() -> None:
+def test_the_advice_to_sample_works() -> None:
     mesh = pv.Plane(i_size=4, j_size=4, i_resolution=8, j_resolution=8).triangulate()
     mesh["v"] = np.ones((mesh.n_points, 3))
     field = FlowField.from_pyvista(pv.create_grid(mesh, (21, 11, 1)).sample(mesh))

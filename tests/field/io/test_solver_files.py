@@ -22,6 +22,7 @@ from cfd_files import (
 )
 
 from flowtex import FlowField
+from flowtex._util.notices import Notice
 from flowtex.errors import FieldError
 from flowtex.field.io.summary import BlockSummary, describe
 from flowtex.field.source import FlowSource
@@ -52,9 +53,9 @@ def test_zones_of_cgns_are_blocks_by_their_paths(tmp_path: Path) -> None:
     field = FlowField.from_file(path, block=2, plane="k=0", time=1.0)
     assert field.steady and field.shape == (3, 4), "cells have become nodes"
     with says(
-        f"{path}: step 0 has 3 structured blocks, and no time steps of one: 0 (Wing/Zone 1, "
+        f"{path}: step 0 has 3 blocks, and no time steps of one: 0 (Wing/Zone 1, "
         "4 x 3 x 2 nodes), 1 (Wing/Zone 2, 6 x 3 x 2 nodes), 2 (Tail/Zone 1, 4 x 3 x 2 nodes); "
-        'choose one, as in block="Wing/Zone 1"'
+        'choose one, as in block="Wing/Zone 1", or cut all volumes, as in slice="z"'
     ):
         FlowField.from_file(path, plane="k=0")
 
@@ -63,11 +64,11 @@ def test_cgns_tells_what_it_holds(tmp_path: Path) -> None:
     summary = describe(cgns(tmp_path / "flow.cgns"))
     assert summary.times == TIMES
     assert summary.blocks == (
-        BlockSummary("Wing/Zone 1", 0, "StructuredGrid", (4, 3, 2)),
-        BlockSummary("Wing/Zone 2", 1, "StructuredGrid", (6, 3, 2)),
-        BlockSummary("Tail/Zone 1", 2, "StructuredGrid", (4, 3, 2)),
+        BlockSummary("Wing/Zone 1", 0, "StructuredGrid", (4, 3, 2), "4 x 3 x 2 nodes"),
+        BlockSummary("Wing/Zone 2", 1, "StructuredGrid", (6, 3, 2), "6 x 3 x 2 nodes"),
+        BlockSummary("Tail/Zone 1", 2, "StructuredGrid", (4, 3, 2), "4 x 3 x 2 nodes"),
     )
-    assert summary.problem.startswith("the file has 3 structured blocks, and no time steps of one:")
+    assert summary.problem.startswith("the file has 3 blocks, and no time steps of one:")
     summary = describe(tmp_path / "flow.cgns", block="Tail/Zone 1")
     assert [(a.name, a.where) for a in summary.arrays] == [
         ("Velocity", "cells"),
@@ -154,11 +155,11 @@ def test_nested_blocks(tmp_path: Path) -> None:
     assert FlowField.from_file(path, block="Base/a/b 0").shape == (3, 4)
     assert FlowField.from_file(path, block="Base/a/b 2").shape == (3, 6)
     assert FlowField.from_pyvista(tree, block="c").shape == (3, 6)
-    with pytest.raises(FieldError, match="block 'Base/hull' is a PolyData, and no structured grid"):
+    with pytest.raises(FieldError, match="the mesh has no vectors that could be"):
         FlowField.from_file(path, block="Base/hull")
 
 
-ADVICE = ", and no structured grid: its nodes have no order along i and j, which the method needs"
+OUTER = "the outer surface of the volume is drawn"
 
 
 def test_openfoam_tells_its_patches_and_times(tmp_path: Path) -> None:
@@ -173,14 +174,15 @@ def test_openfoam_tells_its_patches_and_times(tmp_path: Path) -> None:
         ("boundary/walls", "PolyData"),
     ]
     assert "U" in summary.candidates
-    what = f"is a MultiBlock of PolyData, UnstructuredGrid{ADVICE}"
-    assert f"the mesh {what}" in summary.problem
-    with pytest.raises(FieldError, match=re.escape(f"{path}: step 0 {what}")):
-        FlowField.from_file(path)
-    with pytest.raises(
-        FieldError, match=re.escape(f"block 'boundary/walls' is a PolyData{ADVICE}")
-    ):
-        FlowField.from_file(path, block="boundary/walls")
+    assert summary.problem == ""
+    with pytest.warns(Notice, match=OUTER):
+        field = FlowField.from_file(path)
+    assert field.times.tolist() == list(TIMES) and field.triangles is not None
+    cut = FlowField.from_file(path, slice="z", time=TIMES[0])
+    assert cut.steady and np.ptp(cut.points[..., 2]) < 1e-6
+    assert FlowField.from_file(path, block="boundary/walls").triangles is not None
+    source = FlowSource.from_file(path)
+    assert source.blocks[0] == "internalMesh" and "boundary/walls" in source.blocks
 
 
 def test_openfoam_in_the_pieces_of_a_parallel_run(tmp_path: Path) -> None:
@@ -197,8 +199,8 @@ def test_exodus_tells_what_it_is(tmp_path: Path) -> None:
     write_exodus(path, TIP)
     summary = describe(path)
     assert "velocity" in summary.candidates
-    with pytest.raises(FieldError, match=re.escape(ADVICE)):
-        FlowField.from_file(path)
+    with pytest.warns(Notice, match=OUTER):
+        assert FlowField.from_file(path).triangles is not None
 
 
 def test_hexahedra_of_cgns(tmp_path: Path) -> None:
@@ -206,8 +208,9 @@ def test_hexahedra_of_cgns(tmp_path: Path) -> None:
     with CGNS.write(path) as file:
         file.base("Base", [("Zone", TIP)], hexahedra=True)
     assert "Velocity" in describe(path).candidates
-    with pytest.raises(FieldError, match=re.escape(f"is a MultiBlock of UnstructuredGrid{ADVICE}")):
-        FlowField.from_file(path)
+    with pytest.warns(Notice, match=OUTER):
+        assert FlowField.from_file(path).triangles is not None
+    assert FlowField.from_file(path, slice="z").triangles is not None
 
 
 # --- broken ones ----------------------------------------------------------------------------

@@ -1,0 +1,23 @@
+"""What was chosen without being asked for, said to whoever called."""
+
+from __future__ import annotations
+
+import sys
+import warnings
+from pathlib import Path
+
+__all__ = ["Notice", "notify"]
+
+_PACKAGE = str(Path(__file__).resolve().parents[1])
+
+
+class Notice(UserWarning):
+    """Something of the data was chosen without being asked for, or is not drawn."""
+
+
+def notify(text: str, kind: type[Notice] = Notice) -> None:
+    """Warn at the line that called the package, however deep it has come since."""
+    level, frame = 2, sys._getframe(1)
+    while frame.f_back is not None and frame.f_code.co_filename.startswith(_PACKAGE):
+        level, frame = level + 1, frame.f_back
+    warnings.warn(text, kind, stacklevel=level)

@@ -1,0 +1,88 @@
+"""Files of a surface that have no room for vectors, with these in a file beside them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from flowtex._util.array_types import AnyArray
+from flowtex.errors import FieldError
+from flowtex.field.io.meshes import TimeStep
+from flowtex.field.io.vectors import candidates
+
+__all__ = ["SUFFIXES", "read_with_vectors"]
+
+#: Endings of such files.
+SUFFIXES = (".obj", ".ply", ".stl")
+#: Name that the vectors get.
+NAME = "velocity"
+
+
+def read_with_vectors(file: Path) -> tuple[Any, str | None, str]:
+    """Return the mesh of a file, or its time steps, with its vectors, their name, and what is wrong.
+
+    They are in ``NAME.npy``, in the order that the reader gives points or triangles; of an STL the
+    points may be three for each triangle, as it has them, or one for each place, as PyVista.
+    """
+    import pyvista as pv
+
+    reader: Any = pv.get_reader(str(file))
+    mesh = reader.read()
+    if candidates(mesh):
+        return mesh, None, ""
+    try:
+        vectors = _vectors(file)
+    except FieldError as error:
+        return mesh, None, f"{error}; {_expected(file, mesh)}"
+    count = vectors.shape[-2]
+    if count == 3 * mesh.n_cells != mesh.n_points and file.suffix.lower() == ".stl":
+        reader.reader.SetMerging(False)
+        mesh = reader.read()
+    if count not in (mesh.n_points, mesh.n_cells):
+        shape = f"{file.with_suffix('.npy').name} beside it has shape {vectors.shape}"
+        return mesh, None, f"{shape}; {_expected(file, mesh)}"
+
+    def with_vectors(step: AnyArray) -> Any:
+        copy = mesh.copy(deep=False)
+        data = copy.point_data if count == mesh.n_points else copy.cell_data
+        data[NAME] = step
+        return copy
+
+    if vectors.ndim == 2:
+        return with_vectors(vectors), NAME, ""
+    steps = [TimeStep(with_vectors(v), float(n), f"step {n}") for n, v in enumerate(vectors)]
+    return steps, NAME, ""
+
+
+def _vectors(file: Path) -> AnyArray:
+    """Return the array beside a file, (N, 2 or 3) or (T, N, 2 or 3)."""
+    path = file.with_suffix(".npy")
+    if not path.is_file():
+        msg = "the file has no vectors, for which its format has no room"
+        raise FieldError(msg)
+    try:
+        vectors = np.load(path, allow_pickle=False)
+    except (ValueError, EOFError, OSError) as error:
+        msg = f"{path.name} beside it is no array of NumPy's ({error})"
+        raise FieldError(msg) from error
+    if not isinstance(vectors, np.ndarray):
+        msg = f"{path.name} beside it holds several arrays"
+        raise FieldError(msg)
+    real = vectors.dtype.kind in "fiu" and vectors.size
+    if not real or vectors.ndim not in (2, 3) or vectors.shape[-1] not in (2, 3):
+        msg = f"{path.name} beside it has shape {vectors.shape} of {vectors.dtype}"
+        raise FieldError(msg)
+    return vectors
+
+
+def _expected(file: Path, mesh: Any) -> str:
+    name = file.with_suffix(".npy").name
+    points, cells = mesh.n_points, mesh.n_cells
+    corners = f", ({3 * cells}, 3) for their corners" if file.suffix.lower() == ".stl" else ""
+    return (
+        f"expected them beside it in {name}, numbers of shape ({points}, 3) for its points, "
+        f"({cells}, 3) for its faces{corners}, or (T, {points}, 3) for times, in the order of the "
+        "file, as numpy.save writes them"
+    )

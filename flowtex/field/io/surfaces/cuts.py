@@ -1,0 +1,274 @@
+"""The surface that is drawn of a mesh: its own, a plane through a volume, or a contour of it.
+
+A cut is told as text, ``slice="x=0.5"`` or ``contour="pressure=101325"``, or as Python's numbers.
+"""
+
+from __future__ import annotations
+
+import difflib
+import math
+import re
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from flowtex._util.array_types import Indices
+from flowtex._util.notices import notify
+from flowtex.errors import FieldError
+from flowtex.field.io.meshes import cell_dimension, cell_dimensions, hidden_nodes
+from flowtex.field.io.vectors import BLANKING, MeshArray, catalogue
+from flowtex.field.triangles.arrays import solid_triangles
+
+__all__ = ["HIDDEN", "Contour", "Cut", "Slice", "cut_faults", "find_cut", "surface_of"]
+
+_NORMALS = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
+_AXIS = re.compile(r"\s*(?P<axis>[xyz])\s*(=\s*(?P<at>[^\s=]+)\s*)?", re.IGNORECASE)
+#: Flags of VTK's ghost arrays for cells that are not drawn: those of other pieces, too, for they
+#: would lie upon these.
+_NOT_DRAWN = 1 | 8 | 32
+#: Point array that says what is hidden, for as long as filters are at work.
+HIDDEN = "flowtex hidden"
+
+Vector = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Slice:
+    """A plane with this normal, through a point or the middle of the mesh; ``text`` as given."""
+
+    normal: Vector
+    point: Vector | None
+    text: str
+
+    def faults(self, mesh: Any) -> list[str]:
+        """Nothing can be wrong before it is tried."""
+        return []
+
+    def of(self, mesh: Any) -> Any:
+        """Return the section of a volume."""
+        cut = mesh.slice(normal=self.normal, origin=self.point or mesh.center)
+        if not cut.n_cells:
+            ends = np.reshape(mesh.bounds, (3, 2))
+            spans = (f"{a} from {low:g} to {high:g}" for a, (low, high) in zip("xyz", ends))
+            msg = f"slice is {self.text}, which is beside the mesh; it has {', '.join(spans)}"
+            raise FieldError(msg)
+        return cut
+
+
+@dataclass(frozen=True)
+class Contour:
+    """The places where an array has a value; ``text`` as given."""
+
+    name: str
+    value: float
+    text: str
+
+    def faults(self, mesh: Any) -> list[str]:
+        """Tell that there is no such array."""
+        names = [a.name for a in catalogue(mesh) if a.numeric and a.components == 1]
+        if self.name in names:
+            return []
+        near = difflib.get_close_matches(self.name, names, n=1)
+        hint = f'. Did you mean "{near[0]}"?' if near else ""
+        listed = ", ".join(dict.fromkeys(names)) or "none"
+        return [
+            f"contour is {self.text}, and the mesh has no array {self.name!r} of one "
+            f"component{hint}; there are: {listed}"
+        ]
+
+    def of(self, mesh: Any) -> Any:
+        """Return the contour in a volume whose array is on points."""
+        cut = mesh.contour([self.value], scalars=self.name)
+        if not cut.n_cells:
+            values = np.asarray(mesh.point_data[self.name], dtype=np.float64)
+            low, high = np.nanmin(values), np.nanmax(values)
+            msg = f"contour is {self.text}; {self.name} is {low:g} to {high:g} here"
+            raise FieldError(msg)
+        return cut
+
+
+Cut = Slice | Contour
+
+
+def find_cut(slice: Any, contour: Any) -> Cut | None:  # noqa: A002 - as the user calls it
+    """Return the cut that is meant, or ``None`` for none.
+
+    Raises a FieldError when both are given, or one that cannot be understood.
+    """
+    if slice is not None and contour is not None:
+        msg = f"slice is {slice!r} and contour is {contour!r}; choose one of them"
+        raise FieldError(msg)
+    if slice is not None:
+        return _slice(slice)
+    return None if contour is None else _contour(contour)
+
+
+def _slice(given: Any) -> Slice:
+    normal: Any = None
+    point: Any = None
+    if isinstance(given, str):
+        if match := _AXIS.fullmatch(given):
+            axis = match["axis"].lower()
+            normal, at = _NORMALS[axis], match["at"]
+            point = None if at is None else [float(a == axis) * _number(at) for a in "xyz"]
+        else:
+            first, through, second = given.partition("through")
+            normal = first.split(",")
+            point = second.split(",") if through else None
+    elif isinstance(given, (list, tuple, np.ndarray)):
+        normal, point = given if len(given) == 2 else (given, None)
+        normal = _NORMALS.get(normal, normal) if isinstance(normal, str) else normal
+    way, place = _vector(normal), None if point is None else _vector(point)
+    if way is None or not any(way) or (point is not None and place is None):
+        msg = (
+            f'slice is {given!r}; expected "x=0.5", a normal as in "1,1,0", one with a point as in '
+            '"1,1,0 through 0.5,0.5,0.2", or a pair (normal, point) of three numbers each'
+        )
+        raise FieldError(msg)
+    return Slice(way, place, repr(given))
+
+
+def _contour(given: Any) -> Contour:
+    pair = given.rpartition("=")[::2] if isinstance(given, str) else given
+    if isinstance(pair, (list, tuple)) and len(pair) == 2 and isinstance(pair[0], str):
+        name, value = pair[0].strip(), _number(pair[1])
+        if name and math.isfinite(value):
+            return Contour(name, value, repr(given))
+    msg = f'contour is {given!r}; expected an array and its value, as in contour="pressure=101325"'
+    raise FieldError(msg)
+
+
+def _vector(given: Any) -> Vector | None:
+    try:
+        x, y, z = (_number(number) for number in given)
+    except (TypeError, ValueError):
+        return None
+    return (x, y, z) if math.isfinite(x + y + z) else None
+
+
+def _number(given: Any) -> float:
+    try:
+        return float(given)
+    except (TypeError, ValueError):
+        return math.nan
+
+
+def cut_faults(mesh: Any, cut: Cut | None) -> list[str]:
+    """Faults in a cut of a mesh, and in a mesh that has no surface."""
+    dimension = cell_dimension(mesh)
+    if not mesh.n_cells:
+        return ["the mesh is empty: check that the file or the filter that made it gave any cells"]
+    if dimension < 2:
+        what = ("points", "lines")[dimension]
+        return [f"the mesh has {what} alone; expected a surface, or a volume to cut"]
+    if cut is None:
+        return []
+    if dimension == 2:
+        name = type(cut).__name__.lower()
+        return [
+            f"{name} is {cut.text}, and the mesh is a surface already, of which only a line would "
+            f"be left; leave {name} out"
+        ]
+    return cut.faults(mesh)
+
+
+def surface_of(
+    mesh: Any, cut: Cut | None, vectors: MeshArray, *, tell: bool
+) -> tuple[Any, Indices]:
+    """Return a PolyData with the data of the mesh, and the triangles of its surface, (M, 3).
+
+    Arrays on the cells of a volume that is cut come to its points before. :data:`HIDDEN` is above
+    zero at points that depend on hidden ones. ``tell`` says what was taken without being asked
+    for; :func:`cut_faults` returned none before.
+    """
+    import pyvista as pv
+
+    mesh = _shown_cells(mesh)
+    if isinstance(mesh, pv.UnstructuredGrid):
+        dimensions = cell_dimensions(mesh)
+        flat = cut is None and 2 in dimensions
+        if tell and cut is None and 3 in dimensions:
+            what = "cells of two dimensions are" if flat else "outer surface of the volume is"
+            notify(f"the {what} drawn; to cut it: {_examples(mesh)}")
+        drawn = dimensions == (2 if flat else 3)
+        mesh = mesh if drawn.all() else mesh.extract_cells(drawn, pass_cell_ids=False)
+    if cut is not None:
+        mesh = cut.of(_exact(_on_points(mesh, vectors)))
+    elif not isinstance(mesh, pv.PolyData):
+        mesh = mesh.extract_surface(
+            pass_pointid=False, pass_cellid=False, algorithm="dataset_surface"
+        )
+    if not mesh.is_all_triangles or mesh.n_cells != mesh.GetNumberOfPolys():
+        mesh = mesh.triangulate()
+    triangles = np.asarray(mesh.regular_faces, dtype=np.intp)
+    if cut is not None:
+        # Where a plane goes through the corners of cells, there are triangles without area.
+        points = np.asarray(mesh.points, dtype=np.float64)
+        triangles = triangles[solid_triangles(points, triangles)]
+    return mesh, triangles
+
+
+def _examples(mesh: Any) -> str:
+    """Return how the volume may be cut: across its shortest side, or by one of its arrays."""
+    bounds = np.reshape(mesh.bounds, (3, 2))
+    axis = int(np.argmin(np.ptp(bounds, axis=1)))
+    cut = f'slice="{"xyz"[axis]}={bounds[axis].mean():.4g}"'
+    scalars = (a for a in catalogue(mesh) if a.real and a.components == 1)
+    names = [a.name for a in scalars if a.name != HIDDEN]
+    return f'{cut} or contour="{names[0]}=VALUE"' if names else cut
+
+
+def _shown_cells(mesh: Any) -> Any:
+    """Return a mesh without its hidden cells, and with the hidden points marked."""
+    hidden = hidden_nodes(mesh)
+    ghosts = mesh.cell_data.get("vtkGhostType")
+    shown = None if ghosts is None else (np.asarray(ghosts) & _NOT_DRAWN) == 0
+    mesh = mesh.copy(deep=False)
+    for data in (mesh.point_data, mesh.cell_data):
+        for name in BLANKING:
+            if name in data:
+                del data[name]
+    mesh.point_data[HIDDEN] = hidden.astype(np.float64)
+    if shown is None or shown.all():
+        return mesh
+    if not shown.any():
+        msg = "all cells of the mesh are hidden; show some of them"
+        raise FieldError(msg)
+    return mesh.extract_cells(shown, pass_cell_ids=False, pass_point_ids=False)
+
+
+def _exact(mesh: Any) -> Any:
+    """Return a volume with positions in double precision, of which VTK's filters give theirs.
+
+    A plane cuts slivers off the corners of cells; in single precision they face anywhere.
+    """
+    import pyvista as pv
+
+    if isinstance(mesh, (pv.ImageData, pv.RectilinearGrid)):
+        mesh = mesh.cast_to_structured_grid()
+    if np.asarray(mesh.points).dtype != np.float64:
+        mesh.points = np.asarray(mesh.points, dtype=np.float64)
+    return mesh
+
+
+def _on_points(mesh: Any, vectors: MeshArray) -> Any:
+    """Return a volume with its arrays on its points; the mesh may be changed."""
+    chosen = (vectors.parts or (vectors.name,)) if vectors.where == "cells" else ()
+    names = [
+        a.name
+        for a in catalogue(mesh)
+        if a.where == "cells"
+        and a.numeric
+        and (a.name in chosen or (a.components == 1 and a.name not in mesh.point_data))
+    ]
+    if names:
+        cells = mesh.copy(deep=False)
+        cells.clear_data()
+        for name in names:
+            cells.cell_data[name] = np.asarray(mesh.cell_data[name], dtype=np.float64)
+        points = cells.cell_data_to_point_data().point_data
+        for name in names:
+            mesh.point_data[name] = points[name]
+    mesh.cell_data.clear()
+    return mesh
