@@ -84,6 +84,7 @@ def _recognised_table(paths: list[Path]) -> Table:
     if others:
         table.add_row("also", "; ".join(map(str, others)))
     directions = {"earth": "eastward and northward", "grid": "along the grid"}
+    directions["plane"] = "along x and y"
     table.add_row("directions", directions[known.along])
     table.add_row("grid", known.grid)
     table.add_row("coordinates", known.coordinates)

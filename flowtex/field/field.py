@@ -269,7 +269,8 @@ class FlowField(FieldConstructors):
         velocity
             Velocity at the nodes, (N, 2 or 3), or (T, N, 2 or 3) for a field that varies in time,
             in units of length per unit of time. NaN and masked entries blank a node. What of it
-            is normal to the surface is not drawn (:attr:`normal_share`).
+            is normal to the surface is not drawn (:attr:`normal_share`). Steps that are read
+            late (``LazySteps``) stay so: those nodes are blanked that have no data in the first.
         times, name, length_unit, time_unit, units, projection
             As for :meth:`from_arrays`.
         valid
@@ -313,7 +314,7 @@ class FlowField(FieldConstructors):
             projection=projection,
             triangles=arrays.triangles,
         )
-        if not flow.velocity.any():
+        if not isinstance(arrays.velocity, LazySteps) and not flow.velocity.any():
             warnings.warn(ALL_AT_REST, stacklevel=2)
         return flow
 

@@ -17,9 +17,14 @@ if TYPE_CHECKING:
     import xarray as xr
 
 __all__ = [
+    "FACES",
     "LEVEL",
+    "LEVELS",
+    "NODES",
+    "TIME",
     "Choice",
     "Section",
+    "axis_kind",
     "axis_values",
     "horizontal_dims",
     "seconds_in",
@@ -30,7 +35,8 @@ __all__ = [
 #: Names of axes that are vertical, and horizontal, where no attribute says so.
 LEVELS = re.compile(
     r"^(s_rho|s_w|sc_r|nav_lev|k|k_\w|lev\w*|depth\w*|z|z_\w+|zl|height\w*|altitude|"
-    r"level\w*|plev\w*|isobaric\w*|pressure\w*|sigma\w*|hybrid\w*|bottom_top\w*|rc|zc)$",
+    r"level\w*|plev\w*|isobaric\w*|pressure\w*|sigma\w*|hybrid\w*|bottom_top\w*|rc|zc|"
+    r"sig(lay|lev)|nz_?\d?|\w*layers?|\w*vgrid\w*|n?vert_?levels\w*)$",
     re.IGNORECASE,
 )
 ROWS = re.compile(r"^(y\w*|j\w*|lat\w*|nlat|eta\w*|south_north\w*|rlat)$", re.IGNORECASE)
@@ -40,6 +46,10 @@ PRESSURES = re.compile(r"^(h?pa|pascals?|mbar|mb|millibars?|bar)$", re.IGNORECAS
 #: Lengths of the units of time in seconds.
 SECONDS = {"s": 1.0, "sec": 1.0, "second": 1.0, "min": 60.0, "minute": 60.0, "h": 3600.0}
 SECONDS |= {"hr": 3600.0, "hour": 3600.0, "d": 86400.0, "day": 86400.0}
+#: What numbers the levels of a model from its top on.
+FROM_THE_TOP = re.compile(r"generalized.height", re.IGNORECASE)
+#: Names of the dimensions of nodes and of faces, where there is a mesh.
+NODES, FACES = "mesh_nodes", "mesh_faces"
 #: Words by which a person may choose along an axis whose own name is another.
 LEVEL, TIME = "level", "time"
 
@@ -66,7 +76,8 @@ class Section:
     Attributes
     ----------
     array
-        The variable, ([time,] rows, columns); nothing of it is read yet.
+        The variable, ([time,] rows, columns) or ([time,] nodes or faces of a mesh); nothing of it
+        is read yet.
     times
         Dates, or seconds, one for each step, or ``None`` where no time is known.
     notes
@@ -86,17 +97,20 @@ class Section:
     @property
     def is_series(self) -> bool:
         """Whether there are several time steps."""
-        return bool(self.array.ndim == 3)
+        return bool(self.array.ndim > len(horizontal_dims(self.array)))
 
 
-def horizontal_dims(array: xr.DataArray) -> tuple[str, str]:
-    """Return the dimensions of rows and columns.
+def horizontal_dims(array: xr.DataArray) -> tuple[str, ...]:
+    """Return the dimensions of rows and columns, or the one of the nodes or faces of a mesh.
 
     Raises
     ------
     FieldError
         When they cannot be told.
     """
+    for dim in (NODES, FACES):
+        if dim in array.dims:
+            return (dim,)
     axes = array.cf.axes
     found = []
     for kind, pattern, spare in (("Y", ROWS, -2), ("X", COLUMNS, -1)):
@@ -121,7 +135,7 @@ def sections(arrays: list[xr.DataArray], choice: Choice) -> list[Section]:
         [str(d) for d in array.dims if d not in pair]
         for array, pair in zip(arrays, rows, strict=True)
     ]
-    kinds = [{_kind(array, d): d for d in dims} for array, dims in zip(arrays, others, strict=True)]
+    kinds = [{axis_kind(array, d): d for d in dims} for array, dims in zip(arrays, others, strict=True)]
     if len({tuple(k) for k in kinds}) > 1 or any(
         len(k) < len(d) for k, d in zip(kinds, others, strict=True)
     ):
@@ -168,7 +182,7 @@ def axis_values(array: xr.DataArray) -> dict[str, tuple[str, ...]]:
     found: dict[str, tuple[str, ...]] = {}
     surface = horizontal_dims(array)
     for dim in map(str, array.dims):
-        kind = _kind(array, dim)
+        kind = axis_kind(array, dim)
         line = _values(array, dim)
         if dim in surface or array.sizes[dim] < 2 or (kind == TIME and _is_time(array, dim, line)):
             continue
@@ -195,7 +209,7 @@ def seconds_in(unit: str) -> float | None:
     return SECONDS.get(word, SECONDS.get(word.removesuffix("s")))
 
 
-def _kind(array: xr.DataArray, dim: str) -> str:
+def axis_kind(array: xr.DataArray, dim: str) -> str:
     """Return ``"time"``, ``"level"``, or the name of another axis."""
     axes = array.cf.axes
     if dim in axes.get("T", ()) or _dates(array, dim) is not None:
@@ -317,7 +331,9 @@ def _at_surface(lines: list[Any], coordinate: Any) -> int:
     """Return the number of the level nearest to the surface that all variables have."""
     line = lines[0].astype(float)
     unit = "" if coordinate is None else str(coordinate.attrs.get("units", ""))
-    height = -line if PRESSURES.match(unit) else np.abs(line)
+    named = "" if coordinate is None else str(coordinate.attrs.get("long_name", ""))
+    falls = PRESSURES.match(unit) or FROM_THE_TOP.search(named)
+    height = -line if falls else np.abs(line)
     for number in np.argsort(height, kind="stable"):
         try:
             [_alike(lines[0][number], int(number), other) for other in lines[1:]]

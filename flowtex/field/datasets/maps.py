@@ -11,7 +11,7 @@ from flowtex._util.array_types import Floats
 from flowtex.earth import GLOBE, Projection
 from flowtex.field.datasets.places import Places
 
-__all__ = ["MapNodes", "on_map"]
+__all__ = ["TORN", "MapNodes", "on_map", "projection_of", "shown_positions"]
 
 #: The flat map that is drawn where none is chosen, and those on which an axis that goes around the
 #: Earth goes on at the other side, a map further.
@@ -53,20 +53,12 @@ def on_map(places: Places, name: str | None) -> MapNodes:
     """Put nodes on a map, by its name; by default a flat one that suits the region."""
     lon, lat = places.a, places.b
     columns = np.arange(lon.shape[1])
+    projection, around = projection_of(places, name)
+    name, center = projection.name, projection.center
     if name == GLOBE:
-        projection = Projection(GLOBE)
         return MapNodes(
             projection, projection.positions(lon, lat), (slice(None), columns), None, lon, lat
         )
-    middle, span = _middle(lon)
-    around = span >= AROUND
-    low, high = float(np.nanmin(lat)), float(np.nanmax(lat))
-    center = (0.0 if around else middle, 0.0 if around else (low + high) / 2)
-    if name is None:
-        polar = not around or not places.is_line
-        polar = polar and abs(low + high) / 2 > POLAR
-        name = FLAT if not polar else "north" if low + high > 0 else "south"
-    projection = Projection(name, center, max((high - low) / 2, 1.0))
     periodic: str | None = ""
     lon = center[0] + (lon - center[0] + 180.0) % 360.0 - 180.0
     if places.is_line:
@@ -79,21 +71,45 @@ def on_map(places: Places, name: str | None) -> MapNodes:
                 lon = np.concatenate([lon, lon[:, :1] + 360.0], axis=1)
             periodic = "i" if name in CYLINDERS else None if name in ("north", "south") else ""
     lat = lat[:, columns]
-    points = projection.positions(lon, lat)
-    least, most = LATITUDES.get(name, (-90.0, 90.0))
-    with np.errstate(invalid="ignore"):
-        points[(lat < least) | (lat > most)] = np.nan
-    if name not in ("robinson", "equalearth", *CYLINDERS):
-        scale = projection.scales(lon, lat)
-        known = scale[np.isfinite(scale)]
-        with np.errstate(invalid="ignore"):
-            points[~(scale <= LARGEST * (np.median(known) if known.size else 0))] = np.nan
+    points = shown_positions(projection, lon, lat)
     if not places.is_line or name not in (*CYLINDERS, "north", "south"):
         points[_torn(points, lon, lat)] = np.nan
     rows = np.asarray(np.isfinite(points[..., 0]).any(axis=1))
     first, last = np.flatnonzero(rows)[[0, -1]] if rows.any() else (0, len(rows) - 1)
     kept = slice(int(first), int(last) + 1)
     return MapNodes(projection, points[kept], (kept, columns), periodic, lon[kept], lat[kept])
+
+
+def projection_of(places: Places, name: str | None) -> tuple[Projection, bool]:
+    """Return the map of a name, or one that suits the region, and whether that is around the Earth.
+
+    ``places`` are nodes in any order where they are no lines.
+    """
+    if name == GLOBE:
+        return Projection(GLOBE), False
+    middle, span = _middle(places.a)
+    around = span >= AROUND
+    low, high = float(np.nanmin(places.b)), float(np.nanmax(places.b))
+    center = (0.0 if around else middle, 0.0 if around else (low + high) / 2)
+    if name is None:
+        polar = not around or not places.is_line
+        polar = polar and abs(low + high) / 2 > POLAR
+        name = FLAT if not polar else "north" if low + high > 0 else "south"
+    return Projection(name, center, max((high - low) / 2, 1.0)), around
+
+
+def shown_positions(projection: Projection, lon: Floats, lat: Floats) -> Floats:
+    """Return positions (..., 3) on a flat map, NaN where it has ended."""
+    points = projection.positions(lon, lat)
+    least, most = LATITUDES.get(projection.name, (-90.0, 90.0))
+    with np.errstate(invalid="ignore"):
+        points[(lat < least) | (lat > most)] = np.nan
+    if projection.name not in ("robinson", "equalearth", *CYLINDERS):
+        scale = projection.scales(lon, lat)
+        known = scale[np.isfinite(scale)]
+        with np.errstate(invalid="ignore"):
+            points[~(scale <= LARGEST * (np.median(known) if known.size else 0))] = np.nan
+    return points
 
 
 def _middle(lon: Floats) -> tuple[float, float]:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from flowtex.errors import FieldError
+from flowtex.field.datasets.axes import FACES, NODES
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -36,7 +37,8 @@ MOVING = re.compile(r"velocity|wind|current|drift|momentum_component")
 #: Names that are a velocity even where nothing else says so, without what tells the component.
 BARE = re.compile(
     r"^(|o|a|bar|vel|velocity|wind|wnd|cur|curr|current|grd|as|gos|water|component|"
-    r"eulerian_current_velocity|.*(velocity|wind|current).*)\d*m?$"
+    r"eulerian_current_velocity|.*(velocity|wind|current).*|"
+    r"hvel|dahv|horizontalvel|depthaveragevel|nod|ureconstruct)\d*m?$"
 )
 #: Names that models have given to the components, and that nothing in them tells.
 KNOWN_NAMES = {"vozocrtx": "vomecrty", "sozocrtx": "somecrty"}
@@ -105,6 +107,10 @@ def choose_pair(datasets: Sequence[xr.Dataset], u: str | None, v: str | None) ->
     if not pairs:
         raise FieldError(_no_pair(datasets))
     best = [pair for pair in pairs if pair.rank == pairs[0].rank]
+    if len(best) > 1 and _on_mesh(best[0].u):
+        # A model's own velocity has levels, and the wind beside it, or the mean of all, has none;
+        # and components along the axes of space may be there besides those along the Earth.
+        best = [pair for pair in best if _likely(pair) == _likely(best[0])]
     if len(best) > 1:
         listed = "; ".join(map(str, pairs))
         first = best[0]
@@ -150,7 +156,12 @@ def find_pairs(datasets: Sequence[xr.Dataset]) -> list[Pair]:
                     if rank is not None:
                         why = f"{source.replace('_', ' ')} with {word!r} and {PARTNERS[word]!r}"
                         pairs[key] = Pair(u, v, _directions(u), why, rank)
-    return sorted(pairs.values(), key=lambda pair: pair.rank)
+    return sorted(pairs.values(), key=_likely)
+
+
+def _likely(pair: Pair) -> tuple[int, int, bool]:
+    """Return what the likely pairs are less in; on a mesh the least one is meant."""
+    return pair.rank, -pair.u.ndim, pair.along != "earth"
 
 
 def to_metres_per_second(array: xr.DataArray) -> float | None:
@@ -177,7 +188,14 @@ def to_metres_per_second(array: xr.DataArray) -> float | None:
 
 
 def _may_be_component(array: xr.DataArray) -> bool:
-    return array.ndim >= 2 and array.dtype.kind in "fiu" and "bounds" not in str(array.name)
+    fewest = 1 if _on_mesh(array) else 2
+    return (
+        array.ndim >= fewest and array.dtype.kind in "fiu" and "bounds" not in str(array.name)
+    )
+
+
+def _on_mesh(array: xr.DataArray) -> bool:
+    return bool({NODES, FACES} & set(array.dims))
 
 
 def _text(array: xr.DataArray, source: str) -> str:

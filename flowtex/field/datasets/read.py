@@ -18,15 +18,25 @@ from flowtex._util.array_types import Bools, Floats
 from flowtex._util.extras import import_extra
 from flowtex.errors import FieldError
 from flowtex.field.datasets.axes import (
+    FACES,
+    LEVEL,
+    NODES,
+    TIME,
     Choice,
     Section,
+    axis_kind,
     horizontal_dims,
     seconds_in,
     sections,
     way_ahead,
 )
 from flowtex.field.datasets.grids import find_grid, sea_mask, unrepeated
-from flowtex.field.datasets.maps import on_map
+from flowtex.field.datasets.maps import on_map, projection_of
+from flowtex.field.datasets.meshes.conventions import find_mesh
+from flowtex.field.datasets.meshes.maps import mesh_on_map
+from flowtex.field.datasets.meshes.mesh import Mesh
+from flowtex.field.datasets.meshes.nodal import WET, NodalValues
+from flowtex.field.datasets.meshes.preparation import with_mesh_axes
 from flowtex.field.datasets.notices import notify
 from flowtex.field.datasets.pairs import Pair, choose_pair, to_metres_per_second
 from flowtex.field.datasets.places import LATITUDE, LONGITUDE, Places, over_sphere
@@ -92,18 +102,19 @@ class Recognised:
     u: Section
     v: Section
     steps: Callable[[int], tuple[Floats, Floats]]
-    cells: tuple[str, str]
-    kept: tuple[slice, slice]
-    trimmed: tuple[slice, slice]
+    cells: tuple[str, ...]
+    kept: tuple[slice, ...] = ()
+    trimmed: tuple[slice, ...] = ()
+    mesh: Mesh | None = None
 
     @property
     def map_name(self) -> str:
         """The flat map that suits the places."""
-        return on_map(self.places, None).projection.name
+        return projection_of(self.places, None)[0].name
 
 
 def field_of(
-    make: Callable[..., F],
+    make: type[F],
     data: xr.Dataset | Sequence[xr.Dataset],
     u: str | None = None,
     v: str | None = None,
@@ -113,7 +124,7 @@ def field_of(
     sel: Mapping[str, Any] | None = None,
     isel: Mapping[str, Any] | None = None,
 ) -> F:
-    """Make a field by ``FlowField.from_arrays``; :meth:`FlowField.from_xarray` has the rest."""
+    """Make a field, as :meth:`FlowField.from_xarray` does; ``make`` is the class."""
     known = recognise(data, u, v, sel=sel, isel=isel)
     for note in known.notes:
         notify(note)
@@ -126,6 +137,9 @@ def field_of(
         raise FieldError(msg)
     times, numbers = _times(known)
     scalars = _scalars(known, as_datasets(data), Choice(dict(sel or {}), dict(isel or {})))
+    name = ", ".join(filter(None, (name, known.level)))
+    if known.mesh is not None:
+        return _mesh_field(make, known, known.mesh, scalars, times, numbers, projection, name)
     if not places.is_earth:
         points = np.stack([places.a, places.b], axis=-1)
 
@@ -157,10 +171,78 @@ def field_of(
         return np.asarray(np.hypot(*known.steps(number))[lines])
 
     first = velocity(numbers[0])
-    base = make(points, first, name=", ".join(filter(None, (name, known.level))), **options)
+    base = make.from_arrays(points, first, name=name, **options)  # type: ignore[attr-defined]
     extra: dict[str, Callable[[int], Floats]] = {}
     for key, (read, _) in scalars.items():
         extra[key] = partial(on_lines, read)
+    words = _words(scalars)
+    if speeds:
+        extra["speed"] = speed
+        words["units"]["speed"] = "m/s"
+    field: F = _with_steps(base, first, velocity, extra, times, numbers, words)
+    return field
+
+
+def _mesh_field(
+    make: Any,
+    known: Recognised,
+    mesh: Mesh,
+    scalars: Mapping[str, tuple[Callable[[int], Floats], Any]],
+    times: Any,
+    numbers: list[int],
+    projection: str | None,
+    name: str,
+) -> Any:
+    """Make a field on a mesh by ``FlowField.from_triangles``."""
+    options: dict[str, Any] = {"length_unit": known.places.unit or "m", "time_unit": "s"}
+    words = _words(scalars)
+    read = {key: reader for key, (reader, _) in scalars.items()}
+    nodes: Any = slice(None)
+    if mesh.is_earth:
+        drawn = mesh_on_map(mesh, known.places, projection)
+        if drawn.lost:
+            notify(
+                f"{drawn.lost:,} triangles are left out, for the map tears them apart, as at a "
+                "pole; a globe has them all, as in globe=True"
+            )
+        points, triangles, nodes = drawn.points, drawn.triangles, drawn.nodes
+        options["projection"] = drawn.projection
+        vectors = drawn.vectors
+        if not drawn.projection.is_globe:
+            read["speed"] = lambda number: np.hypot(*known.steps(number))
+            words["units"]["speed"] = "m/s"
+    else:
+        points, triangles = mesh.positions, mesh.triangles
+
+        def vectors(u: Floats, v: Floats) -> Floats:
+            return np.stack([u, v, np.zeros_like(u)], axis=-1)
+
+    def velocity(number: int) -> Floats:
+        # What is dry now and was not always is at rest.
+        return np.nan_to_num(vectors(*known.steps(numbers[number])))
+
+    def value(reader: Callable[[int], Floats], number: int) -> Floats:
+        return np.asarray(reader(numbers[number])[nodes])
+
+    some = sorted({numbers[0], numbers[len(numbers) // 2], numbers[-1]})
+    valid = np.any([np.isfinite(known.steps(n)).all(axis=0) for n in some], axis=0)
+    count = len(numbers)
+    field = make.from_triangles(
+        points,
+        triangles,
+        LazySteps(count, velocity) if count > 1 else velocity(0),
+        times=times,
+        valid=valid[nodes],
+        scalars={key: LazySteps(count, partial(value, reader)) for key, reader in read.items()},
+        name=name,
+        units=words["units"],
+        **options,
+    )
+    return replace(field, long_names=words["long_names"])
+
+
+def _words(scalars: Mapping[str, tuple[Any, Any]]) -> dict[str, dict[str, str]]:
+    """Return units, and long names for which there is room, of variables."""
     attributes = {key: attrs for key, (_, attrs) in scalars.items()}
     words = {
         ours: {key: str(a[theirs]) for key, a in attributes.items() if a.get(theirs)}
@@ -168,11 +250,7 @@ def field_of(
     }
     long_names = words["long_names"].items()
     words["long_names"] = {key: text for key, text in long_names if len(text) <= LONGEST_NAME}
-    if speeds:
-        extra["speed"] = speed
-        words["units"]["speed"] = "m/s"
-    field: F = _with_steps(base, first, velocity, extra, times, numbers, words)
-    return field
+    return words
 
 
 def recognise(
@@ -200,8 +278,14 @@ def recognise(
     factor = factors[0] if factors[0] is not None else 1.0
     choice = Choice(dict(sel or {}), dict(isel or {}))
     one, two = sections([pair.u, pair.v], choice)
-    rows, columns = zip(horizontal_dims(pair.u), horizontal_dims(pair.v), strict=True)
+    surface = horizontal_dims(pair.u), horizontal_dims(pair.v)
     notes = list(one.notes)
+    if factors[0] is None:
+        notes.append(f"{pair.u.name} and {pair.v.name} have no unit, and count as m/s")
+    mesh = find_mesh(datasets)
+    if mesh is not None and len(surface[0]) == 1:
+        return _on_mesh(mesh, pair, (one, two), factor, notes, datasets, choice)
+    rows, columns = zip(*surface, strict=True)
     sides, places, words = find_grid(pair, (rows[0], columns[1]), (rows, columns), datasets)
     kept = (
         sides[0].known if sides[0] else slice(None),
@@ -241,8 +325,6 @@ def recognise(
             a, b = (np.where(mask, p, np.nan) for p in (a, b))
         return a[trimmed], b[trimmed]
 
-    if factors[0] is None:
-        notes.append(f"{pair.u.name} and {pair.v.name} have no unit, and count as m/s")
     grid = f"{words}, {'rows and columns' if places.is_line else 'curvilinear'}"
     return Recognised(
         pair=pair,
@@ -263,6 +345,76 @@ def recognise(
     )
 
 
+def _on_mesh(
+    mesh: Mesh,
+    pair: Pair,
+    sections: tuple[Section, Section],
+    factor: float,
+    notes: list[str],
+    datasets: Sequence[Any],
+    choice: Choice,
+) -> Recognised:
+    """Return what is known of a velocity at the nodes or in the faces of a mesh."""
+    dims = {horizontal_dims(array) for array in (pair.u, pair.v)}
+    if len(dims) > 1:
+        msg = (
+            f"{pair.u.name!r} has {', '.join(map(str, pair.u.dims))} and {pair.v.name!r} "
+            f"{', '.join(map(str, pair.v.dims))}; expected both at nodes, or both in faces"
+        )
+        raise FieldError(msg)
+    one, two = sections
+    ((dim,),) = dims
+    nodal = NodalValues(mesh, dim)
+    wet = _wet(one, dim, datasets, choice)
+
+    def steps(number: int) -> tuple[Floats, Floats]:
+        u, v = (_values(section, number) * factor for section in sections)
+        there = np.isfinite(u) & np.isfinite(v)
+        if wet is not None:
+            there &= wet(number)
+        return nodal.vector(np.where(there, u, np.nan), np.where(there, v, np.nan))
+
+    unit = "" if mesh.is_earth else "m"
+    return Recognised(
+        pair=pair,
+        along="earth" if mesh.is_earth else "plane",
+        ahead=(1, 1),
+        staggered=False,
+        grid=f"{mesh.words}; velocity {'at nodes' if nodal.at_nodes else 'in faces'}",
+        coordinates=mesh.coordinates,
+        places=Places(
+            mesh.a[None],
+            mesh.b[None],
+            is_earth=mesh.is_earth,
+            is_line=False,
+            why=mesh.coordinates,
+            unit=unit,
+        ),
+        notes=tuple(notes),
+        level=one.level,
+        u=one,
+        v=two,
+        steps=lru_cache(MOST_READ)(steps),
+        cells=(dim,),
+        mesh=mesh,
+    )
+
+
+def _wet(
+    section: Section, dim: str, datasets: Sequence[Any], choice: Choice
+) -> Callable[[int], Bools] | None:
+    """Return what tells which nodes or faces are under water at a step."""
+    for ds in datasets:
+        for name, water in WET.items():
+            if name not in ds.data_vars or dim not in ds[name].dims:
+                continue
+            all_axes = Choice(choice.sel, choice.isel, {*choice.sel, *choice.isel})
+            (flags,) = sections([ds[name]], all_axes)
+            if flags.is_series == section.is_series:
+                return lambda number: _values(flags, number) == water  # noqa: B023
+    return None
+
+
 def as_datasets(data: Any) -> list[Any]:
     """Return datasets whose axes cf_xarray can tell, with times as dates."""
     xarray = import_extra("xarray", "xarray")
@@ -277,7 +429,7 @@ def as_datasets(data: Any) -> list[Any]:
             except (ValueError, OverflowError, TypeError):
                 decoded = ds  # its times are those of no calendar
             result.append(decoded.cf.guess_coord_axis())
-    return result
+    return with_mesh_axes(result)
 
 
 def _values(section: Section, number: int) -> Floats:
@@ -368,22 +520,36 @@ def _scalars(
 ) -> dict[str, tuple[Callable[[int], Floats], Any]]:
     """Return readers and attributes of the other variables that lie at the nodes, by name."""
     found: dict[str, tuple[Callable[[int], Floats], Any]] = {}
-    rows, columns = known.cells
     used = (known.pair.u.name, known.pair.v.name)
     steps = known.u.array.shape[0] if known.u.is_series else 1
     # Dimensions of one name do not tell the sides of cells from their middle.
-    aside = known.staggered and set(known.pair.u.dims) & set(known.pair.v.dims) >= {rows, columns}
+    aside = known.staggered and set(known.pair.u.dims) & set(known.pair.v.dims) >= {*known.cells}
+    # What a velocity has no level for may still have a value.
+    choice.used.update(choice.sel, choice.isel)
     for ds in datasets:
         if aside and any(name in ds for name in used):
             continue
+        if known.mesh is not None and known.mesh.is_alone_in(ds, used):
+            continue
         for name, array in ds.data_vars.items():
-            at_nodes = {rows, columns} <= set(array.dims) and array.ndim <= known.pair.u.ndim
+            surface = _surface(known, array)
             numbers = array.dtype.kind in "fiu" and not OF_GRIDS.match(str(name))
-            if name not in (*used, *found) and at_nodes and numbers:
-                read = _reader(known, array.transpose(..., rows, columns), steps, choice)
+            if name not in (*used, *found) and surface and numbers:
+                read = _reader(known, array.transpose(..., *surface), steps, choice)
                 if read is not None:
                     found[str(name)] = read, array.attrs
     return found
+
+
+def _surface(known: Recognised, array: Any) -> tuple[str, ...]:
+    """Return the dimensions in which a variable lies at the nodes, or nothing where it does not."""
+    if known.mesh is None:
+        at_nodes = {*known.cells} <= set(array.dims) and array.ndim <= known.pair.u.ndim
+        return known.cells if at_nodes else ()
+    dims = horizontal_dims(array) if {NODES, FACES} & set(array.dims) else ()
+    others = {str(d) for d in array.dims} - set(dims)
+    plain = all(d in known.pair.u.dims or axis_kind(array, d) in (TIME, LEVEL) for d in others)
+    return dims if plain and str(array.name) not in (*known.mesh.names, *WET) else ()
 
 
 def _reader(
@@ -396,6 +562,9 @@ def _reader(
         return None
     if section.is_series and section.array.shape[0] != steps:
         return None
+    if known.mesh is not None:
+        nodal = NodalValues(known.mesh, horizontal_dims(array)[0])
+        return lambda number: nodal.scalar(_values(section, number))
     return lambda number: np.asarray(_values(section, number)[known.kept][known.trimmed])
 
 

@@ -256,7 +256,7 @@ class FieldConstructors:
             raise FieldError(msg)
         options: dict[str, Any] = {"sel": {**(sel or {}), **selection}, "isel": isel}
         return field_of(
-            cls.from_arrays,
+            cls,
             data,
             u,
             v,

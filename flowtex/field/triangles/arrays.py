@@ -13,7 +13,7 @@ from scipy.sparse import csr_array
 
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.errors import FieldError, raise_faults
-from flowtex.field.steps import Steps, map_steps
+from flowtex.field.steps import LazySteps, Steps, map_steps
 from flowtex.field.triangles.topology import merged_nodes, repeated
 from flowtex.field.validation import (
     as_numbers,
@@ -52,22 +52,31 @@ def triangle_arrays(
 ) -> TriangleArrays:
     """Check arrays, join what lies at one place, and leave out what cannot be drawn, with a word.
 
-    Parameters and errors are those of :meth:`FlowField.from_triangles`.
+    Parameters and errors are those of :meth:`FlowField.from_triangles`. Of steps that are read late
+    the first one is looked at.
     """
     p, masked_points = as_numbers("points", points)
-    v, masked = as_numbers("velocity", velocity)
+    v, masked = as_numbers("velocity", _first(velocity))
     corners = np.asarray(triangles)
     shown = None if valid is None else np.nan_to_num(with_gaps("valid", valid)) != 0
-    given = {name: with_gaps(f"scalars[{name!r}]", s) for name, s in scalars.items()}
-    raise_faults(_faults(p, corners, v, times, shown, given))
+    given = {name: with_gaps(f"scalars[{name!r}]", _first(s)) for name, s in scalars.items()}
+    count = len(velocity) if v.ndim == 3 or isinstance(velocity, LazySteps) else 1
+    raise_faults(_faults(p, corners, v, count, times, shown, given))
     p = three_components(p)
     v = three_components(v)
     v = (v[None] if v.ndim == 2 else v)[:, None]  # (T, 1, N, 3)
-    data = {name: scalar_steps(s, (1, len(p))) for name, s in given.items()}
     known = finite_nodes(p[None])[0] & ~masked_points & finite_nodes(v)[0] & ~masked
     ok: Bools = np.asarray(known if shown is None else known & shown)
     v = np.asarray(np.where(ok[:, None], v, np.nan))
     raise_faults(range_faults(p[None], v, ok[None]))
+    if isinstance(velocity, LazySteps):
+        v = velocity.map(lambda step: _row(three_components(np.nan_to_num(step)), ok))
+    data = {
+        name: scalars[name].map(lambda step: step[None])
+        if isinstance(scalars[name], LazySteps)
+        else scalar_steps(s, (1, len(p)))
+        for name, s in given.items()
+    }
     corners = _usable(p, corners.astype(np.intp))
     if not (ok[corners].all(axis=1)).any():
         msg = (
@@ -91,14 +100,24 @@ def triangle_arrays(
     if len(used) < len(p):
         ok, v, data = _joined(number[same], len(used), ok, v, data)
         p = p[used]
-    v = np.where(ok[:, None], v, 0.0)
+    v = map_steps(v, lambda step: np.where(ok[:, None], step, 0.0))
     return TriangleArrays(p[None].copy("C"), number[corners], v, ok[None], data)
+
+
+def _first(values: Any) -> Any:
+    """Return the first of steps that are read late; others as they are."""
+    return values[0] if isinstance(values, LazySteps) else values
+
+
+def _row(step: Floats, ok: Bools) -> Floats:
+    return np.where(ok[:, None], step, np.nan)[None]
 
 
 def _faults(
     p: Floats,
     corners: Any,
     v: Floats,
+    steps: int,
     times: Floats | None,
     valid: Any,
     scalars: Mapping[str, Floats],
@@ -122,8 +141,7 @@ def _faults(
             f"(T, {count}, 3) for one that varies in time, with points {p.shape}"
         )
     else:
-        faults += time_faults(times, len(v) if v.ndim == 3 else 1)
-    steps = len(v) if v.ndim == 3 else 1
+        faults += time_faults(times, steps)
     if valid is not None and valid.shape != (count,):
         faults.append(f"valid has shape {valid.shape}; expected ({count},) as points has rows")
     for name, array in scalars.items():
@@ -167,21 +185,23 @@ def nodal_means(
 ) -> Steps:
     """Means at the nodes, (T, N, ...), of values at triangles (T, M, ...), by area.
 
-    Those that are not ``known`` (M,) count for nothing; a node without any has NaN.
+    Faces with more corners, (M, K), have -1 for those that some of them lack. What is NaN, or not
+    ``known`` (M,), counts for nothing; a node without any has NaN.
     """
+    at, face = triangles.ravel(), np.repeat(np.arange(len(triangles)), triangles.shape[1])
     weights = areas if known is None else np.where(known, areas, 0.0)
-    columns = np.repeat(np.arange(len(triangles)), 3)
+    there = at >= 0
     matrix = csr_array(
-        (np.repeat(weights, 3), (triangles.ravel(), columns)), shape=(nodes, len(triangles))
+        (weights[face[there]], (at[there], face[there])), shape=(nodes, len(triangles))
     )
-    total = matrix.sum(axis=1)
-    share = np.divide(1.0, total, out=np.full(nodes, np.nan), where=total > 0)
 
     def means(step: Floats) -> Floats:
         flat = step.reshape(len(step), -1)
-        if known is not None:
-            flat = np.where(known[:, None], flat, 0.0)
-        return np.asarray((matrix @ flat) * share[:, None]).reshape(nodes, *step.shape[1:])
+        finite = np.isfinite(flat).all(axis=1)
+        total = (matrix @ finite.astype(float))[:, None]
+        sums = matrix @ np.where(finite[:, None], flat, 0.0)
+        mean = np.divide(sums, total, out=np.full_like(sums, np.nan), where=total > 0)
+        return np.asarray(mean.reshape(nodes, *step.shape[1:]))
 
     return map_steps(values, means)
 

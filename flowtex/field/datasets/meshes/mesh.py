@@ -1,0 +1,256 @@
+"""A mesh of polygons as a model's file has it: nodes, faces, and these cut into triangles."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex.errors import FieldError
+from flowtex.field.datasets.axes import FACES, NODES
+from flowtex.field.datasets.places import DEGREES, LENGTHS
+from flowtex.field.triangles.topology import triangle_normals
+
+__all__ = ["Mesh"]
+
+#: Decimals of degrees to which bounds of neighbours agree.
+SAME_DEGREES = 5
+LONGITUDES = re.compile(r"lon|lambda", re.IGNORECASE)
+RADIANS = re.compile(r"^rad(ian)?s?$", re.IGNORECASE)
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """A mesh of polygons; its numbers are read when they are asked for.
+
+    Attributes
+    ----------
+    kind
+        Words for the convention.
+    x, y
+        Coordinates of the nodes, or those of the corners of each face where ``corners`` is missing.
+    corners
+        Numbers of the nodes of each face.
+    counts
+        How many corners each face has, where this is told apart.
+    first
+        Number of the first node.
+    """
+
+    kind: str
+    x: Any
+    y: Any
+    corners: Any = None
+    counts: Any = None
+    first: int = 0
+    periodic: bool = False
+
+    @property
+    def dims(self) -> tuple[str, str]:
+        """Names of the dimensions of nodes and of faces in the files."""
+        if self.corners is None:
+            return "", str(self.x.dims[0])
+        return str(_node_dim(self.x)), _face_dim(self.corners)
+
+    @property
+    def coordinates(self) -> str:
+        """Names of the coordinates that give positions."""
+        names = dict.fromkeys((str(self.x.name), str(self.y.name)))
+        return " and ".join(names)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the variables that it is made of."""
+        parts = (self.x, self.y, self.corners, self.counts)
+        return tuple(str(part.name) for part in parts if part is not None)
+
+    def is_alone_in(self, ds: Any, velocity: Sequence[Any]) -> bool:
+        """Whether a dataset has this mesh and no velocity."""
+        return self.names[0] in ds and not any(name in ds for name in velocity)
+
+    @property
+    def is_earth(self) -> bool:
+        """Whether the coordinates are longitude and latitude, and not those of a plane."""
+        unit, name = str(self.x.attrs.get("units", "")), str(self.x.name)
+        if DEGREES.match(unit) or RADIANS.match(unit):
+            return True
+        if unit.lower() in LENGTHS:
+            return False
+        told = str(self.x.attrs.get("standard_name", "")) or name
+        if "projection" in told:
+            return False
+        if self.kind == "SCHISM" and not unit:
+            # Newer files tell nothing at all.
+            x, y = (np.abs(c) for c in self._raw)
+            return bool(np.nanmax(x) <= 360 and np.nanmax(y) <= 90)
+        return bool(LONGITUDES.search(told)) or name == "nodes"
+
+    @cached_property
+    def _raw(self) -> tuple[Floats, Floats]:
+        parts = []
+        for n, c in enumerate((self.x, self.y)):
+            values = np.asarray(c.values, dtype=float)
+            if c.ndim == 2 and self.corners is not None:  # both in one variable
+                values = values[n] if values.shape[0] == 2 else values[:, n]
+            parts.append(values)
+        return parts[0], parts[1]
+
+    @cached_property
+    def _joined(self) -> tuple[Floats, Floats, Indices]:
+        """Coordinates of the nodes, (N,), and their numbers at faces, (F, K), -1 for none."""
+        a, b = self._raw
+        if self.is_earth:
+            unit = str(self.x.attrs.get("units", ""))
+            radians = RADIANS.match(unit) or (
+                not unit and self.kind in ("MPAS", "ICON", "FESOM") and np.nanmax(np.abs(a)) < 6.5
+            )
+            if radians:
+                a, b = np.degrees(a), np.degrees(b)
+        else:
+            factor = LENGTHS.get(str(self.x.attrs.get("units", "")).lower(), 1.0)
+            a, b = a * factor, b * factor
+        if self.corners is None:
+            return _from_bounds(a, b)
+        return a, b, _numbers(self, len(a))
+
+    @property
+    def a(self) -> Floats:
+        """Longitudes of the nodes in degrees, or x in metres, (N,)."""
+        return self._joined[0]
+
+    @property
+    def b(self) -> Floats:
+        """Latitudes of the nodes in degrees, or y in metres, (N,)."""
+        return self._joined[1]
+
+    @property
+    def faces(self) -> Indices:
+        """Numbers of the nodes of each face, (F, K), -1 where it has fewer corners than others."""
+        return self._joined[2]
+
+    @cached_property
+    def positions(self) -> Floats:
+        """Positions of the nodes, (N, 3): on the unit sphere, or in the plane."""
+        if not self.is_earth:
+            return np.stack([self.a, self.b, np.zeros_like(self.a)], axis=-1)
+        lon, lat = np.radians(self.a), np.radians(self.b)
+        parts = (np.cos(lat) * np.cos(lon), np.cos(lat) * np.sin(lon), np.sin(lat))
+        return np.stack(parts, axis=-1)
+
+    @cached_property
+    def middles(self) -> tuple[Floats, Floats]:
+        """Coordinates of the middles of the faces, (F,) each, as those of the nodes."""
+        there = (self.faces >= 0)[..., None]
+        with np.errstate(invalid="ignore"):
+            p = (self.positions[self.faces] * there).sum(axis=1) / there.sum(axis=1)
+        if not self.is_earth:
+            return p[:, 0], p[:, 1]
+        x, y, z = p.T
+        return np.degrees(np.arctan2(y, x)), np.degrees(np.arctan2(z, np.hypot(x, y)))
+
+    @cached_property
+    def _split(self) -> tuple[Indices, Indices]:
+        """Triangles, (M, 3), and the number of the face that each is a part of, (M,)."""
+        faces = self.faces.copy()
+        if faces.shape[1] > 3:
+            # The shorter diagonal of a quadrilateral makes the better triangles.
+            p, four = self.positions, (faces >= 0).sum(axis=1) == 4
+            a, b, c, d = (p[faces[four, k]] for k in range(4))
+            with np.errstate(invalid="ignore"):
+                turn = np.linalg.norm(d - b, axis=1) < np.linalg.norm(c - a, axis=1)
+            turned = np.flatnonzero(four)[turn]
+            faces[turned, :4] = np.roll(faces[turned, :4], -1, axis=1)
+        fans, numbers = [], []
+        for k in range(1, faces.shape[1] - 1):
+            whole = (faces[:, [0, k, k + 1]] >= 0).all(axis=1)
+            fans.append(faces[whole][:, [0, k, k + 1]])
+            numbers.append(np.flatnonzero(whole))
+        return np.concatenate(fans), np.concatenate(numbers)
+
+    @property
+    def triangles(self) -> Indices:
+        """The faces cut into triangles, (M, 3)."""
+        return self._split[0]
+
+    @cached_property
+    def areas(self) -> Floats:
+        """Areas of the faces, (F,)."""
+        triangles, numbers = self._split
+        doubled = np.nan_to_num(np.linalg.norm(triangle_normals(self.positions, triangles), axis=1))
+        return np.asarray(np.bincount(numbers, doubled / 2, len(self.faces)))
+
+    @property
+    def words(self) -> str:
+        """Words for the mesh and its size."""
+        edges = (self.faces >= 0).sum(axis=1)
+        kinds = {3: "triangles", 4: "quadrilaterals"}
+        what = kinds.get(int(edges.max()), "polygons") if edges.min() == edges.max() else "polygons"
+        return f"{self.kind}, {len(self.a):,} nodes, {len(self.faces):,} {what}"
+
+
+def _node_dim(x: Any) -> str:
+    if NODES in x.dims:
+        return NODES
+    return str(max(x.dims, key=lambda d: x.sizes[d]))
+
+
+def _face_dim(corners: Any) -> str:
+    if FACES in corners.dims:
+        return FACES
+    return str(max(corners.dims, key=lambda d: corners.sizes[d]))
+
+
+def _numbers(mesh: Mesh, count: int) -> Indices:
+    """Return the numbers of the nodes of faces, (F, K), from 0; -1 where there is none."""
+    corners = mesh.corners
+    _, faces = mesh.dims
+    values = np.asarray(corners.transpose(faces, ...).values)
+    fill = corners.attrs.get("_FillValue", corners.encoding.get("_FillValue"))
+    there: Bools = np.isfinite(values) if values.dtype.kind == "f" else values == values  # noqa: PLR0124
+    if fill is not None and np.isfinite(fill):
+        there &= values != fill
+    if mesh.counts is not None:
+        there &= np.arange(values.shape[1]) < np.asarray(mesh.counts.values)[:, None]
+    values = np.where(there, values, -1).astype(np.int64)
+    first = mesh.first
+    if there.any():
+        # What the numbers are counts for more than what is said of them.
+        low, high = values[there].min(), values[there].max()
+        first = 1 if high == count and first == 0 else first
+        first = 0 if low == 0 and high < count and mesh.kind != "MPAS" else first
+    values = values - first
+    there &= (values >= 0) & (values < count)
+    if not there.any():
+        msg = f"{corners.name!r} has no numbers from {first} to {first + count - 1}; expected nodes"
+        raise FieldError(msg)
+    if mesh.kind == "MPAS" and values.shape[1] == 3:
+        there &= there.all(axis=1, keepdims=True)  # at the border of a region
+    return _corners_first(np.where(there, values, -1))
+
+
+def _from_bounds(a: Floats, b: Floats) -> tuple[Floats, Floats, Indices]:
+    """Return nodes where corners of cells, (F, K) each, are at one place."""
+    there = np.isfinite(a) & np.isfinite(b)
+    lon, lat = np.radians(a[there]), np.radians(b[there])
+    p = np.stack([np.cos(lat) * np.cos(lon), np.cos(lat) * np.sin(lon), np.sin(lat)], axis=-1)
+    _, first, at = np.unique(
+        np.round(np.degrees(p), SAME_DEGREES), axis=0, return_index=True, return_inverse=True
+    )
+    faces = np.full(a.shape, -1, dtype=np.intp)
+    faces[there] = at.ravel()
+    return a[there][first], b[there][first], _corners_first(faces)
+
+
+def _corners_first(faces: Any) -> Indices:
+    """Return numbers of nodes with -1 after all others, also where a corner is there again."""
+    again = np.any(
+        (faces[:, :, None] == faces[:, None, :]) & np.tri(faces.shape[1], k=-1, dtype=bool), axis=2
+    )
+    faces = np.where(again, -1, faces)
+    order = np.argsort(faces < 0, axis=1, kind="stable")
+    return np.asarray(np.take_along_axis(faces, order, axis=1), dtype=np.intp)
