@@ -27,6 +27,7 @@ from flowtex.field.signs import oriented, sign_free_faults, with_equal_ends
 from flowtex.field.steps import LazySteps, Steps
 from flowtex.field.surface import Surface, known_positions
 from flowtex.field.triangles.arrays import triangle_arrays
+from flowtex.field.triangles.creases import velocity_on_triangles
 from flowtex.field.triangles.surface import TriangleSurface
 from flowtex.field.units import speed_unit
 from flowtex.field.validation import (
@@ -363,15 +364,21 @@ class FlowField(FieldConstructors):
     @cached_property
     def index_velocity(self) -> IndexVelocity:
         """The velocity in index space, in cells per unit of time, with its speed."""
+
+        def expressed(velocity: Floats) -> IndexVelocity:
+            if isinstance(self.surface, TriangleSurface):
+                return velocity_on_triangles(self.surface, velocity)
+            return to_index_space(self.surface, velocity)
+
         if not isinstance(self.velocity, LazySteps):
-            return to_index_space(self.surface, self.velocity)
+            return expressed(self.velocity)
 
         def both(velocity: Floats) -> Floats:
-            step = to_index_space(self.surface, velocity[None])
+            step = expressed(velocity[None])
             return np.concatenate([step.components[0], step.speed[0, ..., None]], axis=-1)
 
         steps = self.velocity.map(both)
-        share = to_index_space(self.surface, self.velocity[0][None]).normal_share
+        share = expressed(self.velocity[0][None]).normal_share
         return IndexVelocity(
             steps.map(lambda step: step[..., :2]), steps.map(lambda step: step[..., 2]), share
         )

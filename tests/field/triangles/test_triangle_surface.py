@@ -105,3 +105,15 @@ def test_a_blanked_triangle_has_no_point() -> None:
     with pytest.raises(ValueError, match="blanked"):
         surface_point(field.surface, (number + 0.2, 0.2))
     assert locate(field, (0.0, 0.0, 1.0)) is None
+
+
+def test_the_speed_on_sharp_edges_is_that_of_the_faces() -> None:
+    points, triangles = cube(6)
+    field = FlowField.from_triangles(points, triangles, np.tile([1.0, 1.0, 0.0], (len(points), 1)))
+    on_side = np.abs(np.abs(field.points[0, :, :2]).max(axis=1) - 1) < 1e-9
+    upright = on_side & (np.abs(field.points[0, :, 2]) < 0.9)
+    # Every side of the cube shows one of the two components, and so does the edge between two.
+    np.testing.assert_allclose(
+        field.speed[0, 0, upright][field.speed[0, 0, upright] > 1e-9], 1, atol=1e-9
+    )
+    assert field.speed.max() == pytest.approx(np.sqrt(2))
