@@ -139,7 +139,7 @@ class FlowSource:
         return f"{axis}={low + (high - low) * (number + 0.5) / CUTS:.6g}"
 
     def plane_number(self, plane: str) -> int | None:
-        """Return the number of a plane, or of the nearest; ``None`` for what is no plane of this."""
+        """Return the number of a plane, or of the nearest; ``None`` where there is none."""
         axis, _, text = plane.partition("=")
         try:
             value = float(text)
@@ -238,7 +238,9 @@ class FlowSource:
         if cell_dimension(mesh) < 3:
             return
         ends = np.reshape(mesh.bounds, (3, 2)).tolist()
-        self._ends = {axis: (low, high) for axis, (low, high) in zip("xyz", ends) if low < high}
+        self._ends = {
+            axis: (low, high) for axis, (low, high) in zip("xyz", ends, strict=True) if low < high
+        }
         if self.dimensions is not None:
             self._default_plane = f"k={self.dimensions[2] // 2}"
             return
