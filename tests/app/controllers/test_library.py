@@ -61,7 +61,7 @@ def test_files_of_solvers_offer_blocks_arrays_and_times(tmp_path: Path) -> None:
     write_exodus(tmp_path / "wing.ex2", box(4, 3, 2))
     library = Library.of(tmp_path)
     assert library.names == ("run.foam", "wing.case", "wing.cgns", "wing.ex2")
-    for name, plane in (("run.foam", "z=0.5"), ("wing.ex2", "z=0.5")):
+    for name, plane in (("run.foam", "y=0.5"), ("wing.ex2", "z=0.5")):
         choice = library.complete(name, Choice())
         assert choice.plane == plane
         assert library.field(name, choice).triangles is not None
