@@ -6,6 +6,7 @@ from memory. Only a series too large for that is read again.
 
 from __future__ import annotations
 
+import math
 import threading
 import warnings
 from contextlib import AbstractContextManager, nullcontext
@@ -136,7 +137,9 @@ class FlowSource:
         if axis not in self._ends:
             return f"{axis}={number}"
         low, high = self._ends[axis]
-        return f"{axis}={low + (high - low) * (number + 0.5) / CUTS:.6g}"
+        # As many digits as tell one place from the next.
+        digits = 3 - math.floor(math.log10(high - low))
+        return f"{axis}={round(low + (high - low) * (number + 0.5) / CUTS, digits):.12g}"
 
     def plane_number(self, plane: str) -> int | None:
         """Return the number of a plane, or of the nearest; ``None`` where there is none."""

@@ -70,7 +70,7 @@ FILE_ARGUMENTS = ("vectors", "plane", "block")
 #: What they are called for data of the Earth.
 OF_DATASETS = {"block": "projection"}
 PLANE, CMAP = (
-    re.compile(r"[A-Za-z]\w{0,59}=\d{1,9}|[xyz]=-?[\d.]{1,12}(e[-+]?\d{1,3})?", re.ASCII),
+    re.compile(r"[A-Za-z]\w{0,59}=\d{1,9}|[xyz]=-?[\d.]{1,16}(e[-+]?\d{1,3})?", re.ASCII),
     re.compile(r"[A-Za-z]\w{0,59}", re.ASCII),
 )
 
