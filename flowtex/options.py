@@ -74,8 +74,8 @@ class FieldOptions:
     plane: str | None = _option(None, 'Plane of a structured 3D mesh, such as ``"k=20"``.')
     slice: Any | None = _option(
         None,
-        'Plane through any volume: ``"x=0.5"``, or a normal and a point, ``"1,1,0 through 0,0,2"``; '
-        "the point is the middle by default.",
+        'Plane through any volume: ``"x=0.5"``, or a normal and a point, '
+        '``"1,1,0 through 0,0,2"``; the point is the middle by default.',
     )
     contour: Any | None = _option(
         None, 'Surface in a volume where an array has a value: ``"pressure=101325"``.'

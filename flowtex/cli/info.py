@@ -198,10 +198,11 @@ def _lines(field: FlowField) -> str:
 
 
 def _megabytes(field: FlowField) -> float:
-    """Size of the slices of one time: single precision, two numbers, both sides."""
+    """Size of the slices of one time: single precision, two or three numbers, both sides."""
     from flowtex.trace import chosen_lines
     from flowtex.trace.lags import choose_lags
 
     by_length = field.steady or chosen_lines(field) == "streamlines"
     lags = len(choose_lags(field, "arclength" if by_length else "time"))
-    return field.valid.size * lags * 2 * 2 * 4 / 1e6
+    numbers = 2 if field.triangles is None else 3
+    return field.valid.size * lags * numbers * 2 * 4 / 1e6

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from flowtex._util.progress import waiting
-from flowtex.cli.console import say
+from flowtex.cli.console import in_flags, say
 from flowtex.cli.options import FieldFlags, UsageError
 
 if TYPE_CHECKING:
@@ -40,7 +40,7 @@ def notices() -> Iterator[None]:
         yield
     for warning in caught:
         if issubclass(warning.category, Notice):
-            say(f"[dim]{warning.message}[/]")
+            say(f"[dim]{in_flags(str(warning.message))}[/]")
         elif not warning.category.__module__.startswith("xarray."):  # how a file was written
             warnings.warn_explicit(
                 warning.message, warning.category, warning.filename, warning.lineno

@@ -1,4 +1,4 @@
-"""Surface and velocity: what is drawn, as arrays on a structured mesh."""
+"""Surface and velocity: what is drawn, as arrays on a mesh."""
 
 from __future__ import annotations
 

@@ -6,6 +6,7 @@ from memory. Only a series too large for that is read again.
 
 from __future__ import annotations
 
+import math
 import threading
 import warnings
 from contextlib import AbstractContextManager, nullcontext
@@ -136,10 +137,12 @@ class FlowSource:
         if axis not in self._ends:
             return f"{axis}={number}"
         low, high = self._ends[axis]
-        return f"{axis}={low + (high - low) * (number + 0.5) / CUTS:.6g}"
+        # As many digits as tell one place from the next.
+        digits = 3 - math.floor(math.log10(high - low))
+        return f"{axis}={round(low + (high - low) * (number + 0.5) / CUTS, digits):.12g}"
 
     def plane_number(self, plane: str) -> int | None:
-        """Return the number of a plane, or of the nearest; ``None`` for what is no plane of this."""
+        """Return the number of a plane, or of the nearest; ``None`` where there is none."""
         axis, _, text = plane.partition("=")
         try:
             value = float(text)
@@ -238,7 +241,9 @@ class FlowSource:
         if cell_dimension(mesh) < 3:
             return
         ends = np.reshape(mesh.bounds, (3, 2)).tolist()
-        self._ends = {axis: (low, high) for axis, (low, high) in zip("xyz", ends) if low < high}
+        self._ends = {
+            axis: (low, high) for axis, (low, high) in zip("xyz", ends, strict=True) if low < high
+        }
         if self.dimensions is not None:
             self._default_plane = f"k={self.dimensions[2] // 2}"
             return

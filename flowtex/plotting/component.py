@@ -39,13 +39,13 @@ class FlowtexComponent:
         reset_camera: bool | None = None,
         **options: Any,
     ) -> FlowHandle:
-        """Draw the flow on a structured mesh as a texture.
+        """Draw the flow on a mesh as a texture.
 
         Parameters
         ----------
         mesh
-            A structured mesh with one flat index direction, a list of such meshes in time, the
-            path of a file of one, or a :class:`~flowtex.FlowField`.
+            A mesh of PyVista's, a list of them in time, the path of a file of one, or a
+            :class:`~flowtex.FlowField`.
         {options}
         scalar_bar_args
             As for ``plotter.add_mesh``.

@@ -61,7 +61,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     head = '<?xml version="1.0"?><VTKFile type="Collection" version="0.1"><Collection>'
     (inside / "series.pvd").write_text(head + "".join(lines) + "</Collection></VTKFile>")
     (inside / "torn.vts").write_text("<VTKFile")
-    pv.Sphere().cast_to_unstructured_grid().save(inside / "cells.vtu")
+    pv.Sphere().save(inside / "hull.stl")
     block(1.0).save(outside / "private.vts")
     (inside / "link.vts").symlink_to(outside / "private.vts")
     return inside
@@ -115,7 +115,7 @@ def test_a_folder_offers_its_files_and_nothing_beside_them(page: Page) -> None:
     items.first.wait_for()  # a menu that is still opening has no text
     names = items.all_inner_texts()
     assert names[:3] == ["block.vts", "series.pvd", "torn.vts"]
-    assert len(names) == 4 and names[3].startswith("cells.vtu") and "unstructured" in names[3]
+    assert len(names) == 4 and names[3].startswith("hull.stl") and "no vectors" in names[3]
     page.keyboard.press("Escape")
     page.wait_for_selector(".v-overlay--active", state="hidden")
 

@@ -222,6 +222,22 @@ def test_info_says_what_is_needed(run: Run, block: Path) -> None:
     assert code == 0 and "6 × 5 (i × j)" in out
 
 
+def test_info_describes_a_volume_of_any_cells(run: Run, tmp_path: Path) -> None:
+    import pyvista as pv
+
+    mesh = pv.ImageData(dimensions=(4, 4, 4)).to_tetrahedra(pass_data=False)
+    mesh["wind"] = np.cross([0, 0, 1.0], mesh.points) + np.array([0, 0, 1e-3])
+    mesh.save(tmp_path / "room.vtu")
+    code, out, _ = run("info", tmp_path / "room.vtu", "--slice", "z=1.5")
+    assert code == 0
+    assert "135 × tetra" in out and "--slice z=1.5" in out and "triangles" in out
+    assert "(i × j)" not in out and "periodic" not in out
+    code, out, _ = run("info", tmp_path / "room.vtu")
+    assert code == 0 and "the outer surface of the volume is drawn" in out
+    code, _, err = run("info", tmp_path / "room.vtu", "--slice", "-1,0,0 through 9,9,9")
+    assert code == 2 and "beside the mesh" in err and "--slice is" in err
+
+
 def test_info_lists_blocks_and_times(run: Run, tmp_path: Path) -> None:
     with CGNS.write(tmp_path / "wing.cgns") as file:
         file.base("Base", [("Tip 1", box(4, 3, 2)), ("Body", box(6, 3, 2, 3.0))], times=TIMES)

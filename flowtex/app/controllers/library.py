@@ -22,6 +22,7 @@ from flowtex.field.datasets.detect import is_dataset
 from flowtex.field.datasets.files import SUFFIXES as EARTH_SUFFIXES
 from flowtex.field.datasets.files import is_dataset_file
 from flowtex.field.datasets.source import DatasetSource, open_source
+from flowtex.field.io.surfaces.beside import SUFFIXES as WITHOUT_VECTORS
 from flowtex.field.source import FlowSource
 from flowtex.options import FieldOptions
 from flowtex.settings import Settings
@@ -373,6 +374,9 @@ def find_files(folder: Path) -> list[tuple[str, Path]]:
 
 def _reason(path: Path) -> str:
     """Return why nothing of a file is drawn, by its ending; empty where something may be."""
+    beside = path.with_suffix(".npy")
+    if path.suffix.lower() in WITHOUT_VECTORS and not beside.exists():
+        return f"no vectors, which would be in {beside.name}"
     return UNSHOWN.get(path.suffix.lower(), "")
 
 

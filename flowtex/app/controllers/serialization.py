@@ -2,7 +2,7 @@
 
 What a page shows is a mapping with the names below, each of which may be missing::
 
-    file vectors plane block   which flow: names as a library has them, and a plane such as k=20 or x=0.5
+    file vectors plane block   which flow: names as a library has them; k=20 or x=0.5
     time clock                 the field's own time; seconds of the streaming
     colour cmap clim           scalar, colour map, and the values at its ends
     coastlines graticule       whether these lines of a map are drawn
@@ -70,7 +70,7 @@ FILE_ARGUMENTS = ("vectors", "plane", "block")
 #: What they are called for data of the Earth.
 OF_DATASETS = {"block": "projection"}
 PLANE, CMAP = (
-    re.compile(r"[A-Za-z]\w{0,59}=(\d{1,9}|-?[\d.]{1,12}(e[-+]?\d{1,3})?)", re.ASCII),
+    re.compile(r"[A-Za-z]\w{0,59}=\d{1,9}|[xyz]=-?[\d.]{1,16}(e[-+]?\d{1,3})?", re.ASCII),
     re.compile(r"[A-Za-z]\w{0,59}", re.ASCII),
 )
 

@@ -198,7 +198,8 @@ def _planes(controllers: Controllers) -> None:
                     one = f"one in {key('axes')}"
                     v3.VBtn("{{ one }}", v_for=one, key="one", value=("one",), size="small")
                 html.Span(f"{{{{ {key('plane_text')} }}}}", classes="flowtex-value")
-            slider("Plane", key("index"), 0, (key("planes"),), 1)
+            with html.Div(v_if=(key("planes"),)):
+                slider("Plane", key("index"), 0, (key("planes"),), 1)
 
 
 def _menu(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, Self, cast
 
 from numpy.typing import ArrayLike
 
@@ -34,7 +34,7 @@ class FieldConstructors:
         *,
         vectors: str | None = None,
         plane: str | None = None,
-        slice: Any = None,  # noqa: A002 - the word that PyVista has for it
+        slice: Any = None,
         contour: Any = None,
         times: ArrayLike | None = None,
         periodic: str | None = None,
@@ -121,10 +121,10 @@ class FieldConstructors:
         if "triangles" not in arguments:
             made: Self = cls.from_arrays(**arguments, name=name, **options)
             return made
-        made = cls.from_triangles(**arguments, name=name)
-        if (lost := made.normal_share) > MOST_LOST:
+        surface: Any = cls.from_triangles(**arguments, name=name)
+        if (lost := surface.normal_share) > MOST_LOST:
             notify(f"{lost:.0%} of the flow points out of the surface and is not drawn")
-        return made
+        return cast("Self", surface)
 
     @classmethod
     def from_file(
@@ -133,7 +133,7 @@ class FieldConstructors:
         *,
         vectors: str | None = None,
         plane: str | None = None,
-        slice: Any = None,  # noqa: A002 - the word that PyVista has for it
+        slice: Any = None,
         contour: Any = None,
         periodic: str | None = None,
         time: float | str | None = None,

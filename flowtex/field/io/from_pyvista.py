@@ -1,9 +1,9 @@
 """From PyVista's meshes to the arrays of a field.
 
-Of structured meshes each time step gives one plane of nodes (:mod:`flowtex.field.io.planes`): positions, vectors, other
-single-component arrays, and what is hidden. Vectors on cells become vectors on nodes. The steps
-are then stacked into the arguments of :meth:`FlowField.from_arrays`, which checks the rest. All
-other meshes, and cuts, go through :mod:`flowtex.field.io.surfaces`.
+Each time step of a structured mesh gives one plane of nodes (:mod:`flowtex.field.io.planes`):
+positions, vectors, other single-component arrays, and what is hidden. Vectors on cells become
+vectors on nodes. The steps are then stacked into the arguments of :meth:`FlowField.from_arrays`,
+which checks the rest. All other meshes, and cuts, go through :mod:`flowtex.field.io.surfaces`.
 """
 
 from __future__ import annotations
@@ -83,7 +83,7 @@ def read_meshes(
     *,
     vectors: str | None = None,
     plane: str | None = None,
-    slice: Any = None,  # noqa: A002 - as the user calls it
+    slice: Any = None,
     contour: Any = None,
     times: ArrayLike | None = None,
     periodic: str | None = None,

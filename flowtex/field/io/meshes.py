@@ -19,7 +19,7 @@ import numpy as np
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex._util.notices import notify
 from flowtex.errors import FieldError
-from flowtex.field.io.vectors import BLANKING, MeshArray, candidates, catalogue, missing_arrays
+from flowtex.field.io.vectors import MeshArray, candidates, catalogue, missing_arrays
 
 __all__ = [
     "SAME_NODE_SHARE",
@@ -146,7 +146,7 @@ def drawn_parts(
         meant = solid
     if not series and _same_nodes(list(meant.values())):
         return meant, "steps"
-    if len(meant) > 1 and (meant is flat or meant is solid and cut):
+    if len(meant) > 1 and (meant is flat or (meant is solid and cut)):
         return meant, "together"
     return meant, "choose"
 

@@ -17,14 +17,14 @@ from flowtex.field.source import FlowSource
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """A series with its steps in a folder, an unstructured mesh, and a mesh."""
+    """A series with its steps in a folder, a surface without vectors, and a text."""
     (tmp_path / "steps").mkdir()
     for n in range(2):
         examples.double_gyre(float(n)).save(tmp_path / "steps" / f"{n}.vts")
     lines = [f'<DataSet timestep="{n}" file="steps/{n}.vts"/>' for n in range(2)]
     text = f'<VTKFile type="Collection"><Collection>{"".join(lines)}</Collection></VTKFile>'
     (tmp_path / "series.pvd").write_text(text)
-    pv.Sphere().cast_to_unstructured_grid().save(tmp_path / "cells.vtu")
+    pv.Sphere().save(tmp_path / "hull.stl")
     (tmp_path / "notes.txt").write_text("nothing")
     return tmp_path
 
@@ -32,9 +32,9 @@ def folder(tmp_path: Path) -> Path:
 def test_members_of_a_series_are_folded_and_what_cannot_be_shown_says_why(folder: Path) -> None:
     library = Library.of(folder)
     assert library.names == ("series.pvd",)
-    assert list(library.unshown) == ["cells.vtu"] and "unstructured" in library.unshown["cells.vtu"]
+    assert library.unshown == {"hull.stl": "no vectors, which would be in hull.npy"}
     with pytest.raises(FieldError, match="there is no file"):
-        library.source("cells.vtu")
+        library.source("hull.stl")
 
 
 def test_a_page_has_what_it_brought_for_itself(tmp_path: Path) -> None:
@@ -60,9 +60,13 @@ def test_files_of_solvers_offer_blocks_arrays_and_times(tmp_path: Path) -> None:
     write_foam(tmp_path / "run.foam")
     write_exodus(tmp_path / "wing.ex2", box(4, 3, 2))
     library = Library.of(tmp_path)
-    assert library.names == ("wing.case", "wing.cgns")
-    assert set(library.unshown) == {"run.foam", "wing.ex2"}
-    assert all("unstructured" in why for why in library.unshown.values())
+    assert library.names == ("run.foam", "wing.case", "wing.cgns", "wing.ex2")
+    for name, plane in (("run.foam", "y=0.5"), ("wing.ex2", "z=0.5")):
+        choice = library.complete(name, Choice())
+        assert choice.plane == plane
+        assert library.field(name, choice).triangles is not None
+        outer = library.nearest(name, Choice(plane="outer=0"))
+        assert library.field(name, outer).points[..., 2].max() == 1
     for name, blocks in (("wing.case", ("tip", "body")), ("wing.cgns", ("Base/Tip", "Base/Body"))):
         assert library.source(name).blocks == blocks
         choice = library.complete(name, Choice(block=blocks[1]))

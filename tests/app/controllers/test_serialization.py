@@ -249,3 +249,11 @@ def test_no_name_becomes_code() -> None:
 
     names = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
     assert names <= {"pv", "flowtex", "field", "pl", "handle"}
+
+
+def test_a_place_in_space_is_a_slice() -> None:
+    for plane in ("x=0.25", "z=-1e-05", "y=3"):
+        assert from_link(to_link({"file": "a.vtu", "plane": plane}))["plane"] == plane
+        assert f'slice="{plane}")' in to_python({"file": "a.vtu", "plane": plane})
+    assert 'from_file("a.vtu")' in to_python({"file": "a.vtu", "plane": "outer=0"})
+    assert from_link("plane=level=0.5") == {}

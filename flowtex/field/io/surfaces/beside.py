@@ -21,7 +21,7 @@ NAME = "velocity"
 
 
 def read_with_vectors(file: Path) -> tuple[Any, str | None, str]:
-    """Return the mesh of a file, or its time steps, with its vectors, their name, and what is wrong.
+    """Return the mesh of a file, or its time steps, with vectors, their name, and what is wrong.
 
     They are in ``NAME.npy``, in the order that the reader gives points or triangles; of an STL the
     points may be three for each triangle, as it has them, or one for each place, as PyVista.
@@ -38,7 +38,7 @@ def read_with_vectors(file: Path) -> tuple[Any, str | None, str]:
         return mesh, None, f"{error}; {_expected(file, mesh)}"
     count = vectors.shape[-2]
     if count == 3 * mesh.n_cells != mesh.n_points and file.suffix.lower() == ".stl":
-        reader.reader.SetMerging(False)
+        reader.reader.SetMerging(0)
         mesh = reader.read()
     if count not in (mesh.n_points, mesh.n_cells):
         shape = f"{file.with_suffix('.npy').name} beside it has shape {vectors.shape}"

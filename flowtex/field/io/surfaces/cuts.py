@@ -50,7 +50,9 @@ class Slice:
         cut = mesh.slice(normal=self.normal, origin=self.point or mesh.center)
         if not cut.n_cells:
             ends = np.reshape(mesh.bounds, (3, 2))
-            spans = (f"{a} from {low:g} to {high:g}" for a, (low, high) in zip("xyz", ends))
+            spans = (
+                f"{a} from {low:g} to {high:g}" for a, (low, high) in zip("xyz", ends, strict=True)
+            )
             msg = f"slice is {self.text}, which is beside the mesh; it has {', '.join(spans)}"
             raise FieldError(msg)
         return cut
@@ -91,7 +93,7 @@ class Contour:
 Cut = Slice | Contour
 
 
-def find_cut(slice: Any, contour: Any) -> Cut | None:  # noqa: A002 - as the user calls it
+def find_cut(slice: Any, contour: Any) -> Cut | None:
     """Return the cut that is meant, or ``None`` for none.
 
     Raises a FieldError when both are given, or one that cannot be understood.

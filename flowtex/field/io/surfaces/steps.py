@@ -121,7 +121,7 @@ def _surface_step(mesh: Any, vectors: MeshArray, cut: Cut | None, *, tell: bool)
             values = values.reshape(-1)
         if array.where == "points":
             return values
-        known = np.isfinite(values.reshape(len(values), -1)).all(axis=1)
+        known = np.asarray(np.isfinite(values.reshape(len(values), -1)).all(axis=1))
         return nodal_means(values[None], triangles, areas, len(points), known)[0]
 
     shown = np.asarray(surface.point_data[HIDDEN]) <= 0
