@@ -21,7 +21,7 @@ from flowtex.trace.triangle_motion import (
     TriangleMesh,
     speed_floor,
 )
-from flowtex.trace.triangles import begin, integrate
+from flowtex.trace.triangles import begin, follow, integrate
 
 __all__ = ["triangle_paths", "triangle_slices"]
 
@@ -59,15 +59,21 @@ def triangle_slices(
         side, step, block = job
         motion, nodes = motions[side][step], at[block]
         starts = begin(motion, nodes)
+        units = unit[0, nodes]
+        done = follow(motion, points, starts, lags, units, tolerance=tolerance)
+        if done is not None:
+            displacement[side, step, :, 0, nodes] = np.swapaxes(done[0], 0, 1)
+            reach[side, step, 0, nodes] = done[1]
+            return
         triangle, corner = np.divmod(starts, 3)
         shares = np.stack([corner == 1, corner == 2]).astype(float)
-        due = lags[:, None] * unit[0, nodes]
+        due = lags[:, None] * units
         paths = integrate(motion, points, triangle, shares, due, tolerance=tolerance)
         here = points[nodes]
         for m in range(len(lags)):
             moved = paths.positions(mesh, points, m) - here
             displacement[side, step, m, 0, nodes] = np.clip(moved, -MOST_CELLS, MOST_CELLS)
-        reach[side, step, 0, nodes] = paths.reach / unit[0, nodes]
+        reach[side, step, 0, nodes] = paths.reach / units
 
     blocks = [slice(first, first + BLOCK) for first in range(0, len(at), BLOCK)]
     jobs = [(a, b, c) for a in range(len(sides)) for b in range(len(steps)) for c in blocks]
