@@ -13,7 +13,7 @@ from scipy.spatial import ConvexHull, Delaunay
 from strategies import property_test, within
 
 from flowtex import FlowField, TraceSlices, trace
-from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex._util.array_types import Floats, Indices
 from flowtex.errors import FieldError
 from flowtex.trace import SliceStore, paths
 
