@@ -137,23 +137,14 @@ def bay() -> Any:
     return flowtex.FlowField.from_file(_file("FLOWTEX_DATA", "fvcom_sfbofs.nc"))
 
 
-def _volume() -> Any:
-    from flowtex.field.io.files import open_file
-
-    mesh = open_file(_file("FLOWTEX_DATA", "postxyz.bin")).source
-    return mesh.read() if hasattr(mesh, "read") else mesh
-
-
 def slanted_slice() -> Any:
     """Return a slanted cut through a volume."""
-    return flowtex.FlowField.from_pyvista(_volume(), slice=((1.0, 0.4, 0.3), None))
+    return flowtex.FlowField.from_file(_file("FLOWTEX_DATA", "postxyz.bin"), slice="1,0.4,0.3")
 
 
 def isosurface() -> Any:
     """Return a surface of constant density in a volume."""
-    mesh = _volume()
-    level = float(np.percentile(mesh["Density"], 40))
-    return flowtex.FlowField.from_pyvista(mesh, contour=f"Density={level}")
+    return flowtex.FlowField.from_file(_file("FLOWTEX_DATA", "postxyz.bin"), contour="Density=0.99")
 
 
 def cylinder() -> Any:
