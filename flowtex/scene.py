@@ -251,7 +251,7 @@ class Scene:
         """What a renderer needs, at the settings of this moment."""
         textures, version = self._textures, self._version
         if textures is None:
-            textures = _shared_textures(self.store, self.settings.copy(), self.image)
+            textures = _shared_textures(self.store, self.settings.copy(), self.image, self.pyramid)
             if version == self._version:  # no other thread has changed a setting meanwhile
                 self._textures = textures
         return textures
@@ -527,7 +527,9 @@ def share_field(field: FlowField) -> FlowField:
     return _fields.get(key, lambda: field)
 
 
-def _shared_textures(store: SliceStore, settings: Settings, image: Floats32 | None) -> TextureSet:
+def _shared_textures(
+    store: SliceStore, settings: Settings, image: Floats32 | None, pyramid: Pyramid | None
+) -> TextureSet:
     """Return :meth:`TextureSet.build` of a store and settings, one for all who ask."""
     # Textures keep their store alive, so its number is its own while they live.
     key: tuple[Any, ...] = (id(store),)
@@ -535,7 +537,8 @@ def _shared_textures(store: SliceStore, settings: Settings, image: Floats32 | No
         key += (settings.noise, settings.resolution, settings.noise_correction)
         key += (settings.seed, settings.tiles)
         key += () if image is None or settings.noise != "image" else (digest(image),)
-    return _textures.get(key, lambda: TextureSet.build(store, settings, image))
+    geometry = None if pyramid is None else pyramid.root_geometry
+    return _textures.get(key, lambda: TextureSet.build(store, settings, image, geometry))
 
 
 def coarsened_field(field: FlowField, nodes: int) -> FlowField:

@@ -70,11 +70,16 @@ class TextureSet:
 
     @classmethod
     def build(
-        cls, store: SliceStore, settings: Settings, image: Floats32 | None = None
+        cls,
+        store: SliceStore,
+        settings: Settings,
+        image: Floats32 | None = None,
+        geometry: SurfaceGeometry | TriangleGeometry | None = None,
     ) -> TextureSet:
         """Make the textures that the settings ask for.
 
-        The image (H, W, 4) is that for ``noise="image"``. Raises a ValueError when the slices do
+        The image (H, W, 4) is that for ``noise="image"``, and the geometry is the field's own by
+        default. Raises a ValueError when the slices do
         not belong to the field, or are more than a shader has room for; or when an image is asked
         for and there is none, or the noise is one that the surface cannot have.
         """
@@ -89,8 +94,9 @@ class TextureSet:
         if not 2 <= len(store.lags) <= MOST_LAGS:
             msg = f"{len(store.lags)} lags were traced; expected 2 to {MOST_LAGS} to draw with"
             raise ValueError(msg)
-        kind = SurfaceGeometry if field.triangles is None else TriangleGeometry
-        geometry = kind.of(field)
+        if geometry is None:
+            kind = SurfaceGeometry if field.triangles is None else TriangleGeometry
+            geometry = kind.of(field)
         if settings.noise == "procedural":
             return cls(geometry, store)
         return cls(geometry, store, PaperTextures.build(store, settings, image))

@@ -19,7 +19,7 @@ from flowtex.field.steps import Steps, map_steps
 from flowtex.field.triangles.surface import TriangleSurface
 from flowtex.field.triangles.topology import flipped, repeated, triangle_normals
 
-__all__ = ["Clusters"]
+__all__ = ["Clusters", "levels_of"]
 
 #: Side of the first bins in edges there.
 FIRST_EDGES = 2.0
@@ -27,6 +27,8 @@ FIRST_EDGES = 2.0
 SMOOTHING = 3
 #: Bins along the surface's extent, at most; three numbers of them have room in one of 64 bits.
 MOST_BINS = 2**18
+#: Share of its nodes that the next level may have at most, for a level not to be the last.
+MOST_LEFT = 0.7
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,12 +37,14 @@ class Clusters:
 
     Attributes
     ----------
+    whole
+        The field that has all nodes.
     field
         The field at this level.
     triangles
         Its triangles that are drawn, (M, 3), which face alike.
     number
-        For each node of the whole field that it is in, the node of this level, else -1, (N,).
+        Node of this level that each node of the whole field is in, (N,), or -1.
     sides
         Side of the bins that nodes are joined in next, (n,), a power of two times the first.
     border
@@ -49,6 +53,7 @@ class Clusters:
         Unit normals, or sums of them, (n, 3); ``None`` on a flat surface.
     """
 
+    whole: FlowField
     field: FlowField
     triangles: Indices
     number: Indices
@@ -79,6 +84,7 @@ class Clusters:
         flat = surface.frame is not None
         return cls(
             field,
+            field,
             triangles,
             np.arange(field.shape[1]),
             _sides(surface.points[0], triangles, surface.extent),
@@ -106,25 +112,8 @@ class Clusters:
         normals = None
         if self.normals is not None:
             normals = _sums(self.normals[kept], cluster[kept], count)
-        return Clusters(self.field, fresh[corners], number, sides, border, normals)
-
-    def averaged(self, field: FlowField) -> Clusters:
-        """Return the same with the means of what a whole field has at the nodes it is made of."""
-        kept, count = np.flatnonzero(self.number >= 0), len(self.sides)
-        members = np.bincount(self.number[kept], minlength=count)
-        weights = 1 / members[self.number[kept]]
-        matrix = csr_array((weights, (self.number[kept], kept)), shape=(count, len(self.number)))
-        data = {name: _means(steps, matrix) for name, steps in field.scalars.items()}
-        level = replace(
-            field,
-            points=(matrix @ field.points[0])[None],
-            velocity=_means(field.velocity, matrix),
-            valid=np.ones((1, count), dtype=bool),
-            scalars=data,
-            has_position=None,
-            triangles=self.triangles,
-        )
-        return replace(self, field=level)
+        field = _averaged(self.whole, number, fresh[corners])
+        return Clusters(self.whole, field, fresh[corners], number, sides, border, normals)
 
     def _bins(self) -> Indices:
         """Return the cluster of each node, (n,); -1 where nothing is drawn."""
@@ -145,6 +134,33 @@ class Clusters:
         result = np.full(len(used), -1, dtype=np.intp)
         result[used] = cluster
         return result
+
+
+def levels_of(field: FlowField, nodes: int) -> list[Clusters]:
+    """Return a field and its next levels, the last of which has so many nodes at most if it can."""
+    levels = [Clusters.of(field)]
+    while levels[-1].field.shape[1] > nodes:
+        coarser = levels[-1].coarser()
+        if not 0 < coarser.field.shape[1] < MOST_LEFT * levels[-1].field.shape[1]:
+            break
+        levels.append(coarser)
+    return levels
+
+
+def _averaged(field: FlowField, number: Indices, triangles: Indices) -> FlowField:
+    """Return a field on other triangles, whose nodes have the means of those with their number."""
+    kept, count = np.flatnonzero(number >= 0), int(number.max(initial=-1)) + 1
+    members = np.bincount(number[kept], minlength=count)
+    weights = 1 / members[number[kept]]
+    matrix = csr_array((weights, (number[kept], kept)), shape=(count, len(number)))
+    return replace(
+        field,
+        points=(matrix @ field.points[0])[None],
+        velocity=_means(field.velocity, matrix),
+        valid=np.ones((1, count), dtype=bool),
+        scalars={name: _means(steps, matrix) for name, steps in field.scalars.items()},
+        triangles=triangles,
+    )
 
 
 def _sides(points: Floats, triangles: Indices, extent: float) -> Floats:

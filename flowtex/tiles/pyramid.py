@@ -26,7 +26,7 @@ import numpy as np
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.field import FlowField
 from flowtex.field.steps import Steps, map_steps
-from flowtex.textures import TextureSet
+from flowtex.textures import TextureSet, TriangleGeometry
 from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.trace import SliceStore
 
@@ -118,6 +118,11 @@ class Pyramid:
     def root(self) -> FlowField:
         """The field at the coarsest level."""
         return self.at_level(self.depth)
+
+    @cached_property
+    def root_geometry(self) -> SurfaceGeometry | TriangleGeometry:
+        """The root as it is drawn."""
+        return SurfaceGeometry.of(self.root)
 
     def at_level(self, level: int) -> FlowField:
         """Return the whole field at a level."""

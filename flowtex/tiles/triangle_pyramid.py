@@ -22,7 +22,7 @@ from flowtex._util.array_types import Floats, Indices
 from flowtex.field import FlowField
 from flowtex.textures import TextureSet, TriangleGeometry
 from flowtex.tiles.boxes import Boxes
-from flowtex.tiles.clusters import Clusters
+from flowtex.tiles.clusters import Clusters, levels_of
 from flowtex.tiles.pyramid import PATH_CELLS, Pyramid, TileKey
 from flowtex.trace import SliceStore
 
@@ -30,8 +30,6 @@ __all__ = ["TrianglePyramid"]
 
 #: Most nodes of a field that is traced whole.
 ROOT_NODES = 25_000
-#: Share of the nodes that a level must do without; where it has more, the one before is the root.
-MOST_LEFT = 0.7
 #: Nodes that boxes are measured by, at most.
 MOST_MEASURED = 100_000
 #: Greatest width of what paths are traced in around a tile, in lengths of even paths.
@@ -48,14 +46,13 @@ class TrianglePyramid(Pyramid):
     ) -> None:
         self.field, self.parameter, self.lines = field, parameter, lines
         self._lock = threading.Lock()
-        small = field.shape[1] <= ROOT_NODES
-        self._clusters = [] if small else _levels(field)
-        self.depth = max(len(self._clusters) - 1, 0)
+        self._clusters = levels_of(field, ROOT_NODES)
+        self.depth = len(self._clusters) - 1
         self._parts: dict[int, list[Indices]] = {}
 
     def at_level(self, level: int) -> FlowField:
         """Return the whole field at a level."""
-        return self._clusters[level].field if level else self.field
+        return self._clusters[level].field
 
     def shape(self, level: int) -> tuple[int, int]:
         """Return the number of nodes (1, N) of a level."""
@@ -223,17 +220,6 @@ class TrianglePyramid(Pyramid):
             axis=1
         )
         return np.unique(some[inside])
-
-
-def _levels(field: FlowField) -> list[Clusters]:
-    """Return the levels of a field, the finest first."""
-    levels = [Clusters.of(field)]
-    while len(levels[-1].sides) > ROOT_NODES:
-        coarser = levels[-1].coarser()
-        if not 0 < len(coarser.sides) < MOST_LEFT * len(levels[-1].sides):
-            break
-        levels.append(coarser.averaged(field))
-    return levels
 
 
 def _part(level: Clusters, members: Indices) -> tuple[FlowField, Indices]:

@@ -14,7 +14,7 @@ from flowtex._util.array_types import Floats
 from flowtex.field import FlowField
 from flowtex.rendering.tile_choice import TileView, choose_tiles, cover, finer_part, wanted_tiles
 from flowtex.tiles import BLOCK_CELLS, TILE_BLOCKS, Pyramid, TileKey
-from flowtex.tiles.pyramid import _pyramids
+from flowtex.tiles.shared import _pyramids
 
 SIZE = (320, 240)
 
@@ -190,7 +190,7 @@ def test_what_is_in_view_is_covered_once(seed: int, _tiled: None) -> None:
         own = np.ones(pyramid.places(level)[rows, columns].shape[:2], dtype=int)
         assert key is None or key in ready
         for child in finer:
-            own[finer_part(child, key)] = 0
+            own[finer_part(pyramid, child, key)] = 0
         spread = np.repeat(np.repeat(own, 1 << level, axis=0), 1 << level, axis=1)
         row, column = (0, 0) if key is None else (TILE_BLOCKS * at << level for at in key[1:])
         part = counts[row : row + len(spread), column : column + spread.shape[1]]

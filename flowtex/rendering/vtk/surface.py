@@ -341,13 +341,14 @@ class FlowSurface:
         """Draw as few triangles as the view needs, without a crack between tiles."""
         renderer, geometry = self._renderer(), self._base.textures.geometry
         depth, blocks = 0, self._base.mesh_levels.blocks.shape[:2]
-        if self._loader is not None:
-            depth, blocks = self._loader.pyramid.depth, self._loader.pyramid.blocks
+        pyramid = None if self._loader is None else self._loader.pyramid
+        if pyramid is not None:
+            depth, blocks = pyramid.depth, pyramid.blocks
         regions: dict[TileKey | None, Region] = {}
         for key, layer in layers.items():
             levels = layer.choose_levels(renderer, view)
-            for child in shown[key]:
-                levels[finer_part(child, key)] = -1
+            for child in shown[key] if pyramid is not None else ():
+                levels[finer_part(pyramid, child, key)] = -1
             at = TileKey(depth, 0, 0) if key is None else key
             row, column = (TILE_BLOCKS * place << at.level for place in at[1:])
             regions[key] = Region(at.level, row, column, levels)
