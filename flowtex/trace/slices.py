@@ -43,6 +43,10 @@ STEP_ARRAYS = tuple(name for name, axis in NODE_AXES.items() if axis > 0)
 class TraceSlices:
     """Displacements in index space along the paths through the nodes.
 
+    On a surface of triangles, whose nodes are one row, displacements and ``nodes`` are vectors in
+    space, (..., 1, N, 3): a displacement is the chord from the node to the particle. Rates are along
+    the two tangents of the surface there, which are orthonormal.
+
     Attributes
     ----------
     lags
@@ -84,6 +88,11 @@ class TraceSlices:
         return self.unit.shape[0], self.unit.shape[1]
 
     @property
+    def in_space(self) -> bool:
+        """Whether displacements are vectors in space, as on a surface of triangles."""
+        return self.displacement.shape[-1] == 3
+
+    @property
     def nbytes(self) -> int:
         """Bytes that the arrays take."""
         arrays = (getattr(self, name) for name in self.__dataclass_fields__)
@@ -112,7 +121,8 @@ class TraceSlices:
         """Positions of the particles at a lag.
 
         Between two slices the mean velocity since lag zero is interpolated linearly, which is
-        what the shader does. A path that has ended is held where it ended.
+        what the shader does; on triangles it is the same up to the first slice. A path that has
+        ended is held where it ended.
 
         Parameters
         ----------
@@ -126,7 +136,7 @@ class TraceSlices:
         Returns
         -------
         numpy.ndarray
-            Positions in index space, (J, I, 2) as (a, b).
+            Positions in index space, (J, I, 2) as (a, b), or in space, (1, N, 3), on triangles.
 
         Raises
         ------
@@ -146,9 +156,10 @@ class TraceSlices:
         knots = np.concatenate([[0.0], self.lags])
         m, late = bracket(knots, held)
         late = late[..., None]
-        mean = np.concatenate(
-            [sign * self.rate[step][None], data[step] / self.lags[:, None, None, None]]
-        )
+        mean = data[step] / self.lags[:, None, None, None]
+        # Rates on triangles are along tangents, which are not known here.
+        begin = mean[:1] if self.in_space else sign * self.rate[step][None]
+        mean = np.concatenate([begin, mean])
         rows, columns = np.indices(self.shape)
         before, after = mean[m, rows, columns], mean[m + 1, rows, columns]
         return np.asarray(self.nodes + held[..., None] * (before * (1 - late) + after * late))

@@ -1,0 +1,426 @@
+"""Paths on surfaces of triangles: exact flows, the structured tracer, and meshes of all kinds."""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.spatial import ConvexHull, Delaunay
+from strategies import property_test, within
+
+from flowtex import FlowField, TraceSlices, trace
+from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex.errors import FieldError
+from flowtex.trace import SliceStore, paths
+
+
+def square(count: int, seed: int = 0) -> tuple[Floats, Indices]:
+    """Random nodes in a square from -1 to 1, in triangles that face either way."""
+    rng = np.random.default_rng(seed)
+    side = np.linspace(-1, 1, max(int(np.sqrt(count)), 2))
+    edge = np.concatenate([[(s, e), (e, s)] for s in side for e in (-1, 1)])
+    points = np.unique(np.concatenate([edge, rng.uniform(-1, 1, (count, 2))]), axis=0)
+    return points, either_way(Delaunay(points).simplices, rng)
+
+
+def either_way(triangles: Indices, rng: np.random.Generator) -> Indices:
+    """Turn half of the triangles over."""
+    return np.where(rng.random(len(triangles))[:, None] < 0.5, triangles, triangles[:, ::-1])
+
+
+def sphere(count: int, seed: int = 0) -> tuple[Floats, Indices]:
+    """Nodes of a spiral over the unit sphere, which lie evenly, and their triangles."""
+    k = np.arange(count) + 0.5
+    z, turn = 1 - 2 * k / count, np.pi * (1 + np.sqrt(5)) * k
+    r = np.sqrt(1 - z * z)
+    points = np.stack([r * np.cos(turn), r * np.sin(turn), z], axis=-1)
+    triangles = ConvexHull(points).simplices.astype(np.intp)
+    return points, either_way(triangles, np.random.default_rng(seed))
+
+
+def turned(points: Floats, angle: Any) -> Floats:
+    """Turn points about the z axis."""
+    c, s = np.cos(angle), np.sin(angle)
+    result = points.copy()
+    result[..., 0] = c * points[..., 0] - s * points[..., 1]
+    result[..., 1] = s * points[..., 0] + c * points[..., 1]
+    return result
+
+
+def spin(points: Floats) -> Floats:
+    """Velocity of one turn about the z axis in 2 pi."""
+    result = np.zeros_like(points)
+    result[..., 0], result[..., 1] = -points[..., 1], points[..., 0]
+    return result
+
+
+def found(field: FlowField, slices: TraceSlices, m: int = -1, *, forward: bool = False) -> Floats:
+    """Positions in space at one lag."""
+    data = slices.forward if forward else slices.displacement
+    assert data is not None
+    return np.asarray(field.points[0] + data[0, m, 0])
+
+
+def test_a_vortex_on_a_plane_is_followed_to_second_order() -> None:
+    errors = []
+    for count in (500, 2000, 8000):
+        points, triangles = square(count)
+        r = np.linalg.norm(points, axis=1)
+        field = FlowField.from_triangles(points, triangles, spin(points) * r[:, None])
+        slices = trace(field, lags=[0.5, 2.0], parameter="time", tolerance=1e-6)
+        inside = np.linalg.norm(field.points[0], axis=1) < 0.9
+        radius = np.linalg.norm(field.points[0], axis=1)
+        for sign in (-1, 1):
+            exact = turned(field.points[0], sign * 2.0 * radius)
+            off = np.linalg.norm(found(field, slices, forward=sign > 0) - exact, axis=1)[inside]
+            assert off.max() < 0.05
+        assert np.isinf(slices.reach[0, 0, inside]).all()
+        errors.append(float(np.sqrt(np.mean(off**2))))
+    # Four times as many nodes are half as far apart.
+    order = np.log2(errors[0] / errors[2]) / 2
+    assert 1.7 < order < 2.6
+
+
+def test_a_rotation_of_a_sphere_is_followed_to_second_order() -> None:
+    errors = []
+    for count in (500, 2000, 8000):
+        points, triangles = sphere(count)
+        field = FlowField.from_triangles(points, triangles, spin(points))
+        for parameter in ("time", "arclength"):
+            slices = trace(field, lags=[0.3, 1.5], unit=1.0, parameter=parameter, tolerance=1e-6)
+            p = field.points[0]
+            away = np.linalg.norm(p[:, :2], axis=1)
+            some = away > 0.3
+            angle = 1.5 / (away if parameter == "arclength" else 1.0)
+            off = np.linalg.norm(found(field, slices) - turned(p, -angle), axis=1)[some]
+            assert np.isinf(slices.reach[0, 0, some]).all()
+            errors.append(float(np.sqrt(np.mean(off**2))))
+    for one in (0, 1):
+        order = np.log2(errors[one] / errors[4 + one]) / 2
+        assert 1.7 < order < 2.6
+
+
+def test_a_uniform_flow_is_exact_however_the_nodes_lie() -> None:
+    rng = np.random.default_rng(3)
+    points = np.concatenate(
+        [rng.uniform(-1, 1, (400, 2)), 1e-3 * rng.uniform(-1, 1, (400, 2)), [[-1, -1], [1, 1]]]
+    )
+    points = np.concatenate([points, [[-1, 1], [1, -1]]])
+    field = FlowField.from_triangles(
+        points, either_way(Delaunay(points).simplices, rng), np.broadcast_to([0.6, 0.8], (804, 2))
+    )
+    lags = np.array([1e-4, 0.01, 0.5, 3.0])
+    slices = trace(field, lags=lags, unit=1.0)
+    for m, lag in enumerate(lags):
+        moved = np.broadcast_to([-0.6 * lag, -0.8 * lag, 0.0], field.points[0].shape)
+        np.testing.assert_allclose(slices.displacement[0, m, 0], moved, rtol=1e-6, atol=1e-9)
+    x, y = field.points[0, :, 0], field.points[0, :, 1]
+    inner = np.abs(field.points[0, :, :2]).max(axis=1) < 0.8
+    # The square of random nodes has its own border, so only its corners are known.
+    assert (slices.reach[0, 0] <= np.minimum((x + 1) / 0.6, (y + 1) / 0.8) + 1e-6).all()
+    assert (slices.reach[0, 0, inner] > 0.1).all()
+    assert slices.rate[0, 0] == pytest.approx(
+        np.einsum("dnc,c->nd", field.surface.tangents[:, 0], [0.6, 0.8, 0.0])
+    )
+
+
+@pytest.mark.parametrize("along", [(1.0, 0.0), (0.6, 0.8)])
+def test_reach_is_the_lag_to_the_border(along: tuple[float, float]) -> None:
+    points, triangles = square(1000)
+    field = FlowField.from_triangles(points, triangles, np.broadcast_to(along, points.shape))
+    slices = trace(field, lags=[0.1, 5.0], unit=1.0)
+    ahead = np.where(np.array(along) > 0, along, 1e-30)
+    for reach, room in (
+        (slices.reach, field.points[0, :, :2] + 1),
+        (slices.forward_reach, 1 - field.points[0, :, :2]),
+    ):
+        assert reach is not None
+        np.testing.assert_allclose(
+            reach[0, 0], (np.maximum(room, 1e-9) / ahead).min(axis=1), atol=1e-5
+        )
+    np.testing.assert_allclose(
+        slices.displacement[0, 1, 0, :, :2] / -5, [along] * len(points), 1e-5
+    )
+
+
+def test_a_path_ends_where_it_meets_nodes_without_data() -> None:
+    points, triangles = square(3000)
+    valid = np.hypot(points[:, 0], points[:, 1]) > 0.3
+    velocity = np.where(valid[:, None], [1.0, 0.0], np.nan)
+    field = FlowField.from_triangles(points, triangles, velocity)
+    slices = trace(field, lags=[0.1, 4.0], unit=1.0)
+    x, y = field.points[0, :, 0], field.points[0, :, 1]
+    behind = (x > 0.35) & (np.abs(y) < 0.15)
+    exact = x - np.sqrt(0.09 - np.minimum(np.abs(y), 0.29) ** 2)
+    # The border is made of whole triangles.
+    assert (exact - slices.reach[0, 0])[behind].max() < 0.1
+    assert (slices.reach[0, 0] - exact)[behind].max() < 1e-5
+    beside = np.abs(y) > 0.45
+    np.testing.assert_allclose(slices.reach[0, 0, beside], x[beside] + 1, atol=1e-5)
+    assert not slices.reach[0, ~field.valid].any()
+    assert np.isfinite(slices.displacement).all()
+
+
+def test_paths_are_those_of_the_structured_tracer() -> None:
+    i, j = np.meshgrid(np.linspace(-1, 1, 61), np.linspace(-1, 1, 51))
+    points = np.stack([i, j, 0.2 * i * j], axis=-1)
+    velocity = np.stack([1 + 0.3 * j, np.sin(2 * i), 0.2 * (j + i * np.sin(2 * i))], axis=-1)
+    grid = FlowField.from_arrays(points, velocity)
+    n = np.arange(i.size).reshape(i.shape)
+    a, b, c, d = (part.ravel() for part in (n[:-1, :-1], n[:-1, 1:], n[1:, 1:], n[1:, :-1]))
+    triangles = np.concatenate([np.stack([a, b, c], -1), np.stack([a, c, d], -1)])
+    field = FlowField.from_triangles(points.reshape(-1, 3), triangles, velocity.reshape(-1, 3))
+    np.testing.assert_allclose(field.points[0], points.reshape(-1, 3))
+    one = trace(grid, lags=[0.3, 0.6], unit=1.0, compose=False, tolerance=1e-5)
+    two = trace(field, lags=[0.3, 0.6], unit=1.0)
+    start = np.stack(np.meshgrid(np.arange(61), np.arange(51)), -1).reshape(-1, 2)
+    for m in range(2):
+        there = start + one.displacement[0, m].reshape(-1, 2)
+        inside = np.isinf(one.reach.ravel()) & np.isinf(two.reach.ravel())
+        at = grid.surface.at(there[inside])
+        off = np.linalg.norm(at - found(field, two, m)[inside], axis=1)
+        assert inside.sum() > 1500
+        assert off.max() < 2e-3
+        assert np.median(off) < 3e-4
+    late = np.isfinite(one.reach.ravel()) & np.isfinite(two.reach.ravel())
+    np.testing.assert_allclose(two.reach.ravel()[late], one.reach.ravel()[late], atol=0.01)
+
+
+def box(per_side: int, rows: int) -> tuple[Floats, Indices, Floats]:
+    """Four sides of a box one wide, around the z axis, and the place of each node along them."""
+    count = 4 * per_side
+    along = np.arange(count) / per_side
+    corner = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]], dtype=float)
+    side, share = np.divmod(along, 1)
+    side = side.astype(int)
+    around = corner[side] + share[:, None] * (corner[side + 1] - corner[side])
+    z = np.linspace(0, 4, rows)
+    points = np.concatenate([np.column_stack([around, np.full(count, h)]) for h in z])
+    a = np.arange(count * (rows - 1))
+    b = np.where(a % count == count - 1, a - count + 1, a + 1)
+    rng = np.random.default_rng(1)
+    cut = rng.random(len(a))[:, None] < 0.5
+    one = np.where(cut, np.stack([a, b, b + count], -1), np.stack([a, b, a + count], -1))
+    two = np.where(
+        cut, np.stack([a, b + count, a + count], -1), np.stack([b, b + count, a + count], -1)
+    )
+    return points, either_way(np.concatenate([one, two]), rng), np.tile(along, rows)
+
+
+def test_paths_go_on_across_the_edges_of_a_box() -> None:
+    """Unrolled, a flow that climbs around a box is uniform, and its paths are straight."""
+    points, triangles, along = box(6, 25)
+    middle = points[:, :2] - 0.5
+    side = np.array([[1, 0], [0, 1], [-1, 0], [0, -1]], dtype=float)
+    at = np.floor(along).astype(int)
+    corner = along == at
+    flat = np.where(corner[:, None], side[at] + side[at - 1], side[at])
+    flat /= np.linalg.norm(flat, axis=1, keepdims=True)
+    assert (np.abs(middle).max(axis=1) == 0.5).all()
+    velocity = np.column_stack([0.8 * flat, np.full(len(points), 0.6)])
+    field = FlowField.from_triangles(points, triangles, velocity)
+    lags = np.array([0.3, 1.0, 2.5])
+    slices = trace(field, lags=lags, unit=1.0)
+    for m, lag in enumerate(lags):
+        where = (along - 0.8 * lag) % 4
+        number = np.floor(where).astype(int)
+        corners = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], dtype=float)
+        exact = corners[number] + (where - number)[:, None] * side[number]
+        z = points[:, 2] - 0.6 * lag
+        known = z > 0
+        off = found(field, slices, m)[known] - np.column_stack([exact, z])[known]
+        assert np.abs(off).max() < 1e-5
+    np.testing.assert_allclose(
+        np.minimum(slices.reach[0, 0], 2.5), np.minimum(points[:, 2] / 0.6, 2.5), atol=1e-5
+    )
+
+
+@pytest.mark.parametrize("parameter", ["arclength", "time"])
+def test_paths_come_to_rest_in_a_sink(parameter: str) -> None:
+    points, triangles = square(2000)
+    for swirl in (0.0, 1.0):
+        field = FlowField.from_triangles(points, triangles, -points + swirl * spin(points))
+        slices = trace(field, lags=[0.1, 50.0], unit=1.0, parameter=parameter)
+        assert slices.forward is not None and slices.forward_reach is not None
+        inside = np.linalg.norm(field.points[0], axis=1) < 0.95
+        assert np.abs(found(field, slices, forward=True))[inside].max() < 0.01
+        length = np.linalg.norm(field.points[0], axis=1) * np.hypot(1, swirl)
+        if parameter == "arclength":
+            reach = slices.forward_reach[0, 0, inside]
+            np.testing.assert_allclose(reach, length[inside], atol=0.01)
+
+
+def test_a_saddle_parts_and_a_centre_holds() -> None:
+    points, triangles = square(2000)
+    saddle = FlowField.from_triangles(points, triangles, points * [1, -1])
+    slices = trace(saddle, lags=[0.5, 1.0], parameter="time")
+    p = saddle.points[0]
+    back = np.abs(p[:, 1]) < np.exp(-1.0) * 0.99
+    exact = p * [np.exp(-1), np.exp(1), 1]
+    assert np.abs(found(saddle, slices) - exact)[back].max() < 0.01
+    centre = FlowField.from_triangles(points, triangles, spin(points))
+    slices = trace(centre, lags=[1.0, 40.0], unit=1.0, tolerance=1e-6)
+    r = np.linalg.norm(centre.points[0], axis=1)
+    inside = (r < 0.95) & (r > 0.1)
+    last = np.linalg.norm(found(centre, slices), axis=1)
+    assert np.isinf(slices.reach[0, 0, inside]).all()
+    assert np.abs(last / r - 1)[inside].max() < 0.05
+    nodes_at_rest = FlowField.from_triangles(
+        points, triangles, np.where(points[:, :1] < 0, 0.0, [[1.0, 0.0]])
+    )
+    slices = trace(nodes_at_rest, lags=[1.0])
+    still = nodes_at_rest.points[0, :, 0] < 0
+    for data in (slices.rate[0], slices.displacement[0, 0], slices.reach[0, ..., None]):
+        assert not data[0, still].any()
+
+
+def test_pathlines_of_a_rotation_that_changes() -> None:
+    """The rate goes 0, 1, 3 at the times 0, 1, 2: linear between, and constant before and after."""
+    points, triangles = square(3000)
+    velocity = np.stack([rate * spin(points) for rate in (0.0, 1.0, 3.0)])
+    field = FlowField.from_triangles(points, triangles, velocity, times=[0.0, 1.0, 2.0])
+    lags = [0.25, 1.0, 1.5, 2.5]
+    slices = trace(field, lags=lags, tolerance=1e-5)
+    p = field.points[0]
+    inside = np.linalg.norm(p, axis=1) < 0.95
+
+    def angle(time: float) -> float:
+        moments = np.linspace(-3, 5, 80001)
+        rate = np.interp(moments, field.times, [0.0, 1.0, 3.0])
+        return float(np.interp(time, moments, np.cumsum(rate) * 1e-4))
+
+    assert slices.forward is not None
+    for step, destination in enumerate(field.times):
+        for m, lag in enumerate(lags):
+            for side, data in ((-1, slices.displacement), (1, slices.forward)):
+                exact = turned(p, angle(destination + side * lag) - angle(destination))
+                off = (p + data[step, m, 0] - exact)[inside]
+                assert np.abs(off).max() < 0.01
+    one = SliceStore(field).at(1)
+    assert one.parameter == "time"
+    assert one.displacement.shape[:1] + one.displacement.shape[2:] == (1, 1, len(p), 3)
+    moment = SliceStore(field, lines="streamlines").at(1)
+    assert moment.parameter == "arclength"
+    assert np.isinf(moment.reach[0, 0, np.linalg.norm(p, axis=1) < 0.4]).mean() > 0.99
+
+
+def test_only_chosen_nodes_are_followed_and_positions_are_held() -> None:
+    points, triangles = square(300)
+    field = FlowField.from_triangles(points, triangles, np.broadcast_to([1.0, 0.0], points.shape))
+    chosen = np.zeros(field.shape, bool)
+    chosen[0, ::7] = True
+    whole = trace(field, lags=[0.2, 3.0], unit=1.0)
+    some = trace(field, lags=[0.2, 3.0], unit=1.0, nodes=chosen)
+    np.testing.assert_array_equal(some.displacement[:, :, chosen], whole.displacement[:, :, chosen])
+    assert not some.displacement[:, :, ~chosen].any()
+    assert not some.reach[:, ~chosen].any()
+    held = whole.positions(3.0)[0, :, 0]
+    np.testing.assert_allclose(held, -1, atol=1e-5)
+    np.testing.assert_allclose(
+        whole.positions(0.1)[0, :, 0], points[:, 0] - np.minimum(0.1, points[:, 0] + 1), atol=1e-5
+    )
+
+
+def test_paths_from_anywhere_are_told_on_the_surface() -> None:
+    points, triangles = square(500)
+    field = FlowField.from_triangles(points, triangles, np.broadcast_to([1.0, 0.0], points.shape))
+    start = np.stack([np.full(len(triangles), 0.3), np.arange(len(triangles)) + 0.2], axis=-1)
+    ways = paths(field, start, [0.1, 0.4, 5.0], forward=True)
+    here = field.surface.at(start)
+    np.testing.assert_allclose(ways.reach, np.where(1 - here[:, 0] < 5, 1 - here[:, 0], np.inf))
+    for m, lag in enumerate((0.1, 0.4, 5.0)):
+        exact = here + [[1.0, 0.0, 0.0]] * np.minimum(lag, 1 - here[:, :1])
+        np.testing.assert_allclose(field.surface.at(ways.positions[m]), exact, atol=1e-6)
+
+
+def check(slices: TraceSlices) -> None:
+    """What holds of all slices by arc length, however bad the mesh is."""
+    for data in (slices.rate, slices.displacement, slices.forward):
+        assert data is not None
+        assert np.isfinite(data).all()
+    assert (slices.reach >= 0).all()
+    if slices.parameter == "arclength":
+        length = np.linalg.norm(slices.displacement[0], axis=-1)
+        assert (length <= slices.lags[:, None, None] * slices.unit * (1 + 1e-3)).all()
+
+
+def test_surfaces_with_one_side_and_edges_of_many() -> None:
+    turn = np.linspace(0, 2 * np.pi, 40, endpoint=False)
+    strip = [
+        np.stack(
+            [
+                (1 + s * np.cos(turn / 2)) * np.cos(turn),
+                (1 + s * np.cos(turn / 2)) * np.sin(turn),
+                s * np.sin(turn / 2),
+            ],
+            -1,
+        )
+        for s in (-0.3, 0.0, 0.3)
+    ]
+    points = np.concatenate(strip)
+    a = np.arange(40)
+    quads = []
+    for row in range(2):
+        for k in a:
+            nxt = (k + 1) % 40
+            low, high = row, row + 1
+            other = (low, high) if k < 39 else (2 - low, 2 - high)
+            quads.append((low * 40 + k, other[0] * 40 + nxt, other[1] * 40 + nxt, high * 40 + k))
+    q = np.array(quads)
+    triangles = np.concatenate([q[:, [0, 1, 2]], q[:, [0, 2, 3]]])
+    field = FlowField.from_triangles(points, triangles, spin(points))
+    slices = trace(field, lags=[0.5, 20.0], unit=1.0)
+    check(slices)
+    # The middle line closes after one turn, on the other side.
+    middle = slice(40, 80)
+    assert np.isinf(slices.reach[0, 0, middle]).all()
+    assert np.abs(np.linalg.norm(found(field, slices)[middle], axis=1) - 1).max() < 0.1
+    # Five sheets that meet in one line.
+    z = np.linspace(0, 1, 6)
+    sheets, faces = [np.column_stack([0 * z, 0 * z, z])], []
+    for k in range(5):
+        c, s = np.cos(2 * np.pi * k / 5), np.sin(2 * np.pi * k / 5)
+        sheets.append(np.column_stack([c + 0 * z, s + 0 * z, z]))
+        for n in range(5):
+            far = 6 * (k + 1) + n
+            faces += [[n, n + 1, far], [n + 1, far + 1, far]]
+    points = np.concatenate(sheets)
+    for seed in range(3):
+        v = np.random.default_rng(seed).normal(size=points.shape)
+        check(trace(FlowField.from_triangles(points, np.array(faces), v), lags=[0.5, 20.0]))
+
+
+@property_test(60)
+@given(
+    st.integers(3, 30),
+    st.integers(1, 60),
+    st.integers(0, 2**32 - 1),
+    st.sampled_from([0, 3, 20]),
+    st.sampled_from([None, 1, 3]),
+    st.booleans(),
+    st.sampled_from([1e-6, 1.0, 1e6]),
+)
+def test_any_triangles(
+    count: int, faces: int, seed: int, spread: int, steps: int | None, flat: bool, size: float
+) -> None:
+    rng = np.random.default_rng(seed)
+    points = size * rng.normal(size=(count, 3)) * [1, 1, 0.0 if flat else 1.0]
+    shape = (count, 3) if steps is None else (steps, count, 3)
+    velocity = rng.normal(size=shape) * 10.0 ** rng.uniform(-spread, spread, (*shape[:-1], 1))
+    velocity[rng.random(shape[:-1]) < 0.1] = 0.0
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            triangles = rng.integers(0, count, (faces, 3))
+            field = FlowField.from_triangles(points, triangles, velocity)
+    except FieldError:
+        return
+    with within(4.0):
+        for parameter in ("arclength", "time"):
+            store = SliceStore(field, parameter=parameter)
+            for step in range(store.steps):
+                check(store.at(step))
