@@ -109,7 +109,8 @@ class Clusters:
         border[cluster[kept]] = self.border[kept]
         normals = _sums(self.normals[kept], cluster[kept], count)
         field = _averaged(self.whole, number, corners)
-        _untangle(field.points[0], corners, normals, border)
+        corners = _untangled(field.points[0], corners, normals, border)
+        field = replace(field, triangles=corners)
         return Clusters(self.whole, field, corners, number, sides, border, normals)
 
     def _bins(self) -> Indices:
@@ -117,7 +118,10 @@ class Clusters:
         points = self.field.points[0]
         at = ((points - points.min(axis=0)) / self.sides[:, None]).astype(np.int64)
         size = np.rint(np.log2(self.sides / self.sides.min())).astype(np.int64)
-        key = 2 * size + self.border
+        # What is not drawn stays by itself, and out of the next level.
+        drawn = np.zeros(len(points), dtype=bool)
+        drawn[self.triangles] = True
+        key = 4 * size + 2 * drawn + self.border
         for axis in range(3):
             key = key * (int(at[:, axis].max()) + 1) + at[:, axis]
         _, first, cluster = np.unique(key, return_index=True, return_inverse=True)
@@ -223,16 +227,18 @@ def _once(corners: Indices) -> Indices:
     return up[turns != 0]
 
 
-def _untangle(points: Floats, triangles: Indices, normals: Floats, border: Bools) -> None:
-    """Move nodes of triangles that are turned over to the middle of those beside them."""
+def _untangled(points: Floats, triangles: Indices, normals: Floats, border: Bools) -> Indices:
+    """Move nodes of triangles that are turned over to the middle of those beside them.
+
+    Triangles that stay so, as at a border, are left out: others cover what they do.
+    """
     for _ in range(UNTANGLING):
-        crosses = triangle_normals(points, triangles)
-        turned = np.einsum("mc,mc->m", crosses, normals[triangles].sum(axis=1)) <= 0
+        turned = _turned(points, triangles, normals)
         moved = np.zeros(len(points), dtype=bool)
         moved[triangles[turned]] = True
         moved &= ~border
         if not moved.any():
-            return
+            break
         near = triangles[moved[triangles].any(axis=1)]
         total, count = np.zeros_like(points), np.zeros(len(points))
         for by in (1, 2):
@@ -240,6 +246,13 @@ def _untangle(points: Floats, triangles: Indices, normals: Floats, border: Bools
             total += _sums(other, near.ravel(), len(points))
             count += np.bincount(near.ravel(), minlength=len(points))
         points[moved] = total[moved] / count[moved, None]
+    return triangles[~_turned(points, triangles, normals)]
+
+
+def _turned(points: Floats, triangles: Indices, normals: Floats) -> Bools:
+    """Return which triangles (M,) face away from the normals of their corners."""
+    along = np.einsum("mc,mc->m", triangle_normals(points, triangles), normals[triangles].sum(1))
+    return np.asarray(along <= 0)
 
 
 def _squares(vectors: Floats) -> Floats:
