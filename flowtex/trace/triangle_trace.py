@@ -1,9 +1,9 @@
-"""Trace slices of a field on triangles: all paths are integrated, and displacements are in space."""
+"""Trace slices on triangles: all paths are integrated, and displacements are in space."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -98,7 +98,7 @@ def triangle_paths(
     tolerance: float,
 ) -> Paths:
     """Do what :func:`flowtex.trace.paths` does; a path that has ended stays where it did."""
-    surface, mesh = field.surface, _mesh(field)
+    surface, mesh = _surface(field), _mesh(field)
     motion = _motions(field, [step], parameter, direction)[0]
     triangle = np.clip(np.floor(start[:, 1]).astype(np.intp), 0, len(mesh.corners) - 1)
     second = np.clip(start[:, 1] - triangle, 0.0, 1.0)
@@ -118,8 +118,11 @@ def triangle_paths(
 
 
 def _mesh(field: FlowField) -> TriangleMesh:
-    assert isinstance(field.surface, TriangleSurface)
-    return TriangleMesh.of(field.surface)
+    return TriangleMesh.of(_surface(field))
+
+
+def _surface(field: FlowField) -> TriangleSurface:
+    return cast("TriangleSurface", field.surface)
 
 
 def _motions(

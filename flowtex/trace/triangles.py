@@ -45,6 +45,8 @@ EDGE_ROUNDING = 1e-9
 LAG_ROUNDING = 1e-12
 #: Velocity out of a border, as a share of all, that is none.
 BORDER_ROUNDING = 1e-6
+#: Twice what acceleration may move a particle in one step, in sizes of its triangle.
+MOST_TURN = 0.2
 #: Rounds of Newton's method for the place in a step where a path has some length.
 NEWTON_ROUNDS = 3
 
@@ -135,7 +137,7 @@ def begin(motion: Motion, nodes: Indices) -> Indices:
 
 
 def _three(two: Floats) -> Floats:
-    """Changes of all three shares, (3, N), by those of the second and third."""
+    """Return changes of all three shares, (3, N), by those of the second and third."""
     return np.stack([-(two[0] + two[1]), two[0], two[1]])
 
 
@@ -244,12 +246,17 @@ class _Run:
         Steps that end before the edge lose it.
         """
         error = dot(now.metric, now.third, now.third)
-        bend = dot(now.metric, now.bend, now.bend)
-        far = np.flatnonzero((error * (h * h) ** 3 > self.error) | (bend * (h * h) > square))
+        bend = turn = dot(now.metric, now.bend, now.bend)
+        if now.bend is not now.second:
+            turn = dot(now.metric, now.second, now.second)
+        # Third derivatives begin with nothing where a flow that varies sets in.
+        over = (error * (h * h) ** 3 > self.error) | (bend * (h * h) > square)
+        far = np.flatnonzero(over | (turn * (h * h) ** 2 > MOST_TURN**2))
         if len(far):
-            short = np.minimum(
+            short = np.fmin(
                 np.cbrt(np.sqrt(self.error / error[far])), np.sqrt(square[far] / bend[far])
             )
+            short = np.fmin(short, np.sqrt(MOST_TURN / np.sqrt(turn[far])))
             edge[far] = np.where(short < h[far], -1, edge[far])
             h[far] = np.minimum(short, h[far])
         lag = self.state.lag
@@ -322,7 +329,7 @@ class _Run:
         away *= self.mesh.heights[state.triangle[out], edge]
         on = away <= BORDER_ROUNDING * speed
         state.edge[out[on]] = edge[on]
-        return out[~on]
+        return np.asarray(out[~on])
 
     def _place(self, at: Indices, triangle: Indices, edge: Indices, shares: Floats) -> None:
         state = self.state
@@ -436,7 +443,7 @@ def _inward(now: Derivatives, at: Indices, edge: Indices) -> Bools:
 
 
 def _along(change: Floats, metric: Floats, edge: Indices) -> Floats:
-    """What of changes (2, N) of shares is along the edges opposite to corners (N,)."""
+    """Return what of changes (2, N) of shares is along the edges opposite to corners (N,)."""
     e, f, g = metric
     first, second = edge == 1, edge == 2
     one = np.where(first, g, np.where(second, -f, f - g))
