@@ -184,8 +184,11 @@ def test_a_large_surface_is_shown_in_tiles(
     ours = judged(Scene(ball.__wrapped__(5), Settings(samples=11)), camera)
     theirs = client.pixels(viewer)
     assert not (theirs == np.rint(255 * np.array(GROUND))).all(axis=-1).any()  # no crack
+    # The middle of the root is not quite that of the whole, and the noise begins there; a line where
+    # tiles meet would be many steps of 8 bits.
     off = np.abs(theirs.astype(float) - ours)
-    assert off.mean() < 1
+    assert off.mean() < 4
+    assert (off > 30).mean() < 1e-3
     client.page.wait_for_function("(n) => viewers[n].canPick", arg=viewer)
     point = client.page.evaluate("(n) => viewers[n].point(0.3, -0.2)", viewer)
     assert np.linalg.norm(point["position"]) == pytest.approx(1, abs=2e-3)
