@@ -184,7 +184,7 @@ def test_a_large_surface_is_shown_in_tiles(
     ours = judged(Scene(ball.__wrapped__(5), Settings(samples=11)), camera)
     theirs = client.pixels(viewer)
     assert not (theirs == np.rint(255 * np.array(GROUND))).all(axis=-1).any()  # no crack
-    # The middle of the root is not quite that of the whole, and the noise begins there; a line where
+    # The middle of the root is not quite that of the whole, and noise begins there; a line where
     # tiles meet would be many steps of 8 bits.
     off = np.abs(theirs.astype(float) - ours)
     assert off.mean() < 4
