@@ -155,7 +155,10 @@ VIEWS: dict[str, View] = {
 
 
 #: Deeper than VTK comes to: the positions that it hands on are single, half a pixel here.
-DEEP: dict[str, View] = {"zoom 1e5": View(camera=straight(1e5))}
+DEEP: dict[str, View] = {
+    "zoom 1e5": View(camera=straight(1e5)),
+    "triangles, zoom 1e5": View(scattered_gyre, straight(1e5)),
+}
 
 
 @cache

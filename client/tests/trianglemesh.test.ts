@@ -1,4 +1,5 @@
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import { interpolated } from "../src/mesh.ts";
 import type { Part } from "../src/protocol.ts";
@@ -10,6 +11,8 @@ import {
   vertexCorners,
   vertexShares,
 } from "../src/trianglemesh.ts";
+
+const part = (data: Part["data"], shape: number[]): Part => ({ data, shape, digest: "" });
 
 /** Two triangles between four nodes. */
 const TRIANGLES = Uint32Array.of(0, 1, 2, 2, 1, 3);
@@ -47,11 +50,6 @@ test("the second corner belongs to its triangle, and not to the next", () => {
 });
 
 test("triangles of blocks that are drawn are drawn once", () => {
-  const part = (data: Uint16Array | Float32Array, shape: number[]): Part => ({
-    data,
-    shape,
-    digest: "",
-  });
   // The last of 16 blocks, the first, and both.
   const blocks = part(Uint16Array.of(1 << 15, 1, (1 << 15) | 1), [3]);
   const mesh = new TriangleMesh(part(new Float32Array(80), [4, 4, 5]), blocks);
@@ -63,4 +61,23 @@ test("triangles of blocks that are drawn are drawn once", () => {
   levels.fill(-1);
   levels[0] = 0;
   assert.deepEqual([...mesh.triangles(levels)], [3, 4, 5, 6, 7, 8]);
+});
+
+interface Drawn {
+  mesh: { shape: number[]; blocks: number[] };
+  drawn: { levels: number[]; triangles: number; checksum: number }[];
+}
+
+test("the triangles of blocks are those of Python", () => {
+  // tests/rendering/test_client_numbers.py
+  const file = new URL("triangles.json", import.meta.url);
+  const { mesh, drawn }: Drawn = JSON.parse(readFileSync(file, "utf8"));
+  const blocks = part(Uint16Array.from(mesh.blocks), [mesh.blocks.length]);
+  const made = new TriangleMesh(part(new Float32Array(), mesh.shape), blocks);
+  for (const { levels, triangles, checksum } of drawn) {
+    const index = made.triangles(Int8Array.from(levels));
+    assert.equal(index.length, 3 * triangles);
+    const sum = index.reduce((result, vertex) => (31 * result + vertex) % 1000003, 0);
+    assert.equal(sum, checksum);
+  }
 });

@@ -17,7 +17,7 @@ from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.field import FlowField
 from flowtex.field.steps import Steps, map_steps
 from flowtex.field.triangles.surface import TriangleSurface
-from flowtex.field.triangles.topology import flipped, repeated, triangle_normals
+from flowtex.field.triangles.topology import flipped, triangle_normals
 
 __all__ = ["Clusters", "levels_of"]
 
@@ -25,6 +25,8 @@ __all__ = ["Clusters", "levels_of"]
 FIRST_EDGES = 2.0
 #: Passes in which the edge of a node becomes that of its surroundings.
 SMOOTHING = 3
+#: Rounds in which triangles that are turned over are sought.
+UNTANGLING = 4
 #: Bins along the surface's extent, at most; three numbers of them have room in one of 64 bits.
 MOST_BINS = 2**18
 #: Share of its nodes that the next level may have at most, for a level not to be the last.
@@ -50,7 +52,7 @@ class Clusters:
     border
         Nodes on the border of what is drawn, (n,).
     normals
-        Unit normals, or sums of them, (n, 3); ``None`` on a flat surface.
+        Unit normals, or sums of them, (n, 3).
     """
 
     whole: FlowField
@@ -59,7 +61,7 @@ class Clusters:
     number: Indices
     sides: Floats
     border: Bools
-    normals: Floats | None
+    normals: Floats
 
     @classmethod
     def of(cls, field: FlowField) -> Clusters:
@@ -81,7 +83,7 @@ class Clusters:
             triangles[turned] = triangles[turned, ::-1]
         if not surface.cells.all():
             triangles = triangles[surface.cells]
-        flat = surface.frame is not None
+        normals = surface.normals[0] if surface.frame is None else _common(surface, triangles)
         return cls(
             field,
             field,
@@ -89,50 +91,65 @@ class Clusters:
             np.arange(field.shape[1]),
             _sides(surface.points[0], triangles, surface.extent),
             border,
-            None if flat else surface.normals[0],
+            normals,
         )
 
     def coarser(self) -> Clusters:
         """Return the next level; it has no triangles where all are smaller than the bins."""
-        cluster = self._bins()
-        corners = cluster[self.triangles]
-        a, b, c = corners.T
-        corners = corners[(a != b) & (b != c) & (a != c)]
-        corners = corners[~repeated(corners)]
+        cluster = self._compact(self._bins())
+        corners = _once(cluster[self.triangles])
         used = np.zeros(int(cluster.max(initial=-1)) + 1, dtype=bool)
         used[corners] = True
-        count = int(used.sum())
-        fresh = np.where(used, np.cumsum(used) - 1, -1)
-        cluster = fresh[cluster]
+        count, fresh = int(used.sum()), np.where(used, np.cumsum(used) - 1, -1)
+        cluster, corners = fresh[cluster], fresh[corners]
         number = np.where(self.number >= 0, cluster[self.number], -1)
         kept = cluster >= 0
         sides, border = np.zeros(count), np.zeros(count, dtype=bool)
         sides[cluster[kept]] = 2 * self.sides[kept]
         border[cluster[kept]] = self.border[kept]
-        normals = None
-        if self.normals is not None:
-            normals = _sums(self.normals[kept], cluster[kept], count)
-        field = _averaged(self.whole, number, fresh[corners])
-        return Clusters(self.whole, field, fresh[corners], number, sides, border, normals)
+        normals = _sums(self.normals[kept], cluster[kept], count)
+        field = _averaged(self.whole, number, corners)
+        corners = _untangled(field.points[0], corners, normals, border)
+        field = replace(field, triangles=corners)
+        return Clusters(self.whole, field, corners, number, sides, border, normals)
 
     def _bins(self) -> Indices:
-        """Return the cluster of each node, (n,); -1 where nothing is drawn."""
-        used = np.zeros(len(self.sides), dtype=bool)
-        used[self.triangles] = True
-        points, sides = self.field.points[0][used], self.sides[used]
-        at = ((points - points.min(axis=0)) / sides[:, None]).astype(np.int64)
-        size = np.rint(np.log2(sides / sides.min())).astype(np.int64)
-        key = 2 * size + self.border[used]
+        """Return the bin of each node, (n,), all of whose nodes face alike."""
+        points = self.field.points[0]
+        at = ((points - points.min(axis=0)) / self.sides[:, None]).astype(np.int64)
+        size = np.rint(np.log2(self.sides / self.sides.min())).astype(np.int64)
+        # What is not drawn stays by itself, and out of the next level.
+        drawn = np.zeros(len(points), dtype=bool)
+        drawn[self.triangles] = True
+        key = 4 * size + 2 * drawn + self.border
         for axis in range(3):
             key = key * (int(at[:, axis].max()) + 1) + at[:, axis]
         _, first, cluster = np.unique(key, return_index=True, return_inverse=True)
-        if self.normals is not None:
-            normals = self.normals[used]
-            away = np.einsum("nc,nc->n", normals, normals[first][cluster]) < 0
-            cluster = 2 * cluster + away
-            cluster = _dense(cluster)
-        result = np.full(len(used), -1, dtype=np.intp)
-        result[used] = cluster
+        away = np.einsum("nc,nc->n", self.normals, self.normals[first][cluster]) < 0
+        return np.asarray(np.unique(2 * cluster + away, return_inverse=True)[1])
+
+    def _compact(self, cluster: Indices) -> Indices:
+        """Have each node (n,) in the nearest of the clusters beside it.
+
+        What lay apart in one bin is then with its neighbours, and hardly a triangle turns over.
+        """
+        points, count = self.field.points[0], int(cluster.max()) + 1
+        center = _sums(points, cluster, count) / np.bincount(cluster)[:, None]
+        normal = _sums(self.normals, cluster, count)
+        corners = cluster[self.triangles]
+        some, k = np.nonzero(corners != np.roll(corners, -1, axis=1))
+        node, there = self.triangles[some, k], corners[some, (k + 1) % 3]
+        beside = self.triangles[some, (k + 1) % 3]
+        alike = self.border[node] == self.border[beside]
+        node, there = node[alike], there[alike]
+        away = _squares(points[node] - center[there])
+        nearer = away < _squares(points - center[cluster])[node]
+        nearer[nearer] = (
+            np.einsum("nc,nc->n", self.normals[node[nearer]], normal[there[nearer]]) > 0
+        )
+        order = np.argsort(-away[nearer])  # of what is written to a node, the last stays
+        result = cluster.copy()
+        result[node[nearer][order]] = there[nearer][order]
         return result
 
 
@@ -182,11 +199,64 @@ def _sides(points: Floats, triangles: Indices, extent: float) -> Floats:
     return np.asarray(FIRST_EDGES * typical * 2.0**steps)
 
 
-def _dense(numbers: Indices) -> Indices:
-    """Return numbers from 0 on, without those that none has."""
-    used = np.zeros(int(numbers.max(initial=-1)) + 1, dtype=bool)
-    used[numbers] = True
-    return np.asarray((np.cumsum(used) - 1)[numbers])
+def _common(surface: TriangleSurface, triangles: Indices) -> Floats:
+    """Return the one normal of a flat surface for each node, (N, 3)."""
+    normal = triangle_normals(surface.points[0], triangles).sum(axis=0)
+    return np.broadcast_to(normal / np.linalg.norm(normal), surface.points.shape[1:])
+
+
+def _once(corners: Indices) -> Indices:
+    """Triangles with three corners, each once; two that face each other are none."""
+    a, b, c = corners.T
+    corners = corners[(a != b) & (b != c) & (a != c)]
+    low, middle, high = np.sort(corners, axis=1).T
+    # Whether the corners, from the lowest on, go up.
+    ahead = corners[np.arange(len(corners)), (np.argmin(corners, axis=1) + 1) % 3] == middle
+    order = np.lexsort((high, middle, low))
+    begins = np.flatnonzero(
+        np.diff(low[order], prepend=-1)
+        | np.diff(middle[order], prepend=-1)
+        | np.diff(high[order], prepend=-1)
+    )
+    if not len(begins):
+        return corners
+    turns = np.add.reduceat(np.where(ahead, 1, -1)[order], begins)
+    low, middle, high = (some[order[begins]] for some in (low, middle, high))
+    up = np.stack([low, middle, high], axis=-1)
+    up[turns < 0] = up[turns < 0][:, [0, 2, 1]]
+    return up[turns != 0]
+
+
+def _untangled(points: Floats, triangles: Indices, normals: Floats, border: Bools) -> Indices:
+    """Move nodes of triangles that are turned over to the middle of those beside them.
+
+    Triangles that stay so, as at a border, are left out: others cover what they do.
+    """
+    for _ in range(UNTANGLING):
+        turned = _turned(points, triangles, normals)
+        moved = np.zeros(len(points), dtype=bool)
+        moved[triangles[turned]] = True
+        moved &= ~border
+        if not moved.any():
+            break
+        near = triangles[moved[triangles].any(axis=1)]
+        total, count = np.zeros_like(points), np.zeros(len(points))
+        for by in (1, 2):
+            other = points[np.roll(near, by, axis=1).ravel()]
+            total += _sums(other, near.ravel(), len(points))
+            count += np.bincount(near.ravel(), minlength=len(points))
+        points[moved] = total[moved] / count[moved, None]
+    return triangles[~_turned(points, triangles, normals)]
+
+
+def _turned(points: Floats, triangles: Indices, normals: Floats) -> Bools:
+    """Return which triangles (M,) face away from the normals of their corners."""
+    along = np.einsum("mc,mc->m", triangle_normals(points, triangles), normals[triangles].sum(1))
+    return np.asarray(along <= 0)
+
+
+def _squares(vectors: Floats) -> Floats:
+    return np.asarray(np.einsum("nc,nc->n", vectors, vectors))
 
 
 def _sums(values: Floats, number: Indices, count: int) -> Floats:

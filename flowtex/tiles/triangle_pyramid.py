@@ -18,7 +18,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from flowtex._util.array_types import Floats, Indices
+from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.field import FlowField
 from flowtex.textures import TextureSet, TriangleGeometry
 from flowtex.tiles.boxes import Boxes
@@ -32,6 +32,8 @@ __all__ = ["TrianglePyramid"]
 ROOT_NODES = 25_000
 #: Nodes that boxes are measured by, at most.
 MOST_MEASURED = 100_000
+#: First lag of a tile's paths in cells, and the number of lags, at most.
+FIRST_CELLS, MOST_LAGS = 0.25, 24
 #: Greatest width of what paths are traced in around a tile, in lengths of even paths.
 MOST_WIDE = 4.0
 
@@ -144,6 +146,8 @@ class TrianglePyramid(Pyramid):
             longest=longest,
             nodes=followed,
         )
+        if store.parameter == "arclength":
+            store.lags, store.unit = _lags(window.surface.cell_size, followed, longest)
         return TextureSet(geometry, store, whole_speed=self._typical_speed, longest=longest)
 
     def _steps(self, level: int) -> int:
@@ -194,8 +198,8 @@ class TrianglePyramid(Pyramid):
                 ends[some] = reduce.reduceat(
                     reduce(reduce(corners[0], corners[1]), corners[2]), first
                 )
-            # The bins that nodes are joined in have twice this side.
-            size[some] = np.maximum.reduceat(this.sides[triangles].max(axis=1), first) / 2
+            # At the next level it is twice as much, half the side of the bins.
+            size[some] = np.maximum.reduceat(this.sides[triangles].max(axis=1), first) / 4
         return np.maximum(low, inner[0]), np.minimum(high, inner[1]), size
 
     def _haste(self, level: int, nodes: Indices) -> float:
@@ -220,6 +224,16 @@ class TrianglePyramid(Pyramid):
             axis=1
         )
         return np.unique(some[inside])
+
+
+def _lags(size: Floats, nodes: Bools, longest: float) -> tuple[Floats, Floats]:
+    """Lags (M,) that end at the greatest length, and their one unit at all nodes (1, N).
+
+    Cells of very different sizes may lie in one tile, whose paths are followed alike.
+    """
+    unit = float(np.percentile(size[nodes], 5))
+    count = int(np.clip(np.ceil(np.log2(longest / unit / FIRST_CELLS)), 1, MOST_LAGS - 1))
+    return longest / unit * 2.0 ** np.arange(-count, 1), np.full(nodes.shape, unit)
 
 
 def _part(level: Clusters, members: Indices) -> tuple[FlowField, Indices]:

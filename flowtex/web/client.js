@@ -320,11 +320,12 @@ let gl=this.graphics.context,{earth}=this.header,steps=this.parts.get(name)?.dat
 points=linePoints(thinned(lines,spacing),anchor),drawn={...this.emptyArray(),groups:pieceGroups(points)};gl.bindVertexArray(
 drawn.array),drawn.buffers=[this.buffer(gl.ARRAY_BUFFER,points)];for(let n=0;n<PIECE_ENDS;n+=1)gl.enableVertexAttribArray(
 n),gl.vertexAttribDivisor(n,1);return drawn}landOf(anchor){let gl=this.graphics.context,cells=this.parts.get("land"),nodes=this.
-parts.get("position"),drawn=this.emptyArray();if(!cells||!nodes)return drawn;let[rows,columns]=cells.shape,corners=[];for(let n=0;n<
-rows*columns;n+=1){if(!cells.data[n])continue;let low=n+Math.floor(n/columns),high=low+columns+1;corners.push(low,low+1,
-high+1,low,high+1,high)}gl.bindVertexArray(drawn.array);let points=positions(nodes.data,anchor);return drawn.buffers=[this.
-buffer(gl.ARRAY_BUFFER,points),this.buffer(gl.ELEMENT_ARRAY_BUFFER,new Uint32Array(corners))],drawn.count=corners.length,
-gl.enableVertexAttribArray(0),gl.vertexAttribPointer(0,3,gl.FLOAT,!1,0,0),drawn}};var STOPS=9,PLAIN="none",LINE_NAMES={coastlines:"Coastlines",graticule:"Graticule"},ColourControls=class{element=dom("di\
+parts.get("position"),drawn=this.emptyArray();if(!cells||!nodes)return drawn;let corners=this.header.geometry.triangles?
+cells.data:cellCorners(cells);gl.bindVertexArray(drawn.array);let points=positions(nodes.data,anchor);return drawn.buffers=
+[this.buffer(gl.ARRAY_BUFFER,points),this.buffer(gl.ELEMENT_ARRAY_BUFFER,corners)],drawn.count=corners.length,gl.enableVertexAttribArray(
+0),gl.vertexAttribPointer(0,3,gl.FLOAT,!1,0,0),drawn}};function cellCorners({data,shape:[rows,columns]}){let corners=[];
+for(let n=0;n<rows*columns;n+=1){if(!data[n])continue;let low=n+Math.floor(n/columns),high=low+columns+1;corners.push(low,
+low+1,high+1,low,high+1,high)}return Uint32Array.from(corners)}var STOPS=9,PLAIN="none",LINE_NAMES={coastlines:"Coastlines",graticule:"Graticule"},ColourControls=class{element=dom("di\
 v",{class:"colours"});viewer;scalars=dom("select",{"aria-label":"Colour by"});swatches=dom("div",{class:"swatches",role:"\
 group"});ends=["Lowest value","Highest value"].map(name=>dom("input",{type:"number",step:"any","aria-label":name}));auto=dom(
 "button",{type:"button",class:"link"},["auto"]);mapRow;rangeRow;lines=dom("div",{class:"colours"});constructor(viewer){this.

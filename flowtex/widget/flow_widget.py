@@ -205,8 +205,10 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         point, field = proposal["value"], self.field
         if point is None or field.triangles is None:
             return point
-        # Those of what is drawn are other triangles than those of the field.
-        at = locate(field, point.get("position"), tolerance=np.inf)
+        try:  # what is drawn may be other triangles than those of the field
+            at = locate(field, point.get("position"), tolerance=np.inf)
+        except ValueError as error:
+            raise traitlets.TraitError(str(error)) from error
         return {**point, "index": None if at is None else at[::-1]}
 
     def set_state(self, sync_data: dict[str, Any]) -> None:

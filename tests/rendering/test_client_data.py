@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from triangle_meshes import sphere, surface_of
 
 import flowtex
 from flowtex import examples
@@ -13,6 +14,7 @@ from flowtex._util.colours import colour_table
 from flowtex.camera import Camera
 from flowtex.options import Options
 from flowtex.rendering.webgl import ClientData
+from flowtex.rendering.webgl.protocol import part_info
 from flowtex.scene import coarsened_field
 from flowtex.settings import TABLE, Settings
 from flowtex.textures import TextureSet
@@ -83,6 +85,37 @@ def test_arrays_are_those_of_the_texture_set(make: Any, noise: str) -> None:
         np.testing.assert_allclose(surface["step"], textures.paper.step, rtol=1e-3)
         nodes = np.stack(np.meshgrid(header["paper"]["alongI"], header["paper"]["alongJ"]), axis=-1)
         np.testing.assert_allclose(nodes, textures.paper.coordinate, atol=1e-6)
+
+
+def test_triangles_are_handed_over() -> None:
+    points, triangles = sphere(2)
+    velocity = np.cross([0, 0, 1], points)
+    velocity[3] = np.nan
+    field = flowtex.FlowField.from_triangles(points, triangles, velocity)
+    view, scene = staged(field)
+    geometry = scene.header(view.scene.settings)["geometry"]
+    assert geometry["triangles"] and not staged(plane())[1].constants()["geometry"]["triangles"]
+    assert "FLOWTEX_TRIANGLES" in scene.constants()["variant"]
+    height, width = view.scene.textures.geometry.size
+    assert geometry["shape"] == [1, len(points)] and geometry["levels"] == 0
+    assert geometry["rows"] == {"before": 0, "size": height}
+    assert geometry["columns"] == {"before": 0, "size": width}
+    surface, step = scene.surface(), scene.step(0)
+    assert surface["triangles"].dtype == np.uint32 and surface["blocks"].dtype == np.uint16
+    drawn = triangles[surface_of(field).cells]
+    assert 5 <= len(triangles) - len(drawn) <= 6
+    np.testing.assert_array_equal(surface["triangles"], drawn)
+    np.testing.assert_array_equal(surface["blocks"], 1)
+    assert surface["mesh"].shape == (1, 1, 5)
+    assert "cells" not in surface
+    for name in ("position", "normal"):
+        assert surface[name].shape == (1, len(points), 3)
+    np.testing.assert_allclose(surface["normal"] / 32767, points[None], atol=0.02)
+    assert step["slices/0"].shape[1:3] == (height, width)
+    assert step["scalars/0"].shape == (1, len(points))
+    assert sum(part.nbytes for part in step.values()) == scene.nbytes_of_step
+    text = json.dumps([part_info(name, part) for name, part in surface.items()])
+    assert '"uint32"' in text
 
 
 def test_the_header_says_what_the_client_needs() -> None:

@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 from flows import gyre, lines, swinging, torus
 from matrix import ASIDE, IMAGE, WHOLE, straight
+from triangle_meshes import random_plane
 
 from flowtex import FlowField
 from flowtex._util.array_types import Indices
@@ -27,12 +28,14 @@ from flowtex.rendering.cpu.shade import mean_colours
 from flowtex.rendering.map_overlay import map_lines
 from flowtex.rendering.mesh_levels import MeshLevels, Region, join, mesh_limits
 from flowtex.rendering.tile_choice import TileView, choose_tiles, cover, finer_part, wanted_tiles
+from flowtex.rendering.triangle_blocks import TriangleBlocks
 from flowtex.rendering.uniforms import ViewState, uniforms
 from flowtex.rendering.webgl import ClientData
 from flowtex.scene import Scene
 from flowtex.settings import Settings
 from flowtex.textures import TextureSet, as_picture
 from flowtex.tiles import TILE_BLOCKS, Pyramid, TileKey
+from flowtex.tiles.triangle_pyramid import TrianglePyramid
 from flowtex.trace import SliceStore
 
 FOLDER = Path(__file__).resolve().parents[2] / "client" / "tests"
@@ -312,11 +315,36 @@ def name_of(key: TileKey | None) -> str:
 
 
 #: Where the eye is, half the height of what is seen, and the sides of it as (axis, sign, limit).
-LOOKS: list[tuple[Any, float, list[tuple[int, int, float]]]] = [
+Look = tuple[Any, float, list[tuple[int, int, float]]]
+LOOKS: list[Look] = [
     (None, 0.6, []),
     (None, 0.05, [(0, 1, 0.4), (0, -1, 0.55), (1, 1, 0.3), (1, -1, 0.4)]),
     (np.array([0.7, -0.2, 0.15]), 0.27, [(1, 1, 0.05)]),
 ]
+
+
+def asked(
+    pyramid: Pyramid, look: Look, rng: np.random.Generator, cell_pixels: float
+) -> tuple[dict[str, Any], dict[TileKey | None, list[TileKey]]]:
+    """Return what a view asks for, and what is shown while some of it is not ready."""
+    eye, half, sides = look
+    planes = np.array([[s * (k == a) for k in range(3)] + [-s * at] for a, s, at in sides])
+    view = TileView(eye, half, 500.0, planes.reshape(-1, 4), cell_pixels)
+    chosen = choose_tiles(pyramid, view)
+    ready = {key for key in chosen if key is None or rng.random() < 0.7}
+    shown = cover(chosen, ready.__contains__)
+    told = {
+        "view": {"eye": plain(eye), "halfHeight": half, "pixels": 500.0}
+        | {"planes": plain(view.planes), "cellPixels": cell_pixels},
+        "chosen": {
+            name_of(key): [c.needed, [name_of(child) for child in c.finer]]
+            for key, c in chosen.items()
+        },
+        "wanted": [name_of(key) for key in wanted_tiles(chosen)],
+        "ready": sorted(map(name_of, ready)),
+        "shown": {name_of(key): list(map(name_of, some)) for key, some in shown.items()},
+    }
+    return told, shown
 
 
 def tiled(seed: int) -> dict[str, Any]:
@@ -328,12 +356,8 @@ def tiled(seed: int) -> dict[str, Any]:
     pyramid = Pyramid(field)
     data = ClientData(Scene(field).textures, pyramid=pyramid)
     views = []
-    for eye, half, sides in LOOKS:
-        planes = np.array([[s * (k == a) for k in range(3)] + [-s * at] for a, s, at in sides])
-        view = TileView(eye, half, 500.0, planes.reshape(-1, 4), 2.0)
-        chosen = choose_tiles(pyramid, view)
-        ready = {key for key in chosen if key is None or rng.random() < 0.7}
-        shown = cover(chosen, ready.__contains__)
+    for look in LOOKS:
+        told, shown = asked(pyramid, look, rng, 2.0)
         regions = []
         for key, finer in shown.items():
             level = pyramid.depth if key is None else key.level
@@ -347,15 +371,7 @@ def tiled(seed: int) -> dict[str, Any]:
         joins = join(regions, pyramid.blocks, field.periodic)
         views.append(
             {
-                "view": {"eye": plain(eye), "halfHeight": half, "pixels": 500.0}
-                | {"planes": plain(view.planes), "cellPixels": 2.0},
-                "chosen": {
-                    name_of(key): [c.needed, [name_of(child) for child in c.finer]]
-                    for key, c in chosen.items()
-                },
-                "wanted": [name_of(key) for key in wanted_tiles(chosen)],
-                "ready": sorted(map(name_of, ready)),
-                "shown": {name_of(key): list(map(name_of, some)) for key, some in shown.items()},
+                **told,
                 "regions": [
                     {"step": r.step, "row": int(r.row), "column": int(r.column)}
                     | {"shape": list(r.levels.shape), "levels": levels}
@@ -372,6 +388,38 @@ def tiled(seed: int) -> dict[str, Any]:
         "limits": mesh_limits(),
         "views": views,
     }
+
+
+def tiled_triangles(seed: int) -> dict[str, Any]:
+    """Tiles of triangles that some views ask for, and the triangles of their blocks."""
+    rng = np.random.default_rng(seed)
+    points, triangles = random_plane(rng, 700, grading=4)
+    velocity = np.ones_like(points) * [1, 0.5, 0]
+    field = FlowField.from_triangles(points, triangles, velocity)
+    pyramid = TrianglePyramid(field)
+    geometry = pyramid.root_geometry
+    data = ClientData(TextureSet(geometry, SliceStore(pyramid.root)), pyramid=pyramid)
+    surface, blocks = data.surface(), TriangleBlocks(geometry)
+    hidden = [[-1, 0, 0, 0], [0, 0, -1, -1], [-1] * 4, [0] * 4]
+    return {
+        "pyramid": data.constants()["pyramid"],
+        "places": plain(np.nan_to_num(surface["places"].astype(float), neginf=-1e30).ravel()),
+        "views": [asked(pyramid, look, rng, 16.0)[0] for look in LOOKS],
+        "mesh": {"shape": surface["mesh"].shape, "blocks": plain(surface["blocks"])},
+        "drawn": [
+            {"levels": levels, "triangles": len(drawn), "checksum": checksum(drawn)}
+            for levels in hidden
+            for drawn in [blocks.triangles(np.reshape(levels, (2, 2)))]
+        ],
+    }
+
+
+def test_tiles_of_triangles_for_the_client(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("flowtex.tiles.triangle_pyramid.ROOT_NODES", 150)
+    expected = tiled_triangles(1)
+    assert expected["pyramid"]["depth"] > 1
+    assert any(len(view["shown"]) > 1 for view in expected["views"])
+    check("triangles.json", expected)
 
 
 def test_tiles_for_the_client(monkeypatch: pytest.MonkeyPatch) -> None:

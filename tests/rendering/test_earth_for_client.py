@@ -163,3 +163,27 @@ def test_dates_of_a_calendar_of_its_own_are_told_one_by_one() -> None:
         "step": 21600.0,
     }
     assert dates_of(earth("globe"), np.zeros(1))["start"] is None
+
+
+@pytest.mark.parametrize("name", ["globe", "platecarree"])
+def test_triangles_have_land_and_lines(name: str) -> None:
+    grid = earth(name, hole=True)
+    # Each cell of the grid, cut in two.
+    at = np.arange(grid.valid.size).reshape(grid.shape)
+    a, b, c, d = (n.ravel() for n in (at[:-1, :-1], at[:-1, 1:], at[1:, 1:], at[1:, :-1]))
+    triangles = np.concatenate([np.stack([a, b, c], -1), np.stack([a, c, d], -1)])
+    velocity = np.where(grid.valid[..., None], grid.velocity[0], np.nan).reshape(-1, 3)
+    field = FlowField.from_triangles(
+        grid.points.reshape(-1, 3), triangles, velocity, projection=grid.projection
+    )
+    ours, theirs = (view_of(each)[1] for each in (field, grid))
+    assert ours.constants()["earth"]["below"] == theirs.constants()["earth"]["below"]
+    parts, other = ours.surface(), theirs.surface()
+    # Where the surface ends lines end within half a cell.
+    assert len(parts["graticule"]) == pytest.approx(len(other["graticule"]), rel=0.05)
+    assert len(parts["coastlines"]) == pytest.approx(len(other["coastlines"]), rel=0.05)
+    assert ("land" in parts) == ("land" in other) == (name != "globe")
+    if "land" in parts:
+        assert parts["land"].dtype == np.uint32
+        assert len(parts["land"]) == pytest.approx(2 * int(other["land"].sum()), abs=2)
+        assert not field.valid[0, parts["land"]].all(axis=1).any()

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 from PIL import Image
+from triangle_meshes import sphere, surface_of
 
 import flowtex
 from flowtex import examples
@@ -196,6 +197,34 @@ def test_a_large_field_comes_coarse_first(make: Make, monkeypatch: pytest.Monkey
     assert [m["generation"] for m in heard.messages] == sorted(
         m["generation"] for m in heard.messages
     )
+
+
+def test_triangles_come_at_once_and_have_tiles(make: Make, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(feed, "LARGE_NODES", 100)
+    monkeypatch.setattr("flowtex.tiles.triangle_pyramid.ROOT_NODES", 500)
+    points, triangles = sphere(4)
+    field = flowtex.FlowField.from_triangles(points, triangles, np.cross([0, 0, 1], points))
+    widget = make(field)
+    header = widget._header
+    assert header["geometry"]["triangles"]
+    assert header["pyramid"]["depth"] > 0
+    heard = Heard(widget, monkeypatch)
+    heard.say(kind="ready")
+    heard.wait(lambda: {"triangles", "blocks", "slices/0", "places"} <= set(heard.arrays))
+    assert heard.arrays["triangles"].max() < header["geometry"]["shape"][1] < len(points)
+    assert widget._views.feeds[0].settled.wait(20)
+    assert widget._header is header
+    key = [header["pyramid"]["depth"] - 1, 0, 0]
+    heard.say(kind="tiles", keys=[key], steps=[0], seen=0)
+    name = f"tile/{key[0]}/0/0"
+    heard.wait(lambda: {f"{name}/triangles", f"{name}/slices/0"} <= set(heard.arrays))
+    # The triangle that was clicked is one of a coarser level.
+    widget.set_state({"point": {"position": [0, -1.01, 0], "index": [0.5, 3.2], "values": {}}})
+    at = surface_of(field).at(np.array(widget.point["index"]))
+    np.testing.assert_allclose(at, [0, -1, 0], atol=0.01)
+    told = widget.point
+    widget.set_state({"point": {"position": "here"}})
+    assert widget.point == told
 
 
 def test_a_field_that_takes_long_has_a_form_between(

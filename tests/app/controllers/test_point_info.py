@@ -10,11 +10,13 @@ from typing import Any
 import numpy as np
 import pytest
 from earth_fields import winds
+from triangle_meshes import sphere
 
 from flowtex import FlowField
 from flowtex._util.array_types import Floats
 from flowtex.app.controllers.point_info import (
     PathCard,
+    PointInfo,
     PointText,
     clip_line,
     number_text,
@@ -46,6 +48,21 @@ def ball() -> FlowField:
     lon, lat = np.meshgrid(np.linspace(0, 2 * np.pi, 49), np.linspace(0, np.pi, 25))
     points = np.stack([np.sin(lat) * np.cos(lon), np.sin(lat) * np.sin(lon), np.cos(lat)], axis=-1)
     return FlowField.from_arrays(points, np.stack([-points[..., 1], points[..., 0], 0 * lon], -1))
+
+
+def test_a_point_on_triangles_is_told_by_its_place() -> None:
+    points, triangles = sphere(2)
+    field = FlowField.from_triangles(points, triangles, np.cross([0, 0, 1], points))
+    shown: list[Any] = []
+    viewport = SimpleNamespace(field=field)
+    info: Any = SimpleNamespace(viewport=viewport, show_path=shown.append)
+    place = np.array([0.6, 0.64, 0.48])
+    for junk in ([0.5, 3.0], [0.0, 1.0], "abc", [1, 2, "3"], [1, 2, np.nan], [1, 2, 3, 4], None):
+        PointInfo.take_point(info, junk)
+    assert shown == []
+    PointInfo.take_point(info, (1.2 * place).tolist())
+    ((j, i),) = shown
+    np.testing.assert_allclose(field.surface.at(np.array([i, j])), place, atol=0.05)
 
 
 class Seen(Viewport):
