@@ -1,7 +1,8 @@
 """Loops that numba compiles: the integrator, look-ups in slices, positions on a surface.
 
 One particle after the other by the same scheme and rules as in NumPy, so that both give the same
-up to rounding. Paths over poles and those in fields without a sign are left to the other. Importing
+up to rounding. Paths over poles, those in fields without a sign, and on triangles those in flows
+that vary are left to the other. Importing
 this module compiles it, or loads it from numba's cache; :mod:`flowtex.trace.compiled` does.
 """
 
@@ -14,7 +15,7 @@ from numba import boolean, float32, float64, int64, njit, types, uint64, void
 
 from flowtex._util.array_types import Bytes, Floats, Floats32, Indices
 
-__all__ = ["blend", "cubic", "follow"]
+__all__ = ["blend", "cubic", "follow", "follow_triangles"]
 
 #: Rows and columns, and which of the (j, i) axes close.
 _SHAPE = types.Tuple((int64, int64, boolean, boolean))
@@ -269,3 +270,273 @@ def cubic(nodes: Floats, width: int, corner: Indices, s: Floats, t: Floats, resu
                 row = along[0] * nodes[c, at] + along[1] * nodes[c, at + uint64(1)]
                 row += along[2] * nodes[c, at + uint64(2)] + along[3] * nodes[c, at + uint64(3)]
                 result[c, n] += across[b] * row
+
+
+_THREE = types.UniTuple(float64, 3)
+_FOUR = types.UniTuple(float64, 4)
+#: The table of a steady motion (M, 14), what is across edges (3 M,), and heights (M, 3).
+_MESH = types.Tuple((float64[:, ::1], int64[::1], float64[:, ::1]))
+
+
+@njit(_FOUR(float64[:, ::1], int64, float64, float64, float64), **_INNER)
+def _law(
+    table: Floats, at: int, one: float, two: float, way: float
+) -> tuple[float, float, float, float]:
+    """First and second derivatives of the second and third share in a triangle."""
+    t = table[at]
+    d1 = way * (t[0] + t[2] * one + t[4] * two)
+    d2 = way * (t[1] + t[3] * one + t[5] * two)
+    return d1, d2, way * (t[2] * d1 + t[4] * d2), way * (t[3] * d1 + t[5] * d2)
+
+
+@njit(float64(float64, float64, int64), **_INNER)
+def _of(one: float, two: float, k: int) -> float:
+    """Change of the share of corner k."""
+    return one if k == 1 else (two if k == 2 else -(one + two))
+
+
+@njit(float64(float64[:, ::1], int64, float64, float64, float64, float64), **_INNER)
+def _dot(table: Floats, at: int, a: float, b: float, c: float, d: float) -> float:
+    """Product of two changes of shares."""
+    t = table[at]
+    return float(t[6] * (a * c) + t[7] * (a * d + b * c) + t[8] * (b * d))
+
+
+@njit(float64(float64, float64, float64), **_INNER)
+def _root(at: float, rate: float, bent: float) -> float:
+    """When at + rate t + bent t^2 gets below zero, as :mod:`flowtex.trace.triangles` has it."""
+    square = rate * rate - 4 * max(at, 0.0) * bent
+    if rate < 0:
+        return float(2 * max(at, 0.0) / (np.sqrt(square) - rate)) if square >= 0 else np.inf
+    return float((rate + np.sqrt(square)) / (-2 * bent)) if bent < 0 else np.inf
+
+
+@njit(_PAIR(float64[:, ::1], int64, int64, float64, float64), **_INNER)
+def _on_edge(table: Floats, at: int, k: int, a: float, b: float) -> tuple[float, float]:
+    """Return what of a change of shares is along the edge opposite to corner k."""
+    e, f, g = table[at, 6], table[at, 7], table[at, 8]
+    if k == 1:
+        return 0.0, b + f * (a / g)
+    if k == 2:
+        return a + f * (b / e), 0.0
+    result = a + (f - g) * (a + b) / (e + g - 2 * f)
+    return result, -result
+
+
+@njit(types.Tuple((int64, int64, float64, float64))(int64, int64, float64, float64), **_INNER)
+def _beyond(code: int, edge: int, one: float, two: float) -> tuple[int, int, float, float]:
+    """Triangle across an edge, the edge there, and second and third share."""
+    zero = 1 - one - two
+    a = max(one if edge == 0 else (two if edge == 1 else zero), 0.0)
+    b = max(two if edge == 0 else (zero if edge == 1 else one), 0.0)
+    share = a / (a + b)
+    way = code & 7
+    m = way // 2
+    n = (m + 1 + way % 2) % 3
+    first = share if m == 1 else (1 - share if n == 1 else 0.0)
+    second = share if m == 2 else (1 - share if n == 2 else 0.0)
+    return code >> 3, 3 - m - n, first, second
+
+
+@njit(_THREE(float64, float64, float64, float64), **_INNER)
+def _speeds(square: float, slope: float, bend: float, h: float) -> tuple[float, float, float]:
+    """Speeds at the beginning, in the middle and at the end of a step."""
+    middle = square + slope * h + 0.25 * bend * h * h
+    end = square + 2 * slope * h + bend * h * h
+    return np.sqrt(square), np.sqrt(max(middle, 0.0)), np.sqrt(max(end, 0.0))
+
+
+@njit(float64(float64, float64, float64, float64, int64), **_INNER)
+def _fraction(mean: float, begin: float, middle: float, end: float, rounds: int) -> float:
+    """Fraction of a step after which the length is ``mean`` times that of its time."""
+    one, two = 4 * middle - 3 * begin - end, 2 * (begin + end) - 4 * middle
+    x = 6 * mean / (begin + 4 * middle + end)
+    for _ in range(rounds):
+        length = x * (begin + x * (one / 2 + x * (two / 3)))
+        x -= (length - mean) / (begin + x * (one + x * two))
+        # Written so that NaN becomes zero.
+        x = min(x if x > 0.0 else 0.0, 1.0)
+    return x
+
+
+@njit(
+    types.Tuple((int64, int64, float64, float64, _FOUR))(
+        _MESH, _PAIR, float64, int64, int64, float64, float64, _FOUR
+    ),
+    **_INNER,
+)
+def _kept(
+    mesh: Any, few: Any, way: float, at: int, edge: int, one: float, two: float, law: Any
+) -> tuple[int, int, float, float, Any]:
+    """Lead on a particle that would go back over the edge by which it came."""
+    table, across, heights = mesh
+    rounding, border = few
+    d1, d2, a1, a2 = law
+    rate, small = _of(d1, d2, edge), rounding * (abs(d1) + abs(d2))
+    slide, snap = False, True
+    if not (rate >= -small and _of(a1, a2, edge) >= 0):
+        code = across[3 * at + edge]
+        if code < 0:
+            speed = np.sqrt(_dot(table, at, d1, d2, d1, d2))
+            slide = snap = -rate * heights[at, edge] <= border * speed
+        else:
+            there, side, first, second = _beyond(code, edge, one, two)
+            other = _law(table, there, first, second, way)
+            rate, small = _of(other[0], other[1], side), rounding * (abs(other[0]) + abs(other[1]))
+            if rate > small or (rate >= -small and _of(other[2], other[3], side) >= 0):
+                at, edge, one, two = there, side, first, second
+                d1, d2, a1, a2 = other
+                snap = rate <= small
+            else:
+                slide = True
+    if snap or slide:
+        d1, d2 = _on_edge(table, at, edge, d1, d2)
+    if slide:
+        a1, a2 = _on_edge(table, at, edge, a1, a2)
+    return at, edge, one, two, (d1, d2, a1, a2)
+
+
+@njit(
+    void(
+        _MESH,
+        float64[:, ::1],
+        int64[:, ::1],
+        types.UniTuple(float64, 8),
+        types.UniTuple(int64, 3),
+        boolean,
+        float64,
+        int64[::1],
+        float64[::1],
+        float64[::1],
+        float32[:, :, ::1],
+        float32[::1],
+    ),
+    **_OPTIONS,
+)
+def follow_triangles(
+    mesh: Any,
+    points: Floats,
+    corners: Indices,
+    rules: tuple[float, ...],
+    most: tuple[int, int, int],
+    by_length: bool,  # noqa: FBT001
+    way: float,
+    starts: Indices,
+    lags: Floats,
+    units: Floats,
+    moved: Floats32,
+    reach: Floats32,
+) -> None:
+    """Follow particles from corners (n,), numbers of triangles times three plus that of the corner.
+
+    Displacements are written to ``moved`` (M, n, 3), and reaches, in units, to (n,). ``rules`` are
+    a tolerance and those of :data:`flowtex.trace.triangles.RULES`, and ``most`` counts steps, those
+    without a move, and rounds of Newton's method.
+    """
+    table, across, heights = mesh
+    tolerance, rest_share, on_edge, rounding, border, turn, missed, farthest = rules
+    most_steps, most_standing, newton = most
+    allowed = 6 * tolerance
+    count = len(lags)
+    for n in range(len(starts)):
+        at, corner = starts[n] // 3, starts[n] % 3
+        node, unit = corners[at, corner], units[n]
+        one, two = 1.0 * (corner == 1), 1.0 * (corner == 2)
+        edge, lag, m, standing, end = -1, 0.0, 0, 0, np.inf
+        u = v = 0.0
+        for tries in range(most_steps + 1):
+            law = _law(table, at, one, two, way)
+            if tries == most_steps:
+                u, v, end = law[0], law[1], lag
+                break
+            if edge >= 0 and _of(law[0], law[1], edge) <= rounding * (abs(law[0]) + abs(law[1])):
+                share = 1 - one - two if edge == 0 else (one if edge == 1 else two)
+                if share <= on_edge:
+                    at, edge, one, two, law = _kept(
+                        mesh, (rounding, border), way, at, edge, one, two, law
+                    )
+            d1, d2, a1, a2 = law
+            size, pace = table[at, 9], table[at, 10]
+            square = _dot(table, at, d1, d2, d1, d2)
+            if by_length:
+                rest = table[at, 11] + table[at, 12] * one + table[at, 13] * two
+                rest *= rest_share
+            else:
+                rest = rest_share * pace / (lags[-1] * unit)
+            if square <= rest * rest:
+                end = lag
+                break
+            side, h = 0, _root(1 - one - two, -(d1 + d2), -0.5 * (a1 + a2))
+            t = _root(one, d1, 0.5 * a1)
+            if t < h:
+                side, h = 1, t
+            t = _root(two, d2, 0.5 * a2)
+            if t < h:
+                side, h = 2, t
+            j1 = way * (table[at, 2] * a1 + table[at, 4] * a2)
+            j2 = way * (table[at, 3] * a1 + table[at, 5] * a2)
+            error = np.sqrt(_dot(table, at, j1, j2, j1, j2))
+            bend = _dot(table, at, a1, a2, a1, a2)
+            t = np.inf
+            if error * h * h * h > allowed:
+                t = np.cbrt(allowed / error)
+            if bend * h * h > square:
+                t = min(t, np.sqrt(square / bend))
+            if np.sqrt(bend) * h * h > turn:
+                t = min(t, np.sqrt(turn / np.sqrt(bend)))
+            if t < h:
+                side, h = -1, t
+            slope = _dot(table, at, d1, d2, a1, a2)
+            speeds = _speeds(square, slope, bend, h)
+            if by_length:
+                after = lag + size * (h / 6) * (speeds[0] + 4 * speeds[1] + speeds[2])
+            else:
+                after = lag + pace * h
+            x, y = one + h * (d1 + 0.5 * h * a1), two + h * (d2 + 0.5 * h * a2)
+            if not np.isfinite(x + y + after):
+                u, v, end = d1, d2, lag
+                break
+            while m < count and lags[m] * unit <= after * (1 + missed):
+                if by_length:
+                    mean = (lags[m] * unit - lag) / size / h
+                    t = h * _fraction(mean, speeds[0], speeds[1], speeds[2], newton)
+                else:
+                    t = min((lags[m] * unit - lag) / pace, h)
+                b, c = one + t * (d1 + 0.5 * t * a1), two + t * (d2 + 0.5 * t * a2)
+                for k in range(3):
+                    p = points[corners[at, 0], k]
+                    p += b * (points[corners[at, 1], k] - p) + c * (points[corners[at, 2], k] - p)
+                    moved[m, n, k] = _limited(p - points[node, k], farthest)
+                m += 1
+            if m == count:
+                break
+            standing = standing + 1 if side >= 0 and h * h * square <= on_edge * on_edge else 0
+            one, two, lag = x, y, after
+            u, v = d1 + h * a1, d2 + h * a2
+            if standing > most_standing:
+                end = lag
+                break
+            if side >= 0:
+                code = across[3 * at + side]
+                if code >= 0:
+                    at, edge, one, two = _beyond(code, side, one, two)
+                else:
+                    speed = np.sqrt(_dot(table, at, u, v, u, v))
+                    if -_of(u, v, side) * heights[at, side] > border * speed:
+                        end = lag
+                        break
+                    edge = side
+            u = v = 0.0
+        if m < count:
+            speed = np.sqrt(_dot(table, at, u, v, u, v))
+            scale = table[at, 9] * speed if by_length else table[at, 10]
+            for k in range(3):
+                p = points[corners[at, 0], k]
+                first, second = points[corners[at, 1], k] - p, points[corners[at, 2], k] - p
+                ahead = (u * first + v * second) / scale
+                ahead = ahead if np.isfinite(ahead) else 0.0
+                here = p + one * first + two * second - points[node, k]
+                for later in range(m, count):
+                    further = lags[later] * unit - lag
+                    moved[later, n, k] = _limited(here + further * ahead, farthest)
+        reach[n] = end / unit

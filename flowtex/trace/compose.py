@@ -64,9 +64,10 @@ def landings(field: FlowField, lags: Floats, unit: Floats) -> Indices | None:
 
     ``None`` when paths cannot be composed: the steps are not equal, or the lags are not multiples
     of the first one that is a whole number of them; or the field has no sign, so that slices of
-    nodes that point either way cannot be interpolated.
+    nodes that point either way cannot be interpolated; or it is on triangles, where displacements
+    between nodes do not lie on the surface.
     """
-    if field.sign_free:
+    if field.sign_free or field.triangles is not None:
         return None
     if field.steady:
         return np.zeros(len(lags), dtype=np.intp)

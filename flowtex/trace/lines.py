@@ -38,7 +38,11 @@ def changing_share(field: FlowField) -> float:
     """
     if field.steady:
         return 0.0
-    j, i, t = (np.arange(0, n, -(-n // MOST_JUDGED)) for n in (*field.shape, len(field.times) - 1))
+    rows, columns = field.shape
+    # A row of nodes is all there is of triangles.
+    most = (MOST_JUDGED, MOST_JUDGED if rows > 1 else MOST_JUDGED**2, MOST_JUDGED)
+    counts = zip((rows, columns, len(field.times) - 1), most, strict=True)
+    j, i, t = (np.arange(0, n, -(-n // m)) for n, m in counts)
     if isinstance(field.velocity, LazySteps):
         t = t[:1]
     valid = field.valid[np.ix_(j, i)]

@@ -44,8 +44,8 @@ class TraceSlices:
     """Displacements in index space along the paths through the nodes.
 
     On a surface of triangles, whose nodes are one row, displacements and ``nodes`` are vectors in
-    space, (..., 1, N, 3): a displacement is the chord from the node to the particle. Rates are along
-    the two tangents of the surface there, which are orthonormal.
+    space, (..., 1, N, 3): a displacement is the chord from the node to the particle. Rates are
+    along the two tangents of the surface there, which are orthonormal.
 
     Attributes
     ----------
@@ -90,7 +90,7 @@ class TraceSlices:
     @property
     def in_space(self) -> bool:
         """Whether displacements are vectors in space, as on a surface of triangles."""
-        return self.displacement.shape[-1] == 3
+        return bool(self.displacement.shape[-1] == 3)
 
     @property
     def nbytes(self) -> int:

@@ -83,10 +83,11 @@ def trace(
         Whether long lags are put together from short ones (see :mod:`flowtex.trace.compose`)
         instead of being integrated. By default they are when the lags are chosen automatically.
         In a field that varies this takes equal time steps, of which all are traced; otherwise
-        all lags are integrated, as they are in a field without a sign.
+        all lags are integrated, as they are in a field without a sign and on triangles.
     nodes
         Nodes whose paths are wanted, (J, I), all by default. Where paths are integrated only these
-        are followed, and the others are treated as blanked ones; to compose takes all.
+        are followed, and the others are treated as blanked ones; to compose takes all. On
+        triangles the others have displacements and reach zero, as blanked ones have.
     progress
         Whether to show a progress bar when the work takes longer than a second.
 
@@ -180,7 +181,8 @@ def paths(
     field
         The flow.
     start
-        Starting positions, (N, 2) as (i, j).
+        Starting positions, (N, 2) as (i, j); on triangles those of
+        :class:`~flowtex.field.triangles.surface.TriangleSurface`.
     lags
         Lags of the positions, (M,), in units of length or time.
     step
@@ -192,7 +194,7 @@ def paths(
     -------
     Paths
         Positions (M, N, 2) in index space, and the lag at which each path ended, (N,), infinite
-        where it goes on beyond the last lag.
+        where it goes on beyond the last lag. On triangles a path that has ended stays there.
     """
     parameter = _parameter(field, parameter)
     begin = np.array(start, dtype=float).reshape(-1, 2)

@@ -9,7 +9,9 @@ velocity is linear, so the shares change by a linear law too, whatever the shape
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Iterator
 from dataclasses import dataclass, fields
+from typing import Any, cast
 
 import numpy as np
 
@@ -155,9 +157,9 @@ def _across(surface: TriangleSurface) -> Indices:
     return result.ravel()
 
 
-#: By the last three bits of :attr:`TriangleMesh.across`: the corner of the other triangle that is not
-#: on the edge, and which of its second and third shares, (2, 6), are of the next corner here, and
-#: of the one after it.
+#: By the last three bits of :attr:`TriangleMesh.across`: the corner of the other triangle that is
+#: not on the edge, and which of its second and third shares, (2, 6), are of the next corner here,
+#: and of the one after it.
 BEHIND = np.array([3 - m - (m + step) % 3 for m in range(3) for step in (1, 2)], dtype=np.intp)
 NEXT = np.array([[m == k for m in range(3) for _ in (1, 2)] for k in (1, 2)], dtype=float)
 AFTER = np.array([[(m + s) % 3 == k for m in range(3) for s in (1, 2)] for k in (1, 2)], float)
@@ -195,8 +197,9 @@ class Derivatives:
 
     def pick(self, mask: Bools) -> Derivatives:
         """Return those of some particles."""
-        parts = (getattr(self, part.name) for part in fields(self))
-        return Derivatives(*(None if part is None else part[..., mask] for part in parts))
+        parts: Iterator[Any] = (getattr(self, part.name) for part in fields(self))
+        some: Iterator[Any] = (None if part is None else part[..., mask] for part in parts)
+        return Derivatives(*some)
 
     def put(self, at: Indices, some: Derivatives) -> None:
         """Write those of some particles (n,) in place."""
@@ -227,7 +230,7 @@ class Motion(ABC):
 
     @abstractmethod
     def at(self, triangle: Indices, shares: Floats, lag: Floats, last: Floats) -> Derivatives:
-        """Derivatives at shares (2, N) of the second and third corner of triangles (N,).
+        """Return derivatives at shares (2, N) of the second and third corner of triangles (N,).
 
         The particles have come ``lag`` (N,), and are followed until ``last`` (N,).
         """
@@ -237,8 +240,7 @@ class SteadyMotion(Motion):
     """A field that does not change, by the length of path or by time."""
 
     def __init__(self, field: FlowField, direction: float, *, by_length: bool) -> None:
-        assert isinstance(field.surface, TriangleSurface)
-        super().__init__(TriangleMesh.of(field.surface))
+        super().__init__(TriangleMesh.of(cast("TriangleSurface", field.surface)))
         self.by_length, self.direction = by_length, direction
         flow = field.index_velocity
         self.floor = floor = speed_floor(flow.speed) if by_length else 0.0
@@ -246,7 +248,7 @@ class SteadyMotion(Motion):
         self.table = _table(self.mesh, flow.components[0, 0], speed)
 
     def at(self, triangle: Indices, shares: Floats, lag: Floats, last: Floats) -> Derivatives:
-        """Derivatives, as :meth:`Motion.at` says."""
+        """Return derivatives, as :meth:`Motion.at` says."""
         part = np.ascontiguousarray(self.table.take(triangle, axis=0, mode="clip").T)
         if self.direction < 0:
             np.negative(part[:6], out=part[:6])
@@ -308,7 +310,7 @@ class ChangingMotion(Motion):
         self.steps = first if way > 0 else first[::-1].copy()
 
     def at(self, triangle: Indices, shares: Floats, lag: Floats, last: Floats) -> Derivatives:
-        """Derivatives, as :meth:`Motion.at` says."""
+        """Return derivatives, as :meth:`Motion.at` says."""
         velocity, change, until = self._corners(self.mesh.corners.take(triangle, axis=0), lag)
         rates = np.ascontiguousarray(self.mesh.rates.take(triangle, axis=0).T)
         law, later = (_linear(rates.reshape(3, 2, 2, -1), part) for part in (velocity, change))

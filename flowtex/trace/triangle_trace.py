@@ -1,9 +1,9 @@
-"""Trace slices of a field on triangles: all paths are integrated, and displacements are in space."""
+"""Trace slices on triangles: all paths are integrated, and displacements are in space."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from flowtex.trace.triangle_motion import (
     TriangleMesh,
     speed_floor,
 )
-from flowtex.trace.triangles import begin, integrate
+from flowtex.trace.triangles import begin, follow, integrate
 
 __all__ = ["triangle_paths", "triangle_slices"]
 
@@ -59,15 +59,21 @@ def triangle_slices(
         side, step, block = job
         motion, nodes = motions[side][step], at[block]
         starts = begin(motion, nodes)
+        units = unit[0, nodes]
+        done = follow(motion, points, starts, lags, units, tolerance=tolerance)
+        if done is not None:
+            displacement[side, step, :, 0, nodes] = np.swapaxes(done[0], 0, 1)
+            reach[side, step, 0, nodes] = done[1]
+            return
         triangle, corner = np.divmod(starts, 3)
         shares = np.stack([corner == 1, corner == 2]).astype(float)
-        due = lags[:, None] * unit[0, nodes]
+        due = lags[:, None] * units
         paths = integrate(motion, points, triangle, shares, due, tolerance=tolerance)
         here = points[nodes]
         for m in range(len(lags)):
             moved = paths.positions(mesh, points, m) - here
             displacement[side, step, m, 0, nodes] = np.clip(moved, -MOST_CELLS, MOST_CELLS)
-        reach[side, step, 0, nodes] = paths.reach / unit[0, nodes]
+        reach[side, step, 0, nodes] = paths.reach / units
 
     blocks = [slice(first, first + BLOCK) for first in range(0, len(at), BLOCK)]
     jobs = [(a, b, c) for a in range(len(sides)) for b in range(len(steps)) for c in blocks]
@@ -98,7 +104,7 @@ def triangle_paths(
     tolerance: float,
 ) -> Paths:
     """Do what :func:`flowtex.trace.paths` does; a path that has ended stays where it did."""
-    surface, mesh = field.surface, _mesh(field)
+    surface, mesh = _surface(field), _mesh(field)
     motion = _motions(field, [step], parameter, direction)[0]
     triangle = np.clip(np.floor(start[:, 1]).astype(np.intp), 0, len(mesh.corners) - 1)
     second = np.clip(start[:, 1] - triangle, 0.0, 1.0)
@@ -118,8 +124,11 @@ def triangle_paths(
 
 
 def _mesh(field: FlowField) -> TriangleMesh:
-    assert isinstance(field.surface, TriangleSurface)
-    return TriangleMesh.of(field.surface)
+    return TriangleMesh.of(_surface(field))
+
+
+def _surface(field: FlowField) -> TriangleSurface:
+    return cast("TriangleSurface", field.surface)
 
 
 def _motions(

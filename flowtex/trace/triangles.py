@@ -19,19 +19,22 @@ from typing import Self
 
 import numpy as np
 
-from flowtex._util.array_types import Bools, Floats, Indices
-from flowtex.trace.integrate import LEAST_STEPS, MOST_STEPS
+from flowtex._util import compiled
+from flowtex._util.array_types import Bools, Floats, Floats32, Indices
+from flowtex.trace.integrate import LEAST_STEPS, MOST_CELLS, MOST_STEPS
+from flowtex.trace.sampler import RESTING_CELLS, STILL_CELLS
 from flowtex.trace.triangle_motion import (
     AFTER,
     BEHIND,
     NEXT,
     Derivatives,
     Motion,
+    SteadyMotion,
     TriangleMesh,
     dot,
 )
 
-__all__ = ["TrianglePaths", "begin", "integrate"]
+__all__ = ["TrianglePaths", "begin", "follow", "integrate"]
 
 #: Rounds of steps after which paths are ended, for each of the rows that nodes would make.
 STEPS_PER_ROW = 100
@@ -45,6 +48,10 @@ EDGE_ROUNDING = 1e-9
 LAG_ROUNDING = 1e-12
 #: Velocity out of a border, as a share of all, that is none.
 BORDER_ROUNDING = 1e-6
+#: Twice what acceleration may move a particle in one step, in sizes of its triangle.
+MOST_TURN = 0.2
+#: Those of these that :mod:`flowtex._util.kernels` is given as numbers.
+RULES = (SHARE_ROUNDING, EDGE_ROUNDING, BORDER_ROUNDING, MOST_TURN, LAG_ROUNDING, MOST_CELLS)
 #: Rounds of Newton's method for the place in a step where a path has some length.
 NEWTON_ROUNDS = 3
 
@@ -100,13 +107,53 @@ def integrate(
     run = _Run(motion, points, triangle, shares, lags, tolerance)
     # What is too large or too small to be told ends a path.
     with np.errstate(all="ignore"):
-        rows = int(np.sqrt(len(points)))
-        for _ in range(int(np.clip(STEPS_PER_ROW * rows, LEAST_STEPS, MOST_STEPS))):
+        for _ in range(_most_steps(points)):
             if not len(run.state.which):
                 break
             run.advance()
         run.end_all()
     return TrianglePaths(run.triangle, run.shares, run.further, run.ahead, run.reach)
+
+
+def follow(
+    motion: Motion,
+    points: Floats,
+    starts: Indices,
+    lags: Floats,
+    unit: Floats,
+    *,
+    tolerance: float,
+) -> tuple[Floats32, Floats32] | None:
+    """Do the same from corners that :func:`begin` found, compiled, where that is possible.
+
+    Lags (M,) are in multiples of ``unit`` (N,). Returns displacements (M, N, 3) and reaches (N,).
+    """
+    kernels = compiled.kernels()
+    if kernels is None or not isinstance(motion, SteadyMotion):
+        return None
+    mesh = motion.mesh
+    moved = np.zeros((len(lags), len(starts), 3), np.float32)
+    reach = np.zeros(len(starts), np.float32)
+    kernels.follow_triangles(
+        (motion.table, mesh.across, mesh.heights),
+        points,
+        mesh.corners,
+        (tolerance, RESTING_CELLS if motion.by_length else STILL_CELLS, *RULES),
+        (_most_steps(points), MOST_STANDING, NEWTON_ROUNDS),
+        motion.by_length,
+        motion.direction,
+        starts,
+        np.array(lags),
+        unit,
+        moved,
+        reach,
+    )
+    return moved, reach
+
+
+def _most_steps(points: Floats) -> int:
+    """Return the number of rounds of steps after which paths are ended."""
+    return int(np.clip(STEPS_PER_ROW * int(np.sqrt(len(points))), LEAST_STEPS, MOST_STEPS))
 
 
 def begin(motion: Motion, nodes: Indices) -> Indices:
@@ -135,7 +182,7 @@ def begin(motion: Motion, nodes: Indices) -> Indices:
 
 
 def _three(two: Floats) -> Floats:
-    """Changes of all three shares, (3, N), by those of the second and third."""
+    """Return changes of all three shares, (3, N), by those of the second and third."""
     return np.stack([-(two[0] + two[1]), two[0], two[1]])
 
 
@@ -221,7 +268,8 @@ class _Run:
         state.standing = np.where(standing, state.standing + 1, 0)
         ended |= state.standing > MOST_STANDING
         state.lag, state.shares = lag, here
-        ended[self._cross(now, h, np.flatnonzero(edge >= 0), edge)] = True
+        crossing = np.flatnonzero((edge >= 0) & ~ended)
+        ended[self._cross(now, h, crossing, edge)] = True
         if ended.any():
             now.first += h * now.second
             self._end(np.flatnonzero(ended), now)
@@ -244,12 +292,17 @@ class _Run:
         Steps that end before the edge lose it.
         """
         error = dot(now.metric, now.third, now.third)
-        bend = dot(now.metric, now.bend, now.bend)
-        far = np.flatnonzero((error * (h * h) ** 3 > self.error) | (bend * (h * h) > square))
+        bend = turn = dot(now.metric, now.bend, now.bend)
+        if now.bend is not now.second:
+            turn = dot(now.metric, now.second, now.second)
+        # Third derivatives begin with nothing where a flow that varies sets in.
+        over = (error * (h * h) ** 3 > self.error) | (bend * (h * h) > square)
+        far = np.flatnonzero(over | (turn * (h * h) ** 2 > MOST_TURN**2))
         if len(far):
-            short = np.minimum(
+            short = np.fmin(
                 np.cbrt(np.sqrt(self.error / error[far])), np.sqrt(square[far] / bend[far])
             )
+            short = np.fmin(short, np.sqrt(MOST_TURN / np.sqrt(turn[far])))
             edge[far] = np.where(short < h[far], -1, edge[far])
             h[far] = np.minimum(short, h[far])
         lag = self.state.lag
@@ -322,7 +375,7 @@ class _Run:
         away *= self.mesh.heights[state.triangle[out], edge]
         on = away <= BORDER_ROUNDING * speed
         state.edge[out[on]] = edge[on]
-        return out[~on]
+        return np.asarray(out[~on])
 
     def _place(self, at: Indices, triangle: Indices, edge: Indices, shares: Floats) -> None:
         state = self.state
@@ -436,7 +489,7 @@ def _inward(now: Derivatives, at: Indices, edge: Indices) -> Bools:
 
 
 def _along(change: Floats, metric: Floats, edge: Indices) -> Floats:
-    """What of changes (2, N) of shares is along the edges opposite to corners (N,)."""
+    """Return what of changes (2, N) of shares is along the edges opposite to corners (N,)."""
     e, f, g = metric
     first, second = edge == 1, edge == 2
     one = np.where(first, g, np.where(second, -f, f - g))

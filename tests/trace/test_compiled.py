@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.spatial import ConvexHull, Delaunay
 
 from flowtex import FlowField, Settings, TraceSlices, trace
 from flowtex._util import compiled
@@ -144,6 +145,36 @@ def test_a_path_goes_no_further_than_single_precision(kernels: Any) -> None:
     one, two = both(kernels, field, lags=[1.0, 2.0], parameter="time")
     assert np.isfinite(one.displacement).all()
     np.testing.assert_allclose(two.displacement, one.displacement, rtol=1e-3)
+
+
+def triangles(kind: str) -> FlowField:
+    """A field on random triangles: a sphere, or a square with a hole and nodes at rest."""
+    rng = np.random.default_rng(2)
+    if kind == "sphere":
+        p = rng.normal(size=(1500, 3))
+        p /= np.linalg.norm(p, axis=1, keepdims=True)
+        v = np.cross([0.2, 0.3, 1.0], p) + 0.5 * np.sin(3 * p[:, [1, 2, 0]])
+        return FlowField.from_triangles(p, ConvexHull(p).simplices, v)
+    p = rng.uniform(-1, 1, (1500, 2))
+    v = np.stack([np.sin(3 * p[:, 1]), np.cos(2 * p[:, 0])], axis=-1)
+    v[p[:, 0] < -0.8] = 0.0
+    valid = np.hypot(p[:, 0], p[:, 1]) > 0.2
+    return FlowField.from_triangles(p, Delaunay(p).simplices, v, valid=valid)
+
+
+@pytest.mark.parametrize("kind", ["sphere", "square"])
+@pytest.mark.parametrize("parameter", ["arclength", "time"])
+def test_paths_on_triangles_are_those_of_numpy(kernels: Any, kind: str, parameter: str) -> None:
+    field = triangles(kind)
+    one, two = both(kernels, field, parameter=parameter, unit=0.05, lags=[0.3, 2.0, 9.0])
+    assert one.forward is not None and two.forward is not None
+    assert one.forward_reach is not None and two.forward_reach is not None
+    for a, b in ((one.displacement, two.displacement), (one.forward, two.forward)):
+        apart = np.abs(a - b).max(axis=-1)
+        assert (apart <= 1e-5 * (1 + np.abs(a).max(axis=-1))).mean() > 0.99
+    for a, b in ((one.reach, two.reach), (one.forward_reach, two.forward_reach)):
+        assert np.isclose(a, b, rtol=1e-4, atol=1e-5).mean() > 0.99
+        assert kind == "sphere" or 0.1 < np.isfinite(a).mean() < 0.9
 
 
 @pytest.mark.parametrize("spread", [1.0, 1e100])

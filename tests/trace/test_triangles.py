@@ -13,7 +13,7 @@ from scipy.spatial import ConvexHull, Delaunay
 from strategies import property_test, within
 
 from flowtex import FlowField, TraceSlices, trace
-from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex._util.array_types import Floats, Indices
 from flowtex.errors import FieldError
 from flowtex.trace import SliceStore, paths
 
@@ -27,9 +27,10 @@ def square(count: int, seed: int = 0) -> tuple[Floats, Indices]:
     return points, either_way(Delaunay(points).simplices, rng)
 
 
-def either_way(triangles: Indices, rng: np.random.Generator) -> Indices:
+def either_way(triangles: Any, rng: np.random.Generator) -> Indices:
     """Turn half of the triangles over."""
-    return np.where(rng.random(len(triangles))[:, None] < 0.5, triangles, triangles[:, ::-1])
+    turned_over = rng.random(len(triangles))[:, None] < 0.5
+    return np.asarray(np.where(turned_over, triangles, triangles[:, ::-1]), np.intp)
 
 
 def sphere(count: int, seed: int = 0) -> tuple[Floats, Indices]:
@@ -67,11 +68,11 @@ def found(field: FlowField, slices: TraceSlices, m: int = -1, *, forward: bool =
 
 def test_a_vortex_on_a_plane_is_followed_to_second_order() -> None:
     errors = []
-    for count in (500, 2000, 8000):
+    for count in (500, 8000):
         points, triangles = square(count)
         r = np.linalg.norm(points, axis=1)
         field = FlowField.from_triangles(points, triangles, spin(points) * r[:, None])
-        slices = trace(field, lags=[0.5, 2.0], parameter="time", tolerance=1e-6)
+        slices = trace(field, lags=[0.5, 2.0], parameter="time", tolerance=1e-5)
         inside = np.linalg.norm(field.points[0], axis=1) < 0.9
         radius = np.linalg.norm(field.points[0], axis=1)
         for sign in (-1, 1):
@@ -81,27 +82,28 @@ def test_a_vortex_on_a_plane_is_followed_to_second_order() -> None:
         assert np.isinf(slices.reach[0, 0, inside]).all()
         errors.append(float(np.sqrt(np.mean(off**2))))
     # Four times as many nodes are half as far apart.
-    order = np.log2(errors[0] / errors[2]) / 2
+    order = np.log2(errors[0] / errors[1]) / 2
     assert 1.7 < order < 2.6
 
 
-def test_a_rotation_of_a_sphere_is_followed_to_second_order() -> None:
+@pytest.mark.parametrize("parameter", ["time", "arclength"])
+def test_a_rotation_of_a_sphere_is_followed_to_second_order(parameter: str) -> None:
     errors = []
-    for count in (500, 2000, 8000):
+    lags = np.linspace(0.3, 1.5, 9)
+    for count in (500, 8000):
         points, triangles = sphere(count)
         field = FlowField.from_triangles(points, triangles, spin(points))
-        for parameter in ("time", "arclength"):
-            slices = trace(field, lags=[0.3, 1.5], unit=1.0, parameter=parameter, tolerance=1e-6)
-            p = field.points[0]
-            away = np.linalg.norm(p[:, :2], axis=1)
-            some = away > 0.3
-            angle = 1.5 / (away if parameter == "arclength" else 1.0)
-            off = np.linalg.norm(found(field, slices) - turned(p, -angle), axis=1)[some]
-            assert np.isinf(slices.reach[0, 0, some]).all()
-            errors.append(float(np.sqrt(np.mean(off**2))))
-    for one in (0, 1):
-        order = np.log2(errors[one] / errors[4 + one]) / 2
-        assert 1.7 < order < 2.6
+        slices = trace(field, lags=lags, unit=1.0, parameter=parameter, tolerance=1e-5)
+        p = field.points[0]
+        away = np.linalg.norm(p[:, :2], axis=1)
+        some = away > 0.3
+        angle = lags[:, None] / (away if parameter == "arclength" else 1.0)
+        assert np.isinf(slices.reach[0, 0, some]).all()
+        off = np.stack([found(field, slices, m) - turned(p, -angle[m]) for m in range(9)])[:, some]
+        errors.append(float(np.sqrt(np.mean(off**2))))
+    assert errors[1] < 5e-4
+    # Four times as many nodes are half as far apart.
+    assert 1.75 < np.log2(errors[0] / errors[1]) / 2 < 2.5
 
 
 def test_a_uniform_flow_is_exact_however_the_nodes_lie() -> None:
@@ -143,7 +145,7 @@ def test_reach_is_the_lag_to_the_border(along: tuple[float, float]) -> None:
             reach[0, 0], (np.maximum(room, 1e-9) / ahead).min(axis=1), atol=1e-5
         )
     np.testing.assert_allclose(
-        slices.displacement[0, 1, 0, :, :2] / -5, [along] * len(points), 1e-5
+        slices.displacement[0, 1, 0, :, :2] / -5, [along] * len(points), atol=1e-6
     )
 
 
@@ -255,7 +257,7 @@ def test_paths_come_to_rest_in_a_sink(parameter: str) -> None:
 
 
 def test_a_saddle_parts_and_a_centre_holds() -> None:
-    points, triangles = square(2000)
+    points, triangles = square(800)
     saddle = FlowField.from_triangles(points, triangles, points * [1, -1])
     slices = trace(saddle, lags=[0.5, 1.0], parameter="time")
     p = saddle.points[0]
@@ -263,9 +265,9 @@ def test_a_saddle_parts_and_a_centre_holds() -> None:
     exact = p * [np.exp(-1), np.exp(1), 1]
     assert np.abs(found(saddle, slices) - exact)[back].max() < 0.01
     centre = FlowField.from_triangles(points, triangles, spin(points))
-    slices = trace(centre, lags=[1.0, 40.0], unit=1.0, tolerance=1e-6)
+    slices = trace(centre, lags=[1.0, 20.0], unit=1.0, tolerance=1e-5)
     r = np.linalg.norm(centre.points[0], axis=1)
-    inside = (r < 0.95) & (r > 0.1)
+    inside = (r < 0.95) & (r > 0.3)
     last = np.linalg.norm(found(centre, slices), axis=1)
     assert np.isinf(slices.reach[0, 0, inside]).all()
     assert np.abs(last / r - 1)[inside].max() < 0.05
@@ -350,26 +352,23 @@ def check(slices: TraceSlices) -> None:
 
 def test_surfaces_with_one_side_and_edges_of_many() -> None:
     turn = np.linspace(0, 2 * np.pi, 40, endpoint=False)
-    strip = [
-        np.stack(
-            [
-                (1 + s * np.cos(turn / 2)) * np.cos(turn),
-                (1 + s * np.cos(turn / 2)) * np.sin(turn),
-                s * np.sin(turn / 2),
-            ],
-            -1,
-        )
-        for s in (-0.3, 0.0, 0.3)
-    ]
-    points = np.concatenate(strip)
-    a = np.arange(40)
+    strip = []
+    for s in (-0.3, 0.0, 0.3):
+        around = 1 + s * np.cos(turn / 2)
+        strip.append(np.stack([around, 0 * turn, s * np.sin(turn / 2)], axis=-1))
+    points = turned(np.concatenate(strip), np.tile(turn, 3))
     quads = []
-    for row in range(2):
-        for k in a:
-            nxt = (k + 1) % 40
-            low, high = row, row + 1
-            other = (low, high) if k < 39 else (2 - low, 2 - high)
-            quads.append((low * 40 + k, other[0] * 40 + nxt, other[1] * 40 + nxt, high * 40 + k))
+    for k in range(40):
+        # The strip is turned over where it closes.
+        here, there = np.array([0, 1, 2]), np.array([0, 1, 2] if k < 39 else [2, 1, 0])
+        for low in (0, 1):
+            sides = [
+                (here[low], k),
+                (there[low], k + 1),
+                (there[low + 1], k + 1),
+                (here[low + 1], k),
+            ]
+            quads.append([40 * row + column % 40 for row, column in sides])
     q = np.array(quads)
     triangles = np.concatenate([q[:, [0, 1, 2]], q[:, [0, 2, 3]]])
     field = FlowField.from_triangles(points, triangles, spin(points))
@@ -394,7 +393,7 @@ def test_surfaces_with_one_side_and_edges_of_many() -> None:
         check(trace(FlowField.from_triangles(points, np.array(faces), v), lags=[0.5, 20.0]))
 
 
-@property_test(60)
+@property_test(25)
 @given(
     st.integers(3, 30),
     st.integers(1, 60),
