@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from flowtex.tiles.clusters import levels_of
 from flowtex.tiles.loader import Tile, TileLoader
 from flowtex.tiles.pyramid import (
     BLOCK_CELLS,
@@ -24,5 +25,6 @@ __all__ = [
     "TileLoader",
     "TrianglePyramid",
     "block_places",
+    "levels_of",
     "shared_pyramid",
 ]

@@ -17,6 +17,8 @@ __all__ = ["choose_lags", "lag_unit"]
 
 #: First lag in cells, last lag as a share of the surface's extent, greatest number of lags.
 FIRST_CELLS, LAST_EXTENTS, MOST_CHOSEN_LAGS = 0.25, 0.25, 24
+#: Percentile of the sizes of cells that small ones have.
+SMALL_CELLS = 5
 #: Quotient of one lag and the one before.
 RATIO = 2.0
 
@@ -25,10 +27,14 @@ def lag_unit(field: FlowField, parameter: str) -> Floats:
     """One unit of lag at each node, (J, I).
 
     By arc length it is the local cell size, so cells of very different sizes share the same
-    lags; by time it is one unit of the field's time.
+    lags; by time it is one unit of the field's time. On triangles it is the size of small cells
+    everywhere: there paths are integrated to the last lag, which no path needs to be longer than.
     """
     if parameter == "arclength":
-        return field.surface.cell_size
+        size = field.surface.cell_size
+        if field.triangles is None:
+            return size
+        return np.full(field.shape, np.percentile(size[field.valid], SMALL_CELLS))
     return np.ones(field.shape)
 
 
@@ -41,7 +47,7 @@ def choose_lags(field: FlowField, parameter: str, longest: float | None = None) 
     if longest is None:
         longest = LAST_EXTENTS * field.surface.extent
     if parameter == "arclength":
-        first, last = FIRST_CELLS, longest / float(np.percentile(size, 5))
+        first, last = FIRST_CELLS, longest / float(np.percentile(size, SMALL_CELLS))
     else:
         speed = field.typical.speed[:, field.valid]
         moving = speed > 1e-6 * speed.max() if speed.any() else np.zeros_like(speed, dtype=bool)
