@@ -69,8 +69,9 @@ def triangle_arrays(
     ok: Bools = np.asarray(known if shown is None else known & shown)
     v = np.asarray(np.where(ok[:, None], v, np.nan))
     raise_faults(range_faults(p[None], v, ok[None]))
+    moving: Steps = v
     if isinstance(velocity, LazySteps):
-        v = velocity.map(lambda step: _row(three_components(np.nan_to_num(step)), ok))
+        moving = velocity.map(lambda step: _row(three_components(np.nan_to_num(step)), ok))
     data = {
         name: scalars[name].map(lambda step: step[None])
         if isinstance(scalars[name], LazySteps)
@@ -93,10 +94,10 @@ def triangle_arrays(
     number = np.full(len(p), -1, dtype=np.intp)
     number[used] = np.arange(len(used))
     if len(used) < len(p):
-        ok, v, data = _joined(number[same], len(used), ok, v, data)
+        ok, moving, data = _joined(number[same], len(used), ok, moving, data)
         p = p[used]
-    v = map_steps(v, lambda step: np.where(ok[:, None], step, 0.0))
-    return TriangleArrays(p[None].copy("C"), number[corners], v, ok[None], data)
+    moving = map_steps(moving, lambda step: np.where(ok[:, None], step, 0.0))
+    return TriangleArrays(p[None].copy("C"), number[corners], moving, ok[None], data)
 
 
 def _first(values: Any) -> Any:
@@ -193,9 +194,9 @@ def nodal_means(
 
     def means(step: Floats) -> Floats:
         flat = step.reshape(len(step), -1)
-        finite = np.isfinite(flat).all(axis=1)
-        total = (matrix @ finite.astype(float))[:, None]
-        sums = matrix @ np.where(finite[:, None], flat, 0.0)
+        finite = np.asarray(np.isfinite(flat).all(axis=1))
+        total = np.asarray(matrix @ finite.astype(float))[:, None]
+        sums = np.asarray(matrix @ np.where(finite[:, None], flat, 0.0))
         mean = np.divide(sums, total, out=np.full_like(sums, np.nan), where=total > 0)
         return np.asarray(mean.reshape(nodes, *step.shape[1:]))
 
@@ -203,7 +204,7 @@ def nodal_means(
 
 
 def _joined(
-    number: Indices, count: int, ok: Bools, v: Floats, data: Mapping[str, Floats]
+    number: Indices, count: int, ok: Bools, v: Steps, data: Mapping[str, Floats]
 ) -> tuple[Bools, Floats, dict[str, Steps]]:
     """Average what nodes at one place have; nodes with the number -1 are left out."""
     kept = np.flatnonzero(number >= 0)

@@ -8,14 +8,16 @@ import numpy as np
 
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.earth import EARTH_RADIUS, NAMES, Projection
-from flowtex.field.datasets.maps import TORN, projection_of, shown_positions
+from flowtex.field.datasets.maps import CYLINDERS, TORN, projection_of, shown_positions
 from flowtex.field.datasets.meshes.mesh import Mesh
 from flowtex.field.datasets.places import Places
 
 __all__ = ["MeshMap", "mesh_on_map"]
 
-#: Maps on which a node may lie beyond the edge, a turn further.
-OVER_THE_EDGE = tuple(set(NAMES) - {"north", "south"})
+#: Maps around a pole, which have no edge at a meridian.
+AROUND_A_POLE = ("north", "south")
+#: Degrees of longitude from which on a triangle is around a pole, or touches it.
+WIDEST = 90.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,15 +52,21 @@ def mesh_on_map(mesh: Mesh, places: Places, name: str | None) -> MeshMap:
         return MeshMap(projection, points, triangles, nodes, lon, lat, 0)
     middle = projection.center[0]
     lon = middle + (lon - middle + 180.0) % 360.0 - 180.0
-    if projection.name in OVER_THE_EDGE:
+    turns = np.zeros(len(lon), dtype=np.intp)
+    if projection.name in CYLINDERS:
         triangles, nodes, turns = _turned(lon, triangles, middle)
-        lon, lat = lon[nodes] + 360.0 * turns, lat[nodes]
+        lon, lat = lon[nodes], lat[nodes]
     points = shown_positions(projection, lon, lat)
-    shown = np.isfinite(points).all(axis=1)[triangles].all(axis=1)
-    torn = _torn(points, mesh.positions[nodes], triangles) & shown
-    return MeshMap(
-        projection, points, triangles[shown & ~torn], nodes, lon, lat, int(torn.sum())
-    )
+    points[:, 0] += turns * 2 * projection.positions(np.array(middle + 180.0), np.array(0.0))[0]
+    lon = lon + 360.0 * turns
+    finite = np.asarray(np.isfinite(points).all(axis=1))
+    shown = finite[triangles].all(axis=1)
+    if projection.name in NAMES and projection.name not in AROUND_A_POLE:
+        torn = np.ptp(lon[triangles], axis=1) > WIDEST
+    else:
+        torn = _torn(points, mesh.positions[nodes], triangles)
+    torn &= shown
+    return MeshMap(projection, points, triangles[shown & ~torn], nodes, lon, lat, int(torn.sum()))
 
 
 def _turned(lon: Floats, triangles: Indices, middle: float) -> tuple[Indices, Indices, Indices]:
@@ -87,7 +95,7 @@ def _turned(lon: Floats, triangles: Indices, middle: float) -> tuple[Indices, In
 
 
 def _torn(points: Floats, sphere: Floats, triangles: Indices) -> Bools:
-    """Which triangles the map tears apart, (M,), as around a pole."""
+    """Which triangles are much larger on the map than on the sphere, (M,)."""
     far = 0.1 * np.nanmax(np.abs(points), initial=0.0)
     torn = np.zeros(len(triangles), dtype=bool)
     for k in range(3):
