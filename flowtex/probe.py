@@ -181,10 +181,15 @@ def probe(
     state = ViewState(between=between, clock=clock, density=density)
     state = view_state(view.textures, camera, state, (before, after))
     values = uniforms(view.textures, view.settings, state)
-    fragments = Fragments.of(view.textures, cover_place(surface, place, camera, size))
     field_values = values_at(view.field, place.index, view.time)
+    textures = view.textures
+    if (drawn := textures.geometry.field) is not view.field:
+        # Of a large field a coarser form is at hand, on which the point has another place.
+        nearest, _ = locator(drawn).nearest(field_values.position[None])
+        surface, place = drawn.surface, surface_point(drawn.surface, nearest[0])
+    fragments = Fragments.of(textures, cover_place(surface, place, camera, size))
     setting = view.settings.samples
-    return _Pixel(view.textures, (before, after), fragments, values, field_values, setting).probe()
+    return _Pixel(textures, (before, after), fragments, values, field_values, setting).probe()
 
 
 class _Pixel:
@@ -207,14 +212,14 @@ class _Pixel:
         self._lookup = Recorder(loaded.make_lookup(fragments, values), values["u_samples"] + 2)
         paper = textures.paper is not None
         self._summing = Summing(self._slices, values, self._lookup, paper=paper)
-        self._base = self._slices.layer(fragments.coordinate.value, 0, self._level)
+        self._base = self._slices.layer(fragments.place, 0, self._level)
         #: One unit of lag at the fragment.
         self._unit = float(self._base[0, 3]) * textures.unit / textures.pace
 
     def probe(self) -> Probe:
         """Draw the pixel, and return how."""
         values, recorder = self._values, self._lookup
-        value = self._summing.texture(self._fragments.coordinate.value, self._level)[0]
+        value = self._summing.texture(self._fragments.place, self._level)[0]
         sides = list(self._sides(1))
         lags = -np.concatenate(recorder.length) / float(sides[0].scale[0])
         order = np.argsort(-lags)
@@ -222,7 +227,7 @@ class _Pixel:
         points, coordinates, noise = self._places(np.concatenate(recorder.displacement)[order])
         knots = np.concatenate([[0.0], values["u_lags"]])
         m, shares = bracket(knots, np.abs(lags), side="left")
-        cell = self._summing.cell(self._fragments.coordinate.value)
+        cell = self._summing.cell(self._fragments.place)
         in_cell = cell is not None and cell.share[0] > 0
         path_lags, path = (lags, points) if in_cell else self._path(sides, knots, lags)
         pixel, grain = self._sizes()
@@ -255,10 +260,9 @@ class _Pixel:
 
     def _sides(self, count: int) -> Iterator[Side]:
         """Sides of the path, as often as it is followed at once."""
-        coordinate, base = (
-            np.repeat(a, count, axis=0) for a in (self._fragments.coordinate.value, self._base)
-        )
-        return self._summing.sides(coordinate, np.repeat(self._level, count), base)
+        same = np.zeros(count, dtype=np.intp)
+        place, level = self._fragments.place[same], self._level[same]
+        return self._summing.sides(place, level, self._base[same])
 
     def _path(self, sides: list[Side], knots: Floats, samples: Floats) -> tuple[Floats, Floats]:
         """Lags in multiples of the unit, and points, of the whole path, with all its samples."""

@@ -25,7 +25,7 @@ from flowtex.field.steps import LazySteps, Steps
 from flowtex.options import ROBUST, SPEED, Appearance, FieldOptions, Options, option_text
 from flowtex.rendering.cpu.shade import mean_colours
 from flowtex.settings import TABLE, Affects, Settings, SettingsError
-from flowtex.textures import TextureSet
+from flowtex.textures import TextureSet, check_noise
 from flowtex.textures.images import as_picture, load_image
 from flowtex.tiles import Pyramid, shared_pyramid
 from flowtex.trace import SliceStore, TraceSlices, chosen_lines, shared_store
@@ -100,6 +100,7 @@ class Scene:
             self.image = as_picture(load_image(self.appearance.image))
         if self.settings.noise == "image" and self.image is None:
             raise SettingsError(NO_IMAGE)
+        check_noise(field, self.settings.noise)
         self._ranges: dict[tuple[str, bool, bool], tuple[float, float]] = {}
         self._pyramid: Pyramid | None = None
         self._sliced = slices is not None
@@ -264,7 +265,10 @@ class Scene:
         ------
         ImageError
             When it cannot be used; nothing is changed then.
+        SettingsError
+            When the surface is one of triangles, which images are not laid over.
         """
+        check_noise(self.field, "image")
         self.image = as_picture(load_image(image))
         if self.settings.noise != "image":
             self.settings.noise = "image"
@@ -378,7 +382,8 @@ class Scene:
 
         Its colours have the range of this one.
         """
-        field = share_field(coarsened_field(self.field, nodes))
+        whole = self.field if self.field.triangles is None else self.whole
+        field = share_field(coarsened_field(whole, nodes))
         scene = Scene(field)
         limits = None if self.scalar_name is None else self.scalar_limits
         scene._appearance = replace(self.appearance, clim=limits)
@@ -406,10 +411,14 @@ class Scene:
         if name == "noise":
             if value == self._noise:
                 return
-            if value == "image" and self.image is None:
+            try:
+                check_noise(self.field, value)
+                if value == "image" and self.image is None:
+                    raise SettingsError(NO_IMAGE)
+            except SettingsError:
                 # Observers are called once a setting is set; what cannot be drawn is set back.
                 self.settings.noise = self._noise
-                raise SettingsError(NO_IMAGE)
+                raise
             self._noise = value
         affects = TABLE[name].affects
         if name in SETTINGS_IN_TEXTURES:
@@ -507,12 +516,14 @@ def share_field(field: FlowField) -> FlowField:
     words = (*names, field.periodic, field.sign_free, str(field.start), field.projection)
     units = tuple(field.units.items())
     positions = () if field.has_position is None else (field.has_position,)
-    given = (field.points, field.velocity, field.times, field.valid, *positions)
+    joined = () if field.triangles is None else (field.triangles,)
+    given = (field.points, field.velocity, field.times, field.valid, *positions, *joined)
     given += tuple(field.scalars.values())
     # What is read late is known by the object, which a field keeps alive.
     late = tuple(id(a) for a in given if isinstance(a, LazySteps))
     arrays = (a for a in given if not isinstance(a, LazySteps))
-    key = digest(*arrays, words=(words, units, len(positions), late, *field.scalars))
+    kind = (field.has_position is None, field.triangles is None)
+    key = digest(*arrays, words=(words, units, kind, late, *field.scalars))
     return _fields.get(key, lambda: field)
 
 
@@ -530,9 +541,9 @@ def _shared_textures(store: SliceStore, settings: Settings, image: Floats32 | No
 def coarsened_field(field: FlowField, nodes: int) -> FlowField:
     """Keep lines of nodes, the first and the last among them, so that so many nodes are left.
 
-    A smaller field is returned as it is.
+    A smaller field is returned as it is, and one of triangles, of which levels are the coarse form.
     """
-    if field.valid.size <= nodes:
+    if field.valid.size <= nodes or field.triangles is not None:
         return field
     share = np.sqrt(nodes / field.valid.size)
     rows, columns = (

@@ -5,10 +5,22 @@ from __future__ import annotations
 from functools import cache
 
 import numpy as np
+from triangle_meshes import random_plane, soup, sphere
 
 from flowtex import FlowField
 
-__all__ = ["dense_gyre", "gyre", "holed", "lines", "swinging", "torus"]
+__all__ = [
+    "dense_gyre",
+    "gyre",
+    "holed",
+    "lines",
+    "rippled",
+    "scattered_gyre",
+    "scattered_holed",
+    "scattered_swinging",
+    "swinging",
+    "torus",
+]
 
 
 @cache
@@ -63,3 +75,48 @@ def lines() -> FlowField:
     y, x = np.mgrid[-1:1:32j, -1:1:32j]
     way = np.stack([-y, x], axis=-1) * np.where(y > 0, -1, 1)[..., None]
     return FlowField.from_arrays(np.stack([x, y], axis=-1), way, sign_free=True)
+
+
+@cache
+def scattered_gyre() -> FlowField:
+    """Two vortices on triangles that face either way, around nodes at exact places."""
+    points, triangles = random_plane(np.random.default_rng(5), 700)
+    points, triangles = soup(np.random.default_rng(6), (points, triangles))
+    points = np.rint(points * [2048, 1024, 0]) / 1024
+    a, b = np.pi * points[:, 0], np.pi * points[:, 1]
+    velocity = np.stack([-np.sin(a) * np.cos(b), np.cos(a) * np.sin(b)], axis=-1)
+    return FlowField.from_triangles(points, triangles, velocity, scalars={"x": points[:, 0]})
+
+
+@cache
+def scattered_holed() -> FlowField:
+    """A stream on triangles past a hole."""
+    points, triangles = random_plane(np.random.default_rng(5), 1500)
+    points = 2 * points - [1, 1, 0]
+    inside = np.hypot(*points[:, :2].T) < 0.4
+    velocity = np.stack([1 + 0 * points[:, 0], 0.3 * points[:, 0]], axis=-1)
+    return FlowField.from_triangles(
+        points, triangles, np.where(inside[:, None], np.nan, velocity), valid=~inside
+    )
+
+
+@cache
+def scattered_swinging() -> FlowField:
+    """A vortex on triangles that wanders, at three times."""
+    points, triangles = random_plane(np.random.default_rng(5), 900)
+    x, y, _ = (2 * points - 1).T
+    steps = [np.stack([-(y - 0.2 * t), x - 0.1 * t * t], axis=-1) for t in (0.0, 1.0, 2.0)]
+    return FlowField.from_triangles(
+        2 * points - [1, 1, 0], triangles, np.stack(steps), times=[0.0, 0.4, 0.8]
+    )
+
+
+@cache
+def rippled() -> FlowField:
+    """Vortices on a sphere of triangles."""
+    points, triangles = sphere(4)
+    x, y, z = points.T
+    slope = np.stack([(4 * x**3 - 12 * x * y * y) * z, (4 * y**3 - 12 * x * x * y) * z], axis=-1)
+    axial = x**4 - 6 * x * x * y * y + y**4 - 0.35
+    velocity = np.cross(points, np.column_stack([slope, axial]))
+    return FlowField.from_triangles(points, triangles, velocity)

@@ -16,7 +16,18 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-from flows import dense_gyre, gyre, holed, lines, swinging, torus
+from flows import (
+    dense_gyre,
+    gyre,
+    holed,
+    lines,
+    rippled,
+    scattered_gyre,
+    scattered_holed,
+    scattered_swinging,
+    swinging,
+    torus,
+)
 
 from flowtex import FlowField
 from flowtex._util.array_types import Bytes, Floats
@@ -118,6 +129,18 @@ VIEWS: dict[str, View] = {
     "without a sign": View(lines, MIDDLE),
     "centre": View(camera=straight(64, (0.5, 0.5))),
     "centre, streaming": View(camera=straight(8, (0.5, 0.5)), settings=MOTION, clock=1.7),
+    "triangles": View(scattered_gyre),
+    "triangles, zoom 256": View(scattered_gyre, straight(256)),
+    "triangles, zoom 4096": View(scattered_gyre, straight(4096)),
+    "triangles, grazing": View(scattered_gyre, GRAZING),
+    "triangles, by time": View(scattered_gyre, straight(4), {"parameter": "time"}),
+    "triangles, streaming": View(scattered_gyre, straight(2), MOTION, clock=1.7),
+    "triangles, centre": View(scattered_gyre, straight(64, (0.5, 0.5))),
+    "triangles, curved": View(rippled, ASIDE),
+    "triangles, holes": View(scattered_holed, MIDDLE),
+    "triangles, between two steps": View(
+        scattered_swinging, MIDDLE, {"lines": "pathlines"}, time=0.55
+    ),
     "texture": View(settings=TEXTURE),
     "texture, stretched": View(settings=TEXTURE | {"noise_correction": False}),
     "texture, zoom 16": View(camera=straight(16), settings=TEXTURE),

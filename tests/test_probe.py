@@ -240,6 +240,18 @@ def test_a_rotation_has_round_paths() -> None:
     assert got.step == pytest.approx(0.7 * 1.5 * 0.01 / (0.5 * radius), rel=1e-2)
 
 
+def test_a_large_field_is_read_in_its_coarser_form() -> None:
+    x, y = np.meshgrid(np.linspace(0, 2, 801), np.linspace(0, 1, 401))
+    velocity = np.stack([-(y - 0.5), x - 1], axis=-1)
+    points = np.stack([x, y], axis=-1)
+    whole = Scene(FlowField.from_arrays(points, velocity))
+    small = Scene(FlowField.from_arrays(points[::5, ::5], velocity[::5, ::5]))
+    assert whole.pyramid is not None
+    one, other = (probe(s, at, pixel=2e-3) for s, at in ((whole, (120, 560)), (small, (24, 112))))
+    np.testing.assert_allclose(one.field_values.position, [1.4, 0.3, 0], atol=1e-12)
+    np.testing.assert_allclose(one.points, other.points, atol=2e-4)
+
+
 def test_each_doubling_of_the_pixel_is_a_level() -> None:
     view = view_of(wind(), samples=5)
     near, far = (probe(view, (20, 30), pixel=pixel) for pixel in (0.002, 0.004))

@@ -451,8 +451,11 @@ class FlowField(FieldConstructors):
         Raises
         ------
         ValueError
-            When fewer than two lines would be left.
+            When fewer than two lines would be left, or on a surface of triangles, which has none.
         """
+        if self.triangles is not None:
+            msg = f"{self!r} has no lines of nodes; make the mesh coarser, as by mesh.decimate(0.5)"
+            raise ValueError(msg)
         rows, columns = (
             every_line(count, factor, closed=closed)
             for count, closed in zip(self.shape, self.periodic, strict=True)

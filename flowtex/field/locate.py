@@ -1,7 +1,9 @@
 """Points of a surface: the one at a position in index space, and the one nearest to a point.
 
-Every renderer cuts a cell along the diagonal from its first corner (j, i) to (j + 1, i + 1), and
-what lies between the nodes is linear in the two triangles; so is what this module returns.
+On a surface of triangles a position is a triangle and shares of its corners
+(:mod:`flowtex.field.triangles.surface`). On a structured one every renderer cuts a cell along the
+diagonal from its first corner (j, i) to (j + 1, i + 1), and what lies between the nodes is linear
+in the two triangles; so is what this module returns.
 
 To find a point in space, the nearest nodes are looked up in a tree, which is cached with the
 field. From each of them a walk leads over the cells, each step to the cell in which the point
@@ -24,19 +26,15 @@ from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex._util.cache import WeakCache
 from flowtex.field.field import FlowField
 from flowtex.field.surface import Surface
+from flowtex.field.triangles.nearest import ON_SURFACE, START_NODES, TriangleLocator, closest
+from flowtex.field.triangles.surface import TriangleSurface
 
 __all__ = ["TRIANGLES", "Locator", "SurfacePoint", "locate", "locator", "surface_point"]
 
-#: Nodes around a point that cells are walked from.
-START_NODES = 4
 #: Nodes closer than this share of the surface's extent lie at one point.
 SAME_POINT_SHARE = 1e-12
 #: Steps of a walk, and cells along an axis that one of them goes, at most.
 WALK_STEPS, STRIDE_CELLS = 24, 4
-#: Distance from a triangle, in sizes of its cell, within which a point lies on it.
-ON_SURFACE = 1e-9
-#: Height of a triangle over a side, squared, below which it has no area.
-FLAT_TRIANGLE = 1e-20
 #: Squared sine of the angle between two sides of a cell, below which they are one.
 FLAT_CELL = 1e-14
 #: Offsets (j, i) of a cell and of those around it.
@@ -76,6 +74,8 @@ def surface_point(surface: Surface, index: ArrayLike) -> SurfacePoint:
     if at.shape != (2,) or not np.isfinite(at).all():
         msg = f"index is {index!r}; expected two finite numbers (j, i), in cells"
         raise ValueError(msg)
+    if isinstance(surface, TriangleSurface):
+        return _in_triangle(surface, at)
     j, i = (float(x) for x in surface.wrap(at[::-1])[::-1])
     rows, columns = surface.shape
     if not (0 <= j <= rows - 1 and 0 <= i <= columns - 1):
@@ -92,6 +92,23 @@ def surface_point(surface: Surface, index: ArrayLike) -> SurfacePoint:
         "surface is drawn"
     )
     raise ValueError(msg)
+
+
+def _in_triangle(surface: TriangleSurface, index: Floats) -> SurfacePoint:
+    j, i = map(float, index)
+    count = len(surface.triangles)
+    if not (0 <= j < count and 0 <= i <= 1):
+        msg = (
+            f"(j, i) is ({j:g}, {i:g}), outside the surface; expected a j from 0 to {count}, the "
+            "number of the triangle plus the share of its second corner, and the share of its "
+            "third as i"
+        )
+        raise ValueError(msg)
+    if not surface.cells[int(j)]:
+        msg = f"(j, i) is ({j:g}, {i:g}), in a triangle with a blanked node; expected another"
+        raise ValueError(msg)
+    nodes, weights = surface.corners_at(np.array([i, j]))
+    return SurfacePoint((j, i), nodes, weights)
 
 
 def _cells(x: float, nodes: int) -> Iterator[int]:
@@ -205,7 +222,7 @@ class Locator:
         size = np.sqrt(np.max([np.sum(s * s, axis=-1) for s in sides], axis=(0, 2)))
         place, distance = np.zeros((len(at), 2)), np.full(len(at), np.inf)
         for triangle in TRIANGLES:
-            shares, far = _closest(at, *(corners[:, j, i] for j, i in triangle))
+            shares, far = closest(at, *(corners[:, j, i] for j, i in triangle))
             closer = far < distance
             place[closer] = shares[closer] @ np.array(triangle, dtype=float)
             distance[closer] = far[closer]
@@ -257,50 +274,19 @@ def _step(at: Floats, corners: Floats) -> Indices:
     return np.asarray(np.rint(np.clip(steps, -STRIDE_CELLS, STRIDE_CELLS)), dtype=np.intp)
 
 
-def _closest(at: Floats, a: Floats, b: Floats, c: Floats) -> tuple[Floats, Floats]:
-    """Shares of the corners (N, 3) at the nearest points of triangles, and how far, (N,).
-
-    A triangle without area is infinitely far: the one beside it has the same points.
-    """
-    u, v, w = b - a, c - a, at - a
-    uu, vv, uv, wu = (np.einsum("nc,nc->n", p, q) for p, q in ((u, u), (v, v), (u, v), (w, u)))
-    # What v has across u: long triangles lose no digits by it.
-    lean = uv / np.where(uu > 0, uu, 1.0)
-    across = v - lean[:, None] * u
-    height = np.einsum("nc,nc->n", across, across)
-    solid = (height > FLAT_TRIANGLE * vv) & (uu > FLAT_TRIANGLE * vv)
-    t = np.einsum("nc,nc->n", w, across) / np.where(solid, height, 1.0)
-    s = wu / np.where(uu > 0, uu, 1.0) - lean * t
-    shares = np.stack([1 - s - t, s, t], axis=-1)
-    aside = np.flatnonzero((shares < 0).any(axis=-1))
-    if len(aside):
-        nodes = np.stack([a, b, c], axis=1)[aside]
-        shares[aside] = _on_border(at[aside], nodes)
-    foot = shares[:, :1] * a + shares[:, 1:2] * b + shares[:, 2:] * c
-    return shares, np.where(solid, np.linalg.norm(at - foot, axis=-1), np.inf)
+_locators: WeakCache[Locator | TriangleLocator] = WeakCache()
 
 
-def _on_border(at: Floats, nodes: Floats) -> Floats:
-    """Shares of the corners (N, 3) at the nearest points of the triangles' sides."""
-    best, result = np.full(len(at), np.inf), np.zeros((len(at), 3))
-    for k, n in ((0, 1), (1, 2), (2, 0)):
-        side, away = nodes[:, n] - nodes[:, k], at - nodes[:, k]
-        length = np.maximum(np.sum(side * side, axis=-1), np.finfo(float).tiny)
-        share = np.clip(np.sum(away * side, axis=-1) / length, 0.0, 1.0)
-        far = np.sum((away - share[:, None] * side) ** 2, axis=-1)
-        closer = far < best
-        best = np.where(closer, far, best)
-        result[closer] = 0.0
-        result[closer, k], result[closer, n] = 1 - share[closer], share[closer]
-    return result
-
-
-_locators: WeakCache[Locator] = WeakCache()
-
-
-def locator(field: FlowField) -> Locator:
+def locator(field: FlowField) -> Locator | TriangleLocator:
     """Return the locator of a field's surface, which is cached as long as the field lives."""
-    return _locators.get("locator", lambda: Locator(field.surface), owner=field)
+
+    def make() -> Locator | TriangleLocator:
+        surface = field.surface
+        if isinstance(surface, TriangleSurface):
+            return TriangleLocator(surface)
+        return Locator(surface)
+
+    return _locators.get("locator", make, owner=field)
 
 
 def locate(

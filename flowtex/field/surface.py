@@ -67,6 +67,11 @@ class Surface:
         """Number of nodes (J, I)."""
         return self.valid.shape[0], self.valid.shape[1]
 
+    @property
+    def last_index(self) -> tuple[float, float]:
+        """Greatest position (j, i) in index space."""
+        return self.shape[0] - 1, self.shape[1] - 1
+
     @cached_property
     def center(self) -> Floats:
         """Middle of the bounding box of the valid nodes, (3,)."""

@@ -98,7 +98,7 @@ class MeshLevels:
     @classmethod
     def of(cls, textures: TextureSet) -> MeshLevels:
         """Return the levels of what a texture set draws."""
-        geometry = textures.geometry
+        geometry = textures.grid
         # A noise that lies on the nodes moves with them.
         slide = SLIDE_SHARE if textures.paper is None else 1.0
         return cls(geometry.points, geometry.cells, geometry.periodic, slide)

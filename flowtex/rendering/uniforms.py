@@ -97,6 +97,8 @@ def variants(
         chosen.add("FLOWTEX_PLANAR")
     if textures.geometry.field.sign_free:
         chosen.add("FLOWTEX_SIGNFREE")
+    if textures.geometry.field.triangles is not None:
+        chosen.add("FLOWTEX_TRIANGLES")
     if unsteady:
         chosen.add("FLOWTEX_UNSTEADY")
     return frozenset(chosen)
@@ -148,7 +150,7 @@ def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[
     values: dict[str, Any] = {
         "u_eye": (*(float(c) for c in eye), float(view.eye[3])),
         "u_between": float(view.between),
-        "u_slicesSize": (float(geometry.columns.size), float(geometry.rows.size)),
+        "u_slicesSize": (float(geometry.size[1]), float(geometry.size[0])),
         "u_deepest": float(geometry.levels),
         "u_lags": [float(lag) for lag in textures.lags],
         "u_lagCount": len(textures.lags),

@@ -6,7 +6,8 @@ from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.textures.images import ImageError, as_picture
 from flowtex.textures.paper import PaperTextures
 from flowtex.textures.prefetch import LayerPrefetch
-from flowtex.textures.texture_set import TextureSet
+from flowtex.textures.texture_set import TextureSet, check_noise
+from flowtex.textures.triangle_geometry import TriangleGeometry
 
 __all__ = [
     "ImageError",
@@ -14,5 +15,7 @@ __all__ = [
     "PaperTextures",
     "SurfaceGeometry",
     "TextureSet",
+    "TriangleGeometry",
     "as_picture",
+    "check_noise",
 ]

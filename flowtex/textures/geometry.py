@@ -15,13 +15,14 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from flowtex._util.array_types import Bools, Floats, Floats32, Indices
 from flowtex.field import FlowField
 from flowtex.field.interpolation import nearest_known
 from flowtex.field.surface import Surface
 
-__all__ = ["SurfaceGeometry"]
+__all__ = ["DrawnSurface", "SurfaceGeometry"]
 
 
 #: Mip levels of a texture beside its finest one, at most, and of a tile's.
@@ -86,8 +87,78 @@ class Padding:
         return (np.arange(self.nodes) + self.before + 0.5) / self.size
 
 
+class DrawnSurface:
+    """What surfaces of both kinds have: the frame in which they are drawn.
+
+    ``whole`` is the surface that what is drawn of the ``field`` is a part of, ``points`` are the
+    nodes that are drawn, (J, I, 3).
+    """
+
+    field: FlowField
+    whole: Surface
+
+    @property
+    def points(self) -> Floats:
+        """The nodes that are drawn, (J, I, 3), in the mesh's own coordinates."""
+        raise NotImplementedError
+
+    def at_vertices(self, nodal: NDArray[Any]) -> NDArray[Any]:
+        """Return what the vertices of a mesh have, (V, ...), of what the nodes have (J, I, ...)."""
+        raise NotImplementedError
+
+    @property
+    def drawn_vertices(self) -> Bools:
+        """Which vertices belong to something that is drawn, (V,)."""
+        raise NotImplementedError
+
+    @cached_property
+    def outermost(self) -> Indices:
+        """Vertices that touch the sides of the bounding box of all that is drawn, (6,)."""
+        at = np.flatnonzero(self.drawn_vertices)
+        points = self.at_vertices(self.points)[at]
+        return np.asarray(at[np.concatenate([points.argmin(axis=0), points.argmax(axis=0)])])
+
+    @property
+    def planar(self) -> bool:
+        """Whether the surface is flat."""
+        return self.whole.frame is not None
+
+    @property
+    def center(self) -> Floats:
+        """What was taken from the mesh's coordinates, (3,)."""
+        return self.whole.center
+
+    @property
+    def extent(self) -> float:
+        """Diagonal of the bounding box."""
+        return self.whole.extent
+
+    @cached_property
+    def frame(self) -> Floats:
+        """Rows that take a vector of the mesh to the frame of ``position``, (3, 3)."""
+        flat = self.whole.frame
+        return np.eye(3) if flat is None else np.vstack([flat, np.cross(flat[0], flat[1])])
+
+    @cached_property
+    def position(self) -> Floats32:
+        """Nodes in the surface's own frame, (J, I, 3)."""
+        return self.position_from(np.zeros(3))
+
+    def position_from(self, anchor: Floats) -> Floats32:
+        """Nodes in the surface's own frame relative to a point of it (3,), (J, I, 3).
+
+        Close to the anchor single precision tells points apart that it would not from the middle.
+        """
+        local = (self.points - self.center) @ self.frame.T
+        return np.asarray(local - anchor, dtype=np.float32)
+
+    def local(self, point: Floats) -> Floats:
+        """Take a point from the mesh's own coordinates to the surface's frame, (3,)."""
+        return np.asarray(self.frame @ (point - self.center))
+
+
 @dataclass(frozen=True, eq=False)
-class SurfaceGeometry:
+class SurfaceGeometry(DrawnSurface):
     """A surface ready to be drawn, with ``levels`` mip levels in its textures beside the finest.
 
     ``rows`` and ``columns`` say how the j and i axes lie in the slice textures, and which nodes of
@@ -145,6 +216,11 @@ class SurfaceGeometry:
         return self.rows.nodes, self.columns.nodes
 
     @property
+    def size(self) -> tuple[int, int]:
+        """Rows and columns (H, W) of texels."""
+        return self.rows.size, self.columns.size
+
+    @property
     def points(self) -> Floats:
         """The nodes that are drawn, (J, I, 3), in the mesh's own coordinates."""
         return self.field.surface.points[self.drawn]
@@ -155,47 +231,17 @@ class SurfaceGeometry:
         return self.field.surface.cells[self.drawn][: self.rows.nodes - 1, : self.columns.nodes - 1]
 
     @property
+    def drawn_vertices(self) -> Bools:
+        """Which vertices belong to a cell that is drawn, (V,)."""
+        used = np.zeros(self.shape, dtype=bool)
+        for j, i in ((0, 0), (0, 1), (1, 0), (1, 1)):
+            used[j : used.shape[0] - 1 + j, i : used.shape[1] - 1 + i] |= self.cells
+        return used.ravel()
+
+    @property
     def periodic(self) -> tuple[bool, bool]:
         """Whether what is drawn closes on itself, along j and i."""
         return self.rows.periodic, self.columns.periodic
-
-    @property
-    def planar(self) -> bool:
-        """Whether the surface is flat."""
-        return self.whole.frame is not None
-
-    @property
-    def center(self) -> Floats:
-        """What was taken from the mesh's coordinates, (3,)."""
-        return self.whole.center
-
-    @property
-    def extent(self) -> float:
-        """Diagonal of the bounding box."""
-        return self.whole.extent
-
-    @cached_property
-    def frame(self) -> Floats:
-        """Rows that take a vector of the mesh to the frame of ``position``, (3, 3)."""
-        flat = self.whole.frame
-        return np.eye(3) if flat is None else np.vstack([flat, np.cross(flat[0], flat[1])])
-
-    @cached_property
-    def position(self) -> Floats32:
-        """Nodes in the surface's own frame, (J, I, 3)."""
-        return self.position_from(np.zeros(3))
-
-    def position_from(self, anchor: Floats) -> Floats32:
-        """Nodes in the surface's own frame relative to a point of it (3,), (J, I, 3).
-
-        Close to the anchor single precision tells points apart that it would not from the middle.
-        """
-        local = (self.points - self.center) @ self.frame.T
-        return np.asarray(local - anchor, dtype=np.float32)
-
-    def local(self, point: Floats) -> Floats:
-        """Take a point from the mesh's own coordinates to the surface's frame, (3,)."""
-        return np.asarray(self.frame @ (point - self.center))
 
     @cached_property
     def normal(self) -> Floats32:
@@ -223,6 +269,14 @@ class SurfaceGeometry:
         """Texture coordinates of the nodes in the slices, (J, I, 2) as (u, v)."""
         u, v = np.meshgrid(self.columns.coordinates, self.rows.coordinates)
         return np.stack([u, v], axis=-1).astype(np.float32)
+
+    def at_vertices(self, nodal: NDArray[Any]) -> NDArray[Any]:
+        """Return what the vertices of a mesh have, (V, ...), of what the nodes have (J, I, ...)."""
+        return nodal.reshape(-1, *nodal.shape[2:])
+
+    def as_image(self, values: NDArray[Any]) -> NDArray[Any]:
+        """Return values at the vertices (V,) as an image of the nodes, here (J, I)."""
+        return values.reshape(self.shape)
 
     def write_texels(self, data: Floats32, texels: Floats32) -> None:
         """Write data (J, I, C) of the nodes of :attr:`texels` into texels (H, W, C).

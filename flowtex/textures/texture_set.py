@@ -14,28 +14,35 @@ M + 1 ... 2 M         slopes of the forward slices, where there are any      M +
 the last              of a steady field: layer 0 in cells, two channels      speed
 ====================  =====================================================  =================
 
-Slopes are in space (the surface's own frame), lengths per unit of nominal length, for the
+A surface of triangles has no cells that are counted: the first channels of its last layer are not
+read. Slopes are in space (the surface's own frame), lengths per unit of nominal length, for the
 procedural noise; in noise coordinates per unit of lag for the paper's noise texture.
 """
 
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from flowtex._util.array_types import AnyArray, Floats, Floats32
+from flowtex.field import FlowField
+from flowtex.field.surface import Surface
+from flowtex.field.triangles.surface import TriangleSurface
 from flowtex.field.validation import three_components
-from flowtex.settings import Settings
+from flowtex.settings import Settings, SettingsError
 from flowtex.textures.displacements import NodeDisplacements
 from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.textures.paper import PaperTextures
+from flowtex.textures.triangle_geometry import TriangleGeometry
 from flowtex.trace import SliceStore, TraceSlices
 
-__all__ = ["AGREED", "MOST_LAGS", "TextureSet"]
+__all__ = ["AGREED", "MOST_LAGS", "TextureSet", "check_noise"]
 
 
 #: Slices on each side that a shader has room for.
@@ -54,7 +61,7 @@ class TextureSet:
     texture, and in space otherwise.
     """
 
-    geometry: SurfaceGeometry
+    geometry: SurfaceGeometry | TriangleGeometry
     store: SliceStore
     paper: PaperTextures | None = None
     #: In a tile, the typical speed of the whole flow, and how long its paths have to be.
@@ -69,9 +76,10 @@ class TextureSet:
 
         The image (H, W, 4) is that for ``noise="image"``. Raises a ValueError when the slices do
         not belong to the field, or are more than a shader has room for; or when an image is asked
-        for and there is none.
+        for and there is none, or the noise is one that the surface cannot have.
         """
         field = store.field
+        check_noise(field, settings.noise)
         if store.unit.shape != field.shape:
             msg = (
                 f"the slices have {store.unit.shape} nodes and the field {field.shape}; expected "
@@ -81,7 +89,8 @@ class TextureSet:
         if not 2 <= len(store.lags) <= MOST_LAGS:
             msg = f"{len(store.lags)} lags were traced; expected 2 to {MOST_LAGS} to draw with"
             raise ValueError(msg)
-        geometry = SurfaceGeometry.of(field)
+        kind = SurfaceGeometry if field.triangles is None else TriangleGeometry
+        geometry = kind.of(field)
         if settings.noise == "procedural":
             return cls(geometry, store)
         return cls(geometry, store, PaperTextures.build(store, settings, image))
@@ -100,6 +109,12 @@ class TextureSet:
         """Tell whether nothing but the picture in place of the noise differs."""
         steps = [None if one.paper is None else one.paper.step for one in (self, other)]
         return self.geometry is other.geometry and steps[0] is steps[1] is not None
+
+    @property
+    def grid(self) -> SurfaceGeometry:
+        """The geometry of a structured surface."""
+        assert isinstance(self.geometry, SurfaceGeometry)
+        return self.geometry
 
     @property
     def sides(self) -> int:
@@ -154,8 +169,7 @@ class TextureSet:
         along = np.einsum("jic,cjik->jik", flow, tangents)
         length = np.linalg.norm(along, axis=-1, keepdims=True)
         along = np.divide(along, length, out=np.zeros_like(along), where=length > 0)
-        parts = (slice(None, -1), slice(1, None))
-        corners = [(j, i) for j in parts for i in parts]
+        corners, longest = _cells(field.surface)
         mean: Floats = np.sum([along[at] for at in corners], axis=0)
         mean /= np.maximum(np.linalg.norm(mean, axis=-1, keepdims=True), np.finfo(float).tiny)
         # What stands still says nothing of the direction.
@@ -163,8 +177,6 @@ class TextureSet:
             np.where(length[at][..., 0] > 0, (along[at] * mean).sum(-1), 1) for at in corners
         ]
         parting = (np.min(cosines, axis=0) < AGREED) & field.surface.cells
-        j, i = (np.linalg.norm(np.diff(field.surface.points, axis=k), axis=-1) for k in (0, 1))
-        longest = np.hypot(np.maximum(j[:, :-1], j[:, 1:]), np.maximum(i[:-1], i[1:]))
         return float(longest[parting].max(initial=0.0))
 
     def forget(self) -> None:
@@ -178,8 +190,7 @@ class TextureSet:
         """Texels of the slice texture for one destination time, (layers, H, W, 4)."""
         whole = self.store.at(step)
         slices, tangent = whole.part(*self.geometry.texels), self._tangent(whole)
-        size = (self.geometry.rows.size, self.geometry.columns.size)
-        result = np.empty((self.count, *size, 4), np.float32)
+        result = np.empty((self.count, *self.geometry.size, 4), np.float32)
 
         def make(layer: int) -> None:
             nodal = self._nodal(slices, tangent, layer)
@@ -241,19 +252,43 @@ class TextureSet:
         return np.asarray(along[texels] @ self.geometry.frame.T) / self._length
 
     @cached_property
-    def _displacements(self) -> NodeDisplacements:
-        """Takes displacements to space; a flat surface has no third component."""
-        frame = self.geometry.frame
-        return NodeDisplacements(
-            self.geometry.field.surface,
-            frame[:2] if self.geometry.planar else frame,
-            self.geometry.texels,
-        )
+    def _displacements(self) -> Callable[[AnyArray], Floats]:
+        """Takes displacements to the surface's frame; a flat one has no third component."""
+        geometry = self.geometry
+        frame = geometry.frame[:2] if geometry.planar else geometry.frame
+        if isinstance(geometry, SurfaceGeometry):
+            return NodeDisplacements(geometry.field.surface, frame, geometry.texels)
+        return lambda displacement: np.moveaxis(displacement @ frame.T, -1, 0)
 
     @cached_property
     def _length(self) -> Floats:
         """Nominal length of one unit of lag at each node, (J, I, 1)."""
         return (self.store.unit * self.pace)[self.geometry.texels][..., None]
+
+
+def check_noise(field: FlowField, noise: str) -> None:
+    """Raise a SettingsError where a field cannot be drawn with a kind of noise."""
+    if noise != "procedural" and field.triangles is not None:
+        msg = (
+            f"noise is {noise!r}, which is laid over the rows and columns of a structured surface, "
+            "and this one is of triangles; expected noise='procedural', or the flow on a "
+            "structured mesh"
+        )
+        raise SettingsError(msg)
+
+
+def _cells(surface: Surface) -> tuple[list[Any], Floats]:
+    """Return the indices of the corners of cells in arrays over the nodes, and their lengths."""
+    p = surface.points
+    if isinstance(surface, TriangleSurface):
+        corners = p[0][surface.triangles]
+        side = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=-1).max(axis=1)
+        # No path of a unit of shares is longer.
+        return [(0, nodes) for nodes in surface.triangles.T], side * (2 / np.sqrt(3))
+    parts = (slice(None, -1), slice(1, None))
+    j, i = (np.linalg.norm(np.diff(p, axis=k), axis=-1) for k in (0, 1))
+    longest = np.hypot(np.maximum(j[:, :-1], j[:, 1:]), np.maximum(i[:-1], i[1:]))
+    return [(j, i) for j in parts for i in parts], longest
 
 
 def _usable_reach(reach: AnyArray, slices: TraceSlices) -> AnyArray:

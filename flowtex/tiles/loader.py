@@ -57,7 +57,7 @@ class Tile:
         if self.textures is None:
             return 0
         geometry = self.textures.geometry
-        texels = geometry.rows.size * geometry.columns.size * self.textures.count
+        texels = geometry.size[0] * geometry.size[1] * self.textures.count
         nodes = geometry.field.valid.size
         return texels * TEXEL_BYTES * max(len(self.layers), 1) + nodes * NODE_BYTES
 

@@ -314,7 +314,7 @@ def is_cut(textures: TextureSet, step: int) -> bool:
             continue
         there = slices.nodes + moved[0, -1]
         gone = np.zeros(reach[0].shape, dtype=bool)
-        for axis, (before, after) in enumerate(textures.geometry.open_sides):
+        for axis, (before, after) in enumerate(textures.grid.open_sides):
             at, last = there[..., 1 - axis], textures.geometry.field.shape[axis] - 1
             gone |= (before & (at < 0)) | (after & (at > last))
         if (gone & (reach[0] < needed)).mean() > MOST_CUT_SHARE:

@@ -29,6 +29,8 @@ STOPPED_SPEED = 1e-7
 METRIC = ((0, 0), (0, 1), (1, 1))
 #: By arc length, a particle this slow, in cells over one unit of lag, is at a critical point.
 RESTING_CELLS = 1e-3
+#: By time, a particle is at rest that goes no further than this, in cells, until the last lag.
+STILL_CELLS = 1e-5
 
 
 class Sampler(ABC):
@@ -204,4 +206,4 @@ class TimeSampler(Sampler):
 
     def rest(self, unit: Floats, last: float) -> Floats:
         """Rate at which a particle gets nowhere; in a flow that varies none stays at rest."""
-        return np.full(len(unit), 0.0 if len(self.times) > 1 else 1e-5) / (unit * last)
+        return np.full(len(unit), 0.0 if len(self.times) > 1 else STILL_CELLS) / (unit * last)

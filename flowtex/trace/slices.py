@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from flowtex._util.array_types import AnyArray, Floats
+from flowtex._util.array_types import AnyArray, Floats, Indices
 from flowtex._util.blocks import block_means
 from flowtex.field.interpolation import bracket
 
@@ -99,7 +99,7 @@ class TraceSlices:
         }
         return replace(self, **parts)
 
-    def part(self, rows: slice, columns: slice) -> TraceSlices:
+    def part(self, rows: slice, columns: slice | Indices) -> TraceSlices:
         """Return the slices of some rows and columns of entries."""
         parts: dict[str, Any] = {
             name: data[(slice(None),) * axis + (rows, columns)]

@@ -26,6 +26,7 @@ from flowtex.trace.integrate import MOST_CELLS, Paths, follow, integrate
 from flowtex.trace.lags import choose_lags, lag_unit
 from flowtex.trace.sampler import LengthSampler, Sampler, TimeSampler
 from flowtex.trace.slices import TraceSlices
+from flowtex.trace.triangle_trace import triangle_paths, triangle_slices
 
 __all__ = ["paths", "trace"]
 
@@ -121,6 +122,21 @@ def trace(
         msg = f"tolerance is {tolerance!r}; expected a positive number of cells, such as 1e-3"
         raise ValueError(msg)
     step_numbers = _step_numbers(field, steps)
+    if field.triangles is not None:
+        chosen = field.valid if nodes is None else field.valid & _checked_nodes(field, nodes)
+        with _threads() as pool:
+            return triangle_slices(
+                field,
+                step_numbers,
+                parameter,
+                lag_values,
+                units,
+                chosen,
+                two_sided=two_sided,
+                tolerance=tolerance,
+                run=pool.map,
+                progress=progress,
+            )
     directions = (-1.0, 1.0) if two_sided else (-1.0,)
     samplers = _samplers(field, step_numbers, parameter)
     composed = lags is None if compose is None else compose
@@ -180,13 +196,24 @@ def paths(
     """
     parameter = _parameter(field, parameter)
     begin = np.array(start, dtype=float).reshape(-1, 2)
+    direction = 1.0 if forward else -1.0
+    if field.triangles is not None:
+        return triangle_paths(
+            field,
+            begin,
+            _checked_lags(lags),
+            step=field.step_number(step),
+            parameter=parameter,
+            direction=direction,
+            tolerance=tolerance,
+        )
     sampler = _samplers(field, _step_numbers(field, [step]), parameter)[0]
     return integrate(
         sampler,
         begin,
         _checked_lags(lags),
         np.ones(len(begin)),
-        direction=1.0 if forward else -1.0,
+        direction=direction,
         tolerance=tolerance,
     )
 
@@ -215,6 +242,10 @@ def _samplers(field: FlowField, steps: list[int], parameter: str) -> list[Sample
         return [LengthSampler(field)]
     sampler = TimeSampler(field)
     return [sampler.since(float(field.times[step])) for step in steps]
+
+
+def _threads() -> ThreadPoolExecutor:
+    return ThreadPoolExecutor(max_workers=min(os.cpu_count() or 1, MOST_THREADS))
 
 
 def _parameter(field: FlowField, parameter: str) -> str:
@@ -288,7 +319,7 @@ class _Tracing:
             )
             for direction in directions
         }
-        with ThreadPoolExecutor(max_workers=min(os.cpu_count() or 1, MOST_THREADS)) as pool:
+        with _threads() as pool:
             self._integrate(sides, known, pool)
             for direction, flat in sides.items():
                 side = sides[direction] = self._as_grids(flat, direction)

@@ -101,17 +101,12 @@ def _drawn(
 
 def _colour(scene: ClientData, picture: Picture, steps: tuple[int, int], between: float) -> Floats:
     """Colour of the surface at each pixel, (H, W, 3)."""
-    colours, geometry = scene.colours, scene.textures.geometry
+    colours = scene.colours
     if colours.values is None or colours.table is None:
         return np.asarray(colours.plain)
     before, after = (colours.values[min(step, len(colours.values) - 1)] for step in steps)
     values = before * (1 - between) + after * between
-    rows, columns = geometry.rows, geometry.columns
-    at = np.nan_to_num(picture.coordinate, nan=0.0)
-    j = np.rint(at[..., 1] * rows.size - rows.before - 0.5).astype(int).clip(0, rows.nodes - 1)
-    i = np.rint(at[..., 0] * columns.size - columns.before - 0.5).astype(int)
-    nearest = values[j, i.clip(0, columns.nodes - 1)]
-    share = colours.shares(nearest)
+    share = colours.shares(values.ravel()[picture.nearest])
     entry = (np.nan_to_num(share) * 256).clip(0, 255).astype(int)
     return np.where(
         np.isnan(share)[..., None], rgb(NO_VALUE_COLOR), colours.table[entry, :3] / 255.0

@@ -2,14 +2,44 @@
 //
 // A slice between the nodes is a mean over paths that begin cells apart. Beside a critical point
 // those part, and their mean vanishes elsewhere than the velocity does, which shows once a streak is
-// shorter than a cell. It then follows the velocity between the four nodes, where these do not agree
-// on the direction.
+// shorter than a cell. It then follows the velocity between the nodes of the cell, where these do not
+// agree on the direction.
 
 #ifdef FLOWTEX_CELLS
+// What velocities are told by, for a point that lies x, y cells away: 1, x, y and x y between four
+// nodes; between the three of a triangle x and y are shares of its corners, and there is no x y.
+#ifdef FLOWTEX_TRIANGLES
+const int FLOWTEX_CELL_NODES = 3;
+#define FLOWTEX_FACTORS vec3
+#define FLOWTEX_VELOCITY mat3
+#define FLOWTEX_RATE mat3x2
+#define flowtexFactors(at) vec3(1.0, at)
+mat3x2 flowtexSharesBy; // change of the shares by a vector in space
+
+// From derivatives on the screen.
+void flowtexSetSharesBy(vec3 dx, vec3 dy, vec2 byX, vec2 byY)
+{
+  // In pixels, so that no square is too small for single precision.
+  float size = max(max(length(dx), length(dy)), FLOWTEX_LEAST_SQUARE);
+  dx /= size;
+  dy /= size;
+  vec3 normal = cross(dx, dy);
+  vec3 across = normal / max(dot(normal, normal), FLOWTEX_LEAST_SQUARE);
+  flowtexSharesBy = (outerProduct(byX, cross(dy, across)) + outerProduct(byY, cross(across, dx)))
+    * (1.0 / size);
+}
+#else
+const int FLOWTEX_CELL_NODES = 4;
+#define FLOWTEX_FACTORS vec4
+#define FLOWTEX_VELOCITY mat4x3
+#define FLOWTEX_RATE mat4x2
+#define flowtexFactors(at) vec4(1.0, at, at.x * at.y)
+#endif
+
 struct FlowtexCell
 {
-  mat4x3 velocity; // in space, by 1, x, y and x y for a point that lies x, y cells away
-  mat4x2 rate;     // the same in cells
+  FLOWTEX_VELOCITY velocity; // in space
+  FLOWTEX_RATE rate;         // the same in cells
   float share;     // of the path in the cell in that of the fragment
   vec2 at;         // where the path has come, in cells from the fragment
   vec3 moved;      // and in space
@@ -21,25 +51,41 @@ FlowtexCell flowtexCell;
 // Sets the cell of a fragment whose path is so long to each side; tells whether it has a share.
 bool flowtexEnterCell(vec2 coordinate, float reach)
 {
+#ifdef FLOWTEX_TRIANGLES
+  vec3 here = flowtexShares(coordinate);
+#else
   vec2 at = coordinate * u_slicesSize - 0.5;
   vec2 f = at - floor(at);
   vec2 g = 1.0 - f;
   vec4 here = vec4(g.x, f.x, g.x, f.x) * vec4(g.y, g.y, f.y, f.y);
-  mat4x3 velocity;
-  mat4x2 rate;
+#endif
+  FLOWTEX_VELOCITY velocity;
+  FLOWTEX_RATE rate;
   vec2 lengths = vec2(0.0);
-  for (int n = 0; n < 4; ++n)
+  for (int n = 0; n < FLOWTEX_CELL_NODES; ++n)
   {
+#ifdef FLOWTEX_TRIANGLES
+    velocity[n] = flowtexFetch(n, 0).xyz * flowtexFetch(n, u_rateLayer).w;
+    rate[n] = flowtexSharesBy * velocity[n];
+    // One along any side of the triangle.
+    float cells = sqrt(dot(rate[n], rate[n]) + rate[n].x * rate[n].y);
+#else
     ivec2 node = clamp(ivec2(floor(at)) + ivec2(n & 1, n >> 1), ivec2(0), ivec2(u_slicesSize) - 1);
     vec4 tangent = texelFetch(u_slices, ivec3(node, 0), 0);
     vec4 turn = texelFetch(u_slices, ivec3(node, u_rateLayer), 0);
     velocity[n] = tangent.xyz * turn.w;
     rate[n] = turn.xy * (turn.w / (tangent.w * u_cell));
-    lengths += here[n] * vec2(length(velocity[n]), length(rate[n]));
+    float cells = length(rate[n]);
+#endif
+    lengths += here[n] * vec2(length(velocity[n]), cells);
   }
   lengths.x = max(lengths.x, FLOWTEX_LEAST_SPEED);
+#ifdef FLOWTEX_TRIANGLES
+  mat3 about = mat3(here, vec3(-1.0, 1.0, 0.0), vec3(-1.0, 0.0, 1.0)) * (1.0 / lengths.x);
+#else
   mat4 about = mat4(here, vec4(-g.y, g.y, -f.y, f.y), vec4(-g.x, -f.x, g.x, f.x),
                     vec4(1.0, -1.0, -1.0, 1.0)) * (1.0 / lengths.x);
+#endif
   flowtexCell.velocity = velocity * about;
   flowtexCell.rate = rate * about;
   float agreed = length(flowtexCell.velocity[0]);
@@ -61,11 +107,11 @@ void flowtexLeaveFragment()
 void flowtexGoOn(float length_, inout vec3 displacement, inout float alive)
 {
   vec2 at = flowtexCell.at;
-  vec4 place = vec4(1.0, at, at.x * at.y);
+  FLOWTEX_FACTORS place = flowtexFactors(at);
   vec3 first = flowtexCell.velocity * place;
   float square = max(dot(first, first), FLOWTEX_LEAST_SQUARE);
   at += 0.5 * length_ * inversesqrt(square) * (flowtexCell.rate * place);
-  place = vec4(1.0, at, at.x * at.y);
+  place = flowtexFactors(at);
   vec3 middle = flowtexCell.velocity * place;
   float time = length_ * inversesqrt(max(dot(middle, middle), FLOWTEX_LEAST_SQUARE));
   flowtexCell.at += time * (flowtexCell.rate * place);

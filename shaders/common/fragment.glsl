@@ -10,10 +10,15 @@ float flowtexValue(vec2 coordinate, vec2 noise)
 #else
 float flowtexValue(vec2 coordinate, vec3 position, vec3 normal)
 {
-  float level = flowtexSliceLevel(flowtexDx(coordinate), flowtexDy(coordinate));
+  vec2 byX = flowtexDx(coordinate);
+  vec2 byY = flowtexDy(coordinate);
+  float level = flowtexSliceLevel(byX, byY);
   // Relative to a point near the view: fewer digits are lost.
   vec3 dx = flowtexDx(position - u_noiseOrigin);
   vec3 dy = flowtexDy(position - u_noiseOrigin);
+#if defined(FLOWTEX_TRIANGLES) && defined(FLOWTEX_CELLS)
+  flowtexSetSharesBy(dx, dy, byX, byY);
+#endif
 #ifndef FLOWTEX_PLANAR
   dx = flowtexOnSurface(dx, position, normal);
   dy = flowtexOnSurface(dy, position, normal);

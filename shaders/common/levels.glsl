@@ -18,6 +18,9 @@ vec3 flowtexOnSurface(vec3 derivative, vec3 position, vec3 normal)
 // cells are long and thin.
 float flowtexSliceLevel(vec2 dx, vec2 dy)
 {
+#ifdef FLOWTEX_TRIANGLES
+  return 0.0; // other levels are other meshes
+#else
   if (!u_lod)
     return 0.0;
   vec2 sx = dx * u_slicesSize;
@@ -25,6 +28,7 @@ float flowtexSliceLevel(vec2 dx, vec2 dy)
   float determinant = sx.x * sy.y - sx.y * sy.x;
   vec2 footprint = flowtexFootprint(dot(sx, sx), dot(sy, sy), determinant);
   return clamp(log2(max(footprint.y, FLOWTEX_LEAST_TEXELS)), 0.0, u_deepest);
+#endif
 }
 
 // A colour for a level of detail, for teaching: one hue for each doubling, six in a round.

@@ -4,7 +4,44 @@
 // displacement at lag s is s * slope, s negative backward. Between two lags the slope is
 // interpolated linearly, which makes the path a parabola and not a polygon.
 
-#ifdef FLOWTEX_SIGNFREE
+#ifdef FLOWTEX_TRIANGLES
+// A triangle has three nodes wherever they lie in the texture, and its coordinate is the share of the
+// second and of the third.
+ivec2 flowtexNodes[3]; // their texels
+
+// Comes before all else: numbers of the nodes, which are wrapped into rows.
+void flowtexSetCorners(vec3 corners)
+{
+  int width = int(u_slicesSize.x);
+  for (int k = 0; k < 3; ++k)
+  {
+    int node = int(corners[k] + 0.5);
+    flowtexNodes[k] = ivec2(node % width, node / width);
+  }
+}
+
+vec3 flowtexShares(vec2 coordinate)
+{
+  return vec3(1.0 - coordinate.x - coordinate.y, coordinate);
+}
+
+vec4 flowtexFetch(int corner, int layer)
+{
+  ivec3 texel = ivec3(flowtexNodes[corner], layer);
+#ifdef FLOWTEX_UNSTEADY
+  return mix(texelFetch(u_slices, texel, 0), texelFetch(u_slicesNext, texel, 0), u_between);
+#else
+  return texelFetch(u_slices, texel, 0);
+#endif
+}
+
+vec4 flowtexLayer(vec2 coordinate, int layer, float level)
+{
+  vec3 shares = flowtexShares(coordinate);
+  return shares.x * flowtexFetch(0, layer) + shares.y * flowtexFetch(1, layer)
+    + shares.z * flowtexFetch(2, layer);
+}
+#elif defined(FLOWTEX_SIGNFREE)
 // In a field without a sign the nodes around a fragment may point either way, and filtering would
 // cancel them. So the four texels are fetched one by one and those that point against the others
 // are turned over: their two sides change places, and their slopes the sign. A coarser level has

@@ -3,6 +3,9 @@ in vec2 flowtexCoordinateVSOutput;
 #ifndef FLOWTEX_PLANAR
 in vec3 flowtexNormalVSOutput;
 #endif
+#ifdef FLOWTEX_TRIANGLES
+flat in vec3 flowtexCornersVSOutput;
+#endif
 #ifdef FLOWTEX_PAPER
 in vec2 flowtexNoiseVSOutput;
 #endif
@@ -17,8 +20,15 @@ uniform vec2 u_padding;           // texels of the slices before the first node
 // Values are interpolated first and mapped then, each entry of the map over an equal share.
 vec3 flowtexMapped(vec2 coordinate)
 {
+#ifdef FLOWTEX_TRIANGLES
+  vec3 shares = flowtexShares(coordinate);
+  vec2 share = vec2(0.0);
+  for (int k = 0; k < 3; ++k)
+    share += shares[k] * texelFetch(u_shares, ivec3(flowtexNodes[k], 0), 0).rg;
+#else
   vec2 at = (coordinate * u_slicesSize - u_padding) / vec2(textureSize(u_shares, 0).xy);
   vec2 share = textureLod(u_shares, vec3(at, 0.0), 0.0).rg;
+#endif
   int count = textureSize(u_colours, 0).x - 3;
   float place = share.x / max(share.y, 0.5);
   int entry = place == 1.0 ? count : int(clamp(floor(place * float(count)), -1.0, float(count))) + 1;

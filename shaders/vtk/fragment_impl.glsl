@@ -1,3 +1,6 @@
+#ifdef FLOWTEX_TRIANGLES
+  flowtexSetCorners(flowtexCornersVSOutput);
+#endif
 #if defined(FLOWTEX_PAPER)
   float flowtexTextured = flowtexValue(flowtexCoordinateVSOutput, flowtexNoiseVSOutput);
 #elif defined(FLOWTEX_PLANAR)

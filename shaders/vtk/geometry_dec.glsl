@@ -8,6 +8,10 @@ out vec2 flowtexCoordinateGSOutput;
 in vec3 flowtexNormalVSOutput[];
 out vec3 flowtexNormalGSOutput;
 #endif
+#ifdef FLOWTEX_TRIANGLES
+flat in vec3 flowtexCornersVSOutput[];
+flat out vec3 flowtexCornersGSOutput;
+#endif
 #ifdef FLOWTEX_PAPER
 in vec2 flowtexNoiseVSOutput[];
 out vec2 flowtexNoiseGSOutput;

@@ -3,6 +3,9 @@
 #ifndef FLOWTEX_PLANAR
     flowtexNormalGSOutput = flowtexNormalVSOutput[i];
 #endif
+#ifdef FLOWTEX_TRIANGLES
+    flowtexCornersGSOutput = flowtexCornersVSOutput[i];
+#endif
 #ifdef FLOWTEX_PAPER
     flowtexNoiseGSOutput = flowtexNoiseVSOutput[i];
 #endif

@@ -6,6 +6,10 @@ out vec2 flowtexCoordinateVSOutput;
 in vec3 flowtexNormal;
 out vec3 flowtexNormalVSOutput;
 #endif
+#ifdef FLOWTEX_TRIANGLES
+in vec3 flowtexCorners; // numbers of the three nodes, the same at each
+flat out vec3 flowtexCornersVSOutput;
+#endif
 #ifdef FLOWTEX_PAPER
 in vec2 flowtexNoise;
 out vec2 flowtexNoiseVSOutput;

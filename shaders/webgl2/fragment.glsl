@@ -3,6 +3,9 @@ in vec2 flowtexCoordinateOut;
 #ifndef FLOWTEX_PLANAR
 in vec3 flowtexNormalOut;
 #endif
+#ifdef FLOWTEX_TRIANGLES
+flat in vec3 flowtexCornersOut;
+#endif
 #ifdef FLOWTEX_PAPER
 in vec2 flowtexNoiseOut;
 #endif
@@ -37,6 +40,9 @@ vec3 flowtexMapped(float share)
 
 void main()
 {
+#ifdef FLOWTEX_TRIANGLES
+  flowtexSetCorners(flowtexCornersOut);
+#endif
 #if defined(FLOWTEX_PAPER)
   float textured = flowtexValue(flowtexCoordinateOut, flowtexNoiseOut);
 #elif defined(FLOWTEX_PLANAR)

@@ -5,6 +5,9 @@ in vec2 flowtexCoordinate;
 #ifndef FLOWTEX_PLANAR
 in vec3 flowtexNormal;
 #endif
+#ifdef FLOWTEX_TRIANGLES
+in vec3 flowtexCorners; // numbers of the three nodes, the same at each
+#endif
 #ifdef FLOWTEX_PAPER
 in vec2 flowtexNoise;
 #endif
@@ -20,6 +23,10 @@ out vec2 flowtexCoordinateOut;
 #ifndef FLOWTEX_PLANAR
 out vec3 flowtexNormalOut;
 #endif
+#ifdef FLOWTEX_TRIANGLES
+flat out vec3 flowtexCornersOut;
+flat out highp int flowtexTriangleOut; // its number
+#endif
 #ifdef FLOWTEX_PAPER
 out vec2 flowtexNoiseOut;
 #endif
@@ -31,6 +38,10 @@ void main()
   flowtexCoordinateOut = flowtexCoordinate;
 #ifndef FLOWTEX_PLANAR
   flowtexNormalOut = flowtexNormal;
+#endif
+#ifdef FLOWTEX_TRIANGLES
+  flowtexCornersOut = flowtexCorners;
+  flowtexTriangleOut = gl_VertexID / 3;
 #endif
 #ifdef FLOWTEX_PAPER
   flowtexNoiseOut = flowtexNoise;

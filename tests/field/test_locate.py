@@ -11,7 +11,7 @@ import pytest
 from numpy.typing import NDArray
 
 from flowtex import FlowField
-from flowtex.field.locate import Locator, locate, locator, surface_point
+from flowtex.field.locate import locate, locator, surface_point
 from flowtex.field.point_values import values_at
 
 Floats = NDArray[np.float64]
@@ -115,7 +115,7 @@ def test_the_nearest_of_two_sheets_counts() -> None:
 
 def test_the_tree_lives_as_long_as_its_field() -> None:
     field = flat()
-    kept: weakref.ref[Locator] = weakref.ref(locator(field))
+    kept: weakref.ref[object] = weakref.ref(locator(field))
     assert locator(field) is kept()
     del field
     gc.collect()

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from flows import gyre, lines, swinging
+from flows import gyre, lines, scattered_gyre, swinging
 from matrix import SIZE, straight
 from scipy.linalg import expm
+from triangle_meshes import random_plane, soup
 
 from flowtex import FlowField
 from flowtex._util.array_types import Floats
+from flowtex.field.locate import locate
 from flowtex.probe import probe
 from flowtex.rendering.cpu import render
 from flowtex.rendering.uniforms import ViewState, is_near
@@ -33,6 +36,14 @@ def linear(name: str) -> FlowField:
     y, x = np.mgrid[0:1:40j, 0:1:40j]
     points = np.stack([x, y], -1)
     return FlowField.from_arrays(points, (points - CELL * POINT) @ np.transpose(FLOWS[name]))
+
+
+def scattered(name: str) -> FlowField:
+    """The same on triangles, whose sides are about as long as those of the cells."""
+    points, triangles = random_plane(np.random.default_rng(4), 1500)
+    mixed = soup(np.random.default_rng(4), (points, triangles))
+    velocity = (mixed[0][:, :2] - CELL * POINT) @ np.transpose(FLOWS[name])
+    return FlowField.from_triangles(*mixed, velocity)
 
 
 def exact(name: str, start: Floats, length: float) -> Floats:
@@ -68,6 +79,24 @@ def test_a_path_beside_a_critical_point_is_exact(name: str, parameter: str, cell
         assert len(points) == 49
 
 
+@pytest.mark.parametrize("cells", [0.02, 1e-3])
+@pytest.mark.parametrize("parameter", ["arclength", "time"])
+@pytest.mark.parametrize("name", FLOWS)
+def test_so_it_is_on_triangles(name: str, parameter: str, cells: float) -> None:
+    field = scattered(name)
+    scene = Scene(field, Settings(parameter=parameter))
+    starts = [[3.0, 8.0], [-14.0, 5.0]] if name in ("saddle", "centre") else [[20.0, 30.0]]
+    for start in np.array(starts):
+        place = locate(field, [*(CELL * (POINT + cells * start)), 0.0])
+        found = probe(scene, place, pixel=cells * CELL)
+        points = (found.points[:, :2] / CELL - POINT) / cells
+        off = np.linalg.norm(points[:, None] - exact(name, start, 30.0), axis=-1).min(axis=1)
+        assert off.max() < 0.1 + 4e-4 / cells
+        steps = np.linalg.norm(np.diff(points, axis=0), axis=-1)
+        np.testing.assert_allclose(steps, 1.05, rtol=0.05)
+        assert len(points) == 49
+
+
 def test_a_path_ends_in_a_node() -> None:
     i, j = POINT + np.array([0.005, 0.0])
     found = probe(Scene(linear("node")), (j, i), pixel=1e-3 * CELL)
@@ -76,9 +105,15 @@ def test_a_path_ends_in_a_node() -> None:
     assert len(found.lags) == 24 + 1 + 5
 
 
-@pytest.mark.parametrize(("zoom", "near"), [(0.5, False), (1.0, False), (2.5, False), (8.0, True)])
-def test_from_afar_the_slices_are_left_alone(zoom: float, near: bool) -> None:
-    scene, camera = Scene(gyre(), Settings()), straight(zoom, (0.5, 0.5))
+@pytest.mark.parametrize(
+    ("field", "zoom", "near"),
+    [(gyre, zoom, zoom == 8) for zoom in (0.5, 1.0, 2.5, 8.0)]
+    + [(scattered_gyre, zoom, zoom == 8) for zoom in (0.25, 8.0)],
+)
+def test_from_afar_the_slices_are_left_alone(
+    field: Callable[[], FlowField], zoom: float, near: bool
+) -> None:
+    scene, camera = Scene(field(), Settings()), straight(zoom, (0.5, 0.5))
     view = ViewState(eye=camera.eye, pixel=2 * camera.parallel_scale / SIZE[1])
     assert is_near(scene.textures, scene.settings, view) == near
     plain, cells = (
@@ -92,6 +127,9 @@ def test_where_the_flow_does_not_turn_no_view_is_near() -> None:
     y, x = np.mgrid[0:1:20j, 0:1:20j]
     wind = FlowField.from_arrays(np.stack([x, y], -1), np.stack([1 + x, 0.3 * y], -1))
     assert not is_near(Scene(wind).textures, Settings(), ViewState())
+    points, triangles = random_plane(np.random.default_rng(4), 400)
+    scattered_wind = FlowField.from_triangles(points, triangles, 1 + points[:, :2])
+    assert not is_near(Scene(scattered_wind).textures, Settings(), ViewState())
     for field in (swinging(), lines()):
         assert not is_near(Scene(field).textures, Settings(), ViewState())
 

@@ -59,7 +59,7 @@ def test_arrays_are_those_of_the_texture_set(make: Any, noise: str) -> None:
         channels = header["slices"]["channels"]
         slices = parts[f"slices/{step}"]
         assert slices.dtype == np.float16
-        shape = (header["slices"]["count"], geometry.rows.size, geometry.columns.size, channels)
+        shape = (header["slices"]["count"], *geometry.size, channels)
         assert slices.shape == shape
         np.testing.assert_allclose(slices, layers[..., :channels], rtol=1e-3, atol=1e-4)
         assert channels == 4 or not layers[..., channels:3].any()  # nothing is lost

@@ -22,7 +22,7 @@ def textures(field: FlowField, slices: TraceSlices | None = None, **settings: ob
 
 def nodal(made: TextureSet, layer: Floats32) -> Floats32:
     """Texels that lie on the nodes, (J, I, ...)."""
-    rows, columns = made.geometry.rows, made.geometry.columns
+    rows, columns = made.grid.rows, made.grid.columns
     return layer[
         rows.before : rows.before + rows.nodes, columns.before : columns.before + columns.nodes
     ]
@@ -119,7 +119,7 @@ def test_by_time_slopes_are_speeds_over_a_typical_speed() -> None:
 
 def test_periodic_axis_goes_on_by_its_own_period() -> None:
     made = textures(cylinder_field().at_step(0))
-    columns, rows = made.geometry.columns, made.geometry.rows
+    columns, rows = made.grid.columns, made.grid.rows
     assert columns.periodic and not rows.periodic
     period = columns.nodes - 1
     layers = made.layers()

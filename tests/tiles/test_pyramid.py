@@ -45,7 +45,7 @@ def whole_layers(field: FlowField, like: TextureSet, step: int = 0) -> Floats:
     )
     layers = textures.layers(step).astype(np.float64)
     layers[0, ..., 3] *= textures.unit / like.unit
-    rows, columns = textures.geometry.rows, textures.geometry.columns
+    rows, columns = textures.grid.rows, textures.grid.columns
     return layers[
         :,
         rows.before : rows.before + rows.nodes,
@@ -55,7 +55,7 @@ def whole_layers(field: FlowField, like: TextureSet, step: int = 0) -> Floats:
 
 def nodal(tile: TextureSet, step: int = 0) -> Floats:
     """Layers of the nodes that a tile draws."""
-    layers, geometry = tile.layers(step), tile.geometry
+    layers, geometry = tile.layers(step), tile.grid
     rows, columns = geometry.rows, geometry.columns
     return layers[
         :,

@@ -192,7 +192,7 @@ def test_a_wedge_that_is_not_closed_ends_its_paths() -> None:
 def test_all_nodes_of_a_pole_hold_the_same_slopes() -> None:
     field = rotation(TILTED)
     textures = TextureSet.build(SliceStore(field), Settings())
-    rows, columns = textures.geometry.rows, textures.geometry.columns
+    rows, columns = textures.grid.rows, textures.grid.columns
     # The last layer is the velocity in cells, which turn with the meridians.
     layers = textures.layers()[:-1]
     for row, up in ((rows.before, 1.0), (rows.before + rows.nodes - 1, -1.0)):
@@ -209,7 +209,7 @@ def test_all_nodes_of_a_pole_hold_the_same_slopes() -> None:
 def test_slopes_change_as_little_over_the_pole_as_elsewhere() -> None:
     field = rotation(X, 61, 120)
     textures = TextureSet.build(SliceStore(field), Settings())
-    rows, columns = textures.geometry.rows, textures.geometry.columns
+    rows, columns = textures.grid.rows, textures.grid.columns
     for layer in textures.layers()[:-1, rows.before :, columns.before :]:
         over = np.concatenate([layer[8:0:-1, 60:120], layer[:9, :60]])[..., :3]
         steps = np.linalg.norm(np.diff(over, axis=0), axis=-1)

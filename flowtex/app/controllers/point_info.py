@@ -373,9 +373,9 @@ class PointInfo(Controller):
 
     def take_point(self, index: Any) -> None:
         """Show the path through a point that the browser's client tells, (i, j)."""
-        rows, columns = self.viewport.field.shape
+        last_j, last_i = self.viewport.field.surface.last_index
         if _is_pair(index):
-            i, j = number(index[0], 0, columns - 1), number(index[1], 0, rows - 1)
+            i, j = number(index[0], 0, last_i), number(index[1], 0, last_j)
             if i is not None and j is not None:
                 self.show_path((j, i))
 

@@ -41,6 +41,11 @@ class TriangleSurface(Surface):
         self.has_position = np.ones(valid.shape, dtype=bool)
         self.offset = np.zeros((2, 3))
 
+    @property
+    def last_index(self) -> tuple[float, float]:
+        """Greatest position (j, i): the last triangle and its second corner, and a third corner."""
+        return len(self.triangles) - 1 + MOST_SHARE, 1.0
+
     @cached_property
     def cells(self) -> Bools:
         """Triangles whose three nodes are valid, (M,)."""

@@ -2,27 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
 
-from flowtex._util.array_types import Floats
+from flowtex._util.array_types import Floats, Indices
 from flowtex.rendering import constants as const
-from flowtex.rendering.cpu.path import Slices
+from flowtex.rendering.cpu.path import Slices, TriangleSlices
+from flowtex.rendering.cpu.places import Places, TrianglePlaces
 
 __all__ = ["CellPath"]
 
 
 class CellPath:
-    """Paths of N fragments that follow the velocity of the four nodes around each.
+    """Paths of N fragments that follow the velocity of the nodes around each.
 
     Parameters
     ----------
     slices
         The slice texture.
     coordinate, reach
-        Texture coordinates (N, 2), and lengths of a side of the paths, (N,).
+        Texture coordinates (N, 2), or places in triangles, and lengths of a side of the paths,
+        (N,).
     values
         The uniforms.
 
@@ -33,31 +35,19 @@ class CellPath:
     """
 
     def __init__(
-        self, slices: Slices, coordinate: Floats, reach: Floats, values: Mapping[str, Any]
+        self, slices: Slices, coordinate: Places, reach: Floats, values: Mapping[str, Any]
     ) -> None:
-        size = np.array(values["u_slicesSize"])
-        at = coordinate * size - 0.5
-        f, finest = at - np.floor(at), np.zeros(len(at))
-        (x, y), one = f.T, np.ones(len(at))
-        # Factors of 1, x, y and x y, node by node.
-        about = np.array(
-            [
-                [(1 - x) * (1 - y), y - 1, x - 1, one],
-                [x * (1 - y), 1 - y, -x, -one],
-                [(1 - x) * y, -y, 1 - x, -one],
-                [x * y, y, x, one],
-            ]
-        )
-        both = np.zeros((len(at), 5, 4))
-        speed, rate = np.zeros((2, len(at)))
-        for right, weights in zip(((0, 0), (1, 0), (0, 1), (1, 1)), about, strict=True):
-            node = (np.floor(at) + right + 0.5) / size
-            tangent, turn = (slices.layer(node, n, finest) for n in (0, values["u_rateLayer"]))
-            moved = tangent[:, :3] * turn[:, 3:]
-            cells = turn[:, :2] * (turn[:, 3:] / (tangent[:, 3:] * values["u_cell"]))
-            both += np.concatenate([moved, cells], axis=1)[:, :, None] * weights.T[:, None]
+        if isinstance(coordinate, TrianglePlaces):
+            assert isinstance(slices, TriangleSlices)
+            about, nodes = _triangle(slices, coordinate, values)
+        else:
+            about, nodes = _square(slices, coordinate, values)
+        both = np.zeros((len(reach), 5, len(about)))
+        speed, rate = np.zeros((2, len(reach)))
+        for weights, (moved, by, cells) in zip(about, nodes, strict=True):
+            both += np.concatenate([moved, by], axis=1)[:, :, None] * weights.T[:, None]
             speed += weights[0] * np.linalg.norm(moved, axis=1)
-            rate += weights[0] * np.linalg.norm(cells, axis=1)
+            rate += weights[0] * cells
         speed = np.maximum(speed, const.LEAST_SPEED)
         agreed = np.linalg.norm(both[:, :3, 0], axis=1) / speed
         far = _smoothstep(const.NEAR_CELLS, const.FAR_CELLS, reach * rate / speed)
@@ -95,8 +85,55 @@ class CellPath:
     def _velocity(self, at: Floats) -> Floats:
         """Velocity in space and in cells, (n, 5), at points given as both."""
         x, y = at[:, 3:].T
-        factors = np.stack([np.ones_like(x), x, y, x * y])
+        factors = np.stack([np.ones_like(x), x, y, x * y])[: self._both.shape[2]]
         return np.asarray(np.einsum("nck,kn->nc", self._both, factors))
+
+
+#: A node's velocity in space, (N, 3), in cells, (N, 2), and how many cells these are, (N,).
+_Node = tuple[Floats, Floats, Floats]
+
+
+def _square(
+    slices: Slices, coordinate: Floats, values: Mapping[str, Any]
+) -> tuple[Floats, Iterator[_Node]]:
+    """Return the factors (4, 4, N) of 1, x, y and x y of each of four nodes, and the nodes."""
+    size = np.array(values["u_slicesSize"])
+    at = coordinate * size - 0.5
+    f, finest = at - np.floor(at), np.zeros(len(at))
+    (x, y), one = f.T, np.ones(len(at))
+    about = np.array(
+        [
+            [(1 - x) * (1 - y), y - 1, x - 1, one],
+            [x * (1 - y), 1 - y, -x, -one],
+            [(1 - x) * y, -y, 1 - x, -one],
+            [x * y, y, x, one],
+        ]
+    )
+
+    def node(right: tuple[int, int]) -> _Node:
+        there = (np.floor(at) + right + 0.5) / size
+        tangent, turn = (slices.layer(there, n, finest) for n in (0, values["u_rateLayer"]))
+        by = turn[:, :2] * (turn[:, 3:] / (tangent[:, 3:] * values["u_cell"]))
+        return tangent[:, :3] * turn[:, 3:], by, np.linalg.norm(by, axis=1)
+
+    return about, map(node, ((0, 0), (1, 0), (0, 1), (1, 1)))
+
+
+def _triangle(
+    slices: TriangleSlices, places: TrianglePlaces, values: Mapping[str, Any]
+) -> tuple[Floats, Iterator[_Node]]:
+    """Return the factors (3, 3, N) of 1, x and y of each of three nodes, and the nodes."""
+    one, none = np.ones(len(places)), np.zeros(len(places))
+    a, b, c = places.shares.T
+    about = np.array([[a, -one, -one], [b, one, none], [c, none, one]])
+
+    def node(number: Indices) -> _Node:
+        tangent, turn = (slices.at_node(number, n) for n in (0, values["u_rateLayer"]))
+        moved = tangent[:, :3] * turn[:, 3:]
+        by = np.einsum("nkc,nc->nk", places.by, moved)
+        return moved, by, np.sqrt((by**2).sum(axis=1) + by[:, 0] * by[:, 1])
+
+    return about, map(node, places.nodes.T)
 
 
 def _dot(a: Floats, b: Floats) -> Floats:

@@ -8,9 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from flowtex._util.array_types import Floats
+from flowtex._util.array_types import Floats, Indices
+from flowtex.rendering.cpu.places import Places, TrianglePlaces, shares_by
 from flowtex.rendering.cpu.raster import Coverage
-from flowtex.textures import TextureSet
+from flowtex.textures import TextureSet, TriangleGeometry
 
 __all__ = ["Fragments", "Varying"]
 
@@ -33,13 +34,15 @@ class Fragments:
     """N pixels of a surface: their positions and normals in its own frame, (N, 3), and coordinates.
 
     These are of the slices, (N, 2), and of the noise where it has a texture. A flat surface has no
-    normals; others are of any length.
+    normals; others are of any length. On a surface of triangles the coordinates are the shares of
+    the second and the third corner, and ``nodes`` (N, 3) are the corners' numbers.
     """
 
     position: Varying
     coordinate: Varying
     noise: Varying | None = None
     normal: Varying | None = None
+    nodes: Indices | None = None
 
     @classmethod
     def of(cls, textures: TextureSet, coverage: Coverage) -> Fragments:
@@ -49,12 +52,28 @@ class Fragments:
         def varying(nodal: NDArray[np.floating]) -> Varying:
             return Varying(*coverage.mix(nodal.reshape(-1, nodal.shape[-1])))
 
+        if isinstance(geometry, TriangleGeometry):
+            return cls(
+                varying(geometry.position),
+                Varying(*(a[:, 1:] for a in (coverage.weights, coverage.dx, coverage.dy))),
+                normal=None if geometry.planar else varying(geometry.normal),
+                nodes=coverage.corners,
+            )
         return cls(
             varying(geometry.position),
             varying(geometry.coordinate),
             None if paper is None else varying(paper.coordinate),
             None if geometry.planar else varying(geometry.normal),
         )
+
+    @property
+    def place(self) -> Places:
+        """Where the slices are looked up."""
+        at, position = self.coordinate, self.position
+        if self.nodes is None:
+            return at.value
+        shares = np.concatenate([1 - at.value.sum(axis=1, keepdims=True), at.value], axis=1)
+        return TrianglePlaces(shares, self.nodes, shares_by(position.dx, position.dy, at.dx, at.dy))
 
     def __len__(self) -> int:
         """Count the fragments."""
@@ -65,4 +84,5 @@ class Fragments:
         for start in range(0, len(self), count):
             some = slice(start, start + count)
             noise, normal = (None if v is None else v[some] for v in (self.noise, self.normal))
-            yield some, Fragments(self.position[some], self.coordinate[some], noise, normal)
+            nodes = None if self.nodes is None else self.nodes[some]
+            yield some, Fragments(self.position[some], self.coordinate[some], noise, normal, nodes)

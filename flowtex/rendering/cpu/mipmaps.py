@@ -58,6 +58,10 @@ class Mips:
             result[between] += late[between, None] * (next_ - result[between])
         return result
 
+    def fetch(self, texel: Indices, layer: int | Indices = 0) -> Floats:
+        """Look up texels of the finest level, numbered row by row, (N, C)."""
+        return np.asarray(self._texels[layer * (self._heights[0] * self._widths[0]) + texel])
+
     def _bilinear(self, coordinate: Floats, level: Indices, layer: Indices) -> Floats:
         height, width = self._heights[level], self._widths[level]
         left, right, u = _neighbours(coordinate[:, 0], width, repeat=self._repeat[1])

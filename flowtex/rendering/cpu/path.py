@@ -8,8 +8,9 @@ import numpy as np
 
 from flowtex._util.array_types import Floats, Indices
 from flowtex.rendering.cpu.mipmaps import Mips
+from flowtex.rendering.cpu.places import Places, TrianglePlaces
 
-__all__ = ["AxisSlices", "Path", "Slices"]
+__all__ = ["AxisSlices", "Path", "Slices", "TriangleSlices"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,12 +21,34 @@ class Slices:
     after: Mips | None = None
     between: float = 0.0
 
-    def layer(self, coordinate: Floats, layer: int | Indices, level: Floats) -> Floats:
+    def layer(self, coordinate: Places, layer: int | Indices, level: Floats) -> Floats:
         """Channels of one layer, (N, 4), at texture coordinates (N, 2) and mip levels (N,)."""
+        assert not isinstance(coordinate, TrianglePlaces)
         value = self.before.at(coordinate, level, layer)
         if self.after is None:
             return value
         return value + self.between * (self.after.at(coordinate, level, layer) - value)
+
+
+class TriangleSlices(Slices):
+    """The slice texture of a surface of triangles: a texel for each node, and one level."""
+
+    def layer(self, coordinate: Places, layer: int | Indices, level: Floats) -> Floats:
+        """Channels of one layer, (N, 4), at places in triangles."""
+        del level
+        assert isinstance(coordinate, TrianglePlaces)
+        fetched = (
+            share[:, None] * self.at_node(node, layer)
+            for share, node in zip(coordinate.shares.T, coordinate.nodes.T, strict=True)
+        )
+        return np.asarray(sum(fetched))
+
+    def at_node(self, node: Indices, layer: int | Indices) -> Floats:
+        """Channels of one layer, (N, 4), at nodes (N,)."""
+        value = self.before.fetch(node, layer)
+        if self.after is None:
+            return value
+        return value + self.between * (self.after.fetch(node, layer) - value)
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,9 +62,10 @@ class AxisSlices(Slices):
     size: tuple[float, float] = (1.0, 1.0)
     lags: int = 0
 
-    def layer(self, coordinate: Floats, layer: int | Indices, level: Floats) -> Floats:
+    def layer(self, coordinate: Places, layer: int | Indices, level: Floats) -> Floats:
         """Channels of one layer, (N, 4), at texture coordinates (N, 2)."""
         del level
+        assert not isinstance(coordinate, TrianglePlaces)
         at = coordinate * np.array(self.size) - 0.5
         base = np.floor(at)
         s, t = (at - base).T
@@ -70,7 +94,7 @@ class Path:
     slices
         The slice texture.
     coordinate, level
-        Texture coordinates (N, 2) and mip levels (N,) of the fragments.
+        Texture coordinates (N, 2), or places in triangles, and mip levels (N,) of the fragments.
     ends
         Slopes at lag zero and at the first lag, (N, 3) each.
     first
@@ -82,7 +106,7 @@ class Path:
     def __init__(
         self,
         slices: Slices,
-        coordinate: Floats,
+        coordinate: Places,
         level: Floats,
         ends: tuple[Floats, Floats],
         first: int,

@@ -164,7 +164,7 @@ class LoadedTextures:
 
     def __init__(self, make_lookup: LookupMaker) -> None:
         self.make_lookup = make_lookup
-        self._mips: dict[int, Window] = {}
+        self._mips: dict[int, Mips] = {}
 
     @classmethod
     def of(cls, textures: TextureSet) -> LoadedTextures:
@@ -176,7 +176,9 @@ class LoadedTextures:
         if step not in self._mips:
             while len(self._mips) > 1:
                 del self._mips[next(iter(self._mips))]
-            self._mips[step] = Window(textures.layers(step), textures.geometry.levels)
+            levels, layers = textures.geometry.levels, textures.layers(step)
+            mips = Window(layers, levels) if levels else Mips(layers, levels=0)
+            self._mips[step] = mips
         return self._mips[step]
 
 

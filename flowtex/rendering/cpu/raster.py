@@ -22,6 +22,7 @@ from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.camera import Camera
 from flowtex.field import Surface
 from flowtex.field.locate import TRIANGLES
+from flowtex.field.triangles.surface import TriangleSurface
 
 __all__ = ["Coverage", "cover", "rasterise"]
 
@@ -56,6 +57,12 @@ class Coverage:
     dx: Floats
     dy: Floats
 
+    @property
+    def nearest(self) -> Indices:
+        """Number of the corner with the greatest share, (N,)."""
+        greatest = self.weights.argmax(axis=1)[:, None]
+        return np.take_along_axis(self.corners, greatest, axis=1)[:, 0]
+
     def mix(self, data: NDArray[np.floating]) -> tuple[Floats, Floats, Floats]:
         """Values at the pixels of data at the points, (P, C), and both derivatives, (N, C)."""
         at = data.astype(float)[self.corners]
@@ -74,6 +81,8 @@ def cover(surface: Surface, camera: Camera, size: tuple[int, int]) -> Coverage:
     points = (surface.points - surface.center).reshape(-1, 3)
     matrix = camera.matrix(size[0] / size[1], surface.center)
     clip = points @ matrix[:, :3].T + matrix[:, 3]
+    if isinstance(surface, TriangleSurface):
+        return rasterise(clip, surface.triangles[surface.cells], size)
     columns = surface.shape[1]
     j, i = np.nonzero(surface.cells)
     halves = np.array([j * columns + i for half in TRIANGLES for j, i in half])

@@ -10,14 +10,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flowtex._util.array_types import Bools, Bytes, Floats, Indices
+from flowtex._util.array_types import AnyArray, Bools, Bytes, Floats, Indices
 from flowtex.camera import Camera
 from flowtex.rendering.cpu.fragments import Fragments
 from flowtex.rendering.cpu.levels import level_colour, slice_level
 from flowtex.rendering.cpu.mipmaps import Mips
 from flowtex.rendering.cpu.noise import SpaceNoise
 from flowtex.rendering.cpu.paper_noise import PaperImages, PaperNoise, PaperPicture
-from flowtex.rendering.cpu.path import AxisSlices, Slices
+from flowtex.rendering.cpu.path import AxisSlices, Slices, TriangleSlices
 from flowtex.rendering.cpu.raster import cover
 from flowtex.rendering.cpu.shade import paint, shade
 from flowtex.rendering.cpu.texture import Lookup, LookupMaker, Summing
@@ -45,7 +45,11 @@ class Picture:
     covered
         Pixels that show the surface, (H, W).
     coordinate
-        Texture coordinates (u, v) in the slices, (H, W, 2).
+        Texture coordinates (u, v) in the slices, (H, W, 2); of triangles the shares of the second
+        and the third corner.
+    nearest
+        Number of the node that has the greatest share, (H, W): j times the number of columns plus
+        i; 0 where there is no surface.
     position
         Points of the mesh, in its own coordinates, (H, W, 3).
     slice_level, noise_level
@@ -57,6 +61,7 @@ class Picture:
     value: Floats
     covered: Bools
     coordinate: Floats
+    nearest: Indices
     position: Floats
     slice_level: Floats
     noise_level: Floats
@@ -123,7 +128,7 @@ def render(
     for some, part in fragments.parts(PART):
         part_lookup = make(part, values)
         summing = Summing(slices, values, part_lookup, paper=textures.paper is not None)
-        value.append(summing.texture(part.coordinate.value, level[some]))
+        value.append(summing.texture(part.place, level[some]))
         noise_level.append(part_lookup.level)
     image = partial(_image, pixel=coverage.pixel, size=size)
     geometry = textures.geometry
@@ -132,6 +137,7 @@ def render(
         value=image(np.concatenate(value[1:] or value)),
         covered=np.isfinite(image(level)),
         coordinate=image(fragments.coordinate.value),
+        nearest=np.nan_to_num(image(coverage.nearest)).astype(np.intp),
         position=image(coverage.mix(points)[0] + geometry.center),
         slice_level=image(level),
         noise_level=image(np.concatenate(noise_level)),
@@ -164,9 +170,10 @@ def slices_at(
     before = mips(textures, steps[0])
     if textures.geometry.field.sign_free:
         return AxisSlices(before, size=values["u_slicesSize"], lags=values["u_lagCount"])
+    kind = Slices if textures.geometry.field.triangles is None else TriangleSlices
     if steps[0] == steps[1]:
-        return Slices(before)
-    return Slices(before, mips(textures, steps[1]), values["u_between"])
+        return kind(before)
+    return kind(before, mips(textures, steps[1]), values["u_between"])
 
 
 def lookup_maker(textures: TextureSet) -> LookupMaker:
@@ -186,7 +193,7 @@ def lookup_maker(textures: TextureSet) -> LookupMaker:
     return make
 
 
-def _image(data: Floats, pixel: Indices, size: tuple[int, int]) -> Floats:
+def _image(data: AnyArray, pixel: Indices, size: tuple[int, int]) -> Floats:
     """Lay data (N, ...) of pixels (N,) into an image (H, W, ...), NaN elsewhere."""
     width, height = size
     result = np.full((height * width, *data.shape[1:]), np.nan)

@@ -13,6 +13,7 @@ from flowtex.rendering import constants as const
 from flowtex.rendering.cpu.cell import CellPath
 from flowtex.rendering.cpu.fragments import Fragments
 from flowtex.rendering.cpu.path import Path, Slices
+from flowtex.rendering.cpu.places import Places
 
 __all__ = ["Lookup", "LookupMaker", "Side", "Summing", "Sums", "shared", "weight"]
 
@@ -145,8 +146,8 @@ class Summing:
         self._slices, self._values, self._lookup, self._paper = slices, values, lookup, paper
         self._lags = np.asarray(values["u_lags"])
 
-    def texture(self, coordinate: Floats, level: Floats) -> Floats:
-        """Texture of the fragments at slice coordinates (N, 2) and mip levels (N,)."""
+    def texture(self, coordinate: Places, level: Floats) -> Floats:
+        """Texture of the fragments at places in the slices and mip levels (N,)."""
         values, lookup = self._values, self._lookup
         base = self._slices.layer(coordinate, 0, level)
         speed = np.linalg.norm(base[:, :3], axis=-1)
@@ -158,14 +159,14 @@ class Summing:
             self._add(sums, side, cell)
         return lookup.blend(sums)
 
-    def cell(self, coordinate: Floats) -> CellPath | None:
+    def cell(self, coordinate: Places) -> CellPath | None:
         """Paths in the cells of N fragments, where the view is so near."""
         if not self._values["near"]:
             return None
         reach = self._count * self._lookup.spacing
         return CellPath(self._slices, coordinate, reach, self._values)
 
-    def sides(self, coordinate: Floats, level: Floats, base: Floats) -> Iterator[Side]:
+    def sides(self, coordinate: Places, level: Floats, base: Floats) -> Iterator[Side]:
         """Sides of the paths of N fragments, whose layer 0 is ``base``, (N, 4)."""
         speed = np.linalg.norm(base[:, :3], axis=-1)
         scale = np.ones(len(base)) if self._paper else base[:, 3] * self._values["u_unit"]

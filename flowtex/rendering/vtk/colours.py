@@ -12,6 +12,7 @@ import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 from flowtex._util.array_types import Floats, Floats32
+from flowtex.textures import SurfaceGeometry, TriangleGeometry
 
 __all__ = ["MappedColours"]
 
@@ -55,12 +56,13 @@ class MappedColours(NamedTuple):
         state = (name, values.GetMTime(), table, table.GetMTime(), low, high)
         return cls(values, table, low, high, state)
 
-    def shares(self, shape: tuple[int, int]) -> Floats32:
+    def shares(self, geometry: SurfaceGeometry | TriangleGeometry) -> Floats32:
         """Return texels (1, J, I, 2): shares of the range, and 1; both 0 where there is no value.
 
-        So interpolated, the first over the second is the mean of those that are known.
+        Those of triangles lie as in the slices. So interpolated, the first over the second is the
+        mean of those that are known.
         """
-        values = vtk_to_numpy(self.values).astype(float).reshape(shape)
+        values = geometry.as_image(vtk_to_numpy(self.values).astype(float))
         with np.errstate(all="ignore"):
             shares = (self._scaled(values) - self._scaled(self.low)) / (
                 self._scaled(self.high) - self._scaled(self.low)

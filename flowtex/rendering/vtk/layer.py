@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import weakref
 from collections.abc import Callable
-from functools import cached_property, partial
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -23,10 +23,11 @@ import pyvista as pv
 from vtkmodules.util.vtkConstants import VTK_OBJECT
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
-from flowtex._util.array_types import Floats, Floats32, Indices, Ints
+from flowtex._util.array_types import Floats, Floats32, Ints
 from flowtex.rendering.mesh_levels import MeshLevels
 from flowtex.rendering.shaders import shader_text
 from flowtex.rendering.tile_choice import TileView
+from flowtex.rendering.triangle_blocks import TriangleBlocks, mesh_levels_of
 from flowtex.rendering.uniforms import (
     ANCHOR_RANGE,
     ViewState,
@@ -44,7 +45,7 @@ from flowtex.rendering.vtk.mesh import (
     vertex_attributes,
 )
 from flowtex.settings import Settings
-from flowtex.textures import LayerPrefetch, TextureSet
+from flowtex.textures import LayerPrefetch, SurfaceGeometry, TextureSet
 
 __all__ = ["FlowLayer"]
 
@@ -93,7 +94,7 @@ class FlowLayer:
         textures: TextureSet,
         settings: Settings,
         layers: Callable[[int], Floats32] | None = None,
-        mesh_levels: MeshLevels | None = None,
+        mesh_levels: MeshLevels | TriangleBlocks | None = None,
     ) -> None:
         self._actor = actor
         self._mapper: Any = actor.mapper
@@ -106,7 +107,7 @@ class FlowLayer:
         self._height = 1.0
         self._drawn = False
         self._variant: frozenset[str] | None = None
-        self.mesh_levels = mesh_levels or MeshLevels.of(textures)
+        self.mesh_levels = mesh_levels or mesh_levels_of(textures)
         self._colours: MappedColours | None = None
         self._gpu: dict[str, GPUTexture] = {}
         self._retired: list[GPUTexture] = []
@@ -116,17 +117,6 @@ class FlowLayer:
         update = self._observer("_before_draw")
         update.CallDataType = VTK_OBJECT
         self._observed = self._mapper.AddObserver("UpdateShaderEvent", update)
-
-    @cached_property
-    def _corners(self) -> Indices:
-        """Nodes that touch the sides of the bounding box of all that is drawn."""
-        geometry = self._textures.geometry
-        used = np.zeros(geometry.shape, dtype=bool)
-        for j, i in ((0, 0), (0, 1), (1, 0), (1, 1)):
-            used[j : used.shape[0] - 1 + j, i : used.shape[1] - 1 + i] |= geometry.cells
-        at = np.flatnonzero(used)
-        points = geometry.points.reshape(-1, 3)[at]
-        return at[np.concatenate([points.argmin(axis=0), points.argmax(axis=0)])]
 
     @property
     def _mesh(self) -> Any:
@@ -219,8 +209,8 @@ class FlowLayer:
             layer.after_frame()
         _last[window] = weakref.ref(self)
         values = uniforms(self._textures, self._settings, self.view)
-        rows, columns = self._textures.geometry.rows, self._textures.geometry.columns
-        values["u_padding"] = (float(columns.before), float(rows.before))
+        if isinstance(geometry := self._textures.geometry, SurfaceGeometry):
+            values["u_padding"] = float(geometry.columns.before), float(geometry.rows.before)
         values["u_mapped"] = self._colours is not None
         for name, value in values.items():
             if program.IsUniformUsed(name) or isinstance(value, list):
@@ -243,11 +233,11 @@ class FlowLayer:
         loaders: dict[str, Callable[[], GPUTexture]] = {"u_slices": partial(self._slices, 0)}
         if self._textures.store.steps > 1:
             loaders["u_slicesNext"] = partial(self._slices, 1)
-        colours, shape = self._colours, self._textures.geometry.shape
+        colours, geometry = self._colours, self._textures.geometry
         # Also where nothing is mapped: no sampler may share a unit with one of another kind.
         none = np.zeros((1, 1, 1, 1), dtype=np.float32)
         loaders |= {
-            "u_shares": lambda: GPUTexture(colours.shares(shape) if colours else none, levels=0),
+            "u_shares": lambda: GPUTexture(colours.shares(geometry) if colours else none, levels=0),
             "u_colours": lambda: GPUTexture(colours.colours() if colours else none, levels=0),
         }
         if paper is not None:
@@ -292,7 +282,8 @@ class FlowLayer:
             return
         near_middle = np.abs(there).max() <= ANCHOR_RANGE * seen
         self.view.anchor = np.zeros(3) if near_middle else there
-        set_position(self._mesh, geometry.position_from(self.view.anchor))
+        position = geometry.position_from(self.view.anchor)
+        set_position(self._mesh, geometry.at_vertices(position))
 
     def eye_and_half_height(self, camera: Any) -> tuple[Floats | None, float]:
         """Return the eye in the mesh's own coordinates, and half the height of what is seen.
@@ -316,12 +307,13 @@ class FlowLayer:
             levels = np.zeros_like(levels)
         return np.where(view.sees(self.mesh_levels.blocks), levels, -1)
 
-    def set_triangles(self, levels: Ints, borders: Ints) -> None:
+    def set_triangles(self, levels: Ints, borders: Ints | None) -> None:
         """Draw other triangles; :meth:`MeshLevels.triangles` has the parameters."""
         triangles = self.mesh_levels.triangles(levels, borders)
         if (levels < 0).any():
             # The mesh is as large as ever to whoever asks for its bounds.
-            triangles = np.concatenate([triangles, np.repeat(self._corners[:, None], 3, axis=1)])
+            outermost = self._textures.geometry.outermost
+            triangles = np.concatenate([triangles, np.repeat(outermost[:, None], 3, axis=1)])
         set_triangles(self._mesh, triangles)
 
     def follow(self, mapper: Any) -> None:

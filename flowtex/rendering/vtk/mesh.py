@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pyvista as pv
+from numpy.typing import NDArray
 from pyvista.plotting.mapper import _BaseDataSetMapper
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.util.vtkConstants import VTK_ID_TYPE
@@ -13,7 +14,7 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray
 from vtkmodules.vtkRenderingCore import vtkPolyDataMapper
 
 from flowtex._util.array_types import Floats32, Indices
-from flowtex.textures import TextureSet
+from flowtex.textures import SurfaceGeometry, TextureSet, TriangleGeometry
 
 __all__ = [
     "ATTRIBUTES",
@@ -28,6 +29,7 @@ __all__ = [
 
 #: Point arrays of the mesh.
 POSITION, COORDINATE, NOISE = "flowtex position", "flowtex coordinate", "flowtex noise"
+CORNERS = "flowtex corners"
 NORMAL = "Normals"
 #: Those that the shader reads, by the names of its vertex attributes.
 ATTRIBUTES = {
@@ -35,27 +37,34 @@ ATTRIBUTES = {
     "flowtexCoordinate": COORDINATE,
     "flowtexNormal": NORMAL,
     "flowtexNoise": NOISE,
+    "flowtexCorners": CORNERS,
 }
 
 
 def surface_mesh(textures: TextureSet) -> pv.PolyData:
     """Return the visible cells of the surface, with normals and the shader's attributes."""
     geometry = textures.geometry
-    points = np.ascontiguousarray(geometry.points).reshape(-1, 3)
-    columns = geometry.shape[1]
-    j, i = np.nonzero(geometry.cells)
-    corner = j * columns + i
-    quads = np.stack([corner, corner + 1, corner + columns + 1, corner + columns], axis=-1)
-    mesh = pv.PolyData.from_regular_faces(points, quads)
-    mesh.point_data[NORMAL] = geometry.normal.reshape(-1, 3)
+    points = np.ascontiguousarray(geometry.at_vertices(geometry.points))
+    mesh = pv.PolyData.from_regular_faces(points, _faces(geometry))
+    mesh.point_data[NORMAL] = geometry.at_vertices(geometry.normal)
     mesh.point_data.active_normals_name = NORMAL
     set_attributes(mesh, textures)
     return mesh
 
 
+def _faces(geometry: SurfaceGeometry | TriangleGeometry) -> NDArray[Any]:
+    """Vertices of each cell, (M, 4) or (M, 3)."""
+    if isinstance(geometry, TriangleGeometry):
+        return np.arange(geometry.triangles.size).reshape(-1, 3)
+    columns = geometry.shape[1]
+    j, i = np.nonzero(geometry.cells)
+    corner = j * columns + i
+    return np.stack([corner, corner + 1, corner + columns + 1, corner + columns], axis=-1)
+
+
 def set_position(mesh: pv.PolyData, position: Floats32) -> None:
-    """Write the nodes' positions in the surface's frame, (J, I, 3), relative to any anchor."""
-    mesh.point_data[POSITION] = position.reshape(-1, 3)
+    """Write the vertices' positions in the surface's frame, (V, 3), relative to any anchor."""
+    mesh.point_data[POSITION] = position
 
 
 def set_triangles(mesh: pv.PolyData, triangles: Indices) -> None:
@@ -68,8 +77,10 @@ def set_triangles(mesh: pv.PolyData, triangles: Indices) -> None:
 def set_attributes(mesh: pv.PolyData, textures: TextureSet) -> None:
     """Write the vertex attributes of a texture set to its mesh."""
     geometry = textures.geometry
-    set_position(mesh, geometry.position)
+    set_position(mesh, geometry.at_vertices(geometry.position))
     mesh.point_data[COORDINATE] = geometry.coordinate.reshape(-1, 2)
+    if isinstance(geometry, TriangleGeometry):
+        mesh.point_data[CORNERS] = geometry.corners
     if textures.paper is not None:
         mesh.point_data[NOISE] = textures.paper.coordinate.reshape(-1, 2)
 
@@ -79,6 +90,8 @@ def vertex_attributes(textures: TextureSet) -> dict[str, str]:
     needed = {POSITION, COORDINATE}
     if not textures.geometry.planar:
         needed.add(NORMAL)
+    if isinstance(textures.geometry, TriangleGeometry):
+        needed.add(CORNERS)
     if textures.paper is not None:
         needed.add(NOISE)
     return {name: array for name, array in ATTRIBUTES.items() if array in needed}

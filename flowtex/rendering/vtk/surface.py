@@ -27,6 +27,7 @@ from flowtex.rendering.tile_choice import (
     finer_part,
     wanted_tiles,
 )
+from flowtex.rendering.triangle_blocks import TriangleBlocks, mesh_levels_of
 from flowtex.rendering.uniforms import ViewState
 from flowtex.rendering.vtk.layer import FlowLayer
 from flowtex.rendering.vtk.mesh import FlowMapper, set_attributes, surface_mesh
@@ -183,7 +184,8 @@ class FlowSurface:
         if self._scalars is not None:
             name, values = self._scalars
             geometry = layer.textures.geometry
-            mesh.point_data[name] = values(geometry.field)[geometry.drawn].ravel()
+            nodal = values(geometry.field)[geometry.drawn]
+            mesh.point_data[name] = geometry.at_vertices(nodal)
 
     def _before_frame(self) -> None:
         """Choose tiles, shaders and triangles for the camera of the frame."""
@@ -283,12 +285,12 @@ class FlowSurface:
         """Return a loader that does not keep this surface alive."""
         this = weakref.ref(self)
 
-        def prepare(textures: TextureSet) -> tuple[pv.PolyData, MeshLevels]:
+        def prepare(textures: TextureSet) -> tuple[pv.PolyData, MeshLevels | TriangleBlocks]:
             surface = this()
             if surface is not None and surface._scalars is not None:
                 surface._scalars[1](textures.geometry.field)  # which keeps the values at hand
             _ = textures.unit, textures.cell, textures.critical_cell  # which are kept as well
-            return surface_mesh(textures), MeshLevels.of(textures)
+            return surface_mesh(textures), mesh_levels_of(textures)
 
         def notify() -> None:
             surface = this()
@@ -352,7 +354,9 @@ class FlowSurface:
         drawn = tuple((key, region.levels.tobytes()) for key, region in regions.items())
         if drawn == self._drawn:
             return
-        joins = join(list(regions.values()), (blocks[0], blocks[1]), geometry.periodic)
+        joins: list[Any] = [None] * len(regions)
+        if isinstance(self._base.mesh_levels, MeshLevels):
+            joins = join(list(regions.values()), (blocks[0], blocks[1]), geometry.periodic)
         for (key, region), borders in zip(regions.items(), joins, strict=True):
             layers[key].set_triangles(region.levels, borders)
         self._drawn = drawn

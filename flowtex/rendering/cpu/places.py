@@ -1,0 +1,54 @@
+"""Where fragments look the slices up on a surface of triangles."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+
+from flowtex._util.array_types import Floats, Indices
+
+__all__ = ["Places", "TrianglePlaces", "shares_by"]
+
+
+@dataclass(frozen=True, eq=False)
+class TrianglePlaces:
+    """Places of N fragments in their triangles.
+
+    Attributes
+    ----------
+    shares, nodes
+        Shares of the corners, and numbers of the nodes there in the texture, (N, 3) each.
+    by
+        Change of the shares of the second and the third corner by a vector in the surface's frame,
+        (N, 2, 3).
+    """
+
+    shares: Floats
+    nodes: Indices
+    by: Floats
+
+    def __getitem__(self, some: slice | Indices) -> TrianglePlaces:
+        """Take some of the fragments."""
+        return TrianglePlaces(self.shares[some], self.nodes[some], self.by[some])
+
+    def __len__(self) -> int:
+        """Count the fragments."""
+        return len(self.shares)
+
+
+#: Where fragments look the slices up: at texture coordinates (N, 2), or in triangles.
+Places: TypeAlias = Floats | TrianglePlaces
+
+
+def shares_by(dx: Floats, dy: Floats, by_x: Floats, by_y: Floats) -> Floats:
+    """Return the change of shares by a vector, (N, 2, 3), from derivatives on the screen.
+
+    They are those of positions, (N, 3), and of the shares, (N, 2).
+    """
+    normal = np.cross(dx, dy)
+    square = np.einsum("nc,nc->n", normal, normal)[:, None]
+    across = normal / np.maximum(square, np.finfo(float).tiny)
+    first, second = np.cross(dy, across), np.cross(across, dx)
+    return np.asarray(by_x[:, :, None] * first[:, None] + by_y[:, :, None] * second[:, None])

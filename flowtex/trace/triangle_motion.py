@@ -1,0 +1,346 @@
+"""How particles move inside the triangles of a surface, and where they get on across an edge.
+
+A particle is in a triangle, at shares of its corners. The velocity of each corner is turned out of
+the tangent plane of the node into that of the triangle, by the smallest rotation, which keeps its
+length; the surface is thereby unfolded at its edges, however sharp they are. In between the
+velocity is linear, so the shares change by a linear law too, whatever the shape of the triangle.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex._util.cache import WeakCache
+from flowtex.field import FlowField
+from flowtex.field.triangles.surface import TriangleSurface
+from flowtex.trace.sampler import RESTING_CELLS, STILL_CELLS, STOPPED_SPEED
+
+__all__ = [
+    "ChangingMotion",
+    "Derivatives",
+    "Motion",
+    "SteadyMotion",
+    "TriangleMesh",
+    "dot",
+    "speed_floor",
+]
+
+#: Triangles whose geometry is computed at once.
+BLOCK_TRIANGLES = 65536
+#: Columns of the table of a steady motion.
+COLUMNS = 14
+
+
+@dataclass(frozen=True, eq=False)
+class TriangleMesh:
+    """The geometry of a surface by its triangles, of which M are.
+
+    Attributes
+    ----------
+    corners
+        Nodes, (M, 3).
+    across
+        For the edge opposite to each corner, (3 M,): the triangle behind it times eight, plus how
+        its corners are those of this one, an index of :data:`BEHIND`; or -1 where paths end.
+    rates
+        Rates at which the second and the third share change, by components of the velocity at each
+        corner, (M, 12) as (corner, share, component).
+    metric
+        Products of the sides from the first corner to the others, over the square of the size,
+        (M, 3), those of the first, of both, and of the second.
+    heights
+        Distance from each corner to the edge opposite, over the size, (M, 3).
+    size
+        Mean length of the sides, (M,).
+    around, first
+        Corners by node: numbers of triangles times three plus that of the corner, those of node n
+        from ``first[n]`` to ``first[n + 1]``; only of triangles with data.
+    """
+
+    corners: Indices
+    across: Indices
+    rates: Floats
+    metric: Floats
+    heights: Floats
+    size: Floats
+    around: Indices
+    first: Indices
+
+    @classmethod
+    def of(cls, surface: TriangleSurface) -> TriangleMesh:
+        """Return that of a surface, which is made once."""
+        return _meshes.get("mesh", lambda: cls._made(surface), owner=surface)
+
+    @classmethod
+    def _made(cls, surface: TriangleSurface) -> TriangleMesh:
+        count = len(surface.triangles)
+        rates, metric = np.empty((count, 3, 2, 2)), np.empty((count, 3))
+        heights, size = np.empty((count, 3)), np.empty(count)
+        for start in range(0, count, BLOCK_TRIANGLES):
+            some = slice(start, start + BLOCK_TRIANGLES)
+            _measure(surface, some, rates[some], metric[some], heights[some], size[some])
+        shown = np.flatnonzero(surface.cells)
+        nodes = surface.triangles[shown].ravel()
+        order = np.argsort(nodes, kind="stable")
+        return cls(
+            corners=surface.triangles,
+            across=_across(surface),
+            rates=rates.reshape(count, 12),
+            metric=metric,
+            heights=heights,
+            size=size,
+            around=(3 * shown[:, None] + np.arange(3)).ravel()[order],
+            first=np.searchsorted(nodes[order], np.arange(surface.shape[1] + 1)),
+        )
+
+
+_meshes: WeakCache[TriangleMesh] = WeakCache()
+
+
+def _measure(
+    surface: TriangleSurface,
+    some: slice,
+    rates: Floats,
+    metric: Floats,
+    heights: Floats,
+    size: Floats,
+) -> None:
+    """Write what is told of some triangles."""
+    nodes = surface.triangles[some]
+    p = surface.points[0][nodes]
+    one, two = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]
+    sides = np.linalg.norm([p[:, 2] - p[:, 1], two, one], axis=-1)
+    size[:] = sides.mean(axis=0)
+    # In sizes of the triangle, so that no square is too large or too small.
+    e, f = one / size[:, None], two / size[:, None]
+    normal = np.cross(e, f)
+    area = np.linalg.norm(normal, axis=1, keepdims=True)
+    heights[:] = (area[:, 0] / (sides / size)).T
+    metric[:] = np.stack([_dot(e, e), _dot(e, f), _dot(f, f)], axis=-1)
+    normal /= area
+    slopes = np.stack([np.cross(f, normal), np.cross(normal, e)]) / (area * size[:, None])
+    for k in range(3):
+        at = nodes[:, k]
+        away = surface.normals[0, at]
+        cosine = _dot(away, normal)
+        # The surface has two sides: a triangle may face the other way than its node.
+        away = np.where(cosine[:, None] < 0, -away, away)
+        for component in range(2):
+            tangent = surface.tangents[component, 0, at]
+            turn = _dot(tangent, normal) / (1 + np.abs(cosine))
+            turned = tangent - turn[:, None] * away
+            for share in range(2):
+                rates[:, k, share, component] = _dot(slopes[share], turned)
+
+
+def _dot(one: Floats, two: Floats) -> Floats:
+    return np.asarray(np.einsum("mc,mc->m", one, two))
+
+
+def _across(surface: TriangleSurface) -> Indices:
+    """Return what :attr:`TriangleMesh.across` tells."""
+    corners, beside = surface.triangles, surface.neighbours
+    result = np.full(beside.shape, -1, dtype=np.intp)
+    for k in range(3):
+        here = np.flatnonzero((beside[:, k] >= 0) & surface.cells)
+        here = here[surface.cells[beside[here, k]]]
+        there = beside[here, k]
+        ends = [corners[here, (k + step) % 3] for step in (1, 2)]
+        at = [np.argmax(corners[there] == end[:, None], axis=1) for end in ends]
+        result[here, k] = 8 * there + 2 * at[0] + ((at[1] - at[0]) % 3 - 1)
+    return result.ravel()
+
+
+#: By the last three bits of :attr:`TriangleMesh.across`: the corner of the other triangle that is not
+#: on the edge, and which of its second and third shares, (2, 6), are of the next corner here, and
+#: of the one after it.
+BEHIND = np.array([3 - m - (m + step) % 3 for m in range(3) for step in (1, 2)], dtype=np.intp)
+NEXT = np.array([[m == k for m in range(3) for _ in (1, 2)] for k in (1, 2)], dtype=float)
+AFTER = np.array([[(m + s) % 3 == k for m in range(3) for s in (1, 2)] for k in (1, 2)], float)
+
+
+@dataclass
+class Derivatives:
+    """How particles move at one moment, each in the own time and length of its triangle.
+
+    Attributes
+    ----------
+    first, second, third
+        Derivatives of the second and third share by time, (2, N).
+    bend
+        What of the second derivative is due to the place, (2, N).
+    metric
+        As :attr:`TriangleMesh.metric`, (3, N).
+    size, pace
+        Length of a unit of length, and lag that passes in one of time, by which time counts, (N,).
+    rest
+        Square of the speed up to which a particle stands still, (N,).
+    until
+        Lag at which the law becomes another, (N,), or ``None``.
+    """
+
+    first: Floats
+    second: Floats
+    third: Floats
+    bend: Floats
+    metric: Floats
+    size: Floats
+    pace: Floats
+    rest: Floats
+    until: Floats | None = None
+
+    def pick(self, mask: Bools) -> Derivatives:
+        """Return those of some particles."""
+        parts = (getattr(self, part.name) for part in fields(self))
+        return Derivatives(*(None if part is None else part[..., mask] for part in parts))
+
+    def put(self, at: Indices, some: Derivatives) -> None:
+        """Write those of some particles (n,) in place."""
+        for part in fields(self):
+            mine, other = getattr(self, part.name), getattr(some, part.name)
+            if mine is not None and part.name != "bend":
+                mine[..., at] = other
+        if self.bend is not self.second:
+            self.bend[:, at] = some.bend
+
+
+def dot(metric: Floats, one: Floats, two: Floats) -> Floats:
+    """Products of vectors (2, N) that are changes of the second and third share."""
+    across = one[0] * two[1] + one[1] * two[0]
+    return np.asarray(
+        metric[0] * (one[0] * two[0]) + metric[1] * across + metric[2] * (one[1] * two[1])
+    )
+
+
+class Motion(ABC):
+    """What the integrator asks of a field, for one direction."""
+
+    #: Whether lags are lengths of paths.
+    by_length = False
+
+    def __init__(self, mesh: TriangleMesh) -> None:
+        self.mesh = mesh
+
+    @abstractmethod
+    def at(self, triangle: Indices, shares: Floats, lag: Floats, last: Floats) -> Derivatives:
+        """Derivatives at shares (2, N) of the second and third corner of triangles (N,).
+
+        The particles have come ``lag`` (N,), and are followed until ``last`` (N,).
+        """
+
+
+class SteadyMotion(Motion):
+    """A field that does not change, by the length of path or by time."""
+
+    def __init__(self, field: FlowField, direction: float, *, by_length: bool) -> None:
+        assert isinstance(field.surface, TriangleSurface)
+        super().__init__(TriangleMesh.of(field.surface))
+        self.by_length, self.direction = by_length, direction
+        flow = field.index_velocity
+        self.floor = floor = speed_floor(flow.speed) if by_length else 0.0
+        speed = np.where(flow.speed[0, 0] > floor, flow.speed[0, 0], 0.0)
+        self.table = _table(self.mesh, flow.components[0, 0], speed)
+
+    def at(self, triangle: Indices, shares: Floats, lag: Floats, last: Floats) -> Derivatives:
+        """Derivatives, as :meth:`Motion.at` says."""
+        part = np.ascontiguousarray(self.table.take(triangle, axis=0, mode="clip").T)
+        if self.direction < 0:
+            np.negative(part[:6], out=part[:6])
+        one, two = part[2:4], part[4:6]
+        first = part[:2] + one * shares[0] + two * shares[1]
+        second = one * first[0] + two * first[1]
+        third = one * second[0] + two * second[1]
+        size, pace = part[9], part[10]
+        if self.by_length:
+            rest = RESTING_CELLS * (part[11] + part[12] * shares[0] + part[13] * shares[1])
+        else:
+            rest = STILL_CELLS * pace / last
+        return Derivatives(first, second, third, second, part[6:9], size, pace, rest * rest)
+
+
+def speed_floor(speed: Floats) -> float:
+    """Speed up to which a particle has stopped."""
+    return max(STOPPED_SPEED * float(speed.max()), np.finfo(float).tiny)
+
+
+def _table(mesh: TriangleMesh, components: Floats, speed: Floats) -> Floats:
+    """How shares change in each triangle, (M, COLUMNS), in times and lengths of its own.
+
+    Rates (2) at the first corner, their changes by the second and by the third share (2, 2), metric
+    (3), size, pace, and the speed (3) as the rates.
+    """
+    result = np.empty((len(mesh.corners), COLUMNS))
+    for start in range(0, len(result), BLOCK_TRIANGLES):
+        some = slice(start, start + BLOCK_TRIANGLES)
+        corners, part = mesh.corners[some], result[some]
+        own = speed[corners]
+        most = own.max(axis=1)
+        pace = mesh.size[some] / np.where(most > 0, most, 1.0)
+        velocity = np.where(own[..., None] > 0, components[corners], 0.0) * pace[:, None, None]
+        rates = np.einsum("mksc,mkc->mks", mesh.rates[some].reshape(-1, 3, 2, 2), velocity)
+        part[:, :2] = rates[:, 0]
+        part[:, 2:4], part[:, 4:6] = rates[:, 1] - rates[:, 0], rates[:, 2] - rates[:, 0]
+        part[:, 6:9], part[:, 9], part[:, 10] = mesh.metric[some], mesh.size[some], pace
+        own = own / np.where(most > 0, most, 1.0)[:, None]
+        part[:, 11], part[:, 12:] = own[:, 0], own[:, 1:] - own[:, :1]
+    return result
+
+
+class ChangingMotion(Motion):
+    """A field that varies in time, linearly between its steps and not beyond them.
+
+    Lags count from ``destination``, a time; ``components`` (T * N, 2) are those of all steps.
+    """
+
+    def __init__(
+        self, mesh: TriangleMesh, components: Floats, times: Floats, destination: float, way: float
+    ) -> None:
+        super().__init__(mesh)
+        self.components, self.direction = components, way
+        lags = way * (times - destination)
+        #: Lags of the time steps, increasing, and the first node of each.
+        self.levels = lags if way > 0 else lags[::-1].copy()
+        first = np.arange(len(times)) * (len(components) // len(times))
+        self.steps = first if way > 0 else first[::-1].copy()
+
+    def at(self, triangle: Indices, shares: Floats, lag: Floats, last: Floats) -> Derivatives:
+        """Derivatives, as :meth:`Motion.at` says."""
+        velocity, change, until = self._corners(self.mesh.corners.take(triangle, axis=0), lag)
+        rates = np.ascontiguousarray(self.mesh.rates.take(triangle, axis=0).T)
+        law, later = (_linear(rates.reshape(3, 2, 2, -1), part) for part in (velocity, change))
+        first = law[0] + law[1] * shares[0] + law[2] * shares[1]
+        bend = law[1] * first[0] + law[2] * first[1]
+        second = bend + later[0] + later[1] * shares[0] + later[2] * shares[1]
+        third = law[1] * second[0] + law[2] * second[1]
+        third += 2 * (later[1] * first[0] + later[2] * first[1])
+        metric, size = self.mesh.metric.take(triangle, axis=0).T, self.mesh.size.take(triangle)
+        # In a flow that varies none stays at rest.
+        pace, rest = np.ones(len(lag)), np.full(len(lag), -1.0)
+        return Derivatives(
+            first, second, third, bend, metric, size, pace, rest, np.minimum(until, last)
+        )
+
+    def _corners(self, nodes: Indices, lag: Floats) -> tuple[Floats, Floats, Floats]:
+        """Velocity of nodes (N, 3), and its change by lag, (3, 2, N), and until when, (N,)."""
+        after = np.searchsorted(self.levels, lag, side="right")
+        early, late = np.maximum(after - 1, 0), np.minimum(after, len(self.levels) - 1)
+        begin, end = self.levels[early], self.levels[late]
+        span = np.where(end > begin, end - begin, 1.0)
+        one, two = (
+            self.components.take(nodes + self.steps[at][:, None], axis=0).transpose(1, 2, 0)
+            for at in (early, late)
+        )
+        change = (two - one) * (self.direction / span)
+        velocity = self.direction * one + change * np.maximum(lag - begin, 0.0)
+        return velocity, change, np.where(end > lag, end, np.inf)
+
+
+def _linear(rates: Floats, corners: Floats) -> Floats:
+    """Rates at the first corner, and their changes by the others' shares, (3, 2, N)."""
+    result = rates[:, :, 0] * corners[:, None, 0] + rates[:, :, 1] * corners[:, None, 1]
+    result[1:] -= result[0]
+    return np.asarray(result)

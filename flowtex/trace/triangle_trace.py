@@ -1,0 +1,146 @@
+"""Trace slices of a field on triangles: all paths are integrated, and displacements are in space."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from flowtex._util import compiled
+from flowtex._util.array_types import Bools, Floats
+from flowtex._util.progress import track
+from flowtex.field import FlowField
+from flowtex.field.triangles.surface import TriangleSurface
+from flowtex.trace.integrate import MOST_CELLS, Paths
+from flowtex.trace.slices import TraceSlices
+from flowtex.trace.triangle_motion import (
+    ChangingMotion,
+    Motion,
+    SteadyMotion,
+    TriangleMesh,
+    speed_floor,
+)
+from flowtex.trace.triangles import begin, integrate
+
+__all__ = ["triangle_paths", "triangle_slices"]
+
+#: Particles followed together.
+BLOCK = 16384
+
+
+def triangle_slices(
+    field: FlowField,
+    steps: list[int],
+    parameter: str,
+    lags: Floats,
+    unit: Floats,
+    chosen: Bools,
+    *,
+    two_sided: bool,
+    tolerance: float,
+    run: Callable[..., Any],
+    progress: bool,
+) -> TraceSlices:
+    """Follow the paths through some nodes, ``chosen`` (1, N); others have reach and path 0.
+
+    Lags (M,) are in multiples of ``unit`` (1, N), and ``run`` maps a function over blocks.
+    """
+    mesh = _mesh(field)
+    at = np.flatnonzero(chosen[0] & (np.diff(mesh.first) > 0))
+    sides = (-1.0, 1.0) if two_sided else (-1.0,)
+    compiled.prepare(len(at) * len(steps) * len(sides))
+    displacement = np.zeros((len(sides), len(steps), len(lags), *field.points.shape), np.float32)
+    reach = np.zeros((len(sides), len(steps), *field.shape), np.float32)
+    points = field.points[0]
+    motions = [_motions(field, steps, parameter, side) for side in sides]
+
+    def work(job: tuple[int, int, slice]) -> None:
+        side, step, block = job
+        motion, nodes = motions[side][step], at[block]
+        starts = begin(motion, nodes)
+        triangle, corner = np.divmod(starts, 3)
+        shares = np.stack([corner == 1, corner == 2]).astype(float)
+        due = lags[:, None] * unit[0, nodes]
+        paths = integrate(motion, points, triangle, shares, due, tolerance=tolerance)
+        here = points[nodes]
+        for m in range(len(lags)):
+            moved = paths.positions(mesh, points, m) - here
+            displacement[side, step, m, 0, nodes] = np.clip(moved, -MOST_CELLS, MOST_CELLS)
+        reach[side, step, 0, nodes] = paths.reach / unit[0, nodes]
+
+    blocks = [slice(first, first + BLOCK) for first in range(0, len(at), BLOCK)]
+    jobs = [(a, b, c) for a in range(len(sides)) for b in range(len(steps)) for c in blocks]
+    for _ in track(run(work, jobs), len(jobs), "Tracing", show=progress):
+        pass
+    return TraceSlices(
+        lags=lags,
+        unit=unit,
+        displacement=displacement[0],
+        forward=displacement[1] if two_sided else None,
+        rate=_rates(field, steps, parameter) * unit[..., None],
+        reach=reach[0],
+        forward_reach=reach[1] if two_sided else None,
+        nodes=field.points,
+        times=field.times[steps],
+        parameter=parameter,
+    )
+
+
+def triangle_paths(
+    field: FlowField,
+    start: Floats,
+    lags: Floats,
+    *,
+    step: int,
+    parameter: str,
+    direction: float,
+    tolerance: float,
+) -> Paths:
+    """Do what :func:`flowtex.trace.paths` does; a path that has ended stays where it did."""
+    surface, mesh = field.surface, _mesh(field)
+    motion = _motions(field, [step], parameter, direction)[0]
+    triangle = np.clip(np.floor(start[:, 1]).astype(np.intp), 0, len(mesh.corners) - 1)
+    second = np.clip(start[:, 1] - triangle, 0.0, 1.0)
+    shares = np.stack([second, np.clip(start[:, 0], 0.0, 1.0 - second)])
+    known = surface.cells[triangle]
+    due = np.broadcast_to(lags[:, None], (len(lags), int(known.sum()))).copy()
+    paths = integrate(
+        motion, field.points[0], triangle[known], shares[:, known], due, tolerance=tolerance
+    )
+    positions, reach = np.repeat(start[None], len(lags), axis=0), np.zeros(len(start))
+    two = np.moveaxis(paths.shares, 1, -1)
+    weights = np.concatenate([1 - two.sum(axis=-1, keepdims=True), two], axis=-1)
+    positions[:, known] = surface.index_of(paths.triangle, weights)
+    reach[known] = paths.reach
+    nothing = np.zeros(len(start), dtype=bool)
+    return Paths(positions, reach, nothing, nothing)
+
+
+def _mesh(field: FlowField) -> TriangleMesh:
+    assert isinstance(field.surface, TriangleSurface)
+    return TriangleMesh.of(field.surface)
+
+
+def _motions(
+    field: FlowField, steps: Sequence[int], parameter: str, direction: float
+) -> list[Motion]:
+    """One motion for each destination time."""
+    if field.steady:
+        return [SteadyMotion(field, direction, by_length=parameter == "arclength")] * len(steps)
+    components = np.ascontiguousarray(field.index_velocity.components).reshape(-1, 2)
+    mesh, times = _mesh(field), field.times
+    return [ChangingMotion(mesh, components, times, float(times[n]), direction) for n in steps]
+
+
+def _rates(field: FlowField, steps: Sequence[int], parameter: str) -> Floats:
+    """Velocities at the nodes, (T, 1, N, 2), by arc length of length one."""
+    flow = field.index_velocity
+    rate = np.asarray(flow.components[list(steps)])
+    if parameter == "arclength":
+        speed = flow.speed[0]
+        floor = speed_floor(speed)
+        rate = np.divide(
+            rate, speed[..., None], out=np.zeros_like(rate), where=(speed > floor)[..., None]
+        )
+    return np.where(field.valid[..., None], rate, 0.0)

@@ -1,0 +1,450 @@
+"""Paths of many particles on a surface of triangles, one step of each within one triangle a round.
+
+A step follows the Taylor polynomial of second order of the particle's shares of the corners, whose
+term of third order tells how long it may be, so that none has to be taken back; it ends at an edge
+at the latest, at the root of a quadratic. The same polynomial gives the positions at the lags, and
+the length of path as far as lags are lengths, so lags do not shorten steps.
+
+Where the velocities of two triangles point at each other across their edge, which happens beside
+edges that are not flat, a particle slides along the edge.
+
+A path that leaves the surface, enters a triangle without data or stops is ended there. That lag is
+its reach, and beyond it the path goes straight on in space.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import Self
+
+import numpy as np
+
+from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex.trace.integrate import LEAST_STEPS, MOST_STEPS
+from flowtex.trace.triangle_motion import (
+    AFTER,
+    BEHIND,
+    NEXT,
+    Derivatives,
+    Motion,
+    TriangleMesh,
+    dot,
+)
+
+__all__ = ["TrianglePaths", "begin", "integrate"]
+
+#: Rounds of steps after which paths are ended, for each of the rows that nodes would make.
+STEPS_PER_ROW = 100
+#: Rounds without a move after which a path is ended: more than triangles meet in a node.
+MOST_STANDING = 300
+#: Share of a triangle that is none, by rounding.
+SHARE_ROUNDING = 1e-12
+#: Rate of a share, as one of the others', that is none, by rounding.
+EDGE_ROUNDING = 1e-9
+#: Share of a lag by which rounding may miss it.
+LAG_ROUNDING = 1e-12
+#: Velocity out of a border, as a share of all, that is none.
+BORDER_ROUNDING = 1e-6
+#: Rounds of Newton's method for the place in a step where a path has some length.
+NEWTON_ROUNDS = 3
+
+
+@dataclass(frozen=True)
+class TrianglePaths:
+    """Where N particles are at M lags.
+
+    Attributes
+    ----------
+    triangle, shares
+        Triangles (M, N), and the shares of their second and third corners, (M, 2, N). Of a path
+        that has ended these are where it did.
+    further
+        Lag since then, (M, N), 0 for one that has not ended.
+    ahead
+        Velocity at the end, (3, N), by which a path goes straight on.
+    reach
+        Lag at which each path ended, (N,), infinite where it goes on.
+    """
+
+    triangle: Indices
+    shares: Floats
+    further: Floats
+    ahead: Floats
+    reach: Floats
+
+    def positions(self, mesh: TriangleMesh, points: Floats, lag: int) -> Floats:
+        """Positions in space at one of the lags, (N, 3), by the nodes (N, 3) of the surface."""
+        corners = points[mesh.corners[self.triangle[lag]]]
+        one, two = self.shares[lag]
+        result = corners[:, 0] * (1 - one - two)[:, None]
+        result += corners[:, 1] * one[:, None]
+        result += corners[:, 2] * two[:, None]
+        result += (self.ahead * self.further[lag]).T
+        return np.asarray(result)
+
+
+def integrate(
+    motion: Motion,
+    points: Floats,
+    triangle: Indices,
+    shares: Floats,
+    lags: Floats,
+    *,
+    tolerance: float,
+) -> TrianglePaths:
+    """Follow particles from shares (2, N) of the corners of triangles (N,), at nodes (N, 3).
+
+    Lags (M, N) are positive and increasing for each particle. The tolerance is the error allowed in
+    one step, in sizes of its triangle.
+    """
+    run = _Run(motion, points, triangle, shares, lags, tolerance)
+    # What is too large or too small to be told ends a path.
+    with np.errstate(all="ignore"):
+        rows = int(np.sqrt(len(points)))
+        for _ in range(int(np.clip(STEPS_PER_ROW * rows, LEAST_STEPS, MOST_STEPS))):
+            if not len(run.state.which):
+                break
+            run.advance()
+        run.end_all()
+    return TrianglePaths(run.triangle, run.shares, run.further, run.ahead, run.reach)
+
+
+def begin(motion: Motion, nodes: Indices) -> Indices:
+    """Return corners, numbers of triangles times three plus that of the corner, to start at.
+
+    Of those around each of the nodes (N,), which have one at least, the one is taken that the
+    velocity there points into most.
+    """
+    mesh = motion.mesh
+    start, count = mesh.first[nodes], mesh.first[nodes + 1] - mesh.first[nodes]
+    begins = np.cumsum(count) - count
+    owner = np.repeat(np.arange(len(nodes)), count)
+    at = mesh.around[np.arange(len(owner)) + (start - begins)[owner]]
+    triangle, corner = np.divmod(at, 3)
+    shares = np.stack([corner == 1, corner == 2]).astype(float)
+    still = np.zeros(len(at))
+    with np.errstate(all="ignore"):
+        now = motion.at(triangle, shares, still, still + 1)
+        inward = _three(now.first) * mesh.heights[triangle].T * (now.size / now.pace)
+    inward[corner, np.arange(len(at))] = np.inf
+    least = np.nan_to_num(inward.min(axis=0))
+    best = np.flatnonzero(least == np.maximum.reduceat(least, begins)[owner])[::-1]
+    result = np.empty(len(nodes), dtype=np.intp)
+    result[owner[best]] = at[best]
+    return result
+
+
+def _three(two: Floats) -> Floats:
+    """Changes of all three shares, (3, N), by those of the second and third."""
+    return np.stack([-(two[0] + two[1]), two[0], two[1]])
+
+
+@dataclass
+class _Particles:
+    """Particles still under way; the last axis is theirs.
+
+    ``edge`` is the corner opposite to the edge by which they came into their triangle, -1 where
+    there is none; ``due`` is the next lag they are to be told at, and ``next`` its number.
+    """
+
+    which: Indices
+    triangle: Indices
+    edge: Indices
+    next: Indices
+    standing: Indices
+    shares: Floats
+    lag: Floats
+    due: Floats
+    last: Floats
+
+    def pick(self, mask: Bools | Indices) -> Self:
+        """Return some of the particles."""
+        at = np.flatnonzero(mask) if mask.dtype == bool else mask
+        return type(self)(*(getattr(self, f.name).take(at, axis=-1) for f in fields(self)))
+
+
+class _Run:
+    """Everything about one call of :func:`integrate`."""
+
+    def __init__(
+        self,
+        motion: Motion,
+        points: Floats,
+        triangle: Indices,
+        shares: Floats,
+        lags: Floats,
+        tolerance: float,
+    ) -> None:
+        self.motion, self.mesh, self.points = motion, motion.mesh, points
+        #: Six times the error allowed, squared, as it is compared with third derivatives.
+        self.error = (6 * tolerance) ** 2
+        count = len(triangle)
+        #: The lags and one that is never reached, for particles that have them all.
+        self.lags = np.concatenate([lags, np.full((1, count), np.inf)])
+        self.triangle = np.zeros(lags.shape, dtype=np.intp)
+        self.shares = np.zeros((len(lags), 2, count))
+        self.further = np.zeros(lags.shape)
+        self.ahead = np.zeros((3, count))
+        self.reach = np.full(count, np.inf)
+        self.state = _Particles(
+            which=np.arange(count),
+            triangle=triangle,
+            edge=np.full(count, -1, dtype=np.intp),
+            next=np.zeros(count, dtype=np.intp),
+            standing=np.zeros(count, dtype=np.intp),
+            shares=shares,
+            lag=np.zeros(count),
+            due=self.lags[0].copy(),
+            last=lags[-1].copy(),
+        )
+
+    def advance(self) -> None:
+        """Make one step of every particle."""
+        state = self.state
+        now = self.motion.at(state.triangle, state.shares, state.lag, state.last)
+        self._keep_to_edges(now)
+        square = dot(now.metric, now.first, now.first)
+        at, rate, bent = (_three(part) for part in (state.shares, now.first, 0.5 * now.second))
+        at[0] += 1
+        h, edge = _exit(np.maximum(at, 0.0), rate, bent)
+        lag, h = self._limited(now, square, h, edge)
+        here = state.shares + h * (now.first + (0.5 * h) * now.second)
+        resting = square <= now.rest
+        ended = resting | ~np.isfinite(here[0] + here[1] + lag)
+        if ended.any():
+            # They stay where they are.
+            h[ended], edge[ended], lag[ended] = 0.0, -1, state.lag[ended]
+            here[:, ended] = state.shares[:, ended]
+            now.first[:, resting] = 0.0
+        self._record(now, h, lag)
+        standing = (edge >= 0) & (h * h * square <= SHARE_ROUNDING**2)
+        state.standing = np.where(standing, state.standing + 1, 0)
+        ended |= state.standing > MOST_STANDING
+        state.lag, state.shares = lag, here
+        ended[self._cross(now, h, np.flatnonzero(edge >= 0), edge)] = True
+        if ended.any():
+            now.first += h * now.second
+            self._end(np.flatnonzero(ended), now)
+        left = ~ended & (state.next < len(self.lags) - 1)
+        if not left.all():
+            self.state = state.pick(left)
+
+    def end_all(self) -> None:
+        """End all paths where they are."""
+        state = self.state
+        if len(state.which):
+            now = self.motion.at(state.triangle, state.shares, state.lag, state.last)
+            self._end(np.arange(len(state.which)), now)
+
+    def _limited(
+        self, now: Derivatives, square: Floats, h: Floats, edge: Indices
+    ) -> tuple[Floats, Floats]:
+        """Lags (N,) after steps that are short enough, and these, (N,).
+
+        Steps that end before the edge lose it.
+        """
+        error = dot(now.metric, now.third, now.third)
+        bend = dot(now.metric, now.bend, now.bend)
+        far = np.flatnonzero((error * (h * h) ** 3 > self.error) | (bend * (h * h) > square))
+        if len(far):
+            short = np.minimum(
+                np.cbrt(np.sqrt(self.error / error[far])), np.sqrt(square[far] / bend[far])
+            )
+            edge[far] = np.where(short < h[far], -1, edge[far])
+            h[far] = np.minimum(short, h[far])
+        lag = self.state.lag
+        if self.motion.by_length:
+            return lag + now.size * (h / 6) * _sum_of_speeds(*_speeds(now, h)), h
+        after = lag + now.pace * h
+        if now.until is not None:
+            cut = after > now.until
+            h = np.where(cut, (now.until - lag) / now.pace, h)
+            edge[cut] = -1
+            # Written, not added, so that rounding leaves no particle before that moment.
+            after = np.where(cut, now.until, after)
+        return after, h
+
+    def _keep_to_edges(self, now: Derivatives) -> None:
+        """Lead on the particles that would go back over the edge by which they came."""
+        state = self.state
+        few = EDGE_ROUNDING * (np.abs(now.first[0]) + np.abs(now.first[1]))
+        rate = _three(now.first)[state.edge, np.arange(len(few))]
+        at = np.flatnonzero((rate <= few) & (state.edge >= 0))
+        share = _all_shares(state.shares[:, at])[state.edge[at], np.arange(len(at))]
+        at = at[share <= SHARE_ROUNDING]
+        if not len(at):
+            return
+        back = ~_inward(now, at, state.edge[at])
+        code = self.mesh.across[3 * state.triangle[at] + state.edge[at]]
+        border, inner = back & (code < 0), np.flatnonzero(back & (code >= 0))
+        out = -rate[at] * self.mesh.heights[state.triangle[at], state.edge[at]]
+        speed = np.sqrt(dot(now.metric[:, at], now.first[:, at], now.first[:, at]))
+        slides = border & (out <= BORDER_ROUNDING * speed)
+        if len(inner):
+            over = at[inner]
+            triangle, edge, shares = self._behind(over, state.edge[over], code[inner])
+            there = self.motion.at(triangle, shares, state.lag[over], state.last[over])
+            leads = _inward(there, np.arange(len(over)), edge)
+            slides[inner[~leads]] = True
+            go = over[leads]
+            now.put(go, there.pick(leads))
+            state.triangle[go], state.edge[go] = triangle[leads], edge[leads]
+            state.shares[:, go] = shares[:, leads]
+        slide = at[slides]
+        # What is this little across an edge is rounding.
+        rate = _three(now.first[:, at])[state.edge[at], np.arange(len(at))]
+        along = at[slides | (~border & (rate <= EDGE_ROUNDING * np.abs(now.first[:, at]).sum(0)))]
+        now.first[:, along] = _along(now.first[:, along], now.metric[:, along], state.edge[along])
+        now.second[:, slide] = _along(now.second[:, slide], now.metric[:, slide], state.edge[slide])
+
+    def _behind(self, at: Indices, edge: Indices, code: Indices) -> tuple[Indices, Indices, Floats]:
+        """Triangles (n,) behind the edges of some particles, their edges, and shares (2, n)."""
+        shares, count = _all_shares(self.state.shares[:, at]), np.arange(len(at))
+        one, two = (np.maximum(shares[(edge + step) % 3, count], 0.0) for step in (1, 2))
+        share, way = one / (one + two), code & 7
+        beyond = NEXT[:, way] * share + AFTER[:, way] * (1 - share)
+        return code >> 3, BEHIND[way], beyond
+
+    def _cross(self, now: Derivatives, h: Floats, at: Indices, edge: Indices) -> Indices:
+        """Take some particles over their edges, and return those for which there is nothing."""
+        state, edge = self.state, edge[at]
+        code = self.mesh.across[3 * state.triangle[at] + edge]
+        over = code >= 0
+        if over.all():
+            self._place(at, *self._behind(at, edge, code))
+            return at[:0]
+        some = at[over]
+        self._place(some, *self._behind(some, edge[over], code[over]))
+        out, edge = at[~over], edge[~over]
+        rate = now.first[:, out] + h[out] * now.second[:, out]
+        speed = np.sqrt(dot(now.metric[:, out], rate, rate))
+        away = -_three(rate)[edge, np.arange(len(out))]
+        away *= self.mesh.heights[state.triangle[out], edge]
+        on = away <= BORDER_ROUNDING * speed
+        state.edge[out[on]] = edge[on]
+        return out[~on]
+
+    def _place(self, at: Indices, triangle: Indices, edge: Indices, shares: Floats) -> None:
+        state = self.state
+        state.triangle[at], state.edge[at], state.shares[:, at] = triangle, edge, shares
+
+    def _record(self, now: Derivatives, h: Floats, lag: Floats) -> None:
+        """Write where particles are at the lags that their steps pass."""
+        state = self.state
+        due = np.flatnonzero(state.due <= lag * (1 + LAG_ROUNDING))
+        speeds = None
+        while len(due):
+            step = h[due]
+            first, second = now.first[:, due], now.second[:, due]
+            if self.motion.by_length:
+                if speeds is None:
+                    speeds = _speeds(now, h)
+                wanted = (state.due[due] - state.lag[due]) / now.size[due]
+                t = step * _fraction(wanted / step, *(speed[due] for speed in speeds))
+            else:
+                t = np.minimum((state.due[due] - state.lag[due]) / now.pace[due], step)
+            number, which = state.next[due], state.which[due]
+            self.triangle[number, which] = state.triangle[due]
+            self.shares[number, :, which] = (
+                state.shares[:, due] + t * (first + (0.5 * t) * second)
+            ).T
+            state.next[due] += 1
+            state.due[due] = self.lags[number + 1, which]
+            due = due[state.due[due] <= lag[due] * (1 + LAG_ROUNDING)]
+
+    def _end(self, at: Indices, now: Derivatives) -> None:
+        """End some paths where they are, and tell the lags that are left by their straight on."""
+        state = self.state
+        which, rate = state.which[at], now.first[:, at]
+        if self.motion.by_length:
+            rate = rate / (now.size[at] * np.sqrt(dot(now.metric[:, at], rate, rate)))
+        else:
+            rate = rate / now.pace[at]
+        corners = self.points[self.mesh.corners[state.triangle[at]]]
+        sides = corners[:, 1:] - corners[:, :1]
+        ahead = np.einsum("sn,nsc->cn", rate, sides)
+        self.ahead[:, which] = np.nan_to_num(ahead, posinf=0.0, neginf=0.0)
+        self.reach[which] = state.lag[at]
+        for m in range(int(state.next[at].min()), len(self.triangle)):
+            later = at[state.next[at] <= m]
+            some = state.which[later]
+            self.triangle[m, some] = state.triangle[later]
+            self.shares[m][:, some] = state.shares[:, later]
+            self.further[m, some] = self.lags[m, some] - state.lag[later]
+
+
+def _all_shares(two: Floats) -> Floats:
+    """All three shares, (3, N), by the second and third."""
+    return np.stack([1 - two[0] - two[1], two[0], two[1]])
+
+
+def _exit(at: Floats, rate: Floats, bent: Floats) -> tuple[Floats, Indices]:
+    """When the first of quadratics (3, N) from positive numbers gets below zero, and which, (N,).
+
+    They are at + rate t + bent t^2. Where none does it is never.
+    """
+    falls = rate < 0
+    square = rate * rate - 4 * at * bent
+    root = np.sqrt(np.maximum(square, 0.0))
+    # Of the two ways to write a root, that without a difference of like numbers.
+    t = np.where(falls, 2 * at, rate + root)
+    t /= np.where(falls, root - rate, -2 * bent)
+    t[np.where(falls, square < 0, bent >= 0)] = np.inf
+    edge = (t[1] < t[0]).astype(np.intp)
+    first = np.minimum(t[0], t[1])
+    edge[t[2] < first] = 2
+    first = np.minimum(first, t[2])
+    edge[~np.isfinite(first)] = -1
+    return first, edge
+
+
+def _speeds(now: Derivatives, h: Floats) -> tuple[Floats, Floats, Floats]:
+    """Speeds at the beginning, in the middle and at the end of steps, (N,)."""
+    # Of the square, which is a quadratic.
+    square = dot(now.metric, now.first, now.first)
+    slope = dot(now.metric, now.first, now.second) * h
+    bend = dot(now.metric, now.second, now.second) * (h * h)
+    middle, end = square + slope + 0.25 * bend, square + 2 * slope + bend
+    return np.sqrt(square), np.sqrt(np.maximum(middle, 0.0)), np.sqrt(np.maximum(end, 0.0))
+
+
+def _fraction(mean: Floats, begin: Floats, middle: Floats, end: Floats) -> Floats:
+    """Fraction of a step, 0 to 1, after which the length is ``mean`` times that of the step's time.
+
+    Speeds are a quadratic through the three, (N,).
+    """
+    one, two = 4 * middle - 3 * begin - end, 2 * (begin + end) - 4 * middle
+    fraction = 6 * mean / _sum_of_speeds(begin, middle, end)
+    for _ in range(NEWTON_ROUNDS):
+        length = fraction * (begin + fraction * (one / 2 + fraction * (two / 3)))
+        speed = begin + fraction * (one + fraction * two)
+        fraction = np.clip(np.nan_to_num(fraction - (length - mean) / speed), 0.0, 1.0)
+    return np.asarray(fraction)
+
+
+def _sum_of_speeds(begin: Floats, middle: Floats, end: Floats) -> Floats:
+    """Six times the mean speed of a step, by Simpson's rule."""
+    return begin + 4 * middle + end
+
+
+def _inward(now: Derivatives, at: Indices, edge: Indices) -> Bools:
+    """Whether some particles at edges go into their triangles, or along the edge."""
+    count = np.arange(len(at))
+    rate, bent = (_three(part[:, at])[edge, count] for part in (now.first, now.second))
+    few = EDGE_ROUNDING * np.abs(now.first[:, at]).sum(axis=0)
+    return np.asarray((rate > few) | ((rate >= -few) & (bent >= 0)))
+
+
+def _along(change: Floats, metric: Floats, edge: Indices) -> Floats:
+    """What of changes (2, N) of shares is along the edges opposite to corners (N,)."""
+    e, f, g = metric
+    first, second = edge == 1, edge == 2
+    one = np.where(first, g, np.where(second, -f, f - g))
+    two = np.where(first, -f, np.where(second, e, f - e))
+    wide = np.where(first, g, np.where(second, e, e + g - 2 * f))
+    away = np.where(first, change[0], np.where(second, change[1], -change[0] - change[1])) / wide
+    result = np.stack([change[0] - one * away, change[1] - two * away])
+    # Without rounding, which would lead off the edge.
+    result[0] = np.where(first, 0.0, result[0])
+    result[1] = np.where(second, 0.0, np.where(first, result[1], -result[0]))
+    return result

@@ -1,0 +1,135 @@
+"""What makes a field of triangles, what is left out, and what is refused."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from triangle_meshes import random_plane, soup, sphere, surface_of
+
+from flowtex import FlowField
+from flowtex.errors import FieldError
+from flowtex.field.triangles.arrays import nodal_means
+from flowtex.scene import share_field
+
+SQUARE = np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]])
+HALVES = np.array([[0, 1, 2], [0, 2, 3]])
+EVEN = np.tile([1.0, 0.5], (4, 1))
+
+
+def test_a_square_is_a_field() -> None:
+    field = FlowField.from_triangles(SQUARE, HALVES, EVEN, name="square", length_unit="m")
+    assert repr(field) == "FlowField(square: 4 nodes, 2 triangles, steady, 0 blanked)"
+    assert field.points.shape == (1, 4, 3)
+    assert field.velocity.shape == (1, 1, 4, 3)
+    assert field.speed.shape == (1, 1, 4)
+    np.testing.assert_allclose(field.speed, np.hypot(1, 0.5))
+    assert field.steady
+    with pytest.raises(ValueError, match="no lines of nodes"):
+        field.downsample(2)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"points": SQUARE.reshape(2, 2, 2)}, "points has shape"),
+        ({"points": np.array([["a"]])}, "points holds"),
+        ({"triangles": HALVES[:, :2]}, "triangles has shape"),
+        ({"triangles": HALVES + 0.5}, "whole numbers"),
+        ({"triangles": HALVES + 1}, "node 4; expected 0 to 3"),
+        ({"triangles": HALVES - 1}, "node -1"),
+        ({"triangles": HALVES[:0]}, "triangles is empty"),
+        ({"velocity": EVEN[:3]}, "velocity has shape"),
+        ({"velocity": np.full((4, 2), np.nan)}, "0 of 4 nodes are usable"),
+        ({"velocity": EVEN * 1e200}, "velocity has values"),
+        ({"times": [0.0, 1.0]}, "times has shape"),
+        ({"valid": [True]}, "valid has shape"),
+        ({"scalars": {"p": np.ones(3)}}, r"scalars\['p'\] has shape"),
+    ],
+)
+def test_what_does_not_fit_is_refused(change: dict[str, Any], words: str) -> None:
+    arrays: dict[str, Any] = {"points": SQUARE, "triangles": HALVES, "velocity": EVEN, **change}
+    with pytest.raises(FieldError, match=words):
+        FlowField.from_triangles(**arrays)
+
+
+def test_what_has_no_area_or_is_there_twice_is_left_out() -> None:
+    triangles = np.concatenate([HALVES, [[0, 1, 1]], [[2, 1, 0]]])
+    points = np.concatenate([SQUARE, [[5.0, 5.0]]])
+    velocity = np.concatenate([EVEN, [[9.0, 9]]])
+    with pytest.warns(UserWarning, match="1 without area, 1 there twice"):
+        field = FlowField.from_triangles(points, triangles, velocity)
+    assert field.shape == (1, 4)  # and the node that no triangle uses
+    assert len(surface_of(field).triangles) == 2
+    assert field.surface.extent == pytest.approx(np.sqrt(2))
+
+
+def test_nodes_that_are_not_known_blank_their_triangles() -> None:
+    velocity = EVEN.copy()
+    velocity[3] = np.nan
+    field = FlowField.from_triangles(SQUARE, HALVES, velocity)
+    assert field.valid.tolist() == [[True, True, True, False]]
+    assert field.surface.cells.tolist() == [True, False]
+    assert not field.velocity[0, 0, 3].any()
+    hidden = np.ma.masked_invalid(velocity)
+    assert share_field(field) is share_field(FlowField.from_triangles(SQUARE, HALVES, hidden))
+    other = FlowField.from_triangles(SQUARE, HALVES[::-1], velocity)
+    assert share_field(other) is other
+
+
+def test_nodes_at_one_place_are_one_with_their_mean(rng: np.random.Generator) -> None:
+    points, triangles = soup(rng, sphere(2))
+    steps = np.stack([np.cross([0.0, 0, 1], points), points * 0 + 1.0])
+    field = FlowField.from_triangles(
+        points, triangles, steps, scalars={"number": np.arange(len(points), dtype=float)}
+    )
+    assert field.shape[1] == len(sphere(2)[0])
+    np.testing.assert_allclose(field.velocity[0, 0], np.cross([0.0, 0, 1], field.points[0]))
+    np.testing.assert_allclose(field.velocity[1, 0], 1)
+    # Every corner counts once at the node that it became.
+    degree = np.bincount(surface_of(field).triangles.ravel())
+    total = float(field.scalars["number"][0, 0] @ degree)
+    assert total == pytest.approx(len(points) * (len(points) - 1) / 2)
+
+
+def test_means_at_nodes_are_by_area(rng: np.random.Generator) -> None:
+    triangles = np.array([[0, 1, 2], [0, 2, 3], [0, 3, 4]])
+    values = rng.normal(size=(2, 3, 3))
+    areas = np.array([1.0, 3.0, 4.0])
+    means = nodal_means(values, triangles, areas, 6, known=np.array([True, True, False]))
+    np.testing.assert_allclose(means[:, 0], (values[:, 0] + 3 * values[:, 1]) / 4)
+    np.testing.assert_allclose(means[:, 3], values[:, 1])
+    assert np.isnan(means[:, 4:]).all()
+
+
+@given(st.integers(0, 10**6))
+def test_any_triangles_make_a_field_or_an_error(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    points, triangles = random_plane(rng, 40)
+    points = points + rng.normal(size=points.shape) * rng.choice([0.0, 0.1])
+    points[rng.integers(0, len(points), 3)] = points[0]
+    triangles[rng.integers(0, len(triangles), 5)] = rng.integers(0, len(points), (5, 3))
+    velocity = rng.normal(size=points.shape)
+    velocity[rng.random(len(points)) < 0.1] = np.nan
+    velocity *= 10.0 ** rng.integers(-90, 90)
+    try:
+        field = _quiet(points, triangles, velocity)
+    except FieldError as error:
+        assert "expected" in str(error) or "check" in str(error)
+        return
+    surface = surface_of(field)
+    for array in (surface.normals, surface.tangents, surface.cell_size, field.speed):
+        assert np.isfinite(array).all()
+    assert (surface.cell_size > 0).all()
+    assert (field.speed[0, 0] <= np.linalg.norm(field.velocity[0, 0], axis=-1) * 1.0001).all()
+
+
+def _quiet(*arrays: Any) -> FlowField:
+    import warnings
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)
+        return FlowField.from_triangles(*arrays)

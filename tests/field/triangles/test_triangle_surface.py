@@ -1,0 +1,107 @@
+"""Geometry of a surface of triangles, and points on it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from triangle_meshes import cube, random_plane, soup, sphere, surface_of
+
+from flowtex import FlowField
+from flowtex.field.locate import locate, locator, surface_point
+from flowtex.field.point_values import values_at
+
+
+def rotating(mesh: tuple[np.ndarray, np.ndarray]) -> FlowField:
+    points, triangles = mesh
+    return FlowField.from_triangles(points, triangles, np.cross([0.0, 0.0, 1.0], points))
+
+
+def test_a_sphere_is_known(rng: np.random.Generator) -> None:
+    for mesh in (sphere(4), soup(rng, sphere(4))):
+        field = rotating(mesh)
+        surface = surface_of(field)
+        outward = np.einsum("jic,jic->ji", surface.normals, surface.points)
+        np.testing.assert_allclose(np.abs(outward), 1, atol=1e-5)
+        assert (np.sign(outward) == np.sign(outward[0, 0])).all()
+        np.testing.assert_allclose(np.linalg.norm(surface.tangents, axis=-1), 1)
+        np.testing.assert_allclose(np.cross(*surface.tangents), surface.normals, atol=1e-12)
+        assert field.normal_share < 1e-3
+        np.testing.assert_allclose(
+            field.speed[0, 0], np.hypot(*field.points[0, :, :2].T), atol=1e-5
+        )
+        assert surface.frame is None
+        assert field.shape == (1, len(sphere(4)[0]))
+
+
+def test_what_points_out_of_the_surface_is_told() -> None:
+    points, triangles = sphere(3)
+    field = FlowField.from_triangles(points, triangles, np.tile([1.0, 0.0, 0.0], (len(points), 1)))
+    # The mean of x^2 over the sphere is a third.
+    assert field.normal_share == pytest.approx(np.sqrt(1 / 3), rel=0.01)
+
+
+def test_a_plane_is_flat_wherever_it_lies(rng: np.random.Generator) -> None:
+    points, triangles = random_plane(rng, 200, grading=1000)
+    turn, _ = np.linalg.qr(rng.normal(size=(3, 3)))
+    field = FlowField.from_triangles(points @ turn + [3.0, 1, 7], triangles, points)
+    assert field.surface.frame is not None
+    assert np.linalg.norm(surface_of(field).crosses, axis=1).sum() == pytest.approx(2)
+    sizes = field.surface.cell_size
+    assert sizes.max() > 30 * sizes.min()
+
+
+@given(st.integers(0, 10**6))
+def test_a_point_of_the_surface_is_found_again(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    meshes = (sphere(3), cube(5), random_plane(rng, 100, grading=300))
+    field = rotating(meshes[seed % 3])
+    surface = surface_of(field)
+    count = len(surface.triangles)
+    shares = rng.dirichlet([0.5, 0.5, 0.5], 50)
+    index = surface.index_of(rng.integers(0, count, 50), shares)
+    points = surface.at(index)
+    found, distance = locator(field).nearest(points)
+    assert distance.max() < 1e-7
+    np.testing.assert_allclose(surface.at(found[:, ::-1]), points, atol=1e-7)
+
+
+def test_a_point_beside_the_surface_is_none() -> None:
+    field = rotating(sphere(3))
+    assert locate(field, [0.0, 0.0, 2.0]) is None
+    at = locate(field, [0.0, 0.0, 1.0])
+    assert at is not None
+    place = surface_point(field.surface, at)
+    np.testing.assert_allclose(place.interpolate(field.points), [0, 0, 1], atol=1e-6)
+
+
+def test_values_at_a_point_are_linear(rng: np.random.Generator) -> None:
+    points, triangles = random_plane(rng, 150)
+    times = [0.0, 1.0]
+    steps = np.stack([np.column_stack([points[:, 1], points[:, 0]]) * t for t in (1.0, 3.0)])
+    field = FlowField.from_triangles(
+        points, triangles, steps, times=times, scalars={"height": points @ [1.0, 2, 0]}
+    )
+    at = locate(field, (0.4, 0.7))
+    assert at is not None
+    values = values_at(field, at, 0.5)
+    np.testing.assert_allclose(values.position, [0.4, 0.7, 0], atol=1e-12)
+    np.testing.assert_allclose(values.velocity, [1.4, 0.8, 0], atol=1e-12)
+    assert values.scalars["height"] == pytest.approx(1.8)
+
+
+@pytest.mark.parametrize("index", [(-1.0, 0.2), (1e9, 0.0), (0.0, 1.5)])
+def test_a_place_that_is_none_is_refused(index: tuple[float, float]) -> None:
+    with pytest.raises(ValueError, match="number of the triangle"):
+        surface_point(rotating(sphere(1)).surface, index)
+
+
+def test_a_blanked_triangle_has_no_point() -> None:
+    points, triangles = sphere(2)
+    valid = points[:, 2] < 0.5
+    field = FlowField.from_triangles(points, triangles, points[:, [1, 0, 2]], valid=valid)
+    number = int(np.flatnonzero(~field.surface.cells)[0])
+    with pytest.raises(ValueError, match="blanked"):
+        surface_point(field.surface, (number + 0.2, 0.2))
+    assert locate(field, (0.0, 0.0, 1.0)) is None

@@ -1,0 +1,59 @@
+"""Surfaces of triangles for tests: points (N, 3) and numbers of the corners (M, 3)."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.spatial import Delaunay
+
+from flowtex import FlowField
+from flowtex._util.array_types import Floats, Indices
+from flowtex.field.triangles.surface import TriangleSurface
+
+__all__ = ["cube", "random_plane", "soup", "sphere", "surface_of"]
+
+Mesh = tuple[Floats, Indices]
+
+
+def random_plane(rng: np.random.Generator, nodes: int, *, grading: float = 1.0) -> Mesh:
+    """Triangulate random points of the unit square; sides grow by ``grading`` along x."""
+    side = int(np.sqrt(nodes))
+    edge = np.linspace(0, 1, side)
+    border = [(edge, 0 * edge), (edge, 0 * edge + 1), (0 * edge, edge), (0 * edge + 1, edge)]
+    inner = rng.uniform(0.3 / side, 1 - 0.3 / side, (nodes, 2))
+    flat = np.unique(np.concatenate([*(np.stack(b, -1) for b in border), inner]), axis=0)
+    if grading > 1:
+        # The density of nodes falls with x as the sides grow.
+        flat[:, 0] = (grading ** flat[:, 0] - 1) / (grading - 1)
+    triangles = Delaunay(flat).simplices.astype(np.intp)
+    return np.column_stack([flat, np.zeros(len(flat))]), triangles
+
+
+def sphere(subdivisions: int) -> Mesh:
+    """Return a unit sphere: an icosahedron whose sides are halved so many times."""
+    import pyvista as pv
+
+    mesh = pv.Icosphere(nsub=subdivisions)
+    points = np.asarray(mesh.points, float)
+    return points / np.linalg.norm(points, axis=1, keepdims=True), mesh.regular_faces.astype(int)
+
+
+def cube(cells: int) -> Mesh:
+    """Return the surface of the cube from -1 to 1, each face cut into squares and these in two."""
+    import pyvista as pv
+
+    mesh = pv.Box(level=cells - 1).triangulate().clean()
+    return np.asarray(mesh.points, float), mesh.regular_faces.astype(int)
+
+
+def soup(rng: np.random.Generator, mesh: Mesh) -> Mesh:
+    """Return triangles that share no nodes and face either way, as STL files have them."""
+    points, triangles = mesh
+    turned = rng.random(len(triangles)) < 0.5
+    mixed = np.where(turned[:, None], triangles[:, ::-1], triangles)
+    return points[mixed].reshape(-1, 3), np.arange(mixed.size).reshape(-1, 3)
+
+
+def surface_of(field: FlowField) -> TriangleSurface:
+    """Return the surface of a field of triangles."""
+    assert isinstance(field.surface, TriangleSurface)
+    return field.surface
