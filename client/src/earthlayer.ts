@@ -257,23 +257,28 @@ export class EarthLayer {
     const nodes = this.parts.get("position");
     const drawn = this.emptyArray();
     if (!cells || !nodes) return drawn;
-    const [rows, columns] = cells.shape;
-    const corners: number[] = [];
-    for (let n = 0; n < rows * columns; n += 1) {
-      if (!cells.data[n]) continue;
-      const low = n + Math.floor(n / columns);
-      const high = low + columns + 1;
-      corners.push(low, low + 1, high + 1, low, high + 1, high);
-    }
+    const corners = this.header.geometry.triangles ? cells.data : cellCorners(cells);
     gl.bindVertexArray(drawn.array);
     const points = positions(nodes.data as Float32Array, anchor);
     drawn.buffers = [
       this.buffer(gl.ARRAY_BUFFER, points as AllowSharedBufferSource),
-      this.buffer(gl.ELEMENT_ARRAY_BUFFER, new Uint32Array(corners)),
+      this.buffer(gl.ELEMENT_ARRAY_BUFFER, corners as AllowSharedBufferSource),
     ];
     drawn.count = corners.length;
     gl.enableVertexAttribArray(0);
     gl.vertexAttribPointer(0, 3, gl.FLOAT, false, 0, 0);
     return drawn;
   }
+}
+
+/** Nodes at the corners of the triangles of cells that are marked. */
+function cellCorners({ data, shape: [rows, columns] }: Part): Uint32Array {
+  const corners: number[] = [];
+  for (let n = 0; n < rows * columns; n += 1) {
+    if (!data[n]) continue;
+    const low = n + Math.floor(n / columns);
+    const high = low + columns + 1;
+    corners.push(low, low + 1, high + 1, low, high + 1, high);
+  }
+  return Uint32Array.from(corners);
 }

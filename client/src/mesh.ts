@@ -48,17 +48,20 @@ export function shares(steps: Data[], scalars: Header["scalars"], nodes: number)
   return result;
 }
 
-/** A nodal value at a place between nodes, as the triangles interpolate it. */
-export function interpolated(
-  [rows, columns]: [number, number],
-  i: number,
-  j: number,
-  value: (node: number) => number,
-): number {
+/** Nodes around a place of a surface, and their shares. */
+export type Corners = readonly (readonly [node: number, share: number])[];
+
+/** Corners of the triangle in which a place (i, j) of a structured surface lies. */
+export function cornersAt([rows, columns]: [number, number], [i, j]: readonly number[]): Corners {
   const [left, low] = [Math.min(Math.floor(i), columns - 2), Math.min(Math.floor(j), rows - 2)];
   const [a, b] = [i - left, j - low];
   const corner = low * columns + left;
-  const [from, to] = [value(corner), value(corner + columns + 1)];
-  const aside = value(corner + (a >= b ? 1 : columns));
-  return from + Math.max(a, b) * (aside - from) + Math.min(a, b) * (to - aside);
+  const [least, most] = [Math.min(a, b), Math.max(a, b)];
+  const aside = corner + (a >= b ? 1 : columns);
+  return [[corner, 1 - most], [aside, most - least], [corner + columns + 1, least]];
+}
+
+/** A nodal value between nodes. */
+export function interpolated(corners: Corners, value: (node: number) => number): number {
+  return corners.reduce((sum, [node, share]) => sum + share * value(node), 0);
 }

@@ -1,16 +1,18 @@
 // The point of the surface at a place of the view: one pixel is drawn with the nodes' coordinates.
 
 import { atPixel, projection, type Camera } from "./camera.ts";
-import { interpolated } from "./mesh.ts";
+import { interpolated, type Corners } from "./mesh.ts";
+import type { Geometry, Header, Padding } from "./protocol.ts";
 import type { Scene } from "./scene.ts";
 import { fullIndex } from "./tilechoice.ts";
 import type { Layer } from "./tiles.ts";
+import { placeIn } from "./trianglemesh.ts";
 import type { Moment } from "./uniforms.ts";
 import { add, clamp, dot, fromFrame, subtract, type Vector } from "./vectors.ts";
 
 export interface Point {
   position: number[];
-  /** Place between the nodes of the whole surface, (i, j). */
+  /** Place between the nodes of the whole surface, (i, j); of triangles that of `placeIn`. */
   index: [number, number];
   values: Record<string, number>;
 }
@@ -50,26 +52,36 @@ export function pickedPoint(context: PickContext, x: number, y: number): Found |
   if (!bits[3]) return null;
   const [u, v] = new Float32Array(bits.buffer, 0, 2);
   const layer = layers[bits[2]];
-  const { scene, key } = layer;
-  const { rows, columns, shape } = scene.header.geometry;
-  const i = clamp(u * columns.size - 0.5 - columns.before, 0, shape[1] - 1);
-  const j = clamp(v * rows.size - 0.5 - rows.before, 0, shape[0] - 1);
-  const position = positionAt(scene, camera, [i, j], x, y);
-  const full = header.pyramid?.shapes[0] ?? shape;
-  const side = header.mesh.tileCells * (header.pyramid?.tileBlocks ?? 0);
+  const { geometry } = layer.scene.header;
+  const place = geometry.triangles ? placeIn(bits[3] - 1, u, v) : placeAmong(geometry, u, v);
+  const corners = layer.scene.cornersAt(place);
+  const position = positionAt(layer.scene, camera, corners, x, y);
+  const index = geometry.triangles ? place : wholeIndex(header, layer, place);
+  return { point: { position, index, values: valuesAt(layer.scene, moment, corners) }, layer, place };
+}
+
+/** Place between the nodes at a coordinate of the slices. */
+function placeAmong({ rows, columns, shape }: Geometry, u: number, v: number): [number, number] {
+  const at = (share: number, { size, before }: Padding, nodes: number) =>
+    clamp(share * size - 0.5 - before, 0, nodes - 1);
+  return [at(u, columns, shape[1]), at(v, rows, shape[0])];
+}
+
+/** Place between the nodes of the whole surface, of one in a layer. */
+function wholeIndex(header: Header, { key }: Layer, [i, j]: [number, number]): [number, number] {
+  const { pyramid, geometry, mesh } = header;
   const [level, row, column] = key;
-  const place = (n: number, tile: number, axis: number) =>
-    fullIndex(n + tile * side, level, full[axis]);
-  const index: [number, number] = [place(i, column, 1), place(j, row, 0)];
-  const point = { position, index, values: valuesAt(scene, moment, [i, j]) };
-  return { point, layer, place: [i, j] };
+  const [rows, columns] = pyramid?.shapes[0] ?? geometry.shape;
+  const side = mesh.tileCells * (pyramid?.tileBlocks ?? 0);
+  const at = (n: number, tile: number, nodes: number) => fullIndex(n + tile * side, level, nodes);
+  return [at(i, column, columns), at(j, row, rows)];
 }
 
 /** Single precision finds the depth; the place itself is on the ray through the pointer. */
-function positionAt(scene: Scene, camera: Camera, [i, j]: number[], x: number, y: number) {
+function positionAt(scene: Scene, camera: Camera, corners: Corners, x: number, y: number) {
   const { data } = scene.part("position");
-  const { shape, frame, center } = scene.header.geometry;
-  const local = [0, 1, 2].map((k) => interpolated(shape, i, j, (n) => data[3 * n + k]));
+  const { frame, center } = scene.header.geometry;
+  const local = [0, 1, 2].map((k) => interpolated(corners, (n) => data[3 * n + k]));
   const about = add(fromFrame(frame, local), center);
   const [start, along] = camera.ray(x, y);
   const ahead = camera.axes[2];
@@ -81,10 +93,10 @@ function positionAt(scene: Scene, camera: Camera, [i, j]: number[], x: number, y
 export function valuesAt(
   scene: Scene,
   moment: Moment,
-  [i, j]: [number, number],
+  corners: Corners,
 ): Record<string, number> {
   const { header, parts } = scene;
-  const { scalars, geometry } = header;
+  const { scalars } = header;
   const [from, to, between] = moment;
   const values: Record<string, number> = {};
   const others = scalars.choices.map(({ name, steps }, number) => ({ name, steps, number }));
@@ -93,7 +105,7 @@ export function valuesAt(
     const [before, after] = names.map((part) => parts.get(part)?.data);
     if (each.name === null || each.name in values || !before || !after) continue;
     const value = (n: number) => before[n] + between * (after[n] - before[n]);
-    values[each.name] = interpolated(geometry.shape, i, j, value);
+    values[each.name] = interpolated(corners, value);
   }
   return values;
 }

@@ -145,7 +145,7 @@ export class PointCard {
     const position = point.position as Vector;
     const at = { scene, moment: shown, place, position };
     const path = pathThrough(at, settings, camera, root.clientHeight);
-    this.tell({ ...point, values: valuesAt(scene, shown, place) }, path, header, camera);
+    this.tell({ ...point, values: valuesAt(scene, shown, scene.cornersAt(place)) }, path, header, camera);
     for (const { card } of together) {
       card.drawn = { path, point: position };
       card.draw();

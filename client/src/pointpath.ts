@@ -3,9 +3,10 @@
 
 import type { Camera } from "./camera.ts";
 import { fromHalf } from "./half.ts";
-import { interpolated } from "./mesh.ts";
-import { isSignFree, type Data, type Geometry, type Settings } from "./protocol.ts";
+import { interpolated, type Corners } from "./mesh.ts";
+import { isSignFree, type Settings } from "./protocol.ts";
 import type { Scene } from "./scene.ts";
+import { placeIn } from "./trianglemesh.ts";
 import { isMoving, type Moment } from "./uniforms.ts";
 import { add, clamp, cross, dot, fromFrame, length, scale, subtract, unit, type Vector } from "./vectors.ts";
 
@@ -60,32 +61,40 @@ function texelOf(scene: Scene, step: number): (layer: number, texel: number) => 
   };
 }
 
-/** Layers between the nodes and the time steps. */
-function layersAt({ scene, moment, place: [i, j] }: PathPlace): Layers {
-  const { geometry, slices } = scene.header;
-  const { rows, columns } = geometry;
-  const [x, y] = [i + columns.before, j + rows.before];
+/** The texels around a place, and their shares: four, or those of a triangle's nodes. */
+function texelsAt({ scene, place }: PathPlace): Corners {
+  const { rows, columns, triangles } = scene.header.geometry;
+  if (triangles) return scene.cornersAt(place);
+  const [x, y] = [place[0] + columns.before, place[1] + rows.before];
   const [left, low] = [Math.floor(x), Math.floor(y)];
   const [s, t] = [x - left, y - low];
-  const texels = [0, 1, 2, 3].map((n) => {
+  return [(1 - s) * (1 - t), s * (1 - t), (1 - s) * t, s * t].map((share, n) => {
     const column = clamp(left + (n & 1), 0, columns.size - 1);
-    return clamp(low + (n >> 1), 0, rows.size - 1) * columns.size + column;
+    return [clamp(low + (n >> 1), 0, rows.size - 1) * columns.size + column, share];
   });
-  const weights = [(1 - s) * (1 - t), s * (1 - t), (1 - s) * t, s * t];
+}
+
+/** Layers between the nodes and the time steps. */
+function layersAt(at: PathPlace): Layers {
+  const { scene, moment } = at;
+  const { slices } = scene.header;
+  const texels = texelsAt(at);
   const [before, after, late] = moment;
   const steps = [before, after].map((step) => texelOf(scene, step));
   const shares = [1 - late, late];
-  const signs = isSignFree(scene.header) ? signsOf(texels.map((n) => steps[0](0, n))) : [1, 1, 1, 1];
+  const signs = isSignFree(scene.header)
+    ? signsOf(texels.map(([texel]) => steps[0](0, texel)))
+    : texels.map(() => 1);
   return (layer) => {
     const sum: Four = [0, 0, 0, 0];
-    texels.forEach((texel, n) => {
+    texels.forEach(([texel, weight], n) => {
       // Of a node that is turned over the two sides change places.
       const other = layer + (layer > slices.lags.length ? -1 : 1) * slices.lags.length;
       const from = signs[n] < 0 && layer > 0 ? other : layer;
       steps.forEach((step, k) => {
         if (!shares[k]) return;
         step(from, texel).forEach((value, c) => {
-          sum[c] += weights[n] * shares[k] * value * (c < 3 ? signs[n] : 1);
+          sum[c] += weight * shares[k] * value * (c < 3 ? signs[n] : 1);
         });
       });
     });
@@ -129,19 +138,33 @@ function mover({ scene, place, position }: PathPlace): (moved: Vector) => Vector
   const { paper, geometry } = scene.header;
   if (!paper) return (moved) => add(position, fromFrame(geometry.frame, moved));
   const { alongI, alongJ } = paper;
-  const nodes = scene.part("position").data;
   const here = [between(alongI, place[0]), between(alongJ, place[1])];
-  const start = nodeAt(geometry, nodes, place);
+  const start = pointAt(scene, place);
   return ([u, v]) => {
     const at = [indexOf(alongI, here[0] + u), indexOf(alongJ, here[1] + v)];
     if (at.some(Number.isNaN)) return null;
-    return add(position, subtract(nodeAt(geometry, nodes, at as [number, number]), start));
+    return add(position, subtract(pointAt(scene, at as [number, number]), start));
   };
 }
 
-function nodeAt({ shape, frame }: Geometry, nodes: Data, [i, j]: [number, number]): Vector {
-  const local = [0, 1, 2].map((c) => interpolated(shape, i, j, (n) => nodes[3 * n + c]));
-  return fromFrame(frame, local);
+function pointAt(scene: Scene, place: [number, number]): Vector {
+  const { data } = scene.part("position");
+  const corners = scene.cornersAt(place);
+  const local = [0, 1, 2].map((c) => interpolated(corners, (n) => data[3 * n + c]));
+  return fromFrame(scene.header.geometry.frame, local);
+}
+
+/** Normal of the surface at a place, as long as the cell there is large, or two of the triangle. */
+function normalAt(scene: Scene, place: [number, number]): Vector {
+  const { shape, triangles } = scene.header.geometry;
+  if (triangles) {
+    const corner = (second: number, third: number) =>
+      pointAt(scene, placeIn(Math.floor(place[1]), second, third));
+    return cross(subtract(corner(1, 0), corner(0, 0)), subtract(corner(0, 1), corner(0, 0)));
+  }
+  const [i, j] = place.map((n, axis) => clamp(n, 0.5, shape[1 - axis] - 1.5));
+  const at = (di: number, dj: number) => pointAt(scene, [i + di, j + dj]);
+  return cross(subtract(at(0.5, 0), at(-0.5, 0)), subtract(at(0, 0.5), at(0, -0.5)));
 }
 
 function between(values: number[], at: number): number {
@@ -163,16 +186,13 @@ function indexOf(values: number[], value: number): number {
  */
 function grainAt({ scene, place, position }: PathPlace, settings: Settings, camera: Camera, rows: number) {
   const { geometry, paper } = scene.header;
-  const nodes = scene.part("position").data;
-  const [i, j] = place.map((n, axis) => clamp(n, 0.5, geometry.shape[1 - axis] - 1.5));
-  const at = (di: number, dj: number) => nodeAt(geometry, nodes, [i + di, j + dj]);
-  const normal = cross(subtract(at(0.5, 0), at(-0.5, 0)), subtract(at(0, 0.5), at(0, -0.5)));
+  const normal = normalAt(scene, place);
   const { height, ray } = camera.at(position);
   const facing = Math.max(Math.abs(dot(unit(normal), ray)), LEAST_FACING);
   const pixel = (2 * height) / rows;
   if (paper) {
     const [across, up] = [paper.alongI, paper.alongJ].map((along, axis) => {
-      const n = Math.floor([i, j][axis]);
+      const n = Math.min(Math.floor(place[axis]), along.length - 2);
       return (along[n + 1] - along[n]) * paper.size[axis];
     });
     const texel = Math.sqrt(length(normal) / (across * up));

@@ -11,6 +11,7 @@ const ATTRIBUTES = [
   "flowtexNormal",
   "flowtexNoise",
   "flowtexScalar",
+  "flowtexCorners",
 ];
 /** Samplers, each in the texture unit of its place. */
 export const SAMPLERS = ["u_slices", "u_slicesNext", "u_noiseImage", "u_stepImage", "u_cmap"];

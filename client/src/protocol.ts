@@ -11,7 +11,8 @@ const ZERO_SHARE = 1e-5;
 
 export type Value = boolean | number | string;
 export type Settings = Record<string, Value>;
-export type Data = Float64Array | Float32Array | Uint16Array | Int16Array | Int8Array | Uint8Array;
+export type Data =
+  Float64Array | Float32Array | Uint32Array | Uint16Array | Int16Array | Int8Array | Uint8Array;
 
 export interface Part {
   data: Data;
@@ -63,6 +64,8 @@ export interface Paper {
 }
 
 export interface Geometry extends Surface {
+  /** Of triangles that the part of this name has; their nodes are one row. */
+  triangles: boolean;
   shape: [number, number];
   /** Whether the first line of nodes lies where the last one does, along j and i. */
   periodic: [boolean, boolean];
@@ -143,8 +146,8 @@ export interface PyramidHeader {
   /** Level of the root, and the finest level of which there are tiles. */
   depth: number;
   finest: number;
-  /** Rows and columns of blocks at level 0, and of nodes at each level. */
-  blocks: [number, number];
+  /** Rows and columns of blocks, and of nodes, at each level. */
+  blocks: [number, number][];
   shapes: [number, number][];
   /** Blocks along a side of a tile. */
   tileBlocks: number;
@@ -243,6 +246,7 @@ export interface Header {
 /** Types of arrays; half precision goes to the graphics card as it is. */
 const TYPES: Record<string, new (bytes: ArrayBuffer) => Data> = {
   float32: Float32Array,
+  uint32: Uint32Array,
   float16: Uint16Array,
   uint16: Uint16Array,
   int16: Int16Array,

@@ -3,10 +3,17 @@
 import type { Graphics, Resource } from "./context.ts";
 import { EarthLayer } from "./earthlayer.ts";
 import { halved } from "./half.ts";
-import { coordinates, noiseCoordinates, positions, shares } from "./mesh.ts";
+import { coordinates, cornersAt, noiseCoordinates, positions, shares, type Corners } from "./mesh.ts";
 import { MeshLevels, type Sight } from "./meshlevels.ts";
 import { SAMPLERS } from "./programs.ts";
 import { stepOf, type Data, type Header, type Part } from "./protocol.ts";
+import {
+  atVertices,
+  cornersOf,
+  TriangleMesh,
+  vertexCorners,
+  vertexShares,
+} from "./trianglemesh.ts";
 import type { Vector } from "./vectors.ts";
 
 /** Objects that are made of a part, by the part's name without its step. */
@@ -15,6 +22,8 @@ const USERS: Record<string, string[]> = {
   normal: ["normal"],
   cells: ["index"],
   mesh: ["index"],
+  triangles: ["index", "position", "coordinate", "corners", "normal", "scalar"],
+  blocks: ["index"],
   cmap: ["cmap"],
   noise: ["noise"],
   step: ["step"],
@@ -41,7 +50,7 @@ export class Scene {
   private scalarSteps = "";
   /** Levels of the mesh's blocks, and of their borders. */
   private drawn: { levels: Int8Array; joins: Int8Array } | null = null;
-  private meshLevels: MeshLevels | null = null;
+  private meshLevels: MeshLevels | TriangleMesh | null = null;
 
   constructor(graphics: Graphics, header: Header, parts: Map<string, Part>) {
     this.graphics = graphics;
@@ -55,6 +64,7 @@ export class Scene {
     const { geometry, slices, scalars, paper, pyramid } = this.header;
     const names = ["position", "mesh", ...(geometry.planar ? [] : ["normal"])];
     if (pyramid) names.push("places");
+    if (geometry.triangles) names.push("triangles", "blocks");
     for (const step of new Set([before, after])) {
       names.push(`slices/${step}`);
       if (slices.channels === 2) names.push(`extra/${step}`);
@@ -82,7 +92,7 @@ export class Scene {
     const shapes: Record<string, number[]> = {
       slices: [slices.count, geometry.rows.size, geometry.columns.size, slices.channels],
       position: [...geometry.shape, 3],
-      mesh: [...blocks, part.shape[2]],
+      mesh: geometry.triangles ? part.shape : [...blocks, part.shape[2]],
       step: paper ? [paper.size[1], paper.size[0]] : [],
     };
     const shape = shapes[name.split("/")[0]];
@@ -98,7 +108,7 @@ export class Scene {
   /** Drop the objects of a part that has changed. */
   forget(name: string): void {
     const [kind, step] = name.split("/");
-    if (kind === "mesh" || kind === "cells") this.meshLevels = this.drawn = null;
+    if (USERS[kind]?.includes("index")) this.meshLevels = this.drawn = null;
     const sliced = kind === "slices" || kind === "extra";
     if (!sliced && kind !== "scalars") this.earth.forget(name);
     for (const user of sliced ? [`slices/${step}`] : (USERS[kind] ?? [])) this.drop(user);
@@ -151,7 +161,7 @@ export class Scene {
     return object;
   }
 
-  private buffer(name: string, key: string, data: () => Data | Uint32Array, elements = false) {
+  private buffer(name: string, key: string, data: () => Data, elements = false) {
     const gl = this.graphics.context;
     const fill = (buffer: WebGLBuffer) => {
       const target = elements ? gl.ELEMENT_ARRAY_BUFFER : gl.ARRAY_BUFFER;
@@ -164,14 +174,21 @@ export class Scene {
     return this.take(name, "Buffer", key, () => gl.createBuffer(), fill);
   }
 
-  private mesh(): MeshLevels {
-    if (!this.meshLevels) {
-      const { geometry, mesh } = this.header;
-      const { shape, periodic } = geometry;
-      const parts = { blocks: this.part("mesh").data, cells: this.parts.get("cells")?.data };
-      this.meshLevels = new MeshLevels({ shape, periodic, ...parts }, mesh);
+  private mesh(): MeshLevels | TriangleMesh {
+    if (this.meshLevels) return this.meshLevels;
+    const { geometry, mesh } = this.header;
+    if (geometry.triangles) {
+      return (this.meshLevels = new TriangleMesh(this.part("mesh"), this.part("blocks")));
     }
-    return this.meshLevels;
+    const { shape, periodic } = geometry;
+    const parts = { blocks: this.part("mesh").data, cells: this.parts.get("cells")?.data };
+    return (this.meshLevels = new MeshLevels({ shape, periodic, ...parts }, mesh));
+  }
+
+  /** Nodes around a place (i, j) of the surface, and their shares. */
+  cornersAt(place: [number, number]): Corners {
+    const { triangles, shape } = this.header.geometry;
+    return triangles ? cornersOf(this.part("triangles").data, place) : cornersAt(shape, place);
   }
 
   /** Levels of the mesh's blocks for a view, and their rows and columns. */
@@ -184,7 +201,7 @@ export class Scene {
   }
 
   /** Draw other triangles: those of some levels of the blocks and of their borders. */
-  setTriangles(levels: Int8Array, joins: Int8Array): void {
+  setTriangles(levels: Int8Array, joins: Int8Array = new Int8Array()): void {
     const { drawn } = this;
     if (drawn && String([levels, joins]) === String([drawn.levels, drawn.joins])) return;
     this.drawn = { levels, joins };
@@ -219,27 +236,34 @@ export class Scene {
     const { geometry, scalars, paper } = this.header;
     const { shape, rows, columns } = geometry;
     const { levels, joins } = this.drawn ?? { levels: new Int8Array(), joins: new Int8Array() };
+    const key = (names: string[], ...rest: unknown[]) => this.key(["triangles", ...names], ...rest);
     const cells = () => this.mesh().triangles(levels, joins);
-    const drawn = this.key(["cells", "mesh"], shape, [...levels], [...joins]);
+    const drawn = key(["cells", "mesh", "blocks"], shape, [...levels], [...joins]);
     const index = this.buffer("index", drawn, cells, true);
-    const nodes = () => positions(this.part("position").data as Float32Array, this.anchor);
+    const corners = geometry.triangles ? this.part("triangles").data : null;
+    const vertices = <T extends Data>(values: T, size: number) =>
+      corners ? atVertices(values, corners, size) : values;
+    const nodes = () =>
+      vertices(positions(this.part("position").data as Float32Array, this.anchor), 3);
     const normal = geometry.planar ? null : this.part("normal").data;
     const painted = this.scalarParts(before, after);
     const values = () => {
       const steps = painted.map((name) => this.part(name).data);
-      return shares(steps, scalars, shape[0] * shape[1]);
+      return vertices(shares(steps, scalars, shape[0] * shape[1]), 2);
     };
-    const colour = this.key([...new Set(painted)], shape, scalars.low, scalars.high, scalars.log);
-    const grid = JSON.stringify([shape, rows, columns]);
+    const colour = key([...new Set(painted)], shape, scalars.low, scalars.high, scalars.log);
+    const grid = JSON.stringify([shape, rows, columns, corners?.length]);
+    const place = () => (corners ? vertexShares(corners.length / 3) : coordinates(geometry));
     let type: number = gl.FLOAT;
     if (normal instanceof Int8Array) type = gl.BYTE;
     if (normal instanceof Int16Array) type = gl.SHORT;
     const attributes: [WebGLBuffer | null, number, number][] = [
-      [this.buffer("position", this.key(["position"], this.anchor), nodes), 3, gl.FLOAT],
-      [this.buffer("coordinate", grid, () => coordinates(geometry)), 2, gl.FLOAT],
-      [normal && this.buffer("normal", this.key(["normal"]), () => normal), 3, type],
+      [this.buffer("position", key(["position"], this.anchor), nodes), 3, gl.FLOAT],
+      [this.buffer("coordinate", grid, place), 2, gl.FLOAT],
+      [normal && this.buffer("normal", key(["normal"]), () => vertices(normal, 3)), 3, type],
       [paper && this.buffer("along", "", () => noiseCoordinates(paper)), 2, gl.FLOAT],
       [this.buffer("scalar", colour, values), 2, gl.FLOAT],
+      [corners && this.buffer("corners", key([]), () => vertexCorners(corners)), 3, gl.FLOAT],
     ];
     gl.bindVertexArray(array);
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, index);

@@ -3,7 +3,7 @@
 // From the root down, a block is replaced by finer ones where its cells cover too many pixels, and
 // where it is in view.
 
-import type { Data, MeshLimits, PyramidHeader, Settings } from "./protocol.ts";
+import type { Data, PyramidHeader, Settings } from "./protocol.ts";
 import { dot, length, subtract, type Vector } from "./vectors.ts";
 
 /** A tile: its level, and its row and column among the tiles of that level. */
@@ -54,30 +54,22 @@ export function cellPixels(pyramid: PyramidHeader, settings: Settings): number {
 
 export class Pyramid {
   readonly header: PyramidHeader;
-  private readonly blockCells: number;
   /** Places of the blocks of each level, row by row. */
   private readonly places: Data[] = [];
 
-  constructor(header: PyramidHeader, { tileCells: blockCells }: MeshLimits, places: Data) {
+  constructor(header: PyramidHeader, places: Data) {
     this.header = header;
-    this.blockCells = blockCells;
     let start = 0;
-    for (const [level] of header.shapes.entries()) {
-      const [rows, columns] = this.blocks(level);
+    for (const [rows, columns] of header.blocks) {
       const end = start + PLACE * rows * columns;
       this.places.push(places.subarray(start, end));
       start = end;
     }
   }
 
-  /** Rows and columns of blocks of a level. */
-  private blocks(level: number): number[] {
-    return this.header.shapes[level].map((n) => Math.max(Math.ceil((n - 1) / this.blockCells), 1));
-  }
-
   /** First row and column of a tile's blocks among those of its level, and the rows and columns after them. */
   private blocksOf(name: string, [level, row, column]: TileKey): number[] {
-    const [rows, columns] = this.blocks(level);
+    const [rows, columns] = this.header.blocks[level];
     if (name === ROOT) return [0, 0, rows, columns];
     const { tileBlocks: size } = this.header;
     const ends = [Math.min(size * (row + 1), rows), Math.min(size * (column + 1), columns)];
@@ -86,7 +78,8 @@ export class Pyramid {
 
   /** Tiles of the next level that cover a tile, or the root. */
   private children(name: string, [level, row, column]: TileKey): TileKey[] {
-    const counts = this.blocks(level - 1).map((n) => Math.ceil(n / this.header.tileBlocks));
+    const { blocks, tileBlocks } = this.header;
+    const counts = blocks[level - 1].map((n) => Math.ceil(n / tileBlocks));
     const [from, to] =
       name === ROOT
         ? [[0, 0], counts]
@@ -115,7 +108,7 @@ export class Pyramid {
       const key: TileKey = name === ROOT ? [depth, 0, 0] : keyOf(name);
       const choice: Choice = { key, needed: false, pixels: 0, finer: [] };
       const [top, left, bottom, right] = this.blocksOf(name, key);
-      const width = this.blocks(key[0])[1];
+      const width = this.header.blocks[key[0]][1];
       const coarse = new Set<number>();
       for (let j = top; j < bottom; j += 1) {
         for (let i = left; i < right; i += 1) {

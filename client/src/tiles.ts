@@ -207,7 +207,8 @@ export class Tiles {
     this.drawn = drawn;
     const { geometry, mesh, pyramid } = this.root.header;
     const most = Math.log2(mesh.tileCells);
-    const joins = join(parts, pyramid?.blocks ?? parts[0].shape, geometry.periodic, most);
+    const blocks = pyramid?.blocks[0] ?? parts[0].shape;
+    const joins = geometry.triangles ? [] : join(parts, blocks, geometry.periodic, most);
     parts.forEach(({ levels }, n) => this.layers[n].scene.setTriangles(levels, joins[n]));
   }
 
@@ -216,7 +217,7 @@ export class Tiles {
     const { header } = this.root;
     const { settings, canvas, ratio } = this.host;
     if (!header.pyramid) return new Map();
-    this.pyramid ??= new Pyramid(header.pyramid, header.mesh, this.root.part("places").data);
+    this.pyramid ??= new Pyramid(header.pyramid, this.root.part("places").data);
     const choices = this.pyramid.choose({
       ...camera.sight(canvas.height / ratio),
       planes: camera.planes,

@@ -12,7 +12,7 @@ const LAYERS = [
   "camera",
   "protocol",
   "uniforms quality",
-  "programs mesh maplines lonlat meshlevels tilechoice player colours legend",
+  "programs mesh maplines lonlat meshlevels tilechoice trianglemesh player colours legend",
   "context tilequeue",
   "earthlayer",
   "scene",

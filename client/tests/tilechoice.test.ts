@@ -34,7 +34,7 @@ const data: Tiles = JSON.parse(readFileSync(new URL("tiles.json", import.meta.ur
 
 for (const [n, { view, chosen, wanted, ready, shown, regions }] of data.views.entries()) {
   test(`tiles are chosen as Python does: view ${n}`, () => {
-    const pyramid = new Pyramid(data.pyramid, data.limits, Float32Array.from(data.places));
+    const pyramid = new Pyramid(data.pyramid, Float32Array.from(data.places));
     const choices = pyramid.choose(view);
     const found = [...choices].map(([name, { needed, finer }]) => [name, [needed, finer]]);
     assert.deepEqual(Object.fromEntries(found), chosen);
@@ -46,7 +46,7 @@ for (const [n, { view, chosen, wanted, ready, shown, regions }] of data.views.en
   test(`tiles join as in Python: view ${n}`, () => {
     const parts = regions.map((region) => ({ ...region, levels: Int8Array.from(region.levels) }));
     const most = Math.log2(data.limits.tileCells);
-    const borders = join(parts, data.pyramid.blocks, data.periodic, most);
+    const borders = join(parts, data.pyramid.blocks[0], data.periodic, most);
     regions.forEach((region, k) => {
       assert.deepEqual([...parts[k].levels], region.joined);
       // Borders of what is not drawn are of no use.

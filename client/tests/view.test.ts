@@ -5,7 +5,7 @@ import { test } from "node:test";
 import { isUseful, scaleOf } from "../src/controls.ts";
 import { numberText } from "../src/dom.ts";
 import { throttled } from "../src/lifetime.ts";
-import { coordinates, interpolated, positions, shares } from "../src/mesh.ts";
+import { coordinates, cornersAt, interpolated, positions, shares } from "../src/mesh.ts";
 import { Player } from "../src/player.ts";
 import type { Geometry, Header, Row } from "../src/protocol.ts";
 import { reused } from "../src/reuse.ts";
@@ -32,10 +32,8 @@ test("a node without a value has a share that no colour map has", () => {
 
 test("values between nodes are those of the triangles", () => {
   const value = (node: number) => [0, 1, 10, 100][node];
-  assert.equal(interpolated([2, 2], 0.5, 0, value), 0.5);
-  assert.equal(interpolated([2, 2], 0.5, 0.5, value), 50);
-  assert.equal(interpolated([2, 2], 0, 0.5, value), 5);
-  assert.equal(interpolated([2, 2], 1, 1, value), 100);
+  const at = (i: number, j: number) => interpolated(cornersAt([2, 2], [i, j]), value);
+  assert.deepEqual([at(0.5, 0), at(0.5, 0.5), at(0, 0.5), at(1, 1)], [0.5, 50, 5, 100]);
 });
 
 test("numbers are short", () => {

@@ -13,8 +13,9 @@ import numpy as np
 import pyvista as pv
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
-from flowtex._util.array_types import Bools, Floats
+from flowtex._util.array_types import Bools
 from flowtex.earth import MapLines
+from flowtex.field import FlowField
 from flowtex.plotting.vtk_camera import read_camera
 from flowtex.rendering.constants import AMBIENT_LIGHT, DIFFUSE_LIGHT
 from flowtex.rendering.map_overlay import (
@@ -140,7 +141,7 @@ class MapOverlay:
         is_lit = self._scene.is_lit
         meshes = []
         if (land := land_cells(self._field)).any():
-            meshes.append((_cell_mesh(self._field.surface.points, land), -LAND_FARTHER))
+            meshes.append((_cell_mesh(self._field, land), -LAND_FARTHER))
         self._radius = globe_radius(self._field)
         if self._radius is not None:
             around, along = 2 * GLOBE_CELLS, GLOBE_CELLS
@@ -254,12 +255,15 @@ def _line_mesh(lines: MapLines) -> pv.PolyData:
     return mesh
 
 
-def _cell_mesh(points: Floats, cells: Bools) -> pv.PolyData:
-    """Return some cells of a surface."""
-    columns = points.shape[1]
-    j, i = np.nonzero(cells)
-    corner = j * columns + i
-    quads = np.stack([corner, corner + 1, corner + columns + 1, corner + columns], axis=-1)
-    used, numbers = np.unique(quads, return_inverse=True)
-    faces: Any = numbers.reshape(-1, 4)
-    return pv.PolyData.from_regular_faces(points.reshape(-1, 3)[used], faces)
+def _cell_mesh(field: FlowField, cells: Bools) -> pv.PolyData:
+    """Return some cells of a field's surface."""
+    if field.triangles is None:
+        columns = field.shape[1]
+        j, i = np.nonzero(cells)
+        corner = j * columns + i
+        faces = np.stack([corner, corner + 1, corner + columns + 1, corner + columns], axis=-1)
+    else:
+        faces = field.triangles[cells]
+    used, numbers = np.unique(faces, return_inverse=True)
+    shape: Any = numbers.reshape(faces.shape)
+    return pv.PolyData.from_regular_faces(field.surface.points.reshape(-1, 3)[used], shape)

@@ -11,6 +11,7 @@ from flowtex._util.array_types import Bools, Floats
 from flowtex._util.blocks import bounds
 from flowtex.earth import EARTH_RADIUS, MapLines, coastlines, graticule
 from flowtex.field import FlowField
+from flowtex.field.triangles.surface import TriangleSurface
 
 __all__ = [
     "SPACINGS",
@@ -81,8 +82,13 @@ def map_lines(field: FlowField, *, has_globe: bool) -> dict[str, MapLines]:
 
 
 def land_cells(field: FlowField) -> Bools:
-    """Tell which cells of a field have their positions and are not drawn, (J - 1, I - 1)."""
+    """Tell which cells of a field have their positions and are not drawn.
+
+    The shape is (J - 1, I - 1), or (M,) of triangles.
+    """
     surface = field.surface
+    if isinstance(surface, TriangleSurface):
+        return ~surface.cells
     known = surface.has_position
     known = known[:-1, :-1] & known[1:, :-1] & known[:-1, 1:] & known[1:, 1:]
     return np.asarray(known & ~surface.cells)
@@ -98,13 +104,22 @@ def globe_radius(field: FlowField) -> float | None:
         return None
     if surface.has_position.all() and len(tuple(surface.poles or ())) == 2:
         return None
+    if isinstance(surface, TriangleSurface) and (surface.neighbours >= 0).all():
+        return None
     lowest = float(np.linalg.norm(_cells(field)[0], axis=-1).min(initial=EARTH_RADIUS))
     return lowest - LOWER * EARTH_RADIUS
 
 
 def _cells(field: FlowField) -> tuple[Floats, Floats]:
-    """Middles (N, 3) of the cells that are drawn and of those on land, and half their diagonals."""
+    """Middles (N, 3) of the cells that are drawn and of those on land, and half their diagonals.
+
+    Of a triangle that is how far its corners are from its middle.
+    """
     p = field.surface.points
+    if isinstance(field.surface, TriangleSurface):
+        corners = p[0][field.surface.triangles]
+        middles = corners.mean(axis=1)
+        return middles, np.linalg.norm(corners - middles[:, None], axis=-1).max(axis=1)
     shown = field.surface.cells | land_cells(field)
     corners = np.stack([p[:-1, :-1], p[1:, 1:], p[1:, :-1], p[:-1, 1:]])[:, shown]
     diagonals = np.linalg.norm(corners[::2] - corners[1::2], axis=-1)

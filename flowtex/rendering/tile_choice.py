@@ -13,7 +13,7 @@ import numpy as np
 
 from flowtex._util.array_types import Bools, Floats
 from flowtex.settings import Settings
-from flowtex.tiles import PATH_CELLS, TILE_BLOCKS, Pyramid, TileKey
+from flowtex.tiles import PATH_CELLS, Pyramid, TileKey
 
 __all__ = [
     "Choices",
@@ -112,7 +112,11 @@ def choose_tiles(pyramid: Pyramid, view: TileView) -> Choices:
         coarse = seen & (pixels > view.cell_pixels) if level else np.zeros_like(seen)
         own = seen & ~coarse
         finer = (
-            [child for child in pyramid.children(key) if coarse[finer_part(child, key)].any()]
+            [
+                child
+                for child in pyramid.children(key)
+                if coarse[finer_part(pyramid, child, key)].any()
+            ]
             if coarse.any()
             else []
         )
@@ -121,11 +125,11 @@ def choose_tiles(pyramid: Pyramid, view: TileView) -> Choices:
     return chosen
 
 
-def finer_part(child: TileKey, above: TileKey | None) -> tuple[slice, slice]:
+def finer_part(pyramid: Pyramid, child: TileKey, above: TileKey | None) -> tuple[slice, slice]:
     """Return the blocks of a tile, or of the root, that a tile of the next level covers."""
-    half = TILE_BLOCKS // 2
+    half = pyramid.tile_blocks // 2
     row, column = (
-        half * at - TILE_BLOCKS * place
+        half * at - pyramid.tile_blocks * place
         for at, place in zip(child[1:], above[1:] if above else (0, 0), strict=True)
     )
     return slice(row, row + half), slice(column, column + half)

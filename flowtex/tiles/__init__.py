@@ -10,8 +10,9 @@ from flowtex.tiles.pyramid import (
     Pyramid,
     TileKey,
     block_places,
-    shared_pyramid,
 )
+from flowtex.tiles.shared import shared_pyramid
+from flowtex.tiles.triangle_pyramid import TrianglePyramid
 
 __all__ = [
     "BLOCK_CELLS",
@@ -21,6 +22,7 @@ __all__ = [
     "Tile",
     "TileKey",
     "TileLoader",
+    "TrianglePyramid",
     "block_places",
     "shared_pyramid",
 ]

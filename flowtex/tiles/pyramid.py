@@ -24,7 +24,6 @@ from typing import NamedTuple
 import numpy as np
 
 from flowtex._util.array_types import Bools, Floats, Indices
-from flowtex._util.cache import WeakCache
 from flowtex.field import FlowField
 from flowtex.field.steps import Steps, map_steps
 from flowtex.textures import TextureSet
@@ -38,8 +37,6 @@ __all__ = [
     "Pyramid",
     "TileKey",
     "block_places",
-    "is_cut",
-    "shared_pyramid",
 ]
 
 #: Most nodes, of one time, of a field that is traced whole.
@@ -98,7 +95,11 @@ class Pyramid:
     ----------
     depth
         Level of the root; 0 where the whole field is one.
+    tile_blocks
+        Blocks along a side of a tile.
     """
+
+    tile_blocks = TILE_BLOCKS
 
     def __init__(
         self, field: FlowField, parameter: str = "arclength", lines: str = "pathlines"
@@ -150,8 +151,9 @@ class Pyramid:
         """Return the rows and columns of blocks that a tile has among those of its level."""
         if key is None:
             return slice(0, None), slice(0, None)
-        row, column = (TILE_BLOCKS * at for at in key[1:])
-        return slice(row, row + TILE_BLOCKS), slice(column, column + TILE_BLOCKS)
+        size = self.tile_blocks
+        row, column = (size * at for at in key[1:])
+        return slice(row, row + size), slice(column, column + size)
 
     def children(self, key: TileKey | None) -> list[TileKey]:
         """Tiles of the next level that cover a tile, or the root for ``None``."""
@@ -303,7 +305,10 @@ def is_cut(textures: TextureSet, step: int) -> bool:
     """Whether paths of a tile end where its window does, though the surface goes on.
 
     Slices may have longer lags than are needed: they double. The last part of a path weighs little.
+    What lies around a tile of triangles is as wide as its paths are long.
     """
+    if not isinstance(textures.geometry, SurfaceGeometry):
+        return False
     slices = textures.store.at(step).part(*textures.geometry.texels)
     needed = NEEDED_SHARE * textures.longest / (slices.unit * textures.pace)
     for moved, reach in (
@@ -353,16 +358,6 @@ def _greatest(values: Floats, firsts: list[Indices], lasts: list[Indices]) -> Fl
         inner = np.maximum.reduceat(values, firsts[axis], axis=axis)
         values = np.maximum(inner, np.take(values, lasts[axis], axis=axis))
     return values
-
-
-_pyramids: WeakCache[Pyramid] = WeakCache()
-
-
-def shared_pyramid(field: FlowField, parameter: str, lines: str = "pathlines") -> Pyramid:
-    """Return the pyramid of a field, one for all that show the field at the same time."""
-    # A pyramid keeps its field alive, so the number of the field is its own meanwhile.
-    key = (id(field), parameter, lines)
-    return _pyramids.get(key, lambda: Pyramid(field, parameter, lines))
 
 
 def _lines(count: int, level: int) -> Indices:

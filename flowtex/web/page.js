@@ -20,15 +20,16 @@ AUTHORS OR COPYRIGHT HOLDERS BE LIABLE FOR ANY CLAIM, DAMAGES OR OTHER
 LIABILITY, WHETHER IN AN ACTION OF CONTRACT, TORT OR OTHERWISE, ARISING FROM,
 OUT OF OR IN CONNECTION WITH THE SOFTWARE OR THE USE OR OTHER DEALINGS IN
 THE SOFTWARE. */
-var EARTH_LINES=["coastlines","graticule"],TYPES={float32:Float32Array,float16:Uint16Array,uint16:Uint16Array,int16:Int16Array,
-int8:Int8Array,uint8:Uint8Array};function shareOf({low,high,log}){if(!log)return value=>(value-low)/(high-low||1);let span=Math.
-log(high/low)||1;return value=>Math.log(Math.max(value,low)/low)/span}function legendLimits({low,high,log}){let least=log?
-0:1e-5*Math.max(Math.abs(low),Math.abs(high)),told=value=>Math.abs(value)<least?0:value;return[told(low),told(high)]}function isSignFree(header){
-return header.variant.includes("FLOWTEX_SIGNFREE")}function stepOf(name){return Number(name.split("/")[1])}function tilePart(name){
-let[kind,level,row,column,...rest]=name.split("/");return kind==="tile"?[[level,row,column].join("/"),rest.join("/")]:null}
-function decoded(info,bytes){let view=ArrayBuffer.isView(bytes)?new Uint8Array(bytes.buffer,bytes.byteOffset,bytes.byteLength):
-new Uint8Array(bytes),{name,dtype,shape,digest}=info,Type=TYPES[dtype];if(!Type)throw new Error(`a part has the type "${dtype}\
-"; expected ${Object.keys(TYPES).join(", ")}`);return{name,shape,digest,data:new Type(view.slice().buffer)}}async function partOfText(info,text){let packed=Uint8Array.from(atob(text),letter=>letter.charCodeAt(0)),unpacked=new Blob(
+var EARTH_LINES=["coastlines","graticule"],TYPES={float32:Float32Array,uint32:Uint32Array,float16:Uint16Array,uint16:Uint16Array,
+int16:Int16Array,int8:Int8Array,uint8:Uint8Array};function shareOf({low,high,log}){if(!log)return value=>(value-low)/(high-
+low||1);let span=Math.log(high/low)||1;return value=>Math.log(Math.max(value,low)/low)/span}function legendLimits({low,high,
+log}){let least=log?0:1e-5*Math.max(Math.abs(low),Math.abs(high)),told=value=>Math.abs(value)<least?0:value;return[told(
+low),told(high)]}function isSignFree(header){return header.variant.includes("FLOWTEX_SIGNFREE")}function stepOf(name){return Number(
+name.split("/")[1])}function tilePart(name){let[kind,level,row,column,...rest]=name.split("/");return kind==="tile"?[[level,
+row,column].join("/"),rest.join("/")]:null}function decoded(info,bytes){let view=ArrayBuffer.isView(bytes)?new Uint8Array(
+bytes.buffer,bytes.byteOffset,bytes.byteLength):new Uint8Array(bytes),{name,dtype,shape,digest}=info,Type=TYPES[dtype];if(!Type)
+throw new Error(`a part has the type "${dtype}"; expected ${Object.keys(TYPES).join(", ")}`);return{name,shape,digest,data:new Type(
+view.slice().buffer)}}async function partOfText(info,text){let packed=Uint8Array.from(atob(text),letter=>letter.charCodeAt(0)),unpacked=new Blob(
 [packed]).stream().pipeThrough(new DecompressionStream("gzip")),planes=new Uint8Array(await new Response(unpacked).arrayBuffer()),
 count=info.shape.reduce((product2,n)=>product2*n,1),width=count?planes.length/count:1,bytes=new Uint8Array(planes.length);
 for(let plane=0;plane<width;plane+=1)for(let n=0;n<count;n+=1)bytes[n*width+plane]=planes[plane*count+n];return decoded(
@@ -51,31 +52,30 @@ degrees*Math.PI/180,v(axis));return turn===null?result():transformMat4(result(),
 zeros(9),frame);return transformMat3(result(),v(a),columns)}function fromFrame(frame,a){return transformMat3(result(),v(
 a),frame)}function clamp(x,low,high){return Math.min(Math.max(x,low),high)}var ROOT="",PLACE=5,nameOf=key=>key.join("/"),keyOf=name=>name.split("/").map(Number);function cellPixels(pyramid,settings){
 let[samples,spacing,grain]=["samples","spacing","grain"].map(s=>Number(settings[s])),streak=.5*samples*spacing*grain;return pyramid.
-cellPixels*Math.max(1,2*streak/(pyramid.cellPixels*pyramid.pathCells))}var Pyramid=class{header;blockCells;places=[];constructor(header,{
-tileCells:blockCells},places){this.header=header,this.blockCells=blockCells;let start=0;for(let[level]of header.shapes.entries()){
-let[rows,columns]=this.blocks(level),end=start+PLACE*rows*columns;this.places.push(places.subarray(start,end)),start=end}}blocks(level){
-return this.header.shapes[level].map(n=>Math.max(Math.ceil((n-1)/this.blockCells),1))}blocksOf(name,[level,row,column]){
-let[rows,columns]=this.blocks(level);if(name===ROOT)return[0,0,rows,columns];let{tileBlocks:size}=this.header,ends=[Math.
-min(size*(row+1),rows),Math.min(size*(column+1),columns)];return[size*row,size*column,...ends]}children(name,[level,row,
-column]){let counts=this.blocks(level-1).map(n=>Math.ceil(n/this.header.tileBlocks)),[from,to]=name===ROOT?[[0,0],counts]:
-[[2*row,2*column],[row,column].map((n,k)=>Math.min(2*n+2,counts[k]))],keys=[];for(let j=from[0];j<to[0];j+=1)for(let i=from[1];i<
-to[1];i+=1)keys.push([level-1,j,i]);return keys}finerPart([,row,column],above){let{tileBlocks}=this.header,half=tileBlocks/
-2,[,j,i]=above===ROOT?[0,0,0]:keyOf(above);return[half*row-tileBlocks*j,half*column-tileBlocks*i,half]}choose(view){let chosen=new Map,
-{depth,finest}=this.header,waiting=[ROOT];for(let name of waiting){let key=name===ROOT?[depth,0,0]:keyOf(name),choice={key,
-needed:!1,pixels:0,finer:[]},[top,left,bottom,right]=this.blocksOf(name,key),width=this.blocks(key[0])[1],coarse=new Set;
-for(let j=top;j<bottom;j+=1)for(let i=left;i<right;i+=1){let at=PLACE*(j*width+i),place=this.places[key[0]].subarray(at,
-at+PLACE);if(!isSeen(view,place))continue;let pixels=cellSize(view,place);key[0]>finest&&pixels>view.cellPixels?coarse.add(
-j*width+i):choice.needed=!0,coarse.has(j*width+i)||(choice.pixels=Math.max(choice.pixels,pixels))}coarse.size&&(choice.finer=
-this.children(name,key).filter(child=>{let[row,column,size]=this.finerPart(child,ROOT);return[...coarse].some(block=>{let[
-j,i]=[Math.floor(block/width)-row,block%width-column];return j>=0&&j<size&&i>=0&&i<size})}).map(nameOf)),chosen.set(name,
-choice),waiting.push(...choice.finer)}return chosen}};function isSeen({planes},[x,y,z,radius]){return planes.every(p=>dot2(
-p,[x,y,z])+p[3]>=-radius*length2(p.slice(0,3)))}function cellSize({eye,halfHeight,pixels},[x,y,z,radius,size]){let away=eye?
-Math.max(length2(subtract2([x,y,z],eye))-radius,size):1;return size*.5*pixels/(halfHeight*away)}function wantedTiles(chosen){
-return[...chosen].filter(([name,{needed}])=>name!==ROOT&&needed).sort(([,a],[,b])=>b.pixels-a.pixels).map(([name])=>name)}
-function cover(chosen,ready){let shown=new Map,hide=name=>{shown.delete(name),chosen.get(name)?.finer.forEach(hide)},covered=name=>{
-let{needed=!1,finer=[]}=chosen.get(name)??{},done=finer.filter(covered);return name!==ROOT&&!needed&&done.length===finer.
-length?!0:name!==ROOT&&!ready(name)?(done.forEach(hide),!1):(shown.set(name,done),!0)};return covered(ROOT),shown}function fullIndex(place,level,nodes){
-let line=n=>Math.min(n*2**level,nodes-1),low=Math.floor(place);return line(low)+(place-low)*(line(low+1)-line(low))}function dom(kind,attributes={},children=[]){let element=document.createElement(kind);for(let[name,value]of Object.entries(
+cellPixels*Math.max(1,2*streak/(pyramid.cellPixels*pyramid.pathCells))}var Pyramid=class{header;places=[];constructor(header,places){
+this.header=header;let start=0;for(let[rows,columns]of header.blocks){let end=start+PLACE*rows*columns;this.places.push(
+places.subarray(start,end)),start=end}}blocksOf(name,[level,row,column]){let[rows,columns]=this.header.blocks[level];if(name===
+ROOT)return[0,0,rows,columns];let{tileBlocks:size}=this.header,ends=[Math.min(size*(row+1),rows),Math.min(size*(column+1),
+columns)];return[size*row,size*column,...ends]}children(name,[level,row,column]){let{blocks,tileBlocks}=this.header,counts=blocks[level-
+1].map(n=>Math.ceil(n/tileBlocks)),[from,to]=name===ROOT?[[0,0],counts]:[[2*row,2*column],[row,column].map((n,k)=>Math.min(
+2*n+2,counts[k]))],keys=[];for(let j=from[0];j<to[0];j+=1)for(let i=from[1];i<to[1];i+=1)keys.push([level-1,j,i]);return keys}finerPart([
+,row,column],above){let{tileBlocks}=this.header,half=tileBlocks/2,[,j,i]=above===ROOT?[0,0,0]:keyOf(above);return[half*row-
+tileBlocks*j,half*column-tileBlocks*i,half]}choose(view){let chosen=new Map,{depth,finest}=this.header,waiting=[ROOT];for(let name of waiting){
+let key=name===ROOT?[depth,0,0]:keyOf(name),choice={key,needed:!1,pixels:0,finer:[]},[top,left,bottom,right]=this.blocksOf(
+name,key),width=this.header.blocks[key[0]][1],coarse=new Set;for(let j=top;j<bottom;j+=1)for(let i=left;i<right;i+=1){let at=PLACE*
+(j*width+i),place=this.places[key[0]].subarray(at,at+PLACE);if(!isSeen(view,place))continue;let pixels=cellSize(view,place);
+key[0]>finest&&pixels>view.cellPixels?coarse.add(j*width+i):choice.needed=!0,coarse.has(j*width+i)||(choice.pixels=Math.
+max(choice.pixels,pixels))}coarse.size&&(choice.finer=this.children(name,key).filter(child=>{let[row,column,size]=this.finerPart(
+child,ROOT);return[...coarse].some(block=>{let[j,i]=[Math.floor(block/width)-row,block%width-column];return j>=0&&j<size&&
+i>=0&&i<size})}).map(nameOf)),chosen.set(name,choice),waiting.push(...choice.finer)}return chosen}};function isSeen({planes},[
+x,y,z,radius]){return planes.every(p=>dot2(p,[x,y,z])+p[3]>=-radius*length2(p.slice(0,3)))}function cellSize({eye,halfHeight,
+pixels},[x,y,z,radius,size]){let away=eye?Math.max(length2(subtract2([x,y,z],eye))-radius,size):1;return size*.5*pixels/
+(halfHeight*away)}function wantedTiles(chosen){return[...chosen].filter(([name,{needed}])=>name!==ROOT&&needed).sort(([,
+a],[,b])=>b.pixels-a.pixels).map(([name])=>name)}function cover(chosen,ready){let shown=new Map,hide=name=>{shown.delete(
+name),chosen.get(name)?.finer.forEach(hide)},covered=name=>{let{needed=!1,finer=[]}=chosen.get(name)??{},done=finer.filter(
+covered);return name!==ROOT&&!needed&&done.length===finer.length?!0:name!==ROOT&&!ready(name)?(done.forEach(hide),!1):(shown.
+set(name,done),!0)};return covered(ROOT),shown}function fullIndex(place,level,nodes){let line=n=>Math.min(n*2**level,nodes-
+1),low=Math.floor(place);return line(low)+(place-low)*(line(low+1)-line(low))}function dom(kind,attributes={},children=[]){let element=document.createElement(kind);for(let[name,value]of Object.entries(
 attributes))element.setAttribute(name,value);return element.append(...children),element}var ICONS={play:"M8 5.2v13.6L19 \
 12z",pause:"M8.5 6v12M15.5 6v12",home:"M4 11.5 12 5l8 6.5M6.5 10v9h11v-9",lod:"M12 3.8l8 4.1-8 4.1-8-4.1zM4 12.2l8 4.1 8\
 -4.1M4 16.3l8 4.1 8-4.1",levels:"M3.5 18a8.5 8.5 0 0 1 17 0M7 18a5 5 0 0 1 10 0M10.3 18a1.7 1.7 0 0 1 3.4 0",settings:"M\
@@ -190,8 +190,8 @@ min(grain,1)),stretched=all*spacing*grain*density/(samples*drawn);return{u_grain
 max(DRAFT_SPACING,spacing))}}var PREAMBLE=`#version 300 es
 precision highp float;
 precision highp int;
-`,ATTRIBUTES=["flowtexPosition","flowtexCoordinate","flowtexNormal","flowtexNoise","flowtexScalar"],SAMPLERS=["u_slices",
-"u_slicesNext","u_noiseImage","u_stepImage","u_cmap"],Programs=class{graphics;entries=new Map;parallel=null;constructor(graphics){
+`,ATTRIBUTES=["flowtexPosition","flowtexCoordinate","flowtexNormal","flowtexNoise","flowtexScalar","flowtexCorners"],SAMPLERS=[
+"u_slices","u_slicesNext","u_noiseImage","u_stepImage","u_cmap"],Programs=class{graphics;entries=new Map;parallel=null;constructor(graphics){
 this.graphics=graphics}findFeatures(){this.parallel=this.graphics.context.getExtension("KHR_parallel_shader_compile")}clear(){
 this.entries.clear()}dispose(){for(let entry of this.entries.values()){for(let shader of entry.shaders)this.graphics.free(
 "Shader",shader);this.graphics.free("Program",entry.program)}this.clear()}get(vertex,fragment,...defines){let key=[vertex,
@@ -264,9 +264,10 @@ return result2}function coordinates({shape,rows,columns}){let middles=(count,{be
 before+.5)/size);return grid(middles(shape[1],columns),middles(shape[0],rows))}function noiseCoordinates({alongI,alongJ}){
 return grid(alongI,alongJ)}function shares(steps,scalars,nodes){let result2=new Float32Array(2*nodes),place=shareOf(scalars);
 return steps.forEach((values,k)=>{for(let n=0;n<nodes;n+=1){let share=place(values[n]);result2[2*n+k]=Number.isFinite(share)?
-share:NO_VALUE}}),result2}function interpolated([rows,columns],i,j,value){let[left,low]=[Math.min(Math.floor(i),columns-
-2),Math.min(Math.floor(j),rows-2)],[a,b]=[i-left,j-low],corner=low*columns+left,[from,to]=[value(corner),value(corner+columns+
-1)],aside=value(corner+(a>=b?1:columns));return from+Math.max(a,b)*(aside-from)+Math.min(a,b)*(to-aside)}var POINT_BYTES=12,PIECE_ENDS=2;function groundAt({earth,geometry},camera,x,y){if(!earth)return null;let[start,along]=camera.
+share:NO_VALUE}}),result2}function cornersAt([rows,columns],[i,j]){let[left,low]=[Math.min(Math.floor(i),columns-2),Math.
+min(Math.floor(j),rows-2)],[a,b]=[i-left,j-low],corner=low*columns+left,[least,most]=[Math.min(a,b),Math.max(a,b)],aside=corner+
+(a>=b?1:columns);return[[corner,1-most],[aside,most-least],[corner+columns+1,least]]}function interpolated(corners,value){
+return corners.reduce((sum,[node,share])=>sum+share*value(node),0)}var POINT_BYTES=12,PIECE_ENDS=2;function groundAt({earth,geometry},camera,x,y){if(!earth)return null;let[start,along]=camera.
 ray(x,y);if(earth.map){let across=fromFrame(geometry.frame,[0,0,1]),depth2=dot2(subtract2(geometry.center,start),across)/
 dot2(along,across),place=add(start,along,depth2),[x0,y0,x1,y1]=earth.map;return place[0]>=x0&&place[0]<=x1&&place[1]>=y0&&
 place[1]<=y1?place:null}let nearest=dot2(start,along),square=nearest**2-dot2(start,start)+earth.radius**2,depth=-nearest-
@@ -410,22 +411,33 @@ path,sampled,point,directed}){let lines=(all,kind)=>all.map(line=>["polyline",{c
 [x,y]])=>!point||Math.hypot(x-point[0],y-point[1])>FREE_RADIUS,heads=directed?path.flatMap(line=>arrowHeads(line)).filter(
 isFree):[],ring=kind=>point?[["circle",{class:kind,cx:point[0],cy:point[1],r:POINT_RADIUS}]]:[];return[...lines(path,"wh\
 ole-casing"),...lines(path,"whole"),...lines(sampled,"casing"),...lines(sampled,"sampled"),...heads.map(head=>["polygon",
-{class:"arrow",points:textOf(head)}]),...ring("point-casing"),...ring("point")]}function pickedPoint(context,x,y){let{layers,camera,moment,anchor,canvas}=context,{graphics,header}=layers[0].scene,program=graphics.
+{class:"arrow",points:textOf(head)}]),...ring("point-casing"),...ring("point")]}var SHARES=[0,0,1,0,0,1],MOST_SHARE=1-1e-7;function atVertices(values,triangles,size){let result2=new values.constructor(
+size*triangles.length),n=0;for(let node of triangles)for(let k=size*node;k<size*node+size;k+=1)result2[n++]=values[k];return result2}
+function vertexShares(count){return Float32Array.from({length:SHARES.length*count},(_,n)=>SHARES[n%SHARES.length])}function vertexCorners(triangles){
+let result2=new Float32Array(3*triangles.length);for(let n=0;n<result2.length;n+=1)result2[n]=triangles[3*Math.floor(n/9)+
+n%3];return result2}function placeIn(triangle,second,third){return[third,triangle+Math.min(Math.max(second,0),MOST_SHARE)]}
+function cornersOf(triangles,[i,j]){let number=Math.floor(j),[second,third]=[j-number,i];return[1-second-third,second,third].
+map((share,k)=>[triangles[3*number+k],share])}var TriangleMesh=class{shape;blocks;constructor(mesh,blocks){this.shape=[mesh.
+shape[0],mesh.shape[1]],this.blocks=blocks.data}levels(){return new Int8Array(this.shape[0]*this.shape[1])}triangles(levels){
+let{blocks}=this,drawn=levels.reduce((bits,level,block)=>bits|(level<0?0:1<<block),0),index=new Uint32Array(3*blocks.length),
+end=0;for(let n=0;n<blocks.length;n+=1)if(blocks[n]&drawn)for(let k=0;k<3;k+=1)index[end++]=3*n+k;return index.slice(0,end)}};function pickedPoint(context,x,y){let{layers,camera,moment,anchor,canvas}=context,{graphics,header}=layers[0].scene,program=graphics.
 programs.get(header.shaders.vertex,header.shaders.pick),whole=projection(header.geometry,camera,anchor),matrix=atPixel(whole,
-[x,y],[canvas.width,canvas.height]),[before,after,between2]=moment,bits=graphics.pixel(()=>{layers.forEach(({scene:scene2},n)=>{
-graphics.programs.use(program,{u_matrix:matrix,u_between:between2,u_part:n}),scene2.draw(before,after,anchor,!1)})});if(!bits[3])
-return null;let[u,v2]=new Float32Array(bits.buffer,0,2),layer=layers[bits[2]],{scene,key}=layer,{rows,columns,shape}=scene.
-header.geometry,i=clamp(u*columns.size-.5-columns.before,0,shape[1]-1),j=clamp(v2*rows.size-.5-rows.before,0,shape[0]-1),
-position=positionAt(scene,camera,[i,j],x,y),full=header.pyramid?.shapes[0]??shape,side=header.mesh.tileCells*(header.pyramid?.
-tileBlocks??0),[level,row,column]=key,place=(n,tile,axis)=>fullIndex(n+tile*side,level,full[axis]),index=[place(i,column,
-1),place(j,row,0)];return{point:{position,index,values:valuesAt(scene,moment,[i,j])},layer,place:[i,j]}}function positionAt(scene,camera,[
-i,j],x,y){let{data}=scene.part("position"),{shape,frame,center}=scene.header.geometry,local=[0,1,2].map(k=>interpolated(
-shape,i,j,n=>data[3*n+k])),about=add(fromFrame(frame,local),center),[start,along]=camera.ray(x,y),ahead=camera.axes[2],depth=dot2(
-subtract2(about,start),ahead)/dot2(along,ahead);return add(start,along,depth)}function valuesAt(scene,moment,[i,j]){let{
-header,parts}=scene,{scalars,geometry}=header,[from,to,between2]=moment,values={},others=scalars.choices.map(({name,steps},number)=>({
+[x,y],[canvas.width,canvas.height]),[before,after,between2]=moment,bits=graphics.pixel(()=>{layers.forEach(({scene},n)=>{
+graphics.programs.use(program,{u_matrix:matrix,u_between:between2,u_part:n}),scene.draw(before,after,anchor,!1)})});if(!bits[3])
+return null;let[u,v2]=new Float32Array(bits.buffer,0,2),layer=layers[bits[2]],{geometry}=layer.scene.header,place=geometry.
+triangles?placeIn(bits[3]-1,u,v2):placeAmong(geometry,u,v2),corners=layer.scene.cornersAt(place),position=positionAt(layer.
+scene,camera,corners,x,y),index=geometry.triangles?place:wholeIndex(header,layer,place);return{point:{position,index,values:valuesAt(
+layer.scene,moment,corners)},layer,place}}function placeAmong({rows,columns,shape},u,v2){let at=(share,{size,before},nodes)=>clamp(
+share*size-.5-before,0,nodes-1);return[at(u,columns,shape[1]),at(v2,rows,shape[0])]}function wholeIndex(header,{key},[i,
+j]){let{pyramid,geometry,mesh}=header,[level,row,column]=key,[rows,columns]=pyramid?.shapes[0]??geometry.shape,side=mesh.
+tileCells*(pyramid?.tileBlocks??0),at=(n,tile,nodes)=>fullIndex(n+tile*side,level,nodes);return[at(i,column,columns),at(
+j,row,rows)]}function positionAt(scene,camera,corners,x,y){let{data}=scene.part("position"),{frame,center}=scene.header.
+geometry,local=[0,1,2].map(k=>interpolated(corners,n=>data[3*n+k])),about=add(fromFrame(frame,local),center),[start,along]=camera.
+ray(x,y),ahead=camera.axes[2],depth=dot2(subtract2(about,start),ahead)/dot2(along,ahead);return add(start,along,depth)}function valuesAt(scene,moment,corners){
+let{header,parts}=scene,{scalars}=header,[from,to,between2]=moment,values={},others=scalars.choices.map(({name,steps},number)=>({
 name,steps,number}));for(let each of[scalars,...others]){let names=scene.scalarParts(from,to,each),[before,after]=names.
 map(part=>parts.get(part)?.data);if(each.name===null||each.name in values||!before||!after)continue;let value=n=>before[n]+
-between2*(after[n]-before[n]);values[each.name]=interpolated(geometry.shape,i,j,value)}return values}function fromHalf(bits){let exponent=bits>>10&31,part=bits&1023,size;return exponent===0?size=part*2**-24:exponent===31?
+between2*(after[n]-before[n]);values[each.name]=interpolated(corners,value)}return values}function fromHalf(bits){let exponent=bits>>10&31,part=bits&1023,size;return exponent===0?size=part*2**-24:exponent===31?
 size=part?NaN:1/0:size=(1024+part)*2**(exponent-25),bits&32768?-size:size}function toHalf(x){let sign=x<0?32768:0,size=Math.
 abs(x);if(!(size<65520))return sign|(size>=65520?31744:32256);let exponent=Math.max(Math.floor(Math.log2(size||1e-30)),-14),
 part=Math.round(size/2**(exponent-10));return sign|(part<1024?part:(exponent+14)*1024+part)}function halved(texels,width,height,channels){
@@ -464,46 +476,49 @@ if(times2.length<2)return[0,0,0];let step=0;for(;step<times2.length-2&&times2[st
 let{slices,geometry}=scene.header,data=scene.part(`slices/${step}`).data,extra=scene.parts.get(`extra/${step}`)?.data,count=geometry.
 rows.size*geometry.columns.size,{channels}=slices;return(layer,texel)=>{let first=(layer*count+texel)*channels,at=n=>n<channels?
 fromHalf(data[first+n]):0,place=slices.extra.indexOf(layer),fourth=channels===4||!extra||place<0?at(3):fromHalf(extra[place*
-count+texel]);return[at(0),at(1),at(2),fourth]}}function layersAt({scene,moment,place:[i,j]}){let{geometry,slices}=scene.
-header,{rows,columns}=geometry,[x,y]=[i+columns.before,j+rows.before],[left,low]=[Math.floor(x),Math.floor(y)],[s,t]=[x-
-left,y-low],texels=[0,1,2,3].map(n=>{let column=clamp(left+(n&1),0,columns.size-1);return clamp(low+(n>>1),0,rows.size-1)*
-columns.size+column}),weights2=[(1-s)*(1-t),s*(1-t),(1-s)*t,s*t],[before,after,late]=moment,steps=[before,after].map(step=>texelOf(
-scene,step)),shares2=[1-late,late],signs=isSignFree(scene.header)?signsOf(texels.map(n=>steps[0](0,n))):[1,1,1,1];return layer=>{
-let sum=[0,0,0,0];return texels.forEach((texel,n)=>{let other=layer+(layer>slices.lags.length?-1:1)*slices.lags.length,from=signs[n]<
-0&&layer>0?other:layer;steps.forEach((step,k)=>{shares2[k]&&step(from,texel).forEach((value,c)=>{sum[c]+=weights2[n]*shares2[k]*
-value*(c<3?signs[n]:1)})})}),sum}}function signsOf(tangents){let together=[0,0,0];return tangents.map(([x,y,z])=>{let sign=dot2(
-together,[x,y,z])<0?-1:1;return together=add(together,[x,y,z],sign),sign})}function sideOf(layers,lags,first,sign,by){let[
-before,from]=[layers(0).slice(0,3),0],reach=layers(first+1)[3],end=Math.min(reach,lags[lags.length-1]),result2=[];for(let m=0;m<
-lags.length&&from<end;m+=1){let after=layers(first+m+1).slice(0,3);for(let n=1;n<=POINTS_BETWEEN_SLICES;n+=1){let share=n/
-POINTS_BETWEEN_SLICES,lag=Math.min(from+share*(lags[m]-from),end),late=(lag-from)/(lags[m]-from),slope=before.map((x,c)=>x+
-late*(after[c]-x));if(result2.push(scale2(slope,sign*lag*by)),lag===end)break}[before,from]=[after,lags[m]]}return result2}
-function mover({scene,place,position}){let{paper,geometry}=scene.header;if(!paper)return moved=>add(position,fromFrame(geometry.
-frame,moved));let{alongI,alongJ}=paper,nodes=scene.part("position").data,here=[between(alongI,place[0]),between(alongJ,place[1])],
-start=nodeAt(geometry,nodes,place);return([u,v2])=>{let at=[indexOf(alongI,here[0]+u),indexOf(alongJ,here[1]+v2)];return at.
-some(Number.isNaN)?null:add(position,subtract2(nodeAt(geometry,nodes,at),start))}}function nodeAt({shape,frame},nodes,[i,
-j]){let local=[0,1,2].map(c=>interpolated(shape,i,j,n=>nodes[3*n+c]));return fromFrame(frame,local)}function between(values,at){
+count+texel]);return[at(0),at(1),at(2),fourth]}}function texelsAt({scene,place}){let{rows,columns,triangles}=scene.header.
+geometry;if(triangles)return scene.cornersAt(place);let[x,y]=[place[0]+columns.before,place[1]+rows.before],[left,low]=[
+Math.floor(x),Math.floor(y)],[s,t]=[x-left,y-low];return[(1-s)*(1-t),s*(1-t),(1-s)*t,s*t].map((share,n)=>{let column=clamp(
+left+(n&1),0,columns.size-1);return[clamp(low+(n>>1),0,rows.size-1)*columns.size+column,share]})}function layersAt(at){let{
+scene,moment}=at,{slices}=scene.header,texels=texelsAt(at),[before,after,late]=moment,steps=[before,after].map(step=>texelOf(
+scene,step)),shares2=[1-late,late],signs=isSignFree(scene.header)?signsOf(texels.map(([texel])=>steps[0](0,texel))):texels.
+map(()=>1);return layer=>{let sum=[0,0,0,0];return texels.forEach(([texel,weight],n)=>{let other=layer+(layer>slices.lags.
+length?-1:1)*slices.lags.length,from=signs[n]<0&&layer>0?other:layer;steps.forEach((step,k)=>{shares2[k]&&step(from,texel).
+forEach((value,c)=>{sum[c]+=weight*shares2[k]*value*(c<3?signs[n]:1)})})}),sum}}function signsOf(tangents){let together=[
+0,0,0];return tangents.map(([x,y,z])=>{let sign=dot2(together,[x,y,z])<0?-1:1;return together=add(together,[x,y,z],sign),
+sign})}function sideOf(layers,lags,first,sign,by){let[before,from]=[layers(0).slice(0,3),0],reach=layers(first+1)[3],end=Math.
+min(reach,lags[lags.length-1]),result2=[];for(let m=0;m<lags.length&&from<end;m+=1){let after=layers(first+m+1).slice(0,
+3);for(let n=1;n<=POINTS_BETWEEN_SLICES;n+=1){let share=n/POINTS_BETWEEN_SLICES,lag=Math.min(from+share*(lags[m]-from),end),
+late=(lag-from)/(lags[m]-from),slope=before.map((x,c)=>x+late*(after[c]-x));if(result2.push(scale2(slope,sign*lag*by)),lag===
+end)break}[before,from]=[after,lags[m]]}return result2}function mover({scene,place,position}){let{paper,geometry}=scene.
+header;if(!paper)return moved=>add(position,fromFrame(geometry.frame,moved));let{alongI,alongJ}=paper,here=[between(alongI,
+place[0]),between(alongJ,place[1])],start=pointAt(scene,place);return([u,v2])=>{let at=[indexOf(alongI,here[0]+u),indexOf(
+alongJ,here[1]+v2)];return at.some(Number.isNaN)?null:add(position,subtract2(pointAt(scene,at),start))}}function pointAt(scene,place){
+let{data}=scene.part("position"),corners=scene.cornersAt(place),local=[0,1,2].map(c=>interpolated(corners,n=>data[3*n+c]));
+return fromFrame(scene.header.geometry.frame,local)}function normalAt(scene,place){let{shape,triangles}=scene.header.geometry;
+if(triangles){let corner=(second,third)=>pointAt(scene,placeIn(Math.floor(place[1]),second,third));return cross2(subtract2(
+corner(1,0),corner(0,0)),subtract2(corner(0,1),corner(0,0)))}let[i,j]=place.map((n,axis)=>clamp(n,.5,shape[1-axis]-1.5)),
+at=(di,dj)=>pointAt(scene,[i+di,j+dj]);return cross2(subtract2(at(.5,0),at(-.5,0)),subtract2(at(0,.5),at(0,-.5)))}function between(values,at){
 let n=Math.min(Math.floor(at),values.length-2);return values[n]+(at-n)*(values[n+1]-values[n])}function indexOf(values,value){
 let n=values.findIndex(other=>other>=value);return n<0||value<values[0]?NaN:n===0?0:n-1+(value-values[n-1])/(values[n]-values[n-
-1])}function grainAt({scene,place,position},settings,camera,rows){let{geometry,paper}=scene.header,nodes=scene.part("pos\
-ition").data,[i,j]=place.map((n,axis)=>clamp(n,.5,geometry.shape[1-axis]-1.5)),at=(di,dj)=>nodeAt(geometry,nodes,[i+di,j+
-dj]),normal=cross2(subtract2(at(.5,0),at(-.5,0)),subtract2(at(0,.5),at(0,-.5))),{height,ray}=camera.at(position),facing=Math.
-max(Math.abs(dot2(unit(normal),ray)),LEAST_FACING),pixel=2*height/rows;if(paper){let[across,up]=[paper.alongI,paper.alongJ].
-map((along,axis)=>{let n=Math.floor([i,j][axis]);return(along[n+1]-along[n])*paper.size[axis]}),texel2=Math.sqrt(length2(
-normal)/(across*up));return paper.grain*(settings.lod?Math.max(pixel/Math.sqrt(facing),texel2):texel2)}let texel=geometry.
-extent/Number(settings.resolution),grain=pixel/facing*Number(settings.grain);return settings.lod?settings.fixed_grain?Math.
-max(grain,texel):grain:texel}function upTo(start,side,most){let result2=[],[from,left]=[start,most];for(let point of side){
-let step=length2(subtract2(point,from));if(step>=left){left>0&&result2.push(add(from,subtract2(point,from),left/(step||1)));
-break}result2.push(point),left-=step,from=point}return result2}function pathThrough(at,settings,camera,rows){let{scene,position}=at,
-{slices,paper,speed}=scene.header,layers=layersAt(at),directed=!isSignFree(scene.header),base=layers(0),slope=[base[0],base[1],
-base[2]],moved=mover(at),small=scale2(slope,SMALL*(paper?1/paper.size[0]:slices.cell)/(length2(slope)||1)),along=length2(
-slope)>LEAST_SLOPE?subtract2(moved(small)??position,position):slope,velocity=scale2(unit(along),layers(2)[3]*speed.typical),
-whole=[],sides=settings.two_sided||!directed?slices.sides:1;for(let side=0;side<sides&&length2(slope)>LEAST_SLOPE;side+=
-1){let by=paper?1:base[3]*slices.unit,points=sideOf(layers,slices.lags,side*slices.lags.length,side?1:-1,by).map(moved),
-end=points.findIndex(point=>point===null);whole.push(points.slice(0,end<0?void 0:end))}let set=Number(settings.samples),
-samples=isMoving(scene.header,settings)?2*set-1:set,count=sides===2?Math.floor(samples/2):samples-1,step=Number(settings.
-spacing)*grainAt(at,settings,camera,rows),joined=reach=>{let[back=[],ahead=[]]=whole.map(side=>upTo(position,side,reach));
-return[...back.reverse(),position,...ahead]};return{path:joined(PATH_LENGTH*Math.max(count,FEWEST_SAMPLES)*step),sampled:joined(
-count*step),directed,velocity}}var TITLE="Path through this point",SVG="http://www.w3.org/2000/svg",FEWEST_DIGITS=4,MOST_DIGITS=14,VELOCITY_DIGITS=3,PATIENCE_MS=5e3,
+1])}function grainAt({scene,place,position},settings,camera,rows){let{geometry,paper}=scene.header,normal=normalAt(scene,
+place),{height,ray}=camera.at(position),facing=Math.max(Math.abs(dot2(unit(normal),ray)),LEAST_FACING),pixel=2*height/rows;
+if(paper){let[across,up]=[paper.alongI,paper.alongJ].map((along,axis)=>{let n=Math.min(Math.floor(place[axis]),along.length-
+2);return(along[n+1]-along[n])*paper.size[axis]}),texel2=Math.sqrt(length2(normal)/(across*up));return paper.grain*(settings.
+lod?Math.max(pixel/Math.sqrt(facing),texel2):texel2)}let texel=geometry.extent/Number(settings.resolution),grain=pixel/facing*
+Number(settings.grain);return settings.lod?settings.fixed_grain?Math.max(grain,texel):grain:texel}function upTo(start,side,most){
+let result2=[],[from,left]=[start,most];for(let point of side){let step=length2(subtract2(point,from));if(step>=left){left>
+0&&result2.push(add(from,subtract2(point,from),left/(step||1)));break}result2.push(point),left-=step,from=point}return result2}
+function pathThrough(at,settings,camera,rows){let{scene,position}=at,{slices,paper,speed}=scene.header,layers=layersAt(at),
+directed=!isSignFree(scene.header),base=layers(0),slope=[base[0],base[1],base[2]],moved=mover(at),small=scale2(slope,SMALL*
+(paper?1/paper.size[0]:slices.cell)/(length2(slope)||1)),along=length2(slope)>LEAST_SLOPE?subtract2(moved(small)??position,
+position):slope,velocity=scale2(unit(along),layers(2)[3]*speed.typical),whole=[],sides=settings.two_sided||!directed?slices.
+sides:1;for(let side=0;side<sides&&length2(slope)>LEAST_SLOPE;side+=1){let by=paper?1:base[3]*slices.unit,points=sideOf(
+layers,slices.lags,side*slices.lags.length,side?1:-1,by).map(moved),end=points.findIndex(point=>point===null);whole.push(
+points.slice(0,end<0?void 0:end))}let set=Number(settings.samples),samples=isMoving(scene.header,settings)?2*set-1:set,count=sides===
+2?Math.floor(samples/2):samples-1,step=Number(settings.spacing)*grainAt(at,settings,camera,rows),joined=reach=>{let[back=[],
+ahead=[]]=whole.map(side=>upTo(position,side,reach));return[...back.reverse(),position,...ahead]};return{path:joined(PATH_LENGTH*
+Math.max(count,FEWEST_SAMPLES)*step),sampled:joined(count*step),directed,velocity}}var TITLE="Path through this point",SVG="http://www.w3.org/2000/svg",FEWEST_DIGITS=4,MOST_DIGITS=14,VELOCITY_DIGITS=3,PATIENCE_MS=5e3,
 RETRY_MS=40,PLACES_IN_VIEW=200,DEGREE_M=111195,UNIT_LENGTH=12;function withUnit(text,unit2){return unit2&&unit2.length<=
 UNIT_LENGTH?`${text} ${unit2}`:text}function vectorText(vector,size,digits,flat){return`(${vector.slice(0,flat?2:3).map(
 x=>{let value=Math.abs(x)<10**(-1-digits)*size?0:x;return digits>5?String(Number(value.toPrecision(digits))):numberText(
@@ -524,22 +539,23 @@ this.host.lifetime.cancel(this.later),this.chosen=this.drawn=null,this.element.h
 let{chosen}=this,{options,camera,shown,header,tiles,settings,root,together}=this.host;if(!chosen||options.bare||!camera||
 !shown||!header)return;let{point,layer,place}=chosen,scene=tiles?.layers.find(({key})=>String(key)===String(layer.key))?.
 scene;if(!scene||scene.missing(shown[0],shown[1]).length)return;let position=point.position,path=pathThrough({scene,moment:shown,
-place,position},settings,camera,root.clientHeight);this.tell({...point,values:valuesAt(scene,shown,place)},path,header,camera);
-for(let{card}of together)card.drawn={path,point:position},card.draw()}tell(point,{velocity},header,camera){let{label,unit:unit2}=header.
-speed,size=Math.hypot(...velocity),lines=new Map,{earth}=header,{parts}=this.host,where=placeText(point.position,header,
-parts,camera,!0);if(earth&&lonLatOf(earth,point.position,parts.get("lonlat"))){let[east,north]=eastNorth(earth,point.position,
-velocity,parts.get("lonlat"));lines.set("place",where),lines.set("eastward",withUnit(numberText(east,VELOCITY_DIGITS),unit2)),
-lines.set("northward",withUnit(numberText(north,VELOCITY_DIGITS),unit2))}else{let text=vectorText(velocity,size,VELOCITY_DIGITS,
-liesAcross(header.geometry));lines.set("position",where),lines.set(label.replace("speed","velocity"),withUnit(text,unit2))}
-lines.set(label,withUnit(numberText(size,VELOCITY_DIGITS),unit2));for(let[name,value]of Object.entries(point.values)){let named=header.
-scalars.choices.find(each=>each.name===name)??header.scalars;lines.set(named.label,withUnit(numberText(value),named.unit))}
-this.list.replaceChildren(...[...lines].flatMap(([word,value])=>[dom("dt",{},[word]),dom("dd",{},[value])])),this.element.
-hidden=!1}draw(){let{drawn}=this,{camera,root}=this.host;if(!drawn||!camera)return;let{clientWidth:width,clientHeight:height}=root,
-placeOf=point2=>{let place=camera.project(point2);return place&&[(place[0]+1)/2*width,(1-place[1])/2*height]},linesOf2=points=>{
-let lines=[[]];for(let place of points.map(placeOf))place?lines[lines.length-1].push(place):lines.push([]);return lines.
-filter(line=>line.length>1)},{path,sampled,directed}=drawn.path,point=placeOf(drawn.point),shapes=pathShapes({path:linesOf2(
-path),sampled:linesOf2(sampled),point,directed});this.overlay.replaceChildren(...shapes.map(([tag,attributes])=>{let shape=document.
-createElementNS(SVG,tag);for(let[name,value]of Object.entries(attributes))shape.setAttribute(name,`${value}`);return shape}))}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */
+place,position},settings,camera,root.clientHeight);this.tell({...point,values:valuesAt(scene,shown,scene.cornersAt(place))},
+path,header,camera);for(let{card}of together)card.drawn={path,point:position},card.draw()}tell(point,{velocity},header,camera){
+let{label,unit:unit2}=header.speed,size=Math.hypot(...velocity),lines=new Map,{earth}=header,{parts}=this.host,where=placeText(
+point.position,header,parts,camera,!0);if(earth&&lonLatOf(earth,point.position,parts.get("lonlat"))){let[east,north]=eastNorth(
+earth,point.position,velocity,parts.get("lonlat"));lines.set("place",where),lines.set("eastward",withUnit(numberText(east,
+VELOCITY_DIGITS),unit2)),lines.set("northward",withUnit(numberText(north,VELOCITY_DIGITS),unit2))}else{let text=vectorText(
+velocity,size,VELOCITY_DIGITS,liesAcross(header.geometry));lines.set("position",where),lines.set(label.replace("speed","\
+velocity"),withUnit(text,unit2))}lines.set(label,withUnit(numberText(size,VELOCITY_DIGITS),unit2));for(let[name,value]of Object.
+entries(point.values)){let named=header.scalars.choices.find(each=>each.name===name)??header.scalars;lines.set(named.label,
+withUnit(numberText(value),named.unit))}this.list.replaceChildren(...[...lines].flatMap(([word,value])=>[dom("dt",{},[word]),
+dom("dd",{},[value])])),this.element.hidden=!1}draw(){let{drawn}=this,{camera,root}=this.host;if(!drawn||!camera)return;
+let{clientWidth:width,clientHeight:height}=root,placeOf=point2=>{let place=camera.project(point2);return place&&[(place[0]+
+1)/2*width,(1-place[1])/2*height]},linesOf2=points=>{let lines=[[]];for(let place of points.map(placeOf))place?lines[lines.
+length-1].push(place):lines.push([]);return lines.filter(line=>line.length>1)},{path,sampled,directed}=drawn.path,point=placeOf(
+drawn.point),shapes=pathShapes({path:linesOf2(path),sampled:linesOf2(sampled),point,directed});this.overlay.replaceChildren(
+...shapes.map(([tag,attributes])=>{let shape=document.createElementNS(SVG,tag);for(let[name,value]of Object.entries(attributes))
+shape.setAttribute(name,`${value}`);return shape}))}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */
 :host {
   --ink: var(--jp-ui-font-color1, #1b2430);
   --quiet: var(--jp-ui-font-color2, #566373);
@@ -822,7 +838,7 @@ span[1],now:this.time};let period=Number(settings.period);return{first:0,last:pe
 let passed=this.lastFrame?Math.min((now-this.lastFrame)/1e3,LONGEST_GAP_S):0;if(this.lastFrame=now,!this.varies)return this.
 clock+=passed,!0;let[first,last]=this.span,series=clamp(SERIES_STEP_S*(this.times.length-1),SERIES_LEAST_S,SERIES_MOST_S),
 next=this.time+passed*(last-first)/series,[before,after]=momentOf(this.times,Math.min(next,last));return ready([before,after])?
-(this.time=next>last?first:next,!0):!1}};var CLICK_PX=4,CLICK_MS=450,POINTED_MS=1500,HOVER_MS=90,KEY_STEP=.2,NOTCH_SIZES=[100,3,1],PINCH_PX=20,MOST_NOTCHES=4;function placeIn(element,event){
+(this.time=next>last?first:next,!0):!1}};var CLICK_PX=4,CLICK_MS=450,POINTED_MS=1500,HOVER_MS=90,KEY_STEP=.2,NOTCH_SIZES=[100,3,1],PINCH_PX=20,MOST_NOTCHES=4;function placeIn2(element,event){
 let box=element.getBoundingClientRect();return{x:2*(event.clientX-box.left)/Math.max(box.width,1)-1,y:1-2*(event.clientY-
 box.top)/Math.max(box.height,1)}}var Pointers=class{down=new Map;viewer;isOther=!1;press={x:0,y:0,time:0,isDrag:!1};lastLook=0;look=null;lastPointed=-1/0;constructor(viewer){
 this.viewer=viewer;let{canvas,root,options,lifetime}=viewer;root.classList.toggle("flowtex-guarded",options.guarded??!1),
@@ -835,7 +851,7 @@ includes(root)||this.hold(!1)};lifetime.listen(document,"pointerdown",release,{c
 eel",release,{capture:!0,passive:!0}),lifetime.listen(root,"focus",()=>{root.matches(":focus-visible")&&this.hold(!0)})}hold(held){
 this.viewer.root.classList.toggle("flowtex-held",held),held&&this.viewer.panel.hint(!1)}get isHeld(){let{root,options}=this.
 viewer;return!options.guarded||root.classList.contains("flowtex-held")?!0:document.fullscreenElement?.contains(root)??!1}place(event){
-return placeIn(this.viewer.canvas,event)}onDown(event){if(event.button>2)return;let{root,canvas}=this.viewer;root.focus(
+return placeIn2(this.viewer.canvas,event)}onDown(event){if(event.button>2)return;let{root,canvas}=this.viewer;root.focus(
 {preventScroll:!0,focusVisible:!1}),event.pointerType!=="touch"&&this.hold(!0),canvas.setPointerCapture(event.pointerId),
 this.down.set(event.pointerId,this.place(event)),this.isOther=event.button===2||event.shiftKey;let{clientX:x,clientY:y,timeStamp:time}=event;
 this.press={x,y,time,isDrag:this.down.size>1},root.classList.add("flowtex-grabbing")}onMove(event){let{camera,panel}=this.
@@ -976,85 +992,91 @@ let[axis,far]=[side>>1,side&1],line=lines[axis],{values}=line;levels.forEach((le
 own%shape[1]],[first,start]=axis?[column,row]:[row,column],pick=Math.min(first+(place[axis]+far)*size,line.count-1),from=start+
 place[1-axis]*size,end=Math.max(Math.min(from+size,line.width),from+1),coarsest=0;for(let n=from;n<end;n+=1)coarsest=Math.
 max(coarsest,values[line.at(pick,n)]);if(borders[4*own+side]=coarsest-step,!(level<0))for(let n=from;n<end;n+=1)changed||=
-values[line.at(pick,n)]!==coarsest,values[line.at(pick,n)]=coarsest})}return[borders,changed]}var USERS={position:["position","coordinate"],normal:["normal"],cells:["index"],mesh:["index"],cmap:["cmap"],noise:["noi\
-se"],step:["step"],scalars:["scalar"]},Scene=class{graphics;header;parts;earth;anchor=[0,0,0];resources=new Map;scalarSteps="";drawn=null;meshLevels=null;constructor(graphics,header,parts){
+values[line.at(pick,n)]!==coarsest,values[line.at(pick,n)]=coarsest})}return[borders,changed]}var USERS={position:["position","coordinate"],normal:["normal"],cells:["index"],mesh:["index"],triangles:["index","posit\
+ion","coordinate","corners","normal","scalar"],blocks:["index"],cmap:["cmap"],noise:["noise"],step:["step"],scalars:["sc\
+alar"]},Scene=class{graphics;header;parts;earth;anchor=[0,0,0];resources=new Map;scalarSteps="";drawn=null;meshLevels=null;constructor(graphics,header,parts){
 this.graphics=graphics,this.header=header,this.parts=parts,this.earth=new EarthLayer(graphics,header,parts)}missing(before,after){
 let{geometry,slices,scalars,paper,pyramid}=this.header,names=["position","mesh",...geometry.planar?[]:["normal"]];pyramid&&
-names.push("places");for(let step of new Set([before,after]))names.push(`slices/${step}`),slices.channels===2&&names.push(
-`extra/${step}`);return names.push(...this.scalarParts(before,after)),scalars.name!==null&&names.push("cmap"),paper&&names.
-push("noise","step"),[...new Set(names)].filter(name=>!this.fits(name))}scalarParts(before,after,of=this.header.scalars){
-let{name,steps,number}=of;if(name===null)return[];let end=number?`/${number}`:"";return(steps>1?[before,after]:[0,0]).map(
-step=>`scalars/${step}${end}`)}fits(name){let part=this.parts.get(name);if(!part)return!1;let{geometry,slices,paper,mesh}=this.
-header,blocks=geometry.shape.map(n=>Math.max(Math.ceil((n-1)/mesh.tileCells),1)),shape={slices:[slices.count,geometry.rows.
-size,geometry.columns.size,slices.channels],position:[...geometry.shape,3],mesh:[...blocks,part.shape[2]],step:paper?[paper.
-size[1],paper.size[0]]:[]}[name.split("/")[0]];return!shape||String(shape)===String(part.shape)}part(name){let part=this.
-parts.get(name);if(!part)throw new Error(`the part "${name}" of the scene is missing`);return part}forget(name){let[kind,
-step]=name.split("/");(kind==="mesh"||kind==="cells")&&(this.meshLevels=this.drawn=null);let sliced=kind==="slices"||kind===
-"extra";!sliced&&kind!=="scalars"&&this.earth.forget(name);for(let user of sliced?[`slices/${step}`]:USERS[kind]??[])this.
-drop(user);this.drop("array")}drop(name){let resource=this.resources.get(name);this.resources.delete(name),resource&&(resource.
-users-=1,!resource.users&&(this.graphics.free(resource.kind,resource.object),this.graphics.common.delete(resource.key)))}dispose(){
-for(let name of[...this.resources.keys()])this.drop(name);this.earth.dispose()}key(names,...rest){let digests=names.map(
-name=>this.parts.has(name)?this.part(name).digest:"none");return digests.every(Boolean)?JSON.stringify([digests,rest]):""}take(name,kind,key,make,fill){
-let own=this.resources.get(name);if(own)return own.object;let{graphics}=this,whole=key&&`${name.split("/")[0]} ${key}`,shared=whole?
-graphics.common.get(whole):void 0,object=shared?.object??graphics.counted(make()),resource=shared??{kind,object,count:0,
-key:whole,users:0};return resource.users+=1,this.resources.set(name,resource),shared||(resource.count=fill(object)||0),whole&&
-graphics.common.set(whole,resource),object}buffer(name,key,data,elements=!1){let gl=this.graphics.context,fill=buffer=>{
-let target=elements?gl.ELEMENT_ARRAY_BUFFER:gl.ARRAY_BUFFER,numbers=data();return gl.bindVertexArray(null),gl.bindBuffer(
-target,buffer),gl.bufferData(target,numbers,gl.STATIC_DRAW),numbers.length};return this.take(name,"Buffer",key,()=>gl.createBuffer(),
-fill)}mesh(){if(!this.meshLevels){let{geometry,mesh}=this.header,{shape,periodic}=geometry,parts={blocks:this.part("mesh").
-data,cells:this.parts.get("cells")?.data};this.meshLevels=new MeshLevels({shape,periodic,...parts},mesh)}return this.meshLevels}levels(sight){
-return{levels:this.mesh().levels(sight),shape:this.mesh().shape}}get hasTriangles(){return this.drawn!==null}setTriangles(levels,joins){
-let{drawn}=this;drawn&&String([levels,joins])===String([drawn.levels,drawn.joins])||(this.drawn={levels,joins},this.drop(
-"index"),this.drop("array"))}isLoaded(steps){return steps.every(step=>this.resources.has(`slices/${step}`))}load(steps){
-for(let step of steps)this.slices(step)}bindNodes(before,after,anchor){let gl=this.graphics.context,steps=String(this.scalarParts(
-before,after)),stale=steps!==this.scalarSteps?["scalar","array"]:[];anchor.some((x,k)=>x!==this.anchor[k])&&stale.push("\
-position","array");for(let name of stale)this.drop(name);this.scalarSteps=steps,this.anchor=anchor;let fill=array=>this.
-fillArray(array,before,after),make=()=>gl.createVertexArray();gl.bindVertexArray(this.take("array","VertexArray","",make,
-fill))}fillArray(array,before,after){let gl=this.graphics.context,{geometry,scalars,paper}=this.header,{shape,rows,columns}=geometry,
-{levels,joins}=this.drawn??{levels:new Int8Array,joins:new Int8Array},cells=()=>this.mesh().triangles(levels,joins),drawn=this.
-key(["cells","mesh"],shape,[...levels],[...joins]),index=this.buffer("index",drawn,cells,!0),nodes=()=>positions(this.part(
-"position").data,this.anchor),normal=geometry.planar?null:this.part("normal").data,painted=this.scalarParts(before,after),
-values=()=>{let steps=painted.map(name=>this.part(name).data);return shares(steps,scalars,shape[0]*shape[1])},colour=this.
-key([...new Set(painted)],shape,scalars.low,scalars.high,scalars.log),grid2=JSON.stringify([shape,rows,columns]),type=gl.
-FLOAT;normal instanceof Int8Array&&(type=gl.BYTE),normal instanceof Int16Array&&(type=gl.SHORT);let attributes=[[this.buffer(
-"position",this.key(["position"],this.anchor),nodes),3,gl.FLOAT],[this.buffer("coordinate",grid2,()=>coordinates(geometry)),
-2,gl.FLOAT],[normal&&this.buffer("normal",this.key(["normal"]),()=>normal),3,type],[paper&&this.buffer("along","",()=>noiseCoordinates(
-paper)),2,gl.FLOAT],[this.buffer("scalar",colour,values),2,gl.FLOAT]];gl.bindVertexArray(array),gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER,
-index),attributes.forEach(([buffer,size,kind],n)=>{buffer&&(gl.bindBuffer(gl.ARRAY_BUFFER,buffer),gl.enableVertexAttribArray(
-n),gl.vertexAttribPointer(n,size,kind,kind!==gl.FLOAT,0,0))})}texture(name,key,fill){let gl=this.graphics.context;return this.
-take(name,"Texture",key,()=>gl.createTexture(),fill)}slices(step){let{slices,geometry}=this.header,key=this.key([`slices\
-/${step}`,`extra/${step}`],geometry.levels,slices.extra);return this.texture(`slices/${step}`,key,texture=>{let part=this.
-part(`slices/${step}`),[layers,height,width,channels]=part.shape,data=part.data,extra=this.parts.get(`extra/${step}`)?.data,
-texels=height*width,layer=n=>{let own=data.subarray(n*texels*channels,(n+1)*texels*channels);if(channels===4)return own;
-let all=new Uint16Array(4*texels),place=slices.extra.indexOf(n),fourth=place<0?null:extra?.subarray(place*texels,(place+
-1)*texels);for(let k=0;k<texels;k+=1)all[4*k]=own[2*k],all[4*k+1]=own[2*k+1],fourth&&(all[4*k+3]=fourth[k]);return all};
-this.fill(texture,{width,height,layers,channels:4,levels:geometry.levels},layer)})}image(name,repeat){let gl=this.graphics.
-context;return this.texture(name,this.key([name],repeat),texture=>{let{data,shape}=this.part(name),[height,width,channels=1]=shape,
-levels=Math.floor(Math.log2(Math.max(width,height))),size={width,height,layers:1,channels,levels};this.fill(texture,size,
-()=>data);let wrap=n=>repeat[n]?gl.REPEAT:gl.CLAMP_TO_EDGE;gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_S,wrap(1)),
-gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_T,wrap(0))})}fill(texture,size,layer){let gl=this.graphics.context,
-{width,height,layers,channels,levels}=size,target=gl.TEXTURE_2D_ARRAY;this.checkSize(size);let[format,inner]=channels===
-1?[gl.RED,gl.R16F]:[gl.RGBA,gl.RGBA16F];gl.bindTexture(target,texture),gl.texStorage3D(target,levels+1,inner,width,height,
-layers),gl.texParameteri(target,gl.TEXTURE_MIN_FILTER,gl.LINEAR_MIPMAP_LINEAR),gl.texParameteri(target,gl.TEXTURE_MAG_FILTER,
-gl.LINEAR),gl.texParameteri(target,gl.TEXTURE_WRAP_S,gl.CLAMP_TO_EDGE),gl.texParameteri(target,gl.TEXTURE_WRAP_T,gl.CLAMP_TO_EDGE),
-gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);let{floats}=this.graphics;for(let n=0;n<layers;n+=1){let texels=layer(n),[w,h]=[width,
-height];gl.texSubImage3D(target,0,0,0,n,w,h,1,format,gl.HALF_FLOAT,texels);for(let level=1;level<=levels&&!floats;level+=
-1)[texels,w,h]=halved(texels,w,h,channels),gl.texSubImage3D(target,level,0,0,n,w,h,1,format,gl.HALF_FLOAT,texels)}floats&&
-levels&&gl.generateMipmap(target)}checkSize({width,height,layers}){let gl=this.graphics.context,most=gl.getParameter(gl.
-MAX_TEXTURE_SIZE),mostLayers=gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS);if(!(Math.max(width,height)<=most&&layers<=mostLayers))
-throw new Error(`a texture of ${width} x ${height} texels in ${layers} layers is asked for, and this graphics card has ${most}\
- x ${most} in ${mostLayers}; show fewer nodes`)}colourMap(){let gl=this.graphics.context;return this.texture("cmap",this.
-key(["cmap"]),texture=>{gl.bindTexture(gl.TEXTURE_2D,texture),gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);let data=this.parts.
-get("cmap")?.data??new Uint8Array(1024);gl.texImage2D(gl.TEXTURE_2D,0,gl.RGBA8,256,1,0,gl.RGBA,gl.UNSIGNED_BYTE,data),gl.
-texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST)})}dropSlices(before,after){
-let next=after+1<this.header.slices.steps?after+1:0;for(let name of[...this.resources.keys()])name.startsWith("slices/")&&
-([before,after,next,after+1].includes(stepOf(name))||this.drop(name))}bindTextures(before,after){let gl=this.graphics.context,
-{paper}=this.header,repeat=paper?.repeat??[!1,!1];[this.slices(before),after===before?null:this.slices(after),paper&&this.
-image("noise",paper.picture?[!0,!0]:repeat),paper&&this.image("step",repeat),this.colourMap()].forEach((texture,n)=>{gl.
-activeTexture(gl.TEXTURE0+n),gl.bindTexture(n<4?gl.TEXTURE_2D_ARRAY:gl.TEXTURE_2D,texture)}),gl.activeTexture(gl.TEXTURE0+
-SAMPLERS.length)}draw(before,after,anchor,textures){let gl=this.graphics.context;textures&&(this.dropSlices(before,after),
-this.bindTextures(before,after)),this.bindNodes(before,after,anchor),gl.drawElements(gl.TRIANGLES,this.resources.get("in\
-dex")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(null)}};var REQUEST_MS=60,LOST_MS=8e3,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD=4,Tiles=class{layers=[];missing=[];host;root;tiles=new Map;pyramid=null;chosen={
+names.push("places"),geometry.triangles&&names.push("triangles","blocks");for(let step of new Set([before,after]))names.
+push(`slices/${step}`),slices.channels===2&&names.push(`extra/${step}`);return names.push(...this.scalarParts(before,after)),
+scalars.name!==null&&names.push("cmap"),paper&&names.push("noise","step"),[...new Set(names)].filter(name=>!this.fits(name))}scalarParts(before,after,of=this.
+header.scalars){let{name,steps,number}=of;if(name===null)return[];let end=number?`/${number}`:"";return(steps>1?[before,
+after]:[0,0]).map(step=>`scalars/${step}${end}`)}fits(name){let part=this.parts.get(name);if(!part)return!1;let{geometry,
+slices,paper,mesh}=this.header,blocks=geometry.shape.map(n=>Math.max(Math.ceil((n-1)/mesh.tileCells),1)),shape={slices:[
+slices.count,geometry.rows.size,geometry.columns.size,slices.channels],position:[...geometry.shape,3],mesh:geometry.triangles?
+part.shape:[...blocks,part.shape[2]],step:paper?[paper.size[1],paper.size[0]]:[]}[name.split("/")[0]];return!shape||String(
+shape)===String(part.shape)}part(name){let part=this.parts.get(name);if(!part)throw new Error(`the part "${name}" of the\
+ scene is missing`);return part}forget(name){let[kind,step]=name.split("/");USERS[kind]?.includes("index")&&(this.meshLevels=
+this.drawn=null);let sliced=kind==="slices"||kind==="extra";!sliced&&kind!=="scalars"&&this.earth.forget(name);for(let user of sliced?
+[`slices/${step}`]:USERS[kind]??[])this.drop(user);this.drop("array")}drop(name){let resource=this.resources.get(name);this.
+resources.delete(name),resource&&(resource.users-=1,!resource.users&&(this.graphics.free(resource.kind,resource.object),
+this.graphics.common.delete(resource.key)))}dispose(){for(let name of[...this.resources.keys()])this.drop(name);this.earth.
+dispose()}key(names,...rest){let digests=names.map(name=>this.parts.has(name)?this.part(name).digest:"none");return digests.
+every(Boolean)?JSON.stringify([digests,rest]):""}take(name,kind,key,make,fill){let own=this.resources.get(name);if(own)return own.
+object;let{graphics}=this,whole=key&&`${name.split("/")[0]} ${key}`,shared=whole?graphics.common.get(whole):void 0,object=shared?.
+object??graphics.counted(make()),resource=shared??{kind,object,count:0,key:whole,users:0};return resource.users+=1,this.
+resources.set(name,resource),shared||(resource.count=fill(object)||0),whole&&graphics.common.set(whole,resource),object}buffer(name,key,data,elements=!1){
+let gl=this.graphics.context,fill=buffer=>{let target=elements?gl.ELEMENT_ARRAY_BUFFER:gl.ARRAY_BUFFER,numbers=data();return gl.
+bindVertexArray(null),gl.bindBuffer(target,buffer),gl.bufferData(target,numbers,gl.STATIC_DRAW),numbers.length};return this.
+take(name,"Buffer",key,()=>gl.createBuffer(),fill)}mesh(){if(this.meshLevels)return this.meshLevels;let{geometry,mesh}=this.
+header;if(geometry.triangles)return this.meshLevels=new TriangleMesh(this.part("mesh"),this.part("blocks"));let{shape,periodic}=geometry,
+parts={blocks:this.part("mesh").data,cells:this.parts.get("cells")?.data};return this.meshLevels=new MeshLevels({shape,periodic,
+...parts},mesh)}cornersAt(place){let{triangles,shape}=this.header.geometry;return triangles?cornersOf(this.part("triangl\
+es").data,place):cornersAt(shape,place)}levels(sight){return{levels:this.mesh().levels(sight),shape:this.mesh().shape}}get hasTriangles(){
+return this.drawn!==null}setTriangles(levels,joins=new Int8Array){let{drawn}=this;drawn&&String([levels,joins])===String(
+[drawn.levels,drawn.joins])||(this.drawn={levels,joins},this.drop("index"),this.drop("array"))}isLoaded(steps){return steps.
+every(step=>this.resources.has(`slices/${step}`))}load(steps){for(let step of steps)this.slices(step)}bindNodes(before,after,anchor){
+let gl=this.graphics.context,steps=String(this.scalarParts(before,after)),stale=steps!==this.scalarSteps?["scalar","arra\
+y"]:[];anchor.some((x,k)=>x!==this.anchor[k])&&stale.push("position","array");for(let name of stale)this.drop(name);this.
+scalarSteps=steps,this.anchor=anchor;let fill=array=>this.fillArray(array,before,after),make=()=>gl.createVertexArray();
+gl.bindVertexArray(this.take("array","VertexArray","",make,fill))}fillArray(array,before,after){let gl=this.graphics.context,
+{geometry,scalars,paper}=this.header,{shape,rows,columns}=geometry,{levels,joins}=this.drawn??{levels:new Int8Array,joins:new Int8Array},
+key=(names,...rest)=>this.key(["triangles",...names],...rest),cells=()=>this.mesh().triangles(levels,joins),drawn=key(["\
+cells","mesh","blocks"],shape,[...levels],[...joins]),index=this.buffer("index",drawn,cells,!0),corners=geometry.triangles?
+this.part("triangles").data:null,vertices=(values2,size)=>corners?atVertices(values2,corners,size):values2,nodes=()=>vertices(
+positions(this.part("position").data,this.anchor),3),normal=geometry.planar?null:this.part("normal").data,painted=this.scalarParts(
+before,after),values=()=>{let steps=painted.map(name=>this.part(name).data);return vertices(shares(steps,scalars,shape[0]*
+shape[1]),2)},colour=key([...new Set(painted)],shape,scalars.low,scalars.high,scalars.log),grid2=JSON.stringify([shape,rows,
+columns,corners?.length]),place=()=>corners?vertexShares(corners.length/3):coordinates(geometry),type=gl.FLOAT;normal instanceof
+Int8Array&&(type=gl.BYTE),normal instanceof Int16Array&&(type=gl.SHORT);let attributes=[[this.buffer("position",key(["po\
+sition"],this.anchor),nodes),3,gl.FLOAT],[this.buffer("coordinate",grid2,place),2,gl.FLOAT],[normal&&this.buffer("normal",
+key(["normal"]),()=>vertices(normal,3)),3,type],[paper&&this.buffer("along","",()=>noiseCoordinates(paper)),2,gl.FLOAT],
+[this.buffer("scalar",colour,values),2,gl.FLOAT],[corners&&this.buffer("corners",key([]),()=>vertexCorners(corners)),3,gl.
+FLOAT]];gl.bindVertexArray(array),gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER,index),attributes.forEach(([buffer,size,kind],n)=>{
+buffer&&(gl.bindBuffer(gl.ARRAY_BUFFER,buffer),gl.enableVertexAttribArray(n),gl.vertexAttribPointer(n,size,kind,kind!==gl.
+FLOAT,0,0))})}texture(name,key,fill){let gl=this.graphics.context;return this.take(name,"Texture",key,()=>gl.createTexture(),
+fill)}slices(step){let{slices,geometry}=this.header,key=this.key([`slices/${step}`,`extra/${step}`],geometry.levels,slices.
+extra);return this.texture(`slices/${step}`,key,texture=>{let part=this.part(`slices/${step}`),[layers,height,width,channels]=part.
+shape,data=part.data,extra=this.parts.get(`extra/${step}`)?.data,texels=height*width,layer=n=>{let own=data.subarray(n*texels*
+channels,(n+1)*texels*channels);if(channels===4)return own;let all=new Uint16Array(4*texels),place=slices.extra.indexOf(
+n),fourth=place<0?null:extra?.subarray(place*texels,(place+1)*texels);for(let k=0;k<texels;k+=1)all[4*k]=own[2*k],all[4*
+k+1]=own[2*k+1],fourth&&(all[4*k+3]=fourth[k]);return all};this.fill(texture,{width,height,layers,channels:4,levels:geometry.
+levels},layer)})}image(name,repeat){let gl=this.graphics.context;return this.texture(name,this.key([name],repeat),texture=>{
+let{data,shape}=this.part(name),[height,width,channels=1]=shape,levels=Math.floor(Math.log2(Math.max(width,height))),size={
+width,height,layers:1,channels,levels};this.fill(texture,size,()=>data);let wrap=n=>repeat[n]?gl.REPEAT:gl.CLAMP_TO_EDGE;
+gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_S,wrap(1)),gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_T,wrap(
+0))})}fill(texture,size,layer){let gl=this.graphics.context,{width,height,layers,channels,levels}=size,target=gl.TEXTURE_2D_ARRAY;
+this.checkSize(size);let[format,inner]=channels===1?[gl.RED,gl.R16F]:[gl.RGBA,gl.RGBA16F];gl.bindTexture(target,texture),
+gl.texStorage3D(target,levels+1,inner,width,height,layers),gl.texParameteri(target,gl.TEXTURE_MIN_FILTER,gl.LINEAR_MIPMAP_LINEAR),
+gl.texParameteri(target,gl.TEXTURE_MAG_FILTER,gl.LINEAR),gl.texParameteri(target,gl.TEXTURE_WRAP_S,gl.CLAMP_TO_EDGE),gl.
+texParameteri(target,gl.TEXTURE_WRAP_T,gl.CLAMP_TO_EDGE),gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);let{floats}=this.graphics;
+for(let n=0;n<layers;n+=1){let texels=layer(n),[w,h]=[width,height];gl.texSubImage3D(target,0,0,0,n,w,h,1,format,gl.HALF_FLOAT,
+texels);for(let level=1;level<=levels&&!floats;level+=1)[texels,w,h]=halved(texels,w,h,channels),gl.texSubImage3D(target,
+level,0,0,n,w,h,1,format,gl.HALF_FLOAT,texels)}floats&&levels&&gl.generateMipmap(target)}checkSize({width,height,layers}){
+let gl=this.graphics.context,most=gl.getParameter(gl.MAX_TEXTURE_SIZE),mostLayers=gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS);
+if(!(Math.max(width,height)<=most&&layers<=mostLayers))throw new Error(`a texture of ${width} x ${height} texels in ${layers}\
+ layers is asked for, and this graphics card has ${most} x ${most} in ${mostLayers}; show fewer nodes`)}colourMap(){let gl=this.
+graphics.context;return this.texture("cmap",this.key(["cmap"]),texture=>{gl.bindTexture(gl.TEXTURE_2D,texture),gl.pixelStorei(
+gl.UNPACK_ALIGNMENT,1);let data=this.parts.get("cmap")?.data??new Uint8Array(1024);gl.texImage2D(gl.TEXTURE_2D,0,gl.RGBA8,
+256,1,0,gl.RGBA,gl.UNSIGNED_BYTE,data),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.texParameteri(
+gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST)})}dropSlices(before,after){let next=after+1<this.header.slices.steps?after+
+1:0;for(let name of[...this.resources.keys()])name.startsWith("slices/")&&([before,after,next,after+1].includes(stepOf(name))||
+this.drop(name))}bindTextures(before,after){let gl=this.graphics.context,{paper}=this.header,repeat=paper?.repeat??[!1,!1];
+[this.slices(before),after===before?null:this.slices(after),paper&&this.image("noise",paper.picture?[!0,!0]:repeat),paper&&
+this.image("step",repeat),this.colourMap()].forEach((texture,n)=>{gl.activeTexture(gl.TEXTURE0+n),gl.bindTexture(n<4?gl.
+TEXTURE_2D_ARRAY:gl.TEXTURE_2D,texture)}),gl.activeTexture(gl.TEXTURE0+SAMPLERS.length)}draw(before,after,anchor,textures){
+let gl=this.graphics.context;textures&&(this.dropSlices(before,after),this.bindTextures(before,after)),this.bindNodes(before,
+after,anchor),gl.drawElements(gl.TRIANGLES,this.resources.get("index")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(null)}};var REQUEST_MS=60,LOST_MS=8e3,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD=4,Tiles=class{layers=[];missing=[];host;root;tiles=new Map;pyramid=null;chosen={
 choices:new Map,steps:[],names:""};drawn="";asked={names:[],steps:[]};count=0;isWaiting=!1;isOver=!1;lastCame=0;constructor(host,root){
 this.host=host,this.root=root}dispose(){this.isOver=!0;for(let name of[...this.tiles.keys()])this.drop(name)}setPart(name,part){
 let{graphics,header}=this.root,tile=this.tiles.get(name)??this.emptyTile();if(this.tiles.set(name,tile),part.name==="mes\
@@ -1081,28 +1103,29 @@ layers=layers,this.setTriangles(names,parts),layers.map(({scene})=>scene)}hide(l
 size]=this.pyramid?.finerPart(keyOf(finer),above)??[0,0,0];for(let j=row;j<Math.min(row+size,levels.length/columns);j+=1)
 levels.fill(-1,j*columns+column,j*columns+Math.min(column+size,columns))}setTriangles(names,parts){let drawn=String(parts.
 map(({levels},n)=>[names[n],levels]));if(drawn===this.drawn&&this.layers.every(({scene})=>scene.hasTriangles))return;this.
-drawn=drawn;let{geometry,mesh,pyramid}=this.root.header,most=Math.log2(mesh.tileCells),joins=join(parts,pyramid?.blocks??
-parts[0].shape,geometry.periodic,most);parts.forEach(({levels},n)=>this.layers[n].scene.setTriangles(levels,joins[n]))}choose(camera,steps){
-let{header}=this.root,{settings,canvas,ratio}=this.host;if(!header.pyramid)return new Map;this.pyramid??=new Pyramid(header.
-pyramid,header.mesh,this.root.part("places").data);let choices=this.pyramid.choose({...camera.sight(canvas.height/ratio),
-planes:camera.planes,cellPixels:cellPixels(header.pyramid,settings)});this.count+=1;for(let name of choices.keys()){let tile=this.
-tiles.get(name);tile&&(tile.used=this.count)}let until=performance.now()+LOAD_MS,wanted=wantedTiles(choices);this.missing=
-wanted.filter(name=>!this.isHere(name,steps)),this.ask(steps),this.trim(steps);let shown=cover(choices,name=>this.isHere(
-name,steps)&&this.load(name,steps,until));return this.chosen={choices,steps,names:String([...shown.keys()])},shown}isHere(name,steps){
-let scene=this.tiles.get(name)?.scene;return scene===null||scene?.missing(steps[0],steps[steps.length-1]).length===0}load(name,steps,until){
-let scene=this.tiles.get(name)?.scene;return!scene||scene.isLoaded(steps)?!0:performance.now()>until?(this.host.refine(),
-!1):(scene.load(steps),!0)}ask(all){let{options,lifetime}=this.host,isLacking=step=>this.missing.some(name=>!this.isHere(
-name,[step])),steps=all.filter(isLacking),open=this.asked.names.filter(name=>!this.isHere(name,this.asked.steps));performance.
-now()-this.lastCame<LOST_MS&&String(open.sort())===String([...this.missing].sort())&&(!open.length||String(steps)===String(
-this.asked.steps))||this.isWaiting||!options.onTiles||(this.isWaiting=!0,lifetime.later(()=>{this.isWaiting=!1,!this.isOver&&
-(this.lastCame=performance.now(),this.asked={names:this.missing,steps},options.onTiles?.(this.missing.map(keyOf),steps),
-this.missing.length&&lifetime.later(()=>this.isOver||this.ask(all),LOST_MS))},REQUEST_MS))}trim(steps){let bytes=0;for(let[
-name,tile]of[...this.tiles].sort(([,a],[,b])=>b.used-a.used)){let{parts,used}=tile,slices=[...parts.keys()].filter(part=>part.
-startsWith("slices/"));for(let part of slices.slice(0,Math.max(slices.length-STEPS_HELD,0))){let step=stepOf(part);if(!steps.
-includes(step))for(let kind of["slices","extra"])this.release(tile,`${kind}/${step}`)}for(let{data}of parts.values())bytes+=
-BYTES_HELD*data.byteLength;bytes>BUDGET_BYTES&&used<this.count&&this.drop(name)}}drop(name){let tile=this.tiles.get(name);
-tile?.scene?.dispose();for(let part of[...tile?.parts.keys()??[]])this.release(tile,part);this.tiles.delete(name)}release(tile,part){
-part!=="cmap"&&this.root.graphics.release(tile?.parts.get(part)),tile?.parts.delete(part)}};var STILL_MS=160,LOST_MS2=5e3,STEPS_HELD2=12,isEqual=(a,b)=>JSON.stringify(a)===JSON.stringify(b),Viewer=class{options;graphics=sharedGraphics();lifetime=new Lifetime;player=new Player;root=document.
+drawn=drawn;let{geometry,mesh,pyramid}=this.root.header,most=Math.log2(mesh.tileCells),blocks=pyramid?.blocks[0]??parts[0].
+shape,joins=geometry.triangles?[]:join(parts,blocks,geometry.periodic,most);parts.forEach(({levels},n)=>this.layers[n].scene.
+setTriangles(levels,joins[n]))}choose(camera,steps){let{header}=this.root,{settings,canvas,ratio}=this.host;if(!header.pyramid)
+return new Map;this.pyramid??=new Pyramid(header.pyramid,this.root.part("places").data);let choices=this.pyramid.choose(
+{...camera.sight(canvas.height/ratio),planes:camera.planes,cellPixels:cellPixels(header.pyramid,settings)});this.count+=
+1;for(let name of choices.keys()){let tile=this.tiles.get(name);tile&&(tile.used=this.count)}let until=performance.now()+
+LOAD_MS,wanted=wantedTiles(choices);this.missing=wanted.filter(name=>!this.isHere(name,steps)),this.ask(steps),this.trim(
+steps);let shown=cover(choices,name=>this.isHere(name,steps)&&this.load(name,steps,until));return this.chosen={choices,steps,
+names:String([...shown.keys()])},shown}isHere(name,steps){let scene=this.tiles.get(name)?.scene;return scene===null||scene?.
+missing(steps[0],steps[steps.length-1]).length===0}load(name,steps,until){let scene=this.tiles.get(name)?.scene;return!scene||
+scene.isLoaded(steps)?!0:performance.now()>until?(this.host.refine(),!1):(scene.load(steps),!0)}ask(all){let{options,lifetime}=this.
+host,isLacking=step=>this.missing.some(name=>!this.isHere(name,[step])),steps=all.filter(isLacking),open=this.asked.names.
+filter(name=>!this.isHere(name,this.asked.steps));performance.now()-this.lastCame<LOST_MS&&String(open.sort())===String(
+[...this.missing].sort())&&(!open.length||String(steps)===String(this.asked.steps))||this.isWaiting||!options.onTiles||(this.
+isWaiting=!0,lifetime.later(()=>{this.isWaiting=!1,!this.isOver&&(this.lastCame=performance.now(),this.asked={names:this.
+missing,steps},options.onTiles?.(this.missing.map(keyOf),steps),this.missing.length&&lifetime.later(()=>this.isOver||this.
+ask(all),LOST_MS))},REQUEST_MS))}trim(steps){let bytes=0;for(let[name,tile]of[...this.tiles].sort(([,a],[,b])=>b.used-a.
+used)){let{parts,used}=tile,slices=[...parts.keys()].filter(part=>part.startsWith("slices/"));for(let part of slices.slice(
+0,Math.max(slices.length-STEPS_HELD,0))){let step=stepOf(part);if(!steps.includes(step))for(let kind of["slices","extra"])
+this.release(tile,`${kind}/${step}`)}for(let{data}of parts.values())bytes+=BYTES_HELD*data.byteLength;bytes>BUDGET_BYTES&&
+used<this.count&&this.drop(name)}}drop(name){let tile=this.tiles.get(name);tile?.scene?.dispose();for(let part of[...tile?.
+parts.keys()??[]])this.release(tile,part);this.tiles.delete(name)}release(tile,part){part!=="cmap"&&this.root.graphics.release(
+tile?.parts.get(part)),tile?.parts.delete(part)}};var STILL_MS=160,LOST_MS2=5e3,STEPS_HELD2=12,isEqual=(a,b)=>JSON.stringify(a)===JSON.stringify(b),Viewer=class{options;graphics=sharedGraphics();lifetime=new Lifetime;player=new Player;root=document.
 createElement("div");canvas=document.createElement("canvas");card=new PointCard(this);panel;pointers;parts=new Map;header=null;settings={};scene=null;tiles=null;camera=null;sharp=!1;isVisible=!0;shown=null;together=[
 this];renderer;busyUntil=0;firstCamera=null;requests=new Map;constructor(element,options={}){this.options=options;let{root}=this;
 root.className="flowtex",root.tabIndex=0,root.dataset.sharp="false",root.setAttribute("data-lm-suppress-shortcuts","true"),

@@ -191,7 +191,9 @@ class Feed:
     def _first(self) -> ClientData:
         """Return the scene to begin with: a coarse one of a large field."""
         field = self._view.field
-        if self._view.scene.pyramid is None and self._nodes <= LARGE_NODES:
+        # The coarse form of triangles is the root of their tiles, which is what comes first anyway.
+        is_small = self._view.scene.pyramid is None and self._nodes <= LARGE_NODES
+        if is_small or field.triangles is not None:
             return self._view.data()
         return self._view.coarse_data(COARSE_STEADY if field.steady else COARSE_VARYING)
 

@@ -9,9 +9,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import traitlets
 
 from flowtex.field import FlowField
+from flowtex.field.locate import locate
 from flowtex.options import Appearance, FieldOptions, Options, ViewOptions, accepts_options
 from flowtex.scene import NO_IMAGE, AppearanceAttributes, Change, Scene
 from flowtex.settings import TABLE, Settings, SettingsError
@@ -52,7 +54,9 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
     playing
         Whether time, or the clock, goes on.
     point
-        What was clicked last: ``position``, ``index`` and ``values``; ``None`` before.
+        What was clicked last: ``position``, ``index`` (i, j) and ``values``; ``None`` before. On a
+        surface of triangles j is the number of one and the share of its second corner, i that of
+        its third.
     size
         Width and height in pixels of the page; a width of 0 fills the cell.
     bar
@@ -195,6 +199,15 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
             msg = f"time is {value!r}; expected {first:g} to {last:g}, the times of the field"
             raise traitlets.TraitError(msg)
         return min(max(value, first), last)
+
+    @traitlets.validate("point")
+    def _check_point(self, proposal: Any) -> Any:
+        point, field = proposal["value"], self.field
+        if point is None or field.triangles is None:
+            return point
+        # Those of what is drawn are other triangles than those of the field.
+        at = locate(field, point.get("position"), tolerance=np.inf)
+        return {**point, "index": None if at is None else at[::-1]}
 
     def set_state(self, sync_data: dict[str, Any]) -> None:
         """Take what the browser has set; what does not fit is set back there."""

@@ -340,7 +340,7 @@ def tiled(seed: int) -> dict[str, Any]:
             places = pyramid.places(level)[pyramid.blocks_of(key)]
             levels = rng.integers(0, 7, places.shape[:2])
             for child in finer:
-                levels[finer_part(child, key)] = -1
+                levels[finer_part(pyramid, child, key)] = -1
             row, column = ((TILE_BLOCKS * at) << level for at in (key or (0, 0, 0))[1:])
             regions.append(Region(level, row, column, levels))
         given = [plain(region.levels.ravel()) for region in regions]

@@ -84,7 +84,9 @@ class BrowserView {
       onCamera: (camera) => sendCamera((this.lastCamera = camera)),
       onTime: (time) => sendTime((this.lastTime = time)),
       onPlaying: (playing) => emit("update:playing", playing),
-      onPoint: (point) => emit("point", [...point.index]),
+      // Triangles have other numbers at each level.
+      onPoint: ({ index, position }) =>
+        emit("point", this.viewer?.header?.geometry.triangles ? position : [...index]),
       onSetting: (name, value) => emit("setting", [name, value]),
       onNeed: (step) => void this.load(this.props.source.steps[step]),
       onTiles: (keys, steps) => this.tiles.request(keys, steps),

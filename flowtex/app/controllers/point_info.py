@@ -371,11 +371,20 @@ class PointInfo(Controller):
         x, y = numbers
         self.hover(None if x is None or y is None else (x, y))
 
-    def take_point(self, index: Any) -> None:
-        """Show the path through a point that the browser's client tells, (i, j)."""
-        last_j, last_i = self.viewport.field.surface.last_index
-        if _is_pair(index):
-            i, j = number(index[0], 0, last_i), number(index[1], 0, last_j)
+    def take_point(self, point: Any) -> None:
+        """Show the path through a point that the browser's client tells.
+
+        It is told as (i, j), and on a surface of triangles as (x, y, z).
+        """
+        field = self.viewport.field
+        if field.triangles is not None:
+            place = [number(x) for x in point] if isinstance(point, list) else []
+            known = [x for x in place if x is not None]
+            if len(known) == len(place) == 3:
+                self.show_path(locate(field, known, tolerance=np.inf))
+        elif _is_pair(point):
+            last_j, last_i = field.surface.last_index
+            i, j = number(point[0], 0, last_i), number(point[1], 0, last_j)
             if i is not None and j is not None:
                 self.show_path((j, i))
 

@@ -14,7 +14,7 @@ from scipy.sparse import csr_array
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.errors import FieldError, raise_faults
 from flowtex.field.steps import LazySteps, Steps, map_steps
-from flowtex.field.triangles.topology import merged_nodes, triangle_normals
+from flowtex.field.triangles.topology import merged_nodes, repeated
 from flowtex.field.validation import (
     as_numbers,
     finite_nodes,
@@ -88,11 +88,16 @@ def triangle_arrays(
     # What is not known about a place must not be computed with.
     p = np.where(finite_nodes(p[None])[0][:, None], p, np.mean(p[ok], axis=0))
     same = merged_nodes(p, corners)
-    corners = same[corners]
-    corners = corners[_solid(p, corners)]
-    used = np.unique(corners)
-    number = np.full(len(p), -1, dtype=np.intp)
-    number[used] = np.arange(len(used))
+    joined = same != np.arange(len(p))
+    if joined.any():
+        moved = joined[corners].any(axis=1)
+        corners = same[corners]
+        moved[moved] = ~_solid(p, corners[moved])
+        corners = corners[~moved]
+    is_used = np.zeros(len(p), dtype=bool)
+    is_used[corners] = True
+    used = np.flatnonzero(is_used)
+    number = np.where(is_used, np.cumsum(is_used) - 1, -1)
     if len(used) < len(p):
         ok, moving, data = _joined(number[same], len(used), ok, moving, data)
         p = p[used]
@@ -152,20 +157,19 @@ def _faults(
 def _solid(p: Floats, corners: Indices) -> Bools:
     """Which triangles have an area."""
     a, b, c = (p[corners[:, k]] for k in range(3))
-    longest = np.max([np.sum((x - y) ** 2, axis=-1) for x, y in ((a, b), (b, c), (c, a))], axis=0)
-    area = np.linalg.norm(triangle_normals(p, corners), axis=-1)
+    sides = b - a, c - a, c - b
+    longest = np.max([np.einsum("mc,mc->m", side, side) for side in sides], axis=0)
+    area = np.linalg.norm(np.cross(*sides[:2]), axis=-1)
     return np.asarray(area > FLAT_TRIANGLE * longest)
 
 
 def _usable(p: Floats, corners: Indices) -> Indices:
     """Triangles with an area, each once; what is left out is told."""
-    known = np.asarray(finite_nodes(p[None])[0][corners].all(axis=1))
+    finite = finite_nodes(p[None])[0]
+    known = np.ones(len(corners), bool) if finite.all() else finite[corners].all(axis=1)
     good = known.copy()
     good[known] = _solid(p, corners[known])
-    nodes = np.sort(corners, axis=1)
-    order = np.lexsort(nodes.T)
-    once = np.ones(len(corners), dtype=bool)
-    once[order[1:]] = (nodes[order[1:]] != nodes[order[:-1]]).any(axis=1)
+    once = ~repeated(corners)
     words = [
         (int((known & ~good).sum()), "without area"),
         (int((good & ~once).sum()), "there twice"),

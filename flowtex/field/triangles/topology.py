@@ -7,10 +7,12 @@ from scipy.spatial import cKDTree
 
 from flowtex._util.array_types import Bools, Floats, Indices
 
-__all__ = ["edges_of", "flipped", "merged_nodes", "neighbours", "triangle_normals"]
+__all__ = ["edges_of", "flipped", "merged_nodes", "neighbours", "repeated", "triangle_normals"]
 
 #: Nodes on borders closer than this share of the surface's extent are one.
 SAME_NODE_SHARE = 1e-9
+#: Numbers of which three have room in one of 64 bits.
+MOST_CUBED = 2**21
 
 
 def edges_of(triangles: Indices) -> Indices:
@@ -21,8 +23,25 @@ def edges_of(triangles: Indices) -> Indices:
 
 def _edge_keys(triangles: Indices) -> Indices:
     """Return a number for each edge, (3 M,), the same for the same nodes."""
-    low, high = edges_of(triangles.astype(np.int64)).reshape(-1, 2).T
-    return np.asarray(low * (int(triangles.max(initial=0)) + 1) + high)
+    ahead, behind = (np.roll(triangles, by, axis=1).ravel() for by in (-1, 1))
+    count = np.int64(triangles.max(initial=0)) + 1
+    return np.asarray(np.minimum(ahead, behind) * count + np.maximum(ahead, behind))
+
+
+def repeated(triangles: Indices) -> Bools:
+    """Return which triangles (M,) have the corners of another one before them."""
+    low, middle, high = np.sort(triangles, axis=1).T.astype(np.int64)
+    count = int(triangles.max(initial=0)) + 1
+    keys = low * count + middle
+    if count > MOST_CUBED:
+        keys = np.unique(keys, return_inverse=True)[1]
+    keys = keys * count + high
+    result = np.zeros(len(keys), dtype=bool)
+    ordered = np.sort(keys)
+    if (ordered[1:] == ordered[:-1]).any():
+        order = np.argsort(keys, kind="stable")
+        result[order[1:]] = keys[order[1:]] == keys[order[:-1]]
+    return result
 
 
 def merged_nodes(points: Floats, triangles: Indices) -> Indices:
@@ -31,9 +50,10 @@ def merged_nodes(points: Floats, triangles: Indices) -> Indices:
     Only nodes on borders are compared: others are joined to their surroundings already.
     """
     same = np.arange(len(points))
-    _, inverse, counts = np.unique(_edge_keys(triangles), return_inverse=True, return_counts=True)
-    lone = counts[inverse.reshape(-1, 3)] == 1
-    border = np.unique(edges_of(triangles)[lone])
+    keys = np.sort(_edge_keys(triangles))
+    differs = np.diff(keys, prepend=-1, append=-1) != 0
+    lone = keys[differs[1:] & differs[:-1]]
+    border = np.unique(np.divmod(lone, int(triangles.max(initial=0)) + 1))
     if not len(border):
         return same
     near = SAME_NODE_SHARE * float(np.ptp(points[border], axis=0).max(initial=0.0))
@@ -59,7 +79,7 @@ def neighbours(points: Floats, triangles: Indices) -> Indices:
     Where more than two share an edge, the one that goes on most nearly straight is taken.
     """
     keys = _edge_keys(triangles)
-    order = np.argsort(keys, kind="stable")
+    order = np.argsort(keys)
     ordered = keys[order]
     starts = np.flatnonzero(np.diff(ordered, prepend=-1))
     counts = np.diff(np.append(starts, len(ordered)))

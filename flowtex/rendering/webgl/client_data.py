@@ -23,16 +23,17 @@ from flowtex.camera import CAMERA_LIMITS, Camera
 from flowtex.field import FlowField
 from flowtex.field.interpolation import steps_around
 from flowtex.field.units import speed_unit
-from flowtex.rendering.mesh_levels import MeshLevels, mesh_limits
+from flowtex.rendering.mesh_levels import mesh_limits
 from flowtex.rendering.shaders import shader_text
 from flowtex.rendering.tile_choice import CELL_PIXELS
+from flowtex.rendering.triangle_blocks import mesh_levels_of
 from flowtex.rendering.uniforms import client_constants, variants
 from flowtex.rendering.webgl.earth import dates_of, earth_header, earth_parts
 from flowtex.rendering.webgl.packing import Packing, half, packing_of
 from flowtex.rendering.webgl.protocol import FORMAT, Header, Parts
 from flowtex.settings import TABLE, Settings
-from flowtex.textures import PaperTextures, TextureSet
-from flowtex.tiles import PATH_CELLS, TILE_BLOCKS, Pyramid, TileKey
+from flowtex.textures import PaperTextures, SurfaceGeometry, TextureSet, TriangleGeometry
+from flowtex.tiles import PATH_CELLS, Pyramid, TileKey
 
 __all__ = ["ClientData", "Colours", "tile_parts"]
 
@@ -242,7 +243,10 @@ class ClientData:
             parts["cmap"] = np.ascontiguousarray(colours.table, np.uint8)
         if colours.choices:
             parts["maps"] = np.stack([colour_table(name)[:, :3] for name in CMAPS])
-        if not geometry.cells.all():
+        if isinstance(geometry, TriangleGeometry):
+            parts["blocks"] = geometry.blocks.astype("<u2")
+            parts["triangles"] = geometry.triangles.astype("<u4")
+        elif not geometry.cells.all():
             parts["cells"] = geometry.cells.astype(np.uint8)
         if not geometry.planar:
             parts["normal"] = np.rint(geometry.normal * NORMAL_MAX).astype("<i2")
@@ -312,7 +316,7 @@ class ClientData:
     def nbytes_of_step(self) -> int:
         """Bytes of the arrays of one destination time, known before anything is traced."""
         geometry = self.textures.geometry
-        texels = geometry.rows.size * geometry.columns.size
+        texels = int(np.prod(geometry.size))
         nodes = int(np.prod(geometry.shape))
         numbers = self.textures.count * self.packing.channels + len(self.packing.extra)
         return 2 * texels * numbers + 4 * nodes * len(self._values)
@@ -334,7 +338,7 @@ class ClientData:
     @cached_property
     def _mesh(self) -> Floats32:
         """Return what the client chooses its triangles by, of each tile."""
-        levels = MeshLevels.of(self.textures)
+        levels = mesh_levels_of(self.textures)
         shares: list[Floats] = []
         for number, values in self._values.items():
             if number == self.colours.number:
@@ -347,10 +351,17 @@ class ClientData:
 
     def _geometry(self) -> dict[str, Any]:
         geometry = self.textures.geometry
+        before = (0, 0)
+        if isinstance(geometry, SurfaceGeometry):
+            before = geometry.rows.before, geometry.columns.before
+        rows, columns = (
+            {"before": int(b), "size": int(n)} for b, n in zip(before, geometry.size, strict=True)
+        )
         return {
+            "triangles": isinstance(geometry, TriangleGeometry),
             "shape": [int(n) for n in geometry.shape],
-            "rows": {"before": int(geometry.rows.before), "size": int(geometry.rows.size)},
-            "columns": {"before": int(geometry.columns.before), "size": int(geometry.columns.size)},
+            "rows": rows,
+            "columns": columns,
             "levels": int(geometry.levels),
             "periodic": [bool(p) for p in geometry.periodic],
             "planar": geometry.planar,
@@ -417,12 +428,13 @@ def tile_parts(key: TileKey, tile: ClientData | None, *steps: int) -> Parts:
 
 def _pyramid(pyramid: Pyramid, finest: int) -> dict[str, Any]:
     """Return what a client chooses the tiles by, beside the places of their blocks."""
+    levels = range(pyramid.depth + 1)
     return {
         "depth": pyramid.depth,
         "finest": finest,
-        "blocks": list(pyramid.blocks),
-        "shapes": [list(pyramid.shape(level)) for level in range(pyramid.depth + 1)],
-        "tileBlocks": TILE_BLOCKS,
+        "blocks": [list(pyramid.places(level).shape[:2]) for level in levels],
+        "shapes": [list(pyramid.shape(level)) for level in levels],
+        "tileBlocks": pyramid.tile_blocks,
         "cellPixels": CELL_PIXELS,
         "pathCells": PATH_CELLS,
     }

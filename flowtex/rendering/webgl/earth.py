@@ -25,7 +25,7 @@ from flowtex.rendering.map_overlay import (
     map_lines,
 )
 from flowtex.rendering.webgl.protocol import Header, Parts
-from flowtex.textures.geometry import SurfaceGeometry
+from flowtex.textures.geometry import DrawnSurface, SurfaceGeometry
 
 __all__ = ["dates_of", "earth_header", "earth_parts"]
 
@@ -47,7 +47,7 @@ class _Lines:
     parts: dict[str, AnyArray]
 
 
-def earth_header(geometry: SurfaceGeometry, *, has_land: bool) -> Header | None:
+def earth_header(geometry: DrawnSurface, *, has_land: bool) -> Header | None:
     """Return what of the header tells of the Earth; ``None`` for a flow that is elsewhere."""
     field = geometry.field
     if field.projection is None:
@@ -70,10 +70,10 @@ def earth_header(geometry: SurfaceGeometry, *, has_land: bool) -> Header | None:
     }
 
 
-def earth_parts(geometry: SurfaceGeometry, *, has_land: bool, tiled: bool) -> Parts:
+def earth_parts(geometry: DrawnSurface, *, has_land: bool, tiled: bool) -> Parts:
     """Return the arrays of the Earth, of which a tile has none of its own.
 
-    Of a surface in tiles all cells may be seen as land, where finer ones have no data.
+    Of a structured surface in tiles all cells may be seen as land, where finer ones have no data.
     """
     field = geometry.field
     if field.projection is None or geometry.whole is not field.surface:
@@ -82,9 +82,11 @@ def earth_parts(geometry: SurfaceGeometry, *, has_land: bool, tiled: bool) -> Pa
     if not field.projection.is_globe:
         parts["lonlat"] = _lonlat(field.projection, map_box(field).tobytes())
         land = land_cells(field)
-        if tiled:
+        if tiled and isinstance(geometry, SurfaceGeometry):
             land = land | geometry.cells
-        if land.any():
+        if land.any() and field.triangles is not None:
+            parts["land"] = field.triangles[land].astype("<u4")
+        elif land.any():
             parts["land"] = land.astype(np.uint8)
     return parts
 
@@ -107,7 +109,7 @@ def dates_of(field: FlowField, times: Floats) -> Header:
 _lines: WeakCache[_Lines] = WeakCache()
 
 
-def _lines_of(geometry: SurfaceGeometry, *, has_land: bool) -> _Lines:
+def _lines_of(geometry: DrawnSurface, *, has_land: bool) -> _Lines:
     """Return the lines of a field, made once for all who ask."""
     field = geometry.field
     has_globe = has_land and globe_radius(field) is not None
