@@ -11,7 +11,7 @@ from flowtex._util.array_types import Floats
 from flowtex.earth import GLOBE, Projection
 from flowtex.field.datasets.places import Places
 
-__all__ = ["CYLINDERS", "TORN", "MapNodes", "on_map", "projection_of", "shown_positions"]
+__all__ = ["TORN", "MapNodes", "on_map", "projection_of", "shown_positions"]
 
 #: The flat map that is drawn where none is chosen, and those on which an axis that goes around the
 #: Earth goes on at the other side, a map further.

@@ -205,7 +205,7 @@ def _mesh_field(
     options: dict[str, Any] = {"length_unit": known.places.unit or "m", "time_unit": "s"}
     words = _words(scalars)
     read = {key: reader for key, (reader, _) in scalars.items()}
-    nodes: Any = slice(None)
+    at: Callable[[Floats], Floats] = np.asarray
     vectors: Callable[[Floats, Floats], Floats] = _in_plane
     if mesh.is_earth:
         drawn = mesh_on_map(mesh, known.places, projection)
@@ -214,7 +214,7 @@ def _mesh_field(
                 f"{drawn.lost:,} triangles are left out, for the map tears them apart, as at a "
                 "pole; a globe has them all, as in globe=True"
             )
-        points, triangles, nodes = drawn.points, drawn.triangles, drawn.nodes
+        points, triangles, at = drawn.points, drawn.triangles, drawn.at
         options["projection"] = drawn.projection
         vectors = drawn.vectors
         if not drawn.projection.is_globe:
@@ -228,7 +228,7 @@ def _mesh_field(
         return np.nan_to_num(vectors(*known.steps(numbers[number])))
 
     def value(reader: Callable[[int], Floats], number: int) -> Floats:
-        return np.asarray(reader(numbers[number])[nodes])
+        return at(reader(numbers[number]))
 
     some = sorted({numbers[0], numbers[len(numbers) // 2], numbers[-1]})
     valid = np.any([np.isfinite(known.steps(n)).all(axis=0) for n in some], axis=0)
@@ -238,7 +238,7 @@ def _mesh_field(
         triangles,
         LazySteps(count, velocity) if count > 1 else velocity(0),
         times=times,
-        valid=valid[nodes],
+        valid=at(valid * 1.0) == 1,
         scalars={key: LazySteps(count, partial(value, reader)) for key, reader in read.items()},
         name=name,
         units=words["units"],

@@ -116,8 +116,11 @@ def test_a_global_mesh_on_flat_maps(projection: str | None) -> None:
     east, north = field.projection.components(lon, lat, field.velocity[0])
     inside = np.abs(lat) < 80
     speed = np.linalg.norm(turning(on_sphere(lon, lat)), axis=-1)
-    assert np.allclose(np.hypot(east, north)[inside], speed[inside], atol=1e-3)
-    assert np.allclose(np.asarray(field.scalars["speed"][0])[inside], speed[inside], atol=1e-6)
+    # Triangles are cut at the edge of the map, where values lie between those of nodes.
+    assert np.allclose(np.hypot(east, north)[inside], speed[inside], atol=0.02 * RATE)
+    assert np.median(np.abs(np.hypot(east, north) - speed)[inside]) < 1e-3
+    assert np.allclose(field.scalars["speed"][0], np.hypot(east, north), atol=0.02 * RATE)
+    assert np.abs(lon).max() <= 180.0
     if projection is None:
         # Nothing is lost but what is around the poles, and nothing is there twice.
         ends = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
