@@ -32,7 +32,7 @@ def bay() -> Globe:
 
 @pytest.mark.parametrize("view", [{"globe": True}, {}, {"projection": "robinson"}])
 def test_a_mesh_has_the_colours_of_the_same_flow_on_a_grid(view: dict[str, Any]) -> None:
-    options = {"size": (240, 200), "lighting": False, "clim": (0.0, 10.0)}
+    options: dict[str, Any] = {"size": (240, 200), "lighting": False, "clim": (0.0, 10.0)}
     options |= {"cmap": "gray", "coastlines": False, "graticule": False, "show_scalar_bar": False}
     mesh, grid = (
         flowtex.render(ds, **view, **options).astype(float)

@@ -204,8 +204,8 @@ def _mesh_field(
     """Make a field on a mesh by ``FlowField.from_triangles``."""
     options: dict[str, Any] = {"length_unit": known.places.unit or "m", "time_unit": "s"}
     words = _words(scalars)
-    read = {key: reader for key, (reader, _) in scalars.items()}
     at: Callable[[Floats], Floats] = np.asarray
+    has_speed = False
     vectors: Callable[[Floats, Floats], Floats] = _in_plane
     if mesh.is_earth:
         drawn = mesh_on_map(mesh, known.places, projection)
@@ -217,8 +217,8 @@ def _mesh_field(
         points, triangles, at = drawn.points, drawn.triangles, drawn.at
         options["projection"] = drawn.projection
         vectors = drawn.vectors
-        if not drawn.projection.is_globe:
-            read["speed"] = lambda number: np.hypot(*known.steps(number))
+        has_speed = not drawn.projection.is_globe
+        if has_speed:
             words["units"]["speed"] = "m/s"
     else:
         points, triangles = mesh.positions, mesh.triangles
@@ -230,6 +230,14 @@ def _mesh_field(
     def value(reader: Callable[[int], Floats], number: int) -> Floats:
         return at(reader(numbers[number]))
 
+    def speed(number: int) -> Floats:
+        return np.asarray(np.hypot(*map(at, known.steps(numbers[number]))))
+
+    data: dict[str, Callable[[int], Floats]] = {
+        key: partial(value, reader) for key, (reader, _) in scalars.items()
+    }
+    if has_speed:
+        data["speed"] = speed
     some = sorted({numbers[0], numbers[len(numbers) // 2], numbers[-1]})
     valid = np.any([np.isfinite(known.steps(n)).all(axis=0) for n in some], axis=0)
     count = len(numbers)
@@ -238,8 +246,8 @@ def _mesh_field(
         triangles,
         LazySteps(count, velocity) if count > 1 else velocity(0),
         times=times,
-        valid=at(valid * 1.0) == 1,
-        scalars={key: LazySteps(count, partial(value, reader)) for key, reader in read.items()},
+        valid=at(valid * 1.0) > 1 - 1e-9,
+        scalars={key: LazySteps(count, read) for key, read in data.items()},
         name=name,
         units=words["units"],
         **options,
