@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -71,7 +72,7 @@ def triangle_arrays(
     raise_faults(range_faults(p[None], v, ok[None]))
     moving: Steps = v
     if isinstance(velocity, LazySteps):
-        moving = velocity.map(lambda step: _row(three_components(np.nan_to_num(step)), ok))
+        moving = velocity.map(partial(_row, ok))
     data = {
         name: scalars[name].map(lambda step: step[None])
         if isinstance(scalars[name], LazySteps)
@@ -110,8 +111,9 @@ def _first(values: Any) -> Any:
     return values[0] if isinstance(values, LazySteps) else values
 
 
-def _row(step: Floats, ok: Bools) -> Floats:
-    return np.where(ok[:, None], step, np.nan)[None]
+def _row(ok: Bools, step: Floats) -> Floats:
+    """Return a step (1, N, 3) of (N, 2 or 3): nodes that are not in use have NaN."""
+    return np.where(ok[:, None], three_components(np.nan_to_num(step)), np.nan)[None]
 
 
 def _faults(
