@@ -116,8 +116,8 @@ class MapOverlay:
         if appearance.land is not None:
             self._add_land(appearance.land)
         for option, stroke in STROKES.items():
-            if getattr(appearance, option) is not False:
-                actor = self._add_lines(self._forms_of(option), stroke.width)
+            if getattr(appearance, option) is not False and (forms := self._forms_of(option)):
+                actor = self._add_lines(forms, stroke.width)
                 actor.prop.color, actor.prop.opacity = stroke.color, stroke.opacity
                 actor.prop.lighting = False
 
@@ -128,12 +128,17 @@ class MapOverlay:
             renderer.RemoveObserver(self._observed)
 
     def _forms_of(self, option: str) -> tuple[tuple[float, pv.PolyData], ...]:
-        """Return the lines of an option, from coarse to fine; all are made together, once."""
+        """Return the lines of an option, from coarse to fine; all are made together, once.
+
+        Those of a small field are short, and there are none where no coast comes near it.
+        """
         has_globe = self._radius is not None
         if (option, has_globe) not in self._lines:
             for name, lines in map_lines(self._field, has_globe=has_globe).items():
                 forms = ((s, lines.thinned(s) if s else lines) for s in SPACINGS)
-                self._lines[name, has_globe] = tuple((s, _line_mesh(form)) for s, form in forms)
+                self._lines[name, has_globe] = tuple(
+                    (s, _line_mesh(form)) for s, form in forms if len(form.points)
+                )
         return self._lines[option, has_globe]
 
     def _add_land(self, color: Any) -> None:

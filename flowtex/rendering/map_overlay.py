@@ -107,6 +107,11 @@ def globe_radius(field: FlowField) -> float | None:
     if isinstance(surface, TriangleSurface) and (surface.neighbours >= 0).all():
         return None
     lowest = float(np.linalg.norm(_cells(field)[0], axis=-1).min(initial=EARTH_RADIUS))
+    if isinstance(surface, TriangleSurface):
+        # A triangle with three such sides is the deepest below the sphere through its corners.
+        p = surface.points[0][surface.triangles]
+        longest = np.linalg.norm(p - np.roll(p, 1, axis=1), axis=-1).max()
+        lowest = float(np.sqrt(max(EARTH_RADIUS**2 - longest**2 / 3, 0.0)))
     return lowest - LOWER * EARTH_RADIUS
 
 

@@ -99,6 +99,10 @@ class Section:
         """Whether there are several time steps."""
         return bool(self.array.ndim > len(horizontal_dims(self.array)))
 
+    def step(self, number: int) -> xr.DataArray:
+        """Return one time step, by its number."""
+        return self.array.isel({self.array.dims[0]: number}) if self.is_series else self.array
+
 
 def horizontal_dims(array: xr.DataArray) -> tuple[str, ...]:
     """Return the dimensions of rows and columns, or the one of the nodes or faces of a mesh.
@@ -135,7 +139,9 @@ def sections(arrays: list[xr.DataArray], choice: Choice) -> list[Section]:
         [str(d) for d in array.dims if d not in pair]
         for array, pair in zip(arrays, rows, strict=True)
     ]
-    kinds = [{axis_kind(array, d): d for d in dims} for array, dims in zip(arrays, others, strict=True)]
+    kinds = [
+        {axis_kind(array, d): d for d in dims} for array, dims in zip(arrays, others, strict=True)
+    ]
     if len({tuple(k) for k in kinds}) > 1 or any(
         len(k) < len(d) for k, d in zip(kinds, others, strict=True)
     ):

@@ -64,6 +64,7 @@ WORDS = (
     (r"\bknots?\b|\bkts?\b|\bkn\b", "knot"),
     (r"\bfeet\b|\bfoot\b", "ft"),
     (r"\s*\bper\b\s*", "/"),
+    (r"[{}]", ""),
     (r"\s*[\s.*]\s*(s|h|day)\s*\**\^?-1\b", r"/\1"),
     (r"\s", ""),
 )
@@ -189,9 +190,7 @@ def to_metres_per_second(array: xr.DataArray) -> float | None:
 
 def _may_be_component(array: xr.DataArray) -> bool:
     fewest = 1 if _on_mesh(array) else 2
-    return (
-        array.ndim >= fewest and array.dtype.kind in "fiu" and "bounds" not in str(array.name)
-    )
+    return array.ndim >= fewest and array.dtype.kind in "fiu" and "bounds" not in str(array.name)
 
 
 def _on_mesh(array: xr.DataArray) -> bool:

@@ -53,7 +53,7 @@ class Places:
 
 
 def find_places(
-    array: xr.DataArray, dims: tuple[str, str], datasets: Sequence[xr.Dataset]
+    array: xr.DataArray, dims: tuple[str, ...], datasets: Sequence[xr.Dataset]
 ) -> Places:
     """Return where values on some rows and columns lie.
 
@@ -117,7 +117,7 @@ def _size(dim: str, array: xr.DataArray, datasets: Sequence[xr.Dataset]) -> int:
 
 def _pairs(
     array: xr.DataArray,
-    dims: tuple[str, str],
+    dims: tuple[str, ...],
     datasets: Sequence[xr.Dataset],
     patterns: tuple[re.Pattern[str], re.Pattern[str]],
     words: tuple[str, str],
@@ -155,15 +155,15 @@ def _partner(name: str) -> set[str]:
 
 
 def _spread(
-    a: Any, b: Any, dims: tuple[str, str], shape: tuple[int, ...]
+    a: Any, b: Any, dims: tuple[str, ...], shape: tuple[int, ...]
 ) -> tuple[Floats | None, Floats | None]:
     """Return two coordinates at all nodes, or nothing where they belong to other nodes."""
     if a.ndim == 1 and b.ndim == 1:
         if a.dims == b.dims:
             msg = (
                 f"{a.name} and {b.name} both lie along {a.dims[0]}: the values are those of an "
-                "unstructured mesh, or of stations, and flow is drawn on rows and columns; "
-                "put them on a grid of longitude and latitude before"
+                "unstructured mesh whose faces are not known, or of stations. Give the file of the "
+                "mesh too, which tells the nodes of each face"
             )
             raise FieldError(msg)
         if a.dims != (dims[1],) or b.dims != (dims[0],):

@@ -30,16 +30,17 @@ from flowtex.field.datasets.axes import (
     sections,
     way_ahead,
 )
+from flowtex.field.datasets.directions import turned
 from flowtex.field.datasets.grids import find_grid, sea_mask, unrepeated
 from flowtex.field.datasets.maps import on_map, projection_of
 from flowtex.field.datasets.meshes.conventions import find_mesh
 from flowtex.field.datasets.meshes.maps import mesh_on_map
 from flowtex.field.datasets.meshes.mesh import Mesh
-from flowtex.field.datasets.meshes.nodal import WET, NodalValues
+from flowtex.field.datasets.meshes.nodal import WET, NodalValues, wet_at
 from flowtex.field.datasets.meshes.preparation import with_mesh_axes
 from flowtex.field.datasets.notices import notify
 from flowtex.field.datasets.pairs import Pair, choose_pair, to_metres_per_second
-from flowtex.field.datasets.places import LATITUDE, LONGITUDE, Places, over_sphere
+from flowtex.field.datasets.places import LATITUDE, LONGITUDE, Places
 from flowtex.field.datasets.staggered import centred
 from flowtex.field.steps import LazySteps
 
@@ -55,7 +56,8 @@ LONGEST_NAME = 40
 
 #: Variables that belong to the grid itself: places, sizes of cells, masks.
 OF_GRIDS = re.compile(
-    rf"{LONGITUDE.pattern}|{LATITUDE.pattern}|^(e[12][tuvf]|d[xy][tuvcg]?|[tuvf]?mask\w*)$", re.I
+    rf"{LONGITUDE.pattern}|{LATITUDE.pattern}|^(e[12][tuvf]|d[xy][tuvcg]?|[tuvf]?mask\w*|[xy]c?)$",
+    re.I,
 )
 
 #: Steps whose components are kept, for velocity and speed are made of the same.
@@ -112,6 +114,12 @@ class Recognised:
         """The flat map that suits the places."""
         return projection_of(self.places, None)[0].name
 
+    def turned(self, u: Floats, v: Floats) -> tuple[Floats, Floats]:
+        """Return components eastward and northward, or along x and y."""
+        if self.along == "earth" or self.places.is_line:
+            return u, v
+        return turned(self.places, self.ahead, u, v)
+
 
 def field_of(
     make: type[F],
@@ -139,13 +147,13 @@ def field_of(
     scalars = _scalars(known, as_datasets(data), Choice(dict(sel or {}), dict(isel or {})))
     name = ", ".join(filter(None, (name, known.level)))
     if known.mesh is not None:
-        return _mesh_field(make, known, known.mesh, scalars, times, numbers, projection, name)
+        on_mesh: F = _mesh_field(make, known, known.mesh, scalars, times, numbers, projection, name)
+        return on_mesh
     if not places.is_earth:
         points = np.stack([places.a, places.b], axis=-1)
 
         def vectors(u: Floats, v: Floats) -> Floats:
-            east, north = _turned(known, u, v, plane=True)
-            return np.stack([east, north, np.zeros_like(east)], axis=-1)
+            return _in_plane(*known.turned(u, v))
 
         lines: Any = (slice(None), slice(None))
         options: dict[str, Any] = {"length_unit": places.unit, "time_unit": "s"}
@@ -158,7 +166,7 @@ def field_of(
         speeds = not drawn.projection.is_globe
 
         def vectors(u: Floats, v: Floats) -> Floats:
-            east, north = _turned(known, u, v)
+            east, north = known.turned(u, v)
             return drawn.vectors(east[lines], north[lines])
 
     def velocity(number: int) -> Floats:
@@ -196,8 +204,9 @@ def _mesh_field(
     """Make a field on a mesh by ``FlowField.from_triangles``."""
     options: dict[str, Any] = {"length_unit": known.places.unit or "m", "time_unit": "s"}
     words = _words(scalars)
-    read = {key: reader for key, (reader, _) in scalars.items()}
-    nodes: Any = slice(None)
+    at: Callable[[Floats], Floats] = np.asarray
+    has_speed = False
+    vectors: Callable[[Floats, Floats], Floats] = _in_plane
     if mesh.is_earth:
         drawn = mesh_on_map(mesh, known.places, projection)
         if drawn.lost:
@@ -205,25 +214,30 @@ def _mesh_field(
                 f"{drawn.lost:,} triangles are left out, for the map tears them apart, as at a "
                 "pole; a globe has them all, as in globe=True"
             )
-        points, triangles, nodes = drawn.points, drawn.triangles, drawn.nodes
+        points, triangles, at = drawn.points, drawn.triangles, drawn.at
         options["projection"] = drawn.projection
         vectors = drawn.vectors
-        if not drawn.projection.is_globe:
-            read["speed"] = lambda number: np.hypot(*known.steps(number))
+        has_speed = not drawn.projection.is_globe
+        if has_speed:
             words["units"]["speed"] = "m/s"
     else:
         points, triangles = mesh.positions, mesh.triangles
-
-        def vectors(u: Floats, v: Floats) -> Floats:
-            return np.stack([u, v, np.zeros_like(u)], axis=-1)
 
     def velocity(number: int) -> Floats:
         # What is dry now and was not always is at rest.
         return np.nan_to_num(vectors(*known.steps(numbers[number])))
 
     def value(reader: Callable[[int], Floats], number: int) -> Floats:
-        return np.asarray(reader(numbers[number])[nodes])
+        return at(reader(numbers[number]))
 
+    def speed(number: int) -> Floats:
+        return np.asarray(np.hypot(*map(at, known.steps(numbers[number]))))
+
+    data: dict[str, Callable[[int], Floats]] = {
+        key: partial(value, reader) for key, (reader, _) in scalars.items()
+    }
+    if has_speed:
+        data["speed"] = speed
     some = sorted({numbers[0], numbers[len(numbers) // 2], numbers[-1]})
     valid = np.any([np.isfinite(known.steps(n)).all(axis=0) for n in some], axis=0)
     count = len(numbers)
@@ -232,13 +246,17 @@ def _mesh_field(
         triangles,
         LazySteps(count, velocity) if count > 1 else velocity(0),
         times=times,
-        valid=valid[nodes],
-        scalars={key: LazySteps(count, partial(value, reader)) for key, reader in read.items()},
+        valid=at(valid * 1.0) > 1 - 1e-9,
+        scalars={key: LazySteps(count, read) for key, read in data.items()},
         name=name,
         units=words["units"],
         **options,
     )
     return replace(field, long_names=words["long_names"])
+
+
+def _in_plane(u: Floats, v: Floats) -> Floats:
+    return np.stack([u, v, np.zeros_like(u)], axis=-1)
 
 
 def _words(scalars: Mapping[str, tuple[Any, Any]]) -> dict[str, dict[str, str]]:
@@ -365,7 +383,7 @@ def _on_mesh(
     one, two = sections
     ((dim,),) = dims
     nodal = NodalValues(mesh, dim)
-    wet = _wet(one, dim, datasets, choice)
+    wet = wet_at(one, dim, datasets, choice)
 
     def steps(number: int) -> tuple[Floats, Floats]:
         u, v = (_values(section, number) * factor for section in sections)
@@ -400,21 +418,6 @@ def _on_mesh(
     )
 
 
-def _wet(
-    section: Section, dim: str, datasets: Sequence[Any], choice: Choice
-) -> Callable[[int], Bools] | None:
-    """Return what tells which nodes or faces are under water at a step."""
-    for ds in datasets:
-        for name, water in WET.items():
-            if name not in ds.data_vars or dim not in ds[name].dims:
-                continue
-            all_axes = Choice(choice.sel, choice.isel, {*choice.sel, *choice.isel})
-            (flags,) = sections([ds[name]], all_axes)
-            if flags.is_series == section.is_series:
-                return lambda number: _values(flags, number) == water  # noqa: B023
-    return None
-
-
 def as_datasets(data: Any) -> list[Any]:
     """Return datasets whose axes cf_xarray can tell, with times as dates."""
     xarray = import_extra("xarray", "xarray")
@@ -434,9 +437,7 @@ def as_datasets(data: Any) -> list[Any]:
 
 def _values(section: Section, number: int) -> Floats:
     """Read one step of a component, (J, I); what stands for missing data is NaN."""
-    array = (
-        section.array.isel({section.array.dims[0]: number}) if section.is_series else section.array
-    )
+    array = section.step(number)
     values = np.asarray(array.values)
     if values.dtype.kind not in "fiu":
         msg = f"{array.name!r} holds {values.dtype}; expected numbers"
@@ -445,51 +446,6 @@ def _values(section: Section, number: int) -> Floats:
     # Fill values that no attribute tells.
     values[np.abs(values) > 1e15] = np.nan
     return values
-
-
-def _turned(
-    known: Recognised, u: Floats, v: Floats, *, plane: bool = False
-) -> tuple[Floats, Floats]:
-    """Return components eastward and northward, or along x and y."""
-    places = known.places
-    if known.along == "earth" or places.is_line:
-        return u, v
-    if plane:
-        p = np.stack([places.a, places.b], axis=-1)
-        basis = [np.array([1.0, 0.0]), np.array([0.0, 1.0])]
-    else:
-        p = over_sphere(places)
-        lon, lat = np.radians(places.a), np.radians(places.b)
-        zero = np.zeros_like(lon)
-        basis = [
-            np.stack([-np.sin(lon), np.cos(lon), zero], axis=-1),
-            np.stack(
-                [-np.sin(lat) * np.cos(lon), -np.sin(lat) * np.sin(lon), np.cos(lat)], axis=-1
-            ),
-        ]
-    ahead_j, ahead_i = known.ahead
-    along_i, along_j = ahead_i * _unit(_along(p, 1)), ahead_j * _unit(_along(p, 0))
-    vector = u[..., None] * along_i + v[..., None] * along_j
-    east, north = (
-        np.einsum("jic,...c->ji" if b.ndim == 1 else "jic,jic->ji", vector, b) for b in basis
-    )
-    return east, north
-
-
-def _along(p: Floats, axis: int) -> Floats:
-    """Return differences of positions along an axis, one-sided where a neighbour is not known."""
-    p = np.swapaxes(p, 0, axis)
-    ahead = np.full_like(p, np.nan)
-    ahead[:-1] = p[1:] - p[:-1]
-    behind = np.full_like(p, np.nan)
-    behind[1:] = ahead[:-1]
-    both = np.where(np.isnan(ahead), behind, np.where(np.isnan(behind), ahead, ahead + behind))
-    return np.swapaxes(both, 0, axis)
-
-
-def _unit(vectors: Floats) -> Floats:
-    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return np.asarray(vectors / np.where(length > 0, length, 1.0))
 
 
 def _times(known: Recognised) -> tuple[Any, list[int]]:
@@ -529,12 +485,12 @@ def _scalars(
     for ds in datasets:
         if aside and any(name in ds for name in used):
             continue
-        if known.mesh is not None and known.mesh.is_alone_in(ds, used):
-            continue
+        alone = known.mesh is not None and known.mesh.is_alone_in(ds, used)
         for name, array in ds.data_vars.items():
             surface = _surface(known, array)
             numbers = array.dtype.kind in "fiu" and not OF_GRIDS.match(str(name))
-            if name not in (*used, *found) and surface and numbers:
+            of_mesh = alone and array.ndim == 1  # such as areas
+            if name not in (*used, *found) and surface and numbers and not of_mesh:
                 read = _reader(known, array.transpose(..., *surface), steps, choice)
                 if read is not None:
                     found[str(name)] = read, array.attrs

@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -69,8 +70,9 @@ def triangle_arrays(
     ok: Bools = np.asarray(known if shown is None else known & shown)
     v = np.asarray(np.where(ok[:, None], v, np.nan))
     raise_faults(range_faults(p[None], v, ok[None]))
+    moving: Steps = v
     if isinstance(velocity, LazySteps):
-        v = velocity.map(lambda step: _row(three_components(np.nan_to_num(step)), ok))
+        moving = velocity.map(partial(_row, ok))
     data = {
         name: scalars[name].map(lambda step: step[None])
         if isinstance(scalars[name], LazySteps)
@@ -98,10 +100,10 @@ def triangle_arrays(
     used = np.flatnonzero(is_used)
     number = np.where(is_used, np.cumsum(is_used) - 1, -1)
     if len(used) < len(p):
-        ok, v, data = _joined(number[same], len(used), ok, v, data)
+        ok, moving, data = _joined(number[same], len(used), ok, moving, data)
         p = p[used]
-    v = map_steps(v, lambda step: np.where(ok[:, None], step, 0.0))
-    return TriangleArrays(p[None].copy("C"), number[corners], v, ok[None], data)
+    moving = map_steps(moving, lambda step: np.where(ok[:, None], step, 0.0))
+    return TriangleArrays(p[None].copy("C"), number[corners], moving, ok[None], data)
 
 
 def _first(values: Any) -> Any:
@@ -109,8 +111,9 @@ def _first(values: Any) -> Any:
     return values[0] if isinstance(values, LazySteps) else values
 
 
-def _row(step: Floats, ok: Bools) -> Floats:
-    return np.where(ok[:, None], step, np.nan)[None]
+def _row(ok: Bools, step: Floats) -> Floats:
+    """Return a step (1, N, 3) of (N, 2 or 3): nodes that are not in use have NaN."""
+    return np.where(ok[:, None], three_components(np.nan_to_num(step)), np.nan)[None]
 
 
 def _faults(
@@ -197,9 +200,9 @@ def nodal_means(
 
     def means(step: Floats) -> Floats:
         flat = step.reshape(len(step), -1)
-        finite = np.isfinite(flat).all(axis=1)
-        total = (matrix @ finite.astype(float))[:, None]
-        sums = matrix @ np.where(finite[:, None], flat, 0.0)
+        finite = np.asarray(np.isfinite(flat).all(axis=1))
+        total = np.asarray(matrix @ finite.astype(float))[:, None]
+        sums = np.asarray(matrix @ np.where(finite[:, None], flat, 0.0))
         mean = np.divide(sums, total, out=np.full_like(sums, np.nan), where=total > 0)
         return np.asarray(mean.reshape(nodes, *step.shape[1:]))
 
@@ -207,7 +210,7 @@ def nodal_means(
 
 
 def _joined(
-    number: Indices, count: int, ok: Bools, v: Floats, data: Mapping[str, Floats]
+    number: Indices, count: int, ok: Bools, v: Steps, data: Mapping[str, Floats]
 ) -> tuple[Bools, Floats, dict[str, Steps]]:
     """Average what nodes at one place have; nodes with the number -1 are left out."""
     kept = np.flatnonzero(number >= 0)

@@ -133,3 +133,32 @@ def _quiet(*arrays: Any) -> FlowField:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)
         return FlowField.from_triangles(*arrays)
+
+
+def test_steps_that_are_read_late_stay_so() -> None:
+    from flowtex.field.steps import LazySteps
+
+    points = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.0, 1.0], [5.0, 5.0]])
+    triangles = np.array([[0, 1, 2], [0, 2, 3], [0, 2, 4]])[:2]
+    steps = np.arange(3 * 6 * 2, dtype=float).reshape(3, 6, 2)
+    steps[:, 1] = np.nan
+    read: list[int] = []
+
+    def step(number: int) -> Any:
+        read.append(number)
+        return steps[number]
+
+    late = FlowField.from_triangles(
+        points,
+        triangles,
+        LazySteps(3, step),
+        times=[0.0, 1.0, 2.0],
+        scalars={"a": LazySteps(3, lambda n: steps[n, :, 0])},
+    )
+    assert isinstance(late.velocity, LazySteps) and set(read) == {0}
+    early = FlowField.from_triangles(
+        points, triangles, steps, times=[0.0, 1.0, 2.0], scalars={"a": steps[..., 0]}
+    )
+    assert np.array_equal(late.velocity, early.velocity) and late.shape == (1, 4)
+    assert np.array_equal(late.valid, early.valid) and not late.valid[0, 1]
+    assert np.array_equal(late.scalars["a"], early.scalars["a"], equal_nan=True)

@@ -22,8 +22,7 @@ MODELS = (
     (
         "SCHISM",
         ("SCHISM_hgrid_face_nodes",),
-        (("SCHISM_hgrid_node_lon", "SCHISM_hgrid_node_lat"),)
-        + (("SCHISM_hgrid_node_x", "SCHISM_hgrid_node_y"),),
+        (("SCHISM_hgrid_node_x", "SCHISM_hgrid_node_y"),),
         1,
     ),
     (
@@ -32,7 +31,12 @@ MODELS = (
         (("lon", "lat"), ("nodes", "nodes")),
         1,
     ),
-    ("ICON", ("vertex_of_cell",), (("vlon", "vlat"), ("longitude_vertices", "latitude_vertices")), 1),
+    (
+        "ICON",
+        ("vertex_of_cell",),
+        (("vlon", "vlat"), ("longitude_vertices", "latitude_vertices")),
+        1,
+    ),
     # The velocity of MPAS is in the middle of its cells: these are the nodes, and triangles join
     # the three around each corner of the cells.
     ("MPAS", ("cellsOnVertex",), (("lonCell", "latCell"), ("xCell", "yCell")), 1),
@@ -118,5 +122,3 @@ def _bounded(variables: Mapping[str, Any]) -> Iterator[Mesh]:
                 units = {"units": x.attrs.get("units", "")}
                 a, b = (c.assign_attrs(units | c.attrs) for c in (one, two))
                 yield Mesh("cells with bounds", a, b)
-
-

@@ -7,93 +7,132 @@ from dataclasses import dataclass
 import numpy as np
 
 from flowtex._util.array_types import Bools, Floats, Indices
-from flowtex.earth import EARTH_RADIUS, NAMES, Projection
+from flowtex.earth import GLOBE, NAMES, Projection
 from flowtex.field.datasets.maps import TORN, projection_of, shown_positions
 from flowtex.field.datasets.meshes.mesh import Mesh
 from flowtex.field.datasets.places import Places
 
 __all__ = ["MeshMap", "mesh_on_map"]
 
-#: Maps on which a node may lie beyond the edge, a turn further.
-OVER_THE_EDGE = tuple(set(NAMES) - {"north", "south"})
+#: Maps around a pole, which have no edge at a meridian.
+AROUND_A_POLE = ("north", "south")
+#: Degrees of longitude from which on a triangle is around a pole, or touches it.
+WIDEST = 90.0
+#: Degrees by which nodes on the edge lie inside, so that no rounding puts them at the other side.
+INSIDE = 1e-9
+#: Least share of the way from a node to one on the edge.
+NEAREST_NODE = 1e-5
 
 
 @dataclass(frozen=True, eq=False)
 class MeshMap:
     """Nodes and triangles on a map.
 
-    ``points`` are (P, 3), ``triangles`` (M, 3) their numbers, and ``nodes`` (P,) the nodes of the
-    mesh that they are: one has two places where triangles lie across the edge of the map. ``lost``
-    counts the triangles that the map tears apart.
+    ``points`` are (P, 3), ``triangles`` (M, 3) their numbers. Each lies between two nodes of the
+    mesh, ``nodes`` (P, 2), at a ``share`` (P,) of the way: triangles are cut at the map's edge.
+    ``lost`` counts the triangles that are left out as the map would tear them apart.
     """
 
     projection: Projection
     points: Floats
     triangles: Indices
     nodes: Indices
+    share: Floats
     lon: Floats
     lat: Floats
     lost: int
 
+    def at(self, values: Floats) -> Floats:
+        """Return values (P,) of those at the nodes of the mesh, (N,)."""
+        one, other = values[self.nodes[:, 0]], values[self.nodes[:, 1]]
+        return np.asarray((1 - self.share) * one + self.share * other)
+
     def vectors(self, east: Floats, north: Floats) -> Floats:
         """Return vectors (P, 3) of components (N,) in m/s at the nodes of the mesh."""
-        return self.projection.vectors(self.lon, self.lat, east[self.nodes], north[self.nodes])
+        return self.projection.vectors(self.lon, self.lat, self.at(east), self.at(north))
 
 
 def mesh_on_map(mesh: Mesh, places: Places, name: str | None) -> MeshMap:
     """Put a mesh on a map, by its name; by default a flat one that suits the region."""
     projection, _ = projection_of(places, name)
-    triangles, nodes = mesh.triangles, np.arange(len(mesh.a))
-    lon, lat = mesh.a, mesh.b
+    own = np.arange(len(mesh.a))
+    nodes, share = np.stack([own, own], axis=-1), np.zeros(len(own))
+    lon, lat, triangles = mesh.a, mesh.b, mesh.triangles
     if projection.is_globe:
         points = projection.positions(lon, lat)
-        return MeshMap(projection, points, triangles, nodes, lon, lat, 0)
+        return MeshMap(projection, points, triangles, nodes, share, lon, lat, 0)
     middle = projection.center[0]
     lon = middle + (lon - middle + 180.0) % 360.0 - 180.0
-    if projection.name in OVER_THE_EDGE:
-        triangles, nodes, turns = _turned(lon, triangles, middle)
-        lon, lat = lon[nodes] + 360.0 * turns, lat[nodes]
+    lost = 0
+    if projection.name in NAMES and projection.name not in AROUND_A_POLE:
+        wide = _span(lon[triangles], middle) > WIDEST
+        triangles, lost = triangles[~wide], int(wide.sum())
+        triangles, pairs, shares, at = _cut(lon, triangles, middle)
+        lat = np.append(lat, (1 - shares) * lat[pairs[:, 0]] + shares * lat[pairs[:, 1]])
+        lon = np.append(lon, at)
+        nodes, share = np.concatenate([nodes, pairs]), np.append(share, shares)
     points = shown_positions(projection, lon, lat)
-    shown = np.isfinite(points).all(axis=1)[triangles].all(axis=1)
-    torn = _torn(points, mesh.positions[nodes], triangles) & shown
-    return MeshMap(
-        projection, points, triangles[shown & ~torn], nodes, lon, lat, int(torn.sum())
-    )
+    finite = np.asarray(np.isfinite(points).all(axis=1))
+    triangles = triangles[finite[triangles].all(axis=1)]
+    if projection.name not in NAMES:
+        torn = _torn(points, Projection(GLOBE).positions(lon, lat), triangles)
+        triangles, lost = triangles[~torn], lost + int(torn.sum())
+    return MeshMap(projection, points, triangles, nodes, share, lon, lat, lost)
 
 
-def _turned(lon: Floats, triangles: Indices, middle: float) -> tuple[Indices, Indices, Indices]:
-    """Give triangles across the edge nodes of their own, a turn further.
+def _span(lon: Floats, middle: float) -> Floats:
+    """Return how many degrees triangles span, (M,), those across the edge of the map as well."""
+    across = np.ptp(np.where(lon < middle, lon + 360.0, lon), axis=1)
+    return np.asarray(np.minimum(np.ptp(lon, axis=1), across))
+
+
+def _cut(lon: Floats, triangles: Indices, middle: float) -> tuple[Indices, Indices, Floats, Floats]:
+    """Cut triangles across the edge of the map, each into one on its one side and two beyond.
 
     Returns
     -------
-    triangles, nodes, turns
-        Numbers among the nodes with these copies, (M, 3), and for each of them, (P,), which node it
-        is, and by how many turns it is further.
+    triangles
+        Numbers among the nodes and the new ones after them, (M, 3).
+    pairs, shares, at
+        Between which nodes the new ones are, (Q, 2), at which share of the way, and their
+        longitudes, (Q,).
     """
-    corners = lon[triangles]
-    across = np.ptp(corners, axis=1) > 180.0
-    west = corners < middle
-    # Most of such a triangle lies at the side where two of its corners are.
-    eastern = (west.sum(axis=1) == 1)[:, None]
-    turn = np.where(across[:, None], np.where(eastern, west * 1, (~west) * -1), 0)
-    pairs, at = np.unique(
-        np.stack([turn[turn != 0], triangles[turn != 0]], axis=-1), axis=0, return_inverse=True
+    across = np.ptp(lon[triangles], axis=1) > 180.0
+    corners = triangles[across]
+    west = lon[corners] < middle
+    lone = np.where(west.sum(axis=1) == 1, west.argmax(axis=1), west.argmin(axis=1))
+    order = (lone[:, None] + np.arange(3)) % 3
+    a, b, c = np.take_along_axis(corners, order, axis=1).T
+    is_west = lon[a] < middle
+    pairs, shares = [], []
+    for end in (b, c):
+        # From the lower number to the higher: neighbours find the same place.
+        pair = np.sort(np.stack([a, end], axis=-1), axis=1)
+        ends = lon[pair] + 360.0 * (lon[pair] < middle)
+        pairs.append(pair)
+        # A node on the edge itself makes triangles without area otherwise.
+        along = (middle + 180.0 - ends[:, 0]) / (ends[:, 1] - ends[:, 0])
+        shares.append(np.clip(along, NEAREST_NODE, 1 - NEAREST_NODE))
+    east = middle + 180.0 - INSIDE
+    here, there = (np.where(w, east - 360.0 + 2 * INSIDE, east) for w in (is_west, ~is_west))
+    first, count = len(lon), len(a)
+    ab, ac, ab_there, ac_there = first + np.arange(4 * count).reshape(4, count)
+    parts = [(a, ab, ac), (ab_there, b, c), (ab_there, c, ac_there)]
+    cut = [np.stack(part, axis=-1) for part in parts]
+    return (
+        np.concatenate([triangles[~across], *cut]),
+        np.concatenate([*pairs, *pairs]),
+        np.concatenate([*shares, *shares]),
+        np.concatenate([here, here, there, there]),
     )
-    changed = triangles.copy()
-    changed[turn != 0] = len(lon) + at.ravel()
-    nodes = np.concatenate([np.arange(len(lon)), pairs[:, 1]]).astype(np.intp)
-    turns = np.concatenate([np.zeros(len(lon), dtype=np.intp), pairs[:, 0]])
-    return changed, nodes, turns
 
 
 def _torn(points: Floats, sphere: Floats, triangles: Indices) -> Bools:
-    """Which triangles the map tears apart, (M,), as around a pole."""
+    """Which triangles are much larger on the map than on the sphere, (M,)."""
     far = 0.1 * np.nanmax(np.abs(points), initial=0.0)
     torn = np.zeros(len(triangles), dtype=bool)
     for k in range(3):
         one, other = triangles[:, k], triangles[:, (k + 1) % 3]
-        flat = np.linalg.norm(points[one] - points[other], axis=1)
-        true = EARTH_RADIUS * np.linalg.norm(sphere[one] - sphere[other], axis=1)
-        with np.errstate(invalid="ignore"):
-            torn |= (flat > TORN * true) & (flat > far)
+        flat, true = (np.linalg.norm(p[one] - p[other], axis=1) for p in (points, sphere))
+        torn |= (flat > TORN * true) & (flat > far)
     return torn

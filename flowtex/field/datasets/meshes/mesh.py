@@ -211,7 +211,7 @@ def _numbers(mesh: Mesh, count: int) -> Indices:
     _, faces = mesh.dims
     values = np.asarray(corners.transpose(faces, ...).values)
     fill = corners.attrs.get("_FillValue", corners.encoding.get("_FillValue"))
-    there: Bools = np.isfinite(values) if values.dtype.kind == "f" else values == values  # noqa: PLR0124
+    there: Bools = np.asarray(np.isfinite(values))
     if fill is not None and np.isfinite(fill):
         there &= values != fill
     if mesh.counts is not None:

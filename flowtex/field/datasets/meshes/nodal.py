@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
-from flowtex._util.array_types import Floats
+from flowtex._util.array_types import Bools, Floats
 from flowtex.earth import GLOBE, Projection
-from flowtex.field.datasets.axes import NODES
+from flowtex.field.datasets.axes import NODES, Choice, Section, sections
 from flowtex.field.datasets.meshes.mesh import Mesh
 from flowtex.field.triangles.arrays import nodal_means
 
-__all__ = ["WET", "NodalValues"]
+__all__ = ["WET", "NodalValues", "wet_at"]
 
 #: Variables that tell which nodes or faces are under water, and what they have there.
 WET = {
@@ -60,3 +61,21 @@ class NodalValues:
             return np.asarray(step)
 
         return means
+
+
+def wet_at(
+    section: Section, dim: str, datasets: Sequence[Any], choice: Choice
+) -> Callable[[int], Bools] | None:
+    """Return what tells which nodes or faces are under water at a step of a velocity."""
+    plain = Choice(choice.sel, choice.isel, {*choice.sel, *choice.isel})
+    for ds in datasets:
+        for name, water in WET.items():
+            if name in ds.data_vars and dim in ds[name].dims:
+                (flags,) = sections([ds[name]], plain)
+                if flags.is_series == section.is_series:
+                    return _reader(flags, water)
+    return None
+
+
+def _reader(flags: Section, water: int) -> Callable[[int], Bools]:
+    return lambda number: np.asarray(flags.step(number).values) == water

@@ -1,4 +1,4 @@
-"""Datasets with a mesh, brought into a form in which axes can be told: dimensions, levels, times."""
+"""Datasets with a mesh, in a form in which axes can be told: dimensions, levels and times."""
 
 from __future__ import annotations
 
@@ -76,9 +76,7 @@ def _times(ds: Any) -> Any:
         dim = str(ds[name].dims[0])
         texts = [
             (row.decode() if isinstance(row, bytes) else str(row)).strip(" \0")
-            for row in (
-                ds[name].values if ds[name].ndim == 1 else map(b"".join, ds[name].values)
-            )
+            for row in (ds[name].values if ds[name].ndim == 1 else map(b"".join, ds[name].values))
         ]
         try:
             dates = np.array([t.replace("_", "T").rstrip("Z") for t in texts], "datetime64[ms]")
