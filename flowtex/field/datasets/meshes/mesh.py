@@ -48,7 +48,6 @@ class Mesh:
     corners: Any = None
     counts: Any = None
     first: int = 0
-    periodic: bool = False
 
     @property
     def dims(self) -> tuple[str, str]:
