@@ -12,6 +12,7 @@ import {
   cornersOf,
   TriangleMesh,
   vertexCorners,
+  vertexNormals,
   vertexShares,
 } from "./trianglemesh.ts";
 import type { Vector } from "./vectors.ts";
@@ -246,6 +247,8 @@ export class Scene {
     const nodes = () =>
       vertices(positions(this.part("position").data as Float32Array, this.anchor), 3);
     const normal = geometry.planar ? null : this.part("normal").data;
+    const normals = <T extends Data>(nodal: T) =>
+      corners ? vertexNormals(nodal, this.part("position").data, corners) : nodal;
     const painted = this.scalarParts(before, after);
     const values = () => {
       const steps = painted.map((name) => this.part(name).data);
@@ -260,7 +263,7 @@ export class Scene {
     const attributes: [WebGLBuffer | null, number, number][] = [
       [this.buffer("position", key(["position"], this.anchor), nodes), 3, gl.FLOAT],
       [this.buffer("coordinate", grid, place), 2, gl.FLOAT],
-      [normal && this.buffer("normal", key(["normal"]), () => vertices(normal, 3)), 3, type],
+      [normal && this.buffer("normal", key(["normal"]), () => normals(normal)), 3, type],
       [paper && this.buffer("along", "", () => noiseCoordinates(paper)), 2, gl.FLOAT],
       [this.buffer("scalar", colour, values), 2, gl.FLOAT],
       [corners && this.buffer("corners", key([]), () => vertexCorners(corners)), 3, gl.FLOAT],

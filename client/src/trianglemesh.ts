@@ -3,9 +3,12 @@
 
 import type { Corners } from "./mesh.ts";
 import type { Data, Part } from "./protocol.ts";
+import { cross, dot, length, subtract, unit, type Vector } from "./vectors.ts";
 
 /** Shares of the second and third corner at the vertices of a triangle. */
 const SHARES = [0, 0, 1, 0, 0, 1];
+/** Cosine of the angle between the normals of a node and a triangle below which there is an edge. */
+const SHARP = 0.86;
 /** Greatest share of a second corner, by which no next triangle is meant. */
 const MOST_SHARE = 1 - 1e-7;
 
@@ -22,6 +25,31 @@ export function atVertices<T extends Data>(values: T, triangles: Data, size: num
 /** Shares of the corners at the vertices of so many triangles. */
 export function vertexShares(count: number): Float32Array {
   return Float32Array.from({ length: SHARES.length * count }, (_, n) => SHARES[n % SHARES.length]);
+}
+
+/**
+ * Normals at the vertices of triangles: those of the nodes, of any scale, and at sharp edges that of the
+ * triangle, so that every face is even up to its end; flowtex/field/triangles/creases.py is the same.
+ */
+export function vertexNormals<T extends Data>(normals: T, positions: Data, triangles: Data): T {
+  const result = atVertices(normals, triangles, 3);
+  const at = (values: Data, n: number): Vector => [values[3 * n], values[3 * n + 1], values[3 * n + 2]];
+  for (let n = 0; n < triangles.length; n += 3) {
+    const [a, b, c] = [0, 1, 2].map((k) => at(positions, triangles[n + k]));
+    const own = unit(cross(subtract(b, a), subtract(c, a)));
+    for (let k = n; k < n + 3; k += 1) {
+      const normal = at(result, k);
+      const scale = length(normal);
+      const alike = dot(own, normal);
+      if (Math.abs(alike) < SHARP * scale) {
+        result.set(
+          own.map((x) => x * (alike < 0 ? -scale : scale)),
+          3 * k,
+        );
+      }
+    }
+  }
+  return result;
 }
 
 /** Numbers of all corners' nodes at each vertex. */

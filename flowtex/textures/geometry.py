@@ -274,6 +274,11 @@ class SurfaceGeometry(DrawnSurface):
         """Return what the vertices of a mesh have, (V, ...), of what the nodes have (J, I, ...)."""
         return nodal.reshape(-1, *nodal.shape[2:])
 
+    @property
+    def vertex_normals(self) -> Floats32:
+        """Unit normals at the vertices, (V, 3), in the mesh's own axes."""
+        return self.normal.reshape(-1, 3)
+
     def as_image(self, values: NDArray[Any]) -> NDArray[Any]:
         """Return values at the vertices (V,) as an image of the nodes, here (J, I)."""
         return values.reshape(self.shape)

@@ -18,6 +18,7 @@ from flowtex._util.array_types import Bools, Floats, Floats32, Indices
 from flowtex._util.blocks import bounds
 from flowtex.field import FlowField
 from flowtex.field.surface import Surface
+from flowtex.field.triangles.creases import normals_at_corners
 from flowtex.field.triangles.surface import TriangleSurface
 from flowtex.textures.geometry import DrawnSurface
 
@@ -132,6 +133,12 @@ class TriangleGeometry(DrawnSurface):
     def at_vertices(self, nodal: NDArray[Any]) -> NDArray[Any]:
         """Return what the vertices have, (3 m, ...), of what the nodes have, (1, n, ...)."""
         return np.asarray(nodal[0][self.triangles.ravel()])
+
+    @property
+    def vertex_normals(self) -> Floats32:
+        """Unit normals at the vertices, (3 m, 3), in the mesh's own axes."""
+        points, normals = self.points[0][self.triangles], self.normal[0][self.triangles]
+        return normals_at_corners(points, normals).astype(np.float32).reshape(-1, 3)
 
     @property
     def drawn_vertices(self) -> Bools:

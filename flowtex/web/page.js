@@ -412,14 +412,17 @@ path,sampled,point,directed}){let lines=(all,kind)=>all.map(line=>["polyline",{c
 [x,y]])=>!point||Math.hypot(x-point[0],y-point[1])>FREE_RADIUS,heads=directed?path.flatMap(line=>arrowHeads(line)).filter(
 isFree):[],ring=kind=>point?[["circle",{class:kind,cx:point[0],cy:point[1],r:POINT_RADIUS}]]:[];return[...lines(path,"wh\
 ole-casing"),...lines(path,"whole"),...lines(sampled,"casing"),...lines(sampled,"sampled"),...heads.map(head=>["polygon",
-{class:"arrow",points:textOf(head)}]),...ring("point-casing"),...ring("point")]}var SHARES=[0,0,1,0,0,1],MOST_SHARE=1-1e-7;function atVertices(values,triangles,size){let result2=new values.constructor(
+{class:"arrow",points:textOf(head)}]),...ring("point-casing"),...ring("point")]}var SHARES=[0,0,1,0,0,1],SHARP=.86,MOST_SHARE=1-1e-7;function atVertices(values,triangles,size){let result2=new values.constructor(
 size*triangles.length),n=0;for(let node of triangles)for(let k=size*node;k<size*node+size;k+=1)result2[n++]=values[k];return result2}
-function vertexShares(count){return Float32Array.from({length:SHARES.length*count},(_,n)=>SHARES[n%SHARES.length])}function vertexCorners(triangles){
-let result2=new Float32Array(3*triangles.length);for(let n=0;n<result2.length;n+=1)result2[n]=triangles[3*Math.floor(n/9)+
-n%3];return result2}function placeIn(triangle,second,third){return[third,triangle+Math.min(Math.max(second,0),MOST_SHARE)]}
-function cornersOf(triangles,[i,j]){let number=Math.floor(j),[second,third]=[j-number,i];return[1-second-third,second,third].
-map((share,k)=>[triangles[3*number+k],share])}var TriangleMesh=class{shape;blocks;constructor(mesh,blocks){this.shape=[mesh.
-shape[0],mesh.shape[1]],this.blocks=blocks.data}levels(){return new Int8Array(this.shape[0]*this.shape[1])}triangles(levels){
+function vertexShares(count){return Float32Array.from({length:SHARES.length*count},(_,n)=>SHARES[n%SHARES.length])}function vertexNormals(normals,positions2,triangles){
+let result2=atVertices(normals,triangles,3),at=(values,n)=>[values[3*n],values[3*n+1],values[3*n+2]];for(let n=0;n<triangles.
+length;n+=3){let[a,b,c]=[0,1,2].map(k=>at(positions2,triangles[n+k])),own=unit(cross2(subtract2(b,a),subtract2(c,a)));for(let k=n;k<
+n+3;k+=1){let normal=at(result2,k),scale3=length2(normal),alike=dot2(own,normal);Math.abs(alike)<SHARP*scale3&&result2.set(
+own.map(x=>x*(alike<0?-scale3:scale3)),3*k)}}return result2}function vertexCorners(triangles){let result2=new Float32Array(
+3*triangles.length);for(let n=0;n<result2.length;n+=1)result2[n]=triangles[3*Math.floor(n/9)+n%3];return result2}function placeIn(triangle,second,third){
+return[third,triangle+Math.min(Math.max(second,0),MOST_SHARE)]}function cornersOf(triangles,[i,j]){let number=Math.floor(
+j),[second,third]=[j-number,i];return[1-second-third,second,third].map((share,k)=>[triangles[3*number+k],share])}var TriangleMesh=class{shape;blocks;constructor(mesh,blocks){
+this.shape=[mesh.shape[0],mesh.shape[1]],this.blocks=blocks.data}levels(){return new Int8Array(this.shape[0]*this.shape[1])}triangles(levels){
 let{blocks}=this,drawn=levels.reduce((bits,level,block)=>bits|(level<0?0:1<<block),0),index=new Uint32Array(3*blocks.length),
 end=0;for(let n=0;n<blocks.length;n+=1)if(blocks[n]&drawn)for(let k=0;k<3;k+=1)index[end++]=3*n+k;return index.slice(0,end)}};function pickedPoint(context,x,y){let{layers,camera,moment,anchor,canvas}=context,{graphics,header}=layers[0].scene,program=graphics.
 programs.get(header.shaders.vertex,header.shaders.pick),whole=projection(header.geometry,camera,anchor),matrix=atPixel(whole,
@@ -1035,49 +1038,50 @@ gl.bindVertexArray(this.take("array","VertexArray","",make,fill))}fillArray(arra
 key=(names,...rest)=>this.key(["triangles",...names],...rest),cells=()=>this.mesh().triangles(levels,joins),drawn=key(["\
 cells","mesh","blocks"],shape,[...levels],[...joins]),index=this.buffer("index",drawn,cells,!0),corners=geometry.triangles?
 this.part("triangles").data:null,vertices=(values2,size)=>corners?atVertices(values2,corners,size):values2,nodes=()=>vertices(
-positions(this.part("position").data,this.anchor),3),normal=geometry.planar?null:this.part("normal").data,painted=this.scalarParts(
-before,after),values=()=>{let steps=painted.map(name=>this.part(name).data);return vertices(shares(steps,scalars,shape[0]*
-shape[1]),2)},colour=key([...new Set(painted)],shape,scalars.low,scalars.high,scalars.log),grid2=JSON.stringify([shape,rows,
-columns,corners?.length]),place=()=>corners?vertexShares(corners.length/3):coordinates(geometry),type=gl.FLOAT;normal instanceof
-Int8Array&&(type=gl.BYTE),normal instanceof Int16Array&&(type=gl.SHORT);let attributes=[[this.buffer("position",key(["po\
-sition"],this.anchor),nodes),3,gl.FLOAT],[this.buffer("coordinate",grid2,place),2,gl.FLOAT],[normal&&this.buffer("normal",
-key(["normal"]),()=>vertices(normal,3)),3,type],[paper&&this.buffer("along","",()=>noiseCoordinates(paper)),2,gl.FLOAT],
-[this.buffer("scalar",colour,values),2,gl.FLOAT],[corners&&this.buffer("corners",key([]),()=>vertexCorners(corners)),3,gl.
-FLOAT]];gl.bindVertexArray(array),gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER,index),attributes.forEach(([buffer,size,kind],n)=>{
-buffer&&(gl.bindBuffer(gl.ARRAY_BUFFER,buffer),gl.enableVertexAttribArray(n),gl.vertexAttribPointer(n,size,kind,kind!==gl.
-FLOAT,0,0))})}texture(name,key,fill){let gl=this.graphics.context;return this.take(name,"Texture",key,()=>gl.createTexture(),
-fill)}slices(step){let{slices,geometry}=this.header,key=this.key([`slices/${step}`,`extra/${step}`],geometry.levels,slices.
-extra);return this.texture(`slices/${step}`,key,texture=>{let part=this.part(`slices/${step}`),[layers,height,width,channels]=part.
-shape,data=part.data,extra=this.parts.get(`extra/${step}`)?.data,texels=height*width,layer=n=>{let own=data.subarray(n*texels*
-channels,(n+1)*texels*channels);if(channels===4)return own;let all=new Uint16Array(4*texels),place=slices.extra.indexOf(
-n),fourth=place<0?null:extra?.subarray(place*texels,(place+1)*texels);for(let k=0;k<texels;k+=1)all[4*k]=own[2*k],all[4*
-k+1]=own[2*k+1],fourth&&(all[4*k+3]=fourth[k]);return all};this.fill(texture,{width,height,layers,channels:4,levels:geometry.
-levels},layer)})}image(name,repeat){let gl=this.graphics.context;return this.texture(name,this.key([name],repeat),texture=>{
-let{data,shape}=this.part(name),[height,width,channels=1]=shape,levels=Math.floor(Math.log2(Math.max(width,height))),size={
-width,height,layers:1,channels,levels};this.fill(texture,size,()=>data);let wrap=n=>repeat[n]?gl.REPEAT:gl.CLAMP_TO_EDGE;
-gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_S,wrap(1)),gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_T,wrap(
-0))})}fill(texture,size,layer){let gl=this.graphics.context,{width,height,layers,channels,levels}=size,target=gl.TEXTURE_2D_ARRAY;
-this.checkSize(size);let[format,inner]=channels===1?[gl.RED,gl.R16F]:[gl.RGBA,gl.RGBA16F];gl.bindTexture(target,texture),
-gl.texStorage3D(target,levels+1,inner,width,height,layers),gl.texParameteri(target,gl.TEXTURE_MIN_FILTER,gl.LINEAR_MIPMAP_LINEAR),
-gl.texParameteri(target,gl.TEXTURE_MAG_FILTER,gl.LINEAR),gl.texParameteri(target,gl.TEXTURE_WRAP_S,gl.CLAMP_TO_EDGE),gl.
-texParameteri(target,gl.TEXTURE_WRAP_T,gl.CLAMP_TO_EDGE),gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);let{floats}=this.graphics;
-for(let n=0;n<layers;n+=1){let texels=layer(n),[w,h]=[width,height];gl.texSubImage3D(target,0,0,0,n,w,h,1,format,gl.HALF_FLOAT,
-texels);for(let level=1;level<=levels&&!floats;level+=1)[texels,w,h]=halved(texels,w,h,channels),gl.texSubImage3D(target,
-level,0,0,n,w,h,1,format,gl.HALF_FLOAT,texels)}floats&&levels&&gl.generateMipmap(target)}checkSize({width,height,layers}){
-let gl=this.graphics.context,most=gl.getParameter(gl.MAX_TEXTURE_SIZE),mostLayers=gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS);
-if(!(Math.max(width,height)<=most&&layers<=mostLayers))throw new Error(`a texture of ${width} x ${height} texels in ${layers}\
- layers is asked for, and this graphics card has ${most} x ${most} in ${mostLayers}; show fewer nodes`)}colourMap(){let gl=this.
-graphics.context;return this.texture("cmap",this.key(["cmap"]),texture=>{gl.bindTexture(gl.TEXTURE_2D,texture),gl.pixelStorei(
-gl.UNPACK_ALIGNMENT,1);let data=this.parts.get("cmap")?.data??new Uint8Array(1024);gl.texImage2D(gl.TEXTURE_2D,0,gl.RGBA8,
-256,1,0,gl.RGBA,gl.UNSIGNED_BYTE,data),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.texParameteri(
-gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST)})}dropSlices(before,after){let next=after+1<this.header.slices.steps?after+
-1:0;for(let name of[...this.resources.keys()])name.startsWith("slices/")&&([before,after,next,after+1].includes(stepOf(name))||
-this.drop(name))}bindTextures(before,after){let gl=this.graphics.context,{paper}=this.header,repeat=paper?.repeat??[!1,!1];
-[this.slices(before),after===before?null:this.slices(after),paper&&this.image("noise",paper.picture?[!0,!0]:repeat),paper&&
-this.image("step",repeat),this.colourMap()].forEach((texture,n)=>{gl.activeTexture(gl.TEXTURE0+n),gl.bindTexture(n<4?gl.
-TEXTURE_2D_ARRAY:gl.TEXTURE_2D,texture)}),gl.activeTexture(gl.TEXTURE0+SAMPLERS.length)}draw(before,after,anchor,textures){
-let gl=this.graphics.context;textures&&(this.dropSlices(before,after),this.bindTextures(before,after)),this.bindNodes(before,
-after,anchor),gl.drawElements(gl.TRIANGLES,this.resources.get("index")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(null)}};var REQUEST_MS=60,LOST_MS=8e3,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD=4,Tiles=class{layers=[];missing=[];host;root;tiles=new Map;pyramid=null;chosen={
+positions(this.part("position").data,this.anchor),3),normal=geometry.planar?null:this.part("normal").data,normals=nodal=>corners?
+vertexNormals(nodal,this.part("position").data,corners):nodal,painted=this.scalarParts(before,after),values=()=>{let steps=painted.
+map(name=>this.part(name).data);return vertices(shares(steps,scalars,shape[0]*shape[1]),2)},colour=key([...new Set(painted)],
+shape,scalars.low,scalars.high,scalars.log),grid2=JSON.stringify([shape,rows,columns,corners?.length]),place=()=>corners?
+vertexShares(corners.length/3):coordinates(geometry),type=gl.FLOAT;normal instanceof Int8Array&&(type=gl.BYTE),normal instanceof
+Int16Array&&(type=gl.SHORT);let attributes=[[this.buffer("position",key(["position"],this.anchor),nodes),3,gl.FLOAT],[this.
+buffer("coordinate",grid2,place),2,gl.FLOAT],[normal&&this.buffer("normal",key(["normal"]),()=>normals(normal)),3,type],
+[paper&&this.buffer("along","",()=>noiseCoordinates(paper)),2,gl.FLOAT],[this.buffer("scalar",colour,values),2,gl.FLOAT],
+[corners&&this.buffer("corners",key([]),()=>vertexCorners(corners)),3,gl.FLOAT]];gl.bindVertexArray(array),gl.bindBuffer(
+gl.ELEMENT_ARRAY_BUFFER,index),attributes.forEach(([buffer,size,kind],n)=>{buffer&&(gl.bindBuffer(gl.ARRAY_BUFFER,buffer),
+gl.enableVertexAttribArray(n),gl.vertexAttribPointer(n,size,kind,kind!==gl.FLOAT,0,0))})}texture(name,key,fill){let gl=this.
+graphics.context;return this.take(name,"Texture",key,()=>gl.createTexture(),fill)}slices(step){let{slices,geometry}=this.
+header,key=this.key([`slices/${step}`,`extra/${step}`],geometry.levels,slices.extra);return this.texture(`slices/${step}`,
+key,texture=>{let part=this.part(`slices/${step}`),[layers,height,width,channels]=part.shape,data=part.data,extra=this.parts.
+get(`extra/${step}`)?.data,texels=height*width,layer=n=>{let own=data.subarray(n*texels*channels,(n+1)*texels*channels);
+if(channels===4)return own;let all=new Uint16Array(4*texels),place=slices.extra.indexOf(n),fourth=place<0?null:extra?.subarray(
+place*texels,(place+1)*texels);for(let k=0;k<texels;k+=1)all[4*k]=own[2*k],all[4*k+1]=own[2*k+1],fourth&&(all[4*k+3]=fourth[k]);
+return all};this.fill(texture,{width,height,layers,channels:4,levels:geometry.levels},layer)})}image(name,repeat){let gl=this.
+graphics.context;return this.texture(name,this.key([name],repeat),texture=>{let{data,shape}=this.part(name),[height,width,
+channels=1]=shape,levels=Math.floor(Math.log2(Math.max(width,height))),size={width,height,layers:1,channels,levels};this.
+fill(texture,size,()=>data);let wrap=n=>repeat[n]?gl.REPEAT:gl.CLAMP_TO_EDGE;gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_S,
+wrap(1)),gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_T,wrap(0))})}fill(texture,size,layer){let gl=this.graphics.
+context,{width,height,layers,channels,levels}=size,target=gl.TEXTURE_2D_ARRAY;this.checkSize(size);let[format,inner]=channels===
+1?[gl.RED,gl.R16F]:[gl.RGBA,gl.RGBA16F];gl.bindTexture(target,texture),gl.texStorage3D(target,levels+1,inner,width,height,
+layers),gl.texParameteri(target,gl.TEXTURE_MIN_FILTER,gl.LINEAR_MIPMAP_LINEAR),gl.texParameteri(target,gl.TEXTURE_MAG_FILTER,
+gl.LINEAR),gl.texParameteri(target,gl.TEXTURE_WRAP_S,gl.CLAMP_TO_EDGE),gl.texParameteri(target,gl.TEXTURE_WRAP_T,gl.CLAMP_TO_EDGE),
+gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);let{floats}=this.graphics;for(let n=0;n<layers;n+=1){let texels=layer(n),[w,h]=[width,
+height];gl.texSubImage3D(target,0,0,0,n,w,h,1,format,gl.HALF_FLOAT,texels);for(let level=1;level<=levels&&!floats;level+=
+1)[texels,w,h]=halved(texels,w,h,channels),gl.texSubImage3D(target,level,0,0,n,w,h,1,format,gl.HALF_FLOAT,texels)}floats&&
+levels&&gl.generateMipmap(target)}checkSize({width,height,layers}){let gl=this.graphics.context,most=gl.getParameter(gl.
+MAX_TEXTURE_SIZE),mostLayers=gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS);if(!(Math.max(width,height)<=most&&layers<=mostLayers))
+throw new Error(`a texture of ${width} x ${height} texels in ${layers} layers is asked for, and this graphics card has ${most}\
+ x ${most} in ${mostLayers}; show fewer nodes`)}colourMap(){let gl=this.graphics.context;return this.texture("cmap",this.
+key(["cmap"]),texture=>{gl.bindTexture(gl.TEXTURE_2D,texture),gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);let data=this.parts.
+get("cmap")?.data??new Uint8Array(1024);gl.texImage2D(gl.TEXTURE_2D,0,gl.RGBA8,256,1,0,gl.RGBA,gl.UNSIGNED_BYTE,data),gl.
+texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST)})}dropSlices(before,after){
+let next=after+1<this.header.slices.steps?after+1:0;for(let name of[...this.resources.keys()])name.startsWith("slices/")&&
+([before,after,next,after+1].includes(stepOf(name))||this.drop(name))}bindTextures(before,after){let gl=this.graphics.context,
+{paper}=this.header,repeat=paper?.repeat??[!1,!1];[this.slices(before),after===before?null:this.slices(after),paper&&this.
+image("noise",paper.picture?[!0,!0]:repeat),paper&&this.image("step",repeat),this.colourMap()].forEach((texture,n)=>{gl.
+activeTexture(gl.TEXTURE0+n),gl.bindTexture(n<4?gl.TEXTURE_2D_ARRAY:gl.TEXTURE_2D,texture)}),gl.activeTexture(gl.TEXTURE0+
+SAMPLERS.length)}draw(before,after,anchor,textures){let gl=this.graphics.context;textures&&(this.dropSlices(before,after),
+this.bindTextures(before,after)),this.bindNodes(before,after,anchor),gl.drawElements(gl.TRIANGLES,this.resources.get("in\
+dex")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(null)}};var REQUEST_MS=60,LOST_MS=8e3,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD=4,Tiles=class{layers=[];missing=[];host;root;tiles=new Map;pyramid=null;chosen={
 choices:new Map,steps:[],names:""};drawn="";asked={names:[],steps:[]};count=0;isWaiting=!1;isOver=!1;lastCame=0;constructor(host,root){
 this.host=host,this.root=root}dispose(){this.isOver=!0;for(let name of[...this.tiles.keys()])this.drop(name)}setPart(name,part){
 let{graphics,header}=this.root,tile=this.tiles.get(name)??this.emptyTile();if(this.tiles.set(name,tile),part.name==="mes\

@@ -225,7 +225,8 @@ def test_info_says_what_is_needed(run: Run, block: Path) -> None:
 def test_info_describes_a_volume_of_any_cells(run: Run, tmp_path: Path) -> None:
     import pyvista as pv
 
-    mesh = pv.ImageData(dimensions=(4, 4, 4)).to_tetrahedra(pass_data=False)
+    box: Any = pv.ImageData(dimensions=(4, 4, 4))
+    mesh = box.to_tetrahedra(pass_data=False)
     mesh["wind"] = np.cross([0, 0, 1.0], mesh.points) + np.array([0, 0, 1e-3])
     mesh.save(tmp_path / "room.vtu")
     code, out, _ = run("info", tmp_path / "room.vtu", "--slice", "z=1.5")

@@ -1,4 +1,4 @@
-"""The velocity on a surface of triangles, also where that has sharp edges.
+"""Sharp edges of surfaces of triangles: the velocity there, and the normals beside them.
 
 At a node of an edge the tangent plane lies between the faces, and a velocity has a greater part in
 it than in either of them. The speed there is the mean of those in the faces, as it is all around.
@@ -14,10 +14,25 @@ from flowtex._util.array_types import Floats, Indices
 from flowtex.field.metric import IndexVelocity, to_index_space
 from flowtex.field.triangles.surface import TriangleSurface
 
-__all__ = ["velocity_on_triangles"]
+__all__ = ["SHARP", "normals_at_corners", "velocity_on_triangles"]
 
 #: Cosine of the angle between the normals of a node and a triangle below which there is an edge.
-SHARP = 0.94
+SHARP = 0.86
+
+
+def normals_at_corners(points: Floats, normals: Floats) -> Floats:
+    """Return normals at the corners of triangles, (..., 3, 3), as light and views are to have them.
+
+    They are those of the nodes there, (..., 3, 3) as the ``points`` are, and where these belong to
+    a sharp edge that of the triangle, so that every face is even up to its end.
+    """
+    across = np.cross(points[..., 1, :] - points[..., 0, :], points[..., 2, :] - points[..., 0, :])
+    alike = np.einsum("...c,...kc->...k", across, normals)
+    length = np.linalg.norm(across, axis=-1)[..., None]
+    sharp = np.abs(alike) < SHARP * length
+    own = across / np.maximum(length, np.finfo(float).tiny)
+    faced = np.where(alike < 0, -1.0, 1.0)[..., None] * own[..., None, :]
+    return np.where(sharp[..., None], faced, normals)
 
 
 def velocity_on_triangles(surface: TriangleSurface, velocity: Floats) -> IndexVelocity:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flowtex._util.array_types import Floats, Indices
+from flowtex.field.triangles.creases import normals_at_corners
 from flowtex.rendering.cpu.places import Places, TrianglePlaces, shares_by
 from flowtex.rendering.cpu.raster import Coverage
 from flowtex.textures import TextureSet, TriangleGeometry
@@ -56,7 +57,7 @@ class Fragments:
             return cls(
                 varying(geometry.position),
                 Varying(*(a[:, 1:] for a in (coverage.weights, coverage.dx, coverage.dy))),
-                normal=None if geometry.planar else varying(geometry.normal),
+                normal=None if geometry.planar else _normals(geometry, coverage),
                 nodes=coverage.corners,
             )
         return cls(
@@ -86,3 +87,13 @@ class Fragments:
             noise, normal = (None if v is None else v[some] for v in (self.noise, self.normal))
             nodes = None if self.nodes is None else self.nodes[some]
             yield some, Fragments(self.position[some], self.coordinate[some], noise, normal, nodes)
+
+
+def _normals(geometry: TriangleGeometry, coverage: Coverage) -> Varying:
+    """Interpolate normals as the vertices of triangles have them, which no two triangles share."""
+    corners = coverage.corners
+    at = normals_at_corners(geometry.points[0][corners], geometry.normal[0][corners])
+    value, dx, dy = (
+        np.einsum("nk,nkc->nc", share, at) for share in (coverage.weights, coverage.dx, coverage.dy)
+    )
+    return Varying(value, dx, dy)

@@ -52,7 +52,7 @@ def surface_mesh(textures: TextureSet) -> pv.PolyData:
     if near and isinstance(geometry, TriangleGeometry):
         points = points.astype(np.float32)  # there are six times as many vertices as nodes
     mesh = pv.PolyData.from_regular_faces(points, _faces(geometry))
-    mesh.point_data[NORMAL] = geometry.at_vertices(geometry.normal)
+    mesh.point_data[NORMAL] = geometry.vertex_normals
     mesh.point_data.active_normals_name = NORMAL
     set_attributes(mesh, textures)
     return mesh
