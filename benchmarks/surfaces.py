@@ -143,8 +143,10 @@ def slanted_slice() -> Any:
 
 
 def isosurface() -> Any:
-    """Return a surface of constant density in a volume."""
-    return flowtex.FlowField.from_file(_file("FLOWTEX_DATA", "postxyz.bin"), contour="Density=0.99")
+    """Return a surface of constant energy in a volume."""
+    return flowtex.FlowField.from_file(
+        _file("FLOWTEX_DATA", "postxyz.bin"), contour="StagnationEnergy=0.7"
+    )
 
 
 def cylinder() -> Any:
@@ -159,7 +161,7 @@ def disk() -> Any:
 
 def airfoil() -> Any:
     """Return the flow around an airfoil of several elements."""
-    return flowtex.FlowField.from_file(_file("FLOWTEX_CFD", "multi.cgns"))
+    return flowtex.FlowField.from_file(_file("FLOWTEX_CFD", "multi.cgns"), slice="z")
 
 
 SURFACES: dict[str, Callable[[], Any]] = {

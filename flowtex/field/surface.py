@@ -153,9 +153,11 @@ class Surface:
         """Two orthonormal rows that span the surface where it is flat, (2, 3), else ``None``."""
         nodes = self.points.reshape(-1, 3) if self.valid.all() else self.points[self.valid]
         blocks = [nodes[block] for block in row_blocks(len(nodes), 1)]
-        offsets = (nodes - self.center for nodes in blocks)
+        # The middle of the box need not lie in the plane; the mean does.
+        mean = self.center + np.mean(nodes - self.center, axis=0)
+        offsets = (nodes - mean for nodes in blocks)
         _, _, basis = np.linalg.svd(sum(o.T @ o for o in offsets))
-        height = max(np.abs((nodes - self.center) @ basis[2]).max() for nodes in blocks)
+        height = max(np.abs((nodes - mean) @ basis[2]).max() for nodes in blocks)
         if height > 1e-6 * self.extent:
             return None
         normal = basis[2]

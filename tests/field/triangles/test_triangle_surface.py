@@ -47,6 +47,10 @@ def test_a_plane_is_flat_wherever_it_lies(rng: np.random.Generator) -> None:
     turn, _ = np.linalg.qr(rng.normal(size=(3, 3)))
     field = FlowField.from_triangles(points @ turn + [3.0, 1, 7], triangles, points)
     assert field.surface.frame is not None
+    # The middle of its box need not lie in its plane.
+    part = triangles[points[triangles].max(axis=1)[:, 0] < points[triangles].max(axis=1)[:, 1]]
+    half = FlowField.from_triangles(points @ turn, part, points)
+    assert half.surface.frame is not None
     assert np.linalg.norm(surface_of(field).crosses, axis=1).sum() == pytest.approx(2)
     sizes = field.surface.cell_size
     assert sizes.max() > 30 * sizes.min()
