@@ -145,7 +145,7 @@ def slanted_slice() -> Any:
 def isosurface() -> Any:
     """Return a surface of constant energy in a volume."""
     return flowtex.FlowField.from_file(
-        _file("FLOWTEX_DATA", "postxyz.bin"), contour="StagnationEnergy=0.7"
+        _file("FLOWTEX_DATA", "postxyz.bin"), contour="StagnationEnergy=1.5"
     )
 
 
