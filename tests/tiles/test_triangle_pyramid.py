@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from triangle_meshes import cube, random_plane, sphere
 
 import flowtex
 from flowtex import FlowField
@@ -15,7 +16,6 @@ from flowtex.rendering.tile_choice import TileView, choose_tiles, cover, finer_p
 from flowtex.textures import TextureSet, TriangleGeometry
 from flowtex.tiles import TileKey, TrianglePyramid, levels_of, shared_pyramid
 from flowtex.trace import SliceStore, trace
-from tests.triangle_meshes import cube, random_plane, sphere
 
 
 @pytest.fixture(autouse=True)
