@@ -8,6 +8,10 @@ degrees, the coherence of its streaks, and the memory that the process has taken
 divide by flowtex's own times. Every case runs in a process of its own, so that memory is its own.
 
 ``--size`` and ``--meshes`` choose others; on a graphics card the run says its name.
+
+``--surfaces`` draws surfaces of triangles instead (all, or those that are named; see surfaces.py),
+by flowtex and by Surface LIC, and tells how the pattern sticks as well: the correlation of two
+pictures at the same points of the surface, between which the camera has moved.
 """
 
 from __future__ import annotations
@@ -188,28 +192,110 @@ def measure(case: str, mesh: str, size: tuple[int, int]) -> dict[str, float]:
     }
 
 
+def picture_of(case: str, field: Any, size: tuple[int, int]) -> Draw:
+    """Return what draws a surface of triangles for a camera."""
+    import pyvista as pv
+    from scenes import lic_actor
+    from surfaces import as_polydata
+
+    from flowtex.plotting.vtk_camera import apply_camera
+
+    plotter: Any = pv.Plotter(off_screen=True, window_size=list(size))
+    plotter.disable_anti_aliasing()
+    plotter.set_background("white")
+    if case == "Surface LIC":
+        plotter.add_actor(lic_actor(as_polydata(field)))
+    else:
+        plotter.flowtex.add(field, scalars=False, lighting=False)
+
+    def draw(camera: Any) -> Any:
+        apply_camera(camera, plotter.camera)
+        plotter.camera_set = True
+        plotter.renderer.reset_camera_clipping_range()
+        plotter.render()
+        return np.asarray(plotter.screenshot(return_img=True))
+
+    return draw
+
+
+def measure_surface(case: str, name: str, size: tuple[int, int]) -> dict[str, float]:
+    """Measure one case on a surface of triangles in this process."""
+    from measures import grey, streaks
+    from scipy.ndimage import map_coordinates
+    from surfaces import SURFACES, surface_view
+
+    import flowtex.plotting.component  # noqa: F401 plotter.flowtex
+    from flowtex.camera import Camera
+    from flowtex.diagnostics import prefer_headless
+
+    prefer_headless()
+    field = SURFACES[name]()
+    aspect = size[0] / size[1]
+    camera = Camera.fit(field.surface, aspect)
+    start = time.perf_counter()
+    draw = picture_of(case, field, size)
+    picture = draw(camera)
+    first, frames = time.perf_counter() - start, []
+    for n in range(FRAMES):
+        camera = Camera.fit(field.surface, aspect, zoom=1 - 1e-4 * (n + 1))
+        start = time.perf_counter()
+        picture = draw(camera)
+        frames.append(time.perf_counter() - start)
+    view = surface_view(field, camera, size)
+    found = streaks(picture, view.u, view.v, view.mask)
+    flat = field.surface.frame is not None
+    moved = (camera.pan if flat else camera.rotate)(0.03, 0.02, aspect)
+    there = moved.project(view.place[view.mask], aspect)
+    at = [(1 - there[:, 1]) / 2 * size[1] - 0.5, (1 + there[:, 0]) / 2 * size[0] - 0.5]
+    carried = map_coordinates(grey(draw(moved)), at, order=1, mode="nearest")
+    found["sticking"] = float(np.corrcoef(carried, grey(picture)[view.mask])[0, 1])
+    count = 0 if field.triangles is None else len(field.triangles)
+    return {"first": first, "frame": min(frames), "triangles": count, **found}
+
+
+def run(words: list[str], timeout: float) -> dict[str, float] | str:
+    """Measure in a process of its own; in words what kept it from that."""
+    try:
+        done = subprocess.run(
+            [sys.executable, __file__, *words],
+            capture_output=True,
+            text=True,
+            timeout=timeout,
+            check=False,
+        )
+    except subprocess.TimeoutExpired:
+        return f"more than {timeout:g} s"
+    if done.returncode:
+        return (done.stderr.strip().splitlines() or ["failed"])[-1][:60]
+    row: dict[str, float] = json.loads(done.stdout.splitlines()[-1])
+    return row
+
+
+def compare_surfaces(names: list[str], size: tuple[int, int], timeout: float) -> Table:
+    """Measure both on every surface."""
+    heads = ("", "triangles", "first, s", "frame, s", "angle", "coherence", "sticking")
+    table = Table("surface", *heads, "frame / ours")
+    for name in names:
+        ours = None
+        for case in (OURS, "Surface LIC"):
+            words = ["--one", case, "--surfaces", name, "--size", *map(str, size)]
+            row = run(words, timeout)
+            if isinstance(row, str):
+                table.add_row(name, case, row)
+                continue
+            ours = ours or row["frame"]
+            figures = [f"{row['triangles']:,.0f}", f"{row['first']:.2f}", f"{row['frame']:.3f}"]
+            figures += [f"{row['angle']:.1f}", f"{row['coherence']:.2f}", f"{row['sticking']:.2f}"]
+            table.add_row(name, case, *figures, f"{row['frame'] / ours:.1f}")
+    return table
+
+
 def compare(mesh: str, size: tuple[int, int], timeout: float) -> Table:
     """Measure every case on a mesh, each in a process of its own."""
     rows: dict[str, dict[str, float] | str] = {}
     for case in CASES:
-        words = [
-            sys.executable,
-            __file__,
-            "--one",
-            case,
-            "--meshes",
-            mesh,
-            "--size",
-            *map(str, size),
-        ]
-        try:
-            done = subprocess.run(
-                words, capture_output=True, text=True, timeout=timeout, check=False
-            )
-        except subprocess.TimeoutExpired:
-            rows[case] = f"more than {timeout:g} s"
-            continue
-        rows[case] = json.loads(done.stdout.splitlines()[-1]) if done.returncode == 0 else "failed"
+        words = ["--one", case, "--meshes", mesh, "--size", *map(str, size)]
+        rows[case] = run(words, timeout)
     names = ("first, s", "frame, s", "angle", "coherence", "MB", "first / ours", "frame / ours")
     table = Table(f"{mesh} nodes, {size[0]} x {size[1]}", *names)
     ours = rows[OURS]
@@ -237,8 +323,12 @@ def main() -> None:
     parser.add_argument("--size", nargs=2, type=int, default=(800, 600))
     parser.add_argument("--timeout", type=float, default=120.0, help="seconds for a case")
     parser.add_argument("--one", choices=list(CASES), help=argparse.SUPPRESS)
+    parser.add_argument("--surfaces", nargs="*", help="surfaces of triangles")
     arguments = parser.parse_args()
     size = (arguments.size[0], arguments.size[1])
+    if arguments.one and arguments.surfaces:
+        print(json.dumps(measure_surface(arguments.one, arguments.surfaces[0], size)))  # noqa: T201
+        return
     if arguments.one:
         print(json.dumps(measure(arguments.one, arguments.meshes[0], size)))  # noqa: T201
         return
@@ -246,6 +336,12 @@ def main() -> None:
 
     console = Console(width=120)
     console.print(f"[bold]{require_opengl().renderer}[/]")
+    if arguments.surfaces is not None:
+        from surfaces import SURFACES
+
+        names = arguments.surfaces or list(SURFACES)
+        console.print(compare_surfaces(names, size, arguments.timeout))
+        return
     for mesh in arguments.meshes:
         console.print(compare(mesh, size, arguments.timeout))
 

@@ -12,7 +12,7 @@ from scipy.ndimage import map_coordinates
 import flowtex
 from flowtex.plotting.vtk_camera import look
 
-__all__ = ["FOCUS", "Stage", "View", "gyre", "gyre_field", "gyre_view", "vortex_view"]
+__all__ = ["FOCUS", "Stage", "View", "gyre", "gyre_field", "gyre_view", "lic_actor", "vortex_view"]
 
 Floats = NDArray[np.float64]
 
@@ -108,7 +108,7 @@ class Stage:
         lic = settings.pop("surface_lic", False)
         self.handle = None
         if lic:
-            self.plotter.add_actor(_surface_lic(field))
+            self.plotter.add_actor(lic_actor(_grid_of(field)))
         else:
             self.handle = self.plotter.flowtex.add(field, scalars=False, **settings)
 
@@ -128,16 +128,20 @@ class Stage:
         self.plotter.close()
 
 
-def _surface_lic(field: flowtex.FlowField) -> Any:
-    """VTK's Surface LIC at its enhanced setting; without lighting it draws noise."""
-    from vtkmodules.vtkRenderingCore import vtkActor
-    from vtkmodules.vtkRenderingLICOpenGL2 import vtkSurfaceLICInterface, vtkSurfaceLICMapper
-
+def _grid_of(field: flowtex.FlowField) -> Any:
+    """Return the polygons of a structured field, with its vectors as ``velocity``."""
     rows, columns = field.shape
     grid = pv.StructuredGrid()
     grid.points, grid.dimensions = field.points.reshape(-1, 3), (columns, rows, 1)
     grid["velocity"] = field.velocity[0].reshape(-1, 3)
-    surface: Any = grid.extract_surface(algorithm="dataset_surface")
+    return grid.extract_surface(algorithm="dataset_surface")
+
+
+def lic_actor(surface: Any) -> Any:
+    """Draw polygons with VTK's Surface LIC at its enhanced setting; without light it is noise."""
+    from vtkmodules.vtkRenderingCore import vtkActor
+    from vtkmodules.vtkRenderingLICOpenGL2 import vtkSurfaceLICInterface, vtkSurfaceLICMapper
+
     surface.set_active_vectors("velocity")
     mapper = vtkSurfaceLICMapper()
     mapper.SetInputData(surface)

@@ -11,12 +11,12 @@ import pyvista as pv
 
 from flowtex._util.colours import colour_table
 from flowtex.field import FlowField
-from flowtex.options import NO_VALUE_COLOR, Appearance
+from flowtex.options import NO_VALUE_COLOR, Appearance, FieldOptions
 from flowtex.plotting.map_overlay import MapOverlay
 from flowtex.plotting.scalar_bar import SCALAR_BAR, arrange_with
 from flowtex.rendering.constants import AMBIENT_LIGHT, DIFFUSE_LIGHT
 from flowtex.rendering.vtk import FlowSurface, surface_mesh, use_flow_mapper
-from flowtex.scene import AppearanceAttributes, Change, Scene
+from flowtex.scene import AppearanceAttributes, Change, Scene, share_field
 from flowtex.settings import Settings
 
 __all__ = ["FlowHandle"]
@@ -158,6 +158,43 @@ class FlowHandle(AppearanceAttributes):
         """Whether tiles of the last picture are on their way."""
         return self._surface.busy
 
+    def set_surface(self, mesh: Any, **options: Any) -> None:
+        """Draw the flow on another surface from now on, such as a cutting plane that has moved.
+
+        Settings and appearance stay, and the time where the new flow has it.
+
+        Parameters
+        ----------
+        mesh
+            As for ``plotter.flowtex.add``.
+        **options
+            What of the mesh makes the field, such as ``slice="x=0.5"``: the fields of
+            :class:`~flowtex.options.FieldOptions`.
+
+        Raises
+        ------
+        FieldError
+            When the mesh does not make a field; nothing is changed then, nor by the next one.
+        KeyError
+            When it lacks the scalar that the surface is coloured by.
+        """
+        field = FieldOptions(**options).field(mesh)
+        scene = Scene(share_field(field), self.settings, self.scene.appearance)
+        scene.time = float(np.clip(self.time, field.times[0], field.times[-1]))
+        self._end()
+        self.scene.close()
+        self.scene, self._shown_time = scene, scene.time
+        self._end = scene.observe(self._changed)
+        self._surface.set_textures(scene.textures, scene.pyramid)
+        self._surface.set_moment(*scene.moment)
+        if self._map is not None:
+            self._map.close()
+            self._map = None
+        if field.projection is not None:
+            self._map = MapOverlay(self.actor, self._plotter.renderer, scene, self._surface)
+        self._show_appearance("scalars", "lighting")
+        self._draw()
+
     def set_image(self, image: Any) -> None:
         """Advect another image; as :meth:`Scene.set_image <flowtex.scene.Scene.set_image>`."""
         self.scene.set_image(image)
@@ -203,13 +240,18 @@ class FlowHandle(AppearanceAttributes):
         self._surface.set_moment(*self.scene.moment)
         self._surface.write_scalars()
 
-    def _show_appearance(self) -> None:
-        """Follow the appearance; what of the actor was changed by hand and not here stays."""
+    def _show_appearance(self, *anew: str) -> None:
+        """Follow the appearance; what of the actor was changed by hand and not here stays.
+
+        What follows from the field is shown ``anew`` where that is another one.
+        """
         old, new = self._shown, self.scene.appearance
         self._shown = new
 
         def differs(*names: str) -> bool:
-            return any(old is None or getattr(old, n) is not getattr(new, n) for n in names)
+            return any(
+                old is None or n in anew or getattr(old, n) is not getattr(new, n) for n in names
+            )
 
         prop = self.actor.prop
         if differs("opacity"):

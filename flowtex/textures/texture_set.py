@@ -177,6 +177,11 @@ class TextureSet:
         along = np.divide(along, length, out=np.zeros_like(along), where=length > 0)
         corners, longest = _cells(field.surface)
         mean: Floats = np.sum([along[at] for at in corners], axis=0)
+        if isinstance(field.surface, TriangleSurface):
+            # A flow that leaves the plane of a triangle has another direction in it.
+            normal = field.surface.crosses
+            height = np.einsum("mc,mc->m", mean, normal) / np.einsum("mc,mc->m", normal, normal)
+            mean = mean - height[:, None] * normal
         mean /= np.maximum(np.linalg.norm(mean, axis=-1, keepdims=True), np.finfo(float).tiny)
         # What stands still says nothing of the direction.
         cosines = [

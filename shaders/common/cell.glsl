@@ -15,8 +15,9 @@ const int FLOWTEX_CELL_NODES = 3;
 #define FLOWTEX_RATE mat3x2
 #define flowtexFactors(at) vec3(1.0, at)
 mat3x2 flowtexSharesBy; // change of the shares by a vector in space
+vec3 flowtexNormal;     // of the triangle
 
-// From derivatives on the screen.
+// Sets both from derivatives on the screen.
 void flowtexSetSharesBy(vec3 dx, vec3 dy, vec2 byX, vec2 byY)
 {
   // In pixels, so that no square is too small for single precision.
@@ -24,7 +25,9 @@ void flowtexSetSharesBy(vec3 dx, vec3 dy, vec2 byX, vec2 byY)
   dx /= size;
   dy /= size;
   vec3 normal = cross(dx, dy);
-  vec3 across = normal / max(dot(normal, normal), FLOWTEX_LEAST_SQUARE);
+  float square = max(dot(normal, normal), FLOWTEX_LEAST_SQUARE);
+  flowtexNormal = normal * inversesqrt(square);
+  vec3 across = normal / square;
   flowtexSharesBy = (outerProduct(byX, cross(dy, across)) + outerProduct(byY, cross(across, dx)))
     * (1.0 / size);
 }
@@ -65,10 +68,13 @@ bool flowtexEnterCell(vec2 coordinate, float reach)
   for (int n = 0; n < FLOWTEX_CELL_NODES; ++n)
   {
 #ifdef FLOWTEX_TRIANGLES
-    velocity[n] = flowtexFetch(n, 0).xyz * flowtexFetch(n, u_rateLayer).w;
-    rate[n] = flowtexSharesBy * velocity[n];
+    vec3 moved = flowtexFetch(n, 0).xyz * flowtexFetch(n, u_rateLayer).w;
+    rate[n] = flowtexSharesBy * moved;
     // One along any side of the triangle.
     float cells = sqrt(dot(rate[n], rate[n]) + rate[n].x * rate[n].y);
+    float speed = length(moved);
+    // Velocities lie in the tangent planes of the nodes, and the path in that of the triangle.
+    velocity[n] = moved - dot(flowtexNormal, moved) * flowtexNormal;
 #else
     ivec2 node = clamp(ivec2(floor(at)) + ivec2(n & 1, n >> 1), ivec2(0), ivec2(u_slicesSize) - 1);
     vec4 tangent = texelFetch(u_slices, ivec3(node, 0), 0);
@@ -76,8 +82,9 @@ bool flowtexEnterCell(vec2 coordinate, float reach)
     velocity[n] = tangent.xyz * turn.w;
     rate[n] = turn.xy * (turn.w / (tangent.w * u_cell));
     float cells = length(rate[n]);
+    float speed = length(velocity[n]);
 #endif
-    lengths += here[n] * vec2(length(velocity[n]), cells);
+    lengths += here[n] * vec2(speed, cells);
   }
   lengths.x = max(lengths.x, FLOWTEX_LEAST_SPEED);
 #ifdef FLOWTEX_TRIANGLES

@@ -127,3 +127,26 @@ def test_the_bar_says_which_speed_it_is(plotter: Any) -> None:
     velocity = flow.velocity[0] + np.array([0.0, 0.0, 1.0])
     plotter.flowtex.add(flowtex.FlowField.from_arrays(flow.points, velocity))
     assert list(plotter.scalar_bars.keys()) == ["speed in the surface"]
+
+
+def test_another_surface_is_drawn_as_if_it_were_the_first(plotter: Any) -> None:
+    handle = plotter.flowtex.add(gyre())
+    points, velocity = gyre().points, gyre().velocity
+    for part in (np.s_[:, :30], np.s_[::2, 8:]):
+        field = flowtex.FlowField.from_arrays(
+            points[part], velocity[0][part], scalars={"x": points[part][..., 0]}
+        )
+        handle.set_surface(field)
+        fresh: Any = pv.Plotter(off_screen=True, window_size=plotter.window_size)
+        fresh.disable_anti_aliasing()
+        fresh.flowtex.add(field)
+        fresh.camera = plotter.camera.copy()
+        np.testing.assert_array_equal(shot(plotter), shot(fresh))
+        fresh.close()
+    handle.scalars = "x"
+    with pytest.raises(KeyError, match="no scalar 'x'"):
+        handle.set_surface(gyre())
+    assert handle.field.shape == gyre().velocity[0][::2, 8:].shape[:2]
+    before = shot(plotter)
+    handle.settings.contrast = 0.2
+    assert np.abs(shot(plotter) - before).max() > 10

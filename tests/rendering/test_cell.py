@@ -88,6 +88,7 @@ def test_so_it_is_on_triangles(name: str, parameter: str, cells: float) -> None:
     starts = [[3.0, 8.0], [-14.0, 5.0]] if name in ("saddle", "centre") else [[20.0, 30.0]]
     for start in np.array(starts):
         place = locate(field, [*(CELL * (POINT + cells * start)), 0.0])
+        assert place is not None
         found = probe(scene, place, pixel=cells * CELL)
         points = (found.points[:, :2] / CELL - POINT) / cells
         off = np.linalg.norm(points[:, None] - exact(name, start, 30.0), axis=-1).min(axis=1)

@@ -22,8 +22,8 @@ class Textures:
         self.key, self.source = key, source
         self.count, self.store = 1, self
         self.geometry: Any = self
-        self.rows = self.columns = self.field = self
-        self.size, self.valid = 4, np.ones(4)
+        self.field = self
+        self.size, self.valid = (4, 4), np.ones(4)
 
     def forget(self) -> None:
         """Nothing is kept."""

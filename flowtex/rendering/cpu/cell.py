@@ -44,10 +44,10 @@ class CellPath:
             about, nodes = _square(slices, coordinate, values)
         both = np.zeros((len(reach), 5, len(about)))
         speed, rate = np.zeros((2, len(reach)))
-        for weights, (moved, by, cells) in zip(about, nodes, strict=True):
+        for weights, (moved, by, lengths) in zip(about, nodes, strict=True):
             both += np.concatenate([moved, by], axis=1)[:, :, None] * weights.T[:, None]
-            speed += weights[0] * np.linalg.norm(moved, axis=1)
-            rate += weights[0] * cells
+            speed += weights[0] * lengths[0]
+            rate += weights[0] * lengths[1]
         speed = np.maximum(speed, const.LEAST_SPEED)
         agreed = np.linalg.norm(both[:, :3, 0], axis=1) / speed
         far = _smoothstep(const.NEAR_CELLS, const.FAR_CELLS, reach * rate / speed)
@@ -89,8 +89,8 @@ class CellPath:
         return np.asarray(np.einsum("nck,kn->nc", self._both, factors))
 
 
-#: A node's velocity in space, (N, 3), in cells, (N, 2), and how many cells these are, (N,).
-_Node = tuple[Floats, Floats, Floats]
+#: A node's velocity in space, (N, 3), in cells, (N, 2), and its lengths in both, (N,) each.
+_Node = tuple[Floats, Floats, tuple[Floats, Floats]]
 
 
 def _square(
@@ -114,7 +114,8 @@ def _square(
         there = (np.floor(at) + right + 0.5) / size
         tangent, turn = (slices.layer(there, n, finest) for n in (0, values["u_rateLayer"]))
         by = turn[:, :2] * (turn[:, 3:] / (tangent[:, 3:] * values["u_cell"]))
-        return tangent[:, :3] * turn[:, 3:], by, np.linalg.norm(by, axis=1)
+        moved = tangent[:, :3] * turn[:, 3:]
+        return moved, by, (np.linalg.norm(moved, axis=1), np.linalg.norm(by, axis=1))
 
     return about, map(node, ((0, 0), (1, 0), (0, 1), (1, 1)))
 
@@ -124,6 +125,8 @@ def _triangle(
 ) -> tuple[Floats, Iterator[_Node]]:
     """Return the factors (3, 3, N) of 1, x and y of each of three nodes, and the nodes."""
     one, none = np.ones(len(places)), np.zeros(len(places))
+    normal = np.cross(places.by[:, 0], places.by[:, 1])
+    normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), np.finfo(float).tiny)
     a, b, c = places.shares.T
     about = np.array([[a, -one, -one], [b, one, none], [c, none, one]])
 
@@ -131,7 +134,8 @@ def _triangle(
         tangent, turn = (slices.at_node(number, n) for n in (0, values["u_rateLayer"]))
         moved = tangent[:, :3] * turn[:, 3:]
         by = np.einsum("nkc,nc->nk", places.by, moved)
-        return moved, by, np.sqrt((by**2).sum(axis=1) + by[:, 0] * by[:, 1])
+        lengths = np.linalg.norm(moved, axis=1), np.sqrt((by**2).sum(axis=1) + by[:, 0] * by[:, 1])
+        return moved - np.einsum("nc,nc->n", normal, moved)[:, None] * normal, by, lengths
 
     return about, map(node, places.nodes.T)
 

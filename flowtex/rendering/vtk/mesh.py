@@ -27,6 +27,9 @@ __all__ = [
     "vertex_attributes",
 ]
 
+#: Extents from the origin from which on VTK draws points relative to another one; nearer by it
+#: takes them to single precision as they are.
+FAR_EXTENTS = 1e3
 #: Point arrays of the mesh.
 POSITION, COORDINATE, NOISE = "flowtex position", "flowtex coordinate", "flowtex noise"
 CORNERS = "flowtex corners"
@@ -45,6 +48,9 @@ def surface_mesh(textures: TextureSet) -> pv.PolyData:
     """Return the visible cells of the surface, with normals and the shader's attributes."""
     geometry = textures.geometry
     points = np.ascontiguousarray(geometry.at_vertices(geometry.points))
+    near = np.abs(geometry.center).max() < FAR_EXTENTS * geometry.extent
+    if near and isinstance(geometry, TriangleGeometry):
+        points = points.astype(np.float32)  # there are six times as many vertices as nodes
     mesh = pv.PolyData.from_regular_faces(points, _faces(geometry))
     mesh.point_data[NORMAL] = geometry.at_vertices(geometry.normal)
     mesh.point_data.active_normals_name = NORMAL

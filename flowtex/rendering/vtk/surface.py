@@ -122,17 +122,17 @@ class FlowSurface:
         return self._loader is not None and self._loader.busy
 
     def set_textures(self, textures: TextureSet, pyramid: Pyramid | None = None) -> None:
-        """Draw another texture set of the same flow from now on."""
+        """Draw another texture set from now on, of the same flow or of another one."""
         self._drop(list(self._tiles))
         if self._loader is not None:
             self._loader.close()
         self._loader = None if pyramid is None else self._loader_of(pyramid)
         self._drawn = ()
-        if textures.geometry.shape == self._base.textures.geometry.shape:
+        if textures.geometry.field is self._base.textures.geometry.field:
             set_attributes(self._actor.mapper.dataset, textures)
             self._base.set_textures(textures)
             return
-        # Another level is the whole surface now, with other nodes.
+        # Another surface, or another level is the whole of it now: there are other nodes.
         view = self._base.view
         self._base.close()
         self._actor.mapper.SetInputData(surface_mesh(textures))

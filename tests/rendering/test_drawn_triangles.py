@@ -1,0 +1,170 @@
+"""Surfaces of triangles as VTK draws them, and what of them a view needs."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+import pyvista as pv
+from flows import rippled
+from measures import streaks
+from triangle_meshes import cube, random_plane, soup, surface_of
+
+import flowtex
+from flowtex import FlowField
+from flowtex.camera import Camera
+from flowtex.plotting.vtk_camera import apply_camera, look
+from flowtex.rendering.triangle_blocks import TriangleBlocks
+from flowtex.scene import Scene
+from flowtex.settings import SettingsError
+from flowtex.textures import TriangleGeometry
+
+SIZE = (400, 300)
+
+
+def flow(x: Any, y: Any) -> tuple[Any, Any]:
+    return -np.sin(2 * np.pi * x) * np.cos(np.pi * y), 2 * np.cos(2 * np.pi * x) * np.sin(np.pi * y)
+
+
+def field(nodes: int = 2500) -> FlowField:
+    """Two vortices in the unit square, on triangles that face either way."""
+    rng = np.random.default_rng(2)
+    points, triangles = soup(rng, random_plane(rng, nodes))
+    velocity = np.stack(flow(points[:, 0], points[:, 1]), -1)
+    return FlowField.from_triangles(points, triangles, velocity, scalars={"x": points[:, 0]})
+
+
+@pytest.mark.parametrize("zoom", [1, 4, 16, 64])
+def test_streaks_follow_the_flow_at_every_zoom(opengl: Any, zoom: float) -> None:
+    focus = (0.5, 0.5) if zoom == 1 else (0.4, 0.3)
+    scale = 0.54 / zoom
+    camera = Camera((*focus, 3.0), (*focus, 0.0), (0, 1, 0), parallel=True, parallel_scale=scale)
+    picture = flowtex.render(field(), size=SIZE, camera=camera, scalars=False)
+    step = 2 * scale / SIZE[1]
+    x = focus[0] + (np.arange(SIZE[0]) + 0.5 - SIZE[0] / 2) * step
+    y = focus[1] - (np.arange(SIZE[1]) + 0.5 - SIZE[1] / 2) * step
+    x, y = np.meshgrid(x, y)
+    mask = np.hypot(*flow(x, y)) > 0.2
+    mask &= (np.abs(x - 0.5) < 0.5 - 14 * step) & (np.abs(y - 0.5) < 0.5 - 14 * step)
+    mask[:12] = mask[-12:] = mask[:, :12] = mask[:, -12:] = False
+    found = streaks(picture, *flow(x, y), mask)
+    assert found["angle"] <= 2.4
+    assert found["coherence"] >= 0.92
+
+
+def test_colours_are_those_that_pyvista_draws(plotter: Any) -> None:
+    drawn = field()
+    plotter.flowtex.add(drawn, scalars="speed", clim=(0, 2), strength=0.0, lighting=False)
+    ours = plotter.screenshot(return_img=True)
+    reference = pv.Plotter(off_screen=True, window_size=plotter.window_size)
+    reference.disable_anti_aliasing()
+    faces: Any = surface_of(drawn).triangles
+    mesh = pv.PolyData.from_regular_faces(drawn.points[0], faces)
+    mesh["speed"] = drawn.speed[0, 0]
+    reference.add_mesh(mesh, scalars="speed", cmap="viridis", clim=(0, 2), lighting=False)
+    look(reference, drawn)
+    expected: Any = reference.screenshot(return_img=True)
+    reference.close()
+    width, height = plotter.window_size
+    inner = (slice(height // 3, height // 2), slice(width // 4, 3 * width // 4))
+    assert np.abs(ours[inner].astype(float) - expected[inner]).mean() < 2.0
+
+
+def test_edges_and_picks(plotter: Any) -> None:
+    handle = plotter.flowtex.add(field(60), scalars=False)
+    plain = plotter.screenshot(return_img=True).astype(float)
+    handle.actor.prop.show_edges, handle.actor.prop.edge_color = True, "red"
+    plotter.render()
+    edged = plotter.screenshot(return_img=True).astype(float)
+    red = edged[..., 0] - edged[..., 1] > 20
+    assert 0.005 < red.mean() < 0.3
+    same = (np.abs(edged - plain).max(axis=-1) < 2)[~red]
+    assert same.mean() > 0.85
+    from vtkmodules.vtkRenderingCore import vtkCellPicker
+
+    picker = vtkCellPicker()
+    width, height = plotter.window_size
+    assert picker.Pick(width / 2, height / 2, 0, plotter.renderer)
+    np.testing.assert_allclose(picker.GetPickPosition(), (0.5, 0.5, 0.0), atol=0.01)
+
+
+def test_streaks_go_up_to_a_sharp_edge(plotter: Any) -> None:
+    points, triangles = cube(12)
+    turning = FlowField.from_triangles(points, triangles, np.cross([0.0, 0.0, 1.0], points))
+    plotter.flowtex.add(turning, scalars=False, lighting=False)
+    # Less than a cell of the face beside its edge at the right, seen straight.
+    middle = np.array([0.96, -1.0, 0.0])
+    width, height = plotter.window_size
+    camera = Camera(
+        tuple(middle - [0, 3, 0]), tuple(middle), (0, 0, 1), parallel=True, parallel_scale=0.02
+    )
+    apply_camera(camera, plotter.camera)
+    plotter.camera_set = True
+    plotter.renderer.reset_camera_clipping_range()
+    picture = np.asarray(plotter.screenshot(return_img=True))[..., :3]
+    mask = np.zeros((height, width), dtype=bool)
+    mask[20:-20, 20:-20] = True
+    found = streaks(picture, np.ones_like(mask, float), np.zeros_like(mask, float), mask)
+    assert found["angle"] < 3
+    assert found["coherence"] > 0.9
+
+
+@pytest.mark.parametrize("noise", ["texture", "spots", "checkerboard", "image"])
+def test_noise_along_rows_and_columns_is_refused(noise: str) -> None:
+    image = np.ones((4, 4, 3)) if noise == "image" else None
+    told = f"noise is '{noise}'.*triangles; expected noise='procedural'"
+    with pytest.raises(SettingsError, match=told):
+        Scene.of(field(60), noise=noise, image=image)
+    scene = Scene(field(60))
+    with pytest.raises(SettingsError, match=told):
+        scene.settings.noise = noise
+    assert scene.settings.noise == "procedural"
+    with pytest.raises(SettingsError, match="noise is 'image'"):
+        scene.set_image(np.ones((4, 4, 3)))
+    assert scene.image is None
+
+
+def test_a_tile_has_the_values_of_its_nodes() -> None:
+    whole = rippled()
+    surface = surface_of(whole)
+    nodes = np.flatnonzero(whole.points[0, :, 0] > 0.3)
+    triangles = surface.triangles[np.isin(surface.triangles, nodes).all(axis=1)]
+    tile = TriangleGeometry.of_tile(whole, nodes, triangles, surface)
+    assert tile.shape == (1, len(nodes))
+    np.testing.assert_array_equal(
+        tile.at_vertices(tile.points), surface.points[0][triangles.ravel()]
+    )
+    np.testing.assert_allclose(tile.normal, surface.normals[:, nodes], atol=1e-6)
+    height, width = tile.size
+    assert (height - 1) * width < len(nodes) <= height * width
+    assert width & (width - 1) == 0
+    texels = np.empty((height, width, 2), np.float32)
+    tile.write_texels(tile.points[..., :2].astype(np.float32), texels)
+    at = len(nodes) - 1
+    np.testing.assert_allclose(texels[at // width, at % width], tile.points[0, at, :2], atol=1e-6)
+    values = tile.at_vertices(tile.points[..., 0])
+    image = tile.as_image(values)
+    np.testing.assert_array_equal(image.ravel()[: len(nodes)], tile.points[0, :, 0])
+
+
+def test_triangles_are_drawn_where_one_of_their_blocks_is() -> None:
+    whole = rippled()
+    surface = surface_of(whole)
+    one = TriangleGeometry.of(whole)
+    assert TriangleBlocks(one).triangles(np.array([[0]])).shape == (len(one.triangles), 3)
+    assert not len(TriangleBlocks(one).triangles(np.array([[-1]])))
+    center, radius = one.block_places[0, 0, :3], one.block_places[0, 0, 3]
+    assert (np.linalg.norm(whole.points[0] - center, axis=1) <= radius * (1 + 1e-12)).all()
+    masks = np.array([1, 2, 3, 8], np.uint16)
+    geometry = TriangleGeometry.of_tile(
+        whole,
+        np.arange(whole.shape[1]),
+        surface.triangles[:4],
+        surface,
+        (masks, np.zeros((2, 2, 5))),
+    )
+    blocks = TriangleBlocks(geometry)
+    drawn = blocks.triangles(np.array([[0, -1], [-1, -1]]))
+    np.testing.assert_array_equal(drawn, [[0, 1, 2], [6, 7, 8]])
+    assert len(blocks.triangles(blocks.levels(None, 1.0, 100))) == 4
