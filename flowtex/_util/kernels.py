@@ -510,7 +510,7 @@ def follow_triangles(
                 m += 1
             if m == count:
                 break
-            standing = standing + 1 if side >= 0 and h * h * square <= on_edge * on_edge else 0
+            standing = 0 if side >= 0 and h * h * square > on_edge * on_edge else standing + 1
             one, two, lag = x, y, after
             u, v = d1 + h * a1, d2 + h * a2
             if standing > most_standing:

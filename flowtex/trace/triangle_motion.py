@@ -273,7 +273,7 @@ def _table(mesh: TriangleMesh, components: Floats, speed: Floats) -> Floats:
     """How shares change in each triangle, (M, COLUMNS), in times and lengths of its own.
 
     Rates (2) at the first corner, their changes by the second and by the third share (2, 2), metric
-    (3), size, pace, and the speed (3) as the rates.
+    (3), size, pace, and the speed (3) as the rates, with what counts as none.
     """
     result = np.empty((len(mesh.corners), COLUMNS))
     for start in range(0, len(result), BLOCK_TRIANGLES):
@@ -288,7 +288,9 @@ def _table(mesh: TriangleMesh, components: Floats, speed: Floats) -> Floats:
         part[:, 2:4], part[:, 4:6] = rates[:, 1] - rates[:, 0], rates[:, 2] - rates[:, 0]
         part[:, 6:9], part[:, 9], part[:, 10] = mesh.metric[some], mesh.size[some], pace
         own = own / np.where(most > 0, most, 1.0)[:, None]
-        part[:, 11], part[:, 12:] = own[:, 0], own[:, 1:] - own[:, :1]
+        # A path that comes to where all is at rest gets slower and slower; it ends at the floor.
+        part[:, 11] = own[:, 0] + STOPPED_SPEED / RESTING_CELLS
+        part[:, 12:] = own[:, 1:] - own[:, :1]
     return result
 
 

@@ -38,7 +38,9 @@ __all__ = ["TrianglePaths", "begin", "follow", "integrate"]
 
 #: Rounds of steps after which paths are ended, for each of the rows that nodes would make.
 STEPS_PER_ROW = 100
-#: Rounds without a move after which a path is ended: more than triangles meet in a node.
+#: Rounds in one triangle, or from one to the other without a move, after which a path is ended: it
+#: goes round in a spiral, or through a triangle so flat that it is as good as stuck. More triangles
+#: do not meet in a node.
 MOST_STANDING = 300
 #: Share of a triangle that is none, by rounding.
 SHARE_ROUNDING = 1e-12
@@ -264,8 +266,10 @@ class _Run:
             here[:, ended] = state.shares[:, ended]
             now.first[:, resting] = 0.0
         self._record(now, h, lag)
-        standing = (edge >= 0) & (h * h * square <= SHARE_ROUNDING**2)
-        state.standing = np.where(standing, state.standing + 1, 0)
+        state.standing += 1
+        state.standing[(edge >= 0) & (h * h * square > SHARE_ROUNDING**2)] = 0
+        if now.until is not None:
+            state.standing[lag == now.until] = 0
         ended |= state.standing > MOST_STANDING
         state.lag, state.shares = lag, here
         crossing = np.flatnonzero((edge >= 0) & ~ended)
