@@ -245,7 +245,8 @@ def _lags(size: Floats, nodes: Bools, longest: float) -> tuple[Floats, Floats]:
     """
     unit = float(np.percentile(size[nodes], 5))
     count = int(np.clip(np.ceil(np.log2(longest / unit / FIRST_CELLS)), 1, MOST_LAGS - 1))
-    return longest / unit * 2.0 ** np.arange(-count, 1), np.full(nodes.shape, unit)
+    lags = longest / unit * 2.0 ** np.arange(-count, 1)
+    return np.asarray(lags, dtype=float), np.full_like(size, unit)
 
 
 def _part(level: Clusters, members: Indices) -> tuple[FlowField, Indices]:
