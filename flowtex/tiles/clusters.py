@@ -224,7 +224,7 @@ def _once(corners: Indices) -> Indices:
     low, middle, high = (some[order[begins]] for some in (low, middle, high))
     up = np.stack([low, middle, high], axis=-1)
     up[turns < 0] = up[turns < 0][:, [0, 2, 1]]
-    return up[turns != 0]
+    return np.asarray(up[turns != 0])
 
 
 def _untangled(points: Floats, triangles: Indices, normals: Floats, border: Bools) -> Indices:

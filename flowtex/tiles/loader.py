@@ -20,7 +20,7 @@ import numpy as np
 from flowtex._util.array_types import Floats32
 from flowtex._util.cache import ByteCache
 from flowtex._util.progress import Stopped, stoppable
-from flowtex.textures import TextureSet
+from flowtex.textures import TextureSet, TriangleGeometry
 from flowtex.tiles.pyramid import Pyramid, TileKey, is_cut
 
 __all__ = ["Tile", "TileLoader"]
@@ -30,6 +30,8 @@ BUDGET_BYTES = 1_000_000_000
 #: Memory of a texel, whose four numbers have single precision first and half of it later, and of a
 #: node beside it.
 TEXEL_BYTES, NODE_BYTES = 16, 200
+#: Memory of a triangle that has vertices of its own.
+TRIANGLE_BYTES = 250
 #: Tiles that are made at once, at most.
 MOST_THREADS = 4
 #: Widths of the halo that are tried one after the other, where paths are cut by it.
@@ -58,8 +60,10 @@ class Tile:
             return 0
         geometry = self.textures.geometry
         texels = geometry.size[0] * geometry.size[1] * self.textures.count
-        nodes = geometry.field.valid.size
-        return texels * TEXEL_BYTES * max(len(self.layers), 1) + nodes * NODE_BYTES
+        mesh = geometry.field.valid.size * NODE_BYTES
+        if isinstance(geometry, TriangleGeometry):
+            mesh += len(geometry.triangles) * TRIANGLE_BYTES
+        return texels * TEXEL_BYTES * max(len(self.layers), 1) + mesh
 
     def make(self, step: int) -> Floats32:
         """Make the layers of a destination time."""

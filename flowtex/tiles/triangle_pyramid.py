@@ -34,6 +34,11 @@ ROOT_NODES = 25_000
 MOST_MEASURED = 100_000
 #: First lag of a tile's paths in cells, and the number of lags, at most.
 FIRST_CELLS, MOST_LAGS = 0.25, 24
+#: Share of the side of bins that counts as the size of their cells: finer ones than a few pixels
+#: are drawn no sooner, for a triangle costs as much as the pixels beside it.
+BIN_SHARE = 1 / 4
+#: Share of the triangles of a block whose size counts as that of all.
+MOST_SHARE = 0.95
 #: Greatest width of what paths are traced in around a tile, in lengths of even paths.
 MOST_WIDE = 4.0
 
@@ -198,8 +203,9 @@ class TrianglePyramid(Pyramid):
                 ends[some] = reduce.reduceat(
                     reduce(reduce(corners[0], corners[1]), corners[2]), first
                 )
-            # At the next level it is twice as much, half the side of the bins.
-            size[some] = np.maximum.reduceat(this.sides[triangles].max(axis=1), first) / 4
+            sides = np.split(this.sides[triangles].max(axis=1), first[1:])
+            # At the next level it is twice as much, a share of these bins.
+            size[some] = [BIN_SHARE / 2 * _most(part) for part in sides]
         return np.maximum(low, inner[0]), np.minimum(high, inner[1]), size
 
     def _haste(self, level: int, nodes: Indices) -> float:
@@ -226,6 +232,12 @@ class TrianglePyramid(Pyramid):
         return np.unique(some[inside])
 
 
+def _most(values: Floats) -> float:
+    """Return the value that all but a few do not exceed."""
+    at = int(MOST_SHARE * (len(values) - 1))
+    return float(np.partition(values, at)[at])
+
+
 def _lags(size: Floats, nodes: Bools, longest: float) -> tuple[Floats, Floats]:
     """Lags (M,) that end at the greatest length, and their one unit at all nodes (1, N).
 
@@ -233,7 +245,8 @@ def _lags(size: Floats, nodes: Bools, longest: float) -> tuple[Floats, Floats]:
     """
     unit = float(np.percentile(size[nodes], 5))
     count = int(np.clip(np.ceil(np.log2(longest / unit / FIRST_CELLS)), 1, MOST_LAGS - 1))
-    return longest / unit * 2.0 ** np.arange(-count, 1), np.full(nodes.shape, unit)
+    lags = longest / unit * 2.0 ** np.arange(-count, 1)
+    return np.asarray(lags, dtype=float), np.full_like(size, unit)
 
 
 def _part(level: Clusters, members: Indices) -> tuple[FlowField, Indices]:

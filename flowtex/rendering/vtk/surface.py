@@ -347,8 +347,9 @@ class FlowSurface:
         regions: dict[TileKey | None, Region] = {}
         for key, layer in layers.items():
             levels = layer.choose_levels(renderer, view)
-            for child in shown[key] if pyramid is not None else ():
-                levels[finer_part(pyramid, child, key)] = -1
+            if pyramid is not None:
+                for child in shown[key]:
+                    levels[finer_part(pyramid, child, key)] = -1
             at = TileKey(depth, 0, 0) if key is None else key
             row, column = (TILE_BLOCKS * place << at.level for place in at[1:])
             regions[key] = Region(at.level, row, column, levels)
