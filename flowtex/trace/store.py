@@ -18,7 +18,7 @@ from flowtex._util.cache import ByteCache, WeakCache
 from flowtex.field import FlowField
 from flowtex.field.steps import LazySteps
 from flowtex.trace.compose import landings
-from flowtex.trace.lags import LAST_EXTENTS, choose_lags, lag_unit
+from flowtex.trace.lags import choose_lags, lag_unit
 from flowtex.trace.lines import chosen_lines
 from flowtex.trace.slices import TraceSlices
 from flowtex.trace.trace import trace
@@ -63,8 +63,6 @@ class SliceStore:
         self._nodes = nodes
         self._cache: ByteCache[int, TraceSlices] = ByteCache(CACHE_BYTES, min_count=2)
         self._lock = threading.Lock()
-        #: Length up to which paths are wanted.
-        self.longest = LAST_EXTENTS * field.surface.extent if longest is None else longest
         if slices is None:
             self.parameter = parameter if self.streamlines else "time"
             self.lags: Floats = choose_lags(field, self.parameter, longest)
@@ -129,8 +127,6 @@ class SliceStore:
         # A part of a surface is one of many, whose bars would tell nothing.
         alone = self._nodes is None
         parts: dict[str, Any] = {"nodes": self._nodes, "progress": alone}
-        if self.parameter == "arclength":
-            parts["longest"] = self.longest
         return trace(field, lags=self.lags, unit=self.unit, **parts, **options)
 
 

@@ -52,7 +52,6 @@ def trace(
     steps: Sequence[int] | None = None,
     compose: bool | None = None,
     nodes: ArrayLike | None = None,
-    longest: float = np.inf,
     progress: bool = True,
 ) -> TraceSlices:
     """Follow the path through every node, and return where it is at a handful of lags.
@@ -89,10 +88,6 @@ def trace(
         Nodes whose paths are wanted, (J, I), all by default. Where paths are integrated only these
         are followed, and the others are treated as blanked ones; to compose takes all. On
         triangles the others have displacements and reach zero, as blanked ones have.
-    longest
-        On triangles, length in lag times unit up to which paths are followed at least; beyond they
-        go on by the same mean slope. Where cells are large so are lags, and the largest of them may
-        lead far beyond the surface.
     progress
         Whether to show a progress bar when the work takes longer than a second.
 
@@ -142,7 +137,6 @@ def trace(
                 tolerance=tolerance,
                 run=pool.map,
                 progress=progress,
-                longest=longest,
             )
     directions = (-1.0, 1.0) if two_sided else (-1.0,)
     samplers = _samplers(field, step_numbers, parameter)

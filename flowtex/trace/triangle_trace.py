@@ -41,13 +41,10 @@ def triangle_slices(
     tolerance: float,
     run: Callable[..., Any],
     progress: bool,
-    longest: float = np.inf,
 ) -> TraceSlices:
     """Follow the paths through some nodes, ``chosen`` (1, N); others have reach and path 0.
 
-    Lags (M,) are in multiples of ``unit`` (1, N), and ``run`` maps a function over blocks. Where
-    cells are large, so are lags: paths are followed for a length of ``longest``, and one lag more,
-    and go on by the same mean slope.
+    Lags (M,) are in multiples of ``unit`` (1, N), and ``run`` maps a function over blocks.
     """
     mesh = _mesh(field)
     at = np.flatnonzero(chosen[0] & (np.diff(mesh.first) > 0))
@@ -58,35 +55,27 @@ def triangle_slices(
     points = field.points[0]
     motions = [_motions(field, steps, parameter, side) for side in sides]
 
-    counts = np.clip(np.searchsorted(lags, longest / unit[0, at]) + 1, 1, len(lags))
-    at = at[np.argsort(counts, kind="stable")]
-    counts.sort()
-
     def work(job: tuple[int, int, slice]) -> None:
         side, step, block = job
-        motion, nodes, count = motions[side][step], at[block], int(counts[block][0])
-        starts, units, moved = begin(motion, nodes), unit[0, nodes], displacement[side, step, :, 0]
-        done = follow(motion, points, starts, lags[:count], units, tolerance=tolerance)
+        motion, nodes = motions[side][step], at[block]
+        starts = begin(motion, nodes)
+        units = unit[0, nodes]
+        done = follow(motion, points, starts, lags, units, tolerance=tolerance)
         if done is not None:
-            moved[:count, nodes], reach[side, step, 0, nodes] = done
-        else:
-            triangle, corner = np.divmod(starts, 3)
-            shares = np.stack([corner == 1, corner == 2]).astype(float)
-            due = lags[:count, None] * units
-            paths = integrate(motion, points, triangle, shares, due, tolerance=tolerance)
-            for m in range(count):
-                step_by = paths.positions(mesh, points, m) - points[nodes]
-                moved[m, nodes] = np.clip(step_by, -MOST_CELLS, MOST_CELLS)
-            reach[side, step, 0, nodes] = paths.reach / units
-        further = lags[count:, None, None] / lags[count - 1]
-        moved[count:, nodes] = np.clip(moved[count - 1, nodes] * further, -MOST_CELLS, MOST_CELLS)
+            displacement[side, step, :, 0, nodes] = np.swapaxes(done[0], 0, 1)
+            reach[side, step, 0, nodes] = done[1]
+            return
+        triangle, corner = np.divmod(starts, 3)
+        shares = np.stack([corner == 1, corner == 2]).astype(float)
+        due = lags[:, None] * units
+        paths = integrate(motion, points, triangle, shares, due, tolerance=tolerance)
+        here = points[nodes]
+        for m in range(len(lags)):
+            moved = paths.positions(mesh, points, m) - here
+            displacement[side, step, m, 0, nodes] = np.clip(moved, -MOST_CELLS, MOST_CELLS)
+        reach[side, step, 0, nodes] = paths.reach / units
 
-    ends = np.searchsorted(counts, np.arange(1, len(lags) + 1), side="right")
-    blocks = [
-        slice(first, min(first + BLOCK, end))
-        for begin_, end in zip([0, *ends[:-1]], ends, strict=True)
-        for first in range(begin_, end, BLOCK)
-    ]
+    blocks = [slice(first, first + BLOCK) for first in range(0, len(at), BLOCK)]
     jobs = [(a, b, c) for a in range(len(sides)) for b in range(len(steps)) for c in blocks]
     for _ in track(run(work, jobs), len(jobs), "Tracing", show=progress):
         pass
