@@ -20,7 +20,7 @@ SIZE = (360, 300)
 
 
 def rotation(points: Floats) -> Floats:
-    return np.cross([0.3, 0.2, 1.0], points)
+    return np.asarray(np.cross([0.3, 0.2, 1.0], points))
 
 
 def wave(points: Floats) -> Floats:
@@ -31,7 +31,7 @@ def wave(points: Floats) -> Floats:
     slope = np.stack(
         [z * (4 * x**3 - 12 * x * y * y), z * (4 * y**3 - 12 * x * x * y), part - 1], axis=-1
     )
-    return np.cross(points, slope)
+    return np.asarray(np.cross(points, slope))
 
 
 @cache
