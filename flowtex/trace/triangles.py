@@ -36,8 +36,9 @@ from flowtex.trace.triangle_motion import (
 
 __all__ = ["TrianglePaths", "begin", "follow", "integrate"]
 
-#: Rounds of steps after which paths are ended, for each of the rows that nodes would make.
-STEPS_PER_ROW = 100
+#: Rounds of steps after which paths are ended, for each of the rows that nodes would make, and at
+#: least: a few that turn in one place must not hold up all others.
+STEPS_PER_ROW, LEAST_STEPS = 30, 3_000
 #: Rounds in one triangle, or from one to the other without a move, after which a path is ended: it
 #: goes round in a spiral, or through a triangle so flat that it is as good as stuck. More triangles
 #: do not meet in a node.
