@@ -21,7 +21,7 @@ import numpy as np
 
 from flowtex._util import compiled
 from flowtex._util.array_types import Bools, Floats, Floats32, Indices
-from flowtex.trace.integrate import LEAST_STEPS, MOST_CELLS, MOST_STEPS
+from flowtex.trace.integrate import MOST_CELLS, MOST_STEPS
 from flowtex.trace.sampler import RESTING_CELLS, STILL_CELLS
 from flowtex.trace.triangle_motion import (
     AFTER,
