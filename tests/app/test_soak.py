@@ -153,7 +153,7 @@ def served(opengl: object) -> Iterator[Served]:
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals")
 @pytest.mark.slow
-@pytest.mark.parametrize("count", [2000])
+@pytest.mark.parametrize("count", [800])
 def test_use_leaves_memory_flat_and_nothing_behind(served: Served, count: int) -> None:
     grown, more = asyncio.run(use(served, count))
     assert grown < GROWTH, f"{grown / 1e6:.0f} MB more after {count} interactions"
