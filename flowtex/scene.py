@@ -27,7 +27,7 @@ from flowtex.rendering.cpu.shade import mean_colours
 from flowtex.settings import TABLE, Affects, Settings, SettingsError
 from flowtex.textures import TextureSet, check_noise
 from flowtex.textures.images import as_picture, load_image
-from flowtex.tiles import Pyramid, shared_pyramid
+from flowtex.tiles import Pyramid, levels_of, shared_pyramid, triangle_pyramid
 from flowtex.trace import SliceStore, TraceSlices, chosen_lines, shared_store
 
 __all__ = ["NO_IMAGE", "AppearanceAttributes", "Change", "Scene", "share_field", "steps_of"]
@@ -544,10 +544,14 @@ def _shared_textures(
 def coarsened_field(field: FlowField, nodes: int) -> FlowField:
     """Keep lines of nodes, the first and the last among them, so that so many nodes are left.
 
-    A smaller field is returned as it is, and one of triangles, of which levels are the coarse form.
+    On triangles nodes become means over bins of space, of which there are so many at most. A
+    smaller field is returned as it is, and one of triangles that is so large that it has levels.
     """
-    if field.valid.size <= nodes or field.triangles is not None:
+    if field.valid.size <= nodes:
         return field
+    if field.triangles is not None:
+        has_levels = field.valid.size > triangle_pyramid.ROOT_NODES
+        return field if has_levels else levels_of(field, nodes)[-1].field
     share = np.sqrt(nodes / field.valid.size)
     rows, columns = (
         np.unique(np.rint(np.linspace(0, n - 1, max(int(n * share), min(n, 8)))).astype(int))

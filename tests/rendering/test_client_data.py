@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from triangle_meshes import sphere, surface_of
 
 import flowtex
-from flowtex import examples
+from flowtex import FlowField, examples
 from flowtex._util.colours import colour_table
 from flowtex.camera import Camera
 from flowtex.options import Options
@@ -233,6 +233,19 @@ def test_a_coarse_field_keeps_its_edges_and_its_data() -> None:
         np.testing.assert_array_equal(coarse.points[corner], fine.points[corner])
     assert coarse.surface.extent == pytest.approx(fine.surface.extent)
     assert coarsened_field(fine, 10**6) is fine
+
+
+def test_a_coarse_surface_of_triangles_has_means(monkeypatch: pytest.MonkeyPatch) -> None:
+    points, triangles = sphere(4)
+    fine = FlowField.from_triangles(points, triangles, np.cross([0.0, 0, 1], points))
+    coarse = coarsened_field(fine, 500)
+    assert 100 < coarse.valid.size <= 500
+    assert coarse.surface.extent == pytest.approx(fine.surface.extent, rel=0.1)
+    places = coarse.points[0]
+    np.testing.assert_allclose(coarse.velocity[0, 0], np.cross([0.0, 0, 1], places), atol=1e-9)
+    assert coarsened_field(fine, 10**6) is fine
+    monkeypatch.setattr("flowtex.tiles.triangle_pyramid.ROOT_NODES", 1000)
+    assert coarsened_field(fine, 500) is fine  # its levels come one after the other anyway
 
 
 def test_a_store_that_does_not_compose_traces_the_same() -> None:

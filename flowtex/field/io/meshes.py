@@ -279,12 +279,14 @@ def cell_dimensions(mesh: Any) -> Indices:
     """Return the dimension of each cell of an unstructured mesh, (M,)."""
     from vtkmodules.vtkCommonDataModel import vtkGenericCell
 
-    types, numbers = np.unique(np.asarray(mesh.celltypes), return_inverse=True)
-    cell, found = vtkGenericCell(), []
-    for kind in types:
+    # Numbers of types are small: to count them is quicker than to sort them.
+    types = np.asarray(mesh.celltypes)
+    counts = np.bincount(types)
+    cell, dimension = vtkGenericCell(), np.zeros(len(counts), dtype=np.intp)
+    for kind in np.flatnonzero(counts):
         cell.SetCellType(int(kind))
-        found.append(cell.GetCellDimension())
-    return np.asarray(found, dtype=np.intp)[numbers.ravel()]
+        dimension[kind] = cell.GetCellDimension()
+    return dimension[types]
 
 
 def check_arrays(step: TimeStep, vectors: MeshArray) -> None:

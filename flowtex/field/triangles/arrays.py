@@ -15,7 +15,7 @@ from scipy.sparse import csr_array
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.errors import FieldError, raise_faults
 from flowtex.field.steps import LazySteps, Steps, map_steps
-from flowtex.field.triangles.topology import merged_nodes, repeated
+from flowtex.field.triangles.topology import edges_of, merged_nodes, needle_edges, repeated
 from flowtex.field.validation import (
     as_numbers,
     finite_nodes,
@@ -79,7 +79,7 @@ def triangle_arrays(
         else scalar_steps(s, (1, len(p)))
         for name, s in given.items()
     }
-    corners = _usable(p, corners.astype(np.intp))
+    corners, pairs = _usable(p, corners.astype(np.intp))
     if not (ok[corners].all(axis=1)).any():
         msg = (
             f"{int(ok.sum())} of {ok.size} nodes are usable, and none of the triangles has three "
@@ -88,7 +88,7 @@ def triangle_arrays(
         raise FieldError(msg)
     # What is not known about a place must not be computed with.
     p = np.where(finite_nodes(p[None])[0][:, None], p, np.mean(p[ok], axis=0))
-    same = merged_nodes(p, corners)
+    same = merged_nodes(p, corners, pairs)
     joined = same != np.arange(len(p))
     if joined.any():
         moved = joined[corners].any(axis=1)
@@ -165,22 +165,28 @@ def solid_triangles(p: Floats, corners: Indices) -> Bools:
     return np.asarray(area > FLAT_TRIANGLE * longest)
 
 
-def _usable(p: Floats, corners: Indices) -> Indices:
-    """Triangles with an area, each once; what is left out is told."""
+def _usable(p: Floats, corners: Indices) -> tuple[Indices, Indices]:
+    """Triangles with an area, each once, and pairs of nodes (n, 2) that are one; the rest is told.
+
+    Of a needle without area the sides lie upon each other: that its ends become one node closes
+    the crack that it leaves.
+    """
     finite = finite_nodes(p[None])[0]
     known = np.ones(len(corners), bool) if finite.all() else finite[corners].all(axis=1)
     good = known.copy()
     good[known] = solid_triangles(p, corners[known])
     once = ~repeated(corners)
+    flat = corners[known & ~good]
+    is_point = needle_edges(p, flat)
     words = [
-        (int((known & ~good).sum()), "without area"),
+        (int((~is_point.any(axis=1)).sum()), "without area"),
         (int((good & ~once).sum()), "there twice"),
         (int((~known).sum()), "at points that are not finite"),
     ]
     told = ", ".join(f"{count:,} {what}" for count, what in words if count)
     if told:
         warnings.warn(f"triangles are left out: {told}", stacklevel=4)
-    return corners[good & once]
+    return corners[good & once], edges_of(flat)[is_point]
 
 
 def nodal_means(

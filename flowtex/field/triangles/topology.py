@@ -3,14 +3,27 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from flowtex._util.array_types import Bools, Floats, Indices
 
-__all__ = ["edges_of", "flipped", "merged_nodes", "neighbours", "repeated", "triangle_normals"]
+__all__ = [
+    "edges_of",
+    "flipped",
+    "merged_nodes",
+    "needle_edges",
+    "neighbours",
+    "repeated",
+    "triangle_normals",
+]
 
 #: Nodes on borders closer than this share of the surface's extent are one.
 SAME_NODE_SHARE = 1e-9
+#: Edges of a triangle without area that are shorter than this share of the longest are a point.
+#: Sections have them beside nodes that lie in the plane but for the rounding of single precision.
+NEEDLE_SHARE = 1e-4
 #: Numbers of which three have room in one of 64 bits.
 MOST_CUBED = 2**21
 
@@ -44,27 +57,38 @@ def repeated(triangles: Indices) -> Bools:
     return result
 
 
-def merged_nodes(points: Floats, triangles: Indices) -> Indices:
+def merged_nodes(points: Floats, triangles: Indices, joined: Indices | tuple[()] = ()) -> Indices:
     """Return for each node (N,) the one that it is the same as: the first at its place.
 
-    Only nodes on borders are compared: others are joined to their surroundings already.
+    Only nodes on borders are compared: others are joined to their surroundings already. Pairs that
+    are ``joined`` (n, 2) are the same as well.
     """
-    same = np.arange(len(points))
+    count = len(points)
     keys = np.sort(_edge_keys(triangles))
     differs = np.diff(keys, prepend=-1, append=-1) != 0
     lone = keys[differs[1:] & differs[:-1]]
     border = np.unique(np.divmod(lone, int(triangles.max(initial=0)) + 1))
-    if not len(border):
-        return same
-    near = SAME_NODE_SHARE * float(np.ptp(points[border], axis=0).max(initial=0.0))
-    # Exact twins first, which are what most files have: few are left for the tree.
-    _, first, at = np.unique(points[border], axis=0, return_index=True, return_inverse=True)
-    same[border] = border[first[at.ravel()]]
-    left = np.unique(same[border])
-    pairs: Indices = cKDTree(points[left]).query_pairs(near, output_type="ndarray")
-    for one, other in left[np.sort(pairs, axis=1)]:
-        same[same == same[other]] = same[one]
-    return same
+    pairs = np.reshape(np.asarray(joined, dtype=np.intp), (-1, 2))
+    if len(border):
+        near = SAME_NODE_SHARE * float(np.ptp(points[border], axis=0).max(initial=0.0))
+        # Exact twins first, which are what most files have: few are left for the tree.
+        _, first, at = np.unique(points[border], axis=0, return_index=True, return_inverse=True)
+        twins = np.stack([border[first[at.ravel()]], border], axis=-1)
+        left = border[first]
+        close: Indices = cKDTree(points[left]).query_pairs(near, output_type="ndarray")
+        pairs = np.concatenate([pairs, twins[twins[:, 0] != twins[:, 1]], left[close]])
+    if not len(pairs):
+        return np.arange(count)
+    graph = coo_array((np.ones(len(pairs)), pairs.T), shape=(count, count))
+    place = connected_components(graph, directed=False)[1]
+    return np.asarray(np.unique(place, return_index=True)[1][place])
+
+
+def needle_edges(points: Floats, triangles: Indices) -> Bools:
+    """Return which edges (M, 3), opposite to the corners, are single points beside the others."""
+    ends = points[edges_of(triangles)]
+    lengths = np.linalg.norm(ends[:, :, 1] - ends[:, :, 0], axis=-1)
+    return np.asarray(lengths <= NEEDLE_SHARE * lengths.max(axis=1, initial=0.0, keepdims=True))
 
 
 def triangle_normals(points: Floats, triangles: Indices) -> Floats:
@@ -131,9 +155,6 @@ def flipped(triangles: Indices, beside: Indices) -> Bools:
     result = np.zeros(len(triangles), dtype=bool)
     if not turned.any():
         return result
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
     # Triangles that face alike are one patch; patches are few and are walked one by one.
     size = (len(triangles), len(triangles))
     alike = mutual & ~turned

@@ -496,3 +496,16 @@ def test_any_slice_of_a_turning_flow(seed: int) -> None:
         (places - point) @ normal, 0, atol=1e-5 * float(np.linalg.norm(normal))
     )
     np.testing.assert_allclose(field.velocity[0, 0], np.cross([0, 0, 1.0], places), atol=1e-4)
+
+
+@pytest.mark.filterwarnings(ACROSS)
+def test_a_slice_through_rounded_nodes_has_no_crack() -> None:
+    # Thirds are not numbers of single precision, so nodes lie beside the plane by some 1e-8.
+    mesh = pv.ImageData(dimensions=(13, 13, 13), spacing=(1 / 12,) * 3).to_tetrahedra()
+    mesh.points = np.asarray(mesh.points, dtype=np.float32)
+    field = FlowField.from_pyvista(turning(mesh), slice="1,0.1,0.2 through 0.3333333,0.5,0.5")
+    surface = shape_of(field)
+    alone, corner = np.nonzero(surface.neighbours < 0)
+    ends = np.stack([surface.triangles[alone, (corner + by) % 3] for by in (1, 2)])
+    middle = field.points[0][ends].mean(axis=0)
+    assert (np.abs(middle - 0.5).max(axis=1) > 0.499).all()

@@ -57,14 +57,23 @@ def test_what_does_not_fit_is_refused(change: dict[str, Any], words: str) -> Non
 
 
 def test_what_has_no_area_or_is_there_twice_is_left_out() -> None:
-    triangles = np.concatenate([HALVES, [[0, 1, 1]], [[2, 1, 0]]])
-    points = np.concatenate([SQUARE, [[5.0, 5.0]]])
-    velocity = np.concatenate([EVEN, [[9.0, 9]]])
+    triangles = np.concatenate([HALVES, [[0, 1, 5]], [[2, 1, 0]]])
+    points = np.concatenate([SQUARE, [[5.0, 5.0]], [[0.5, 0.0]]])
+    velocity = np.concatenate([EVEN, [[9.0, 9]], [[9.0, 9]]])
     with pytest.warns(UserWarning, match="1 without area, 1 there twice"):
         field = FlowField.from_triangles(points, triangles, velocity)
     assert field.shape == (1, 4)  # and the node that no triangle uses
     assert len(surface_of(field).triangles) == 2
     assert field.surface.extent == pytest.approx(np.sqrt(2))
+
+
+def test_a_needle_without_area_leaves_no_crack() -> None:
+    # The diagonal of a square is a sliver, as wide as nothing and as short at one end.
+    points = np.concatenate([SQUARE, [[1e-9, 1e-9]]])
+    triangles = np.array([[0, 1, 2], [0, 2, 4], [4, 2, 3], [0, 4, 3], [3, 3, 0]])
+    field = FlowField.from_triangles(points, triangles, np.concatenate([EVEN, EVEN[:1]]))
+    assert field.shape == (1, 4)
+    assert (surface_of(field).neighbours >= 0).sum() == 2
 
 
 def test_nodes_that_are_not_known_blank_their_triangles() -> None:

@@ -19,6 +19,7 @@ from flowtex.errors import FieldError
 from flowtex.field.io.meshes import cell_dimension, cell_dimensions, hidden_nodes
 from flowtex.field.io.vectors import BLANKING, MeshArray, catalogue
 from flowtex.field.triangles.arrays import solid_triangles
+from flowtex.field.triangles.topology import needle_edges
 
 __all__ = ["HIDDEN", "Contour", "Cut", "Slice", "cut_faults", "find_cut", "surface_of"]
 
@@ -47,7 +48,9 @@ class Slice:
 
     def of(self, mesh: Any) -> Any:
         """Return the section of a volume."""
-        cut = mesh.slice(normal=self.normal, origin=self.point or mesh.center)
+        # Polygons would come apart where some of their points are as good as one.
+        middle = self.point or mesh.center
+        cut = mesh.slice(normal=self.normal, origin=middle, generate_triangles=True)
         if not cut.n_cells:
             ends = np.reshape(mesh.bounds, (3, 2))
             spans = (
@@ -205,9 +208,11 @@ def surface_of(
         mesh = mesh.triangulate()
     triangles = np.asarray(mesh.regular_faces, dtype=np.intp)
     if cut is not None:
-        # Where a plane goes through the corners of cells, there are triangles without area.
+        # Where a plane goes through the corners of cells, there are triangles without area. Those
+        # with a short side tell which points are as good as one; nobody need know of the others.
         points = np.asarray(mesh.points, dtype=np.float64)
-        triangles = triangles[solid_triangles(points, triangles)]
+        told = solid_triangles(points, triangles) | needle_edges(points, triangles).any(axis=1)
+        triangles = triangles[told]
     return mesh, triangles
 
 
