@@ -12,6 +12,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+import pyvista as pv
 
 from flowtex._util.array_types import Bytes, Floats
 from flowtex.app.streaming.free_part import Cover, covers_of_pane, free_part
@@ -19,6 +20,7 @@ from flowtex.app.streaming.reprojection import plane_to_view
 from flowtex.app.streaming.window import OffscreenWindow, Rect
 from flowtex.camera import Camera, ViewPart
 from flowtex.field import FlowField
+from flowtex.field.triangles.surface import TriangleSurface
 from flowtex.options import SPEED, Appearance, Options
 from flowtex.plotting.handle import FlowHandle
 from flowtex.scene import Change, Scene
@@ -442,11 +444,13 @@ class Viewport:
         surface = handle.scene.whole.surface
         if surface.frame is None:
             reach = self.camera.distance + 2 * surface.extent
-            hits = [
-                mesh.ray_trace(start, start + direction * reach, first_point=True)[0]
-                for mesh in handle.meshes
-            ]
-            points = [np.asarray(hit, dtype=float) for hit in hits if len(hit)]
+            meshes, shown = handle.meshes, handle.field.surface
+            if isinstance(shown, TriangleSurface):
+                # The mesh that is drawn has those triangles only that lie in the last part drawn.
+                triangles = shown.triangles[shown.cells]
+                meshes = [pv.PolyData.from_regular_faces(shown.points[0], triangles)]
+            hits = (_first_hit(mesh, start, start + direction * reach) for mesh in meshes)
+            points = [hit for hit in hits if hit is not None]
             return min(points, key=lambda p: float((p - start) @ direction), default=None)
         normal = np.cross(*surface.frame)
         slope = float(direction @ normal)
@@ -458,6 +462,19 @@ class Viewport:
     def draw(self, width: int, height: int, part: Rect | None = None) -> Bytes:
         """Draw the first pane; :meth:`OffscreenWindow.draw` has the parameters."""
         return self.panes[0].draw(width, height, part)
+
+
+def _first_hit(mesh: Any, start: Floats, end: Floats) -> Floats | None:
+    """Return where a line first meets a mesh."""
+    from vtkmodules.vtkCommonCore import mutable
+    from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
+
+    locator = vtkStaticCellLocator()
+    locator.SetDataSet(mesh)
+    locator.BuildLocator()
+    point, parameters = [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]
+    found = locator.IntersectWithLine(start, end, 0.0, mutable(0.0), point, parameters, mutable(0))
+    return np.array(point) if found else None
 
 
 def _like(
