@@ -9,12 +9,14 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
 import pyvista as pv
 
 from flowtex._util.array_types import Bytes, Floats
+from flowtex._util.cache import WeakCache
 from flowtex.app.streaming.free_part import Cover, covers_of_pane, free_part
 from flowtex.app.streaming.reprojection import plane_to_view
 from flowtex.app.streaming.window import OffscreenWindow, Rect
@@ -444,13 +446,16 @@ class Viewport:
         surface = handle.scene.whole.surface
         if surface.frame is None:
             reach = self.camera.distance + 2 * surface.extent
-            meshes, shown = handle.meshes, handle.field.surface
-            if isinstance(shown, TriangleSurface):
+            if isinstance(surface, TriangleSurface):
                 # The mesh that is drawn has those triangles only that lie in the last part drawn.
-                triangles = shown.triangles[shown.cells]
-                meshes = [pv.PolyData.from_regular_faces(shown.points[0], triangles)]
-            hits = (_first_hit(mesh, start, start + direction * reach) for mesh in meshes)
-            points = [hit for hit in hits if hit is not None]
+                meshes = [_meshes.get("mesh", partial(_whole_mesh, surface), owner=surface)]
+            else:
+                meshes = handle.meshes
+            hits = (
+                mesh.ray_trace(start, start + direction * reach, first_point=True)[0]
+                for mesh in meshes
+            )
+            points = [np.asarray(hit, dtype=float) for hit in hits if len(hit)]
             return min(points, key=lambda p: float((p - start) @ direction), default=None)
         normal = np.cross(*surface.frame)
         slope = float(direction @ normal)
@@ -464,17 +469,13 @@ class Viewport:
         return self.panes[0].draw(width, height, part)
 
 
-def _first_hit(mesh: Any, start: Floats, end: Floats) -> Floats | None:
-    """Return where a line first meets a mesh."""
-    from vtkmodules.vtkCommonCore import mutable
-    from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
+_meshes: WeakCache[pv.PolyData] = WeakCache()
 
-    locator = vtkStaticCellLocator()
-    locator.SetDataSet(mesh)
-    locator.BuildLocator()
-    point, parameters = [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]
-    found = locator.IntersectWithLine(start, end, 0.0, mutable(0.0), point, parameters, mutable(0))
-    return np.array(point) if found else None
+
+def _whole_mesh(surface: TriangleSurface) -> pv.PolyData:
+    """Return all that is drawn of a surface."""
+    triangles: Any = surface.triangles[surface.cells]
+    return pv.PolyData.from_regular_faces(surface.points[0], triangles)
 
 
 def _like(

@@ -229,6 +229,17 @@ def test_the_tip_of_a_curved_surface_asks_what_is_hit() -> None:
     assert asked == [(0.0, 0.1), (0.2, 0.9)]
 
 
+def test_the_tip_of_curved_triangles_does_not_ask_what_was_drawn() -> None:
+    points, triangles = sphere(4)
+    field = FlowField.from_triangles(points, triangles, np.cross([0.0, 0.0, 1.0], points))
+    viewport = Seen((5.0, 0.0, 0.0), (0.0, 0.0, 0.0), field=field)
+    assert not hasattr(viewport.panes[0].handle, "meshes")
+    point = viewport.surface_point(0.0, 0.0)
+    assert point == pytest.approx([1.0, 0.0, 0.0], abs=2e-3)
+    assert viewport.surface_point(0.99, 0.99) is None
+    assert PointText(viewport)(0.0, 0.0) is not None
+
+
 def test_the_digits_follow_the_zoom() -> None:
     viewport = Seen((0.0, 0.0, 5.0), (0.0, 0.0, 0.0), scale=1.0, field=flat())
     viewport.zoom_by(1e5, 0.3333, 0.1)

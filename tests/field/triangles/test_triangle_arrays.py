@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from strategies import property_test
 from triangle_meshes import random_plane, soup, sphere, surface_of
 
 from flowtex import FlowField
@@ -114,6 +115,7 @@ def test_means_at_nodes_are_by_area(rng: np.random.Generator) -> None:
     assert np.isnan(means[:, 4:]).all()
 
 
+@property_test(40)
 @given(st.integers(0, 10**6))
 def test_any_triangles_make_a_field_or_an_error(seed: int) -> None:
     rng = np.random.default_rng(seed)

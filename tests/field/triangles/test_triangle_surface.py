@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from strategies import property_test
 from triangle_meshes import cube, random_plane, soup, sphere, surface_of
 
 from flowtex import FlowField
@@ -56,6 +57,7 @@ def test_a_plane_is_flat_wherever_it_lies(rng: np.random.Generator) -> None:
     assert sizes.max() > 30 * sizes.min()
 
 
+@property_test(40)
 @given(st.integers(0, 10**6))
 def test_a_point_of_the_surface_is_found_again(seed: int) -> None:
     rng = np.random.default_rng(seed)
