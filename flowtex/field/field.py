@@ -328,14 +328,15 @@ class FlowField(FieldConstructors):
     def size_text(self) -> str:
         """How many nodes there are, in words, such as ``"120 x 70 nodes (I x J)"``."""
         if self.triangles is not None:
-            return f"{self.shape[1]:,} nodes, {len(self.triangles):,} triangles"
+            return f"{self.shape[1]:,} nodes, {self.short_size}"
         return f"{self.shape[1]} x {self.shape[0]} nodes (I x J)"
 
     @property
     def short_size(self) -> str:
         """The same for captions, such as ``"120 × 70 nodes"``."""
         if self.triangles is not None:
-            return f"{len(self.triangles):,} triangles"
+            count = len(self.triangles)
+            return "1 triangle" if count == 1 else f"{count:,} triangles"
         return f"{self.shape[1]} × {self.shape[0]} nodes"
 
     @property

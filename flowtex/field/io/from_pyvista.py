@@ -96,6 +96,10 @@ def read_meshes(
     each step.
     """
     cut = find_cut(slice, contour)
+    if cut is not None and plane is not None:
+        words = "slice" if slice is not None else "contour"
+        msg = f"plane is {plane!r} and {words} is {cut.text}; choose one of them"
+        raise FieldError(msg)
     steps = time_steps(mesh, block, cut=cut is not None)
     first = next(steps)
     if is_structured(first.grid) and cut is None:

@@ -307,7 +307,7 @@ def test_flow_across_a_surface_is_told() -> None:
         ({"contour": "plane=1"}, "no array 'plane' of one component. Did you mean \"place\"?"),
         ({"contour": "place=9"}, "contour is 'place=9'; place is 0 to 1 here"),
         ({"contour": "place=1", "slice": "x"}, "choose one of them"),
-        ({"slice": "x", "plane": "k=1"}, "plane='k=1' is for structured meshes"),
+        ({"slice": "x", "plane": "k=1"}, "plane is 'k=1' and slice is 'x'; choose one of them"),
         ({"slice": "x", "vectors": "w"}, "vectors is 'w', and the mesh has no such array"),
     ],
 )
