@@ -20,6 +20,7 @@ import threading
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, partial
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -110,9 +111,13 @@ class Pyramid:
         Level of the root; 0 where the whole field is one.
     tile_blocks
         Blocks along a side of a tile.
+    ranges
+        Ends of the values of scalars and of the speed at level 0, by name and whether robust,
+        where the field itself does not tell them.
     """
 
     tile_blocks = TILE_BLOCKS
+    ranges: Mapping[tuple[str, bool], tuple[float, float]] = MappingProxyType({})
 
     def __init__(
         self, field: FlowField, parameter: str = "arclength", lines: str = "pathlines"
@@ -163,7 +168,12 @@ class Pyramid:
 
     def shape(self, level: int) -> tuple[int, int]:
         """Return the number of nodes (J, I) of a level."""
-        rows, columns = (len(_lines(n, level)) for n in self.nodes)
+        rows, columns = (len(level_lines(n, level)) for n in self.nodes)
+        return rows, columns
+
+    def line_numbers(self, level: int) -> tuple[Indices, Indices]:
+        """Return which rows and columns of level 0 a level has."""
+        rows, columns = (level_lines(n, level) for n in self.nodes)
         return rows, columns
 
     def blocks_of(self, key: TileKey | None) -> tuple[slice, slice]:
@@ -206,13 +216,17 @@ class Pyramid:
 
     def tile(self, key: TileKey, steps: Sequence[int]) -> TextureSet | None:
         """Return the textures of a tile, with a halo that does for some destination times."""
+        return self.settled(key, steps)[1]
+
+    def settled(self, key: TileKey, steps: Sequence[int]) -> tuple[int, TextureSet | None]:
+        """Trace a tile, again with a wider halo where paths were cut, and tell its ``spare``."""
         for spare in SPARES:
             textures = self.textures(key, spare)
             if textures is None or spare == SPARES[-1]:
                 break
             if not any(is_cut(textures, step) for step in steps):
                 break
-        return textures
+        return spare, textures
 
     @cached_property
     def whole(self) -> Whole:
@@ -286,7 +300,7 @@ class Pyramid:
         points = nodes.points
         for axis, turns in ((0, turns_j[:, None, None]), (1, turns_i[None, :, None])):
             if turns.any():
-                points = points + turns * self._periods[axis]
+                points = points + turns * self.periods[axis]
         return replace(
             self.field,
             points=points,
@@ -299,9 +313,8 @@ class Pyramid:
 
     def _positions(self, level: int, rows: Indices, columns: Indices) -> tuple[Floats, Bools]:
         """Return where nodes of a level are, (J, I, 3), and which of them are valid, (J, I)."""
-        at = np.ix_(
-            *(_lines(n, level)[some] for n, some in zip(self.nodes, (rows, columns), strict=True))
-        )
+        some = self.line_numbers(level)
+        at = np.ix_(some[0][rows], some[1][columns])
         return self.field.points[at], self.field.valid[at]
 
     def _nodes(self, level: int, rows: Indices, columns: Indices) -> Nodes:
@@ -318,7 +331,7 @@ class Pyramid:
         )
 
     @cached_property
-    def _periods(self) -> tuple[Floats, Floats]:
+    def periods(self) -> tuple[Floats, Floats]:
         """What leads from the first line of an axis to the last, (3,), for both axes."""
         p = self.field.points
         rows, columns = (
@@ -334,7 +347,7 @@ class Pyramid:
     def _made(self, level: int) -> _Level:
         while len(self._levels) <= level:
             fine, depth = self._levels[-1], len(self._levels)
-            rows, columns = (_lines(n, depth) for n in self.field.shape)
+            rows, columns = self.line_numbers(depth)
             valid = self.field.valid[np.ix_(fine.rows, fine.columns)]
             around = [
                 beside(np.searchsorted(lines, some), len(lines), closed=closed)
@@ -382,7 +395,7 @@ def _greatest(values: Floats, firsts: list[Indices], lasts: list[Indices]) -> Fl
     return values
 
 
-def _lines(count: int, level: int) -> Indices:
+def level_lines(count: int, level: int) -> Indices:
     """Every 2^level-th of so many lines, and the last one."""
     lines = np.arange(0, count, 1 << level)
     return lines if lines[-1] == count - 1 else np.append(lines, count - 1)
