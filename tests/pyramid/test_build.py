@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +15,9 @@ from flowtex import FlowField
 from flowtex._util.array_types import Floats
 from flowtex.field.steps import LazySteps
 from flowtex.pyramid import Built, PyramidError, build, is_store, open_store
+from flowtex.pyramid.levels import Levels
 from flowtex.pyramid.stored import StoredPyramid
+from flowtex.textures import TextureSet
 from flowtex.tiles import Pyramid, TileKey, shared_pyramid
 
 pytest.importorskip("zarr")
@@ -64,8 +67,6 @@ def late() -> FlowField:
     field = series()
     whole = np.asarray(field.velocity)
     lazy = LazySteps(len(whole), lambda step: whole[step])
-    from dataclasses import replace
-
     return replace(field, velocity=lazy)
 
 
@@ -96,9 +97,7 @@ def stored(store: Path) -> StoredPyramid:
 
 
 def lines_of(store: Path) -> str:
-    import zarr
-
-    return str(zarr.open_group(store, mode="r").attrs["flowtex"]["lines"])
+    return str(Levels(store).about["lines"])
 
 
 def made(store: Path, field: FlowField, **options: Any) -> Built:
@@ -187,10 +186,8 @@ def test_coarse_levels_are_completed(tmp_path: Path) -> None:
 def test_a_build_that_ends_early_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     made(tmp_path / "whole.zarr", steady(), levels="all")
     store, count = tmp_path / "a.zarr", iter(range(100))
-    from flowtex.pyramid import tasks
-
     with monkeypatch.context() as patch:
-        layers = flowtex.textures.TextureSet.layers
+        layers = TextureSet.layers
 
         def broken(self: Any, step: int = 0) -> Any:
             if next(count) > 2:
@@ -198,7 +195,7 @@ def test_a_build_that_ends_early_goes_on(tmp_path: Path, monkeypatch: pytest.Mon
                 raise OSError(msg)
             return layers(self, step)
 
-        patch.setattr(tasks.TextureSet, "layers", broken)
+        patch.setattr(TextureSet, "layers", broken)
         with pytest.raises(PyramidError, match=r"shards could not be made .* OSError: no room"):
             made(store, steady(), levels="all")
     assert made(store, steady(), levels="all").kept > 3
@@ -237,7 +234,7 @@ def test_places_that_hold_something_else(tmp_path: Path) -> None:
     with pytest.raises(PyramidError, match="pyramid of another field"):
         made(tmp_path / "a.zarr", series())
     group = zarr.open_group(tmp_path / "a.zarr", mode="r+")
-    group.attrs["flowtex"] = {**dict(group.attrs["flowtex"]), "levels_done": False}
+    group.attrs["flowtex"] = {**Levels(tmp_path / "a.zarr").about, "levels_done": False}
     with pytest.raises(PyramidError, match="not built to its end"):
         open_store(tmp_path / "a.zarr")
     group.attrs["flowtex"] = {"format": "flowtex-pyramid-9"}

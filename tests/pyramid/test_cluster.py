@@ -123,7 +123,7 @@ def test_workers_build_what_threads_build_though_one_is_killed(
     try:
         with distributed.Client(cluster.address) as client:
             client.wait_for_workers(2)
-            killed = []
+            killed: list[subprocess.Popen[bytes]] = []
 
             def kill(event: Any) -> None:
                 del event
