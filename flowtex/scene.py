@@ -536,8 +536,9 @@ def _shared_textures(
         key += (settings.noise, settings.resolution, settings.noise_correction)
         key += (settings.seed, settings.tiles)
         key += () if image is None or settings.noise != "image" else (digest(image),)
-    geometry = None if pyramid is None else pyramid.root_geometry
-    return _textures.get(key, lambda: TextureSet.build(store, settings, image, geometry))
+    if pyramid is not None:
+        return _textures.get(key, lambda: pyramid.root_textures(store))
+    return _textures.get(key, lambda: TextureSet.build(store, settings, image))
 
 
 def coarsened_field(field: FlowField, nodes: int) -> FlowField:

@@ -10,6 +10,8 @@
         scalars/NAME       (time, j, i)
         traces             (time, tile row, tile column, layer, H, W, 4), half floats
 
+The root is one tile, traced whole.
+
 Arrays over nodes lie in chunks of a tile, several in a shard. A shard of traces is one tile at one
 destination time, and each layer a chunk. Layer 0 tells about the tile: a JSON text, whose bytes are
 followed by zeros. The layers of :class:`~flowtex.textures.TextureSet` follow. All is packed by
@@ -34,7 +36,7 @@ from flowtex.earth import Projection
 from flowtex.field import FlowField
 from flowtex.field.steps import LazySteps
 from flowtex.pyramid.places import FORMAT
-from flowtex.textures.geometry import TILE_LEVELS, Padding
+from flowtex.textures.geometry import TILE_LEVELS, Padding, paddings
 from flowtex.tiles import BLOCK_CELLS, TILE_BLOCKS, Pyramid
 
 __all__ = [
@@ -45,10 +47,10 @@ __all__ = [
     "attributes_of",
     "create_level",
     "empty_field",
-    "header_texels",
     "parts_of",
     "read_header",
-    "tile_shape",
+    "shard_texels",
+    "tiles_of",
 ]
 
 TILE_CELLS = BLOCK_CELLS * TILE_BLOCKS
@@ -59,6 +61,8 @@ MOST_LAYERS = 64
 #: How hard is tried to pack; more takes longer and gains little.
 GZIP_LEVEL = 1
 TRACES = "traces"
+#: Texels along a side in which what is told of a tile has room, however small that is.
+LEAST_TEXELS = 32
 CONVENTION = {
     "schema_url": (
         "https://raw.githubusercontent.com/zarr-conventions/multiscales/refs/tags/v1/schema.json"
@@ -96,11 +100,18 @@ def parts_of(level: int, shape: tuple[int, int], steps: int) -> list[Part]:
     return [Part(level, t, j, i) for t in range(steps) for j in rows for i in columns]
 
 
-def tile_shape() -> tuple[int, int]:
-    """Return rows and columns of texels of the largest tile."""
+def tiles_of(
+    level: int, shape: tuple[int, int], about: Mapping[str, Any]
+) -> tuple[tuple[int, int], tuple[int, int]]:
+    """Return how many tiles a level has, and texels the largest of them, along both axes."""
+    if level == about["depth"]:
+        _, *both = paddings(shape, (about["periodic"][0], about["periodic"][1]))
+        size = [max(padding.size, LEAST_TEXELS) for padding in both]
+        return (1, 1), (size[0], size[1])
+    rows, columns = (-(-(n - 1) // TILE_CELLS) for n in shape)
     nodes = TILE_CELLS + 1
-    size = Padding.of(nodes, TILE_LEVELS, periodic=False, drawn=slice(0, nodes)).size
-    return size, size
+    largest = Padding.of(nodes, TILE_LEVELS, periodic=False, drawn=slice(0, nodes)).size
+    return (rows, columns), (largest, largest)
 
 
 def about_field(pyramid: Pyramid, levels: str) -> dict[str, Any]:
@@ -129,7 +140,7 @@ def about_field(pyramid: Pyramid, levels: str) -> dict[str, Any]:
         "tile_cells": TILE_CELLS,
         "parameter": pyramid.parameter,
         "lines": pyramid.lines,
-        "traced": list(range(0 if levels == "all" else 1, pyramid.depth)),
+        "traced": sorted({*range(0 if levels == "all" else 1, pyramid.depth), pyramid.depth}),
         "components": 2 if flat else 3,
         "height": float(z[0, 0]),
         "axes": flat and bool((x == x[:1]).all() and (y == y[:, :1]).all()),
@@ -188,8 +199,7 @@ def create_level(group: Any, level: int, shape: tuple[int, int], about: Mapping[
     for name, count in about["scalars"].items():
         nodal(here.require_group("scalars"), name, count, (), "float64")
     if level in about["traced"]:
-        tiles = [-(-(n - 1) // TILE_CELLS) for n in shape]
-        size = tile_shape()
+        tiles, size = tiles_of(level, shape, about)
         _create(
             here,
             TRACES,
@@ -253,9 +263,11 @@ def empty_field(about: Mapping[str, Any]) -> FlowField:
     )
 
 
-def header_texels(about: Mapping[str, Any], layers: Floats32 | None) -> AnyArray:
+def shard_texels(
+    about: Mapping[str, Any], layers: Floats32 | None, shape: tuple[int, ...]
+) -> AnyArray:
     """Return a shard of traces: what is told of a tile, and its layers (L, H, W, 4)."""
-    shard = np.zeros((MOST_LAYERS, *tile_shape(), 4), np.float16)
+    shard = np.zeros(shape, np.float16)
     text = json.dumps(about).encode()
     shard[0].reshape(-1).view(np.uint8)[: len(text)] = np.frombuffer(text, np.uint8)
     if layers is not None:

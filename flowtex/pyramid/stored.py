@@ -19,6 +19,7 @@ from flowtex.pyramid.places import PyramidError
 from flowtex.textures import TextureSet
 from flowtex.tiles import Pyramid, TileKey, have_pyramid
 from flowtex.tiles.pyramid import Nodes
+from flowtex.trace import SliceStore
 
 __all__ = ["StoredPyramid", "open_store", "root_of"]
 
@@ -125,6 +126,22 @@ class StoredPyramid(Pyramid):
         if textures is None or textures.lags.tolist() != about["lags"]:
             msg = f"tile {tuple(key)} of {self._stored.place} does not fit its level; build it anew"
             raise PyramidError(msg)
+        return self._read(textures, key, read)
+
+    def root_textures(self, store: SliceStore) -> TextureSet:
+        """Return the textures of the root; it is traced where the store has not what is asked."""
+        textures, key = super().root_textures(store), TileKey(self.depth, 0, 0)
+        if not self.made(key):
+            return textures
+        try:
+            tile = self._stored.tile(key, 0)
+        except PyramidError:
+            return textures
+        if textures.lags.tolist() != tile.about["lags"]:
+            return textures
+        return self._read(textures, key, {0: tile})
+
+    def _read(self, textures: TextureSet, key: TileKey, read: dict[int, StoredTile]) -> TextureSet:
         parts = {name: getattr(textures, name) for name in TextureSet.__dataclass_fields__}
         return _StoredTextures(**parts, levels=self._stored, key=key, read=read)
 
@@ -146,4 +163,12 @@ class _StoredTextures(TextureSet):
     def layers(self, step: int = 0) -> Floats32:
         """Texels of the slice texture for one destination time, (layers, H, W, 4)."""
         tile = self.read.pop(step, None)
-        return (self.levels.tile(self.key, step) if tile is None else tile).layers
+        if tile is not None:
+            return tile.layers
+        try:
+            return self.levels.tile(self.key, step).layers
+        except PyramidError:
+            if self.key.level < self.levels.about["depth"]:
+                raise
+            # There is nothing coarser to show, and what it is made from is at hand.
+            return super().layers(step)

@@ -12,13 +12,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from flowtex._util.array_types import Indices
-from flowtex.pyramid.layout import TRACES, Part, header_texels
+from flowtex.pyramid.layout import TRACES, Part, shard_texels
 from flowtex.pyramid.levels import Levels
 from flowtex.pyramid.places import store_at
 from flowtex.pyramid.stored import StoredPyramid, root_of
 from flowtex.textures import TextureSet
-from flowtex.tiles import TileKey
+from flowtex.tiles import Pyramid, TileKey
 from flowtex.tiles.pyramid import Nodes, averaged, beside, level_lines
+from flowtex.trace import SliceStore
 
 __all__ = ["TileTask", "make_part", "make_tile", "write_part"]
 
@@ -76,15 +77,17 @@ def make_tile(place: str, run: str, task: TileTask) -> None:
     pyramid, array = _pyramid(place, run), _writable(place, run)[f"{task.key.level}/{TRACES}"]
     every = range(len(pyramid.field.times))
     # One halo for all times, whichever of them are still to be written.
-    spare, textures = pyramid.settled(task.key, every)
+    if task.key.level == pyramid.depth:
+        store = SliceStore(pyramid.root, parameter=pyramid.parameter, lines=pyramid.lines)
+        spare, textures = 0, Pyramid.root_textures(pyramid, store)
+    else:
+        spare, textures = pyramid.settled(task.key, every)
     for step in task.steps:
-        at = (step, task.key.row, task.key.column)
+        at, room = (step, task.key.row, task.key.column), array.shape[3:]
         if textures is None:
-            array[at] = header_texels({"empty": True}, None)
+            array[at] = shard_texels({"empty": True}, None, room)
             continue
-        array[at] = header_texels(_about_tile(textures, spare), textures.layers(step))
-        if len(every) > 1:
-            textures.store.forget()
+        array[at] = shard_texels(_about_tile(textures, spare), textures.layers(step), room)
 
 
 def _about_tile(textures: TextureSet, spare: int) -> dict[str, Any]:

@@ -31,6 +31,7 @@ from flowtex.field.steps import Steps, map_steps
 from flowtex.textures import TextureSet, TriangleGeometry
 from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.tiles.region import Region, Whole, is_cut, tile_of
+from flowtex.trace import SliceStore
 
 __all__ = [
     "BLOCK_CELLS",
@@ -142,6 +143,10 @@ class Pyramid:
     def root_geometry(self) -> SurfaceGeometry | TriangleGeometry:
         """The root as it is drawn."""
         return SurfaceGeometry.of(self.root)
+
+    def root_textures(self, store: SliceStore) -> TextureSet:
+        """Return the textures of the root, whose traces are those of a store of slices."""
+        return TextureSet(self.root_geometry, store)
 
     def at_level(self, level: int) -> FlowField:
         """Return the whole field at a level."""

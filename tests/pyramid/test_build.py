@@ -19,6 +19,7 @@ from flowtex.pyramid.levels import Levels
 from flowtex.pyramid.stored import StoredPyramid
 from flowtex.textures import TextureSet
 from flowtex.tiles import Pyramid, TileKey, shared_pyramid
+from flowtex.trace.store import shared_store
 
 pytest.importorskip("zarr")
 
@@ -129,6 +130,12 @@ def test_tiles_are_those_of_the_field_in_memory(tmp_path: Path, name: str, level
     np.testing.assert_array_equal(there.root.points, memory.root.points)
     np.testing.assert_array_equal(there.root.valid, memory.root.valid)
     every, empty = range(len(field.times)), 0
+    slices = shared_store(memory.root, "arclength", there.lines)
+    for step in every:
+        own = memory.root_textures(slices).layers(step).astype(np.float16)
+        read = there.root_textures(slices)
+        assert type(read) is not TextureSet
+        np.testing.assert_array_equal(read.layers(step).astype(np.float16), own)
     for key in keys_of(memory):
         assert there.made(key) == (levels == "all" or key.level > 0)
         one, other = there.tile(key, every), memory.tile(key, every)
@@ -218,6 +225,27 @@ def test_a_broken_tile_is_told(tmp_path: Path, fault: str) -> None:
     with pytest.raises(PyramidError, match=r"tile \(0, 0, 1\).*(cannot be read|missing)"):
         stored(store).tile(TileKey(0, 0, 1), [0])
     assert stored(store).tile(TileKey(0, 0, 0), [0]) is not None
+
+
+def test_a_broken_root_is_traced_again(tmp_path: Path) -> None:
+    store = tmp_path / "a.zarr"
+    made(store, steady())
+    for file in (store / "2" / "traces" / "c").rglob("*"):
+        if file.is_file():
+            file.write_bytes(b"torn")
+    there = stored(store)
+    slices = shared_store(there.root, "arclength", "pathlines")
+    own = Pyramid(steady()).root_textures(slices).layers()
+    np.testing.assert_array_equal(there.root_textures(slices).layers(), own)
+
+
+def test_a_small_field_is_all_root(tmp_path: Path) -> None:
+    field = steady(6, 9)
+    assert made(tmp_path / "a.zarr", field).depth == 0
+    root = open_store(tmp_path / "a.zarr")
+    np.testing.assert_array_equal(root.velocity, field.velocity)
+    slices = shared_store(root, "arclength", "pathlines")
+    assert stored(tmp_path / "a.zarr").root_textures(slices).layers().shape[0] > 4
 
 
 def test_places_that_hold_something_else(tmp_path: Path) -> None:
