@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -156,8 +155,8 @@ class StoredPyramid(Pyramid):
 class _StoredTextures(TextureSet):
     """Textures whose layers are read. Those at hand already are handed over once."""
 
-    levels: Any = None
-    key: Any = None
+    levels: Levels = field(kw_only=True)
+    key: TileKey = field(kw_only=True)
     read: dict[int, StoredTile] = field(default_factory=dict)
 
     def layers(self, step: int = 0) -> Floats32:

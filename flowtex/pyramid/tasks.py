@@ -77,6 +77,7 @@ def make_tile(place: str, run: str, task: TileTask) -> None:
     pyramid, array = _pyramid(place, run), _writable(place, run)[f"{task.key.level}/{TRACES}"]
     every = range(len(pyramid.field.times))
     # One halo for all times, whichever of them are still to be written.
+    textures: TextureSet | None
     if task.key.level == pyramid.depth:
         store = SliceStore(pyramid.root, parameter=pyramid.parameter, lines=pyramid.lines)
         spare, textures = 0, Pyramid.root_textures(pyramid, store)

@@ -51,7 +51,7 @@ def assert_same(one: Any, other: Any) -> None:
 class Cluster:
     """A scheduler and workers as processes of their own, each in a folder of its own."""
 
-    def __init__(self, folder: Path, workers: int = 2, **environment: str) -> None:
+    def __init__(self, folder: Path, environment: dict[str, str], workers: int = 2) -> None:
         self.folder, self.environment = folder, {**os.environ, **environment}
         self.environment["PYTHONPATH"] = str(Path(__file__).resolve().parents[2])
         self.processes: list[subprocess.Popen[bytes]] = []
@@ -119,7 +119,7 @@ def test_workers_build_what_threads_build_though_one_is_killed(
     tmp_path: Path, s3: dict[str, str]
 ) -> None:
     build(flow(), tmp_path / "threads.zarr", levels="all", progress=False)
-    cluster = Cluster(tmp_path, **s3)
+    cluster = Cluster(tmp_path, s3)
     try:
         with distributed.Client(cluster.address) as client:
             client.wait_for_workers(2)

@@ -13,6 +13,7 @@ from flowtex import FlowField
 from flowtex.cli import main
 from flowtex.pyramid import build
 from flowtex.scene import Scene, share_field
+from flowtex.tiles import has_pyramid
 
 pytest.importorskip("zarr")
 
@@ -100,3 +101,15 @@ def test_the_shell_builds_tells_and_draws(
     assert (tmp_path / "a.png").exists()
     assert main(["render", str(store), "-o", str(tmp_path / "b.png"), "--plane", "k=0"]) == 2
     assert "--plane is for what a pyramid is built from" in capsys.readouterr().err
+
+
+def test_the_shell_shows_a_store_on_a_page(
+    opengl: Any, store: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("trame")
+    shown: list[Any] = []
+    monkeypatch.setattr("flowtex.cli.show._serve", lambda library, *_: shown.append(library) or 0)
+    monkeypatch.setattr("flowtex.diagnostics.has_display", lambda: False)
+    assert main(["show", str(store)]) == 0
+    (library,) = shown
+    assert has_pyramid(library.source(library.names[0]).field())
