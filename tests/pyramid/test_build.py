@@ -80,7 +80,17 @@ def ring() -> FlowField:
     return FlowField.from_arrays(points, around)
 
 
-FIELDS = {"steady": steady, "series": series, "late": late, "ring": ring}
+def globe() -> FlowField:
+    """Around both poles, where some nodes have no position."""
+    lon, lat = np.meshgrid(np.radians(np.linspace(0, 360, 361)), np.radians(np.arange(-90, 91.0)))
+    points = np.stack([np.cos(lat) * np.cos(lon), np.cos(lat) * np.sin(lon), np.sin(lat)], axis=-1)
+    velocity = np.cross([0.3, 0.1, 1.0], points)
+    land = np.hypot(lon - 2, lat - 0.5) < 0.4
+    points[np.hypot(lon - 2, lat - 0.5) < 0.2] = np.nan
+    return FlowField.from_arrays(points, velocity, valid=~land)
+
+
+FIELDS = {"globe": globe, "steady": steady, "series": series, "late": late, "ring": ring}
 
 
 def keys_of(pyramid: Pyramid) -> list[TileKey]:

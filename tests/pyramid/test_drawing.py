@@ -108,7 +108,12 @@ def test_the_shell_shows_a_store_on_a_page(
 ) -> None:
     pytest.importorskip("trame")
     shown: list[Any] = []
-    monkeypatch.setattr("flowtex.cli.show._serve", lambda library, *_: shown.append(library) or 0)
+
+    def serve(library: Any, *_: Any) -> int:
+        shown.append(library)
+        return 0
+
+    monkeypatch.setattr("flowtex.cli.show._serve", serve)
     monkeypatch.setattr("flowtex.diagnostics.has_display", lambda: False)
     assert main(["show", str(store)]) == 0
     (library,) = shown
