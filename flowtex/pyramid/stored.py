@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -134,7 +135,8 @@ class StoredPyramid(Pyramid):
             return textures
         try:
             tile = self._stored.tile(key, 0)
-        except PyramidError:
+        except PyramidError as error:
+            warnings.warn(f"the whole surface is traced anew, for {error}", stacklevel=2)
             return textures
         if textures.lags.tolist() != tile.about["lags"]:
             return textures
