@@ -16,7 +16,7 @@ from flowtex.settings import Settings
 from flowtex.trace import TraceSlices, trace
 
 if TYPE_CHECKING:
-    from flowtex import examples
+    from flowtex import examples, pyramid
     from flowtex.camera import Camera
     from flowtex.display import show
     from flowtex.offscreen.figure import axes, extent
@@ -35,6 +35,7 @@ __all__ = [
     "export",
     "extent",
     "movie",
+    "pyramid",
     "render",
     "show",
     "trace",
@@ -57,8 +58,8 @@ def __getattr__(name: str) -> Any:
     """Import what draws (PyVista, VTK, the widget) only when it is used."""
     import importlib
 
-    if name == "examples":
-        return importlib.import_module("flowtex.examples")
+    if name in ("examples", "pyramid"):
+        return importlib.import_module(f"flowtex.{name}")
     if name in _LAZY:
         return getattr(importlib.import_module(f"flowtex.{_LAZY[name]}"), name)
     msg = f"module 'flowtex' has no attribute {name!r}"

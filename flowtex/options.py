@@ -116,6 +116,9 @@ class FieldOptions:
             When something is chosen of a field that is made already, or the times of a file.
         """
         choices = {name: value for name, value in vars(self).items() if value is not None}
+        if isinstance(mesh, (str, Path)) and (stored := _stored_field(mesh)) is not None:
+            self._refuse(choices, tuple(choices), "what a pyramid is built from")
+            return stored
         if is_dataset(mesh):
             return FlowField.from_xarray(mesh, **self._of_dataset(choices))
         if isinstance(mesh, (str, Path)) or _are_paths(mesh):
@@ -144,6 +147,13 @@ class FieldOptions:
         if given := [name for name in names if name in choices]:
             msg = f"{', '.join(given)} is for {what}; leave it out"
             raise TypeError(msg)
+
+
+def _stored_field(path: str | Path) -> FlowField | None:
+    """Return the field of a pyramid in a store, where there is one."""
+    from flowtex.pyramid import is_store, open_store
+
+    return open_store(path) if is_store(path) else None
 
 
 def _are_paths(mesh: Any) -> bool:

@@ -27,7 +27,15 @@ from flowtex.rendering.cpu.shade import mean_colours
 from flowtex.settings import TABLE, Affects, Settings, SettingsError
 from flowtex.textures import TextureSet, check_noise
 from flowtex.textures.images import as_picture, load_image
-from flowtex.tiles import Pyramid, levels_of, shared_pyramid, triangle_pyramid
+from flowtex.tiles import (
+    Pyramid,
+    ends_of,
+    has_pyramid,
+    levels_of,
+    shared_pyramid,
+    speeds_in_space,
+    triangle_pyramid,
+)
 from flowtex.trace import SliceStore, TraceSlices, chosen_lines, shared_store
 
 __all__ = ["NO_IMAGE", "AppearanceAttributes", "Change", "Scene", "share_field", "steps_of"]
@@ -49,8 +57,6 @@ ZERO_SHARE = 1e-5
 SAME_VALUE_SHARE = 1e-9
 #: Share of such a value by which its range is widened.
 WIDENED_SHARE = 0.05
-#: Percentiles at the ends of a range without outliers.
-ROBUST_PERCENTILES = (2, 98)
 
 NO_IMAGE = (
     "noise is 'image' and there is no image; give one as image=, or later with set_image(image)"
@@ -347,12 +353,11 @@ class Scene:
         return self._ranges[key]
 
     def _range_of(self, name: str, *, robust: bool) -> tuple[float, float]:
-        values = self._range_values(name)
-        values = values[np.isfinite(values)]
-        if not values.size:
+        known = {} if self.pyramid is None else self.pyramid.ranges
+        ends = known.get((name, robust)) or ends_of(self._range_values(name), robust=robust)
+        if ends is None:
             return 0.0, 1.0
-        ends = np.percentile(values, ROBUST_PERCENTILES) if robust else (values.min(), values.max())
-        low, high = map(float, ends)
+        low, high = ends
         size = max(abs(low), abs(high))
         if high - low > SAME_VALUE_SHARE * size:
             return low, high
@@ -363,7 +368,7 @@ class Scene:
         some, valid = self.field.typical, self.field.valid
         if self.pyramid is None or name in self.field.scalars:
             return np.asarray(np.asarray(steps_of(some, name))[:, valid])
-        return np.asarray(np.linalg.norm(some.velocity, axis=-1)[:, valid])
+        return speeds_in_space(some)
 
     def copy(self) -> Scene:
         """Return a scene that shows the same, and that no later change of this one reaches.
@@ -512,6 +517,8 @@ def share_field(field: FlowField) -> FlowField:
 
     A notebook shows one mesh many times over, and makes it a field each time.
     """
+    if has_pyramid(field):
+        return field
     names = (field.name, field.length_unit, field.time_unit, *field.long_names.items())
     words = (*names, field.periodic, field.sign_free, str(field.start), field.projection)
     units = tuple(field.units.items())
@@ -537,8 +544,9 @@ def _shared_textures(
         key += (settings.noise, settings.resolution, settings.noise_correction)
         key += (settings.seed, settings.tiles)
         key += () if image is None or settings.noise != "image" else (digest(image),)
-    geometry = None if pyramid is None else pyramid.root_geometry
-    return _textures.get(key, lambda: TextureSet.build(store, settings, image, geometry))
+    if pyramid is not None:
+        return _textures.get(key, lambda: pyramid.root_textures(store))
+    return _textures.get(key, lambda: TextureSet.build(store, settings, image))
 
 
 def coarsened_field(field: FlowField, nodes: int) -> FlowField:

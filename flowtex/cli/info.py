@@ -30,8 +30,14 @@ def info(*files: FILE, flow: Annotated[FieldFlags | None, FLAT] = None) -> int:
 
     from flowtex.field.datasets.files import dataset_paths
     from flowtex.field.io.summary import describe
+    from flowtex.pyramid import is_store
 
     console = Console(highlight=False)
+    if len(files) == 1 and is_store(files[0]):
+        console.print(Text(str(files[0]), "bold"), soft_wrap=True)
+        console.print(_store_table(files[0]))
+        console.print(_field_table(load_field(files, flow)))
+        return 0
     if paths := dataset_paths(files):
         console.print(Text(" ".join(map(str, files)), "bold"), soft_wrap=True)
         console.print(_recognised_table(paths))
@@ -62,6 +68,23 @@ def _pairs(title: str) -> Table:
     table.show_header = False
     table.add_column(style="dim")
     table.add_column()
+    return table
+
+
+def _store_table(place: Path) -> Table:
+    """Tell what of a pyramid is in its store."""
+    from flowtex.pyramid.levels import Levels
+
+    about = Levels(place).about
+    table = _pairs("")
+    rows, columns = about["nodes"]
+    table.add_row("pyramid", f"{columns} × {rows} nodes, {about['depth'] + 1} levels")
+    table.add_row("times", str(len(about["times"])))
+    traced = ", ".join(map(str, about["traced"])) or "none"
+    table.add_row("tiles", f"{traced} of levels 0 to {about['depth']}, by {about['parameter']}")
+    table.add_row("lines", about["lines"])
+    table.add_row("scalars", ", ".join(about["scalars"]) or "none")
+    table.add_row("built", "all of it" if about.get("complete") else "not to its end; build again")
     return table
 
 
@@ -160,7 +183,11 @@ def _span(array: ArraySummary) -> tuple[str, str]:
 def _field_table(field: FlowField) -> Table:
     import numpy as np
 
-    table = _pairs("What would be drawn")
+    from flowtex.tiles import has_pyramid
+
+    table = _pairs(
+        "What would be drawn of the whole" if has_pyramid(field) else "What would be drawn"
+    )
     if field.triangles is None:
         rows, columns = field.shape
         table.add_row("nodes", f"{columns} × {rows} (i × j)")

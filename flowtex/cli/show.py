@@ -125,6 +125,10 @@ def _show_page(
     if options.pop("background") != LookFlags.background:
         msg = "--background is for pictures and windows; the page has its own, under Colours"
         raise UsageError(msg)
+    from flowtex.pyramid import is_store
+
+    if len(files) == 1 and is_store(files[0]):
+        return _serve(Library.of(load_field(files, flow)), page, options)
     choice = (flow or FieldFlags()).arguments()
     one = _belong_together(files) or (len(files) == 1 and not _is_folder(files[0]))
     if one and (library := _earth_library(files, choice)) is not None:

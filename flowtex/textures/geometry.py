@@ -87,6 +87,15 @@ class Padding:
         return (np.arange(self.nodes) + self.before + 0.5) / self.size
 
 
+def paddings(shape: tuple[int, int], periodic: tuple[bool, bool]) -> tuple[int, Padding, Padding]:
+    """Return the mip levels of a whole surface, and how its rows and columns lie in textures."""
+    levels = int(np.clip(np.log2(max(min(shape) / 4, 1)), 0, DEEPEST))
+    rows, columns = (
+        Padding.of(n, levels, periodic=p) for n, p in zip(shape, periodic, strict=True)
+    )
+    return levels, rows, columns
+
+
 class DrawnSurface:
     """What surfaces of both kinds have: the frame in which they are drawn.
 
@@ -177,13 +186,7 @@ class SurfaceGeometry(DrawnSurface):
     @classmethod
     def of(cls, field: FlowField) -> SurfaceGeometry:
         """Lay out a field's surface."""
-        shortest = min(field.shape)
-        levels = int(np.clip(np.log2(max(shortest / 4, 1)), 0, DEEPEST))
-        rows, columns = (
-            Padding.of(n, levels, periodic=p)
-            for n, p in zip(field.shape, field.periodic, strict=True)
-        )
-        return cls(field, levels, rows, columns, field.surface)
+        return cls(field, *paddings(field.shape, field.periodic), field.surface)
 
     @classmethod
     def of_tile(

@@ -12,7 +12,8 @@ from flowtex.tiles.pyramid import (
     TileKey,
     block_places,
 )
-from flowtex.tiles.shared import shared_pyramid
+from flowtex.tiles.ranges import ends_of, speeds_in_space
+from flowtex.tiles.shared import has_pyramid, have_pyramid, shared_pyramid
 from flowtex.tiles.triangle_pyramid import TrianglePyramid
 
 __all__ = [
@@ -25,6 +26,10 @@ __all__ = [
     "TileLoader",
     "TrianglePyramid",
     "block_places",
+    "ends_of",
+    "has_pyramid",
+    "have_pyramid",
     "levels_of",
     "shared_pyramid",
+    "speeds_in_space",
 ]

@@ -21,7 +21,7 @@ from flowtex._util.array_types import Floats32
 from flowtex._util.cache import ByteCache
 from flowtex._util.progress import Stopped, stoppable
 from flowtex.textures import TextureSet, TriangleGeometry
-from flowtex.tiles.pyramid import Pyramid, TileKey, is_cut
+from flowtex.tiles.pyramid import Pyramid, TileKey
 
 __all__ = ["Tile", "TileLoader"]
 
@@ -34,8 +34,6 @@ TEXEL_BYTES, NODE_BYTES = 16, 200
 TRIANGLE_BYTES = 250
 #: Tiles that are made at once, at most.
 MOST_THREADS = 4
-#: Widths of the halo that are tried one after the other, where paths are cut by it.
-SPARES = (1, 2, 4)
 #: Seconds before the last request within which a tile must have been asked for, not to be given up.
 GRACE_S = 2.0
 
@@ -164,12 +162,7 @@ class TileLoader:
 
     def _tile(self, key: TileKey, step: int) -> Tile:
         """Return a tile without layers, with a halo that does for a destination time."""
-        for spare in SPARES:
-            textures = self.pyramid.textures(key, spare)
-            if textures is None:
-                return Tile(key, None)
-            if spare == SPARES[-1] or not is_cut(textures, step):
-                break
+        textures = self.pyramid.tile(key, (step,))
         return Tile(key, textures, textures and self._prepare(textures))
 
     def _make(self, key: TileKey, step: int) -> None:

@@ -17,8 +17,10 @@ what a tile costs does not depend on the size of the surface.
 from __future__ import annotations
 
 import threading
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, partial
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -28,6 +30,7 @@ from flowtex.field import FlowField
 from flowtex.field.steps import Steps, map_steps
 from flowtex.textures import TextureSet, TriangleGeometry
 from flowtex.textures.geometry import SurfaceGeometry
+from flowtex.tiles.region import Region, Whole, is_cut, tile_of
 from flowtex.trace import SliceStore
 
 __all__ = [
@@ -52,8 +55,8 @@ PATH_CELLS = 32
 HALO_SHARE, HALO_SPARE, MOST_HALO = 1.2, 3, 512
 #: Nodes of a window around a pole from which on its paths are not composed: all are traced then.
 MOST_COMPOSED = 500_000
-#: Share of its length up to which a path must not be cut, and of the paths of a tile that may be.
-NEEDED_SHARE, MOST_CUT_SHARE = 0.75, 5e-3
+#: Widths of the halo that are tried one after the other, where paths are cut by it.
+SPARES = (1, 2, 4)
 #: Rows that are averaged together.
 ROWS = 256
 
@@ -69,6 +72,16 @@ class TileKey(NamedTuple):
     def parent(self) -> TileKey:
         """The tile that this one refines; at the depth of the root it stands for the root."""
         return TileKey(self.level + 1, self.row // 2, self.column // 2)
+
+
+class Nodes(NamedTuple):
+    """What nodes of a level have, as in a field."""
+
+    points: Floats
+    valid: Bools
+    velocity: Steps
+    has_position: Bools | None
+    scalars: Mapping[str, Steps]
 
 
 class _Level(NamedTuple):
@@ -93,20 +106,27 @@ class Pyramid:
 
     Attributes
     ----------
+    nodes
+        Number of nodes (J, I) at level 0.
     depth
         Level of the root; 0 where the whole field is one.
     tile_blocks
         Blocks along a side of a tile.
+    ranges
+        Ends of the values of scalars and of the speed at level 0, by name and whether robust,
+        where the field itself does not tell them.
     """
 
     tile_blocks = TILE_BLOCKS
+    ranges: Mapping[tuple[str, bool], tuple[float, float]] = MappingProxyType({})
 
     def __init__(
         self, field: FlowField, parameter: str = "arclength", lines: str = "pathlines"
     ) -> None:
         self.field, self.parameter, self.lines = field, parameter, lines
+        self.nodes = field.shape
         self.depth = 0
-        while np.prod([len(_lines(n, self.depth)) for n in field.shape]) > ROOT_NODES:
+        while np.prod(self.shape(self.depth)) > ROOT_NODES:
             self.depth += 1
         self._lock = threading.Lock()
         self._places: dict[int, Floats] = {}
@@ -124,6 +144,10 @@ class Pyramid:
         """The root as it is drawn."""
         return SurfaceGeometry.of(self.root)
 
+    def root_textures(self, store: SliceStore) -> TextureSet:
+        """Return the textures of the root, whose traces are those of a store of slices."""
+        return TextureSet(self.root_geometry, store)
+
     def at_level(self, level: int) -> FlowField:
         """Return the whole field at a level."""
         rows, columns = (np.arange(n) for n in self.shape(level))
@@ -132,7 +156,7 @@ class Pyramid:
     @property
     def blocks(self) -> tuple[int, int]:
         """Rows and columns of blocks at level 0."""
-        rows, columns = (max(-(-(n - 1) // BLOCK_CELLS), 1) for n in self.field.shape)
+        rows, columns = (max(-(-(n - 1) // BLOCK_CELLS), 1) for n in self.nodes)
         return rows, columns
 
     def places(self, level: int) -> Floats:
@@ -149,7 +173,12 @@ class Pyramid:
 
     def shape(self, level: int) -> tuple[int, int]:
         """Return the number of nodes (J, I) of a level."""
-        rows, columns = (len(_lines(n, level)) for n in self.field.shape)
+        rows, columns = (len(level_lines(n, level)) for n in self.nodes)
+        return rows, columns
+
+    def line_numbers(self, level: int) -> tuple[Indices, Indices]:
+        """Return which rows and columns of level 0 a level has."""
+        rows, columns = (level_lines(n, level) for n in self.nodes)
         return rows, columns
 
     def blocks_of(self, key: TileKey | None) -> tuple[slice, slice]:
@@ -187,22 +216,44 @@ class Pyramid:
         KeyError
             When there is no such tile.
         """
+        region = self.region(key, spare)
+        return None if region is None else tile_of(region, self.whole)
+
+    def tile(self, key: TileKey, steps: Sequence[int]) -> TextureSet | None:
+        """Return the textures of a tile, with a halo that does for some destination times."""
+        return self.settled(key, steps)[1]
+
+    def settled(self, key: TileKey, steps: Sequence[int]) -> tuple[int, TextureSet | None]:
+        """Trace a tile, again with a wider halo where paths were cut, and tell its ``spare``."""
+        for spare in SPARES:
+            textures = self.textures(key, spare)
+            if textures is None or spare == SPARES[-1]:
+                break
+            if not any(is_cut(textures, step) for step in steps):
+                break
+        return spare, textures
+
+    @cached_property
+    def whole(self) -> Whole:
+        """What the tiles have from the whole surface."""
+        speed = self.root.typical.speed[:, self.root.valid]
+        typical = float(np.sqrt(np.mean(speed**2))) or 1.0
+        return Whole(self.root.surface, typical, self.parameter, self.lines)
+
+    def region(self, key: TileKey, spare: int = 1) -> Region | None:
+        """Return the part of a level that a tile is made from; :meth:`textures` has the rest."""
         first = [at * TILE_CELLS for at in key[1:]]
         shape = self.shape(key.level) if 0 <= key.level < self.depth else (0, 0)
         if not all(0 <= at < n - 1 for at, n in zip(first, shape, strict=True)):
             msg = f"there is no tile {tuple(key)}; levels are 0 to {self.depth - 1}"
             raise KeyError(msg)
         last = [min(at + TILE_CELLS, n - 1) for at, n in zip(first, shape, strict=True)]
-        at = np.ix_(
-            *(
-                _lines(n, key.level)[a : b + 1]
-                for n, a, b in zip(self.field.shape, first, last, strict=True)
-            )
+        points, valid = self._positions(
+            key.level, *(np.arange(a, b + 1) for a, b in zip(first, last, strict=True))
         )
-        valid = self.field.valid[at]
         if not (valid[:-1, :-1] & valid[1:, :-1] & valid[:-1, 1:] & valid[1:, 1:]).any():
             return None
-        longest, widths = _reach(self.field.points[at], valid)
+        longest, widths = _reach(points, valid)
         halo = [min(spare * width, MOST_HALO) for width in widths]
         lines = [np.arange(a - h, b + h + 1) for a, b, h in zip(first, last, halo, strict=True)]
         around = self._around_pole(lines, shape)
@@ -217,31 +268,17 @@ class Pyramid:
                 lines[axis] = lines[axis][(lines[axis] >= 0) & (lines[axis] < count)]
         start = [a - int(some[0]) for a, some in zip(first, lines, strict=True)]
         drawn = [slice(s, s + b - a + 1) for s, a, b in zip(start, first, last, strict=True)]
-        window = self._part(key.level, lines[0], lines[1], (closed[0], closed[1]))
         sides = [
             (not c and (p or int(some[0]) > 0), not c and (p or int(some[-1]) < n - 1))
             for c, p, some, n in zip(closed, self.field.periodic, lines, shape, strict=True)
         ]
-        geometry = SurfaceGeometry.of_tile(
-            window, (drawn[0], drawn[1]), self.root.surface, (sides[0], sides[1])
+        return Region(
+            self._part(key.level, lines[0], lines[1], (closed[0], closed[1])),
+            (drawn[0], drawn[1]),
+            (sides[0], sides[1]),
+            longest,
+            around is None or len(lines[0]) * len(lines[1]) <= MOST_COMPOSED,
         )
-        nodes = np.zeros(window.shape, dtype=bool)
-        nodes[geometry.texels] = True
-        store = SliceStore(
-            window,
-            parameter=self.parameter,
-            lines=self.lines,
-            compose=(self.field.steady or self.lines == "streamlines")
-            and (around is None or nodes.size <= MOST_COMPOSED),
-            longest=longest,
-            nodes=nodes,
-        )
-        return TextureSet(geometry, store, whole_speed=self._typical_speed, longest=longest)
-
-    @cached_property
-    def _typical_speed(self) -> float:
-        speed = self.root.typical.speed[:, self.root.valid]
-        return float(np.sqrt(np.mean(speed**2))) or 1.0
 
     def _around_pole(self, lines: list[Indices], shape: tuple[int, int]) -> int | None:
         """Return the axis that goes around a pole beyond which some lines lie."""
@@ -258,31 +295,54 @@ class Pyramid:
 
         Axes that are ``periodic`` have one whole period.
         """
-        this, field = self._level(level), self.field
         (turns_j, rows), (turns_i, columns) = (
-            np.divmod(some, len(lines) - 1) if closed else (np.zeros_like(some), some)
-            for some, lines, closed in zip((rows, columns), this[:2], field.periodic, strict=True)
+            np.divmod(some, count - 1) if closed else (np.zeros_like(some), some)
+            for some, count, closed in zip(
+                (rows, columns), self.shape(level), self.field.periodic, strict=True
+            )
         )
-        at = np.ix_(this.rows[rows], this.columns[columns])
-        here = np.ix_(rows, columns)
-        p = field.points
-        points = p[at]
+        nodes = self._nodes(level, rows, columns)
+        points = nodes.points
         for axis, turns in ((0, turns_j[:, None, None]), (1, turns_i[None, :, None])):
             if turns.any():
-                offset = np.mean(np.take(p, -1, axis=axis) - np.take(p, 0, axis=axis), axis=0)
-                points = points + turns * offset
+                points = points + turns * self.periods[axis]
         return replace(
-            field,
+            self.field,
             points=points,
-            velocity=map_steps(
-                this.velocity[:, here[0], here[1]],
-                lambda v: np.where(field.valid[at][..., None], v, 0.0),
-            ),
-            valid=field.valid[at],
+            velocity=map_steps(nodes.velocity, lambda v: np.where(nodes.valid[..., None], v, 0.0)),
+            valid=nodes.valid,
             periodic=periodic,
-            has_position=None if field.has_position is None else field.has_position[at],
-            scalars={k: s[:, at[0], at[1]] for k, s in field.scalars.items()},
+            has_position=nodes.has_position,
+            scalars=nodes.scalars,
         )
+
+    def _positions(self, level: int, rows: Indices, columns: Indices) -> tuple[Floats, Bools]:
+        """Return where nodes of a level are, (J, I, 3), and which of them are valid, (J, I)."""
+        some = self.line_numbers(level)
+        at = np.ix_(some[0][rows], some[1][columns])
+        return self.field.points[at], self.field.valid[at]
+
+    def _nodes(self, level: int, rows: Indices, columns: Indices) -> Nodes:
+        """Return what some lines of a level have, by their numbers within it."""
+        this, field = self._level(level), self.field
+        at = np.ix_(this.rows[rows], this.columns[columns])
+        here = np.ix_(rows, columns)
+        return Nodes(
+            field.points[at],
+            field.valid[at],
+            this.velocity[:, here[0], here[1]],
+            None if field.has_position is None else field.has_position[at],
+            {k: s[:, at[0], at[1]] for k, s in field.scalars.items()},
+        )
+
+    @cached_property
+    def periods(self) -> tuple[Floats, Floats]:
+        """What leads from the first line of an axis to the last, (3,), for both axes."""
+        p = self.field.points
+        rows, columns = (
+            np.mean(np.take(p, -1, axis=axis) - np.take(p, 0, axis=axis), axis=0) for axis in (0, 1)
+        )
+        return rows, columns
 
     def _level(self, level: int) -> _Level:
         """Return a level, making those before it first."""
@@ -292,44 +352,19 @@ class Pyramid:
     def _made(self, level: int) -> _Level:
         while len(self._levels) <= level:
             fine, depth = self._levels[-1], len(self._levels)
-            rows, columns = (_lines(n, depth) for n in self.field.shape)
+            rows, columns = self.line_numbers(depth)
             valid = self.field.valid[np.ix_(fine.rows, fine.columns)]
-            picks = tuple(
-                np.searchsorted(lines, some)
-                for lines, some in ((fine.rows, rows), (fine.columns, columns))
-            )
+            around = [
+                beside(np.searchsorted(lines, some), len(lines), closed=closed)
+                for lines, some, closed in zip(
+                    (fine.rows, fine.columns), (rows, columns), self.field.periodic, strict=True
+                )
+            ]
             velocity = map_steps(
-                fine.velocity,
-                partial(_averaged, valid=valid, picks=picks, periodic=self.field.periodic),
+                fine.velocity, partial(averaged, valid=valid, rows=around[0], columns=around[1])
             )
             self._levels.append(_Level(rows, columns, velocity))
         return self._levels[level]
-
-
-def is_cut(textures: TextureSet, step: int) -> bool:
-    """Whether paths of a tile end where its window does, though the surface goes on.
-
-    Slices may have longer lags than are needed: they double. The last part of a path weighs little.
-    What lies around a tile of triangles is as wide as its paths are long.
-    """
-    if not isinstance(textures.geometry, SurfaceGeometry):
-        return False
-    slices = textures.store.at(step).part(*textures.geometry.texels)
-    needed = NEEDED_SHARE * textures.longest / (slices.unit * textures.pace)
-    for moved, reach in (
-        (slices.displacement, slices.reach),
-        (slices.forward, slices.forward_reach),
-    ):
-        if moved is None or reach is None:
-            continue
-        there = slices.nodes + moved[0, -1]
-        gone = np.zeros(reach[0].shape, dtype=bool)
-        for axis, (before, after) in enumerate(textures.grid.open_sides):
-            at, last = there[..., 1 - axis], textures.geometry.field.shape[axis] - 1
-            gone |= (before & (at < 0)) | (after & (at > last))
-        if (gone & (reach[0] < needed)).mean() > MOST_CUT_SHARE:
-            return True
-    return False
 
 
 def block_places(points: Floats, cells: int = BLOCK_CELLS) -> Floats:
@@ -365,7 +400,7 @@ def _greatest(values: Floats, firsts: list[Indices], lasts: list[Indices]) -> Fl
     return values
 
 
-def _lines(count: int, level: int) -> Indices:
+def level_lines(count: int, level: int) -> Indices:
     """Every 2^level-th of so many lines, and the last one."""
     lines = np.arange(0, count, 1 << level)
     return lines if lines[-1] == count - 1 else np.append(lines, count - 1)
@@ -385,24 +420,23 @@ def _reach(points: Floats, valid: Bools) -> tuple[float, tuple[int, int]]:
     return longest, (rows, columns)
 
 
-def _averaged(
-    velocity: Floats, valid: Bools, picks: tuple[Indices, ...], periodic: tuple[bool, bool]
-) -> Floats:
-    """Velocity (J, I, 3) at some rows and columns, averaged with the lines beside them.
+def averaged(velocity: Floats, valid: Bools, rows: Indices, columns: Indices) -> Floats:
+    """Velocity (J, I, C) at some rows and columns, averaged with the lines beside them.
 
-    Weights are a quarter, a half and a quarter along each axis, of the nodes that are valid.
+    These are numbered (3, N) as :func:`beside` gives them. Weights are a quarter, a half and a
+    quarter along each axis, of the nodes that are valid.
     """
-    result = np.empty((len(picks[0]), len(picks[1]), velocity.shape[2]))
+    count = rows.shape[1], columns.shape[1]
+    result = np.empty((*count, velocity.shape[2]))
     whole = bool(valid.all())
-    for first in range(0, len(picks[0]), ROWS):
-        some = picks[0][first : first + ROWS]
-        weights = np.zeros((len(some), len(picks[1]), 1))
-        total = np.zeros((len(some), *result.shape[1:]))
-        for a in (-1, 0, 1):
-            rows = _beside(some, a, len(velocity), closed=periodic[0])
-            for b in (-1, 0, 1):
-                at = np.ix_(rows, _beside(picks[1], b, velocity.shape[1], closed=periodic[1]))
-                weight = (2 - abs(a)) * (2 - abs(b)) / 16
+    for first in range(0, count[0], ROWS):
+        some = rows[:, first : first + ROWS]
+        weights = np.zeros((some.shape[1], count[1], 1))
+        total = np.zeros((some.shape[1], *result.shape[1:]))
+        for a in range(3):
+            for b in range(3):
+                at = np.ix_(some[a], columns[b])
+                weight = (1 + a % 2) * (1 + b % 2) / 16
                 if whole:
                     total += weight * velocity[at]
                 else:
@@ -415,8 +449,10 @@ def _averaged(
     return result
 
 
-def _beside(lines: Indices, by: int, count: int, *, closed: bool) -> Indices:
-    """Numbers of the lines beside some; a border repeats itself, or the next period begins."""
-    if closed:
-        return np.mod(lines + by, count - 1)
-    return np.clip(lines + by, 0, count - 1)
+def beside(lines: Indices, count: int, *, closed: bool) -> Indices:
+    """Numbers of the lines before some of so many, of these, and of those after them, (3, N).
+
+    A border repeats itself, or the next period begins.
+    """
+    around = lines + np.array([[-1], [0], [1]])
+    return np.asarray(np.mod(around, count - 1) if closed else np.clip(around, 0, count - 1))

@@ -153,7 +153,7 @@ class TrianglePyramid(Pyramid):
         )
         if store.parameter == "arclength":
             store.lags, store.unit = _lags(window.surface.cell_size, followed, longest)
-        return TextureSet(geometry, store, whole_speed=self._typical_speed, longest=longest)
+        return TextureSet(geometry, store, whole_speed=self.whole.speed, longest=longest)
 
     def _steps(self, level: int) -> int:
         """Return the steps of the k-d tree to the blocks of a level."""
@@ -215,7 +215,7 @@ class TrianglePyramid(Pyramid):
             return 1.0
         velocity = self.at_level(level).typical.velocity[:, 0, nodes]
         fast = np.percentile(np.linalg.norm(velocity, axis=-1), 99)
-        return float(np.clip(fast / self._typical_speed, 1.0, MOST_WIDE))
+        return float(np.clip(fast / self.whole.speed, 1.0, MOST_WIDE))
 
     def _around(self, level: int, nodes: Indices, width: float) -> Indices:
         """Triangles of a level that are no further from some nodes than so much, and others."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -45,14 +46,9 @@ class Source:
         self.broken, self.go = broken, threading.Event()
         self.began: list[tuple[TileKey, int]] = []
 
-    def textures(self, key: TileKey, spare: int = 1) -> Any:
-        del spare
+    def tile(self, key: TileKey, steps: Sequence[int]) -> Any:
+        del steps
         return Textures(key, self)
-
-
-@pytest.fixture(autouse=True)
-def _no_halo(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("flowtex.tiles.loader.is_cut", lambda textures, step: False)
 
 
 def test_a_tile_is_there_once_it_is_made() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,7 @@ from flowtex._util.array_types import Floats
 from flowtex.field import FlowField
 from flowtex.textures import SurfaceGeometry, TextureSet
 from flowtex.tiles import BLOCK_CELLS, TILE_BLOCKS, Pyramid, TileKey, block_places
-from flowtex.tiles.pyramid import is_cut
+from flowtex.tiles.region import is_cut, tile_of
 from flowtex.trace import SliceStore, trace
 
 TILE_CELLS = BLOCK_CELLS * TILE_BLOCKS
@@ -209,3 +210,17 @@ def test_a_tile_does_not_depend_on_the_unit_of_time(speed: float) -> None:
         layers.append(nodal(tile))
     assert cut == [True, False] * 2
     np.testing.assert_allclose(layers[1][..., :3], layers[0][..., :3], rtol=1e-2, atol=1e-2)
+
+
+def test_a_region_is_all_that_a_tile_is_made_from() -> None:
+    pyramid, key = Pyramid(waves()), TileKey(0, 0, 0)
+    region, tile = pyramid.region(key), pyramid.tile(key, [0])
+    assert region is not None and tile is not None
+    # As in a task of another process, which knows nothing else.
+    alone = tile_of(*pickle.loads(pickle.dumps((region, pyramid.whole))))
+    np.testing.assert_array_equal(alone.layers(), tile.layers())
+    assert (alone.unit, alone.cell, alone.critical_cell) == (
+        tile.unit,
+        tile.cell,
+        tile.critical_cell,
+    )

@@ -1,0 +1,305 @@
+"""How a pyramid lies in a Zarr group.
+
+::
+
+    zarr.json              attributes: what the field is, "flowtex", and its levels, "multiscales"
+    0/ 1/ 2/ ...           levels, 0 the finest and the last one the root
+        velocity           (time, j, i, component)
+        x, y or points     nodes: two axes of a rectilinear grid, or (j, i, component)
+        valid              (j, i), and has_position where some are unknown
+        scalars/NAME       (time, j, i)
+        traces             (time, tile row, tile column, layer, H, W, 4), half floats
+
+The root is one tile, traced whole.
+
+Arrays over nodes lie in chunks of a tile, several in a shard. A shard of traces is one tile at one
+destination time, and each layer a chunk. Layer 0 tells about the tile: a JSON text, whose bytes are
+followed by zeros. The layers of :class:`~flowtex.textures.TextureSet` follow. All is packed by
+gzip, which browsers undo themselves, and has check sums.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import datetime
+from typing import Any
+
+import numpy as np
+
+from flowtex._util.array_types import AnyArray, Floats, Floats32
+from flowtex._util.cache import digest
+from flowtex._util.extras import import_extra
+from flowtex._version import __version__
+from flowtex.earth import Projection
+from flowtex.field import FlowField
+from flowtex.field.steps import LazySteps
+from flowtex.pyramid.places import FORMAT
+from flowtex.textures.geometry import TILE_LEVELS, Padding, paddings
+from flowtex.tiles import BLOCK_CELLS, TILE_BLOCKS, Pyramid
+
+__all__ = [
+    "TILE_CELLS",
+    "TRACES",
+    "Part",
+    "about_field",
+    "attributes_of",
+    "create_level",
+    "empty_field",
+    "parts_of",
+    "read_header",
+    "shard_texels",
+    "tiles_of",
+]
+
+TILE_CELLS = BLOCK_CELLS * TILE_BLOCKS
+#: Rows and columns of chunks in a shard of nodes: 8 MB of velocities with two components.
+SHARD_CHUNKS = (2, 4)
+#: Layers that a shard of traces has room for; those that a tile has not take no room.
+MOST_LAYERS = 64
+#: How hard is tried to pack; more takes longer and gains little.
+GZIP_LEVEL = 1
+TRACES = "traces"
+#: Texels along a side in which what is told of a tile has room, however small that is.
+LEAST_TEXELS = 32
+CONVENTION = {
+    "schema_url": (
+        "https://raw.githubusercontent.com/zarr-conventions/multiscales/refs/tags/v1/schema.json"
+    ),
+    "spec_url": "https://github.com/zarr-conventions/multiscales/blob/v1/README.md",
+    "uuid": "d35379db-88df-4056-af3a-620245f8e347",
+    "name": "multiscales",
+    "description": "Multiscale layout of zarr datasets",
+}
+
+
+@dataclass(frozen=True)
+class Part:
+    """One shard of the arrays over nodes of a level, at one time step."""
+
+    level: int
+    step: int
+    row: int
+    column: int
+
+    def lines(self, shape: tuple[int, int]) -> tuple[slice, slice]:
+        """Return the rows and columns of a level with so many nodes."""
+        first, second = (
+            slice(at * many * TILE_CELLS, min((at + 1) * many * TILE_CELLS, n))
+            for at, many, n in zip((self.row, self.column), SHARD_CHUNKS, shape, strict=True)
+        )
+        return first, second
+
+
+def parts_of(level: int, shape: tuple[int, int], steps: int) -> list[Part]:
+    """Return the parts of a level."""
+    rows, columns = (
+        range(-(-n // (many * TILE_CELLS))) for n, many in zip(shape, SHARD_CHUNKS, strict=True)
+    )
+    return [Part(level, t, j, i) for t in range(steps) for j in rows for i in columns]
+
+
+def tiles_of(
+    level: int, shape: tuple[int, int], about: Mapping[str, Any]
+) -> tuple[tuple[int, int], tuple[int, int]]:
+    """Return how many tiles a level has, and texels the largest of them, along both axes."""
+    if level == about["depth"]:
+        _, *both = paddings(shape, (about["periodic"][0], about["periodic"][1]))
+        size = [max(padding.size, LEAST_TEXELS) for padding in both]
+        return (1, 1), (size[0], size[1])
+    rows, columns = (-(-(n - 1) // TILE_CELLS) for n in shape)
+    nodes = TILE_CELLS + 1
+    largest = Padding.of(nodes, TILE_LEVELS, periodic=False, drawn=slice(0, nodes)).size
+    return (rows, columns), (largest, largest)
+
+
+def about_field(pyramid: Pyramid, levels: str) -> dict[str, Any]:
+    """Return what is told of a field and its pyramid, as it is kept in the store."""
+    field = pyramid.field
+    x, y, z = np.moveaxis(field.points, -1, 0)
+    late = isinstance(field.velocity, LazySteps)
+    flat = bool((z == z[0, 0]).all()) and not late and not np.any(field.velocity[..., 2])
+    projection = field.projection
+    periods = pyramid.periods
+    return {
+        "format": FORMAT,
+        "version": __version__,
+        "name": field.name,
+        "length_unit": field.length_unit,
+        "time_unit": field.time_unit,
+        "times": field.times.tolist(),
+        "start": _date_words(field.start),
+        "projection": None
+        if projection is None
+        else [projection.name, list(projection.center), projection.half_height],
+        "nodes": list(field.shape),
+        "periodic": list(field.periodic),
+        "periods": [some.tolist() for some in periods],
+        "depth": pyramid.depth,
+        "tile_cells": TILE_CELLS,
+        "parameter": pyramid.parameter,
+        "lines": pyramid.lines,
+        "traced": sorted({*range(0 if levels == "all" else 1, pyramid.depth), pyramid.depth}),
+        "components": 2 if flat else 3,
+        "height": float(z[0, 0]),
+        "axes": flat and bool((x == x[:1]).all() and (y == y[:, :1]).all()),
+        "late": late,
+        "has_position": field.has_position is not None,
+        "scalars": {name: len(steps) for name, steps in field.scalars.items()},
+        "units": dict(field.units),
+        "long_names": dict(field.long_names),
+        "fingerprint": _fingerprint(field),
+    }
+
+
+def attributes_of(about: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the attributes of the group: the field, and its levels as others read them."""
+    layout: list[dict[str, Any]] = [{"asset": "0", "transform": {"scale": [1.0, 1.0]}}]
+    for level in range(1, about["depth"] + 1):
+        step = {"scale": [2.0, 2.0], "translation": [0.0, 0.0]}
+        layout.append({"asset": str(level), "derived_from": str(level - 1), "transform": step})
+    return {
+        "zarr_conventions": [CONVENTION],
+        "multiscales": {"layout": layout, "resampling_method": "average"},
+        "flowtex": dict(about),
+    }
+
+
+def create_level(group: Any, level: int, shape: tuple[int, int], about: Mapping[str, Any]) -> None:
+    """Make the empty arrays of a level."""
+    here = group.require_group(str(level))
+    steps, components = len(about["times"]), about["components"]
+    chunk = (TILE_CELLS, TILE_CELLS)
+    shard = (SHARD_CHUNKS[0] * TILE_CELLS, SHARD_CHUNKS[1] * TILE_CELLS)
+
+    def nodal(where: Any, name: str, steps: int, last: tuple[int, ...], kind: str) -> None:
+        before = (steps,) if steps else ()
+        ones = (1,) * len(before)
+        names = [*["time"] * len(ones), "j", "i", *["component"] * len(last)]
+        _create(
+            where,
+            name,
+            (*before, *shape, *last),
+            (*ones, *chunk, *last),
+            (*ones, *shard, *last),
+            kind,
+            names,
+        )
+
+    nodal(here, "velocity", steps, (components,), "float64")
+    nodal(here, "valid", 0, (), "bool")
+    if about["has_position"]:
+        nodal(here, "has_position", 0, (), "bool")
+    if about["axes"]:
+        for name, count, axis in (("x", shape[1], "i"), ("y", shape[0], "j")):
+            _create(here, name, (count,), (count,), None, "float64", [axis])
+    else:
+        nodal(here, "points", 0, (components,), "float64")
+    for name, count in about["scalars"].items():
+        nodal(here.require_group("scalars"), name, count, (), "float64")
+    if level in about["traced"]:
+        tiles, size = tiles_of(level, shape, about)
+        _create(
+            here,
+            TRACES,
+            (steps, *tiles, MOST_LAYERS, *size, 4),
+            (1, 1, 1, 1, *size, 4),
+            (1, 1, 1, MOST_LAYERS, *size, 4),
+            "float16",
+            ["time", "row", "column", "layer", "y", "x", "channel"],
+            keep_empty=False,
+        )
+
+
+def _create(
+    where: Any,
+    name: str,
+    shape: tuple[int, ...],
+    chunks: tuple[int, ...],
+    shards: tuple[int, ...] | None,
+    kind: str,
+    names: list[str],
+    *,
+    keep_empty: bool = True,
+) -> None:
+    codecs = import_extra("zarr.codecs", "store")
+    if name in where:
+        return
+    where.create_array(
+        name,
+        shape=shape,
+        chunks=chunks,
+        shards=shards,
+        dtype=kind,
+        compressors=[codecs.GzipCodec(level=GZIP_LEVEL), codecs.Crc32cCodec()],
+        fill_value=0,
+        dimension_names=names,
+        # What is there has a shard: it is known by it that nothing is missing.
+        config={"write_empty_chunks": keep_empty},
+    )
+
+
+def empty_field(about: Mapping[str, Any]) -> FlowField:
+    """Return a field that has all but its nodes."""
+    projection = about["projection"]
+    return FlowField(
+        points=np.zeros((1, 1, 3)),
+        velocity=np.zeros((1, 1, 1, 3)),
+        times=np.array(about["times"], dtype=float),
+        valid=np.zeros((1, 1), dtype=bool),
+        periodic=(about["periodic"][0], about["periodic"][1]),
+        name=about["name"],
+        length_unit=about["length_unit"],
+        time_unit=about["time_unit"],
+        units=about["units"],
+        long_names=about["long_names"],
+        start=_date_of(about["start"]),
+        projection=None
+        if projection is None
+        else Projection(
+            projection[0], (projection[1][0], projection[1][1]), half_height=projection[2]
+        ),
+    )
+
+
+def shard_texels(
+    about: Mapping[str, Any], layers: Floats32 | None, shape: tuple[int, ...]
+) -> AnyArray:
+    """Return a shard of traces: what is told of a tile, and its layers (L, H, W, 4)."""
+    shard = np.zeros(shape, np.float16)
+    text = json.dumps(about).encode()
+    shard[0].reshape(-1).view(np.uint8)[: len(text)] = np.frombuffer(text, np.uint8)
+    if layers is not None:
+        count, height, width = layers.shape[:3]
+        shard[1 : 1 + count, :height, :width] = layers
+    return shard
+
+
+def read_header(texels: AnyArray) -> dict[str, Any] | None:
+    """Return what is told of a tile by its layer 0; nothing where there is no tile."""
+    text = np.ascontiguousarray(texels).reshape(-1).view(np.uint8).tobytes().rstrip(b"\0")
+    about: dict[str, Any] | None = json.loads(text) if text else None
+    return about
+
+
+def _fingerprint(field: FlowField) -> str:
+    """Return a hash by which a field is known again, from its nodes and two of its steps."""
+    ends: list[Floats] = [np.asarray(field.velocity[at]) for at in (0, -1)]
+    return digest(field.points, field.valid, field.times, *ends, words=field.scalars).hex()
+
+
+def _date_words(start: Any) -> list[Any] | None:
+    """Return a date as numbers, and its calendar where it is not that of ``datetime``."""
+    if start is None:
+        return None
+    parts = ("year", "month", "day", "hour", "minute", "second", "microsecond")
+    return [[int(getattr(start, part)) for part in parts], getattr(start, "calendar", "")]
+
+
+def _date_of(words: list[Any] | None) -> Any:
+    if words is None:
+        return None
+    if not words[1]:
+        return datetime(*words[0])
+    return import_extra("cftime", "xarray").datetime(*words[0], calendar=words[1])

@@ -1,0 +1,139 @@
+"""The tasks of which a pyramid is built: each makes one shard, or a tile of all steps.
+
+They are plain functions of a place and of numbers, so that any process on any machine can run
+them. Each opens the store itself, and reads no more than what it needs.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from flowtex._util.array_types import Indices
+from flowtex.pyramid.layout import TRACES, Part, shard_texels
+from flowtex.pyramid.levels import Levels
+from flowtex.pyramid.places import store_at
+from flowtex.pyramid.stored import StoredPyramid, root_of
+from flowtex.textures import TextureSet
+from flowtex.tiles import Pyramid, TileKey
+from flowtex.tiles.pyramid import Nodes, averaged, beside, level_lines
+from flowtex.trace import SliceStore
+
+__all__ = ["TileTask", "make_part", "make_tile", "write_part"]
+
+
+class TileTask(NamedTuple):
+    """A tile, and those of its destination times that are to be written."""
+
+    key: TileKey
+    steps: tuple[int, ...]
+
+
+def make_part(place: str, run: str, part: Part) -> None:
+    """Make a part of a level from the level before it."""
+    levels = _levels(place, run)
+    about, finer = levels.about, part.level - 1
+    shape = [len(level_lines(n, part.level)) for n in about["nodes"]]
+    chosen = part.lines((shape[0], shape[1]))
+    # As lines of the finer level: these, and those from which they are averaged.
+    picks, around, needed = [], [], []
+    for count, some, closed in zip(about["nodes"], chosen, about["periodic"], strict=True):
+        fine = level_lines(count, finer)
+        lines = np.searchsorted(fine, level_lines(count, part.level)[some])
+        three = beside(lines, len(fine), closed=closed)
+        read = np.unique(three)
+        picks.append(lines)
+        around.append(np.searchsorted(read, three))
+        needed.append(read)
+    velocity = levels.velocity(finer, part.step, needed[0], needed[1])
+    _, valid = levels.positions(finer, needed[0], needed[1])
+    nodes = _at_step(levels, finer, part.step, picks[0], picks[1])
+    mean = averaged(velocity, valid, around[0], around[1])
+    write_part(_writable(place, run), about, part, chosen, nodes._replace(velocity=mean))
+
+
+def write_part(
+    group: Any, about: dict[str, Any], part: Part, lines: tuple[slice, slice], nodes: Nodes
+) -> None:
+    """Write a part of a level; velocity (J, I, C) and scalars (J, I) are those of its step."""
+    here, components = group[str(part.level)], about["components"]
+    for name, values in nodes.scalars.items():
+        if part.step < about["scalars"][name]:
+            here["scalars"][name][(part.step, *lines)] = values
+    if part.step == 0:
+        here["valid"][lines] = nodes.valid
+        if nodes.has_position is not None:
+            here["has_position"][lines] = nodes.has_position
+        if not about["axes"]:
+            here["points"][lines] = nodes.points[..., :components]
+    # The last one: by it a part is known to be whole.
+    here["velocity"][(part.step, *lines)] = nodes.velocity[..., :components]
+
+
+def make_tile(place: str, run: str, task: TileTask) -> None:
+    """Trace a tile in the level that it belongs to."""
+    pyramid, array = _pyramid(place, run), _writable(place, run)[f"{task.key.level}/{TRACES}"]
+    every = range(len(pyramid.field.times))
+    # One halo for all times, whichever of them are still to be written.
+    textures: TextureSet | None
+    if task.key.level == pyramid.depth:
+        store = SliceStore(pyramid.root, parameter=pyramid.parameter, lines=pyramid.lines)
+        spare, textures = 0, Pyramid.root_textures(pyramid, store)
+    else:
+        spare, textures = pyramid.settled(task.key, every)
+    for step in task.steps:
+        at, room = (step, task.key.row, task.key.column), array.shape[3:]
+        if textures is None:
+            array[at] = shard_texels({"empty": True}, None, room)
+            continue
+        array[at] = shard_texels(_about_tile(textures, spare), textures.layers(step), room)
+
+
+def _about_tile(textures: TextureSet, spare: int) -> dict[str, Any]:
+    return {
+        "empty": False,
+        "spare": spare,
+        "count": textures.count,
+        "size": list(textures.geometry.size),
+        "lags": textures.lags.tolist(),
+        "sides": textures.sides,
+        "unit": textures.unit,
+        "pace": textures.pace,
+        "cell": textures.cell,
+        "critical_cell": textures.critical_cell,
+    }
+
+
+def _at_step(levels: Levels, level: int, step: int, rows: Indices, columns: Indices) -> Nodes:
+    """Return what nodes have besides the velocity, their scalars at one step."""
+    nodes = levels.nodes(level, rows, columns, velocities=False)
+    counts = levels.about["scalars"]
+    scalars = {
+        name: np.asarray(steps[step])
+        for name, steps in nodes.scalars.items()
+        if step < counts[name]
+    }
+    return nodes._replace(scalars=scalars)
+
+
+# What is opened lasts for one run: the next one may find another pyramid at the same place.
+@lru_cache(maxsize=2)
+def _levels(place: str, run: str) -> Levels:
+    del run
+    return Levels(place)
+
+
+@lru_cache(maxsize=2)
+def _pyramid(place: str, run: str) -> StoredPyramid:
+    levels = _levels(place, run)
+    return StoredPyramid(levels, root_of(levels))
+
+
+@lru_cache(maxsize=2)
+def _writable(place: str, run: str) -> Any:
+    del run
+    import zarr
+
+    return zarr.open_group(store_at(place, read_only=False), mode="r+")

@@ -1,0 +1,31 @@
+"""Ranges of values over a large field, by which it is coloured."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flowtex._util.array_types import Floats
+from flowtex.field import FlowField
+
+__all__ = ["ends_of", "speeds_in_space"]
+
+#: Percentiles at the ends of a range without outliers.
+ROBUST_PERCENTILES = (2, 98)
+
+
+def ends_of(values: Floats, *, robust: bool) -> tuple[float, float] | None:
+    """Return the least and the greatest value that is known, or those of a robust range."""
+    values = values[np.isfinite(values)]
+    if not values.size:
+        return None
+    low, high = (
+        np.percentile(values, ROBUST_PERCENTILES)
+        if robust
+        else np.array([values.min(), values.max()])
+    )
+    return float(low), float(high)
+
+
+def speeds_in_space(field: FlowField) -> Floats:
+    """Return the speeds of the valid nodes, (T, N), which are not those along the surface."""
+    return np.asarray(np.linalg.norm(field.velocity, axis=-1)[:, field.valid])

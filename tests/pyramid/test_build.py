@@ -1,0 +1,294 @@
+"""A pyramid in a store: the same tiles bit for bit, built again only where something is missing."""
+
+from __future__ import annotations
+
+import shutil
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import flowtex
+from flowtex import FlowField
+from flowtex._util.array_types import Floats
+from flowtex.field.steps import LazySteps
+from flowtex.pyramid import Built, PyramidError, build, is_store, open_store
+from flowtex.pyramid.levels import Levels
+from flowtex.pyramid.stored import StoredPyramid
+from flowtex.textures import TextureSet
+from flowtex.tiles import Pyramid, TileKey, shared_pyramid
+from flowtex.trace.store import shared_store
+
+pytest.importorskip("zarr")
+
+
+@pytest.fixture(autouse=True)
+def _small_roots(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 20_000)
+
+
+def grid(rows: int, columns: int) -> tuple[Floats, Floats]:
+    y, x = np.mgrid[0:rows, 0:columns].astype(float) / 100
+    return x, y
+
+
+def steady(rows: int = 290, columns: int = 530) -> FlowField:
+    """A flow around an island."""
+    x, y = grid(rows, columns)
+    velocity = np.stack([np.cos(3 * y) + 0.3, np.sin(4 * x)], axis=-1)
+    land = np.hypot(x - 1.3, y - 1.2) < 0.5
+    return FlowField.from_arrays(
+        np.stack([x, y], axis=-1),
+        velocity,
+        valid=~land,
+        periodic="",
+        scalars={"depth": x * y},
+        units={"depth": "m"},
+        name="waves",
+        length_unit="m",
+        time_unit="s",
+    )
+
+
+def series() -> FlowField:
+    x, y = grid(200, 300)
+    velocity = np.stack(
+        [np.stack([np.cos(3 * y + t), np.sin(4 * x - t)], axis=-1) for t in (0.0, 0.1, 0.2)]
+    )
+    scalars = {"heat": np.stack([x, x + 1, x + 2])}
+    return FlowField.from_arrays(
+        np.stack([x, y], axis=-1), velocity, times=[0, 0.1, 0.2], periodic="", scalars=scalars
+    )
+
+
+def late() -> FlowField:
+    """A series whose steps are read when they are asked for."""
+    field = series()
+    whole = np.asarray(field.velocity)
+    lazy = LazySteps(len(whole), lambda step: whole[step])
+    return replace(field, velocity=lazy)
+
+
+def ring() -> FlowField:
+    """Curved, closed around, on a cone."""
+    turn, height = np.meshgrid(np.linspace(0, 2 * np.pi, 401), np.linspace(0, 1, 190))
+    radius = 1 + 0.4 * height
+    points = np.stack([radius * np.cos(turn), radius * np.sin(turn), height], axis=-1)
+    around = np.stack([-np.sin(turn), np.cos(turn), 0.3 * np.sin(5 * turn)], axis=-1)
+    return FlowField.from_arrays(points, around)
+
+
+def globe() -> FlowField:
+    """Around both poles, where some nodes have no position."""
+    lon, lat = np.meshgrid(np.radians(np.linspace(0, 360, 361)), np.radians(np.arange(-90, 91.0)))
+    points = np.stack([np.cos(lat) * np.cos(lon), np.cos(lat) * np.sin(lon), np.sin(lat)], axis=-1)
+    velocity = np.cross([0.3, 0.1, 1.0], points)
+    land = np.hypot(lon - 2, lat - 0.5) < 0.4
+    points[np.hypot(lon - 2, lat - 0.5) < 0.2] = np.nan
+    return FlowField.from_arrays(points, velocity, valid=~land)
+
+
+FIELDS = {"globe": globe, "steady": steady, "series": series, "late": late, "ring": ring}
+
+
+def keys_of(pyramid: Pyramid) -> list[TileKey]:
+    keys, found = pyramid.children(None), []
+    while keys:
+        found += keys
+        keys = [child for key in keys for child in pyramid.children(key)]
+    return found
+
+
+def stored(store: Path) -> StoredPyramid:
+    pyramid = shared_pyramid(open_store(store), "arclength", lines_of(store))
+    assert isinstance(pyramid, StoredPyramid)
+    return pyramid
+
+
+def lines_of(store: Path) -> str:
+    return str(Levels(store).about["lines"])
+
+
+def made(store: Path, field: FlowField, **options: Any) -> Built:
+    return build(field, store, progress=False, **options)
+
+
+def shards(store: Path) -> list[str]:
+    files = (p for p in store.rglob("*") if p.is_file() and p.name != "zarr.json")
+    return sorted(str(p.relative_to(store)) for p in files)
+
+
+def contents(store: Path) -> dict[str, bytes]:
+    """What lies in all arrays; files also tell when they were packed."""
+    import zarr
+
+    members = zarr.open_group(store, mode="r").members(max_depth=None)
+    return {name: np.asarray(a[:]).tobytes() for name, a in members if isinstance(a, zarr.Array)}
+
+
+@pytest.mark.parametrize(
+    ("name", "levels"), [("steady", "coarse"), *((name, "all") for name in FIELDS)]
+)
+def test_tiles_are_those_of_the_field_in_memory(tmp_path: Path, name: str, levels: str) -> None:
+    field = FIELDS[name]()
+    made(tmp_path / "a.zarr", field, levels=levels)
+    there = stored(tmp_path / "a.zarr")
+    memory = Pyramid(field, "arclength", there.lines)
+    assert (there.depth, there.blocks) == (memory.depth, memory.blocks)
+    np.testing.assert_array_equal(there.root.velocity, memory.root.velocity)
+    np.testing.assert_array_equal(there.root.points, memory.root.points)
+    np.testing.assert_array_equal(there.root.valid, memory.root.valid)
+    every, empty = range(len(field.times)), 0
+    slices = shared_store(memory.root, "arclength", there.lines)
+    for step in every:
+        own = memory.root_textures(slices).layers(step).astype(np.float16)
+        read = there.root_textures(slices)
+        assert type(read) is not TextureSet
+        np.testing.assert_array_equal(read.layers(step).astype(np.float16), own)
+    for key in keys_of(memory):
+        assert there.made(key) == (levels == "all" or key.level > 0)
+        one, other = there.tile(key, every), memory.tile(key, every)
+        if one is None or other is None:
+            assert one is other is None
+            empty += 1
+            continue
+        for step in every:
+            halves = other.layers(step).astype(np.float16)
+            np.testing.assert_array_equal(one.layers(step).astype(np.float16), halves)
+        for number in ("unit", "pace", "cell", "critical_cell", "count", "longest"):
+            assert getattr(one, number) == getattr(other, number)
+        np.testing.assert_array_equal(one.geometry.points, other.geometry.points)
+        np.testing.assert_array_equal(one.grid.normal, other.grid.normal)
+        for scalar in field.scalars:
+            np.testing.assert_array_equal(
+                one.geometry.field.scalars[scalar], other.geometry.field.scalars[scalar]
+            )
+
+
+def test_what_a_field_is_called_comes_with_it(tmp_path: Path) -> None:
+    field = steady()
+    made(tmp_path / "a.zarr", field)
+    root = open_store(tmp_path / "a.zarr")
+    for name in ("name", "length_unit", "time_unit", "units", "periodic", "steady"):
+        assert getattr(root, name) == getattr(field, name)
+    assert is_store(tmp_path / "a.zarr")
+    assert not is_store(tmp_path)
+
+
+def test_a_second_run_makes_what_is_missing(tmp_path: Path) -> None:
+    store = tmp_path / "a.zarr"
+    first = made(store, series(), levels="all")
+    assert first.made and not first.kept
+    whole, files = contents(store), shards(store)
+    assert made(store, series(), levels="all") == Built(first.place, first.depth, 0, first.made)
+    gone = [name for name in files if "traces" in name or "velocity" in name][::3]
+    assert len(gone) > 3
+    for name in gone:
+        (store / name).unlink()
+    again = made(store, series(), levels="all")
+    assert again.made >= 1 and again.made + again.kept == first.made
+    assert (shards(store), contents(store)) == (files, whole)
+
+
+def test_coarse_levels_are_completed(tmp_path: Path) -> None:
+    store = tmp_path / "a.zarr"
+    made(store, steady())
+    assert not stored(store).made(TileKey(0, 0, 0))
+    made(store, steady(), levels="all")
+    made(store, steady())
+    assert stored(store).made(TileKey(0, 0, 0))
+
+
+def test_a_build_that_ends_early_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    made(tmp_path / "whole.zarr", steady(), levels="all")
+    store, count = tmp_path / "a.zarr", iter(range(100))
+    with monkeypatch.context() as patch:
+        layers = TextureSet.layers
+
+        def broken(self: Any, step: int = 0) -> Any:
+            if next(count) > 2:
+                msg = "no room"
+                raise OSError(msg)
+            return layers(self, step)
+
+        patch.setattr(TextureSet, "layers", broken)
+        with pytest.raises(PyramidError, match=r"shards could not be made .* OSError: no room"):
+            made(store, steady(), levels="all")
+    assert made(store, steady(), levels="all").kept > 3
+    assert contents(store) == contents(tmp_path / "whole.zarr")
+
+
+@pytest.mark.parametrize("fault", ["flipped", "cut", "gone"])
+def test_a_broken_tile_is_told(tmp_path: Path, fault: str) -> None:
+    store = tmp_path / "a.zarr"
+    made(store, steady(), levels="all")
+    (file,) = (store / "0" / "traces" / "c" / "0" / "0" / "1").rglob("0/0/0/0")
+    data = bytearray(file.read_bytes())
+    if fault == "flipped":
+        data[len(data) // 2] ^= 1
+        file.write_bytes(data)
+    elif fault == "cut":
+        file.write_bytes(data[: len(data) // 2])
+    else:
+        file.unlink()
+    with pytest.raises(PyramidError, match=r"tile \(0, 0, 1\).*(cannot be read|missing)"):
+        stored(store).tile(TileKey(0, 0, 1), [0])
+    assert stored(store).tile(TileKey(0, 0, 0), [0]) is not None
+
+
+def test_a_broken_root_is_traced_again(tmp_path: Path) -> None:
+    store = tmp_path / "a.zarr"
+    made(store, steady())
+    for file in (store / "2" / "traces" / "c").rglob("*"):
+        if file.is_file():
+            file.write_bytes(b"torn")
+    there = stored(store)
+    slices = shared_store(there.root, "arclength", "pathlines")
+    own = Pyramid(steady()).root_textures(slices).layers()
+    with pytest.warns(UserWarning, match=r"traced anew, for .* cannot be read"):
+        textures = there.root_textures(slices)
+    np.testing.assert_array_equal(textures.layers(), own)
+
+
+def test_a_small_field_is_all_root(tmp_path: Path) -> None:
+    field = steady(6, 9)
+    assert made(tmp_path / "a.zarr", field).depth == 0
+    root = open_store(tmp_path / "a.zarr")
+    np.testing.assert_array_equal(root.velocity, field.velocity)
+    slices = shared_store(root, "arclength", "pathlines")
+    assert stored(tmp_path / "a.zarr").root_textures(slices).layers().shape[0] > 4
+
+
+def test_places_that_hold_something_else(tmp_path: Path) -> None:
+    import zarr
+
+    with pytest.raises(PyramidError, match="holds no pyramid"):
+        open_store(tmp_path / "none.zarr")
+    zarr.open_group(tmp_path / "other.zarr", mode="w").create_array("u", shape=(3,), dtype="f4")
+    with pytest.raises(PyramidError, match="holds no pyramid"):
+        open_store(tmp_path / "other.zarr")
+    with pytest.raises(PyramidError, match="holds other data"):
+        made(tmp_path / "other.zarr", steady())
+    made(tmp_path / "a.zarr", steady())
+    with pytest.raises(PyramidError, match="pyramid of another field"):
+        made(tmp_path / "a.zarr", series())
+    group = zarr.open_group(tmp_path / "a.zarr", mode="r+")
+    group.attrs["flowtex"] = {**Levels(tmp_path / "a.zarr").about, "levels_done": False}
+    with pytest.raises(PyramidError, match="not built to its end"):
+        open_store(tmp_path / "a.zarr")
+    group.attrs["flowtex"] = {"format": "flowtex-pyramid-9"}
+    with pytest.raises(PyramidError, match="flowtex-pyramid-9"):
+        open_store(tmp_path / "a.zarr")
+    shutil.rmtree(tmp_path / "a.zarr")
+
+
+def test_fields_that_have_no_such_pyramid(tmp_path: Path) -> None:
+    field = FlowField.from_triangles(
+        [[0, 0], [1, 0], [0, 1]], [[0, 1, 2]], [[1, 0], [1, 0], [1, 0]]
+    )
+    with pytest.raises(flowtex.field.FieldError, match="on triangles"):
+        made(tmp_path / "a.zarr", field)
+    with pytest.raises(ValueError, match="levels is 'some'"):
+        made(tmp_path / "a.zarr", steady(), levels="some")
