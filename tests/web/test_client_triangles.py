@@ -175,7 +175,7 @@ def test_a_large_surface_is_shown_in_tiles(
         return packed_tile(data, made, steps)
 
     client.tile = tile
-    near: dict[str, Any] = {"parallel": True, "parallel_scale": 0.14}
+    near: dict[str, Any] = {"parallel": True, "parallel_scale": 0.1}
     camera = Camera((2.4, -1.9, 1.5), (0.0, 0.0, 0.0), (0, 0, 1), **near)
     header = data.header(view.scene.settings, camera=state(camera))
     viewer = client.mount(packed(data, header), SIZE, controls=False, smooth=False)
