@@ -161,7 +161,7 @@ def disk() -> Any:
 
 def airfoil() -> Any:
     """Return the flow around an airfoil of several elements."""
-    return flowtex.FlowField.from_file(_file("FLOWTEX_CFD", "multi.cgns"), slice="z")
+    return flowtex.FlowField.from_file(_file("FLOWTEX_CFD", "multi.cgns"), slice="y")
 
 
 SURFACES: dict[str, Callable[[], Any]] = {
