@@ -29,11 +29,11 @@ from flowtex.textures import TextureSet, check_noise
 from flowtex.textures.images import as_picture, load_image
 from flowtex.tiles import (
     Pyramid,
+    drawn_speeds,
     ends_of,
     has_pyramid,
     levels_of,
     shared_pyramid,
-    speeds_in_space,
     triangle_pyramid,
 )
 from flowtex.trace import SliceStore, TraceSlices, chosen_lines, shared_store
@@ -364,11 +364,11 @@ class Scene:
         return (low - WIDENED_SHARE * size, high + WIDENED_SHARE * size) if size > 0 else (0.0, 1.0)
 
     def _range_values(self, name: str) -> Floats:
-        """Values of the valid nodes at all times; the speed of a large field is that in space."""
+        """Values of the valid nodes at all times."""
         some, valid = self.field.typical, self.field.valid
         if self.pyramid is None or name in self.field.scalars:
             return np.asarray(np.asarray(steps_of(some, name))[:, valid])
-        return speeds_in_space(some)
+        return drawn_speeds(some, self.whole)
 
     def copy(self) -> Scene:
         """Return a scene that shows the same, and that no later change of this one reaches.

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from flows import gyre
+from triangle_meshes import sphere
 
 import flowtex
 from flowtex.scene import Scene
@@ -77,3 +78,19 @@ def test_units_of_scalars_and_of_the_speed() -> None:
     flow = field(SIGNED, units={"p": "Pa"}, length_unit="m", time_unit="s")
     assert [flow.unit_of(name) for name in ("speed", "p", "q")] == ["m/s", "Pa", ""]
     assert field(SIGNED).unit_of("speed") == ""
+
+
+def test_the_range_of_a_large_surface_is_of_the_speed_along_it() -> None:
+    """A wind across a sphere is even in space, and along the sphere it goes from none to all."""
+    points, triangles = sphere(6)
+    wind = np.tile([1.0, 0.0, 0.0], (len(points), 1))
+    lon, lat = np.meshgrid(np.linspace(0.1, 3.0, 400), np.linspace(-1.4, 1.4, 400))
+    grid = np.stack([np.cos(lat) * np.cos(lon), np.cos(lat) * np.sin(lon), np.sin(lat)], axis=-1)
+    for large in (
+        flowtex.FlowField.from_triangles(points, triangles, wind),
+        flowtex.FlowField.from_arrays(grid, np.broadcast_to([1.0, 0.0, 0.0], grid.shape)),
+    ):
+        scene = Scene(large)
+        assert scene.pyramid is not None
+        low, high = scene.scalar_limits
+        assert low < 0.15 and high == pytest.approx(1, abs=1e-3)

@@ -21,7 +21,7 @@ from flowtex.field.datasets.detect import is_dataset
 from flowtex.pyramid.layout import TRACES, about_field, attributes_of, create_level, parts_of
 from flowtex.pyramid.places import PyramidError, place_text, store_at
 from flowtex.pyramid.tasks import TileTask, make_part, make_tile, write_part
-from flowtex.tiles import Pyramid, TileKey, ends_of, speeds_in_space
+from flowtex.tiles import Pyramid, TileKey, drawn_speeds, ends_of
 from flowtex.tiles.pyramid import Nodes
 from flowtex.trace import chosen_lines
 
@@ -144,7 +144,7 @@ def _prepared(place: str, about: dict[str, Any], pyramid: Pyramid) -> tuple[Any,
         if any(True for _ in group.members()):
             msg = f"{place} holds other data; give a place where there is nothing yet"
             raise PyramidError(msg)
-        about = {**about, "ranges": _ranges(pyramid.field)}
+        about = {**about, "ranges": _ranges(pyramid)}
         group.attrs.update(attributes_of(about))
     else:
         told = ("format", "fingerprint", "nodes", "parameter", "lines", "depth", "tile_cells")
@@ -256,11 +256,11 @@ def _tiles(run: _Run, level: int) -> Iterator[TileTask]:
                 run.kept += 1
 
 
-def _ranges(field: FlowField) -> dict[str, list[tuple[float, float] | None]]:
+def _ranges(pyramid: Pyramid) -> dict[str, list[tuple[float, float] | None]]:
     """Return the ends of scalars and of the speed, the whole range and the robust one."""
-    some = field.typical
+    field, some = pyramid.field, pyramid.field.typical
     values = {k: np.asarray(s)[:, field.valid] for k, s in some.scalars.items()}
-    values.setdefault("speed", speeds_in_space(some))
+    values.setdefault("speed", drawn_speeds(some, pyramid.root))
     both = {k: [ends_of(v, robust=robust) for robust in (False, True)] for k, v in values.items()}
     return {name: ends for name, ends in both.items() if None not in ends}
 

@@ -12,7 +12,7 @@ from flowtex.tiles.pyramid import (
     TileKey,
     block_places,
 )
-from flowtex.tiles.ranges import ends_of, speeds_in_space
+from flowtex.tiles.ranges import drawn_speeds, ends_of
 from flowtex.tiles.shared import has_pyramid, have_pyramid, shared_pyramid
 from flowtex.tiles.triangle_pyramid import TrianglePyramid
 
@@ -26,10 +26,10 @@ __all__ = [
     "TileLoader",
     "TrianglePyramid",
     "block_places",
+    "drawn_speeds",
     "ends_of",
     "has_pyramid",
     "have_pyramid",
     "levels_of",
     "shared_pyramid",
-    "speeds_in_space",
 ]

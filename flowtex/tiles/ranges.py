@@ -7,7 +7,7 @@ import numpy as np
 from flowtex._util.array_types import Floats
 from flowtex.field import FlowField
 
-__all__ = ["ends_of", "speeds_in_space"]
+__all__ = ["drawn_speeds", "ends_of"]
 
 #: Percentiles at the ends of a range without outliers.
 ROBUST_PERCENTILES = (2, 98)
@@ -26,6 +26,10 @@ def ends_of(values: Floats, *, robust: bool) -> tuple[float, float] | None:
     return float(low), float(high)
 
 
-def speeds_in_space(field: FlowField) -> Floats:
-    """Return the speeds of the valid nodes, (T, N), which are not those along the surface."""
-    return np.asarray(np.linalg.norm(field.velocity, axis=-1)[:, field.valid])
+def drawn_speeds(field: FlowField, root: FlowField) -> Floats:
+    """Return the speeds of the valid nodes of a field whose coarsest level is the root, (T, N).
+
+    Those in space are quicker to have, and the same where hardly any flow leaves the surface.
+    """
+    steps = field.speed if root.leaves_surface else np.linalg.norm(field.velocity, axis=-1)
+    return np.asarray(np.asarray(steps)[:, field.valid])
