@@ -116,8 +116,9 @@ class TriangleGeometry(DrawnSurface):
     @property
     def normal(self) -> Floats32:
         """Unit normals at the nodes, (1, n, 3), in the mesh's own axes."""
-        tangents = self.field.surface.tangents[(slice(None), *self.drawn)]
-        return np.asarray(np.cross(*tangents), dtype=np.float32)
+        surface = self.field.surface
+        assert isinstance(surface, TriangleSurface)
+        return surface.normals[self.drawn].astype(np.float32)
 
     @property
     def coordinate(self) -> Floats32:

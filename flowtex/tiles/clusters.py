@@ -16,6 +16,7 @@ from scipy.sparse import csr_array
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.field import FlowField
 from flowtex.field.steps import Steps, map_steps
+from flowtex.field.triangles.arrays import known_means
 from flowtex.field.triangles.surface import TriangleSurface
 from flowtex.field.triangles.topology import flipped, triangle_normals
 
@@ -170,12 +171,16 @@ def _averaged(field: FlowField, number: Indices, triangles: Indices) -> FlowFiel
     members = np.bincount(number[kept], minlength=count)
     weights = 1 / members[number[kept]]
     matrix = csr_array((weights, (number[kept], kept)), shape=(count, len(number)))
+
+    def means(steps: Steps) -> Steps:
+        return map_steps(steps, lambda step: known_means(step[0], matrix)[None])
+
     return replace(
         field,
         points=(matrix @ field.points[0])[None],
-        velocity=_means(field.velocity, matrix),
+        velocity=means(field.velocity),
         valid=np.ones((1, count), dtype=bool),
-        scalars={name: _means(steps, matrix) for name, steps in field.scalars.items()},
+        scalars={name: means(steps) for name, steps in field.scalars.items()},
         triangles=triangles,
     )
 
@@ -261,24 +266,3 @@ def _squares(vectors: Floats) -> Floats:
 
 def _sums(values: Floats, number: Indices, count: int) -> Floats:
     return np.stack([np.bincount(number, column, count) for column in values.T], axis=-1)
-
-
-def _means(steps: Steps, matrix: csr_array) -> Steps:
-    """Means of nodal values (T, 1, N, ...) of those that are known, by rows of a matrix."""
-
-    def mean(step: Floats) -> Floats:
-        flat = step.reshape(step.shape[1], -1)
-        known = np.isfinite(flat)
-        if known.all():
-            result = matrix @ flat
-        else:
-            weights = matrix @ known.astype(float)
-            result = np.divide(
-                matrix @ np.where(known, flat, 0.0),
-                weights,
-                out=np.full_like(weights, np.nan),
-                where=weights > 0,
-            )
-        return np.asarray(result).reshape(1, -1, *step.shape[2:])
-
-    return map_steps(steps, mean)

@@ -26,7 +26,13 @@ from flowtex.field.validation import (
     with_gaps,
 )
 
-__all__ = ["TriangleArrays", "nodal_means", "solid_triangles", "triangle_arrays"]
+__all__ = [
+    "TriangleArrays",
+    "known_means",
+    "nodal_means",
+    "solid_triangles",
+    "triangle_arrays",
+]
 
 #: Twice the area of a triangle over the square of its longest side, below which it has none.
 FLAT_TRIANGLE = 1e-12
@@ -204,15 +210,20 @@ def nodal_means(
         (weights[face[there]], (at[there], face[there])), shape=(nodes, len(triangles))
     )
 
-    def means(step: Floats) -> Floats:
-        flat = step.reshape(len(step), -1)
-        finite = np.asarray(np.isfinite(flat).all(axis=1))
-        total = np.asarray(matrix @ finite.astype(float))[:, None]
-        sums = np.asarray(matrix @ np.where(finite[:, None], flat, 0.0))
-        mean = np.divide(sums, total, out=np.full_like(sums, np.nan), where=total > 0)
-        return np.asarray(mean.reshape(nodes, *step.shape[1:]))
+    return map_steps(values, partial(known_means, matrix=matrix))
 
-    return map_steps(values, means)
+
+def known_means(values: Floats, matrix: csr_array) -> Floats:
+    """Means (n, ...) of values (N, ...), weighted by rows of a matrix (n, N), of what is known.
+
+    A row without any that is has NaN.
+    """
+    flat = values.reshape(len(values), -1)
+    known = np.asarray(np.isfinite(flat).all(axis=1))
+    sums = np.asarray(matrix @ np.where(known[:, None], flat, 0.0))
+    total = np.asarray(matrix @ known.astype(float))[:, None]
+    means = np.divide(sums, total, out=np.full_like(sums, np.nan), where=total > 0)
+    return np.asarray(means.reshape(-1, *values.shape[1:]))
 
 
 def _joined(
@@ -220,15 +231,10 @@ def _joined(
 ) -> tuple[Bools, Floats, dict[str, Steps]]:
     """Average what nodes at one place have; nodes with the number -1 are left out."""
     kept = np.flatnonzero(number >= 0)
+    matrix = csr_array((np.ones(len(kept)), (number[kept], kept)), shape=(count, len(number)))
 
     def mean(step: Floats) -> Floats:
-        flat = step[0].reshape(step.shape[1], -1)
-        known = np.isfinite(flat).all(axis=1)[kept]
-        matrix = csr_array((known.astype(float), (number[kept], kept)), shape=(count, len(number)))
-        total = matrix.sum(axis=1)[:, None]
-        sums = matrix @ np.where(np.isfinite(flat), flat, 0.0)
-        means = np.divide(sums, total, out=np.full_like(sums, np.nan), where=total > 0)
-        return np.asarray(means.reshape(1, count, *step.shape[2:]))
+        return known_means(step[0], matrix)[None]
 
     some = np.bincount(number[kept], ok[kept], count) > 0
     return some, map_steps(v, mean), {name: map_steps(s, mean) for name, s in data.items()}
