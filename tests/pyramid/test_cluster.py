@@ -2,38 +2,52 @@
 
 from __future__ import annotations
 
-import json
-import os
-import subprocess
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from cluster import Cluster, ObjectStorage, peak_memory
 
-from flowtex import FlowField
 from flowtex._util.array_types import AnyArray
 from flowtex.pyramid import build, open_store
 from flowtex.pyramid.places import store_at
 from flowtex.tiles import TileKey, shared_pyramid
 
 distributed = pytest.importorskip("distributed")
+xr = pytest.importorskip("xarray")
 zarr = pytest.importorskip("zarr")
 
-
-@pytest.fixture(autouse=True)
-def _small_roots(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 40_000)
+#: Memory that a worker may take, in bytes.
+BUDGET = 1_000_000_000
 
 
-def flow(rows: int = 520, columns: int = 1030) -> FlowField:
-    y, x = np.mgrid[0:rows, 0:columns].astype(float) / 100
-    velocity = np.stack([np.cos(2 * y) + 0.3, np.sin(3 * x)], axis=-1)
-    return FlowField.from_arrays(
-        np.stack([x, y], axis=-1), velocity, valid=np.hypot(x - 3, y - 2) > 0.7, periodic=""
-    )
+@pytest.fixture
+def storage(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[ObjectStorage]:
+    """Object storage as a server of its own, told by the environment."""
+    pytest.importorskip("moto")
+    server = ObjectStorage(tmp_path / "s3")
+    for name, value in server.environment.items():
+        monkeypatch.setenv(name, value)
+    yield server
+    server.close()
+
+
+def flow(rows: int = 1024, columns: int = 2048) -> Any:
+    """A dataset of waves of many lengths around an island."""
+    y, x = (np.arange(n) / 100 for n in (rows, columns))
+    u, v = np.full((2, rows, columns), 0.3)
+    for k in (0.5, 2, 7, 23):
+        u += np.cos(k * y)[:, None] / k**0.2
+        v += np.sin(k * x) / k**0.2
+    u[np.hypot(x - 8, y[:, None] - 5) < 1.5] = np.nan
+    words: list[dict[str, str]] = [
+        {"standard_name": f"sea_water_{axis}_velocity", "units": "m s-1"} for axis in "xy"
+    ]
+    dims = ("y", "x")
+    data = {"u": (dims, u.astype("f4"), words[0]), "v": (dims, v.astype("f4"), words[1])}
+    return xr.Dataset(data, {"x": x, "y": y}).chunk(y=256, x=512)
 
 
 def contents(place: Any) -> dict[str, AnyArray]:
@@ -48,106 +62,59 @@ def assert_same(one: Any, other: Any) -> None:
         assert values.tobytes() == second[name].tobytes(), name
 
 
-class Cluster:
-    """A scheduler and workers as processes of their own, each in a folder of its own."""
-
-    def __init__(self, folder: Path, environment: dict[str, str], workers: int = 2) -> None:
-        self.folder, self.environment = folder, {**os.environ, **environment}
-        self.environment["PYTHONPATH"] = str(Path(__file__).resolve().parents[2])
-        self.processes: list[subprocess.Popen[bytes]] = []
-        told = folder / "scheduler.json"
-        self.start(
-            "scheduler",
-            "--host",
-            "127.0.0.1",
-            "--port",
-            "0",
-            "--no-dashboard",
-            "--scheduler-file",
-            str(told),
-        )
-        while not told.exists() or not told.read_text():
-            assert self.processes[0].poll() is None
-        self.address: str = json.loads(told.read_text())["address"]
-        for _ in range(workers):
-            self.start("worker", self.address, "--nthreads", "1", "--no-dashboard", "--no-nanny")
-
-    def start(self, *words: str) -> None:
-        """Start one more process."""
-        here = self.folder / f"process{len(self.processes)}"
-        here.mkdir()
-        log = (here / "log.txt").open("wb")
-        program = [sys.executable, "-m", "distributed.cli.dask_" + words[0], *words[1:]]
-        self.processes.append(
-            subprocess.Popen(program, cwd=here, env=self.environment, stdout=log, stderr=log)
-        )
-        log.close()
-
-    def close(self) -> None:
-        for process in self.processes[::-1]:
-            process.kill()
-            process.wait()
-
-
-@pytest.fixture
-def s3(monkeypatch: pytest.MonkeyPatch) -> Iterator[dict[str, str]]:
-    """Object storage as a server of its own, told by the environment."""
-    server = pytest.importorskip("moto.server").ThreadedMotoServer(port=0, verbose=False)
-    server.start()
-    host, port = server.get_host_and_port()
-    environment = {
-        "AWS_ENDPOINT_URL": f"http://{host}:{port}",
-        "AWS_ALLOW_HTTP": "true",
-        "AWS_ACCESS_KEY_ID": "nobody",
-        "AWS_SECRET_ACCESS_KEY": "nothing",
-        "AWS_REGION": "us-east-1",
-        "AWS_VIRTUAL_HOSTED_STYLE_REQUEST": "false",
-    }
-    for name, value in environment.items():
-        monkeypatch.setenv(name, value)
-    import urllib.request
-
-    urllib.request.urlopen(
-        urllib.request.Request(f"{environment['AWS_ENDPOINT_URL']}/flows", method="PUT")
-    ).close()
-    yield environment
-    server.stop()
-
-
 @pytest.mark.slow
 def test_workers_build_what_threads_build_though_one_is_killed(
-    tmp_path: Path, s3: dict[str, str]
+    tmp_path: Path, storage: ObjectStorage
 ) -> None:
-    build(flow(), tmp_path / "threads.zarr", levels="all", progress=False)
-    cluster = Cluster(tmp_path, s3)
+    source, place = "s3://flows/source.zarr", "s3://flows/deep/flow.zarr"
+    flow().to_zarr(store_at(source, read_only=False), consolidated=False)
+    data = xr.open_zarr(store_at(source), consolidated=False)
+    build(data, tmp_path / "threads.zarr", progress=False)
+    cluster = Cluster(tmp_path / "cluster", storage.environment, memory=str(BUDGET))
     try:
         with distributed.Client(cluster.address) as client:
             client.wait_for_workers(2)
-            killed: list[subprocess.Popen[bytes]] = []
+            lost, left = cluster.workers
+            lost_name = _name_of(client, lost.pid)
 
             def kill(event: Any) -> None:
-                del event
-                if not killed:
-                    killed.append(cluster.processes[-1])
-                    killed[0].kill()
+                # The first tile is the root, which both wait for no longer.
+                if event[1]["worker"] == lost_name:
+                    lost.kill()
 
             client.subscribe_topic("tile", kill)
-            place = "s3://flows/deep/flow.zarr"
-            client.run(_tell_first_tile)
-            built = build(flow(), place, levels="all", scheduler=client, progress=False)
-            assert killed and killed[0].poll() is not None
+            client.run(_tell_tiles)
+            built = build(data, place, scheduler=client, progress=False)
+            assert lost.poll() is not None
         assert built.place == place
-        again = build(flow(), place, levels="all", scheduler=cluster.address, progress=False)
+        again = build(data, place, scheduler=cluster.address, progress=False)
         assert (again.made, again.kept) == (0, built.made)
+        assert peak_memory(left.pid) < BUDGET
     finally:
         cluster.close()
     assert_same(place, tmp_path / "threads.zarr")
-    root = open_store(place)
-    assert shared_pyramid(root, "arclength").tile(TileKey(0, 1, 2), [0]) is not None
+    # One of the finest, which are made from the store when they are asked for.
+    tiles = []
+    for store in (place, tmp_path / "threads.zarr"):
+        tile = shared_pyramid(open_store(store), "arclength").tile(TileKey(0, 1, 2), [0])
+        assert tile is not None
+        tiles.append(tile.layers())
+    np.testing.assert_array_equal(*tiles)
 
 
-def _tell_first_tile() -> None:
-    """Tell, on a worker, that it traces a tile."""
+def _name_of(client: Any, pid: int) -> str:
+    (name,) = (name for name, its in client.run(_pid).items() if its == pid)
+    return str(name)
+
+
+def _pid() -> int:
+    import os
+
+    return os.getpid()
+
+
+def _tell_tiles() -> None:
+    """Tell, on a worker, that it traces tiles."""
     from distributed import get_worker
 
     from flowtex.textures import TextureSet
@@ -155,7 +122,7 @@ def _tell_first_tile() -> None:
     layers = TextureSet.layers
 
     def told(self: TextureSet, step: int = 0) -> Any:
-        get_worker().log_event("tile", {})
+        get_worker().log_event("tile", {"worker": get_worker().address})
         return layers(self, step)
 
     TextureSet.layers = told  # type: ignore[method-assign]

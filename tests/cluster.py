@@ -1,0 +1,246 @@
+"""Object storage and a Dask cluster as processes of their own, for tests and benchmarks.
+
+Run as a program it is the object storage: ``python tests/cluster.py FOLDER``.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import threading
+import time
+import urllib.request
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+__all__ = ["BUCKET", "Cluster", "ObjectStorage", "Request", "peak_memory"]
+
+ROOT = Path(__file__).resolve().parents[1]
+BUCKET = "flows"
+#: Seconds within which a process has to be ready.
+PATIENCE_S = 60.0
+#: Objects that are larger than this lie in files, and not in the memory of the server.
+IN_MEMORY_BYTES = 50_000
+#: Whoever knows the URL may read, as browsers do; writing wants a signature.
+POLICY = {
+    "Version": "2012-10-17",
+    "Statement": [
+        {
+            "Effect": "Allow",
+            "Principal": "*",
+            "Action": ["s3:GetObject", "s3:ListBucket"],
+            "Resource": [f"arn:aws:s3:::{BUCKET}", f"arn:aws:s3:::{BUCKET}/*"],
+        }
+    ],
+}
+
+
+class Request(NamedTuple):
+    """One request that object storage has answered, and the bytes of both bodies."""
+
+    at: float
+    method: str
+    status: int
+    received: int
+    sent: int
+    path: str
+
+
+class ObjectStorage:
+    """An S3 server with one bucket, whose objects lie in a folder.
+
+    Parameters
+    ----------
+    folder
+        A folder of its own.
+
+    Attributes
+    ----------
+    url
+        The bucket, for who reads it as web pages.
+    environment
+        What clients find in their environment.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        folder.mkdir(parents=True, exist_ok=True)
+        self._log, told = folder / "requests.txt", folder / "port.txt"
+        self._read = 0
+        environment = {
+            **os.environ,
+            "TMPDIR": str(folder),
+            "MOTO_S3_DEFAULT_KEY_BUFFER_SIZE": str(IN_MEMORY_BYTES),
+        }
+        with (folder / "log.txt").open("wb") as log:
+            self.process = subprocess.Popen(
+                [sys.executable, __file__, str(folder)], env=environment, stdout=log, stderr=log
+            )
+        _wait_until(lambda: told.exists() and bool(told.read_text()), self.process)
+        endpoint = f"http://127.0.0.1:{told.read_text()}"
+        self.url = f"{endpoint}/{BUCKET}"
+        self.environment = {
+            "AWS_ENDPOINT_URL": endpoint,
+            "AWS_ALLOW_HTTP": "true",
+            "AWS_ACCESS_KEY_ID": "nobody",
+            "AWS_SECRET_ACCESS_KEY": "nothing",
+            "AWS_REGION": "us-east-1",
+            "AWS_VIRTUAL_HOSTED_STYLE_REQUEST": "false",
+        }
+        for query, body in (("", b""), ("?policy", json.dumps(POLICY).encode())):
+            # Of a form the server would read nothing.
+            kind = {"Content-Type": "application/json"}
+            request = urllib.request.Request(self.url + query, body, kind, method="PUT")
+            urllib.request.urlopen(request).close()
+
+    def requests(self) -> list[Request]:
+        """Return the requests since the last call."""
+        with self._log.open(encoding="utf-8") as file:
+            file.seek(self._read)
+            # A line that is being written is left for the next call.
+            lines = [line for line in file.read().splitlines(keepends=True) if line[-1] == "\n"]
+        self._read += sum(len(line.encode()) for line in lines)
+        return [_request_of(line) for line in lines]
+
+    def close(self) -> None:
+        """End the server; its objects are gone."""
+        self.process.kill()
+        self.process.wait()
+
+
+class Cluster:
+    """A scheduler and workers as processes of their own, each in a folder of its own.
+
+    Parameters
+    ----------
+    folder
+        A folder of its own.
+    environment
+        What the processes find in their environment besides what is in that of this one.
+    workers
+        How many workers there are at first.
+    memory
+        Memory of a worker, as Dask has it.
+    """
+
+    def __init__(
+        self, folder: Path, environment: dict[str, str], workers: int = 2, memory: str = "auto"
+    ) -> None:
+        folder.mkdir(parents=True, exist_ok=True)
+        self._folder, self._memory = folder, memory
+        path = os.pathsep.join([str(ROOT), str(ROOT / "tests")])
+        self._environment = {**os.environ, **environment, "PYTHONPATH": path}
+        told = folder / "scheduler.json"
+        place = ("--host", "127.0.0.1", "--port", "0", "--scheduler-file", str(told))
+        self.processes: list[subprocess.Popen[bytes]] = []
+        self.scheduler = self._start("scheduler", *place)
+        _wait_until(lambda: told.exists() and bool(told.read_text()), self.scheduler)
+        self.address: str = json.loads(told.read_text())["address"]
+        self.workers = [self.add_worker() for _ in range(workers)]
+
+    def add_worker(self) -> subprocess.Popen[bytes]:
+        """Start one more worker, with one thread."""
+        limits = ("--nthreads", "1", "--no-nanny", "--memory-limit", self._memory)
+        return self._start("worker", self.address, *limits)
+
+    def close(self) -> None:
+        """End all processes."""
+        for process in self.processes[::-1]:
+            process.kill()
+            process.wait()
+
+    def _start(self, kind: str, *words: str) -> subprocess.Popen[bytes]:
+        here = self._folder / f"process{len(self.processes)}"
+        here.mkdir()
+        program = [sys.executable, "-m", f"distributed.cli.dask_{kind}", *words, "--no-dashboard"]
+        with (here / "log.txt").open("wb") as log:
+            process = subprocess.Popen(
+                program, cwd=here, env=self._environment, stdout=log, stderr=log
+            )
+        self.processes.append(process)
+        return process
+
+
+def peak_memory(pid: int | str = "self") -> int:
+    """Return the most memory that a process has had, in bytes; on Linux alone."""
+    status = Path(f"/proc/{pid}/status").read_text(encoding="utf-8")
+    return 1024 * int(status.partition("VmHWM:")[2].split()[0])
+
+
+def _wait_until(ready: Callable[[], bool], process: subprocess.Popen[bytes]) -> None:
+    until = time.monotonic() + PATIENCE_S
+    while not ready():
+        if process.poll() is not None or time.monotonic() > until:
+            msg = f"{process.args!r} did not become ready; see its log.txt"
+            raise RuntimeError(msg)
+        time.sleep(0.02)
+
+
+def _request_of(line: str) -> Request:
+    at, method, status, received, sent, path = line.rstrip("\n").split(" ", 5)
+    return Request(float(at), method, int(status), int(received), int(sent), path)
+
+
+class _Told:
+    """A WSGI application that writes a line for every request of another one."""
+
+    def __init__(self, inner: Any, log: Path) -> None:
+        self._inner, self._lock = inner, threading.Lock()
+        self._log = log.open("a", encoding="utf-8", buffering=1)
+
+    def __call__(self, environ: dict[str, Any], start: Any) -> Iterator[bytes]:
+        status: list[str] = []
+
+        def started(line: str, *rest: Any) -> Any:
+            status.append(line[:3])
+            return start(line, *rest)
+
+        body: Iterable[bytes] = self._inner(environ, started)
+        sent = 0
+        for part in body:
+            sent += len(part)
+            yield part
+        words = (
+            f"{time.time():.3f}",
+            environ["REQUEST_METHOD"],
+            status[0],
+            environ.get("CONTENT_LENGTH") or "0",
+            str(sent),
+            environ["PATH_INFO"],
+        )
+        with self._lock:
+            self._log.write(" ".join(words) + "\n")
+
+
+def _serve(folder: Path) -> None:
+    """Be an S3 server; its port is written into a file."""
+    import resource
+
+    from moto.moto_server.werkzeug_app import (
+        DomainDispatcherApplication,
+        MotoRequestHandler,
+        create_backend_app,
+    )
+    from werkzeug.serving import make_server
+
+    # Each object that lies in a file keeps it open.
+    most = resource.getrlimit(resource.RLIMIT_NOFILE)[1]
+    resource.setrlimit(resource.RLIMIT_NOFILE, (most, most))
+    log = folder / "requests.txt"
+    log.touch()
+    app = _Told(DomainDispatcherApplication(create_backend_app), log)
+    server = make_server(
+        "127.0.0.1",
+        0,
+        app,  # type: ignore[arg-type]
+        threaded=True,
+        request_handler=MotoRequestHandler,
+    )
+    (folder / "port.txt").write_text(str(server.port), encoding="utf-8")
+    server.serve_forever()
+
+
+if __name__ == "__main__":
+    _serve(Path(sys.argv[1]))
