@@ -5,8 +5,11 @@ Run as a program it is the object storage: ``python tests/cluster.py FOLDER``.
 
 from __future__ import annotations
 
+import hashlib
 import json
+import math
 import os
+import struct
 import subprocess
 import sys
 import threading
@@ -16,7 +19,7 @@ from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
-__all__ = ["BUCKET", "Cluster", "ObjectStorage", "Request", "peak_memory"]
+__all__ = ["BUCKET", "Cluster", "ObjectStorage", "Request", "digests", "peak_memory"]
 
 ROOT = Path(__file__).resolve().parents[1]
 BUCKET = "flows"
@@ -167,6 +170,44 @@ def peak_memory(pid: int | str = "self") -> int:
     """Return the most memory that a process has had, in bytes; on Linux alone."""
     status = Path(f"/proc/{pid}/status").read_text(encoding="utf-8")
     return 1024 * int(status.partition("VmHWM:")[2].split()[0])
+
+
+def digests(place: str | Path) -> dict[str, str]:
+    """Return a digest of each object of a store, but for the time that gzip writes into chunks."""
+    import zarr
+    from zarr.core.buffer import default_buffer_prototype
+    from zarr.core.sync import sync
+
+    # The object storage, which is this module as well, needs nothing of the package.
+    from flowtex.pyramid.places import store_at
+
+    store, kind = store_at(place), default_buffer_prototype()
+    members = zarr.open_group(store, mode="r").members(max_depth=None)
+    arrays = {name: array for name, array in members if isinstance(array, zarr.Array)}
+    found = {}
+
+    async def read() -> None:
+        async for key in store.list():
+            data = (await store.get(key, kind)).to_bytes()
+            name, of_array, _ = key.partition("/c/")
+            parts = _chunks(data, arrays[name]) if of_array else [data]
+            # A chunk is packed by gzip, with the time in bytes 4 to 7, and followed by a check sum.
+            if of_array:
+                parts = [part[:4] + part[8:-4] for part in parts]
+            found[key] = hashlib.blake2b(b"".join(parts), digest_size=16).hexdigest()
+
+    sync(read())
+    return found
+
+
+def _chunks(data: bytes, array: Any) -> list[bytes]:
+    """Return the packed chunks of an object."""
+    if array.shards is None:
+        return [data]
+    count = math.prod(s // c for s, c in zip(array.shards, array.chunks, strict=True))
+    # Where each chunk begins, and its size; the largest number stands for one that is not there.
+    index = struct.iter_unpack("<QQ", data[-16 * count - 4 : -4])
+    return [data[at : at + size] for at, size in index if at < len(data)]
 
 
 def _wait_until(ready: Callable[[], bool], process: subprocess.Popen[bytes]) -> None:
