@@ -20,7 +20,7 @@ LATITUDES = (-76.0, 76.0)
 #: Nodes from a knot of the smallest octave to the next; knots of the largest around the Earth.
 SMALLEST_NODES, LARGEST_KNOTS = 8, 8
 #: Speed of the octaves as a power of their size; largest octaves of which there is land.
-ROUGHNESS, LAND_OCTAVES = 0.15, 6
+ROUGHNESS, LAND_OCTAVES = 0.5, 6
 #: Height from which on there is land, and over which the flow grows to its full speed beside it.
 LAND, SHORE = 0.6, 0.4
 #: Speed in m/s of a stream function that grows by one over a knot.
