@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from flowtex._util.array_types import Indices
+from flowtex.pyramid.client_parts import write_client_parts
 from flowtex.pyramid.layout import TRACES, Part, shard_texels
 from flowtex.pyramid.levels import Levels
 from flowtex.pyramid.places import store_at
@@ -74,7 +75,8 @@ def write_part(
 
 def make_tile(place: str, run: str, task: TileTask) -> None:
     """Trace a tile in the level that it belongs to."""
-    pyramid, array = _pyramid(place, run), _writable(place, run)[f"{task.key.level}/{TRACES}"]
+    pyramid, here = _pyramid(place, run), _writable(place, run)[str(task.key.level)]
+    array = here[TRACES]
     every = range(len(pyramid.field.times))
     # One halo for all times, whichever of them are still to be written.
     textures: TextureSet | None
@@ -83,6 +85,8 @@ def make_tile(place: str, run: str, task: TileTask) -> None:
         spare, textures = 0, Pyramid.root_textures(pyramid, store)
     else:
         spare, textures = pyramid.settled(task.key, every)
+    # Before the traces: by these a tile is known to be whole.
+    write_client_parts(here, pyramid, task.key, textures, task.steps)
     for step in task.steps:
         at, room = (step, task.key.row, task.key.column), array.shape[3:]
         if textures is None:
