@@ -35,6 +35,7 @@ from flowtex._version import __version__
 from flowtex.earth import Projection
 from flowtex.field import FlowField
 from flowtex.field.steps import LazySteps
+from flowtex.pyramid.checks import sealed
 from flowtex.pyramid.places import FORMAT
 from flowtex.textures.geometry import TILE_LEVELS, Padding, paddings
 from flowtex.tiles import BLOCK_CELLS, TILE_BLOCKS, Pyramid
@@ -162,7 +163,7 @@ def attributes_of(about: Mapping[str, Any]) -> dict[str, Any]:
     return {
         "zarr_conventions": [CONVENTION],
         "multiscales": {"layout": layout, "resampling_method": "average"},
-        "flowtex": dict(about),
+        "flowtex": sealed(about),
     }
 
 

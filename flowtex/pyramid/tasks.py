@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from flowtex._util.array_types import Indices
+from flowtex.pyramid.checks import identity_of
 from flowtex.pyramid.layout import TRACES, Part, shard_texels
 from flowtex.pyramid.levels import Levels
 from flowtex.pyramid.places import store_at
@@ -85,10 +86,12 @@ def make_tile(place: str, run: str, task: TileTask) -> None:
         spare, textures = pyramid.settled(task.key, every)
     for step in task.steps:
         at, room = (step, task.key.row, task.key.column), array.shape[3:]
+        belongs = identity_of(_levels(place, run).about, task.key, step)
         if textures is None:
-            array[at] = shard_texels({"empty": True}, None, room)
+            array[at] = shard_texels({"empty": True, **belongs}, None, room)
             continue
-        array[at] = shard_texels(_about_tile(textures, spare), textures.layers(step), room)
+        told = {**_about_tile(textures, spare), **belongs}
+        array[at] = shard_texels(told, textures.layers(step), room)
 
 
 def _about_tile(textures: TextureSet, spare: int) -> dict[str, Any]:
