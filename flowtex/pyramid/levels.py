@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import asyncio
 import threading
-from collections.abc import Coroutine
+from collections.abc import Callable, Coroutine
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from flowtex._util.array_types import AnyArray, Bools, Floats, Floats32, Indices
 from flowtex._util.extras import import_extra
-from flowtex._util.progress import Stopped, check
+from flowtex._util.progress import check
 from flowtex.field.steps import LazySteps
 from flowtex.pyramid.checks import check_about, check_header, identity_of
 from flowtex.pyramid.layout import TRACES, create_level, read_header
@@ -28,6 +28,16 @@ FORMAT_NAMES = ("shape", "data_type", "chunk_grid", "chunk_key_encoding", "fill_
 LOOK_INTERVAL_S = 0.1
 #: Characters of an error of others that are repeated.
 MOST_LETTERS = 300
+
+
+class _Part(NamedTuple):
+    """A part of an array: of these rows and columns, or what an index takes."""
+
+    array: str
+    selection: Any
+    #: What an error calls it.
+    name: str
+    lines: bool = False
 
 
 class StoredTile:
@@ -82,30 +92,6 @@ class Levels:
         self._expected: dict[int, Any] = {}
         self._lock = threading.Lock()
 
-    def array(self, name: str) -> Any:
-        """Return an array of Zarr's by its path, to be awaited.
-
-        Raises
-        ------
-        PyramidError
-            When it cannot be read, or is none that is written here: shape, type and packing decide
-            what its bytes mean.
-        """
-        if name not in self._arrays:
-            open_array = import_extra("zarr.api.asynchronous", "store").open_array
-            try:
-                array = _wait(open_array(store=self._objects, path=name, zarr_format=3, mode="r"))
-                same = _format_of(array) == self._format(name)
-            except Stopped:
-                raise
-            except Exception as error:
-                raise self._error(name, error) from None
-            if not same:
-                msg = f"{name} of {self.place} is not as it was written; build the store anew"
-                raise PyramidError(msg)
-            self._arrays[name] = array
-        return self._arrays[name]
-
     def _format(self, name: str) -> dict[str, Any]:
         """Return what an array has to be like: as one that is made for the same pyramid."""
         zarr, level = import_extra("zarr", "store"), int(name.partition("/")[0])
@@ -115,41 +101,66 @@ class Levels:
                 rows, columns = (len(level_lines(n, level)) for n in self.about["nodes"])
                 create_level(group, level, (rows, columns), self.about)
                 self._expected[level] = group
-            return _format_of(self._expected[level][name])
+            group = self._expected[level]
+            if name.partition("/")[2] not in group[str(level)]:
+                msg = f"{self.place} has no {name}; build it again"
+                raise PyramidError(msg)
+            return _format_of(group[name])
 
     def positions(self, level: int, rows: Indices, columns: Indices) -> tuple[Floats, Bools]:
         """Return where nodes are, (J, I, 3), and which of them are valid, (J, I)."""
-        height = self.about["height"]
-        if self.about["axes"]:
-            x, y = (self._read(f"{level}/{name}") for name in "xy")
-            grid = np.broadcast_arrays(x[columns], y[rows][:, None], height)
-            points = np.stack(grid, axis=-1)
-        else:
-            points = _in_space(self._lines(f"{level}/points", rows, columns), height)
-        return points, self._lines(f"{level}/valid", rows, columns).astype(bool)
+        names = [*self._places(), "valid"]
+        *places, valid = self._read(*(self._part(level, n, rows, columns) for n in names))
+        return self._points(places, rows, columns), valid.astype(bool)
 
     def nodes(
         self, level: int, rows: Indices, columns: Indices, *, velocities: bool = True
     ) -> Nodes:
         """Return what some lines of a level have, with or without velocities."""
-        points, valid = self.positions(level, rows, columns)
-        known = None
-        if self.about["has_position"]:
-            known = self._lines(f"{level}/has_position", rows, columns).astype(bool)
-        scalars = {
-            name: self._steps(f"{level}/scalars/{name}", count, rows, columns)
-            for name, count in self.about["scalars"].items()
-        }
-        velocity: Any = None
+        about = self.about
+        names = [*self._places(), "valid", *["has_position"] * about["has_position"]]
+        series = {f"scalars/{name}": count for name, count in about["scalars"].items()}
         if velocities:
-            velocity = self._steps(
-                f"{level}/velocity", len(self.about["times"]), rows, columns, vectors=True
-            )
-        return Nodes(points, valid, velocity, known, scalars)
+            series["velocity"] = len(about["times"])
+        late = {name for name, count in series.items() if about["late"] and count > 1}
+        parts = [self._part(level, name, rows, columns) for name in names]
+        for name, count in series.items():
+            if name not in late:
+                parts += [self._part(level, name, rows, columns, step) for step in range(count)]
+        values = iter(self._read(*parts))
+        known = {name: next(values) for name in names}
+        steps: dict[str, Any] = {}
+        for name, count in series.items():
+            if name in late:
+                steps[name] = LazySteps(count, self._later(level, name, rows, columns))
+            else:
+                steps[name] = np.stack([next(values) for _ in range(count)])
+        velocity = steps.pop("velocity", None)
+        if velocities and "velocity" not in late:
+            velocity = _in_space(velocity)
+        return Nodes(
+            self._points([known[name] for name in self._places()], rows, columns),
+            known["valid"].astype(bool),
+            velocity,
+            known["has_position"].astype(bool) if about["has_position"] else None,
+            {name.removeprefix("scalars/"): values for name, values in steps.items()},
+        )
+
+    def _later(
+        self, level: int, name: str, rows: Indices, columns: Indices
+    ) -> Callable[[int], AnyArray]:
+        """Return what reads a step of an array when it is asked for."""
+
+        def read(step: int) -> AnyArray:
+            (values,) = self._read(self._part(level, name, rows, columns, step))
+            return _in_space(values) if name == "velocity" else values
+
+        return read
 
     def velocity(self, level: int, step: int, rows: Indices, columns: Indices) -> Floats:
         """Return the velocity of some lines of a level at a time step, (J, I, C)."""
-        return self._lines(f"{level}/velocity", rows, columns, step)
+        (values,) = self._read(self._part(level, "velocity", rows, columns, step))
+        return values
 
     def tile(self, key: TileKey, step: int) -> StoredTile:
         """Return a tile at a destination time.
@@ -159,54 +170,77 @@ class Levels:
         PyramidError
             When it is not there, or broken.
         """
-        name = f"{key.level}/{TRACES}"
-        array = self.array(name)
+        array = f"{key.level}/{TRACES}"
         name = f"tile {tuple(key)} at step {step}"
+        (texels,) = self._read(_Part(array, (step, key.row, key.column), name))
         try:
-            texels = _wait(array.getitem((step, key.row, key.column)))
             header = read_header(texels[0])
             if header is None:
                 msg = f"{name} is missing in {self.place}; build it again"
                 raise PyramidError(msg)
             about = check_header(header, identity_of(self.about, key, step))
-        except (Stopped, PyramidError):
+        except PyramidError:
             raise
         except Exception as error:
             raise self._error(name, error) from None
         return StoredTile(about, texels)
 
-    def _steps(
-        self, name: str, count: int, rows: Indices, columns: Indices, *, vectors: bool = False
-    ) -> Any:
-        def read(step: int) -> Floats:
-            values = self._lines(name, rows, columns, step)
-            return _in_space(values) if vectors else values
+    def _places(self) -> list[str]:
+        return ["x", "y"] if self.about["axes"] else ["points"]
 
-        if self.about["late"] and count > 1:
-            return LazySteps(count, read)
-        return np.stack([read(step) for step in range(count)])
+    def _points(self, places: list[AnyArray], rows: Indices, columns: Indices) -> Floats:
+        if not self.about["axes"]:
+            return _in_space(places[0], self.about["height"])
+        x, y = places
+        grid = np.broadcast_arrays(x[columns], y[rows][:, None], self.about["height"])
+        return np.stack(grid, axis=-1)
 
-    def _lines(
-        self, name: str, rows: Indices, columns: Indices, step: int | None = None
-    ) -> AnyArray:
-        """Read some rows and columns of an array over the nodes."""
-        array = self.array(name)
+    def _part(
+        self, level: int, name: str, rows: Indices, columns: Indices, step: int | None = None
+    ) -> _Part:
+        """Return which part of an array over the nodes some rows and columns are."""
         before = () if step is None else (step,)
+        whole = f"{level}/{name}"
+        if name in ("x", "y"):
+            return _Part(whole, slice(None), whole)
         both = [_slice(lines) for lines in (rows, columns)]
-        if None not in both:
-            return self._values(name, array.getitem((*before, *both)))
-        return self._values(name, array.oindex.getitem((*before, rows, columns)))
+        if None in both:
+            return _Part(whole, (*before, rows, columns), whole, lines=True)
+        return _Part(whole, (*before, *both), whole)
 
-    def _read(self, name: str) -> AnyArray:
-        return self._values(name, self.array(name).getitem(slice(None)))
+    def _read(self, *parts: _Part) -> list[AnyArray]:
+        """Read parts of arrays, all at once."""
+        formats = [self._format(part.array) for part in parts]
 
-    def _values(self, name: str, reading: Coroutine[Any, Any, Any]) -> AnyArray:
+        async def together() -> list[AnyArray]:
+            return await asyncio.gather(*map(self._values, parts, formats))
+
+        values: list[AnyArray] = _wait(together())
+        return values
+
+    async def _values(self, part: _Part, expected: dict[str, Any]) -> AnyArray:
         try:
-            return np.asarray(_wait(reading))
-        except Stopped:
+            array = await self._opened(part.array, expected)
+            chosen = array.oindex if part.lines else array
+            return np.asarray(await chosen.getitem(part.selection))
+        except PyramidError:
             raise
         except Exception as error:
-            raise self._error(name, error) from None
+            raise self._error(part.name, error) from None
+
+    async def _opened(self, name: str, expected: dict[str, Any]) -> Any:
+        """Return an array of Zarr's, to be awaited.
+
+        It has to be what is written here: shape, type and packing decide what its bytes mean.
+        """
+        if name not in self._arrays:
+            open_array = import_extra("zarr.api.asynchronous", "store").open_array
+            array = await open_array(store=self._objects, path=name, zarr_format=3, mode="r")
+            if _format_of(array) != expected:
+                msg = f"{name} of {self.place} is not as it was written; build the store anew"
+                raise PyramidError(msg)
+            self._arrays[name] = array
+        return self._arrays[name]
 
     def _error(self, name: str, error: Exception) -> PyramidError:
         return PyramidError(f"{name} of {self.place} cannot be read: {_words(error)}")
