@@ -98,6 +98,11 @@ class StoredPyramid(Pyramid):
         self._lock = threading.Lock()
         self._places = {}
 
+    @property
+    def about(self) -> dict[str, Any]:
+        """What the store tells of the field and its pyramid."""
+        return self._stored.about
+
     @cached_property
     def root(self) -> FlowField:
         """The field at the coarsest level."""
