@@ -22,12 +22,14 @@ class RangeServer:
 
     ``fault`` is called with the path of each request, such as ``"0/traces/c/0/0/1/0/0/0/0"``: a
     status is answered in place of the file, bytes are its contents, and ``None`` leaves it as it
-    is. Every answer waits for ``delay`` seconds first.
+    is. Answers of which ``cut`` is true end in their middle. Every answer waits for ``delay``
+    seconds first.
     """
 
     folder: Path
     address: str
     fault: Callable[[str], Answer] = lambda path: None
+    cut: Callable[[str], bool] = lambda path: False
     delay: float = 0.0
     #: Method, path and range of each request, and bytes that were sent for all of them.
     asked: list[tuple[str, str, str]] = field(default_factory=list)
@@ -109,7 +111,8 @@ class _Handler(BaseHTTPRequestHandler):
             self.send_header("Content-Length", str(len(data)))
             self.end_headers()
             if self.command != "HEAD":
-                self.wfile.write(data)
+                self.close_connection = server.cut(self.path.lstrip("/"))
+                self.wfile.write(data[: len(data) // (2 if self.close_connection else 1)])
                 server.sent += len(data)
         except OSError:
             server.broken_off.append(self.path)

@@ -16,9 +16,9 @@ from typing import Any
 from zarr.storage import WrapperStore
 
 from flowtex._util.cache import ByteCache
-from flowtex.pyramid.places import MOST_REPEATS, SILENCE_S, ReadFault
+from flowtex.pyramid.places import MOST_REPEATS, ReadFault, fault_words, is_refused
 
-__all__ = ["Objects", "fault_words"]
+__all__ = ["Objects"]
 
 #: Objects, or parts of them, that are on their way at once from one store.
 MOST_READS = 16
@@ -27,10 +27,6 @@ CACHE_BYTES = 200_000_000
 #: Traces of a tile are read once: whoever draws keeps them.
 _TRACES = re.compile(r"^\d+/traces/c/")
 _CHUNK = re.compile(r"/c(/\d+)+$")
-_CREDENTIALS = (
-    "credentials come from the environment, such as AWS_ACCESS_KEY_ID and AWS_SECRET_ACCESS_KEY, "
-    "or AWS_SKIP_SIGNATURE=true for a public bucket"
-)
 
 
 @dataclass(frozen=True)
@@ -74,11 +70,7 @@ class Objects(WrapperStore[Any]):
                     # An answer that was begun is not asked for again by obstore.
                     if "Interrupted" in str(error) and trial < MOST_REPEATS:
                         continue
-                    refused = type(error).__name__ in (
-                        "PermissionDeniedError",
-                        "UnauthenticatedError",
-                    )
-                    if refused and key != "zarr.json" and not _CHUNK.search(key):
+                    if is_refused(error) and key != "zarr.json" and not _CHUNK.search(key):
                         return None
                     msg = f"{key} {fault_words(error)}"
                     raise ReadFault(msg) from None
@@ -86,33 +78,3 @@ class Objects(WrapperStore[Any]):
             msg = f"{key} is missing"
             raise ReadFault(msg)
         return result
-
-
-def fault_words(error: Exception) -> str:
-    """Tell what became of a request, without what the server said: that may hold secrets."""
-    text, kind = str(error), type(error).__name__
-    status = re.search(r"status code: (\d{3})", text)
-    if kind in ("PermissionDeniedError", "UnauthenticatedError"):
-        code = status[1] if status else "403"
-        return f"is missing or not open to us ({code}); {_CREDENTIALS}"
-    if isinstance(error, FileNotFoundError):
-        return "is missing"
-    if kind == "NotSupportedError":
-        return "was asked for in part, which this server cannot do; expected one with ranges"
-    if "169.254.169.254" in text:
-        return f"cannot be asked for without credentials; {_CREDENTIALS}"
-    if status:
-        again = "try again later" if status[1] in ("429", "500", "502", "503", "504") else ""
-        return f"was answered with status {status[1]}" + (f"; {again}" if again else "")
-    if "kind: Timeout" in text or isinstance(error, TimeoutError):
-        return (
-            f"did not come: no answer within {SILENCE_S:g} s, asked {MOST_REPEATS + 1} times; "
-            "look whether the server runs"
-        )
-    if "kind: Connect" in text:
-        return "did not come: nobody answers at this address; look whether it is right"
-    if "kind: Interrupted" in text or "kind: Body" in text:
-        return "was cut off on its way; try again"
-    if isinstance(error, OSError):
-        return f"cannot be read ({error.strerror or kind})"
-    return f"did not come ({kind})"

@@ -20,6 +20,8 @@ __all__ = [
     "FORMAT",
     "PyramidError",
     "ReadFault",
+    "fault_words",
+    "is_refused",
     "is_remote",
     "is_store",
     "objects_at",
@@ -39,6 +41,11 @@ _SCHEMES = ("s3", "s3a", "gs", *_AZURE, *_WEB)
 SILENCE_S, CONNECT_S, MOST_REPEATS = 10.0, 5.0, 2
 #: Seconds that one object may take on its way.
 LONGEST_S = 300.0
+
+_CREDENTIALS = (
+    "credentials come from the environment, such as AWS_ACCESS_KEY_ID and AWS_SECRET_ACCESS_KEY, "
+    "or AWS_SKIP_SIGNATURE=true for a public bucket"
+)
 
 
 class PyramidError(FieldError):
@@ -157,6 +164,41 @@ def is_store(place: Any) -> bool:
         return "flowtex" in about["attributes"]
     except (OSError, ValueError, KeyError, TypeError):
         return False
+
+
+def is_refused(error: Exception) -> bool:
+    """Whether a store has refused what was asked for, as private ones do for what is missing."""
+    return type(error).__name__ in ("PermissionDeniedError", "UnauthenticatedError")
+
+
+def fault_words(error: Exception) -> str:
+    """Tell what became of a request, without what the server said: that may hold secrets."""
+    text, kind = str(error), type(error).__name__
+    status = re.search(r"status code: (\d{3})", text)
+    if is_refused(error):
+        code = status[1] if status else "403"
+        return f"is missing or not open to us ({code}); {_CREDENTIALS}"
+    if isinstance(error, FileNotFoundError):
+        return "is missing"
+    if kind == "NotSupportedError":
+        return "was asked for in part, which this server cannot do; expected one with ranges"
+    if "169.254.169.254" in text:
+        return f"cannot be asked for without credentials; {_CREDENTIALS}"
+    if status:
+        again = "try again later" if status[1] in ("429", "500", "502", "503", "504") else ""
+        return f"was answered with status {status[1]}" + (f"; {again}" if again else "")
+    if "kind: Timeout" in text or isinstance(error, TimeoutError):
+        return (
+            f"did not come: no answer within {SILENCE_S:g} s, asked {MOST_REPEATS + 1} times; "
+            "look whether the server runs"
+        )
+    if "kind: Connect" in text:
+        return "did not come: nobody answers at this address; look whether it is right"
+    if "kind: Interrupted" in text or "kind: Body" in text:
+        return "was cut off on its way; try again"
+    if isinstance(error, OSError):
+        return f"cannot be read ({error.strerror or kind})"
+    return f"did not come ({kind})"
 
 
 def _first_line(error: Exception) -> str:
