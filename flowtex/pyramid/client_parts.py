@@ -10,8 +10,7 @@ import numpy as np
 
 from flowtex.field import FlowField
 from flowtex.pyramid.layout import SURFACE, VALUES
-from flowtex.rendering.webgl import ClientData, Colours, tile_parts
-from flowtex.rendering.webgl.client_data import SINGLE_MAX
+from flowtex.rendering.webgl import ClientData, Colours, single, tile_parts
 from flowtex.rendering.webgl.protocol import parts_file
 from flowtex.textures import TextureSet
 from flowtex.tiles import Pyramid, TileKey, widened
@@ -36,9 +35,9 @@ def write_client_parts(
     for number, name in enumerate(_names(field)):
         values = _steps_of(field, name)
         for step in (step for step in steps if step < len(values)):
-            inside = np.clip(values[step][rows, columns], -SINGLE_MAX, SINGLE_MAX)
+            nodal = single(values[step][rows, columns])
             at = (step, key.row, key.column, number)
-            here[VALUES][(*at, *(slice(0, n) for n in inside.shape))] = inside
+            here[VALUES][(*at, *(slice(0, n) for n in nodal.shape))] = nodal
 
 
 def _surface(pyramid: Pyramid, key: TileKey, textures: TextureSet | None) -> bytes:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -99,9 +99,17 @@ class StoredPyramid(Pyramid):
         self._places = {}
 
     @property
-    def about(self) -> dict[str, Any]:
-        """What the store tells of the field and its pyramid."""
+    def about(self) -> Mapping[str, Any]:
+        """What is told of the field and its pyramid."""
         return self._stored.about
+
+    @property
+    def finest(self) -> int:
+        """The level down to which the tiles of all levels are in the store."""
+        level = self.depth
+        while level - 1 in self.about["traced"]:
+            level -= 1
+        return level
 
     @cached_property
     def root(self) -> FlowField:
