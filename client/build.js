@@ -13,6 +13,8 @@ const COMMON = {
   absWorkingDir: fileURLToPath(new URL(".", import.meta.url)),
   bundle: true,
   charset: "utf8",
+  // Packings that no store of ours has, of which zarrita would bring the decoders.
+  external: ["numcodecs/*"],
   legalComments: "inline",
   lineLimit: 120,
   loader: { ".css": "text" },
@@ -21,13 +23,19 @@ const COMMON = {
   target: "es2022",
 };
 
-const licence = await readFile(new URL("node_modules/gl-matrix/LICENSE.md", import.meta.url), "utf8");
 const ORIGIN = "// Built from client/src by client/build.js; change that instead.";
-const NOTICE = `/*! Holds parts of gl-matrix, of which this is the licence:\n\n${licence.trim()} */`;
+const NOTICE = await noticeOf("gl-matrix", "LICENSE.md");
+const STORE_NOTICE = await noticeOf("zarrita", "LICENSE");
+
+async function noticeOf(name, file) {
+  const licence = await readFile(new URL(`node_modules/${name}/${file}`, import.meta.url), "utf8");
+  return `/*! Holds parts of ${name}, of which this is the licence:\n\n${licence.trim()} */`;
+}
 
 const BUILDS = [
   ["src/client.ts", `${WEB}/client.js`, "esm", NOTICE],
   ["src/page.ts", `${WEB}/page.js`, "esm", NOTICE],
+  ["src/storepage.ts", `${WEB}/storepage.js`, "esm", `${NOTICE}\n${STORE_NOTICE}`],
   ["src/app/app.ts", `${STATIC}/flowtex.js`, "iife", ""],
 ].map(([entry, outfile, format, notice]) => ({
   ...COMMON,

@@ -35,6 +35,7 @@ from flowtex.tiles import (
     levels_of,
     shared_pyramid,
     triangle_pyramid,
+    widened,
 )
 from flowtex.trace import SliceStore, TraceSlices, chosen_lines, shared_store
 
@@ -53,10 +54,6 @@ SETTINGS_IN_TEXTURES = {
 
 #: Share of the larger end of a range below which the other one is told as 0.
 ZERO_SHARE = 1e-5
-#: Values that differ by less than this share of the greatest are the same.
-SAME_VALUE_SHARE = 1e-9
-#: Share of such a value by which its range is widened.
-WIDENED_SHARE = 0.05
 
 NO_IMAGE = (
     "noise is 'image' and there is no image; give one as image=, or later with set_image(image)"
@@ -354,14 +351,9 @@ class Scene:
 
     def _range_of(self, name: str, *, robust: bool) -> tuple[float, float]:
         known = {} if self.pyramid is None else self.pyramid.ranges
-        ends = known.get((name, robust)) or ends_of(self._range_values(name), robust=robust)
-        if ends is None:
-            return 0.0, 1.0
-        low, high = ends
-        size = max(abs(low), abs(high))
-        if high - low > SAME_VALUE_SHARE * size:
-            return low, high
-        return (low - WIDENED_SHARE * size, high + WIDENED_SHARE * size) if size > 0 else (0.0, 1.0)
+        return widened(
+            known.get((name, robust)) or ends_of(self._range_values(name), robust=robust)
+        )
 
     def _range_values(self, name: str) -> Floats:
         """Values of the valid nodes at all times."""

@@ -32,8 +32,8 @@ LAYERS: tuple[tuple[str, ...], ...] = (
     ("camera",),
     ("textures",),
     ("tiles",),
-    ("pyramid",),
     ("rendering",),
+    ("pyramid",),
     ("diagnostics",),
     ("examples",),
     ("options",),
@@ -95,7 +95,11 @@ LIBRARIES = (
     Library(
         ("xarray", "netCDF4", "pandas"), on_load=("xarray",), in_functions=("field", "examples")
     ),
-    Library(("zarr", "obstore", "dask", "distributed"), in_functions=("pyramid",)),
+    Library(
+        ("zarr", "obstore", "dask", "distributed"),
+        on_load=("pyramid.objects",),
+        in_functions=("pyramid",),
+    ),
     Library(("av",), in_functions=("offscreen.encoders",)),
     Library(("cyclopts",), on_load=("cli",)),
     Library(("numba", "llvmlite"), on_load=("_util.kernels",)),
@@ -422,7 +426,7 @@ def test_what_the_browser_draws_needs_no_vtk(module: str) -> None:
 
 def test_what_lies_below_vtk_never_loads_it() -> None:
     names = [module_name(path, PACKAGE) for path in PACKAGE.rglob("*.py")]
-    rooms = (*VTK.on_load, "widget", "display", "cli", "xarray", "_util.kernels")
+    rooms = (*VTK.on_load, "widget", "display", "cli", "xarray", "_util.kernels", "pyramid.objects")
     below = [f"flowtex.{name}" for name in names if name and not is_in(name, rooms)]
     assert "flowtex.diagnostics" in below and "flowtex.web.export" in below
     assert not loaded_by(*sorted(below)) & set(SLOW)

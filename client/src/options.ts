@@ -30,6 +30,8 @@ export interface Options {
   /** Colours are chosen, which the host changes. */
   onColours?: (choice: ColourChoice) => void;
   onControls?: (shown: boolean) => void;
+  /** Memory in bytes that tiles may take, here and on the graphics card. */
+  memory?: number;
   /** Whether nothing but the picture is shown. */
   bare?: boolean;
   /** Whether the host makes textures anew where a setting asks for it. */

@@ -56,6 +56,8 @@ export class Panel {
   private readonly head = dom("div", { class: "head glass", hidden: "" }, [this.title, this.readout]);
   private readonly note = dom("div", { class: "note", hidden: "", role: "alert" });
   private readonly busy = dom("div", { class: "busy", hidden: "" }, ["waiting for data …"]);
+  private readonly told = dom("div", { class: "told glass", hidden: "", role: "status" });
+  private readonly words = new Set<string>();
   private readonly hintBox = dom("div", { class: "hint glass", hidden: "" }, [HINT]);
   private readonly bar: HTMLElement;
   private readonly handle: HTMLElement;
@@ -89,10 +91,11 @@ export class Panel {
     root.classList.toggle("flowtex-bare", options.bare ?? false);
     const shadow = root.attachShadow({ mode: "open" });
     shadow.adoptedStyleSheets = [styleSheet];
-    const { legend, controls, head, bar, handle, busy, hintBox, note } = this;
+    const { legend, controls, head, bar, handle, busy, hintBox, told, note } = this;
     const left = dom("div", { class: "left" }, [head, viewer.card.element]);
     shadow.append(canvas, viewer.card.overlay, left, legend.element, controls.element);
-    shadow.append(bar, handle, busy, hintBox, note);
+    shadow.append(bar, handle, busy, hintBox, told, note);
+    viewer.lifetime.listen(told, "click", () => (told.hidden = true));
     this.arrange();
   }
 
@@ -255,6 +258,14 @@ export class Panel {
     lifetime.cancel(this.hintTimer);
     this.hintTimer = shown ? lifetime.later(() => this.hint(false), HINT_MS) : null;
     this.hintBox.hidden = !shown;
+  }
+
+  /** Say something once, beside the picture; a click takes it away. */
+  tell(text: string): void {
+    if (this.words.has(text)) return;
+    this.words.add(text);
+    this.told.textContent = text;
+    this.told.hidden = false;
   }
 
   /** Take a message away, as a picture is complete. */

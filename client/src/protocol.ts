@@ -157,7 +157,23 @@ export interface PyramidHeader {
 }
 
 /** What of the header of a tile differs from that of the root. */
-export type TileHeader = Pick<Header, "geometry" | "slices">;
+export interface TileHeader extends Pick<Header, "geometry" | "slices"> {
+  /** Ranges of values by which its errors of colours are measured, where these are not the root's. */
+  ranges?: Record<string, [low: number, high: number]>;
+}
+
+/** The store in which the rest of a page lies: flowtex/web/linked.py. */
+export interface StoreHeader {
+  /** Whole, or from the page on. */
+  url: string;
+  /** What the store tells of itself. */
+  format: string;
+  fingerprint: string;
+  /** Level of the root. */
+  depth: number;
+  /** Numbers in the store of the page's time steps. */
+  steps: number[];
+}
 
 type ShaderName =
   "vertex" | "fragment" | "pick" | "lineVertex" | "lineFragment" | "groundVertex" | "groundFragment";
@@ -230,6 +246,7 @@ export interface Header {
   earth: Earth | null;
   /** Null where the whole surface is here. */
   pyramid: PyramidHeader | null;
+  store?: StoreHeader;
   limits: CameraLimits;
   table: Row[];
   settings: Settings;
@@ -276,6 +293,13 @@ export function isSignFree(header: Pick<Header, "variant">): boolean {
 /** Time step in the name of a part, such as 3 of "slices/3"; NaN where there is none. */
 export function stepOf(name: string): number {
   return Number(name.split("/")[1]);
+}
+
+/** Whether a part has values of a time step to colour by, and not of all of them. */
+export function isOfStep(name: string, step: number, { scalars }: Header): boolean {
+  const [kind, own, number = "0"] = name.split("/");
+  const steps = scalars.choices[Number(number)]?.steps ?? scalars.steps;
+  return kind === "scalars" && Number(own) === step && steps > 1;
 }
 
 /** Name of a tile and of its part, such as 0/3/4 and "slices/3" of "tile/0/3/4/slices/3". */

@@ -3,6 +3,8 @@
 import type { NamedPart } from "./protocol.ts";
 import { nameOf, type TileKey } from "./tilechoice.ts";
 
+type Job = readonly [key: TileKey, steps: number[]];
+
 /** Gives the parts of a tile for some time steps. */
 export type LoadTile = (key: TileKey, steps: number[], signal: AbortSignal) => Promise<NamedPart[]>;
 
@@ -10,20 +12,34 @@ export class TileQueue {
   private readonly load: LoadTile;
   private readonly give: (part: NamedPart) => void;
   private readonly most: number;
+  private readonly fail: (key: TileKey, error: unknown) => void;
   private readonly running = new Map<string, AbortController>();
-  private wanted: [key: TileKey, steps: number[]][] = [];
+  private wanted: Job[] = [];
 
-  /** So many tiles at most are loaded at a time. */
-  constructor(load: LoadTile, give: (part: NamedPart) => void, most = 1) {
+  /** So many tiles at most are loaded at a time; `fail` is told of those that cannot be had. */
+  constructor(
+    load: LoadTile,
+    give: (part: NamedPart) => void,
+    most = 1,
+    fail = (_: TileKey, error: unknown): void => {
+      throw error;
+    },
+  ) {
     this.load = load;
     this.give = give;
     this.most = most;
+    this.fail = fail;
   }
 
   /** Load tiles in this order, and none that was asked for before and is not among them. */
   request(keys: TileKey[], steps: number[]): void {
-    this.wanted = keys.map((key) => [key, steps]);
-    const names = new Set(keys.map((key) => `${nameOf(key)} ${steps}`));
+    this.want(keys.map((key) => [key, steps]));
+  }
+
+  /** The same, each for steps of its own. */
+  want(jobs: Job[]): void {
+    this.wanted = [...jobs];
+    const names = new Set(jobs.map(([key, steps]) => `${nameOf(key)} ${steps}`));
     for (const [name, controller] of this.running) if (!names.has(name)) controller.abort();
     this.next();
   }
@@ -44,7 +60,7 @@ export class TileQueue {
       const parts = await this.load(key, steps, controller.signal);
       if (!controller.signal.aborted) parts.forEach(this.give);
     } catch (error) {
-      if (!controller.signal.aborted) throw error;
+      if (!controller.signal.aborted) this.fail(key, error);
     } finally {
       this.running.delete(name);
       this.next();

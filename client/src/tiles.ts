@@ -8,8 +8,10 @@ import type { Camera } from "./camera.ts";
 import { narrowed } from "./colours.ts";
 import { join, type Region } from "./meshlevels.ts";
 import {
+  isOfStep,
   stepOf,
   type Header,
+  type MeshLimits,
   type NamedPart,
   type Part,
   type Settings,
@@ -20,6 +22,7 @@ import {
   cellPixels,
   cover,
   keyOf,
+  nameOf,
   Pyramid,
   ROOT,
   wantedTiles,
@@ -33,7 +36,7 @@ const REQUEST_MS = 60;
 const LOST_MS = 8000;
 /** Milliseconds that tiles may take of a picture on their way to the graphics card. */
 const LOAD_MS = 25;
-/** Memory of the tiles that are held, in bytes, and of a byte that came, here and on the graphics card. */
+/** Memory of the tiles in bytes where nobody says, and of a byte that came, here and on the graphics card. */
 const BUDGET_BYTES = 900e6;
 const BYTES_HELD = 3.5;
 /** Time steps of a tile that are held. */
@@ -52,8 +55,9 @@ interface Tile {
   parts: Map<string, Part>;
   /** Null where nothing of it is drawn; not known before it has come. */
   scene: Scene | null | undefined;
-  /** Colours that its triangles are chosen for. */
+  /** Colours that its triangles are chosen for, and ranges that their errors are told in. */
   scalars: Header["scalars"];
+  ranges?: TileHeader["ranges"];
   /** When it was wanted last. */
   used: number;
 }
@@ -64,7 +68,7 @@ export interface TileHost {
   readonly settings: Settings;
   readonly canvas: HTMLCanvasElement;
   readonly ratio: number;
-  readonly options: { onTiles?: AskTiles };
+  readonly options: { onTiles?: AskTiles; memory?: number };
   readonly lifetime: { later(call: () => void, delay: number): unknown };
   /** Draw the picture once more, with what has come. */
   refine(): void;
@@ -91,10 +95,26 @@ export class Tiles {
   private isWaiting = false;
   private isOver = false;
   private lastCame = 0;
+  /** Names of the tiles that cannot be had. */
+  private readonly failed = new Set<string>();
+  /** Limits of triangles for the colours that the scene came with. */
+  private readonly limits: MeshLimits;
 
   constructor(host: TileHost, root: Scene) {
     this.host = host;
     this.root = root;
+    this.limits = root.header.mesh;
+  }
+
+  /** Tell whether a part of a tile is there. */
+  has(name: string, part: string): boolean {
+    return this.tiles.get(name)?.parts.has(part) ?? false;
+  }
+
+  /** Show what is coarser in place of a tile that cannot be had. */
+  fail(name: string): void {
+    this.failed.add(name);
+    this.host.refine();
   }
 
   dispose(): void {
@@ -114,6 +134,7 @@ export class Tiles {
     if (part.name === "header") {
       const own = JSON.parse(new TextDecoder().decode(part.data)) as TileHeader | null;
       tile.scene?.dispose();
+      tile.ranges = own?.ranges;
       tile.scene = own && new Scene(graphics, { ...header, ...own, pyramid: null }, tile.parts);
       this.giveMap(tile);
       this.giveLimits(tile);
@@ -135,6 +156,7 @@ export class Tiles {
       if (!scene) continue;
       const { header } = scene;
       Object.assign(header, { mesh: narrowed(mesh, tile.scalars, scalars) }, colours);
+      if (tile.ranges) this.giveLimits(tile);
       this.giveMap(tile);
       for (const name of ["scalars", "mesh"]) scene.forget(name);
       const painted = steps.length ? scene.scalarParts(steps[0], steps[steps.length - 1]) : [];
@@ -155,7 +177,10 @@ export class Tiles {
   private giveLimits(tile: Tile): void {
     const { mesh, scalars } = this.root.header;
     tile.scalars = scalars;
-    if (tile.scene) tile.scene.header.mesh = mesh;
+    if (!tile.scene) return;
+    const range = tile.ranges?.[scalars.name ?? ""];
+    const from = range && { ...scalars, low: range[0], high: range[1], log: false };
+    tile.scene.header.mesh = from ? narrowed(this.limits, from, scalars) : mesh;
   }
 
   /** Colour by the map of the root. */
@@ -229,13 +254,25 @@ export class Tiles {
       if (tile) tile.used = this.count;
     }
     const until = performance.now() + LOAD_MS;
-    const wanted = wantedTiles(choices);
+    const wanted = this.obtainable(wantedTiles(choices), header.pyramid.depth);
     this.missing = wanted.filter((name) => !this.isHere(name, steps));
     this.ask(steps);
     this.trim(steps);
     const shown = cover(choices, (name) => this.isHere(name, steps) && this.load(name, steps, until));
     this.chosen = { choices, steps, names: String([...shown.keys()]) };
     return shown;
+  }
+
+  /** The tiles that can be had of these, or in their place those that cover them, below the root. */
+  private obtainable(names: string[], depth: number): string[] {
+    const found = names.map((name) => {
+      let [level, row, column] = keyOf(name);
+      while (level < depth && this.failed.has(nameOf([level, row, column]))) {
+        [level, row, column] = [level + 1, row >> 1, column >> 1];
+      }
+      return level < depth ? nameOf([level, row, column]) : ROOT;
+    });
+    return [...new Set(found)].filter((name) => name !== ROOT);
   }
 
   /** Whether all of a tile has come that these steps need. */
@@ -288,9 +325,11 @@ export class Tiles {
         const step = stepOf(part);
         if (steps.includes(step)) continue;
         for (const kind of ["slices", "extra"]) this.release(tile, `${kind}/${step}`);
+        const values = [...parts.keys()].filter((each) => isOfStep(each, step, this.root.header));
+        for (const each of values) this.release(tile, each);
       }
       for (const { data } of parts.values()) bytes += BYTES_HELD * data.byteLength;
-      if (bytes > BUDGET_BYTES && used < this.count) this.drop(name);
+      if (bytes > (this.host.options.memory ?? BUDGET_BYTES) && used < this.count) this.drop(name);
     }
   }
 

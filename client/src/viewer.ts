@@ -19,6 +19,7 @@ import { ProgressiveRenderer } from "./progressive.ts";
 import {
   EARTH_LINES,
   FORMAT,
+  isOfStep,
   stepOf,
   tilePart,
   type Header,
@@ -38,8 +39,9 @@ import { subtract, toFrame, type Vector } from "./vectors.ts";
 const STILL_MS = 160;
 /** Milliseconds after which a request for a step counts as lost. */
 const LOST_MS = 5000;
-/** Time steps that are held where the host can send the others again. */
+/** Time steps that are held where the host can send the others again, and where memory is short. */
 const STEPS_HELD = 12;
+const FEW_STEPS_HELD = 4;
 
 const isEqual = (a: unknown, b: unknown) => JSON.stringify(a) === JSON.stringify(b);
 
@@ -166,6 +168,7 @@ export class Viewer implements User {
     if (!this.header) return;
     Object.assign(this.header, colours);
     for (const name of ["scalars", "mesh"]) this.scene?.forget(name);
+    this.requests.clear(); // what these colours need
     this.tiles?.recolour(colours);
     this.panel.showLegend();
     this.change();
@@ -213,10 +216,15 @@ export class Viewer implements User {
     if (!this.options.onNeed || !this.header) return;
     const names = [...this.parts.keys()].filter((name) => name.startsWith("slices/"));
     const [before, after] = this.player.moment;
-    for (const name of names.slice(0, Math.max(names.length - STEPS_HELD, 0))) {
+    const held = this.options.memory ? FEW_STEPS_HELD : STEPS_HELD;
+    for (const name of names.slice(0, Math.max(names.length - held, 0))) {
       const step = stepOf(name);
       if (step === before || step === after) continue;
       for (const kind of ["slices", "extra"]) this.remove(`${kind}/${step}`);
+      if (!this.options.memory) continue;
+      for (const other of [...this.parts.keys()]) {
+        if (isOfStep(other, step, this.header)) this.remove(other);
+      }
     }
   }
 
@@ -448,6 +456,12 @@ export class Viewer implements User {
     this.panel.wait(lacking);
     if (!lacking.length) return (this.shown = moment);
     return shown && !scene.missing(shown[0], shown[1]).length ? shown : null;
+  }
+
+  /** Go on without a tile, or a time step, that a host could not give, and say why once. */
+  lack(tile: string | null, reason: string): void {
+    if (tile !== null) this.tiles?.fail(tile);
+    this.panel.tell(reason);
   }
 
   /** Ask for the steps that are not there; tells whether all are. */

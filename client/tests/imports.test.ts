@@ -8,12 +8,12 @@ import { test } from "node:test";
 const FOLDER = new URL("../src/", import.meta.url);
 /** Layers, the lowest first. */
 const LAYERS = [
-  "vectors half dom keyboard lifetime pathlines reuse modules.d app/vue",
+  "vectors half dom keyboard lifetime pathlines reuse store modules.d app/vue",
   "camera",
   "protocol",
   "uniforms quality",
   "programs mesh maplines lonlat meshlevels tilechoice trianglemesh player colours legend",
-  "context tilequeue",
+  "context tilequeue stream",
   "earthlayer",
   "scene",
   "tiles",
@@ -22,7 +22,8 @@ const LAYERS = [
   "viewer",
   "views",
   "widget",
-  "client page",
+  "client openpage",
+  "page storepage",
   "app/browser app/covers app/hints app/keys app/path app/upload",
   "app/app",
 ].map((names) => names.split(" "));

@@ -18,6 +18,7 @@ from flowtex.cli.console import complain
 from flowtex.cli.info import info
 from flowtex.cli.options import UsageError
 from flowtex.cli.pyramid import pyramid
+from flowtex.cli.serve import serve
 from flowtex.cli.write import export, movie, render
 from flowtex.errors import FieldError
 from flowtex.offscreen.encoders import MovieError
@@ -36,7 +37,7 @@ app.command("flowtex.cli.show:demo", help="Show the examples on a page in the br
 app.command(
     "flowtex.cli.show:show", help="Show files, or a folder of them, in a window or on a page."
 )
-for _command in (render, movie, export, info, pyramid):
+for _command in (render, movie, export, info, pyramid, serve):
     app.command(_command)
 
 

@@ -144,6 +144,12 @@ def export(
     title: Annotated[
         str | None, Parameter(group=PICTURE, help="Title of the page; the file's name by default.")
     ] = None,
+    store: Annotated[
+        str | None,
+        Parameter(
+            help="Address of a pyramid for browsers, https://… or ./…: the page reads it there."
+        ),
+    ] = None,
     flow: Annotated[FieldFlags | None, FLAT] = None,
     look: Annotated[LookFlags | None, FLAT] = None,
     settings: Annotated[SettingFlags | None, FLAT] = None,
@@ -166,7 +172,9 @@ def export(
         say(f"{describe(field)}{some}: about {size / 1e6:.1f} MB")
 
     with _writing(output):
-        page = write_page(field, output, steps=steps, title=title, announce=announce, **options)
+        page = write_page(
+            field, output, steps=steps, title=title, store=store, announce=announce, **options
+        )
     seconds = time.perf_counter() - start
     say(f"[bold]{output}[/]  [dim]{page.nbytes / 1e6:.2f} MB, {seconds:.1f} s[/]")
     return 0

@@ -18,6 +18,7 @@ from flowtex._util.progress import track
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.datasets.detect import is_dataset
+from flowtex.pyramid.checks import check_about, sealed
 from flowtex.pyramid.layout import TRACES, about_field, attributes_of, create_level, parts_of
 from flowtex.pyramid.places import PyramidError, place_text, store_at
 from flowtex.pyramid.tasks import TileTask, make_part, make_tile, write_part
@@ -147,6 +148,7 @@ def _prepared(place: str, about: dict[str, Any], pyramid: Pyramid) -> tuple[Any,
         about = {**about, "ranges": _ranges(pyramid)}
         group.attrs.update(attributes_of(about))
     else:
+        there = check_about(there, place)
         told = ("format", "fingerprint", "nodes", "parameter", "lines", "depth", "tile_cells")
         other = [name for name in told if there.get(name) != about[name]]
         if other:
@@ -157,7 +159,7 @@ def _prepared(place: str, about: dict[str, Any], pyramid: Pyramid) -> tuple[Any,
             raise PyramidError(msg)
         traced = sorted({*there["traced"], *about["traced"]})
         about = {**there, "traced": traced, "complete": False}
-        group.attrs["flowtex"] = about
+        group.attrs["flowtex"] = sealed(about)
     for level in range(about["depth"] + 1):
         create_level(group, level, pyramid.shape(level), about)
     return group, about
@@ -174,7 +176,7 @@ class _Run:
     def tell(self, **words: Any) -> None:
         """Write more of what is told of the pyramid."""
         self.about = {**self.about, **words}
-        self.group.attrs["flowtex"] = self.about
+        self.group.attrs["flowtex"] = sealed(self.about)
 
     def there(self, name: str) -> set[tuple[int, ...]]:
         """Return the numbers of the shards of an array that are in the store."""

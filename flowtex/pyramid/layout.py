@@ -9,13 +9,19 @@
         valid              (j, i), and has_position where some are unknown
         scalars/NAME       (time, j, i)
         traces             (time, tile row, tile column, layer, H, W, 4), half floats
+        values             (time, tile row, tile column, scalar, Y, X), single precision
+        surface            (tile row, tile column, byte), below the root
 
-The root is one tile, traced whole.
+The root is one tile, traced whole. Values and surface are there where traces are, for browsers:
+with them and the traces a page draws a tile without knowing the nodes of its level. The first
+scalar is the speed.
 
 Arrays over nodes lie in chunks of a tile, several in a shard. A shard of traces is one tile at one
 destination time, and each layer a chunk. Layer 0 tells about the tile: a JSON text, whose bytes are
-followed by zeros. The layers of :class:`~flowtex.textures.TextureSet` follow. All is packed by
-gzip, which browsers undo themselves, and has check sums.
+followed by zeros. The layers of :class:`~flowtex.textures.TextureSet` follow. A chunk of values is
+one scalar of a tile at one time, and an object of its own, so that a browser takes what it shows
+with one request. A surface is a file of parts as clients are handed them, followed by zeros. All is
+packed by gzip, which browsers undo themselves, and has check sums.
 """
 
 from __future__ import annotations
@@ -35,13 +41,16 @@ from flowtex._version import __version__
 from flowtex.earth import Projection
 from flowtex.field import FlowField
 from flowtex.field.steps import LazySteps
+from flowtex.pyramid.checks import sealed
 from flowtex.pyramid.places import FORMAT
 from flowtex.textures.geometry import TILE_LEVELS, Padding, paddings
 from flowtex.tiles import BLOCK_CELLS, TILE_BLOCKS, Pyramid
 
 __all__ = [
+    "SURFACE",
     "TILE_CELLS",
     "TRACES",
+    "VALUES",
     "Part",
     "about_field",
     "attributes_of",
@@ -51,6 +60,7 @@ __all__ = [
     "read_header",
     "shard_texels",
     "tiles_of",
+    "value_names",
 ]
 
 TILE_CELLS = BLOCK_CELLS * TILE_BLOCKS
@@ -60,7 +70,10 @@ SHARD_CHUNKS = (2, 4)
 MOST_LAYERS = 64
 #: How hard is tried to pack; more takes longer and gains little.
 GZIP_LEVEL = 1
-TRACES = "traces"
+TRACES, VALUES, SURFACE = "traces", "values", "surface"
+#: Bytes of a surface for each node: its place, whether a cell is drawn, and a normal where it is
+#: curved; and for what is told of it.
+PLACE_BYTES, NORMAL_BYTES, TOLD_BYTES = 13, 6, 16_384
 #: Texels along a side in which what is told of a tile has room, however small that is.
 LEAST_TEXELS = 32
 CONVENTION = {
@@ -114,6 +127,11 @@ def tiles_of(
     return (rows, columns), (largest, largest)
 
 
+def value_names(about: Mapping[str, Any]) -> tuple[str, ...]:
+    """Return what the surface can be coloured by: the speed, and the scalars of the field."""
+    return tuple(dict.fromkeys(("speed", *about["scalars"])))
+
+
 def about_field(pyramid: Pyramid, levels: str) -> dict[str, Any]:
     """Return what is told of a field and its pyramid, as it is kept in the store."""
     field = pyramid.field
@@ -162,7 +180,7 @@ def attributes_of(about: Mapping[str, Any]) -> dict[str, Any]:
     return {
         "zarr_conventions": [CONVENTION],
         "multiscales": {"layout": layout, "resampling_method": "average"},
-        "flowtex": dict(about),
+        "flowtex": sealed(about),
     }
 
 
@@ -210,6 +228,33 @@ def create_level(group: Any, level: int, shape: tuple[int, int], about: Mapping[
             ["time", "row", "column", "layer", "y", "x", "channel"],
             keep_empty=False,
         )
+        _create_client_arrays(here, level, shape, tiles, about)
+
+
+def _create_client_arrays(
+    here: Any,
+    level: int,
+    shape: tuple[int, int],
+    tiles: tuple[int, int],
+    about: Mapping[str, Any],
+) -> None:
+    """Make the empty arrays of a level that a browser needs beside the traces."""
+    is_root = level == about["depth"]
+    nodes = shape if is_root else (TILE_CELLS + 1, TILE_CELLS + 1)
+    _create(
+        here,
+        VALUES,
+        (len(about["times"]), *tiles, len(value_names(about)), *nodes),
+        (1, 1, 1, 1, *nodes),
+        None,
+        "float32",
+        ["time", "row", "column", "scalar", "j", "i"],
+    )
+    if not is_root:
+        each = PLACE_BYTES + (NORMAL_BYTES if about["components"] == 3 else 0)
+        room = nodes[0] * nodes[1] * each + TOLD_BYTES
+        names = ["row", "column", "byte"]
+        _create(here, SURFACE, (*tiles, room), (1, 1, room), None, "uint8", names)
 
 
 def _create(

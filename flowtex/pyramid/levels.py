@@ -2,21 +2,42 @@
 
 from __future__ import annotations
 
+import asyncio
 import threading
+from collections.abc import Callable, Coroutine
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from flowtex._util.array_types import AnyArray, Bools, Floats, Floats32, Indices
 from flowtex._util.extras import import_extra
+from flowtex._util.progress import check
 from flowtex.field.steps import LazySteps
-from flowtex.pyramid.layout import TRACES, read_header
-from flowtex.pyramid.places import FORMAT, PyramidError, place_text, store_at
+from flowtex.pyramid.checks import check_about, check_header, identity_of
+from flowtex.pyramid.layout import TRACES, create_level, read_header
+from flowtex.pyramid.places import PyramidError, ReadFault, place_text, store_at
 from flowtex.tiles import TileKey
-from flowtex.tiles.pyramid import Nodes
+from flowtex.tiles.pyramid import Nodes, level_lines
 
 __all__ = ["Levels", "StoredTile"]
+
+#: What of an array's metadata decides on the meaning of its bytes.
+FORMAT_NAMES = ("shape", "data_type", "chunk_grid", "chunk_key_encoding", "fill_value", "codecs")
+#: How often is looked whether what is read is still wanted.
+LOOK_INTERVAL_S = 0.1
+#: Characters of an error of others that are repeated.
+MOST_LETTERS = 300
+
+
+class _Part(NamedTuple):
+    """A part of an array: of these rows and columns, or what an index takes."""
+
+    array: str
+    selection: Any
+    #: What an error calls it.
+    name: str
+    lines: bool = False
 
 
 class StoredTile:
@@ -51,67 +72,95 @@ class Levels:
     def __init__(self, place: str | Path) -> None:
         self.place = place_text(place)
         zarr = import_extra("zarr", "store")
+        from flowtex.pyramid.objects import Objects
+
         try:
-            self.group = zarr.open_group(store_at(place), mode="r")
-            self.about: dict[str, Any] = dict(self.group.attrs["flowtex"])
+            self._objects = Objects(store_at(self.place))
+            group = zarr.open_group(self._objects, mode="r", zarr_format=3, use_consolidated=False)
+            about = group.attrs["flowtex"]
+        except PyramidError:
+            raise
         except Exception as error:
             msg = (
                 f"{self.place} holds no pyramid that can be read ({_words(error)}); make one with "
                 "flowtex.pyramid.build"
             )
-            raise PyramidError(msg) from error
-        if self.about.get("format") != FORMAT:
-            msg = (
-                f"{self.place} has the format {self.about.get('format')!r}; expected {FORMAT!r}. "
-                "Build it anew, or read it with the flowtex that wrote it"
-            )
-            raise PyramidError(msg)
+            raise PyramidError(msg) from None
+        #: What is told of the field and its pyramid.
+        self.about = check_about(about, self.place)
         self._arrays: dict[str, Any] = {}
+        self._expected: dict[int, Any] = {}
         self._lock = threading.Lock()
 
-    def array(self, name: str) -> Any:
-        """Return an array of Zarr's by its path."""
+    def _format(self, name: str) -> dict[str, Any]:
+        """Return what an array has to be like: as one that is made for the same pyramid."""
+        zarr, level = import_extra("zarr", "store"), int(name.partition("/")[0])
         with self._lock:
-            if name not in self._arrays:
-                try:
-                    self._arrays[name] = self.group[name]
-                except Exception as error:
-                    raise self._error(name, error) from error
-            return self._arrays[name]
+            if level not in self._expected:
+                group = zarr.group(store=zarr.storage.MemoryStore())
+                rows, columns = (len(level_lines(n, level)) for n in self.about["nodes"])
+                create_level(group, level, (rows, columns), self.about)
+                self._expected[level] = group
+            group = self._expected[level]
+            if name.partition("/")[2] not in group[str(level)]:
+                msg = f"{self.place} has no {name}; build it again"
+                raise PyramidError(msg)
+            return _format_of(group[name])
 
     def positions(self, level: int, rows: Indices, columns: Indices) -> tuple[Floats, Bools]:
         """Return where nodes are, (J, I, 3), and which of them are valid, (J, I)."""
-        height = self.about["height"]
-        if self.about["axes"]:
-            x, y = (self._read(f"{level}/{name}") for name in "xy")
-            grid = np.broadcast_arrays(x[columns], y[rows][:, None], height)
-            points = np.stack(grid, axis=-1)
-        else:
-            points = _in_space(self._lines(f"{level}/points", rows, columns), height)
-        return points, self._lines(f"{level}/valid", rows, columns).astype(bool)
+        names = [*self._places(), "valid"]
+        *places, valid = self._read(*(self._part(level, n, rows, columns) for n in names))
+        return self._points(places, rows, columns), valid.astype(bool)
 
     def nodes(
         self, level: int, rows: Indices, columns: Indices, *, velocities: bool = True
     ) -> Nodes:
         """Return what some lines of a level have, with or without velocities."""
-        points, valid = self.positions(level, rows, columns)
-        known = None
-        if self.about["has_position"]:
-            known = self._lines(f"{level}/has_position", rows, columns).astype(bool)
-        scalars = {
-            name: self._steps(f"{level}/scalars/{name}", count, rows, columns)
-            for name, count in self.about["scalars"].items()
-        }
-        velocity: Any = None
+        about = self.about
+        names = [*self._places(), "valid", *["has_position"] * about["has_position"]]
+        series = {f"scalars/{name}": count for name, count in about["scalars"].items()}
         if velocities:
-            velocity = self._steps(
-                f"{level}/velocity", len(self.about["times"]), rows, columns, vectors=True
-            )
-        return Nodes(points, valid, velocity, known, scalars)
+            series["velocity"] = len(about["times"])
+        late = {name for name, count in series.items() if about["late"] and count > 1}
+        parts = [self._part(level, name, rows, columns) for name in names]
+        for name, count in series.items():
+            if name not in late:
+                parts += [self._part(level, name, rows, columns, step) for step in range(count)]
+        values = iter(self._read(*parts))
+        known = {name: next(values) for name in names}
+        steps: dict[str, Any] = {}
+        for name, count in series.items():
+            if name in late:
+                steps[name] = LazySteps(count, self._later(level, name, rows, columns))
+            else:
+                steps[name] = np.stack([next(values) for _ in range(count)])
+        velocity = steps.pop("velocity", None)
+        if velocities and "velocity" not in late:
+            velocity = _in_space(velocity)
+        return Nodes(
+            self._points([known[name] for name in self._places()], rows, columns),
+            known["valid"].astype(bool),
+            velocity,
+            known["has_position"].astype(bool) if about["has_position"] else None,
+            {name.removeprefix("scalars/"): values for name, values in steps.items()},
+        )
+
+    def _later(
+        self, level: int, name: str, rows: Indices, columns: Indices
+    ) -> Callable[[int], AnyArray]:
+        """Return what reads a step of an array when it is asked for."""
+
+        def read(step: int) -> AnyArray:
+            (values,) = self._read(self._part(level, name, rows, columns, step))
+            return _in_space(values) if name == "velocity" else values
+
+        return read
 
     def velocity(self, level: int, step: int, rows: Indices, columns: Indices) -> Floats:
         """Return the velocity of some lines of a level at a time step, (J, I, C)."""
-        return self._lines(f"{level}/velocity", rows, columns, step)
+        (values,) = self._read(self._part(level, "velocity", rows, columns, step))
+        return values
 
     def tile(self, key: TileKey, step: int) -> StoredTile:
         """Return a tile at a destination time.
@@ -121,50 +170,77 @@ class Levels:
         PyramidError
             When it is not there, or broken.
         """
-        name = f"{key.level}/{TRACES}"
-        array = self.array(name)
+        array = f"{key.level}/{TRACES}"
+        name = f"tile {tuple(key)} at step {step}"
+        (texels,) = self._read(_Part(array, (step, key.row, key.column), name))
         try:
-            texels = array[step, key.row, key.column]
-            about = read_header(texels[0])
+            header = read_header(texels[0])
+            if header is None:
+                msg = f"{name} is missing in {self.place}; build it again"
+                raise PyramidError(msg)
+            about = check_header(header, identity_of(self.about, key, step))
+        except PyramidError:
+            raise
         except Exception as error:
-            name = f"{name}, tile {tuple(key)}"
-            raise self._error(name, error) from error
-        if about is None:
-            msg = f"tile {tuple(key)} at step {step} is missing in {self.place}; build it again"
-            raise PyramidError(msg)
+            raise self._error(name, error) from None
         return StoredTile(about, texels)
 
-    def _steps(
-        self, name: str, count: int, rows: Indices, columns: Indices, *, vectors: bool = False
-    ) -> Any:
-        def read(step: int) -> Floats:
-            values = self._lines(name, rows, columns, step)
-            return _in_space(values) if vectors else values
+    def _places(self) -> list[str]:
+        return ["x", "y"] if self.about["axes"] else ["points"]
 
-        if self.about["late"] and count > 1:
-            return LazySteps(count, read)
-        return np.stack([read(step) for step in range(count)])
+    def _points(self, places: list[AnyArray], rows: Indices, columns: Indices) -> Floats:
+        if not self.about["axes"]:
+            return _in_space(places[0], self.about["height"])
+        x, y = places
+        grid = np.broadcast_arrays(x[columns], y[rows][:, None], self.about["height"])
+        return np.stack(grid, axis=-1)
 
-    def _lines(
-        self, name: str, rows: Indices, columns: Indices, step: int | None = None
-    ) -> AnyArray:
-        """Read some rows and columns of an array over the nodes."""
-        array = self.array(name)
+    def _part(
+        self, level: int, name: str, rows: Indices, columns: Indices, step: int | None = None
+    ) -> _Part:
+        """Return which part of an array over the nodes some rows and columns are."""
         before = () if step is None else (step,)
+        whole = f"{level}/{name}"
+        if name in ("x", "y"):
+            return _Part(whole, slice(None), whole)
         both = [_slice(lines) for lines in (rows, columns)]
-        try:
-            if None not in both:
-                return np.asarray(array[(*before, *both)])
-            return np.asarray(array.oindex[(*before, rows, columns)])
-        except Exception as error:
-            raise self._error(name, error) from error
+        if None in both:
+            return _Part(whole, (*before, rows, columns), whole, lines=True)
+        return _Part(whole, (*before, *both), whole)
 
-    def _read(self, name: str) -> AnyArray:
-        array = self.array(name)
+    def _read(self, *parts: _Part) -> list[AnyArray]:
+        """Read parts of arrays, all at once."""
+        formats = [self._format(part.array) for part in parts]
+
+        async def together() -> list[AnyArray]:
+            return await asyncio.gather(*map(self._values, parts, formats))
+
+        values: list[AnyArray] = _wait(together())
+        return values
+
+    async def _values(self, part: _Part, expected: dict[str, Any]) -> AnyArray:
         try:
-            return np.asarray(array[:])
+            array = await self._opened(part.array, expected)
+            chosen = array.oindex if part.lines else array
+            return np.asarray(await chosen.getitem(part.selection))
+        except PyramidError:
+            raise
         except Exception as error:
-            raise self._error(name, error) from error
+            raise self._error(part.name, error) from None
+
+    async def _opened(self, name: str, expected: dict[str, Any]) -> Any:
+        """Return an array of Zarr's, to be awaited.
+
+        It has to be what is written here: shape, type and packing decide what its bytes mean.
+        """
+        if name not in self._arrays:
+            open_array = import_extra("zarr.api.asynchronous", "store").open_array
+            array = await open_array(store=self._objects, path=name, zarr_format=3, mode="r")
+            if _format_of(array) != expected:
+                msg = f"{name} of {self.place} is not as it was written; build the store anew"
+                raise PyramidError(msg)
+            self._arrays[name] = array
+        return self._arrays[name]
 
     def _error(self, name: str, error: Exception) -> PyramidError:
         return PyramidError(f"{name} of {self.place} cannot be read: {_words(error)}")
@@ -187,4 +263,28 @@ def _in_space(values: Floats, height: float = 0.0) -> Floats:
 
 
 def _words(error: Exception) -> str:
-    return f"{type(error).__name__}: {error}"
+    known = isinstance(error, (ReadFault, PyramidError))
+    return str(error) if known else f"{type(error).__name__}: {error}"[:MOST_LETTERS]
+
+
+def _format_of(array: Any) -> dict[str, Any]:
+    told = array.metadata.to_dict()
+    return {name: told[name] for name in FORMAT_NAMES}
+
+
+def _wait(reading: Coroutine[Any, Any, Any]) -> Any:
+    """Return what is read; it is given up where the work around it was cancelled."""
+    sync = import_extra("zarr.core.sync", "store").sync
+
+    async def watched() -> Any:
+        task = asyncio.ensure_future(reading)
+        try:
+            while not task.done():
+                await asyncio.wait([task], timeout=LOOK_INTERVAL_S)
+                if not task.done():
+                    check()  # the caller's: what is started for it has its context
+            return task.result()
+        finally:
+            task.cancel()
+
+    return sync(watched())

@@ -1,58 +1,205 @@
-"""Where a store is: a local folder, ``s3://`` and other object storage, or ``http(s)://``."""
+"""Where a store is: a local folder, ``s3://`` and other object storage, or ``http(s)://``.
+
+Object storage takes endpoint and credentials from the environment alone. A place is written into
+messages, titles and links, so one that carries a secret is refused, without repeating it.
+"""
 
 from __future__ import annotations
 
 import json
 import re
+from datetime import timedelta
 from pathlib import Path
 from typing import Any
+from urllib.parse import urlsplit
 
 from flowtex._util.extras import import_extra
 from flowtex.errors import FieldError
 
-__all__ = ["FORMAT", "PyramidError", "is_store", "place_text", "store_at"]
+__all__ = [
+    "FORMAT",
+    "PyramidError",
+    "ReadFault",
+    "fault_words",
+    "is_refused",
+    "is_remote",
+    "is_store",
+    "objects_at",
+    "place_text",
+    "store_at",
+]
 
 #: Written into every store; a reader refuses what it does not know.
 FORMAT = "flowtex-pyramid-1"
-#: A URL, or one of which ``pathlib`` has made a path.
-_URL = re.compile(r"^([A-Za-z][A-Za-z0-9+.-]+):/{1,2}(?=[^/])")
+#: A URL, or one of which ``pathlib`` has made a path; those of files are paths.
+_URL = re.compile(r"^(?!file:)([A-Za-z][A-Za-z0-9+.-]+):/{1,2}(?=[^/])")
+_FILE_URL = re.compile(r"^file:/{1,3}(?=[^/])")
+_WEB, _AZURE = ("http", "https"), ("abfs", "abfss", "adl", "az", "azure")
+_SCHEMES = ("s3", "s3a", "gs", *_AZURE, *_WEB)
+#: Seconds after which a server that says nothing is given up, and a connection that is not made;
+#: and how often it is asked again.
+SILENCE_S, CONNECT_S, MOST_REPEATS = 10.0, 5.0, 2
+#: Seconds that one object may take on its way.
+LONGEST_S = 300.0
+
+_CREDENTIALS = (
+    "credentials come from the environment, such as AWS_ACCESS_KEY_ID and AWS_SECRET_ACCESS_KEY, "
+    "or AWS_SKIP_SIGNATURE=true for a public bucket"
+)
 
 
 class PyramidError(FieldError):
     """A store of a pyramid that cannot be read, or written."""
 
 
+class ReadFault(OSError):
+    """An object that is not there, or did not come; the text has no secret in it."""
+
+
 def place_text(place: str | Path) -> str:
-    """Return the URL of a store, or the whole path of a local one."""
+    """Return the URL of a store, or the whole path of a local one.
+
+    Raises
+    ------
+    PyramidError
+        When it is no URL of object storage or of the web, or has a secret in it.
+    """
     text = str(place)
-    if _URL.match(text):
-        return _URL.sub(r"\1://", text)
-    return str(Path(text).expanduser().resolve())
+    if not _URL.match(text):
+        return str(Path(_FILE_URL.sub("/", text)).expanduser().resolve())
+    url = _URL.sub(r"\1://", text)
+    try:
+        parts = urlsplit(url)
+        user, _, host = parts.netloc.rpartition("@")
+    except ValueError as error:
+        msg = f"a store's address cannot be read ({error}); expected one such as s3://bucket/a.zarr"
+        raise PyramidError(msg) from None
+    scheme = parts.scheme.lower()
+    if scheme not in _SCHEMES:
+        msg = (
+            f"a store is at {scheme}://{host}{parts.path}; expected a folder, or the address of "
+            f"object storage or of the web: {', '.join(f'{name}://' for name in _SCHEMES)}"
+        )
+        raise PyramidError(msg)
+    # In addresses of Azure's the container stands where others have a user.
+    secret = user and (scheme not in _AZURE or ":" in user)
+    if secret or parts.query or parts.fragment:
+        msg = (
+            f"the address of {scheme}://{host}{parts.path} has a user, a password or a query with "
+            "it; expected none: credentials come from the environment, such as AWS_ACCESS_KEY_ID"
+        )
+        raise PyramidError(msg)
+    return url.rstrip("/")
+
+
+def is_remote(place: str | Path) -> bool:
+    """Whether a place is a URL."""
+    return bool(_URL.match(str(place)))
+
+
+def objects_at(place: str | Path) -> Any:
+    """Return the store of obstore's at a place, to read from; it needs no listing."""
+    text = place_text(place)
+    objects = import_extra("obstore.store", "store")
+    if not is_remote(text):
+        return objects.LocalStore(text)
+    options = {
+        "client_options": {
+            "allow_http": True,
+            "connect_timeout": timedelta(seconds=CONNECT_S),
+            "read_timeout": timedelta(seconds=SILENCE_S),
+            "timeout": timedelta(seconds=LONGEST_S),
+        },
+        "retry_config": {
+            "max_retries": MOST_REPEATS,
+            "retry_timeout": timedelta(seconds=LONGEST_S),
+            "backoff": {"init_backoff": timedelta(seconds=0.2)},
+        },
+    }
+    try:
+        # Others would take the addresses of some clouds for private buckets.
+        if text.lower().startswith(_WEB):
+            return objects.HTTPStore.from_url(text, **options)
+        return objects.from_url(text, **options)
+    except Exception as error:
+        msg = f"{text} is no address of a store ({_first_line(error)})"
+        raise PyramidError(msg) from None
 
 
 def store_at(place: str | Path, *, read_only: bool = True) -> Any:
     """Return the store of Zarr's at a place.
 
-    Object storage takes endpoint and credentials from the environment. A file of a local folder is
-    written beside its place and renamed, an object is put in one piece: both are whole or absent.
+    A file of a local folder is written beside its place and renamed, an object is put in one piece:
+    both are whole or absent.
     """
     text = place_text(place)
     storage = import_extra("zarr.storage", "store")
-    if not _URL.match(text):
+    if not is_remote(text):
         return storage.LocalStore(text, read_only=read_only)
-    objects = import_extra("obstore.store", "store")
-    return storage.ObjectStore(objects.from_url(text), read_only=read_only)
+    if read_only:
+        return storage.ObjectStore(objects_at(text), read_only=True)
+    if text.lower().startswith(_WEB):
+        msg = f"{text} can only be read; build in a folder or in object storage such as s3://"
+        raise PyramidError(msg)
+    return storage.ObjectStore(import_extra("obstore.store", "store").from_url(text))
 
 
 def is_store(place: Any) -> bool:
-    """Whether there is a pyramid at a place; without Zarr for a local one."""
+    """Whether there is a pyramid at a place; without Zarr for a local one.
+
+    All that is read from a URL is a pyramid.
+
+    Raises
+    ------
+    PyramidError
+        As :func:`place_text`.
+    """
     if not isinstance(place, (str, Path)):
         return False
     text = place_text(place)
-    if not _URL.match(text):
-        try:
-            about = json.loads((Path(text) / "zarr.json").read_text(encoding="utf-8"))
-            return "flowtex" in about["attributes"]
-        except (OSError, ValueError, KeyError, TypeError):
-            return False
-    return text.rstrip("/").endswith(".zarr")
+    if is_remote(text):
+        return True
+    try:
+        about = json.loads((Path(text) / "zarr.json").read_text(encoding="utf-8"))
+        return "flowtex" in about["attributes"]
+    except (OSError, ValueError, KeyError, TypeError):
+        return False
+
+
+def is_refused(error: Exception) -> bool:
+    """Whether a store has refused what was asked for, as private ones do for what is missing."""
+    return type(error).__name__ in ("PermissionDeniedError", "UnauthenticatedError")
+
+
+def fault_words(error: Exception) -> str:
+    """Tell what became of a request, without what the server said: that may hold secrets."""
+    text, kind = str(error), type(error).__name__
+    status = re.search(r"status code: (\d{3})", text)
+    if is_refused(error):
+        code = status[1] if status else "403"
+        return f"is missing or not open to us ({code}); {_CREDENTIALS}"
+    if isinstance(error, FileNotFoundError):
+        return "is missing"
+    if kind == "NotSupportedError":
+        return "was asked for in part, which this server cannot do; expected one with ranges"
+    if "169.254.169.254" in text:
+        return f"cannot be asked for without credentials; {_CREDENTIALS}"
+    if status:
+        again = "try again later" if status[1] in ("429", "500", "502", "503", "504") else ""
+        return f"was answered with status {status[1]}" + (f"; {again}" if again else "")
+    if "kind: Timeout" in text or isinstance(error, TimeoutError):
+        return (
+            f"did not come: no answer within {SILENCE_S:g} s, asked {MOST_REPEATS + 1} times; "
+            "look whether the server runs"
+        )
+    if "kind: Connect" in text:
+        return "did not come: nobody answers at this address; look whether it is right"
+    if "kind: Interrupted" in text or "kind: Body" in text:
+        return "was cut off on its way; try again"
+    if isinstance(error, OSError):
+        return f"cannot be read ({error.strerror or kind})"
+    return f"did not come ({kind})"
+
+
+def _first_line(error: Exception) -> str:
+    return str(error).partition("\n")[0]

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import threading
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -91,11 +92,24 @@ class StoredPyramid(Pyramid):
         self.depth = about["depth"]
         self.ranges = {
             (name, robust): (ends[0], ends[1])
-            for name, both in about.get("ranges", {}).items()
+            for name, both in (about.get("ranges") or {}).items()
             for robust, ends in zip((False, True), both, strict=True)
         }
         self._lock = threading.Lock()
         self._places = {}
+
+    @property
+    def about(self) -> Mapping[str, Any]:
+        """What is told of the field and its pyramid."""
+        return self._stored.about
+
+    @property
+    def finest(self) -> int:
+        """The level down to which the tiles of all levels are in the store."""
+        level = self.depth
+        while level - 1 in self.about["traced"]:
+            level -= 1
+        return level
 
     @cached_property
     def root(self) -> FlowField:
@@ -123,7 +137,7 @@ class StoredPyramid(Pyramid):
         if about["empty"]:
             return None
         textures = self.textures(key, about["spare"])
-        if textures is None or textures.lags.tolist() != about["lags"]:
+        if textures is None or not _fits(textures, about):
             msg = f"tile {tuple(key)} of {self._stored.place} does not fit its level; build it anew"
             raise PyramidError(msg)
         return self._read(textures, key, read)
@@ -138,7 +152,7 @@ class StoredPyramid(Pyramid):
         except PyramidError as error:
             warnings.warn(f"the whole surface is traced anew, for {error}", stacklevel=2)
             return textures
-        if textures.lags.tolist() != tile.about["lags"]:
+        if not _fits(textures, tile.about):
             return textures
         return self._read(textures, key, {0: tile})
 
@@ -173,3 +187,9 @@ class _StoredTextures(TextureSet):
                 raise
             # There is nothing coarser to show, and what it is made from is at hand.
             return super().layers(step)
+
+
+def _fits(textures: TextureSet, about: dict[str, Any]) -> bool:
+    """Whether layers that were read are those of some textures."""
+    own = (textures.lags.tolist(), textures.count, list(textures.geometry.size))
+    return not about["empty"] and own == (about["lags"], about["count"], about["size"])

@@ -6,12 +6,15 @@ them. Each opens the store itself, and reads no more than what it needs.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from flowtex._util.array_types import Indices
+from flowtex.pyramid.checks import identity_of
+from flowtex.pyramid.client_parts import write_client_parts
 from flowtex.pyramid.layout import TRACES, Part, shard_texels
 from flowtex.pyramid.levels import Levels
 from flowtex.pyramid.places import store_at
@@ -21,7 +24,7 @@ from flowtex.tiles import Pyramid, TileKey
 from flowtex.tiles.pyramid import Nodes, averaged, beside, level_lines
 from flowtex.trace import SliceStore
 
-__all__ = ["TileTask", "make_part", "make_tile", "write_part"]
+__all__ = ["TileTask", "make_part", "make_tile", "trace_tile", "write_part", "write_tile"]
 
 
 class TileTask(NamedTuple):
@@ -74,21 +77,37 @@ def write_part(
 
 def make_tile(place: str, run: str, task: TileTask) -> None:
     """Trace a tile in the level that it belongs to."""
-    pyramid, array = _pyramid(place, run), _writable(place, run)[f"{task.key.level}/{TRACES}"]
-    every = range(len(pyramid.field.times))
+    pyramid, here = _pyramid(place, run), _writable(place, run)[str(task.key.level)]
     # One halo for all times, whichever of them are still to be written.
-    textures: TextureSet | None
-    if task.key.level == pyramid.depth:
-        store = SliceStore(pyramid.root, parameter=pyramid.parameter, lines=pyramid.lines)
-        spare, textures = 0, Pyramid.root_textures(pyramid, store)
-    else:
-        spare, textures = pyramid.settled(task.key, every)
+    traced = trace_tile(pyramid, task.key, range(len(pyramid.field.times)))
+    write_tile(here, pyramid, task, *traced)
+
+
+def trace_tile(
+    pyramid: StoredPyramid, key: TileKey, steps: Sequence[int]
+) -> tuple[int, TextureSet | None]:
+    """Return a tile with a halo that does for some destination times, and its ``spare``."""
+    if key.level < pyramid.depth:
+        return pyramid.settled(key, steps)
+    store = SliceStore(pyramid.root, parameter=pyramid.parameter, lines=pyramid.lines)
+    return 0, Pyramid.root_textures(pyramid, store)
+
+
+def write_tile(
+    here: Any, pyramid: StoredPyramid, task: TileTask, spare: int, textures: TextureSet | None
+) -> None:
+    """Write a tile into the group of its level."""
+    array = here[TRACES]
+    # Before the traces: by these a tile is known to be whole.
+    write_client_parts(here, pyramid, task.key, textures, task.steps)
     for step in task.steps:
         at, room = (step, task.key.row, task.key.column), array.shape[3:]
+        belongs = identity_of(pyramid.about, task.key, step)
         if textures is None:
-            array[at] = shard_texels({"empty": True}, None, room)
+            array[at] = shard_texels({"empty": True, **belongs}, None, room)
             continue
-        array[at] = shard_texels(_about_tile(textures, spare), textures.layers(step), room)
+        told = {**_about_tile(textures, spare), **belongs}
+        array[at] = shard_texels(told, textures.layers(step), room)
 
 
 def _about_tile(textures: TextureSet, spare: int) -> dict[str, Any]:

@@ -12,7 +12,7 @@ from flowtex.tiles.pyramid import (
     TileKey,
     block_places,
 )
-from flowtex.tiles.ranges import drawn_speeds, ends_of
+from flowtex.tiles.ranges import drawn_speeds, ends_of, widened
 from flowtex.tiles.shared import has_pyramid, have_pyramid, shared_pyramid
 from flowtex.tiles.triangle_pyramid import TrianglePyramid
 
@@ -32,4 +32,5 @@ __all__ = [
     "have_pyramid",
     "levels_of",
     "shared_pyramid",
+    "widened",
 ]

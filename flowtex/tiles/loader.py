@@ -10,8 +10,9 @@ from __future__ import annotations
 import os
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, wait
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -19,7 +20,7 @@ import numpy as np
 
 from flowtex._util.array_types import Floats32
 from flowtex._util.cache import ByteCache
-from flowtex._util.progress import Stopped, stoppable
+from flowtex._util.progress import Stopped, check, stoppable
 from flowtex.textures import TextureSet, TriangleGeometry
 from flowtex.tiles.pyramid import Pyramid, TileKey
 
@@ -32,10 +33,27 @@ BUDGET_BYTES = 1_000_000_000
 TEXEL_BYTES, NODE_BYTES = 16, 200
 #: Memory of a triangle that has vertices of its own.
 TRIANGLE_BYTES = 250
-#: Tiles that are made at once, at most.
+#: Tiles that are made at once for one view, at most. All views of a process together have as many,
+#: or one for each core.
 MOST_THREADS = 4
+#: How often a tile that waits for its turn is looked at, whether it is still wanted.
+LOOK_INTERVAL_S = 0.1
 #: Seconds before the last request within which a tile must have been asked for, not to be given up.
 GRACE_S = 2.0
+
+
+_turns = threading.BoundedSemaphore(max(os.cpu_count() or 1, MOST_THREADS))
+
+
+@contextmanager
+def _turn() -> Iterator[None]:
+    """Wait until there is room for one more among those of all loaders of this process."""
+    while not _turns.acquire(timeout=LOOK_INTERVAL_S):
+        check()
+    try:
+        yield
+    finally:
+        _turns.release()
 
 
 @dataclass(eq=False)
@@ -121,9 +139,10 @@ class TileLoader:
         """
         self._asked = time.monotonic()
         with self._lock:
-            for job, future in list(self._running.items()):
-                if not self._is_wanted(job[0]) and future.cancel():
-                    del self._running[job]
+            # What has not begun waits behind what is asked for now.
+            later = [job for job, future in self._running.items() if future.cancel()]
+            for job in later:
+                del self._running[job]
             for key in keys:
                 self._wanted[key] = self._asked
                 tile = self._tiles.peek(key)
@@ -132,10 +151,16 @@ class TileLoader:
                     made = tile is not None and step in tile.layers
                     if made or job in self._running or key in self.errors:
                         continue
-                    if self._pool is None:
-                        threads = min(os.cpu_count() or 1, MOST_THREADS)
-                        self._pool = ThreadPoolExecutor(threads, thread_name_prefix="flowtex-tile")
-                    self._running[job] = self._pool.submit(self._make, key, step)
+                    self._submit(job)
+            for job in later:
+                if job not in self._running and self._is_wanted(job[0]):
+                    self._submit(job)
+
+    def _submit(self, job: tuple[TileKey, int]) -> None:
+        if self._pool is None:
+            threads = min(os.cpu_count() or 1, MOST_THREADS)
+            self._pool = ThreadPoolExecutor(threads, thread_name_prefix="flowtex-tile")
+        self._running[job] = self._pool.submit(self._make, *job)
 
     @property
     def busy(self) -> bool:
@@ -145,9 +170,12 @@ class TileLoader:
 
     def wait(self) -> None:
         """Wait for the tiles that were asked for."""
-        with self._lock:
-            futures = [f for (key, _), f in self._running.items() if self._is_wanted(key)]
-        wait(futures)
+        while True:
+            with self._lock:
+                futures = [f for (key, _), f in self._running.items() if self._is_wanted(key)]
+            if not futures:
+                return
+            wait(futures)  # of which some may stand in line again meanwhile
 
     def close(self) -> None:
         """Stop, without waiting for what is being made."""
@@ -168,7 +196,7 @@ class TileLoader:
     def _make(self, key: TileKey, step: int) -> None:
         """Make a tile with the layers of one destination time."""
         try:
-            with stoppable(lambda: not self._is_wanted(key)):
+            with stoppable(lambda: not self._is_wanted(key)), _turn():
                 tile = self._tiles.get(key, lambda: self._tile(key, step))
                 tile.layers[step] = tile.make(step)
                 self._tiles.put(key, tile)  # which has grown

@@ -133,13 +133,14 @@ int16:Int16Array,int8:Int8Array,uint8:Uint8Array};function shareOf({low,high,log
 low||1);let span=Math.log(high/low)||1;return value=>Math.log(Math.max(value,low)/low)/span}function legendLimits({low,high,
 log}){let least=log?0:1e-5*Math.max(Math.abs(low),Math.abs(high)),told=value=>Math.abs(value)<least?0:value;return[told(
 low),told(high)]}function isSignFree(header){return header.variant.includes("FLOWTEX_SIGNFREE")}function stepOf(name){return Number(
-name.split("/")[1])}function tilePart(name){let[kind,level,row,column,...rest]=name.split("/");return kind==="tile"?[[level,
-row,column].join("/"),rest.join("/")]:null}function decoded(info,bytes){let view=ArrayBuffer.isView(bytes)?new Uint8Array(
-bytes.buffer,bytes.byteOffset,bytes.byteLength):new Uint8Array(bytes),{name,dtype,shape,digest}=info,Type=TYPES[dtype];if(!Type)
-throw new Error(`a part has the type "${dtype}"; expected ${Object.keys(TYPES).join(", ")}`);return{name,shape,digest,data:new Type(
-view.slice().buffer)}}function partsOfFile(file){let length3=new DataView(file).getUint32(0,!0),infos=JSON.parse(new TextDecoder().
-decode(new Uint8Array(file,4,length3))),start=4+length3;return infos.map(info=>{let bytes=new Uint8Array(file,start,info.
-bytes);return start+=info.bytes,decoded(info,bytes)})}var ROOT="",PLACE=5,nameOf=key=>key.join("/"),keyOf=name=>name.split("/").map(Number);function cellPixels(pyramid,settings){
+name.split("/")[1])}function isOfStep(name,step,{scalars}){let[kind,own,number="0"]=name.split("/"),steps=scalars.choices[Number(
+number)]?.steps??scalars.steps;return kind==="scalars"&&Number(own)===step&&steps>1}function tilePart(name){let[kind,level,
+row,column,...rest]=name.split("/");return kind==="tile"?[[level,row,column].join("/"),rest.join("/")]:null}function decoded(info,bytes){
+let view=ArrayBuffer.isView(bytes)?new Uint8Array(bytes.buffer,bytes.byteOffset,bytes.byteLength):new Uint8Array(bytes),
+{name,dtype,shape,digest}=info,Type=TYPES[dtype];if(!Type)throw new Error(`a part has the type "${dtype}"; expected ${Object.
+keys(TYPES).join(", ")}`);return{name,shape,digest,data:new Type(view.slice().buffer)}}function partsOfFile(file){let length3=new DataView(
+file).getUint32(0,!0),infos=JSON.parse(new TextDecoder().decode(new Uint8Array(file,4,length3))),start=4+length3;return infos.
+map(info=>{let bytes=new Uint8Array(file,start,info.bytes);return start+=info.bytes,decoded(info,bytes)})}var ROOT="",PLACE=5,nameOf=key=>key.join("/"),keyOf=name=>name.split("/").map(Number);function cellPixels(pyramid,settings){
 let[samples,spacing,grain]=["samples","spacing","grain"].map(s=>Number(settings[s])),streak=.5*samples*spacing*grain;return pyramid.
 cellPixels*Math.max(1,2*streak/(pyramid.cellPixels*pyramid.pathCells))}var Pyramid=class{header;places=[];constructor(header,places){
 this.header=header;let start=0;for(let[rows,columns]of header.blocks){let end=start+PLACE*rows*columns;this.places.push(
@@ -164,13 +165,14 @@ a],[,b])=>b.pixels-a.pixels).map(([name])=>name)}function cover(chosen,ready){le
 name),chosen.get(name)?.finer.forEach(hide)},covered=name=>{let{needed=!1,finer=[]}=chosen.get(name)??{},done=finer.filter(
 covered);return name!==ROOT&&!needed&&done.length===finer.length?!0:name!==ROOT&&!ready(name)?(done.forEach(hide),!1):(shown.
 set(name,done),!0)};return covered(ROOT),shown}function fullIndex(place,level,nodes){let line=n=>Math.min(n*2**level,nodes-
-1),low=Math.floor(place);return line(low)+(place-low)*(line(low+1)-line(low))}var TileQueue=class{load;give;most;running=new Map;wanted=[];constructor(load,give,most=1){this.load=load,this.give=give,
-this.most=most}request(keys,steps){this.wanted=keys.map(key=>[key,steps]);let names=new Set(keys.map(key=>`${nameOf(key)}\
- ${steps}`));for(let[name,controller]of this.running)names.has(name)||controller.abort();this.next()}next(){for(;this.wanted.
-length&&this.running.size<this.most;){let[key,steps]=this.wanted[0];this.wanted.shift();let name=`${nameOf(key)} ${steps}`;
-this.running.has(name)||this.run(name,key,steps)}}async run(name,key,steps){let controller=new AbortController;this.running.
-set(name,controller);try{let parts=await this.load(key,steps,controller.signal);controller.signal.aborted||parts.forEach(
-this.give)}catch(error){if(!controller.signal.aborted)throw error}finally{this.running.delete(name),this.next()}}};var OWN="own cmap",SRGB={knee:.04045,slope:12.92,offset:.055,scale:1.055,power:2.4};function coloursOf(header){let{scalars,
+1),low=Math.floor(place);return line(low)+(place-low)*(line(low+1)-line(low))}var TileQueue=class{load;give;most;fail;running=new Map;wanted=[];constructor(load,give,most=1,fail=(_,error)=>{throw error}){
+this.load=load,this.give=give,this.most=most,this.fail=fail}request(keys,steps){this.want(keys.map(key=>[key,steps]))}want(jobs){
+this.wanted=[...jobs];let names=new Set(jobs.map(([key,steps])=>`${nameOf(key)} ${steps}`));for(let[name,controller]of this.
+running)names.has(name)||controller.abort();this.next()}next(){for(;this.wanted.length&&this.running.size<this.most;){let[
+key,steps]=this.wanted[0];this.wanted.shift();let name=`${nameOf(key)} ${steps}`;this.running.has(name)||this.run(name,key,
+steps)}}async run(name,key,steps){let controller=new AbortController;this.running.set(name,controller);try{let parts=await this.
+load(key,steps,controller.signal);controller.signal.aborted||parts.forEach(this.give)}catch(error){controller.signal.aborted||
+this.fail(key,error)}finally{this.running.delete(name),this.next()}}};var OWN="own cmap",SRGB={knee:.04045,slope:12.92,offset:.055,scale:1.055,power:2.4};function coloursOf(header){let{scalars,
 colour,background,lighting,opacity,earth}=header;return{scalars,colour,background,lighting,opacity,earth}}function narrowed(mesh,from,to){
 let share=to.name===from.name?(to.high-to.low)/(from.high-from.low||1):1;return{...mesh,maxColourError:mesh.maxColourError*
 Math.min(share,1)}}function mapOf(header,maps,name){let[first,count]=[header.scalars.maps.indexOf(name)*3*256,256],table=new Uint8Array(
@@ -752,6 +754,10 @@ input[role="switch"]:checked::after { transform: translateX(12px); }
   color: var(--quiet); pointer-events: none; white-space: nowrap; max-width: calc(100% - 20px);
   overflow: hidden; text-overflow: ellipsis;
 }
+.told {
+  position: absolute; left: 50%; bottom: 56px; transform: translateX(-50%); padding: 6px 12px;
+  width: max-content; max-width: min(420px, calc(100% - 40px)); cursor: pointer;
+}
 .note {
   position: absolute; inset: 0; display: flex; flex-direction: column; align-items: center;
   justify-content: center; gap: 6px; padding: 24px; text-align: center; background: var(--ground);
@@ -782,18 +788,19 @@ ld ${KEY}, to zoom with the wheel`,TIME_RANGE={min:"0",max:"1",step:"any","aria-
 styleSheet=new CSSStyleSheet;styleSheet.replaceSync(styles_default);var Panel=class{viewer;legend=new Legend;controls;colours;isShown;isOpen=!1;legendLook="";title=dom(
 "div",{class:"title"});readout=dom("div",{class:"readout",role:"status"});head=dom("div",{class:"head glass",hidden:""},
 [this.title,this.readout]);note=dom("div",{class:"note",hidden:"",role:"alert"});busy=dom("div",{class:"busy",hidden:""},
-["waiting for data …"]);hintBox=dom("div",{class:"hint glass",hidden:""},[HINT]);bar;handle;playButton;toggles;gear;slider=dom(
-"input",{type:"range",...TIME_RANGE});timeText=dom("span",{class:"time"});track=dom("div",{class:"track"},[this.slider,this.
-timeText]);hintTimer=null;lateTimer=null;constructor(viewer){this.viewer=viewer;let{root,canvas,options}=viewer;this.isShown=
-options.controls??!0,this.controls=new Controls(viewer),this.colours=new ColourControls(viewer),this.handle=this.button(
-"show","Show the bar (h)",()=>this.toggle()),this.handle.classList.add("handle","glass"),this.playButton=this.button("pl\
-ay","Play (space)",()=>viewer.togglePlaying()),viewer.lifetime.listen(this.slider,"input",()=>viewer.scrub(Number(this.slider.
-value)));let toggle=name=>()=>viewer.choose(name,!viewer.settings[name]);this.toggles={lod:this.button("lod","Level of d\
-etail",toggle("lod")),show_level:this.button("levels","Show level",toggle("show_level"))},this.gear=this.button("setting\
-s","Settings",()=>this.fold(!this.isOpen)),this.bar=this.makeBar(),canvas.className="picture",root.classList.toggle("flo\
-wtex-bare",options.bare??!1);let shadow=root.attachShadow({mode:"open"});shadow.adoptedStyleSheets=[styleSheet];let{legend,
-controls,head,bar,handle,busy,hintBox,note}=this,left=dom("div",{class:"left"},[head,viewer.card.element]);shadow.append(
-canvas,viewer.card.overlay,left,legend.element,controls.element),shadow.append(bar,handle,busy,hintBox,note),this.arrange()}button(name,title,press){
+["waiting for data …"]);told=dom("div",{class:"told glass",hidden:"",role:"status"});words=new Set;hintBox=dom("div",{
+class:"hint glass",hidden:""},[HINT]);bar;handle;playButton;toggles;gear;slider=dom("input",{type:"range",...TIME_RANGE});timeText=dom(
+"span",{class:"time"});track=dom("div",{class:"track"},[this.slider,this.timeText]);hintTimer=null;lateTimer=null;constructor(viewer){
+this.viewer=viewer;let{root,canvas,options}=viewer;this.isShown=options.controls??!0,this.controls=new Controls(viewer),
+this.colours=new ColourControls(viewer),this.handle=this.button("show","Show the bar (h)",()=>this.toggle()),this.handle.
+classList.add("handle","glass"),this.playButton=this.button("play","Play (space)",()=>viewer.togglePlaying()),viewer.lifetime.
+listen(this.slider,"input",()=>viewer.scrub(Number(this.slider.value)));let toggle=name=>()=>viewer.choose(name,!viewer.
+settings[name]);this.toggles={lod:this.button("lod","Level of detail",toggle("lod")),show_level:this.button("levels","Sh\
+ow level",toggle("show_level"))},this.gear=this.button("settings","Settings",()=>this.fold(!this.isOpen)),this.bar=this.
+makeBar(),canvas.className="picture",root.classList.toggle("flowtex-bare",options.bare??!1);let shadow=root.attachShadow(
+{mode:"open"});shadow.adoptedStyleSheets=[styleSheet];let{legend,controls,head,bar,handle,busy,hintBox,told,note}=this,left=dom(
+"div",{class:"left"},[head,viewer.card.element]);shadow.append(canvas,viewer.card.overlay,left,legend.element,controls.element),
+shadow.append(bar,handle,busy,hintBox,told,note),viewer.lifetime.listen(told,"click",()=>told.hidden=!0),this.arrange()}button(name,title,press){
 let button=dom("button",{type:"button",title,"aria-label":title,"data-name":name},[icon(name)]);return this.viewer.lifetime.
 listen(button,"click",press),button}makeBar(){let{viewer}=this;return dom("div",{class:"bar glass",role:"toolbar","aria-\
 label":"Controls"},[this.playButton,this.track,this.button("home","Show everything (0)",()=>viewer.reset()),this.toggles.
@@ -828,11 +835,12 @@ element.hidden),this.gear.setAttribute("aria-pressed",String(this.isOpen))}wait(
 let{viewer}=this;!missing.length||viewer.options.onNeed||this.lateTimer||(this.lateTimer=viewer.lifetime.later(()=>{this.
 lateTimer=null;let names=viewer.lacking.join(", ");names&&this.fail("The scene is not complete.",`Missing: ${names}`)},LATE_MS))}hint(shown){
 let{lifetime}=this.viewer;lifetime.cancel(this.hintTimer),this.hintTimer=shown?lifetime.later(()=>this.hint(!1),HINT_MS):
-null,this.hintBox.hidden=!shown}clear(){this.note.hidden=!0,delete this.viewer.root.dataset.failed}fail(problem,detail){
-this.note.replaceChildren(dom("strong",{},[problem]),dom("pre",{},[detail])),this.note.hidden=!1,this.busy.hidden=!0,this.
-viewer.root.dataset.failed="true"}fullscreen(){let{root}=this.viewer;toggleFullscreen(root.closest(".flowtex-pair")??root)}async save(){
-let{viewer}=this,href=URL.createObjectURL(await pictureOf(viewer.together)),name=(viewer.header?.name||"flow").replace(FORBIDDEN,
-" ").trim();dom("a",{href,download:`${name}.png`}).click(),viewer.lifetime.later(()=>URL.revokeObjectURL(href),SAVED_MS)}};var SERIES_STEP_S=.5,SERIES_LEAST_S=6,SERIES_MOST_S=60,LONGEST_GAP_S=.5,Player=class{time=0;clock=0;playing=!1;times=[0];lastFrame=0;hasHeader=!1;setHeader(header){
+null,this.hintBox.hidden=!shown}tell(text){this.words.has(text)||(this.words.add(text),this.told.textContent=text,this.told.
+hidden=!1)}clear(){this.note.hidden=!0,delete this.viewer.root.dataset.failed}fail(problem,detail){this.note.replaceChildren(
+dom("strong",{},[problem]),dom("pre",{},[detail])),this.note.hidden=!1,this.busy.hidden=!0,this.viewer.root.dataset.failed=
+"true"}fullscreen(){let{root}=this.viewer;toggleFullscreen(root.closest(".flowtex-pair")??root)}async save(){let{viewer}=this,
+href=URL.createObjectURL(await pictureOf(viewer.together)),name=(viewer.header?.name||"flow").replace(FORBIDDEN," ").trim();
+dom("a",{href,download:`${name}.png`}).click(),viewer.lifetime.later(()=>URL.revokeObjectURL(href),SAVED_MS)}};var SERIES_STEP_S=.5,SERIES_LEAST_S=6,SERIES_MOST_S=60,LONGEST_GAP_S=.5,Player=class{time=0;clock=0;playing=!1;times=[0];lastFrame=0;hasHeader=!1;setHeader(header){
 let{times:times2}=header.slices;(!(times2.length===this.times.length&&times2.every((t,n)=>t===this.times[n]))||!this.hasHeader)&&
 (this.time=header.time,this.clock=header.clock),this.hasHeader=!0,this.times=times2}get varies(){return this.times.length>
 1}get span(){return[this.times[0],this.times[this.times.length-1]]}get moment(){return momentOf(this.times,this.time)}timeOf([
@@ -1082,23 +1090,26 @@ activeTexture(gl.TEXTURE0+n),gl.bindTexture(n<4?gl.TEXTURE_2D_ARRAY:gl.TEXTURE_2
 SAMPLERS.length)}draw(before,after,anchor,textures){let gl=this.graphics.context;textures&&(this.dropSlices(before,after),
 this.bindTextures(before,after)),this.bindNodes(before,after,anchor),gl.drawElements(gl.TRIANGLES,this.resources.get("in\
 dex")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(null)}};var REQUEST_MS=60,LOST_MS=8e3,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD=4,Tiles=class{layers=[];missing=[];host;root;tiles=new Map;pyramid=null;chosen={
-choices:new Map,steps:[],names:""};drawn="";asked={names:[],steps:[]};count=0;isWaiting=!1;isOver=!1;lastCame=0;constructor(host,root){
-this.host=host,this.root=root}dispose(){this.isOver=!0;for(let name of[...this.tiles.keys()])this.drop(name)}setPart(name,part){
-let{graphics,header}=this.root,tile=this.tiles.get(name)??this.emptyTile();if(this.tiles.set(name,tile),part.name==="mes\
-h"&&this.giveLimits(tile),part.digest&&tile.parts.get(part.name)?.digest===part.digest)return;if(graphics.release(tile.parts.
-get(part.name)),tile.parts.set(part.name,graphics.hold(part)),part.name==="header"){let own=JSON.parse(new TextDecoder().
-decode(part.data));tile.scene?.dispose(),tile.scene=own&&new Scene(graphics,{...header,...own,pyramid:null},tile.parts),
-this.giveMap(tile),this.giveLimits(tile)}else tile.scene?.forget(part.name);this.lastCame=performance.now();let{names,steps}=this.
-chosen;this.missing=this.missing.filter(missing=>!this.isHere(missing,steps));let shown=cover(this.chosen.choices,other=>this.
-isHere(other,steps));String([...shown.keys()])!==names&&this.host.refine()}recolour(colours={}){this.asked={names:[],steps:[]};
-let{mesh,scalars}=this.root.header,{steps}=this.chosen;for(let tile of this.tiles.values()){let{scene,parts}=tile;if(!scene)
-continue;let{header}=scene;Object.assign(header,{mesh:narrowed(mesh,tile.scalars,scalars)},colours),this.giveMap(tile);for(let name of[
-"scalars","mesh"])scene.forget(name);if((steps.length?scene.scalarParts(steps[0],steps[steps.length-1]):[]).every(name=>parts.
-has(name))&&(scalars.log===tile.scalars.log||scalars.name===null))continue;let others=[...parts.keys()].filter(name=>name.
-startsWith("scalars/"));for(let name of others)this.release(tile,name)}}emptyTile(){let{scalars}=this.root.header;return{
-parts:new Map,scene:void 0,scalars,used:this.count}}giveLimits(tile){let{mesh,scalars}=this.root.header;tile.scalars=scalars,
-tile.scene&&(tile.scene.header.mesh=mesh)}giveMap({scene,parts}){let map=this.root.parts.get("cmap");map&&parts.set("cma\
-p",map),scene?.forget("cmap")}arrange([before,after]){let{camera,canvas}=this.host;if(!camera)return[];let steps=[...new Set(
+choices:new Map,steps:[],names:""};drawn="";asked={names:[],steps:[]};count=0;isWaiting=!1;isOver=!1;lastCame=0;failed=new Set;limits;constructor(host,root){
+this.host=host,this.root=root,this.limits=root.header.mesh}has(name,part){return this.tiles.get(name)?.parts.has(part)??
+!1}fail(name){this.failed.add(name),this.host.refine()}dispose(){this.isOver=!0;for(let name of[...this.tiles.keys()])this.
+drop(name)}setPart(name,part){let{graphics,header}=this.root,tile=this.tiles.get(name)??this.emptyTile();if(this.tiles.set(
+name,tile),part.name==="mesh"&&this.giveLimits(tile),part.digest&&tile.parts.get(part.name)?.digest===part.digest)return;
+if(graphics.release(tile.parts.get(part.name)),tile.parts.set(part.name,graphics.hold(part)),part.name==="header"){let own=JSON.
+parse(new TextDecoder().decode(part.data));tile.scene?.dispose(),tile.ranges=own?.ranges,tile.scene=own&&new Scene(graphics,
+{...header,...own,pyramid:null},tile.parts),this.giveMap(tile),this.giveLimits(tile)}else tile.scene?.forget(part.name);
+this.lastCame=performance.now();let{names,steps}=this.chosen;this.missing=this.missing.filter(missing=>!this.isHere(missing,
+steps));let shown=cover(this.chosen.choices,other=>this.isHere(other,steps));String([...shown.keys()])!==names&&this.host.
+refine()}recolour(colours={}){this.asked={names:[],steps:[]};let{mesh,scalars}=this.root.header,{steps}=this.chosen;for(let tile of this.
+tiles.values()){let{scene,parts}=tile;if(!scene)continue;let{header}=scene;Object.assign(header,{mesh:narrowed(mesh,tile.
+scalars,scalars)},colours),tile.ranges&&this.giveLimits(tile),this.giveMap(tile);for(let name of["scalars","mesh"])scene.
+forget(name);if((steps.length?scene.scalarParts(steps[0],steps[steps.length-1]):[]).every(name=>parts.has(name))&&(scalars.
+log===tile.scalars.log||scalars.name===null))continue;let others=[...parts.keys()].filter(name=>name.startsWith("scalars\
+/"));for(let name of others)this.release(tile,name)}}emptyTile(){let{scalars}=this.root.header;return{parts:new Map,scene:void 0,
+scalars,used:this.count}}giveLimits(tile){let{mesh,scalars}=this.root.header;if(tile.scalars=scalars,!tile.scene)return;
+let range=tile.ranges?.[scalars.name??""],from=range&&{...scalars,low:range[0],high:range[1],log:!1};tile.scene.header.mesh=
+from?narrowed(this.limits,from,scalars):mesh}giveMap({scene,parts}){let map=this.root.parts.get("cmap");map&&parts.set("\
+cmap",map),scene?.forget("cmap")}arrange([before,after]){let{camera,canvas}=this.host;if(!camera)return[];let steps=[...new Set(
 [before,after])],shown=this.choose(camera,steps),layers=[{scene:this.root,key:[this.root.header.pyramid?.depth??0,0,0]}],
 names=[ROOT];for(let name of shown.keys()){let scene=this.tiles.get(name)?.scene;scene&&(names.push(name),layers.push({scene,
 key:keyOf(name)}))}let sight=camera.sight(canvas.height),parts=layers.map(({scene,key},n)=>{let{levels,shape}=scene.levels(
@@ -1114,23 +1125,27 @@ setTriangles(levels,joins[n]))}choose(camera,steps){let{header}=this.root,{setti
 return new Map;this.pyramid??=new Pyramid(header.pyramid,this.root.part("places").data);let choices=this.pyramid.choose(
 {...camera.sight(canvas.height/ratio),planes:camera.planes,cellPixels:cellPixels(header.pyramid,settings)});this.count+=
 1;for(let name of choices.keys()){let tile=this.tiles.get(name);tile&&(tile.used=this.count)}let until=performance.now()+
-LOAD_MS,wanted=wantedTiles(choices);this.missing=wanted.filter(name=>!this.isHere(name,steps)),this.ask(steps),this.trim(
-steps);let shown=cover(choices,name=>this.isHere(name,steps)&&this.load(name,steps,until));return this.chosen={choices,steps,
-names:String([...shown.keys()])},shown}isHere(name,steps){let scene=this.tiles.get(name)?.scene;return scene===null||scene?.
-missing(steps[0],steps[steps.length-1]).length===0}load(name,steps,until){let scene=this.tiles.get(name)?.scene;return!scene||
-scene.isLoaded(steps)?!0:performance.now()>until?(this.host.refine(),!1):(scene.load(steps),!0)}ask(all){let{options,lifetime}=this.
-host,isLacking=step=>this.missing.some(name=>!this.isHere(name,[step])),steps=all.filter(isLacking),open=this.asked.names.
-filter(name=>!this.isHere(name,this.asked.steps));performance.now()-this.lastCame<LOST_MS&&String(open.sort())===String(
-[...this.missing].sort())&&(!open.length||String(steps)===String(this.asked.steps))||this.isWaiting||!options.onTiles||(this.
-isWaiting=!0,lifetime.later(()=>{this.isWaiting=!1,!this.isOver&&(this.lastCame=performance.now(),this.asked={names:this.
-missing,steps},options.onTiles?.(this.missing.map(keyOf),steps),this.missing.length&&lifetime.later(()=>this.isOver||this.
-ask(all),LOST_MS))},REQUEST_MS))}trim(steps){let bytes=0;for(let[name,tile]of[...this.tiles].sort(([,a],[,b])=>b.used-a.
-used)){let{parts,used}=tile,slices=[...parts.keys()].filter(part=>part.startsWith("slices/"));for(let part of slices.slice(
-0,Math.max(slices.length-STEPS_HELD,0))){let step=stepOf(part);if(!steps.includes(step))for(let kind of["slices","extra"])
-this.release(tile,`${kind}/${step}`)}for(let{data}of parts.values())bytes+=BYTES_HELD*data.byteLength;bytes>BUDGET_BYTES&&
-used<this.count&&this.drop(name)}}drop(name){let tile=this.tiles.get(name);tile?.scene?.dispose();for(let part of[...tile?.
-parts.keys()??[]])this.release(tile,part);this.tiles.delete(name)}release(tile,part){part!=="cmap"&&this.root.graphics.release(
-tile?.parts.get(part)),tile?.parts.delete(part)}};var STILL_MS=160,LOST_MS2=5e3,STEPS_HELD2=12,isEqual=(a,b)=>JSON.stringify(a)===JSON.stringify(b),Viewer=class{options;graphics=sharedGraphics();lifetime=new Lifetime;player=new Player;root=document.
+LOAD_MS,wanted=this.obtainable(wantedTiles(choices),header.pyramid.depth);this.missing=wanted.filter(name=>!this.isHere(
+name,steps)),this.ask(steps),this.trim(steps);let shown=cover(choices,name=>this.isHere(name,steps)&&this.load(name,steps,
+until));return this.chosen={choices,steps,names:String([...shown.keys()])},shown}obtainable(names,depth){let found=names.
+map(name=>{let[level,row,column]=keyOf(name);for(;level<depth&&this.failed.has(nameOf([level,row,column]));)[level,row,column]=
+[level+1,row>>1,column>>1];return level<depth?nameOf([level,row,column]):ROOT});return[...new Set(found)].filter(name=>name!==
+ROOT)}isHere(name,steps){let scene=this.tiles.get(name)?.scene;return scene===null||scene?.missing(steps[0],steps[steps.
+length-1]).length===0}load(name,steps,until){let scene=this.tiles.get(name)?.scene;return!scene||scene.isLoaded(steps)?!0:
+performance.now()>until?(this.host.refine(),!1):(scene.load(steps),!0)}ask(all){let{options,lifetime}=this.host,isLacking=step=>this.
+missing.some(name=>!this.isHere(name,[step])),steps=all.filter(isLacking),open=this.asked.names.filter(name=>!this.isHere(
+name,this.asked.steps));performance.now()-this.lastCame<LOST_MS&&String(open.sort())===String([...this.missing].sort())&&
+(!open.length||String(steps)===String(this.asked.steps))||this.isWaiting||!options.onTiles||(this.isWaiting=!0,lifetime.
+later(()=>{this.isWaiting=!1,!this.isOver&&(this.lastCame=performance.now(),this.asked={names:this.missing,steps},options.
+onTiles?.(this.missing.map(keyOf),steps),this.missing.length&&lifetime.later(()=>this.isOver||this.ask(all),LOST_MS))},REQUEST_MS))}trim(steps){
+let bytes=0;for(let[name,tile]of[...this.tiles].sort(([,a],[,b])=>b.used-a.used)){let{parts,used}=tile,slices=[...parts.
+keys()].filter(part=>part.startsWith("slices/"));for(let part of slices.slice(0,Math.max(slices.length-STEPS_HELD,0))){let step=stepOf(
+part);if(steps.includes(step))continue;for(let kind of["slices","extra"])this.release(tile,`${kind}/${step}`);let values=[
+...parts.keys()].filter(each=>isOfStep(each,step,this.root.header));for(let each of values)this.release(tile,each)}for(let{
+data}of parts.values())bytes+=BYTES_HELD*data.byteLength;bytes>(this.host.options.memory??BUDGET_BYTES)&&used<this.count&&
+this.drop(name)}}drop(name){let tile=this.tiles.get(name);tile?.scene?.dispose();for(let part of[...tile?.parts.keys()??
+[]])this.release(tile,part);this.tiles.delete(name)}release(tile,part){part!=="cmap"&&this.root.graphics.release(tile?.parts.
+get(part)),tile?.parts.delete(part)}};var STILL_MS=160,LOST_MS2=5e3,STEPS_HELD2=12,FEW_STEPS_HELD=4,isEqual=(a,b)=>JSON.stringify(a)===JSON.stringify(b),Viewer=class{options;graphics=sharedGraphics();lifetime=new Lifetime;player=new Player;root=document.
 createElement("div");canvas=document.createElement("canvas");card=new PointCard(this);panel;pointers;parts=new Map;header=null;settings={};scene=null;tiles=null;camera=null;sharp=!1;isVisible=!0;shown=null;together=[
 this];renderer;busyUntil=0;firstCamera=null;requests=new Map;constructor(element,options={}){this.options=options;let{root}=this;
 root.className="flowtex",root.tabIndex=0,root.dataset.sharp="false",root.setAttribute("data-lm-suppress-shortcuts","true"),
@@ -1150,38 +1165,40 @@ recolour(coloursOf(header));if(this.header=header,this.settings={...header.setti
 header),this.tiles?.dispose(),this.scene?.dispose(),this.makeScene(header),this.requests.clear(),(!old||!isSamePlace(old.
 geometry,header.geometry))&&(this.firstCamera=header.camera,this.camera=null),old&&old.generation!==header.generation)for(let name of[
 ...this.parts.keys()])name.includes("/")&&this.remove(name);this.panel.build(),this.change()}recolour(colours){if(this.header){
-Object.assign(this.header,colours);for(let name of["scalars","mesh"])this.scene?.forget(name);this.tiles?.recolour(colours),
-this.panel.showLegend(),this.change()}}chooseColours(choice){if(this.options.onColours)return this.options.onColours(choice);
-for(let viewer of this.together){if(!viewer.header)continue;let{colours,part}=recoloured(viewer.header,choice,viewer.parts);
-part&&viewer.setPart(part),viewer.recolour(colours)}}makeScene(header){this.scene=new Scene(this.graphics,header,this.parts),
-this.tiles=new Tiles(this,this.scene)}setPart(part){let{name,digest}=part,tile=tilePart(name);if(tile)return void this.tiles?.
-setPart(tile[0],{...part,name:tile[1]});if(this.requests.delete(stepOf(name)),digest&&this.parts.get(name)?.digest===digest)
-return;let held=this.graphics.hold(part);this.remove(name),this.parts.set(name,held),this.scene?.forget(name),this.trim(),
-name==="cmap"&&this.tiles?.recolour(),["cmap","maps",...EARTH_LINES].includes(name)&&this.panel.showLegend(),this.change()}remove(name){
-this.graphics.release(this.parts.get(name)),this.parts.delete(name)}trim(){if(!this.options.onNeed||!this.header)return;
-let names=[...this.parts.keys()].filter(name=>name.startsWith("slices/")),[before,after]=this.player.moment;for(let name of names.
-slice(0,Math.max(names.length-STEPS_HELD2,0))){let step=stepOf(name);if(!(step===before||step===after))for(let kind of["\
-slices","extra"])this.remove(`${kind}/${step}`)}}setSettings(settings){Object.entries(settings).every(([name,value])=>this.
-settings[name]===value)||(Object.assign(this.settings,settings),this.panel.update(),this.change())}followSetting(name,value){
-name in(this.header?.own??{})||this.setSettings({[name]:value})}choose(name,value){this.holdDraft(),this.setSettings({[name]:value}),
-this.options.onSetting?.(name,value)}get cameraState(){let state=this.camera?.state??this.firstCamera;return state?copyOf(
-state):null}setCamera(state){if(!this.camera)this.firstCamera=copyOf(state);else{if(isEqual(this.camera.state,state))return;
-this.camera.state=copyOf(state)}this.change(!0)}reportCamera(){this.holdDraft(),this.change(!0),this.camera&&this.options.
-onCamera?.(copyOf(this.camera.state))}reset(){this.camera&&(this.place(),this.reportCamera())}place(){let{header,firstCamera:first,
-aspect}=this,nodes=this.parts.get("position")?.data;if(!header||!nodes)return;let{geometry,limits}=header,state=first?widened(
-geometry,limits,first,nodes,aspect):fitted(geometry,limits,nodes,aspect),globe=header.earth&&!header.earth.map?header.earth.
-radius:0;this.camera=new Camera(state,limits,geometry.planar,aspect,globe),this.camera.pick=(x,y)=>this.point(x,y)?.position??
-this.ground(x,y),(!first||!isEqual(first,state))&&this.options.onCamera?.(copyOf(state))}get aspect(){return Math.max(this.
-root.clientWidth,1)/Math.max(this.root.clientHeight,1)}get playing(){return this.player.playing}setTime(time){this.player.
-seek(time),this.panel.tick(),this.change()}scrub(share){let{player,options}=this,{first,last}=player.range(this.settings),
-value=first+share*(last-first);this.holdDraft(),player.varies?(this.setTime(value),options.onTime?.(player.time)):(this.
-setClock(value),options.onClock?.(player.clock))}setClock(clock){this.player.clock=clock,this.panel.tick(),this.change()}play(){
-if(this.options.follows)return this.options.follows.play();this.playing||!this.header||(!this.player.varies&&this.settings.
-motion==="off"&&this.choose("motion","speed"),this.player.start(),this.panel.update(),this.request(),this.options.onPlaying?.(
-!0))}pause(){if(this.options.follows)return this.options.follows.pause();this.playing&&(this.player.playing=!1,this.panel.
-update(),this.change(),this.options.onPlaying?.(!1))}togglePlaying(){let leader=this.options.follows??this;leader.playing?
-leader.pause():leader.play()}holdDraft(){this.busyUntil=performance.now()+STILL_MS}get isBusy(){return this.playing||performance.
-now()<this.busyUntil}change(cameraOnly=!1){this.renderer.restart(cameraOnly),this.card.draw(),this.setSharp(!1),this.request()}refine(){
+Object.assign(this.header,colours);for(let name of["scalars","mesh"])this.scene?.forget(name);this.requests.clear(),this.
+tiles?.recolour(colours),this.panel.showLegend(),this.change()}}chooseColours(choice){if(this.options.onColours)return this.
+options.onColours(choice);for(let viewer of this.together){if(!viewer.header)continue;let{colours,part}=recoloured(viewer.
+header,choice,viewer.parts);part&&viewer.setPart(part),viewer.recolour(colours)}}makeScene(header){this.scene=new Scene(
+this.graphics,header,this.parts),this.tiles=new Tiles(this,this.scene)}setPart(part){let{name,digest}=part,tile=tilePart(
+name);if(tile)return void this.tiles?.setPart(tile[0],{...part,name:tile[1]});if(this.requests.delete(stepOf(name)),digest&&
+this.parts.get(name)?.digest===digest)return;let held=this.graphics.hold(part);this.remove(name),this.parts.set(name,held),
+this.scene?.forget(name),this.trim(),name==="cmap"&&this.tiles?.recolour(),["cmap","maps",...EARTH_LINES].includes(name)&&
+this.panel.showLegend(),this.change()}remove(name){this.graphics.release(this.parts.get(name)),this.parts.delete(name)}trim(){
+if(!this.options.onNeed||!this.header)return;let names=[...this.parts.keys()].filter(name=>name.startsWith("slices/")),[
+before,after]=this.player.moment,held=this.options.memory?FEW_STEPS_HELD:STEPS_HELD2;for(let name of names.slice(0,Math.
+max(names.length-held,0))){let step=stepOf(name);if(!(step===before||step===after)){for(let kind of["slices","extra"])this.
+remove(`${kind}/${step}`);if(this.options.memory)for(let other of[...this.parts.keys()])isOfStep(other,step,this.header)&&
+this.remove(other)}}}setSettings(settings){Object.entries(settings).every(([name,value])=>this.settings[name]===value)||
+(Object.assign(this.settings,settings),this.panel.update(),this.change())}followSetting(name,value){name in(this.header?.
+own??{})||this.setSettings({[name]:value})}choose(name,value){this.holdDraft(),this.setSettings({[name]:value}),this.options.
+onSetting?.(name,value)}get cameraState(){let state=this.camera?.state??this.firstCamera;return state?copyOf(state):null}setCamera(state){
+if(!this.camera)this.firstCamera=copyOf(state);else{if(isEqual(this.camera.state,state))return;this.camera.state=copyOf(
+state)}this.change(!0)}reportCamera(){this.holdDraft(),this.change(!0),this.camera&&this.options.onCamera?.(copyOf(this.
+camera.state))}reset(){this.camera&&(this.place(),this.reportCamera())}place(){let{header,firstCamera:first,aspect}=this,
+nodes=this.parts.get("position")?.data;if(!header||!nodes)return;let{geometry,limits}=header,state=first?widened(geometry,
+limits,first,nodes,aspect):fitted(geometry,limits,nodes,aspect),globe=header.earth&&!header.earth.map?header.earth.radius:
+0;this.camera=new Camera(state,limits,geometry.planar,aspect,globe),this.camera.pick=(x,y)=>this.point(x,y)?.position??this.
+ground(x,y),(!first||!isEqual(first,state))&&this.options.onCamera?.(copyOf(state))}get aspect(){return Math.max(this.root.
+clientWidth,1)/Math.max(this.root.clientHeight,1)}get playing(){return this.player.playing}setTime(time){this.player.seek(
+time),this.panel.tick(),this.change()}scrub(share){let{player,options}=this,{first,last}=player.range(this.settings),value=first+
+share*(last-first);this.holdDraft(),player.varies?(this.setTime(value),options.onTime?.(player.time)):(this.setClock(value),
+options.onClock?.(player.clock))}setClock(clock){this.player.clock=clock,this.panel.tick(),this.change()}play(){if(this.
+options.follows)return this.options.follows.play();this.playing||!this.header||(!this.player.varies&&this.settings.motion===
+"off"&&this.choose("motion","speed"),this.player.start(),this.panel.update(),this.request(),this.options.onPlaying?.(!0))}pause(){
+if(this.options.follows)return this.options.follows.pause();this.playing&&(this.player.playing=!1,this.panel.update(),this.
+change(),this.options.onPlaying?.(!1))}togglePlaying(){let leader=this.options.follows??this;leader.playing?leader.pause():
+leader.play()}holdDraft(){this.busyUntil=performance.now()+STILL_MS}get isBusy(){return this.playing||performance.now()<
+this.busyUntil}change(cameraOnly=!1){this.renderer.restart(cameraOnly),this.card.draw(),this.setSharp(!1),this.request()}refine(){
 this.renderer.refine(),this.setSharp(!1),this.request()}arrange(shown){let scenes=this.tiles?.arrange(shown)??[];return this.
 root.dataset.tiles=String(this.tiles?.missing.length??0),scenes}draw(){this.frame(performance.now(),performance.now()+FRAME_MS)}setSharp(sharp){
 sharp!==this.sharp&&(this.sharp=sharp,this.root.dataset.sharp=String(sharp),sharp&&(this.card.update(),this.options.onFrame?.()))}request(){
@@ -1194,43 +1211,51 @@ return this.canvas.height/Math.max(this.root.clientHeight,1)}lost(){this.tiles?.
 header),this.setSharp(!1)}get lacking(){let[before,after]=this.player.moment;return this.scene?.missing(before,after)??[]}available(){
 let{header,scene,player,shown}=this;if(!header||!scene)return null;let moment=player.moment,count=header.slices.steps,ahead=player.
 playing?[1,2].map(n=>(moment[1]+n)%count):[];this.ask([moment[0],moment[1],...ahead]);let{lacking}=this;return this.panel.
-wait(lacking),lacking.length?shown&&!scene.missing(shown[0],shown[1]).length?shown:null:this.shown=moment}ask(steps){let now=performance.
-now(),lacking=[...new Set(steps)].filter(step=>this.scene?.missing(step,step).length);for(let step of lacking)!this.options.
-onNeed||now-(this.requests.get(step)??-1/0)<LOST_MS2||(this.requests.set(step,now),this.options.onNeed(step));return!lacking.
-length}frame(now,until){if(!(this.lifetime.isOver||this.graphics.isLost||!this.graphics.gl||!this.isVisible)&&!(!this.header||
-!this.scene||this.canvas.width<2))try{this.advance(now),this.drawPicture(this.header,until)}catch(error){this.pause(),this.
-panel.fail("The picture could not be drawn.",String(error))}}program(header,isClose=this.isClose(header)){let{vertex,fragment}=header.
-shaders,defines=isMoving(header,this.settings)?["FLOWTEX_MOVING"]:[];return isClose&&defines.push("FLOWTEX_CELLS"),this.
-graphics.programs.get(vertex,fragment,...defines)}isClose(header){if(!this.camera)return!1;let view=this.view([0,0,0],this.
-ratio),tiles=this.tiles?.layers.slice(1).map(({scene})=>scene.header)??[];return(tiles.length?tiles:[header]).some(part=>isNear(
-part,this.settings,view))}drawPicture(header,until){let shown=this.available();if(this.camera||this.place(),!shown||!this.
-camera)return;let{programs}=this.graphics,program=this.program(header);if(program.error){this.panel.fail("The shader doe\
-s not compile with this graphics driver.",program.error);return}if(!program.ready||!this.scene?.earth.isReady)return this.
-request();!this.sharp&&this.renderer.draw(program,shown,this.isBusy,until)&&(this.panel.clear(),programs.get(header.shaders.
-vertex,header.shaders.pick),header.slices.critical&&this.program(header,!0),this.setSharp(!this.playing)),this.sharp||this.
-request()}advance(now){let{player,options}=this;!player.playing||!player.advance(now,steps=>this.ask(steps))||(player.varies?
-options.onTime?.(player.time):options.onClock?.(player.clock),this.panel.tick(),this.renderer.restart(),this.setSharp(!1))}view(shown,density){
-let{header,camera,scene,player}=this;if(!header||!camera)throw new Error("there is nothing to look at yet");let{geometry,
-constants}=header,focus=camera.state.focal_point,local=toFrame(geometry.frame,subtract2(focus,geometry.center)),old=scene?.
-anchor??[0,0,0],range=constants.anchorRange*2*camera.height,isFar=v2=>v2.some(c=>Math.abs(c)>range),anchor=isFar(local)?
-local:[0,0,0];return{focus,anchor:isFar(subtract2(local,old))?anchor:old,eye:camera.eye,between:shown[2],time:player.timeOf(
-shown),clock:player.clock,density,pixel:2*camera.height/Math.max(this.root.clientHeight*density,1)}}get canPick(){let{header,
-graphics}=this;return!header||graphics.isLost||!graphics.gl?!1:graphics.programs.get(header.shaders.vertex,header.shaders.
-pick).ready}point(x,y){return this.find(x,y)?.point??null}ground(x,y){let{header,camera}=this;return header&&camera&&groundAt(
-header,camera,x,y)}find(x,y){let{tiles,camera,shown,canvas}=this;if(!tiles?.layers.length||!camera||!shown||!this.canPick)
-return null;let{anchor}=this.view(shown,1);return pickedPoint({layers:tiles.layers,camera,moment:shown,anchor,canvas},x,
-y)}};function viewersIn(element,count,options,own=()=>({})){if(count<2)return[new Viewer(element,{...options,...own(0)})];let pair=dom(
-"div",{class:"flowtex-pair"});pair.style.cssText="display: flex; gap: 2px; width: 100%; height: 100%",element.append(pair);
-let viewers=[];for(let n=0;n<count;n+=1){let cell=dom("div");cell.style.cssText="flex: 1 1 0; min-width: 0; height: 100%",
-pair.append(cell);let others=()=>viewers.filter((_,m)=>m!==n),follower=n?{controls:!1,follows:viewers[0]}:{};viewers.push(
-new Viewer(cell,{...options,...own(n),...linked(options,others),...follower}))}for(let viewer of viewers)viewer.together=
-viewers;return viewers}function linked(options,others){let both=(follow,report)=>(...values)=>{for(let other of others())
-follow(other,...values);report?.(...values)};return{onCamera:both((other,camera)=>other.setCamera(camera),options.onCamera),
-onTime:both((other,time)=>other.setTime(time),options.onTime),onClock:both((other,clock)=>other.setClock(clock),options.
-onClock),onSetting:both((other,name,value)=>other.followSetting(name,value),options.onSetting)}}function mountPage(element,scenes,options={}){
-let tiles=scenes.map(({loadTile},n)=>loadTile&&new TileQueue(loadTile,part=>viewers[n].setPart(part))),viewers=viewersIn(
-element,scenes.length,options,n=>({onTiles:(keys,steps)=>tiles[n]?.request(keys,steps)}));return scenes.forEach(({header},n)=>viewers[n].
-setHeader(header)),scenes.forEach(({parts},n)=>parts.forEach(part=>viewers[n].setPart(part))),viewers[0]}var CAMERA_MS=100,TIME_MS=250,STILL_MS2=1500,STILL_FORMAT={type:"image/jpeg",quality:.9},HEADERS=["_header","_header_bes\
+wait(lacking),lacking.length?shown&&!scene.missing(shown[0],shown[1]).length?shown:null:this.shown=moment}lack(tile,reason){
+tile!==null&&this.tiles?.fail(tile),this.panel.tell(reason)}ask(steps){let now=performance.now(),lacking=[...new Set(steps)].
+filter(step=>this.scene?.missing(step,step).length);for(let step of lacking)!this.options.onNeed||now-(this.requests.get(
+step)??-1/0)<LOST_MS2||(this.requests.set(step,now),this.options.onNeed(step));return!lacking.length}frame(now,until){if(!(this.
+lifetime.isOver||this.graphics.isLost||!this.graphics.gl||!this.isVisible)&&!(!this.header||!this.scene||this.canvas.width<
+2))try{this.advance(now),this.drawPicture(this.header,until)}catch(error){this.pause(),this.panel.fail("The picture coul\
+d not be drawn.",String(error))}}program(header,isClose=this.isClose(header)){let{vertex,fragment}=header.shaders,defines=isMoving(
+header,this.settings)?["FLOWTEX_MOVING"]:[];return isClose&&defines.push("FLOWTEX_CELLS"),this.graphics.programs.get(vertex,
+fragment,...defines)}isClose(header){if(!this.camera)return!1;let view=this.view([0,0,0],this.ratio),tiles=this.tiles?.layers.
+slice(1).map(({scene})=>scene.header)??[];return(tiles.length?tiles:[header]).some(part=>isNear(part,this.settings,view))}drawPicture(header,until){
+let shown=this.available();if(this.camera||this.place(),!shown||!this.camera)return;let{programs}=this.graphics,program=this.
+program(header);if(program.error){this.panel.fail("The shader does not compile with this graphics driver.",program.error);
+return}if(!program.ready||!this.scene?.earth.isReady)return this.request();!this.sharp&&this.renderer.draw(program,shown,
+this.isBusy,until)&&(this.panel.clear(),programs.get(header.shaders.vertex,header.shaders.pick),header.slices.critical&&
+this.program(header,!0),this.setSharp(!this.playing)),this.sharp||this.request()}advance(now){let{player,options}=this;!player.
+playing||!player.advance(now,steps=>this.ask(steps))||(player.varies?options.onTime?.(player.time):options.onClock?.(player.
+clock),this.panel.tick(),this.renderer.restart(),this.setSharp(!1))}view(shown,density){let{header,camera,scene,player}=this;
+if(!header||!camera)throw new Error("there is nothing to look at yet");let{geometry,constants}=header,focus=camera.state.
+focal_point,local=toFrame(geometry.frame,subtract2(focus,geometry.center)),old=scene?.anchor??[0,0,0],range=constants.anchorRange*
+2*camera.height,isFar=v2=>v2.some(c=>Math.abs(c)>range),anchor=isFar(local)?local:[0,0,0];return{focus,anchor:isFar(subtract2(
+local,old))?anchor:old,eye:camera.eye,between:shown[2],time:player.timeOf(shown),clock:player.clock,density,pixel:2*camera.
+height/Math.max(this.root.clientHeight*density,1)}}get canPick(){let{header,graphics}=this;return!header||graphics.isLost||
+!graphics.gl?!1:graphics.programs.get(header.shaders.vertex,header.shaders.pick).ready}point(x,y){return this.find(x,y)?.
+point??null}ground(x,y){let{header,camera}=this;return header&&camera&&groundAt(header,camera,x,y)}find(x,y){let{tiles,camera,
+shown,canvas}=this;if(!tiles?.layers.length||!camera||!shown||!this.canPick)return null;let{anchor}=this.view(shown,1);return pickedPoint(
+{layers:tiles.layers,camera,moment:shown,anchor,canvas},x,y)}};var TILES_AT_ONCE=6,STEPS_AT_ONCE=2,STEPS_WANTED=4,WHOLE=[0,0,0],MEMORY=18e7;function viewersIn(element,count,options,own=()=>({})){
+if(count<2)return[new Viewer(element,{...options,...own(0)})];let pair=dom("div",{class:"flowtex-pair"});pair.style.cssText=
+"display: flex; gap: 2px; width: 100%; height: 100%",element.append(pair);let viewers=[];for(let n=0;n<count;n+=1){let cell=dom(
+"div");cell.style.cssText="flex: 1 1 0; min-width: 0; height: 100%",pair.append(cell);let others=()=>viewers.filter((_,m)=>m!==
+n),follower=n?{controls:!1,follows:viewers[0]}:{};viewers.push(new Viewer(cell,{...options,...own(n),...linked(options,others),
+...follower}))}for(let viewer of viewers)viewer.together=viewers;return viewers}function linked(options,others){let both=(follow,report)=>(...values)=>{
+for(let other of others())follow(other,...values);report?.(...values)};return{onCamera:both((other,camera)=>other.setCamera(
+camera),options.onCamera),onTime:both((other,time)=>other.setTime(time),options.onTime),onClock:both((other,clock)=>other.
+setClock(clock),options.onClock),onSetting:both((other,name,value)=>other.followSetting(name,value),options.onSetting)}}
+function sourceFeed(source,viewer){let give=part=>viewer().setPart(part),fail=(tile,error)=>{let{fault,message=String(error),
+detail}=error;console.warn(message,detail??""),viewer().lack(fault==="unreachable"?null:tile,message)},tiles=new TileQueue(
+(key,steps,signal)=>source.tile(key,steps,signal,part=>viewer().tiles?.has(nameOf(key),part)??!1),give,TILES_AT_ONCE,(key,error)=>fail(
+nameOf(key),error)),wholes=new TileQueue((_,[step],signal)=>source.root(step,signal,()=>viewer().scene?.missing(step,step)??
+[]),give,STEPS_AT_ONCE,(_,error)=>fail(null,error)),wanted=[];return{memory:MEMORY,onTiles:(keys,steps)=>tiles.request(keys,
+steps),onNeed:step=>{wanted=[step,...wanted.filter(other=>other!==step)].slice(0,STEPS_WANTED),wholes.want(wanted.map(each=>[
+WHOLE,[each]]))}}}function mountPage(element,scenes,options={}){let feeds=scenes.map(({loadTile,source},n)=>{let viewer=()=>viewers[n];
+if(source)return sourceFeed(source,viewer);let queue=loadTile&&new TileQueue(loadTile,part=>viewer().setPart(part));return{
+onTiles:(keys,steps)=>queue?.request(keys,steps)}}),viewers=viewersIn(element,scenes.length,options,n=>feeds[n]);return scenes.
+forEach(({header},n)=>viewers[n].setHeader(header)),scenes.forEach(({parts},n)=>parts.forEach(part=>viewers[n].setPart(part))),
+scenes[0].source?.open().catch(error=>viewers[0].lack(null,error.message)),viewers[0]}var CAMERA_MS=100,TIME_MS=250,STILL_MS2=1500,STILL_FORMAT={type:"image/jpeg",quality:.9},HEADERS=["_header","_header_bes\
 ide"],ROOM=".flowtex-room { width: 100%; min-width: 160px; flex: 0 9999 auto }",HEIGHT_PX=480;function opened(message,buffers){
 let graphics=sharedGraphics(),{view=0,generation=0,parts:infos=[]}=message,delivery={view,generation,parts:[],lacking:[]};
 return infos.forEach((info,n)=>{let stock=graphics.stock.get(info.digest)?.part;if(stock||message.kind!=="offer"){let part=graphics.

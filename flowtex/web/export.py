@@ -1,9 +1,12 @@
-"""A flow as one HTML file that draws without a server and without a network.
+"""A flow as one HTML file that draws without a server of its own.
 
 The client, its style, the header and all arrays lie in the file. Arrays are gzipped with the
 bytes of equal significance side by side, which is where slopes resemble one another, and written
 in base64. A Content-Security-Policy lets nothing run but the two texts whose digests it names,
 and lets nothing be fetched.
+
+A page of a pyramid in a store may have the coarsest level and one moment alone, and read the rest
+from the store: its policy names the server of the store.
 """
 
 from __future__ import annotations
@@ -13,7 +16,7 @@ import hashlib
 import html
 import json
 import string
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain
 from pathlib import Path
@@ -21,6 +24,7 @@ from typing import Any
 
 import numpy as np
 
+from flowtex._util.array_types import AnyArray
 from flowtex._util.progress import track
 from flowtex._util.whole_file import whole_file
 from flowtex._version import __version__
@@ -30,6 +34,7 @@ from flowtex.rendering.webgl.protocol import Header, part_info, part_text
 from flowtex.tiles import Pyramid
 from flowtex.web import preview
 from flowtex.web.assets import asset
+from flowtex.web.linked import StoreLink, first_parts, linked_data, store_header
 from flowtex.web.tiles import all_tiles
 from flowtex.web.view import WebView, web_views
 
@@ -39,6 +44,8 @@ __all__ = ["Page", "estimate", "export", "page_pieces", "page_text", "write_page
 PACKED_SHARE = 0.62
 #: Bytes of the client, its shaders and the header, about.
 CLIENT_BYTES = 160_000
+#: Bytes of what reads a store.
+READER_BYTES = 60_000
 #: Bytes of the tiles of a large surface, at most; all of a level are in a page, or none.
 TILE_BYTES = 40_000_000
 #: Size of the preview picture.
@@ -74,10 +81,14 @@ def export(
     *,
     steps: int | None = None,
     title: str | None = None,
+    store: str | None = None,
     announce: Callable[[int, int], None] | None = None,
     **options: Any,
 ) -> Page:
     """Write a flow as one HTML file that needs no server and no network.
+
+    With ``store`` the page has no more than the coarsest level of a pyramid, and reads tiles and
+    time steps from where the pyramid lies: from a bucket, or from any web server.
 
     Parameters
     ----------
@@ -90,6 +101,10 @@ def export(
         of them by default. One step alone is drawn as a steady flow.
     title
         Title of the page; the name of the field by default.
+    store
+        Address at which browsers find the store that ``mesh`` names, such as
+        ``"https://bucket.s3.eu-central-1.amazonaws.com/flow.zarr"``, or from the page on,
+        ``"./flow.zarr"``. Whoever opens the page has to be allowed to read it.
     announce
         Called with the estimated size in bytes and the number of steps before the work begins.
     {options}
@@ -103,7 +118,7 @@ def export(
     Raises
     ------
     FieldError, SettingsError
-        When the mesh or a setting does not fit.
+        When the mesh, the store or a setting does not fit.
     ValueError
         When ``steps`` is not positive.
     OSError
@@ -113,7 +128,7 @@ def export(
     views = web_views(mesh, arguments, steps=steps)
     try:
         camera = arguments.view.first_camera(views[0].field.surface).to_dict()
-        return write_page(views, path, camera=camera, title=title, announce=announce)
+        return write_page(views, path, camera=camera, title=title, store=store, announce=announce)
     finally:
         for view in views:
             view.close()
@@ -123,26 +138,37 @@ def write_page(
     views: Sequence[WebView],
     path: str | Path,
     *,
+    store: str | None = None,
     announce: Callable[[int, int], None] | None = None,
     **options: Any,
 ) -> Page:
     """Write a view, or two beside each other, as a page.
 
-    ``announce`` is that of :func:`export`, the options are those of :func:`page_pieces`.
+    ``store`` and ``announce`` are those of :func:`export`, the options those of
+    :func:`page_pieces`.
     """
-    path = Path(path)
-    scenes = _page_data(views)
-    estimated = estimate(scenes)
+    path, link = Path(path), None if store is None else StoreLink.of(store)
+    scenes = _page_data(views) if link is None else [linked_data(view) for view in views]
+    estimated = estimate(scenes, linked=link is not None)
     if announce is not None:
         announce(estimated, scenes[0].steps)
     with whole_file(path) as part, part.open("w", encoding="utf-8", newline="\n") as file:
-        file.writelines(page_pieces(views, scenes, **options))
+        file.writelines(page_pieces(views, scenes, link=link, **options))
     return Page(path, path.stat().st_size, estimated, scenes[0].steps)
 
 
-def page_text(views: Sequence[WebView], **options: Any) -> str:
-    """Return a view, or two, as the text of a page; the options are of :func:`page_pieces`."""
-    return "".join(page_pieces(views, _page_data(views), **options))
+def page_text(
+    views: Sequence[WebView], *, store: str | None = None, finest: int | None = None, **options: Any
+) -> str:
+    """Return a view, or two, as the text of a page; the options are of :func:`page_pieces`.
+
+    ``store`` is that of :func:`export`, and ``finest`` the finest level of which there are tiles
+    at that address, by default that of the store itself.
+    """
+    if store is None:
+        return "".join(page_pieces(views, _page_data(views), **options))
+    scenes = [linked_data(view, finest) for view in views]
+    return "".join(page_pieces(views, scenes, link=StoreLink.of(store), **options))
 
 
 def _page_data(views: Sequence[WebView]) -> list[ClientData]:
@@ -162,22 +188,28 @@ def _page_data(views: Sequence[WebView]) -> list[ClientData]:
 def _level_bytes(scene: ClientData, pyramid: Pyramid, level: int) -> int:
     """Bytes of the tiles of a level in a page, about."""
     more = np.prod(pyramid.shape(level)) / np.prod(pyramid.shape(pyramid.depth))
-    return int(PACKED_SHARE * more * _arrays_bytes(scene))
+    return int(PACKED_SHARE * more * _arrays_bytes(scene, scene.steps))
 
 
-def _arrays_bytes(scene: ClientData) -> int:
+def _arrays_bytes(scene: ClientData, steps: int) -> int:
     """Bytes of the arrays of a scene without tiles."""
     surface = sum(part.nbytes for part in scene.surface().values())
-    return surface + scene.steps * scene.nbytes_of_step
+    return surface + steps * scene.nbytes_of_step
 
 
-def estimate(scenes: Sequence[ClientData]) -> int:
-    """Bytes that a page is going to have, about; textures of both views count once."""
+def estimate(scenes: Sequence[ClientData], *, linked: bool = False) -> int:
+    """Bytes that a page is going to have, about; textures of both views count once.
+
+    Pages that are linked to a store have one moment.
+    """
     size = 0
     for n, scene in enumerate(scenes):
         if n and scene.textures is scenes[0].textures:
             break
-        size += int(PACKED_SHARE * _arrays_bytes(scene))
+        steps = len(scene.moment(scene.times[-1])) if linked else scene.steps
+        size += READER_BYTES * linked + int(PACKED_SHARE * _arrays_bytes(scene, steps))
+        if linked:
+            continue
         if (pyramid := scene.pyramid) is not None:
             levels = range(scene.finest, pyramid.depth)
             size += sum(_level_bytes(scene, pyramid, level) for level in levels)
@@ -193,18 +225,22 @@ def page_pieces(
     clock: float = 0.0,
     title: str | None = None,
     picture: bytes | None = None,
+    link: StoreLink | None = None,
 ) -> Iterator[str]:
     """Give the text of a page piece by piece; each array is packed when it is reached.
 
     Camera, time and clock are those of :meth:`ClientData.header`; ``picture`` is a PNG or JPEG
-    that is shown until the page has drawn, made here where there is none.
+    that is shown until the page has drawn, made here where there is none. ``link`` tells where
+    the rest is, and ``scenes`` are then of :func:`linked_data`.
     """
     headers = [
         scene.header(view.scene.settings, camera=camera, time=time, clock=clock)
         for view, scene in zip(views, scenes, strict=True)
     ]
-    for header in headers:
+    for n, header in enumerate(headers):
         header["name"] = title or header["name"]
+        if link is not None:
+            header["store"] = store_header(views[n], scenes[n], link)
         if len(views) > 1:
             header["differs"] = list(views[1].own_settings)
     if picture is None:
@@ -212,20 +248,25 @@ def page_pieces(
             views[0], PREVIEW, camera=headers[0]["camera"], time=time, coarser=1
         )
     before, after = asset("page.html").read_text("utf-8").split("$parts\n")
-    values = _values(headers, title or headers[0]["name"] or "Flow", picture)
+    values = _values(headers, title or headers[0]["name"] or "Flow", picture, link)
     yield string.Template(before).substitute(values)
-    yield from _elements(scenes)
+    if link is None:
+        yield from _elements([_parts(scene) for scene in scenes])
+    else:
+        yield from _elements([first_parts(scene, time).items() for scene in scenes])
     yield string.Template(after).substitute(values)
 
 
-def _values(headers: Sequence[Header], title: str, picture: bytes) -> dict[str, str]:
+def _values(
+    headers: Sequence[Header], title: str, picture: bytes, link: StoreLink | None
+) -> dict[str, str]:
     """Return what the page's template asks for."""
     background = "#" + "".join(f"{round(255 * c):02x}" for c in headers[0]["background"])
-    client = asset("page.js").read_text("utf-8")
+    client = asset("page.js" if link is None else "storepage.js").read_text("utf-8")
     script = "\n" + client.replace("</script", r"<\/script").replace("<!--", r"<\!--")
     look = string.Template(asset("page.css").read_text("utf-8")).substitute(background=background)
     return {
-        "policy": _policy(script),
+        "policy": _policy(script, link),
         "version": __version__,
         "title": html.escape(title),
         "style": look,
@@ -241,12 +282,16 @@ def _different(header: Header, first: Header) -> Header:
     return {name: value for name, value in header.items() if value != first[name]}
 
 
-def _policy(script: str) -> str:
-    """Allow the one script by its digest, styles of the page's own, and nothing from outside."""
+def _policy(script: str, link: StoreLink | None) -> str:
+    """Allow the one script by its digest, styles of the page's own, and nothing from outside.
+
+    Where there is a store, its server alone may be asked.
+    """
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
     return (
         f"default-src 'none'; script-src 'sha256-{digest}'; style-src 'unsafe-inline'; "
-        "img-src data: blob:; base-uri 'none'; form-action 'none'"
+        + ("" if link is None else f"connect-src {link.source}; ")
+        + "img-src data: blob:; base-uri 'none'; form-action 'none'"
     )
 
 
@@ -256,16 +301,21 @@ def _json(value: Any) -> str:
     return text.replace("<", r"\u003c").replace(">", r"\u003e").replace("&", r"\u0026")
 
 
-def _elements(scenes: Sequence[ClientData]) -> Iterator[str]:
+def _parts(scene: ClientData) -> Iterator[tuple[str, AnyArray]]:
+    """Give all arrays of a view."""
+    steps = track(range(scene.steps), scene.steps, "Packing time steps")
+    return chain(
+        scene.surface().items(),
+        (part for step in steps for part in scene.step(step).items()),
+        (part for tile in all_tiles(scene) for part in tile.items()),
+    )
+
+
+def _elements(views: Sequence[Iterable[tuple[str, AnyArray]]]) -> Iterator[str]:
     """Give the parts of all views as elements of the page; equal arrays lie in it once."""
     written: set[str] = set()
-    for n, scene in enumerate(scenes):
-        steps = track(range(scene.steps), scene.steps, "Packing time steps")
-        for name, array in chain(
-            scene.surface().items(),
-            (part for step in steps for part in scene.step(step).items()),
-            (part for tile in all_tiles(scene) for part in tile.items()),
-        ):
+    for n, parts in enumerate(views):
+        for name, array in parts:
             info = part_info(name, array)
             text = "" if info["digest"] in written else part_text(array)
             written.add(info["digest"])

@@ -15,6 +15,7 @@ from flowtex import FlowField
 from flowtex._util.array_types import Floats
 from flowtex.field.steps import LazySteps
 from flowtex.pyramid import Built, PyramidError, build, is_store, open_store
+from flowtex.pyramid.checks import sealed
 from flowtex.pyramid.levels import Levels
 from flowtex.pyramid.stored import StoredPyramid
 from flowtex.textures import TextureSet
@@ -275,7 +276,7 @@ def test_places_that_hold_something_else(tmp_path: Path) -> None:
     with pytest.raises(PyramidError, match="pyramid of another field"):
         made(tmp_path / "a.zarr", series())
     group = zarr.open_group(tmp_path / "a.zarr", mode="r+")
-    group.attrs["flowtex"] = {**Levels(tmp_path / "a.zarr").about, "levels_done": False}
+    group.attrs["flowtex"] = sealed({**Levels(tmp_path / "a.zarr").about, "levels_done": False})
     with pytest.raises(PyramidError, match="not built to its end"):
         open_store(tmp_path / "a.zarr")
     group.attrs["flowtex"] = {"format": "flowtex-pyramid-9"}

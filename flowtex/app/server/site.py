@@ -22,7 +22,7 @@ import os
 import signal
 import socket as sockets
 import webbrowser
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -35,7 +35,7 @@ from flowtex.app.server.sessions import FullError, MakeApp, Sessions
 from flowtex.errors import FieldError
 from flowtex.settings import SettingsError
 
-__all__ = ["ServeError", "Site", "run_site"]
+__all__ = ["ServeError", "Site", "run_site", "serve_until_ended"]
 
 DOOR = Path(__file__).parents[1] / "ui" / "static" / "door.html"
 #: Seconds that connections have to end in.
@@ -193,29 +193,56 @@ async def run_site(
     """Serve pages until the task is cancelled; :func:`flowtex.app.serve` has the parameters."""
     secret = new_secret()
     site = Site(Sessions(make_app, secret, limit=limit, idle=idle), secret)
+
+    async def listen() -> int:
+        await site.prepare()
+        await site.listen((host, port))
+        return site.port
+
+    await serve_until_ended(
+        listen,
+        site.stop,
+        (host, port, f"?secret={secret}"),
+        announce=announce,
+        open_browser=open_browser,
+    )
+
+
+async def serve_until_ended(
+    listen: Callable[[], Awaitable[int]],
+    stop: Callable[[], Awaitable[None]],
+    where: tuple[str, int, str],
+    *,
+    announce: Callable[[str], None],
+    open_browser: bool,
+) -> None:
+    """Serve until the task is cancelled or the program is told to end.
+
+    ``listen`` returns the port; ``where`` is host, port and the rest of the address.
+    """
+    host, port, rest = where
     main = asyncio.current_task()
     with suppress(NotImplementedError):  # on Windows
         asyncio.get_running_loop().add_signal_handler(
             signal.SIGTERM, lambda: main and main.cancel()
         )
     try:
-        await site.prepare()
         try:
-            await site.listen((host, port))
+            port = await listen()
         except OSError as error:
             msg = (
                 f"cannot listen on {host}:{port} ({error.strerror or error}); choose another port, "
                 "or 0 for one that is free"
             )
             raise ServeError(msg) from error
-        address = f"http://{_host_name(host)}:{site.port}/?secret={secret}"
+        address = f"http://{_host_name(host)}:{port}/{rest}"
         announce(address)
         if open_browser:
             _open(address)
         with suppress(asyncio.CancelledError):
             await asyncio.Event().wait()
     finally:
-        await site.stop()
+        await stop()
 
 
 def _host_name(host: str) -> str:

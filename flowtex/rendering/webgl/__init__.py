@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from flowtex.rendering.webgl.client_data import ClientData, Colours, tile_parts
+from flowtex.rendering.webgl.client_data import ClientData, Colours, single, tile_parts
 from flowtex.rendering.webgl.protocol import FORMAT
 
-__all__ = ["FORMAT", "ClientData", "Colours", "tile_parts"]
+__all__ = ["FORMAT", "ClientData", "Colours", "single", "tile_parts"]

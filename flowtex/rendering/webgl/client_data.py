@@ -35,7 +35,7 @@ from flowtex.settings import TABLE, Settings
 from flowtex.textures import PaperTextures, SurfaceGeometry, TextureSet, TriangleGeometry
 from flowtex.tiles import PATH_CELLS, Pyramid, TileKey
 
-__all__ = ["ClientData", "Colours", "tile_parts"]
+__all__ = ["ClientData", "Colours", "single", "tile_parts"]
 
 #: Shaders of the client, by the name under which the header has their text.
 SHADERS = {
@@ -274,15 +274,19 @@ class ClientData:
         if not 0 <= step < self.steps:
             msg = f"time step {step} does not exist: expected 0 to {self.steps - 1}"
             raise IndexError(msg)
-        parts: Parts = {}
-        for number, values in self._values.items():
-            if step < len(values):
-                name = f"scalars/{step}/{number}" if number else f"scalars/{step}"
-                inside = np.clip(values[step], -SINGLE_MAX, SINGLE_MAX)
-                parts[name] = np.ascontiguousarray(inside, "<f4")
+        parts = self.values(step)
         packed = self.packing.step(self.source(step))
         parts[f"extra/{step}"] = packed.extra
         parts[f"slices/{step}"] = packed.slopes
+        return parts
+
+    def values(self, step: int, *, shown: bool = False) -> Parts:
+        """Return the values of one destination time, or only those that are shown."""
+        parts: Parts = {}
+        for number, values in self._values.items():
+            if step < len(values) and (not shown or number == self.colours.number):
+                name = f"scalars/{step}/{number}" if number else f"scalars/{step}"
+                parts[name] = single(values[step])
         return parts
 
     def tile(self, textures: TextureSet, values: Callable[[str], Floats]) -> ClientData:
@@ -407,6 +411,11 @@ class ClientData:
             "timeUnit": textures.geometry.field.time_unit,
             "dates": dates_of(self.field, self.times),
         }
+
+
+def single(values: Floats) -> Floats32:
+    """Return values in single precision; what is greater than its greatest number becomes that."""
+    return np.ascontiguousarray(np.clip(values, -SINGLE_MAX, SINGLE_MAX), "<f4")
 
 
 def tile_parts(key: TileKey, tile: ClientData | None, *steps: int) -> Parts:

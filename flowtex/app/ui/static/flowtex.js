@@ -3,13 +3,14 @@
 r",_:"farther",0:"whole"},PLAY_KEY=" ",FULLSCREEN_KEY="f",CLOSE_KEY="Escape";function hasModifier(event){return event.ctrlKey||event.metaKey||event.altKey}function toggleFullscreen(element){document.
 fullscreenElement?document.exitFullscreen():element.requestFullscreen?.().catch(()=>{})}function throttled(later,wait,call){let next=null,running=!1,run=()=>{if(running=next!==null,!next)return;let{value}=next;
 next=null,call(value),later(run,wait)};return value=>{next={value},running||run()}}function clamp(x,low,high){return Math.min(Math.max(x,low),high)}function placeIn(element,event){let box=element.getBoundingClientRect();return{x:2*(event.clientX-box.left)/Math.max(box.
-width,1)-1,y:1-2*(event.clientY-box.top)/Math.max(box.height,1)}}var nameOf=key=>key.join("/");var TileQueue=class{load;give;most;running=new Map;wanted=[];constructor(load,give,most=1){this.load=load,this.give=give,
-this.most=most}request(keys2,steps){this.wanted=keys2.map(key=>[key,steps]);let names=new Set(keys2.map(key=>`${nameOf(key)}\
- ${steps}`));for(let[name,controller]of this.running)names.has(name)||controller.abort();this.next()}next(){for(;this.wanted.
-length&&this.running.size<this.most;){let[key,steps]=this.wanted[0];this.wanted.shift();let name=`${nameOf(key)} ${steps}`;
-this.running.has(name)||this.run(name,key,steps)}}async run(name,key,steps){let controller=new AbortController;this.running.
-set(name,controller);try{let parts=await this.load(key,steps,controller.signal);controller.signal.aborted||parts.forEach(
-this.give)}catch(error){if(!controller.signal.aborted)throw error}finally{this.running.delete(name),this.next()}}};var vue=()=>window.Vue;var MESSAGE_MS=100,MOST_TILES=3,PROPS=["source","settings","camera","time","playing"],isEqual=(a,b)=>JSON.stringify(a)===
+width,1)-1,y:1-2*(event.clientY-box.top)/Math.max(box.height,1)}}var nameOf=key=>key.join("/");var TileQueue=class{load;give;most;fail;running=new Map;wanted=[];constructor(load,give,most=1,fail=(_,error)=>{throw error}){
+this.load=load,this.give=give,this.most=most,this.fail=fail}request(keys2,steps){this.want(keys2.map(key=>[key,steps]))}want(jobs){
+this.wanted=[...jobs];let names=new Set(jobs.map(([key,steps])=>`${nameOf(key)} ${steps}`));for(let[name,controller]of this.
+running)names.has(name)||controller.abort();this.next()}next(){for(;this.wanted.length&&this.running.size<this.most;){let[
+key,steps]=this.wanted[0];this.wanted.shift();let name=`${nameOf(key)} ${steps}`;this.running.has(name)||this.run(name,key,
+steps)}}async run(name,key,steps){let controller=new AbortController;this.running.set(name,controller);try{let parts=await this.
+load(key,steps,controller.signal);controller.signal.aborted||parts.forEach(this.give)}catch(error){controller.signal.aborted||
+this.fail(key,error)}finally{this.running.delete(name),this.next()}}};var vue=()=>window.Vue;var MESSAGE_MS=100,MOST_TILES=3,PROPS=["source","settings","camera","time","playing"],isEqual=(a,b)=>JSON.stringify(a)===
 JSON.stringify(b),slowly=call=>throttled(setTimeout,MESSAGE_MS,call),BrowserView=class{props;emit;client=null;viewer=null;lastCamera=null;lastTime=NaN;isDisposed=!1;started=0;tiles=new TileQueue(
 (key,steps,signal)=>this.parts(`${this.props.source.tiles}${[...key,...steps].join(".")}`,signal),part=>this.viewer?.setPart(
 part),MOST_TILES);watcher=new MutationObserver(()=>this.look());constructor(props,emit){this.props=props,this.emit=emit}async begin(element){

@@ -1,0 +1,104 @@
+// What an exported page does: flowtex/web/export.py writes the page around it.
+
+import {
+  partOfText,
+  stepOf,
+  tilePart,
+  type Header,
+  type NamedPart,
+  type PartInfo,
+} from "./protocol.ts";
+import { nameOf } from "./tilechoice.ts";
+import { mountPage, type SceneData, type Source } from "./views.ts";
+
+/** Opens the store in which the rest of a page lies. */
+export type OpenStore = (header: Header) => Source;
+
+/** A part with its text as the page has it; what lies in the page already has none. */
+type Packed = [info: PartInfo, text: string];
+
+/** What lies in the page of one of the views: its parts, and those of each tile by its name. */
+function packedOf(view: string): { parts: Packed[]; tiles: Map<string, Packed[]> } {
+  const [parts, tiles]: [Packed[], Map<string, Packed[]>] = [[], new Map()];
+  for (const element of document.querySelectorAll<HTMLElement>(`script[data-view="${view}"]`)) {
+    const info: PartInfo = JSON.parse(element.dataset.part ?? "");
+    const packed: Packed = [info, element.textContent ?? ""];
+    const tile = tilePart(info.name)?.[0];
+    if (tile) tiles.set(tile, [...(tiles.get(tile) ?? []), packed]);
+    else parts.push(packed);
+    element.remove();
+  }
+  return { parts, tiles };
+}
+
+/** A view as it lies in the page; `known` has what is unpacked, and `texts` what is not, by digests. */
+async function sceneOf(
+  header: Header,
+  view: string,
+  known: Map<string, NamedPart>,
+  texts: Map<string, string>,
+  openStore?: OpenStore,
+): Promise<SceneData> {
+  const { parts, tiles } = packedOf(view);
+  for (const [{ digest }, text] of [...tiles.values()].flat()) if (text) texts.set(digest, text);
+  const unpacked: NamedPart[] = [];
+  for (const [info, text] of parts) {
+    const part = known.get(info.digest) ?? (await partOfText(info, text));
+    known.set(info.digest, part);
+    unpacked.push({ ...part, name: info.name });
+  }
+  if (openStore) return { header, parts: unpacked, source: openStore(header) };
+  const loadTile: SceneData["loadTile"] = (key, steps) => {
+    const needed = (tiles.get(nameOf(key)) ?? []).filter(([{ name }]) => {
+      const step = stepOf(tilePart(name)?.[1] ?? "");
+      return Number.isNaN(step) || steps.includes(step);
+    });
+    return Promise.all(
+      needed.map(async ([info, text]) => {
+        const part = known.get(info.digest);
+        if (part) return { ...part, name: info.name };
+        return partOfText(info, text || (texts.get(info.digest) ?? ""));
+      }),
+    );
+  };
+  return { header, parts: unpacked, loadTile };
+}
+
+/** Unpack the page, and take the preview away once the client has drawn. */
+export async function openPage(openStore?: OpenStore): Promise<void> {
+  const place = document.getElementById("flowtex") as HTMLElement;
+  const status = document.getElementById("status") as HTMLElement;
+  try {
+    // Of a second header there is what differs from the first.
+    const headers: Header[] = JSON.parse(document.getElementById("headers")?.textContent ?? "");
+    const known = new Map<string, NamedPart>();
+    const texts = new Map<string, string>();
+    const scenes: SceneData[] = [];
+    for (const [n, header] of headers.entries()) {
+      scenes.push(await sceneOf({ ...headers[0], ...header }, String(n), known, texts, openStore));
+    }
+    const look = () => {
+      // The client says why in its own place, which the preview covers.
+      status.hidden = !place.querySelector('[data-failed="true"]');
+      status.textContent =
+        "This browser cannot draw the flow, for want of WebGL2; here is a picture of it.";
+      if (place.querySelector('[data-sharp="false"]')) return;
+      watch.disconnect();
+      document.getElementById("preview")?.remove();
+    };
+    const watch = new MutationObserver(look);
+    const attributeFilter = ["data-sharp", "data-failed"];
+    watch.observe(place, { subtree: true, childList: true, attributeFilter });
+    const { root } = mountPage(place, scenes);
+    // Keys are the view's from the beginning, without a click.
+    document.addEventListener("keydown", (event) => {
+      const isFree = event.target === document.body;
+      if (isFree && !root.dispatchEvent(new KeyboardEvent("keydown", event))) event.preventDefault();
+    });
+  } catch (error) {
+    status.hidden = false;
+    const reason = error instanceof Error ? error.message : String(error);
+    status.textContent = `The flow cannot be drawn here: ${reason}`;
+    throw error;
+  }
+}

@@ -1,0 +1,215 @@
+// A Zarr store behind any web server: objects are taken whole, asked for again where a server or the
+// network fails, and their check sums are tried.
+
+import * as zarr from "zarrita";
+
+/** Milliseconds before an object is asked for again that could not be had. */
+const PAUSES_MS = [300, 1000, 3000];
+/** Milliseconds without a byte after which an answer counts as lost. */
+const STALL_MS = 20_000;
+/** What a server says of an object that is not there; buckets do not tell that from a private one. */
+const ABSENT = [401, 403, 404, 410];
+const BUSY = 429;
+const FAULT = 500;
+/** The polynomial of CRC-32C, its bits turned around, and bytes of a check sum. */
+const CASTAGNOLI = 0x82f63b78;
+const SUM_BYTES = 4;
+
+/** What is wrong: nothing is there, it is not what was written, or nobody answers. */
+export type StoreFault = "missing" | "broken" | "unreachable" | "other";
+
+/** A fault in words for everybody, with what it was in detail. */
+export class StoreError extends Error {
+  readonly fault: StoreFault;
+  readonly detail: string;
+
+  constructor(fault: StoreFault, message: string, detail = message) {
+    super(message);
+    this.fault = fault;
+    this.detail = detail;
+  }
+}
+
+export type Numbers = zarr.Array<zarr.NumberDataType, Objects>;
+type Get = zarr.AsyncReadable["get"];
+type GetRange = NonNullable<zarr.AsyncReadable["getRange"]>;
+type Bytes = Promise<Uint8Array | undefined>;
+
+const sums = Uint32Array.from({ length: 256 }, (_, byte) => {
+  let sum = byte;
+  for (let bit = 0; bit < 8; bit += 1) sum = (sum >>> 1) ^ (sum & 1 ? CASTAGNOLI : 0);
+  return sum;
+});
+
+export function crc32c(bytes: Uint8Array): number {
+  let sum = 0xffffffff;
+  for (const byte of bytes) sum = (sum >>> 8) ^ sums[(sum ^ byte) & 255];
+  return ~sum >>> 0;
+}
+
+/** The codec of that name: zarrita's leaves the check sum out without a look at it. */
+class CheckSum {
+  readonly kind = "bytes_to_bytes" as const;
+
+  static fromConfig(): CheckSum {
+    return new CheckSum();
+  }
+
+  encode(): never {
+    throw new Error("nothing is written");
+  }
+
+  decode(bytes: Uint8Array): Uint8Array {
+    const end = bytes.byteLength - SUM_BYTES;
+    if (end < 0) throw new Error("there is no check sum");
+    const { buffer, byteOffset } = bytes;
+    const told = new DataView(buffer, byteOffset + end, SUM_BYTES).getUint32(0, true);
+    const inside = new Uint8Array(buffer, byteOffset, end);
+    if (told !== crc32c(inside)) throw new Error("the check sum does not fit");
+    return inside;
+  }
+
+  computeEncodedSize(size: number): number {
+    return size + SUM_BYTES;
+  }
+}
+
+zarr.registry.set("crc32c", () => Promise.resolve(CheckSum));
+
+function paused(wait: number, signal: AbortSignal): Promise<void> {
+  return new Promise((resolve, reject) => {
+    const stop = () => {
+      clearTimeout(timer);
+      reject(signal.reason);
+    };
+    const timer = setTimeout(() => {
+      signal.removeEventListener("abort", stop);
+      resolve();
+    }, wait);
+    signal.addEventListener("abort", stop, { once: true });
+  });
+}
+
+/** The whole of an answer, given up where nothing more comes. */
+async function whole(request: Request): Promise<Response> {
+  const controller = new AbortController();
+  const stop = () => controller.abort(request.signal.reason);
+  request.signal.addEventListener("abort", stop, { once: true });
+  const late = () => controller.abort(new Error("no more came"));
+  let timer = setTimeout(late, STALL_MS);
+  try {
+    request.signal.throwIfAborted();
+    const response = await fetch(request.url, { signal: controller.signal });
+    const { status, body } = response;
+    if (status !== 200 || !body) {
+      await body?.cancel();
+      return new Response(null, { status: ABSENT.includes(status) ? 404 : status });
+    }
+    const watch = new TransformStream<Uint8Array, Uint8Array>({
+      transform(piece, output) {
+        clearTimeout(timer);
+        timer = setTimeout(late, STALL_MS);
+        output.enqueue(piece);
+      },
+    });
+    return new Response(await new Response(body.pipeThrough(watch)).arrayBuffer());
+  } finally {
+    clearTimeout(timer);
+    request.signal.removeEventListener("abort", stop);
+  }
+}
+
+/** An answer that is there or is not there; asks again where it is neither. */
+async function answer(request: Request): Promise<Response> {
+  for (let trial = 0; ; trial += 1) {
+    let said = "nobody answers";
+    try {
+      const response = await whole(request);
+      if (response.status < FAULT && response.status !== BUSY) return response;
+      said = `the server answers ${response.status}`;
+    } catch {
+      request.signal.throwIfAborted();
+    }
+    if (trial === PAUSES_MS.length) throw new StoreError("unreachable", said);
+    await paused(PAUSES_MS[trial], request.signal);
+  }
+}
+
+/** Metadata in which numbers of half precision are whole ones: they go to the graphics card as they are. */
+function readable(bytes: Uint8Array): Uint8Array {
+  const described = JSON.parse(new TextDecoder().decode(bytes)) as Record<string, unknown>;
+  if (described?.data_type !== "float16") return bytes;
+  return new TextEncoder().encode(JSON.stringify({ ...described, data_type: "uint16", fill_value: 0 }));
+}
+
+/** Objects of a store, of which ranges are given from the whole: one request for a shard and its chunks. */
+export class Objects implements zarr.AsyncReadable {
+  private readonly files: zarr.FetchStore;
+  private readonly described: Map<string, Bytes>;
+  private readonly shards = new Map<string, Bytes>();
+
+  constructor(files: zarr.FetchStore, described: Map<string, Bytes>) {
+    this.files = files;
+    this.described = described;
+  }
+
+  readonly get: Get = async (key, options) => {
+    if (key.endsWith("/zarr.json")) return this.description(key);
+    return this.object(key, options?.signal);
+  };
+
+  readonly getRange: GetRange = async (key, range, options) => {
+    const bytes = this.shards.get(key) ?? this.object(key, options?.signal);
+    this.shards.set(key, bytes);
+    const all = await bytes;
+    if ("suffixLength" in range) return all?.subarray(-range.suffixLength);
+    return all?.subarray(range.offset, range.offset + range.length);
+  };
+
+  private async object(key: zarr.AbsolutePath, signal?: AbortSignal): Bytes {
+    const bytes = await this.files.get(key, { signal });
+    if (!bytes) throw new StoreError("missing", `${key} is not there`);
+    return bytes;
+  }
+
+  /** Metadata of an array or a group, kept for all who ask. */
+  private description(key: zarr.AbsolutePath): Bytes {
+    const known = this.described.get(key);
+    if (known) return known;
+    const bytes = this.files.get(key).then((found) => found && readable(found));
+    this.described.set(key, bytes);
+    bytes.catch(() => this.described.delete(key));
+    return bytes;
+  }
+}
+
+/** What kind of fault an error is. */
+export function storeError(error: unknown): StoreError {
+  if (error instanceof StoreError) return error;
+  const fault = error instanceof zarr.NotFoundError ? "missing" : "broken";
+  return new StoreError(fault, error instanceof Error ? error.message : String(error));
+}
+
+export class Store {
+  private readonly files: zarr.FetchStore;
+  private readonly described = new Map<string, Bytes>();
+
+  constructor(url: string) {
+    this.files = new zarr.FetchStore(url, { fetch: answer });
+  }
+
+  /** Attributes of the whole. */
+  async attributes(): Promise<Record<string, unknown>> {
+    const objects = new Objects(this.files, this.described);
+    const group = await zarr.open.v3(zarr.root(objects), { kind: "group" });
+    return group.attrs;
+  }
+
+  /** An array by its path; its shards are kept for as long as it is. */
+  async array(path: string): Promise<Numbers> {
+    const objects = new Objects(this.files, this.described);
+    const array = await zarr.open.v3(zarr.root(objects).resolve(path), { kind: "array" });
+    if (!array.is("number")) throw new StoreError("broken", `${path} has no numbers`);
+    return array as Numbers;
+  }
+}

@@ -1,0 +1,162 @@
+"""A pyramid on a page: the page, and the objects of its store that it streams.
+
+::
+
+    GET  /<token>/               the page
+    GET  /<token>/store/<name>   an object of the store, or a part of it
+
+All addresses in the page are relative, so that it works behind any proxy. Names are those of a
+pyramid's arrays and numbers of their chunks, and nothing else is looked for.
+"""
+
+from __future__ import annotations
+
+import logging
+import re
+from collections.abc import Callable
+
+from aiohttp import web
+
+from flowtex.app.server.security import guard, is_same
+from flowtex.app.server.site import SHUTDOWN_S, serve_until_ended
+from flowtex.pyramid.served import METADATA, Piece, ServedStore
+
+__all__ = ["run_store", "store_application"]
+
+#: Seconds for which a browser may keep an object; a token is that of one run.
+KEPT_S = 3600
+WRONG = "This page opens with the whole address that flowtex printed."
+FAULT = "This part of the store could not be read or made. The program that serves it has said why."
+#: A byte that no object has.
+BEYOND = 10**18
+#: Different errors that are told, at most.
+MOST_TOLD = 100
+
+_log = logging.getLogger(__name__)
+
+
+def store_application(served: ServedStore, page: str, token: str = "") -> web.Application:
+    """Return a web application of a page and its store, below a token where there is one."""
+    application = web.Application(client_max_size=0)
+    guard(application)
+    told: set[str] = set()
+
+    def check(request: web.Request) -> None:
+        if token and not is_same(request.match_info["token"], token):
+            raise web.HTTPForbidden(text=WRONG)
+
+    async def page_handler(request: web.Request) -> web.Response:
+        check(request)
+        headers = {"Cache-Control": "no-store"}
+        return web.Response(text=page, content_type="text/html", headers=headers)
+
+    async def store_handler(request: web.Request) -> web.Response:
+        check(request)
+        name = request.match_info["name"]
+        asked = _asked(request.headers.get("Range", ""))
+        try:
+            if request.method == "HEAD":
+                return await _head(served, name)
+            piece = await served.get(name, asked)
+        except IndexError as error:
+            headers = {"Content-Range": f"bytes */{error.args[0]}"}
+            return web.Response(status=416, headers=headers)
+        except LookupError:
+            raise web.HTTPNotFound(text="There is no such object.") from None
+        except Exception as error:
+            words = f"{type(error).__name__}: {error}"
+            if words not in told and len(told) < MOST_TOLD:
+                told.add(words)
+                _log.warning("%s", words)
+            raise web.HTTPInternalServerError(text=FAULT) from None
+        return _answer(name, piece, part=asked != slice(None))
+
+    async def closed(request: web.Request) -> web.Response:
+        del request
+        raise web.HTTPForbidden(text=WRONG)
+
+    async def to_page(request: web.Request) -> web.Response:
+        check(request)
+        address = f"{token}/"  # relative: a proxy may have put something before it
+        raise web.HTTPFound(address)
+
+    base = "/{token}" if token else ""
+    router = application.router
+    router.add_get(f"{base}/store/{{name:.+}}", store_handler)
+    router.add_get(f"{base}/", page_handler)
+    if token:
+        router.add_get("/", closed)
+        router.add_get(base, to_page)
+    return application
+
+
+def _asked(text: str) -> slice:
+    """Return the part that a header asks for; what is not understood is for the whole."""
+    found = re.fullmatch(r"bytes=(\d{0,18})-(\d{0,18})", text.strip())
+    first, last = found.groups() if found else ("", "")
+    if first:
+        backward = last and int(last) < int(first)
+        return slice(None) if backward else slice(int(first), int(last) + 1 if last else None)
+    if last:
+        return slice(-int(last) or BEYOND, None)  # of no bytes there is no part
+    return slice(None)
+
+
+async def _head(served: ServedStore, name: str) -> web.Response:
+    try:
+        size = (await served.get(name, slice(0, 1))).size
+    except IndexError as error:
+        size = error.args[0]
+    return web.Response(headers={**_headers(name), "Content-Length": str(size)})
+
+
+def _answer(name: str, piece: Piece, *, part: bool) -> web.Response:
+    headers = _headers(name)
+    if part:
+        last = piece.first + len(piece.body) - 1
+        headers["Content-Range"] = f"bytes {piece.first}-{last}/{piece.size}"
+    return web.Response(body=piece.body, status=206 if part else 200, headers=headers)
+
+
+def _headers(name: str) -> dict[str, str]:
+    metadata = name.endswith(METADATA)
+    return {
+        "Accept-Ranges": "bytes",
+        "Content-Type": "application/json" if metadata else "application/octet-stream",
+        "Cache-Control": "no-store" if metadata else f"private, max-age={KEPT_S}",
+    }
+
+
+async def run_store(
+    served: ServedStore,
+    page: str,
+    where: tuple[str, int],
+    *,
+    token: str,
+    announce: Callable[[str], None],
+    open_browser: bool,
+) -> None:
+    """Serve a page and its store until the task is cancelled; without a token to everybody."""
+    # Who goes away does not wait for a tile any more.
+    runner = web.AppRunner(
+        store_application(served, page, token),
+        handle_signals=False,
+        handler_cancellation=True,
+        access_log=None,
+        shutdown_timeout=SHUTDOWN_S,
+    )
+
+    async def listen() -> int:
+        await runner.setup()
+        await web.TCPSite(runner, *where).start()
+        port: int = runner.addresses[0][1]
+        return port
+
+    async def stop() -> None:
+        served.close()
+        await runner.cleanup()
+
+    rest = f"{token}/" if token else ""
+    await serve_until_ended(
+        listen, stop, (*where, rest), announce=announce, open_browser=open_browser
+    )

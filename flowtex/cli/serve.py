@@ -1,0 +1,112 @@
+"""``flowtex serve``: a pyramid on a page that streams it, with what is missing made on the way."""
+
+from __future__ import annotations
+
+import asyncio
+import re
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+from cyclopts import Parameter
+
+from flowtex._util.progress import waiting
+from flowtex.cli.checks import check_colours, require_app
+from flowtex.cli.console import announcer
+from flowtex.cli.options import (
+    FLAT,
+    PAGE,
+    PICTURE,
+    PORT,
+    LookFlags,
+    SettingFlags,
+    UsageError,
+    settings_from,
+)
+
+if TYPE_CHECKING:
+    from flowtex.field import FlowField
+
+__all__ = ["serve"]
+
+
+def serve(
+    store: Annotated[
+        Path, Parameter(help="A folder, or a URL: s3:// and other object storage, or https://.")
+    ],
+    /,
+    *,
+    port: Annotated[
+        int, Parameter(group=PAGE, help="Port; 0 takes a free one.", validator=PORT)
+    ] = 0,
+    host: Annotated[
+        str, Parameter(group=PAGE, help="Address to listen on: others may reach another one.")
+    ] = "127.0.0.1",
+    token: Annotated[
+        str | None,
+        Parameter(
+            group=PAGE,
+            help="Word in the address without which nothing is shown; by default one that cannot "
+            "be guessed, and with '' none.",
+        ),
+    ] = None,
+    browser: Annotated[bool, Parameter(group=PAGE, help="Open the page in the browser.")] = True,
+    title: Annotated[
+        str | None, Parameter(group=PICTURE, help="Title of the page; the flow's name by default.")
+    ] = None,
+    look: Annotated[LookFlags | None, FLAT] = None,
+    settings: Annotated[SettingFlags | None, FLAT] = None,
+) -> int:
+    """Serve a pyramid as a page that streams it; tiles that it has not are made on the way."""
+    options = {**(look or LookFlags()).arguments(), **settings_from(settings)}
+    require_app()
+    if not re.fullmatch(r"[A-Za-z0-9_-]*", token or ""):
+        msg = f"--token is {token!r}; expected letters, numbers, '-' and '_', or '' for none"
+        raise UsageError(msg)
+    from flowtex.pyramid import is_store, open_store
+
+    if not is_store(store):
+        msg = f"{store} is no pyramid; make one of it with `flowtex pyramid {store} -o flow.zarr`"
+        raise UsageError(msg)
+    from flowtex.app.server.security import new_secret
+    from flowtex.app.server.store_site import run_store
+    from flowtex.diagnostics import has_display
+    from flowtex.pyramid.served import ServedStore
+
+    with waiting(f"Reading {store.name}") as end_waiting:
+        field = open_store(store)
+        check_colours(field, options)
+        page = _page(field, title, options)
+        print_address = announcer(field, host)
+
+        def announce(address: str) -> None:
+            end_waiting()
+            print_address(address)
+
+        serving = run_store(
+            ServedStore(store),
+            page,
+            (host, port),
+            token=new_secret() if token is None else token,
+            announce=announce,
+            open_browser=browser and has_display(),
+        )
+        with suppress(KeyboardInterrupt, asyncio.CancelledError):
+            asyncio.run(serving)
+    return 0
+
+
+def _page(field: FlowField, title: str | None, options: dict[str, object]) -> str:
+    """Return the page, which finds the store beside it, with all of its levels."""
+    from flowtex.options import Options
+    from flowtex.web.export import page_text
+    from flowtex.web.view import web_views
+
+    arguments = Options.split(**options)
+    views = web_views(field, arguments)
+    try:
+        camera = arguments.view.first_camera(views[0].field.surface).to_dict()
+        return page_text(views, store="store/", finest=0, camera=camera, title=title)
+    finally:
+        for view in views:
+            view.close()

@@ -1,0 +1,173 @@
+"""What a store tells of itself, looked at before it is believed.
+
+A seal, a hash of all that is told, shows what came to harm by chance. What was written wrong has
+one too, so types and sizes are looked at as well: they decide how much memory is taken.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable, Mapping
+from itertools import pairwise
+from typing import Any
+
+from flowtex._util.cache import digest
+from flowtex.pyramid.places import FORMAT, PyramidError
+from flowtex.tiles import TileKey
+
+__all__ = ["check_about", "check_header", "identity_of", "sealed"]
+
+#: Nodes along an axis, steps, levels, characters of a text, and scalars, at most.
+MOST_NODES, MOST_STEPS, MOST_LEVELS, MOST_LETTERS, MOST_SCALARS = 10**7, 10**6, 40, 10_000, 1000
+#: Layers of a tile, and texels along its sides, at most.
+MOST_LAYERS, MOST_TEXELS = 64, 10_000
+
+Check = Callable[[Any], bool]
+
+
+def sealed(about: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what is told of a pyramid with its seal; no dictionary without is believed."""
+    return {**about, "seal": _seal(about)}
+
+
+def _seal(about: Mapping[str, Any]) -> str:
+    text = json.dumps({k: v for k, v in about.items() if k != "seal"}, sort_keys=True)
+    return digest(words=(text,)).hex()
+
+
+def _flag(value: Any) -> bool:
+    return isinstance(value, bool)
+
+
+def _text(value: Any) -> bool:
+    return isinstance(value, str) and len(value) <= MOST_LETTERS
+
+
+def _whole(least: int, most: int) -> Check:
+    return lambda value: type(value) is int and least <= value <= most
+
+
+def _number(value: Any) -> bool:
+    return type(value) in (int, float) and math.isfinite(value)
+
+
+def _either(*values: Any) -> Check:
+    return lambda value: value in values and type(value) is not bool
+
+
+def _list(check: Check, least: int, most: int | None = None) -> Check:
+    most = least if most is None else most
+    return lambda v: isinstance(v, list) and least <= len(v) <= most and all(map(check, v))
+
+
+def _or_none(check: Check) -> Check:
+    return lambda value: value is None or check(value)
+
+
+def _by_name(check: Check) -> Check:
+    return lambda v: (
+        isinstance(v, dict)
+        and len(v) <= MOST_SCALARS
+        and all(_text(name) and check(one) for name, one in v.items())
+    )
+
+
+def _rising(check: Check) -> Check:
+    return lambda v: check(v) and all(a < b for a, b in pairwise(v))
+
+
+def _date(value: Any) -> bool:
+    parts = _list(_whole(0, 100_000), 7)
+    return isinstance(value, list) and len(value) == 2 and parts(value[0]) and _text(value[1])
+
+
+def _projection(value: Any) -> bool:
+    if not (isinstance(value, list) and len(value) == 3):
+        return False
+    return _text(value[0]) and _list(_number, 2)(value[1]) and _number(value[2])
+
+
+def _scalar_name(name: str) -> bool:
+    """Whether a name leads nowhere but to an array of its own."""
+    return bool(name) and "/" not in name and name not in (".", "..", "c", "zarr.json")
+
+
+_ENDS = _list(_list(_number, 2), 2)
+#: What is to be found of what is told of a pyramid; more may be told.
+_ABOUT: dict[str, Check] = {
+    **dict.fromkeys(("name", "length_unit", "time_unit", "fingerprint", "version"), _text),
+    **dict.fromkeys(("axes", "late", "has_position"), _flag),
+    "levels_done": _or_none(_flag),
+    "nodes": _list(_whole(2, MOST_NODES), 2),
+    "times": _rising(_list(_number, 1, MOST_STEPS)),
+    "start": _or_none(_date),
+    "projection": _or_none(_projection),
+    "periodic": _list(_flag, 2),
+    "periods": _list(_list(_number, 3), 2),
+    "depth": _whole(0, MOST_LEVELS),
+    "tile_cells": _whole(1, 4096),
+    "parameter": _either("arclength", "time"),
+    "lines": _either("pathlines", "streamlines"),
+    "traced": _list(_whole(0, MOST_LEVELS), 0, MOST_LEVELS + 1),
+    "components": _either(2, 3),
+    "height": _number,
+    "scalars": lambda v: _by_name(_whole(1, MOST_STEPS))(v) and all(map(_scalar_name, v)),
+    "units": _by_name(_text),
+    "long_names": _by_name(_text),
+    "ranges": _or_none(_by_name(_ENDS)),
+}
+_TILE: dict[str, Check] = {
+    "spare": _whole(0, 1000),
+    "count": _whole(1, MOST_LAYERS - 1),
+    "size": _list(_whole(1, MOST_TEXELS), 2),
+    "lags": _rising(_list(_number, 1, MOST_LAYERS)),
+    "sides": _either(1, 2),
+    **dict.fromkeys(("unit", "pace", "cell", "critical_cell"), _number),
+}
+
+
+def check_about(about: Any, place: str) -> dict[str, Any]:
+    """Return what is told of a pyramid, checked.
+
+    Raises
+    ------
+    PyramidError
+        When it cannot be read, or is not as it was written.
+    """
+    told = about.get("format") if isinstance(about, dict) else None
+    if told != FORMAT:
+        msg = (
+            f"{place} has the format {str(told)[:40]!r}; expected {FORMAT!r}. Build it anew, or "
+            "read it with the flowtex that wrote it"
+        )
+        raise PyramidError(msg)
+    wrong = [name for name, check in _ABOUT.items() if not check(about.get(name))]
+    if wrong or about.get("seal") != _seal(about):
+        what = f" ({', '.join(wrong)})" if wrong else ""
+        msg = f"what {place} tells of itself is damaged{what}; build it anew"
+        raise PyramidError(msg)
+    result: dict[str, Any] = about
+    return result
+
+
+def identity_of(about: Mapping[str, Any], key: TileKey, step: int) -> dict[str, Any]:
+    """Return what a tile tells of where it belongs, so that no other is taken for it."""
+    of = " ".join(about[name] for name in ("fingerprint", "parameter", "lines"))
+    return {"tile": list(key), "step": step, "of": of}
+
+
+def check_header(header: Any, identity: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what a tile tells of itself, checked; a ``ValueError`` says what is wrong."""
+    if not isinstance(header, dict) or not _flag(header.get("empty")):
+        msg = "it is none"
+        raise ValueError(msg)
+    if any(header.get(name) != value for name, value in identity.items()):
+        msg = f"it is that of {header.get('tile')!r:.40} at step {header.get('step')!r:.20}"
+        raise ValueError(msg)
+    checks = {} if header["empty"] else _TILE
+    wrong = [name for name, check in checks.items() if not check(header.get(name))]
+    if wrong:
+        msg = f"what it tells of itself is damaged ({', '.join(wrong)})"
+        raise ValueError(msg)
+    return header

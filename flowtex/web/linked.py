@@ -1,0 +1,140 @@
+"""Pages that have the root of a pyramid alone: the browser takes the rest from a store."""
+
+from __future__ import annotations
+
+import re
+import warnings
+from dataclasses import dataclass, replace
+from urllib.parse import urlsplit
+
+from flowtex.errors import FieldError
+from flowtex.pyramid import StoredPyramid
+from flowtex.rendering.webgl import ClientData
+from flowtex.rendering.webgl.protocol import Header, Parts
+from flowtex.tiles import TileKey, shared_pyramid
+from flowtex.web.view import WebView
+
+__all__ = ["StoreLink", "first_parts", "linked_data", "store_header"]
+
+#: What a name of a server may have, of which nothing means anything in a policy of a page.
+HOST = re.compile(r"[A-Za-z0-9.-]+|\[[0-9A-Fa-f:.]+\]")
+EXPECTED = (
+    "expected the address at which a browser finds the store, such as "
+    "'https://bucket.s3.eu-central-1.amazonaws.com/flow.zarr', or from the page on, such as "
+    "'./flow.zarr'"
+)
+
+
+@dataclass(frozen=True)
+class StoreLink:
+    """Where a page finds its store.
+
+    Attributes
+    ----------
+    address
+        A URL, whole or from the page on.
+    source
+        What the page's policy allows it to connect to.
+    """
+
+    address: str
+    source: str
+
+    @classmethod
+    def of(cls, text: str) -> StoreLink:
+        """Return the link of an address.
+
+        Raises
+        ------
+        FieldError
+            When a browser could not read it, or it holds what is not for everybody.
+        """
+        parts = urlsplit(text)
+        if parts.query or parts.fragment or "@" in parts.netloc:
+            msg = (
+                "the address of the store has a name, a password, a signature or another query, "
+                "which everybody could read in the page; give the address alone, and let everybody "
+                "read the bucket, or those who may see the page"
+            )
+            raise FieldError(msg)
+        if not parts.scheme and not parts.netloc and re.match(r"[^/\\~\s]", text):
+            return cls(text, "'self'")
+        try:
+            host, port = parts.hostname or "", parts.port
+        except ValueError:
+            host, port = "", None
+        if parts.scheme not in ("http", "https") or not HOST.fullmatch(host):
+            what = "; s3:// and other object storage has one too" if "://" in text else ""
+            msg = f"store is {text!r}; {EXPECTED}{what}"
+            raise FieldError(msg)
+        return cls(text, f"{parts.scheme}://{host}" + (f":{port}" if port else ""))
+
+
+def linked_data(view: WebView, finest: int | None = None) -> ClientData:
+    """Return what a page is handed of a view whose tiles lie in a store.
+
+    ``finest`` is the finest level of which there are tiles, by default that of the store itself.
+
+    Raises
+    ------
+    FieldError
+        When the flow is not one of a store, or the store has not the tiles that are to be shown.
+    """
+    stored, data = _stored(view), view.page_data()
+    if not stored.about.get("complete"):
+        warnings.warn(
+            "the store has not been built to its end; what is missing is shown coarse", stacklevel=2
+        )
+    finest = stored.finest if finest is None else finest
+    return replace(data, pyramid=stored if finest < stored.depth else None, finest=finest)
+
+
+def store_header(view: WebView, scene: ClientData, link: StoreLink) -> Header:
+    """Return what the client has to know of the store."""
+    stored = _stored(view)
+    return {
+        "url": link.address,
+        "format": stored.about["format"],
+        "fingerprint": stored.about["fingerprint"],
+        "depth": stored.depth,
+        "steps": [scene.source(step) for step in range(scene.steps)],
+    }
+
+
+def first_parts(scene: ClientData, time: float | None) -> Parts:
+    """Return the arrays with which a page begins: the surface, and one moment."""
+    values, parts = scene.colours.values, scene.surface()
+    if values is not None and len(values) == 1:
+        parts |= scene.values(0, shown=True)
+    for step in scene.moment(float(scene.times[-1] if time is None else time)):
+        parts |= scene.values(step, shown=True)
+        whole = scene.step(step)
+        parts |= {name: whole[name] for name in whole if not name.startswith("scalars/")}
+    return parts
+
+
+def _stored(view: WebView) -> StoredPyramid:
+    """Return the pyramid in a store that a view shows."""
+    scene = view.scene
+    pyramid = scene.pyramid
+    if scene.settings.noise != "procedural":
+        msg = (
+            f"store is given and noise is {scene.settings.noise!r}, which tiles are not drawn "
+            "with; leave one of them out"
+        )
+        raise FieldError(msg)
+    pyramid = pyramid or shared_pyramid(scene.field, scene.settings.parameter, scene.lines)
+    if not isinstance(pyramid, StoredPyramid):
+        msg = (
+            "store is given, and the flow is not read from one; build it with "
+            "flowtex.pyramid.build(..., levels='all'), and export the store"
+        )
+        raise FieldError(msg)
+    if not pyramid.made(TileKey(pyramid.depth, 0, 0)):
+        own = pyramid.about
+        msg = (
+            f"the store has paths by parameter={own['parameter']!r} along {own['lines']}; expected "
+            f"{pyramid.parameter!r} along {pyramid.lines}. Export it with its own, or build another"
+        )
+        raise FieldError(msg)
+    return pyramid
