@@ -263,7 +263,8 @@ class FlowHandle(AppearanceAttributes):
             usual = pv.global_theme.lighting_params
             for name, value in LIGHT.items():
                 setattr(prop, name, value if lit else getattr(usual, name))
-        if self._map is not None and differs("coastlines", "graticule", "land", "lighting"):
+        on_map = ("coastlines", "graticule", "land", "lighting", "opacity")
+        if self._map is not None and differs(*on_map):
             self._map.show()
         if differs("color"):
             prop.color = new.color

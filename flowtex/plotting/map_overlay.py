@@ -145,7 +145,9 @@ class MapOverlay:
         """Draw cells without data, and the globe where the field does not cover it."""
         is_lit = self._scene.is_lit
         meshes = []
-        if (land := land_cells(self._field)).any():
+        # Through a flow that is not opaque the background is seen, and no land.
+        tiled = self._scene.pyramid is not None and self._scene.appearance.opacity == 1
+        if (land := land_cells(self._field, tiled=tiled)).any():
             meshes.append((_cell_mesh(self._field, land), -LAND_FARTHER))
         self._radius = globe_radius(self._field)
         if self._radius is not None:

@@ -81,17 +81,19 @@ def map_lines(field: FlowField, *, has_globe: bool) -> dict[str, MapLines]:
     return {"coastlines": coastlines(projection), "graticule": graticule(projection).and_(meshes)}
 
 
-def land_cells(field: FlowField) -> Bools:
+def land_cells(field: FlowField, *, tiled: bool = False) -> Bools:
     """Tell which cells of a field have their positions and are not drawn.
 
-    The shape is (J - 1, I - 1), or (M,) of triangles.
+    The shape is (J - 1, I - 1), or (M,) of triangles. Of a map that is the coarsest level of a
+    structured field in tiles all cells may be seen as land, where finer ones have no data.
     """
     surface = field.surface
     if isinstance(surface, TriangleSurface):
         return ~surface.cells
     known = surface.has_position
     known = known[:-1, :-1] & known[1:, :-1] & known[:-1, 1:] & known[1:, 1:]
-    return np.asarray(known & ~surface.cells)
+    seen_through = tiled and not surface.on_globe
+    return np.asarray(known if seen_through else known & ~surface.cells)
 
 
 def globe_radius(field: FlowField) -> float | None:

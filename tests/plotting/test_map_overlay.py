@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 import pyvista as pv
+from earth_data import winds as winds_on_lines
 from earth_fields import ocean, winds
 from flows import gyre
 
@@ -111,6 +112,30 @@ def test_land_has_its_colour_or_none(plotter: Any) -> None:
     assert colour() == pytest.approx([0, 0, 255], abs=2)
     with pytest.raises(ValueError, match="tomatoe"):
         handle.land = "tomatoe"
+
+
+@pytest.mark.parametrize("name", ["platecarree", "globe"])
+def test_islands_that_only_finer_levels_have_are_land(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 1000)
+    lon, lat = np.linspace(0, 30, 301), np.linspace(0, 20, 201)
+    data = winds_on_lines(lon, lat)
+    # Of three nodes; the coarsest level has every 16th.
+    data.u.values[102:105, 152:155] = np.nan
+    field = flowtex.FlowField.from_xarray(data, projection=name)
+    assert field.projection is not None
+    focus = field.projection.positions(np.array(15.3), np.array(10.3))
+    options: dict[str, Any] = {**OFF, "zoom": 20, "focus": tuple(focus), "size": (120, 80)}
+    middle = flowtex.render(field, **{**options, "land": "red"})[40, 60].astype(float)
+    assert middle == pytest.approx([255, 0, 0], abs=40)
+    # What is seen through the flow is the background, and no land.
+    options |= {"opacity": 0.5, "scalars": False, "color": "black"}
+    seen, other = (
+        flowtex.render(field, **{**options, "land": land})[5, 5].astype(int)
+        for land in ("red", None)
+    )
+    assert np.abs(seen - other).max() == 0 or name == "globe"
 
 
 def test_a_globe_is_below_what_does_not_cover_the_earth() -> None:

@@ -25,7 +25,7 @@ from flowtex.rendering.map_overlay import (
     map_lines,
 )
 from flowtex.rendering.webgl.protocol import Header, Parts
-from flowtex.textures.geometry import DrawnSurface, SurfaceGeometry
+from flowtex.textures.geometry import DrawnSurface
 
 __all__ = ["dates_of", "earth_header", "earth_parts"]
 
@@ -71,19 +71,14 @@ def earth_header(geometry: DrawnSurface, *, has_land: bool) -> Header | None:
 
 
 def earth_parts(geometry: DrawnSurface, *, has_land: bool, tiled: bool) -> Parts:
-    """Return the arrays of the Earth, of which a tile has none of its own.
-
-    Of a structured surface in tiles all cells may be seen as land, where finer ones have no data.
-    """
+    """Return the arrays of the Earth, of which a tile has none of its own."""
     field = geometry.field
     if field.projection is None or geometry.whole is not field.surface:
         return {}
     parts: Parts = dict(_lines_of(geometry, has_land=has_land).parts)
     if not field.projection.is_globe:
         parts["lonlat"] = _lonlat(field.projection, map_box(field).tobytes())
-        land = land_cells(field)
-        if tiled and isinstance(geometry, SurfaceGeometry):
-            land = land | geometry.cells
+        land = land_cells(field, tiled=tiled)
         if land.any() and field.triangles is not None:
             parts["land"] = field.triangles[land].astype("<u4")
         elif land.any():
