@@ -217,12 +217,14 @@ export class Stream {
   /** Call with a signal that ends all of it where a part fails. */
   private async loaded<T>(what: string, signal: AbortSignal, load: (whole: AbortSignal) => Promise<T>) {
     const controller = new AbortController();
-    const stop = () => controller.abort(signal.reason);
-    signal.addEventListener("abort", stop, { once: true });
+    let stop = (): void => undefined;
+    const stopped = new Promise<never>((_, reject) => {
+      stop = () => reject(signal.reason);
+      signal.addEventListener("abort", stop, { once: true });
+    });
     try {
-      await this.open();
-      signal.throwIfAborted();
-      return await load(controller.signal);
+      // What is for all who ask goes on though one of them has gone.
+      return await Promise.race([this.open().then(() => load(controller.signal)), stopped]);
     } catch (error) {
       signal.throwIfAborted();
       const { fault, message } = storeError(error);
