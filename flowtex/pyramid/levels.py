@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import AnyArray, Bools, Floats, Floats32, Indices
+from flowtex._util.blocks import even_runs
 from flowtex._util.extras import import_extra
 from flowtex.field.steps import LazySteps
 from flowtex.pyramid.layout import TRACES, read_header
@@ -17,6 +18,9 @@ from flowtex.tiles import TileKey
 from flowtex.tiles.pyramid import Nodes
 
 __all__ = ["Levels", "StoredTile"]
+
+#: Blocks that are read one after the other; more of them are read as single lines.
+MOST_RUNS = 9
 
 
 class StoredTile:
@@ -151,13 +155,17 @@ class Levels:
         """Read some rows and columns of an array over the nodes."""
         array = self.array(name)
         before = () if step is None else (step,)
-        both = [_slice(lines) for lines in (rows, columns)]
+        runs = [list(even_runs(lines)) for lines in (rows, columns)]
         try:
-            if None not in both:
-                return np.asarray(array[(*before, *both)])
-            return np.asarray(array.oindex[(*before, rows, columns)])
+            if len(runs[0]) * len(runs[1]) > MOST_RUNS:
+                values = np.asarray(array.oindex[(*before, rows, columns)])
+            else:
+                bands = [[np.asarray(array[(*before, j, i)]) for i in runs[1]] for j in runs[0]]
+                values = np.concatenate([np.concatenate(band, axis=1) for band in bands])
         except Exception as error:
             raise self._error(name, error) from error
+        # Fields are float64, as all is that is computed of them.
+        return values.astype(float) if values.dtype == np.float32 else values
 
     def _read(self, name: str) -> AnyArray:
         array = self.array(name)
@@ -168,14 +176,6 @@ class Levels:
 
     def _error(self, name: str, error: Exception) -> PyramidError:
         return PyramidError(f"{name} of {self.place} cannot be read: {_words(error)}")
-
-
-def _slice(lines: Indices) -> slice | None:
-    """Return lines that follow each other as a slice."""
-    first, last = int(lines[0]), int(lines[-1])
-    if last - first + 1 == len(lines) and (np.diff(lines) == 1).all():
-        return slice(first, last + 1)
-    return None
 
 
 def _in_space(values: Floats, height: float = 0.0) -> Floats:

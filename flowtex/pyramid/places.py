@@ -13,7 +13,7 @@ from flowtex.errors import FieldError
 __all__ = ["FORMAT", "PyramidError", "is_store", "place_text", "store_at"]
 
 #: Written into every store; a reader refuses what it does not know.
-FORMAT = "flowtex-pyramid-1"
+FORMAT = "flowtex-pyramid-2"
 #: A URL, or one of which ``pathlib`` has made a path.
 _URL = re.compile(r"^([A-Za-z][A-Za-z0-9+.-]+):/{1,2}(?=[^/])")
 

@@ -161,10 +161,10 @@ def field_of(
     if known.mesh is not None:
         on_mesh: F = _mesh_field(make, known, known.mesh, scalars, times, numbers, projection, name)
         return on_mesh
-    if (from_regions := getattr(make, "from_regions", None)) is not None:
+    if make.from_regions is not None:  # type: ignore[attr-defined]
         regions = _regions(known, scalars, times, numbers, projection, name)
         if regions is not None:
-            return cast("F", from_regions(regions))
+            return cast("F", make.from_regions(regions))  # type: ignore[attr-defined]
     if not places.is_earth:
         points = np.stack([places.a, places.b], axis=-1)
 

@@ -7,13 +7,14 @@ files and arrays that are read late are all that is needed for that, so a proces
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex._util.blocks import even_runs
 from flowtex.earth import Projection
 from flowtex.errors import FieldError
 from flowtex.field.datasets.maps import (
@@ -174,8 +175,8 @@ class Regions:
     def _read(self, variable: xr.Variable, number: int, rows: Any, columns: Any) -> Floats:
         step = variable[number] if variable.ndim > 2 else variable
         below = []
-        for first in _runs(self.lines.rows[rows]):
-            beside = [step[first, second] for second in _runs(self.lines.columns[columns])]
+        for first in even_runs(self.lines.rows[rows]):
+            beside = [step[first, second] for second in even_runs(self.lines.columns[columns])]
             # Whoever reads a region may be a task of a cluster, and must not wait for others.
             below.append([numbers_in(part.compute(scheduler="synchronous")) for part in beside])
         return np.concatenate([np.concatenate(parts, axis=1) for parts in below])
@@ -223,16 +224,3 @@ def numbers_in(array: Any) -> Floats:
 def _is_ordered(line: Floats) -> bool:
     steps = np.diff(line)
     return len(line) > 1 and bool((steps > 0).all() or (steps < 0).all())
-
-
-def _runs(lines: Indices) -> Iterator[slice]:
-    """Give lines as slices, few where they lie evenly apart, such as to both sides of a seam."""
-    first = 0
-    while first < len(lines):
-        steps = np.diff(lines[first:])
-        step = int(steps[0]) if len(steps) else 1
-        other = np.flatnonzero(steps != step)
-        last = first + (int(other[0]) if len(other) else len(steps))
-        stop = int(lines[last]) + step
-        yield slice(int(lines[first]), stop if stop >= 0 else None, step)
-        first = last + 1
