@@ -30,7 +30,7 @@ __all__ = [
 ]
 
 #: Written into every store; a reader refuses what it does not know.
-FORMAT = "flowtex-pyramid-1"
+FORMAT = "flowtex-pyramid-2"
 #: A URL, or one of which ``pathlib`` has made a path; those of files are paths.
 _URL = re.compile(r"^(?!file:)([A-Za-z][A-Za-z0-9+.-]+):/{1,2}(?=[^/])")
 _FILE_URL = re.compile(r"^file:/{1,3}(?=[^/])")

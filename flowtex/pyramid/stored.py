@@ -85,8 +85,8 @@ class StoredPyramid(Pyramid):
         parameter: str | None = None,
         lines: str | None = None,
     ) -> None:
-        about = levels.about
         self.field, self._stored = field, levels
+        about = levels.about
         self.parameter = about["parameter"] if parameter is None else parameter
         self.lines = about["lines"] if lines is None else lines
         self.nodes = (about["nodes"][0], about["nodes"][1])
@@ -140,6 +140,9 @@ class StoredPyramid(Pyramid):
         about = read[steps[0]].about
         if about["empty"]:
             return None
+        if any(tile.about.get("spare") != about["spare"] for tile in read.values()):
+            msg = f"{self._stored.place} was not built to its end; run flowtex.pyramid.build again"
+            raise PyramidError(msg)
         textures = self.textures(key, about["spare"])
         if textures is None or not _fits(textures, about):
             msg = f"tile {tuple(key)} of {self._stored.place} does not fit its level; build it anew"

@@ -26,6 +26,8 @@ class FieldConstructors:
     #: Those of arrays, which the field itself has.
     from_arrays: Any
     from_triangles: Any
+    #: Takes a dataset of which any region can be read alone, where its nodes are not to be read.
+    from_regions: Any = None
 
     @classmethod
     def from_pyvista(
