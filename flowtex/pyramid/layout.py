@@ -240,10 +240,10 @@ def create_level(group: Any, level: int, shape: tuple[int, int], about: Mapping[
             ["time", "row", "column", "layer", "y", "x", "channel"],
             keep_empty=False,
         )
-    if has_halos(about, level):
-        # A task makes so many steps, and a chunk is written by one task.
-        names = ["time", "row", "column", "halo"]
-        create_array(here, HALOS, (steps, *tiles, 2), (MOST_HELD, 1, 1, 2), None, "uint8", names)
+        if has_halos(about, level):
+            # A task makes so many steps, and a chunk is written by one task.
+            chunk, names = (MOST_HELD, 1, 1, 2), ["time", "row", "column", "halo"]
+            create_array(here, HALOS, (steps, *tiles, 2), chunk, None, "uint8", names)
         _create_client_arrays(here, level, shape, tiles, about)
 
 
