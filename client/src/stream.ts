@@ -42,6 +42,12 @@ const REASONS: Record<Exclude<StoreFault, "other">, string> = {
 /** Tells whether a part is there, of a tile or of the whole. */
 export type Has = (part: string) => boolean;
 
+/** What of a tile is the same at all times; no header where nothing of it is drawn. */
+interface Surface {
+  header: TileHeader | null;
+  parts: NamedPart[];
+}
+
 /** Where a tile is read, and what of. */
 interface Place {
   key: TileKey;
@@ -175,18 +181,19 @@ export class Stream {
     const name = nameOf(key);
     return this.loaded(COARSE, signal, async (whole) => {
       const known = has("header") ? this.headers.get(name) : undefined;
+      const surface = known === undefined ? this.surface(key, whole) : { header: known, parts: [] };
       const late = steps.filter((step) => !has(`slices/${step}`));
-      const [surface, ...traces] = await Promise.all([
-        known === undefined ? this.surface(key, whole) : null,
-        ...late.map((step) => this.traces(key, step, whole)),
-      ]);
-      const header = known ?? this.headers.get(name) ?? null;
-      const parts = surface ?? [];
-      if (header) {
+      // On its way before it is known what it belongs to.
+      const traces = late.map((step) => this.traces(key, step, whole));
+      const rest = async () => {
+        const { header, parts } = await surface;
+        this.headers.set(name, header);
+        if (!header) return parts;
         const place = { key, header, signal: whole };
-        const sliced = late.map((step, n) => this.slices(place, step, traces[n]));
-        parts.push(...(await Promise.all(sliced)).flat(), ...(await this.values(place, steps, has)));
-      }
+        const slices = late.map(async (step, n) => this.slices(place, step, await traces[n]));
+        return [parts, ...(await Promise.all([...slices, this.values(place, steps, has)]))].flat();
+      };
+      const [parts] = await Promise.all([rest(), ...traces]);
       return parts.map((part) => ({ ...part, name: `tile/${name}/${part.name}` }));
     });
   }
@@ -210,12 +217,14 @@ export class Stream {
   /** Call with a signal that ends all of it where a part fails. */
   private async loaded<T>(what: string, signal: AbortSignal, load: (whole: AbortSignal) => Promise<T>) {
     const controller = new AbortController();
-    const stop = () => controller.abort(signal.reason);
-    signal.addEventListener("abort", stop, { once: true });
+    let stop = (): void => undefined;
+    const stopped = new Promise<never>((_, reject) => {
+      stop = () => reject(signal.reason);
+      signal.addEventListener("abort", stop, { once: true });
+    });
     try {
-      await this.open();
-      signal.throwIfAborted();
-      return await load(controller.signal);
+      // What is for all who ask goes on though one of them has gone.
+      return await Promise.race([this.open().then(() => load(controller.signal)), stopped]);
     } catch (error) {
       signal.throwIfAborted();
       const { fault, message } = storeError(error);
@@ -226,8 +235,8 @@ export class Stream {
     }
   }
 
-  /** The parts of a tile that are the same at all times; its header is kept. */
-  private async surface([level, row, column]: TileKey, signal: AbortSignal): Promise<NamedPart[]> {
+  /** What of a tile is the same at all times. */
+  private async surface([level, row, column]: TileKey, signal: AbortSignal): Promise<Surface> {
     const array = await this.store.array(`${level}/surface`);
     const { data } = await chunkOf(array, [row, column, 0], [1], signal);
     const parts = new Map<string, NamedPart>();
@@ -238,10 +247,10 @@ export class Stream {
     const header = this.tileHeader(parts.get("header"));
     parts.delete("header");
     if (header) checkSurface(parts, header, this.header.mesh.tileCells);
-    this.headers.set(nameOf([level, row, column]), header);
     const text = new TextEncoder().encode(JSON.stringify(header));
     const digest = this.digest([level, row, column], "header");
-    return [{ name: "header", data: text, shape: [text.length], digest }, ...parts.values()];
+    const told = { name: "header", data: text, shape: [text.length], digest };
+    return { header, parts: [told, ...parts.values()] };
   }
 
   /** What is told of a tile, with what is the same in all of them. */

@@ -188,13 +188,13 @@ def _page_data(views: Sequence[WebView]) -> list[ClientData]:
 def _level_bytes(scene: ClientData, pyramid: Pyramid, level: int) -> int:
     """Bytes of the tiles of a level in a page, about."""
     more = np.prod(pyramid.shape(level)) / np.prod(pyramid.shape(pyramid.depth))
-    return int(PACKED_SHARE * more * _arrays_bytes(scene))
+    return int(PACKED_SHARE * more * _arrays_bytes(scene, scene.steps))
 
 
-def _arrays_bytes(scene: ClientData) -> int:
+def _arrays_bytes(scene: ClientData, steps: int) -> int:
     """Bytes of the arrays of a scene without tiles."""
     surface = sum(part.nbytes for part in scene.surface().values())
-    return surface + scene.steps * scene.nbytes_of_step
+    return surface + steps * scene.nbytes_of_step
 
 
 def estimate(scenes: Sequence[ClientData], *, linked: bool = False) -> int:
@@ -206,11 +206,10 @@ def estimate(scenes: Sequence[ClientData], *, linked: bool = False) -> int:
     for n, scene in enumerate(scenes):
         if n and scene.textures is scenes[0].textures:
             break
+        steps = len(scene.moment(scene.times[-1])) if linked else scene.steps
+        size += READER_BYTES * linked + int(PACKED_SHARE * _arrays_bytes(scene, steps))
         if linked:
-            surface = sum(part.nbytes for part in scene.surface().values())
-            size += READER_BYTES + int(PACKED_SHARE * (surface + scene.nbytes_of_step))
             continue
-        size += int(PACKED_SHARE * _arrays_bytes(scene))
         if (pyramid := scene.pyramid) is not None:
             levels = range(scene.finest, pyramid.depth)
             size += sum(_level_bytes(scene, pyramid, level) for level in levels)
@@ -316,7 +315,11 @@ def _elements(views: Sequence[Iterable[tuple[str, AnyArray]]]) -> Iterator[str]:
     """Give the parts of all views as elements of the page; equal arrays lie in it once."""
     written: set[str] = set()
     for n, parts in enumerate(views):
+        names: set[str] = set()
         for name, array in parts:
+            if name in names:  # values of all times, which each of them has
+                continue
+            names.add(name)
             info = part_info(name, array)
             text = "" if info["digest"] in written else part_text(array)
             written.add(info["digest"])

@@ -1,0 +1,242 @@
+// A store as flowtex/pyramid/layout.py has it, over a web server that may fail; tests/pyramid/
+// test_client_store.py writes store.json.
+
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { beforeEach, mock, test } from "node:test";
+import type { Header, NamedPart } from "../src/protocol.ts";
+import { crc32c, StoreError } from "../src/store.ts";
+import { Stream } from "../src/stream.ts";
+
+interface Fixture {
+  files: Record<string, string>;
+  told: { geometry: object; slices: object };
+  expected: Record<string, { shape: number[]; data: number[] }>;
+}
+
+const fixture: Fixture = JSON.parse(readFileSync(new URL("store.json", import.meta.url), "utf8"));
+const BASE = "http://flow.test/flow.zarr/";
+const TILE = "tile/0/0/0";
+const TRACES = "0/traces/c/0/0/0/0/0/0/0";
+
+/** What the server has, what it was asked for, and how it fails: a status, or to answer at all. */
+let files: Map<string, Uint8Array<ArrayBuffer>>;
+let asked: string[];
+let fault: (path: string) => number | Error | null;
+
+const server: typeof fetch = async (address, options) => {
+  const path = String(address).slice(BASE.length);
+  asked.push(path);
+  await new Promise((resolve) => setImmediate(resolve));
+  options?.signal?.throwIfAborted();
+  const failed = fault(path);
+  if (failed instanceof Error) throw failed;
+  const file = files.get(path);
+  return new Response(failed || !file ? null : file, { status: failed ?? (file ? 200 : 404) });
+};
+
+beforeEach(() => {
+  files = new Map();
+  for (const [path, text] of Object.entries(fixture.files)) {
+    files.set(path, new Uint8Array(Buffer.from(text, "base64")));
+  }
+  asked = [];
+  fault = () => null;
+  globalThis.fetch = server;
+});
+
+function streamOf(scalars: Partial<Header["scalars"]> = {}, store = {}): { header: Header; stream: Stream } {
+  const { geometry, slices } = fixture.told;
+  const times = { steps: 2, times: [0, 1], timeUnit: "s", dates: { start: null, dates: [], step: 0 }, pace: 1 };
+  const header = {
+    geometry,
+    slices: { ...slices, ...times },
+    scalars: { name: null, steps: 2, number: 0, ...scalars },
+    mesh: { tileCells: 64 },
+    store: { url: BASE, format: "form", fingerprint: "print", depth: 2, steps: [0, 1], ...store },
+  } as unknown as Header;
+  return { header, stream: new Stream(header, BASE) };
+}
+
+const signal = new AbortController().signal;
+const nothing = () => false;
+const named = (parts: NamedPart[]) => new Map(parts.map((part) => [part.name, part]));
+
+/** Bits of a part, as the fixture has them. */
+function assertPart(part: NamedPart | undefined, expected: string): void {
+  const { shape, data } = fixture.expected[expected];
+  assert.ok(part, expected);
+  assert.deepEqual(part.shape, shape);
+  const bits = part.data instanceof Float32Array ? new Uint32Array(part.data.buffer) : part.data;
+  assert.deepEqual([...bits], data);
+}
+
+/** Fails with a kind of fault. */
+const failing = (kind: string) => (error: unknown) => error instanceof StoreError && error.fault === kind;
+
+test("check sums are those of the standard", () => {
+  assert.equal(crc32c(new TextEncoder().encode("123456789")), 0xe3069283);
+});
+
+test("a tile is what Python wrote, in one request for each object", async () => {
+  const { stream } = streamOf({ name: "depth", number: 1 });
+  const parts = named(await stream.tile([0, 0, 0], [0, 1], signal, nothing));
+  for (const step of [0, 1]) {
+    assertPart(parts.get(`${TILE}/slices/${step}`), `slices/${step}`);
+    assertPart(parts.get(`${TILE}/extra/${step}`), `extra/${step}`);
+    assertPart(parts.get(`${TILE}/scalars/${step}/1`), `scalars/${step}/1`);
+  }
+  const header = JSON.parse(new TextDecoder().decode(parts.get(`${TILE}/header`)?.data));
+  assert.deepEqual(header.geometry, fixture.told.geometry);
+  assert.deepEqual([header.slices.times, header.slices.pace, header.ranges.speed], [[0, 1], 1, [0, 1]]);
+  assert.ok(parts.has(`${TILE}/position`) && parts.has(`${TILE}/mesh`));
+  assert.equal(new Set(asked).size, asked.length);
+  assert.equal(asked.filter((path) => path.includes("/c/")).length, 5);
+});
+
+test("what is there is not asked for again", async () => {
+  const { stream, header } = streamOf({ name: "speed" });
+  const held = named(await stream.tile([0, 0, 0], [1], signal, nothing));
+  const has = (part: string) => held.has(`${TILE}/${part}`);
+  asked = [];
+  assert.deepEqual(await stream.tile([0, 0, 0], [1], signal, has), []);
+  header.scalars.number = 1;
+  const [values] = await stream.tile([0, 0, 0], [1], signal, has);
+  assertPart(values, "scalars/1/1");
+  assert.deepEqual(asked, ["0/values/c/1/0/0/1/0/0"]);
+});
+
+test("colours that change on the way are asked for as well", async () => {
+  const { stream, header } = streamOf({ name: "speed" });
+  const loading = stream.tile([0, 0, 0], [0], signal, nothing);
+  fault = (path) => {
+    if (path.startsWith("0/values/c/")) header.scalars.number = 1;
+    return null;
+  };
+  const parts = named(await loading);
+  assertPart(parts.get(`${TILE}/scalars/0/1`), "scalars/0/1");
+});
+
+test("values that do not vary are those of the first step, and steps are those of the page", async () => {
+  const { stream } = streamOf({ name: "depth", steps: 1, number: 1 }, { steps: [1] });
+  const parts = named(await stream.tile([0, 0, 0], [0], signal, nothing));
+  assertPart(parts.get(`${TILE}/slices/0`), "slices/1");
+  assertPart(parts.get(`${TILE}/scalars/0/1`), "scalars/0/1");
+});
+
+test("of a tile in which nothing is drawn there is only that", async () => {
+  const { stream } = streamOf({ name: "speed" });
+  const [header, ...rest] = await stream.tile([0, 0, 1], [0], signal, nothing);
+  assert.equal(new TextDecoder().decode(header.data), "null");
+  assert.deepEqual([header.name, rest], ["tile/0/0/1/header", []]);
+});
+
+test("no flipped byte passes", async () => {
+  for (const path of [TRACES, "0/surface/c/0/0/0", "0/values/c/0/0/0/0/0/0"]) {
+    const whole = files.get(path) as Uint8Array<ArrayBuffer>;
+    for (let n = 0; n < whole.length; n += Math.ceil(whole.length / 60)) {
+      const bytes = whole.slice();
+      bytes[n] ^= 1 << n % 8;
+      files.set(path, bytes);
+      const { stream } = streamOf({ name: "speed" });
+      // Some bytes of a shard belong to chunks that are not read.
+      const parts = await stream.tile([0, 0, 0], [0], signal, nothing).catch((error) => {
+        assert.ok(failing("broken")(error), `${path} ${n}: ${error}`);
+      });
+      if (parts) assertPart(named(parts).get(`${TILE}/slices/0`), "slices/0");
+    }
+    files.set(path, whole);
+  }
+});
+
+test("no shorter object passes", async () => {
+  for (const path of [TRACES, "0/surface/c/0/0/0", "0/values/c/0/0/0/0/0/0"]) {
+    const whole = files.get(path) as Uint8Array<ArrayBuffer>;
+    for (const size of [0, 3, 4, whole.length >> 1, whole.length - 1]) {
+      files.set(path, whole.slice(0, size));
+      const { stream } = streamOf({ name: "speed" });
+      await assert.rejects(stream.tile([0, 0, 0], [0], signal, nothing), failing("broken"));
+    }
+    files.set(path, whole);
+  }
+});
+
+test("what is not there or not open is missing, and not tried again", async () => {
+  for (const status of [401, 403, 404, 410]) {
+    fault = (path) => (path === TRACES ? status : null);
+    asked = [];
+    await assert.rejects(streamOf().stream.tile([0, 0, 0], [0], signal, nothing), failing("missing"));
+    assert.equal(asked.filter((path) => path === TRACES).length, 1);
+  }
+});
+
+test("who does not answer is asked again, some times", async () => {
+  mock.timers.enable({ apis: ["setTimeout"] });
+  try {
+    const turn = setInterval(() => mock.timers.tick(500), 0);
+    let count = 0;
+    fault = (path) => (path === TRACES && (count += 1) < 3 ? [503, new TypeError("failed")][count - 1] : null);
+    const parts = named(await streamOf().stream.tile([0, 0, 0], [0], signal, nothing));
+    assertPart(parts.get(`${TILE}/slices/0`), "slices/0");
+    assert.equal(count, 3);
+    fault = (path) => (path === TRACES ? 500 : null);
+    asked = [];
+    await assert.rejects(streamOf().stream.tile([0, 0, 0], [0], signal, nothing), failing("unreachable"));
+    assert.equal(asked.filter((path) => path === TRACES).length, 4);
+    clearInterval(turn);
+  } finally {
+    mock.timers.reset();
+  }
+});
+
+test("what is given up ends at once, without a fault", async () => {
+  const start = performance.now();
+  const controller = new AbortController();
+  fault = () => 503;
+  const { stream } = streamOf();
+  const loading = stream.tile([0, 0, 0], [0], controller.signal, nothing);
+  setTimeout(() => controller.abort(), 20);
+  await assert.rejects(loading, (error: Error) => error.name === "AbortError");
+  assert.ok(performance.now() - start < 250);
+});
+
+test("another store is refused, before anything of it is read", async () => {
+  const { stream } = streamOf({}, { fingerprint: "other" });
+  await assert.rejects(stream.tile([0, 0, 0], [0], signal, nothing), /holds another flow/);
+  assert.deepEqual(asked, ["zarr.json"]);
+});
+
+test("a header that does not fit is refused", async () => {
+  const garbage: unknown[] = [undefined, null, "x", -1, 1e9, [], {}, [-1, 2], true];
+  const { geometry, slices } = fixture.told;
+  const told = new TextDecoder().decode(files.get("0/surface/c/0/0/0")); // packed: replaced as a whole
+  assert.ok(told);
+  for (const [kind, own] of Object.entries({ geometry, slices })) {
+    for (const name of Object.keys(own)) {
+      for (const value of garbage) {
+        const { stream, header } = streamOf();
+        // The page is told the same, so that only what is wrong in itself is found.
+        const wrong = { ...fixture.told, [kind]: { ...own, [name]: value } };
+        const check = () => (stream as unknown as Inner).tileHeader(textPart(JSON.stringify(wrong)));
+        let passed: object | null = null;
+        try {
+          passed = check();
+        } catch {
+          continue;
+        }
+        // What passes is as harmless as what it stands for.
+        assert.equal(typeof value, typeof (own as Record<string, unknown>)[name], `${kind}.${name} = ${value}`);
+        assert.ok(passed && header);
+      }
+    }
+  }
+});
+
+interface Inner {
+  tileHeader(part: NamedPart): object | null;
+}
+
+function textPart(text: string): NamedPart {
+  const data = new TextEncoder().encode(text);
+  return { name: "header", data, shape: [data.length], digest: "" };
+}

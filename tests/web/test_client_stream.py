@@ -1,0 +1,519 @@
+"""A page that reads its tiles from a store behind a plain web server, whole or broken."""
+
+from __future__ import annotations
+
+import base64
+import io
+import json
+import shutil
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from PIL import Image
+from range_server import Answer, RangeServer, range_server
+
+from flowtex import FlowField
+from flowtex.pyramid import build
+from flowtex.web.export import export
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page
+
+pytest.importorskip("zarr")
+
+ROOT_NODES = 20_000
+SIZE = {"width": 300, "height": 200}
+LOOK: dict[str, Any] = {"samples": 9, "cmap": "viridis"}
+NEAR: dict[str, Any] = {"zoom": 5, "focus": (3.2, 1.4), **LOOK}
+PICTURE = (
+    "() => document.querySelector('.flowtex').shadowRoot.querySelector('canvas.picture')"
+    ".toDataURL().split(',')[1]"
+)
+
+
+def flat() -> FlowField:
+    """A stream past an island."""
+    y, x = np.mgrid[0:290, 0:530].astype(float) / 100
+    velocity = np.stack([np.cos(3 * y) + 0.3, np.sin(4 * x)], axis=-1)
+    valid = np.hypot(x - 1.3, y - 1.2) > 0.5
+    scalars = {"depth": x * y + 0.3 * np.sin(30 * x)}
+    return FlowField.from_arrays(np.stack([x, y], -1), velocity, valid=valid, scalars=scalars)
+
+
+def series() -> FlowField:
+    """Four times, of which the last ones are alike, with a scalar that does not vary."""
+    y, x = np.mgrid[0:200, 0:400].astype(float) / 100
+    steps = [np.stack([np.cos(y + t), np.sin(x - t)], axis=-1) for t in (0.0, 0.3, 0.6, 0.9)]
+    scalars = {"heat": np.stack([x + t for t in range(4)]), "depth": x * y}
+    return FlowField.from_arrays(
+        np.stack([x, y], -1), np.stack(steps), times=[0, 0.01, 0.02, 0.03], scalars=scalars
+    )
+
+
+def globe() -> FlowField:
+    """Around both poles."""
+    lon, lat = np.meshgrid(np.radians(np.linspace(0, 360, 361)), np.radians(np.arange(-90, 91.0)))
+    points = np.stack([np.cos(lat) * np.cos(lon), np.cos(lat) * np.sin(lon), np.sin(lat)], axis=-1)
+    return FlowField.from_arrays(
+        points, np.cross([0.3, 0.1, 1.0], points), valid=np.hypot(lon - 2, lat - 0.5) > 0.4
+    )
+
+
+FLOWS = {"flat": flat, "series": series, "globe": globe}
+
+
+@pytest.fixture(scope="module")
+def stores(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a folder with a store of each flow."""
+    folder = tmp_path_factory.mktemp("stores")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("flowtex.tiles.pyramid.ROOT_NODES", ROOT_NODES)
+        for name, make in FLOWS.items():
+            build(make(), folder / f"{name}.zarr", levels="all", progress=False)
+    return folder
+
+
+@pytest.fixture
+def server(stores: Path) -> Iterator[RangeServer]:
+    with range_server(stores) as started:
+        yield started
+
+
+@dataclass
+class Shown:
+    """A page in a browser, and what it complained of."""
+
+    page: Page
+    errors: list[str] = field(default_factory=list)
+
+    def open(self, address: str) -> None:
+        self.page.on("pageerror", lambda error: self.errors.append(str(error)))
+        self.page.on("console", lambda line: self._heard(line.type, line.text))
+        self.page.goto(address)
+
+    def _heard(self, kind: str, text: str) -> None:
+        # Chromium tells of what a server did not give.
+        if kind == "error" and "Failed to load resource" not in text:
+            self.errors.append(text)
+
+    def wait(self, missing: int = 0) -> None:
+        """Wait for a full picture for which so many tiles are missing."""
+        self.page.wait_for_selector(
+            f'[data-tiles="{missing}"][data-sharp="true"]', timeout=60_000, state="attached"
+        )
+
+    def pixels(self) -> NDArray[np.int64]:
+        data = base64.b64decode(self.page.evaluate(PICTURE))
+        with Image.open(io.BytesIO(data)) as image:
+            return np.asarray(image.convert("RGB")).astype(int)
+
+    def told(self) -> str:
+        """Wait for what the view has to say."""
+        self.page.locator(".flowtex .told").wait_for(timeout=60_000)
+        return self.page.locator(".flowtex .told").inner_text()
+
+    def choose(self, label: str, value: str) -> None:
+        """Choose a colour in the panel."""
+        if self.page.locator(".settings").is_hidden():
+            self.page.locator("[data-name=settings]").click()
+        self.page.get_by_label(label).select_option(value)
+        self.page.wait_for_timeout(200)
+
+
+@pytest.fixture
+def shown(webgl_browser: Browser) -> Iterator[Shown]:
+    context = webgl_browser.new_context(viewport=SIZE)  # type: ignore[arg-type]
+    shown = Shown(context.new_page())
+    yield shown
+    context.close()
+    assert shown.errors == []
+
+
+def tiles_of(server: RangeServer, array: str = "traces") -> list[str]:
+    """Tiles that were asked for, each as its level, row and column, in order."""
+    found = []
+    for path in server.paths:
+        words = path.split("/")
+        if words[2:3] == [array] and words[3] == "c":
+            at = words[4:6] if array == "surface" else words[5:7]
+            found.append("/".join([words[1], *at]))
+    return found
+
+
+def linked(server: RangeServer, folder: Path, name: str, **options: Any) -> Path:
+    """Export a page of a store as the server has it."""
+    path = folder / "linked.html"
+    store = f"{server.address}{name}.zarr"
+    export(str(server.folder / f"{name}.zarr"), path, store=store, **options)
+    return path
+
+
+def pair(
+    webgl_browser: Browser, shown: Shown, server: RangeServer, folder: Path, name: str, options: Any
+) -> tuple[Any, Any]:
+    """Return pictures of a page that reads from the store, and of one that holds everything."""
+    shown.open(linked(server, folder, name, **options).as_uri())
+    shown.wait()
+    whole = folder / "whole.html"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("flowtex.web.export.TILE_BYTES", 10**9)
+        export(str(server.folder / f"{name}.zarr"), whole, **options)
+    page = webgl_browser.new_page(viewport=SIZE)  # type: ignore[arg-type]
+    other = Shown(page)
+    other.open(whole.as_uri())
+    other.wait()
+    pixels = other.pixels()
+    page.close()
+    assert other.errors == []
+    return shown.pixels(), pixels
+
+
+VIEWS: list[tuple[str, dict[str, Any]]] = [
+    ("flat", {}),
+    ("flat", {"zoom": 3, "focus": (1.6, 1.4)}),
+    ("flat", {"zoom": 40, "focus": (1.85, 1.2), "scalars": "depth"}),
+    ("flat", {"zoom": 4, "focus": (3.2, 1.4), "scalars": "depth", "clim": (2.0, 3.0)}),
+    ("flat", {"zoom": 6, "focus": (4.2, 1.4), "log_scale": True, "clim": (0.5, 1.6)}),
+    ("series", {"zoom": 6, "focus": (1.2, 0.7), "scalars": "heat"}),
+    ("series", {"zoom": 3, "focus": (3.2, 0.9), "scalars": "depth"}),
+    ("globe", {"zoom": 3, "focus": (0.3, -0.5, 0.8)}),
+    ("globe", {"zoom": 30, "focus": (0.0, 0.0, 1.0), "scalars": False}),
+]
+
+
+@pytest.mark.browser
+@pytest.mark.parametrize(("name", "options"), VIEWS)
+def test_pictures_are_those_of_a_page_that_holds_all(
+    webgl_browser: Browser,
+    shown: Shown,
+    server: RangeServer,
+    tmp_path: Path,
+    name: str,
+    options: dict[str, Any],
+) -> None:
+    streamed, held = pair(webgl_browser, shown, server, tmp_path, name, {**LOOK, **options})
+    # Triangles may be chosen by a share more exactly, which moves a colour by less than is seen.
+    off = np.abs(streamed - held).max(axis=-1)
+    assert (off > 3).mean() < 0.002
+    assert streamed.std() > 10
+    assert tiles_of(server)
+
+
+@pytest.mark.browser
+def test_a_view_asks_for_no_more_than_it_shows(
+    shown: Shown, server: RangeServer, tmp_path: Path
+) -> None:
+    shown.open(
+        linked(server, tmp_path, "flat", **{**NEAR, "zoom": 16, "focus": (0.9, 0.9)}).as_uri()
+    )
+    shown.wait()
+    assert (
+        tiles_of(server) == tiles_of(server, "values") == tiles_of(server, "surface") == ["0/0/0"]
+    )
+    # A tile is three objects, each whole, and a level has three descriptions.
+    assert len(server.asked) == 1 + 3 + 3
+    assert {(method, span) for method, _, span in server.asked} == {("GET", "")}
+    shown.page.mouse.move(250, 100)
+    shown.page.mouse.down()
+    shown.page.mouse.move(20, 100, steps=8)
+    shown.page.mouse.up()
+    for _ in range(8):
+        shown.page.mouse.move(250, 100)
+        shown.page.mouse.down()
+        shown.page.mouse.move(20, 100, steps=4)
+        shown.page.mouse.up()
+    shown.page.wait_for_timeout(300)
+    shown.wait()
+    assert set(tiles_of(server)) == {"0/0/0", "0/0/1"}
+    assert len(server.asked) == 1 + 3 + 3 + 3
+
+
+@pytest.mark.browser
+@pytest.mark.parametrize("name", ["flat", "series"])
+def test_other_colours_are_those_of_a_page_that_has_them(
+    webgl_browser: Browser, shown: Shown, server: RangeServer, tmp_path: Path, name: str
+) -> None:
+    """And ask for values alone."""
+    view = {**NEAR, "focus": (1.9, 0.7)}
+    shown.open(linked(server, tmp_path, name, **view).as_uri())
+    shown.wait()
+    speed, traced = shown.pixels(), tiles_of(server)
+    shown.choose("Colour by", "depth")
+    shown.wait()
+    depth = shown.pixels()
+    assert np.abs(depth - speed).mean() > 5
+    assert tiles_of(server) == traced
+    shown.choose("Colour by", "none")
+    shown.wait()
+    asked = len(server.asked)
+    shown.choose("Colour by", "speed")
+    shown.wait()
+    assert np.abs(shown.pixels() - speed).max() <= 3
+    assert len(server.asked) - asked <= 2 * len(traced)
+    page = webgl_browser.new_page(viewport=SIZE)  # type: ignore[arg-type]
+    other = Shown(page)
+    other.open(linked(server, tmp_path, name, **{**view, "scalars": "depth"}).as_uri())
+    other.wait()
+    off = np.abs(other.pixels() - depth).max(axis=-1)
+    page.close()
+    assert (off > 3).mean() < 0.002
+
+
+@pytest.mark.browser
+def test_time_steps_come_when_they_are_shown(
+    webgl_browser: Browser, shown: Shown, server: RangeServer, tmp_path: Path
+) -> None:
+    shown.open(linked(server, tmp_path, "series", **LOOK).as_uri())
+    shown.wait()
+    slider = ".flowtex input[aria-label=Time]"
+    assert not [path for path in server.paths if path.startswith("series.zarr/2/")]
+    shown.page.locator(slider).fill("0")
+    shown.page.wait_for_timeout(300)
+    shown.page.wait_for_selector(".flowtex .busy", state="hidden", timeout=60_000)
+    shown.wait()
+    first = shown.pixels()
+    root = [path for path in server.paths if path.startswith("series.zarr/2/traces/c/")]
+    assert sorted(path.split("/")[4] for path in root) == ["0", "1"]
+    other = Shown(webgl_browser.new_page(viewport=SIZE))  # type: ignore[arg-type]
+    export(str(server.folder / "series.zarr"), tmp_path / "whole.html", **LOOK)
+    other.open((tmp_path / "whole.html").as_uri())
+    other.page.locator(slider).fill("0")
+    other.page.wait_for_timeout(300)
+    other.wait()
+    assert np.abs(other.pixels() - first).max() <= 3
+    other.page.close()
+
+
+def broken(data: bytes) -> bytes:
+    """Turn bits in the middle."""
+    middle = len(data) // 2
+    return data[:middle] + bytes([data[middle] ^ 64]) + data[middle + 1 :]
+
+
+def wrong_shard(data: bytes) -> bytes:
+    """Return something else entirely, as a server does that has a page for all addresses."""
+    del data
+    return b"<!doctype html><title>Welcome</title>" * 200
+
+
+FAULTS: dict[str, tuple[str, Callable[[bytes], Answer], str]] = {
+    "missing": ("traces", lambda data: 404, "is not in the store"),
+    "private": ("traces", lambda data: 403, "is not in the store"),
+    "flipped": ("traces", broken, "is broken"),
+    "cut": ("traces", lambda data: data[: len(data) // 2], "is broken"),
+    "empty": ("traces", lambda data: b"", "is broken"),
+    "page": ("traces", wrong_shard, "is broken"),
+    "surface": ("surface", broken, "is broken"),
+    "no surface": ("surface", lambda data: 404, "is not in the store"),
+    "values": ("values", lambda data: data[:-9], "is broken"),
+    "described": ("traces/zarr.json", lambda data: b'{"zarr_format": 3}', "is broken"),
+    "undescribed": ("traces/zarr.json", lambda data: 404, "is not in the store"),
+}
+
+
+@pytest.mark.browser
+@pytest.mark.parametrize("name", FAULTS)
+def test_a_broken_tile_leaves_the_coarser_one_and_is_told_once(
+    shown: Shown, server: RangeServer, tmp_path: Path, name: str
+) -> None:
+    array, fault, words = FAULTS[name]
+    place = f"flat.zarr/0/{array}" + ("" if array.endswith("json") else "/c/")
+    bad: list[str] = []
+
+    def answer(path: str) -> Answer:
+        if not path.startswith(place) or (bad and path != bad[0] and array[-4:] != "json"):
+            return None
+        bad.append(path)
+        return fault((server.folder / path).read_bytes())
+
+    page = linked(server, tmp_path, "flat", **NEAR)
+    server.fault = answer
+    shown.open(page.as_uri())
+    assert words in shown.told()
+    shown.wait()
+    coarse = shown.pixels()
+    assert coarse.std() > 10
+    shown.page.locator(".flowtex .told").click()
+    shown.page.mouse.move(150, 100)
+    shown.page.mouse.wheel(0, -30)
+    shown.page.wait_for_timeout(400)
+    shown.wait()
+    assert shown.page.locator(".flowtex .told").is_hidden()
+    assert tiles_of(server)
+
+
+@pytest.mark.browser
+def test_a_coarser_level_stands_in_for_a_tile_that_is_missing(
+    shown: Shown, server: RangeServer, tmp_path: Path
+) -> None:
+    server.fault = lambda path: 404 if path.startswith("flat.zarr/0/traces/c/0/0/1/") else None
+    shown.open(
+        linked(server, tmp_path, "flat", **{**NEAR, "zoom": 16, "focus": (3.8, 1.0)}).as_uri()
+    )
+    shown.told()
+    shown.wait()
+    assert set(tiles_of(server)) == {"0/0/1", "1/0/0"}
+
+
+@pytest.mark.browser
+def test_a_server_that_is_busy_is_asked_again(
+    shown: Shown, server: RangeServer, tmp_path: Path
+) -> None:
+    tried: dict[str, int] = {}
+
+    def answer(path: str) -> Answer:
+        tried[path] = tried.get(path, 0) + 1
+        return (500, 503, None)[min(tried[path], 3) - 1] if "/c/" in path else None
+
+    page = linked(server, tmp_path, "flat", **NEAR)
+    server.fault = answer
+    shown.open(page.as_uri())
+    shown.wait()
+    assert max(tried.values()) == 3
+    assert shown.page.locator(".flowtex .told").is_hidden()
+
+
+@pytest.mark.browser
+def test_a_server_that_is_away_is_told_and_tried_later(
+    shown: Shown, server: RangeServer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    page = linked(server, tmp_path, "flat", **NEAR)
+    server.fault = lambda path: 503
+    shown.open(page.as_uri())
+    assert "the store does not answer" in shown.told()
+    assert shown.page.locator(".flowtex .note").is_hidden()
+    server.fault = lambda path: None
+    shown.page.mouse.move(150, 100)
+    shown.page.mouse.wheel(0, -60)
+    shown.wait()
+    assert tiles_of(server)
+
+
+@pytest.mark.browser
+def test_what_is_not_looked_at_any_more_is_given_up(
+    shown: Shown, server: RangeServer, tmp_path: Path
+) -> None:
+    page = linked(server, tmp_path, "flat", **NEAR)
+
+    def answer(path: str) -> Answer:
+        if path.startswith("flat.zarr/0/traces/c/"):
+            time.sleep(10)
+        return None
+
+    server.fault = answer
+    gone: list[str] = []
+    shown.page.on("requestfailed", lambda request: gone.append(request.url))
+    shown.open(page.as_uri())
+    shown.page.wait_for_selector('[data-sharp="true"]', state="attached")
+    for _ in range(200):
+        if tiles_of(server):
+            break
+        shown.page.wait_for_timeout(50)
+    shown.page.mouse.move(150, 80)
+    for _ in range(4):
+        shown.page.mouse.wheel(0, 800)
+    shown.page.wait_for_timeout(500)
+    shown.wait()
+    assert [url for url in gone if "/traces/c/" in url]
+    assert shown.page.locator(".flowtex .told").is_hidden()
+
+
+@pytest.mark.browser
+def test_another_store_is_refused(
+    shown: Shown, server: RangeServer, stores: Path, tmp_path: Path
+) -> None:
+    page = linked(server, tmp_path, "flat", **NEAR)
+    other = (stores / "globe.zarr" / "zarr.json").read_bytes()
+    server.fault = lambda path: other if path == "flat.zarr/zarr.json" else None
+    shown.open(page.as_uri())
+    assert "holds another flow than this page" in shown.told()
+    shown.wait()
+    assert set(server.paths) == {"flat.zarr/zarr.json"}
+
+
+@pytest.mark.browser
+@pytest.mark.parametrize(
+    ("answer", "words"),
+    [
+        (404, "is not in the store, or the store is not open to everyone"),
+        (b"<!doctype html>", "is broken"),
+        (b'{"zarr_format":3,"node_type":"group","attributes":{}}', "holds another flow"),
+        (b"[]", "is broken"),
+    ],
+)
+def test_what_is_no_store_is_told(
+    shown: Shown, server: RangeServer, tmp_path: Path, answer: Answer, words: str
+) -> None:
+    page = linked(server, tmp_path, "flat", **NEAR)
+    server.fault = lambda path: answer if path == "flat.zarr/zarr.json" else None
+    shown.open(page.as_uri())
+    assert words in shown.told()
+    shown.wait()
+
+
+@pytest.mark.browser
+def test_garbage_in_a_header_leaves_the_view_as_it_is(
+    shown: Shown, server: RangeServer, stores: Path, tmp_path: Path
+) -> None:
+    """Though its check sums fit."""
+    import zarr
+
+    shutil.copytree(stores / "flat.zarr", tmp_path / "flat.zarr")
+    surface: Any = zarr.open_group(tmp_path / "flat.zarr", mode="r+")["0/surface"]
+    rng = np.random.default_rng(7)
+    for row in range(surface.shape[0]):
+        for column in range(surface.shape[1]):
+            text = surface[row, column]
+            start = int(text[:4].view("<u4")[0]) + 4
+            told = json.loads(bytes(text[4:start]))
+            size = told[0]["bytes"]
+            own = json.loads(bytes(text[start : start + size]))
+            kind = ("geometry", "slices")[rng.integers(2)]
+            name = rng.choice(list(own[kind]))
+            own[kind][name] = ["x", -1, None, [1e300], {}, [3, 1]][rng.integers(6)]
+            made = json.dumps(own)[:size].ljust(size).encode()
+            text[start : start + size] = np.frombuffer(made, np.uint8)
+            surface[row, column] = text
+    page = linked(server, tmp_path, "flat", **NEAR)
+    server.folder = tmp_path
+    shown.open(page.as_uri())
+    assert "is broken" in shown.told()
+    shown.wait()
+
+
+@pytest.mark.browser
+def test_a_page_beside_its_store(
+    shown: Shown, server: RangeServer, stores: Path, tmp_path: Path
+) -> None:
+    for name in ("page.html", "other.html"):
+        export(str(stores / "flat.zarr"), stores / name, store="./flat.zarr", **NEAR)
+    shown.open(f"{server.address}page.html")
+    shown.wait()
+    assert tiles_of(server)
+    assert shown.page.locator(".flowtex .told").is_hidden()
+    refused = shown.page.evaluate("fetch('https://example.org/').then(() => false, () => true)")
+    assert refused
+    assert [line for line in shown.errors if "Content Security Policy" in line]
+    shown.errors.clear()
+    shown.page.goto((stores / "other.html").as_uri())
+    assert "open it from a web server" in shown.told()
+
+
+@pytest.mark.browser
+def test_two_views_of_a_store(shown: Shown, server: RangeServer, tmp_path: Path) -> None:
+    shown.page.set_viewport_size({"width": 600, "height": 200})
+    page = linked(server, tmp_path, "flat", **NEAR, beside={"lod": False})
+    shown.open(page.as_uri())
+    complete = (
+        "() => [...document.querySelectorAll('.flowtex')].length === 2 &&"
+        " [...document.querySelectorAll('.flowtex')].every(({ dataset }) =>"
+        " dataset.sharp === 'true' && dataset.tiles === '0')"
+    )
+    shown.page.wait_for_function(complete, timeout=60_000)
+    assert tiles_of(server)

@@ -1,0 +1,216 @@
+"""Pages whose tiles lie in a store: what is in them, and which stores and addresses they take."""
+
+from __future__ import annotations
+
+import html.parser
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from flowtex import FlowField
+from flowtex.cli import main
+from flowtex.field import FieldError
+from flowtex.options import Options
+from flowtex.pyramid import build, open_store
+from flowtex.web.export import export, page_text
+from flowtex.web.linked import StoreLink
+from flowtex.web.view import web_views
+
+pytest.importorskip("zarr")
+
+BUCKET = "https://bucket.s3.eu-central-1.amazonaws.com/flow.zarr"
+
+
+@pytest.fixture(autouse=True)
+def _small_roots(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 20_000)
+
+
+def flow(steps: int = 1) -> FlowField:
+    y, x = np.mgrid[0:130, 0:300].astype(float) / 100
+    velocity = [np.stack([np.cos(3 * y + t), np.sin(4 * x - t)], axis=-1) for t in range(steps)]
+    scalars = {"heat": np.stack([x + t for t in range(steps)]), "depth": x * y}
+    return FlowField.from_arrays(np.stack([x, y], -1), np.stack(velocity), scalars=scalars)
+
+
+class Reader(html.parser.HTMLParser):
+    """Reads the header of a page, its policy, and the names of its parts."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.policy, self.header, self.parts = "", {}, []  # type: ignore[var-annotated]
+        self._in = ""
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        given = dict(attrs)
+        self._in = given.get("id") or ""
+        if given.get("http-equiv") == "Content-Security-Policy":
+            self.policy = given["content"] or ""
+        if tag == "script" and "data-part" in given:
+            self.parts.append(json.loads(given["data-part"] or "")["name"])
+
+    def handle_data(self, data: str) -> None:
+        if self._in == "headers":
+            self.header, self._in = json.loads(data)[0], ""
+
+
+@pytest.fixture(scope="module")
+def store(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    place = tmp_path_factory.mktemp("store") / "flow.zarr"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 20_000)
+        build(flow(3), place, levels="all", progress=False)
+    return place
+
+
+def text_of(store: Path, link: str = BUCKET, **options: Any) -> str:
+    text = page_text(web_views(str(store), Options.split(**options)), store=link)
+    assert str(store) not in text
+    return text
+
+
+@pytest.mark.parametrize(
+    ("address", "source"),
+    [
+        (BUCKET, "https://bucket.s3.eu-central-1.amazonaws.com"),
+        ("http://127.0.0.1:9000/b/flow.zarr/", "http://127.0.0.1:9000"),
+        ("HTTPS://Example.org:8443/flow.zarr", "https://example.org:8443"),
+        ("./flow.zarr", "'self'"),
+        ("store/", "'self'"),
+        ("../data/flow.zarr", "'self'"),
+    ],
+)
+def test_the_policy_names_the_server_of_the_store(address: str, source: str) -> None:
+    assert StoreLink.of(address) == StoreLink(address, source)
+
+
+@pytest.mark.parametrize(
+    "address",
+    [
+        "s3://bucket/flow.zarr",
+        "gs://bucket/flow.zarr",
+        "file:///data/flow.zarr",
+        "/data/flow.zarr",
+        "~/flow.zarr",
+        r"C:\data\flow.zarr",
+        r"\\host\flow.zarr",
+        "//example.org/flow.zarr",
+        "localhost:9000/flow.zarr",
+        "javascript:alert(1)",
+        "https://exa'mple.org;script-src/flow.zarr",
+        "https:///flow.zarr",
+        "https://example.org:port/flow.zarr",
+        "",
+    ],
+)
+def test_what_no_browser_reads_is_refused(address: str) -> None:
+    with pytest.raises(FieldError, match="expected the address at which a browser finds the store"):
+        StoreLink.of(address)
+
+
+@pytest.mark.parametrize(
+    "address",
+    [
+        "https://user:geheim@example.org/flow.zarr",
+        "https://geheim@example.org/flow.zarr",
+        BUCKET + "?X-Amz-Credential=geheim&X-Amz-Signature=geheim",
+        BUCKET + "?token=geheim",
+        "./flow.zarr?AccessKey=geheim",
+        BUCKET + "#geheim",
+    ],
+)
+def test_what_is_secret_never_enters_a_page(address: str, store: Path, tmp_path: Path) -> None:
+    with pytest.raises(FieldError, match="everybody could read in the page") as told:
+        export(str(store), tmp_path / "page.html", store=address)
+    assert "geheim" not in str(told.value)
+    assert not (tmp_path / "page.html").exists()
+
+
+def test_a_page_has_the_root_and_one_moment(store: Path) -> None:
+    read = Reader(text_of(store, scalars="depth"))
+    assert f"connect-src {BUCKET.rsplit('/', 1)[0]};" in read.policy
+    own = open_store(store)
+    assert read.header["store"] == {
+        "url": BUCKET,
+        "format": read.header["store"]["format"],
+        "fingerprint": read.header["store"]["fingerprint"],
+        "depth": 1,
+        "steps": [0, 1, 2],
+    }
+    assert own.name == read.header["name"]
+    assert (read.header["pyramid"]["finest"], read.header["slices"]["steps"]) == (0, 3)
+    kinds = [name for name in read.parts if "/" in name]
+    assert sorted(kinds) == ["extra/1", "extra/2", "scalars/0/2", "slices/1", "slices/2"]
+    assert not [name for name in read.parts if name.startswith("tile")]
+    some = Reader(text_of(store, scalars="heat"))
+    assert sorted(name for name in some.parts if "sca" in name) == ["scalars/1/1", "scalars/2/1"]
+
+
+def test_a_page_of_some_steps_and_of_two_views(store: Path) -> None:
+    views = web_views(str(store), Options.split(beside={"lod": False}), steps=2)
+    text = page_text(views, store="./flow.zarr")
+    read = Reader(text)
+    assert "connect-src 'self';" in read.policy
+    assert read.header["store"]["steps"] == [0, 2]
+    assert read.parts.count("slices/1") == 2
+    assert "connect-src" not in page_text(web_views(str(store), Options.split(samples=5)))
+
+
+def test_the_size_is_told_beforehand(store: Path, tmp_path: Path) -> None:
+    told: list[Any] = []
+    made = export(str(store), tmp_path / "a.html", store=BUCKET, announce=lambda *n: told.append(n))
+    assert told == [(made.estimated, 3)]
+    assert made.estimated == pytest.approx(made.nbytes, rel=0.35)
+
+
+def test_levels_that_the_store_has_not_are_not_asked_for(tmp_path: Path) -> None:
+    build(flow(), tmp_path / "a.zarr", progress=False)
+    assert Reader(text_of(tmp_path / "a.zarr")).header["pyramid"] is None
+    views = web_views(str(tmp_path / "a.zarr"), Options.split())
+    whole = Reader(page_text(views, store="store/", finest=0))
+    assert whole.header["pyramid"]["finest"] == 0
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"noise": "texture", "resolution": 64}, "noise is 'texture'"),
+        ({"parameter": "time"}, "expected 'time' along"),
+        ({"lines": "pathlines"}, "along streamlines; expected .* along pathlines"),
+    ],
+)
+def test_what_the_store_has_not_is_refused(
+    store: Path, options: dict[str, Any], words: str
+) -> None:
+    with pytest.raises(FieldError, match=words):
+        text_of(store, **options)
+
+
+def test_a_flow_that_is_in_no_store_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(FieldError, match="not read from one; build it with"):
+        export(flow(), tmp_path / "page.html", store=BUCKET)
+
+
+def test_a_store_that_is_not_whole_is_told(tmp_path: Path) -> None:
+    import zarr
+
+    build(flow(), tmp_path / "a.zarr", progress=False)
+    group = zarr.open_group(tmp_path / "a.zarr", mode="r+")
+    group.attrs["flowtex"] = {**group.attrs["flowtex"], "complete": False}  # type: ignore[dict-item]
+    with pytest.warns(UserWarning, match="not been built to its end"):
+        text_of(tmp_path / "a.zarr")
+
+
+def test_the_shell_exports_a_page_of_a_store(
+    store: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    page = tmp_path / "page.html"
+    assert main(["export", str(store), "-o", str(page), "--store", "./flow.zarr"]) == 0
+    assert Reader(page.read_text("utf-8")).header["store"]["url"] == "./flow.zarr"
+    capsys.readouterr()
+    assert main(["export", str(store), "-o", str(page), "--store", "s3://bucket/flow.zarr"]) == 2
+    assert "expected the address" in capsys.readouterr().err
