@@ -12,8 +12,9 @@ from typing import Any
 
 import numpy as np
 
-from flowtex._util.array_types import Bools, Floats, Floats32, Indices
+from flowtex._util.array_types import AnyArray, Bools, Floats, Floats32, Indices
 from flowtex.field import FlowField
+from flowtex.field.field import WHOLE_SHAPE
 from flowtex.pyramid.checks import nodes_hash
 from flowtex.pyramid.layout import empty_field
 from flowtex.pyramid.levels import Levels, StoredTile
@@ -62,6 +63,7 @@ def open_store(store: str | Path) -> FlowField:
         return StoredPyramid(levels, field, parameter, lines)
 
     have_pyramid(root, pyramid)
+    root.__dict__[WHOLE_SHAPE] = tuple(levels.about["nodes"])
     return root
 
 
@@ -184,17 +186,15 @@ class StoredPyramid(Pyramid):
         rows, columns = (some + np.array([[-1], [0], [1]]) for some in lines)
         at = np.ix_(*lines)
         coarse = self._stored.nodes(key.level + 1, *above, velocities=False)
-        same = [(field.points[drawn][at], coarse.points), (valid[at], coarse.valid)]
+        pairs = [(field.points[drawn][at], coarse.points), (valid[at], coarse.valid)]
         for name, values in coarse.scalars.items():
             own = field.scalars[name]
-            same += [(own[t][drawn][at], values[t]) for t in steps if t < len(values)]
-        fits = all(np.array_equal(a, b, equal_nan=a.dtype != bool) for a, b in same)
+            pairs += [(own[t][drawn][at], values[t]) for t in steps if t < len(values)]
         for step in steps:
             told = self._stored.velocity(key.level + 1, step, *above)[coarse.valid]
             mean = averaged(np.asarray(field.velocity[step])[drawn], valid, rows, columns)
-            mean = mean[coarse.valid][:, : told.shape[-1]]
-            fits &= bool(np.allclose(mean, told, 1e-6, 1e-9 * np.abs(told).max(initial=0.0)))
-        if not fits:
+            pairs.append((mean[coarse.valid][:, : told.shape[-1]], told))
+        if not all(_alike(own, told) for own, told in pairs):
             msg = (
                 f"the nodes of tile {tuple(key)} of {self._stored.place} are not those of the "
                 "level above it; build the store anew"
@@ -247,3 +247,9 @@ def _check_nodes(textures: TextureSet, tile: StoredTile, step: int) -> None:
     if nodes_hash(textures, step) != tile.about["nodes"]:
         msg = f"tile {tile.about['tile']} was made of other nodes than there are; build it anew"
         raise PyramidError(msg)
+
+
+def _alike(own: AnyArray, told: AnyArray) -> bool:
+    """Whether values are the same but for rounding."""
+    size = np.abs(np.nan_to_num(told)).max(initial=0.0)
+    return bool(np.allclose(own, told, 1e-5, 1e-6 * size, equal_nan=True))
