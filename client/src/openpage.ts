@@ -1,6 +1,7 @@
 // What an exported page does: flowtex/web/export.py writes the page around it.
 
 import {
+  isOfStep,
   partOfText,
   stepOf,
   tilePart,
@@ -50,8 +51,10 @@ async function sceneOf(
   if (openStore) return { header, parts: unpacked, source: openStore(header) };
   const loadTile: SceneData["loadTile"] = (key, steps) => {
     const needed = (tiles.get(nameOf(key)) ?? []).filter(([{ name }]) => {
-      const step = stepOf(tilePart(name)?.[1] ?? "");
-      return Number.isNaN(step) || steps.includes(step);
+      const part = tilePart(name)?.[1] ?? "";
+      const step = stepOf(part);
+      const isOfAll = part.startsWith("scalars/") && !isOfStep(part, step, header);
+      return Number.isNaN(step) || steps.includes(step) || isOfAll;
     });
     return Promise.all(
       needed.map(async ([info, text]) => {

@@ -186,7 +186,8 @@ export class Objects implements zarr.AsyncReadable {
 /** What kind of fault an error is. */
 export function storeError(error: unknown): StoreError {
   if (error instanceof StoreError) return error;
-  const fault = error instanceof zarr.NotFoundError ? "missing" : "broken";
+  // An array where there is something else is not missing.
+  const fault = error instanceof zarr.NotFoundError && !error.found ? "missing" : "broken";
   return new StoreError(fault, error instanceof Error ? error.message : String(error));
 }
 

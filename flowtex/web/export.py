@@ -315,7 +315,11 @@ def _elements(views: Sequence[Iterable[tuple[str, AnyArray]]]) -> Iterator[str]:
     """Give the parts of all views as elements of the page; equal arrays lie in it once."""
     written: set[str] = set()
     for n, parts in enumerate(views):
+        names: set[str] = set()
         for name, array in parts:
+            if name in names:  # values of all times, which each of them has
+                continue
+            names.add(name)
             info = part_info(name, array)
             text = "" if info["digest"] in written else part_text(array)
             written.add(info["digest"])

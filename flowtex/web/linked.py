@@ -103,9 +103,7 @@ def store_header(view: WebView, scene: ClientData, link: StoreLink) -> Header:
 
 def first_parts(scene: ClientData, time: float | None) -> Parts:
     """Return the arrays with which a page begins: the surface, and one moment."""
-    values, parts = scene.colours.values, scene.surface()
-    if values is not None and len(values) == 1:
-        parts |= scene.values(0, shown=True)
+    parts = scene.surface()
     for step in scene.moment(float(scene.times[-1] if time is None else time)):
         parts |= scene.values(step, shown=True)
         whole = scene.step(step)

@@ -1261,16 +1261,16 @@ tile?tiles.set(tile,[...tiles.get(tile)??[],packed]):parts.push(packed),element.
 let{parts,tiles}=packedOf(view);for(let[{digest},text]of[...tiles.values()].flat())text&&texts.set(digest,text);let unpacked=[];
 for(let[info,text]of parts){let part=known.get(info.digest)??await partOfText(info,text);known.set(info.digest,part),unpacked.
 push({...part,name:info.name})}return openStore?{header,parts:unpacked,source:openStore(header)}:{header,parts:unpacked,
-loadTile:(key,steps)=>{let needed=(tiles.get(nameOf(key))??[]).filter(([{name}])=>{let step=stepOf(tilePart(name)?.[1]??
-"");return Number.isNaN(step)||steps.includes(step)});return Promise.all(needed.map(async([info,text])=>{let part=known.
-get(info.digest);return part?{...part,name:info.name}:partOfText(info,text||(texts.get(info.digest)??""))}))}}}async function openPage(openStore){
-let place=document.getElementById("flowtex"),status=document.getElementById("status");try{let headers=JSON.parse(document.
-getElementById("headers")?.textContent??""),known=new Map,texts=new Map,scenes=[];for(let[n,header]of headers.entries())
-scenes.push(await sceneOf({...headers[0],...header},String(n),known,texts,openStore));let look=()=>{status.hidden=!place.
-querySelector('[data-failed="true"]'),status.textContent="This browser cannot draw the flow, for want of WebGL2; here is\
- a picture of it.",!place.querySelector('[data-sharp="false"]')&&(watch.disconnect(),document.getElementById("preview")?.
-remove())},watch=new MutationObserver(look),attributeFilter=["data-sharp","data-failed"];watch.observe(place,{subtree:!0,
-childList:!0,attributeFilter});let{root}=mountPage(place,scenes);document.addEventListener("keydown",event=>{event.target===
-document.body&&!root.dispatchEvent(new KeyboardEvent("keydown",event))&&event.preventDefault()})}catch(error){status.hidden=
-!1;let reason=error instanceof Error?error.message:String(error);throw status.textContent=`The flow cannot be drawn here\
-: ${reason}`,error}}openPage();
+loadTile:(key,steps)=>{let needed=(tiles.get(nameOf(key))??[]).filter(([{name}])=>{let part=tilePart(name)?.[1]??"",step=stepOf(
+part),isOfAll=part.startsWith("scalars/")&&!isOfStep(part,step,header);return Number.isNaN(step)||steps.includes(step)||
+isOfAll});return Promise.all(needed.map(async([info,text])=>{let part=known.get(info.digest);return part?{...part,name:info.
+name}:partOfText(info,text||(texts.get(info.digest)??""))}))}}}async function openPage(openStore){let place=document.getElementById(
+"flowtex"),status=document.getElementById("status");try{let headers=JSON.parse(document.getElementById("headers")?.textContent??
+""),known=new Map,texts=new Map,scenes=[];for(let[n,header]of headers.entries())scenes.push(await sceneOf({...headers[0],
+...header},String(n),known,texts,openStore));let look=()=>{status.hidden=!place.querySelector('[data-failed="true"]'),status.
+textContent="This browser cannot draw the flow, for want of WebGL2; here is a picture of it.",!place.querySelector('[dat\
+a-sharp="false"]')&&(watch.disconnect(),document.getElementById("preview")?.remove())},watch=new MutationObserver(look),
+attributeFilter=["data-sharp","data-failed"];watch.observe(place,{subtree:!0,childList:!0,attributeFilter});let{root}=mountPage(
+place,scenes);document.addEventListener("keydown",event=>{event.target===document.body&&!root.dispatchEvent(new KeyboardEvent(
+"keydown",event))&&event.preventDefault()})}catch(error){status.hidden=!1;let reason=error instanceof Error?error.message:
+String(error);throw status.textContent=`The flow cannot be drawn here: ${reason}`,error}}openPage();

@@ -1289,19 +1289,19 @@ tile?tiles.set(tile,[...tiles.get(tile)??[],packed]):parts.push(packed),element.
 let{parts,tiles}=packedOf(view);for(let[{digest},text]of[...tiles.values()].flat())text&&texts.set(digest,text);let unpacked=[];
 for(let[info,text]of parts){let part=known.get(info.digest)??await partOfText(info,text);known.set(info.digest,part),unpacked.
 push({...part,name:info.name})}return openStore?{header,parts:unpacked,source:openStore(header)}:{header,parts:unpacked,
-loadTile:(key,steps)=>{let needed=(tiles.get(nameOf(key))??[]).filter(([{name}])=>{let step=stepOf(tilePart(name)?.[1]??
-"");return Number.isNaN(step)||steps.includes(step)});return Promise.all(needed.map(async([info,text])=>{let part=known.
-get(info.digest);return part?{...part,name:info.name}:partOfText(info,text||(texts.get(info.digest)??""))}))}}}async function openPage(openStore){
-let place=document.getElementById("flowtex"),status=document.getElementById("status");try{let headers=JSON.parse(document.
-getElementById("headers")?.textContent??""),known=new Map,texts=new Map,scenes=[];for(let[n,header]of headers.entries())
-scenes.push(await sceneOf({...headers[0],...header},String(n),known,texts,openStore));let look=()=>{status.hidden=!place.
-querySelector('[data-failed="true"]'),status.textContent="This browser cannot draw the flow, for want of WebGL2; here is\
- a picture of it.",!place.querySelector('[data-sharp="false"]')&&(watch.disconnect(),document.getElementById("preview")?.
-remove())},watch=new MutationObserver(look),attributeFilter=["data-sharp","data-failed"];watch.observe(place,{subtree:!0,
-childList:!0,attributeFilter});let{root:root2}=mountPage(place,scenes);document.addEventListener("keydown",event=>{event.
-target===document.body&&!root2.dispatchEvent(new KeyboardEvent("keydown",event))&&event.preventDefault()})}catch(error){
-status.hidden=!1;let reason=error instanceof Error?error.message:String(error);throw status.textContent=`The flow cannot\
- be drawn here: ${reason}`,error}}function mergeInit(storeOverrides,requestOverrides){return{...storeOverrides,...requestOverrides,headers:{...storeOverrides.
+loadTile:(key,steps)=>{let needed=(tiles.get(nameOf(key))??[]).filter(([{name}])=>{let part=tilePart(name)?.[1]??"",step=stepOf(
+part),isOfAll=part.startsWith("scalars/")&&!isOfStep(part,step,header);return Number.isNaN(step)||steps.includes(step)||
+isOfAll});return Promise.all(needed.map(async([info,text])=>{let part=known.get(info.digest);return part?{...part,name:info.
+name}:partOfText(info,text||(texts.get(info.digest)??""))}))}}}async function openPage(openStore){let place=document.getElementById(
+"flowtex"),status=document.getElementById("status");try{let headers=JSON.parse(document.getElementById("headers")?.textContent??
+""),known=new Map,texts=new Map,scenes=[];for(let[n,header]of headers.entries())scenes.push(await sceneOf({...headers[0],
+...header},String(n),known,texts,openStore));let look=()=>{status.hidden=!place.querySelector('[data-failed="true"]'),status.
+textContent="This browser cannot draw the flow, for want of WebGL2; here is a picture of it.",!place.querySelector('[dat\
+a-sharp="false"]')&&(watch.disconnect(),document.getElementById("preview")?.remove())},watch=new MutationObserver(look),
+attributeFilter=["data-sharp","data-failed"];watch.observe(place,{subtree:!0,childList:!0,attributeFilter});let{root:root2}=mountPage(
+place,scenes);document.addEventListener("keydown",event=>{event.target===document.body&&!root2.dispatchEvent(new KeyboardEvent(
+"keydown",event))&&event.preventDefault()})}catch(error){status.hidden=!1;let reason=error instanceof Error?error.message:
+String(error);throw status.textContent=`The flow cannot be drawn here: ${reason}`,error}}function mergeInit(storeOverrides,requestOverrides){return{...storeOverrides,...requestOverrides,headers:{...storeOverrides.
 headers,...requestOverrides.headers}}}function resolve(root2,path){let base=typeof root2=="string"?new URL(root2):root2;base.pathname.endsWith("/")||(base.pathname+=
 "/");let resolved=new URL(path.slice(1),base);return resolved.search=base.search,resolved}async function handleResponse(response){
 if(response.status!==404){if(response.status===200||response.status===206)return new Uint8Array(await response.arrayBuffer());
@@ -1647,11 +1647,11 @@ subarray(range.offset,range.offset+range.length)};async object(key,signal){let b
 if(!bytes)throw new StoreError("missing",`${key} is not there`);return bytes}description(key){let known=this.described.get(
 key);if(known)return known;let bytes=this.files.get(key).then(found=>found&&readable(found));return this.described.set(key,
 bytes),bytes.catch(()=>this.described.delete(key)),bytes}};function storeError(error){if(error instanceof StoreError)return error;
-let fault=error instanceof NotFoundError?"missing":"broken";return new StoreError(fault,error instanceof Error?error.message:
-String(error))}var Store=class{files;described=new Map;constructor(url){this.files=new fetch_default(url,{fetch:answer})}async attributes(){
-let objects=new Objects(this.files,this.described);return(await open.v3(root(objects),{kind:"group"})).attrs}async array(path){
-let objects=new Objects(this.files,this.described),array=await open.v3(root(objects).resolve(path),{kind:"array"});if(!array.
-is("number"))throw new StoreError("broken",`${path} has no numbers`);return array}};var MOST_LAYERS=64,MOST_LAGS=32,MOST_NODES=4096,KINDS={position:[Float32Array,3],normal:[Int16Array,3],cells:[Uint8Array,
+let fault=error instanceof NotFoundError&&!error.found?"missing":"broken";return new StoreError(fault,error instanceof Error?
+error.message:String(error))}var Store=class{files;described=new Map;constructor(url){this.files=new fetch_default(url,{
+fetch:answer})}async attributes(){let objects=new Objects(this.files,this.described);return(await open.v3(root(objects),
+{kind:"group"})).attrs}async array(path){let objects=new Objects(this.files,this.described),array=await open.v3(root(objects).
+resolve(path),{kind:"array"});if(!array.is("number"))throw new StoreError("broken",`${path} has no numbers`);return array}};var MOST_LAYERS=64,MOST_LAGS=32,MOST_NODES=4096,KINDS={position:[Float32Array,3],normal:[Int16Array,3],cells:[Uint8Array,
 1]},TOLD=0,CHANNELS=4,COARSE="A part of the surface is shown coarse:",ABSENT_STEP="A time step cannot be shown:",NO_STORE="\
 The surface is shown coarse:",REASONS={missing:"it is not in the store, or the store is not open to everyone.",broken:"w\
 hat the store has of it is broken.",unreachable:"the store does not answer. It is away, the network is, or pages from el\
@@ -1691,10 +1691,10 @@ slices(place,step,await traces[n]));return[parts2,...await Promise.all([...slice
 let{header}=this,key=[this.told.depth,0,0];return this.loaded(ABSENT_STEP,signal,async whole2=>{let place={key,header,signal:whole2},
 names=lacking(),parts=[];names.some(name=>/^(slices|extra)\//.test(name))&&parts.push(...await this.slices(place,step,await this.
 traces(key,step,whole2)));let has=part=>!lacking().includes(part);return[...parts,...await this.values(place,[step],has)]})}async loaded(what,signal,load){
-let controller=new AbortController,stop=()=>controller.abort(signal.reason);signal.addEventListener("abort",stop,{once:!0});
-try{return await this.open(),signal.throwIfAborted(),await load(controller.signal)}catch(error){signal.throwIfAborted();
-let{fault,message}=storeError(error);throw fault==="other"?error:new StoreError(fault,`${what} ${REASONS[fault]}`,message)}finally{
-controller.abort(),signal.removeEventListener("abort",stop)}}async surface([level,row,column],signal){let array=await this.
+let controller=new AbortController,stop=()=>{},stopped=new Promise((_,reject)=>{stop=()=>reject(signal.reason),signal.addEventListener(
+"abort",stop,{once:!0})});try{return await Promise.race([this.open().then(()=>load(controller.signal)),stopped])}catch(error){
+signal.throwIfAborted();let{fault,message}=storeError(error);throw fault==="other"?error:new StoreError(fault,`${what} ${REASONS[fault]}`,
+message)}finally{controller.abort(),signal.removeEventListener("abort",stop)}}async surface([level,row,column],signal){let array=await this.
 store.array(`${level}/surface`),{data}=await chunkOf(array,[row,column,0],[1],signal),parts=new Map;for(let part of partsOfFile(
 new Uint8Array(data).buffer)){let[tile,name]=tilePart(part.name)??["",""];tile===nameOf([level,row,column])&&parts.set(name,
 {...part,name})}let header=this.tileHeader(parts.get("header"));parts.delete("header"),header&&checkSurface(parts,header,

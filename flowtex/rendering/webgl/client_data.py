@@ -281,12 +281,16 @@ class ClientData:
         return parts
 
     def values(self, step: int, *, shown: bool = False) -> Parts:
-        """Return the values of one destination time, or only those that are shown."""
+        """Return the values of one destination time, or only those that are shown.
+
+        Those that do not vary are of all times, and called those of the first.
+        """
         parts: Parts = {}
         for number, values in self._values.items():
-            if step < len(values) and (not shown or number == self.colours.number):
-                name = f"scalars/{step}/{number}" if number else f"scalars/{step}"
-                parts[name] = single(values[step])
+            if not shown or number == self.colours.number:
+                at = step if len(values) > 1 else 0
+                name = f"scalars/{at}/{number}" if number else f"scalars/{at}"
+                parts[name] = single(values[at])
         return parts
 
     def tile(self, textures: TextureSet, values: Callable[[str], Floats]) -> ClientData:
