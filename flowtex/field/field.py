@@ -42,7 +42,10 @@ from flowtex.field.validation import (
     with_gaps,
 )
 
-__all__ = ["FlowField"]
+__all__ = ["WHOLE_SHAPE", "FlowField"]
+
+#: Where a field that is the coarsest level of a larger one keeps how many nodes (J, I) that has.
+WHOLE_SHAPE = "_whole_shape"
 
 #: Share of the flow normal to the surface from which on the speed in it has a name of its own. The
 #: cells of a curved mesh alone give a per cent or two; at five the speeds differ by a thousandth.
@@ -337,7 +340,8 @@ class FlowField(FieldConstructors):
         if self.triangles is not None:
             count = len(self.triangles)
             return "1 triangle" if count == 1 else f"{count:,} triangles"
-        return f"{self.shape[1]} × {self.shape[0]} nodes"
+        rows, columns = self.__dict__.get(WHOLE_SHAPE, self.shape)
+        return f"{columns} × {rows} nodes"
 
     @property
     def nbytes(self) -> int:

@@ -12,11 +12,14 @@ from collections.abc import Callable, Mapping
 from itertools import pairwise
 from typing import Any
 
+import numpy as np
+
 from flowtex._util.cache import digest
 from flowtex.pyramid.places import FORMAT, PyramidError
+from flowtex.textures import TextureSet
 from flowtex.tiles import TileKey
 
-__all__ = ["check_about", "check_header", "identity_of", "sealed"]
+__all__ = ["check_about", "check_header", "identity_of", "nodes_hash", "sealed"]
 
 #: Nodes along an axis, steps, levels, characters of a text, and scalars, at most.
 MOST_NODES, MOST_STEPS, MOST_LEVELS, MOST_LETTERS, MOST_SCALARS = 10**7, 10**6, 40, 10_000, 1000
@@ -123,6 +126,7 @@ _TILE: dict[str, Check] = {
     "size": _list(_whole(1, MOST_TEXELS), 2),
     "lags": _rising(_list(_number, 1, MOST_LAYERS)),
     "sides": _either(1, 2),
+    "nodes": _text,
     **dict.fromkeys(("unit", "pace", "cell", "critical_cell"), _number),
 }
 
@@ -155,6 +159,14 @@ def identity_of(about: Mapping[str, Any], key: TileKey, step: int) -> dict[str, 
     """Return what a tile tells of where it belongs, so that no other is taken for it."""
     of = " ".join(about[name] for name in ("fingerprint", "parameter", "lines"))
     return {"tile": list(key), "step": step, "of": of}
+
+
+def nodes_hash(textures: TextureSet, step: int) -> str:
+    """Return a hash of the nodes of a tile, so that no others are drawn with its traces."""
+    field, drawn = textures.geometry.field, textures.grid.drawn
+    values = [steps[step] for _, steps in sorted(field.scalars.items()) if step < len(steps)]
+    nodal = (field.points, field.valid, field.velocity[step], *values)
+    return digest(*(np.asarray(some)[drawn] for some in nodal)).hex()
 
 
 def check_header(header: Any, identity: Mapping[str, Any]) -> dict[str, Any]:

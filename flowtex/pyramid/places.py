@@ -38,7 +38,7 @@ _WEB, _AZURE = ("http", "https"), ("abfs", "abfss", "adl", "az", "azure")
 _SCHEMES = ("s3", "s3a", "gs", *_AZURE, *_WEB)
 #: Seconds after which a server that says nothing is given up, and a connection that is not made;
 #: and how often it is asked again.
-SILENCE_S, CONNECT_S, MOST_REPEATS = 10.0, 5.0, 2
+SILENCE_S, CONNECT_S, MOST_REPEATS, FIRST_PAUSE_S = 10.0, 5.0, 2, 0.2
 #: Seconds that one object may take on its way.
 LONGEST_S = 300.0
 
@@ -71,8 +71,8 @@ def place_text(place: str | Path) -> str:
     try:
         parts = urlsplit(url)
         user, _, host = parts.netloc.rpartition("@")
-    except ValueError as error:
-        msg = f"a store's address cannot be read ({error}); expected one such as s3://bucket/a.zarr"
+    except ValueError:
+        msg = "the address of a store is no URL; expected one such as s3://bucket/flow.zarr"
         raise PyramidError(msg) from None
     scheme = parts.scheme.lower()
     if scheme not in _SCHEMES:
@@ -113,7 +113,7 @@ def objects_at(place: str | Path) -> Any:
         "retry_config": {
             "max_retries": MOST_REPEATS,
             "retry_timeout": timedelta(seconds=LONGEST_S),
-            "backoff": {"init_backoff": timedelta(seconds=0.2)},
+            "backoff": {"init_backoff": timedelta(seconds=FIRST_PAUSE_S)},
         },
     }
     try:

@@ -233,11 +233,17 @@ class ServedStore:
         """Make a tile at a destination time, in a thread."""
         with stoppable(lambda: not job.waiting):
             # All times have the halo that does for the first one.
-            tile = self._tiles.get(key, lambda: _Traced(*trace_tile(self._pyramid, key, (step,))))
+            tile = self._tiles.get(key, lambda: self._trace(key, step))
             write_tile(self._group[str(key.level)], self._pyramid, TileTask(key, (step,)), *tile)
             if tile.textures is not None:
                 tile.textures.forget()
         self._note(key, step)
+
+    def _trace(self, key: TileKey, step: int) -> _Traced:
+        tile = _Traced(*trace_tile(self._pyramid, key, (step,)))
+        if tile.textures is not None and key.level < self._pyramid.depth:
+            self._pyramid.check_nodes(key, tile.textures, (step,))
+        return tile
 
     def _note(self, key: TileKey, step: int) -> None:
         """Note what was made, and remove what was used longest ago where all is too much."""

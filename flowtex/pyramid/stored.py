@@ -12,14 +12,16 @@ from typing import Any
 
 import numpy as np
 
-from flowtex._util.array_types import Bools, Floats, Floats32, Indices
+from flowtex._util.array_types import AnyArray, Bools, Floats, Floats32, Indices
 from flowtex.field import FlowField
+from flowtex.field.field import WHOLE_SHAPE
+from flowtex.pyramid.checks import nodes_hash
 from flowtex.pyramid.layout import empty_field
 from flowtex.pyramid.levels import Levels, StoredTile
 from flowtex.pyramid.places import PyramidError
 from flowtex.textures import TextureSet
 from flowtex.tiles import Pyramid, TileKey, have_pyramid
-from flowtex.tiles.pyramid import Nodes
+from flowtex.tiles.pyramid import Nodes, averaged
 from flowtex.trace import SliceStore
 
 __all__ = ["StoredPyramid", "open_store", "root_of"]
@@ -61,6 +63,7 @@ def open_store(store: str | Path) -> FlowField:
         return StoredPyramid(levels, field, parameter, lines)
 
     have_pyramid(root, pyramid)
+    root.__dict__[WHOLE_SHAPE] = tuple(levels.about["nodes"])
     return root
 
 
@@ -131,7 +134,10 @@ class StoredPyramid(Pyramid):
     def tile(self, key: TileKey, steps: Sequence[int]) -> TextureSet | None:
         """Return the textures of a tile; errors are those of :meth:`Levels.tile`."""
         if not self.made(key):
-            return super().tile(key, steps)
+            traced = super().tile(key, steps)
+            if traced is not None:
+                self.check_nodes(key, traced, steps)
+            return traced
         read = {step: self._stored.tile(key, step) for step in steps}
         about = read[steps[0]].about
         if about["empty"]:
@@ -140,6 +146,8 @@ class StoredPyramid(Pyramid):
         if textures is None or not _fits(textures, about):
             msg = f"tile {tuple(key)} of {self._stored.place} does not fit its level; build it anew"
             raise PyramidError(msg)
+        for step, tile in read.items():
+            _check_nodes(textures, tile, step)
         return self._read(textures, key, read)
 
     def root_textures(self, store: SliceStore) -> TextureSet:
@@ -149,12 +157,46 @@ class StoredPyramid(Pyramid):
             return textures
         try:
             tile = self._stored.tile(key, 0)
+            if _fits(textures, tile.about):
+                _check_nodes(textures, tile, 0)
         except PyramidError as error:
             warnings.warn(f"the whole surface is traced anew, for {error}", stacklevel=2)
             return textures
         if not _fits(textures, tile.about):
             return textures
         return self._read(textures, key, {0: tile})
+
+    def check_nodes(self, key: TileKey, textures: TextureSet, steps: Sequence[int]) -> None:
+        """Raise a PyramidError where the nodes of a tile are not those of the level above it.
+
+        That has every other line of them, and means of their velocities.
+        """
+        field, drawn = textures.geometry.field, textures.grid.drawn
+        valid = field.valid[drawn]
+        first = [at * self.about["tile_cells"] for at in key[1:]]
+        above = [
+            np.arange(a // 2 + 1, (a + n) // 2) for a, n in zip(first, valid.shape, strict=True)
+        ]
+        if not all(map(len, above)):
+            return
+        lines = [2 * some - a for some, a in zip(above, first, strict=True)]
+        rows, columns = (some + np.array([[-1], [0], [1]]) for some in lines)
+        at = np.ix_(*lines)
+        coarse = self._stored.nodes(key.level + 1, *above, velocities=False)
+        pairs = [(field.points[drawn][at], coarse.points), (valid[at], coarse.valid)]
+        for name, values in coarse.scalars.items():
+            own = field.scalars[name]
+            pairs += [(own[t][drawn][at], values[t]) for t in steps if t < len(values)]
+        for step in steps:
+            told = self._stored.velocity(key.level + 1, step, *above)[coarse.valid]
+            mean = averaged(np.asarray(field.velocity[step])[drawn], valid, rows, columns)
+            pairs.append((mean[coarse.valid][:, : told.shape[-1]], told))
+        if not all(_alike(own, told) for own, told in pairs):
+            msg = (
+                f"the nodes of tile {tuple(key)} of {self._stored.place} are not those of the "
+                "level above it; build the store anew"
+            )
+            raise PyramidError(msg)
 
     def _read(self, textures: TextureSet, key: TileKey, read: dict[int, StoredTile]) -> TextureSet:
         parts = {name: getattr(textures, name) for name in TextureSet.__dataclass_fields__}
@@ -181,7 +223,9 @@ class _StoredTextures(TextureSet):
         if tile is not None:
             return tile.layers
         try:
-            return self.levels.tile(self.key, step).layers
+            tile = self.levels.tile(self.key, step)
+            _check_nodes(self, tile, step)
+            return tile.layers
         except PyramidError:
             if self.key.level < self.levels.about["depth"]:
                 raise
@@ -193,3 +237,16 @@ def _fits(textures: TextureSet, about: dict[str, Any]) -> bool:
     """Whether layers that were read are those of some textures."""
     own = (textures.lags.tolist(), textures.count, list(textures.geometry.size))
     return not about["empty"] and own == (about["lags"], about["count"], about["size"])
+
+
+def _check_nodes(textures: TextureSet, tile: StoredTile, step: int) -> None:
+    """Raise a PyramidError where a tile was made of other nodes than those that are read."""
+    if nodes_hash(textures, step) != tile.about["nodes"]:
+        msg = f"tile {tile.about['tile']} was made of other nodes than there are; build it anew"
+        raise PyramidError(msg)
+
+
+def _alike(own: AnyArray, told: AnyArray) -> bool:
+    """Whether values are the same but for rounding."""
+    size = np.abs(np.nan_to_num(told)).max(initial=0.0)
+    return bool(np.allclose(own, told, 1e-5, 1e-6 * size, equal_nan=True))

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from flowtex._util.array_types import Indices
-from flowtex.pyramid.checks import identity_of
+from flowtex.pyramid.checks import identity_of, nodes_hash
 from flowtex.pyramid.client_parts import write_client_parts
 from flowtex.pyramid.layout import TRACES, Part, shard_texels
 from flowtex.pyramid.levels import Levels
@@ -106,7 +106,7 @@ def write_tile(
         if textures is None:
             array[at] = shard_texels({"empty": True, **belongs}, None, room)
             continue
-        told = {**_about_tile(textures, spare), **belongs}
+        told = {**_about_tile(textures, spare), **belongs, "nodes": nodes_hash(textures, step)}
         array[at] = shard_texels(told, textures.layers(step), room)
 
 

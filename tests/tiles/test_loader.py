@@ -111,3 +111,34 @@ def test_tiles_fit_into_their_memory() -> None:
     kept = [key for key in KEYS if loader.keeps(key)]
     assert kept == KEYS[-2:]
     loader.close()
+
+
+def test_what_is_asked_for_now_comes_before_what_was(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("flowtex.tiles.loader.MOST_THREADS", 1)
+    source: Any = Source()
+    loader = TileLoader(source)
+    loader.request(KEYS[:4], [0])
+    while not source.began:
+        time.sleep(0.01)
+    loader.request(KEYS[6:], [0])
+    source.go.set()
+    loader.wait()
+    assert [key for key, _ in source.began] == [KEYS[0], *KEYS[6:], *KEYS[1:4]]
+    loader.close()
+
+
+def test_all_loaders_together_make_so_many(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("flowtex.tiles.loader._turns", threading.BoundedSemaphore(2))
+    sources: list[Any] = [Source() for _ in range(4)]
+    loaders = [TileLoader(source) for source in sources]
+    for loader in loaders:
+        loader.request(KEYS[:2], [0])
+    time.sleep(0.3)
+    assert sum(len(source.began) for source in sources) == 2
+    loaders[0].close()  # what waits for its turn is given up
+    for source in sources:
+        source.go.set()
+    for loader in loaders[1:]:
+        loader.wait()
+        assert all(loader.get(key, [0]) for key in KEYS[:2])
+        loader.close()

@@ -25,6 +25,7 @@ from flowtex.field.datasets.source import DatasetSource, open_source
 from flowtex.field.io.surfaces.beside import SUFFIXES as WITHOUT_VECTORS
 from flowtex.field.source import FlowSource
 from flowtex.options import FieldOptions
+from flowtex.pyramid import is_store, open_store
 from flowtex.settings import Settings
 from flowtex.trace import SliceStore, shared_store
 
@@ -336,7 +337,12 @@ def _constant(source: FlowSource) -> Opener:
 
 
 def _opener(path: Path) -> Opener:
-    return lambda: open_source(path)
+    def opened() -> FlowSource:
+        if is_store(path):
+            return FlowSource(open_store(path), name=path.stem)
+        return open_source(path)
+
+    return opened
 
 
 def _free(name: str, taken: Iterable[str]) -> str:

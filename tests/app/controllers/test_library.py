@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 import pyvista as pv
 from cfd_files import CGNS, TIMES, box, write_ensight, write_exodus, write_foam
 from small_pages import small
 
-from flowtex import examples
+from flowtex import FlowField, examples
 from flowtex.app import Choice, Library
 from flowtex.errors import FieldError
 from flowtex.field.source import FlowSource
+from flowtex.pyramid import build
+from flowtex.tiles import has_pyramid
 
 
 @pytest.fixture
@@ -35,6 +38,19 @@ def test_members_of_a_series_are_folded_and_what_cannot_be_shown_says_why(folder
     assert library.unshown == {"hull.stl": "no vectors, which would be in hull.npy"}
     with pytest.raises(FieldError, match="there is no file"):
         library.source("hull.stl")
+
+
+def test_pyramids_in_a_folder_are_offered(folder: Path) -> None:
+    pytest.importorskip("zarr")
+    y, x = np.mgrid[0:40, 0:60] / 10.0
+    field = FlowField.from_arrays(np.stack([x, y], axis=-1), np.stack([y, x], axis=-1))
+    build(field, folder / "deep" / "ocean.zarr", progress=False)
+    library = Library.of(folder)
+    assert library.names == ("series.pvd", "deep/ocean.zarr")
+    for shown in (library.branch(), Library.of(folder / "deep" / "ocean.zarr")):
+        name = shown.names[-1]
+        opened = shown.field(name, shown.complete(name, Choice()))
+        assert has_pyramid(opened) and opened.short_size == "60 × 40 nodes"
 
 
 def test_a_page_has_what_it_brought_for_itself(tmp_path: Path) -> None:

@@ -1,0 +1,167 @@
+"""What a page of a pyramid is handed, what not, and to whom."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import signal
+import urllib.request
+from collections.abc import Awaitable, Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+pytest.importorskip("zarr")
+pytest.importorskip("obstore")
+pytest.importorskip("aiohttp")
+pytest.importorskip("wslink")
+
+from aiohttp import ClientResponse
+from aiohttp.test_utils import TestClient, TestServer
+from served import start
+
+from flowtex import FlowField
+from flowtex.app.server.store_site import store_application
+from flowtex.pyramid import build
+from flowtex.pyramid.served import ServedStore
+
+TILE = "0/traces/c/0/1/0/0/0/0/0"
+
+
+@pytest.fixture(scope="module")
+def store(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    y, x = np.mgrid[0:400, 0:90].astype(float) / 100
+    velocity = np.stack([np.cos(3 * y) + 0.3, np.sin(4 * x)], axis=-1)
+    field = FlowField.from_arrays(np.stack([x, y], axis=-1), velocity, periodic="")
+    place = tmp_path_factory.mktemp("served") / "flow.zarr"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 4000)
+        build(field, place, progress=False)
+    return place
+
+
+Client = TestClient[Any, Any]
+
+
+def visit(store: Path, token: str, ask: Callable[[Client], Awaitable[None]]) -> None:
+    async def run() -> None:
+        served = ServedStore(store)
+        server = TestServer(store_application(served, "<p>A page", token))
+        async with TestClient(server) as client:
+            await ask(client)
+        served.close()
+
+    asyncio.run(run())
+
+
+async def text_of(answer: ClientResponse) -> str:
+    return (await answer.read()).decode()
+
+
+def test_only_the_whole_address_opens(store: Path) -> None:
+    async def ask(client: Client) -> None:
+        for path in ("/", "/wrong/", "/wrong/store/zarr.json", "/wrong"):
+            answer = await client.get(path)
+            assert answer.status == 403 and "whole address" in await text_of(answer)
+        assert (await client.get("/store/zarr.json")).status in (403, 404)
+        page = await client.get("/word")  # leads to the folder, so that relative addresses hold
+        assert str(page.url).endswith("/word/") and await text_of(page) == "<p>A page"
+        assert page.headers["Referrer-Policy"] == "no-referrer"
+        answer = await client.get(
+            "/word/store/zarr.json", headers={"Origin": "http://evil.example"}
+        )
+        assert answer.status == 403
+        for method in ("PUT", "POST", "DELETE", "PATCH", "OPTIONS"):
+            assert (await client.request(method, "/word/store/zarr.json")).status == 405
+        told = json.loads(await text_of(await client.get("/word/store/zarr.json")))
+        assert told["attributes"]["flowtex"]["traced"] == [0, 1, 2]
+
+    visit(store, "word", ask)
+
+
+def test_without_a_token_everybody_may_look(store: Path) -> None:
+    async def ask(client: Client) -> None:
+        assert await text_of(await client.get("/")) == "<p>A page"
+        assert (await client.get("/store/zarr.json")).status == 200
+
+    visit(store, "", ask)
+
+
+def test_parts_of_objects(store: Path) -> None:
+    async def ask(client: Client) -> None:
+        for name in (TILE, "1/velocity/c/0/0/0/0", "zarr.json"):
+            whole = await client.get(f"/store/{name}")
+            body = await whole.read()
+            size = len(body)
+            assert whole.status == 200 and whole.headers["Accept-Ranges"] == "bytes"
+            head = await client.head(f"/store/{name}")
+            assert head.status == 200 and head.headers["Content-Length"] == str(size)
+            for text, part in {
+                "bytes=0-0": slice(0, 1),
+                "bytes=5-9": slice(5, 10),
+                "bytes=-7": slice(size - 7, size),
+                f"bytes=-{size + 10}": slice(0, size),
+                f"bytes={size - 1}-{size + 99}": slice(size - 1, size),
+                "bytes=10-": slice(10, size),
+            }.items():
+                answer = await client.get(f"/store/{name}", headers={"Range": text})
+                assert answer.status == 206 and await answer.read() == body[part]
+                span = f"bytes {part.start}-{part.stop - 1}/{size}"
+                assert answer.headers["Content-Range"] == span
+            for text in (f"bytes={size}-", "bytes=-0", f"bytes={size + 5}-{size + 9}"):
+                answer = await client.get(f"/store/{name}", headers={"Range": text})
+                assert answer.status == 416
+                assert answer.headers["Content-Range"] == f"bytes */{size}"
+            # What is not understood is as if it were not there.
+            for text in ("bytes=9-5", "bytes=1-2,4-5", "lines=1-2", "bytes=-", "bytes=x-9"):
+                answer = await client.get(f"/store/{name}", headers={"Range": text})
+                assert answer.status == 200 and len(await answer.read()) == size
+
+    visit(store, "", ask)
+
+
+def test_nothing_else_is_found(store: Path) -> None:
+    async def ask(client: Client) -> None:
+        for name in (
+            "..%2fzarr.json",
+            "%2e%2e/%2e%2e/etc/passwd",
+            "0/traces/c/0/99/0/0/0/0/0",
+            "x",
+        ):
+            assert (await client.get(f"/store/{name}")).status == 404
+
+    visit(store, "", ask)
+
+
+def test_faults_are_told_once_and_not_to_others(
+    store: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    def fail(*_: Any) -> Any:
+        msg = "the disk is /secret"
+        raise OSError(msg)
+
+    monkeypatch.setattr("flowtex.pyramid.served.trace_tile", fail)
+
+    async def ask(client: Client) -> None:
+        for _ in range(3):
+            answer = await client.get(f"/store/{TILE}")
+            assert answer.status == 500 and "secret" not in await text_of(answer)
+
+    visit(store, "", ask)
+    assert [record.getMessage() for record in caplog.records] == ["OSError: the disk is /secret"]
+
+
+@pytest.mark.slow
+def test_the_shell_serves_a_store(store: Path) -> None:
+    served = start("serve", str(store), "--token", "word")
+    try:
+        assert served.address.endswith("/word/")
+        with urllib.request.urlopen(served.address) as answer:
+            assert b"store/" in answer.read()
+        with urllib.request.urlopen(f"{served.address}store/{TILE}") as answer:
+            assert len(answer.read()) > 10_000
+    finally:
+        said = served.end(signal.SIGINT)
+    assert served.process.returncode == 0 and "Traceback" not in said

@@ -1,0 +1,62 @@
+"""Where stores may be, and that no secret in an address is repeated."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from flowtex.pyramid import PyramidError, is_store, open_store
+from flowtex.pyramid.places import fault_words, place_text, store_at
+
+pytest.importorskip("zarr")
+pytest.importorskip("obstore")
+
+
+@pytest.mark.parametrize(
+    ("place", "text"),
+    [
+        ("s3://bucket/a.zarr", "s3://bucket/a.zarr"),
+        (Path("s3://bucket/a.zarr"), "s3://bucket/a.zarr"),
+        ("https://host:8000/a/b.zarr/", "https://host:8000/a/b.zarr"),
+        ("abfss://container@account.dfs.core.windows.net/a", None),
+        ("file:///data/a.zarr", "/data/a.zarr"),
+        ("/data/../data/a.zarr", "/data/a.zarr"),
+    ],
+)
+def test_places(place: str | Path, text: str | None) -> None:
+    assert place_text(place) == (place if text is None else text)
+
+
+@pytest.mark.parametrize(
+    "place",
+    [
+        "https://me:hidden@host/a.zarr",
+        "https://hidden@host/a.zarr",
+        "https://host/a.zarr?X-Amz-Signature=hidden",
+        "s3://bucket/a.zarr#hidden",
+        "s3://key:hidden@bucket/a.zarr",
+        "abfss://c:hidden@account.dfs.core.windows.net/a",
+        "ftp://me:hidden@host/a.zarr",
+        "https://[hidden/a.zarr",
+    ],
+)
+def test_secrets_are_refused_and_not_repeated(place: str) -> None:
+    for ask in (place_text, open_store, is_store, lambda p: store_at(Path(p))):
+        with pytest.raises(PyramidError, match=r"environment|expected") as caught:
+            ask(place)
+        assert "hidden" not in str(caught.value)
+        assert caught.value.__cause__ is None
+
+
+def test_a_url_is_a_store_and_nothing_is_written_to_the_web() -> None:
+    assert is_store("https://host/flow") and is_store(Path("s3://bucket/flow"))
+    assert not is_store(3) and not is_store("flow.vts")
+    with pytest.raises(PyramidError, match="can only be read"):
+        store_at("https://host/flow.zarr", read_only=False)
+
+
+def test_what_servers_say_is_not_repeated() -> None:
+    words = fault_words(OSError("status code: 418 body hidden"))
+    assert words == "was answered with status 418"
+    assert "hidden" not in fault_words(ValueError("hidden"))

@@ -1,0 +1,201 @@
+"""A store that is handed on: what it has not is made, once, and only while somebody waits."""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from flowtex import FlowField
+from flowtex.pyramid import PyramidError, build, open_store
+from flowtex.pyramid.places import ReadFault
+from flowtex.pyramid.served import ServedStore
+from flowtex.tiles import TileKey, shared_pyramid
+
+zarr = pytest.importorskip("zarr")
+
+TILE = "0/traces/c/{step}/1/0/0/0/0/0"
+
+
+def flow(steps: int = 1) -> FlowField:
+    y, x = np.mgrid[0:400, 0:90].astype(float) / 100
+    velocity = np.stack(
+        [np.stack([np.cos(3 * y + t) + 0.3, np.sin(4 * x)], axis=-1) for t in range(steps)]
+    )
+    return FlowField.from_arrays(
+        np.stack([x, y], axis=-1), velocity, times=np.arange(steps) / 10, periodic=""
+    )
+
+
+@pytest.fixture(autouse=True)
+def _small_roots(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 4000)
+
+
+def built(place: Path, **options: Any) -> Path:
+    build(flow(options.pop("steps", 1)), place, progress=False, **options)
+    return place
+
+
+def test_what_is_made_is_what_the_builder_makes(tmp_path: Path) -> None:
+    coarse, whole = built(tmp_path / "a.zarr"), built(tmp_path / "b.zarr", levels="all")
+    before = {path: path.stat().st_mtime_ns for path in coarse.rglob("*")}
+
+    async def copy() -> None:
+        served = ServedStore(coarse)
+        for path in whole.rglob("*"):
+            if not path.is_file():
+                continue
+            name = path.relative_to(whole).as_posix()
+            piece = await served.get(name)
+            target = tmp_path / "copy.zarr" / name
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.write_bytes(piece.body)
+        served.close()
+
+    asyncio.run(copy())
+    one, other = (open_store(tmp_path / name) for name in ("copy.zarr", "b.zarr"))
+    for row in (0, 1):
+        both = [shared_pyramid(f, "arclength").tile(TileKey(0, row, 0), [0]) for f in (one, other)]
+        layers = [tile.layers(0) for tile in both if tile is not None]
+        np.testing.assert_array_equal(layers[0], layers[1])
+    groups = [zarr.open_group(tmp_path / name, mode="r")["0"] for name in ("copy.zarr", "b.zarr")]
+    for name in ("values", "surface"):
+        np.testing.assert_array_equal(groups[0][name][:], groups[1][name][:])
+    # The store itself is only read.
+    assert {path: path.stat().st_mtime_ns for path in coarse.rglob("*")} == before
+
+
+def test_times_of_a_tile_have_one_halo(tmp_path: Path) -> None:
+    place = built(tmp_path / "a.zarr", steps=3)
+
+    async def spares() -> list[int]:
+        served = ServedStore(place)
+        for step in range(3):
+            await served.get(TILE.format(step=step), slice(0, 1))
+        group = served._group["0/traces"]
+        from flowtex.pyramid.layout import read_header
+
+        headers = [read_header(group[step, 1, 0][0]) for step in range(3)]
+        served.close()
+        return [header["spare"] for header in headers if header is not None]
+
+    found = asyncio.run(spares())
+    assert len(found) == 3 and len(set(found)) == 1
+
+
+NO_NAMES = [
+    *("", "..", "../a.zarr/zarr.json", "/etc/passwd", "0", "0/traces", "0/traces/c", "c/0"),
+    *("0/velocity/c/0/0", "0/velocity/c/0/0/0/0/0", "0/velocity/c/0/0/0/-1", "0/nothing/c/0"),
+    *("0/velocity/c/0/0/../0", "0/velocity/c/0/0/0/٣", "0/velocity/c/0/7/0/0"),
+    *("0/traces/c/0/9/0/0/0/0/0", "0/traces/c/5/0/0/0/0/0/0", "9/zarr.json"),
+    f"0/velocity/c/0/0/0/{'1' * 5000}",
+]
+
+
+def test_no_name_leads_elsewhere(tmp_path: Path) -> None:
+    served = ServedStore(built(tmp_path / "a.zarr"))
+    for name in NO_NAMES:
+        with pytest.raises(LookupError):
+            asyncio.run(served.get(name))
+    served.close()
+
+
+def test_a_tile_is_made_once_for_all_who_wait_and_for_nobody_not_at_all(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    import flowtex.pyramid.served as module
+    from flowtex.pyramid.tasks import trace_tile
+
+    made: list[TileKey] = []
+    begun, go_on = threading.Event(), threading.Event()
+
+    def slow(pyramid: Any, key: TileKey, steps: Any) -> Any:
+        made.append(key)
+        begun.set()
+        go_on.wait(20)
+        return trace_tile(pyramid, key, steps)
+
+    monkeypatch.setattr(module, "trace_tile", slow)
+    monkeypatch.setattr(module, "MOST_THREADS", 1)
+    served = ServedStore(built(tmp_path / "a.zarr"))
+    name, other = TILE.format(step=0), TILE.format(step=0).replace("/1/0/", "/0/0/", 1)
+
+    async def ask() -> None:
+        first = [asyncio.create_task(served.get(name, slice(-9, None))) for _ in range(5)]
+        await asyncio.to_thread(begun.wait, 20)
+        second = asyncio.create_task(served.get(other))
+        await asyncio.sleep(0.05)
+        second.cancel()  # before its turn
+        first[0].cancel()
+        await asyncio.sleep(0.05)
+        go_on.set()
+        pieces = await asyncio.gather(*first[1:])
+        assert len({piece.body for piece in pieces}) == 1
+        assert served._jobs == {}
+
+    asyncio.run(ask())
+    assert made == [TileKey(0, 1, 0)]
+    served.close()
+
+
+def test_what_was_used_longest_ago_makes_room(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    import flowtex.pyramid.served as module
+
+    monkeypatch.setattr(module, "MADE_BYTES", 1)
+    served = ServedStore(built(tmp_path / "a.zarr"))
+    folder = served._folder
+
+    async def ask() -> None:
+        for row in (0, 1, 0):
+            name = TILE.format(step=0).replace("/1/0/", f"/{row}/0/", 1)
+            assert (await served.get(name, slice(0, 4))).size > 1000
+            assert {p.parts[-6] for p in folder.glob("0/traces/c/0/*/*/0/0/0/0")} == {str(row)}
+
+    asyncio.run(ask())
+    served.close()
+    assert not folder.exists()
+
+
+def test_parts_and_faults(tmp_path: Path) -> None:
+    place = built(tmp_path / "a.zarr")
+    served, name = ServedStore(place), "1/velocity/c/0/0/0/0"
+    whole = (place / name).read_bytes()
+
+    async def ask() -> None:
+        for asked in (slice(None), slice(3, 9), slice(5, None), slice(-7, None), slice(0, 10**12)):
+            piece = await served.get(name, asked)
+            assert piece.body == whole[asked] and piece.size == len(whole)
+            assert piece.first == asked.indices(len(whole))[0]
+        for asked in (slice(len(whole), None), slice(10**12, 10**13)):
+            with pytest.raises(IndexError) as caught:
+                await served.get(name, asked)
+            assert caught.value.args == (len(whole),)
+        (place / name).unlink()
+        with pytest.raises(LookupError):
+            await served.get(name)
+        # Without its nodes a tile is not made.
+        with pytest.raises((PyramidError, ReadFault)):
+            for file in (place / "0/velocity/c").rglob("*"):
+                if file.is_file():
+                    file.write_bytes(b"torn")
+            await served.get(TILE.format(step=0))
+
+    asyncio.run(ask())
+    served.close()
+
+
+def test_a_tile_that_was_lost_is_made_again(tmp_path: Path) -> None:
+    place = built(tmp_path / "a.zarr", levels="all")
+    lost = place / TILE.format(step=0)
+    size = lost.stat().st_size
+    lost.unlink()
+    served = ServedStore(place)
+    assert abs(asyncio.run(served.get(TILE.format(step=0))).size - size) < 0.01 * size
+    served.close()
