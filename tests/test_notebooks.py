@@ -11,7 +11,7 @@ import pytest
 FOLDER = Path(__file__).parents[1] / "notebooks"
 NOTEBOOKS = sorted(FOLDER.glob("*.ipynb"))
 #: Those that run in a file of tests of their own, beside the others.
-OF_EARTH = ("ocean", "weather")
+OF_EARTH = ("ocean", "pyramid", "weather")
 
 
 def read(path: Path) -> Any:
