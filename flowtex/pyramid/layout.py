@@ -242,8 +242,8 @@ def create_level(group: Any, level: int, shape: tuple[int, int], about: Mapping[
         )
         if has_halos(about, level):
             # A task makes so many steps, and a chunk is written by one task.
-            chunk, names = (MOST_HELD, 1, 1, 2), ["time", "row", "column", "halo"]
-            create_array(here, HALOS, (steps, *tiles, 2), chunk, None, "uint8", names)
+            several, names = (MOST_HELD, 1, 1, 2), ["time", "row", "column", "halo"]
+            create_array(here, HALOS, (steps, *tiles, 2), several, None, "uint8", names)
         _create_client_arrays(here, level, shape, tiles, about)
 
 
