@@ -21,6 +21,8 @@ __all__ = ["Levels", "StoredTile"]
 
 #: Blocks that are read one after the other; more of them are read as single lines.
 MOST_RUNS = 9
+#: Bytes of a velocity, and those of steps that are held; of a longer series each is read late.
+NODE_BYTES, KEPT_BYTES = 24, 64_000_000
 
 
 class StoredTile:
@@ -145,8 +147,9 @@ class Levels:
             values = self._lines(name, rows, columns, step)
             return _in_space(values) if vectors else values
 
-        if self.about["late"] and count > 1:
-            return LazySteps(count, read)
+        late = self.about["late"] or count * len(rows) * len(columns) * NODE_BYTES > KEPT_BYTES
+        if late and count > 1:
+            return LazySteps(count, read, kept=KEPT_BYTES)
         return np.stack([read(step) for step in range(count)])
 
     def _lines(
