@@ -119,8 +119,8 @@ def build(
     is drawn on a globe, plate carree or Mercator's map. Neither this process nor a worker then
     holds more of it than that, and lines of coordinates. Chunks of the data should not be much
     larger than a region, 512 by 1,024 nodes of a time step. Of anything else a time step has to fit
-    into the memory of this process. A task takes 1 GB at most; a worker of a cluster should have
-    that for each of its threads, and half of it for itself.
+    into the memory of this process. A task takes 1.5 GB at most; a worker of a cluster should
+    have that for each of its threads, and 0.5 GB for itself.
     """
     if levels not in ("coarse", "all"):
         msg = f"levels is {levels!r}; expected 'coarse' or 'all'"

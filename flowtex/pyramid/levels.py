@@ -32,6 +32,8 @@ MOST_LETTERS = 300
 
 #: Blocks that are read one after the other; more of them are read as single lines.
 MOST_RUNS = 9
+#: Bytes of a velocity, and those of steps that are held; of a longer series each is read late.
+NODE_BYTES, KEPT_BYTES = 24, 64_000_000
 
 
 class _Part(NamedTuple):
@@ -126,7 +128,12 @@ class Levels:
         series = {f"scalars/{name}": count for name, count in about["scalars"].items()}
         if velocities:
             series["velocity"] = len(about["times"])
-        late = {name for name, count in series.items() if about["late"] and count > 1}
+        nbytes = len(rows) * len(columns) * NODE_BYTES
+        late = {
+            name
+            for name, count in series.items()
+            if count > 1 and (about["late"] or count * nbytes > KEPT_BYTES)
+        }
         parts = [self._part(level, name, rows, columns) for name in names]
         for name, count in series.items():
             if name not in late:
@@ -136,7 +143,8 @@ class Levels:
         steps: dict[str, Any] = {}
         for name, count in series.items():
             if name in late:
-                steps[name] = LazySteps(count, self._later(level, name, rows, columns))
+                later = self._later(level, name, rows, columns)
+                steps[name] = LazySteps(count, later, kept=KEPT_BYTES)
             else:
                 steps[name] = np.stack([next(values) for _ in range(count)])
         velocity = steps.pop("velocity", None)

@@ -55,7 +55,7 @@ PATH_CELLS = 32
 #: has more than that; and its greatest width.
 HALO_SHARE, HALO_SPARE, MOST_HALO = 1.2, 3, 512
 #: Nodes of a window at most: halos are narrower where there would be more.
-MOST_WINDOW = 800_000
+MOST_WINDOW = 600_000
 #: Lines of a ring around a pole; of more of them some are left out, away from the tile.
 MOST_RING = 1536
 #: Nodes of a window around a pole from which on its paths are not composed: all are traced then.
