@@ -278,8 +278,11 @@ def _in_space(values: Floats, height: float = 0.0) -> Floats:
 
 
 def _words(error: Exception) -> str:
+    text = str(error)
+    if "checksum" in text:
+        return "its check sum is another one: it came to harm"
     known = isinstance(error, (ReadFault, PyramidError))
-    return str(error) if known else f"{type(error).__name__}: {error}"[:MOST_LETTERS]
+    return text if known else f"{type(error).__name__}: {text}"[:MOST_LETTERS]
 
 
 def _format_of(array: Any) -> dict[str, Any]:
