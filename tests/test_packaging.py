@@ -45,7 +45,9 @@ def _texts_of_checkout() -> dict[str, str]:
 def _client_of_checkout() -> list[Path]:
     folder = ROOT / "flowtex" / "web"
     found = [path for path in folder.iterdir() if path.suffix in (".js", ".css", ".html")]
-    assert {"client.js", "page.js", "page.css", "page.html"} <= {path.name for path in found}
+    assert {"client.js", "page.js", "storepage.js", "page.css", "page.html"} <= {
+        path.name for path in found
+    }
     return found
 
 

@@ -71,7 +71,7 @@ def numbers() -> dict[str, AnyArray]:
     nodal = rng.integers(0, 99, (STEPS, 2, *NODES)).astype(np.float32)
     values[:, 0, 0, :, : NODES[0], : NODES[1]] = nodal
     header = np.frombuffer(json.dumps(told()).encode(), np.uint8)
-    parts = {"header": header, "mesh": mesh, "position": position}
+    parts: dict[str, AnyArray] = {"header": header, "mesh": mesh, "position": position}
     files = [
         parts_file({f"tile/0/0/0/{name}": part for name, part in parts.items()}),
         parts_file({"tile/0/0/1/header": np.frombuffer(b"null", np.uint8)}),

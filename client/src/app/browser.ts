@@ -7,6 +7,7 @@ import { throttled } from "../lifetime.ts";
 import type { Options } from "../options.ts";
 import { placeIn } from "../pointers.ts";
 import type { Header, NamedPart, Settings } from "../protocol.ts";
+import { nameOf } from "../tilechoice.ts";
 import { TileQueue } from "../tilequeue.ts";
 import type { Viewer } from "../viewer.ts";
 import { vue, type Emit } from "./vue.ts";
@@ -54,6 +55,8 @@ class BrowserView {
       this.parts(`${this.props.source.tiles}${[...key, ...steps].join(".")}`, signal),
     (part) => this.viewer?.setPart(part),
     MOST_TILES,
+    // A coarser one is in its place; nobody asks for it again.
+    (key) => this.viewer?.lack(nameOf(key), "A part of the surface is shown coarse."),
   );
   private readonly watcher = new MutationObserver(() => this.look());
 

@@ -8,6 +8,7 @@ travel as state, both ways.
 from __future__ import annotations
 
 import asyncio
+import logging
 from typing import Any
 
 from flowtex._util.colours import rgb
@@ -25,6 +26,8 @@ from flowtex.web.view import colours_of
 
 __all__ = ["RENDERERS", "BrowserRendering"]
 
+_log = logging.getLogger(__name__)
+
 #: Where the picture is drawn.
 RENDERERS = ("server", "browser")
 #: Seconds between looks at whether a tile is there that a page waits for.
@@ -38,6 +41,7 @@ class BrowserRendering(Controller):
         super().__init__(context)
         self._scene: ClientData | None = None
         self._loader: TileLoader | None = None
+        self._told: set[TileKey] = set()
         #: Numbers of the scene, and of the files in which it is handed over.
         self._generation = self._published = 0
         self._routes = context.routes
@@ -201,8 +205,9 @@ class BrowserRendering(Controller):
 
         async def content() -> Content:
             while (tile := loader.get(key, sources)) is None:
-                if key in loader.errors:
-                    raise loader.errors[key]
+                if (error := loader.errors.get(key)) is not None:
+                    self._tell(key, error)
+                    raise FileNotFoundError(name)
                 if loader is not self._loader:
                     return parts_file({}), "application/octet-stream", None
                 # Asked for again, as tiles are given up that nobody asks for.
@@ -214,7 +219,14 @@ class BrowserRendering(Controller):
 
         return content
 
+    def _tell(self, key: TileKey, error: Exception) -> None:
+        """Log, once each, what tiles could not be made; coarser ones are in their place."""
+        if key not in self._told:
+            self._told.add(key)
+            _log.warning("tile %s could not be made: %s", tuple(key), error)
+
     def _close_loader(self) -> None:
+        self._told.clear()
         if self._loader is not None:
             self._loader.close()
         self._loader = None

@@ -141,12 +141,15 @@ class Routes:
             return None
 
     async def answer(self, name: str) -> web.StreamResponse:
-        """Return what is asked for; ``HTTPNotFound`` where there is nothing of that name."""
+        """Return what is asked for; ``HTTPNotFound`` where there is nothing."""
         give = self._find(name)
         if give is None:
             raise web.HTTPNotFound
-        content = give()
-        body, kind, saved_as = await content if inspect.isawaitable(content) else content
+        try:
+            content = give()
+            body, kind, saved_as = await content if inspect.isawaitable(content) else content
+        except FileNotFoundError:
+            raise web.HTTPNotFound from None
         headers = {
             "Content-Type": kind,
             "Cache-Control": "no-store",
