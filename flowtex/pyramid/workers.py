@@ -10,6 +10,7 @@ from concurrent.futures import ThreadPoolExecutor, as_completed
 from typing import Any
 
 from flowtex._util.extras import import_extra
+from flowtex.errors import FieldError
 from flowtex.pyramid.places import PyramidError
 
 __all__ = ["OWN_BYTES", "PART_BYTES", "TILE_BYTES", "Cluster", "Threads"]
@@ -36,7 +37,11 @@ class Threads:
     def __init__(self, memory: int | str | None = None) -> None:
         self._memory: int | None = None
         if memory is not None:
-            self._memory = int(import_extra("dask.utils", "store").parse_bytes(memory))
+            try:
+                self._memory = int(import_extra("dask.utils", "store").parse_bytes(memory))
+            except (ValueError, TypeError) as error:
+                msg = f"memory is {memory!r}; expected bytes, or a text such as '2GB'"
+                raise FieldError(msg) from error
             if self._memory < OWN_BYTES + TILE_BYTES:
                 warnings.warn(
                     f"memory is {_words(self._memory)}, and a task may take "

@@ -172,6 +172,8 @@ def test_threads_are_as_many_as_fit(monkeypatch: pytest.MonkeyPatch) -> None:
     assert Threads().count(TILE_BYTES) == 8
     assert Threads("5GB").count(TILE_BYTES) == 3
     assert Threads(5_000_000_000).count(PART_BYTES) == 8
+    with pytest.raises(FieldError, match="memory is 'lots'; expected bytes"):
+        Threads("lots")
     with pytest.warns(UserWarning, match="memory is 1 GB, and a task may take 1.5 GB"):
         assert Threads("1GB").count(TILE_BYTES) == 1
 

@@ -127,7 +127,7 @@ def test_levels_are_chosen_as_in_a_field() -> None:
     data = dataset(LONGITUDES["region"], LATITUDES["north"])
     deep = xr.concat([data, data * 0.5], xr.Variable("depth_m", [0.0, 10.0], {"axis": "Z"}))
     for options in ({"level": 10.0}, {"isel": {"depth_m": 1}}):
-        with_level = both(deep.drop_vars("depth"), u="u", v="v", **options)  # type: ignore[arg-type]
+        with_level = both(deep.drop_vars("depth"), u="u", v="v", **options)
         assert_same(*with_level)
 
 
