@@ -28,6 +28,7 @@ const NOTICE = `/*! Holds parts of gl-matrix, of which this is the licence:\n\n$
 const BUILDS = [
   ["src/client.ts", `${WEB}/client.js`, "esm", NOTICE],
   ["src/page.ts", `${WEB}/page.js`, "esm", NOTICE],
+  ["src/live.ts", `${WEB}/live.js`, "iife", NOTICE],
   ["src/app/app.ts", `${STATIC}/flowtex.js`, "iife", ""],
 ].map(([entry, outfile, format, notice]) => ({
   ...COMMON,

@@ -33,7 +33,17 @@ from flowtex.web.assets import asset
 from flowtex.web.tiles import all_tiles
 from flowtex.web.view import WebView, web_views
 
-__all__ = ["Page", "estimate", "export", "page_pieces", "page_text", "write_page"]
+__all__ = [
+    "Page",
+    "different",
+    "estimate",
+    "export",
+    "json_text",
+    "page_data",
+    "page_pieces",
+    "page_text",
+    "write_page",
+]
 
 #: Size of an average part after packing, over that before, base64 included.
 PACKED_SHARE = 0.62
@@ -131,7 +141,7 @@ def write_page(
     ``announce`` is that of :func:`export`, the options are those of :func:`page_pieces`.
     """
     path = Path(path)
-    scenes = _page_data(views)
+    scenes = page_data(views)
     estimated = estimate(scenes)
     if announce is not None:
         announce(estimated, scenes[0].steps)
@@ -142,10 +152,10 @@ def write_page(
 
 def page_text(views: Sequence[WebView], **options: Any) -> str:
     """Return a view, or two, as the text of a page; the options are of :func:`page_pieces`."""
-    return "".join(page_pieces(views, _page_data(views), **options))
+    return "".join(page_pieces(views, page_data(views), **options))
 
 
-def _page_data(views: Sequence[WebView]) -> list[ClientData]:
+def page_data(views: Sequence[WebView]) -> list[ClientData]:
     """Return what a page holds of its views, with as many levels of tiles as there is room for."""
     scenes = []
     for scene in (view.page_data() for view in views):
@@ -231,12 +241,12 @@ def _values(headers: Sequence[Header], title: str, picture: bytes) -> dict[str, 
         "style": look,
         # Browsers tell JPEG by itself.
         "preview": "data:image/png;base64," + base64.b64encode(picture).decode(),
-        "headers": _json([headers[0], *(_different(h, headers[0]) for h in headers[1:])]),
+        "headers": json_text([headers[0], *(different(h, headers[0]) for h in headers[1:])]),
         "script": script,
     }
 
 
-def _different(header: Header, first: Header) -> Header:
+def different(header: Header, first: Header) -> Header:
     """Return what of a header is not as in the first: shaders and table lie in the page once."""
     return {name: value for name, value in header.items() if value != first[name]}
 
@@ -250,7 +260,7 @@ def _policy(script: str) -> str:
     )
 
 
-def _json(value: Any) -> str:
+def json_text(value: Any) -> str:
     """Return JSON in which nothing can end a script element."""
     text = json.dumps(value, allow_nan=False, separators=(",", ":"))
     return text.replace("<", r"\u003c").replace(">", r"\u003e").replace("&", r"\u0026")
