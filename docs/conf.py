@@ -1,0 +1,84 @@
+"""The site: ``make site`` builds it with Sphinx into ``out/site``."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+import live
+
+from flowtex import __version__
+
+project = "flowtex"
+author = "flowtex developers"
+project_copyright = "flowtex developers"
+version = release = __version__
+
+extensions = [
+    "sphinx.ext.autodoc",
+    "sphinx.ext.autosummary",
+    "sphinx.ext.intersphinx",
+    "numpydoc",
+    "myst_nb",
+    "sphinx_copybutton",
+    "sphinx_design",
+    "sphinx_gallery.gen_gallery",
+    "live",
+]
+# Beside the pages of the examples lie their notebooks, for those who download them.
+exclude_patterns = ["examples", "gallery/*.ipynb", "gallery/*.py", "gallery/*.json"]
+suppress_warnings = ["config.cache"]  # what draws the examples is no plain value
+
+myst_enable_extensions = ["colon_fence", "deflist", "attrs_inline"]
+myst_heading_anchors = 3
+nb_execution_mode = "cache"
+nb_execution_timeout = 120
+nb_execution_raise_on_error = True
+nb_ipywidgets_js: dict[str, str] = {}  # what is live here needs no kernel and no network
+nb_mime_priority_overrides = [("html", "text/html", 0)]
+
+autosummary_generate = True
+autodoc_typehints = "none"
+numpydoc_class_members_toctree = False
+numpydoc_show_class_members = False
+
+# Inventories are kept here, so that a build needs no network.
+intersphinx_mapping = {
+    "python": ("https://docs.python.org/3", "inventories/python.inv"),
+    "numpy": ("https://numpy.org/doc/stable", "inventories/numpy.inv"),
+    "pyvista": ("https://docs.pyvista.org", "inventories/pyvista.inv"),
+    "xarray": ("https://docs.xarray.dev/en/stable", "inventories/xarray.inv"),
+}
+intersphinx_mapping = {}
+
+sphinx_gallery_conf = {
+    "examples_dirs": "examples",
+    "gallery_dirs": "gallery",
+    "filename_pattern": r".*\.py",
+    "image_scrapers": (live.Scraper(),),
+    "reset_modules": (live.reset,),
+    "capture_repr": (),
+    "remove_config_comments": True,
+    "show_memory": False,
+    "min_reported_time": 1e9,
+    "show_signature": False,
+    "download_all_examples": False,
+    "thumbnail_size": (480, 300),
+    "write_computation_times": False,
+}
+
+html_theme = "pydata_sphinx_theme"
+html_title = "flowtex"
+html_static_path = ["_static"]
+html_css_files = ["site.css"]
+html_show_sourcelink = False
+html_theme_options = {
+    "show_prev_next": False,
+    "secondary_sidebar_items": ["page-toc"],
+    "navbar_align": "left",
+    "header_links_before_dropdown": 6,
+    "footer_start": ["copyright"],
+    "footer_end": ["theme-version"],
+}
