@@ -2,6 +2,7 @@
 // element of the class "flowtex-live" with a still picture in it; its scene, a script beside the page,
 // is loaded when the element comes into sight, and given up again when it is far from it.
 
+import { Explanation } from "./explanation.ts";
 import { partOfText, type Header, type NamedPart, type PartInfo } from "./protocol.ts";
 import type { Viewer } from "./viewer.ts";
 import { mountPage, type SceneData } from "./views.ts";
@@ -65,12 +66,14 @@ function groundAround(element: HTMLElement): number[] {
 
 class LiveView {
   private readonly element: HTMLElement;
+  private readonly explanation: Explanation | null;
   private viewer: Viewer | null = null;
   private isWanted = false;
   private isLoading = false;
 
   constructor(element: HTMLElement) {
     this.element = element;
+    this.explanation = element.closest(".flowtex-explained") && new Explanation(element);
     const near = { rootMargin: `${100 * KEPT_HEIGHTS}% 0%` };
     new IntersectionObserver(([entry]) => entry.isIntersecting && void this.show()).observe(element);
     new IntersectionObserver(([entry]) => entry.isIntersecting || this.leave(), near).observe(element);
@@ -86,7 +89,9 @@ class LiveView {
       if (!this.isWanted) return;
       const ground = groundAround(element);
       for (const { header } of data) header.background = ground;
-      this.viewer = mountPage(element, data, { guarded: true });
+      const { explanation } = this;
+      this.viewer = mountPage(element, data, { guarded: true, ...explanation?.options });
+      explanation?.attach(this.viewer);
       this.watch();
     } catch (error) {
       element.title = `This view is a picture only: ${error instanceof Error ? error.message : error}`;
