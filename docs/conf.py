@@ -26,6 +26,14 @@ extensions = [
     "sphinx_design",
     "sphinx_gallery.gen_gallery",
     "live",
+    "lessons",
+]
+# Notebooks that are pages, copied into the folder lessons.
+lessons_notebooks = [
+    "lesson_1_flow_textures",
+    "lesson_2_level_of_detail",
+    "lesson_3_steady_and_unsteady",
+    "how_it_works",
 ]
 # Beside the pages of the examples lie their notebooks, for those who download them.
 exclude_patterns = ["examples", "gallery/*.ipynb", "gallery/*.py", "gallery/*.json"]
@@ -33,7 +41,7 @@ suppress_warnings = ["config.cache"]  # what draws the examples is no plain valu
 
 myst_enable_extensions = ["colon_fence", "deflist", "attrs_inline"]
 myst_heading_anchors = 3
-nb_execution_mode = "cache"
+nb_execution_mode = "force"  # what is shown is written beside the pages at each run
 nb_execution_timeout = 120
 nb_execution_raise_on_error = True
 nb_ipywidgets_js: dict[str, str] = {}  # what is live here needs no kernel and no network
