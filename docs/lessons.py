@@ -46,7 +46,7 @@ class WidgetView(live.View):
     def _repr_html_(self) -> str:
         """Write the scene, and return its element for a page in the folder that is worked in."""
         self.write(self.name)
-        return self.html(self.name)
+        return self.html(self.name, len(Path.cwd().relative_to(HERE).parts))
 
 
 def in_kernel() -> None:

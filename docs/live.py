@@ -47,9 +47,9 @@ class View:
             file.writelines(scene_script(name, self.views, camera=self.camera))
         self.still.save(folder / f"{name}.jpg", quality=88)
 
-    def html(self, name: str) -> str:
-        """Return the element of a scene, on a page one folder below the top."""
-        scenes = "../_static/scenes"
+    def html(self, name: str, folders: int = 1) -> str:
+        """Return the element of a scene, on a page so many folders below the top."""
+        scenes = f"{'../' * folders}_static/scenes"
         return (
             f'<div class="flowtex-live" data-scene="{scenes}/{name}.js">'
             f'<img src="{scenes}/{name}.jpg" alt="A still of the live view" loading="lazy"></div>'
