@@ -9,18 +9,18 @@ import type { Viewer } from "./viewer.ts";
 
 const SVG = "http://www.w3.org/2000/svg";
 /** Where a point is chosen at first, in the view from -1 to 1. */
-const FIRST_POINT = [-0.42, 0.44] as const;
+const FIRST_POINT = [-0.4, 0.5] as const;
 /** Doublings of the zoom. */
 const ZOOM = "zoom";
 /** Sliders: setting, label, lowest and highest value, step. */
 const SLIDERS: [name: string, label: string, low: number, high: number, step: number][] = [
   ["samples", "Samples, K", 1, 49, 2],
-  ["spacing", "Spacing, Δt (grains)", 0.1, 3, 0.1],
-  ["grain", "Grain of the noise (pixels)", 2, 24, 1],
+  ["spacing", "Spacing, Δt", 0.1, 3, 0.1],
+  ["grain", "Grain, pixels", 2, 24, 1],
   ["seed", "Another noise", 0, 20, 1],
   [ZOOM, "Zoom", 0, 12, 0.25],
 ];
-const KERNELS = { hann: "smooth (Hann)", box: "even (box)", ramp: "behind only (ramp)" };
+const KERNELS = { hann: "smooth", box: "even", ramp: "falling" };
 /** Heights of bars in a row of bars. */
 const ROW = 40;
 
@@ -141,7 +141,7 @@ export class Explanation {
     const input = dom("select", { "data-setting": "kernel" }, options);
     input.addEventListener("change", () => this.change("kernel", input.value));
     this.shows.set("kernel", (value) => void (input.value = String(value)));
-    return dom("label", {}, [dom("span", {}, ["Weights, the kernel"]), input]);
+    return dom("label", {}, [dom("span", {}, ["Kernel"]), input]);
   }
 
   private box(): HTMLElement {

@@ -17,6 +17,9 @@ interface Packed {
 /** Heights of the window that a view may be away before it is given up. */
 const KEPT_HEIGHTS = 2;
 
+/** What is around a view that is explained: a class, or the tag of a cell of MyST-NB. */
+const EXPLAINED = ".flowtex-explained, .tag_flowtex-explained";
+
 const scenes = new Map<string, (scene: Packed) => void>();
 
 declare global {
@@ -73,7 +76,7 @@ class LiveView {
 
   constructor(element: HTMLElement) {
     this.element = element;
-    this.explanation = element.closest(".flowtex-explained") && new Explanation(element);
+    this.explanation = element.closest(EXPLAINED) && new Explanation(element);
     const near = { rootMargin: `${100 * KEPT_HEIGHTS}% 0%` };
     new IntersectionObserver(([entry]) => entry.isIntersecting && void this.show()).observe(element);
     new IntersectionObserver(([entry]) => entry.isIntersecting || this.leave(), near).observe(element);

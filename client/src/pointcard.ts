@@ -28,7 +28,7 @@ const RETRY_MS = 40;
 const PLACES_IN_VIEW = 200;
 const DEGREE_M = 111_195;
 /** Radius of the sample of the greatest weight, in pixels. */
-const DOT_RADIUS = 6;
+const DOT_RADIUS = 8;
 /** Units longer than this are left out. */
 const UNIT_LENGTH = 12;
 
@@ -183,7 +183,7 @@ export class PointCard {
     this.list.replaceChildren(
       ...[...lines].flatMap(([word, value]) => [dom("dt", {}, [word]), dom("dd", {}, [value])]),
     );
-    this.element.hidden = false;
+    this.element.hidden = this.host.options.explainer !== undefined;
   }
 
   /** Draw the path where the camera sees it. */

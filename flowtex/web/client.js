@@ -525,7 +525,7 @@ points.slice(0,end<0?void 0:end))}let set=Number(settings.samples),samples=isMov
 2?Math.floor(samples/2):samples-1,step=Number(settings.spacing)*grainAt(at,settings,camera,rows),joined=reach=>{let[back=[],
 ahead=[]]=whole.map(side=>upTo(position,side,reach));return[...back.reverse(),position,...ahead]};return{path:joined(PATH_LENGTH*
 Math.max(count,FEWEST_SAMPLES)*step),sampled:joined(count*step),directed,velocity}}var TITLE="Path through this point",SVG="http://www.w3.org/2000/svg",FEWEST_DIGITS=4,MOST_DIGITS=14,VELOCITY_DIGITS=3,PATIENCE_MS=5e3,
-RETRY_MS=40,PLACES_IN_VIEW=200,DEGREE_M=111195,DOT_RADIUS=6,UNIT_LENGTH=12;function withUnit(text,unit2){return unit2&&unit2.
+RETRY_MS=40,PLACES_IN_VIEW=200,DEGREE_M=111195,DOT_RADIUS=8,UNIT_LENGTH=12;function withUnit(text,unit2){return unit2&&unit2.
 length<=UNIT_LENGTH?`${text} ${unit2}`:text}function vectorText(vector,size,digits,flat){return`(${vector.slice(0,flat?2:
 3).map(x=>{let value=Math.abs(x)<10**(-1-digits)*size?0:x;return digits>5?String(Number(value.toPrecision(digits))):numberText(
 value,digits)}).join(", ")})`}var liesAcross=({planar,frame})=>planar&&Math.abs(frame[8])>.999;function placeText(position,header,parts,camera,isWithUnit=!1){
@@ -556,15 +556,15 @@ let text=vectorText(velocity,size,VELOCITY_DIGITS,liesAcross(header.geometry));l
 replace("speed","velocity"),withUnit(text,unit2))}lines.set(label,withUnit(numberText(size,VELOCITY_DIGITS),unit2));for(let[
 name,value]of Object.entries(point.values)){let named=header.scalars.choices.find(each=>each.name===name)??header.scalars;
 lines.set(named.label,withUnit(numberText(value),named.unit))}this.list.replaceChildren(...[...lines].flatMap(([word,value])=>[
-dom("dt",{},[word]),dom("dd",{},[value])])),this.element.hidden=!1}draw(){let{drawn}=this,{camera,root}=this.host;if(!drawn||
-!camera)return;let{clientWidth:width,clientHeight:height}=root,placeOf=point2=>{let place=camera.project(point2);return place&&
-[(place[0]+1)/2*width,(1-place[1])/2*height]},linesOf2=points=>{let lines2=[[]];for(let place of points.map(placeOf))place?
-lines2[lines2.length-1].push(place):lines2.push([]);return lines2.filter(line=>line.length>1)},{path,sampled,directed}=drawn.
-path,point=placeOf(drawn.point),{samples}=drawn,most=Math.max(...samples.map(({weight})=>weight)),dots=samples.flatMap(({
-position,weight,grey})=>{let place=placeOf(position);return place?[{place,radius:DOT_RADIUS*Math.sqrt(weight/most),grey}]:
-[]}),lines={path:linesOf2(path),sampled:dots.length?[]:linesOf2(sampled)},shapes=pathShapes({...lines,dots,point,directed});
-this.overlay.replaceChildren(...shapes.map(([tag,attributes])=>{let shape=document.createElementNS(SVG,tag);for(let[name,
-value]of Object.entries(attributes))shape.setAttribute(name,`${value}`);return shape}))}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */
+dom("dt",{},[word]),dom("dd",{},[value])])),this.element.hidden=this.host.options.explainer!==void 0}draw(){let{drawn}=this,
+{camera,root}=this.host;if(!drawn||!camera)return;let{clientWidth:width,clientHeight:height}=root,placeOf=point2=>{let place=camera.
+project(point2);return place&&[(place[0]+1)/2*width,(1-place[1])/2*height]},linesOf2=points=>{let lines2=[[]];for(let place of points.
+map(placeOf))place?lines2[lines2.length-1].push(place):lines2.push([]);return lines2.filter(line=>line.length>1)},{path,
+sampled,directed}=drawn.path,point=placeOf(drawn.point),{samples}=drawn,most=Math.max(...samples.map(({weight})=>weight)),
+dots=samples.flatMap(({position,weight,grey})=>{let place=placeOf(position);return place?[{place,radius:DOT_RADIUS*Math.
+sqrt(weight/most),grey}]:[]}),lines={path:linesOf2(path),sampled:dots.length?[]:linesOf2(sampled)},shapes=pathShapes({...lines,
+dots,point,directed});this.overlay.replaceChildren(...shapes.map(([tag,attributes])=>{let shape=document.createElementNS(
+SVG,tag);for(let[name,value]of Object.entries(attributes))shape.setAttribute(name,`${value}`);return shape}))}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */
 :host {
   --ink: var(--jp-ui-font-color1, #1b2430);
   --quiet: var(--jp-ui-font-color2, #566373);

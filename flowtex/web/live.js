@@ -205,17 +205,17 @@ c)),gain=alone*total(weights2)/Math.sqrt(squares*total(variance)),moved=mover(at
 let[fine,coarse]=noise(displacement),value=(shares2[0]*fine+shares2[1]*coarse)/alone;return{position:moved(displacement)??
 at.position,weight:weight/total(weights2),noise:value,grey:greyOf(value,1,c)}}),mean=total(samples.map(sample=>sample.weight*
 sample.noise));return{samples,middle:back.length,level:Math.log2(grain/Number(u.u_texel)),mean,gain,grey:greyOf(gain*mean,
-Number(settings.contrast),c)}}var SVG="http://www.w3.org/2000/svg",FIRST_POINT=[-.42,.44],ZOOM="zoom",SLIDERS=[["samples","Samples, K",1,49,2],["spaci\
-ng","Spacing, Δt (grains)",.1,3,.1],["grain","Grain of the noise (pixels)",2,24,1],["seed","Another noise",0,20,1],[ZOOM,
-"Zoom",0,12,.25]],KERNELS={hann:"smooth (Hann)",box:"even (box)",ramp:"behind only (ramp)"},ROW=40;function row(name,count,marks){
-let svg=document.createElementNS(SVG,"svg");svg.setAttribute("viewBox",`0 0 ${count} ${ROW}`),svg.setAttribute("preserve\
-AspectRatio","none"),svg.setAttribute("aria-hidden","true");for(let{at,y,height,fill,title}of marks){let rect=document.createElementNS(
-SVG,"rect"),shape={x:at+.04,y,width:.92,height:Math.max(height,.4),fill};for(let[key,value]of Object.entries(shape))rect.
-setAttribute(key,`${value}`);let words=document.createElementNS(SVG,"title");words.textContent=title,rect.append(words),
-svg.append(rect)}return dom("div",{class:"explained-row"},[dom("span",{},[name]),svg])}var greyText=grey=>`rgb(${Array(3).
-fill(Math.round(255*grey)).join()})`,signed=value=>`${value<0?"−":"+"}${Math.abs(value).toFixed(2)}`,Explanation=class{options;controls=dom(
-"div",{class:"explained-controls"});strip=dom("div",{class:"explained-strip"});words=dom("p",{class:"explained-sum",role:"\
-status"});chosen=new Map;shows=new Map;viewer=null;sum=null;isBegun=!1;constructor(element){this.options={controls:!1,onFrame:()=>this.
+Number(settings.contrast),c)}}var SVG="http://www.w3.org/2000/svg",FIRST_POINT=[-.4,.5],ZOOM="zoom",SLIDERS=[["samples","Samples, K",1,49,2],["spacing",
+"Spacing, Δt",.1,3,.1],["grain","Grain, pixels",2,24,1],["seed","Another noise",0,20,1],[ZOOM,"Zoom",0,12,.25]],KERNELS={
+hann:"smooth",box:"even",ramp:"falling"},ROW=40;function row(name,count,marks){let svg=document.createElementNS(SVG,"svg");
+svg.setAttribute("viewBox",`0 0 ${count} ${ROW}`),svg.setAttribute("preserveAspectRatio","none"),svg.setAttribute("aria-\
+hidden","true");for(let{at,y,height,fill,title}of marks){let rect=document.createElementNS(SVG,"rect"),shape={x:at+.04,y,
+width:.92,height:Math.max(height,.4),fill};for(let[key,value]of Object.entries(shape))rect.setAttribute(key,`${value}`);
+let words=document.createElementNS(SVG,"title");words.textContent=title,rect.append(words),svg.append(rect)}return dom("\
+div",{class:"explained-row"},[dom("span",{},[name]),svg])}var greyText=grey=>`rgb(${Array(3).fill(Math.round(255*grey)).
+join()})`,signed=value=>`${value<0?"−":"+"}${Math.abs(value).toFixed(2)}`,Explanation=class{options;controls=dom("div",
+{class:"explained-controls"});strip=dom("div",{class:"explained-strip"});words=dom("p",{class:"explained-sum",role:"stat\
+us"});chosen=new Map;shows=new Map;viewer=null;sum=null;isBegun=!1;constructor(element){this.options={controls:!1,onFrame:()=>this.
 begin(),onCamera:()=>this.follow(),explainer:{explain:pixel=>this.tell(pixelSum(pixel)),clear:()=>{this.tell(null)}}};for(let slider of SLIDERS)
 this.controls.append(this.slider(slider));this.controls.append(this.menu(),this.box());let panel=dom("div",{class:"expla\
 ined"},[this.controls,this.strip,this.words]);element.after(panel),this.tell(null)}attach(viewer){this.viewer=viewer,this.
@@ -231,21 +231,21 @@ tput"),write=value=>{output.textContent=name===ZOOM?`×${numberText(2**value,2)}
 String(value),write(Number(value))}),dom("label",{},[dom("span",{},[label]),output,input])}menu(){let options=Object.entries(
 KERNELS).map(([value,name])=>dom("option",{value},[name])),input=dom("select",{"data-setting":"kernel"},options);return input.
 addEventListener("change",()=>this.change("kernel",input.value)),this.shows.set("kernel",value=>{input.value=String(value)}),
-dom("label",{},[dom("span",{},["Weights, the kernel"]),input])}box(){let input=dom("input",{type:"checkbox","data-settin\
-g":"lod"});return input.addEventListener("change",()=>this.change("lod",input.checked)),this.shows.set("lod",value=>{input.
-checked=!!value}),dom("label",{class:"explained-box"},[input,dom("span",{},["Level of detail"])])}tell(sum){if(this.sum=
-sum,!sum)return this.words.replaceChildren("Click a point of the picture."),this.strip.replaceChildren(),[];let{samples,
-mean,gain,grey,level}=sum,most=Math.max(...samples.map(({weight})=>weight)),products=samples.map(({weight,noise})=>weight*
-noise),largest=Math.max(...products.map(Math.abs),1e-9),marks=mark=>samples.map(({weight,noise},at)=>{let title=`sample ${at-
-sum.middle}: weight ${weight.toFixed(3)}, noise ${signed(noise)}`;return{at,title,...mark(at)}}),noises=marks(n=>({y:0,height:ROW,
-fill:greyText(samples[n].grey)})),weights2=marks(n=>{let height=samples[n].weight/most*ROW;return{y:ROW-height,height,fill:"\
-currentColor"}}),both=marks(n=>{let height=Math.abs(products[n])/largest*ROW/2;return{y:products[n]>0?ROW/2-height:ROW/2,
-height,fill:"currentColor"}}),ends=dom("div",{class:"explained-ends"},[dom("span",{},["← where the particle was"]),dom(
-"span",{},["where it will be →"])]);this.strip.replaceChildren(row("noise",samples.length,noises),row("weight",samples.
-length,weights2),row("product",samples.length,both),ends);let swatch=dom("span",{class:"explained-pixel"});return swatch.
-style.background=greyText(grey),this.words.replaceChildren(`${samples.length} samples at level ${level.toFixed(1)}. Sum \
-of the products: ${signed(mean)}; `,`times ${gain.toFixed(2)}, so that the contrast is the same for every K: `,dom("stro\
-ng",{},[signed(gain*mean)]),", this grey: ",swatch),samples}};var ROOT="",PLACE=5,nameOf=key=>key.join("/"),keyOf=name=>name.split("/").map(Number);function cellPixels(pyramid,settings){
+dom("label",{},[dom("span",{},["Kernel"]),input])}box(){let input=dom("input",{type:"checkbox","data-setting":"lod"});return input.
+addEventListener("change",()=>this.change("lod",input.checked)),this.shows.set("lod",value=>{input.checked=!!value}),dom(
+"label",{class:"explained-box"},[input,dom("span",{},["Level of detail"])])}tell(sum){if(this.sum=sum,!sum)return this.words.
+replaceChildren("Click a point of the picture."),this.strip.replaceChildren(),[];let{samples,mean,gain,grey,level}=sum,most=Math.
+max(...samples.map(({weight})=>weight)),products=samples.map(({weight,noise})=>weight*noise),largest=Math.max(...products.
+map(Math.abs),1e-9),marks=mark=>samples.map(({weight,noise},at)=>{let title=`sample ${at-sum.middle}: weight ${weight.toFixed(
+3)}, noise ${signed(noise)}`;return{at,title,...mark(at)}}),noises=marks(n=>({y:0,height:ROW,fill:greyText(samples[n].grey)})),
+weights2=marks(n=>{let height=samples[n].weight/most*ROW;return{y:ROW-height,height,fill:"currentColor"}}),both=marks(n=>{
+let height=Math.abs(products[n])/largest*ROW/2;return{y:products[n]>0?ROW/2-height:ROW/2,height,fill:"currentColor"}}),ends=dom(
+"div",{class:"explained-ends"},[dom("span",{},["← where the particle was"]),dom("span",{},["where it will be →"])]);
+this.strip.replaceChildren(row("noise",samples.length,noises),row("weight",samples.length,weights2),row("product",samples.
+length,both),ends);let swatch=dom("span",{class:"explained-pixel"});return swatch.style.background=greyText(grey),this.words.
+replaceChildren(`${samples.length} samples at level ${level.toFixed(1)}. Sum of the products: ${signed(mean)}; `,`times ${gain.
+toFixed(2)}, so that the contrast is the same for every K: `,dom("strong",{},[signed(gain*mean)]),", this grey: ",swatch),
+samples}};var ROOT="",PLACE=5,nameOf=key=>key.join("/"),keyOf=name=>name.split("/").map(Number);function cellPixels(pyramid,settings){
 let[samples,spacing,grain]=["samples","spacing","grain"].map(s=>Number(settings[s])),streak=.5*samples*spacing*grain;return pyramid.
 cellPixels*Math.max(1,2*streak/(pyramid.cellPixels*pyramid.pathCells))}var Pyramid=class{header;places=[];constructor(header,places){
 this.header=header;let start=0;for(let[rows,columns]of header.blocks){let end=start+PLACE*rows*columns;this.places.push(
@@ -605,7 +605,7 @@ let{header,parts}=scene,{scalars}=header,[from,to,between2]=moment,values={},oth
 name,steps,number}));for(let each of[scalars,...others]){let names=scene.scalarParts(from,to,each),[before,after]=names.
 map(part=>parts.get(part)?.data);if(each.name===null||each.name in values||!before||!after)continue;let value=n=>before[n]+
 between2*(after[n]-before[n]);values[each.name]=interpolated(corners,value)}return values}var TITLE="Path through this point",SVG2="http://www.w3.org/2000/svg",FEWEST_DIGITS=4,MOST_DIGITS=14,VELOCITY_DIGITS=3,PATIENCE_MS=5e3,
-RETRY_MS=40,PLACES_IN_VIEW=200,DEGREE_M=111195,DOT_RADIUS=6,UNIT_LENGTH=12;function withUnit(text,unit2){return unit2&&unit2.
+RETRY_MS=40,PLACES_IN_VIEW=200,DEGREE_M=111195,DOT_RADIUS=8,UNIT_LENGTH=12;function withUnit(text,unit2){return unit2&&unit2.
 length<=UNIT_LENGTH?`${text} ${unit2}`:text}function vectorText(vector,size,digits,flat){return`(${vector.slice(0,flat?2:
 3).map(x=>{let value=Math.abs(x)<10**(-1-digits)*size?0:x;return digits>5?String(Number(value.toPrecision(digits))):numberText(
 value,digits)}).join(", ")})`}var liesAcross=({planar,frame})=>planar&&Math.abs(frame[8])>.999;function placeText(position,header,parts,camera,isWithUnit=!1){
@@ -636,15 +636,15 @@ let text=vectorText(velocity,size,VELOCITY_DIGITS,liesAcross(header.geometry));l
 replace("speed","velocity"),withUnit(text,unit2))}lines.set(label,withUnit(numberText(size,VELOCITY_DIGITS),unit2));for(let[
 name,value]of Object.entries(point.values)){let named=header.scalars.choices.find(each=>each.name===name)??header.scalars;
 lines.set(named.label,withUnit(numberText(value),named.unit))}this.list.replaceChildren(...[...lines].flatMap(([word,value])=>[
-dom("dt",{},[word]),dom("dd",{},[value])])),this.element.hidden=!1}draw(){let{drawn}=this,{camera,root}=this.host;if(!drawn||
-!camera)return;let{clientWidth:width,clientHeight:height}=root,placeOf=point2=>{let place=camera.project(point2);return place&&
-[(place[0]+1)/2*width,(1-place[1])/2*height]},linesOf2=points=>{let lines2=[[]];for(let place of points.map(placeOf))place?
-lines2[lines2.length-1].push(place):lines2.push([]);return lines2.filter(line=>line.length>1)},{path,sampled,directed}=drawn.
-path,point=placeOf(drawn.point),{samples}=drawn,most=Math.max(...samples.map(({weight})=>weight)),dots=samples.flatMap(({
-position,weight,grey})=>{let place=placeOf(position);return place?[{place,radius:DOT_RADIUS*Math.sqrt(weight/most),grey}]:
-[]}),lines={path:linesOf2(path),sampled:dots.length?[]:linesOf2(sampled)},shapes=pathShapes({...lines,dots,point,directed});
-this.overlay.replaceChildren(...shapes.map(([tag,attributes])=>{let shape=document.createElementNS(SVG2,tag);for(let[name,
-value]of Object.entries(attributes))shape.setAttribute(name,`${value}`);return shape}))}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */
+dom("dt",{},[word]),dom("dd",{},[value])])),this.element.hidden=this.host.options.explainer!==void 0}draw(){let{drawn}=this,
+{camera,root}=this.host;if(!drawn||!camera)return;let{clientWidth:width,clientHeight:height}=root,placeOf=point2=>{let place=camera.
+project(point2);return place&&[(place[0]+1)/2*width,(1-place[1])/2*height]},linesOf2=points=>{let lines2=[[]];for(let place of points.
+map(placeOf))place?lines2[lines2.length-1].push(place):lines2.push([]);return lines2.filter(line=>line.length>1)},{path,
+sampled,directed}=drawn.path,point=placeOf(drawn.point),{samples}=drawn,most=Math.max(...samples.map(({weight})=>weight)),
+dots=samples.flatMap(({position,weight,grey})=>{let place=placeOf(position);return place?[{place,radius:DOT_RADIUS*Math.
+sqrt(weight/most),grey}]:[]}),lines={path:linesOf2(path),sampled:dots.length?[]:linesOf2(sampled)},shapes=pathShapes({...lines,
+dots,point,directed});this.overlay.replaceChildren(...shapes.map(([tag,attributes])=>{let shape=document.createElementNS(
+SVG2,tag);for(let[name,value]of Object.entries(attributes))shape.setAttribute(name,`${value}`);return shape}))}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */
 :host {
   --ink: var(--jp-ui-font-color1, #1b2430);
   --quiet: var(--jp-ui-font-color2, #566373);
@@ -1318,17 +1318,17 @@ onTime:both((other,time)=>other.setTime(time),options.onTime),onClock:both((othe
 onClock),onSetting:both((other,name,value)=>other.followSetting(name,value),options.onSetting)}}function mountPage(element,scenes2,options={}){
 let tiles=scenes2.map(({loadTile},n)=>loadTile&&new TileQueue(loadTile,part=>viewers[n].setPart(part))),viewers=viewersIn(
 element,scenes2.length,options,n=>({onTiles:(keys,steps)=>tiles[n]?.request(keys,steps)}));return scenes2.forEach(({header},n)=>viewers[n].
-setHeader(header)),scenes2.forEach(({parts},n)=>parts.forEach(part=>viewers[n].setPart(part))),viewers[0]}var KEPT_HEIGHTS=2,scenes=new Map;window.flowtexScene=(name,scene)=>scenes.get(name)?.(scene);function fetchScene(element){
-let{scene:address=""}=element.dataset,name=address.replace(/^.*\//,"").replace(/\.js$/,"");return new Promise((resolve,reject)=>{
-let script=document.createElement("script");scenes.set(name,resolve),script.src=address,script.onload=()=>script.remove(),
-script.onerror=()=>reject(new Error(`${address} cannot be loaded`)),document.head.append(script)})}async function unpacked({
-headers,parts}){let known=new Map,result2=headers.map(header=>({header:{...headers[0],...header},parts:[]}));for(let[view,
-info,text]of parts){let part=known.get(info.digest)??await partOfText(info,text);known.set(info.digest,part),result2[view].
-parts.push({...part,name:info.name})}return result2}function groundAround(element){for(let at=element.parentElement;at;at=
-at.parentElement){let[r,g,b,a=1]=(getComputedStyle(at).backgroundColor.match(/[\d.]+/g)??[]).map(Number);if(a>0)return[r/
-255,g/255,b/255]}return[1,1,1]}var LiveView=class{element;explanation;viewer=null;isWanted=!1;isLoading=!1;constructor(element){
-this.element=element,this.explanation=element.closest(".flowtex-explained")&&new Explanation(element);let near={rootMargin:`${100*
-KEPT_HEIGHTS}% 0%`};new IntersectionObserver(([entry])=>entry.isIntersecting&&void this.show()).observe(element),new IntersectionObserver(
+setHeader(header)),scenes2.forEach(({parts},n)=>parts.forEach(part=>viewers[n].setPart(part))),viewers[0]}var KEPT_HEIGHTS=2,EXPLAINED=".flowtex-explained, .tag_flowtex-explained",scenes=new Map;window.flowtexScene=(name,scene)=>scenes.
+get(name)?.(scene);function fetchScene(element){let{scene:address=""}=element.dataset,name=address.replace(/^.*\//,"").replace(
+/\.js$/,"");return new Promise((resolve,reject)=>{let script=document.createElement("script");scenes.set(name,resolve),script.
+src=address,script.onload=()=>script.remove(),script.onerror=()=>reject(new Error(`${address} cannot be loaded`)),document.
+head.append(script)})}async function unpacked({headers,parts}){let known=new Map,result2=headers.map(header=>({header:{...headers[0],
+...header},parts:[]}));for(let[view,info,text]of parts){let part=known.get(info.digest)??await partOfText(info,text);known.
+set(info.digest,part),result2[view].parts.push({...part,name:info.name})}return result2}function groundAround(element){for(let at=element.
+parentElement;at;at=at.parentElement){let[r,g,b,a=1]=(getComputedStyle(at).backgroundColor.match(/[\d.]+/g)??[]).map(Number);
+if(a>0)return[r/255,g/255,b/255]}return[1,1,1]}var LiveView=class{element;explanation;viewer=null;isWanted=!1;isLoading=!1;constructor(element){
+this.element=element,this.explanation=element.closest(EXPLAINED)&&new Explanation(element);let near={rootMargin:`${100*KEPT_HEIGHTS}\
+% 0%`};new IntersectionObserver(([entry])=>entry.isIntersecting&&void this.show()).observe(element),new IntersectionObserver(
 ([entry])=>entry.isIntersecting||this.leave(),near).observe(element)}async show(){if(this.isWanted=!0,this.viewer||this.
 isLoading)return;this.isLoading=!0;let{element}=this;try{let data=await unpacked(await fetchScene(element));if(!this.isWanted)
 return;let ground=groundAround(element);for(let{header}of data)header.background=ground;let{explanation}=this;this.viewer=
