@@ -32,17 +32,25 @@ extensions = [
     "sphinx_design",
     "sphinx_gallery.gen_gallery",
     "live",
+    "lessons",
     "outside",
 ]
 #: Where the project lies; links to files outside of these pages lead there.
 repository = about["urls"]["Repository"]
 # Beside the pages of the examples lie their notebooks, for those who download them.
-exclude_patterns = ["examples", "gallery/*.ipynb", "gallery/*.py", "gallery/*.json"]
+exclude_patterns = ["examples", *(f"gallery/**/*.{kind}" for kind in ("ipynb", "py", "json"))]
 suppress_warnings = ["config.cache"]  # what draws the examples is no plain value
 
 myst_enable_extensions = ["colon_fence", "deflist", "attrs_inline"]
 myst_heading_anchors = 3
-nb_execution_mode = "cache"
+nb_execution_mode = "force"  # what is shown is written beside the pages at each run
+# Notebooks that are pages, in the folder lessons.
+lessons_notebooks = [
+    "lesson_1_flow_textures",
+    "lesson_2_level_of_detail",
+    "lesson_3_steady_and_unsteady",
+    "how_it_works",
+]
 nb_execution_timeout = 120
 nb_execution_raise_on_error = True
 nb_ipywidgets_js: dict[str, str] = {}  # what is live here needs no kernel and no network
@@ -92,7 +100,9 @@ sphinx_gallery_conf = {
     "min_reported_time": 1e9,
     "show_signature": False,
     "download_all_examples": False,
-    "thumbnail_size": (480, 300),
+    "thumbnail_size": live.THUMBNAIL,
+    "within_subsection_order": "FileNameSortKey",
+    "subsection_order": [f"examples/{name}" for name in live.SECTIONS],
     "write_computation_times": False,
 }
 

@@ -18,11 +18,14 @@ again what an example has shown, ``{live} plot_airfoil``.
 
 from __future__ import annotations
 
+import contextlib
 import os
 import shutil
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from html import escape
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any, ClassVar
 
 import numpy as np
@@ -48,6 +51,8 @@ STILL = (1000, 500)
 THUMBNAIL, THUMBNAIL_GRAIN = (560, 350), 1.6
 #: Bytes of a scene, at most; of a series so many steps are kept as fit.
 SCENE_BYTES = 1_800_000
+#: Sections of the gallery, folders of docs/examples, in order.
+SECTIONS = ("grids", "surfaces", "earth", "time", "looks", "classics")
 HINT = (
     "This picture is alive: drag it, click it and zoom with the wheel, or pinch it. "
     "Arrow keys, + and − do the same, 0 shows all, and a click on the flow shows a path."
@@ -60,11 +65,15 @@ shown: list[View] = []
 class View:
     """A flow that was shown, as ``flowtex.show`` returns it in a notebook."""
 
+    #: Sizes of its pictures, and how many times larger than usual the grain is in each.
+    sizes: Sequence[tuple[tuple[int, int], float]] = ((STILL, 1.0), (THUMBNAIL, THUMBNAIL_GRAIN))
+    time: float | None = None
+
     def __init__(self, mesh: Any, options: dict[str, Any], steps: int | None) -> None:
         arguments = Options.split(**options)
-        self.field: FlowField = arguments.field.field(mesh)
+        self.mesh: FlowField = arguments.field.field(mesh)
         self.look = {k: v for k, v in options.items() if k not in vars(arguments.field)}
-        self.views = _fitting(self.field, Options.split(**self.look), steps)
+        self.views = _fitting(self.mesh, Options.split(**self.look), steps)
         view = arguments.view
         # Clients fit a view of everything into any shape, if it is the one that they expect.
         self.whole = view.zoom == 1 and view.focus is None and view.camera is None
@@ -73,24 +82,26 @@ class View:
         self.plays = self.views[0].scene.settings.motion != "off"
 
     @cached_property
-    def pictures(self) -> tuple[Image.Image, Image.Image]:
-        """A still and a thumbnail, without ground, so that they lie on light and dark pages."""
+    def pictures(self) -> list[Image.Image]:
+        """Pictures of the sizes, without ground, so that they lie on light and dark pages."""
         options = Options.split(**{**self.look, "show_scalar_bar": False})
-        two = len(self.views) > 1
+        two = options.view.beside is not None
         plotter = new_plotter(STILL, two_views=two, off_screen=True, lighting="light kit")
         try:
             plotter.enable_anti_aliasing("msaa", multi_samples=4)
-            handles = add_scenes(plotter, self.field, options, labels=False)
+            handles = add_scenes(plotter, self.mesh, options, labels=False)
             result = []
-            for size, coarser in ((STILL, 1.0), (THUMBNAIL, THUMBNAIL_GRAIN)):
+            for size, coarser in self.sizes:
                 plotter.window_size = list(size)
                 for handle in handles:
                     handle.settings.grain *= coarser
+                    if self.time is not None:
+                        handle.time = self.time
                 point_camera(plotter, handles[0].scene, options.view)
                 result.append(_without_ground(plotter))
         finally:
             plotter.close()
-        return result[0], result[1]
+        return result
 
     def write(self, name: str) -> None:
         """Write the scene and its still."""
@@ -99,8 +110,6 @@ class View:
         with (folder / f"{name}.js").open("w", encoding="utf-8", newline="\n") as file:
             file.writelines(scene_script(name, self.views, camera=self.camera))
         self.pictures[0].save(folder / f"{name}.webp", quality=80, method=6)
-        for view in self.views:
-            view.close()
 
     @property
     def flags(self) -> tuple[str, ...]:
@@ -202,7 +211,8 @@ class Live(SphinxDirective):
             return [self._node(self.arguments[0], tuple(flags))]
         code = "\n".join(self.content)
         names = self.env.temp_data.setdefault("live_names", {"__name__": "__main__"})
-        exec(compile(code, self.get_location(), "exec"), names)
+        with TemporaryDirectory() as folder, contextlib.chdir(folder):  # for what it writes
+            exec(compile(code, self.get_location(), "exec"), names)
         block = nodes.literal_block(code, code, language="python")
         result: list[nodes.Node] = [] if "hide" in self.options else [block]
         for view in shown:
@@ -217,18 +227,22 @@ class Live(SphinxDirective):
         return LiveNode(scene=name, flags=flags, title=self.options.get("title", ""))
 
 
+def html(scene: Mapping[str, Any], title: str, folders: int) -> str:
+    """Return the element of a scene, on a page so many folders below the top."""
+    path = f"{'../' * folders}_static/scenes/{scene['scene']}"
+    flags = "".join(f" data-{flag}" for flag in scene["flags"])
+    return (
+        f'<div class="flowtex-live" data-scene="{path}.js" data-label="{escape(title)}"{flags}>'
+        f'<img src="{path}.webp" alt="{escape(title)}"></div>'
+    )
+
+
 def visit_live(writer: Any, node: LiveNode) -> None:
     """Write the element of a scene; the first one of a page says what can be done with it."""
     page = writer.builder.current_docname
-    top = "../" * writer.builder.get_target_uri(page).count("/")
-    scene = f"{top}_static/scenes/{node['scene']}"
-    title = escape(node["title"] or writer.builder.env.titles[page].astext())
-    flags = "".join(f" data-{flag}" for flag in node["flags"])
-    writer.body.append(
-        f'<figure class="flowtex-figure"><div class="flowtex-live" data-scene="{scene}.js"'
-        f' data-label="{title}"{flags}>'
-        f'<img src="{scene}.webp" alt="{title}" width="{STILL[0]}" height="{STILL[1]}"></div>'
-    )
+    folders = writer.builder.get_target_uri(page).count("/")
+    title = node["title"] or writer.builder.env.titles[page].astext()
+    writer.body.append(f'<figure class="flowtex-figure">{html(node, title, folders)}')
     if next(iter(node.document.findall(LiveNode))) is node:
         writer.body.append(f"<figcaption>{HINT}</figcaption>")
     writer.body.append("</figure>\n")

@@ -3,6 +3,7 @@
 // is loaded when the element comes into sight, and given up again when it is far from it. With
 // "data-plays" it streams, and "data-label" is what it is called by those who do not see it.
 
+import { Explanation } from "./explanation.ts";
 import { partOfText, type Header, type NamedPart, type PartInfo } from "./protocol.ts";
 import type { Viewer } from "./viewer.ts";
 import { mountPage, type SceneData } from "./views.ts";
@@ -16,6 +17,9 @@ interface Packed {
 
 /** Heights of the window that a view may be away before it is given up. */
 const KEPT_HEIGHTS = 2;
+
+/** What is around a view that is explained: a class, or the tag of a cell of MyST-NB. */
+const EXPLAINED = ".flowtex-explained, .tag_flowtex-explained";
 
 const scenes = new Map<string, (scene: Packed) => void>();
 
@@ -66,12 +70,14 @@ function groundAround(element: HTMLElement): number[] {
 
 class LiveView {
   private readonly element: HTMLElement;
+  private readonly explanation: Explanation | null;
   private viewer: Viewer | null = null;
   private isWanted = false;
   private isLoading = false;
 
   constructor(element: HTMLElement) {
     this.element = element;
+    this.explanation = element.closest(EXPLAINED) && new Explanation(element);
     const near = { rootMargin: `${100 * KEPT_HEIGHTS}% 0%` };
     new IntersectionObserver(([entry]) => entry.isIntersecting && void this.show()).observe(element);
     new IntersectionObserver(([entry]) => entry.isIntersecting || this.leave(), near).observe(element);
@@ -87,7 +93,10 @@ class LiveView {
       if (!this.isWanted) return;
       const ground = groundAround(element);
       for (const { header } of data) header.background = ground;
-      this.viewer = mountPage(element, data, { guarded: true, label: element.dataset.label });
+      const { explanation } = this;
+      const options = { guarded: true, label: element.dataset.label, ...explanation?.options };
+      this.viewer = mountPage(element, data, options);
+      explanation?.attach(this.viewer);
       this.watch();
     } catch (error) {
       element.title = `This view is a picture only: ${error instanceof Error ? error.message : error}`;

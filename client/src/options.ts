@@ -3,6 +3,7 @@
 import type { CameraState } from "./camera.ts";
 import type { ColourChoice } from "./colours.ts";
 import type { Point } from "./picking.ts";
+import type { PixelPlace, Sample } from "./pixelsum.ts";
 import type { Value } from "./protocol.ts";
 import type { TileKey } from "./tilechoice.ts";
 
@@ -14,12 +15,20 @@ interface Leader {
   pause(): void;
 }
 
+export interface Explainer {
+  explain(pixel: PixelPlace): Sample[];
+  /** No point is chosen any more. */
+  clear(): void;
+}
+
 export interface Options {
   onCamera?: (camera: CameraState) => void;
   onTime?: (time: number) => void;
   onClock?: (clock: number) => void;
   onPlaying?: (playing: boolean) => void;
   onPoint?: (point: Point) => void;
+  /** What tells how the texture at the chosen point comes about; its samples are drawn as well. */
+  explainer?: Explainer;
   /** The parts of a time step are lacking. */
   onNeed?: (step: number) => void;
   /** Tiles are lacking, in the order of need; no others that were asked for before are needed. */

@@ -20,20 +20,7 @@ AUTHORS OR COPYRIGHT HOLDERS BE LIABLE FOR ANY CLAIM, DAMAGES OR OTHER
 LIABILITY, WHETHER IN AN ACTION OF CONTRACT, TORT OR OTHERWISE, ARISING FROM,
 OUT OF OR IN CONNECTION WITH THE SOFTWARE OR THE USE OR OTHER DEALINGS IN
 THE SOFTWARE. */
-"use strict";(()=>{var EARTH_LINES=["coastlines","graticule"],TYPES={float32:Float32Array,uint32:Uint32Array,float16:Uint16Array,uint16:Uint16Array,
-int16:Int16Array,int8:Int8Array,uint8:Uint8Array};function shareOf({low,high,log}){if(!log)return value=>(value-low)/(high-
-low||1);let span=Math.log(high/low)||1;return value=>Math.log(Math.max(value,low)/low)/span}function legendLimits({low,high,
-log}){let least=log?0:1e-5*Math.max(Math.abs(low),Math.abs(high)),told=value=>Math.abs(value)<least?0:value;return[told(
-low),told(high)]}function isSignFree(header){return header.variant.includes("FLOWTEX_SIGNFREE")}function stepOf(name){return Number(
-name.split("/")[1])}function tilePart(name){let[kind,level,row,column,...rest]=name.split("/");return kind==="tile"?[[level,
-row,column].join("/"),rest.join("/")]:null}function decoded(info,bytes){let view=ArrayBuffer.isView(bytes)?new Uint8Array(
-bytes.buffer,bytes.byteOffset,bytes.byteLength):new Uint8Array(bytes),{name,dtype,shape,digest}=info,Type=TYPES[dtype];if(!Type)
-throw new Error(`a part has the type "${dtype}"; expected ${Object.keys(TYPES).join(", ")}`);return{name,shape,digest,data:new Type(
-view.slice().buffer)}}async function partOfText(info,text){let packed=Uint8Array.from(atob(text),letter=>letter.charCodeAt(0)),unpacked2=new Blob(
-[packed]).stream().pipeThrough(new DecompressionStream("gzip")),planes=new Uint8Array(await new Response(unpacked2).arrayBuffer()),
-count=info.shape.reduce((product2,n)=>product2*n,1),width=count?planes.length/count:1,bytes=new Uint8Array(planes.length);
-for(let plane=0;plane<width;plane+=1)for(let n=0;n<count;n+=1)bytes[n*width+plane]=planes[plane*count+n];return decoded(
-info,bytes)}function dom(kind,attributes={},children=[]){let element=document.createElement(kind);for(let[name,value]of Object.entries(
+"use strict";(()=>{function dom(kind,attributes={},children=[]){let element=document.createElement(kind);for(let[name,value]of Object.entries(
 attributes))element.setAttribute(name,value);return element.append(...children),element}var ICONS={play:"M8 5.2v13.6L19 \
 12z",pause:"M8.5 6v12M15.5 6v12",home:"M4 11.5 12 5l8 6.5M6.5 10v9h11v-9",lod:"M12 3.8l8 4.1-8 4.1-8-4.1zM4 12.2l8 4.1 8\
 -4.1M4 16.3l8 4.1 8-4.1",levels:"M3.5 18a8.5 8.5 0 0 1 17 0M7 18a5 5 0 0 1 10 0M10.3 18a1.7 1.7 0 0 1 3.4 0",settings:"M\
@@ -63,32 +50,227 @@ result(),v(a),v(b)),scale2=(a,by)=>scale(result(),v(a),by),cross2=(a,b)=>cross(r
 v(a)),add=(a,b,t=1)=>scaleAndAdd(result(),v(a),v(b),t);function rotated(a,axis,degrees){let turn=fromRotation(zeros(16),
 degrees*Math.PI/180,v(axis));return turn===null?result():transformMat4(result(),v(a),turn)}function toFrame(frame,a){let columns=transpose(
 zeros(9),frame);return transformMat3(result(),v(a),columns)}function fromFrame(frame,a){return transformMat3(result(),v(
-a),frame)}function clamp(x,low,high){return Math.min(Math.max(x,low),high)}var ROOT="",PLACE=5,nameOf=key=>key.join("/"),keyOf=name=>name.split("/").map(Number);function cellPixels(pyramid,settings){
+a),frame)}function clamp(x,low,high){return Math.min(Math.max(x,low),high)}function constantsOf(shader){let lines=shader.matchAll(/^const \w+ FLOWTEX_(\w+) =\s*(?:\w+\()?([^;]*?)\)?;/gm);return Object.
+fromEntries(Array.from(lines,([,name,values])=>[name,values.split(",").map(value=>Number(value.trim().replace(/u$/,"")))]))}
+function latticeOf(point,octave,u,c){let isOdd=(octave&1)===1,cells=2**(octave>>1),inverse2=(isOdd?Math.SQRT1_2:1)/cells/
+Number(u.u_noiseFinest),finest=isOdd?u.u_noiseOriginOdd:u.u_noiseOriginEven,past=isOdd?u.u_noiseRestOdd:[0,0,0],origin=finest.
+map(n=>Math.floor(n/cells)),rest=finest.map((n,axis)=>(n-origin[axis]*cells+past[axis])/cells),key=origin.map((n,axis)=>Math.
+imul(n,c.AXIS_PRIMES[axis]));return key[0]+=Math.imul(octave,c.OCTAVE_PRIME[0])+Math.imul(Number(u.u_seed),c.SEED_PRIME[0]),
+{here:add(rest,point,inverse2),inverse:inverse2,key}}function octaveAt({here,inverse:inverse2,key},displacement,c,axes){
+let[toKey,toGrain]=c.HASH_FACTORS,sides=add(here,displacement,inverse2).slice(0,axes).map((x,axis)=>{let low=Math.floor(
+x),hash=n=>{let k=key[axis]+Math.imul(n,c.AXIS_PRIMES[axis])>>>0;return Math.imul(k^k>>>c.HASH_SHIFT[0],toKey)};return{hashes:[
+hash(low),hash(low+1)],shares:[1-x+low,x-low]}}),sum=0;for(let corner=0;corner<2**axes;corner+=1){let side=axis=>corner>>
+axis&1,hash=sides.reduce((all,{hashes},axis)=>all^hashes[side(axis)],0),share=sides.reduce((all,{shares:shares2},axis)=>all*
+shares2[side(axis)],1);sum+=share*Math.imul(hash,toGrain)}let spread=(all,{shares:[a,b]})=>all*(1-2*a*b);return sum/Math.
+sqrt(sides.reduce(spread,1)*c.GRAIN_VARIANCE[0])}function noiseAround(local,octave,isPlanar,u,c){let point=add(local,scale2(
+u.u_noiseOrigin,-1)),[fine,coarse]=[0,1].map(n=>latticeOf(point,octave+n,u,c)),axes=isPlanar?2:3;return displacement=>[octaveAt(
+fine,displacement,c,axes),octaveAt(coarse,displacement,c,axes)]}function fromHalf(bits){let exponent=bits>>10&31,part=bits&1023,size;return exponent===0?size=part*2**-24:exponent===31?
+size=part?NaN:1/0:size=(1024+part)*2**(exponent-25),bits&32768?-size:size}function toHalf(x){let sign=x<0?32768:0,size=Math.
+abs(x);if(!(size<65520))return sign|(size>=65520?31744:32256);let exponent=Math.max(Math.floor(Math.log2(size||1e-30)),-14),
+part=Math.round(size/2**(exponent-10));return sign|(part<1024?part:(exponent+14)*1024+part)}function halved(texels,width,height,channels){
+let[w,h]=[Math.max(width>>1,1),Math.max(height>>1,1)],result2=new Uint16Array(w*h*channels),between2=(n,few,many)=>{let x=(n+
+.5)*(many/few)-.5,base=Math.floor(x);return[base,Math.min(base+1,many-1),x-base]};for(let j=0,n=0;j<h;j+=1){let[low,high,
+v2]=between2(j,h,height);for(let i=0;i<w;i+=1){let[left,right,u]=between2(i,w,width);for(let c=0;c<channels;c+=1){let at=(y,x)=>fromHalf(
+texels[(y*width+x)*channels+c]),below=at(low,left)*(1-u)+at(low,right)*u,above=at(high,left)*(1-u)+at(high,right)*u;result2[n++]=
+toHalf(below*(1-v2)+above*v2)}}}return[result2,w,h]}var EARTH_LINES=["coastlines","graticule"],TYPES={float32:Float32Array,uint32:Uint32Array,float16:Uint16Array,uint16:Uint16Array,
+int16:Int16Array,int8:Int8Array,uint8:Uint8Array};function shareOf({low,high,log}){if(!log)return value=>(value-low)/(high-
+low||1);let span=Math.log(high/low)||1;return value=>Math.log(Math.max(value,low)/low)/span}function legendLimits({low,high,
+log}){let least=log?0:1e-5*Math.max(Math.abs(low),Math.abs(high)),told=value=>Math.abs(value)<least?0:value;return[told(
+low),told(high)]}function isSignFree(header){return header.variant.includes("FLOWTEX_SIGNFREE")}function stepOf(name){return Number(
+name.split("/")[1])}function tilePart(name){let[kind,level,row2,column,...rest]=name.split("/");return kind==="tile"?[[level,
+row2,column].join("/"),rest.join("/")]:null}function decoded(info,bytes){let view=ArrayBuffer.isView(bytes)?new Uint8Array(
+bytes.buffer,bytes.byteOffset,bytes.byteLength):new Uint8Array(bytes),{name,dtype,shape,digest}=info,Type=TYPES[dtype];if(!Type)
+throw new Error(`a part has the type "${dtype}"; expected ${Object.keys(TYPES).join(", ")}`);return{name,shape,digest,data:new Type(
+view.slice().buffer)}}async function partOfText(info,text){let packed=Uint8Array.from(atob(text),letter=>letter.charCodeAt(0)),unpacked2=new Blob(
+[packed]).stream().pipeThrough(new DecompressionStream("gzip")),planes=new Uint8Array(await new Response(unpacked2).arrayBuffer()),
+count=info.shape.reduce((product2,n)=>product2*n,1),width=count?planes.length/count:1,bytes=new Uint8Array(planes.length);
+for(let plane=0;plane<width;plane+=1)for(let n=0;n<count;n+=1)bytes[n*width+plane]=planes[plane*count+n];return decoded(
+info,bytes)}var NO_VALUE=-1e9;function positions(data,anchor){return anchor.some(Boolean)?data.map((x,n)=>x-anchor[n%3]):data}function grid(us,vs){
+let result2=new Float32Array(2*us.length*vs.length),n=0;for(let v2 of vs)for(let u of us)result2[n++]=u,result2[n++]=v2;
+return result2}function coordinates({shape,rows,columns}){let middles=(count,{before,size})=>Array.from({length:count},(_,n)=>(n+
+before+.5)/size);return grid(middles(shape[1],columns),middles(shape[0],rows))}function noiseCoordinates({alongI,alongJ}){
+return grid(alongI,alongJ)}function shares(steps,scalars,nodes){let result2=new Float32Array(2*nodes),place=shareOf(scalars);
+return steps.forEach((values,k)=>{for(let n=0;n<nodes;n+=1){let share=place(values[n]);result2[2*n+k]=Number.isFinite(share)?
+share:NO_VALUE}}),result2}function cornersAt([rows,columns],[i,j]){let[left,low]=[Math.min(Math.floor(i),columns-2),Math.
+min(Math.floor(j),rows-2)],[a,b]=[i-left,j-low],corner=low*columns+left,[least,most]=[Math.min(a,b),Math.max(a,b)],aside=corner+
+(a>=b?1:columns);return[[corner,1-most],[aside,most-least],[corner+columns+1,least]]}function interpolated(corners,value){
+return corners.reduce((sum,[node,share])=>sum+share*value(node),0)}var SHARES=[0,0,1,0,0,1],SHARP=.86,MOST_SHARE=1-1e-7;function atVertices(values,triangles,size){let result2=new values.constructor(
+size*triangles.length),n=0;for(let node of triangles)for(let k=size*node;k<size*node+size;k+=1)result2[n++]=values[k];return result2}
+function vertexShares(count){return Float32Array.from({length:SHARES.length*count},(_,n)=>SHARES[n%SHARES.length])}function vertexNormals(normals,positions2,triangles){
+let result2=atVertices(normals,triangles,3),at=(values,n)=>[values[3*n],values[3*n+1],values[3*n+2]];for(let n=0;n<triangles.
+length;n+=3){let[a,b,c]=[0,1,2].map(k=>at(positions2,triangles[n+k])),own=unit(cross2(subtract2(b,a),subtract2(c,a)));for(let k=n;k<
+n+3;k+=1){let normal=at(result2,k),scale3=length2(normal),alike=dot2(own,normal);Math.abs(alike)<SHARP*scale3&&result2.set(
+own.map(x=>x*(alike<0?-scale3:scale3)),3*k)}}return result2}function vertexCorners(triangles){let result2=new Float32Array(
+3*triangles.length);for(let n=0;n<result2.length;n+=1)result2[n]=triangles[3*Math.floor(n/9)+n%3];return result2}function placeIn(triangle,second,third){
+return[third,triangle+Math.min(Math.max(second,0),MOST_SHARE)]}function cornersOf(triangles,[i,j]){let number=Math.floor(
+j),[second,third]=[j-number,i];return[1-second-third,second,third].map((share,k)=>[triangles[3*number+k],share])}var TriangleMesh=class{shape;blocks;constructor(mesh,blocks){
+this.shape=[mesh.shape[0],mesh.shape[1]],this.blocks=blocks.data}levels(){return new Int8Array(this.shape[0]*this.shape[1])}triangles(levels){
+let{blocks}=this,drawn=levels.reduce((bits,level,block)=>bits|(level<0?0:1<<block),0),index=new Uint32Array(3*blocks.length),
+end=0;for(let n=0;n<blocks.length;n+=1)if(blocks[n]&drawn)for(let k=0;k<3;k+=1)index[end++]=3*n+k;return index.slice(0,end)}};function uniforms(header,settings,view,noiseShape=null){let{geometry,slices,constants}=header,s=settings,signFree=isSignFree(
+header),finest=2**(Math.floor(Math.log2(geometry.extent))-constants.noiseDoublings),w=view.eye[3],eye=toFrame(geometry.frame,
+subtract2(view.eye,scale2(geometry.center,w))),kernel=signFree&&s.kernel==="ramp"?"hann":s.kernel;return{u_eye:[...subtract2(
+eye,scale2(view.anchor,w)),w],u_between:view.between,u_slicesSize:[geometry.columns.size,geometry.rows.size],u_deepest:geometry.
+levels,u_lags:slices.lags,u_lagCount:slices.lags.length,u_sides:s.two_sided||signFree?slices.sides:1,u_unit:slices.unit,
+u_rateLayer:slices.count-1,u_cell:slices.cell,u_samples:isMoving(header,settings)?2*s.samples-1:s.samples,u_spacing:s.spacing,
+u_grain:s.grain*view.density,u_kernel:constants.kernels.indexOf(kernel),u_lod:s.lod,u_contrast:s.contrast,u_strength:s.strength,
+u_seed:s.seed,u_showLevel:s.show_level,u_fixed:s.fixed_grain,...motionUniforms(header,s,view),...noiseOrigin(header,view,
+finest),u_noiseFinest:finest,u_texel:geometry.extent/s.resolution,...header.paper&&noiseShape?paperUniforms(header.paper,
+s,noiseShape,view.density):{}}}function isMoving(header,settings){let streams=settings.motion!=="off"&&!isSignFree(header);
+return!header.paper&&(header.slices.steps>1||streams)}function isNear(header,settings,view){let{geometry,slices,constants}=header,
+s=settings,gap=Math.hypot(...subtract2(view.eye,geometry.center))-.5*geometry.extent,away=view.eye[3]?Math.max(gap,0)/Math.
+hypot(...subtract2(view.eye,view.focus)):1,grain=s.lod?view.pixel*away*s.grain*view.density:geometry.extent/s.resolution;
+return Math.floor(s.samples/2)*s.spacing*grain<constants.farCells*slices.critical}function motionUniforms(header,s,view){
+let{geometry,slices,constants}=header,varies=slices.steps>1,inPixels=!varies&&s.speed_in==="pixels",turns=varies?(view.time-
+slices.times[0])/(geometry.extent/slices.pace):(view.clock/s.period%1+1)%1,travel=varies?geometry.extent:s.speed*s.period,
+coarse=Math.floor(turns/constants.clockStep)*constants.clockStep;return{u_clock:[coarse,turns-coarse],u_travel:travel*(inPixels?
+view.density:1),u_travelInPixels:inPixels,u_travelBySpeed:varies||s.motion==="speed",u_wave:constants.wavePixels*view.density}}
+function noiseOrigin(header,view,finest){let{noiseDoublings,clearDoublings}=header.constants,{frame,center}=header.geometry,
+focus=toFrame(frame,subtract2(view.focus,center)),limit=2**(noiseDoublings-clearDoublings)-1,cells=2**clearDoublings,even=focus.
+map(x=>clamp(Math.round(x/finest/cells),-limit,limit)*cells),odd=even.map(x=>x/Math.SQRT2),whole=odd.map(x=>Math.floor(x/
+cells)*cells);return{u_noiseOrigin:even.map((x,k)=>x*finest-view.anchor[k]),u_noiseOriginEven:even,u_noiseOriginOdd:whole,
+u_noiseRestOdd:odd.map((x,k)=>x-whole[k])}}function paperUniforms(paper,s,noiseShape,density){let tiles=s.noise==="image"?
+s.tiles:1,[rows,columns]=noiseShape;return{u_noiseSize:paper.size.map(n=>n*density),u_noiseGrain:paper.grain,u_noiseDeviation:paper.
+deviations,u_noiseCorrected:paper.corrected,u_pictureSize:[columns*density*tiles,rows*density*tiles],u_pictureRound:[Number(
+paper.repeat[1]),Number(paper.repeat[0])],u_pictureGrey:noiseShape.length===2,u_tiles:tiles}}function momentOf(times2,time){
+if(times2.length<2)return[0,0,0];let step=0;for(;step<times2.length-2&&times2[step+1]<=time;)step+=1;let late=(time-times2[step])/
+(times2[step+1]-times2[step]);return[step,step+1,clamp(late,0,1)]}var POINTS_BETWEEN_SLICES=8,PATH_LENGTH=4,FEWEST_SAMPLES=10,LEAST_FACING=.05,LEAST_SLOPE=1e-6,SMALL=.001;function texelOf(scene,step){
+let{slices,geometry}=scene.header,data=scene.part(`slices/${step}`).data,extra=scene.parts.get(`extra/${step}`)?.data,count=geometry.
+rows.size*geometry.columns.size,{channels}=slices;return(layer,texel)=>{let first=(layer*count+texel)*channels,at=n=>n<channels?
+fromHalf(data[first+n]):0,place=slices.extra.indexOf(layer),fourth=channels===4||!extra||place<0?at(3):fromHalf(extra[place*
+count+texel]);return[at(0),at(1),at(2),fourth]}}function texelsAt({scene,place}){let{rows,columns,triangles}=scene.header.
+geometry;if(triangles)return scene.cornersAt(place);let[x,y]=[place[0]+columns.before,place[1]+rows.before],[left,low]=[
+Math.floor(x),Math.floor(y)],[s,t]=[x-left,y-low];return[(1-s)*(1-t),s*(1-t),(1-s)*t,s*t].map((share,n)=>{let column=clamp(
+left+(n&1),0,columns.size-1);return[clamp(low+(n>>1),0,rows.size-1)*columns.size+column,share]})}function layersAt(at){let{
+scene,moment}=at,{slices}=scene.header,texels=texelsAt(at),[before,after,late]=moment,steps=[before,after].map(step=>texelOf(
+scene,step)),shares2=[1-late,late],signs=isSignFree(scene.header)?signsOf(texels.map(([texel])=>steps[0](0,texel))):texels.
+map(()=>1);return layer=>{let sum=[0,0,0,0];return texels.forEach(([texel,weight],n)=>{let other=layer+(layer>slices.lags.
+length?-1:1)*slices.lags.length,from=signs[n]<0&&layer>0?other:layer;steps.forEach((step,k)=>{shares2[k]&&step(from,texel).
+forEach((value,c)=>{sum[c]+=weight*shares2[k]*value*(c<3?signs[n]:1)})})}),sum}}function signsOf(tangents){let together=[
+0,0,0];return tangents.map(([x,y,z])=>{let sign=dot2(together,[x,y,z])<0?-1:1;return together=add(together,[x,y,z],sign),
+sign})}function sideOf(layers,lags,first,sign,by){let[before,from]=[layers(0).slice(0,3),0],reach=layers(first+1)[3],end=Math.
+min(reach,lags[lags.length-1]),result2=[];for(let m=0;m<lags.length&&from<end;m+=1){let after=layers(first+m+1).slice(0,
+3);for(let n=1;n<=POINTS_BETWEEN_SLICES;n+=1){let share=n/POINTS_BETWEEN_SLICES,lag=Math.min(from+share*(lags[m]-from),end),
+late=(lag-from)/(lags[m]-from),slope=before.map((x,c)=>x+late*(after[c]-x));if(result2.push(scale2(slope,sign*lag*by)),lag===
+end)break}[before,from]=[after,lags[m]]}return result2}function mover({scene,place,position}){let{paper,geometry}=scene.
+header;if(!paper)return moved=>add(position,fromFrame(geometry.frame,moved));let{alongI,alongJ}=paper,here=[between(alongI,
+place[0]),between(alongJ,place[1])],start=pointAt(scene,place);return([u,v2])=>{let at=[indexOf(alongI,here[0]+u),indexOf(
+alongJ,here[1]+v2)];return at.some(Number.isNaN)?null:add(position,subtract2(pointAt(scene,at),start))}}function pointAt(scene,place){
+let{data}=scene.part("position"),corners=scene.cornersAt(place),local=[0,1,2].map(c=>interpolated(corners,n=>data[3*n+c]));
+return fromFrame(scene.header.geometry.frame,local)}function normalAt(scene,place){let{shape,triangles}=scene.header.geometry;
+if(triangles){let corner=(second,third)=>pointAt(scene,placeIn(Math.floor(place[1]),second,third));return cross2(subtract2(
+corner(1,0),corner(0,0)),subtract2(corner(0,1),corner(0,0)))}let[i,j]=place.map((n,axis)=>clamp(n,.5,shape[1-axis]-1.5)),
+at=(di,dj)=>pointAt(scene,[i+di,j+dj]);return cross2(subtract2(at(.5,0),at(-.5,0)),subtract2(at(0,.5),at(0,-.5)))}function between(values,at){
+let n=Math.min(Math.floor(at),values.length-2);return values[n]+(at-n)*(values[n+1]-values[n])}function indexOf(values,value){
+let n=values.findIndex(other=>other>=value);return n<0||value<values[0]?NaN:n===0?0:n-1+(value-values[n-1])/(values[n]-values[n-
+1])}function grainAt({scene,place,position},settings,camera,rows){let{geometry,paper}=scene.header,normal=normalAt(scene,
+place),{height,ray}=camera.at(position),facing=Math.max(Math.abs(dot2(unit(normal),ray)),LEAST_FACING),pixel=2*height/rows;
+if(paper){let[across,up]=[paper.alongI,paper.alongJ].map((along,axis)=>{let n=Math.min(Math.floor(place[axis]),along.length-
+2);return(along[n+1]-along[n])*paper.size[axis]}),texel2=Math.sqrt(length2(normal)/(across*up));return paper.grain*(settings.
+lod?Math.max(pixel/Math.sqrt(facing),texel2):texel2)}let texel=geometry.extent/Number(settings.resolution),grain=pixel/facing*
+Number(settings.grain);return settings.lod?settings.fixed_grain?Math.max(grain,texel):grain:texel}function upTo(start,side,most){
+let result2=[],[from,left]=[start,most];for(let point of side){let step=length2(subtract2(point,from));if(step>=left){left>
+0&&result2.push(add(from,subtract2(point,from),left/(step||1)));break}result2.push(point),left-=step,from=point}return result2}
+function pathThrough(at,settings,camera,rows){let{scene,position}=at,{slices,paper,speed}=scene.header,layers=layersAt(at),
+directed=!isSignFree(scene.header),base=layers(0),slope=[base[0],base[1],base[2]],moved=mover(at),small=scale2(slope,SMALL*
+(paper?1/paper.size[0]:slices.cell)/(length2(slope)||1)),along=length2(slope)>LEAST_SLOPE?subtract2(moved(small)??position,
+position):slope,velocity=scale2(unit(along),layers(2)[3]*speed.typical),whole=[],sides=settings.two_sided||!directed?slices.
+sides:1;for(let side=0;side<sides&&length2(slope)>LEAST_SLOPE;side+=1){let by=paper?1:base[3]*slices.unit,points=sideOf(
+layers,slices.lags,side*slices.lags.length,side?1:-1,by).map(moved),end=points.findIndex(point=>point===null);whole.push(
+points.slice(0,end<0?void 0:end))}let set=Number(settings.samples),samples=isMoving(scene.header,settings)?2*set-1:set,count=sides===
+2?Math.floor(samples/2):samples-1,step=Number(settings.spacing)*grainAt(at,settings,camera,rows),joined=reach=>{let[back=[],
+ahead=[]]=whole.map(side=>upTo(position,side,reach));return[...back.reverse(),position,...ahead]};return{path:joined(PATH_LENGTH*
+Math.max(count,FEWEST_SAMPLES)*step),sampled:joined(count*step),directed,velocity}}function kernelAt(x,u,c){return u.u_kernel===c.KERNEL_BOX[0]?1:u.u_kernel===c.KERNEL_RAMP[0]?u.u_sides===2?.5*(1-x):1-Math.
+abs(x):.5+.5*Math.cos(Math.PI*x)}function sideSteps(layers,side,spacing,u,c){let lags=u.u_lags,slope=layer=>layers(layer).
+slice(0,3),by=layers(0)[3]*Number(u.u_unit),first=side*lags.length,end=Math.min(layers(first+1)[3],lags[lags.length-1]),
+sign=side?1:-1,set=Number(u.u_samples),count=u.u_sides===2?Math.floor(set/2):set-1,stepAt=along=>spacing/by/Math.max(length2(
+along),c.LEAST_SPEED[0]),[before,after]=[slope(0),slope(first+1)],[from,m]=[0,0],[lag,step]=[0,stepAt(before)],result2=[];
+for(let k=1;k<=count;k+=1){lag+=step;let alive=clamp((end-lag)/step+1,0,1);if(!alive)break;for(;lag>lags[m]&&m<lags.length-
+1;m+=1)[before,from]=[after,lags[m]],after=slope(first+m+2);let bend=scale2(subtract2(after,before),1/(lags[m]-from)),at=lateness=>before.
+map((x,n)=>x+bend[n]*lateness),weight=alive*kernelAt(sign*k/(count+1),u,c);result2.push({displacement:scale2(at(lag-from),
+lag*sign*by),weight}),step=stepAt(at(2*lag-from))}return result2}function shared(apart,near,c){let total2=1;for(let m=1;m<=
+c.SHARED_TERMS[0];m+=1){let d=m*m*apart*apart;if(d>c.BELL_END[0])break;total2+=2*near**(m*m)*Math.exp(-d*(c.BELL[0]+c.BELL_BEND[0]*
+d))}return total2}var total=values=>values.reduce((sum,value)=>sum+value,0);function greyOf(value,contrast,c){return 1/(1+
+Math.exp(-c.TONE_SLOPE[0]*contrast*value))}function pixelSum({at,settings,camera,rows}){let{header}=at.scene,{geometry,slices,
+shaders}=header;if(header.paper||isMoving(header,settings))return null;let c=constantsOf(shaders.fragment),focus=camera.
+state.focal_point,view={...{eye:camera.eye,between:at.moment[2],time:slices.times[0],clock:0},focus,anchor:[0,0,0],density:1,
+pixel:1},u=uniforms(header,settings,view),grain=grainAt(at,settings,camera,rows),spacing=Number(u.u_spacing)*grain,layers=layersAt(
+at),sides=length2(layers(0).slice(0,3))>c.LEAST_SPEED[0]?[...Array(Number(u.u_sides)).keys()]:[],[back=[],ahead=[]]=sides.
+map(side=>sideSteps(layers,side,spacing,u,c)),own=Math.max(kernelAt(0,u,c),c.LEAST_WEIGHT[0]),steps=[...back.reverse(),{
+displacement:[0,0,0],weight:own},...ahead],octaves=clamp(2*Math.log2(grain/Number(u.u_noiseFinest)),0,c.LAST_OCTAVE[0]),
+octave=Math.floor(octaves),late=octaves-octave,local=toFrame(geometry.frame,subtract2(at.position,geometry.center)),noise=noiseAround(
+local,octave,geometry.planar,u,c),weights2=steps.map(({weight})=>weight),squares=total(weights2.map(weight=>weight**2)),
+pairs=weights2.slice(1).map((weight,n)=>weight*weights2[n]),near=total(pairs)/squares,apart=Number(u.u_spacing)*2**(late/
+2),shares2=[1-late,late],alone=Math.hypot(...shares2),variance=shares2.map((w,n)=>w**2*shared(apart*Math.SQRT1_2**n,near,
+c)),gain=alone*total(weights2)/Math.sqrt(squares*total(variance)),moved=mover(at),samples=steps.map(({displacement,weight})=>{
+let[fine,coarse]=noise(displacement),value=(shares2[0]*fine+shares2[1]*coarse)/alone;return{position:moved(displacement)??
+at.position,weight:weight/total(weights2),noise:value,grey:greyOf(value,1,c)}}),mean=total(samples.map(sample=>sample.weight*
+sample.noise));return{samples,middle:back.length,level:Math.log2(grain/Number(u.u_texel)),mean,gain,grey:greyOf(gain*mean,
+Number(settings.contrast),c)}}var SVG="http://www.w3.org/2000/svg",FIRST_POINT=[-.4,.5],ZOOM="zoom",SLIDERS=[["samples","Samples, K",1,49,2],["spacing",
+"Spacing, Δt",.1,3,.1],["grain","Grain, pixels",2,24,1],["seed","Another noise",0,20,1],[ZOOM,"Zoom",0,12,.25]],KERNELS={
+hann:"smooth",box:"even",ramp:"falling"},ROW=40;function row(name,count,marks){let svg=document.createElementNS(SVG,"svg");
+svg.setAttribute("viewBox",`0 0 ${count} ${ROW}`),svg.setAttribute("preserveAspectRatio","none"),svg.setAttribute("aria-\
+hidden","true");for(let{at,y,height,fill,title}of marks){let rect=document.createElementNS(SVG,"rect"),shape={x:at+.04,y,
+width:.92,height:Math.max(height,.4),fill};for(let[key,value]of Object.entries(shape))rect.setAttribute(key,`${value}`);
+let words=document.createElementNS(SVG,"title");words.textContent=title,rect.append(words),svg.append(rect)}return dom("\
+div",{class:"explained-row"},[dom("span",{},[name]),svg])}var greyText=grey=>`rgb(${Array(3).fill(Math.round(255*grey)).
+join()})`,signed=value=>`${value<0?"−":"+"}${Math.abs(value).toFixed(2)}`,Explanation=class{options;controls=dom("div",
+{class:"explained-controls"});strip=dom("div",{class:"explained-strip"});words=dom("p",{class:"explained-sum",role:"stat\
+us"});chosen=new Map;shows=new Map;viewer=null;sum=null;isBegun=!1;constructor(element){this.options={controls:!1,onFrame:()=>this.
+begin(),onCamera:()=>this.follow(),explainer:{explain:pixel=>this.tell(pixelSum(pixel)),clear:()=>{this.tell(null)}}};for(let slider of SLIDERS)
+this.controls.append(this.slider(slider));this.controls.append(this.menu(),this.box());let panel=dom("div",{class:"expla\
+ined"},[this.controls,this.strip,this.words]);element.after(panel),this.tell(null)}attach(viewer){this.viewer=viewer,this.
+isBegun=!1,viewer.setSettings(Object.fromEntries(this.chosen));for(let[name,show]of this.shows)name in viewer.settings&&
+show(viewer.settings[name]);this.shows.get(ZOOM)?.(0)}begin(){this.isBegun||(this.isBegun=!0,this.viewer?.card.choose(...FIRST_POINT))}follow(){
+let{viewer}=this;viewer?.camera&&this.shows.get(ZOOM)?.(Math.log2(viewer.camera.zoom)),viewer?.card.update()}change(name,value){
+let{viewer,sum}=this;if(name!==ZOOM&&this.chosen.set(name,value),!!viewer?.camera){if(name===ZOOM){let{camera}=viewer,point=sum?.
+samples[sum.middle].position,place=(point&&camera.project(point))??[0,0];camera.zoomBy(2**Number(value)/camera.zoom,...place),
+viewer.reportCamera()}else viewer.choose(name,value);viewer.card.update()}}slider([name,label,low,high,step]){let range={
+min:`${low}`,max:`${high}`,step:`${step}`},input=dom("input",{type:"range","data-setting":name,...range}),output=dom("ou\
+tput"),write=value=>{output.textContent=name===ZOOM?`×${numberText(2**value,2)}`:numberText(value,2)};return input.addEventListener(
+"input",()=>{write(input.valueAsNumber),this.change(name,input.valueAsNumber)}),this.shows.set(name,value=>{input.value=
+String(value),write(Number(value))}),dom("label",{},[dom("span",{},[label]),output,input])}menu(){let options=Object.entries(
+KERNELS).map(([value,name])=>dom("option",{value},[name])),input=dom("select",{"data-setting":"kernel"},options);return input.
+addEventListener("change",()=>this.change("kernel",input.value)),this.shows.set("kernel",value=>{input.value=String(value)}),
+dom("label",{},[dom("span",{},["Kernel"]),input])}box(){let input=dom("input",{type:"checkbox","data-setting":"lod"});return input.
+addEventListener("change",()=>this.change("lod",input.checked)),this.shows.set("lod",value=>{input.checked=!!value}),dom(
+"label",{class:"explained-box"},[input,dom("span",{},["Level of detail"])])}tell(sum){if(this.sum=sum,!sum)return this.words.
+replaceChildren("Click a point of the picture."),this.strip.replaceChildren(),[];let{samples,mean,gain,grey,level}=sum,most=Math.
+max(...samples.map(({weight})=>weight)),products=samples.map(({weight,noise})=>weight*noise),largest=Math.max(...products.
+map(Math.abs),1e-9),marks=mark=>samples.map(({weight,noise},at)=>{let title=`sample ${at-sum.middle}: weight ${weight.toFixed(
+3)}, noise ${signed(noise)}`;return{at,title,...mark(at)}}),noises=marks(n=>({y:0,height:ROW,fill:greyText(samples[n].grey)})),
+weights2=marks(n=>{let height=samples[n].weight/most*ROW;return{y:ROW-height,height,fill:"currentColor"}}),both=marks(n=>{
+let height=Math.abs(products[n])/largest*ROW/2;return{y:products[n]>0?ROW/2-height:ROW/2,height,fill:"currentColor"}}),ends=dom(
+"div",{class:"explained-ends"},[dom("span",{},["← where the particle was"]),dom("span",{},["where it will be →"])]);
+this.strip.replaceChildren(row("noise",samples.length,noises),row("weight",samples.length,weights2),row("product",samples.
+length,both),ends);let swatch=dom("span",{class:"explained-pixel"});return swatch.style.background=greyText(grey),this.words.
+replaceChildren(`${samples.length} samples at level ${level.toFixed(1)}. Sum of the products: ${signed(mean)}; `,`times ${gain.
+toFixed(2)}, so that the contrast is the same for every K: `,dom("strong",{},[signed(gain*mean)]),", this grey: ",swatch),
+samples}};var ROOT="",PLACE=5,nameOf=key=>key.join("/"),keyOf=name=>name.split("/").map(Number);function cellPixels(pyramid,settings){
 let[samples,spacing,grain]=["samples","spacing","grain"].map(s=>Number(settings[s])),streak=.5*samples*spacing*grain;return pyramid.
 cellPixels*Math.max(1,2*streak/(pyramid.cellPixels*pyramid.pathCells))}var Pyramid=class{header;places=[];constructor(header,places){
 this.header=header;let start=0;for(let[rows,columns]of header.blocks){let end=start+PLACE*rows*columns;this.places.push(
-places.subarray(start,end)),start=end}}blocksOf(name,[level,row,column]){let[rows,columns]=this.header.blocks[level];if(name===
-ROOT)return[0,0,rows,columns];let{tileBlocks:size}=this.header,ends=[Math.min(size*(row+1),rows),Math.min(size*(column+1),
-columns)];return[size*row,size*column,...ends]}children(name,[level,row,column]){let{blocks,tileBlocks}=this.header,counts=blocks[level-
-1].map(n=>Math.ceil(n/tileBlocks)),[from,to]=name===ROOT?[[0,0],counts]:[[2*row,2*column],[row,column].map((n,k)=>Math.min(
-2*n+2,counts[k]))],keys=[];for(let j=from[0];j<to[0];j+=1)for(let i=from[1];i<to[1];i+=1)keys.push([level-1,j,i]);return keys}finerPart([
-,row,column],above){let{tileBlocks}=this.header,half=tileBlocks/2,[,j,i]=above===ROOT?[0,0,0]:keyOf(above);return[half*row-
-tileBlocks*j,half*column-tileBlocks*i,half]}choose(view){let chosen=new Map,{depth,finest}=this.header,waiting=[ROOT];for(let name of waiting){
-let key=name===ROOT?[depth,0,0]:keyOf(name),choice={key,needed:!1,pixels:0,finer:[]},[top,left,bottom,right]=this.blocksOf(
-name,key),width=this.header.blocks[key[0]][1],coarse=new Set;for(let j=top;j<bottom;j+=1)for(let i=left;i<right;i+=1){let at=PLACE*
-(j*width+i),place=this.places[key[0]].subarray(at,at+PLACE);if(!isSeen(view,place))continue;let pixels=cellSize(view,place);
-key[0]>finest&&pixels>view.cellPixels?coarse.add(j*width+i):choice.needed=!0,coarse.has(j*width+i)||(choice.pixels=Math.
-max(choice.pixels,pixels))}coarse.size&&(choice.finer=this.children(name,key).filter(child=>{let[row,column,size]=this.finerPart(
-child,ROOT);return[...coarse].some(block=>{let[j,i]=[Math.floor(block/width)-row,block%width-column];return j>=0&&j<size&&
-i>=0&&i<size})}).map(nameOf)),chosen.set(name,choice),waiting.push(...choice.finer)}return chosen}};function isSeen({planes},[
-x,y,z,radius]){return planes.every(p=>dot2(p,[x,y,z])+p[3]>=-radius*length2(p.slice(0,3)))}function cellSize({eye,halfHeight,
-pixels},[x,y,z,radius,size]){let away=eye?Math.max(length2(subtract2([x,y,z],eye))-radius,size):1;return size*.5*pixels/
-(halfHeight*away)}function wantedTiles(chosen){return[...chosen].filter(([name,{needed}])=>name!==ROOT&&needed).sort(([,
-a],[,b])=>b.pixels-a.pixels).map(([name])=>name)}function cover(chosen,ready){let shown=new Map,hide=name=>{shown.delete(
-name),chosen.get(name)?.finer.forEach(hide)},covered=name=>{let{needed=!1,finer=[]}=chosen.get(name)??{},done=finer.filter(
-covered);return name!==ROOT&&!needed&&done.length===finer.length?!0:name!==ROOT&&!ready(name)?(done.forEach(hide),!1):(shown.
-set(name,done),!0)};return covered(ROOT),shown}function fullIndex(place,level,nodes){let line=n=>Math.min(n*2**level,nodes-
-1),low=Math.floor(place);return line(low)+(place-low)*(line(low+1)-line(low))}var TileQueue=class{load;give;most;running=new Map;wanted=[];constructor(load,give,most=1){this.load=load,this.give=give,
+places.subarray(start,end)),start=end}}blocksOf(name,[level,row2,column]){let[rows,columns]=this.header.blocks[level];if(name===
+ROOT)return[0,0,rows,columns];let{tileBlocks:size}=this.header,ends=[Math.min(size*(row2+1),rows),Math.min(size*(column+
+1),columns)];return[size*row2,size*column,...ends]}children(name,[level,row2,column]){let{blocks,tileBlocks}=this.header,
+counts=blocks[level-1].map(n=>Math.ceil(n/tileBlocks)),[from,to]=name===ROOT?[[0,0],counts]:[[2*row2,2*column],[row2,column].
+map((n,k)=>Math.min(2*n+2,counts[k]))],keys=[];for(let j=from[0];j<to[0];j+=1)for(let i=from[1];i<to[1];i+=1)keys.push([
+level-1,j,i]);return keys}finerPart([,row2,column],above){let{tileBlocks}=this.header,half=tileBlocks/2,[,j,i]=above===ROOT?
+[0,0,0]:keyOf(above);return[half*row2-tileBlocks*j,half*column-tileBlocks*i,half]}choose(view){let chosen=new Map,{depth,
+finest}=this.header,waiting=[ROOT];for(let name of waiting){let key=name===ROOT?[depth,0,0]:keyOf(name),choice={key,needed:!1,
+pixels:0,finer:[]},[top,left,bottom,right]=this.blocksOf(name,key),width=this.header.blocks[key[0]][1],coarse=new Set;for(let j=top;j<
+bottom;j+=1)for(let i=left;i<right;i+=1){let at=PLACE*(j*width+i),place=this.places[key[0]].subarray(at,at+PLACE);if(!isSeen(
+view,place))continue;let pixels=cellSize(view,place);key[0]>finest&&pixels>view.cellPixels?coarse.add(j*width+i):choice.
+needed=!0,coarse.has(j*width+i)||(choice.pixels=Math.max(choice.pixels,pixels))}coarse.size&&(choice.finer=this.children(
+name,key).filter(child=>{let[row2,column,size]=this.finerPart(child,ROOT);return[...coarse].some(block=>{let[j,i]=[Math.
+floor(block/width)-row2,block%width-column];return j>=0&&j<size&&i>=0&&i<size})}).map(nameOf)),chosen.set(name,choice),waiting.
+push(...choice.finer)}return chosen}};function isSeen({planes},[x,y,z,radius]){return planes.every(p=>dot2(p,[x,y,z])+p[3]>=
+-radius*length2(p.slice(0,3)))}function cellSize({eye,halfHeight,pixels},[x,y,z,radius,size]){let away=eye?Math.max(length2(
+subtract2([x,y,z],eye))-radius,size):1;return size*.5*pixels/(halfHeight*away)}function wantedTiles(chosen){return[...chosen].
+filter(([name,{needed}])=>name!==ROOT&&needed).sort(([,a],[,b])=>b.pixels-a.pixels).map(([name])=>name)}function cover(chosen,ready){
+let shown=new Map,hide=name=>{shown.delete(name),chosen.get(name)?.finer.forEach(hide)},covered=name=>{let{needed=!1,finer=[]}=chosen.
+get(name)??{},done=finer.filter(covered);return name!==ROOT&&!needed&&done.length===finer.length?!0:name!==ROOT&&!ready(
+name)?(done.forEach(hide),!1):(shown.set(name,done),!0)};return covered(ROOT),shown}function fullIndex(place,level,nodes){
+let line=n=>Math.min(n*2**level,nodes-1),low=Math.floor(place);return line(low)+(place-low)*(line(low+1)-line(low))}var TileQueue=class{load;give;most;running=new Map;wanted=[];constructor(load,give,most=1){this.load=load,this.give=give,
 this.most=most}request(keys,steps){this.wanted=keys.map(key=>[key,steps]);let names=new Set(keys.map(key=>`${nameOf(key)}\
  ${steps}`));for(let[name,controller]of this.running)names.has(name)||controller.abort();this.next()}next(){for(;this.wanted.
 length&&this.running.size<this.most;){let[key,steps]=this.wanted[0];this.wanted.shift();let name=`${nameOf(key)} ${steps}`;
@@ -156,9 +338,9 @@ this.state.position,ahead,depth))}shift(by){this.state.focal_point=add(this.stat
 this.state.position,by)}};function copyOf(state){let{position,focal_point:focus,up}=state;return{...state,position:[...position],
 focal_point:[...focus],up:[...up]}}function fitted(surface,limits,positions2,aspect){let{center,extent,planar,frame}=surface,
 half=tangent(limits.view_angle),back=planar?fromFrame(frame,[0,0,1]):unit([1,1,1]),up=planar?fromFrame(frame,[0,1,0]):[0,
-0,1],right=unit(cross2(up,back)),rows=[right,cross2(back,right),back].map(row=>toFrame(frame,row)),[low,high]=[[1/0,1/0],
+0,1],right=unit(cross2(up,back)),rows=[right,cross2(back,right),back].map(row2=>toFrame(frame,row2)),[low,high]=[[1/0,1/0],
 [-1/0,-1/0]],distance=0;for(let n=0;n<positions2.length;n+=3){let node=[positions2[n],positions2[n+1],positions2[n+2]];if(!Number.
-isFinite(node[0]))continue;let[x,y,z]=rows.map(row=>dot2(row,node));[x,y].forEach((value,k)=>{low[k]=Math.min(low[k],value),
+isFinite(node[0]))continue;let[x,y,z]=rows.map(row2=>dot2(row2,node));[x,y].forEach((value,k)=>{low[k]=Math.min(low[k],value),
 high[k]=Math.max(high[k],value)});let wide=Math.max(Math.abs(x)/aspect,Math.abs(y));distance=Math.max(distance,z+wide/half/
 (1-2*limits.margin))}let tall=Math.max(high[1]-low[1],(high[0]-low[0])/aspect,1e-12*extent);return{position:add(center,back,
 planar?extent:distance),focal_point:[...center],up,parallel:planar,parallel_scale:.5*tall/(1-2*limits.margin),view_angle:limits.
@@ -171,8 +353,8 @@ let near=length2(subtract2(a.center,b.center))<.1*a.extent,ratio=a.extent/b.exte
 .8&&ratio<1.25}function projection(surface,camera,anchor){let{state,aspect}=camera,{center,extent,frame}=surface,[right,
 up,ahead]=camera.axes.map(axis=>toFrame(frame,axis)),local=point=>subtract2(toFrame(frame,subtract2(point,center)),anchor),
 focus=local(state.focal_point),middle=scale2(anchor,-1),radius=.51*extent,m=new Array(16).fill(0),half=state.parallel?state.
-parallel_scale:tangent(state.view_angle);if([right.map(c=>c/half/aspect),up.map(c=>c/half)].forEach((row,k)=>{for(let n=0;n<
-3;n+=1)m[4*n+k]=row[n];m[12+k]=-dot2(row,focus)}),state.parallel){for(let n=0;n<3;n+=1)m[4*n+2]=ahead[n]/radius;return m[14]=
+parallel_scale:tangent(state.view_angle);if([right.map(c=>c/half/aspect),up.map(c=>c/half)].forEach((row2,k)=>{for(let n=0;n<
+3;n+=1)m[4*n+k]=row2[n];m[12+k]=-dot2(row2,focus)}),state.parallel){for(let n=0;n<3;n+=1)m[4*n+2]=ahead[n]/radius;return m[14]=
 -dot2(ahead,middle)/radius,m[15]=1,m}let eye=local(state.position),depth=dot2(subtract2(middle,eye),ahead),far=Math.max(
 depth+radius,.001*radius),near=Math.max(depth-radius,.001*far),a=(far+near)/(far-near),b=-2*far*near/(far-near);for(let n=0;n<
 3;n+=1)m[4*n+2]=ahead[n]*a,m[4*n+3]=ahead[n];return m[15]=-dot2(ahead,eye),m[14]=m[15]*a+b,m}function atPixel(matrix,[x,
@@ -181,10 +363,10 @@ height;return m}var PIXEL_COST=8,DRAFT_SAMPLES=9,COARSEST_SCALE=.2,DRAFT_SPACING
 function quality(price,fixed,pixels,samples,budget){let room=Math.max(budget-fixed,2)/price;if(pixels*(samples+PIXEL_COST)<=
 room)return{scale:1,samples};let fewer=Math.min(DRAFT_SAMPLES,samples),scale3=Math.sqrt(room/(fewer+PIXEL_COST)/pixels);
 return scale3<1?{scale:Math.max(scale3,COARSEST_SCALE),samples:fewer}:{scale:1,samples:clamp(Math.floor(room/pixels-PIXEL_COST),
-fewer,samples)}}function rowsIn(budget,price,fixed,width,samples){let row=price*width*(samples+PIXEL_COST);return Math.max(
-Math.floor(Math.max(budget-fixed,fixed)/row),FEWEST_ROWS)}function motionFactor(samples){return(2*samples+PIXEL_COST)/(samples+
-PIXEL_COST)}function learnedPrice(price,spent,fixed,pixels,samples,factor){let latest=Math.max(spent-fixed,.05)/(pixels*
-(samples+PIXEL_COST)*factor);return price+(latest-price)*(latest>price?.7:.3)}function draftUniforms(settings,samples,density){
+fewer,samples)}}function rowsIn(budget,price,fixed,width,samples){let row2=price*width*(samples+PIXEL_COST);return Math.
+max(Math.floor(Math.max(budget-fixed,fixed)/row2),FEWEST_ROWS)}function motionFactor(samples){return(2*samples+PIXEL_COST)/
+(samples+PIXEL_COST)}function learnedPrice(price,spent,fixed,pixels,samples,factor){let latest=Math.max(spent-fixed,.05)/
+(pixels*(samples+PIXEL_COST)*factor);return price+(latest-price)*(latest>price?.7:.3)}function draftUniforms(settings,samples,density){
 let[grain,spacing,all]=[settings.grain,settings.spacing,settings.samples].map(Number),drawn=Math.max(grain*density,Math.
 min(grain,1)),stretched=all*spacing*grain*density/(samples*drawn);return{u_grain:drawn,u_spacing:clamp(stretched,.1,Math.
 max(DRAFT_SPACING,spacing))}}var PREAMBLE=`#version 300 es
@@ -258,16 +440,7 @@ length/3-1;for(let first=0;first<pieces;first+=256){let count=Math.min(256,piece
 high[n%3]=Math.max(high[n%3],points[n]));let middle=low.map((least,k)=>(least+high[k])/2),radius=Math.hypot(...low.map((least,k)=>(high[k]-
 least)/2));groups.push({first,count,middle,radius})}return groups}function visibleRuns(groups,planes){let runs=[];for(let{
 first,count,middle:[x,y,z],radius}of groups){let isOut=([a,b,c,d])=>a*x+b*y+c*z+d<-radius*Math.hypot(a,b,c);if(planes.some(
-isOut))continue;let last=runs[runs.length-1];last&&last[0]+last[1]===first?last[1]+=count:runs.push([first,count])}return runs}var NO_VALUE=-1e9;function positions(data,anchor){return anchor.some(Boolean)?data.map((x,n)=>x-anchor[n%3]):data}function grid(us,vs){
-let result2=new Float32Array(2*us.length*vs.length),n=0;for(let v2 of vs)for(let u of us)result2[n++]=u,result2[n++]=v2;
-return result2}function coordinates({shape,rows,columns}){let middles=(count,{before,size})=>Array.from({length:count},(_,n)=>(n+
-before+.5)/size);return grid(middles(shape[1],columns),middles(shape[0],rows))}function noiseCoordinates({alongI,alongJ}){
-return grid(alongI,alongJ)}function shares(steps,scalars,nodes){let result2=new Float32Array(2*nodes),place=shareOf(scalars);
-return steps.forEach((values,k)=>{for(let n=0;n<nodes;n+=1){let share=place(values[n]);result2[2*n+k]=Number.isFinite(share)?
-share:NO_VALUE}}),result2}function cornersAt([rows,columns],[i,j]){let[left,low]=[Math.min(Math.floor(i),columns-2),Math.
-min(Math.floor(j),rows-2)],[a,b]=[i-left,j-low],corner=low*columns+left,[least,most]=[Math.min(a,b),Math.max(a,b)],aside=corner+
-(a>=b?1:columns);return[[corner,1-most],[aside,most-least],[corner+columns+1,least]]}function interpolated(corners,value){
-return corners.reduce((sum,[node,share])=>sum+share*value(node),0)}var POINT_BYTES=12,PIECE_ENDS=2;function groundAt({earth,geometry},camera,x,y){if(!earth)return null;let[start,along]=camera.
+isOut))continue;let last=runs[runs.length-1];last&&last[0]+last[1]===first?last[1]+=count:runs.push([first,count])}return runs}var POINT_BYTES=12,PIECE_ENDS=2;function groundAt({earth,geometry},camera,x,y){if(!earth)return null;let[start,along]=camera.
 ray(x,y);if(earth.map){let across=fromFrame(geometry.frame,[0,0,1]),depth2=dot2(subtract2(geometry.center,start),across)/
 dot2(along,across),place=add(start,along,depth2),[x0,y0,x1,y1]=earth.map;return place[0]>=x0&&place[0]<=x1&&place[1]>=y0&&
 place[1]<=y1?place:null}let nearest=dot2(start,along),square=nearest**2-dot2(start,start)+earth.radius**2,depth=-nearest-
@@ -332,9 +505,9 @@ group"});ends=["Lowest value","Highest value"].map(name=>dom("input",{type:"numb
 viewer=viewer;let{scalars,swatches,ends,auto}=this,{lifetime}=viewer;lifetime.listen(scalars,"change",()=>{viewer.chooseColours(
 {scalars:scalars.value===PLAIN?!1:scalars.value,clim:null})});for(let end of ends)lifetime.listen(end,"change",()=>this.
 takeRange());lifetime.listen(auto,"click",()=>viewer.chooseColours({clim:null})),lifetime.listen(swatches,"click",event=>{
-let name=event.target.dataset.cmap;name&&viewer.chooseColours({cmap:name})});let row=(name,...fields)=>dom("div",{class:"\
-row"},[dom("span",{class:"name"},[name]),...fields]);this.rangeRow=row("Range",dom("span",{class:"between"},[...ends,auto])),
-this.mapRow=row("Colour map",swatches),this.mapRow.classList.add("ranged"),this.element.append(row("Colour by",scalars),
+let name=event.target.dataset.cmap;name&&viewer.chooseColours({cmap:name})});let row2=(name,...fields)=>dom("div",{class:"\
+row"},[dom("span",{class:"name"},[name]),...fields]);this.rangeRow=row2("Range",dom("span",{class:"between"},[...ends,auto])),
+this.mapRow=row2("Colour map",swatches),this.mapRow.classList.add("ranged"),this.element.append(row2("Colour by",scalars),
 this.mapRow,this.rangeRow)}get rows(){return[this.element,this.lines]}updateLines(){let{header,parts,lifetime}=this.viewer,
 names=EARTH_LINES.filter(name=>header?.earth&&parts.has(name));this.lines.hidden=!names.length,this.lines.children.length!==
 names.length&&this.lines.replaceChildren(...names.map(name=>{let input=dom("input",{type:"checkbox",role:"switch"});lifetime.
@@ -358,25 +531,25 @@ noise_correction:({paper},rebuild)=>!!paper&&rebuild,lines:({slices},rebuild)=>s
 settings},rebuild)=>rebuild&&(slices.steps===1||settings.lines!=="pathlines"),lod:()=>!1,show_level:()=>!1};function isUseful({
 name,affects},header,rebuild){return USES[name]?.(header,rebuild)??(affects==="uniform"||rebuild)}var Controls=class{element=dom(
 "div",{class:"settings glass",hidden:"","aria-label":"Settings"});viewer;controls=new Map;constructor(viewer){this.viewer=
-viewer}build(header){this.controls.clear(),this.element.replaceChildren();let rebuild=this.viewer.options.rebuild??!1;for(let row of header.
-table.filter(each=>isUseful(each,header,rebuild))){let control=this.control(row);this.controls.set(row.name,control);let{
-input,output}=control,name=dom("span",{class:"name"},[row.label]),attributes={class:"row",title:row.text,"data-setting":row.
+viewer}build(header){this.controls.clear(),this.element.replaceChildren();let rebuild=this.viewer.options.rebuild??!1;for(let row2 of header.
+table.filter(each=>isUseful(each,header,rebuild))){let control=this.control(row2);this.controls.set(row2.name,control);let{
+input,output}=control,name=dom("span",{class:"name"},[row2.label]),attributes={class:"row",title:row2.text,"data-setting":row2.
 name},line=dom("label",attributes,[name,...output?[output]:[],input]);line.classList.toggle("ranged",output!==void 0),this.
-element.append(line)}}update(){let{settings}=this.viewer;for(let[name,{show}]of this.controls)name in settings&&show(settings[name])}control(row){
-return row.control==="checkbox"?this.switch(row):row.control==="choice"?this.menu(row):row.control==="number"?this.numberField(
-row):this.slider(row)}switch({name}){let input=dom("input",{type:"checkbox",role:"switch"});return this.viewer.lifetime.
-listen(input,"change",()=>this.viewer.choose(name,input.checked)),{input,show:value=>{input.checked=!!value}}}menu({name,
-choices}){let options=choices.map(choice=>dom("option",{value:choice},[choice])),input=dom("select",{},options);return this.
+element.append(line)}}update(){let{settings}=this.viewer;for(let[name,{show}]of this.controls)name in settings&&show(settings[name])}control(row2){
+return row2.control==="checkbox"?this.switch(row2):row2.control==="choice"?this.menu(row2):row2.control==="number"?this.
+numberField(row2):this.slider(row2)}switch({name}){let input=dom("input",{type:"checkbox",role:"switch"});return this.viewer.
+lifetime.listen(input,"change",()=>this.viewer.choose(name,input.checked)),{input,show:value=>{input.checked=!!value}}}menu({
+name,choices}){let options=choices.map(choice=>dom("option",{value:choice},[choice])),input=dom("select",{},options);return this.
 viewer.lifetime.listen(input,"change",()=>this.viewer.choose(name,input.value)),{input,show:value=>{input.value=String(value)}}}numberField({
 name,whole,low,high}){let[min,max]=[low??0,high??1],step=whole?"1":"any",input=dom("input",{type:"number",min:String(min),
 max:String(max),step});return this.viewer.lifetime.listen(input,"change",()=>{let{valueAsNumber:value}=input;Number.isFinite(
-value)&&this.viewer.choose(name,clamp(value,min,max))}),{input,show:value=>{input.value=String(value)}}}slider(row){let{
-toSlider,fromSlider,min,max,step}=scaleOf(row),range={min:String(min),max:String(max),step:String(step)},input=dom("inpu\
-t",{type:"range",...range}),output=dom("output"),value=()=>fromSlider(Number(input.value)),write=shown=>{output.textContent=
-numberText(Number(shown))};this.viewer.lifetime.listen(input,"input",()=>write(value()));let kind=row.affects==="uniform"?
-"input":"change";return this.viewer.lifetime.listen(input,kind,()=>this.viewer.choose(row.name,value())),{input,output,show:shown=>{
-input.value=String(toSlider(Number(shown))),write(shown)}}}};function scaleOf(row){let{low,high,whole,logarithmic}=row,[
-least,most]=[low??0,high??1],toSlider=value=>logarithmic?Math.log2(value):value,fromSlider=place=>{let value=logarithmic?
+value)&&this.viewer.choose(name,clamp(value,min,max))}),{input,show:value=>{input.value=String(value)}}}slider(row2){let{
+toSlider,fromSlider,min,max,step}=scaleOf(row2),range={min:String(min),max:String(max),step:String(step)},input=dom("inp\
+ut",{type:"range",...range}),output=dom("output"),value=()=>fromSlider(Number(input.value)),write=shown=>{output.textContent=
+numberText(Number(shown))};this.viewer.lifetime.listen(input,"input",()=>write(value()));let kind=row2.affects==="unifor\
+m"?"input":"change";return this.viewer.lifetime.listen(input,kind,()=>this.viewer.choose(row2.name,value())),{input,output,
+show:shown=>{input.value=String(toSlider(Number(shown))),write(shown)}}}};function scaleOf(row2){let{low,high,whole,logarithmic}=row2,
+[least,most]=[low??0,high??1],toSlider=value=>logarithmic?Math.log2(value):value,fromSlider=place=>{let value=logarithmic?
 2**place:place;return whole?Math.round(value):Number(clamp(value,least,most).toPrecision(3))},[min,max]=[least,most].map(
 toSlider),step=whole&&!logarithmic?1:(max-min)/SLIDER_STOPS;return{toSlider,fromSlider,min,max,step}}var CAMERA_KEYS={ArrowLeft:"left",ArrowRight:"right",ArrowUp:"up",ArrowDown:"down","+":"closer","=":"closer","-":"farthe\
 r",_:"farther",0:"whole"},PLAY_KEY=" ",FULLSCREEN_KEY="f",CLOSE_KEY="Escape",DIRECTIONS={left:[-1,0],right:[1,0],up:[0,1],
@@ -408,23 +581,13 @@ DAY_S===0?text.slice(0,10):text.slice(0,step>=60?16:19).replace("T"," ")}var HEA
 [ax,ay],[bx,by]]=[line[n-1],line[n]],size=Math.hypot(bx-ax,by-ay);if(!size)continue;let[ux,uy]=[(bx-ax)/size,(by-ay)/size];
 for(;due<size;due+=apart){let[x,y]=[bx-due*ux,by-due*uy],[left,low]=[x-HEAD.length*ux,y-HEAD.length*uy],[wide,tall]=[-HEAD.
 half*uy,HEAD.half*ux];heads.push([[x,y],[left+wide,low+tall],[left-wide,low-tall]])}due-=size}return heads}function pathShapes({
-path,sampled,point,directed}){let lines=(all,kind)=>all.map(line=>["polyline",{class:kind,points:textOf(line)}]),isFree=([
-[x,y]])=>!point||Math.hypot(x-point[0],y-point[1])>FREE_RADIUS,heads=directed?path.flatMap(line=>arrowHeads(line)).filter(
-isFree):[],ring=kind=>point?[["circle",{class:kind,cx:point[0],cy:point[1],r:POINT_RADIUS}]]:[];return[...lines(path,"wh\
-ole-casing"),...lines(path,"whole"),...lines(sampled,"casing"),...lines(sampled,"sampled"),...heads.map(head=>["polygon",
-{class:"arrow",points:textOf(head)}]),...ring("point-casing"),...ring("point")]}var SHARES=[0,0,1,0,0,1],SHARP=.86,MOST_SHARE=1-1e-7;function atVertices(values,triangles,size){let result2=new values.constructor(
-size*triangles.length),n=0;for(let node of triangles)for(let k=size*node;k<size*node+size;k+=1)result2[n++]=values[k];return result2}
-function vertexShares(count){return Float32Array.from({length:SHARES.length*count},(_,n)=>SHARES[n%SHARES.length])}function vertexNormals(normals,positions2,triangles){
-let result2=atVertices(normals,triangles,3),at=(values,n)=>[values[3*n],values[3*n+1],values[3*n+2]];for(let n=0;n<triangles.
-length;n+=3){let[a,b,c]=[0,1,2].map(k=>at(positions2,triangles[n+k])),own=unit(cross2(subtract2(b,a),subtract2(c,a)));for(let k=n;k<
-n+3;k+=1){let normal=at(result2,k),scale3=length2(normal),alike=dot2(own,normal);Math.abs(alike)<SHARP*scale3&&result2.set(
-own.map(x=>x*(alike<0?-scale3:scale3)),3*k)}}return result2}function vertexCorners(triangles){let result2=new Float32Array(
-3*triangles.length);for(let n=0;n<result2.length;n+=1)result2[n]=triangles[3*Math.floor(n/9)+n%3];return result2}function placeIn(triangle,second,third){
-return[third,triangle+Math.min(Math.max(second,0),MOST_SHARE)]}function cornersOf(triangles,[i,j]){let number=Math.floor(
-j),[second,third]=[j-number,i];return[1-second-third,second,third].map((share,k)=>[triangles[3*number+k],share])}var TriangleMesh=class{shape;blocks;constructor(mesh,blocks){
-this.shape=[mesh.shape[0],mesh.shape[1]],this.blocks=blocks.data}levels(){return new Int8Array(this.shape[0]*this.shape[1])}triangles(levels){
-let{blocks}=this,drawn=levels.reduce((bits,level,block)=>bits|(level<0?0:1<<block),0),index=new Uint32Array(3*blocks.length),
-end=0;for(let n=0;n<blocks.length;n+=1)if(blocks[n]&drawn)for(let k=0;k<3;k+=1)index[end++]=3*n+k;return index.slice(0,end)}};function pickedPoint(context,x,y){let{layers,camera,moment,anchor,canvas}=context,{graphics,header}=layers[0].scene,program=graphics.
+path,sampled,point,directed,dots=[]}){let lines=(all,kind)=>all.map(line=>["polyline",{class:kind,points:textOf(line)}]),
+isFree=([[x,y]])=>!point||Math.hypot(x-point[0],y-point[1])>FREE_RADIUS,heads=directed?path.flatMap(line=>arrowHeads(line)).
+filter(isFree):[],ring=kind=>point?[["circle",{class:kind,cx:point[0],cy:point[1],r:POINT_RADIUS}]]:[];return[...lines(path,
+"whole-casing"),...lines(path,"whole"),...lines(sampled,"casing"),...lines(sampled,"sampled"),...heads.map(head=>["polyg\
+on",{class:"arrow",points:textOf(head)}]),...dots.map(({place:[cx,cy],radius,grey})=>{let fill=`rgb(${[grey,grey,grey].map(
+x=>Math.round(255*x)).join()})`;return["circle",{class:"dot",cx,cy,r:radius,fill}]}),...ring("point-casing"),...ring("po\
+int")]}function pickedPoint(context,x,y){let{layers,camera,moment,anchor,canvas}=context,{graphics,header}=layers[0].scene,program=graphics.
 programs.get(header.shaders.vertex,header.shaders.pick),whole=projection(header.geometry,camera,anchor),matrix=atPixel(whole,
 [x,y],[canvas.width,canvas.height]),[before,after,between2]=moment,bits=graphics.pixel(()=>{layers.forEach(({scene},n)=>{
 graphics.programs.use(program,{u_matrix:matrix,u_between:between2,u_part:n}),scene.draw(before,after,anchor,!1)})});if(!bits[3])
@@ -433,133 +596,55 @@ triangles?placeIn(bits[3]-1,u,v2):placeAmong(geometry,u,v2),corners=layer.scene.
 scene,camera,corners,x,y),index=geometry.triangles?place:wholeIndex(header,layer,place);return{point:{position,index,values:valuesAt(
 layer.scene,moment,corners)},layer,place}}function placeAmong({rows,columns,shape},u,v2){let at=(share,{size,before},nodes)=>clamp(
 share*size-.5-before,0,nodes-1);return[at(u,columns,shape[1]),at(v2,rows,shape[0])]}function wholeIndex(header,{key},[i,
-j]){let{pyramid,geometry,mesh}=header,[level,row,column]=key,[rows,columns]=pyramid?.shapes[0]??geometry.shape,side=mesh.
+j]){let{pyramid,geometry,mesh}=header,[level,row2,column]=key,[rows,columns]=pyramid?.shapes[0]??geometry.shape,side=mesh.
 tileCells*(pyramid?.tileBlocks??0),at=(n,tile,nodes)=>fullIndex(n+tile*side,level,nodes);return[at(i,column,columns),at(
-j,row,rows)]}function positionAt(scene,camera,corners,x,y){let{data}=scene.part("position"),{frame,center}=scene.header.
+j,row2,rows)]}function positionAt(scene,camera,corners,x,y){let{data}=scene.part("position"),{frame,center}=scene.header.
 geometry,local=[0,1,2].map(k=>interpolated(corners,n=>data[3*n+k])),about=add(fromFrame(frame,local),center),[start,along]=camera.
 ray(x,y),ahead=camera.axes[2],depth=dot2(subtract2(about,start),ahead)/dot2(along,ahead);return add(start,along,depth)}function valuesAt(scene,moment,corners){
 let{header,parts}=scene,{scalars}=header,[from,to,between2]=moment,values={},others=scalars.choices.map(({name,steps},number)=>({
 name,steps,number}));for(let each of[scalars,...others]){let names=scene.scalarParts(from,to,each),[before,after]=names.
 map(part=>parts.get(part)?.data);if(each.name===null||each.name in values||!before||!after)continue;let value=n=>before[n]+
-between2*(after[n]-before[n]);values[each.name]=interpolated(corners,value)}return values}function fromHalf(bits){let exponent=bits>>10&31,part=bits&1023,size;return exponent===0?size=part*2**-24:exponent===31?
-size=part?NaN:1/0:size=(1024+part)*2**(exponent-25),bits&32768?-size:size}function toHalf(x){let sign=x<0?32768:0,size=Math.
-abs(x);if(!(size<65520))return sign|(size>=65520?31744:32256);let exponent=Math.max(Math.floor(Math.log2(size||1e-30)),-14),
-part=Math.round(size/2**(exponent-10));return sign|(part<1024?part:(exponent+14)*1024+part)}function halved(texels,width,height,channels){
-let[w,h]=[Math.max(width>>1,1),Math.max(height>>1,1)],result2=new Uint16Array(w*h*channels),between2=(n,few,many)=>{let x=(n+
-.5)*(many/few)-.5,base=Math.floor(x);return[base,Math.min(base+1,many-1),x-base]};for(let j=0,n=0;j<h;j+=1){let[low,high,
-v2]=between2(j,h,height);for(let i=0;i<w;i+=1){let[left,right,u]=between2(i,w,width);for(let c=0;c<channels;c+=1){let at=(y,x)=>fromHalf(
-texels[(y*width+x)*channels+c]),below=at(low,left)*(1-u)+at(low,right)*u,above=at(high,left)*(1-u)+at(high,right)*u;result2[n++]=
-toHalf(below*(1-v2)+above*v2)}}}return[result2,w,h]}function uniforms(header,settings,view,noiseShape=null){let{geometry,slices,constants}=header,s=settings,signFree=isSignFree(
-header),finest=2**(Math.floor(Math.log2(geometry.extent))-constants.noiseDoublings),w=view.eye[3],eye=toFrame(geometry.frame,
-subtract2(view.eye,scale2(geometry.center,w))),kernel=signFree&&s.kernel==="ramp"?"hann":s.kernel;return{u_eye:[...subtract2(
-eye,scale2(view.anchor,w)),w],u_between:view.between,u_slicesSize:[geometry.columns.size,geometry.rows.size],u_deepest:geometry.
-levels,u_lags:slices.lags,u_lagCount:slices.lags.length,u_sides:s.two_sided||signFree?slices.sides:1,u_unit:slices.unit,
-u_rateLayer:slices.count-1,u_cell:slices.cell,u_samples:isMoving(header,settings)?2*s.samples-1:s.samples,u_spacing:s.spacing,
-u_grain:s.grain*view.density,u_kernel:constants.kernels.indexOf(kernel),u_lod:s.lod,u_contrast:s.contrast,u_strength:s.strength,
-u_seed:s.seed,u_showLevel:s.show_level,u_fixed:s.fixed_grain,...motionUniforms(header,s,view),...noiseOrigin(header,view,
-finest),u_noiseFinest:finest,u_texel:geometry.extent/s.resolution,...header.paper&&noiseShape?paperUniforms(header.paper,
-s,noiseShape,view.density):{}}}function isMoving(header,settings){let streams=settings.motion!=="off"&&!isSignFree(header);
-return!header.paper&&(header.slices.steps>1||streams)}function isNear(header,settings,view){let{geometry,slices,constants}=header,
-s=settings,gap=Math.hypot(...subtract2(view.eye,geometry.center))-.5*geometry.extent,away=view.eye[3]?Math.max(gap,0)/Math.
-hypot(...subtract2(view.eye,view.focus)):1,grain=s.lod?view.pixel*away*s.grain*view.density:geometry.extent/s.resolution;
-return Math.floor(s.samples/2)*s.spacing*grain<constants.farCells*slices.critical}function motionUniforms(header,s,view){
-let{geometry,slices,constants}=header,varies=slices.steps>1,inPixels=!varies&&s.speed_in==="pixels",turns=varies?(view.time-
-slices.times[0])/(geometry.extent/slices.pace):(view.clock/s.period%1+1)%1,travel=varies?geometry.extent:s.speed*s.period,
-coarse=Math.floor(turns/constants.clockStep)*constants.clockStep;return{u_clock:[coarse,turns-coarse],u_travel:travel*(inPixels?
-view.density:1),u_travelInPixels:inPixels,u_travelBySpeed:varies||s.motion==="speed",u_wave:constants.wavePixels*view.density}}
-function noiseOrigin(header,view,finest){let{noiseDoublings,clearDoublings}=header.constants,{frame,center}=header.geometry,
-focus=toFrame(frame,subtract2(view.focus,center)),limit=2**(noiseDoublings-clearDoublings)-1,cells=2**clearDoublings,even=focus.
-map(x=>clamp(Math.round(x/finest/cells),-limit,limit)*cells),odd=even.map(x=>x/Math.SQRT2),whole=odd.map(x=>Math.floor(x/
-cells)*cells);return{u_noiseOrigin:even.map((x,k)=>x*finest-view.anchor[k]),u_noiseOriginEven:even,u_noiseOriginOdd:whole,
-u_noiseRestOdd:odd.map((x,k)=>x-whole[k])}}function paperUniforms(paper,s,noiseShape,density){let tiles=s.noise==="image"?
-s.tiles:1,[rows,columns]=noiseShape;return{u_noiseSize:paper.size.map(n=>n*density),u_noiseGrain:paper.grain,u_noiseDeviation:paper.
-deviations,u_noiseCorrected:paper.corrected,u_pictureSize:[columns*density*tiles,rows*density*tiles],u_pictureRound:[Number(
-paper.repeat[1]),Number(paper.repeat[0])],u_pictureGrey:noiseShape.length===2,u_tiles:tiles}}function momentOf(times2,time){
-if(times2.length<2)return[0,0,0];let step=0;for(;step<times2.length-2&&times2[step+1]<=time;)step+=1;let late=(time-times2[step])/
-(times2[step+1]-times2[step]);return[step,step+1,clamp(late,0,1)]}var POINTS_BETWEEN_SLICES=8,PATH_LENGTH=4,FEWEST_SAMPLES=10,LEAST_FACING=.05,LEAST_SLOPE=1e-6,SMALL=.001;function texelOf(scene,step){
-let{slices,geometry}=scene.header,data=scene.part(`slices/${step}`).data,extra=scene.parts.get(`extra/${step}`)?.data,count=geometry.
-rows.size*geometry.columns.size,{channels}=slices;return(layer,texel)=>{let first=(layer*count+texel)*channels,at=n=>n<channels?
-fromHalf(data[first+n]):0,place=slices.extra.indexOf(layer),fourth=channels===4||!extra||place<0?at(3):fromHalf(extra[place*
-count+texel]);return[at(0),at(1),at(2),fourth]}}function texelsAt({scene,place}){let{rows,columns,triangles}=scene.header.
-geometry;if(triangles)return scene.cornersAt(place);let[x,y]=[place[0]+columns.before,place[1]+rows.before],[left,low]=[
-Math.floor(x),Math.floor(y)],[s,t]=[x-left,y-low];return[(1-s)*(1-t),s*(1-t),(1-s)*t,s*t].map((share,n)=>{let column=clamp(
-left+(n&1),0,columns.size-1);return[clamp(low+(n>>1),0,rows.size-1)*columns.size+column,share]})}function layersAt(at){let{
-scene,moment}=at,{slices}=scene.header,texels=texelsAt(at),[before,after,late]=moment,steps=[before,after].map(step=>texelOf(
-scene,step)),shares2=[1-late,late],signs=isSignFree(scene.header)?signsOf(texels.map(([texel])=>steps[0](0,texel))):texels.
-map(()=>1);return layer=>{let sum=[0,0,0,0];return texels.forEach(([texel,weight],n)=>{let other=layer+(layer>slices.lags.
-length?-1:1)*slices.lags.length,from=signs[n]<0&&layer>0?other:layer;steps.forEach((step,k)=>{shares2[k]&&step(from,texel).
-forEach((value,c)=>{sum[c]+=weight*shares2[k]*value*(c<3?signs[n]:1)})})}),sum}}function signsOf(tangents){let together=[
-0,0,0];return tangents.map(([x,y,z])=>{let sign=dot2(together,[x,y,z])<0?-1:1;return together=add(together,[x,y,z],sign),
-sign})}function sideOf(layers,lags,first,sign,by){let[before,from]=[layers(0).slice(0,3),0],reach=layers(first+1)[3],end=Math.
-min(reach,lags[lags.length-1]),result2=[];for(let m=0;m<lags.length&&from<end;m+=1){let after=layers(first+m+1).slice(0,
-3);for(let n=1;n<=POINTS_BETWEEN_SLICES;n+=1){let share=n/POINTS_BETWEEN_SLICES,lag=Math.min(from+share*(lags[m]-from),end),
-late=(lag-from)/(lags[m]-from),slope=before.map((x,c)=>x+late*(after[c]-x));if(result2.push(scale2(slope,sign*lag*by)),lag===
-end)break}[before,from]=[after,lags[m]]}return result2}function mover({scene,place,position}){let{paper,geometry}=scene.
-header;if(!paper)return moved=>add(position,fromFrame(geometry.frame,moved));let{alongI,alongJ}=paper,here=[between(alongI,
-place[0]),between(alongJ,place[1])],start=pointAt(scene,place);return([u,v2])=>{let at=[indexOf(alongI,here[0]+u),indexOf(
-alongJ,here[1]+v2)];return at.some(Number.isNaN)?null:add(position,subtract2(pointAt(scene,at),start))}}function pointAt(scene,place){
-let{data}=scene.part("position"),corners=scene.cornersAt(place),local=[0,1,2].map(c=>interpolated(corners,n=>data[3*n+c]));
-return fromFrame(scene.header.geometry.frame,local)}function normalAt(scene,place){let{shape,triangles}=scene.header.geometry;
-if(triangles){let corner=(second,third)=>pointAt(scene,placeIn(Math.floor(place[1]),second,third));return cross2(subtract2(
-corner(1,0),corner(0,0)),subtract2(corner(0,1),corner(0,0)))}let[i,j]=place.map((n,axis)=>clamp(n,.5,shape[1-axis]-1.5)),
-at=(di,dj)=>pointAt(scene,[i+di,j+dj]);return cross2(subtract2(at(.5,0),at(-.5,0)),subtract2(at(0,.5),at(0,-.5)))}function between(values,at){
-let n=Math.min(Math.floor(at),values.length-2);return values[n]+(at-n)*(values[n+1]-values[n])}function indexOf(values,value){
-let n=values.findIndex(other=>other>=value);return n<0||value<values[0]?NaN:n===0?0:n-1+(value-values[n-1])/(values[n]-values[n-
-1])}function grainAt({scene,place,position},settings,camera,rows){let{geometry,paper}=scene.header,normal=normalAt(scene,
-place),{height,ray}=camera.at(position),facing=Math.max(Math.abs(dot2(unit(normal),ray)),LEAST_FACING),pixel=2*height/rows;
-if(paper){let[across,up]=[paper.alongI,paper.alongJ].map((along,axis)=>{let n=Math.min(Math.floor(place[axis]),along.length-
-2);return(along[n+1]-along[n])*paper.size[axis]}),texel2=Math.sqrt(length2(normal)/(across*up));return paper.grain*(settings.
-lod?Math.max(pixel/Math.sqrt(facing),texel2):texel2)}let texel=geometry.extent/Number(settings.resolution),grain=pixel/facing*
-Number(settings.grain);return settings.lod?settings.fixed_grain?Math.max(grain,texel):grain:texel}function upTo(start,side,most){
-let result2=[],[from,left]=[start,most];for(let point of side){let step=length2(subtract2(point,from));if(step>=left){left>
-0&&result2.push(add(from,subtract2(point,from),left/(step||1)));break}result2.push(point),left-=step,from=point}return result2}
-function pathThrough(at,settings,camera,rows){let{scene,position}=at,{slices,paper,speed}=scene.header,layers=layersAt(at),
-directed=!isSignFree(scene.header),base=layers(0),slope=[base[0],base[1],base[2]],moved=mover(at),small=scale2(slope,SMALL*
-(paper?1/paper.size[0]:slices.cell)/(length2(slope)||1)),along=length2(slope)>LEAST_SLOPE?subtract2(moved(small)??position,
-position):slope,velocity=scale2(unit(along),layers(2)[3]*speed.typical),whole=[],sides=settings.two_sided||!directed?slices.
-sides:1;for(let side=0;side<sides&&length2(slope)>LEAST_SLOPE;side+=1){let by=paper?1:base[3]*slices.unit,points=sideOf(
-layers,slices.lags,side*slices.lags.length,side?1:-1,by).map(moved),end=points.findIndex(point=>point===null);whole.push(
-points.slice(0,end<0?void 0:end))}let set=Number(settings.samples),samples=isMoving(scene.header,settings)?2*set-1:set,count=sides===
-2?Math.floor(samples/2):samples-1,step=Number(settings.spacing)*grainAt(at,settings,camera,rows),joined=reach=>{let[back=[],
-ahead=[]]=whole.map(side=>upTo(position,side,reach));return[...back.reverse(),position,...ahead]};return{path:joined(PATH_LENGTH*
-Math.max(count,FEWEST_SAMPLES)*step),sampled:joined(count*step),directed,velocity}}var TITLE="Path through this point",SVG="http://www.w3.org/2000/svg",FEWEST_DIGITS=4,MOST_DIGITS=14,VELOCITY_DIGITS=3,PATIENCE_MS=5e3,
-RETRY_MS=40,PLACES_IN_VIEW=200,DEGREE_M=111195,UNIT_LENGTH=12;function withUnit(text,unit2){return unit2&&unit2.length<=
-UNIT_LENGTH?`${text} ${unit2}`:text}function vectorText(vector,size,digits,flat){return`(${vector.slice(0,flat?2:3).map(
-x=>{let value=Math.abs(x)<10**(-1-digits)*size?0:x;return digits>5?String(Number(value.toPrecision(digits))):numberText(
+between2*(after[n]-before[n]);values[each.name]=interpolated(corners,value)}return values}var TITLE="Path through this point",SVG2="http://www.w3.org/2000/svg",FEWEST_DIGITS=4,MOST_DIGITS=14,VELOCITY_DIGITS=3,PATIENCE_MS=5e3,
+RETRY_MS=40,PLACES_IN_VIEW=200,DEGREE_M=111195,DOT_RADIUS=8,UNIT_LENGTH=12;function withUnit(text,unit2){return unit2&&unit2.
+length<=UNIT_LENGTH?`${text} ${unit2}`:text}function vectorText(vector,size,digits,flat){return`(${vector.slice(0,flat?2:
+3).map(x=>{let value=Math.abs(x)<10**(-1-digits)*size?0:x;return digits>5?String(Number(value.toPrecision(digits))):numberText(
 value,digits)}).join(", ")})`}var liesAcross=({planar,frame})=>planar&&Math.abs(frame[8])>.999;function placeText(position,header,parts,camera,isWithUnit=!1){
 let{earth}=header,lonLat=earth&&lonLatOf(earth,position,parts.get("lonlat"));if(lonLat)return lonLatText(lonLat,(camera?.
 height??0)/PLACES_IN_VIEW/DEGREE_M);let text=positionText(position,header,camera);return isWithUnit?withUnit(text,header.
 lengthUnit):text}function positionText(position,header,camera){let{geometry}=header,zoom=Math.max(camera?.zoom??1,1),digits=Math.
 min(Math.ceil(FEWEST_DIGITS+Math.log10(zoom)),MOST_DIGITS),isInPlane=liesAcross(geometry)&&Math.abs(position[2]-geometry.
 center[2])<1e-12*geometry.extent;return vectorText(position,geometry.extent,digits,isInPlane)}var PointCard=class{element=dom(
-"div",{class:"card glass",role:"region",hidden:""});overlay=document.createElementNS(SVG,"svg");host;list=dom("dl");chosen=null;later=null;drawn=null;constructor(host){
+"div",{class:"card glass",role:"region",hidden:""});overlay=document.createElementNS(SVG2,"svg");host;list=dom("dl");chosen=null;later=null;drawn=null;constructor(host){
 this.host=host,this.element.setAttribute("aria-label",TITLE),this.overlay.setAttribute("class","path");let button=dom("b\
 utton",{type:"button",class:"link"},["Close"]);button.addEventListener("click",()=>this.close()),this.element.append(dom(
 "div",{class:"first"},[dom("span",{},[TITLE]),button]),this.list)}choose(x,y,until=performance.now()+PATIENCE_MS){let{lifetime,
 canPick}=this.host;if(lifetime.cancel(this.later),!canPick&&performance.now()<until)return this.later=lifetime.later(()=>this.
 choose(x,y,until),RETRY_MS),null;let found=this.host.find(x,y);return found&&this.host.options.onPoint?.(found.point),this.
 close(),this.chosen=found,this.update(),found?.point??null}close(){for(let{card}of this.host.together)card.clear()}clear(){
-this.host.lifetime.cancel(this.later),this.chosen=this.drawn=null,this.element.hidden=!0,this.overlay.replaceChildren()}update(){
-let{chosen}=this,{options,camera,shown,header,tiles,settings,root,together}=this.host;if(!chosen||options.bare||!camera||
-!shown||!header)return;let{point,layer,place}=chosen,scene=tiles?.layers.find(({key})=>String(key)===String(layer.key))?.
-scene;if(!scene||scene.missing(shown[0],shown[1]).length)return;let position=point.position,path=pathThrough({scene,moment:shown,
-place,position},settings,camera,root.clientHeight);this.tell({...point,values:valuesAt(scene,shown,scene.cornersAt(place))},
-path,header,camera);for(let{card}of together)card.drawn={path,point:position},card.draw()}tell(point,{velocity},header,camera){
-let{label,unit:unit2}=header.speed,size=Math.hypot(...velocity),lines=new Map,{earth}=header,{parts}=this.host,where=placeText(
-point.position,header,parts,camera,!0);if(earth&&lonLatOf(earth,point.position,parts.get("lonlat"))){let[east,north]=eastNorth(
-earth,point.position,velocity,parts.get("lonlat"));lines.set("place",where),lines.set("eastward",withUnit(numberText(east,
-VELOCITY_DIGITS),unit2)),lines.set("northward",withUnit(numberText(north,VELOCITY_DIGITS),unit2))}else{let text=vectorText(
-velocity,size,VELOCITY_DIGITS,liesAcross(header.geometry));lines.set("position",where),lines.set(label.replace("speed","\
-velocity"),withUnit(text,unit2))}lines.set(label,withUnit(numberText(size,VELOCITY_DIGITS),unit2));for(let[name,value]of Object.
-entries(point.values)){let named=header.scalars.choices.find(each=>each.name===name)??header.scalars;lines.set(named.label,
-withUnit(numberText(value),named.unit))}this.list.replaceChildren(...[...lines].flatMap(([word,value])=>[dom("dt",{},[word]),
-dom("dd",{},[value])])),this.element.hidden=!1}draw(){let{drawn}=this,{camera,root}=this.host;if(!drawn||!camera)return;
-let{clientWidth:width,clientHeight:height}=root,placeOf=point2=>{let place=camera.project(point2);return place&&[(place[0]+
-1)/2*width,(1-place[1])/2*height]},linesOf2=points=>{let lines=[[]];for(let place of points.map(placeOf))place?lines[lines.
-length-1].push(place):lines.push([]);return lines.filter(line=>line.length>1)},{path,sampled,directed}=drawn.path,point=placeOf(
-drawn.point),shapes=pathShapes({path:linesOf2(path),sampled:linesOf2(sampled),point,directed});this.overlay.replaceChildren(
-...shapes.map(([tag,attributes])=>{let shape=document.createElementNS(SVG,tag);for(let[name,value]of Object.entries(attributes))
-shape.setAttribute(name,`${value}`);return shape}))}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */
+this.host.lifetime.cancel(this.later),this.chosen=this.drawn=null,this.element.hidden=!0,this.overlay.replaceChildren(),
+this.host.options.explainer?.clear()}update(){let{chosen}=this,{options,camera,shown,header,tiles,settings,root,together}=this.
+host;if(!chosen||options.bare||!camera||!shown||!header)return;let{point,layer,place}=chosen,scene=tiles?.layers.find(({
+key})=>String(key)===String(layer.key))?.scene;if(!scene||scene.missing(shown[0],shown[1]).length)return;let position=point.
+position,at={scene,moment:shown,place,position},path=pathThrough(at,settings,camera,root.clientHeight);this.tell({...point,
+values:valuesAt(scene,shown,scene.cornersAt(place))},path,header,camera);let pixel={at,settings,camera,rows:root.clientHeight},
+samples=options.explainer?.explain(pixel)??[];for(let{card}of together)card.drawn={path,point:position,samples},card.draw()}tell(point,{
+velocity},header,camera){let{label,unit:unit2}=header.speed,size=Math.hypot(...velocity),lines=new Map,{earth}=header,{parts}=this.
+host,where=placeText(point.position,header,parts,camera,!0);if(earth&&lonLatOf(earth,point.position,parts.get("lonlat"))){
+let[east,north]=eastNorth(earth,point.position,velocity,parts.get("lonlat"));lines.set("place",where),lines.set("eastwar\
+d",withUnit(numberText(east,VELOCITY_DIGITS),unit2)),lines.set("northward",withUnit(numberText(north,VELOCITY_DIGITS),unit2))}else{
+let text=vectorText(velocity,size,VELOCITY_DIGITS,liesAcross(header.geometry));lines.set("position",where),lines.set(label.
+replace("speed","velocity"),withUnit(text,unit2))}lines.set(label,withUnit(numberText(size,VELOCITY_DIGITS),unit2));for(let[
+name,value]of Object.entries(point.values)){let named=header.scalars.choices.find(each=>each.name===name)??header.scalars;
+lines.set(named.label,withUnit(numberText(value),named.unit))}this.list.replaceChildren(...[...lines].flatMap(([word,value])=>[
+dom("dt",{},[word]),dom("dd",{},[value])])),this.element.hidden=this.host.options.explainer!==void 0}draw(){let{drawn}=this,
+{camera,root}=this.host;if(!drawn||!camera)return;let{clientWidth:width,clientHeight:height}=root,placeOf=point2=>{let place=camera.
+project(point2);return place&&[(place[0]+1)/2*width,(1-place[1])/2*height]},linesOf2=points=>{let lines2=[[]];for(let place of points.
+map(placeOf))place?lines2[lines2.length-1].push(place):lines2.push([]);return lines2.filter(line=>line.length>1)},{path,
+sampled,directed}=drawn.path,point=placeOf(drawn.point),{samples}=drawn,most=Math.max(...samples.map(({weight})=>weight)),
+dots=samples.flatMap(({position,weight,grey})=>{let place=placeOf(position);return place?[{place,radius:DOT_RADIUS*Math.
+sqrt(weight/most),grey}]:[]}),lines={path:linesOf2(path),sampled:dots.length?[]:linesOf2(sampled)},shapes=pathShapes({...lines,
+dots,point,directed});this.overlay.replaceChildren(...shapes.map(([tag,attributes])=>{let shape=document.createElementNS(
+SVG2,tag);for(let[name,value]of Object.entries(attributes))shape.setAttribute(name,`${value}`);return shape}))}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */
 :host {
   --ink: var(--jp-ui-font-color1, #1b2430);
   --quiet: var(--jp-ui-font-color2, #566373);
@@ -655,13 +740,15 @@ dl {
 dt { color: var(--quiet); }
 dd { margin: 0; text-align: right; white-space: nowrap; }
 .path { position: absolute; inset: 0; width: 100%; height: 100%; pointer-events: none; }
-.path * { fill: none; stroke: #000; stroke-linejoin: round; }
+.path :not(.dot) { fill: none; }
+.path * { stroke: #000; stroke-linejoin: round; }
 .path :is(.casing, .sampled) { stroke-linecap: round; }
 .path .whole-casing { stroke-opacity: 0.55; stroke-width: 4; }
 .path .whole { stroke: #fff; stroke-width: 1.6; stroke-dasharray: 5 4; }
 .path .casing { stroke-opacity: 0.75; stroke-width: 6; }
 .path .sampled { stroke: #fff; stroke-width: 2.6; }
 .path .arrow { fill: #fff; stroke-width: 1.5; }
+.path .dot { stroke: #fff; stroke-width: 1.2; }
 .path .point-casing { stroke-width: 5; }
 .path .point { stroke: #fff; stroke-width: 2.4; }
 .bar {
@@ -807,7 +894,7 @@ ay (space)";this.playButton.replaceChildren(icon(playing?"pause":"play")),this.p
 "aria-label",title);let streams=header!==null&&hasStreaming(header);this.playButton.hidden=this.track.hidden=!varies&&!streams,
 this.slider.disabled=!varies&&settings.motion==="off";let width=header&&this.date(header)?.length||8+(header?.slices.timeUnit??
 "").length;this.timeText.style.minWidth=`${varies?width:7}ch`,this.tick()}name(){let{header,settings,root,options}=this.
-viewer,title=(header?.differs??[]).filter(name=>name in settings).map(name=>{let label2=header?.table.find(row=>row.name===
+viewer,title=(header?.differs??[]).filter(name=>name in settings).map(name=>{let label2=header?.table.find(row2=>row2.name===
 name)?.label??name,value=settings[name];return`${label2}: ${typeof value=="boolean"?value?"on":"off":value}`}).join(", ")||
 header?.name||"";this.title.textContent=title,this.title.hidden=!title;let label=options.label??title;root.setAttribute(
 "aria-label",label?`Flow texture: ${label}`:"Flow texture")}tick(){let{header,player,settings}=this.viewer;if(!header||this.
@@ -965,25 +1052,25 @@ pixels/(halfHeight*Math.max(away,Number.MIN_VALUE)),level=0;for(;level<last;leve
 isFinite(error)&&side<=1)||side>limits.maxSideHeights*pixels)break}return level})}triangles(levels,joins){let sizes=Array.
 from(levels,level=>level<0?0:this.limits.tileCells>>level),index=new Uint32Array(6*sizes.reduce((sum,size)=>sum+size*size,
 0)),end=0;return levels.forEach((level,block)=>{level>=0&&(end=this.add(index,end,level,joins,block))}),index.slice(0,end)}add(index,start,level,joins,block){
-let{rows,columns,limits}=this,{shape,cells}=this.mesh,step=1<<level,count=limits.tileCells/step+1,row=rows[Math.floor(block/
+let{rows,columns,limits}=this,{shape,cells}=this.mesh,step=1<<level,count=limits.tileCells/step+1,row2=rows[Math.floor(block/
 columns.length)],column=columns[block%columns.length],[below,above,left,right]=[0,1,2,3].map(side=>joins[4*block+side]),
 snapped=(place,size,border)=>place===size?place:place>>border<<border,nodes=new Uint32Array(count*count);for(let b=0;b<count;b+=
-1){let y=Math.min(b*step,row.cells);for(let a=0;a<count;a+=1){let[px,py]=[Math.min(a*step,column.cells),y];(b===0||b===count-
-1)&&(px=snapped(px,column.cells,b?above:below)),(a===0||a===count-1)&&(py=snapped(py,row.cells,a?right:left)),nodes[b*count+
-a]=(row.first+py)*shape[1]+column.first+px}}let end=start,put=(p,q,r)=>{p===q||q===r||p===r||(index[end++]=p,index[end++]=
-q,index[end++]=r)};for(let b=0;b<count-1;b+=1){let y=Math.min(row.first+Math.min(b*step,row.cells),shape[0]-2);for(let a=0;a<
+1){let y=Math.min(b*step,row2.cells);for(let a=0;a<count;a+=1){let[px,py]=[Math.min(a*step,column.cells),y];(b===0||b===
+count-1)&&(px=snapped(px,column.cells,b?above:below)),(a===0||a===count-1)&&(py=snapped(py,row2.cells,a?right:left)),nodes[b*
+count+a]=(row2.first+py)*shape[1]+column.first+px}}let end=start,put=(p,q,r)=>{p===q||q===r||p===r||(index[end++]=p,index[end++]=
+q,index[end++]=r)};for(let b=0;b<count-1;b+=1){let y=Math.min(row2.first+Math.min(b*step,row2.cells),shape[0]-2);for(let a=0;a<
 count-1;a+=1){let x=Math.min(column.first+Math.min(a*step,column.cells),shape[1]-2);if(cells&&!cells[y*(shape[1]-1)+x])continue;
 let at=b*count+a,[p,q,r,s]=[nodes[at],nodes[at+1],nodes[at+count+1],nodes[at+count]];put(p,q,r),put(p,r,s)}}return end}},
 NOT_DRAWN=99,Lines=class{values;strides;count;width;constructor([rows,columns],axis){[this.count,this.width]=axis?[columns+
 1,rows]:[rows+1,columns],this.strides=axis?[1,columns+1]:[columns,1],this.values=new Int16Array(this.count*this.width)}at(line,along){
 return line*this.strides[0]+along*this.strides[1]}close(){for(let n=0;n<this.width;n+=1){let[first,last]=[this.at(0,n),this.
 at(this.count-1,n)],most=Math.max(this.values[first],this.values[last]);this.values[first]=this.values[last]=most}}};function eachBlock({
-step,row,column,shape},[rows,columns],call){let bottom=Math.min(row+(shape[0]<<step),rows),right=Math.min(column+(shape[1]<<
-step),columns);for(let j=row;j<bottom;j+=1){let own=(j-row>>step)*shape[1];for(let i=column;i<right;i+=1)call(j*columns+
+step,row:row2,column,shape},[rows,columns],call){let bottom=Math.min(row2+(shape[0]<<step),rows),right=Math.min(column+(shape[1]<<
+step),columns);for(let j=row2;j<bottom;j+=1){let own=(j-row2>>step)*shape[1];for(let i=column;i<right;i+=1)call(j*columns+
 i,own+(i-column>>step))}}function finestAround(nodes,[rows,columns],periodic){let around2=(n,by,count,closed)=>closed?(n+
 by+count)%count:clamp(n+by,0,count-1);return nodes.map((own,block)=>{let[j,i]=[Math.floor(block/columns),block%columns],
-least=own;for(let by of[-1,1]){let row=around2(j,by,rows,periodic[0]),column=around2(i,by,columns,periodic[1]);least=Math.
-min(least,nodes[row*columns+i],nodes[j*columns+column])}return least})}function join(parts,blocks,periodic,most){let nodes=new Int16Array(
+least=own;for(let by of[-1,1]){let row2=around2(j,by,rows,periodic[0]),column=around2(i,by,columns,periodic[1]);least=Math.
+min(least,nodes[row2*columns+i],nodes[j*columns+column])}return least})}function join(parts,blocks,periodic,most){let nodes=new Int16Array(
 blocks[0]*blocks[1]).fill(NOT_DRAWN),put=(target,part,value)=>eachBlock(part,blocks,(block,own)=>{part.levels[own]>=0&&(target[block]=
 value(part.levels[own]))});for(let part of parts)put(nodes,part,()=>part.step);let finest=finestAround(nodes,blocks,periodic),
 strides=new Int16Array(nodes.length);for(let part of parts){let{levels,step}=part;eachBlock(part,blocks,(block,own)=>{levels[own]=
@@ -991,10 +1078,10 @@ Math.min(levels[own],finest[block]+most-step)}),put(strides,part,level=>level+st
 blocks,1)];for(strides.forEach((stride,block)=>{let[j,i]=[Math.floor(block/blocks[1]),block%blocks[1]];[[j,i],[i,j]].forEach(
 ([line,along],axis)=>{let{values}=lines[axis];for(let far of[0,1]){let at=lines[axis].at(line+far,along);values[at]=Math.
 max(values[at],stride)}})});;){lines.forEach((line,axis)=>periodic[axis]&&line.close());let joined=parts.map(part=>bordersOf(
-part,lines));if(!joined.some(([,changed])=>changed))return joined.map(([borders])=>borders)}}function bordersOf({step,row,
+part,lines));if(!joined.some(([,changed])=>changed))return joined.map(([borders])=>borders)}}function bordersOf({step,row:row2,
 column,shape,levels},lines){let size=1<<step,borders=new Int8Array(4*levels.length),changed=!1;for(let side of[0,1,2,3]){
 let[axis,far]=[side>>1,side&1],line=lines[axis],{values}=line;levels.forEach((level,own)=>{let place=[Math.floor(own/shape[1]),
-own%shape[1]],[first,start]=axis?[column,row]:[row,column],pick=Math.min(first+(place[axis]+far)*size,line.count-1),from=start+
+own%shape[1]],[first,start]=axis?[column,row2]:[row2,column],pick=Math.min(first+(place[axis]+far)*size,line.count-1),from=start+
 place[1-axis]*size,end=Math.max(Math.min(from+size,line.width),from+1),coarsest=0;for(let n=from;n<end;n+=1)coarsest=Math.
 max(coarsest,values[line.at(pick,n)]);if(borders[4*own+side]=coarsest-step,!(level<0))for(let n=from;n<end;n+=1)changed||=
 values[line.at(pick,n)]!==coarsest,values[line.at(pick,n)]=coarsest})}return[borders,changed]}var USERS={position:["position","coordinate"],normal:["normal"],cells:["index"],mesh:["index"],triangles:["index","posit\
@@ -1018,9 +1105,9 @@ resources.delete(name),resource&&(resource.users-=1,!resource.users&&(this.graph
 this.graphics.common.delete(resource.key)))}dispose(){for(let name of[...this.resources.keys()])this.drop(name);this.earth.
 dispose()}key(names,...rest){let digests=names.map(name=>this.parts.has(name)?this.part(name).digest:"none");return digests.
 every(Boolean)?JSON.stringify([digests,rest]):""}take(name,kind,key,make,fill){let own=this.resources.get(name);if(own)return own.
-object;let{graphics}=this,whole=key&&`${name.split("/")[0]} ${key}`,shared=whole?graphics.common.get(whole):void 0,object=shared?.
-object??graphics.counted(make()),resource=shared??{kind,object,count:0,key:whole,users:0};return resource.users+=1,this.
-resources.set(name,resource),shared||(resource.count=fill(object)||0),whole&&graphics.common.set(whole,resource),object}buffer(name,key,data,elements=!1){
+object;let{graphics}=this,whole=key&&`${name.split("/")[0]} ${key}`,shared2=whole?graphics.common.get(whole):void 0,object=shared2?.
+object??graphics.counted(make()),resource=shared2??{kind,object,count:0,key:whole,users:0};return resource.users+=1,this.
+resources.set(name,resource),shared2||(resource.count=fill(object)||0),whole&&graphics.common.set(whole,resource),object}buffer(name,key,data,elements=!1){
 let gl=this.graphics.context,fill=buffer=>{let target=elements?gl.ELEMENT_ARRAY_BUFFER:gl.ARRAY_BUFFER,numbers=data();return gl.
 bindVertexArray(null),gl.bindBuffer(target,buffer),gl.bufferData(target,numbers,gl.STATIC_DRAW),numbers.length};return this.
 take(name,"Buffer",key,()=>gl.createBuffer(),fill)}mesh(){if(this.meshLevels)return this.meshLevels;let{geometry,mesh}=this.
@@ -1104,12 +1191,12 @@ p",map),scene?.forget("cmap")}arrange([before,after]){let{camera,canvas}=this.ho
 names=[ROOT];for(let name of shown.keys()){let scene=this.tiles.get(name)?.scene;scene&&(names.push(name),layers.push({scene,
 key:keyOf(name)}))}let sight=camera.sight(canvas.height),parts=layers.map(({scene,key},n)=>{let{levels,shape}=scene.levels(
 sight);for(let finer of shown.get(names[n])??[])this.hide(levels,shape[1],finer,names[n]);let{pyramid}=this.root.header,
-[row,column]=key.slice(1).map(at=>at*(pyramid?.tileBlocks??0)<<key[0]);return{step:key[0],row,column,shape,levels}});return this.
-layers=layers,this.setTriangles(names,parts),layers.map(({scene})=>scene)}hide(levels,columns,finer,above){let[row,column,
-size]=this.pyramid?.finerPart(keyOf(finer),above)??[0,0,0];for(let j=row;j<Math.min(row+size,levels.length/columns);j+=1)
-levels.fill(-1,j*columns+column,j*columns+Math.min(column+size,columns))}setTriangles(names,parts){let drawn=String(parts.
-map(({levels},n)=>[names[n],levels]));if(drawn===this.drawn&&this.layers.every(({scene})=>scene.hasTriangles))return;this.
-drawn=drawn;let{geometry,mesh,pyramid}=this.root.header,most=Math.log2(mesh.tileCells),blocks=pyramid?.blocks[0]??parts[0].
+[row2,column]=key.slice(1).map(at=>at*(pyramid?.tileBlocks??0)<<key[0]);return{step:key[0],row:row2,column,shape,levels}});
+return this.layers=layers,this.setTriangles(names,parts),layers.map(({scene})=>scene)}hide(levels,columns,finer,above){let[
+row2,column,size]=this.pyramid?.finerPart(keyOf(finer),above)??[0,0,0];for(let j=row2;j<Math.min(row2+size,levels.length/
+columns);j+=1)levels.fill(-1,j*columns+column,j*columns+Math.min(column+size,columns))}setTriangles(names,parts){let drawn=String(
+parts.map(({levels},n)=>[names[n],levels]));if(drawn===this.drawn&&this.layers.every(({scene})=>scene.hasTriangles))return;
+this.drawn=drawn;let{geometry,mesh,pyramid}=this.root.header,most=Math.log2(mesh.tileCells),blocks=pyramid?.blocks[0]??parts[0].
 shape,joins=geometry.triangles?[]:join(parts,blocks,geometry.periodic,most);parts.forEach(({levels},n)=>this.layers[n].scene.
 setTriangles(levels,joins[n]))}choose(camera,steps){let{header}=this.root,{settings,canvas,ratio}=this.host;if(!header.pyramid)
 return new Map;this.pyramid??=new Pyramid(header.pyramid,this.root.part("places").data);let choices=this.pyramid.choose(
@@ -1231,28 +1318,29 @@ onTime:both((other,time)=>other.setTime(time),options.onTime),onClock:both((othe
 onClock),onSetting:both((other,name,value)=>other.followSetting(name,value),options.onSetting)}}function mountPage(element,scenes2,options={}){
 let tiles=scenes2.map(({loadTile},n)=>loadTile&&new TileQueue(loadTile,part=>viewers[n].setPart(part))),viewers=viewersIn(
 element,scenes2.length,options,n=>({onTiles:(keys,steps)=>tiles[n]?.request(keys,steps)}));return scenes2.forEach(({header},n)=>viewers[n].
-setHeader(header)),scenes2.forEach(({parts},n)=>parts.forEach(part=>viewers[n].setPart(part))),viewers[0]}var KEPT_HEIGHTS=2,scenes=new Map;window.flowtexScene=(name,scene)=>scenes.get(name)?.(scene);function fetchScene(element){
-let{scene:address=""}=element.dataset,name=address.replace(/^.*\//,"").replace(/\.js$/,"");return new Promise((resolve,reject)=>{
-let script=document.createElement("script");scenes.set(name,resolve),script.src=address,script.onload=()=>script.remove(),
-script.onerror=()=>reject(new Error(`${address} cannot be loaded`)),document.head.append(script)})}async function unpacked({
-headers,parts}){let known=new Map,result2=headers.map(header=>({header:{...headers[0],...header},parts:[]}));for(let[view,
-info,text]of parts){let part=known.get(info.digest)??await partOfText(info,text);known.set(info.digest,part),result2[view].
-parts.push({...part,name:info.name})}return result2}function groundAround(element){for(let at=element.parentElement;at;at=
-at.parentElement){let[r,g,b,a=1]=(getComputedStyle(at).backgroundColor.match(/[\d.]+/g)??[]).map(Number);if(a>0)return[r/
-255,g/255,b/255]}return[1,1,1]}var LiveView=class{element;viewer=null;isWanted=!1;isLoading=!1;constructor(element){this.
-element=element;let near={rootMargin:`${100*KEPT_HEIGHTS}% 0%`};new IntersectionObserver(([entry])=>entry.isIntersecting&&
-void this.show()).observe(element),new IntersectionObserver(([entry])=>entry.isIntersecting||this.leave(),near).observe(
-element)}async show(){if(this.isWanted=!0,this.viewer||this.isLoading)return;this.isLoading=!0;let{element}=this;try{let data=await unpacked(
-await fetchScene(element));if(!this.isWanted)return;let ground=groundAround(element);for(let{header}of data)header.background=
-ground;this.viewer=mountPage(element,data,{guarded:!0,label:element.dataset.label}),this.watch()}catch(error){element.title=
-`This view is a picture only: ${error instanceof Error?error.message:error}`}finally{this.isLoading=!1}}watch(){let{element}=this,
-look=()=>{if(element.querySelector('[data-sharp="false"]'))return;seen.disconnect(),element.dataset.live="true";let isCalm=matchMedia(
-"(prefers-reduced-motion: reduce)").matches;"plays"in element.dataset&&!isCalm&&this.viewer?.play()},seen=new MutationObserver(
-look);seen.observe(element,{subtree:!0,attributeFilter:["data-sharp"]})}leave(){if(this.isWanted=!1,!!this.viewer){for(let viewer of this.
-viewer.together)viewer.dispose();this.viewer=null,delete this.element.dataset.live,this.element.querySelector(".flowtex-\
-pair")?.remove()}}recolour(){let background=groundAround(this.element);for(let viewer of this.viewer?.together??[])viewer.
-recolour({background})}};function begin(){let elements=document.querySelectorAll(".flowtex-live"),views=Array.from(elements,
-element=>new LiveView(element)),recolour=()=>views.forEach(view=>view.recolour()),attributeFilter=["data-theme","class"];
-new MutationObserver(recolour).observe(document.documentElement,{attributeFilter}),matchMedia("(prefers-color-scheme: da\
-rk)").addEventListener("change",recolour)}document.readyState==="loading"?document.addEventListener("DOMContentLoaded",begin):
-begin();})();
+setHeader(header)),scenes2.forEach(({parts},n)=>parts.forEach(part=>viewers[n].setPart(part))),viewers[0]}var KEPT_HEIGHTS=2,EXPLAINED=".flowtex-explained, .tag_flowtex-explained",scenes=new Map;window.flowtexScene=(name,scene)=>scenes.
+get(name)?.(scene);function fetchScene(element){let{scene:address=""}=element.dataset,name=address.replace(/^.*\//,"").replace(
+/\.js$/,"");return new Promise((resolve,reject)=>{let script=document.createElement("script");scenes.set(name,resolve),script.
+src=address,script.onload=()=>script.remove(),script.onerror=()=>reject(new Error(`${address} cannot be loaded`)),document.
+head.append(script)})}async function unpacked({headers,parts}){let known=new Map,result2=headers.map(header=>({header:{...headers[0],
+...header},parts:[]}));for(let[view,info,text]of parts){let part=known.get(info.digest)??await partOfText(info,text);known.
+set(info.digest,part),result2[view].parts.push({...part,name:info.name})}return result2}function groundAround(element){for(let at=element.
+parentElement;at;at=at.parentElement){let[r,g,b,a=1]=(getComputedStyle(at).backgroundColor.match(/[\d.]+/g)??[]).map(Number);
+if(a>0)return[r/255,g/255,b/255]}return[1,1,1]}var LiveView=class{element;explanation;viewer=null;isWanted=!1;isLoading=!1;constructor(element){
+this.element=element,this.explanation=element.closest(EXPLAINED)&&new Explanation(element);let near={rootMargin:`${100*KEPT_HEIGHTS}\
+% 0%`};new IntersectionObserver(([entry])=>entry.isIntersecting&&void this.show()).observe(element),new IntersectionObserver(
+([entry])=>entry.isIntersecting||this.leave(),near).observe(element)}async show(){if(this.isWanted=!0,this.viewer||this.
+isLoading)return;this.isLoading=!0;let{element}=this;try{let data=await unpacked(await fetchScene(element));if(!this.isWanted)
+return;let ground=groundAround(element);for(let{header}of data)header.background=ground;let{explanation}=this,options={guarded:!0,
+label:element.dataset.label,...explanation?.options};this.viewer=mountPage(element,data,options),explanation?.attach(this.
+viewer),this.watch()}catch(error){element.title=`This view is a picture only: ${error instanceof Error?error.message:error}`}finally{
+this.isLoading=!1}}watch(){let{element}=this,look=()=>{if(element.querySelector('[data-sharp="false"]'))return;seen.disconnect(),
+element.dataset.live="true";let isCalm=matchMedia("(prefers-reduced-motion: reduce)").matches;"plays"in element.dataset&&
+!isCalm&&this.viewer?.play()},seen=new MutationObserver(look);seen.observe(element,{subtree:!0,attributeFilter:["data-sh\
+arp"]})}leave(){if(this.isWanted=!1,!!this.viewer){for(let viewer of this.viewer.together)viewer.dispose();this.viewer=null,
+delete this.element.dataset.live,this.element.querySelector(".flowtex-pair")?.remove()}}recolour(){let background=groundAround(
+this.element);for(let viewer of this.viewer?.together??[])viewer.recolour({background})}};function begin(){let elements=document.
+querySelectorAll(".flowtex-live"),views=Array.from(elements,element=>new LiveView(element)),recolour=()=>views.forEach(view=>view.
+recolour()),attributeFilter=["data-theme","class"];new MutationObserver(recolour).observe(document.documentElement,{attributeFilter}),
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change",recolour)}document.readyState==="loading"?document.
+addEventListener("DOMContentLoaded",begin):begin();})();

@@ -19,4 +19,4 @@ w = w * np.exp(0.9j)
 w = w / np.sqrt(1 + abs(w) ** 2)
 
 field = flowtex.FlowField.from_arrays((x, y), np.stack([w.real, w.imag], axis=-1))
-flowtex.show(field, cmap="plasma")
+flowtex.show(field, cmap="viridis_r")
