@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import re
 import sys
+import tomllib
 from pathlib import Path
 
-HERE = Path(__file__).parent
-sys.path.insert(0, str(HERE))
+sys.path.insert(0, str(Path(__file__).parent))
 
 import live
 
 from flowtex import __version__
+
+HERE = Path(__file__).parent
+about = tomllib.loads((HERE.parent / "pyproject.toml").read_text())["project"]
 
 project = "flowtex"
 author = "flowtex developers"
@@ -33,7 +36,7 @@ extensions = [
     "outside",
 ]
 #: Where the project lies; links to files outside of these pages lead there.
-repository = "https://github.com/flowtex/flowtex"
+repository = about["urls"]["Repository"]
 # Beside the pages of the examples lie their notebooks, for those who download them.
 exclude_patterns = ["examples", "gallery/*.ipynb", "gallery/*.py", "gallery/*.json"]
 suppress_warnings = ["config.cache"]  # what draws the examples is no plain value
@@ -55,12 +58,8 @@ nb_mime_priority_overrides = [("html", "text/html", 0)]
 
 templates_path = ["_templates"]
 autosummary_generate = True
-autosummary_ignore_module_all = False
-# On disks that do not tell capitals from small letters these would be one file.
-autosummary_filename_map = {
-    "flowtex.probe.Probe": "flowtex.probe.Probe-class",
-    "flowtex.offscreen.movie.Movie": "flowtex.offscreen.movie.Movie-class",
-}
+# On disks that do not tell capitals from small letters it would be the file of probe.
+autosummary_filename_map = {"flowtex.probe.Probe": "flowtex.probe.Probe-class"}
 autodoc_typehints = "none"
 numpydoc_class_members_toctree = False
 numpydoc_show_class_members = False
@@ -107,7 +106,9 @@ sphinx_gallery_conf = {
 
 html_theme = "pydata_sphinx_theme"
 html_title = "flowtex"
+html_favicon = "_static/favicon.svg"
 html_static_path = ["_static"]
+smartquotes = False  # a setting's 'hann' is to be copied as it is
 html_css_files = ["site.css"]
 html_show_sourcelink = False
 html_theme_options = {

@@ -13,9 +13,6 @@ from pathlib import Path
 from typing import Any
 
 import live
-from PIL import Image
-
-import flowtex
 
 HERE = Path(__file__).resolve().parent
 NOTEBOOKS = HERE.parent / "notebooks"
@@ -34,19 +31,23 @@ lessons.in_kernel()
 class WidgetView(live.View):
     """What a widget shows, of the mesh and with the options that it was made with."""
 
+    sizes = ((live.STILL, 1.0),)
+
     def __init__(self, widget: Any, mesh: Any, options: dict[str, Any]) -> None:
         chosen = {**options, **dict(widget.settings)}
-        now = {"camera": dict(widget.camera), "time": widget.time}
-        self.still = Image.fromarray(flowtex.render(mesh, size=live.STILL, **chosen | now))
+        self.mesh, self.look = mesh, {**chosen, "camera": dict(widget.camera)}
+        self.time = widget.time
         self.views = widget._views.views
-        self.camera = now["camera"]
-        what = repr(sorted(chosen.items(), key=str)).encode() + self.still.tobytes()
+        self.camera = dict(widget.camera)
+        self.whole = self.plays = False
+        what = repr(sorted(chosen.items(), key=str)).encode() + self.pictures[0].tobytes()
         self.name = f"view_{hashlib.sha256(what).hexdigest()[:12]}"
 
     def _repr_html_(self) -> str:
         """Write the scene, and return its element for a page in the folder that is worked in."""
         self.write(self.name)
-        return self.html(self.name, len(Path.cwd().relative_to(HERE).parts))
+        folders = len(Path.cwd().relative_to(HERE).parts)
+        return live.html({"scene": self.name, "flags": self.flags}, "Flow texture", folders)
 
 
 def in_kernel() -> None:

@@ -13,6 +13,7 @@ from flowtex.settings import TABLE, Setting
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+PAGES += sorted(p for room in ("howto", "reference") for p in (ROOT / "docs" / room).glob("*.md"))
 BEGIN, END = "<!-- settings: made from", "<!-- end of settings -->"
 
 

@@ -38,7 +38,7 @@ check "spelling" node tools/site/node_modules/cspell/bin.mjs lint --no-progress 
 check "accessibility" python tools/site/accessibility.py "$site"
 # What the examples of docstrings write goes into a folder of their own.
 examples() {
-    (cd out/site-examples && pytest -q -n 0 -p no:cacheprovider -c "$root/pyproject.toml" \
+    (cd out/site-examples && pytest -q -p no:cacheprovider -c "$root/pyproject.toml" \
         --doctest-modules --pyargs flowtex)
 }
 check "examples of docstrings" examples

@@ -16,12 +16,15 @@ ATTRIBUTES = {"src", "href", "poster", "data", "data-scene", "srcset"}
 #: Links of the head that load nothing.
 WORDS_OF_HEAD = {"index", "search", "next", "prev", "canonical", "author", "alternate"}
 OUTSIDE = re.compile(r"(?:https?:)?//", re.IGNORECASE)
-#: How a style or a script would load something from outside.
-LOADS = re.compile(
-    r"(?:url\(|@import|importScripts\(|import\(|fetch\(|\.src\s*=|\bfrom)"
-    r"""\s*["'`]?\s*((?:https?:)?//[^"'`)\s]+)""",
-    re.IGNORECASE,
-)
+#: How styles, and scripts, would load something from outside.
+LOADS = {
+    ".css": re.compile(r"""(?:url\(|@import)\s*["']?\s*((?:https?:)?//[^"')\s]+)"""),
+    ".js": re.compile(
+        r"(?:importScripts\(|import\(|fetch\(|\.src\s*=|\bfrom|\bimport)"
+        r"""\s*["'`]((?:https?:)?//[^"'`\s]+)"""
+    ),
+}
+COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
 #: What is no text: code, names of the reference, mathematics.
 NO_WORDS = "pre, code, kbd, samp, script, style, svg, .math, .sig, .headerlink, dl.field-list dt"
 #: Pages that list names alone.
@@ -38,13 +41,18 @@ def parsed(page: Path) -> BeautifulSoup:
 @cache
 def anchors(page: Path) -> frozenset[str]:
     """Return the names that a link into a page may end with."""
-    tags = parsed(page).find_all(True)
+    tags = parsed(page).select("[id], [name]")
     return frozenset(str(tag[key]) for tag in tags for key in ("id", "name") if tag.has_attr(key))
+
+
+def lacks(page: Path, place: str) -> bool:
+    """Tell whether a page has no place of a name."""
+    return bool(place) and page.suffix == ".html" and place not in anchors(page)
 
 
 def references(page: Path) -> Iterator[tuple[Tag, str]]:
     """Give the elements of a page that name something elsewhere, and what."""
-    for tag in parsed(page).find_all(True):
+    for tag in parsed(page).select("*"):
         for name in ATTRIBUTES & set(tag.attrs):
             value = str(tag[name])
             if name == "srcset":
@@ -62,7 +70,7 @@ def loads(tag: Tag) -> bool:
 
 def broken(site: Path) -> Iterator[str]:
     """Give a sentence for each link that leads nowhere, and each thing from outside."""
-    for page in sorted(site.rglob("*.html")):
+    for page in pages(site):
         name = page.relative_to(site)
         for tag, value in references(page):
             if value.startswith(("data:", "mailto:", "javascript:", "blob:")):
@@ -76,13 +84,19 @@ def broken(site: Path) -> Iterator[str]:
             target = target / "index.html" if target.is_dir() else target
             if not target.is_file():
                 yield f"{name}: there is no {value}"
-            elif parts.fragment and target.suffix == ".html" and tag.name == "a":
-                if unquote(parts.fragment) not in anchors(target):
-                    yield f"{name}: {value} has no such place in it"
-    for file in sorted([*site.rglob("*.css"), *site.rglob("*.js"), *site.rglob("*.html")]):
-        text = file.read_text(encoding="utf-8", errors="replace")
-        for found in LOADS.finditer(text):
-            yield f"{file.relative_to(site)}: loads {found[1]} from outside"
+            elif lacks(target, unquote(parts.fragment)):
+                yield f"{name}: {value} has no such place in it"
+    for suffix, pattern in LOADS.items():
+        for file in sorted(site.rglob(f"*{suffix}")):
+            text = COMMENT.sub("", file.read_text(encoding="utf-8", errors="replace"))
+            for found in pattern.finditer(text):
+                yield f"{file.relative_to(site)}: loads {found[1]} from outside"
+
+
+def pages(site: Path) -> list[Path]:
+    """Return the pages of a site, without what the theme keeps beside its files."""
+    names = (page.relative_to(site) for page in sorted(site.rglob("*.html")))
+    return [site / name for name in names if not name.parts[0].startswith("_")]
 
 
 def words(page: Path) -> str:
@@ -95,15 +109,15 @@ def words(page: Path) -> str:
     for image in article.find_all("img"):
         image.replace_with(f" {image.get('alt', '')}\n")
     lines = (" ".join(line.split()) for line in article.get_text().splitlines())
-    return "\n".join(line for line in lines if line) + "\n"
+    return "\n".join(line for line in lines if line).replace("’", "'") + "\n"
 
 
 def write_words(site: Path, folder: Path) -> int:
     """Write the text of every page into a folder, for the spell checker; return how many."""
     count = 0
-    for page in site.rglob("*.html"):
+    for page in pages(site):
         name = page.relative_to(site)
-        if name.parts[0].startswith("_") or name.name in LISTS:
+        if name.name in LISTS:
             continue
         file = (folder / name).with_suffix(".txt")
         file.parent.mkdir(parents=True, exist_ok=True)
