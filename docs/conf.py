@@ -100,7 +100,9 @@ sphinx_gallery_conf = {
     "min_reported_time": 1e9,
     "show_signature": False,
     "download_all_examples": False,
-    "thumbnail_size": (480, 300),
+    "thumbnail_size": live.THUMBNAIL,
+    "within_subsection_order": "FileNameSortKey",
+    "subsection_order": [f"examples/{name}" for name in live.SECTIONS],
     "write_computation_times": False,
 }
 

@@ -18,12 +18,14 @@ again what an example has shown, ``{live} plot_airfoil``.
 
 from __future__ import annotations
 
+import contextlib
 import os
 import shutil
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 from html import escape
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any, ClassVar
 
 import numpy as np
@@ -49,6 +51,8 @@ STILL = (1000, 500)
 THUMBNAIL, THUMBNAIL_GRAIN = (560, 350), 1.6
 #: Bytes of a scene, at most; of a series so many steps are kept as fit.
 SCENE_BYTES = 1_800_000
+#: Sections of the gallery, folders of docs/examples, in order.
+SECTIONS = ("grids", "surfaces", "earth", "time", "looks", "classics")
 HINT = (
     "This picture is alive: drag it, click it and zoom with the wheel, or pinch it. "
     "Arrow keys, + and − do the same, 0 shows all, and a click on the flow shows a path."
@@ -207,7 +211,8 @@ class Live(SphinxDirective):
             return [self._node(self.arguments[0], tuple(flags))]
         code = "\n".join(self.content)
         names = self.env.temp_data.setdefault("live_names", {"__name__": "__main__"})
-        exec(compile(code, self.get_location(), "exec"), names)
+        with TemporaryDirectory() as folder, contextlib.chdir(folder):  # for what it writes
+            exec(compile(code, self.get_location(), "exec"), names)
         block = nodes.literal_block(code, code, language="python")
         result: list[nodes.Node] = [] if "hide" in self.options else [block]
         for view in shown:
@@ -228,7 +233,7 @@ def html(scene: Mapping[str, Any], title: str, folders: int) -> str:
     flags = "".join(f" data-{flag}" for flag in scene["flags"])
     return (
         f'<div class="flowtex-live" data-scene="{path}.js" data-label="{escape(title)}"{flags}>'
-        f'<img src="{path}.webp" alt="{escape(title)}" width="{STILL[0]}" height="{STILL[1]}"></div>'
+        f'<img src="{path}.webp" alt="{escape(title)}"></div>'
     )
 
 

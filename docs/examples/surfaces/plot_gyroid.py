@@ -22,6 +22,6 @@ gradient = np.stack(
     ],
     axis=-1,
 )
-mesh["stream"] = np.cross(gradient, [0.2, -0.5, 0.8]) + (0.5, 0.2, 0.3)
+mesh["stream"] = np.array([0.5, 0.2, 0.3]) + np.cross(gradient, [0.2, -0.5, 0.8])
 mesh["height"] = z
 flowtex.show(mesh, contour="f=0", vectors="stream", scalars="height", cmap="plasma")
