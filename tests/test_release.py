@@ -1,4 +1,4 @@
-"""A release is of one piece: versions, floors and the address agree, and workflows may do little."""
+"""A release is of one piece: versions, floors and the address agree; workflows may do little."""
 
 from __future__ import annotations
 
