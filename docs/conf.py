@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 import sys
+import tomllib
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent))
@@ -10,6 +12,9 @@ sys.path.insert(0, str(Path(__file__).parent))
 import live
 
 from flowtex import __version__
+
+HERE = Path(__file__).parent
+about = tomllib.loads((HERE.parent / "pyproject.toml").read_text())["project"]
 
 project = "flowtex"
 author = "flowtex developers"
@@ -21,12 +26,16 @@ extensions = [
     "sphinx.ext.autosummary",
     "sphinx.ext.intersphinx",
     "numpydoc",
+    "cyclopts.ext.sphinx",
     "myst_nb",
     "sphinx_copybutton",
     "sphinx_design",
     "sphinx_gallery.gen_gallery",
     "live",
+    "outside",
 ]
+#: Where the project lies; links to files outside of these pages lead there.
+repository = about["urls"]["Repository"]
 # Beside the pages of the examples lie their notebooks, for those who download them.
 exclude_patterns = ["examples", "gallery/*.ipynb", "gallery/*.py", "gallery/*.json"]
 suppress_warnings = ["config.cache"]  # what draws the examples is no plain value
@@ -39,19 +48,37 @@ nb_execution_raise_on_error = True
 nb_ipywidgets_js: dict[str, str] = {}  # what is live here needs no kernel and no network
 nb_mime_priority_overrides = [("html", "text/html", 0)]
 
+templates_path = ["_templates"]
 autosummary_generate = True
+# On disks that do not tell capitals from small letters it would be the file of probe.
+autosummary_filename_map = {"flowtex.probe.Probe": "flowtex.probe.Probe-class"}
 autodoc_typehints = "none"
 numpydoc_class_members_toctree = False
 numpydoc_show_class_members = False
+# Of the types in docstrings the classes of the reference become links, and these of others.
+public = re.findall(
+    r"^   (flowtex\.[\w.]+)$",
+    "\n".join(page.read_text() for page in sorted(HERE.glob("reference/*.md"))),
+    re.MULTILINE,
+)
+others = ("numpy.ndarray", "pyvista.StructuredGrid", "xarray.Dataset", "bool", "pathlib.Path")
+numpydoc_xref_param_type = True
+numpydoc_xref_ignore = "all"
+numpydoc_xref_aliases = {
+    **{short: name for name in public if (short := name.rsplit(".", 1)[1])[0].isupper()},
+    **{name: f":class:`{name}`" for name in others},
+    **{"boolean": ":class:`bool`", "array_like": ":data:`~numpy.typing.ArrayLike`"},
+}
+nitpicky = True
 
-# Inventories are kept here, so that a build needs no network.
+# Inventories of the few names that docstrings use are kept here, as text, so that a build needs no
+# network.
 intersphinx_mapping = {
     "python": ("https://docs.python.org/3", "inventories/python.inv"),
     "numpy": ("https://numpy.org/doc/stable", "inventories/numpy.inv"),
     "pyvista": ("https://docs.pyvista.org", "inventories/pyvista.inv"),
     "xarray": ("https://docs.xarray.dev/en/stable", "inventories/xarray.inv"),
 }
-intersphinx_mapping = {}
 
 sphinx_gallery_conf = {
     "examples_dirs": "examples",
@@ -71,7 +98,9 @@ sphinx_gallery_conf = {
 
 html_theme = "pydata_sphinx_theme"
 html_title = "flowtex"
+html_favicon = "_static/favicon.svg"
 html_static_path = ["_static"]
+smartquotes = False  # a setting's 'hann' is to be copied as it is
 html_css_files = ["site.css"]
 html_show_sourcelink = False
 html_theme_options = {

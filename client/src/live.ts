@@ -1,6 +1,7 @@
 // Views among the text of a page, such as a documentation: one client for all of them. A view is an
 // element of the class "flowtex-live" with a still picture in it; its scene, a script beside the page,
-// is loaded when the element comes into sight, and given up again when it is far from it.
+// is loaded when the element comes into sight, and given up again when it is far from it. With
+// "data-plays" it streams, and "data-label" is what it is called by those who do not see it.
 
 import { partOfText, type Header, type NamedPart, type PartInfo } from "./protocol.ts";
 import type { Viewer } from "./viewer.ts";
@@ -86,7 +87,7 @@ class LiveView {
       if (!this.isWanted) return;
       const ground = groundAround(element);
       for (const { header } of data) header.background = ground;
-      this.viewer = mountPage(element, data, { guarded: true });
+      this.viewer = mountPage(element, data, { guarded: true, label: element.dataset.label });
       this.watch();
     } catch (error) {
       element.title = `This view is a picture only: ${error instanceof Error ? error.message : error}`;
@@ -95,13 +96,15 @@ class LiveView {
     }
   }
 
-  /** Take the still away once all is drawn. */
+  /** Take the still away once all is drawn, and let stream what is meant to. */
   private watch(): void {
     const { element } = this;
     const look = () => {
       if (element.querySelector('[data-sharp="false"]')) return;
       seen.disconnect();
       element.dataset.live = "true";
+      const isCalm = matchMedia("(prefers-reduced-motion: reduce)").matches;
+      if ("plays" in element.dataset && !isCalm) this.viewer?.play();
     };
     const seen = new MutationObserver(look);
     seen.observe(element, { subtree: true, attributeFilter: ["data-sharp"] });

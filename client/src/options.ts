@@ -37,6 +37,8 @@ export interface Options {
   controls?: boolean;
   /** Whether outlines are smoothed; by default where it takes little time. */
   smooth?: boolean;
+  /** What the view is called by those who do not see it; by default the name of the flow. */
+  label?: string;
   /** Whether the page around is scrolled: the view takes wheel and finger only after a click. */
   guarded?: boolean;
   /** The view that has the bar, where it is not this one. */

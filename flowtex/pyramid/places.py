@@ -20,7 +20,15 @@ _URL = re.compile(r"^([A-Za-z][A-Za-z0-9+.-]+):[/\\]{1,2}(?=[^/\\])")
 
 
 class PyramidError(FieldError):
-    """A store of a pyramid that cannot be read, or written."""
+    """A store of a pyramid that cannot be read, or written.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> flowtex.pyramid.open_store("missing.zarr")
+    Traceback (most recent call last):
+    flowtex.pyramid.places.PyramidError: ...
+    """
 
 
 def place_text(place: str | Path) -> str:
@@ -46,7 +54,14 @@ def store_at(place: str | Path, *, read_only: bool = True) -> Any:
 
 
 def is_store(place: Any) -> bool:
-    """Whether there is a pyramid at a place; without Zarr for a local one."""
+    """Whether there is a pyramid at a place; without Zarr for a local one.
+
+    Examples
+    --------
+    >>> from flowtex.pyramid import is_store
+    >>> is_store("flow.vts")
+    False
+    """
     if not isinstance(place, (str, Path)):
         return False
     text = place_text(place)

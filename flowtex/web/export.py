@@ -69,6 +69,13 @@ class Page:
         The size that was estimated beforehand.
     steps
         Number of time steps in it.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> page = flowtex.export(flowtex.examples.delta_wing_field(), "wing.html", samples=15)
+    >>> page.path.name, page.steps, page.nbytes < 1_000_000
+    ('wing.html', 1, True)
     """
 
     path: Path
@@ -118,6 +125,12 @@ def export(
         When ``steps`` is not positive.
     OSError
         When the file cannot be written; what was there before is left as it was.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> series = flowtex.examples.cylinder_series()
+    >>> flowtex.export(series, "wake.html", steps=6, scalars="vorticity")  # doctest: +SKIP
     """
     arguments = Options.split(**options)
     views = web_views(mesh, arguments, steps=steps)

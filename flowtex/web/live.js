@@ -604,7 +604,7 @@ shape.setAttribute(name,`${value}`);return shape}))}};var styles_default=`/* Wha
   position: absolute; inset: 0; width: 100%; height: 100%;
   cursor: grab; touch-action: none; display: block;
 }
-:host(.flowtex-guarded:not(.flowtex-held, :fullscreen)) .picture { touch-action: pan-y; }
+:host(.flowtex-guarded:not(.flowtex-held, :fullscreen)) .picture { touch-action: pan-y pinch-zoom; }
 :host(.flowtex-grabbing) .picture { cursor: grabbing; }
 .glass {
   background: var(--glass);
@@ -806,33 +806,34 @@ entries(this.toggles))button.setAttribute("aria-pressed",String(!!settings[name]
 ay (space)";this.playButton.replaceChildren(icon(playing?"pause":"play")),this.playButton.title=title,this.playButton.setAttribute(
 "aria-label",title);let streams=header!==null&&hasStreaming(header);this.playButton.hidden=this.track.hidden=!varies&&!streams,
 this.slider.disabled=!varies&&settings.motion==="off";let width=header&&this.date(header)?.length||8+(header?.slices.timeUnit??
-"").length;this.timeText.style.minWidth=`${varies?width:7}ch`,this.tick()}name(){let{header,settings,root}=this.viewer,title=(header?.
-differs??[]).filter(name=>name in settings).map(name=>{let label=header?.table.find(row=>row.name===name)?.label??name,value=settings[name];
-return`${label}: ${typeof value=="boolean"?value?"on":"off":value}`}).join(", ")||header?.name||"";this.title.textContent=
-title,this.title.hidden=!title,root.setAttribute("aria-label",title?`Flow texture: ${title}`:"Flow texture")}tick(){let{
-header,player,settings}=this.viewer;if(!header||this.track.hidden)return;let{first,last,now}=player.range(settings);this.
-slider.value=String((now-first)/(last-first||1));let unit2=header.slices.timeUnit,moment=this.date(header)??`${numberText(
-now)} ${unit2}`,text=player.varies?moment:`${now.toFixed(1)} s`;this.timeText.textContent!==text&&(this.timeText.textContent=
-text)}date({slices}){return dateText(slices.dates,slices.times,this.viewer.player.time)}lookOf({show_level,strength,contrast}){
-return`${show_level} ${strength} ${contrast}`}showLegend(){let{header,settings,parts}=this.viewer;this.legendLook=this.lookOf(
-settings),this.colours.update(),header&&this.legend.show(header,settings,parts.get("cmap")?.data)}read(point,ground=null){
-let{header}=this.viewer;this.readout.replaceChildren(),this.legend.point(null);let position=point?.position??ground;if(!position||
-!header)return;let{parts,camera}=this.viewer;if(this.readout.append(dom("span",{},[placeText(position,header,parts,camera)])),
-!point)return;let{name,label,unit:unit2}=header.scalars,value=point.values[name??""];value!==void 0&&(this.readout.append(
-dom("b",{},[withUnit(`${label} ${numberText(value)}`,unit2)])),this.legend.point(header,value))}fold(open=!1){this.isOpen=
-open,this.arrange()}toggle(shown=!this.isShown){shown!==this.isShown&&(this.isShown=shown,this.arrange(),this.viewer.options.
-onControls?.(shown))}arrange(){let{header,options,root}=this.viewer,isReady=header!==null,follows=!!options.follows;this.
-bar.hidden=!this.isShown||!isReady,this.handle.hidden=this.isShown||!isReady||follows,this.head.hidden=!(this.isShown||follows)||
-!isReady,this.controls.element.hidden=!this.isShown||!this.isOpen||!isReady,root.classList.toggle("flowtex-open",!this.controls.
-element.hidden),this.gear.setAttribute("aria-pressed",String(this.isOpen))}wait(missing){this.busy.hidden=!missing.length;
-let{viewer}=this;!missing.length||viewer.options.onNeed||this.lateTimer||(this.lateTimer=viewer.lifetime.later(()=>{this.
-lateTimer=null;let names=viewer.lacking.join(", ");names&&this.fail("The scene is not complete.",`Missing: ${names}`)},LATE_MS))}hint(shown){
-let{lifetime}=this.viewer;lifetime.cancel(this.hintTimer),this.hintTimer=shown?lifetime.later(()=>this.hint(!1),HINT_MS):
-null,this.hintBox.hidden=!shown}clear(){this.note.hidden=!0,delete this.viewer.root.dataset.failed}fail(problem,detail){
-this.note.replaceChildren(dom("strong",{},[problem]),dom("pre",{},[detail])),this.note.hidden=!1,this.busy.hidden=!0,this.
-viewer.root.dataset.failed="true"}fullscreen(){let{root}=this.viewer;toggleFullscreen(root.closest(".flowtex-pair")??root)}async save(){
-let{viewer}=this,href=URL.createObjectURL(await pictureOf(viewer.together)),name=(viewer.header?.name||"flow").replace(FORBIDDEN,
-" ").trim();dom("a",{href,download:`${name}.png`}).click(),viewer.lifetime.later(()=>URL.revokeObjectURL(href),SAVED_MS)}};var SERIES_STEP_S=.5,SERIES_LEAST_S=6,SERIES_MOST_S=60,LONGEST_GAP_S=.5,Player=class{time=0;clock=0;playing=!1;times=[0];lastFrame=0;hasHeader=!1;setHeader(header){
+"").length;this.timeText.style.minWidth=`${varies?width:7}ch`,this.tick()}name(){let{header,settings,root,options}=this.
+viewer,title=(header?.differs??[]).filter(name=>name in settings).map(name=>{let label2=header?.table.find(row=>row.name===
+name)?.label??name,value=settings[name];return`${label2}: ${typeof value=="boolean"?value?"on":"off":value}`}).join(", ")||
+header?.name||"";this.title.textContent=title,this.title.hidden=!title;let label=options.label??title;root.setAttribute(
+"aria-label",label?`Flow texture: ${label}`:"Flow texture")}tick(){let{header,player,settings}=this.viewer;if(!header||this.
+track.hidden)return;let{first,last,now}=player.range(settings);this.slider.value=String((now-first)/(last-first||1));let unit2=header.
+slices.timeUnit,moment=this.date(header)??`${numberText(now)} ${unit2}`,text=player.varies?moment:`${now.toFixed(1)} s`;
+this.timeText.textContent!==text&&(this.timeText.textContent=text)}date({slices}){return dateText(slices.dates,slices.times,
+this.viewer.player.time)}lookOf({show_level,strength,contrast}){return`${show_level} ${strength} ${contrast}`}showLegend(){
+let{header,settings,parts}=this.viewer;this.legendLook=this.lookOf(settings),this.colours.update(),header&&this.legend.show(
+header,settings,parts.get("cmap")?.data)}read(point,ground=null){let{header}=this.viewer;this.readout.replaceChildren(),
+this.legend.point(null);let position=point?.position??ground;if(!position||!header)return;let{parts,camera}=this.viewer;
+if(this.readout.append(dom("span",{},[placeText(position,header,parts,camera)])),!point)return;let{name,label,unit:unit2}=header.
+scalars,value=point.values[name??""];value!==void 0&&(this.readout.append(dom("b",{},[withUnit(`${label} ${numberText(value)}`,
+unit2)])),this.legend.point(header,value))}fold(open=!1){this.isOpen=open,this.arrange()}toggle(shown=!this.isShown){shown!==
+this.isShown&&(this.isShown=shown,this.arrange(),this.viewer.options.onControls?.(shown))}arrange(){let{header,options,root}=this.
+viewer,isReady=header!==null,follows=!!options.follows;this.bar.hidden=!this.isShown||!isReady,this.handle.hidden=this.isShown||
+!isReady||follows,this.head.hidden=!(this.isShown||follows)||!isReady,this.controls.element.hidden=!this.isShown||!this.
+isOpen||!isReady,root.classList.toggle("flowtex-open",!this.controls.element.hidden),this.gear.setAttribute("aria-presse\
+d",String(this.isOpen))}wait(missing){this.busy.hidden=!missing.length;let{viewer}=this;!missing.length||viewer.options.
+onNeed||this.lateTimer||(this.lateTimer=viewer.lifetime.later(()=>{this.lateTimer=null;let names=viewer.lacking.join(", ");
+names&&this.fail("The scene is not complete.",`Missing: ${names}`)},LATE_MS))}hint(shown){let{lifetime}=this.viewer;lifetime.
+cancel(this.hintTimer),this.hintTimer=shown?lifetime.later(()=>this.hint(!1),HINT_MS):null,this.hintBox.hidden=!shown}clear(){
+this.note.hidden=!0,delete this.viewer.root.dataset.failed}fail(problem,detail){this.note.replaceChildren(dom("strong",{},
+[problem]),dom("pre",{},[detail])),this.note.hidden=!1,this.busy.hidden=!0,this.viewer.root.dataset.failed="true"}fullscreen(){
+let{root}=this.viewer;toggleFullscreen(root.closest(".flowtex-pair")??root)}async save(){let{viewer}=this,href=URL.createObjectURL(
+await pictureOf(viewer.together)),name=(viewer.header?.name||"flow").replace(FORBIDDEN," ").trim();dom("a",{href,download:`${name}\
+.png`}).click(),viewer.lifetime.later(()=>URL.revokeObjectURL(href),SAVED_MS)}};var SERIES_STEP_S=.5,SERIES_LEAST_S=6,SERIES_MOST_S=60,LONGEST_GAP_S=.5,Player=class{time=0;clock=0;playing=!1;times=[0];lastFrame=0;hasHeader=!1;setHeader(header){
 let{times:times2}=header.slices;(!(times2.length===this.times.length&&times2.every((t,n)=>t===this.times[n]))||!this.hasHeader)&&
 (this.time=header.time,this.clock=header.clock),this.hasHeader=!0,this.times=times2}get varies(){return this.times.length>
 1}get span(){return[this.times[0],this.times[this.times.length-1]]}get moment(){return momentOf(this.times,this.time)}timeOf([
@@ -1243,10 +1244,11 @@ element=element;let near={rootMargin:`${100*KEPT_HEIGHTS}% 0%`};new Intersection
 void this.show()).observe(element),new IntersectionObserver(([entry])=>entry.isIntersecting||this.leave(),near).observe(
 element)}async show(){if(this.isWanted=!0,this.viewer||this.isLoading)return;this.isLoading=!0;let{element}=this;try{let data=await unpacked(
 await fetchScene(element));if(!this.isWanted)return;let ground=groundAround(element);for(let{header}of data)header.background=
-ground;this.viewer=mountPage(element,data,{guarded:!0}),this.watch()}catch(error){element.title=`This view is a picture \
-only: ${error instanceof Error?error.message:error}`}finally{this.isLoading=!1}}watch(){let{element}=this,look=()=>{element.
-querySelector('[data-sharp="false"]')||(seen.disconnect(),element.dataset.live="true")},seen=new MutationObserver(look);
-seen.observe(element,{subtree:!0,attributeFilter:["data-sharp"]})}leave(){if(this.isWanted=!1,!!this.viewer){for(let viewer of this.
+ground;this.viewer=mountPage(element,data,{guarded:!0,label:element.dataset.label}),this.watch()}catch(error){element.title=
+`This view is a picture only: ${error instanceof Error?error.message:error}`}finally{this.isLoading=!1}}watch(){let{element}=this,
+look=()=>{if(element.querySelector('[data-sharp="false"]'))return;seen.disconnect(),element.dataset.live="true";let isCalm=matchMedia(
+"(prefers-reduced-motion: reduce)").matches;"plays"in element.dataset&&!isCalm&&this.viewer?.play()},seen=new MutationObserver(
+look);seen.observe(element,{subtree:!0,attributeFilter:["data-sharp"]})}leave(){if(this.isWanted=!1,!!this.viewer){for(let viewer of this.
 viewer.together)viewer.dispose();this.viewer=null,delete this.element.dataset.live,this.element.querySelector(".flowtex-\
 pair")?.remove()}}recolour(){let background=groundAround(this.element);for(let viewer of this.viewer?.together??[])viewer.
 recolour({background})}};function begin(){let elements=document.querySelectorAll(".flowtex-live"),views=Array.from(elements,
