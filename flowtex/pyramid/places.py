@@ -14,8 +14,9 @@ __all__ = ["FORMAT", "PyramidError", "is_store", "place_text", "store_at"]
 
 #: Written into every store; a reader refuses what it does not know.
 FORMAT = "flowtex-pyramid-1"
-#: A URL, or one of which ``pathlib`` has made a path.
-_URL = re.compile(r"^([A-Za-z][A-Za-z0-9+.-]+):/{1,2}(?=[^/])")
+#: A URL, or one of which ``pathlib`` has made a path, on Windows with its slashes turned. One
+#: letter is a drive.
+_URL = re.compile(r"^([A-Za-z][A-Za-z0-9+.-]+):[/\\]{1,2}(?=[^/\\])")
 
 
 class PyramidError(FieldError):
@@ -34,7 +35,7 @@ def place_text(place: str | Path) -> str:
     """Return the URL of a store, or the whole path of a local one."""
     text = str(place)
     if _URL.match(text):
-        return _URL.sub(r"\1://", text)
+        return _URL.sub(r"\1://", text).replace("\\", "/")
     return str(Path(text).expanduser().resolve())
 
 
