@@ -53,10 +53,14 @@ def as_numbers(version: str) -> tuple[int, ...]:
     return tuple(numbers + [0] * (4 - len(numbers)))
 
 
+#: Extras of those who work on flowtex.
+NO_USERS = ("test", "dev", "site")
+
+
 def every_extra() -> list[str]:
     """What flowtex and its extras for users ask for."""
     optional: dict[str, list[str]] = PROJECT["optional-dependencies"]
-    users = [line for name, e in optional.items() if name not in ("test", "dev") for line in e]
+    users = [line for name, e in optional.items() if name not in NO_USERS for line in e]
     return [*PROJECT["dependencies"], *(line for line in users if not line.startswith("flowtex["))]
 
 
