@@ -50,6 +50,13 @@ class Built:
         Its coarsest level.
     made, kept
         Shards of nodes and tiles that were made, and that were there already.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> field = flowtex.examples.double_gyre_field(shape=(21, 41))
+    >>> flowtex.pyramid.build(field, "gyre.zarr", progress=False).depth
+    0
     """
 
     place: str
@@ -75,7 +82,7 @@ def build(
     Parameters
     ----------
     source
-        A field, a dataset of xarray's, or a file as for :meth:`FlowField.from_file`.
+        A field, a dataset of xarray's, or a file as for :meth:`flowtex.FlowField.from_file`.
     store
         A local folder such as ``"flow.zarr"``, or a URL such as ``"s3://bucket/flow.zarr"``;
         endpoint and credentials come from the environment.
@@ -121,6 +128,14 @@ def build(
     larger than a region, 512 by 1,024 nodes of a time step. Of anything else a time step has to fit
     into the memory of this process. A task takes 1.5 GB at most; a worker of a cluster should
     have that for each of its threads, and 0.5 GB for itself.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> field = flowtex.examples.double_gyre_field(shape=(21, 41))
+    >>> built = flowtex.pyramid.build(field, "gyre.zarr", progress=False)
+    >>> flowtex.pyramid.build(field, "gyre.zarr", progress=False).made  # all is there
+    0
     """
     if levels not in ("coarse", "all"):
         msg = f"levels is {levels!r}; expected 'coarse' or 'all'"
