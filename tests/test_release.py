@@ -13,9 +13,6 @@ import yaml
 import flowtex
 
 ROOT = Path(__file__).resolve().parents[1]
-if not (ROOT / ".github").is_dir():
-    pytest.skip("this is no clone: a source archive has no workflows", allow_module_level=True)
-
 PROJECT: dict[str, Any] = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
 WORKFLOWS = sorted((ROOT / ".github" / "workflows").glob("*.yml"))
 FORMS = sorted((ROOT / ".github" / "ISSUE_TEMPLATE").glob("*.yml"))
