@@ -38,7 +38,11 @@ extensions = [
 #: Where the project lies; links to files outside of these pages lead there.
 repository = about["urls"]["Repository"]
 # Beside the pages of the examples lie their notebooks, for those who download them.
-exclude_patterns = ["examples", *(f"gallery/**/*.{kind}" for kind in ("ipynb", "py", "json"))]
+exclude_patterns = [
+    "examples",
+    "gallery.md",
+    *(f"gallery/**/*.{kind}" for kind in ("ipynb", "py", "json")),
+]
 suppress_warnings = ["config.cache"]  # what draws the examples is no plain value
 
 myst_enable_extensions = ["colon_fence", "deflist", "attrs_inline"]

@@ -54,8 +54,8 @@ SCENE_BYTES = 1_800_000
 #: Sections of the gallery, folders of docs/examples, in order.
 SECTIONS = ("grids", "surfaces", "earth", "time", "looks", "classics")
 HINT = (
-    "This picture is alive: drag it, click it and zoom with the wheel, or pinch it. "
-    "Arrow keys, + and − do the same, 0 shows all, and a click on the flow shows a path."
+    "This picture is alive: drag it, click it to zoom with the wheel, pinch it, or use the arrow "
+    "keys, +, − and 0. A click on the flow shows a path."
 )
 
 #: What has been shown since the last block of an example.

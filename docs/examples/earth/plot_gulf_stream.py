@@ -11,4 +11,4 @@ import flowtex
 
 ocean = flowtex.examples.ocean().isel(time=-1)
 ocean = ocean.sel(latitude=slice(31, 44), longitude=slice(-78, -52))
-flowtex.show(ocean, scalars="zos", cmap="RdBu_r", land="#b9b0a0", zoom=1.25)
+flowtex.show(ocean, scalars="zos", cmap="RdBu_r", land="#b9b0a0", zoom=1.4)
