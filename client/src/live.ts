@@ -18,8 +18,8 @@ interface Packed {
 /** Heights of the window that a view may be away before it is given up. */
 const KEPT_HEIGHTS = 2;
 
-/** What is around a view that is explained: a class, or the tag of a cell of MyST-NB. */
-const EXPLAINED = ".flowtex-explained, .tag_flowtex-explained";
+/** What is around a view that is explained. */
+const EXPLAINED = ".flowtex-explained";
 
 const scenes = new Map<string, (scene: Packed) => void>();
 
