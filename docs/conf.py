@@ -111,6 +111,7 @@ sphinx_gallery_conf = {
 }
 
 html_theme = "pydata_sphinx_theme"
+html_sidebars: dict[str, list[str]] = {"*": []}  # pages at the top have no section beside them
 html_title = "flowtex"
 html_favicon = "_static/favicon.svg"
 html_static_path = ["_static"]
