@@ -13,6 +13,8 @@ from typing import Any
 
 import numpy as np
 from ocean import LATITUDES, part
+from playwright.sync_api import TimeoutError as PlaywrightTimeoutError
+from playwright.sync_api import sync_playwright
 
 import flowtex
 from flowtex.camera import CAMERA_LIMITS
@@ -40,8 +42,11 @@ def write_page(place: str, url: str, path: str, options: dict[str, Any]) -> None
 class Visit:
     """A page that is open, with hands on it."""
 
-    def __init__(self, page: Any, storage: Any, tally: Callable[[Any], dict[str, Any]]) -> None:
-        self.page, self._storage, self._tally = page, storage, tally
+    def __init__(
+        self, page: Any, storage: Any, album: Path, tally: Callable[[Any], dict[str, Any]]
+    ) -> None:
+        self.page, self._storage, self._album, self._tally = page, storage, album, tally
+        self.given_up = 0
 
     def timed(self, act: Callable[[], None]) -> dict[str, Any]:
         """Do something, and wait for the full picture."""
@@ -50,11 +55,25 @@ class Visit:
         start = time.perf_counter()
         # What is to be seen has changed before anything is looked for.
         self.page.wait_for_timeout(50)
-        self.page.wait_for_selector(COMPLETE, timeout=PATIENCE_MS)
+        self.wait()
         seconds = time.perf_counter() - start
         got = self._tally(self._storage.requests())
         count = sum(got["requests"].values())
         return {"seconds": seconds, "bytes": sum(got["read"].values()), "requests": count}
+
+    def wait(self) -> None:
+        """Wait for the full picture; what keeps it from coming is in the picture of the page."""
+        try:
+            self.page.wait_for_selector(COMPLETE, timeout=PATIENCE_MS)
+        except PlaywrightTimeoutError:
+            self.given_up += 1
+            self.page.screenshot(path=self._album / f"page_given_up_{self.given_up}.png")
+
+    def whole(self) -> None:
+        """Go back to the whole."""
+        self.page.keyboard.press("0")
+        self.page.wait_for_timeout(50)
+        self.wait()
 
     def zoom(self, zoom: float, at: tuple[float, float]) -> None:
         """Turn the wheel over a pixel."""
@@ -83,8 +102,6 @@ def browsed(
     tally: Callable[[Any], dict[str, Any]],
 ) -> dict[str, Any]:
     """Look at the whole, at random places, and pan, and return what it took."""
-    from playwright.sync_api import sync_playwright
-
     path = folder / "page.html"
     url = f"{storage.url}/{place.removeprefix('s3://flows/')}"
     with ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn")) as pool:
@@ -96,7 +113,7 @@ def browsed(
         page = browser.new_page(viewport={"width": SIZE[0], "height": SIZE[1]})
         heard: list[str] = []
         page.on("console", lambda m: heard.append(m.text) if m.type == "error" else None)
-        visit = Visit(page, storage, tally)
+        visit = Visit(page, storage, album, tally)
         result: dict[str, Any] = {"page_bytes": path.stat().st_size}
         before = _memory(browser)
         result["whole"] = visit.timed(lambda: page.goto(path.as_uri()) and None)
@@ -105,7 +122,7 @@ def browsed(
         result["pan"] = _pan(visit, size, album)
         after = _memory(browser)
         result["memory"] = {kind: after[kind] - before.get(kind, 0) for kind in after}
-        result["errors"] = heard
+        result["errors"], result["given_up"] = heard, visit.given_up
         browser.close()
     return result
 
@@ -120,8 +137,7 @@ def _places(visit: Visit, size: tuple[int, int], album: Path) -> list[dict[str, 
         if np.isnan(part(*size, slice(v, v + 1), slice(u, u + 1))[0]).any():
             continue
         zoom = closest ** (1.0 if len(found) >= PLACES // 2 else float(rng.uniform(0, 1)))
-        visit.page.keyboard.press("0")
-        visit.page.wait_for_selector(COMPLETE, timeout=PATIENCE_MS)
+        visit.whole()
         at = _pixel(size, u, v)
         found.append({"zoom": zoom, **visit.timed(lambda z=zoom, p=at: visit.zoom(z, p))})
         if len(found) in (1, PLACES // 2, PLACES):
@@ -131,8 +147,7 @@ def _places(visit: Visit, size: tuple[int, int], album: Path) -> list[dict[str, 
 
 def _pan(visit: Visit, size: tuple[int, int], album: Path) -> dict[str, Any]:
     """Go along a parallel around the Earth."""
-    visit.page.keyboard.press("0")
-    visit.page.wait_for_selector(COMPLETE, timeout=PATIENCE_MS)
+    visit.whole()
     left, _ = _pixel(size, 0, 0)
     first = visit.timed(lambda: visit.zoom(PAN_ZOOM, (left + 4, SIZE[1] / 2)))
     drags = math.ceil(FILLED * PAN_ZOOM * SIZE[0] / DRAG_PX)
