@@ -340,6 +340,8 @@ def shard_texels(
     if layers is not None:
         count, height, width = layers.shape[:3]
         shard[1 : 1 + count, :height, :width] = layers
+        # Zeros have one sign, so that the bits of a tile do not depend on who computed it.
+        shard[1 : 1 + count] += 0
     return shard
 
 
