@@ -53,7 +53,8 @@ def as_numbers(version: str) -> tuple[int, ...]:
 def every_extra() -> list[str]:
     """What flowtex and its extras for users ask for."""
     optional: dict[str, list[str]] = PROJECT["optional-dependencies"]
-    users = [line for name, e in optional.items() if name not in NO_USERS for line in e]
+    own = ("dev", "site", "test")
+    users = [line for name, extra in optional.items() if name not in own for line in extra]
     return [*PROJECT["dependencies"], *(line for line in users if not line.startswith("flowtex["))]
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from urllib.parse import urlsplit
 
 from flowtex.errors import FieldError
-from flowtex.pyramid import StoredPyramid
+from flowtex.pyramid.stored import StoredPyramid
 from flowtex.rendering.webgl import ClientData
 from flowtex.rendering.webgl.protocol import Header, Parts
 from flowtex.tiles import TileKey, shared_pyramid

@@ -93,20 +93,22 @@ def test_parts_are_those_of_a_page(tmp_path: Path, make: Any) -> None:
         assert told["slices"].items() <= wanted["slices"].items()
         assert told["ranges"]["speed"] == list(view.scene.scalar_range("speed"))
         for name, array in stored.items():
-            np.testing.assert_array_equal(array, expected.pop(name))
+            # Velocities have single precision in a store.
+            np.testing.assert_allclose(array, expected.pop(name), rtol=1e-5, atol=1e-5)
         traced = [name for name in expected if "/scalars/" in name]
         assert len(traced) == (7 if make is flat else 1)
         for name in traced:
             when, number = (*name.removeprefix(prefix).split("/")[1:], "0")[:2]
             rows, columns = expected[name].shape
             values = own["values"][(int(when), *at, int(number))]
-            np.testing.assert_array_equal(values[:rows, :columns], expected.pop(name))
+            np.testing.assert_allclose(
+                values[:rows, :columns], expected.pop(name), rtol=1e-5, atol=1e-5
+            )
         assert {name.removeprefix(prefix).split("/")[0] for name in expected} == {"slices", "extra"}
     root = group[str(view.scene.pyramid.depth)]
     for step in steps:
-        np.testing.assert_array_equal(
-            root["values"][step, 0, 0, 0], view.page_data().step(step)[f"scalars/{step}"]
-        )
+        wanted = view.page_data().step(step)[f"scalars/{step}"]
+        np.testing.assert_allclose(root["values"][step, 0, 0, 0], wanted, rtol=1e-5, atol=1e-5)
 
 
 def test_a_tile_of_which_nothing_is_drawn_says_so(tmp_path: Path) -> None:

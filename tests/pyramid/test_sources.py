@@ -14,6 +14,7 @@ from flowtex import FlowField
 from flowtex._util.array_types import AnyArray, Floats
 from flowtex.errors import FieldError
 from flowtex.pyramid import build, open_store
+from flowtex.pyramid.checks import sealed
 from flowtex.pyramid.levels import Levels
 from flowtex.pyramid.source import RegionSource, source_of
 from flowtex.pyramid.workers import OWN_BYTES, PART_BYTES, TILE_BYTES, Threads
@@ -82,10 +83,13 @@ def assert_same(one: Path, other: Path) -> None:
     first.pop("samples", None), second.pop("samples", None)
     assert first.keys() == second.keys()
     for name, values in first.items():
-        assert values.tobytes() == second[name].tobytes(), name
+        wanted = second[name]
+        if name.endswith("/traces"):  # without what a tile tells of where it belongs
+            values, wanted = values[:, :, :, 1:], wanted[:, :, :, 1:]
+        assert values.tobytes() == wanted.tobytes(), name
     about = [{**Levels(store).about} for store in (one, other)]
     for some in about:
-        some.pop("fingerprint")
+        some.pop("fingerprint"), some.pop("seal")
     assert about[0] == about[1]
 
 
@@ -129,7 +133,8 @@ def test_a_build_from_regions_goes_on(tmp_path: Path) -> None:
     first = build(data, store, progress=False)
     whole = contents(store)
     group = zarr.open_group(store, mode="r+")
-    group.attrs["flowtex"] = {**group.attrs["flowtex"], "ranges": {}}
+    told: Any = group.attrs["flowtex"]
+    group.attrs["flowtex"] = sealed({**told, "ranges": {}})
     gone = [*(store / "0" / "velocity").rglob("c/*/*/*/*"), *(store / "samples").rglob("c/0/0/*/*")]
     (next(file for file in gone if file.is_file())).unlink()
     again = build(data, store, progress=False)

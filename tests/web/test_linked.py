@@ -15,6 +15,7 @@ from flowtex.cli import main
 from flowtex.field import FieldError
 from flowtex.options import Options
 from flowtex.pyramid import build, open_store
+from flowtex.pyramid.checks import sealed
 from flowtex.web.export import export, page_text
 from flowtex.web.linked import StoreLink
 from flowtex.web.view import web_views
@@ -200,7 +201,8 @@ def test_a_store_that_is_not_whole_is_told(tmp_path: Path) -> None:
 
     build(flow(), tmp_path / "a.zarr", progress=False)
     group = zarr.open_group(tmp_path / "a.zarr", mode="r+")
-    group.attrs["flowtex"] = {**group.attrs["flowtex"], "complete": False}  # type: ignore[dict-item]
+    told: Any = group.attrs["flowtex"]
+    group.attrs["flowtex"] = sealed({**told, "complete": False})
     with pytest.warns(UserWarning, match="not been built to its end"):
         text_of(tmp_path / "a.zarr")
 
