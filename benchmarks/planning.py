@@ -109,8 +109,8 @@ class Costs:
         self.shards = build["made"] / build["seconds"]
         self.task = build["worker_cpu_seconds"] / build["made"]
         self.requests = sum(build["requests"].values()) / build["made"]
-        self.scheduling = build["scheduler_cpu_seconds"] / build["made"]
-        self.calling = build["caller_cpu_seconds"] / build["made"]
+        self.scheduling = build["scheduler_seconds_a_task"]
+        self.calling = build["caller_seconds_a_task"]
         self.worker_peak = _peak(build, "worker")
 
 
@@ -126,11 +126,13 @@ def _reading(results: list[Any]) -> list[Row]:
     def minute(browser: Any) -> float:
         """Bytes of arriving, and of a place after the other for a minute."""
         mean = sum(places(browser, "bytes")) / len(browser["places"])
-        return float(browser["whole"]["bytes"] + 60 / STAY_S * mean)
+        first = browser["page_bytes"] + browser["whole"]["bytes"]
+        return float(first + 60 / STAY_S * mean)
 
     return [
         row("the whole, s", lambda b: f"{b['whole']['seconds']:.1f}"),
-        row("the whole, MB", lambda b: f"{b['whole']['bytes'] / MB:.1f}"),
+        row("the page, MB", lambda b: f"{b['page_bytes'] / MB:.1f}"),
+        row("the whole, MB besides", lambda b: f"{b['whole']['bytes'] / MB:.1f}"),
         row("a place, median s", lambda b: f"{_middle(places(b, 'seconds')):.1f}"),
         row("a place, most s", lambda b: f"{max(places(b, 'seconds')):.1f}"),
         row("a place, mean MB", lambda b: f"{sum(places(b, 'bytes')) / len(b['places']) / MB:.1f}"),
