@@ -12,7 +12,7 @@ BIN := $(VENV)/bin
 SETUP := pyproject.toml tools/setup.sh tools/common.sh
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test fuzz lint format docs gallery client paper paper-quick wheel clean
+.PHONY: help demo test fuzz lint format docs site gallery client paper paper-quick wheel clean
 
 help: ## list what can be made
 	@echo "flowtex. Choose an interpreter with PYTHON=python3.12, tests with PYTEST_ARGS='-k trace'."
@@ -46,6 +46,11 @@ client: $(VENV)/.ready-test ## build the browser client into the package
 docs: $(VENV)/.ready-test ## write the table of settings into the guide
 	FLOWTEX_WRITE_DOCS=1 $(BIN)/python -m pytest -q tests/test_docs.py -k table
 
+site: $(VENV)/.ready-site ## build the site into out/site, and judge its links, words and accessibility
+	@sh tools/opengl.sh $(BIN)/python
+	@sh tools/browsers.sh $(BIN)/python
+	@sh tools/site.sh $(BIN)
+
 gallery: $(VENV)/.ready-test ## draw the pictures of the README and the gallery
 	$(BIN)/python docs/make_pictures.py
 
@@ -70,4 +75,8 @@ $(VENV)/.ready-demo: $(SETUP)
 # What the tests need includes what the demo needs.
 $(VENV)/.ready-test: $(SETUP)
 	@sh tools/setup.sh "$(PYTHON)" $(VENV) all,test,dev
+	@touch $@ $(VENV)/.ready-demo
+
+$(VENV)/.ready-site: $(SETUP)
+	@sh tools/setup.sh "$(PYTHON)" $(VENV) all,site
 	@touch $@ $(VENV)/.ready-demo

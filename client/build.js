@@ -36,6 +36,7 @@ const BUILDS = [
   ["src/client.ts", `${WEB}/client.js`, "esm", NOTICE],
   ["src/page.ts", `${WEB}/page.js`, "esm", NOTICE],
   ["src/storepage.ts", `${WEB}/storepage.js`, "esm", `${NOTICE}\n${STORE_NOTICE}`],
+  ["src/live.ts", `${WEB}/live.js`, "iife", NOTICE],
   ["src/app/app.ts", `${STATIC}/flowtex.js`, "iife", ""],
 ].map(([entry, outfile, format, notice]) => ({
   ...COMMON,

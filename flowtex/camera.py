@@ -75,7 +75,15 @@ CAMERA_LIMITS = CameraLimits()
 
 
 class CameraError(ValueError):
-    """Numbers that make no camera, or one that sees nothing."""
+    """Numbers that make no camera, or one that sees nothing.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> flowtex.Camera(position=(0, 0, 1), focal_point=(0, 0, 0), up=(0, 1))
+    Traceback (most recent call last):
+    flowtex.camera.CameraError: camera.up is (0, 1); expected three finite numbers
+    """
 
 
 @dataclass(frozen=True)
@@ -99,6 +107,14 @@ class Camera:
     ------
     CameraError
         When some are out of their range, or the camera sees nothing; the text has all faults.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> field = flowtex.examples.double_gyre_field()
+    >>> camera = flowtex.Camera.fit(field.surface, aspect=2.0, zoom=4, focus=(0.5, 0.5))
+    >>> flowtex.render(field, camera=camera, size=(160, 80), samples=5).shape
+    (80, 160, 3)
     """
 
     position: Point

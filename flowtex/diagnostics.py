@@ -50,7 +50,17 @@ SOFTWARE = ("llvmpipe", "softpipe", "swrast", "swiftshader", "basic render", "gd
 
 
 class OpenGLMissingError(RuntimeError):
-    """VTK cannot draw here; the text names what to install."""
+    """VTK cannot draw here; the text names what to install.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> from flowtex.diagnostics import OpenGLMissingError
+    >>> try:
+    ...     picture = flowtex.render(flowtex.examples.airfoil_field(), size=(80, 60), samples=5)
+    ... except OpenGLMissingError as error:
+    ...     print(error)
+    """
 
 
 @dataclass(frozen=True)
@@ -61,6 +71,12 @@ class OpenGLReport:
     happened and ``remedy`` what to do. ``software`` is true where the processor draws and no
     graphics card. ``max_texture_size`` is in texels along one side; ``texture_units`` counts the
     textures that one fragment can read.
+
+    Examples
+    --------
+    >>> from flowtex.diagnostics import opengl_report
+    >>> opengl_report().texture_units >= 16
+    True
     """
 
     usable: bool
@@ -77,7 +93,14 @@ class OpenGLReport:
 
 @dataclass(frozen=True)
 class Check:
-    """One line of the diagnosis: its subject, how it stands, and what puts it right."""
+    """One line of the diagnosis: its subject, how it stands, and what puts it right.
+
+    Examples
+    --------
+    >>> from flowtex.diagnostics import Check
+    >>> Check("OpenGL", "fail", "there is none", "apt-get install libegl1").status
+    'fail'
+    """
 
     name: str
     status: Literal["ok", "warn", "fail"]
@@ -104,7 +127,14 @@ def prefer_headless() -> None:
 
 @functools.cache
 def opengl_report() -> OpenGLReport:
-    """Try OpenGL in a second process, which takes about one second; the report is cached."""
+    """Try OpenGL in a second process, which takes about one second; the report is cached.
+
+    Examples
+    --------
+    >>> from flowtex.diagnostics import opengl_report
+    >>> opengl_report().usable
+    True
+    """
     prefer_headless()
     return run_trial(TRIAL_COMMAND)
 
@@ -116,7 +146,12 @@ def run_trial(command: Sequence[str], timeout: float = TRIAL_TIMEOUT_S) -> OpenG
     """
     try:
         process = subprocess.run(
-            command, capture_output=True, text=True, timeout=timeout, check=False
+            command,
+            capture_output=True,
+            encoding="utf-8",
+            errors="replace",  # drivers speak as they like
+            timeout=timeout,
+            check=False,
         )
     except subprocess.TimeoutExpired:
         return _unusable(f"the trial did not end within {timeout:g} s")
@@ -139,6 +174,12 @@ def require_opengl() -> OpenGLReport:
     ------
     OpenGLMissingError
         When VTK cannot draw; the process would crash. The text says what to install.
+
+    Examples
+    --------
+    >>> from flowtex.diagnostics import require_opengl
+    >>> require_opengl().usable
+    True
     """
     report = opengl_report()
     if not report.usable:
@@ -187,7 +228,14 @@ def install_command(*packages: str) -> str:
 
 
 def diagnose() -> list[Check]:
-    """Check everything that flowtex needs; raises nothing."""
+    """Check everything that flowtex needs; raises nothing.
+
+    Examples
+    --------
+    >>> from flowtex.diagnostics import diagnose
+    >>> [check.name for check in diagnose()][:4]
+    ['Python', 'OpenGL', 'Display', 'Shaders']
+    """
     python = Check("Python", "ok", f"{sys.version.split()[0]}, {sys.executable}")
     return [python, _opengl(), _display(), _shaders(), *_packages()]
 

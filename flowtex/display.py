@@ -53,6 +53,12 @@ def show(mesh: Any, *, size: tuple[int, int] | None = None, **options: Any) -> F
         When two views are asked for and there is neither a window nor a notebook.
     TypeError
         When a notebook is given what only a window has.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> mesh = flowtex.examples.cylinder()
+    >>> flowtex.show(mesh, scalars="vorticity", cmap="RdBu_r", zoom=3)  # doctest: +SKIP
     """
     if in_notebook():
         return _show_widget(mesh, size, options)

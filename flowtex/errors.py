@@ -13,7 +13,15 @@ __all__ = ["FieldError", "raise_faults"]
 
 
 class FieldError(ValueError):
-    """The data or arguments make no flow; the text names them, what was expected and the remedy."""
+    """The data or arguments make no flow; the text names them, what was expected and the remedy.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> flowtex.FlowField.from_file("missing.vts")
+    Traceback (most recent call last):
+    flowtex.errors.FieldError: ...
+    """
 
 
 def raise_faults(faults: Sequence[str], error: type[Exception] = FieldError) -> None:

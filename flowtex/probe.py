@@ -99,6 +99,16 @@ class Probe:
         The whole path, as far as the slices lead, in the order of the samples: points (N, 3) and
         their lags (N,). Where it ends, the last sample may lie up to a step beyond. Beside a
         critical point, seen from near, it is no longer than the samples.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> from flowtex.probe import locate, probe
+    >>> from flowtex.scene import Scene
+    >>> field = flowtex.examples.double_gyre_field()
+    >>> found = probe(Scene.of(field, samples=9), locate(field, (0.5, 0.25)), pixel=0.01)
+    >>> len(found.lags), round(float(found.weights.sum()), 6)
+    (9, 1.0)
     """
 
     field_values: PointValues
@@ -167,6 +177,15 @@ def probe(
     ValueError
         When the point is not on the surface, or the pixel no length, or the camera does not see
         the point.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> from flowtex.probe import locate, probe
+    >>> from flowtex.scene import Scene
+    >>> field = flowtex.examples.double_gyre_field()
+    >>> probe(Scene.of(field), locate(field, (0.5, 0.25)), pixel=0.01).parameter
+    'arclength'
     """
     surface = view.field.surface
     place = surface_point(surface, at)
@@ -217,7 +236,17 @@ class _Pixel:
         self._unit = float(self._base[0, 3]) * textures.unit / textures.pace
 
     def probe(self) -> Probe:
-        """Draw the pixel, and return how."""
+        """Draw the pixel, and return how.
+
+        Examples
+        --------
+        >>> import flowtex
+        >>> from flowtex.probe import locate, probe
+        >>> from flowtex.scene import Scene
+        >>> field = flowtex.examples.double_gyre_field()
+        >>> probe(Scene.of(field), locate(field, (0.5, 0.25)), pixel=0.01).parameter
+        'arclength'
+        """
         values, recorder = self._values, self._lookup
         value = self._summing.texture(self._fragments.place, self._level)[0]
         sides = list(self._sides(1))

@@ -67,7 +67,15 @@ _SWITCH = {"on": True, "off": False, "true": True, "false": False, "yes": True, 
 
 
 class SettingsError(ValueError):
-    """A setting was given a value, or a name, that it does not have."""
+    """A setting was given a value, or a name, that it does not have.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> flowtex.Settings(samples=0)
+    Traceback (most recent call last):
+    flowtex.settings.SettingsError: samples is 0; expected a whole number from 1 to 200 (default 49)
+    """
 
 
 @dataclass(frozen=True)
@@ -203,6 +211,16 @@ class Settings:
     ------
     SettingsError
         When a value is out of its range, or there is no setting of that name.
+
+    Examples
+    --------
+    >>> from flowtex import Settings
+    >>> settings = Settings(samples=25, lod=False)
+    >>> end = settings.observe(lambda name, value: print(name, value))
+    >>> settings.contrast = 1.5
+    contrast 1.5
+    >>> dict(settings)["samples"]
+    25
     """
 
     samples: int = _row(

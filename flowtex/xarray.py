@@ -21,7 +21,16 @@ __all__ = ["FlowtexAccessor"]
 
 @xr.register_dataset_accessor("flowtex")  # type: ignore[no-untyped-call]
 class FlowtexAccessor:
-    """The calls of flowtex on a dataset; each takes the arguments of the function of its name."""
+    """The calls of flowtex on a dataset; each takes the arguments of the function of its name.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> import flowtex.xarray
+    >>> winds = flowtex.examples.weather()
+    >>> winds.flowtex.render(level=250, globe=True, size=(160, 120), samples=5).shape
+    (120, 160, 3)
+    """
 
     def __init__(self, dataset: xr.Dataset) -> None:
         self._dataset = dataset

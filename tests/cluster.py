@@ -275,7 +275,7 @@ def _serve(folder: Path) -> None:
     server = make_server(
         "127.0.0.1",
         0,
-        app,  # type: ignore[arg-type]
+        app,
         threaded=True,
         request_handler=MotoRequestHandler,
     )

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import importlib.util
+import inspect
 import json
 import os
 import re
+from importlib import import_module
+from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +18,7 @@ from flowtex.settings import TABLE, Setting
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+PAGES += sorted(p for room in ("howto", "reference") for p in (ROOT / "docs" / room).glob("*.md"))
 BEGIN, END = "<!-- settings: made from", "<!-- end of settings -->"
 
 
@@ -66,6 +70,22 @@ def test_the_tables_of_what_pyramids_cost_are_those_of_the_benchmark() -> None:
     assert len(tables) == 5
     wrong = [name for name, table in tables.items() if f"\n\n{table}\n\n" not in text]
     assert not wrong, "run python benchmarks/pyramid.py --only-tables --docs"
+
+
+MODULES = ("", ".app", ".examples", ".probe", ".pyramid", ".xarray")
+
+
+def test_the_reference_has_every_public_name_and_each_an_example() -> None:
+    pages = (ROOT / "docs" / "reference").glob("*.md")
+    text = "\n".join(page.read_text() for page in pages)
+    rooms = [import_module(f"flowtex{name}") for name in MODULES]
+    names = re.findall(r"^   flowtex\.([\w.]+)$", text, re.MULTILINE)
+    named = {name: attrgetter(name)(rooms[0]) for name in names}
+    public = [getattr(room, name) for room in rooms for name in room.__all__]
+    known = [id(thing) for thing in named.values()]
+    assert [thing for thing in public if callable(thing) and id(thing) not in known] == []
+    texts = {name: inspect.getdoc(thing) or "" for name, thing in named.items()}
+    assert [name for name, text in texts.items() if "Examples\n--------" not in text] == []
 
 
 def row(setting: Setting) -> str:

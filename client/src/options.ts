@@ -3,6 +3,7 @@
 import type { CameraState } from "./camera.ts";
 import type { ColourChoice } from "./colours.ts";
 import type { Point } from "./picking.ts";
+import type { PixelPlace, Sample } from "./pixelsum.ts";
 import type { Value } from "./protocol.ts";
 import type { TileKey } from "./tilechoice.ts";
 
@@ -14,12 +15,20 @@ interface Leader {
   pause(): void;
 }
 
+export interface Explainer {
+  explain(pixel: PixelPlace): Sample[];
+  /** No point is chosen any more. */
+  clear(): void;
+}
+
 export interface Options {
   onCamera?: (camera: CameraState) => void;
   onTime?: (time: number) => void;
   onClock?: (clock: number) => void;
   onPlaying?: (playing: boolean) => void;
   onPoint?: (point: Point) => void;
+  /** What tells how the texture at the chosen point comes about; its samples are drawn as well. */
+  explainer?: Explainer;
   /** The parts of a time step are lacking. */
   onNeed?: (step: number) => void;
   /** Tiles are lacking, in the order of need; no others that were asked for before are needed. */
@@ -39,6 +48,8 @@ export interface Options {
   controls?: boolean;
   /** Whether outlines are smoothed; by default where it takes little time. */
   smooth?: boolean;
+  /** What the view is called by those who do not see it; by default the name of the flow. */
+  label?: string;
   /** Whether the page around is scrolled: the view takes wheel and finger only after a click. */
   guarded?: boolean;
   /** The view that has the bar, where it is not this one. */

@@ -156,7 +156,7 @@ export class Panel {
 
   /** Name the flow, or what is different in one of two views of it. */
   private name(): void {
-    const { header, settings, root } = this.viewer;
+    const { header, settings, root, options } = this.viewer;
     const names = (header?.differs ?? []).filter((name) => name in settings);
     const differences = names.map((name) => {
       const label = header?.table.find((row) => row.name === name)?.label ?? name;
@@ -166,7 +166,8 @@ export class Panel {
     const title = differences.join(", ") || header?.name || "";
     this.title.textContent = title;
     this.title.hidden = !title;
-    root.setAttribute("aria-label", title ? `Flow texture: ${title}` : "Flow texture");
+    const label = options.label ?? title;
+    root.setAttribute("aria-label", label ? `Flow texture: ${label}` : "Flow texture");
   }
 
   tick(): void {

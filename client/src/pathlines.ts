@@ -6,6 +6,13 @@ export type Line = Place[];
 /** An element of SVG and its attributes. */
 export type Shape = [tag: string, attributes: Record<string, string | number>];
 
+/** A dot on the path: its radius in pixels, and its grey from 0 to 1. */
+export interface Dot {
+  place: Place;
+  radius: number;
+  grey: number;
+}
+
 /** A path in pixels, lines downstream; it is `directed` unless the flow has no sign. */
 export interface PathLines {
   /** The whole path, and the part of it that is summed. */
@@ -13,6 +20,7 @@ export interface PathLines {
   sampled: Line[];
   point: Place | null;
   directed: boolean;
+  dots?: Dot[];
 }
 
 /** Pixels from one head of an arrow to the next, and length and half the width of one. */
@@ -44,7 +52,7 @@ export function arrowHeads(line: Line, apart = HEAD.apart): Line[] {
 }
 
 /** Shapes from the lowest to the topmost. */
-export function pathShapes({ path, sampled, point, directed }: PathLines): Shape[] {
+export function pathShapes({ path, sampled, point, directed, dots = [] }: PathLines): Shape[] {
   const lines = (all: Line[], kind: string) =>
     all.map((line): Shape => ["polyline", { class: kind, points: textOf(line) }]);
   const isFree = ([[x, y]]: Line) =>
@@ -60,6 +68,10 @@ export function pathShapes({ path, sampled, point, directed }: PathLines): Shape
     ...lines(sampled, "casing"),
     ...lines(sampled, "sampled"),
     ...heads.map((head): Shape => ["polygon", { class: "arrow", points: textOf(head) }]),
+    ...dots.map(({ place: [cx, cy], radius, grey }): Shape => {
+      const fill = `rgb(${[grey, grey, grey].map((x) => Math.round(255 * x)).join()})`;
+      return ["circle", { class: "dot", cx, cy, r: radius, fill }];
+    }),
     ...ring("point-casing"),
     ...ring("point"),
   ];

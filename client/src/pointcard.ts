@@ -5,8 +5,9 @@ import { dom, numberText } from "./dom.ts";
 import type { Lifetime, Timer } from "./lifetime.ts";
 import { eastNorth, lonLatOf, lonLatText } from "./lonlat.ts";
 import type { Options } from "./options.ts";
-import { pathShapes, type Line, type Place } from "./pathlines.ts";
+import { pathShapes, type Dot, type Line, type Place } from "./pathlines.ts";
 import { valuesAt, type Found, type Point } from "./picking.ts";
+import type { Sample } from "./pixelsum.ts";
 import { pathThrough, type PointPath } from "./pointpath.ts";
 import type { Header, Part, Settings } from "./protocol.ts";
 import type { Layer } from "./tiles.ts";
@@ -26,6 +27,8 @@ const RETRY_MS = 40;
 /** Places that are told apart in half the height of a view, and metres of a degree on the Earth. */
 const PLACES_IN_VIEW = 200;
 const DEGREE_M = 111_195;
+/** Radius of the sample of the greatest weight, in pixels. */
+const DOT_RADIUS = 8;
 /** Units longer than this are left out. */
 const UNIT_LENGTH = 12;
 
@@ -94,7 +97,7 @@ export class PointCard {
   private chosen: Found | null = null;
   private later: Timer | null = null;
   /** The path that is drawn, and its point. */
-  private drawn: { path: PointPath; point: Vector } | null = null;
+  private drawn: { path: PointPath; point: Vector; samples: Sample[] } | null = null;
 
   constructor(host: CardHost) {
     this.host = host;
@@ -132,6 +135,7 @@ export class PointCard {
     this.chosen = this.drawn = null;
     this.element.hidden = true;
     this.overlay.replaceChildren();
+    this.host.options.explainer?.clear();
   }
 
   /** Show the path as things are now; where the point's tile has gone it stays as it was. */
@@ -146,8 +150,10 @@ export class PointCard {
     const at = { scene, moment: shown, place, position };
     const path = pathThrough(at, settings, camera, root.clientHeight);
     this.tell({ ...point, values: valuesAt(scene, shown, scene.cornersAt(place)) }, path, header, camera);
+    const pixel = { at, settings, camera, rows: root.clientHeight };
+    const samples = options.explainer?.explain(pixel) ?? [];
     for (const { card } of together) {
-      card.drawn = { path, point: position };
+      card.drawn = { path, point: position, samples };
       card.draw();
     }
   }
@@ -177,7 +183,7 @@ export class PointCard {
     this.list.replaceChildren(
       ...[...lines].flatMap(([word, value]) => [dom("dt", {}, [word]), dom("dd", {}, [value])]),
     );
-    this.element.hidden = false;
+    this.element.hidden = this.host.options.explainer !== undefined;
   }
 
   /** Draw the path where the camera sees it. */
@@ -200,7 +206,14 @@ export class PointCard {
     };
     const { path, sampled, directed } = drawn.path;
     const point = placeOf(drawn.point);
-    const shapes = pathShapes({ path: linesOf(path), sampled: linesOf(sampled), point, directed });
+    const { samples } = drawn;
+    const most = Math.max(...samples.map(({ weight }) => weight));
+    const dots = samples.flatMap(({ position, weight, grey }): Dot[] => {
+      const place = placeOf(position);
+      return place ? [{ place, radius: DOT_RADIUS * Math.sqrt(weight / most), grey }] : [];
+    });
+    const lines = { path: linesOf(path), sampled: dots.length ? [] : linesOf(sampled) };
+    const shapes = pathShapes({ ...lines, dots, point, directed });
     this.overlay.replaceChildren(
       ...shapes.map(([tag, attributes]) => {
         const shape = document.createElementNS(SVG, tag);

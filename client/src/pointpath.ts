@@ -75,7 +75,7 @@ function texelsAt({ scene, place }: PathPlace): Corners {
 }
 
 /** Layers between the nodes and the time steps. */
-function layersAt(at: PathPlace): Layers {
+export function layersAt(at: PathPlace): Layers {
   const { scene, moment } = at;
   const { slices } = scene.header;
   const texels = texelsAt(at);
@@ -134,7 +134,7 @@ function sideOf(layers: Layers, lags: number[], first: number, sign: number, by:
 }
 
 /** What takes displacements to space; null beyond the border of the noise. */
-function mover({ scene, place, position }: PathPlace): (moved: Vector) => Vector | null {
+export function mover({ scene, place, position }: PathPlace): (moved: Vector) => Vector | null {
   const { paper, geometry } = scene.header;
   if (!paper) return (moved) => add(position, fromFrame(geometry.frame, moved));
   const { alongI, alongJ } = paper;
@@ -184,7 +184,7 @@ function indexOf(values: number[], value: number): number {
  * Length of a grain at a point: of the pixel's longer side as it lies on the surface, or of a texel of
  * the noise's level, which is that of the pixel unless its own texels are larger.
  */
-function grainAt({ scene, place, position }: PathPlace, settings: Settings, camera: Camera, rows: number) {
+export function grainAt({ scene, place, position }: PathPlace, settings: Settings, camera: Camera, rows: number) {
   const { geometry, paper } = scene.header;
   const normal = normalAt(scene, place);
   const { height, ray } = camera.at(position);

@@ -44,3 +44,11 @@ test("the point is not hidden by a head", () => {
   assert.equal(tips(150), 3);
   assert.equal(tips(112), 2);
 });
+
+test("samples are dots in the grey of their noise, below the ring of the point", () => {
+  const dots = [{ place: [10, 50] as [number, number], radius: 3, grey: 0.5 }];
+  const shapes = pathShapes({ path: [LINE], sampled: [], point: [10, 50], directed: false, dots });
+  const [tag, { fill, r }] = shapes[2];
+  assert.deepEqual([tag, fill, r], ["circle", "rgb(128,128,128)", 3]);
+  assert.equal(shapes[shapes.length - 1][1].class, "point");
+});

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from flowtex._util.array_types import AnyArray, Floats
+from flowtex._util.array_types import AnyArray, Floats, Indices
 
-__all__ = ["block_means", "bounds", "row_blocks"]
+__all__ = ["block_means", "bounds", "even_runs", "row_blocks"]
 
 #: Nodes of a block, so few that what is computed of them stays in a processor's cache.
 BLOCK_NODES = 16384
@@ -18,6 +18,24 @@ def row_blocks(rows: int, columns: int) -> Iterator[slice]:
     """Yield slices of rows of a grid, of some thousand nodes each."""
     some = max(BLOCK_NODES // columns, 1)
     return (slice(first, min(first + some, rows)) for first in range(0, rows, some))
+
+
+def even_runs(numbers: Indices) -> Iterator[slice]:
+    """Yield numbers as slices: few where they lie evenly apart, as on both sides of a seam.
+
+    Those that fall are a slice where there are three at least.
+    """
+    first = 0
+    while first < len(numbers):
+        steps = np.diff(numbers[first:])
+        step = int(steps[0]) if len(steps) else 1
+        other = np.flatnonzero(steps != step)
+        count = int(other[0]) if len(other) else len(steps)
+        if step < 1 and count < 2:
+            step, count = 1, 0
+        stop = int(numbers[first + count]) + step
+        yield slice(int(numbers[first]), stop if stop >= 0 else None, step)
+        first += count + 1
 
 
 def bounds(points: Floats) -> Floats:

@@ -63,6 +63,14 @@ class FlowApp(NotebookPage):
     ------
     FieldError, SettingsError
         When the mesh or a setting does not fit.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> from flowtex.app import FlowApp
+    >>> app = FlowApp(flowtex.examples.airfoil_field(), samples=9)
+    >>> app.area.settings.lod = False
+    >>> app.close()
     """
 
     def __init__(self, flow: Any, *, server: Any = None, **options: Any) -> None:
@@ -98,11 +106,11 @@ class FlowApp(NotebookPage):
         return self.viewport.field
 
     def show(self, field: FlowField, *, keep_view: bool = False, keep_range: bool = False) -> None:
-        """Show another flow; :meth:`Viewport.show` has the parameters."""
+        """Show another flow, as :meth:`flowtex.app.FlowArea.show` does."""
         self.context.show(field, keep_view=keep_view, keep_range=keep_range)
 
     def restore(self, state: Mapping[str, Any]) -> None:
-        """Show a state as :func:`flowtex.app.controllers.serialization.from_link` returns it."""
+        """Show the state of a link."""
         data = self.controllers.data
         choice = Choice(*(str(state.get(name, "")) for name in CHOICE_ARGUMENTS))
         if "file" not in state and choice == Choice():
@@ -221,6 +229,11 @@ def serve(
         of range.
     TypeError
         When options are given with a function.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> flowtex.app.serve("runs/", port=8080, limit=12)  # doctest: +SKIP
     """
     if limit is not None and limit < 1:
         msg = f"limit is {limit}; expected 1 or more pages"

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import time
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from cyclopts import Parameter
 
+from flowtex._util.progress import waiting
 from flowtex.cli.console import say
-from flowtex.cli.load import load_field
-from flowtex.cli.options import FILE, FLAT, FieldFlags
+from flowtex.cli.load import notices
+from flowtex.cli.options import FILE, FLAT, FieldFlags, UsageError
 
 __all__ = ["pyramid"]
 
@@ -34,17 +35,28 @@ def pyramid(
     scheduler: Annotated[
         str | None, Parameter(help="Dask scheduler, as tcp://host:8786; else threads work here.")
     ] = None,
+    memory: Annotated[
+        str | None,
+        Parameter(help="What threads may take of the memory, as 4GB; else one for each core."),
+    ] = None,
     flow: Annotated[FieldFlags | None, FLAT] = None,
 ) -> int:
     """Build the pyramid of a file in a store; what is there already is not made again."""
     from flowtex.pyramid import build
+    from flowtex.pyramid.source import source_of
 
+    if not files:
+        msg = "there is no file; name one"
+        raise UsageError(msg)
     start = time.perf_counter()
-    field = load_field(files, flow)
-    built = build(field, output, levels=levels, lines=lines, scheduler=scheduler)
+    with waiting(f"Reading {files[0].name}"), notices():
+        whole: Any = files[0] if len(files) == 1 else files
+        source = source_of(whole, **(flow or FieldFlags()).arguments())
+    built = build(source, output, levels=levels, lines=lines, scheduler=scheduler, memory=memory)
     kept = f", {built.kept:,} were there" if built.kept else ""
+    rows, columns = source.shape
     say(
-        f"[bold]{output}[/]  {field.short_size}, {built.depth + 1} levels  "
+        f"[bold]{output}[/]  {columns} × {rows} nodes, {built.depth + 1} levels  "
         f"[dim]{built.made:,} shards made{kept}, {time.perf_counter() - start:.1f} s[/]"
     )
     return 0

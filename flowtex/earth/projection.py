@@ -46,7 +46,15 @@ def place_text(lon: float, lat: float, decimals: int = 2) -> str:
 
 
 class ProjectionError(FieldError):
-    """There is no such projection, or a place cannot be mapped by it."""
+    """There is no such projection, or a place cannot be mapped by it.
+
+    Examples
+    --------
+    >>> from flowtex.earth import Projection
+    >>> Projection("flat earth")
+    Traceback (most recent call last):
+    flowtex.earth.projection.ProjectionError: the projection 'flat earth' is not known; ...
+    """
 
 
 @dataclass(frozen=True)
@@ -70,6 +78,15 @@ class Projection:
     ------
     ProjectionError
         When PROJ does not know the projection.
+
+    Examples
+    --------
+    >>> from flowtex.earth import Projection
+    >>> north = Projection("north")
+    >>> [round(float(x)) for x in north.positions(0.0, 90.0)]
+    [0, 0, 0]
+    >>> [float(x) for x in Projection("globe").lonlat((0.0, 6_371_000.0, 0.0))]
+    [90.0, 0.0]
     """
 
     name: str

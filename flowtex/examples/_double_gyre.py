@@ -47,6 +47,12 @@ def double_gyre_velocity(
     ------
     ValueError
         When the points have neither two nor three components.
+
+    Examples
+    --------
+    >>> from flowtex.examples import double_gyre_velocity
+    >>> double_gyre_velocity([0.5, 0.25]).round(3)
+    array([-0.222,  0.   ])
     """
     where = np.asarray(points, dtype=np.float64)
     if where.ndim == 0 or where.shape[-1] not in (2, 3):

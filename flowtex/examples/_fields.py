@@ -35,6 +35,12 @@ def cylinder_field() -> FlowField:
     Notes
     -----
     Velocities are rounded to 16 bits: by at most 3e-5 free-stream speeds.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> len(flowtex.examples.cylinder_field().times)
+    31
     """
     points, velocity, times = _shipped.cylinder_arrays()
     return FlowField.from_arrays(
@@ -68,6 +74,12 @@ def vortex_field() -> FlowField:
     ------
     FileNotFoundError
         When the installation lacks the example's file.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> flowtex.examples.vortex_field().periodic
+    (True, True)
     """
     points, velocity, vorticity, times = _shipped.vortex_arrays()
     return FlowField.from_arrays(
@@ -99,6 +111,13 @@ def double_gyre_field(
     -------
     FlowField
         With the scalar ``vorticity``; all units are arbitrary.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> gyre = flowtex.examples.double_gyre_field(time_varying=True, shape=(21, 41))
+    >>> gyre.velocity.shape
+    (41, 21, 41, 3)
     """
     points = _double_gyre.nodes(shape)
     times = np.linspace(0.0, _double_gyre.PERIOD, 41) if time_varying else np.zeros(1)
@@ -138,6 +157,12 @@ def airfoil_field(shape: tuple[int, int] = (65, 193), extent: float = 2.5) -> Fl
     -----
     The flow is inviscid: it slides along the wall, and leaves the cusped trailing edge smoothly
     (the Kutta condition). Cells differ in area by more than a hundred thousand to one.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> flowtex.examples.airfoil_field(shape=(33, 97)).size_text
+    '97 x 33 nodes (I x J)'
     """
     airfoil = Joukowski()
     nodes = airfoil.grid(*shape, extent)
@@ -175,6 +200,13 @@ def delta_wing_field(shape: tuple[int, int] = (52, 62)) -> FlowField:
     The flow parts on one line of each wing and meets on another, as beneath the vortices of a
     real one, but is made up: it solves no equation of motion. Cells differ in area by more than
     a hundred to one.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> field = flowtex.examples.delta_wing_field()
+    >>> field.surface.frame is None  # it is curved
+    True
     """
     points, velocity = _delta_wing.arrays(shape)
     return FlowField.from_arrays(
@@ -211,6 +243,11 @@ def liquid_oxygen_post_field(folder: str | Path | None = None, plane: str = "k=2
         When the folder lacks one of the files, or they cannot be downloaded.
     FieldError
         When there is no such plane, or nothing moves on it.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> flowtex.examples.liquid_oxygen_post_field("~/data", plane="k=20")  # doctest: +SKIP
     """
     return FlowField.from_file(_shipped.find_post(folder), plane=plane)
 

@@ -24,46 +24,72 @@ if TYPE_CHECKING:
 
 
 def cylinder() -> pv.StructuredGrid:
-    """Vortex shedding behind a cylinder: the last instant of :func:`cylinder_field`.
+    """Vortex shedding behind a cylinder, the last of :func:`~flowtex.examples.cylinder_field`.
 
     Returns
     -------
     pyvista.StructuredGrid
         161 x 65 x 1 nodes around and outwards; point arrays ``velocity`` and ``vorticity``, and
         the field data ``TimeValue``.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> flowtex.examples.cylinder().point_data.keys()
+    ['velocity', 'vorticity']
     """
     return to_grid(cylinder_field())
 
 
 def cylinder_series() -> list[pv.StructuredGrid]:
-    """One period of vortex shedding behind a cylinder, as :func:`cylinder_field`.
+    """One period of vortex shedding behind a cylinder, as :func:`~flowtex.examples.cylinder_field`.
 
     Returns
     -------
     list of pyvista.StructuredGrid
-        31 instants as from :func:`cylinder`, the last one period after the first.
+        31 instants as from :func:`~flowtex.examples.cylinder`, the last one period after the first.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> meshes = flowtex.examples.cylinder_series()
+    >>> flowtex.FlowField.from_pyvista(meshes).steady
+    False
     """
     return to_series(cylinder_field())
 
 
 def vortex() -> pv.StructuredGrid:
-    """Vortices of two-dimensional turbulence: the last instant of :func:`vortex_field`.
+    """Vortices of turbulence, the last instant of :func:`~flowtex.examples.vortex_field`.
 
     Returns
     -------
     pyvista.StructuredGrid
-        100 x 100 x 1 nodes on the unit square, with the arrays of :func:`cylinder`.
+        100 x 100 x 1 nodes on the unit square, with the arrays of
+        :func:`~flowtex.examples.cylinder`.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> flowtex.examples.vortex().dimensions
+    (100, 100, 1)
     """
     return to_grid(vortex_field())
 
 
 def vortex_series() -> list[pv.StructuredGrid]:
-    """Vortices of two-dimensional turbulence, as :func:`vortex_field`.
+    """Vortices of two-dimensional turbulence, as :func:`~flowtex.examples.vortex_field`.
 
     Returns
     -------
     list of pyvista.StructuredGrid
-        31 instants as from :func:`vortex`.
+        31 instants as from :func:`~flowtex.examples.vortex`.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> len(flowtex.examples.vortex_series())
+    31
     """
     return to_series(vortex_field())
 
@@ -86,6 +112,12 @@ def double_gyre(time: float = 0.0) -> pv.StructuredGrid:
     ------
     ValueError
         When the time is not a finite number.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> flowtex.examples.double_gyre(time=2.5)["velocity"].shape
+    (20301, 3)
     """
     if not np.isfinite(time):
         message = f"time is {time!r}, expected a finite number such as 2.5"
@@ -99,40 +131,63 @@ def double_gyre_series() -> list[pv.StructuredGrid]:
     Returns
     -------
     list of pyvista.StructuredGrid
-        41 instants as from :func:`double_gyre`, with ``TimeValue`` from 0 to 10.
+        41 instants as from :func:`~flowtex.examples.double_gyre`, with ``TimeValue`` from 0 to 10.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> float(flowtex.examples.double_gyre_series()[-1].field_data["TimeValue"][0])
+    10.0
     """
     return to_series(double_gyre_field(time_varying=True))
 
 
 def airfoil() -> pv.StructuredGrid:
-    """Lifting flow around a Joukowski airfoil, as :func:`airfoil_field`.
+    """Lifting flow around a Joukowski airfoil, as :func:`~flowtex.examples.airfoil_field`.
 
     Returns
     -------
     pyvista.StructuredGrid
         193 x 65 x 1 nodes around and outwards; point arrays ``velocity`` and ``pressure``.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> flowtex.examples.airfoil().dimensions
+    (193, 65, 1)
     """
     return to_grid(airfoil_field())
 
 
 def delta_wing() -> pv.StructuredGrid:
-    """Flow over the upper side of a winged body, as :func:`delta_wing_field`.
+    """Flow over the upper side of a winged body, as :func:`~flowtex.examples.delta_wing_field`.
 
     Returns
     -------
     pyvista.StructuredGrid
         62 x 52 x 1 nodes along and across; point arrays ``velocity`` and ``height``.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> flowtex.examples.delta_wing().n_points
+    3224
     """
     return to_grid(delta_wing_field())
 
 
 def liquid_oxygen_post(folder: str | Path | None = None, plane: str = "k=20") -> pv.StructuredGrid:
-    """Flow around NASA's liquid-oxygen post, as :func:`liquid_oxygen_post_field`.
+    """Flow around NASA's liquid-oxygen post, as :func:`~flowtex.examples.liquid_oxygen_post_field`.
 
     Returns
     -------
     pyvista.StructuredGrid
         The nodes of the plane, with the point array ``velocity`` and the scalars of the file.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> flowtex.examples.liquid_oxygen_post("~/data", plane="j=10")  # doctest: +SKIP
     """
     return to_grid(liquid_oxygen_post_field(folder, plane))
 
@@ -152,6 +207,12 @@ def to_grid(field: FlowField, step: int = -1) -> pv.StructuredGrid:
     pyvista.StructuredGrid
         I x J x 1 nodes with the point array ``velocity``, the field's scalars, and the field
         data ``TimeValue`` where the field varies in time. Nodes without data are hidden.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> field = flowtex.examples.cylinder_field()
+    >>> flowtex.examples.to_grid(field, step=0).save("first.vts")
     """
     import pyvista as pv
 
@@ -175,6 +236,12 @@ def to_series(field: FlowField) -> list[pv.StructuredGrid]:
     Returns
     -------
     list of pyvista.StructuredGrid
-        In order of time, each as from :func:`to_grid`.
+        In order of time, each as from :func:`~flowtex.examples.to_grid`.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> len(flowtex.examples.to_series(flowtex.examples.cylinder_field()))
+    31
     """
     return [to_grid(field, step) for step in range(len(field.times))]

@@ -98,6 +98,15 @@ class FlowField(FieldConstructors):
         How positions follow from longitude and latitude, for a field of the Earth.
     triangles
         Numbers of the nodes at the corners of triangles, (M, 3); ``None`` on a structured surface.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> field = flowtex.examples.airfoil_field()
+    >>> field.shape, field.steady, field.periodic
+    ((65, 193), True, (False, True))
+    >>> float(field.speed.max()) > 1
+    True
     """
 
     points: Floats
@@ -188,6 +197,15 @@ class FlowField(FieldConstructors):
         Notes
         -----
         The arrays are copied to float64 and never changed.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import flowtex
+        >>> x, y = np.linspace(-1, 1, 41), np.linspace(-1, 1, 31)
+        >>> v = np.stack(np.meshgrid(x, y), axis=-1)[..., ::-1] * (1, -1)  # (31, 41, 2): (y, -x)
+        >>> flowtex.FlowField.from_arrays((x, y), v, name="a vortex").shape
+        (31, 41)
         """
         p, masked_points = as_numbers("points", node_positions(points))
         v, masked_velocity = as_numbers("velocity", velocity)
@@ -298,6 +316,14 @@ class FlowField(FieldConstructors):
         UserWarning
             When triangles without area, or there twice, are left out, or the velocity is zero
             everywhere.
+
+        Examples
+        --------
+        >>> import flowtex
+        >>> points = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]
+        >>> velocity = [(1, 0, 0), (1, 1, 0), (0, 1, 0), (1, 0, 0)]
+        >>> flowtex.FlowField.from_triangles(points, [(0, 1, 2), (0, 2, 3)], velocity).size_text
+        '4 nodes, 2 triangles'
         """
         times, time_unit, start = as_seconds(times, time_unit)
         t = None if times is None else with_gaps("times", times)

@@ -299,6 +299,14 @@ def locate(
     renderers draw it, so points of a picture are exact. The first call for a field builds a tree of
     its nodes; the next ones take about a millisecond. Raises a ValueError when the point is not two
     or three finite numbers.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> from flowtex.probe import locate
+    >>> field = flowtex.examples.double_gyre_field()  # 101 x 201 nodes on [0, 2] x [0, 1]
+    >>> [round(number, 6) for number in locate(field, (0.5, 0.25))]
+    [25.0, 50.0]
     """
     at = np.asarray(point, dtype=float)
     if at.shape not in ((2,), (3,)) or not np.isfinite(at).all():

@@ -27,6 +27,14 @@ class PointValues:
     mesh's units per unit of time, and ``speed`` its length along the surface, which is what colours
     show, and ``speed_label`` words for it. ``lonlat`` are longitude and latitude in degrees, and
     ``eastward`` and ``northward`` the velocity on the Earth, of a field with a projection.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> from flowtex.probe import values_at
+    >>> values = values_at(flowtex.examples.double_gyre_field(), (25, 50))
+    >>> [round(float(x), 2) for x in values.position], round(values.speed, 3)
+    ([0.5, 0.25, 0.0], 0.222)
     """
 
     index: tuple[float, float]
@@ -59,7 +67,7 @@ def values_at(field: FlowField, index: ArrayLike, time: float | None = None) -> 
     field
         The flow.
     index
-        (j, i) in cells, as for :func:`~flowtex.field.locate.surface_point`.
+        (j, i) in cells; :func:`~flowtex.probe.locate` finds it for a point in space.
     time
         Time in the field's own unit; the last one by default. A steady field has one time.
 
@@ -67,6 +75,15 @@ def values_at(field: FlowField, index: ArrayLike, time: float | None = None) -> 
     ------
     ValueError
         When the point is not on the surface or the time not within the field's times.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> from flowtex.probe import locate, values_at
+    >>> field = flowtex.examples.cylinder_field()
+    >>> at = locate(field, (2.0, 0.5))
+    >>> sorted(values_at(field, at, time=field.times[3]).scalars)
+    ['vorticity']
     """
     point = surface_point(field.surface, index)
     first, last = float(field.times[0]), float(field.times[-1])

@@ -28,11 +28,16 @@ class LazySteps:
         Number of steps.
     read
         Returns a step, (J, I, ...), by its number from 0. It may be called by several threads.
+    kept
+        Bytes of steps that stay in memory once they have been read; as many of those that are made
+        from them.
     """
 
-    def __init__(self, count: int, read: Callable[[int], Floats]) -> None:
-        self._count, self._read = count, read
-        self._kept: ByteCache[int, _Step] = ByteCache(KEPT_BYTES, max_count=MOST_KEPT)
+    def __init__(
+        self, count: int, read: Callable[[int], Floats], *, kept: int = KEPT_BYTES
+    ) -> None:
+        self._count, self._read, self._most = count, read, kept
+        self._kept: ByteCache[int, _Step] = ByteCache(kept, max_count=MOST_KEPT)
         self._shape: tuple[int, ...] | None = None
 
     def __len__(self) -> int:
@@ -68,7 +73,7 @@ class LazySteps:
 
     def map(self, function: Callable[[Floats], Floats]) -> LazySteps:
         """Return steps that are made from these by a function, when they are read."""
-        return LazySteps(self._count, lambda number: function(self.step(number)))
+        return LazySteps(self._count, lambda number: function(self.step(number)), kept=self._most)
 
     def __getitem__(self, key: Any) -> Any:
         first, rest = (key[0], key[1:]) if isinstance(key, tuple) else (key, ())
@@ -82,12 +87,16 @@ class LazySteps:
         return LazySteps(
             len(numbers),
             lambda n: self.step(int(numbers[n]))[rest] if rest else self.step(int(numbers[n])),
+            kept=self._most,
         )
 
     def __array__(self, dtype: Any = None, copy: Any = None) -> AnyArray:
         """Read all steps."""
         del copy
-        return np.stack(list(self)).astype(dtype or float, copy=False)
+        result = np.empty(self.shape, dtype or float)
+        for number, step in enumerate(self):
+            result[number] = step
+        return result
 
 
 #: Nodal values at all time steps, (T, J, I, ...), in memory or read late.

@@ -51,7 +51,15 @@ PALETTE_PICTURES, PALETTE_SIDE = 8, 256
 
 
 class MovieError(ValueError):
-    """A movie cannot be made so; the text says why and what to do."""
+    """A movie cannot be made so; the text says why and what to do.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> flowtex.movie(flowtex.examples.airfoil_field(), "flow.avi")
+    Traceback (most recent call last):
+    flowtex.offscreen.encoders.MovieError: ...
+    """
 
 
 class MP4Encoder:

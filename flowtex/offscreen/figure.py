@@ -71,6 +71,13 @@ def extent(
         When the mesh or a setting does not fit.
     ValueError
         When the surface is curved, the camera does not look straight on, or there are two views.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> field = flowtex.examples.double_gyre_field()
+    >>> flowtex.extent(field, size=(200, 100), margin=0)
+    (0.0, 2.0, 0.0, 1.0)
     """
     chosen = Options.split(**options)
     if chosen.view.beside is not None:
@@ -133,6 +140,16 @@ def axes(
         When ``ax`` are no such axes.
     ValueError
         When the surface is curved.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> import flowtex
+    >>> figure, ax = plt.subplots(figsize=(3, 2))
+    >>> image = flowtex.axes(ax, flowtex.examples.double_gyre_field(), cmap="magma")
+    >>> bar = figure.colorbar(image, label="speed")
+    >>> figure.savefig("gyre.png", dpi=50)
+    >>> plt.close(figure)
     """
     if getattr(ax, "name", "") != "rectilinear":
         msg = f"ax is {ax!r}; expected rectilinear axes of matplotlib's, as plt.subplots() makes"
@@ -151,9 +168,18 @@ def axes(
 
 
 class FlowImage(AxesImage):
-    """A flow on matplotlib axes, drawn anew for what they show; :func:`axes` makes it.
+    """A flow on matplotlib axes, drawn anew for what they show; :func:`flowtex.axes` makes it.
 
     Its colour map and its norm are those of the picture, for a colour bar.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> import flowtex
+    >>> figure, ax = plt.subplots()
+    >>> image = flowtex.axes(ax, flowtex.examples.vortex_field(), scalars="vorticity")
+    >>> image.time = 0.5  # the axes are drawn anew when they are shown or saved next
+    >>> plt.close(figure)
     """
 
     def __init__(self, ax: Axes, mesh: Any, options: Options, supersampling: int) -> None:

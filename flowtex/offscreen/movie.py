@@ -68,7 +68,7 @@ class FrameTimes:
 def frame_times(
     field: FlowField, settings: Settings, *, fps: float, seconds: float | None = None
 ) -> FrameTimes:
-    """Return what each frame of a movie shows; :func:`movie` has the parameters.
+    """Return what each frame of a movie shows; :func:`flowtex.movie` has the parameters.
 
     Of the settings ``motion``, ``noise`` and ``period`` of a steady flow count.
 
@@ -154,6 +154,14 @@ class Movie:
         How long it is.
     closed
         Whether the first picture follows upon the last one without a seam.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> field = flowtex.examples.airfoil_field()
+    >>> movie = flowtex.movie(field, "loop.gif", size=(64, 48), seconds=0.2, samples=5)
+    >>> movie.size, movie.frames, movie.closed
+    ((64, 48), 4, True)
     """
 
     path: Path
@@ -225,6 +233,12 @@ def movie(
         When the file cannot be written; what was there before is left as it was.
     Stopped
         When it was cancelled.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> field = flowtex.examples.airfoil_field()
+    >>> flowtex.movie(field, "airfoil.mp4", zoom=4, annotations=True)  # doctest: +SKIP
     """
     fps = default_fps(path) if fps is None else fps
     check_movie(path, size, fps, quality)
@@ -253,7 +267,15 @@ def frames(
 ) -> Iterator[Bytes]:
     """Give the pictures of a movie, (height, width, 3) uint8, each drawn when it is asked for.
 
-    Parameters and errors are those of :func:`movie`.
+    Parameters and errors are those of :func:`flowtex.movie`.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> from flowtex.offscreen.movie import frames
+    >>> field = flowtex.examples.airfoil_field()
+    >>> [picture.shape for picture in frames(field, size=(64, 48), fps=5, seconds=0.4, samples=5)]
+    [(48, 64, 3), (48, 64, 3)]
     """
     field, chosen, shown = _prepare(mesh, Options.split(**options), fps, seconds)
     drawn = {"size": size, "supersampling": supersampling, "annotations": annotations}

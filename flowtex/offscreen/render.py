@@ -67,6 +67,13 @@ def render(
         When nothing can draw; the text names the command that installs what is missing.
     ValueError
         When the picture would be too large to draw, or the margin is out of range.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> field = flowtex.examples.airfoil_field()
+    >>> flowtex.render(field, size=(160, 120), zoom=4, samples=9).shape
+    (120, 160, 3)
     """
     with OffscreenPlotter(
         mesh,

@@ -21,7 +21,18 @@ __all__ = ["FlowHandle", "FlowtexComponent"]
 
 @pv.register_plotter_component("flowtex")
 class FlowtexComponent:
-    """The flow textures of one plotter."""
+    """The flow textures of one plotter.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> import pyvista as pv
+    >>> plotter = pv.Plotter(off_screen=True)
+    >>> handle = plotter.flowtex.add(flowtex.examples.airfoil(), cmap="viridis", samples=25)
+    >>> len(plotter.flowtex)
+    1
+    >>> plotter.close()
+    """
 
     def __init__(self, plotter: Any) -> None:
         self._plotter = plotter
@@ -67,6 +78,14 @@ class FlowtexComponent:
             When a setting is unknown or out of range.
         ImageError
             When the image cannot be read or used; a kind of SettingsError.
+
+        Examples
+        --------
+        >>> import flowtex
+        >>> import pyvista as pv
+        >>> plotter = pv.Plotter(off_screen=True)
+        >>> handle = plotter.flowtex.add(flowtex.examples.delta_wing(), scalars="height")
+        >>> plotter.close()
         """
         scene = Scene.of(mesh, vectors=vectors, scalars=scalars, cmap=cmap, **options)
         return self.add_scene(scene, scalar_bar_args=scalar_bar_args, reset_camera=reset_camera)

@@ -46,6 +46,19 @@ class FlowHandle(AppearanceAttributes):
         PyVista's actor, for its position and the like.
     scene
         The arrays behind the picture.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> import pyvista as pv
+    >>> plotter = pv.Plotter(off_screen=True, window_size=(160, 120))
+    >>> handle = plotter.flowtex.add(flowtex.examples.vortex_field(), samples=9)
+    >>> handle.scalars, handle.cmap = "vorticity", "RdBu"
+    >>> handle.settings.lod = False
+    >>> handle.time = handle.field.times[3]
+    >>> plotter.screenshot(return_img=True).shape
+    (120, 160, 3)
+    >>> plotter.close()
     """
 
     def __init__(
@@ -168,8 +181,8 @@ class FlowHandle(AppearanceAttributes):
         mesh
             As for ``plotter.flowtex.add``.
         **options
-            What of the mesh makes the field, such as ``slice="x=0.5"``: the fields of
-            :class:`~flowtex.options.FieldOptions`.
+            What of the mesh makes the field, such as ``slice="x=0.5"``: those arguments of
+            ``plotter.flowtex.add``.
 
         Raises
         ------
@@ -196,7 +209,7 @@ class FlowHandle(AppearanceAttributes):
         self._draw()
 
     def set_image(self, image: Any) -> None:
-        """Advect another image; as :meth:`Scene.set_image <flowtex.scene.Scene.set_image>`."""
+        """Advect another image, one that the argument ``image`` takes."""
         self.scene.set_image(image)
 
     def remove(self, *, render: bool = True) -> None:

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import os
+import math
 import uuid
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor, as_completed
 from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,20 +15,27 @@ import numpy as np
 from flowtex._util.extras import import_extra
 from flowtex._util.progress import track
 from flowtex.errors import FieldError
-from flowtex.field import FlowField
-from flowtex.field.datasets.detect import is_dataset
 from flowtex.pyramid.checks import check_about, sealed
-from flowtex.pyramid.layout import TRACES, about_field, attributes_of, create_level, parts_of
+from flowtex.pyramid.layout import (
+    HALOS,
+    MOST_HELD,
+    TRACES,
+    Part,
+    about_source,
+    attributes_of,
+    create_level,
+    has_halos,
+    parts_of,
+)
 from flowtex.pyramid.places import PyramidError, place_text, store_at
-from flowtex.pyramid.tasks import TileTask, make_part, make_tile, write_part
-from flowtex.tiles import Pyramid, TileKey, drawn_speeds, ends_of
-from flowtex.tiles.pyramid import Nodes
-from flowtex.trace import chosen_lines
+from flowtex.pyramid.samples import create_samples, ranges_of
+from flowtex.pyramid.source import Source, source_of
+from flowtex.pyramid.tasks import TileTask, make_finest, make_part, make_tile
+from flowtex.pyramid.workers import PART_BYTES, TILE_BYTES, Cluster, Threads
+from flowtex.tiles import TileKey
+from flowtex.tiles.pyramid import level_lines, level_shape
 
 __all__ = ["Built", "build"]
-
-#: Times that a task is tried.
-MOST_TRIALS = 3
 
 
 @dataclass(frozen=True)
@@ -44,6 +50,13 @@ class Built:
         Its coarsest level.
     made, kept
         Shards of nodes and tiles that were made, and that were there already.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> field = flowtex.examples.double_gyre_field(shape=(21, 41))
+    >>> flowtex.pyramid.build(field, "gyre.zarr", progress=False).depth
+    0
     """
 
     place: str
@@ -60,14 +73,16 @@ def build(
     parameter: str = "arclength",
     lines: str = "auto",
     scheduler: Any = None,
+    memory: int | str | None = None,
     progress: bool = True,
+    **options: Any,
 ) -> Built:
     """Build the pyramid of a field in a store, from which any part of it is drawn at once.
 
     Parameters
     ----------
     source
-        A field, a dataset of xarray's, or a file as for :meth:`FlowField.from_file`.
+        A field, a dataset of xarray's, or a file as for :meth:`flowtex.FlowField.from_file`.
     store
         A local folder such as ``"flow.zarr"``, or a URL such as ``"s3://bucket/flow.zarr"``;
         endpoint and credentials come from the environment.
@@ -78,9 +93,15 @@ def build(
         As in :class:`~flowtex.Settings`.
     scheduler
         A client of Dask's, or the address of a scheduler such as ``"tcp://host:8786"``; threads
-        of this process by default. Its workers must reach the store.
+        of this process by default. Its workers must reach the store, and the data.
+    memory
+        What threads may take of the memory, in bytes or such as ``"2GB"``; fewer of them run where
+        it is little. By default there is one for each core.
     progress
         Whether a bar is shown.
+    **options
+        How a dataset or a file becomes a field: as for :meth:`FlowField.from_xarray` or
+        :meth:`FlowField.from_file`, such as ``u``, ``v``, ``globe`` or ``level``.
 
     Returns
     -------
@@ -99,44 +120,46 @@ def build(
     Notes
     -----
     What is there already is not made again, so a build that was ended at any moment goes on where
-    it was. A time step of the source has to fit into the memory of this process; workers hold a
-    region of a level each.
+    it was.
+
+    Of a dataset on lines of longitude and latitude, or of x and y, each task reads a region, if it
+    is drawn on a globe, plate carree or Mercator's map. Neither this process nor a worker then
+    holds more of it than that, and lines of coordinates. Chunks of the data should not be much
+    larger than a region, 512 by 1,024 nodes of a time step. Of anything else a time step has to fit
+    into the memory of this process. A task takes 1.5 GB at most; a worker of a cluster should
+    have that for each of its threads, and 0.5 GB for itself.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> field = flowtex.examples.double_gyre_field(shape=(21, 41))
+    >>> built = flowtex.pyramid.build(field, "gyre.zarr", progress=False)
+    >>> flowtex.pyramid.build(field, "gyre.zarr", progress=False).made  # all is there
+    0
     """
     if levels not in ("coarse", "all"):
         msg = f"levels is {levels!r}; expected 'coarse' or 'all'"
         raise ValueError(msg)
-    field = _field_of(source)
-    pyramid = Pyramid(field, parameter, chosen_lines(field, lines))
+    given = source_of(source, **options)
     place = place_text(store)
-    group, about = _prepared(place, about_field(pyramid, levels), pyramid)
-    run = _Run(place, group, about, progress)
-    with closing(_workers(scheduler)) as workers:
-        _write_finest(run, field)
-        for level in range(1, pyramid.depth + 1):
-            parts = _missing_parts(run, level, pyramid.shape(level))
-            run.work(workers, make_part, parts, f"Level {level} of {pyramid.depth}")
+    about = about_source(given, parameter, given.chosen_lines(lines), levels)
+    group, about = _prepared(place, about, given)
+    run, depth = _Run(place, group, about, progress), about["depth"]
+    threads = Threads(memory)
+    with closing(threads if scheduler is None else Cluster(scheduler)) as workers:
+        _write_finest(run, given, workers if given.travels else threads)
+        for level in range(1, depth + 1):
+            parts = _missing_parts(run, level, level_shape(given.shape, level))
+            run.work(workers, make_part, parts, f"Level {level} of {depth}", PART_BYTES)
         run.tell(levels_done=True)
         tiles = [task for level in reversed(about["traced"]) for task in _tiles(run, level)]
-        run.work(workers, make_tile, tiles, "Tiles")
+        run.work(workers, make_tile, tiles, "Tiles", TILE_BYTES)
+        run.work(workers, make_tile, _uneven(run), "Tiles with wide halos", TILE_BYTES, new=False)
         run.tell(complete=True)
-    return Built(place, pyramid.depth, run.made, run.kept)
+    return Built(place, depth, run.made, run.kept)
 
 
-def _field_of(source: Any) -> FlowField:
-    if is_dataset(source):
-        field = FlowField.from_xarray(source)
-    elif isinstance(source, FlowField):
-        field = source
-    else:
-        field = FlowField.from_file(source)
-    if field.triangles is not None or field.sign_free:
-        what = "on triangles" if field.triangles is not None else "without a sign"
-        msg = f"the field is one {what}; expected one on a structured surface, with a direction"
-        raise FieldError(msg)
-    return field
-
-
-def _prepared(place: str, about: dict[str, Any], pyramid: Pyramid) -> tuple[Any, dict[str, Any]]:
+def _prepared(place: str, about: dict[str, Any], source: Source) -> tuple[Any, dict[str, Any]]:
     """Return the group at a place and what it tells, making both where there is none."""
     zarr = import_extra("zarr", "store")
     group = zarr.open_group(store_at(place, read_only=False), mode="a")
@@ -145,7 +168,7 @@ def _prepared(place: str, about: dict[str, Any], pyramid: Pyramid) -> tuple[Any,
         if any(True for _ in group.members()):
             msg = f"{place} holds other data; give a place where there is nothing yet"
             raise PyramidError(msg)
-        about = {**about, "ranges": _ranges(pyramid)}
+        about = {**about, "ranges": source.ranges or {}}
         group.attrs.update(attributes_of(about))
     else:
         there = check_about(there, place)
@@ -161,7 +184,9 @@ def _prepared(place: str, about: dict[str, Any], pyramid: Pyramid) -> tuple[Any,
         about = {**there, "traced": traced, "complete": False}
         group.attrs["flowtex"] = sealed(about)
     for level in range(about["depth"] + 1):
-        create_level(group, level, pyramid.shape(level), about)
+        create_level(group, level, level_shape(source.shape, level), about)
+    if not about["ranges"]:
+        create_samples(group, about)
     return group, about
 
 
@@ -193,11 +218,24 @@ class _Run:
         return {tuple(map(int, some)) for some in numbers if all(map(str.isdecimal, some))}
 
     def work(
-        self, workers: _Workers, function: Callable[..., None], tasks: Sequence[Any], text: str
+        self,
+        workers: Threads,
+        function: Callable[..., None],
+        tasks: Sequence[Any],
+        text: str,
+        need: int,
+        *given: Any,
+        new: bool = True,
     ) -> None:
-        """Run tasks, and raise when some have failed though they were tried again."""
-        self.made += len(tasks)
-        results = workers.run(function, self.place, self.name, tasks)
+        """Run tasks, and raise when some have failed though they were tried again.
+
+        Each needs so many bytes. Shards that are not ``new`` were counted when they were made.
+        """
+        if new:
+            self.made += sum(len(t.steps) if isinstance(t, TileTask) else 1 for t in tasks)
+        results = workers.run(
+            function, [(self.place, self.name, task) for task in tasks], need, *given
+        )
         errors = [
             error
             for error in track(results, len(tasks), text, show=self.progress)
@@ -212,32 +250,33 @@ class _Run:
             raise PyramidError(msg) from errors[0]
 
 
-def _write_finest(run: _Run, field: FlowField) -> None:
-    """Write level 0, one step after the other, as they are read."""
+def _write_finest(run: _Run, source: Source, workers: Threads) -> None:
+    """Write level 0; nodes of the first step come first, for they tell which are valid."""
     if run.about["axes"]:
-        _write_axes(run, field)
-    parts = _missing_parts(run, 0, field.shape)
-    run.made += len(parts)
-    step, velocity = -1, np.empty(0)
-    for part in track(parts, len(parts), "Level 0", show=run.progress):
-        if part.step != step:
-            step, velocity = part.step, np.asarray(field.velocity[part.step])
-        at = part.lines(field.shape)
-        scalars = {k: s[step][at] for k, s in field.scalars.items() if step < len(s)}
-        known = None if field.has_position is None else field.has_position[at]
-        nodes = Nodes(field.points[at], field.valid[at], velocity[at], known, scalars)
-        write_part(run.group, run.about, part, at, nodes)
+        _write_axes(run, source)
+    parts = _missing_parts(run, 0, source.shape)
+    for some in ([p for p in parts if p.step == 0], [p for p in parts if p.step > 0]):
+        run.work(workers, make_finest, some, "Level 0", PART_BYTES, source)
+    if not run.about["ranges"]:
+        ranges = ranges_of(run.group, run.about)
+        if not ranges:
+            msg = (
+                f"none of the {math.prod(source.shape):,} nodes has data; check the variables that "
+                "were chosen"
+            )
+            raise FieldError(msg)
+        run.tell(ranges=ranges)
 
 
-def _write_axes(run: _Run, field: FlowField) -> None:
-    pyramid = Pyramid(field)
-    for level in range(pyramid.depth + 1):
-        rows, columns = pyramid.line_numbers(level)
-        run.group[f"{level}/x"][:] = field.points[0, columns, 0]
-        run.group[f"{level}/y"][:] = field.points[rows, 0, 1]
+def _write_axes(run: _Run, source: Source) -> None:
+    first = np.array([0])
+    for level in range(run.about["depth"] + 1):
+        rows, columns = (level_lines(n, level) for n in source.shape)
+        run.group[f"{level}/x"][:] = source.points(first, columns)[0, :, 0]
+        run.group[f"{level}/y"][:] = source.points(rows, first)[:, 0, 1]
 
 
-def _missing_parts(run: _Run, level: int, shape: tuple[int, int]) -> list[Any]:
+def _missing_parts(run: _Run, level: int, shape: tuple[int, int]) -> list[Part]:
     there = run.there(f"{level}/velocity")
     parts = parts_of(level, shape, len(run.about["times"]))
     missing = [part for part in parts if (part.step, part.row, part.column, 0) not in there]
@@ -246,90 +285,37 @@ def _missing_parts(run: _Run, level: int, shape: tuple[int, int]) -> list[Any]:
 
 
 def _tiles(run: _Run, level: int) -> Iterator[TileTask]:
+    """Give the tiles of a level that are missing, a few steps at a time."""
     name = f"{level}/{TRACES}"
     there = run.there(name)
     steps, rows, columns = run.group[name].shape[:3]
+    told = np.asarray(run.group[f"{level}/{HALOS}"]) if has_halos(run.about, level) else None
     for row in range(rows):
         for column in range(columns):
-            missing = [t for t in range(steps) if (t, row, column, 0, 0, 0, 0) not in there]
-            if missing:
-                yield TileTask(TileKey(level, row, column), tuple(missing))
-            else:
-                run.kept += 1
+            for first in range(0, steps, MOST_HELD):
+                every = range(first, min(first + MOST_HELD, steps))
+                missing = [
+                    t
+                    for t in every
+                    if (t, row, column, 0, 0, 0, 0) not in there
+                    or (told is not None and not told[t, row, column].all())
+                ]
+                run.kept += len(every) - len(missing)
+                if missing:
+                    yield TileTask(TileKey(level, row, column), tuple(missing))
 
 
-def _ranges(pyramid: Pyramid) -> dict[str, list[tuple[float, float] | None]]:
-    """Return the ends of scalars and of the speed, the whole range and the robust one."""
-    field, some = pyramid.field, pyramid.field.typical
-    values = {k: np.asarray(s)[:, field.valid] for k, s in some.scalars.items()}
-    values.setdefault("speed", drawn_speeds(some, pyramid.root))
-    both = {k: [ends_of(v, robust=robust) for robust in (False, True)] for k, v in values.items()}
-    return {name: ends for name, ends in both.items() if None not in ends}
-
-
-class _Workers:
-    """Threads of this process."""
-
-    def run(
-        self, function: Callable[..., None], place: str, run: str, tasks: Sequence[Any]
-    ) -> Iterator[Exception | None]:
-        """Yield what became of each task, in the order in which they end."""
-        if not tasks:
-            return
-
-        def tried(task: Any) -> Exception | None:
-            result: Exception | None = None
-            for _ in range(MOST_TRIALS):
-                try:
-                    function(place, run, task)
-                except Exception as error:
-                    result = error
-                else:
-                    return None
-            return result
-
-        with ThreadPoolExecutor(os.cpu_count(), thread_name_prefix="flowtex-pyramid") as pool:
-            futures = [pool.submit(tried, task) for task in tasks]
-            try:
-                for future in as_completed(futures):
-                    yield future.result()
-            finally:
-                pool.shutdown(wait=True, cancel_futures=True)
-
-    def close(self) -> None:
-        """Nothing is kept open."""
-
-
-class _Dask(_Workers):
-    """Workers of a Dask cluster, which open the store themselves."""
-
-    def __init__(self, scheduler: Any) -> None:
-        distributed = import_extra("distributed", "store")
-        self._own = isinstance(scheduler, str)
-        self._client = distributed.Client(scheduler) if self._own else scheduler
-        self._as_completed = distributed.as_completed
-
-    def run(
-        self, function: Callable[..., None], place: str, run: str, tasks: Sequence[Any]
-    ) -> Iterator[Exception | None]:
-        """Yield what became of each task, in the order in which they end."""
-        if not tasks:
-            return
-        futures = self._client.map(
-            lambda task: function(place, run, task), tasks, pure=False, retries=MOST_TRIALS - 1
-        )
-        try:
-            for future in self._as_completed(futures):
-                yield future.exception()
-                future.release()
-        finally:
-            self._client.cancel(futures)
-
-    def close(self) -> None:
-        """Leave the cluster, where it was given by its address."""
-        if self._own:
-            self._client.close()
-
-
-def _workers(scheduler: Any) -> _Workers:
-    return _Workers() if scheduler is None else _Dask(scheduler)
+def _uneven(run: _Run) -> list[TileTask]:
+    """Return the tiles of which some steps were made with another halo than the tile needs."""
+    tasks = []
+    for level in run.about["traced"]:
+        if not has_halos(run.about, level):
+            continue
+        halos = np.asarray(run.group[f"{level}/{HALOS}"])
+        widest = halos[..., 0].max(axis=0)
+        for row, column in np.argwhere((halos[..., 1] != widest).any(axis=0)).tolist():
+            other = np.flatnonzero(halos[:, row, column, 1] != widest[row, column])
+            for some in np.split(other, np.flatnonzero(np.diff(other // MOST_HELD)) + 1):
+                key, spare = TileKey(level, row, column), int(widest[row, column])
+                tasks.append(TileTask(key, tuple(some.tolist()), spare))
+    return tasks

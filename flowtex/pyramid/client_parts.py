@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -15,26 +14,26 @@ from flowtex.rendering.webgl.protocol import parts_file
 from flowtex.textures import TextureSet
 from flowtex.tiles import Pyramid, TileKey, widened
 
-__all__ = ["write_client_parts"]
+__all__ = ["write_surface", "write_values"]
 
 #: What of the slices is the same in all tiles, and told by the page.
 OF_ALL_TILES = ("steps", "times", "timeUnit", "dates", "pace")
 
 
-def write_client_parts(
-    here: Any, pyramid: Pyramid, key: TileKey, textures: TextureSet | None, steps: Sequence[int]
-) -> None:
-    """Write the surface of a tile, and values at its nodes for some steps, into a level."""
+def write_surface(here: Any, pyramid: Pyramid, key: TileKey, textures: TextureSet | None) -> None:
+    """Write what a tile is at all times into the group of its level; a page holds the root's."""
     if key.level < pyramid.depth:
         room = here[SURFACE].shape[-1]
         file = np.frombuffer(_surface(pyramid, key, textures), np.uint8)
         here[SURFACE][key.row, key.column] = np.pad(file, (0, room - len(file)))
-    if textures is None:
-        return
+
+
+def write_values(here: Any, key: TileKey, textures: TextureSet, step: int) -> None:
+    """Write values at the nodes of a tile at a time step into the group of its level."""
     field, (rows, columns) = textures.geometry.field, textures.geometry.drawn
     for number, name in enumerate(_names(field)):
         values = _steps_of(field, name)
-        for step in (step for step in steps if step < len(values)):
+        if step < len(values):
             nodal = single(values[step][rows, columns])
             at = (step, key.row, key.column, number)
             here[VALUES][(*at, *(slice(0, n) for n in nodal.shape))] = nodal

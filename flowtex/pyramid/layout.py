@@ -11,10 +11,12 @@
         traces             (time, tile row, tile column, layer, H, W, 4), half floats
         values             (time, tile row, tile column, scalar, Y, X), single precision
         surface            (tile row, tile column, byte), below the root
+        halos              (time, tile row, tile column, 2) of a series; see tasks.py
+    samples                of the values at level 0; see samples.py
 
-The root is one tile, traced whole. Values and surface are there where traces are, for browsers:
-with them and the traces a page draws a tile without knowing the nodes of its level. The first
-scalar is the speed.
+The root is one tile, traced whole. Velocities and scalars are float32, positions float64. Values
+and surface are there where traces are, for browsers: with them and the traces a page draws a tile
+without knowing the nodes of its level. The first scalar is the speed.
 
 Arrays over nodes lie in chunks of a tile, several in a shard. A shard of traces is one tile at one
 destination time, and each layer a chunk. Layer 0 tells about the tile: a JSON text, whose bytes are
@@ -34,28 +36,33 @@ from typing import Any
 
 import numpy as np
 
-from flowtex._util.array_types import AnyArray, Floats, Floats32
-from flowtex._util.cache import digest
+from flowtex._util.array_types import AnyArray, Floats32
 from flowtex._util.extras import import_extra
 from flowtex._version import __version__
 from flowtex.earth import Projection
 from flowtex.field import FlowField
-from flowtex.field.steps import LazySteps
 from flowtex.pyramid.checks import sealed
 from flowtex.pyramid.places import FORMAT
+from flowtex.pyramid.source import Source
 from flowtex.textures.geometry import TILE_LEVELS, Padding, paddings
-from flowtex.tiles import BLOCK_CELLS, TILE_BLOCKS, Pyramid
+from flowtex.tiles import BLOCK_CELLS, TILE_BLOCKS
+from flowtex.tiles.pyramid import root_level
 
 __all__ = [
+    "HALOS",
+    "MOST_HELD",
     "SURFACE",
     "TILE_CELLS",
     "TRACES",
     "VALUES",
     "Part",
-    "about_field",
+    "about_source",
     "attributes_of",
+    "create_array",
     "create_level",
     "empty_field",
+    "has_halos",
+    "parts_along",
     "parts_of",
     "read_header",
     "shard_texels",
@@ -68,9 +75,11 @@ TILE_CELLS = BLOCK_CELLS * TILE_BLOCKS
 SHARD_CHUNKS = (2, 4)
 #: Layers that a shard of traces has room for; those that a tile has not take no room.
 MOST_LAYERS = 64
+#: Time steps of a series up to which a reader holds all of them.
+MOST_HELD = 8
 #: How hard is tried to pack; more takes longer and gains little.
 GZIP_LEVEL = 1
-TRACES, VALUES, SURFACE = "traces", "values", "surface"
+TRACES, HALOS, VALUES, SURFACE = "traces", "halos", "values", "surface"
 #: Bytes of a surface for each node: its place, whether a cell is drawn, and a normal where it is
 #: curved; and for what is told of it.
 PLACE_BYTES, NORMAL_BYTES, TOLD_BYTES = 13, 6, 16_384
@@ -107,10 +116,16 @@ class Part:
 
 def parts_of(level: int, shape: tuple[int, int], steps: int) -> list[Part]:
     """Return the parts of a level."""
-    rows, columns = (
-        range(-(-n // (many * TILE_CELLS))) for n, many in zip(shape, SHARD_CHUNKS, strict=True)
-    )
+    rows, columns = (range(n) for n in parts_along(shape))
     return [Part(level, t, j, i) for t in range(steps) for j in rows for i in columns]
+
+
+def parts_along(shape: tuple[int, int]) -> tuple[int, int]:
+    """Return how many parts a level with so many nodes (J, I) has along both axes."""
+    rows, columns = (
+        -(-n // (many * TILE_CELLS)) for n, many in zip(shape, SHARD_CHUNKS, strict=True)
+    )
+    return rows, columns
 
 
 def tiles_of(
@@ -132,14 +147,11 @@ def value_names(about: Mapping[str, Any]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(("speed", *about["scalars"])))
 
 
-def about_field(pyramid: Pyramid, levels: str) -> dict[str, Any]:
+def about_source(source: Source, parameter: str, lines: str, levels: str) -> dict[str, Any]:
     """Return what is told of a field and its pyramid, as it is kept in the store."""
-    field = pyramid.field
-    x, y, z = np.moveaxis(field.points, -1, 0)
-    late = isinstance(field.velocity, LazySteps)
-    flat = bool((z == z[0, 0]).all()) and not late and not np.any(field.velocity[..., 2])
-    projection = field.projection
-    periods = pyramid.periods
+    field, projection = source.field, source.field.projection
+    depth = root_level(source.shape)
+    corner = source.points(np.array([0]), np.array([0]))
     return {
         "format": FORMAT,
         "version": __version__,
@@ -151,23 +163,23 @@ def about_field(pyramid: Pyramid, levels: str) -> dict[str, Any]:
         "projection": None
         if projection is None
         else [projection.name, list(projection.center), projection.half_height],
-        "nodes": list(field.shape),
+        "nodes": list(source.shape),
         "periodic": list(field.periodic),
-        "periods": [some.tolist() for some in periods],
-        "depth": pyramid.depth,
+        "periods": [some.tolist() for some in source.periods],
+        "depth": depth,
         "tile_cells": TILE_CELLS,
-        "parameter": pyramid.parameter,
-        "lines": pyramid.lines,
-        "traced": sorted({*range(0 if levels == "all" else 1, pyramid.depth), pyramid.depth}),
-        "components": 2 if flat else 3,
-        "height": float(z[0, 0]),
-        "axes": flat and bool((x == x[:1]).all() and (y == y[:, :1]).all()),
-        "late": late,
-        "has_position": field.has_position is not None,
-        "scalars": {name: len(steps) for name, steps in field.scalars.items()},
+        "parameter": parameter,
+        "lines": lines,
+        "traced": sorted({*range(0 if levels == "all" else 1, depth), depth}),
+        "components": 2 if source.flat else 3,
+        "height": float(corner[0, 0, 2]),
+        "axes": source.rectilinear,
+        "late": source.late or len(field.times) > MOST_HELD,
+        "has_position": source.has_position is not None,
+        "scalars": dict(source.scalars),
         "units": dict(field.units),
         "long_names": dict(field.long_names),
-        "fingerprint": _fingerprint(field),
+        "fingerprint": source.fingerprint(),
     }
 
 
@@ -195,7 +207,7 @@ def create_level(group: Any, level: int, shape: tuple[int, int], about: Mapping[
         before = (steps,) if steps else ()
         ones = (1,) * len(before)
         names = [*["time"] * len(ones), "j", "i", *["component"] * len(last)]
-        _create(
+        create_array(
             where,
             name,
             (*before, *shape, *last),
@@ -205,20 +217,20 @@ def create_level(group: Any, level: int, shape: tuple[int, int], about: Mapping[
             names,
         )
 
-    nodal(here, "velocity", steps, (components,), "float64")
+    nodal(here, "velocity", steps, (components,), "float32")
     nodal(here, "valid", 0, (), "bool")
     if about["has_position"]:
         nodal(here, "has_position", 0, (), "bool")
     if about["axes"]:
         for name, count, axis in (("x", shape[1], "i"), ("y", shape[0], "j")):
-            _create(here, name, (count,), (count,), None, "float64", [axis])
+            create_array(here, name, (count,), (count,), None, "float64", [axis])
     else:
         nodal(here, "points", 0, (components,), "float64")
     for name, count in about["scalars"].items():
-        nodal(here.require_group("scalars"), name, count, (), "float64")
+        nodal(here.require_group("scalars"), name, count, (), "float32")
     if level in about["traced"]:
         tiles, size = tiles_of(level, shape, about)
-        _create(
+        create_array(
             here,
             TRACES,
             (steps, *tiles, MOST_LAYERS, *size, 4),
@@ -228,6 +240,10 @@ def create_level(group: Any, level: int, shape: tuple[int, int], about: Mapping[
             ["time", "row", "column", "layer", "y", "x", "channel"],
             keep_empty=False,
         )
+        if has_halos(about, level):
+            # A task makes so many steps, and a chunk is written by one task.
+            several, names = (MOST_HELD, 1, 1, 2), ["time", "row", "column", "halo"]
+            create_array(here, HALOS, (steps, *tiles, 2), several, None, "uint8", names)
         _create_client_arrays(here, level, shape, tiles, about)
 
 
@@ -241,7 +257,7 @@ def _create_client_arrays(
     """Make the empty arrays of a level that a browser needs beside the traces."""
     is_root = level == about["depth"]
     nodes = shape if is_root else (TILE_CELLS + 1, TILE_CELLS + 1)
-    _create(
+    create_array(
         here,
         VALUES,
         (len(about["times"]), *tiles, len(value_names(about)), *nodes),
@@ -254,10 +270,15 @@ def _create_client_arrays(
         each = PLACE_BYTES + (NORMAL_BYTES if about["components"] == 3 else 0)
         room = nodes[0] * nodes[1] * each + TOLD_BYTES
         names = ["row", "column", "byte"]
-        _create(here, SURFACE, (*tiles, room), (1, 1, room), None, "uint8", names)
+        create_array(here, SURFACE, (*tiles, room), (1, 1, room), None, "uint8", names)
 
 
-def _create(
+def has_halos(about: Mapping[str, Any], level: int) -> bool:
+    """Whether tiles of a level are told the halos of their steps."""
+    return len(about["times"]) > 1 and level in about["traced"] and level < about["depth"]
+
+
+def create_array(
     where: Any,
     name: str,
     shape: tuple[int, ...],
@@ -268,6 +289,7 @@ def _create(
     *,
     keep_empty: bool = True,
 ) -> None:
+    """Make an array, where it is not there yet."""
     codecs = import_extra("zarr.codecs", "store")
     if name in where:
         return
@@ -318,6 +340,8 @@ def shard_texels(
     if layers is not None:
         count, height, width = layers.shape[:3]
         shard[1 : 1 + count, :height, :width] = layers
+        # Zeros have one sign, so that the bits of a tile do not depend on who computed it.
+        shard[1 : 1 + count] += 0
     return shard
 
 
@@ -326,12 +350,6 @@ def read_header(texels: AnyArray) -> dict[str, Any] | None:
     text = np.ascontiguousarray(texels).reshape(-1).view(np.uint8).tobytes().rstrip(b"\0")
     about: dict[str, Any] | None = json.loads(text) if text else None
     return about
-
-
-def _fingerprint(field: FlowField) -> str:
-    """Return a hash by which a field is known again, from its nodes and two of its steps."""
-    ends: list[Floats] = [np.asarray(field.velocity[at]) for at in (0, -1)]
-    return digest(field.points, field.valid, field.times, *ends, words=field.scalars).hex()
 
 
 def _date_words(start: Any) -> list[Any] | None:

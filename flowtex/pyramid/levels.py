@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from flowtex._util.array_types import AnyArray, Bools, Floats, Floats32, Indices
+from flowtex._util.blocks import even_runs
 from flowtex._util.extras import import_extra
 from flowtex._util.progress import check
 from flowtex.field.steps import LazySteps
@@ -29,15 +30,20 @@ LOOK_INTERVAL_S = 0.1
 #: Characters of an error of others that are repeated.
 MOST_LETTERS = 300
 
+#: Blocks that are read one after the other; more of them are read as single lines.
+MOST_RUNS = 9
+#: Bytes of a velocity, and those of steps that are held; of a longer series each is read late.
+NODE_BYTES, KEPT_BYTES = 24, 64_000_000
+
 
 class _Part(NamedTuple):
-    """A part of an array: of these rows and columns, or what an index takes."""
+    """A part of an array: what an index takes, and of that some rows and columns."""
 
     array: str
     selection: Any
     #: What an error calls it.
     name: str
-    lines: bool = False
+    lines: tuple[Indices, Indices] | None = None
 
 
 class StoredTile:
@@ -122,7 +128,12 @@ class Levels:
         series = {f"scalars/{name}": count for name, count in about["scalars"].items()}
         if velocities:
             series["velocity"] = len(about["times"])
-        late = {name for name, count in series.items() if about["late"] and count > 1}
+        nbytes = len(rows) * len(columns) * NODE_BYTES
+        late = {
+            name
+            for name, count in series.items()
+            if count > 1 and (about["late"] or count * nbytes > KEPT_BYTES)
+        }
         parts = [self._part(level, name, rows, columns) for name in names]
         for name, count in series.items():
             if name not in late:
@@ -132,7 +143,8 @@ class Levels:
         steps: dict[str, Any] = {}
         for name, count in series.items():
             if name in late:
-                steps[name] = LazySteps(count, self._later(level, name, rows, columns))
+                later = self._later(level, name, rows, columns)
+                steps[name] = LazySteps(count, later, kept=KEPT_BYTES)
             else:
                 steps[name] = np.stack([next(values) for _ in range(count)])
         velocity = steps.pop("velocity", None)
@@ -203,10 +215,7 @@ class Levels:
         whole = f"{level}/{name}"
         if name in ("x", "y"):
             return _Part(whole, slice(None), whole)
-        both = [_slice(lines) for lines in (rows, columns)]
-        if None in both:
-            return _Part(whole, (*before, rows, columns), whole, lines=True)
-        return _Part(whole, (*before, *both), whole)
+        return _Part(whole, before, whole, (rows, columns))
 
     def _read(self, *parts: _Part) -> list[AnyArray]:
         """Read parts of arrays, all at once."""
@@ -221,8 +230,11 @@ class Levels:
     async def _values(self, part: _Part, expected: dict[str, Any]) -> AnyArray:
         try:
             array = await self._opened(part.array, expected)
-            chosen = array.oindex if part.lines else array
-            return np.asarray(await chosen.getitem(part.selection))
+            if part.lines is None:
+                return np.asarray(await array.getitem(part.selection))
+            values = await _lines(array, part.selection, *part.lines)
+            # Fields are float64, as all is that is computed of them.
+            return values.astype(float) if values.dtype == np.float32 else values
         except PyramidError:
             raise
         except Exception as error:
@@ -246,12 +258,15 @@ class Levels:
         return PyramidError(f"{name} of {self.place} cannot be read: {_words(error)}")
 
 
-def _slice(lines: Indices) -> slice | None:
-    """Return lines that follow each other as a slice."""
-    first, last = int(lines[0]), int(lines[-1])
-    if last - first + 1 == len(lines) and (np.diff(lines) == 1).all():
-        return slice(first, last + 1)
-    return None
+async def _lines(array: Any, before: tuple[int, ...], rows: Indices, columns: Indices) -> AnyArray:
+    """Read some rows and columns of an array over the nodes, as few blocks where they are that."""
+    runs = [list(even_runs(lines)) for lines in (rows, columns)]
+    if len(runs[0]) * len(runs[1]) > MOST_RUNS:
+        return np.asarray(await array.oindex.getitem((*before, rows, columns)))
+    blocks = [array.getitem((*before, j, i)) for j in runs[0] for i in runs[1]]
+    read = iter(map(np.asarray, await asyncio.gather(*blocks)))
+    bands = [[next(read) for _ in runs[1]] for _ in runs[0]]
+    return np.concatenate([np.concatenate(band, axis=1) for band in bands])
 
 
 def _in_space(values: Floats, height: float = 0.0) -> Floats:
@@ -263,8 +278,11 @@ def _in_space(values: Floats, height: float = 0.0) -> Floats:
 
 
 def _words(error: Exception) -> str:
+    text = str(error)
+    if "checksum" in text:
+        return "its check sum is another one: it came to harm"
     known = isinstance(error, (ReadFault, PyramidError))
-    return str(error) if known else f"{type(error).__name__}: {error}"[:MOST_LETTERS]
+    return text if known else f"{type(error).__name__}: {text}"[:MOST_LETTERS]
 
 
 def _format_of(array: Any) -> dict[str, Any]:

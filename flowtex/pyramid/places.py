@@ -30,9 +30,10 @@ __all__ = [
 ]
 
 #: Written into every store; a reader refuses what it does not know.
-FORMAT = "flowtex-pyramid-1"
-#: A URL, or one of which ``pathlib`` has made a path; those of files are paths.
-_URL = re.compile(r"^(?!file:)([A-Za-z][A-Za-z0-9+.-]+):/{1,2}(?=[^/])")
+FORMAT = "flowtex-pyramid-2"
+#: A URL, or one of which ``pathlib`` has made a path, on Windows with its slashes turned; those of
+#: files are paths. One letter is a drive.
+_URL = re.compile(r"^(?!file:)([A-Za-z][A-Za-z0-9+.-]+):[/\\]{1,2}(?=[^/\\])")
 _FILE_URL = re.compile(r"^file:/{1,3}(?=[^/])")
 _WEB, _AZURE = ("http", "https"), ("abfs", "abfss", "adl", "az", "azure")
 _SCHEMES = ("s3", "s3a", "gs", *_AZURE, *_WEB)
@@ -49,7 +50,15 @@ _CREDENTIALS = (
 
 
 class PyramidError(FieldError):
-    """A store of a pyramid that cannot be read, or written."""
+    """A store of a pyramid that cannot be read, or written.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> flowtex.pyramid.open_store("missing.zarr")
+    Traceback (most recent call last):
+    flowtex.pyramid.places.PyramidError: ...
+    """
 
 
 class ReadFault(OSError):
@@ -67,7 +76,7 @@ def place_text(place: str | Path) -> str:
     text = str(place)
     if not _URL.match(text):
         return str(Path(_FILE_URL.sub("/", text)).expanduser().resolve())
-    url = _URL.sub(r"\1://", text)
+    url = _URL.sub(r"\1://", text).replace("\\", "/")
     try:
         parts = urlsplit(url)
         user, _, host = parts.netloc.rpartition("@")
@@ -153,6 +162,12 @@ def is_store(place: Any) -> bool:
     ------
     PyramidError
         As :func:`place_text`.
+
+    Examples
+    --------
+    >>> from flowtex.pyramid import is_store
+    >>> is_store("flow.vts")
+    False
     """
     if not isinstance(place, (str, Path)):
         return False

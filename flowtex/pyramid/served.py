@@ -25,7 +25,7 @@ from flowtex.pyramid.layout import SURFACE, TRACES, VALUES, attributes_of, creat
 from flowtex.pyramid.levels import Levels
 from flowtex.pyramid.places import ReadFault, fault_words, is_refused, objects_at
 from flowtex.pyramid.stored import StoredPyramid, root_of
-from flowtex.pyramid.tasks import TileTask, trace_tile, write_tile
+from flowtex.pyramid.tasks import trace_tile, write_tile
 from flowtex.textures import TextureSet
 from flowtex.tiles import TileKey
 
@@ -234,7 +234,7 @@ class ServedStore:
         with stoppable(lambda: not job.waiting):
             # All times have the halo that does for the first one.
             tile = self._tiles.get(key, lambda: self._trace(key, step))
-            write_tile(self._group[str(key.level)], self._pyramid, TileTask(key, (step,)), *tile)
+            write_tile(self._group[str(key.level)], self._pyramid, key, step, *tile)
             if tile.textures is not None:
                 tile.textures.forget()
         self._note(key, step)

@@ -49,6 +49,14 @@ def open_store(store: str | Path) -> FlowField:
         When there is no pyramid, or it cannot be read.
     ModuleNotFoundError
         When what reads it is missing; the text names the extra.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> field = flowtex.examples.double_gyre_field(shape=(21, 41))
+    >>> built = flowtex.pyramid.build(field, "gyre.zarr", progress=False)
+    >>> flowtex.pyramid.open_store("gyre.zarr").shape
+    (21, 41)
     """
     levels = Levels(store)
     if not levels.about.get("levels_done"):
@@ -87,8 +95,8 @@ class StoredPyramid(Pyramid):
         parameter: str | None = None,
         lines: str | None = None,
     ) -> None:
-        about = levels.about
         self.field, self._stored = field, levels
+        about = levels.about
         self.parameter = about["parameter"] if parameter is None else parameter
         self.lines = about["lines"] if lines is None else lines
         self.nodes = (about["nodes"][0], about["nodes"][1])
@@ -142,6 +150,9 @@ class StoredPyramid(Pyramid):
         about = read[steps[0]].about
         if about["empty"]:
             return None
+        if any(tile.about.get("spare") != about["spare"] for tile in read.values()):
+            msg = f"{self._stored.place} was not built to its end; run flowtex.pyramid.build again"
+            raise PyramidError(msg)
         textures = self.textures(key, about["spare"])
         if textures is None or not _fits(textures, about):
             msg = f"tile {tuple(key)} of {self._stored.place} does not fit its level; build it anew"

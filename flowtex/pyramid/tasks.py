@@ -1,12 +1,17 @@
-"""The tasks of which a pyramid is built: each makes one shard, or a tile of all steps.
+"""The tasks of which a pyramid is built: each makes one shard, or a tile at some time steps.
 
 They are plain functions of a place and of numbers, so that any process on any machine can run
 them. Each opens the store itself, and reads no more than what it needs.
+
+A tile of a series has one halo at all times, the widest that any of them needs. Tasks make each
+step with the one that it needs itself and tell both in ``halos``: what it needs, and what it was
+made with. Steps of tiles whose halos differ are made again, so it does not matter which steps a
+task had.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from typing import Any, NamedTuple
 
@@ -14,24 +19,53 @@ import numpy as np
 
 from flowtex._util.array_types import Indices
 from flowtex.pyramid.checks import identity_of, nodes_hash
-from flowtex.pyramid.client_parts import write_client_parts
-from flowtex.pyramid.layout import TRACES, Part, shard_texels
+from flowtex.pyramid.client_parts import write_surface, write_values
+from flowtex.pyramid.layout import HALOS, TRACES, Part, has_halos, shard_texels
 from flowtex.pyramid.levels import Levels
 from flowtex.pyramid.places import store_at
+from flowtex.pyramid.samples import write_samples
+from flowtex.pyramid.source import Source
 from flowtex.pyramid.stored import StoredPyramid, root_of
 from flowtex.textures import TextureSet
 from flowtex.tiles import Pyramid, TileKey
-from flowtex.tiles.pyramid import Nodes, averaged, beside, level_lines
+from flowtex.tiles.pyramid import SPARES, Nodes, averaged, beside, level_lines
+from flowtex.tiles.region import is_cut
 from flowtex.trace import SliceStore
 
-__all__ = ["TileTask", "make_part", "make_tile", "trace_tile", "write_part", "write_tile"]
+__all__ = [
+    "TileTask",
+    "make_finest",
+    "make_part",
+    "make_tile",
+    "trace_tile",
+    "write_part",
+    "write_tile",
+]
 
 
 class TileTask(NamedTuple):
-    """A tile, and those of its destination times that are to be written."""
+    """A tile, and those of its destination times that are to be written.
+
+    The halo is ``spare`` times as wide as paths of even speed need; the task finds out for 0.
+    """
 
     key: TileKey
     steps: tuple[int, ...]
+    spare: int = 0
+
+
+def make_finest(source: Source, place: str, run: str, part: Part) -> None:
+    """Make a part of level 0 from what is in the source; that of the first step tells the valid."""
+    levels, group = _levels(place, run), _writable(place, run)
+    about = levels.about
+    lines = part.lines(source.shape)
+    valid = np.asarray(group["0/valid"][lines], dtype=bool) if part.step else None
+    nodes = source.nodes(part.step, *lines, valid)
+    if not about.get("ranges"):
+        write_samples(group, about, part, nodes)
+    known = None if source.has_position is None else source.has_position[lines]
+    had = Nodes(nodes.points, nodes.valid, nodes.velocity, known, nodes.scalars)
+    write_part(group, about, part, lines, had)
 
 
 def make_part(place: str, run: str, part: Part) -> None:
@@ -78,9 +112,15 @@ def write_part(
 def make_tile(place: str, run: str, task: TileTask) -> None:
     """Trace a tile in the level that it belongs to."""
     pyramid, here = _pyramid(place, run), _writable(place, run)[str(task.key.level)]
-    # One halo for all times, whichever of them are still to be written.
-    traced = trace_tile(pyramid, task.key, range(len(pyramid.field.times)))
-    write_tile(here, pyramid, task, *traced)
+    _, *at = task.key
+    halos = here[HALOS] if has_halos(pyramid.about, task.key.level) else None
+    for step, spare, textures in _made(pyramid, task):
+        write_tile(here, pyramid, task.key, step, spare, textures, surface=step == 0)
+        if textures is not None:
+            textures.store.forget()
+        if halos is not None:
+            needed = int(halos[(step, *at, 0)]) if task.spare else spare
+            halos[(step, *at)] = np.array([needed, spare], np.uint8)
 
 
 def trace_tile(
@@ -94,20 +134,48 @@ def trace_tile(
 
 
 def write_tile(
-    here: Any, pyramid: StoredPyramid, task: TileTask, spare: int, textures: TextureSet | None
+    here: Any,
+    pyramid: StoredPyramid,
+    key: TileKey,
+    step: int,
+    spare: int,
+    textures: TextureSet | None,
+    *,
+    surface: bool = True,
 ) -> None:
-    """Write a tile into the group of its level."""
-    array = here[TRACES]
+    """Write a tile at a time step, and its surface, into the group of its level."""
     # Before the traces: by these a tile is known to be whole.
-    write_client_parts(here, pyramid, task.key, textures, task.steps)
-    for step in task.steps:
-        at, room = (step, task.key.row, task.key.column), array.shape[3:]
-        belongs = identity_of(pyramid.about, task.key, step)
-        if textures is None:
-            array[at] = shard_texels({"empty": True, **belongs}, None, room)
-            continue
+    if surface:
+        write_surface(here, pyramid, key, textures)
+    array = here[TRACES]
+    belongs = identity_of(pyramid.about, key, step)
+    texels = shard_texels({"empty": True, **belongs}, None, array.shape[3:])
+    if textures is not None:
+        write_values(here, key, textures, step)
         told = {**_about_tile(textures, spare), **belongs, "nodes": nodes_hash(textures, step)}
-        array[at] = shard_texels(told, textures.layers(step), room)
+        texels = shard_texels(told, textures.layers(step), array.shape[3:])
+    array[(step, *key[1:])] = texels
+
+
+def _made(pyramid: StoredPyramid, task: TileTask) -> Iterator[tuple[int, int, TextureSet | None]]:
+    """Give the steps of a task, the halo of each, and textures that have its layers."""
+    if task.key.level == pyramid.depth:
+        spare, textures = trace_tile(pyramid, task.key, task.steps)
+        yield from ((step, spare, textures) for step in task.steps)
+        return
+    left = task.steps
+    for spare in (task.spare,) if task.spare else SPARES:
+        tile, cut = pyramid.textures(task.key, spare), []
+        for step in left:
+            last = spare == task.spare or spare == SPARES[-1]
+            if tile is None or last or not is_cut(tile, step):
+                yield step, spare, tile
+            else:
+                cut.append(step)
+                tile.store.forget()
+        left = tuple(cut)
+        if not left:
+            return
 
 
 def _about_tile(textures: TextureSet, spare: int) -> dict[str, Any]:

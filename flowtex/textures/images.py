@@ -36,7 +36,15 @@ SHAPES = "(H, W) for grey, (H, W, 3) for colours, or (H, W, 4) with opacity"
 
 
 class ImageError(SettingsError):
-    """An image cannot take the place of the noise; the text says what was expected."""
+    """An image cannot take the place of the noise; the text says what was expected.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> flowtex.render(flowtex.examples.airfoil_field(), image="missing.png")
+    Traceback (most recent call last):
+    flowtex.textures.images.ImageError: ...
+    """
 
 
 def as_picture(image: Any) -> Floats32:

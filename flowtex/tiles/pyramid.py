@@ -16,6 +16,7 @@ what a tile costs does not depend on the size of the surface.
 
 from __future__ import annotations
 
+import math
 import threading
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -53,6 +54,10 @@ PATH_CELLS = 32
 #: Width of a halo in lengths of the paths, for cells that grow smaller beyond a tile; lines that it
 #: has more than that; and its greatest width.
 HALO_SHARE, HALO_SPARE, MOST_HALO = 1.2, 3, 512
+#: Nodes of a window at most: halos are narrower where there would be more.
+MOST_WINDOW = 600_000
+#: Lines of a ring around a pole; of more of them some are left out, away from the tile.
+MOST_RING = 1536
 #: Nodes of a window around a pole from which on its paths are not composed: all are traced then.
 MOST_COMPOSED = 500_000
 #: Widths of the halo that are tried one after the other, where paths are cut by it.
@@ -125,9 +130,7 @@ class Pyramid:
     ) -> None:
         self.field, self.parameter, self.lines = field, parameter, lines
         self.nodes = field.shape
-        self.depth = 0
-        while np.prod(self.shape(self.depth)) > ROOT_NODES:
-            self.depth += 1
+        self.depth = root_level(self.nodes)
         self._lock = threading.Lock()
         self._places: dict[int, Floats] = {}
         self._levels: list[_Level] = [
@@ -173,8 +176,7 @@ class Pyramid:
 
     def shape(self, level: int) -> tuple[int, int]:
         """Return the number of nodes (J, I) of a level."""
-        rows, columns = (len(level_lines(n, level)) for n in self.nodes)
-        return rows, columns
+        return level_shape(self.nodes, level)
 
     def line_numbers(self, level: int) -> tuple[Indices, Indices]:
         """Return which rows and columns of level 0 a level has."""
@@ -224,12 +226,16 @@ class Pyramid:
         return self.settled(key, steps)[1]
 
     def settled(self, key: TileKey, steps: Sequence[int]) -> tuple[int, TextureSet | None]:
-        """Trace a tile, again with a wider halo where paths were cut, and tell its ``spare``."""
+        """Trace a tile, again with a wider halo where paths were cut, and tell its ``spare``.
+
+        That is the greatest of those that the steps need, one by one.
+        """
         for spare in SPARES:
             textures = self.textures(key, spare)
             if textures is None or spare == SPARES[-1]:
                 break
-            if not any(is_cut(textures, step) for step in steps):
+            steps = [step for step in steps if is_cut(textures, step)]
+            if not steps:
                 break
         return spare, textures
 
@@ -254,7 +260,10 @@ class Pyramid:
         if not (valid[:-1, :-1] & valid[1:, :-1] & valid[:-1, 1:] & valid[1:, 1:]).any():
             return None
         longest, widths = _reach(points, valid)
-        halo = [min(spare * width, MOST_HALO) for width in widths]
+        halo = _within_window(
+            [b - a + 1 for a, b in zip(first, last, strict=True)],
+            [min(spare * width, MOST_HALO) for width in widths],
+        )
         lines = [np.arange(a - h, b + h + 1) for a, b, h in zip(first, last, halo, strict=True)]
         around = self._around_pole(lines, shape)
         closed = [False, False]
@@ -262,7 +271,10 @@ class Pyramid:
             if axis == around:
                 # Whoever passes a pole comes out on its far side: all of the ring is needed.
                 spare = max(count - 1 - (last[axis] - first[axis]), 0) // 2
-                lines[axis] = np.arange(count) + first[axis] - min(spare, BLOCK_CELLS)
+                spare = min(spare, BLOCK_CELLS)
+                lines[axis] = (
+                    _ring(last[axis] - first[axis] + 2 * spare, count) + first[axis] - spare
+                )
                 closed[axis] = True
             elif not self.field.periodic[axis]:
                 lines[axis] = lines[axis][(lines[axis] >= 0) & (lines[axis] < count)]
@@ -400,6 +412,20 @@ def _greatest(values: Floats, firsts: list[Indices], lasts: list[Indices]) -> Fl
     return values
 
 
+def root_level(nodes: tuple[int, int]) -> int:
+    """Return the coarsest level of a field with so many nodes (J, I), which is traced whole."""
+    level = 0
+    while math.prod(level_shape(nodes, level)) > ROOT_NODES:
+        level += 1
+    return level
+
+
+def level_shape(nodes: tuple[int, int], level: int) -> tuple[int, int]:
+    """Return the number of nodes (J, I) of a level."""
+    rows, columns = (len(level_lines(n, level)) for n in nodes)
+    return rows, columns
+
+
 def level_lines(count: int, level: int) -> Indices:
     """Every 2^level-th of so many lines, and the last one."""
     lines = np.arange(0, count, 1 << level)
@@ -418,6 +444,32 @@ def _reach(points: Floats, valid: Bools) -> tuple[float, tuple[int, int]]:
     longest = 0.99 * PATH_CELLS * max(float(most) for _, most in sides)
     rows, columns = (int(HALO_SHARE * longest / least) + HALO_SPARE for least, _ in sides)
     return longest, (rows, columns)
+
+
+def _within_window(tile: list[int], halo: list[int]) -> list[int]:
+    """Return halos along rows and columns, narrower where the window has too many nodes."""
+    while math.prod(n + 2 * h for n, h in zip(tile, halo, strict=True)) > MOST_WINDOW:
+        widest = int(halo[1] > halo[0])
+        halo = [h - h // 8 if axis == widest else h for axis, h in enumerate(halo)]
+    return halo
+
+
+def _ring(near: int, count: int) -> Indices:
+    """Numbers of the lines around a pole, from 0 to the one that is the first again.
+
+    All are there where these are few, and up to ``near``. Beyond, cells grow, and become smaller
+    again: around a pole they are so narrow that nothing is lost.
+    """
+    if count <= MOST_RING:
+        return np.arange(count)
+    step = -(-count // (MOST_RING - near))
+    growing = [1]
+    while growing[-1] < step:
+        growing.append(growing[-1] + (growing[-1] + 1) // 2)
+    there, back = near + np.cumsum(growing), count - 1 - np.cumsum(growing)[::-1]
+    middle = np.linspace(there[-1], back[0], -(-(back[0] - there[-1]) // step) + 1)
+    around = np.unique(np.concatenate([there, np.rint(middle).astype(int), back]))
+    return np.concatenate([np.arange(near + 1), around, [count - 1]])
 
 
 def averaged(velocity: Floats, valid: Bools, rows: Indices, columns: Indices) -> Floats:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from flowtex.trace.lines import changing_share, chosen_lines
+from flowtex.trace.lines import changing_share, chosen_lines, judged_lines
 from flowtex.trace.slices import TraceSlices
 from flowtex.trace.store import SliceStore, shared_store
 from flowtex.trace.trace import paths, trace
@@ -12,6 +12,7 @@ __all__ = [
     "TraceSlices",
     "changing_share",
     "chosen_lines",
+    "judged_lines",
     "paths",
     "shared_store",
     "trace",

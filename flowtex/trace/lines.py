@@ -10,10 +10,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from flowtex._util.array_types import Indices
 from flowtex.field import FlowField
 from flowtex.field.steps import LazySteps
 
-__all__ = ["changing_share", "chosen_lines"]
+__all__ = ["changing_share", "chosen_lines", "judged_lines"]
 
 #: Length of a streak as a share of the surface, and of the velocity that may change meanwhile.
 STREAK_EXTENTS, MOST_CHANGE = 0.05, 0.5
@@ -38,11 +39,8 @@ def changing_share(field: FlowField) -> float:
     """
     if field.steady:
         return 0.0
-    rows, columns = field.shape
-    # A row of nodes is all there is of triangles.
-    most = (MOST_JUDGED, MOST_JUDGED if rows > 1 else MOST_JUDGED**2, MOST_JUDGED)
-    counts = zip((rows, columns, len(field.times) - 1), most, strict=True)
-    j, i, t = (np.arange(0, n, -(-n // m)) for n, m in counts)
+    j, i = judged_lines(field.shape)
+    t = _some(len(field.times) - 1, MOST_JUDGED)
     if isinstance(field.velocity, LazySteps):
         t = t[:1]
     valid = field.valid[np.ix_(j, i)]
@@ -55,3 +53,14 @@ def changing_share(field: FlowField) -> float:
     square = np.sum((0.5 * (before + after)) ** 2, axis=-1)
     extent = float(np.linalg.norm(np.ptp(field.points[np.ix_(j, i)][valid], axis=0)))
     return float(np.mean(STREAK_EXTENTS * extent * change > MOST_CHANGE * square))
+
+
+def judged_lines(shape: tuple[int, int]) -> tuple[Indices, Indices]:
+    """Return the rows and columns of a field with nodes (J, I) by which it is judged."""
+    rows, columns = shape
+    # A row of nodes is all there is of triangles.
+    return _some(rows, MOST_JUDGED), _some(columns, MOST_JUDGED if rows > 1 else MOST_JUDGED**2)
+
+
+def _some(count: int, most: int) -> Indices:
+    return np.arange(0, count, -(-count // most))

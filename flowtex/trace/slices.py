@@ -69,6 +69,17 @@ class TraceSlices:
         Destination times, (T,), in the field's own unit.
     parameter
         What a lag measures: ``"arclength"`` or ``"time"``.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> field = flowtex.examples.double_gyre_field(shape=(21, 41))
+    >>> slices = flowtex.trace(field, lags=[1.0, 2.0, 4.0])
+    >>> slices.positions(1.5).shape
+    (21, 41, 2)
+    >>> slices.save("gyre.npz")
+    >>> flowtex.TraceSlices.open("gyre.npz").shape
+    (21, 41)
     """
 
     lags: Floats

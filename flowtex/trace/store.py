@@ -27,6 +27,9 @@ __all__ = ["SliceStore", "shared_store"]
 
 #: Size of the slices that are cached, besides the ones in use.
 CACHE_BYTES = 512_000_000
+#: Size of the steps in which paths to one time are traced, where they are read late, and bytes of a
+#: node of each: velocity, components and speed. Of more steps some are left out, down to a few.
+HELD_BYTES, STEP_BYTES, LEAST_HELD = 500_000_000, 48, 8
 
 
 class SliceStore:
@@ -110,8 +113,8 @@ class SliceStore:
             reach = float(self.lags[-1] * self.unit.max())
             near = np.flatnonzero(np.abs(self.field.times - self.field.times[step]) <= reach)
             first, last = max(int(near[0]) - 1, 0), min(int(near[-1]) + 2, self.steps)
-            around = self.field.at_steps(range(first, last))
-            return self._trace_with(around, steps=[step - first])
+            some = _held(first, last, step, HELD_BYTES // (STEP_BYTES * self.unit.size))
+            return self._trace_with(self.field.at_steps(some), steps=[some.index(step)])
         size = self.steps * len(self.lags) * self.unit.size * 4 * np.float32().nbytes
         if (
             self._compose
@@ -128,6 +131,13 @@ class SliceStore:
         alone = self._nodes is None
         parts: dict[str, Any] = {"nodes": self._nodes, "progress": alone}
         return trace(field, lags=self.lags, unit=self.unit, **parts, **options)
+
+
+def _held(first: int, last: int, step: int, most: int) -> list[int]:
+    """Return the steps from ``first`` on, this one among them: every n-th where they are many."""
+    apart = -(-(last - first) // max(most, LEAST_HELD))
+    some = range(first + (step - first) % apart, last, apart)
+    return sorted({first, *some, last - 1})
 
 
 _stores: WeakCache[SliceStore] = WeakCache()

@@ -80,7 +80,7 @@ def trace(
     steps
         Destination times to trace, as indices into ``field.times``; all by default.
     compose
-        Whether long lags are put together from short ones (see :mod:`flowtex.trace.compose`)
+        Whether long lags are put together from short ones (see ``flowtex/trace/compose.py``)
         instead of being integrated. By default they are when the lags are chosen automatically.
         In a field that varies this takes equal time steps, of which all are traced; otherwise
         all lags are integrated, as they are in a field without a sign and on triangles.
@@ -104,6 +104,14 @@ def trace(
         composed.
     IndexError
         When there is no such time step.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> field = flowtex.examples.double_gyre_field(shape=(21, 41))
+    >>> slices = flowtex.trace(field, lags=[1.0, 2.0, 4.0])
+    >>> slices.displacement.shape  # (T, M, J, I, 2)
+    (1, 3, 21, 41, 2)
     """
     parameter = _parameter(field, parameter)
     _check_signs(field, two_sided=two_sided, compose=compose)

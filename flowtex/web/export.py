@@ -38,7 +38,17 @@ from flowtex.web.linked import StoreLink, first_parts, linked_data, store_header
 from flowtex.web.tiles import all_tiles
 from flowtex.web.view import WebView, web_views
 
-__all__ = ["Page", "estimate", "export", "page_pieces", "page_text", "write_page"]
+__all__ = [
+    "Page",
+    "different",
+    "estimate",
+    "export",
+    "json_text",
+    "page_data",
+    "page_pieces",
+    "page_text",
+    "write_page",
+]
 
 #: Size of an average part after packing, over that before, base64 included.
 PACKED_SHARE = 0.62
@@ -66,6 +76,13 @@ class Page:
         The size that was estimated beforehand.
     steps
         Number of time steps in it.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> page = flowtex.export(flowtex.examples.delta_wing_field(), "wing.html", samples=15)
+    >>> page.path.name, page.steps, page.nbytes < 1_000_000
+    ('wing.html', 1, True)
     """
 
     path: Path
@@ -123,6 +140,12 @@ def export(
         When ``steps`` is not positive.
     OSError
         When the file cannot be written; what was there before is left as it was.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> series = flowtex.examples.cylinder_series()
+    >>> flowtex.export(series, "wake.html", steps=6, scalars="vorticity")  # doctest: +SKIP
     """
     arguments = Options.split(**options)
     views = web_views(mesh, arguments, steps=steps)
@@ -148,7 +171,7 @@ def write_page(
     :func:`page_pieces`.
     """
     path, link = Path(path), None if store is None else StoreLink.of(store)
-    scenes = _page_data(views) if link is None else [linked_data(view) for view in views]
+    scenes = page_data(views) if link is None else [linked_data(view) for view in views]
     estimated = estimate(scenes, linked=link is not None)
     if announce is not None:
         announce(estimated, scenes[0].steps)
@@ -166,12 +189,12 @@ def page_text(
     at that address, by default that of the store itself.
     """
     if store is None:
-        return "".join(page_pieces(views, _page_data(views), **options))
+        return "".join(page_pieces(views, page_data(views), **options))
     scenes = [linked_data(view, finest) for view in views]
     return "".join(page_pieces(views, scenes, link=StoreLink.of(store), **options))
 
 
-def _page_data(views: Sequence[WebView]) -> list[ClientData]:
+def page_data(views: Sequence[WebView]) -> list[ClientData]:
     """Return what a page holds of its views, with as many levels of tiles as there is room for."""
     scenes = []
     for scene in (view.page_data() for view in views):
@@ -272,12 +295,12 @@ def _values(
         "style": look,
         # Browsers tell JPEG by itself.
         "preview": "data:image/png;base64," + base64.b64encode(picture).decode(),
-        "headers": _json([headers[0], *(_different(h, headers[0]) for h in headers[1:])]),
+        "headers": json_text([headers[0], *(different(h, headers[0]) for h in headers[1:])]),
         "script": script,
     }
 
 
-def _different(header: Header, first: Header) -> Header:
+def different(header: Header, first: Header) -> Header:
     """Return what of a header is not as in the first: shaders and table lie in the page once."""
     return {name: value for name, value in header.items() if value != first[name]}
 
@@ -295,7 +318,7 @@ def _policy(script: str, link: StoreLink | None) -> str:
     )
 
 
-def _json(value: Any) -> str:
+def json_text(value: Any) -> str:
     """Return JSON in which nothing can end a script element."""
     text = json.dumps(value, allow_nan=False, separators=(",", ":"))
     return text.replace("<", r"\u003c").replace(">", r"\u003e").replace("&", r"\u0026")

@@ -61,6 +61,14 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         Width and height in pixels of the page; a width of 0 fills the cell.
     bar
         Whether the bar of controls is shown on the picture.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> widget = flowtex.FlowWidget(flowtex.examples.airfoil_field(), size=(0, 300))
+    >>> widget.samples = 25
+    >>> widget.camera = {"parallel_scale": 0.5}
+    >>> widget.close()
     """
 
     _esm = asset("client.js")
@@ -146,7 +154,7 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         return self._views.first
 
     def set_image(self, image: Any) -> None:
-        """Advect another image; as :meth:`Scene.set_image <flowtex.scene.Scene.set_image>`."""
+        """Advect another image, one that the argument ``image`` takes."""
         self._views.set_image(load_image(image))
 
     def controls(self) -> Any:
@@ -156,7 +164,7 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         return panel
 
     def to_html(self, path: str | Path | None = None, *, title: str | None = None) -> str | None:
-        """Write what is shown as a page that needs no server; :func:`flowtex.web.export.export`.
+        """Write what is shown as a page that needs no server; :func:`flowtex.export`.
 
         Parameters
         ----------

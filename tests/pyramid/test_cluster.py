@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from cluster import Cluster, ObjectStorage, digests, peak_memory
 
-from flowtex.pyramid import build, open_store
+from flowtex.pyramid import PyramidError, build, open_store, workers
 from flowtex.pyramid.places import store_at
 from flowtex.tiles import TileKey, shared_pyramid
 
@@ -57,7 +57,7 @@ def test_workers_build_what_threads_build_though_one_is_killed(
     flow().to_zarr(store_at(source, read_only=False), consolidated=False)
     data = xr.open_zarr(store_at(source), consolidated=False)
     build(data, tmp_path / "threads.zarr", progress=False)
-    cluster = Cluster(tmp_path / "cluster", storage.environment, memory=str(BUDGET))
+    cluster = Cluster(tmp_path / "cluster", storage.environment, memory="2GB")
     try:
         with distributed.Client(cluster.address) as client:
             client.wait_for_workers(2)
@@ -87,7 +87,29 @@ def test_workers_build_what_threads_build_though_one_is_killed(
         tile = shared_pyramid(open_store(store), "arclength").tile(TileKey(0, 1, 2), [0])
         assert tile is not None
         tiles.append(tile.layers())
-    np.testing.assert_array_equal(*tiles)
+    np.testing.assert_array_equal(tiles[0], tiles[1])
+
+
+def test_workers_with_little_memory_are_told() -> None:
+    class Client:
+        def scheduler_info(self, **_: int) -> dict[str, Any]:
+            workers = {
+                "tcp://a:1": {"memory_limit": 8_000_000_000, "nthreads": 2},
+                "tcp://b:2": {"memory_limit": 3_000_000_000, "nthreads": 2},
+                "tcp://c:3": {"memory_limit": 0, "nthreads": 2},
+            }
+            return {"workers": workers}
+
+    with pytest.warns(UserWarning, match=r"1 of 3 workers .* tcp://b:2 has 3 GB, .* need 3.5 GB"):
+        workers.Cluster(Client())
+
+
+def test_what_holds_its_data_is_not_sent(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(workers, "MOST_SENT", 10_000)
+    assert workers._packed(np.zeros(9_000, np.uint8)) is not None
+    assert workers._packed(np.zeros(11_000, np.uint8)) is None
+    with pytest.raises(PyramidError, match="cannot be sent to the workers"):
+        workers._packed(n for n in range(3))
 
 
 def _name_of(client: Any, pid: int) -> str:

@@ -52,7 +52,9 @@ def test_pictures_are_those_of_the_field(
     opengl: Any, flow: FlowField, store: Path, zoom: float, options: dict[str, Any]
 ) -> None:
     pictures = [flowtex.render(one, zoom=zoom, **VIEW, **options) for one in (flow, str(store))]
-    np.testing.assert_array_equal(pictures[0], pictures[1])
+    # Velocities are float32 in a store: single pixels may be rounded another way.
+    away = pictures[0].astype(float) - pictures[1]
+    assert np.sqrt(np.mean(away**2)) < 0.2
     assert pictures[0].std() > 10
 
 
@@ -83,8 +85,10 @@ def test_the_shell_builds_tells_and_draws(
 
     data = xr.Dataset(
         {
-            name: (("y", "x"), flow.velocity[0, ..., axis], {"standard_name": f"sea_water_{name}"})
-            for axis, name in enumerate(("x_velocity", "y_velocity"))
+            name: (("y", "x"), flow.velocity[0, ..., axis], {"standard_name": f"sea_water_{long}"})
+            for axis, (name, long) in enumerate(
+                zip("uv", ("x_velocity", "y_velocity"), strict=True)
+            )
         },
         {"x": flow.points[0, :, 0], "y": flow.points[:, 0, 1]},
     )
@@ -92,7 +96,8 @@ def test_the_shell_builds_tells_and_draws(
     store = tmp_path / "flow.zarr"
     assert main(["pyramid", str(tmp_path / "flow.nc"), "-o", str(store)]) == 0
     assert "3 levels" in capsys.readouterr().out
-    assert main(["pyramid", str(tmp_path / "flow.nc"), "-o", str(store)]) == 0
+    again = ["--memory", "4GB", "--vectors", "u,v"]
+    assert main(["pyramid", str(tmp_path / "flow.nc"), "-o", str(store), *again]) == 0
     assert "were there" in capsys.readouterr().out
     assert main(["info", str(store)]) == 0
     told = capsys.readouterr().out

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 import pytest
 from flows import gyre, lines, swinging, torus
-from matrix import ASIDE, IMAGE, WHOLE, straight
+from matrix import ASIDE, IMAGE, TILTED, WHOLE, straight
 from triangle_meshes import random_plane
 
 from flowtex import FlowField
@@ -24,6 +24,8 @@ from flowtex._util.colours import colour_table
 from flowtex.camera import CAMERA_LIMITS, Camera
 from flowtex.earth import MapLines, Projection
 from flowtex.field.dates import date_text
+from flowtex.probe import probe
+from flowtex.rendering.cpu.noise import noise_lattice, octave
 from flowtex.rendering.cpu.shade import mean_colours
 from flowtex.rendering.map_overlay import map_lines
 from flowtex.rendering.mesh_levels import MeshLevels, Region, join, mesh_limits
@@ -427,3 +429,94 @@ def test_tiles_for_the_client(monkeypatch: pytest.MonkeyPatch) -> None:
     expected = tiled(1)
     assert all(len(view["shown"]) > 1 for view in expected["views"])
     check("tiles.json", expected)
+
+
+#: Pixels of a picture in which samples are looked for.
+PICTURE_SIZE = (300, 200)
+#: Place (j, i), camera and settings.
+SAMPLED: dict[str, tuple[tuple[float, float], Camera, dict[str, Any]]] = {
+    "whole": ((2.3, 5.6), WHOLE, {"samples": 9}),
+    "near": ((2.4, 2.7), straight(30), {"samples": 15, "seed": 7, "contrast": 2.0}),
+    "one side": ((1.2, 6.1), WHOLE, {"kernel": "ramp", "two_sided": False, "samples": 6}),
+    "ramp": ((1.2, 6.1), WHOLE, {"kernel": "ramp", "grain": 2.0, "spacing": 0.5}),
+    "box to the border": ((0.4, 6.1), WHOLE, {"kernel": "box", "samples": 31}),
+    "no level of detail": ((2.3, 5.6), straight(4), {"lod": False, "samples": 7}),
+    "tilted": ((2.3, 5.6), TILTED, {"samples": 7}),
+}
+
+
+def bend() -> FlowField:
+    """A flow of few nodes whose paths turn so little in a cell that all follow the slices."""
+    y, x = np.mgrid[0:1:5j, 0:2:9j]
+    velocity = np.stack([1 + 0.3 * y, 0.4 * (x - 0.8), 0 * x], axis=-1)
+    return FlowField.from_arrays(np.stack([x, y, 0 * x], axis=-1), velocity)
+
+
+def samples_of(name: str) -> dict[str, Any]:
+    """Return a place of a flow, and what the judge finds there."""
+    at, camera, chosen = SAMPLED[name]
+    scene = Scene(bend(), Settings(**chosen))
+    header = ClientData(scene.textures).header(scene.settings)
+    found = probe(scene, at, pixel=camera, size=PICTURE_SIZE)
+    assert found.slice_level == 0
+    needed = ("variant", "geometry", "slices", "paper", "constants", "settings", "limits")
+    return {
+        "header": {key: header[key] for key in needed},
+        "camera": camera.to_dict(),
+        "size": PICTURE_SIZE,
+        "place": at[::-1],
+        "position": plain(found.field_values.position),
+        "points": plain(found.points),
+        "weights": plain(found.weights),
+        "noise": plain(found.noise),
+        "level": found.level,
+        "gain": found.gain,
+        "value": plain(found.value),
+    }
+
+
+def parts_of(data: ClientData) -> dict[str, Any]:
+    """Return the arrays that a path is followed with."""
+    arrays = {**data.surface(), **data.step(0)}
+    return {
+        name: {"shape": arrays[name].shape, "data": plain(_numbers(arrays[name]))}
+        for name in ("position", "slices/0", "extra/0")
+        if name in arrays
+    }
+
+
+def _numbers(array: Any) -> Any:
+    return (array.view(np.uint16) if array.dtype == np.float16 else array).ravel()
+
+
+def noise_of(seed: int) -> list[dict[str, Any]]:
+    """Return values of the noise at some points, in a plane and in space."""
+    rng = np.random.default_rng(seed)
+    scene = Scene(gyre(9, 5), Settings(seed=seed))
+    focus = np.array([0.7, 0.2, 0.0])
+    view = ViewState(focus, np.zeros(3), np.array([0.0, 0.0, 1.0, 0.0]), 0.0, 0.0, 0.0, 1.0)
+    values = uniforms(scene.textures, scene.settings, view)
+    names = [name for name in values if name.startswith("u_noise")]
+    told = {name: plain(values[name]) for name in [*names, "u_seed"]}
+    cases = []
+    for number in (3, 20, 41):
+        point, moved = rng.normal(size=(2, 1, 3))
+        here = point - np.asarray(values["u_noiseOrigin"])
+        for planar in (True, False):
+            both = [
+                octave(
+                    noise_lattice(here, np.array([number + n]), values), moved, None, planar=planar
+                )
+                for n in (0, 1)
+            ]
+            cases.append(
+                {"uniforms": told, "point": plain(point[0]), "moved": plain(moved[0])}
+                | {"octave": number, "planar": planar, "values": plain(np.concatenate(both))}
+            )
+    return cases
+
+
+def test_samples_for_the_client() -> None:
+    sums = {name: samples_of(name) for name in SAMPLED}
+    parts = parts_of(ClientData(Scene(bend()).textures))
+    check("samples.json", {"parts": parts, "sums": sums, "noise": noise_of(5)})

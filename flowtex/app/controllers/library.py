@@ -63,7 +63,14 @@ Look = tuple[float, tuple[float, ...] | None]
 
 @dataclass(frozen=True)
 class Choice:
-    """What is shown of a file; empty for what :meth:`FlowSource.field` chooses by itself."""
+    """What is shown of a file; empty for what is chosen without a word.
+
+    Examples
+    --------
+    >>> from flowtex.app import Choice
+    >>> Choice(plane="k=20")
+    Choice(vectors='', plane='k=20', block='')
+    """
 
     vectors: str = ""
     plane: str = ""
@@ -103,6 +110,16 @@ class Library:
     ------
     FieldError
         When there is nothing to open.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> from flowtex.app import Choice, Library
+    >>> library = Library.of(flowtex.examples.airfoil_field(), flowtex.examples.vortex_field())
+    >>> len(library.names)
+    2
+    >>> library.field(library.names[0], Choice()).shape
+    (65, 193)
     """
 
     def __init__(
@@ -146,7 +163,7 @@ class Library:
     def of(cls, *flows: Any, folder: str | Path | None = None, **options: Any) -> Library:
         """Make a library of fields, meshes, paths of files, or one folder.
 
-        ``options`` are arguments of :meth:`FlowField.from_pyvista` for meshes.
+        ``options`` are arguments of :meth:`flowtex.FlowField.from_pyvista` for meshes.
 
         Raises
         ------
@@ -254,7 +271,7 @@ class Library:
         Raises
         ------
         Stopped
-            As :func:`flowtex._util.progress.stoppable` asks for.
+            When the page wants something else meanwhile.
         """
         flow = self._flows.peek((name, choice))
         if flow is None or flow.field is not field:

@@ -72,8 +72,9 @@ class NotebookPage:
         height
             Height of the frame, in CSS pixels.
         proxy
-            How the browser comes to the kernel, as :func:`proxy_path` takes it. By default
-            directly, and on JupyterHub through jupyter-server-proxy.
+            How the browser comes to the kernel: ``True`` for jupyter-server-proxy, its path such as
+            ``"/base/proxy"``, or ``False`` for directly. By default directly, and on JupyterHub
+            through jupyter-server-proxy.
 
         Raises
         ------

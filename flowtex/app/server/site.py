@@ -55,7 +55,16 @@ _log = logging.getLogger(__name__)
 
 
 class ServeError(RuntimeError):
-    """The page cannot be served; the text says why and what to do."""
+    """The page cannot be served; the text says why and what to do.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> from flowtex.app import serve
+    >>> serve(flowtex.examples.airfoil_field(), port=-1)
+    Traceback (most recent call last):
+    flowtex.app.server.site.ServeError: port is -1; expected 0 to 65535
+    """
 
 
 class Site:

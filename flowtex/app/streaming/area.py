@@ -62,6 +62,15 @@ class FlowArea(AppearanceAttributes):
     ------
     FieldError, SettingsError
         When the mesh or a setting does not fit.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> from flowtex.app import FlowArea
+    >>> from trame.app import get_server
+    >>> area = FlowArea(flowtex.examples.airfoil_field(), server=get_server("a page"), samples=9)
+    >>> area.compare({"lod": False})
+    >>> area.close()
     """
 
     def __init__(
@@ -112,13 +121,30 @@ class FlowArea(AppearanceAttributes):
         return element
 
     def show(self, field: FlowField, *, keep_view: bool = False, keep_range: bool = False) -> None:
-        """Show another flow with the same settings; :meth:`Viewport.show` has the parameters."""
+        """Show another flow with the same settings.
+
+        Parameters
+        ----------
+        field
+            The flow.
+        keep_view
+            Whether the camera stays where it is.
+        keep_range
+            Whether the ends of the colour map that were chosen stay, and the time that is shown.
+        """
         self.viewport.show(field, keep_view=keep_view, keep_range=keep_range)
         self._watch()
         self.stream.changed()
 
     def compare(self, changes: dict[str, Any] | None) -> None:
-        """Show a second pane, or one again; :meth:`Viewport.compare` has the parameters."""
+        """Show a second pane that differs, or one pane again for ``None``.
+
+        Parameters
+        ----------
+        changes
+            Settings, and of ``scalars``, ``time`` and ``field``: what the second pane is coloured
+            by, the time that it shows, and another flow.
+        """
         at_home = self.viewport.at_home
         self.viewport.compare(changes)
         if at_home:  # a pane is half as wide as the whole view

@@ -26,6 +26,7 @@ __all__ = [
     "Section",
     "axis_kind",
     "axis_values",
+    "drawn_steps",
     "horizontal_dims",
     "seconds_in",
     "sections",
@@ -178,6 +179,32 @@ def sections(arrays: list[xr.DataArray], choice: Choice) -> list[Section]:
     if times is None:
         times = _time_beside(arrays[0])
     return [Section(array, times, tuple(notes), level, numbers) for array in done]
+
+
+def drawn_steps(section: Section, array: xr.DataArray) -> tuple[Any, list[int]]:
+    """Return dates or seconds of the steps that are drawn, and their numbers in the section.
+
+    ``array`` is the variable before anything was chosen of it.
+    """
+    times = section.times
+    count = section.array.shape[0] if section.is_series else 1
+    numbers = list(range(count))
+    if times is None:
+        return None, numbers[:1]
+    times = np.asarray(times)
+    if times.dtype.kind in "fiu":
+        coordinate = array.coords.get(section.array.dims[0]) if section.is_series else None
+        unit = "" if coordinate is None else str(coordinate.attrs.get("units", ""))
+        seconds = seconds_in(unit)
+        if seconds is None:
+            return None, numbers[:1]
+        times = times * seconds
+    if count > 1:
+        order = np.argsort(times, kind="stable")
+        times = times[order]
+        keep = np.concatenate([[True], times[1:] > times[:-1]])
+        return times[keep], [int(n) for n in order[keep]]
+    return times, numbers
 
 
 def axis_values(array: xr.DataArray) -> dict[str, tuple[str, ...]]:

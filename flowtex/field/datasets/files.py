@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
+from importlib.util import find_spec
 from itertools import takewhile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -126,6 +127,9 @@ def _joined(datasets: list[Any], paths: Sequence[Path]) -> Any:
             ds.assign_coords({name: [d]}) if name in ds.dims else ds
             for ds, d in zip(datasets, dates, strict=True)
         ]
+    if find_spec("dask") is not None:
+        # Else all that is joined is read at once.
+        datasets = [ds.chunk() for ds in datasets]
     try:
         return xarray.concat(
             datasets,

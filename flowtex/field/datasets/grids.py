@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from flowtex._util.array_types import Bools, Floats
+from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError
 from flowtex.field.datasets.axes import horizontal_dims
 from flowtex.field.datasets.pairs import Pair
@@ -126,7 +126,11 @@ def _nemo_places(pair: Pair, cells: tuple[str, str], datasets: Sequence[Any]) ->
         return None
     if not at_u.is_earth or pair.along == "earth":
         return None
-    if not np.allclose(at_u.a, at_v.a, atol=1e-6, equal_nan=True):
+    if at_u.is_line and at_v.is_line:
+        same = np.allclose(at_u.a[0], at_v.a[0], atol=1e-6, equal_nan=True)
+    else:
+        same = np.allclose(at_u.a, at_v.a, atol=1e-6, equal_nan=True)
+    if not same:
         return _moved(at_u, Sides(-1, at_u.a.shape[1], at_u.a.shape[1]))
     return at_u if pair.u.name == "vozocrtx" else None
 
@@ -174,17 +178,15 @@ def unrepeated(places: Places) -> tuple[slice, slice]:
     return slice(0, max(top, 2)), slice(0, last)
 
 
-def sea_mask(
-    shape: tuple[int, ...], dims: tuple[str, str], datasets: Sequence[Any]
-) -> Bools | None:
-    """Return where a mask says that there is data, (J, I)."""
+def sea_mask(shape: tuple[int, ...], datasets: Sequence[Any]) -> Any:
+    """Return a variable that is positive where there is data, (J, I); ``None`` without one."""
     for ds in datasets:
         for name in MASKS:
             if name in ds.variables:
                 mask = ds[name]
                 mask = mask.isel({d: 0 for d in mask.dims[:-2]})
                 if mask.shape == tuple(shape):
-                    return np.asarray(mask.values) > 0
+                    return mask
     return None
 
 

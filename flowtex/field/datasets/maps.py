@@ -7,11 +7,21 @@ from typing import Any
 
 import numpy as np
 
-from flowtex._util.array_types import Floats
+from flowtex._util.array_types import Floats, Indices
 from flowtex.earth import GLOBE, Projection
 from flowtex.field.datasets.places import Places
 
-__all__ = ["TORN", "MapNodes", "on_map", "projection_of", "shown_positions"]
+__all__ = [
+    "CYLINDERS",
+    "TORN",
+    "MapLines",
+    "MapNodes",
+    "lines_on_map",
+    "on_map",
+    "projection_of",
+    "shown_positions",
+    "shown_rows",
+]
 
 #: The flat map that is drawn where none is chosen, and those on which an axis that goes around the
 #: Earth goes on at the other side, a map further.
@@ -23,6 +33,10 @@ LATITUDES = {"mercator": (-85.0, 85.0), "north": (0.0, 90.0), "south": (-90.0, 0
 POLAR = 66.0
 #: Longitudes from here on are all around the Earth.
 AROUND = 359.0
+#: Columns this near to a turn further than the first, in cells, are that one again.
+SAME_LINE = 0.01
+#: On a globe so many columns close around it, where the gap is no wider than this many cells.
+LEAST_RING, MOST_GAP = 8, 1.5
 #: Where a map is larger by this factor than it mostly is, it ends.
 LARGEST = 4.0
 #: Edges between nodes are torn where they are longer by this factor than on the Earth.
@@ -34,7 +48,8 @@ class MapNodes:
     """Nodes on a map.
 
     ``points`` are (J, I, 3), ``lines`` is the index that takes an array of the grid (J, I) to the
-    order of the map, ``periodic`` the argument of :meth:`FlowField.from_arrays`.
+    order of the map, ``periodic`` the argument of :meth:`FlowField.from_arrays`; ``lon`` and
+    ``lat`` tell where vectors point.
     """
 
     projection: Projection
@@ -49,35 +64,82 @@ class MapNodes:
         return self.projection.vectors(self.lon, self.lat, east, north)
 
 
+@dataclass(frozen=True, eq=False)
+class MapLines:
+    """Lines of longitude (I,) and latitude (J,) in the order of a map.
+
+    ``shown`` is the former where the map has it, such as a turn further at its end. ``columns``
+    numbers it in the data, and ``periodic`` is as in :class:`MapNodes`.
+    """
+
+    lon: Floats
+    shown: Floats
+    lat: Floats
+    columns: Indices
+    periodic: str | None
+
+
 def on_map(places: Places, name: str | None) -> MapNodes:
     """Put nodes on a map, by its name; by default a flat one that suits the region."""
-    lon, lat = places.a, places.b
-    columns = np.arange(lon.shape[1])
     projection, around = projection_of(places, name)
-    name, center = projection.name, projection.center
-    if name == GLOBE:
-        return MapNodes(
-            projection, projection.positions(lon, lat), (slice(None), columns), None, lon, lat
-        )
-    periodic: str | None = ""
-    lon = center[0] + (lon - center[0] + 180.0) % 360.0 - 180.0
+    name, lon, lat = projection.name, places.a, places.b
+    columns, periodic = np.arange(lon.shape[1]), None if projection.is_globe else ""
     if places.is_line:
-        columns = np.argsort(lon[0], kind="stable")
-        lon = lon[:, columns]
-        if around:
-            # The last column is the first one again, a turn further.
-            if lon[0, -1] - lon[0, 0] < 360.0 - 1e-3:
-                columns = np.append(columns, columns[0])
-                lon = np.concatenate([lon, lon[:, :1] + 360.0], axis=1)
-            periodic = "i" if name in CYLINDERS else None if name in ("north", "south") else ""
-    lat = lat[:, columns]
-    points = shown_positions(projection, lon, lat)
+        lines = lines_on_map(places, projection, around=around)
+        lon, shown, lat = np.broadcast_arrays(lines.lon, lines.shown, lines.lat[:, None])
+        columns, periodic = lines.columns, lines.periodic
+    else:
+        shown = lon = lon if projection.is_globe else _around_middle(lon, projection)
+    if projection.is_globe:
+        points = projection.positions(shown, lat)
+        return MapNodes(projection, points, (slice(None), columns), periodic, lon, lat)
+    points = shown_positions(projection, shown, lat)
     if not places.is_line or name not in (*CYLINDERS, "north", "south"):
-        points[_torn(points, lon, lat)] = np.nan
-    rows = np.asarray(np.isfinite(points[..., 0]).any(axis=1))
-    first, last = np.flatnonzero(rows)[[0, -1]] if rows.any() else (0, len(rows) - 1)
-    kept = slice(int(first), int(last) + 1)
+        points[_torn(points, shown, lat)] = np.nan
+    kept = shown_rows(points)
     return MapNodes(projection, points[kept], (kept, columns), periodic, lon[kept], lat[kept])
+
+
+def lines_on_map(places: Places, projection: Projection, *, around: bool) -> MapLines:
+    """Return the lines of places in the order of a map.
+
+    On one that goes around the Earth the last column is the first one again, a turn further; data
+    may have it already.
+    """
+    lon, lat = places.lines
+    turn = np.abs(lon - lon[0])
+    step = float(np.median(np.diff(turn))) if len(turn) > 1 else 0.0
+    columns = np.flatnonzero(~(turn > 360.0 - SAME_LINE * step))
+    lon = lon[columns]
+    if projection.is_globe:
+        ends = turn[columns]
+        widest = max(ends[1] - ends[0], ends[-1] - ends[-2]) if len(ends) >= LEAST_RING else 0.0
+        if not 0 < 360.0 - ends[-1] <= MOST_GAP * widest:
+            return MapLines(lon, lon, lat, columns, "")
+        lon = np.append(lon, lon[0])
+        return MapLines(lon, lon, lat, np.append(columns, columns[0]), "i")
+    lon = _around_middle(lon, projection)
+    order = np.argsort(lon, kind="stable")
+    lon, columns = lon[order], columns[order]
+    if not around:
+        return MapLines(lon, lon, lat, columns, "")
+    shown = np.append(lon, lon[0] + 360.0)
+    lon, columns = np.append(lon, lon[0]), np.append(columns, columns[0])
+    name = projection.name
+    periodic = "i" if name in CYLINDERS else None if name in ("north", "south") else ""
+    return MapLines(lon, shown, lat, columns, periodic)
+
+
+def _around_middle(lon: Floats, projection: Projection) -> Floats:
+    """Return longitudes within half a turn of the middle of a map."""
+    middle = projection.center[0]
+    return np.asarray(middle + (lon - middle + 180.0) % 360.0 - 180.0)
+
+
+def shown_rows(points: Floats) -> slice:
+    """Return the rows of nodes (J, I, 3) on a map that it shows, from the first to the last."""
+    rows = np.flatnonzero(np.isfinite(points[..., 0]).any(axis=1))
+    return slice(int(rows[0]), int(rows[-1]) + 1) if len(rows) else slice(0, len(points))
 
 
 def projection_of(places: Places, name: str | None) -> tuple[Projection, bool]:
@@ -87,9 +149,10 @@ def projection_of(places: Places, name: str | None) -> tuple[Projection, bool]:
     """
     if name == GLOBE:
         return Projection(GLOBE), False
-    middle, span = _middle(places.a)
+    lon, lat = places.lines if places.is_line else (places.a, places.b)
+    middle, span = _middle(lon)
     around = span >= AROUND
-    low, high = float(np.nanmin(places.b)), float(np.nanmax(places.b))
+    low, high = float(np.nanmin(lat)), float(np.nanmax(lat))
     center = (0.0 if around else middle, 0.0 if around else (low + high) / 2)
     if name is None:
         polar = not around or not places.is_line

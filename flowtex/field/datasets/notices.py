@@ -8,7 +8,17 @@ __all__ = ["DatasetNotice", "notify"]
 
 
 class DatasetNotice(notices.Notice):
-    """Something of a dataset was chosen without being asked for."""
+    """Something of a dataset was chosen without being asked for.
+
+    Examples
+    --------
+    >>> import warnings
+    >>> import flowtex
+    >>> from flowtex.field.datasets.notices import DatasetNotice
+    >>> with warnings.catch_warnings():
+    ...     warnings.simplefilter("ignore", DatasetNotice)
+    ...     field = flowtex.FlowField.from_xarray(flowtex.examples.weather())
+    """
 
 
 def notify(text: str) -> None:

@@ -40,8 +40,8 @@ class Places:
     """Positions of nodes, (J, I) each.
 
     ``a`` and ``b`` are longitude and latitude in degrees where ``is_earth``, else x and y in units
-    of ``unit``. ``is_line`` tells that a follows from the column alone and b from the row, and
-    ``why`` names the coordinates.
+    of ``unit``. ``is_line`` tells that a follows from the column alone and b from the row; both are
+    then views of two lines, :attr:`lines`, that take no room. ``why`` names the coordinates.
     """
 
     a: Floats
@@ -50,6 +50,11 @@ class Places:
     is_line: bool
     why: str
     unit: str = ""
+
+    @property
+    def lines(self) -> tuple[Floats, Floats]:
+        """What a is in each column, (I,), and b in each row, (J,), where these are lines."""
+        return self.a[0], self.b[:, 0]
 
 
 def find_places(
@@ -78,12 +83,11 @@ def find_places(
             continue
         if not _is_lonlat(a, b, lon, lat):
             continue
-        nowhere = (a == 0) & (b == 0)
+        nowhere = (a == 0) & (b == 0) if lon.ndim > 1 else np.False_
         if nowhere.sum() > 1:  # as where a model leaves out land
             a, b = np.where(nowhere, np.nan, a), np.where(nowhere, np.nan, b)
         return Places(
-            _longitudes(a, str(lon.name)),
-            b,
+            *_over_nodes(_longitudes(a, str(lon.name)), b),
             is_earth=True,
             is_line=lon.ndim == 1,
             why=f"{lon.name} and {lat.name}",
@@ -157,7 +161,10 @@ def _partner(name: str) -> set[str]:
 def _spread(
     a: Any, b: Any, dims: tuple[str, ...], shape: tuple[int, ...]
 ) -> tuple[Floats | None, Floats | None]:
-    """Return two coordinates at all nodes, or nothing where they belong to other nodes."""
+    """Return two coordinates at all nodes, or nothing where they belong to other nodes.
+
+    Lines are (1, I) and (J, 1).
+    """
     if a.ndim == 1 and b.ndim == 1:
         if a.dims == b.dims:
             msg = (
@@ -168,8 +175,7 @@ def _spread(
             raise FieldError(msg)
         if a.dims != (dims[1],) or b.dims != (dims[0],):
             return None, None
-        x, y = np.meshgrid(_numbers(a), _numbers(b))
-        return x, y
+        return _numbers(a)[None], _numbers(b)[:, None]
     flat = []
     for c in (a, b):
         # Some files repeat them for every time.
@@ -207,8 +213,10 @@ def _is_lonlat(a: Floats, b: Floats, lon: Any, lat: Any) -> bool:
     with np.errstate(invalid="ignore"):
         far = np.nanmax(np.abs(b), initial=0.0)
         wide = np.nanmax(np.abs(a), initial=0.0)
-    known = np.isfinite(a) & np.isfinite(b)
-    if not known.any():
+    # Of lines one is known where the other one is.
+    finite = np.isfinite(a), np.isfinite(b)
+    known = (finite[0] & finite[1]).any() if lon.ndim > 1 else finite[0].any() and finite[1].any()
+    if not known:
         msg = f"{lon.name} and {lat.name} are NaN everywhere, so nothing has a place"
         raise FieldError(msg)
     if far > 90.001 or wide > 720:
@@ -243,6 +251,12 @@ def _longitudes(lon: Floats, name: str) -> Floats:
     return np.broadcast_to(line, lon.shape)
 
 
+def _over_nodes(a: Floats, b: Floats) -> tuple[Floats, Floats]:
+    """Return coordinates (J, I), of lines (1, I) and (J, 1) as views of these."""
+    shape = np.broadcast_shapes(a.shape, b.shape)
+    return np.broadcast_to(a, shape), np.broadcast_to(b, shape)
+
+
 def _plane(
     array: xr.DataArray, x: Any, y: Any, a: Floats, b: Floats, datasets: Sequence[xr.Dataset]
 ) -> Places:
@@ -251,6 +265,7 @@ def _plane(
     why = f"{x.name} and {y.name}"
     crs = _mapping(array, datasets)
     if crs is not None:
+        a, b = _over_nodes(a, b)
         pyproj = import_extra("pyproj", "xarray")
         known = pyproj.CRS.from_cf(crs)
         geodetic = pyproj.CRS.from_user_input(known.geodetic_crs or 4326)
@@ -268,7 +283,8 @@ def _plane(
         return Places(*places, is_earth=True, is_line=False, why=words)
     unit = "m" if units[0].lower() in LENGTHS else units[0]
     factor = LENGTHS.get(units[0].lower(), 1.0)
-    return Places(a * factor, b * factor, is_earth=False, is_line=x.ndim == 1, why=why, unit=unit)
+    places = _over_nodes(a * factor, b * factor)
+    return Places(*places, is_earth=False, is_line=x.ndim == 1, why=why, unit=unit)
 
 
 def _mapping(array: xr.DataArray, datasets: Sequence[xr.Dataset]) -> dict[str, Any] | None:

@@ -9,8 +9,8 @@ import re
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache, partial
-from typing import TYPE_CHECKING, Any, TypeVar
+from functools import cache, lru_cache, partial
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, cast
 
 import numpy as np
 
@@ -25,8 +25,8 @@ from flowtex.field.datasets.axes import (
     Choice,
     Section,
     axis_kind,
+    drawn_steps,
     horizontal_dims,
-    seconds_in,
     sections,
     way_ahead,
 )
@@ -41,7 +41,9 @@ from flowtex.field.datasets.meshes.preparation import with_mesh_axes
 from flowtex.field.datasets.notices import notify
 from flowtex.field.datasets.pairs import Pair, choose_pair, to_metres_per_second
 from flowtex.field.datasets.places import LATITUDE, LONGITUDE, Places
+from flowtex.field.datasets.regions import Regions, Words, numbers_in, region_lines
 from flowtex.field.datasets.staggered import centred
+from flowtex.field.dates import as_seconds
 from flowtex.field.steps import LazySteps
 
 if TYPE_CHECKING:
@@ -90,6 +92,10 @@ class Recognised:
         Sentences about what was chosen without being asked for.
     level
         Words for the level; empty where there is none.
+    factor
+        What makes the components m/s.
+    mask
+        A variable that is positive where there is data; ``None`` without one.
     """
 
     pair: Pair
@@ -105,6 +111,8 @@ class Recognised:
     v: Section
     steps: Callable[[int], tuple[Floats, Floats]]
     cells: tuple[str, ...]
+    factor: float = 1.0
+    mask: Any = None
     kept: tuple[slice, ...] = ()
     trimmed: tuple[slice, ...] = ()
     mesh: Mesh | None = None
@@ -132,7 +140,11 @@ def field_of(
     sel: Mapping[str, Any] | None = None,
     isel: Mapping[str, Any] | None = None,
 ) -> F:
-    """Make a field, as :meth:`FlowField.from_xarray` does; ``make`` is the class."""
+    """Make a field, as :meth:`FlowField.from_xarray` does; ``make`` is the class.
+
+    One that has ``from_regions`` gets no nodes where any part of them can be read by itself, but
+    :class:`Regions`.
+    """
     known = recognise(data, u, v, sel=sel, isel=isel)
     for note in known.notes:
         notify(note)
@@ -143,12 +155,16 @@ def field_of(
             "no longitude and latitude; leave it out"
         )
         raise FieldError(msg)
-    times, numbers = _times(known)
+    times, numbers = drawn_steps(known.u, known.pair.u)
     scalars = _scalars(known, as_datasets(data), Choice(dict(sel or {}), dict(isel or {})))
     name = ", ".join(filter(None, (name, known.level)))
     if known.mesh is not None:
         on_mesh: F = _mesh_field(make, known, known.mesh, scalars, times, numbers, projection, name)
         return on_mesh
+    if make.from_regions is not None:  # type: ignore[attr-defined]
+        regions = _regions(known, scalars, times, numbers, projection, name)
+        if regions is not None:
+            return cast("F", make.from_regions(regions))  # type: ignore[attr-defined]
     if not places.is_earth:
         points = np.stack([places.a, places.b], axis=-1)
 
@@ -181,8 +197,8 @@ def field_of(
     first = velocity(numbers[0])
     base = make.from_arrays(points, first, name=name, **options)  # type: ignore[attr-defined]
     extra: dict[str, Callable[[int], Floats]] = {}
-    for key, (read, _) in scalars.items():
-        extra[key] = partial(on_lines, read)
+    for key, scalar in scalars.items():
+        extra[key] = partial(on_lines, scalar.read)
     words = _words(scalars)
     if speeds:
         extra["speed"] = speed
@@ -191,11 +207,47 @@ def field_of(
     return field
 
 
+def _regions(
+    known: Recognised,
+    scalars: Mapping[str, _Scalar],
+    times: Any,
+    numbers: list[int],
+    projection: str | None,
+    name: str,
+) -> Regions | None:
+    """Return what reads a dataset by regions; ``None`` where it has to be read as a whole."""
+    lines = None if known.staggered else region_lines(known.places, projection)
+    if lines is None or min(lines.shape) < 2:
+        return None
+    on_earth = lines.projection is not None
+    seconds, _, start = as_seconds(times, "s" if times is None else "")
+    words = _words(scalars)
+    others = {key: scalar.section.array.variable for key, scalar in scalars.items()}
+    if lines.projection is not None and not lines.projection.is_globe:
+        others.pop("speed", None)
+        words["units"]["speed"] = "m/s"
+    return Regions(
+        Words(
+            name,
+            "m" if on_earth else known.places.unit,
+            np.zeros(1) if seconds is None else np.asarray(seconds, dtype=float),
+            start,
+            **words,
+        ),
+        lines,
+        (known.u.array.variable, known.v.array.variable),
+        known.factor,
+        None if known.mask is None else known.mask.variable,
+        others,
+        tuple(numbers),
+    )
+
+
 def _mesh_field(
     make: Any,
     known: Recognised,
     mesh: Mesh,
-    scalars: Mapping[str, tuple[Callable[[int], Floats], Any]],
+    scalars: Mapping[str, _Scalar],
     times: Any,
     numbers: list[int],
     projection: str | None,
@@ -234,7 +286,7 @@ def _mesh_field(
         return np.asarray(np.hypot(*map(at, known.steps(numbers[number]))))
 
     data: dict[str, Callable[[int], Floats]] = {
-        key: partial(value, reader) for key, (reader, _) in scalars.items()
+        key: partial(value, scalar.read) for key, scalar in scalars.items()
     }
     if has_speed:
         data["speed"] = speed
@@ -259,9 +311,9 @@ def _in_plane(u: Floats, v: Floats) -> Floats:
     return np.stack([u, v, np.zeros_like(u)], axis=-1)
 
 
-def _words(scalars: Mapping[str, tuple[Any, Any]]) -> dict[str, dict[str, str]]:
+def _words(scalars: Mapping[str, _Scalar]) -> dict[str, dict[str, str]]:
     """Return units, and long names for which there is room, of variables."""
-    attributes = {key: attrs for key, (_, attrs) in scalars.items()}
+    attributes = {key: scalar.attributes for key, scalar in scalars.items()}
     words = {
         ours: {key: str(a[theirs]) for key, a in attributes.items() if a.get(theirs)}
         for ours, theirs in (("units", "units"), ("long_names", "long_name"))
@@ -309,9 +361,14 @@ def recognise(
         sides[0].known if sides[0] else slice(None),
         sides[1].known if sides[1] else slice(None),
     )
-    mask = sea_mask(places.a.shape, (rows[0], columns[1]), datasets)
+    mask = sea_mask(places.a.shape, datasets)
     places = replace(places, a=places.a[kept], b=places.b[kept])
     mask = None if mask is None else mask[kept]
+
+    @cache
+    def wet() -> Bools:
+        return np.asarray(np.asarray(mask) > 0)
+
     trimmed = unrepeated(places)
     places = replace(places, a=places.a[trimmed], b=places.b[trimmed])
     staggered = sides[0] is not None or sides[1] is not None
@@ -322,7 +379,7 @@ def recognise(
     def steps(number: int) -> tuple[Floats, Floats]:
         parts = []
         for section, side, axis in ((one, sides[1], 1), (two, sides[0], 0)):
-            values = _values(section, number) * factor
+            values = numbers_in(section.step(number)) * factor
             other = sides[0] if axis == 1 else sides[1]
             if side is not None:
                 values = centred(values, axis, side)
@@ -340,7 +397,7 @@ def recognise(
                 land.append(still if still.mean() > LAND_SHARE else np.zeros_like(still))
             a, b = (np.where(land[0], np.nan, p) for p in (a, b))
         if mask is not None:
-            a, b = (np.where(mask, p, np.nan) for p in (a, b))
+            a, b = (np.where(wet(), p, np.nan) for p in (a, b))
         return a[trimmed], b[trimmed]
 
     grid = f"{words}, {'rows and columns' if places.is_line else 'curvilinear'}"
@@ -358,6 +415,8 @@ def recognise(
         v=two,
         steps=lru_cache(MOST_READ)(steps),
         cells=(rows[0], columns[1]),
+        factor=factor,
+        mask=mask,
         kept=kept,
         trimmed=trimmed,
     )
@@ -386,7 +445,7 @@ def _on_mesh(
     wet = wet_at(one, dim, datasets, choice)
 
     def steps(number: int) -> tuple[Floats, Floats]:
-        u, v = (_values(section, number) * factor for section in sections)
+        u, v = (numbers_in(section.step(number)) * factor for section in sections)
         there = np.isfinite(u) & np.isfinite(v)
         if wet is not None:
             there &= wet(number)
@@ -435,47 +494,17 @@ def as_datasets(data: Any) -> list[Any]:
     return with_mesh_axes(result)
 
 
-def _values(section: Section, number: int) -> Floats:
-    """Read one step of a component, (J, I); what stands for missing data is NaN."""
-    array = section.step(number)
-    values = np.asarray(array.values)
-    if values.dtype.kind not in "fiu":
-        msg = f"{array.name!r} holds {values.dtype}; expected numbers"
-        raise FieldError(msg)
-    values = values.astype(float)
-    # Fill values that no attribute tells.
-    values[np.abs(values) > 1e15] = np.nan
-    return values
+class _Scalar(NamedTuple):
+    """A variable that lies at the nodes, what reads a step of it, and its attributes."""
+
+    section: Section
+    read: Callable[[int], Floats]
+    attributes: Mapping[str, Any]
 
 
-def _times(known: Recognised) -> tuple[Any, list[int]]:
-    """Return dates or seconds of the steps that are drawn, and their numbers in the section."""
-    times = known.u.times
-    count = known.u.array.shape[0] if known.u.is_series else 1
-    numbers = list(range(count))
-    if times is None:
-        return None, numbers[:1]
-    times = np.asarray(times)
-    if times.dtype.kind in "fiu":
-        coordinate = known.pair.u.coords.get(known.u.array.dims[0]) if known.u.is_series else None
-        unit = "" if coordinate is None else str(coordinate.attrs.get("units", ""))
-        seconds = seconds_in(unit)
-        if seconds is None:
-            return None, numbers[:1]
-        times = times * seconds
-    if count > 1:
-        order = np.argsort(times, kind="stable")
-        times = times[order]
-        keep = np.concatenate([[True], times[1:] > times[:-1]])
-        return times[keep], [int(n) for n in order[keep]]
-    return times, numbers
-
-
-def _scalars(
-    known: Recognised, datasets: Sequence[Any], choice: Choice
-) -> dict[str, tuple[Callable[[int], Floats], Any]]:
-    """Return readers and attributes of the other variables that lie at the nodes, by name."""
-    found: dict[str, tuple[Callable[[int], Floats], Any]] = {}
+def _scalars(known: Recognised, datasets: Sequence[Any], choice: Choice) -> dict[str, _Scalar]:
+    """Return the other variables that lie at the nodes, by name."""
+    found: dict[str, _Scalar] = {}
     used = (known.pair.u.name, known.pair.v.name)
     steps = known.u.array.shape[0] if known.u.is_series else 1
     # Dimensions of one name do not tell the sides of cells from their middle.
@@ -491,9 +520,9 @@ def _scalars(
             numbers = array.dtype.kind in "fiu" and not OF_GRIDS.match(str(name))
             of_mesh = alone and array.ndim == 1  # such as areas
             if name not in (*used, *found) and surface and numbers and not of_mesh:
-                read = _reader(known, array.transpose(..., *surface), steps, choice)
-                if read is not None:
-                    found[str(name)] = read, array.attrs
+                scalar = _scalar(known, array.transpose(..., *surface), steps, choice)
+                if scalar is not None:
+                    found[str(name)] = scalar
     return found
 
 
@@ -508,20 +537,24 @@ def _surface(known: Recognised, array: Any) -> tuple[str, ...]:
     return dims if plain and str(array.name) not in (*known.mesh.names, *WET) else ()
 
 
-def _reader(
-    known: Recognised, array: Any, steps: int, choice: Choice
-) -> Callable[[int], Floats] | None:
-    """Return what reads a step of a variable; ``None`` where it has no such steps or choice."""
+def _scalar(known: Recognised, array: Any, steps: int, choice: Choice) -> _Scalar | None:
+    """Return a variable as it is read; ``None`` where it has no such steps or choice."""
     try:
         (section,) = sections([array], choice)
     except FieldError:
         return None
     if section.is_series and section.array.shape[0] != steps:
         return None
-    if known.mesh is not None:
-        nodal = NodalValues(known.mesh, horizontal_dims(array)[0])
-        return lambda number: nodal.scalar(_values(section, number))
-    return lambda number: np.asarray(_values(section, number)[known.kept][known.trimmed])
+
+    def on_grid(number: int) -> Floats:
+        return np.asarray(numbers_in(section.step(number))[known.kept][known.trimmed])
+
+    if known.mesh is None:
+        return _Scalar(section, on_grid, array.attrs)
+    nodal = NodalValues(known.mesh, horizontal_dims(array)[0])
+    return _Scalar(
+        section, lambda number: nodal.scalar(numbers_in(section.step(number))), array.attrs
+    )
 
 
 def _with_steps(
@@ -534,8 +567,6 @@ def _with_steps(
     words: Mapping[str, Mapping[str, str]],
 ) -> Any:
     """Return a field with all its steps, read as they are needed, and closed as its first one."""
-    from flowtex.field.dates import as_seconds
-
     more = [n - m for n, m in zip(base.shape, first.shape[:2], strict=True)]
 
     def closed(values: Floats) -> Floats:

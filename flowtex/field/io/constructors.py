@@ -26,6 +26,8 @@ class FieldConstructors:
     #: Those of arrays, which the field itself has.
     from_arrays: Any
     from_triangles: Any
+    #: Takes a dataset of which any region can be read alone, where its nodes are not to be read.
+    from_regions: Any = None
 
     @classmethod
     def from_pyvista(
@@ -105,6 +107,18 @@ class FieldConstructors:
         Hidden are points and cells that VTK's ghost arrays hide, points with ``IBlank`` 0
         (PLOT3D), and points that a sampling filter marked in ``vtkValidPointMask``. The mesh is
         not changed.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import pyvista as pv
+        >>> import flowtex
+        >>> box = pv.ImageData(dimensions=(12, 10, 8))
+        >>> box["wind"] = np.stack(
+        ...     [box.points[:, 1], -box.points[:, 0], 0 * box.points[:, 2]], axis=-1
+        ... )
+        >>> flowtex.FlowField.from_pyvista(box, plane="k=4").shape
+        (10, 12)
         """
         from flowtex.field.io.from_pyvista import read_meshes
 
@@ -180,6 +194,13 @@ class FieldConstructors:
         FieldError
             When the file is missing, empty, not readable, of an unknown or broken format, or does
             not hold a flow; the text starts with the path.
+
+        Examples
+        --------
+        >>> import flowtex
+        >>> flowtex.examples.airfoil().save("airfoil.vts")
+        >>> flowtex.FlowField.from_file("airfoil.vts").shape
+        (65, 193)
         """
         from flowtex.field.io.file_fields import field_of_file
 
@@ -248,6 +269,13 @@ class FieldConstructors:
         -----
         DatasetNotice
             When something was chosen without being asked for, such as a level.
+
+        Examples
+        --------
+        >>> import flowtex
+        >>> winds = flowtex.examples.weather()
+        >>> flowtex.FlowField.from_xarray(winds, level=500, projection="robinson").steady
+        True
         """
         from flowtex.field.datasets.read import field_of
 

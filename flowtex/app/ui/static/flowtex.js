@@ -75,11 +75,13 @@ join()).join(" ");function arrowHeads(line,apart=HEAD.apart){let heads=[],due=0;
 ay],[bx,by]]=[line[n-1],line[n]],size=Math.hypot(bx-ax,by-ay);if(!size)continue;let[ux,uy]=[(bx-ax)/size,(by-ay)/size];for(;due<
 size;due+=apart){let[x,y]=[bx-due*ux,by-due*uy],[left,low]=[x-HEAD.length*ux,y-HEAD.length*uy],[wide,tall]=[-HEAD.half*uy,
 HEAD.half*ux];heads.push([[x,y],[left+wide,low+tall],[left-wide,low-tall]])}due-=size}return heads}function pathShapes({
-path:path2,sampled,point,directed}){let lines=(all,kind)=>all.map(line=>["polyline",{class:kind,points:textOf(line)}]),isFree=([
-[x,y]])=>!point||Math.hypot(x-point[0],y-point[1])>FREE_RADIUS,heads=directed?path2.flatMap(line=>arrowHeads(line)).filter(
-isFree):[],ring=kind=>point?[["circle",{class:kind,cx:point[0],cy:point[1],r:POINT_RADIUS}]]:[];return[...lines(path2,"w\
-hole-casing"),...lines(path2,"whole"),...lines(sampled,"casing"),...lines(sampled,"sampled"),...heads.map(head=>["polygo\
-n",{class:"arrow",points:textOf(head)}]),...ring("point-casing"),...ring("point")]}var INSET={width:232,height:112,margin:9},DOT={least:1.5,most:4.5},POINT_RADIUS2=6;function polyline(line,kind,mapping){
+path:path2,sampled,point,directed,dots=[]}){let lines=(all,kind)=>all.map(line=>["polyline",{class:kind,points:textOf(line)}]),
+isFree=([[x,y]])=>!point||Math.hypot(x-point[0],y-point[1])>FREE_RADIUS,heads=directed?path2.flatMap(line=>arrowHeads(line)).
+filter(isFree):[],ring=kind=>point?[["circle",{class:kind,cx:point[0],cy:point[1],r:POINT_RADIUS}]]:[];return[...lines(path2,
+"whole-casing"),...lines(path2,"whole"),...lines(sampled,"casing"),...lines(sampled,"sampled"),...heads.map(head=>["poly\
+gon",{class:"arrow",points:textOf(head)}]),...dots.map(({place:[cx,cy],radius,grey})=>{let fill=`rgb(${[grey,grey,grey].
+map(x=>Math.round(255*x)).join()})`;return["circle",{class:"dot",cx,cy,r:radius,fill}]}),...ring("point-casing"),...ring(
+"point")]}var INSET={width:232,height:112,margin:9},DOT={least:1.5,most:4.5},POINT_RADIUS2=6;function polyline(line,kind,mapping){
 let points=line.map(place=>mapping(place).map(v=>v.toFixed(1)).join(",")).join(" ");return vue().h("polyline",{class:kind,
 points})}function circle([cx,cy],r,attributes){return vue().h("circle",{cx,cy,r,...attributes})}function pane(over,number,width,height){
 let{h}=vue(),mapping=([x,y])=>[(number+(x+1)/2)*width,(1-y)/2*height],lines=all=>all.map(line=>line.map(mapping)),{path:whole,

@@ -1,0 +1,148 @@
+// Views among the text of a page, such as a documentation: one client for all of them. A view is an
+// element of the class "flowtex-live" with a still picture in it; its scene, a script beside the page,
+// is loaded when the element comes into sight, and given up again when it is far from it. With
+// "data-plays" it streams, and "data-label" is what it is called by those who do not see it.
+
+import { Explanation } from "./explanation.ts";
+import { partOfText, type Header, type NamedPart, type PartInfo } from "./protocol.ts";
+import type { Viewer } from "./viewer.ts";
+import { mountPage, type SceneData } from "./views.ts";
+
+/** A scene as its script hands it over; equal parts have their text once. */
+interface Packed {
+  /** Of a second header there is what differs from the first. */
+  headers: Header[];
+  parts: [view: number, info: PartInfo, text: string][];
+}
+
+/** Heights of the window that a view may be away before it is given up. */
+const KEPT_HEIGHTS = 2;
+
+/** What is around a view that is explained. */
+const EXPLAINED = ".flowtex-explained";
+
+const scenes = new Map<string, (scene: Packed) => void>();
+
+declare global {
+  interface Window {
+    flowtexScene?: (name: string, scene: Packed) => void;
+  }
+}
+
+window.flowtexScene = (name, scene) => scenes.get(name)?.(scene);
+
+/** Run the script of a scene. A script, as pages that lie in a folder may not fetch files. */
+function fetchScene(element: HTMLElement): Promise<Packed> {
+  const { scene: address = "" } = element.dataset;
+  const name = address.replace(/^.*\//, "").replace(/\.js$/, "");
+  return new Promise((resolve, reject) => {
+    const script = document.createElement("script");
+    scenes.set(name, resolve);
+    script.src = address;
+    script.onload = () => script.remove();
+    script.onerror = () => reject(new Error(`${address} cannot be loaded`));
+    document.head.append(script);
+  });
+}
+
+async function unpacked({ headers, parts }: Packed): Promise<SceneData[]> {
+  const known = new Map<string, NamedPart>();
+  const result: SceneData[] = headers.map((header) => ({
+    header: { ...headers[0], ...header },
+    parts: [],
+  }));
+  for (const [view, info, text] of parts) {
+    const part = known.get(info.digest) ?? (await partOfText(info, text));
+    known.set(info.digest, part);
+    result[view].parts.push({ ...part, name: info.name });
+  }
+  return result;
+}
+
+/** Colour of the page around an element, from 0 to 1. */
+function groundAround(element: HTMLElement): number[] {
+  for (let at: HTMLElement | null = element.parentElement; at; at = at.parentElement) {
+    const [r, g, b, a = 1] = (getComputedStyle(at).backgroundColor.match(/[\d.]+/g) ?? []).map(Number);
+    if (a > 0) return [r / 255, g / 255, b / 255];
+  }
+  return [1, 1, 1];
+}
+
+class LiveView {
+  private readonly element: HTMLElement;
+  private readonly explanation: Explanation | null;
+  private viewer: Viewer | null = null;
+  private isWanted = false;
+  private isLoading = false;
+
+  constructor(element: HTMLElement) {
+    this.element = element;
+    this.explanation = element.closest(EXPLAINED) && new Explanation(element);
+    const near = { rootMargin: `${100 * KEPT_HEIGHTS}% 0%` };
+    new IntersectionObserver(([entry]) => entry.isIntersecting && void this.show()).observe(element);
+    new IntersectionObserver(([entry]) => entry.isIntersecting || this.leave(), near).observe(element);
+  }
+
+  private async show(): Promise<void> {
+    this.isWanted = true;
+    if (this.viewer || this.isLoading) return;
+    this.isLoading = true;
+    const { element } = this;
+    try {
+      const data = await unpacked(await fetchScene(element));
+      if (!this.isWanted) return;
+      const ground = groundAround(element);
+      for (const { header } of data) header.background = ground;
+      const { explanation } = this;
+      const options = { guarded: true, label: element.dataset.label, ...explanation?.options };
+      this.viewer = mountPage(element, data, options);
+      explanation?.attach(this.viewer);
+      this.watch();
+    } catch (error) {
+      element.title = `This view is a picture only: ${error instanceof Error ? error.message : error}`;
+    } finally {
+      this.isLoading = false;
+    }
+  }
+
+  /** Take the still away once all is drawn, and let stream what is meant to. */
+  private watch(): void {
+    const { element } = this;
+    const look = () => {
+      if (element.querySelector('[data-sharp="false"]')) return;
+      seen.disconnect();
+      element.dataset.live = "true";
+      const isCalm = matchMedia("(prefers-reduced-motion: reduce)").matches;
+      if ("plays" in element.dataset && !isCalm) this.viewer?.play();
+    };
+    const seen = new MutationObserver(look);
+    seen.observe(element, { subtree: true, attributeFilter: ["data-sharp"] });
+  }
+
+  private leave(): void {
+    this.isWanted = false;
+    if (!this.viewer) return;
+    for (const viewer of this.viewer.together) viewer.dispose();
+    this.viewer = null;
+    delete this.element.dataset.live;
+    this.element.querySelector(".flowtex-pair")?.remove();
+  }
+
+  /** Follow the page from light to dark. */
+  recolour(): void {
+    const background = groundAround(this.element);
+    for (const viewer of this.viewer?.together ?? []) viewer.recolour({ background });
+  }
+}
+
+function begin(): void {
+  const elements = document.querySelectorAll<HTMLElement>(".flowtex-live");
+  const views = Array.from(elements, (element) => new LiveView(element));
+  const recolour = () => views.forEach((view) => view.recolour());
+  const attributeFilter = ["data-theme", "class"];
+  new MutationObserver(recolour).observe(document.documentElement, { attributeFilter });
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", recolour);
+}
+
+if (document.readyState === "loading") document.addEventListener("DOMContentLoaded", begin);
+else begin();

@@ -1,0 +1,163 @@
+// How the texture at a point comes about: its samples, their weights and noise, and the sum. It is
+// what shaders/common/texture.glsl does at the finest level of the slices, in double precision.
+
+import type { Camera } from "./camera.ts";
+import { constantsOf, noiseAround, type Constants } from "./noise.ts";
+import { grainAt, layersAt, mover, type PathPlace } from "./pointpath.ts";
+import type { Settings } from "./protocol.ts";
+import { isMoving, uniforms, type Uniform } from "./uniforms.ts";
+import { clamp, length, scale, subtract, toFrame, type Vector } from "./vectors.ts";
+
+/** One look-up of the noise. */
+export interface Sample {
+  position: Vector;
+  /** Share in the mean. */
+  weight: number;
+  /** Of mean zero and deviation one, and the same as it is drawn by itself, from 0 to 1. */
+  noise: number;
+  grey: number;
+}
+
+/** A point, and the picture that it is seen in, which is so many of the page's pixels high. */
+export interface PixelPlace {
+  at: PathPlace;
+  settings: Settings;
+  camera: Camera;
+  rows: number;
+}
+
+/** What flowtex/probe.py tells as well. */
+export interface PixelSum {
+  /** In the order in which the flow passes them. */
+  samples: Sample[];
+  /** Number of the sample at the point itself. */
+  middle: number;
+  /** Doublings of the grain above the one that is fixed on the surface. */
+  level: number;
+  /** Mean of the noise, and the factor that brings such means to the deviation one. */
+  mean: number;
+  gain: number;
+  grey: number;
+}
+
+type Uniforms = Record<string, Uniform>;
+
+interface Step {
+  displacement: Vector;
+  weight: number;
+}
+
+/** Weight at x from -1 to 1, negative behind the point. */
+function kernelAt(x: number, u: Uniforms, c: Constants): number {
+  if (u.u_kernel === c.KERNEL_BOX[0]) return 1;
+  if (u.u_kernel === c.KERNEL_RAMP[0]) return u.u_sides === 2 ? 0.5 * (1 - x) : 1 - Math.abs(x);
+  return 0.5 + 0.5 * Math.cos(Math.PI * x);
+}
+
+/** Samples of a side, from the point outward; `spacing` is that between two. */
+function sideSteps(
+  layers: (layer: number) => number[],
+  side: number,
+  spacing: number,
+  u: Uniforms,
+  c: Constants,
+): Step[] {
+  const lags = u.u_lags as number[];
+  const slope = (layer: number) => layers(layer).slice(0, 3) as Vector;
+  const by = layers(0)[3] * Number(u.u_unit);
+  const first = side * lags.length;
+  const end = Math.min(layers(first + 1)[3], lags[lags.length - 1]);
+  const sign = side ? 1 : -1;
+  const set = Number(u.u_samples);
+  const count = u.u_sides === 2 ? Math.floor(set / 2) : set - 1;
+  const stepAt = (along: Vector) => spacing / by / Math.max(length(along), c.LEAST_SPEED[0]);
+  let [before, after] = [slope(0), slope(first + 1)];
+  let [from, m] = [0, 0];
+  let [lag, step] = [0, stepAt(before)];
+  const result: Step[] = [];
+  for (let k = 1; k <= count; k += 1) {
+    lag += step;
+    const alive = clamp((end - lag) / step + 1, 0, 1);
+    if (!alive) break;
+    for (; lag > lags[m] && m < lags.length - 1; m += 1) {
+      [before, from] = [after, lags[m]];
+      after = slope(first + m + 2);
+    }
+    const bend = scale(subtract(after, before), 1 / (lags[m] - from));
+    const at = (lateness: number) => before.map((x, n) => x + bend[n] * lateness) as Vector;
+    const weight = alive * kernelAt((sign * k) / (count + 1), u, c);
+    result.push({ displacement: scale(at(lag - from), lag * sign * by), weight });
+    // Evenly spaced along the path where the particle is faster or slower there.
+    step = stepAt(at(2 * lag - from));
+  }
+  return result;
+}
+
+/** Variance of a sum over that of independent samples, for some a number of grains apart. */
+function shared(apart: number, near: number, c: Constants): number {
+  let total = 1;
+  for (let m = 1; m <= c.SHARED_TERMS[0]; m += 1) {
+    const d = m * m * apart * apart;
+    if (d > c.BELL_END[0]) break;
+    total += 2 * near ** (m * m) * Math.exp(-d * (c.BELL[0] + c.BELL_BEND[0] * d));
+  }
+  return total;
+}
+
+const total = (values: number[]) => values.reduce((sum, value) => sum + value, 0);
+
+/** Grey of a value of the texture, from 0 to 1. */
+function greyOf(value: number, contrast: number, c: Constants): number {
+  return 1 / (1 + Math.exp(-c.TONE_SLOPE[0] * contrast * value));
+}
+
+/** The sum at a point; null where the noise is that of a texture or moves. */
+export function pixelSum({ at, settings, camera, rows }: PixelPlace): PixelSum | null {
+  const { header } = at.scene;
+  const { geometry, slices, shaders } = header;
+  if (header.paper || isMoving(header, settings)) return null;
+  const c = constantsOf(shaders.fragment);
+  const focus = camera.state.focal_point;
+  const still = { eye: camera.eye, between: at.moment[2], time: slices.times[0], clock: 0 };
+  const view = { ...still, focus, anchor: [0, 0, 0] as Vector, density: 1, pixel: 1 };
+  const u = uniforms(header, settings, view);
+  const grain = grainAt(at, settings, camera, rows);
+  const spacing = Number(u.u_spacing) * grain;
+  const layers = layersAt(at);
+  const moves = length(layers(0).slice(0, 3)) > c.LEAST_SPEED[0];
+  const sides = moves ? [...Array(Number(u.u_sides)).keys()] : [];
+  const [back = [], ahead = []] = sides.map((side) => sideSteps(layers, side, spacing, u, c));
+  const own = Math.max(kernelAt(0, u, c), c.LEAST_WEIGHT[0]);
+  const steps = [...back.reverse(), { displacement: [0, 0, 0] as Vector, weight: own }, ...ahead];
+
+  const octaves = clamp(2 * Math.log2(grain / Number(u.u_noiseFinest)), 0, c.LAST_OCTAVE[0]);
+  const octave = Math.floor(octaves);
+  const late = octaves - octave;
+  const local = toFrame(geometry.frame, subtract(at.position, geometry.center));
+  const noise = noiseAround(local, octave, geometry.planar, u, c);
+  const weights = steps.map(({ weight }) => weight);
+  const squares = total(weights.map((weight) => weight ** 2));
+  const pairs = weights.slice(1).map((weight, n) => weight * weights[n]);
+  const near = total(pairs) / squares;
+  const apart = Number(u.u_spacing) * 2 ** (late / 2);
+  const shares = [1 - late, late];
+  const alone = Math.hypot(...shares);
+  const variance = shares.map((w, n) => w ** 2 * shared(apart * Math.SQRT1_2 ** n, near, c));
+  const gain = (alone * total(weights)) / Math.sqrt(squares * total(variance));
+  const moved = mover(at);
+  const samples = steps.map(({ displacement, weight }) => {
+    const [fine, coarse] = noise(displacement);
+    const value = (shares[0] * fine + shares[1] * coarse) / alone;
+    const position = moved(displacement) ?? at.position;
+    return { position, weight: weight / total(weights), noise: value, grey: greyOf(value, 1, c) };
+  });
+  const mean = total(samples.map((sample) => sample.weight * sample.noise));
+  return {
+    samples,
+    middle: back.length,
+    level: Math.log2(grain / Number(u.u_texel)),
+    mean,
+    gain,
+    grey: greyOf(gain * mean, Number(settings.contrast), c),
+  };
+}

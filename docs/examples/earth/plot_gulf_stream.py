@@ -1,0 +1,14 @@
+"""
+The Gulf Stream
+===============
+
+Currents of an ocean model: land is where the data are NaN, and is drawn with its coast. Warm rings
+north of the stream turn clockwise, cold rings south of it the other way, which the height of the
+sea tells as well.
+"""
+
+import flowtex
+
+ocean = flowtex.examples.ocean().isel(time=-1)
+ocean = ocean.sel(latitude=slice(31, 44), longitude=slice(-78, -52))
+flowtex.show(ocean, scalars="zos", cmap="RdBu_r", land="#b9b0a0", zoom=1.4)

@@ -1,0 +1,226 @@
+"""A dataset on lines of longitude and latitude, or of x and y, any region of which is read alone.
+
+What concerns the whole is decided before: the two variables, the map, the order of its columns. A
+region then is the same, bit for bit, whoever reads it, and nothing else is read for it. Names of
+files and arrays that are read late are all that is needed for that, so a process elsewhere can.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex._util.blocks import even_runs
+from flowtex.earth import Projection
+from flowtex.errors import FieldError
+from flowtex.field.datasets.maps import (
+    CYLINDERS,
+    lines_on_map,
+    projection_of,
+    shown_positions,
+    shown_rows,
+)
+from flowtex.field.datasets.places import Places
+from flowtex.field.periodic import find_closure
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["RegionLines", "RegionNodes", "Regions", "Words", "numbers_in", "region_lines"]
+
+#: What is beyond this stands for missing data, though no attribute tells.
+LARGEST_VALUE = 1e15
+
+
+class RegionNodes(NamedTuple):
+    """What the nodes of a region have at one time step.
+
+    ``points`` are (J, I, 3), ``valid`` is (J, I), ``velocity`` (J, I, 3), zero at nodes that are
+    not valid, and ``scalars`` are (J, I) by name.
+    """
+
+    points: Floats
+    valid: Bools
+    velocity: Floats
+    scalars: dict[str, Floats]
+
+
+@dataclass(frozen=True, eq=False)
+class RegionLines:
+    """Where the nodes lie: two lines of coordinates, and their numbers in the data.
+
+    Attributes
+    ----------
+    a, b
+        Longitude of each column (I,) and latitude of each row (J,), or x and y; ``shown`` is the
+        former on the map, where the last column may be the first one, a turn further.
+    rows, columns
+        Numbers in the data, (J,) and (I,).
+    projection
+        The map; ``None`` in a plane.
+    closed
+        Whether the last column is the first one again.
+    """
+
+    a: Floats
+    b: Floats
+    shown: Floats
+    rows: Indices
+    columns: Indices
+    projection: Projection | None
+    closed: bool
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Number of nodes (J, I)."""
+        return len(self.rows), len(self.columns)
+
+    def points(self, rows: Any, columns: Any) -> Floats:
+        """Return positions (J, I, 3) of some rows and columns."""
+        a, b = np.broadcast_arrays(self.shown[columns], self.b[rows][:, None])
+        if self.projection is None:
+            return np.stack([a, b, np.zeros(a.shape)], axis=-1)
+        if self.projection.is_globe:
+            return self.projection.positions(a, b)
+        return shown_positions(self.projection, a, b)
+
+    def vectors(self, u: Floats, v: Floats, rows: Any, columns: Any) -> Floats:
+        """Return vectors (J, I, 3) of components at some rows and columns."""
+        if self.projection is None:
+            return np.stack([u, v, np.zeros(u.shape)], axis=-1)
+        a, b = np.broadcast_arrays(self.a[columns], self.b[rows][:, None])
+        return self.projection.vectors(a, b, u, v)
+
+
+@dataclass(frozen=True)
+class Words:
+    """What a field is called, and its times: as in a :class:`FlowField`."""
+
+    name: str
+    length_unit: str
+    times: Floats
+    start: Any
+    units: Mapping[str, str] = field(default_factory=dict)
+    long_names: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, eq=False)
+class Regions:
+    """A dataset on lines of coordinates.
+
+    Attributes
+    ----------
+    words
+        What the field is called.
+    lines
+        Where its nodes lie.
+    components
+        The variables of the velocity, ([time,] row, column), and the ``factor`` that makes them
+        m/s.
+    mask
+        Positive where there is data, (row, column).
+    scalars
+        Further variables, by name.
+    numbers
+        Number of each time step in the variables.
+    """
+
+    words: Words
+    lines: RegionLines
+    components: tuple[xr.Variable, xr.Variable]
+    factor: float
+    mask: xr.Variable | None
+    scalars: Mapping[str, xr.Variable]
+    numbers: tuple[int, ...]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the scalars, that of the speed on the Earth among them."""
+        projection = self.lines.projection
+        drawn = projection is not None and not projection.is_globe
+        return (*self.scalars, "speed") if drawn else tuple(self.scalars)
+
+    def nodes(self, step: int, rows: Any, columns: Any, valid: Bools | None = None) -> RegionNodes:
+        """Read some rows and columns, as slices or numbers, at a time step.
+
+        ``valid`` tells the nodes that have data in the first step, where they are known.
+        """
+        number = self.numbers[step]
+        u, v = self._components(number, rows, columns)
+        velocity = self.lines.vectors(u, v, rows, columns)
+        if valid is None:
+            first = velocity
+            if step:
+                u_first, v_first = self._components(self.numbers[0], rows, columns)
+                first = self.lines.vectors(u_first, v_first, rows, columns)
+            valid = np.asarray(np.isfinite(first).all(axis=-1))
+        velocity[~valid] = 0.0
+        scalars = {k: self._read(s, number, rows, columns) for k, s in self.scalars.items()}
+        if len(self.names) > len(scalars):
+            scalars["speed"] = np.hypot(u, v)
+        points = self.lines.points(rows, columns)
+        return RegionNodes(points, valid, np.nan_to_num(velocity), scalars)
+
+    def _components(self, number: int, rows: Any, columns: Any) -> list[Floats]:
+        parts = [self._read(one, number, rows, columns) * self.factor for one in self.components]
+        if self.mask is None:
+            return parts
+        wet = self._read(self.mask, number, rows, columns) > 0
+        return [np.where(wet, part, np.nan) for part in parts]
+
+    def _read(self, variable: xr.Variable, number: int, rows: Any, columns: Any) -> Floats:
+        step = variable[number] if variable.ndim > 2 else variable
+        below = []
+        for first in even_runs(self.lines.rows[rows]):
+            beside = [step[first, second] for second in even_runs(self.lines.columns[columns])]
+            # Whoever reads a region may be a task of a cluster, and must not wait for others.
+            below.append([numbers_in(part.compute(scheduler="synchronous")) for part in beside])
+        return np.concatenate([np.concatenate(parts, axis=1) for parts in below])
+
+
+def region_lines(places: Places, name: str | None) -> RegionLines | None:
+    """Return where the nodes lie on a map, or in a plane; ``None`` where regions are no islands.
+
+    That is where all nodes have to be known to tell what becomes of one of them.
+    """
+    if not places.is_line or not all(_is_ordered(line) for line in places.lines):
+        return None
+    a, b = places.lines
+    if not places.is_earth:
+        ends = [np.broadcast_arrays(a, b[[0, -1], None]), np.broadcast_arrays(a[[0, -1], None], b)]
+        grids = [np.stack([*two, np.zeros(two[0].shape)], axis=-1) for two in ends]
+        if any(find_closure(np.swapaxes(grid, 0, 1)).periodic for grid in grids):
+            return None
+        return RegionLines(a, b, a, np.arange(len(b)), np.arange(len(a)), None, closed=False)
+    projection, around = projection_of(places, name)
+    if not (projection.is_globe or projection.name in CYLINDERS):
+        return None
+    lines = lines_on_map(places, projection, around=around)
+    rows = np.arange(len(b))
+    if not projection.is_globe:
+        rows = rows[shown_rows(shown_positions(projection, lines.shown[:1], b[:, None]))]
+    closed = lines.periodic == "i"
+    return RegionLines(
+        lines.lon, lines.lat[rows], lines.shown, rows, lines.columns, projection, closed
+    )
+
+
+def numbers_in(array: Any) -> Floats:
+    """Return the values of a variable as float64; what stands for missing data is NaN."""
+    values = np.asarray(array.values)
+    if values.dtype.kind not in "fiub":
+        msg = f"{getattr(array, 'name', 'a variable')!r} holds {values.dtype}; expected numbers"
+        raise FieldError(msg)
+    values = values.astype(float)
+    # Fill values that no attribute tells.
+    values[np.abs(values) > LARGEST_VALUE] = np.nan
+    return values
+
+
+def _is_ordered(line: Floats) -> bool:
+    steps = np.diff(line)
+    return len(line) > 1 and bool((steps > 0).all() or (steps < 0).all())

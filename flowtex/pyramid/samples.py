@@ -1,0 +1,93 @@
+"""Ranges of values, by which a pyramid is coloured, as the tasks tell them that read the nodes.
+
+Each task keeps the least and the greatest value of its part, and some of its values: those of every
+2^n-th row and column, a million of the whole surface. They stay in the store, so that a build that
+goes on knows them. The whole range is exact, the robust one has the percentiles of that sample.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from flowtex._util.array_types import Floats
+from flowtex.field.datasets.regions import RegionNodes
+from flowtex.pyramid.layout import SHARD_CHUNKS, TILE_CELLS, Part, create_array, parts_along
+from flowtex.tiles import ends_of
+
+__all__ = ["create_samples", "ranges_of", "write_samples"]
+
+SAMPLES = "samples"
+#: Nodes of a sample of one quantity at one time.
+MOST_SAMPLES = 1 << 20
+
+
+def create_samples(group: Any, about: Mapping[str, Any]) -> None:
+    """Make the empty array of samples."""
+    parts = parts_along((about["nodes"][0], about["nodes"][1]))
+    size = (len(_quantities(about)), 2 + math.prod(_shape(about)))
+    create_array(
+        group,
+        SAMPLES,
+        (len(_steps(about)), *parts, *size),
+        (1, 1, 1, *size),
+        None,
+        "float64",
+        ["time", "row", "column", "quantity", "value"],
+    )
+
+
+def write_samples(group: Any, about: Mapping[str, Any], part: Part, nodes: RegionNodes) -> None:
+    """Tell the values of a part of level 0, where its step is one that ranges are taken from."""
+    if part.step not in _steps(about):
+        return
+    step, shape = _every(about), _shape(about)
+    values = {**nodes.scalars}
+    if "speed" not in values:
+        values["speed"] = np.linalg.norm(nodes.velocity, axis=-1)
+    result = np.full((len(values), 2 + math.prod(shape)), np.nan)
+    for row, name in zip(result, _quantities(about), strict=True):
+        known: Floats = np.where(nodes.valid, values[name], np.nan)
+        row[:2] = ends_of(known, robust=False) or (np.nan, np.nan)
+        some = known[::step, ::step]
+        row[2:].reshape(shape)[: some.shape[0], : some.shape[1]] = some
+    group[SAMPLES][_steps(about).index(part.step), part.row, part.column] = result
+
+
+def ranges_of(group: Any, about: Mapping[str, Any]) -> dict[str, list[tuple[float, float]]]:
+    """Return the ends of scalars and of the speed, the whole range and the robust one."""
+    ranges = {}
+    for number, name in enumerate(_quantities(about)):
+        values = np.asarray(group[SAMPLES][:, :, :, number])
+        whole = ends_of(values[..., :2], robust=False)
+        robust = ends_of(values[..., 2:], robust=True)
+        if whole is not None:
+            ranges[name] = [whole, whole if robust is None else robust]
+    return ranges
+
+
+def _quantities(about: Mapping[str, Any]) -> list[str]:
+    return list(dict.fromkeys([*about["scalars"], "speed"]))
+
+
+def _steps(about: Mapping[str, Any]) -> list[int]:
+    """Return the steps that ranges are taken from, as those of ``FlowField.typical``."""
+    last = len(about["times"]) - 1
+    return sorted({0, last // 2, last})
+
+
+def _every(about: Mapping[str, Any]) -> int:
+    """Return how many rows and columns apart the nodes of a sample lie, a power of two."""
+    step = 1
+    while math.prod(about["nodes"]) > MOST_SAMPLES * step * step and step < TILE_CELLS:
+        step *= 2
+    return step
+
+
+def _shape(about: Mapping[str, Any]) -> tuple[int, int]:
+    """Return rows and columns of the sample of a part."""
+    rows, columns = (many * TILE_CELLS // _every(about) for many in SHARD_CHUNKS)
+    return rows, columns

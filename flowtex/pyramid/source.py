@@ -1,0 +1,263 @@
+"""What a pyramid is built from: a field, or a dataset of which each task reads a region."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from flowtex._util.array_types import Bools, Floats
+from flowtex._util.cache import digest
+from flowtex.errors import FieldError
+from flowtex.field import FlowField
+from flowtex.field.datasets.detect import is_dataset
+from flowtex.field.datasets.regions import RegionNodes, Regions
+from flowtex.field.io.constructors import FieldConstructors
+from flowtex.field.steps import LazySteps
+from flowtex.pyramid.places import is_store
+from flowtex.tiles import Pyramid, drawn_speeds, ends_of
+from flowtex.trace import chosen_lines, judged_lines
+
+__all__ = ["Source", "source_of"]
+
+#: Rows and columns by which a dataset is known again.
+KNOWN_BY = 16
+
+
+class Source(ABC):
+    """Nodes that a pyramid is built from.
+
+    Attributes
+    ----------
+    field
+        What the field is called, its times and its map; only some sources have its nodes there.
+    shape
+        Number of nodes (J, I).
+    scalars
+        Number of time steps of each scalar, by name.
+    flat
+        Whether nodes and velocities lie in a plane of even height.
+    travels
+        Whether a worker elsewhere can read it.
+    """
+
+    field: FlowField
+    shape: tuple[int, int]
+    scalars: dict[str, int]
+    flat: bool
+    travels: bool
+
+    @abstractmethod
+    def points(self, rows: Any, columns: Any) -> Floats:
+        """Return positions (J, I, 3) of some rows and columns, by slices or numbers."""
+
+    @abstractmethod
+    def nodes(
+        self, step: int, rows: slice, columns: slice, valid: Bools | None = None
+    ) -> RegionNodes:
+        """Return what some nodes have at a time step; ``valid`` where it is known already."""
+
+    @abstractmethod
+    def chosen_lines(self, lines: str) -> str:
+        """Return what the textures are drawn along, as :func:`flowtex.trace.chosen_lines` does."""
+
+    @abstractmethod
+    def fingerprint(self) -> str:
+        """Return a hash by which the source is known again."""
+
+    @property
+    def rectilinear(self) -> bool:
+        """Whether two lines of coordinates give all positions."""
+        return self.flat
+
+    @property
+    def has_position(self) -> Bools | None:
+        """Nodes whose position is known, (J, I); ``None`` for all."""
+        return None
+
+    @property
+    def ranges(self) -> dict[str, list[Any]] | None:
+        """Ends of scalars and of the speed, whole and robust; ``None`` where they are unknown."""
+        return None
+
+    @property
+    def late(self) -> bool:
+        """Whether the steps are read when they are needed."""
+        return len(self.field.times) > 1
+
+    @cached_property
+    def periods(self) -> tuple[Floats, Floats]:
+        """What leads from the first line of an axis to the last, (3,), for both axes."""
+        ends, every = np.array([0, -1]), slice(None)
+        down, across = self.points(ends, every), self.points(every, ends)
+        return np.mean(down[1] - down[0], axis=0), np.mean(across[:, 1] - across[:, 0], axis=0)
+
+
+class FieldSource(Source):
+    """A field, which is in the memory of who builds."""
+
+    travels = False
+
+    def __init__(self, field: FlowField) -> None:
+        if field.triangles is not None or field.sign_free:
+            what = "on triangles" if field.triangles is not None else "without a sign"
+            msg = f"the field is one {what}; expected one on a structured surface, with a direction"
+            raise FieldError(msg)
+        self.field, self.shape = field, field.shape
+        self.scalars = {name: len(steps) for name, steps in field.scalars.items()}
+        z = field.points[..., 2]
+        on_map = field.projection is not None and not field.projection.is_globe
+        level = on_map if self.late else not np.any(field.velocity[..., 2])
+        self.flat = bool((z == z[0, 0]).all()) and level
+
+    def points(self, rows: Any, columns: Any) -> Floats:
+        """Return positions of nodes."""
+        return np.asarray(self.field.points[rows][:, columns])
+
+    def nodes(
+        self, step: int, rows: slice, columns: slice, valid: Bools | None = None
+    ) -> RegionNodes:
+        """Return what nodes have."""
+        del valid
+        field, at = self.field, (rows, columns)
+        scalars = {k: np.asarray(s[step])[at] for k, s in field.scalars.items() if step < len(s)}
+        velocity = np.asarray(field.velocity[step])[at]
+        return RegionNodes(field.points[at], field.valid[at], velocity, scalars)
+
+    def chosen_lines(self, lines: str) -> str:
+        """Return what the textures are drawn along."""
+        return chosen_lines(self.field, lines)
+
+    def fingerprint(self) -> str:
+        """Return a hash of the nodes and two of the steps."""
+        field = self.field
+        ends: list[Floats] = [np.asarray(field.velocity[at]) for at in (0, -1)]
+        return digest(field.points, field.valid, field.times, *ends, words=field.scalars).hex()
+
+    @property
+    def rectilinear(self) -> bool:
+        """Whether two lines of coordinates give all positions."""
+        x, y, _ = np.moveaxis(self.field.points, -1, 0)
+        return self.flat and bool((x == x[:1]).all() and (y == y[:, :1]).all())
+
+    @property
+    def has_position(self) -> Bools | None:
+        """Nodes whose position is known; ``None`` for all."""
+        known = self.field.has_position
+        return None if known is None or known.all() else known
+
+    @property
+    def ranges(self) -> dict[str, list[Any]]:
+        """Ends of scalars and of the speed, the whole range and the robust one."""
+        field, some = self.field, self.field.typical
+        values = {k: np.asarray(s)[:, field.valid] for k, s in some.scalars.items()}
+        values.setdefault("speed", drawn_speeds(some, Pyramid(field).root))
+        both = {
+            k: [ends_of(v, robust=robust) for robust in (False, True)] for k, v in values.items()
+        }
+        return {name: ends for name, ends in both.items() if None not in ends}
+
+    @property
+    def late(self) -> bool:
+        """Whether the steps are read when they are needed."""
+        return isinstance(self.field.velocity, LazySteps)
+
+
+class RegionSource(Source):
+    """A dataset of which each task reads a region, wherever it runs."""
+
+    travels = True
+
+    def __init__(self, regions: Regions) -> None:
+        words, lines = regions.words, regions.lines
+        self.regions, self.shape = regions, lines.shape
+        self.scalars = dict.fromkeys(regions.names, len(words.times))
+        self.flat = lines.projection is None or not lines.projection.is_globe
+        self.field = FlowField(
+            points=np.zeros((1, 1, 3)),
+            velocity=np.zeros((len(words.times), 1, 1, 3)),
+            times=words.times,
+            valid=np.zeros((1, 1), dtype=bool),
+            periodic=(False, lines.closed),
+            name=words.name,
+            length_unit=words.length_unit,
+            time_unit="s",
+            units=words.units,
+            long_names=words.long_names,
+            start=words.start,
+            projection=lines.projection,
+        )
+
+    def points(self, rows: Any, columns: Any) -> Floats:
+        """Return positions of nodes."""
+        return self.regions.lines.points(rows, columns)
+
+    def nodes(
+        self, step: int, rows: slice, columns: slice, valid: Bools | None = None
+    ) -> RegionNodes:
+        """Read what nodes have."""
+        return self.regions.nodes(step, rows, columns, valid)
+
+    def chosen_lines(self, lines: str) -> str:
+        """Return what the textures are drawn along, of some of the nodes."""
+        if lines != "auto" or not self.late:
+            return chosen_lines(self.field, lines)
+        rows, columns = judged_lines(self.shape)
+        first = self.regions.nodes(0, rows, columns)
+
+        def velocity(step: int) -> Floats:
+            return self.regions.nodes(step, rows, columns, first.valid).velocity
+
+        some = FlowField(
+            points=first.points,
+            velocity=LazySteps(len(self.field.times), velocity),
+            times=self.field.times,
+            valid=first.valid,
+            periodic=(False, False),
+        )
+        return chosen_lines(some, lines)
+
+    def fingerprint(self) -> str:
+        """Return a hash of the lines and of a few nodes of the first and the last step."""
+        lines = self.regions.lines
+        few = [np.unique(np.linspace(0, n - 1, KNOWN_BY).astype(int)) for n in self.shape]
+        last = len(self.field.times) - 1
+        ends = [self.regions.nodes(step, few[0], few[1]).velocity for step in (0, last)]
+        name = "" if lines.projection is None else lines.projection.name
+        return digest(
+            lines.shown, lines.b, self.field.times, *ends, words=(name, *self.scalars)
+        ).hex()
+
+
+class _Opened(FieldConstructors):
+    """Opens what makes a field; a dataset of which any region can be read alone is not read."""
+
+    from_arrays = FlowField.from_arrays
+    from_triangles = FlowField.from_triangles
+    from_regions = RegionSource
+
+
+def source_of(given: Any, **options: Any) -> Source:
+    """Return what a pyramid is built from: a field, a dataset of xarray's, or files.
+
+    Options are those of :meth:`FlowField.from_xarray` or :meth:`FlowField.from_file`.
+    """
+    if isinstance(given, (FlowField, Source)):
+        if options:
+            msg = f"{', '.join(options)} is for what a field is made of; leave it out"
+            raise FieldError(msg)
+        return given if isinstance(given, Source) else FieldSource(given)
+    if is_store(given):
+        msg = f"{given} is a pyramid already; give what one is built from"
+        raise FieldError(msg)
+    made: Any
+    if is_dataset(given):
+        made = _Opened.from_xarray(given, **options)
+    else:
+        one: str | Path | Sequence[str | Path] = given
+        made = _Opened.from_file(one, **options)
+    return made if isinstance(made, Source) else FieldSource(made)

@@ -1,0 +1,212 @@
+"""Who does the tasks: threads of this process, or the workers of a Dask cluster."""
+
+from __future__ import annotations
+
+import io
+import os
+import warnings
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from typing import Any
+
+from flowtex._util.extras import import_extra
+from flowtex.errors import FieldError
+from flowtex.pyramid.places import PyramidError
+
+__all__ = ["OWN_BYTES", "PART_BYTES", "TILE_BYTES", "Cluster", "Threads"]
+
+#: Most memory that a task takes: one that makes a part of a level, and one that traces a tile or
+#: the root. Tests hold them to it. A process has its own besides, for what is imported.
+PART_BYTES, TILE_BYTES, OWN_BYTES = 500_000_000, 1_500_000_000, 500_000_000
+#: Times that a task is tried.
+MOST_TRIALS = 3
+#: Size of what may be sent to the workers of a cluster; a source that is larger holds its data.
+MOST_SENT = 64_000_000
+
+
+class Threads:
+    """Threads of this process.
+
+    Parameters
+    ----------
+    memory
+        What they may take together, in bytes or such as ``"2GB"``; by default there is one for each
+        core.
+    """
+
+    def __init__(self, memory: int | str | None = None) -> None:
+        self._memory: int | None = None
+        if memory is not None:
+            try:
+                self._memory = int(import_extra("dask.utils", "store").parse_bytes(memory))
+            except (ValueError, TypeError) as error:
+                msg = f"memory is {memory!r}; expected bytes, or a text such as '2GB'"
+                raise FieldError(msg) from error
+            if self._memory < OWN_BYTES + TILE_BYTES:
+                warnings.warn(
+                    f"memory is {_words(self._memory)}, and a task may take "
+                    f"{_words(TILE_BYTES)} beside {_words(OWN_BYTES)} for all; one runs at a time, "
+                    "and may take more than is allowed",
+                    stacklevel=4,
+                )
+
+    def count(self, need: int) -> int:
+        """Return how many tasks run at once that need so many bytes each."""
+        cores = os.cpu_count() or 1
+        if self._memory is None:
+            return cores
+        return max(min(cores, (self._memory - OWN_BYTES) // need), 1)
+
+    def run(
+        self,
+        function: Callable[..., None],
+        tasks: Sequence[tuple[Any, ...]],
+        need: int,
+        *given: Any,
+    ) -> Iterator[Exception | None]:
+        """Yield what became of each task, in the order in which they end.
+
+        The arguments of the function are what is ``given`` and those of the task, which needs so
+        many bytes.
+        """
+        if not tasks:
+            return
+
+        def tried(task: tuple[Any, ...]) -> Exception | None:
+            result: Exception | None = None
+            for _ in range(MOST_TRIALS):
+                try:
+                    function(*given, *task)
+                except Exception as error:
+                    result = error
+                else:
+                    return None
+            return result
+
+        with ThreadPoolExecutor(self.count(need), thread_name_prefix="flowtex-pyramid") as pool:
+            futures = [pool.submit(tried, task) for task in tasks]
+            try:
+                for future in as_completed(futures):
+                    yield future.result()
+            finally:
+                pool.shutdown(wait=True, cancel_futures=True)
+
+    def close(self) -> None:
+        """Nothing is kept open."""
+
+
+class Cluster(Threads):
+    """Workers of a Dask cluster, which open the store themselves."""
+
+    def __init__(self, scheduler: Any) -> None:
+        super().__init__()
+        distributed = import_extra("distributed", "store")
+        self._own = isinstance(scheduler, str)
+        self._client = distributed.Client(scheduler) if self._own else scheduler
+        self._as_completed = distributed.as_completed
+        self._check_memory()
+
+    def run(
+        self,
+        function: Callable[..., None],
+        tasks: Sequence[tuple[Any, ...]],
+        need: int,
+        *given: Any,
+    ) -> Iterator[Exception | None]:
+        """Yield what became of each task, in the order in which they end."""
+        if not tasks:
+            return
+        packed = [_packed(one) for one in given]
+        if None in packed:
+            # It holds its data, which would go to each worker.
+            yield from super().run(function, tasks, need, *given)
+            return
+        # Made by a task, what is given outlives the worker that has it.
+        sent = [self._client.submit(_unpacked, data, pure=False) for data in packed]
+        futures = self._client.map(
+            _called, tasks, function=function, given=sent, pure=False, retries=MOST_TRIALS - 1
+        )
+        try:
+            for future in self._as_completed(futures):
+                yield future.exception()
+                future.release()
+        finally:
+            self._client.cancel(futures)
+
+    def close(self) -> None:
+        """Leave the cluster, where it was given by its address."""
+        if self._own:
+            self._client.close()
+
+    def _check_memory(self) -> None:
+        """Say which workers have less memory than tasks may take."""
+        workers = self._client.scheduler_info(n_workers=-1)["workers"]
+        few = {
+            name: (worker["memory_limit"], OWN_BYTES + worker["nthreads"] * TILE_BYTES)
+            for name, worker in workers.items()
+            if worker["memory_limit"]
+            and worker["memory_limit"] < OWN_BYTES + worker["nthreads"] * TILE_BYTES
+        }
+        if few:
+            name, (limit, need) = next(iter(few.items()))
+            warnings.warn(
+                f"{len(few)} of {len(workers)} workers have little memory: {name} has "
+                f"{_words(limit)}, and its threads may need {_words(need)}; give it more, or fewer "
+                "threads",
+                stacklevel=4,
+            )
+
+
+def _called(task: tuple[Any, ...], *, function: Callable[..., None], given: list[Any]) -> None:
+    function(*given, *task)
+
+
+class _Limited(io.RawIOBase):
+    """A file in memory that takes so much and no more."""
+
+    def __init__(self) -> None:
+        self.parts: list[bytes] = []
+        self.size = 0
+
+    def writable(self) -> bool:
+        """Whether it is written."""
+        return True
+
+    def write(self, data: Any) -> int:
+        """Take some bytes."""
+        size = memoryview(data).nbytes
+        self.size += size
+        if self.size > MOST_SENT:
+            raise _TooLargeError
+        self.parts.append(bytes(data))
+        return size
+
+
+class _TooLargeError(Exception):
+    """There is more than is sent."""
+
+
+def _packed(thing: Any) -> bytes | None:
+    """Return something as bytes that are sent; ``None`` where these are too many."""
+    file = _Limited()
+    try:
+        import_extra("cloudpickle", "store").Pickler(file).dump(thing)
+    except _TooLargeError:
+        return None
+    except Exception as error:
+        msg = (
+            f"the dataset cannot be sent to the workers ({type(error).__name__}: {error}); open it "
+            "from a file or a store, or build without a scheduler"
+        )
+        raise PyramidError(msg) from error
+    return b"".join(file.parts)
+
+
+def _unpacked(data: bytes) -> Any:
+    import pickle
+
+    return pickle.loads(data)
+
+
+def _words(size: int) -> str:
+    return f"{size / 1e9:.3g} GB"

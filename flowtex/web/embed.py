@@ -1,0 +1,54 @@
+"""A view among the text of a page of one's own: its scene as a script beside the page.
+
+All views of a page share one copy of the client, ``live.js``, which loads a scene when its element
+comes into sight::
+
+    <script src="flowtex-live.js" defer></script>
+    <div class="flowtex-live" data-scene="wake.js" style="height: 400px"></div>
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import chain
+from typing import Any
+
+from flowtex.rendering.webgl.protocol import part_info, part_text
+from flowtex.web.export import different, json_text, page_data
+from flowtex.web.view import WebView
+
+__all__ = ["scene_script"]
+
+
+def scene_script(
+    name: str,
+    views: Sequence[WebView],
+    *,
+    camera: dict[str, Any] | None = None,
+    time: float | None = None,
+    clock: float = 0.0,
+) -> Iterator[str]:
+    """Give the script of a view, or of two beside each other, piece by piece.
+
+    ``name`` is that of its file without ``.js``. Camera, time and clock are those of
+    :meth:`ClientData.header`.
+    """
+    scenes = page_data(views)
+    headers = [
+        scene.header(view.scene.settings, camera=camera, time=time, clock=clock)
+        for view, scene in zip(views, scenes, strict=True)
+    ]
+    if len(views) > 1:
+        for header in headers:
+            header["differs"] = list(views[1].own_settings)
+    told = [headers[0], *(different(header, headers[0]) for header in headers[1:])]
+    yield f'flowtexScene({json_text(name)}, {{"headers": {json_text(told)}, "parts": ['
+    written: set[str] = set()
+    for n, scene in enumerate(scenes):
+        steps = (part for step in range(scene.steps) for part in scene.step(step).items())
+        for part, array in chain(scene.surface().items(), steps):
+            info = part_info(part, array)
+            text = "" if info["digest"] in written else part_text(array)
+            written.add(info["digest"])
+            yield f'[{n}, {json_text(info)}, "{text}"],\n'
+    yield "]})\n"

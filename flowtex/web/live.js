@@ -1,0 +1,1371 @@
+// Built from client/src by client/build.js; change that instead.
+/*! Holds parts of gl-matrix, of which this is the licence:
+
+Copyright (c) 2015-2025, Brandon Jones, Colin MacKenzie IV.
+
+Permission is hereby granted, free of charge, to any person obtaining a copy
+of this software and associated documentation files (the "Software"), to deal
+in the Software without restriction, including without limitation the rights
+to use, copy, modify, merge, publish, distribute, sublicense, and/or sell
+copies of the Software, and to permit persons to whom the Software is
+furnished to do so, subject to the following conditions:
+
+The above copyright notice and this permission notice shall be included in
+all copies or substantial portions of the Software.
+
+THE SOFTWARE IS PROVIDED "AS IS", WITHOUT WARRANTY OF ANY KIND, EXPRESS OR
+IMPLIED, INCLUDING BUT NOT LIMITED TO THE WARRANTIES OF MERCHANTABILITY,
+FITNESS FOR A PARTICULAR PURPOSE AND NONINFRINGEMENT. IN NO EVENT SHALL THE
+AUTHORS OR COPYRIGHT HOLDERS BE LIABLE FOR ANY CLAIM, DAMAGES OR OTHER
+LIABILITY, WHETHER IN AN ACTION OF CONTRACT, TORT OR OTHERWISE, ARISING FROM,
+OUT OF OR IN CONNECTION WITH THE SOFTWARE OR THE USE OR OTHER DEALINGS IN
+THE SOFTWARE. */
+"use strict";(()=>{function dom(kind,attributes={},children=[]){let element=document.createElement(kind);for(let[name,value]of Object.entries(
+attributes))element.setAttribute(name,value);return element.append(...children),element}var ICONS={play:"M8 5.2v13.6L19 \
+12z",pause:"M8.5 6v12M15.5 6v12",home:"M4 11.5 12 5l8 6.5M6.5 10v9h11v-9",lod:"M12 3.8l8 4.1-8 4.1-8-4.1zM4 12.2l8 4.1 8\
+-4.1M4 16.3l8 4.1 8-4.1",levels:"M3.5 18a8.5 8.5 0 0 1 17 0M7 18a5 5 0 0 1 10 0M10.3 18a1.7 1.7 0 0 1 3.4 0",settings:"M\
+4 7h8M17 7h3M4 17h3M12 17h8M14.5 4.8v4.4M9.5 14.8v4.4",save:"M12 4v11M7.5 10.8 12 15.3l4.5-4.5M5 19.5h14",full:"M4 9V4h5\
+M20 9V4h-5M4 15v5h5M20 15v5h-5",hide:"M6 9.5l6 6 6-6",show:"M6 14.5l6-6 6 6"};function icon(name){let space="http://www.\
+w3.org/2000/svg",svg=document.createElementNS(space,"svg");svg.setAttribute("viewBox","0 0 24 24"),svg.setAttribute("ari\
+a-hidden","true");let path=document.createElementNS(space,"path");return path.setAttribute("d",ICONS[name]),name==="play"&&
+path.setAttribute("class","solid"),svg.append(path),svg}function numberText(x,digits=4){if(!Number.isFinite(x))return"–";
+let size=Math.abs(x);return size!==0&&(size>=1e5||size<.001)?x.toExponential(2).replace("e+","e"):String(Number(x.toPrecision(
+digits)))}function pictureOf(views,size=1,format={}){let widths=views.map(({canvas})=>Math.max(Math.round(size*canvas.width),
+1)),height=Math.max(Math.round(size*views[0].canvas.height),1),all=new OffscreenCanvas(widths.reduce((sum,width)=>sum+width,
+0),height),pen=all.getContext("2d",{alpha:!1}),left=0;for(let[n,{canvas}]of views.entries())pen?.drawImage(canvas,left,0,
+widths[n],height),left+=widths[n];return all.convertToBlob(format)}var EPSILON=1e-6,ARRAY_TYPE=typeof Float32Array<"u"?Float32Array:Array;var degree=Math.PI/180,radian=180/Math.PI;function transpose(out,a){if(out===a){var a01=a[1],a02=a[2],a12=a[5];out[1]=a[3],out[2]=a[6],out[3]=a01,out[5]=a[7],out[6]=
+a02,out[7]=a12}else out[0]=a[0],out[1]=a[3],out[2]=a[6],out[3]=a[1],out[4]=a[4],out[5]=a[7],out[6]=a[2],out[7]=a[5],out[8]=
+a[8];return out}function fromRotation(out,rad,axis){var x=axis[0],y=axis[1],z=axis[2],len=Math.sqrt(x*x+y*y+z*z),s,c,t;return len<EPSILON?
+null:(len=1/len,x*=len,y*=len,z*=len,s=Math.sin(rad),c=Math.cos(rad),t=1-c,out[0]=x*x*t+c,out[1]=y*x*t+z*s,out[2]=z*x*t-
+y*s,out[3]=0,out[4]=x*y*t-z*s,out[5]=y*y*t+c,out[6]=z*y*t+x*s,out[7]=0,out[8]=x*z*t+y*s,out[9]=y*z*t-x*s,out[10]=z*z*t+c,
+out[11]=0,out[12]=0,out[13]=0,out[14]=0,out[15]=1,out)}function create(){var out=new ARRAY_TYPE(3);return ARRAY_TYPE!=Float32Array&&(out[0]=0,out[1]=0,out[2]=0),out}function length(a){var x=a[0],y=a[1],z=a[2];return Math.sqrt(x*x+y*y+z*z)}function subtract(out,a,b){return out[0]=a[0]-b[0],out[1]=a[1]-b[1],out[2]=a[2]-b[2],out}function scale(out,a,b){return out[0]=a[0]*b,out[1]=a[1]*b,out[2]=a[2]*b,out}function scaleAndAdd(out,a,b,scale3){return out[0]=
+a[0]+b[0]*scale3,out[1]=a[1]+b[1]*scale3,out[2]=a[2]+b[2]*scale3,out}function normalize(out,a){var x=a[0],y=a[1],z=a[2],len=x*x+y*y+z*z;return len>0&&(len=1/Math.sqrt(len)),out[0]=a[0]*len,
+out[1]=a[1]*len,out[2]=a[2]*len,out}function dot(a,b){return a[0]*b[0]+a[1]*b[1]+a[2]*b[2]}function cross(out,a,b){var ax=a[0],
+ay=a[1],az=a[2],bx=b[0],by=b[1],bz=b[2];return out[0]=ay*bz-az*by,out[1]=az*bx-ax*bz,out[2]=ax*by-ay*bx,out}function transformMat4(out,a,m){var x=a[0],y=a[1],z=a[2],w=m[3]*x+m[7]*y+m[11]*z+m[15];return w=w||1,out[0]=(m[0]*x+m[4]*
+y+m[8]*z+m[12])/w,out[1]=(m[1]*x+m[5]*y+m[9]*z+m[13])/w,out[2]=(m[2]*x+m[6]*y+m[10]*z+m[14])/w,out}function transformMat3(out,a,m){
+var x=a[0],y=a[1],z=a[2];return out[0]=x*m[0]+y*m[3]+z*m[6],out[1]=x*m[1]+y*m[4]+z*m[7],out[2]=x*m[2]+y*m[5]+z*m[8],out}var forEach=(function(){var vec=create();return function(a,stride,offset,count,fn,arg){var i,l;for(stride||(stride=3),offset||
+(offset=0),count?l=Math.min(count*stride+offset,a.length):l=a.length,i=offset;i<l;i+=stride)vec[0]=a[i],vec[1]=a[i+1],vec[2]=
+a[i+2],fn(vec,vec,arg),a[i]=vec[0],a[i+1]=vec[1],a[i+2]=vec[2];return a}})();var v=a=>a,result=()=>[0,0,0],zeros=n=>new Array(n).fill(0),dot2=(a,b)=>dot(v(a),v(b)),length2=a=>length(v(a)),subtract2=(a,b)=>subtract(
+result(),v(a),v(b)),scale2=(a,by)=>scale(result(),v(a),by),cross2=(a,b)=>cross(result(),v(a),v(b)),unit=a=>normalize(result(),
+v(a)),add=(a,b,t=1)=>scaleAndAdd(result(),v(a),v(b),t);function rotated(a,axis,degrees){let turn=fromRotation(zeros(16),
+degrees*Math.PI/180,v(axis));return turn===null?result():transformMat4(result(),v(a),turn)}function toFrame(frame,a){let columns=transpose(
+zeros(9),frame);return transformMat3(result(),v(a),columns)}function fromFrame(frame,a){return transformMat3(result(),v(
+a),frame)}function clamp(x,low,high){return Math.min(Math.max(x,low),high)}function constantsOf(shader){let lines=shader.matchAll(/^const \w+ FLOWTEX_(\w+) =\s*(?:\w+\()?([^;]*?)\)?;/gm);return Object.
+fromEntries(Array.from(lines,([,name,values])=>[name,values.split(",").map(value=>Number(value.trim().replace(/u$/,"")))]))}
+function latticeOf(point,octave,u,c){let isOdd=(octave&1)===1,cells=2**(octave>>1),inverse2=(isOdd?Math.SQRT1_2:1)/cells/
+Number(u.u_noiseFinest),finest=isOdd?u.u_noiseOriginOdd:u.u_noiseOriginEven,past=isOdd?u.u_noiseRestOdd:[0,0,0],origin=finest.
+map(n=>Math.floor(n/cells)),rest=finest.map((n,axis)=>(n-origin[axis]*cells+past[axis])/cells),key=origin.map((n,axis)=>Math.
+imul(n,c.AXIS_PRIMES[axis]));return key[0]+=Math.imul(octave,c.OCTAVE_PRIME[0])+Math.imul(Number(u.u_seed),c.SEED_PRIME[0]),
+{here:add(rest,point,inverse2),inverse:inverse2,key}}function octaveAt({here,inverse:inverse2,key},displacement,c,axes){
+let[toKey,toGrain]=c.HASH_FACTORS,sides=add(here,displacement,inverse2).slice(0,axes).map((x,axis)=>{let low=Math.floor(
+x),hash=n=>{let k=key[axis]+Math.imul(n,c.AXIS_PRIMES[axis])>>>0;return Math.imul(k^k>>>c.HASH_SHIFT[0],toKey)};return{hashes:[
+hash(low),hash(low+1)],shares:[1-x+low,x-low]}}),sum=0;for(let corner=0;corner<2**axes;corner+=1){let side=axis=>corner>>
+axis&1,hash=sides.reduce((all,{hashes},axis)=>all^hashes[side(axis)],0),share=sides.reduce((all,{shares:shares2},axis)=>all*
+shares2[side(axis)],1);sum+=share*Math.imul(hash,toGrain)}let spread=(all,{shares:[a,b]})=>all*(1-2*a*b);return sum/Math.
+sqrt(sides.reduce(spread,1)*c.GRAIN_VARIANCE[0])}function noiseAround(local,octave,isPlanar,u,c){let point=add(local,scale2(
+u.u_noiseOrigin,-1)),[fine,coarse]=[0,1].map(n=>latticeOf(point,octave+n,u,c)),axes=isPlanar?2:3;return displacement=>[octaveAt(
+fine,displacement,c,axes),octaveAt(coarse,displacement,c,axes)]}function fromHalf(bits){let exponent=bits>>10&31,part=bits&1023,size;return exponent===0?size=part*2**-24:exponent===31?
+size=part?NaN:1/0:size=(1024+part)*2**(exponent-25),bits&32768?-size:size}function toHalf(x){let sign=x<0?32768:0,size=Math.
+abs(x);if(!(size<65520))return sign|(size>=65520?31744:32256);let exponent=Math.max(Math.floor(Math.log2(size||1e-30)),-14),
+part=Math.round(size/2**(exponent-10));return sign|(part<1024?part:(exponent+14)*1024+part)}function halved(texels,width,height,channels){
+let[w,h]=[Math.max(width>>1,1),Math.max(height>>1,1)],result2=new Uint16Array(w*h*channels),between2=(n,few,many)=>{let x=(n+
+.5)*(many/few)-.5,base=Math.floor(x);return[base,Math.min(base+1,many-1),x-base]};for(let j=0,n=0;j<h;j+=1){let[low,high,
+v2]=between2(j,h,height);for(let i=0;i<w;i+=1){let[left,right,u]=between2(i,w,width);for(let c=0;c<channels;c+=1){let at=(y,x)=>fromHalf(
+texels[(y*width+x)*channels+c]),below=at(low,left)*(1-u)+at(low,right)*u,above=at(high,left)*(1-u)+at(high,right)*u;result2[n++]=
+toHalf(below*(1-v2)+above*v2)}}}return[result2,w,h]}var EARTH_LINES=["coastlines","graticule"],TYPES={float32:Float32Array,uint32:Uint32Array,float16:Uint16Array,uint16:Uint16Array,
+int16:Int16Array,int8:Int8Array,uint8:Uint8Array};function shareOf({low,high,log}){if(!log)return value=>(value-low)/(high-
+low||1);let span=Math.log(high/low)||1;return value=>Math.log(Math.max(value,low)/low)/span}function legendLimits({low,high,
+log}){let least=log?0:1e-5*Math.max(Math.abs(low),Math.abs(high)),told=value=>Math.abs(value)<least?0:value;return[told(
+low),told(high)]}function isSignFree(header){return header.variant.includes("FLOWTEX_SIGNFREE")}function stepOf(name){return Number(
+name.split("/")[1])}function isOfStep(name,step,{scalars}){let[kind,own,number="0"]=name.split("/"),steps=scalars.choices[Number(
+number)]?.steps??scalars.steps;return kind==="scalars"&&Number(own)===step&&steps>1}function tilePart(name){let[kind,level,
+row2,column,...rest]=name.split("/");return kind==="tile"?[[level,row2,column].join("/"),rest.join("/")]:null}function decoded(info,bytes){
+let view=ArrayBuffer.isView(bytes)?new Uint8Array(bytes.buffer,bytes.byteOffset,bytes.byteLength):new Uint8Array(bytes),
+{name,dtype,shape,digest}=info,Type=TYPES[dtype];if(!Type)throw new Error(`a part has the type "${dtype}"; expected ${Object.
+keys(TYPES).join(", ")}`);return{name,shape,digest,data:new Type(view.slice().buffer)}}async function partOfText(info,text){let packed=Uint8Array.from(atob(text),letter=>letter.charCodeAt(0)),unpacked2=new Blob(
+[packed]).stream().pipeThrough(new DecompressionStream("gzip")),planes=new Uint8Array(await new Response(unpacked2).arrayBuffer()),
+count=info.shape.reduce((product2,n)=>product2*n,1),width=count?planes.length/count:1,bytes=new Uint8Array(planes.length);
+for(let plane=0;plane<width;plane+=1)for(let n=0;n<count;n+=1)bytes[n*width+plane]=planes[plane*count+n];return decoded(
+info,bytes)}var NO_VALUE=-1e9;function positions(data,anchor){return anchor.some(Boolean)?data.map((x,n)=>x-anchor[n%3]):data}function grid(us,vs){
+let result2=new Float32Array(2*us.length*vs.length),n=0;for(let v2 of vs)for(let u of us)result2[n++]=u,result2[n++]=v2;
+return result2}function coordinates({shape,rows,columns}){let middles=(count,{before,size})=>Array.from({length:count},(_,n)=>(n+
+before+.5)/size);return grid(middles(shape[1],columns),middles(shape[0],rows))}function noiseCoordinates({alongI,alongJ}){
+return grid(alongI,alongJ)}function shares(steps,scalars,nodes){let result2=new Float32Array(2*nodes),place=shareOf(scalars);
+return steps.forEach((values,k)=>{for(let n=0;n<nodes;n+=1){let share=place(values[n]);result2[2*n+k]=Number.isFinite(share)?
+share:NO_VALUE}}),result2}function cornersAt([rows,columns],[i,j]){let[left,low]=[Math.min(Math.floor(i),columns-2),Math.
+min(Math.floor(j),rows-2)],[a,b]=[i-left,j-low],corner=low*columns+left,[least,most]=[Math.min(a,b),Math.max(a,b)],aside=corner+
+(a>=b?1:columns);return[[corner,1-most],[aside,most-least],[corner+columns+1,least]]}function interpolated(corners,value){
+return corners.reduce((sum,[node,share])=>sum+share*value(node),0)}var SHARES=[0,0,1,0,0,1],SHARP=.86,MOST_SHARE=1-1e-7;function atVertices(values,triangles,size){let result2=new values.constructor(
+size*triangles.length),n=0;for(let node of triangles)for(let k=size*node;k<size*node+size;k+=1)result2[n++]=values[k];return result2}
+function vertexShares(count){return Float32Array.from({length:SHARES.length*count},(_,n)=>SHARES[n%SHARES.length])}function vertexNormals(normals,positions2,triangles){
+let result2=atVertices(normals,triangles,3),at=(values,n)=>[values[3*n],values[3*n+1],values[3*n+2]];for(let n=0;n<triangles.
+length;n+=3){let[a,b,c]=[0,1,2].map(k=>at(positions2,triangles[n+k])),own=unit(cross2(subtract2(b,a),subtract2(c,a)));for(let k=n;k<
+n+3;k+=1){let normal=at(result2,k),scale3=length2(normal),alike=dot2(own,normal);Math.abs(alike)<SHARP*scale3&&result2.set(
+own.map(x=>x*(alike<0?-scale3:scale3)),3*k)}}return result2}function vertexCorners(triangles){let result2=new Float32Array(
+3*triangles.length);for(let n=0;n<result2.length;n+=1)result2[n]=triangles[3*Math.floor(n/9)+n%3];return result2}function placeIn(triangle,second,third){
+return[third,triangle+Math.min(Math.max(second,0),MOST_SHARE)]}function cornersOf(triangles,[i,j]){let number=Math.floor(
+j),[second,third]=[j-number,i];return[1-second-third,second,third].map((share,k)=>[triangles[3*number+k],share])}var TriangleMesh=class{shape;blocks;constructor(mesh,blocks){
+this.shape=[mesh.shape[0],mesh.shape[1]],this.blocks=blocks.data}levels(){return new Int8Array(this.shape[0]*this.shape[1])}triangles(levels){
+let{blocks}=this,drawn=levels.reduce((bits,level,block)=>bits|(level<0?0:1<<block),0),index=new Uint32Array(3*blocks.length),
+end=0;for(let n=0;n<blocks.length;n+=1)if(blocks[n]&drawn)for(let k=0;k<3;k+=1)index[end++]=3*n+k;return index.slice(0,end)}};function uniforms(header,settings,view,noiseShape=null){let{geometry,slices,constants}=header,s=settings,signFree=isSignFree(
+header),finest=2**(Math.floor(Math.log2(geometry.extent))-constants.noiseDoublings),w=view.eye[3],eye=toFrame(geometry.frame,
+subtract2(view.eye,scale2(geometry.center,w))),kernel=signFree&&s.kernel==="ramp"?"hann":s.kernel;return{u_eye:[...subtract2(
+eye,scale2(view.anchor,w)),w],u_between:view.between,u_slicesSize:[geometry.columns.size,geometry.rows.size],u_deepest:geometry.
+levels,u_lags:slices.lags,u_lagCount:slices.lags.length,u_sides:s.two_sided||signFree?slices.sides:1,u_unit:slices.unit,
+u_rateLayer:slices.count-1,u_cell:slices.cell,u_samples:isMoving(header,settings)?2*s.samples-1:s.samples,u_spacing:s.spacing,
+u_grain:s.grain*view.density,u_kernel:constants.kernels.indexOf(kernel),u_lod:s.lod,u_contrast:s.contrast,u_strength:s.strength,
+u_seed:s.seed,u_showLevel:s.show_level,u_fixed:s.fixed_grain,...motionUniforms(header,s,view),...noiseOrigin(header,view,
+finest),u_noiseFinest:finest,u_texel:geometry.extent/s.resolution,...header.paper&&noiseShape?paperUniforms(header.paper,
+s,noiseShape,view.density):{}}}function isMoving(header,settings){let streams=settings.motion!=="off"&&!isSignFree(header);
+return!header.paper&&(header.slices.steps>1||streams)}function isNear(header,settings,view){let{geometry,slices,constants}=header,
+s=settings,gap=Math.hypot(...subtract2(view.eye,geometry.center))-.5*geometry.extent,away=view.eye[3]?Math.max(gap,0)/Math.
+hypot(...subtract2(view.eye,view.focus)):1,grain=s.lod?view.pixel*away*s.grain*view.density:geometry.extent/s.resolution;
+return Math.floor(s.samples/2)*s.spacing*grain<constants.farCells*slices.critical}function motionUniforms(header,s,view){
+let{geometry,slices,constants}=header,varies=slices.steps>1,inPixels=!varies&&s.speed_in==="pixels",turns=varies?(view.time-
+slices.times[0])/(geometry.extent/slices.pace):(view.clock/s.period%1+1)%1,travel=varies?geometry.extent:s.speed*s.period,
+coarse=Math.floor(turns/constants.clockStep)*constants.clockStep;return{u_clock:[coarse,turns-coarse],u_travel:travel*(inPixels?
+view.density:1),u_travelInPixels:inPixels,u_travelBySpeed:varies||s.motion==="speed",u_wave:constants.wavePixels*view.density}}
+function noiseOrigin(header,view,finest){let{noiseDoublings,clearDoublings}=header.constants,{frame,center}=header.geometry,
+focus=toFrame(frame,subtract2(view.focus,center)),limit=2**(noiseDoublings-clearDoublings)-1,cells=2**clearDoublings,even=focus.
+map(x=>clamp(Math.round(x/finest/cells),-limit,limit)*cells),odd=even.map(x=>x/Math.SQRT2),whole=odd.map(x=>Math.floor(x/
+cells)*cells);return{u_noiseOrigin:even.map((x,k)=>x*finest-view.anchor[k]),u_noiseOriginEven:even,u_noiseOriginOdd:whole,
+u_noiseRestOdd:odd.map((x,k)=>x-whole[k])}}function paperUniforms(paper,s,noiseShape,density){let tiles=s.noise==="image"?
+s.tiles:1,[rows,columns]=noiseShape;return{u_noiseSize:paper.size.map(n=>n*density),u_noiseGrain:paper.grain,u_noiseDeviation:paper.
+deviations,u_noiseCorrected:paper.corrected,u_pictureSize:[columns*density*tiles,rows*density*tiles],u_pictureRound:[Number(
+paper.repeat[1]),Number(paper.repeat[0])],u_pictureGrey:noiseShape.length===2,u_tiles:tiles}}function momentOf(times2,time){
+if(times2.length<2)return[0,0,0];let step=0;for(;step<times2.length-2&&times2[step+1]<=time;)step+=1;let late=(time-times2[step])/
+(times2[step+1]-times2[step]);return[step,step+1,clamp(late,0,1)]}var POINTS_BETWEEN_SLICES=8,PATH_LENGTH=4,FEWEST_SAMPLES=10,LEAST_FACING=.05,LEAST_SLOPE=1e-6,SMALL=.001;function texelOf(scene,step){
+let{slices,geometry}=scene.header,data=scene.part(`slices/${step}`).data,extra=scene.parts.get(`extra/${step}`)?.data,count=geometry.
+rows.size*geometry.columns.size,{channels}=slices;return(layer,texel)=>{let first=(layer*count+texel)*channels,at=n=>n<channels?
+fromHalf(data[first+n]):0,place=slices.extra.indexOf(layer),fourth=channels===4||!extra||place<0?at(3):fromHalf(extra[place*
+count+texel]);return[at(0),at(1),at(2),fourth]}}function texelsAt({scene,place}){let{rows,columns,triangles}=scene.header.
+geometry;if(triangles)return scene.cornersAt(place);let[x,y]=[place[0]+columns.before,place[1]+rows.before],[left,low]=[
+Math.floor(x),Math.floor(y)],[s,t]=[x-left,y-low];return[(1-s)*(1-t),s*(1-t),(1-s)*t,s*t].map((share,n)=>{let column=clamp(
+left+(n&1),0,columns.size-1);return[clamp(low+(n>>1),0,rows.size-1)*columns.size+column,share]})}function layersAt(at){let{
+scene,moment}=at,{slices}=scene.header,texels=texelsAt(at),[before,after,late]=moment,steps=[before,after].map(step=>texelOf(
+scene,step)),shares2=[1-late,late],signs=isSignFree(scene.header)?signsOf(texels.map(([texel])=>steps[0](0,texel))):texels.
+map(()=>1);return layer=>{let sum=[0,0,0,0];return texels.forEach(([texel,weight],n)=>{let other=layer+(layer>slices.lags.
+length?-1:1)*slices.lags.length,from=signs[n]<0&&layer>0?other:layer;steps.forEach((step,k)=>{shares2[k]&&step(from,texel).
+forEach((value,c)=>{sum[c]+=weight*shares2[k]*value*(c<3?signs[n]:1)})})}),sum}}function signsOf(tangents){let together=[
+0,0,0];return tangents.map(([x,y,z])=>{let sign=dot2(together,[x,y,z])<0?-1:1;return together=add(together,[x,y,z],sign),
+sign})}function sideOf(layers,lags,first,sign,by){let[before,from]=[layers(0).slice(0,3),0],reach=layers(first+1)[3],end=Math.
+min(reach,lags[lags.length-1]),result2=[];for(let m=0;m<lags.length&&from<end;m+=1){let after=layers(first+m+1).slice(0,
+3);for(let n=1;n<=POINTS_BETWEEN_SLICES;n+=1){let share=n/POINTS_BETWEEN_SLICES,lag=Math.min(from+share*(lags[m]-from),end),
+late=(lag-from)/(lags[m]-from),slope=before.map((x,c)=>x+late*(after[c]-x));if(result2.push(scale2(slope,sign*lag*by)),lag===
+end)break}[before,from]=[after,lags[m]]}return result2}function mover({scene,place,position}){let{paper,geometry}=scene.
+header;if(!paper)return moved=>add(position,fromFrame(geometry.frame,moved));let{alongI,alongJ}=paper,here=[between(alongI,
+place[0]),between(alongJ,place[1])],start=pointAt(scene,place);return([u,v2])=>{let at=[indexOf(alongI,here[0]+u),indexOf(
+alongJ,here[1]+v2)];return at.some(Number.isNaN)?null:add(position,subtract2(pointAt(scene,at),start))}}function pointAt(scene,place){
+let{data}=scene.part("position"),corners=scene.cornersAt(place),local=[0,1,2].map(c=>interpolated(corners,n=>data[3*n+c]));
+return fromFrame(scene.header.geometry.frame,local)}function normalAt(scene,place){let{shape,triangles}=scene.header.geometry;
+if(triangles){let corner=(second,third)=>pointAt(scene,placeIn(Math.floor(place[1]),second,third));return cross2(subtract2(
+corner(1,0),corner(0,0)),subtract2(corner(0,1),corner(0,0)))}let[i,j]=place.map((n,axis)=>clamp(n,.5,shape[1-axis]-1.5)),
+at=(di,dj)=>pointAt(scene,[i+di,j+dj]);return cross2(subtract2(at(.5,0),at(-.5,0)),subtract2(at(0,.5),at(0,-.5)))}function between(values,at){
+let n=Math.min(Math.floor(at),values.length-2);return values[n]+(at-n)*(values[n+1]-values[n])}function indexOf(values,value){
+let n=values.findIndex(other=>other>=value);return n<0||value<values[0]?NaN:n===0?0:n-1+(value-values[n-1])/(values[n]-values[n-
+1])}function grainAt({scene,place,position},settings,camera,rows){let{geometry,paper}=scene.header,normal=normalAt(scene,
+place),{height,ray}=camera.at(position),facing=Math.max(Math.abs(dot2(unit(normal),ray)),LEAST_FACING),pixel=2*height/rows;
+if(paper){let[across,up]=[paper.alongI,paper.alongJ].map((along,axis)=>{let n=Math.min(Math.floor(place[axis]),along.length-
+2);return(along[n+1]-along[n])*paper.size[axis]}),texel2=Math.sqrt(length2(normal)/(across*up));return paper.grain*(settings.
+lod?Math.max(pixel/Math.sqrt(facing),texel2):texel2)}let texel=geometry.extent/Number(settings.resolution),grain=pixel/facing*
+Number(settings.grain);return settings.lod?settings.fixed_grain?Math.max(grain,texel):grain:texel}function upTo(start,side,most){
+let result2=[],[from,left]=[start,most];for(let point of side){let step=length2(subtract2(point,from));if(step>=left){left>
+0&&result2.push(add(from,subtract2(point,from),left/(step||1)));break}result2.push(point),left-=step,from=point}return result2}
+function pathThrough(at,settings,camera,rows){let{scene,position}=at,{slices,paper,speed}=scene.header,layers=layersAt(at),
+directed=!isSignFree(scene.header),base=layers(0),slope=[base[0],base[1],base[2]],moved=mover(at),small=scale2(slope,SMALL*
+(paper?1/paper.size[0]:slices.cell)/(length2(slope)||1)),along=length2(slope)>LEAST_SLOPE?subtract2(moved(small)??position,
+position):slope,velocity=scale2(unit(along),layers(2)[3]*speed.typical),whole=[],sides=settings.two_sided||!directed?slices.
+sides:1;for(let side=0;side<sides&&length2(slope)>LEAST_SLOPE;side+=1){let by=paper?1:base[3]*slices.unit,points=sideOf(
+layers,slices.lags,side*slices.lags.length,side?1:-1,by).map(moved),end=points.findIndex(point=>point===null);whole.push(
+points.slice(0,end<0?void 0:end))}let set=Number(settings.samples),samples=isMoving(scene.header,settings)?2*set-1:set,count=sides===
+2?Math.floor(samples/2):samples-1,step=Number(settings.spacing)*grainAt(at,settings,camera,rows),joined=reach=>{let[back=[],
+ahead=[]]=whole.map(side=>upTo(position,side,reach));return[...back.reverse(),position,...ahead]};return{path:joined(PATH_LENGTH*
+Math.max(count,FEWEST_SAMPLES)*step),sampled:joined(count*step),directed,velocity}}function kernelAt(x,u,c){return u.u_kernel===c.KERNEL_BOX[0]?1:u.u_kernel===c.KERNEL_RAMP[0]?u.u_sides===2?.5*(1-x):1-Math.
+abs(x):.5+.5*Math.cos(Math.PI*x)}function sideSteps(layers,side,spacing,u,c){let lags=u.u_lags,slope=layer=>layers(layer).
+slice(0,3),by=layers(0)[3]*Number(u.u_unit),first=side*lags.length,end=Math.min(layers(first+1)[3],lags[lags.length-1]),
+sign=side?1:-1,set=Number(u.u_samples),count=u.u_sides===2?Math.floor(set/2):set-1,stepAt=along=>spacing/by/Math.max(length2(
+along),c.LEAST_SPEED[0]),[before,after]=[slope(0),slope(first+1)],[from,m]=[0,0],[lag,step]=[0,stepAt(before)],result2=[];
+for(let k=1;k<=count;k+=1){lag+=step;let alive=clamp((end-lag)/step+1,0,1);if(!alive)break;for(;lag>lags[m]&&m<lags.length-
+1;m+=1)[before,from]=[after,lags[m]],after=slope(first+m+2);let bend=scale2(subtract2(after,before),1/(lags[m]-from)),at=lateness=>before.
+map((x,n)=>x+bend[n]*lateness),weight=alive*kernelAt(sign*k/(count+1),u,c);result2.push({displacement:scale2(at(lag-from),
+lag*sign*by),weight}),step=stepAt(at(2*lag-from))}return result2}function shared(apart,near,c){let total2=1;for(let m=1;m<=
+c.SHARED_TERMS[0];m+=1){let d=m*m*apart*apart;if(d>c.BELL_END[0])break;total2+=2*near**(m*m)*Math.exp(-d*(c.BELL[0]+c.BELL_BEND[0]*
+d))}return total2}var total=values=>values.reduce((sum,value)=>sum+value,0);function greyOf(value,contrast,c){return 1/(1+
+Math.exp(-c.TONE_SLOPE[0]*contrast*value))}function pixelSum({at,settings,camera,rows}){let{header}=at.scene,{geometry,slices,
+shaders}=header;if(header.paper||isMoving(header,settings))return null;let c=constantsOf(shaders.fragment),focus=camera.
+state.focal_point,view={...{eye:camera.eye,between:at.moment[2],time:slices.times[0],clock:0},focus,anchor:[0,0,0],density:1,
+pixel:1},u=uniforms(header,settings,view),grain=grainAt(at,settings,camera,rows),spacing=Number(u.u_spacing)*grain,layers=layersAt(
+at),sides=length2(layers(0).slice(0,3))>c.LEAST_SPEED[0]?[...Array(Number(u.u_sides)).keys()]:[],[back=[],ahead=[]]=sides.
+map(side=>sideSteps(layers,side,spacing,u,c)),own=Math.max(kernelAt(0,u,c),c.LEAST_WEIGHT[0]),steps=[...back.reverse(),{
+displacement:[0,0,0],weight:own},...ahead],octaves=clamp(2*Math.log2(grain/Number(u.u_noiseFinest)),0,c.LAST_OCTAVE[0]),
+octave=Math.floor(octaves),late=octaves-octave,local=toFrame(geometry.frame,subtract2(at.position,geometry.center)),noise=noiseAround(
+local,octave,geometry.planar,u,c),weights2=steps.map(({weight})=>weight),squares=total(weights2.map(weight=>weight**2)),
+pairs=weights2.slice(1).map((weight,n)=>weight*weights2[n]),near=total(pairs)/squares,apart=Number(u.u_spacing)*2**(late/
+2),shares2=[1-late,late],alone=Math.hypot(...shares2),variance=shares2.map((w,n)=>w**2*shared(apart*Math.SQRT1_2**n,near,
+c)),gain=alone*total(weights2)/Math.sqrt(squares*total(variance)),moved=mover(at),samples=steps.map(({displacement,weight})=>{
+let[fine,coarse]=noise(displacement),value=(shares2[0]*fine+shares2[1]*coarse)/alone;return{position:moved(displacement)??
+at.position,weight:weight/total(weights2),noise:value,grey:greyOf(value,1,c)}}),mean=total(samples.map(sample=>sample.weight*
+sample.noise));return{samples,middle:back.length,level:Math.log2(grain/Number(u.u_texel)),mean,gain,grey:greyOf(gain*mean,
+Number(settings.contrast),c)}}var SVG="http://www.w3.org/2000/svg",FIRST_POINT=[-.4,.5],ZOOM="zoom",SLIDERS=[["samples","Samples, K",1,49,2],["spacing",
+"Spacing, Δt",.1,3,.1],["grain","Grain, pixels",2,24,1],["seed","Another noise",0,20,1],[ZOOM,"Zoom",0,12,.25]],KERNELS={
+hann:"smooth",box:"even",ramp:"falling"},ROW=40;function row(name,count,marks){let svg=document.createElementNS(SVG,"svg");
+svg.setAttribute("viewBox",`0 0 ${count} ${ROW}`),svg.setAttribute("preserveAspectRatio","none"),svg.setAttribute("aria-\
+hidden","true");for(let{at,y,height,fill,title}of marks){let rect=document.createElementNS(SVG,"rect"),shape={x:at+.04,y,
+width:.92,height:Math.max(height,.4),fill};for(let[key,value]of Object.entries(shape))rect.setAttribute(key,`${value}`);
+let words=document.createElementNS(SVG,"title");words.textContent=title,rect.append(words),svg.append(rect)}return dom("\
+div",{class:"explained-row"},[dom("span",{},[name]),svg])}var greyText=grey=>`rgb(${Array(3).fill(Math.round(255*grey)).
+join()})`,signed=value=>`${value<0?"−":"+"}${Math.abs(value).toFixed(2)}`,Explanation=class{options;controls=dom("div",
+{class:"explained-controls"});strip=dom("div",{class:"explained-strip"});words=dom("p",{class:"explained-sum",role:"stat\
+us"});chosen=new Map;shows=new Map;viewer=null;sum=null;isBegun=!1;constructor(element){this.options={controls:!1,onFrame:()=>this.
+begin(),onCamera:()=>this.follow(),explainer:{explain:pixel=>this.tell(pixelSum(pixel)),clear:()=>{this.tell(null)}}};for(let slider of SLIDERS)
+this.controls.append(this.slider(slider));this.controls.append(this.menu(),this.box());let panel=dom("div",{class:"expla\
+ined"},[this.controls,this.strip,this.words]);element.after(panel),this.tell(null)}attach(viewer){this.viewer=viewer,this.
+isBegun=!1,viewer.setSettings(Object.fromEntries(this.chosen));for(let[name,show]of this.shows)name in viewer.settings&&
+show(viewer.settings[name]);this.shows.get(ZOOM)?.(0)}begin(){this.isBegun||(this.isBegun=!0,this.viewer?.card.choose(...FIRST_POINT))}follow(){
+let{viewer}=this;viewer?.camera&&this.shows.get(ZOOM)?.(Math.log2(viewer.camera.zoom)),viewer?.card.update()}change(name,value){
+let{viewer,sum}=this;if(name!==ZOOM&&this.chosen.set(name,value),!!viewer?.camera){if(name===ZOOM){let{camera}=viewer,point=sum?.
+samples[sum.middle].position,place=(point&&camera.project(point))??[0,0];camera.zoomBy(2**Number(value)/camera.zoom,...place),
+viewer.reportCamera()}else viewer.choose(name,value);viewer.card.update()}}slider([name,label,low,high,step]){let range={
+min:`${low}`,max:`${high}`,step:`${step}`},input=dom("input",{type:"range","data-setting":name,...range}),output=dom("ou\
+tput"),write=value=>{output.textContent=name===ZOOM?`×${numberText(2**value,2)}`:numberText(value,2)};return input.addEventListener(
+"input",()=>{write(input.valueAsNumber),this.change(name,input.valueAsNumber)}),this.shows.set(name,value=>{input.value=
+String(value),write(Number(value))}),dom("label",{},[dom("span",{},[label]),output,input])}menu(){let options=Object.entries(
+KERNELS).map(([value,name])=>dom("option",{value},[name])),input=dom("select",{"data-setting":"kernel"},options);return input.
+addEventListener("change",()=>this.change("kernel",input.value)),this.shows.set("kernel",value=>{input.value=String(value)}),
+dom("label",{},[dom("span",{},["Kernel"]),input])}box(){let input=dom("input",{type:"checkbox","data-setting":"lod"});return input.
+addEventListener("change",()=>this.change("lod",input.checked)),this.shows.set("lod",value=>{input.checked=!!value}),dom(
+"label",{class:"explained-box"},[input,dom("span",{},["Level of detail"])])}tell(sum){if(this.sum=sum,!sum)return this.words.
+replaceChildren("Click a point of the picture."),this.strip.replaceChildren(),[];let{samples,mean,gain,grey,level}=sum,most=Math.
+max(...samples.map(({weight})=>weight)),products=samples.map(({weight,noise})=>weight*noise),largest=Math.max(...products.
+map(Math.abs),1e-9),marks=mark=>samples.map(({weight,noise},at)=>{let title=`sample ${at-sum.middle}: weight ${weight.toFixed(
+3)}, noise ${signed(noise)}`;return{at,title,...mark(at)}}),noises=marks(n=>({y:0,height:ROW,fill:greyText(samples[n].grey)})),
+weights2=marks(n=>{let height=samples[n].weight/most*ROW;return{y:ROW-height,height,fill:"currentColor"}}),both=marks(n=>{
+let height=Math.abs(products[n])/largest*ROW/2;return{y:products[n]>0?ROW/2-height:ROW/2,height,fill:"currentColor"}}),ends=dom(
+"div",{class:"explained-ends"},[dom("span",{},["← where the particle was"]),dom("span",{},["where it will be →"])]);
+this.strip.replaceChildren(row("noise",samples.length,noises),row("weight",samples.length,weights2),row("product",samples.
+length,both),ends);let swatch=dom("span",{class:"explained-pixel"});return swatch.style.background=greyText(grey),this.words.
+replaceChildren(`${samples.length} samples at level ${level.toFixed(1)}. Sum of the products: ${signed(mean)}; `,`times ${gain.
+toFixed(2)}, so that the contrast is the same for every K: `,dom("strong",{},[signed(gain*mean)]),", this grey: ",swatch),
+samples}};var ROOT="",PLACE=5,nameOf=key=>key.join("/"),keyOf=name=>name.split("/").map(Number);function cellPixels(pyramid,settings){
+let[samples,spacing,grain]=["samples","spacing","grain"].map(s=>Number(settings[s])),streak=.5*samples*spacing*grain;return pyramid.
+cellPixels*Math.max(1,2*streak/(pyramid.cellPixels*pyramid.pathCells))}var Pyramid=class{header;places=[];constructor(header,places){
+this.header=header;let start=0;for(let[rows,columns]of header.blocks){let end=start+PLACE*rows*columns;this.places.push(
+places.subarray(start,end)),start=end}}blocksOf(name,[level,row2,column]){let[rows,columns]=this.header.blocks[level];if(name===
+ROOT)return[0,0,rows,columns];let{tileBlocks:size}=this.header,ends=[Math.min(size*(row2+1),rows),Math.min(size*(column+
+1),columns)];return[size*row2,size*column,...ends]}children(name,[level,row2,column]){let{blocks,tileBlocks}=this.header,
+counts=blocks[level-1].map(n=>Math.ceil(n/tileBlocks)),[from,to]=name===ROOT?[[0,0],counts]:[[2*row2,2*column],[row2,column].
+map((n,k)=>Math.min(2*n+2,counts[k]))],keys=[];for(let j=from[0];j<to[0];j+=1)for(let i=from[1];i<to[1];i+=1)keys.push([
+level-1,j,i]);return keys}finerPart([,row2,column],above){let{tileBlocks}=this.header,half=tileBlocks/2,[,j,i]=above===ROOT?
+[0,0,0]:keyOf(above);return[half*row2-tileBlocks*j,half*column-tileBlocks*i,half]}choose(view){let chosen=new Map,{depth,
+finest}=this.header,waiting=[ROOT];for(let name of waiting){let key=name===ROOT?[depth,0,0]:keyOf(name),choice={key,needed:!1,
+pixels:0,finer:[]},[top,left,bottom,right]=this.blocksOf(name,key),width=this.header.blocks[key[0]][1],coarse=new Set;for(let j=top;j<
+bottom;j+=1)for(let i=left;i<right;i+=1){let at=PLACE*(j*width+i),place=this.places[key[0]].subarray(at,at+PLACE);if(!isSeen(
+view,place))continue;let pixels=cellSize(view,place);key[0]>finest&&pixels>view.cellPixels?coarse.add(j*width+i):choice.
+needed=!0,coarse.has(j*width+i)||(choice.pixels=Math.max(choice.pixels,pixels))}coarse.size&&(choice.finer=this.children(
+name,key).filter(child=>{let[row2,column,size]=this.finerPart(child,ROOT);return[...coarse].some(block=>{let[j,i]=[Math.
+floor(block/width)-row2,block%width-column];return j>=0&&j<size&&i>=0&&i<size})}).map(nameOf)),chosen.set(name,choice),waiting.
+push(...choice.finer)}return chosen}};function isSeen({planes},[x,y,z,radius]){return planes.every(p=>dot2(p,[x,y,z])+p[3]>=
+-radius*length2(p.slice(0,3)))}function cellSize({eye,halfHeight,pixels},[x,y,z,radius,size]){let away=eye?Math.max(length2(
+subtract2([x,y,z],eye))-radius,size):1;return size*.5*pixels/(halfHeight*away)}function wantedTiles(chosen){return[...chosen].
+filter(([name,{needed}])=>name!==ROOT&&needed).sort(([,a],[,b])=>b.pixels-a.pixels).map(([name])=>name)}function cover(chosen,ready){
+let shown=new Map,hide=name=>{shown.delete(name),chosen.get(name)?.finer.forEach(hide)},covered=name=>{let{needed=!1,finer=[]}=chosen.
+get(name)??{},done=finer.filter(covered);return name!==ROOT&&!needed&&done.length===finer.length?!0:name!==ROOT&&!ready(
+name)?(done.forEach(hide),!1):(shown.set(name,done),!0)};return covered(ROOT),shown}function fullIndex(place,level,nodes){
+let line=n=>Math.min(n*2**level,nodes-1),low=Math.floor(place);return line(low)+(place-low)*(line(low+1)-line(low))}var TileQueue=class{load;give;most;fail;running=new Map;wanted=[];constructor(load,give,most=1,fail=(_,error)=>{throw error}){
+this.load=load,this.give=give,this.most=most,this.fail=fail}request(keys,steps){this.want(keys.map(key=>[key,steps]))}want(jobs){
+this.wanted=[...jobs];let names=new Set(jobs.map(([key,steps])=>`${nameOf(key)} ${steps}`));for(let[name,controller]of this.
+running)names.has(name)||controller.abort();this.next()}next(){for(;this.wanted.length&&this.running.size<this.most;){let[
+key,steps]=this.wanted[0];this.wanted.shift();let name=`${nameOf(key)} ${steps}`;this.running.has(name)||this.run(name,key,
+steps)}}async run(name,key,steps){let controller=new AbortController;this.running.set(name,controller);try{let parts=await this.
+load(key,steps,controller.signal);controller.signal.aborted||parts.forEach(this.give)}catch(error){controller.signal.aborted||
+this.fail(key,error)}finally{this.running.delete(name),this.next()}}};var OWN="own cmap",SRGB={knee:.04045,slope:12.92,offset:.055,scale:1.055,power:2.4};function coloursOf(header){let{scalars,
+colour,background,lighting,opacity,earth}=header;return{scalars,colour,background,lighting,opacity,earth}}function narrowed(mesh,from,to){
+let share=to.name===from.name?(to.high-to.low)/(from.high-from.low||1):1;return{...mesh,maxColourError:mesh.maxColourError*
+Math.min(share,1)}}function mapOf(header,maps,name){let[first,count]=[header.scalars.maps.indexOf(name)*3*256,256],table=new Uint8Array(
+4*count).fill(255);for(let n=0;n<count;n+=1)for(let k=0;k<3;k+=1)table[4*n+k]=maps[first+3*n+k];return table}function recoloured(header,choice,parts){
+let scalars={...header.scalars};choice.scalars===!1&&(scalars.name=null);let number=scalars.choices.findIndex(({name})=>name===
+choice.scalars);if(number>=0){let{name,label,unit:unit2,steps}=scalars.choices[number];Object.assign(scalars,{name,label,
+unit:unit2,steps,number,auto:!0})}if(choice.cmap&&(scalars.cmap=choice.cmap),choice.clim&&([scalars.low,scalars.high]=choice.
+clim),choice.clim!==void 0&&(scalars.auto=!choice.clim),scalars.auto&&scalars.choices[scalars.number]){let{low,high}=scalars.
+choices[scalars.number],widest=low<0&&high>0&&scalars.diverging.includes(scalars.cmap),end=Math.max(-low,high);[scalars.
+low,scalars.high]=widest?[-end,end]:[low,high]}let mesh=narrowed(header.mesh,header.scalars,scalars),{coastlines=header.
+earth?.coastlines,graticule=header.earth?.graticule}=choice,earth=header.earth&&{...header.earth,coastlines,graticule},colours={
+scalars,mesh,earth},maps=parts.get("maps");if(!choice.cmap||!maps)return{colours,part:null};let part={name:"cmap",data:mapOf(
+header,maps.data,choice.cmap),shape:[256,4],digest:`${OWN} ${choice.cmap}`};return{colours,part}}var toLinear=c=>c<SRGB.
+knee?c/SRGB.slope:((c+SRGB.offset)/SRGB.scale)**SRGB.power;function fromLinear(x){let c=clamp(x,0,1);return c<SRGB.knee/
+SRGB.slope?c*SRGB.slope:SRGB.scale*c**(1/SRGB.power)-SRGB.offset}var times=(v2,m)=>[0,1,2].map(k=>v2[0]*m[k]+v2[1]*m[3+k]+
+v2[2]*m[6+k]);function meanColour(colour,settings,shading){let{values}=shading,[[dark,light],[range,slope]]=[shading.base,
+shading.tone],[strength,contrast]=[Number(settings.strength),Number(settings.contrast)],cones=times(colour.map(c=>toLinear(
+c/255)),shading.toCones).map(Math.cbrt),[lightness,a,b]=times(cones,shading.toLab),base=lightness+strength*(dark+(light-
+dark)*lightness-lightness),mean=[0,0,0];return values.forEach(value=>{let tone=2/(1+Math.exp(-slope*contrast*value))-1,shown=clamp(
+base+range*strength*tone,0,1),room=shown<base?shown/base:(1-shown)/Math.max(1-base,1e-6),roots=times([shown,a*room,b*room],
+shading.fromLab);times(roots.map(x=>x**3),shading.fromCones).forEach((x,k)=>mean[k]+=255*fromLinear(x)/values.length)}),
+mean}function rampOf(map,header,settings,stops){return`linear-gradient(90deg, ${Array.from({length:stops},(_,n)=>{let first=4*
+Math.round(n/(stops-1)*255),colour=[...map.slice(first,first+3)];return`rgb(${(header.paper?.picture??!1?colour:meanColour(
+colour,settings,header.constants.shading)).map(Math.round).join(" ")})`}).join(", ")})`}var NORTH=[0,0,1],STEEPEST=Math.sin(89*Math.PI/180),LEAST_COSINE=.2,tangent=degrees=>Math.tan(degrees*Math.PI/360),Camera=class{flat;limits;aspect;state;start;pick=null;globe;homeHeight;nearest;constructor(state,limits,flat,aspect=1,globe=0){
+this.state=copyOf(state),this.start=copyOf(state),this.limits=limits,this.flat=flat,this.globe=globe,this.aspect=aspect,
+this.homeHeight=this.height,this.nearest=this.distance/limits.closest}get height(){let{parallel,parallel_scale:half,view_angle:angle}=this.
+state;return parallel?half:this.distance*tangent(angle)}get distance(){return length2(subtract2(this.state.focal_point,this.
+state.position))}get zoom(){return this.homeHeight/this.height}get axes(){let ahead=unit(subtract2(this.state.focal_point,
+this.state.position)),right=unit(cross2(ahead,this.state.up));return[right,cross2(right,ahead),ahead]}sight(pixels){let{
+parallel,position,view_angle:angle}=this.state;return parallel?{eye:null,halfHeight:this.height,pixels}:{eye:position,halfHeight:tangent(
+angle),pixels}}get planes(){let[right,up,ahead]=this.axes,{parallel,parallel_scale:half,view_angle:angle}=this.state,{position,
+focal_point:focus}=this.state,tall=parallel?half:tangent(angle);return[right,scale2(right,-1),up,scale2(up,-1)].map((side,n)=>{
+let size=n<2?tall*this.aspect:tall;if(parallel)return[...side,size-dot2(side,focus)];let normal=add(side,ahead,size);return[
+...normal,-dot2(normal,position)]})}get eye(){return this.state.parallel?[...scale2(this.axes[2],-1),0]:[...this.state.position,
+1]}at(point){let ahead=this.axes[2];if(this.state.parallel)return{height:this.height,ray:ahead};let way=subtract2(point,
+this.state.position);return{height:dot2(way,ahead)*tangent(this.state.view_angle),ray:unit(way)}}project(point){let[right,
+up]=this.axes,{height}=this.at(point);if(!(height>0))return null;let{parallel,position,focal_point:focus}=this.state,way=subtract2(
+point,parallel?focus:position);return[dot2(right,way)/height/this.aspect,dot2(up,way)/height]}pan(dx,dy){let[right,up]=this.
+axes,{height}=this;this.shift(add(scale2(right,dx*this.aspect*height),up,dy*height))}rotate(dx,dy){if(this.globe)return this.
+roam(dx,dy);let{state,limits}=this,up=unit(state.up),back=subtract2(state.position,state.focal_point);back=rotated(back,
+up,-limits.turn*dx*Math.min(this.aspect,limits.widest_turn));let right=unit(cross2(up,back));back=rotated(back,right,limits.
+turn*dy),state.position=add(state.focal_point,back),state.up=unit(cross2(back,right))}roam(dx,dy){let{state,limits,globe}=this,
+away=length2(state.position),above=Math.max(away-globe,0)*tangent(state.view_angle),height=state.parallel?state.parallel_scale:
+above,degrees=Math.min(height/globe*180/Math.PI,limits.turn),cosine=Math.hypot(state.position[0],state.position[1])/away,
+aside=Math.min(degrees*this.aspect/Math.max(cosine,LEAST_COSINE),limits.turn);this.turn(NORTH,-aside*dx);let[right]=this.
+axes,steep=Math.abs(state.position[2])/away,before=copyOf(state);this.turn(right,degrees*dy),Math.abs(state.position[2])/
+away>Math.max(STEEPEST,steep)&&(this.state=before);let[,,ahead]=this.axes,upward=add(NORTH,ahead,-dot2(NORTH,ahead));length2(
+upward)>1-STEEPEST&&(this.state.up=unit(upward))}turn(axis,degrees){let{state}=this;for(let name of["position","focal_po\
+int","up"])state[name]=rotated(state[name],axis,degrees)}zoomBy(factor,x=0,y=0){if(!Number.isFinite(factor)||factor<=0)return;
+this.flat||this.focusAt(x,y);let{farthest_zoom:farthest,deepest_zoom:deepest}=this.limits,by=clamp(factor,farthest/this.
+zoom,deepest/this.zoom),[right,up,ahead]=this.axes,height=this.height*(1-1/by);this.shift(add(scale2(right,x*this.aspect*
+height),up,y*height)),this.state.parallel?this.state.parallel_scale/=by:this.approach(this.height/by,ahead)}ray(x,y){let[
+right,up,ahead]=this.axes,{height,state}=this,there=add(add(state.focal_point,right,x*this.aspect*height),up,y*height);return state.
+parallel?[add(there,ahead,-this.distance),ahead]:[add(state.position,[0,0,0]),unit(subtract2(there,state.position))]}approach(height,ahead){
+let distance=Math.max(height/tangent(this.limits.view_angle),this.nearest);this.state.position=add(this.state.focal_point,
+ahead,-distance),this.state.view_angle=Math.atan(height/distance)*360/Math.PI}focusAt(x,y){let point=this.pick?.(x,y);if(!point)
+return;let ahead=this.axes[2],depth=dot2(subtract2(point,this.state.position),ahead);depth>0&&(this.state.focal_point=add(
+this.state.position,ahead,depth))}shift(by){this.state.focal_point=add(this.state.focal_point,by),this.state.position=add(
+this.state.position,by)}};function copyOf(state){let{position,focal_point:focus,up}=state;return{...state,position:[...position],
+focal_point:[...focus],up:[...up]}}function fitted(surface,limits,positions2,aspect){let{center,extent,planar,frame}=surface,
+half=tangent(limits.view_angle),back=planar?fromFrame(frame,[0,0,1]):unit([1,1,1]),up=planar?fromFrame(frame,[0,1,0]):[0,
+0,1],right=unit(cross2(up,back)),rows=[right,cross2(back,right),back].map(row2=>toFrame(frame,row2)),[low,high]=[[1/0,1/0],
+[-1/0,-1/0]],distance=0;for(let n=0;n<positions2.length;n+=3){let node=[positions2[n],positions2[n+1],positions2[n+2]];if(!Number.
+isFinite(node[0]))continue;let[x,y,z]=rows.map(row2=>dot2(row2,node));[x,y].forEach((value,k)=>{low[k]=Math.min(low[k],value),
+high[k]=Math.max(high[k],value)});let wide=Math.max(Math.abs(x)/aspect,Math.abs(y));distance=Math.max(distance,z+wide/half/
+(1-2*limits.margin))}let tall=Math.max(high[1]-low[1],(high[0]-low[0])/aspect,1e-12*extent);return{position:add(center,back,
+planar?extent:distance),focal_point:[...center],up,parallel:planar,parallel_scale:.5*tall/(1-2*limits.margin),view_angle:limits.
+view_angle}}function widened(surface,limits,state,positions2,aspect){let{center,extent,planar}=surface,camera=copyOf(state);
+if(length2(subtract2(state.focal_point,center))>.001*extent)return camera;if(planar&&state.parallel){let[high,all]=[1e9,
+aspect].map(shape=>fitted(surface,limits,positions2,shape).parallel_scale);state.parallel_scale>.98*high&&(camera.parallel_scale=
+Math.max(state.parallel_scale,all))}else if(!state.parallel&&state.view_angle>.9*limits.view_angle){let back=subtract2(state.
+position,state.focal_point);camera.position=add(state.focal_point,back,Math.max(1,limits.aspect/aspect))}return camera}function isSamePlace(a,b){
+let near=length2(subtract2(a.center,b.center))<.1*a.extent,ratio=a.extent/b.extent;return a.planar===b.planar&&near&&ratio>
+.8&&ratio<1.25}function projection(surface,camera,anchor){let{state,aspect}=camera,{center,extent,frame}=surface,[right,
+up,ahead]=camera.axes.map(axis=>toFrame(frame,axis)),local=point=>subtract2(toFrame(frame,subtract2(point,center)),anchor),
+focus=local(state.focal_point),middle=scale2(anchor,-1),radius=.51*extent,m=new Array(16).fill(0),half=state.parallel?state.
+parallel_scale:tangent(state.view_angle);if([right.map(c=>c/half/aspect),up.map(c=>c/half)].forEach((row2,k)=>{for(let n=0;n<
+3;n+=1)m[4*n+k]=row2[n];m[12+k]=-dot2(row2,focus)}),state.parallel){for(let n=0;n<3;n+=1)m[4*n+2]=ahead[n]/radius;return m[14]=
+-dot2(ahead,middle)/radius,m[15]=1,m}let eye=local(state.position),depth=dot2(subtract2(middle,eye),ahead),far=Math.max(
+depth+radius,.001*radius),near=Math.max(depth-radius,.001*far),a=(far+near)/(far-near),b=-2*far*near/(far-near);for(let n=0;n<
+3;n+=1)m[4*n+2]=ahead[n]*a,m[4*n+3]=ahead[n];return m[15]=-dot2(ahead,eye),m[14]=m[15]*a+b,m}function atPixel(matrix,[x,
+y],[width,height]){let m=[...matrix];for(let n=0;n<4;n+=1)m[4*n]=(m[4*n]-x*m[4*n+3])*width,m[4*n+1]=(m[4*n+1]-y*m[4*n+3])*
+height;return m}var PIXEL_COST=8,DRAFT_SAMPLES=9,COARSEST_SCALE=.2,DRAFT_SPACING=1.4,FEWEST_ROWS=4,FIRST_PRICE_MS=4e-5,CARD_PRICE_MS=2e-6;
+function quality(price,fixed,pixels,samples,budget){let room=Math.max(budget-fixed,2)/price;if(pixels*(samples+PIXEL_COST)<=
+room)return{scale:1,samples};let fewer=Math.min(DRAFT_SAMPLES,samples),scale3=Math.sqrt(room/(fewer+PIXEL_COST)/pixels);
+return scale3<1?{scale:Math.max(scale3,COARSEST_SCALE),samples:fewer}:{scale:1,samples:clamp(Math.floor(room/pixels-PIXEL_COST),
+fewer,samples)}}function rowsIn(budget,price,fixed,width,samples){let row2=price*width*(samples+PIXEL_COST);return Math.
+max(Math.floor(Math.max(budget-fixed,fixed)/row2),FEWEST_ROWS)}function motionFactor(samples){return(2*samples+PIXEL_COST)/
+(samples+PIXEL_COST)}function learnedPrice(price,spent,fixed,pixels,samples,factor){let latest=Math.max(spent-fixed,.05)/
+(pixels*(samples+PIXEL_COST)*factor);return price+(latest-price)*(latest>price?.7:.3)}function draftUniforms(settings,samples,density){
+let[grain,spacing,all]=[settings.grain,settings.spacing,settings.samples].map(Number),drawn=Math.max(grain*density,Math.
+min(grain,1)),stretched=all*spacing*grain*density/(samples*drawn);return{u_grain:drawn,u_spacing:clamp(stretched,.1,Math.
+max(DRAFT_SPACING,spacing))}}var PREAMBLE=`#version 300 es
+precision highp float;
+precision highp int;
+`,ATTRIBUTES=["flowtexPosition","flowtexCoordinate","flowtexNormal","flowtexNoise","flowtexScalar","flowtexCorners"],SAMPLERS=[
+"u_slices","u_slicesNext","u_noiseImage","u_stepImage","u_cmap"],Programs=class{graphics;entries=new Map;parallel=null;constructor(graphics){
+this.graphics=graphics}findFeatures(){this.parallel=this.graphics.context.getExtension("KHR_parallel_shader_compile")}clear(){
+this.entries.clear()}dispose(){for(let entry of this.entries.values()){for(let shader of entry.shaders)this.graphics.free(
+"Shader",shader);this.graphics.free("Program",entry.program)}this.clear()}get(vertex,fragment,...defines){let key=[vertex,
+fragment,...defines].join("\0"),entry=this.entries.get(key);return entry||this.entries.set(key,entry=this.build(vertex,fragment,
+defines)),!entry.ready&&!entry.error&&this.finish(entry),entry}build(vertex,fragment,defines){let{graphics}=this,gl=graphics.
+context,program=graphics.counted(gl.createProgram()),kinds=[gl.VERTEX_SHADER,gl.FRAGMENT_SHADER],preamble=PREAMBLE+defines.
+map(name=>`#define ${name}
+`).join(""),shaders=[vertex,fragment].map((source,n)=>{let shader=graphics.counted(gl.createShader(kinds[n]));return gl.
+shaderSource(shader,source.startsWith("#version")?source:preamble+source),gl.compileShader(shader),gl.attachShader(program,
+shader),shader});return ATTRIBUTES.forEach((name,n)=>gl.bindAttribLocation(program,n,name)),gl.linkProgram(program),{program,
+shaders,uniforms:new Map,...{ready:!1,error:"",warm:!1,price:FIRST_PRICE_MS}}}finish(entry){let gl=this.graphics.context,
+{program}=entry,done=this.parallel?.COMPLETION_STATUS_KHR;if(done&&!gl.getProgramParameter(program,done))return;if(!gl.getProgramParameter(
+program,gl.LINK_STATUS)){if(gl.isContextLost())return;let log=[...entry.shaders.map(shader=>gl.getShaderInfoLog(shader)),
+gl.getProgramInfoLog(program)].filter(Boolean).join(`
+`);entry.error=log||"the driver gave no reason";return}for(let shader of entry.shaders)this.graphics.free("Shader",shader);
+entry.shaders=[];let count=gl.getProgramParameter(program,gl.ACTIVE_UNIFORMS);for(let n=0;n<count;n+=1){let info=gl.getActiveUniform(
+program,n),location=info&&gl.getUniformLocation(program,info.name);!info||!location||entry.uniforms.set(info.name.replace(
+/\[0\]$/,""),{location,type:info.type})}gl.useProgram(program),SAMPLERS.forEach((name,n)=>{let sampler=entry.uniforms.get(
+name);sampler&&gl.uniform1i(sampler.location,n)}),entry.ready=!0}use(entry,values){let gl=this.graphics.context;gl.useProgram(
+entry.program);for(let[name,value]of Object.entries(values)){let uniform=entry.uniforms.get(name);if(!uniform)continue;let{
+location,type}=uniform,numbers=typeof value=="object"?value:[Number(value)];type===gl.FLOAT?gl.uniform1fv(location,numbers):
+type===gl.FLOAT_VEC2?gl.uniform2fv(location,numbers):type===gl.FLOAT_VEC3?gl.uniform3fv(location,numbers):type===gl.FLOAT_VEC4?
+gl.uniform4fv(location,numbers):type===gl.FLOAT_MAT4?gl.uniformMatrix4fv(location,!1,numbers):gl.uniform1i(location,numbers[0])}}};var OUTLINE_SAMPLES=4,FRAME_MS=45,SHARED=Symbol.for("flowtex.gl/3"),Graphics=class{canvas=document.createElement("canvas");gl;programs;users=new Set;waiting=new Set;common=new Map;stock=new Map;objects=0;isLost=!1;floats=!1;scheduled=0;picker=null;smooth=null;constructor(){
+this.canvas.width=this.canvas.height=16,this.gl=this.canvas.getContext("webgl2",{alpha:!0,antialias:!1,powerPreference:"\
+high-performance"}),this.programs=new Programs(this),this.findFeatures(),this.canvas.addEventListener("webglcontextlost",
+event=>{event.preventDefault(),this.isLost=!0,this.objects=0,this.programs.clear(),this.common.clear(),this.picker=this.
+smooth=null;for(let user of this.users)user.lost()}),this.canvas.addEventListener("webglcontextrestored",()=>{this.isLost=
+!1,this.findFeatures();for(let user of this.users)user.change()})}findFeatures(){let{gl}=this;if(!gl)return;let extensions=[
+"EXT_color_buffer_float","EXT_color_buffer_half_float"];this.floats=extensions.some(name=>gl.getExtension(name)!==null),
+this.programs.findFeatures()}get context(){if(!this.gl)throw new Error("there is no WebGL2");return this.gl}leave(user){
+if(this.users.delete(user),this.waiting.delete(user),!this.users.size){cancelAnimationFrame(this.scheduled),this.scheduled=
+0,this.programs.dispose();for(let target of[this.picker,this.smooth])target&&this.freeTarget(target);this.picker=this.smooth=
+null,this.canvas.width=this.canvas.height=16}}request(user){this.waiting.add(user),this.scheduled||=requestAnimationFrame(
+now=>this.run(now))}run(now){this.scheduled=0;let until=performance.now()+FRAME_MS;for(let user of[...this.waiting])if(this.
+waiting.delete(user),user.frame(now,until),performance.now()>until)break;this.waiting.size&&(this.scheduled||=requestAnimationFrame(
+then=>this.run(then)))}counted(object){if(object===null)throw new Error("the graphics card has no memory left, or the co\
+ntext is lost");return this.objects+=1,object}free(kind,object){if(object===null||this.isLost||!this.gl)return;this.objects-=
+1,this.gl[`delete${kind}`](object)}hold(part){if(!part.digest)return part;let entry=this.stock.get(part.digest)??{part,users:0};
+return this.stock.set(part.digest,{...entry,users:entry.users+1}),entry.part}release(part){let entry=part&&this.stock.get(
+part.digest);!part||!entry||(entry.users-=1,entry.users||this.stock.delete(part.digest))}target(format,width,height,samples){
+let gl=this.context,frame=this.counted(gl.createFramebuffer());gl.bindFramebuffer(gl.FRAMEBUFFER,frame);let buffers=[[format,
+gl.COLOR_ATTACHMENT0],[gl.DEPTH_COMPONENT24,gl.DEPTH_ATTACHMENT]].map(([kind,attachment])=>{let buffer=this.counted(gl.createRenderbuffer());
+return gl.bindRenderbuffer(gl.RENDERBUFFER,buffer),gl.renderbufferStorageMultisample(gl.RENDERBUFFER,samples,kind,width,
+height),gl.framebufferRenderbuffer(gl.FRAMEBUFFER,attachment,gl.RENDERBUFFER,buffer),buffer});return{frame,buffers}}freeTarget(target){
+this.free("Framebuffer",target.frame);for(let buffer of target.buffers)this.free("Renderbuffer",buffer)}bindSmooth(width,rows){
+let gl=this.context,old=this.smooth;if(!old||old.width<width||old.height<rows){let[w,h]=[Math.max(width,old?.width??0),Math.
+max(rows,old?.height??0)];old&&this.freeTarget(old);let target=this.target(gl.RGBA8,w,h,OUTLINE_SAMPLES);this.smooth={...target,
+width:w,height:h}}gl.bindFramebuffer(gl.FRAMEBUFFER,this.smooth?.frame??null)}copySmooth(width,rows){let gl=this.context;
+gl.bindFramebuffer(gl.READ_FRAMEBUFFER,this.smooth?.frame??null),gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER,null),gl.disable(
+gl.SCISSOR_TEST),gl.blitFramebuffer(0,0,width,rows,0,0,width,rows,gl.COLOR_BUFFER_BIT,gl.NEAREST),gl.bindFramebuffer(gl.
+FRAMEBUFFER,null)}pixel(draw){let gl=this.context;this.picker??=this.target(gl.RGBA32UI,1,1,0),gl.bindFramebuffer(gl.FRAMEBUFFER,
+this.picker.frame),gl.viewport(0,0,1,1),gl.disable(gl.SCISSOR_TEST),gl.enable(gl.DEPTH_TEST),gl.clearBufferuiv(gl.COLOR,
+0,[0,0,0,0]),gl.clear(gl.DEPTH_BUFFER_BIT),draw();let bits=new Uint32Array(4);return gl.readPixels(0,0,1,1,gl.RGBA_INTEGER,
+gl.UNSIGNED_INT,bits),gl.bindFramebuffer(gl.FRAMEBUFFER,null),bits}};function sharedGraphics(){let page=globalThis;return page[SHARED]??=
+new Graphics}function linesOf(steps,{low,size}){let lines=[],place=[0,0,0];for(let n=0;n<steps.length;n+=4){steps[n+3]&&lines.push([]);
+let point=place.map((_,k)=>(place[k]=place[k]+steps[n+k]&65535,low[k]+place[k]/65535*size[k]));lines[lines.length-1].push(
+point)}return lines}function thinned(lines,spacing){return spacing?lines.flatMap(line=>{let along=0,kept=line.filter((point,n)=>{
+let before=along;return n&&(along+=Math.hypot(...point.map((x,k)=>x-line[n-1][k]))),Math.floor(along/spacing)>Math.floor(
+before/spacing)||n===0||n===line.length-1});return along<spacing?[]:[kept]}):lines}function linePoints(lines,anchor){let size=lines.
+reduce((count,line)=>count+line.length+1,0),points=new Float32Array(3*size).fill(1e30),n=0;for(let line of lines){n+=3;for(let point of line)
+for(let k=0;k<3;k+=1)points[n++]=point[k]-anchor[k]}return points}function pieceGroups(points){let groups=[],pieces=points.
+length/3-1;for(let first=0;first<pieces;first+=256){let count=Math.min(256,pieces-first),[low,high]=[[1/0,1/0,1/0],[-1/0,
+-1/0,-1/0]];for(let n=3*first;n<3*(first+count+1);n+=1)points[n]!==Math.fround(1e30)&&(low[n%3]=Math.min(low[n%3],points[n]),
+high[n%3]=Math.max(high[n%3],points[n]));let middle=low.map((least,k)=>(least+high[k])/2),radius=Math.hypot(...low.map((least,k)=>(high[k]-
+least)/2));groups.push({first,count,middle,radius})}return groups}function visibleRuns(groups,planes){let runs=[];for(let{
+first,count,middle:[x,y,z],radius}of groups){let isOut=([a,b,c,d])=>a*x+b*y+c*z+d<-radius*Math.hypot(a,b,c);if(planes.some(
+isOut))continue;let last=runs[runs.length-1];last&&last[0]+last[1]===first?last[1]+=count:runs.push([first,count])}return runs}var POINT_BYTES=12,PIECE_ENDS=2;function groundAt({earth,geometry},camera,x,y){if(!earth)return null;let[start,along]=camera.
+ray(x,y);if(earth.map){let across=fromFrame(geometry.frame,[0,0,1]),depth2=dot2(subtract2(geometry.center,start),across)/
+dot2(along,across),place=add(start,along,depth2),[x0,y0,x1,y1]=earth.map;return place[0]>=x0&&place[0]<=x1&&place[1]>=y0&&
+place[1]<=y1?place:null}let nearest=dot2(start,along),square=nearest**2-dot2(start,start)+earth.radius**2,depth=-nearest-
+Math.sqrt(square);return depth>0?add(start,along,depth):null}var EarthLayer=class{version=0;graphics;header;parts;drawn=new Map;constructor(graphics,header,parts){
+this.graphics=graphics,this.header=header,this.parts=parts}forget(name){this.version+=1,this.drop(name==="position"?"lan\
+d":name)}dispose(){for(let name of[...this.drawn.keys()])this.drop(name)}drop(name){let drawn=this.drawn.get(name);if(drawn){
+for(let buffer of drawn.buffers)this.graphics.free("Buffer",buffer);this.graphics.free("VertexArray",drawn.array),this.drawn.
+delete(name)}}get lines(){let{earth}=this.header;return earth?EARTH_LINES.filter(name=>earth[name]&&this.parts.has(name)):
+[]}drawLines(view,take){let{header,graphics}=this,{earth,shaders}=header,program=graphics.programs.get(shaders.lineVertex,
+shaders.lineFragment);if(!earth||!program.ready)return;let gl=graphics.context,{camera,anchor,width,height,ratio}=view;gl.
+bindFramebuffer(gl.FRAMEBUFFER,null),gl.viewport(0,0,width,height),gl.enable(gl.SCISSOR_TEST),gl.scissor(0,0,width,height),
+gl.disable(gl.DEPTH_TEST),gl.enable(gl.BLEND),gl.blendEquation(gl.MAX),gl.clearColor(0,0,0,0);let horizon=this.horizon(camera),
+local=[...camera.planes,...horizon?[horizon]:[]].map(plane=>this.localPlane(plane,anchor)),pixel=2*camera.height*ratio/height,
+wider=clamp(Math.sqrt(height/ratio/earth.usualHeight),...earth.widthRange),most=earth.spacingPixels*pixel,spacing=earth.
+spacings.find(each=>each<=most)??0;for(let{option,color,opacity,width:thickness}of earth.strokes){if(!this.lines.includes(
+option))continue;gl.clear(gl.COLOR_BUFFER_BIT);let drawn=this.take(option,anchor,()=>this.linesOf(option,anchor,spacing),
+spacing);graphics.programs.use(program,{u_matrix:projection(header.geometry,camera,anchor),u_picture:[width,height],u_width:thickness*
+wider*ratio,u_lineColour:[...color,opacity],u_horizon:horizon?local[local.length-1]:[0,0,0,1]}),gl.bindVertexArray(drawn.
+array),gl.bindBuffer(gl.ARRAY_BUFFER,drawn.buffers[0]);for(let[first,count]of visibleRuns(drawn.groups,local)){for(let n=0;n<
+PIECE_ENDS;n+=1)gl.vertexAttribPointer(n,3,gl.FLOAT,!1,POINT_BYTES,(first+n)*POINT_BYTES);gl.drawArraysInstanced(gl.TRIANGLE_STRIP,
+0,4,count)}take()}gl.bindVertexArray(null),gl.blendEquation(gl.FUNC_ADD),gl.disable(gl.BLEND)}get isReady(){let{lineVertex,
+lineFragment}=this.header.shaders;return!this.lines.length||this.graphics.programs.get(lineVertex,lineFragment).ready}drawGround({
+camera,anchor}){let{header,graphics}=this,{earth,shaders,geometry}=header;if(!earth?.land)return;let globe=earth.map===null;
+if(!(globe?earth.below:this.parts.has("land")))return;let gl=graphics.context,defines=globe?["FLOWTEX_GLOBE"]:[],program=graphics.
+programs.get(shaders.groundVertex,shaders.groundFragment,...defines);if(program.ready){if(graphics.programs.use(program,
+{u_matrix:projection(geometry,camera,anchor),u_colour:earth.land,u_ground:header.background,u_lit:header.lighting,u_toEye:toFrame(
+geometry.frame,scale2(camera.axes[2],-1)),...globe?this.disc(camera,earth.radius,anchor):{}}),globe){let drawn=this.take(
+"disc",anchor,()=>this.emptyArray());gl.bindVertexArray(drawn.array),gl.drawArrays(gl.TRIANGLE_STRIP,0,4)}else{let drawn=this.
+take("land",anchor,()=>this.landOf(anchor));gl.bindVertexArray(drawn.array),gl.depthMask(!1),gl.drawElements(gl.TRIANGLES,
+drawn.count,gl.UNSIGNED_INT,0),gl.depthMask(!0)}gl.bindVertexArray(null)}}horizon(camera){let{earth}=this.header;if(!earth||
+earth.map)return null;let{radius}=earth,[x,y,z,w]=camera.eye,away=w*Math.hypot(x,y,z);return[...unit([x,y,z]),away?-(radius**
+2)/away:0]}localPlane(plane,anchor){let{frame,center}=this.header.geometry,normal=plane.slice(0,3),local=toFrame(frame,normal);
+return[...local,dot2(local,anchor)+dot2(normal,center)+plane[3]]}disc(camera,radius,anchor){let{frame,center}=this.header.
+geometry,[a,b,c,offset]=this.horizon(camera)??[0,0,1,0],toEye=[a,b,c],size=Math.sqrt(Math.max(radius**2-offset**2,0)),aside=unit(
+cross2(camera.axes[1],toEye)),upward=cross2(toEye,aside),middle=add(scale2(toEye,-offset),center,-1);return{u_middle:subtract2(
+toFrame(frame,middle),anchor),u_aside:scale2(toFrame(frame,aside),size),u_upward:scale2(toFrame(frame,upward),size),u_away:camera.
+state.parallel?0:length2(camera.state.position)/radius}}take(name,anchor,make,spacing=0){let old=this.drawn.get(name);if(old&&
+String([old.anchor,old.spacing])===String([anchor,spacing]))return old;this.drop(name);let drawn={...make(),anchor,spacing};
+return this.drawn.set(name,drawn),drawn}emptyArray(){let{graphics}=this;return{array:graphics.counted(graphics.context.createVertexArray()),
+buffers:[],anchor:[0,0,0],spacing:0,count:0,groups:[]}}buffer(target,data){let{graphics}=this,gl=graphics.context,buffer=graphics.
+counted(gl.createBuffer());return gl.bindBuffer(target,buffer),gl.bufferData(target,data,gl.STATIC_DRAW),buffer}linesOf(name,anchor,spacing){
+let gl=this.graphics.context,{earth}=this.header,steps=this.parts.get(name)?.data??[],lines=earth?linesOf(steps,earth):[],
+points=linePoints(thinned(lines,spacing),anchor),drawn={...this.emptyArray(),groups:pieceGroups(points)};gl.bindVertexArray(
+drawn.array),drawn.buffers=[this.buffer(gl.ARRAY_BUFFER,points)];for(let n=0;n<PIECE_ENDS;n+=1)gl.enableVertexAttribArray(
+n),gl.vertexAttribDivisor(n,1);return drawn}landOf(anchor){let gl=this.graphics.context,cells=this.parts.get("land"),nodes=this.
+parts.get("position"),drawn=this.emptyArray();if(!cells||!nodes)return drawn;let corners=this.header.geometry.triangles?
+cells.data:cellCorners(cells);gl.bindVertexArray(drawn.array);let points=positions(nodes.data,anchor);return drawn.buffers=
+[this.buffer(gl.ARRAY_BUFFER,points),this.buffer(gl.ELEMENT_ARRAY_BUFFER,corners)],drawn.count=corners.length,gl.enableVertexAttribArray(
+0),gl.vertexAttribPointer(0,3,gl.FLOAT,!1,0,0),drawn}};function cellCorners({data,shape:[rows,columns]}){let corners=[];
+for(let n=0;n<rows*columns;n+=1){if(!data[n])continue;let low=n+Math.floor(n/columns),high=low+columns+1;corners.push(low,
+low+1,high+1,low,high+1,high)}return Uint32Array.from(corners)}var Lifetime=class{controller=new AbortController;observers=new Set;timers=new Set;globalListeners=0;get isOver(){return this.
+controller.signal.aborted}listen(target,kind,call,options={}){(target===document||target===window)&&(this.globalListeners+=
+1);let{signal}=this.controller;target.addEventListener(kind,call,{...options,signal})}later(call,delay){let timer=setTimeout(
+()=>{this.timers.delete(timer),call()},delay);return this.timers.add(timer),timer}cancel(timer){timer!==null&&(clearTimeout(
+timer),this.timers.delete(timer))}observe(observer,element){observer.observe(element),this.observers.add(observer)}stats(){
+let{globalListeners:listeners,observers,timers}=this;return{listeners,observers:observers.size,timers:timers.size}}end(){
+this.controller.abort(),this.globalListeners=0;for(let observer of this.observers)observer.disconnect();this.observers.clear();
+for(let timer of this.timers)clearTimeout(timer);this.timers.clear()}};var STOPS=9,PLAIN="none",LINE_NAMES={coastlines:"Coastlines",graticule:"Graticule"},ColourControls=class{element=dom("di\
+v",{class:"colours"});viewer;scalars=dom("select",{"aria-label":"Colour by"});swatches=dom("div",{class:"swatches",role:"\
+group"});ends=["Lowest value","Highest value"].map(name=>dom("input",{type:"number",step:"any","aria-label":name}));auto=dom(
+"button",{type:"button",class:"link"},["auto"]);mapRow;rangeRow;lines=dom("div",{class:"colours"});constructor(viewer){this.
+viewer=viewer;let{scalars,swatches,ends,auto}=this,{lifetime}=viewer;lifetime.listen(scalars,"change",()=>{viewer.chooseColours(
+{scalars:scalars.value===PLAIN?!1:scalars.value,clim:null})});for(let end of ends)lifetime.listen(end,"change",()=>this.
+takeRange());lifetime.listen(auto,"click",()=>viewer.chooseColours({clim:null})),lifetime.listen(swatches,"click",event=>{
+let name=event.target.dataset.cmap;name&&viewer.chooseColours({cmap:name})});let row2=(name,...fields)=>dom("div",{class:"\
+row"},[dom("span",{class:"name"},[name]),...fields]);this.rangeRow=row2("Range",dom("span",{class:"between"},[...ends,auto])),
+this.mapRow=row2("Colour map",swatches),this.mapRow.classList.add("ranged"),this.element.append(row2("Colour by",scalars),
+this.mapRow,this.rangeRow)}get rows(){return[this.element,this.lines]}updateLines(){let{header,parts,lifetime}=this.viewer,
+names=EARTH_LINES.filter(name=>header?.earth&&parts.has(name));this.lines.hidden=!names.length,this.lines.children.length!==
+names.length&&this.lines.replaceChildren(...names.map(name=>{let input=dom("input",{type:"checkbox",role:"switch"});lifetime.
+listen(input,"change",()=>this.viewer.chooseColours({[name]:input.checked}));let label=dom("span",{class:"name"},[LINE_NAMES[name]]);
+return dom("label",{class:"row","data-lines":name},[label,input])})),names.forEach((name,n)=>{let input=this.lines.children[n].
+querySelector("input");input&&(input.checked=header?.earth?.[name]??!1)})}update(){let{header,parts}=this.viewer;this.updateLines();
+let maps=parts.get("maps");if(this.element.hidden=!header?.scalars.choices.length||!maps,!header||!maps||this.element.hidden)
+return;let{choices,name,auto,cmap}=header.scalars,options=[...choices,{name:PLAIN,label:PLAIN}];this.scalars.replaceChildren(
+...options.map(each=>dom("option",{value:each.name},[each.label]))),this.scalars.value=name??PLAIN,this.mapRow.hidden=this.
+rangeRow.hidden=name===null,legendLimits(header.scalars).forEach((value,n)=>{this.ends[n].value=String(Number(value.toPrecision(
+4)))}),this.auto.setAttribute("aria-pressed",String(auto));let{settings}=this.viewer;this.swatches.replaceChildren(...header.
+scalars.maps.map(each=>{let pressed=String(each===cmap),swatch=dom("button",{...{type:"button",title:each,"aria-label":each,
+"data-cmap":each},"aria-pressed":pressed});return swatch.style.background=rampOf(mapOf(header,maps.data,each),header,settings,
+STOPS),swatch}))}takeRange(){let[low,high]=this.ends.map(end=>end.valueAsNumber);this.rangeRow.title="",low<high?this.viewer.
+chooseColours({clim:[low,high]}):this.rangeRow.title=`${numberText(low)} is not below ${numberText(high)}`;for(let end of this.
+ends)end.setCustomValidity(this.rangeRow.title)}};var SLIDER_STOPS=400;function hasStreaming({slices,paper,variant}){return slices.steps===1&&!paper&&!isSignFree({variant})}
+var USES={motion:hasStreaming,speed:hasStreaming,speed_in:hasStreaming,period:hasStreaming,grain:({paper})=>!paper,fixed_grain:({
+paper})=>!paper,two_sided:({slices})=>slices.sides===2,seed:({paper},rebuild)=>!paper||rebuild&&!paper.picture,resolution:({
+paper},rebuild)=>!paper||rebuild,tiles:({paper,settings},rebuild)=>!!paper?.picture&&(settings.noise==="image"||rebuild),
+noise_correction:({paper},rebuild)=>!!paper&&rebuild,lines:({slices},rebuild)=>slices.steps>1&&rebuild,parameter:({slices,
+settings},rebuild)=>rebuild&&(slices.steps===1||settings.lines!=="pathlines"),lod:()=>!1,show_level:()=>!1};function isUseful({
+name,affects},header,rebuild){return USES[name]?.(header,rebuild)??(affects==="uniform"||rebuild)}var Controls=class{element=dom(
+"div",{class:"settings glass",hidden:"","aria-label":"Settings"});viewer;controls=new Map;constructor(viewer){this.viewer=
+viewer}build(header){this.controls.clear(),this.element.replaceChildren();let rebuild=this.viewer.options.rebuild??!1;for(let row2 of header.
+table.filter(each=>isUseful(each,header,rebuild))){let control=this.control(row2);this.controls.set(row2.name,control);let{
+input,output}=control,name=dom("span",{class:"name"},[row2.label]),attributes={class:"row",title:row2.text,"data-setting":row2.
+name},line=dom("label",attributes,[name,...output?[output]:[],input]);line.classList.toggle("ranged",output!==void 0),this.
+element.append(line)}}update(){let{settings}=this.viewer;for(let[name,{show}]of this.controls)name in settings&&show(settings[name])}control(row2){
+return row2.control==="checkbox"?this.switch(row2):row2.control==="choice"?this.menu(row2):row2.control==="number"?this.
+numberField(row2):this.slider(row2)}switch({name}){let input=dom("input",{type:"checkbox",role:"switch"});return this.viewer.
+lifetime.listen(input,"change",()=>this.viewer.choose(name,input.checked)),{input,show:value=>{input.checked=!!value}}}menu({
+name,choices}){let options=choices.map(choice=>dom("option",{value:choice},[choice])),input=dom("select",{},options);return this.
+viewer.lifetime.listen(input,"change",()=>this.viewer.choose(name,input.value)),{input,show:value=>{input.value=String(value)}}}numberField({
+name,whole,low,high}){let[min,max]=[low??0,high??1],step=whole?"1":"any",input=dom("input",{type:"number",min:String(min),
+max:String(max),step});return this.viewer.lifetime.listen(input,"change",()=>{let{valueAsNumber:value}=input;Number.isFinite(
+value)&&this.viewer.choose(name,clamp(value,min,max))}),{input,show:value=>{input.value=String(value)}}}slider(row2){let{
+toSlider,fromSlider,min,max,step}=scaleOf(row2),range={min:String(min),max:String(max),step:String(step)},input=dom("inp\
+ut",{type:"range",...range}),output=dom("output"),value=()=>fromSlider(Number(input.value)),write=shown=>{output.textContent=
+numberText(Number(shown))};this.viewer.lifetime.listen(input,"input",()=>write(value()));let kind=row2.affects==="unifor\
+m"?"input":"change";return this.viewer.lifetime.listen(input,kind,()=>this.viewer.choose(row2.name,value())),{input,output,
+show:shown=>{input.value=String(toSlider(Number(shown))),write(shown)}}}};function scaleOf(row2){let{low,high,whole,logarithmic}=row2,
+[least,most]=[low??0,high??1],toSlider=value=>logarithmic?Math.log2(value):value,fromSlider=place=>{let value=logarithmic?
+2**place:place;return whole?Math.round(value):Number(clamp(value,least,most).toPrecision(3))},[min,max]=[least,most].map(
+toSlider),step=whole&&!logarithmic?1:(max-min)/SLIDER_STOPS;return{toSlider,fromSlider,min,max,step}}var CAMERA_KEYS={ArrowLeft:"left",ArrowRight:"right",ArrowUp:"up",ArrowDown:"down","+":"closer","=":"closer","-":"farthe\
+r",_:"farther",0:"whole"},PLAY_KEY=" ",FULLSCREEN_KEY="f",CLOSE_KEY="Escape",DIRECTIONS={left:[-1,0],right:[1,0],up:[0,1],
+down:[0,-1]};function hasModifier(event){return event.ctrlKey||event.metaKey||event.altKey}function toggleFullscreen(element){
+document.fullscreenElement?document.exitFullscreen():element.requestFullscreen?.().catch(()=>{})}var STOPS2=33,Legend=class{element=dom("div",{class:"legend glass",hidden:""});mark=dom("i",{hidden:""});show(header,settings,map){
+let{name,label,unit:unit2,bar}=header.scalars;if(this.element.hidden=name===null||!bar||!map||!!settings.show_level,this.
+element.hidden||!map)return;let ramp=dom("div",{class:"ramp"},[this.mark]);ramp.style.background=rampOf(map,header,settings,
+STOPS2),this.mark.hidden=!0;let ends=legendLimits(header.scalars).map(value=>dom("span",{},[numberText(value)]));this.element.
+replaceChildren(dom("div",{class:"name"},[unit2?`${label} (${unit2})`:label]),ramp,dom("div",{class:"ends"},ends))}point(header,value=NaN){
+this.mark.hidden=!header||!Number.isFinite(value),!(!header||this.mark.hidden)&&(this.mark.style.left=`${100*clamp(shareOf(
+header.scalars)(value),0,1)}%`)}};var DEGREES=180/Math.PI,FEWEST_DECIMALS=2,MOST_DECIMALS=4,NEAR=1e-4,DAY_S=86400;function weights(t){let[a,b,c]=[t-1,t-2,
+t-3];return[-(a*b*c)/6,t*b*c/2,-(t*a*c)/2,t*a*b/6]}function around(share,count){let at=share*(count-1),first=clamp(Math.
+floor(at)-1,0,count-4);return[first,weights(at-first)]}function wayOn([x0,y0,x1,y1],{data,shape},position){let[rows,columns]=shape,
+[i,across]=around((position[0]-x0)/(x1-x0),columns),[j,upward]=around((position[1]-y0)/(y1-y0),rows),way=[0,0,0];return upward.
+forEach((v2,n)=>{across.forEach((u,m)=>{for(let k=0;k<3;k+=1)way[k]+=u*v2*data[3*((j+n)*columns+i+m)+k]})}),way}function lonLatOf(earth,position,places){
+if(earth.map&&!places)return null;let[x,y,z]=earth.map&&places?wayOn(earth.map,places,position):position,lonLat=[Math.atan2(
+y,x),Math.atan2(z,Math.hypot(x,y))];return lonLat.every(Number.isFinite)?[lonLat[0]*DEGREES,lonLat[1]*DEGREES]:null}function eastNorth(earth,position,velocity,places){
+let[from,change]=[position,velocity];if(earth.map&&places){let{map,radius}=earth,time=NEAR*(map[2]-map[0])/(Math.hypot(...velocity)||
+1),[before,after]=[-time,time].map(t=>wayOn(map,places,position.map((p,k)=>p+t*velocity[k])));from=wayOn(map,places,position),
+change=after.map((way,k)=>radius*(way-before[k])/(2*time))}let[x,y,z]=from,[across,away]=[Math.hypot(x,y)||1,Math.hypot(
+x,y,z)||1],east=(x*change[1]-y*change[0])/across,outward=(x*change[0]+y*change[1])/across;return[east,(across*change[2]-
+z*outward)/away]}function lonLatText([lon,lat],apart){let decimals=clamp(Math.ceil(-Math.log10(apart)),FEWEST_DECIMALS,MOST_DECIMALS),
+told=(degrees,[before,after])=>`${Math.abs(degrees).toFixed(decimals)}° ${degrees<0?before:after}`;return`${told(lon,"W\
+E")}, ${told(lat,"SN")}`}function dateText({start,dates,step},times2,time){if(start===null){if(!dates.length)return null;
+let apart=times2.map(each=>Math.abs(each-time));return dates[apart.indexOf(Math.min(...apart))]}let first=Date.parse(`${start}\
+Z`),isMidnight=first%(1e3*DAY_S)===0,text=new Date(first+1e3*time).toISOString();return isMidnight&&step%DAY_S===0&&time%
+DAY_S===0?text.slice(0,10):text.slice(0,step>=60?16:19).replace("T"," ")}var HEAD={apart:90,length:14,half:5},POINT_RADIUS=6,FREE_RADIUS=20,textOf=line=>line.map(place=>place.map(v2=>v2.toFixed(
+1)).join()).join(" ");function arrowHeads(line,apart=HEAD.apart){let heads=[],due=0;for(let n=line.length-1;n>0;n-=1){let[
+[ax,ay],[bx,by]]=[line[n-1],line[n]],size=Math.hypot(bx-ax,by-ay);if(!size)continue;let[ux,uy]=[(bx-ax)/size,(by-ay)/size];
+for(;due<size;due+=apart){let[x,y]=[bx-due*ux,by-due*uy],[left,low]=[x-HEAD.length*ux,y-HEAD.length*uy],[wide,tall]=[-HEAD.
+half*uy,HEAD.half*ux];heads.push([[x,y],[left+wide,low+tall],[left-wide,low-tall]])}due-=size}return heads}function pathShapes({
+path,sampled,point,directed,dots=[]}){let lines=(all,kind)=>all.map(line=>["polyline",{class:kind,points:textOf(line)}]),
+isFree=([[x,y]])=>!point||Math.hypot(x-point[0],y-point[1])>FREE_RADIUS,heads=directed?path.flatMap(line=>arrowHeads(line)).
+filter(isFree):[],ring=kind=>point?[["circle",{class:kind,cx:point[0],cy:point[1],r:POINT_RADIUS}]]:[];return[...lines(path,
+"whole-casing"),...lines(path,"whole"),...lines(sampled,"casing"),...lines(sampled,"sampled"),...heads.map(head=>["polyg\
+on",{class:"arrow",points:textOf(head)}]),...dots.map(({place:[cx,cy],radius,grey})=>{let fill=`rgb(${[grey,grey,grey].map(
+x=>Math.round(255*x)).join()})`;return["circle",{class:"dot",cx,cy,r:radius,fill}]}),...ring("point-casing"),...ring("po\
+int")]}function pickedPoint(context,x,y){let{layers,camera,moment,anchor,canvas}=context,{graphics,header}=layers[0].scene,program=graphics.
+programs.get(header.shaders.vertex,header.shaders.pick),whole=projection(header.geometry,camera,anchor),matrix=atPixel(whole,
+[x,y],[canvas.width,canvas.height]),[before,after,between2]=moment,bits=graphics.pixel(()=>{layers.forEach(({scene},n)=>{
+graphics.programs.use(program,{u_matrix:matrix,u_between:between2,u_part:n}),scene.draw(before,after,anchor,!1)})});if(!bits[3])
+return null;let[u,v2]=new Float32Array(bits.buffer,0,2),layer=layers[bits[2]],{geometry}=layer.scene.header,place=geometry.
+triangles?placeIn(bits[3]-1,u,v2):placeAmong(geometry,u,v2),corners=layer.scene.cornersAt(place),position=positionAt(layer.
+scene,camera,corners,x,y),index=geometry.triangles?place:wholeIndex(header,layer,place);return{point:{position,index,values:valuesAt(
+layer.scene,moment,corners)},layer,place}}function placeAmong({rows,columns,shape},u,v2){let at=(share,{size,before},nodes)=>clamp(
+share*size-.5-before,0,nodes-1);return[at(u,columns,shape[1]),at(v2,rows,shape[0])]}function wholeIndex(header,{key},[i,
+j]){let{pyramid,geometry,mesh}=header,[level,row2,column]=key,[rows,columns]=pyramid?.shapes[0]??geometry.shape,side=mesh.
+tileCells*(pyramid?.tileBlocks??0),at=(n,tile,nodes)=>fullIndex(n+tile*side,level,nodes);return[at(i,column,columns),at(
+j,row2,rows)]}function positionAt(scene,camera,corners,x,y){let{data}=scene.part("position"),{frame,center}=scene.header.
+geometry,local=[0,1,2].map(k=>interpolated(corners,n=>data[3*n+k])),about=add(fromFrame(frame,local),center),[start,along]=camera.
+ray(x,y),ahead=camera.axes[2],depth=dot2(subtract2(about,start),ahead)/dot2(along,ahead);return add(start,along,depth)}function valuesAt(scene,moment,corners){
+let{header,parts}=scene,{scalars}=header,[from,to,between2]=moment,values={},others=scalars.choices.map(({name,steps},number)=>({
+name,steps,number}));for(let each of[scalars,...others]){let names=scene.scalarParts(from,to,each),[before,after]=names.
+map(part=>parts.get(part)?.data);if(each.name===null||each.name in values||!before||!after)continue;let value=n=>before[n]+
+between2*(after[n]-before[n]);values[each.name]=interpolated(corners,value)}return values}var TITLE="Path through this point",SVG2="http://www.w3.org/2000/svg",FEWEST_DIGITS=4,MOST_DIGITS=14,VELOCITY_DIGITS=3,PATIENCE_MS=5e3,
+RETRY_MS=40,PLACES_IN_VIEW=200,DEGREE_M=111195,DOT_RADIUS=8,UNIT_LENGTH=12;function withUnit(text,unit2){return unit2&&unit2.
+length<=UNIT_LENGTH?`${text} ${unit2}`:text}function vectorText(vector,size,digits,flat){return`(${vector.slice(0,flat?2:
+3).map(x=>{let value=Math.abs(x)<10**(-1-digits)*size?0:x;return digits>5?String(Number(value.toPrecision(digits))):numberText(
+value,digits)}).join(", ")})`}var liesAcross=({planar,frame})=>planar&&Math.abs(frame[8])>.999;function placeText(position,header,parts,camera,isWithUnit=!1){
+let{earth}=header,lonLat=earth&&lonLatOf(earth,position,parts.get("lonlat"));if(lonLat)return lonLatText(lonLat,(camera?.
+height??0)/PLACES_IN_VIEW/DEGREE_M);let text=positionText(position,header,camera);return isWithUnit?withUnit(text,header.
+lengthUnit):text}function positionText(position,header,camera){let{geometry}=header,zoom=Math.max(camera?.zoom??1,1),digits=Math.
+min(Math.ceil(FEWEST_DIGITS+Math.log10(zoom)),MOST_DIGITS),isInPlane=liesAcross(geometry)&&Math.abs(position[2]-geometry.
+center[2])<1e-12*geometry.extent;return vectorText(position,geometry.extent,digits,isInPlane)}var PointCard=class{element=dom(
+"div",{class:"card glass",role:"region",hidden:""});overlay=document.createElementNS(SVG2,"svg");host;list=dom("dl");chosen=null;later=null;drawn=null;constructor(host){
+this.host=host,this.element.setAttribute("aria-label",TITLE),this.overlay.setAttribute("class","path");let button=dom("b\
+utton",{type:"button",class:"link"},["Close"]);button.addEventListener("click",()=>this.close()),this.element.append(dom(
+"div",{class:"first"},[dom("span",{},[TITLE]),button]),this.list)}choose(x,y,until=performance.now()+PATIENCE_MS){let{lifetime,
+canPick}=this.host;if(lifetime.cancel(this.later),!canPick&&performance.now()<until)return this.later=lifetime.later(()=>this.
+choose(x,y,until),RETRY_MS),null;let found=this.host.find(x,y);return found&&this.host.options.onPoint?.(found.point),this.
+close(),this.chosen=found,this.update(),found?.point??null}close(){for(let{card}of this.host.together)card.clear()}clear(){
+this.host.lifetime.cancel(this.later),this.chosen=this.drawn=null,this.element.hidden=!0,this.overlay.replaceChildren(),
+this.host.options.explainer?.clear()}update(){let{chosen}=this,{options,camera,shown,header,tiles,settings,root,together}=this.
+host;if(!chosen||options.bare||!camera||!shown||!header)return;let{point,layer,place}=chosen,scene=tiles?.layers.find(({
+key})=>String(key)===String(layer.key))?.scene;if(!scene||scene.missing(shown[0],shown[1]).length)return;let position=point.
+position,at={scene,moment:shown,place,position},path=pathThrough(at,settings,camera,root.clientHeight);this.tell({...point,
+values:valuesAt(scene,shown,scene.cornersAt(place))},path,header,camera);let pixel={at,settings,camera,rows:root.clientHeight},
+samples=options.explainer?.explain(pixel)??[];for(let{card}of together)card.drawn={path,point:position,samples},card.draw()}tell(point,{
+velocity},header,camera){let{label,unit:unit2}=header.speed,size=Math.hypot(...velocity),lines=new Map,{earth}=header,{parts}=this.
+host,where=placeText(point.position,header,parts,camera,!0);if(earth&&lonLatOf(earth,point.position,parts.get("lonlat"))){
+let[east,north]=eastNorth(earth,point.position,velocity,parts.get("lonlat"));lines.set("place",where),lines.set("eastwar\
+d",withUnit(numberText(east,VELOCITY_DIGITS),unit2)),lines.set("northward",withUnit(numberText(north,VELOCITY_DIGITS),unit2))}else{
+let text=vectorText(velocity,size,VELOCITY_DIGITS,liesAcross(header.geometry));lines.set("position",where),lines.set(label.
+replace("speed","velocity"),withUnit(text,unit2))}lines.set(label,withUnit(numberText(size,VELOCITY_DIGITS),unit2));for(let[
+name,value]of Object.entries(point.values)){let named=header.scalars.choices.find(each=>each.name===name)??header.scalars;
+lines.set(named.label,withUnit(numberText(value),named.unit))}this.list.replaceChildren(...[...lines].flatMap(([word,value])=>[
+dom("dt",{},[word]),dom("dd",{},[value])])),this.element.hidden=this.host.options.explainer!==void 0}draw(){let{drawn}=this,
+{camera,root}=this.host;if(!drawn||!camera)return;let{clientWidth:width,clientHeight:height}=root,placeOf=point2=>{let place=camera.
+project(point2);return place&&[(place[0]+1)/2*width,(1-place[1])/2*height]},linesOf2=points=>{let lines2=[[]];for(let place of points.
+map(placeOf))place?lines2[lines2.length-1].push(place):lines2.push([]);return lines2.filter(line=>line.length>1)},{path,
+sampled,directed}=drawn.path,point=placeOf(drawn.point),{samples}=drawn,most=Math.max(...samples.map(({weight})=>weight)),
+dots=samples.flatMap(({position,weight,grey})=>{let place=placeOf(position);return place?[{place,radius:DOT_RADIUS*Math.
+sqrt(weight/most),grey}]:[]}),lines={path:linesOf2(path),sampled:dots.length?[]:linesOf2(sampled)},shapes=pathShapes({...lines,
+dots,point,directed});this.overlay.replaceChildren(...shapes.map(([tag,attributes])=>{let shape=document.createElementNS(
+SVG2,tag);for(let[name,value]of Object.entries(attributes))shape.setAttribute(name,`${value}`);return shape}))}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */
+:host {
+  --ink: var(--jp-ui-font-color1, #1b2430);
+  --quiet: var(--jp-ui-font-color2, #566373);
+  --ground: var(--jp-layout-color1, #ffffff);
+  --edge: color-mix(in srgb, var(--ink) 14%, transparent);
+  --hover: color-mix(in srgb, var(--ink) 9%, transparent);
+  --accent: var(--jp-brand-color1, #0f766e);
+  --shadow: 0 4px 18px rgb(16 24 40 / 0.16);
+  --glass: color-mix(in srgb, var(--ground) 78%, transparent);
+  color-scheme: light dark;
+  position: relative;
+  display: block;
+  box-sizing: border-box;
+  width: 100%;
+  height: 100%;
+  overflow: hidden;
+  container-type: inline-size;
+  color: var(--ink);
+  background: var(--ground);
+  font: 12px/1.35 system-ui, -apple-system, "Segoe UI", Roboto, "Helvetica Neue", sans-serif;
+  outline: none;
+  user-select: none;
+  -webkit-user-select: none;
+}
+@media (prefers-color-scheme: dark) {
+  :host {
+    --ink: var(--jp-ui-font-color1, #e8edf2);
+    --quiet: var(--jp-ui-font-color2, #a3b0bd);
+    --ground: var(--jp-layout-color1, #151a21);
+    --accent: var(--jp-brand-color1, #4fd1c5);
+    --shadow: 0 4px 18px rgb(0 0 0 / 0.35);
+  }
+}
+:host(:focus-visible)::after {
+  content: ""; position: absolute; inset: 0; z-index: 1; pointer-events: none;
+  box-shadow: inset 0 0 0 2px var(--accent);
+}
+:host(:fullscreen) { width: 100vw !important; height: 100vh !important; }
+* { box-sizing: border-box; }
+[hidden] { display: none !important; }
+.picture {
+  position: absolute; inset: 0; width: 100%; height: 100%;
+  cursor: grab; touch-action: none; display: block;
+}
+:host(.flowtex-guarded:not(.flowtex-held, :fullscreen)) .picture { touch-action: pan-y pinch-zoom; }
+:host(.flowtex-grabbing) .picture { cursor: grabbing; }
+.glass {
+  background: var(--glass);
+  border: 1px solid var(--edge);
+  border-radius: 10px;
+  box-shadow: var(--shadow);
+  backdrop-filter: blur(12px) saturate(1.3);
+  -webkit-backdrop-filter: blur(12px) saturate(1.3);
+}
+.left {
+  position: absolute; left: 10px; right: 10px; top: 10px; max-height: calc(100% - 20px);
+  display: flex; flex-direction: column; align-items: flex-start; gap: 6px; pointer-events: none;
+}
+.head {
+  max-width: 100%; flex: none;
+  padding: 5px 10px; display: flex; gap: 10px; align-items: baseline;
+  pointer-events: none; white-space: nowrap; overflow: hidden;
+}
+.title { font-weight: 600; overflow: hidden; text-overflow: ellipsis; }
+.title::first-letter { text-transform: uppercase; }
+.readout, .ends, .time, .row output { color: var(--quiet); font-variant-numeric: tabular-nums; }
+.readout { display: flex; gap: 8px; }
+.readout:empty { display: none; }
+.head:not(:has(.title:not([hidden]), .readout:not(:empty))) { display: none; }
+.readout b { color: var(--ink); font-weight: 500; }
+.legend {
+  position: absolute; right: 10px; top: 10px; min-width: 150px; max-width: 60%; padding: 5px 10px 6px;
+  font-size: 11px; pointer-events: none;
+}
+.legend .name {
+  width: 0; min-width: 100%; margin-bottom: 3px; overflow: hidden; overflow-wrap: anywhere;
+  display: -webkit-box; -webkit-box-orient: vertical; -webkit-line-clamp: 2;
+}
+.ramp { position: relative; height: 8px; border-radius: 4px; box-shadow: inset 0 0 0 1px var(--edge); }
+.ramp i {
+  position: absolute; top: -2px; bottom: -2px; width: 2px; margin-left: -1px; border-radius: 1px;
+  background: var(--ink); box-shadow: 0 0 0 1px var(--ground);
+}
+.ends { display: flex; justify-content: space-between; gap: 8px; margin-top: 2px; white-space: nowrap; }
+.left:has(~ .legend:not([hidden])) > * { max-width: calc(100% - 170px); }
+.card { max-width: 100%; min-height: 0; padding: 5px 6px 7px 10px; overflow: hidden; }
+.card button { pointer-events: auto; }
+.card .first { display: flex; align-items: center; justify-content: space-between; gap: 10px; }
+dl {
+  display: grid; grid-template-columns: auto auto; gap: 1px 12px; margin: 2px 4px 0 0;
+  font-variant-numeric: tabular-nums;
+}
+dt { color: var(--quiet); }
+dd { margin: 0; text-align: right; white-space: nowrap; }
+.path { position: absolute; inset: 0; width: 100%; height: 100%; pointer-events: none; }
+.path :not(.dot) { fill: none; }
+.path * { stroke: #000; stroke-linejoin: round; }
+.path :is(.casing, .sampled) { stroke-linecap: round; }
+.path .whole-casing { stroke-opacity: 0.55; stroke-width: 4; }
+.path .whole { stroke: #fff; stroke-width: 1.6; stroke-dasharray: 5 4; }
+.path .casing { stroke-opacity: 0.75; stroke-width: 6; }
+.path .sampled { stroke: #fff; stroke-width: 2.6; }
+.path .arrow { fill: #fff; stroke-width: 1.5; }
+.path .dot { stroke: #fff; stroke-width: 1.2; }
+.path .point-casing { stroke-width: 5; }
+.path .point { stroke: #fff; stroke-width: 2.4; }
+.bar {
+  position: absolute; left: 10px; right: 10px; bottom: 10px; width: fit-content; margin: 0 auto;
+  max-width: calc(100% - 20px);
+  display: flex; align-items: center; gap: 1px; padding: 3px;
+}
+button {
+  appearance: none; flex: none; display: grid; place-items: center; width: 30px; height: 30px;
+  margin: 0; padding: 0; border: 0; border-radius: 7px; background: none; color: var(--ink);
+  cursor: pointer; transition: background-color 0.12s, color 0.12s;
+}
+button:hover { background: var(--hover); }
+button:focus-visible, input:focus-visible, select:focus-visible {
+  outline: 2px solid var(--accent); outline-offset: -1px;
+}
+button[aria-pressed="true"] { color: var(--accent); background: color-mix(in srgb, var(--accent) 14%, transparent); }
+svg { width: 18px; height: 18px; pointer-events: none; }
+path {
+  fill: none; stroke: currentColor; stroke-width: 1.7; stroke-linecap: round; stroke-linejoin: round;
+}
+path.solid { fill: currentColor; }
+.handle {
+  position: absolute; left: 50%; bottom: 8px; margin-left: -17px; width: 34px; height: 20px; opacity: 0.35;
+}
+:host(:hover) .handle, .handle:focus-visible { opacity: 1; }
+.handle:hover { background: var(--glass); }
+.track { display: flex; align-items: center; gap: 8px; min-width: 90px; width: 260px; flex: 0 1 auto; padding: 0 6px 0 4\
+px; }
+.time { flex: none; white-space: nowrap; }
+.track:has(input:disabled) { opacity: 0.45; }
+input[type="range"] {
+  appearance: none; -webkit-appearance: none; flex: 1; min-width: 0; width: 100%; height: 18px;
+  margin: 0; background: none; cursor: pointer; accent-color: var(--accent);
+}
+input[type="range"]::-webkit-slider-runnable-track { height: 4px; border-radius: 2px; background: var(--edge); }
+input[type="range"]::-moz-range-track { height: 4px; border-radius: 2px; background: var(--edge); }
+input[type="range"]::-webkit-slider-thumb {
+  -webkit-appearance: none; width: 14px; height: 14px; margin-top: -5px; border: 0; border-radius: 50%;
+  background: var(--accent); box-shadow: 0 1px 3px rgb(0 0 0 / 0.3);
+}
+input[type="range"]::-moz-range-thumb {
+  width: 14px; height: 14px; border: 0; border-radius: 50%; background: var(--accent);
+}
+.settings {
+  position: absolute; right: 10px; bottom: 58px; width: 248px; max-width: calc(100% - 20px);
+  max-height: calc(100% - 68px); overflow-y: auto; padding: 6px 12px; scrollbar-width: thin;
+  overscroll-behavior: contain; --glass: color-mix(in srgb, var(--ground) 90%, transparent);
+  background: var(--glass);
+}
+:host(.flowtex-open) .legend { display: none; }
+.row {
+  display: grid; grid-template-columns: 1fr auto; align-items: center; column-gap: 10px;
+  min-height: 30px; padding: 2px 0;
+}
+.row.ranged input { grid-column: 1 / -1; }
+.row + .row { border-top: 1px solid var(--edge); }
+.colours { border-bottom: 1px solid var(--edge); }
+.swatches { grid-column: 1 / -1; display: grid; grid-template-columns: repeat(3, 1fr); gap: 5px; padding: 3px 0 5px; }
+.swatches button { width: auto; height: 16px; border-radius: 4px; box-shadow: inset 0 0 0 1px var(--edge); }
+.swatches button[aria-pressed="true"] { box-shadow: 0 0 0 2px var(--ground), 0 0 0 4px var(--accent); }
+.between { display: flex; align-items: center; gap: 4px; }
+.between input[type="number"] { width: 64px; padding-inline: 4px; appearance: textfield; }
+.between input::-webkit-inner-spin-button { appearance: none; }
+.between input:invalid { outline: 2px solid #d43d3d; outline-offset: -1px; }
+button.link { width: auto; height: 24px; padding: 0 6px; font: inherit; }
+select, input[type="number"] {
+  font: inherit; color: var(--ink); background: var(--hover); border: 0; border-radius: 6px;
+  padding: 3px 6px; width: 110px; height: 24px;
+}
+option { color: var(--ink); background: var(--ground); }
+input[role="switch"] {
+  appearance: none; -webkit-appearance: none; position: relative; width: 30px; height: 18px; margin: 0;
+  border-radius: 9px; background: var(--edge); cursor: pointer; transition: background-color 0.15s;
+}
+input[role="switch"]::after {
+  content: ""; position: absolute; left: 2px; top: 2px; width: 14px; height: 14px; border-radius: 50%;
+  background: #fff; box-shadow: 0 1px 3px rgb(0 0 0 / 0.35); transition: transform 0.15s;
+}
+input[role="switch"]:checked { background: var(--accent); }
+input[role="switch"]:checked::after { transform: translateX(12px); }
+.busy {
+  position: absolute; left: 50%; top: 50%; transform: translate(-50%, -50%); padding: 5px 12px;
+  border-radius: 10px; background: var(--glass); color: var(--quiet); pointer-events: none;
+}
+.hint {
+  position: absolute; left: 50%; bottom: 56px; transform: translateX(-50%); padding: 4px 12px;
+  color: var(--quiet); pointer-events: none; white-space: nowrap; max-width: calc(100% - 20px);
+  overflow: hidden; text-overflow: ellipsis;
+}
+.told {
+  position: absolute; left: 50%; bottom: 56px; transform: translateX(-50%); padding: 6px 12px;
+  width: max-content; max-width: min(420px, calc(100% - 40px)); cursor: pointer;
+}
+.note {
+  position: absolute; inset: 0; display: flex; flex-direction: column; align-items: center;
+  justify-content: center; gap: 6px; padding: 24px; text-align: center; background: var(--ground);
+  overflow: auto; user-select: text; -webkit-user-select: text;
+}
+.note pre {
+  margin: 0; max-width: 100%; white-space: pre-wrap; color: var(--quiet);
+  font: 11px/1.4 ui-monospace, Menlo, Consolas, monospace; text-align: left;
+}
+@container (max-width: 460px) {
+  .bar { flex-wrap: wrap; justify-content: center; }
+  .track { order: -1; flex: 1 1 100%; width: auto; }
+  .track:has(input:disabled) { display: none; }
+  .legend { min-width: 104px; padding: 4px 8px; }
+  .settings { bottom: 80px; max-height: calc(100% - 90px); }
+  .title { max-width: 110px; }
+  .readout { flex-direction: column; gap: 0; }
+  .head { flex-direction: column; gap: 0; }
+  .left:has(~ .legend:not([hidden])) .head { max-width: calc(100% - 124px); }
+  /* Below the legend there is the whole width. */
+  .left:has(~ .legend:not([hidden])) .card { max-width: 100%; margin-top: 22px; }
+}
+@container (max-width: 220px) { .legend { display: none; } }
+@container (max-width: 330px) { button { width: 27px; height: 27px; } }
+:host(.flowtex-bare) :is(.left, .path, .legend, .settings, .bar, .handle) { display: none; }
+`;var HINT_MS=1600,LATE_MS=4e3,SAVED_MS=5e3,KEY=/Mac|iP(hone|ad)/.test(navigator.platform)?"⌘":"Ctrl",HINT=`Click, or ho\
+ld ${KEY}, to zoom with the wheel`,TIME_RANGE={min:"0",max:"1",step:"any","aria-label":"Time"},FORBIDDEN=/[\\/:*?"<>|]+/g,
+styleSheet=new CSSStyleSheet;styleSheet.replaceSync(styles_default);var Panel=class{viewer;legend=new Legend;controls;colours;isShown;isOpen=!1;legendLook="";title=dom(
+"div",{class:"title"});readout=dom("div",{class:"readout",role:"status"});head=dom("div",{class:"head glass",hidden:""},
+[this.title,this.readout]);note=dom("div",{class:"note",hidden:"",role:"alert"});busy=dom("div",{class:"busy",hidden:""},
+["waiting for data …"]);told=dom("div",{class:"told glass",hidden:"",role:"status"});words=new Set;hintBox=dom("div",{
+class:"hint glass",hidden:""},[HINT]);bar;handle;playButton;toggles;gear;slider=dom("input",{type:"range",...TIME_RANGE});timeText=dom(
+"span",{class:"time"});track=dom("div",{class:"track"},[this.slider,this.timeText]);hintTimer=null;lateTimer=null;constructor(viewer){
+this.viewer=viewer;let{root,canvas,options}=viewer;this.isShown=options.controls??!0,this.controls=new Controls(viewer),
+this.colours=new ColourControls(viewer),this.handle=this.button("show","Show the bar (h)",()=>this.toggle()),this.handle.
+classList.add("handle","glass"),this.playButton=this.button("play","Play (space)",()=>viewer.togglePlaying()),viewer.lifetime.
+listen(this.slider,"input",()=>viewer.scrub(Number(this.slider.value)));let toggle=name=>()=>viewer.choose(name,!viewer.
+settings[name]);this.toggles={lod:this.button("lod","Level of detail",toggle("lod")),show_level:this.button("levels","Sh\
+ow level",toggle("show_level"))},this.gear=this.button("settings","Settings",()=>this.fold(!this.isOpen)),this.bar=this.
+makeBar(),canvas.className="picture",root.classList.toggle("flowtex-bare",options.bare??!1);let shadow=root.attachShadow(
+{mode:"open"});shadow.adoptedStyleSheets=[styleSheet];let{legend,controls,head,bar,handle,busy,hintBox,told,note}=this,left=dom(
+"div",{class:"left"},[head,viewer.card.element]);shadow.append(canvas,viewer.card.overlay,left,legend.element,controls.element),
+shadow.append(bar,handle,busy,hintBox,told,note),viewer.lifetime.listen(told,"click",()=>told.hidden=!0),this.arrange()}button(name,title,press){
+let button=dom("button",{type:"button",title,"aria-label":title,"data-name":name},[icon(name)]);return this.viewer.lifetime.
+listen(button,"click",press),button}makeBar(){let{viewer}=this;return dom("div",{class:"bar glass",role:"toolbar","aria-\
+label":"Controls"},[this.playButton,this.track,this.button("home","Show everything (0)",()=>viewer.reset()),this.toggles.
+lod,this.toggles.show_level,this.gear,this.button("save","Save the picture",()=>{this.save()}),this.button("full","Fill \
+the screen (f)",()=>this.fullscreen()),this.button("hide","Hide the bar (h)",()=>this.toggle())])}build(){let{header}=this.
+viewer;header&&(this.note.hidden=!0,this.controls.build(header),this.controls.element.prepend(...this.colours.rows),this.
+showLegend(),this.update(),this.arrange())}update(){let{header,settings}=this.viewer,{playing,varies}=this.viewer.player;
+this.name(),this.controls.update(),this.legendLook!==this.lookOf(settings)&&this.showLegend();for(let[name,button]of Object.
+entries(this.toggles))button.setAttribute("aria-pressed",String(!!settings[name]));let title=playing?"Pause (space)":"Pl\
+ay (space)";this.playButton.replaceChildren(icon(playing?"pause":"play")),this.playButton.title=title,this.playButton.setAttribute(
+"aria-label",title);let streams=header!==null&&hasStreaming(header);this.playButton.hidden=this.track.hidden=!varies&&!streams,
+this.slider.disabled=!varies&&settings.motion==="off";let width=header&&this.date(header)?.length||8+(header?.slices.timeUnit??
+"").length;this.timeText.style.minWidth=`${varies?width:7}ch`,this.tick()}name(){let{header,settings,root,options}=this.
+viewer,title=(header?.differs??[]).filter(name=>name in settings).map(name=>{let label2=header?.table.find(row2=>row2.name===
+name)?.label??name,value=settings[name];return`${label2}: ${typeof value=="boolean"?value?"on":"off":value}`}).join(", ")||
+header?.name||"";this.title.textContent=title,this.title.hidden=!title;let label=options.label??title;root.setAttribute(
+"aria-label",label?`Flow texture: ${label}`:"Flow texture")}tick(){let{header,player,settings}=this.viewer;if(!header||this.
+track.hidden)return;let{first,last,now}=player.range(settings);this.slider.value=String((now-first)/(last-first||1));let unit2=header.
+slices.timeUnit,moment=this.date(header)??`${numberText(now)} ${unit2}`,text=player.varies?moment:`${now.toFixed(1)} s`;
+this.timeText.textContent!==text&&(this.timeText.textContent=text)}date({slices}){return dateText(slices.dates,slices.times,
+this.viewer.player.time)}lookOf({show_level,strength,contrast}){return`${show_level} ${strength} ${contrast}`}showLegend(){
+let{header,settings,parts}=this.viewer;this.legendLook=this.lookOf(settings),this.colours.update(),header&&this.legend.show(
+header,settings,parts.get("cmap")?.data)}read(point,ground=null){let{header}=this.viewer;this.readout.replaceChildren(),
+this.legend.point(null);let position=point?.position??ground;if(!position||!header)return;let{parts,camera}=this.viewer;
+if(this.readout.append(dom("span",{},[placeText(position,header,parts,camera)])),!point)return;let{name,label,unit:unit2}=header.
+scalars,value=point.values[name??""];value!==void 0&&(this.readout.append(dom("b",{},[withUnit(`${label} ${numberText(value)}`,
+unit2)])),this.legend.point(header,value))}fold(open=!1){this.isOpen=open,this.arrange()}toggle(shown=!this.isShown){shown!==
+this.isShown&&(this.isShown=shown,this.arrange(),this.viewer.options.onControls?.(shown))}arrange(){let{header,options,root}=this.
+viewer,isReady=header!==null,follows=!!options.follows;this.bar.hidden=!this.isShown||!isReady,this.handle.hidden=this.isShown||
+!isReady||follows,this.head.hidden=!(this.isShown||follows)||!isReady,this.controls.element.hidden=!this.isShown||!this.
+isOpen||!isReady,root.classList.toggle("flowtex-open",!this.controls.element.hidden),this.gear.setAttribute("aria-presse\
+d",String(this.isOpen))}wait(missing){this.busy.hidden=!missing.length;let{viewer}=this;!missing.length||viewer.options.
+onNeed||this.lateTimer||(this.lateTimer=viewer.lifetime.later(()=>{this.lateTimer=null;let names=viewer.lacking.join(", ");
+names&&this.fail("The scene is not complete.",`Missing: ${names}`)},LATE_MS))}hint(shown){let{lifetime}=this.viewer;lifetime.
+cancel(this.hintTimer),this.hintTimer=shown?lifetime.later(()=>this.hint(!1),HINT_MS):null,this.hintBox.hidden=!shown}tell(text){
+this.words.has(text)||(this.words.add(text),this.told.textContent=text,this.told.hidden=!1)}clear(){this.note.hidden=!0,
+delete this.viewer.root.dataset.failed}fail(problem,detail){this.note.replaceChildren(dom("strong",{},[problem]),dom("pr\
+e",{},[detail])),this.note.hidden=!1,this.busy.hidden=!0,this.viewer.root.dataset.failed="true"}fullscreen(){let{root}=this.
+viewer;toggleFullscreen(root.closest(".flowtex-pair")??root)}async save(){let{viewer}=this,href=URL.createObjectURL(await pictureOf(
+viewer.together)),name=(viewer.header?.name||"flow").replace(FORBIDDEN," ").trim();dom("a",{href,download:`${name}.png`}).
+click(),viewer.lifetime.later(()=>URL.revokeObjectURL(href),SAVED_MS)}};var SERIES_STEP_S=.5,SERIES_LEAST_S=6,SERIES_MOST_S=60,LONGEST_GAP_S=.5,Player=class{time=0;clock=0;playing=!1;times=[0];lastFrame=0;hasHeader=!1;setHeader(header){
+let{times:times2}=header.slices;(!(times2.length===this.times.length&&times2.every((t,n)=>t===this.times[n]))||!this.hasHeader)&&
+(this.time=header.time,this.clock=header.clock),this.hasHeader=!0,this.times=times2}get varies(){return this.times.length>
+1}get span(){return[this.times[0],this.times[this.times.length-1]]}get moment(){return momentOf(this.times,this.time)}timeOf([
+before,after,between2]){return this.times[before]+between2*(this.times[after]-this.times[before])}seek(time){this.time=clamp(
+time,...this.span)}start(){this.playing=!0,this.lastFrame=0}range(settings){if(this.varies)return{first:this.span[0],last:this.
+span[1],now:this.time};let period=Number(settings.period);return{first:0,last:period,now:this.clock%period}}advance(now,ready){
+let passed=this.lastFrame?Math.min((now-this.lastFrame)/1e3,LONGEST_GAP_S):0;if(this.lastFrame=now,!this.varies)return this.
+clock+=passed,!0;let[first,last]=this.span,series=clamp(SERIES_STEP_S*(this.times.length-1),SERIES_LEAST_S,SERIES_MOST_S),
+next=this.time+passed*(last-first)/series,[before,after]=momentOf(this.times,Math.min(next,last));return ready([before,after])?
+(this.time=next>last?first:next,!0):!1}};var CLICK_PX=4,CLICK_MS=450,POINTED_MS=1500,HOVER_MS=90,KEY_STEP=.2,NOTCH_SIZES=[100,3,1],PINCH_PX=20,MOST_NOTCHES=4;function placeIn2(element,event){
+let box=element.getBoundingClientRect();return{x:2*(event.clientX-box.left)/Math.max(box.width,1)-1,y:1-2*(event.clientY-
+box.top)/Math.max(box.height,1)}}var Pointers=class{down=new Map;viewer;isOther=!1;press={x:0,y:0,time:0,isDrag:!1};lastLook=0;look=null;lastPointed=-1/0;constructor(viewer){
+this.viewer=viewer;let{canvas,root,options,lifetime}=viewer;root.classList.toggle("flowtex-guarded",options.guarded??!1),
+options.guarded&&this.guard();let listen=(kind,call)=>lifetime.listen(canvas,kind,call,{passive:!1});listen("pointerdown",
+event=>this.onDown(event)),listen("pointermove",event=>this.onMove(event)),listen("pointerup",event=>this.onUp(event)),listen(
+"pointercancel",event=>this.onUp(event)),listen("pointerleave",()=>viewer.panel.read(null)),listen("contextmenu",event=>event.
+preventDefault()),listen("wheel",event=>this.onWheel(event)),listen("dblclick",event=>{viewer.card.close(),this.zoom(2,event)}),
+lifetime.listen(root,"keydown",event=>this.onKey(event))}guard(){let{root,lifetime}=this.viewer,release=event=>{event.composedPath().
+includes(root)||this.hold(!1)};lifetime.listen(document,"pointerdown",release,{capture:!0}),lifetime.listen(document,"wh\
+eel",release,{capture:!0,passive:!0}),lifetime.listen(root,"focus",()=>{root.matches(":focus-visible")&&this.hold(!0)})}hold(held){
+this.viewer.root.classList.toggle("flowtex-held",held),held&&this.viewer.panel.hint(!1)}get isHeld(){let{root,options}=this.
+viewer;return!options.guarded||root.classList.contains("flowtex-held")?!0:document.fullscreenElement?.contains(root)??!1}place(event){
+return placeIn2(this.viewer.canvas,event)}onDown(event){if(event.button>2)return;let{root,canvas}=this.viewer;root.focus(
+{preventScroll:!0,focusVisible:!1}),event.pointerType!=="touch"&&this.hold(!0),canvas.setPointerCapture(event.pointerId),
+this.down.set(event.pointerId,this.place(event)),this.isOther=event.button===2||event.shiftKey;let{clientX:x,clientY:y,timeStamp:time}=event;
+this.press={x,y,time,isDrag:this.down.size>1},root.classList.add("flowtex-grabbing")}onMove(event){let{camera,panel}=this.
+viewer;if(!camera)return;let place=this.place(event),old=this.down.get(event.pointerId);if((event.movementX||event.movementY)&&
+(this.lastPointed=performance.now()),!old)return this.hover(place);if(Math.hypot(event.clientX-this.press.x,event.clientY-
+this.press.y)>CLICK_PX&&(this.press.isDrag=!0),!this.press.isDrag)return;let before=this.middle();this.down.set(event.pointerId,
+place);let now=this.middle();this.down.size>1?(camera.pan(before.x-now.x,before.y-now.y),before.apart>0&&camera.zoomBy(now.
+apart/before.apart,now.x,now.y)):camera.flat===this.isOther?camera.rotate(place.x-old.x,place.y-old.y):camera.pan(old.x-
+place.x,old.y-place.y),panel.read(null),this.viewer.reportCamera()}middle(){let[a,b=a]=[...this.down.values()],aspect=this.
+viewer.camera?.aspect??1,apart=Math.hypot((a.x-b.x)*aspect,a.y-b.y);return{x:(a.x+b.x)/2,y:(a.y+b.y)/2,apart}}onUp(event){
+let place=this.down.get(event.pointerId);if(this.down.delete(event.pointerId),this.down.size||(this.viewer.root.classList.
+remove("flowtex-grabbing"),event.type!=="pointerup"))return;this.hold(!0);let isQuick=event.timeStamp-this.press.time<CLICK_MS;
+!place||this.press.isDrag||!isQuick||event.button!==0||this.viewer.panel.read(this.viewer.card.choose(place.x,place.y))}onWheel(event){
+if(!this.isHeld&&!event.ctrlKey&&!event.metaKey){performance.now()-this.lastPointed<POINTED_MS&&this.viewer.panel.hint(!0);
+return}event.preventDefault();let size=event.ctrlKey&&event.deltaMode===0?PINCH_PX:NOTCH_SIZES[event.deltaMode],notches=clamp(
+-event.deltaY/size,-MOST_NOTCHES,MOST_NOTCHES);this.zoom((this.viewer.camera?.limits.wheel_zoom??1)**notches,event)}zoom(factor,event){
+let{x,y}=this.place(event);this.viewer.camera?.zoomBy(factor,x,y),this.viewer.reportCamera()}hover(place){let{viewer}=this;
+viewer.lifetime.cancel(this.look);let rest=HOVER_MS-(performance.now()-this.lastLook),look=()=>{this.look=null,this.lastLook=
+performance.now();let{x,y}=place;viewer.sharp&&viewer.canPick?viewer.panel.read(viewer.point(x,y),viewer.ground(x,y)):viewer.
+player.playing||this.hover(place)};this.look=viewer.lifetime.later(look,Math.max(rest,viewer.sharp?0:HOVER_MS))}onKey(event){
+let{root}=this.viewer,[target]=event.composedPath(),inside=target instanceof Element&&target!==root?target.tagName:"",isControl=/^(INPUT|SELECT)$/.
+test(inside)||inside==="BUTTON"&&event.key===PLAY_KEY;hasModifier(event)||isControl||!this.command(event)||(event.preventDefault(),
+event.stopPropagation())}command({key,shiftKey}){let{viewer}=this,{camera,panel,options}=viewer;if(!camera)return!1;let command=CAMERA_KEYS[key];
+if(command in DIRECTIONS){let[x,y]=DIRECTIONS[command].map(way=>way*KEY_STEP);camera.flat===shiftKey?camera.rotate(-x,-y):
+camera.pan(x,y),viewer.reportCamera()}else if(command==="closer"||command==="farther"){let{wheel_zoom:notch}=camera.limits;
+camera.zoomBy(command==="closer"?notch:1/notch),viewer.reportCamera()}else if(command==="whole")viewer.reset();else if(key===
+PLAY_KEY)viewer.togglePlaying();else if(key===FULLSCREEN_KEY)panel.fullscreen();else if(key==="h")(options.follows?.panel??
+panel).toggle();else if(key===CLOSE_KEY)panel.fold(),viewer.card.close(),this.hold(!1);else return!1;return!0}};function invert(out,a){var aa=a[0],ab=a[1],ac=a[2],ad=a[3],atx=a[4],aty=a[5],det=aa*ad-ab*ac;return det?(det=1/det,out[0]=
+ad*det,out[1]=-ab*det,out[2]=-ac*det,out[3]=aa*det,out[4]=(ac*aty-ad*atx)*det,out[5]=(ab*atx-aa*aty)*det,out):null}function determinant(a){
+return a[0]*a[3]-a[1]*a[2]}function multiply(out,a,b){var a0=a[0],a1=a[1],a2=a[2],a3=a[3],a4=a[4],a5=a[5],b0=b[0],b1=b[1],
+b2=b[2],b3=b[3],b4=b[4],b5=b[5];return out[0]=a0*b0+a2*b1,out[1]=a1*b0+a3*b1,out[2]=a0*b2+a2*b3,out[3]=a1*b2+a3*b3,out[4]=
+a0*b4+a2*b5+a4,out[5]=a1*b4+a3*b5+a5,out}var GREATEST_GROWTH=4,LEAST_GROWTH=.3,ROUNDING=1e-6,product=(a,b)=>multiply([0,0,0,0,0,0],a,b),inverse=a=>invert([0,0,0,
+0,0,0],a);function reused(before,now,width,height){let[w,h]=[width/2,height/2],toPixels=m=>product([w,0,0,-h,w,h],[m[0],
+m[1],m[4],m[5],m[12],m[13]]),matrix=product(toPixels(now),inverse(toPixels(before))),area=Math.abs(determinant(matrix));
+if(!(area>LEAST_GROWTH**2&&area<GREATEST_GROWTH**2))return null;let[a,b,c,d,e,f]=inverse(matrix),isInside=([x,y])=>Math.
+abs((a*x+c*y+e)/w-1)<1+ROUNDING&&Math.abs((b*x+d*y+f)/h-1)<1+ROUNDING,covers=[[0,0],[width,0],[0,height],[width,height]].
+every(isInside),[xx,xy,yx,yy]=matrix,shifts=Math.abs(xx-1)+Math.abs(yy-1)+Math.abs(xy)+Math.abs(yx)<ROUNDING;if(shifts)for(let n of[
+4,5])matrix[n]=Math.round(matrix[n]);return{matrix,covers,shifts}}var MOVING_MS=55,MOVING_LEAST_MS=14,STRIP_MS=40,SMOOTH_ROWS=256,penOf=canvas=>canvas.getContext("2d",{alpha:!1}),ProgressiveRenderer=class{viewer;graphics;canvas;pen;back=document.
+createElement("canvas");backPen=penOf(this.back);last=document.createElement("canvas");lastPen=penOf(this.last);lastCamera=null;coarse=document.
+createElement("canvas");coarsePen=penOf(this.coarse);front=document.createElement("canvas");frontPen=this.front.getContext(
+"2d");frontLook="";version=1;draftVersion=0;rowsDone=0;layers=[];isRefined=!1;fixed=4;frames=0;constructor(viewer){this.
+viewer=viewer,this.graphics=viewer.graphics,this.canvas=viewer.canvas,this.pen=penOf(this.canvas)}restart(cameraOnly=!1){
+cameraOnly||(this.lastCamera=null),this.version+=1,this.rowsDone=0}refine(){this.rowsDone>=this.canvas.height?this.rowsDone=
+0:this.isRefined=!0}resize(width,height){let{canvas,back,last}=this;back.width=canvas.width,back.height=canvas.height,this.
+backPen?.drawImage(canvas,0,0),canvas.width=last.width=width,canvas.height=last.height=height,back.width>1&&this.pen?.drawImage(
+back,0,0,width,height),back.width=width,back.height=height}dispose(){for(let canvas of[this.canvas,this.back,this.last,this.
+coarse,this.front])canvas.width=canvas.height=0}draw(program,shown,moving,until){if(this.draftVersion!==this.version)return this.
+draft(program,shown,moving);if(moving)return!1;let complete=!1;do complete=this.strip(program,shown)&&!this.isRefined;while(!complete&&
+performance.now()<until);return complete}arrange(shown){this.isRefined=!1,this.layers=this.viewer.arrange(shown)}draft(program,shown,moving){
+let{width,height}=this.canvas,samples=Number(this.viewer.settings.samples),crowd=moving?this.graphics.waiting.size+1:1,budget=Math.
+max(MOVING_MS/crowd,MOVING_LEAST_MS);this.arrange(shown),this.warm(program,shown);let price=program.price*this.factor(samples),
+best=quality(price,this.fixed,width*height,samples,budget),w=Math.max(Math.round(width*best.scale),1),h=Math.max(Math.round(
+height*best.scale),1);this.draftVersion=this.version;let reuse=best.scale<1?this.reuse():null;if(!reuse?.covers){let region={
+width:w,height:h,top:0,rows:h};this.timed(program,region,best.samples,()=>{this.render(program,shown,region,best.samples),
+this.copy(this.pen,region,height,0)})}reuse&&this.pen&&(this.pen.imageSmoothingEnabled=!reuse.shifts,this.pen.setTransform(
+...reuse.matrix),this.pen.drawImage(this.last,0,0),this.pen.setTransform(1,0,0,1,0,0));let isWhole=best.scale===1&&best.
+samples===samples&&!this.viewer.smooth;return isWhole&&this.complete(),this.drawLines(shown),isWhole&&!this.isRefined}strip(program,shown){
+let{width,height}=this.canvas,{smooth,settings}=this.viewer,samples=Number(settings.samples);this.rowsDone>=height&&(this.
+rowsDone=0),this.rowsDone===0&&this.arrange(shown),this.warm(program,shown);let price=program.price*this.factor(samples),
+most=Math.min(height-this.rowsDone,smooth?SMOOTH_ROWS:height),rows=Math.min(rowsIn(STRIP_MS,price,this.fixed,width,samples),
+most),region={width,height,top:this.rowsDone,rows};return this.timed(program,region,samples,()=>{this.render(program,shown,
+region,samples,smooth);let drawn=smooth?{...region,height:rows,top:0}:region;this.copy(this.backPen,drawn,drawn.height,this.
+rowsDone)}),this.rowsDone+=rows,this.rowsDone<height?!1:(this.pen?.drawImage(this.back,0,0),this.complete(),this.drawLines(
+shown),!0)}drawLines(shown){let{front,frontPen,graphics}=this,{scene,camera,ratio}=this.viewer,{width,height}=this.canvas;
+if(!scene?.earth.lines.length||!camera||!frontPen)return;let{earth}=scene,{state,aspect}=camera,look=JSON.stringify([state,
+aspect,width,height,earth.lines,earth.version]);if(look!==this.frontLook){let{anchor}=this.viewer.view(shown,ratio),{canvas}=graphics;
+canvas.width<width&&(canvas.width=width),canvas.height<height&&(canvas.height=height),front.width=width,front.height=height,
+earth.drawLines({camera,anchor,width,height,ratio},()=>{let top=canvas.height-height;frontPen.drawImage(canvas,0,top,width,
+height,0,0,width,height)}),this.frontLook=look}this.pen?.drawImage(front,0,0)}complete(){let{camera,player}=this.viewer;
+this.rowsDone=this.canvas.height,this.frames+=1,this.draftVersion=this.version,this.lastPen?.drawImage(this.canvas,0,0),
+camera&&!player.playing&&(this.lastCamera=new Camera(camera.state,camera.limits,camera.flat,camera.aspect))}reuse(){let{
+lastCamera}=this,{scene,camera}=this.viewer;if(!scene?.header.geometry.planar||!camera||!lastCamera||!camera.state.parallel||
+!lastCamera.state.parallel)return null;let{geometry}=scene.header,focus=subtract2(camera.state.focal_point,geometry.center),
+anchor=toFrame(geometry.frame,focus),[before,now]=[lastCamera,camera].map(view=>projection(geometry,view,anchor));return reused(
+before,now,this.canvas.width,this.canvas.height)}factor(samples){let{settings,player}=this.viewer;return settings.motion!==
+"off"||player.varies?motionFactor(samples):1}timed(program,region,samples,draw){let started=performance.now();draw();let spent=performance.
+now()-started,pixels=region.width*region.rows,factor=this.factor(samples);program.price=learnedPrice(program.price,spent,
+this.fixed,pixels,samples,factor)}warm(program,shown){if(program.warm)return;let{width,height}=this.canvas,region={width,
+height,top:0,rows:1};this.render(program,shown,region,1);let started=performance.now();this.render(program,shown,region,
+1),this.fixed=clamp(performance.now()-started,.5,200),program.warm=!0}render(program,shown,region,samples,smooth=!1){let{
+graphics,viewer}=this,{camera,scene}=viewer;if(!camera||!scene)return;let gl=graphics.context,{width,height,top,rows}=region,
+view=viewer.view(shown,viewer.ratio*height/this.canvas.height),{canvas}=graphics;canvas.width<width&&(canvas.width=width),
+canvas.height<height&&(canvas.height=height);let bottom=height-top-rows;smooth?graphics.bindSmooth(width,rows):gl.bindFramebuffer(
+gl.FRAMEBUFFER,null),gl.viewport(0,smooth?-bottom:0,width,height),gl.enable(gl.SCISSOR_TEST),gl.scissor(0,smooth?0:bottom,
+width,rows),gl.enable(gl.DEPTH_TEST),gl.depthFunc(gl.LESS),gl.disable(gl.BLEND),gl.disable(gl.CULL_FACE);let[r,g,b]=scene.
+header.background;gl.clearColor(r,g,b,1),gl.clear(gl.COLOR_BUFFER_BIT|gl.DEPTH_BUFFER_BIT);let draft=samples!==viewer.settings.
+samples||height!==this.canvas.height,around2={camera,anchor:view.anchor,width,height,ratio:viewer.ratio};scene.earth.drawGround(
+around2);for(let layer of this.layers)graphics.programs.use(program,this.values(layer,camera,view,samples,draft)),layer.
+draw(shown[0],shown[1],view.anchor,!0);smooth&&graphics.copySmooth(width,rows),gl.readPixels(0,0,1,1,gl.RGBA,gl.UNSIGNED_BYTE,
+new Uint8Array(4))}values({header,parts},camera,view,samples,draft){let{settings}=this.viewer,noise=parts.get("noise")?.
+shape??null;return{...uniforms(header,{...settings,samples},view,noise),...draft?draftUniforms(settings,samples,view.density):
+{},u_matrix:projection(header.geometry,camera,view.anchor),u_mapped:header.scalars.name!==null,u_colour:header.colour,u_lit:header.
+lighting,u_ground:header.background,u_opacity:header.opacity,u_toEye:toFrame(header.geometry.frame,scale2(camera.axes[2],
+-1))}}copy(pen,region,height,to){if(!pen)return;let{width:w,height:h,top,rows}=region,{width}=this.canvas,{canvas}=this.
+graphics,first=canvas.height-h+top;if(pen.imageSmoothingEnabled=w!==width||h!==height,pen.imageSmoothingEnabled){let{coarse,
+coarsePen}=this;coarse.width=w,coarse.height=rows,coarsePen?.drawImage(canvas,0,first,w,rows,0,0,w,rows),[canvas,first]=
+[coarse,0]}pen.drawImage(canvas,0,first,w,rows,0,to,width,rows*height/h)}};var PLACE2=5;function blocksOf(nodes,size){let count=Math.max(Math.ceil((nodes-1)/size),1);return Array.from({length:count},
+(_,n)=>({first:n*size,cells:Math.min(nodes-1-n*size,size)}))}var MeshLevels=class{mesh;limits;rows;columns;constructor(mesh,limits){
+this.mesh=mesh,this.limits=limits,this.rows=blocksOf(mesh.shape[0],limits.tileCells),this.columns=blocksOf(mesh.shape[1],
+limits.tileCells)}get shape(){return[this.rows.length,this.columns.length]}levels({eye,halfHeight,pixels}){let{limits}=this,
+{blocks}=this.mesh,count=this.rows.length*this.columns.length,size=blocks.length/count,last=(size-PLACE2)/2-1;return Int8Array.
+from({length:count},(_,block)=>{let record=blocks.subarray(size*block,size*(block+1)),[x,y,z,radius,cell]=record.subarray(
+size-PLACE2),near=limits.leastDistance*radius,away=eye?Math.max(length2(subtract2(eye,[x,y,z]))-radius,near):1,scale3=.5*
+pixels/(halfHeight*Math.max(away,Number.MIN_VALUE)),level=0;for(;level<last;level+=1){let error=record[level+1],colourError=record[last+
+2+level],side=cell*scale3*2**(level+1);if(!(error*scale3<=limits.maxErrorPixels&&colourError<=limits.maxColourError||Number.
+isFinite(error)&&side<=1)||side>limits.maxSideHeights*pixels)break}return level})}triangles(levels,joins){let sizes=Array.
+from(levels,level=>level<0?0:this.limits.tileCells>>level),index=new Uint32Array(6*sizes.reduce((sum,size)=>sum+size*size,
+0)),end=0;return levels.forEach((level,block)=>{level>=0&&(end=this.add(index,end,level,joins,block))}),index.slice(0,end)}add(index,start,level,joins,block){
+let{rows,columns,limits}=this,{shape,cells}=this.mesh,step=1<<level,count=limits.tileCells/step+1,row2=rows[Math.floor(block/
+columns.length)],column=columns[block%columns.length],[below,above,left,right]=[0,1,2,3].map(side=>joins[4*block+side]),
+snapped=(place,size,border)=>place===size?place:place>>border<<border,nodes=new Uint32Array(count*count);for(let b=0;b<count;b+=
+1){let y=Math.min(b*step,row2.cells);for(let a=0;a<count;a+=1){let[px,py]=[Math.min(a*step,column.cells),y];(b===0||b===
+count-1)&&(px=snapped(px,column.cells,b?above:below)),(a===0||a===count-1)&&(py=snapped(py,row2.cells,a?right:left)),nodes[b*
+count+a]=(row2.first+py)*shape[1]+column.first+px}}let end=start,put=(p,q,r)=>{p===q||q===r||p===r||(index[end++]=p,index[end++]=
+q,index[end++]=r)};for(let b=0;b<count-1;b+=1){let y=Math.min(row2.first+Math.min(b*step,row2.cells),shape[0]-2);for(let a=0;a<
+count-1;a+=1){let x=Math.min(column.first+Math.min(a*step,column.cells),shape[1]-2);if(cells&&!cells[y*(shape[1]-1)+x])continue;
+let at=b*count+a,[p,q,r,s]=[nodes[at],nodes[at+1],nodes[at+count+1],nodes[at+count]];put(p,q,r),put(p,r,s)}}return end}},
+NOT_DRAWN=99,Lines=class{values;strides;count;width;constructor([rows,columns],axis){[this.count,this.width]=axis?[columns+
+1,rows]:[rows+1,columns],this.strides=axis?[1,columns+1]:[columns,1],this.values=new Int16Array(this.count*this.width)}at(line,along){
+return line*this.strides[0]+along*this.strides[1]}close(){for(let n=0;n<this.width;n+=1){let[first,last]=[this.at(0,n),this.
+at(this.count-1,n)],most=Math.max(this.values[first],this.values[last]);this.values[first]=this.values[last]=most}}};function eachBlock({
+step,row:row2,column,shape},[rows,columns],call){let bottom=Math.min(row2+(shape[0]<<step),rows),right=Math.min(column+(shape[1]<<
+step),columns);for(let j=row2;j<bottom;j+=1){let own=(j-row2>>step)*shape[1];for(let i=column;i<right;i+=1)call(j*columns+
+i,own+(i-column>>step))}}function finestAround(nodes,[rows,columns],periodic){let around2=(n,by,count,closed)=>closed?(n+
+by+count)%count:clamp(n+by,0,count-1);return nodes.map((own,block)=>{let[j,i]=[Math.floor(block/columns),block%columns],
+least=own;for(let by of[-1,1]){let row2=around2(j,by,rows,periodic[0]),column=around2(i,by,columns,periodic[1]);least=Math.
+min(least,nodes[row2*columns+i],nodes[j*columns+column])}return least})}function join(parts,blocks,periodic,most){let nodes=new Int16Array(
+blocks[0]*blocks[1]).fill(NOT_DRAWN),put=(target,part,value)=>eachBlock(part,blocks,(block,own)=>{part.levels[own]>=0&&(target[block]=
+value(part.levels[own]))});for(let part of parts)put(nodes,part,()=>part.step);let finest=finestAround(nodes,blocks,periodic),
+strides=new Int16Array(nodes.length);for(let part of parts){let{levels,step}=part;eachBlock(part,blocks,(block,own)=>{levels[own]=
+Math.min(levels[own],finest[block]+most-step)}),put(strides,part,level=>level+step)}let lines=[new Lines(blocks,0),new Lines(
+blocks,1)];for(strides.forEach((stride,block)=>{let[j,i]=[Math.floor(block/blocks[1]),block%blocks[1]];[[j,i],[i,j]].forEach(
+([line,along],axis)=>{let{values}=lines[axis];for(let far of[0,1]){let at=lines[axis].at(line+far,along);values[at]=Math.
+max(values[at],stride)}})});;){lines.forEach((line,axis)=>periodic[axis]&&line.close());let joined=parts.map(part=>bordersOf(
+part,lines));if(!joined.some(([,changed])=>changed))return joined.map(([borders])=>borders)}}function bordersOf({step,row:row2,
+column,shape,levels},lines){let size=1<<step,borders=new Int8Array(4*levels.length),changed=!1;for(let side of[0,1,2,3]){
+let[axis,far]=[side>>1,side&1],line=lines[axis],{values}=line;levels.forEach((level,own)=>{let place=[Math.floor(own/shape[1]),
+own%shape[1]],[first,start]=axis?[column,row2]:[row2,column],pick=Math.min(first+(place[axis]+far)*size,line.count-1),from=start+
+place[1-axis]*size,end=Math.max(Math.min(from+size,line.width),from+1),coarsest=0;for(let n=from;n<end;n+=1)coarsest=Math.
+max(coarsest,values[line.at(pick,n)]);if(borders[4*own+side]=coarsest-step,!(level<0))for(let n=from;n<end;n+=1)changed||=
+values[line.at(pick,n)]!==coarsest,values[line.at(pick,n)]=coarsest})}return[borders,changed]}var USERS={position:["position","coordinate"],normal:["normal"],cells:["index"],mesh:["index"],triangles:["index","posit\
+ion","coordinate","corners","normal","scalar"],blocks:["index"],cmap:["cmap"],noise:["noise"],step:["step"],scalars:["sc\
+alar"]},Scene=class{graphics;header;parts;earth;anchor=[0,0,0];resources=new Map;scalarSteps="";drawn=null;meshLevels=null;constructor(graphics,header,parts){
+this.graphics=graphics,this.header=header,this.parts=parts,this.earth=new EarthLayer(graphics,header,parts)}missing(before,after){
+let{geometry,slices,scalars,paper,pyramid}=this.header,names=["position","mesh",...geometry.planar?[]:["normal"]];pyramid&&
+names.push("places"),geometry.triangles&&names.push("triangles","blocks");for(let step of new Set([before,after]))names.
+push(`slices/${step}`),slices.channels===2&&names.push(`extra/${step}`);return names.push(...this.scalarParts(before,after)),
+scalars.name!==null&&names.push("cmap"),paper&&names.push("noise","step"),[...new Set(names)].filter(name=>!this.fits(name))}scalarParts(before,after,of=this.
+header.scalars){let{name,steps,number}=of;if(name===null)return[];let end=number?`/${number}`:"";return(steps>1?[before,
+after]:[0,0]).map(step=>`scalars/${step}${end}`)}fits(name){let part=this.parts.get(name);if(!part)return!1;let{geometry,
+slices,paper,mesh}=this.header,blocks=geometry.shape.map(n=>Math.max(Math.ceil((n-1)/mesh.tileCells),1)),shape={slices:[
+slices.count,geometry.rows.size,geometry.columns.size,slices.channels],position:[...geometry.shape,3],mesh:geometry.triangles?
+part.shape:[...blocks,part.shape[2]],step:paper?[paper.size[1],paper.size[0]]:[]}[name.split("/")[0]];return!shape||String(
+shape)===String(part.shape)}part(name){let part=this.parts.get(name);if(!part)throw new Error(`the part "${name}" of the\
+ scene is missing`);return part}forget(name){let[kind,step]=name.split("/");USERS[kind]?.includes("index")&&(this.meshLevels=
+this.drawn=null);let sliced=kind==="slices"||kind==="extra";!sliced&&kind!=="scalars"&&this.earth.forget(name);for(let user of sliced?
+[`slices/${step}`]:USERS[kind]??[])this.drop(user);this.drop("array")}drop(name){let resource=this.resources.get(name);this.
+resources.delete(name),resource&&(resource.users-=1,!resource.users&&(this.graphics.free(resource.kind,resource.object),
+this.graphics.common.delete(resource.key)))}dispose(){for(let name of[...this.resources.keys()])this.drop(name);this.earth.
+dispose()}key(names,...rest){let digests=names.map(name=>this.parts.has(name)?this.part(name).digest:"none");return digests.
+every(Boolean)?JSON.stringify([digests,rest]):""}take(name,kind,key,make,fill){let own=this.resources.get(name);if(own)return own.
+object;let{graphics}=this,whole=key&&`${name.split("/")[0]} ${key}`,shared2=whole?graphics.common.get(whole):void 0,object=shared2?.
+object??graphics.counted(make()),resource=shared2??{kind,object,count:0,key:whole,users:0};return resource.users+=1,this.
+resources.set(name,resource),shared2||(resource.count=fill(object)||0),whole&&graphics.common.set(whole,resource),object}buffer(name,key,data,elements=!1){
+let gl=this.graphics.context,fill=buffer=>{let target=elements?gl.ELEMENT_ARRAY_BUFFER:gl.ARRAY_BUFFER,numbers=data();return gl.
+bindVertexArray(null),gl.bindBuffer(target,buffer),gl.bufferData(target,numbers,gl.STATIC_DRAW),numbers.length};return this.
+take(name,"Buffer",key,()=>gl.createBuffer(),fill)}mesh(){if(this.meshLevels)return this.meshLevels;let{geometry,mesh}=this.
+header;if(geometry.triangles)return this.meshLevels=new TriangleMesh(this.part("mesh"),this.part("blocks"));let{shape,periodic}=geometry,
+parts={blocks:this.part("mesh").data,cells:this.parts.get("cells")?.data};return this.meshLevels=new MeshLevels({shape,periodic,
+...parts},mesh)}cornersAt(place){let{triangles,shape}=this.header.geometry;return triangles?cornersOf(this.part("triangl\
+es").data,place):cornersAt(shape,place)}levels(sight){return{levels:this.mesh().levels(sight),shape:this.mesh().shape}}get hasTriangles(){
+return this.drawn!==null}setTriangles(levels,joins=new Int8Array){let{drawn}=this;drawn&&String([levels,joins])===String(
+[drawn.levels,drawn.joins])||(this.drawn={levels,joins},this.drop("index"),this.drop("array"))}isLoaded(steps){return steps.
+every(step=>this.resources.has(`slices/${step}`))}load(steps){for(let step of steps)this.slices(step)}bindNodes(before,after,anchor){
+let gl=this.graphics.context,steps=String(this.scalarParts(before,after)),stale=steps!==this.scalarSteps?["scalar","arra\
+y"]:[];anchor.some((x,k)=>x!==this.anchor[k])&&stale.push("position","array");for(let name of stale)this.drop(name);this.
+scalarSteps=steps,this.anchor=anchor;let fill=array=>this.fillArray(array,before,after),make=()=>gl.createVertexArray();
+gl.bindVertexArray(this.take("array","VertexArray","",make,fill))}fillArray(array,before,after){let gl=this.graphics.context,
+{geometry,scalars,paper}=this.header,{shape,rows,columns}=geometry,{levels,joins}=this.drawn??{levels:new Int8Array,joins:new Int8Array},
+key=(names,...rest)=>this.key(["triangles",...names],...rest),cells=()=>this.mesh().triangles(levels,joins),drawn=key(["\
+cells","mesh","blocks"],shape,[...levels],[...joins]),index=this.buffer("index",drawn,cells,!0),corners=geometry.triangles?
+this.part("triangles").data:null,vertices=(values2,size)=>corners?atVertices(values2,corners,size):values2,nodes=()=>vertices(
+positions(this.part("position").data,this.anchor),3),normal=geometry.planar?null:this.part("normal").data,normals=nodal=>corners?
+vertexNormals(nodal,this.part("position").data,corners):nodal,painted=this.scalarParts(before,after),values=()=>{let steps=painted.
+map(name=>this.part(name).data);return vertices(shares(steps,scalars,shape[0]*shape[1]),2)},colour=key([...new Set(painted)],
+shape,scalars.low,scalars.high,scalars.log),grid2=JSON.stringify([shape,rows,columns,corners?.length]),place=()=>corners?
+vertexShares(corners.length/3):coordinates(geometry),type=gl.FLOAT;normal instanceof Int8Array&&(type=gl.BYTE),normal instanceof
+Int16Array&&(type=gl.SHORT);let attributes=[[this.buffer("position",key(["position"],this.anchor),nodes),3,gl.FLOAT],[this.
+buffer("coordinate",grid2,place),2,gl.FLOAT],[normal&&this.buffer("normal",key(["normal"]),()=>normals(normal)),3,type],
+[paper&&this.buffer("along","",()=>noiseCoordinates(paper)),2,gl.FLOAT],[this.buffer("scalar",colour,values),2,gl.FLOAT],
+[corners&&this.buffer("corners",key([]),()=>vertexCorners(corners)),3,gl.FLOAT]];gl.bindVertexArray(array),gl.bindBuffer(
+gl.ELEMENT_ARRAY_BUFFER,index),attributes.forEach(([buffer,size,kind],n)=>{buffer&&(gl.bindBuffer(gl.ARRAY_BUFFER,buffer),
+gl.enableVertexAttribArray(n),gl.vertexAttribPointer(n,size,kind,kind!==gl.FLOAT,0,0))})}texture(name,key,fill){let gl=this.
+graphics.context;return this.take(name,"Texture",key,()=>gl.createTexture(),fill)}slices(step){let{slices,geometry}=this.
+header,key=this.key([`slices/${step}`,`extra/${step}`],geometry.levels,slices.extra);return this.texture(`slices/${step}`,
+key,texture=>{let part=this.part(`slices/${step}`),[layers,height,width,channels]=part.shape,data=part.data,extra=this.parts.
+get(`extra/${step}`)?.data,texels=height*width,layer=n=>{let own=data.subarray(n*texels*channels,(n+1)*texels*channels);
+if(channels===4)return own;let all=new Uint16Array(4*texels),place=slices.extra.indexOf(n),fourth=place<0?null:extra?.subarray(
+place*texels,(place+1)*texels);for(let k=0;k<texels;k+=1)all[4*k]=own[2*k],all[4*k+1]=own[2*k+1],fourth&&(all[4*k+3]=fourth[k]);
+return all};this.fill(texture,{width,height,layers,channels:4,levels:geometry.levels},layer)})}image(name,repeat){let gl=this.
+graphics.context;return this.texture(name,this.key([name],repeat),texture=>{let{data,shape}=this.part(name),[height,width,
+channels=1]=shape,levels=Math.floor(Math.log2(Math.max(width,height))),size={width,height,layers:1,channels,levels};this.
+fill(texture,size,()=>data);let wrap=n=>repeat[n]?gl.REPEAT:gl.CLAMP_TO_EDGE;gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_S,
+wrap(1)),gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_T,wrap(0))})}fill(texture,size,layer){let gl=this.graphics.
+context,{width,height,layers,channels,levels}=size,target=gl.TEXTURE_2D_ARRAY;this.checkSize(size);let[format,inner]=channels===
+1?[gl.RED,gl.R16F]:[gl.RGBA,gl.RGBA16F];gl.bindTexture(target,texture),gl.texStorage3D(target,levels+1,inner,width,height,
+layers),gl.texParameteri(target,gl.TEXTURE_MIN_FILTER,gl.LINEAR_MIPMAP_LINEAR),gl.texParameteri(target,gl.TEXTURE_MAG_FILTER,
+gl.LINEAR),gl.texParameteri(target,gl.TEXTURE_WRAP_S,gl.CLAMP_TO_EDGE),gl.texParameteri(target,gl.TEXTURE_WRAP_T,gl.CLAMP_TO_EDGE),
+gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);let{floats}=this.graphics;for(let n=0;n<layers;n+=1){let texels=layer(n),[w,h]=[width,
+height];gl.texSubImage3D(target,0,0,0,n,w,h,1,format,gl.HALF_FLOAT,texels);for(let level=1;level<=levels&&!floats;level+=
+1)[texels,w,h]=halved(texels,w,h,channels),gl.texSubImage3D(target,level,0,0,n,w,h,1,format,gl.HALF_FLOAT,texels)}floats&&
+levels&&gl.generateMipmap(target)}checkSize({width,height,layers}){let gl=this.graphics.context,most=gl.getParameter(gl.
+MAX_TEXTURE_SIZE),mostLayers=gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS);if(!(Math.max(width,height)<=most&&layers<=mostLayers))
+throw new Error(`a texture of ${width} x ${height} texels in ${layers} layers is asked for, and this graphics card has ${most}\
+ x ${most} in ${mostLayers}; show fewer nodes`)}colourMap(){let gl=this.graphics.context;return this.texture("cmap",this.
+key(["cmap"]),texture=>{gl.bindTexture(gl.TEXTURE_2D,texture),gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);let data=this.parts.
+get("cmap")?.data??new Uint8Array(1024);gl.texImage2D(gl.TEXTURE_2D,0,gl.RGBA8,256,1,0,gl.RGBA,gl.UNSIGNED_BYTE,data),gl.
+texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST)})}dropSlices(before,after){
+let next=after+1<this.header.slices.steps?after+1:0;for(let name of[...this.resources.keys()])name.startsWith("slices/")&&
+([before,after,next,after+1].includes(stepOf(name))||this.drop(name))}bindTextures(before,after){let gl=this.graphics.context,
+{paper}=this.header,repeat=paper?.repeat??[!1,!1];[this.slices(before),after===before?null:this.slices(after),paper&&this.
+image("noise",paper.picture?[!0,!0]:repeat),paper&&this.image("step",repeat),this.colourMap()].forEach((texture,n)=>{gl.
+activeTexture(gl.TEXTURE0+n),gl.bindTexture(n<4?gl.TEXTURE_2D_ARRAY:gl.TEXTURE_2D,texture)}),gl.activeTexture(gl.TEXTURE0+
+SAMPLERS.length)}draw(before,after,anchor,textures){let gl=this.graphics.context;textures&&(this.dropSlices(before,after),
+this.bindTextures(before,after)),this.bindNodes(before,after,anchor),gl.drawElements(gl.TRIANGLES,this.resources.get("in\
+dex")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(null)}};var REQUEST_MS=60,LOST_MS=8e3,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD=4,Tiles=class{layers=[];missing=[];host;root;tiles=new Map;pyramid=null;chosen={
+choices:new Map,steps:[],names:""};drawn="";asked={names:[],steps:[]};count=0;isWaiting=!1;isOver=!1;lastCame=0;failed=new Set;limits;constructor(host,root){
+this.host=host,this.root=root,this.limits=root.header.mesh}has(name,part){return this.tiles.get(name)?.parts.has(part)??
+!1}fail(name){this.failed.add(name),this.host.refine()}dispose(){this.isOver=!0;for(let name of[...this.tiles.keys()])this.
+drop(name)}setPart(name,part){let{graphics,header}=this.root,tile=this.tiles.get(name)??this.emptyTile();if(this.tiles.set(
+name,tile),part.name==="mesh"&&this.giveLimits(tile),part.digest&&tile.parts.get(part.name)?.digest===part.digest)return;
+if(graphics.release(tile.parts.get(part.name)),tile.parts.set(part.name,graphics.hold(part)),part.name==="header"){let own=JSON.
+parse(new TextDecoder().decode(part.data));tile.scene?.dispose(),tile.ranges=own?.ranges,tile.scene=own&&new Scene(graphics,
+{...header,...own,pyramid:null},tile.parts),this.giveMap(tile),this.giveLimits(tile)}else tile.scene?.forget(part.name);
+this.lastCame=performance.now();let{names,steps}=this.chosen;this.missing=this.missing.filter(missing=>!this.isHere(missing,
+steps));let shown=cover(this.chosen.choices,other=>this.isHere(other,steps));String([...shown.keys()])!==names&&this.host.
+refine()}recolour(colours={}){this.asked={names:[],steps:[]};let{mesh,scalars}=this.root.header,{steps}=this.chosen;for(let tile of this.
+tiles.values()){let{scene,parts}=tile;if(!scene)continue;let{header}=scene;Object.assign(header,{mesh:narrowed(mesh,tile.
+scalars,scalars)},colours),tile.ranges&&this.giveLimits(tile),this.giveMap(tile);for(let name of["scalars","mesh"])scene.
+forget(name);if((steps.length?scene.scalarParts(steps[0],steps[steps.length-1]):[]).every(name=>parts.has(name))&&(scalars.
+log===tile.scalars.log||scalars.name===null))continue;let others=[...parts.keys()].filter(name=>name.startsWith("scalars\
+/"));for(let name of others)this.release(tile,name)}}emptyTile(){let{scalars}=this.root.header;return{parts:new Map,scene:void 0,
+scalars,used:this.count}}giveLimits(tile){let{mesh,scalars}=this.root.header;if(tile.scalars=scalars,!tile.scene)return;
+let range=tile.ranges?.[scalars.name??""],from=range&&{...scalars,low:range[0],high:range[1],log:!1};tile.scene.header.mesh=
+from?narrowed(this.limits,from,scalars):mesh}giveMap({scene,parts}){let map=this.root.parts.get("cmap");map&&parts.set("\
+cmap",map),scene?.forget("cmap")}arrange([before,after]){let{camera,canvas}=this.host;if(!camera)return[];let steps=[...new Set(
+[before,after])],shown=this.choose(camera,steps),layers=[{scene:this.root,key:[this.root.header.pyramid?.depth??0,0,0]}],
+names=[ROOT];for(let name of shown.keys()){let scene=this.tiles.get(name)?.scene;scene&&(names.push(name),layers.push({scene,
+key:keyOf(name)}))}let sight=camera.sight(canvas.height),parts=layers.map(({scene,key},n)=>{let{levels,shape}=scene.levels(
+sight);for(let finer of shown.get(names[n])??[])this.hide(levels,shape[1],finer,names[n]);let{pyramid}=this.root.header,
+[row2,column]=key.slice(1).map(at=>at*(pyramid?.tileBlocks??0)<<key[0]);return{step:key[0],row:row2,column,shape,levels}});
+return this.layers=layers,this.setTriangles(names,parts),layers.map(({scene})=>scene)}hide(levels,columns,finer,above){let[
+row2,column,size]=this.pyramid?.finerPart(keyOf(finer),above)??[0,0,0];for(let j=row2;j<Math.min(row2+size,levels.length/
+columns);j+=1)levels.fill(-1,j*columns+column,j*columns+Math.min(column+size,columns))}setTriangles(names,parts){let drawn=String(
+parts.map(({levels},n)=>[names[n],levels]));if(drawn===this.drawn&&this.layers.every(({scene})=>scene.hasTriangles))return;
+this.drawn=drawn;let{geometry,mesh,pyramid}=this.root.header,most=Math.log2(mesh.tileCells),blocks=pyramid?.blocks[0]??parts[0].
+shape,joins=geometry.triangles?[]:join(parts,blocks,geometry.periodic,most);parts.forEach(({levels},n)=>this.layers[n].scene.
+setTriangles(levels,joins[n]))}choose(camera,steps){let{header}=this.root,{settings,canvas,ratio}=this.host;if(!header.pyramid)
+return new Map;this.pyramid??=new Pyramid(header.pyramid,this.root.part("places").data);let choices=this.pyramid.choose(
+{...camera.sight(canvas.height/ratio),planes:camera.planes,cellPixels:cellPixels(header.pyramid,settings)});this.count+=
+1;for(let name of choices.keys()){let tile=this.tiles.get(name);tile&&(tile.used=this.count)}let until=performance.now()+
+LOAD_MS,wanted=this.obtainable(wantedTiles(choices),header.pyramid.depth);this.missing=wanted.filter(name=>!this.isHere(
+name,steps)),this.ask(steps),this.trim(steps);let shown=cover(choices,name=>this.isHere(name,steps)&&this.load(name,steps,
+until));return this.chosen={choices,steps,names:String([...shown.keys()])},shown}obtainable(names,depth){let found=names.
+map(name=>{let[level,row2,column]=keyOf(name);for(;level<depth&&this.failed.has(nameOf([level,row2,column]));)[level,row2,
+column]=[level+1,row2>>1,column>>1];return level<depth?nameOf([level,row2,column]):ROOT});return[...new Set(found)].filter(
+name=>name!==ROOT)}isHere(name,steps){let scene=this.tiles.get(name)?.scene;return scene===null||scene?.missing(steps[0],
+steps[steps.length-1]).length===0}load(name,steps,until){let scene=this.tiles.get(name)?.scene;return!scene||scene.isLoaded(
+steps)?!0:performance.now()>until?(this.host.refine(),!1):(scene.load(steps),!0)}ask(all){let{options,lifetime}=this.host,
+isLacking=step=>this.missing.some(name=>!this.isHere(name,[step])),steps=all.filter(isLacking),open=this.asked.names.filter(
+name=>!this.isHere(name,this.asked.steps));performance.now()-this.lastCame<LOST_MS&&String(open.sort())===String([...this.
+missing].sort())&&(!open.length||String(steps)===String(this.asked.steps))||this.isWaiting||!options.onTiles||(this.isWaiting=
+!0,lifetime.later(()=>{this.isWaiting=!1,!this.isOver&&(this.lastCame=performance.now(),this.asked={names:this.missing,steps},
+options.onTiles?.(this.missing.map(keyOf),steps),this.missing.length&&lifetime.later(()=>this.isOver||this.ask(all),LOST_MS))},
+REQUEST_MS))}trim(steps){let bytes=0;for(let[name,tile]of[...this.tiles].sort(([,a],[,b])=>b.used-a.used)){let{parts,used}=tile,
+slices=[...parts.keys()].filter(part=>part.startsWith("slices/"));for(let part of slices.slice(0,Math.max(slices.length-
+STEPS_HELD,0))){let step=stepOf(part);if(steps.includes(step))continue;for(let kind of["slices","extra"])this.release(tile,
+`${kind}/${step}`);let values=[...parts.keys()].filter(each=>isOfStep(each,step,this.root.header));for(let each of values)
+this.release(tile,each)}for(let{data}of parts.values())bytes+=BYTES_HELD*data.byteLength;bytes>(this.host.options.memory??
+BUDGET_BYTES)&&used<this.count&&this.drop(name)}}drop(name){let tile=this.tiles.get(name);tile?.scene?.dispose();for(let part of[
+...tile?.parts.keys()??[]])this.release(tile,part);this.tiles.delete(name)}release(tile,part){part!=="cmap"&&this.root.graphics.
+release(tile?.parts.get(part)),tile?.parts.delete(part)}};var STILL_MS=160,LOST_MS2=5e3,STEPS_HELD2=12,FEW_STEPS_HELD=4,isEqual=(a,b)=>JSON.stringify(a)===JSON.stringify(b),Viewer=class{options;graphics=sharedGraphics();lifetime=new Lifetime;player=new Player;root=document.
+createElement("div");canvas=document.createElement("canvas");card=new PointCard(this);panel;pointers;parts=new Map;header=null;settings={};scene=null;tiles=null;camera=null;sharp=!1;isVisible=!0;shown=null;together=[
+this];renderer;busyUntil=0;firstCamera=null;requests=new Map;constructor(element,options={}){this.options=options;let{root}=this;
+root.className="flowtex",root.tabIndex=0,root.dataset.sharp="false",root.setAttribute("data-lm-suppress-shortcuts","true"),
+root.setAttribute("role","application"),this.renderer=new ProgressiveRenderer(this),this.panel=new Panel(this),element.append(
+root),this.pointers=new Pointers(this),this.graphics.users.add(this),this.observe(),this.graphics.gl||this.panel.fail("T\
+his browser has no WebGL2, which the picture is drawn with.","Turn on hardware acceleration in its settings, or use a re\
+cent Firefox, Chrome or Safari.")}observe(){let{lifetime,root}=this;lifetime.observe(new ResizeObserver(()=>this.resize()),
+root);let seen=new IntersectionObserver(entries=>{this.isVisible=entries[entries.length-1].isIntersecting,this.isVisible&&
+this.request()});lifetime.observe(seen,root),lifetime.listen(document,"visibilitychange",()=>this.request()),lifetime.listen(
+window,"resize",()=>this.resize())}stats(){let{objects,users}=this.graphics,{frames}=this.renderer;return{...this.lifetime.
+stats(),objects,users:users.size,frames}}dispose(){if(!this.lifetime.isOver){this.player.playing=!1,this.lifetime.end(),
+this.tiles?.dispose(),this.tiles=null,this.scene?.dispose(),this.scene=null;for(let name of[...this.parts.keys()])this.remove(
+name);this.graphics.leave(this),this.renderer.dispose(),this.root.remove()}}setHeader(header){if(header.format!==3){this.
+panel.fail(`The scene has format ${header.format}, and this client reads format ${3}.`,"Use the client of the flowtex th\
+at made the scene.");return}let old=this.header;if(old&&old.generation!==void 0&&old.generation===header.generation)return this.
+recolour(coloursOf(header));if(this.header=header,this.settings={...header.settings,...header.own},this.player.setHeader(
+header),this.tiles?.dispose(),this.scene?.dispose(),this.makeScene(header),this.requests.clear(),(!old||!isSamePlace(old.
+geometry,header.geometry))&&(this.firstCamera=header.camera,this.camera=null),old&&old.generation!==header.generation)for(let name of[
+...this.parts.keys()])name.includes("/")&&this.remove(name);this.panel.build(),this.change()}recolour(colours){if(this.header){
+Object.assign(this.header,colours);for(let name of["scalars","mesh"])this.scene?.forget(name);this.requests.clear(),this.
+tiles?.recolour(colours),this.panel.showLegend(),this.change()}}chooseColours(choice){if(this.options.onColours)return this.
+options.onColours(choice);for(let viewer of this.together){if(!viewer.header)continue;let{colours,part}=recoloured(viewer.
+header,choice,viewer.parts);part&&viewer.setPart(part),viewer.recolour(colours)}}makeScene(header){this.scene=new Scene(
+this.graphics,header,this.parts),this.tiles=new Tiles(this,this.scene)}setPart(part){let{name,digest}=part,tile=tilePart(
+name);if(tile)return void this.tiles?.setPart(tile[0],{...part,name:tile[1]});if(this.requests.delete(stepOf(name)),digest&&
+this.parts.get(name)?.digest===digest)return;let held=this.graphics.hold(part);this.remove(name),this.parts.set(name,held),
+this.scene?.forget(name),this.trim(),name==="cmap"&&this.tiles?.recolour(),["cmap","maps",...EARTH_LINES].includes(name)&&
+this.panel.showLegend(),this.change()}remove(name){this.graphics.release(this.parts.get(name)),this.parts.delete(name)}trim(){
+if(!this.options.onNeed||!this.header)return;let names=[...this.parts.keys()].filter(name=>name.startsWith("slices/")),[
+before,after]=this.player.moment,held=this.options.memory?FEW_STEPS_HELD:STEPS_HELD2;for(let name of names.slice(0,Math.
+max(names.length-held,0))){let step=stepOf(name);if(!(step===before||step===after)){for(let kind of["slices","extra"])this.
+remove(`${kind}/${step}`);if(this.options.memory)for(let other of[...this.parts.keys()])isOfStep(other,step,this.header)&&
+this.remove(other)}}}setSettings(settings){Object.entries(settings).every(([name,value])=>this.settings[name]===value)||
+(Object.assign(this.settings,settings),this.panel.update(),this.change())}followSetting(name,value){name in(this.header?.
+own??{})||this.setSettings({[name]:value})}choose(name,value){this.holdDraft(),this.setSettings({[name]:value}),this.options.
+onSetting?.(name,value)}get cameraState(){let state=this.camera?.state??this.firstCamera;return state?copyOf(state):null}setCamera(state){
+if(!this.camera)this.firstCamera=copyOf(state);else{if(isEqual(this.camera.state,state))return;this.camera.state=copyOf(
+state)}this.change(!0)}reportCamera(){this.holdDraft(),this.change(!0),this.camera&&this.options.onCamera?.(copyOf(this.
+camera.state))}reset(){this.camera&&(this.place(),this.reportCamera())}place(){let{header,firstCamera:first,aspect}=this,
+nodes=this.parts.get("position")?.data;if(!header||!nodes)return;let{geometry,limits}=header,state=first?widened(geometry,
+limits,first,nodes,aspect):fitted(geometry,limits,nodes,aspect),globe=header.earth&&!header.earth.map?header.earth.radius:
+0;this.camera=new Camera(state,limits,geometry.planar,aspect,globe),this.camera.pick=(x,y)=>this.point(x,y)?.position??this.
+ground(x,y),(!first||!isEqual(first,state))&&this.options.onCamera?.(copyOf(state))}get aspect(){return Math.max(this.root.
+clientWidth,1)/Math.max(this.root.clientHeight,1)}get playing(){return this.player.playing}setTime(time){this.player.seek(
+time),this.panel.tick(),this.change()}scrub(share){let{player,options}=this,{first,last}=player.range(this.settings),value=first+
+share*(last-first);this.holdDraft(),player.varies?(this.setTime(value),options.onTime?.(player.time)):(this.setClock(value),
+options.onClock?.(player.clock))}setClock(clock){this.player.clock=clock,this.panel.tick(),this.change()}play(){if(this.
+options.follows)return this.options.follows.play();this.playing||!this.header||(!this.player.varies&&this.settings.motion===
+"off"&&this.choose("motion","speed"),this.player.start(),this.panel.update(),this.request(),this.options.onPlaying?.(!0))}pause(){
+if(this.options.follows)return this.options.follows.pause();this.playing&&(this.player.playing=!1,this.panel.update(),this.
+change(),this.options.onPlaying?.(!1))}togglePlaying(){let leader=this.options.follows??this;leader.playing?leader.pause():
+leader.play()}holdDraft(){this.busyUntil=performance.now()+STILL_MS}get isBusy(){return this.playing||performance.now()<
+this.busyUntil}change(cameraOnly=!1){this.renderer.restart(cameraOnly),this.card.draw(),this.setSharp(!1),this.request()}refine(){
+this.renderer.refine(),this.setSharp(!1),this.request()}arrange(shown){let scenes2=this.tiles?.arrange(shown)??[];return this.
+root.dataset.tiles=String(this.tiles?.missing.length??0),scenes2}draw(){this.frame(performance.now(),performance.now()+FRAME_MS)}setSharp(sharp){
+sharp!==this.sharp&&(this.sharp=sharp,this.root.dataset.sharp=String(sharp),sharp&&(this.card.update(),this.options.onFrame?.()))}request(){
+!this.lifetime.isOver&&this.isVisible&&this.graphics.request(this)}resize(){let ratio=Math.max(window.devicePixelRatio||
+1,.1),width=Math.max(Math.round(this.root.clientWidth*ratio),1),height=Math.max(Math.round(this.root.clientHeight*ratio),
+1);width===this.canvas.width&&height===this.canvas.height||(this.renderer.resize(width,height),this.camera&&(this.camera.
+aspect=this.aspect,isEqual(this.camera.state,this.camera.start)&&this.place()),this.change())}get smooth(){let{header}=this;
+return this.options.smooth!==void 0||!header?this.options.smooth??!1:this.program(header).price<CARD_PRICE_MS}get ratio(){
+return this.canvas.height/Math.max(this.root.clientHeight,1)}lost(){this.tiles?.dispose(),this.header&&this.makeScene(this.
+header),this.setSharp(!1)}get lacking(){let[before,after]=this.player.moment;return this.scene?.missing(before,after)??[]}available(){
+let{header,scene,player,shown}=this;if(!header||!scene)return null;let moment=player.moment,count=header.slices.steps,ahead=player.
+playing?[1,2].map(n=>(moment[1]+n)%count):[];this.ask([moment[0],moment[1],...ahead]);let{lacking}=this;return this.panel.
+wait(lacking),lacking.length?shown&&!scene.missing(shown[0],shown[1]).length?shown:null:this.shown=moment}lack(tile,reason){
+tile!==null&&this.tiles?.fail(tile),this.panel.tell(reason)}ask(steps){let now=performance.now(),lacking=[...new Set(steps)].
+filter(step=>this.scene?.missing(step,step).length);for(let step of lacking)!this.options.onNeed||now-(this.requests.get(
+step)??-1/0)<LOST_MS2||(this.requests.set(step,now),this.options.onNeed(step));return!lacking.length}frame(now,until){if(!(this.
+lifetime.isOver||this.graphics.isLost||!this.graphics.gl||!this.isVisible)&&!(!this.header||!this.scene||this.canvas.width<
+2))try{this.advance(now),this.drawPicture(this.header,until)}catch(error){this.pause(),this.panel.fail("The picture coul\
+d not be drawn.",String(error))}}program(header,isClose=this.isClose(header)){let{vertex,fragment}=header.shaders,defines=isMoving(
+header,this.settings)?["FLOWTEX_MOVING"]:[];return isClose&&defines.push("FLOWTEX_CELLS"),this.graphics.programs.get(vertex,
+fragment,...defines)}isClose(header){if(!this.camera)return!1;let view=this.view([0,0,0],this.ratio),tiles=this.tiles?.layers.
+slice(1).map(({scene})=>scene.header)??[];return(tiles.length?tiles:[header]).some(part=>isNear(part,this.settings,view))}drawPicture(header,until){
+let shown=this.available();if(this.camera||this.place(),!shown||!this.camera)return;let{programs}=this.graphics,program=this.
+program(header);if(program.error){this.panel.fail("The shader does not compile with this graphics driver.",program.error);
+return}if(!program.ready||!this.scene?.earth.isReady)return this.request();!this.sharp&&this.renderer.draw(program,shown,
+this.isBusy,until)&&(this.panel.clear(),programs.get(header.shaders.vertex,header.shaders.pick),header.slices.critical&&
+this.program(header,!0),this.setSharp(!this.playing)),this.sharp||this.request()}advance(now){let{player,options}=this;!player.
+playing||!player.advance(now,steps=>this.ask(steps))||(player.varies?options.onTime?.(player.time):options.onClock?.(player.
+clock),this.panel.tick(),this.renderer.restart(),this.setSharp(!1))}view(shown,density){let{header,camera,scene,player}=this;
+if(!header||!camera)throw new Error("there is nothing to look at yet");let{geometry,constants}=header,focus=camera.state.
+focal_point,local=toFrame(geometry.frame,subtract2(focus,geometry.center)),old=scene?.anchor??[0,0,0],range=constants.anchorRange*
+2*camera.height,isFar=v2=>v2.some(c=>Math.abs(c)>range),anchor=isFar(local)?local:[0,0,0];return{focus,anchor:isFar(subtract2(
+local,old))?anchor:old,eye:camera.eye,between:shown[2],time:player.timeOf(shown),clock:player.clock,density,pixel:2*camera.
+height/Math.max(this.root.clientHeight*density,1)}}get canPick(){let{header,graphics}=this;return!header||graphics.isLost||
+!graphics.gl?!1:graphics.programs.get(header.shaders.vertex,header.shaders.pick).ready}point(x,y){return this.find(x,y)?.
+point??null}ground(x,y){let{header,camera}=this;return header&&camera&&groundAt(header,camera,x,y)}find(x,y){let{tiles,camera,
+shown,canvas}=this;if(!tiles?.layers.length||!camera||!shown||!this.canPick)return null;let{anchor}=this.view(shown,1);return pickedPoint(
+{layers:tiles.layers,camera,moment:shown,anchor,canvas},x,y)}};var TILES_AT_ONCE=6,STEPS_AT_ONCE=2,STEPS_WANTED=4,WHOLE=[0,0,0],MEMORY=18e7;function viewersIn(element,count,options,own=()=>({})){
+if(count<2)return[new Viewer(element,{...options,...own(0)})];let pair=dom("div",{class:"flowtex-pair"});pair.style.cssText=
+"display: flex; gap: 2px; width: 100%; height: 100%",element.append(pair);let viewers=[];for(let n=0;n<count;n+=1){let cell=dom(
+"div");cell.style.cssText="flex: 1 1 0; min-width: 0; height: 100%",pair.append(cell);let others=()=>viewers.filter((_,m)=>m!==
+n),follower=n?{controls:!1,follows:viewers[0]}:{};viewers.push(new Viewer(cell,{...options,...own(n),...linked(options,others),
+...follower}))}for(let viewer of viewers)viewer.together=viewers;return viewers}function linked(options,others){let both=(follow,report)=>(...values)=>{
+for(let other of others())follow(other,...values);report?.(...values)};return{onCamera:both((other,camera)=>other.setCamera(
+camera),options.onCamera),onTime:both((other,time)=>other.setTime(time),options.onTime),onClock:both((other,clock)=>other.
+setClock(clock),options.onClock),onSetting:both((other,name,value)=>other.followSetting(name,value),options.onSetting)}}
+function sourceFeed(source,viewer){let give=part=>viewer().setPart(part),fail=(tile,error)=>{let{fault,message=String(error),
+detail}=error;console.warn(message,detail??""),viewer().lack(fault==="unreachable"?null:tile,message)},tiles=new TileQueue(
+(key,steps,signal)=>source.tile(key,steps,signal,part=>viewer().tiles?.has(nameOf(key),part)??!1),give,TILES_AT_ONCE,(key,error)=>fail(
+nameOf(key),error)),wholes=new TileQueue((_,[step],signal)=>source.root(step,signal,()=>viewer().scene?.missing(step,step)??
+[]),give,STEPS_AT_ONCE,(_,error)=>fail(null,error)),wanted=[];return{memory:MEMORY,onTiles:(keys,steps)=>tiles.request(keys,
+steps),onNeed:step=>{wanted=[step,...wanted.filter(other=>other!==step)].slice(0,STEPS_WANTED),wholes.want(wanted.map(each=>[
+WHOLE,[each]]))}}}function mountPage(element,scenes2,options={}){let feeds=scenes2.map(({loadTile,source},n)=>{let viewer=()=>viewers[n];
+if(source)return sourceFeed(source,viewer);let queue=loadTile&&new TileQueue(loadTile,part=>viewer().setPart(part));return{
+onTiles:(keys,steps)=>queue?.request(keys,steps)}}),viewers=viewersIn(element,scenes2.length,options,n=>feeds[n]);return scenes2.
+forEach(({header},n)=>viewers[n].setHeader(header)),scenes2.forEach(({parts},n)=>parts.forEach(part=>viewers[n].setPart(
+part))),scenes2[0].source?.open().catch(error=>viewers[0].lack(null,error.message)),viewers[0]}var KEPT_HEIGHTS=2,EXPLAINED=".flowtex-explained",scenes=new Map;window.flowtexScene=(name,scene)=>scenes.get(name)?.(scene);
+function fetchScene(element){let{scene:address=""}=element.dataset,name=address.replace(/^.*\//,"").replace(/\.js$/,"");
+return new Promise((resolve,reject)=>{let script=document.createElement("script");scenes.set(name,resolve),script.src=address,
+script.onload=()=>script.remove(),script.onerror=()=>reject(new Error(`${address} cannot be loaded`)),document.head.append(
+script)})}async function unpacked({headers,parts}){let known=new Map,result2=headers.map(header=>({header:{...headers[0],
+...header},parts:[]}));for(let[view,info,text]of parts){let part=known.get(info.digest)??await partOfText(info,text);known.
+set(info.digest,part),result2[view].parts.push({...part,name:info.name})}return result2}function groundAround(element){for(let at=element.
+parentElement;at;at=at.parentElement){let[r,g,b,a=1]=(getComputedStyle(at).backgroundColor.match(/[\d.]+/g)??[]).map(Number);
+if(a>0)return[r/255,g/255,b/255]}return[1,1,1]}var LiveView=class{element;explanation;viewer=null;isWanted=!1;isLoading=!1;constructor(element){
+this.element=element,this.explanation=element.closest(EXPLAINED)&&new Explanation(element);let near={rootMargin:`${100*KEPT_HEIGHTS}\
+% 0%`};new IntersectionObserver(([entry])=>entry.isIntersecting&&void this.show()).observe(element),new IntersectionObserver(
+([entry])=>entry.isIntersecting||this.leave(),near).observe(element)}async show(){if(this.isWanted=!0,this.viewer||this.
+isLoading)return;this.isLoading=!0;let{element}=this;try{let data=await unpacked(await fetchScene(element));if(!this.isWanted)
+return;let ground=groundAround(element);for(let{header}of data)header.background=ground;let{explanation}=this,options={guarded:!0,
+label:element.dataset.label,...explanation?.options};this.viewer=mountPage(element,data,options),explanation?.attach(this.
+viewer),this.watch()}catch(error){element.title=`This view is a picture only: ${error instanceof Error?error.message:error}`}finally{
+this.isLoading=!1}}watch(){let{element}=this,look=()=>{if(element.querySelector('[data-sharp="false"]'))return;seen.disconnect(),
+element.dataset.live="true";let isCalm=matchMedia("(prefers-reduced-motion: reduce)").matches;"plays"in element.dataset&&
+!isCalm&&this.viewer?.play()},seen=new MutationObserver(look);seen.observe(element,{subtree:!0,attributeFilter:["data-sh\
+arp"]})}leave(){if(this.isWanted=!1,!!this.viewer){for(let viewer of this.viewer.together)viewer.dispose();this.viewer=null,
+delete this.element.dataset.live,this.element.querySelector(".flowtex-pair")?.remove()}}recolour(){let background=groundAround(
+this.element);for(let viewer of this.viewer?.together??[])viewer.recolour({background})}};function begin(){let elements=document.
+querySelectorAll(".flowtex-live"),views=Array.from(elements,element=>new LiveView(element)),recolour=()=>views.forEach(view=>view.
+recolour()),attributeFilter=["data-theme","class"];new MutationObserver(recolour).observe(document.documentElement,{attributeFilter}),
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change",recolour)}document.readyState==="loading"?document.
+addEventListener("DOMContentLoaded",begin):begin();})();

@@ -1,0 +1,208 @@
+"""Datasets of which each task reads a region make the same store as the field in memory."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from flowtex import FlowField
+from flowtex._util.array_types import AnyArray, Floats
+from flowtex.errors import FieldError
+from flowtex.pyramid import build, open_store
+from flowtex.pyramid.levels import Levels
+from flowtex.pyramid.source import RegionSource, source_of
+from flowtex.pyramid.workers import OWN_BYTES, PART_BYTES, TILE_BYTES, Threads
+
+zarr = pytest.importorskip("zarr")
+xr = pytest.importorskip("xarray")
+
+
+@pytest.fixture(autouse=True)
+def _small(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 20_000)
+
+
+def dataset(lon: Floats, lat: Floats, *, steps: int = 1, plane: bool = False) -> Any:
+    a, b = np.radians(lon)[None], np.radians(lat)[:, None]
+    turns = np.arange(steps)[:, None, None] / 10
+    u = 0.5 * np.cos(5 * b) * np.sin(6 * a + turns) + 0.4
+    v = 0.4 * np.sin(7 * a) * np.cos(4 * b - turns)
+    u[:, np.sin(5 * a) * np.cos(6 * b) > 0.8] = np.nan
+    x, y = ("x", "y") if plane else ("lon", "lat")
+    words = ("x", "y") if plane else ("eastward", "northward")
+    degrees = ("m", "m") if plane else ("degrees_east", "degrees_north")
+    dims = ("time", y, x)
+    names = [f"sea_water_{word}_velocity" for word in words]
+    if not plane:
+        names = [f"{word}_sea_water_velocity" for word in words]
+    return xr.Dataset(
+        {
+            "u": (dims, u, {"standard_name": names[0], "units": "m/s"}),
+            "v": (dims, v, {"standard_name": names[1], "units": "m/s"}),
+            "ssh": (dims, u * v, {"units": "m"}),
+        },
+        {
+            x: (x, lon, {"units": degrees[0]}),
+            y: (y, lat, {"units": degrees[1]}),
+            "time": np.datetime64("2000-01-01", "ns")
+            + np.arange(steps) * np.timedelta64(6 * 3600, "s"),
+        },
+    )
+
+
+def around(steps: int = 1) -> Any:
+    return dataset(np.arange(0, 360, 0.9), np.linspace(80, -80, 140), steps=steps)
+
+
+CASES: dict[str, tuple[Any, dict[str, Any]]] = {
+    "around": (around, {}),
+    "globe": (around, {"globe": True}),
+    "region": (lambda: dataset(np.linspace(150, 230, 300), np.linspace(-40, 10, 190)), {}),
+    "mercator": (
+        lambda: dataset(np.linspace(50, 20, 300), np.linspace(-40, 10, 190)),
+        {"projection": "mercator", "u": "u", "v": "v"},
+    ),
+    "plane": (lambda: dataset(np.linspace(0, 9, 300), np.linspace(0, 5, 190), plane=True), {}),
+    "series": (lambda: around(10), {"isel": {"time": 3}}),
+}
+
+
+def contents(store: Path) -> dict[str, AnyArray]:
+    members = zarr.open_group(store, mode="r").members(max_depth=None)
+    return {name: np.asarray(a[:]) for name, a in members if isinstance(a, zarr.Array)}
+
+
+def assert_same(one: Path, other: Path) -> None:
+    first, second = contents(one), contents(other)
+    first.pop("samples", None), second.pop("samples", None)
+    assert first.keys() == second.keys()
+    for name, values in first.items():
+        assert values.tobytes() == second[name].tobytes(), name
+    about = [{**Levels(store).about} for store in (one, other)]
+    for some in about:
+        some.pop("fingerprint")
+    assert about[0] == about[1]
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_tasks_write_what_the_field_in_memory_has(tmp_path: Path, name: str) -> None:
+    make, options = CASES[name]
+    data = make()
+    assert isinstance(source_of(data, **options), RegionSource)
+    build(data, tmp_path / "a.zarr", progress=False, **options)
+    build(FlowField.from_xarray(data, **options), tmp_path / "b.zarr", progress=False)
+    assert_same(tmp_path / "a.zarr", tmp_path / "b.zarr")
+
+
+def test_a_series_of_a_file_is_that_of_the_field(tmp_path: Path) -> None:
+    around(10).isel(lon=slice(0, 200)).to_netcdf(tmp_path / "flow.nc")
+    assert isinstance(source_of(tmp_path / "flow.nc"), RegionSource)
+    build(tmp_path / "flow.nc", tmp_path / "a.zarr", progress=False)
+    field = FlowField.from_file(tmp_path / "flow.nc")
+    build(field, tmp_path / "b.zarr", progress=False)
+    assert_same(tmp_path / "a.zarr", tmp_path / "b.zarr")
+    root = open_store(tmp_path / "a.zarr")
+    assert (root.name, root.start, len(root.times)) == ("flow", field.start, 10)
+
+
+def test_several_files_of_a_series_are_read_by_regions(tmp_path: Path) -> None:
+    pytest.importorskip("dask")
+    data = around(2)
+    paths = [tmp_path / f"flow{step}.nc" for step in range(2)]
+    for step, path in enumerate(paths):
+        data.isel(time=[step]).to_netcdf(path)
+    source = source_of(paths)
+    assert isinstance(source, RegionSource)
+    assert all(variable.chunks for variable in source.regions.components)
+    at = (slice(3, 40), slice(5, 60))
+    whole = FlowField.from_xarray(data).velocity
+    np.testing.assert_array_equal(source.nodes(1, *at).velocity, np.asarray(whole[1])[at])
+
+
+def test_a_build_from_regions_goes_on(tmp_path: Path) -> None:
+    store, data = tmp_path / "a.zarr", around()
+    first = build(data, store, progress=False)
+    whole = contents(store)
+    group = zarr.open_group(store, mode="r+")
+    group.attrs["flowtex"] = {**group.attrs["flowtex"], "ranges": {}}
+    gone = [*(store / "0" / "velocity").rglob("c/*/*/*/*"), *(store / "samples").rglob("c/0/0/*/*")]
+    (next(file for file in gone if file.is_file())).unlink()
+    again = build(data, store, progress=False)
+    assert (again.made, again.kept) == (1, first.made - 1)
+    for name, values in contents(store).items():
+        assert values.tobytes() == whole[name].tobytes()
+    with pytest.raises(FieldError, match="pyramid of another field"):
+        build(data * 2.0, store, progress=False, u="u", v="v")
+
+
+def test_robust_ranges_of_large_data_are_those_of_a_sample(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("flowtex.pyramid.samples.MOST_SAMPLES", 5_000)
+    field = FlowField.from_xarray(around())
+    build(around(), tmp_path / "a.zarr", progress=False)
+    ranges = Levels(tmp_path / "a.zarr").about["ranges"]
+    assert set(ranges) == {"ssh", "speed"}
+    for name, (whole, robust) in ranges.items():
+        values = np.asarray(field.scalars[name])[:, field.valid]
+        values = values[np.isfinite(values)]
+        assert whole == [values.min(), values.max()]
+        away = np.abs(np.percentile(values, (2, 98)) - robust).max()
+        assert 0 < away < 0.02 * np.ptp(values)
+
+
+def test_what_cannot_be_built_is_told(tmp_path: Path) -> None:
+    data = around()
+    with pytest.raises(FieldError, match=r"none of the .* nodes has data"):
+        build(data.where(data.u > 9), tmp_path / "a.zarr", progress=False, u="u", v="v")
+    with pytest.raises(FieldError, match="globe is for what a field is made of"):
+        build(FlowField.from_xarray(data), tmp_path / "b.zarr", progress=False, globe=True)
+    build(data, tmp_path / "c.zarr", progress=False)
+    with pytest.raises(FieldError, match="is a pyramid already"):
+        build(tmp_path / "c.zarr", tmp_path / "d.zarr", progress=False)
+
+
+def test_threads_are_as_many_as_fit(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("os.cpu_count", lambda: 8)
+    assert Threads().count(TILE_BYTES) == 8
+    assert Threads("5GB").count(TILE_BYTES) == 3
+    assert Threads(5_000_000_000).count(PART_BYTES) == 8
+    with pytest.raises(FieldError, match="memory is 'lots'; expected bytes"):
+        Threads("lots")
+    with pytest.warns(UserWarning, match="memory is 1 GB, and a task may take 1.5 GB"):
+        assert Threads("1GB").count(TILE_BYTES) == 1
+
+
+BUILD = """
+import resource, sys
+import cf_xarray, dask.array, pyproj, xarray, zarr, flowtex.tiles
+import flowtex.pyramid.tasks
+from flowtex._util import compiled
+
+def peak():
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
+
+compiled.kernels()
+before = peak()
+flowtex.pyramid.build(sys.argv[1], sys.argv[2], memory=sys.argv[3], progress=False)
+print(peak() - before)
+"""
+
+
+@pytest.mark.slow
+def test_a_build_keeps_to_its_memory(tmp_path: Path) -> None:
+    """One thread; the data alone would fill half of what a part may take."""
+    data = dataset(np.arange(0, 360, 0.125), np.linspace(-80, 80, 1200), steps=1)
+    whole = sum(data[name].nbytes for name in ("u", "v", "ssh"))
+    data.chunk(lat=256, lon=256).to_zarr(tmp_path / "flow.zarr", zarr_format=2)
+    words = [str(tmp_path / "flow.zarr"), str(tmp_path / "a.zarr"), "1900MB"]
+    with_warning = [sys.executable, "-W", "ignore", "-c", BUILD, *words]
+    done = subprocess.run(with_warning, capture_output=True, text=True, check=True)
+    grown = int(done.stdout)
+    assert whole > 80_000_000
+    assert grown < TILE_BYTES + OWN_BYTES

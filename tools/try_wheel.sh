@@ -1,0 +1,36 @@
+#!/bin/sh
+# try_wheel.sh DIST [PYTHON]: install the wheel that is in DIST into an environment of its own, try it
+# without the checkout, and run quick tests of the source archive with it.
+set -eu
+here=$(cd "$(dirname "$0")" && pwd)
+. "$here/common.sh"
+
+dist=$(cd "$1" && pwd)
+python=${2:-python3}
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+size=$(wc -c <"$(echo "$dist"/*.whl)")
+[ "$size" -lt 3000000 ] || fail "the wheel has $size bytes; expected less than 3 MB"
+
+say "A new environment, with $(basename "$dist"/*.whl) of $size bytes"
+"$python" -m venv "$folder/venv"
+bin=$folder/venv/bin
+"$bin/pip" install --quiet --disable-pip-version-check "$(echo "$dist"/*.whl)"
+cd "$folder"
+unset PYTHONPATH
+
+say "flowtex doctor"
+"$bin/flowtex" doctor
+"$bin/python" -P -c 'import flowtex; print(flowtex.__version__, flowtex.__file__)'
+say "A picture and a page"
+"$bin/python" -P -c 'import flowtex; flowtex.examples.airfoil().save("airfoil.vts")'
+"$bin/flowtex" render airfoil.vts -o airfoil.png --size 400x300 --zoom 4
+"$bin/flowtex" export airfoil.vts -o airfoil.html
+ls -l airfoil.png airfoil.html
+
+say "Tests of the source archive"
+tar -xzf "$dist"/*.tar.gz
+cd flowtex-*
+"$bin/pip" install --quiet --disable-pip-version-check -r tools/locks/tests.in
+"$bin/python" -m pytest -q -n 2 --dist loadfile -m "not browser and not slow" \
+    tests/test_settings.py tests/test_camera.py tests/test_packaging.py tests/textures tests/rendering/test_vtk.py
