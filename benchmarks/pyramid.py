@@ -125,9 +125,8 @@ def source() -> Any:
     return xr.open_zarr(store_at(SOURCE), consolidated=False)
 
 
-def build(place: str, levels: str, scheduler: str, memory: str) -> dict[str, Any]:
+def build(place: str, levels: str, scheduler: str) -> dict[str, Any]:
     """Build the pyramid, as whoever calls does."""
-    del memory
     built = flowtex.pyramid.build(
         source(), place, levels=levels, scheduler=scheduler, progress=sys.stderr.isatty()
     )
@@ -160,7 +159,7 @@ def measured_build(
             before = dict(watched.seconds)
             storage.requests()
             start = time.perf_counter()
-            future = pool.submit(build, place, chosen.levels, cluster.address, chosen.memory)
+            future = pool.submit(build, place, chosen.levels, cluster.address)
             requests, killed_at = _followed(
                 future, storage, cluster, watched, place, disturbed=disturbed
             )

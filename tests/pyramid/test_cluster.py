@@ -19,7 +19,7 @@ xr = pytest.importorskip("xarray")
 pytest.importorskip("zarr")
 
 #: Memory that a worker may take, in bytes.
-BUDGET = 2_000_000_000
+BUDGET = 1_000_000_000
 
 
 @pytest.fixture
