@@ -26,8 +26,8 @@ SIZE = (1000, 600)
 COMPLETE = '[data-tiles="0"][data-sharp="true"]'
 #: Places that are looked at, cells across the closest view, and zoom of the pan.
 PLACES, CLOSEST_CELLS, PAN_ZOOM = 20, 8, 64
-#: Share of the picture that the whole fills, pixels of a drag, and its parts.
-FILLED, DRAG_PX, DRAG_PARTS = 0.92, 800, 4
+#: Share of the page that the whole fills, pixels of a drag, and its parts.
+FILLED, DRAG_PX, DRAG_PARTS = 0.9 * 0.92, 800, 4
 #: Pixels of a notch of the wheel, and most notches of one event.
 NOTCH_PX, MOST_NOTCHES = 100, 4
 #: Milliseconds after which a picture is given up.
@@ -105,7 +105,9 @@ def browsed(
     path = folder / "page.html"
     url = f"{storage.url}/{place.removeprefix('s3://flows/')}"
     with ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn")) as pool:
-        pool.submit(write_page, place, url, str(path), {"cmap": "viridis"}).result()
+        pool.submit(
+            write_page, place, url, str(path), {"cmap": "viridis", "clim": "robust"}
+        ).result()
     with sync_playwright() as driver:
         browser = driver.chromium.launch(
             executable_path=shutil.which("chromium") or shutil.which("google-chrome"), args=MESA

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from flowtex.pyramid.layout import SHARD_CHUNKS, TILE_CELLS
+from flowtex.pyramid.layout import TILE_CELLS
 from flowtex.tiles.pyramid import ROOT_NODES
 
 __all__ = ["RESULTS", "tables", "write_docs"]
@@ -20,10 +20,6 @@ ROOT = Path(__file__).resolve().parents[1]
 RESULTS, PAGE = ROOT / "benchmarks" / "pyramid.json", ROOT / "docs" / "scale.md"
 #: Fields and workers that are planned for.
 FIELDS, WORKERS = (10**9, 10**11), (10, 1000)
-#: Bytes that an S3 client writes with one request, and what the store asks a prefix for.
-PART_BYTES = 5 * 2**20
-#: Requests a second that S3 grants a prefix from the first moment on.
-WRITES_GRANTED, READS_GRANTED = 3500, 5500
 #: Names of objects that one answer lists.
 LISTED = 1000
 #: Seconds of looking at a place before going to the next one.
@@ -109,8 +105,8 @@ class Costs:
         self.shards = build["made"] / build["seconds"]
         self.task = build["worker_cpu_seconds"] / build["made"]
         self.requests = sum(build["requests"].values()) / build["made"]
-        self.scheduling = build["scheduler_cpu_seconds"] / build["made"]
-        self.calling = build["caller_cpu_seconds"] / build["made"]
+        self.scheduling = build["scheduler_seconds_a_task"]
+        self.calling = build["caller_seconds_a_task"]
         self.worker_peak = _peak(build, "worker")
 
 
@@ -126,11 +122,13 @@ def _reading(results: list[Any]) -> list[Row]:
     def minute(browser: Any) -> float:
         """Bytes of arriving, and of a place after the other for a minute."""
         mean = sum(places(browser, "bytes")) / len(browser["places"])
-        return float(browser["whole"]["bytes"] + 60 / STAY_S * mean)
+        first = browser["page_bytes"] + browser["whole"]["bytes"]
+        return float(first + 60 / STAY_S * mean)
 
     return [
         row("the whole, s", lambda b: f"{b['whole']['seconds']:.1f}"),
-        row("the whole, MB", lambda b: f"{b['whole']['bytes'] / MB:.1f}"),
+        row("the page, MB", lambda b: f"{b['page_bytes'] / MB:.1f}"),
+        row("the whole, MB besides", lambda b: f"{b['whole']['bytes'] / MB:.1f}"),
         row("a place, median s", lambda b: f"{_middle(places(b, 'seconds')):.1f}"),
         row("a place, most s", lambda b: f"{max(places(b, 'seconds')):.1f}"),
         row("a place, mean MB", lambda b: f"{sum(places(b, 'bytes')) / len(b['places']) / MB:.1f}"),
@@ -193,11 +191,6 @@ def _plans(result: Mapping[str, Any]) -> str:
 def depth(nodes: float) -> int:
     """Return the level of the root of a field of so many nodes."""
     return max(math.ceil(math.log(nodes / ROOT_NODES, 4)), 0)
-
-
-def shard_nodes() -> int:
-    """Return how many nodes a shard of a level has."""
-    return SHARD_CHUNKS[0] * SHARD_CHUNKS[1] * TILE_CELLS**2
 
 
 def _rate(costs: Costs, workers: int) -> str:

@@ -45,6 +45,8 @@ ZOOMS = tuple(2**n for n in range(11))
 FOCUS, SIZE = (2.2e6, 0.4e6), (1000, 600)
 #: Most nodes of a field that is held in memory whole, to compare pictures.
 MOST_IN_MEMORY = 9_000_000
+#: Tasks that do nothing, by which the scheduler is judged.
+EMPTY_TASKS = 2000
 #: Seconds between two looks at what the processes take.
 INTERVAL_S = 0.2
 
@@ -123,9 +125,8 @@ def source() -> Any:
     return xr.open_zarr(store_at(SOURCE), consolidated=False)
 
 
-def build(place: str, levels: str, scheduler: str, memory: str) -> dict[str, Any]:
+def build(place: str, levels: str, scheduler: str) -> dict[str, Any]:
     """Build the pyramid, as whoever calls does."""
-    del memory
     built = flowtex.pyramid.build(
         source(), place, levels=levels, scheduler=scheduler, progress=sys.stderr.isatty()
     )
@@ -153,33 +154,55 @@ def measured_build(
             _wait_for(cluster.address, len(cluster.workers))
             for number, worker in enumerate(cluster.workers):
                 watched.add(f"worker {number}", worker.pid)
-            before = sum(watched.seconds.values())
             watched.add("scheduler", cluster.scheduler.pid)
             watched.add("object storage", storage.process.pid)
-            served = watched.seconds["object storage"]
+            before = dict(watched.seconds)
             storage.requests()
             start = time.perf_counter()
-            future = pool.submit(build, place, chosen.levels, cluster.address, chosen.memory)
+            future = pool.submit(build, place, chosen.levels, cluster.address)
             requests, killed_at = _followed(
                 future, storage, cluster, watched, place, disturbed=disturbed
             )
             seconds, called = time.perf_counter() - start, future.result()
-        working = sum(s for name, s in watched.seconds.items() if name.startswith("worker"))
+            overheads = measured_overheads(cluster, watched)
+        taken = {name: s - before.get(name, 0.0) for name, s in watched.seconds.items()}
         return {
             "seconds": seconds,
             "made": called["made"],
             "depth": called["depth"],
             "tiles": most_tiles(place),
             "killed_at_tile": killed_at,
-            "worker_cpu_seconds": working - before,
+            "worker_cpu_seconds": sum(s for name, s in taken.items() if name.startswith("worker")),
             "caller_cpu_seconds": called["cpu_seconds"],
-            "scheduler_cpu_seconds": watched.seconds["scheduler"],
-            "storage_cpu_seconds": watched.seconds["object storage"] - served,
+            "scheduler_cpu_seconds": taken["scheduler"],
+            "storage_cpu_seconds": taken["object storage"],
+            **overheads,
             "peaks": {**watched.peaks, "caller": called["peak"]},
             **traffic(requests),
         }
     finally:
         cluster.close()
+
+
+def measured_overheads(cluster: Cluster, watched: Watched) -> dict[str, float]:
+    """Return what tasks that do nothing take of the scheduler and of the caller, in seconds each.
+
+    What the processes take meanwhile for being there is part of it.
+    """
+    import distributed
+
+    with distributed.Client(cluster.address) as client:
+        client.submit(int).result()
+        watched.look()
+        before, own = watched.seconds["scheduler"], time.process_time()
+        futures = client.map(int, range(EMPTY_TASKS), pure=False)
+        for future in distributed.as_completed(futures):
+            future.release()
+        watched.look()
+    return {
+        "scheduler_seconds_a_task": (watched.seconds["scheduler"] - before) / EMPTY_TASKS,
+        "caller_seconds_a_task": (time.process_time() - own) / EMPTY_TASKS,
+    }
 
 
 def _wait_for(address: str, workers: int) -> None:
@@ -240,7 +263,7 @@ def pictures_in_memory(zooms: Iterable[float]) -> list[Any]:
 
 
 def _view(zoom: float) -> dict[str, Any]:
-    return {"zoom": zoom, "focus": FOCUS, "size": SIZE, "cmap": "viridis"}
+    return {"zoom": zoom, "focus": FOCUS, "size": SIZE, "cmap": "viridis", "clim": "robust"}
 
 
 def _ready() -> None:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import importlib.util
 import inspect
+import json
 import os
 import re
 from importlib import import_module
@@ -56,6 +58,20 @@ def test_every_path_in_the_text_for_contributors_exists() -> None:
     names = re.findall(r"`((?:flowtex|shaders|client|paper|tests|tools|docs)/[\w./]*)`", text)
     assert len(names) > 12
     assert [name for name in names if not (ROOT / name).exists()] == []
+
+
+def test_the_tables_of_what_pyramids_cost_are_those_of_the_benchmark() -> None:
+    pytest.importorskip("zarr")
+    path = ROOT / "benchmarks" / "planning.py"
+    spec = importlib.util.spec_from_file_location("planning", path)
+    assert spec is not None and spec.loader is not None
+    planning: Any = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(planning)
+    tables = planning.tables(json.loads(planning.RESULTS.read_text()))
+    text = planning.PAGE.read_text()
+    assert len(tables) == 5
+    wrong = [name for name, table in tables.items() if f"\n\n{table}\n\n" not in text]
+    assert not wrong, "run python benchmarks/pyramid.py --only-tables --docs"
 
 
 MODULES = ("", ".app", ".examples", ".probe", ".pyramid", ".xarray")
