@@ -53,8 +53,8 @@ lessons_notebooks = [
     "lesson_1_flow_textures",
     "lesson_2_level_of_detail",
     "lesson_3_steady_and_unsteady",
-    "how_it_works",
 ]
+nb_merge_streams = True
 nb_execution_timeout = 120
 nb_execution_raise_on_error = True
 nb_ipywidgets_js: dict[str, str] = {}  # what is live here needs no kernel and no network
@@ -111,6 +111,7 @@ sphinx_gallery_conf = {
 }
 
 html_theme = "pydata_sphinx_theme"
+html_sidebars: dict[str, list[str]] = {"*": []}  # pages at the top have no section beside them
 html_title = "flowtex"
 html_favicon = "_static/favicon.svg"
 html_static_path = ["_static"]

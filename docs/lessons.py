@@ -14,6 +14,8 @@ from typing import Any
 
 import live
 
+from flowtex.diagnostics import prefer_headless
+
 HERE = Path(__file__).resolve().parent
 NOTEBOOKS = HERE.parent / "notebooks"
 PAGES = HERE / "lessons"
@@ -81,6 +83,7 @@ def _begin(app: Any) -> None:
     startup.parent.mkdir(parents=True, exist_ok=True)
     paths = [str(HERE), str(HERE.parent)]
     startup.write_text(STARTUP.format(paths=paths), encoding="utf-8")
+    prefer_headless()  # the kernels as well: VTK's warnings would be on the pages
     os.environ["IPYTHONDIR"] = str(profile)
     os.environ["MATPLOTLIBRC"] = str(HERE / "matplotlibrc")
 

@@ -146,7 +146,12 @@ def run_trial(command: Sequence[str], timeout: float = TRIAL_TIMEOUT_S) -> OpenG
     """
     try:
         process = subprocess.run(
-            command, capture_output=True, text=True, timeout=timeout, check=False
+            command,
+            capture_output=True,
+            encoding="utf-8",
+            errors="replace",  # drivers speak as they like
+            timeout=timeout,
+            check=False,
         )
     except subprocess.TimeoutExpired:
         return _unusable(f"the trial did not end within {timeout:g} s")

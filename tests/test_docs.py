@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import inspect
 import os
 import re
+from importlib import import_module
+from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
@@ -51,6 +54,22 @@ def test_every_path_in_the_text_for_contributors_exists() -> None:
     names = re.findall(r"`((?:flowtex|shaders|client|paper|tests|tools|docs)/[\w./]*)`", text)
     assert len(names) > 12
     assert [name for name in names if not (ROOT / name).exists()] == []
+
+
+MODULES = ("", ".app", ".examples", ".probe", ".pyramid", ".xarray")
+
+
+def test_the_reference_has_every_public_name_and_each_an_example() -> None:
+    pages = (ROOT / "docs" / "reference").glob("*.md")
+    text = "\n".join(page.read_text() for page in pages)
+    rooms = [import_module(f"flowtex{name}") for name in MODULES]
+    names = re.findall(r"^   flowtex\.([\w.]+)$", text, re.MULTILINE)
+    named = {name: attrgetter(name)(rooms[0]) for name in names}
+    public = [getattr(room, name) for room in rooms for name in room.__all__]
+    known = [id(thing) for thing in named.values()]
+    assert [thing for thing in public if callable(thing) and id(thing) not in known] == []
+    texts = {name: inspect.getdoc(thing) or "" for name, thing in named.items()}
+    assert [name for name, text in texts.items() if "Examples\n--------" not in text] == []
 
 
 def row(setting: Setting) -> str:

@@ -1,7 +1,11 @@
 from __future__ import annotations
 
+import email.parser
+import email.policy
 import json
 import os
+import re
+import shutil
 import subprocess
 import sys
 import tarfile
@@ -99,6 +103,54 @@ def test_wheel_holds_the_package_and_nothing_else(wheel: Path) -> None:
     with zipfile.ZipFile(wheel) as archive:
         tops = {name.split("/")[0] for name in archive.namelist()}
     assert tops == {"flowtex", f"flowtex-{flowtex.__version__}.dist-info"}
+
+
+#: What a wheel may hold, by folder and ending, and bytes that it may have.
+HELD = re.compile(
+    r"flowtex/(?:[\w/]+\.pyi?|py\.typed"
+    r"|_shaders/(?:common|vtk|webgl2)/\w+\.glsl"
+    r"|web/\w+\.(?:js|css|html)|app/(?:[\w/]+\.(?:js|css|html))"
+    r"|examples/data/\w+\.(?:npz|md)|earth/coastlines\.(?:npz|md))"
+    r"|flowtex-[\d.]+\.dist-info/(?:METADATA|RECORD|WHEEL|entry_points\.txt|licenses/LICENSE)"
+)
+MOST_BYTES = 3_000_000
+
+
+def test_wheel_is_small_and_holds_no_file_of_another_kind(wheel: Path) -> None:
+    with zipfile.ZipFile(wheel) as archive:
+        names = archive.namelist()
+    assert [name for name in names if not HELD.fullmatch(name)] == []
+    assert [name for name in names if "test" in name.lower() or "__pycache__" in name] == []
+    assert wheel.stat().st_size < MOST_BYTES
+
+
+def test_wheel_holds_every_file_of_the_package(wheel: Path) -> None:
+    with zipfile.ZipFile(wheel) as archive:
+        held = set(archive.namelist())
+    git = shutil.which("git")
+    if git is None or not (ROOT / ".git").exists():
+        pytest.skip("what belongs to the package is known to git alone")
+    kept = _run(git, "ls-files", "-z", "flowtex", cwd=ROOT).split("\0")
+    assert {name for name in kept if name and (ROOT / name).exists()} <= held
+
+
+def test_metadata_are_whole_and_links_of_the_readme_hold_on_pypi(wheel: Path) -> None:
+    with zipfile.ZipFile(wheel) as archive:
+        (name,) = [n for n in archive.namelist() if n.endswith("dist-info/METADATA")]
+        told = email.parser.BytesParser(policy=email.policy.default).parsebytes(archive.read(name))
+    assert told["Name"] == "flowtex"
+    assert told["License-Expression"] == "BSD-3-Clause"
+    assert told["Requires-Python"] == ">=3.11"
+    assert told["Description-Content-Type"] == "text/markdown"
+    urls = dict(line.split(", ") for line in told.get_all("Project-URL", []))
+    assert {"Repository", "Documentation", "Issues", "Changelog"} == set(urls)
+    text = str(told.get_payload())
+    links = re.findall(r"\]\(([^)#]+)", text)
+    assert links
+    assert [link for link in links if not link.startswith("https://")] == []
+    own = f"{urls['Repository']}/(?:blob|raw)/v{flowtex.__version__}/"
+    for path in [re.sub(own, "", link) for link in links if re.match(own, link)]:
+        assert (ROOT / path).exists(), path
 
 
 def test_wheel_is_named_after_the_one_version(wheel: Path) -> None:

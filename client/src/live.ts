@@ -19,8 +19,8 @@ interface Packed {
 const LOADED_HEIGHTS = 0.5;
 const KEPT_HEIGHTS = 2;
 
-/** What is around a view that is explained: a class, or the tag of a cell of MyST-NB. */
-const EXPLAINED = ".flowtex-explained, .tag_flowtex-explained";
+/** What is around a view that is explained. */
+const EXPLAINED = ".flowtex-explained";
 
 const scenes = new Map<string, (scene: Packed) => void>();
 

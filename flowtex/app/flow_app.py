@@ -106,7 +106,7 @@ class FlowApp(NotebookPage):
         return self.viewport.field
 
     def show(self, field: FlowField, *, keep_view: bool = False, keep_range: bool = False) -> None:
-        """Show another flow; :meth:`FlowArea.show <flowtex.app.FlowArea.show>` has the parameters."""
+        """Show another flow, as :meth:`flowtex.app.FlowArea.show` does."""
         self.context.show(field, keep_view=keep_view, keep_range=keep_range)
 
     def restore(self, state: Mapping[str, Any]) -> None:

@@ -7,6 +7,7 @@ there is no OpenGL to draw with.
 
 from __future__ import annotations
 
+import io
 import sys
 import warnings
 from collections.abc import Sequence
@@ -55,6 +56,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     OpenGL, and for ``doctor`` when something is missing.
     """
     words = list(sys.argv[1:] if arguments is None else arguments)
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="replace")  # Windows writes to files in fewer characters
     debug = "--debug" in words
     words = [word for word in words if word != "--debug"]
     print_warning = warnings.showwarning

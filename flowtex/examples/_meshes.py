@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def cylinder() -> pv.StructuredGrid:
-    """Vortex shedding behind a cylinder: the last instant of :func:`~flowtex.examples.cylinder_field`.
+    """Vortex shedding behind a cylinder, the last of :func:`~flowtex.examples.cylinder_field`.
 
     Returns
     -------
@@ -60,12 +60,13 @@ def cylinder_series() -> list[pv.StructuredGrid]:
 
 
 def vortex() -> pv.StructuredGrid:
-    """Vortices of two-dimensional turbulence: the last instant of :func:`~flowtex.examples.vortex_field`.
+    """Vortices of turbulence, the last instant of :func:`~flowtex.examples.vortex_field`.
 
     Returns
     -------
     pyvista.StructuredGrid
-        100 x 100 x 1 nodes on the unit square, with the arrays of :func:`~flowtex.examples.cylinder`.
+        100 x 100 x 1 nodes on the unit square, with the arrays of
+        :func:`~flowtex.examples.cylinder`.
 
     Examples
     --------

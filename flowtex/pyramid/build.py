@@ -43,6 +43,13 @@ class Built:
         Its coarsest level.
     made, kept
         Shards of nodes and tiles that were made, and that were there already.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> field = flowtex.examples.double_gyre_field(shape=(21, 41))
+    >>> flowtex.pyramid.build(field, "gyre.zarr", progress=False).depth
+    0
     """
 
     place: str
@@ -66,7 +73,7 @@ def build(
     Parameters
     ----------
     source
-        A field, a dataset of xarray's, or a file as for :meth:`FlowField.from_file`.
+        A field, a dataset of xarray's, or a file as for :meth:`flowtex.FlowField.from_file`.
     store
         A local folder such as ``"flow.zarr"``, or a URL such as ``"s3://bucket/flow.zarr"``;
         endpoint and credentials come from the environment.
@@ -100,6 +107,14 @@ def build(
     What is there already is not made again, so a build that was ended at any moment goes on where
     it was. A time step of the source has to fit into the memory of this process; workers hold a
     region of a level each.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> field = flowtex.examples.double_gyre_field(shape=(21, 41))
+    >>> built = flowtex.pyramid.build(field, "gyre.zarr", progress=False)
+    >>> flowtex.pyramid.build(field, "gyre.zarr", progress=False).made  # all is there
+    0
     """
     if levels not in ("coarse", "all"):
         msg = f"levels is {levels!r}; expected 'coarse' or 'all'"

@@ -14,19 +14,28 @@ __all__ = ["FORMAT", "PyramidError", "is_store", "place_text", "store_at"]
 
 #: Written into every store; a reader refuses what it does not know.
 FORMAT = "flowtex-pyramid-1"
-#: A URL, or one of which ``pathlib`` has made a path.
-_URL = re.compile(r"^([A-Za-z][A-Za-z0-9+.-]+):/{1,2}(?=[^/])")
+#: A URL, or one of which ``pathlib`` has made a path, on Windows with its slashes turned. One
+#: letter is a drive.
+_URL = re.compile(r"^([A-Za-z][A-Za-z0-9+.-]+):[/\\]{1,2}(?=[^/\\])")
 
 
 class PyramidError(FieldError):
-    """A store of a pyramid that cannot be read, or written."""
+    """A store of a pyramid that cannot be read, or written.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> flowtex.pyramid.open_store("missing.zarr")
+    Traceback (most recent call last):
+    flowtex.pyramid.places.PyramidError: ...
+    """
 
 
 def place_text(place: str | Path) -> str:
     """Return the URL of a store, or the whole path of a local one."""
     text = str(place)
     if _URL.match(text):
-        return _URL.sub(r"\1://", text)
+        return _URL.sub(r"\1://", text).replace("\\", "/")
     return str(Path(text).expanduser().resolve())
 
 
@@ -45,7 +54,14 @@ def store_at(place: str | Path, *, read_only: bool = True) -> Any:
 
 
 def is_store(place: Any) -> bool:
-    """Whether there is a pyramid at a place; without Zarr for a local one."""
+    """Whether there is a pyramid at a place; without Zarr for a local one.
+
+    Examples
+    --------
+    >>> from flowtex.pyramid import is_store
+    >>> is_store("flow.vts")
+    False
+    """
     if not isinstance(place, (str, Path)):
         return False
     text = place_text(place)

@@ -46,6 +46,14 @@ def open_store(store: str | Path) -> FlowField:
         When there is no pyramid, or it cannot be read.
     ModuleNotFoundError
         When what reads it is missing; the text names the extra.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> field = flowtex.examples.double_gyre_field(shape=(21, 41))
+    >>> built = flowtex.pyramid.build(field, "gyre.zarr", progress=False)
+    >>> flowtex.pyramid.open_store("gyre.zarr").shape
+    (21, 41)
     """
     levels = Levels(store)
     if not levels.about.get("levels_done"):

@@ -1318,15 +1318,15 @@ onTime:both((other,time)=>other.setTime(time),options.onTime),onClock:both((othe
 onClock),onSetting:both((other,name,value)=>other.followSetting(name,value),options.onSetting)}}function mountPage(element,scenes2,options={}){
 let tiles=scenes2.map(({loadTile},n)=>loadTile&&new TileQueue(loadTile,part=>viewers[n].setPart(part))),viewers=viewersIn(
 element,scenes2.length,options,n=>({onTiles:(keys,steps)=>tiles[n]?.request(keys,steps)}));return scenes2.forEach(({header},n)=>viewers[n].
-setHeader(header)),scenes2.forEach(({parts},n)=>parts.forEach(part=>viewers[n].setPart(part))),viewers[0]}var LOADED_HEIGHTS=.5,KEPT_HEIGHTS=2,EXPLAINED=".flowtex-explained, .tag_flowtex-explained",scenes=new Map;window.flowtexScene=
-(name,scene)=>scenes.get(name)?.(scene);function fetchScene(element){let{scene:address=""}=element.dataset,name=address.
-replace(/^.*\//,"").replace(/\.js$/,"");return new Promise((resolve,reject)=>{let script=document.createElement("script");
-scenes.set(name,resolve),script.src=address,script.onload=()=>script.remove(),script.onerror=()=>reject(new Error(`${address}\
- cannot be loaded`)),document.head.append(script)})}async function unpacked({headers,parts}){let known=new Map,result2=headers.
-map(header=>({header:{...headers[0],...header},parts:[]}));for(let[view,info,text]of parts){let part=known.get(info.digest)??
-await partOfText(info,text);known.set(info.digest,part),result2[view].parts.push({...part,name:info.name})}return result2}
-function groundAround(element){for(let at=element.parentElement;at;at=at.parentElement){let[r,g,b,a=1]=(getComputedStyle(
-at).backgroundColor.match(/[\d.]+/g)??[]).map(Number);if(a>0)return[r/255,g/255,b/255]}return[1,1,1]}var LiveView=class{element;explanation;viewer=null;isWanted=!1;isLoading=!1;constructor(element){
+setHeader(header)),scenes2.forEach(({parts},n)=>parts.forEach(part=>viewers[n].setPart(part))),viewers[0]}var LOADED_HEIGHTS=.5,KEPT_HEIGHTS=2,EXPLAINED=".flowtex-explained",scenes=new Map;window.flowtexScene=(name,scene)=>scenes.
+get(name)?.(scene);function fetchScene(element){let{scene:address=""}=element.dataset,name=address.replace(/^.*\//,"").replace(
+/\.js$/,"");return new Promise((resolve,reject)=>{let script=document.createElement("script");scenes.set(name,resolve),script.
+src=address,script.onload=()=>script.remove(),script.onerror=()=>reject(new Error(`${address} cannot be loaded`)),document.
+head.append(script)})}async function unpacked({headers,parts}){let known=new Map,result2=headers.map(header=>({header:{...headers[0],
+...header},parts:[]}));for(let[view,info,text]of parts){let part=known.get(info.digest)??await partOfText(info,text);known.
+set(info.digest,part),result2[view].parts.push({...part,name:info.name})}return result2}function groundAround(element){for(let at=element.
+parentElement;at;at=at.parentElement){let[r,g,b,a=1]=(getComputedStyle(at).backgroundColor.match(/[\d.]+/g)??[]).map(Number);
+if(a>0)return[r/255,g/255,b/255]}return[1,1,1]}var LiveView=class{element;explanation;viewer=null;isWanted=!1;isLoading=!1;constructor(element){
 this.element=element,this.explanation=element.closest(EXPLAINED)&&new Explanation(element);let within=heights=>({rootMargin:`${100*
 heights}% 0%`}),observe=(heights,call)=>new IntersectionObserver(([entry])=>call(entry.isIntersecting),within(heights)).
 observe(element);observe(LOADED_HEIGHTS,isNear2=>isNear2&&void this.show()),observe(KEPT_HEIGHTS,isNear2=>isNear2||this.

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import inspect
 import mimetypes
+import re
 import shutil
 import tempfile
 import time
@@ -33,6 +34,8 @@ LIFETIME_S, DOWNLOAD_BYTES = 1800.0, 2_000_000_000
 CHUNK_BYTES = 1 << 18
 #: Characters of a file's name, at most.
 NAME_LENGTH = 120
+#: Names of devices on Windows, whatever their endings are.
+DEVICE = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)\s*(\.|$)", re.IGNORECASE)
 
 #: What a file is: its bytes, or where they lie; its media type; and the name that it is saved
 #: under, or ``None`` for what the page uses itself.
@@ -279,5 +282,7 @@ def _size(path: Path) -> int:
 def plain_name(name: str) -> str:
     """Return a name with which no folder can be left, and which every system takes."""
     plain = "".join(c if c.isalnum() or c in " ._-" else "_" for c in name).strip(" .")
+    if DEVICE.match(plain):
+        plain = f"_{plain}"
     stem, dot, suffix = plain.rpartition(".")
     return f"{stem[:NAME_LENGTH]}{dot}{suffix[:20]}" if stem else (plain[:NAME_LENGTH] or "flow")

@@ -1,0 +1,66 @@
+"""What other systems do with paths and characters, as far as it can be tried on this one."""
+
+from __future__ import annotations
+
+import io
+import re
+import sys
+from pathlib import Path, PureWindowsPath
+from typing import Any
+
+import pytest
+
+import flowtex
+from flowtex.cli import main
+from flowtex.pyramid import places
+
+PACKAGE = Path(flowtex.__file__).parent
+
+
+@pytest.mark.parametrize(
+    ("place", "expected"),
+    [
+        (str(PureWindowsPath("s3://bucket/a/b.zarr")), "s3://bucket/a/b.zarr"),
+        (str(Path("s3://bucket/a/b.zarr")), "s3://bucket/a/b.zarr"),
+        ("gs://bucket/b.zarr", "gs://bucket/b.zarr"),
+        ("https://host:8080/b.zarr", "https://host:8080/b.zarr"),
+    ],
+)
+def test_a_url_is_known_though_pathlib_has_had_it(place: str, expected: str) -> None:
+    assert places.place_text(place) == expected
+
+
+@pytest.mark.parametrize("place", [r"C:\data\b.zarr", "C:/data/b.zarr", "c:b.zarr", r"\\host\b"])
+def test_a_drive_is_no_url(place: str) -> None:
+    assert places._URL.match(place) is None
+
+
+@pytest.mark.parametrize("name", ["NUL.vts", "con", "Com1.nc", "aux .json", "LPT9"])
+def test_a_file_is_not_called_as_a_device_of_windows(name: str) -> None:
+    files = pytest.importorskip("flowtex.app.server.files")
+    assert not PureWindowsPath(files.plain_name(name)).is_reserved()
+    assert files.plain_name("console.vts") == "console.vts"
+
+
+def test_what_a_console_cannot_show_ends_nothing(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    written = io.BytesIO()
+    monkeypatch.setattr(sys, "stdout", io.TextIOWrapper(written, encoding="ascii"))
+    mesh = tmp_path / "µ.vts"
+    flowtex.examples.double_gyre(0.0).save(mesh)
+    assert main(["info", str(mesh)]) == 0
+    sys.stdout.flush()
+    assert b"?.vts" in written.getvalue()
+
+
+#: Calls that open text, and a word in them without which the system's own encoding is meant.
+OPENING = re.compile(r"\.(?:read_text|write_text)\(([^()]*(?:\([^()]*\)[^()]*)*)\)")
+
+
+def test_every_text_is_opened_with_its_encoding() -> None:
+    guilty: list[Any] = []
+    for path in PACKAGE.rglob("*.py"):
+        found = OPENING.finditer(path.read_text(encoding="utf-8"))
+        guilty += [f"{path.name}: {call[0]}" for call in found if "utf-8" not in call[1]]
+    assert [call for call in guilty if not call.endswith("._write_text()")] == []

@@ -1,0 +1,63 @@
+"""Views among the text of a page, and the one that explains a pixel."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+from flows import gyre
+
+from flowtex.options import Options
+from flowtex.web.assets import asset
+from flowtex.web.embed import scene_script
+from flowtex.web.view import web_views
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
+
+pytestmark = pytest.mark.browser
+
+PAGE = """<!doctype html><html lang="en"><meta charset="utf-8"><title>gyre</title>
+<script src="live.js" defer></script>
+<div class="flowtex-explained">
+<div class="flowtex-live" data-scene="gyre.js" style="height: 200px; width: 400px"></div></div>"""
+
+
+def test_a_pixel_is_explained_without_a_server(webgl_browser: Browser, tmp_path: Path) -> None:
+    views = web_views(gyre(), Options.split(samples=5, grain=8.0, spacing=1.0, scalars=False))
+    with (tmp_path / "gyre.js").open("w", encoding="utf-8", newline="\n") as file:
+        file.writelines(scene_script("gyre", views))
+    (tmp_path / "live.js").write_bytes(asset("live.js").read_bytes())
+    (tmp_path / "page.html").write_text(PAGE, encoding="utf-8")
+    page = webgl_browser.new_page(viewport={"width": 420, "height": 700})
+    try:
+        page.goto((tmp_path / "page.html").as_uri())
+        rows = page.locator(".explained-row svg")
+        rows.first.wait_for()
+        assert rows.count() == 3
+        assert rows.first.locator("rect").count() == 5
+        assert page.locator(".flowtex circle.dot").count() == 5
+        assert page.locator(".card:visible").count() == 0
+        level = _level(page.locator(".explained-sum").inner_text())
+        samples, zoom = (
+            page.locator(f'input[data-setting="{name}"]') for name in ("samples", "zoom")
+        )
+        samples.press("ArrowRight")
+        assert rows.first.locator("rect").count() == 7
+        for _ in range(4):
+            zoom.press("ArrowRight")
+        # Twice as close is one level finer.
+        assert _level(page.locator(".explained-sum").inner_text()) == pytest.approx(level - 1)
+        page.locator(".flowtex").press("Escape")
+        page.get_by_text("Click a point").wait_for()
+        assert rows.count() == 0
+    finally:
+        page.close()
+
+
+def _level(text: str) -> float:
+    found = re.search(r"level (-?[\d.]+)\.", text)
+    assert found
+    return float(found[1])
