@@ -75,10 +75,10 @@ class View:
         self.look = {k: v for k, v in options.items() if k not in vars(arguments.field)}
         self.views = _fitting(self.mesh, Options.split(**self.look), steps)
         view = arguments.view
-        # Clients fit a view of everything into any shape, if it is the one that they expect.
+        # Of a picture of everything nothing is cut off where the page is narrow.
         self.whole = view.zoom == 1 and view.focus is None and view.camera is None
-        surface, aspect = self.views[0].field.surface, STILL[0] / STILL[1]
-        self.camera = view.first_camera(surface, *[] if self.whole else [aspect]).to_dict()
+        aspect = STILL[0] / STILL[1] / len(self.views)
+        self.camera = view.first_camera(self.views[0].field.surface, aspect).to_dict()
         self.plays = self.views[0].scene.settings.motion != "off"
 
     @cached_property

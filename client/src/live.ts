@@ -15,7 +15,8 @@ interface Packed {
   parts: [view: number, info: PartInfo, text: string][];
 }
 
-/** Heights of the window that a view may be away before it is given up. */
+/** Heights of the window that a view may be away when it is loaded, and before it is given up. */
+const LOADED_HEIGHTS = 0.5;
 const KEPT_HEIGHTS = 2;
 
 /** What is around a view that is explained. */
@@ -78,9 +79,11 @@ class LiveView {
   constructor(element: HTMLElement) {
     this.element = element;
     this.explanation = element.closest(EXPLAINED) && new Explanation(element);
-    const near = { rootMargin: `${100 * KEPT_HEIGHTS}% 0%` };
-    new IntersectionObserver(([entry]) => entry.isIntersecting && void this.show()).observe(element);
-    new IntersectionObserver(([entry]) => entry.isIntersecting || this.leave(), near).observe(element);
+    const within = (heights: number) => ({ rootMargin: `${100 * heights}% 0%` });
+    const observe = (heights: number, call: (isNear: boolean) => void) =>
+      new IntersectionObserver(([entry]) => call(entry.isIntersecting), within(heights)).observe(element);
+    observe(LOADED_HEIGHTS, (isNear) => isNear && void this.show());
+    observe(KEPT_HEIGHTS, (isNear) => isNear || this.leave());
   }
 
   private async show(): Promise<void> {

@@ -1343,29 +1343,30 @@ WHOLE,[each]]))}}}function mountPage(element,scenes2,options={}){let feeds=scene
 if(source)return sourceFeed(source,viewer);let queue=loadTile&&new TileQueue(loadTile,part=>viewer().setPart(part));return{
 onTiles:(keys,steps)=>queue?.request(keys,steps)}}),viewers=viewersIn(element,scenes2.length,options,n=>feeds[n]);return scenes2.
 forEach(({header},n)=>viewers[n].setHeader(header)),scenes2.forEach(({parts},n)=>parts.forEach(part=>viewers[n].setPart(
-part))),scenes2[0].source?.open().catch(error=>viewers[0].lack(null,error.message)),viewers[0]}var KEPT_HEIGHTS=2,EXPLAINED=".flowtex-explained",scenes=new Map;window.flowtexScene=(name,scene)=>scenes.get(name)?.(scene);
-function fetchScene(element){let{scene:address=""}=element.dataset,name=address.replace(/^.*\//,"").replace(/\.js$/,"");
-return new Promise((resolve,reject)=>{let script=document.createElement("script");scenes.set(name,resolve),script.src=address,
-script.onload=()=>script.remove(),script.onerror=()=>reject(new Error(`${address} cannot be loaded`)),document.head.append(
-script)})}async function unpacked({headers,parts}){let known=new Map,result2=headers.map(header=>({header:{...headers[0],
+part))),scenes2[0].source?.open().catch(error=>viewers[0].lack(null,error.message)),viewers[0]}var LOADED_HEIGHTS=.5,KEPT_HEIGHTS=2,EXPLAINED=".flowtex-explained",scenes=new Map;window.flowtexScene=(name,scene)=>scenes.
+get(name)?.(scene);function fetchScene(element){let{scene:address=""}=element.dataset,name=address.replace(/^.*\//,"").replace(
+/\.js$/,"");return new Promise((resolve,reject)=>{let script=document.createElement("script");scenes.set(name,resolve),script.
+src=address,script.onload=()=>script.remove(),script.onerror=()=>reject(new Error(`${address} cannot be loaded`)),document.
+head.append(script)})}async function unpacked({headers,parts}){let known=new Map,result2=headers.map(header=>({header:{...headers[0],
 ...header},parts:[]}));for(let[view,info,text]of parts){let part=known.get(info.digest)??await partOfText(info,text);known.
 set(info.digest,part),result2[view].parts.push({...part,name:info.name})}return result2}function groundAround(element){for(let at=element.
 parentElement;at;at=at.parentElement){let[r,g,b,a=1]=(getComputedStyle(at).backgroundColor.match(/[\d.]+/g)??[]).map(Number);
 if(a>0)return[r/255,g/255,b/255]}return[1,1,1]}var LiveView=class{element;explanation;viewer=null;isWanted=!1;isLoading=!1;constructor(element){
-this.element=element,this.explanation=element.closest(EXPLAINED)&&new Explanation(element);let near={rootMargin:`${100*KEPT_HEIGHTS}\
-% 0%`};new IntersectionObserver(([entry])=>entry.isIntersecting&&void this.show()).observe(element),new IntersectionObserver(
-([entry])=>entry.isIntersecting||this.leave(),near).observe(element)}async show(){if(this.isWanted=!0,this.viewer||this.
-isLoading)return;this.isLoading=!0;let{element}=this;try{let data=await unpacked(await fetchScene(element));if(!this.isWanted)
-return;let ground=groundAround(element);for(let{header}of data)header.background=ground;let{explanation}=this,options={guarded:!0,
-label:element.dataset.label,...explanation?.options};this.viewer=mountPage(element,data,options),explanation?.attach(this.
-viewer),this.watch()}catch(error){element.title=`This view is a picture only: ${error instanceof Error?error.message:error}`}finally{
-this.isLoading=!1}}watch(){let{element}=this,look=()=>{if(element.querySelector('[data-sharp="false"]'))return;seen.disconnect(),
-element.dataset.live="true";let isCalm=matchMedia("(prefers-reduced-motion: reduce)").matches;"plays"in element.dataset&&
-!isCalm&&this.viewer?.play()},seen=new MutationObserver(look);seen.observe(element,{subtree:!0,attributeFilter:["data-sh\
-arp"]})}leave(){if(this.isWanted=!1,!!this.viewer){for(let viewer of this.viewer.together)viewer.dispose();this.viewer=null,
-delete this.element.dataset.live,this.element.querySelector(".flowtex-pair")?.remove()}}recolour(){let background=groundAround(
-this.element);for(let viewer of this.viewer?.together??[])viewer.recolour({background})}};function begin(){let elements=document.
-querySelectorAll(".flowtex-live"),views=Array.from(elements,element=>new LiveView(element)),recolour=()=>views.forEach(view=>view.
-recolour()),attributeFilter=["data-theme","class"];new MutationObserver(recolour).observe(document.documentElement,{attributeFilter}),
-matchMedia("(prefers-color-scheme: dark)").addEventListener("change",recolour)}document.readyState==="loading"?document.
-addEventListener("DOMContentLoaded",begin):begin();})();
+this.element=element,this.explanation=element.closest(EXPLAINED)&&new Explanation(element);let within=heights=>({rootMargin:`${100*
+heights}% 0%`}),observe=(heights,call)=>new IntersectionObserver(([entry])=>call(entry.isIntersecting),within(heights)).
+observe(element);observe(LOADED_HEIGHTS,isNear2=>isNear2&&void this.show()),observe(KEPT_HEIGHTS,isNear2=>isNear2||this.
+leave())}async show(){if(this.isWanted=!0,this.viewer||this.isLoading)return;this.isLoading=!0;let{element}=this;try{let data=await unpacked(
+await fetchScene(element));if(!this.isWanted)return;let ground=groundAround(element);for(let{header}of data)header.background=
+ground;let{explanation}=this,options={guarded:!0,label:element.dataset.label,...explanation?.options};this.viewer=mountPage(
+element,data,options),explanation?.attach(this.viewer),this.watch()}catch(error){element.title=`This view is a picture o\
+nly: ${error instanceof Error?error.message:error}`}finally{this.isLoading=!1}}watch(){let{element}=this,look=()=>{if(element.
+querySelector('[data-sharp="false"]'))return;seen.disconnect(),element.dataset.live="true";let isCalm=matchMedia("(prefe\
+rs-reduced-motion: reduce)").matches;"plays"in element.dataset&&!isCalm&&this.viewer?.play()},seen=new MutationObserver(
+look);seen.observe(element,{subtree:!0,attributeFilter:["data-sharp"]})}leave(){if(this.isWanted=!1,!!this.viewer){for(let viewer of this.
+viewer.together)viewer.dispose();this.viewer=null,delete this.element.dataset.live,this.element.querySelector(".flowtex-\
+pair")?.remove()}}recolour(){let background=groundAround(this.element);for(let viewer of this.viewer?.together??[])viewer.
+recolour({background})}};function begin(){let elements=document.querySelectorAll(".flowtex-live"),views=Array.from(elements,
+element=>new LiveView(element)),recolour=()=>views.forEach(view=>view.recolour()),attributeFilter=["data-theme","class"];
+new MutationObserver(recolour).observe(document.documentElement,{attributeFilter}),matchMedia("(prefers-color-scheme: da\
+rk)").addEventListener("change",recolour)}document.readyState==="loading"?document.addEventListener("DOMContentLoaded",begin):
+begin();})();
