@@ -448,9 +448,9 @@ def _reach(points: Floats, valid: Bools) -> tuple[float, tuple[int, int]]:
 
 def _within_window(tile: list[int], halo: list[int]) -> list[int]:
     """Return halos along rows and columns, narrower where the window has too many nodes."""
-    while math.prod(n + 2 * h for n, h in zip(tile, halo, strict=True)) > MOST_WINDOW:
+    while any(halo) and (tile[0] + 2 * halo[0]) * (tile[1] + 2 * halo[1]) > MOST_WINDOW:
         widest = int(halo[1] > halo[0])
-        halo = [h - h // 8 if axis == widest else h for axis, h in enumerate(halo)]
+        halo[widest] -= -(-halo[widest] // 8)
     return halo
 
 

@@ -28,8 +28,9 @@ __all__ = ["SliceStore", "shared_store"]
 #: Size of the slices that are cached, besides the ones in use.
 CACHE_BYTES = 512_000_000
 #: Size of the steps in which paths to one time are traced, where they are read late, and bytes of a
-#: node of each: velocity, components and speed. Of more steps some are left out, down to a few.
-HELD_BYTES, STEP_BYTES, LEAST_HELD = 500_000_000, 48, 8
+#: node of each: velocity, speed, and what is sampled. Of more steps every second is left out, or
+#: more of them, down to a few.
+HELD_BYTES, STEP_BYTES, LEAST_HELD = 500_000_000, 72, 8
 
 
 class SliceStore:

@@ -12,6 +12,7 @@ from flowtex._util.array_types import Floats
 from flowtex.field import FlowField
 from flowtex.textures import SurfaceGeometry, TextureSet
 from flowtex.tiles import BLOCK_CELLS, TILE_BLOCKS, Pyramid, TileKey, block_places
+from flowtex.tiles.pyramid import MOST_RING, _ring
 from flowtex.tiles.region import is_cut, tile_of
 from flowtex.trace import SliceStore, trace
 
@@ -224,3 +225,39 @@ def test_a_region_is_all_that_a_tile_is_made_from() -> None:
         tile.cell,
         tile.critical_cell,
     )
+
+
+def test_a_ring_around_a_pole_is_complete_where_it_is_near() -> None:
+    for count in (900, 1537, 5_000, 100_000):
+        lines = _ring(384, count)
+        apart = np.diff(lines)
+        assert lines[0] == 0 and lines[-1] == count - 1 and len(lines) < 1.1 * MOST_RING
+        np.testing.assert_array_equal(lines[:385], np.arange(385))
+        assert apart.min() == 1 and np.maximum(apart[1:] / apart[:-1], 0.5).max() <= 2
+
+
+def test_paths_over_a_pole_need_not_all_of_a_long_ring(monkeypatch: pytest.MonkeyPatch) -> None:
+    lon, lat = np.meshgrid(np.linspace(0, 2 * np.pi, 1001), np.linspace(-0.5, 0.5, 260) * np.pi)
+    points = np.stack([np.cos(lat) * np.cos(lon), np.cos(lat) * np.sin(lon), np.sin(lat)], axis=-1)
+    pyramid = Pyramid(FlowField.from_arrays(points, np.cross([0.3, 1.0, 0.1], points)))
+    whole = pyramid.textures(TileKey(0, 0, 1))
+    monkeypatch.setattr("flowtex.tiles.pyramid.MOST_RING", 700)
+    some = pyramid.textures(TileKey(0, 0, 1))
+    assert whole is not None and some is not None
+    assert [t.geometry.field.shape[1] for t in (whole, some)][1] < 760 < 1001
+    np.testing.assert_array_equal(some.geometry.points, whole.geometry.points)
+    count = min(len(whole.lags), len(some.lags)) - 2
+    away = np.abs(nodal(some)[1:count, ..., :3] - nodal(whole)[1:count, ..., :3])
+    assert np.percentile(away, 99) < 0.02
+    assert np.abs(nodal(whole)[1:count, ..., :3]).mean() > 0.3
+
+
+def test_windows_have_no_more_nodes_than_fit(monkeypatch: pytest.MonkeyPatch) -> None:
+    pyramid = Pyramid(waves())
+    wide = pyramid.region(TileKey(0, 0, 0), spare=4)
+    monkeypatch.setattr("flowtex.tiles.pyramid.MOST_WINDOW", 80_000)
+    region = pyramid.region(TileKey(0, 0, 0), spare=4)
+    assert wide is not None and region is not None
+    assert region.field.valid.size < 80_000 < wide.field.valid.size
+    assert region.drawn == wide.drawn
+    assert pyramid.textures(TileKey(0, 0, 0), spare=4) is not None

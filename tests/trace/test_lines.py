@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from dataclasses import replace
 
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 from flowtex import FlowField, TraceSlices, trace
 from flowtex._util.array_types import AnyArray
 from flowtex.examples import cylinder_field, double_gyre_field, vortex_field
+from flowtex.field.steps import LazySteps
 from flowtex.scene import Scene
 from flowtex.tiles import Pyramid, TileKey
 from flowtex.trace import SliceStore, changing_share, chosen_lines
@@ -131,3 +133,26 @@ def test_tiles_have_the_lines_of_the_whole() -> None:
         assert textures is not None
         assert textures.store.streamlines == (lines == "streamlines")
         assert textures.store.at(1).forward is not None
+
+
+def test_of_many_steps_that_paths_meet_some_are_held(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Between steps the flow is a mean of both, and this one changes as a line does."""
+    times = np.arange(60.0)
+    x, y = np.meshgrid(np.linspace(0.0, 4.0, 30), np.linspace(0.0, 1.0, 10))
+    steps = np.stack([np.stack([np.full_like(x, 0.02), y * t * 1e-4], axis=-1) for t in times])
+    whole = FlowField.from_arrays(np.stack([x, y], axis=-1), steps, times=times, periodic="")
+    velocity = np.asarray(whole.velocity)
+    late = replace(whole, velocity=LazySteps(60, lambda step: velocity[step]))
+    every = SliceStore(late, lines="pathlines").at(30)
+    held: list[int] = []
+    at_steps = FlowField.at_steps
+
+    def counted(self: FlowField, steps: list[int]) -> FlowField:
+        held.append(len(steps))
+        return at_steps(self, steps)
+
+    monkeypatch.setattr(FlowField, "at_steps", counted)
+    monkeypatch.setattr(sys.modules["flowtex.trace.store"], "HELD_BYTES", 10 * 72 * 300)
+    some = SliceStore(late, lines="pathlines").at(30)
+    assert held[-1] < 13
+    np.testing.assert_allclose(some.displacement, every.displacement, atol=2e-3)
