@@ -36,15 +36,24 @@ type Get = zarr.AsyncReadable["get"];
 type GetRange = NonNullable<zarr.AsyncReadable["getRange"]>;
 type Bytes = Promise<Uint8Array | undefined>;
 
-const sums = Uint32Array.from({ length: 256 }, (_, byte) => {
-  let sum = byte;
-  for (let bit = 0; bit < 8; bit += 1) sum = (sum >>> 1) ^ (sum & 1 ? CASTAGNOLI : 0);
-  return sum;
-});
+/** Check sums of a byte that none to three others follow. */
+const sums = Array.from({ length: 4 }, (_, more) =>
+  Uint32Array.from({ length: 256 }, (__, byte) => {
+    let sum = byte;
+    for (let bit = 0; bit < 8 * (more + 1); bit += 1) sum = (sum >>> 1) ^ (sum & 1 ? CASTAGNOLI : 0);
+    return sum;
+  }),
+);
 
 export function crc32c(bytes: Uint8Array): number {
+  const [last, third, second, first] = sums;
+  const whole = bytes.length - (bytes.length % 4);
   let sum = 0xffffffff;
-  for (const byte of bytes) sum = (sum >>> 8) ^ sums[(sum ^ byte) & 255];
+  for (let n = 0; n < whole; n += 4) {
+    sum ^= bytes[n] | (bytes[n + 1] << 8) | (bytes[n + 2] << 16) | (bytes[n + 3] << 24);
+    sum = first[sum & 255] ^ second[(sum >>> 8) & 255] ^ third[(sum >>> 16) & 255] ^ last[sum >>> 24];
+  }
+  for (let n = whole; n < bytes.length; n += 1) sum = (sum >>> 8) ^ last[(sum ^ bytes[n]) & 255];
   return ~sum >>> 0;
 }
 

@@ -1605,12 +1605,14 @@ versionMax=VERSION_COUNTER.versionMax(store),openPrimary=versionMax==="v2"?open.
 2"?open.v3:open.v2;return openPrimary(location2,options).catch(err=>(rethrowUnless(err,NotFoundError,InvalidMetadataError),
 openSecondary(location2,options)))}open.v2=openV2;open.v3=openV3;var PAUSES_MS=[300,1e3,3e3],STALL_MS=2e4,ABSENT=[401,403,404,410],OK=200,BUSY=429,FAULT=500,CASTAGNOLI=2197175160,SUM_BYTES=4,
 StoreError=class extends Error{fault;detail;constructor(fault,message,detail=message){super(message),this.fault=fault,this.
-detail=detail}},sums=Uint32Array.from({length:256},(_,byte)=>{let sum=byte;for(let bit=0;bit<8;bit+=1)sum=sum>>>1^(sum&1?
-CASTAGNOLI:0);return sum});function crc32c(bytes){let sum=4294967295;for(let byte of bytes)sum=sum>>>8^sums[(sum^byte)&255];
-return~sum>>>0}var CheckSum=class _CheckSum{kind="bytes_to_bytes";static fromConfig(){return new _CheckSum}encode(){throw new Error(
-"nothing is written")}decode(bytes){let end=bytes.byteLength-SUM_BYTES;if(end<0)throw new Error("there is no check sum");
-let{buffer,byteOffset}=bytes,told=new DataView(buffer,byteOffset+end,SUM_BYTES).getUint32(0,!0),inside=new Uint8Array(buffer,
-byteOffset,end);if(told!==crc32c(inside))throw new Error("the check sum does not fit");return inside}computeEncodedSize(size){
+detail=detail}},sums=Array.from({length:4},(_,more)=>Uint32Array.from({length:256},(__,byte)=>{let sum=byte;for(let bit=0;bit<
+8*(more+1);bit+=1)sum=sum>>>1^(sum&1?CASTAGNOLI:0);return sum}));function crc32c(bytes){let[last,third,second,first]=sums,
+whole=bytes.length-bytes.length%4,sum=4294967295;for(let n=0;n<whole;n+=4)sum^=bytes[n]|bytes[n+1]<<8|bytes[n+2]<<16|bytes[n+
+3]<<24,sum=first[sum&255]^second[sum>>>8&255]^third[sum>>>16&255]^last[sum>>>24];for(let n=whole;n<bytes.length;n+=1)sum=
+sum>>>8^last[(sum^bytes[n])&255];return~sum>>>0}var CheckSum=class _CheckSum{kind="bytes_to_bytes";static fromConfig(){return new _CheckSum}encode(){
+throw new Error("nothing is written")}decode(bytes){let end=bytes.byteLength-SUM_BYTES;if(end<0)throw new Error("there i\
+s no check sum");let{buffer,byteOffset}=bytes,told=new DataView(buffer,byteOffset+end,SUM_BYTES).getUint32(0,!0),inside=new Uint8Array(
+buffer,byteOffset,end);if(told!==crc32c(inside))throw new Error("the check sum does not fit");return inside}computeEncodedSize(size){
 return size+SUM_BYTES}};registry.set("crc32c",()=>Promise.resolve(CheckSum));function paused(wait,signal){return new Promise(
 (resolve,reject)=>{let stop=()=>{clearTimeout(timer),reject(signal.reason)},timer=setTimeout(()=>{signal.removeEventListener(
 "abort",stop),resolve()},wait);signal.addEventListener("abort",stop,{once:!0})})}async function answer(url,signal){let controller=new AbortController,
@@ -1693,19 +1695,20 @@ data.byteLength),text=new TextDecoder().decode(bytes.subarray(0,Math.max(bytes.i
 "missing",`tile ${level}/${row}/${column} is empty`);let told=JSON.parse(text);return{array,at,told}}async slices({key,header,
 signal},step,{array,at,told}){let{count,channels,extra}=header.slices,[height,width]=[header.geometry.rows.size,header.geometry.
 columns.size];if(told?.count!==count||String(told.size)!==String([height,width]))throw new Error(`the traces of tile ${nameOf(
-key)} do not fit its surface`);let texels=height*width,slopes=new Uint16Array(count*texels*channels),fourth=new Uint16Array(
+key)} do not fit its surface`);let texels=height*width,slopes=new Uint32Array(count*texels*channels/2),fourth=new Uint16Array(
 extra.length*texels);for(let layer=0;layer<count;layer+=1){signal.throwIfAborted();let place=[...at,TOLD+1+layer,0,0,0],
-{data,shape}=await chunkOf(array,place,[height,width,CHANNELS],signal),also=extra.indexOf(layer),to=layer*texels*channels;
-for(let j=0;j<height;j+=1){let from=j*shape[1]*CHANNELS;for(let i=0;i<width;i+=1,from+=CHANNELS){for(let k=0;k<channels;k+=
-1)slopes[to++]=data[from+k];also>=0&&(fourth[also*texels+j*width+i]=data[from+3])}}}let part=(name,values,shape)=>({name:`${name}\
-/${step}`,data:values,shape,digest:this.digest(key,`${name}/${step}`)});return[part("extra",fourth,[extra.length,height,
-width]),part("slices",slopes,[count,height,width,channels])]}async values(place,steps,has){let parts=new Map;for(;;){let{
-name,steps:count,number}=this.header.scalars,names=(count>1?steps:[0]).map(step=>number?`scalars/${step}/${number}`:`sca\
-lars/${step}`),lacking=name===null?[]:names.filter(each=>!has(each)&&!parts.has(each));if(!lacking.length)return[...parts.
-values()];let found=await Promise.all(lacking.map(each=>this.valuesOf(place,each,count>1?stepOf(each):null,number)));for(let part of found)
-parts.set(part.name,part)}}async valuesOf({key,header,signal},name,step,number){let[level,row,column]=key,[rows,columns]=header.
-geometry.shape,array=await this.store.array(`${level}/values`),at=[step===null?0:this.told.steps[step],row,column,number,
-0,0],{data,shape}=await chunkOf(array,at,[rows,columns],signal),values=new Float32Array(rows*columns);for(let j=0;j<rows;j+=
-1)values.set(data.subarray(j*shape[1],j*shape[1]+columns),j*columns);return{name,data:values,shape:[rows,columns],digest:this.
-digest(key,name)}}digest(key,name){let[kind,step,...rest]=name.split("/"),source=step===void 0?[]:[this.told.steps[Number(
-step)]];return[this.told.fingerprint,nameOf(key),kind,...source,...rest].join(" ")}};openPage(header=>new Stream(header,location.href));
+{data,shape}=await chunkOf(array,place,[height,width,CHANNELS],signal),pairs=new Uint32Array(data.buffer,data.byteOffset,
+data.length/2),also=extra.indexOf(layer),to=layer*texels*channels/2;for(let j=0;j<height;j+=1){let row=j*shape[1];for(let i=row;i<
+row+width;i+=1)slopes[to++]=pairs[2*i],channels===CHANNELS&&(slopes[to++]=pairs[2*i+1]),also>=0&&(fourth[also*texels+j*width+
+i-row]=data[CHANNELS*i+3])}}let part=(name,values,shape)=>({name:`${name}/${step}`,data:values,shape,digest:this.digest(
+key,`${name}/${step}`)});return[part("extra",fourth,[extra.length,height,width]),part("slices",new Uint16Array(slopes.buffer),
+[count,height,width,channels])]}async values(place,steps,has){let parts=new Map;for(;;){let{name,steps:count,number}=this.
+header.scalars,names=(count>1?steps:[0]).map(step=>number?`scalars/${step}/${number}`:`scalars/${step}`),lacking=name===
+null?[]:names.filter(each=>!has(each)&&!parts.has(each));if(!lacking.length)return[...parts.values()];let found=await Promise.
+all(lacking.map(each=>this.valuesOf(place,each,count>1?stepOf(each):null,number)));for(let part of found)parts.set(part.
+name,part)}}async valuesOf({key,header,signal},name,step,number){let[level,row,column]=key,[rows,columns]=header.geometry.
+shape,array=await this.store.array(`${level}/values`),at=[step===null?0:this.told.steps[step],row,column,number,0,0],{data,
+shape}=await chunkOf(array,at,[rows,columns],signal),values=new Float32Array(rows*columns);for(let j=0;j<rows;j+=1)values.
+set(data.subarray(j*shape[1],j*shape[1]+columns),j*columns);return{name,data:values,shape:[rows,columns],digest:this.digest(
+key,name)}}digest(key,name){let[kind,step,...rest]=name.split("/"),source=step===void 0?[]:[this.told.steps[Number(step)]];
+return[this.told.fingerprint,nameOf(key),kind,...source,...rest].join(" ")}};openPage(header=>new Stream(header,location.href));
