@@ -9,6 +9,7 @@ const PAUSES_MS = [300, 1000, 3000];
 const STALL_MS = 20_000;
 /** What a server says of an object that is not there; buckets do not tell that from a private one. */
 const ABSENT = [401, 403, 404, 410];
+const OK = 200;
 const BUSY = 429;
 const FAULT = 500;
 /** The polynomial of CRC-32C, its bits turned around, and bytes of a check sum. */
@@ -35,15 +36,24 @@ type Get = zarr.AsyncReadable["get"];
 type GetRange = NonNullable<zarr.AsyncReadable["getRange"]>;
 type Bytes = Promise<Uint8Array | undefined>;
 
-const sums = Uint32Array.from({ length: 256 }, (_, byte) => {
-  let sum = byte;
-  for (let bit = 0; bit < 8; bit += 1) sum = (sum >>> 1) ^ (sum & 1 ? CASTAGNOLI : 0);
-  return sum;
-});
+/** Check sums of a byte that none to three others follow. */
+const sums = Array.from({ length: 4 }, (_, more) =>
+  Uint32Array.from({ length: 256 }, (__, byte) => {
+    let sum = byte;
+    for (let bit = 0; bit < 8 * (more + 1); bit += 1) sum = (sum >>> 1) ^ (sum & 1 ? CASTAGNOLI : 0);
+    return sum;
+  }),
+);
 
 export function crc32c(bytes: Uint8Array): number {
+  const [last, third, second, first] = sums;
+  const whole = bytes.length - (bytes.length % 4);
   let sum = 0xffffffff;
-  for (const byte of bytes) sum = (sum >>> 8) ^ sums[(sum ^ byte) & 255];
+  for (let n = 0; n < whole; n += 4) {
+    sum ^= bytes[n] | (bytes[n + 1] << 8) | (bytes[n + 2] << 16) | (bytes[n + 3] << 24);
+    sum = first[sum & 255] ^ second[(sum >>> 8) & 255] ^ third[(sum >>> 16) & 255] ^ last[sum >>> 24];
+  }
+  for (let n = whole; n < bytes.length; n += 1) sum = (sum >>> 8) ^ last[(sum ^ bytes[n]) & 255];
   return ~sum >>> 0;
 }
 
@@ -90,48 +100,53 @@ function paused(wait: number, signal: AbortSignal): Promise<void> {
   });
 }
 
-/** The whole of an answer, given up where nothing more comes. */
-async function whole(request: Request): Promise<Response> {
+/** The bytes of an answer, and its status; given up where nothing more comes. */
+async function answer(url: string, signal: AbortSignal): Promise<[status: number, bytes: Uint8Array]> {
   const controller = new AbortController();
-  const stop = () => controller.abort(request.signal.reason);
-  request.signal.addEventListener("abort", stop, { once: true });
-  const late = () => controller.abort(new Error("no more came"));
-  let timer = setTimeout(late, STALL_MS);
+  const stop = () => controller.abort();
+  signal.addEventListener("abort", stop, { once: true });
+  let timer = setTimeout(stop, STALL_MS);
   try {
-    request.signal.throwIfAborted();
-    const response = await fetch(request.url, { signal: controller.signal });
-    const { status, body } = response;
-    if (status !== 200 || !body) {
-      await body?.cancel();
-      return new Response(null, { status: ABSENT.includes(status) ? 404 : status });
+    signal.throwIfAborted();
+    const { status, body } = await fetch(url, { signal: controller.signal });
+    const reader = status === OK ? body?.getReader() : null;
+    const pieces: Uint8Array[] = [];
+    for (;;) {
+      const { done = true, value } = (await reader?.read()) ?? {};
+      if (done || !value) break;
+      clearTimeout(timer);
+      timer = setTimeout(stop, STALL_MS);
+      pieces.push(value);
     }
-    const watch = new TransformStream<Uint8Array, Uint8Array>({
-      transform(piece, output) {
-        clearTimeout(timer);
-        timer = setTimeout(late, STALL_MS);
-        output.enqueue(piece);
-      },
-    });
-    return new Response(await new Response(body.pipeThrough(watch)).arrayBuffer());
+    const bytes = new Uint8Array(pieces.reduce((size, piece) => size + piece.length, 0));
+    pieces.reduce((at, piece) => {
+      bytes.set(piece, at);
+      return at + piece.length;
+    }, 0);
+    return [status, bytes];
   } finally {
+    controller.abort(); // what is not read is not sent
     clearTimeout(timer);
-    request.signal.removeEventListener("abort", stop);
+    signal.removeEventListener("abort", stop);
   }
 }
 
-/** An answer that is there or is not there; asks again where it is neither. */
-async function answer(request: Request): Promise<Response> {
+/** The bytes of an object, or nothing where there is none; asks again where nobody answers. */
+async function object(url: string, signal: AbortSignal): Bytes {
   for (let trial = 0; ; trial += 1) {
     let said = "nobody answers";
     try {
-      const response = await whole(request);
-      if (response.status < FAULT && response.status !== BUSY) return response;
-      said = `the server answers ${response.status}`;
-    } catch {
-      request.signal.throwIfAborted();
+      const [status, bytes] = await answer(url, signal);
+      if (status === OK) return bytes;
+      if (ABSENT.includes(status)) return undefined;
+      said = `the server answers ${status}`;
+      if (status < FAULT && status !== BUSY) throw new StoreError("broken", said);
+    } catch (error) {
+      signal.throwIfAborted();
+      if (error instanceof StoreError) throw error;
     }
     if (trial === PAUSES_MS.length) throw new StoreError("unreachable", said);
-    await paused(PAUSES_MS[trial], request.signal);
+    await paused(PAUSES_MS[trial], signal);
   }
 }
 
@@ -144,12 +159,12 @@ function readable(bytes: Uint8Array): Uint8Array {
 
 /** Objects of a store, of which ranges are given from the whole: one request for a shard and its chunks. */
 export class Objects implements zarr.AsyncReadable {
-  private readonly files: zarr.FetchStore;
+  private readonly url: string;
   private readonly described: Map<string, Bytes>;
   private readonly shards = new Map<string, Bytes>();
 
-  constructor(files: zarr.FetchStore, described: Map<string, Bytes>) {
-    this.files = files;
+  constructor(url: string, described: Map<string, Bytes>) {
+    this.url = url;
     this.described = described;
   }
 
@@ -166,17 +181,18 @@ export class Objects implements zarr.AsyncReadable {
     return all?.subarray(range.offset, range.offset + range.length);
   };
 
-  private async object(key: zarr.AbsolutePath, signal?: AbortSignal): Bytes {
-    const bytes = await this.files.get(key, { signal });
+  private async object(key: string, signal = new AbortController().signal): Bytes {
+    const bytes = await object(this.url + key, signal);
     if (!bytes) throw new StoreError("missing", `${key} is not there`);
     return bytes;
   }
 
-  /** Metadata of an array or a group, kept for all who ask. */
-  private description(key: zarr.AbsolutePath): Bytes {
+  /** Metadata of an array or a group, kept for all who ask, whoever of them goes. */
+  private description(key: string): Bytes {
     const known = this.described.get(key);
     if (known) return known;
-    const bytes = this.files.get(key).then((found) => found && readable(found));
+    const found = object(this.url + key, new AbortController().signal);
+    const bytes = found.then((there) => there && readable(there));
     this.described.set(key, bytes);
     bytes.catch(() => this.described.delete(key));
     return bytes;
@@ -192,23 +208,23 @@ export function storeError(error: unknown): StoreError {
 }
 
 export class Store {
-  private readonly files: zarr.FetchStore;
+  private readonly url: string;
   private readonly described = new Map<string, Bytes>();
 
   constructor(url: string) {
-    this.files = new zarr.FetchStore(url, { fetch: answer });
+    this.url = url.replace(/\/+$/, "");
   }
 
   /** Attributes of the whole. */
   async attributes(): Promise<Record<string, unknown>> {
-    const objects = new Objects(this.files, this.described);
+    const objects = new Objects(this.url, this.described);
     const group = await zarr.open.v3(zarr.root(objects), { kind: "group" });
     return group.attrs;
   }
 
   /** An array by its path; its shards are kept for as long as it is. */
   async array(path: string): Promise<Numbers> {
-    const objects = new Objects(this.files, this.described);
+    const objects = new Objects(this.url, this.described);
     const array = await zarr.open.v3(zarr.root(objects).resolve(path), { kind: "array" });
     if (!array.is("number")) throw new StoreError("broken", `${path} has no numbers`);
     return array as Numbers;

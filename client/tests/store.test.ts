@@ -172,8 +172,8 @@ test("what is not there or not open is missing, and not tried again", async () =
 
 test("who does not answer is asked again, some times", async () => {
   mock.timers.enable({ apis: ["setTimeout"] });
+  const turn = setInterval(() => mock.timers.tick(100), 0);
   try {
-    const turn = setInterval(() => mock.timers.tick(500), 0);
     let count = 0;
     fault = (path) => (path === TRACES && (count += 1) < 3 ? [503, new TypeError("failed")][count - 1] : null);
     const parts = named(await streamOf().stream.tile([0, 0, 0], [0], signal, nothing));
@@ -183,8 +183,8 @@ test("who does not answer is asked again, some times", async () => {
     asked = [];
     await assert.rejects(streamOf().stream.tile([0, 0, 0], [0], signal, nothing), failing("unreachable"));
     assert.equal(asked.filter((path) => path === TRACES).length, 4);
-    clearInterval(turn);
   } finally {
+    clearInterval(turn);
     mock.timers.reset();
   }
 });

@@ -255,11 +255,11 @@ if(this.users.delete(user),this.waiting.delete(user),!this.users.size){cancelAni
 null,this.canvas.width=this.canvas.height=16}}request(user){this.waiting.add(user),this.scheduled||=requestAnimationFrame(
 now=>this.run(now))}run(now){this.scheduled=0;let until=performance.now()+FRAME_MS;for(let user of[...this.waiting])if(this.
 waiting.delete(user),user.frame(now,until),performance.now()>until)break;this.waiting.size&&(this.scheduled||=requestAnimationFrame(
-then=>this.run(then)))}counted(object){if(object===null)throw new Error("the graphics card has no memory left, or the co\
-ntext is lost");return this.objects+=1,object}free(kind,object){if(object===null||this.isLost||!this.gl)return;this.objects-=
-1,this.gl[`delete${kind}`](object)}hold(part){if(!part.digest)return part;let entry=this.stock.get(part.digest)??{part,users:0};
-return this.stock.set(part.digest,{...entry,users:entry.users+1}),entry.part}release(part){let entry=part&&this.stock.get(
-part.digest);!part||!entry||(entry.users-=1,entry.users||this.stock.delete(part.digest))}target(format,width,height,samples){
+then=>this.run(then)))}counted(object2){if(object2===null)throw new Error("the graphics card has no memory left, or the \
+context is lost");return this.objects+=1,object2}free(kind,object2){if(object2===null||this.isLost||!this.gl)return;this.
+objects-=1,this.gl[`delete${kind}`](object2)}hold(part){if(!part.digest)return part;let entry=this.stock.get(part.digest)??
+{part,users:0};return this.stock.set(part.digest,{...entry,users:entry.users+1}),entry.part}release(part){let entry=part&&
+this.stock.get(part.digest);!part||!entry||(entry.users-=1,entry.users||this.stock.delete(part.digest))}target(format,width,height,samples){
 let gl=this.context,frame=this.counted(gl.createFramebuffer());gl.bindFramebuffer(gl.FRAMEBUFFER,frame);let buffers=[[format,
 gl.COLOR_ATTACHMENT0],[gl.DEPTH_COMPONENT24,gl.DEPTH_ATTACHMENT]].map(([kind,attachment])=>{let buffer=this.counted(gl.createRenderbuffer());
 return gl.bindRenderbuffer(gl.RENDERBUFFER,buffer),gl.renderbufferStorageMultisample(gl.RENDERBUFFER,samples,kind,width,
@@ -396,17 +396,17 @@ row):this.slider(row)}switch({name}){let input=dom("input",{type:"checkbox",role
 listen(input,"change",()=>this.viewer.choose(name,input.checked)),{input,show:value=>{input.checked=!!value}}}menu({name,
 choices}){let options=choices.map(choice=>dom("option",{value:choice},[choice])),input=dom("select",{},options);return this.
 viewer.lifetime.listen(input,"change",()=>this.viewer.choose(name,input.value)),{input,show:value=>{input.value=String(value)}}}numberField({
-name,whole:whole2,low,high}){let[min,max]=[low??0,high??1],step=whole2?"1":"any",input=dom("input",{type:"number",min:String(
-min),max:String(max),step});return this.viewer.lifetime.listen(input,"change",()=>{let{valueAsNumber:value}=input;Number.
-isFinite(value)&&this.viewer.choose(name,clamp(value,min,max))}),{input,show:value=>{input.value=String(value)}}}slider(row){
-let{toSlider,fromSlider,min,max,step}=scaleOf(row),range={min:String(min),max:String(max),step:String(step)},input=dom("\
-input",{type:"range",...range}),output=dom("output"),value=()=>fromSlider(Number(input.value)),write=shown=>{output.textContent=
+name,whole,low,high}){let[min,max]=[low??0,high??1],step=whole?"1":"any",input=dom("input",{type:"number",min:String(min),
+max:String(max),step});return this.viewer.lifetime.listen(input,"change",()=>{let{valueAsNumber:value}=input;Number.isFinite(
+value)&&this.viewer.choose(name,clamp(value,min,max))}),{input,show:value=>{input.value=String(value)}}}slider(row){let{
+toSlider,fromSlider,min,max,step}=scaleOf(row),range={min:String(min),max:String(max),step:String(step)},input=dom("inpu\
+t",{type:"range",...range}),output=dom("output"),value=()=>fromSlider(Number(input.value)),write=shown=>{output.textContent=
 numberText(Number(shown))};this.viewer.lifetime.listen(input,"input",()=>write(value()));let kind=row.affects==="uniform"?
 "input":"change";return this.viewer.lifetime.listen(input,kind,()=>this.viewer.choose(row.name,value())),{input,output,show:shown=>{
-input.value=String(toSlider(Number(shown))),write(shown)}}}};function scaleOf(row){let{low,high,whole:whole2,logarithmic}=row,
-[least,most]=[low??0,high??1],toSlider=value=>logarithmic?Math.log2(value):value,fromSlider=place=>{let value=logarithmic?
-2**place:place;return whole2?Math.round(value):Number(clamp(value,least,most).toPrecision(3))},[min,max]=[least,most].map(
-toSlider),step=whole2&&!logarithmic?1:(max-min)/SLIDER_STOPS;return{toSlider,fromSlider,min,max,step}}var CAMERA_KEYS={ArrowLeft:"left",ArrowRight:"right",ArrowUp:"up",ArrowDown:"down","+":"closer","=":"closer","-":"farthe\
+input.value=String(toSlider(Number(shown))),write(shown)}}}};function scaleOf(row){let{low,high,whole,logarithmic}=row,[
+least,most]=[low??0,high??1],toSlider=value=>logarithmic?Math.log2(value):value,fromSlider=place=>{let value=logarithmic?
+2**place:place;return whole?Math.round(value):Number(clamp(value,least,most).toPrecision(3))},[min,max]=[least,most].map(
+toSlider),step=whole&&!logarithmic?1:(max-min)/SLIDER_STOPS;return{toSlider,fromSlider,min,max,step}}var CAMERA_KEYS={ArrowLeft:"left",ArrowRight:"right",ArrowUp:"up",ArrowDown:"down","+":"closer","=":"closer","-":"farthe\
 r",_:"farther",0:"whole"},PLAY_KEY=" ",FULLSCREEN_KEY="f",CLOSE_KEY="Escape",DIRECTIONS={left:[-1,0],right:[1,0],up:[0,1],
 down:[0,-1]};function hasModifier(event){return event.ctrlKey||event.metaKey||event.altKey}function toggleFullscreen(element){
 document.fullscreenElement?document.exitFullscreen():element.requestFullscreen?.().catch(()=>{})}var STOPS2=33,Legend=class{element=dom("div",{class:"legend glass",hidden:""});mark=dom("i",{hidden:""});show(header,settings,map){
@@ -455,8 +455,8 @@ j),[second,third]=[j-number,i];return[1-second-third,second,third].map((share,k)
 this.shape=[mesh.shape[0],mesh.shape[1]],this.blocks=blocks.data}levels(){return new Int8Array(this.shape[0]*this.shape[1])}triangles(levels){
 let{blocks}=this,drawn=levels.reduce((bits,level,block)=>bits|(level<0?0:1<<block),0),index=new Uint32Array(3*blocks.length),
 end=0;for(let n=0;n<blocks.length;n+=1)if(blocks[n]&drawn)for(let k=0;k<3;k+=1)index[end++]=3*n+k;return index.slice(0,end)}};function pickedPoint(context,x,y){let{layers,camera,moment,anchor,canvas}=context,{graphics,header}=layers[0].scene,program=graphics.
-programs.get(header.shaders.vertex,header.shaders.pick),whole2=projection(header.geometry,camera,anchor),matrix=atPixel(
-whole2,[x,y],[canvas.width,canvas.height]),[before,after,between2]=moment,bits=graphics.pixel(()=>{layers.forEach(({scene},n)=>{
+programs.get(header.shaders.vertex,header.shaders.pick),whole=projection(header.geometry,camera,anchor),matrix=atPixel(whole,
+[x,y],[canvas.width,canvas.height]),[before,after,between2]=moment,bits=graphics.pixel(()=>{layers.forEach(({scene},n)=>{
 graphics.programs.use(program,{u_matrix:matrix,u_between:between2,u_part:n}),scene.draw(before,after,anchor,!1)})});if(!bits[3])
 return null;let[u,v2]=new Float32Array(bits.buffer,0,2),layer=layers[bits[2]],{geometry}=layer.scene.header,place=geometry.
 triangles?placeIn(bits[3]-1,u,v2):placeAmong(geometry,u,v2),corners=layer.scene.cornersAt(place),position=positionAt(layer.
@@ -499,10 +499,10 @@ coarse=Math.floor(turns/constants.clockStep)*constants.clockStep;return{u_clock:
 view.density:1),u_travelInPixels:inPixels,u_travelBySpeed:varies||s.motion==="speed",u_wave:constants.wavePixels*view.density}}
 function noiseOrigin(header,view,finest){let{noiseDoublings,clearDoublings}=header.constants,{frame,center}=header.geometry,
 focus=toFrame(frame,subtract2(view.focus,center)),limit=2**(noiseDoublings-clearDoublings)-1,cells=2**clearDoublings,even=focus.
-map(x=>clamp(Math.round(x/finest/cells),-limit,limit)*cells),odd=even.map(x=>x/Math.SQRT2),whole2=odd.map(x=>Math.floor(
-x/cells)*cells);return{u_noiseOrigin:even.map((x,k)=>x*finest-view.anchor[k]),u_noiseOriginEven:even,u_noiseOriginOdd:whole2,
-u_noiseRestOdd:odd.map((x,k)=>x-whole2[k])}}function paperUniforms(paper,s,noiseShape,density){let tiles=s.noise==="imag\
-e"?s.tiles:1,[rows,columns]=noiseShape;return{u_noiseSize:paper.size.map(n=>n*density),u_noiseGrain:paper.grain,u_noiseDeviation:paper.
+map(x=>clamp(Math.round(x/finest/cells),-limit,limit)*cells),odd=even.map(x=>x/Math.SQRT2),whole=odd.map(x=>Math.floor(x/
+cells)*cells);return{u_noiseOrigin:even.map((x,k)=>x*finest-view.anchor[k]),u_noiseOriginEven:even,u_noiseOriginOdd:whole,
+u_noiseRestOdd:odd.map((x,k)=>x-whole[k])}}function paperUniforms(paper,s,noiseShape,density){let tiles=s.noise==="image"?
+s.tiles:1,[rows,columns]=noiseShape;return{u_noiseSize:paper.size.map(n=>n*density),u_noiseGrain:paper.grain,u_noiseDeviation:paper.
 deviations,u_noiseCorrected:paper.corrected,u_pictureSize:[columns*density*tiles,rows*density*tiles],u_pictureRound:[Number(
 paper.repeat[1]),Number(paper.repeat[0])],u_pictureGrey:noiseShape.length===2,u_tiles:tiles}}function momentOf(times2,time){
 if(times2.length<2)return[0,0,0];let step=0;for(;step<times2.length-2&&times2[step+1]<=time;)step+=1;let late=(time-times2[step])/
@@ -546,12 +546,12 @@ let result2=[],[from,left]=[start,most];for(let point of side){let step=length2(
 function pathThrough(at,settings,camera,rows){let{scene,position}=at,{slices,paper,speed}=scene.header,layers=layersAt(at),
 directed=!isSignFree(scene.header),base=layers(0),slope=[base[0],base[1],base[2]],moved=mover(at),small=scale2(slope,SMALL*
 (paper?1/paper.size[0]:slices.cell)/(length2(slope)||1)),along=length2(slope)>LEAST_SLOPE?subtract2(moved(small)??position,
-position):slope,velocity=scale2(unit(along),layers(2)[3]*speed.typical),whole2=[],sides=settings.two_sided||!directed?slices.
+position):slope,velocity=scale2(unit(along),layers(2)[3]*speed.typical),whole=[],sides=settings.two_sided||!directed?slices.
 sides:1;for(let side=0;side<sides&&length2(slope)>LEAST_SLOPE;side+=1){let by=paper?1:base[3]*slices.unit,points=sideOf(
-layers,slices.lags,side*slices.lags.length,side?1:-1,by).map(moved),end=points.findIndex(point=>point===null);whole2.push(
+layers,slices.lags,side*slices.lags.length,side?1:-1,by).map(moved),end=points.findIndex(point=>point===null);whole.push(
 points.slice(0,end<0?void 0:end))}let set=Number(settings.samples),samples=isMoving(scene.header,settings)?2*set-1:set,count=sides===
 2?Math.floor(samples/2):samples-1,step=Number(settings.spacing)*grainAt(at,settings,camera,rows),joined=reach=>{let[back=[],
-ahead=[]]=whole2.map(side=>upTo(position,side,reach));return[...back.reverse(),position,...ahead]};return{path:joined(PATH_LENGTH*
+ahead=[]]=whole.map(side=>upTo(position,side,reach));return[...back.reverse(),position,...ahead]};return{path:joined(PATH_LENGTH*
 Math.max(count,FEWEST_SAMPLES)*step),sampled:joined(count*step),directed,velocity}}var TITLE="Path through this point",SVG="http://www.w3.org/2000/svg",FEWEST_DIGITS=4,MOST_DIGITS=14,VELOCITY_DIGITS=3,PATIENCE_MS=5e3,
 RETRY_MS=40,PLACES_IN_VIEW=200,DEGREE_M=111195,DOT_RADIUS=8,UNIT_LENGTH=12;function withUnit(text,unit2){return unit2&&unit2.
 length<=UNIT_LENGTH?`${text} ${unit2}`:text}function vectorText(vector,size,digits,flat){return`(${vector.slice(0,flat?2:
@@ -1060,71 +1060,71 @@ resources.delete(name),resource&&(resource.users-=1,!resource.users&&(this.graph
 this.graphics.common.delete(resource.key)))}dispose(){for(let name of[...this.resources.keys()])this.drop(name);this.earth.
 dispose()}key(names,...rest){let digests=names.map(name=>this.parts.has(name)?this.part(name).digest:"none");return digests.
 every(Boolean)?JSON.stringify([digests,rest]):""}take(name,kind,key,make,fill){let own=this.resources.get(name);if(own)return own.
-object;let{graphics}=this,whole2=key&&`${name.split("/")[0]} ${key}`,shared=whole2?graphics.common.get(whole2):void 0,object=shared?.
-object??graphics.counted(make()),resource=shared??{kind,object,count:0,key:whole2,users:0};return resource.users+=1,this.
-resources.set(name,resource),shared||(resource.count=fill(object)||0),whole2&&graphics.common.set(whole2,resource),object}buffer(name,key,data,elements=!1){
-let gl=this.graphics.context,fill=buffer=>{let target=elements?gl.ELEMENT_ARRAY_BUFFER:gl.ARRAY_BUFFER,numbers=data();return gl.
-bindVertexArray(null),gl.bindBuffer(target,buffer),gl.bufferData(target,numbers,gl.STATIC_DRAW),numbers.length};return this.
-take(name,"Buffer",key,()=>gl.createBuffer(),fill)}mesh(){if(this.meshLevels)return this.meshLevels;let{geometry,mesh}=this.
-header;if(geometry.triangles)return this.meshLevels=new TriangleMesh(this.part("mesh"),this.part("blocks"));let{shape,periodic}=geometry,
-parts={blocks:this.part("mesh").data,cells:this.parts.get("cells")?.data};return this.meshLevels=new MeshLevels({shape,periodic,
-...parts},mesh)}cornersAt(place){let{triangles,shape}=this.header.geometry;return triangles?cornersOf(this.part("triangl\
-es").data,place):cornersAt(shape,place)}levels(sight){return{levels:this.mesh().levels(sight),shape:this.mesh().shape}}get hasTriangles(){
-return this.drawn!==null}setTriangles(levels,joins=new Int8Array){let{drawn}=this;drawn&&String([levels,joins])===String(
-[drawn.levels,drawn.joins])||(this.drawn={levels,joins},this.drop("index"),this.drop("array"))}isLoaded(steps){return steps.
-every(step=>this.resources.has(`slices/${step}`))}load(steps){for(let step of steps)this.slices(step)}bindNodes(before,after,anchor){
-let gl=this.graphics.context,steps=String(this.scalarParts(before,after)),stale=steps!==this.scalarSteps?["scalar","arra\
-y"]:[];anchor.some((x,k)=>x!==this.anchor[k])&&stale.push("position","array");for(let name of stale)this.drop(name);this.
-scalarSteps=steps,this.anchor=anchor;let fill=array=>this.fillArray(array,before,after),make=()=>gl.createVertexArray();
-gl.bindVertexArray(this.take("array","VertexArray","",make,fill))}fillArray(array,before,after){let gl=this.graphics.context,
-{geometry,scalars,paper}=this.header,{shape,rows,columns}=geometry,{levels,joins}=this.drawn??{levels:new Int8Array,joins:new Int8Array},
-key=(names,...rest)=>this.key(["triangles",...names],...rest),cells=()=>this.mesh().triangles(levels,joins),drawn=key(["\
-cells","mesh","blocks"],shape,[...levels],[...joins]),index=this.buffer("index",drawn,cells,!0),corners=geometry.triangles?
-this.part("triangles").data:null,vertices=(values2,size)=>corners?atVertices(values2,corners,size):values2,nodes=()=>vertices(
-positions(this.part("position").data,this.anchor),3),normal=geometry.planar?null:this.part("normal").data,normals=nodal=>corners?
-vertexNormals(nodal,this.part("position").data,corners):nodal,painted=this.scalarParts(before,after),values=()=>{let steps=painted.
-map(name=>this.part(name).data);return vertices(shares(steps,scalars,shape[0]*shape[1]),2)},colour=key([...new Set(painted)],
-shape,scalars.low,scalars.high,scalars.log),grid2=JSON.stringify([shape,rows,columns,corners?.length]),place=()=>corners?
-vertexShares(corners.length/3):coordinates(geometry),type=gl.FLOAT;normal instanceof Int8Array&&(type=gl.BYTE),normal instanceof
-Int16Array&&(type=gl.SHORT);let attributes=[[this.buffer("position",key(["position"],this.anchor),nodes),3,gl.FLOAT],[this.
-buffer("coordinate",grid2,place),2,gl.FLOAT],[normal&&this.buffer("normal",key(["normal"]),()=>normals(normal)),3,type],
-[paper&&this.buffer("along","",()=>noiseCoordinates(paper)),2,gl.FLOAT],[this.buffer("scalar",colour,values),2,gl.FLOAT],
-[corners&&this.buffer("corners",key([]),()=>vertexCorners(corners)),3,gl.FLOAT]];gl.bindVertexArray(array),gl.bindBuffer(
-gl.ELEMENT_ARRAY_BUFFER,index),attributes.forEach(([buffer,size,kind],n)=>{buffer&&(gl.bindBuffer(gl.ARRAY_BUFFER,buffer),
-gl.enableVertexAttribArray(n),gl.vertexAttribPointer(n,size,kind,kind!==gl.FLOAT,0,0))})}texture(name,key,fill){let gl=this.
-graphics.context;return this.take(name,"Texture",key,()=>gl.createTexture(),fill)}slices(step){let{slices,geometry}=this.
-header,key=this.key([`slices/${step}`,`extra/${step}`],geometry.levels,slices.extra);return this.texture(`slices/${step}`,
-key,texture=>{let part=this.part(`slices/${step}`),[layers,height,width,channels]=part.shape,data=part.data,extra=this.parts.
-get(`extra/${step}`)?.data,texels=height*width,layer=n=>{let own=data.subarray(n*texels*channels,(n+1)*texels*channels);
-if(channels===4)return own;let all=new Uint16Array(4*texels),place=slices.extra.indexOf(n),fourth=place<0?null:extra?.subarray(
-place*texels,(place+1)*texels);for(let k=0;k<texels;k+=1)all[4*k]=own[2*k],all[4*k+1]=own[2*k+1],fourth&&(all[4*k+3]=fourth[k]);
-return all};this.fill(texture,{width,height,layers,channels:4,levels:geometry.levels},layer)})}image(name,repeat){let gl=this.
-graphics.context;return this.texture(name,this.key([name],repeat),texture=>{let{data,shape}=this.part(name),[height,width,
-channels=1]=shape,levels=Math.floor(Math.log2(Math.max(width,height))),size={width,height,layers:1,channels,levels};this.
-fill(texture,size,()=>data);let wrap=n=>repeat[n]?gl.REPEAT:gl.CLAMP_TO_EDGE;gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_S,
-wrap(1)),gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_T,wrap(0))})}fill(texture,size,layer){let gl=this.graphics.
-context,{width,height,layers,channels,levels}=size,target=gl.TEXTURE_2D_ARRAY;this.checkSize(size);let[format,inner]=channels===
-1?[gl.RED,gl.R16F]:[gl.RGBA,gl.RGBA16F];gl.bindTexture(target,texture),gl.texStorage3D(target,levels+1,inner,width,height,
-layers),gl.texParameteri(target,gl.TEXTURE_MIN_FILTER,gl.LINEAR_MIPMAP_LINEAR),gl.texParameteri(target,gl.TEXTURE_MAG_FILTER,
-gl.LINEAR),gl.texParameteri(target,gl.TEXTURE_WRAP_S,gl.CLAMP_TO_EDGE),gl.texParameteri(target,gl.TEXTURE_WRAP_T,gl.CLAMP_TO_EDGE),
-gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);let{floats}=this.graphics;for(let n=0;n<layers;n+=1){let texels=layer(n),[w,h]=[width,
-height];gl.texSubImage3D(target,0,0,0,n,w,h,1,format,gl.HALF_FLOAT,texels);for(let level=1;level<=levels&&!floats;level+=
-1)[texels,w,h]=halved(texels,w,h,channels),gl.texSubImage3D(target,level,0,0,n,w,h,1,format,gl.HALF_FLOAT,texels)}floats&&
-levels&&gl.generateMipmap(target)}checkSize({width,height,layers}){let gl=this.graphics.context,most=gl.getParameter(gl.
-MAX_TEXTURE_SIZE),mostLayers=gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS);if(!(Math.max(width,height)<=most&&layers<=mostLayers))
-throw new Error(`a texture of ${width} x ${height} texels in ${layers} layers is asked for, and this graphics card has ${most}\
- x ${most} in ${mostLayers}; show fewer nodes`)}colourMap(){let gl=this.graphics.context;return this.texture("cmap",this.
-key(["cmap"]),texture=>{gl.bindTexture(gl.TEXTURE_2D,texture),gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);let data=this.parts.
-get("cmap")?.data??new Uint8Array(1024);gl.texImage2D(gl.TEXTURE_2D,0,gl.RGBA8,256,1,0,gl.RGBA,gl.UNSIGNED_BYTE,data),gl.
-texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST)})}dropSlices(before,after){
-let next=after+1<this.header.slices.steps?after+1:0;for(let name of[...this.resources.keys()])name.startsWith("slices/")&&
-([before,after,next,after+1].includes(stepOf(name))||this.drop(name))}bindTextures(before,after){let gl=this.graphics.context,
-{paper}=this.header,repeat=paper?.repeat??[!1,!1];[this.slices(before),after===before?null:this.slices(after),paper&&this.
-image("noise",paper.picture?[!0,!0]:repeat),paper&&this.image("step",repeat),this.colourMap()].forEach((texture,n)=>{gl.
-activeTexture(gl.TEXTURE0+n),gl.bindTexture(n<4?gl.TEXTURE_2D_ARRAY:gl.TEXTURE_2D,texture)}),gl.activeTexture(gl.TEXTURE0+
-SAMPLERS.length)}draw(before,after,anchor,textures){let gl=this.graphics.context;textures&&(this.dropSlices(before,after),
-this.bindTextures(before,after)),this.bindNodes(before,after,anchor),gl.drawElements(gl.TRIANGLES,this.resources.get("in\
-dex")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(null)}};var REQUEST_MS=60,LOST_MS=8e3,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD=4,Tiles=class{layers=[];missing=[];host;root;tiles=new Map;pyramid=null;chosen={
+object;let{graphics}=this,whole=key&&`${name.split("/")[0]} ${key}`,shared=whole?graphics.common.get(whole):void 0,object2=shared?.
+object??graphics.counted(make()),resource=shared??{kind,object:object2,count:0,key:whole,users:0};return resource.users+=
+1,this.resources.set(name,resource),shared||(resource.count=fill(object2)||0),whole&&graphics.common.set(whole,resource),
+object2}buffer(name,key,data,elements=!1){let gl=this.graphics.context,fill=buffer=>{let target=elements?gl.ELEMENT_ARRAY_BUFFER:
+gl.ARRAY_BUFFER,numbers=data();return gl.bindVertexArray(null),gl.bindBuffer(target,buffer),gl.bufferData(target,numbers,
+gl.STATIC_DRAW),numbers.length};return this.take(name,"Buffer",key,()=>gl.createBuffer(),fill)}mesh(){if(this.meshLevels)
+return this.meshLevels;let{geometry,mesh}=this.header;if(geometry.triangles)return this.meshLevels=new TriangleMesh(this.
+part("mesh"),this.part("blocks"));let{shape,periodic}=geometry,parts={blocks:this.part("mesh").data,cells:this.parts.get(
+"cells")?.data};return this.meshLevels=new MeshLevels({shape,periodic,...parts},mesh)}cornersAt(place){let{triangles,shape}=this.
+header.geometry;return triangles?cornersOf(this.part("triangles").data,place):cornersAt(shape,place)}levels(sight){return{
+levels:this.mesh().levels(sight),shape:this.mesh().shape}}get hasTriangles(){return this.drawn!==null}setTriangles(levels,joins=new Int8Array){
+let{drawn}=this;drawn&&String([levels,joins])===String([drawn.levels,drawn.joins])||(this.drawn={levels,joins},this.drop(
+"index"),this.drop("array"))}isLoaded(steps){return steps.every(step=>this.resources.has(`slices/${step}`))}load(steps){
+for(let step of steps)this.slices(step)}bindNodes(before,after,anchor){let gl=this.graphics.context,steps=String(this.scalarParts(
+before,after)),stale=steps!==this.scalarSteps?["scalar","array"]:[];anchor.some((x,k)=>x!==this.anchor[k])&&stale.push("\
+position","array");for(let name of stale)this.drop(name);this.scalarSteps=steps,this.anchor=anchor;let fill=array=>this.
+fillArray(array,before,after),make=()=>gl.createVertexArray();gl.bindVertexArray(this.take("array","VertexArray","",make,
+fill))}fillArray(array,before,after){let gl=this.graphics.context,{geometry,scalars,paper}=this.header,{shape,rows,columns}=geometry,
+{levels,joins}=this.drawn??{levels:new Int8Array,joins:new Int8Array},key=(names,...rest)=>this.key(["triangles",...names],
+...rest),cells=()=>this.mesh().triangles(levels,joins),drawn=key(["cells","mesh","blocks"],shape,[...levels],[...joins]),
+index=this.buffer("index",drawn,cells,!0),corners=geometry.triangles?this.part("triangles").data:null,vertices=(values2,size)=>corners?
+atVertices(values2,corners,size):values2,nodes=()=>vertices(positions(this.part("position").data,this.anchor),3),normal=geometry.
+planar?null:this.part("normal").data,normals=nodal=>corners?vertexNormals(nodal,this.part("position").data,corners):nodal,
+painted=this.scalarParts(before,after),values=()=>{let steps=painted.map(name=>this.part(name).data);return vertices(shares(
+steps,scalars,shape[0]*shape[1]),2)},colour=key([...new Set(painted)],shape,scalars.low,scalars.high,scalars.log),grid2=JSON.
+stringify([shape,rows,columns,corners?.length]),place=()=>corners?vertexShares(corners.length/3):coordinates(geometry),type=gl.
+FLOAT;normal instanceof Int8Array&&(type=gl.BYTE),normal instanceof Int16Array&&(type=gl.SHORT);let attributes=[[this.buffer(
+"position",key(["position"],this.anchor),nodes),3,gl.FLOAT],[this.buffer("coordinate",grid2,place),2,gl.FLOAT],[normal&&
+this.buffer("normal",key(["normal"]),()=>normals(normal)),3,type],[paper&&this.buffer("along","",()=>noiseCoordinates(paper)),
+2,gl.FLOAT],[this.buffer("scalar",colour,values),2,gl.FLOAT],[corners&&this.buffer("corners",key([]),()=>vertexCorners(corners)),
+3,gl.FLOAT]];gl.bindVertexArray(array),gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER,index),attributes.forEach(([buffer,size,kind],n)=>{
+buffer&&(gl.bindBuffer(gl.ARRAY_BUFFER,buffer),gl.enableVertexAttribArray(n),gl.vertexAttribPointer(n,size,kind,kind!==gl.
+FLOAT,0,0))})}texture(name,key,fill){let gl=this.graphics.context;return this.take(name,"Texture",key,()=>gl.createTexture(),
+fill)}slices(step){let{slices,geometry}=this.header,key=this.key([`slices/${step}`,`extra/${step}`],geometry.levels,slices.
+extra);return this.texture(`slices/${step}`,key,texture=>{let part=this.part(`slices/${step}`),[layers,height,width,channels]=part.
+shape,data=part.data,extra=this.parts.get(`extra/${step}`)?.data,texels=height*width,layer=n=>{let own=data.subarray(n*texels*
+channels,(n+1)*texels*channels);if(channels===4)return own;let all=new Uint16Array(4*texels),place=slices.extra.indexOf(
+n),fourth=place<0?null:extra?.subarray(place*texels,(place+1)*texels);for(let k=0;k<texels;k+=1)all[4*k]=own[2*k],all[4*
+k+1]=own[2*k+1],fourth&&(all[4*k+3]=fourth[k]);return all};this.fill(texture,{width,height,layers,channels:4,levels:geometry.
+levels},layer)})}image(name,repeat){let gl=this.graphics.context;return this.texture(name,this.key([name],repeat),texture=>{
+let{data,shape}=this.part(name),[height,width,channels=1]=shape,levels=Math.floor(Math.log2(Math.max(width,height))),size={
+width,height,layers:1,channels,levels};this.fill(texture,size,()=>data);let wrap=n=>repeat[n]?gl.REPEAT:gl.CLAMP_TO_EDGE;
+gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_S,wrap(1)),gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_T,wrap(
+0))})}fill(texture,size,layer){let gl=this.graphics.context,{width,height,layers,channels,levels}=size,target=gl.TEXTURE_2D_ARRAY;
+this.checkSize(size);let[format,inner]=channels===1?[gl.RED,gl.R16F]:[gl.RGBA,gl.RGBA16F];gl.bindTexture(target,texture),
+gl.texStorage3D(target,levels+1,inner,width,height,layers),gl.texParameteri(target,gl.TEXTURE_MIN_FILTER,gl.LINEAR_MIPMAP_LINEAR),
+gl.texParameteri(target,gl.TEXTURE_MAG_FILTER,gl.LINEAR),gl.texParameteri(target,gl.TEXTURE_WRAP_S,gl.CLAMP_TO_EDGE),gl.
+texParameteri(target,gl.TEXTURE_WRAP_T,gl.CLAMP_TO_EDGE),gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);let{floats}=this.graphics;
+for(let n=0;n<layers;n+=1){let texels=layer(n),[w,h]=[width,height];gl.texSubImage3D(target,0,0,0,n,w,h,1,format,gl.HALF_FLOAT,
+texels);for(let level=1;level<=levels&&!floats;level+=1)[texels,w,h]=halved(texels,w,h,channels),gl.texSubImage3D(target,
+level,0,0,n,w,h,1,format,gl.HALF_FLOAT,texels)}floats&&levels&&gl.generateMipmap(target)}checkSize({width,height,layers}){
+let gl=this.graphics.context,most=gl.getParameter(gl.MAX_TEXTURE_SIZE),mostLayers=gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS);
+if(!(Math.max(width,height)<=most&&layers<=mostLayers))throw new Error(`a texture of ${width} x ${height} texels in ${layers}\
+ layers is asked for, and this graphics card has ${most} x ${most} in ${mostLayers}; show fewer nodes`)}colourMap(){let gl=this.
+graphics.context;return this.texture("cmap",this.key(["cmap"]),texture=>{gl.bindTexture(gl.TEXTURE_2D,texture),gl.pixelStorei(
+gl.UNPACK_ALIGNMENT,1);let data=this.parts.get("cmap")?.data??new Uint8Array(1024);gl.texImage2D(gl.TEXTURE_2D,0,gl.RGBA8,
+256,1,0,gl.RGBA,gl.UNSIGNED_BYTE,data),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.texParameteri(
+gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST)})}dropSlices(before,after){let next=after+1<this.header.slices.steps?after+
+1:0;for(let name of[...this.resources.keys()])name.startsWith("slices/")&&([before,after,next,after+1].includes(stepOf(name))||
+this.drop(name))}bindTextures(before,after){let gl=this.graphics.context,{paper}=this.header,repeat=paper?.repeat??[!1,!1];
+[this.slices(before),after===before?null:this.slices(after),paper&&this.image("noise",paper.picture?[!0,!0]:repeat),paper&&
+this.image("step",repeat),this.colourMap()].forEach((texture,n)=>{gl.activeTexture(gl.TEXTURE0+n),gl.bindTexture(n<4?gl.
+TEXTURE_2D_ARRAY:gl.TEXTURE_2D,texture)}),gl.activeTexture(gl.TEXTURE0+SAMPLERS.length)}draw(before,after,anchor,textures){
+let gl=this.graphics.context;textures&&(this.dropSlices(before,after),this.bindTextures(before,after)),this.bindNodes(before,
+after,anchor),gl.drawElements(gl.TRIANGLES,this.resources.get("index")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(null)}};var REQUEST_MS=60,LOST_MS=8e3,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD=4,Tiles=class{layers=[];missing=[];host;root;tiles=new Map;pyramid=null;chosen={
 choices:new Map,steps:[],names:""};drawn="";asked={names:[],steps:[]};count=0;isWaiting=!1;isOver=!1;lastCame=0;failed=new Set;limits;constructor(host,root2){
 this.host=host,this.root=root2,this.limits=root2.header.mesh}has(name,part){return this.tiles.get(name)?.parts.has(part)??
 !1}fail(name){this.failed.add(name),this.host.refine()}dispose(){this.isOver=!0;for(let name of[...this.tiles.keys()])this.
@@ -1308,23 +1308,7 @@ a-sharp="false"]')&&(watch.disconnect(),document.getElementById("preview")?.remo
 attributeFilter=["data-sharp","data-failed"];watch.observe(place,{subtree:!0,childList:!0,attributeFilter});let{root:root2}=mountPage(
 place,scenes);document.addEventListener("keydown",event=>{event.target===document.body&&!root2.dispatchEvent(new KeyboardEvent(
 "keydown",event))&&event.preventDefault()})}catch(error){status.hidden=!1;let reason=error instanceof Error?error.message:
-String(error);throw status.textContent=`The flow cannot be drawn here: ${reason}`,error}}function mergeInit(storeOverrides,requestOverrides){return{...storeOverrides,...requestOverrides,headers:{...storeOverrides.
-headers,...requestOverrides.headers}}}function resolve(root2,path){let base=typeof root2=="string"?new URL(root2):root2;base.pathname.endsWith("/")||(base.pathname+=
-"/");let resolved=new URL(path.slice(1),base);return resolved.search=base.search,resolved}async function handleResponse(response){
-if(response.status!==404){if(response.status===200||response.status===206)return new Uint8Array(await response.arrayBuffer());
-throw new Error(`Unexpected response status ${response.status} ${response.statusText}`)}}var FetchStore=class{url;#fetch;#overrides;#useSuffixRequest;constructor(url,options={}){
-this.url=url,this.#fetch=options.fetch??(request=>fetch(request)),this.#overrides=options.overrides??{},this.#useSuffixRequest=
-options.useSuffixRequest??!1}#buildRequest(url,init){return new Request(url,mergeInit(this.#overrides,init))}async get(key,options={}){
-let href=resolve(this.url,key).href,request=this.#buildRequest(href,options),response=await this.#fetch(request);return handleResponse(
-response)}async getRange(key,range,options={}){let url=resolve(this.url,key),response;if("suffixLength"in range)response=
-await this.#fetchSuffix(url,range.suffixLength,options);else{let rangeInit={...options,headers:{...options.headers,Range:`\
-bytes=${range.offset}-${range.offset+range.length-1}`}},request=this.#buildRequest(url,rangeInit);response=await this.#fetch(
-request)}return handleResponse(response)}async#fetchSuffix(url,suffixLength,options){if(this.#useSuffixRequest){let init={
-...options,headers:{...options.headers,Range:`bytes=-${suffixLength}`}};return this.#fetch(this.#buildRequest(url,init))}
-let headRequest=this.#buildRequest(url,{...options,method:"HEAD"}),response=await this.#fetch(headRequest);if(!response.
-ok)return response;let contentLength=response.headers.get("Content-Length"),length3=Number(contentLength),offset=length3-
-suffixLength,rangeInit={...options,headers:{...options.headers,Range:`bytes=${offset}-${length3-1}`}};return this.#fetch(
-this.#buildRequest(url,rangeInit))}},fetch_default=FetchStore;var ZarritaError=class extends Error{},NotFoundError=class extends ZarritaError{_tag="NotFoundError";name="NotFoundError";path;found;constructor(context,options={}){
+String(error);throw status.textContent=`The flow cannot be drawn here: ${reason}`,error}}var ZarritaError=class extends Error{},NotFoundError=class extends ZarritaError{_tag="NotFoundError";name="NotFoundError";path;found;constructor(context,options={}){
 super(`Not found: ${context}`,{cause:options.cause}),this.path=options.path,this.found=options.found}},InvalidMetadataError=class extends ZarritaError{_tag="\
 InvalidMetadataError";name="InvalidMetadataError";path;constructor(message,options={}){super(message,{cause:options.cause}),
 this.path=options.path}},UnknownCodecError=class extends ZarritaError{_tag="UnknownCodecError";name="UnknownCodecError";codec;constructor(codec){
@@ -1626,58 +1610,61 @@ Group)return node;let kind=node instanceof Array2?"array":"group";throw new NotF
 {path:loc.path,found:kind})}async function open(location2,options={}){let store="store"in location2?location2.store:location2,
 versionMax=VERSION_COUNTER.versionMax(store),openPrimary=versionMax==="v2"?open.v2:open.v3,openSecondary=versionMax==="v\
 2"?open.v3:open.v2;return openPrimary(location2,options).catch(err=>(rethrowUnless(err,NotFoundError,InvalidMetadataError),
-openSecondary(location2,options)))}open.v2=openV2;open.v3=openV3;var PAUSES_MS=[300,1e3,3e3],STALL_MS=2e4,ABSENT=[401,403,404,410],BUSY=429,FAULT=500,CASTAGNOLI=2197175160,SUM_BYTES=4,StoreError=class extends Error{fault;detail;constructor(fault,message,detail=message){
-super(message),this.fault=fault,this.detail=detail}},sums=Uint32Array.from({length:256},(_,byte)=>{let sum=byte;for(let bit=0;bit<
-8;bit+=1)sum=sum>>>1^(sum&1?CASTAGNOLI:0);return sum});function crc32c(bytes){let sum=4294967295;for(let byte of bytes)sum=
-sum>>>8^sums[(sum^byte)&255];return~sum>>>0}var CheckSum=class _CheckSum{kind="bytes_to_bytes";static fromConfig(){return new _CheckSum}encode(){
+openSecondary(location2,options)))}open.v2=openV2;open.v3=openV3;var PAUSES_MS=[300,1e3,3e3],STALL_MS=2e4,ABSENT=[401,403,404,410],OK=200,BUSY=429,FAULT=500,CASTAGNOLI=2197175160,SUM_BYTES=4,
+StoreError=class extends Error{fault;detail;constructor(fault,message,detail=message){super(message),this.fault=fault,this.
+detail=detail}},sums=Array.from({length:4},(_,more)=>Uint32Array.from({length:256},(__,byte)=>{let sum=byte;for(let bit=0;bit<
+8*(more+1);bit+=1)sum=sum>>>1^(sum&1?CASTAGNOLI:0);return sum}));function crc32c(bytes){let[last,third,second,first]=sums,
+whole=bytes.length-bytes.length%4,sum=4294967295;for(let n=0;n<whole;n+=4)sum^=bytes[n]|bytes[n+1]<<8|bytes[n+2]<<16|bytes[n+
+3]<<24,sum=first[sum&255]^second[sum>>>8&255]^third[sum>>>16&255]^last[sum>>>24];for(let n=whole;n<bytes.length;n+=1)sum=
+sum>>>8^last[(sum^bytes[n])&255];return~sum>>>0}var CheckSum=class _CheckSum{kind="bytes_to_bytes";static fromConfig(){return new _CheckSum}encode(){
 throw new Error("nothing is written")}decode(bytes){let end=bytes.byteLength-SUM_BYTES;if(end<0)throw new Error("there i\
 s no check sum");let{buffer,byteOffset}=bytes,told=new DataView(buffer,byteOffset+end,SUM_BYTES).getUint32(0,!0),inside=new Uint8Array(
 buffer,byteOffset,end);if(told!==crc32c(inside))throw new Error("the check sum does not fit");return inside}computeEncodedSize(size){
 return size+SUM_BYTES}};registry.set("crc32c",()=>Promise.resolve(CheckSum));function paused(wait,signal){return new Promise(
-(resolve2,reject)=>{let stop=()=>{clearTimeout(timer),reject(signal.reason)},timer=setTimeout(()=>{signal.removeEventListener(
-"abort",stop),resolve2()},wait);signal.addEventListener("abort",stop,{once:!0})})}async function whole(request){let controller=new AbortController,
-stop=()=>controller.abort(request.signal.reason);request.signal.addEventListener("abort",stop,{once:!0});let late=()=>controller.
-abort(new Error("no more came")),timer=setTimeout(late,STALL_MS);try{request.signal.throwIfAborted();let response=await fetch(
-request.url,{signal:controller.signal}),{status,body}=response;if(status!==200||!body)return await body?.cancel(),new Response(
-null,{status:ABSENT.includes(status)?404:status});let watch=new TransformStream({transform(piece,output){clearTimeout(timer),
-timer=setTimeout(late,STALL_MS),output.enqueue(piece)}});return new Response(await new Response(body.pipeThrough(watch)).
-arrayBuffer())}finally{clearTimeout(timer),request.signal.removeEventListener("abort",stop)}}async function answer(request){
-for(let trial=0;;trial+=1){let said="nobody answers";try{let response=await whole(request);if(response.status<FAULT&&response.
-status!==BUSY)return response;said=`the server answers ${response.status}`}catch{request.signal.throwIfAborted()}if(trial===
-PAUSES_MS.length)throw new StoreError("unreachable",said);await paused(PAUSES_MS[trial],request.signal)}}function readable(bytes){
-let described=JSON.parse(new TextDecoder().decode(bytes));return described?.data_type!=="float16"?bytes:new TextEncoder().
-encode(JSON.stringify({...described,data_type:"uint16",fill_value:0}))}var Objects=class{files;described;shards=new Map;constructor(files,described){
-this.files=files,this.described=described}get=async(key,options)=>key.endsWith("/zarr.json")?this.description(key):this.
-object(key,options?.signal);getRange=async(key,range,options)=>{let bytes=this.shards.get(key)??this.object(key,options?.
-signal);this.shards.set(key,bytes);let all=await bytes;return"suffixLength"in range?all?.subarray(-range.suffixLength):all?.
-subarray(range.offset,range.offset+range.length)};async object(key,signal){let bytes=await this.files.get(key,{signal});
-if(!bytes)throw new StoreError("missing",`${key} is not there`);return bytes}description(key){let known=this.described.get(
-key);if(known)return known;let bytes=this.files.get(key).then(found=>found&&readable(found));return this.described.set(key,
-bytes),bytes.catch(()=>this.described.delete(key)),bytes}};function storeError(error){if(error instanceof StoreError)return error;
-let fault=error instanceof NotFoundError&&!error.found?"missing":"broken";return new StoreError(fault,error instanceof Error?
-error.message:String(error))}var Store=class{files;described=new Map;constructor(url){this.files=new fetch_default(url,{
-fetch:answer})}async attributes(){let objects=new Objects(this.files,this.described);return(await open.v3(root(objects),
-{kind:"group"})).attrs}async array(path){let objects=new Objects(this.files,this.described),array=await open.v3(root(objects).
+(resolve,reject)=>{let stop=()=>{clearTimeout(timer),reject(signal.reason)},timer=setTimeout(()=>{signal.removeEventListener(
+"abort",stop),resolve()},wait);signal.addEventListener("abort",stop,{once:!0})})}async function answer(url,signal){let controller=new AbortController,
+stop=()=>controller.abort();signal.addEventListener("abort",stop,{once:!0});let timer=setTimeout(stop,STALL_MS);try{signal.
+throwIfAborted();let{status,body}=await fetch(url,{signal:controller.signal}),reader=status===OK?body?.getReader():null,
+pieces=[];for(;;){let{done=!0,value}=await reader?.read()??{};if(done||!value)break;clearTimeout(timer),timer=setTimeout(
+stop,STALL_MS),pieces.push(value)}let bytes=new Uint8Array(pieces.reduce((size,piece)=>size+piece.length,0));return pieces.
+reduce((at,piece)=>(bytes.set(piece,at),at+piece.length),0),[status,bytes]}finally{controller.abort(),clearTimeout(timer),
+signal.removeEventListener("abort",stop)}}async function object(url,signal){for(let trial=0;;trial+=1){let said="nobody \
+answers";try{let[status,bytes]=await answer(url,signal);if(status===OK)return bytes;if(ABSENT.includes(status))return;if(said=
+`the server answers ${status}`,status<FAULT&&status!==BUSY)throw new StoreError("broken",said)}catch(error){if(signal.throwIfAborted(),
+error instanceof StoreError)throw error}if(trial===PAUSES_MS.length)throw new StoreError("unreachable",said);await paused(
+PAUSES_MS[trial],signal)}}function readable(bytes){let described=JSON.parse(new TextDecoder().decode(bytes));return described?.
+data_type!=="float16"?bytes:new TextEncoder().encode(JSON.stringify({...described,data_type:"uint16",fill_value:0}))}var Objects=class{url;described;shards=new Map;constructor(url,described){
+this.url=url,this.described=described}get=async(key,options)=>key.endsWith("/zarr.json")?this.description(key):this.object(
+key,options?.signal);getRange=async(key,range,options)=>{let bytes=this.shards.get(key)??this.object(key,options?.signal);
+this.shards.set(key,bytes);let all=await bytes;return"suffixLength"in range?all?.subarray(-range.suffixLength):all?.subarray(
+range.offset,range.offset+range.length)};async object(key,signal=new AbortController().signal){let bytes=await object(this.
+url+key,signal);if(!bytes)throw new StoreError("missing",`${key} is not there`);return bytes}description(key){let known=this.
+described.get(key);if(known)return known;let bytes=object(this.url+key,new AbortController().signal).then(there=>there&&
+readable(there));return this.described.set(key,bytes),bytes.catch(()=>this.described.delete(key)),bytes}};function storeError(error){
+if(error instanceof StoreError)return error;let fault=error instanceof NotFoundError&&!error.found?"missing":"broken";return new StoreError(
+fault,error instanceof Error?error.message:String(error))}var Store=class{url;described=new Map;constructor(url){this.url=
+url.replace(/\/+$/,"")}async attributes(){let objects=new Objects(this.url,this.described);return(await open.v3(root(objects),
+{kind:"group"})).attrs}async array(path){let objects=new Objects(this.url,this.described),array=await open.v3(root(objects).
 resolve(path),{kind:"array"});if(!array.is("number"))throw new StoreError("broken",`${path} has no numbers`);return array}};var MOST_LAYERS=64,MOST_LAGS=32,MOST_NODES=4096,KINDS={position:[Float32Array,3],normal:[Int16Array,3],cells:[Uint8Array,
 1]},TOLD=0,CHANNELS=4,COARSE="A part of the surface is shown coarse:",ABSENT_STEP="A time step cannot be shown:",NO_STORE="\
 The surface is shown coarse:",REASONS={missing:"it is not in the store, or the store is not open to everyone.",broken:"w\
 hat the store has of it is broken.",unreachable:"the store does not answer. It is away, the network is, or pages from el\
 sewhere may not read it (CORS)."},isCount=(value,most)=>Number.isInteger(value)&&Number(value)>0&&Number(value)<=most,areNumbers=(values,count)=>Array.
-isArray(values)&&values.every(Number.isFinite)&&(count??values.length)===values.length;function checkHeader(own,{geometry:whole2,
+isArray(values)&&values.every(Number.isFinite)&&(count??values.length)===values.length;function checkHeader(own,{geometry:whole,
 slices:all}){let{geometry,slices,ranges}=own,{shape,rows,columns}=geometry;if(!(areNumbers(shape,2)&&shape.every(n=>isCount(
 n,MOST_NODES)&&n>1)&&[rows,columns].every(({before,size},axis)=>Number.isInteger(before)&&isCount(size,MOST_NODES)&&before>=
 0&&before+shape[axis]<=size)&&Number.isInteger(geometry.levels)&&geometry.levels>=0&&2**geometry.levels<=Math.max(rows.size,
-columns.size)&&geometry.triangles===whole2.triangles&&geometry.planar===whole2.planar&&Number.isFinite(geometry.extent)&&
-areNumbers(geometry.periodic.map(Number),2)&&areNumbers(geometry.center,3)&&areNumbers(geometry.frame,9)&&isCount(slices.
-count,MOST_LAYERS)&&slices.channels===all.channels&&areNumbers(slices.lags)&&isCount(slices.lags.length,MOST_LAGS)&&slices.
-sides===all.sides&&areNumbers(slices.extra)&&slices.extra.every(n=>Number.isInteger(n)&&n>=0&&n<slices.count)&&areNumbers(
-[slices.unit,slices.cell,slices.critical])&&Object.values(ranges??{}).every(range=>areNumbers(range,2))))throw new Error(
-"what is told of a tile does not fit the page")}function checkSurface(parts,header,tileCells){let{shape,planar}=header.geometry,
-missing=["position","mesh",...planar?[]:["normal"]].filter(name=>!parts.has(name));if(missing.length)throw new Error(`a \
-tile has no ${missing.join(", ")}`);for(let[name,{data,shape:own}]of parts){let[rows,columns]=shape.map(n=>name==="cells"?
-n-1:n),blocks=shape.map(n=>Math.ceil((n-1)/tileCells)),kind=KINDS[name];if(!(kind?data instanceof kind[0]&&data.length===
-rows*columns*kind[1]:data instanceof Float32Array&&own.length===3&&own[0]===blocks[0]&&own[1]===blocks[1]&&data.length===
-own[0]*own[1]*own[2]&&own[2]%2===1))throw new Error(`the part "${name}" of a tile has another size than is told`)}}async function chunkOf(array,at,least,signal){
+columns.size)&&geometry.triangles===whole.triangles&&geometry.planar===whole.planar&&Number.isFinite(geometry.extent)&&areNumbers(
+geometry.periodic.map(Number),2)&&areNumbers(geometry.center,3)&&areNumbers(geometry.frame,9)&&isCount(slices.count,MOST_LAYERS)&&
+slices.channels===all.channels&&areNumbers(slices.lags)&&isCount(slices.lags.length,MOST_LAGS)&&slices.sides===all.sides&&
+areNumbers(slices.extra)&&slices.extra.every(n=>Number.isInteger(n)&&n>=0&&n<slices.count)&&areNumbers([slices.unit,slices.
+cell,slices.critical])&&Object.values(ranges??{}).every(range=>areNumbers(range,2))))throw new Error("what is told of a \
+tile does not fit the page")}function checkSurface(parts,header,tileCells){let{shape,planar}=header.geometry,missing=["p\
+osition","mesh",...planar?[]:["normal"]].filter(name=>!parts.has(name));if(missing.length)throw new Error(`a tile has no\
+ ${missing.join(", ")}`);for(let[name,{data,shape:own}]of parts){let[rows,columns]=shape.map(n=>name==="cells"?n-1:n),blocks=shape.
+map(n=>Math.ceil((n-1)/tileCells)),kind=KINDS[name];if(!(kind?data instanceof kind[0]&&data.length===rows*columns*kind[1]:
+data instanceof Float32Array&&own.length===3&&own[0]===blocks[0]&&own[1]===blocks[1]&&data.length===own[0]*own[1]*own[2]&&
+own[2]%2===1))throw new Error(`the part "${name}" of a tile has another size than is told`)}}async function chunkOf(array,at,least,signal){
 let{data,shape}=await array.getChunk(at,{signal}),last=shape.slice(shape.length-least.length),count=shape.reduce((product2,n)=>product2*
 n,1);if(!(last.every((n,k)=>n>=least[k])&&data.length===count))throw new Error(`a chunk of ${array.path} has the shape ${shape}`);
 return{data,shape:last}}var Stream=class{header;told;url;store;headers=new Map;opening=null;constructor(header,base){let told=header.
@@ -1689,15 +1676,15 @@ let{url,format,fingerprint}=this.told;if(!/^https?:/.test(this.url.protocol)){le
 t ${url} beside itself, which a browser does not read where the page is a file: open it from a web server.`;throw new StoreError(
 "other",text2)}let own=(await this.store.attributes()).flowtex;if(own?.fingerprint===fingerprint&&own.format===format)return;
 let text=`The store at ${url} holds another flow than this page, or one of another version: export the page again.`;throw new StoreError(
-"other",text)}async tile(key,steps,signal,has){let name=nameOf(key);return this.loaded(COARSE,signal,async whole2=>{let known=has(
-"header")?this.headers.get(name):void 0,surface=known===void 0?this.surface(key,whole2):{header:known,parts:[]},late=steps.
-filter(step=>!has(`slices/${step}`)),traces=late.map(step=>this.traces(key,step,whole2)),rest=async()=>{let{header,parts:parts2}=await surface;
-if(this.headers.set(name,header),!header)return parts2;let place={key,header,signal:whole2},slices=late.map(async(step,n)=>this.
+"other",text)}async tile(key,steps,signal,has){let name=nameOf(key);return this.loaded(COARSE,signal,async whole=>{let known=has(
+"header")?this.headers.get(name):void 0,surface=known===void 0?this.surface(key,whole):{header:known,parts:[]},late=steps.
+filter(step=>!has(`slices/${step}`)),traces=late.map(step=>this.traces(key,step,whole)),rest=async()=>{let{header,parts:parts2}=await surface;
+if(this.headers.set(name,header),!header)return parts2;let place={key,header,signal:whole},slices=late.map(async(step,n)=>this.
 slices(place,step,await traces[n]));return[parts2,...await Promise.all([...slices,this.values(place,steps,has)])].flat()},
 [parts]=await Promise.all([rest(),...traces]);return parts.map(part=>({...part,name:`tile/${name}/${part.name}`}))})}async root(step,signal,lacking){
-let{header}=this,key=[this.told.depth,0,0];return this.loaded(ABSENT_STEP,signal,async whole2=>{let place={key,header,signal:whole2},
+let{header}=this,key=[this.told.depth,0,0];return this.loaded(ABSENT_STEP,signal,async whole=>{let place={key,header,signal:whole},
 names=lacking(),parts=[];names.some(name=>/^(slices|extra)\//.test(name))&&parts.push(...await this.slices(place,step,await this.
-traces(key,step,whole2)));let has=part=>!lacking().includes(part);return[...parts,...await this.values(place,[step],has)]})}async loaded(what,signal,load){
+traces(key,step,whole)));let has=part=>!lacking().includes(part);return[...parts,...await this.values(place,[step],has)]})}async loaded(what,signal,load){
 let controller=new AbortController,stop=()=>{},stopped=new Promise((_,reject)=>{stop=()=>reject(signal.reason),signal.addEventListener(
 "abort",stop,{once:!0})});try{return await Promise.race([this.open().then(()=>load(controller.signal)),stopped])}catch(error){
 signal.throwIfAborted();let{fault,message}=storeError(error);throw fault==="other"?error:new StoreError(fault,`${what} ${REASONS[fault]}`,
@@ -1715,19 +1702,20 @@ data.byteLength),text=new TextDecoder().decode(bytes.subarray(0,Math.max(bytes.i
 "missing",`tile ${level}/${row}/${column} is empty`);let told=JSON.parse(text);return{array,at,told}}async slices({key,header,
 signal},step,{array,at,told}){let{count,channels,extra}=header.slices,[height,width]=[header.geometry.rows.size,header.geometry.
 columns.size];if(told?.count!==count||String(told.size)!==String([height,width]))throw new Error(`the traces of tile ${nameOf(
-key)} do not fit its surface`);let texels=height*width,slopes=new Uint16Array(count*texels*channels),fourth=new Uint16Array(
+key)} do not fit its surface`);let texels=height*width,slopes=new Uint32Array(count*texels*channels/2),fourth=new Uint16Array(
 extra.length*texels);for(let layer=0;layer<count;layer+=1){signal.throwIfAborted();let place=[...at,TOLD+1+layer,0,0,0],
-{data,shape}=await chunkOf(array,place,[height,width,CHANNELS],signal),also=extra.indexOf(layer),to=layer*texels*channels;
-for(let j=0;j<height;j+=1){let from=j*shape[1]*CHANNELS;for(let i=0;i<width;i+=1,from+=CHANNELS){for(let k=0;k<channels;k+=
-1)slopes[to++]=data[from+k];also>=0&&(fourth[also*texels+j*width+i]=data[from+3])}}}let part=(name,values,shape)=>({name:`${name}\
-/${step}`,data:values,shape,digest:this.digest(key,`${name}/${step}`)});return[part("extra",fourth,[extra.length,height,
-width]),part("slices",slopes,[count,height,width,channels])]}async values(place,steps,has){let parts=new Map;for(;;){let{
-name,steps:count,number}=this.header.scalars,names=(count>1?steps:[0]).map(step=>number?`scalars/${step}/${number}`:`sca\
-lars/${step}`),lacking=name===null?[]:names.filter(each=>!has(each)&&!parts.has(each));if(!lacking.length)return[...parts.
-values()];let found=await Promise.all(lacking.map(each=>this.valuesOf(place,each,count>1?stepOf(each):null,number)));for(let part of found)
-parts.set(part.name,part)}}async valuesOf({key,header,signal},name,step,number){let[level,row,column]=key,[rows,columns]=header.
-geometry.shape,array=await this.store.array(`${level}/values`),at=[step===null?0:this.told.steps[step],row,column,number,
-0,0],{data,shape}=await chunkOf(array,at,[rows,columns],signal),values=new Float32Array(rows*columns);for(let j=0;j<rows;j+=
-1)values.set(data.subarray(j*shape[1],j*shape[1]+columns),j*columns);return{name,data:values,shape:[rows,columns],digest:this.
-digest(key,name)}}digest(key,name){let[kind,step,...rest]=name.split("/"),source=step===void 0?[]:[this.told.steps[Number(
-step)]];return[this.told.fingerprint,nameOf(key),kind,...source,...rest].join(" ")}};openPage(header=>new Stream(header,location.href));
+{data,shape}=await chunkOf(array,place,[height,width,CHANNELS],signal),pairs=new Uint32Array(data.buffer,data.byteOffset,
+data.length/2),also=extra.indexOf(layer),to=layer*texels*channels/2;for(let j=0;j<height;j+=1){let row=j*shape[1];for(let i=row;i<
+row+width;i+=1)slopes[to++]=pairs[2*i],channels===CHANNELS&&(slopes[to++]=pairs[2*i+1]),also>=0&&(fourth[also*texels+j*width+
+i-row]=data[CHANNELS*i+3])}}let part=(name,values,shape)=>({name:`${name}/${step}`,data:values,shape,digest:this.digest(
+key,`${name}/${step}`)});return[part("extra",fourth,[extra.length,height,width]),part("slices",new Uint16Array(slopes.buffer),
+[count,height,width,channels])]}async values(place,steps,has){let parts=new Map;for(;;){let{name,steps:count,number}=this.
+header.scalars,names=(count>1?steps:[0]).map(step=>number?`scalars/${step}/${number}`:`scalars/${step}`),lacking=name===
+null?[]:names.filter(each=>!has(each)&&!parts.has(each));if(!lacking.length)return[...parts.values()];let found=await Promise.
+all(lacking.map(each=>this.valuesOf(place,each,count>1?stepOf(each):null,number)));for(let part of found)parts.set(part.
+name,part)}}async valuesOf({key,header,signal},name,step,number){let[level,row,column]=key,[rows,columns]=header.geometry.
+shape,array=await this.store.array(`${level}/values`),at=[step===null?0:this.told.steps[step],row,column,number,0,0],{data,
+shape}=await chunkOf(array,at,[rows,columns],signal),values=new Float32Array(rows*columns);for(let j=0;j<rows;j+=1)values.
+set(data.subarray(j*shape[1],j*shape[1]+columns),j*columns);return{name,data:values,shape:[rows,columns],digest:this.digest(
+key,name)}}digest(key,name){let[kind,step,...rest]=name.split("/"),source=step===void 0?[]:[this.told.steps[Number(step)]];
+return[this.told.fingerprint,nameOf(key),kind,...source,...rest].join(" ")}};openPage(header=>new Stream(header,location.href));
