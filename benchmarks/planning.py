@@ -67,6 +67,7 @@ def _measured(results: list[Any]) -> list[Row]:
         row("time, min", lambda _, b: f"{b['seconds'] / 60:.1f}"),
         row("tasks", lambda _, b: f"{b['made']:,}"),
         row("worker killed at tile", lambda _, b: f"{b['killed_at_tile']:,}"),
+        row("objects compared", lambda r, _: f"{r['compared']:,}" if "compared" in r else ""),
         row("the same as undisturbed", lambda r, _: _told(r.get("same"))),
         row("peak of a worker, MB", lambda _, b: f"{_peak(b, 'worker') / MB:.0f}"),
         row("peak of the scheduler, MB", lambda _, b: f"{_peak(b, 'scheduler') / MB:.0f}"),

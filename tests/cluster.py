@@ -172,8 +172,11 @@ def peak_memory(pid: int | str = "self") -> int:
     return 1024 * int(status.partition("VmHWM:")[2].split()[0])
 
 
-def digests(place: str | Path) -> dict[str, str]:
-    """Return a digest of each object of a store, but for the time that gzip writes into chunks."""
+def digests(place: str | Path, some: Iterable[str] | None = None) -> dict[str, str]:
+    """Return a digest of each object of a store, but for the time that gzip writes into chunks.
+
+    Of some of them alone, where these are given.
+    """
     import zarr
     from zarr.core.buffer import default_buffer_prototype
     from zarr.core.sync import sync
@@ -187,7 +190,8 @@ def digests(place: str | Path) -> dict[str, str]:
     found = {}
 
     async def read() -> None:
-        async for key in store.list():
+        keys = [key async for key in store.list()] if some is None else some
+        for key in keys:
             data = (await store.get(key, kind)).to_bytes()
             name, of_array, _ = key.partition("/c/")
             parts = _chunks(data, arrays[name]) if of_array else [data]
@@ -264,11 +268,22 @@ def _serve(folder: Path) -> None:
         MotoRequestHandler,
         create_backend_app,
     )
+    from moto.s3.models import FakeMultipart
     from werkzeug.serving import make_server
 
     # Each object that lies in a file keeps it open.
     most = resource.getrlimit(resource.RLIMIT_NOFILE)[1]
     resource.setrlimit(resource.RLIMIT_NOFILE, (most, most))
+    complete = FakeMultipart.complete
+
+    def completed(upload: Any, body: Any) -> Any:
+        """Join the parts, and keep none: they would take as many files and as much disk again."""
+        whole = complete(upload, body)
+        upload.dispose()
+        upload.parts.clear()
+        return whole
+
+    FakeMultipart.complete = completed  # type: ignore[assignment]
     log = folder / "requests.txt"
     log.touch()
     app = _Told(DomainDispatcherApplication(create_backend_app), log)
