@@ -252,6 +252,9 @@ def test_the_whole_surface_lies_beside_the_panel(page: Page) -> None:
 @pytest.mark.parametrize("height", [500, 844])
 def test_the_panel_of_a_narrow_page_ends_above_the_player(page: Page, height: int) -> None:
     page.set_viewport_size({"width": 390, "height": height})
+    # The page folds the panel away when it hears of its size, before it draws the second frame.
+    page.wait_for_function("() => innerWidth === 390")
+    page.evaluate("() => new Promise((f) => requestAnimationFrame(() => requestAnimationFrame(f)))")
     if not page.locator(".flowtex-panel").is_visible():
         page.get_by_label("Controls", exact=True).click()
     group(page, "Texture")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import shutil
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -20,12 +22,14 @@ pytest.importorskip("zarr")
 VIEW: dict[str, Any] = {"size": (200, 120), "focus": (3.2, 1.4), "samples": 9}
 
 
-@pytest.fixture(autouse=True)
-def _small_roots(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 20_000)
+@pytest.fixture(autouse=True, scope="module")
+def _small_roots() -> Iterator[None]:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 20_000)
+        yield
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def flow() -> FlowField:
     y, x = np.mgrid[0:290, 0:530].astype(float) / 100
     velocity = np.stack([np.cos(3 * y) + 0.3, np.sin(4 * x)], axis=-1)
@@ -40,10 +44,11 @@ def flow() -> FlowField:
     )
 
 
-@pytest.fixture
-def store(flow: FlowField, tmp_path: Path) -> Path:
-    build(flow, tmp_path / "flow.zarr", levels="all", progress=False)
-    return tmp_path / "flow.zarr"
+@pytest.fixture(scope="module")
+def store(flow: FlowField, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    place = tmp_path_factory.mktemp("store") / "flow.zarr"
+    build(flow, place, levels="all", progress=False)
+    return place
 
 
 @pytest.mark.parametrize("options", [{}, {"scalars": "depth", "clim": "robust"}])
@@ -68,7 +73,10 @@ def test_colours_are_those_of_the_whole_field(flow: FlowField, store: Path) -> N
     assert share_field(scenes[1].field) is scenes[1].field
 
 
-def test_a_broken_tile_leaves_the_coarser_one_and_is_told_once(opengl: Any, store: Path) -> None:
+def test_a_broken_tile_leaves_the_coarser_one_and_is_told_once(
+    opengl: Any, store: Path, tmp_path: Path
+) -> None:
+    store = Path(shutil.copytree(store, tmp_path / "flow.zarr"))
     for file in (store / "0" / "traces" / "c").rglob("*"):
         if file.is_file():
             file.write_bytes(file.read_bytes()[:-100])

@@ -490,7 +490,7 @@ def test_thirty_viewers_draw_and_leave_nothing(client: ClientPage) -> None:
 def test_nothing_is_drawn_out_of_sight_or_at_rest(client: ClientPage) -> None:
     client.mount(scene(), SIZE, **PLAIN)
     client.sharp()
-    assert number(client, "viewers[0].graphics.waiting.size") == 0
+    client.page.wait_for_function("() => viewers[0].graphics.waiting.size === 0")
     frames = number(client, "viewers[0].stats().frames")
     client.page.evaluate("() => { document.querySelector('.view').style.marginTop = '5000px' }")
     client.page.wait_for_function("() => !viewers[0].isVisible")
