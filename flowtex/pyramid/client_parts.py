@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from flowtex.field import FlowField
-from flowtex.pyramid.layout import SURFACE, VALUES
+from flowtex.pyramid.layout import SURFACE, VALUES, to_write
 from flowtex.rendering.webgl import ClientData, Colours, single, tile_parts
 from flowtex.rendering.webgl.protocol import parts_file
 from flowtex.textures import TextureSet
@@ -36,7 +36,7 @@ def write_values(here: Any, key: TileKey, textures: TextureSet, step: int) -> No
         if step < len(values):
             nodal = single(values[step][rows, columns])
             at = (step, key.row, key.column, number)
-            here[VALUES][(*at, *(slice(0, n) for n in nodal.shape))] = nodal
+            to_write(here, VALUES)[(*at, *(slice(0, n) for n in nodal.shape))] = nodal
 
 
 def _surface(pyramid: Pyramid, key: TileKey, textures: TextureSet | None) -> bytes:

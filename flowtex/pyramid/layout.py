@@ -67,6 +67,7 @@ __all__ = [
     "read_header",
     "shard_texels",
     "tiles_of",
+    "to_write",
     "value_names",
 ]
 
@@ -238,7 +239,6 @@ def create_level(group: Any, level: int, shape: tuple[int, int], about: Mapping[
             (1, 1, 1, MOST_LAYERS, *size, 4),
             "float16",
             ["time", "row", "column", "layer", "y", "x", "channel"],
-            keep_empty=False,
         )
         if has_halos(about, level):
             # A task makes so many steps, and a chunk is written by one task.
@@ -286,8 +286,6 @@ def create_array(
     shards: tuple[int, ...] | None,
     kind: str,
     names: list[str],
-    *,
-    keep_empty: bool = True,
 ) -> None:
     """Make an array, where it is not there yet."""
     codecs = import_extra("zarr.codecs", "store")
@@ -302,9 +300,18 @@ def create_array(
         compressors=[codecs.GzipCodec(level=GZIP_LEVEL), codecs.Crc32cCodec()],
         fill_value=0,
         dimension_names=names,
-        # What is there has a shard: it is known by it that nothing is missing.
-        config={"write_empty_chunks": keep_empty},
     )
+
+
+def to_write(group: Any, name: str) -> Any:
+    """Return an array to write values into, zeros as well.
+
+    What is there has an object, by which it is known that nothing is missing; of itself Zarr leaves
+    chunks of zeros out, which land is.
+    """
+    zarr, array = import_extra("zarr", "store"), group[name]
+    config = {"write_empty_chunks": True}
+    return zarr.Array(zarr.AsyncArray(array.metadata, array.store_path, config))
 
 
 def empty_field(about: Mapping[str, Any]) -> FlowField:

@@ -15,7 +15,14 @@ import numpy as np
 
 from flowtex._util.array_types import Floats
 from flowtex.field.datasets.regions import RegionNodes
-from flowtex.pyramid.layout import SHARD_CHUNKS, TILE_CELLS, Part, create_array, parts_along
+from flowtex.pyramid.layout import (
+    SHARD_CHUNKS,
+    TILE_CELLS,
+    Part,
+    create_array,
+    parts_along,
+    to_write,
+)
 from flowtex.tiles import ends_of
 
 __all__ = ["create_samples", "ranges_of", "write_samples"]
@@ -54,7 +61,7 @@ def write_samples(group: Any, about: Mapping[str, Any], part: Part, nodes: Regio
         row[:2] = ends_of(known, robust=False) or (np.nan, np.nan)
         some = known[::step, ::step]
         row[2:].reshape(shape)[: some.shape[0], : some.shape[1]] = some
-    group[SAMPLES][_steps(about).index(part.step), part.row, part.column] = result
+    to_write(group, SAMPLES)[_steps(about).index(part.step), part.row, part.column] = result
 
 
 def ranges_of(group: Any, about: Mapping[str, Any]) -> dict[str, list[tuple[float, float]]]:

@@ -20,7 +20,7 @@ import numpy as np
 from flowtex._util.array_types import Indices
 from flowtex.pyramid.checks import identity_of, nodes_hash
 from flowtex.pyramid.client_parts import write_surface, write_values
-from flowtex.pyramid.layout import HALOS, TRACES, Part, has_halos, shard_texels
+from flowtex.pyramid.layout import HALOS, TRACES, Part, has_halos, shard_texels, to_write
 from flowtex.pyramid.levels import Levels
 from flowtex.pyramid.places import store_at
 from flowtex.pyramid.samples import write_samples
@@ -98,22 +98,22 @@ def write_part(
     here, components = group[str(part.level)], about["components"]
     for name, values in nodes.scalars.items():
         if part.step < about["scalars"][name]:
-            here["scalars"][name][(part.step, *lines)] = values
+            to_write(here["scalars"], name)[(part.step, *lines)] = values
     if part.step == 0:
-        here["valid"][lines] = nodes.valid
+        to_write(here, "valid")[lines] = nodes.valid
         if nodes.has_position is not None:
-            here["has_position"][lines] = nodes.has_position
+            to_write(here, "has_position")[lines] = nodes.has_position
         if not about["axes"]:
-            here["points"][lines] = nodes.points[..., :components]
+            to_write(here, "points")[lines] = nodes.points[..., :components]
     # The last one: by it a part is known to be whole.
-    here["velocity"][(part.step, *lines)] = nodes.velocity[..., :components]
+    to_write(here, "velocity")[(part.step, *lines)] = nodes.velocity[..., :components]
 
 
 def make_tile(place: str, run: str, task: TileTask) -> None:
     """Trace a tile in the level that it belongs to."""
     pyramid, here = _pyramid(place, run), _writable(place, run)[str(task.key.level)]
     _, *at = task.key
-    halos = here[HALOS] if has_halos(pyramid.about, task.key.level) else None
+    halos = to_write(here, HALOS) if has_halos(pyramid.about, task.key.level) else None
     for step, spare, textures in _made(pyramid, task):
         write_tile(here, pyramid, task.key, step, spare, textures, surface=step == 0)
         if textures is not None:

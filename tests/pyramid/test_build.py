@@ -264,6 +264,29 @@ def test_steps_have_one_halo_whichever_tasks_make_them(
         assert pyramid.tile(key, range(4)) is not None
 
 
+def test_shards_of_land_are_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Though of themselves chunks of zeros are not written, and what is not there is missing."""
+    for name in ("layout", "samples"):
+        monkeypatch.setattr(sys.modules[f"flowtex.pyramid.{name}"], "SHARD_CHUNKS", (1, 1))
+    x, y = grid(290, 1060)
+    velocity = np.stack([np.cos(3 * y) + 0.3, np.sin(4 * x)], axis=-1)
+    land = x > 2
+    depth = np.where(land, 0, x)
+    flow = FlowField.from_arrays(
+        np.stack([x, y], axis=-1), velocity, valid=~land, periodic="", scalars={"depth": depth}
+    )
+    store = tmp_path / "a.zarr"
+    built = made(store, flow, levels="all")
+    assert made(store, flow, levels="all").kept == built.made
+    there, memory = stored(store), Pyramid(flow, "arclength", lines_of(store))
+    np.testing.assert_array_equal(there.root.valid, memory.root.valid)
+    tiles = [there.tile(key, [0]) for key in keys_of(memory)]
+    assert [tile is None for tile in tiles] == [
+        memory.tile(key, [0]) is None for key in keys_of(memory)
+    ]
+    assert None in tiles
+
+
 def test_coarse_levels_are_completed(tmp_path: Path, stores: Stores) -> None:
     store = stores.copy(tmp_path / "a.zarr", "steady")
     assert not stored(store).made(TileKey(0, 0, 0))

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from flowtex._util.array_types import AnyArray
-from flowtex.pyramid.layout import SURFACE, TRACES, VALUES, create_array, shard_texels
+from flowtex.pyramid.layout import SURFACE, TRACES, VALUES, create_array, shard_texels, to_write
 from flowtex.rendering.webgl.protocol import parts_file
 
 zarr = pytest.importorskip("zarr")
@@ -113,8 +113,9 @@ def write(folder: Path) -> None:
         shards = (1, 1, 1, *shape[3:]) if name == TRACES else None
         axes = [f"axis{n}" for n in range(len(shape))]
         kind = array.dtype.name
-        create_array(level, name, shape, chunks, shards, kind, axes, keep_empty=name != TRACES)
-        level[name][...] = array
+        create_array(level, name, shape, chunks, shards, kind, axes)
+        writable = level[name] if name == TRACES else to_write(level, name)
+        writable[...] = array
 
 
 def test_the_clients_store_is_what_python_writes(tmp_path: Path) -> None:
