@@ -337,7 +337,10 @@ export function partsOfFile(file: ArrayBuffer): NamedPart[] {
 
 /** A part of its text in a page: base64 of gzip of the numbers' bytes, those of one significance together. */
 export async function partOfText(info: PartInfo, text: string): Promise<NamedPart> {
-  const packed = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+  // A loop takes a tenth of the time of Uint8Array.from.
+  const letters = atob(text);
+  const packed = new Uint8Array(letters.length);
+  for (let n = 0; n < packed.length; n += 1) packed[n] = letters.charCodeAt(n);
   const unpacked = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
   const planes = new Uint8Array(await new Response(unpacked).arrayBuffer());
   const count = info.shape.reduce((product, n) => product * n, 1);

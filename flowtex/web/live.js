@@ -82,11 +82,11 @@ number)]?.steps??scalars.steps;return kind==="scalars"&&Number(own)===step&&step
 row2,column,...rest]=name.split("/");return kind==="tile"?[[level,row2,column].join("/"),rest.join("/")]:null}function decoded(info,bytes){
 let view=ArrayBuffer.isView(bytes)?new Uint8Array(bytes.buffer,bytes.byteOffset,bytes.byteLength):new Uint8Array(bytes),
 {name,dtype,shape,digest}=info,Type=TYPES[dtype];if(!Type)throw new Error(`a part has the type "${dtype}"; expected ${Object.
-keys(TYPES).join(", ")}`);return{name,shape,digest,data:new Type(view.slice().buffer)}}async function partOfText(info,text){let packed=Uint8Array.from(atob(text),letter=>letter.charCodeAt(0)),unpacked2=new Blob(
-[packed]).stream().pipeThrough(new DecompressionStream("gzip")),planes=new Uint8Array(await new Response(unpacked2).arrayBuffer()),
-count=info.shape.reduce((product2,n)=>product2*n,1),width=count?planes.length/count:1,bytes=new Uint8Array(planes.length);
-for(let plane=0;plane<width;plane+=1)for(let n=0;n<count;n+=1)bytes[n*width+plane]=planes[plane*count+n];return decoded(
-info,bytes)}var NO_VALUE=-1e9;function positions(data,anchor){return anchor.some(Boolean)?data.map((x,n)=>x-anchor[n%3]):data}function grid(us,vs){
+keys(TYPES).join(", ")}`);return{name,shape,digest,data:new Type(view.slice().buffer)}}async function partOfText(info,text){let letters=atob(text),packed=new Uint8Array(letters.length);for(let n=0;n<packed.length;n+=
+1)packed[n]=letters.charCodeAt(n);let unpacked2=new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip")),
+planes=new Uint8Array(await new Response(unpacked2).arrayBuffer()),count=info.shape.reduce((product2,n)=>product2*n,1),width=count?
+planes.length/count:1,bytes=new Uint8Array(planes.length);for(let plane=0;plane<width;plane+=1)for(let n=0;n<count;n+=1)
+bytes[n*width+plane]=planes[plane*count+n];return decoded(info,bytes)}var NO_VALUE=-1e9;function positions(data,anchor){return anchor.some(Boolean)?data.map((x,n)=>x-anchor[n%3]):data}function grid(us,vs){
 let result2=new Float32Array(2*us.length*vs.length),n=0;for(let v2 of vs)for(let u of us)result2[n++]=u,result2[n++]=v2;
 return result2}function coordinates({shape,rows,columns}){let middles=(count,{before,size})=>Array.from({length:count},(_,n)=>(n+
 before+.5)/size);return grid(middles(shape[1],columns),middles(shape[0],rows))}function noiseCoordinates({alongI,alongJ}){

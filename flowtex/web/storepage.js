@@ -56,10 +56,11 @@ let view=ArrayBuffer.isView(bytes)?new Uint8Array(bytes.buffer,bytes.byteOffset,
 keys(TYPES).join(", ")}`);return{name,shape,digest,data:new Type(view.slice().buffer)}}function partsOfFile(file){let length3=new DataView(
 file).getUint32(0,!0),infos=JSON.parse(new TextDecoder().decode(new Uint8Array(file,4,length3))),start=4+length3;return infos.
 map(info=>{let bytes=new Uint8Array(file,start,info.bytes);return start+=info.bytes,decoded(info,bytes)})}async function partOfText(info,text){
-let packed=Uint8Array.from(atob(text),letter=>letter.charCodeAt(0)),unpacked=new Blob([packed]).stream().pipeThrough(new DecompressionStream(
-"gzip")),planes=new Uint8Array(await new Response(unpacked).arrayBuffer()),count=info.shape.reduce((product2,n)=>product2*
-n,1),width=count?planes.length/count:1,bytes=new Uint8Array(planes.length);for(let plane=0;plane<width;plane+=1)for(let n=0;n<
-count;n+=1)bytes[n*width+plane]=planes[plane*count+n];return decoded(info,bytes)}var EPSILON=1e-6,ARRAY_TYPE=typeof Float32Array<"u"?Float32Array:Array;var degree=Math.PI/180,radian=180/Math.PI;function transpose(out,a){if(out===a){var a01=a[1],a02=a[2],a12=a[5];out[1]=a[3],out[2]=a[6],out[3]=a01,out[5]=a[7],out[6]=
+let letters=atob(text),packed=new Uint8Array(letters.length);for(let n=0;n<packed.length;n+=1)packed[n]=letters.charCodeAt(
+n);let unpacked=new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip")),planes=new Uint8Array(await new Response(
+unpacked).arrayBuffer()),count=info.shape.reduce((product2,n)=>product2*n,1),width=count?planes.length/count:1,bytes=new Uint8Array(
+planes.length);for(let plane=0;plane<width;plane+=1)for(let n=0;n<count;n+=1)bytes[n*width+plane]=planes[plane*count+n];
+return decoded(info,bytes)}var EPSILON=1e-6,ARRAY_TYPE=typeof Float32Array<"u"?Float32Array:Array;var degree=Math.PI/180,radian=180/Math.PI;function transpose(out,a){if(out===a){var a01=a[1],a02=a[2],a12=a[5];out[1]=a[3],out[2]=a[6],out[3]=a01,out[5]=a[7],out[6]=
 a02,out[7]=a12}else out[0]=a[0],out[1]=a[3],out[2]=a[6],out[3]=a[1],out[4]=a[4],out[5]=a[7],out[6]=a[2],out[7]=a[5],out[8]=
 a[8];return out}function fromRotation(out,rad,axis){var x=axis[0],y=axis[1],z=axis[2],len=Math.sqrt(x*x+y*y+z*z),s,c,t;return len<EPSILON?
 null:(len=1/len,x*=len,y*=len,z*=len,s=Math.sin(rad),c=Math.cos(rad),t=1-c,out[0]=x*x*t+c,out[1]=y*x*t+z*s,out[2]=z*x*t-
