@@ -117,6 +117,7 @@ html_favicon = "_static/favicon.svg"
 html_static_path = ["_static"]
 smartquotes = False  # a setting's 'hann' is to be copied as it is
 html_css_files = ["site.css"]
+html_js_files = ["site.js"]
 html_show_sourcelink = False
 html_theme_options = {
     "show_prev_next": False,

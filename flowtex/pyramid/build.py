@@ -100,8 +100,8 @@ def build(
     progress
         Whether a bar is shown.
     **options
-        How a dataset or a file becomes a field: as for :meth:`FlowField.from_xarray` or
-        :meth:`FlowField.from_file`, such as ``u``, ``v``, ``globe`` or ``level``.
+        How a dataset or a file becomes a field: as for :meth:`flowtex.FlowField.from_xarray` or
+        :meth:`flowtex.FlowField.from_file`, such as ``u``, ``v``, ``globe`` or ``level``.
 
     Returns
     -------

@@ -161,7 +161,7 @@ def is_store(place: Any) -> bool:
     Raises
     ------
     PyramidError
-        As :func:`place_text`.
+        When it is a URL of another kind, or has credentials with it.
 
     Examples
     --------
