@@ -33,9 +33,9 @@ def tables(kept: Mapping[str, Any]) -> dict[str, str]:
     """Return the tables of the page by their names, as Markdown."""
     results = sorted(kept.values(), key=_nodes)
     return {
-        "measured": _table(["", *map(_title, results)], _measured(results)),
-        "unit costs": _table(["", *map(_title, results)], _unit_costs(results)),
-        "reading": _table(["", *map(_title, results)], _reading(results)),
+        "measured": _table(["built", *map(_title, results)], _measured(results)),
+        "unit costs": _table(["cost", *map(_title, results)], _unit_costs(results)),
+        "reading": _table(["view", *map(_title, results)], _reading(results)),
         "pictures": _pictures(results),
         "plans": _plans(results[-1]),
     }
@@ -158,7 +158,7 @@ def _plans(result: Mapping[str, Any]) -> str:
     """Return what follows from a measurement, if a node costs what it has cost there."""
     costs = Costs(result)
     plans = [(nodes, workers) for nodes in FIELDS for workers in WORKERS]
-    head = ["", *(f"10^{round(math.log10(n))} nodes, {w:,} workers" for n, w in plans)]
+    head = ["plan", *(f"10^{round(math.log10(n))} nodes, {w:,} workers" for n, w in plans)]
 
     def row(name: str, of: Any) -> Row:
         return (name, *(of(nodes, workers) for nodes, workers in plans))

@@ -118,7 +118,7 @@ html_static_path = ["_static"]
 smartquotes = False  # a setting's 'hann' is to be copied as it is
 html_css_files = ["site.css"]
 html_js_files = ["site.js"]
-html_show_sourcelink = False
+html_show_sourcelink = html_copy_source = False
 html_theme_options = {
     "show_prev_next": False,
     "secondary_sidebar_items": ["page-toc"],

@@ -39,7 +39,7 @@ from flowtex.field import FlowField
 from flowtex.offscreen.plotter import add_scenes, new_plotter, point_camera
 from flowtex.options import Appearance, FieldOptions, Options, ViewOptions, accepts_options
 from flowtex.web.assets import asset
-from flowtex.web.embed import scene_script
+from flowtex.web.embed import write_scene
 from flowtex.web.export import estimate, page_data
 from flowtex.web.view import WebView, web_views
 
@@ -48,9 +48,9 @@ FOLDER = "FLOWTEX_SITE_STATIC"
 #: Size of a still in pixels; a view is as wide as the text, and of this shape.
 STILL = (1000, 500)
 #: Size of a thumbnail in pixels, and how many times larger its grain is: cards show it smaller.
-THUMBNAIL, THUMBNAIL_GRAIN = (560, 350), 1.6
+THUMBNAIL, THUMBNAIL_GRAIN = (480, 300), 1.6
 #: Bytes of a scene, at most; of a series so many steps are kept as fit.
-SCENE_BYTES = 1_800_000
+SCENE_BYTES = 1_400_000
 #: Sections of the gallery, folders of docs/examples, in order.
 SECTIONS = ("grids", "surfaces", "earth", "time", "looks", "classics")
 HINT = (
@@ -107,9 +107,8 @@ class View:
         """Write the scene and its still."""
         folder = Path(os.environ[FOLDER]) / "scenes"
         folder.mkdir(parents=True, exist_ok=True)
-        with (folder / f"{name}.js").open("w", encoding="utf-8", newline="\n") as file:
-            file.writelines(scene_script(name, self.views, camera=self.camera))
-        self.pictures[0].save(folder / f"{name}.webp", quality=80, method=6)
+        write_scene(folder, name, self.views, camera=self.camera)
+        self.pictures[0].save(folder / f"{name}.webp", quality=75, method=6)
 
     @property
     def flags(self) -> tuple[str, ...]:

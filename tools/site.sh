@@ -26,6 +26,8 @@ rm -rf docs/api out/site-words out/site-examples
 mkdir -p out/site-examples
 check "pages" sphinx-build -W --keep-going -q -b html -d out/site-build docs "$site"
 [ -e "$site/index.html" ] || fail "there is no site"
+# For who works on the theme; megabytes of them.
+find "$site" -name "*.map" -delete
 
 if [ ! -e tools/site/node_modules/.ready ] || [ tools/site/package.json -nt tools/site/node_modules/.ready ]; then
     (cd tools/site && npm install --no-package-lock --ignore-scripts --no-audit --no-fund --loglevel=error) ||

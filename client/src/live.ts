@@ -8,11 +8,11 @@ import { partOfText, type Header, type NamedPart, type PartInfo } from "./protoc
 import type { Viewer } from "./viewer.ts";
 import { mountPage, type SceneData } from "./views.ts";
 
-/** A scene as its script hands it over; equal parts have their text once. */
+/** A scene as its script hands it over; equal parts have their text once, large ones a script of their own. */
 interface Packed {
   /** Of a second header there is what differs from the first. */
   headers: Header[];
-  parts: [view: number, info: PartInfo, text: string][];
+  parts: [view: number, info: PartInfo, text: string | null][];
 }
 
 /** Heights of the window that a view may be away when it is loaded, and before it is given up. */
@@ -23,40 +23,52 @@ const KEPT_HEIGHTS = 2;
 const EXPLAINED = ".flowtex-explained";
 
 const scenes = new Map<string, (scene: Packed) => void>();
+const texts = new Map<string, (text: string) => void>();
+const underway = new Map<string, Promise<unknown>>();
 
 declare global {
   interface Window {
     flowtexScene?: (name: string, scene: Packed) => void;
+    flowtexPart?: (digest: string, text: string) => void;
   }
 }
 
 window.flowtexScene = (name, scene) => scenes.get(name)?.(scene);
+window.flowtexPart = (digest, text) => texts.get(digest)?.(text);
 
-/** Run the script of a scene. A script, as pages that lie in a folder may not fetch files. */
-function fetchScene(element: HTMLElement): Promise<Packed> {
-  const { scene: address = "" } = element.dataset;
+/** Run a script, which hands over what it has. A script, as pages that lie in a folder may not fetch files. */
+function handedOver<T>(address: string, takers: Map<string, (what: T) => void>): Promise<T> {
   const name = address.replace(/^.*\//, "").replace(/\.js$/, "");
-  return new Promise((resolve, reject) => {
+  const begun = underway.get(address) as Promise<T> | undefined;
+  if (begun) return begun;
+  const result = new Promise<T>((resolve, reject) => {
     const script = document.createElement("script");
-    scenes.set(name, resolve);
+    takers.set(name, resolve);
     script.src = address;
     script.onload = () => script.remove();
     script.onerror = () => reject(new Error(`${address} cannot be loaded`));
     document.head.append(script);
-  });
+  }).finally(() => underway.delete(address));
+  underway.set(address, result);
+  return result;
 }
 
-async function unpacked({ headers, parts }: Packed): Promise<SceneData[]> {
-  const known = new Map<string, NamedPart>();
+async function fetchScene({ dataset: { scene = "" } }: HTMLElement): Promise<SceneData[]> {
+  const { headers, parts } = await handedOver(scene, scenes);
+  const apart = (digest: string) => handedOver(scene.replace(/[^/]*$/, `${digest}.js`), texts);
+  const known = new Map<string, Promise<NamedPart>>();
   const result: SceneData[] = headers.map((header) => ({
     header: { ...headers[0], ...header },
     parts: [],
   }));
-  for (const [view, info, text] of parts) {
-    const part = known.get(info.digest) ?? (await partOfText(info, text));
-    known.set(info.digest, part);
-    result[view].parts.push({ ...part, name: info.name });
-  }
+  const read = async (info: PartInfo, text: string | null) => partOfText(info, text ?? (await apart(info.digest)));
+  await Promise.all(
+    parts.map(async ([view, info, text]) => {
+      const part = known.get(info.digest) ?? read(info, text);
+      known.set(info.digest, part);
+      result[view].parts.push({ ...(await part), name: info.name });
+    }),
+  );
   return result;
 }
 
@@ -92,7 +104,7 @@ class LiveView {
     this.isLoading = true;
     const { element } = this;
     try {
-      const data = await unpacked(await fetchScene(element));
+      const data = await fetchScene(element);
       if (!this.isWanted) return;
       const ground = groundAround(element);
       for (const { header } of data) header.background = ground;

@@ -11,28 +11,45 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import chain
+from pathlib import Path
 from typing import Any
 
 from flowtex.rendering.webgl.protocol import part_info, part_text
 from flowtex.web.export import different, json_text, page_data
 from flowtex.web.view import WebView
 
-__all__ = ["scene_script"]
+__all__ = ["write_scene"]
+
+#: Letters from which on a part has a script of its own, which scenes of the same flow share.
+LETTERS_APART = 50_000
 
 
-def scene_script(
+def write_scene(
+    folder: Path,
     name: str,
     views: Sequence[WebView],
     *,
     camera: dict[str, Any] | None = None,
     time: float | None = None,
     clock: float = 0.0,
-) -> Iterator[str]:
-    """Give the script of a view, or of two beside each other, piece by piece.
+) -> None:
+    """Write the script of a view, or of two beside each other, as ``name.js`` into a folder.
 
-    ``name`` is that of its file without ``.js``. Camera, time and clock are those of
-    :meth:`ClientData.header`.
+    Its large parts become scripts beside it, called by their digests. Camera, time and clock are
+    those of :meth:`ClientData.header`.
     """
+    with (folder / f"{name}.js").open("w", encoding="utf-8", newline="\n") as file:
+        file.writelines(_script(folder, name, views, camera, time, clock))
+
+
+def _script(
+    folder: Path,
+    name: str,
+    views: Sequence[WebView],
+    camera: dict[str, Any] | None,
+    time: float | None,
+    clock: float,
+) -> Iterator[str]:
     scenes = page_data(views)
     headers = [
         scene.header(view.scene.settings, camera=camera, time=time, clock=clock)
@@ -50,5 +67,11 @@ def scene_script(
             info = part_info(part, array)
             text = "" if info["digest"] in written else part_text(array)
             written.add(info["digest"])
-            yield f'[{n}, {json_text(info)}, "{text}"],\n'
+            if len(text) > LETTERS_APART:
+                digest = json_text(info["digest"])
+                apart = folder / f"{info['digest']}.js"
+                apart.write_text(f'flowtexPart({digest}, "{text}")\n', encoding="utf-8")
+                yield f"[{n}, {json_text(info)}, null],\n"
+            else:
+                yield f'[{n}, {json_text(info)}, "{text}"],\n'
     yield "]})\n"

@@ -83,8 +83,8 @@ row2,column,...rest]=name.split("/");return kind==="tile"?[[level,row2,column].j
 let view=ArrayBuffer.isView(bytes)?new Uint8Array(bytes.buffer,bytes.byteOffset,bytes.byteLength):new Uint8Array(bytes),
 {name,dtype,shape,digest}=info,Type=TYPES[dtype];if(!Type)throw new Error(`a part has the type "${dtype}"; expected ${Object.
 keys(TYPES).join(", ")}`);return{name,shape,digest,data:new Type(view.slice().buffer)}}async function partOfText(info,text){let letters=atob(text),packed=new Uint8Array(letters.length);for(let n=0;n<packed.length;n+=
-1)packed[n]=letters.charCodeAt(n);let unpacked2=new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip")),
-planes=new Uint8Array(await new Response(unpacked2).arrayBuffer()),count=info.shape.reduce((product2,n)=>product2*n,1),width=count?
+1)packed[n]=letters.charCodeAt(n);let unpacked=new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip")),
+planes=new Uint8Array(await new Response(unpacked).arrayBuffer()),count=info.shape.reduce((product2,n)=>product2*n,1),width=count?
 planes.length/count:1,bytes=new Uint8Array(planes.length);for(let plane=0;plane<width;plane+=1)for(let n=0;n<count;n+=1)
 bytes[n*width+plane]=planes[plane*count+n];return decoded(info,bytes)}var NO_VALUE=-1e9;function positions(data,anchor){return anchor.some(Boolean)?data.map((x,n)=>x-anchor[n%3]):data}function grid(us,vs){
 let result2=new Float32Array(2*us.length*vs.length),n=0;for(let v2 of vs)for(let u of us)result2[n++]=u,result2[n++]=v2;
@@ -1343,30 +1343,32 @@ WHOLE,[each]]))}}}function mountPage(element,scenes2,options={}){let feeds=scene
 if(source)return sourceFeed(source,viewer);let queue=loadTile&&new TileQueue(loadTile,part=>viewer().setPart(part));return{
 onTiles:(keys,steps)=>queue?.request(keys,steps)}}),viewers=viewersIn(element,scenes2.length,options,n=>feeds[n]);return scenes2.
 forEach(({header},n)=>viewers[n].setHeader(header)),scenes2.forEach(({parts},n)=>parts.forEach(part=>viewers[n].setPart(
-part))),scenes2[0].source?.open().catch(error=>viewers[0].lack(null,error.message)),viewers[0]}var LOADED_HEIGHTS=.5,KEPT_HEIGHTS=2,EXPLAINED=".flowtex-explained",scenes=new Map;window.flowtexScene=(name,scene)=>scenes.
-get(name)?.(scene);function fetchScene(element){let{scene:address=""}=element.dataset,name=address.replace(/^.*\//,"").replace(
-/\.js$/,"");return new Promise((resolve,reject)=>{let script=document.createElement("script");scenes.set(name,resolve),script.
-src=address,script.onload=()=>script.remove(),script.onerror=()=>reject(new Error(`${address} cannot be loaded`)),document.
-head.append(script)})}async function unpacked({headers,parts}){let known=new Map,result2=headers.map(header=>({header:{...headers[0],
-...header},parts:[]}));for(let[view,info,text]of parts){let part=known.get(info.digest)??await partOfText(info,text);known.
-set(info.digest,part),result2[view].parts.push({...part,name:info.name})}return result2}function groundAround(element){for(let at=element.
-parentElement;at;at=at.parentElement){let[r,g,b,a=1]=(getComputedStyle(at).backgroundColor.match(/[\d.]+/g)??[]).map(Number);
-if(a>0)return[r/255,g/255,b/255]}return[1,1,1]}var LiveView=class{element;explanation;viewer=null;isWanted=!1;isLoading=!1;constructor(element){
+part))),scenes2[0].source?.open().catch(error=>viewers[0].lack(null,error.message)),viewers[0]}var LOADED_HEIGHTS=.5,KEPT_HEIGHTS=2,EXPLAINED=".flowtex-explained",scenes=new Map,texts=new Map,underway=new Map;window.
+flowtexScene=(name,scene)=>scenes.get(name)?.(scene);window.flowtexPart=(digest,text)=>texts.get(digest)?.(text);function handedOver(address,takers){
+let name=address.replace(/^.*\//,"").replace(/\.js$/,""),begun=underway.get(address);if(begun)return begun;let result2=new Promise(
+(resolve,reject)=>{let script=document.createElement("script");takers.set(name,resolve),script.src=address,script.onload=
+()=>script.remove(),script.onerror=()=>reject(new Error(`${address} cannot be loaded`)),document.head.append(script)}).finally(
+()=>underway.delete(address));return underway.set(address,result2),result2}async function fetchScene({dataset:{scene=""}}){
+let{headers,parts}=await handedOver(scene,scenes),apart=digest=>handedOver(scene.replace(/[^/]*$/,`${digest}.js`),texts),
+known=new Map,result2=headers.map(header=>({header:{...headers[0],...header},parts:[]})),read=async(info,text)=>partOfText(
+info,text??await apart(info.digest));return await Promise.all(parts.map(async([view,info,text])=>{let part=known.get(info.
+digest)??read(info,text);known.set(info.digest,part),result2[view].parts.push({...await part,name:info.name})})),result2}
+function groundAround(element){for(let at=element.parentElement;at;at=at.parentElement){let[r,g,b,a=1]=(getComputedStyle(
+at).backgroundColor.match(/[\d.]+/g)??[]).map(Number);if(a>0)return[r/255,g/255,b/255]}return[1,1,1]}var LiveView=class{element;explanation;viewer=null;isWanted=!1;isLoading=!1;constructor(element){
 this.element=element,this.explanation=element.closest(EXPLAINED)&&new Explanation(element);let within=heights=>({rootMargin:`${100*
 heights}% 0%`}),observe=(heights,call)=>new IntersectionObserver(([entry])=>call(entry.isIntersecting),within(heights)).
 observe(element);observe(LOADED_HEIGHTS,isNear2=>isNear2&&void this.show()),observe(KEPT_HEIGHTS,isNear2=>isNear2||this.
-leave())}async show(){if(this.isWanted=!0,this.viewer||this.isLoading)return;this.isLoading=!0;let{element}=this;try{let data=await unpacked(
-await fetchScene(element));if(!this.isWanted)return;let ground=groundAround(element);for(let{header}of data)header.background=
-ground;let{explanation}=this,options={guarded:!0,label:element.dataset.label,...explanation?.options};this.viewer=mountPage(
-element,data,options),explanation?.attach(this.viewer),this.watch()}catch(error){element.title=`This view is a picture o\
-nly: ${error instanceof Error?error.message:error}`}finally{this.isLoading=!1}}watch(){let{element}=this,look=()=>{if(element.
-querySelector('[data-sharp="false"]'))return;seen.disconnect(),element.dataset.live="true";let isCalm=matchMedia("(prefe\
-rs-reduced-motion: reduce)").matches;"plays"in element.dataset&&!isCalm&&this.viewer?.play()},seen=new MutationObserver(
-look);seen.observe(element,{subtree:!0,attributeFilter:["data-sharp"]})}leave(){if(this.isWanted=!1,!!this.viewer){for(let viewer of this.
-viewer.together)viewer.dispose();this.viewer=null,delete this.element.dataset.live,this.element.querySelector(".flowtex-\
-pair")?.remove()}}recolour(){let background=groundAround(this.element);for(let viewer of this.viewer?.together??[])viewer.
-recolour({background})}};function begin(){let elements=document.querySelectorAll(".flowtex-live"),views=Array.from(elements,
-element=>new LiveView(element)),recolour=()=>views.forEach(view=>view.recolour()),attributeFilter=["data-theme","class"];
-new MutationObserver(recolour).observe(document.documentElement,{attributeFilter}),matchMedia("(prefers-color-scheme: da\
-rk)").addEventListener("change",recolour)}document.readyState==="loading"?document.addEventListener("DOMContentLoaded",begin):
-begin();})();
+leave())}async show(){if(this.isWanted=!0,this.viewer||this.isLoading)return;this.isLoading=!0;let{element}=this;try{let data=await fetchScene(
+element);if(!this.isWanted)return;let ground=groundAround(element);for(let{header}of data)header.background=ground;let{explanation}=this,
+options={guarded:!0,label:element.dataset.label,...explanation?.options};this.viewer=mountPage(element,data,options),explanation?.
+attach(this.viewer),this.watch()}catch(error){element.title=`This view is a picture only: ${error instanceof Error?error.
+message:error}`}finally{this.isLoading=!1}}watch(){let{element}=this,look=()=>{if(element.querySelector('[data-sharp="fa\
+lse"]'))return;seen.disconnect(),element.dataset.live="true";let isCalm=matchMedia("(prefers-reduced-motion: reduce)").matches;
+"plays"in element.dataset&&!isCalm&&this.viewer?.play()},seen=new MutationObserver(look);seen.observe(element,{subtree:!0,
+attributeFilter:["data-sharp"]})}leave(){if(this.isWanted=!1,!!this.viewer){for(let viewer of this.viewer.together)viewer.
+dispose();this.viewer=null,delete this.element.dataset.live,this.element.querySelector(".flowtex-pair")?.remove()}}recolour(){
+let background=groundAround(this.element);for(let viewer of this.viewer?.together??[])viewer.recolour({background})}};function begin(){
+let elements=document.querySelectorAll(".flowtex-live"),views=Array.from(elements,element=>new LiveView(element)),recolour=()=>views.
+forEach(view=>view.recolour()),attributeFilter=["data-theme","class"];new MutationObserver(recolour).observe(document.documentElement,
+{attributeFilter}),matchMedia("(prefers-color-scheme: dark)").addEventListener("change",recolour)}document.readyState===
+"loading"?document.addEventListener("DOMContentLoaded",begin):begin();})();

@@ -11,7 +11,7 @@ from flows import gyre
 
 from flowtex.options import Options
 from flowtex.web.assets import asset
-from flowtex.web.embed import scene_script
+from flowtex.web.embed import write_scene
 from flowtex.web.view import web_views
 
 if TYPE_CHECKING:
@@ -27,8 +27,9 @@ PAGE = """<!doctype html><html lang="en"><meta charset="utf-8"><title>gyre</titl
 
 def test_a_pixel_is_explained_without_a_server(webgl_browser: Browser, tmp_path: Path) -> None:
     views = web_views(gyre(), Options.split(samples=5, grain=8.0, spacing=1.0, scalars=False))
-    with (tmp_path / "gyre.js").open("w", encoding="utf-8", newline="\n") as file:
-        file.writelines(scene_script("gyre", views))
+    write_scene(tmp_path, "gyre", views)
+    # The slices are large enough to lie apart.
+    assert len(list(tmp_path.glob("*.js"))) > 1
     (tmp_path / "live.js").write_bytes(asset("live.js").read_bytes())
     (tmp_path / "page.html").write_text(PAGE, encoding="utf-8")
     page = webgl_browser.new_page(viewport={"width": 420, "height": 700})

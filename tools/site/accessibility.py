@@ -25,7 +25,9 @@ EXCUSED = {
     "label-content-name-mismatch": {"search-button": "the theme's button, with its keys beside"},
 }
 #: Milliseconds after which the theme has made what scrolls at another width focusable.
-SETTLED_MS = 600
+SETTLED_MS = 400
+#: Colours are those of a theme at once.
+STILL = "* { transition: none !important; animation: none !important; }"
 #: Lines of the console that are no fault of a page: of drivers, and of the theme's first visit.
 HARMLESS = ("GL Driver Message", "Automatic fallback to software", "Got invalid theme mode")
 
@@ -78,6 +80,7 @@ def look(page: Page, address: str) -> dict[str, list[str]]:
     page.on("console", lambda line: line.type == "error" and said.append(f"error: {line.text}"))
     page.goto(address)
     page.add_script_tag(path=AXE)
+    page.add_style_tag(content=STILL)
     for width in WIDTHS:
         page.set_viewport_size({"width": width, "height": 900})
         page.wait_for_timeout(SETTLED_MS)
