@@ -15,6 +15,9 @@ import { clamp, scale, subtract, toFrame } from "./vectors.ts";
 const MOVING_MS = 55;
 const MOVING_LEAST_MS = 14;
 const STRIP_MS = 40;
+/** As many times more or fewer triangles, beside those that cost nothing, take another time. */
+const ALIKE = 1.3;
+const FEW_TRIANGLES = 50_000;
 /** Rows that are drawn with smooth outlines at a time. */
 const SMOOTH_ROWS = 256;
 
@@ -74,8 +77,9 @@ export class ProgressiveRenderer {
   /** What is drawn of it, and whether there is more by now. */
   private layers: Scene[] = [];
   private isRefined = false;
-  /** Milliseconds that each drawing takes, however few its pixels. */
+  /** Milliseconds that each drawing takes, however few its pixels, and the triangles that it has. */
   private fixed = 4;
+  private triangles = 0;
   /** Number of full pictures. */
   frames = 0;
 
@@ -171,7 +175,11 @@ export class ProgressiveRenderer {
     const { smooth, settings } = this.viewer;
     const samples = Number(settings.samples);
     if (this.rowsDone >= height) this.rowsDone = 0;
-    if (this.rowsDone === 0) this.arrange(shown);
+    if (this.rowsDone === 0) {
+      this.arrange(shown);
+      // What is on its way to the graphics card is waited for, or each tile would cost a picture.
+      if (this.isRefined) return false;
+    }
     this.warm(program, shown);
     const price = program.price * this.factor(samples);
     const most = Math.min(height - this.rowsDone, smooth ? SMOOTH_ROWS : height);
@@ -256,15 +264,21 @@ export class ProgressiveRenderer {
     program.price = learnedPrice(program.price, spent, this.fixed, pixels, samples, factor);
   }
 
-  /** The first drawing is slow by itself, and what it costs with hardly a pixel is paid by each. */
+  /**
+   * The first drawing is slow by itself, and what it costs with hardly a pixel is paid by each. That is
+   * measured anew where there are other triangles: of many, strips of few rows would take minutes.
+   */
   private warm(program: Program, shown: Moment): void {
-    if (program.warm) return;
+    const triangles = this.layers.reduce((sum, layer) => sum + layer.triangles, 0);
+    const share = (triangles + FEW_TRIANGLES) / (this.triangles + FEW_TRIANGLES);
+    if (program.warm && share < ALIKE && share > 1 / ALIKE) return;
     const { width, height } = this.canvas;
     const region = { width, height, top: 0, rows: 1 };
-    this.render(program, shown, region, 1);
+    if (!program.warm) this.render(program, shown, region, 1);
+    this.triangles = triangles;
     const started = performance.now();
     this.render(program, shown, region, 1);
-    this.fixed = clamp(performance.now() - started, 0.5, 200);
+    this.fixed = clamp(performance.now() - started, 0.5, 500);
     program.warm = true;
   }
 

@@ -10,8 +10,9 @@ const DRAFT_SAMPLES = 9;
 const COARSEST_SCALE = 0.2;
 /** Greatest distance of two samples in a draft, in grains. */
 const DRAFT_SPACING = 1.4;
-/** Least rows in a strip. */
+/** Least rows in a strip, and its longest time beside what each drawing takes. */
 const FEWEST_ROWS = 4;
+const LONGEST_STRIP_MS = 150;
 /** Price of a sample of a pixel, in milliseconds: at first, and below which a graphics card draws. */
 export const FIRST_PRICE_MS = 4e-5;
 export const CARD_PRICE_MS = 2e-6;
@@ -35,7 +36,10 @@ export function quality(
   return { scale: 1, samples: clamp(Math.floor(room / pixels - PIXEL_COST), fewer, samples) };
 }
 
-/** Rows of the full picture that can be drawn in a time. */
+/**
+ * Rows of the full picture that can be drawn in a time; where a drawing takes long however few they are,
+ * so many that most of the time is theirs.
+ */
 export function rowsIn(
   budget: number,
   price: number,
@@ -44,7 +48,8 @@ export function rowsIn(
   samples: number,
 ): number {
   const row = price * width * (samples + PIXEL_COST);
-  return Math.max(Math.floor(Math.max(budget - fixed, fixed) / row), FEWEST_ROWS);
+  const worthIt = Math.max(Math.min(3 * fixed, LONGEST_STRIP_MS), fixed);
+  return Math.max(Math.floor(Math.max(budget - fixed, worthIt) / row), FEWEST_ROWS);
 }
 
 /** As many times more a sample costs while grains move, as twice the samples are taken. */

@@ -401,6 +401,11 @@ export class Scene {
     gl.activeTexture(gl.TEXTURE0 + SAMPLERS.length);
   }
 
+  /** Number of the triangles that are drawn. */
+  get triangles(): number {
+    return (this.resources.get("index")?.count ?? 0) / 3;
+  }
+
   /** Draw all cells with a program that is in use. */
   draw(before: number, after: number, anchor: Vector, textures: boolean): void {
     const gl = this.graphics.context;

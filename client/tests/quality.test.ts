@@ -30,6 +30,10 @@ test("strips have as many rows as there is time for, and a few at least", () => 
   const rows = rowsIn(40, 1e-5, 4, 1000, 49);
   assert.ok(rows * 1000 * (49 + 8) * 1e-5 <= 36);
   assert.equal(rowsIn(40, 1, 4, 1000, 49), 4);
+  // With many triangles most of the time is spent on rows, none of which waits much longer.
+  const time = (fixed: number) => rowsIn(40, 1e-5, fixed, 1000, 49) * 1000 * (49 + 8) * 1e-5;
+  assert.ok(time(40) > 119 && time(40) <= 120);
+  assert.ok(time(100) <= 150 && time(300) > 299);
 });
 
 test("slower is believed at once, faster by and by", () => {

@@ -179,17 +179,17 @@ parallel_scale:tangent(state.view_angle);if([right.map(c=>c/half/aspect),up.map(
 depth+radius,.001*radius),near=Math.max(depth-radius,.001*far),a=(far+near)/(far-near),b=-2*far*near/(far-near);for(let n=0;n<
 3;n+=1)m[4*n+2]=ahead[n]*a,m[4*n+3]=ahead[n];return m[15]=-dot2(ahead,eye),m[14]=m[15]*a+b,m}function atPixel(matrix,[x,
 y],[width,height]){let m=[...matrix];for(let n=0;n<4;n+=1)m[4*n]=(m[4*n]-x*m[4*n+3])*width,m[4*n+1]=(m[4*n+1]-y*m[4*n+3])*
-height;return m}var PIXEL_COST=8,DRAFT_SAMPLES=9,COARSEST_SCALE=.2,DRAFT_SPACING=1.4,FEWEST_ROWS=4,FIRST_PRICE_MS=4e-5,CARD_PRICE_MS=2e-6;
-function quality(price,fixed,pixels,samples,budget){let room=Math.max(budget-fixed,2)/price;if(pixels*(samples+PIXEL_COST)<=
-room)return{scale:1,samples};let fewer=Math.min(DRAFT_SAMPLES,samples),scale3=Math.sqrt(room/(fewer+PIXEL_COST)/pixels);
-return scale3<1?{scale:Math.max(scale3,COARSEST_SCALE),samples:fewer}:{scale:1,samples:clamp(Math.floor(room/pixels-PIXEL_COST),
-fewer,samples)}}function rowsIn(budget,price,fixed,width,samples){let row=price*width*(samples+PIXEL_COST);return Math.max(
-Math.floor(Math.max(budget-fixed,fixed)/row),FEWEST_ROWS)}function motionFactor(samples){return(2*samples+PIXEL_COST)/(samples+
-PIXEL_COST)}function learnedPrice(price,spent,fixed,pixels,samples,factor){let latest=Math.max(spent-fixed,.05)/(pixels*
-(samples+PIXEL_COST)*factor);return price+(latest-price)*(latest>price?.7:.3)}function draftUniforms(settings,samples,density){
-let[grain,spacing,all]=[settings.grain,settings.spacing,settings.samples].map(Number),drawn=Math.max(grain*density,Math.
-min(grain,1)),stretched=all*spacing*grain*density/(samples*drawn);return{u_grain:drawn,u_spacing:clamp(stretched,.1,Math.
-max(DRAFT_SPACING,spacing))}}var PREAMBLE=`#version 300 es
+height;return m}var PIXEL_COST=8,DRAFT_SAMPLES=9,COARSEST_SCALE=.2,DRAFT_SPACING=1.4,FEWEST_ROWS=4,LONGEST_STRIP_MS=150,FIRST_PRICE_MS=4e-5,
+CARD_PRICE_MS=2e-6;function quality(price,fixed,pixels,samples,budget){let room=Math.max(budget-fixed,2)/price;if(pixels*
+(samples+PIXEL_COST)<=room)return{scale:1,samples};let fewer=Math.min(DRAFT_SAMPLES,samples),scale3=Math.sqrt(room/(fewer+
+PIXEL_COST)/pixels);return scale3<1?{scale:Math.max(scale3,COARSEST_SCALE),samples:fewer}:{scale:1,samples:clamp(Math.floor(
+room/pixels-PIXEL_COST),fewer,samples)}}function rowsIn(budget,price,fixed,width,samples){let row=price*width*(samples+PIXEL_COST),
+worthIt=Math.max(Math.min(3*fixed,LONGEST_STRIP_MS),fixed);return Math.max(Math.floor(Math.max(budget-fixed,worthIt)/row),
+FEWEST_ROWS)}function motionFactor(samples){return(2*samples+PIXEL_COST)/(samples+PIXEL_COST)}function learnedPrice(price,spent,fixed,pixels,samples,factor){
+let latest=Math.max(spent-fixed,.05)/(pixels*(samples+PIXEL_COST)*factor);return price+(latest-price)*(latest>price?.7:.3)}
+function draftUniforms(settings,samples,density){let[grain,spacing,all]=[settings.grain,settings.spacing,settings.samples].
+map(Number),drawn=Math.max(grain*density,Math.min(grain,1)),stretched=all*spacing*grain*density/(samples*drawn);return{u_grain:drawn,
+u_spacing:clamp(stretched,.1,Math.max(DRAFT_SPACING,spacing))}}var PREAMBLE=`#version 300 es
 precision highp float;
 precision highp int;
 `,ATTRIBUTES=["flowtexPosition","flowtexCoordinate","flowtexNormal","flowtexNoise","flowtexScalar","flowtexCorners"],SAMPLERS=[
@@ -909,11 +909,11 @@ m[1],m[4],m[5],m[12],m[13]]),matrix=product(toPixels(now),inverse(toPixels(befor
 if(!(area>LEAST_GROWTH**2&&area<GREATEST_GROWTH**2))return null;let[a,b,c,d,e,f]=inverse(matrix),isInside=([x,y])=>Math.
 abs((a*x+c*y+e)/w-1)<1+ROUNDING&&Math.abs((b*x+d*y+f)/h-1)<1+ROUNDING,covers=[[0,0],[width,0],[0,height],[width,height]].
 every(isInside),[xx,xy,yx,yy]=matrix,shifts=Math.abs(xx-1)+Math.abs(yy-1)+Math.abs(xy)+Math.abs(yx)<ROUNDING;if(shifts)for(let n of[
-4,5])matrix[n]=Math.round(matrix[n]);return{matrix,covers,shifts}}var MOVING_MS=55,MOVING_LEAST_MS=14,STRIP_MS=40,SMOOTH_ROWS=256,penOf=canvas=>canvas.getContext("2d",{alpha:!1}),ProgressiveRenderer=class{viewer;graphics;canvas;pen;back=document.
-createElement("canvas");backPen=penOf(this.back);last=document.createElement("canvas");lastPen=penOf(this.last);lastCamera=null;coarse=document.
-createElement("canvas");coarsePen=penOf(this.coarse);front=document.createElement("canvas");frontPen=this.front.getContext(
-"2d");frontLook="";version=1;draftVersion=0;rowsDone=0;layers=[];isRefined=!1;fixed=4;frames=0;constructor(viewer){this.
-viewer=viewer,this.graphics=viewer.graphics,this.canvas=viewer.canvas,this.pen=penOf(this.canvas)}restart(cameraOnly=!1){
+4,5])matrix[n]=Math.round(matrix[n]);return{matrix,covers,shifts}}var MOVING_MS=55,MOVING_LEAST_MS=14,STRIP_MS=40,ALIKE=1.3,FEW_TRIANGLES=5e4,SMOOTH_ROWS=256,penOf=canvas=>canvas.getContext(
+"2d",{alpha:!1}),ProgressiveRenderer=class{viewer;graphics;canvas;pen;back=document.createElement("canvas");backPen=penOf(
+this.back);last=document.createElement("canvas");lastPen=penOf(this.last);lastCamera=null;coarse=document.createElement(
+"canvas");coarsePen=penOf(this.coarse);front=document.createElement("canvas");frontPen=this.front.getContext("2d");frontLook="";version=1;draftVersion=0;rowsDone=0;layers=[];isRefined=!1;fixed=4;triangles=0;frames=0;constructor(viewer){
+this.viewer=viewer,this.graphics=viewer.graphics,this.canvas=viewer.canvas,this.pen=penOf(this.canvas)}restart(cameraOnly=!1){
 cameraOnly||(this.lastCamera=null),this.version+=1,this.rowsDone=0}refine(){this.rowsDone>=this.canvas.height?this.rowsDone=
 0:this.isRefined=!0}resize(width,height){let{canvas,back,last}=this;back.width=canvas.width,back.height=canvas.height,this.
 backPen?.drawImage(canvas,0,0),canvas.width=last.width=width,canvas.height=last.height=height,back.width>1&&this.pen?.drawImage(
@@ -929,46 +929,48 @@ width:w,height:h,top:0,rows:h};this.timed(program,region,best.samples,()=>{this.
 this.copy(this.pen,region,height,0)})}reuse&&this.pen&&(this.pen.imageSmoothingEnabled=!reuse.shifts,this.pen.setTransform(
 ...reuse.matrix),this.pen.drawImage(this.last,0,0),this.pen.setTransform(1,0,0,1,0,0));let isWhole=best.scale===1&&best.
 samples===samples&&!this.viewer.smooth;return isWhole&&this.complete(),this.drawLines(shown),isWhole&&!this.isRefined}strip(program,shown){
-let{width,height}=this.canvas,{smooth,settings}=this.viewer,samples=Number(settings.samples);this.rowsDone>=height&&(this.
-rowsDone=0),this.rowsDone===0&&this.arrange(shown),this.warm(program,shown);let price=program.price*this.factor(samples),
-most=Math.min(height-this.rowsDone,smooth?SMOOTH_ROWS:height),rows=Math.min(rowsIn(STRIP_MS,price,this.fixed,width,samples),
-most),region={width,height,top:this.rowsDone,rows};return this.timed(program,region,samples,()=>{this.render(program,shown,
-region,samples,smooth);let drawn=smooth?{...region,height:rows,top:0}:region;this.copy(this.backPen,drawn,drawn.height,this.
-rowsDone)}),this.rowsDone+=rows,this.rowsDone<height?!1:(this.pen?.drawImage(this.back,0,0),this.complete(),this.drawLines(
-shown),!0)}drawLines(shown){let{front,frontPen,graphics}=this,{scene,camera,ratio}=this.viewer,{width,height}=this.canvas;
-if(!scene?.earth.lines.length||!camera||!frontPen)return;let{earth}=scene,{state,aspect}=camera,look=JSON.stringify([state,
-aspect,width,height,earth.lines,earth.version]);if(look!==this.frontLook){let{anchor}=this.viewer.view(shown,ratio),{canvas}=graphics;
-canvas.width<width&&(canvas.width=width),canvas.height<height&&(canvas.height=height),front.width=width,front.height=height,
-earth.drawLines({camera,anchor,width,height,ratio},()=>{let top=canvas.height-height;frontPen.drawImage(canvas,0,top,width,
-height,0,0,width,height)}),this.frontLook=look}this.pen?.drawImage(front,0,0)}complete(){let{camera,player}=this.viewer;
-this.rowsDone=this.canvas.height,this.frames+=1,this.draftVersion=this.version,this.lastPen?.drawImage(this.canvas,0,0),
-camera&&!player.playing&&(this.lastCamera=new Camera(camera.state,camera.limits,camera.flat,camera.aspect))}reuse(){let{
-lastCamera}=this,{scene,camera}=this.viewer;if(!scene?.header.geometry.planar||!camera||!lastCamera||!camera.state.parallel||
-!lastCamera.state.parallel)return null;let{geometry}=scene.header,focus=subtract2(camera.state.focal_point,geometry.center),
-anchor=toFrame(geometry.frame,focus),[before,now]=[lastCamera,camera].map(view=>projection(geometry,view,anchor));return reused(
-before,now,this.canvas.width,this.canvas.height)}factor(samples){let{settings,player}=this.viewer;return settings.motion!==
-"off"||player.varies?motionFactor(samples):1}timed(program,region,samples,draw){let started=performance.now();draw();let spent=performance.
-now()-started,pixels=region.width*region.rows,factor=this.factor(samples);program.price=learnedPrice(program.price,spent,
-this.fixed,pixels,samples,factor)}warm(program,shown){if(program.warm)return;let{width,height}=this.canvas,region={width,
-height,top:0,rows:1};this.render(program,shown,region,1);let started=performance.now();this.render(program,shown,region,
-1),this.fixed=clamp(performance.now()-started,.5,200),program.warm=!0}render(program,shown,region,samples,smooth=!1){let{
-graphics,viewer}=this,{camera,scene}=viewer;if(!camera||!scene)return;let gl=graphics.context,{width,height,top,rows}=region,
-view=viewer.view(shown,viewer.ratio*height/this.canvas.height),{canvas}=graphics;canvas.width<width&&(canvas.width=width),
-canvas.height<height&&(canvas.height=height);let bottom=height-top-rows;smooth?graphics.bindSmooth(width,rows):gl.bindFramebuffer(
-gl.FRAMEBUFFER,null),gl.viewport(0,smooth?-bottom:0,width,height),gl.enable(gl.SCISSOR_TEST),gl.scissor(0,smooth?0:bottom,
-width,rows),gl.enable(gl.DEPTH_TEST),gl.depthFunc(gl.LESS),gl.disable(gl.BLEND),gl.disable(gl.CULL_FACE);let[r,g,b]=scene.
-header.background;gl.clearColor(r,g,b,1),gl.clear(gl.COLOR_BUFFER_BIT|gl.DEPTH_BUFFER_BIT);let draft=samples!==viewer.settings.
-samples||height!==this.canvas.height,around2={camera,anchor:view.anchor,width,height,ratio:viewer.ratio};scene.earth.drawGround(
-around2);for(let layer of this.layers)graphics.programs.use(program,this.values(layer,camera,view,samples,draft)),layer.
-draw(shown[0],shown[1],view.anchor,!0);smooth&&graphics.copySmooth(width,rows),gl.readPixels(0,0,1,1,gl.RGBA,gl.UNSIGNED_BYTE,
-new Uint8Array(4))}values({header,parts},camera,view,samples,draft){let{settings}=this.viewer,noise=parts.get("noise")?.
-shape??null;return{...uniforms(header,{...settings,samples},view,noise),...draft?draftUniforms(settings,samples,view.density):
-{},u_matrix:projection(header.geometry,camera,view.anchor),u_mapped:header.scalars.name!==null,u_colour:header.colour,u_lit:header.
-lighting,u_ground:header.background,u_opacity:header.opacity,u_toEye:toFrame(header.geometry.frame,scale2(camera.axes[2],
--1))}}copy(pen,region,height,to){if(!pen)return;let{width:w,height:h,top,rows}=region,{width}=this.canvas,{canvas}=this.
-graphics,first=canvas.height-h+top;if(pen.imageSmoothingEnabled=w!==width||h!==height,pen.imageSmoothingEnabled){let{coarse,
-coarsePen}=this;coarse.width=w,coarse.height=rows,coarsePen?.drawImage(canvas,0,first,w,rows,0,0,w,rows),[canvas,first]=
-[coarse,0]}pen.drawImage(canvas,0,first,w,rows,0,to,width,rows*height/h)}};var PLACE2=5;function blocksOf(nodes,size){let count=Math.max(Math.ceil((nodes-1)/size),1);return Array.from({length:count},
+let{width,height}=this.canvas,{smooth,settings}=this.viewer,samples=Number(settings.samples);if(this.rowsDone>=height&&(this.
+rowsDone=0),this.rowsDone===0&&(this.arrange(shown),this.isRefined))return!1;this.warm(program,shown);let price=program.
+price*this.factor(samples),most=Math.min(height-this.rowsDone,smooth?SMOOTH_ROWS:height),rows=Math.min(rowsIn(STRIP_MS,price,
+this.fixed,width,samples),most),region={width,height,top:this.rowsDone,rows};return this.timed(program,region,samples,()=>{
+this.render(program,shown,region,samples,smooth);let drawn=smooth?{...region,height:rows,top:0}:region;this.copy(this.backPen,
+drawn,drawn.height,this.rowsDone)}),this.rowsDone+=rows,this.rowsDone<height?!1:(this.pen?.drawImage(this.back,0,0),this.
+complete(),this.drawLines(shown),!0)}drawLines(shown){let{front,frontPen,graphics}=this,{scene,camera,ratio}=this.viewer,
+{width,height}=this.canvas;if(!scene?.earth.lines.length||!camera||!frontPen)return;let{earth}=scene,{state,aspect}=camera,
+look=JSON.stringify([state,aspect,width,height,earth.lines,earth.version]);if(look!==this.frontLook){let{anchor}=this.viewer.
+view(shown,ratio),{canvas}=graphics;canvas.width<width&&(canvas.width=width),canvas.height<height&&(canvas.height=height),
+front.width=width,front.height=height,earth.drawLines({camera,anchor,width,height,ratio},()=>{let top=canvas.height-height;
+frontPen.drawImage(canvas,0,top,width,height,0,0,width,height)}),this.frontLook=look}this.pen?.drawImage(front,0,0)}complete(){
+let{camera,player}=this.viewer;this.rowsDone=this.canvas.height,this.frames+=1,this.draftVersion=this.version,this.lastPen?.
+drawImage(this.canvas,0,0),camera&&!player.playing&&(this.lastCamera=new Camera(camera.state,camera.limits,camera.flat,camera.
+aspect))}reuse(){let{lastCamera}=this,{scene,camera}=this.viewer;if(!scene?.header.geometry.planar||!camera||!lastCamera||
+!camera.state.parallel||!lastCamera.state.parallel)return null;let{geometry}=scene.header,focus=subtract2(camera.state.focal_point,
+geometry.center),anchor=toFrame(geometry.frame,focus),[before,now]=[lastCamera,camera].map(view=>projection(geometry,view,
+anchor));return reused(before,now,this.canvas.width,this.canvas.height)}factor(samples){let{settings,player}=this.viewer;
+return settings.motion!=="off"||player.varies?motionFactor(samples):1}timed(program,region,samples,draw){let started=performance.
+now();draw();let spent=performance.now()-started,pixels=region.width*region.rows,factor=this.factor(samples);program.price=
+learnedPrice(program.price,spent,this.fixed,pixels,samples,factor)}warm(program,shown){let triangles=this.layers.reduce(
+(sum,layer)=>sum+layer.triangles,0),share=(triangles+FEW_TRIANGLES)/(this.triangles+FEW_TRIANGLES);if(program.warm&&share<
+ALIKE&&share>1/ALIKE)return;let{width,height}=this.canvas,region={width,height,top:0,rows:1};program.warm||this.render(program,
+shown,region,1),this.triangles=triangles;let started=performance.now();this.render(program,shown,region,1),this.fixed=clamp(
+performance.now()-started,.5,500),program.warm=!0}render(program,shown,region,samples,smooth=!1){let{graphics,viewer}=this,
+{camera,scene}=viewer;if(!camera||!scene)return;let gl=graphics.context,{width,height,top,rows}=region,view=viewer.view(
+shown,viewer.ratio*height/this.canvas.height),{canvas}=graphics;canvas.width<width&&(canvas.width=width),canvas.height<height&&
+(canvas.height=height);let bottom=height-top-rows;smooth?graphics.bindSmooth(width,rows):gl.bindFramebuffer(gl.FRAMEBUFFER,
+null),gl.viewport(0,smooth?-bottom:0,width,height),gl.enable(gl.SCISSOR_TEST),gl.scissor(0,smooth?0:bottom,width,rows),gl.
+enable(gl.DEPTH_TEST),gl.depthFunc(gl.LESS),gl.disable(gl.BLEND),gl.disable(gl.CULL_FACE);let[r,g,b]=scene.header.background;
+gl.clearColor(r,g,b,1),gl.clear(gl.COLOR_BUFFER_BIT|gl.DEPTH_BUFFER_BIT);let draft=samples!==viewer.settings.samples||height!==
+this.canvas.height,around2={camera,anchor:view.anchor,width,height,ratio:viewer.ratio};scene.earth.drawGround(around2);for(let layer of this.
+layers)graphics.programs.use(program,this.values(layer,camera,view,samples,draft)),layer.draw(shown[0],shown[1],view.anchor,
+!0);smooth&&graphics.copySmooth(width,rows),gl.readPixels(0,0,1,1,gl.RGBA,gl.UNSIGNED_BYTE,new Uint8Array(4))}values({header,
+parts},camera,view,samples,draft){let{settings}=this.viewer,noise=parts.get("noise")?.shape??null;return{...uniforms(header,
+{...settings,samples},view,noise),...draft?draftUniforms(settings,samples,view.density):{},u_matrix:projection(header.geometry,
+camera,view.anchor),u_mapped:header.scalars.name!==null,u_colour:header.colour,u_lit:header.lighting,u_ground:header.background,
+u_opacity:header.opacity,u_toEye:toFrame(header.geometry.frame,scale2(camera.axes[2],-1))}}copy(pen,region,height,to){if(!pen)
+return;let{width:w,height:h,top,rows}=region,{width}=this.canvas,{canvas}=this.graphics,first=canvas.height-h+top;if(pen.
+imageSmoothingEnabled=w!==width||h!==height,pen.imageSmoothingEnabled){let{coarse,coarsePen}=this;coarse.width=w,coarse.
+height=rows,coarsePen?.drawImage(canvas,0,first,w,rows,0,0,w,rows),[canvas,first]=[coarse,0]}pen.drawImage(canvas,0,first,
+w,rows,0,to,width,rows*height/h)}};var PLACE2=5;function blocksOf(nodes,size){let count=Math.max(Math.ceil((nodes-1)/size),1);return Array.from({length:count},
 (_,n)=>({first:n*size,cells:Math.min(nodes-1-n*size,size)}))}var MeshLevels=class{mesh;limits;rows;columns;constructor(mesh,limits){
 this.mesh=mesh,this.limits=limits,this.rows=blocksOf(mesh.shape[0],limits.tileCells),this.columns=blocksOf(mesh.shape[1],
 limits.tileCells)}get shape(){return[this.rows.length,this.columns.length]}levels({eye,halfHeight,pixels}){let{limits}=this,
@@ -1095,9 +1097,9 @@ let next=after+1<this.header.slices.steps?after+1:0;for(let name of[...this.reso
 {paper}=this.header,repeat=paper?.repeat??[!1,!1];[this.slices(before),after===before?null:this.slices(after),paper&&this.
 image("noise",paper.picture?[!0,!0]:repeat),paper&&this.image("step",repeat),this.colourMap()].forEach((texture,n)=>{gl.
 activeTexture(gl.TEXTURE0+n),gl.bindTexture(n<4?gl.TEXTURE_2D_ARRAY:gl.TEXTURE_2D,texture)}),gl.activeTexture(gl.TEXTURE0+
-SAMPLERS.length)}draw(before,after,anchor,textures){let gl=this.graphics.context;textures&&(this.dropSlices(before,after),
-this.bindTextures(before,after)),this.bindNodes(before,after,anchor),gl.drawElements(gl.TRIANGLES,this.resources.get("in\
-dex")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(null)}};var REQUEST_MS=60,LOST_MS=8e3,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD=4,Tiles=class{layers=[];missing=[];host;root;tiles=new Map;pyramid=null;chosen={
+SAMPLERS.length)}get triangles(){return(this.resources.get("index")?.count??0)/3}draw(before,after,anchor,textures){let gl=this.
+graphics.context;textures&&(this.dropSlices(before,after),this.bindTextures(before,after)),this.bindNodes(before,after,anchor),
+gl.drawElements(gl.TRIANGLES,this.resources.get("index")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(null)}};var REQUEST_MS=60,LOST_MS=8e3,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD=4,Tiles=class{layers=[];missing=[];host;root;tiles=new Map;pyramid=null;chosen={
 choices:new Map,steps:[],names:""};drawn="";asked={names:[],steps:[]};count=0;isWaiting=!1;isOver=!1;lastCame=0;failed=new Set;limits;constructor(host,root){
 this.host=host,this.root=root,this.limits=root.header.mesh}has(name,part){return this.tiles.get(name)?.parts.has(part)??
 !1}fail(name){this.failed.add(name),this.host.refine()}dispose(){this.isOver=!0;for(let name of[...this.tiles.keys()])this.
