@@ -199,9 +199,10 @@ class _Run:
         self.made = self.kept = 0
 
     def tell(self, **words: Any) -> None:
-        """Write more of what is told of the pyramid."""
+        """Write more of what is told of the pyramid; what workers have opened does not know it."""
         self.about = {**self.about, **words}
         self.group.attrs["flowtex"] = sealed(self.about)
+        self.name = uuid.uuid4().hex
 
     def there(self, name: str) -> set[tuple[int, ...]]:
         """Return the numbers of the shards of an array that are in the store."""
