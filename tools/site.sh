@@ -24,7 +24,7 @@ check() {
 # Pages of the reference that are no longer asked for would be found again.
 rm -rf docs/api out/site-words out/site-examples
 mkdir -p out/site-examples
-check "pages" sphinx-build -W --keep-going -q -b html -d out/site-build docs "$site"
+check "pages" sphinx-build -j auto -W --keep-going -q -b html -d out/site-build docs "$site"
 [ -e "$site/index.html" ] || fail "there is no site"
 # For who works on the theme; megabytes of them.
 find "$site" -name "*.map" -delete
