@@ -94,8 +94,11 @@ def test_fingers_that_pinch_click_nothing(flat: FlowApp) -> None:
     send("test", {"type": "StartPinch", "factor": 1, **size})
     assert places == [(-0.5, 0.0), None]
     send("test", {"type": "Pinch", "factor": 2, **size})
+    send("test", {"type": "EndPinch", "factor": 2, **size})
     click(180)
     assert len(places) == 2
+    click(180)
+    assert places[2:] == [(0.5, 0.0)]
     flat.area.reset_camera()
 
 
