@@ -32,15 +32,17 @@ diagnostics.prefer_headless()
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark the tests with a browser, and let them come last.
+    """Mark the tests with a browser, and let them come last; files with slow tests come first.
 
     Playwright's event loop runs from the first one on, and meanwhile no test could run an event
-    loop of its own.
+    loop of its own. Processes share the files in this order: a long one at the end would keep one
+    of them busy and the others idle.
     """
+    slow = {item.path for item in items if item.get_closest_marker("slow")}
     for item in items:
         if "browser" in getattr(item, "fixturenames", ()):
             item.add_marker("browser")
-    items.sort(key=lambda item: "browser" in getattr(item, "fixturenames", ()))
+    items.sort(key=lambda item: ("browser" in item.keywords, item.path not in slow))
 
 
 CHROMIUMS = ("chromium", "chromium-browser", "google-chrome")

@@ -34,7 +34,8 @@ half() {
 
 # One more than there are cores: some tests wait for processes that they start.
 workers=$("$bin/python" -c 'import os; print(min((os.cpu_count() or 1) + 1, 4))')
-half tests pytest -n "$workers" --dist loadfile -m "not browser" "$@"
+half tests pytest -n "$workers" --dist loadfile --no-loadscope-reorder -m "not browser" "$@"
 # Tests with a browser wait for what a person would see, so few of them share the machine.
-half "tests with a browser" pytest -n auto --maxprocesses 2 --dist loadfile -m browser "$@"
+half "tests with a browser" pytest -n auto --maxprocesses 2 --dist loadfile \
+    --no-loadscope-reorder -m browser "$@"
 [ -z "$failed" ] || fail "not in order: ${failed#, }"
