@@ -381,7 +381,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--size", default="16384x8192", help="nodes along both axes")
     parser.add_argument("--levels", default="all", choices=("coarse", "all"))
-    parser.add_argument("--memory", default="2GB", help="memory of a worker")
+    parser.add_argument("--memory", default="2500MB", help="memory of a worker")
     parser.add_argument("--verify", default="some", choices=("some", "all"), help="objects")
     parser.add_argument("--no-browser", dest="browser", action="store_false")
     parser.add_argument("--folder", default=None, help="where there is room on a disk")

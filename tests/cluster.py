@@ -134,7 +134,9 @@ class Cluster:
         folder.mkdir(parents=True, exist_ok=True)
         self._folder, self._memory = folder, memory
         path = os.pathsep.join([str(ROOT), str(ROOT / "tests")])
-        self._environment = {**os.environ, **environment, "PYTHONPATH": path}
+        # As a nanny sets it; these workers have none, so that the one that is killed stays so.
+        trimmed = {"MALLOC_TRIM_THRESHOLD_": "65536"}
+        self._environment = {**os.environ, **environment, **trimmed, "PYTHONPATH": path}
         told = folder / "scheduler.json"
         place = ("--host", "127.0.0.1", "--port", "0", "--scheduler-file", str(told))
         self.processes: list[subprocess.Popen[bytes]] = []

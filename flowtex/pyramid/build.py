@@ -15,7 +15,7 @@ import numpy as np
 from flowtex._util.extras import import_extra
 from flowtex._util.progress import track
 from flowtex.errors import FieldError
-from flowtex.pyramid.checks import check_about, sealed
+from flowtex.pyramid.checks import check_about, is_scalar_name, sealed
 from flowtex.pyramid.layout import (
     HALOS,
     MOST_HELD,
@@ -27,7 +27,7 @@ from flowtex.pyramid.layout import (
     has_halos,
     parts_of,
 )
-from flowtex.pyramid.places import PyramidError, place_text, store_at
+from flowtex.pyramid.places import PyramidError, place_text, plain_faults, store_at
 from flowtex.pyramid.samples import create_samples, ranges_of
 from flowtex.pyramid.source import Source, source_of
 from flowtex.pyramid.tasks import TileTask, make_finest, make_part, make_tile
@@ -36,6 +36,14 @@ from flowtex.tiles import TileKey
 from flowtex.tiles.pyramid import level_lines, level_shape
 
 __all__ = ["Built", "build"]
+
+#: So many failures one after the other end a build: the store is full, or nobody may write there.
+MOST_FAILURES = 20
+#: What a field is known again by, and how it is drawn.
+KNOWN_BY = (
+    *("format", "fingerprint", "nodes", "parameter", "lines", "depth", "tile_cells"),
+    *("periodic", "projection", "scalars", "units", "time_unit", "length_unit", "start"),
+)
 
 
 @dataclass(frozen=True)
@@ -110,8 +118,8 @@ def build(
     Raises
     ------
     FieldError
-        When the source makes no field, is one of triangles or without a sign, or the store holds
-        another one.
+        When the source makes no field, is one of triangles or without a sign, has a scalar whose
+        name is none of an array, or the store holds another one.
     PyramidError
         When tasks have failed; a second call makes what is missing.
     ValueError
@@ -126,8 +134,9 @@ def build(
     is drawn on a globe, plate carree or Mercator's map. Neither this process nor a worker then
     holds more of it than that, and lines of coordinates. Chunks of the data should not be much
     larger than a region, 512 by 1,024 nodes of a time step. Of anything else a time step has to fit
-    into the memory of this process. A task takes 1.5 GB at most; a worker of a cluster should
-    have that for each of its threads, and 0.5 GB for itself.
+    into the memory of this process. A task takes 1.5 GB at most; a worker of a cluster needs
+    that for each of its threads, and 0.5 GB for itself. Dask pauses one that has taken four fifths
+    of its memory, so it should be given 2.5 GB for one thread.
 
     Examples
     --------
@@ -143,10 +152,11 @@ def build(
     given = source_of(source, **options)
     place = place_text(store)
     about = about_source(given, parameter, given.chosen_lines(lines), levels)
-    group, about = _prepared(place, about, given)
-    run, depth = _Run(place, group, about, progress), about["depth"]
     threads = Threads(memory)
-    with closing(threads if scheduler is None else Cluster(scheduler)) as workers:
+    workers = threads if scheduler is None else Cluster(scheduler)
+    with plain_faults(), closing(workers):
+        group, about = _prepared(place, about, given)
+        run, depth = _Run(place, group, about, progress), about["depth"]
         _write_finest(run, given, workers if given.travels else threads)
         for level in range(1, depth + 1):
             parts = _missing_parts(run, level, level_shape(given.shape, level))
@@ -161,6 +171,10 @@ def build(
 
 def _prepared(place: str, about: dict[str, Any], source: Source) -> tuple[Any, dict[str, Any]]:
     """Return the group at a place and what it tells, making both where there is none."""
+    wrong = [name for name in about["scalars"] if not is_scalar_name(name)]
+    if wrong:
+        msg = f"scalar {wrong[0]!r} cannot be stored; expected a name without '/', so rename it"
+        raise FieldError(msg)
     zarr = import_extra("zarr", "store")
     group = zarr.open_group(store_at(place, read_only=False), mode="a")
     there = group.attrs.get("flowtex")
@@ -172,8 +186,7 @@ def _prepared(place: str, about: dict[str, Any], source: Source) -> tuple[Any, d
         group.attrs.update(attributes_of(about))
     else:
         there = check_about(there, place)
-        told = ("format", "fingerprint", "nodes", "parameter", "lines", "depth", "tile_cells")
-        other = [name for name in told if there.get(name) != about[name]]
+        other = [name for name in KNOWN_BY if there.get(name) != about[name]]
         if other:
             msg = (
                 f"{place} holds the pyramid of another field ({', '.join(other)} differ); remove "
@@ -199,9 +212,18 @@ class _Run:
         self.made = self.kept = 0
 
     def tell(self, **words: Any) -> None:
-        """Write more of what is told of the pyramid; what workers have opened does not know it."""
+        """Write more of what is told of the pyramid; what workers have opened does not know it.
+
+        Another builder may have begun meanwhile, with more tiles to be traced.
+        """
         self.about = {**self.about, **words}
-        self.group.attrs["flowtex"] = sealed(self.about)
+        zarr = import_extra("zarr", "store")
+        there = zarr.open_group(self.group.store, mode="r").attrs["flowtex"]
+        traced = sorted({*there["traced"], *self.about["traced"]})
+        told = {**there, **self.about, "traced": traced}
+        if traced != self.about["traced"]:
+            told["complete"] = there["complete"]
+        self.group.attrs["flowtex"] = sealed(told)
         self.name = uuid.uuid4().hex
 
     def there(self, name: str) -> set[tuple[int, ...]]:
@@ -237,18 +259,21 @@ class _Run:
         results = workers.run(
             function, [(self.place, self.name, task) for task in tasks], need, *given
         )
-        errors = [
-            error
-            for error in track(results, len(tasks), text, show=self.progress)
-            if error is not None
-        ]
-        if errors:
+        first, failed, in_a_row = None, 0, 0
+        for error in track(results, len(tasks), text, show=self.progress):
+            if error is None:
+                in_a_row = 0
+                continue
+            first, failed, in_a_row = first or error, failed + 1, in_a_row + 1
+            if in_a_row == MOST_FAILURES:
+                break
+        if first is not None:
+            what = f"{failed} of {len(tasks)}" if in_a_row < MOST_FAILURES else f"{failed} in a row"
             msg = (
-                f"{len(errors)} of {len(tasks)} shards could not be made in {self.place}; the "
-                f"first: {type(errors[0]).__name__}: {errors[0]}. Build again to make what is "
-                "missing"
+                f"{what} shards could not be made in {self.place}; the first: "
+                f"{type(first).__name__}: {first}. Build again to make what is missing"
             )
-            raise PyramidError(msg) from errors[0]
+            raise PyramidError(msg) from first
 
 
 def _write_finest(run: _Run, source: Source, workers: Threads) -> None:
@@ -290,7 +315,11 @@ def _tiles(run: _Run, level: int) -> Iterator[TileTask]:
     name = f"{level}/{TRACES}"
     there = run.there(name)
     steps, rows, columns = run.group[name].shape[:3]
-    told = np.asarray(run.group[f"{level}/{HALOS}"]) if has_halos(run.about, level) else None
+    told = None
+    if has_halos(run.about, level):
+        halos = run.group[f"{level}/{HALOS}"]
+        # There may be millions of them, of which none is asked for where there is none.
+        told = np.asarray(halos) if run.there(f"{level}/{HALOS}") else np.zeros(halos.shape)
     for row in range(rows):
         for column in range(columns):
             for first in range(0, steps, MOST_HELD):

@@ -19,12 +19,19 @@ from flowtex.pyramid.places import FORMAT, PyramidError
 from flowtex.textures import TextureSet
 from flowtex.tiles import TileKey
 
-__all__ = ["check_about", "check_header", "identity_of", "nodes_hash", "sealed"]
+__all__ = [
+    "check_about",
+    "check_header",
+    "identity_of",
+    "is_scalar_name",
+    "nodes_hash",
+    "sealed",
+]
 
 #: Nodes along an axis, steps, levels, characters of a text, and scalars, at most.
 MOST_NODES, MOST_STEPS, MOST_LEVELS, MOST_LETTERS, MOST_SCALARS = 10**7, 10**6, 40, 10_000, 1000
-#: Layers of a tile, and texels along its sides, at most.
-MOST_LAYERS, MOST_TEXELS = 64, 10_000
+#: Layers of a tile, and texels along its sides, at most; a root may be long and narrow.
+MOST_LAYERS, MOST_TEXELS = 64, 200_000
 
 Check = Callable[[Any], bool]
 
@@ -91,9 +98,9 @@ def _projection(value: Any) -> bool:
     return _text(value[0]) and _list(_number, 2)(value[1]) and _number(value[2])
 
 
-def _scalar_name(name: str) -> bool:
+def is_scalar_name(name: str) -> bool:
     """Whether a name leads nowhere but to an array of its own."""
-    return bool(name) and "/" not in name and name not in (".", "..", "c", "zarr.json")
+    return bool(name) and "/" not in name and name not in (".", "..", "zarr.json")
 
 
 _ENDS = _list(_list(_number, 2), 2)
@@ -115,7 +122,7 @@ _ABOUT: dict[str, Check] = {
     "traced": _list(_whole(0, MOST_LEVELS), 0, MOST_LEVELS + 1),
     "components": _either(2, 3),
     "height": _number,
-    "scalars": lambda v: _by_name(_whole(1, MOST_STEPS))(v) and all(map(_scalar_name, v)),
+    "scalars": lambda v: _by_name(_whole(1, MOST_STEPS))(v) and all(map(is_scalar_name, v)),
     "units": _by_name(_text),
     "long_names": _by_name(_text),
     "ranges": _or_none(_by_name(_ENDS)),

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Iterator
+from contextlib import contextmanager
 from datetime import timedelta
 from pathlib import Path
 from typing import Any
@@ -26,6 +28,7 @@ __all__ = [
     "is_store",
     "objects_at",
     "place_text",
+    "plain_faults",
     "store_at",
 ]
 
@@ -106,25 +109,29 @@ def is_remote(place: str | Path) -> bool:
     return bool(_URL.match(str(place)))
 
 
-def objects_at(place: str | Path) -> Any:
-    """Return the store of obstore's at a place, to read from; it needs no listing."""
+def objects_at(place: str | Path, *, patient: bool = False) -> Any:
+    """Return the store of obstore's at a place; to read from it, it needs no listing.
+
+    A patient one asks for minutes where the other gives up: many workers tire a server.
+    """
     text = place_text(place)
     objects = import_extra("obstore.store", "store")
     if not is_remote(text):
         return objects.LocalStore(text)
-    options = {
+    options: dict[str, Any] = {
         "client_options": {
             "allow_http": True,
             "connect_timeout": timedelta(seconds=CONNECT_S),
             "read_timeout": timedelta(seconds=SILENCE_S),
             "timeout": timedelta(seconds=LONGEST_S),
         },
-        "retry_config": {
+    }
+    if not patient:
+        options["retry_config"] = {
             "max_retries": MOST_REPEATS,
             "retry_timeout": timedelta(seconds=LONGEST_S),
             "backoff": {"init_backoff": timedelta(seconds=FIRST_PAUSE_S)},
-        },
-    }
+        }
     try:
         # Others would take the addresses of some clouds for private buckets.
         if text.lower().startswith(_WEB):
@@ -150,7 +157,7 @@ def store_at(place: str | Path, *, read_only: bool = True) -> Any:
     if text.lower().startswith(_WEB):
         msg = f"{text} can only be read; build in a folder or in object storage such as s3://"
         raise PyramidError(msg)
-    return storage.ObjectStore(import_extra("obstore.store", "store").from_url(text))
+    return storage.ObjectStore(objects_at(text, patient=True))
 
 
 def is_store(place: Any) -> bool:
@@ -214,6 +221,18 @@ def fault_words(error: Exception) -> str:
     if isinstance(error, OSError):
         return f"cannot be read ({error.strerror or kind})"
     return f"did not come ({kind})"
+
+
+@contextmanager
+def plain_faults() -> Iterator[None]:
+    """Say in plain words what object storage refuses; its own may repeat credentials."""
+    try:
+        yield
+    except Exception as error:
+        if not type(error).__module__.startswith("obstore"):
+            raise
+        msg = f"the store {fault_words(error)}"
+        raise PyramidError(msg) from None
 
 
 def _first_line(error: Exception) -> str:

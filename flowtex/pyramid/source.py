@@ -24,8 +24,8 @@ from flowtex.trace import chosen_lines, judged_lines
 
 __all__ = ["Source", "source_of"]
 
-#: Rows and columns by which a dataset is known again.
-KNOWN_BY = 16
+#: Rows and columns by which a dataset is known again, and steps of what is read when needed.
+KNOWN_BY, KNOWN_STEPS = 16, 3
 
 
 class Source(ABC):
@@ -133,10 +133,14 @@ class FieldSource(Source):
         return chosen_lines(self.field, lines)
 
     def fingerprint(self) -> str:
-        """Return a hash of the nodes and two of the steps."""
+        """Return a hash of the nodes and steps, of those that are read when needed a few."""
         field = self.field
-        ends: list[Floats] = [np.asarray(field.velocity[at]) for at in (0, -1)]
-        return digest(field.points, field.valid, field.times, *ends, words=field.scalars).hex()
+        values = [
+            np.asarray(some[step])
+            for some in (field.velocity, *field.scalars.values())
+            for step in (_few(len(some)) if isinstance(some, LazySteps) else range(len(some)))
+        ]
+        return digest(field.points, field.valid, field.times, *values, words=field.scalars).hex()
 
     @property
     def rectilinear(self) -> bool:
@@ -222,15 +226,20 @@ class RegionSource(Source):
         return chosen_lines(some, lines)
 
     def fingerprint(self) -> str:
-        """Return a hash of the lines and of a few nodes of the first and the last step."""
-        lines = self.regions.lines
+        """Return a hash of the lines and of a few nodes at a few steps."""
+        lines, times = self.regions.lines, self.field.times
         few = [np.unique(np.linspace(0, n - 1, KNOWN_BY).astype(int)) for n in self.shape]
-        last = len(self.field.times) - 1
-        ends = [self.regions.nodes(step, few[0], few[1]).velocity for step in (0, last)]
+        values = []
+        for step in _few(len(times)):
+            nodes = self.regions.nodes(step, few[0], few[1])
+            values += [nodes.velocity, *nodes.scalars.values()]
         name = "" if lines.projection is None else lines.projection.name
-        return digest(
-            lines.shown, lines.b, self.field.times, *ends, words=(name, *self.scalars)
-        ).hex()
+        return digest(lines.shown, lines.b, times, *values, words=(name, *self.scalars)).hex()
+
+
+def _few(steps: int) -> list[int]:
+    """Return the first step, the last, and some between."""
+    return sorted({*np.linspace(0, steps - 1, KNOWN_STEPS).astype(int).tolist()})
 
 
 class _Opened(FieldConstructors):

@@ -205,20 +205,21 @@ def _at_step(levels: Levels, level: int, step: int, rows: Indices, columns: Indi
     return nodes._replace(scalars=scalars)
 
 
-# What is opened lasts for one run: the next one may find another pyramid at the same place.
-@lru_cache(maxsize=2)
+# What is opened lasts for one run: the next one may find another pyramid at the same place. That of
+# the run before would keep what it has read, so only one is held.
+@lru_cache(maxsize=1)
 def _levels(place: str, run: str) -> Levels:
     del run
     return Levels(place)
 
 
-@lru_cache(maxsize=2)
+@lru_cache(maxsize=1)
 def _pyramid(place: str, run: str) -> StoredPyramid:
     levels = _levels(place, run)
     return StoredPyramid(levels, root_of(levels))
 
 
-@lru_cache(maxsize=2)
+@lru_cache(maxsize=1)
 def _writable(place: str, run: str) -> Any:
     del run
     import zarr

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import os
+import traceback
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
@@ -11,7 +12,7 @@ from typing import Any
 
 from flowtex._util.extras import import_extra
 from flowtex.errors import FieldError
-from flowtex.pyramid.places import PyramidError
+from flowtex.pyramid.places import PyramidError, plain_faults
 
 __all__ = ["OWN_BYTES", "PART_BYTES", "TILE_BYTES", "Cluster", "Threads"]
 
@@ -76,8 +77,13 @@ class Threads:
             result: Exception | None = None
             for _ in range(MOST_TRIALS):
                 try:
-                    function(*given, *task)
+                    with plain_faults():
+                        function(*given, *task)
                 except Exception as error:
+                    # The frames that it came through hold all that the task had in memory.
+                    for one in (error, error.__cause__, error.__context__):
+                        if one is not None:
+                            traceback.clear_frames(one.__traceback__)
                     result = error
                 else:
                     return None
@@ -139,14 +145,15 @@ class Cluster(Threads):
             self._client.close()
 
     def _check_memory(self) -> None:
-        """Say which workers have less memory than tasks may take."""
+        """Say which workers have less memory than tasks may take before Dask pauses them."""
+        dask = import_extra("dask", "store")
+        share = dask.config.get("distributed.worker.memory.pause", 0.8) or 1.0
         workers = self._client.scheduler_info(n_workers=-1)["workers"]
-        few = {
-            name: (worker["memory_limit"], OWN_BYTES + worker["nthreads"] * TILE_BYTES)
+        needs = {
+            name: (worker["memory_limit"], (OWN_BYTES + worker["nthreads"] * TILE_BYTES) / share)
             for name, worker in workers.items()
-            if worker["memory_limit"]
-            and worker["memory_limit"] < OWN_BYTES + worker["nthreads"] * TILE_BYTES
         }
+        few = {name: (limit, need) for name, (limit, need) in needs.items() if 0 < limit < need}
         if few:
             name, (limit, need) = next(iter(few.items()))
             warnings.warn(
@@ -158,7 +165,8 @@ class Cluster(Threads):
 
 
 def _called(task: tuple[Any, ...], *, function: Callable[..., None], given: list[Any]) -> None:
-    function(*given, *task)
+    with plain_faults():
+        function(*given, *task)
 
 
 class _Limited(io.RawIOBase):
@@ -208,5 +216,5 @@ def _unpacked(data: bytes) -> Any:
     return pickle.loads(data)
 
 
-def _words(size: int) -> str:
+def _words(size: float) -> str:
     return f"{size / 1e9:.3g} GB"

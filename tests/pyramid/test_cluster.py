@@ -57,7 +57,7 @@ def test_workers_build_what_threads_build_though_one_is_killed(
     flow().to_zarr(store_at(source, read_only=False), consolidated=False)
     data = xr.open_zarr(store_at(source), consolidated=False)
     build(data, tmp_path / "threads.zarr", progress=False)
-    cluster = Cluster(tmp_path / "cluster", storage.environment, memory="2GB")
+    cluster = Cluster(tmp_path / "cluster", storage.environment, memory="2500MB")
     try:
         with distributed.Client(cluster.address) as client:
             client.wait_for_workers(2)
@@ -95,12 +95,12 @@ def test_workers_with_little_memory_are_told() -> None:
         def scheduler_info(self, **_: int) -> dict[str, Any]:
             workers = {
                 "tcp://a:1": {"memory_limit": 8_000_000_000, "nthreads": 2},
-                "tcp://b:2": {"memory_limit": 3_000_000_000, "nthreads": 2},
+                "tcp://b:2": {"memory_limit": 4_000_000_000, "nthreads": 2},
                 "tcp://c:3": {"memory_limit": 0, "nthreads": 2},
             }
             return {"workers": workers}
 
-    with pytest.warns(UserWarning, match=r"1 of 3 workers .* tcp://b:2 has 3 GB, .* need 3.5 GB"):
+    with pytest.warns(UserWarning, match=r"1 of 3 workers .* tcp://b:2 has 4 GB, .* need 4.38 GB"):
         workers.Cluster(Client())
 
 
