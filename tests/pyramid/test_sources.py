@@ -204,12 +204,12 @@ print(peak() - before)
 @pytest.mark.slow
 def test_a_build_keeps_to_its_memory(tmp_path: Path) -> None:
     """One thread, and data that are some of what a part may take."""
-    data = dataset(np.arange(0, 360, 0.125), np.linspace(-80, 80, 800), steps=1)
+    data = dataset(np.arange(0, 360, 0.25), np.linspace(-80, 80, 800), steps=1)
     whole = sum(data[name].nbytes for name in ("u", "v", "ssh"))
     data.chunk(lat=256, lon=256).to_zarr(tmp_path / "flow.zarr", zarr_format=2)
     words = [str(tmp_path / "flow.zarr"), str(tmp_path / "a.zarr"), "1900MB"]
     with_warning = [sys.executable, "-W", "ignore", "-c", BUILD, *words]
     done = subprocess.run(with_warning, capture_output=True, text=True, check=True)
     grown = int(done.stdout)
-    assert whole > 25_000_000
+    assert whole > 12_000_000
     assert grown < TILE_BYTES + OWN_BYTES
