@@ -18,8 +18,9 @@ WORKFLOWS = sorted((ROOT / ".github" / "workflows").glob("*.yml"))
 FORMS = sorted((ROOT / ".github" / "ISSUE_TEMPLATE").glob("*.yml"))
 RECIPE = ROOT / "distribution" / "conda" / "recipe.yaml"
 LOCKS = ROOT / "tools" / "locks"
-#: Names on conda-forge that differ by more than capital letters.
-CONDA_NAMES = {"cf-xarray": "cf_xarray"}
+#: Names on conda-forge that differ by more than capital letters: its `eccodes` is the library in C,
+#: its `dask` brings far more than the package.
+CONDA_NAMES = {"cf-xarray": "cf_xarray", "dask": "dask-core", "eccodes": "python-eccodes"}
 
 
 def read_yaml(path: Path) -> dict[Any, Any]:
@@ -96,7 +97,7 @@ def test_the_recipe_asks_for_what_the_wheel_asks_for() -> None:
     assert PROJECT["requires-python"] == f">={read_yaml(RECIPE)['context']['python_min']}"
     wanted = {CONDA_NAMES.get(n, n): v for n, v in floors(every_extra()).items()}
     assert floors(PROJECT["dependencies"]).items() <= run.items()
-    assert {**run, **loose}.items() <= wanted.items()
+    assert {**run, **loose} == wanted
 
 
 def test_the_pythons_of_the_classifiers_are_tried() -> None:
@@ -138,6 +139,15 @@ def test_a_form_has_what_the_forge_asks_for(path: Path) -> None:
     ids = [part["id"] for part in fields]
     assert len(set(ids)) == len(ids)
     assert all(part["attributes"]["label"] for part in fields)
+
+
+def test_binder_has_the_extras_that_notebooks_name() -> None:
+    extras = re.compile(r"\.\[([\w,]+)\]")
+    (given,) = extras.findall((ROOT / ".binder" / "postBuild").read_text("utf-8"))
+    texts = [path.read_text("utf-8") for path in (ROOT / "notebooks").glob("*.ipynb")]
+    named = {name for text in texts for found in extras.findall(text) for name in found.split(",")}
+    assert "store" in named
+    assert named <= set(given.split(","))
 
 
 def test_the_container_is_not_root_and_copies_what_is_there() -> None:

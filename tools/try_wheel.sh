@@ -32,5 +32,7 @@ say "Tests of the source archive"
 tar -xzf "$dist"/*.tar.gz
 cd flowtex-*
 "$bin/pip" install --quiet --disable-pip-version-check -r tools/locks/tests.in
-"$bin/python" -m pytest -q -n 2 --dist loadfile -m "not browser and not slow" \
+# Neither the folder nor pyproject.toml puts the archive's own package before the wheel.
+PYTHONSAFEPATH=1 "$bin/python" -m pytest -q -n 2 --dist loadfile -o pythonpath=tests \
+    -m "not browser and not slow" \
     tests/test_settings.py tests/test_camera.py tests/test_packaging.py tests/textures tests/rendering/test_vtk.py

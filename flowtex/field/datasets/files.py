@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import warnings
 from collections.abc import Sequence
 from importlib.util import find_spec
@@ -21,6 +22,7 @@ __all__ = [
     "SUFFIXES",
     "belong_together",
     "dataset_paths",
+    "import_cfgrib",
     "is_dataset_file",
     "open_datasets",
     "open_files",
@@ -31,6 +33,8 @@ GRIB = (".grib", ".grb", ".grib2", ".grb2")
 ZARR, JSON = (".zarr",), (".json",)
 #: Suffixes of files that are opened by xarray.
 SUFFIXES = (*NETCDF, *GRIB, *ZARR, *JSON)
+#: The newest Python for which the wheels of eccodes have its library.
+ECCODES_UNTIL = (3, 13)
 
 
 def is_dataset_file(path: Path) -> bool:
@@ -92,8 +96,7 @@ def open_files(path: Path) -> list[xr.Dataset]:
         if suffix in JSON:
             return [read_winds(path)]
         if suffix in GRIB:
-            cfgrib = import_extra("cfgrib", "grib")
-            return list(cfgrib.open_datasets(str(path), backend_kwargs={"indexpath": ""}))
+            return list(import_cfgrib().open_datasets(str(path), backend_kwargs={"indexpath": ""}))
         options: dict[str, Any] = {"decode_timedelta": False}
         if path.is_dir():
             import_extra("zarr", "xarray")
@@ -105,6 +108,30 @@ def open_files(path: Path) -> list[xr.Dataset]:
                 raise
             # Of times that no calendar has, the numbers are left.
             return [xarray.open_dataset(path, decode_times=False, **options)]
+
+
+def import_cfgrib() -> Any:
+    """Import what reads GRIB.
+
+    Raises
+    ------
+    ModuleNotFoundError
+        When it is missing, or the library of ecCodes that it calls; the text has the remedy.
+    """
+    try:
+        return import_extra("cfgrib", "grib")
+    except (ModuleNotFoundError, RuntimeError) as error:
+        absent = isinstance(error, ModuleNotFoundError)
+        if absent and sys.version_info[:2] <= ECCODES_UNTIL:
+            raise
+        if not absent and "ecCodes" not in str(error):
+            raise
+        until = ".".join(map(str, ECCODES_UNTIL))
+        msg = (
+            "GRIB is read by the library ecCodes, which is missing: its wheels are for Python up "
+            f"to {until}. Take such a Python, or cfgrib of conda-forge, which brings it"
+        )
+        raise ModuleNotFoundError(msg, name="cfgrib") from error
 
 
 def _alike(one: xr.Dataset, other: xr.Dataset) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ from earth_data import components, east_and_north, winds
 from flowtex import FlowField
 from flowtex.earth import EARTH_RADIUS
 from flowtex.errors import FieldError
+from flowtex.field.datasets import files
 
 pytestmark = [
     pytest.mark.filterwarnings("ignore::flowtex.field.datasets.notices.DatasetNotice"),
@@ -137,11 +139,29 @@ def test_era_interim_on_the_globe(level: int) -> None:
 
 @needs_data
 def test_grib_winds_have_levels_that_both_components_have() -> None:
-    pytest.importorskip("cfgrib")
+    try:
+        files.import_cfgrib()
+    except ModuleNotFoundError as missing:
+        pytest.skip(str(missing))
     field = FlowField.from_file(DATA / "winds.grib", level=500, globe=True)
     assert len(field.times) == 2 and str(field.start) == "2017-10-18 18:00:00"
     with pytest.raises(FieldError, match="only one of the components has the level"):
         FlowField.from_file(DATA / "winds.grib", level=850)
+
+
+@pytest.mark.parametrize(
+    "line", ['raise RuntimeError("Cannot find the ecCodes library")', "import no_such_module"]
+)
+def test_without_its_library_grib_names_the_remedy(
+    line: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "cfgrib.py").write_text(line)
+    (tmp_path / "a.grib").write_bytes(b"GRIB")
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.delitem(sys.modules, "cfgrib", raising=False)
+    monkeypatch.setattr(files, "ECCODES_UNTIL", (3, 0))
+    with pytest.raises(FieldError, match=r"for Python up to 3\.0\. Take such a Python, or cfgrib"):
+        FlowField.from_file(tmp_path / "a.grib")
 
 
 @needs_data
