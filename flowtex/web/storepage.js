@@ -1653,46 +1653,49 @@ resolve(path),{kind:"array"});if(!array.is("number"))throw new StoreError("broke
 1]},TOLD=0,CHANNELS=4,COARSE="A part of the surface is shown coarse:",ABSENT_STEP="A time step cannot be shown:",NO_STORE="\
 The surface is shown coarse:",REASONS={missing:"it is not in the store, or the store is not open to everyone.",broken:"w\
 hat the store has of it is broken.",unreachable:"the store does not answer. It is away, the network is, or pages from el\
-sewhere may not read it (CORS)."},isCount=(value,most)=>Number.isInteger(value)&&Number(value)>0&&Number(value)<=most,areNumbers=(values,count)=>Array.
-isArray(values)&&values.every(Number.isFinite)&&(count??values.length)===values.length;function checkHeader(own,{geometry:whole,
-slices:all}){let{geometry,slices,ranges}=own,{shape,rows,columns}=geometry;if(!(areNumbers(shape,2)&&shape.every(n=>isCount(
-n,MOST_NODES)&&n>1)&&[rows,columns].every(({before,size},axis)=>Number.isInteger(before)&&isCount(size,MOST_NODES)&&before>=
-0&&before+shape[axis]<=size)&&Number.isInteger(geometry.levels)&&geometry.levels>=0&&2**geometry.levels<=Math.max(rows.size,
-columns.size)&&geometry.triangles===whole.triangles&&geometry.planar===whole.planar&&Number.isFinite(geometry.extent)&&areNumbers(
-geometry.periodic.map(Number),2)&&areNumbers(geometry.center,3)&&areNumbers(geometry.frame,9)&&isCount(slices.count,MOST_LAYERS)&&
-slices.channels===all.channels&&areNumbers(slices.lags)&&isCount(slices.lags.length,MOST_LAGS)&&slices.sides===all.sides&&
-areNumbers(slices.extra)&&slices.extra.every(n=>Number.isInteger(n)&&n>=0&&n<slices.count)&&areNumbers([slices.unit,slices.
-cell,slices.critical])&&Object.values(ranges??{}).every(range=>areNumbers(range,2))))throw new Error("what is told of a \
-tile does not fit the page")}function checkSurface(parts,header,tileCells){let{shape,planar}=header.geometry,missing=["p\
-osition","mesh",...planar?[]:["normal"]].filter(name=>!parts.has(name));if(missing.length)throw new Error(`a tile has no\
- ${missing.join(", ")}`);for(let[name,{data,shape:own}]of parts){let[rows,columns]=shape.map(n=>name==="cells"?n-1:n),blocks=shape.
-map(n=>Math.ceil((n-1)/tileCells)),kind=KINDS[name];if(!(kind?data instanceof kind[0]&&data.length===rows*columns*kind[1]:
-data instanceof Float32Array&&own.length===3&&own[0]===blocks[0]&&own[1]===blocks[1]&&data.length===own[0]*own[1]*own[2]&&
-own[2]%2===1))throw new Error(`the part "${name}" of a tile has another size than is told`)}}async function chunkOf(array,at,least,signal){
-let{data,shape}=await array.getChunk(at,{signal}),last=shape.slice(shape.length-least.length),count=shape.reduce((product2,n)=>product2*
-n,1);if(!(last.every((n,k)=>n>=least[k])&&data.length===count))throw new Error(`a chunk of ${array.path} has the shape ${shape}`);
-return{data,shape:last}}var Stream=class{header;told;url;store;headers=new Map;opening=null;constructor(header,base){let told=header.
+sewhere may not read it (CORS)."},IDENTITY=["format","fingerprint","parameter","lines"],ROUNDING2=1e-6,isCount=(value,most)=>Number.
+isInteger(value)&&Number(value)>0&&Number(value)<=most,areNumbers=(values,count)=>Array.isArray(values)&&values.every(Number.
+isFinite)&&(count??values.length)===values.length,areAlike=(some,others)=>some.length===others.length&&some.every((n,k)=>Math.
+abs(Number(n)-Number(others[k]))<=ROUNDING2*Math.abs(Number(n)));function checkHeader(own,{geometry:whole,slices:all}){let{
+geometry,slices,ranges}=own,{shape,rows,columns}=geometry;if(!(areNumbers(shape,2)&&shape.every(n=>isCount(n,MOST_NODES)&&
+n>1)&&[rows,columns].every(({before,size},axis)=>Number.isInteger(before)&&isCount(size,MOST_NODES)&&before>=0&&before+shape[axis]<=
+size)&&Number.isInteger(geometry.levels)&&geometry.levels>=0&&2**geometry.levels<=Math.max(rows.size,columns.size)&&geometry.
+triangles===whole.triangles&&geometry.planar===whole.planar&&Number.isFinite(geometry.extent)&&areNumbers(geometry.periodic.
+map(Number),2)&&areNumbers(geometry.center,3)&&areNumbers(geometry.frame,9)&&isCount(slices.count,MOST_LAYERS)&&slices.channels===
+all.channels&&areNumbers(slices.lags)&&isCount(slices.lags.length,MOST_LAGS)&&slices.sides===all.sides&&areNumbers(slices.
+extra)&&slices.extra.every(n=>Number.isInteger(n)&&n>=0&&n<slices.count)&&areNumbers([slices.unit,slices.cell,slices.critical])&&
+Object.values(ranges??{}).every(range=>areNumbers(range,2))))throw new Error("what is told of a tile does not fit the pa\
+ge")}function checkSurface(parts,header,tileCells){let{shape,planar}=header.geometry,missing=["position","mesh",...planar?
+[]:["normal"]].filter(name=>!parts.has(name));if(missing.length)throw new Error(`a tile has no ${missing.join(", ")}`);for(let[
+name,{data,shape:own}]of parts){let[rows,columns]=shape.map(n=>name==="cells"?n-1:n),blocks=shape.map(n=>Math.ceil((n-1)/
+tileCells)),kind=KINDS[name];if(!(kind?data instanceof kind[0]&&data.length===rows*columns*kind[1]:data instanceof Float32Array&&
+own.length===3&&own[0]===blocks[0]&&own[1]===blocks[1]&&data.length===own[0]*own[1]*own[2]&&own[2]%2===1))throw new Error(
+`the part "${name}" of a tile has another size than is told`)}}async function chunkOf(array,at,least,signal){let{data,shape}=await array.
+getChunk(at,{signal}),last=shape.slice(shape.length-least.length),count=shape.reduce((product2,n)=>product2*n,1);if(!(last.
+every((n,k)=>n>=least[k])&&data.length===count))throw new Error(`a chunk of ${array.path} has the shape ${shape}`);return{
+data,shape:last}}var Stream=class{header;told;url;store;headers=new Map;opening=null;constructor(header,base){let told=header.
 store;if(!told)throw new Error("the page does not tell where its store is");this.header=header,this.told=told,this.url=new URL(
 told.url,base),this.store=new Store(this.url.href)}open(){return this.opening?this.opening:(this.opening=this.compare().
 catch(error=>{let{fault,message}=storeError(error);if(fault==="other")throw error;fault==="unreachable"&&(this.opening=null);
 let text=`${fault==="missing"?NO_STORE:COARSE} ${REASONS[fault]}`;throw new StoreError(fault,text,message)}),this.opening)}async compare(){
-let{url,format,fingerprint}=this.told;if(!/^https?:/.test(this.url.protocol)){let text2=`This page looks for its store a\
-t ${url} beside itself, which a browser does not read where the page is a file: open it from a web server.`;throw new StoreError(
-"other",text2)}let own=(await this.store.attributes()).flowtex;if(own?.fingerprint===fingerprint&&own.format===format)return;
-let text=`The store at ${url} holds another flow than this page, or one of another version: export the page again.`;throw new StoreError(
-"other",text)}async tile(key,steps,signal,has){let name=nameOf(key);return this.loaded(COARSE,signal,async whole=>{let known=has(
-"header")?this.headers.get(name):void 0,surface=known===void 0?this.surface(key,whole):{header:known,parts:[]},late=steps.
-filter(step=>!has(`slices/${step}`)),traces=late.map(step=>this.traces(key,step,whole)),rest=async()=>{let{header,parts:parts2}=await surface;
-if(this.headers.set(name,header),!header)return parts2;let place={key,header,signal:whole},slices=late.map(async(step,n)=>this.
-slices(place,step,await traces[n]));return[parts2,...await Promise.all([...slices,this.values(place,steps,has)])].flat()},
-[parts]=await Promise.all([rest(),...traces]);return parts.map(part=>({...part,name:`tile/${name}/${part.name}`}))})}async root(step,signal,lacking){
-let{header}=this,key=[this.told.depth,0,0];return this.loaded(ABSENT_STEP,signal,async whole=>{let place={key,header,signal:whole},
-names=lacking(),parts=[];names.some(name=>/^(slices|extra)\//.test(name))&&parts.push(...await this.slices(place,step,await this.
-traces(key,step,whole)));let has=part=>!lacking().includes(part);return[...parts,...await this.values(place,[step],has)]})}async loaded(what,signal,load){
-let controller=new AbortController,stop=()=>{},stopped=new Promise((_,reject)=>{stop=()=>reject(signal.reason),signal.addEventListener(
-"abort",stop,{once:!0})});try{return await Promise.race([this.open().then(()=>load(controller.signal)),stopped])}catch(error){
-signal.throwIfAborted();let{fault,message}=storeError(error);throw fault==="other"?error:new StoreError(fault,`${what} ${REASONS[fault]}`,
-message)}finally{controller.abort(),signal.removeEventListener("abort",stop)}}async surface([level,row,column],signal){let array=await this.
+let{url}=this.told;if(!/^https?:/.test(this.url.protocol)){let text2=`This page looks for its store at ${url} beside its\
+elf, which a browser does not read where the page is a file: open it from a web server.`;throw new StoreError("other",text2)}
+let own=(await this.store.attributes()).flowtex;if(IDENTITY.every(name=>own?.[name]===this.told[name]))return;let text=`\
+The store at ${url} holds another flow than this page, or one with other paths or of another version: export the page ag\
+ain.`;throw new StoreError("other",text)}async tile(key,steps,signal,has){let name=nameOf(key);return this.loaded(COARSE,
+signal,async whole=>{let known=has("header")?this.headers.get(name):void 0,surface=known===void 0?this.surface(key,whole):
+{header:known,parts:[]},late=steps.filter(step=>!has(`slices/${step}`)),traces=late.map(step=>this.traces(key,step,whole)),
+rest=async()=>{let{header,parts:parts2}=await surface;if(this.headers.set(name,header),!header)return parts2;let place={
+key,header,signal:whole},slices=late.map(async(step,n)=>this.slices(place,step,await traces[n]));return[parts2,...await Promise.
+all([...slices,this.values(place,steps,has)])].flat()},[parts]=await Promise.all([rest(),...traces]);return parts.map(part=>({
+...part,name:`tile/${name}/${part.name}`}))})}async root(step,signal,lacking){let{header}=this,key=[this.told.depth,0,0];
+return this.loaded(ABSENT_STEP,signal,async whole=>{let place={key,header,signal:whole},names=lacking(),parts=[];names.some(
+name=>/^(slices|extra)\//.test(name))&&parts.push(...await this.slices(place,step,await this.traces(key,step,whole)));let has=part=>!lacking().
+includes(part);return[...parts,...await this.values(place,[step],has)]})}async loaded(what,signal,load){let controller=new AbortController,
+stop=()=>{},stopped=new Promise((_,reject)=>{stop=()=>reject(signal.reason),signal.addEventListener("abort",stop,{once:!0})});
+try{return await Promise.race([this.open().then(()=>load(controller.signal)),stopped])}catch(error){signal.throwIfAborted();
+let{fault,message}=storeError(error);throw fault==="other"?error:new StoreError(fault,`${what} ${REASONS[fault]}`,message)}finally{
+controller.abort(),signal.removeEventListener("abort",stop)}}async surface([level,row,column],signal){let array=await this.
 store.array(`${level}/surface`),{data}=await chunkOf(array,[row,column,0],[1],signal),parts=new Map;for(let part of partsOfFile(
 new Uint8Array(data).buffer)){let[tile,name]=tilePart(part.name)??["",""];tile===nameOf([level,row,column])&&parts.set(name,
 {...part,name})}let header=this.tileHeader(parts.get("header"));parts.delete("header"),header&&checkSurface(parts,header,
@@ -1700,13 +1703,16 @@ this.header.mesh.tileCells);let text=new TextEncoder().encode(JSON.stringify(hea
 "header"),told={name:"header",data:text,shape:[text.length],digest};return{header,parts:[told,...parts.values()]}}tileHeader(part){
 let own=JSON.parse(new TextDecoder().decode(part?.data));if(own===null)return null;let{steps,times:times2,timeUnit,dates,
 pace}=this.header.slices;return checkHeader(own,this.header),{...own,slices:{...own.slices,steps,times:times2,timeUnit,dates,
-pace}}}async traces([level,row,column],step,signal){let array=await this.store.array(`${level}/traces`),at=[this.told.steps[step],
-row,column],{data}=await chunkOf(array,[...at,TOLD,0,0,0],[1,1,CHANNELS],signal),bytes=new Uint8Array(data.buffer,data.byteOffset,
-data.byteLength),text=new TextDecoder().decode(bytes.subarray(0,Math.max(bytes.indexOf(0),0)));if(!text)throw new StoreError(
-"missing",`tile ${level}/${row}/${column} is empty`);let told=JSON.parse(text);return{array,at,told}}async slices({key,header,
-signal},step,{array,at,told}){let{count,channels,extra}=header.slices,[height,width]=[header.geometry.rows.size,header.geometry.
-columns.size];if(told?.count!==count||String(told.size)!==String([height,width]))throw new Error(`the traces of tile ${nameOf(
-key)} do not fit its surface`);let texels=height*width,slopes=new Uint32Array(count*texels*channels/2),fourth=new Uint16Array(
+pace}}}async traces([level,row,column],step,signal){let{steps,fingerprint,parameter,lines}=this.told,array=await this.store.
+array(`${level}/traces`),at=[steps[step],row,column],{data}=await chunkOf(array,[...at,TOLD,0,0,0],[1,1,CHANNELS],signal),
+bytes=new Uint8Array(data.buffer,data.byteOffset,data.byteLength),text=new TextDecoder().decode(bytes.subarray(0,Math.max(
+bytes.indexOf(0),0)));if(!text)throw new StoreError("missing",`tile ${level}/${row}/${column} is empty`);let told=JSON.parse(
+text),which=[level,row,column,steps[step],`${fingerprint} ${parameter} ${lines}`];if(String([told.tile,told.step,told.of])!==
+String(which))throw new Error(`in place of tile ${level}/${row}/${column} there is another one`);return{array,at,told}}async slices({
+key,header,signal},step,{array,at,told}){let{count,channels,extra,unit:unit2,cell,lags}=header.slices,[height,width]=[header.
+geometry.rows.size,header.geometry.columns.size],measures=[told.unit,told.cell,...told.lags??[]];if(told.count!==count||
+String(told.size)!==String([height,width])||!areAlike([unit2,cell,...lags],measures))throw new Error(`the traces of tile\
+ ${nameOf(key)} do not fit its surface`);let texels=height*width,slopes=new Uint32Array(count*texels*channels/2),fourth=new Uint16Array(
 extra.length*texels);for(let layer=0;layer<count;layer+=1){signal.throwIfAborted();let place=[...at,TOLD+1+layer,0,0,0],
 {data,shape}=await chunkOf(array,place,[height,width,CHANNELS],signal),pairs=new Uint32Array(data.buffer,data.byteOffset,
 data.length/2),also=extra.indexOf(layer),to=layer*texels*channels/2;for(let j=0;j<height;j+=1){let row=j*shape[1];for(let i=row;i<
