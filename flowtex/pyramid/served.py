@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import asyncio
 import os
+import secrets
 import shutil
 import tempfile
 import threading
@@ -75,6 +76,8 @@ class ServedStore:
     ----------
     about
         What is told of the pyramid, with all of its levels traced.
+    run
+        A word that no other run has.
 
     Raises
     ------
@@ -88,6 +91,7 @@ class ServedStore:
         self._traced = frozenset(levels.about["traced"])
         depth = levels.about["depth"]
         self.about = sealed({**levels.about, "traced": list(range(depth + 1)), "complete": True})
+        self.run = secrets.token_hex(4)
         self._origin = objects_at(levels.place)
         self._reads = asyncio.Semaphore(MOST_READS)
         self._folder = Path(tempfile.mkdtemp(prefix="flowtex-"))
