@@ -95,7 +95,7 @@ export class Tiles {
   private isWaiting = false;
   private isOver = false;
   private lastCame = 0;
-  /** Names of the tiles that cannot be had. */
+  /** Tiles that cannot be had, each with what of it was wanted. */
   private readonly failed = new Set<string>();
   /** Limits of triangles for the colours that the scene came with. */
   private readonly limits: MeshLimits;
@@ -111,10 +111,14 @@ export class Tiles {
     return this.tiles.get(name)?.parts.has(part) ?? false;
   }
 
-  /** Show what is coarser in place of a tile that cannot be had. */
-  fail(name: string): void {
-    this.failed.add(name);
+  /** Show what is coarser in place of a tile that cannot be had for some steps and the present colours. */
+  fail(name: string, steps: number[]): void {
+    this.failed.add(this.need(name, steps));
     this.host.refine();
+  }
+
+  private need(name: string, steps: number[]): string {
+    return `${name} ${steps} ${this.root.header.scalars.name}`;
   }
 
   dispose(): void {
@@ -254,7 +258,7 @@ export class Tiles {
       if (tile) tile.used = this.count;
     }
     const until = performance.now() + LOAD_MS;
-    const wanted = this.obtainable(wantedTiles(choices), header.pyramid.depth);
+    const wanted = this.obtainable(wantedTiles(choices), steps, header.pyramid.depth);
     this.missing = wanted.filter((name) => !this.isHere(name, steps));
     this.ask(steps);
     this.trim(steps);
@@ -264,10 +268,12 @@ export class Tiles {
   }
 
   /** The tiles that can be had of these, or in their place those that cover them, below the root. */
-  private obtainable(names: string[], depth: number): string[] {
+  private obtainable(names: string[], steps: number[], depth: number): string[] {
+    const needs = [steps, ...steps.map((step) => [step])];
+    const isFailed = (name: string) => needs.some((some) => this.failed.has(this.need(name, some)));
     const found = names.map((name) => {
       let [level, row, column] = keyOf(name);
-      while (level < depth && this.failed.has(nameOf([level, row, column]))) {
+      while (level < depth && isFailed(nameOf([level, row, column]))) {
         [level, row, column] = [level + 1, row >> 1, column >> 1];
       }
       return level < depth ? nameOf([level, row, column]) : ROOT;
