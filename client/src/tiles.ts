@@ -93,6 +93,7 @@ export class Tiles {
   private asked: { names: string[]; steps: number[] } = { names: [], steps: [] };
   private count = 0;
   private isWaiting = false;
+  private isWatched = false;
   private isOver = false;
   private lastCame = 0;
   /** Tiles that cannot be had, each with what of it was wanted. */
@@ -309,7 +310,8 @@ export class Tiles {
       performance.now() - this.lastCame < LOST_MS &&
       String(open.sort()) === String([...this.missing].sort()) &&
       (!open.length || String(steps) === String(this.asked.steps));
-    if (isAsked || this.isWaiting || !options.onTiles) return;
+    if (this.isWaiting || !options.onTiles) return;
+    if (isAsked) return this.watch();
     this.isWaiting = true;
     lifetime.later(() => {
       this.isWaiting = false;
@@ -317,8 +319,21 @@ export class Tiles {
       this.lastCame = performance.now();
       this.asked = { names: this.missing, steps };
       options.onTiles?.(this.missing.map(keyOf), steps);
-      if (this.missing.length) lifetime.later(() => this.isOver || this.ask(all), LOST_MS);
+      this.watch();
     }, REQUEST_MS);
+  }
+
+  /** Ask again for what is missing where nothing has come for a while, in a view at rest as well. */
+  private watch(): void {
+    if (this.isWatched || !this.missing.length) return;
+    this.isWatched = true;
+    this.host.lifetime.later(
+      () => {
+        this.isWatched = false;
+        if (!this.isOver) this.ask(this.chosen.steps);
+      },
+      LOST_MS - (performance.now() - this.lastCame),
+    );
   }
 
   /** Drop the tiles that were wanted longest ago where all take too much memory, and steps of long ago. */

@@ -1180,7 +1180,7 @@ activeTexture(gl.TEXTURE0+n),gl.bindTexture(n<4?gl.TEXTURE_2D_ARRAY:gl.TEXTURE_2
 SAMPLERS.length)}get triangles(){return(this.resources.get("index")?.count??0)/3}draw(before,after,anchor,textures){let gl=this.
 graphics.context;textures&&(this.dropSlices(before,after),this.bindTextures(before,after)),this.bindNodes(before,after,anchor),
 gl.drawElements(gl.TRIANGLES,this.resources.get("index")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(null)}};var REQUEST_MS=60,LOST_MS=8e3,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD=4,Tiles=class{layers=[];missing=[];host;root;tiles=new Map;pyramid=null;chosen={
-choices:new Map,steps:[],names:""};drawn="";asked={names:[],steps:[]};count=0;isWaiting=!1;isOver=!1;lastCame=0;failed=new Set;limits;constructor(host,root){
+choices:new Map,steps:[],names:""};drawn="";asked={names:[],steps:[]};count=0;isWaiting=!1;isWatched=!1;isOver=!1;lastCame=0;failed=new Set;limits;constructor(host,root){
 this.host=host,this.root=root,this.limits=root.header.mesh}has(name,part){return this.tiles.get(name)?.parts.has(part)??
 !1}fail(name,steps){this.failed.add(this.need(name,steps)),this.host.refine()}need(name,steps){return`${name} ${steps} ${this.
 root.header.scalars.name}`}dispose(){this.isOver=!0;for(let name of[...this.tiles.keys()])this.drop(name)}setPart(name,part){
@@ -1225,18 +1225,20 @@ return[...new Set(found)].filter(name=>name!==ROOT)}isHere(name,steps){let scene
 null||scene?.missing(steps[0],steps[steps.length-1]).length===0}load(name,steps,until){let scene=this.tiles.get(name)?.scene;
 return!scene||scene.isLoaded(steps)?!0:performance.now()>until?(this.host.refine(),!1):(scene.load(steps),!0)}ask(all){let{
 options,lifetime}=this.host,isLacking=step=>this.missing.some(name=>!this.isHere(name,[step])),steps=all.filter(isLacking),
-open=this.asked.names.filter(name=>!this.isHere(name,this.asked.steps));performance.now()-this.lastCame<LOST_MS&&String(
-open.sort())===String([...this.missing].sort())&&(!open.length||String(steps)===String(this.asked.steps))||this.isWaiting||
-!options.onTiles||(this.isWaiting=!0,lifetime.later(()=>{this.isWaiting=!1,!this.isOver&&(this.lastCame=performance.now(),
-this.asked={names:this.missing,steps},options.onTiles?.(this.missing.map(keyOf),steps),this.missing.length&&lifetime.later(
-()=>this.isOver||this.ask(all),LOST_MS))},REQUEST_MS))}trim(steps){let bytes=0;for(let[name,tile]of[...this.tiles].sort(
-([,a],[,b])=>b.used-a.used)){let{parts,used}=tile,slices=[...parts.keys()].filter(part=>part.startsWith("slices/"));for(let part of slices.
-slice(0,Math.max(slices.length-STEPS_HELD,0))){let step=stepOf(part);if(steps.includes(step))continue;for(let kind of["s\
-lices","extra"])this.release(tile,`${kind}/${step}`);let values=[...parts.keys()].filter(each=>isOfStep(each,step,this.root.
-header));for(let each of values)this.release(tile,each)}for(let{data}of parts.values())bytes+=BYTES_HELD*data.byteLength;
-bytes>(this.host.options.memory??BUDGET_BYTES)&&used<this.count&&this.drop(name)}}drop(name){let tile=this.tiles.get(name);
-tile?.scene?.dispose();for(let part of[...tile?.parts.keys()??[]])this.release(tile,part);this.tiles.delete(name)}release(tile,part){
-part!=="cmap"&&this.root.graphics.release(tile?.parts.get(part)),tile?.parts.delete(part)}};var STILL_MS=160,LOST_MS2=5e3,STEPS_HELD2=12,FEW_STEPS_HELD=4,isEqual=(a,b)=>JSON.stringify(a)===JSON.stringify(b),Viewer=class{options;graphics=sharedGraphics();lifetime=new Lifetime;player=new Player;root=document.
+open=this.asked.names.filter(name=>!this.isHere(name,this.asked.steps)),isAsked=performance.now()-this.lastCame<LOST_MS&&
+String(open.sort())===String([...this.missing].sort())&&(!open.length||String(steps)===String(this.asked.steps));if(!(this.
+isWaiting||!options.onTiles)){if(isAsked)return this.watch();this.isWaiting=!0,lifetime.later(()=>{this.isWaiting=!1,!this.
+isOver&&(this.lastCame=performance.now(),this.asked={names:this.missing,steps},options.onTiles?.(this.missing.map(keyOf),
+steps),this.watch())},REQUEST_MS)}}watch(){this.isWatched||!this.missing.length||(this.isWatched=!0,this.host.lifetime.later(
+()=>{this.isWatched=!1,this.isOver||this.ask(this.chosen.steps)},LOST_MS-(performance.now()-this.lastCame)))}trim(steps){
+let bytes=0;for(let[name,tile]of[...this.tiles].sort(([,a],[,b])=>b.used-a.used)){let{parts,used}=tile,slices=[...parts.
+keys()].filter(part=>part.startsWith("slices/"));for(let part of slices.slice(0,Math.max(slices.length-STEPS_HELD,0))){let step=stepOf(
+part);if(steps.includes(step))continue;for(let kind of["slices","extra"])this.release(tile,`${kind}/${step}`);let values=[
+...parts.keys()].filter(each=>isOfStep(each,step,this.root.header));for(let each of values)this.release(tile,each)}for(let{
+data}of parts.values())bytes+=BYTES_HELD*data.byteLength;bytes>(this.host.options.memory??BUDGET_BYTES)&&used<this.count&&
+this.drop(name)}}drop(name){let tile=this.tiles.get(name);tile?.scene?.dispose();for(let part of[...tile?.parts.keys()??
+[]])this.release(tile,part);this.tiles.delete(name)}release(tile,part){part!=="cmap"&&this.root.graphics.release(tile?.parts.
+get(part)),tile?.parts.delete(part)}};var STILL_MS=160,LOST_MS2=5e3,STEPS_HELD2=12,FEW_STEPS_HELD=4,isEqual=(a,b)=>JSON.stringify(a)===JSON.stringify(b),Viewer=class{options;graphics=sharedGraphics();lifetime=new Lifetime;player=new Player;root=document.
 createElement("div");canvas=document.createElement("canvas");card=new PointCard(this);panel;pointers;parts=new Map;header=null;settings={};scene=null;tiles=null;camera=null;sharp=!1;isVisible=!0;shown=null;together=[
 this];renderer;busyUntil=0;firstCamera=null;requests=new Map;constructor(element,options={}){this.options=options;let{root}=this;
 root.className="flowtex",root.tabIndex=0,root.dataset.sharp="false",root.setAttribute("data-lm-suppress-shortcuts","true"),

@@ -411,6 +411,31 @@ def test_a_server_that_is_away_is_told_and_tried_later(
 
 
 @pytest.mark.browser
+@pytest.mark.slow
+def test_a_tile_that_was_away_is_asked_for_again_in_a_view_at_rest(
+    shown: Shown, server: RangeServer, tmp_path: Path
+) -> None:
+    """Though another one came after it was asked for."""
+    page = linked(server, tmp_path, "flat", **NEAR)
+    tried: list[str] = []
+
+    def answer(path: str) -> Answer:
+        if not path.startswith("flat.zarr/0/traces/c/"):
+            return None
+        tried.append(path)
+        if path == tried[0]:
+            return 503 if tried.count(path) <= 4 else None
+        time.sleep(3)
+        return None
+
+    server.fault = answer
+    shown.open(page.as_uri())
+    assert "the store does not answer" in shown.told()
+    shown.wait()
+    assert tried.count(tried[0]) == 5 and len(set(tried)) > 1
+
+
+@pytest.mark.browser
 def test_what_is_not_looked_at_any_more_is_given_up(
     shown: Shown, server: RangeServer, tmp_path: Path
 ) -> None:
