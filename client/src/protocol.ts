@@ -169,6 +169,8 @@ export interface StoreHeader {
   /** What the store tells of itself. */
   format: string;
   fingerprint: string;
+  parameter: string;
+  lines: string;
   /** Level of the root. */
   depth: number;
   /** Numbers in the store of the page's time steps. */

@@ -39,6 +39,19 @@ const REASONS: Record<Exclude<StoreFault, "other">, string> = {
     "the store does not answer. It is away, the network is, or pages from elsewhere may not read it (CORS).",
 };
 
+/** What of a store has to be that of the page. */
+const IDENTITY = ["format", "fingerprint", "parameter", "lines"] as const;
+/** Share of a number by which it may differ where it was computed elsewhere. */
+const ROUNDING = 1e-6;
+
+/** What traces tell of themselves: which they are, and what they are measured in. */
+type Told = Partial<Pick<Header["slices"], "count" | "lags" | "unit" | "cell">> & {
+  tile?: number[];
+  step?: number;
+  of?: string;
+  size?: number[];
+};
+
 /** Tells whether a part is there, of a tile or of the whole. */
 export type Has = (part: string) => boolean;
 
@@ -59,6 +72,9 @@ const isCount = (value: unknown, most: number): value is number =>
   Number.isInteger(value) && Number(value) > 0 && Number(value) <= most;
 const areNumbers = (values: unknown, count?: number): values is number[] =>
   Array.isArray(values) && values.every(Number.isFinite) && (count ?? values.length) === values.length;
+const areAlike = (some: unknown[], others: unknown[]) =>
+  some.length === others.length &&
+  some.every((n, k) => Math.abs(Number(n) - Number(others[k])) <= ROUNDING * Math.abs(Number(n)));
 
 /** Refuse what is told of a tile where it cannot be drawn. */
 function checkHeader(own: TileHeader, { geometry: whole, slices: all }: Header): void {
@@ -161,7 +177,7 @@ export class Stream {
   }
 
   private async compare(): Promise<void> {
-    const { url, format, fingerprint } = this.told;
+    const { url } = this.told;
     if (!/^https?:/.test(this.url.protocol)) {
       const text =
         `This page looks for its store at ${url} beside itself, which a browser does not read where ` +
@@ -169,10 +185,10 @@ export class Stream {
       throw new StoreError("other", text);
     }
     const own = (await this.store.attributes()).flowtex as Partial<StoreHeader> | undefined;
-    if (own?.fingerprint === fingerprint && own.format === format) return;
+    if (IDENTITY.every((name) => own?.[name] === this.told[name])) return;
     const text =
-      `The store at ${url} holds another flow than this page, or one of another version: export the ` +
-      "page again.";
+      `The store at ${url} holds another flow than this page, or one with other paths or of another ` +
+      "version: export the page again.";
     throw new StoreError("other", text);
   }
 
@@ -264,13 +280,18 @@ export class Stream {
 
   /** The traces of a tile, and what is told of them. */
   private async traces([level, row, column]: TileKey, step: number, signal: AbortSignal) {
+    const { steps, fingerprint, parameter, lines } = this.told;
     const array = await this.store.array(`${level}/traces`);
-    const at = [this.told.steps[step], row, column];
+    const at = [steps[step], row, column];
     const { data } = await chunkOf(array, [...at, TOLD, 0, 0, 0], [1, 1, CHANNELS], signal);
     const bytes = new Uint8Array(data.buffer, data.byteOffset, data.byteLength);
     const text = new TextDecoder().decode(bytes.subarray(0, Math.max(bytes.indexOf(0), 0)));
     if (!text) throw new StoreError("missing", `tile ${level}/${row}/${column} is empty`);
-    const told = JSON.parse(text) as { empty?: boolean; count?: number; size?: number[] };
+    const told = JSON.parse(text) as Told;
+    const which = [level, row, column, steps[step], `${fingerprint} ${parameter} ${lines}`];
+    if (String([told.tile, told.step, told.of]) !== String(which)) {
+      throw new Error(`in place of tile ${level}/${row}/${column} there is another one`);
+    }
     return { array, at, told };
   }
 
@@ -280,9 +301,14 @@ export class Stream {
     step: number,
     { array, at, told }: Awaited<ReturnType<Stream["traces"]>>,
   ): Promise<NamedPart[]> {
-    const { count, channels, extra } = header.slices;
+    const { count, channels, extra, unit, cell, lags } = header.slices;
     const [height, width] = [header.geometry.rows.size, header.geometry.columns.size];
-    if (told?.count !== count || String(told.size) !== String([height, width])) {
+    const measures = [told.unit, told.cell, ...(told.lags ?? [])];
+    if (
+      told.count !== count ||
+      String(told.size) !== String([height, width]) ||
+      !areAlike([unit, cell, ...lags], measures)
+    ) {
       throw new Error(`the traces of tile ${nameOf(key)} do not fit its surface`);
     }
     const texels = height * width;

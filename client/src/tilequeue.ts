@@ -12,7 +12,7 @@ export class TileQueue {
   private readonly load: LoadTile;
   private readonly give: (part: NamedPart) => void;
   private readonly most: number;
-  private readonly fail: (key: TileKey, error: unknown) => void;
+  private readonly fail: (key: TileKey, error: unknown, steps: number[]) => void;
   private readonly running = new Map<string, AbortController>();
   private wanted: Job[] = [];
 
@@ -21,7 +21,7 @@ export class TileQueue {
     load: LoadTile,
     give: (part: NamedPart) => void,
     most = 1,
-    fail = (_: TileKey, error: unknown): void => {
+    fail: (key: TileKey, error: unknown, steps: number[]) => void = (_, error) => {
       throw error;
     },
   ) {
@@ -60,7 +60,7 @@ export class TileQueue {
       const parts = await this.load(key, steps, controller.signal);
       if (!controller.signal.aborted) parts.forEach(this.give);
     } catch (error) {
-      if (!controller.signal.aborted) this.fail(key, error);
+      if (!controller.signal.aborted) this.fail(key, error, steps);
     } finally {
       this.running.delete(name);
       this.next();

@@ -93,9 +93,10 @@ export class Tiles {
   private asked: { names: string[]; steps: number[] } = { names: [], steps: [] };
   private count = 0;
   private isWaiting = false;
+  private isWatched = false;
   private isOver = false;
   private lastCame = 0;
-  /** Names of the tiles that cannot be had. */
+  /** Tiles that cannot be had, each with what of it was wanted. */
   private readonly failed = new Set<string>();
   /** Limits of triangles for the colours that the scene came with. */
   private readonly limits: MeshLimits;
@@ -111,10 +112,14 @@ export class Tiles {
     return this.tiles.get(name)?.parts.has(part) ?? false;
   }
 
-  /** Show what is coarser in place of a tile that cannot be had. */
-  fail(name: string): void {
-    this.failed.add(name);
+  /** Show what is coarser in place of a tile that cannot be had for some steps and the present colours. */
+  fail(name: string, steps: number[]): void {
+    this.failed.add(this.need(name, steps));
     this.host.refine();
+  }
+
+  private need(name: string, steps: number[]): string {
+    return `${name} ${steps} ${this.root.header.scalars.name}`;
   }
 
   dispose(): void {
@@ -254,7 +259,7 @@ export class Tiles {
       if (tile) tile.used = this.count;
     }
     const until = performance.now() + LOAD_MS;
-    const wanted = this.obtainable(wantedTiles(choices), header.pyramid.depth);
+    const wanted = this.obtainable(wantedTiles(choices), steps, header.pyramid.depth);
     this.missing = wanted.filter((name) => !this.isHere(name, steps));
     this.ask(steps);
     this.trim(steps);
@@ -264,10 +269,12 @@ export class Tiles {
   }
 
   /** The tiles that can be had of these, or in their place those that cover them, below the root. */
-  private obtainable(names: string[], depth: number): string[] {
+  private obtainable(names: string[], steps: number[], depth: number): string[] {
+    const needs = [steps, ...steps.map((step) => [step])];
+    const isFailed = (name: string) => needs.some((some) => this.failed.has(this.need(name, some)));
     const found = names.map((name) => {
       let [level, row, column] = keyOf(name);
-      while (level < depth && this.failed.has(nameOf([level, row, column]))) {
+      while (level < depth && isFailed(nameOf([level, row, column]))) {
         [level, row, column] = [level + 1, row >> 1, column >> 1];
       }
       return level < depth ? nameOf([level, row, column]) : ROOT;
@@ -303,7 +310,8 @@ export class Tiles {
       performance.now() - this.lastCame < LOST_MS &&
       String(open.sort()) === String([...this.missing].sort()) &&
       (!open.length || String(steps) === String(this.asked.steps));
-    if (isAsked || this.isWaiting || !options.onTiles) return;
+    if (this.isWaiting || !options.onTiles) return;
+    if (isAsked) return this.watch();
     this.isWaiting = true;
     lifetime.later(() => {
       this.isWaiting = false;
@@ -311,8 +319,21 @@ export class Tiles {
       this.lastCame = performance.now();
       this.asked = { names: this.missing, steps };
       options.onTiles?.(this.missing.map(keyOf), steps);
-      if (this.missing.length) lifetime.later(() => this.isOver || this.ask(all), LOST_MS);
+      this.watch();
     }, REQUEST_MS);
+  }
+
+  /** Ask again for what is missing where nothing has come for a while, in a view at rest as well. */
+  private watch(): void {
+    if (this.isWatched || !this.missing.length) return;
+    this.isWatched = true;
+    this.host.lifetime.later(
+      () => {
+        this.isWatched = false;
+        if (!this.isOver) this.ask(this.chosen.steps);
+      },
+      LOST_MS - (performance.now() - this.lastCame),
+    );
   }
 
   /** Drop the tiles that were wanted longest ago where all take too much memory, and steps of long ago. */

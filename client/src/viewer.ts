@@ -458,9 +458,9 @@ export class Viewer implements User {
     return shown && !scene.missing(shown[0], shown[1]).length ? shown : null;
   }
 
-  /** Go on without a tile, or a time step, that a host could not give, and say why once. */
-  lack(tile: string | null, reason: string): void {
-    if (tile !== null) this.tiles?.fail(tile);
+  /** Go on without a tile at some steps, or a step, that a host could not give, and say why once. */
+  lack(reason: string, tile?: string, steps: number[] = []): void {
+    if (tile !== undefined) this.tiles?.fail(tile, steps);
     this.panel.tell(reason);
   }
 

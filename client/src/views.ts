@@ -88,24 +88,24 @@ function linked(options: Options, others: () => Viewer[]): Options {
 /** What a view asks of a source. */
 function sourceFeed(source: Source, viewer: () => Viewer): Options {
   const give = (part: NamedPart) => viewer().setPart(part);
-  const fail = (tile: string | null, error: unknown) => {
+  const fail = (error: unknown, tile?: string, steps?: number[]) => {
     const { fault, message = String(error), detail } = error as Partial<StoreError>;
     console.warn(message, detail ?? "");
     // Where nobody answers it is tried again.
-    viewer().lack(fault === "unreachable" ? null : tile, message);
+    viewer().lack(message, fault === "unreachable" ? undefined : tile, steps);
   };
   const tiles = new TileQueue(
     (key, steps, signal) =>
       source.tile(key, steps, signal, (part) => viewer().tiles?.has(nameOf(key), part) ?? false),
     give,
     TILES_AT_ONCE,
-    (key, error) => fail(nameOf(key), error),
+    (key, error, steps) => fail(error, nameOf(key), steps),
   );
   const wholes = new TileQueue(
     (_, [step], signal) => source.root(step, signal, () => viewer().scene?.missing(step, step) ?? []),
     give,
     STEPS_AT_ONCE,
-    (_, error) => fail(null, error),
+    (_, error) => fail(error),
   );
   let wanted: number[] = [];
   return {
@@ -134,6 +134,6 @@ export function mountPage(
   scenes.forEach(({ header }, n) => viewers[n].setHeader(header));
   scenes.forEach(({ parts }, n) => parts.forEach((part) => viewers[n].setPart(part)));
   // What is wrong with a source is told before anybody looks closer.
-  scenes[0].source?.open().catch((error: Error) => viewers[0].lack(null, error.message));
+  scenes[0].source?.open().catch((error: Error) => viewers[0].lack(error.message));
   return viewers[0];
 }

@@ -16,6 +16,7 @@ interface Fixture {
 
 const fixture: Fixture = JSON.parse(readFileSync(new URL("store.json", import.meta.url), "utf8"));
 const BASE = "http://flow.test/flow.zarr/";
+const ABOUT = { format: "form", fingerprint: "print", parameter: "arclength", lines: "pathlines" };
 const TILE = "tile/0/0/0";
 const TRACES = "0/traces/c/0/0/0/0/0/0/0";
 
@@ -53,7 +54,7 @@ function streamOf(scalars: Partial<Header["scalars"]> = {}, store = {}): { heade
     slices: { ...slices, ...times },
     scalars: { name: null, steps: 2, number: 0, ...scalars },
     mesh: { tileCells: 64 },
-    store: { url: BASE, format: "form", fingerprint: "print", depth: 2, steps: [0, 1], ...store },
+    store: { url: BASE, ...ABOUT, depth: 2, steps: [0, 1], ...store },
   } as unknown as Header;
   return { header, stream: new Stream(header, BASE) };
 }
@@ -201,9 +202,37 @@ test("what is given up ends at once, without a fault", async () => {
 });
 
 test("another store is refused, before anything of it is read", async () => {
-  const { stream } = streamOf({}, { fingerprint: "other" });
-  await assert.rejects(stream.tile([0, 0, 0], [0], signal, nothing), /holds another flow/);
-  assert.deepEqual(asked, ["zarr.json"]);
+  for (const name of Object.keys(ABOUT)) {
+    asked = [];
+    const { stream } = streamOf({}, { [name]: "other" });
+    await assert.rejects(stream.tile([0, 0, 0], [0], signal, nothing), /holds another flow/);
+    assert.deepEqual(asked, ["zarr.json"]);
+  }
+});
+
+test("traces of another tile, time or store are refused", async () => {
+  const whole = files.get(TRACES) as Uint8Array<ArrayBuffer>;
+  for (const other of ["0/traces/c/1/0/0/0/0/0/0", "0/traces/c/0/0/1/0/0/0/0"]) {
+    files.set(TRACES, files.get(other) as Uint8Array<ArrayBuffer>);
+    await assert.rejects(streamOf().stream.tile([0, 0, 0], [0], signal, nothing), failing("broken"));
+  }
+  files.set(TRACES, whole);
+  const told = { attributes: { flowtex: { ...ABOUT, lines: "streamlines" } } };
+  const group = JSON.stringify({ zarr_format: 3, node_type: "group", ...told });
+  files.set("zarr.json", new TextEncoder().encode(group));
+  const { stream } = streamOf({}, { lines: "streamlines" });
+  await assert.rejects(stream.tile([0, 0, 0], [0], signal, nothing), failing("broken"));
+});
+
+test("traces that are measured in something else are refused", async () => {
+  const others: object[] = [{ unit: 0.6 }, { cell: 0.3 }, { lags: [1, 3] }, { lags: [1, 2, 4] }];
+  for (const other of [{}, { unit: 0.5 + 1e-12 }, ...others]) {
+    const { stream, header } = streamOf({}, { depth: 0 });
+    Object.assign(header.slices, other);
+    const loading = stream.root(0, signal, () => ["slices/0"]);
+    if (others.includes(other)) await assert.rejects(loading, failing("broken"));
+    else assertPart(named(await loading).get("slices/0"), "slices/0");
+  }
 });
 
 test("a header that does not fit is refused", async () => {

@@ -76,7 +76,8 @@ def serve(
     with waiting(f"Reading {store.name}") as end_waiting:
         field = open_store(store)
         check_colours(field, options)
-        page = _page(field, title, options)
+        served = ServedStore(store)
+        page = _page(field, title, options, f"store/{served.run}/")
         print_address = announcer(field, host)
 
         def announce(address: str) -> None:
@@ -84,7 +85,7 @@ def serve(
             print_address(address)
 
         serving = run_store(
-            ServedStore(store),
+            served,
             page,
             (host, port),
             token=new_secret() if token is None else token,
@@ -96,8 +97,8 @@ def serve(
     return 0
 
 
-def _page(field: FlowField, title: str | None, options: dict[str, object]) -> str:
-    """Return the page, which finds the store beside it, with all of its levels."""
+def _page(field: FlowField, title: str | None, options: dict[str, object], store: str) -> str:
+    """Return the page, which finds the store at an address, with all of its levels."""
     from flowtex.options import Options
     from flowtex.web.export import page_text
     from flowtex.web.view import web_views
@@ -106,7 +107,7 @@ def _page(field: FlowField, title: str | None, options: dict[str, object]) -> st
     views = web_views(field, arguments)
     try:
         camera = arguments.view.first_camera(views[0].field.surface).to_dict()
-        return page_text(views, store="store/", finest=0, camera=camera, title=title)
+        return page_text(views, store=store, finest=0, camera=camera, title=title)
     finally:
         for view in views:
             view.close()

@@ -16,7 +16,14 @@ from flowtex._util.extras import import_extra
 from flowtex._util.progress import check
 from flowtex.field.steps import LazySteps
 from flowtex.pyramid.checks import check_about, check_header, identity_of
-from flowtex.pyramid.layout import TRACES, create_level, read_header
+from flowtex.pyramid.layout import (
+    HALOS,
+    MOST_HELD,
+    TRACES,
+    create_level,
+    has_halos,
+    read_header,
+)
 from flowtex.pyramid.places import PyramidError, ReadFault, place_text, store_at
 from flowtex.tiles import TileKey
 from flowtex.tiles.pyramid import Nodes, level_lines
@@ -196,6 +203,17 @@ class Levels:
         except Exception as error:
             raise self._error(name, error) from None
         return StoredTile(about, texels)
+
+    def spare(self, key: TileKey) -> int:
+        """Return the ``spare`` that a tile of a series was made with; 0 where that is not known."""
+        if not has_halos(self.about, key.level):
+            return 0
+        array, at = f"{key.level}/{HALOS}", (slice(MOST_HELD), key.row, key.column, 1)
+        try:
+            (told,) = self._read(_Part(array, at, array))
+        except PyramidError:  # no step of it was made
+            return 0
+        return int(told[np.argmax(told > 0)])
 
     def _places(self) -> list[str]:
         return ["x", "y"] if self.about["axes"] else ["points"]

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import asyncio
 import os
+import secrets
 import shutil
 import tempfile
 import threading
@@ -75,6 +76,8 @@ class ServedStore:
     ----------
     about
         What is told of the pyramid, with all of its levels traced.
+    run
+        A word that no other run has.
 
     Raises
     ------
@@ -83,11 +86,12 @@ class ServedStore:
     """
 
     def __init__(self, place: str | Path) -> None:
-        levels = Levels(place)
+        levels = self._levels = Levels(place)
         self._pyramid = StoredPyramid(levels, root_of(levels))
         self._traced = frozenset(levels.about["traced"])
         depth = levels.about["depth"]
         self.about = sealed({**levels.about, "traced": list(range(depth + 1)), "complete": True})
+        self.run = secrets.token_hex(4)
         self._origin = objects_at(levels.place)
         self._reads = asyncio.Semaphore(MOST_READS)
         self._folder = Path(tempfile.mkdtemp(prefix="flowtex-"))
@@ -109,6 +113,7 @@ class ServedStore:
         }
         self._sizes: OrderedDict[str, int] = OrderedDict()
         self._tiles: ByteCache[TileKey, _Traced] = ByteCache(NODE_BYTES, max_count=MOST_TILES)
+        self._spares: dict[TileKey, int] = {}
         self._jobs: dict[tuple[TileKey, int], _Job] = {}
         self._lock = threading.Lock()
         threads = min(os.cpu_count() or 1, MOST_THREADS)
@@ -232,7 +237,6 @@ class ServedStore:
     def _make(self, key: TileKey, step: int, job: _Job) -> None:
         """Make a tile at a destination time, in a thread."""
         with stoppable(lambda: not job.waiting):
-            # All times have the halo that does for the first one.
             tile = self._tiles.get(key, lambda: self._trace(key, step))
             write_tile(self._group[str(key.level)], self._pyramid, key, step, *tile)
             if tile.textures is not None:
@@ -240,7 +244,13 @@ class ServedStore:
         self._note(key, step)
 
     def _trace(self, key: TileKey, step: int) -> _Traced:
-        tile = _Traced(*trace_tile(self._pyramid, key, (step,)))
+        # All times have one halo, by which paths are measured: that of the store, or of the first.
+        spare = self._spares.get(key) or self._levels.spare(key)
+        if spare:
+            tile = _Traced(spare, self._pyramid.textures(key, spare))
+        else:
+            tile = _Traced(*trace_tile(self._pyramid, key, (step,)))
+        self._spares[key] = tile.spare
         if tile.textures is not None and key.level < self._pyramid.depth:
             self._pyramid.check_nodes(key, tile.textures, (step,))
         return tile

@@ -94,8 +94,7 @@ def store_header(view: WebView, scene: ClientData, link: StoreLink) -> Header:
     stored = _stored(view)
     return {
         "url": link.address,
-        "format": stored.about["format"],
-        "fingerprint": stored.about["fingerprint"],
+        **{name: stored.about[name] for name in ("format", "fingerprint", "parameter", "lines")},
         "depth": stored.depth,
         "steps": [scene.source(step) for step in range(scene.steps)],
     }

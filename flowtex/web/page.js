@@ -96,7 +96,7 @@ running)names.has(name)||controller.abort();this.next()}next(){for(;this.wanted.
 key,steps]=this.wanted[0];this.wanted.shift();let name=`${nameOf(key)} ${steps}`;this.running.has(name)||this.run(name,key,
 steps)}}async run(name,key,steps){let controller=new AbortController;this.running.set(name,controller);try{let parts=await this.
 load(key,steps,controller.signal);controller.signal.aborted||parts.forEach(this.give)}catch(error){controller.signal.aborted||
-this.fail(key,error)}finally{this.running.delete(name),this.next()}}};var OWN="own cmap",SRGB={knee:.04045,slope:12.92,offset:.055,scale:1.055,power:2.4};function coloursOf(header){let{scalars,
+this.fail(key,error,steps)}finally{this.running.delete(name),this.next()}}};var OWN="own cmap",SRGB={knee:.04045,slope:12.92,offset:.055,scale:1.055,power:2.4};function coloursOf(header){let{scalars,
 colour,background,lighting,opacity,earth}=header;return{scalars,colour,background,lighting,opacity,earth}}function narrowed(mesh,from,to){
 let share=to.name===from.name?(to.high-to.low)/(from.high-from.low||1):1;return{...mesh,maxColourError:mesh.maxColourError*
 Math.min(share,1)}}function mapOf(header,maps,name){let[first,count]=[header.scalars.maps.indexOf(name)*3*256,256],table=new Uint8Array(
@@ -1100,54 +1100,57 @@ activeTexture(gl.TEXTURE0+n),gl.bindTexture(n<4?gl.TEXTURE_2D_ARRAY:gl.TEXTURE_2
 SAMPLERS.length)}get triangles(){return(this.resources.get("index")?.count??0)/3}draw(before,after,anchor,textures){let gl=this.
 graphics.context;textures&&(this.dropSlices(before,after),this.bindTextures(before,after)),this.bindNodes(before,after,anchor),
 gl.drawElements(gl.TRIANGLES,this.resources.get("index")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(null)}};var REQUEST_MS=60,LOST_MS=8e3,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD=4,Tiles=class{layers=[];missing=[];host;root;tiles=new Map;pyramid=null;chosen={
-choices:new Map,steps:[],names:""};drawn="";asked={names:[],steps:[]};count=0;isWaiting=!1;isOver=!1;lastCame=0;failed=new Set;limits;constructor(host,root){
+choices:new Map,steps:[],names:""};drawn="";asked={names:[],steps:[]};count=0;isWaiting=!1;isWatched=!1;isOver=!1;lastCame=0;failed=new Set;limits;constructor(host,root){
 this.host=host,this.root=root,this.limits=root.header.mesh}has(name,part){return this.tiles.get(name)?.parts.has(part)??
-!1}fail(name){this.failed.add(name),this.host.refine()}dispose(){this.isOver=!0;for(let name of[...this.tiles.keys()])this.
-drop(name)}setPart(name,part){let{graphics,header}=this.root,tile=this.tiles.get(name)??this.emptyTile();if(this.tiles.set(
-name,tile),part.name==="mesh"&&this.giveLimits(tile),part.digest&&tile.parts.get(part.name)?.digest===part.digest)return;
-if(graphics.release(tile.parts.get(part.name)),tile.parts.set(part.name,graphics.hold(part)),part.name==="header"){let own=JSON.
-parse(new TextDecoder().decode(part.data));tile.scene?.dispose(),tile.ranges=own?.ranges,tile.scene=own&&new Scene(graphics,
-{...header,...own,pyramid:null},tile.parts),this.giveMap(tile),this.giveLimits(tile)}else tile.scene?.forget(part.name);
-this.lastCame=performance.now();let{names,steps}=this.chosen;this.missing=this.missing.filter(missing=>!this.isHere(missing,
-steps));let shown=cover(this.chosen.choices,other=>this.isHere(other,steps));String([...shown.keys()])!==names&&this.host.
-refine()}recolour(colours={}){this.asked={names:[],steps:[]};let{mesh,scalars}=this.root.header,{steps}=this.chosen;for(let tile of this.
-tiles.values()){let{scene,parts}=tile;if(!scene)continue;let{header}=scene;Object.assign(header,{mesh:narrowed(mesh,tile.
-scalars,scalars)},colours),tile.ranges&&this.giveLimits(tile),this.giveMap(tile);for(let name of["scalars","mesh"])scene.
-forget(name);if((steps.length?scene.scalarParts(steps[0],steps[steps.length-1]):[]).every(name=>parts.has(name))&&(scalars.
-log===tile.scalars.log||scalars.name===null))continue;let others=[...parts.keys()].filter(name=>name.startsWith("scalars\
-/"));for(let name of others)this.release(tile,name)}}emptyTile(){let{scalars}=this.root.header;return{parts:new Map,scene:void 0,
-scalars,used:this.count}}giveLimits(tile){let{mesh,scalars}=this.root.header;if(tile.scalars=scalars,!tile.scene)return;
-let range=tile.ranges?.[scalars.name??""],from=range&&{...scalars,low:range[0],high:range[1],log:!1};tile.scene.header.mesh=
-from?narrowed(this.limits,from,scalars):mesh}giveMap({scene,parts}){let map=this.root.parts.get("cmap");map&&parts.set("\
-cmap",map),scene?.forget("cmap")}arrange([before,after]){let{camera,canvas}=this.host;if(!camera)return[];let steps=[...new Set(
-[before,after])],shown=this.choose(camera,steps),layers=[{scene:this.root,key:[this.root.header.pyramid?.depth??0,0,0]}],
-names=[ROOT];for(let name of shown.keys()){let scene=this.tiles.get(name)?.scene;scene&&(names.push(name),layers.push({scene,
-key:keyOf(name)}))}let sight=camera.sight(canvas.height),parts=layers.map(({scene,key},n)=>{let{levels,shape}=scene.levels(
-sight);for(let finer of shown.get(names[n])??[])this.hide(levels,shape[1],finer,names[n]);let{pyramid}=this.root.header,
-[row,column]=key.slice(1).map(at=>at*(pyramid?.tileBlocks??0)<<key[0]);return{step:key[0],row,column,shape,levels}});return this.
-layers=layers,this.setTriangles(names,parts),layers.map(({scene})=>scene)}hide(levels,columns,finer,above){let[row,column,
-size]=this.pyramid?.finerPart(keyOf(finer),above)??[0,0,0];for(let j=row;j<Math.min(row+size,levels.length/columns);j+=1)
-levels.fill(-1,j*columns+column,j*columns+Math.min(column+size,columns))}setTriangles(names,parts){let drawn=String(parts.
-map(({levels},n)=>[names[n],levels]));if(drawn===this.drawn&&this.layers.every(({scene})=>scene.hasTriangles))return;this.
-drawn=drawn;let{geometry,mesh,pyramid}=this.root.header,most=Math.log2(mesh.tileCells),blocks=pyramid?.blocks[0]??parts[0].
-shape,joins=geometry.triangles?[]:join(parts,blocks,geometry.periodic,most);parts.forEach(({levels},n)=>this.layers[n].scene.
-setTriangles(levels,joins[n]))}choose(camera,steps){let{header}=this.root,{settings,canvas,ratio}=this.host;if(!header.pyramid)
-return new Map;this.pyramid??=new Pyramid(header.pyramid,this.root.part("places").data);let choices=this.pyramid.choose(
-{...camera.sight(canvas.height/ratio),planes:camera.planes,cellPixels:cellPixels(header.pyramid,settings)});this.count+=
-1;for(let name of choices.keys()){let tile=this.tiles.get(name);tile&&(tile.used=this.count)}let until=performance.now()+
-LOAD_MS,wanted=this.obtainable(wantedTiles(choices),header.pyramid.depth);this.missing=wanted.filter(name=>!this.isHere(
-name,steps)),this.ask(steps),this.trim(steps);let shown=cover(choices,name=>this.isHere(name,steps)&&this.load(name,steps,
-until));return this.chosen={choices,steps,names:String([...shown.keys()])},shown}obtainable(names,depth){let found=names.
-map(name=>{let[level,row,column]=keyOf(name);for(;level<depth&&this.failed.has(nameOf([level,row,column]));)[level,row,column]=
-[level+1,row>>1,column>>1];return level<depth?nameOf([level,row,column]):ROOT});return[...new Set(found)].filter(name=>name!==
-ROOT)}isHere(name,steps){let scene=this.tiles.get(name)?.scene;return scene===null||scene?.missing(steps[0],steps[steps.
-length-1]).length===0}load(name,steps,until){let scene=this.tiles.get(name)?.scene;return!scene||scene.isLoaded(steps)?!0:
-performance.now()>until?(this.host.refine(),!1):(scene.load(steps),!0)}ask(all){let{options,lifetime}=this.host,isLacking=step=>this.
-missing.some(name=>!this.isHere(name,[step])),steps=all.filter(isLacking),open=this.asked.names.filter(name=>!this.isHere(
-name,this.asked.steps));performance.now()-this.lastCame<LOST_MS&&String(open.sort())===String([...this.missing].sort())&&
-(!open.length||String(steps)===String(this.asked.steps))||this.isWaiting||!options.onTiles||(this.isWaiting=!0,lifetime.
-later(()=>{this.isWaiting=!1,!this.isOver&&(this.lastCame=performance.now(),this.asked={names:this.missing,steps},options.
-onTiles?.(this.missing.map(keyOf),steps),this.missing.length&&lifetime.later(()=>this.isOver||this.ask(all),LOST_MS))},REQUEST_MS))}trim(steps){
+!1}fail(name,steps){this.failed.add(this.need(name,steps)),this.host.refine()}need(name,steps){return`${name} ${steps} ${this.
+root.header.scalars.name}`}dispose(){this.isOver=!0;for(let name of[...this.tiles.keys()])this.drop(name)}setPart(name,part){
+let{graphics,header}=this.root,tile=this.tiles.get(name)??this.emptyTile();if(this.tiles.set(name,tile),part.name==="mes\
+h"&&this.giveLimits(tile),part.digest&&tile.parts.get(part.name)?.digest===part.digest)return;if(graphics.release(tile.parts.
+get(part.name)),tile.parts.set(part.name,graphics.hold(part)),part.name==="header"){let own=JSON.parse(new TextDecoder().
+decode(part.data));tile.scene?.dispose(),tile.ranges=own?.ranges,tile.scene=own&&new Scene(graphics,{...header,...own,pyramid:null},
+tile.parts),this.giveMap(tile),this.giveLimits(tile)}else tile.scene?.forget(part.name);this.lastCame=performance.now();
+let{names,steps}=this.chosen;this.missing=this.missing.filter(missing=>!this.isHere(missing,steps));let shown=cover(this.
+chosen.choices,other=>this.isHere(other,steps));String([...shown.keys()])!==names&&this.host.refine()}recolour(colours={}){
+this.asked={names:[],steps:[]};let{mesh,scalars}=this.root.header,{steps}=this.chosen;for(let tile of this.tiles.values()){
+let{scene,parts}=tile;if(!scene)continue;let{header}=scene;Object.assign(header,{mesh:narrowed(mesh,tile.scalars,scalars)},
+colours),tile.ranges&&this.giveLimits(tile),this.giveMap(tile);for(let name of["scalars","mesh"])scene.forget(name);if((steps.
+length?scene.scalarParts(steps[0],steps[steps.length-1]):[]).every(name=>parts.has(name))&&(scalars.log===tile.scalars.log||
+scalars.name===null))continue;let others=[...parts.keys()].filter(name=>name.startsWith("scalars/"));for(let name of others)
+this.release(tile,name)}}emptyTile(){let{scalars}=this.root.header;return{parts:new Map,scene:void 0,scalars,used:this.count}}giveLimits(tile){
+let{mesh,scalars}=this.root.header;if(tile.scalars=scalars,!tile.scene)return;let range=tile.ranges?.[scalars.name??""],
+from=range&&{...scalars,low:range[0],high:range[1],log:!1};tile.scene.header.mesh=from?narrowed(this.limits,from,scalars):
+mesh}giveMap({scene,parts}){let map=this.root.parts.get("cmap");map&&parts.set("cmap",map),scene?.forget("cmap")}arrange([
+before,after]){let{camera,canvas}=this.host;if(!camera)return[];let steps=[...new Set([before,after])],shown=this.choose(
+camera,steps),layers=[{scene:this.root,key:[this.root.header.pyramid?.depth??0,0,0]}],names=[ROOT];for(let name of shown.
+keys()){let scene=this.tiles.get(name)?.scene;scene&&(names.push(name),layers.push({scene,key:keyOf(name)}))}let sight=camera.
+sight(canvas.height),parts=layers.map(({scene,key},n)=>{let{levels,shape}=scene.levels(sight);for(let finer of shown.get(
+names[n])??[])this.hide(levels,shape[1],finer,names[n]);let{pyramid}=this.root.header,[row,column]=key.slice(1).map(at=>at*
+(pyramid?.tileBlocks??0)<<key[0]);return{step:key[0],row,column,shape,levels}});return this.layers=layers,this.setTriangles(
+names,parts),layers.map(({scene})=>scene)}hide(levels,columns,finer,above){let[row,column,size]=this.pyramid?.finerPart(
+keyOf(finer),above)??[0,0,0];for(let j=row;j<Math.min(row+size,levels.length/columns);j+=1)levels.fill(-1,j*columns+column,
+j*columns+Math.min(column+size,columns))}setTriangles(names,parts){let drawn=String(parts.map(({levels},n)=>[names[n],levels]));
+if(drawn===this.drawn&&this.layers.every(({scene})=>scene.hasTriangles))return;this.drawn=drawn;let{geometry,mesh,pyramid}=this.
+root.header,most=Math.log2(mesh.tileCells),blocks=pyramid?.blocks[0]??parts[0].shape,joins=geometry.triangles?[]:join(parts,
+blocks,geometry.periodic,most);parts.forEach(({levels},n)=>this.layers[n].scene.setTriangles(levels,joins[n]))}choose(camera,steps){
+let{header}=this.root,{settings,canvas,ratio}=this.host;if(!header.pyramid)return new Map;this.pyramid??=new Pyramid(header.
+pyramid,this.root.part("places").data);let choices=this.pyramid.choose({...camera.sight(canvas.height/ratio),planes:camera.
+planes,cellPixels:cellPixels(header.pyramid,settings)});this.count+=1;for(let name of choices.keys()){let tile=this.tiles.
+get(name);tile&&(tile.used=this.count)}let until=performance.now()+LOAD_MS,wanted=this.obtainable(wantedTiles(choices),steps,
+header.pyramid.depth);this.missing=wanted.filter(name=>!this.isHere(name,steps)),this.ask(steps),this.trim(steps);let shown=cover(
+choices,name=>this.isHere(name,steps)&&this.load(name,steps,until));return this.chosen={choices,steps,names:String([...shown.
+keys()])},shown}obtainable(names,steps,depth){let needs=[steps,...steps.map(step=>[step])],isFailed=name=>needs.some(some=>this.
+failed.has(this.need(name,some))),found=names.map(name=>{let[level,row,column]=keyOf(name);for(;level<depth&&isFailed(nameOf(
+[level,row,column]));)[level,row,column]=[level+1,row>>1,column>>1];return level<depth?nameOf([level,row,column]):ROOT});
+return[...new Set(found)].filter(name=>name!==ROOT)}isHere(name,steps){let scene=this.tiles.get(name)?.scene;return scene===
+null||scene?.missing(steps[0],steps[steps.length-1]).length===0}load(name,steps,until){let scene=this.tiles.get(name)?.scene;
+return!scene||scene.isLoaded(steps)?!0:performance.now()>until?(this.host.refine(),!1):(scene.load(steps),!0)}ask(all){let{
+options,lifetime}=this.host,isLacking=step=>this.missing.some(name=>!this.isHere(name,[step])),steps=all.filter(isLacking),
+open=this.asked.names.filter(name=>!this.isHere(name,this.asked.steps)),isAsked=performance.now()-this.lastCame<LOST_MS&&
+String(open.sort())===String([...this.missing].sort())&&(!open.length||String(steps)===String(this.asked.steps));if(!(this.
+isWaiting||!options.onTiles)){if(isAsked)return this.watch();this.isWaiting=!0,lifetime.later(()=>{this.isWaiting=!1,!this.
+isOver&&(this.lastCame=performance.now(),this.asked={names:this.missing,steps},options.onTiles?.(this.missing.map(keyOf),
+steps),this.watch())},REQUEST_MS)}}watch(){this.isWatched||!this.missing.length||(this.isWatched=!0,this.host.lifetime.later(
+()=>{this.isWatched=!1,this.isOver||this.ask(this.chosen.steps)},LOST_MS-(performance.now()-this.lastCame)))}trim(steps){
 let bytes=0;for(let[name,tile]of[...this.tiles].sort(([,a],[,b])=>b.used-a.used)){let{parts,used}=tile,slices=[...parts.
 keys()].filter(part=>part.startsWith("slices/"));for(let part of slices.slice(0,Math.max(slices.length-STEPS_HELD,0))){let step=stepOf(
 part);if(steps.includes(step))continue;for(let kind of["slices","extra"])this.release(tile,`${kind}/${step}`);let values=[
@@ -1221,32 +1224,33 @@ return this.canvas.height/Math.max(this.root.clientHeight,1)}lost(){this.tiles?.
 header),this.setSharp(!1)}get lacking(){let[before,after]=this.player.moment;return this.scene?.missing(before,after)??[]}available(){
 let{header,scene,player,shown}=this;if(!header||!scene)return null;let moment=player.moment,count=header.slices.steps,ahead=player.
 playing?[1,2].map(n=>(moment[1]+n)%count):[];this.ask([moment[0],moment[1],...ahead]);let{lacking}=this;return this.panel.
-wait(lacking),lacking.length?shown&&!scene.missing(shown[0],shown[1]).length?shown:null:this.shown=moment}lack(tile,reason){
-tile!==null&&this.tiles?.fail(tile),this.panel.tell(reason)}ask(steps){let now=performance.now(),lacking=[...new Set(steps)].
-filter(step=>this.scene?.missing(step,step).length);for(let step of lacking)!this.options.onNeed||now-(this.requests.get(
-step)??-1/0)<LOST_MS2||(this.requests.set(step,now),this.options.onNeed(step));return!lacking.length}frame(now,until){if(!(this.
-lifetime.isOver||this.graphics.isLost||!this.graphics.gl||!this.isVisible)&&!(!this.header||!this.scene||this.canvas.width<
-2))try{this.advance(now),this.drawPicture(this.header,until)}catch(error){this.pause(),this.panel.fail("The picture coul\
-d not be drawn.",String(error))}}program(header,isClose=this.isClose(header)){let{vertex,fragment}=header.shaders,defines=isMoving(
-header,this.settings)?["FLOWTEX_MOVING"]:[];return isClose&&defines.push("FLOWTEX_CELLS"),this.graphics.programs.get(vertex,
-fragment,...defines)}isClose(header){if(!this.camera)return!1;let view=this.view([0,0,0],this.ratio),tiles=this.tiles?.layers.
-slice(1).map(({scene})=>scene.header)??[];return(tiles.length?tiles:[header]).some(part=>isNear(part,this.settings,view))}drawPicture(header,until){
-let shown=this.available();if(this.camera||this.place(),!shown||!this.camera)return;let{programs}=this.graphics,program=this.
-program(header);if(program.error){this.panel.fail("The shader does not compile with this graphics driver.",program.error);
-return}if(!program.ready||!this.scene?.earth.isReady)return this.request();!this.sharp&&this.renderer.draw(program,shown,
-this.isBusy,until)&&(this.panel.clear(),programs.get(header.shaders.vertex,header.shaders.pick),header.slices.critical&&
-this.program(header,!0),this.setSharp(!this.playing)),this.sharp||this.request()}advance(now){let{player,options}=this;!player.
-playing||!player.advance(now,steps=>this.ask(steps))||(player.varies?options.onTime?.(player.time):options.onClock?.(player.
-clock),this.panel.tick(),this.renderer.restart(),this.setSharp(!1))}view(shown,density){let{header,camera,scene,player}=this;
-if(!header||!camera)throw new Error("there is nothing to look at yet");let{geometry,constants}=header,focus=camera.state.
-focal_point,local=toFrame(geometry.frame,subtract2(focus,geometry.center)),old=scene?.anchor??[0,0,0],range=constants.anchorRange*
-2*camera.height,isFar=v2=>v2.some(c=>Math.abs(c)>range),anchor=isFar(local)?local:[0,0,0];return{focus,anchor:isFar(subtract2(
-local,old))?anchor:old,eye:camera.eye,between:shown[2],time:player.timeOf(shown),clock:player.clock,density,pixel:2*camera.
-height/Math.max(this.root.clientHeight*density,1)}}get canPick(){let{header,graphics}=this;return!header||graphics.isLost||
-!graphics.gl?!1:graphics.programs.get(header.shaders.vertex,header.shaders.pick).ready}point(x,y){return this.find(x,y)?.
-point??null}ground(x,y){let{header,camera}=this;return header&&camera&&groundAt(header,camera,x,y)}find(x,y){let{tiles,camera,
-shown,canvas}=this;if(!tiles?.layers.length||!camera||!shown||!this.canPick)return null;let{anchor}=this.view(shown,1);return pickedPoint(
-{layers:tiles.layers,camera,moment:shown,anchor,canvas},x,y)}};var TILES_AT_ONCE=6,STEPS_AT_ONCE=2,STEPS_WANTED=4,WHOLE=[0,0,0],MEMORY=18e7;function viewersIn(element,count,options,own=()=>({})){
+wait(lacking),lacking.length?shown&&!scene.missing(shown[0],shown[1]).length?shown:null:this.shown=moment}lack(reason,tile,steps=[]){
+tile!==void 0&&this.tiles?.fail(tile,steps),this.panel.tell(reason)}ask(steps){let now=performance.now(),lacking=[...new Set(
+steps)].filter(step=>this.scene?.missing(step,step).length);for(let step of lacking)!this.options.onNeed||now-(this.requests.
+get(step)??-1/0)<LOST_MS2||(this.requests.set(step,now),this.options.onNeed(step));return!lacking.length}frame(now,until){
+if(!(this.lifetime.isOver||this.graphics.isLost||!this.graphics.gl||!this.isVisible)&&!(!this.header||!this.scene||this.
+canvas.width<2))try{this.advance(now),this.drawPicture(this.header,until)}catch(error){this.pause(),this.panel.fail("The\
+ picture could not be drawn.",String(error))}}program(header,isClose=this.isClose(header)){let{vertex,fragment}=header.shaders,
+defines=isMoving(header,this.settings)?["FLOWTEX_MOVING"]:[];return isClose&&defines.push("FLOWTEX_CELLS"),this.graphics.
+programs.get(vertex,fragment,...defines)}isClose(header){if(!this.camera)return!1;let view=this.view([0,0,0],this.ratio),
+tiles=this.tiles?.layers.slice(1).map(({scene})=>scene.header)??[];return(tiles.length?tiles:[header]).some(part=>isNear(
+part,this.settings,view))}drawPicture(header,until){let shown=this.available();if(this.camera||this.place(),!shown||!this.
+camera)return;let{programs}=this.graphics,program=this.program(header);if(program.error){this.panel.fail("The shader doe\
+s not compile with this graphics driver.",program.error);return}if(!program.ready||!this.scene?.earth.isReady)return this.
+request();!this.sharp&&this.renderer.draw(program,shown,this.isBusy,until)&&(this.panel.clear(),programs.get(header.shaders.
+vertex,header.shaders.pick),header.slices.critical&&this.program(header,!0),this.setSharp(!this.playing)),this.sharp||this.
+request()}advance(now){let{player,options}=this;!player.playing||!player.advance(now,steps=>this.ask(steps))||(player.varies?
+options.onTime?.(player.time):options.onClock?.(player.clock),this.panel.tick(),this.renderer.restart(),this.setSharp(!1))}view(shown,density){
+let{header,camera,scene,player}=this;if(!header||!camera)throw new Error("there is nothing to look at yet");let{geometry,
+constants}=header,focus=camera.state.focal_point,local=toFrame(geometry.frame,subtract2(focus,geometry.center)),old=scene?.
+anchor??[0,0,0],range=constants.anchorRange*2*camera.height,isFar=v2=>v2.some(c=>Math.abs(c)>range),anchor=isFar(local)?
+local:[0,0,0];return{focus,anchor:isFar(subtract2(local,old))?anchor:old,eye:camera.eye,between:shown[2],time:player.timeOf(
+shown),clock:player.clock,density,pixel:2*camera.height/Math.max(this.root.clientHeight*density,1)}}get canPick(){let{header,
+graphics}=this;return!header||graphics.isLost||!graphics.gl?!1:graphics.programs.get(header.shaders.vertex,header.shaders.
+pick).ready}point(x,y){return this.find(x,y)?.point??null}ground(x,y){let{header,camera}=this;return header&&camera&&groundAt(
+header,camera,x,y)}find(x,y){let{tiles,camera,shown,canvas}=this;if(!tiles?.layers.length||!camera||!shown||!this.canPick)
+return null;let{anchor}=this.view(shown,1);return pickedPoint({layers:tiles.layers,camera,moment:shown,anchor,canvas},x,
+y)}};var TILES_AT_ONCE=6,STEPS_AT_ONCE=2,STEPS_WANTED=4,WHOLE=[0,0,0],MEMORY=18e7;function viewersIn(element,count,options,own=()=>({})){
 if(count<2)return[new Viewer(element,{...options,...own(0)})];let pair=dom("div",{class:"flowtex-pair"});pair.style.cssText=
 "display: flex; gap: 2px; width: 100%; height: 100%",element.append(pair);let viewers=[];for(let n=0;n<count;n+=1){let cell=dom(
 "div");cell.style.cssText="flex: 1 1 0; min-width: 0; height: 100%",pair.append(cell);let others=()=>viewers.filter((_,m)=>m!==
@@ -1255,17 +1259,17 @@ n),follower=n?{controls:!1,follows:viewers[0]}:{};viewers.push(new Viewer(cell,{
 for(let other of others())follow(other,...values);report?.(...values)};return{onCamera:both((other,camera)=>other.setCamera(
 camera),options.onCamera),onTime:both((other,time)=>other.setTime(time),options.onTime),onClock:both((other,clock)=>other.
 setClock(clock),options.onClock),onSetting:both((other,name,value)=>other.followSetting(name,value),options.onSetting)}}
-function sourceFeed(source,viewer){let give=part=>viewer().setPart(part),fail=(tile,error)=>{let{fault,message=String(error),
-detail}=error;console.warn(message,detail??""),viewer().lack(fault==="unreachable"?null:tile,message)},tiles=new TileQueue(
-(key,steps,signal)=>source.tile(key,steps,signal,part=>viewer().tiles?.has(nameOf(key),part)??!1),give,TILES_AT_ONCE,(key,error)=>fail(
-nameOf(key),error)),wholes=new TileQueue((_,[step],signal)=>source.root(step,signal,()=>viewer().scene?.missing(step,step)??
-[]),give,STEPS_AT_ONCE,(_,error)=>fail(null,error)),wanted=[];return{memory:MEMORY,onTiles:(keys,steps)=>tiles.request(keys,
-steps),onNeed:step=>{wanted=[step,...wanted.filter(other=>other!==step)].slice(0,STEPS_WANTED),wholes.want(wanted.map(each=>[
-WHOLE,[each]]))}}}function mountPage(element,scenes,options={}){let feeds=scenes.map(({loadTile,source},n)=>{let viewer=()=>viewers[n];
+function sourceFeed(source,viewer){let give=part=>viewer().setPart(part),fail=(error,tile,steps)=>{let{fault,message=String(
+error),detail}=error;console.warn(message,detail??""),viewer().lack(message,fault==="unreachable"?void 0:tile,steps)},tiles=new TileQueue(
+(key,steps,signal)=>source.tile(key,steps,signal,part=>viewer().tiles?.has(nameOf(key),part)??!1),give,TILES_AT_ONCE,(key,error,steps)=>fail(
+error,nameOf(key),steps)),wholes=new TileQueue((_,[step],signal)=>source.root(step,signal,()=>viewer().scene?.missing(step,
+step)??[]),give,STEPS_AT_ONCE,(_,error)=>fail(error)),wanted=[];return{memory:MEMORY,onTiles:(keys,steps)=>tiles.request(
+keys,steps),onNeed:step=>{wanted=[step,...wanted.filter(other=>other!==step)].slice(0,STEPS_WANTED),wholes.want(wanted.map(
+each=>[WHOLE,[each]]))}}}function mountPage(element,scenes,options={}){let feeds=scenes.map(({loadTile,source},n)=>{let viewer=()=>viewers[n];
 if(source)return sourceFeed(source,viewer);let queue=loadTile&&new TileQueue(loadTile,part=>viewer().setPart(part));return{
 onTiles:(keys,steps)=>queue?.request(keys,steps)}}),viewers=viewersIn(element,scenes.length,options,n=>feeds[n]);return scenes.
 forEach(({header},n)=>viewers[n].setHeader(header)),scenes.forEach(({parts},n)=>parts.forEach(part=>viewers[n].setPart(part))),
-scenes[0].source?.open().catch(error=>viewers[0].lack(null,error.message)),viewers[0]}function packedOf(view){let[parts,tiles]=[[],new Map];for(let element of document.querySelectorAll(`script[data-view="${view}\
+scenes[0].source?.open().catch(error=>viewers[0].lack(error.message)),viewers[0]}function packedOf(view){let[parts,tiles]=[[],new Map];for(let element of document.querySelectorAll(`script[data-view="${view}\
 "]`)){let info=JSON.parse(element.dataset.part??""),packed=[info,element.textContent??""],tile=tilePart(info.name)?.[0];
 tile?tiles.set(tile,[...tiles.get(tile)??[],packed]):parts.push(packed),element.remove()}return{parts,tiles}}async function sceneOf(header,view,known,texts,openStore){
 let{parts,tiles}=packedOf(view);for(let[{digest},text]of[...tiles.values()].flat())text&&texts.set(digest,text);let unpacked=[];

@@ -15,8 +15,10 @@ import numpy as np
 import pytest
 
 from flowtex._util.array_types import AnyArray
+from flowtex.pyramid.checks import identity_of
 from flowtex.pyramid.layout import SURFACE, TRACES, VALUES, create_array, shard_texels, to_write
 from flowtex.rendering.webgl.protocol import parts_file
+from flowtex.tiles import TileKey
 
 zarr = pytest.importorskip("zarr")
 
@@ -24,6 +26,7 @@ FILE = Path(__file__).resolve().parents[2] / "client" / "tests" / "store.json"
 #: Nodes of a tile, its texels, and those that there is room for.
 NODES, SIZE, ROOM = (4, 5), (5, 7), (6, 8)
 COUNT, EXTRA, STEPS = 3, [0, 2], 2
+ABOUT = {"format": "form", "fingerprint": "print", "parameter": "arclength", "lines": "pathlines"}
 
 
 def told() -> dict[str, Any]:
@@ -63,10 +66,13 @@ def numbers() -> dict[str, AnyArray]:
     mesh = np.arange(19, dtype=np.float32).reshape(1, 1, 19)
     position = rng.integers(0, 99, (*NODES, 3)).astype(np.float32)
     traces = np.zeros((STEPS, 1, 2, 6, *ROOM, 4), np.float16)
-    text = {"count": COUNT, "size": list(SIZE)}
+    slices = told()["slices"]
+    measures = {name: slices[name] for name in ("count", "lags", "unit", "cell")}
     for step in range(STEPS):
+        whole, empty = (identity_of(ABOUT, TileKey(0, 0, column), step) for column in (0, 1))
+        text = {**measures, "size": list(SIZE), **whole}
         traces[step, 0, 0] = shard_texels(text, layers[step], traces.shape[3:])
-        traces[step, 0, 1] = shard_texels({"empty": True}, None, traces.shape[3:])
+        traces[step, 0, 1] = shard_texels({"empty": True, **empty}, None, traces.shape[3:])
     values = np.zeros((STEPS, 1, 2, 2, *ROOM), np.float32)
     nodal = rng.integers(0, 99, (STEPS, 2, *NODES)).astype(np.float32)
     values[:, 0, 0, :, : NODES[0], : NODES[1]] = nodal
@@ -104,7 +110,7 @@ def expected() -> dict[str, Any]:
 
 def write(folder: Path) -> None:
     group = zarr.open_group(folder, mode="w")
-    group.attrs["flowtex"] = {"format": "form", "fingerprint": "print"}
+    group.attrs["flowtex"] = ABOUT
     level = group.require_group("0")
     for name, array in numbers().items():
         shape = array.shape

@@ -12,6 +12,7 @@ import pytest
 
 from flowtex import FlowField
 from flowtex.pyramid import PyramidError, build, open_store
+from flowtex.pyramid.layout import read_header
 from flowtex.pyramid.places import ReadFault
 from flowtex.pyramid.served import ServedStore
 from flowtex.tiles import TileKey, shared_pyramid
@@ -78,14 +79,47 @@ def test_times_of_a_tile_have_one_halo(tmp_path: Path) -> None:
         for step in range(3):
             await served.get(TILE.format(step=step), slice(0, 1))
         group = served._group["0/traces"]
-        from flowtex.pyramid.layout import read_header
-
         headers = [read_header(group[step, 1, 0][0]) for step in range(3)]
         served.close()
         return [header["spare"] for header in headers if header is not None]
 
     found = asyncio.run(spares())
     assert len(found) == 3 and len(set(found)) == 1
+
+
+def uneven() -> FlowField:
+    """Cells that are smaller on both sides of a tile; paths go there at the last time alone."""
+    sides = np.repeat([0.0025, 0.01, 0.0025], [256, 256, 200])
+    x, y = np.meshgrid(np.append(0, np.cumsum(sides)), np.arange(30) / 100)
+    along = np.array([[0.0, 1.0], [0.0, 1.0], [1.0, 0.0]])
+    velocity = np.broadcast_to(along[:, None, None], (3, *x.shape, 2))
+    return FlowField.from_arrays(
+        np.stack([x, y], axis=-1), velocity, times=np.arange(3.0), periodic=""
+    )
+
+
+@pytest.mark.parametrize(("levels", "spare"), [("coarse", 1), ("all", 4)])
+def test_a_tile_that_is_traced_again_keeps_its_halo(
+    tmp_path: Path, levels: str, spare: int
+) -> None:
+    """By it paths are measured; a store that has the tile at other times tells it."""
+    place, name = tmp_path / "a.zarr", "0/traces/c/{step}/0/1/0/0/0/0"
+    build(uneven(), place, levels=levels, lines="streamlines", progress=False)
+    for step in (0, 2):
+        (place / name.format(step=step)).unlink(missing_ok=True)
+
+    async def told() -> list[dict[str, Any]]:
+        served, found = ServedStore(place), []
+        for step in (0, 2):
+            served._tiles.clear()
+            await served.get(name.format(step=step), slice(0, 1))
+            found.append(read_header(served._group["0/traces"][step, 0, 1][0]) or {})
+        served.close()
+        return found
+
+    first, last = asyncio.run(told())
+    assert (first["spare"], last["spare"]) == (spare, spare)
+    assert first["unit"] == last["unit"]
 
 
 NO_NAMES = [

@@ -355,6 +355,28 @@ def test_a_coarser_level_stands_in_for_a_tile_that_is_missing(
 
 
 @pytest.mark.browser
+@pytest.mark.parametrize("lacking", ["traces/c/3/", "values/c/3/"])
+def test_a_tile_that_one_step_or_one_scalar_lacks_is_there_for_others(
+    shown: Shown, server: RangeServer, tmp_path: Path, lacking: str
+) -> None:
+    place = "series.zarr/0/"
+    page = linked(server, tmp_path, "series", **{**NEAR, "focus": (1.2, 0.7), "scalars": "heat"})
+    server.fault = lambda path: 404 if path.startswith(place + lacking) else None
+    shown.open(page.as_uri())
+    assert "is not in the store" in shown.told()
+    shown.wait()
+    assert not [path for path in server.paths if path.startswith(f"{place}values/c/0/")]
+    if lacking.startswith("traces"):
+        shown.page.locator(".flowtex input[aria-label=Time]").fill("0")
+    else:
+        shown.choose("Colour by", "depth")
+    shown.page.wait_for_timeout(300)
+    shown.wait()
+    # Of a scalar that does not vary there is the first step alone.
+    assert [path for path in server.paths if path.startswith(f"{place}values/c/0/")]
+
+
+@pytest.mark.browser
 def test_a_server_that_is_busy_is_asked_again(
     shown: Shown, server: RangeServer, tmp_path: Path
 ) -> None:
@@ -386,6 +408,31 @@ def test_a_server_that_is_away_is_told_and_tried_later(
     shown.page.mouse.wheel(0, -60)
     shown.wait()
     assert tiles_of(server)
+
+
+@pytest.mark.browser
+@pytest.mark.slow
+def test_a_tile_that_was_away_is_asked_for_again_in_a_view_at_rest(
+    shown: Shown, server: RangeServer, tmp_path: Path
+) -> None:
+    """Though another one came after it was asked for."""
+    page = linked(server, tmp_path, "flat", **NEAR)
+    tried: list[str] = []
+
+    def answer(path: str) -> Answer:
+        if not path.startswith("flat.zarr/0/traces/c/"):
+            return None
+        tried.append(path)
+        if path == tried[0]:
+            return 503 if tried.count(path) <= 4 else None
+        time.sleep(3)
+        return None
+
+    server.fault = answer
+    shown.open(page.as_uri())
+    assert "the store does not answer" in shown.told()
+    shown.wait()
+    assert tried.count(tried[0]) == 5 and len(set(tried)) > 1
 
 
 @pytest.mark.browser

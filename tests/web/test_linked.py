@@ -139,6 +139,8 @@ def test_a_page_has_the_root_and_one_moment(store: Path) -> None:
         "url": BUCKET,
         "format": read.header["store"]["format"],
         "fingerprint": read.header["store"]["fingerprint"],
+        "parameter": "arclength",
+        "lines": "streamlines",
         "depth": 1,
         "steps": [0, 1, 2],
     }

@@ -55,8 +55,8 @@ class BrowserView {
       this.parts(`${this.props.source.tiles}${[...key, ...steps].join(".")}`, signal),
     (part) => this.viewer?.setPart(part),
     MOST_TILES,
-    // A coarser one is in its place; nobody asks for it again.
-    (key) => this.viewer?.lack(nameOf(key), "A part of the surface is shown coarse."),
+    // A coarser one is in its place; nobody asks for it again at these steps.
+    (key, _, steps) => this.viewer?.lack("A part of the surface is shown coarse.", nameOf(key), steps),
   );
   private readonly watcher = new MutationObserver(() => this.look());
 

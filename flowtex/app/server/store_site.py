@@ -2,11 +2,12 @@
 
 ::
 
-    GET  /<token>/               the page
-    GET  /<token>/store/<name>   an object of the store, or a part of it
+    GET  /<token>/                     the page
+    GET  /<token>/store/<run>/<name>   an object of the store, or a part of it
 
 All addresses in the page are relative, so that it works behind any proxy. Names are those of a
-pyramid's arrays and numbers of their chunks, and nothing else is looked for.
+pyramid's arrays and numbers of their chunks, and nothing else is looked for. Objects of another
+run, which a browser may still have, lie elsewhere.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from flowtex.pyramid.served import METADATA, Piece, ServedStore
 
 __all__ = ["run_store", "store_application"]
 
-#: Seconds for which a browser may keep an object; a token is that of one run.
+#: Seconds for which a browser may keep an object.
 KEPT_S = 3600
 WRONG = "This page opens with the whole address that flowtex printed."
 FAULT = "This part of the store could not be read or made. The program that serves it has said why."
@@ -82,7 +83,7 @@ def store_application(served: ServedStore, page: str, token: str = "") -> web.Ap
 
     base = "/{token}" if token else ""
     router = application.router
-    router.add_get(f"{base}/store/{{name:.+}}", store_handler)
+    router.add_get(f"{base}/store/{served.run}/{{name:.+}}", store_handler)
     router.add_get(f"{base}/", page_handler)
     if token:
         router.add_get("/", closed)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import re
 import signal
 import urllib.request
 from collections.abc import Awaitable, Callable
@@ -45,12 +46,14 @@ def store(tmp_path_factory: pytest.TempPathFactory) -> Path:
 Client = TestClient[Any, Any]
 
 
-def visit(store: Path, token: str, ask: Callable[[Client], Awaitable[None]]) -> None:
+def visit(store: Path, token: str, ask: Callable[[Client, str], Awaitable[None]]) -> None:
+    """Ask a server, which has the store at an address."""
+
     async def run() -> None:
         served = ServedStore(store)
         server = TestServer(store_application(served, "<p>A page", token))
         async with TestClient(server) as client:
-            await ask(client)
+            await ask(client, f"{token and f'/{token}'}/store/{served.run}")
         served.close()
 
     asyncio.run(run())
@@ -61,42 +64,41 @@ async def text_of(answer: ClientResponse) -> str:
 
 
 def test_only_the_whole_address_opens(store: Path) -> None:
-    async def ask(client: Client) -> None:
-        for path in ("/", "/wrong/", "/wrong/store/zarr.json", "/wrong"):
+    async def ask(client: Client, at: str) -> None:
+        wrong = f"{at}/zarr.json".replace("word", "wrong")
+        for path in ("/", "/wrong/", wrong, "/wrong"):
             answer = await client.get(path)
             assert answer.status == 403 and "whole address" in await text_of(answer)
-        assert (await client.get("/store/zarr.json")).status in (403, 404)
+        assert (await client.get(wrong.removeprefix("/wrong"))).status in (403, 404)
         page = await client.get("/word")  # leads to the folder, so that relative addresses hold
         assert str(page.url).endswith("/word/") and await text_of(page) == "<p>A page"
         assert page.headers["Referrer-Policy"] == "no-referrer"
-        answer = await client.get(
-            "/word/store/zarr.json", headers={"Origin": "http://evil.example"}
-        )
+        answer = await client.get(f"{at}/zarr.json", headers={"Origin": "http://evil.example"})
         assert answer.status == 403
         for method in ("PUT", "POST", "DELETE", "PATCH", "OPTIONS"):
-            assert (await client.request(method, "/word/store/zarr.json")).status == 405
-        told = json.loads(await text_of(await client.get("/word/store/zarr.json")))
+            assert (await client.request(method, f"{at}/zarr.json")).status == 405
+        told = json.loads(await text_of(await client.get(f"{at}/zarr.json")))
         assert told["attributes"]["flowtex"]["traced"] == [0, 1, 2]
 
     visit(store, "word", ask)
 
 
 def test_without_a_token_everybody_may_look(store: Path) -> None:
-    async def ask(client: Client) -> None:
+    async def ask(client: Client, at: str) -> None:
         assert await text_of(await client.get("/")) == "<p>A page"
-        assert (await client.get("/store/zarr.json")).status == 200
+        assert (await client.get(f"{at}/zarr.json")).status == 200
 
     visit(store, "", ask)
 
 
 def test_parts_of_objects(store: Path) -> None:
-    async def ask(client: Client) -> None:
+    async def ask(client: Client, at: str) -> None:
         for name in (TILE, "1/velocity/c/0/0/0/0", "zarr.json"):
-            whole = await client.get(f"/store/{name}")
+            whole = await client.get(f"{at}/{name}")
             body = await whole.read()
             size = len(body)
             assert whole.status == 200 and whole.headers["Accept-Ranges"] == "bytes"
-            head = await client.head(f"/store/{name}")
+            head = await client.head(f"{at}/{name}")
             assert head.status == 200 and head.headers["Content-Length"] == str(size)
             for text, part in {
                 "bytes=0-0": slice(0, 1),
@@ -106,31 +108,31 @@ def test_parts_of_objects(store: Path) -> None:
                 f"bytes={size - 1}-{size + 99}": slice(size - 1, size),
                 "bytes=10-": slice(10, size),
             }.items():
-                answer = await client.get(f"/store/{name}", headers={"Range": text})
+                answer = await client.get(f"{at}/{name}", headers={"Range": text})
                 assert answer.status == 206 and await answer.read() == body[part]
                 span = f"bytes {part.start}-{part.stop - 1}/{size}"
                 assert answer.headers["Content-Range"] == span
             for text in (f"bytes={size}-", "bytes=-0", f"bytes={size + 5}-{size + 9}"):
-                answer = await client.get(f"/store/{name}", headers={"Range": text})
+                answer = await client.get(f"{at}/{name}", headers={"Range": text})
                 assert answer.status == 416
                 assert answer.headers["Content-Range"] == f"bytes */{size}"
             # What is not understood is as if it were not there.
             for text in ("bytes=9-5", "bytes=1-2,4-5", "lines=1-2", "bytes=-", "bytes=x-9"):
-                answer = await client.get(f"/store/{name}", headers={"Range": text})
+                answer = await client.get(f"{at}/{name}", headers={"Range": text})
                 assert answer.status == 200 and len(await answer.read()) == size
 
     visit(store, "", ask)
 
 
 def test_nothing_else_is_found(store: Path) -> None:
-    async def ask(client: Client) -> None:
+    async def ask(client: Client, at: str) -> None:
         for name in (
             "..%2fzarr.json",
             "%2e%2e/%2e%2e/etc/passwd",
             "0/traces/c/0/99/0/0/0/0/0",
             "x",
         ):
-            assert (await client.get(f"/store/{name}")).status == 404
+            assert (await client.get(f"{at}/{name}")).status == 404
 
     visit(store, "", ask)
 
@@ -144,13 +146,28 @@ def test_faults_are_told_once_and_not_to_others(
 
     monkeypatch.setattr("flowtex.pyramid.served.trace_tile", fail)
 
-    async def ask(client: Client) -> None:
+    async def ask(client: Client, at: str) -> None:
         for _ in range(3):
-            answer = await client.get(f"/store/{TILE}")
+            answer = await client.get(f"{at}/{TILE}")
             assert answer.status == 500 and "secret" not in await text_of(answer)
 
     visit(store, "", ask)
     assert [record.getMessage() for record in caplog.records] == ["OSError: the disk is /secret"]
+
+
+def test_what_a_browser_keeps_is_of_one_run(store: Path) -> None:
+    places: list[str] = []
+
+    async def ask(client: Client, at: str) -> None:
+        answer = await client.get(f"{at}/1/velocity/c/0/0/0/0")
+        assert answer.headers["Cache-Control"] == "private, max-age=3600"
+        if places:
+            assert (await client.get(f"{places[0]}/1/velocity/c/0/0/0/0")).status == 404
+        places.append(at)
+
+    visit(store, "word", ask)
+    visit(store, "word", ask)
+    assert places[0] != places[1]
 
 
 @pytest.mark.slow
@@ -159,8 +176,10 @@ def test_the_shell_serves_a_store(store: Path) -> None:
     try:
         assert served.address.endswith("/word/")
         with urllib.request.urlopen(served.address) as answer:
-            assert b"store/" in answer.read()
-        with urllib.request.urlopen(f"{served.address}store/{TILE}") as answer:
+            found = re.search(rb'"url":"(store/[^"]+/)"', answer.read())
+            assert found is not None
+        place = f"{served.address}{found[1].decode()}"
+        with urllib.request.urlopen(f"{place}{TILE}") as answer:
             assert len(answer.read()) > 10_000
     finally:
         said = served.end(signal.SIGINT)

@@ -10,10 +10,10 @@ running)names.has(name)||controller.abort();this.next()}next(){for(;this.wanted.
 key,steps]=this.wanted[0];this.wanted.shift();let name=`${nameOf(key)} ${steps}`;this.running.has(name)||this.run(name,key,
 steps)}}async run(name,key,steps){let controller=new AbortController;this.running.set(name,controller);try{let parts=await this.
 load(key,steps,controller.signal);controller.signal.aborted||parts.forEach(this.give)}catch(error){controller.signal.aborted||
-this.fail(key,error)}finally{this.running.delete(name),this.next()}}};var vue=()=>window.Vue;var MESSAGE_MS=100,MOST_TILES=3,PROPS=["source","settings","camera","time","playing"],isEqual=(a,b)=>JSON.stringify(a)===
+this.fail(key,error,steps)}finally{this.running.delete(name),this.next()}}};var vue=()=>window.Vue;var MESSAGE_MS=100,MOST_TILES=3,PROPS=["source","settings","camera","time","playing"],isEqual=(a,b)=>JSON.stringify(a)===
 JSON.stringify(b),slowly=call=>throttled(setTimeout,MESSAGE_MS,call),BrowserView=class{props;emit;client=null;viewer=null;lastCamera=null;lastTime=NaN;isDisposed=!1;started=0;tiles=new TileQueue(
 (key,steps,signal)=>this.parts(`${this.props.source.tiles}${[...key,...steps].join(".")}`,signal),part=>this.viewer?.setPart(
-part),MOST_TILES,key=>this.viewer?.lack(nameOf(key),"A part of the surface is shown coarse."));watcher=new MutationObserver(
+part),MOST_TILES,(key,_,steps)=>this.viewer?.lack("A part of the surface is shown coarse.",nameOf(key),steps));watcher=new MutationObserver(
 ()=>this.look());constructor(props,emit){this.props=props,this.emit=emit}async begin(element){let address=new URL(this.props.
 source.client,document.baseURI).href;if(this.client=await import(address),this.isDisposed)return;let viewer=new this.client.
 Viewer(element,this.options());this.viewer=viewer,viewer.root.style.height="100%",this.watcher.observe(viewer.root,{attributeFilter:[
