@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import ctypes
 import io
 import os
 import traceback
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
+from contextlib import suppress
+from functools import cache
 from typing import Any
 
 from flowtex._util.extras import import_extra
@@ -21,6 +24,9 @@ __all__ = ["OWN_BYTES", "PART_BYTES", "TILE_BYTES", "Cluster", "Threads"]
 PART_BYTES, TILE_BYTES, OWN_BYTES = 500_000_000, 1_500_000_000, 500_000_000
 #: Times that a task is tried.
 MOST_TRIALS = 3
+#: Parameters of glibc's ``mallopt``, and bytes: arrays above the second have pages of their own,
+#: which go back when they are freed; of others so much may stay free.
+TRIM, MMAP = (-1, 64 << 20), (-3, 1 << 20)
 #: Size of what may be sent to the workers of a cluster; a source that is larger holds its data.
 MOST_SENT = 64_000_000
 
@@ -165,8 +171,22 @@ class Cluster(Threads):
 
 
 def _called(task: tuple[Any, ...], *, function: Callable[..., None], given: list[Any]) -> None:
+    _set_allocator()
     with plain_faults():
         function(*given, *task)
+
+
+@cache
+def _set_allocator() -> None:
+    """Have a worker give memory back.
+
+    Without, half of it stays with the allocator, and Dask pauses the worker for good. What nannies
+    of Dask set gives everything back, for which tasks take half as long again.
+    """
+    with suppress(OSError, AttributeError):  # of another C library
+        libc = ctypes.CDLL("libc.so.6")
+        for parameter, value in (TRIM, MMAP):
+            libc.mallopt(parameter, value)
 
 
 class _Limited(io.RawIOBase):
