@@ -40,7 +40,7 @@ __all__ = ["Built", "build"]
 #: So many failures one after the other end a build: the store is full, or nobody may write there.
 MOST_FAILURES = 20
 #: What a field is known again by, and how it is drawn.
-KNOWN_BY = (
+IDENTITY = (
     *("format", "fingerprint", "nodes", "parameter", "lines", "depth", "tile_cells"),
     *("periodic", "projection", "scalars", "units", "time_unit", "length_unit", "start"),
 )
@@ -186,7 +186,7 @@ def _prepared(place: str, about: dict[str, Any], source: Source) -> tuple[Any, d
         group.attrs.update(attributes_of(about))
     else:
         there = check_about(there, place)
-        other = [name for name in KNOWN_BY if there.get(name) != about[name]]
+        other = [name for name in IDENTITY if there.get(name) != about[name]]
         if other:
             msg = (
                 f"{place} holds the pyramid of another field ({', '.join(other)} differ); remove "
