@@ -237,6 +237,8 @@ export interface Header {
     clearDoublings: number;
     wavePixels: number;
     clockStep: number;
+    /** Turns of the clock after which it begins again: single precision holds no more. */
+    mostTurns: number;
     kernels: string[];
     anchorRange: number;
     /** Cells that a side of a path goes over, beyond which it does not follow their own velocity. */

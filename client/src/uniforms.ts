@@ -87,6 +87,9 @@ export function isNear(header: Header, settings: Settings, view: ViewState): boo
   return Math.floor(s.samples / 2) * s.spacing * grain < constants.farCells * slices.critical;
 }
 
+/** The remainder that is not negative, as `%` of Python. */
+const modulo = (value: number, by: number): number => value - by * Math.floor(value / by);
+
 /** How the grains change: with the time of a field that varies, by the clock of a steady one. */
 function motionUniforms(header: Header, s: Numbers, view: ViewState): Record<string, Uniform> {
   const { geometry, slices, constants } = header;
@@ -94,8 +97,8 @@ function motionUniforms(header: Header, s: Numbers, view: ViewState): Record<str
   const inPixels = !varies && s.speed_in === "pixels";
   // The time in which the flow crosses the surface, or the setting's.
   const turns = varies
-    ? (view.time - slices.times[0]) / (geometry.extent / slices.pace)
-    : (((view.clock / s.period) % 1) + 1) % 1;
+    ? modulo((view.time - slices.times[0]) / (geometry.extent / slices.pace), constants.mostTurns)
+    : modulo(view.clock / s.period, 1);
   const travel = varies ? geometry.extent : s.speed * s.period;
   const coarse = Math.floor(turns / constants.clockStep) * constants.clockStep;
   return {

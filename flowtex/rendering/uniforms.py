@@ -111,6 +111,7 @@ def client_constants() -> dict[str, Any]:
         "clearDoublings": CLEAR_DOUBLINGS,
         "wavePixels": WAVE_PIXELS,
         "clockStep": CLOCK_STEP,
+        "mostTurns": MOST_TURNS,
         "kernels": list(KERNELS),
         "anchorRange": ANCHOR_RANGE,
         "farCells": FAR_CELLS,

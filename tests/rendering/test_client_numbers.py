@@ -61,6 +61,7 @@ VIEWS: dict[str, tuple[Any, Any, float, dict[str, Any]]] = {
     "zoom 1e5": (gyre, straight(1e5), 1.0, {}),
     "curved": (torus, ASIDE, 1.0, {}),
     "between two steps": (swinging, straight(1, (0, 0)), 1.0, {}),
+    "after many turns": (swinging, straight(1, (0, 0)), 1.0, {"time": 1e7 + 0.55}),
     "streamlines": (swinging, straight(1, (0, 0)), 1.0, {"lines": "streamlines"}),
     "image": (gyre, WHOLE, 1.0, {"noise": "image", "tiles": 3}),
     "streaming": (gyre, WHOLE, 1.0, {"motion": "uniform", "period": 3.0}),
@@ -74,7 +75,8 @@ VIEWS: dict[str, tuple[Any, Any, float, dict[str, Any]]] = {
 
 
 def uniforms_of(name: str) -> dict[str, Any]:
-    make, camera, density, options = VIEWS[name]
+    make, camera, density, given = VIEWS[name]
+    options = {key: value for key, value in given.items() if key != "time"}
     settings = Settings(**{"samples": 11, **options})
     image = as_picture(IMAGE) if settings.noise == "image" else None
     store = SliceStore(make(), lines=options.get("lines", "pathlines"))
@@ -84,7 +86,7 @@ def uniforms_of(name: str) -> dict[str, Any]:
         anchor=np.array([0.1, 0.2, 0.0]),
         eye=np.asarray(camera.eye, dtype=float),
         between=0.375,
-        time=0.55,
+        time=given.get("time", 0.55),
         clock=7.3,
         density=density,
     )
