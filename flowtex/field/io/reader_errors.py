@@ -7,6 +7,7 @@ starts with the name of the file.
 from __future__ import annotations
 
 import logging
+import threading
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -18,16 +19,21 @@ from flowtex.errors import FieldError
 
 __all__ = ["errors_of_file"]
 
+#: Held while VTK's output window, its logger and Python's root logger are changed: each exists once
+#: in a process, and two threads that replace them at the same time corrupt the heap. A file may be
+#: opened while another is read, so the thread that holds it may take it again.
+_VTK_GLOBALS = threading.RLock()
+
 
 @contextmanager
 def errors_of_file(path: str | Path) -> Iterator[None]:
     """Turn what readers raise, and errors that VTK logs, into one FieldError with the path first.
 
-    What VTK warns of becomes a UserWarning.
+    What VTK warns of becomes a UserWarning. One thread at a time reads files.
     """
     file = Path(path).expanduser()
     cause: Exception | None = None
-    with _vtk_log() as catcher:
+    with _VTK_GLOBALS, _vtk_log() as catcher:
         try:
             yield
         except (ValueError, RuntimeError, OSError, KeyError, ImportError, ParseError) as error:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import logging
 import re
+import subprocess
+import sys
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -493,6 +495,43 @@ def test_logging_is_left_as_it_was(tmp_path: Path) -> None:
         vtkOutputWindow.GetInstance(),
     )
     assert before == after
+
+
+MANY_THREADS = """
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from flowtex.errors import FieldError
+from flowtex.field import FlowField
+
+def faults(path):
+    found = set()
+    for _ in range(60):
+        try:
+            FlowField.from_file(path)
+        except FieldError as error:
+            found.add(str(error))
+    return found
+
+with ThreadPoolExecutor(4) as pool:
+    found = set().union(*pool.map(faults, [sys.argv[1]] * 4))
+print(*found, sep="\\n")
+"""
+
+
+def test_threads_that_read_broken_files_do_not_corrupt_the_heap(tmp_path: Path) -> None:
+    path = tmp_path / "a.vts"
+    path.write_text("garbage", encoding="ascii")
+    done = subprocess.run(
+        [sys.executable, "-c", MANY_THREADS, str(path)],
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=300,
+    )
+    assert done.returncode == 0, f"{done.returncode}: {done.stderr}"
+    assert done.stderr == ""
+    (fault,) = done.stdout.splitlines()
+    assert fault.startswith(f"{path}: the file is broken or incomplete. VTK says: ")
 
 
 def test_what_vtk_only_warns_of_is_passed_on(tmp_path: Path) -> None:
