@@ -1,0 +1,81 @@
+"""How much memory this process may still take, in a container as well."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import suppress
+from pathlib import Path
+
+__all__ = ["available_bytes"]
+
+#: What is assumed where the system does not tell.
+UNKNOWN_BYTES = 4_000_000_000
+
+
+def available_bytes(root: Path = Path("/")) -> int:
+    """Return the bytes that this process can still take before memory runs out.
+
+    It is the least of the free physical memory, what the limits of the control groups (versions 1
+    and 2) leave, and what ``RLIMIT_AS`` leaves. ``root`` is the folder in which ``proc`` and
+    ``sys`` lie.
+    """
+    known = [*_physical(root), *_groups(root), *_address_space(root)]
+    return max(min(known, default=UNKNOWN_BYTES), 0)
+
+
+def _physical(root: Path) -> Iterator[int]:
+    free = _table(root / "proc/meminfo").get("MemAvailable:")
+    if free is not None:
+        yield free * 1024
+        return
+    with suppress(AttributeError, ValueError, OSError):
+        # What is free now is not known on macOS, and neither is known on Windows.
+        yield os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+
+
+def _groups(root: Path) -> Iterator[int]:
+    """Yield what the limits of this process's control groups, and of those above them, leave."""
+    for line in _text(root / "proc/self/cgroup").splitlines():
+        _, controllers, path = line.split(":", 2)
+        if not controllers:
+            top, limit, used = root / "sys/fs/cgroup", "memory.max", "memory.current"
+        elif "memory" in controllers.split(","):
+            top, limit = root / "sys/fs/cgroup/memory", "memory.limit_in_bytes"
+            used = "memory.usage_in_bytes"
+        else:
+            continue
+        group = top / path.strip("/")
+        for folder in (group, *group.parents):
+            most, now = _text(folder / limit), _text(folder / used)
+            if most.isdecimal() and now.isdecimal():
+                # The cache of files is given back when memory is short.
+                pages = _table(folder / "memory.stat")
+                cache = pages.get("active_file", 0) + pages.get("inactive_file", 0)
+                yield int(most) - int(now) + min(cache, int(now))
+            if folder == top:
+                break
+
+
+def _address_space(root: Path) -> Iterator[int]:
+    try:
+        import resource
+    except ModuleNotFoundError:  # Windows
+        return
+    most = resource.getrlimit(resource.RLIMIT_AS)[0]
+    if most != resource.RLIM_INFINITY:
+        pages = _text(root / "proc/self/statm").split() or ["0"]
+        yield most - int(pages[0]) * resource.getpagesize()
+
+
+def _table(path: Path) -> dict[str, int]:
+    """Return the numbers of a file of lines with a name and a number."""
+    rows = [line.split() for line in _text(path).splitlines()]
+    return {row[0]: int(row[1]) for row in rows if len(row) > 1 and row[1].isdecimal()}
+
+
+def _text(path: Path) -> str:
+    try:
+        return path.read_text().strip()
+    except OSError:
+        return ""
