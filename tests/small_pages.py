@@ -14,7 +14,7 @@ from flowtex import FlowField
 if TYPE_CHECKING:
     from flowtex.app import FlowApp
 
-__all__ = ["difference", "picture", "played", "until"]
+__all__ = ["difference", "picture", "played"]
 
 
 def small(*, curved: bool = False, steps: int = 1) -> FlowField:
@@ -70,12 +70,6 @@ def picture(app: Any) -> Any:
 
 def difference(one: Any, other: Any) -> float:
     return float(np.abs(np.asarray(one, int) - np.asarray(other, int)).mean())
-
-
-async def until(true: Callable[[], Any], seconds: float = 10.0) -> None:
-    async with asyncio.timeout(seconds):
-        while not true():
-            await asyncio.sleep(0.005)
 
 
 def played(app: FlowApp, story: Callable[[], Awaitable[None]]) -> None:

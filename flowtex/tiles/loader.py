@@ -100,7 +100,8 @@ class TileLoader:
 
     ``prepare`` makes of textures, in a thread, what is needed to draw them beside their layers.
     ``notify`` is called, in a thread, whenever a tile has become ready or has failed. Errors are
-    kept in ``errors`` by tile; a tile that failed is not tried again.
+    kept in ``errors`` by tile; a tile that failed is not tried again. ``clock`` gives the seconds
+    by which tiles are given up.
     """
 
     def __init__(
@@ -110,10 +111,11 @@ class TileLoader:
         prepare: Callable[[TextureSet], Any] = lambda textures: None,
         notify: Callable[[], None] = lambda: None,
         budget: int = BUDGET_BYTES,
+        clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self.pyramid = pyramid
         self.errors: dict[TileKey, Exception] = {}
-        self._prepare, self._notify = prepare, notify
+        self._prepare, self._notify, self._clock = prepare, notify, clock
         self._tiles: ByteCache[TileKey, Tile] = ByteCache(budget)
         #: When each tile was asked for last, on a clock of requests.
         self._wanted: dict[TileKey, float] = {}
@@ -137,7 +139,7 @@ class TileLoader:
 
         A picture may be drawn in several parts, each of which asks for its own.
         """
-        self._asked = time.monotonic()
+        self._asked = self._clock()
         with self._lock:
             # What has not begun waits behind what is asked for now.
             later = [job for job, future in self._running.items() if future.cancel()]

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import gc
+from collections import Counter
 from html import unescape
 from pathlib import Path
+from types import FunctionType, MethodType
 
 import numpy as np
 import pytest
@@ -11,6 +14,7 @@ import pyvista as pv
 
 pytest.importorskip("trame_rca")
 
+from small_pages import small, small_page
 
 from flowtex import examples
 from flowtex.app import FlowApp, Library
@@ -20,6 +24,9 @@ from flowtex.field.source import FlowSource
 from flowtex.settings import GROUPS, TABLE
 
 pytestmark = pytest.mark.usefixtures("opengl")
+
+#: What holds arrays, windows and listeners.
+KINDS = ("flowtex", "vtkmodules", "pyvista")
 
 
 def test_the_state_has_every_setting_under_a_prefix_of_its_own(
@@ -49,6 +56,42 @@ def test_examples_make_an_app() -> None:
         app.state.get("colour") == "none"
         and app.state.get("about") == "161 × 65 nodes · 31 times · periodic along i"
     )
+    app.close()
+
+
+def objects() -> Counter[str]:
+    """Objects that are alive, by their class, and functions by their name."""
+    gc.collect()
+    functions = (FunctionType, MethodType)
+    kinds = (one if isinstance(one, functions) else type(one) for one in gc.get_objects())
+    return Counter(kind.__qualname__ for kind in kinds if str(kind.__module__).startswith(KINDS))
+
+
+def test_use_leaves_no_object_behind() -> None:
+    app = small_page(small(), 3, 96, 64)
+    app.area.settings.resolution = 32
+
+    def use() -> None:
+        at = {"w": 96, "h": 64, "x": 30, "y": 20}
+        for kind in ("LeftButtonPress", "MouseMove", "LeftButtonRelease", "MouseMove"):
+            app.stream.on_interaction("test", {"type": kind, **at})
+            at["x"] += 9
+        for turn in (-1.0, 1.0):
+            app.stream.on_interaction("test", {"type": "MouseWheel", "spinY": turn, **at})
+        for name, values in (("noise", ("texture", "spots", "procedural")), ("lod", (False, True))):
+            for value in values:
+                setattr(app.area.settings, name, value)
+                app.viewport.draw(96, 64)
+        app.area.player.playing = True
+        app.area.player.advance(0.1)
+        app.area.player.playing = False
+        list(app.stream.painter.full())
+
+    use()  # every kind of noise has been shown once
+    before = objects()
+    for _ in range(2):
+        use()
+    assert objects() - before == Counter()
     app.close()
 
 

@@ -18,7 +18,8 @@ import pytest
 import pyvista as pv
 from cfd_files import CGNS, TIMES, box
 from PIL import Image
-from small_pages import played, until
+from small_pages import played
+from waiting import until
 
 pytest.importorskip("trame_rca")
 

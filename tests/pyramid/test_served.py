@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from waiting import PATIENCE_S, until
 
 from flowtex import FlowField
 from flowtex.pyramid import PyramidError, build, open_store
@@ -151,7 +152,7 @@ def test_a_tile_is_made_once_for_all_who_wait_and_for_nobody_not_at_all(
     def slow(pyramid: Any, key: TileKey, steps: Any) -> Any:
         made.append(key)
         begun.set()
-        go_on.wait(20)
+        go_on.wait(PATIENCE_S)
         return trace_tile(pyramid, key, steps)
 
     monkeypatch.setattr(module, "trace_tile", slow)
@@ -161,12 +162,12 @@ def test_a_tile_is_made_once_for_all_who_wait_and_for_nobody_not_at_all(
 
     async def ask() -> None:
         first = [asyncio.create_task(served.get(name, slice(-9, None))) for _ in range(5)]
-        await asyncio.to_thread(begun.wait, 20)
+        await asyncio.to_thread(begun.wait, PATIENCE_S)
         second = asyncio.create_task(served.get(other))
-        await asyncio.sleep(0.05)
+        await until(lambda: len(served._jobs) == 2)
         second.cancel()  # before its turn
         first[0].cancel()
-        await asyncio.sleep(0.05)
+        await until(lambda: second.done() and first[0].done())
         go_on.set()
         pieces = await asyncio.gather(*first[1:])
         assert len({piece.body for piece in pieces}) == 1

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import threading
-import time
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import pytest
+from waiting import wait_until
 
 from flowtex._util.progress import check
 from flowtex.tiles import TileKey, TileLoader
+from flowtex.tiles.loader import GRACE_S
 
 KEYS = [TileKey(0, 0, n) for n in range(8)]
 
@@ -31,8 +32,15 @@ class Textures:
 
     def layers(self, step: int) -> Any:
         self.source.began.append((self.key, step))
-        while not self.source.go.wait(0.01):
-            check()
+        with Source.lock:
+            Source.now += 1
+            Source.most = max(Source.most, Source.now)
+        try:
+            while not self.source.go.wait(0.01):
+                check()
+        finally:
+            with Source.lock:
+                Source.now -= 1
         if self.key == self.source.broken:
             msg = "no such data"
             raise OSError(msg)
@@ -40,7 +48,10 @@ class Textures:
 
 
 class Source:
-    """A pyramid of such."""
+    """A pyramid of such, and how many of all are made at once, and were at most."""
+
+    lock = threading.Lock()
+    now = most = 0
 
     def __init__(self, broken: TileKey | None = None) -> None:
         self.broken, self.go = broken, threading.Event()
@@ -72,12 +83,12 @@ def test_a_tile_is_there_once_it_is_made() -> None:
     loader.close()
 
 
-def test_what_nobody_wants_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("flowtex.tiles.loader.GRACE_S", 0.05)
+def test_what_nobody_wants_is_given_up() -> None:
     source: Any = Source()
-    loader = TileLoader(source)
+    now = [0.0]
+    loader = TileLoader(source, clock=lambda: now[0])
     loader.request(KEYS, [0])
-    time.sleep(0.1)
+    now[0] = GRACE_S + 0.1
     loader.request(KEYS[-1:], [0])
     source.go.set()
     loader.wait()
@@ -118,8 +129,7 @@ def test_what_is_asked_for_now_comes_before_what_was(monkeypatch: pytest.MonkeyP
     source: Any = Source()
     loader = TileLoader(source)
     loader.request(KEYS[:4], [0])
-    while not source.began:
-        time.sleep(0.01)
+    wait_until(lambda: source.began)
     loader.request(KEYS[6:], [0])
     source.go.set()
     loader.wait()
@@ -133,8 +143,8 @@ def test_all_loaders_together_make_so_many(monkeypatch: pytest.MonkeyPatch) -> N
     loaders = [TileLoader(source) for source in sources]
     for loader in loaders:
         loader.request(KEYS[:2], [0])
-    time.sleep(0.3)
-    assert sum(len(source.began) for source in sources) == 2
+    wait_until(lambda: Source.now == 2)
+    Source.most = 2
     loaders[0].close()  # what waits for its turn is given up
     for source in sources:
         source.go.set()
@@ -142,3 +152,4 @@ def test_all_loaders_together_make_so_many(monkeypatch: pytest.MonkeyPatch) -> N
         loader.wait()
         assert all(loader.get(key, [0]) for key in KEYS[:2])
         loader.close()
+    assert Source.most == 2

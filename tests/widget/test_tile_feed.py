@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import json
-import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
+from waiting import wait_until
 
 from flowtex.options import Options
 from flowtex.rendering.webgl.protocol import Header
@@ -17,8 +17,6 @@ from flowtex.textures import TextureSet
 from flowtex.tiles import Pyramid
 from flowtex.web.view import web_views
 from flowtex.widget.views import Views
-
-PATIENCE_S = 60.0
 
 
 def swirl(times: int = 1) -> Any:
@@ -68,10 +66,7 @@ class Client:
         )
 
     def wait(self, ready: Callable[[], bool]) -> None:
-        end = time.monotonic() + PATIENCE_S
-        while not ready():
-            assert time.monotonic() < end, self.order
-            time.sleep(0.01)
+        wait_until(ready, lambda: self.order)
 
 
 @pytest.fixture

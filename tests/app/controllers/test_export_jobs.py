@@ -2,7 +2,6 @@ from __future__ import annotations
 
 import asyncio
 import threading
-import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -12,6 +11,8 @@ import pytest
 from PIL import Image, ImageSequence
 
 pytest.importorskip("trame_rca")
+
+from waiting import wait_until
 
 from flowtex import FlowField
 from flowtex._util.progress import Stopped
@@ -136,11 +137,16 @@ def test_the_page_goes_on_between_tiles(scene: Viewport, tmp_path: Path) -> None
 
 
 def test_a_job_waits_while_the_view_is_busy(plain: Viewport, tmp_path: Path) -> None:
-    moving = iter([True, True, True])
-    job = PictureJob(plain, tmp_path / "a.png", (60, 40), busy=lambda: next(moving, False))
-    started = time.perf_counter()
+    drawn: list[float] = []
+
+    def busy() -> bool:
+        drawn.append(job.progress)
+        return len(drawn) < 4
+
+    job = PictureJob(plain, tmp_path / "a.png", (60, 40), busy=busy)
     run(job)
-    assert next(moving, None) is None and time.perf_counter() - started > 0.15
+    # Nothing was drawn between the first time that it was busy, and when it was not any more.
+    assert len(drawn) > 4 and len(set(drawn[:4])) == 1 and drawn[4] > drawn[3]
 
 
 @pytest.mark.parametrize("kind", ["gif", "mp4"])
@@ -213,13 +219,6 @@ def test_a_cancelled_job_leaves_nothing(
     wait_until(lambda: threading.active_count() <= threads)
     lists = Path("/proc/self/task").glob("*/children")
     assert [n for found in lists for n in found.read_text().split()] == []
-
-
-def wait_until(true: Any) -> None:
-    end = time.monotonic() + 10
-    while not true():
-        assert time.monotonic() < end
-        time.sleep(0.01)
 
 
 def test_a_file_that_cannot_be_written_is_told(plain: Viewport, tmp_path: Path) -> None:

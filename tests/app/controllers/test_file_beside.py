@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import threading
 from datetime import datetime, timedelta
 from pathlib import Path
@@ -15,7 +14,8 @@ from PIL import Image
 
 pytest.importorskip("trame_rca")
 
-from small_pages import difference, played, small, until
+from small_pages import difference, played, small
+from waiting import PATIENCE_S, until
 
 from flowtex import FlowField
 from flowtex.app import FlowApp, Library
@@ -211,7 +211,7 @@ def test_what_takes_long_can_be_given_up(monkeypatch: pytest.MonkeyPatch) -> Non
     read = app.controllers.beside._read
 
     def slowly(request: Any) -> Any:
-        assert held.wait(10)
+        assert held.wait(PATIENCE_S)
         return read(request)
 
     monkeypatch.setattr(app.controllers.beside, "_read", slowly)
@@ -230,7 +230,7 @@ def test_what_takes_long_can_be_given_up(monkeypatch: pytest.MonkeyPatch) -> Non
         assert len(app.viewport.panes[1].handle.field.times) == 3
         app.state.send(file_beside="two")
         app.state.send(compare="nothing")
-        await asyncio.sleep(0.1)
+        await until(lambda: app.controllers.beside._opening.done())
         assert len(app.viewport.panes) == 1
 
     played(app, story)

@@ -16,6 +16,7 @@ pytest.importorskip("trame_rca")
 
 from lab import Lab, lab
 from served import Link, enter
+from waiting import PATIENCE_S
 
 from flowtex import examples
 from flowtex.app import FlowApp
@@ -83,15 +84,11 @@ def test_all_frames_show_the_application_that_python_has() -> None:
                 await link.until(lambda link=link: link.state.get("answer") == 42)
             app.close()
             for link in links:
-                await asyncio.wait_for(link._task, 10)
-            for _ in range(100):
-                try:
-                    await enter(http, bare, secret)
-                except aiohttp.ClientError:
-                    break
-                await asyncio.sleep(0.05)
-            else:
-                pytest.fail("it still answers")
+                await asyncio.wait_for(link._task, PATIENCE_S)
+            with pytest.raises(aiohttp.ClientError):
+                async with asyncio.timeout(PATIENCE_S):
+                    while True:
+                        await enter(http, bare, secret)
 
     asyncio.run(story())
 

@@ -19,10 +19,12 @@ import pytest
 pytest.importorskip("trame_rca")
 
 from served import Link, Served, enter, start
+from small_pages import small
 from trame.app.core import AVAILABLE_SERVERS
+from waiting import PATIENCE_S, until
 from watching import Watch, count, difference
 
-from flowtex import FlowField, examples
+from flowtex import FlowField
 from flowtex.app import FlowApp, ServeError, serve
 from flowtex.app.server import sessions
 from flowtex.app.server.files import Routes
@@ -99,12 +101,6 @@ def run(story: Coroutine[Any, Any, None]) -> None:
     assert set(AVAILABLE_SERVERS) == before
 
 
-async def until(holds: Callable[[], bool]) -> None:
-    async with asyncio.timeout(10):
-        while not holds():
-            await asyncio.sleep(0.01)
-
-
 def test_each_page_has_a_state_of_its_own_and_comes_back_to_it() -> None:
     async def story() -> None:
         async with place() as here:
@@ -127,14 +123,14 @@ def test_each_page_has_a_state_of_its_own_and_comes_back_to_it() -> None:
 
 
 def test_a_copied_tab_gets_a_session_of_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(sessions, "RECONNECT_WAIT_S", 0.1)
-
     async def story() -> None:
         async with place() as here:
             token = await here.token()
             link = await here.link(token)
+            monkeypatch.setattr(sessions, "RECONNECT_WAIT_S", 0.0)
             assert await here.token(token) != token
             # A page that is loaded again asks before the end of its old connection is known.
+            monkeypatch.setattr(sessions, "RECONNECT_WAIT_S", PATIENCE_S)
             asking = asyncio.create_task(here.token(token))
             await link.close()
             assert await asking == token
@@ -183,14 +179,17 @@ def test_many_who_come_at_once_are_no_more_than_the_limit() -> None:
     run(story())
 
 
-def test_an_idle_session_ends_and_one_in_use_does_not() -> None:
+def test_an_idle_session_ends_and_one_in_use_does_not(monkeypatch: pytest.MonkeyPatch) -> None:
+    now = [0.0]
+    monkeypatch.setattr(sessions, "time", SimpleNamespace(monotonic=lambda: now[0]))
+
     async def story() -> None:
         async with place(idle=0.004) as here:
             used, idle = await here.token(), await here.token()
             link = await here.link(used)
             app = here.app(idle)
+            now[0] = 0.25
             await until(lambda: app.closed)
-            await asyncio.sleep(0.3)
             assert here.site.sessions.get(idle) is None and not here.app(used).closed
             assert app.server.name not in AVAILABLE_SERVERS
             with pytest.raises(aiohttp.WSServerHandshakeError):
@@ -340,9 +339,10 @@ def test_files_of_the_page_are_served_and_no_others() -> None:
     run(story())
 
 
-def leaves_nothing(count: int) -> None:
-    """Open and close sessions of real applications, one after the other."""
-    field = examples.double_gyre_field()
+@pytest.mark.usefixtures("opengl")
+def test_sessions_that_end_leave_nothing() -> None:
+    """Sessions of real applications are opened and closed, one after the other."""
+    field, count = small(), 3
     made: list[weakref.ref[Any]] = []
 
     def make(server: Any) -> FlowApp:
@@ -370,17 +370,6 @@ def leaves_nothing(count: int) -> None:
     assert len(made) == 4 * count
     assert [ref() for ref in made if ref() is not None] == []
     assert [thread for thread in threading.enumerate() if thread not in threads] == []
-
-
-@pytest.mark.usefixtures("opengl")
-def test_sessions_that_end_leave_nothing() -> None:
-    leaves_nothing(3)
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("opengl")
-def test_thirty_sessions_that_end_leave_nothing() -> None:
-    leaves_nothing(30)
 
 
 def test_what_cannot_be_served_is_told() -> None:

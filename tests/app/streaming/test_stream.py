@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import asyncio
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, Literal
 
 import pytest
+from waiting import until
 
 pytest.importorskip("trame_rca")
 
@@ -28,34 +29,44 @@ class Streamer:
         self.sent.append({"name": name, **meta})
 
 
+class Wake(asyncio.Event):
+    """An event that tells whether somebody waits for it."""
+
+    waiting = False
+
+    async def wait(self) -> Literal[True]:
+        self.waiting = True
+        try:
+            return await super().wait()
+        finally:
+            self.waiting = False
+
+
 def test_pictures_come_until_rest_and_then_no_more(flat: FlowApp) -> None:
     stream, streamer = flat.stream, Streamer()
     flat.area.reset_camera()
 
     async def watch() -> None:
+        stream._wake = wake = Wake()
         stream.set_streamer(streamer)
         sharp = flat.state.get("sharp")
         task = asyncio.create_task(stream.run())
-        for _ in range(200):
+        for count in (1, 2, 3):
             # Many requests at once are one picture.
             stream.moved()
             stream.moved()
-            await asyncio.sleep(0.02)
-            if len(streamer.sent) >= 3:
-                break
-        for _ in range(500):
-            if flat.state.get("sharp") > sharp:
-                break
-            await asyncio.sleep(0.02)
+            await until(lambda count=count: len(streamer.sent) >= count)
+        await until(lambda: flat.state.get("sharp") > sharp)
         assert flat.state.get("sharp") == sharp + 1 and flat.state.get("picture") == "sharp"
         assert streamer.sent[-1]["quality"] > streamer.sent[0]["quality"]
         assert (streamer.sent[-1]["w"], streamer.sent[-1]["h"]) == (240, 160)
+        # At rest it waits for a request, and there is none.
+        await until(lambda: wake.waiting)
         count = len(streamer.sent)
-        await asyncio.sleep(0.4)
-        assert len(streamer.sent) == count
-        stream.watched = lambda: False
+        asked: list[bool] = []
+        stream.watched = lambda: bool(asked.append(True))
         stream.changed()
-        await asyncio.sleep(0.3)
+        await until(lambda: len(asked) == 2 and wake.waiting)
         assert len(streamer.sent) == count
         task.cancel()
 
