@@ -19,12 +19,12 @@ from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
-__all__ = ["BUCKET", "Cluster", "ObjectStorage", "Request", "digests", "peak_memory"]
+from waiting import wait_until
+
+__all__ = ["BUCKET", "Cluster", "ObjectStorage", "Request", "digests"]
 
 ROOT = Path(__file__).resolve().parents[1]
 BUCKET = "flows"
-#: Seconds within which a process has to be ready.
-PATIENCE_S = 60.0
 #: Objects that are larger than this lie in files, and not in the memory of the server.
 IN_MEMORY_BYTES = 50_000
 #: Whoever knows the URL may read, as browsers do; writing wants a signature.
@@ -168,12 +168,6 @@ class Cluster:
         return process
 
 
-def peak_memory(pid: int | str = "self") -> int:
-    """Return the most memory that a process has had, in bytes; on Linux alone."""
-    status = Path(f"/proc/{pid}/status").read_text(encoding="utf-8")
-    return 1024 * int(status.partition("VmHWM:")[2].split()[0])
-
-
 def digests(place: str | Path, some: Iterable[str] | None = None) -> dict[str, str]:
     """Return a digest of each object of a store, but for the time that gzip writes into chunks.
 
@@ -217,12 +211,10 @@ def _chunks(data: bytes, array: Any) -> list[bytes]:
 
 
 def _wait_until(ready: Callable[[], bool], process: subprocess.Popen[bytes]) -> None:
-    until = time.monotonic() + PATIENCE_S
-    while not ready():
-        if process.poll() is not None or time.monotonic() > until:
-            msg = f"{process.args!r} did not become ready; see its log.txt"
-            raise RuntimeError(msg)
-        time.sleep(0.02)
+    wait_until(lambda: ready() or process.poll() is not None, lambda: process.args)
+    if not ready():
+        msg = f"{process.args!r} did not become ready; see its log.txt"
+        raise RuntimeError(msg)
 
 
 def _request_of(line: str) -> Request:

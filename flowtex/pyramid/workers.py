@@ -20,7 +20,8 @@ from flowtex.pyramid.places import PyramidError, plain_faults
 __all__ = ["OWN_BYTES", "PART_BYTES", "TILE_BYTES", "Cluster", "Threads"]
 
 #: Most memory that a task takes: one that makes a part of a level, and one that traces a tile or
-#: the root. Tests hold them to it. A process has its own besides, for what is imported.
+#: the root, as ``benchmarks/pyramid.py`` measures. A process has its own besides, for what is
+#: imported.
 PART_BYTES, TILE_BYTES, OWN_BYTES = 500_000_000, 1_500_000_000, 500_000_000
 #: Times that a task is tried.
 MOST_TRIALS = 3

@@ -38,6 +38,11 @@ class WorkerPool:
             self._threads += 1
         threading.Thread(target=self._work, name=self._name, daemon=True).start()
 
+    def has(self, worker: Worker) -> bool:
+        """Whether a job of a worker waits or runs."""
+        with self._lock:
+            return worker in self._busy or any(entry[2] is worker for entry in self._waiting)
+
     def drop(self, worker: Worker) -> None:
         """Forget the jobs of a worker that have not begun."""
         with self._lock:
@@ -77,6 +82,11 @@ class Worker:
         """Do a job after all that are as urgent or more so, also those of other workers."""
         if not self._closed:
             self._pool.put(self, job, urgency)
+
+    @property
+    def busy(self) -> bool:
+        """Whether something is being done, or waits."""
+        return self._pool.has(self)
 
     def close(self) -> None:
         """Begin no other job."""

@@ -7,6 +7,7 @@ import io
 import logging
 import math
 import threading
+import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import SimpleNamespace
@@ -19,7 +20,7 @@ import pyvista as pv
 from cfd_files import CGNS, TIMES, box
 from PIL import Image
 from small_pages import played
-from waiting import until
+from waiting import PATIENCE_S, until
 
 pytest.importorskip("trame_rca")
 
@@ -31,6 +32,7 @@ from flowtex.app import FlowApp, Library
 from flowtex.app.controllers import point_info as point_info_module
 from flowtex.app.controllers.library import Choice
 from flowtex.app.server.security import MESSAGE_BYTES, LimitedMessages
+from flowtex.app.streaming import player
 from flowtex.app.streaming.painter import MOST_PIXELS
 from flowtex.app.streaming.viewport import Viewport
 from flowtex.errors import FieldError
@@ -490,7 +492,8 @@ def test_the_latest_plane_wins_and_the_slider_stays(monkeypatch: pytest.MonkeyPa
         app.state.on("index")(lambda: told.append(app.state.get("index")))
         for index in (4, 5, 6):
             app.state.send(index=index)
-            await asyncio.sleep(0.02)
+            # The first one has begun before the second one is asked for.
+            await until(lambda index=index: told[-1:] == [index] and "k=4" in gates)
         for gate in ("k=4", "k=5", "k=6"):
             gates.setdefault(gate, threading.Event()).set()
         await until(lambda: app.controllers.data.choice.plane == "k=6" and opened(app))
@@ -498,7 +501,7 @@ def test_the_latest_plane_wins_and_the_slider_stays(monkeypatch: pytest.MonkeyPa
         assert shown == ["k=4", "k=6"] and told == [4, 5, 6]
         # Away and back again before the other one was there: it stays away.
         app.state.send(index=2)
-        await asyncio.sleep(0.02)
+        await until(lambda: "k=2" in gates)
         app.state.send(index=6)
         gates.setdefault("k=2", threading.Event()).set()
         await until(lambda: opened(app))
@@ -669,7 +672,7 @@ def test_a_page_that_closes_leaves_nothing_behind(monkeypatch: pytest.MonkeyPatc
         app.state.set(out_format="GIF", out_width=64, out_height=48, out_seconds=1.0, out_fps=10.0)
         app.controllers.sharing.start()
         app.controllers.point_info.click((0.0, 0.0))
-        await asyncio.sleep(0.03)
+        await until(lambda: "k=5" in gates)
         app.close()
         gates.setdefault("k=5", threading.Event()).set()
         tasks = [
@@ -677,7 +680,7 @@ def test_a_page_that_closes_leaves_nothing_behind(monkeypatch: pytest.MonkeyPatc
             app.controllers.sharing._task,
             app.controllers.point_info._task,
         ]
-        await asyncio.wait([task for task in tasks if task is not None], timeout=10)
+        await asyncio.wait([task for task in tasks if task is not None], timeout=PATIENCE_S)
         assert all(task is None or task.done() for task in tasks)
         assert (
             app.controllers.data.choice.plane == "k=3" and app.controllers.point_info._card is None
@@ -689,7 +692,7 @@ def test_a_page_that_closes_leaves_nothing_behind(monkeypatch: pytest.MonkeyPatc
 
     played(app, story)  # and it may be closed twice
     for thread in [thread for thread in threading.enumerate() if thread not in before]:
-        thread.join(10)
+        thread.join(PATIENCE_S)
         assert not thread.is_alive(), thread.name
 
 
@@ -715,7 +718,16 @@ def test_a_flow_may_come_between_any_two_tiles() -> None:
     app.close()
 
 
-def test_time_that_is_moved_by_hand_does_not_run_away() -> None:
+def test_time_that_is_moved_by_hand_does_not_run_away(monkeypatch: pytest.MonkeyPatch) -> None:
+    now, looks = [0.0], list[float]()
+
+    def monotonic() -> float:
+        """Tell the time, which is looked at once before each picture."""
+        looks.append(now[0])
+        return now[0]
+
+    clocks = SimpleNamespace(monotonic=monotonic, perf_counter=time.perf_counter)
+    monkeypatch.setattr(player, "time", clocks)
     app = page(field(steps=3))
     streamer = Streamer()
 
@@ -729,8 +741,10 @@ def test_time_that_is_moved_by_hand_does_not_run_away() -> None:
         await until(lambda: app.viewport.handle.time != first)
         for wanted in (0.25, 0.5, 0.75):
             app.state.send(time=wanted)
-            await asyncio.sleep(0.12)
+            enough = len(looks) + 3
+            await until(lambda enough=enough: len(looks) >= enough)
             assert app.viewport.handle.time == app.state.get("time") == wanted
+        now[0] = player.HOLD_S + 0.1
         await until(lambda: app.viewport.handle.time != 0.75)
 
     played(app, story)
@@ -781,7 +795,7 @@ def test_a_path_is_read_beside_the_page_and_the_latest_click_wins(
     def slowly(view: Any, at: Any, **options: Any) -> Any:
         assert threading.current_thread() is not threading.main_thread()
         asked.append(at)
-        assert free.wait(10)
+        assert free.wait(PATIENCE_S)
         return probe(view, at, **options)
 
     monkeypatch.setattr(point_info_module, "probe", slowly)
@@ -789,7 +803,8 @@ def test_a_path_is_read_beside_the_page_and_the_latest_click_wins(
     async def story() -> None:
         for n in range(8):
             app.controllers.point_info.show_path((1.0 + n / 2, 3.0))
-            await asyncio.sleep(0.005)
+            await until(lambda: asked)
+            await asyncio.sleep(0)
         assert app.state.get("card") is None and len(asked) == 1
         app.area.settings.samples = 5  # what is read is not changed on the way
         free.set()

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
+import weakref
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +12,8 @@ import pytest
 from flowtex import FlowField
 from flowtex._util.array_types import AnyArray, Floats
 from flowtex.errors import FieldError
-from flowtex.pyramid import build, open_store
+from flowtex.field.datasets.regions import RegionNodes, Regions
+from flowtex.pyramid import build, layout, open_store
 from flowtex.pyramid.checks import sealed
 from flowtex.pyramid.levels import Levels
 from flowtex.pyramid.source import RegionSource, source_of
@@ -185,31 +185,24 @@ def test_threads_are_as_many_as_fit(monkeypatch: pytest.MonkeyPatch) -> None:
         assert Threads("1GB").count(TILE_BYTES) == 1
 
 
-BUILD = """
-import resource, sys
-import cf_xarray, dask.array, pyproj, xarray, zarr, flowtex.tiles
-import flowtex.pyramid.tasks
-from flowtex._util import compiled
+def test_a_build_holds_as_many_parts_as_its_memory_allows(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("os.cpu_count", lambda: 8)
+    monkeypatch.setattr(layout, "SHARD_CHUNKS", (1, 1))
+    data = dataset(np.linspace(150, 230, 700), np.linspace(-40, 10, 300))
+    alive: list[weakref.ref[AnyArray]] = []
+    held: list[int] = []
+    read = Regions.nodes
 
-def peak():
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
+    def noted(self: Regions, *given: Any) -> RegionNodes:
+        nodes = read(self, *given)
+        alive.append(weakref.ref(nodes.velocity))
+        held.append(sum(some.nbytes for ref in alive if (some := ref()) is not None))
+        return nodes
 
-compiled.kernels()
-before = peak()
-flowtex.pyramid.build(sys.argv[1], sys.argv[2], memory=sys.argv[3], progress=False)
-print(peak() - before)
-"""
-
-
-@pytest.mark.slow
-def test_a_build_keeps_to_its_memory(tmp_path: Path) -> None:
-    """One thread, and data that are some of what a part may take."""
-    data = dataset(np.arange(0, 360, 0.25), np.linspace(-80, 80, 800), steps=1)
-    whole = sum(data[name].nbytes for name in ("u", "v", "ssh"))
-    data.chunk(lat=256, lon=256).to_zarr(tmp_path / "flow.zarr", zarr_format=2)
-    words = [str(tmp_path / "flow.zarr"), str(tmp_path / "a.zarr"), "1900MB"]
-    with_warning = [sys.executable, "-W", "ignore", "-c", BUILD, *words]
-    done = subprocess.run(with_warning, capture_output=True, text=True, check=True)
-    grown = int(done.stdout)
-    assert whole > 12_000_000
-    assert grown < TILE_BYTES + OWN_BYTES
+    monkeypatch.setattr(Regions, "nodes", noted)
+    memory = OWN_BYTES + TILE_BYTES
+    build(data, tmp_path / "a.zarr", memory=memory, progress=False)
+    part = layout.TILE_CELLS**2 * 3 * np.float64().nbytes
+    assert len(held) > 6 and max(held) <= Threads(memory).count(PART_BYTES) * part

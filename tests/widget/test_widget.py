@@ -6,7 +6,6 @@ import re
 import subprocess
 import sys
 import threading
-import time
 import types
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -15,6 +14,7 @@ import numpy as np
 import pytest
 from PIL import Image
 from triangle_meshes import sphere, surface_of
+from waiting import PATIENCE_S, wait_until
 
 import flowtex
 from flowtex import examples
@@ -22,6 +22,7 @@ from flowtex._util.colours import colour_table
 from flowtex.earth import Projection
 from flowtex.examples._double_gyre import nodes as nodes_of
 from flowtex.settings import TABLE, SettingsError
+from flowtex.web import preview
 from flowtex.widget import feed
 
 pytest.importorskip("anywidget")
@@ -74,7 +75,7 @@ class Heard:
 
     def wait(self, ready: Callable[[], bool]) -> None:
         with self._came:
-            assert self._came.wait_for(ready, timeout=20), self.messages
+            assert self._came.wait_for(ready, timeout=PATIENCE_S), self.messages
 
 
 @pytest.fixture
@@ -212,7 +213,7 @@ def test_triangles_come_at_once_and_have_tiles(make: Make, monkeypatch: pytest.M
     heard.say(kind="ready")
     heard.wait(lambda: {"triangles", "blocks", "slices/0", "places"} <= set(heard.arrays))
     assert heard.arrays["triangles"].max() < header["geometry"]["shape"][1] < len(points)
-    assert widget._views.feeds[0].settled.wait(20)
+    assert widget._views.feeds[0].settled.wait(PATIENCE_S)
     assert widget._header is header
     key = [header["pyramid"]["depth"] - 1, 0, 0]
     heard.say(kind="tiles", keys=[key], steps=[0], seen=0)
@@ -237,7 +238,7 @@ def test_a_field_that_takes_long_has_a_form_between(
     widget = make(gyre(2, nodes=60))
     shapes = [widget._header["geometry"]["shape"]]
     widget.observe(lambda change: shapes.append(change["new"]["geometry"]["shape"]), "_header")
-    assert widget._views.feeds[0].settled.wait(20)
+    assert widget._views.feeds[0].settled.wait(PATIENCE_S)
     assert shapes == [[10, 10], [20, 20], [60, 60]]
 
 
@@ -246,17 +247,11 @@ def test_a_setting_sends_what_it_changes_and_no_more(
 ) -> None:
     widget = make(noise="texture", resolution=32)
     heard = Heard(widget, monkeypatch)
-    heard.say(kind="ready")
-    heard.wait(lambda: "noise" in heard.arrays)
-    assert widget._views.feeds[0].settled.wait(20)
-    count = -1
-    while count != len(heard.messages):  # the widget sends by itself and answers "ready"
-        count = len(heard.messages)
-        time.sleep(0.3)
-    heard.messages.clear()
+    settle(widget, heard)
+    assert "noise" in heard.arrays
     widget.contrast = 2.0
     widget.samples = 30
-    time.sleep(0.1)
+    wait_until(lambda: not busy(widget))
     assert heard.messages == []
     was = heard.arrays["noise"]
     widget.seed = 5
@@ -271,7 +266,7 @@ def test_an_image_can_come_later(make: Make, monkeypatch: pytest.MonkeyPatch) ->
     widget = make()
     widget.set_image(SQUARES.astype(np.uint8))
     assert widget.noise == "image"
-    assert widget._views.feeds[0].settled.wait(20)
+    assert widget._views.feeds[0].settled.wait(PATIENCE_S)
     assert widget._header["paper"]["picture"]
 
 
@@ -308,14 +303,23 @@ def test_a_panel_has_every_setting_and_follows(make: Make) -> None:
     assert widget.settings.samples == 33
 
 
-def test_a_notebook_that_is_read_elsewhere_has_a_picture(make: Make) -> None:
+def test_a_notebook_that_is_read_elsewhere_has_a_picture(
+    make: Make, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    free, draw = threading.Event(), preview.preview_png
+
+    def held(*arguments: Any, **options: Any) -> bytes:
+        free.wait(PATIENCE_S)
+        return draw(*arguments, **options)
+
+    monkeypatch.setattr(preview, "preview_png", held)
     widget = make(gyre(nodes=20))
-    started = time.perf_counter()
     data, _ = widget._repr_mimebundle_()
-    assert time.perf_counter() - started < 1.5  # four tenths of a second, on a machine at rest
+    assert "image/png" not in data  # it was not waited for
+    free.set()
     assert "gyre: 20 x 20" in data["text/plain"]
     assert data["application/vnd.jupyter.widget-view+json"]["model_id"] == widget.model_id
-    assert widget._views.feeds[0].pictured.wait(20)
+    assert widget._views.feeds[0].pictured.wait(PATIENCE_S)
     data, _ = widget._repr_mimebundle_()
     with Image.open(io.BytesIO(base64.b64decode(data["image/png"]))) as picture:
         assert picture.size == (480, 300)
@@ -338,13 +342,12 @@ def test_nothing_is_left_after_closing(make: Make) -> None:
     widget.close()
     assert settings._observers == []
     assert repr(widget).endswith("closed)")
-    for _ in range(100):
+
+    def left() -> list[str]:
         names = [thread.name for thread in threading.enumerate()]
-        if not any(name.startswith("flowtex") for name in names):
-            break
-        time.sleep(0.05)
-    else:
-        pytest.fail(f"threads are left: {names}")
+        return [name for name in names if name.startswith("flowtex")]
+
+    wait_until(lambda: not left(), left)
 
 
 @pytest.mark.parametrize("missing", ["anywidget", "ipywidgets", "traitlets"])
@@ -473,7 +476,7 @@ def test_what_is_shown_is_sent_before_anybody_asks(
 
     monkeypatch.setattr(FlowWidget, "send", send)
     make(gyre(nodes=17))
-    assert came.wait(20)
+    assert came.wait(PATIENCE_S)
 
 
 def test_two_views_are_one_widget(make: Make, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -508,14 +511,18 @@ def test_opacity_and_legend(make: Make) -> None:
         make(opacity=2)
 
 
+def busy(widget: FlowWidget) -> bool:
+    """Tell whether something is being made or sent."""
+    return any(
+        worker.busy for feed in widget._views.feeds for worker in (feed._builds, feed._answers)
+    )
+
+
 def settle(widget: FlowWidget, heard: Heard) -> None:
     """Wait until the widget has sent all that it sends by itself."""
     heard.say(kind="ready")
-    assert widget._views.feeds[0].settled.wait(20)
-    count = -1
-    while count != len(heard.messages):
-        count = len(heard.messages)
-        time.sleep(0.3)
+    wait_until(lambda: not busy(widget))
+    assert widget._views.feeds[0].settled.is_set()
     heard.messages.clear()
 
 
@@ -548,12 +555,9 @@ def test_an_appearance_is_sent_without_the_slices(
     headers: list[Any] = []
     widget.observe(lambda change: headers.append(change["new"]), "_header")
     widget.clim, widget.opacity, widget.visible = (0, 1), 0.5, False
-    for _ in range(100):
-        if headers and headers[-1]["opacity"] == 0:
-            break
-        time.sleep(0.05)
+    wait_until(lambda: headers and headers[-1]["opacity"] == 0)
     assert (headers[-1]["scalars"]["low"], headers[-1]["scalars"]["high"]) == (0, 1)
-    assert headers[-1]["opacity"] == 0 and not headers[-1]["scalars"]["bar"]
+    assert not headers[-1]["scalars"]["bar"]
 
 
 def test_colours_that_are_chosen_in_the_browser_are_taken(
@@ -588,12 +592,8 @@ def test_lines_of_the_earth_are_switched_from_both_sides(
     widget.coastlines, widget.land = False, "red"
     heard.say(kind="appearance", changes={"graticule": False})
     assert widget.graticule is False
-    for _ in range(100):
-        if headers and not headers[-1]["graticule"]:
-            break
-        time.sleep(0.05)
-    assert headers[-1]["land"] == [1, 0, 0]
-    assert not headers[-1]["coastlines"] and not headers[-1]["graticule"]
+    wait_until(lambda: headers and not headers[-1]["graticule"])
+    assert headers[-1]["land"] == [1, 0, 0] and not headers[-1]["coastlines"]
 
 
 @pytest.mark.parametrize(

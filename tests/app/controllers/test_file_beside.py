@@ -230,7 +230,9 @@ def test_what_takes_long_can_be_given_up(monkeypatch: pytest.MonkeyPatch) -> Non
         assert len(app.viewport.panes[1].handle.field.times) == 3
         app.state.send(file_beside="two")
         app.state.send(compare="nothing")
-        await until(lambda: app.controllers.beside._opening.done())
+        opening = app.controllers.beside._opening
+        assert opening is not None
+        await until(opening.done)
         assert len(app.viewport.panes) == 1
 
     played(app, story)

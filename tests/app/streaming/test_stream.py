@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from functools import partial
 from types import SimpleNamespace
 from typing import Any, Literal
 
@@ -23,6 +24,9 @@ class Streamer:
     def __init__(self) -> None:
         self.sent: list[dict[str, Any]] = []
         self.coreServer = SimpleNamespace(network_monitor=SimpleNamespace(pending=0))
+
+    def has(self, count: int) -> bool:
+        return len(self.sent) >= count
 
     def push_content(self, name: str, meta: dict[str, Any], content: bytes) -> None:
         assert content[:2] == b"\xff\xd8"
@@ -55,7 +59,7 @@ def test_pictures_come_until_rest_and_then_no_more(flat: FlowApp) -> None:
             # Many requests at once are one picture.
             stream.moved()
             stream.moved()
-            await until(lambda count=count: len(streamer.sent) >= count)
+            await until(partial(streamer.has, count))
         await until(lambda: flat.state.get("sharp") > sharp)
         assert flat.state.get("sharp") == sharp + 1 and flat.state.get("picture") == "sharp"
         assert streamer.sent[-1]["quality"] > streamer.sent[0]["quality"]
@@ -64,7 +68,12 @@ def test_pictures_come_until_rest_and_then_no_more(flat: FlowApp) -> None:
         await until(lambda: wake.waiting)
         count = len(streamer.sent)
         asked: list[bool] = []
-        stream.watched = lambda: bool(asked.append(True))
+
+        def nobody() -> bool:
+            asked.append(True)
+            return False
+
+        stream.watched = nobody
         stream.changed()
         await until(lambda: len(asked) == 2 and wake.waiting)
         assert len(streamer.sent) == count
