@@ -7,10 +7,8 @@ In the suite every test draws the same few examples each time. ``make fuzz`` dra
 from __future__ import annotations
 
 import os
-import time
 import warnings
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from typing import Any
 
 import hypothesis
@@ -30,7 +28,6 @@ __all__ = [
     "links",
     "property_test",
     "setting_values",
-    "within",
 ]
 
 Array = NDArray[Any]
@@ -203,15 +200,6 @@ def field_of(arguments: dict[str, Any]) -> FlowField | None:
             assert " expected " in str(error) or "; " in str(error), error
             assert len(str(error)) < 2000
             return None
-
-
-@contextmanager
-def within(seconds: float) -> Iterator[None]:
-    """Fail where something takes longer, in this process alone."""
-    start = time.process_time()
-    yield
-    taken = time.process_time() - start
-    assert taken < seconds, f"took {taken:.1f} s"
 
 
 def setting_values(*, resolution: int = 64, samples: int = 30) -> Strategy:
