@@ -29,6 +29,9 @@ pytest_plugins = ["small_pages"]
 
 # Before anything opens a window, and for every process that a test starts.
 diagnostics.prefer_headless()
+# Workers and the many processes that tests start would each compile the package and the tests anew.
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+sys.dont_write_bytecode = False
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
