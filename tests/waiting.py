@@ -23,7 +23,7 @@ def wait_until(holds: Callable[[], Any], seen: Callable[[], object] = lambda: ""
     return found
 
 
-async def until(holds: Callable[[], Any]) -> None:
+async def until(holds: Callable[..., Any]) -> None:
     """Do the same in an event loop, which goes on meanwhile."""
     async with asyncio.timeout(PATIENCE_S):
         while not holds():
