@@ -1,51 +1,145 @@
-"""Files that are written as a whole or not at all."""
+"""Files for a user: replaced once the new one is complete, else left as they were.
+
+Everything in the package that writes a file for a user writes it here. The new file lies beside the
+old one until it is complete and on the disk. After an error it is removed; after a process that was
+killed, the next one that writes the same file removes it.
+"""
 
 from __future__ import annotations
 
+import errno
+import glob
+import io
 import os
-import tempfile
+import secrets
+import stat
+import weakref
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from functools import partial
 from pathlib import Path
+from typing import IO
+
+from flowtex._util.temporary import claim, remove_stale
 
 __all__ = ["WholeFile", "whole_file"]
 
+#: Characters of the name of a file that are in that of its part.
+STEM_LENGTH = 40
+
 
 class WholeFile:
-    """A temporary file that replaces another, ``path``, once it is complete.
+    """A new file that replaces ``path`` once it is complete.
 
-    The temporary file, ``part``, ends as ``path`` does and is empty to begin with. An OSError says
-    that there is no such folder, or no right to write there.
+    A symbolic link is followed. A file that is replaced keeps its mode, and its owner where that is
+    allowed.
+
+    Parameters
+    ----------
+    path
+        File to write.
+
+    Attributes
+    ----------
+    part
+        Path of the new file, with the suffix of ``path``, for libraries that open files by name.
+    file
+        The new file, empty and open for reading and writing.
+
+    Raises
+    ------
+    OSError
+        When the folder does not exist, writing is not permitted, or ``path`` is no regular file.
     """
 
-    def __init__(self, path: Path) -> None:
-        self._path = path
-        handle, name = tempfile.mkstemp(
-            dir=path.parent, prefix=f".{path.stem}.", suffix=f".part{path.suffix}"
-        )
-        os.close(handle)
-        self.part = Path(name)
+    def __init__(self, path: str | Path) -> None:
+        self._target = target = Path(os.path.realpath(path))
+        old = _old_file(target)
+        stem = f".{target.stem[:STEM_LENGTH]}."
+        pattern = f"{glob.escape(stem)}????????.part{glob.escape(target.suffix)}"
+        remove_stale(target.parent.glob(pattern), Path.unlink)
+        try:
+            self._open(target, stem, 0o666 if old is None else 0o600)
+        except OSError as error:
+            error.filename = str(path)
+            raise
+        if old is not None:
+            with suppress(OSError, AttributeError):  # without the right to, and on Windows
+                os.chown(self.part, old.st_uid, old.st_gid)
+            self.part.chmod(stat.S_IMODE(old.st_mode) & 0o777)
+        self.file: IO[bytes] = _File(self._raw)
+
+    def _open(self, target: Path, stem: str, mode: int) -> None:
+        """Make and lock the new file, under a name that is not taken."""
+        while True:
+            self.part = target.with_name(f"{stem}{secrets.token_hex(4)}.part{target.suffix}")
+            # Before there is a file: a signal may come between any two lines.
+            opened: list[io.FileIO] = []
+            self._end = weakref.finalize(self, _remove, self.part, opened, os.getpid())
+            try:
+                # The system applies the umask to the mode.
+                opener = partial(os.open, mode=mode)
+                self._raw = io.FileIO(str(self.part), "x+", opener=opener)
+            except FileExistsError:
+                self._end.detach()
+                continue
+            opened.append(self._raw)
+            if claim(self._raw.fileno(), self.part):
+                return
+            self._end()
 
     def keep(self) -> None:
-        """Replace the file by the temporary one."""
-        # Temporary files are readable by their owner alone; this one gets the rights of any file.
-        mask = os.umask(0)
-        os.umask(mask)
-        self.part.chmod(0o666 & ~mask)
-        self.part.replace(self._path)
+        """Put the new file in the place of the old one."""
+        self.file.flush()
+        os.fsync(self._raw.fileno())
+        if os.name == "nt":  # Windows does not move a file that is open
+            self.file.close()
+        self.part.replace(self._target)
+        self._end.detach()
+        self.file.close()
 
     def drop(self) -> None:
-        """Delete the temporary file, if :meth:`keep` was not called."""
-        with suppress(OSError):
-            self.part.unlink()
+        """Remove the new file; after :meth:`keep` this does nothing."""
+        self._end()
+
+
+class _File(io.BufferedRandom):
+    """A file without a descriptor, to which Pillow would write without noticing a short write."""
+
+    def fileno(self) -> int:
+        raise io.UnsupportedOperation
 
 
 @contextmanager
-def whole_file(path: Path) -> Iterator[Path]:
-    """Yield the path of a :class:`WholeFile`, which is deleted after an error."""
-    file = WholeFile(path)
+def whole_file(path: str | Path) -> Iterator[IO[bytes]]:
+    """Open a :class:`WholeFile` for writing; it replaces ``path`` unless an error is raised."""
+    new = WholeFile(path)
     try:
-        yield file.part
-        file.keep()
+        yield new.file
+        new.keep()
     finally:
-        file.drop()
+        new.drop()
+
+
+def _old_file(target: Path) -> os.stat_result | None:
+    """Return what is known of the file that is replaced; refuse one that must not be."""
+    try:
+        old = target.stat()
+    except FileNotFoundError:
+        return None
+    if stat.S_ISDIR(old.st_mode):
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(target))
+    if not stat.S_ISREG(old.st_mode):
+        raise OSError(errno.EINVAL, "not a regular file", str(target))
+    if not os.access(target, os.W_OK):
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(target))
+    return old
+
+
+def _remove(part: Path, opened: list[io.FileIO], owner: int) -> None:
+    if os.getpid() != owner:  # a fork of the owner
+        return
+    for raw in opened:
+        raw.close()  # without what is buffered
+    with suppress(OSError):
+        part.unlink()

@@ -8,6 +8,7 @@ there is no OpenGL to draw with.
 from __future__ import annotations
 
 import io
+import signal
 import sys
 import warnings
 from collections.abc import Sequence
@@ -15,6 +16,7 @@ from typing import Any
 
 from cyclopts import App, CycloptsError
 
+from flowtex._util.ending import Ended, ended_by_signals
 from flowtex.cli.console import complain
 from flowtex.cli.info import info
 from flowtex.cli.options import UsageError
@@ -54,7 +56,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command, by default that of the process, and return the exit code.
 
     It is 0 when all went well, 2 when something was asked for that cannot be, 1 when there is no
-    OpenGL, and for ``doctor`` when something is missing.
+    OpenGL, and for ``doctor`` when something is missing; after Ctrl-C, SIGTERM and SIGHUP it is 128
+    and the number of the signal.
     """
     words = list(sys.argv[1:] if arguments is None else arguments)
     if isinstance(sys.stdout, io.TextIOWrapper):
@@ -64,9 +67,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     print_warning = warnings.showwarning
     warnings.showwarning = _warn  # type: ignore[assignment]
     try:
-        result = app(words, exit_on_error=False, print_error=False, result_action="return_value")
+        with ended_by_signals():
+            result = app(
+                words, exit_on_error=False, print_error=False, result_action="return_value"
+            )
     except KeyboardInterrupt:
-        return 130
+        return 128 + signal.SIGINT
+    except Ended as ended:
+        return ended.code
     except Exception as error:
         code = _exit_code(error)
         if debug or code is None:

@@ -11,6 +11,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
+from flowtex._util.whole_file import whole_file
 from flowtex.cli.checks import (
     check_colours,
     check_image,
@@ -73,8 +74,8 @@ def render(
     from flowtex import render as draw
 
     pixels = draw(field, size=size, time=moment, **options)
-    with _writing(output):
-        Image.fromarray(pixels).save(output)
+    with _writing(output), whole_file(output) as file:
+        Image.fromarray(pixels).save(file, Image.EXTENSION[output.suffix.lower()])
     lost = (
         f", {field.normal_share:.0%} of the flow leaves the surface"
         if field.normal_share > NOTABLE_LOSS

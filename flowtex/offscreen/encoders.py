@@ -65,13 +65,13 @@ class MovieError(ValueError):
 class MP4Encoder:
     """Writes H.264 with PyAV; the arguments are those of :class:`MovieWriter`."""
 
-    def __init__(self, part: Path, size: Size, fps: float, quality: int) -> None:
+    def __init__(self, new: WholeFile, size: Size, fps: float, quality: int) -> None:
         av = _pyav()
         from av.video.reformatter import Interpolation
 
         self._frame_of = av.VideoFrame.from_ndarray
         self._exact = Interpolation.AREA | Interpolation.ACCURATE_RND
-        self._movie = av.open(str(part), "w", format="mp4", options={"movflags": "+faststart"})
+        self._movie = av.open(str(new.part), "w", format="mp4", options={"movflags": "+faststart"})
         rate = Fraction(fps).limit_denominator(1001)
         # Half as many steps of the quantizer again for each tenth: 80 is a rate factor of 18.
         factor = {"crf": f"{50 - 0.4 * quality:g}", "preset": "medium"}
@@ -125,18 +125,17 @@ class PillowEncoder:
     The pictures of a GIF share one palette, without dithering, so that nothing flickers.
     """
 
-    def __init__(self, part: Path, size: Size, fps: float, quality: int) -> None:
-        self._part, self._size, self._fps, self._quality = part, size, fps, quality
+    def __init__(self, new: WholeFile, size: Size, fps: float, quality: int) -> None:
+        self._new, self._size, self._fps, self._quality = new, size, fps, quality
+        self._format = new.part.suffix[1:].upper()
         self._count = 0
         self._spool = tempfile.TemporaryFile()  # noqa: SIM115 closed by close()
 
     def add(self, picture: Bytes) -> None:
         """Keep a picture."""
         if (self._count + 1) * picture.shape[0] * picture.shape[1] > PILLOW_MAX_PIXELS:
-            kind = self._part.suffix[1:].upper()
-            msg = (
-                f"a {kind} takes at most {PILLOW_MAX_PIXELS:,} pixels in all; write an MP4, or less"
-            )
+            most = f"{PILLOW_MAX_PIXELS:,} pixels in all"
+            msg = f"a {self._format} takes at most {most}; write an MP4, or less"
             raise MovieError(msg)
         self._spool.write(np.ascontiguousarray(picture).tobytes())
         self._count += 1
@@ -146,7 +145,7 @@ class PillowEncoder:
         from PIL import Image
 
         pictures = self._pictures(cancelled)
-        if self._part.suffix.lower() == ".gif":
+        if self._format == "GIF":
             palette, plain = self._palette(), Image.Dither.NONE
             pictures = (p.quantize(palette=palette, dither=plain) for p in pictures)
             self._save(pictures, unit=10, optimize=False, disposal=1)
@@ -175,7 +174,8 @@ class PillowEncoder:
         ends = [round(1000 * n / self._fps / unit) * unit for n in range(self._count + 1)]
         durations = [after - before for before, after in pairwise(ends)]
         next(pictures).save(
-            self._part,
+            self._new.file,
+            self._format,
             save_all=True,
             append_images=pictures,
             duration=durations if len(durations) > 1 else durations[0],
@@ -267,7 +267,7 @@ class MovieWriter:
         self._file = WholeFile(Path(path))
         kind = MP4Encoder if self._file.part.suffix.lower() == ".mp4" else PillowEncoder
         try:
-            self._encoder = kind(self._file.part, size, fps, quality)
+            self._encoder = kind(self._file, size, fps, quality)
         except BaseException:
             self._file.drop()
             raise
@@ -303,8 +303,12 @@ class MovieWriter:
 
     def abandon(self) -> None:
         """Leave nothing behind; after :meth:`finish` there is nothing to do."""
-        self._encoder.close()
-        self._file.drop()
+        try:
+            self._encoder.close()
+        except OSError:  # a full disk: it has failed before, and the file goes
+            pass
+        finally:
+            self._file.drop()
 
 
 def write_movie(

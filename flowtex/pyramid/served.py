@@ -8,10 +8,7 @@ from __future__ import annotations
 import asyncio
 import os
 import secrets
-import shutil
-import tempfile
 import threading
-import weakref
 from collections import OrderedDict
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -21,6 +18,7 @@ from typing import Any, NamedTuple
 from flowtex._util.cache import ByteCache
 from flowtex._util.extras import import_extra
 from flowtex._util.progress import Stopped, stoppable
+from flowtex._util.temporary import TemporaryFolder
 from flowtex.pyramid.checks import sealed
 from flowtex.pyramid.layout import SURFACE, TRACES, VALUES, attributes_of, create_level
 from flowtex.pyramid.levels import Levels
@@ -94,8 +92,8 @@ class ServedStore:
         self.run = secrets.token_hex(4)
         self._origin = objects_at(levels.place)
         self._reads = asyncio.Semaphore(MOST_READS)
-        self._folder = Path(tempfile.mkdtemp(prefix="flowtex-"))
-        self._clear = weakref.finalize(self, shutil.rmtree, self._folder, ignore_errors=True)
+        self._temporary = TemporaryFolder()
+        self._folder = self._temporary.new_folder()  # Zarr makes it anew, without its lock
         zarr = import_extra("zarr", "store")
         self._group = zarr.open_group(
             self._folder, mode="w", zarr_format=3, attributes=attributes_of(self.about)
@@ -124,7 +122,7 @@ class ServedStore:
         for job in self._jobs.values():
             job.waiting = 0
         self._pool.shutdown(wait=False, cancel_futures=True)
-        self._clear()
+        self._temporary.close()
 
     async def get(self, name: str, asked: slice = slice(None)) -> Piece:
         """Return an object, or a part of it; a negative start counts from its end.

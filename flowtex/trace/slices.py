@@ -18,6 +18,7 @@ import numpy as np
 
 from flowtex._util.array_types import AnyArray, Floats, Indices
 from flowtex._util.blocks import block_means
+from flowtex._util.whole_file import whole_file
 from flowtex.field.interpolation import bracket
 
 __all__ = ["TraceSlices"]
@@ -202,7 +203,7 @@ class TraceSlices:
         """Write the slices to a compressed ``.npz`` file."""
         arrays = {n: getattr(self, n) for n in self.__dataclass_fields__}
         present = {n: a for n, a in arrays.items() if a is not None}
-        with Path(path).open("wb") as file:
+        with whole_file(path) as file:
             np.savez_compressed(file, format=np.array(FORMAT), **present)
 
     @classmethod

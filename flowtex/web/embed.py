@@ -10,10 +10,12 @@ comes into sight::
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from contextlib import ExitStack
 from itertools import chain
 from pathlib import Path
 from typing import Any
 
+from flowtex._util.whole_file import whole_file
 from flowtex.rendering.webgl.protocol import part_info, part_text
 from flowtex.web.export import different, json_text, page_data
 from flowtex.web.view import WebView
@@ -38,21 +40,24 @@ def write_scene(
     Its large parts become scripts beside it, called by their digests. Camera, time and clock are
     those of :meth:`ClientData.header`.
     """
-    with (folder / f"{name}.js").open("w", encoding="utf-8", newline="\n") as file:
-        file.writelines(_script(folder, name, views, camera, time, clock))
+    shown = {"camera": camera, "time": time, "clock": clock}
+    with ExitStack() as undo:
+        with whole_file(folder / f"{name}.js") as file:
+            file.writelines(text.encode() for text in _script(folder, name, views, shown, undo))
+        undo.pop_all()
 
 
 def _script(
     folder: Path,
     name: str,
     views: Sequence[WebView],
-    camera: dict[str, Any] | None,
-    time: float | None,
-    clock: float,
+    shown: dict[str, Any],
+    undo: ExitStack,
 ) -> Iterator[str]:
+    """Give the text of a scene; ``undo`` removes the parts that were written beside it."""
     scenes = page_data(views)
     headers = [
-        scene.header(view.scene.settings, camera=camera, time=time, clock=clock)
+        scene.header(view.scene.settings, **shown)
         for view, scene in zip(views, scenes, strict=True)
     ]
     if len(views) > 1:
@@ -70,7 +75,11 @@ def _script(
             if len(text) > LETTERS_APART:
                 digest = json_text(info["digest"])
                 apart = folder / f"{info['digest']}.js"
-                apart.write_text(f'flowtexPart({digest}, "{text}")\n', encoding="utf-8")
+                is_new = not apart.exists()
+                with whole_file(apart) as file:
+                    file.write(f'flowtexPart({digest}, "{text}")\n'.encode())
+                if is_new:
+                    undo.callback(apart.unlink)
                 yield f"[{n}, {json_text(info)}, null],\n"
             else:
                 yield f'[{n}, {json_text(info)}, "{text}"],\n'

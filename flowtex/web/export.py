@@ -175,8 +175,8 @@ def write_page(
     estimated = estimate(scenes, linked=link is not None)
     if announce is not None:
         announce(estimated, scenes[0].steps)
-    with whole_file(path) as part, part.open("w", encoding="utf-8", newline="\n") as file:
-        file.writelines(page_pieces(views, scenes, link=link, **options))
+    with whole_file(path) as file:
+        file.writelines(text.encode() for text in page_pieces(views, scenes, link=link, **options))
     return Page(path, path.stat().st_size, estimated, scenes[0].steps)
 
 

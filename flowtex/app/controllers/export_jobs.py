@@ -272,7 +272,7 @@ class PictureJob(Job):
     def _write(self, picture: Bytes) -> None:
         from PIL import Image
 
-        with whole_file(self.path) as part, part.open("wb") as file:
+        with whole_file(self.path) as file:
             target = _StoppableFile(file, self._unwanted)
             Image.fromarray(picture).save(target, "PNG")  # type: ignore[arg-type]
 

@@ -12,9 +12,7 @@ import inspect
 import mimetypes
 import re
 import shutil
-import tempfile
 import time
-import weakref
 from collections.abc import AsyncIterable, Awaitable, Callable
 from functools import partial
 from pathlib import Path
@@ -23,6 +21,7 @@ from urllib.parse import quote
 
 from aiohttp import web
 
+from flowtex._util.temporary import TemporaryFolder
 from flowtex.app.server.security import new_secret
 from flowtex.errors import FieldError
 
@@ -43,6 +42,8 @@ Content = tuple[bytes | Path, str, str | None]
 Give = Callable[[], Content | Awaitable[Content]]
 #: What takes a file: its name, which may be anything, and its bytes.
 Take = Callable[[str, AsyncIterable[bytes]], Awaitable[None]]
+
+EXPIRED = "This download has expired. Save the picture or the movie again on the page."
 
 #: Where trame keeps a session's routes: in what only the server's side sees.
 KEY = "flowtex_routes"
@@ -214,9 +215,8 @@ class Downloads:
         lifetime: float = LIFETIME_S,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        # mkdtemp lets nobody else in.
-        self.folder = Path(tempfile.mkdtemp(prefix="flowtex-"))
-        self._end = weakref.finalize(self, shutil.rmtree, self.folder, ignore_errors=True)
+        self._folder = TemporaryFolder()
+        self.folder = self._folder.path
         self._routes, self._lifetime, self._clock = routes, lifetime, clock
         self._files: dict[str, tuple[Path, float]] = {}
 
@@ -226,7 +226,7 @@ class Downloads:
 
     def reserve(self, name: str) -> Path:
         """Return where a file of this name can be written, in a folder of its own."""
-        return Path(tempfile.mkdtemp(dir=self.folder)) / plain_name(name)
+        return self._folder.new_folder() / plain_name(name)
 
     def add(self, path: Path) -> str:
         """Hand out a file from :meth:`reserve`; return its address, relative to the page."""
@@ -268,12 +268,12 @@ class Downloads:
     def close(self) -> None:
         """Remove all files; nothing can be added any more."""
         self._files.clear()
-        self._end()
+        self._folder.close()
 
     def _content(self, token: str) -> Content:
         path = self.get(token)
         if path is None:
-            return b"This file is not there any more.", "text/plain", None
+            raise web.HTTPGone(text=EXPIRED, headers={"Cache-Control": "no-store"})
         kind = mimetypes.guess_type(path.name)[0] or "application/octet-stream"
         return path, kind, path.name
 

@@ -29,6 +29,7 @@ from typing import Any
 
 from aiohttp import web
 
+from flowtex._util.ending import SIGNALS, Ended, announce_end
 from flowtex.app.server.files import add_route
 from flowtex.app.server.security import guard, is_same, new_secret
 from flowtex.app.server.sessions import FullError, MakeApp, Sessions
@@ -225,16 +226,24 @@ async def serve_until_ended(
     announce: Callable[[str], None],
     open_browser: bool,
 ) -> None:
-    """Serve until the task is cancelled or the program is told to end.
+    """Serve until the task is cancelled, or a signal raises :class:`Ended`.
 
     ``listen`` returns the port; ``where`` is host, port and the rest of the address.
     """
     host, port, rest = where
-    main = asyncio.current_task()
-    with suppress(NotImplementedError):  # on Windows
-        asyncio.get_running_loop().add_signal_handler(
-            signal.SIGTERM, lambda: main and main.cancel()
-        )
+    main, loop = asyncio.current_task(), asyncio.get_running_loop()
+    received: list[int] = []
+
+    def end(number: int) -> None:
+        received.append(number)
+        announce_end(number)
+        if main is not None:
+            main.cancel()
+
+    for number in SIGNALS:
+        if signal.getsignal(number) is not signal.SIG_IGN:
+            with suppress(NotImplementedError):  # on Windows
+                loop.add_signal_handler(number, end, number)
     try:
         try:
             port = await listen()
@@ -252,6 +261,8 @@ async def serve_until_ended(
             await asyncio.Event().wait()
     finally:
         await stop()
+        if received:
+            raise Ended(received[0])
 
 
 def _host_name(host: str) -> str:

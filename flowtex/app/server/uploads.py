@@ -7,11 +7,10 @@ server can read. A name serves to be shown, and for its ending; where the file l
 from __future__ import annotations
 
 import shutil
-import tempfile
-import weakref
 from collections.abc import AsyncIterable, Callable
 from pathlib import Path
 
+from flowtex._util.temporary import TemporaryFolder
 from flowtex.app.server.files import Routes, plain_name
 from flowtex.errors import FieldError
 
@@ -40,9 +39,8 @@ class Uploads:
     def __init__(self, routes: Routes, arrived: Callable[[str, Path], None]) -> None:
         self._arrived = arrived
         self._count = 0
-        # mkdtemp lets nobody else in.
-        self.folder = Path(tempfile.mkdtemp(prefix="flowtex-"))
-        self._end = weakref.finalize(self, shutil.rmtree, self.folder, ignore_errors=True)
+        self._folder = TemporaryFolder()
+        self.folder = self._folder.path
         self.address = routes.take("upload", self.receive)
 
     async def receive(self, name: str, content: AsyncIterable[bytes]) -> None:
@@ -62,7 +60,7 @@ class Uploads:
             msg = f"{name}: {MOST_UPLOADS} files were sent already; open the page anew for more"
             raise FieldError(msg)
         self._count += 1
-        path = Path(tempfile.mkdtemp(dir=self.folder)) / name
+        path = self._folder.new_folder() / name
         try:
             await self._write(path, content)
         except BaseException:
@@ -83,4 +81,4 @@ class Uploads:
 
     def close(self) -> None:
         """Remove all files."""
-        self._end()
+        self._folder.close()

@@ -44,8 +44,9 @@ def test_downloads_are_private_and_under_a_token() -> None:
     files.close()
     assert files.get(one) is None and not files.folder.exists()
     files.close()
-    answer = asyncio.run(routes.answer(one))
-    assert isinstance(answer, web.Response) and "not there any more" in str(answer.text)
+    with pytest.raises(web.HTTPGone, match="Gone") as gone:
+        asyncio.run(routes.answer(one))
+    assert gone.value.text is not None and "has expired" in gone.value.text
 
 
 def test_downloads_go_when_they_are_old_or_too_many(monkeypatch: pytest.MonkeyPatch) -> None:

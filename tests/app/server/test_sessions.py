@@ -445,7 +445,8 @@ def test_a_page_whose_session_is_over_says_so_and_comes_back(page: Page, opengl:
     page.set_viewport_size(SIZE)  # type: ignore[arg-type]
     page.goto(served.address)
     WATCH.settled(page)
-    served.end(signal.SIGTERM)
-    assert served.process.returncode == 0
+    said = served.end(signal.SIGTERM)
+    assert served.process.returncode == 128 + signal.SIGTERM
+    assert "ended by SIGTERM" in said and "Traceback" not in said
     page.get_by_text("lost its connection").wait_for(timeout=BROWSER_PATIENCE)
     assert page.get_by_role("button", name="Open it again").is_visible()

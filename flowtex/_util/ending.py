@@ -1,0 +1,67 @@
+"""Signals that ask a program to end: SIGTERM, and SIGHUP where its terminal goes."""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from types import FrameType
+
+__all__ = ["SIGNALS", "Ended", "announce_end", "ended_by_signals"]
+
+#: Windows has no SIGHUP.
+SIGNALS = tuple(s for s in signal.Signals if s.name in ("SIGTERM", "SIGHUP"))
+
+
+class Ended(SystemExit):
+    """A signal has asked the program to end; uncaught, it ends with the code of that signal."""
+
+    code: int
+
+    def __init__(self, number: int) -> None:
+        super().__init__(128 + number)
+
+
+def announce_end(number: int) -> None:
+    """Print the name of a signal on stderr.
+
+    It is printed at once: VTK exits where the error of a signal passes through it.
+    """
+    with suppress(OSError):  # the terminal may be gone
+        os.write(2, f"flowtex: ended by {signal.Signals(number).name}\n".encode())
+
+
+@contextmanager
+def ended_by_signals() -> Iterator[None]:
+    """Raise :class:`Ended` on the first signal, as Ctrl-C raises KeyboardInterrupt.
+
+    So what is written is removed, and temporary folders as well. A signal that the program ignores,
+    as under nohup, is ignored still.
+    """
+    received: list[int] = []
+
+    def end(number: int, frame: FrameType | None) -> None:
+        del frame
+        # A terminal that closes brings both; the second must not interrupt the end.
+        if not received or number in received:
+            received.append(number)
+            announce_end(number)
+            raise Ended(number)
+
+    before = {s: signal.getsignal(s) for s in SIGNALS}
+    if threading.current_thread() is not threading.main_thread():
+        before = {}
+    before = {s: handler for s, handler in before.items() if handler not in (signal.SIG_IGN, None)}
+    for one in before:
+        signal.signal(one, end)
+    try:
+        yield
+    except Exception as error:
+        if not received:
+            raise
+        raise Ended(received[0]) from error  # such as a terminal that cannot be written to
+    finally:
+        for one, handler in before.items():
+            signal.signal(one, handler)

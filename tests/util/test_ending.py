@@ -1,0 +1,80 @@
+"""Signals end a program as Ctrl-C does."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from flowtex import examples
+from flowtex._util.ending import Ended, ended_by_signals
+from flowtex.cli import commands, main
+
+pytestmark = pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
+def test_a_signal_ends_what_goes_on_once(number: int) -> None:
+    before = signal.getsignal(number)
+    cleaned = []
+    other = signal.SIGHUP if number == signal.SIGTERM else signal.SIGTERM
+    with pytest.raises(Ended) as ended, ended_by_signals():
+        try:
+            signal.raise_signal(number)
+        finally:
+            signal.raise_signal(other)  # as a terminal that closes sends both
+            cleaned.append(True)
+            raise OSError  # nor can anything be written to it
+    assert ended.value.code == 128 + number and cleaned == [True]
+    assert signal.getsignal(number) is before
+
+
+def test_a_signal_that_is_ignored_stays_so() -> None:
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    try:
+        with ended_by_signals():
+            signal.raise_signal(signal.SIGHUP)
+    finally:
+        signal.signal(signal.SIGHUP, before)
+
+
+def test_the_shell_says_what_has_ended_it(
+    monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGINT):
+        monkeypatch.setattr(
+            commands, "app", lambda *_, number=number, **__: signal.raise_signal(number)
+        )
+        assert main(["info"]) == 128 + number
+        name = "" if number == signal.SIGINT else f"ended by {number.name}"
+        assert name in capfd.readouterr().err
+
+
+def test_a_movie_that_is_ended_leaves_nothing(tmp_path: Path, opengl: object) -> None:
+    number = signal.SIGTERM
+    mesh, path, temporary = tmp_path / "gyre.vts", tmp_path / "gyre.gif", tmp_path / "tmp"
+    examples.double_gyre().save(mesh)
+    path.write_bytes(b"old")
+    temporary.mkdir()
+    command = ["movie", str(mesh), "-o", str(path), "--seconds", "600", "--size", "64x64"]
+    process = subprocess.Popen(
+        [sys.executable, "-m", "flowtex.cli", *command],
+        stderr=subprocess.PIPE,
+        text=True,
+        env={**os.environ, "TMPDIR": str(temporary)},
+    )
+    end = time.monotonic() + 120
+    while not list(tmp_path.glob(".gyre.*.part.gif")):
+        assert process.poll() is None and time.monotonic() < end
+        time.sleep(0.01)
+    process.send_signal(number)
+    said = process.communicate(timeout=60)[1]
+    assert process.returncode == 128 + number, said
+    assert f"ended by {number.name}" in said and "Traceback" not in said
+    assert path.read_bytes() == b"old" and sorted(tmp_path.iterdir()) == [path, mesh, temporary]
+    assert not any(temporary.iterdir())
