@@ -6,10 +6,10 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
+from waiting import wait_until
 
 from flowtex import examples
 from flowtex._util.ending import Ended, ended_by_signals
@@ -68,10 +68,8 @@ def test_a_movie_that_is_ended_leaves_nothing(tmp_path: Path, opengl: object) ->
         text=True,
         env={**os.environ, "TMPDIR": str(temporary)},
     )
-    end = time.monotonic() + 120
-    while not list(tmp_path.glob(".gyre.*.part.gif")):
-        assert process.poll() is None and time.monotonic() < end
-        time.sleep(0.01)
+    wait_until(lambda: list(tmp_path.glob(".gyre.*.part.gif")) or process.poll() is not None)
+    assert process.poll() is None
     process.send_signal(number)
     said = process.communicate(timeout=60)[1]
     assert process.returncode == 128 + number, said
