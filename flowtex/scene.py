@@ -73,6 +73,8 @@ class Scene:
         How the surface looks; its image is advected where ``noise="image"``.
     slices
         Traces of the field, when they are at hand.
+    image
+        Texels of an image, as the attribute, in place of the image of the appearance.
 
     Attributes
     ----------
@@ -94,12 +96,13 @@ class Scene:
         appearance: Appearance | None = None,
         *,
         slices: TraceSlices | None = None,
+        image: Floats32 | None = None,
     ) -> None:
         self.field = field
         self.settings = settings or Settings()
         self._appearance = appearance or Appearance()
-        self.image: Floats32 | None = None
-        if self.appearance.image is not None:
+        self.image = image
+        if image is None and self.appearance.image is not None:
             self.image = as_picture(load_image(self.appearance.image))
         if self.settings.noise == "image" and self.image is None:
             raise SettingsError(NO_IMAGE)
@@ -170,10 +173,11 @@ class Scene:
     @appearance.setter
     def appearance(self, value: Appearance) -> None:
         self._check_colours(value)
-        image = None if value.image is self._appearance.image else value.image
+        same = value.image is None or value.image is self._appearance.image
+        picture = None if same else self._picture(value.image)
         self._appearance = value
-        if image is not None:
-            self.set_image(image)
+        if picture is not None:
+            self._lay(picture)
         self._notify("appearance")
 
     @property
@@ -271,8 +275,15 @@ class Scene:
         SettingsError
             When the surface is one of triangles, which images are not laid over.
         """
+        self._lay(self._picture(image))
+
+    def _picture(self, image: Any) -> Floats32:
+        """Return the texels of an image; refuse one that cannot be laid on this surface."""
         check_noise(self.field, "image")
-        self.image = as_picture(load_image(image))
+        return as_picture(load_image(image))
+
+    def _lay(self, picture: Floats32) -> None:
+        self.image = picture
         if self.settings.noise != "image":
             self.settings.noise = "image"
             return

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import flowtex
 from flowtex.scene import Scene
 from flowtex.settings import Settings
+from flowtex.textures.images import ImageError
 
 
 def field(steps: int = 1) -> flowtex.FlowField:
@@ -77,3 +80,14 @@ def test_only_the_steps_that_are_shown_are_traced() -> None:
     scene.textures.layers(3)
     assert 3 in scene.store._cache
     assert len(scene.store._cache) == 1
+
+
+@pytest.mark.parametrize("image", [np.zeros((2, 2, 7)), "missing.png"])
+def test_an_appearance_with_an_image_that_is_refused_changes_nothing(image: object) -> None:
+    scene = Scene(field())
+    before, heard = scene.appearance, list[str]()
+    scene.observe(heard.append)
+    with pytest.raises(ImageError):
+        scene.appearance = replace(before, color="red", image=image)
+    assert scene.appearance is before and scene.image is None and heard == []
+    assert scene.settings.noise == "procedural"

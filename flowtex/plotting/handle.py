@@ -192,13 +192,19 @@ class FlowHandle(AppearanceAttributes):
             When it lacks the scalar that the surface is coloured by.
         """
         field = FieldOptions(**options).field(mesh)
-        scene = Scene(share_field(field), self.settings, self.scene.appearance)
-        scene.time = float(np.clip(self.time, field.times[0], field.times[-1]))
+        old = self.scene
+        scene = Scene(share_field(field), self.settings, old.appearance, image=old.image)
+        try:
+            scene.time = float(np.clip(self.time, field.times[0], field.times[-1]))
+            textures = scene.textures  # tracing may fail
+        except BaseException:
+            scene.close()
+            raise
         self._end()
-        self.scene.close()
+        old.close()
         self.scene, self._shown_time = scene, scene.time
         self._end = scene.observe(self._changed)
-        self._surface.set_textures(scene.textures, scene.pyramid)
+        self._surface.set_textures(textures, scene.pyramid)
         self._surface.set_moment(*scene.moment)
         if self._map is not None:
             self._map.close()

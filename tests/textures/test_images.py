@@ -457,6 +457,21 @@ def test_an_image_can_come_later_and_go_again(plotter: Any, rng: np.random.Gener
     np.testing.assert_array_equal(plotter.screenshot(return_img=True), first)
 
 
+def test_an_image_that_came_later_stays_on_another_surface(
+    plotter: Any, rng: np.random.Generator
+) -> None:
+    first, later = photo(rng), photo(rng)
+    handle = plotter.flowtex.add(gyre(), image=first)
+    handle.set_image(later)
+    handle.set_surface(gyre())
+    np.testing.assert_array_equal(handle.scene.image, as_picture(later))
+    handle = plotter.flowtex.add(gyre())
+    handle.set_image(later)
+    handle.set_surface(gyre())
+    assert handle.settings.noise == "image"
+    np.testing.assert_array_equal(handle.scene.image, as_picture(later))
+
+
 @pytest.mark.parametrize(
     ("noise", "name", "affects"),
     [

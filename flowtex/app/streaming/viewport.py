@@ -219,52 +219,59 @@ class Viewport:
             Whether the ends of the colour map that somebody chose stay, and the time that is
             shown where the flow has the same times: it is another part of the same data.
         """
-        beside, appearance = self._beside, self.scene.appearance
+        appearance = self.scene.appearance
         if not keep_range:
             appearance = replace(appearance, clim=None)
         camera, clock, flat = self.camera, self.clock, self.flat
         times, time = self.field.times, self.handle.time
-        self.compare(None)
-        old = self.handle
-        self.panes[0] = self._pane(_like(self.scene, field, dict(self.settings), appearance))
-        old.remove(render=False)
-        self.resize(*self._size)
+        first = self._pane(_like(self.scene, field, dict(self.settings), appearance))
+        try:
+            second = self._second(first.handle, self._beside)
+        except BaseException:
+            first.handle.remove(render=False)
+            raise
+        self._put([first, *second], self._beside)
         if keep_range and np.array_equal(times, field.times):
             self.set_time(time)
         self.home()
         if keep_view and flat == self.flat:
             self.camera = camera
         self.clock = clock
-        if beside:
-            self.compare(beside)
 
     def compare(self, changes: Mapping[str, Any] | None) -> None:
         """Show a second pane that differs, or one pane again for ``None``.
 
         ``changes`` are settings, and of ``scalars``, ``time`` and ``field``: what the second pane
-        is coloured by, the time that it shows, and another flow. The panes stay as they are when a
-        setting is unknown or out of range.
+        is coloured by, the time that it shows, and another flow. The panes stay as they are when
+        these cannot be shown.
         """
         changes = dict(changes or {})
+        self._put([self.panes[0], *self._second(self.handle, changes)], changes)
+
+    def _second(self, first: FlowHandle, changes: Mapping[str, Any]) -> list[Pane]:
+        """Return the pane that differs from the first one; none where nothing does."""
+        if not changes:
+            return []
         own = {name: changes[name] for name in PANE_ARGUMENTS if name in changes}
-        settings = {**dict(self.settings), **changes}
+        settings = {**dict(first.settings), **changes}
         for name in own:
             del settings[name]
-        Settings().update(**settings)
-        appearance = self._appearance_beside(own)
+        appearance = _appearance_beside(first.scene, own)
+        scene = _like(first.scene, own.get("field", first.field), settings, appearance)
+        scene.time = _time_beside(first.scene, changes)
+        return [self._pane(scene)]
+
+    def _put(self, panes: list[Pane], changes: Mapping[str, Any]) -> None:
+        """Show other panes, whose second one differs in some changes."""
         self._stop_following()
         self._stop_following = lambda: None
-        for pane in self.panes[1:]:
-            pane.handle.remove(render=False)
-        del self.panes[1:]
-        self._beside = changes
-        if changes:
-            first = self.scene
-            field = own.get("field", self.field)
-            self.panes.append(self._pane(_like(first, field, settings, appearance)))
-            ends = (self.settings.observe(self._follow), first.observe(self._follow_scene))
+        for pane in self.panes:
+            if pane not in panes:
+                pane.handle.remove(render=False)
+        self.panes, self._beside = panes, dict(changes)
+        if len(panes) > 1:
+            ends = (self.settings.observe(self._follow), self.scene.observe(self._follow_scene))
             self._stop_following = lambda: [end() for end in ends]
-            self.set_time(self.handle.time)
             self.clock = self.handle.clock
         self.resize(*self._size)
 
@@ -277,7 +284,7 @@ class Viewport:
         """Change the appearance of the second pane as that of the first one changes."""
         if affects == "appearance":
             second = self.panes[1].handle.scene
-            appearance = self._appearance_beside(self._beside)
+            appearance = _appearance_beside(self.scene, self._beside)
             if "scalars" in self._beside:
                 appearance = replace(appearance, clim=second.appearance.clim)
             appearance = replace(appearance, image=second.appearance.image)
@@ -285,16 +292,6 @@ class Viewport:
                 second.appearance = appearance
             except ValueError:  # its values have no logarithm, as those of the first one have
                 second.appearance = replace(appearance, log_scale=False, clim=None)
-
-    def _appearance_beside(self, changes: Mapping[str, Any]) -> Appearance:
-        """Appearance of a second pane; a range is that of one scalar."""
-        appearance, field = self.scene.appearance, changes.get("field", self.field)
-        scalars = changes.get("scalars", appearance.scalars)
-        if "scalars" not in changes:
-            if appearance.scalar_name in (None, SPEED, *field.scalars):
-                return appearance
-            scalars = SPEED
-        return replace(appearance, scalars=scalars, clim=None)
 
     def lay_image(self, image: Any) -> None:
         """Lay an image on the surface in place of the noise, except where panes differ in noise.
@@ -337,10 +334,7 @@ class Viewport:
     @property
     def time_beside(self) -> float:
         """Time of the second pane: its own where that is what differs."""
-        if "field" in self._beside:
-            return self.time_in(self._beside["field"])
-        first, last = self.field.times[[0, -1]]
-        return float(np.clip(self._beside.get("time", self.handle.time), first, last))
+        return _time_beside(self.scene, self._beside)
 
     @time_beside.setter
     def time_beside(self, time: float) -> None:
@@ -349,10 +343,7 @@ class Viewport:
 
     def time_in(self, field: FlowField) -> float:
         """Return the time of another flow that is now; its last where it has no such time."""
-        time, (first, last) = self.handle.time, map(float, field.times[[0, -1]])
-        with suppress(TypeError, ValueError):  # no dates, or of two calendars
-            time += (self.field.start - field.start).total_seconds()
-        return time if first <= time <= last and not self.field.steady else last
+        return _time_in(self.scene, field)
 
     def trace(self) -> None:
         """Trace what the time that is shown needs, so that drawing need not wait for it."""
@@ -478,6 +469,33 @@ def _whole_mesh(surface: TriangleSurface) -> pv.PolyData:
     return pv.PolyData.from_regular_faces(surface.points[0], triangles)
 
 
+def _appearance_beside(first: Scene, changes: Mapping[str, Any]) -> Appearance:
+    """Appearance of a second pane; a range is that of one scalar."""
+    appearance, field = first.appearance, changes.get("field", first.field)
+    scalars = changes.get("scalars", appearance.scalars)
+    if "scalars" not in changes:
+        if appearance.scalar_name in (None, SPEED, *field.scalars):
+            return appearance
+        scalars = SPEED
+    return replace(appearance, scalars=scalars, clim=None)
+
+
+def _time_beside(first: Scene, changes: Mapping[str, Any]) -> float:
+    """Time of a second pane."""
+    if "field" in changes:
+        return _time_in(first, changes["field"])
+    earliest, latest = first.field.times[[0, -1]]
+    return float(np.clip(changes.get("time", first.time), earliest, latest))
+
+
+def _time_in(scene: Scene, field: FlowField) -> float:
+    """Time of a scene in another field; the last one where that has no such time."""
+    time, (first, last) = scene.time, map(float, field.times[[0, -1]])
+    with suppress(TypeError, ValueError):  # no dates, or of two calendars
+        time += (scene.field.start - field.start).total_seconds()
+    return time if first <= time <= last and not scene.field.steady else last
+
+
 def _like(
     scene: Scene, field: FlowField, settings: Mapping[str, Any], appearance: Appearance
 ) -> Scene:
@@ -487,20 +505,12 @@ def _like(
     """
     if appearance.scalar_name not in (None, SPEED, *field.scalars):
         appearance = replace(appearance, scalars=SPEED)
-    appearance = replace(appearance, image=None)
-    if scene.image is None:
-        return _scene(field, Settings(**settings), appearance)
-    made = _scene(field, Settings(**{**settings, "noise": "procedural"}), appearance)
-    made.set_image(as_image(scene.image))
-    made.settings.noise = settings["noise"]
-    return made
-
-
-def _scene(field: FlowField, settings: Settings, appearance: Appearance) -> Scene:
-    """Return a scene, without a logarithm where the field has values that have none."""
+    appearance, chosen = replace(appearance, image=None), Settings(**settings)
     try:
-        return Scene(field, settings, appearance)
+        return Scene(field, chosen, appearance, image=scene.image)
     except ValueError:
         if not appearance.log_scale:
             raise
-        return Scene(field, settings, replace(appearance, log_scale=False, clim=None))
+        # The field has values that have no logarithm.
+        plain = replace(appearance, log_scale=False, clim=None)
+        return Scene(field, chosen, plain, image=scene.image)
