@@ -147,6 +147,7 @@ class Link:
         waiting = self._answers.pop(name, None)
         if waiting is not None:
             if "error" in message:
+                assert set(message["error"]) == {"code", "message"}, "more than a page needs"
                 waiting.set_exception(RuntimeError(message["error"]["message"]))
             else:
                 waiting.set_result(message["result"])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import fields
 from pathlib import Path
@@ -16,6 +16,7 @@ from flowtex.app.controllers.context import Context
 from flowtex.app.controllers.library import Choice, Library
 from flowtex.app.server.notebook import NotebookPage
 from flowtex.app.server.page import PageState
+from flowtex.app.server.security import known_hosts
 from flowtex.app.server.sessions import MakeApp, usual_limit
 from flowtex.app.server.site import ServeError, run_site
 from flowtex.app.streaming.area import FlowArea
@@ -184,6 +185,7 @@ def serve(
     *,
     host: str = "127.0.0.1",
     port: int = 0,
+    allow_host: Iterable[str] = (),
     limit: int | None = None,
     idle: float = IDLE_MINUTES,
     folder: str | Path | None = None,
@@ -207,6 +209,9 @@ def serve(
         has the page's address can use it.
     port
         Port to listen on; 0 takes one that is free.
+    allow_host
+        Names under which browsers may ask for the page besides ``localhost`` and ``host``, such as
+        that of a proxy before it; ``"*"`` allows any. Addresses in numbers need no permission.
     limit
         Pages at one time, at most; by default what the cores and the free memory have room for.
     idle
@@ -223,7 +228,7 @@ def serve(
     Raises
     ------
     FieldError, SettingsError
-        When the mesh or a setting does not fit.
+        When the mesh or a setting does not fit, or a name of ``allow_host`` is none.
     ServeError
         When the port or the host cannot be listened on, or ``port``, ``limit`` or ``idle`` is out
         of range.
@@ -248,6 +253,7 @@ def serve(
         _app_maker(field, folder, options),
         host,
         port,
+        hosts=known_hosts(host, allow_host),
         limit=limit or usual_limit(),
         idle=idle,
         announce=announce,

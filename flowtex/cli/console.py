@@ -28,10 +28,10 @@ def in_flags(text: str) -> str:
 
     A value with blanks keeps its quotes.
     """
-    from flowtex.cli.options import FieldFlags, FrameFlags
+    from flowtex.cli.options import FieldFlags, FrameFlags, ServeFlags
     from flowtex.settings import TABLE
 
-    names = "|".join([*vars(FieldFlags()), *vars(FrameFlags()), *TABLE])
+    names = "|".join([*vars(FieldFlags()), *vars(FrameFlags()), *vars(ServeFlags()), *TABLE])
 
     def flag(match: re.Match[str]) -> str:
         return f"--{match['name'].replace('_', '-')} {match['value']}"

@@ -36,6 +36,12 @@ FLOW, PICTURE = Group("The flow", sort_key=1), Group("The picture", sort_key=2)
 PAGE, SETTINGS = Group("The page", sort_key=3), Group("Settings", sort_key=4)
 
 PORT = Number(gte=0, lt=65536)
+ALLOW_HOST = Parameter(
+    group=PAGE,
+    help="Name under which browsers may ask for the page besides localhost and --host, such as "
+    "that of a proxy before it; several times for several, '*' for any.",
+    negative=(),
+)
 FILE = Annotated[
     Path,
     Parameter(
@@ -249,6 +255,7 @@ class ServeFlags:
     host: Annotated[
         str, Parameter(group=PAGE, help="Address to listen on: others may reach another one.")
     ] = "127.0.0.1"
+    allow_host: Annotated[tuple[str, ...], ALLOW_HOST] = ()
     limit: Annotated[
         int | None,
         Parameter(

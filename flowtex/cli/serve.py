@@ -14,6 +14,7 @@ from flowtex._util.progress import waiting
 from flowtex.cli.checks import check_colours, require_app
 from flowtex.cli.console import announcer
 from flowtex.cli.options import (
+    ALLOW_HOST,
     FLAT,
     PAGE,
     PICTURE,
@@ -42,12 +43,13 @@ def serve(
     host: Annotated[
         str, Parameter(group=PAGE, help="Address to listen on: others may reach another one.")
     ] = "127.0.0.1",
+    allow_host: Annotated[tuple[str, ...], ALLOW_HOST] = (),
     token: Annotated[
         str | None,
         Parameter(
             group=PAGE,
             help="Word in the address without which nothing is shown; by default one that cannot "
-            "be guessed, and with '' none.",
+            "be guessed.",
         ),
     ] = None,
     browser: Annotated[bool, Parameter(group=PAGE, help="Open the page in the browser.")] = True,
@@ -60,15 +62,18 @@ def serve(
     """Serve a pyramid as a page that streams it; tiles that it has not are made on the way."""
     options = {**(look or LookFlags()).arguments(), **settings_from(settings)}
     require_app()
-    if not re.fullmatch(r"[A-Za-z0-9_-]*", token or ""):
-        msg = f"--token is {token!r}; expected letters, numbers, '-' and '_', or '' for none"
+    if token is not None and not re.fullmatch(r"[A-Za-z0-9_-]{16,}", token):
+        msg = (
+            f"--token is {token!r}; expected 16 or more letters, numbers, '-' and '_' that nobody "
+            "can guess; without --token the address gets one"
+        )
         raise UsageError(msg)
     from flowtex.pyramid import is_store, open_store
 
     if not is_store(store):
         msg = f"{store} is no pyramid; make one of it with `flowtex pyramid {store} -o flow.zarr`"
         raise UsageError(msg)
-    from flowtex.app.server.security import new_secret
+    from flowtex.app.server.security import known_hosts, new_secret
     from flowtex.app.server.store_site import run_store
     from flowtex.diagnostics import has_display
     from flowtex.pyramid.served import ServedStore
@@ -88,7 +93,8 @@ def serve(
             served,
             page,
             (host, port),
-            token=new_secret() if token is None else token,
+            token=token or new_secret(),
+            hosts=known_hosts(host, allow_host),
             announce=announce,
             open_browser=browser and has_display(),
         )

@@ -203,6 +203,7 @@ def _serve(library: Library, page: ServeFlags | None, options: dict[str, Any]) -
             library,
             host=page.host,
             port=page.port,
+            allow_host=page.allow_host,
             limit=page.limit,
             idle=page.idle,
             open_browser=page.browser,

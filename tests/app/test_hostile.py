@@ -13,7 +13,6 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
-import msgpack
 import numpy as np
 import pytest
 import pyvista as pv
@@ -24,14 +23,11 @@ from waiting import PATIENCE_S, until
 
 pytest.importorskip("trame_rca")
 
-from wslink.chunking import generate_chunks
-
 from flowtex import FlowField
 from flowtex._util.progress import check
 from flowtex.app import FlowApp, Library
 from flowtex.app.controllers import point_info as point_info_module
 from flowtex.app.controllers.library import Choice
-from flowtex.app.server.security import MESSAGE_BYTES, LimitedMessages
 from flowtex.app.streaming import player
 from flowtex.app.streaming.painter import MOST_PIXELS
 from flowtex.app.streaming.viewport import Viewport
@@ -316,8 +312,13 @@ def sent(picture: Image.Image, kind: str = "PNG") -> dict[str, Any]:
 
 
 def laid(app: FlowApp, file: dict[str, Any]) -> str:
-    app.state.set(image_file=file, problem="")
-    app.controllers.appearance.take_image()
+    async def story() -> None:
+        app.state.set(image_file=file, problem="")
+        app.controllers.appearance.take_image()
+        if laying := app.controllers.appearance._laying:
+            await laying
+
+    asyncio.run(story())
     return str(app.state.get("problem"))
 
 
@@ -410,22 +411,6 @@ def test_a_picture_that_fails_says_so(
         assert list(app.controllers.sharing.downloads.folder.iterdir()) == []
 
     played(app, story)
-
-
-def test_a_message_has_an_end() -> None:
-    messages = LimitedMessages()
-    messages.set_max_message_size(4 * 2**30)
-    whole = msgpack.packb({"id": 1, "content": b"x" * 1000})
-    found = [messages.process_chunk(chunk) for chunk in generate_chunks(whole, 300)]
-    assert found[-1]["id"] == 1 and not any(found[:-1])
-    head = (7).to_bytes(4, "little") + bytes(4)
-    with pytest.raises(ValueError, match="exceeds"):
-        messages.process_chunk(head + (MESSAGE_BYTES + 1).to_bytes(4, "little"))
-    with pytest.raises(ValueError, match="were begun"):
-        for number in range(10):
-            begun = number.to_bytes(4, "little") + bytes(4) + (99).to_bytes(4, "little")
-            messages.process_chunk(begun)
-    assert not messages.pending_messages
 
 
 def test_bytes_are_no_number() -> None:

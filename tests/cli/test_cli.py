@@ -68,6 +68,19 @@ def test_without_arguments_the_help_is_printed(run: Run) -> None:
     assert all(word in out for word in ("demo", "show", "render", "info", "doctor"))
 
 
+@pytest.mark.parametrize("token", ["", "word", "x" * 15, "a b" * 9, "ä" * 20])
+def test_a_token_that_can_be_guessed_is_refused(run: Run, tmp_path: Path, token: str) -> None:
+    pytest.importorskip("trame_rca")
+    code, _, err = run("serve", tmp_path, "--token", token)
+    assert code == 2 and f"--token is {token!r}; expected 16 or more letters" in err
+
+
+def test_names_of_the_page_are_names(run: Run, gyre: Path) -> None:
+    pytest.importorskip("trame_rca")
+    code, _, err = run("show", gyre, "--no-browser", "--allow-host", "http://a.b")
+    assert code == 2 and "--allow-host is 'http://a.b'; expected a name without scheme" in err
+
+
 def test_the_version_is_printed(run: Run) -> None:
     import flowtex
 

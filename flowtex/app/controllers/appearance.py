@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
@@ -9,7 +10,8 @@ from typing import Any
 from flowtex._util.colours import CMAPS
 from flowtex.app.controllers.context import Context, Controller
 from flowtex.app.controllers.file_beside import FileBeside
-from flowtex.app.server.validation import decode_picture, name_among, number
+from flowtex.app.server.page import start_task
+from flowtex.app.server.validation import decode_picture, name_among, number, sent_picture
 from flowtex.app.streaming.viewport import BACKGROUNDS as THEMES
 from flowtex.errors import FieldError
 from flowtex.offscreen.annotations import time_text
@@ -84,6 +86,7 @@ class Appearance(Controller):
         super().__init__(context)
         self.beside = beside
         self.theme, self.background, self.compared = "dark", BACKGROUNDS[0], "nothing"
+        self._laying: asyncio.Task[None] | None = None
         self.state.set(
             theme=self.theme,
             background=self.background,
@@ -265,13 +268,27 @@ class Appearance(Controller):
         if not upload:  # a choice that was taken back
             return
         try:
-            self.viewport.lay_image(decode_picture(upload))
+            picture = sent_picture(upload)
+        except SettingsError as error:
+            self.context.complain(error)
+            return
+        self.close()  # the latest picture counts
+        self._laying = start_task(self._lay(*picture), "a picture could not be laid on the surface")
+
+    async def _lay(self, content: bytes, name: str) -> None:
+        try:
+            self.viewport.lay_image(await asyncio.to_thread(decode_picture, content, name))
         except SettingsError as error:
             self.context.complain(error)
             return
         self.settings.update(noise="image", strength=1.0)
-        self.state.set(set_noise_choices=self._noise_choices())
         self.show_settings()
+        self.state.send(set_noise_choices=self._noise_choices())
+
+    def close(self) -> None:
+        """Wait for no picture any more."""
+        if self._laying is not None:
+            self._laying.cancel()
 
     def describe(self) -> dict[str, Any]:
         """Return settings, colours, background and comparison."""

@@ -31,8 +31,9 @@ __all__ = ["Content", "Downloads", "Give", "Routes", "Take", "add_route", "plain
 LIFETIME_S, DOWNLOAD_BYTES = 1800.0, 2_000_000_000
 #: Bytes of a file that is sent which are written at once.
 CHUNK_BYTES = 1 << 18
-#: Characters of a file's name, at most.
-NAME_LENGTH = 120
+#: Bytes of a file's name, and of its ending, at most: file systems take 255, and what is written
+#: has a longer name until it is whole.
+NAME_BYTES, ENDING_BYTES = 180, 20
 #: Names of devices on Windows, whatever their endings are.
 DEVICE = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)\s*(\.|$)", re.IGNORECASE)
 
@@ -287,5 +288,11 @@ def plain_name(name: str) -> str:
     plain = "".join(c if c.isalnum() or c in " ._-" else "_" for c in name).strip(" .")
     if DEVICE.match(plain):
         plain = f"_{plain}"
-    stem, dot, suffix = plain.rpartition(".")
-    return f"{stem[:NAME_LENGTH]}{dot}{suffix[:20]}" if stem else (plain[:NAME_LENGTH] or "flow")
+    stem, dot, ending = plain.rpartition(".")
+    ending = _cut(ending, ENDING_BYTES) if stem else ""
+    return f"{_cut(stem or plain, NAME_BYTES)}{dot if ending else ''}{ending}" or "flow"
+
+
+def _cut(text: str, most: int) -> str:
+    """Return the characters of a text that fit into so many bytes."""
+    return text.encode()[:most].decode(errors="ignore")

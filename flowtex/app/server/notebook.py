@@ -20,7 +20,7 @@ from types import SimpleNamespace
 from typing import Any
 
 from flowtex.app.server.page import start_task
-from flowtex.app.server.security import new_secret
+from flowtex.app.server.security import ANY, LOCAL, new_secret
 from flowtex.app.server.sessions import Sessions
 from flowtex.app.server.site import Site
 
@@ -135,7 +135,8 @@ class _Served:
         sessions = Sessions(
             lambda _: borrowed_app, self._secret, limit=1, idle=float("inf"), shared=True
         )
-        self._site = Site(sessions, self._secret, framed=True)
+        self._hosts = set(LOCAL)
+        self._site = Site(sessions, self._secret, hosts=self._hosts, framed=True)
         self._task = start_task(self._start(borrowed_app), FAILURE)
 
     async def _start(self, borrowed_app: Any) -> None:
@@ -144,6 +145,9 @@ class _Served:
 
     def address(self, proxy: str | None) -> str:
         port = self._socket.getsockname()[1]
+        if proxy is not None:
+            # Jupyter's proxy hands on the name that the browser uses, and guards it by its token.
+            self._hosts.add(ANY)
         place = f"http://127.0.0.1:{port}" if proxy is None else f"{proxy}/{port}"
         return f"{place}/?secret={self._secret}"
 

@@ -6,25 +6,34 @@ has a secret of its own, which only the printed address carries, and a connectio
 site's page is refused. Who comes without the secret gets a page that says so (``door.html``).
 The page itself may load nothing from elsewhere.
 
-wslink reserves room for a whole message when its first piece announces a length of up to 4 GB, so
-messages are limited as well: nothing that the page sends is larger than a picture.
+A site whose name leads to this machine all of a sudden (DNS rebinding) is no other site to a
+browser. So the server answers to addresses in numbers and to names that it knows, and no others.
 """
 
 from __future__ import annotations
 
 import hmac
+import ipaddress
+import logging
+import os
+import platform
+import re
 import secrets
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Container, Iterable
 from typing import Any
-from urllib.parse import urlsplit
+from urllib.parse import SplitResult, urlsplit
 
 from aiohttp import web
-from wslink.chunking import UnChunker
 
-__all__ = ["LimitedMessages", "guard", "is_same", "new_secret"]
+from flowtex.app.server.connections import limit_time
+from flowtex.errors import FieldError
 
-#: Bytes of a message, and messages that a page may begin before it ends one.
-MESSAGE_BYTES, OPEN_MESSAGES = 16_000_000, 4
+__all__ = ["ANY", "FAULT", "LOCAL", "guard", "is_same", "known_hosts", "new_secret"]
+
+#: Names of this machine, for itself alone.
+LOCAL = frozenset({"localhost"})
+#: Stands for every name.
+ANY = "*"
 
 #: The page's own scripts need eval: Vue compiles the templates that trame sends it.
 POLICY = (
@@ -36,7 +45,11 @@ HEADERS = {
     "X-Content-Type-Options": "nosniff",
 }
 
+FAULT = "This failed. The program that serves the page has printed why."
+
 Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
+
+_log = logging.getLogger(__name__)
 
 
 def new_secret() -> str:
@@ -46,29 +59,111 @@ def new_secret() -> str:
 
 def is_same(text: object, secret: str) -> bool:
     """Tell whether a secret is the right one, in a time that tells nothing about it."""
-    return isinstance(text, str) and hmac.compare_digest(text.encode(), secret.encode())
+    return isinstance(text, str) and hmac.compare_digest(
+        text.encode(errors="surrogatepass"), secret.encode()
+    )
 
 
-def guard(application: web.Application, *, framed: bool = False) -> None:
-    """Refuse other sites' pages, and send the headers above with every answer.
+def known_hosts(host: str, allowed: Iterable[str] = ()) -> frozenset[str]:
+    """Return the names that a server which listens on ``host`` is known by.
 
-    With ``framed``, pages of other sites may hold this one in a frame, as a notebook does.
+    On JupyterHub, and behind another proxy of Jupyter's, that is any: the proxy hands on a name
+    that is not known here, and Jupyter's own token guards it.
+
+    Raises
+    ------
+    FieldError
+        When what is allowed is no name.
+    """
+    names = [*LOCAL, host]
+    if host in ("0.0.0.0", "::", ""):
+        names.append(platform.node())
+    if os.environ.get("JUPYTERHUB_SERVICE_PREFIX") or os.environ.get("FLOWTEX_PROXY"):
+        names.append(ANY)
+    for name in allowed:
+        if name != ANY and not re.fullmatch(r"[\w.-]+", name):
+            msg = (
+                f"allow_host is {name!r}; expected a name without scheme and port, such as "
+                f"'flow.example.org', or {ANY!r} for any"
+            )
+            raise FieldError(msg)
+        names.append(name)
+    return frozenset(name.lower() for name in names)
+
+
+def guard(
+    application: web.Application, *, hosts: Container[str] = LOCAL, framed: bool = False
+) -> None:
+    """Limit times, refuse other sites' pages and unknown names, and keep faults to the log.
+
+    Parameters
+    ----------
+    application
+        The headers above go with each of its answers.
+    hosts
+        Names that it answers to, in small letters, besides addresses in numbers.
+    framed
+        Whether pages of other sites may hold this one in a frame, as a notebook does.
     """
     policy = POLICY if framed else f"{POLICY}; frame-ancestors 'self'"
 
     @web.middleware
     async def own_pages_only(request: web.Request, handler: Handler) -> web.StreamResponse:
+        name = _host_name(request)
+        if not (ANY in hosts or name in hosts or _is_address(name)):
+            words = f"This page is not open as {name[:100]!r}; --allow-host NAME adds a name.\n"
+            raise web.HTTPForbidden(text=words)
         origin = request.headers.get("Origin")
-        if origin is not None and urlsplit(origin).netloc not in _own_hosts(request):
+        if origin is not None and _split(origin).netloc not in _own_hosts(request):
             raise web.HTTPForbidden(text="This page is not open to other sites.\n")
         return await handler(request)
+
+    @web.middleware
+    async def faults_to_log(request: web.Request, handler: Handler) -> web.StreamResponse:
+        try:
+            return await handler(request)
+        except web.HTTPException:
+            raise
+        except Exception as error:
+            if request.transport is None:  # nobody waits for the answer any more
+                raise web.HTTPBadRequest from None
+            # An address holds secrets, so that its pattern is written.
+            resource = request.match_info.route.resource
+            where = f"{request.method} {resource.canonical if resource else ''}"
+            expected = isinstance(error, (OSError, FieldError))
+            _log.error("%s: %s: %s", where, type(error).__name__, error, exc_info=not expected)
+            raise web.HTTPInternalServerError(text=FAULT) from None
 
     async def add_headers(request: Any, response: web.StreamResponse) -> None:
         del request
         response.headers.update({**HEADERS, "Content-Security-Policy": policy})
 
+    application.middlewares.append(faults_to_log)
+    limit_time(application)
     application.middlewares.append(own_pages_only)
     application.on_response_prepare.append(add_headers)
+
+
+def _host_name(request: web.Request) -> str:
+    """Return the name that a browser used, without the port and in small letters."""
+    return (_split(f"//{request.headers.get('Host', '')}").hostname or "").removesuffix(".")
+
+
+def _split(address: str) -> SplitResult:
+    """Take an address apart; a malformed one has nothing."""
+    try:
+        return urlsplit(address)
+    except ValueError:
+        return urlsplit("")
+
+
+def _is_address(name: str) -> bool:
+    """Tell whether a name is a number, which nobody can lead elsewhere."""
+    try:
+        ipaddress.ip_address(name)
+    except ValueError:
+        return False
+    return True
 
 
 def _own_hosts(request: web.Request) -> set[str]:
@@ -79,23 +174,4 @@ def _own_hosts(request: web.Request) -> set[str]:
     anything else the browser asks first, which is refused.
     """
     handed_on = request.headers.get("X-Forwarded-Host", "").split(",")[0].strip()
-    return {request.host, handed_on} - {""}
-
-
-class LimitedMessages(UnChunker):
-    """The messages of one connection, joined from their pieces, within limits."""
-
-    def set_max_message_size(self, size: int) -> None:
-        """Allow messages of so many bytes, or as many as any may have."""
-        super().set_max_message_size(min(size, MESSAGE_BYTES))
-
-    def process_chunk(self, chunk: bytes) -> Any:
-        """Take a piece; return the message when it is the last one."""
-        message = super().process_chunk(chunk)
-        if len(self.pending_messages) > OPEN_MESSAGES:
-            self.release_pending_messages()
-            msg = (
-                f"more than {OPEN_MESSAGES} messages were begun; expected one of them to end first"
-            )
-            raise ValueError(msg)
-        return message
+    return {request.headers.get("Host", ""), handed_on} - {""}

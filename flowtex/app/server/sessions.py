@@ -45,8 +45,10 @@ from trame_client.widgets.core import HTML_CTX
 from trame_server.protocol import CoreServer
 from wslink.protocol import MAX_MSG_SIZE
 
+from flowtex._util.memory import available_bytes
 from flowtex.app.server.files import Routes
-from flowtex.app.server.security import LimitedMessages, new_secret
+from flowtex.app.server.messages import LimitedMessages, restrict
+from flowtex.app.server.security import new_secret
 
 __all__ = ["FullError", "MakeApp", "Session", "Sessions", "usual_limit"]
 
@@ -121,6 +123,7 @@ class Session:
             )
         await server.ready
         self._endpoint = web_servers[0].ws
+        restrict(self._endpoint)
         static: dict[str, Any] = web_servers[0].config["static"]
         return static
 
@@ -142,12 +145,19 @@ class Session:
                 await (socket.send_bytes if is_binary else socket.send_str)(content)
 
         link = await self._endpoint.connect()
-        self._endpoint.unchunkers[link.client_id] = LimitedMessages()
+        # trame-rca's object for all areas of a page, where there is one.
+        areas, _ = self._endpoint.functionMap.get("trame.rca.size", (None, None))
+        self._endpoint.unchunkers[link.client_id] = LimitedMessages(
+            self.app.server.state, getattr(areas, "_area_adapters", ())
+        )
         link.on_message(send)
         try:
             async for message in socket:
-                if message.type in (WSMsgType.BINARY, WSMsgType.TEXT):
-                    await link.send(message.type == WSMsgType.BINARY, message)
+                if message.type == WSMsgType.BINARY:
+                    await link.send(True, message)
+                elif message.type == WSMsgType.TEXT:
+                    msg = "a text came; expected bytes"
+                    raise ValueError(msg)
         except Exception as error:  # a message that no page of ours sends
             _log.warning("a connection was ended: %s: %s", type(error).__name__, error)
             await socket.close(code=WSCloseCode.POLICY_VIOLATION)
@@ -197,13 +207,12 @@ class FullError(Exception):
 
 
 def usual_limit() -> int:
-    """Return how many sessions this machine has room for."""
+    """Return how many sessions this machine, or this container, has room for."""
     try:
         cores = len(os.sched_getaffinity(0))
-        free = os.sysconf("SC_AVPHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
-    except (AttributeError, ValueError, OSError):  # neither Linux nor a BSD
-        return PAGES_PER_CORE * (os.cpu_count() or 1)
-    return int(max(2, min(PAGES_PER_CORE * cores, free // PAGE_BYTES)))
+    except AttributeError:  # neither Linux nor a BSD
+        cores = os.cpu_count() or 1
+    return int(max(2, min(PAGES_PER_CORE * cores, available_bytes() // PAGE_BYTES)))
 
 
 class Sessions:

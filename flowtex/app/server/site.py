@@ -22,7 +22,7 @@ import os
 import signal
 import socket as sockets
 import webbrowser
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Container
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -30,8 +30,10 @@ from typing import Any
 from aiohttp import web
 
 from flowtex._util.ending import SIGNALS, Ended, announce_end
+from flowtex.app.server.bounded_log import bounded_log
+from flowtex.app.server.connections import LimitedServer, keep
 from flowtex.app.server.files import add_route
-from flowtex.app.server.security import guard, is_same, new_secret
+from flowtex.app.server.security import FAULT, LOCAL, guard, is_same, new_secret
 from flowtex.app.server.sessions import FullError, MakeApp, Sessions
 from flowtex.errors import FieldError
 from flowtex.settings import SettingsError
@@ -39,8 +41,6 @@ from flowtex.settings import SettingsError
 __all__ = ["ServeError", "Site", "run_site", "serve_until_ended"]
 
 DOOR = Path(__file__).parents[1] / "ui" / "static" / "door.html"
-#: Seconds that connections have to end in.
-SHUTDOWN_S = 2.0
 #: Bytes of what the door sends, at most.
 REQUEST_BYTES = 4096
 
@@ -50,7 +50,7 @@ FULL = (
     "after somebody closes a page."
 )
 BROKEN = "The page could not be made: {error}"
-FAULT = "The page could not be made. The program that serves it has printed why."
+MALFORMED = "This is no request of this page."
 
 _log = logging.getLogger(__name__)
 
@@ -77,39 +77,36 @@ class Site:
         The sessions of the pages.
     secret
         What the door asks for.
-    framed
-        Whether pages of other sites may hold these in a frame, as a notebook does.
+    hosts, framed
+        As :func:`flowtex.app.server.security.guard` has them.
     """
 
-    def __init__(self, sessions: Sessions, secret: str, *, framed: bool = False) -> None:
+    def __init__(
+        self,
+        sessions: Sessions,
+        secret: str,
+        *,
+        hosts: Container[str] = LOCAL,
+        framed: bool = False,
+    ) -> None:
         self.sessions = sessions
         self.port = 0
         self._secret = secret
-        self._framed = framed
-        self._runner: web.AppRunner | None = None
+        self._hosts, self._framed = hosts, framed
+        self._server: LimitedServer | None = None
         self._sweep: asyncio.Task[None] | None = None
 
     async def prepare(self, app: Any = None) -> None:
         """Make the first session, with an application that there is already if any."""
         application = self._application(await self.sessions.prepare(app))
-        # What ends the program is told to it, and not to the web server.
-        self._runner = web.AppRunner(
-            application, handle_signals=False, access_log=None, shutdown_timeout=SHUTDOWN_S
-        )
-        await self._runner.setup()
+        self._server = LimitedServer(application)
 
     async def listen(self, where: sockets.socket | tuple[str, int] = ("127.0.0.1", 0)) -> None:
         """Let pages in, after :meth:`prepare`, at a host and port, or on a socket that listens."""
-        if self._runner is None:
+        if self._server is None:
             msg = "nothing is there to let in to; call prepare() first"
             raise RuntimeError(msg)
-        site: web.BaseSite = (
-            web.TCPSite(self._runner, *where)
-            if isinstance(where, tuple)
-            else web.SockSite(self._runner, where)
-        )
-        await site.start()
-        self.port = self._runner.addresses[0][1]
+        self.port = await self._server.start(where)
         self._sweep = asyncio.create_task(self.sessions.sweep())
 
     async def stop(self) -> None:
@@ -119,12 +116,12 @@ class Site:
             with suppress(asyncio.CancelledError):
                 await self._sweep
         await self.sessions.close()
-        if self._runner is not None:
-            await self._runner.cleanup()
+        if self._server is not None:
+            await self._server.stop()
 
     def _application(self, static: dict[str, Any]) -> web.Application:
         application = web.Application(client_max_size=REQUEST_BYTES)
-        guard(application, framed=self._framed)
+        guard(application, hosts=self._hosts, framed=self._framed)
         router = application.router
         router.add_get("/", self._door)
         router.add_get("/index.html", self._door)
@@ -155,15 +152,18 @@ class Site:
         session = self.sessions.get(request.match_info["token"])
         if session is None:
             raise web.HTTPNotFound
+        keep(request)
         return await session.connect(request, shared=self.sessions.shared)
 
     async def _session(self, request: web.Request) -> web.StreamResponse:
-        request_data = await _json(request)
-        if not is_same(request_data.get("secret"), self._secret):
-            return _answer(403, words=WRONG)
-        token = request_data.get("session")
         try:
-            session = await self.sessions.find(token if isinstance(token, str) else None)
+            secret, token = _asked(await request.read())
+        except ValueError:
+            return _answer(400, words=MALFORMED)
+        if not is_same(secret, self._secret):
+            return _answer(403, words=WRONG)
+        try:
+            session = await self.sessions.find(token)
         except FullError:
             return _answer(503, words=FULL.format(pages=_pages(self.sessions.limit)))
         except (FieldError, SettingsError, OSError) as error:
@@ -178,12 +178,25 @@ def _pages(count: int) -> str:
     return "one page" if count == 1 else f"{count} pages"
 
 
-async def _json(request: web.Request) -> dict[str, Any]:
+def _asked(body: bytes) -> tuple[str, str | None]:
+    """Return the secret and the token that a door sends.
+
+    Raises
+    ------
+    ValueError
+        When they are no texts that can be sent, or missing.
+    """
     try:
-        request_data = json.loads(await request.read())
-    except ValueError:
-        request_data = None
-    return request_data if isinstance(request_data, dict) else {}
+        asked = json.loads(body)
+    except RecursionError:
+        asked = None
+    secret, token = (
+        map(asked.get, ("secret", "session")) if isinstance(asked, dict) else (None,) * 2
+    )
+    if not isinstance(secret, str) or not isinstance(token, str | None):
+        raise ValueError(MALFORMED)
+    f"{secret}{token}".encode()  # half of a surrogate pair is a UnicodeError, which is a ValueError
+    return secret, token
 
 
 def _answer(status: int, **values: str) -> web.Response:
@@ -195,6 +208,7 @@ async def run_site(
     host: str,
     port: int,
     *,
+    hosts: Container[str],
     limit: int,
     idle: float,
     announce: Callable[[str], None],
@@ -202,7 +216,7 @@ async def run_site(
 ) -> None:
     """Serve pages until the task is cancelled; :func:`flowtex.app.serve` has the parameters."""
     secret = new_secret()
-    site = Site(Sessions(make_app, secret, limit=limit, idle=idle), secret)
+    site = Site(Sessions(make_app, secret, limit=limit, idle=idle), secret, hosts=hosts)
 
     async def listen() -> int:
         await site.prepare()
@@ -257,7 +271,7 @@ async def serve_until_ended(
         announce(address)
         if open_browser:
             _open(address)
-        with suppress(asyncio.CancelledError):
+        with suppress(asyncio.CancelledError), bounded_log():
             await asyncio.Event().wait()
     finally:
         await stop()

@@ -12,14 +12,14 @@ run, which a browser may still have, lie elsewhere.
 
 from __future__ import annotations
 
-import logging
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Container
 
 from aiohttp import web
 
-from flowtex.app.server.security import guard, is_same
-from flowtex.app.server.site import SHUTDOWN_S, serve_until_ended
+from flowtex.app.server.connections import LimitedServer
+from flowtex.app.server.security import LOCAL, guard, is_same
+from flowtex.app.server.site import serve_until_ended
 from flowtex.pyramid.served import METADATA, Piece, ServedStore
 
 __all__ = ["run_store", "store_application"]
@@ -27,23 +27,19 @@ __all__ = ["run_store", "store_application"]
 #: Seconds for which a browser may keep an object.
 KEPT_S = 3600
 WRONG = "This page opens with the whole address that flowtex printed."
-FAULT = "This part of the store could not be read or made. The program that serves it has said why."
 #: A byte that no object has.
 BEYOND = 10**18
-#: Different errors that are told, at most.
-MOST_TOLD = 100
-
-_log = logging.getLogger(__name__)
 
 
-def store_application(served: ServedStore, page: str, token: str = "") -> web.Application:
-    """Return a web application of a page and its store, below a token where there is one."""
+def store_application(
+    served: ServedStore, page: str, token: str, hosts: Container[str] = LOCAL
+) -> web.Application:
+    """Return a web application of a page and its store, below a token."""
     application = web.Application(client_max_size=0)
-    guard(application)
-    told: set[str] = set()
+    guard(application, hosts=hosts)
 
     def check(request: web.Request) -> None:
-        if token and not is_same(request.match_info["token"], token):
+        if not is_same(request.match_info["token"], token):
             raise web.HTTPForbidden(text=WRONG)
 
     async def page_handler(request: web.Request) -> web.Response:
@@ -64,12 +60,6 @@ def store_application(served: ServedStore, page: str, token: str = "") -> web.Ap
             return web.Response(status=416, headers=headers)
         except LookupError:
             raise web.HTTPNotFound(text="There is no such object.") from None
-        except Exception as error:
-            words = f"{type(error).__name__}: {error}"
-            if words not in told and len(told) < MOST_TOLD:
-                told.add(words)
-                _log.warning("%s", words)
-            raise web.HTTPInternalServerError(text=FAULT) from None
         return _answer(name, piece, part=asked != slice(None))
 
     async def closed(request: web.Request) -> web.Response:
@@ -81,13 +71,11 @@ def store_application(served: ServedStore, page: str, token: str = "") -> web.Ap
         address = f"{token}/"  # relative: a proxy may have put something before it
         raise web.HTTPFound(address)
 
-    base = "/{token}" if token else ""
     router = application.router
-    router.add_get(f"{base}/store/{served.run}/{{name:.+}}", store_handler)
-    router.add_get(f"{base}/", page_handler)
-    if token:
-        router.add_get("/", closed)
-        router.add_get(base, to_page)
+    router.add_get(f"/{{token}}/store/{served.run}/{{name:.+}}", store_handler)
+    router.add_get("/{token}/", page_handler)
+    router.add_get("/", closed)
+    router.add_get("/{token}", to_page)
     return application
 
 
@@ -134,30 +122,22 @@ async def run_store(
     where: tuple[str, int],
     *,
     token: str,
+    hosts: Container[str],
     announce: Callable[[str], None],
     open_browser: bool,
 ) -> None:
-    """Serve a page and its store until the task is cancelled; without a token to everybody."""
+    """Serve a page and its store until the task is cancelled."""
     # Who goes away does not wait for a tile any more.
-    runner = web.AppRunner(
-        store_application(served, page, token),
-        handle_signals=False,
-        handler_cancellation=True,
-        access_log=None,
-        shutdown_timeout=SHUTDOWN_S,
-    )
-
-    async def listen() -> int:
-        await runner.setup()
-        await web.TCPSite(runner, *where).start()
-        port: int = runner.addresses[0][1]
-        return port
+    server = LimitedServer(store_application(served, page, token, hosts), handler_cancellation=True)
 
     async def stop() -> None:
         served.close()
-        await runner.cleanup()
+        await server.stop()
 
-    rest = f"{token}/" if token else ""
     await serve_until_ended(
-        listen, stop, (*where, rest), announce=announce, open_browser=open_browser
+        lambda: server.start(where),
+        stop,
+        (*where, f"{token}/"),
+        announce=announce,
+        open_browser=open_browser,
     )

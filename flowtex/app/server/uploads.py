@@ -6,6 +6,7 @@ server can read. A name serves to be shown, and for its ending; where the file l
 
 from __future__ import annotations
 
+import asyncio
 import shutil
 from collections.abc import AsyncIterable, Callable
 from pathlib import Path
@@ -60,24 +61,33 @@ class Uploads:
             msg = f"{name}: {MOST_UPLOADS} files were sent already; open the page anew for more"
             raise FieldError(msg)
         self._count += 1
-        path = self._folder.new_folder() / name
         try:
-            await self._write(path, content)
+            path = await self._written(name, content)
+        except OSError as error:
+            self._count -= 1
+            msg = f"{name}: cannot be kept on the server ({error.strerror or error})"
+            raise FieldError(msg) from error
         except BaseException:
             self._count -= 1
-            shutil.rmtree(path.parent, ignore_errors=True)
             raise
         self._arrived(name, path)
 
-    async def _write(self, path: Path, content: AsyncIterable[bytes]) -> None:
+    async def _written(self, name: str, content: AsyncIterable[bytes]) -> Path:
+        """Write a file into a folder of its own, which does not stay after an error."""
+        path = self._folder.new_folder() / name
         size = 0
-        with path.open("wb") as file:
-            async for part in content:
-                size += len(part)
-                if size > UPLOAD_BYTES:
-                    msg = f"{path.name}: expected {UPLOAD_BYTES / 1e6:g} MB at most"
-                    raise FieldError(msg)
-                file.write(part)
+        try:
+            with path.open("wb") as file:
+                async for part in content:
+                    size += len(part)
+                    if size > UPLOAD_BYTES:
+                        msg = f"{name}: expected {UPLOAD_BYTES / 1e6:g} MB at most"
+                        raise FieldError(msg)
+                    await asyncio.to_thread(file.write, part)
+        except BaseException:
+            shutil.rmtree(path.parent, ignore_errors=True)
+            raise
+        return path
 
     def close(self) -> None:
         """Remove all files."""

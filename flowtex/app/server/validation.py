@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import io
 import math
+import threading
 import warnings
 from collections.abc import Container, Mapping
 from contextlib import suppress
@@ -17,7 +18,15 @@ from flowtex._util.array_types import AnyArray
 from flowtex.settings import SettingsError
 from flowtex.textures.images import pixels_of
 
-__all__ = ["clipped", "decode_picture", "mapping", "name_among", "number", "shortened"]
+__all__ = [
+    "clipped",
+    "decode_picture",
+    "mapping",
+    "name_among",
+    "number",
+    "sent_picture",
+    "shortened",
+]
 
 #: Characters of a message to a page, at most.
 MESSAGE_LENGTH = 400
@@ -27,6 +36,9 @@ PICTURE_BYTES, PICTURE_PIXELS = 8_000_000, 50_000_000
 PICTURE_SIDE = 2048
 #: Formats that are read: some others of Pillow's start programs, or are seldom tried.
 PICTURE_FORMATS = ("PNG", "JPEG", "WEBP")
+
+#: Held while a picture is decoded, so that the pixels of many are not in memory at once.
+_decoding = threading.Lock()
 
 
 def number(value: Any, low: float = -math.inf, high: float = math.inf) -> float | None:
@@ -60,8 +72,8 @@ def shortened(text: str, most: int = MESSAGE_LENGTH) -> str:
     return text if len(text) <= most else f"{text[: most - 1]}…"
 
 
-def decode_picture(sent: Any) -> AnyArray:
-    """Read a picture that a page has sent, averaged to :data:`PICTURE_SIDE` on a side at most.
+def sent_picture(sent: Any) -> tuple[bytes, str]:
+    """Return the bytes and the name of a picture that a page has sent.
 
     Parameters
     ----------
@@ -71,7 +83,7 @@ def decode_picture(sent: Any) -> AnyArray:
     Raises
     ------
     SettingsError
-        When it is too large, or no picture.
+        When it is too large, or not there.
     """
     content = sent.get("content") if isinstance(sent, Mapping) else None
     if isinstance(content, list):
@@ -84,7 +96,19 @@ def decode_picture(sent: Any) -> AnyArray:
     if len(content) > PICTURE_BYTES:
         msg = f"{name}: has {len(content) / 1e6:.1f} MB; expected {PICTURE_BYTES / 1e6:g} at most"
         raise SettingsError(msg)
-    return _read(content, name)
+    return content, name
+
+
+def decode_picture(content: bytes, name: str) -> AnyArray:
+    """Read a picture, averaged to :data:`PICTURE_SIDE` on a side at most; one at a time.
+
+    Raises
+    ------
+    SettingsError
+        When it has too many pixels, or is no picture.
+    """
+    with _decoding:
+        return _read(content, name)
 
 
 def _read(content: bytes, name: str) -> AnyArray:

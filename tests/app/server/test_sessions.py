@@ -235,8 +235,8 @@ def test_what_fails_first_ends_the_start() -> None:
     run(story())
 
 
-@pytest.mark.parametrize("secret", ["", "wrong", "wslink-secret", None])
-def test_without_the_secret_there_is_no_session(secret: str | None) -> None:
+@pytest.mark.parametrize("secret", ["", "wrong", "wslink-secret", "sécret"])
+def test_without_the_secret_there_is_no_session(secret: str) -> None:
     async def story() -> None:
         async with place() as here:
             token = await here.token()
@@ -245,13 +245,64 @@ def test_without_the_secret_there_is_no_session(secret: str | None) -> None:
                 async with here.http.post(f"{here.bare}flowtex/session", json=asked) as answer:
                     assert answer.status == 403
                     assert "secret included" in (await answer.json())["words"]
-            async with here.http.post(f"{here.bare}flowtex/session", data=b"[") as answer:
-                assert answer.status == 403
             assert len(here.site.sessions) == 1
             with pytest.raises(RuntimeError, match="Authentication failed"):
-                await Link.open(here.http, here.bare, token, secret or "")
+                await Link.open(here.http, here.bare, token, secret)
 
     run(story())
+
+
+def test_what_is_no_request_is_refused_as_such(caplog: pytest.LogCaptureFixture) -> None:
+    async def story() -> None:
+        async with place() as here:
+            for body in (
+                *(b"", b"[", b"[]", b"{}", b"3", b"\xff\xfe", b"[" * 4000, b'{"a":' * 700),
+                *(b'{"secret": null}', b'{"secret": 3}', b'{"secret": ["a"]}', b'{"secret": NaN}'),
+                b'{"secret": "\\ud800"}',
+                f'{{"secret": "{here.secret}", "session": 3}}'.encode(),
+                f'{{"secret": "{here.secret}", "session": "\\udfff"}}'.encode(),
+            ):
+                async with here.http.post(f"{here.bare}flowtex/session", data=body) as answer:
+                    assert answer.status == 400, body
+                    assert "no request" in (await answer.json())["words"]
+            for path in (
+                "page/%ED%A0%80/ws",
+                "flowtex/%ED%A0%80/%FF",
+                "page/%00/index.html",
+                "%2e",
+            ):
+                async with here.http.get(f"{here.bare}{path}") as answer:
+                    assert answer.status in (200, 404)
+            await here.token()
+
+    run(story())
+    assert not caplog.records
+
+
+def test_a_page_cannot_add_to_the_state_and_learns_of_no_traceback(
+    caplog: pytest.LogCaptureFixture, capfd: pytest.CaptureFixture[str]
+) -> None:
+    async def story() -> None:
+        async with place() as here:
+            token = await here.token()
+            link, server = await here.link(token), here.app(token).server
+            changes = [{"key": key, "value": 9} for key in ("flow0_value", "new", "__class__")]
+            await link.call("trame.state.update", changes)
+            assert server.state.flow0_value == 9 and not server.state.has("new")
+            for method in ("application.exit", "application.exit.later", "nothing"):
+                with pytest.raises(RuntimeError, match="Unregistered method called"):
+                    await link.call(method, "x" * 100)
+            server.controller.trigger("broken")(lambda: {}["secret"])
+            with pytest.raises(RuntimeError, match="Exception raised"):
+                await link.call("trame.trigger", "broken", [], {})
+            assert await link.call("trame.state.get")
+            await link.socket.send_str("{}")  # no page of ours does that, and it is over
+            await until(lambda: link.socket.closed)
+            await link.close()
+
+    run(story())
+    assert caplog.text.count("KeyError: 'secret'") == 1
+    assert "No area" not in capfd.readouterr().out
 
 
 def test_other_sites_are_refused_and_proxies_are_known() -> None:

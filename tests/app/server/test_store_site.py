@@ -53,7 +53,7 @@ def visit(store: Path, token: str, ask: Callable[[Client, str], Awaitable[None]]
         served = ServedStore(store)
         server = TestServer(store_application(served, "<p>A page", token))
         async with TestClient(server) as client:
-            await ask(client, f"{token and f'/{token}'}/store/{served.run}")
+            await ask(client, f"/{token}/store/{served.run}")
         served.close()
 
     asyncio.run(run())
@@ -75,20 +75,14 @@ def test_only_the_whole_address_opens(store: Path) -> None:
         assert page.headers["Referrer-Policy"] == "no-referrer"
         answer = await client.get(f"{at}/zarr.json", headers={"Origin": "http://evil.example"})
         assert answer.status == 403
+        led_here = {"Host": "evil.example", "Origin": "http://evil.example"}
+        assert (await client.get(f"{at}/zarr.json", headers=led_here)).status == 403
         for method in ("PUT", "POST", "DELETE", "PATCH", "OPTIONS"):
             assert (await client.request(method, f"{at}/zarr.json")).status == 405
         told = json.loads(await text_of(await client.get(f"{at}/zarr.json")))
         assert told["attributes"]["flowtex"]["traced"] == [0, 1, 2]
 
     visit(store, "word", ask)
-
-
-def test_without_a_token_everybody_may_look(store: Path) -> None:
-    async def ask(client: Client, at: str) -> None:
-        assert await text_of(await client.get("/")) == "<p>A page"
-        assert (await client.get(f"{at}/zarr.json")).status == 200
-
-    visit(store, "", ask)
 
 
 def test_parts_of_objects(store: Path) -> None:
@@ -121,7 +115,7 @@ def test_parts_of_objects(store: Path) -> None:
                 answer = await client.get(f"{at}/{name}", headers={"Range": text})
                 assert answer.status == 200 and len(await answer.read()) == size
 
-    visit(store, "", ask)
+    visit(store, "word", ask)
 
 
 def test_nothing_else_is_found(store: Path) -> None:
@@ -134,10 +128,10 @@ def test_nothing_else_is_found(store: Path) -> None:
         ):
             assert (await client.get(f"{at}/{name}")).status == 404
 
-    visit(store, "", ask)
+    visit(store, "word", ask)
 
 
-def test_faults_are_told_once_and_not_to_others(
+def test_faults_are_told_to_the_log_and_not_to_others(
     store: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     def fail(*_: Any) -> Any:
@@ -151,8 +145,8 @@ def test_faults_are_told_once_and_not_to_others(
             answer = await client.get(f"{at}/{TILE}")
             assert answer.status == 500 and "secret" not in await text_of(answer)
 
-    visit(store, "", ask)
-    assert [record.getMessage() for record in caplog.records] == ["OSError: the disk is /secret"]
+    visit(store, "word", ask)
+    assert "OSError: the disk is /secret" in caplog.text and "Traceback" not in caplog.text
 
 
 def test_what_a_browser_keeps_is_of_one_run(store: Path) -> None:
@@ -172,9 +166,9 @@ def test_what_a_browser_keeps_is_of_one_run(store: Path) -> None:
 
 @pytest.mark.slow
 def test_the_shell_serves_a_store(store: Path) -> None:
-    served = start("serve", str(store), "--token", "word")
+    served = start("serve", str(store), "--token", "0123456789-abcde_")
     try:
-        assert served.address.endswith("/word/")
+        assert served.address.endswith("/0123456789-abcde_/")
         with urllib.request.urlopen(served.address) as answer:
             found = re.search(rb'"url":"(store/[^"]+/)"', answer.read())
             assert found is not None

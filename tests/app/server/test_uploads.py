@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import errno
 from collections.abc import AsyncIterator, Iterator
 from pathlib import Path
 
@@ -74,3 +75,33 @@ def test_size_and_number_are_limited(
     with pytest.raises(FieldError, match="sent already"):
         send(made, "small.vts", b"1")
     assert len({path for _, path in arrived}) == uploads.MOST_UPLOADS
+
+
+@pytest.mark.parametrize("name", ["风" * 300, "ä" * 90 + "\ud800", "x" * 255, "𝕏" * 100])
+def test_names_have_room_in_a_folder(
+    taken: tuple[Uploads, list[tuple[str, Path]]], name: str
+) -> None:
+    made, arrived = taken
+    send(made, f"{name}.vts", b"one")
+    ((_, path),) = arrived
+    assert len(path.name.encode()) <= 200 and path.suffix == ".vts"
+    assert path.name[:20] == name[:20] and path.read_bytes() == b"one"
+
+
+def test_a_full_disk_is_told_and_leaves_nothing(
+    taken: tuple[Uploads, list[tuple[str, Path]]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made, arrived = taken
+    full = OSError(errno.ENOSPC, "No space left on device", str(made.folder / "wake.vts"))
+
+    async def content() -> AsyncIterator[bytes]:
+        yield b"one"
+        raise full
+
+    for _ in range(uploads.MOST_UPLOADS + 1):
+        with pytest.raises(FieldError, match="No space left on device") as refused:
+            asyncio.run(made.receive("wake.vts", content()))
+        assert str(made.folder) not in str(refused.value)
+    assert not list(made.folder.iterdir())
+    send(made, "wake.vts", b"two")
+    assert len(arrived) == 1

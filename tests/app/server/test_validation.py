@@ -18,6 +18,7 @@ from flowtex.app.server.validation import (
     mapping,
     name_among,
     number,
+    sent_picture,
     shortened,
 )
 from flowtex.camera import Camera, CameraError
@@ -42,7 +43,7 @@ def test_anything_is_a_number_within_limits_or_none(value: Any) -> None:
 @example({"name": [], "content": [b"\x89PNG\r\n\x1a\n"]})
 def test_anything_is_a_picture_or_is_refused(sent: Any) -> None:
     with pytest.raises(SettingsError, match="expected") as refused:
-        decode_picture(sent)
+        decode_picture(*sent_picture(sent))
     assert len(str(refused.value)) < 300
 
 

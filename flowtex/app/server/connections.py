@@ -1,0 +1,155 @@
+"""The connections of a web server: how many, for how long, and which one gives way.
+
+The head of a request has to arrive within :data:`HEAD_S`, also the next one of a connection that
+is kept, and an answer has to be found within :data:`ANSWER_S`. When there are as many connections
+as there may be, a newcomer takes the place of another one: of the address that has most of them,
+the oldest that waits for a request, or else the oldest that is being answered. Those of pages,
+which last, give way to nobody. So connections that were opened to keep others out end each other.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import socket as sockets
+from collections import Counter
+from contextlib import suppress
+from typing import Any
+
+from aiohttp import web
+
+__all__ = ["LimitedServer", "keep", "limit_time"]
+
+#: Seconds for the head of a request, and for finding an answer (an upload lasts until it is read).
+HEAD_S, ANSWER_S = 30.0, 900.0
+#: Connections at one time, at most, and connections that wait to be let in.
+CONNECTIONS, BACKLOG = 512, 64
+#: Seconds in which the rest of a request that was answered may come, and connections end.
+LINGER_S, SHUTDOWN_S = 2.0, 2.0
+
+#: What is being answered: the time that each connection has for it.
+ANSWERING = web.AppKey("answering", dict[web.RequestHandler, asyncio.Timeout])
+
+
+def limit_time(application: web.Application) -> None:
+    """End requests that take too long, but for those that are kept."""
+    answering = application[ANSWERING] = {}
+
+    @web.middleware
+    async def in_time(request: web.Request, handler: Any) -> web.StreamResponse:
+        try:
+            async with asyncio.timeout(ANSWER_S) as answering[request.protocol]:
+                answer: web.StreamResponse = await handler(request)
+                return answer
+        except TimeoutError:
+            raise web.HTTPRequestTimeout from None
+        finally:
+            answering.pop(request.protocol, None)
+
+    application.middlewares.append(in_time)
+
+
+def keep(request: web.Request) -> None:
+    """Let the connection of a request last as long as it likes."""
+    request.app[ANSWERING][request.protocol].reschedule(None)
+
+
+class LimitedServer:
+    """A web application on a port.
+
+    Parameters
+    ----------
+    application
+        After :func:`limit_time`.
+    most
+        Connections at one time, at most; by default half of the files that the process may open
+        are left for others.
+    **options
+        Arguments of ``aiohttp.web.AppRunner``.
+    """
+
+    def __init__(
+        self, application: web.Application, *, most: int | None = None, **options: Any
+    ) -> None:
+        self._answering = application[ANSWERING]
+        self._most = usual_most() if most is None else most
+        # What ends the program is handled by the program, and not by the web server.
+        self._runner = web.AppRunner(
+            application,
+            handle_signals=False,
+            access_log=None,
+            shutdown_timeout=SHUTDOWN_S,
+            keepalive_timeout=HEAD_S,  # counted from the connection on
+            lingering_time=LINGER_S,
+            **options,
+        )
+        self._server: asyncio.Server | None = None
+
+    async def start(self, where: sockets.socket | tuple[str, int]) -> int:
+        """Listen at a host and port, or on a socket that listens; return the port."""
+        await self._runner.setup()
+        create = asyncio.get_running_loop().create_server
+        if isinstance(where, tuple):
+            self._server = await create(self._admit, *where, backlog=BACKLOG)
+        else:
+            self._server = await create(self._admit, sock=where, backlog=BACKLOG)
+        port: int = self._server.sockets[0].getsockname()[1]
+        return port
+
+    async def stop(self) -> None:
+        """Listen no more, and end all connections."""
+        if self._server is not None:
+            self._server.close()
+        await self._runner.cleanup()
+
+    def _admit(self) -> asyncio.Protocol:
+        """Return what talks to a newcomer, for whom another connection may have to end."""
+        server = self._runner.server
+        if server is None:
+            return _Refusal()
+        present = [
+            connection
+            for connection in server.connections
+            if connection.transport is not None and not connection.transport.is_closing()
+        ]
+        if len(present) >= self._most:
+            loser = self._loser(present)
+            if loser is None or loser.transport is None:
+                return _Refusal()
+            loser.transport.abort()
+        return server()
+
+    def _loser(self, present: list[web.RequestHandler]) -> web.RequestHandler | None:
+        """Return the connection that gives way; they come in the order of their arrival."""
+        times = self._answering
+        waiting = [connection for connection in present if connection not in times]
+        others = [c for c in present if c in times and times[c].when() is not None]
+        addresses = [_address(connection) for connection in waiting or others]
+        if not addresses:
+            return None
+        ((most_frequent, _),) = Counter(addresses).most_common(1)
+        return (waiting or others)[addresses.index(most_frequent)]
+
+
+class _Refusal(asyncio.Protocol):
+    """Ends a connection at once."""
+
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        if isinstance(transport, asyncio.Transport):
+            transport.abort()
+
+
+def _address(connection: web.RequestHandler) -> object:
+    transport = connection.transport
+    name = transport.get_extra_info("peername") if transport is not None else None
+    return name[0] if isinstance(name, tuple) else name
+
+
+def usual_most() -> int:
+    """Return how many connections this process has room for."""
+    with suppress(ImportError, OSError):  # on Windows
+        import resource
+
+        files = resource.getrlimit(resource.RLIMIT_NOFILE)[0]
+        if files != resource.RLIM_INFINITY:
+            return max(1, min(CONNECTIONS, files // 2))
+    return CONNECTIONS

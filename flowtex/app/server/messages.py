@@ -1,0 +1,104 @@
+"""The messages of a page, before trame sees them, and the errors that it is answered.
+
+wslink reserves room for a whole message when its first piece announces a length of up to 4 GB, so
+messages are limited: nothing that the page sends is larger than a picture. trame keeps whatever a
+page puts into the state, prints the names of areas that it does not know, and answers a fault
+with its traceback; none of that passes here.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Container
+from typing import Any
+
+from wslink.chunking import UnChunker
+
+__all__ = ["LimitedMessages", "restrict"]
+
+#: Bytes of a message, and messages that a page may begin before it ends one.
+MESSAGE_BYTES, OPEN_MESSAGES = 16_000_000, 4
+#: What trame offers, and no page of ours asks for.
+UNUSED = ("application.exit", "application.exit.later", "trame.rca.push", "trame.rca.drop")
+#: What happens to a page.
+EVENTS = ("client_connected", "client_mounted", "client_unmounted", "client_exited")
+
+_log = logging.getLogger(__name__)
+
+
+class LimitedMessages(UnChunker):
+    """The messages of one connection, joined from their pieces, within limits.
+
+    Parameters
+    ----------
+    declared
+        Names of the state's values; a page cannot add others.
+    areas
+        Names of the views that a page may speak of.
+    """
+
+    def __init__(self, declared: Container[str] = (), areas: Container[str] = ()) -> None:
+        super().__init__()
+        self._declared, self._areas = declared, areas
+
+    def set_max_message_size(self, size: int) -> None:
+        """Allow messages of so many bytes, or as many as any may have."""
+        super().set_max_message_size(min(size, MESSAGE_BYTES))
+
+    def process_chunk(self, chunk: bytes) -> Any:
+        """Take a piece; return the message when it is the last one.
+
+        Raises
+        ------
+        ValueError
+            When a message is too long, malformed, or one too many.
+        """
+        message = super().process_chunk(chunk)
+        if len(self.pending_messages) > OPEN_MESSAGES:
+            self.release_pending_messages()
+            msg = (
+                f"more than {OPEN_MESSAGES} messages were begun; expected one of them to end first"
+            )
+            raise ValueError(msg)
+        return self._checked(message) if isinstance(message, dict) else message
+
+    def _checked(self, message: dict[str, Any]) -> dict[str, Any] | None:
+        """Return a message with what has a meaning here; ``None`` where that is nothing."""
+        method, args = message.get("method"), message.get("args")
+        first = args[0] if isinstance(args, list) and args else None
+        if method == "trame.state.update":
+            known = [change for change in _changes(first) if change["key"] in self._declared]
+            return {**message, "args": [known], "kwargs": {}}
+        if method == "trame.lifecycle.update":
+            return {**message, "kwargs": {}} if _is_one_of(first, EVENTS) else None
+        if isinstance(method, str) and method.startswith("trame.rca."):
+            return {**message, "kwargs": {}} if _is_one_of(first, self._areas) else None
+        return message
+
+
+def _changes(changes: Any) -> list[dict[str, Any]]:
+    """Return what has the form of changes of the state."""
+    found = changes if isinstance(changes, list) else []
+    return [c for c in found if isinstance(c, dict) and isinstance(c.get("key"), str)]
+
+
+def _is_one_of(name: Any, names: Container[str]) -> bool:
+    return isinstance(name, str) and name in names
+
+
+def restrict(endpoint: Any) -> None:
+    """Take away what no page asks for from a wslink endpoint, and tracebacks from its errors."""
+    for name in UNUSED:
+        endpoint.functionMap.pop(name, None)
+    send = endpoint.sendWrappedError
+
+    async def send_error(
+        rpcid: Any, code: int, message: str, data: Any = None, client_id: Any = None
+    ) -> None:
+        if isinstance(data, dict):
+            _log.error("%s failed\n%s", data.get("method"), data.get("trace"))
+        await send(rpcid, code, message, client_id=client_id)
+
+    endpoint.sendWrappedError = send_error
+    # It writes the same in three pieces, and disable_logging leaves it as it is.
+    logging.getLogger("wslink.protocol").disabled = True

@@ -1,0 +1,77 @@
+"""Nobody can fill the log."""
+
+from __future__ import annotations
+
+import asyncio
+import errno
+import io
+import logging
+from collections.abc import Iterator
+
+import pytest
+
+from flowtex.app.server.bounded_log import (
+    MESSAGE_LENGTH,
+    MOST_RECORDS,
+    TRACEBACK_LENGTH,
+    WINDOW_S,
+    RepeatFilter,
+    bounded_log,
+)
+
+
+@pytest.fixture
+def log() -> Iterator[tuple[logging.Logger, io.StringIO, list[float]]]:
+    """A logger, what it has written, and the time."""
+    logger, written, now = logging.getLogger("bounded"), io.StringIO(), [0.0]
+    handler = logging.StreamHandler(written)
+    handler.addFilter(RepeatFilter(lambda: now[0]))
+    logger.addHandler(handler)
+    logger.propagate = False
+    yield logger, written, now
+    logger.removeHandler(handler)
+
+
+Log = tuple[logging.Logger, io.StringIO, list[float]]
+
+
+def test_what_repeats_is_written_a_few_times_a_minute(log: Log) -> None:
+    logger, written, now = log
+
+    def fail(times: int) -> None:
+        for number in range(times):
+            logger.error("fault %d", number)
+
+    fail(1000)
+    assert written.getvalue().count("fault") == MOST_RECORDS
+    logger.error("another")
+    now[0] += WINDOW_S
+    fail(1000)
+    assert written.getvalue().count("fault") == 2 * MOST_RECORDS
+    assert f"another\nfault 0 ({1000 - MOST_RECORDS} more were dropped)" in written.getvalue()
+
+
+def test_what_is_long_is_cut(log: Log) -> None:
+    logger, written, _ = log
+    logger.error("a" * 10**6 + "%s", "b" * 10**6)
+    assert len(written.getvalue()) < MESSAGE_LENGTH + 10
+    try:
+        raise ValueError("c" * 10**6)
+    except ValueError:
+        logger.exception("fault")
+    assert len(written.getvalue()) < 2 * MESSAGE_LENGTH + TRACEBACK_LENGTH
+    assert "Traceback" in written.getvalue()
+
+
+def test_connections_that_cannot_be_accepted_are_few_lines(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    async def story() -> None:
+        handle = asyncio.get_running_loop().call_exception_handler
+        for _ in range(1000):
+            error = OSError(errno.EMFILE, "Too many open files")
+            handle({"message": "socket.accept() out of system resource", "exception": error})
+
+    with bounded_log():
+        asyncio.run(story())
+    assert 0 < len(caplog.records) <= MOST_RECORDS

@@ -1,0 +1,181 @@
+"""How many connections a server has, for how long, and which one gives way."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+
+import pytest
+
+pytest.importorskip("aiohttp")
+pytest.importorskip("wslink")
+
+import aiohttp
+from aiohttp import web
+
+from flowtex.app.server import connections
+from flowtex.app.server.connections import LimitedServer, keep, usual_most
+from flowtex.app.server.security import guard
+
+HALF = b"GET / HTTP/1.1\r\nHost: localhost\r\nX-Slow: "
+FORM = b"POST /form HTTP/1.1\r\nHost: localhost\r\nContent-Length: 4\r\n"
+Stream = tuple[asyncio.StreamReader, asyncio.StreamWriter]
+
+
+class Place:
+    """A server with a page, a socket and a form, and what connects to it."""
+
+    def __init__(self, port: int) -> None:
+        self.port = port
+        self.streams: list[Stream] = []
+
+    async def begin(self, text: bytes = HALF, address: str = "127.0.0.1") -> Stream:
+        """Connect, and send the first part of a request."""
+        stream = await asyncio.open_connection("127.0.0.1", self.port, local_addr=(address, 0))
+        self.streams.append(stream)
+        stream[1].write(text)
+        await stream[1].drain()
+        return stream
+
+    async def begin_form(self) -> Stream:
+        """Send half of a form, of which the server waits for the rest."""
+        stream = await self.begin(FORM + b"Expect: 100-continue\r\n\r\n")
+        assert await stream[0].readuntil(b"\r\n\r\n") == b"HTTP/1.1 100 Continue\r\n\r\n"
+        stream[1].write(b"ab")
+        return stream
+
+    @asynccontextmanager
+    async def socket(self) -> AsyncIterator[aiohttp.ClientWebSocketResponse]:
+        """Connect as a page does."""
+        async with (
+            aiohttp.ClientSession() as http,
+            http.ws_connect(f"http://127.0.0.1:{self.port}/ws") as socket,
+        ):
+            yield socket
+
+    async def status(self) -> int:
+        """Ask for the page on a connection of its own."""
+        async with (
+            aiohttp.ClientSession() as http,
+            http.get(f"http://127.0.0.1:{self.port}/") as answer,
+        ):
+            return answer.status
+
+
+@asynccontextmanager
+async def place(most: int | None = None) -> AsyncIterator[Place]:
+    async def page(request: web.Request) -> web.Response:
+        return web.Response(text="a page")
+
+    async def socket(request: web.Request) -> web.WebSocketResponse:
+        keep(request)
+        made = web.WebSocketResponse()
+        await made.prepare(request)
+        async for message in made:
+            await made.send_str(message.data)
+        return made
+
+    async def form(request: web.Request) -> web.Response:
+        return web.Response(body=await request.read())
+
+    application = web.Application()
+    guard(application)
+    application.router.add_get("/", page)
+    application.router.add_get("/ws", socket)
+    application.router.add_post("/form", form)
+    server = LimitedServer(application, most=most)
+    here = Place(await server.start(("127.0.0.1", 0)))
+    try:
+        yield here
+    finally:
+        for _, writer in here.streams:
+            writer.close()
+        await server.stop()
+
+
+async def ended(stream: Stream) -> bytes:
+    """Wait for the server to end a connection; return what it said."""
+    async with asyncio.timeout(30):
+        try:
+            return await stream[0].read()
+        except ConnectionError:
+            return b""
+
+
+def test_half_sent_requests_shut_nobody_out(caplog: pytest.LogCaptureFixture) -> None:
+    async def story() -> None:
+        async with place(8) as here, here.socket() as socket:
+            half = [await here.begin() for _ in range(40)]
+            assert await here.status() == 200
+            for stream in half[:30]:  # the oldest have given way
+                await ended(stream)
+            await socket.send_str("here")
+            assert await socket.receive_str(timeout=30) == "here"
+
+    asyncio.run(story())
+    assert not caplog.records
+
+
+def test_who_has_most_connections_gives_way() -> None:
+    async def story() -> None:
+        async with place(8) as here:
+            neighbour = await here.begin(address="127.0.0.2")
+            many = [await here.begin() for _ in range(30)]
+            for stream in many[:20]:
+                await ended(stream)
+            neighbour[1].write(b"no\r\n\r\n")
+            assert (await neighbour[0].readline()).startswith(b"HTTP/1.1 200")
+
+    asyncio.run(story())
+
+
+def test_a_request_that_is_answered_outlives_those_that_wait(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    async def story() -> None:
+        async with place(4) as here:
+            slow = await here.begin_form()
+            for stream in [await here.begin() for _ in range(12)][:8]:
+                await ended(stream)
+            slow[1].write(b"cd")
+            assert (await slow[0].readline()).startswith(b"HTTP/1.1 200")
+            # Where all are being answered, the oldest of them gives way.
+            others = [await here.begin_form() for _ in range(5)]
+            await ended(others[0])
+            assert await here.status() == 200
+
+    asyncio.run(story())
+    assert not caplog.records
+
+
+def test_where_nobody_gives_way_a_newcomer_is_refused() -> None:
+    async def story() -> None:
+        async with place(1) as here, here.socket() as socket:
+            assert await ended(await here.begin()) == b""
+            await socket.send_str("here")
+            assert await socket.receive_str(timeout=30) == "here"
+
+    asyncio.run(story())
+
+
+def test_a_head_and_a_body_have_a_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("HEAD_S", "ANSWER_S", "LINGER_S"):
+        monkeypatch.setattr(connections, name, 0.05)
+
+    async def story() -> None:
+        async with place() as here, here.socket() as socket:
+            assert await ended(await here.begin()) == b""
+            assert (await ended(await here.begin_form())).startswith(b"HTTP/1.1 408")
+            whole = await here.begin(HALF + b"no\r\n\r\n")
+            assert (await ended(whole)).startswith(b"HTTP/1.1 200")  # and then it is over
+            await socket.send_str("here")
+            assert await socket.receive_str(timeout=30) == "here"
+
+    asyncio.run(story())
+
+
+def test_files_of_the_process_are_left_for_others() -> None:
+    resource = pytest.importorskip("resource")
+    files = resource.getrlimit(resource.RLIMIT_NOFILE)[0]
+    assert 1 <= usual_most() <= files / 2
