@@ -43,16 +43,17 @@ def test_a_message_has_an_end() -> None:
 
 @pytest.mark.parametrize("by_name", [False, True])
 def test_values_that_nobody_declared_are_dropped(*, by_name: bool) -> None:
-    changes = [
+    changes: list[Any] = [
         *({"key": key, "value": 1} for key in ("one", "new", "two", 3, ["one"], None)),
         *("one", None, {}, {"value": 1}),
     ]
-    update = {"id": "a", "method": "trame.state.update"}
+    update: dict[str, Any] = {"id": "a", "method": "trame.state.update"}
     update |= {"args": [], "kwargs": {"changes": changes}} if by_name else {"args": [changes]}
     left = taken(update)
     known = [{"key": "one", "value": 1}, {"key": "two", "value": 1}]
     assert left["args"] == [[] if by_name else known] and not left["kwargs"]
-    for junk in (None, 1, "one", {}, [1]):
+    others: list[Any] = [None, 1, "one", {}, [1]]
+    for junk in others:
         assert taken({**update, "args": [junk]})["args"] == [[]]
 
 

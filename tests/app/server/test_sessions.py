@@ -292,7 +292,7 @@ def test_a_page_cannot_add_to_the_state_and_learns_of_no_traceback(
             for method in ("application.exit", "application.exit.later", "nothing"):
                 with pytest.raises(RuntimeError, match="Unregistered method called"):
                     await link.call(method, "x" * 100)
-            server.controller.trigger("broken")(lambda: {}["secret"])
+            server.controller.trigger("broken")(lambda: dict[str, int]()["secret"])
             with pytest.raises(RuntimeError, match="Exception raised"):
                 await link.call("trame.trigger", "broken", [], {})
             assert await link.call("trame.state.get")
