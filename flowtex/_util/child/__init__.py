@@ -1,0 +1,7 @@
+"""Work in a process of its own, which may die without taking anything along."""
+
+from __future__ import annotations
+
+from flowtex._util.child.supervisor import Child, ChildError, prepare
+
+__all__ = ["Child", "ChildError", "prepare"]

@@ -1,0 +1,182 @@
+"""A process that has loaded libraries, and is forked into children: they start within milliseconds.
+
+It has one thread, unlike the process that asks for children. It holds one end of a pipe for each
+child: it writes the status of one that has ended, and ends one whose pipe was closed. So no child
+outlives the process that asked for it, in whatever way that ends.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import gc
+import json
+import os
+import select
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import weakref
+from contextlib import suppress
+from importlib import import_module
+from typing import Any, NoReturn
+
+from flowtex._util.child.worker import serve, settle
+
+__all__ = ["FORKS", "ForkServer", "fork_server", "main"]
+
+#: Whether children are forked; elsewhere libraries do not bear that.
+FORKS = sys.platform == "linux"
+
+_PROGRAM = (
+    "import json, sys; start = json.loads(sys.argv[1]); sys.path[:] = start['path']; "
+    "from flowtex._util.child.forkserver import main; main(start['control'], start['preload'])"
+)
+#: Bytes of a request.
+REQUEST_BYTES = 65_536
+#: Length of a status, and of the signal that ends a process with its parent.
+STATUS_BYTES, PR_SET_PDEATHSIG = 4, 1
+
+_servers: dict[tuple[str, ...], ForkServer] = {}
+_lock = threading.Lock()
+
+
+class ForkServer:
+    """The process that is forked, as seen by the one that asks for children.
+
+    Parameters
+    ----------
+    preload
+        Modules that it loads, one after another; what is not installed is left out.
+    """
+
+    def __init__(self, preload: tuple[str, ...]) -> None:
+        self._control, other = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        start = {"path": sys.path, "control": other.fileno(), "preload": preload}
+        # A session of its own: Ctrl-C in the terminal is for the process that asks.
+        self._process = subprocess.Popen(
+            [sys.executable, "-I", "-c", _PROGRAM, json.dumps(start)],
+            pass_fds=[other.fileno()],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            start_new_session=True,
+            # Threads of a library for linear algebra do not live on in what is forked.
+            env={"OPENBLAS_NUM_THREADS": "1", **os.environ},
+        )
+        other.close()
+        self._owner = os.getpid()
+        self.close = weakref.finalize(self, _close, self._control, self._process)
+
+    @property
+    def alive(self) -> bool:
+        """Whether it can be asked: it has not ended, and was started by this very process."""
+        return self._owner == os.getpid() and self._process.poll() is None
+
+    def start(self, entry: str, memory: int, pipes: tuple[int, int, int]) -> None:
+        """Fork a child, with the pipes of its requests, its answers and its status."""
+        text = json.dumps({"entry": entry, "memory": memory}).encode()
+        socket.send_fds(self._control, [text], list(pipes))
+
+
+def _close(control: socket.socket, process: subprocess.Popen[bytes]) -> None:
+    control.close()
+    process.kill()  # it may be loading libraries; its children end with it
+    process.wait()
+
+
+def fork_server(preload: tuple[str, ...]) -> ForkServer:
+    """Return the server that has loaded some modules, or loads them from now on."""
+    with _lock:
+        server = _servers.get(preload)
+        if server is None or not server.alive:
+            server = _servers[preload] = ForkServer(preload)
+        return server
+
+
+def main(control: int, preload: list[str]) -> NoReturn:
+    """Load modules, and fork children, until the other end of the control socket is closed."""
+    server = _Server(socket.socket(fileno=control))
+    for module in preload:
+        with suppress(ImportError):
+            import_module(module)
+        server.run(once=True)
+    # Collections do not touch, and so copy, what children share.
+    gc.collect()
+    gc.freeze()
+    while True:
+        server.run()
+
+
+class _Server:
+    """The forking process itself."""
+
+    def __init__(self, control: socket.socket) -> None:
+        self._control = control
+        self._wakes, wakes = os.pipe()
+        os.set_blocking(wakes, False)
+        signal.set_wakeup_fd(wakes)
+        signal.signal(signal.SIGCHLD, lambda *_: None)
+        #: Pipes of the children's status, by their numbers, and children that are ending.
+        self._children: dict[int, int] = {}
+        self._killed: set[int] = set()
+
+    def run(self, *, once: bool = False) -> None:
+        """Wait for something to do, or not at all, and do it."""
+        poll = select.poll()
+        poll.register(self._control, select.POLLIN)
+        poll.register(self._wakes, select.POLLIN)
+        for pid, status in self._children.items():
+            if pid not in self._killed:
+                poll.register(status, 0)  # tells when the other end is closed
+        ready = dict(poll.poll(0 if once else None))
+        if self._wakes in ready:
+            os.read(self._wakes, REQUEST_BYTES)
+            self._reap()
+        for pid, status in self._children.items():
+            if status in ready:
+                os.kill(pid, signal.SIGKILL)
+                self._killed.add(pid)
+        if self._control.fileno() in ready:
+            self._answer()
+
+    def _reap(self) -> None:
+        for pid in list(self._children):
+            done, status = os.waitpid(pid, os.WNOHANG)
+            if done:
+                pipe = self._children.pop(pid)
+                self._killed.discard(pid)
+                code = os.waitstatus_to_exitcode(status)
+                with suppress(OSError):
+                    os.write(pipe, code.to_bytes(STATUS_BYTES, "big", signed=True))
+                os.close(pipe)
+
+    def _answer(self) -> None:
+        text, pipes, _, _ = socket.recv_fds(self._control, REQUEST_BYTES, 3)
+        if not text:
+            for pid in self._children:
+                os.kill(pid, signal.SIGKILL)
+            os._exit(0)
+        reads, writes, status = pipes
+        if (pid := os.fork()) == 0:
+            self._become_child(json.loads(text), reads, writes, status)
+        self._children[pid] = status
+        os.close(reads)
+        os.close(writes)
+
+    def _become_child(
+        self, start: dict[str, Any], reads: int, writes: int, status: int
+    ) -> NoReturn:
+        code = 1
+        try:
+            ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+            signal.set_wakeup_fd(-1)
+            signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+            self._control.close()
+            for pipe in (self._wakes, status, *self._children.values()):
+                os.close(pipe)
+            settle(start["memory"])
+            serve(start["entry"], os.fdopen(reads, "rb"), os.fdopen(writes, "wb"))
+            code = 0
+        finally:
+            os._exit(code)

@@ -1,0 +1,288 @@
+"""A child as its parent sees it: requests with a limit of time, and its end told at once."""
+
+from __future__ import annotations
+
+import itertools
+import os
+import select
+import signal
+import subprocess
+import sys
+import threading
+import time
+import weakref
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass
+from queue import Empty, SimpleQueue
+from typing import IO, Any
+
+from flowtex._util.array_types import AnyArray
+from flowtex._util.child.forkserver import FORKS, STATUS_BYTES, fork_server
+from flowtex._util.child.messages import MessageError, read_message, write_message
+from flowtex._util.child.worker import PROGRAM, start_text
+from flowtex._util.memory import available_bytes
+from flowtex._util.progress import Stopped, check
+
+__all__ = ["Child", "ChildError", "prepare"]
+
+#: Seconds between two checks whether an answer is still wanted, and for which the status of a
+#: child that has closed its pipe is waited for.
+CHECK_INTERVAL_S, STATUS_WAIT_S = 0.05, 5.0
+#: Share of the memory that is available when a child starts which it may take.
+MEMORY_SHARE = 0.6
+
+
+class ChildError(Exception):
+    """A child gives no answer.
+
+    Attributes
+    ----------
+    kind
+        Name of the class of the error that it raised; empty where it died, had to be ended, or
+        lacks memory: the text then says so, as in ``"crashed (SIGSEGV)"``.
+    trace
+        Where it was raised; empty where the text says all.
+    """
+
+    def __init__(self, text: str, kind: str = "", trace: str = "") -> None:
+        super().__init__(text)
+        self.kind, self.trace = kind, trace
+
+
+#: What an answer is about, and its arrays.
+_Received = tuple[dict[str, Any], list[AnyArray]]
+
+
+@dataclass(frozen=True)
+class _Process:
+    """A child that runs: its pipes, what returns its exit status, and what ends it."""
+
+    requests: IO[bytes]
+    answers: IO[bytes]
+    status: Callable[[], int | None]
+    end: Callable[[], None]
+
+
+class Child:
+    """A process that answers requests, one after another.
+
+    Its methods may be called from any thread. It ends with this object, and with this process,
+    however that ends.
+
+    Parameters
+    ----------
+    entry
+        ``"module:name"`` of what makes the function that answers, without arguments. That takes a
+        value of JSON, and returns one with a list of arrays.
+    preload
+        Modules that are loaded before: a child that is forked has them at once.
+    memory
+        Bytes that it may take, where the system has a limit (not on macOS and Windows); by default
+        a share of what is available.
+    forks
+        Whether it is forked from a process with the modules loaded, or started from nothing.
+
+    Examples
+    --------
+    >>> child = Child("math:hypot")  # doctest: +SKIP
+    """
+
+    def __init__(
+        self,
+        entry: str,
+        *,
+        preload: tuple[str, ...] = (),
+        memory: int | None = None,
+        forks: bool = FORKS,
+    ) -> None:
+        #: Bytes that it may take.
+        self.memory = int(MEMORY_SHARE * available_bytes()) if memory is None else memory
+        start = _forked if forks else _spawned
+        self._process = start(entry, self.memory, preload)
+        self._answers: SimpleQueue[_Received] = SimpleQueue()
+        self._asking, self._writing = threading.Lock(), threading.Lock()
+        self._numbers = itertools.count(1)
+        #: Numbers of requests without an answer, and of those among them that were given up; and
+        #: when the one that it is busy with has taken too long.
+        self._waiting: set[int] = set()
+        self._stale: set[int] = set()
+        self._deadline = 0.0
+        self._death = ""
+        self.close = weakref.finalize(self, _end, self._process)
+        threading.Thread(
+            target=_listen,
+            args=(self._process, self.memory, self._answers, self._waiting, self._stale),
+            name="flowtex child",
+            daemon=True,
+        ).start()
+
+    @property
+    def alive(self) -> bool:
+        """Whether it can be asked; what has died since the last request counts as alive."""
+        return not self._death and self.close.alive
+
+    def request(self, value: Any, *, timeout: float) -> tuple[Any, list[AnyArray]]:
+        """Return the answer to a request: a value of JSON, and arrays.
+
+        Raises
+        ------
+        ChildError
+            When the child is dead, dies meanwhile, needs more memory than it may have, does not
+            answer in ``timeout`` seconds, after which it is ended, or raises an error.
+        Stopped
+            When the work was cancelled, as :func:`flowtex._util.progress.stoppable` says. The child
+            is told, and goes on to live.
+        """
+        while not self._asking.acquire(timeout=CHECK_INTERVAL_S):
+            check()
+        try:
+            return self._request(value, timeout)
+        finally:
+            self._asking.release()
+
+    def _request(self, value: Any, timeout: float) -> tuple[Any, list[AnyArray]]:
+        if self._death or not self.close.alive:
+            raise ChildError(self._death or "was ended")
+        number = next(self._numbers)
+        if not self._stale:
+            self._deadline = time.monotonic() + timeout
+        self._waiting.add(number)
+        self._send({"number": number, "value": value})
+        while True:
+            try:
+                check()
+            except Stopped:
+                self._stale.add(number)
+                self._send({"cancel": number})
+                raise
+            try:
+                about, arrays = self._answers.get(timeout=CHECK_INTERVAL_S)
+            except Empty:
+                if time.monotonic() > self._deadline:
+                    self._die(f"did not end within {timeout:.0f} s")
+                continue
+            if "death" in about:
+                self._die(about["death"])
+            if about["number"] == number:
+                return _value(about, self.memory), arrays
+            # Of an earlier request, that was given up: this one begins.
+            self._stale.discard(about["number"])
+            self._deadline = time.monotonic() + timeout
+
+    def _send(self, message: dict[str, Any]) -> None:
+        # Of a child that has died the answers tell why.
+        with self._writing, suppress(OSError, ValueError):
+            write_message(self._process.requests, message)
+
+    def _die(self, how: str) -> None:
+        self._death = how
+        self.close()
+        raise ChildError(how)
+
+
+def prepare(preload: tuple[str, ...]) -> None:
+    """Load modules for children that will be started, in the background."""
+    if FORKS:
+        fork_server(preload)
+
+
+def _value(about: dict[str, Any], memory: int) -> Any:
+    kind, text = about.get("error"), str(about.get("text", ""))
+    if kind is None:
+        return about.get("value")
+    if kind == "Stopped":
+        raise Stopped
+    if kind == "MemoryError":
+        msg = f"needs more than {memory / 1e9:.1f} GB of memory"
+        raise ChildError(msg)
+    trace = "".join(c for c in str(about.get("trace", "")) if c.isprintable() or c == "\n")
+    raise ChildError(text, str(kind), trace)
+
+
+def _listen(
+    process: _Process,
+    most_bytes: int,
+    answers: SimpleQueue[_Received],
+    waiting: set[int],
+    stale: set[int],
+) -> None:
+    """Take answers until there are no more, and tell how the child ended."""
+    ending = ""
+    try:
+        with process.answers:
+            while (message := read_message(process.answers, most_bytes)) is not None:
+                about, arrays = message
+                number = about.get("number") if isinstance(about, dict) else None
+                if number not in waiting:
+                    msg = f"an answer to request {number!r}, which was not sent"
+                    raise MessageError(msg)
+                waiting.discard(number)
+                answers.put((about, [] if number in stale else arrays))
+    except (MessageError, OSError, MemoryError) as error:
+        ending = f"sent a malformed answer: {error}"
+        process.end()
+    answers.put(({"death": ending or _ending(process.status())}, []))
+
+
+def _ending(status: int | None) -> str:
+    if status is None or status >= 0:
+        return "ended" if status is None else f"ended (status {status})"
+    try:
+        return f"crashed ({signal.Signals(-status).name})"
+    except ValueError:
+        return f"crashed (signal {-status})"
+
+
+def _end(process: _Process) -> None:
+    process.end()
+    with suppress(OSError):
+        process.requests.close()
+
+
+def _forked(entry: str, memory: int, preload: tuple[str, ...]) -> _Process:
+    """Let the fork server start a child."""
+    requests, answers, status = os.pipe(), os.pipe(), os.pipe()
+    pipes = requests[0], answers[1], status[1]
+    try:
+        try:
+            fork_server(preload).start(entry, memory, pipes)
+        except OSError:  # it has died since
+            fork_server(preload).start(entry, memory, pipes)
+    finally:
+        for pipe in pipes:
+            os.close(pipe)
+    told = os.fdopen(status[0], "rb", buffering=0)
+
+    def exit_status() -> int | None:
+        with suppress(OSError, ValueError):
+            if select.select([told], [], [], STATUS_WAIT_S)[0]:
+                code = told.read(STATUS_BYTES)
+                return int.from_bytes(code, "big", signed=True) if code else None
+        return None
+
+    # The fork server ends a child whose pipe is closed.
+    return _Process(
+        os.fdopen(requests[1], "wb"), os.fdopen(answers[0], "rb"), exit_status, told.close
+    )
+
+
+def _spawned(entry: str, memory: int, _preload: tuple[str, ...]) -> _Process:
+    """Start a child from nothing."""
+    process = subprocess.Popen(
+        [sys.executable, "-I", "-c", PROGRAM, start_text(entry, memory)],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    )
+    requests, answers = process.stdin, process.stdout
+    if requests is None or answers is None:
+        msg = "a process has no pipes"
+        raise OSError(msg)
+
+    def end() -> None:
+        process.kill()
+        process.wait()
+
+    return _Process(requests, answers, process.wait, end)

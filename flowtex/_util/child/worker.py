@@ -1,0 +1,123 @@
+"""What runs in the child: a handler of requests, within a limit of memory."""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+import threading
+import traceback
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from importlib import import_module
+from pathlib import Path
+from queue import SimpleQueue
+from typing import IO, Any
+
+from flowtex._util.array_types import AnyArray
+from flowtex._util.child.messages import read_message, write_message
+from flowtex._util.progress import stoppable
+
+__all__ = ["PROGRAM", "Answer", "Handler", "serve", "settle", "spawned", "start_text"]
+
+#: A value of JSON, and arrays.
+Answer = tuple[Any, Sequence[AnyArray]]
+#: Answers a request, which is a value of JSON.
+Handler = Callable[[Any], Answer]
+
+#: Starts a child where processes are not forked.
+PROGRAM = (
+    "import json, sys; start = json.loads(sys.argv[1]); sys.path[:] = start['path']; "
+    "from flowtex._util.child.worker import spawned; spawned(start['entry'], start['memory'])"
+)
+#: How ready the system is, 0 to 1000, to end the child instead of its parent for want of memory.
+OOM_SCORE = "800"
+#: Errors that say all in their text, and characters of that, at most.
+QUIET, TEXT_LENGTH = ("Stopped", "MemoryError", "FieldError"), 4_000
+
+
+def spawned(entry: str, memory: int) -> None:
+    """Answer the requests that come on the standard input, in a process of its own."""
+    reads, writes = os.dup(0), os.dup(1)
+    settle(memory)
+    serve(entry, os.fdopen(reads, "rb"), os.fdopen(writes, "wb"))
+
+
+def settle(memory: int) -> None:
+    """Be silent, limit the memory of this process, and be the first to go where it runs out."""
+    device = os.open(os.devnull, os.O_RDWR)
+    for standard in (0, 1, 2):  # what C libraries print is for nobody
+        os.dup2(device, standard)
+    with suppress(OSError):
+        Path("/proc/self/oom_score_adj").write_text(OOM_SCORE, encoding="ascii")
+    if sys.platform == "win32":
+        return
+    import resource
+
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    used = 0
+    with suppress(OSError):
+        pages = Path("/proc/self/statm").read_text(encoding="ascii").split()
+        used = int(pages[5]) * resource.getpagesize()
+    most = resource.getrlimit(resource.RLIMIT_DATA)[1]
+    limit = used + memory if most == resource.RLIM_INFINITY else min(used + memory, most)
+    with suppress(ValueError, OSError):  # which a system may refuse that has no such limit
+        resource.setrlimit(resource.RLIMIT_DATA, (limit, most))
+
+
+def serve(entry: str, reads: IO[bytes], writes: IO[bytes]) -> None:
+    """Answer requests, one after another, until the other end is closed; then end the process.
+
+    ``entry`` is ``"module:name"`` of what makes a :data:`Handler`, without arguments.
+    """
+    requests: SimpleQueue[tuple[int, Any]] = SimpleQueue()
+    cancelled: set[int] = set()
+    threading.Thread(target=_listen, args=(reads, requests, cancelled), daemon=True).start()
+    handler: Handler | None = None
+    while True:
+        number, value = requests.get()
+        arrays: Sequence[AnyArray] = ()
+        try:
+            with stoppable(lambda number=number: number in cancelled):  # type: ignore[misc]
+                handler = handler or _handler(entry)
+                value, arrays = handler(value)
+            answer: dict[str, Any] = {"number": number, "value": value}
+        except Exception as error:
+            answer = {"number": number, "error": _kind(error), "text": str(error)[:TEXT_LENGTH]}
+            if answer["error"] not in QUIET:
+                answer["trace"] = traceback.format_exc()
+        cancelled.discard(number)
+        try:
+            write_message(writes, answer, arrays)
+        except MemoryError:
+            write_message(writes, {"number": number, "error": "MemoryError", "text": ""})
+
+
+def _handler(entry: str) -> Handler:
+    module, _, name = entry.partition(":")
+    handler: Handler = getattr(import_module(module), name)()
+    return handler
+
+
+def _kind(error: Exception) -> str:
+    """Return the name of the class, or of that above it which the other end knows."""
+    names = [kind.__name__ for kind in type(error).__mro__]
+    return next((name for name in names if name in QUIET), names[0])
+
+
+def _listen(reads: IO[bytes], requests: SimpleQueue[tuple[int, Any]], cancelled: set[int]) -> None:
+    """Take requests and cancellations; nobody waits for answers once there are no more."""
+    try:
+        while (message := read_message(reads, 0)) is not None:
+            value = message[0]
+            if "cancel" in value:
+                cancelled.add(value["cancel"])
+            else:
+                requests.put((value["number"], value["value"]))
+    finally:
+        os._exit(0)
+
+
+def start_text(entry: str, memory: int) -> str:
+    """Return the argument of :data:`PROGRAM`."""
+    return json.dumps({"path": sys.path, "entry": entry, "memory": memory})
