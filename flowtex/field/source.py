@@ -19,6 +19,7 @@ from flowtex._util.notices import Notice
 from flowtex.errors import FieldError
 from flowtex.field.field import FlowField
 from flowtex.field.io.files import open_file
+from flowtex.field.io.identity import Identity
 from flowtex.field.io.meshes import (
     TimeStep,
     cell_dimension,
@@ -32,7 +33,7 @@ from flowtex.field.io.meshes import (
 from flowtex.field.io.reader_errors import errors_of_file
 from flowtex.field.io.vectors import candidates
 
-__all__ = ["FlowSource"]
+__all__ = ["FlowSource", "Source"]
 
 #: Size of a series that is held in memory; a larger one is read again for each field.
 MAX_SERIES_BYTES = 2_000_000_000
@@ -42,7 +43,146 @@ CUTS = 101
 OUTER = "outer"
 
 
-class FlowSource:
+class Source:
+    """What can be chosen of a file, a mesh or a field, from which one field after another is made.
+
+    Attributes
+    ----------
+    name
+        A word for captions.
+    vectors
+        Names of the arrays that may be the velocity; empty where there is no choice.
+    dimensions
+        Number of nodes (I, J, K) of a structured mesh; ``None`` for others, and for a field.
+    blocks, block_vectors
+        Names of the meshes, where there are several that are no time steps, and of the arrays that
+        may be the velocity in each.
+    block_word
+        What a person calls one of the blocks.
+    default_plane
+        The plane that is drawn where none is chosen; empty for a surface.
+    ends
+        Ends of a volume along the axes across which it can be cut.
+    axes
+        Other axes along which there is a choice, and words for each place.
+    reads_late
+        Whether a part of the file is read when a field is asked for.
+    nbytes
+        Size in memory.
+    identity
+        State of the files when they were opened; empty where there is none.
+    """
+
+    def __init__(self, name: str = "") -> None:
+        self.name = name
+        self.vectors: tuple[str, ...] = ()
+        self.dimensions: tuple[int, int, int] | None = None
+        self.blocks: tuple[str, ...] = ()
+        self.block_vectors: dict[str, tuple[str, ...]] = {}
+        self.block_word = "Grid"
+        self.default_plane = ""
+        self.ends: dict[str, tuple[float, float]] = {}
+        self.axes: dict[str, tuple[str, ...]] = {}
+        self.reads_late = False
+        self.nbytes = 0
+        self.identity: Identity = ()
+
+    @property
+    def planes(self) -> dict[str, int]:
+        """Axes along which planes can be chosen, and how many there are; empty for a surface.
+
+        Those of the index come before those in space, which cut any volume.
+        """
+        named = {name: len(words) for name, words in self.axes.items()}
+        if not self.ends:
+            return named
+        own = {OUTER: 1} if self.dimensions is None else zip("ijk", self.dimensions, strict=True)
+        return {**named, **dict(own), **dict.fromkeys(self.ends, CUTS)}
+
+    @property
+    def alive(self) -> bool:
+        """Whether it can still be asked."""
+        return True
+
+    def plane_at(self, axis: str, number: int) -> str:
+        """Return the plane of an axis by its number from 0, such as ``"k=20"`` or ``"x=0.25"``."""
+        if axis not in self.ends:
+            return f"{axis}={number}"
+        low, high = self.ends[axis]
+        # As many digits as tell one place from the next.
+        digits = 3 - math.floor(math.log10(high - low))
+        return f"{axis}={round(low + (high - low) * (number + 0.5) / CUTS, digits):.12g}"
+
+    def plane_number(self, plane: str) -> int | None:
+        """Return the number of a plane, or of the nearest; ``None`` where there is none."""
+        axis, _, text = plane.partition("=")
+        try:
+            value = float(text)
+            if axis in self.ends:
+                low, high = self.ends[axis]
+                value = min(max((value - low) / (high - low) * CUTS - 0.5, 0), CUTS - 1)
+            number = round(value)
+        except (ValueError, OverflowError):
+            return None
+        return number if 0 <= number < self.planes.get(axis, 0) else None
+
+    def plane_text(self, plane: str) -> str:
+        """Return words for a plane, such as ``"k = 20"`` or ``"500 hPa"``."""
+        axis, _, number = plane.partition("=")
+        words = self.axes.get(axis, ())
+        if number.isdecimal() and int(number) < len(words):
+            return words[int(number)]
+        return "outer surface" if axis == OUTER else plane.replace("=", " = ")
+
+    def plane_of(self, level: float | str) -> str:
+        """Return the plane of a level, as :attr:`default_plane` has it.
+
+        Raises
+        ------
+        FieldError
+            When there is no such level.
+        """
+        msg = f"level is {level!r}; expected data of the Earth, and this is a mesh"
+        raise FieldError(msg)
+
+    def field(
+        self,
+        *,
+        vectors: str | None = None,
+        plane: str | None = None,
+        block: str | None = None,
+        **options: Any,
+    ) -> FlowField:
+        """Make a field.
+
+        Parameters
+        ----------
+        vectors
+            Name of the velocity; the first of :attr:`vectors` by default.
+        plane
+            Such as ``"k=20"``, ``"x=0.25"`` or ``"outer=0"``; :attr:`default_plane` by default.
+        block
+            As for :meth:`part`.
+        **options
+            Further arguments of what makes the field, as :meth:`FlowField.from_pyvista`.
+
+        Raises
+        ------
+        FieldError
+            When what is asked for is not there, or makes no field.
+        """
+        raise NotImplementedError
+
+    def part(self, block: str | None = None) -> Source:
+        """Return the source of one of the :attr:`blocks`; this one itself where there are none.
+
+        The block is named, or numbered; it is the first by default. Raises a FieldError when there
+        is no such block.
+        """
+        raise NotImplementedError
+
+
+class FlowSource(Source):
     """A mesh, a series or a field, from which one field after another is made.
 
     Parameters
@@ -64,9 +204,6 @@ class FlowSource:
         When nothing in it can be drawn.
     """
 
-    #: What a person calls one of the blocks.
-    block_word = "Grid"
-
     def __init__(
         self,
         mesh: Any,
@@ -76,23 +213,10 @@ class FlowSource:
         path: Path | None = None,
         block: str | None = None,
     ) -> None:
-        self.name = name
-        #: Names of the arrays that may be the velocity; empty where there is no choice.
-        self.vectors: tuple[str, ...] = ()
-        #: Number of nodes (I, J, K) of a structured mesh; ``None`` for others, and for a field.
-        self.dimensions: tuple[int, int, int] | None = None
-        #: Names of the meshes, where there are several that are no time steps.
-        self.blocks: tuple[str, ...] = ()
-        #: Size in memory.
-        self.nbytes = 0
-        #: Ends of a volume along the axes across which it can be cut.
-        self._ends: dict[str, tuple[float, float]] = {}
-        self._default_plane = ""
+        super().__init__(name)
         self._grids: dict[str, Any] = {}
         self._parts: dict[str, FlowSource] = {}
         self._lock = threading.Lock()
-        #: Names of the arrays that may be the velocity in each of the blocks.
-        self.block_vectors: dict[str, tuple[str, ...]] = {}
         self._mesh = mesh
         self._velocity, self._path, self._block = velocity, path, block
         if isinstance(mesh, FlowField):
@@ -100,6 +224,7 @@ class FlowSource:
             return
         if mesh is not None:
             self._describe(self._series(mesh)[0].grid)
+            self.reads_late = is_reader(self._mesh)
 
     @classmethod
     def from_file(cls, path: str | Path) -> FlowSource:
@@ -116,48 +241,6 @@ class FlowSource:
                 raise FieldError(file.problem)
             return cls(file.source, name=file.path.stem, velocity=file.velocity, path=file.path)
 
-    @property
-    def planes(self) -> dict[str, int]:
-        """Axes across which planes can be chosen, and how many there are; empty for a surface.
-
-        Those of the index come before those in space, which cut any volume.
-        """
-        if not self._ends:
-            return {}
-        own = {OUTER: 1} if self.dimensions is None else zip("ijk", self.dimensions, strict=True)
-        return {**dict(own), **dict.fromkeys(self._ends, CUTS)}
-
-    @property
-    def default_plane(self) -> str:
-        """The plane that is drawn where none is chosen; empty for a surface."""
-        return self._default_plane
-
-    def plane_at(self, axis: str, number: int) -> str:
-        """Return the plane of an axis by its number from 0, such as ``"k=20"`` or ``"x=0.25"``."""
-        if axis not in self._ends:
-            return f"{axis}={number}"
-        low, high = self._ends[axis]
-        # As many digits as tell one place from the next.
-        digits = 3 - math.floor(math.log10(high - low))
-        return f"{axis}={round(low + (high - low) * (number + 0.5) / CUTS, digits):.12g}"
-
-    def plane_number(self, plane: str) -> int | None:
-        """Return the number of a plane, or of the nearest; ``None`` where there is none."""
-        axis, _, text = plane.partition("=")
-        try:
-            value = float(text)
-            if axis in self._ends:
-                low, high = self._ends[axis]
-                value = min(max((value - low) / (high - low) * CUTS - 0.5, 0), CUTS - 1)
-            number = round(value)
-        except (ValueError, OverflowError):
-            return None
-        return number if 0 <= number < self.planes.get(axis, 0) else None
-
-    def plane_text(self, plane: str) -> str:
-        """Return words for a plane, such as ``"k = 20"``."""
-        return "outer surface" if plane.startswith(OUTER) else plane.replace("=", " = ")
-
     def field(
         self,
         *,
@@ -166,25 +249,7 @@ class FlowSource:
         block: str | None = None,
         **options: Any,
     ) -> FlowField:
-        """Make a field.
-
-        Parameters
-        ----------
-        vectors
-            Name of the velocity; the first of :attr:`vectors` by default.
-        plane
-            Such as ``"k=20"``, ``"x=0.25"`` or ``"outer=0"``; the middle of the last axis by
-            default, or of the shortest one, where there is a choice.
-        block
-            As for :meth:`part`.
-        **options
-            Further arguments of :meth:`FlowField.from_pyvista`.
-
-        Raises
-        ------
-        FieldError
-            When what is asked for is not there, or makes no field.
-        """
+        """Make a field; :meth:`Source.field` has the parameters."""
         if isinstance(self._mesh, FlowField):
             return self._mesh
         if self.blocks:
@@ -200,11 +265,7 @@ class FlowSource:
             return FlowField.from_pyvista(self._mesh, vectors=chosen, name=self.name, **options)
 
     def part(self, block: str | None = None) -> FlowSource:
-        """Return the source of one of the :attr:`blocks`; this one itself where there are none.
-
-        The block is named, or numbered; it is the first by default. Raises a FieldError when there
-        is no such block.
-        """
+        """Return the source of one of the blocks, as :meth:`Source.part` does."""
         if not self.blocks:
             return self
         if block is not None and block.isdecimal() and int(block) < len(self.blocks):
@@ -241,18 +302,18 @@ class FlowSource:
         if cell_dimension(mesh) < 3:
             return
         ends = np.reshape(mesh.bounds, (3, 2)).tolist()
-        self._ends = {
+        self.ends = {
             axis: (low, high) for axis, (low, high) in zip("xyz", ends, strict=True) if low < high
         }
         if self.dimensions is not None:
-            self._default_plane = f"k={self.dimensions[2] // 2}"
+            self.default_plane = f"k={self.dimensions[2] // 2}"
             return
         # Walls, where nothing flows, say less than what is inside.
-        self._default_plane = f"{OUTER}=0"
-        if self._ends:
-            shortest = min(self._ends, key=lambda axis: np.ptp(self._ends[axis]))
+        self.default_plane = f"{OUTER}=0"
+        if self.ends:
+            shortest = min(self.ends, key=lambda axis: np.ptp(self.ends[axis]))
             if mesh.slice(normal=shortest).n_cells:
-                self._default_plane = self.plane_at(shortest, CUTS // 2)
+                self.default_plane = self.plane_at(shortest, CUTS // 2)
 
     def _names(self, grid: Any) -> tuple[str, ...]:
         """Return the names of what may be the velocity of a grid, the preferred one first."""

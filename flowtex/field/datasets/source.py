@@ -30,8 +30,6 @@ class DatasetSource(FlowSource):
         When no velocity is found in them.
     """
 
-    block_word = "Map"
-
     def __init__(self, datasets: Any, *, name: str = "", path: Path | None = None) -> None:
         super().__init__(None, name=name, path=path)
         self._datasets = as_datasets(datasets)
@@ -46,34 +44,13 @@ class DatasetSource(FlowSource):
             flat = known.map_name
             self.blocks = tuple(dict.fromkeys((flat, GLOBE, *NAMES)))
             self.block_vectors = dict.fromkeys(self.blocks, self.vectors)
-        self._axes = axis_values(known.pair.u)
-        self._shown = dict(known.u.numbers)
-
-    @property
-    def planes(self) -> dict[str, int]:
-        """Axes along which there is a choice, and how many there are."""
-        return {name: len(words) for name, words in self._axes.items()}
-
-    @property
-    def default_plane(self) -> str:
-        """What is drawn along the first of the axes; empty where there is none."""
-        name = next(iter(self._axes), "")
-        return f"{name}={self._shown.get(name, 0)}" if name else ""
-
-    def plane_text(self, plane: str) -> str:
-        """Return words for a plane, such as ``"500 hPa"``."""
-        name, _, number = plane.partition("=")
-        words = self._axes.get(name, ())
-        return words[int(number)] if number.isdecimal() and int(number) < len(words) else plane
+        self.block_word, self.reads_late = "Map", True
+        self.axes = axis_values(known.pair.u)
+        if name := next(iter(self.axes), ""):
+            self.default_plane = f"{name}={dict(known.u.numbers).get(name, 0)}"
 
     def plane_of(self, level: float | str) -> str:
-        """Return the plane of a level, as :attr:`default_plane` has it.
-
-        Raises
-        ------
-        FieldError
-            When there is no such level.
-        """
+        """Return the plane of a level, as :meth:`Source.plane_of` does."""
         names = two_names(self.vectors[0])
         array = next(ds[names["u"]] for ds in self._datasets if names["u"] in ds)
         (section,) = sections([array], Choice({LEVEL: level}))

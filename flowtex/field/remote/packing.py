@@ -1,0 +1,135 @@
+"""Fields and sources as values of JSON with arrays, and back."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from datetime import datetime
+from typing import Any
+
+from flowtex._util.array_types import AnyArray, Floats
+from flowtex._util.extras import import_extra
+from flowtex.earth import Projection
+from flowtex.field.field import FlowField
+from flowtex.field.source import Source
+from flowtex.field.steps import LazySteps
+
+__all__ = ["describe_source", "pack_field", "take_description", "unpack_field"]
+
+#: Attributes of a field that are arrays, and those that are values of JSON.
+ARRAYS = ("points", "velocity", "times", "valid", "has_position", "triangles")
+VALUES = ("periodic", "name", "length_unit", "time_unit", "sign_free", "units", "long_names")
+#: Attributes of a source.
+CHOICES = (
+    *("name", "vectors", "dimensions", "blocks", "block_vectors", "block_word"),
+    *("default_plane", "ends", "axes", "reads_late", "nbytes"),
+)
+
+
+def describe_source(source: Source) -> dict[str, Any]:
+    """Return what can be chosen of a source."""
+    return {name: getattr(source, name) for name in CHOICES}
+
+
+def take_description(source: Source, described: Mapping[str, Any]) -> None:
+    """Set what can be chosen of a source, as :func:`describe_source` returns it."""
+    for name in CHOICES:
+        value = described[name]
+        if isinstance(value, dict):
+            value = {key: tuple(items) for key, items in value.items()}
+        setattr(source, name, tuple(value) if isinstance(value, list) else value)
+
+
+def pack_field(
+    field: FlowField, keep: Callable[[LazySteps], int]
+) -> tuple[dict[str, Any], list[AnyArray]]:
+    """Return a field as a value and arrays; ``keep`` returns a number for steps read later."""
+    arrays: list[AnyArray] = []
+
+    def packed(array: Any) -> Any:
+        if array is None:
+            return None
+        if isinstance(array, LazySteps):
+            return {"steps": keep(array), "count": len(array)}
+        arrays.append(array)
+        return len(arrays) - 1
+
+    value: dict[str, Any] = {name: getattr(field, name) for name in VALUES}
+    value["arrays"] = {name: packed(getattr(field, name)) for name in ARRAYS}
+    value["scalars"] = {name: packed(array) for name, array in field.scalars.items()}
+    value["start"] = _date(field.start)
+    map_ = field.projection
+    value["projection"] = None if map_ is None else [map_.name, map_.center, map_.half_height]
+    return value, arrays
+
+
+def unpack_field(
+    value: Mapping[str, Any], arrays: Sequence[AnyArray], read: Callable[[int], Any]
+) -> FlowField:
+    """Return a field from :func:`pack_field`; ``read`` returns what reads steps of a number.
+
+    Raises a ValueError where arrays do not fit together.
+    """
+
+    def unpacked(about: Any) -> Any:
+        if isinstance(about, dict):
+            steps: Callable[[int], Floats] = read(int(about["steps"]))
+            return LazySteps(int(about["count"]), steps)
+        return None if about is None else arrays[about]
+
+    given = {name: value[name] for name in VALUES}
+    given["periodic"] = (bool(value["periodic"][0]), bool(value["periodic"][1]))
+    if (map_ := value["projection"]) is not None:
+        name, (lon, lat), half_height = map_
+        map_ = Projection(str(name), (float(lon), float(lat)), float(half_height))
+    field = FlowField(
+        **{name: unpacked(value["arrays"][name]) for name in ARRAYS},
+        **given,
+        scalars={name: unpacked(about) for name, about in value["scalars"].items()},
+        start=_from_date(value["start"]),
+        projection=map_,
+    )
+    _check(field)
+    return field
+
+
+def _check(field: FlowField) -> None:
+    """Raise where the shapes, types or numbers of nodes are none of a field."""
+    (rows, columns), steps = field.shape, len(field.times)
+    shapes: dict[str, tuple[Any, tuple[int, ...], str]] = {
+        "points": (field.points, (rows, columns, 3), "f"),
+        "velocity": (field.velocity, (steps, rows, columns, 3), "f"),
+        "valid": (field.valid, (rows, columns), "b"),
+    }
+    if field.has_position is not None:
+        shapes["has_position"] = (field.has_position, (rows, columns), "b")
+    if (corners := field.triangles) is not None:
+        shapes["triangles"] = (corners, (len(corners), 3), "iu")
+        if corners.size and not 0 <= corners.min() <= corners.max() < columns:
+            msg = f"triangles have nodes {corners.min()} to {corners.max()}"
+            raise ValueError(msg)
+    for name, array in field.scalars.items():
+        shapes[name] = (array, (len(array), rows, columns), "biuf")
+    for name, (array, shape, kinds) in shapes.items():
+        if isinstance(array, LazySteps):
+            if len(array) != shape[0]:
+                msg = f"{name} has {len(array)} steps; expected {shape[0]}"
+                raise ValueError(msg)
+        elif array.shape != shape or array.dtype.kind not in kinds:
+            msg = f"{name} is {array.dtype} of shape {array.shape}; expected {shape}"
+            raise ValueError(msg)
+
+
+def _date(start: Any) -> Any:
+    if start is None or isinstance(start, datetime):
+        return None if start is None else start.isoformat()
+    numbers = [int(n) for n in (*start.timetuple()[:6], start.microsecond)]
+    return {"numbers": numbers, "calendar": start.calendar, "zero": bool(start.has_year_zero)}
+
+
+def _from_date(value: Any) -> Any:
+    if value is None or isinstance(value, str):
+        return None if value is None else datetime.fromisoformat(value)
+    cftime = import_extra("cftime", "xarray")
+    return cftime.datetime(
+        *value["numbers"], calendar=value["calendar"], has_year_zero=value["zero"]
+    )
