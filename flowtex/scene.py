@@ -39,7 +39,15 @@ from flowtex.tiles import (
 )
 from flowtex.trace import SliceStore, TraceSlices, chosen_lines, shared_store
 
-__all__ = ["NO_IMAGE", "AppearanceAttributes", "Change", "Scene", "share_field", "steps_of"]
+__all__ = [
+    "NO_IMAGE",
+    "AppearanceAttributes",
+    "Change",
+    "Scene",
+    "drawn_store",
+    "share_field",
+    "steps_of",
+]
 
 #: What has changed: what a setting affects, or the appearance.
 Change = Affects | Literal["appearance"]
@@ -235,7 +243,7 @@ class Scene:
 
         Noise in a texture, and a field without a sign, are not drawn in tiles.
         """
-        if self._sliced or self.settings.noise != "procedural" or self.field.sign_free:
+        if self._sliced or not _is_tiled(self.field, self.settings):
             return None
         if self._pyramid is None:
             self._pyramid = shared_pyramid(self.field, self.settings.parameter, self.lines)
@@ -535,6 +543,24 @@ def share_field(field: FlowField) -> FlowField:
     kind = (field.has_position is None, field.triangles is None)
     key = digest(*arrays, words=(words, units, kind, late, *field.scalars))
     return _fields.get(key, lambda: field)
+
+
+def _is_tiled(field: FlowField, settings: Settings) -> bool:
+    """Whether a field is drawn in tiles where it is large."""
+    return settings.noise == "procedural" and not field.sign_free
+
+
+def drawn_store(field: FlowField, settings: Settings) -> tuple[SliceStore, Pyramid | None]:
+    """Return the traces from which scenes of a field draw their first picture, and its pyramid.
+
+    Of a large field they are those of the coarsest level, as :attr:`Scene.whole` has it, and the
+    pyramid has to be kept along with them.
+    """
+    lines, pyramid = chosen_lines(field, settings.lines), None
+    if _is_tiled(field, settings):
+        pyramid = shared_pyramid(field, settings.parameter, lines)
+    whole = pyramid.root if pyramid is not None and pyramid.depth else field
+    return shared_store(whole, settings.parameter, lines), pyramid
 
 
 def _shared_textures(

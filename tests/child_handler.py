@@ -7,13 +7,16 @@ import json
 import os
 import struct
 import threading
+import warnings
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from flowtex._util.child.worker import Answer
+from flowtex._util.notices import notify
 from flowtex._util.progress import check
+from flowtex.field.remote.reader import Reader
 
 
 class Handler:
@@ -64,3 +67,48 @@ class Handler:
             except OSError:
                 continue
         return None, []
+
+
+class TrickyReader(Reader):
+    """A reader of files that does what the level which it is asked for says."""
+
+    def do_plane_of(self, level: float | str) -> Answer:
+        """Return the number of this process, change the file, or end badly."""
+        if level == "crash":
+            ctypes.string_at(0)
+        elif level == "hang":
+            threading.Event().wait()
+        elif level == "fail":
+            msg = "\x1b[31mwords"
+            raise KeyError(msg)
+        elif level == "warn":
+            notify("something was chosen")
+            warnings.warn("odd", stacklevel=1)
+        return str(os.getpid()), []
+
+    def do_step(self, steps: int, number: int) -> Answer:
+        """Read a step, but for the first two."""
+        return super().do_step(steps, number) if number > 1 else self.do_plane_of("crash")
+
+
+class ChangingReader(Reader):
+    """A reader whose file has changed once it is read, as often as is said in it."""
+
+    def do_open(self, paths: list[str]) -> Answer:
+        """Open a file, and add to it."""
+        answer = super().do_open(paths)
+        state = Path(paths[0]).with_suffix(".count")
+        left = int(state.read_text())
+        if left:
+            state.write_text(str(left - 1))
+            Path(paths[0]).write_text(Path(paths[0]).read_text() + "\n")
+        return answer
+
+
+class GreedyReader(Reader):
+    """A reader that needs more memory than there is."""
+
+    def do_open(self, paths: list[str]) -> Answer:
+        """Take a lot."""
+        np.ones(10**13, np.uint8)
+        return super().do_open(paths)

@@ -150,7 +150,6 @@ def _earth_library(files: Sequence[Path], choice: dict[str, Any]) -> Library | N
     from flowtex.app import Library
     from flowtex.earth import GLOBE, NAMES
     from flowtex.field.datasets.files import dataset_paths
-    from flowtex.field.datasets.source import DatasetSource, open_source
 
     known = {"vectors", "projection", "globe", "level"}
     if not dataset_paths(files) or set(choice) - known:
@@ -158,16 +157,17 @@ def _earth_library(files: Sequence[Path], choice: dict[str, Any]) -> Library | N
     block = GLOBE if choice.get("globe") else choice.get("projection", "")
     if block not in ("", GLOBE, *NAMES):
         return None
-    with waiting(f"Reading {files[0].name}"), notices():
-        source = open_source(files)
+    library = Library.of(list(files))
     level = choice.pop("level", None)
     for name in ("projection", "globe"):
         choice.pop(name, None)
-    if level is not None and isinstance(source, DatasetSource):
-        choice["plane"] = source.plane_of(level)
+    with waiting(f"Reading {files[0].name}"), notices():
+        source = library.source(library.names[0])
+        if level is not None:
+            choice["plane"] = source.plane_of(level)
     if block:
         choice["block"] = block
-    return Library.of(source)
+    return library
 
 
 def _is_folder(path: Path) -> bool:

@@ -98,7 +98,7 @@ def main(control: int, preload: list[str]) -> NoReturn:
     """Load modules, and fork children, until the other end of the control socket is closed."""
     server = _Server(socket.socket(fileno=control))
     for module in preload:
-        with suppress(ImportError):
+        with suppress(Exception):
             import_module(module)
         server.run(once=True)
     # Collections do not touch, and so copy, what children share.

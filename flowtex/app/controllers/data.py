@@ -18,15 +18,14 @@ from typing import Any
 import numpy as np
 
 from flowtex.app.controllers.context import Context, Controller
-from flowtex.app.controllers.library import Choice
+from flowtex.app.controllers.library import Choice, TracedFlow
 from flowtex.app.controllers.loading import LoadRequest, announced
 from flowtex.app.server.uploads import Uploads
 from flowtex.app.server.validation import clipped, name_among
 from flowtex.field import FlowField
 from flowtex.field.interpolation import steps_around
-from flowtex.field.source import FlowSource
+from flowtex.field.source import Source
 from flowtex.scene import coarsened_field
-from flowtex.trace import SliceStore
 
 __all__ = ["Data"]
 
@@ -42,10 +41,10 @@ class LoadedFlow:
 
     name: str
     choice: Choice
-    source: FlowSource
+    source: Source
     field: FlowField
     shown: FlowField
-    store: SliceStore | None = None
+    traced: TracedFlow | None = None
 
     @property
     def whole(self) -> bool:
@@ -132,6 +131,10 @@ class Data(Controller):
         self.list_files()
         self.open(name, Choice())
 
+    def reload(self) -> None:
+        """Show what is shown as its file is now."""
+        self.open(self.name, self.choice)
+
     def cancel(self) -> None:
         """Stop what is being opened; the old view stands."""
         self._request.cancelled = True
@@ -171,24 +174,24 @@ class Data(Controller):
         most, few = FILE_PREVIEW if name != self.name else PART_PREVIEW
         shown = coarsened_field(field, few) if field.valid.size > most else field
         flow = LoadedFlow(name, choice, source, field, shown)
-        return replace(flow, store=self._trace(flow))
+        return replace(flow, traced=self._trace(flow))
 
     def _complete(self, flow: LoadedFlow) -> LoadedFlow:
         """Trace all nodes of a flow that was shown with few."""
         flow = replace(flow, shown=flow.field)
-        return replace(flow, store=self._trace(flow))
+        return replace(flow, traced=self._trace(flow))
 
-    def _read(self, name: str, choice: Choice) -> tuple[FlowSource, FlowField]:
+    def _read(self, name: str, choice: Choice) -> tuple[Source, FlowField]:
         return self.library.source(name), self.library.field(name, choice)
 
-    def _trace(self, flow: LoadedFlow) -> SliceStore:
+    def _trace(self, flow: LoadedFlow) -> TracedFlow:
         name, times = flow.name if flow.whole else "", flow.shown.times
-        store = self.library.trace(name, flow.choice, flow.shown, self.settings).store
+        traced = self.library.trace(name, flow.choice, flow.shown, self.settings)
         # The time that is shown stays where another part of the same data is.
         if np.array_equal(times, self.viewport.field.times):
             for step in sorted(set(steps_around(times, self.viewport.handle.time)[:2])):
-                store.at(step)
-        return store
+                traced.store.at(step)
+        return traced
 
     def _show(self, flow: LoadedFlow, request: LoadRequest) -> None:
         """Put another flow in the place of the one that is shown; where that fails, it stands."""
@@ -196,6 +199,8 @@ class Data(Controller):
         new, old = flow.choice, self.choice
         same = (flow.name, new.block, new.vectors) == (self.name, old.block, old.vectors)
         keep = same and _axis(new.plane) == _axis(old.plane)
+        # Of a file that has changed the values are others.
+        same = same and flow.source.identity == self._current.source.identity
         self._current = flow
         if not request.superseded:
             self._goal = (flow.name, new)
@@ -237,7 +242,7 @@ class Data(Controller):
         return Choice(vectors, plane, block)
 
     @property
-    def _part(self) -> FlowSource:
+    def _part(self) -> Source:
         """The source of the block that is shown."""
         return self._current.source.part(self.choice.block or None)
 

@@ -2,17 +2,19 @@
 
 From the page comes a name, never a path. Names are looked up among those of the files that were
 found when the library was made or looked through again, so nothing outside them can be opened.
-Files that are open, and the flows made from them, are shared by all pages of a server.
+Files that are open, and the flows made from them, are shared by all pages of a server. Each is open
+in a process of its own, which may crash; one that has changed since is opened anew when it is asked
+for.
 """
 
 from __future__ import annotations
 
-import re
 import threading
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+from weakref import WeakKeyDictionary
 
 from flowtex._util.cache import ByteCache
 from flowtex.app.server.validation import shortened
@@ -20,14 +22,18 @@ from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.datasets.detect import is_dataset
 from flowtex.field.datasets.files import SUFFIXES as EARTH_SUFFIXES
-from flowtex.field.datasets.files import is_dataset_file
-from flowtex.field.datasets.source import DatasetSource, open_source
+from flowtex.field.datasets.files import common_name, is_dataset_file
+from flowtex.field.datasets.source import DatasetSource
+from flowtex.field.io.identity import Identity, file_identity, members_of
 from flowtex.field.io.surfaces.beside import SUFFIXES as WITHOUT_VECTORS
-from flowtex.field.source import FlowSource
+from flowtex.field.remote import open_remote, prepare_readers
+from flowtex.field.source import FlowSource, Source
 from flowtex.options import FieldOptions
 from flowtex.pyramid import is_store, open_store
+from flowtex.scene import drawn_store
 from flowtex.settings import Settings
-from flowtex.trace import SliceStore, shared_store
+from flowtex.tiles import Pyramid
+from flowtex.trace import SliceStore
 
 __all__ = ["Choice", "Library", "TracedFlow"]
 
@@ -44,19 +50,13 @@ SUFFIXES = frozenset(
 UNSHOWN = dict.fromkeys(
     (".pkl", ".pickle", ".joblib"), "a pickle can run any program, and is refused"
 )
-#: Endings of files that list others, how, and bytes of such a list that are read.
-LISTS, MEMBER, LIST_BYTES = (
-    (".pvd", ".vtm", ".vtmb", ".pvts", ".pvtr", ".pvti", ".pvtu", ".pvtp"),
-    re.compile(r'(?:file|Source)\s*=\s*"([^"]+)"'),
-    4_000_000,
-)
 #: Folders below the one that was given that are searched, and files that are listed, at most.
 FOLDER_DEPTH, MOST_FILES = 4, 500
 #: Files, and flows, that stay open at most, and bytes of each of the two together.
 MOST_SOURCES, MOST_FLOWS = 4, 12
 SOURCE_BYTES, FLOW_BYTES = 2_000_000_000, 1_000_000_000
 
-Opener = Callable[[], FlowSource]
+Opener = Callable[[], Source]
 #: How far in, and on what point of the mesh.
 Look = tuple[float, tuple[float, ...] | None]
 
@@ -79,10 +79,12 @@ class Choice:
 
 @dataclass(frozen=True)
 class TracedFlow:
-    """A flow, with its traces so that they stay."""
+    """A flow, and what stays for it: its traces, its tiles, and the state of its files."""
 
     field: FlowField
     store: SliceStore
+    pyramid: Pyramid | None
+    identity: Identity
 
     @property
     def nbytes(self) -> int:
@@ -99,8 +101,6 @@ class Library:
         What opens each, by name.
     folder
         A folder that is searched for more.
-    files
-        Which of the names are those of files.
     python
         Expressions of Python that make the fields, by name, as far as they are known.
     looks
@@ -126,21 +126,24 @@ class Library:
         self,
         openers: Mapping[str, Opener],
         folder: Path | None = None,
-        files: Iterable[str] = (),
         python: Mapping[str, str] | None = None,
         looks: Mapping[str, Look] | None = None,
     ) -> None:
         self._named = dict(openers)
-        self._files = frozenset(files)
         self._python = dict(python or {})
         self._looks = dict(looks or {})
         self._folder = None if folder is None else folder.resolve()
-        self._sources: ByteCache[str, FlowSource] = ByteCache(SOURCE_BYTES, max_count=MOST_SOURCES)
+        self._sources: ByteCache[str, Source] = ByteCache(SOURCE_BYTES, max_count=MOST_SOURCES)
         self._flows: ByteCache[tuple[str, Choice], TracedFlow] = ByteCache(
             FLOW_BYTES, max_count=MOST_FLOWS
         )
-        self._locks: dict[str, threading.Lock] = {}
+        #: From which state of its files each field was made.
+        self._identities: WeakKeyDictionary[FlowField, Identity] = WeakKeyDictionary()
+        self._opening: dict[str, threading.Lock] = {}
+        self._making: dict[str, threading.Lock] = {}
         self._unshown: dict[str, str] = {}
+        if self._folder is not None or any(isinstance(o, _Files) for o in openers.values()):
+            prepare_readers()
         if not self.names:
             endings = " ".join(sorted(SUFFIXES))
             msg = f"{folder}: there is no file in it that can be opened; expected {endings}"
@@ -156,12 +159,14 @@ class Library:
         A library is shared by all pages, its branches are not.
         """
         name = _free(name, self.names)
-        self._named[name], self._files = _opener(path), self._files | {name}
+        self._named[name] = _Files((path,))
         return name
 
     @classmethod
     def of(cls, *flows: Any, folder: str | Path | None = None, **options: Any) -> Library:
         """Make a library of fields, meshes, paths of files, or one folder.
+
+        Paths in a list are those of files that belong together.
 
         ``options`` are arguments of :meth:`flowtex.FlowField.from_pyvista` for meshes.
 
@@ -175,15 +180,14 @@ class Library:
         if len(flows) == 1 and isinstance(flows[0], (str, Path)) and _is_folder(flows[0]):
             return cls({}, Path(flows[0]))
         openers: dict[str, Opener] = {}
-        files: list[str] = []
         for flow in flows:
-            if isinstance(flow, (str, Path)):
-                files.append(_free(Path(flow).name, openers))
-                openers[files[-1]] = _opener(Path(flow))
+            if paths := _paths(flow):
+                name = paths[0].name if len(paths) == 1 else common_name(paths)
+                openers[_free(name, openers)] = _Files(paths)
                 continue
-            source = flow if isinstance(flow, FlowSource) else _source_of(flow, options)
+            source = flow if isinstance(flow, Source) else _source_of(flow, options)
             openers[_free(source.name or "flow", openers)] = _constant(source)
-        return cls(openers, None if folder is None else Path(folder), files)
+        return cls(openers, None if folder is None else Path(folder))
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -191,7 +195,7 @@ class Library:
         openers = dict(self._named)
         if self._folder is not None:
             found = find_files(self._folder)
-            openers |= {n: _opener(path) for n, path in found if not _reason(path)}
+            openers |= {n: _Files((path,)) for n, path in found if not _reason(path)}
             self._unshown = {name: why for name, path in found if (why := _reason(path))}
         self._openers = openers
         return tuple(openers)
@@ -201,23 +205,32 @@ class Library:
         """Files that were found and cannot be shown, and why."""
         return self._unshown
 
-    def source(self, name: str) -> FlowSource:
-        """Open one, or return it when it is open.
+    def source(self, name: str) -> Source:
+        """Open one, or return it when it is open; a file that has changed is opened anew.
 
         Raises
         ------
         FieldError
             When there is none of that name, or it cannot be read.
         """
+        opener = self._opener(name)
+        with self._opening.setdefault(name, threading.Lock()):
+            source = self._sources.peek(name)
+            if source is None or not source.alive or source.identity != _identity(opener):
+                source = opener()
+                self._sources.put(name, source)
+        return source
+
+    def _opener(self, name: str) -> Opener:
         if (opener := self._openers.get(name)) is None:
             label = repr(shortened(name, 80))
             msg = f"there is no file {label} among those that may be opened here"
             raise FieldError(msg)
-        return self._sources.get(name, opener)
+        return opener
 
     def is_file(self, name: str) -> bool:
         """Whether a name is that of a file."""
-        return name in self._files or name not in self._named
+        return isinstance(self._named.get(name, _Files(())), _Files)
 
     def look(self, name: str) -> Look:
         """Return how far in, and on what point of the mesh, a flow is first seen."""
@@ -255,15 +268,18 @@ class Library:
         FieldError
             When there is no such file, or what is chosen of it makes no flow.
         """
-        if (flow := self._flows.peek((name, choice))) is not None:
+        flow = self._flows.peek((name, choice))
+        if flow is not None and flow.identity == _identity(self._opener(name)):
             return flow.field
         source = self.source(name)
-        with self._locks.setdefault(name, threading.Lock()):
-            return source.field(
+        with self._making.setdefault(name, threading.Lock()):
+            field = source.field(
                 vectors=choice.vectors or None,
                 plane=choice.plane or None,
                 block=choice.block or None,
             )
+        self._identities[field] = source.identity
+        return field
 
     def trace(self, name: str, choice: Choice, field: FlowField, settings: Settings) -> TracedFlow:
         """Trace what the first picture of a flow needs, and let it stay open.
@@ -275,9 +291,9 @@ class Library:
         """
         flow = self._flows.peek((name, choice))
         if flow is None or flow.field is not field:
-            store = shared_store(field, settings.parameter, settings.lines)
+            store, pyramid = drawn_store(field, settings)
             store.at(len(field.times) - 1)
-            flow = TracedFlow(field, store)
+            flow = TracedFlow(field, store, pyramid, self._identities.get(field, ()))
             self._flows.put((name, choice), flow)
         return flow
 
@@ -304,8 +320,8 @@ class _Branch(Library):
         """Files that were found and cannot be shown, and why."""
         return self._shared.unshown
 
-    def source(self, name: str) -> FlowSource:
-        """Open one, or return it when it is open."""
+    def source(self, name: str) -> Source:
+        """Open one, or return it when it is open; a file that has changed is opened anew."""
         home = self._home(name)
         return super().source(name) if home is None else home.source(name)
 
@@ -349,17 +365,44 @@ def _source_of(flow: Any, options: dict[str, Any]) -> FlowSource:
     return FlowSource(FieldOptions(**options).field(flow))
 
 
-def _constant(source: FlowSource) -> Opener:
+def _constant(source: Source) -> Opener:
     return lambda: source
 
 
-def _opener(path: Path) -> Opener:
-    def opened() -> FlowSource:
-        if is_store(path):
-            return FlowSource(open_store(path), name=path.stem)
-        return open_source(path)
+def _paths(flow: Any) -> tuple[Path, ...]:
+    """Return the paths that a flow is given by; none of a mesh, a field or a dataset."""
+    several = flow if isinstance(flow, (list, tuple)) else (flow,)
+    are_paths = bool(several) and all(isinstance(one, (str, Path)) for one in several)
+    return tuple(Path(one) for one in several) if are_paths else ()
 
-    return opened
+
+@dataclass(frozen=True)
+class _Files:
+    """What opens a file, or several that belong together, in a process of its own."""
+
+    paths: tuple[Path, ...]
+
+    def __call__(self) -> Source:
+        if not self._is_store:
+            return open_remote(self.paths)
+        # Of a pyramid no more is read than what is drawn, and that is checked.
+        identity = self.identity
+        source = FlowSource(open_store(self.paths[0]), name=self.paths[0].stem)
+        source.identity = identity
+        return source
+
+    @property
+    def identity(self) -> Identity:
+        """The state of the files."""
+        return file_identity([self.paths[0] / "zarr.json"] if self._is_store else self.paths)
+
+    @property
+    def _is_store(self) -> bool:
+        return len(self.paths) == 1 and is_store(self.paths[0])
+
+
+def _identity(opener: Opener) -> Identity:
+    return opener.identity if isinstance(opener, _Files) else ()
 
 
 def _free(name: str, taken: Iterable[str]) -> str:
@@ -391,7 +434,7 @@ def find_files(folder: Path) -> list[tuple[str, Path]]:
             elif path.is_file() and path.suffix.lower() in SUFFIXES | {".bin"} | set(UNSHOWN):
                 files.append((path.relative_to(folder).as_posix(), path))
     files = files[:MOST_FILES]
-    members = {member for _, path in files for member in _members(path)}
+    members = {member for _, path in files for member in members_of(path)}
     return [(n, path) for n, path in files if path not in members and not _is_solution(path)]
 
 
@@ -401,17 +444,6 @@ def _reason(path: Path) -> str:
     if path.suffix.lower() in WITHOUT_VECTORS and not beside.exists():
         return f"no vectors, which would be in {beside.name}"
     return UNSHOWN.get(path.suffix.lower(), "")
-
-
-def _members(path: Path) -> set[Path]:
-    """Return the files that a series or a collection is made of."""
-    if path.suffix.lower() not in LISTS:
-        return set()
-    try:
-        with path.open(encoding="utf-8", errors="replace") as file:
-            return {path.parent / member for member in MEMBER.findall(file.read(LIST_BYTES))}
-    except OSError:
-        return set()
 
 
 def _is_solution(path: Path) -> bool:

@@ -14,6 +14,7 @@ from pathlib import Path
 from flowtex._util.temporary import TemporaryFolder
 from flowtex.app.server.files import Routes, plain_name
 from flowtex.errors import FieldError
+from flowtex.field.remote import prepare_readers
 
 __all__ = ["UPLOAD_SUFFIXES", "Uploads"]
 
@@ -61,6 +62,7 @@ class Uploads:
             msg = f"{name}: {MOST_UPLOADS} files were sent already; open the page anew for more"
             raise FieldError(msg)
         self._count += 1
+        prepare_readers()
         try:
             path = await self._written(name, content)
         except OSError as error:

@@ -74,8 +74,8 @@ class DatasetSource(FlowSource):
         """Make a field, as :meth:`FlowSource.field` does; a plane is such as ``"level=2"``."""
         names: dict[str, Any] = two_names(vectors or self.vectors[0])
         axis, _, number = (plane or self.default_plane).partition("=")
-        array = next(ds[names["u"]] for ds in self._datasets if names["u"] in ds)
-        if axis in axis_values(array):
+        array = next((ds[names["u"]] for ds in self._datasets if names["u"] in ds), None)
+        if array is not None and axis in axis_values(array):
             options["isel"] = {**(options.get("isel") or {}), axis: int(number)}
         with warnings.catch_warnings(), self._errors():
             # The page shows what is chosen.

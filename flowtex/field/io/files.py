@@ -18,7 +18,6 @@ from flowtex.field.io.meshes import time_steps, times_of
 from flowtex.field.io.readers import open_reader
 from flowtex.field.io.surfaces import beside
 from flowtex.field.io.surfaces.steps import SurfaceArguments
-from flowtex.field.io.trial import try_reading
 
 __all__ = ["OpenFile", "open_file", "read_file"]
 
@@ -79,7 +78,6 @@ def open_file(path: str | Path) -> OpenFile:
     if layout is not None:
         mesh = plot3d.read_plot3d(grid, layout, plot3d.find_solution(grid))
         return OpenFile(file, mesh, "Velocity")
-    try_reading(file)
     try:
         if file.suffix.lower() in beside.SUFFIXES:
             return OpenFile(file, *beside.read_with_vectors(file))

@@ -27,8 +27,8 @@ _log = logging.getLogger(__name__)
 READER = "flowtex.field.remote.reader:Reader"
 #: What readers need, that of meshes first.
 PRELOAD = (
-    *("flowtex.field.remote.reader", "pyvista", "xarray", "cf_xarray", "pyproj"),
-    *("netCDF4", "h5py"),
+    *("flowtex.field.remote.reader", "pyvista", "vtkmodules.vtkIOXML", "vtkmodules.vtkIOLegacy"),
+    *("xarray", "cf_xarray", "pyproj", "netCDF4", "dask.array", "cfgrib"),
 )
 #: A request may take so long, and longer where there is much to read.
 REQUEST_TIMEOUT_S, BYTES_PER_S = 60.0, 10e6

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,9 +14,13 @@ from small_pages import small
 from flowtex import FlowField, examples
 from flowtex.app import Choice, Library
 from flowtex.errors import FieldError
+from flowtex.field.io.identity import file_identity
 from flowtex.field.source import FlowSource
 from flowtex.pyramid import build
+from flowtex.scene import Scene
+from flowtex.settings import Settings
 from flowtex.tiles import has_pyramid
+from flowtex.trace import SliceStore
 
 
 @pytest.fixture
@@ -95,3 +100,101 @@ def test_files_of_solvers_offer_blocks_arrays_and_times(tmp_path: Path) -> None:
     assert "torn.case" in library.names
     with pytest.raises(FieldError, match=r"torn\.case: "):
         library.source("torn.case")
+
+
+# --- files that change --------------------------------------------------------------------------
+
+
+def gyre(path: Path, moment: float) -> float:
+    """Write a flow; return its mean speed at the nodes."""
+    mesh = examples.double_gyre(moment)
+    mesh.save(path)
+    return float(np.linalg.norm(mesh["velocity"], axis=-1).mean())
+
+
+def mean_speed(field: FlowField) -> float:
+    return float(np.linalg.norm(field.velocity[-1], axis=-1).mean())
+
+
+def test_a_file_that_is_written_anew_is_opened_anew(tmp_path: Path) -> None:
+    path = tmp_path / "latest.vts"
+    library = Library.of(tmp_path if gyre(path, 0.0) else path)
+    choice = library.complete("latest.vts", Choice())
+    source, field = library.source("latest.vts"), library.field("latest.vts", choice)
+    library.trace("latest.vts", choice, field, Settings())
+    assert library.source("latest.vts") is source
+    assert library.field("latest.vts", choice) is field, "what has not changed is not read again"
+    new = gyre(path, 2.5)
+    again = library.field("latest.vts", choice)
+    assert mean_speed(again) == pytest.approx(new) != pytest.approx(mean_speed(field))
+    # What was traced of the old file does not pass for the new one.
+    library.trace("latest.vts", choice, field, Settings())
+    assert mean_speed(library.field("latest.vts", choice)) == pytest.approx(new)
+    assert library.source("latest.vts") is not source
+
+
+def test_a_member_or_a_file_beside_that_changes_is_read_anew(folder: Path) -> None:
+    library = Library.of(folder)
+    choice = library.complete("series.pvd", Choice())
+    before = library.field("series.pvd", choice)
+    new = gyre(folder / "steps" / "1.vts", 2.5)
+    assert mean_speed(library.field("series.pvd", choice)) == pytest.approx(new)
+    assert mean_speed(before) != pytest.approx(new)
+    nodes = pv.read(folder / "hull.stl").points
+    for turn in (1.0, 2.0):
+        np.save(folder / "hull.npy", turn * np.cross(nodes, [0.0, 0.0, 1.0]))
+        hull = library.field("hull.stl", Choice()) if "hull.stl" in library.names else None
+        assert hull is not None
+        assert np.linalg.norm(hull.velocity, axis=-1).max() == pytest.approx(turn / 2, rel=0.02)
+
+
+def test_the_state_of_a_case_is_that_of_all_its_files(tmp_path: Path) -> None:
+    write_ensight(tmp_path / "wing.case", [("tip", box(4, 3, 2))])
+    (tmp_path / "foam").mkdir()
+    write_foam(tmp_path / "foam" / "run.foam")
+    for path, beside in (
+        (tmp_path / "wing.case", tmp_path / "wing.geo"),
+        (tmp_path / "foam" / "run.foam", tmp_path / "foam" / "1" / "U"),
+        (tmp_path / "foam", tmp_path / "foam" / "constant" / "polyMesh" / "points"),
+    ):
+        before = file_identity([path])
+        assert file_identity([path]) == before and str(beside) in {name for name, *_ in before}
+        beside.write_bytes(beside.read_bytes() + b"\n")
+        assert file_identity([path]) != before
+    assert file_identity([tmp_path / "gone.vts"]) == ((str(tmp_path / "gone.vts"), 0, 0, 0),)
+
+
+def test_a_source_whose_process_has_died_is_opened_anew(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("flowtex.field.remote.source.READER", "child_handler:TrickyReader")
+    gyre(tmp_path / "flow.vts", 0.0)
+    library = Library.of(tmp_path)
+    source = library.source("flow.vts")
+    with pytest.raises(FieldError, match="crashed"):
+        source.plane_of("crash")
+    assert library.source("flow.vts") is not source
+    assert library.field("flow.vts", Choice()).steady
+
+
+# --- large fields -------------------------------------------------------------------------------
+
+
+def test_of_a_large_field_the_coarsest_level_is_traced(monkeypatch: pytest.MonkeyPatch) -> None:
+    x, y = np.linspace(0, 2, 1200), np.linspace(0, 1, 600)
+    velocity = np.stack(np.broadcast_arrays(y[:, None] + 1, np.cos(x)), axis=-1)
+    field = FlowField.from_arrays((x, y), velocity)
+    traced: list[tuple[int, int]] = []
+
+    def counted(store: SliceStore, step: int) -> Any:
+        traced.append(store.field.shape)
+        return made(store, step)
+
+    made = SliceStore._trace
+    monkeypatch.setattr(SliceStore, "_trace", counted)
+    library, settings = Library.of(field), Settings()
+    flow = library.trace("flow", Choice(), field, settings)
+    scene = Scene(field, settings)
+    assert scene.pyramid is flow.pyramid is not None
+    assert scene.store is flow.store and flow.store.field is scene.whole
+    assert traced == [scene.whole.shape] and scene.whole.shape < field.shape

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from functools import partial
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -211,43 +209,3 @@ def test_hexahedra_of_cgns(tmp_path: Path) -> None:
     with pytest.warns(Notice, match=OUTER):
         assert FlowField.from_file(path).triangles is not None
     assert FlowField.from_file(path, slice="z").triangles is not None
-
-
-# --- broken ones ----------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("end", [50, 343, 776])
-def test_a_reader_that_crashes_takes_nobody_along(
-    tmp_path: Path, capfd: pytest.CaptureFixture[str], end: int
-) -> None:
-    path = ensight(tmp_path / "flow.case")
-    geometry = tmp_path / "flow.geo"
-    geometry.write_bytes(geometry.read_bytes()[:end])
-    for act in (FlowField.from_file, FlowSource.from_file, describe):
-        with pytest.raises(FieldError, match=f"^{re.escape(str(path))}: the file is broken or inc"):
-            act(path)
-    assert "".join(capfd.readouterr()) == ""
-
-
-def test_a_reader_that_does_not_end(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("flowtex.field.io.trial.TRIAL_TIMEOUT_S", 0.0)
-    path = ensight(tmp_path / "flow.case")
-    with says(f"{path}: the file is broken or incomplete: its reader did not end within 0 s"):
-        FlowField.from_file(path)
-
-
-@pytest.mark.parametrize("name", ["flow.case", "flow.cgns", "flow.ex2"])
-def test_a_file_that_is_cut_off(
-    tmp_path: Path, capfd: pytest.CaptureFixture[str], name: str
-) -> None:
-    path = tmp_path / name
-    writers: dict[str, Callable[[Path], Any]] = {".case": ensight, ".cgns": cgns}
-    writers[".ex2"] = partial(write_exodus, points=TIP)
-    writers[path.suffix](path)
-    whole = path.read_bytes()
-    capfd.readouterr()
-    for share in (0.1, 0.6):
-        path.write_bytes(whole[: int(share * len(whole))])
-        with pytest.raises(FieldError, match=f"^{re.escape(str(path))}: "):
-            FlowField.from_file(path)
-    assert "".join(capfd.readouterr()) == ""
