@@ -57,7 +57,8 @@ class Handler:
         return len(np.ones(size, np.uint8)), []
 
     def fail(self) -> Answer:
-        return {}["missing\x1b[31m"], []
+        words: dict[str, int] = {}
+        return words["missing\x1b[31m"], []
 
     def lie(self, size: int) -> Answer:
         header = json.dumps({"value": {"number": 1}, "arrays": [["<f8", [size]]]}).encode()

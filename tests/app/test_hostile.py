@@ -32,7 +32,7 @@ from flowtex.app.streaming import player
 from flowtex.app.streaming.painter import MOST_PIXELS
 from flowtex.app.streaming.viewport import Viewport
 from flowtex.errors import FieldError
-from flowtex.field.source import FlowSource
+from flowtex.field.source import FlowSource, Source
 from flowtex.probe import probe
 from flowtex.settings import TABLE, Settings, SettingsError
 
@@ -598,7 +598,7 @@ def test_a_slow_file_of_one_page_keeps_nobody_from_another(monkeypatch: pytest.M
     held, opening = threading.Event(), threading.Event()
     entry = library._openers["slow"]
 
-    def waiting() -> FlowSource:
+    def waiting() -> Source:
         opening.set()
         assert held.wait(10)
         return entry()
