@@ -174,16 +174,31 @@ def chromium() -> Path:
     pytest.skip("no Chromium: apt-get install chromium, or point FLOWTEX_CHROMIUM at one")
 
 
+#: WebGL of Mesa's, several times as fast as the one that Chromium brings.
+MESA = ("--use-angle=gl-egl", "--ignore-gpu-blocklist")
+DRAWS = "!!document.createElement('canvas').getContext('webgl2')"
+
+
 @pytest.fixture(scope="session")
 def browser(chromium: Path) -> Iterator[Browser]:
-    """Yield a headless browser for all tests of the session."""
+    """Yield the one headless browser of the session."""
     from playwright.sync_api import sync_playwright
 
     asked = [sys.executable, "-m", "playwright", "--version"]
     if subprocess.run(asked, capture_output=True, check=False).returncode != 0:
         pytest.skip("Playwright does not start: apt-get install libatomic1")
-    with sync_playwright() as driver:
-        started = driver.chromium.launch(executable_path=chromium)
+    with sync_playwright() as driver, pytest.MonkeyPatch.context() as patch:
+        import client_coverage
+
+        if client_coverage.FOLDER:
+            client_coverage.count_in(Path(client_coverage.FOLDER), patch)
+        started = driver.chromium.launch(executable_path=chromium, args=list(MESA))
+        page = started.new_page()
+        draws = page.evaluate(DRAWS)
+        page.close()
+        if not draws:
+            started.close()
+            started = driver.chromium.launch(executable_path=chromium)
         yield started
         started.close()
 
@@ -191,31 +206,20 @@ def browser(chromium: Path) -> Iterator[Browser]:
 @pytest.fixture
 def page(browser: Browser) -> Iterator[Page]:
     """Yield a page of its own context, so that no test sees another's state."""
-    context = browser.new_context()
-    yield context.new_page()
-    context.close()
+    from pages import opened_page
+
+    with opened_page(browser, 1280, 720) as opened:
+        yield opened
 
 
 @pytest.fixture(scope="session")
-def webgl_browser(browser: Browser, chromium: Path) -> Iterator[Browser]:
-    """Yield a browser whose WebGL is Mesa's, several times as fast as the one it brings."""
-    arguments = ["--use-angle=gl-egl", "--ignore-gpu-blocklist"]
-    started = browser.browser_type.launch(executable_path=chromium, args=arguments)
-    page = started.new_page()
-    draws = page.evaluate("!!document.createElement('canvas').getContext('webgl2')")
-    page.close()
-    yield started if draws else browser
-    started.close()
-
-
-@pytest.fixture(scope="session")
-def client_page(webgl_browser: Browser) -> Iterator[ClientPage]:
+def client_page(browser: Browser) -> Iterator[ClientPage]:
     """Yield a page that has loaded the browser client."""
+    from pages import opened_page
     from webgl_page import ClientPage
 
-    context = webgl_browser.new_context(viewport={"width": 900, "height": 700})
-    yield ClientPage(context.new_page())
-    context.close()
+    with opened_page(browser, 900, 700) as opened:
+        yield ClientPage(opened)
 
 
 @pytest.fixture

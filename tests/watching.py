@@ -6,15 +6,20 @@ import io
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import pytest
 from PIL import Image
+from waiting import wait_until
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
 __all__ = ["Watch", "count", "difference"]
 
-PATIENCE = 20_000
+#: Ends when the picture that the page was given is on the screen.
+DECODED = """async () => {
+  const image = document.querySelector(".flowtex-view img");
+  if (image?.src) await image.decode().catch(() => null);
+  await new Promise((f) => requestAnimationFrame(() => requestAnimationFrame(f)));
+}"""
 
 
 def count(page: Page) -> int:
@@ -43,25 +48,18 @@ class Watch:
         """Wait for the next full picture after so many, and return what is seen."""
         page.wait_for_function(
             "n => Number(document.querySelector('[data-sharp]')?.dataset.sharp) > n"
-            " && document.querySelector('[data-picture=sharp]')"
-            " && document.querySelector('.flowtex-view img').complete",
+            " && document.querySelector('[data-picture=sharp]')",
             arg=before,
-            timeout=PATIENCE,
         )
-        last = self.shot(page)
-        for _ in range(60):  # the picture itself is decoded a moment later
-            page.wait_for_timeout(60)
-            now = self.shot(page)
-            if np.array_equal(last, now):
-                return now
-            last = now
-        pytest.fail("the picture at rest keeps changing")
+        page.evaluate(DECODED)
+        return self.shot(page)
 
     def comes_to(self, page: Page, wanted: Any) -> None:
         """Wait until the page shows what it showed before."""
-        for _ in range(100):
-            apart = difference(self.shot(page), wanted)
-            if apart < 2:
-                return
-            page.wait_for_timeout(100)
-        pytest.fail(f"the page shows something else, by {apart:.1f} steps of 8 bits")
+        apart: list[float] = []
+
+        def is_there() -> bool:
+            apart.append(difference(self.shot(page), wanted))
+            return apart[-1] < 2
+
+        wait_until(is_there, lambda: f"it is apart by {apart[-1]:.1f} steps of 8 bits")

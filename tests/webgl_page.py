@@ -118,7 +118,7 @@ class ClientPage:
     def sharp(self, viewer: int = 0) -> None:
         """Wait for the full picture."""
         self.page.wait_for_function(
-            "(n) => viewers[n].sharp || viewers[n].root.dataset.failed", arg=viewer, timeout=20_000
+            "(n) => viewers[n].sharp || viewers[n].root.dataset.failed", arg=viewer
         )
         failed = self.page.evaluate("(n) => viewers[n].root.dataset.failed", viewer)
         assert not failed, self.page.evaluate(
@@ -128,9 +128,7 @@ class ClientPage:
     def complete(self, viewer: int = 0) -> None:
         """Wait for all tiles that the view asks for, and the full picture."""
         self.page.wait_for_function(
-            "(n) => viewers[n].sharp && !viewers[n].tiles.missing.length",
-            arg=viewer,
-            timeout=60_000,
+            "(n) => viewers[n].sharp && !viewers[n].tiles.missing.length", arg=viewer
         )
 
     def picture(self, viewer: int = 0) -> Pixels:

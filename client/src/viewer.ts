@@ -78,7 +78,9 @@ export class Viewer implements User {
     const { root } = this;
     root.className = "flowtex";
     root.tabIndex = 0;
-    root.dataset.sharp = "false";
+    // How far the picture is, for hosts: whether it is the full one, the number of full ones so far, and
+    // of tiles and of parts of the present time that are not there yet.
+    Object.assign(root.dataset, { sharp: "false", frames: "0", tiles: "0", lacking: "0" });
     // JupyterLab has shortcuts of its own for the keys that move the view.
     root.setAttribute("data-lm-suppress-shortcuts", "true");
     root.setAttribute("role", "application");
@@ -453,6 +455,7 @@ export class Viewer implements User {
     const ahead = player.playing ? [1, 2].map((n) => (moment[1] + n) % count) : [];
     this.ask([moment[0], moment[1], ...ahead]);
     const { lacking } = this;
+    this.root.dataset.lacking = String(lacking.length);
     this.panel.wait(lacking);
     if (!lacking.length) return (this.shown = moment);
     return shown && !scene.missing(shown[0], shown[1]).length ? shown : null;
@@ -518,6 +521,7 @@ export class Viewer implements User {
     }
     if (!program.ready || !this.scene?.earth.isReady) return this.request();
     if (!this.sharp && this.renderer.draw(program, shown, this.isBusy, until)) {
+      this.root.dataset.frames = String(this.renderer.frames);
       this.panel.clear();
       programs.get(header.shaders.vertex, header.shaders.pick); // the pointer asks for it next,
       if (header.slices.critical) this.program(header, true); // and the wheel for this

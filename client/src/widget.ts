@@ -188,10 +188,14 @@ class WidgetView {
   private async sendFrame(): Promise<void> {
     const { first, viewers } = this;
     if (!viewers.every(({ sharp }) => sharp)) return;
+    const { dataset } = first.root;
+    const { frames } = dataset;
     this.hasSentFrame = true;
     const picture = await pictureOf(viewers, 1 / first.ratio, STILL_FORMAT);
     const data = await picture.arrayBuffer();
-    if (!first.lifetime.isOver) this.model.send({ kind: "frame" }, undefined, [data]);
+    if (first.lifetime.isOver) return;
+    this.model.send({ kind: "frame" }, undefined, [data]);
+    dataset.still = frames; // the picture that the kernel has
   }
 
   /** The kernel is there and so is what to draw: the still goes. */

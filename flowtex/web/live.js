@@ -1242,27 +1242,27 @@ this.drop(name)}}drop(name){let tile=this.tiles.get(name);tile?.scene?.dispose()
 get(part)),tile?.parts.delete(part)}};var STILL_MS=160,LOST_MS2=5e3,STEPS_HELD2=12,FEW_STEPS_HELD=4,isEqual=(a,b)=>JSON.stringify(a)===JSON.stringify(b),Viewer=class{options;graphics=sharedGraphics();lifetime=new Lifetime;player=new Player;root=document.
 createElement("div");canvas=document.createElement("canvas");card=new PointCard(this);panel;pointers;parts=new Map;header=null;settings={};scene=null;tiles=null;camera=null;sharp=!1;isVisible=!0;shown=null;together=[
 this];renderer;busyUntil=0;firstCamera=null;requests=new Map;constructor(element,options={}){this.options=options;let{root}=this;
-root.className="flowtex",root.tabIndex=0,root.dataset.sharp="false",root.setAttribute("data-lm-suppress-shortcuts","true"),
-root.setAttribute("role","application"),this.renderer=new ProgressiveRenderer(this),this.panel=new Panel(this),element.append(
-root),this.pointers=new Pointers(this),this.graphics.users.add(this),this.observe(),this.graphics.gl||this.panel.fail("T\
-his browser has no WebGL2, which the picture is drawn with.","Turn on hardware acceleration in its settings, or use a re\
-cent Firefox, Chrome or Safari.")}observe(){let{lifetime,root}=this;lifetime.observe(new ResizeObserver(()=>this.resize()),
-root);let seen=new IntersectionObserver(entries=>{this.isVisible=entries[entries.length-1].isIntersecting,this.isVisible&&
-this.request()});lifetime.observe(seen,root),lifetime.listen(document,"visibilitychange",()=>this.request()),lifetime.listen(
-window,"resize",()=>this.resize())}stats(){let{objects,users}=this.graphics,{frames}=this.renderer;return{...this.lifetime.
-stats(),objects,users:users.size,frames}}dispose(){if(!this.lifetime.isOver){this.player.playing=!1,this.lifetime.end(),
-this.tiles?.dispose(),this.tiles=null,this.scene?.dispose(),this.scene=null;for(let name of[...this.parts.keys()])this.remove(
-name);this.graphics.leave(this),this.renderer.dispose(),this.root.remove()}}setHeader(header){if(header.format!==3){this.
-panel.fail(`The scene has format ${header.format}, and this client reads format ${3}.`,"Use the client of the flowtex th\
-at made the scene.");return}let old=this.header;if(old&&old.generation!==void 0&&old.generation===header.generation)return this.
-recolour(coloursOf(header));if(this.header=header,this.settings={...header.settings,...header.own},this.player.setHeader(
-header),this.tiles?.dispose(),this.scene?.dispose(),this.makeScene(header),this.requests.clear(),(!old||!isSamePlace(old.
-geometry,header.geometry))&&(this.firstCamera=header.camera,this.camera=null),old&&old.generation!==header.generation)for(let name of[
-...this.parts.keys()])name.includes("/")&&this.remove(name);this.panel.build(),this.change()}recolour(colours){if(this.header){
-Object.assign(this.header,colours);for(let name of["scalars","mesh"])this.scene?.forget(name);this.requests.clear(),this.
-tiles?.recolour(colours),this.panel.showLegend(),this.change()}}chooseColours(choice){if(this.options.onColours)return this.
-options.onColours(choice);for(let viewer of this.together){if(!viewer.header)continue;let{colours,part}=recoloured(viewer.
-header,choice,viewer.parts);part&&viewer.setPart(part),viewer.recolour(colours)}}makeScene(header){this.scene=new Scene(
+root.className="flowtex",root.tabIndex=0,Object.assign(root.dataset,{sharp:"false",frames:"0",tiles:"0",lacking:"0"}),root.
+setAttribute("data-lm-suppress-shortcuts","true"),root.setAttribute("role","application"),this.renderer=new ProgressiveRenderer(
+this),this.panel=new Panel(this),element.append(root),this.pointers=new Pointers(this),this.graphics.users.add(this),this.
+observe(),this.graphics.gl||this.panel.fail("This browser has no WebGL2, which the picture is drawn with.","Turn on hard\
+ware acceleration in its settings, or use a recent Firefox, Chrome or Safari.")}observe(){let{lifetime,root}=this;lifetime.
+observe(new ResizeObserver(()=>this.resize()),root);let seen=new IntersectionObserver(entries=>{this.isVisible=entries[entries.
+length-1].isIntersecting,this.isVisible&&this.request()});lifetime.observe(seen,root),lifetime.listen(document,"visibili\
+tychange",()=>this.request()),lifetime.listen(window,"resize",()=>this.resize())}stats(){let{objects,users}=this.graphics,
+{frames}=this.renderer;return{...this.lifetime.stats(),objects,users:users.size,frames}}dispose(){if(!this.lifetime.isOver){
+this.player.playing=!1,this.lifetime.end(),this.tiles?.dispose(),this.tiles=null,this.scene?.dispose(),this.scene=null;for(let name of[
+...this.parts.keys()])this.remove(name);this.graphics.leave(this),this.renderer.dispose(),this.root.remove()}}setHeader(header){
+if(header.format!==3){this.panel.fail(`The scene has format ${header.format}, and this client reads format ${3}.`,"Use t\
+he client of the flowtex that made the scene.");return}let old=this.header;if(old&&old.generation!==void 0&&old.generation===
+header.generation)return this.recolour(coloursOf(header));if(this.header=header,this.settings={...header.settings,...header.
+own},this.player.setHeader(header),this.tiles?.dispose(),this.scene?.dispose(),this.makeScene(header),this.requests.clear(),
+(!old||!isSamePlace(old.geometry,header.geometry))&&(this.firstCamera=header.camera,this.camera=null),old&&old.generation!==
+header.generation)for(let name of[...this.parts.keys()])name.includes("/")&&this.remove(name);this.panel.build(),this.change()}recolour(colours){
+if(this.header){Object.assign(this.header,colours);for(let name of["scalars","mesh"])this.scene?.forget(name);this.requests.
+clear(),this.tiles?.recolour(colours),this.panel.showLegend(),this.change()}}chooseColours(choice){if(this.options.onColours)
+return this.options.onColours(choice);for(let viewer of this.together){if(!viewer.header)continue;let{colours,part}=recoloured(
+viewer.header,choice,viewer.parts);part&&viewer.setPart(part),viewer.recolour(colours)}}makeScene(header){this.scene=new Scene(
 this.graphics,header,this.parts),this.tiles=new Tiles(this,this.scene)}setPart(part){let{name,digest}=part,tile=tilePart(
 name);if(tile)return void this.tiles?.setPart(tile[0],{...part,name:tile[1]});if(this.requests.delete(stepOf(name)),digest&&
 this.parts.get(name)?.digest===digest)return;let held=this.graphics.hold(part);this.remove(name),this.parts.set(name,held),
@@ -1304,34 +1304,34 @@ return this.options.smooth!==void 0||!header?this.options.smooth??!1:this.progra
 return this.canvas.height/Math.max(this.root.clientHeight,1)}lost(){this.tiles?.dispose(),this.header&&this.makeScene(this.
 header),this.setSharp(!1)}get lacking(){let[before,after]=this.player.moment;return this.scene?.missing(before,after)??[]}available(){
 let{header,scene,player,shown}=this;if(!header||!scene)return null;let moment=player.moment,count=header.slices.steps,ahead=player.
-playing?[1,2].map(n=>(moment[1]+n)%count):[];this.ask([moment[0],moment[1],...ahead]);let{lacking}=this;return this.panel.
-wait(lacking),lacking.length?shown&&!scene.missing(shown[0],shown[1]).length?shown:null:this.shown=moment}lack(reason,tile,steps=[]){
-tile!==void 0&&this.tiles?.fail(tile,steps),this.panel.tell(reason)}ask(steps){let now=performance.now(),lacking=[...new Set(
-steps)].filter(step=>this.scene?.missing(step,step).length);for(let step of lacking)!this.options.onNeed||now-(this.requests.
-get(step)??-1/0)<LOST_MS2||(this.requests.set(step,now),this.options.onNeed(step));return!lacking.length}frame(now,until){
-if(!(this.lifetime.isOver||this.graphics.isLost||!this.graphics.gl||!this.isVisible)&&!(!this.header||!this.scene||this.
-canvas.width<2))try{this.advance(now),this.drawPicture(this.header,until)}catch(error){this.pause(),this.panel.fail("The\
- picture could not be drawn.",String(error))}}program(header,isClose=this.isClose(header)){let{vertex,fragment}=header.shaders,
-defines=isMoving(header,this.settings)?["FLOWTEX_MOVING"]:[];return isClose&&defines.push("FLOWTEX_CELLS"),this.graphics.
-programs.get(vertex,fragment,...defines)}isClose(header){if(!this.camera)return!1;let view=this.view([0,0,0],this.ratio),
-tiles=this.tiles?.layers.slice(1).map(({scene})=>scene.header)??[];return(tiles.length?tiles:[header]).some(part=>isNear(
-part,this.settings,view))}drawPicture(header,until){let shown=this.available();if(this.camera||this.place(),!shown||!this.
-camera)return;let{programs}=this.graphics,program=this.program(header);if(program.error){this.panel.fail("The shader doe\
-s not compile with this graphics driver.",program.error);return}if(!program.ready||!this.scene?.earth.isReady)return this.
-request();!this.sharp&&this.renderer.draw(program,shown,this.isBusy,until)&&(this.panel.clear(),programs.get(header.shaders.
-vertex,header.shaders.pick),header.slices.critical&&this.program(header,!0),this.setSharp(!this.playing)),this.sharp||this.
-request()}advance(now){let{player,options}=this;!player.playing||!player.advance(now,steps=>this.ask(steps))||(player.varies?
-options.onTime?.(player.time):options.onClock?.(player.clock),this.panel.tick(),this.renderer.restart(),this.setSharp(!1))}view(shown,density){
-let{header,camera,scene,player}=this;if(!header||!camera)throw new Error("there is nothing to look at yet");let{geometry,
-constants}=header,focus=camera.state.focal_point,local=toFrame(geometry.frame,subtract2(focus,geometry.center)),old=scene?.
-anchor??[0,0,0],range=constants.anchorRange*2*camera.height,isFar=v2=>v2.some(c=>Math.abs(c)>range),anchor=isFar(local)?
-local:[0,0,0];return{focus,anchor:isFar(subtract2(local,old))?anchor:old,eye:camera.eye,between:shown[2],time:player.timeOf(
-shown),clock:player.clock,density,pixel:2*camera.height/Math.max(this.root.clientHeight*density,1)}}get canPick(){let{header,
-graphics}=this;return!header||graphics.isLost||!graphics.gl?!1:graphics.programs.get(header.shaders.vertex,header.shaders.
-pick).ready}point(x,y){return this.find(x,y)?.point??null}ground(x,y){let{header,camera}=this;return header&&camera&&groundAt(
-header,camera,x,y)}find(x,y){let{tiles,camera,shown,canvas}=this;if(!tiles?.layers.length||!camera||!shown||!this.canPick)
-return null;let{anchor}=this.view(shown,1);return pickedPoint({layers:tiles.layers,camera,moment:shown,anchor,canvas},x,
-y)}};var TILES_AT_ONCE=6,STEPS_AT_ONCE=2,STEPS_WANTED=4,WHOLE=[0,0,0],MEMORY=18e7;function viewersIn(element,count,options,own=()=>({})){
+playing?[1,2].map(n=>(moment[1]+n)%count):[];this.ask([moment[0],moment[1],...ahead]);let{lacking}=this;return this.root.
+dataset.lacking=String(lacking.length),this.panel.wait(lacking),lacking.length?shown&&!scene.missing(shown[0],shown[1]).
+length?shown:null:this.shown=moment}lack(reason,tile,steps=[]){tile!==void 0&&this.tiles?.fail(tile,steps),this.panel.tell(
+reason)}ask(steps){let now=performance.now(),lacking=[...new Set(steps)].filter(step=>this.scene?.missing(step,step).length);
+for(let step of lacking)!this.options.onNeed||now-(this.requests.get(step)??-1/0)<LOST_MS2||(this.requests.set(step,now),
+this.options.onNeed(step));return!lacking.length}frame(now,until){if(!(this.lifetime.isOver||this.graphics.isLost||!this.
+graphics.gl||!this.isVisible)&&!(!this.header||!this.scene||this.canvas.width<2))try{this.advance(now),this.drawPicture(
+this.header,until)}catch(error){this.pause(),this.panel.fail("The picture could not be drawn.",String(error))}}program(header,isClose=this.
+isClose(header)){let{vertex,fragment}=header.shaders,defines=isMoving(header,this.settings)?["FLOWTEX_MOVING"]:[];return isClose&&
+defines.push("FLOWTEX_CELLS"),this.graphics.programs.get(vertex,fragment,...defines)}isClose(header){if(!this.camera)return!1;
+let view=this.view([0,0,0],this.ratio),tiles=this.tiles?.layers.slice(1).map(({scene})=>scene.header)??[];return(tiles.length?
+tiles:[header]).some(part=>isNear(part,this.settings,view))}drawPicture(header,until){let shown=this.available();if(this.
+camera||this.place(),!shown||!this.camera)return;let{programs}=this.graphics,program=this.program(header);if(program.error){
+this.panel.fail("The shader does not compile with this graphics driver.",program.error);return}if(!program.ready||!this.
+scene?.earth.isReady)return this.request();!this.sharp&&this.renderer.draw(program,shown,this.isBusy,until)&&(this.root.
+dataset.frames=String(this.renderer.frames),this.panel.clear(),programs.get(header.shaders.vertex,header.shaders.pick),header.
+slices.critical&&this.program(header,!0),this.setSharp(!this.playing)),this.sharp||this.request()}advance(now){let{player,
+options}=this;!player.playing||!player.advance(now,steps=>this.ask(steps))||(player.varies?options.onTime?.(player.time):
+options.onClock?.(player.clock),this.panel.tick(),this.renderer.restart(),this.setSharp(!1))}view(shown,density){let{header,
+camera,scene,player}=this;if(!header||!camera)throw new Error("there is nothing to look at yet");let{geometry,constants}=header,
+focus=camera.state.focal_point,local=toFrame(geometry.frame,subtract2(focus,geometry.center)),old=scene?.anchor??[0,0,0],
+range=constants.anchorRange*2*camera.height,isFar=v2=>v2.some(c=>Math.abs(c)>range),anchor=isFar(local)?local:[0,0,0];return{
+focus,anchor:isFar(subtract2(local,old))?anchor:old,eye:camera.eye,between:shown[2],time:player.timeOf(shown),clock:player.
+clock,density,pixel:2*camera.height/Math.max(this.root.clientHeight*density,1)}}get canPick(){let{header,graphics}=this;
+return!header||graphics.isLost||!graphics.gl?!1:graphics.programs.get(header.shaders.vertex,header.shaders.pick).ready}point(x,y){
+return this.find(x,y)?.point??null}ground(x,y){let{header,camera}=this;return header&&camera&&groundAt(header,camera,x,y)}find(x,y){
+let{tiles,camera,shown,canvas}=this;if(!tiles?.layers.length||!camera||!shown||!this.canPick)return null;let{anchor}=this.
+view(shown,1);return pickedPoint({layers:tiles.layers,camera,moment:shown,anchor,canvas},x,y)}};var TILES_AT_ONCE=6,STEPS_AT_ONCE=2,STEPS_WANTED=4,WHOLE=[0,0,0],MEMORY=18e7;function viewersIn(element,count,options,own=()=>({})){
 if(count<2)return[new Viewer(element,{...options,...own(0)})];let pair=dom("div",{class:"flowtex-pair"});pair.style.cssText=
 "display: flex; gap: 2px; width: 100%; height: 100%",element.append(pair);let viewers=[];for(let n=0;n<count;n+=1){let cell=dom(
 "div");cell.style.cssText="flex: 1 1 0; min-width: 0; height: 100%",pair.append(cell);let others=()=>viewers.filter((_,m)=>m!==

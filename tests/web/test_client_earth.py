@@ -216,7 +216,7 @@ def test_a_page_is_exported_with_its_lines(name: str, page: Page, tmp_path: Path
     path = tmp_path / "page.html"
     export(earth(name), path, **PLAIN)
     page.goto(path.as_uri())
-    page.wait_for_selector('[data-sharp="true"]', timeout=60_000)
+    page.wait_for_selector('[data-sharp="true"]')
     switches = page.evaluate(
         """() => [...document.querySelector(".flowtex").shadowRoot.querySelectorAll("[data-lines]")]
           .map((row) => row.dataset.lines)"""

@@ -55,7 +55,7 @@ def test_the_button_stays_when_playing_begins(client: ClientPage) -> None:
     at = [button.bounding_box()]
     button.click()
     at.append(button.bounding_box())
-    client.page.wait_for_timeout(300)
+    client.page.wait_for_function("() => viewers[0].player.clock > 0.05")
     at.append(button.bounding_box())
     assert at[0] == at[1] == at[2] is not None
 

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from flows import gyre, lines, swinging, torus
 from matrix import ASIDE, MIDDLE, SIZE, TEXTURE, TILTED, WHOLE
+from pages import opened_page
 from webgl_page import ClientPage, packed, state
 
 from flowtex import FlowField
@@ -22,7 +23,7 @@ from flowtex.web.export import export
 from flowtex.web.view import web_views
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Page
+    from playwright.sync_api import Browser, Page
 
 pytestmark = pytest.mark.browser
 
@@ -199,13 +200,16 @@ def test_both_of_two_views_show_the_path(client: ClientPage) -> None:
     client.page.evaluate("() => viewers[0].together.forEach((viewer) => viewer.dispose())")
 
 
-def test_an_exported_page_shows_card_and_path(webgl_browser: Any, tmp_path: Path) -> None:
+def test_an_exported_page_shows_card_and_path(browser: Browser, tmp_path: Path) -> None:
     export(leaving(), tmp_path / "page.html", samples=9)
-    context = webgl_browser.new_context(viewport={"width": 390, "height": 500})
-    page = context.new_page()
+    with opened_page(browser, 390, 500) as page:
+        shows_card_and_path(page, tmp_path / "page.html")
+
+
+def shows_card_and_path(page: Page, path: Path) -> None:
     wrong: list[str] = []
     page.on("pageerror", lambda error: wrong.append(str(error)))
-    page.goto((tmp_path / "page.html").as_uri())
+    page.goto(path.as_uri())
     page.locator('[data-sharp="true"]').wait_for()
     page.mouse.click(195, 250)
     page.locator(".card").wait_for()
@@ -221,5 +225,4 @@ def test_an_exported_page_shows_card_and_path(webgl_browser: Any, tmp_path: Path
     assert page.locator("svg.path .arrow").count() > 0
     page.keyboard.press("Escape")
     page.locator(".card").wait_for(state="hidden")
-    context.close()
     assert wrong == []

@@ -6,7 +6,7 @@ import base64
 import io
 import json
 import shutil
-import time
+import threading
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -15,8 +15,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from pages import COMPLETE, acted, opened_page
 from PIL import Image
 from range_server import Answer, RangeServer, range_server
+from waiting import PATIENCE_S, wait_until
 
 from flowtex import FlowField
 from flowtex.pyramid import build
@@ -28,7 +30,6 @@ if TYPE_CHECKING:
 pytest.importorskip("zarr")
 
 ROOT_NODES = 20_000
-SIZE = {"width": 300, "height": 200}
 LOOK: dict[str, Any] = {"samples": 9, "cmap": "viridis"}
 NEAR: dict[str, Any] = {"zoom": 5, "focus": (3.2, 1.4), **LOOK}
 PICTURE = (
@@ -102,11 +103,15 @@ class Shown:
         if kind == "error" and "Failed to load resource" not in text:
             self.errors.append(text)
 
-    def wait(self, missing: int = 0) -> None:
-        """Wait for a full picture for which so many tiles are missing."""
-        self.page.wait_for_selector(
-            f'[data-tiles="{missing}"][data-sharp="true"]', timeout=60_000, state="attached"
-        )
+    def wait(self) -> None:
+        """Wait for a full picture for which nothing is missing."""
+        self.page.wait_for_selector(COMPLETE)
+
+    def zoom(self, by: int) -> None:
+        """Turn the wheel, and wait for the picture."""
+        self.page.mouse.move(150, 100)
+        with acted(self.page):
+            self.page.mouse.wheel(0, by)
 
     def pixels(self) -> NDArray[np.int64]:
         data = base64.b64decode(self.page.evaluate(PICTURE))
@@ -115,23 +120,27 @@ class Shown:
 
     def told(self) -> str:
         """Wait for what the view has to say."""
-        self.page.locator(".flowtex .told").wait_for(timeout=60_000)
+        self.page.locator(".flowtex .told").wait_for()
         return self.page.locator(".flowtex .told").inner_text()
 
     def choose(self, label: str, value: str) -> None:
-        """Choose a colour in the panel."""
+        """Choose a colour in the panel, and wait for the picture."""
         if self.page.locator(".settings").is_hidden():
             self.page.locator("[data-name=settings]").click()
-        self.page.get_by_label(label).select_option(value)
-        self.page.wait_for_timeout(200)
+        with acted(self.page):
+            self.page.get_by_label(label).select_option(value)
+
+    def seek(self, share: str) -> None:
+        """Go to a part of the times, and wait for the picture."""
+        with acted(self.page):
+            self.page.locator(".flowtex input[aria-label=Time]").fill(share)
 
 
 @pytest.fixture
-def shown(webgl_browser: Browser) -> Iterator[Shown]:
-    context = webgl_browser.new_context(viewport=SIZE)  # type: ignore[arg-type]
-    shown = Shown(context.new_page())
-    yield shown
-    context.close()
+def shown(browser: Browser) -> Iterator[Shown]:
+    with opened_page(browser) as page:
+        shown = Shown(page)
+        yield shown
     assert shown.errors == []
 
 
@@ -154,24 +163,17 @@ def linked(server: RangeServer, folder: Path, name: str, **options: Any) -> Path
     return path
 
 
-def pair(
-    webgl_browser: Browser, shown: Shown, server: RangeServer, folder: Path, name: str, options: Any
-) -> tuple[Any, Any]:
-    """Return pictures of a page that reads from the store, and of one that holds everything."""
-    shown.open(linked(server, folder, name, **options).as_uri())
-    shown.wait()
-    whole = folder / "whole.html"
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("flowtex.web.export.TILE_BYTES", 10**9)
-        export(str(server.folder / f"{name}.zarr"), whole, **options)
-    page = webgl_browser.new_page(viewport=SIZE)  # type: ignore[arg-type]
-    other = Shown(page)
-    other.open(whole.as_uri())
-    other.wait()
-    pixels = other.pixels()
-    page.close()
+def held(browser: Browser, path: Path, share: str = "") -> NDArray[np.int64]:
+    """Return the picture of another page, at a part of its times."""
+    with opened_page(browser) as page:
+        other = Shown(page)
+        other.open(path.as_uri())
+        other.wait()
+        if share:
+            other.seek(share)
+        pixels = other.pixels()
     assert other.errors == []
-    return shown.pixels(), pixels
+    return pixels
 
 
 VIEWS: list[tuple[str, dict[str, Any]]] = [
@@ -187,16 +189,21 @@ VIEWS: list[tuple[str, dict[str, Any]]] = [
 @pytest.mark.browser
 @pytest.mark.parametrize(("name", "options"), VIEWS)
 def test_pictures_are_those_of_a_page_that_holds_all(
-    webgl_browser: Browser,
+    browser: Browser,
     shown: Shown,
     server: RangeServer,
     tmp_path: Path,
     name: str,
     options: dict[str, Any],
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    streamed, held = pair(webgl_browser, shown, server, tmp_path, name, {**LOOK, **options})
+    shown.open(linked(server, tmp_path, name, **LOOK, **options).as_uri())
+    shown.wait()
+    monkeypatch.setattr("flowtex.web.export.TILE_BYTES", 10**9)
+    export(str(server.folder / f"{name}.zarr"), tmp_path / "whole.html", **LOOK, **options)
     # Triangles may be chosen by a share more exactly, which moves a colour by less than is seen.
-    off = np.abs(streamed - held).max(axis=-1)
+    streamed = shown.pixels()
+    off = np.abs(streamed - held(browser, tmp_path / "whole.html")).max(axis=-1)
     assert (off > 3).mean() < 0.002
     assert streamed.std() > 10
     assert tiles_of(server)
@@ -216,17 +223,12 @@ def test_a_view_asks_for_no_more_than_it_shows(
     # A tile is three objects, each whole, and a level has three descriptions.
     assert len(server.asked) == 1 + 3 + 3
     assert {(method, span) for method, _, span in server.asked} == {("GET", "")}
-    shown.page.mouse.move(250, 100)
-    shown.page.mouse.down()
-    shown.page.mouse.move(20, 100, steps=8)
-    shown.page.mouse.up()
-    for _ in range(8):
-        shown.page.mouse.move(250, 100)
-        shown.page.mouse.down()
-        shown.page.mouse.move(20, 100, steps=4)
-        shown.page.mouse.up()
-    shown.page.wait_for_timeout(300)
-    shown.wait()
+    with acted(shown.page):
+        for _ in range(9):
+            shown.page.mouse.move(250, 100)
+            shown.page.mouse.down()
+            shown.page.mouse.move(20, 100, steps=4)
+            shown.page.mouse.up()
     assert set(tiles_of(server)) == {"0/0/0", "0/0/1"}
     assert len(server.asked) == 1 + 3 + 3 + 3
 
@@ -234,7 +236,7 @@ def test_a_view_asks_for_no_more_than_it_shows(
 @pytest.mark.browser
 @pytest.mark.parametrize("name", ["flat", "series"])
 def test_other_colours_are_those_of_a_page_that_has_them(
-    webgl_browser: Browser, shown: Shown, server: RangeServer, tmp_path: Path, name: str
+    browser: Browser, shown: Shown, server: RangeServer, tmp_path: Path, name: str
 ) -> None:
     """And ask for values alone."""
     view = {**NEAR, "focus": (1.9, 0.7)}
@@ -242,49 +244,32 @@ def test_other_colours_are_those_of_a_page_that_has_them(
     shown.wait()
     speed, traced = shown.pixels(), tiles_of(server)
     shown.choose("Colour by", "depth")
-    shown.wait()
     depth = shown.pixels()
     assert np.abs(depth - speed).mean() > 5
     assert tiles_of(server) == traced
     shown.choose("Colour by", "none")
-    shown.wait()
     asked = len(server.asked)
     shown.choose("Colour by", "speed")
-    shown.wait()
     assert np.abs(shown.pixels() - speed).max() <= 3
     assert len(server.asked) - asked <= 2 * len(traced)
-    page = webgl_browser.new_page(viewport=SIZE)  # type: ignore[arg-type]
-    other = Shown(page)
-    other.open(linked(server, tmp_path, name, **{**view, "scalars": "depth"}).as_uri())
-    other.wait()
-    off = np.abs(other.pixels() - depth).max(axis=-1)
-    page.close()
+    path = linked(server, tmp_path, name, **{**view, "scalars": "depth"})
+    off = np.abs(held(browser, path) - depth).max(axis=-1)
     assert (off > 3).mean() < 0.002
 
 
 @pytest.mark.browser
 def test_time_steps_come_when_they_are_shown(
-    webgl_browser: Browser, shown: Shown, server: RangeServer, tmp_path: Path
+    browser: Browser, shown: Shown, server: RangeServer, tmp_path: Path
 ) -> None:
     shown.open(linked(server, tmp_path, "series", **LOOK).as_uri())
     shown.wait()
-    slider = ".flowtex input[aria-label=Time]"
     assert not [path for path in server.paths if path.startswith("series.zarr/2/")]
-    shown.page.locator(slider).fill("0")
-    shown.page.wait_for_timeout(300)
-    shown.page.wait_for_selector(".flowtex .busy", state="hidden", timeout=60_000)
-    shown.wait()
+    shown.seek("0")
     first = shown.pixels()
     root = [path for path in server.paths if path.startswith("series.zarr/2/traces/c/")]
     assert sorted(path.split("/")[4] for path in root) == ["0", "1"]
-    other = Shown(webgl_browser.new_page(viewport=SIZE))  # type: ignore[arg-type]
     export(str(server.folder / "series.zarr"), tmp_path / "whole.html", **LOOK)
-    other.open((tmp_path / "whole.html").as_uri())
-    other.page.locator(slider).fill("0")
-    other.page.wait_for_timeout(300)
-    other.wait()
-    assert np.abs(other.pixels() - first).max() <= 3
-    other.page.close()
+    assert np.abs(held(browser, tmp_path / "whole.html", "0") - first).max() <= 3
 
 
 def broken(data: bytes) -> bytes:
@@ -333,10 +318,7 @@ def test_a_broken_tile_leaves_the_coarser_one_and_is_told_once(
     coarse = shown.pixels()
     assert coarse.std() > 10
     shown.page.locator(".flowtex .told").click()
-    shown.page.mouse.move(150, 100)
-    shown.page.mouse.wheel(0, -30)
-    shown.page.wait_for_timeout(400)
-    shown.wait()
+    shown.zoom(-30)
     assert shown.page.locator(".flowtex .told").is_hidden()
     assert tiles_of(server)
 
@@ -367,11 +349,9 @@ def test_a_tile_that_one_step_or_one_scalar_lacks_is_there_for_others(
     shown.wait()
     assert not [path for path in server.paths if path.startswith(f"{place}values/c/0/")]
     if lacking.startswith("traces"):
-        shown.page.locator(".flowtex input[aria-label=Time]").fill("0")
+        shown.seek("0")
     else:
         shown.choose("Colour by", "depth")
-    shown.page.wait_for_timeout(300)
-    shown.wait()
     # Of a scalar that does not vary there is the first step alone.
     assert [path for path in server.paths if path.startswith(f"{place}values/c/0/")]
 
@@ -396,7 +376,7 @@ def test_a_server_that_is_busy_is_asked_again(
 
 @pytest.mark.browser
 def test_a_server_that_is_away_is_told_and_tried_later(
-    shown: Shown, server: RangeServer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    shown: Shown, server: RangeServer, tmp_path: Path
 ) -> None:
     page = linked(server, tmp_path, "flat", **NEAR)
     server.fault = lambda path: 503
@@ -404,20 +384,18 @@ def test_a_server_that_is_away_is_told_and_tried_later(
     assert "the store does not answer" in shown.told()
     assert shown.page.locator(".flowtex .note").is_hidden()
     server.fault = lambda path: None
-    shown.page.mouse.move(150, 100)
-    shown.page.mouse.wheel(0, -60)
-    shown.wait()
+    shown.zoom(-60)
     assert tiles_of(server)
 
 
 @pytest.mark.browser
-@pytest.mark.slow
 def test_a_tile_that_was_away_is_asked_for_again_in_a_view_at_rest(
     shown: Shown, server: RangeServer, tmp_path: Path
 ) -> None:
     """Though another one came after it was asked for."""
     page = linked(server, tmp_path, "flat", **NEAR)
     tried: list[str] = []
+    is_told = threading.Event()
 
     def answer(path: str) -> Answer:
         if not path.startswith("flat.zarr/0/traces/c/"):
@@ -425,13 +403,22 @@ def test_a_tile_that_was_away_is_asked_for_again_in_a_view_at_rest(
         tried.append(path)
         if path == tried[0]:
             return 503 if tried.count(path) <= 4 else None
-        time.sleep(3)
+        assert is_told.wait(PATIENCE_S)
         return None
 
     server.fault = answer
+    shown.page.clock.install()
     shown.open(page.as_uri())
-    assert "the store does not answer" in shown.told()
-    shown.wait()
+    told = shown.page.locator(".flowtex .told")
+
+    def later(holds: Callable[[], object]) -> None:
+        """Let seconds of the page's clock go by until something holds."""
+        wait_until(lambda: holds() or shown.page.clock.fast_forward(1000))
+
+    later(told.is_visible)
+    assert "the store does not answer" in told.inner_text()
+    is_told.set()
+    later(shown.page.locator(COMPLETE).is_visible)
     assert tried.count(tried[0]) == 5 and len(set(tried)) > 1
 
 
@@ -440,26 +427,23 @@ def test_what_is_not_looked_at_any_more_is_given_up(
     shown: Shown, server: RangeServer, tmp_path: Path
 ) -> None:
     page = linked(server, tmp_path, "flat", **NEAR)
+    is_over = threading.Event()
 
     def answer(path: str) -> Answer:
         if path.startswith("flat.zarr/0/traces/c/"):
-            time.sleep(10)
+            assert is_over.wait(PATIENCE_S)
         return None
 
     server.fault = answer
     gone: list[str] = []
     shown.page.on("requestfailed", lambda request: gone.append(request.url))
-    shown.open(page.as_uri())
-    shown.page.wait_for_selector('[data-sharp="true"]', state="attached")
-    for _ in range(200):
-        if tiles_of(server):
-            break
-        shown.page.wait_for_timeout(50)
+    with shown.page.expect_request("**/0/traces/c/**"):
+        shown.open(page.as_uri())
     shown.page.mouse.move(150, 80)
     for _ in range(4):
         shown.page.mouse.wheel(0, 800)
-    shown.page.wait_for_timeout(500)
     shown.wait()
+    is_over.set()
     assert [url for url in gone if "/traces/c/" in url]
     assert shown.page.locator(".flowtex .told").is_hidden()
 
@@ -549,10 +533,5 @@ def test_two_views_of_a_store(shown: Shown, server: RangeServer, tmp_path: Path)
     shown.page.set_viewport_size({"width": 600, "height": 200})
     page = linked(server, tmp_path, "flat", **NEAR, beside={"lod": False})
     shown.open(page.as_uri())
-    complete = (
-        "() => [...document.querySelectorAll('.flowtex')].length === 2 &&"
-        " [...document.querySelectorAll('.flowtex')].every(({ dataset }) =>"
-        " dataset.sharp === 'true' && dataset.tiles === '0')"
-    )
-    shown.page.wait_for_function(complete, timeout=60_000)
+    shown.page.wait_for_function(f"() => document.querySelectorAll('{COMPLETE}').length === 2")
     assert tiles_of(server)

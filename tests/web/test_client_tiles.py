@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 from matrix import COLOUR, GROUND, ROOT, SHARE, SIZE, TILTED, difference, straight
+from pages import COMPLETE
 from webgl_page import ClientPage, packed, state
 
 import flowtex
@@ -25,7 +26,7 @@ from flowtex.web.tiles import packed_tile, tile_loader
 from flowtex.web.view import WebView, web_views
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Browser
+    from playwright.sync_api import Page
 
     from flowtex.rendering.webgl.protocol import Parts
 
@@ -177,21 +178,20 @@ def test_coarse_first_and_finer_where_the_view_goes(client: ClientPage) -> None:
 
 @pytest.mark.browser
 def test_a_page_holds_the_tiles_that_fit(
-    webgl_browser: Browser, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    page: Page, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("flowtex.web.export.TILE_BYTES", 3_500_000)
     made = export(field(), tmp_path / "page.html", zoom=10, focus=(0.6, 0.2), **LOOK)
     assert made.nbytes == pytest.approx(made.estimated, rel=0.5)
-    page = webgl_browser.new_page(viewport={"width": 300, "height": 200})
+    page.set_viewport_size({"width": 300, "height": 200})
     asked: list[str] = []
     page.on("request", lambda request: asked.append(request.url))
     page.goto(made.path.as_uri())
-    page.wait_for_selector('[data-tiles="0"][data-sharp="true"]')
+    page.wait_for_selector(COMPLETE)
     text = made.path.read_text("utf-8")
     assert "tile/2/0/0/slices/0" in text
     assert "tile/1/" not in text
     assert not [address for address in asked if not address.startswith(("file:", "blob:", "data:"))]
-    page.close()
 
 
 def test_a_page_without_room_has_no_tiles(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 from matrix import ASIDE, COLOUR, GROUND, ROOT, SIZE, straight
+from pages import opened_page
 from PIL import Image
 from triangle_meshes import random_plane, sphere, surface_of
 from webgl_page import ClientPage, packed, state
@@ -84,14 +85,18 @@ def canvas(page: Page) -> Bytes:
         return np.asarray(image.convert("RGB"))
 
 
-def test_a_page_is_drawn_and_tells_points(webgl_browser: Browser, tmp_path: Path) -> None:
+def test_a_page_is_drawn_and_tells_points(browser: Browser, tmp_path: Path) -> None:
     look: dict[str, Any] = {"scalars": False, "lighting": False, "color": COLOUR}
     made = export(ball(), tmp_path / "page.html", background=GROUND, samples=11, **look)
     assert made.nbytes == pytest.approx(made.estimated, rel=0.5)
-    page = webgl_browser.new_page(viewport={"width": 300, "height": 200})
+    with opened_page(browser) as page:
+        tells_points(page, made.path)
+
+
+def tells_points(page: Page, path: Path) -> None:
     said: list[str] = []
     page.on("pageerror", lambda error: said.append(str(error)))
-    page.goto(made.path.as_uri())
+    page.goto(path.as_uri())
     page.locator('[data-sharp="true"]').wait_for()
     page.wait_for_function("() => !document.getElementById('preview')")
     scene = Scene(ball(), Settings(samples=11))
@@ -114,7 +119,6 @@ def test_a_page_is_drawn_and_tells_points(webgl_browser: Browser, tmp_path: Path
     speed = np.hypot(*position[:2]) * (1 - 0.4 * position[2])
     assert float(told["speed"]) == pytest.approx(speed, abs=0.01)
     assert said == []
-    page.close()
 
 
 PATHS: dict[str, tuple[Any, Camera]] = {

@@ -1,0 +1,53 @@
+"""Pages of a browser: each in a context of its own, and as patient as all that waits."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+from waiting import PATIENCE_S
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, BrowserContext, Page
+
+__all__ = ["COMPLETE", "acted", "new_context", "opened_page", "painted"]
+
+#: A view of the client whose picture is the full one, of all that belongs to it.
+COMPLETE = '.flowtex[data-sharp="true"][data-tiles="0"][data-lacking="0"]'
+#: Ends when the browser has drawn what it knew of when it was called.
+PAINTED = "() => new Promise((f) => requestAnimationFrame(() => requestAnimationFrame(f)))"
+
+
+def new_context(browser: Browser, **options: Any) -> BrowserContext:
+    """Return a context that waits for as long as any test does."""
+    context = browser.new_context(**options)
+    context.set_default_timeout(1000 * PATIENCE_S)
+    return context
+
+
+@contextmanager
+def opened_page(browser: Browser, width: int = 300, height: int = 200, **options: Any) -> Iterator[Page]:
+    """Yield a page of its own context, and close it."""
+    context = new_context(browser, viewport={"width": width, "height": height}, **options)
+    try:
+        yield context.new_page()
+    finally:
+        context.close()
+
+
+def painted(page: Page) -> None:
+    """Wait for two frames of the page: what was begun before is on the screen."""
+    page.evaluate(PAINTED)
+
+
+@contextmanager
+def acted(page: Page, view: str = ".flowtex") -> Iterator[None]:
+    """Do something to a view, and wait for the full picture that comes after it."""
+    frames = f"() => Number(document.querySelector('{view}').dataset.frames)"
+    before = page.evaluate(frames)
+    yield
+    page.wait_for_function(
+        f"(n) => ({frames})() > n && document.querySelector('{view}').matches('{COMPLETE}')",
+        arg=before,
+    )
