@@ -1,7 +1,7 @@
 """What of the browser client a test run executes, as Chromium counts it.
 
-With ``FLOWTEX_CLIENT_COVERAGE`` in the environment each page writes its counts into that folder before
-it is left; ``client/coverage.js`` maps them to the sources.
+With ``FLOWTEX_CLIENT_COVERAGE`` in the environment each page writes its counts into that folder
+before it is left; ``client/coverage.js`` maps them to the sources.
 """
 
 from __future__ import annotations

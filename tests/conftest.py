@@ -22,6 +22,7 @@ from flowtex import diagnostics
 
 if TYPE_CHECKING:
     import pyvista as pv
+    from lab import LabServer
     from playwright.sync_api import Browser, Page
     from webgl_page import ClientPage
 
@@ -210,6 +211,17 @@ def page(browser: Browser) -> Iterator[Page]:
 
     with opened_page(browser, 1280, 720) as opened:
         yield opened
+
+
+@pytest.fixture(scope="session")
+def jupyter(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LabServer]:
+    """Yield the one JupyterLab of the session; skip where it is not installed."""
+    pytest.importorskip("jupyterlab")
+    pytest.importorskip("jupyter_server_proxy")
+    from lab import lab
+
+    with lab(tmp_path_factory.mktemp("lab")) as started:
+        yield started
 
 
 @pytest.fixture(scope="session")

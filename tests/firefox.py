@@ -10,7 +10,6 @@ import os
 import re
 import shutil
 import subprocess
-import time
 from collections.abc import Coroutine, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, contextmanager
@@ -21,6 +20,7 @@ import aiohttp
 import numpy as np
 import pytest
 from PIL import Image
+from waiting import PATIENCE_S, wait_until
 
 from flowtex._util.array_types import Bytes
 
@@ -31,7 +31,6 @@ T = TypeVar("T")
 PREFERENCES = 'user_pref("webgl.force-enabled", true);\n'
 CALL = "async (words) => JSON.stringify(await (%s)(...JSON.parse(words)) ?? null)"
 SIZE = {"width": 1000, "height": 700}
-PATIENCE = 60.0
 
 
 class Firefox:
@@ -62,7 +61,7 @@ class Firefox:
         self._count += 1
         await self._socket.send_json({"id": self._count, "method": method, "params": parameters})
         while True:
-            answer = await asyncio.wait_for(self._socket.receive_json(), PATIENCE)
+            answer = await asyncio.wait_for(self._socket.receive_json(), PATIENCE_S)
             if answer.get("id") == self._count:
                 assert answer["type"] == "success", answer
                 return answer["result"]
@@ -85,10 +84,8 @@ class Firefox:
 
     def wait_for_function(self, function: str) -> None:
         """Wait until a function returns what is true."""
-        end = time.monotonic() + PATIENCE
-        while not self.evaluate(f"async () => Boolean(await ({function})())"):
-            assert time.monotonic() < end, f"in vain: {function}"
-            time.sleep(0.1)
+        call = f"async () => Boolean(await ({function})())"
+        wait_until(lambda: self.evaluate(call), lambda: function)
 
     def screenshot(self) -> Bytes:
         """Return what the window shows, (H, W, 3)."""
@@ -147,4 +144,4 @@ def _started(process: subprocess.Popen[Any]) -> Iterator[None]:
         yield
     finally:
         process.terminate()
-        process.communicate(timeout=30)
+        process.communicate(timeout=PATIENCE_S)

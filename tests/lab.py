@@ -6,20 +6,23 @@ import json
 import re
 import subprocess
 import sys
-import time
-from collections.abc import Iterator, Sequence
+import uuid
+from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import pytest
+from waiting import PATIENCE_S, wait_until
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
-__all__ = ["Lab", "lab"]
+__all__ = ["BASE", "Lab", "LabServer", "lab"]
 
 TOKEN = "test"
+#: Where the pages lie, as on JupyterHub.
+BASE = "/user/Ada"
 OPTIONS = (
     "--no-browser",
     "--allow-root",
@@ -28,8 +31,16 @@ OPTIONS = (
     "--ServerApp.log_level=INFO",
     f"--IdentityProvider.token={TOKEN}",
     "--LabApp.expose_app_in_browser=True",
+    f"--ServerApp.base_url={BASE}/",
 )
-QUIET = {"fetchNews": "false", "checkForUpdates": False, "doNotDisturbMode": True}
+SETTINGS: dict[str, dict[str, Any]] = {
+    "@jupyterlab/apputils-extension/notification": {
+        "fetchNews": "false",
+        "checkForUpdates": False,
+        "doNotDisturbMode": True,
+    },
+    "@jupyter-widgets/jupyterlab-manager/plugin": {"saveState": True},
+}
 #: A window without the focus has no current widget until it is told of one.
 SHOWN = """() => {
   document.querySelector(".jp-Notebook")?.dispatchEvent(new FocusEvent("focus"));
@@ -48,14 +59,24 @@ RUN = """(code) => {
     jupyterapp.commands.execute("notebook:run-cell");
   });
 }"""
+CLEAR = """() => {
+  const { sharedModel } = jupyterapp.shell.currentWidget.content.model;
+  sharedModel.deleteCellRange(0, sharedModel.cells.length);
+}"""
+#: Ends when the file is written.
+SAVE = "() => jupyterapp.shell.currentWidget.context.save()"
 
 
 class Lab:
-    """One notebook in a JupyterLab."""
+    """A new notebook in a JupyterLab, or one that holds a text."""
 
-    def __init__(self, page: Page, address: str, name: str = "test.ipynb") -> None:
+    def __init__(self, page: Page, server: LabServer, text: str = "") -> None:
         self.page = page
         self._count = 0
+        name = f"{uuid.uuid4().hex}.ipynb"
+        self.path = server.folder / name
+        self.path.write_text(text or json.dumps(_empty_notebook()), encoding="utf-8")
+        address = server.address
         page.goto(f"{address}/doc/tree/{name}?token={TOKEN}")
         page.wait_for_function(SHOWN)
         page.evaluate(READY)
@@ -63,6 +84,15 @@ class Lab:
     def run(self, code: str) -> None:
         """Run a cell; what it prints is waited for by :meth:`said`."""
         self.page.evaluate(RUN, code)
+
+    def clear(self) -> None:
+        """Take all cells away; what they have defined stays."""
+        self.page.evaluate(CLEAR)
+
+    def saved(self) -> str:
+        """Save the notebook and return its text."""
+        self.page.evaluate(SAVE)
+        return self.path.read_text(encoding="utf-8")
 
     def said(self, code: str) -> str:
         """Run a cell and return what it prints of an expression."""
@@ -73,29 +103,32 @@ class Lab:
         return found.inner_text().split(":", 1)[1].rsplit(":", 1)[0].strip()
 
 
+@dataclass
+class LabServer:
+    """A JupyterLab, and the folder of its notebooks."""
+
+    address: str
+    folder: Path
+
+
 @contextmanager
-def lab(folder: Path, names: Sequence[str] = ("test.ipynb",), *words: str) -> Iterator[str]:
-    """Yield the address of a JupyterLab with empty notebooks in a folder."""
-    for name in names:
-        (folder / name).write_text(json.dumps(_empty_notebook()))
-    settings = folder / "settings" / "@jupyterlab" / "apputils-extension"
-    settings.mkdir(parents=True)
-    (settings / "notification.jupyterlab-settings").write_text(json.dumps(QUIET))
-    own = (
-        f"--ServerApp.root_dir={folder}",
-        f"--LabApp.user_settings_dir={folder / 'settings'}",
-        *words,
-    )
+def lab(folder: Path) -> Iterator[LabServer]:
+    """Yield a JupyterLab, which saves the state of widgets."""
+    for plugin, settings in SETTINGS.items():
+        file = folder / "settings" / f"{plugin}.jupyterlab-settings"
+        file.parent.mkdir(parents=True)
+        file.write_text(json.dumps(settings))
+    own = (f"--ServerApp.root_dir={folder}", f"--LabApp.user_settings_dir={folder / 'settings'}")
     log = folder / "log.txt"
-    with log.open("w") as file:
+    with log.open("w") as file_:
         process = subprocess.Popen(
-            [sys.executable, "-m", "jupyterlab", *OPTIONS, *own], stdout=file, stderr=file
+            [sys.executable, "-m", "jupyterlab", *OPTIONS, *own], stdout=file_, stderr=file_
         )
     try:
-        yield _address(process, log)
+        yield LabServer(_address(process, log), folder)
     finally:
         process.terminate()
-        process.wait(20)
+        process.wait(PATIENCE_S)
 
 
 def _empty_notebook() -> dict[str, Any]:
@@ -104,11 +137,10 @@ def _empty_notebook() -> dict[str, Any]:
 
 
 def _address(process: subprocess.Popen[bytes], log: Path) -> str:
-    for _ in range(600):
-        found = re.search(r"http://127\.0\.0\.1:\d+[^\s?]*(?=/lab\?token=)", log.read_text())
-        if found:
-            return found.group()
-        if process.poll() is not None:
-            break
-        time.sleep(0.1)
-    pytest.fail(f"JupyterLab did not start:\n{log.read_text()}")
+    pattern = r"http://127\.0\.0\.1:\d+[^\s?]*(?=/lab\?token=)"
+
+    def announced() -> re.Match[str] | None:
+        assert process.poll() is None, f"JupyterLab did not start:\n{log.read_text()}"
+        return re.search(pattern, log.read_text())
+
+    return str(wait_until(announced, log.read_text).group())

@@ -27,7 +27,9 @@ def new_context(browser: Browser, **options: Any) -> BrowserContext:
 
 
 @contextmanager
-def opened_page(browser: Browser, width: int = 300, height: int = 200, **options: Any) -> Iterator[Page]:
+def opened_page(
+    browser: Browser, width: int = 300, height: int = 200, **options: Any
+) -> Iterator[Page]:
     """Yield a page of its own context, and close it."""
     context = new_context(browser, viewport={"width": width, "height": height}, **options)
     try:
@@ -42,12 +44,11 @@ def painted(page: Page) -> None:
 
 
 @contextmanager
-def acted(page: Page, view: str = ".flowtex") -> Iterator[None]:
-    """Do something to a view, and wait for the full picture that comes after it."""
-    frames = f"() => Number(document.querySelector('{view}').dataset.frames)"
-    before = page.evaluate(frames)
+def acted(page: Page, nth: int = 0) -> Iterator[None]:
+    """Do something to one of the views, and wait for the full picture that comes after it."""
+    view = f"document.querySelectorAll('.flowtex')[{nth}]"
+    before = page.evaluate(f"() => Number({view}.dataset.frames)")
     yield
     page.wait_for_function(
-        f"(n) => ({frames})() > n && document.querySelector('{view}').matches('{COMPLETE}')",
-        arg=before,
+        f"(n) => Number({view}.dataset.frames) > n && {view}.matches('{COMPLETE}')", arg=before
     )

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 import threading
-import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -22,20 +21,22 @@ class RangeServer:
 
     ``fault`` is called with the path of each request, such as ``"0/traces/c/0/0/1/0/0/0/0"``: a
     status is answered in place of the file, bytes are its contents, and ``None`` leaves it as it
-    is. Answers of which ``cut`` is true end in their middle. Every answer waits for ``delay``
-    seconds first.
+    is. Answers of which ``cut`` is true end in their middle.
     """
 
     folder: Path
     address: str
     fault: Callable[[str], Answer] = lambda path: None
     cut: Callable[[str], bool] = lambda path: False
-    delay: float = 0.0
     #: Method, path and range of each request, and bytes that were sent for all of them.
     asked: list[tuple[str, str, str]] = field(default_factory=list)
     sent: int = 0
     #: Requests whose client went away before all was sent.
     broken_off: list[str] = field(default_factory=list)
+
+    def reset(self, folder: Path) -> None:
+        """Begin anew with a folder, at the same address."""
+        vars(self).update(vars(RangeServer(folder, self.address)))
 
     @property
     def paths(self) -> list[str]:
@@ -81,8 +82,6 @@ class _Handler(BaseHTTPRequestHandler):
         span = self.headers.get("Range", "")
         server.asked.append((self.command, path, span))
         fault = server.fault(path)
-        if server.delay:
-            time.sleep(server.delay)
         file = server.folder / path
         if isinstance(fault, int) or (fault is None and not file.is_file()):
             self._answer(fault or 404, b"")

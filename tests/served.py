@@ -14,11 +14,11 @@ from urllib.parse import parse_qs, urlsplit
 import aiohttp
 import msgpack
 import pytest
+from waiting import PATIENCE_S
 from wslink.chunking import UnChunker, generate_chunks
 
 #: Bytes of one chunk of a message.
 CHUNK = 4_000_000
-PATIENCE = 30.0
 
 
 @dataclass
@@ -41,7 +41,7 @@ class Served:
     def secret(self) -> str:
         return parse_qs(urlsplit(self.address).query)["secret"][0]
 
-    def end(self, number: int, seconds: float = 20) -> str:
+    def end(self, number: int, seconds: float = PATIENCE_S) -> str:
         """Send a signal, wait for the end, and return the rest of what was said."""
         if self.process.poll() is None:
             self.process.send_signal(number)
@@ -109,7 +109,7 @@ class Link:
         message = {"wslink": "1.0", "id": name, "method": method, "args": args, "kwargs": {}}
         for chunk in generate_chunks(msgpack.packb(message), CHUNK):
             await self.socket.send_bytes(chunk)
-        return await asyncio.wait_for(self._answers[name], PATIENCE)
+        return await asyncio.wait_for(self._answers[name], PATIENCE_S)
 
     def key(self, name: str) -> str:
         """Name in the state of one of the application's own."""
@@ -128,7 +128,7 @@ class Link:
 
     async def until(self, holds: Any) -> None:
         """Wait until a condition on this connection holds."""
-        async with asyncio.timeout(PATIENCE):
+        async with asyncio.timeout(PATIENCE_S):
             while not holds():
                 self._news.clear()
                 await self._news.wait()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import signal
-import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -11,8 +10,9 @@ from typing import Any
 import numpy as np
 import pytest
 from firefox import Firefox, firefox
-from lab import Lab, lab
+from lab import Lab, LabServer
 from served import start
+from waiting import wait_until
 
 import flowtex
 from flowtex._util.array_types import Bytes
@@ -50,18 +50,12 @@ def test_the_page_draws(page: Firefox) -> None:
     served = start("demo")
     try:
         page.goto(served.address)
-        end = time.monotonic() + 60
-        while not is_textured(page.screenshot()):
-            assert time.monotonic() < end
-            time.sleep(0.5)
+        wait_until(lambda: is_textured(page.screenshot()))
     finally:
         served.end(signal.SIGINT)
 
 
-def test_the_widget_draws_in_jupyterlab(page: Any, tmp_path: Path) -> None:
-    pytest.importorskip("jupyterlab")
-    with lab(tmp_path) as address:
-        notebook = Lab(page, address)
-        notebook.run(CELL)
-        page.wait_for_function(SHARP)
-        assert is_textured(page.screenshot())
+def test_the_widget_draws_in_jupyterlab(page: Any, jupyter: LabServer) -> None:
+    Lab(page, jupyter).run(CELL)
+    page.wait_for_function(SHARP)
+    assert is_textured(page.screenshot())

@@ -15,8 +15,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 import pyvista as pv
+from pages import new_context, painted
 from PIL import Image
 from served import start
+from waiting import wait_until
 from watching import Watch, count, difference
 
 if TYPE_CHECKING:
@@ -29,7 +31,6 @@ pytestmark = [pytest.mark.browser, pytest.mark.usefixtures("opengl")]
 SIZE = {"width": 1000, "height": 600}
 #: Part of the picture that nothing lies on, as left, top, right, bottom.
 WATCH = Watch((300, 120, 680, 420), "RGB")
-PATIENCE = 15_000
 ADDRESS = re.compile(r"http://\S+").search
 
 
@@ -70,12 +71,11 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def page(browser: Browser, folder: Path) -> Iterator[Page]:
     served = start("show", str(folder), "--samples", "9")
-    context = browser.new_context(viewport=SIZE, accept_downloads=True)  # type: ignore[arg-type]
+    context = new_context(browser, viewport=SIZE)
     opened = context.new_page()
     wrong: list[str] = []
     opened.on("pageerror", lambda error: wrong.append(str(error)))
     context.first_address = served.address  # type: ignore[attr-defined]
-    opened.set_default_timeout(PATIENCE)
     opened.goto(served.address)
     settled(opened, 0)
     yield opened
@@ -171,9 +171,9 @@ def test_what_has_the_focus_has_a_ring(page: Page) -> None:
 def test_a_broken_file_is_told_and_the_view_stands(page: Page) -> None:
     still = WATCH.shot(page)
     open_file(page, "torn.vts")
-    page.get_by_text(re.compile("torn.vts.*broken or incomplete")).wait_for(timeout=PATIENCE)
+    page.get_by_text(re.compile("torn.vts.*broken or incomplete")).wait_for()
     assert "block" in page.inner_text(".flowtex-title").lower()
-    page.get_by_text(re.compile("torn.vts.*broken")).wait_for(state="hidden", timeout=PATIENCE)
+    page.get_by_text(re.compile("torn.vts.*broken")).wait_for(state="hidden")
     WATCH.comes_to(page, still)
 
 
@@ -215,7 +215,8 @@ def test_a_hint_goes_with_the_pointer_and_with_a_click(page: Page) -> None:
     hint.get_by_text("Light or dark").wait_for()
     before = count(page)
     theme.click()
-    page.wait_for_timeout(800)
+    # Of two timers of a page the one that begins later, and is as long, ends later.
+    page.evaluate("() => new Promise((f) => setTimeout(f, 400))")
     assert not hint.is_visible()
     theme.click()
     settled(page, before)
@@ -277,8 +278,7 @@ def test_a_series_plays_and_steps(page: Page) -> None:
     assert "t = 1.00" in page.inner_text(".flowtex-moment")
     page.get_by_label("Play").click()
     page.wait_for_function(
-        "() => !document.querySelector('.flowtex-moment').innerText.includes('1.00')",
-        timeout=PATIENCE,
+        "() => !document.querySelector('.flowtex-moment').innerText.includes('1.00')"
     )
     before = count(page)
     page.get_by_label("Pause").click()
@@ -382,7 +382,7 @@ def test_two_fingers_zoom(page: Page) -> None:
     fingers("touchStart", 40)
     for apart in range(45, 105, 5):
         fingers("touchMove", apart)
-        page.wait_for_timeout(20)
+        painted(page)
     fingers("touchEnd", 100)
     assert difference(settled(page, before), whole) > 3
     found = re.search(r"zoom ([\d.]+)", page.inner_text(".flowtex-figures"))
@@ -478,7 +478,7 @@ def test_a_picture_is_saved_at_any_size(page: Page, tmp_path: Path) -> None:
     page.get_by_label("Height in pixels").press("Enter")
     page.get_by_text("Make it").click()
     link = page.get_by_text(re.compile(r"Save .*\.png"))
-    link.wait_for(timeout=PATIENCE)
+    link.wait_for()
     with page.expect_download() as download:
         link.click()
     download.value.save_as(tmp_path / "a.png")
@@ -507,7 +507,7 @@ def test_a_movie_is_saved_and_can_be_cancelled(page: Page, tmp_path: Path) -> No
     page.get_by_label("Seconds", exact=True).press("Enter")
     page.get_by_text("Make it").click()
     link = page.get_by_text(re.compile(r"Save .*\.mp4"))
-    link.wait_for(timeout=2 * PATIENCE)
+    link.wait_for()
     with page.expect_download() as download:
         link.click()
     download.value.save_as(tmp_path / "a.mp4")
@@ -537,11 +537,9 @@ def test_a_link_and_lines_of_python_tell_the_state(page: Page, folder: Path) -> 
     other = page.context.new_page()
     other.set_viewport_size(SIZE)  # type: ignore[arg-type]
     other.goto(copied)
-    other.get_by_text("3 times").wait_for(timeout=PATIENCE)
+    other.get_by_text("3 times").wait_for()
     settled(other, count(other) - 1)
-    other.wait_for_function(
-        "() => document.querySelector('[data-picture=sharp]')", timeout=PATIENCE
-    )
+    other.wait_for_function("() => document.querySelector('[data-picture=sharp]')")
     WATCH.comes_to(other, seen)
     other.close()
 
@@ -555,28 +553,28 @@ server.start(host="127.0.0.1", port=0, open_browser=False, show_connection_info=
 """
 
 
-def test_the_view_alone_serves_in_an_application_of_ones_own(browser: Browser) -> None:
+def test_the_view_alone_serves_in_an_application_of_ones_own(page: Page) -> None:
     """The lines of docs/app.md, as they stand there."""
     text = (Path(__file__).parents[2] / "docs" / "app.md").read_text(encoding="utf-8")
     (block,) = re.findall(r"```py\n(from flowtex.app import FlowArea\n.*?)```", text, re.DOTALL)
     assert block.endswith("server.start()\n")
     script = OWN.replace("BLOCK", block.removesuffix("server.start()\n"))
     process = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True)
-    page = browser.new_page(viewport={"width": 400, "height": 300})
+    page.set_viewport_size({"width": 400, "height": 300})
     try:
         address = next(found.group() for line in process.stdout or () if (found := ADDRESS(line)))
         page.goto(address)
-        page.locator("img").wait_for(timeout=PATIENCE)
-        pictures = []
-        for _ in range(200):  # it plays: no two pictures are the same
+        page.locator("img").wait_for()
+        pictures: list[Any] = []
+
+        def moves() -> bool:
+            """Whether it plays: no two pictures are the same."""
             shown = Watch((20, 20, 380, 280)).shot(page)
             if np.abs(np.diff(shown, axis=0)).mean() > 5:
                 pictures.append(shown)
-            if len(pictures) > 1 and difference(pictures[0], pictures[-1]) > 2:
-                return
-            page.wait_for_timeout(50)
-        pytest.fail("the view does not show a flow that moves")
+            return len(pictures) > 1 and difference(pictures[0], pictures[-1]) > 2
+
+        wait_until(moves)
     finally:
-        page.close()
         process.kill()
-        process.communicate(timeout=20)
+        process.communicate()

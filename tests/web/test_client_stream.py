@@ -80,10 +80,23 @@ def stores(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-@pytest.fixture
-def server(stores: Path) -> Iterator[RangeServer]:
+@pytest.fixture(scope="module")
+def one_server(stores: Path) -> Iterator[RangeServer]:
     with range_server(stores) as started:
         yield started
+
+
+@pytest.fixture
+def server(one_server: RangeServer, stores: Path) -> RangeServer:
+    """Return the server of all tests, which knows nothing of those before."""
+    one_server.reset(stores)
+    return one_server
+
+
+@pytest.fixture(autouse=True)
+def _quick_pages(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Make pages whose preview, which the processor draws, is small."""
+    monkeypatch.setattr("flowtex.web.export.PREVIEW", (24, 16))
 
 
 @dataclass
@@ -155,9 +168,11 @@ def tiles_of(server: RangeServer, array: str = "traces") -> list[str]:
     return found
 
 
-def linked(server: RangeServer, folder: Path, name: str, **options: Any) -> Path:
-    """Export a page of a store as the server has it."""
-    path = folder / "linked.html"
+def linked(server: RangeServer, name: str, **options: Any) -> Path:
+    """Return a page of a store as the server has it, which is made once."""
+    path = server.folder / f"{name} {sorted(options.items())}.html".replace("/", "")
+    if path.exists():
+        return path
     store = f"{server.address}{name}.zarr"
     export(str(server.folder / f"{name}.zarr"), path, store=store, **options)
     return path
@@ -197,7 +212,7 @@ def test_pictures_are_those_of_a_page_that_holds_all(
     options: dict[str, Any],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    shown.open(linked(server, tmp_path, name, **LOOK, **options).as_uri())
+    shown.open(linked(server, name, **LOOK, **options).as_uri())
     shown.wait()
     monkeypatch.setattr("flowtex.web.export.TILE_BYTES", 10**9)
     export(str(server.folder / f"{name}.zarr"), tmp_path / "whole.html", **LOOK, **options)
@@ -210,12 +225,8 @@ def test_pictures_are_those_of_a_page_that_holds_all(
 
 
 @pytest.mark.browser
-def test_a_view_asks_for_no_more_than_it_shows(
-    shown: Shown, server: RangeServer, tmp_path: Path
-) -> None:
-    shown.open(
-        linked(server, tmp_path, "flat", **{**NEAR, "zoom": 16, "focus": (0.9, 0.9)}).as_uri()
-    )
+def test_a_view_asks_for_no_more_than_it_shows(shown: Shown, server: RangeServer) -> None:
+    shown.open(linked(server, "flat", **{**NEAR, "zoom": 16, "focus": (0.9, 0.9)}).as_uri())
     shown.wait()
     assert (
         tiles_of(server) == tiles_of(server, "values") == tiles_of(server, "surface") == ["0/0/0"]
@@ -236,11 +247,11 @@ def test_a_view_asks_for_no_more_than_it_shows(
 @pytest.mark.browser
 @pytest.mark.parametrize("name", ["flat", "series"])
 def test_other_colours_are_those_of_a_page_that_has_them(
-    browser: Browser, shown: Shown, server: RangeServer, tmp_path: Path, name: str
+    browser: Browser, shown: Shown, server: RangeServer, name: str
 ) -> None:
     """And ask for values alone."""
     view = {**NEAR, "focus": (1.9, 0.7)}
-    shown.open(linked(server, tmp_path, name, **view).as_uri())
+    shown.open(linked(server, name, **view).as_uri())
     shown.wait()
     speed, traced = shown.pixels(), tiles_of(server)
     shown.choose("Colour by", "depth")
@@ -252,7 +263,7 @@ def test_other_colours_are_those_of_a_page_that_has_them(
     shown.choose("Colour by", "speed")
     assert np.abs(shown.pixels() - speed).max() <= 3
     assert len(server.asked) - asked <= 2 * len(traced)
-    path = linked(server, tmp_path, name, **{**view, "scalars": "depth"})
+    path = linked(server, name, **{**view, "scalars": "depth"})
     off = np.abs(held(browser, path) - depth).max(axis=-1)
     assert (off > 3).mean() < 0.002
 
@@ -261,7 +272,7 @@ def test_other_colours_are_those_of_a_page_that_has_them(
 def test_time_steps_come_when_they_are_shown(
     browser: Browser, shown: Shown, server: RangeServer, tmp_path: Path
 ) -> None:
-    shown.open(linked(server, tmp_path, "series", **LOOK).as_uri())
+    shown.open(linked(server, "series", **LOOK).as_uri())
     shown.wait()
     assert not [path for path in server.paths if path.startswith("series.zarr/2/")]
     shown.seek("0")
@@ -298,7 +309,7 @@ FAULTS: dict[str, tuple[str, Callable[[bytes], Answer], str]] = {
 @pytest.mark.browser
 @pytest.mark.parametrize("name", FAULTS)
 def test_a_broken_tile_leaves_the_coarser_one_and_is_told_once(
-    shown: Shown, server: RangeServer, tmp_path: Path, name: str
+    shown: Shown, server: RangeServer, name: str
 ) -> None:
     array, fault, words = FAULTS[name]
     place = f"flat.zarr/0/{array}" + ("" if array.endswith("json") else "/c/")
@@ -310,7 +321,7 @@ def test_a_broken_tile_leaves_the_coarser_one_and_is_told_once(
         bad.append(path)
         return fault((server.folder / path).read_bytes())
 
-    page = linked(server, tmp_path, "flat", **NEAR)
+    page = linked(server, "flat", **NEAR)
     server.fault = answer
     shown.open(page.as_uri())
     assert words in shown.told()
@@ -325,12 +336,10 @@ def test_a_broken_tile_leaves_the_coarser_one_and_is_told_once(
 
 @pytest.mark.browser
 def test_a_coarser_level_stands_in_for_a_tile_that_is_missing(
-    shown: Shown, server: RangeServer, tmp_path: Path
+    shown: Shown, server: RangeServer
 ) -> None:
     server.fault = lambda path: 404 if path.startswith("flat.zarr/0/traces/c/0/0/1/") else None
-    shown.open(
-        linked(server, tmp_path, "flat", **{**NEAR, "zoom": 16, "focus": (3.8, 1.0)}).as_uri()
-    )
+    shown.open(linked(server, "flat", **{**NEAR, "zoom": 16, "focus": (3.8, 1.0)}).as_uri())
     shown.told()
     shown.wait()
     assert set(tiles_of(server)) == {"0/0/1", "1/0/0"}
@@ -339,10 +348,10 @@ def test_a_coarser_level_stands_in_for_a_tile_that_is_missing(
 @pytest.mark.browser
 @pytest.mark.parametrize("lacking", ["traces/c/3/", "values/c/3/"])
 def test_a_tile_that_one_step_or_one_scalar_lacks_is_there_for_others(
-    shown: Shown, server: RangeServer, tmp_path: Path, lacking: str
+    shown: Shown, server: RangeServer, lacking: str
 ) -> None:
     place = "series.zarr/0/"
-    page = linked(server, tmp_path, "series", **{**NEAR, "focus": (1.2, 0.7), "scalars": "heat"})
+    page = linked(server, "series", **{**NEAR, "focus": (1.2, 0.7), "scalars": "heat"})
     server.fault = lambda path: 404 if path.startswith(place + lacking) else None
     shown.open(page.as_uri())
     assert "is not in the store" in shown.told()
@@ -357,16 +366,14 @@ def test_a_tile_that_one_step_or_one_scalar_lacks_is_there_for_others(
 
 
 @pytest.mark.browser
-def test_a_server_that_is_busy_is_asked_again(
-    shown: Shown, server: RangeServer, tmp_path: Path
-) -> None:
+def test_a_server_that_is_busy_is_asked_again(shown: Shown, server: RangeServer) -> None:
     tried: dict[str, int] = {}
 
     def answer(path: str) -> Answer:
         tried[path] = tried.get(path, 0) + 1
         return (500, 503, None)[min(tried[path], 3) - 1] if "/c/" in path else None
 
-    page = linked(server, tmp_path, "flat", **NEAR)
+    page = linked(server, "flat", **NEAR)
     server.fault = answer
     shown.open(page.as_uri())
     shown.wait()
@@ -375,10 +382,8 @@ def test_a_server_that_is_busy_is_asked_again(
 
 
 @pytest.mark.browser
-def test_a_server_that_is_away_is_told_and_tried_later(
-    shown: Shown, server: RangeServer, tmp_path: Path
-) -> None:
-    page = linked(server, tmp_path, "flat", **NEAR)
+def test_a_server_that_is_away_is_told_and_tried_later(shown: Shown, server: RangeServer) -> None:
+    page = linked(server, "flat", **NEAR)
     server.fault = lambda path: 503
     shown.open(page.as_uri())
     assert "the store does not answer" in shown.told()
@@ -390,10 +395,10 @@ def test_a_server_that_is_away_is_told_and_tried_later(
 
 @pytest.mark.browser
 def test_a_tile_that_was_away_is_asked_for_again_in_a_view_at_rest(
-    shown: Shown, server: RangeServer, tmp_path: Path
+    shown: Shown, server: RangeServer
 ) -> None:
     """Though another one came after it was asked for."""
-    page = linked(server, tmp_path, "flat", **NEAR)
+    page = linked(server, "flat", **NEAR)
     tried: list[str] = []
     is_told = threading.Event()
 
@@ -423,10 +428,8 @@ def test_a_tile_that_was_away_is_asked_for_again_in_a_view_at_rest(
 
 
 @pytest.mark.browser
-def test_what_is_not_looked_at_any_more_is_given_up(
-    shown: Shown, server: RangeServer, tmp_path: Path
-) -> None:
-    page = linked(server, tmp_path, "flat", **NEAR)
+def test_what_is_not_looked_at_any_more_is_given_up(shown: Shown, server: RangeServer) -> None:
+    page = linked(server, "flat", **NEAR)
     is_over = threading.Event()
 
     def answer(path: str) -> Answer:
@@ -449,10 +452,8 @@ def test_what_is_not_looked_at_any_more_is_given_up(
 
 
 @pytest.mark.browser
-def test_another_store_is_refused(
-    shown: Shown, server: RangeServer, stores: Path, tmp_path: Path
-) -> None:
-    page = linked(server, tmp_path, "flat", **NEAR)
+def test_another_store_is_refused(shown: Shown, server: RangeServer, stores: Path) -> None:
+    page = linked(server, "flat", **NEAR)
     other = (stores / "globe.zarr" / "zarr.json").read_bytes()
     server.fault = lambda path: other if path == "flat.zarr/zarr.json" else None
     shown.open(page.as_uri())
@@ -471,9 +472,9 @@ def test_another_store_is_refused(
     ],
 )
 def test_what_is_no_store_is_told(
-    shown: Shown, server: RangeServer, tmp_path: Path, answer: Answer, words: str
+    shown: Shown, server: RangeServer, answer: Answer, words: str
 ) -> None:
-    page = linked(server, tmp_path, "flat", **NEAR)
+    page = linked(server, "flat", **NEAR)
     server.fault = lambda path: answer if path == "flat.zarr/zarr.json" else None
     shown.open(page.as_uri())
     assert words in shown.told()
@@ -503,7 +504,7 @@ def test_garbage_in_a_header_leaves_the_view_as_it_is(
             made = json.dumps(own)[:size].ljust(size).encode()
             text[start : start + size] = np.frombuffer(made, np.uint8)
             surface[row, column] = text
-    page = linked(server, tmp_path, "flat", **NEAR)
+    page = linked(server, "flat", **NEAR)
     server.folder = tmp_path
     shown.open(page.as_uri())
     assert "is broken" in shown.told()
@@ -511,9 +512,7 @@ def test_garbage_in_a_header_leaves_the_view_as_it_is(
 
 
 @pytest.mark.browser
-def test_a_page_beside_its_store(
-    shown: Shown, server: RangeServer, stores: Path, tmp_path: Path
-) -> None:
+def test_a_page_beside_its_store(shown: Shown, server: RangeServer, stores: Path) -> None:
     for name in ("page.html", "other.html"):
         export(str(stores / "flat.zarr"), stores / name, store="./flat.zarr", **NEAR)
     shown.open(f"{server.address}page.html")
@@ -529,9 +528,9 @@ def test_a_page_beside_its_store(
 
 
 @pytest.mark.browser
-def test_two_views_of_a_store(shown: Shown, server: RangeServer, tmp_path: Path) -> None:
+def test_two_views_of_a_store(shown: Shown, server: RangeServer) -> None:
     shown.page.set_viewport_size({"width": 600, "height": 200})
-    page = linked(server, tmp_path, "flat", **NEAR, beside={"lod": False})
+    page = linked(server, "flat", **NEAR, beside={"lod": False})
     shown.open(page.as_uri())
     shown.page.wait_for_function(f"() => document.querySelectorAll('{COMPLETE}').length === 2")
     assert tiles_of(server)

@@ -8,13 +8,16 @@ import html.parser
 import io
 import json
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from pages import COMPLETE, acted, opened_page
 from PIL import Image
+from waiting import wait_until
 
 import flowtex
 from flowtex import examples
@@ -160,17 +163,18 @@ def test_a_file_is_there_whole_or_as_it_was(
 
 
 @pytest.fixture
-def offline(browser: Browser) -> Iterator[tuple[Page, list[str], list[str]]]:
+def offline(
+    browser: Browser, monkeypatch: pytest.MonkeyPatch
+) -> Iterator[tuple[Page, list[str], list[str]]]:
     """Yield a page without a network, the addresses that it asks for, and what it complains of."""
-    context = browser.new_context(viewport={"width": 300, "height": 200}, offline=True)
-    page = context.new_page()
+    monkeypatch.setattr("flowtex.web.export.PREVIEW", (24, 16))
     asked: list[str] = []
     said: list[str] = []
-    page.on("request", lambda request: asked.append(request.url))
-    page.on("pageerror", lambda error: said.append(str(error)))
-    page.on("console", lambda line: said.append(line.text) if line.type == "error" else None)
-    yield page, asked, said
-    context.close()
+    with opened_page(browser, offline=True) as page:
+        page.on("request", lambda request: asked.append(request.url))
+        page.on("pageerror", lambda error: said.append(str(error)))
+        page.on("console", lambda line: said.append(line.text) if line.type == "error" else None)
+        yield page, asked, said
 
 
 def pixels(page: Page) -> NDArray[Any]:
@@ -180,47 +184,29 @@ def pixels(page: Page) -> NDArray[Any]:
 
 @pytest.mark.browser
 @pytest.mark.parametrize("times", [1, 3])
-def test_a_page_draws_from_a_file_without_a_network(
+def test_a_page_is_drawn_and_played_from_a_file_without_a_network(
     times: int, offline: tuple[Page, list[str], list[str]], tmp_path: Path
 ) -> None:
     page, asked, said = offline
-    field = gyre(times)
-    export(field, tmp_path / "page.html", samples=9, title=WICKED)
+    export(gyre(times), tmp_path / "page.html", samples=9, title=WICKED)
     address = (tmp_path / "page.html").as_uri()
     page.goto(address)
-    page.locator('[data-sharp="true"]').wait_for()
+    page.locator(COMPLETE).wait_for()
     page.wait_for_function("() => !document.getElementById('preview')")
     assert page.title() == WICKED
-    assert said == []
     assert [a for a in asked if a != address and not a.startswith(("data:", "blob:"))] == []
-    drawn = pixels(page)
-    assert np.abs(np.diff(drawn.mean(axis=-1), axis=0))[60:120, 60:240].mean() > 3
-
-
-PLAY = ".flowtex [data-name=play]"
-
-
-@pytest.mark.browser
-@pytest.mark.parametrize("times", [1, 3])
-def test_a_page_is_played_from_a_file_without_a_network(
-    times: int, offline: tuple[Page, list[str], list[str]], tmp_path: Path
-) -> None:
-    page, _, said = offline
-    export(gyre(times), tmp_path / "page.html", samples=5)
-    page.goto((tmp_path / "page.html").as_uri())
-    page.locator('[data-sharp="true"]').wait_for()
-    page.wait_for_function("() => !document.getElementById('preview')")
     start = pixels(page)
-    page.locator(PLAY).click()
-    readout = page.locator(".flowtex .time")
+    assert np.abs(np.diff(start.mean(axis=-1), axis=0))[60:120, 60:240].mean() > 3
+    play, readout = page.locator(".flowtex [data-name=play]"), page.locator(".flowtex .time")
+    play.click()
     readout.wait_for()
     shown = readout.inner_text()
-    ask = "(was) => document.querySelector('.flowtex').shadowRoot.querySelector('.time')"
-    page.wait_for_function(f"{ask}.textContent !== was", arg=shown)
-    now = readout.inner_text()
-    page.wait_for_function(f"{ask}.textContent !== was", arg=now)
-    page.locator(PLAY).click()
-    page.locator('[data-sharp="true"]').wait_for()
+    for _ in range(2):
+        was = shown
+        wait_until(lambda was=was: readout.inner_text() != was)
+        shown = readout.inner_text()
+    with acted(page):
+        play.click()
     inside = np.abs(pixels(page) - start)[60:120, 60:240]
     assert inside.mean() > 3
     assert said == []
@@ -233,7 +219,7 @@ def test_keys_and_title_are_the_pages_from_the_beginning(
     page, _, said = offline
     export(gyre(3), tmp_path / "page.html", samples=5, title="Two gyres")
     page.goto((tmp_path / "page.html").as_uri())
-    page.locator('[data-sharp="true"]').wait_for()
+    page.locator(COMPLETE).wait_for()
     assert (page.title(), page.locator(".flowtex .title").inner_text()) == ("Two gyres",) * 2
     for label in ("Pause (space)", "Play (space)"):
         page.keyboard.press("Space")
@@ -249,37 +235,38 @@ def test_colours_are_chosen_on_a_page(
     export(gyre(), tmp_path / "page.html", samples=5, strength=0.0)
     page.set_viewport_size({"width": 640, "height": 420})
     page.goto((tmp_path / "page.html").as_uri())
-    page.locator('[data-sharp="true"]').wait_for()
+    page.locator(COMPLETE).wait_for()
     ramp = "() => document.querySelector('.flowtex').shadowRoot.querySelector('.ramp').style"
     drawn, colours = [pixels(page)], [page.evaluate(f"{ramp}.background")]
 
-    def shown() -> None:
-        page.wait_for_timeout(200)  # until the picture has begun anew
-        page.locator('[data-sharp="true"]').wait_for()
+    @contextmanager
+    def shown() -> Iterator[None]:
+        with acted(page):
+            yield
         drawn.append(pixels(page))
         colours.append(page.evaluate(f"{ramp}.background"))
 
     page.locator("[data-name=settings]").click()
-    page.locator("[data-cmap=magma]").click()
-    shown()
-    page.get_by_label("Highest value").fill("0.1")
-    page.keyboard.press("Tab")
-    shown()
-    page.get_by_text("auto", exact=True).click()
-    page.locator("[data-cmap=viridis]").click()
-    shown()
+    with shown():
+        page.locator("[data-cmap=magma]").click()
+    with shown():
+        page.get_by_label("Highest value").fill("0.1")
+        page.keyboard.press("Tab")
+    with shown():
+        page.get_by_text("auto", exact=True).click()
+        page.locator("[data-cmap=viridis]").click()
     inside = (slice(120, 300), slice(60, 300))
     assert np.abs(drawn[1] - drawn[0])[inside].mean() > 20
     assert np.abs(drawn[2] - drawn[1])[inside].mean() > 20
     assert np.abs(drawn[3] - drawn[0])[inside].mean() < 1
     assert colours[0] == colours[3] != colours[1] == colours[2]
-    page.get_by_label("Colour by").select_option("none")
-    shown()
+    with shown():
+        page.get_by_label("Colour by").select_option("none")
     grey = drawn[-1][inside]
     assert np.ptp(grey, axis=-1).max() <= 1 and np.ptp(grey.mean(axis=-1)) <= 1
     assert page.locator(".flowtex .legend").is_hidden()
-    page.get_by_label("Colour by").select_option(index=1)
-    shown()
+    with shown():
+        page.get_by_label("Colour by").select_option(index=1)
     assert np.ptp(drawn[-1][inside].mean(axis=-1)) > 5 or np.ptp(drawn[-1][inside]) > 5
     assert said == []
 
@@ -296,7 +283,7 @@ def test_nothing_leaves_a_small_page(
     export(flow, tmp_path / "page.html", samples=5, scalars=name)
     page.set_viewport_size({"width": width, "height": 240})
     page.goto((tmp_path / "page.html").as_uri())
-    page.locator('[data-sharp="true"]').wait_for()
+    page.locator(COMPLETE).wait_for()
     page.mouse.move(140, 120)
     page.mouse.move(150, 120)
     page.locator(".flowtex .readout b").wait_for()
@@ -332,13 +319,12 @@ def test_two_views_on_a_page_move_together(
     assert box is not None
     page.mouse.move(box["x"] + 70, box["y"] + 100)
     page.mouse.wheel(0, -200)
-    for _ in range(100):  # a quick machine is done before anybody could see that it began
+
+    def have_moved() -> bool:
         after = [views.nth(n).screenshot() for n in range(2)]
-        if all(was != now for was, now in zip(before, after, strict=True)):
-            break
-        page.wait_for_timeout(50)
-    else:
-        pytest.fail("one of the views stands still")
+        return all(was != now for was, now in zip(before, after, strict=True))
+
+    wait_until(have_moved)
     assert said == []
 
 
@@ -349,7 +335,7 @@ def test_a_page_cannot_fetch_or_run_anything_else(
     page, _, said = offline
     export(gyre(), tmp_path / "page.html", samples=9)
     page.goto((tmp_path / "page.html").as_uri())
-    page.locator('[data-sharp="true"]').wait_for()
+    page.locator(COMPLETE).wait_for()
     page.evaluate("""() => {
       const script = document.createElement("script");
       script.textContent = "window.ran = true";

@@ -41,9 +41,7 @@ def test_a_pixel_is_explained_without_a_server(page: Page, tmp_path: Path) -> No
     assert page.locator(".flowtex circle.dot").count() == 5
     assert page.locator(".card:visible").count() == 0
     level = _level(page.locator(".explained-sum").inner_text())
-    samples, zoom = (
-        page.locator(f'input[data-setting="{name}"]') for name in ("samples", "zoom")
-    )
+    samples, zoom = (page.locator(f'input[data-setting="{name}"]') for name in ("samples", "zoom"))
     samples.press("ArrowRight")
     assert rows.first.locator("rect").count() == 7
     for _ in range(4):

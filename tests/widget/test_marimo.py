@@ -5,13 +5,13 @@ from __future__ import annotations
 import contextlib
 import subprocess
 import sys
-import time
 import urllib.request
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from waiting import PATIENCE_S, wait_until
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -54,16 +54,19 @@ def address(tmp_path: Path) -> Iterator[str]:
     assert process.stdout is not None
     said = next((line for line in process.stdout if "http://" in line), "")
     address = said[said.find("http://") :].strip().replace("localhost", "127.0.0.1")
-    # The address is told before anyone listens there.
-    for _ in range(300):
-        with contextlib.suppress(OSError), urllib.request.urlopen(address, timeout=5):
-            break
-        time.sleep(0.1)
+
+    def answers() -> bool:
+        """Whether anyone listens: the address is told before."""
+        with contextlib.suppress(OSError), urllib.request.urlopen(address, timeout=PATIENCE_S):
+            return True
+        return False
+
+    wait_until(answers)
     yield address
     process.terminate()
-    process.communicate(timeout=20)
+    process.communicate(timeout=PATIENCE_S)
 
 
 def test_a_widget_and_what_show_displays_are_drawn(page: Page, address: str) -> None:
     page.goto(address)
-    page.wait_for_function(f"() => ({SHARP})() === 2", timeout=60_000)
+    page.wait_for_function(f"() => ({SHARP})() === 2")

@@ -13,9 +13,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
+from pages import new_context
 from PIL import Image
 from served import Served, start
-from watching import PATIENCE, Watch, count, difference
+from waiting import PATIENCE_S
+from watching import Watch, count, difference
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
@@ -40,7 +42,7 @@ def demo(opengl: object) -> Iterator[Served]:
 @pytest.fixture(scope="module")
 def opened(browser: Browser, demo: Served) -> Iterator[Page]:
     """The page of the demo, with what it complained of and asked for in ``page.heard``."""
-    context = browser.new_context(viewport=SIZE)  # type: ignore[arg-type]
+    context = new_context(browser, viewport=SIZE)
     page = context.new_page()
     heard: dict[str, list[str]] = {"errors": [], "asked": []}
     page.on("console", lambda m: heard["errors"].append(m.text) if m.type == "error" else None)
@@ -131,17 +133,22 @@ def test_play_changes_one_picture_after_the_other(opened: Page) -> None:
     )
     before, still = count(opened), WATCH.shot(opened)
     opened.get_by_label("Play").click()
-    opened.wait_for_function("() => window.pictures > 4", timeout=PATIENCE)
+    opened.wait_for_function("() => window.pictures > 4")
     one = WATCH.shot(opened)
     seen = opened.evaluate("() => window.pictures")
-    opened.wait_for_function("n => window.pictures > n + 3", arg=seen, timeout=PATIENCE)
+    opened.wait_for_function("n => window.pictures > n + 3", arg=seen)
     other = WATCH.shot(opened)
     assert difference(one, still) > 2 and difference(one, other) > 2
     opened.get_by_label("Pause").click()
     WATCH.settled(opened, before)
     quiet = opened.evaluate("() => window.pictures")
-    opened.wait_for_timeout(500)
+    # The server answers what it is asked after that, and sends no picture.
+    opened.mouse.move(400, 200)
+    opened.mouse.move(410, 205)
+    opened.locator(".flowtex-tip").wait_for()
     assert opened.evaluate("() => window.pictures") == quiet
+    opened.mouse.move(5, 390)
+    opened.locator(".flowtex-tip").wait_for(state="hidden")
 
 
 def test_the_theme_can_be_light(opened: Page) -> None:
@@ -168,7 +175,7 @@ def test_nothing_is_complained_of_and_nothing_comes_from_outside(
 def test_a_page_loaded_again_still_opens(opened: Page) -> None:
     assert "secret" not in opened.url
     opened.reload()
-    opened.wait_for_selector("[data-sharp]", timeout=PATIENCE)
+    opened.wait_for_selector("[data-sharp]")
     WATCH.settled(opened, 0)
 
 
@@ -195,7 +202,7 @@ def test_without_the_right_secret_there_is_no_picture(
 
 def test_other_sites_are_refused_and_the_page_may_load_nothing_of_theirs(demo: Served) -> None:
     def ask(path: str, origin: str) -> tuple[int, dict[str, str]]:
-        with closing(http.client.HTTPConnection(*demo.place, timeout=10)) as link:
+        with closing(http.client.HTTPConnection(*demo.place, timeout=PATIENCE_S)) as link:
             link.request("GET", path, headers={"Origin": origin})
             answer = link.getresponse()
             answer.read()
@@ -222,9 +229,9 @@ def test_ctrl_c_ends_it_at_once_with_a_page_open(page: Page, opengl: object) -> 
     demo = start("demo", "--example", "double_gyre", "--samples", "3")
     page.set_viewport_size({"width": 200, "height": 160})
     page.goto(demo.address)
-    page.wait_for_selector("[data-picture=sharp]", timeout=PATIENCE)
+    page.wait_for_selector("[data-picture=sharp]")
     demo.process.send_signal(signal.SIGINT)
-    rest, _ = demo.process.communicate(timeout=8)
+    rest, _ = demo.process.communicate(timeout=PATIENCE_S)
     assert demo.process.returncode == 0
     assert "Traceback" not in rest and rest.count("\n") <= 4
     with socket.socket() as link:
@@ -237,6 +244,8 @@ def test_a_port_in_use_is_told() -> None:
         taken.listen()
         port = taken.getsockname()[1]
         command = [sys.executable, "-m", "flowtex.cli", "demo", "--no-browser", "--port", str(port)]
-        done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+        done = subprocess.run(
+            command, capture_output=True, text=True, timeout=PATIENCE_S, check=False
+        )
     assert done.returncode == 2
     assert f"cannot listen on 127.0.0.1:{port}" in done.stderr and "Traceback" not in done.stderr

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import io
-from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import aiohttp
@@ -14,9 +13,10 @@ from PIL import Image
 
 pytest.importorskip("trame_rca")
 
-from lab import Lab, lab
+from lab import BASE, Lab, LabServer
 from served import Link, enter
 from waiting import PATIENCE_S
+from watching import DECODED
 
 from flowtex import examples
 from flowtex.app import FlowApp
@@ -25,7 +25,6 @@ from flowtex.app.server.notebook import proxy_path
 if TYPE_CHECKING:
     from playwright.sync_api import Frame, Page
 
-BASE = "/user/Ada"
 SHOW = """import flowtex
 from flowtex.app import FlowApp
 app = FlowApp(flowtex.examples.double_gyre_field(), samples=9)
@@ -93,15 +92,6 @@ def test_all_frames_show_the_application_that_python_has() -> None:
     asyncio.run(story())
 
 
-@pytest.fixture(scope="module")
-def jupyter(tmp_path_factory: pytest.TempPathFactory, opengl: object) -> Iterator[str]:
-    pytest.importorskip("jupyterlab")
-    pytest.importorskip("jupyter_server_proxy")
-    names = ("direct.ipynb", "proxy.ipynb")
-    with lab(tmp_path_factory.mktemp("lab"), names, f"--ServerApp.base_url={BASE}/") as address:
-        yield address
-
-
 def frame_of(page: Page) -> Frame:
     frame = page.locator("iframe[title=flowtex]").element_handle().content_frame()
     assert frame is not None
@@ -112,11 +102,10 @@ def drawn(page: Page, frame: Frame, before: int = 0) -> Any:
     """Wait for the next full picture, and return the frame as (h, w) greys."""
     frame.wait_for_function(
         "n => Number(document.querySelector('[data-sharp]')?.dataset.sharp) > n"
-        " && document.querySelector('[data-picture=sharp]')"
-        " && document.querySelector('.flowtex-view img').complete",
+        " && document.querySelector('[data-picture=sharp]')",
         arg=before,
     )
-    page.wait_for_timeout(200)
+    frame.evaluate(DECODED)
     with Image.open(io.BytesIO(page.locator("iframe[title=flowtex]").screenshot())) as picture:
         return np.asarray(picture.convert("L"), dtype=float)[100:300, 30:-30]
 
@@ -124,12 +113,14 @@ def drawn(page: Page, frame: Frame, before: int = 0) -> Any:
 @pytest.mark.slow
 @pytest.mark.browser
 @pytest.mark.parametrize("way", ["direct", "proxy"])
-def test_a_cell_shows_a_flow_that_both_sides_can_change(page: Page, jupyter: str, way: str) -> None:
-    page.set_default_timeout(60_000)
+@pytest.mark.usefixtures("opengl")
+def test_a_cell_shows_a_flow_that_both_sides_can_change(
+    page: Page, jupyter: LabServer, way: str
+) -> None:
     page.set_viewport_size({"width": 1000, "height": 1100})
     asked: list[str] = []
     page.on("websocket", lambda socket: asked.append(socket.url))
-    notebook = Lab(page, jupyter, f"{way}.ipynb")
+    notebook = Lab(page, jupyter)
     if way == "proxy":
         assert notebook.said(HUB) == "None"
     notebook.run(SHOW)

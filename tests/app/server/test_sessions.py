@@ -4,7 +4,6 @@ import asyncio
 import gc
 import signal
 import threading
-import time
 import weakref
 from collections.abc import AsyncIterator, Callable, Coroutine, Iterator
 from contextlib import asynccontextmanager
@@ -18,10 +17,11 @@ import pytest
 
 pytest.importorskip("trame_rca")
 
+from pages import new_context
 from served import Link, Served, enter, start
 from small_pages import small
 from trame.app.core import AVAILABLE_SERVERS
-from waiting import PATIENCE_S, until
+from waiting import PATIENCE_S, until, wait_until
 from watching import Watch, count, difference
 
 from flowtex import FlowField
@@ -36,7 +36,6 @@ from flowtex.errors import FieldError
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
-BROWSER_PATIENCE = 30_000
 SIZE = {"width": 860, "height": 400}
 #: Part of the view that nothing lies on, as left, top, right, bottom.
 WATCH = Watch((300, 80, 740, 320))
@@ -455,7 +454,7 @@ def two_places(opengl: object) -> Iterator[Served]:
 
 @pytest.mark.browser
 def test_two_users_at_once_look_from_different_places(browser: Browser, two_places: Served) -> None:
-    users = [browser.new_context(viewport=SIZE) for _ in range(2)]  # type: ignore[arg-type]
+    users = [new_context(browser, viewport=SIZE) for _ in range(2)]
     one, other = (user.new_page() for user in users)
     for page in (one, other):
         page.goto(two_places.address)
@@ -475,15 +474,16 @@ def test_two_users_at_once_look_from_different_places(browser: Browser, two_plac
     # Both places are taken: a third page says so, and opens when one has become free.
     third = users[0].new_page()
     third.goto(two_places.address)
-    third.get_by_text("room for 2 pages at a time").wait_for(timeout=BROWSER_PATIENCE)
+    third.get_by_text("room for 2 pages at a time").wait_for()
     other.close()
     again = third.get_by_role("button", name="Try again")
-    end = time.monotonic() + 20
-    while third.locator("[data-sharp]").count() == 0:
-        assert time.monotonic() < end, third.inner_text("body")
+
+    def is_open() -> bool:
         if again.is_visible():
             again.click()
-        third.wait_for_timeout(200)
+        return third.locator("[data-sharp]").count() > 0
+
+    wait_until(is_open, lambda: third.inner_text("body"))
     # Another tab of the first user, and yet not the first user's camera.
     assert difference(WATCH.settled(third), whole) < 1
     for user in users:
@@ -499,5 +499,5 @@ def test_a_page_whose_session_is_over_says_so_and_comes_back(page: Page, opengl:
     said = served.end(signal.SIGTERM)
     assert served.process.returncode == 128 + signal.SIGTERM
     assert "ended by SIGTERM" in said and "Traceback" not in said
-    page.get_by_text("lost its connection").wait_for(timeout=BROWSER_PATIENCE)
+    page.get_by_text("lost its connection").wait_for()
     assert page.get_by_role("button", name="Open it again").is_visible()
