@@ -224,6 +224,13 @@ def jupyter(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LabServer]:
         yield started
 
 
+@pytest.fixture
+def quick_export(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Export pages with a small preview, which the processor draws, and larger files."""
+    monkeypatch.setattr("flowtex.web.export.PREVIEW", (24, 16))
+    monkeypatch.setattr("flowtex.rendering.webgl.protocol.COMPRESSION_LEVEL", 1)
+
+
 @pytest.fixture(scope="session")
 def client_page(browser: Browser) -> Iterator[ClientPage]:
     """Yield a page that has loaded the browser client."""

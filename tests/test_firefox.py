@@ -38,6 +38,7 @@ def is_textured(pixels: Bytes) -> bool:
     return bool((changes > 10).mean() > 0.1 and len(np.unique(pixels.reshape(-1, 3), axis=0)) > 999)
 
 
+@pytest.mark.usefixtures("quick_export")
 def test_an_exported_page_draws(page: Firefox, tmp_path: Path) -> None:
     file = tmp_path / "gyre.html"
     flowtex.export(flowtex.examples.double_gyre(), file)

@@ -162,6 +162,33 @@ test("no shorter object passes", async () => {
   }
 });
 
+test("what is wrong is said in words", async () => {
+  const tile = () => streamOf({ name: "speed" }).stream.tile([0, 0, 0], [0], signal, nothing);
+  const text = (words: string) => new TextEncoder().encode(words);
+  const flip = (bytes: Uint8Array<ArrayBuffer>) => bytes.map((byte, n) => (n === bytes.length >> 1 ? byte ^ 64 : byte));
+  const broken = /shown coarse: what the store has of it is broken/;
+  const cases: [string, (bytes: Uint8Array<ArrayBuffer>) => Uint8Array<ArrayBuffer>, RegExp][] = [
+    [TRACES, flip, broken],
+    [TRACES, () => text("<!doctype html><title>Welcome</title>".repeat(200)), broken],
+    ["0/surface/c/0/0/0", flip, broken],
+    ["0/values/c/0/0/0/0/0/0", (bytes) => bytes.slice(0, -9), broken],
+    ["zarr.json", () => text("<!doctype html>"), broken],
+    ["zarr.json", () => text('{"zarr_format":3,"node_type":"group","attributes":{}}'), /holds another flow than this page/],
+  ];
+  for (const [path, change, words] of cases) {
+    const whole = files.get(path) as Uint8Array<ArrayBuffer>;
+    files.set(path, change(whole));
+    await assert.rejects(tile(), words, path);
+    files.set(path, whole);
+  }
+  for (const path of [TRACES, "0/traces/zarr.json"]) {
+    fault = (asked_) => (asked_ === path ? 404 : null);
+    await assert.rejects(tile(), /shown coarse: it is not in the store, or the store is not open/, path);
+  }
+  fault = (path) => (path === "zarr.json" ? 404 : null);
+  await assert.rejects(tile(), /it is not in the store, or the store is not open to everyone/);
+});
+
 test("what is not there or not open is missing, and not tried again", async () => {
   for (const status of [401, 403, 404, 410]) {
     fault = (path) => (path === TRACES ? status : null);
@@ -191,14 +218,20 @@ test("who does not answer is asked again, some times", async () => {
 });
 
 test("what is given up ends at once, without a fault", async () => {
-  const start = performance.now();
+  // Time stands still: it does not wait for the next trial.
+  mock.timers.enable({ apis: ["setTimeout"] });
   const controller = new AbortController();
-  fault = () => 503;
+  let answered = 0;
+  fault = () => {
+    answered += 1;
+    return 503;
+  };
   const { stream } = streamOf();
   const loading = stream.tile([0, 0, 0], [0], controller.signal, nothing);
-  setTimeout(() => controller.abort(), 20);
+  while (!answered) await new Promise((resolve) => setImmediate(resolve));
+  controller.abort();
   await assert.rejects(loading, (error: Error) => error.name === "AbortError");
-  assert.ok(performance.now() - start < 250);
+  mock.timers.reset();
 });
 
 test("another store is refused, before anything of it is read", async () => {

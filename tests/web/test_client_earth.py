@@ -211,6 +211,7 @@ def test_the_bar_tells_dates(client: ClientPage) -> None:
     assert client.page.evaluate(text, number) == "2002-01-01 12:00"
 
 
+@pytest.mark.usefixtures("quick_export")
 @pytest.mark.parametrize("name", ["globe", "mercator"])
 def test_a_page_is_exported_with_its_lines(name: str, page: Page, tmp_path: Path) -> None:
     path = tmp_path / "page.html"

@@ -163,11 +163,8 @@ def test_a_file_is_there_whole_or_as_it_was(
 
 
 @pytest.fixture
-def offline(
-    browser: Browser, monkeypatch: pytest.MonkeyPatch
-) -> Iterator[tuple[Page, list[str], list[str]]]:
+def offline(browser: Browser, quick_export: None) -> Iterator[tuple[Page, list[str], list[str]]]:
     """Yield a page without a network, the addresses that it asks for, and what it complains of."""
-    monkeypatch.setattr("flowtex.web.export.PREVIEW", (24, 16))
     asked: list[str] = []
     said: list[str] = []
     with opened_page(browser, offline=True) as page:

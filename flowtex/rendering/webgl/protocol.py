@@ -28,6 +28,8 @@ __all__ = ["FORMAT", "Header", "Parts", "part_buffer", "part_info", "part_text",
 
 #: Number of the form of header and parts; a client refuses one that it does not know.
 FORMAT = 3
+#: Of gzip, for the parts of a page: it is written once and read often.
+COMPRESSION_LEVEL = 9
 
 Header: TypeAlias = dict[str, Any]
 Parts: TypeAlias = dict[str, AnyArray]
@@ -65,4 +67,4 @@ def part_text(array: AnyArray) -> str:
     The bytes of one significance lie side by side, which is where slopes resemble one another.
     """
     planes = np.asarray(part_buffer(array)).reshape(-1, array.itemsize).T
-    return base64.b64encode(gzip.compress(planes.tobytes(), 9, mtime=0)).decode()
+    return base64.b64encode(gzip.compress(planes.tobytes(), COMPRESSION_LEVEL, mtime=0)).decode()
