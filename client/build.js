@@ -32,7 +32,7 @@ async function noticeOf(name, file) {
   return `/*! Holds parts of ${name}, of which this is the licence:\n\n${licence.trim()} */`;
 }
 
-export const BUILDS = [
+const BUILDS = [
   ["src/client.ts", `${WEB}/client.js`, "esm", NOTICE],
   ["src/page.ts", `${WEB}/page.js`, "esm", NOTICE],
   ["src/storepage.ts", `${WEB}/storepage.js`, "esm", `${NOTICE}\n${STORE_NOTICE}`],
@@ -52,18 +52,14 @@ async function check(options) {
   return Buffer.compare(kept, outputFiles[0].contents) === 0 ? [] : [options.outfile];
 }
 
-async function main() {
-  if (process.argv.includes("--watch")) {
-    for (const options of BUILDS) await (await esbuild.context(options)).watch();
-  } else if (process.argv.includes("--check")) {
-    const stale = (await Promise.all(BUILDS.map(check))).flat();
-    if (stale.length) {
-      console.error(`not what client/src gives: ${stale.join(", ")}; run: make client`);
-      process.exitCode = 1;
-    }
-  } else {
-    await Promise.all(BUILDS.map((options) => esbuild.build(options)));
+if (process.argv.includes("--watch")) {
+  for (const options of BUILDS) await (await esbuild.context(options)).watch();
+} else if (process.argv.includes("--check")) {
+  const stale = (await Promise.all(BUILDS.map(check))).flat();
+  if (stale.length) {
+    console.error(`not what client/src gives: ${stale.join(", ")}; run: make client`);
+    process.exitCode = 1;
   }
+} else {
+  await Promise.all(BUILDS.map((options) => esbuild.build(options)));
 }
-
-if (process.argv[1] === fileURLToPath(import.meta.url)) await main();

@@ -12,6 +12,7 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -188,11 +189,7 @@ def browser(chromium: Path) -> Iterator[Browser]:
     asked = [sys.executable, "-m", "playwright", "--version"]
     if subprocess.run(asked, capture_output=True, check=False).returncode != 0:
         pytest.skip("Playwright does not start: apt-get install libatomic1")
-    with sync_playwright() as driver, pytest.MonkeyPatch.context() as patch:
-        import client_coverage
-
-        if client_coverage.FOLDER:
-            client_coverage.count_in(Path(client_coverage.FOLDER), patch)
+    with sync_playwright() as driver:
         started = driver.chromium.launch(executable_path=chromium, args=list(MESA))
         page = started.new_page()
         draws = page.evaluate(DRAWS)
@@ -216,8 +213,9 @@ def page(browser: Browser) -> Iterator[Page]:
 @pytest.fixture(scope="session")
 def jupyter(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LabServer]:
     """Yield the one JupyterLab of the session; skip where it is not installed."""
-    pytest.importorskip("jupyterlab")
-    pytest.importorskip("jupyter_server_proxy")
+    for name in ("jupyterlab", "jupyter_server_proxy"):
+        if find_spec(name) is None:  # to import it takes seconds
+            pytest.skip(f"{name} is not installed")
     from lab import lab
 
     with lab(tmp_path_factory.mktemp("lab")) as started:

@@ -20,7 +20,6 @@ from waiting import PATIENCE_S, wait_until
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
-pytest.importorskip("jupyterlab")
 pytest.importorskip("anywidget")
 
 pytestmark = [pytest.mark.slow, pytest.mark.browser]

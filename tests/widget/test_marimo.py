@@ -7,6 +7,7 @@ import subprocess
 import sys
 import urllib.request
 from collections.abc import Iterator
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,9 +17,11 @@ from waiting import PATIENCE_S, wait_until
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
-pytest.importorskip("marimo")
-
-pytestmark = [pytest.mark.slow, pytest.mark.browser]
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.browser,
+    pytest.mark.skipif(find_spec("marimo") is None, reason="marimo is not installed"),
+]
 
 NOTEBOOK = """import marimo
 app = marimo.App()
