@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -149,12 +150,13 @@ def test_what_leaves_the_surface_is_told(client: ClientPage) -> None:
 def test_the_card_closes(client: ClientPage) -> None:
     mount(client, leaving())
     page = client.page
-    for close in (
+    ways: list[Callable[[], None]] = [
         lambda: page.keyboard.press("Escape"),
         lambda: page.mouse.click(560, 20),
         lambda: page.locator(".card button").click(),
         lambda: page.mouse.dblclick(320, 160),
-    ):
+    ]
+    for close in ways:
         page.mouse.click(300, 150)
         page.locator(".card").wait_for()
         close()

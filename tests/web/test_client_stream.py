@@ -395,7 +395,12 @@ def test_a_tile_that_was_away_is_asked_for_again_in_a_view_at_rest(
 
     def later(holds: Callable[[], object]) -> None:
         """Let seconds of the page's clock go by until something holds."""
-        wait_until(lambda: holds() or shown.page.clock.fast_forward(1000))
+
+        def is_late() -> object:
+            shown.page.clock.fast_forward(1000)
+            return holds()
+
+        wait_until(is_late)
 
     later(told.is_visible)
     assert "the store does not answer" in told.inner_text()

@@ -199,8 +199,8 @@ def test_a_page_is_drawn_and_played_from_a_file_without_a_network(
     readout.wait_for()
     shown = readout.inner_text()
     for _ in range(2):
-        was = shown
-        wait_until(lambda was=was: readout.inner_text() != was)
+        differs = "([element, text]) => element.innerText !== text"
+        page.wait_for_function(differs, arg=[readout.element_handle(), shown])
         shown = readout.inner_text()
     with acted(page):
         play.click()

@@ -16,7 +16,7 @@ import pytest
 from pages import new_context
 from PIL import Image
 from served import Served, start
-from waiting import PATIENCE_S
+from waiting import PATIENCE_S, wait_until
 from watching import Watch, count, difference
 
 if TYPE_CHECKING:
@@ -152,12 +152,14 @@ def test_play_changes_one_picture_after_the_other(opened: Page) -> None:
 
 
 def test_the_theme_can_be_light(opened: Page) -> None:
-    before = count(opened)
     opened.get_by_label("Light or dark").click()
-    WATCH.settled(opened, before)
-    assert opened.locator(".flowtex-light").count() == 1
-    with Image.open(io.BytesIO(opened.screenshot())) as picture:
-        assert min(picture.convert("RGB").getpixel((4, 200))) > 200  # type: ignore[arg-type]
+    opened.locator(".flowtex-light").wait_for()
+
+    def is_light() -> bool:
+        with Image.open(io.BytesIO(opened.screenshot())) as picture:
+            return bool(min(picture.convert("RGB").getpixel((4, 200))) > 200)  # type: ignore[arg-type]
+
+    wait_until(is_light)
 
 
 def test_nothing_is_complained_of_and_nothing_comes_from_outside(
