@@ -100,6 +100,7 @@ LIBRARIES = (
         on_load=("pyramid.objects",),
         in_functions=("pyramid",),
     ),
+    Library(("h5py",), in_functions=("field.io.inspection.hdf5",)),
     Library(("av",), in_functions=("offscreen.encoders",)),
     Library(("cyclopts",), on_load=("cli",)),
     Library(("numba", "llvmlite"), on_load=("_util.kernels",)),

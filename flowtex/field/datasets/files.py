@@ -14,6 +14,7 @@ from flowtex._util.extras import import_extra
 from flowtex.errors import FieldError
 from flowtex.field.datasets.pairs import find_pairs
 from flowtex.field.datasets.wind_json import read_winds
+from flowtex.field.io.inspection.files import inspect_file
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -91,6 +92,7 @@ def open_files(path: Path) -> list[xr.Dataset]:
     # Its library has to be loaded before those of other readers, which bring a PROJ of their own.
     import_extra("pyproj", "xarray")
     suffix = path.suffix.lower()
+    inspect_file(path, whole=False)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         if suffix in JSON:

@@ -14,6 +14,7 @@ from typing import Any
 from flowtex.errors import FieldError
 from flowtex.field.io import plot3d
 from flowtex.field.io.from_pyvista import FieldArguments, read_meshes
+from flowtex.field.io.inspection.files import inspect_file
 from flowtex.field.io.meshes import time_steps, times_of
 from flowtex.field.io.readers import open_reader
 from flowtex.field.io.surfaces import beside
@@ -71,6 +72,7 @@ def open_file(path: str | Path) -> OpenFile:
     """
     file = Path(path).expanduser()
     _check_path(file)
+    inspect_file(file)
     grid = plot3d.find_grid(file) or file
     layout = None
     if grid.suffix.lower() in plot3d.GRID_SUFFIXES:

@@ -38,6 +38,8 @@ def errors_of_file(path: str | Path) -> Iterator[None]:
             yield
         except (ValueError, RuntimeError, OSError, KeyError, ImportError, ParseError) as error:
             cause = error
+        except MemoryError:
+            cause = RuntimeError("its data do not fit into memory")
         except (AttributeError, IndexError, TypeError, EOFError) as error:
             # Readers of broken files trip over what is missing in them.
             cause = RuntimeError(f"its content is not as expected ({error})")

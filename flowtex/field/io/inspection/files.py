@@ -1,0 +1,94 @@
+"""One look into a file before any reader opens it, by its content and not by its name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import lru_cache
+from pathlib import Path
+from typing import BinaryIO
+
+from flowtex.errors import FieldError
+from flowtex.field.io.inspection import grib, hdf5, netcdf, vtk_legacy, vtk_xml
+from flowtex.field.io.inspection.surfaces import check_obj, check_ply, check_stl
+
+__all__ = ["inspect_file"]
+
+#: Bytes that tell what most files are.
+HEAD_BYTES = 256
+GRIB_SUFFIXES = (".grib", ".grb")
+#: Files of a series or of several blocks that are looked into, at most.
+MOST_MEMBERS = 100_000
+#: Texts that say nothing of what they are.
+BY_SUFFIX: dict[str, Callable[[Path], None]] = {".obj": check_obj, ".stl": check_stl}
+
+
+def inspect_file(path: Path, *, whole: bool = True) -> None:
+    """Refuse a file that has not what it declares, needs too much memory, or leads to others.
+
+    Those that it names as members of a series, or as its blocks, are looked into as well. A file is
+    looked into once for each of its times of change.
+
+    Parameters
+    ----------
+    path
+        The file; a folder is left alone.
+    whole
+        Whether its arrays are read whole, as those of meshes; of others, parts are.
+
+    Raises
+    ------
+    FieldError
+        With what is wrong, and of a member its name.
+    """
+    waiting, seen = [path], {path.resolve()}
+    while waiting:
+        file = waiting.pop()
+        if not file.is_file():
+            continue  # it is told by the reader that wants it
+        state = file.stat()
+        try:
+            members = _members(file, state.st_mtime_ns, state.st_size, whole)
+        except FieldError as error:
+            if file == path:
+                raise
+            msg = f"{file}: {error}"
+            raise FieldError(msg) from error
+        for member in members:
+            if len(seen) < MOST_MEMBERS and member.resolve() not in seen:
+                seen.add(member.resolve())
+                waiting.append(member)
+
+
+@lru_cache(maxsize=1024)
+def _members(path: Path, _changed: int, size: int, whole: bool) -> tuple[Path, ...]:  # noqa: FBT001
+    """Look into one file, and return those that it names."""
+    with path.open("rb") as stream:
+        head = stream.read(HEAD_BYTES)
+        is_hdf5 = any(_has_at(stream, at, hdf5.MAGIC) for at in _hdf5_starts(size))
+    suffix = path.suffix.lower()
+    if is_hdf5:
+        hdf5.check_hdf5(path, whole=whole)
+    if head.startswith(netcdf.MAGICS):
+        netcdf.check_netcdf(path, whole=whole)
+    if head.startswith(vtk_legacy.MAGIC):
+        vtk_legacy.check_vtk_legacy(path)
+    if head.startswith(grib.MAGIC) or suffix.startswith(GRIB_SUFFIXES):
+        grib.check_grib(path)
+    if head.startswith((b"ply\n", b"ply\r")):
+        check_ply(path)
+    if suffix in BY_SUFFIX:
+        BY_SUFFIX[suffix](path)
+    return tuple(vtk_xml.check_vtk_xml(path)) if vtk_xml.is_xml(head) else ()
+
+
+def _hdf5_starts(size: int) -> Iterator[int]:
+    """Yield where HDF5 may begin: what is before it is the user's."""
+    at = 0
+    while at < size:
+        yield at
+        at = 2 * at or 512
+
+
+def _has_at(stream: BinaryIO, at: int, magic: bytes) -> bool:
+    stream.seek(at)
+    return stream.read(len(magic)) == magic

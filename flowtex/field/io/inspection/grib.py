@@ -1,0 +1,78 @@
+"""GRIB: all messages are complete, and their grids fit into memory."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import BinaryIO
+
+from flowtex.field.io.inspection.limits import check_count, check_memory
+
+__all__ = ["MAGIC", "check_grib"]
+
+MAGIC = b"GRIB"
+#: What is between messages is gone over in parts of so many bytes.
+CHUNK_BYTES = 1 << 16
+#: Messages of GRIB 1 that are longer than three bytes can say count in units of 120.
+LONG_MESSAGE, LONG_UNIT = 0x800000, 120
+
+
+def check_grib(path: Path) -> None:
+    """Refuse a file whose last message is cut, or with a grid that does not fit into memory.
+
+    Raises
+    ------
+    FieldError
+        With what is missing.
+    """
+    size = path.stat().st_size
+    with path.open("rb") as stream:
+        at = _next(stream, 0)
+        number = 0
+        while at is not None:
+            number += 1
+            stream.seek(at)
+            head = stream.read(16)
+            what = f"message {number}"
+            check_count(len(head), 16, what)
+            length = int.from_bytes(head[8:16] if head[7] == 2 else head[4:7], "big")
+            if head[7] == 1 and length >= LONG_MESSAGE:
+                # Its length is not to be had without the sections.
+                length = (length - LONG_MESSAGE) * LONG_UNIT - LONG_UNIT
+            check_count(size - at, length, what)
+            points = _points(stream, at, head[7], min(at + length, size))
+            check_memory(8 * points, f"the grid of {what}")
+            at = _next(stream, at + max(length, 4))
+
+
+def _next(stream: BinaryIO, at: int) -> int | None:
+    """Return where the next message begins; between two there may be anything."""
+    stream.seek(at)
+    data = b""
+    while part := stream.read(CHUNK_BYTES):
+        data = data[-3:] + part
+        if (found := data.find(MAGIC)) >= 0:
+            return stream.tell() - len(data) + found
+    return None
+
+
+def _points(stream: BinaryIO, at: int, edition: int, end: int) -> int:
+    """Return how many points the largest grid of a message has."""
+    if edition == 1:
+        stream.seek(at + 8)
+        section = stream.read(8)
+        if len(section) < 8 or not section[7] & 0x80:
+            return 0
+        stream.seek(at + 8 + int.from_bytes(section[:3], "big") + 6)
+        columns, rows = stream.read(2), stream.read(2)
+        return int.from_bytes(columns, "big") * int.from_bytes(rows, "big")
+    place, most = at + 16, 0
+    while place + 11 <= end:
+        stream.seek(place)
+        head = stream.read(10)
+        length = int.from_bytes(head[:4], "big")
+        if head[:4] == b"7777" or not 5 <= length <= end - place:
+            break
+        if head[4] == 3:
+            most = max(most, int.from_bytes(head[6:10], "big"))
+        place += length
+    return most

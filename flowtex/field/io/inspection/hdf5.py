@@ -1,0 +1,96 @@
+"""HDF5, and NetCDF-4, CGNS, Exodus and VTKHDF, which are HDF5: nothing of other files is read.
+
+Datasets may lie in other files (external storage and virtual datasets), and so may groups (external
+links). Whoever makes a file could so have any other file read that the reader may read.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from pathlib import Path
+from typing import Any, NoReturn
+
+from flowtex.errors import FieldError
+from flowtex.field.io.inspection.limits import check_count, check_memory
+
+__all__ = ["MAGIC", "check_hdf5"]
+
+MAGIC = b"\x89HDF\r\n\x1a\n"
+
+
+def check_hdf5(path: Path, *, whole: bool) -> None:
+    """Refuse a file that leads to others, is cut, or has arrays that do not fit into memory.
+
+    Parameters
+    ----------
+    path
+        The file.
+    whole
+        Whether its arrays are read whole, one time of each; else coordinates and chunks alone are.
+
+    Raises
+    ------
+    FieldError
+        With the name of what leads to another file, or what is missing.
+    """
+    import h5py
+
+    try:
+        with h5py.File(path, "r", locking=False) as file:
+            links: list[tuple[bytes, int]] = []
+            # This follows no link out of the file.
+            file.id.links.visit(lambda name, link: links.append((name, link.type)), info=True)
+            for name, kind in links:
+                _check_link(h5py, file.id, name, kind)
+            for name, kind in links:
+                if kind == h5py.h5l.TYPE_HARD:
+                    item = h5py.h5o.open(file.id, name)
+                    _check_object(h5py, item, name.decode(errors="replace"), whole=whole)
+    except (OSError, RuntimeError, KeyError, ValueError) as error:
+        if isinstance(error, FieldError):
+            raise
+        ends = re.search(r"eof = (\d+).*base_addr = (\d+), stored_eof = (\d+)", str(error))
+        if ends:
+            found, base, declared = map(int, ends.groups())
+            check_count(found, base + declared, "the header")
+        msg = f"the file is broken: HDF5 says: {error}; write or copy it again"
+        raise FieldError(msg) from error
+
+
+def _check_link(h5py: Any, file: Any, name: bytes, kind: int) -> None:
+    if kind in (h5py.h5l.TYPE_HARD, h5py.h5l.TYPE_SOFT):
+        return
+    external = kind == h5py.h5l.TYPE_EXTERNAL
+    target = file.links.get_val(name)[0].decode(errors="replace") if external else "unknown"
+    _refuse(f"{name.decode(errors='replace')} is an external link", target)
+
+
+def _check_object(h5py: Any, item: Any, name: str, *, whole: bool) -> None:
+    if not isinstance(item, h5py.h5d.DatasetID):
+        return
+    storage = item.get_create_plist()
+    if storage.get_external_count():
+        target = storage.get_external(0)[0].decode(errors="replace")
+        _refuse(f"{name} has external storage", target)
+    layout = storage.get_layout()
+    if layout == h5py.h5d.VIRTUAL:
+        targets = (storage.get_virtual_filename(n) for n in range(storage.get_virtual_count()))
+        for target in targets:
+            if target != ".":
+                _refuse(f"{name} is a virtual dataset", target)
+    size, shape = item.get_type().get_size(), item.shape or ()
+    if layout == h5py.h5d.CHUNKED:
+        check_memory(size * math.prod(storage.get_chunk()), f"one chunk of {name}")
+    if whole and shape and item.get_space().get_simple_extent_dims(1)[0] == h5py.h5s.UNLIMITED:
+        shape = shape[1:]
+    if whole or len(shape) < 2:
+        check_memory(size * math.prod(shape), f"the dataset {name}")
+
+
+def _refuse(what: str, target: str) -> NoReturn:
+    msg = (
+        f"{what}, in the file {target!r}, and only what lies in the file itself is read; copy all "
+        "of it into one file, as ds.to_netcdf does"
+    )
+    raise FieldError(msg)

@@ -1,0 +1,54 @@
+"""The sentences of files that are cut, that need too much memory, or that lead elsewhere."""
+
+from __future__ import annotations
+
+from flowtex._util.memory import available_bytes
+from flowtex.errors import FieldError
+
+__all__ = ["check_count", "check_memory", "size_text"]
+
+#: A reader and what is made of its data take some times what a file declares.
+MEMORY_SHARE = 0.5
+
+
+def check_count(found: int, declared: int, what: str, unit: str = "bytes") -> None:
+    """Refuse a file that has less than it declares.
+
+    Raises
+    ------
+    FieldError
+        When ``found`` is less than ``declared``.
+    """
+    if found < declared:
+        msg = (
+            f"the file is cut short or broken: {what} declares {declared:,} {unit}, the file has "
+            f"{max(found, 0):,} of them, and {declared - max(found, 0):,} are missing; write or "
+            "copy it again"
+        )
+        raise FieldError(msg)
+
+
+def check_memory(nbytes: int, what: str) -> None:
+    """Refuse to read what takes more memory than there is for it.
+
+    Raises
+    ------
+    FieldError
+        When ``nbytes`` are more than a share of the memory that is available.
+    """
+    budget = int(available_bytes() * MEMORY_SHARE)
+    if nbytes > budget:
+        msg = (
+            f"{what} declares {size_text(nbytes)}, and {size_text(budget)} of memory are available "
+            "for data; write a part or a coarser version of it to a file of its own, or read it "
+            "where there is more memory"
+        )
+        raise FieldError(msg)
+
+
+def size_text(nbytes: int) -> str:
+    """Return a number of bytes in words, such as ``"1.5 GB"``."""
+    size, units = float(nbytes), ["bytes", "kB", "MB", "GB", "TB", "PB"]
+    while size >= 1000 and len(units) > 1:
+        size, units = size / 1000, units[1:]
+    return f"{size:.3g} {units[0]}" if size < 1000 else f"{size:.0f} {units[0]}"

@@ -1,0 +1,138 @@
+"""OBJ, PLY and STL: what is declared is there, and faces have the corners that they name."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import BinaryIO
+
+from flowtex.errors import FieldError
+from flowtex.field.io.inspection.limits import check_count
+from flowtex.field.io.inspection.numbers import TextScanner
+
+__all__ = ["check_obj", "check_ply", "check_stl"]
+
+#: Bytes of the types of PLY.
+PLY_TYPES = {
+    **dict.fromkeys(("char", "uchar", "int8", "uint8"), 1),
+    **dict.fromkeys(("short", "ushort", "int16", "uint16"), 2),
+    **dict.fromkeys(("int", "uint", "float", "int32", "uint32", "float32"), 4),
+    **dict.fromkeys(("double", "float64"), 8),
+}
+#: A binary STL: a header of 80 bytes, the number of triangles, and 50 bytes for each.
+STL_HEAD, STL_TRIANGLE = 84, 50
+
+
+def check_obj(path: Path) -> None:
+    """Refuse a file whose last line is cut, or whose faces name points that it has not.
+
+    The format declares nothing: one that ends early after a line is not to be told from a whole
+    one.
+
+    Raises
+    ------
+    FieldError
+        With what is missing.
+    """
+    points = most = 0
+    with path.open("rb") as stream:
+        for line in stream:
+            if line.startswith((b"v ", b"v\t")):
+                points += 1
+                check_count(len(line.split()) - 1, 3, f"point {points}", "coordinates")
+            elif line.startswith((b"f ", b"f\t")):
+                corners = line.split()[1:]
+                check_count(len(corners), 3, "a face", "corners")
+                numbers = [corner.split(b"/")[0] for corner in corners]
+                most = max(most, 0, *(int(number) for number in numbers if number.isdigit()))
+    check_count(points, most, "a face", "points")
+
+
+def check_stl(path: Path) -> None:
+    """Refuse a file with fewer triangles than it declares, or as text without its last line.
+
+    Raises
+    ------
+    FieldError
+        With what is missing.
+    """
+    size = path.stat().st_size
+    with path.open("rb") as stream:
+        head = stream.read(STL_HEAD)
+        triangles = int.from_bytes(head[80:84], "little")
+        if head.startswith(b"solid") and size != STL_HEAD + STL_TRIANGLE * triangles:
+            stream.seek(max(size - 4096, 0))
+            check_count(int(b"endsolid" in stream.read()), 1, "a solid", "lines endsolid")
+        else:
+            check_count(size - STL_HEAD, STL_TRIANGLE * triangles, "the header")
+
+
+def check_ply(path: Path) -> None:
+    """Refuse a file with fewer elements than its header declares.
+
+    Raises
+    ------
+    FieldError
+        With what is missing.
+    """
+    with path.open("rb") as stream:
+        form, elements = _ply_header(stream)
+        text = TextScanner(stream, path.stat().st_size)
+        for name, count, properties in elements:
+            if form == "ascii":
+                found = _text_elements(text, count)
+            else:
+                found = _binary_elements(text, count, properties, big=form.endswith("big_endian"))
+            check_count(found, count, f"element {name}", "of them")
+
+
+def _ply_header(stream: BinaryIO) -> tuple[str, list[tuple[str, int, list[list[str]]]]]:
+    """Return the format, and the elements: name, count and the words of their properties."""
+    form = ""
+    elements: list[tuple[str, int, list[list[str]]]] = []
+    for line in stream:
+        words = line.decode(errors="replace").split()
+        match words:
+            case ["format", form, *_]:
+                pass
+            case ["element", name, count] if count.isdecimal():
+                elements.append((name, int(count), []))
+            case ["property", *kind, _] if elements and set(kind) - {"list"} <= set(PLY_TYPES):
+                elements[-1][2].append(kind)
+            case ["end_header"]:
+                return form, elements
+            case ["ply" | "comment" | "obj_info", *_] | []:
+                pass
+            case _:
+                break
+    msg = (
+        f"the file is broken: its header has {line[:80]!r}" if elements else "the file is cut short"
+    )
+    raise FieldError(msg + "; write or copy it again")
+
+
+def _text_elements(text: TextScanner, count: int) -> int:
+    for number in range(count):
+        while (line := text.line()) is not None and not line.strip():
+            pass
+        if line is None:
+            return number
+    return count
+
+
+def _binary_elements(
+    text: TextScanner, count: int, properties: list[list[str]], *, big: bool
+) -> int:
+    """Go over elements, and return how many there were."""
+    if all(len(kind) == 1 for kind in properties):
+        size = sum(PLY_TYPES[kind[0]] for kind in properties)
+        return text.skip(size * count) // size if size else count
+    for number in range(count):
+        for kind in properties:
+            if kind[0] == "list":
+                head = text.read(PLY_TYPES[kind[1]])
+                size = int.from_bytes(head, "big" if big else "little") * PLY_TYPES[kind[2]]
+                if not head or text.skip(size) < size:
+                    return number
+            elif text.skip(PLY_TYPES[kind[0]]) < PLY_TYPES[kind[0]]:
+                return number
+    return count
