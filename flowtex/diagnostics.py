@@ -27,6 +27,7 @@ from pathlib import Path
 from typing import Literal
 
 from flowtex._util.extras import install_extra
+from flowtex._util.terminal import terminal
 
 __all__ = [
     "Check",
@@ -286,7 +287,6 @@ def _packages() -> list[Check]:
 
 def print_checks(checks: Sequence[Check]) -> None:
     """Print the checks as a table, and each remedy on a line of its own that can be copied."""
-    from rich.console import Console
     from rich.table import Table
     from rich.text import Text
 
@@ -294,12 +294,12 @@ def print_checks(checks: Sequence[Check]) -> None:
     table = Table("", "what", "found", box=None)
     for check in checks:
         table.add_row(Text(check.status, colours[check.status]), check.name, Text(check.detail))
-    console = Console()
+    console = terminal()
     console.print(table)
     for check in checks:
         if check.remedy and check.status != "ok":
-            console.print(f"\n{check.name}, to mend it:", markup=False, highlight=False)
-            console.print(f"  {check.remedy}", markup=False, highlight=False, soft_wrap=True)
+            console.print(f"\n{check.name}, to mend it:")
+            console.print(f"  {check.remedy}", soft_wrap=True)
 
 
 def main() -> int:

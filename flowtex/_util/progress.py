@@ -12,6 +12,8 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from typing import TYPE_CHECKING, TypeVar
 
+from flowtex._util.terminal import terminal
+
 if TYPE_CHECKING:
     from rich.progress import Progress
     from rich.status import Status
@@ -54,9 +56,9 @@ def check() -> None:
 @contextmanager
 def waiting(text: str) -> Iterator[Callable[[], None]]:
     """Say in a terminal what goes on inside, until it ends, has a bar, or the result is called."""
-    from rich.console import Console
+    from rich.text import Text
 
-    status = Console(stderr=True).status(text)
+    status = terminal(stderr=True).status(Text(text))
     _waiting.append(status)
     try:
         status.start()
@@ -91,7 +93,9 @@ def track(items: Iterable[T], total: int, text: str, *, show: bool = True) -> It
 
 
 def _bar() -> Progress:
-    from rich.console import Console
-    from rich.progress import Progress
+    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn
+    from rich.progress import TimeRemainingColumn as TimeColumn
 
-    return Progress(console=Console(stderr=True), transient=True)
+    text = TextColumn("{task.description}", markup=False)
+    columns = (text, BarColumn(), TaskProgressColumn(), TimeColumn())
+    return Progress(*columns, console=terminal(stderr=True), transient=True)

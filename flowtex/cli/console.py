@@ -7,6 +7,8 @@ import sys
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+from flowtex._util.terminal import terminal
+
 if TYPE_CHECKING:
     from flowtex.field import FlowField
 
@@ -15,12 +17,8 @@ __all__ = ["announcer", "complain", "describe", "in_flags", "say"]
 
 def complain(error: Exception, colour: str = "red") -> None:
     """Print an error, or a warning, in one paragraph on stderr."""
-    from rich.console import Console
-
     text = in_flags(str(error).strip()) or type(error).__name__
-    console = Console(stderr=True, highlight=False)
-    console.print(f"[bold {colour}]flowtex:[/] ", end="")
-    console.print(text, markup=False, soft_wrap=True)
+    say(("flowtex:", f"bold {colour}"), f" {text}", stderr=True)
 
 
 def in_flags(text: str) -> str:
@@ -46,26 +44,27 @@ def in_flags(text: str) -> str:
     return re.sub(rf"""{start}(?P<value>[^\s"';,)]+)""", flag, text)
 
 
-def say(text: str) -> None:
-    """Print a line of rich markup."""
-    from rich.console import Console
+def say(*parts: str | tuple[str, str], stderr: bool = False) -> None:
+    """Print a line of texts, each alone or with its style."""
+    from rich.text import Text
 
-    Console(highlight=False).print(text, soft_wrap=True)
+    terminal(stderr=stderr).print(Text.assemble(*parts), soft_wrap=True)
 
 
 def announcer(field: FlowField, host: str) -> Callable[[str], None]:
     """Return a function that prints the address of a page."""
 
     def announce(address: str) -> None:
-        say(f"[bold]flowtex[/]  {describe(field)}\n")
+        say(("flowtex", "bold"), f"  {describe(field)}\n")
         # A link that is wrapped or coloured in pieces cannot be clicked.
-        say(f"  [cyan]{address}[/]\n")
+        say("  ", (address, "cyan"), "\n")
         if host not in ("127.0.0.1", "localhost", "::1"):
-            say(
-                "  [yellow]Everybody who can reach this machine and has this address can use it,\n"
-                "  and read along: a proxy with TLS keeps it private.[/]"
+            warning = (
+                "  Everybody who can reach this machine and has this address can use it,\n"
+                "  and read along: a proxy with TLS keeps it private."
             )
-        say("  [dim]Ctrl-C ends it.[/]")
+            say((warning, "yellow"))
+        say(("  Ctrl-C ends it.", "dim"))
         sys.stdout.flush()
 
     return announce

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Annotated
 
+from flowtex._util.terminal import terminal
 from flowtex.cli.console import in_flags
 from flowtex.cli.load import load_field
 from flowtex.cli.options import FILE, FLAT, FieldFlags, UsageError
@@ -25,14 +26,13 @@ MOST_TIMES, MOST_BLOCKS = 8, 40
 
 def info(*files: FILE, flow: Annotated[FieldFlags | None, FLAT] = None) -> int:
     """Tell what a file holds, and what would be drawn."""
-    from rich.console import Console
     from rich.text import Text
 
     from flowtex.field.datasets.files import dataset_paths
     from flowtex.field.io.summary import describe
     from flowtex.pyramid import is_store
 
-    console = Console(highlight=False)
+    console = terminal()
     if len(files) == 1 and is_store(files[0]):
         console.print(Text(str(files[0]), "bold"), soft_wrap=True)
         console.print(_store_table(files[0]))
@@ -145,7 +145,6 @@ def _file_table(summary: FileSummary) -> Table:
 
 def _block_table(summary: FileSummary) -> Table:
     from rich.table import Table
-    from rich.text import Text
 
     table = Table(box=None, header_style="dim")
     for title in ("block", "name", "grid", "size"):
@@ -153,7 +152,7 @@ def _block_table(summary: FileSummary) -> Table:
     for block in summary.blocks[:MOST_BLOCKS]:
         number = "" if block.number is None else str(block.number)
         size = block.size.removesuffix(" nodes").replace(" x ", " × ")
-        table.add_row(number, Text(block.name), block.grid, size)
+        table.add_row(number, block.name, block.grid, size)
     if len(summary.blocks) > MOST_BLOCKS:
         table.add_row("", f"and {len(summary.blocks) - MOST_BLOCKS} more", "", "")
     return table
@@ -161,15 +160,13 @@ def _block_table(summary: FileSummary) -> Table:
 
 def _array_table(summary: FileSummary) -> Table:
     from rich.table import Table
-    from rich.text import Text
 
     table = Table(box=None, header_style="dim")
     for title in ("array", "on", "numbers", "from", "to"):
         table.add_column(title, justify="left" if title in ("array", "on") else "right")
     for array in summary.arrays:
         made = f" = {', '.join(array.parts)}" if array.parts else ""
-        name = Text(f"{array.name}{made}")
-        table.add_row(name, array.where, str(array.components), *_span(array))
+        table.add_row(f"{array.name}{made}", array.where, str(array.components), *_span(array))
     return table
 
 

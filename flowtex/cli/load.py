@@ -47,7 +47,7 @@ def notices() -> Iterator[None]:
         yield
     for warning in caught:
         if issubclass(warning.category, Notice):
-            say(f"[dim]{in_flags(str(warning.message))}[/]")
+            say((in_flags(str(warning.message)), "dim"))
         elif not warning.category.__module__.startswith("xarray."):  # how a file was written
             warnings.warn_explicit(
                 warning.message, warning.category, warning.filename, warning.lineno

@@ -56,7 +56,8 @@ def pyramid(
     kept = f", {built.kept:,} were there" if built.kept else ""
     rows, columns = source.shape
     say(
-        f"[bold]{output}[/]  {columns} × {rows} nodes, {built.depth + 1} levels  "
-        f"[dim]{built.made:,} shards made{kept}, {time.perf_counter() - start:.1f} s[/]"
+        (str(output), "bold"),
+        f"  {columns} × {rows} nodes, {built.depth + 1} levels  ",
+        (f"{built.made:,} shards made{kept}, {time.perf_counter() - start:.1f} s", "dim"),
     )
     return 0

@@ -82,8 +82,9 @@ def render(
         else ""
     )
     say(
-        f"[bold]{output}[/]  {describe(field)}{lost}  "
-        f"[dim]{size[0]} × {size[1]}, {time.perf_counter() - start:.1f} s[/]"
+        (str(output), "bold"),
+        f"  {describe(field)}{lost}  ",
+        (f"{size[0]} × {size[1]}, {time.perf_counter() - start:.1f} s", "dim"),
     )
     return 0
 
@@ -125,11 +126,11 @@ def movie(
             field, output, size=size, seconds=seconds, fps=fps, quality=quality, **options
         )
     loop = ", a loop without a seam" if result.closed else ""
-    say(
-        f"[bold]{output}[/]  {describe(field)}{loop}  "
-        f"[dim]{size[0]} × {size[1]}, {result.frames} frames in {result.seconds:g} s, "
-        f"{result.nbytes / 1e6:.1f} MB, {time.perf_counter() - start:.1f} s[/]"
+    figures = (
+        f"{size[0]} × {size[1]}, {result.frames} frames in {result.seconds:g} s, "
+        f"{result.nbytes / 1e6:.1f} MB, {time.perf_counter() - start:.1f} s"
     )
+    say((str(output), "bold"), f"  {describe(field)}{loop}  ", (figures, "dim"))
     return 0
 
 
@@ -177,7 +178,7 @@ def export(
             field, output, steps=steps, title=title, store=store, announce=announce, **options
         )
     seconds = time.perf_counter() - start
-    say(f"[bold]{output}[/]  [dim]{page.nbytes / 1e6:.2f} MB, {seconds:.1f} s[/]")
+    say((str(output), "bold"), "  ", (f"{page.nbytes / 1e6:.2f} MB, {seconds:.1f} s", "dim"))
     return 0
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from flowtex._util.array_types import Floats
 from flowtex._util.extras import import_extra
 from flowtex.errors import FieldError
+from flowtex.field.datasets.values import values_in
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -196,7 +197,7 @@ def _numbers(c: Any) -> Floats:
     if c.dtype.kind not in "fiu":
         msg = f"the coordinate {c.name!r} holds {c.dtype}; expected numbers"
         raise FieldError(msg)
-    return np.asarray(c.values, dtype=float)
+    return np.asarray(values_in(c), dtype=float)
 
 
 def _is_lonlat(a: Floats, b: Floats, lon: Any, lat: Any) -> bool:

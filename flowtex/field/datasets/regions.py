@@ -25,6 +25,7 @@ from flowtex.field.datasets.maps import (
     shown_rows,
 )
 from flowtex.field.datasets.places import Places
+from flowtex.field.datasets.values import values_in
 from flowtex.field.periodic import find_closure
 
 if TYPE_CHECKING:
@@ -211,7 +212,7 @@ def region_lines(places: Places, name: str | None) -> RegionLines | None:
 
 def numbers_in(array: Any) -> Floats:
     """Return the values of a variable as float64; what stands for missing data is NaN."""
-    values = np.asarray(array.values)
+    values = values_in(array)
     if values.dtype.kind not in "fiub":
         msg = f"{getattr(array, 'name', 'a variable')!r} holds {values.dtype}; expected numbers"
         raise FieldError(msg)

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flowtex._util.array_types import Floats
+from flowtex.field.datasets.values import values_in
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -97,7 +98,7 @@ def shift_told(side: str, cell: str, datasets: Sequence[xr.Dataset]) -> int | No
 def _line(name: str, datasets: Sequence[xr.Dataset]) -> Any:
     for ds in datasets:
         if name in ds.coords and ds[name].ndim == 1 and ds[name].dtype.kind in "fiu":
-            values = np.asarray(ds[name].values, dtype=float)
+            values = np.asarray(values_in(ds[name]), dtype=float)
             # Numbers of the nodes alone tell nothing.
             return None if np.array_equal(values, np.arange(len(values)) + values[0]) else values
     return None

@@ -15,6 +15,7 @@ import numpy as np
 
 from flowtex._util.extras import import_extra
 from flowtex.errors import FieldError
+from flowtex.field.io.inspection.limits import check_count, check_memory
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -23,6 +24,8 @@ __all__ = ["read_winds"]
 
 #: Names of the components by the number of the parameter, those of the categories that move.
 NUMBERS = {2: "u", 3: "v"}
+#: Bytes in memory of one byte of JSON, at most: "[]," is a list of its own.
+JSON_GROWTH = 24
 WORDS = {"u": "eastward_wind", "v": "northward_wind"}
 
 
@@ -36,8 +39,11 @@ def read_winds(path: Path) -> xr.Dataset:
     """
     xarray = import_extra("xarray", "xarray")
     try:
+        check_memory(JSON_GROWTH * path.stat().st_size, "the file")
         records = json.loads(path.read_text(encoding="utf-8"))
-    except ValueError as error:
+    except FieldError:
+        raise
+    except (ValueError, RecursionError) as error:
         msg = f"it is no JSON ({error})"
         raise FieldError(msg) from error
     if not isinstance(records, list) or not all(isinstance(r, dict) for r in records):
@@ -66,11 +72,17 @@ def _component(xarray: Any, header: dict[str, Any], data: Any, name: str) -> Any
     """Return one record as an array on latitude and longitude."""
     try:
         columns, rows = int(header["nx"]), int(header["ny"])
+        if min(columns, rows) < 1:
+            msg = f"nx is {columns} and ny {rows}; expected 1 or more"
+            raise ValueError(msg)
+        check_count(len(data), columns * rows, f"the component {name}", "numbers")
         lon = float(header["lo1"]) + abs(float(header["dx"])) * np.arange(columns)
         south = -1.0 if float(header["la1"]) >= float(header.get("la2", -90.0)) else 1.0
         lat = float(header["la1"]) + south * abs(float(header["dy"])) * np.arange(rows)
         values = np.array([np.nan if v is None else v for v in data], dtype=float)
         values = values.reshape(rows, columns)
+    except FieldError:
+        raise
     except (KeyError, TypeError, ValueError, OverflowError) as error:
         msg = f"the record of the component {name} is broken ({error})"
         raise FieldError(msg) from error

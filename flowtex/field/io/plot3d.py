@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 
 from flowtex.errors import FieldError
+from flowtex.field.io.inspection.limits import check_count, check_memory
 
 __all__ = ["GRID_SUFFIXES", "find_grid", "find_layout", "find_solution", "read_plot3d"]
 
@@ -28,6 +29,8 @@ VELOCITY = 200
 GRID_SUFFIXES = (".xyz", ".x", ".g", ".p3d", ".grd", ".bin", ".dat", ".fmt")
 #: Grids in one file, at most; a header that tells of more is none.
 MOST_GRIDS = 100_000
+#: Bytes in memory of one byte of text: a number has two at least, and its word takes some 50.
+TEXT_GROWTH = 25
 _TEXT = frozenset(b"0123456789+-.eEdD \t\r\n,")
 
 
@@ -93,6 +96,7 @@ def _binary_header(
 
 
 def _text_layout(path: Path) -> Layout | None:
+    check_memory(TEXT_GROWTH * path.stat().st_size, "the file")
     words = path.read_bytes().replace(b",", b" ").split()
     for several, axes in product((False, True), (3, 2)):
         try:
@@ -148,8 +152,29 @@ def _solution_names(grid: Path) -> Iterator[str]:
     yield grid.stem + (".Q" if grid.suffix.isupper() else ".q")
 
 
+def _check_solution(layout: Layout, solution: Path) -> None:
+    """Refuse a solution of other grids, or one that is cut: VTK allocates what its header says."""
+    if not layout.binary:
+        return
+    axes, grids = len(layout.dimensions[0]), layout.dimensions
+    with solution.open("rb") as file:
+        head = file.read(4 * (axes * len(grids) + 4))
+    order = ">" if layout.big_endian else "<"
+    marks, several = layout.record_marks, layout.multiple
+    found = _binary_header(head, order, axes, marks=marks, several=several)
+    if found and found != grids:
+        msg = f"{solution.name} is of grids of {found[:3]} nodes, and the grid of {grids[:3]}"
+        raise FieldError(msg + "; give the solution of this grid")
+    real, mark = 8 if layout.double else 4, 8 * marks
+    header = 4 * axes * len(grids) + mark + (4 + mark) * several
+    # Four numbers of the flow, then density, momentum and energy at each node.
+    each = sum((4 + (axes + 2) * math.prod(grid)) * real + 2 * mark for grid in grids)
+    check_count(solution.stat().st_size, header + each, solution.name)
+
+
 def read_plot3d(grid: Path, layout: Layout, solution: Path) -> Any:
     """Read a grid with its solution into a PyVista MultiBlock whose blocks have ``Velocity``."""
+    _check_solution(layout, solution)
     import pyvista as pv
     from vtkmodules.vtkIOParallel import vtkMultiBlockPLOT3DReader
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from flowtex.errors import FieldError
 from flowtex.field.datasets.meshes.mesh import Mesh
+from flowtex.field.datasets.values import values_in
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -103,7 +104,7 @@ def _of_models(variables: Mapping[str, Any]) -> Iterator[Mesh]:
 
 def _spreads(c: Any) -> bool:
     """Whether a coordinate is no array of zeros, as of the other kind that a model may write."""
-    values = np.asarray(c.values, dtype=float)
+    values = np.asarray(values_in(c), dtype=float)
     return bool(np.nanmax(values, initial=-np.inf) > np.nanmin(values, initial=np.inf))
 
 

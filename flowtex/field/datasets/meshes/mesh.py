@@ -14,6 +14,7 @@ from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.errors import FieldError
 from flowtex.field.datasets.axes import FACES, NODES
 from flowtex.field.datasets.places import DEGREES, LENGTHS
+from flowtex.field.datasets.values import values_in
 from flowtex.field.triangles.topology import triangle_normals
 
 __all__ = ["Mesh"]
@@ -93,7 +94,7 @@ class Mesh:
     def _raw(self) -> tuple[Floats, Floats]:
         parts = []
         for n, c in enumerate((self.x, self.y)):
-            values = np.asarray(c.values, dtype=float)
+            values = np.asarray(values_in(c), dtype=float)
             if c.ndim == 2 and self.corners is not None:  # both in one variable
                 values = values[n] if values.shape[0] == 2 else values[:, n]
             parts.append(values)
@@ -208,7 +209,7 @@ def _numbers(mesh: Mesh, count: int) -> Indices:
     """Return the numbers of the nodes of faces, (F, K), from 0; -1 where there is none."""
     corners = mesh.corners
     _, faces = mesh.dims
-    values = np.asarray(corners.transpose(faces, ...).values)
+    values = values_in(corners.transpose(faces, ...))
     fill = corners.attrs.get("_FillValue", corners.encoding.get("_FillValue"))
     there: Bools = np.asarray(np.isfinite(values))
     if fill is not None and np.isfinite(fill):

@@ -141,4 +141,9 @@ class _Header:
 
     def _fits(self, count: int, nbytes: int) -> None:
         """Refuse a count of things that the rest of the file has no room for."""
-        check_count(self._left, count * nbytes, "the header")
+        if count * nbytes > self._left:
+            msg = (
+                f"the file is cut short or broken: its header goes on for {count * nbytes:,} "
+                f"bytes, and the file for {self._left:,}; write or copy it again"
+            )
+            raise FieldError(msg)

@@ -63,18 +63,19 @@ def _vectors(file: Path) -> AnyArray:
         msg = "the file has no vectors, for which its format has no room"
         raise FieldError(msg)
     try:
-        vectors = np.load(path, allow_pickle=False)
+        # Mapped first: NumPy allocates what the header declares, whether the file has it or not.
+        vectors = np.load(path, mmap_mode="r", allow_pickle=False)
     except (ValueError, EOFError, OSError) as error:
         msg = f"{path.name} beside it is no array of NumPy's ({error})"
         raise FieldError(msg) from error
-    if not isinstance(vectors, np.ndarray):
+    if not isinstance(vectors, np.ndarray):  # an archive
         msg = f"{path.name} beside it holds several arrays"
         raise FieldError(msg)
     real = vectors.dtype.kind in "fiu" and vectors.size
     if not real or vectors.ndim not in (2, 3) or vectors.shape[-1] not in (2, 3):
         msg = f"{path.name} beside it has shape {vectors.shape} of {vectors.dtype}"
         raise FieldError(msg)
-    return vectors
+    return np.array(vectors)
 
 
 def _expected(file: Path, mesh: Any) -> str:

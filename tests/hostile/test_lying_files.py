@@ -1,0 +1,157 @@
+"""Files that lie are refused by name, before a value is read or memory is taken."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+import pyvista as pv
+from hostile import lying_files as lies
+
+from flowtex import FlowField
+from flowtex.errors import FieldError
+from flowtex.field.io.inspection import limits
+from flowtex.field.io.inspection.files import inspect_file
+
+
+def refused(path: Path) -> str:
+    """Return why a file is refused by every way in."""
+    from flowtex.field.datasets.source import open_source
+
+    with pytest.raises(FieldError) as caught:
+        FlowField.from_file(path)
+    with pytest.raises(FieldError) as again:
+        open_source(path)
+    assert str(caught.value).startswith(f"{path}: ")
+    assert str(again.value) == str(caught.value)
+    return str(caught.value)
+
+
+@pytest.mark.parametrize("suffix", [".nc", ".cgns"])
+@pytest.mark.parametrize(
+    ("write", "what"),
+    [
+        (lies.external_storage, "u has external storage"),
+        (lies.external_link, "deep/link is an external link"),
+        (lies.virtual_dataset, "u is a virtual dataset"),
+    ],
+)
+def test_hdf5_that_leads_to_another_file_is_refused(
+    tmp_path: Path, suffix: str, write: Callable[[Path, Path], None], what: str
+) -> None:
+    secret = tmp_path / "secret.txt"
+    secret.write_bytes(b"the words of somebody else, " * 20)
+    path = tmp_path / f"upload{suffix}"
+    write(path, secret)
+    assert f"{what}, in the file '{secret}'" in refused(path)
+
+
+def test_hdf5_behind_a_block_of_the_user_is_looked_into(tmp_path: Path) -> None:
+    path = tmp_path / "plain.nc"
+    lies.external_storage(path, tmp_path / "secret")
+    behind = tmp_path / "behind.nc"
+    behind.write_bytes(b"#" * 4096 + path.read_bytes())
+    with pytest.raises(FieldError, match="external storage"):
+        inspect_file(behind)
+
+
+def test_a_virtual_dataset_of_the_file_itself_is_read(tmp_path: Path) -> None:
+    import h5py
+
+    with h5py.File(tmp_path / "own.h5", "w") as file:
+        file["x"] = np.ones((3, 4))
+        layout = h5py.VirtualLayout((3, 4), "f8")
+        layout[:] = h5py.VirtualSource(file["x"])
+        file.create_virtual_dataset("y", layout)
+    inspect_file(tmp_path / "own.h5")
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "what"),
+    [
+        ("bomb.vtu", lies.vtu(10**12), "declares 3,000,000,000,000 values"),
+        ("cells.vtu", lies.vtu(3, 10**11), "the offsets of cells declares 100,000,000,000 nodes"),
+        ("image.vti", lies.image("0 99999 0 99999 0 0"), "declares 30,000,000,000 values"),
+        ("points.vtk", lies.legacy("DATASET POLYDATA\nPOINTS 100000000000 float"), "300,000,000"),
+        (
+            "cells.vtk",
+            lies.legacy("DATASET POLYDATA\nPOINTS 1 float\n1 2 3\nPOLYGONS 1 2000000000"),
+            "polygons declares 2,000,000,000 numbers, the file has 3 of them, and 1,999,999,997",
+        ),
+        ("winds.json", lies.winds(20_000, 20_000), "declares 400,000,000 numbers"),
+        ("deep.json", b"[" * 200_000, "it is no JSON"),
+        ("classic.nc", lies.netcdf_header(1, 2**31), "2,147,483,8"),
+        ("wide.nc", lies.netcdf_header(5, 2**60), "1,152,921,504,606,84"),
+        ("constant.grib", lies.grib2(2**32 - 1), "the grid of message 1 declares 34.4 GB"),
+        ("laughs.vtu", b'<!DOCTYPE x [<!ENTITY a "b">]><VTKFile/>', "the XML entity a"),
+    ],
+)
+def test_a_size_that_the_file_has_not_is_refused(
+    tmp_path: Path, name: str, content: bytes, what: str
+) -> None:
+    (tmp_path / name).write_bytes(content)
+    assert what in refused(tmp_path / name)
+
+
+def test_an_array_beside_a_surface_is_as_long_as_it_says(tmp_path: Path) -> None:
+    pv.Sphere().save(tmp_path / "ball.stl")
+    about = {"descr": "<f8", "fortran_order": False, "shape": (10**11, 3)}
+    with (tmp_path / "ball.npy").open("wb") as file:
+        np.lib.format.write_array_header_1_0(file, about)
+    assert "is no array of NumPy's" in refused(tmp_path / "ball.stl")
+
+
+@pytest.mark.parametrize("compressor", ["zlib", None])
+def test_what_does_not_fit_into_memory_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, compressor: str | None
+) -> None:
+    grid = pv.ImageData(dimensions=(100, 100, 1))
+    grid["velocity"] = np.ones((grid.n_points, 3))
+    path = tmp_path / "calm.vti"
+    grid.save(path, compression=compressor)
+    monkeypatch.setattr(limits, "available_bytes", lambda: 1_000_000)
+    FlowField.from_file(path)  # 240 kB, however small the file is
+    monkeypatch.setattr(limits, "available_bytes", lambda: 400_000)
+    path.touch()
+    assert "the file declares 240 kB, and 200 kB of memory are available" in refused(path)
+
+
+def test_a_chunk_and_a_variable_have_to_fit_into_memory(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    lies.large_chunk(tmp_path / "chunk.nc")
+    monkeypatch.setattr(limits, "available_bytes", lambda: 20_000_000)
+    assert "one chunk of u declares 32 MB, and 10 MB" in refused(tmp_path / "chunk.nc")
+
+
+def test_a_member_of_a_series_is_looked_into(tmp_path: Path) -> None:
+    (tmp_path / "step.vtu").write_bytes(lies.vtu(10**12))
+    (tmp_path / "series.pvd").write_text(
+        '<VTKFile type="Collection"><Collection><DataSet timestep="0" file="step.vtu"/>'
+        '<DataSet timestep="1" file="series.pvd"/></Collection></VTKFile>'
+    )
+    assert f"{tmp_path / 'step.vtu'}: the file is cut short" in refused(tmp_path / "series.pvd")
+
+
+def test_a_file_is_looked_into_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from flowtex.field.io.inspection import vtk_legacy
+
+    looks = 0
+    check = vtk_legacy.check_vtk_legacy
+
+    def counted(path: Path) -> None:
+        nonlocal looks
+        looks += 1
+        check(path)
+
+    monkeypatch.setattr(vtk_legacy, "check_vtk_legacy", counted)
+    path = tmp_path / "mesh.vtk"
+    pv.ImageData(dimensions=(3, 3, 1)).save(path)
+    inspect_file(path)
+    inspect_file(path)
+    assert looks == 1
+    pv.ImageData(dimensions=(4, 4, 1)).save(path)
+    inspect_file(path)
+    assert looks == 2
